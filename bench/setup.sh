@@ -1,0 +1,65 @@
+# Sourced by bench/run and tests/run: installs what a bare Debian 12 lacks.
+
+# What every build of winnow needs.
+WINNOW_BUILD_PACKAGES=(cmake ninja-build g++ pkg-config libeigen3-dev libxsimd-dev libtbb-dev)
+# What the winnow tool and the micro benchmarks need on top.
+WINNOW_BENCH_PACKAGES=(libbenchmark-dev libcli11-dev nlohmann-json3-dev liblzma-dev xz-utils)
+# Other libraries that winnow can be measured against.
+WINNOW_PEER_PACKAGES=(libbullet-dev libfcl-dev libcgal-dev libembree-dev libode-dev)
+
+# winnow_missing PACKAGE...: prints those that are not installed.
+winnow_missing() {
+  local package
+  for package in "$@"; do
+    [[ "$(dpkg-query -W -f '${Status}' "$package" 2>/dev/null)" == "install ok installed" ]] ||
+      printf '%s\n' "$package"
+  done
+}
+
+# winnow_need PACKAGE...: installs those that are missing, saying which. Without the right to
+# install it prints the command and returns 1. On systems without dpkg it leaves finding the
+# dependencies to CMake.
+winnow_need() {
+  command -v dpkg-query >/dev/null || return 0
+  local missing
+  mapfile -t missing < <(winnow_missing "$@")
+  ((${#missing[@]})) || return 0
+
+  local as_root=()
+  if ((EUID != 0)); then
+    if ! command -v sudo >/dev/null || ! { sudo -n true 2>/dev/null || [[ -t 0 ]]; }; then
+      echo "Packages are missing and installing them needs root. Run:" >&2
+      echo "  apt-get install -y --no-install-recommends ${missing[*]}" >&2
+      return 1
+    fi
+    as_root=(sudo)
+  fi
+  echo "installing: ${missing[*]}" >&2
+  local log
+  log=$(mktemp)
+  if ! { "${as_root[@]}" apt-get update &&
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+      apt-get install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+    cat "$log" >&2
+    rm -f "$log"
+    echo "Installing failed. The command was:" >&2
+    echo "  ${as_root[*]:+${as_root[*]} }apt-get install -y --no-install-recommends ${missing[*]}" >&2
+    return 1
+  fi
+  rm -f "$log"
+}
+
+# winnow_build FOLDER PRESET TARGET [CMAKE OPTION...]: configures and builds one target in silence;
+# the log is shown if that fails.
+winnow_build() {
+  local folder=$1 preset=$2 target=$3
+  shift 3
+  local log="$folder/build/$preset.log"
+  mkdir -p "$folder/build"
+  if ! { cmake -S "$folder" --preset "$preset" "$@" &&
+    cmake --build "$folder/build/$preset" --target "$target"; } >"$log" 2>&1; then
+    cat "$log" >&2
+    echo "The build failed; its log is $log" >&2
+    return 1
+  fi
+}
