@@ -1,0 +1,53 @@
+# Install rules: libraries, public headers, and what find_package(winnow) and pkg-config read.
+
+include(CMakePackageConfigHelpers)
+
+set(winnow_modules winnow_core winnow_simd winnow_partitions)
+# A shared module finds its siblings beside itself, wherever the tree is moved to.
+set_target_properties(${winnow_modules} PROPERTIES
+  VERSION ${PROJECT_VERSION}
+  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+  INSTALL_RPATH $ORIGIN)
+install(TARGETS ${winnow_modules} winnow EXPORT winnow-targets
+        RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+
+# Headers that only kernel files can include stay out.
+foreach(room core simd partitions)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room}/
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow/${room}
+          FILES_MATCHING PATTERN "*.h"
+          PATTERN "*.kernel.h" EXCLUDE
+          PATTERN "wide.h" EXCLUDE
+          PATTERN "compress.h" EXCLUDE)
+endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/pipeline/
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow/pipeline
+        FILES_MATCHING PATTERN "*.h"
+        PATTERN "*.kernel.h" EXCLUDE
+        PATTERN "winnow.h" EXCLUDE)
+install(FILES ${PROJECT_SOURCE_DIR}/pipeline/winnow.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow)
+
+set(winnow_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/winnow)
+install(EXPORT winnow-targets NAMESPACE winnow:: DESTINATION ${winnow_package_dir})
+configure_package_config_file(
+  ${CMAKE_CURRENT_LIST_DIR}/winnow-config.cmake.in ${PROJECT_BINARY_DIR}/winnow-config.cmake
+  INSTALL_DESTINATION ${winnow_package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/winnow-config-version.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/winnow-config.cmake
+              ${PROJECT_BINARY_DIR}/winnow-config-version.cmake
+        DESTINATION ${winnow_package_dir})
+
+# Archives leave TBB to whoever links them; shared modules carry the dependency themselves.
+if(BUILD_SHARED_LIBS)
+  set(winnow_pc_requires "Requires: eigen3\nRequires.private: tbb")
+else()
+  set(winnow_pc_requires "Requires: eigen3, tbb")
+endif()
+file(RELATIVE_PATH winnow_pc_to_prefix
+     ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+configure_file(${CMAKE_CURRENT_LIST_DIR}/winnow.pc.in ${PROJECT_BINARY_DIR}/winnow.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/winnow.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
