@@ -1,0 +1,49 @@
+#pragma once
+
+#include <winnow/core/rounding.h>
+
+#include <Eigen/Core>
+#include <limits>
+
+namespace winnow {
+
+/// Axis-aligned box [min, max], closed: boxes that touch overlap, a box of zero extent is legal,
+/// and an axis may reach to infinity. Default-constructed it is empty and overlaps nothing.
+struct Aabb {
+  Eigen::Vector3f min = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity());
+  Eigen::Vector3f max = Eigen::Vector3f::Constant(-std::numeric_limits<float>::infinity());
+
+  /// The smallest float box that contains the double box [min, max].
+  [[nodiscard]] static Aabb outward(const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
+    return {round_down(min), round_up(max)};
+  }
+
+  /// True if a partition takes this box: no NaN, min <= max, and not wholly at infinity.
+  [[nodiscard]] bool is_valid() const noexcept {
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(min[axis] <= max[axis] && min[axis] < inf && max[axis] > -inf)) return false;
+    }
+    return true;
+  }
+
+  /// Closed overlap test; false if either box has a NaN.
+  [[nodiscard]] bool overlaps(const Aabb& other) const noexcept {
+    return min.x() <= other.max.x() && other.min.x() <= max.x() && min.y() <= other.max.y() &&
+           other.min.y() <= max.y() && min.z() <= other.max.z() && other.min.z() <= max.z();
+  }
+
+  /// Grows to contain `other`.
+  void merge(const Aabb& other) noexcept {
+    min = min.cwiseMin(other.min);
+    max = max.cwiseMax(other.max);
+  }
+
+  friend bool operator==(const Aabb& a, const Aabb& b) noexcept {
+    return a.min == b.min && a.max == b.max;
+  }
+};
+
+static_assert(sizeof(Aabb) == 24 && alignof(Aabb) == 4, "layout must not depend on build flags");
+
+}  // namespace winnow

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <winnow/core/column.h>
+#include <winnow/core/execution.h>
+#include <winnow/core/key.h>
+#include <winnow/core/volume.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory_resource>
+#include <span>
+#include <utility>
+
+namespace winnow {
+
+/// Bounding volumes in a structure of arrays: one float column per slab end (see `column_count`) and
+/// a column of object ids, all 64-byte aligned. Rows are dense but for holes that a removal leaves;
+/// a hole and the padding behind the last row hold an empty volume, which overlaps nothing, and
+/// `kNoObject`. Stored ends are finite (an infinite one becomes +-FLT_MAX, which no comparison can
+/// tell from infinity), so that the padding's infinities touch nothing.
+class BoundsPool {
+ public:
+  /// Rows in a block: one 512-bit register of floats, and the unit in which rows are tested.
+  static constexpr std::size_t kBlock = 16;
+
+  BoundsPool(std::pmr::memory_resource* memory, Volume volume) noexcept
+      : BoundsPool(memory, volume, std::make_index_sequence<kMaxColumns>{}) {}
+
+  [[nodiscard]] Volume volume() const noexcept { return volume_; }
+  [[nodiscard]] std::size_t columns() const noexcept { return column_count(volume_); }
+  [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
+  [[nodiscard]] std::size_t blocks() const noexcept { return (rows_ + kBlock - 1) / kBlock; }
+  [[nodiscard]] std::size_t capacity() const noexcept {
+    return ids_.capacity() < 2 * kBlock ? 0 : ids_.capacity() - 2 * kBlock;
+  }
+
+  [[nodiscard]] float* column(std::size_t c) noexcept { return columns_[c].data(); }
+  [[nodiscard]] const float* column(std::size_t c) const noexcept { return columns_[c].data(); }
+  [[nodiscard]] ObjectId* ids() noexcept { return ids_.data(); }
+  [[nodiscard]] const ObjectId* ids() const noexcept { return ids_.data(); }
+
+  /// Room for `rows` rows and their padding. Exact on the first call, growing by half afterwards.
+  [[nodiscard]] bool reserve(std::size_t rows) noexcept;
+
+  /// Adds rows with their contents uninitialised; room must have been reserved.
+  void append(std::size_t count) noexcept { rows_ += count; }
+
+  /// Takes the last row away.
+  void drop_last() noexcept { --rows_; }
+
+  /// Empties one row.
+  void blank(std::size_t row) noexcept;
+
+  /// Empties the rest of the last block and one block behind it, so that loads may run over.
+  void pad() noexcept;
+
+  /// New row i becomes a copy of old row order[i], or empty where order[i] is kNoObject. All columns
+  /// go through `spare`, which must have room for order.size() + 2 * kBlock elements.
+  void reorder(std::span<const std::uint32_t> order, Column<float>& spare,
+               const Execution& execution) noexcept;
+
+  /// The same for the rows from `begin` on alone, on the calling thread.
+  void reorder_tail(std::size_t begin, std::span<const std::uint32_t> order,
+                    Column<float>& spare) noexcept;
+
+  void clear() noexcept { rows_ = 0; }
+  void release() noexcept;
+  [[nodiscard]] Bytes bytes() const noexcept;
+
+ private:
+  template <std::size_t... I>
+  BoundsPool(std::pmr::memory_resource* memory, Volume volume, std::index_sequence<I...>) noexcept
+      : columns_{((void)I, Column<float>(memory))...}, ids_(memory), volume_(volume) {}
+
+  std::array<Column<float>, kMaxColumns> columns_;
+  Column<ObjectId> ids_;
+  std::size_t rows_ = 0;
+  Volume volume_;
+};
+
+/// What an empty row holds in column `c` of a volume: +infinity in a lower end, -infinity in an upper
+/// one; an empty sphere is infinitely far away and has radius 0.
+[[nodiscard]] constexpr float empty_value(Volume volume, std::size_t c) noexcept {
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  if (volume == Volume::sphere) return c < 3 ? inf : 0.0F;
+  return c < column_count(volume) / 2 ? inf : -inf;
+}
+
+}  // namespace winnow

@@ -1,0 +1,76 @@
+# What every winnow target is built with, the dependencies, and the include tree.
+
+include(FetchContent)
+
+# <winnow/core/aabb.h> in the tree is the same spelling as after installation: a folder of links in
+# the build tree, so that the source folders stay flat.
+set(WINNOW_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
+file(MAKE_DIRECTORY ${WINNOW_INCLUDE_DIR}/winnow)
+foreach(room core simd partitions pipeline)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${room} ${WINNOW_INCLUDE_DIR}/winnow/${room} SYMBOLIC)
+endforeach()
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/pipeline/winnow.h ${WINNOW_INCLUDE_DIR}/winnow/winnow.h
+     SYMBOLIC)
+
+find_package(Eigen3 3.4 QUIET NO_MODULE)
+if(NOT TARGET Eigen3::Eigen)
+  FetchContent_Declare(Eigen3
+    URL https://gitlab.com/libeigen/eigen/-/archive/3.4.0/eigen-3.4.0.tar.gz
+    URL_HASH SHA256=8586084f71f9bde545ee7fa6d00288b264a2b7ac3607b974e54d13e7162c1c72)
+  FetchContent_MakeAvailable(Eigen3)
+endif()
+
+find_package(TBB 2021 QUIET CONFIG)
+if(NOT TARGET TBB::tbb)
+  set(TBB_TEST OFF)
+  FetchContent_Declare(TBB GIT_REPOSITORY https://github.com/oneapi-src/oneTBB.git
+                       GIT_TAG v2021.8.0)
+  FetchContent_MakeAvailable(TBB)
+endif()
+
+# Only the headers: the CMake target of Debian's xsimd links a library that does not exist there.
+find_path(WINNOW_XSIMD_INCLUDE_DIR xsimd/xsimd.hpp)
+if(NOT WINNOW_XSIMD_INCLUDE_DIR)
+  FetchContent_Declare(xsimd GIT_REPOSITORY https://github.com/xtensor-stack/xsimd.git
+                       GIT_TAG 8.1.0)
+  FetchContent_Populate(xsimd)
+  set(WINNOW_XSIMD_INCLUDE_DIR ${xsimd_SOURCE_DIR}/include CACHE PATH "xsimd headers" FORCE)
+endif()
+
+add_library(winnow_flags INTERFACE)
+target_compile_features(winnow_flags INTERFACE cxx_std_20)
+# Contraction to fused multiply-add would make results depend on the instruction set.
+target_compile_options(winnow_flags INTERFACE
+  -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off
+  $<$<BOOL:${WINNOW_WARNINGS_AS_ERRORS}>:-Werror>
+  $<$<BOOL:${WINNOW_COVERAGE}>:--coverage>)
+target_link_options(winnow_flags INTERFACE $<$<BOOL:${WINNOW_COVERAGE}>:--coverage>)
+if(WINNOW_SANITIZER STREQUAL "address")
+  set(winnow_sanitize -fsanitize=address,undefined -fno-sanitize-recover=all
+      -fno-omit-frame-pointer)
+elseif(WINNOW_SANITIZER STREQUAL "thread")
+  set(winnow_sanitize -fsanitize=thread)
+elseif(NOT WINNOW_SANITIZER STREQUAL "")
+  message(FATAL_ERROR "WINNOW_SANITIZER is empty, address or thread")
+endif()
+target_compile_options(winnow_flags INTERFACE ${winnow_sanitize})
+target_link_options(winnow_flags INTERFACE ${winnow_sanitize})
+
+# winnow_library(room SOURCES ... KERNELS ... LINKS ...): one of the four library modules.
+function(winnow_library room)
+  cmake_parse_arguments(arg "" "" "SOURCES;KERNELS;LINKS;PRIVATE_LINKS" ${ARGN})
+  set(target winnow_${room})
+  add_library(${target} ${arg_SOURCES})
+  add_library(winnow::${room} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${room} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${WINNOW_INCLUDE_DIR}>
+                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(${target} PUBLIC ${arg_LINKS} PRIVATE $<BUILD_INTERFACE:winnow_flags>
+                        ${arg_PRIVATE_LINKS})
+  target_compile_definitions(${target} PRIVATE ${WINNOW_ISA_DEFINITIONS})
+  if(arg_KERNELS)
+    winnow_add_kernels(${target} ${arg_KERNELS})
+  endif()
+endfunction()
+include(GNUInstallDirs)

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <winnow/core/footprint.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory_resource>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace winnow {
+
+/// One column of a structure of arrays: 64-byte aligned, its memory a whole number of 64-byte
+/// lines, growth reported instead of thrown. `std::pmr::vector` asks its resource only for
+/// alignof(T), hence this type. Elements past `size()` up to `capacity()` are uninitialised.
+template <typename T>
+class Column {
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 64);
+
+ public:
+  static constexpr std::size_t kAlignment = 64;
+
+  explicit Column(std::pmr::memory_resource* memory) noexcept : memory_(memory) {}
+  Column(Column&& other) noexcept
+      : memory_(other.memory_),
+        data_(std::exchange(other.data_, nullptr)),
+        size_(std::exchange(other.size_, 0)),
+        capacity_(std::exchange(other.capacity_, 0)) {}
+  Column(const Column&) = delete;
+  Column& operator=(const Column&) = delete;
+  Column& operator=(Column&&) = delete;
+  ~Column() { release(); }
+
+  [[nodiscard]] T* data() noexcept { return data_; }
+  [[nodiscard]] const T* data() const noexcept { return data_; }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+  [[nodiscard]] T& operator[](std::size_t i) noexcept { return data_[i]; }
+  [[nodiscard]] const T& operator[](std::size_t i) const noexcept { return data_[i]; }
+  [[nodiscard]] T* begin() noexcept { return data_; }
+  [[nodiscard]] T* end() noexcept { return data_ + size_; }
+  [[nodiscard]] const T* begin() const noexcept { return data_; }
+  [[nodiscard]] const T* end() const noexcept { return data_ + size_; }
+
+  /// Room for at least `count` elements, no more than the next full line. False, and unchanged, if
+  /// the resource refuses.
+  [[nodiscard]] bool reserve(std::size_t count) noexcept {
+    if (count <= capacity_) return true;
+    const std::size_t bytes = (count * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
+    T* fresh = nullptr;
+    try {
+      fresh = static_cast<T*>(memory_->allocate(bytes, kAlignment));
+    } catch (...) {
+      return false;
+    }
+    if (size_ != 0) std::memcpy(static_cast<void*>(fresh), data_, size_ * sizeof(T));
+    const std::size_t size = size_;
+    release();
+    data_ = fresh;
+    size_ = size;
+    capacity_ = bytes / sizeof(T);
+    return true;
+  }
+
+  /// As `reserve`, but grows by half at least, so that repeated growth costs O(1) an element.
+  [[nodiscard]] bool grow(std::size_t count) noexcept {
+    if (count <= capacity_) return true;
+    return reserve(std::max(count, capacity_ + capacity_ / 2)) || reserve(count);
+  }
+
+  /// Sets the size; the room must have been reserved. New elements are uninitialised.
+  void set_size(std::size_t count) noexcept { size_ = count; }
+
+  /// Resizes and, on growth, leaves the new elements uninitialised.
+  [[nodiscard]] bool resize(std::size_t count) noexcept {
+    if (!grow(count)) return false;
+    size_ = count;
+    return true;
+  }
+
+  [[nodiscard]] bool push_back(const T& value) noexcept {
+    if (size_ == capacity_ && !grow(size_ + 1)) return false;
+    data_[size_++] = value;
+    return true;
+  }
+
+  void clear() noexcept { size_ = 0; }
+
+  /// Gives the memory back.
+  void release() noexcept {
+    if (data_ != nullptr) memory_->deallocate(data_, capacity_bytes(), kAlignment);
+    data_ = nullptr;
+    size_ = capacity_ = 0;
+  }
+
+  /// Exchanges contents with a column of the same memory resource.
+  void swap(Column& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+  }
+
+  [[nodiscard]] std::pmr::memory_resource* memory() const noexcept { return memory_; }
+  [[nodiscard]] Bytes bytes() const noexcept { return {size_ * sizeof(T), capacity_bytes()}; }
+
+ private:
+  // The request was a whole number of lines and sizeof(T) need not divide a line.
+  [[nodiscard]] std::size_t capacity_bytes() const noexcept {
+    return (capacity_ * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
+  }
+
+  std::pmr::memory_resource* memory_;
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+  std::size_t capacity_ = 0;
+};
+
+}  // namespace winnow

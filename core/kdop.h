@@ -1,0 +1,131 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/rounding.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+namespace winnow {
+
+/// The slab directions of the k-DOPs, not normalised: the three axes, then the four cube
+/// diagonals, then the six edge diagonals. A k-DOP uses the first k/2 of its own list
+/// (Klosowski et al., "Efficient collision detection using bounding volume hierarchies of
+/// k-DOPs", IEEE TVCG 4(1), 1998): 14 = axes + cube diagonals, 18 = axes + edge diagonals,
+/// 26 = all of them.
+template <int K>
+[[nodiscard]] constexpr auto kdop_directions() noexcept {
+  static_assert(K == 14 || K == 18 || K == 26, "a k-DOP has 14, 18 or 26 faces");
+  using Direction = std::array<int, 3>;
+  constexpr std::array<Direction, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  constexpr std::array<Direction, 4> corners{{{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}}};
+  constexpr std::array<Direction, 6> edges{
+      {{1, 1, 0}, {1, 0, 1}, {0, 1, 1}, {1, -1, 0}, {1, 0, -1}, {0, 1, -1}}};
+  std::array<Direction, K / 2> result{};
+  std::size_t n = 0;
+  for (const Direction& d : axes) result[n++] = d;
+  if constexpr (K != 18) {
+    for (const Direction& d : corners) result[n++] = d;
+  }
+  if constexpr (K != 14) {
+    for (const Direction& d : edges) result[n++] = d;
+  }
+  return result;
+}
+
+/// Discrete oriented polytope: K/2 slabs [min, max] along `kdop_directions<K>()`; closed.
+/// Default-constructed it is empty. Overlap of slabs is necessary, not sufficient, for the
+/// polytopes to meet.
+template <int K>
+struct Kdop {
+  static constexpr std::size_t kSlabs = K / 2;
+
+  std::array<float, kSlabs> min = filled(std::numeric_limits<float>::infinity());
+  std::array<float, kSlabs> max = filled(-std::numeric_limits<float>::infinity());
+
+  /// The tightest k-DOP of a box, rounded outward.
+  [[nodiscard]] static Kdop around(const Aabb& box) noexcept {
+    Kdop result;
+    const auto directions = kdop_directions<K>();
+    for (std::size_t s = 0; s < kSlabs; ++s) {
+      double lo = 0.0;
+      double hi = 0.0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int weight = directions[s][axis];
+        if (weight == 0) continue;
+        const auto a = static_cast<double>(box.min[static_cast<Eigen::Index>(axis)]);
+        const auto b = static_cast<double>(box.max[static_cast<Eigen::Index>(axis)]);
+        lo += weight > 0 ? a : -b;
+        hi += weight > 0 ? b : -a;
+      }
+      result.min[s] = down(lo, directions[s]);
+      result.max[s] = up(hi, directions[s]);
+    }
+    return result;
+  }
+
+  /// The tightest k-DOP of a point set, rounded outward; empty for an empty set. O(points * K).
+  [[nodiscard]] static Kdop around(std::span<const Eigen::Vector3f> points) noexcept {
+    Kdop result;
+    for (const Eigen::Vector3f& p : points) {
+      const Kdop one = around(Aabb{p, p});
+      for (std::size_t s = 0; s < kSlabs; ++s) {
+        result.min[s] = one.min[s] < result.min[s] ? one.min[s] : result.min[s];
+        result.max[s] = one.max[s] > result.max[s] ? one.max[s] : result.max[s];
+      }
+    }
+    return result;
+  }
+
+  /// True if a partition takes it: in every slab no NaN, min <= max, not wholly at infinity.
+  [[nodiscard]] bool is_valid() const noexcept {
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    for (std::size_t s = 0; s < kSlabs; ++s) {
+      if (!(min[s] <= max[s] && min[s] < inf && max[s] > -inf)) return false;
+    }
+    return true;
+  }
+
+  /// The box of its first three slabs.
+  [[nodiscard]] Aabb bounds() const noexcept {
+    return {{min[0], min[1], min[2]}, {max[0], max[1], max[2]}};
+  }
+
+  /// Closed test of all slabs.
+  [[nodiscard]] bool overlaps(const Kdop& other) const noexcept {
+    for (std::size_t s = 0; s < kSlabs; ++s) {
+      if (!(min[s] <= other.max[s] && other.min[s] <= max[s])) return false;
+    }
+    return true;
+  }
+
+ private:
+  static constexpr std::array<float, kSlabs> filled(float value) noexcept {
+    std::array<float, kSlabs> result{};
+    for (float& f : result) f = value;
+    return result;
+  }
+
+  // Sums of up to three floats are inexact in double only when their exponents are far apart: one
+  // more ulp covers that. A single-axis slab is copied as it is.
+  static float down(double sum, const std::array<int, 3>& direction) noexcept {
+    const float rounded = round_down(sum);
+    return axial(direction) ? rounded
+                            : std::nextafter(rounded, -std::numeric_limits<float>::infinity());
+  }
+  static float up(double sum, const std::array<int, 3>& direction) noexcept {
+    const float rounded = round_up(sum);
+    return axial(direction) ? rounded
+                            : std::nextafter(rounded, std::numeric_limits<float>::infinity());
+  }
+  static bool axial(const std::array<int, 3>& d) noexcept {
+    return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] == 1;
+  }
+};
+
+static_assert(sizeof(Kdop<14>) == 56 && sizeof(Kdop<18>) == 72 && sizeof(Kdop<26>) == 104);
+
+}  // namespace winnow

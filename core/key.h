@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+namespace winnow {
+
+/// A 64-bit value that a partition stores and gives back and never reads. Two objects may share one.
+using ClientData = std::uint64_t;
+
+/// Index of an object in its partition, stable from insert to remove and reused afterwards.
+/// Objects inserted into a fresh partition get 0, 1, 2, ... Pairs are given in these.
+using ObjectId = std::uint32_t;
+
+/// No object.
+inline constexpr ObjectId kNoObject = 0xFFFFFFFFU;
+
+/// Objects that one partition can hold at a time.
+inline constexpr std::uint64_t kMaxObjects = 0xFFFFFFFEULL;
+
+/// Opaque handle of an inserted object. The default key is null and is never handed out. A key
+/// whose object was removed, or that another partition gave out, is answered with
+/// `Status::invalid_key`: the stamp holds 12 bits that tell 4,095 partitions of one process apart
+/// and a 20-bit generation; a slot whose generations are used up is retired.
+struct Key {
+  ObjectId id = kNoObject;
+  std::uint32_t stamp = 0;
+
+  friend constexpr bool operator==(const Key&, const Key&) noexcept = default;
+};
+
+static_assert(sizeof(Key) == 8);
+
+}  // namespace winnow
+
+template <>
+struct std::hash<winnow::Key> {
+  std::size_t operator()(const winnow::Key& key) const noexcept {
+    return std::hash<std::uint64_t>{}((static_cast<std::uint64_t>(key.stamp) << 32U) | key.id);
+  }
+};

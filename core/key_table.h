@@ -1,0 +1,71 @@
+#pragma once
+
+#include <winnow/core/column.h>
+#include <winnow/core/key.h>
+#include <winnow/core/status.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+
+namespace winnow {
+
+/// Keys of one partition: slot -> (stamp, row, client data). A removed slot's row links the free
+/// list, so keys cost 8 bytes a slot and no search. Live stamps have an odd generation, which lets a
+/// forged key never reach a free slot.
+class KeyTable {
+ public:
+  explicit KeyTable(std::pmr::memory_resource* memory) noexcept;
+
+  /// Room for `count` live objects in all. False, and unchanged, if memory is refused.
+  [[nodiscard]] bool reserve(std::size_t count) noexcept;
+
+  /// Takes a free slot for an object at `row`; room must have been reserved.
+  [[nodiscard]] Key acquire(std::uint32_t row, ClientData data) noexcept;
+
+  /// Frees the slot of a valid key. A slot out of generations is retired.
+  void release(ObjectId id) noexcept;
+
+  /// Frees every slot; all keys become stale.
+  void clear() noexcept;
+
+  /// Gives unused memory back. The stamps of used slots stay: they are what tells a stale key.
+  void release_if_unused() noexcept;
+
+  [[nodiscard]] bool is_valid(Key key) const noexcept {
+    return key.id < stamps_.size() && stamps_[key.id] == key.stamp && (key.stamp & 1U) != 0;
+  }
+  [[nodiscard]] bool is_live(ObjectId id) const noexcept {
+    return id < stamps_.size() && (stamps_[id] & 1U) != 0;
+  }
+  [[nodiscard]] Key key_of(ObjectId id) const noexcept {
+    return is_live(id) ? Key{id, stamps_[id]} : Key{};
+  }
+
+  [[nodiscard]] std::uint32_t row_of(ObjectId id) const noexcept { return rows_[id]; }
+  void set_row(ObjectId id, std::uint32_t row) noexcept { rows_[id] = row; }
+  [[nodiscard]] std::uint32_t* rows() noexcept { return rows_.data(); }
+  [[nodiscard]] const std::uint32_t* rows() const noexcept { return rows_.data(); }
+  [[nodiscard]] ClientData client_data(ObjectId id) const noexcept { return data_[id]; }
+
+  /// Live objects.
+  [[nodiscard]] std::size_t size() const noexcept { return live_; }
+  /// Slots ever used; every ObjectId is below it.
+  [[nodiscard]] std::size_t slot_count() const noexcept { return stamps_.size(); }
+
+  [[nodiscard]] Bytes key_bytes() const noexcept;
+  [[nodiscard]] Bytes client_data_bytes() const noexcept { return data_.bytes(); }
+
+ private:
+  static constexpr std::uint32_t kGenerationMask = 0xFFFFFU;
+
+  Column<std::uint32_t> stamps_;
+  Column<std::uint32_t> rows_;
+  Column<ClientData> data_;
+  std::size_t live_ = 0;
+  std::size_t free_count_ = 0;
+  ObjectId first_free_ = kNoObject;
+  std::uint32_t tag_;
+};
+
+}  // namespace winnow

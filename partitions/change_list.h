@@ -1,0 +1,57 @@
+#pragma once
+
+#include <winnow/core/column.h>
+#include <winnow/core/key.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+/// A set of object ids that changed: a bit each and a list in order of change. Past a quarter of all
+/// objects it only says "all": following single objects no longer pays then.
+class ChangeList {
+ public:
+  explicit ChangeList(std::pmr::memory_resource* memory) noexcept : bits_(memory), list_(memory) {}
+
+  /// Room for ids below `slots`, so that `add` cannot fail.
+  [[nodiscard]] bool reserve(std::size_t slots) noexcept;
+
+  void add(ObjectId id) noexcept {
+    std::uint64_t& word = bits_[id >> 6U];
+    const std::uint64_t bit = std::uint64_t{1} << (id & 63U);
+    if ((word & bit) != 0 || all_) return;
+    if (list_.size() == limit_) {
+      all_ = true;
+      return;
+    }
+    word |= bit;
+    list_[list_.size()] = id;
+    list_.set_size(list_.size() + 1);
+  }
+  void add_all() noexcept { all_ = true; }
+
+  /// How many changes the list follows before it says "all".
+  [[nodiscard]] std::size_t limit() const noexcept { return limit_; }
+  [[nodiscard]] bool all() const noexcept { return all_; }
+  [[nodiscard]] bool empty() const noexcept { return !all_ && list_.empty(); }
+  /// The changed ids; meaningful only if not `all`.
+  [[nodiscard]] std::span<const ObjectId> ids() const noexcept {
+    return {list_.data(), list_.size()};
+  }
+  [[nodiscard]] const std::uint64_t* bits() const noexcept { return bits_.data(); }
+
+  void clear() noexcept;
+  void release() noexcept;
+  [[nodiscard]] Bytes bytes() const noexcept;
+
+ private:
+  Column<std::uint64_t> bits_;
+  Column<ObjectId> list_;
+  std::size_t limit_ = 0;
+  bool all_ = false;
+};
+
+}  // namespace winnow

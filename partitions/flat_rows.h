@@ -1,0 +1,44 @@
+#pragma once
+
+#include <winnow/core/bounds_pool.h>
+#include <winnow/core/column.h>
+#include <winnow/partitions/flat_rows.kernel.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace winnow {
+
+// What NSquared and BoundsNSquared share: how unordered rows are planned and cut into tasks.
+
+/// Every live row is regular, in the order it has.
+inline void plan_flat(const BoundsPool& pool, Column<std::uint32_t>& regular) noexcept {
+  for (std::size_t row = 0; row < pool.rows(); ++row) {
+    if (pool.ids()[row] != kNoObject) (void)regular.push_back(static_cast<std::uint32_t>(row));
+  }
+}
+
+inline constexpr std::size_t kFlatTasks = 64;
+
+inline std::size_t flat_tasks(const BoundsPool& pool) noexcept {
+  return std::min(kFlatTasks, pool.blocks());
+}
+
+/// Blocks [begin, end) of a task. Early blocks meet more later ones: tasks take blocks so that each
+/// has about the same number of block pairs.
+struct FlatTask {
+  std::uint32_t begin;
+  std::uint32_t end;
+  FlatTask(const BoundsPool& pool, std::size_t task) noexcept
+      : begin(bound(pool, task)), end(bound(pool, task + 1)) {}
+
+ private:
+  static std::uint32_t bound(const BoundsPool& pool, std::size_t task) noexcept;
+};
+
+[[nodiscard]] inline FlatView flat_view(const RowView& rows, const BoundsPool& pool) noexcept {
+  return {rows, static_cast<std::uint32_t>(pool.rows())};
+}
+
+}  // namespace winnow

@@ -1,0 +1,198 @@
+#include <winnow/partitions/flat_rows.kernel.h>
+#include <winnow/partitions/hits.kernel.h>
+
+namespace winnow {
+namespace WINNOW_ISA_NAME {
+namespace {
+
+// The id of an empty row, which is never asked about.
+constexpr std::uint32_t kNoId = ~0U;
+
+/// Reports everything but holes.
+struct Untested {
+  struct Block {
+    Mask16 live;
+  };
+  struct Query {};
+  static Block load(const RowView& rows, std::size_t row) {
+    Mask16 live = 0;
+    for (unsigned i = 0; i < kLanes; ++i) {
+      live |= static_cast<Mask16>(rows.id[row + i] != kNoId) << i;
+    }
+    return {live};
+  }
+  static Query own(const RowView&, std::size_t) { return {}; }
+  static Query box(const QueryBatch&, std::size_t) { return {}; }
+  static Query same(const QueryBatch&, std::size_t) { return {}; }
+  static Mask16 test(const Block& block, const Query&) { return block.live; }
+  static Mask16 test_box(const Block& block, const Query&) { return block.live; }
+};
+
+/// Boxes (3 slabs) and k-DOPs.
+template <int Slabs>
+struct SlabTest {
+  using Block = Slabs16<Slabs>;
+  struct Query {
+    float low[Slabs];
+    float high[Slabs];
+  };
+  static Block load(const RowView& rows, std::size_t row) {
+    return load_slabs<Slabs>(rows.column, row);
+  }
+  static Query own(const RowView& rows, std::size_t r) { return take<Slabs>(rows.column, r); }
+  static Query box(const QueryBatch& batch, std::size_t r) { return take<3>(batch.column, r); }
+  static Query same(const QueryBatch& batch, std::size_t r) {
+    return take<Slabs>(batch.column, r);
+  }
+  static Mask16 test(const Block& block, const Query& q) { return overlap(block, q.low, q.high); }
+  static Mask16 test_box(const Block& block, const Query& q) {
+    Box16 first;
+    for (int s = 0; s < 3; ++s) {
+      first.low[s] = block.low[s];
+      first.high[s] = block.high[s];
+    }
+    return overlap(first, q.low, q.high);
+  }
+
+ private:
+  template <int Taken>
+  static Query take(const float* const* column, std::size_t r) {
+    Query q;
+    for (int s = 0; s < Taken; ++s) {
+      q.low[s] = column[s][r];
+      q.high[s] = column[Taken + s][r];
+    }
+    return q;
+  }
+};
+
+/// Spheres: |c1 - c2|^2 <= (r1 + r2)^2. The right side is enlarged by more than the rounding of both
+/// sides (a few ulp of each), so that touching spheres are never missed; where a square would overflow
+/// or underflow the comparison still errs to the side of a hit.
+struct SphereTest {
+  static constexpr float kSlack = 1.000002F;
+  static constexpr float kTiny = 1e-37F;
+
+  struct Block {
+    Float16 center[3];
+    Float16 radius;
+  };
+  struct Query {
+    float low[3];  // of a box; a sphere has low == high == centre
+    float high[3];
+    float radius;
+  };
+  static Block load(const RowView& rows, std::size_t row) {
+    Block b;
+    for (int axis = 0; axis < 3; ++axis) {
+      b.center[axis] = WINNOW_ISA_NAME::load(rows.column[axis] + row);
+    }
+    b.radius = WINNOW_ISA_NAME::load(rows.column[3] + row);
+    return b;
+  }
+  static Query own(const RowView& rows, std::size_t r) { return ball(rows.column, r); }
+  static Query same(const QueryBatch& batch, std::size_t r) { return ball(batch.column, r); }
+  static Query box(const QueryBatch& batch, std::size_t r) {
+    Query q;
+    for (int axis = 0; axis < 3; ++axis) {
+      q.low[axis] = batch.column[axis][r];
+      q.high[axis] = batch.column[3 + axis][r];
+    }
+    q.radius = 0.0F;
+    return q;
+  }
+  static Mask16 test_box(const Block& b, const Query& q) { return test(b, q); }
+  static Mask16 test(const Block& b, const Query& q) {
+    Float16 square = broadcast(-kTiny);
+    const Float16 minus_one = broadcast(-1.0F);
+    for (int axis = 0; axis < 3; ++axis) {
+      // Distance of the centre from [low, high] along the axis.
+      const Float16 below = add(broadcast(q.low[axis]), multiply(b.center[axis], minus_one));
+      const Float16 above = add(b.center[axis], broadcast(-q.high[axis]));
+      const Float16 d = max(max(below, above), broadcast(0.0F));
+      square = add(square, multiply(d, d));
+    }
+    const Float16 reach = add(b.radius, broadcast(q.radius));
+    const Float16 limit = multiply(multiply(reach, reach), broadcast(kSlack));
+    // An empty row's centre is infinite, and so is its square: infinity <= infinity must not count.
+    const Mask16 real = less_equal(b.center[0], broadcast(3.4028234e38F));
+    return less_equal(square, limit) & real;
+  }
+
+ private:
+  static Query ball(const float* const* column, std::size_t r) {
+    Query q;
+    for (int axis = 0; axis < 3; ++axis) q.low[axis] = q.high[axis] = column[axis][r];
+    q.radius = column[3][r];
+    return q;
+  }
+};
+
+template <typename Test>
+bool self_pairs(const FlatView& view, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  const std::uint32_t blocks = (view.row_count + kLanes - 1) / kLanes;
+  for (std::uint32_t a = begin; a < end; ++a) {
+    const std::uint32_t first_row = a * kLanes;
+    const std::uint32_t rows =
+        view.row_count - first_row < kLanes ? view.row_count - first_row : kLanes;
+    for (std::uint32_t b = a; b < blocks; ++b) {
+      if (!has_room(sink)) return false;
+      const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
+      const Uint16 ids = load_unaligned(view.rows.id + std::size_t{b} * kLanes);
+      for (std::uint32_t i = 0; i < rows; ++i) {
+        if (view.rows.id[first_row + i] == kNoId) continue;
+        Mask16 hits = Test::test(block, Test::own(view.rows, first_row + i));
+        if (a == b) hits &= ~lanes_below(i + 1);
+        if (hits != 0) {
+          sink.cursor += 2 * emit_pairs<true>(hits, ids, view.rows.id[first_row + i], sink.cursor);
+        }
+      }
+      sink.tests += rows;
+    }
+  }
+  return true;
+}
+
+template <typename Test>
+struct Query {
+  template <HitMode Mode>
+  static bool run(const FlatView& view, const QueryBatch& batch, PairSink& sink) {
+    const std::uint32_t blocks = (view.row_count + kLanes - 1) / kLanes;
+    for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
+      const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
+      if (batch.id[row] == kNoId) continue;
+      const auto q = batch.is_box ? Test::box(batch, row) : Test::same(batch, row);
+      for (std::uint32_t b = 0; b < blocks; ++b) {
+        const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
+        const Mask16 hits = batch.is_box ? Test::test_box(block, q) : Test::test(block, q);
+        if (hits == 0) continue;
+        if (!has_room(sink)) return false;
+        report<Mode>(hits, view.rows.id + std::size_t{b} * kLanes, batch.id[row], batch.moved,
+                     sink);
+      }
+      sink.tests += blocks;
+    }
+    return true;
+  }
+};
+
+template <typename Test>
+bool query(const FlatView& view, const QueryBatch& batch, PairSink& sink) {
+  return with_mode<Query<Test>>(view, batch, sink);
+}
+
+template <typename Test>
+constexpr FlatKernel kKernel{self_pairs<Test>, query<Test>};
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME
+
+extern const FlatKernels WINNOW_KERNEL_TABLE(flat_kernels) = {
+    WINNOW_ISA_NAME::kKernel<WINNOW_ISA_NAME::Untested>,
+    WINNOW_ISA_NAME::kKernel<WINNOW_ISA_NAME::SlabTest<3>>,
+    WINNOW_ISA_NAME::kKernel<WINNOW_ISA_NAME::SphereTest>,
+    WINNOW_ISA_NAME::kKernel<WINNOW_ISA_NAME::SlabTest<7>>,
+    WINNOW_ISA_NAME::kKernel<WINNOW_ISA_NAME::SlabTest<9>>,
+    WINNOW_ISA_NAME::kKernel<WINNOW_ISA_NAME::SlabTest<13>>};
+
+}  // namespace winnow

@@ -1,0 +1,7 @@
+#include <winnow/partitions/linear_bvh.h>
+
+namespace winnow {
+
+LinearBvh::LinearBvh(const PartitionOptions& options) : RowPartition(options, Volume::aabb) {}
+
+}  // namespace winnow

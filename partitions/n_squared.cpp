@@ -1,0 +1,26 @@
+#include <winnow/partitions/n_squared.h>
+
+#include <winnow/partitions/flat_rows.h>
+
+namespace winnow {
+
+NSquared::NSquared(const PartitionOptions& options) : RowPartition(options, Volume::aabb) {}
+
+bool NSquared::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>&) {
+  plan_flat(pool(), regular);
+  return true;
+}
+
+std::size_t NSquared::regular_tasks() const noexcept { return flat_tasks(pool()); }
+
+bool NSquared::run_regular_task(std::size_t task, PairSink& sink) const noexcept {
+  const FlatTask range(pool(), task);
+  return flat_kernels().untested.self_pairs(flat_view(row_view(), pool()), range.begin, range.end,
+                                            sink);
+}
+
+bool NSquared::query_regular(const QueryBatch& batch, PairSink& sink) const noexcept {
+  return flat_kernels().untested.query(flat_view(row_view(), pool()), batch, sink);
+}
+
+}  // namespace winnow

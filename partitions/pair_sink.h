@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace winnow {
+
+/// Where kernels write pairs of object ids: a plain struct, because kernel files may not use the
+/// standard library. While cursor <= limit there is room for kSinkSlack pairs; past the limit the
+/// kernel calls `grow`, and stops if that says false.
+struct PairSink {
+  std::uint32_t* cursor = nullptr;
+  std::uint32_t* limit = nullptr;
+  bool (*grow)(PairSink& sink) = nullptr;
+  void* owner = nullptr;
+  std::uint64_t tests = 0;  ///< tests of 16 volumes, counted by the kernels
+};
+
+/// One block against another, and one more full store.
+inline constexpr std::size_t kSinkSlack = 16 * 16 + 16;
+
+/// Columns that kernels test: pointers into a BoundsPool.
+struct RowView {
+  const float* column[26] = {};
+  const std::uint32_t* id = nullptr;
+};
+
+/// What becomes of a hit between query q and candidate c.
+enum class HitMode : std::uint8_t {
+  unordered,     ///< report (min, max); for regions that share no object
+  query_first,   ///< report (q, c)
+  query_second,  ///< report (c, q)
+  moved,         ///< report (min, max), but not c == q, nor c if it moved too and c < q
+};
+
+/// Volumes to ask about: rows of columns, by list or, if `rows` is null, one after another. They are
+/// boxes (three slabs: lower ends, then upper ends), or volumes of the kind that the asked rows hold.
+struct QueryBatch {
+  const float* column[26] = {};
+  bool is_box = true;
+  const std::uint32_t* id = nullptr;
+  const std::uint32_t* rows = nullptr;
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+  HitMode mode = HitMode::unordered;
+  const std::uint64_t* moved = nullptr;  ///< bit per object id, for HitMode::moved
+};
+
+}  // namespace winnow

@@ -1,0 +1,48 @@
+#include <winnow/partitions/pair_tracker.h>
+
+#include <array>
+#include <bit>
+
+namespace winnow {
+namespace {
+
+constexpr unsigned kDigitBits = 11;
+constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+
+// One stable pass of a radix sort by `kDigitBits` of member `Key` from `shift` on.
+template <ObjectId Pair::*Key>
+void pass(const Pair* from, Pair* to, std::size_t count, unsigned shift) {
+  std::array<std::size_t, kDigits> start{};
+  for (std::size_t i = 0; i < count; ++i) ++start[from[i].*Key >> shift & (kDigits - 1)];
+  std::size_t sum = 0;
+  for (std::size_t& s : start) {
+    const std::size_t n = s;
+    s = sum;
+    sum += n;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    to[start[from[i].*Key >> shift & (kDigits - 1)]++] = from[i];
+  }
+}
+
+}  // namespace
+
+bool PairTracker::sort(PairBuffer& out, std::size_t slots) noexcept {
+  const std::size_t count = out.pairs_.size();
+  if (!out.pages_.reserve(count)) return false;
+  const auto bits = static_cast<unsigned>(std::bit_width(slots));
+  Pair* from = out.pairs_.data();
+  Pair* to = out.pages_.data();
+  for (unsigned shift = 0; shift < bits; shift += kDigitBits) {
+    pass<&Pair::second>(from, to, count, shift);
+    std::swap(from, to);
+  }
+  for (unsigned shift = 0; shift < bits; shift += kDigitBits) {
+    pass<&Pair::first>(from, to, count, shift);
+    std::swap(from, to);
+  }
+  // As many passes for each member: an even number, so the result stands where it began.
+  return true;
+}
+
+}  // namespace winnow

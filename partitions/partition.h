@@ -1,0 +1,127 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/box_view.h>
+#include <winnow/core/execution.h>
+#include <winnow/core/footprint.h>
+#include <winnow/core/key.h>
+#include <winnow/core/pair_buffer.h>
+#include <winnow/core/status.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <memory_resource>
+#include <span>
+#include <string_view>
+
+namespace winnow {
+
+/// What every partition is made with.
+struct PartitionOptions {
+  /// Every allocation comes from here. It must outlive the partition. Where a parallel partition
+  /// runs, only the calling thread allocates.
+  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  Execution execution = Execution::parallel();
+};
+
+/// The order in which a query writes its results. Both are the same on any thread count and any
+/// instruction set.
+enum class Order : std::uint8_t {
+  fast,       ///< as they were found; depends on the partition and on what happened before
+  canonical,  ///< sorted by (first, second): every exact partition gives identical bytes
+};
+
+struct PairOptions {
+  Order order = Order::fast;
+  /// Update the caller's buffer by what moved since it was last filled, where that is cheaper.
+  /// False asks for every pair anew.
+  bool incremental = true;
+};
+
+/// How a partition stands and what it did; counters, never timings, so they repeat exactly.
+struct Statistics {
+  std::size_t objects = 0;
+  std::size_t regular = 0;        ///< objects in the cells, strips or leaves made by the last build
+  std::size_t irregular = 0;      ///< objects kept apart: oversize, new, or moved away
+  std::size_t cells = 0;          ///< cells, strips or leaf blocks
+  std::size_t depth = 0;          ///< levels of the node tree; 0 if there is none
+  std::uint64_t builds = 0;       ///< since construction
+  std::uint64_t refits = 0;       ///< refreshes that did not need a build
+  std::uint64_t full_queries = 0;
+  std::uint64_t incremental_queries = 0;
+  std::uint64_t last_tests = 0;   ///< tests of 16 volumes at once, in the last pair query
+  std::uint64_t last_pairs = 0;   ///< pairs reported by the last pair query
+};
+
+/// A spatial partition: takes bounding volumes with 64 bits of client data, hands out keys, and
+/// answers which of them may touch. It never misses a pair; whether it reports pairs whose boxes do
+/// not touch is stated by each partition.
+///
+/// Mutation costs O(1) an object; the structure follows at the next query (or `refresh`). Queries
+/// that are const may run at the same time from several threads; everything else wants the
+/// partition to itself. A refused call (any Status but ok) changed nothing: of a span, either all
+/// entries are taken or none.
+class Partition {
+ public:
+  Partition(const Partition&) = delete;
+  Partition& operator=(const Partition&) = delete;
+  virtual ~Partition() = default;
+
+  /// Stable name, e.g. "LinearBvh".
+  [[nodiscard]] virtual std::string_view name() const noexcept = 0;
+  /// True if `self_pairs` reports only pairs whose boxes overlap.
+  [[nodiscard]] virtual bool is_exact() const noexcept = 0;
+
+  /// Adds one object per box. `keys` receives a key for each; `data` may be empty (all zero).
+  virtual Status insert(const BoxView& boxes, std::span<const ClientData> data,
+                        std::span<Key> keys) = 0;
+  /// Adds one object.
+  virtual Status insert(const Aabb& box, ClientData data, Key& key) = 0;
+  /// Gives each object a new box. If a key occurs twice its last box counts.
+  virtual Status update(std::span<const Key> keys, const BoxView& boxes) = 0;
+  virtual Status update(Key key, const Aabb& box) = 0;
+  /// Removes the objects. A key that occurs twice makes the whole call `invalid_key`.
+  virtual Status remove(std::span<const Key> keys) = 0;
+  virtual Status remove(Key key) = 0;
+  /// Removes every object. Memory is kept; `release_memory` gives it back.
+  virtual void clear() noexcept = 0;
+  /// Gives back all memory that an empty partition, or scratch, holds.
+  virtual void release_memory() noexcept = 0;
+  /// Room for `objects` in all, so that inserting up to there allocates no columns.
+  virtual Status reserve(std::size_t objects) = 0;
+
+  [[nodiscard]] virtual std::size_t size() const noexcept = 0;
+  [[nodiscard]] virtual bool contains(Key key) const noexcept = 0;
+  /// The box as it is tested: float, an infinite extent given back as infinite.
+  virtual Status bounds(Key key, Aabb& box) const noexcept = 0;
+  virtual Status client_data(Key key, ClientData& data) const noexcept = 0;
+  /// Key of a live object; the null key for any other id.
+  [[nodiscard]] virtual Key key_of(ObjectId id) const noexcept = 0;
+  /// Client data of a live object; 0 for any other id.
+  [[nodiscard]] virtual ClientData client_data_of(ObjectId id) const noexcept = 0;
+
+  /// Brings the structure up to date now rather than in the next query.
+  virtual Status refresh() const = 0;
+
+  /// All pairs of objects whose volumes overlap, each once, first < second.
+  virtual Status self_pairs(PairBuffer& out, const PairOptions& options = {}) const = 0;
+  /// All pairs (object of this, object of other) whose boxes overlap, each once.
+  virtual Status pairs_with(const Partition& other, PairBuffer& out,
+                            const PairOptions& options = {}) const = 0;
+
+  [[nodiscard]] virtual Footprint footprint() const noexcept = 0;
+  [[nodiscard]] virtual Statistics statistics() const noexcept = 0;
+
+ protected:
+  Partition() = default;
+};
+
+/// Names of all partitions, in the order in which reports list them.
+[[nodiscard]] std::span<const std::string_view> partition_names() noexcept;
+
+/// A partition by name with its default settings; null if there is no such name.
+[[nodiscard]] std::unique_ptr<Partition> make_partition(std::string_view name,
+                                                        const PartitionOptions& options = {});
+
+}  // namespace winnow

@@ -1,0 +1,105 @@
+#pragma once
+
+// Bulk insert and update of RowPartition from any source of volumes. Included by the source files
+// that offer a source, not by headers.
+
+#include <winnow/partitions/row_partition.h>
+
+#include <algorithm>
+#include <atomic>
+
+namespace winnow {
+
+inline constexpr std::size_t kEntriesPerTask = 8192;
+
+/// The columns of a pool as the sources want them.
+struct PoolColumns {
+  explicit PoolColumns(BoundsPool& pool) noexcept {
+    for (std::size_t c = 0; c < pool.columns(); ++c) pointers[c] = pool.column(c);
+  }
+  float* pointers[kMaxColumns] = {};
+};
+
+/// Calls work(begin, end) over ranges of [0, count).
+template <typename Work>
+void for_ranges(const Execution& execution, std::size_t count, Work&& work) {
+  execution.for_each((count + kEntriesPerTask - 1) / kEntriesPerTask, [&](std::size_t task) {
+    work(task * kEntriesPerTask, std::min(count, (task + 1) * kEntriesPerTask));
+  });
+}
+
+template <typename Source>
+bool all_valid(const Source& source, std::size_t count, const Execution& execution) {
+  std::atomic<bool> valid{true};
+  for_ranges(execution, count, [&](std::size_t begin, std::size_t end) {
+    bool ok = true;
+    for (std::size_t i = begin; i < end; ++i) ok = ok && source.valid(i);
+    if (!ok) valid.store(false, std::memory_order_relaxed);
+  });
+  return valid.load();
+}
+
+template <typename Source>
+Status RowPartition::insert_from(const Source& source, std::size_t count,
+                                 std::span<const ClientData> data, std::span<Key> keys) {
+  if (keys.size() != count || (!data.empty() && data.size() != count)) return Status::size_mismatch;
+  if (count > kMaxObjects - keys_.size()) return Status::too_many_objects;
+  if (!all_valid(source, count, execution_)) return Status::invalid_bounds;
+  if (!make_room(keys_.size() + count)) return Status::out_of_memory;
+  const std::size_t first = pool_.rows();
+  pool_.append(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto row = static_cast<std::uint32_t>(first + i);
+    keys[i] = keys_.acquire(row, data.empty() ? 0 : data[i]);
+    pool_.ids()[row] = keys[i].id;
+    stale_.add(keys[i].id);
+  }
+  const PoolColumns columns(pool_);
+  for_ranges(execution_, count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) source.write(i, columns.pointers, first + i);
+  });
+  if (count != 0) dirty_.store(true, std::memory_order_relaxed);
+  return Status::ok;
+}
+
+template <typename Source>
+Status RowPartition::update_from(const Source& source, std::size_t count,
+                                 std::span<const Key> keys) {
+  if (keys.size() != count) return Status::size_mismatch;
+  std::atomic<bool> known{true};
+  std::atomic<bool> ascending{true};
+  for_ranges(execution_, count, [&](std::size_t begin, std::size_t end) {
+    bool ok = true;
+    bool up = true;
+    for (std::size_t i = begin; i < end; ++i) {
+      ok = ok && keys_.is_valid(keys[i]);
+      up = up && (i == 0 || keys[i - 1].id < keys[i].id);
+    }
+    if (!ok) known.store(false, std::memory_order_relaxed);
+    if (!up) ascending.store(false, std::memory_order_relaxed);
+  });
+  if (!known.load()) return Status::invalid_key;
+  if (!all_valid(source, count, execution_)) return Status::invalid_bounds;
+  if (count == 0) return Status::ok;
+  const PoolColumns columns(pool_);
+  const auto write = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      source.write(i, columns.pointers, keys_.row_of(keys[i].id));
+    }
+  };
+  // Only ascending ids are known to be distinct; a repeated key must be written in order.
+  if (ascending.load()) {
+    for_ranges(execution_, count, write);
+  } else {
+    write(0, count);
+  }
+  if (count > stale_.limit()) {
+    stale_.add_all();
+  } else {
+    for (const Key key : keys) stale_.add(key.id);
+  }
+  dirty_.store(true, std::memory_order_relaxed);
+  return Status::ok;
+}
+
+}  // namespace winnow

@@ -1,0 +1,250 @@
+#include <winnow/partitions/row_partition.h>
+
+#include <winnow/partitions/row_mutation.h>
+#include <winnow/partitions/volume_source.h>
+
+#include <atomic>
+#include <cfloat>
+
+namespace winnow {
+namespace {
+
+std::uint64_t next_identity() noexcept {
+  static std::atomic<std::uint64_t> counter{0};
+  return 1 + counter.fetch_add(1, std::memory_order_relaxed);
+}
+
+/// Calls use(source) with the source that turns boxes into the pool's volume.
+template <typename Use>
+Status with_box_source(Volume volume, const BoxView& boxes, Use&& use) {
+  switch (volume) {
+    case Volume::aabb:
+      return use(BoxSource{boxes});
+    case Volume::sphere:
+      return use(SphereAroundBoxSource{boxes});
+    case Volume::kdop14:
+      return use(KdopAroundBoxSource<14>{boxes});
+    case Volume::kdop18:
+      return use(KdopAroundBoxSource<18>{boxes});
+    case Volume::kdop26:
+      return use(KdopAroundBoxSource<26>{boxes});
+  }
+  return Status::unsupported_volume;
+}
+
+}  // namespace
+
+RowPartition::RowPartition(const PartitionOptions& options, Volume volume)
+    : memory_(options.memory),
+      execution_(options.execution),
+      pool_(options.memory, volume),
+      keys_(options.memory),
+      tree_(options.memory),
+      stale_(options.memory),
+      moved_(options.memory),
+      spare_(options.memory),
+      order_(options.memory),
+      list_(options.memory),
+      sort_scratch_(options.memory),
+      identity_(next_identity()) {}
+
+RowPartition::~RowPartition() = default;
+
+bool RowPartition::make_room(std::size_t objects) noexcept {
+  const std::size_t added = objects - keys_.size();
+  // Holes are worth more than memory once there are many of them.
+  if (pool_.rows() + added > pool_.capacity() && pool_.rows() >= 64 &&
+      pool_.rows() >= 2 * keys_.size()) {
+    compact_rows();
+  }
+  if (pool_.rows() + added > kNoObject) compact_rows();
+  if (!pool_.reserve(pool_.rows() + added) || !keys_.reserve(objects)) return false;
+  const std::size_t slots = std::max(keys_.slot_count() + added, objects);
+  return stale_.reserve(slots) && moved_.reserve(slots);
+}
+
+void RowPartition::compact_rows() noexcept {
+  const PoolColumns columns(pool_);
+  std::size_t to = 0;
+  for (std::size_t from = 0; from < pool_.rows(); ++from) {
+    const ObjectId id = pool_.ids()[from];
+    if (id == kNoObject) continue;
+    for (std::size_t c = 0; c < pool_.columns(); ++c) {
+      columns.pointers[c][to] = columns.pointers[c][from];
+    }
+    pool_.ids()[to] = id;
+    keys_.set_row(id, static_cast<std::uint32_t>(to++));
+  }
+  pool_.clear();
+  pool_.append(to);
+  built_ = false;
+  regular_rows_ = 0;
+  dirty_.store(true, std::memory_order_relaxed);
+}
+
+Status RowPartition::insert(const BoxView& boxes, std::span<const ClientData> data,
+                            std::span<Key> keys) {
+  return with_box_source(pool_.volume(), boxes, [&](const auto& source) {
+    return insert_from(source, boxes.count, data, keys);
+  });
+}
+
+Status RowPartition::insert(const Aabb& box, ClientData data, Key& key) {
+  return insert(BoxView(std::span<const Aabb>(&box, 1)), std::span<const ClientData>(&data, 1),
+                std::span<Key>(&key, 1));
+}
+
+Status RowPartition::update(std::span<const Key> keys, const BoxView& boxes) {
+  return with_box_source(pool_.volume(), boxes, [&](const auto& source) {
+    return update_from(source, boxes.count, keys);
+  });
+}
+
+Status RowPartition::update(Key key, const Aabb& box) {
+  if (!keys_.is_valid(key)) return Status::invalid_key;
+  const BoxView boxes(std::span<const Aabb>(&box, 1));
+  return with_box_source(pool_.volume(), boxes, [&](const auto& source) {
+    if (!source.valid(0)) return Status::invalid_bounds;
+    source.write(0, PoolColumns(pool_).pointers, keys_.row_of(key.id));
+    stale_.add(key.id);
+    dirty_.store(true, std::memory_order_relaxed);
+    return Status::ok;
+  });
+}
+
+void RowPartition::remove_row(ObjectId id) noexcept {
+  const std::size_t row = keys_.row_of(id);
+  pool_.blank(row);
+  // The last row of the tail is simply dropped, so that churn at the end leaves no holes.
+  if (row + 1 == pool_.rows() && row >= built_rows_ && row >= sorted_rows_) {
+    pool_.drop_last();
+  }
+  stale_.add(id);
+  keys_.release(id);
+}
+
+Status RowPartition::remove(Key key) {
+  if (!keys_.is_valid(key)) return Status::invalid_key;
+  remove_row(key.id);
+  dirty_.store(true, std::memory_order_relaxed);
+  return Status::ok;
+}
+
+Status RowPartition::remove(std::span<const Key> keys) {
+  // A first pass marks each object by blanking its row's id: a repeated key finds the mark, and the
+  // marks are taken back.
+  std::size_t marked = 0;
+  for (; marked < keys.size(); ++marked) {
+    if (!keys_.is_valid(keys[marked])) break;
+    ObjectId& id = pool_.ids()[keys_.row_of(keys[marked].id)];
+    if (id == kNoObject) break;
+    id = kNoObject;
+  }
+  if (marked != keys.size()) {
+    for (std::size_t i = 0; i < marked; ++i) {
+      pool_.ids()[keys_.row_of(keys[i].id)] = keys[i].id;
+    }
+    return Status::invalid_key;
+  }
+  for (const Key key : keys) remove_row(key.id);
+  if (!keys.empty()) dirty_.store(true, std::memory_order_relaxed);
+  return Status::ok;
+}
+
+void RowPartition::clear() noexcept {
+  keys_.clear();
+  pool_.clear();
+  stale_.clear();
+  moved_.clear();
+  tracked_serial_ = 0;
+  built_ = false;
+  regular_rows_ = built_rows_ = sorted_rows_ = 0;
+  dirty_.store(true, std::memory_order_relaxed);
+}
+
+void RowPartition::release_memory() noexcept {
+  spare_.release();
+  order_.release();
+  list_.release();
+  sort_scratch_.release();
+  if (keys_.size() != 0) return;
+  pool_.release();
+  tree_.release();
+  stale_.release();
+  moved_.release();
+  keys_.release_if_unused();
+  release_structure();
+  clear();
+}
+
+Status RowPartition::reserve(std::size_t objects) {
+  if (objects > kMaxObjects) return Status::too_many_objects;
+  if (objects <= keys_.size()) return Status::ok;
+  return make_room(objects) ? Status::ok : Status::out_of_memory;
+}
+
+Status RowPartition::bounds(Key key, Aabb& box) const noexcept {
+  if (!keys_.is_valid(key)) return Status::invalid_key;
+  const std::size_t row = keys_.row_of(key.id);
+  if (pool_.volume() == Volume::sphere) {
+    const Eigen::Vector3f center(pool_.column(0)[row], pool_.column(1)[row], pool_.column(2)[row]);
+    box = Sphere{center, pool_.column(3)[row]}.bounds();
+    return Status::ok;
+  }
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  const std::size_t slabs = pool_.columns() / 2;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float low = pool_.column(axis)[row];
+    const float high = pool_.column(slabs + axis)[row];
+    box.min[static_cast<Eigen::Index>(axis)] = low == -FLT_MAX ? -inf : low;
+    box.max[static_cast<Eigen::Index>(axis)] = high == FLT_MAX ? inf : high;
+  }
+  return Status::ok;
+}
+
+Status RowPartition::client_data(Key key, ClientData& data) const noexcept {
+  if (!keys_.is_valid(key)) return Status::invalid_key;
+  data = keys_.client_data(key.id);
+  return Status::ok;
+}
+
+RowView RowPartition::row_view() const noexcept {
+  RowView view;
+  for (std::size_t c = 0; c < pool_.columns(); ++c) view.column[c] = pool_.column(c);
+  view.id = pool_.ids();
+  return view;
+}
+
+Footprint RowPartition::footprint() const noexcept {
+  Footprint result;
+  result.bounds = pool_.bytes();
+  result.keys = keys_.key_bytes();
+  result.client_data = keys_.client_data_bytes();
+  result.structure = tree_.bytes();
+  result.structure += stale_.bytes();
+  result.structure += moved_.bytes();
+  result.scratch = spare_.bytes();
+  result.scratch += order_.bytes();
+  result.scratch += list_.bytes();
+  result.scratch += sort_scratch_.bytes();
+  add_structure_bytes(result);
+  return result;
+}
+
+Statistics RowPartition::statistics() const noexcept {
+  Statistics s;
+  s.objects = keys_.size();
+  s.regular = built_ ? std::min(built_rows_, keys_.size()) : 0;
+  s.irregular = keys_.size() - s.regular;
+  s.cells = cell_count();
+  s.depth = tree_.levels();
+  s.builds = builds_;
+  s.refits = refits_;
+  s.full_queries = full_queries_.load(std::memory_order_relaxed);
+  s.incremental_queries = incremental_queries_.load(std::memory_order_relaxed);
+  s.last_tests = last_tests_.load(std::memory_order_relaxed);
+  s.last_pairs = last_pairs_.load(std::memory_order_relaxed);
+  return s;
+}
+
+}  // namespace winnow

@@ -1,0 +1,169 @@
+#pragma once
+
+#include <winnow/core/bounds_pool.h>
+#include <winnow/core/key_table.h>
+#include <winnow/partitions/block_tree.h>
+#include <winnow/partitions/change_list.h>
+#include <winnow/partitions/pair_sink.h>
+#include <winnow/partitions/partition.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <span>
+
+namespace winnow {
+
+/// What all partitions share: keys, rows, what changed since when, pair queries and their order.
+///
+/// Rows fall into two regions. The *regular* region is the derived partition's own: cells, strips,
+/// or plain rows. Behind it every row is a leaf of a block tree: objects that do not suit the regular
+/// region (oversize, unbounded, in overfull cells), objects inserted since the last build, and
+/// objects that moved out of where the build put them. So no input can make a regular structure
+/// degenerate: what does not fit it is pruned by the tree. LinearBvh has no regular region.
+///
+/// A build permutes the rows themselves, so the pool is the sorted copy. It happens when the share
+/// of new rows, moved rows or holes passes a limit, or when the extra tests that a worn structure
+/// has cost since the last build exceed the price of a build: at most twice the cost of the best
+/// schedule known in hindsight (the ski-rental bound; Karlin et al., Algorithmica 3, 1988). The
+/// decision counts tests, never time, so every machine takes it at the same frame.
+class RowPartition : public Partition {
+ public:
+  ~RowPartition() override;
+
+  Status insert(const BoxView& boxes, std::span<const ClientData> data,
+                std::span<Key> keys) override;
+  Status insert(const Aabb& box, ClientData data, Key& key) override;
+  Status update(std::span<const Key> keys, const BoxView& boxes) override;
+  Status update(Key key, const Aabb& box) override;
+  Status remove(std::span<const Key> keys) override;
+  Status remove(Key key) override;
+  void clear() noexcept override;
+  void release_memory() noexcept override;
+  Status reserve(std::size_t objects) override;
+
+  [[nodiscard]] std::size_t size() const noexcept override { return keys_.size(); }
+  [[nodiscard]] bool contains(Key key) const noexcept override { return keys_.is_valid(key); }
+  Status bounds(Key key, Aabb& box) const noexcept override;
+  Status client_data(Key key, ClientData& data) const noexcept override;
+  [[nodiscard]] Key key_of(ObjectId id) const noexcept override { return keys_.key_of(id); }
+  [[nodiscard]] ClientData client_data_of(ObjectId id) const noexcept override {
+    return keys_.is_live(id) ? keys_.client_data(id) : 0;
+  }
+
+  Status refresh() const override;
+  Status self_pairs(PairBuffer& out, const PairOptions& options = {}) const override;
+  Status pairs_with(const Partition& other, PairBuffer& out,
+                    const PairOptions& options = {}) const override;
+
+  [[nodiscard]] Footprint footprint() const noexcept override;
+  [[nodiscard]] Statistics statistics() const noexcept override;
+
+ protected:
+  RowPartition(const PartitionOptions& options, Volume volume);
+
+  /// Chooses, at a build, the rows of the regular region and their order: appends row numbers to
+  /// `regular` (which has room for every row and may be left with kNoObject entries as padding) and
+  /// all other live rows to `rest`. False if memory is refused; nothing may have changed then. The
+  /// default makes every live row part of the rest.
+  virtual bool plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest);
+  /// Called when the rows stand in the planned order.
+  virtual void finish_build() {}
+  /// True if the object in this regular row still fits where the build put it.
+  [[nodiscard]] virtual bool fits(std::size_t) const noexcept { return true; }
+  /// Appends the regular rows that no longer fit, until the list holds `limit`; any may have changed.
+  virtual void find_misfits(Column<std::uint32_t>&, std::size_t) const noexcept {}
+
+  /// Pair finding within the regular region, in independent tasks.
+  [[nodiscard]] virtual std::size_t regular_tasks() const noexcept { return 0; }
+  virtual bool run_regular_task(std::size_t, PairSink&) const noexcept { return true; }
+  /// Hits of boxes in the regular region.
+  virtual bool query_regular(const QueryBatch&, PairSink&) const noexcept { return true; }
+  /// True for partitions whose rows all stay in one unordered regular region.
+  [[nodiscard]] virtual bool is_flat() const noexcept { return false; }
+
+  virtual void release_structure() noexcept {}
+  virtual void add_structure_bytes(Footprint&) const noexcept {}
+  [[nodiscard]] virtual std::size_t cell_count() const noexcept { return tree_.blocks(); }
+
+  /// Bulk insert and update from any source of volumes (see volume_source.h).
+  template <typename Source>
+  Status insert_from(const Source& source, std::size_t count, std::span<const ClientData> data,
+                     std::span<Key> keys);
+  template <typename Source>
+  Status update_from(const Source& source, std::size_t count, std::span<const Key> keys);
+
+  [[nodiscard]] RowView row_view() const noexcept;
+  [[nodiscard]] const BoundsPool& pool() const noexcept { return pool_; }
+  [[nodiscard]] const Execution& execution() const noexcept { return execution_; }
+  [[nodiscard]] std::size_t regular_rows() const noexcept { return regular_rows_; }
+  [[nodiscard]] std::pmr::memory_resource* memory() const noexcept { return memory_; }
+
+ private:
+  [[nodiscard]] bool make_room(std::size_t objects) noexcept;
+  void compact_rows() noexcept;
+  void remove_row(ObjectId id) noexcept;
+
+  Status refresh_now();
+  [[nodiscard]] bool needs_build() const noexcept;
+  Status build();
+  Status absorb_changes();
+  void collect_misfits(std::size_t limit) noexcept;
+  bool move_to_tail(std::span<const std::uint32_t> rows) noexcept;
+  bool sort_tail() noexcept;
+  bool refit_tree() noexcept;
+  void forward_changes() noexcept;
+
+  struct SelfTasks;
+  Status full_self_pairs(PairBuffer& out) const;
+  Status incremental_self_pairs(PairBuffer& out) const;
+  [[nodiscard]] bool can_update(const PairBuffer& out) const noexcept;
+  bool run_self_task(const SelfTasks& tasks, std::size_t task, PairSink& sink) const noexcept;
+  bool query_all(const QueryBatch& batch, PairSink& sink) const noexcept;
+  Status ask(const RowPartition& other, HitMode mode, PairBuffer& out) const;
+  QueryBatch box_batch(std::size_t begin, std::size_t end, std::span<float> scratch) const noexcept;
+  void note_work(std::uint64_t tests, std::uint64_t queries,
+                 std::atomic<std::uint64_t>& base) const noexcept;
+  [[nodiscard]] Execution execution_for(std::size_t objects) const noexcept;
+
+  std::pmr::memory_resource* memory_;
+  Execution execution_;
+  BoundsPool pool_;
+  KeyTable keys_;
+  BlockTree tree_;
+
+  std::size_t regular_rows_ = 0;  // rows [0, regular_rows_) are the derived partition's
+  std::size_t built_rows_ = 0;    // rows from here on are the tail: new or moved since the build
+  std::size_t sorted_rows_ = 0;   // tail rows below this are in spatial order
+  std::size_t built_holes_ = 0;   // padding that the build left between the regions
+  bool built_ = false;
+  bool tail_changed_ = false;
+
+  ChangeList stale_;          // since the last refresh
+  mutable ChangeList moved_;  // since the last tracked pair query
+  Column<float> spare_;                // what columns are permuted through
+  Column<std::uint32_t> order_;        // old row of each new row
+  mutable Column<std::uint32_t> list_; // rows or nodes to visit
+  Column<std::uint64_t> sort_scratch_;
+
+  const std::uint64_t identity_;
+  mutable std::uint64_t tracked_serial_ = 0;  // 0: no buffer is tracked
+  mutable std::mutex refresh_mutex_;
+  mutable std::mutex tracker_mutex_;
+  mutable std::atomic<bool> dirty_{false};
+
+  // Work accounting, in tests of 16 volumes.
+  mutable std::atomic<std::uint64_t> full_base_{0};
+  mutable std::atomic<std::uint64_t> moved_base_{0};
+  mutable std::atomic<std::uint64_t> excess_{0};
+
+  mutable std::atomic<std::uint64_t> full_queries_{0};
+  mutable std::atomic<std::uint64_t> incremental_queries_{0};
+  mutable std::atomic<std::uint64_t> last_tests_{0};
+  mutable std::atomic<std::uint64_t> last_pairs_{0};
+  std::uint64_t builds_ = 0;
+  std::uint64_t refits_ = 0;
+};
+
+}  // namespace winnow

@@ -1,0 +1,212 @@
+// RowPartition: how the structure follows the rows.
+
+#include <winnow/partitions/morton_order.h>
+#include <winnow/partitions/row_mutation.h>
+#include <winnow/partitions/row_partition.h>
+
+#include <algorithm>
+
+namespace winnow {
+namespace {
+
+// Price of a build in tests of 16 volumes per object, measured on both sides of the decision.
+constexpr std::uint64_t kBuildPrice = 12;
+
+constexpr std::size_t kBlock = BoundsPool::kBlock;
+
+}  // namespace
+
+Execution RowPartition::execution_for(std::size_t objects) const noexcept {
+  // Below this a task costs more to hand over than to do.
+  constexpr std::size_t kWorthSharing = 1536;
+  return objects < kWorthSharing ? Execution::serial() : execution_;
+}
+
+Status RowPartition::refresh() const {
+  if (!dirty_.load(std::memory_order_acquire)) return Status::ok;
+  const std::lock_guard lock(refresh_mutex_);
+  if (!dirty_.load(std::memory_order_relaxed)) return Status::ok;
+  // The structure is a cache of the rows: bringing it up to date is no change that a caller of a
+  // const query can see.
+  const Status status = const_cast<RowPartition*>(this)->refresh_now();
+  if (status == Status::ok) dirty_.store(false, std::memory_order_release);
+  return status;
+}
+
+Status RowPartition::refresh_now() {
+  pool_.pad();
+  const Status status = needs_build() ? build() : absorb_changes();
+  if (status == Status::ok) forward_changes();
+  return status;
+}
+
+bool RowPartition::needs_build() const noexcept {
+  if (!built_) return true;
+  const std::size_t live = keys_.size();
+  const std::size_t tail = pool_.rows() > built_rows_ ? pool_.rows() - built_rows_ : 0;
+  const std::size_t holes = pool_.rows() - live;
+  if (holes > live / 4 + built_holes_ + 64) return true;
+  if (is_flat()) return false;
+  return tail > live / 16 + 64 ||
+         excess_.load(std::memory_order_relaxed) > kBuildPrice * (live + 64);
+}
+
+bool RowPartition::plan(Column<std::uint32_t>&, Column<std::uint32_t>& rest) {
+  for (std::size_t row = 0; row < pool_.rows(); ++row) {
+    if (pool_.ids()[row] != kNoObject) (void)rest.push_back(static_cast<std::uint32_t>(row));
+  }
+  return true;
+}
+
+Status RowPartition::build() {
+  // Everything that can fail comes first.
+  const std::size_t room = pool_.rows() + 4 * kBlock;
+  order_.clear();
+  list_.clear();
+  if (!order_.grow(room) || !list_.grow(room) || !plan(order_, list_)) return Status::out_of_memory;
+  const std::size_t regular = order_.size();
+  const std::size_t rest = list_.size();
+  if (!sort_by_morton(pool_, {list_.data(), rest}, sort_scratch_, execution_for(rest))) {
+    return Status::out_of_memory;
+  }
+  if (rest != 0) {
+    while (order_.size() % kBlock != 0) (void)order_.push_back(kNoObject);
+  }
+  const std::size_t first_block = order_.size() / kBlock;
+  if (!order_.resize(order_.size() + rest)) return Status::out_of_memory;
+  std::copy_n(list_.data(), rest, order_.end() - rest);
+  const std::size_t rows = order_.size();
+  if (!pool_.reserve(rows) || !spare_.grow(pool_.capacity() + 2 * kBlock)) {
+    return Status::out_of_memory;
+  }
+  built_ = false;
+  if (!tree_.cover(first_block, (rest + kBlock - 1) / kBlock)) return Status::out_of_memory;
+
+  const Execution execution = execution_for(rows);
+  pool_.reorder({order_.data(), rows}, spare_, execution);
+  for_ranges(execution, rows, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      const ObjectId id = pool_.ids()[row];
+      if (id != kNoObject) keys_.set_row(id, static_cast<std::uint32_t>(row));
+    }
+  });
+  regular_rows_ = regular;
+  built_rows_ = sorted_rows_ = rows;
+  built_holes_ = rows - keys_.size();
+  finish_build();
+  tree_.refit_all(row_view(), execution);
+  built_ = true;
+  ++builds_;
+  full_base_ = moved_base_ = excess_ = 0;
+  return Status::ok;
+}
+
+Status RowPartition::absorb_changes() {
+  ++refits_;
+  if (is_flat()) {
+    regular_rows_ = pool_.rows();
+    return Status::ok;
+  }
+  const std::size_t limit = keys_.size() / 16 + 64;
+  list_.clear();
+  if (!list_.grow(limit + 1)) return Status::out_of_memory;
+  collect_misfits(limit + 1);
+  const std::size_t tail = pool_.rows() > built_rows_ ? pool_.rows() - built_rows_ : 0;
+  if (tail + list_.size() > limit) return build();
+  if (!move_to_tail({list_.data(), list_.size()}) || !sort_tail()) return Status::out_of_memory;
+  return refit_tree() ? Status::ok : Status::out_of_memory;
+}
+
+void RowPartition::collect_misfits(std::size_t limit) noexcept {
+  if (regular_rows_ == 0) return;
+  if (stale_.all()) {
+    find_misfits(list_, limit);
+    return;
+  }
+  for (const ObjectId id : stale_.ids()) {
+    if (!keys_.is_live(id) || list_.size() == limit) continue;
+    const std::uint32_t row = keys_.row_of(id);
+    if (row < regular_rows_ && !fits(row)) (void)list_.push_back(row);
+  }
+}
+
+bool RowPartition::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
+  if (rows.empty()) return true;
+  if (!pool_.reserve(pool_.rows() + rows.size())) return false;
+  const PoolColumns columns(pool_);
+  for (const std::uint32_t row : rows) {
+    const std::size_t to = pool_.rows();
+    const ObjectId id = pool_.ids()[row];
+    pool_.append(1);
+    for (std::size_t c = 0; c < pool_.columns(); ++c) {
+      columns.pointers[c][to] = columns.pointers[c][row];
+    }
+    pool_.ids()[to] = id;
+    keys_.set_row(id, static_cast<std::uint32_t>(to));
+    pool_.blank(row);
+  }
+  pool_.pad();
+  return true;
+}
+
+bool RowPartition::sort_tail() noexcept {
+  if (pool_.rows() < sorted_rows_ + kBlock) return true;
+  const std::size_t begin = built_rows_;
+  list_.clear();
+  if (!list_.grow(pool_.rows() - begin)) return false;
+  for (std::size_t row = begin; row < pool_.rows(); ++row) {
+    if (pool_.ids()[row] != kNoObject) (void)list_.push_back(static_cast<std::uint32_t>(row));
+  }
+  const std::span<std::uint32_t> rows(list_.data(), list_.size());
+  if (!sort_by_morton(pool_, rows, sort_scratch_, Execution::serial()) ||
+      !spare_.grow(rows.size() + 2 * kBlock)) {
+    return false;
+  }
+  pool_.reorder_tail(begin, rows, spare_);
+  for (std::size_t row = begin; row < pool_.rows(); ++row) {
+    keys_.set_row(pool_.ids()[row], static_cast<std::uint32_t>(row));
+  }
+  sorted_rows_ = pool_.rows();
+  tail_changed_ = true;
+  return true;
+}
+
+bool RowPartition::refit_tree() noexcept {
+  const std::size_t first = (regular_rows_ + kBlock - 1) / kBlock;
+  const std::size_t blocks = pool_.blocks() - first;
+  const RowView rows = row_view();
+  if (blocks != tree_.blocks() || tail_changed_ || stale_.all()) {
+    if (blocks != tree_.blocks() && !tree_.cover(first, blocks)) {
+      built_ = false;
+      return false;
+    }
+    tree_.refit_all(rows, execution_for(pool_.rows()));
+    tail_changed_ = false;
+    return true;
+  }
+  list_.clear();
+  if (!list_.grow(stale_.ids().size())) return false;
+  for (const ObjectId id : stale_.ids()) {
+    if (!keys_.is_live(id)) continue;
+    const std::size_t block = keys_.row_of(id) / kBlock;
+    if (block >= first) (void)list_.push_back(static_cast<std::uint32_t>(block - first));
+  }
+  std::sort(list_.begin(), list_.end());
+  const auto leaves =
+      static_cast<std::size_t>(std::unique(list_.begin(), list_.end()) - list_.begin());
+  tree_.refit(rows, {list_.data(), leaves});
+  return true;
+}
+
+void RowPartition::forward_changes() noexcept {
+  if (tracked_serial_ != 0) {
+    if (stale_.all()) {
+      moved_.add_all();
+    } else {
+      for (const ObjectId id : stale_.ids()) moved_.add(id);
+    }
+  }
+  stale_.clear();
+}
+
+}  // namespace winnow

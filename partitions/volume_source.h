@@ -1,0 +1,110 @@
+#pragma once
+
+// Where the rows of a bulk insert or update come from: each source says whether entry i is legal and
+// writes it into the columns of a row. Legal infinite ends become +-FLT_MAX (see BoundsPool).
+
+#include <winnow/core/box_view.h>
+#include <winnow/core/kdop.h>
+#include <winnow/core/sphere.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+namespace winnow {
+
+/// Column pointers of a pool.
+using ColumnPointers = float* const*;
+
+inline void write_slab(ColumnPointers columns, std::size_t low, std::size_t high, std::size_t row,
+                       float a, float b) noexcept {
+  columns[low][row] = std::max(a, -FLT_MAX);
+  columns[high][row] = std::min(b, FLT_MAX);
+}
+
+/// Boxes into AABB columns.
+struct BoxSource {
+  const BoxView& boxes;
+
+  [[nodiscard]] bool valid(std::size_t i) const noexcept {
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    const Aabb box = boxes[i];
+    // Bitwise, not short-circuit: all of it is needed for nearly every box.
+    int ok = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float lo = box.min[axis];
+      const float hi = box.max[axis];
+      ok &= static_cast<int>(lo <= hi) & static_cast<int>(lo < inf) & static_cast<int>(hi > -inf);
+    }
+    return ok != 0;
+  }
+  void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
+    const Aabb box = boxes[i];
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      write_slab(columns, a, 3 + a, row, box.min[axis], box.max[axis]);
+    }
+  }
+};
+
+inline void write_sphere(ColumnPointers columns, std::size_t row, const Sphere& s) noexcept {
+  for (int axis = 0; axis < 3; ++axis) columns[axis][row] = s.center[axis];
+  columns[3][row] = s.radius;
+}
+
+/// Spheres into sphere columns.
+struct SphereSource {
+  std::span<const Sphere> spheres;
+
+  [[nodiscard]] bool valid(std::size_t i) const noexcept { return spheres[i].is_valid(); }
+  void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
+    write_sphere(columns, row, spheres[i]);
+  }
+};
+
+/// Boxes into sphere columns: the sphere around the box, which must be finite.
+struct SphereAroundBoxSource {
+  const BoxView& boxes;
+
+  [[nodiscard]] bool valid(std::size_t i) const noexcept {
+    const Aabb box = boxes[i];
+    return box.is_valid() && Sphere::around(box).is_valid();
+  }
+  void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
+    write_sphere(columns, row, Sphere::around(boxes[i]));
+  }
+};
+
+template <int K>
+inline void write_kdop(ColumnPointers columns, std::size_t row, const Kdop<K>& kdop) noexcept {
+  constexpr std::size_t slabs = Kdop<K>::kSlabs;
+  for (std::size_t s = 0; s < slabs; ++s) {
+    write_slab(columns, s, slabs + s, row, kdop.min[s], kdop.max[s]);
+  }
+}
+
+/// k-DOPs into their columns.
+template <int K>
+struct KdopSource {
+  std::span<const Kdop<K>> kdops;
+
+  [[nodiscard]] bool valid(std::size_t i) const noexcept { return kdops[i].is_valid(); }
+  void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
+    write_kdop(columns, row, kdops[i]);
+  }
+};
+
+/// Boxes into k-DOP columns.
+template <int K>
+struct KdopAroundBoxSource {
+  const BoxView& boxes;
+
+  [[nodiscard]] bool valid(std::size_t i) const noexcept { return boxes[i].is_valid(); }
+  void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
+    write_kdop(columns, row, Kdop<K>::around(boxes[i]));
+  }
+};
+
+}  // namespace winnow

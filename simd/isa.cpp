@@ -1,0 +1,102 @@
+#include <winnow/simd/isa.h>
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+
+namespace winnow {
+namespace {
+
+constexpr std::array<Isa, 4> kAll{Isa::sse42, Isa::avx2, Isa::avx512, Isa::neon64};
+
+bool supported(Isa isa) noexcept {
+  switch (isa) {
+#ifdef WINNOW_HAVE_SSE42
+    case Isa::sse42:
+      return __builtin_cpu_supports("sse4.2") != 0;
+#endif
+#ifdef WINNOW_HAVE_AVX2
+    case Isa::avx2:
+      return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
+#endif
+#ifdef WINNOW_HAVE_AVX512
+    case Isa::avx512:
+      return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512cd") != 0 &&
+             __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+             __builtin_cpu_supports("avx512vl") != 0;
+#endif
+#ifdef WINNOW_HAVE_NEON64
+    case Isa::neon64:
+      return true;
+#endif
+    default:
+      return false;
+  }
+}
+
+struct Choice {
+  std::array<Isa, kAll.size()> available{};
+  std::size_t count = 0;
+  std::atomic<Isa> active{};
+
+  Choice() noexcept {
+    for (const Isa isa : kAll) {
+      if (supported(isa)) available[count++] = isa;
+    }
+    active = available[count > 0 ? count - 1 : 0];
+    if (const char* wanted = std::getenv("WINNOW_ISA"); wanted != nullptr) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (std::string_view(to_string(available[i])) == wanted) active = available[i];
+      }
+    }
+  }
+};
+
+Choice& choice() noexcept {
+  static Choice instance;
+  return instance;
+}
+
+}  // namespace
+
+const char* to_string(Isa isa) noexcept {
+  switch (isa) {
+    case Isa::sse42:
+      return "sse42";
+    case Isa::avx2:
+      return "avx2";
+    case Isa::avx512:
+      return "avx512";
+    case Isa::neon64:
+      return "neon64";
+  }
+  return "unknown";
+}
+
+std::span<const Isa> available_isas() noexcept {
+  return {choice().available.data(), choice().count};
+}
+
+Isa active_isa() noexcept { return choice().active.load(std::memory_order_relaxed); }
+
+const char* isa_name() noexcept { return to_string(active_isa()); }
+
+Status set_isa(Isa isa) noexcept {
+  for (const Isa have : available_isas()) {
+    if (have == isa) {
+      choice().active.store(isa, std::memory_order_relaxed);
+      return Status::ok;
+    }
+  }
+  return Status::invalid_argument;
+}
+
+Status set_isa(std::string_view name) noexcept {
+  for (const Isa have : available_isas()) {
+    if (name == to_string(have)) return set_isa(have);
+  }
+  return Status::invalid_argument;
+}
+
+}  // namespace winnow

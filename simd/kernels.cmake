@@ -1,0 +1,50 @@
+# The rule by which a kernel file is built once per instruction set.
+
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
+  set(WINNOW_ISAS "sse42;avx2;avx512" CACHE STRING "Instruction sets to build kernels for")
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
+  set(WINNOW_ISAS "neon64" CACHE STRING "Instruction sets to build kernels for")
+else()
+  message(FATAL_ERROR "winnow has no kernels for ${CMAKE_SYSTEM_PROCESSOR}")
+endif()
+set(WINNOW_FLAGS_sse42 -msse4.2 -mpopcnt)
+set(WINNOW_FLAGS_avx2 -mavx2 -mfma -mbmi -mbmi2 -mpopcnt -mlzcnt)
+set(WINNOW_FLAGS_avx512 -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma -mbmi
+    -mbmi2 -mpopcnt -mlzcnt -mprefer-vector-width=512)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # The intrinsics of g++ 12 pass a register that they leave uninitialised on purpose.
+  list(APPEND WINNOW_FLAGS_avx512 -Wno-uninitialized -Wno-maybe-uninitialized)
+endif()
+set(WINNOW_FLAGS_neon64 "")
+
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64" AND NOT "sse42" IN_LIST WINNOW_ISAS)
+  message(FATAL_ERROR "WINNOW_ISAS must hold the baseline sse42")
+endif()
+
+set(WINNOW_ISA_DEFINITIONS "")
+foreach(isa ${WINNOW_ISAS})
+  if(NOT DEFINED WINNOW_FLAGS_${isa})
+    message(FATAL_ERROR "unknown instruction set in WINNOW_ISAS: ${isa}")
+  endif()
+  string(TOUPPER ${isa} upper)
+  list(APPEND WINNOW_ISA_DEFINITIONS WINNOW_HAVE_${upper}=1)
+endforeach()
+
+# winnow_add_kernels(target file.kernel.cpp ...): each file into an object library per instruction
+# set, linked into the target. The macro xsimd=xsimd_<isa> gives every build its own xsimd
+# namespace, so no inline function is shared between them.
+function(winnow_add_kernels target)
+  foreach(isa ${WINNOW_ISAS})
+    set(objects ${target}_kernels_${isa})
+    add_library(${objects} OBJECT ${ARGN})
+    target_compile_options(${objects} PRIVATE ${WINNOW_FLAGS_${isa}} -fno-exceptions -O3)
+    target_compile_definitions(${objects} PRIVATE WINNOW_ISA_NAME=${isa} WINNOW_ISA_IS_${isa}=1
+                               xsimd=xsimd_${isa})
+    target_include_directories(${objects} PRIVATE ${WINNOW_INCLUDE_DIR})
+    target_include_directories(${objects} SYSTEM PRIVATE ${WINNOW_XSIMD_INCLUDE_DIR})
+    target_link_libraries(${objects} PRIVATE winnow_flags)
+    set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
+    set_property(GLOBAL APPEND PROPERTY WINNOW_KERNEL_OBJECTS ${objects})
+  endforeach()
+endfunction()

@@ -1,0 +1,217 @@
+#pragma once
+
+// Sixteen lanes of float or unsigned on any instruction set, for kernel files only. One register on
+// AVX-512, two on AVX2, four on SSE4.2 and NEON: since a block is 16 rows everywhere, kernels visit
+// and report in the same order on every instruction set.
+//
+// The only file that spells xsimd (8.1 to 14) and intrinsics. xsimd 8.1 has no bit mask of a
+// batch_bool, no compress and no reduction by min or max: those are spelled here per instruction set.
+
+#ifndef WINNOW_ISA_NAME
+#error "wide.h is for *.kernel.cpp files, which the build compiles once per instruction set"
+#endif
+
+#include <cstddef>
+#include <cstdint>
+#include <xsimd/xsimd.hpp>
+
+namespace winnow::WINNOW_ISA_NAME {
+
+inline constexpr int kLanes = 16;
+using FloatPart = xsimd::batch<float>;
+using UintPart = xsimd::batch<std::uint32_t>;
+inline constexpr int kPartLanes = static_cast<int>(FloatPart::size);
+inline constexpr int kParts = kLanes / kPartLanes;
+
+/// One bit a lane; lane 0 is bit 0.
+using Mask16 = std::uint32_t;
+
+struct Float16 {
+  FloatPart part[kParts];
+};
+
+struct Uint16 {
+  UintPart part[kParts];
+};
+
+/// `p` is 64-byte aligned.
+inline Float16 load(const float* p) {
+  Float16 r;
+  for (int i = 0; i < kParts; ++i) r.part[i] = FloatPart::load_aligned(p + i * kPartLanes);
+  return r;
+}
+inline Float16 load_unaligned(const float* p) {
+  Float16 r;
+  for (int i = 0; i < kParts; ++i) r.part[i] = FloatPart::load_unaligned(p + i * kPartLanes);
+  return r;
+}
+inline Uint16 load_unaligned(const std::uint32_t* p) {
+  Uint16 r;
+  for (int i = 0; i < kParts; ++i) r.part[i] = UintPart::load_unaligned(p + i * kPartLanes);
+  return r;
+}
+inline Float16 broadcast(float value) {
+  Float16 r;
+  for (int i = 0; i < kParts; ++i) r.part[i] = FloatPart(value);
+  return r;
+}
+inline void store_unaligned(float* p, const Float16& v) {
+  for (int i = 0; i < kParts; ++i) v.part[i].store_unaligned(p + i * kPartLanes);
+}
+/// Lane-wise smaller and larger; no lane may be NaN.
+inline Float16 min(const Float16& a, const Float16& b) {
+  Float16 r;
+  for (int i = 0; i < kParts; ++i) r.part[i] = xsimd::min(a.part[i], b.part[i]);
+  return r;
+}
+inline Float16 max(const Float16& a, const Float16& b) {
+  Float16 r;
+  for (int i = 0; i < kParts; ++i) r.part[i] = xsimd::max(a.part[i], b.part[i]);
+  return r;
+}
+inline Float16 add(const Float16& a, const Float16& b) {
+  Float16 r;
+  for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] + b.part[i];
+  return r;
+}
+inline Float16 multiply(const Float16& a, const Float16& b) {
+  Float16 r;
+  for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] * b.part[i];
+  return r;
+}
+
+/// Number of set bits.
+inline unsigned count(Mask16 mask) { return static_cast<unsigned>(__builtin_popcount(mask)); }
+/// Index of the lowest set bit; `mask` is not 0.
+inline unsigned first(Mask16 mask) { return static_cast<unsigned>(__builtin_ctz(mask)); }
+/// The lowest n lanes, n <= 16.
+inline constexpr Mask16 lanes_below(unsigned n) { return (1U << n) - 1U; }
+
+#if defined(WINNOW_ISA_IS_avx512)
+
+inline Mask16 bits(xsimd::batch_bool<float> b) {
+  return static_cast<__mmask16>(static_cast<typename xsimd::batch_bool<float>::register_type>(b));
+}
+
+#elif defined(WINNOW_ISA_IS_avx2)
+
+inline Mask16 bits(xsimd::batch_bool<float> b) {
+  return static_cast<Mask16>(_mm256_movemask_ps(b));
+}
+
+#elif defined(WINNOW_ISA_IS_sse42)
+
+inline Mask16 bits(xsimd::batch_bool<float> b) { return static_cast<Mask16>(_mm_movemask_ps(b)); }
+
+#else
+
+inline Mask16 bits(xsimd::batch_bool<float> b) {
+  const uint32x4_t lane_bits = {1U, 2U, 4U, 8U};
+  return vaddvq_u32(vandq_u32(static_cast<uint32x4_t>(b), lane_bits));
+}
+
+#endif
+
+/// a <= b; false where either is NaN.
+inline Mask16 less_equal(const Float16& a, const Float16& b) {
+  Mask16 r = 0;
+  for (int i = 0; i < kParts; ++i) r |= bits(a.part[i] <= b.part[i]) << (i * kPartLanes);
+  return r;
+}
+
+/// Smallest lane; no NaN.
+inline float reduce_min(const Float16& v) {
+  FloatPart m = v.part[0];
+  for (int i = 1; i < kParts; ++i) m = xsimd::min(m, v.part[i]);
+#if defined(WINNOW_ISA_IS_avx512)
+  return _mm512_reduce_min_ps(m);
+#elif defined(WINNOW_ISA_IS_neon64)
+  return vminvq_f32(m);
+#else
+#if defined(WINNOW_ISA_IS_avx2)
+  const __m256 w = m;
+  __m128 x = _mm_min_ps(_mm256_castps256_ps128(w), _mm256_extractf128_ps(w, 1));
+#else
+  __m128 x = m;
+#endif
+  x = _mm_min_ps(x, _mm_movehl_ps(x, x));
+  x = _mm_min_ss(x, _mm_movehdup_ps(x));
+  return _mm_cvtss_f32(x);
+#endif
+}
+
+/// Largest lane; no NaN.
+inline float reduce_max(const Float16& v) {
+  FloatPart m = v.part[0];
+  for (int i = 1; i < kParts; ++i) m = xsimd::max(m, v.part[i]);
+#if defined(WINNOW_ISA_IS_avx512)
+  return _mm512_reduce_max_ps(m);
+#elif defined(WINNOW_ISA_IS_neon64)
+  return vmaxvq_f32(m);
+#else
+#if defined(WINNOW_ISA_IS_avx2)
+  const __m256 w = m;
+  __m128 x = _mm_max_ps(_mm256_castps256_ps128(w), _mm256_extractf128_ps(w, 1));
+#else
+  __m128 x = m;
+#endif
+  x = _mm_max_ps(x, _mm_movehl_ps(x, x));
+  x = _mm_max_ss(x, _mm_movehdup_ps(x));
+  return _mm_cvtss_f32(x);
+#endif
+}
+
+/// Sixteen boxes, or sixteen volumes of `Slabs` slabs: the lower ends, then the upper ends.
+template <int Slabs>
+struct Slabs16 {
+  Float16 low[Slabs];
+  Float16 high[Slabs];
+};
+using Box16 = Slabs16<3>;
+
+/// Rows [row, row + 16) of columns; `row` is a multiple of 16.
+template <int Slabs>
+inline Slabs16<Slabs> load_slabs(const float* const* columns, std::size_t row) {
+  Slabs16<Slabs> r;
+  for (int s = 0; s < Slabs; ++s) {
+    r.low[s] = load(columns[s] + row);
+    r.high[s] = load(columns[Slabs + s] + row);
+  }
+  return r;
+}
+template <int Slabs>
+inline Slabs16<Slabs> load_slabs_unaligned(const float* const* columns, std::size_t row) {
+  Slabs16<Slabs> r;
+  for (int s = 0; s < Slabs; ++s) {
+    r.low[s] = load_unaligned(columns[s] + row);
+    r.high[s] = load_unaligned(columns[Slabs + s] + row);
+  }
+  return r;
+}
+
+/// Which of 16 volumes overlap the one whose ends are low[s], high[s]; closed.
+template <int Slabs>
+inline Mask16 overlap(const Slabs16<Slabs>& v, const float* low, const float* high) {
+#if defined(WINNOW_ISA_IS_avx512)
+  // Each compare masks the next: saves the `and` of masks, which has one port only.
+  __mmask16 m = 0xFFFF;
+  for (int s = 0; s < Slabs; ++s) {
+    m = _mm512_mask_cmp_ps_mask(m, v.low[s].part[0], _mm512_set1_ps(high[s]), _CMP_LE_OQ);
+    m = _mm512_mask_cmp_ps_mask(m, v.high[s].part[0], _mm512_set1_ps(low[s]), _CMP_GE_OQ);
+  }
+  return m;
+#else
+  Mask16 r = 0;
+  for (int i = 0; i < kParts; ++i) {
+    auto hit = (v.low[0].part[i] <= FloatPart(high[0])) & (FloatPart(low[0]) <= v.high[0].part[i]);
+    for (int s = 1; s < Slabs; ++s) {
+      hit = hit & (v.low[s].part[i] <= FloatPart(high[s])) &
+            (FloatPart(low[s]) <= v.high[s].part[i]);
+    }
+    r |= bits(hit) << (i * kPartLanes);
+  }
+  return r;
+#endif
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME
