@@ -1,0 +1,33 @@
+#pragma once
+
+#include <chrono>
+#include <span>
+#include <vector>
+
+namespace winnow::bench {
+
+/// Of a set of measurements. All zero if there is none.
+struct Spread {
+  double min = 0.0;
+  double median = 0.0;
+  double max = 0.0;
+};
+
+[[nodiscard]] Spread spread_of(std::span<const double> values);
+[[nodiscard]] inline double median_of(std::span<const double> values) {
+  return spread_of(values).median;
+}
+
+/// Milliseconds since it was made.
+class Stopwatch {
+ public:
+  [[nodiscard]] double ms() const noexcept {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace winnow::bench

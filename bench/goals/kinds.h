@@ -1,0 +1,41 @@
+#pragma once
+
+#include "goals/measures.h"
+
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+
+// One function a kind of ask; the topic is filled in by the caller. Times are compared with those
+// of other libraries on another machine, scaled by the reference sweep.
+
+// speed_kinds.cpp
+
+/// The fastest partition of a cell against the best existing library, `times_faster` as fast.
+std::vector<Goal> fastest_partition(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// One partition in every cell of the asks above, against the library itself, but for the scenes
+/// that it is said to be unfit for.
+std::vector<Goal> no_slower_than_existing(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// One partition on a scene against itself on another.
+std::vector<Goal> scene_ratio(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// The fastest partition on several threads against the fastest on one.
+std::vector<Goal> speedup(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// The instruction set chosen by default against each narrower one, frame by frame.
+std::vector<Goal> default_isa(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+
+// other_kinds.cpp
+
+/// What one partition holds without results, the most over the scenes and over 1 and 2 threads.
+std::vector<Goal> bytes_per_object(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// Nanoseconds of one operation on keys, the slowest partition.
+std::vector<Goal> key_operation(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// The dearest over the cheapest of one operation among sizes, the worst partition.
+std::vector<Goal> key_flatness(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// Runs (partition x threads x instruction set) that differ from the reference in some frame.
+std::vector<Goal> same_pairs(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+
+/// "100,000 objects, 2 threads"
+[[nodiscard]] std::string on_size(std::size_t objects, int threads);
+
+}  // namespace winnow::bench

@@ -1,0 +1,67 @@
+#include "goals/lab.h"
+
+#include <winnow/partitions/partition.h>
+
+#include <algorithm>
+
+namespace winnow::bench {
+namespace {
+
+MeasureOptions race_on(const std::string& scene, std::size_t objects) {
+  MeasureOptions options;
+  options.scene = scene;
+  options.objects = objects;
+  options.frames = objects <= 20'000 ? 41 : objects <= 300'000 ? 16 : 6;
+  return options;
+}
+
+}  // namespace
+
+const Measurement& Lab::cell(const std::string& scene, std::size_t objects) {
+  const auto [at, fresh] = cells_.try_emplace({scene, objects});
+  if (fresh) {
+    MeasureOptions options = race_on(scene, objects);
+    options.threads = {1, 2};
+    options.machine_clock = true;
+    at->second = measure(options);
+  }
+  return at->second;
+}
+
+const Measurement& Lab::by_isa(const std::string& scene, std::size_t objects) {
+  const auto [at, fresh] = by_isa_.try_emplace({scene, objects});
+  if (fresh) {
+    MeasureOptions options = race_on(scene, objects);
+    options.isas.assign(available_isas().begin(), available_isas().end());
+    at->second = measure(options);
+  }
+  return at->second;
+}
+
+const KeyCosts& Lab::keys(const std::string& partition, std::size_t objects, bool random_order) {
+  const auto [at, fresh] = keys_.try_emplace({partition, objects, random_order});
+  if (fresh) at->second = measure_key_costs(partition, objects, random_order);
+  return at->second;
+}
+
+double Lab::bytes_per_object(const std::string& partition, const std::string& scene,
+                             std::size_t objects) {
+  MeasureOptions options = race_on(scene, objects);
+  options.partitions = {partition};
+  options.threads = {1, 2};
+  options.frames = 4;
+  const Measurement measured = measure(options);
+  double most = 0.0;
+  for (const Run& run : measured.runs) most = std::max(most, measured.bytes_per_object(run));
+  return most;
+}
+
+std::vector<std::string> Lab::testing_partitions() {
+  std::vector<std::string> names;
+  for (const std::string_view name : partition_names()) {
+    if (name != "NSquared") names.emplace_back(name);
+  }
+  return names;
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "engine/key_costs.h"
+#include "tool/measure.h"
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace winnow::bench {
+
+/// Measures what goals ask about, each thing once.
+class Lab {
+ public:
+  /// The 10k reference sweep, in ms, on the machine on which the existing libraries were timed.
+  static constexpr double kReferenceMachineMs = 23.0;
+
+  /// Every partition that suits the size on 1 and 2 threads, interleaved.
+  const Measurement& cell(const std::string& scene, std::size_t objects);
+  /// Every partition on every instruction set, one thread, interleaved.
+  const Measurement& by_isa(const std::string& scene, std::size_t objects);
+  /// What operations on keys cost one partition.
+  const KeyCosts& keys(const std::string& partition, std::size_t objects, bool random_order);
+
+  /// What one partition holds without results, the more of 1 and 2 threads.
+  double bytes_per_object(const std::string& partition, const std::string& scene,
+                          std::size_t objects);
+
+  /// How much slower this machine was while the cell was measured than the reference machine.
+  [[nodiscard]] static double scale(const Measurement& cell) noexcept {
+    return cell.machine_ms / kReferenceMachineMs;
+  }
+  /// The partitions that test bounds: all but the baseline that does not.
+  [[nodiscard]] static std::vector<std::string> testing_partitions();
+
+ private:
+  using Where = std::pair<std::string, std::size_t>;
+
+  std::map<Where, Measurement> cells_;
+  std::map<Where, Measurement> by_isa_;
+  std::map<std::tuple<std::string, std::size_t, bool>, KeyCosts> keys_;
+};
+
+}  // namespace winnow::bench

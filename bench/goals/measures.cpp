@@ -1,0 +1,44 @@
+#include "goals/measures.h"
+
+#include "goals/kinds.h"
+#include "tool/table.h"
+
+#include <array>
+#include <string_view>
+
+namespace winnow::bench {
+namespace {
+
+struct Kind {
+  std::string_view name;
+  std::vector<Goal> (*measure)(const Ask&, const std::vector<Ask>&, Lab&);
+};
+
+constexpr std::array<Kind, 9> kKinds{{{"fastest_partition", fastest_partition},
+                                      {"no_slower_than_existing", no_slower_than_existing},
+                                      {"scene_ratio", scene_ratio},
+                                      {"speedup", speedup},
+                                      {"default_isa", default_isa},
+                                      {"bytes_per_object", bytes_per_object},
+                                      {"key_operation", key_operation},
+                                      {"key_flatness", key_flatness},
+                                      {"same_pairs", same_pairs}}};
+
+}  // namespace
+
+std::string on_size(std::size_t objects, int threads) {
+  return grouped(objects) + " objects, " + std::to_string(threads) +
+         (threads == 1 ? " thread" : " threads");
+}
+
+std::vector<Goal> measure_ask(const Ask& ask, const std::vector<Ask>& all, Lab& lab) {
+  for (const Kind& kind : kKinds) {
+    if (kind.name != ask.kind()) continue;
+    std::vector<Goal> goals = kind.measure(ask, all, lab);
+    for (Goal& goal : goals) goal.topic = ask.topic();
+    return goals;
+  }
+  ask.fail("unknown kind " + ask.kind());
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,121 @@
+#include "goals/kinds.h"
+
+#include "tool/table.h"
+
+#include <algorithm>
+
+namespace winnow::bench {
+namespace {
+
+std::string cell_name(const Ask& ask) {
+  return ask.text("scene") + ", " + on_size(ask.count("objects"), ask.threads());
+}
+
+std::string scaled(const Ask& ask, double scale) {
+  return ask.text("existing") + " " + short_number(ask.number("existing_ms")) + " ms x " +
+         short_number(scale);
+}
+
+/// What the best existing library would need on this machine.
+double existing_ms(const Ask& ask, const Measurement& cell) {
+  return ask.number("existing_ms") * Lab::scale(cell);
+}
+
+const Run& run_of(const Ask& ask, const Measurement& cell, const std::string& partition,
+                  int threads) {
+  const Run* run = cell.find(partition, threads);
+  if (run == nullptr) ask.fail(partition + " does not run on " + on_size(cell.objects, threads));
+  return *run;
+}
+
+/// The median over the frames of a's time over b's, the first frame left out.
+double median_ratio(const Run& a, const Run& b) {
+  std::vector<double> ratios;
+  for (std::size_t f = 1; f < a.frame_ms.size(); ++f)
+    ratios.push_back(a.frame_ms[f] / b.frame_ms[f]);
+  return median_of(ratios);
+}
+
+}  // namespace
+
+std::vector<Goal> fastest_partition(const Ask& ask, const std::vector<Ask>& /*all*/, Lab& lab) {
+  const Measurement& cell = lab.cell(ask.text("scene"), ask.count("objects"));
+  const Run* best = cell.fastest(ask.threads());
+  if (best == nullptr) ask.fail("no partition runs there");
+  return {{.what = cell_name(ask) + ": fastest partition",
+           .unit = "ms",
+           .asked = existing_ms(ask, cell) / ask.number("times_faster"),
+           .measured = best->median_ms(),
+           .detail = best->engine + "; " + scaled(ask, Lab::scale(cell)) + " / " +
+                     short_number(ask.number("times_faster"))}};
+}
+
+std::vector<Goal> no_slower_than_existing(const Ask& ask, const std::vector<Ask>& all, Lab& lab) {
+  const std::string partition = ask.text("partition");
+  const auto unfit = ask.get<std::vector<std::string>>("unfit");
+  std::vector<Goal> goals{{.what = partition + ": scenes it is unfit for",
+                           .unit = "scenes",
+                           .asked = ask.number("most_unfit"),
+                           .measured = static_cast<double>(unfit.size())}};
+  for (const Ask& other : all) {
+    if (other.kind() != "fastest_partition" || other.count("objects") > ask.count("largest") ||
+        std::find(unfit.begin(), unfit.end(), other.text("scene")) != unfit.end()) {
+      continue;
+    }
+    const Measurement& cell = lab.cell(other.text("scene"), other.count("objects"));
+    goals.push_back({.what = cell_name(other) + ": " + partition,
+                     .unit = "ms",
+                     .asked = existing_ms(other, cell),
+                     .measured = run_of(ask, cell, partition, other.threads()).median_ms(),
+                     .detail = scaled(other, Lab::scale(cell))});
+  }
+  return goals;
+}
+
+std::vector<Goal> scene_ratio(const Ask& ask, const std::vector<Ask>& /*all*/, Lab& lab) {
+  const std::string partition = ask.text("partition");
+  const Measurement& cell = lab.cell(ask.text("scene"), ask.count("objects"));
+  const Measurement& base = lab.cell(ask.text("of"), ask.count("objects"));
+  // The two were not interleaved with each other: each is taken relative to the machine's speed
+  // while it ran.
+  const double part = run_of(ask, cell, partition, ask.threads()).median_ms() / cell.machine_ms;
+  const double whole = run_of(ask, base, partition, ask.threads()).median_ms() / base.machine_ms;
+  return {{.what = cell_name(ask) + ": " + partition + " against " + ask.text("of"),
+           .unit = "ratio",
+           .asked = ask.number("asked"),
+           .measured = part / whole}};
+}
+
+std::vector<Goal> speedup(const Ask& ask, const std::vector<Ask>& /*all*/, Lab& lab) {
+  const Measurement& cell = lab.cell(ask.text("scene"), ask.count("objects"));
+  const Run* one = cell.fastest(1);
+  const Run* many = cell.fastest(ask.threads());
+  if (one == nullptr || many == nullptr) ask.fail("no partition runs there");
+  return {{.what = cell_name(ask) + " against 1: fastest partition",
+           .unit = "times faster",
+           .sense = Goal::Sense::at_least,
+           .asked = ask.number("asked"),
+           .measured = one->median_ms() / many->median_ms(),
+           .detail = one->engine + ", " + many->engine}};
+}
+
+std::vector<Goal> default_isa(const Ask& ask, const std::vector<Ask>& /*all*/, Lab& lab) {
+  const Measurement& measured = lab.by_isa(ask.text("scene"), ask.count("objects"));
+  Goal goal{.what = ask.text("scene") + ", " + grouped(ask.count("objects")) +
+                    " objects: default instruction set against a narrower one, worst partition",
+            .unit = "ratio",
+            .asked = ask.number("asked")};
+  for (const Run& usual : measured.partitions()) {
+    if (usual.isa != active_isa()) continue;
+    for (const Run& other : measured.partitions()) {
+      if (other.engine != usual.engine || other.isa >= usual.isa) continue;
+      const double ratio = median_ratio(usual, other);
+      if (ratio <= goal.measured) continue;
+      goal.measured = ratio;
+      goal.detail = usual.engine + ", " + to_string(usual.isa) + " against " + to_string(other.isa);
+    }
+  }
+  return {goal};
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,63 @@
+#include "scenes/bodies.h"
+
+#include <algorithm>
+
+namespace winnow::bench {
+
+Vector draw_velocity(Random& random, double edge) noexcept {
+  Vector velocity{};
+  for (double& v : velocity) v = edge * random.in(-0.05, 0.05);
+  return velocity;
+}
+
+Vector draw_point(Random& random, const Walls& walls) noexcept {
+  Vector point{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    point[axis] = random.in(walls.low[axis], walls.high[axis]);
+  }
+  return point;
+}
+
+void drift(Body& body, const Walls& walls) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double low = walls.low[axis];
+    const double high = walls.high[axis];
+    double c = body.centre[axis] + body.velocity[axis];
+    if (c < low || c > high) {
+      c = c < low ? low + (low - c) : high - (c - high);
+      body.velocity[axis] = -body.velocity[axis];
+    }
+    // Between walls closer than one step a reflection can still be outside.
+    body.centre[axis] = std::clamp(c, low, high);
+  }
+}
+
+Aabb box_of(const Body& body) noexcept {
+  Aabb box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<Eigen::Index>(axis);
+    box.min[a] = static_cast<float>(body.centre[axis] - body.half);
+    box.max[a] = static_cast<float>(body.centre[axis] + body.half);
+  }
+  return box;
+}
+
+BodyScene::BodyScene(std::string name, const Walls& walls, std::vector<Body> bodies,
+                     std::uint64_t seed)
+    : name_(std::move(name)),
+      walls_(walls),
+      bodies_(std::move(bodies)),
+      boxes_(bodies_.size()),
+      random_(mix(seed)) {
+  double half = 0.0;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    place(i);
+    half = std::max(half, bodies_[i].half);
+  }
+  // Rounding one step further out than the boxes do, so that none sticks out.
+  Eigen::Vector3d low = Eigen::Vector3d(walls_.low.data()).array() - half * 1.000001;
+  Eigen::Vector3d high = Eigen::Vector3d(walls_.high.data()).array() + half * 1.000001;
+  world_ = Aabb::outward(low, high);
+}
+
+}  // namespace winnow::bench

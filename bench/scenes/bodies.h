@@ -1,0 +1,63 @@
+#pragma once
+
+#include "scenes/frame_source.h"
+#include "scenes/random.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace winnow::bench {
+
+using Vector = std::array<double, 3>;
+
+/// A cube in motion.
+struct Body {
+  Vector centre{};
+  Vector velocity{};  ///< a frame
+  double half = 0.5;  ///< half an edge
+};
+
+/// Where centres may go; a body that reaches a wall is reflected.
+struct Walls {
+  Vector low{};
+  Vector high{};
+
+  [[nodiscard]] static Walls cube(double side) noexcept {
+    return {{0.0, 0.0, 0.0}, {side, side, side}};
+  }
+};
+
+/// A uniformly drawn velocity of at most 5 % of the edge along each axis.
+[[nodiscard]] Vector draw_velocity(Random& random, double edge) noexcept;
+/// A uniformly drawn point between the walls.
+[[nodiscard]] Vector draw_point(Random& random, const Walls& walls) noexcept;
+/// One frame of straight flight between the walls.
+void drift(Body& body, const Walls& walls) noexcept;
+[[nodiscard]] Aabb box_of(const Body& body) noexcept;
+
+/// A scene made of bodies; what they do in a frame is up to the derived one.
+class BodyScene : public FrameSource {
+ public:
+  BodyScene(std::string name, const Walls& walls, std::vector<Body> bodies, std::uint64_t seed);
+
+  [[nodiscard]] std::string name() const override { return name_; }
+  [[nodiscard]] Aabb world() const override { return world_; }
+  [[nodiscard]] std::span<const Aabb> boxes() const override { return boxes_; }
+
+ protected:
+  /// Copies the body's place into its box.
+  void place(std::size_t i) noexcept { boxes_[i] = box_of(bodies_[i]); }
+
+  std::string name_;
+  Walls walls_;
+  std::vector<Body> bodies_;
+  std::vector<Aabb> boxes_;
+  Aabb world_;
+  Random random_;  ///< for what is drawn anew in each frame
+};
+
+}  // namespace winnow::bench

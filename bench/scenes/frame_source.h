@@ -1,0 +1,30 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+
+#include <span>
+#include <string>
+
+namespace winnow::bench {
+
+/// Something that shows the boxes of the same objects frame after frame: a built-in scene, or a
+/// recording.
+class FrameSource {
+ public:
+  FrameSource(const FrameSource&) = delete;
+  FrameSource& operator=(const FrameSource&) = delete;
+  virtual ~FrameSource() = default;
+
+  [[nodiscard]] virtual std::string name() const = 0;
+  /// Contains every box of every frame.
+  [[nodiscard]] virtual Aabb world() const = 0;
+  /// The boxes of the current frame, row = object; valid until `advance`.
+  [[nodiscard]] virtual std::span<const Aabb> boxes() const = 0;
+  /// Goes to the next frame; false, and no change, if there is none.
+  virtual bool advance() = 0;
+
+ protected:
+  FrameSource() = default;
+};
+
+}  // namespace winnow::bench

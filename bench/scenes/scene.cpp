@@ -1,0 +1,43 @@
+#include "scenes/scene.h"
+
+#include "scenes/drifting.h"
+#include "scenes/resting.h"
+
+#include <array>
+
+namespace winnow::bench {
+namespace {
+
+using Maker = std::unique_ptr<FrameSource> (*)(std::size_t objects, std::uint64_t seed);
+
+constexpr std::array<SceneInfo, 9> kInfos{{
+    {"uniform", "unit cubes spread evenly over a cube of side cbrt(2N), all in straight flight"},
+    {"sleepy", "as uniform, but in each frame only another random 5 % of the objects move"},
+    {"mixed", "cubes with edges log-uniform from 0.1 to 10 in a cube of volume 14.2 N"},
+    {"clustered", "N/500 Gaussian clusters (deviation 3.5) of unit cubes, side 2 cbrt(2N)"},
+    {"pile", "four layers of unit cubes that shiver and overlap, on one ground box (row 0)"},
+    {"wall", "unit cubes of which all overlap on x; y and z spread over a side of sqrt(2N)"},
+    {"brownian", "as uniform, but every object takes a new random step in every frame"},
+    {"free_fall", "unit cubes fall, bounce and come to rest in a heap a quarter as high"},
+    {"gravity", "unit cubes fall to the centre of the world, bounce and come to rest there"},
+}};
+
+constexpr std::array<Maker, kInfos.size()> kMakers{make_uniform,   make_sleepy,    make_mixed,
+                                                   make_clustered, make_pile,      make_wall,
+                                                   make_brownian,  make_free_fall, make_gravity};
+
+}  // namespace
+
+std::span<const SceneInfo> scene_infos() noexcept {
+  return kInfos;
+}
+
+std::unique_ptr<FrameSource> make_scene(std::string_view name, std::size_t objects,
+                                        std::uint64_t seed) {
+  for (std::size_t i = 0; i < kInfos.size(); ++i) {
+    if (kInfos[i].name == name) return kMakers[i](objects, seed);
+  }
+  return nullptr;
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <stdexcept>
+
+namespace winnow::bench {
+
+/// A subcommand: how it is called, and what it does, which gives the exit status.
+struct Command {
+  CLI::App* app = nullptr;
+  std::function<int()> run;
+};
+
+/// A wrong argument that only shows when the command runs. Ends the tool with kBadArgument.
+class ArgumentError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+inline constexpr int kDone = 0;
+inline constexpr int kFailed = 1;  ///< something did not hold
+inline constexpr int kBadArgument = 2;
+
+// One file each.
+Command add_scenes(CLI::App& app);
+Command add_record(CLI::App& app);
+Command add_replay(CLI::App& app);
+Command add_throughput(CLI::App& app);
+Command add_footprint(CLI::App& app);
+Command add_keys(CLI::App& app);
+Command add_crossover(CLI::App& app);
+Command add_goals(CLI::App& app);
+
+/// What the tool does if it is given no subcommand.
+int run_overview();
+
+}  // namespace winnow::bench

@@ -1,0 +1,49 @@
+#include "recordings/recording.h"
+#include "tool/command.h"
+
+#include <iostream>
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+int run_tool(int argc, char** argv) {
+  CLI::App app{
+      "winnow: collision detection, measured. Without a subcommand: every partition on the "
+      "six main scenes at 10,000 and 100,000 objects.",
+      "winnow"};
+  app.require_subcommand(0, 1);
+  const std::vector<Command> commands{add_scenes(app),     add_record(app),    add_replay(app),
+                                      add_throughput(app), add_footprint(app), add_keys(app),
+                                      add_crossover(app),  add_goals(app)};
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool asked_for_help = error.get_exit_code() == 0;
+    app.exit(error);
+    return asked_for_help ? kDone : kBadArgument;
+  }
+  for (const Command& command : commands) {
+    if (command.app->parsed()) return command.run();
+  }
+  return run_overview();
+}
+
+}  // namespace
+}  // namespace winnow::bench
+
+int main(int argc, char** argv) {
+  using namespace winnow::bench;
+  try {
+    return run_tool(argc, argv);
+  } catch (const ArgumentError& error) {
+    std::cerr << "winnow: " << error.what() << '\n';
+    return kBadArgument;
+  } catch (const RecordingError& error) {
+    std::cerr << "winnow: " << error.what() << '\n';
+    return kBadArgument;
+  } catch (const std::exception& error) {
+    std::cerr << "winnow: " << error.what() << '\n';
+    return kFailed;
+  }
+}

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "engine/race.h"
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace winnow::bench {
+
+/// Members stay in the order in which they are written.
+using Json = nlohmann::ordered_json;
+
+/// Writes to a file; does nothing for an empty path. Throws ArgumentError if it cannot.
+void write_json(const std::string& path, const Json& value);
+
+/// A run as a member of what `replay` writes.
+[[nodiscard]] Json to_json(const Run& run, const std::string& scene, std::size_t objects);
+
+}  // namespace winnow::bench
