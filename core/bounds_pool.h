@@ -15,11 +15,11 @@
 
 namespace winnow {
 
-/// Bounding volumes in a structure of arrays: one float column per slab end (see `column_count`) and
-/// a column of object ids, all 64-byte aligned. Rows are dense but for holes that a removal leaves;
-/// a hole and the padding behind the last row hold an empty volume, which overlaps nothing, and
-/// `kNoObject`. Stored ends are finite (an infinite one becomes +-FLT_MAX, which no comparison can
-/// tell from infinity), so that the padding's infinities touch nothing.
+/// Bounding volumes in a structure of arrays: one float column per slab end (see `column_count`)
+/// and a column of object ids, all 64-byte aligned. Rows are dense but for holes that a removal
+/// leaves; a hole and the padding behind the last row hold an empty volume, which overlaps nothing,
+/// and `kNoObject`. Stored ends are finite (an infinite one becomes +-FLT_MAX, which no comparison
+/// can tell from infinity), so that the padding's infinities touch nothing.
 class BoundsPool {
  public:
   /// Rows in a block: one 512-bit register of floats, and the unit in which rows are tested.
@@ -56,8 +56,8 @@ class BoundsPool {
   /// Empties the rest of the last block and one block behind it, so that loads may run over.
   void pad() noexcept;
 
-  /// New row i becomes a copy of old row order[i], or empty where order[i] is kNoObject. All columns
-  /// go through `spare`, which must have room for order.size() + 2 * kBlock elements.
+  /// New row i becomes a copy of old row order[i], or empty where order[i] is kNoObject. All
+  /// columns go through `spare`, which must have room for order.size() + 2 * kBlock elements.
   void reorder(std::span<const std::uint32_t> order, Column<float>& spare,
                const Execution& execution) noexcept;
 
@@ -80,8 +80,8 @@ class BoundsPool {
   Volume volume_;
 };
 
-/// What an empty row holds in column `c` of a volume: +infinity in a lower end, -infinity in an upper
-/// one; an empty sphere is infinitely far away and has radius 0.
+/// What an empty row holds in column `c` of a volume: +infinity in a lower end, -infinity in an
+/// upper one; an empty sphere is infinitely far away and has radius 0.
 [[nodiscard]] constexpr float empty_value(Volume volume, std::size_t c) noexcept {
   constexpr float inf = std::numeric_limits<float>::infinity();
   if (volume == Volume::sphere) return c < 3 ? inf : 0.0F;

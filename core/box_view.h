@@ -32,9 +32,10 @@ struct BoxView {
 
   /// Any contiguous container of boxes.
   template <typename Boxes>
-    requires(std::convertible_to<const Boxes&, std::span<const Aabb>> &&
-             !std::same_as<Boxes, std::span<const Aabb>> && !std::same_as<Boxes, BoxView>)
-  BoxView(const Boxes& boxes) noexcept  // NOLINT(google-explicit-constructor)
+  requires(std::convertible_to<const Boxes&, std::span<const Aabb>> &&
+           !std::same_as<Boxes, std::span<const Aabb>> && !std::same_as<Boxes, BoxView>)
+      BoxView(const Boxes& boxes)
+  noexcept  // NOLINT(google-explicit-constructor)
       : BoxView(std::span<const Aabb>(boxes)) {}
 
   /// Columns, or members of any struct: `stride` is the distance in bytes between two boxes.

@@ -5,7 +5,8 @@
 
 namespace winnow {
 
-/// A 64-bit value that a partition stores and gives back and never reads. Two objects may share one.
+/// A 64-bit value that a partition stores and gives back and never reads. Two objects may share
+/// one.
 using ClientData = std::uint64_t;
 
 /// Index of an object in its partition, stable from insert to remove and reused afterwards.

@@ -22,9 +22,9 @@ struct Pair {
 };
 
 /// The caller's array of pairs, reused from frame to frame. Handed to the same partition again it
-/// carries last frame's pairs along: where few objects moved, only their pairs are redone. Any other
-/// use (another partition, `clear`, `edit`) makes the next query a full one; the result is the same
-/// set either way. Not for use from two threads at once.
+/// carries last frame's pairs along: where few objects moved, only their pairs are redone. Any
+/// other use (another partition, `clear`, `edit`) makes the next query a full one; the result is
+/// the same set either way. Not for use from two threads at once.
 class PairBuffer {
  public:
   /// Which complete query the content came from; 0 is none.

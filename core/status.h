@@ -6,22 +6,22 @@ namespace winnow {
 
 /// What became of a call. Every call that can be refused returns one; a refused call changed
 /// nothing. No winnow function throws on what a caller can pass.
-enum class [[nodiscard]] Status : std::uint8_t {
-  ok,
-  /// A bound is NaN, has min > max on an axis, or lies wholly at infinity.
-  invalid_bounds,
-  /// A key is the default one, stale (its object was removed) or from another partition.
-  invalid_key,
-  /// An option or argument is outside its stated range.
-  invalid_argument,
-  /// Spans that belong together differ in length.
-  size_mismatch,
-  /// The memory resource refused; the structure is as it was.
-  out_of_memory,
-  /// More than `kMaxObjects` objects.
-  too_many_objects,
-  /// The partition does not hold this kind of bounding volume.
-  unsupported_volume,
+enum class [[nodiscard]] Status : std::uint8_t{
+    ok,
+    /// A bound is NaN, has min > max on an axis, or lies wholly at infinity.
+    invalid_bounds,
+    /// A key is the default one, stale (its object was removed) or from another partition.
+    invalid_key,
+    /// An option or argument is outside its stated range.
+    invalid_argument,
+    /// Spans that belong together differ in length.
+    size_mismatch,
+    /// The memory resource refused; the structure is as it was.
+    out_of_memory,
+    /// More than `kMaxObjects` objects.
+    too_many_objects,
+    /// The partition does not hold this kind of bounding volume.
+    unsupported_volume,
 };
 
 /// The enumerator's name, for messages. Never null.

@@ -11,7 +11,9 @@ namespace {
 
 constexpr std::size_t kLeavesPerTask = 1024;
 
-constexpr std::size_t padded(std::size_t nodes) { return (nodes + 15) / 16 * 16; }
+constexpr std::size_t padded(std::size_t nodes) {
+  return (nodes + 15) / 16 * 16;
+}
 
 }  // namespace
 

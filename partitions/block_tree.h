@@ -11,9 +11,9 @@
 
 namespace winnow {
 
-/// The node boxes of an implicit 16-ary tree over consecutive blocks of rows. It owns no order: rows
-/// that lie near each other in space must lie near each other in the pool for it to prune. Any order
-/// gives right answers.
+/// The node boxes of an implicit 16-ary tree over consecutive blocks of rows. It owns no order:
+/// rows that lie near each other in space must lie near each other in the pool for it to prune. Any
+/// order gives right answers.
 class BlockTree {
  public:
   explicit BlockTree(std::pmr::memory_resource* memory) noexcept : nodes_(memory) {}

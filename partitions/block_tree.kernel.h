@@ -11,9 +11,9 @@ namespace winnow {
 /// Levels of a 16-ary tree over at most 2^28 blocks.
 inline constexpr std::uint32_t kMaxTreeLevels = 8;
 
-/// An implicit 16-ary tree: node i of level l + 1 bounds nodes [16 i, 16 i + 16) of level l, and node
-/// i of level 0 bounds the rows of block first_block + i. Level arrays are padded to 16 with empty
-/// boxes. The top level has at most 16 nodes.
+/// An implicit 16-ary tree: node i of level l + 1 bounds nodes [16 i, 16 i + 16) of level l, and
+/// node i of level 0 bounds the rows of block first_block + i. Level arrays are padded to 16 with
+/// empty boxes. The top level has at most 16 nodes.
 struct TreeView {
   RowView rows;
   std::uint32_t first_block = 0;

@@ -73,7 +73,9 @@ bool BoundsNSquared::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>&
   return true;
 }
 
-std::size_t BoundsNSquared::regular_tasks() const noexcept { return flat_tasks(pool()); }
+std::size_t BoundsNSquared::regular_tasks() const noexcept {
+  return flat_tasks(pool());
+}
 
 bool BoundsNSquared::run_regular_task(std::size_t task, PairSink& sink) const noexcept {
   const FlatTask range(pool(), task);

@@ -8,11 +8,11 @@
 
 namespace winnow {
 
-/// Tests the bounding volume of every object against every other, 16 at a time: no structure at all,
-/// the least memory, and the fastest choice for some hundreds of objects. Volumes are boxes, spheres
-/// or k-DOPs; given boxes, a sphere or k-DOP partition stores the tightest volume around each (a
-/// sphere wants finite boxes). O(n^2 / 16) tests. Exact for its volume; spheres that miss each other
-/// by less than 1e-6 of their distance may be reported.
+/// Tests the bounding volume of every object against every other, 16 at a time: no structure at
+/// all, the least memory, and the fastest choice for some hundreds of objects. Volumes are boxes,
+/// spheres or k-DOPs; given boxes, a sphere or k-DOP partition stores the tightest volume around
+/// each (a sphere wants finite boxes). O(n^2 / 16) tests. Exact for its volume; spheres that miss
+/// each other by less than 1e-6 of their distance may be reported.
 class BoundsNSquared final : public RowPartition {
  public:
   explicit BoundsNSquared(const PartitionOptions& options = {}, Volume volume = Volume::aabb);

@@ -10,8 +10,8 @@
 
 namespace winnow {
 
-/// A set of object ids that changed: a bit each and a list in order of change. Past a quarter of all
-/// objects it only says "all": following single objects no longer pays then.
+/// A set of object ids that changed: a bit each and a list in order of change. Past a quarter of
+/// all objects it only says "all": following single objects no longer pays then.
 class ChangeList {
  public:
   explicit ChangeList(std::pmr::memory_resource* memory) noexcept : bits_(memory), list_(memory) {}

@@ -41,9 +41,7 @@ struct SlabTest {
   }
   static Query own(const RowView& rows, std::size_t r) { return take<Slabs>(rows.column, r); }
   static Query box(const QueryBatch& batch, std::size_t r) { return take<3>(batch.column, r); }
-  static Query same(const QueryBatch& batch, std::size_t r) {
-    return take<Slabs>(batch.column, r);
-  }
+  static Query same(const QueryBatch& batch, std::size_t r) { return take<Slabs>(batch.column, r); }
   static Mask16 test(const Block& block, const Query& q) { return overlap(block, q.low, q.high); }
   static Mask16 test_box(const Block& block, const Query& q) {
     Box16 first;
@@ -66,9 +64,9 @@ struct SlabTest {
   }
 };
 
-/// Spheres: |c1 - c2|^2 <= (r1 + r2)^2. The right side is enlarged by more than the rounding of both
-/// sides (a few ulp of each), so that touching spheres are never missed; where a square would overflow
-/// or underflow the comparison still errs to the side of a hit.
+/// Spheres: |c1 - c2|^2 <= (r1 + r2)^2. The right side is enlarged by more than the rounding of
+/// both sides (a few ulp of each), so that touching spheres are never missed; where a square would
+/// overflow or underflow the comparison still errs to the side of a hit.
 struct SphereTest {
   static constexpr float kSlack = 1.000002F;
   static constexpr float kTiny = 1e-37F;

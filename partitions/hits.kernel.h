@@ -8,7 +8,9 @@
 namespace winnow::WINNOW_ISA_NAME {
 
 /// False if the sink is full and cannot grow.
-inline bool has_room(PairSink& sink) { return sink.cursor <= sink.limit || sink.grow(sink); }
+inline bool has_room(PairSink& sink) {
+  return sink.cursor <= sink.limit || sink.grow(sink);
+}
 
 /// The box that row r of six columns holds.
 struct QueryBox {

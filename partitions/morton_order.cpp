@@ -124,8 +124,7 @@ class Coder {
   void choose_axes(const Extent& extent, std::size_t count, unsigned bits) {
     std::array<double, 3> cell{};
     std::array<unsigned, 3> used{};
-    const double mean_edge =
-        (extent.edge_sum[0] + extent.edge_sum[1] + extent.edge_sum[2]) / 3.0;
+    const double mean_edge = (extent.edge_sum[0] + extent.edge_sum[1] + extent.edge_sum[2]) / 3.0;
     for (std::size_t a = 0; a < 3; ++a) {
       const double unit = extent.edge_sum[a] + 0.05 * mean_edge;
       const double n = static_cast<double>(count);
@@ -163,8 +162,7 @@ class Coder {
       spread_[a][half][0] = 0;
       for (unsigned value = 1; value < 256; ++value) {
         const auto top = static_cast<unsigned>(std::bit_width(value)) - 1;
-        spread_[a][half][value] =
-            spread_[a][half][value & ~(1U << top)] | place[8 * half + top];
+        spread_[a][half][value] = spread_[a][half][value & ~(1U << top)] | place[8 * half + top];
       }
     }
   }

@@ -11,7 +11,9 @@ bool NSquared::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>&) {
   return true;
 }
 
-std::size_t NSquared::regular_tasks() const noexcept { return flat_tasks(pool()); }
+std::size_t NSquared::regular_tasks() const noexcept {
+  return flat_tasks(pool());
+}
 
 bool NSquared::run_regular_task(std::size_t task, PairSink& sink) const noexcept {
   const FlatTask range(pool(), task);

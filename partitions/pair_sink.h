@@ -33,8 +33,9 @@ enum class HitMode : std::uint8_t {
   moved,         ///< report (min, max), but not c == q, nor c if it moved too and c < q
 };
 
-/// Volumes to ask about: rows of columns, by list or, if `rows` is null, one after another. They are
-/// boxes (three slabs: lower ends, then upper ends), or volumes of the kind that the asked rows hold.
+/// Volumes to ask about: rows of columns, by list or, if `rows` is null, one after another. They
+/// are boxes (three slabs: lower ends, then upper ends), or volumes of the kind that the asked rows
+/// hold.
 struct QueryBatch {
   const float* column[26] = {};
   bool is_box = true;

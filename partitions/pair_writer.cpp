@@ -11,7 +11,9 @@ constexpr std::size_t kPageContent = kPage - kSinkSlack;
 
 static_assert(sizeof(Pair) == 8 && alignof(Pair) == 4);
 
-std::uint32_t* words(Pair* pair) { return reinterpret_cast<std::uint32_t*>(pair); }
+std::uint32_t* words(Pair* pair) {
+  return reinterpret_cast<std::uint32_t*>(pair);
+}
 
 // Points the sink at [from, end) of pairs.
 void aim(PairSink& sink, Pair* from, Pair* end) {
@@ -23,7 +25,9 @@ void aim(PairSink& sink, Pair* from, Pair* end) {
 constexpr std::uint64_t entry(std::size_t task, std::size_t count) {
   return static_cast<std::uint64_t>(task) << 32U | count;
 }
-constexpr std::size_t task_of(std::uint64_t e) { return static_cast<std::size_t>(e >> 32U); }
+constexpr std::size_t task_of(std::uint64_t e) {
+  return static_cast<std::size_t>(e >> 32U);
+}
 constexpr std::size_t count_of(std::uint64_t e) {
   return static_cast<std::size_t>(e & 0xFFFFFFFFU);
 }
@@ -41,7 +45,7 @@ struct PairWriter::PageClaims {
 
 Status PairWriter::append(std::size_t tasks, void* context, Task run) {
   return execution_.concurrency() == 1 || tasks <= 1 ? append_serial(tasks, context, run)
-                                                      : append_parallel(tasks, context, run);
+                                                     : append_parallel(tasks, context, run);
 }
 
 Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {

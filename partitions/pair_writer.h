@@ -13,8 +13,8 @@
 namespace winnow {
 
 /// Appends the output of many tasks to a PairBuffer, in the order of the tasks whatever thread runs
-/// which. On one thread tasks write straight into the buffer. On several, a task claims pages of the
-/// buffer's scratch one at a time, and pages are copied into order at the end: the pages needed
+/// which. On one thread tasks write straight into the buffer. On several, a task claims pages of
+/// the buffer's scratch one at a time, and pages are copied into order at the end: the pages needed
 /// depend on the results alone, so frames with the same results allocate nothing.
 class PairWriter {
  public:

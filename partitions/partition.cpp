@@ -1,8 +1,10 @@
 #include <winnow/partitions/partition.h>
 
 #include <winnow/partitions/bounds_n_squared.h>
+#include <winnow/partitions/flat_grid.h>
 #include <winnow/partitions/linear_bvh.h>
 #include <winnow/partitions/n_squared.h>
+#include <winnow/partitions/sweep_and_prune.h>
 
 #include <array>
 
@@ -16,13 +18,16 @@ std::unique_ptr<Partition> make(const PartitionOptions& options) {
   return std::make_unique<T>(options);
 }
 
-constexpr std::array<std::string_view, 3> kNames{"NSquared", "BoundsNSquared", "LinearBvh"};
-constexpr std::array<Maker, kNames.size()> kMakers{make<NSquared>, make<BoundsNSquared>,
-                                                   make<LinearBvh>};
+constexpr std::array<std::string_view, 5> kNames{"NSquared", "BoundsNSquared", "SweepAndPrune",
+                                                 "FlatGrid", "LinearBvh"};
+constexpr std::array<Maker, kNames.size()> kMakers{
+    make<NSquared>, make<BoundsNSquared>, make<SweepAndPrune>, make<FlatGrid>, make<LinearBvh>};
 
 }  // namespace
 
-std::span<const std::string_view> partition_names() noexcept { return kNames; }
+std::span<const std::string_view> partition_names() noexcept {
+  return kNames;
+}
 
 std::unique_ptr<Partition> make_partition(std::string_view name, const PartitionOptions& options) {
   for (std::size_t i = 0; i < kNames.size(); ++i) {

@@ -42,16 +42,16 @@ struct PairOptions {
 /// How a partition stands and what it did; counters, never timings, so they repeat exactly.
 struct Statistics {
   std::size_t objects = 0;
-  std::size_t regular = 0;        ///< objects in the cells, strips or leaves made by the last build
-  std::size_t irregular = 0;      ///< objects kept apart: oversize, new, or moved away
-  std::size_t cells = 0;          ///< cells, strips or leaf blocks
-  std::size_t depth = 0;          ///< levels of the node tree; 0 if there is none
-  std::uint64_t builds = 0;       ///< since construction
-  std::uint64_t refits = 0;       ///< refreshes that did not need a build
+  std::size_t regular = 0;    ///< objects in the cells, strips or leaves made by the last build
+  std::size_t irregular = 0;  ///< objects kept apart: oversize, new, or moved away
+  std::size_t cells = 0;      ///< cells, strips or leaf blocks
+  std::size_t depth = 0;      ///< levels of the node tree; 0 if there is none
+  std::uint64_t builds = 0;   ///< since construction
+  std::uint64_t refits = 0;   ///< refreshes that did not need a build
   std::uint64_t full_queries = 0;
   std::uint64_t incremental_queries = 0;
-  std::uint64_t last_tests = 0;   ///< tests of 16 volumes at once, in the last pair query
-  std::uint64_t last_pairs = 0;   ///< pairs reported by the last pair query
+  std::uint64_t last_tests = 0;  ///< tests of 16 volumes at once, in the last pair query
+  std::uint64_t last_pairs = 0;  ///< pairs reported by the last pair query
 };
 
 /// A spatial partition: takes bounding volumes with 64 bits of client data, hands out keys, and

@@ -18,9 +18,9 @@ namespace winnow {
 /// What all partitions share: keys, rows, what changed since when, pair queries and their order.
 ///
 /// Rows fall into two regions. The *regular* region is the derived partition's own: cells, strips,
-/// or plain rows. Behind it every row is a leaf of a block tree: objects that do not suit the regular
-/// region (oversize, unbounded, in overfull cells), objects inserted since the last build, and
-/// objects that moved out of where the build put them. So no input can make a regular structure
+/// or plain rows. Behind it every row is a leaf of a block tree: objects that do not suit the
+/// regular region (oversize, unbounded, in overfull cells), objects inserted since the last build,
+/// and objects that moved out of where the build put them. So no input can make a regular structure
 /// degenerate: what does not fit it is pruned by the tree. LinearBvh has no regular region.
 ///
 /// A build permutes the rows themselves, so the pool is the sorted copy. It happens when the share
@@ -72,7 +72,8 @@ class RowPartition : public Partition {
   virtual void finish_build() {}
   /// True if the object in this regular row still fits where the build put it.
   [[nodiscard]] virtual bool fits(std::size_t) const noexcept { return true; }
-  /// Appends the regular rows that no longer fit, until the list holds `limit`; any may have changed.
+  /// Appends the regular rows that no longer fit, until the list holds `limit`; any may have
+  /// changed.
   virtual void find_misfits(Column<std::uint32_t>&, std::size_t) const noexcept {}
 
   /// Pair finding within the regular region, in independent tasks.
@@ -140,11 +141,11 @@ class RowPartition : public Partition {
   bool built_ = false;
   bool tail_changed_ = false;
 
-  ChangeList stale_;          // since the last refresh
-  mutable ChangeList moved_;  // since the last tracked pair query
-  Column<float> spare_;                // what columns are permuted through
-  Column<std::uint32_t> order_;        // old row of each new row
-  mutable Column<std::uint32_t> list_; // rows or nodes to visit
+  ChangeList stale_;                    // since the last refresh
+  mutable ChangeList moved_;            // since the last tracked pair query
+  Column<float> spare_;                 // what columns are permuted through
+  Column<std::uint32_t> order_;         // old row of each new row
+  mutable Column<std::uint32_t> list_;  // rows or nodes to visit
   Column<std::uint64_t> sort_scratch_;
 
   const std::uint64_t identity_;

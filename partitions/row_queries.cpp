@@ -15,7 +15,9 @@ constexpr std::size_t kBlock = BoundsPool::kBlock;
 constexpr std::size_t kQueriesPerTask = 64;
 constexpr std::size_t kTreeTasks = 64;
 
-constexpr std::size_t ceil_divide(std::size_t a, std::size_t b) { return (a + b - 1) / b; }
+constexpr std::size_t ceil_divide(std::size_t a, std::size_t b) {
+  return (a + b - 1) / b;
+}
 
 }  // namespace
 
@@ -131,8 +133,7 @@ Status RowPartition::incremental_self_pairs(PairBuffer& out) const {
     batch.id = pool_.ids();
     batch.rows = list_.data();
     batch.begin = static_cast<std::uint32_t>(task * kQueriesPerTask);
-    batch.end =
-        static_cast<std::uint32_t>(std::min(list_.size(), (task + 1) * kQueriesPerTask));
+    batch.end = static_cast<std::uint32_t>(std::min(list_.size(), (task + 1) * kQueriesPerTask));
     batch.mode = HitMode::moved;
     batch.moved = moved_.bits();
     return query_all(batch, sink);
@@ -156,12 +157,10 @@ Status RowPartition::pairs_with(const Partition& other, PairBuffer& out,
   if (const Status status = refresh(); status != Status::ok) return status;
   if (const Status status = other.refresh(); status != Status::ok) return status;
   // The smaller side asks: each question costs about the logarithm of the side that is asked.
-  const Status status = size() <= rows->size()
-                            ? ask(*rows, HitMode::query_first, out)
-                            : rows->ask(*this, HitMode::query_second, out);
+  const Status status = size() <= rows->size() ? ask(*rows, HitMode::query_first, out)
+                                               : rows->ask(*this, HitMode::query_second, out);
   const std::size_t slots = std::max(keys_.slot_count(), rows->keys_.slot_count());
-  if (status == Status::ok &&
-      (options.order == Order::fast || PairTracker::sort(out, slots))) {
+  if (status == Status::ok && (options.order == Order::fast || PairTracker::sort(out, slots))) {
     return Status::ok;
   }
   out.clear();

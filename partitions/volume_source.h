@@ -1,7 +1,7 @@
 #pragma once
 
-// Where the rows of a bulk insert or update come from: each source says whether entry i is legal and
-// writes it into the columns of a row. Legal infinite ends become +-FLT_MAX (see BoundsPool).
+// Where the rows of a bulk insert or update come from: each source says whether entry i is legal
+// and writes it into the columns of a row. Legal infinite ends become +-FLT_MAX (see BoundsPool).
 
 #include <winnow/core/box_view.h>
 #include <winnow/core/kdop.h>

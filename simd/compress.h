@@ -24,8 +24,7 @@ struct Permutations8 {
 inline constexpr Permutations8 kPermutations8{};
 
 inline __m256i pack8(__m256i v, unsigned m) {
-  const __m128i narrow =
-      _mm_loadl_epi64(reinterpret_cast<const __m128i*>(kPermutations8.lane[m]));
+  const __m128i narrow = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(kPermutations8.lane[m]));
   return _mm256_permutevar8x32_epi32(v, _mm256_cvtepu8_epi32(narrow));
 }
 

@@ -78,9 +78,13 @@ std::span<const Isa> available_isas() noexcept {
   return {choice().available.data(), choice().count};
 }
 
-Isa active_isa() noexcept { return choice().active.load(std::memory_order_relaxed); }
+Isa active_isa() noexcept {
+  return choice().active.load(std::memory_order_relaxed);
+}
 
-const char* isa_name() noexcept { return to_string(active_isa()); }
+const char* isa_name() noexcept {
+  return to_string(active_isa());
+}
 
 Status set_isa(Isa isa) noexcept {
   for (const Isa have : available_isas()) {

@@ -21,11 +21,11 @@ enum class Isa : std::uint8_t;
 #define WINNOW_KERNEL_TABLE(name) WINNOW_CONCAT(name, WINNOW_ISA_NAME)
 
 /// In a kernel header: declares the tables and the function `name()` that picks one.
-#define WINNOW_KERNELS(Type, name)   \
-  extern const Type name##_sse42;    \
-  extern const Type name##_avx2;     \
-  extern const Type name##_avx512;   \
-  extern const Type name##_neon64;   \
+#define WINNOW_KERNELS(Type, name) \
+  extern const Type name##_sse42;  \
+  extern const Type name##_avx2;   \
+  extern const Type name##_avx512; \
+  extern const Type name##_neon64; \
   [[nodiscard]] const Type& name() noexcept
 
 #ifdef WINNOW_HAVE_AVX512
@@ -49,12 +49,12 @@ enum class Isa : std::uint8_t;
 #endif
 
 /// In the one ordinary source file of the algorithm: defines `name()`.
-#define WINNOW_DEFINE_KERNELS(Type, name)             \
-  const Type& name() noexcept {                       \
-    switch (static_cast<unsigned>(active_isa())) {    \
-      WINNOW_PICK_AVX512(name)                        \
-      WINNOW_PICK_AVX2(name)                          \
-      default:                                        \
-        WINNOW_PICK_BASE(name);                       \
-    }                                                 \
+#define WINNOW_DEFINE_KERNELS(Type, name)          \
+  const Type& name() noexcept {                    \
+    switch (static_cast<unsigned>(active_isa())) { \
+      WINNOW_PICK_AVX512(name)                     \
+      WINNOW_PICK_AVX2(name)                       \
+      default:                                     \
+        WINNOW_PICK_BASE(name);                    \
+    }                                              \
   }

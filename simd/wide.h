@@ -5,7 +5,8 @@
 // and report in the same order on every instruction set.
 //
 // The only file that spells xsimd (8.1 to 14) and intrinsics. xsimd 8.1 has no bit mask of a
-// batch_bool, no compress and no reduction by min or max: those are spelled here per instruction set.
+// batch_bool, no compress and no reduction by min or max: those are spelled here per instruction
+// set.
 
 #ifndef WINNOW_ISA_NAME
 #error "wide.h is for *.kernel.cpp files, which the build compiles once per instruction set"
@@ -81,11 +82,17 @@ inline Float16 multiply(const Float16& a, const Float16& b) {
 }
 
 /// Number of set bits.
-inline unsigned count(Mask16 mask) { return static_cast<unsigned>(__builtin_popcount(mask)); }
+inline unsigned count(Mask16 mask) {
+  return static_cast<unsigned>(__builtin_popcount(mask));
+}
 /// Index of the lowest set bit; `mask` is not 0.
-inline unsigned first(Mask16 mask) { return static_cast<unsigned>(__builtin_ctz(mask)); }
+inline unsigned first(Mask16 mask) {
+  return static_cast<unsigned>(__builtin_ctz(mask));
+}
 /// The lowest n lanes, n <= 16.
-inline constexpr Mask16 lanes_below(unsigned n) { return (1U << n) - 1U; }
+inline constexpr Mask16 lanes_below(unsigned n) {
+  return (1U << n) - 1U;
+}
 
 #if defined(WINNOW_ISA_IS_avx512)
 
@@ -101,7 +108,9 @@ inline Mask16 bits(xsimd::batch_bool<float> b) {
 
 #elif defined(WINNOW_ISA_IS_sse42)
 
-inline Mask16 bits(xsimd::batch_bool<float> b) { return static_cast<Mask16>(_mm_movemask_ps(b)); }
+inline Mask16 bits(xsimd::batch_bool<float> b) {
+  return static_cast<Mask16>(_mm_movemask_ps(b));
+}
 
 #else
 
@@ -205,8 +214,8 @@ inline Mask16 overlap(const Slabs16<Slabs>& v, const float* low, const float* hi
   for (int i = 0; i < kParts; ++i) {
     auto hit = (v.low[0].part[i] <= FloatPart(high[0])) & (FloatPart(low[0]) <= v.high[0].part[i]);
     for (int s = 1; s < Slabs; ++s) {
-      hit = hit & (v.low[s].part[i] <= FloatPart(high[s])) &
-            (FloatPart(low[s]) <= v.high[s].part[i]);
+      hit =
+          hit & (v.low[s].part[i] <= FloatPart(high[s])) & (FloatPart(low[s]) <= v.high[s].part[i]);
     }
     r |= bits(hit) << (i * kPartLanes);
   }

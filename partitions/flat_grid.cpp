@@ -1,0 +1,119 @@
+#include <winnow/partitions/flat_grid.h>
+
+#include <algorithm>
+
+namespace winnow {
+
+WINNOW_DEFINE_KERNELS(FlatGridKernels, flat_grid_kernels)
+
+namespace {
+
+// More objects than this in a cell are pruned better by the tree.
+constexpr std::uint32_t kOverfull = 192;
+constexpr std::size_t kTasks = 64;
+
+}  // namespace
+
+FlatGrid::FlatGrid(const PartitionOptions& options)
+    : RowPartition(options, Volume::aabb),
+      layout_(options.memory),
+      start_(options.memory),
+      cell_(options.memory) {}
+
+bool FlatGrid::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) {
+  const SceneSample sample(pool());
+  if (!layout_.choose(sample, {})) return false;
+  if (!layout_.usable()) return RowPartition::plan(regular, rest);
+  if (!cell_.resize(pool().rows()) || !start_.resize(layout_.cells() + 1)) return false;
+  count_cells();
+  drop_overfull();
+  // Starts come from counts; a cell's start then serves as its write position.
+  std::uint32_t sum = 0;
+  for (std::uint32_t& s : start_) {
+    const std::uint32_t n = s;
+    s = sum;
+    sum += n;
+  }
+  regular.set_size(sum);
+  for (std::size_t row = 0; row < pool().rows(); ++row) {
+    if (cell_[row] != CellLayout::kNoCell) {
+      regular[start_[cell_[row]]++] = static_cast<std::uint32_t>(row);
+    } else if (pool().ids()[row] != kNoObject) {
+      (void)rest.push_back(static_cast<std::uint32_t>(row));
+    }
+  }
+  // Every position has moved on to its cell's end, which is the next cell's start.
+  for (std::size_t c = start_.size() - 1; c > 0; --c) start_[c] = start_[c - 1];
+  start_[0] = 0;
+  return true;
+}
+
+void FlatGrid::count_cells() noexcept {
+  std::fill(start_.begin(), start_.end(), 0);
+  for (std::size_t row = 0; row < pool().rows(); ++row) {
+    const bool live = pool().ids()[row] != kNoObject;
+    cell_[row] = live ? layout_.cell_of(pool(), row) : CellLayout::kNoCell;
+    if (cell_[row] != CellLayout::kNoCell) ++start_[cell_[row]];
+  }
+}
+
+void FlatGrid::drop_overfull() noexcept {
+  if (std::none_of(start_.begin(), start_.end(), [](auto n) { return n > kOverfull; })) return;
+  for (std::uint32_t& cell : cell_) {
+    if (cell != CellLayout::kNoCell && start_[cell] > kOverfull) cell = CellLayout::kNoCell;
+  }
+  std::replace_if(
+      start_.begin(), start_.end(), [](auto n) { return n > kOverfull; }, 0U);
+}
+
+bool FlatGrid::fits(std::size_t row) const noexcept {
+  const auto after = std::upper_bound(start_.begin(), start_.end(), row);
+  return layout_.fits(pool(), row, static_cast<std::uint32_t>(after - start_.begin() - 1));
+}
+
+void FlatGrid::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) const noexcept {
+  const auto room = static_cast<std::uint32_t>(limit - rows.size());
+  const std::uint32_t found = flat_grid_kernels().find_misfits(view(), rows.end(), room);
+  rows.set_size(rows.size() + found);
+}
+
+std::size_t FlatGrid::lines() const noexcept {
+  return std::size_t{layout_.axis(1).count} * layout_.axis(2).count;
+}
+
+std::size_t FlatGrid::regular_tasks() const noexcept {
+  return regular_rows() == 0 ? 0 : std::min(kTasks, lines());
+}
+
+bool FlatGrid::run_regular_task(std::size_t task, PairSink& sink) const noexcept {
+  const std::size_t tasks = regular_tasks();
+  return flat_grid_kernels().self_pairs(view(), static_cast<std::uint32_t>(lines() * task / tasks),
+                                        static_cast<std::uint32_t>(lines() * (task + 1) / tasks),
+                                        sink);
+}
+
+bool FlatGrid::query_regular(const QueryBatch& batch, PairSink& sink) const noexcept {
+  return flat_grid_kernels().query(view(), batch, sink);
+}
+
+GridView FlatGrid::view() const noexcept {
+  return {row_view(), start_.data(), {layout_.axis(0), layout_.axis(1), layout_.axis(2)}};
+}
+
+void FlatGrid::release_structure() noexcept {
+  layout_.release();
+  start_.release();
+  cell_.release();
+}
+
+void FlatGrid::add_structure_bytes(Footprint& footprint) const noexcept {
+  footprint.structure += layout_.bytes();
+  footprint.structure += start_.bytes();
+  footprint.scratch += cell_.bytes();
+}
+
+std::size_t FlatGrid::cell_count() const noexcept {
+  return regular_rows() == 0 ? RowPartition::cell_count() : layout_.cells();
+}
+
+}  // namespace winnow

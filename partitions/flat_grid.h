@@ -1,0 +1,45 @@
+#pragma once
+
+#include <winnow/partitions/cell_layout.h>
+#include <winnow/partitions/flat_grid.kernel.h>
+#include <winnow/partitions/row_partition.h>
+
+namespace winnow {
+
+/// Uniform grid: each object belongs to the one cell of its box's lower corner, rows are sorted by
+/// cell (counting sort), and a cell is tested against itself and the 13 neighbours after it, which
+/// are five contiguous runs of rows; so each pair is met once and no object is stored twice. Cells
+/// are wider than the boxes by a slack that objects may drift within, so that slow scenes keep
+/// their order for many frames. Cell size, the axis that runs fastest, and which objects are too
+/// large for cells come from a sample of the scene at each build. Objects too large or in overfull
+/// cells go to a block tree and are asked against the grid. Self pairs: O(n + cells + pairs) where
+/// density is even. Exact.
+class FlatGrid final : public RowPartition {
+ public:
+  explicit FlatGrid(const PartitionOptions& options = {});
+
+  [[nodiscard]] std::string_view name() const noexcept override { return "FlatGrid"; }
+  [[nodiscard]] bool is_exact() const noexcept override { return true; }
+
+ private:
+  bool plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) override;
+  [[nodiscard]] bool fits(std::size_t row) const noexcept override;
+  void find_misfits(Column<std::uint32_t>& rows, std::size_t limit) const noexcept override;
+  [[nodiscard]] std::size_t regular_tasks() const noexcept override;
+  bool run_regular_task(std::size_t task, PairSink& sink) const noexcept override;
+  bool query_regular(const QueryBatch& batch, PairSink& sink) const noexcept override;
+  void release_structure() noexcept override;
+  void add_structure_bytes(Footprint& footprint) const noexcept override;
+  [[nodiscard]] std::size_t cell_count() const noexcept override;
+
+  void count_cells() noexcept;
+  void drop_overfull() noexcept;
+  [[nodiscard]] std::size_t lines() const noexcept;
+  [[nodiscard]] GridView view() const noexcept;
+
+  CellLayout layout_;
+  Column<std::uint32_t> start_;  // first row of each cell, and the end
+  Column<std::uint32_t> cell_;   // cell of each row, while building
+};
+
+}  // namespace winnow

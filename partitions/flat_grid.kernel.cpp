@@ -1,0 +1,184 @@
+#include <winnow/partitions/flat_grid.kernel.h>
+#include <winnow/partitions/hits.kernel.h>
+
+namespace winnow {
+namespace WINNOW_ISA_NAME {
+namespace {
+
+struct Run {
+  std::uint32_t begin;
+  std::uint32_t end;
+};
+
+/// Rows of cells [first, last] of a line.
+Run run_of(const GridView& grid, std::uint32_t line, std::uint32_t first, std::uint32_t last) {
+  const std::uint32_t* start = grid.start + std::size_t{line} * grid.axis[0].count;
+  return {start[first], start[last + 1]};
+}
+
+/// The lanes of a load at `at` that lie before `end`.
+Mask16 lanes_before(std::uint32_t at, std::uint32_t end) {
+  return end - at < kLanes ? lanes_below(end - at) : 0xFFFFU;
+}
+
+/// All pairs of a row in `cell` with a row in `run`, which holds none of the cell's own rows.
+bool cell_against_run(const GridView& grid, const Run& cell, const Run& run, PairSink& sink) {
+  for (std::uint32_t at = run.begin; at < run.end; at += kLanes) {
+    const Box16 box = load_slabs_unaligned<3>(grid.rows.column, at);
+    const Uint16 ids = load_unaligned(grid.rows.id + at);
+    const Mask16 lanes = lanes_before(at, run.end);
+    for (std::uint32_t r = cell.begin; r < cell.end; ++r) {
+      const QueryBox q(grid.rows.column, r);
+      const Mask16 hits = overlap(box, q.low, q.high) & lanes;
+      if (hits == 0) continue;
+      if (!has_room(sink)) return false;
+      sink.cursor += 2 * emit_pairs<true>(hits, ids, grid.rows.id[r], sink.cursor);
+    }
+    sink.tests += cell.end - cell.begin;
+  }
+  return true;
+}
+
+/// All pairs within `cell`, and of the cell with the rows between it and `end`.
+bool cell_forward(const GridView& grid, const Run& cell, std::uint32_t end, PairSink& sink) {
+  for (std::uint32_t at = cell.begin; at < end; at += kLanes) {
+    const Box16 box = load_slabs_unaligned<3>(grid.rows.column, at);
+    const Uint16 ids = load_unaligned(grid.rows.id + at);
+    const Mask16 lanes = lanes_before(at, end);
+    const std::uint32_t last = cell.end < at + kLanes ? cell.end : at + kLanes;
+    for (std::uint32_t r = cell.begin; r < last; ++r) {
+      const QueryBox q(grid.rows.column, r);
+      // Only rows behind r: the pair with an earlier one is that one's.
+      const Mask16 behind = r >= at ? ~lanes_below(r - at + 1) : ~0U;
+      const Mask16 hits = overlap(box, q.low, q.high) & lanes & behind;
+      if (hits == 0) continue;
+      if (!has_room(sink)) return false;
+      sink.cursor += 2 * emit_pairs<true>(hits, ids, grid.rows.id[r], sink.cursor);
+    }
+    sink.tests += last - cell.begin;
+  }
+  return true;
+}
+
+/// The lines that a line's cells are tested against: those after it whose cells can touch.
+struct Neighbours {
+  std::uint32_t line[4];
+  int count = 0;
+
+  Neighbours(const GridView& grid, std::uint32_t own) {
+    const std::uint32_t mids = grid.axis[1].count;
+    const std::uint32_t mid = own % mids;
+    if (mid + 1 < mids) line[count++] = own + 1;
+    if (own / mids + 1 == grid.axis[2].count) return;
+    if (mid > 0) line[count++] = own + mids - 1;
+    line[count++] = own + mids;
+    if (mid + 1 < mids) line[count++] = own + mids + 1;
+  }
+};
+
+bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  const std::uint32_t cells = grid.axis[0].count;
+  for (std::uint32_t line = begin; line < end; ++line) {
+    const std::uint32_t* start = grid.start + std::size_t{line} * cells;
+    if (start[0] == start[cells]) continue;
+    const Neighbours neighbours(grid, line);
+    for (std::uint32_t c = 0; c < cells; ++c) {
+      const Run cell{start[c], start[c + 1]};
+      if (cell.begin == cell.end) continue;
+      const std::uint32_t before = c > 0 ? c - 1 : 0;
+      const std::uint32_t after = c + 1 < cells ? c + 1 : c;
+      if (!cell_forward(grid, cell, start[after + 1], sink)) return false;
+      for (int k = 0; k < neighbours.count; ++k) {
+        const Run run = run_of(grid, neighbours.line[k], before, after);
+        if (!cell_against_run(grid, cell, run, sink)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+struct Query {
+  template <HitMode Mode>
+  static bool test_run(const GridView& grid, const Run& run, const QueryBox& q, std::uint32_t id,
+                       const std::uint64_t* moved, PairSink& sink) {
+    for (std::uint32_t at = run.begin; at < run.end; at += kLanes) {
+      ++sink.tests;
+      const Box16 box = load_slabs_unaligned<3>(grid.rows.column, at);
+      const Mask16 hits = overlap(box, q.low, q.high) & lanes_before(at, run.end);
+      if (hits == 0) continue;
+      if (!has_room(sink)) return false;
+      report<Mode>(hits, grid.rows.id + at, id, moved, sink);
+    }
+    return true;
+  }
+
+  template <HitMode Mode>
+  static bool run(const GridView& grid, const QueryBatch& batch, PairSink& sink) {
+    for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
+      const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
+      const std::uint32_t id = batch.id[row];
+      const QueryBox q(batch.column, row);
+      if (!(q.low[0] <= q.high[0])) continue;
+      std::uint32_t first[3];
+      std::uint32_t last[3];
+      for (int a = 0; a < 3; ++a) {
+        const CellAxis& axis = grid.axis[a];
+        first[a] = first_cell(axis, q.low[axis.axis] - axis.reach);
+        last[a] = last_cell(axis, q.high[axis.axis]);
+      }
+      for (std::uint32_t slow = first[2]; slow <= last[2]; ++slow) {
+        const std::uint32_t lines = slow * grid.axis[1].count;
+        std::uint32_t mid = first[1];
+        while (mid <= last[1]) {
+          // Whole lines follow each other in memory: one run.
+          const bool whole = first[0] == 0 && last[0] + 1 == grid.axis[0].count;
+          const std::uint32_t until = whole ? last[1] : mid;
+          const Run run{run_of(grid, lines + mid, first[0], last[0]).begin,
+                        run_of(grid, lines + until, first[0], last[0]).end};
+          if (!test_run<Mode>(grid, run, q, id, batch.moved, sink)) return false;
+          mid = until + 1;
+        }
+      }
+    }
+    return true;
+  }
+};
+
+bool query(const GridView& grid, const QueryBatch& batch, PairSink& sink) {
+  return with_mode<Query>(grid, batch, sink);
+}
+
+std::uint32_t find_misfits(const GridView& grid, std::uint32_t* out, std::uint32_t limit) {
+  const std::uint32_t cells[3] = {grid.axis[0].count, grid.axis[1].count, grid.axis[2].count};
+  std::uint32_t found = 0;
+  const std::uint32_t* start = grid.start;
+  std::uint32_t at[3];
+  for (at[2] = 0; at[2] < cells[2]; ++at[2]) {
+    for (at[1] = 0; at[1] < cells[1]; ++at[1]) {
+      for (at[0] = 0; at[0] < cells[0]; ++at[0], ++start) {
+        for (std::uint32_t r = start[0]; r < start[1]; ++r) {
+          bool fits = true;
+          for (int a = 0; a < 3; ++a) {
+            const CellAxis& axis = grid.axis[a];
+            const float low = grid.rows.column[axis.axis][r];
+            const float edge = grid.rows.column[3 + axis.axis][r] - low;
+            fits &= (low >= axis.from[at[a]]) & (low <= axis.to[at[a]]) & (edge <= axis.limit);
+          }
+          // An empty row has no id and nothing to lose.
+          if (fits || grid.rows.id[r] == ~0U) continue;
+          if (found == limit) return found;
+          out[found++] = r;
+        }
+      }
+    }
+  }
+  return found;
+}
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME
+
+extern const FlatGridKernels WINNOW_KERNEL_TABLE(flat_grid_kernels) = {
+    WINNOW_ISA_NAME::self_pairs, WINNOW_ISA_NAME::query, WINNOW_ISA_NAME::find_misfits};
+
+}  // namespace winnow

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <winnow/partitions/cell_axis.h>
+#include <winnow/partitions/pair_sink.h>
+#include <winnow/simd/kernels.h>
+
+#include <cstdint>
+
+namespace winnow {
+
+/// Rows in cell order: cell c holds rows [start[c], start[c + 1]). Cells along axis 0 follow each
+/// other, so that neighbouring cells of a line are one run of rows.
+struct GridView {
+  RowView rows;
+  const std::uint32_t* start = nullptr;
+  CellAxis axis[3];
+};
+
+struct FlatGridKernels {
+  /// All pairs whose earlier cell lies in lines [begin, end); a line is a row of cells on axis 0.
+  bool (*self_pairs)(const GridView&, std::uint32_t begin, std::uint32_t end, PairSink&);
+  /// All hits of the batch's boxes.
+  bool (*query)(const GridView&, const QueryBatch&, PairSink&);
+  /// Appends to `out` the rows that left their cell, until there are `limit`; returns how many.
+  std::uint32_t (*find_misfits)(const GridView&, std::uint32_t* out, std::uint32_t limit);
+};
+
+WINNOW_KERNELS(FlatGridKernels, flat_grid_kernels);
+
+}  // namespace winnow
