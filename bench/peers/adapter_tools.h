@@ -1,0 +1,64 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/pair_buffer.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+// What several adapters need. Adapters report pairs with the smaller row first and only pairs whose
+// boxes overlap, so that every peer pays for the same result.
+namespace winnow::bench {
+
+[[nodiscard]] inline Pair ordered(std::uint32_t a, std::uint32_t b) noexcept {
+  return a < b ? Pair{a, b} : Pair{b, a};
+}
+
+class Stopwatch {
+ public:
+  [[nodiscard]] double milliseconds() const {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// The axes, best to sweep first: by the range of the box centres over the mean extent, which is
+/// the inverse of the share of all boxes that one box meets along the axis.
+[[nodiscard]] inline std::array<int, 3> axes_by_pruning(std::span<const Aabb> boxes) {
+  std::array<double, 3> spread{};
+  for (int axis = 0; axis < 3; ++axis) {
+    double lo = 0.0;
+    double hi = 0.0;
+    double extents = 0.0;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const auto min = static_cast<double>(boxes[i].min[axis]);
+      const auto max = static_cast<double>(boxes[i].max[axis]);
+      const double center = 0.5 * (min + max);
+      lo = i == 0 ? center : std::min(lo, center);
+      hi = i == 0 ? center : std::max(hi, center);
+      extents += max - min;
+    }
+    spread[static_cast<std::size_t>(axis)] = extents > 0.0 ? (hi - lo) / extents : hi - lo;
+  }
+  std::array<int, 3> axes{0, 1, 2};
+  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) {
+    return spread[static_cast<std::size_t>(a)] > spread[static_cast<std::size_t>(b)];
+  });
+  return axes;
+}
+
+/// Mean edge length over all boxes and axes; 0 if there are none.
+[[nodiscard]] inline double mean_edge(std::span<const Aabb> boxes) {
+  double sum = 0.0;
+  for (const Aabb& box : boxes) sum += (box.max - box.min).cast<double>().sum();
+  return boxes.empty() ? 0.0 : sum / (3.0 * static_cast<double>(boxes.size()));
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "peers/engine.h"
+
+#include <memory>
+
+// One factory per adapter; each is defined only if its library was found.
+namespace winnow::bench {
+
+[[nodiscard]] std::unique_ptr<Engine> make_bullet();
+[[nodiscard]] std::unique_ptr<Engine> make_fcl();
+[[nodiscard]] std::unique_ptr<Engine> make_cgal(int threads);
+[[nodiscard]] std::unique_ptr<Engine> make_embree();
+[[nodiscard]] std::unique_ptr<Engine> make_ode();
+
+}  // namespace winnow::bench

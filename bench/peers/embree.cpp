@@ -1,0 +1,129 @@
+#include "peers/adapter_tools.h"
+#include "peers/adapters.h"
+
+#include <embree3/rtcore.h>
+#include <tbb/enumerable_thread_specific.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+/// Embree 3: rtcCollide of a scene with itself; the boxes are one user geometry. Building and
+/// colliding run on the threads of the calling arena. The device setting `threads=N` is left alone
+/// on purpose: it would cap the threads of every TBB user in the process.
+/// Best of what was tried: a dynamic scene of low build quality, committed every frame; medium
+/// quality doubles the frame, refitting is 10 to 20 % slower and wears off as objects move.
+/// rtcCollide reports each pair in both orders and where primitives share a leaf also others:
+/// filtered.
+class EmbreeEngine final : public Engine {
+ public:
+  EmbreeEngine() : device_(rtcNewDevice(nullptr)) {
+    if (device_ == nullptr) throw std::runtime_error("Embree: no device");
+    rtcSetDeviceMemoryMonitorFunction(device_, count_memory, &bytes_);
+    scene_ = rtcNewScene(device_);
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_DYNAMIC);
+    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_LOW);
+  }
+  ~EmbreeEngine() override {
+    rtcReleaseScene(scene_);
+    if (geometry_ != nullptr) rtcReleaseGeometry(geometry_);
+    rtcReleaseDevice(device_);
+  }
+
+  [[nodiscard]] std::string name() const override { return "Embree"; }
+
+  void start(std::span<const Aabb> boxes) override {
+    const Stopwatch watch;
+    geometry_ = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry_, static_cast<unsigned>(boxes.size()));
+    rtcSetGeometryUserData(geometry_, this);
+    rtcSetGeometryBoundsFunction(geometry_, give_bounds, nullptr);
+    rtcSetGeometryBuildQuality(geometry_, RTC_BUILD_QUALITY_LOW);
+    boxes_ = boxes;
+    rtcCommitGeometry(geometry_);
+    rtcAttachGeometry(scene_, geometry_);
+    rtcCommitScene(scene_);
+    update_ms_ = watch.milliseconds();
+    find_pairs();
+  }
+
+  void frame(std::span<const std::uint32_t> changed_rows,
+             std::span<const Aabb> all_boxes) override {
+    const Stopwatch watch;
+    boxes_ = all_boxes;
+    if (!changed_rows.empty()) {
+      rtcCommitGeometry(geometry_);
+      rtcCommitScene(scene_);
+    }
+    update_ms_ = watch.milliseconds();
+    find_pairs();
+  }
+
+  [[nodiscard]] std::span<const Pair> pairs() const override { return pairs_; }
+
+  /// What the device says it holds.
+  [[nodiscard]] std::size_t bytes() const override {
+    return static_cast<std::size_t>(bytes_.load());
+  }
+
+  [[nodiscard]] double update_ms() const override { return update_ms_; }
+
+ private:
+  static bool count_memory(void* bytes, std::ptrdiff_t change, bool) {
+    *static_cast<std::atomic<std::ptrdiff_t>*>(bytes) += change;
+    return true;
+  }
+
+  static void give_bounds(const RTCBoundsFunctionArguments* arguments) {
+    const auto& engine = *static_cast<const EmbreeEngine*>(arguments->geometryUserPtr);
+    const Aabb& box = engine.boxes_[arguments->primID];
+    RTCBounds& out = *arguments->bounds_o;
+    out.lower_x = box.min.x();
+    out.lower_y = box.min.y();
+    out.lower_z = box.min.z();
+    out.upper_x = box.max.x();
+    out.upper_y = box.max.y();
+    out.upper_z = box.max.z();
+  }
+
+  static void collect(void* self, RTCCollision* found, unsigned count) {
+    auto& engine = *static_cast<EmbreeEngine*>(self);
+    std::vector<Pair>& pairs = engine.found_.local();
+    for (unsigned i = 0; i < count; ++i) {
+      const unsigned a = found[i].primID0;
+      const unsigned b = found[i].primID1;
+      if (a < b && engine.boxes_[a].overlaps(engine.boxes_[b])) pairs.push_back({a, b});
+    }
+  }
+
+  void find_pairs() {
+    pairs_.clear();
+    if (boxes_.size() < 2) return;
+    for (std::vector<Pair>& pairs : found_) pairs.clear();
+    rtcCollide(scene_, scene_, collect, this);
+    for (const std::vector<Pair>& pairs : found_) {
+      pairs_.insert(pairs_.end(), pairs.begin(), pairs.end());
+    }
+  }
+
+  std::atomic<std::ptrdiff_t> bytes_{0};
+  RTCDevice device_;
+  RTCScene scene_ = nullptr;
+  RTCGeometry geometry_ = nullptr;
+  std::span<const Aabb> boxes_;
+  std::vector<Pair> pairs_;
+  tbb::enumerable_thread_specific<std::vector<Pair>> found_;
+  double update_ms_ = 0.0;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_embree() {
+  return std::make_unique<EmbreeEngine>();
+}
+
+}  // namespace winnow::bench

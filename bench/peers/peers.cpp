@@ -1,0 +1,27 @@
+#include "peers/peers.h"
+
+#include "peers/adapters.h"
+
+namespace winnow::bench {
+
+std::vector<std::unique_ptr<Engine>> make_peers([[maybe_unused]] int threads) {
+  std::vector<std::unique_ptr<Engine>> peers;
+#ifdef WINNOW_PEER_BULLET
+  peers.push_back(make_bullet());
+#endif
+#ifdef WINNOW_PEER_FCL
+  peers.push_back(make_fcl());
+#endif
+#ifdef WINNOW_PEER_CGAL
+  peers.push_back(make_cgal(threads));
+#endif
+#ifdef WINNOW_PEER_EMBREE
+  peers.push_back(make_embree());
+#endif
+#ifdef WINNOW_PEER_ODE
+  peers.push_back(make_ode());
+#endif
+  return peers;
+}
+
+}  // namespace winnow::bench
