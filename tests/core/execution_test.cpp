@@ -1,0 +1,88 @@
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+#include <winnow/core/execution.h>
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "../support/config.h"
+
+namespace winnow::test {
+namespace {
+
+TEST(Execution, runs_every_index_exactly_once) {
+  for (const int threads : thread_counts()) {
+    Threads arena(threads);
+    for (const Execution execution : {Execution::serial(), Execution::parallel()}) {
+      for (const std::size_t count : {0U, 1U, 2U, 7U, 1000U}) {
+        std::vector<std::atomic<int>> runs(count + 1);
+        arena.run([&] { execution.for_each(count, [&](std::size_t i) { ++runs[i]; }); });
+        for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(runs[i], 1) << i << " of " << count;
+        ASSERT_EQ(runs[count], 0);
+      }
+    }
+  }
+}
+
+TEST(Execution, that_is_serial_stays_on_the_calling_thread_in_order) {
+  Threads arena(8);
+  std::vector<std::size_t> order;
+  arena.run([&] {
+    const std::thread::id caller = std::this_thread::get_id();
+    EXPECT_EQ(Execution::serial().concurrency(), 1U);
+    Execution::serial().for_each(100, [&](std::size_t i) {
+      EXPECT_EQ(std::this_thread::get_id(), caller);
+      order.push_back(i);
+    });
+  });
+  for (std::size_t i = 0; i < 100; ++i) ASSERT_EQ(order[i], i);
+}
+
+TEST(Execution, stays_inside_the_arena_of_the_caller) {
+  for (const int threads : {1, 2, 8}) {
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+      EXPECT_EQ(Execution::parallel().concurrency(), static_cast<std::size_t>(threads));
+      Execution::parallel().for_each(500, [&](std::size_t) {
+        const int slot = tbb::this_task_arena::current_thread_index();
+        EXPECT_EQ(tbb::this_task_arena::max_concurrency(), threads);
+        EXPECT_GE(slot, 0);
+        EXPECT_LT(slot, threads);
+      });
+    });
+  }
+}
+
+// Two tasks that wait for each other can only both end if two threads run them.
+TEST(Execution, uses_the_threads_of_the_arena) {
+  tbb::task_arena arena(2);
+  std::atomic<int> met{0};
+  arena.execute([&] {
+    Execution::parallel().for_each(2, [&](std::size_t) {
+      ++met;
+      while (met.load() < 2) std::this_thread::yield();
+    });
+  });
+  EXPECT_EQ(met, 2);
+}
+
+// A task that waits must not pick up other work of the arena, or a caller that holds a lock could
+// meet itself.
+TEST(Execution, runs_nothing_else_while_a_task_waits) {
+  tbb::task_arena arena(2);
+  std::atomic<int> mixed{0};
+  arena.execute([&] {
+    Execution::parallel().for_each(40, [&](std::size_t) {
+      thread_local bool inside = false;
+      if (inside) ++mixed;
+      inside = true;
+      Execution::parallel().for_each(40, [](std::size_t) { std::this_thread::yield(); });
+      inside = false;
+    });
+  });
+  EXPECT_EQ(mixed, 0);
+}
+
+}  // namespace
+}  // namespace winnow::test

@@ -1,0 +1,155 @@
+#include <gtest/gtest.h>
+#include <winnow/core/key_table.h>
+
+#include <set>
+#include <vector>
+
+#include "../support/counting_memory.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr std::uint32_t kGenerations = 1U << 20U;
+
+std::vector<Key> fill(KeyTable& table, std::uint32_t count) {
+  EXPECT_TRUE(table.reserve(table.size() + count));
+  std::vector<Key> keys;
+  for (std::uint32_t i = 0; i < count; ++i) keys.push_back(table.acquire(i, 100 + i));
+  return keys;
+}
+
+TEST(KeyTable, gives_a_fresh_tables_objects_consecutive_ids) {
+  CountingMemory memory;
+  KeyTable table(&memory);
+  const std::vector<Key> keys = fill(table, 50);
+  for (std::uint32_t i = 0; i < 50; ++i) {
+    EXPECT_EQ(keys[i].id, i);
+    EXPECT_TRUE(table.is_valid(keys[i]));
+    EXPECT_TRUE(table.is_live(i));
+    EXPECT_EQ(table.key_of(i), keys[i]);
+    EXPECT_EQ(table.row_of(i), i);
+    EXPECT_EQ(table.client_data(i), 100 + i);
+  }
+  EXPECT_EQ(table.size(), 50U);
+}
+
+TEST(KeyTable, does_not_know_stale_foreign_default_or_forged_keys) {
+  CountingMemory memory;
+  KeyTable table(&memory);
+  KeyTable other(&memory);
+  const std::vector<Key> keys = fill(table, 10);
+  const std::vector<Key> foreign = fill(other, 10);
+  EXPECT_FALSE(table.is_valid(Key{}));
+  EXPECT_FALSE(table.is_valid(foreign[3]));
+  table.release(keys[3].id);
+  EXPECT_FALSE(table.is_valid(keys[3]));
+  EXPECT_FALSE(table.is_live(3));
+  EXPECT_EQ(table.key_of(3), Key{});
+  // A free slot answers to no stamp at all.
+  for (std::uint32_t stamp = keys[3].stamp - 3; stamp != keys[3].stamp + 4; ++stamp) {
+    EXPECT_FALSE(table.is_valid({3, stamp}));
+  }
+  EXPECT_FALSE(table.is_valid({10, keys[0].stamp}));
+  EXPECT_FALSE(table.is_valid({kNoObject, keys[0].stamp}));
+  EXPECT_FALSE(table.is_valid({kNoObject - 1, keys[0].stamp}));
+  EXPECT_EQ(table.size(), 9U);
+}
+
+TEST(KeyTable, uses_freed_ids_again_before_new_ones) {
+  CountingMemory memory;
+  KeyTable table(&memory);
+  const std::vector<Key> keys = fill(table, 20);
+  for (const ObjectId id : {4U, 9U, 14U}) table.release(id);
+  std::set<ObjectId> again;
+  for (const Key& key : fill(table, 3)) {
+    again.insert(key.id);
+    EXPECT_NE(key, keys[key.id]);
+    EXPECT_FALSE(table.is_valid(keys[key.id]));
+  }
+  EXPECT_EQ(again, (std::set<ObjectId>{4, 9, 14}));
+  EXPECT_EQ(table.slot_count(), 20U);
+  EXPECT_EQ(fill(table, 1)[0].id, 20U);
+}
+
+TEST(KeyTable, retires_a_slot_whose_generations_are_used_up) {
+  CountingMemory memory;
+  KeyTable table(&memory);
+  const Key first = fill(table, 1)[0];
+  Key last = first;
+  std::size_t uses = 1;
+  for (;;) {
+    table.release(0);
+    const Key next = fill(table, 1)[0];
+    if (next.id != 0) break;
+    ASSERT_NE(next, first) << "a key was handed out twice";
+    ASSERT_NE(next.stamp, last.stamp);
+    last = next;
+    ASSERT_LE(++uses, kGenerations);
+  }
+  EXPECT_EQ(uses, kGenerations / 2);
+  EXPECT_FALSE(table.is_valid(first));
+  EXPECT_FALSE(table.is_valid(last));
+  EXPECT_FALSE(table.is_live(0));
+  // The retired slot never returns, not even after a clear.
+  table.clear();
+  for (const Key& key : fill(table, 10)) EXPECT_NE(key.id, 0U);
+  for (std::uint32_t stamp = 0; stamp < kGenerations; ++stamp) {
+    ASSERT_FALSE(table.is_valid({0, (first.stamp & ~(kGenerations - 1)) | stamp}));
+  }
+}
+
+TEST(KeyTable, makes_room_again_for_retired_slots) {
+  CountingMemory memory;
+  KeyTable table(&memory);
+  Key key = fill(table, 1)[0];
+  while (key.id == 0) {
+    table.release(key.id);
+    ASSERT_TRUE(table.reserve(1));
+    key = table.acquire(0, 0);
+  }
+  EXPECT_EQ(table.size(), 1U);
+  EXPECT_EQ(table.slot_count(), 2U);
+}
+
+TEST(KeyTable, makes_every_key_stale_on_clear) {
+  CountingMemory memory;
+  KeyTable table(&memory);
+  std::vector<Key> keys = fill(table, 100);
+  table.release(7);
+  table.clear();
+  EXPECT_EQ(table.size(), 0U);
+  const std::vector<Key> fresh = fill(table, 100);
+  for (const Key& key : keys) EXPECT_FALSE(table.is_valid(key));
+  for (const Key& key : fresh) EXPECT_TRUE(table.is_valid(key));
+  EXPECT_EQ(table.slot_count(), 100U);
+}
+
+TEST(KeyTable, tells_4095_tables_apart) {
+  CountingMemory memory;
+  std::set<std::uint32_t> tags;
+  for (int i = 0; i < 4095; ++i) {
+    KeyTable table(&memory);
+    tags.insert(fill(table, 1)[0].stamp >> 20U);
+  }
+  EXPECT_EQ(tags.size(), 4095U);
+  EXPECT_FALSE(tags.contains(0)) << "a stamp could equal the null key's";
+}
+
+TEST(KeyTable, is_unchanged_when_memory_is_refused) {
+  CountingMemory memory;
+  KeyTable table(&memory);
+  const std::vector<Key> keys = fill(table, 16);
+  for (std::size_t granted = 0; granted < 3; ++granted) {
+    memory.refuse_after(granted);
+    EXPECT_FALSE(table.reserve(100000));
+    memory.grant_all();
+    EXPECT_EQ(table.size(), 16U);
+    for (const Key& key : keys) EXPECT_TRUE(table.is_valid(key));
+    Bytes total = table.key_bytes();
+    total += table.client_data_bytes();
+    EXPECT_EQ(total.reserved, memory.outstanding());
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test

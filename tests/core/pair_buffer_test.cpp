@@ -1,0 +1,43 @@
+#include <gtest/gtest.h>
+#include <winnow/core/pair_buffer.h>
+
+#include "../support/counting_memory.h"
+
+namespace winnow::test {
+namespace {
+
+TEST(Pair, is_ordered_by_first_then_second) {
+  EXPECT_LT((Pair{1, 9}), (Pair{2, 0}));
+  EXPECT_LT((Pair{1, 2}), (Pair{1, 3}));
+  EXPECT_EQ((Pair{1, 2}), (Pair{1, 2}));
+}
+
+TEST(PairBuffer, keeps_its_memory_when_cleared) {
+  CountingMemory memory;
+  PairBuffer buffer(&memory);
+  EXPECT_TRUE(buffer.empty());
+  ASSERT_TRUE(buffer.reserve(100));
+  for (ObjectId i = 0; i < 100; ++i) ASSERT_TRUE(buffer.edit().push_back({i, i + 1}));
+  EXPECT_EQ(memory.requests(), 1U);
+  EXPECT_EQ(buffer.size(), 100U);
+  EXPECT_EQ(buffer[7], (Pair{7, 8}));
+  EXPECT_EQ(buffer.pairs().size(), 100U);
+  buffer.clear();
+  EXPECT_TRUE(buffer.empty());
+  EXPECT_EQ(memory.outstanding(), buffer.footprint().total().reserved);
+  EXPECT_GE(buffer.footprint().results.reserved, 100 * sizeof(Pair));
+  EXPECT_EQ(buffer.footprint().results.used, 0U);
+}
+
+TEST(PairBuffer, is_unchanged_when_memory_is_refused) {
+  CountingMemory memory;
+  PairBuffer buffer(&memory);
+  ASSERT_TRUE(buffer.edit().push_back({1, 2}));
+  memory.refuse_after(0);
+  EXPECT_FALSE(buffer.reserve(1000));
+  EXPECT_EQ(buffer.size(), 1U);
+  EXPECT_EQ(buffer[0], (Pair{1, 2}));
+}
+
+}  // namespace
+}  // namespace winnow::test

@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+#include <winnow/core/rounding.h>
+
+#include <cfloat>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "../support/random.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr float kInfF = std::numeric_limits<float>::infinity();
+constexpr float kDenormal = std::numeric_limits<float>::denorm_min();
+
+// The definition: on the right side of the value, and the next float inward is on the other side.
+void expect_tight(double value) {
+  const float down = round_down(value);
+  const float up = round_up(value);
+  EXPECT_LE(static_cast<double>(down), value);
+  EXPECT_GE(static_cast<double>(up), value);
+  if (std::isfinite(value)) {
+    EXPECT_GT(static_cast<double>(std::nextafter(down, kInfF)), value);
+    EXPECT_LT(static_cast<double>(std::nextafter(up, -kInfF)), value);
+  }
+}
+
+TEST(Rounding, leaves_floats_as_they_are) {
+  for (const float f :
+       {0.0F, 1.0F, -1.5F, FLT_MAX, -FLT_MAX, FLT_MIN, kDenormal, -kDenormal, kInfF, -kInfF}) {
+    EXPECT_EQ(round_down(static_cast<double>(f)), f);
+    EXPECT_EQ(round_up(static_cast<double>(f)), f);
+  }
+  EXPECT_TRUE(std::signbit(round_down(-0.0)));
+  EXPECT_TRUE(std::signbit(round_up(-0.0)));
+}
+
+TEST(Rounding, is_outward_and_tight_near_every_power_of_two) {
+  for (int exponent = -160; exponent <= 127; ++exponent) {
+    for (const double sign : {-1.0, 1.0}) {
+      const double power = sign * std::exp2(exponent);
+      for (const double factor : {1.0, 1.0 + 1e-15, 1.0 - 1e-15, 1.0 + 1e-8, 1.0 - 1e-8, 1.5}) {
+        expect_tight(power * factor);
+      }
+    }
+  }
+}
+
+TEST(Rounding, is_outward_and_tight_for_random_doubles) {
+  Random random(1);
+  for (int i = 0; i < 200000; ++i) {
+    const double magnitude = random.log_uniform(1e-46, 3.4e38);
+    expect_tight(random.chance(0.5) ? magnitude : -magnitude);
+  }
+}
+
+TEST(Rounding, of_less_than_the_smallest_denormal_is_zero_or_that_denormal) {
+  EXPECT_EQ(round_down(1e-300), 0.0F);
+  EXPECT_EQ(round_up(1e-300), kDenormal);
+  EXPECT_EQ(round_down(-1e-300), -kDenormal);
+  EXPECT_EQ(round_up(-1e-300), 0.0F);
+  EXPECT_EQ(round_up(std::numeric_limits<double>::denorm_min()), kDenormal);
+}
+
+TEST(Rounding, beyond_the_float_range_is_the_largest_float_or_infinity) {
+  for (const double huge : {std::nextafter(static_cast<double>(FLT_MAX), kInf), 1e39, 1e308,
+                            std::numeric_limits<double>::max()}) {
+    EXPECT_EQ(round_down(huge), FLT_MAX);
+    EXPECT_EQ(round_up(huge), kInfF);
+    EXPECT_EQ(round_down(-huge), -kInfF);
+    EXPECT_EQ(round_up(-huge), -FLT_MAX);
+  }
+}
+
+TEST(Rounding, keeps_infinity_and_nan) {
+  EXPECT_EQ(round_down(kInf), kInfF);
+  EXPECT_EQ(round_up(kInf), kInfF);
+  EXPECT_EQ(round_down(-kInf), -kInfF);
+  EXPECT_EQ(round_up(-kInf), -kInfF);
+  EXPECT_TRUE(std::isnan(round_down(std::numeric_limits<double>::quiet_NaN())));
+  EXPECT_TRUE(std::isnan(round_up(std::numeric_limits<double>::quiet_NaN())));
+}
+
+TEST(Rounding, of_vectors_is_component_wise) {
+  const Eigen::Vector3d v(0.1, -0.1, 1e308);
+  EXPECT_EQ(round_down(v), Eigen::Vector3f(round_down(0.1), round_down(-0.1), FLT_MAX));
+  EXPECT_EQ(round_up(v), Eigen::Vector3f(round_up(0.1), round_up(-0.1), kInfF));
+}
+
+}  // namespace
+}  // namespace winnow::test

@@ -1,0 +1,187 @@
+// Boxes and client data as they go in: what is refused, and the forms in which boxes may come.
+
+#include <cmath>
+#include <limits>
+
+#include "../support/scenes.h"
+#include "snapshot.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+float& coordinate(Aabb& box, int i) {
+  return i < 3 ? box.min[i] : box.max[i - 3];
+}
+
+// One of each way to be invalid.
+std::vector<Aabb> invalid_boxes() {
+  const Aabb good{{0, 0, 0}, {1, 1, 1}};
+  std::vector<Aabb> bad{Aabb{}};
+  for (int i = 0; i < 6; ++i) {
+    for (const float nan : {kNan, -kNan}) {
+      bad.push_back(good);
+      coordinate(bad.back(), i) = nan;
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    bad.push_back(good);
+    bad.back().min[axis] = std::nextafter(1.0F, 2.0F);  // inverted by one ulp
+    bad.push_back(good);
+    bad.back().min[axis] = bad.back().max[axis] = kInf;
+    bad.push_back(good);
+    bad.back().min[axis] = bad.back().max[axis] = -kInf;
+    bad.push_back(good);
+    bad.back().min[axis] = kInf;
+    bad.back().max[axis] = -kInf;
+  }
+  return bad;
+}
+
+class Input : public Conformance {
+ protected:
+  Input() : boxes_(uniform_boxes(50)), world_(config()), keys_(world_.insert(boxes_)) {}
+
+  std::vector<Aabb> boxes_;
+  World world_;
+  std::vector<Key> keys_;
+};
+
+TEST_P(Input, that_is_an_invalid_box_changes_nothing) {
+  Snapshot before(world_);
+  Partition& p = world_.partition();
+  for (const Aabb& bad : invalid_boxes()) {
+    SCOPED_TRACE(testing::Message() << bad.min.transpose() << " .. " << bad.max.transpose());
+    Key key{5, 6};
+    EXPECT_TRUE(before.refused(p.insert(bad, 1, key), Status::invalid_bounds));
+    EXPECT_EQ(key, (Key{5, 6})) << "a refused call wrote its output";
+    EXPECT_TRUE(before.refused(p.update(keys_[7], bad), Status::invalid_bounds));
+  }
+}
+
+TEST_P(Input, with_one_invalid_box_among_good_ones_changes_nothing) {
+  Snapshot before(world_);
+  Partition& p = world_.partition();
+  for (const Aabb& bad : invalid_boxes()) {
+    for (const std::size_t at : {std::size_t{0}, boxes_.size() / 2, boxes_.size() - 1}) {
+      std::vector<Aabb> boxes = boxes_;
+      for (Aabb& box : boxes) box.max.array() += 0.5F;
+      boxes[at] = bad;
+      std::vector<Key> keys(boxes.size());
+      EXPECT_TRUE(before.refused(p.insert(boxes, {}, keys), Status::invalid_bounds));
+      EXPECT_EQ(keys, std::vector<Key>(boxes.size())) << "a refused call wrote its output";
+      EXPECT_TRUE(before.refused(p.update(keys_, boxes), Status::invalid_bounds));
+    }
+  }
+}
+
+TEST_P(Input, of_spans_that_differ_in_length_changes_nothing) {
+  Snapshot before(world_);
+  Partition& p = world_.partition();
+  const std::span<const Aabb> boxes(boxes_);
+  std::vector<Key> keys(boxes.size());
+  const std::span<Key> all(keys);
+  const std::vector<ClientData> data(boxes.size() + 1, 3);
+  EXPECT_TRUE(before.refused(p.insert(boxes, {}, all.first(49)), Status::size_mismatch));
+  EXPECT_TRUE(before.refused(p.insert(boxes.first(49), {}, all), Status::size_mismatch));
+  EXPECT_TRUE(before.refused(p.insert(boxes, data, all), Status::size_mismatch));
+  EXPECT_TRUE(before.refused(p.insert(boxes, {data.data(), 49}, all), Status::size_mismatch));
+  EXPECT_TRUE(before.refused(p.insert(boxes, {}, {}), Status::size_mismatch));
+  EXPECT_TRUE(before.refused(p.update(keys_, boxes.first(49)), Status::size_mismatch));
+  EXPECT_TRUE(before.refused(p.update(std::span<const Key>(keys_).first(49), boxes),
+                             Status::size_mismatch));
+}
+
+TEST_P(Input, that_is_empty_is_accepted) {
+  Snapshot before(world_);
+  Partition& p = world_.partition();
+  EXPECT_TRUE(before.refused(p.insert(BoxView{}, {}, {}), Status::ok));
+  EXPECT_TRUE(before.refused(p.update(std::span<const Key>{}, BoxView{}), Status::ok));
+  EXPECT_TRUE(before.refused(p.remove(std::span<const Key>{}), Status::ok));
+}
+
+TEST_P(Input, may_be_columns_or_members_of_a_struct) {
+  struct Body {
+    double mass = 0.0;
+    float low[3];
+    int id = 0;
+    float high[3];
+  };
+  std::vector<Body> bodies(boxes_.size());
+  std::array<std::vector<float>, 6> columns;
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      bodies[i].low[axis] = boxes_[i].min[axis];
+      bodies[i].high[axis] = boxes_[i].max[axis];
+      columns[static_cast<std::size_t>(axis)].push_back(boxes_[i].min[axis]);
+      columns[static_cast<std::size_t>(axis) + 3].push_back(boxes_[i].max[axis]);
+    }
+  }
+  const Body& b = bodies[0];
+  const BoxView members({&b.low[0], &b.low[1], &b.low[2]}, {&b.high[0], &b.high[1], &b.high[2]},
+                        bodies.size(), sizeof(Body));
+  const BoxView soa({columns[0].data(), columns[1].data(), columns[2].data()},
+                    {columns[3].data(), columns[4].data(), columns[5].data()}, boxes_.size());
+  for (const BoxView& view : {members, soa}) {
+    World world(config());
+    const std::vector<Key> keys = world.insert(std::vector<Aabb>(boxes_.rbegin(), boxes_.rend()));
+    // The model is told in the plain form; the partition in this one.
+    world.update(keys, boxes_);
+    ASSERT_EQ(world.partition().update(keys, view), Status::ok);
+    EXPECT_TRUE(world.holds_its_objects());
+    EXPECT_TRUE(world.agrees());
+    auto fresh = config().make();
+    std::vector<Key> others(view.count);
+    ASSERT_EQ(fresh->insert(view, {}, others), Status::ok);
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      Aabb box;
+      EXPECT_EQ(fresh->bounds(others[i], box), Status::ok);
+      EXPECT_EQ(box, boxes_[i]);
+    }
+  }
+}
+
+TEST_P(Input, of_duplicate_client_data_makes_two_objects) {
+  World world(config());
+  const std::vector<ClientData> data(boxes_.size(), 42);
+  const std::vector<Key> keys = world.insert(boxes_, data);
+  EXPECT_TRUE(world.holds_its_objects());
+  EXPECT_TRUE(world.agrees());
+  world.remove(keys[0]);
+  EXPECT_EQ(world.partition().size(), boxes_.size() - 1);
+  EXPECT_TRUE(world.holds_its_objects());
+}
+
+TEST_P(Input, comes_back_bit_by_bit) {
+  World world(config());
+  for (const std::vector<Scene>* scenes : {&infinite_scenes(), &extreme_float_scenes()}) {
+    for (const Scene& scene : *scenes) {
+      std::vector<ClientData> data;
+      for (std::size_t i = 0; i < scene.boxes.size(); ++i) data.push_back(~ClientData{0} - i);
+      world.insert(scene.boxes, data);
+      EXPECT_TRUE(world.holds_its_objects()) << scene.name;
+    }
+  }
+  const Status status = world.threads().run([&] { return world.partition().refresh(); });
+  ASSERT_EQ(status, Status::ok);
+  EXPECT_TRUE(world.holds_its_objects()) << "after the structure was made";
+}
+
+TEST_P(Input, that_was_reserved_for_is_taken_in_any_number) {
+  World world(config());
+  ASSERT_EQ(world.partition().reserve(1000), Status::ok);
+  EXPECT_EQ(world.partition().size(), 0U);
+  world.insert(uniform_boxes(700));
+  ASSERT_EQ(world.partition().reserve(10), Status::ok);
+  world.insert(uniform_boxes(700, 2));
+  EXPECT_TRUE(world.holds_its_objects());
+  EXPECT_TRUE(world.agrees());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Input, testing::ValuesIn(all_configs()),
+                         testing::PrintToStringParamName());
+
+}  // namespace
+}  // namespace winnow::test

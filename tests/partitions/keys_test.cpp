@@ -1,0 +1,156 @@
+// Keys: what is handed out, and what is answered to keys that are not, or no longer, valid.
+
+#include <set>
+
+#include "../support/scenes.h"
+#include "snapshot.h"
+
+namespace winnow::test {
+namespace {
+
+class Keys : public Conformance {
+ protected:
+  Keys() : boxes_(uniform_boxes(60)), world_(config()) { keys_ = world_.insert(boxes_); }
+
+  // Every call that takes a key refuses this one, alone and among good ones, and changes nothing.
+  void expect_refused(Key bad) {
+    Snapshot before(world_);
+    Partition& p = world_.partition();
+    EXPECT_FALSE(p.contains(bad));
+    Aabb box{{7, 7, 7}, {8, 8, 8}};
+    ClientData data = 77;
+    EXPECT_EQ(p.bounds(bad, box), Status::invalid_key);
+    EXPECT_EQ(p.client_data(bad, data), Status::invalid_key);
+    EXPECT_EQ(box, (Aabb{{7, 7, 7}, {8, 8, 8}})) << "a refused call wrote its output";
+    EXPECT_EQ(data, 77U) << "a refused call wrote its output";
+    EXPECT_TRUE(before.refused(p.update(bad, box), Status::invalid_key));
+    EXPECT_TRUE(before.refused(p.remove(bad), Status::invalid_key));
+    for (const std::size_t at : {std::size_t{0}, keys_.size() / 2, keys_.size() - 1}) {
+      std::vector<Key> keys = keys_;
+      keys[at] = bad;
+      std::vector<Aabb> elsewhere = boxes_;
+      for (Aabb& moved : elsewhere) moved.max.array() += 1.0F;
+      EXPECT_TRUE(before.refused(p.update(keys, elsewhere), Status::invalid_key)) << "at " << at;
+      EXPECT_TRUE(before.refused(p.remove(keys), Status::invalid_key)) << "at " << at;
+    }
+  }
+
+  // Takes an object out of the tests' list, so that the list stays one of live objects.
+  Key remove_one(std::size_t i) {
+    const Key key = keys_[i];
+    world_.remove(key);
+    keys_.erase(keys_.begin() + static_cast<std::ptrdiff_t>(i));
+    boxes_.erase(boxes_.begin() + static_cast<std::ptrdiff_t>(i));
+    return key;
+  }
+
+  std::vector<Aabb> boxes_;
+  World world_;
+  std::vector<Key> keys_;
+};
+
+TEST_P(Keys, of_a_fresh_partition_number_the_objects) {
+  for (std::size_t i = 0; i < keys_.size(); ++i) EXPECT_EQ(keys_[i].id, i);
+  EXPECT_TRUE(world_.holds_its_objects());
+}
+
+TEST_P(Keys, are_never_null_and_never_handed_out_twice) {
+  std::set<std::pair<ObjectId, std::uint32_t>> seen;
+  for (int round = 0; round < 50; ++round) {
+    const Key key = world_.insert(boxes_[0]);
+    EXPECT_NE(key, Key{});
+    EXPECT_TRUE(seen.emplace(key.id, key.stamp).second);
+    world_.remove(key);
+  }
+}
+
+TEST_P(Keys, that_are_stale_change_nothing) {
+  const Key stale = remove_one(20);
+  expect_refused(stale);
+  const Key reused = world_.insert(Aabb{{0, 0, 0}, {1, 1, 1}});
+  EXPECT_EQ(reused.id, stale.id) << "a freed id is used again";
+  expect_refused(stale);
+}
+
+TEST_P(Keys, that_are_default_change_nothing) {
+  expect_refused(Key{});
+}
+
+TEST_P(Keys, that_are_foreign_change_nothing) {
+  World other(config());
+  const std::vector<Key> foreign = other.insert(boxes_);
+  expect_refused(foreign[0]);
+  expect_refused(foreign[59]);
+}
+
+TEST_P(Keys, that_are_forged_change_nothing) {
+  const Key good = keys_[30];
+  for (const std::uint32_t stamp : {0U, 1U, good.stamp + 1, good.stamp + 2, good.stamp - 1,
+                                    good.stamp ^ 0x80000000U, good.stamp ^ 0x00100000U, ~0U}) {
+    expect_refused({good.id, stamp});
+  }
+  for (const ObjectId id : {ObjectId{60}, ObjectId{61}, ObjectId{1U << 20U}, ObjectId{1U << 31U},
+                            kNoObject - 1, kNoObject}) {
+    expect_refused({id, good.stamp});
+  }
+}
+
+// A free slot must not answer to any stamp, whatever it keeps there.
+TEST_P(Keys, forged_for_a_free_slot_change_nothing) {
+  const Key stale = remove_one(10);
+  for (std::uint32_t delta = 0; delta < 4; ++delta) expect_refused({stale.id, stale.stamp + delta});
+}
+
+TEST_P(Keys, are_stale_after_clear) {
+  const std::vector<Key> before = keys_;
+  world_.clear();
+  keys_ = world_.insert(boxes_);
+  for (const Key& key : keys_) EXPECT_LT(key.id, keys_.size()) << "ids are used again";
+  expect_refused(before[0]);
+  expect_refused(before[59]);
+}
+
+TEST_P(Keys, that_occur_twice_in_a_removal_change_nothing) {
+  Snapshot before(world_);
+  for (const std::size_t at : {std::size_t{1}, keys_.size() / 2, keys_.size() - 1}) {
+    std::vector<Key> keys = keys_;
+    keys[at] = keys[0];
+    EXPECT_TRUE(before.refused(world_.partition().remove(keys), Status::invalid_key));
+  }
+  world_.remove(keys_);
+  EXPECT_TRUE(world_.agrees());
+}
+
+TEST_P(Keys, that_occur_twice_in_an_update_leave_the_last_box) {
+  const std::vector<Key> twice{keys_[3], keys_[4], keys_[3]};
+  const std::vector<Aabb> boxes{boxes_[10], boxes_[11], boxes_[12]};
+  world_.update(twice, boxes);
+  EXPECT_TRUE(world_.holds_its_objects());
+  EXPECT_TRUE(world_.agrees());
+}
+
+TEST_P(Keys, of_ids_without_an_object_are_null) {
+  const Key gone = remove_one(5);
+  for (const ObjectId id : {gone.id, ObjectId{60}, ObjectId{1U << 31U}, kNoObject}) {
+    EXPECT_EQ(world_.partition().key_of(id), Key{});
+    EXPECT_EQ(world_.partition().client_data_of(id), 0U);
+  }
+}
+
+TEST_P(Keys, survive_removal_of_any_others) {
+  for (const std::size_t i : {std::size_t{0}, std::size_t{57}, std::size_t{30}, std::size_t{0}}) {
+    remove_one(i);
+    EXPECT_TRUE(world_.holds_its_objects());
+    EXPECT_TRUE(world_.agrees());
+  }
+  const std::vector<Key> half(keys_.begin(), keys_.begin() + 28);
+  world_.remove(half);
+  EXPECT_TRUE(world_.holds_its_objects());
+  EXPECT_TRUE(world_.agrees());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Keys, testing::ValuesIn(all_configs()),
+                         testing::PrintToStringParamName());
+
+}  // namespace
+}  // namespace winnow::test

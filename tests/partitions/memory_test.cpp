@@ -1,0 +1,213 @@
+// Memory: what the footprint says is what was asked for, to the byte, and a steady frame asks for
+// nothing.
+
+#include "../support/counting_memory.h"
+#include "../support/heap_count.h"
+#include "../support/motion.h"
+#include "../support/scenes.h"
+#include "../support/world.h"
+
+namespace winnow::test {
+namespace {
+
+class Memory : public Conformance {
+ protected:
+  [[nodiscard]] testing::AssertionResult footprint_is_exact(const World& world) const {
+    const Footprint footprint = world.partition().footprint();
+    const Bytes total = footprint.total();
+    if (total.reserved != memory_.outstanding()) {
+      return testing::AssertionFailure() << "the footprint says " << total.reserved << " bytes, "
+                                         << memory_.outstanding() << " are outstanding";
+    }
+    for (const Bytes* part : {&footprint.bounds, &footprint.keys, &footprint.client_data,
+                              &footprint.structure, &footprint.scratch, &footprint.results}) {
+      if (part->used > part->reserved) {
+        return testing::AssertionFailure() << "more is used than reserved";
+      }
+    }
+    return testing::AssertionSuccess();
+  }
+
+  CountingMemory memory_;
+};
+
+TEST_P(Memory, footprint_is_exact_after_every_kind_of_call) {
+  World world(config(), &memory_);
+  PairBuffer buffer;
+  std::vector<Aabb> boxes = mixed_boxes(700);
+  Random random(4);
+  EXPECT_TRUE(footprint_is_exact(world)) << "empty";
+  ASSERT_EQ(world.partition().reserve(100), Status::ok);
+  EXPECT_TRUE(footprint_is_exact(world)) << "reserve";
+  std::vector<Key> keys = world.insert(boxes);
+  EXPECT_TRUE(footprint_is_exact(world)) << "insert";
+  ASSERT_TRUE(world.agrees(buffer));
+  EXPECT_TRUE(footprint_is_exact(world)) << "first query";
+  for (const Motion motion : kMotions) {
+    move(motion, boxes, random);
+    world.update(keys, boxes);
+    EXPECT_TRUE(footprint_is_exact(world)) << "update";
+    ASSERT_TRUE(world.agrees(buffer));
+    EXPECT_TRUE(footprint_is_exact(world)) << "query";
+    ASSERT_TRUE(world.agrees(buffer, {.order = Order::canonical, .incremental = false}));
+    EXPECT_TRUE(footprint_is_exact(world)) << "full query";
+  }
+  keys.push_back(world.insert(boxes[0]));
+  ASSERT_EQ(world.pairs_with(world.partition(), buffer), Status::ok);
+  EXPECT_TRUE(footprint_is_exact(world)) << "pairs_with";
+  world.remove(std::span<const Key>(keys).first(400));
+  EXPECT_TRUE(footprint_is_exact(world)) << "remove";
+  ASSERT_TRUE(world.agrees(buffer));
+  world.partition().release_memory();
+  EXPECT_TRUE(footprint_is_exact(world)) << "release_memory";
+  EXPECT_TRUE(world.holds_its_objects());
+  ASSERT_TRUE(world.agrees(buffer)) << "after release_memory";
+  EXPECT_TRUE(footprint_is_exact(world));
+  world.clear();
+  EXPECT_TRUE(footprint_is_exact(world)) << "clear";
+}
+
+TEST_P(Memory, of_an_empty_partition_is_given_back) {
+  World world(config(), &memory_);
+  const std::vector<Key> keys = world.insert(uniform_boxes(2000));
+  if (world.partition().is_exact()) {
+    ASSERT_TRUE(world.agrees());
+  }
+  const std::size_t full = memory_.outstanding();
+  world.clear();
+  world.partition().release_memory();
+  EXPECT_TRUE(footprint_is_exact(world));
+  // Slots remember which keys they have handed out: at most 4 bytes each need stay for that, and
+  // their row and client data may stay beside them.
+  EXPECT_LE(memory_.outstanding(), 20 * 2048U);
+  EXPECT_LT(memory_.outstanding(), full / 2);
+  EXPECT_FALSE(world.partition().contains(keys[0]));
+  world.insert(uniform_boxes(100));
+  EXPECT_TRUE(world.agrees());
+}
+
+TEST_P(Memory, that_the_bounds_need_is_used_and_reserved) {
+  World world(config(), &memory_);
+  world.insert(uniform_boxes(1000));
+  const Footprint footprint = world.partition().footprint();
+  EXPECT_GE(footprint.bounds.used, 1000 * sizeof(Aabb));
+  EXPECT_GE(footprint.client_data.used, 1000 * sizeof(ClientData));
+  EXPECT_GE(footprint.keys.used, 1000 * sizeof(std::uint32_t));
+}
+
+TEST_P(Memory, of_the_pair_buffer_is_exact) {
+  CountingMemory results;
+  PairBuffer buffer(&results);
+  World world(config(), &memory_);
+  std::vector<Aabb> boxes = uniform_boxes(900);
+  const std::vector<Key> keys = world.insert(boxes);
+  Random random(6);
+  for (int frame = 0; frame < 6; ++frame) {
+    move(frame % 2 == 0 ? Motion::few : Motion::much, boxes, random);
+    world.update(keys, boxes);
+    ASSERT_TRUE(world.agrees(buffer));
+    EXPECT_EQ(buffer.footprint().total().reserved, results.outstanding());
+    EXPECT_EQ(buffer.footprint().results.used, buffer.size() * sizeof(Pair));
+    EXPECT_TRUE(footprint_is_exact(world));
+  }
+}
+
+TEST_P(Memory, that_was_reserved_lasts_for_that_many_inserts) {
+  World world(config(), &memory_);
+  ASSERT_EQ(world.partition().reserve(500), Status::ok);
+  const std::size_t requests = memory_.requests();
+  const std::vector<Aabb> boxes = uniform_boxes(500);
+  world.insert(std::span<const Aabb>(boxes).first(300));
+  for (std::size_t i = 300; i < 500; ++i) world.insert(boxes[i]);
+  EXPECT_EQ(memory_.requests(), requests);
+}
+
+TEST_P(Memory, is_asked_for_only_by_the_calling_thread) {
+  CountingMemory results;
+  PairBuffer buffer(&results);
+  World world(config(), &memory_);
+  std::vector<Aabb> boxes = uniform_boxes(3000);
+  if (!world.partition().is_exact()) boxes.resize(500);
+  const std::vector<Key> keys = world.insert(boxes);
+  Random random(2);
+  for (int frame = 0; frame < 4; ++frame) {
+    move(frame % 2 == 0 ? Motion::few : Motion::much, boxes, random);
+    world.update(keys, boxes);
+    ASSERT_EQ(world.self_pairs(buffer), Status::ok);
+  }
+  EXPECT_GT(memory_.requests(), 0U);
+  EXPECT_EQ(memory_.requests_from_elsewhere(), 0U);
+  EXPECT_EQ(results.requests_from_elsewhere(), 0U);
+}
+
+// The same few frames over and over, as a scene at rest or in steady flow repeats itself.
+class SteadyFrames : public Memory {
+ protected:
+  void expect_no_requests(Motion motion, std::size_t count, const PairOptions& options) {
+    SCOPED_TRACE(to_string(motion));
+    CountingMemory results;
+    PairBuffer buffer(&results);
+    World world(config(), &memory_);
+    std::vector<std::vector<Aabb>> frames{mixed_boxes(count)};
+    Random random(1);
+    while (frames.size() < 4) {
+      frames.push_back(frames.back());
+      move(motion, frames.back(), random);
+    }
+    const std::vector<Key> keys = world.insert(frames[0]);
+    const auto play = [&](std::size_t frame) {
+      world.update(keys, frames[frame % frames.size()]);
+      ASSERT_EQ(world.self_pairs(buffer, options), Status::ok);
+    };
+    for (std::size_t frame = 0; frame < 12; ++frame) play(frame);
+    const std::size_t structure = memory_.requests();
+    const std::size_t pairs = results.requests();
+    const std::size_t heap = heap_requests();
+    for (std::size_t frame = 12; frame < 32; ++frame) play(frame);
+    EXPECT_EQ(memory_.requests(), structure);
+    EXPECT_EQ(results.requests(), pairs);
+    if (config().threads == 1) {
+      // The model of World allocates nothing on update either; TBB has its own small heap.
+      EXPECT_EQ(heap_requests(), heap) << "allocated behind the memory resource";
+    }
+  }
+};
+
+TEST_P(SteadyFrames, allocate_nothing) {
+  for (const Motion motion : kMotions) expect_no_requests(motion, 800, {});
+}
+
+TEST_P(SteadyFrames, allocate_nothing_in_canonical_order) {
+  expect_no_requests(Motion::little, 800, {.order = Order::canonical});
+  expect_no_requests(Motion::few, 800, {.order = Order::canonical});
+}
+
+TEST_P(SteadyFrames, allocate_nothing_when_everything_is_asked_anew) {
+  expect_no_requests(Motion::few, 800, {.incremental = false});
+}
+
+TEST_P(SteadyFrames, allocate_nothing_in_pairs_with) {
+  World a(config(), &memory_);
+  World b(config(), &memory_);
+  const std::vector<Aabb> boxes = mixed_boxes(500);
+  const std::vector<Key> keys = a.insert(boxes);
+  b.insert(mixed_boxes(300, 2));
+  CountingMemory results;
+  PairBuffer buffer(&results);
+  const auto play = [&] {
+    a.update(keys, boxes);
+    ASSERT_EQ(a.pairs_with(b.partition(), buffer), Status::ok);
+  };
+  for (int frame = 0; frame < 5; ++frame) play();
+  const std::size_t before = memory_.requests() + results.requests();
+  for (int frame = 0; frame < 5; ++frame) play();
+  EXPECT_EQ(memory_.requests() + results.requests(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Memory, testing::ValuesIn(all_configs()),
+                         testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(All, SteadyFrames, testing::ValuesIn(all_configs()),
+                         testing::PrintToStringParamName());
+
+}  // namespace
+}  // namespace winnow::test

@@ -1,0 +1,55 @@
+#include "config.h"
+
+#include <tbb/global_control.h>
+
+#include <cstdlib>
+#include <memory>
+
+#include "random.h"
+
+namespace winnow::test {
+namespace {
+
+// TBB starts no more workers than the machine has cores unless told to, and a test on 8 threads
+// means 8. rapidcheck reads its seed from the environment.
+class Process : public testing::Environment {
+ public:
+  void SetUp() override {
+    workers_ =
+        std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, 9U);
+    const std::string parameters =
+        "seed=" + std::to_string(base_seed()) + " max_success=" + std::to_string(scaled(60));
+    ::setenv("RC_PARAMS", parameters.c_str(), 0);
+  }
+  void TearDown() override { workers_.reset(); }
+
+ private:
+  std::unique_ptr<tbb::global_control> workers_;
+};
+
+const testing::Environment* const kProcess = testing::AddGlobalTestEnvironment(new Process);
+
+}  // namespace
+
+std::string to_string(const Config& config) {
+  return config.partition + "_" + winnow::to_string(config.isa) + "_" +
+         std::to_string(config.threads) + (config.threads == 1 ? "_thread" : "_threads");
+}
+
+std::vector<int> thread_counts() {
+  return {1, 2, 8};
+}
+
+std::vector<Config> all_configs() {
+  std::vector<Config> configs;
+  for (const std::string_view partition : partition_names()) {
+    for (const Isa isa : available_isas()) {
+      for (const int threads : thread_counts()) {
+        configs.push_back({std::string(partition), isa, threads});
+      }
+    }
+  }
+  return configs;
+}
+
+}  // namespace winnow::test

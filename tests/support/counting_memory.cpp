@@ -1,0 +1,82 @@
+#include "counting_memory.h"
+
+#include <gtest/gtest.h>
+
+#include <new>
+
+namespace winnow::test {
+
+CountingMemory::~CountingMemory() {
+  EXPECT_EQ(outstanding_, 0U) << blocks_.size() << " blocks were never given back";
+}
+
+std::size_t CountingMemory::outstanding() const {
+  const std::lock_guard lock(mutex_);
+  return outstanding_;
+}
+
+std::size_t CountingMemory::requests() const {
+  const std::lock_guard lock(mutex_);
+  return requests_;
+}
+
+std::size_t CountingMemory::refusals() const {
+  const std::lock_guard lock(mutex_);
+  return refusals_;
+}
+
+std::size_t CountingMemory::requests_from_elsewhere() const {
+  const std::lock_guard lock(mutex_);
+  return requests_from_elsewhere_;
+}
+
+void CountingMemory::refuse_after(std::size_t count) {
+  const std::lock_guard lock(mutex_);
+  refuse_from_ = requests_ + count;
+  refuse_to_ = kNever;
+}
+
+void CountingMemory::refuse_one_after(std::size_t count) {
+  const std::lock_guard lock(mutex_);
+  refuse_from_ = requests_ + count;
+  refuse_to_ = refuse_from_ + 1;
+}
+
+void CountingMemory::grant_all() {
+  const std::lock_guard lock(mutex_);
+  refuse_from_ = refuse_to_ = kNever;
+}
+
+void* CountingMemory::do_allocate(std::size_t bytes, std::size_t alignment) {
+  const std::lock_guard lock(mutex_);
+  const std::size_t request = requests_++;
+  if (std::this_thread::get_id() != owner_) ++requests_from_elsewhere_;
+  if (request >= refuse_from_ && request < refuse_to_) {
+    ++refusals_;
+    throw std::bad_alloc();
+  }
+  void* block = ::operator new(bytes, std::align_val_t(alignment));
+  blocks_[block] = {bytes, alignment};
+  outstanding_ += bytes;
+  return block;
+}
+
+void CountingMemory::do_deallocate(void* block, std::size_t bytes, std::size_t alignment) {
+  const std::lock_guard lock(mutex_);
+  const auto found = blocks_.find(block);
+  if (found == blocks_.end()) {
+    ADD_FAILURE() << "a block was given back that was never handed out";
+    return;
+  }
+  EXPECT_EQ(found->second.bytes, bytes);
+  EXPECT_EQ(found->second.alignment, alignment);
+  outstanding_ -= found->second.bytes;
+  ::operator delete(block, std::align_val_t(found->second.alignment));
+  blocks_.erase(found);
+}
+
+bool CountingMemory::do_is_equal(const memory_resource& other) const noexcept {
+  return this == &other;
+}
+
+}  // namespace winnow::test

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <memory_resource>
+#include <mutex>
+#include <thread>
+
+namespace winnow::test {
+
+/// A memory resource that counts to the byte, notices a block given back with another size or
+/// alignment than it was asked with, and refuses on demand. Safe from several threads.
+class CountingMemory final : public std::pmr::memory_resource {
+ public:
+  CountingMemory() = default;
+  CountingMemory(const CountingMemory&) = delete;
+  CountingMemory& operator=(const CountingMemory&) = delete;
+  /// A test failure if a block was never given back.
+  ~CountingMemory() override;
+
+  /// Bytes asked for and not yet given back.
+  [[nodiscard]] std::size_t outstanding() const;
+  /// Requests since construction, refused ones included.
+  [[nodiscard]] std::size_t requests() const;
+  [[nodiscard]] std::size_t refusals() const;
+  /// Requests made by any thread but the one that made this object.
+  [[nodiscard]] std::size_t requests_from_elsewhere() const;
+
+  /// Grants `count` more requests and refuses all later ones.
+  void refuse_after(std::size_t count);
+  /// Grants `count` more requests, refuses one, grants the rest.
+  void refuse_one_after(std::size_t count);
+  void grant_all();
+
+ private:
+  struct Block {
+    std::size_t bytes;
+    std::size_t alignment;
+  };
+  static constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
+
+  void* do_allocate(std::size_t bytes, std::size_t alignment) override;
+  void do_deallocate(void* block, std::size_t bytes, std::size_t alignment) override;
+  [[nodiscard]] bool do_is_equal(const memory_resource& other) const noexcept override;
+
+  mutable std::mutex mutex_;
+  std::map<void*, Block> blocks_;
+  std::size_t outstanding_ = 0;
+  std::size_t requests_ = 0;
+  std::size_t refusals_ = 0;
+  std::size_t requests_from_elsewhere_ = 0;
+  std::size_t refuse_from_ = kNever;
+  std::size_t refuse_to_ = kNever;
+  std::thread::id owner_ = std::this_thread::get_id();
+};
+
+}  // namespace winnow::test

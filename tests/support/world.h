@@ -1,0 +1,74 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <winnow/partitions/partition.h>
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+#include "config.h"
+#include "twin.h"
+
+namespace winnow::test {
+
+/// True if `got` is what `self_pairs` may report where `truth` (sorted) is true: each pair once,
+/// first < second; exactly the true ones, or with others if the partition is not exact.
+[[nodiscard]] testing::AssertionResult right_pairs(std::span<const Pair> got,
+                                                   std::span<const Pair> truth, bool exact);
+
+/// The same for pairs between two partitions, where first < second need not hold.
+[[nodiscard]] testing::AssertionResult right_cross_pairs(std::span<const Pair> got,
+                                                         std::span<const Pair> truth, bool exact);
+
+/// A partition and its plain model, told the same. Calls run on the config's threads.
+class World {
+ public:
+  struct Entry {
+    Key key;
+    Aabb box;
+    ClientData data = 0;
+  };
+
+  explicit World(const Config& config,
+                 std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+
+  [[nodiscard]] Partition& partition() { return *partition_; }
+  [[nodiscard]] const Partition& partition() const { return *partition_; }
+  [[nodiscard]] Threads& threads() { return threads_; }
+
+  // Each must be accepted; each is told to the model.
+  std::vector<Key> insert(std::span<const Aabb> boxes, std::span<const ClientData> data = {});
+  Key insert(const Aabb& box, ClientData data = 0);
+  void update(std::span<const Key> keys, std::span<const Aabb> boxes);
+  void update(Key key, const Aabb& box);
+  void remove(std::span<const Key> keys);
+  void remove(Key key);
+  void clear();
+
+  /// Runs a query on the config's threads.
+  Status self_pairs(PairBuffer& buffer, const PairOptions& options = {});
+  Status pairs_with(const Partition& other, PairBuffer& buffer, const PairOptions& options = {});
+
+  /// True if a pair query into `buffer` is accepted and right.
+  [[nodiscard]] testing::AssertionResult agrees(PairBuffer& buffer,
+                                                const PairOptions& options = {});
+  /// The same with a fresh buffer.
+  [[nodiscard]] testing::AssertionResult agrees();
+  /// True if size, keys, boxes (bit by bit) and client data are the model's.
+  [[nodiscard]] testing::AssertionResult holds_its_objects() const;
+
+  /// Live objects by id.
+  [[nodiscard]] const std::map<ObjectId, Entry>& entries() const { return entries_; }
+  [[nodiscard]] std::vector<Object> objects() const;
+
+ private:
+  std::map<ObjectId, Entry> entries_;
+  std::unique_ptr<Partition> partition_;
+  Threads threads_;
+};
+
+}  // namespace winnow::test
