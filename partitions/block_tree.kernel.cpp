@@ -73,48 +73,108 @@ Mask16 rows_touching(const TreeView& tree, std::uint32_t leaf, const QueryBox& b
   return overlap(rows, b.low, b.high);
 }
 
-/// Pairs of leaf `i` with the leaves `js` of a group that starts at leaf `base`, all after i.
-bool leaf_against_group(const TreeView& tree, std::uint32_t i, std::uint32_t base, Mask16 js,
-                        PairSink& sink) {
-  const std::size_t a = std::size_t{tree.first_block} + i;
-  const Box16 a_box = load_slabs<3>(tree.rows.column, a * kLanes);
-  for (; js != 0; js &= js - 1) {
-    const std::uint32_t j = base + first(js);
-    const QueryBox b_bounds(tree.node[0], j);
-    ++sink.tests;
-    const Mask16 a_rows = overlap(a_box, b_bounds.low, b_bounds.high);
-    if (a_rows == 0) continue;
-    if (!has_room(sink)) return false;
-    const std::size_t b = std::size_t{tree.first_block} + j;
-    block_pair(tree.rows, a, a_rows, load_slabs<3>(tree.rows.column, b * kLanes),
-               load_unaligned(tree.rows.id + b * kLanes), sink);
-  }
-  return true;
-}
+/// Finds pairs between leaves in three long loops instead of many short nested ones, whose lengths
+/// no branch predictor can guess: pairs of leaves whose boxes overlap; of each, the rows of the first
+/// leaf that reach into the second's box; of each such row, its hits among the second leaf's rows.
+class LeafPairs {
+ public:
+  LeafPairs(const TreeView& tree, PairSink& sink)
+      : tree_(tree), sink_(sink), hits_(tree.rows, sink) {}
 
-/// All pairs of leaves between group g and group h >= g.
-bool group_pair(const TreeView& tree, std::uint32_t g, std::uint32_t h, Mask16 is, PairSink& sink) {
+  /// Adds all pairs of leaf i with leaves base + js.
+  bool add(std::uint32_t i, std::uint32_t base, Mask16 js) {
+    if (leaves_ > kLeafRoom - kLanes && !find_rows()) return false;
+    store_unaligned(first_ + leaves_, broadcast(i));
+    leaves_ += compress_store(js, count_from(base), second_ + leaves_);
+    return true;
+  }
+
+  /// Adds all pairs within a leaf.
+  bool add_self(std::uint32_t leaf) { return add_rows(leaf * kLanes, leaf, 0x7FFFU); }
+
+  bool finish() { return find_rows() && test_rows() && hits_.flush(); }
+
+ private:
+  static constexpr unsigned kLeafRoom = 512;
+  static constexpr unsigned kRowRoom = 1024;
+
+  [[nodiscard]] std::size_t row_of(std::uint32_t leaf) const {
+    return (std::size_t{tree_.first_block} + leaf) * kLanes;
+  }
+
+  bool add_rows(std::uint32_t first_row, std::uint32_t leaf, Mask16 mask) {
+    if (rows_ > kRowRoom - kLanes && !test_rows()) return false;
+    store_unaligned(leaf_ + rows_, broadcast(leaf));
+    rows_ += compress_store(mask, count_from(first_row), row_ + rows_);
+    return true;
+  }
+
+  bool find_rows() {
+    for (unsigned k = 0; k < leaves_; ++k) {
+      const QueryBox b(tree_.node[0], second_[k]);
+      const Box16 a = load_slabs<3>(tree_.rows.column, row_of(first_[k]));
+      const Mask16 rows = overlap(a, b.low, b.high);
+      if (!add_rows(first_[k] * kLanes, second_[k], rows)) return false;
+    }
+    sink_.tests += leaves_;
+    leaves_ = 0;
+    return true;
+  }
+
+  bool test_rows() {
+    const std::size_t base = row_of(0);
+    for (unsigned k = 0; k < rows_; ++k) {
+      const std::size_t r = base + row_[k];
+      const std::size_t at = base + std::size_t{leaf_[k]} * kLanes;
+      const Box16 b = load_slabs<3>(tree_.rows.column, at);
+      const QueryBox q(tree_.rows.column, r);
+      // Within a leaf only rows behind r: the pair with an earlier one is that one's.
+      const bool self = row_[k] / kLanes == leaf_[k];
+      const Mask16 lanes = self ? ~lanes_below(row_[k] % kLanes + 1) : ~0U;
+      if (!hits_.make_room(1)) return false;
+      hits_.add(static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(at),
+                overlap(b, q.low, q.high) & lanes);
+    }
+    sink_.tests += rows_;
+    rows_ = 0;
+    return true;
+  }
+
+  const TreeView& tree_;
+  PairSink& sink_;
+  HitList hits_;
+  unsigned leaves_ = 0;
+  unsigned rows_ = 0;
+  std::uint32_t first_[kLeafRoom + kLanes];
+  std::uint32_t second_[kLeafRoom + kLanes];
+  std::uint32_t row_[kRowRoom + kLanes];  // counted from the tree's first row
+  std::uint32_t leaf_[kRowRoom + kLanes];
+};
+
+/// All pairs of the leaves `is` of group g with those of group h >= g.
+bool group_pair(const TreeView& tree, std::uint32_t g, std::uint32_t h, Mask16 is,
+                LeafPairs& pairs, PairSink& sink) {
   const Box16 h_leaves = load_slabs<3>(tree.node[0], std::size_t{h} * kLanes);
+  sink.tests += count(is);
   for (; is != 0; is &= is - 1) {
     const std::uint32_t i = g * kLanes + first(is);
     const QueryBox a(tree.node[0], i);
-    ++sink.tests;
     Mask16 js = overlap(h_leaves, a.low, a.high);
     if (g == h) js &= ~lanes_below(first(is) + 1);
-    if (js != 0 && !leaf_against_group(tree, i, h * kLanes, js, sink)) return false;
+    if (!pairs.add(i, h * kLanes, js)) return false;
   }
   return true;
 }
 
 bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  LeafPairs pairs(tree, sink);
   for (std::uint32_t g = begin; g < end; ++g) {
     const std::uint32_t last =
         tree.count[0] - g * kLanes < kLanes ? tree.count[0] - g * kLanes : kLanes;
     for (std::uint32_t i = 0; i < last; ++i) {
-      if (!has_room(sink)) return false;
-      block_self(tree.rows, std::size_t{tree.first_block} + g * kLanes + i, sink);
+      if (!pairs.add_self(g * kLanes + i)) return false;
     }
-    if (!group_pair(tree, g, g, lanes_below(last), sink)) return false;
+    if (!group_pair(tree, g, g, lanes_below(last), pairs, sink)) return false;
     if (tree.levels == 1) continue;
     const Box16 g_leaves = load_slabs<3>(tree.node[0], std::size_t{g} * kLanes);
     const QueryBox g_box(tree.node[1], g);
@@ -122,11 +182,11 @@ bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, Pa
       const QueryBox h_box(tree.node[1], h);
       ++sink.tests;
       const Mask16 is = overlap(g_leaves, h_box.low, h_box.high);
-      return is == 0 || group_pair(tree, g, h, is, sink);
+      return group_pair(tree, g, h, is, pairs, sink);
     });
     if (!done) return false;
   }
-  return true;
+  return pairs.finish();
 }
 
 struct Query {

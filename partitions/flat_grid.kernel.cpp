@@ -21,41 +21,15 @@ Mask16 lanes_before(std::uint32_t at, std::uint32_t end) {
   return end - at < kLanes ? lanes_below(end - at) : 0xFFFFU;
 }
 
-/// All pairs of a row in `cell` with a row in `run`, which holds none of the cell's own rows.
-bool cell_against_run(const GridView& grid, const Run& cell, const Run& run, PairSink& sink) {
-  for (std::uint32_t at = run.begin; at < run.end; at += kLanes) {
+/// Notes the hits of row r among rows [at, end).
+bool row_against(const GridView& grid, std::uint32_t r, std::uint32_t at, std::uint32_t end,
+                 HitList& hits, PairSink& sink) {
+  const QueryBox q(grid.rows.column, r);
+  for (; at < end; at += kLanes) {
     const Box16 box = load_slabs_unaligned<3>(grid.rows.column, at);
-    const Uint16 ids = load_unaligned(grid.rows.id + at);
-    const Mask16 lanes = lanes_before(at, run.end);
-    for (std::uint32_t r = cell.begin; r < cell.end; ++r) {
-      const QueryBox q(grid.rows.column, r);
-      const Mask16 hits = overlap(box, q.low, q.high) & lanes;
-      if (hits == 0) continue;
-      if (!has_room(sink)) return false;
-      sink.cursor += 2 * emit_pairs<true>(hits, ids, grid.rows.id[r], sink.cursor);
-    }
-    sink.tests += cell.end - cell.begin;
-  }
-  return true;
-}
-
-/// All pairs within `cell`, and of the cell with the rows between it and `end`.
-bool cell_forward(const GridView& grid, const Run& cell, std::uint32_t end, PairSink& sink) {
-  for (std::uint32_t at = cell.begin; at < end; at += kLanes) {
-    const Box16 box = load_slabs_unaligned<3>(grid.rows.column, at);
-    const Uint16 ids = load_unaligned(grid.rows.id + at);
-    const Mask16 lanes = lanes_before(at, end);
-    const std::uint32_t last = cell.end < at + kLanes ? cell.end : at + kLanes;
-    for (std::uint32_t r = cell.begin; r < last; ++r) {
-      const QueryBox q(grid.rows.column, r);
-      // Only rows behind r: the pair with an earlier one is that one's.
-      const Mask16 behind = r >= at ? ~lanes_below(r - at + 1) : ~0U;
-      const Mask16 hits = overlap(box, q.low, q.high) & lanes & behind;
-      if (hits == 0) continue;
-      if (!has_room(sink)) return false;
-      sink.cursor += 2 * emit_pairs<true>(hits, ids, grid.rows.id[r], sink.cursor);
-    }
-    sink.tests += last - cell.begin;
+    if (!hits.make_room(1)) return false;
+    hits.add(r, at, overlap(box, q.low, q.high) & lanes_before(at, end));
+    ++sink.tests;
   }
   return true;
 }
@@ -78,23 +52,28 @@ struct Neighbours {
 
 bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
   const std::uint32_t cells = grid.axis[0].count;
+  HitList hits(grid.rows, sink);
   for (std::uint32_t line = begin; line < end; ++line) {
     const std::uint32_t* start = grid.start + std::size_t{line} * cells;
     if (start[0] == start[cells]) continue;
     const Neighbours neighbours(grid, line);
     for (std::uint32_t c = 0; c < cells; ++c) {
-      const Run cell{start[c], start[c + 1]};
-      if (cell.begin == cell.end) continue;
+      if (start[c] == start[c + 1]) continue;
       const std::uint32_t before = c > 0 ? c - 1 : 0;
       const std::uint32_t after = c + 1 < cells ? c + 1 : c;
-      if (!cell_forward(grid, cell, start[after + 1], sink)) return false;
+      Run runs[4];
       for (int k = 0; k < neighbours.count; ++k) {
-        const Run run = run_of(grid, neighbours.line[k], before, after);
-        if (!cell_against_run(grid, cell, run, sink)) return false;
+        runs[k] = run_of(grid, neighbours.line[k], before, after);
+      }
+      for (std::uint32_t r = start[c]; r < start[c + 1]; ++r) {
+        if (!row_against(grid, r, r + 1, start[after + 1], hits, sink)) return false;
+        for (int k = 0; k < neighbours.count; ++k) {
+          if (!row_against(grid, r, runs[k].begin, runs[k].end, hits, sink)) return false;
+        }
       }
     }
   }
-  return true;
+  return hits.flush();
 }
 
 struct Query {

@@ -65,30 +65,43 @@ inline bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink)
   return true;
 }
 
-/// Every overlapping pair of one row of block a and one row of block b, a != b; there must be room
-/// for a block's worth of pairs. `a_rows` are the rows of a worth testing.
-inline void block_pair(const RowView& rows, std::size_t a, Mask16 a_rows, const Box16& b,
-                       const Uint16& b_ids, PairSink& sink) {
-  sink.tests += count(a_rows);
-  for (; a_rows != 0; a_rows &= a_rows - 1) {
-    const std::size_t r = a * kLanes + first(a_rows);
-    const QueryBox q(rows.column, r);
-    const Mask16 hits = overlap(b, q.low, q.high);
-    if (hits != 0) sink.cursor += 2 * emit_pairs<true>(hits, b_ids, rows.id[r], sink.cursor);
-  }
-}
+/// Hits on their way to the sink. Whether a test hits is a coin toss to the branch predictor: tests
+/// append without a branch, and pairs are written in one long loop.
+class HitList {
+ public:
+  HitList(const RowView& rows, PairSink& sink) : rows_(rows), sink_(sink) {}
 
-/// Every overlapping pair within one block; there must be room for a block's worth of pairs.
-inline void block_self(const RowView& rows, std::size_t a, PairSink& sink) {
-  const Box16 box = load_slabs<3>(rows.column, a * kLanes);
-  const Uint16 ids = load_unaligned(rows.id + a * kLanes);
-  sink.tests += kLanes - 1;
-  for (unsigned i = 0; i + 1 < kLanes; ++i) {
-    const std::size_t r = a * kLanes + i;
-    const QueryBox q(rows.column, r);
-    const Mask16 hits = overlap(box, q.low, q.high) & ~lanes_below(i + 1);
-    if (hits != 0) sink.cursor += 2 * emit_pairs<true>(hits, ids, rows.id[r], sink.cursor);
+  /// Notes that row `r` hits the lanes `mask` of the rows from `at` on; does nothing for no lanes.
+  void add(std::uint32_t r, std::uint32_t at, Mask16 mask) {
+    row_[size_] = r;
+    at_[size_] = at;
+    mask_[size_] = mask;
+    size_ += mask != 0 ? 1U : 0U;
   }
-}
+
+  /// Makes room for `count` more entries. False if the sink is full.
+  bool make_room(unsigned count) { return size_ + count <= kRoom || flush(); }
+
+  /// Writes everything to the sink.
+  bool flush() {
+    for (unsigned i = 0; i < size_; ++i) {
+      if (!has_room(sink_)) return false;
+      sink_.cursor += 2 * emit_pairs<true>(mask_[i], load_unaligned(rows_.id + at_[i]),
+                                           rows_.id[row_[i]], sink_.cursor);
+    }
+    size_ = 0;
+    return true;
+  }
+
+ private:
+  static constexpr unsigned kRoom = 512;
+
+  const RowView& rows_;
+  PairSink& sink_;
+  unsigned size_ = 0;
+  std::uint32_t row_[kRoom];
+  std::uint32_t at_[kRoom];
+  std::uint32_t mask_[kRoom];
+};
 
 }  // namespace winnow::WINNOW_ISA_NAME

@@ -81,18 +81,7 @@ Status RowPartition::update_from(const Source& source, std::size_t count,
   if (!known.load()) return Status::invalid_key;
   if (!all_valid(source, count, execution_)) return Status::invalid_bounds;
   if (count == 0) return Status::ok;
-  const PoolColumns columns(pool_);
-  const auto write = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      source.write(i, columns.pointers, keys_.row_of(keys[i].id));
-    }
-  };
-  // Only ascending ids are known to be distinct; a repeated key must be written in order.
-  if (ascending.load()) {
-    for_ranges(execution_, count, write);
-  } else {
-    write(0, count);
-  }
+  write_rows(source, keys, ascending.load());
   if (count > stale_.limit()) {
     stale_.add_all();
   } else {
@@ -100,6 +89,36 @@ Status RowPartition::update_from(const Source& source, std::size_t count,
   }
   dirty_.store(true, std::memory_order_relaxed);
   return Status::ok;
+}
+
+template <typename Source>
+void RowPartition::write_rows(const Source& source, std::span<const Key> keys, bool ascending) {
+  const PoolColumns columns(pool_);
+  const ObjectId first = keys.front().id;
+  const std::size_t count = keys.size();
+  if (ascending && keys.back().id - first + std::size_t{1} == count && 2 * count > pool_.rows()) {
+    // Nearly every row changes and entry i is object first + i: going by rows reads entries out of
+    // order but writes each column in order, which is a sixth of the cache lines.
+    for_ranges(execution_, pool_.rows(), [&](std::size_t begin, std::size_t end) {
+      const ObjectId* const ids = pool_.ids();
+      for (std::size_t row = begin; row < end; ++row) {
+        const std::size_t i = static_cast<ObjectId>(ids[row] - first);
+        if (i < count) source.write(i, columns.pointers, row);
+      }
+    });
+    return;
+  }
+  const auto write = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      source.write(i, columns.pointers, keys_.row_of(keys[i].id));
+    }
+  };
+  // Only ascending ids are known to be distinct; a repeated key must be written in order.
+  if (ascending) {
+    for_ranges(execution_, count, write);
+  } else {
+    write(0, count);
+  }
 }
 
 }  // namespace winnow

@@ -102,6 +102,8 @@ class RowPartition : public Partition {
   [[nodiscard]] std::pmr::memory_resource* memory() const noexcept { return memory_; }
 
  private:
+  template <typename Source>
+  void write_rows(const Source& source, std::span<const Key> keys, bool ascending);
   [[nodiscard]] bool make_room(std::size_t objects) noexcept;
   void compact_rows() noexcept;
   void remove_row(ObjectId id) noexcept;

@@ -5,19 +5,17 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Sweeps rows [at, end) for box q until a key shows that nothing further can touch it.
-template <typename Report>
+/// Sweeps rows [at, end) for box q until a key shows that nothing further can touch it; calls
+/// visit(hits, at) for every 16 of them.
+template <typename Visit>
 bool sweep(const StripView& strips, std::uint32_t at, std::uint32_t end, const QueryBox& q,
-           PairSink& sink, Report&& report_hits) {
+           PairSink& sink, Visit&& visit) {
   const float stop = q.high[strips.axis[0].axis];
   for (; at < end && strips.key[at] - strips.drift <= stop; at += kLanes) {
     const Box16 box = load_slabs_unaligned<3>(strips.rows.column, at);
     const Mask16 lanes = end - at < kLanes ? lanes_below(end - at) : 0xFFFFU;
-    const Mask16 hits = overlap(box, q.low, q.high) & lanes;
     ++sink.tests;
-    if (hits == 0) continue;
-    if (!has_room(sink)) return false;
-    report_hits(hits, at);
+    if (!visit(overlap(box, q.low, q.high) & lanes, at)) return false;
   }
   return true;
 }
@@ -36,34 +34,35 @@ std::uint32_t first_reaching(const StripView& strips, std::uint32_t at, std::uin
   return at;
 }
 
-bool strip_against(const StripView& strips, std::uint32_t own, std::uint32_t other,
+bool strip_against(const StripView& strips, std::uint32_t own, std::uint32_t other, HitList& hits,
                    PairSink& sink) {
   const std::uint32_t end = strips.start[other + 1];
   std::uint32_t from = strips.start[other];
   if (from == end) return true;
-  const CellAxis& sweep_axis = strips.axis[0];
   for (std::uint32_t r = strips.start[own]; r < strips.start[own + 1]; ++r) {
-    const QueryBox q(strips.rows.column, r);
     // Keys ascend in both strips, so the start only moves forward: it goes by the key, as the box
     // itself may have drifted either way.
-    const float x = strips.key[r] - strips.drift - sweep_axis.reach;
+    const float x = strips.key[r] - strips.drift - strips.axis[0].reach;
     while (from < end && strips.key[from] + strips.drift < x) ++from;
-    const bool done = sweep(strips, from, end, q, sink, [&](Mask16 hits, std::uint32_t at) {
-      sink.cursor += 2 * emit_pairs<true>(hits, load_unaligned(strips.rows.id + at),
-                                          strips.rows.id[r], sink.cursor);
+    const QueryBox q(strips.rows.column, r);
+    const bool done = sweep(strips, from, end, q, sink, [&](Mask16 mask, std::uint32_t at) {
+      if (!hits.make_room(1)) return false;
+      hits.add(r, at, mask);
+      return true;
     });
     if (!done) return false;
   }
   return true;
 }
 
-bool strip_self(const StripView& strips, std::uint32_t own, PairSink& sink) {
+bool strip_self(const StripView& strips, std::uint32_t own, HitList& hits, PairSink& sink) {
   const std::uint32_t end = strips.start[own + 1];
   for (std::uint32_t r = strips.start[own]; r < end; ++r) {
     const QueryBox q(strips.rows.column, r);
-    const bool done = sweep(strips, r + 1, end, q, sink, [&](Mask16 hits, std::uint32_t at) {
-      sink.cursor += 2 * emit_pairs<true>(hits, load_unaligned(strips.rows.id + at),
-                                          strips.rows.id[r], sink.cursor);
+    const bool done = sweep(strips, r + 1, end, q, sink, [&](Mask16 mask, std::uint32_t at) {
+      if (!hits.make_room(1)) return false;
+      hits.add(r, at, mask);
+      return true;
     });
     if (!done) return false;
   }
@@ -72,18 +71,25 @@ bool strip_self(const StripView& strips, std::uint32_t own, PairSink& sink) {
 
 bool self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
   const std::uint32_t columns = strips.axis[1].count;
+  HitList hits(strips.rows, sink);
   for (std::uint32_t strip = begin; strip < end; ++strip) {
     if (strips.start[strip] == strips.start[strip + 1]) continue;
-    if (!strip_self(strips, strip, sink)) return false;
+    if (!strip_self(strips, strip, hits, sink)) return false;
     const std::uint32_t c = strip % columns;
-    if (c + 1 < columns && !strip_against(strips, strip, strip + 1, sink)) return false;
-    if (strip / columns + 1 == strips.axis[2].count) continue;
-    const std::uint32_t above = strip + columns;
-    if (c > 0 && !strip_against(strips, strip, above - 1, sink)) return false;
-    if (!strip_against(strips, strip, above, sink)) return false;
-    if (c + 1 < columns && !strip_against(strips, strip, above + 1, sink)) return false;
+    std::uint32_t others[4];
+    int count = 0;
+    if (c + 1 < columns) others[count++] = strip + 1;
+    if (strip / columns + 1 < strips.axis[2].count) {
+      const std::uint32_t above = strip + columns;
+      if (c > 0) others[count++] = above - 1;
+      others[count++] = above;
+      if (c + 1 < columns) others[count++] = above + 1;
+    }
+    for (int k = 0; k < count; ++k) {
+      if (!strip_against(strips, strip, others[k], hits, sink)) return false;
+    }
   }
-  return true;
+  return hits.flush();
 }
 
 struct Query {
@@ -107,7 +113,10 @@ struct Query {
           const std::uint32_t end = strips.start[strip + 1];
           const std::uint32_t from = first_reaching(strips, strips.start[strip], end, x);
           const bool done = sweep(strips, from, end, q, sink, [&](Mask16 hits, std::uint32_t at) {
+            if (hits == 0) return true;
+            if (!has_room(sink)) return false;
             report<Mode>(hits, strips.rows.id + at, batch.id[row], batch.moved, sink);
+            return true;
           });
           if (!done) return false;
         }

@@ -81,6 +81,25 @@ inline Float16 multiply(const Float16& a, const Float16& b) {
   return r;
 }
 
+/// base, base + 1, ..., base + 15.
+inline Uint16 count_from(std::uint32_t base) {
+  alignas(64) static constexpr std::uint32_t kSteps[kLanes] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                               8, 9, 10, 11, 12, 13, 14, 15};
+  Uint16 r;
+  for (int i = 0; i < kParts; ++i) {
+    r.part[i] = UintPart::load_aligned(kSteps + i * kPartLanes) + UintPart(base);
+  }
+  return r;
+}
+inline Uint16 broadcast(std::uint32_t value) {
+  Uint16 r;
+  for (int i = 0; i < kParts; ++i) r.part[i] = UintPart(value);
+  return r;
+}
+inline void store_unaligned(std::uint32_t* p, const Uint16& v) {
+  for (int i = 0; i < kParts; ++i) v.part[i].store_unaligned(p + i * kPartLanes);
+}
+
 /// Number of set bits.
 inline unsigned count(Mask16 mask) {
   return static_cast<unsigned>(__builtin_popcount(mask));
