@@ -136,12 +136,12 @@ TEST(KeyTable, tells_4095_tables_apart) {
 }
 
 TEST(KeyTable, is_unchanged_when_memory_is_refused) {
-  CountingMemory memory;
-  KeyTable table(&memory);
-  const std::vector<Key> keys = fill(table, 16);
   for (std::size_t granted = 0; granted < 3; ++granted) {
+    CountingMemory memory;
+    KeyTable table(&memory);
+    const std::vector<Key> keys = fill(table, 16);
     memory.refuse_after(granted);
-    EXPECT_FALSE(table.reserve(100000));
+    EXPECT_FALSE(table.reserve(100000)) << granted << " requests granted";
     memory.grant_all();
     EXPECT_EQ(table.size(), 16U);
     for (const Key& key : keys) EXPECT_TRUE(table.is_valid(key));

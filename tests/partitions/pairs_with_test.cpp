@@ -21,7 +21,7 @@ class PairsWith : public Conformance {
       return testing::AssertionFailure() << "canonical order is not sorted";
     }
     return right_cross_pairs(buffer.pairs(), cross_pairs(a.objects(), b.objects()),
-                             a.partition().is_exact());
+                             a.partition().is_exact() && b.partition().is_exact());
   }
 
   Config like_this(std::string_view partition) {
