@@ -65,17 +65,10 @@ bool walk(const TreeView& tree, const QueryBox& q, std::uint32_t stop, std::uint
   }
 }
 
-/// Rows of block `leaf` that overlap node box b of level 0.
-Mask16 rows_touching(const TreeView& tree, std::uint32_t leaf, const QueryBox& b, PairSink& sink) {
-  ++sink.tests;
-  const Box16 rows =
-      load_slabs<3>(tree.rows.column, (std::size_t{tree.first_block} + leaf) * kLanes);
-  return overlap(rows, b.low, b.high);
-}
-
 /// Finds pairs between leaves in three long loops instead of many short nested ones, whose lengths
-/// no branch predictor can guess: pairs of leaves whose boxes overlap; of each, the rows of the first
-/// leaf that reach into the second's box; of each such row, its hits among the second leaf's rows.
+/// no branch predictor can guess: pairs of leaves whose boxes overlap; of each, the rows of the
+/// first leaf that reach into the second's box; of each such row, its hits among the second leaf's
+/// rows.
 class LeafPairs {
  public:
   LeafPairs(const TreeView& tree, PairSink& sink)
@@ -131,7 +124,7 @@ class LeafPairs {
       // Within a leaf only rows behind r: the pair with an earlier one is that one's.
       const bool self = row_[k] / kLanes == leaf_[k];
       const Mask16 lanes = self ? ~lanes_below(row_[k] % kLanes + 1) : ~0U;
-      if (!hits_.make_room(1)) return false;
+      if (!hits_.make_room()) return false;
       hits_.add(static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(at),
                 overlap(b, q.low, q.high) & lanes);
     }
@@ -142,7 +135,7 @@ class LeafPairs {
 
   const TreeView& tree_;
   PairSink& sink_;
-  HitList hits_;
+  OwnHits hits_;
   unsigned leaves_ = 0;
   unsigned rows_ = 0;
   std::uint32_t first_[kLeafRoom + kLanes];
@@ -152,8 +145,8 @@ class LeafPairs {
 };
 
 /// All pairs of the leaves `is` of group g with those of group h >= g.
-bool group_pair(const TreeView& tree, std::uint32_t g, std::uint32_t h, Mask16 is,
-                LeafPairs& pairs, PairSink& sink) {
+bool group_pair(const TreeView& tree, std::uint32_t g, std::uint32_t h, Mask16 is, LeafPairs& pairs,
+                PairSink& sink) {
   const Box16 h_leaves = load_slabs<3>(tree.node[0], std::size_t{h} * kLanes);
   sink.tests += count(is);
   for (; is != 0; is &= is - 1) {
@@ -189,24 +182,71 @@ bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, Pa
   return pairs.finish();
 }
 
+/// Walks many boxes down the tree together: what is open on a level waits in that level's list, and
+/// a list is worked off, in one long loop, when the next one would not fit or nothing is left
+/// above.
+template <HitMode Mode>
+class Descent {
+ public:
+  Descent(const TreeView& tree, const QueryBatch& batch, PairSink& sink)
+      : tree_(tree), batch_(batch), sink_(sink), hits_(tree.rows, batch.id, batch.moved, sink) {}
+
+  bool run() {
+    const std::uint32_t top = tree_.levels - 1;
+    for (std::uint32_t k = batch_.begin; k < batch_.end; ++k) {
+      const std::uint32_t row = batch_.rows != nullptr ? batch_.rows[k] : k;
+      if (!test_nodes(row, top, 0)) return false;
+    }
+    for (std::uint32_t level = top + 1; level-- > 0;) {
+      if (!drain(level)) return false;
+    }
+    return hits_.flush();
+  }
+
+ private:
+  static constexpr unsigned kRoom = 256;
+
+  /// Opens those of the 16 nodes from `first_node` on that box `row` overlaps.
+  bool test_nodes(std::uint32_t row, std::uint32_t level, std::uint32_t first_node) {
+    if (open_[level] > kRoom - kLanes && !drain(level)) return false;
+    const QueryBox q(batch_.column, row);
+    const Mask16 mask = overlap(load_slabs<3>(tree_.node[level], first_node), q.low, q.high);
+    store_unaligned(row_[level] + open_[level], broadcast(row));
+    open_[level] += compress_store(mask, count_from(first_node), node_[level] + open_[level]);
+    ++sink_.tests;
+    return true;
+  }
+
+  bool drain(std::uint32_t level) {
+    for (unsigned k = 0; k < open_[level]; ++k) {
+      const std::uint32_t row = row_[level][k];
+      if (level > 0) {
+        if (!test_nodes(row, level - 1, node_[level][k] * kLanes)) return false;
+        continue;
+      }
+      const std::uint32_t at = (tree_.first_block + node_[0][k]) * kLanes;
+      const QueryBox q(batch_.column, row);
+      if (!hits_.make_room()) return false;
+      hits_.add(row, at, overlap(load_slabs<3>(tree_.rows.column, at), q.low, q.high));
+      ++sink_.tests;
+    }
+    open_[level] = 0;
+    return true;
+  }
+
+  const TreeView& tree_;
+  const QueryBatch& batch_;
+  PairSink& sink_;
+  HitList<Mode> hits_;
+  unsigned open_[kMaxTreeLevels] = {};
+  std::uint32_t row_[kMaxTreeLevels][kRoom + kLanes];
+  std::uint32_t node_[kMaxTreeLevels][kRoom + kLanes];
+};
+
 struct Query {
   template <HitMode Mode>
   static bool run(const TreeView& tree, const QueryBatch& batch, PairSink& sink) {
-    for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
-      const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
-      const std::uint32_t id = batch.id[row];
-      const QueryBox q(batch.column, row);
-      const bool done = walk(tree, q, 0, 0, sink, [&](std::uint32_t leaf) {
-        const Mask16 hits = rows_touching(tree, leaf, q, sink);
-        if (hits == 0) return true;
-        if (!has_room(sink)) return false;
-        const std::size_t at = (std::size_t{tree.first_block} + leaf) * kLanes;
-        report<Mode>(hits, tree.rows.id + at, id, batch.moved, sink);
-        return true;
-      });
-      if (!done) return false;
-    }
-    return true;
+    return Descent<Mode>(tree, batch, sink).run();
   }
 };
 

@@ -67,6 +67,9 @@ void FlatGrid::drop_overfull() noexcept {
 }
 
 bool FlatGrid::fits(std::size_t row) const noexcept {
+  // Mostly the box's own corner still lies in the cell that holds the row.
+  const std::uint32_t own = layout_.cell_of(pool(), row);
+  if (own != CellLayout::kNoCell && row >= start_[own] && row < start_[own + 1]) return true;
   const auto after = std::upper_bound(start_.begin(), start_.end(), row);
   return layout_.fits(pool(), row, static_cast<std::uint32_t>(after - start_.begin() - 1));
 }

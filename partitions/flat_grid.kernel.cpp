@@ -21,13 +21,13 @@ Mask16 lanes_before(std::uint32_t at, std::uint32_t end) {
   return end - at < kLanes ? lanes_below(end - at) : 0xFFFFU;
 }
 
-/// Notes the hits of row r among rows [at, end).
-bool row_against(const GridView& grid, std::uint32_t r, std::uint32_t at, std::uint32_t end,
-                 HitList& hits, PairSink& sink) {
-  const QueryBox q(grid.rows.column, r);
+/// Notes the hits of box q of row r among rows [at, end).
+template <typename Hits>
+bool row_against(const GridView& grid, const QueryBox& q, std::uint32_t r, std::uint32_t at,
+                 std::uint32_t end, Hits& hits, PairSink& sink) {
   for (; at < end; at += kLanes) {
     const Box16 box = load_slabs_unaligned<3>(grid.rows.column, at);
-    if (!hits.make_room(1)) return false;
+    if (!hits.make_room()) return false;
     hits.add(r, at, overlap(box, q.low, q.high) & lanes_before(at, end));
     ++sink.tests;
   }
@@ -52,7 +52,7 @@ struct Neighbours {
 
 bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
   const std::uint32_t cells = grid.axis[0].count;
-  HitList hits(grid.rows, sink);
+  OwnHits hits(grid.rows, sink);
   for (std::uint32_t line = begin; line < end; ++line) {
     const std::uint32_t* start = grid.start + std::size_t{line} * cells;
     if (start[0] == start[cells]) continue;
@@ -66,9 +66,10 @@ bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, Pa
         runs[k] = run_of(grid, neighbours.line[k], before, after);
       }
       for (std::uint32_t r = start[c]; r < start[c + 1]; ++r) {
-        if (!row_against(grid, r, r + 1, start[after + 1], hits, sink)) return false;
+        const QueryBox q(grid.rows.column, r);
+        if (!row_against(grid, q, r, r + 1, start[after + 1], hits, sink)) return false;
         for (int k = 0; k < neighbours.count; ++k) {
-          if (!row_against(grid, r, runs[k].begin, runs[k].end, hits, sink)) return false;
+          if (!row_against(grid, q, r, runs[k].begin, runs[k].end, hits, sink)) return false;
         }
       }
     }
@@ -78,24 +79,10 @@ bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, Pa
 
 struct Query {
   template <HitMode Mode>
-  static bool test_run(const GridView& grid, const Run& run, const QueryBox& q, std::uint32_t id,
-                       const std::uint64_t* moved, PairSink& sink) {
-    for (std::uint32_t at = run.begin; at < run.end; at += kLanes) {
-      ++sink.tests;
-      const Box16 box = load_slabs_unaligned<3>(grid.rows.column, at);
-      const Mask16 hits = overlap(box, q.low, q.high) & lanes_before(at, run.end);
-      if (hits == 0) continue;
-      if (!has_room(sink)) return false;
-      report<Mode>(hits, grid.rows.id + at, id, moved, sink);
-    }
-    return true;
-  }
-
-  template <HitMode Mode>
   static bool run(const GridView& grid, const QueryBatch& batch, PairSink& sink) {
+    HitList<Mode> hits(grid.rows, batch.id, batch.moved, sink);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
-      const std::uint32_t id = batch.id[row];
       const QueryBox q(batch.column, row);
       if (!(q.low[0] <= q.high[0])) continue;
       std::uint32_t first[3];
@@ -114,12 +101,12 @@ struct Query {
           const std::uint32_t until = whole ? last[1] : mid;
           const Run run{run_of(grid, lines + mid, first[0], last[0]).begin,
                         run_of(grid, lines + until, first[0], last[0]).end};
-          if (!test_run<Mode>(grid, run, q, id, batch.moved, sink)) return false;
+          if (!row_against(grid, q, row, run.begin, run.end, hits, sink)) return false;
           mid = until + 1;
         }
       }
     }
-    return true;
+    return hits.flush();
   }
 };
 

@@ -67,11 +67,16 @@ inline bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink)
 
 /// Hits on their way to the sink. Whether a test hits is a coin toss to the branch predictor: tests
 /// append without a branch, and pairs are written in one long loop.
+template <HitMode Mode>
 class HitList {
  public:
-  HitList(const RowView& rows, PairSink& sink) : rows_(rows), sink_(sink) {}
+  /// `query_id` gives the ids of the rows that ask; `moved` is for HitMode::moved.
+  HitList(const RowView& rows, const std::uint32_t* query_id, const std::uint64_t* moved,
+          PairSink& sink)
+      : rows_(rows), query_id_(query_id), moved_(moved), sink_(sink) {}
 
   /// Notes that row `r` hits the lanes `mask` of the rows from `at` on; does nothing for no lanes.
+  /// There must be room.
   void add(std::uint32_t r, std::uint32_t at, Mask16 mask) {
     row_[size_] = r;
     at_[size_] = at;
@@ -79,15 +84,14 @@ class HitList {
     size_ += mask != 0 ? 1U : 0U;
   }
 
-  /// Makes room for `count` more entries. False if the sink is full.
-  bool make_room(unsigned count) { return size_ + count <= kRoom || flush(); }
+  /// Makes room for one more entry. False if the sink is full.
+  bool make_room() { return size_ < kRoom || flush(); }
 
   /// Writes everything to the sink.
   bool flush() {
     for (unsigned i = 0; i < size_; ++i) {
       if (!has_room(sink_)) return false;
-      sink_.cursor += 2 * emit_pairs<true>(mask_[i], load_unaligned(rows_.id + at_[i]),
-                                           rows_.id[row_[i]], sink_.cursor);
+      report<Mode>(mask_[i], rows_.id + at_[i], query_id_[row_[i]], moved_, sink_);
     }
     size_ = 0;
     return true;
@@ -97,11 +101,20 @@ class HitList {
   static constexpr unsigned kRoom = 512;
 
   const RowView& rows_;
+  const std::uint32_t* query_id_;
+  const std::uint64_t* moved_;
   PairSink& sink_;
   unsigned size_ = 0;
   std::uint32_t row_[kRoom];
   std::uint32_t at_[kRoom];
   std::uint32_t mask_[kRoom];
+};
+
+/// Hits among the rows that ask themselves.
+class OwnHits : public HitList<HitMode::unordered> {
+ public:
+  OwnHits(const RowView& rows, PairSink& sink)
+      : HitList<HitMode::unordered>(rows, rows.id, nullptr, sink) {}
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME

@@ -45,6 +45,7 @@ RowPartition::RowPartition(const PartitionOptions& options, Volume volume)
       spare_(options.memory),
       order_(options.memory),
       list_(options.memory),
+      words_(options.memory),
       sort_scratch_(options.memory),
       identity_(next_identity()) {}
 
@@ -166,6 +167,7 @@ void RowPartition::release_memory() noexcept {
   spare_.release();
   order_.release();
   list_.release();
+  words_.release();
   sort_scratch_.release();
   if (keys_.size() != 0) return;
   pool_.release();
@@ -226,6 +228,7 @@ Footprint RowPartition::footprint() const noexcept {
   result.scratch = spare_.bytes();
   result.scratch += order_.bytes();
   result.scratch += list_.bytes();
+  result.scratch += words_.bytes();
   result.scratch += sort_scratch_.bytes();
   add_structure_bytes(result);
   return result;

@@ -143,11 +143,12 @@ class RowPartition : public Partition {
   bool built_ = false;
   bool tail_changed_ = false;
 
-  ChangeList stale_;                    // since the last refresh
-  mutable ChangeList moved_;            // since the last tracked pair query
-  Column<float> spare_;                 // what columns are permuted through
-  Column<std::uint32_t> order_;         // old row of each new row
-  mutable Column<std::uint32_t> list_;  // rows or nodes to visit
+  ChangeList stale_;                     // since the last refresh
+  mutable ChangeList moved_;             // since the last tracked pair query
+  Column<float> spare_;                  // what columns are permuted through
+  Column<std::uint32_t> order_;          // old row of each new row
+  mutable Column<std::uint32_t> list_;   // rows or nodes to visit
+  mutable Column<std::uint64_t> words_;  // bitmap for sorting them
   Column<std::uint64_t> sort_scratch_;
 
   const std::uint64_t identity_;

@@ -1,6 +1,7 @@
 // RowPartition: pairs.
 
 #include <winnow/core/sphere.h>
+#include <winnow/partitions/bitmap_sort.h>
 #include <winnow/partitions/pair_tracker.h>
 #include <winnow/partitions/pair_writer.h>
 #include <winnow/partitions/row_partition.h>
@@ -116,12 +117,14 @@ Status RowPartition::incremental_self_pairs(PairBuffer& out) const {
     return Status::ok;
   }
   list_.clear();
-  if (!list_.grow(moved_.ids().size())) return Status::out_of_memory;
+  if (!list_.grow(moved_.ids().size()) || !words_.grow(bitmap_words(pool_.rows()))) {
+    return Status::out_of_memory;
+  }
   for (const ObjectId id : moved_.ids()) {
     if (keys_.is_live(id)) (void)list_.push_back(keys_.row_of(id));
   }
   // Neighbours in the pool are neighbours in space: in row order queries share cache lines.
-  std::sort(list_.begin(), list_.end());
+  list_.set_size(sort_unique({list_.data(), list_.size()}, pool_.rows(), words_));
   PairTracker::drop(out, moved_.bits());
   const Execution execution = execution_for(8 * list_.size());
   PairWriter writer(out, execution);

@@ -1,5 +1,6 @@
 // RowPartition: how the structure follows the rows.
 
+#include <winnow/partitions/bitmap_sort.h>
 #include <winnow/partitions/morton_order.h>
 #include <winnow/partitions/row_mutation.h>
 #include <winnow/partitions/row_partition.h>
@@ -185,15 +186,13 @@ bool RowPartition::refit_tree() noexcept {
     return true;
   }
   list_.clear();
-  if (!list_.grow(stale_.ids().size())) return false;
+  if (!list_.grow(stale_.ids().size()) || !words_.grow(bitmap_words(blocks))) return false;
   for (const ObjectId id : stale_.ids()) {
     if (!keys_.is_live(id)) continue;
     const std::size_t block = keys_.row_of(id) / kBlock;
     if (block >= first) (void)list_.push_back(static_cast<std::uint32_t>(block - first));
   }
-  std::sort(list_.begin(), list_.end());
-  const auto leaves =
-      static_cast<std::size_t>(std::unique(list_.begin(), list_.end()) - list_.begin());
+  const std::size_t leaves = sort_unique({list_.data(), list_.size()}, blocks, words_);
   tree_.refit(rows, {list_.data(), leaves});
   return true;
 }

@@ -77,13 +77,20 @@ void SweepAndPrune::finish_build() {
   std::copy_n(low, regular_rows(), key_.data());
 }
 
-bool SweepAndPrune::fits_strip(std::size_t row, std::uint32_t strip) const noexcept {
+bool SweepAndPrune::near_key(std::size_t row) const noexcept {
   const float low = pool().column(layout_.axis(0).axis)[row];
-  return low >= key_[row] - layout_.drift() && low <= key_[row] + layout_.drift() &&
-         layout_.fits(pool(), row, strip);
+  return low >= key_[row] - layout_.drift() && low <= key_[row] + layout_.drift();
+}
+
+bool SweepAndPrune::fits_strip(std::size_t row, std::uint32_t strip) const noexcept {
+  return near_key(row) && layout_.fits(pool(), row, strip);
 }
 
 bool SweepAndPrune::fits(std::size_t row) const noexcept {
+  // Mostly the box's own corner still lies in the cell that holds the row.
+  const std::uint32_t own = layout_.cell_of(pool(), row);
+  if (own != CellLayout::kNoCell && row >= start_[own] && row < start_[own + 1])
+    return near_key(row);
   const auto after = std::upper_bound(start_.begin(), start_.end(), row);
   return fits_strip(row, static_cast<std::uint32_t>(after - start_.begin() - 1));
 }

@@ -32,6 +32,7 @@ class SweepAndPrune final : public RowPartition {
   void add_structure_bytes(Footprint& footprint) const noexcept override;
   [[nodiscard]] std::size_t cell_count() const noexcept override;
 
+  [[nodiscard]] bool near_key(std::size_t row) const noexcept;
   [[nodiscard]] bool fits_strip(std::size_t row, std::uint32_t strip) const noexcept;
   [[nodiscard]] StripView view() const noexcept;
 

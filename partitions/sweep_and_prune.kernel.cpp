@@ -5,17 +5,17 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Sweeps rows [at, end) for box q until a key shows that nothing further can touch it; calls
-/// visit(hits, at) for every 16 of them.
-template <typename Visit>
-bool sweep(const StripView& strips, std::uint32_t at, std::uint32_t end, const QueryBox& q,
-           PairSink& sink, Visit&& visit) {
+/// Sweeps rows [at, end) for box q of row r until a key shows that nothing further can touch it.
+template <typename Hits>
+bool sweep(const StripView& strips, const QueryBox& q, std::uint32_t r, std::uint32_t at,
+           std::uint32_t end, Hits& hits, PairSink& sink) {
   const float stop = q.high[strips.axis[0].axis];
   for (; at < end && strips.key[at] - strips.drift <= stop; at += kLanes) {
     const Box16 box = load_slabs_unaligned<3>(strips.rows.column, at);
     const Mask16 lanes = end - at < kLanes ? lanes_below(end - at) : 0xFFFFU;
+    if (!hits.make_room()) return false;
+    hits.add(r, at, overlap(box, q.low, q.high) & lanes);
     ++sink.tests;
-    if (!visit(overlap(box, q.low, q.high) & lanes, at)) return false;
   }
   return true;
 }
@@ -34,7 +34,7 @@ std::uint32_t first_reaching(const StripView& strips, std::uint32_t at, std::uin
   return at;
 }
 
-bool strip_against(const StripView& strips, std::uint32_t own, std::uint32_t other, HitList& hits,
+bool strip_against(const StripView& strips, std::uint32_t own, std::uint32_t other, OwnHits& hits,
                    PairSink& sink) {
   const std::uint32_t end = strips.start[other + 1];
   std::uint32_t from = strips.start[other];
@@ -45,33 +45,23 @@ bool strip_against(const StripView& strips, std::uint32_t own, std::uint32_t oth
     const float x = strips.key[r] - strips.drift - strips.axis[0].reach;
     while (from < end && strips.key[from] + strips.drift < x) ++from;
     const QueryBox q(strips.rows.column, r);
-    const bool done = sweep(strips, from, end, q, sink, [&](Mask16 mask, std::uint32_t at) {
-      if (!hits.make_room(1)) return false;
-      hits.add(r, at, mask);
-      return true;
-    });
-    if (!done) return false;
+    if (!sweep(strips, q, r, from, end, hits, sink)) return false;
   }
   return true;
 }
 
-bool strip_self(const StripView& strips, std::uint32_t own, HitList& hits, PairSink& sink) {
+bool strip_self(const StripView& strips, std::uint32_t own, OwnHits& hits, PairSink& sink) {
   const std::uint32_t end = strips.start[own + 1];
   for (std::uint32_t r = strips.start[own]; r < end; ++r) {
     const QueryBox q(strips.rows.column, r);
-    const bool done = sweep(strips, r + 1, end, q, sink, [&](Mask16 mask, std::uint32_t at) {
-      if (!hits.make_room(1)) return false;
-      hits.add(r, at, mask);
-      return true;
-    });
-    if (!done) return false;
+    if (!sweep(strips, q, r, r + 1, end, hits, sink)) return false;
   }
   return true;
 }
 
 bool self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
   const std::uint32_t columns = strips.axis[1].count;
-  HitList hits(strips.rows, sink);
+  OwnHits hits(strips.rows, sink);
   for (std::uint32_t strip = begin; strip < end; ++strip) {
     if (strips.start[strip] == strips.start[strip + 1]) continue;
     if (!strip_self(strips, strip, hits, sink)) return false;
@@ -95,6 +85,7 @@ bool self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end,
 struct Query {
   template <HitMode Mode>
   static bool run(const StripView& strips, const QueryBatch& batch, PairSink& sink) {
+    HitList<Mode> hits(strips.rows, batch.id, batch.moved, sink);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
       const QueryBox q(batch.column, row);
@@ -112,17 +103,11 @@ struct Query {
           const std::uint32_t strip = slow * strips.axis[1].count + mid;
           const std::uint32_t end = strips.start[strip + 1];
           const std::uint32_t from = first_reaching(strips, strips.start[strip], end, x);
-          const bool done = sweep(strips, from, end, q, sink, [&](Mask16 hits, std::uint32_t at) {
-            if (hits == 0) return true;
-            if (!has_room(sink)) return false;
-            report<Mode>(hits, strips.rows.id + at, batch.id[row], batch.moved, sink);
-            return true;
-          });
-          if (!done) return false;
+          if (!sweep(strips, q, row, from, end, hits, sink)) return false;
         }
       }
     }
-    return true;
+    return hits.flush();
   }
 };
 
