@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,17 +16,6 @@ namespace winnow::bench {
 [[nodiscard]] inline Pair ordered(std::uint32_t a, std::uint32_t b) noexcept {
   return a < b ? Pair{a, b} : Pair{b, a};
 }
-
-class Stopwatch {
- public:
-  [[nodiscard]] double milliseconds() const {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};
 
 /// The axes, best to sweep first: by the range of the box centres over the mean extent, which is
 /// the inverse of the share of all boxes that one box meets along the axis.

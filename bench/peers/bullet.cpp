@@ -1,3 +1,4 @@
+#include "engine/sample.h"
 #include "peers/adapter_tools.h"
 #include "peers/adapters.h"
 
@@ -76,7 +77,7 @@ class BulletEngine final : public Engine {
     }
     margin_ = gDbvtMargin;
     trees_.optimize();
-    update_ms_ = watch.milliseconds();
+    update_ms_ = watch.ms();
     find_pairs();
   }
 
@@ -88,7 +89,7 @@ class BulletEngine final : public Engine {
       trees_.setAabb(proxies_[row], to_bullet(all_boxes[row].min), to_bullet(all_boxes[row].max),
                      nullptr);
     }
-    update_ms_ = watch.milliseconds();
+    update_ms_ = watch.ms();
     find_pairs();
   }
 

@@ -1,3 +1,4 @@
+#include "engine/sample.h"
 #include "peers/adapter_tools.h"
 #include "peers/adapters.h"
 
@@ -79,7 +80,7 @@ class CgalEngine final : public Engine {
       }
       box.row = static_cast<std::uint32_t>(i);
     }
-    update_ms_ = watch.milliseconds();
+    update_ms_ = watch.ms();
 
     pairs_.clear();
     if (parallel_) {
@@ -87,7 +88,7 @@ class CgalEngine final : public Engine {
     } else {
       search();
     }
-    if (!decided_) decide(watch.milliseconds());
+    if (!decided_) decide(watch.ms());
   }
 
   [[nodiscard]] std::ptrdiff_t cutoff() const {

@@ -1,3 +1,4 @@
+#include "engine/sample.h"
 #include "peers/adapter_tools.h"
 #include "peers/adapters.h"
 
@@ -47,7 +48,7 @@ class EmbreeEngine final : public Engine {
     rtcCommitGeometry(geometry_);
     rtcAttachGeometry(scene_, geometry_);
     rtcCommitScene(scene_);
-    update_ms_ = watch.milliseconds();
+    update_ms_ = watch.ms();
     find_pairs();
   }
 
@@ -59,7 +60,7 @@ class EmbreeEngine final : public Engine {
       rtcCommitGeometry(geometry_);
       rtcCommitScene(scene_);
     }
-    update_ms_ = watch.milliseconds();
+    update_ms_ = watch.ms();
     find_pairs();
   }
 

@@ -1,3 +1,4 @@
+#include "engine/sample.h"
 #include "peers/adapter_tools.h"
 #include "peers/adapters.h"
 
@@ -59,7 +60,7 @@ class FclEngine final : public Engine {
       handles_.push_back(objects_.back().get());
     }
     build();
-    update_ms_ = watch.milliseconds();
+    update_ms_ = watch.ms();
     find_pairs();
   }
 
@@ -75,7 +76,7 @@ class FclEngine final : public Engine {
     } else if (!changed_rows.empty()) {
       tree_.update();
     }
-    update_ms_ = watch.milliseconds();
+    update_ms_ = watch.ms();
     find_pairs();
   }
 
@@ -98,7 +99,7 @@ class FclEngine final : public Engine {
     tree_.clear();
     tree_.registerObjects(handles_);
     tree_.setup();
-    build_ms_ = watch.milliseconds();
+    build_ms_ = watch.ms();
     lost_ms_ = 0.0;
     best_search_ms_ = std::numeric_limits<double>::infinity();
   }
@@ -107,7 +108,7 @@ class FclEngine final : public Engine {
     const Stopwatch watch;
     pairs_.clear();
     tree_.collide(&pairs_, collect);
-    const double search_ms = watch.milliseconds();
+    const double search_ms = watch.ms();
     best_search_ms_ = std::min(best_search_ms_, search_ms);
     lost_ms_ += search_ms - best_search_ms_;
   }

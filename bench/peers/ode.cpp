@@ -1,3 +1,4 @@
+#include "engine/sample.h"
 #include "peers/adapter_tools.h"
 #include "peers/adapters.h"
 
@@ -105,7 +106,7 @@ class OdeEngine final : public Engine {
       geoms_.push_back(geom);
     }
     dSpaceClean(space_);
-    update_ms_ = watch.milliseconds();
+    update_ms_ = watch.ms();
     find_pairs(boxes);
   }
 
@@ -117,7 +118,7 @@ class OdeEngine final : public Engine {
       dGeomMoved(geoms_[row]);
     }
     dSpaceClean(space_);
-    update_ms_ = watch.milliseconds();
+    update_ms_ = watch.ms();
     find_pairs(all_boxes);
   }
 
