@@ -56,6 +56,12 @@ double Lab::bytes_per_object(const std::string& partition, const std::string& sc
   return most;
 }
 
+Spread Lab::machine_ms() const {
+  std::vector<double> times;
+  for (const auto& [where, cell] : cells_) times.push_back(cell.machine_ms);
+  return spread_of(times);
+}
+
 std::vector<std::string> Lab::testing_partitions() {
   std::vector<std::string> names;
   for (const std::string_view name : partition_names()) {

@@ -32,6 +32,8 @@ class Lab {
   [[nodiscard]] static double scale(const Measurement& cell) noexcept {
     return cell.machine_ms / kReferenceMachineMs;
   }
+  /// The machine's clock in every cell measured so far. Far apart, the run was disturbed.
+  [[nodiscard]] Spread machine_ms() const;
   /// The partitions that test bounds: all but the baseline that does not.
   [[nodiscard]] static std::vector<std::string> testing_partitions();
 

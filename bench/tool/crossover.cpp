@@ -40,7 +40,7 @@ bool Crossover::overtakes(const std::string& partition, const std::string& scene
   options.seed = choice.seed;
   options.partitions = {std::string(kBaseline), partition};
   options.threads = choice.threads;
-  options.frames = objects <= 2'000 ? 151 : 31;
+  options.frames = objects <= 1'000 ? 501 : objects <= 4'000 ? 101 : 31;
   const Measurement measured = measure(options);
   return measured.runs[1].median_ms() < measured.runs[0].median_ms();
 }

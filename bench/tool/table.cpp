@@ -16,10 +16,12 @@ std::ostream& operator<<(std::ostream& out, const Table& table) {
   for (const auto& row : table.rows_) {
     std::string line;
     for (std::size_t c = 0; c < row.size(); ++c) {
-      const std::string space(widths[c] - row[c].size(), ' ');
+      const std::size_t space = widths[c] - row[c].size();
       const bool left = std::find(table.left_.begin(), table.left_.end(), c) != table.left_.end();
-      line += c == 0 ? "" : "  ";
-      line += left ? row[c] + space : space + row[c];
+      if (c != 0) line.append(2, ' ');
+      if (!left) line.append(space, ' ');
+      line.append(row[c]);
+      if (left) line.append(space, ' ');
     }
     line.erase(line.find_last_not_of(' ') + 1);
     out << line << '\n';

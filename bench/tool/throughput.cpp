@@ -96,7 +96,8 @@ int Throughput::run() {
   Progress progress(all.size());
   for (const MeasureOptions& options : all) {
     progress.step(options.scene + ", " + grouped(options.objects) + " objects, " +
-                  std::to_string(options.threads.front()) + " threads");
+                  std::to_string(options.threads.front()) +
+                  (options.threads.front() == 1 ? " thread" : " threads"));
     const Measurement measured = measure(options);
     progress.clear();
     if (measured.runs.empty()) continue;
