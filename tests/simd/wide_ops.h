@@ -1,0 +1,48 @@
+#pragma once
+
+// Every operation of simd/wide.h and simd/compress.h behind plain pointers, so that an ordinary
+// test can compare each instruction set with a scalar loop. Arrays hold 16 elements unless said.
+
+#include <winnow/simd/kernels.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace winnow::test {
+
+struct WideOps {
+  void (*load_store)(const float* aligned, float* out);
+  void (*load_unaligned_store)(const float* in, float* out);
+  void (*load_store_uint)(const std::uint32_t* in, std::uint32_t* out);
+  void (*broadcast)(float value, float* out);
+  void (*broadcast_uint)(std::uint32_t value, std::uint32_t* out);
+  void (*count_from)(std::uint32_t base, std::uint32_t* out);
+  void (*min)(const float* a, const float* b, float* out);
+  void (*max)(const float* a, const float* b, float* out);
+  void (*add)(const float* a, const float* b, float* out);
+  void (*multiply)(const float* a, const float* b, float* out);
+  std::uint32_t (*less_equal)(const float* a, const float* b);
+  float (*reduce_min)(const float* in);
+  float (*reduce_max)(const float* in);
+  unsigned (*count)(std::uint32_t mask);
+  unsigned (*first)(std::uint32_t mask);
+  std::uint32_t (*lanes_below)(unsigned lanes);
+  /// `columns`: the lower ends of the slabs, then the upper ends; `row` a multiple of 16.
+  std::uint32_t (*overlap3)(const float* const* columns, std::size_t row, const float* low,
+                            const float* high);
+  std::uint32_t (*overlap13)(const float* const* columns, std::size_t row, const float* low,
+                             const float* high);
+  std::uint32_t (*overlap3_unaligned)(const float* const* columns, std::size_t row,
+                                      const float* low, const float* high);
+  unsigned (*compress_store)(std::uint32_t mask, const std::uint32_t* in, std::uint32_t* out);
+  /// `out` holds 32 elements.
+  unsigned (*emit_pairs)(std::uint32_t mask, const std::uint32_t* in, std::uint32_t q,
+                         std::uint32_t* out);
+  unsigned (*emit_sorted_pairs)(std::uint32_t mask, const std::uint32_t* in, std::uint32_t q,
+                                std::uint32_t* out);
+  const char* isa_name;
+};
+
+WINNOW_KERNELS(WideOps, wide_ops);
+
+}  // namespace winnow::test

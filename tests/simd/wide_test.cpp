@@ -1,0 +1,250 @@
+// Every operation of the wide vocabulary against a scalar loop, on every instruction set of this
+// machine, with the floats that break such code.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cfloat>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "../support/config.h"
+#include "../support/random.h"
+#include "wide_ops.h"
+
+namespace winnow::test {
+
+WINNOW_DEFINE_KERNELS(WideOps, wide_ops)
+
+namespace {
+
+using Floats = std::array<float, 16>;
+using Uints = std::array<std::uint32_t, 16>;
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kDenormal = std::numeric_limits<float>::denorm_min();
+constexpr std::array kHostile{0.0F,       -0.0F,          1.0F,    -1.0F,    kInf,      -kInf,
+                              FLT_MAX,    -FLT_MAX,       FLT_MIN, -FLT_MIN, kDenormal, -kDenormal,
+                              16777216.F, 0x1.fffffep-1F, 1e30F,   -1e-30F};
+
+class Wide : public testing::TestWithParam<Isa> {
+ protected:
+  const WideOps& ops() { return wide_ops(); }
+
+  // Sixteen floats: hostile ones, ordinary ones and, if asked for, NaNs.
+  Floats lanes(bool with_nan = false) {
+    Floats result;
+    for (float& f : result) {
+      if (with_nan && random_.chance(0.2)) {
+        f = random_.chance(0.5) ? kNan : -kNan;
+      } else if (random_.chance(0.6)) {
+        f = kHostile[random_.below(kHostile.size())];
+      } else {
+        f = static_cast<float>(random_.uniform(-2, 2));
+      }
+    }
+    return result;
+  }
+
+  using Binary = void (*)(const float*, const float*, float*);
+  void expect_lane_wise(Binary wide, const std::function<float(float, float)>& scalar,
+                        bool with_nan) {
+    for (int round = 0; round < 5000; ++round) {
+      const Floats a = lanes(with_nan);
+      const Floats b = lanes(with_nan);
+      Floats out;
+      wide(a.data(), b.data(), out.data());
+      for (std::size_t i = 0; i < 16; ++i) {
+        const float expected = scalar(a[i], b[i]);
+        // Zeros of either sign are the same number, and so are all NaNs.
+        ASSERT_TRUE(out[i] == expected || (std::isnan(out[i]) && std::isnan(expected)))
+            << a[i] << ", " << b[i] << " gives " << out[i];
+      }
+    }
+  }
+
+  Random random_{1};
+
+ private:
+  IsaScope isa_{GetParam()};
+};
+
+TEST_P(Wide, table_is_the_one_of_the_active_instruction_set) {
+  EXPECT_STREQ(ops().isa_name, to_string(GetParam()));
+}
+
+TEST_P(Wide, loads_and_stores_keep_every_bit) {
+  for (int round = 0; round < 1000; ++round) {
+    alignas(64) Floats in = lanes(true);
+    std::array<float, 17> shifted;
+    std::memcpy(&shifted[1], in.data(), sizeof in);
+    Floats out;
+    ops().load_store(in.data(), out.data());
+    ASSERT_EQ(std::memcmp(in.data(), out.data(), sizeof in), 0);
+    ops().load_unaligned_store(&shifted[1], out.data());
+    ASSERT_EQ(std::memcmp(in.data(), out.data(), sizeof in), 0);
+    Uints words;
+    Uints copy;
+    std::memcpy(words.data(), in.data(), sizeof in);
+    ops().load_store_uint(words.data(), copy.data());
+    ASSERT_EQ(words, copy);
+  }
+}
+
+TEST_P(Wide, broadcasts_fill_every_lane) {
+  for (const float value : kHostile) {
+    Floats out;
+    ops().broadcast(value, out.data());
+    for (const float lane : out) EXPECT_EQ(std::memcmp(&lane, &value, sizeof value), 0);
+  }
+  for (const std::uint32_t value : {0U, 1U, 0x80000000U, 0xFFFFFFFFU}) {
+    Uints out;
+    ops().broadcast_uint(value, out.data());
+    for (const std::uint32_t lane : out) EXPECT_EQ(lane, value);
+  }
+}
+
+TEST_P(Wide, counts_up_from_a_base) {
+  for (const std::uint32_t base : {0U, 7U, 0x7FFFFFF8U, 0xFFFFFFF8U}) {
+    Uints out;
+    ops().count_from(base, out.data());
+    for (std::uint32_t i = 0; i < 16; ++i) EXPECT_EQ(out[i], base + i);
+  }
+}
+
+TEST_P(Wide, arithmetic_is_lane_wise) {
+  expect_lane_wise(
+      ops().min, [](float a, float b) { return b < a ? b : a; }, false);
+  expect_lane_wise(
+      ops().max, [](float a, float b) { return a < b ? b : a; }, false);
+  expect_lane_wise(
+      ops().add, [](float a, float b) { return a + b; }, true);
+  expect_lane_wise(
+      ops().multiply, [](float a, float b) { return a * b; }, true);
+}
+
+TEST_P(Wide, compares_are_closed_and_false_for_nan) {
+  for (int round = 0; round < 5000; ++round) {
+    const Floats a = lanes(true);
+    const Floats b = lanes(true);
+    std::uint32_t expected = 0;
+    for (std::size_t i = 0; i < 16; ++i) expected |= (a[i] <= b[i] ? 1U : 0U) << i;
+    ASSERT_EQ(ops().less_equal(a.data(), b.data()), expected);
+  }
+}
+
+TEST_P(Wide, reductions_find_the_extreme_lane_wherever_it_is) {
+  for (std::size_t at = 0; at < 16; ++at) {
+    Floats in;
+    in.fill(2.0F);
+    in[at] = -3.0F;
+    EXPECT_EQ(ops().reduce_min(in.data()), -3.0F) << "lane " << at;
+    in[at] = 5.0F;
+    EXPECT_EQ(ops().reduce_max(in.data()), 5.0F) << "lane " << at;
+  }
+  for (int round = 0; round < 5000; ++round) {
+    const Floats in = lanes();
+    ASSERT_EQ(ops().reduce_min(in.data()), *std::min_element(in.begin(), in.end()));
+    ASSERT_EQ(ops().reduce_max(in.data()), *std::max_element(in.begin(), in.end()));
+  }
+}
+
+TEST_P(Wide, masks_are_counted_and_searched) {
+  for (std::uint32_t mask = 0; mask < 65536; ++mask) {
+    unsigned bits = 0;
+    unsigned lowest = 16;
+    for (unsigned i = 16; i-- > 0;) {
+      if ((mask >> i & 1U) == 0) continue;
+      ++bits;
+      lowest = i;
+    }
+    ASSERT_EQ(ops().count(mask), bits);
+    if (mask != 0) {
+      ASSERT_EQ(ops().first(mask), lowest);
+    }
+  }
+  for (unsigned n = 0; n <= 16; ++n) EXPECT_EQ(ops().lanes_below(n), (1ULL << n) - 1);
+}
+
+// Slabs of random volumes, hostile ends and empty rows against the definition.
+template <std::size_t Slabs>
+class Volumes {
+ public:
+  explicit Volumes(Random& random) {
+    for (std::size_t s = 0; s < Slabs; ++s) {
+      for (std::size_t row = 0; row < kRows; ++row) {
+        const bool empty = row % 7 == 3;
+        low_[s][row] = empty ? kInf : end(random, -1);
+        high_[s][row] = empty ? -kInf : end(random, 1);
+      }
+      columns_[s] = low_[s].data();
+      columns_[Slabs + s] = high_[s].data();
+      query_low_[s] = end(random, -1);
+      query_high_[s] = end(random, 1);
+    }
+  }
+
+  std::uint32_t expected(std::size_t row) const {
+    std::uint32_t mask = 0;
+    for (std::size_t i = 0; i < 16; ++i) {
+      bool hit = true;
+      for (std::size_t s = 0; s < Slabs; ++s) {
+        hit = hit && low_[s][row + i] <= query_high_[s] && query_low_[s] <= high_[s][row + i];
+      }
+      mask |= (hit ? 1U : 0U) << i;
+    }
+    return mask;
+  }
+
+  using Overlap = std::uint32_t (*)(const float* const*, std::size_t, const float*, const float*);
+  std::uint32_t ask(Overlap overlap, std::size_t row) const {
+    return overlap(columns_.data(), row, query_low_.data(), query_high_.data());
+  }
+
+  static constexpr std::size_t kRows = 48;
+
+ private:
+  // Mostly ends that let slabs overlap, so that a hit is not a rarity with many slabs.
+  static float end(Random& random, float sign) {
+    if (random.chance(0.05)) return kHostile[random.below(kHostile.size())];
+    if (random.chance(0.02)) return kNan;
+    return sign * static_cast<float>(random.below(5)) - (random.chance(0.05) ? 3.0F * sign : 0.0F);
+  }
+
+  alignas(64) std::array<std::array<float, kRows>, Slabs> low_;
+  alignas(64) std::array<std::array<float, kRows>, Slabs> high_;
+  std::array<const float*, 2 * Slabs> columns_;
+  std::array<float, Slabs> query_low_;
+  std::array<float, Slabs> query_high_;
+};
+
+TEST_P(Wide, overlap_is_the_closed_test_of_every_slab) {
+  std::uint32_t hits3 = 0;
+  std::uint32_t hits13 = 0;
+  for (int round = 0; round < 5000; ++round) {
+    const Volumes<3> boxes(random_);
+    const Volumes<13> kdops(random_);
+    for (std::size_t row = 0; row < 48; row += 16) {
+      ASSERT_EQ(boxes.ask(ops().overlap3, row), boxes.expected(row));
+      ASSERT_EQ(kdops.ask(ops().overlap13, row), kdops.expected(row));
+      hits3 |= boxes.expected(row);
+      hits13 |= kdops.expected(row);
+    }
+    for (std::size_t row = 0; row < 32; ++row) {
+      ASSERT_EQ(boxes.ask(ops().overlap3_unaligned, row), boxes.expected(row));
+    }
+  }
+  EXPECT_EQ(hits3, 0xFFFFU) << "the test hits no pair in some lane";
+  EXPECT_EQ(hits13, 0xFFFFU) << "the test hits no pair in some lane";
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Wide,
+                         testing::ValuesIn(available_isas().begin(), available_isas().end()),
+                         [](const auto& isa) { return to_string(isa.param); });
+
+}  // namespace
+}  // namespace winnow::test
