@@ -33,7 +33,11 @@ bool all_valid(const Source& source, std::size_t count, const Execution& executi
   std::atomic<bool> valid{true};
   for_ranges(execution, count, [&](std::size_t begin, std::size_t end) {
     bool ok = true;
-    for (std::size_t i = begin; i < end; ++i) ok = ok && source.valid(i);
+    if constexpr (requires { source.valid_range(begin, end); }) {
+      ok = source.valid_range(begin, end);
+    } else {
+      for (std::size_t i = begin; i < end; ++i) ok = ok && source.valid(i);
+    }
     if (!ok) valid.store(false, std::memory_order_relaxed);
   });
   return valid.load();
@@ -100,8 +104,14 @@ void RowPartition::write_rows(const Source& source, std::span<const Key> keys, b
     // Nearly every row changes and entry i is object first + i: going by rows reads entries out of
     // order but writes each column in order, which is a sixth of the cache lines.
     for_ranges(execution_, pool_.rows(), [&](std::size_t begin, std::size_t end) {
+      // Far enough for an entry to arrive from the second-level cache; the pool is padded by more.
+      constexpr std::size_t kAhead = 16;
       const ObjectId* const ids = pool_.ids();
       for (std::size_t row = begin; row < end; ++row) {
+        if constexpr (requires { source.prefetch(row); }) {
+          const auto ahead = static_cast<ObjectId>(ids[row + kAhead] - first);
+          if (ahead < count) source.prefetch(ahead);
+        }
         const std::size_t i = static_cast<ObjectId>(ids[row] - first);
         if (i < count) source.write(i, columns.pointers, row);
       }

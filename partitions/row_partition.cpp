@@ -7,6 +7,9 @@
 #include <cfloat>
 
 namespace winnow {
+
+WINNOW_DEFINE_KERNELS(BoxCheckKernels, box_check_kernels)
+
 namespace {
 
 std::uint64_t next_identity() noexcept {

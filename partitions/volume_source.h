@@ -6,6 +6,7 @@
 #include <winnow/core/box_view.h>
 #include <winnow/core/kdop.h>
 #include <winnow/core/sphere.h>
+#include <winnow/partitions/box_check.kernel.h>
 
 #include <algorithm>
 #include <cfloat>
@@ -39,6 +40,21 @@ struct BoxSource {
       ok &= static_cast<int>(lo <= hi) & static_cast<int>(lo < inf) & static_cast<int>(hi > -inf);
     }
     return ok != 0;
+  }
+  /// All of [begin, end), many at a time where the boxes lie one after another.
+  [[nodiscard]] bool valid_range(std::size_t begin, std::size_t end) const noexcept {
+    const float* const first = boxes.min[0];
+    const bool packed = boxes.stride == sizeof(Aabb) && boxes.min[1] == first + 1 &&
+                        boxes.min[2] == first + 2 && boxes.max[0] == first + 3 &&
+                        boxes.max[1] == first + 4 && boxes.max[2] == first + 5;
+    if (packed) return box_check_kernels().boxes(first + 6 * begin, end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!valid(i)) return false;
+    }
+    return true;
+  }
+  void prefetch(std::size_t i) const noexcept {
+    __builtin_prefetch(reinterpret_cast<const std::byte*>(boxes.min[0]) + i * boxes.stride);
   }
   void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
     const Aabb box = boxes[i];
