@@ -95,7 +95,7 @@ class OdeEngine final : public Engine {
 
   void start(std::span<const Aabb> boxes) override {
     const Stopwatch watch;
-    dAllocateODEDataForThread(dAllocateMaskAll);
+    dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
     space_ = dSweepAndPruneSpaceCreate(nullptr, sap_order(axes_by_pruning(boxes)));
     geoms_.reserve(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) {
