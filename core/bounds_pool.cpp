@@ -23,13 +23,18 @@ void gather(const T* from, std::span<const std::uint32_t> order, T* to, T missin
 }  // namespace
 
 bool BoundsPool::reserve(std::size_t rows) noexcept {
+  if (rows <= capacity()) return true;
+  return reserve_exact(std::max(rows, capacity() + capacity() / 2)) || reserve_exact(rows);
+}
+
+bool BoundsPool::reserve_exact(std::size_t rows) noexcept {
   const std::size_t padded = (rows + kBlock - 1) / kBlock * kBlock + 2 * kBlock;
   for (std::size_t c = 0; c < columns(); ++c) {
     columns_[c].set_size(rows_);
-    if (!columns_[c].grow(padded)) return false;
+    if (!columns_[c].reserve(padded)) return false;
   }
   ids_.set_size(rows_);
-  return ids_.grow(padded);
+  return ids_.reserve(padded);
 }
 
 void BoundsPool::blank(std::size_t row) noexcept {

@@ -43,6 +43,8 @@ class BoundsPool {
 
   /// Room for `rows` rows and their padding. Exact on the first call, growing by half afterwards.
   [[nodiscard]] bool reserve(std::size_t rows) noexcept;
+  /// Room for `rows` rows and their padding, no more.
+  [[nodiscard]] bool reserve_exact(std::size_t rows) noexcept;
 
   /// Adds rows with their contents uninitialised; room must have been reserved.
   void append(std::size_t count) noexcept { rows_ += count; }

@@ -72,7 +72,7 @@ bool walk(const TreeView& tree, const QueryBox& q, std::uint32_t stop, std::uint
 class LeafPairs {
  public:
   LeafPairs(const TreeView& tree, PairSink& sink)
-      : tree_(tree), sink_(sink), hits_(tree.rows, sink) {}
+      : tree_(tree), sink_(sink), hits_(tree.rows, tree.rows.id, nullptr, sink) {}
 
   /// Adds all pairs of leaf i with leaves base + js.
   bool add(std::uint32_t i, std::uint32_t base, Mask16 js) {
@@ -135,7 +135,7 @@ class LeafPairs {
 
   const TreeView& tree_;
   PairSink& sink_;
-  OwnHits hits_;
+  HitList<HitMode::unordered> hits_;
   unsigned leaves_ = 0;
   unsigned rows_ = 0;
   std::uint32_t first_[kLeafRoom + kLanes];

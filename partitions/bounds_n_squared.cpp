@@ -68,11 +68,6 @@ template Status BoundsNSquared::update(std::span<const Key>, std::span<const Kdo
 template Status BoundsNSquared::update(std::span<const Key>, std::span<const Kdop<18>>);
 template Status BoundsNSquared::update(std::span<const Key>, std::span<const Kdop<26>>);
 
-bool BoundsNSquared::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>&) {
-  plan_flat(pool(), regular);
-  return true;
-}
-
 std::size_t BoundsNSquared::regular_tasks() const noexcept {
   return flat_tasks(pool());
 }

@@ -37,7 +37,6 @@ class BoundsNSquared final : public RowPartition {
   [[nodiscard]] bool is_exact() const noexcept override { return volume() == Volume::aabb; }
 
  private:
-  bool plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) override;
   [[nodiscard]] std::size_t regular_tasks() const noexcept override;
   bool run_regular_task(std::size_t task, PairSink& sink) const noexcept override;
   bool query_regular(const QueryBatch& batch, PairSink& sink) const noexcept override;

@@ -16,23 +16,10 @@ Run run_of(const GridView& grid, std::uint32_t line, std::uint32_t first, std::u
   return {start[first], start[last + 1]};
 }
 
-/// The lanes of a load at `at` that lie before `end`.
-Mask16 lanes_before(std::uint32_t at, std::uint32_t end) {
-  return end - at < kLanes ? lanes_below(end - at) : 0xFFFFU;
-}
-
-/// Notes the hits of box q of row r among rows [at, end).
-template <typename Hits>
-bool row_against(const GridView& grid, const QueryBox& q, std::uint32_t r, std::uint32_t at,
-                 std::uint32_t end, Hits& hits, PairSink& sink) {
-  for (; at < end; at += kLanes) {
-    const Box16 box = load_slabs_unaligned<3>(grid.rows.column, at);
-    if (!hits.make_room()) return false;
-    hits.add(r, at, overlap(box, q.low, q.high) & lanes_before(at, end));
-    ++sink.tests;
-  }
-  return true;
-}
+/// A run of cells is tested to its end.
+struct ToTheEnd {
+  bool operator()(const QueryBox&, std::uint32_t) const { return true; }
+};
 
 /// The lines that a line's cells are tested against: those after it whose cells can touch.
 struct Neighbours {
@@ -52,7 +39,8 @@ struct Neighbours {
 
 bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
   const std::uint32_t cells = grid.axis[0].count;
-  OwnHits hits(grid.rows, sink);
+  HitList<HitMode::unordered> hits(grid.rows, grid.rows.id, nullptr, sink);
+  RunList list(grid.rows, grid.rows.column, hits, ToTheEnd{}, sink);
   for (std::uint32_t line = begin; line < end; ++line) {
     const std::uint32_t* start = grid.start + std::size_t{line} * cells;
     if (start[0] == start[cells]) continue;
@@ -66,21 +54,22 @@ bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, Pa
         runs[k] = run_of(grid, neighbours.line[k], before, after);
       }
       for (std::uint32_t r = start[c]; r < start[c + 1]; ++r) {
-        const QueryBox q(grid.rows.column, r);
-        if (!row_against(grid, q, r, r + 1, start[after + 1], hits, sink)) return false;
+        // Behind the row itself: the pair with an earlier one is that one's.
+        if (!list.add(r, r + 1, start[after + 1])) return false;
         for (int k = 0; k < neighbours.count; ++k) {
-          if (!row_against(grid, q, r, runs[k].begin, runs[k].end, hits, sink)) return false;
+          if (!list.add(r, runs[k].begin, runs[k].end)) return false;
         }
       }
     }
   }
-  return hits.flush();
+  return list.finish() && hits.flush();
 }
 
 struct Query {
   template <HitMode Mode>
   static bool run(const GridView& grid, const QueryBatch& batch, PairSink& sink) {
     HitList<Mode> hits(grid.rows, batch.id, batch.moved, sink);
+    RunList list(grid.rows, batch.column, hits, ToTheEnd{}, sink);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
       const QueryBox q(batch.column, row);
@@ -101,12 +90,12 @@ struct Query {
           const std::uint32_t until = whole ? last[1] : mid;
           const Run run{run_of(grid, lines + mid, first[0], last[0]).begin,
                         run_of(grid, lines + until, first[0], last[0]).end};
-          if (!row_against(grid, q, row, run.begin, run.end, hits, sink)) return false;
+          if (!list.add(row, run.begin, run.end)) return false;
           mid = until + 1;
         }
       }
     }
-    return hits.flush();
+    return list.finish() && hits.flush();
   }
 };
 

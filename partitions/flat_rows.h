@@ -1,7 +1,6 @@
 #pragma once
 
 #include <winnow/core/bounds_pool.h>
-#include <winnow/core/column.h>
 #include <winnow/partitions/flat_rows.kernel.h>
 
 #include <algorithm>
@@ -10,14 +9,7 @@
 
 namespace winnow {
 
-// What NSquared and BoundsNSquared share: how unordered rows are planned and cut into tasks.
-
-/// Every live row is regular, in the order it has.
-inline void plan_flat(const BoundsPool& pool, Column<std::uint32_t>& regular) noexcept {
-  for (std::size_t row = 0; row < pool.rows(); ++row) {
-    if (pool.ids()[row] != kNoObject) (void)regular.push_back(static_cast<std::uint32_t>(row));
-  }
-}
+// What NSquared and BoundsNSquared share: how unordered rows are cut into tasks.
 
 inline constexpr std::size_t kFlatTasks = 64;
 

@@ -110,11 +110,62 @@ class HitList {
   std::uint32_t mask_[kRoom];
 };
 
-/// Hits among the rows that ask themselves.
-class OwnHits : public HitList<HitMode::unordered> {
+/// Runs of rows to be tested, each against one box. How long a run is is as unpredictable as a hit:
+/// one step of 16 rows of every run is made in a long loop, and runs that go on are kept for the
+/// next round. `GoesOn(q, at)` says whether box q needs the rows from `at` on.
+template <HitMode Mode, typename GoesOn>
+class RunList {
  public:
-  OwnHits(const RowView& rows, PairSink& sink)
-      : HitList<HitMode::unordered>(rows, rows.id, nullptr, sink) {}
+  /// `query` holds the columns of the boxes that ask.
+  RunList(const RowView& rows, const float* const* query, HitList<Mode>& hits,
+          const GoesOn& goes_on, PairSink& sink)
+      : rows_(rows), query_(query), hits_(hits), goes_on_(goes_on), sink_(sink) {}
+
+  /// Adds rows [at, end) for the box of row r of the query columns. False if the sink is full.
+  bool add(std::uint32_t r, std::uint32_t at, std::uint32_t end) {
+    if (size_ == kRoom && !finish()) return false;
+    row_[size_] = r;
+    at_[size_] = at;
+    end_[size_] = end;
+    size_ += at < end ? 1U : 0U;
+    return true;
+  }
+
+  /// Tests everything. False if the sink is full.
+  bool finish() {
+    while (size_ != 0) {
+      unsigned next = 0;
+      sink_.tests += size_;
+      for (unsigned k = 0; k < size_; ++k) {
+        const std::uint32_t at = at_[k];
+        const std::uint32_t end = end_[k];
+        const std::uint32_t left = end - at < kLanes ? end - at : kLanes;
+        const QueryBox q(query_, row_[k]);
+        const Box16 box = load_slabs_unaligned<3>(rows_.column, at);
+        if (!hits_.make_room()) return false;
+        hits_.add(row_[k], at, overlap(box, q.low, q.high) & lanes_below(left));
+        row_[next] = row_[k];
+        at_[next] = at + left;
+        end_[next] = end;
+        next += at + left < end && goes_on_(q, at + left) ? 1U : 0U;
+      }
+      size_ = next;
+    }
+    return true;
+  }
+
+ private:
+  static constexpr unsigned kRoom = 256;
+
+  const RowView& rows_;
+  const float* const* query_;
+  HitList<Mode>& hits_;
+  const GoesOn goes_on_;
+  PairSink& sink_;
+  unsigned size_ = 0;
+  std::uint32_t row_[kRoom + 1];
+  std::uint32_t at_[kRoom + 1];
+  std::uint32_t end_[kRoom + 1];
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME

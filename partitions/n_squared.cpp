@@ -6,11 +6,6 @@ namespace winnow {
 
 NSquared::NSquared(const PartitionOptions& options) : RowPartition(options, Volume::aabb) {}
 
-bool NSquared::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>&) {
-  plan_flat(pool(), regular);
-  return true;
-}
-
 std::size_t NSquared::regular_tasks() const noexcept {
   return flat_tasks(pool());
 }

@@ -38,8 +38,7 @@ Status with_box_source(Volume volume, const BoxView& boxes, Use&& use) {
 }  // namespace
 
 RowPartition::RowPartition(const PartitionOptions& options, Volume volume)
-    : memory_(options.memory),
-      execution_(options.execution),
+    : execution_(options.execution),
       pool_(options.memory, volume),
       keys_(options.memory),
       tree_(options.memory),
@@ -240,8 +239,11 @@ Footprint RowPartition::footprint() const noexcept {
 Statistics RowPartition::statistics() const noexcept {
   Statistics s;
   s.objects = keys_.size();
-  s.regular = built_ ? std::min(built_rows_, keys_.size()) : 0;
-  s.irregular = keys_.size() - s.regular;
+  const std::size_t regular_end =
+      regular_rows_ == 0 ? built_rows_ : tree_.first_block() * BoundsPool::kBlock;
+  const std::size_t behind = pool_.rows() > regular_end ? pool_.rows() - regular_end : 0;
+  s.irregular = is_flat() ? 0 : std::min(keys_.size(), behind);
+  s.regular = keys_.size() - s.irregular;
   s.cells = cell_count();
   s.depth = tree_.levels();
   s.builds = builds_;

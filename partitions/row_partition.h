@@ -99,7 +99,8 @@ class RowPartition : public Partition {
   [[nodiscard]] const BoundsPool& pool() const noexcept { return pool_; }
   [[nodiscard]] const Execution& execution() const noexcept { return execution_; }
   [[nodiscard]] std::size_t regular_rows() const noexcept { return regular_rows_; }
-  [[nodiscard]] std::pmr::memory_resource* memory() const noexcept { return memory_; }
+  /// Scratch that a plan may use; the build uses it afterwards.
+  [[nodiscard]] Column<std::uint64_t>& sort_scratch() noexcept { return sort_scratch_; }
 
  private:
   template <typename Source>
@@ -110,6 +111,8 @@ class RowPartition : public Partition {
 
   Status refresh_now();
   [[nodiscard]] bool needs_build() const noexcept;
+  /// Rows that may stand behind the built ones before a build is due.
+  [[nodiscard]] std::size_t tail_limit() const noexcept { return keys_.size() / 16 + 64; }
   Status build();
   Status absorb_changes();
   void collect_misfits(std::size_t limit) noexcept;
@@ -130,7 +133,6 @@ class RowPartition : public Partition {
                  std::atomic<std::uint64_t>& base) const noexcept;
   [[nodiscard]] Execution execution_for(std::size_t objects) const noexcept;
 
-  std::pmr::memory_resource* memory_;
   Execution execution_;
   BoundsPool pool_;
   KeyTable keys_;
@@ -153,6 +155,7 @@ class RowPartition : public Partition {
 
   const std::uint64_t identity_;
   mutable std::uint64_t tracked_serial_ = 0;  // 0: no buffer is tracked
+  mutable std::uint64_t last_serial_ = 0;     // never goes back, so an old buffer cannot match
   mutable std::mutex refresh_mutex_;
   mutable std::mutex tracker_mutex_;
   mutable std::atomic<bool> dirty_{false};

@@ -65,7 +65,8 @@ Status RowPartition::self_pairs(PairBuffer& out, const PairOptions& options) con
   last_pairs_.store(out.size(), std::memory_order_relaxed);
   if (tracked) {
     moved_.clear();
-    PairTracker::set_provenance(out, {identity_, ++tracked_serial_});
+    tracked_serial_ = ++last_serial_;
+    PairTracker::set_provenance(out, {identity_, tracked_serial_});
   }
   return Status::ok;
 }

@@ -48,8 +48,7 @@ bool RowPartition::needs_build() const noexcept {
   const std::size_t holes = pool_.rows() - live;
   if (holes > live / 4 + built_holes_ + 64) return true;
   if (is_flat()) return false;
-  return tail > live / 16 + 64 ||
-         excess_.load(std::memory_order_relaxed) > kBuildPrice * (live + 64);
+  return tail > tail_limit() || excess_.load(std::memory_order_relaxed) > kBuildPrice * (live + 64);
 }
 
 bool RowPartition::plan(Column<std::uint32_t>&, Column<std::uint32_t>& rest) {
@@ -60,6 +59,14 @@ bool RowPartition::plan(Column<std::uint32_t>&, Column<std::uint32_t>& rest) {
 }
 
 Status RowPartition::build() {
+  if (is_flat()) {
+    compact_rows();
+    pool_.pad();
+    regular_rows_ = pool_.rows();
+    built_ = true;
+    ++builds_;
+    return Status::ok;
+  }
   // Everything that can fail comes first.
   const std::size_t room = pool_.rows() + 4 * kBlock;
   order_.clear();
@@ -77,7 +84,7 @@ Status RowPartition::build() {
   if (!order_.resize(order_.size() + rest)) return Status::out_of_memory;
   std::copy_n(list_.data(), rest, order_.end() - rest);
   const std::size_t rows = order_.size();
-  if (!pool_.reserve(rows) || !spare_.grow(pool_.capacity() + 2 * kBlock)) {
+  if (!pool_.reserve_exact(rows) || !spare_.reserve(pool_.capacity() + 2 * kBlock)) {
     return Status::out_of_memory;
   }
   built_ = false;
@@ -108,7 +115,7 @@ Status RowPartition::absorb_changes() {
     regular_rows_ = pool_.rows();
     return Status::ok;
   }
-  const std::size_t limit = keys_.size() / 16 + 64;
+  const std::size_t limit = tail_limit();
   list_.clear();
   if (!list_.grow(limit + 1)) return Status::out_of_memory;
   collect_misfits(limit + 1);
@@ -133,7 +140,7 @@ void RowPartition::collect_misfits(std::size_t limit) noexcept {
 
 bool RowPartition::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
   if (rows.empty()) return true;
-  if (!pool_.reserve(pool_.rows() + rows.size())) return false;
+  if (!pool_.reserve_exact(pool_.rows() + rows.size() + tail_limit())) return false;
   const PoolColumns columns(pool_);
   for (const std::uint32_t row : rows) {
     const std::size_t to = pool_.rows();

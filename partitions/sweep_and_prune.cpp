@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 namespace winnow {
 
@@ -12,6 +13,9 @@ WINNOW_DEFINE_KERNELS(SweepKernels, sweep_kernels)
 namespace {
 
 constexpr std::size_t kTasks = 64;
+constexpr std::size_t kPadding = 16;
+// Objects of a strip that begin within reach of one another.
+constexpr std::uint32_t kCrowded = 384;
 
 // Order-preserving map of floats to unsigned.
 std::uint32_t sortable(float value) {
@@ -26,8 +30,7 @@ SweepAndPrune::SweepAndPrune(const PartitionOptions& options)
       layout_(options.memory),
       start_(options.memory),
       key_(options.memory),
-      strip_(options.memory),
-      sorted_(options.memory) {}
+      strip_(options.memory) {}
 
 bool SweepAndPrune::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) {
   const SceneSample sample(pool());
@@ -35,12 +38,21 @@ bool SweepAndPrune::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& 
   if (!layout_.choose(sample, demand)) return false;
   if (!layout_.usable()) return RowPartition::plan(regular, rest);
   const std::size_t rows = pool().rows();
-  if (!strip_.resize(rows) || !start_.resize(layout_.cells() + 1) || !key_.resize(rows) ||
-      !sorted_.resize(2 * rows)) {
+  if (!strip_.resize(rows) || !start_.resize(layout_.cells() + 1) ||
+      !key_.resize(rows + kPadding) || !sort_scratch().resize(2 * rows)) {
     return false;
   }
+  sort_rows(regular, rest);
+  drop_crowded(regular, rest);
+  return true;
+}
+
+void SweepAndPrune::sort_rows(Column<std::uint32_t>& regular,
+                              Column<std::uint32_t>& rest) noexcept {
   std::fill(start_.begin(), start_.end(), 0);
+  const std::size_t rows = pool().rows();
   const float* const low = pool().column(layout_.axis(0).axis);
+  std::uint64_t* const items = sort_scratch().data();
   std::size_t count = 0;
   for (std::size_t row = 0; row < rows; ++row) {
     if (pool().ids()[row] == kNoObject) continue;
@@ -50,10 +62,9 @@ bool SweepAndPrune::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& 
       continue;
     }
     ++start_[strip_[row]];
-    sorted_[count++] = static_cast<std::uint64_t>(sortable(low[row])) << 32U | row;
+    items[count++] = static_cast<std::uint64_t>(sortable(low[row])) << 32U | row;
   }
-  const std::uint64_t* const by_key =
-      radix_sort(sorted_.data(), sorted_.data() + rows, count, 32, execution());
+  const std::uint64_t* const by_key = radix_sort(items, items + rows, count, 32, execution());
   std::uint32_t sum = 0;
   for (std::uint32_t& s : start_) {
     const std::uint32_t n = s;
@@ -68,13 +79,45 @@ bool SweepAndPrune::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& 
   // Every position has moved on to its strip's end, which is the next strip's start.
   for (std::size_t c = start_.size() - 1; c > 0; --c) start_[c] = start_[c - 1];
   start_[0] = 0;
-  return true;
+}
+
+// Where many objects begin within one reach of each other on the sweep axis, as when half of a
+// scene is tiny, a sweep would look at all of them: the tree prunes these better.
+void SweepAndPrune::drop_crowded(Column<std::uint32_t>& regular,
+                                 Column<std::uint32_t>& rest) noexcept {
+  const CellAxis& axis = layout_.axis(0);
+  const float* const low = pool().column(axis.axis);
+  const float window = axis.reach + 2.0F * layout_.drift();
+  std::uint32_t kept = 0;
+  for (std::size_t strip = 0; strip + 1 < start_.size(); ++strip) {
+    const std::uint32_t begin = start_[strip];
+    const std::uint32_t end = start_[strip + 1];
+    start_[strip] = kept;
+    std::uint32_t behind = begin;
+    std::uint32_t ahead = begin;
+    // Kept rows move to the front; the window is measured on the rows not yet passed and those
+    // noted in strip_, which is free from here on.
+    for (std::uint32_t i = begin; i < end; ++i) strip_[i] = regular[i];
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const float x = low[strip_[i]];
+      while (low[strip_[behind]] < x - window) ++behind;
+      while (ahead < end && low[strip_[ahead]] <= x + window) ++ahead;
+      if (ahead - behind > kCrowded) {
+        (void)rest.push_back(strip_[i]);
+      } else {
+        regular[kept++] = strip_[i];
+      }
+    }
+  }
+  start_[start_.size() - 1] = kept;
+  regular.set_size(kept);
 }
 
 void SweepAndPrune::finish_build() {
   const float* const low = pool().column(layout_.axis(0).axis);
-  key_.set_size(regular_rows());
   std::copy_n(low, regular_rows(), key_.data());
+  // Kernels load sixteen keys at once from any row.
+  std::fill_n(key_.data() + regular_rows(), kPadding, std::numeric_limits<float>::infinity());
 }
 
 bool SweepAndPrune::near_key(std::size_t row) const noexcept {
@@ -133,7 +176,6 @@ void SweepAndPrune::release_structure() noexcept {
   start_.release();
   key_.release();
   strip_.release();
-  sorted_.release();
 }
 
 void SweepAndPrune::add_structure_bytes(Footprint& footprint) const noexcept {
@@ -141,7 +183,6 @@ void SweepAndPrune::add_structure_bytes(Footprint& footprint) const noexcept {
   footprint.structure += start_.bytes();
   footprint.structure += key_.bytes();
   footprint.scratch += strip_.bytes();
-  footprint.scratch += sorted_.bytes();
 }
 
 std::size_t SweepAndPrune::cell_count() const noexcept {

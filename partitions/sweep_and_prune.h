@@ -32,6 +32,8 @@ class SweepAndPrune final : public RowPartition {
   void add_structure_bytes(Footprint& footprint) const noexcept override;
   [[nodiscard]] std::size_t cell_count() const noexcept override;
 
+  void sort_rows(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) noexcept;
+  void drop_crowded(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) noexcept;
   [[nodiscard]] bool near_key(std::size_t row) const noexcept;
   [[nodiscard]] bool fits_strip(std::size_t row, std::uint32_t strip) const noexcept;
   [[nodiscard]] StripView view() const noexcept;
@@ -40,7 +42,6 @@ class SweepAndPrune final : public RowPartition {
   Column<std::uint32_t> start_;  // first row of each strip, and the end
   Column<float> key_;            // by row: lower end on the sweep axis at the build
   Column<std::uint32_t> strip_;  // of each row, while building
-  Column<std::uint64_t> sorted_;
 };
 
 }  // namespace winnow

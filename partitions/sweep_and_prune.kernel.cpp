@@ -5,66 +5,47 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Sweeps rows [at, end) for box q of row r until a key shows that nothing further can touch it.
-template <typename Hits>
-bool sweep(const StripView& strips, const QueryBox& q, std::uint32_t r, std::uint32_t at,
-           std::uint32_t end, Hits& hits, PairSink& sink) {
-  const float stop = q.high[strips.axis[0].axis];
-  for (; at < end && strips.key[at] - strips.drift <= stop; at += kLanes) {
-    const Box16 box = load_slabs_unaligned<3>(strips.rows.column, at);
-    const Mask16 lanes = end - at < kLanes ? lanes_below(end - at) : 0xFFFFU;
-    if (!hits.make_room()) return false;
-    hits.add(r, at, overlap(box, q.low, q.high) & lanes);
-    ++sink.tests;
+/// A sweep goes on until a key shows that nothing further can touch the box.
+struct KeyStop {
+  const StripView& strips;
+  bool operator()(const QueryBox& q, std::uint32_t at) const {
+    return strips.key[at] - strips.drift <= q.high[strips.axis[0].axis];
   }
-  return true;
+};
+
+/// Moves `at` to the first row of [at, end) that may reach up to x; keys ascend. Sixteen keys a
+/// step: mostly one step is enough, and then it costs no branch.
+inline void skip_below(const StripView& strips, std::uint32_t& at, std::uint32_t end, float x) {
+  const Float16 bound = broadcast(x);
+  const Float16 drift = broadcast(strips.drift);
+  while (at < end) {
+    const Mask16 reaching = less_equal(bound, add(load_unaligned(strips.key + at), drift));
+    const unsigned below = reaching == 0 ? static_cast<unsigned>(kLanes) : first(reaching);
+    at = end - at < below ? end : at + below;
+    if (below < kLanes) return;
+  }
 }
 
-/// The first row of [at, end) that may reach up to x on the sweep axis.
+/// The first row of [at, end) that may reach up to x on the sweep axis. Halving without a branch:
+/// the number of steps depends on the length alone.
 std::uint32_t first_reaching(const StripView& strips, std::uint32_t at, std::uint32_t end,
                              float x) {
-  while (at < end) {
-    const std::uint32_t middle = at + (end - at) / 2;
-    if (strips.key[middle] + strips.drift < x) {
-      at = middle + 1;
-    } else {
-      end = middle;
-    }
+  std::uint32_t left = end - at;
+  while (left > 0) {
+    const std::uint32_t half = (left + 1) / 2;
+    at += strips.key[at + half - 1] + strips.drift < x ? half : 0;
+    left -= half;
   }
   return at;
 }
 
-bool strip_against(const StripView& strips, std::uint32_t own, std::uint32_t other, OwnHits& hits,
-                   PairSink& sink) {
-  const std::uint32_t end = strips.start[other + 1];
-  std::uint32_t from = strips.start[other];
-  if (from == end) return true;
-  for (std::uint32_t r = strips.start[own]; r < strips.start[own + 1]; ++r) {
-    // Keys ascend in both strips, so the start only moves forward: it goes by the key, as the box
-    // itself may have drifted either way.
-    const float x = strips.key[r] - strips.drift - strips.axis[0].reach;
-    while (from < end && strips.key[from] + strips.drift < x) ++from;
-    const QueryBox q(strips.rows.column, r);
-    if (!sweep(strips, q, r, from, end, hits, sink)) return false;
-  }
-  return true;
-}
-
-bool strip_self(const StripView& strips, std::uint32_t own, OwnHits& hits, PairSink& sink) {
-  const std::uint32_t end = strips.start[own + 1];
-  for (std::uint32_t r = strips.start[own]; r < end; ++r) {
-    const QueryBox q(strips.rows.column, r);
-    if (!sweep(strips, q, r, r + 1, end, hits, sink)) return false;
-  }
-  return true;
-}
-
 bool self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
   const std::uint32_t columns = strips.axis[1].count;
-  OwnHits hits(strips.rows, sink);
+  HitList<HitMode::unordered> hits(strips.rows, strips.rows.id, nullptr, sink);
+  RunList sweeps(strips.rows, strips.rows.column, hits, KeyStop{strips}, sink);
   for (std::uint32_t strip = begin; strip < end; ++strip) {
-    if (strips.start[strip] == strips.start[strip + 1]) continue;
-    if (!strip_self(strips, strip, hits, sink)) return false;
+    const std::uint32_t last = strips.start[strip + 1];
+    if (strips.start[strip] == last) continue;
     const std::uint32_t c = strip % columns;
     std::uint32_t others[4];
     int count = 0;
@@ -75,17 +56,31 @@ bool self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end,
       others[count++] = above;
       if (c + 1 < columns) others[count++] = above + 1;
     }
+    std::uint32_t from[4];
+    std::uint32_t to[4];
     for (int k = 0; k < count; ++k) {
-      if (!strip_against(strips, strip, others[k], hits, sink)) return false;
+      from[k] = strips.start[others[k]];
+      to[k] = strips.start[others[k] + 1];
+    }
+    for (std::uint32_t r = strips.start[strip]; r < last; ++r) {
+      // Keys ascend in every strip, so starts only move forward: they go by the key, as the box
+      // itself may have drifted either way.
+      const float x = strips.key[r] - strips.drift - strips.axis[0].reach;
+      if (!sweeps.add(r, r + 1, last)) return false;
+      for (int k = 0; k < count; ++k) {
+        skip_below(strips, from[k], to[k], x);
+        if (!sweeps.add(r, from[k], to[k])) return false;
+      }
     }
   }
-  return hits.flush();
+  return sweeps.finish() && hits.flush();
 }
 
 struct Query {
   template <HitMode Mode>
   static bool run(const StripView& strips, const QueryBatch& batch, PairSink& sink) {
     HitList<Mode> hits(strips.rows, batch.id, batch.moved, sink);
+    RunList sweeps(strips.rows, batch.column, hits, KeyStop{strips}, sink);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
       const QueryBox q(batch.column, row);
@@ -103,11 +98,11 @@ struct Query {
           const std::uint32_t strip = slow * strips.axis[1].count + mid;
           const std::uint32_t end = strips.start[strip + 1];
           const std::uint32_t from = first_reaching(strips, strips.start[strip], end, x);
-          if (!sweep(strips, q, row, from, end, hits, sink)) return false;
+          if (!sweeps.add(row, from, end)) return false;
         }
       }
     }
-    return hits.flush();
+    return sweeps.finish() && hits.flush();
   }
 };
 
