@@ -1,0 +1,195 @@
+// BoundsNSquared on spheres and k-DOPs: every pair of volumes that overlap, by the volumes' own
+// slow test.
+
+#include <winnow/core/kdop.h>
+#include <winnow/core/sphere.h>
+#include <winnow/partitions/bounds_n_squared.h>
+
+#include <cmath>
+#include <limits>
+
+#include "../support/config.h"
+#include "../support/random.h"
+#include "../support/scenes.h"
+#include "../support/world.h"
+
+namespace winnow::test {
+namespace {
+
+template <typename T>
+std::vector<Pair> volume_pairs(const std::vector<T>& volumes) {
+  std::vector<Pair> pairs;
+  for (ObjectId i = 0; i < volumes.size(); ++i) {
+    for (ObjectId j = i + 1; j < volumes.size(); ++j) {
+      if (volumes[i].overlaps(volumes[j])) pairs.push_back({i, j});
+    }
+  }
+  return pairs;
+}
+
+std::vector<Sphere> spheres_around(const std::vector<Aabb>& boxes) {
+  std::vector<Sphere> spheres;
+  for (const Aabb& box : boxes) spheres.push_back(Sphere::around(box));
+  return spheres;
+}
+
+// Tetrahedra in the boxes, so that k-DOPs tell apart what boxes do not.
+template <int K>
+std::vector<Kdop<K>> kdops_in(const std::vector<Aabb>& boxes) {
+  std::vector<Kdop<K>> kdops;
+  for (const Aabb& box : boxes) {
+    const Eigen::Vector3f e = box.max - box.min;
+    const std::vector<Eigen::Vector3f> corners{box.min, box.min + Eigen::Vector3f(e.x(), e.y(), 0),
+                                               box.min + Eigen::Vector3f(e.x(), 0, e.z()),
+                                               box.min + Eigen::Vector3f(0, e.y(), e.z())};
+    kdops.push_back(Kdop<K>::around(corners));
+  }
+  return kdops;
+}
+
+constexpr Volume volume_of(const Kdop<14>&) {
+  return Volume::kdop14;
+}
+constexpr Volume volume_of(const Kdop<18>&) {
+  return Volume::kdop18;
+}
+constexpr Volume volume_of(const Kdop<26>&) {
+  return Volume::kdop26;
+}
+
+class Volumes : public Conformance {
+ protected:
+  std::vector<Pair> pairs_of(BoundsNSquared& partition, Threads& threads) {
+    PairBuffer buffer;
+    const Status status =
+        threads.run([&] { return partition.self_pairs(buffer, {.order = Order::canonical}); });
+    EXPECT_EQ(status, Status::ok);
+    return {buffer.begin(), buffer.end()};
+  }
+
+  template <int K>
+  void expect_right_kdops() {
+    Threads threads(config().threads);
+    for (const std::size_t n : {1U, 17U, 600U}) {
+      BoundsNSquared partition({.execution = config().execution()}, volume_of(Kdop<K>{}));
+      std::vector<Kdop<K>> kdops = kdops_in<K>(mixed_boxes(n));
+      std::vector<Key> keys(n);
+      ASSERT_EQ(partition.insert(std::span<const Kdop<K>>(kdops), {}, keys), Status::ok);
+      EXPECT_EQ(pairs_of(partition, threads), volume_pairs(kdops));
+      kdops = kdops_in<K>(uniform_boxes(n));
+      ASSERT_EQ(partition.update(keys, std::span<const Kdop<K>>(kdops)), Status::ok);
+      EXPECT_EQ(pairs_of(partition, threads), volume_pairs(kdops));
+      Aabb box;
+      ASSERT_EQ(partition.bounds(keys[0], box), Status::ok);
+      EXPECT_EQ(box, kdops[0].bounds());
+    }
+  }
+};
+
+TEST_P(Volumes, that_are_14_dops_are_right) {
+  expect_right_kdops<14>();
+}
+TEST_P(Volumes, that_are_18_dops_are_right) {
+  expect_right_kdops<18>();
+}
+TEST_P(Volumes, that_are_26_dops_are_right) {
+  expect_right_kdops<26>();
+}
+
+// Every true pair; besides them only such as miss each other by less than a millionth.
+TEST_P(Volumes, that_are_spheres_are_right) {
+  Threads threads(config().threads);
+  for (const double scale : {1.0, 1e-12, 1e12}) {
+    BoundsNSquared partition({.execution = config().execution()}, Volume::sphere);
+    std::vector<Sphere> spheres = spheres_around(mixed_boxes(600));
+    // Touching spheres on a lattice, on which rounding must not lose a pair.
+    for (int i = 0; i < 60; ++i) {
+      spheres.push_back(
+          {{static_cast<float>(i % 5), static_cast<float>(i / 5 % 4), static_cast<float>(i / 20)},
+           0.5F});
+    }
+    for (Sphere& s : spheres) {
+      s.center *= static_cast<float>(scale);
+      s.radius *= static_cast<float>(scale);
+    }
+    std::vector<Key> keys(spheres.size());
+    ASSERT_EQ(partition.insert(spheres, {}, keys), Status::ok);
+    const std::vector<Pair> got = pairs_of(partition, threads);
+    EXPECT_TRUE(right_pairs(got, volume_pairs(spheres), false));
+    for (const Pair& pair : got) {
+      const Sphere& a = spheres[pair.first];
+      const Sphere& b = spheres[pair.second];
+      const double distance = (a.center.cast<double>() - b.center.cast<double>()).norm();
+      EXPECT_LE(distance * (1 - 1e-6),
+                static_cast<double>(a.radius) + static_cast<double>(b.radius));
+    }
+  }
+}
+
+TEST_P(Volumes, given_as_boxes_report_every_pair_of_boxes) {
+  Threads threads(config().threads);
+  const std::vector<Aabb> boxes = mixed_boxes(500);
+  const std::vector<Pair> truth = true_pairs(numbered(boxes));
+  for (const Volume volume :
+       {Volume::aabb, Volume::sphere, Volume::kdop14, Volume::kdop18, Volume::kdop26}) {
+    BoundsNSquared partition({.execution = config().execution()}, volume);
+    std::vector<Key> keys(boxes.size());
+    ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
+    EXPECT_EQ(partition.volume(), volume);
+    EXPECT_EQ(partition.is_exact(), volume == Volume::aabb);
+    EXPECT_TRUE(right_pairs(pairs_of(partition, threads), truth, partition.is_exact()));
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      Aabb box;
+      ASSERT_EQ(partition.bounds(keys[i], box), Status::ok);
+      EXPECT_TRUE((box.min.array() <= boxes[i].min.array()).all());
+      EXPECT_TRUE((box.max.array() >= boxes[i].max.array()).all());
+    }
+  }
+}
+
+TEST_P(Volumes, of_another_kind_than_the_partitions_are_refused) {
+  std::vector<Key> keys(1);
+  const std::vector<Sphere> sphere{{{0, 0, 0}, 1}};
+  const std::vector<Kdop<14>> kdop{Kdop<14>::around(Aabb{{0, 0, 0}, {1, 1, 1}})};
+  BoundsNSquared boxes;
+  BoundsNSquared kdops({}, Volume::kdop26);
+  for (BoundsNSquared* partition : {&boxes, &kdops}) {
+    EXPECT_EQ(partition->insert(sphere, {}, keys), Status::unsupported_volume);
+    EXPECT_EQ(partition->insert(std::span<const Kdop<14>>(kdop), {}, keys),
+              Status::unsupported_volume);
+    EXPECT_EQ(partition->update(keys, sphere), Status::unsupported_volume);
+    EXPECT_EQ(partition->size(), 0U);
+  }
+}
+
+TEST_P(Volumes, that_are_invalid_change_nothing) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  BoundsNSquared partition({.execution = config().execution()}, Volume::sphere);
+  std::vector<Sphere> spheres = spheres_around(uniform_boxes(40));
+  std::vector<Key> keys(spheres.size());
+  ASSERT_EQ(partition.insert(spheres, {}, keys), Status::ok);
+  for (const Sphere& bad :
+       {Sphere{{0, 0, 0}, -1}, Sphere{{nan, 0, 0}, 1}, Sphere{{0, 0, 0}, nan}}) {
+    std::vector<Sphere> some = spheres;
+    some[20] = bad;
+    std::vector<Key> fresh(some.size());
+    EXPECT_EQ(partition.insert(some, {}, fresh), Status::invalid_bounds);
+    EXPECT_EQ(partition.update(keys, some), Status::invalid_bounds);
+    EXPECT_EQ(partition.size(), spheres.size());
+  }
+}
+
+// The partition's volume is what is tested here; the suite's other partitions have but one.
+std::vector<Config> brute_force_configs() {
+  std::vector<Config> configs;
+  for (const Config& config : all_configs()) {
+    if (config.partition == "BoundsNSquared") configs.push_back(config);
+  }
+  return configs;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Volumes, testing::ValuesIn(brute_force_configs()),
+                         testing::PrintToStringParamName());
+
+}  // namespace
+}  // namespace winnow::test
