@@ -1,5 +1,7 @@
 #include <winnow/partitions/flat_grid.h>
 
+#include <winnow/partitions/task_lists.h>
+
 #include <algorithm>
 
 namespace winnow {
@@ -10,7 +12,6 @@ namespace {
 
 // More objects than this in a cell are pruned better by the tree.
 constexpr std::uint32_t kOverfull = 192;
-constexpr std::size_t kTasks = 64;
 
 }  // namespace
 
@@ -74,10 +75,20 @@ bool FlatGrid::fits(std::size_t row) const noexcept {
   return layout_.fits(pool(), row, static_cast<std::uint32_t>(after - start_.begin() - 1));
 }
 
-void FlatGrid::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) const noexcept {
-  const auto room = static_cast<std::uint32_t>(limit - rows.size());
-  const std::uint32_t found = flat_grid_kernels().find_misfits(view(), rows.end(), room);
-  rows.set_size(rows.size() + found);
+void FlatGrid::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept {
+  const GridView grid = view();
+  const std::size_t cells = layout_.axis(0).count;
+  append_in_order(
+      execution(), regular_tasks(), cell_.data(),
+      [&](std::size_t task) { return start_[first_line(task) * cells]; },
+      [&](std::size_t task, std::uint32_t* out) {
+        return flat_grid_kernels().find_misfits(grid, first_line(task), first_line(task + 1), out);
+      },
+      rows, limit);
+}
+
+std::uint32_t FlatGrid::first_line(std::size_t task) const noexcept {
+  return static_cast<std::uint32_t>(lines() * task / regular_tasks());
 }
 
 std::size_t FlatGrid::lines() const noexcept {
@@ -85,14 +96,11 @@ std::size_t FlatGrid::lines() const noexcept {
 }
 
 std::size_t FlatGrid::regular_tasks() const noexcept {
-  return regular_rows() == 0 ? 0 : std::min(kTasks, lines());
+  return regular_rows() == 0 ? 0 : std::min(kMostTasks, lines());
 }
 
 bool FlatGrid::run_regular_task(std::size_t task, PairSink& sink) const noexcept {
-  const std::size_t tasks = regular_tasks();
-  return flat_grid_kernels().self_pairs(view(), static_cast<std::uint32_t>(lines() * task / tasks),
-                                        static_cast<std::uint32_t>(lines() * (task + 1) / tasks),
-                                        sink);
+  return flat_grid_kernels().self_pairs(view(), first_line(task), first_line(task + 1), sink);
 }
 
 bool FlatGrid::query_regular(const QueryBatch& batch, PairSink& sink) const noexcept {

@@ -24,7 +24,7 @@ class FlatGrid final : public RowPartition {
  private:
   bool plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) override;
   [[nodiscard]] bool fits(std::size_t row) const noexcept override;
-  void find_misfits(Column<std::uint32_t>& rows, std::size_t limit) const noexcept override;
+  void find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept override;
   [[nodiscard]] std::size_t regular_tasks() const noexcept override;
   bool run_regular_task(std::size_t task, PairSink& sink) const noexcept override;
   bool query_regular(const QueryBatch& batch, PairSink& sink) const noexcept override;
@@ -35,11 +35,12 @@ class FlatGrid final : public RowPartition {
   void count_cells() noexcept;
   void drop_overfull() noexcept;
   [[nodiscard]] std::size_t lines() const noexcept;
+  [[nodiscard]] std::uint32_t first_line(std::size_t task) const noexcept;
   [[nodiscard]] GridView view() const noexcept;
 
   CellLayout layout_;
   Column<std::uint32_t> start_;  // first row of each cell, and the end
-  Column<std::uint32_t> cell_;   // cell of each row, while building
+  Column<std::uint32_t> cell_;   // cell of each row, while building; then scratch
 };
 
 }  // namespace winnow

@@ -103,27 +103,49 @@ bool query(const GridView& grid, const QueryBatch& batch, PairSink& sink) {
   return with_mode<Query>(grid, batch, sink);
 }
 
-std::uint32_t find_misfits(const GridView& grid, std::uint32_t* out, std::uint32_t limit) {
-  const std::uint32_t cells[3] = {grid.axis[0].count, grid.axis[1].count, grid.axis[2].count};
+/// What a row of one cell must keep to: its lower corner within [from, to], its edges within limit.
+struct CellBounds {
+  float from[3];
+  float to[3];
+  float limit[3];
+};
+
+bool keeps_to(const CellBounds& cell, const float* const* low, const float* const* high,
+              std::uint32_t r) {
+  bool kept = true;
+  for (int a = 0; a < 3; ++a) {
+    const float x = low[a][r];
+    kept &= (x >= cell.from[a]) & (x <= cell.to[a]) & (high[a][r] - x <= cell.limit[a]);
+  }
+  return kept;
+}
+
+std::uint32_t find_misfits(const GridView& grid, std::uint32_t begin, std::uint32_t end,
+                           std::uint32_t* out) {
+  const float* low[3];
+  const float* high[3];
+  CellBounds cell;
+  for (int a = 0; a < 3; ++a) {
+    low[a] = grid.rows.column[grid.axis[a].axis];
+    high[a] = grid.rows.column[3 + grid.axis[a].axis];
+    cell.limit[a] = grid.axis[a].limit;
+  }
   std::uint32_t found = 0;
-  const std::uint32_t* start = grid.start;
-  std::uint32_t at[3];
-  for (at[2] = 0; at[2] < cells[2]; ++at[2]) {
-    for (at[1] = 0; at[1] < cells[1]; ++at[1]) {
-      for (at[0] = 0; at[0] < cells[0]; ++at[0], ++start) {
-        for (std::uint32_t r = start[0]; r < start[1]; ++r) {
-          bool fits = true;
-          for (int a = 0; a < 3; ++a) {
-            const CellAxis& axis = grid.axis[a];
-            const float low = grid.rows.column[axis.axis][r];
-            const float edge = grid.rows.column[3 + axis.axis][r] - low;
-            fits &= (low >= axis.from[at[a]]) & (low <= axis.to[at[a]]) & (edge <= axis.limit);
-          }
-          // An empty row has no id and nothing to lose.
-          if (fits || grid.rows.id[r] == ~0U) continue;
-          if (found == limit) return found;
-          out[found++] = r;
-        }
+  const std::uint32_t cells = grid.axis[0].count;
+  for (std::uint32_t line = begin; line < end; ++line) {
+    const std::uint32_t at[2] = {line % grid.axis[1].count, line / grid.axis[1].count};
+    for (int a = 1; a < 3; ++a) {
+      cell.from[a] = grid.axis[a].from[at[a - 1]];
+      cell.to[a] = grid.axis[a].to[at[a - 1]];
+    }
+    const std::uint32_t* start = grid.start + std::size_t{line} * cells;
+    for (std::uint32_t c = 0; c < cells; ++c) {
+      cell.from[0] = grid.axis[0].from[c];
+      cell.to[0] = grid.axis[0].to[c];
+      for (std::uint32_t r = start[c]; r < start[c + 1]; ++r) {
+        out[found] = r;
+        // An empty row has no id and nothing to lose.
+        found += !keeps_to(cell, low, high, r) && grid.rows.id[r] != ~0U ? 1U : 0U;
       }
     }
   }

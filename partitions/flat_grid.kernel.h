@@ -21,8 +21,9 @@ struct FlatGridKernels {
   bool (*self_pairs)(const GridView&, std::uint32_t begin, std::uint32_t end, PairSink&);
   /// All hits of the batch's boxes.
   bool (*query)(const GridView&, const QueryBatch&, PairSink&);
-  /// Appends to `out` the rows that left their cell, until there are `limit`; returns how many.
-  std::uint32_t (*find_misfits)(const GridView&, std::uint32_t* out, std::uint32_t limit);
+  /// Writes to `out` the rows of lines [begin, end) that left their cell; returns how many.
+  std::uint32_t (*find_misfits)(const GridView&, std::uint32_t begin, std::uint32_t end,
+                                std::uint32_t* out);
 };
 
 WINNOW_KERNELS(FlatGridKernels, flat_grid_kernels);

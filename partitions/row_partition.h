@@ -74,7 +74,7 @@ class RowPartition : public Partition {
   [[nodiscard]] virtual bool fits(std::size_t) const noexcept { return true; }
   /// Appends the regular rows that no longer fit, until the list holds `limit`; any may have
   /// changed.
-  virtual void find_misfits(Column<std::uint32_t>&, std::size_t) const noexcept {}
+  virtual void find_misfits(Column<std::uint32_t>&, std::size_t) noexcept {}
 
   /// Pair finding within the regular region, in independent tasks.
   [[nodiscard]] virtual std::size_t regular_tasks() const noexcept { return 0; }

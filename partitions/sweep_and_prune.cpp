@@ -1,6 +1,7 @@
 #include <winnow/partitions/sweep_and_prune.h>
 
 #include <winnow/partitions/radix_sort.h>
+#include <winnow/partitions/task_lists.h>
 
 #include <algorithm>
 #include <bit>
@@ -12,7 +13,6 @@ WINNOW_DEFINE_KERNELS(SweepKernels, sweep_kernels)
 
 namespace {
 
-constexpr std::size_t kTasks = 64;
 constexpr std::size_t kPadding = 16;
 // Objects of a strip that begin within reach of one another.
 constexpr std::uint32_t kCrowded = 384;
@@ -138,25 +138,33 @@ bool SweepAndPrune::fits(std::size_t row) const noexcept {
   return fits_strip(row, static_cast<std::uint32_t>(after - start_.begin() - 1));
 }
 
-void SweepAndPrune::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) const noexcept {
-  for (std::uint32_t strip = 0; strip + 1 < start_.size(); ++strip) {
-    for (std::uint32_t row = start_[strip]; row < start_[strip + 1]; ++row) {
-      if (fits_strip(row, strip) || pool().ids()[row] == kNoObject) continue;
-      if (rows.size() == limit) return;
-      (void)rows.push_back(row);
-    }
-  }
+void SweepAndPrune::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept {
+  append_in_order(
+      execution(), regular_tasks(), strip_.data(),
+      [&](std::size_t task) { return start_[first_strip(task)]; },
+      [&](std::size_t task, std::uint32_t* out) {
+        std::size_t found = 0;
+        for (std::uint32_t strip = first_strip(task); strip < first_strip(task + 1); ++strip) {
+          for (std::uint32_t row = start_[strip]; row < start_[strip + 1]; ++row) {
+            out[found] = row;
+            found += !fits_strip(row, strip) && pool().ids()[row] != kNoObject ? 1U : 0U;
+          }
+        }
+        return found;
+      },
+      rows, limit);
 }
 
 std::size_t SweepAndPrune::regular_tasks() const noexcept {
-  return regular_rows() == 0 ? 0 : std::min(kTasks, layout_.cells());
+  return regular_rows() == 0 ? 0 : std::min(kMostTasks, layout_.cells());
+}
+
+std::uint32_t SweepAndPrune::first_strip(std::size_t task) const noexcept {
+  return static_cast<std::uint32_t>(layout_.cells() * task / regular_tasks());
 }
 
 bool SweepAndPrune::run_regular_task(std::size_t task, PairSink& sink) const noexcept {
-  const std::size_t tasks = regular_tasks();
-  return sweep_kernels().self_pairs(
-      view(), static_cast<std::uint32_t>(layout_.cells() * task / tasks),
-      static_cast<std::uint32_t>(layout_.cells() * (task + 1) / tasks), sink);
+  return sweep_kernels().self_pairs(view(), first_strip(task), first_strip(task + 1), sink);
 }
 
 bool SweepAndPrune::query_regular(const QueryBatch& batch, PairSink& sink) const noexcept {

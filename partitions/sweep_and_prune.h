@@ -24,7 +24,7 @@ class SweepAndPrune final : public RowPartition {
   bool plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) override;
   void finish_build() override;
   [[nodiscard]] bool fits(std::size_t row) const noexcept override;
-  void find_misfits(Column<std::uint32_t>& rows, std::size_t limit) const noexcept override;
+  void find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept override;
   [[nodiscard]] std::size_t regular_tasks() const noexcept override;
   bool run_regular_task(std::size_t task, PairSink& sink) const noexcept override;
   bool query_regular(const QueryBatch& batch, PairSink& sink) const noexcept override;
@@ -36,12 +36,13 @@ class SweepAndPrune final : public RowPartition {
   void drop_crowded(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) noexcept;
   [[nodiscard]] bool near_key(std::size_t row) const noexcept;
   [[nodiscard]] bool fits_strip(std::size_t row, std::uint32_t strip) const noexcept;
+  [[nodiscard]] std::uint32_t first_strip(std::size_t task) const noexcept;
   [[nodiscard]] StripView view() const noexcept;
 
   CellLayout layout_;
   Column<std::uint32_t> start_;  // first row of each strip, and the end
   Column<float> key_;            // by row: lower end on the sweep axis at the build
-  Column<std::uint32_t> strip_;  // of each row, while building
+  Column<std::uint32_t> strip_;  // of each row, while building; then scratch
 };
 
 }  // namespace winnow
