@@ -35,6 +35,10 @@ std::vector<Goal> key_flatness(const Ask& ask, const std::vector<Ask>& all, Lab&
 /// Runs (partition x threads x instruction set) that differ from the reference in some frame.
 std::vector<Goal> same_pairs(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
 
+/// The same in every recording of a folder, given from where the tool is started; none if the
+/// folder is not there.
+std::vector<Goal> same_pairs_in_recordings(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+
 /// "100,000 objects, 2 threads"
 [[nodiscard]] std::string on_size(std::size_t objects, int threads);
 

@@ -11,7 +11,7 @@ MeasureOptions race_on(const std::string& scene, std::size_t objects) {
   MeasureOptions options;
   options.scene = scene;
   options.objects = objects;
-  options.frames = objects <= 20'000 ? 41 : objects <= 300'000 ? 16 : 6;
+  options.frames = objects <= 20'000 ? 81 : objects <= 300'000 ? 26 : 8;
   return options;
 }
 

@@ -1,8 +1,11 @@
 #include "goals/kinds.h"
+#include "recordings/recording.h"
 #include "tool/table.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
+#include <system_error>
 
 namespace winnow::bench {
 namespace {
@@ -34,6 +37,25 @@ struct KeyQuestion {
     return lab.keys(partition, objects, random_order).of(operation, mode);
   }
 };
+
+/// Runs everything there is against the reference.
+Goal count_disagreeing(const Ask& ask, MeasureOptions options) {
+  options.threads = ask.get<std::vector<int>>("threads");
+  options.isas.assign(available_isas().begin(), available_isas().end());
+  options.reference = true;
+  const Measurement measured = measure(options);
+  Goal goal{.what = measured.scene + ", " + grouped(measured.objects) +
+                    " objects: runs that find other pairs than the reference",
+            .unit = "runs",
+            .asked = ask.number("asked"),
+            .detail = "of " + std::to_string(measured.partition_runs)};
+  for (const Run& run : measured.partitions()) {
+    if (run.same_pairs(measured.runs.back())) continue;
+    goal.measured += 1.0;
+    goal.detail += "; " + run.engine + " " + to_string(run.isa) + " " + std::to_string(run.threads);
+  }
+  return goal;
+}
 
 }  // namespace
 
@@ -89,22 +111,28 @@ std::vector<Goal> same_pairs(const Ask& ask, const std::vector<Ask>& /*all*/, La
   MeasureOptions options;
   options.scene = ask.text("scene");
   options.objects = ask.count("objects");
-  options.threads = ask.get<std::vector<int>>("threads");
-  options.isas.assign(available_isas().begin(), available_isas().end());
-  options.reference = true;
   options.frames = 6;
-  const Measurement measured = measure(options);
-  Goal goal{.what = options.scene + ", " + grouped(options.objects) +
-                    " objects: runs that find other pairs than the reference",
-            .unit = "runs",
-            .asked = ask.number("asked"),
-            .detail = "of " + std::to_string(measured.partition_runs)};
-  for (const Run& run : measured.partitions()) {
-    if (run.same_pairs(measured.runs.back())) continue;
-    goal.measured += 1.0;
-    goal.detail += "; " + run.engine + " " + to_string(run.isa) + " " + std::to_string(run.threads);
+  return {count_disagreeing(ask, options)};
+}
+
+std::vector<Goal> same_pairs_in_recordings(const Ask& ask, const std::vector<Ask>& /*all*/,
+                                           Lab& /*lab*/) {
+  std::vector<std::filesystem::path> files;
+  std::error_code absent;
+  for (const auto& entry : std::filesystem::directory_iterator(ask.text("folder"), absent)) {
+    const std::string name = entry.path().filename().string();
+    if (name.ends_with(".aabbs") || name.ends_with(".aabbs.xz")) files.push_back(entry.path());
   }
-  return {goal};
+  std::sort(files.begin(), files.end());
+  std::vector<Goal> goals;
+  for (const std::filesystem::path& file : files) {
+    const Recording recording = read_recording(file.string());
+    MeasureOptions options;
+    options.recording = &recording;
+    options.frames = recording.frames.size();
+    goals.push_back(count_disagreeing(ask, options));
+  }
+  return goals;
 }
 
 }  // namespace winnow::bench

@@ -31,9 +31,8 @@ class XzSource final : public ByteSource {
       if (result == LZMA_STREAM_END) {
         ended_ = true;
       } else if (result != LZMA_OK) {
-        throw RecordingError(path_ + ": the xz data is " +
-                             (result == LZMA_BUF_ERROR ? "cut off" : "damaged") +
-                             " at compressed byte " + std::to_string(stream_.total_in));
+        throw RecordingError(path_ + ": the xz data " + what_of(result) + " at compressed byte " +
+                             std::to_string(stream_.total_in));
       }
     }
     return out.size() - stream_.avail_out;
@@ -42,6 +41,11 @@ class XzSource final : public ByteSource {
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return std::nullopt; }
 
  private:
+  static const char* what_of(lzma_ret result) noexcept {
+    if (result == LZMA_BUF_ERROR) return "is cut off";
+    return result == LZMA_MEM_ERROR ? "needs more memory than there is" : "is damaged";
+  }
+
   void refill() {
     stream_.next_in = reinterpret_cast<const std::uint8_t*>(input_.data());
     stream_.avail_in = compressed_->read(input_);

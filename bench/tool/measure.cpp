@@ -25,10 +25,11 @@ std::vector<std::unique_ptr<Engine>> peers_for([[maybe_unused]] int threads) {
 }
 
 void add_peers(const MeasureOptions& options, std::vector<Contender>& contenders,
-               std::vector<std::string>& skipped) {
+               Measurement& result) {
+  std::vector<std::string>& skipped = result.skipped;
   for (const int threads : options.threads) {
     for (std::unique_ptr<Engine>& engine : peers_for(threads)) {
-      if (options.objects > engine->largest()) {
+      if (result.objects > engine->largest()) {
         const std::string text =
             engine->name() + " (more than " + grouped(engine->largest()) + " objects)";
         if (std::find(skipped.begin(), skipped.end(), text) == skipped.end()) {
@@ -60,11 +61,13 @@ const Run* Measurement::fastest(int threads) const {
 }
 
 Measurement measure(const MeasureOptions& options) {
+  const auto source = options.recording != nullptr
+                          ? play(*options.recording)
+                          : scene_or_error(options.scene, options.objects, options.seed);
   Measurement result;
-  result.scene = options.scene;
-  result.objects = options.objects;
-  const auto source = scene_or_error(options.scene, options.objects, options.seed);
-  const Partitions partitions = partitions_for(options.partitions, options.objects);
+  result.scene = source->name();
+  result.objects = source->boxes().size();
+  const Partitions partitions = partitions_for(options.partitions, result.objects);
   result.skipped = partitions.skipped;
 
   std::vector<Contender> contenders;
@@ -79,13 +82,13 @@ Measurement measure(const MeasureOptions& options) {
     }
   }
   result.partition_runs = contenders.size();
-  if (options.peers) add_peers(options, contenders, result.skipped);
+  if (options.peers) add_peers(options, contenders, result);
   if (options.reference) {
     contenders.push_back({std::make_unique<ReferenceSweep>(-1), 1, active_isa()});
   }
 
   RaceOptions race_options;
-  race_options.frames = options.frames != 0 ? options.frames : frames_for(options.objects);
+  race_options.frames = options.frames != 0 ? options.frames : frames_for(result.objects);
   std::optional<MachineClock> clock;
   if (options.machine_clock) {
     clock.emplace();

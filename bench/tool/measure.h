@@ -1,6 +1,7 @@
 #pragma once
 
 #include "engine/race.h"
+#include "recordings/recording.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +13,7 @@ namespace winnow::bench {
 /// One race on one scene: every partition at every thread count on every instruction set.
 struct MeasureOptions {
   std::string scene;
+  const Recording* recording = nullptr;  ///< instead of the scene
   std::size_t objects = 10'000;
   std::uint64_t seed = 1;
   std::vector<std::string> partitions{"all"};
