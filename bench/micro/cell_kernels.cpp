@@ -5,6 +5,7 @@
 #include <winnow/partitions/sweep_and_prune.kernel.h>
 
 #include <memory>
+#include <vector>
 
 namespace winnow::bench {
 namespace {
@@ -47,9 +48,12 @@ void add_grid() {
   });
   add_per_isa("kernel: grid find misfits", [=](benchmark::State& state) {
     const GridView grid = fixture->grid();
-    std::uint32_t misfit = 0;
+    // Room for every row, and for one full store behind the last.
+    std::vector<std::uint32_t> misfits(kObjects + 16);
     for (auto _ : state) {
-      benchmark::DoNotOptimize(flat_grid_kernels().find_misfits(grid, &misfit, 1));
+      benchmark::DoNotOptimize(
+          flat_grid_kernels().find_misfits(grid, 0, fixture->lines(), misfits.data()));
+      benchmark::ClobberMemory();
     }
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kObjects));
   });
