@@ -23,6 +23,8 @@ std::vector<Goal> scene_ratio(const Ask& ask, const std::vector<Ask>& all, Lab& 
 std::vector<Goal> speedup(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
 /// The instruction set chosen by default against each narrower one, frame by frame.
 std::vector<Goal> default_isa(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// Each kernel on a wide instruction set against itself on a narrow one.
+std::vector<Goal> kernel_speedup(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
 
 // other_kinds.cpp
 

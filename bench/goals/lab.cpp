@@ -44,6 +44,11 @@ const KeyCosts& Lab::keys(const std::string& partition, std::size_t objects, boo
   return at->second;
 }
 
+const std::optional<KernelTimes>& Lab::kernels() {
+  if (!kernels_) kernels_ = measure_kernels();
+  return *kernels_;
+}
+
 double Lab::bytes_per_object(const std::string& partition, const std::string& scene,
                              std::size_t objects) {
   MeasureOptions options = race_on(scene, objects);

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "engine/key_costs.h"
+#include "goals/kernel_times.h"
 #include "tool/measure.h"
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -24,6 +26,8 @@ class Lab {
   /// What operations on keys cost one partition.
   const KeyCosts& keys(const std::string& partition, std::size_t objects, bool random_order);
 
+  /// The kernels on every instruction set; none if their benchmarks are not built.
+  const std::optional<KernelTimes>& kernels();
   /// What one partition holds without results, the more of 1 and 2 threads.
   double bytes_per_object(const std::string& partition, const std::string& scene,
                           std::size_t objects);
@@ -40,6 +44,7 @@ class Lab {
  private:
   using Where = std::pair<std::string, std::size_t>;
 
+  std::optional<std::optional<KernelTimes>> kernels_;  // empty: not measured yet
   std::map<Where, Measurement> cells_;
   std::map<Where, Measurement> by_isa_;
   std::map<std::tuple<std::string, std::size_t, bool>, KeyCosts> keys_;

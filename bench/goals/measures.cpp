@@ -14,11 +14,12 @@ struct Kind {
   std::vector<Goal> (*measure)(const Ask&, const std::vector<Ask>&, Lab&);
 };
 
-constexpr std::array<Kind, 10> kKinds{{{"fastest_partition", fastest_partition},
+constexpr std::array<Kind, 11> kKinds{{{"fastest_partition", fastest_partition},
                                        {"no_slower_than_existing", no_slower_than_existing},
                                        {"scene_ratio", scene_ratio},
                                        {"speedup", speedup},
                                        {"default_isa", default_isa},
+                                       {"kernel_speedup", kernel_speedup},
                                        {"bytes_per_object", bytes_per_object},
                                        {"key_operation", key_operation},
                                        {"key_flatness", key_flatness},

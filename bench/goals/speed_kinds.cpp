@@ -118,4 +118,29 @@ std::vector<Goal> default_isa(const Ask& ask, const std::vector<Ask>& /*all*/, L
   return {goal};
 }
 
+std::vector<Goal> kernel_speedup(const Ask& ask, const std::vector<Ask>& /*all*/, Lab& lab) {
+  const std::string wide = ask.text("wide");
+  const std::string narrow = ask.text("narrow");
+  const auto isas = available_isas();
+  const bool here =
+      std::any_of(isas.begin(), isas.end(), [&](Isa isa) { return wide == to_string(isa); });
+  if (!here) return {};
+  Goal goal{.what = "every kernel: " + wide + " against " + narrow,
+            .unit = "times faster",
+            .sense = Goal::Sense::at_least,
+            .asked = ask.number("asked"),
+            .detail = "not measured: the target winnow_micro is not built"};
+  if (!lab.kernels()) return {goal};
+  std::vector<Goal> goals;
+  for (const auto& [kernel, times] : *lab.kernels()) {
+    if (!times.contains(wide) || !times.contains(narrow)) continue;
+    goal.what = kernel + ": " + wide + " against " + narrow;
+    goal.measured = times.at(narrow) / times.at(wide);
+    goal.detail = short_number(times.at(narrow) / 1e3) + " against " +
+                  short_number(times.at(wide) / 1e3) + " us";
+    goals.push_back(goal);
+  }
+  return goals;
+}
+
 }  // namespace winnow::bench
