@@ -13,19 +13,18 @@ install(TARGETS ${winnow_modules} winnow EXPORT winnow-targets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
-# Headers that only kernel files can include stay out.
+# Headers written in wide types, which only kernel files can include, stay out.
 foreach(room core simd partitions)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room}/
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow/${room}
           FILES_MATCHING PATTERN "*.h"
-          PATTERN "*.kernel.h" EXCLUDE
           PATTERN "wide.h" EXCLUDE
-          PATTERN "compress.h" EXCLUDE)
+          PATTERN "compress.h" EXCLUDE
+          PATTERN "hits.kernel.h" EXCLUDE)
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/pipeline/
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow/pipeline
         FILES_MATCHING PATTERN "*.h"
-        PATTERN "*.kernel.h" EXCLUDE
         PATTERN "winnow.h" EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/pipeline/winnow.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow)
