@@ -1,0 +1,39 @@
+# Sourced by tests/run: what a build for AArch64 on another Debian machine needs.
+
+WINNOW_AARCH64_PACKAGES=(g++-aarch64-linux-gnu qemu-user)
+
+# winnow_aarch64_root FOLDER: fills FOLDER with the arm64 libraries that winnow and its tests use.
+# They are only unpacked, not installed, with package lists of their own: nothing on the machine
+# changes, so no package of its own architecture can be in the way, and no rights are needed.
+winnow_aarch64_root() {
+  local root=$1
+  [[ -e "$root/complete" ]] && return
+  local apt=$root/apt
+  mkdir -p "$apt/lists/partial" "$apt/archives/partial"
+  : >"$apt/status"
+  local options=(
+    -o APT::Architecture=arm64 -o APT::Architectures=arm64
+    -o Dir::State="$apt" -o Dir::State::lists="$apt/lists" -o Dir::State::status="$apt/status"
+    -o Dir::Cache="$apt" -o Debug::NoLocking=true
+  )
+  winnow_quietly "$root/log" apt-get "${options[@]}" update
+  (cd "$apt" && winnow_quietly "$root/log" apt-get "${options[@]}" download \
+    libeigen3-dev libgtest-dev librapidcheck-dev libtbb-dev libtbb12 libxsimd-dev)
+  local package
+  for package in "$apt"/*.deb; do
+    dpkg-deb -x "$package" "$root"
+  done
+  rm -rf "$apt"
+  touch "$root/complete"
+}
+
+# winnow_quietly LOG COMMAND...: shows the command's output only if it fails.
+winnow_quietly() {
+  local log=$1
+  shift
+  "$@" >"$log" 2>&1 || {
+    cat "$log" >&2
+    echo "failed: $*" >&2
+    return 1
+  }
+}
