@@ -58,11 +58,11 @@ struct Kdop {
         if (weight == 0) continue;
         const auto a = static_cast<double>(box.min[static_cast<Eigen::Index>(axis)]);
         const auto b = static_cast<double>(box.max[static_cast<Eigen::Index>(axis)]);
-        lo += weight > 0 ? a : -b;
-        hi += weight > 0 ? b : -a;
+        lo = add_down(lo, weight > 0 ? a : -b);
+        hi = add_up(hi, weight > 0 ? b : -a);
       }
-      result.min[s] = down(lo, directions[s]);
-      result.max[s] = up(hi, directions[s]);
+      result.min[s] = round_down(lo);
+      result.max[s] = round_up(hi);
     }
     return result;
   }
@@ -107,22 +107,6 @@ struct Kdop {
     std::array<float, kSlabs> result{};
     for (float& f : result) f = value;
     return result;
-  }
-
-  // Sums of up to three floats are inexact in double only when their exponents are far apart: one
-  // more ulp covers that. A single-axis slab is copied as it is.
-  static float down(double sum, const std::array<int, 3>& direction) noexcept {
-    const float rounded = round_down(sum);
-    return axial(direction) ? rounded
-                            : std::nextafter(rounded, -std::numeric_limits<float>::infinity());
-  }
-  static float up(double sum, const std::array<int, 3>& direction) noexcept {
-    const float rounded = round_up(sum);
-    return axial(direction) ? rounded
-                            : std::nextafter(rounded, std::numeric_limits<float>::infinity());
-  }
-  static bool axial(const std::array<int, 3>& d) noexcept {
-    return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] == 1;
   }
 };
 

@@ -1,25 +1,44 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace winnow {
 
-/// Largest float that is <= `value`. NaN stays NaN; below the float range gives -infinity.
-[[nodiscard]] inline float round_down(double value) noexcept {
-  const float nearest = static_cast<float>(value);
-  return static_cast<double>(nearest) > value
-             ? std::nextafter(nearest, -std::numeric_limits<float>::infinity())
-             : nearest;
+/// The float after a finite or -infinite `value`, going up. By its bits: cheaper than
+/// std::nextafter.
+[[nodiscard]] constexpr float next_up(float value) noexcept {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  if ((bits & 0x7FFFFFFFU) == 0) return std::numeric_limits<float>::denorm_min();
+  return std::bit_cast<float>((bits >> 31U) != 0 ? bits - 1U : bits + 1U);
 }
 
 /// Smallest float that is >= `value`. NaN stays NaN; above the float range gives +infinity.
-[[nodiscard]] inline float round_up(double value) noexcept {
+[[nodiscard]] constexpr float round_up(double value) noexcept {
   const float nearest = static_cast<float>(value);
-  return static_cast<double>(nearest) < value
-             ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
-             : nearest;
+  return static_cast<double>(nearest) < value ? next_up(nearest) : nearest;
+}
+
+/// Largest float that is <= `value`. NaN stays NaN; below the float range gives -infinity.
+[[nodiscard]] constexpr float round_down(double value) noexcept {
+  return -round_up(-value);
+}
+
+/// Largest double that is <= the exact a + b, for finite sums. The rounding error of the sum is
+/// itself a double and found exactly (Knuth, TAOCP vol. 2, 4.2.2, theorem B).
+[[nodiscard]] inline double add_down(double a, double b) noexcept {
+  const double sum = a + b;
+  const double shadow = sum - a;
+  const double error = (a - (sum - shadow)) + (b - shadow);
+  return error < 0.0 ? std::nextafter(sum, -std::numeric_limits<double>::infinity()) : sum;
+}
+
+/// Smallest double that is >= the exact a + b, for finite sums.
+[[nodiscard]] inline double add_up(double a, double b) noexcept {
+  return -add_down(-a, -b);
 }
 
 /// Component-wise `round_down`.

@@ -3,6 +3,7 @@
 #include <winnow/core/aabb.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 
 namespace winnow {
@@ -25,20 +26,33 @@ struct Sphere {
 
   /// The smallest float box that contains the ball.
   [[nodiscard]] Aabb bounds() const noexcept {
-    const Eigen::Vector3d c = center.cast<double>();
-    const Eigen::Vector3d r = Eigen::Vector3d::Constant(static_cast<double>(radius));
-    return Aabb::outward(c - r, c + r);
+    Aabb box;
+    const auto r = static_cast<double>(radius);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto c = static_cast<double>(center[axis]);
+      box.min[axis] = round_down(add_down(c, -r));
+      box.max[axis] = round_up(add_up(c, r));
+    }
+    return box;
   }
 
   /// A ball that contains a box of finite extents, rounded outward: at most 2 ulp larger than the
   /// smallest one about the box's rounded centre.
   [[nodiscard]] static Sphere around(const Aabb& box) noexcept {
-    const Eigen::Vector3d lo = box.min.cast<double>();
-    const Eigen::Vector3d hi = box.max.cast<double>();
-    const Eigen::Vector3f center = (0.5 * (lo + hi)).cast<float>();
-    const Eigen::Vector3d c = center.cast<double>();
-    const double reach = (hi - c).cwiseMax(c - lo).norm();
-    return {center, round_up(reach * (1.0 + 1e-15))};
+    // Scalars on purpose: g++ 12 at -O2 vectorises the same in Eigen's types together with the
+    // radius beside the centre, and loses the rounding of the radius.
+    Sphere sphere;
+    double square = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto lo = static_cast<double>(box.min[axis]);
+      const auto hi = static_cast<double>(box.max[axis]);
+      const auto c = static_cast<float>(0.5 * (lo + hi));
+      const double reach = std::max(hi - static_cast<double>(c), static_cast<double>(c) - lo);
+      sphere.center[axis] = c;
+      square += reach * reach;
+    }
+    sphere.radius = round_up(std::sqrt(square) * (1.0 + 1e-15));
+    return sphere;
   }
 };
 

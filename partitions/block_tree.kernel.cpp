@@ -5,10 +5,20 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-void reduce(const float* const* from, std::size_t i, float* const* to) {
-  for (int s = 0; s < 3; ++s) {
-    to[s][i] = reduce_min(load(from[s] + i * kLanes));
-    to[3 + s][i] = reduce_max(load(from[3 + s] + i * kLanes));
+/// Nodes [begin, end) of `to` from 16 boxes each of `from`.
+void reduce(const float* const* from, std::uint32_t begin, std::uint32_t end, float* const* to) {
+  std::size_t i = begin;
+  for (; i + kLanes <= end; i += kLanes) {
+    for (int s = 0; s < 3; ++s) {
+      store_unaligned(to[s] + i, reduce_min_rows(from[s] + i * kLanes));
+      store_unaligned(to[3 + s] + i, reduce_max_rows(from[3 + s] + i * kLanes));
+    }
+  }
+  for (; i < end; ++i) {
+    for (int s = 0; s < 3; ++s) {
+      to[s][i] = reduce_min(load(from[s] + i * kLanes));
+      to[3 + s][i] = reduce_max(load(from[3 + s] + i * kLanes));
+    }
   }
 }
 
@@ -17,12 +27,12 @@ void refit_leaves(const TreeView& tree, std::uint32_t begin, std::uint32_t end) 
   for (int c = 0; c < 6; ++c) {
     shifted[c] = tree.rows.column[c] + std::size_t{tree.first_block} * kLanes;
   }
-  for (std::uint32_t i = begin; i < end; ++i) reduce(shifted, i, tree.node[0]);
+  reduce(shifted, begin, end, tree.node[0]);
 }
 
 void refit_nodes(const TreeView& tree, std::uint32_t level, std::uint32_t begin,
                  std::uint32_t end) {
-  for (std::uint32_t i = begin; i < end; ++i) reduce(tree.node[level - 1], i, tree.node[level]);
+  reduce(tree.node[level - 1], begin, end, tree.node[level]);
 }
 
 /// Calls visit(child, box query) for every node of `stop` level that overlaps `q`, in order, from

@@ -65,7 +65,7 @@ class RowPartition : public Partition {
 
   /// Chooses, at a build, the rows of the regular region and their order: appends row numbers to
   /// `regular` (which has room for every row and may be left with kNoObject entries as padding) and
-  /// all other live rows to `rest`. False if memory is refused; nothing may have changed then. The
+  /// all other live rows to `rest`. False if memory is refused: another build follows then. The
   /// default makes every live row part of the rest.
   virtual bool plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest);
   /// Called when the rows stand in the planned order.

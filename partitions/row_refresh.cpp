@@ -67,7 +67,8 @@ Status RowPartition::build() {
     ++builds_;
     return Status::ok;
   }
-  // Everything that can fail comes first.
+  // The rows are untouched until everything that can fail is done; the structure may be half planned.
+  built_ = false;
   const std::size_t room = pool_.rows() + 4 * kBlock;
   order_.clear();
   list_.clear();
@@ -77,9 +78,8 @@ Status RowPartition::build() {
   if (!sort_by_morton(pool_, {list_.data(), rest}, sort_scratch_, execution_for(rest))) {
     return Status::out_of_memory;
   }
-  if (rest != 0) {
-    while (order_.size() % kBlock != 0) (void)order_.push_back(kNoObject);
-  }
+  // The tree's blocks begin behind the regular ones: no block belongs to both.
+  while (order_.size() % kBlock != 0) (void)order_.push_back(kNoObject);
   const std::size_t first_block = order_.size() / kBlock;
   if (!order_.resize(order_.size() + rest)) return Status::out_of_memory;
   std::copy_n(list_.data(), rest, order_.end() - rest);
@@ -87,7 +87,6 @@ Status RowPartition::build() {
   if (!pool_.reserve_exact(rows) || !spare_.reserve(pool_.capacity() + 2 * kBlock)) {
     return Status::out_of_memory;
   }
-  built_ = false;
   if (!tree_.cover(first_block, (rest + kBlock - 1) / kBlock)) return Status::out_of_memory;
 
   const Execution execution = execution_for(rows);

@@ -114,6 +114,7 @@ void SweepAndPrune::drop_crowded(Column<std::uint32_t>& regular,
 }
 
 void SweepAndPrune::finish_build() {
+  if (regular_rows() == 0) return;
   const float* const low = pool().column(layout_.axis(0).axis);
   std::copy_n(low, regular_rows(), key_.data());
   // Kernels load sixteen keys at once from any row.

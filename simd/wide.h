@@ -189,6 +189,85 @@ inline float reduce_max(const Float16& v) {
 #endif
 }
 
+#if defined(WINNOW_ISA_IS_avx512)
+
+/// Lane i is the smallest (largest) of the floats [16 i, 16 i + 16) of 256 at p, which is 64-byte
+/// aligned: a transposition that halves by min (max) at every step, a third of the work of sixteen
+/// reductions.
+template <typename Pick>
+inline Float16 reduce_rows(const float* p, Pick&& pick) {
+  __m512 quad[4];
+  for (int k = 0; k < 4; ++k) {
+    const float* q = p + k * 4 * kLanes;
+    const __m512 a = _mm512_load_ps(q);
+    const __m512 b = _mm512_load_ps(q + 16);
+    const __m512 c = _mm512_load_ps(q + 32);
+    const __m512 d = _mm512_load_ps(q + 48);
+    const __m512 ab = pick(_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b));
+    const __m512 cd = pick(_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d));
+    quad[k] = pick(_mm512_shuffle_ps(ab, cd, 0x44), _mm512_shuffle_ps(ab, cd, 0xEE));
+  }
+  const __m512 low = pick(_mm512_shuffle_f32x4(quad[0], quad[1], 0x88),
+                          _mm512_shuffle_f32x4(quad[0], quad[1], 0xDD));
+  const __m512 high = pick(_mm512_shuffle_f32x4(quad[2], quad[3], 0x88),
+                           _mm512_shuffle_f32x4(quad[2], quad[3], 0xDD));
+  Float16 r;
+  r.part[0] = pick(_mm512_shuffle_f32x4(low, high, 0x88), _mm512_shuffle_f32x4(low, high, 0xDD));
+  return r;
+}
+inline Float16 reduce_min_rows(const float* p) {
+  return reduce_rows(p, [](__m512 a, __m512 b) { return _mm512_min_ps(a, b); });
+}
+inline Float16 reduce_max_rows(const float* p) {
+  return reduce_rows(p, [](__m512 a, __m512 b) { return _mm512_max_ps(a, b); });
+}
+
+#elif defined(WINNOW_ISA_IS_avx2)
+
+template <typename Pick>
+inline Float16 reduce_rows(const float* p, Pick&& pick) {
+  Float16 r;
+  for (int half = 0; half < 2; ++half) {
+    __m256 quad[2];
+    for (int k = 0; k < 2; ++k) {
+      const float* q = p + (half * 8 + k * 4) * kLanes;
+      __m256 row[4];
+      for (int i = 0; i < 4; ++i) {
+        row[i] = pick(_mm256_load_ps(q + i * kLanes), _mm256_load_ps(q + i * kLanes + 8));
+      }
+      const __m256 ab =
+          pick(_mm256_unpacklo_ps(row[0], row[1]), _mm256_unpackhi_ps(row[0], row[1]));
+      const __m256 cd =
+          pick(_mm256_unpacklo_ps(row[2], row[3]), _mm256_unpackhi_ps(row[2], row[3]));
+      quad[k] = pick(_mm256_shuffle_ps(ab, cd, 0x44), _mm256_shuffle_ps(ab, cd, 0xEE));
+    }
+    r.part[half] = pick(_mm256_permute2f128_ps(quad[0], quad[1], 0x20),
+                        _mm256_permute2f128_ps(quad[0], quad[1], 0x31));
+  }
+  return r;
+}
+inline Float16 reduce_min_rows(const float* p) {
+  return reduce_rows(p, [](__m256 a, __m256 b) { return _mm256_min_ps(a, b); });
+}
+inline Float16 reduce_max_rows(const float* p) {
+  return reduce_rows(p, [](__m256 a, __m256 b) { return _mm256_max_ps(a, b); });
+}
+
+#else
+
+inline Float16 reduce_min_rows(const float* p) {
+  alignas(64) float lane[kLanes];
+  for (int i = 0; i < kLanes; ++i) lane[i] = reduce_min(load(p + i * kLanes));
+  return load(lane);
+}
+inline Float16 reduce_max_rows(const float* p) {
+  alignas(64) float lane[kLanes];
+  for (int i = 0; i < kLanes; ++i) lane[i] = reduce_max(load(p + i * kLanes));
+  return load(lane);
+}
+
+#endif
+
 /// Sixteen boxes, or sixteen volumes of `Slabs` slabs: the lower ends, then the upper ends.
 template <int Slabs>
 struct Slabs16 {
