@@ -1,0 +1,186 @@
+// Recordings and built-in scenes: what is written is what is read, whatever is not a recording is
+// refused, and a scene is the same whenever it is made.
+
+#include "recordings/recording.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace winnow::bench {
+namespace {
+
+constexpr std::size_t kHeader = 304;
+constexpr std::size_t kBox = 32;
+
+class Recordings : public testing::Test {
+ protected:
+  Recordings() { std::filesystem::create_directories(folder_); }
+  ~Recordings() override { std::filesystem::remove_all(folder_); }
+
+  // A scene of 20 boxes with 3 steps: 4 frames.
+  std::vector<char> record(const std::string& scene = "uniform") {
+    const auto source = make_scene(scene, 20, 7);
+    write_recording(path_, *source, "box", 3);
+    std::ifstream file(path_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  void write(const std::vector<char>& bytes) {
+    std::ofstream file(path_, std::ios::binary | std::ios::trunc);
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  }
+
+  template <typename T>
+  static void put(std::vector<char>& bytes, std::size_t at, T value) {
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+  }
+
+  void expect_refused(const std::vector<char>& bytes, const char* why) {
+    write(bytes);
+    EXPECT_THROW((void)read_recording(path_), RecordingError) << why;
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() /
+      ("winnow_" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + "_" +
+       testing::UnitTest::GetInstance()->current_test_info()->name());
+  std::string path_ = (folder_ / "scene.aabbs").string();
+};
+
+TEST_F(Recordings, come_back_frame_by_frame) {
+  for (const SceneInfo& info : scene_infos()) {
+    record(std::string(info.name));
+    const Recording recording = read_recording(path_);
+    EXPECT_EQ(recording.scene, info.name);
+    EXPECT_EQ(recording.object_type, "box");
+    ASSERT_EQ(recording.frames.size(), 4U);
+    const auto source = make_scene(info.name, 20, 7);
+    const auto player = play(recording);
+    for (std::size_t frame = 0; frame < 4; ++frame) {
+      const std::vector<Aabb> boxes(source->boxes().begin(), source->boxes().end());
+      EXPECT_EQ(recording.frames[frame], boxes) << info.name << ", frame " << frame;
+      EXPECT_EQ(std::vector<Aabb>(player->boxes().begin(), player->boxes().end()), boxes);
+      EXPECT_EQ(player->advance(), frame < 3);
+      EXPECT_TRUE(source->advance());
+    }
+  }
+}
+
+TEST_F(Recordings, with_one_frame_less_than_the_format_says_are_read) {
+  std::vector<char> bytes = record();
+  put(bytes, 260, std::int32_t{4});  // 4 steps would make 5 frames
+  write(bytes);
+  EXPECT_EQ(read_recording(path_).frames.size(), 4U);
+}
+
+TEST_F(Recordings, of_another_size_are_refused) {
+  const std::vector<char> good = record();
+  for (const std::size_t size : {std::size_t{0}, std::size_t{100}, kHeader - 1, kHeader,
+                                 kHeader + 10, good.size() - kBox, good.size() - 1}) {
+    expect_refused({good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)}, "cut off");
+  }
+  std::vector<char> longer = good;
+  longer.push_back(0);
+  expect_refused(longer, "one byte more");
+}
+
+TEST_F(Recordings, with_a_false_header_are_refused) {
+  const std::vector<char> good = record();
+  for (const std::int32_t count : {0, -1, 19, 21, 0x7FFFFFFF, -0x7FFFFFFF}) {
+    std::vector<char> bad = good;
+    put(bad, 256, count);
+    expect_refused(bad, "objects");
+  }
+  for (const std::int32_t steps : {-1, 0, 1, 5, 0x7FFFFFFF}) {
+    std::vector<char> bad = good;
+    put(bad, 260, steps);
+    expect_refused(bad, "steps");
+  }
+  std::vector<char> bad = good;
+  bad[3] = '\x01';
+  expect_refused(bad, "a character that is not printable");
+}
+
+TEST_F(Recordings, with_a_bad_box_are_refused) {
+  const std::vector<char> good = record();
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const std::size_t at : {std::size_t{272}, kHeader, good.size() - kBox}) {
+    std::vector<char> bad = good;
+    put(bad, at, nan);
+    expect_refused(bad, "NaN");
+    put(bad, at, 1e30F);
+    expect_refused(bad, "inverted");
+  }
+}
+
+TEST_F(Recordings, that_are_not_there_are_refused) {
+  EXPECT_THROW((void)read_recording((folder_ / "none.aabbs").string()), RecordingError);
+}
+
+TEST(Scenes, are_the_same_whenever_they_are_made) {
+  for (const SceneInfo& info : scene_infos()) {
+    const auto a = make_scene(info.name, 300, 1);
+    const auto b = make_scene(info.name, 300, 1);
+    const auto other = make_scene(info.name, 300, 2);
+    for (int frame = 0; frame < 5; ++frame) {
+      ASSERT_TRUE(std::ranges::equal(a->boxes(), b->boxes())) << info.name << ", frame " << frame;
+      EXPECT_FALSE(std::ranges::equal(a->boxes(), other->boxes())) << info.name;
+      a->advance();
+      b->advance();
+      other->advance();
+    }
+  }
+}
+
+TEST(Scenes, stay_valid_and_inside_their_world) {
+  for (const SceneInfo& info : scene_infos()) {
+    for (const std::size_t objects : {1U, 2U, 500U}) {
+      const auto scene = make_scene(info.name, objects, 3);
+      const Aabb world = scene->world();
+      for (int frame = 0; frame < 20; ++frame) {
+        ASSERT_EQ(scene->boxes().size(), objects) << info.name;
+        for (const Aabb& box : scene->boxes()) {
+          ASSERT_TRUE(box.is_valid()) << info.name;
+          Aabb merged = world;
+          merged.merge(box);
+          ASSERT_EQ(merged, world) << info.name << ", frame " << frame;
+        }
+        scene->advance();
+      }
+    }
+  }
+}
+
+TEST(Scenes, move_as_their_names_say) {
+  const auto moved_share = [](const char* name) {
+    const auto scene = make_scene(name, 4000, 5);
+    const std::vector<Aabb> before(scene->boxes().begin(), scene->boxes().end());
+    scene->advance();
+    std::size_t moved = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      if (!(before[i] == scene->boxes()[i])) ++moved;
+    }
+    return static_cast<double>(moved) / static_cast<double>(before.size());
+  };
+  EXPECT_GT(moved_share("uniform"), 0.99);
+  EXPECT_NEAR(moved_share("sleepy"), 0.05, 0.02);
+}
+
+TEST(Scenes, of_an_unknown_name_are_none) {
+  EXPECT_EQ(make_scene("no_such", 10, 1), nullptr);
+}
+
+}  // namespace
+}  // namespace winnow::bench
