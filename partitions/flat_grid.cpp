@@ -11,7 +11,7 @@ WINNOW_DEFINE_KERNELS(FlatGridKernels, flat_grid_kernels)
 namespace {
 
 // More objects than this in a cell are pruned better by the tree.
-constexpr std::uint32_t kOverfull = 192;
+constexpr std::uint32_t kOverfull = 48;
 
 }  // namespace
 
