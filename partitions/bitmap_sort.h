@@ -10,20 +10,16 @@
 
 namespace winnow {
 
-/// Words of scratch that `sort_unique` wants for values below `limit`.
+/// Words of a bitmap for values below `limit`, of which 32 bits can be read from any value on.
 [[nodiscard]] constexpr std::size_t bitmap_words(std::size_t limit) noexcept {
-  return limit / 64 + 1;
+  return limit / 64 + 2;
 }
 
-/// Sorts values below `limit` and drops repeats; returns how many are left. O(values + limit / 64)
-/// by a bitmap, O(values log values) where that is less. `words` must hold `bitmap_words(limit)`.
+/// Sorts values below `limit` and drops repeats; returns how many are left. `words` must hold
+/// `bitmap_words(limit)` and is left as the bitmap of the values. O(values + limit / 64).
 inline std::size_t sort_unique(std::span<std::uint32_t> values, std::size_t limit,
                                Column<std::uint64_t>& words) noexcept {
   const std::size_t needed = bitmap_words(limit);
-  if (values.size() * 8 < needed) {
-    std::sort(values.begin(), values.end());
-    return static_cast<std::size_t>(std::unique(values.begin(), values.end()) - values.begin());
-  }
   std::fill_n(words.data(), needed, 0);
   for (const std::uint32_t v : values) words[v >> 6U] |= std::uint64_t{1} << (v & 63U);
   std::size_t count = 0;

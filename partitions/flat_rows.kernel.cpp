@@ -162,11 +162,13 @@ struct Query {
       const auto q = batch.is_box ? Test::box(batch, row) : Test::same(batch, row);
       for (std::uint32_t b = 0; b < blocks; ++b) {
         const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
-        const Mask16 hits = batch.is_box ? Test::test_box(block, q) : Test::test(block, q);
+        Mask16 hits = batch.is_box ? Test::test_box(block, q) : Test::test(block, q);
+        if constexpr (Mode == HitMode::moved) {
+          hits &= reported_lanes(batch.moved, row, b * kLanes);
+        }
         if (hits == 0) continue;
         if (!has_room(sink)) return false;
-        report<Mode>(hits, view.rows.id + std::size_t{b} * kLanes, batch.id[row], batch.moved,
-                     sink);
+        report<Mode>(hits, view.rows.id + std::size_t{b} * kLanes, batch.id[row], sink);
       }
       sink.tests += blocks;
     }

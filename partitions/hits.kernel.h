@@ -21,31 +21,29 @@ struct QueryBox {
         high{column[3][r], column[4][r], column[5][r]} {}
 };
 
-inline bool is_moved(const std::uint64_t* moved, std::uint32_t id) {
-  return (moved[id >> 6U] >> (id & 63U) & 1U) != 0;
+/// The lanes of the rows from `at` on that row r reports in HitMode::moved: those that did not
+/// move, and those that did and stand behind r. `moved` is readable for 32 bits from any row on.
+inline Mask16 reported_lanes(const std::uint64_t* moved, std::uint32_t r, std::uint32_t at) {
+  std::uint32_t bits;
+  __builtin_memcpy(&bits, reinterpret_cast<const unsigned char*>(moved) + (at >> 3U), sizeof bits);
+  bits >>= at & 7U;
+  const Mask16 up_to_r = r < at ? 0U : r - at >= kLanes ? 0xFFFFU : lanes_below(r - at + 1);
+  return ~(bits & up_to_r);
 }
 
 /// Reports the hits `mask` among the ids at `ids` for query q; there must be room.
 template <HitMode Mode>
-inline void report(Mask16 mask, const std::uint32_t* ids, std::uint32_t q,
-                   const std::uint64_t* moved, PairSink& sink) {
-  if constexpr (Mode == HitMode::unordered) {
-    sink.cursor += 2 * emit_pairs<true>(mask, load_unaligned(ids), q, sink.cursor);
-  } else if constexpr (Mode == HitMode::query_first) {
+inline void report(Mask16 mask, const std::uint32_t* ids, std::uint32_t q, PairSink& sink) {
+  if constexpr (Mode == HitMode::query_first) {
     sink.cursor += 2 * emit_pairs<false>(mask, load_unaligned(ids), q, sink.cursor);
-  } else {
+  } else if constexpr (Mode == HitMode::query_second) {
     for (; mask != 0; mask &= mask - 1) {
-      const std::uint32_t c = ids[first(mask)];
-      if constexpr (Mode == HitMode::query_second) {
-        sink.cursor[0] = c;
-        sink.cursor[1] = q;
-        sink.cursor += 2;
-      } else if (c != q && !(c < q && is_moved(moved, c))) {
-        sink.cursor[0] = c < q ? c : q;
-        sink.cursor[1] = c < q ? q : c;
-        sink.cursor += 2;
-      }
+      sink.cursor[0] = ids[first(mask)];
+      sink.cursor[1] = q;
+      sink.cursor += 2;
     }
+  } else {
+    sink.cursor += 2 * emit_pairs<true>(mask, load_unaligned(ids), q, sink.cursor);
   }
 }
 
@@ -78,6 +76,7 @@ class HitList {
   /// Notes that row `r` hits the lanes `mask` of the rows from `at` on; does nothing for no lanes.
   /// There must be room.
   void add(std::uint32_t r, std::uint32_t at, Mask16 mask) {
+    if constexpr (Mode == HitMode::moved) mask &= reported_lanes(moved_, r, at);
     row_[size_] = r;
     at_[size_] = at;
     mask_[size_] = mask;
@@ -91,7 +90,7 @@ class HitList {
   bool flush() {
     for (unsigned i = 0; i < size_; ++i) {
       if (!has_room(sink_)) return false;
-      report<Mode>(mask_[i], rows_.id + at_[i], query_id_[row_[i]], moved_, sink_);
+      report<Mode>(mask_[i], rows_.id + at_[i], query_id_[row_[i]], sink_);
     }
     size_ = 0;
     return true;

@@ -30,7 +30,8 @@ enum class HitMode : std::uint8_t {
   unordered,     ///< report (min, max); for regions that share no object
   query_first,   ///< report (q, c)
   query_second,  ///< report (c, q)
-  moved,         ///< report (min, max), but not c == q, nor c if it moved too and c < q
+  moved,         ///< report (min, max); rows ask about their own pool: of two rows that both
+                 ///< moved only the one in front reports, and no row reports itself
 };
 
 /// Volumes to ask about: rows of columns, by list or, if `rows` is null, one after another. They
@@ -44,7 +45,7 @@ struct QueryBatch {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
   HitMode mode = HitMode::unordered;
-  const std::uint64_t* moved = nullptr;  ///< bit per object id, for HitMode::moved
+  const std::uint64_t* moved = nullptr;  ///< bit per row, for HitMode::moved
 };
 
 }  // namespace winnow

@@ -1,9 +1,14 @@
 #include <winnow/partitions/pair_tracker.h>
 
+#include <winnow/partitions/pair_drop.kernel.h>
+
 #include <array>
 #include <bit>
 
 namespace winnow {
+
+WINNOW_DEFINE_KERNELS(PairDropKernels, pair_drop_kernels)
+
 namespace {
 
 constexpr unsigned kDigitBits = 11;
@@ -26,6 +31,11 @@ void pass(const Pair* from, Pair* to, std::size_t count, unsigned shift) {
 }
 
 }  // namespace
+
+void PairTracker::drop(PairBuffer& out, const std::uint64_t* moved) noexcept {
+  auto* const ids = reinterpret_cast<std::uint32_t*>(out.pairs_.data());
+  out.pairs_.set_size(pair_drop_kernels().drop(ids, out.pairs_.size(), moved));
+}
 
 bool PairTracker::sort(PairBuffer& out, std::size_t slots) noexcept {
   const std::size_t count = out.pairs_.size();

@@ -18,19 +18,7 @@ class PairTracker {
   }
 
   /// Drops every pair that has an object in the set, keeping the order. O(pairs).
-  static void drop(PairBuffer& out, const std::uint64_t* moved) noexcept {
-    Pair* const pairs = out.pairs_.data();
-    const std::size_t count = out.pairs_.size();
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const Pair p = pairs[i];
-      const std::uint64_t hit =
-          moved[p.first >> 6U] >> (p.first & 63U) | moved[p.second >> 6U] >> (p.second & 63U);
-      pairs[kept] = p;
-      kept += (hit & 1U) ^ 1U;
-    }
-    out.pairs_.set_size(kept);
-  }
+  static void drop(PairBuffer& out, const std::uint64_t* moved) noexcept;
 
   /// Sorts by (first, second), all ids below `slots`. O(pairs); false if memory is refused.
   [[nodiscard]] static bool sort(PairBuffer& out, std::size_t slots) noexcept;

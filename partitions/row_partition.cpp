@@ -139,6 +139,9 @@ Status RowPartition::remove(std::span<const Key> keys) {
   std::size_t marked = 0;
   for (; marked < keys.size(); ++marked) {
     if (!keys_.is_valid(keys[marked])) break;
+    if (marked + kFetchAhead < keys.size() && keys_.is_valid(keys[marked + kFetchAhead])) {
+      __builtin_prefetch(pool_.ids() + keys_.row_of(keys[marked + kFetchAhead].id), 1);
+    }
     ObjectId& id = pool_.ids()[keys_.row_of(keys[marked].id)];
     if (id == kNoObject) break;
     id = kNoObject;
@@ -149,7 +152,10 @@ Status RowPartition::remove(std::span<const Key> keys) {
     }
     return Status::invalid_key;
   }
-  for (const Key key : keys) remove_row(key.id);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (i + kFetchAhead < keys.size()) fetch_row(keys_.row_of(keys[i + kFetchAhead].id));
+    remove_row(keys[i].id);
+  }
   if (!keys.empty()) dirty_.store(true, std::memory_order_relaxed);
   return Status::ok;
 }

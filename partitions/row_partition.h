@@ -105,6 +105,7 @@ class RowPartition : public Partition {
  private:
   template <typename Source>
   void write_rows(const Source& source, std::span<const Key> keys, bool ascending);
+  void fetch_row(std::size_t row) const noexcept;
   [[nodiscard]] bool make_room(std::size_t objects) noexcept;
   void compact_rows() noexcept;
   void remove_row(ObjectId id) noexcept;

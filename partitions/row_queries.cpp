@@ -139,7 +139,7 @@ Status RowPartition::incremental_self_pairs(PairBuffer& out) const {
     batch.begin = static_cast<std::uint32_t>(task * kQueriesPerTask);
     batch.end = static_cast<std::uint32_t>(std::min(list_.size(), (task + 1) * kQueriesPerTask));
     batch.mode = HitMode::moved;
-    batch.moved = moved_.bits();
+    batch.moved = words_.data();
     return query_all(batch, sink);
   });
   if (status != Status::ok) return status;

@@ -67,7 +67,8 @@ Status RowPartition::build() {
     ++builds_;
     return Status::ok;
   }
-  // The rows are untouched until everything that can fail is done; the structure may be half planned.
+  // The rows are untouched until everything that can fail is done; the structure may be half
+  // planned.
   built_ = false;
   const std::size_t room = pool_.rows() + 4 * kBlock;
   order_.clear();

@@ -296,6 +296,36 @@ inline Slabs16<Slabs> load_slabs_unaligned(const float* const* columns, std::siz
   return r;
 }
 
+/// Which lanes' bits are set in a bitmap: bit i is bit i % 32 of words[i / 32].
+inline Mask16 test_bits(const std::uint32_t* words, const Uint16& index) {
+#if defined(WINNOW_ISA_IS_avx512)
+  const __m512i i = index.part[0];
+  const __m512i word = _mm512_i32gather_epi32(_mm512_srli_epi32(i, 5), words, 4);
+  const __m512i bit =
+      _mm512_sllv_epi32(_mm512_set1_epi32(1), _mm512_and_si512(i, _mm512_set1_epi32(31)));
+  return _mm512_test_epi32_mask(word, bit);
+#elif defined(WINNOW_ISA_IS_avx2)
+  Mask16 r = 0;
+  for (int p = 0; p < kParts; ++p) {
+    const __m256i i = index.part[p];
+    const __m256i word =
+        _mm256_i32gather_epi32(reinterpret_cast<const int*>(words), _mm256_srli_epi32(i, 5), 4);
+    // The wanted bit becomes the sign bit.
+    const __m256i up =
+        _mm256_sub_epi32(_mm256_set1_epi32(31), _mm256_and_si256(i, _mm256_set1_epi32(31)));
+    const __m256 sign = _mm256_castsi256_ps(_mm256_sllv_epi32(word, up));
+    r |= static_cast<Mask16>(_mm256_movemask_ps(sign)) << (p * kPartLanes);
+  }
+  return r;
+#else
+  alignas(64) std::uint32_t lane[kLanes];
+  store_unaligned(lane, index);
+  Mask16 r = 0;
+  for (int i = 0; i < kLanes; ++i) r |= (words[lane[i] >> 5U] >> (lane[i] & 31U) & 1U) << i;
+  return r;
+#endif
+}
+
 /// Which of 16 volumes overlap the one whose ends are low[s], high[s]; closed.
 template <int Slabs>
 inline Mask16 overlap(const Slabs16<Slabs>& v, const float* low, const float* high) {

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <winnow/simd/kernels.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace winnow {
+
+struct PairDropKernels {
+  /// Drops, in place and keeping the order, every pair of ids of which one has its bit set in
+  /// `moved`; returns how many pairs are left.
+  std::size_t (*drop)(std::uint32_t* pairs, std::size_t count, const std::uint64_t* moved);
+};
+
+WINNOW_KERNELS(PairDropKernels, pair_drop_kernels);
+
+}  // namespace winnow
