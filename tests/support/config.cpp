@@ -52,4 +52,12 @@ std::vector<Config> all_configs() {
   return configs;
 }
 
+std::vector<Config> exact_configs() {
+  std::vector<Config> configs;
+  for (const Config& config : all_configs()) {
+    if (config.make()->is_exact()) configs.push_back(config);
+  }
+  return configs;
+}
+
 }  // namespace winnow::test

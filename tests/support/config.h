@@ -37,6 +37,10 @@ inline void PrintTo(const Config& config, std::ostream* out) {
 /// Every partition on every instruction set of this machine on 1, 2 and 8 threads.
 [[nodiscard]] std::vector<Config> all_configs();
 
+/// Those of partitions that report only true pairs. The others report so many that large scenes
+/// take long and show nothing.
+[[nodiscard]] std::vector<Config> exact_configs();
+
 /// The number of threads that tests run on.
 [[nodiscard]] std::vector<int> thread_counts();
 
