@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # Sourced by bench/run and tests/run: installs what a bare Debian 12 lacks.
 
 # What every build of winnow needs.
@@ -37,7 +38,8 @@ winnow_need() {
   echo "installing: ${missing[*]}" >&2
   local log
   log=$(mktemp)
-  if ! { "${as_root[@]}" apt-get update &&
+  # Old package lists may do: only the installation decides.
+  if ! { "${as_root[@]}" apt-get update || true
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
       apt-get install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
     cat "$log" >&2

@@ -28,11 +28,49 @@ const Measurement& Lab::cell(const std::string& scene, std::size_t objects) {
   return at->second;
 }
 
+Lab::Ratios Lab::measure_ratios(const std::string& scene, const std::string& of,
+                                std::size_t objects) {
+  constexpr int kRounds = 7;
+  MeasureOptions part = race_on(scene, objects);
+  part.frames = objects <= 20'000 ? 21 : 9;
+  MeasureOptions whole = part;
+  whole.scene = of;
+  Ratios ratios;
+  for (int round = 0; round < kRounds; ++round) {
+    const Measurement a = measure(part);
+    const Measurement b = measure(whole);
+    for (std::size_t i = 0; i < a.partition_runs; ++i) {
+      ratios[a.runs[i].engine].push_back(a.runs[i].median_ms() / b.runs[i].median_ms());
+    }
+  }
+  return ratios;
+}
+
+double Lab::scene_ratio(const std::string& partition, const std::string& scene,
+                        const std::string& of, std::size_t objects) {
+  const auto [at, fresh] = ratios_.try_emplace({scene, of, objects});
+  if (fresh) at->second = measure_ratios(scene, of, objects);
+  return median_of(at->second[partition]);
+}
+
 const Measurement& Lab::by_isa(const std::string& scene, std::size_t objects) {
   const auto [at, fresh] = by_isa_.try_emplace({scene, objects});
   if (fresh) {
     MeasureOptions options = race_on(scene, objects);
     options.isas.assign(available_isas().begin(), available_isas().end());
+    at->second = measure(options);
+  }
+  return at->second;
+}
+
+const Measurement& Lab::peers(const std::string& scene, std::size_t objects) {
+  const auto [at, fresh] = peers_.try_emplace({scene, objects});
+  if (fresh && has_peers()) {
+    MeasureOptions options = race_on(scene, objects);
+    options.partitions = {};
+    options.peers = true;
+    options.threads = {1, 2};
+    options.frames = objects <= 20'000 ? 11 : 4;
     at->second = measure(options);
   }
   return at->second;

@@ -21,8 +21,14 @@ class Lab {
 
   /// Every partition that suits the size on 1 and 2 threads, interleaved.
   const Measurement& cell(const std::string& scene, std::size_t objects);
+  /// A partition's time on one scene over its time on another, one thread: the median of rounds in
+  /// which both scenes take turns.
+  double scene_ratio(const std::string& partition, const std::string& scene, const std::string& of,
+                     std::size_t objects);
   /// Every partition on every instruction set, one thread, interleaved.
   const Measurement& by_isa(const std::string& scene, std::size_t objects);
+  /// The other libraries that are installed, over fewer frames; no runs if there are none.
+  const Measurement& peers(const std::string& scene, std::size_t objects);
   /// What operations on keys cost one partition.
   const KeyCosts& keys(const std::string& partition, std::size_t objects, bool random_order);
 
@@ -46,7 +52,14 @@ class Lab {
 
   std::optional<std::optional<KernelTimes>> kernels_;  // empty: not measured yet
   std::map<Where, Measurement> cells_;
+  /// By partition, one entry a round.
+  using Ratios = std::map<std::string, std::vector<double>>;
+  static Ratios measure_ratios(const std::string& scene, const std::string& of,
+                               std::size_t objects);
+
+  std::map<std::tuple<std::string, std::string, std::size_t>, Ratios> ratios_;
   std::map<Where, Measurement> by_isa_;
+  std::map<Where, Measurement> peers_;
   std::map<std::tuple<std::string, std::size_t, bool>, KeyCosts> keys_;
 };
 

@@ -42,12 +42,16 @@ std::vector<Goal> fastest_partition(const Ask& ask, const std::vector<Ask>& /*al
   const Measurement& cell = lab.cell(ask.text("scene"), ask.count("objects"));
   const Run* best = cell.fastest(ask.threads());
   if (best == nullptr) ask.fail("no partition runs there");
+  std::string peer_text;
+  if (const Run* peer = lab.peers(cell.scene, cell.objects).fastest_peer(ask.threads())) {
+    peer_text = "; here " + peer->engine + " " + short_number(peer->median_ms()) + " ms";
+  }
   return {{.what = cell_name(ask) + ": fastest partition",
            .unit = "ms",
            .asked = existing_ms(ask, cell) / ask.number("times_faster"),
            .measured = best->median_ms(),
            .detail = best->engine + "; " + scaled(ask, Lab::scale(cell)) + " / " +
-                     short_number(ask.number("times_faster"))}};
+                     short_number(ask.number("times_faster")) + peer_text}};
 }
 
 std::vector<Goal> no_slower_than_existing(const Ask& ask, const std::vector<Ask>& all, Lab& lab) {
@@ -74,16 +78,14 @@ std::vector<Goal> no_slower_than_existing(const Ask& ask, const std::vector<Ask>
 
 std::vector<Goal> scene_ratio(const Ask& ask, const std::vector<Ask>& /*all*/, Lab& lab) {
   const std::string partition = ask.text("partition");
-  const Measurement& cell = lab.cell(ask.text("scene"), ask.count("objects"));
-  const Measurement& base = lab.cell(ask.text("of"), ask.count("objects"));
-  // The two were not interleaved with each other: each is taken relative to the machine's speed
-  // while it ran.
-  const double part = run_of(ask, cell, partition, ask.threads()).median_ms() / cell.machine_ms;
-  const double whole = run_of(ask, base, partition, ask.threads()).median_ms() / base.machine_ms;
-  return {{.what = cell_name(ask) + ": " + partition + " against " + ask.text("of"),
+  const double ratio =
+      lab.scene_ratio(partition, ask.text("scene"), ask.text("of"), ask.count("objects"));
+  if (ratio == 0.0) ask.fail(partition + " does not run there");
+  return {{.what = ask.text("scene") + ", " + on_size(ask.count("objects"), 1) + ": " + partition +
+                   " against " + ask.text("of"),
            .unit = "ratio",
            .asked = ask.number("asked"),
-           .measured = part / whole}};
+           .measured = ratio}};
 }
 
 std::vector<Goal> speedup(const Ask& ask, const std::vector<Ask>& /*all*/, Lab& lab) {

@@ -42,6 +42,15 @@ void add_peers(const MeasureOptions& options, std::vector<Contender>& contenders
   }
 }
 
+const Run* fastest_of(std::span<const Run> runs, int threads) {
+  const Run* best = nullptr;
+  for (const Run& run : runs) {
+    if (run.threads != threads) continue;
+    if (best == nullptr || run.median_ms() < best->median_ms()) best = &run;
+  }
+  return best;
+}
+
 }  // namespace
 
 const Run* Measurement::find(const std::string& engine, int threads) const {
@@ -52,12 +61,10 @@ const Run* Measurement::find(const std::string& engine, int threads) const {
 }
 
 const Run* Measurement::fastest(int threads) const {
-  const Run* best = nullptr;
-  for (const Run& run : partitions()) {
-    if (run.threads != threads) continue;
-    if (best == nullptr || run.median_ms() < best->median_ms()) best = &run;
-  }
-  return best;
+  return fastest_of(partitions(), threads);
+}
+const Run* Measurement::fastest_peer(int threads) const {
+  return fastest_of(peers(), threads);
 }
 
 Measurement measure(const MeasureOptions& options) {
@@ -83,6 +90,7 @@ Measurement measure(const MeasureOptions& options) {
   }
   result.partition_runs = contenders.size();
   if (options.peers) add_peers(options, contenders, result);
+  result.peer_runs = contenders.size() - result.partition_runs;
   if (options.reference) {
     contenders.push_back({std::make_unique<ReferenceSweep>(-1), 1, active_isa()});
   }

@@ -30,16 +30,22 @@ struct Measurement {
   std::size_t objects = 0;
   std::vector<Run> runs;             ///< partitions, then peers, then the reference
   std::size_t partition_runs = 0;    ///< how many of them, from the front, are partitions
+  std::size_t peer_runs = 0;         ///< how many after these are other libraries
   std::vector<std::string> skipped;  ///< too slow for the size
   double machine_ms = 0.0;           ///< of the MachineClock, interleaved with the race
 
   [[nodiscard]] std::span<const Run> partitions() const {
     return std::span(runs).first(partition_runs);
   }
+  [[nodiscard]] std::span<const Run> peers() const {
+    return std::span(runs).subspan(partition_runs, peer_runs);
+  }
   /// Null if it did not run.
   [[nodiscard]] const Run* find(const std::string& engine, int threads) const;
   /// The fastest partition at this thread count; null if none ran.
   [[nodiscard]] const Run* fastest(int threads) const;
+  /// The fastest other library at this thread count; null if none ran.
+  [[nodiscard]] const Run* fastest_peer(int threads) const;
   [[nodiscard]] double bytes_per_object(const Run& run) const {
     return static_cast<double>(run.bytes) / static_cast<double>(objects);
   }

@@ -42,22 +42,12 @@ std::vector<MeasureOptions> Throughput::races() const {
   return all;
 }
 
-/// The fastest run that is not a partition; null if there is none.
-const Run* best_peer(const Measurement& measured) {
-  const Run* best = nullptr;
-  for (std::size_t i = measured.partition_runs; i < measured.runs.size(); ++i) {
-    const Run& run = measured.runs[i];
-    if (best == nullptr || run.median_ms() < best->median_ms()) best = &run;
-  }
-  return best;
-}
-
 void print(const Measurement& measured, int threads) {
   std::cout << '\n'
             << measured.scene << ", " << grouped(measured.objects) << " objects, " << threads
             << (threads == 1 ? " thread, " : " threads, ") << isa_name() << ", "
             << measured.runs.front().frame_ms.size() << " frames\n";
-  const Run* peer = best_peer(measured);
+  const Run* peer = measured.fastest_peer(threads);
   std::vector<std::string> header{"engine", "min ms",  "median ms",    "max ms",
                                   "update", "pairs/s", "bytes/object", "same pairs"};
   if (peer != nullptr) header.emplace_back("best peer / this");
