@@ -1,5 +1,6 @@
 #include <winnow/partitions/flat_grid.kernel.h>
 #include <winnow/partitions/hits.kernel.h>
+#include <winnow/partitions/misfits.kernel.h>
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -103,51 +104,51 @@ bool query(const GridView& grid, const QueryBatch& batch, PairSink& sink) {
   return with_mode<Query>(grid, batch, sink);
 }
 
-/// What a row of one cell must keep to: its lower corner within [from, to], its edges within limit.
-struct CellBounds {
-  float from[3];
-  float to[3];
-  float limit[3];
-};
-
-bool keeps_to(const CellBounds& cell, const float* const* low, const float* const* high,
-              std::uint32_t r) {
-  bool kept = true;
-  for (int a = 0; a < 3; ++a) {
-    const float x = low[a][r];
-    kept &= (x >= cell.from[a]) & (x <= cell.to[a]) & (high[a][r] - x <= cell.limit[a]);
+bool holds(const std::uint32_t* rows, std::uint32_t count, std::uint32_t row) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (rows[i] == row) return true;
   }
-  return kept;
+  return false;
+}
+
+/// Appends to the `found` rows of a line at `out` those that left their cell along the line, and
+/// returns the new count. Cells are short: this goes row by row and leaves the rest to the wide
+/// test.
+std::uint32_t left_along_line(const GridView& grid, const std::uint32_t* start, std::uint32_t* out,
+                              std::uint32_t found) {
+  const CellAxis& axis = grid.axis[0];
+  const float* const low = grid.rows.column[axis.axis];
+  const std::uint32_t before = found;
+  for (std::uint32_t c = 0; c < axis.count; ++c) {
+    const float from = axis.from[c];
+    const float to = axis.to[c];
+    for (std::uint32_t r = start[c]; r < start[c + 1]; ++r) {
+      const bool kept = (low[r] >= from) & (low[r] <= to);
+      if (kept || grid.rows.id[r] == ~0U || holds(out, before, r)) continue;
+      out[found++] = r;
+    }
+  }
+  return found;
 }
 
 std::uint32_t find_misfits(const GridView& grid, std::uint32_t begin, std::uint32_t end,
                            std::uint32_t* out) {
-  const float* low[3];
-  const float* high[3];
-  CellBounds cell;
-  for (int a = 0; a < 3; ++a) {
-    low[a] = grid.rows.column[grid.axis[a].axis];
-    high[a] = grid.rows.column[3 + grid.axis[a].axis];
-    cell.limit[a] = grid.axis[a].limit;
-  }
   std::uint32_t found = 0;
   const std::uint32_t cells = grid.axis[0].count;
+  const std::uint32_t mids = grid.axis[1].count;
   for (std::uint32_t line = begin; line < end; ++line) {
-    const std::uint32_t at[2] = {line % grid.axis[1].count, line / grid.axis[1].count};
-    for (int a = 1; a < 3; ++a) {
-      cell.from[a] = grid.axis[a].from[at[a - 1]];
-      cell.to[a] = grid.axis[a].to[at[a - 1]];
-    }
     const std::uint32_t* start = grid.start + std::size_t{line} * cells;
-    for (std::uint32_t c = 0; c < cells; ++c) {
-      cell.from[0] = grid.axis[0].from[c];
-      cell.to[0] = grid.axis[0].to[c];
-      for (std::uint32_t r = start[c]; r < start[c + 1]; ++r) {
-        out[found] = r;
-        // An empty row has no id and nothing to lose.
-        found += !keeps_to(cell, low, high, r) && grid.rows.id[r] != ~0U ? 1U : 0U;
-      }
-    }
+    if (start[0] == start[cells]) continue;
+    const AxisBounds mid(grid.rows, grid.axis[1], line % mids);
+    const AxisBounds slow(grid.rows, grid.axis[2], line / mids);
+    const AxisBounds along(grid.rows, grid.axis[0], 0);
+    std::uint32_t* const line_out = out + found;
+    const std::uint32_t wide =
+        write_misfits(grid.rows, start[0], start[cells], line_out, [&](std::size_t row) {
+          return mid.kept(row) & slow.kept(row) &
+                 along.short_enough(load_unaligned(along.low + row), row);
+        });
+    found += left_along_line(grid, start, line_out, wide);
   }
   return found;
 }

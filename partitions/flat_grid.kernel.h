@@ -21,7 +21,8 @@ struct FlatGridKernels {
   bool (*self_pairs)(const GridView&, std::uint32_t begin, std::uint32_t end, PairSink&);
   /// All hits of the batch's boxes.
   bool (*query)(const GridView&, const QueryBatch&, PairSink&);
-  /// Writes to `out` the rows of lines [begin, end) that left their cell; returns how many.
+  /// Writes to `out` the rows of lines [begin, end) that left their cell, line by line; returns how
+  /// many.
   std::uint32_t (*find_misfits)(const GridView&, std::uint32_t begin, std::uint32_t end,
                                 std::uint32_t* out);
 };

@@ -140,18 +140,12 @@ bool SweepAndPrune::fits(std::size_t row) const noexcept {
 }
 
 void SweepAndPrune::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept {
+  const StripView strips = view();
   append_in_order(
       execution(), regular_tasks(), strip_.data(),
       [&](std::size_t task) { return start_[first_strip(task)]; },
       [&](std::size_t task, std::uint32_t* out) {
-        std::size_t found = 0;
-        for (std::uint32_t strip = first_strip(task); strip < first_strip(task + 1); ++strip) {
-          for (std::uint32_t row = start_[strip]; row < start_[strip + 1]; ++row) {
-            out[found] = row;
-            found += !fits_strip(row, strip) && pool().ids()[row] != kNoObject ? 1U : 0U;
-          }
-        }
-        return found;
+        return sweep_kernels().find_misfits(strips, first_strip(task), first_strip(task + 1), out);
       },
       rows, limit);
 }

@@ -1,4 +1,5 @@
 #include <winnow/partitions/hits.kernel.h>
+#include <winnow/partitions/misfits.kernel.h>
 #include <winnow/partitions/sweep_and_prune.kernel.h>
 
 namespace winnow {
@@ -110,10 +111,30 @@ bool query(const StripView& strips, const QueryBatch& batch, PairSink& sink) {
   return with_mode<Query>(strips, batch, sink);
 }
 
+std::uint32_t find_misfits(const StripView& strips, std::uint32_t begin, std::uint32_t end,
+                           std::uint32_t* out) {
+  const Float16 drift = broadcast(strips.drift);
+  const AxisBounds swept(strips.rows, strips.axis[0], 0);
+  std::uint32_t found = 0;
+  for (std::uint32_t strip = begin; strip < end; ++strip) {
+    const AxisBounds mid(strips.rows, strips.axis[1], strip % strips.axis[1].count);
+    const AxisBounds slow(strips.rows, strips.axis[2], strip / strips.axis[1].count);
+    found += write_misfits(strips.rows, strips.start[strip], strips.start[strip + 1], out + found,
+                           [&](std::size_t row) {
+                             const Float16 key = load_unaligned(strips.key + row);
+                             const Float16 x = load_unaligned(swept.low + row);
+                             return less_equal(subtract(key, drift), x) &
+                                    less_equal(x, add(key, drift)) & swept.short_enough(x, row) &
+                                    mid.kept(row) & slow.kept(row);
+                           });
+  }
+  return found;
+}
+
 }  // namespace
 }  // namespace WINNOW_ISA_NAME
 
-extern const SweepKernels WINNOW_KERNEL_TABLE(sweep_kernels) = {WINNOW_ISA_NAME::self_pairs,
-                                                                WINNOW_ISA_NAME::query};
+extern const SweepKernels WINNOW_KERNEL_TABLE(sweep_kernels) = {
+    WINNOW_ISA_NAME::self_pairs, WINNOW_ISA_NAME::query, WINNOW_ISA_NAME::find_misfits};
 
 }  // namespace winnow

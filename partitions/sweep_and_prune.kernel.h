@@ -24,6 +24,10 @@ struct SweepKernels {
   bool (*self_pairs)(const StripView&, std::uint32_t begin, std::uint32_t end, PairSink&);
   /// All hits of the batch's boxes.
   bool (*query)(const StripView&, const QueryBatch&, PairSink&);
+  /// Writes to `out` the rows of strips [begin, end) that left their strip or drifted too far;
+  /// returns how many.
+  std::uint32_t (*find_misfits)(const StripView&, std::uint32_t begin, std::uint32_t end,
+                                std::uint32_t* out);
 };
 
 WINNOW_KERNELS(SweepKernels, sweep_kernels);

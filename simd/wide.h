@@ -75,6 +75,11 @@ inline Float16 add(const Float16& a, const Float16& b) {
   for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] + b.part[i];
   return r;
 }
+inline Float16 subtract(const Float16& a, const Float16& b) {
+  Float16 r;
+  for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] - b.part[i];
+  return r;
+}
 inline Float16 multiply(const Float16& a, const Float16& b) {
   Float16 r;
   for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] * b.part[i];
