@@ -20,7 +20,7 @@ MeasureOptions race_of(const std::string& scene, std::size_t objects, int thread
   options.threads = {threads};
   // Other libraries are slower by an order of magnitude: once, with all cores, is enough here.
   options.peers = has_peers() && threads == usual_threads().back();
-  options.frames = objects <= 10'000 ? 31 : 9;
+  options.frames = objects <= 10'000 ? 31 : options.peers ? 6 : 13;
   return options;
 }
 
