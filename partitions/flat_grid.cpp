@@ -1,5 +1,6 @@
 #include <winnow/partitions/flat_grid.h>
 
+#include <winnow/partitions/counting_sort.h>
 #include <winnow/partitions/task_lists.h>
 
 #include <algorithm>
@@ -28,14 +29,7 @@ bool FlatGrid::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest)
   if (!cell_.resize(pool().rows()) || !start_.resize(layout_.cells() + 1)) return false;
   count_cells();
   drop_overfull();
-  // Starts come from counts; a cell's start then serves as its write position.
-  std::uint32_t sum = 0;
-  for (std::uint32_t& s : start_) {
-    const std::uint32_t n = s;
-    s = sum;
-    sum += n;
-  }
-  regular.set_size(sum);
+  regular.set_size(positions_from_counts(start_));
   for (std::size_t row = 0; row < pool().rows(); ++row) {
     if (cell_[row] != CellLayout::kNoCell) {
       regular[start_[cell_[row]]++] = static_cast<std::uint32_t>(row);
@@ -43,9 +37,7 @@ bool FlatGrid::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest)
       (void)rest.push_back(static_cast<std::uint32_t>(row));
     }
   }
-  // Every position has moved on to its cell's end, which is the next cell's start.
-  for (std::size_t c = start_.size() - 1; c > 0; --c) start_[c] = start_[c - 1];
-  start_[0] = 0;
+  starts_from_positions(start_);
   return true;
 }
 

@@ -1,6 +1,7 @@
 #include <winnow/partitions/flat_grid.kernel.h>
 #include <winnow/partitions/hits.kernel.h>
 #include <winnow/partitions/misfits.kernel.h>
+#include <winnow/partitions/neighbour_lines.kernel.h>
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -22,22 +23,6 @@ struct ToTheEnd {
   bool operator()(const QueryBox&, std::uint32_t) const { return true; }
 };
 
-/// The lines that a line's cells are tested against: those after it whose cells can touch.
-struct Neighbours {
-  std::uint32_t line[4];
-  int count = 0;
-
-  Neighbours(const GridView& grid, std::uint32_t own) {
-    const std::uint32_t mids = grid.axis[1].count;
-    const std::uint32_t mid = own % mids;
-    if (mid + 1 < mids) line[count++] = own + 1;
-    if (own / mids + 1 == grid.axis[2].count) return;
-    if (mid > 0) line[count++] = own + mids - 1;
-    line[count++] = own + mids;
-    if (mid + 1 < mids) line[count++] = own + mids + 1;
-  }
-};
-
 bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
   const std::uint32_t cells = grid.axis[0].count;
   HitList<HitMode::unordered> hits(grid.rows, grid.rows.id, nullptr, sink);
@@ -45,7 +30,7 @@ bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, Pa
   for (std::uint32_t line = begin; line < end; ++line) {
     const std::uint32_t* start = grid.start + std::size_t{line} * cells;
     if (start[0] == start[cells]) continue;
-    const Neighbours neighbours(grid, line);
+    const NeighbourLines neighbours(grid.axis[1], grid.axis[2], line);
     for (std::uint32_t c = 0; c < cells; ++c) {
       if (start[c] == start[c + 1]) continue;
       const std::uint32_t before = c > 0 ? c - 1 : 0;

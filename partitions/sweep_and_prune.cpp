@@ -1,5 +1,6 @@
 #include <winnow/partitions/sweep_and_prune.h>
 
+#include <winnow/partitions/counting_sort.h>
 #include <winnow/partitions/radix_sort.h>
 #include <winnow/partitions/task_lists.h>
 
@@ -65,20 +66,13 @@ void SweepAndPrune::sort_rows(Column<std::uint32_t>& regular,
     items[count++] = static_cast<std::uint64_t>(sortable(low[row])) << 32U | row;
   }
   const std::uint64_t* const by_key = radix_sort(items, items + rows, count, 32, execution());
-  std::uint32_t sum = 0;
-  for (std::uint32_t& s : start_) {
-    const std::uint32_t n = s;
-    s = sum;
-    sum += n;
-  }
+  (void)positions_from_counts(start_);
   regular.set_size(count);
   for (std::size_t i = 0; i < count; ++i) {
     const auto row = static_cast<std::uint32_t>(by_key[i]);
     regular[start_[strip_[row]]++] = row;
   }
-  // Every position has moved on to its strip's end, which is the next strip's start.
-  for (std::size_t c = start_.size() - 1; c > 0; --c) start_[c] = start_[c - 1];
-  start_[0] = 0;
+  starts_from_positions(start_);
 }
 
 // Where many objects begin within one reach of each other on the sweep axis, as when half of a

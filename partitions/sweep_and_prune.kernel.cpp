@@ -1,5 +1,6 @@
 #include <winnow/partitions/hits.kernel.h>
 #include <winnow/partitions/misfits.kernel.h>
+#include <winnow/partitions/neighbour_lines.kernel.h>
 #include <winnow/partitions/sweep_and_prune.kernel.h>
 
 namespace winnow {
@@ -41,34 +42,24 @@ std::uint32_t first_reaching(const StripView& strips, std::uint32_t at, std::uin
 }
 
 bool self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-  const std::uint32_t columns = strips.axis[1].count;
   HitList<HitMode::unordered> hits(strips.rows, strips.rows.id, nullptr, sink);
   RunList sweeps(strips.rows, strips.rows.column, hits, KeyStop{strips}, sink);
   for (std::uint32_t strip = begin; strip < end; ++strip) {
     const std::uint32_t last = strips.start[strip + 1];
     if (strips.start[strip] == last) continue;
-    const std::uint32_t c = strip % columns;
-    std::uint32_t others[4];
-    int count = 0;
-    if (c + 1 < columns) others[count++] = strip + 1;
-    if (strip / columns + 1 < strips.axis[2].count) {
-      const std::uint32_t above = strip + columns;
-      if (c > 0) others[count++] = above - 1;
-      others[count++] = above;
-      if (c + 1 < columns) others[count++] = above + 1;
-    }
+    const NeighbourLines others(strips.axis[1], strips.axis[2], strip);
     std::uint32_t from[4];
     std::uint32_t to[4];
-    for (int k = 0; k < count; ++k) {
-      from[k] = strips.start[others[k]];
-      to[k] = strips.start[others[k] + 1];
+    for (int k = 0; k < others.count; ++k) {
+      from[k] = strips.start[others.line[k]];
+      to[k] = strips.start[others.line[k] + 1];
     }
     for (std::uint32_t r = strips.start[strip]; r < last; ++r) {
       // Keys ascend in every strip, so starts only move forward: they go by the key, as the box
       // itself may have drifted either way.
       const float x = strips.key[r] - strips.drift - strips.axis[0].reach;
       if (!sweeps.add(r, r + 1, last)) return false;
-      for (int k = 0; k < count; ++k) {
+      for (int k = 0; k < others.count; ++k) {
         skip_below(strips, from[k], to[k], x);
         if (!sweeps.add(r, from[k], to[k])) return false;
       }
