@@ -5,6 +5,12 @@
 #include <new>
 
 namespace winnow::test {
+namespace {
+
+// More than any machine has. Refused here, since sanitizers end the process rather than throw.
+constexpr std::size_t kMost = std::size_t{1} << 40U;
+
+}  // namespace
 
 CountingMemory::~CountingMemory() {
   EXPECT_EQ(outstanding_, 0U) << blocks_.size() << " blocks were never given back";
@@ -51,7 +57,7 @@ void* CountingMemory::do_allocate(std::size_t bytes, std::size_t alignment) {
   const std::lock_guard lock(mutex_);
   const std::size_t request = requests_++;
   if (std::this_thread::get_id() != owner_) ++requests_from_elsewhere_;
-  if (request >= refuse_from_ && request < refuse_to_) {
+  if (bytes > kMost || (request >= refuse_from_ && request < refuse_to_)) {
     ++refusals_;
     throw std::bad_alloc();
   }
