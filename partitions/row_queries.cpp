@@ -127,7 +127,7 @@ Status RowPartition::incremental_self_pairs(PairBuffer& out) const {
   // Neighbours in the pool are neighbours in space: in row order queries share cache lines.
   list_.set_size(sort_unique({list_.data(), list_.size()}, pool_.rows(), words_));
   PairTracker::drop(out, moved_.bits());
-  const Execution execution = execution_for(8 * list_.size());
+  const Execution execution = execution_for(list_.size());
   PairWriter writer(out, execution);
   const std::size_t tasks = ceil_divide(list_.size(), kQueriesPerTask);
   const Status status = writer.append(tasks, [&](std::size_t task, PairSink& sink) {
