@@ -20,7 +20,7 @@ foreach(room core simd partitions)
           FILES_MATCHING PATTERN "*.h"
           PATTERN "wide.h" EXCLUDE
           PATTERN "compress.h" EXCLUDE
-          PATTERN "hits.kernel.h" EXCLUDE)
+          PATTERN "*.wide.h" EXCLUDE)
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/pipeline/
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow/pipeline

@@ -1,5 +1,5 @@
 #include <winnow/partitions/block_tree.kernel.h>
-#include <winnow/partitions/hits.kernel.h>
+#include <winnow/partitions/hits.wide.h>
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {

@@ -1,7 +1,7 @@
 #include <winnow/partitions/flat_grid.kernel.h>
-#include <winnow/partitions/hits.kernel.h>
-#include <winnow/partitions/misfits.kernel.h>
-#include <winnow/partitions/neighbour_lines.kernel.h>
+#include <winnow/partitions/hits.wide.h>
+#include <winnow/partitions/misfits.wide.h>
+#include <winnow/partitions/neighbour_lines.wide.h>
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {

@@ -1,5 +1,5 @@
 #include <winnow/partitions/flat_rows.kernel.h>
-#include <winnow/partitions/hits.kernel.h>
+#include <winnow/partitions/hits.wide.h>
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {

@@ -1,6 +1,6 @@
-#include <winnow/partitions/hits.kernel.h>
-#include <winnow/partitions/misfits.kernel.h>
-#include <winnow/partitions/neighbour_lines.kernel.h>
+#include <winnow/partitions/hits.wide.h>
+#include <winnow/partitions/misfits.wide.h>
+#include <winnow/partitions/neighbour_lines.wide.h>
 #include <winnow/partitions/sweep_and_prune.kernel.h>
 
 namespace winnow {

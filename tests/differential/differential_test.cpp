@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "../support/hostile_scenes.h"
 #include "../support/motion.h"
 #include "../support/scenes.h"
 #include "../support/world.h"

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../support/hostile_scenes.h"
 #include "../support/scenes.h"
 #include "snapshot.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "../support/hostile_scenes.h"
 #include "../support/motion.h"
 #include "../support/scenes.h"
 #include "../support/world.h"

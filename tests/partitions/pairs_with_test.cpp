@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "../support/hostile_scenes.h"
 #include "../support/motion.h"
 #include "../support/scenes.h"
 #include "../support/world.h"

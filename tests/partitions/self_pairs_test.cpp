@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "../support/config.h"
+#include "../support/hostile_scenes.h"
 #include "../support/scenes.h"
 #include "../support/world.h"
 

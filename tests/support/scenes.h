@@ -1,20 +1,12 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
-#include <winnow/core/pair_buffer.h>
 
 #include <cstddef>
-#include <string>
+#include <cstdint>
 #include <vector>
 
 namespace winnow::test {
-
-/// Boxes with their true pairs.
-struct Scene {
-  std::string name;
-  std::vector<Aabb> boxes;
-  std::vector<Pair> pairs;  ///< with objects numbered as the boxes are
-};
 
 /// Unit cubes, positions uniform in a cube of side cbrt(2 n): about two pairs an object.
 [[nodiscard]] std::vector<Aabb> uniform_boxes(std::size_t count, std::uint64_t stream = 1);
@@ -38,12 +30,10 @@ struct Scene {
 /// Sizes and positions that double from box to box, over 2^-100 .. 2^100; neighbours overlap.
 [[nodiscard]] std::vector<Aabb> exponential_boxes(std::size_t count);
 
-/// Made once per process, each with its true pairs.
-[[nodiscard]] const std::vector<Scene>& random_scenes();
-[[nodiscard]] const std::vector<Scene>& degenerate_scenes();
-[[nodiscard]] const std::vector<Scene>& infinite_scenes();
-[[nodiscard]] const std::vector<Scene>& extreme_float_scenes();
-/// Uniform boxes, as many as make the last block of 16 or 256 empty, full or nearly so.
-[[nodiscard]] const std::vector<Scene>& block_boundary_scenes();
+/// Thin and long along one axis each: some cross, most do not.
+[[nodiscard]] std::vector<Aabb> rod_boxes(std::size_t count);
+
+/// Four layers of small boxes on one ground box that touches all of the lowest.
+[[nodiscard]] std::vector<Aabb> pile_boxes(std::size_t count);
 
 }  // namespace winnow::test

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/pair_buffer.h>
+
+#include <string>
+#include <vector>
+
+namespace winnow::test {
+
+/// Boxes with their true pairs.
+struct Scene {
+  std::string name;
+  std::vector<Aabb> boxes;
+  std::vector<Pair> pairs;  ///< with objects numbered as the boxes are
+};
+
+/// Made once per process, each with its true pairs.
+[[nodiscard]] const std::vector<Scene>& random_scenes();
+[[nodiscard]] const std::vector<Scene>& degenerate_scenes();
+[[nodiscard]] const std::vector<Scene>& infinite_scenes();
+[[nodiscard]] const std::vector<Scene>& extreme_float_scenes();
+/// Uniform boxes, as many as make the last block of 16 or 256 empty, full or nearly so.
+[[nodiscard]] const std::vector<Scene>& block_boundary_scenes();
+
+}  // namespace winnow::test
