@@ -1,5 +1,7 @@
 #pragma once
 
+#include <winnow/core/object_filter.h>
+
 #include <cstddef>
 #include <cstdint>
 
@@ -23,6 +25,7 @@ inline constexpr std::size_t kSinkSlack = 16 * 16 + 16;
 struct RowView {
   const float* column[26] = {};
   const std::uint32_t* id = nullptr;
+  const ObjectFilter* filter = nullptr;  ///< by id; null if every object has the default one
 };
 
 /// What becomes of a hit between query q and candidate c.

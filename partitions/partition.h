@@ -2,10 +2,16 @@
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/box_view.h>
+#include <winnow/core/cast.h>
+#include <winnow/core/debug_draw.h>
 #include <winnow/core/execution.h>
+#include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>
+#include <winnow/core/hits.h>
 #include <winnow/core/key.h>
 #include <winnow/core/pair_buffer.h>
+#include <winnow/core/pair_events.h>
+#include <winnow/core/region.h>
 #include <winnow/core/status.h>
 
 #include <cstddef>
@@ -37,6 +43,9 @@ struct PairOptions {
   /// Update the caller's buffer by what moved since it was last filled, where that is cheaper.
   /// False asks for every pair anew.
   bool incremental = true;
+  /// Asked about every pair that the objects' own filters let pass. An incremental query keeps what
+  /// it answered about pairs that did not move.
+  PairPredicate predicate;
 };
 
 /// How a partition stands and what it did; counters, never timings, so they repeat exactly.
@@ -101,6 +110,12 @@ class Partition {
   /// Client data of a live object; 0 for any other id.
   [[nodiscard]] virtual ClientData client_data_of(ObjectId id) const noexcept = 0;
 
+  /// Sets what the objects let themselves be paired with. Every object starts with ObjectFilter{};
+  /// a partition in which no other was ever set stores none.
+  virtual Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters) = 0;
+  virtual Status set_filter(Key key, const ObjectFilter& filter) = 0;
+  virtual Status filter(Key key, ObjectFilter& filter) const noexcept = 0;
+
   /// Brings the structure up to date now rather than in the next query.
   virtual Status refresh() const = 0;
 
@@ -109,6 +124,48 @@ class Partition {
   /// All pairs (object of this, object of other) whose boxes overlap, each once.
   virtual Status pairs_with(const Partition& other, PairBuffer& out,
                             const PairOptions& options = {}) const = 0;
+
+  /// The same, and what changed since the frame that `out` holds. The cost follows what moved.
+  virtual Status self_pairs(PairBuffer& out, PairEvents& events,
+                            const PairOptions& options = {}) const = 0;
+
+  // Casts: rays and swept volumes against the objects' boxes (of spheres and k-DOPs: the box around
+  // them). A start inside a box, or touching it, is a hit at min_t. Never a miss; a false hit only
+  // where the gap is below 1e-14 of the coordinates' size (1e-6 for capsules). Equal t are ordered
+  // by id.
+
+  /// The hit with the least t; a null hit if there is none. About O(log n).
+  virtual Status closest(const Cast& cast, Hit& hit, const Filter& filter = {}) const = 0;
+  /// Any one hit, whichever is found first; a null hit if there is none.
+  virtual Status any(const Cast& cast, Hit& hit, const Filter& filter = {}) const = 0;
+  /// All hits, sorted by t.
+  virtual Status all(const Cast& cast, HitBuffer& hits, const Filter& filter = {}) const = 0;
+  /// The same for many rays at once, which share the work where they are alike. One bad ray makes
+  /// the whole batch `invalid_argument`.
+  virtual Status closest(const RayBatch& rays, const HitColumns& hits,
+                         const Filter& filter = {}) const = 0;
+  virtual Status any(const RayBatch& rays, const HitColumns& hits,
+                     const Filter& filter = {}) const = 0;
+  virtual Status all(const RayBatch& rays, HitBuffer& hits, const Filter& filter = {}) const = 0;
+
+  /// Every object whose box meets the region, those that lie wholly inside told from those that
+  /// cross its border. A frustum or set of planes "meets" a box that is not wholly outside of one
+  /// of its planes (or of the frustum's own box). Never a miss; a false hit only within rounding.
+  /// Order::canonical sorts each of the two groups by id.
+  virtual Status overlap(const Region& region, OverlapBuffer& objects, const Filter& filter = {},
+                         Order order = Order::fast) const = 0;
+  /// All pairs (index of the box, object) that overlap. Boxes may reach to infinity.
+  virtual Status overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter = {},
+                         Order order = Order::fast) const = 0;
+
+  /// The `count` objects whose boxes are nearest to a box (a point is a box of no extent) within a
+  /// distance of `radius`, which may be infinite; sorted by distance, then by id. Those that touch
+  /// are at distance 0. About O(log n + count).
+  virtual Status nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
+                         const Filter& filter = {}) const = 0;
+
+  /// Draws the objects and the partition's own structure. A picture, not a query: O(n).
+  virtual Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const = 0;
 
   [[nodiscard]] virtual Footprint footprint() const noexcept = 0;
   [[nodiscard]] virtual Statistics statistics() const noexcept = 0;

@@ -52,10 +52,32 @@ class RowPartition : public Partition {
     return keys_.is_live(id) ? keys_.client_data(id) : 0;
   }
 
+  Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters) override;
+  Status set_filter(Key key, const ObjectFilter& filter) override;
+  Status filter(Key key, ObjectFilter& filter) const noexcept override;
+
   Status refresh() const override;
   Status self_pairs(PairBuffer& out, const PairOptions& options = {}) const override;
+  Status self_pairs(PairBuffer& out, PairEvents& events,
+                    const PairOptions& options = {}) const override;
   Status pairs_with(const Partition& other, PairBuffer& out,
                     const PairOptions& options = {}) const override;
+
+  Status closest(const Cast& cast, Hit& hit, const Filter& filter = {}) const override;
+  Status any(const Cast& cast, Hit& hit, const Filter& filter = {}) const override;
+  Status all(const Cast& cast, HitBuffer& hits, const Filter& filter = {}) const override;
+  Status closest(const RayBatch& rays, const HitColumns& hits,
+                 const Filter& filter = {}) const override;
+  Status any(const RayBatch& rays, const HitColumns& hits,
+             const Filter& filter = {}) const override;
+  Status all(const RayBatch& rays, HitBuffer& hits, const Filter& filter = {}) const override;
+  Status overlap(const Region& region, OverlapBuffer& objects, const Filter& filter = {},
+                 Order order = Order::fast) const override;
+  Status overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter = {},
+                 Order order = Order::fast) const override;
+  Status nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
+                 const Filter& filter = {}) const override;
+  Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const override;
 
   [[nodiscard]] Footprint footprint() const noexcept override;
   [[nodiscard]] Statistics statistics() const noexcept override;
@@ -81,6 +103,8 @@ class RowPartition : public Partition {
   virtual bool run_regular_task(std::size_t, PairSink&) const noexcept { return true; }
   /// Hits of boxes in the regular region.
   virtual bool query_regular(const QueryBatch&, PairSink&) const noexcept { return true; }
+  /// Draws cells, strips or whatever the regular region has.
+  virtual void draw_regular(DebugDraw&, const DebugDrawOptions&) const {}
   /// True for partitions whose rows all stay in one unordered regular region.
   [[nodiscard]] virtual bool is_flat() const noexcept { return false; }
 

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/sphere.h>
+
+#include <Eigen/Core>
+#include <cmath>
+
+namespace winnow {
+
+/// All points within `radius` of the segment from `a` to `b`; closed. Equal ends make a ball, a
+/// radius of zero a segment.
+struct Capsule {
+  Eigen::Vector3f a = Eigen::Vector3f::Zero();
+  Eigen::Vector3f b = Eigen::Vector3f::Zero();
+  float radius = 0.0F;
+
+  [[nodiscard]] bool is_valid() const noexcept {
+    return a.allFinite() && b.allFinite() && std::isfinite(radius) && radius >= 0.0F;
+  }
+
+  /// The smallest float box that contains the capsule.
+  [[nodiscard]] Aabb bounds() const noexcept {
+    Aabb box = Sphere{a, radius}.bounds();
+    box.merge(Sphere{b, radius}.bounds());
+    return box;
+  }
+};
+
+static_assert(sizeof(Capsule) == 28 && alignof(Capsule) == 4,
+              "layout must not depend on build flags");
+
+}  // namespace winnow

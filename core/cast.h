@@ -1,0 +1,55 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/capsule.h>
+#include <winnow/core/ray.h>
+#include <winnow/core/sphere.h>
+
+#include <Eigen/Core>
+#include <limits>
+#include <variant>
+
+namespace winnow {
+
+/// A box moved by t * direction for t in [min_t, max_t], without turning.
+struct BoxCast {
+  Aabb box;
+  Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
+  float min_t = 0.0F;
+  float max_t = std::numeric_limits<float>::infinity();
+
+  /// True if a query takes it: finite box with min <= max, and a valid direction and range.
+  [[nodiscard]] bool is_valid() const noexcept {
+    return box.min.allFinite() && box.max.allFinite() && box.is_valid() &&
+           is_valid_sweep(direction, min_t, max_t);
+  }
+};
+
+/// A ball moved by t * direction for t in [min_t, max_t].
+struct SphereCast {
+  Sphere sphere;
+  Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
+  float min_t = 0.0F;
+  float max_t = std::numeric_limits<float>::infinity();
+
+  [[nodiscard]] bool is_valid() const noexcept {
+    return sphere.is_valid() && is_valid_sweep(direction, min_t, max_t);
+  }
+};
+
+/// A capsule moved by t * direction for t in [min_t, max_t], without turning.
+struct CapsuleCast {
+  Capsule capsule;
+  Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
+  float min_t = 0.0F;
+  float max_t = std::numeric_limits<float>::infinity();
+
+  [[nodiscard]] bool is_valid() const noexcept {
+    return capsule.is_valid() && is_valid_sweep(direction, min_t, max_t);
+  }
+};
+
+/// Anything that can be swept along a line; every one of these converts to it.
+using Cast = std::variant<Ray, BoxCast, SphereCast, CapsuleCast>;
+
+}  // namespace winnow

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/sphere.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string_view>
+
+namespace winnow {
+
+/// Red, green, blue and opacity, 0..255.
+struct Colour {
+  std::uint8_t r = 255;
+  std::uint8_t g = 255;
+  std::uint8_t b = 255;
+  std::uint8_t a = 255;
+
+  friend constexpr bool operator==(const Colour&, const Colour&) noexcept = default;
+};
+
+/// What a caller implements to see inside: winnow calls it, from the calling thread, while
+/// `Partition::debug_draw` runs. Boxes and spheres are outlines. Ends at infinity come as they are.
+class DebugDraw {
+ public:
+  virtual ~DebugDraw() = default;
+
+  virtual void box(const Aabb& box, Colour colour) = 0;
+  virtual void line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) = 0;
+  virtual void sphere(const Sphere& sphere, Colour colour) = 0;
+  /// `text` is valid during the call only.
+  virtual void text(const Eigen::Vector3f& at, std::string_view text, Colour colour) = 0;
+};
+
+/// What a partition draws.
+struct DebugDrawOptions {
+  bool objects = true;    ///< the volume of every object
+  bool structure = true;  ///< cells, strips, the sweep axis, nodes coloured by depth
+  bool labels = false;    ///< client data of every object as text
+  int max_depth = 64;     ///< levels of the node tree, counted from the root
+};
+
+}  // namespace winnow

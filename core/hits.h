@@ -1,0 +1,114 @@
+#pragma once
+
+#include <winnow/core/column.h>
+#include <winnow/core/footprint.h>
+#include <winnow/core/key.h>
+#include <winnow/core/pair_buffer.h>
+
+#include <cstddef>
+#include <limits>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+/// An object that a ray, a cast or a nearest query found.
+struct Hit {
+  Key key;
+  ClientData data = 0;
+  /// Where the sweep first touches the object's box, in units of the sweep's direction; of a
+  /// nearest query the distance. The exact value, rounded down to a float.
+  float t = std::numeric_limits<float>::infinity();
+
+  [[nodiscard]] explicit operator bool() const noexcept { return key.id != kNoObject; }
+  friend bool operator==(const Hit&, const Hit&) noexcept = default;
+};
+
+/// Where a batch of questions that have one answer each writes them: columns of the caller, each
+/// null if not wanted. A question without an answer gets the null key, 0 and infinity.
+struct HitColumns {
+  Key* key = nullptr;
+  ClientData* data = nullptr;
+  float* t = nullptr;
+};
+
+/// The caller's array of hits, reused from query to query; a query with as many hits as an earlier
+/// one allocates nothing. Not for use from two threads at once.
+class HitBuffer {
+ public:
+  explicit HitBuffer(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
+      : hits_(memory), start_(memory), found_(memory) {}
+
+  [[nodiscard]] std::span<const Hit> hits() const noexcept { return {hits_.data(), size()}; }
+  [[nodiscard]] std::size_t size() const noexcept { return hits_.size(); }
+  [[nodiscard]] bool empty() const noexcept { return hits_.empty(); }
+  [[nodiscard]] const Hit& operator[](std::size_t i) const noexcept { return hits_[i]; }
+  [[nodiscard]] const Hit* begin() const noexcept { return hits_.begin(); }
+  [[nodiscard]] const Hit* end() const noexcept { return hits_.end(); }
+
+  /// How many questions the last query had: 1, or the size of the batch.
+  [[nodiscard]] std::size_t questions() const noexcept {
+    return start_.empty() ? 0 : start_.size() - 1;
+  }
+  /// The hits of question i of a batch.
+  [[nodiscard]] std::span<const Hit> of(std::size_t i) const noexcept {
+    return {hits_.data() + start_[i], start_[i + 1] - start_[i]};
+  }
+
+  void clear() noexcept {
+    hits_.clear();
+    start_.clear();
+  }
+  /// Room for `count` hits. False if memory is refused.
+  [[nodiscard]] bool reserve(std::size_t count) noexcept { return hits_.reserve(count); }
+
+  /// Bytes under `results`; what tasks write before it is put in order under `scratch`.
+  [[nodiscard]] Footprint footprint() const noexcept;
+
+ private:
+  friend class HitWriter;
+
+  Column<Hit> hits_;
+  Column<std::size_t> start_;
+  PairBuffer found_;  // (object, bits of t)
+};
+
+/// The caller's array of objects that a region met, reused from query to query. Not for use from
+/// two threads at once.
+class OverlapBuffer {
+ public:
+  explicit OverlapBuffer(
+      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
+      : ids_(memory), crossing_(memory) {}
+
+  /// Every object whose box meets the region: first those inside, then those crossing.
+  [[nodiscard]] std::span<const ObjectId> ids() const noexcept { return {ids_.data(), size()}; }
+  /// Objects whose boxes lie wholly in the region; one that does so by less than rounding may be
+  /// among the crossing ones.
+  [[nodiscard]] std::span<const ObjectId> inside() const noexcept { return ids().first(inside_); }
+  /// All others.
+  [[nodiscard]] std::span<const ObjectId> crossing() const noexcept {
+    return ids().subspan(inside_);
+  }
+  [[nodiscard]] std::size_t size() const noexcept { return ids_.size(); }
+  [[nodiscard]] bool empty() const noexcept { return ids_.empty(); }
+
+  void clear() noexcept {
+    ids_.clear();
+    inside_ = 0;
+  }
+  /// Room for `count` objects. False if memory is refused.
+  [[nodiscard]] bool reserve(std::size_t count) noexcept { return ids_.reserve(count); }
+
+  /// Bytes under `results`; crossing objects on their way under `scratch`.
+  [[nodiscard]] Footprint footprint() const noexcept;
+
+ private:
+  friend class OverlapWriter;
+
+  Column<ObjectId> ids_;
+  Column<ObjectId> crossing_;
+  std::size_t inside_ = 0;
+};
+
+}  // namespace winnow

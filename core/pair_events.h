@@ -1,0 +1,67 @@
+#pragma once
+
+#include <winnow/core/column.h>
+#include <winnow/core/footprint.h>
+#include <winnow/core/key.h>
+#include <winnow/core/pair_buffer.h>
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+/// Two objects by key, first.id < second.id. Keys, because an object that ended its pair may be
+/// gone, and its id another object's.
+struct KeyPair {
+  Key first;
+  Key second;
+
+  friend constexpr bool operator==(const KeyPair&, const KeyPair&) noexcept = default;
+};
+
+/// What changed between two frames: handed to `Partition::self_pairs` with the PairBuffer that
+/// holds the earlier frame's pairs. With another buffer, or one that was used otherwise in between,
+/// it starts anew: every pair begins and none ends.
+class PairEvents {
+ public:
+  explicit PairEvents(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
+      : begun_(memory), ended_(memory), before_(memory), after_(memory), stamps_(memory) {}
+
+  /// Pairs that are in this frame and were not in the last, sorted by ids.
+  [[nodiscard]] std::span<const KeyPair> begun() const noexcept {
+    return {begun_.data(), begun_.size()};
+  }
+  /// Pairs that were in the last frame and are not in this one, sorted by ids. A removed object's
+  /// key is stale.
+  [[nodiscard]] std::span<const KeyPair> ended() const noexcept {
+    return {ended_.data(), ended_.size()};
+  }
+  /// How many pairs are in both: the first ones of the PairBuffer; those that began follow.
+  [[nodiscard]] std::size_t persisting() const noexcept { return persisting_; }
+
+  void clear() noexcept {
+    begun_.clear();
+    ended_.clear();
+    persisting_ = 0;
+    provenance_ = {};
+  }
+
+  /// Bytes of begun and ended pairs under `results`, the rest under `scratch`.
+  [[nodiscard]] Footprint footprint() const noexcept;
+
+ private:
+  friend class EventWriter;
+
+  Column<KeyPair> begun_;
+  Column<KeyPair> ended_;
+  Column<std::uint64_t> before_;  // pairs that may have ended, as (first << 32 | second)
+  Column<std::uint64_t> after_;   // pairs that may have begun
+  Column<std::uint32_t> stamps_;  // by id, as of the last frame
+  std::size_t persisting_ = 0;
+  PairBuffer::Provenance provenance_;
+};
+
+}  // namespace winnow

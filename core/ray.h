@@ -1,0 +1,89 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+namespace winnow {
+
+/// True if `direction` is finite and not zero, and 0 <= min_t <= max_t with min_t finite.
+[[nodiscard]] inline bool is_valid_sweep(const Eigen::Vector3f& direction, float min_t,
+                                         float max_t) noexcept {
+  const bool moves = direction.allFinite() && (direction.array() != 0.0F).any();
+  return moves && min_t >= 0.0F && std::isfinite(min_t) && min_t <= max_t;
+}
+
+/// The points origin + t * direction for t in [min_t, max_t]. The direction has any finite length
+/// but zero, and t counts in it: for a unit direction t is a distance.
+struct Ray {
+  Eigen::Vector3f origin = Eigen::Vector3f::Zero();
+  Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
+  float min_t = 0.0F;
+  float max_t = std::numeric_limits<float>::infinity();
+
+  /// True if a query takes this ray: finite origin, finite direction that is not zero,
+  /// 0 <= min_t <= max_t, min_t finite.
+  [[nodiscard]] bool is_valid() const noexcept {
+    return origin.allFinite() && is_valid_sweep(direction, min_t, max_t);
+  }
+};
+
+static_assert(sizeof(Ray) == 32 && alignof(Ray) == 4, "layout must not depend on build flags");
+
+/// Rays where the caller keeps them: column pointers and one stride in bytes. Nothing is copied to
+/// make one, and it must not outlive the memory it looks at.
+struct RayBatch {
+  std::array<const float*, 3> origin{};
+  std::array<const float*, 3> direction{};
+  const float* min_t = nullptr;  ///< null: 0 for all
+  const float* max_t = nullptr;  ///< null: infinity for all
+  std::size_t count = 0;
+  std::size_t stride = sizeof(float);  ///< bytes from one ray to the next
+
+  RayBatch() = default;
+
+  /// An array of rays.
+  RayBatch(std::span<const Ray> rays) noexcept {  // NOLINT(google-explicit-constructor)
+    if (rays.empty()) return;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      origin[axis] = rays.data()->origin.data() + axis;
+      direction[axis] = rays.data()->direction.data() + axis;
+    }
+    min_t = &rays.data()->min_t;
+    max_t = &rays.data()->max_t;
+    count = rays.size();
+    stride = sizeof(Ray);
+  }
+
+  /// Columns of `rays` floats each.
+  RayBatch(std::array<const float*, 3> origins, std::array<const float*, 3> directions,
+           std::size_t rays, const float* min_ts = nullptr, const float* max_ts = nullptr,
+           std::size_t stride_bytes = sizeof(float)) noexcept
+      : origin(origins),
+        direction(directions),
+        min_t(min_ts),
+        max_t(max_ts),
+        count(rays),
+        stride(stride_bytes) {}
+
+  [[nodiscard]] Ray operator[](std::size_t i) const noexcept {
+    Ray ray;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ray.origin[static_cast<Eigen::Index>(axis)] = at(origin[axis], i);
+      ray.direction[static_cast<Eigen::Index>(axis)] = at(direction[axis], i);
+    }
+    if (min_t != nullptr) ray.min_t = at(min_t, i);
+    if (max_t != nullptr) ray.max_t = at(max_t, i);
+    return ray;
+  }
+
+ private:
+  [[nodiscard]] float at(const float* column, std::size_t i) const noexcept {
+    return *reinterpret_cast<const float*>(reinterpret_cast<const std::byte*>(column) + i * stride);
+  }
+};
+
+}  // namespace winnow
