@@ -1,5 +1,6 @@
 #include <winnow/partitions/flat_grid.h>
 
+#include <winnow/partitions/cell_drawing.h>
 #include <winnow/partitions/counting_sort.h>
 #include <winnow/partitions/task_lists.h>
 
@@ -101,6 +102,10 @@ bool FlatGrid::query_regular(const QueryBatch& batch, PairSink& sink) const noex
 
 GridView FlatGrid::view() const noexcept {
   return {row_view(), start_.data(), {layout_.axis(0), layout_.axis(1), layout_.axis(2)}};
+}
+
+void FlatGrid::draw_regular(DebugDraw& draw, const DebugDrawOptions&) const {
+  draw_cells(draw, layout_, row_view(), start_, "runs fastest");
 }
 
 void FlatGrid::release_structure() noexcept {

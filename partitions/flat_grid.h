@@ -28,6 +28,7 @@ class FlatGrid final : public RowPartition {
   [[nodiscard]] std::size_t regular_tasks() const noexcept override;
   bool run_regular_task(std::size_t task, PairSink& sink) const noexcept override;
   bool query_regular(const QueryBatch& batch, PairSink& sink) const noexcept override;
+  void draw_regular(DebugDraw& draw, const DebugDrawOptions& options) const override;
   void release_structure() noexcept override;
   void add_structure_bytes(Footprint& footprint) const noexcept override;
   [[nodiscard]] std::size_t cell_count() const noexcept override;

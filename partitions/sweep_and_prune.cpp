@@ -1,5 +1,6 @@
 #include <winnow/partitions/sweep_and_prune.h>
 
+#include <winnow/partitions/cell_drawing.h>
 #include <winnow/partitions/counting_sort.h>
 #include <winnow/partitions/radix_sort.h>
 #include <winnow/partitions/task_lists.h>
@@ -166,6 +167,10 @@ StripView SweepAndPrune::view() const noexcept {
           start_.data(),
           {layout_.axis(0), layout_.axis(1), layout_.axis(2)},
           layout_.drift()};
+}
+
+void SweepAndPrune::draw_regular(DebugDraw& draw, const DebugDrawOptions&) const {
+  draw_cells(draw, layout_, row_view(), start_, "is swept");
 }
 
 void SweepAndPrune::release_structure() noexcept {

@@ -24,6 +24,7 @@
 #include <winnow/core/sphere.h>
 #include <winnow/core/status.h>
 #include <winnow/partitions/bounds_n_squared.h>
+#include <winnow/partitions/debug_colours.h>
 #include <winnow/partitions/flat_grid.h>
 #include <winnow/partitions/linear_bvh.h>
 #include <winnow/partitions/n_squared.h>

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <winnow/core/debug_draw.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace winnow {
+
+// What partitions draw in. Each kind of thing has a colour of its own, so that a DebugDraw can tell
+// them apart. All can be told apart by people of any colour vision, on light and dark ground:
+// single colours are from Okabe and Ito, "Color Universal Design", 2008; the depth of a node goes
+// through the viridis map (van der Walt and Smith, 2015), whose lightness falls steadily.
+
+inline constexpr Colour kObjectColour{160, 168, 178, 255};
+inline constexpr Colour kLabelColour{232, 232, 232, 255};
+inline constexpr Colour kCellColour{86, 180, 233, 255};     ///< a cell or strip that holds objects
+inline constexpr Colour kContentsColour{0, 114, 178, 255};  ///< the box around what it holds
+inline constexpr Colour kAxisColour{240, 228, 66, 255};  ///< the axis that is swept or runs fastest
+
+/// By depth: the nodes next to the root first.
+inline constexpr std::array<Colour, 8> kNodeColours{{{253, 231, 37, 255},
+                                                     {165, 219, 54, 255},
+                                                     {74, 193, 109, 255},
+                                                     {31, 152, 139, 255},
+                                                     {42, 120, 142, 255},
+                                                     {53, 95, 141, 255},
+                                                     {65, 68, 135, 255},
+                                                     {72, 36, 117, 255}}};
+
+/// The colour of nodes at a depth, 0 or more; the last one serves all below it.
+[[nodiscard]] constexpr Colour node_colour(std::size_t depth) noexcept {
+  return kNodeColours[std::min(depth, kNodeColours.size() - 1)];
+}
+
+}  // namespace winnow
