@@ -28,7 +28,7 @@ struct Filter {
   std::uint32_t layers = ~0U;
   std::uint32_t mask = ~0U;
   std::uint32_t environment = kEveryEnvironment;
-  ObjectPredicate predicate;
+  ObjectPredicate predicate{};
 
   [[nodiscard]] constexpr ObjectFilter object() const noexcept {
     return {layers, mask, environment};

@@ -3,6 +3,7 @@
 #include <winnow/core/column.h>
 #include <winnow/core/execution.h>
 #include <winnow/partitions/block_tree.kernel.h>
+#include <winnow/partitions/node_filters.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -16,11 +17,20 @@ namespace winnow {
 /// order gives right answers.
 class BlockTree {
  public:
-  explicit BlockTree(std::pmr::memory_resource* memory) noexcept : nodes_(memory) {}
+  explicit BlockTree(std::pmr::memory_resource* memory) noexcept
+      : nodes_(memory), filters_(memory) {}
 
-  /// Sets which blocks the tree covers; node boxes are then undefined until `refit_all`. False, and
-  /// unchanged, if memory is refused.
-  [[nodiscard]] bool cover(std::size_t first_block, std::size_t blocks) noexcept;
+  /// What nodes hold.
+  enum class Nodes : std::uint8_t {
+    boxes,          ///< of the rows below them
+    boxes_filters,  ///< and what the rows' filters have between them
+    filters,        ///< that alone: of rows in no spatial order
+  };
+
+  /// Sets which blocks the tree covers; nodes are then undefined until `refit_all`. False, and then
+  /// it covers none, if memory is refused.
+  [[nodiscard]] bool cover(std::size_t first_block, std::size_t blocks,
+                           Nodes nodes = Nodes::boxes) noexcept;
 
   /// Recomputes every node. O(blocks).
   void refit_all(const RowView& rows, const Execution& execution) noexcept;
@@ -32,14 +42,18 @@ class BlockTree {
   [[nodiscard]] std::size_t first_block() const noexcept { return shape_.first_block; }
   [[nodiscard]] std::size_t blocks() const noexcept { return shape_.count[0]; }
   [[nodiscard]] std::size_t levels() const noexcept { return shape_.levels; }
+  [[nodiscard]] bool has_filters() const noexcept { return shape_.filters[0].layers != nullptr; }
   /// Nodes one level above the blocks: the units in which pair finding is split.
   [[nodiscard]] std::size_t groups() const noexcept { return (blocks() + 15) / 16; }
 
   void release() noexcept;
-  [[nodiscard]] Bytes bytes() const noexcept { return nodes_.bytes(); }
+  [[nodiscard]] Bytes bytes() const noexcept;
 
  private:
+  [[nodiscard]] bool lay_boxes(TreeView& shape) noexcept;
+
   Column<float> nodes_;
+  Column<std::uint32_t> filters_;
   TreeView shape_;  // rows unset: the pool may move between calls
 };
 

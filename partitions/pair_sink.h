@@ -49,6 +49,9 @@ struct QueryBatch {
   std::uint32_t end = 0;
   HitMode mode = HitMode::unordered;
   const std::uint64_t* moved = nullptr;  ///< bit per row, for HitMode::moved
+  /// Filters of those who ask, by `id`, or one for all; null if all have the default one.
+  const ObjectFilter* filter = nullptr;
+  bool one_filter = false;
 };
 
 }  // namespace winnow

@@ -45,7 +45,7 @@ struct PairOptions {
   bool incremental = true;
   /// Asked about every pair that the objects' own filters let pass. An incremental query keeps what
   /// it answered about pairs that did not move.
-  PairPredicate predicate;
+  PairPredicate predicate{};
 };
 
 /// How a partition stands and what it did; counters, never timings, so they repeat exactly.

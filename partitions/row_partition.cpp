@@ -41,6 +41,7 @@ RowPartition::RowPartition(const PartitionOptions& options, Volume volume)
     : execution_(options.execution),
       pool_(options.memory, volume),
       keys_(options.memory),
+      filters_(options.memory),
       tree_(options.memory),
       stale_(options.memory),
       moved_(options.memory),
@@ -63,7 +64,7 @@ bool RowPartition::make_room(std::size_t objects) noexcept {
   if (pool_.rows() + added > kNoObject) compact_rows();
   if (!pool_.reserve(pool_.rows() + added) || !keys_.reserve(objects)) return false;
   const std::size_t slots = std::max(keys_.slot_count() + added, objects);
-  return stale_.reserve(slots) && moved_.reserve(slots);
+  return filters_.reserve(slots) && stale_.reserve(slots) && moved_.reserve(slots);
 }
 
 void RowPartition::compact_rows() noexcept {
@@ -123,6 +124,7 @@ void RowPartition::remove_row(ObjectId id) noexcept {
     pool_.drop_last();
   }
   stale_.add(id);
+  filters_.reset(id);
   keys_.release(id);
 }
 
@@ -162,6 +164,7 @@ Status RowPartition::remove(std::span<const Key> keys) {
 
 void RowPartition::clear() noexcept {
   keys_.clear();
+  filters_.clear();
   pool_.clear();
   stale_.clear();
   moved_.clear();
@@ -179,6 +182,7 @@ void RowPartition::release_memory() noexcept {
   sort_scratch_.release();
   if (keys_.size() != 0) return;
   pool_.release();
+  filters_.release();
   tree_.release();
   stale_.release();
   moved_.release();
@@ -222,6 +226,7 @@ RowView RowPartition::row_view() const noexcept {
   RowView view;
   for (std::size_t c = 0; c < pool_.columns(); ++c) view.column[c] = pool_.column(c);
   view.id = pool_.ids();
+  view.filter = filters_.data();
   return view;
 }
 
@@ -231,6 +236,7 @@ Footprint RowPartition::footprint() const noexcept {
   result.keys = keys_.key_bytes();
   result.client_data = keys_.client_data_bytes();
   result.structure = tree_.bytes();
+  result.structure += filters_.bytes();
   result.structure += stale_.bytes();
   result.structure += moved_.bytes();
   result.scratch = spare_.bytes();

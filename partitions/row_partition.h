@@ -4,6 +4,7 @@
 #include <winnow/core/key_table.h>
 #include <winnow/partitions/block_tree.h>
 #include <winnow/partitions/change_list.h>
+#include <winnow/partitions/filter_table.h>
 #include <winnow/partitions/pair_sink.h>
 #include <winnow/partitions/partition.h>
 
@@ -144,6 +145,7 @@ class RowPartition : public Partition {
   bool move_to_tail(std::span<const std::uint32_t> rows) noexcept;
   bool sort_tail() noexcept;
   bool refit_tree() noexcept;
+  [[nodiscard]] BlockTree::Nodes node_content() const noexcept;
   void forward_changes() noexcept;
 
   struct SelfTasks;
@@ -161,6 +163,7 @@ class RowPartition : public Partition {
   Execution execution_;
   BoundsPool pool_;
   KeyTable keys_;
+  FilterTable filters_;
   BlockTree tree_;
 
   std::size_t regular_rows_ = 0;  // rows [0, regular_rows_) are the derived partition's

@@ -88,7 +88,9 @@ Status RowPartition::build() {
   if (!pool_.reserve_exact(rows) || !spare_.reserve(pool_.capacity() + 2 * kBlock)) {
     return Status::out_of_memory;
   }
-  if (!tree_.cover(first_block, (rest + kBlock - 1) / kBlock)) return Status::out_of_memory;
+  if (!tree_.cover(first_block, (rest + kBlock - 1) / kBlock, node_content())) {
+    return Status::out_of_memory;
+  }
 
   const Execution execution = execution_for(rows);
   pool_.reorder({order_.data(), rows}, spare_, execution);
@@ -179,12 +181,18 @@ bool RowPartition::sort_tail() noexcept {
   return true;
 }
 
+BlockTree::Nodes RowPartition::node_content() const noexcept {
+  return filters_.in_use() ? BlockTree::Nodes::boxes_filters : BlockTree::Nodes::boxes;
+}
+
 bool RowPartition::refit_tree() noexcept {
   const std::size_t first = (regular_rows_ + kBlock - 1) / kBlock;
   const std::size_t blocks = pool_.blocks() - first;
   const RowView rows = row_view();
-  if (blocks != tree_.blocks() || tail_changed_ || stale_.all()) {
-    if (blocks != tree_.blocks() && !tree_.cover(first, blocks)) {
+  const bool reshape =
+      blocks != tree_.blocks() || tree_.has_filters() != (filters_.in_use() && blocks != 0);
+  if (reshape || tail_changed_ || stale_.all()) {
+    if (reshape && !tree_.cover(first, blocks, node_content())) {
       built_ = false;
       return false;
     }
