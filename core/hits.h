@@ -6,6 +6,7 @@
 #include <winnow/core/pair_buffer.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <memory_resource>
 #include <span>
@@ -37,7 +38,7 @@ struct HitColumns {
 class HitBuffer {
  public:
   explicit HitBuffer(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
-      : hits_(memory), start_(memory), found_(memory) {}
+      : hits_(memory), start_(memory), found_(memory), heap_(memory) {}
 
   [[nodiscard]] std::span<const Hit> hits() const noexcept { return {hits_.data(), size()}; }
   [[nodiscard]] std::size_t size() const noexcept { return hits_.size(); }
@@ -70,7 +71,8 @@ class HitBuffer {
 
   Column<Hit> hits_;
   Column<std::size_t> start_;
-  PairBuffer found_;  // (object, bits of t)
+  PairBuffer found_;            // (object, bits of t)
+  Column<std::uint64_t> heap_;  // of a nearest query: bits of the distance << 32 | id
 };
 
 /// The caller's array of objects that a region met, reused from query to query. Not for use from

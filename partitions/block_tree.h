@@ -39,6 +39,8 @@ class BlockTree {
   void refit(const RowView& rows, std::span<std::uint32_t> leaves) noexcept;
 
   [[nodiscard]] TreeView view(const RowView& rows) const noexcept;
+  /// The same without rows; stays where it is until `cover` is called.
+  [[nodiscard]] const TreeView& shape() const noexcept { return shape_; }
   [[nodiscard]] std::size_t first_block() const noexcept { return shape_.first_block; }
   [[nodiscard]] std::size_t blocks() const noexcept { return shape_.count[0]; }
   [[nodiscard]] std::size_t levels() const noexcept { return shape_.levels; }

@@ -43,6 +43,7 @@ RowPartition::RowPartition(const PartitionOptions& options, Volume volume)
       keys_(options.memory),
       filters_(options.memory),
       tree_(options.memory),
+      row_tree_(options.memory),
       stale_(options.memory),
       moved_(options.memory),
       spare_(options.memory),
@@ -184,6 +185,7 @@ void RowPartition::release_memory() noexcept {
   pool_.release();
   filters_.release();
   tree_.release();
+  row_tree_.release();
   stale_.release();
   moved_.release();
   keys_.release_if_unused();
@@ -237,6 +239,7 @@ Footprint RowPartition::footprint() const noexcept {
   result.client_data = keys_.client_data_bytes();
   result.structure = tree_.bytes();
   result.structure += filters_.bytes();
+  result.structure += row_tree_.bytes();
   result.structure += stale_.bytes();
   result.structure += moved_.bytes();
   result.scratch = spare_.bytes();

@@ -7,6 +7,7 @@
 #include <winnow/partitions/filter_table.h>
 #include <winnow/partitions/pair_sink.h>
 #include <winnow/partitions/partition.h>
+#include <winnow/partitions/queries/query_view.h>
 
 #include <atomic>
 #include <cstddef>
@@ -16,6 +17,8 @@
 
 namespace winnow {
 
+struct Sweep;
+
 /// What all partitions share: keys, rows, what changed since when, pair queries and their order.
 ///
 /// Rows fall into two regions. The *regular* region is the derived partition's own: cells, strips,
@@ -23,6 +26,10 @@ namespace winnow {
 /// regular region (oversize, unbounded, in overfull cells), objects inserted since the last build,
 /// and objects that moved out of where the build put them. So no input can make a regular structure
 /// degenerate: what does not fit it is pruned by the tree. LinearBvh has no regular region.
+///
+/// Queries other than pairs walk blocks of rows, whatever region these lie in: cells and strips are
+/// runs of rows, so a second block tree over the regular rows leads to them. It is made when such a
+/// query first comes, and refitted after changes; a scene that never asks does not pay for it.
 ///
 /// A build permutes the rows themselves, so the pool is the sorted copy. It happens when the share
 /// of new rows, moved rows or holes passes a limit, or when the extra tests that a worn structure
@@ -155,6 +162,14 @@ class RowPartition : public Partition {
   bool run_self_task(const SelfTasks& tasks, std::size_t task, PairSink& sink) const noexcept;
   bool query_all(const QueryBatch& batch, PairSink& sink) const noexcept;
   Status ask(const RowPartition& other, HitMode mode, PairBuffer& out) const;
+  /// Brings everything up to date that queries walk.
+  Status prepare(QueryView& view) const;
+  Status refresh_row_tree() const;
+  /// A kernel that finds one hit of a sweep.
+  using FindHit = bool (*)(const QueryView&, const Sweep&, const QueryFilter&, std::uint64_t&);
+  Status find_hit(FindHit find, const Cast& cast, Hit& hit, const Filter& filter) const;
+  Status find_hits(FindHit find, const RayBatch& rays, const HitColumns& hits,
+                   const Filter& filter) const;
   QueryBatch box_batch(std::size_t begin, std::size_t end, std::span<float> scratch) const noexcept;
   void note_work(std::uint64_t tests, std::uint64_t queries,
                  std::atomic<std::uint64_t>& base) const noexcept;
@@ -165,6 +180,10 @@ class RowPartition : public Partition {
   KeyTable keys_;
   FilterTable filters_;
   BlockTree tree_;
+
+  // Over the regular rows, for all queries but pairs: made when the first one comes.
+  mutable BlockTree row_tree_;
+  mutable std::atomic<bool> row_tree_stale_{true};
 
   std::size_t regular_rows_ = 0;  // rows [0, regular_rows_) are the derived partition's
   std::size_t built_rows_ = 0;    // rows from here on are the tail: new or moved since the build

@@ -1,21 +1,182 @@
+// RowPartition: rays and swept volumes.
+
+#include <winnow/partitions/pair_writer.h>
+#include <winnow/partitions/queries/cast.kernel.h>
+#include <winnow/partitions/queries/hit_writer.h>
+#include <winnow/partitions/queries/query_filter.h>
+#include <winnow/partitions/queries/sweep.h>
+#include <winnow/partitions/queries/touch.h>
 #include <winnow/partitions/row_partition.h>
+
+#include <algorithm>
+#include <variant>
+
 namespace winnow {
-Status RowPartition::closest(const Cast&, Hit&, const Filter&) const {
-  return Status::unsupported_volume;
+
+WINNOW_DEFINE_KERNELS(CastKernels, cast_kernels)
+
+namespace {
+
+/// A cast ready for the kernels. Not to be moved: the sweep points into it.
+class PreparedCast {
+ public:
+  explicit PreparedCast(const Cast& cast) noexcept {
+    valid_ = std::visit([](const auto& c) { return c.is_valid(); }, cast);
+    if (valid_) std::visit([this](const auto& c) { prepare(c); }, cast);
+  }
+  PreparedCast(const PreparedCast&) = delete;
+  PreparedCast& operator=(const PreparedCast&) = delete;
+
+  [[nodiscard]] bool valid() const noexcept { return valid_; }
+  [[nodiscard]] const Sweep& sweep() const noexcept { return sweep_; }
+
+ private:
+  void prepare(const Ray& ray) noexcept { sweep_ = make_sweep(ray); }
+  void prepare(const BoxCast& cast) noexcept { sweep_of(cast.box, cast); }
+  void prepare(const SphereCast& cast) noexcept {
+    sweep_of(cast.sphere.bounds(), cast);
+    decide_by({cast.sphere.center, cast.sphere.center, cast.sphere.radius});
+  }
+  void prepare(const CapsuleCast& cast) noexcept {
+    sweep_of(cast.capsule.bounds(), cast);
+    decide_by(cast.capsule);
+  }
+
+  template <typename Moving>
+  void sweep_of(const Aabb& box, const Moving& cast) noexcept {
+    sweep_ = make_sweep(box, cast.direction.template cast<double>(),
+                        static_cast<double>(cast.min_t), static_cast<double>(cast.max_t));
+    capsule_.direction = cast.direction.template cast<double>();
+  }
+  void decide_by(const Capsule& capsule) noexcept {
+    capsule_.capsule = capsule;
+    capsule_.min_t = sweep_.min_t;
+    capsule_.max_t = sweep_.max_t;
+    sweep_.touch = touch_capsule;
+    sweep_.shape = &capsule_;
+  }
+
+  bool valid_;
+  Sweep sweep_;
+  MovingCapsule capsule_;
+};
+
+constexpr std::size_t kRaysPerTask = 64;
+
+std::size_t tasks_for(std::size_t rays) noexcept {
+  return (rays + kRaysPerTask - 1) / kRaysPerTask;
 }
-Status RowPartition::any(const Cast&, Hit&, const Filter&) const {
-  return Status::unsupported_volume;
+
+bool all_valid(const RayBatch& rays) noexcept {
+  for (std::size_t i = 0; i < rays.count; ++i) {
+    if (!rays[i].is_valid()) return false;
+  }
+  return true;
 }
-Status RowPartition::all(const Cast&, HitBuffer&, const Filter&) const {
-  return Status::unsupported_volume;
+
+void write_columns(const HitColumns& out, std::size_t i, const Hit& hit) noexcept {
+  if (out.key != nullptr) out.key[i] = hit.key;
+  if (out.data != nullptr) out.data[i] = hit.data;
+  if (out.t != nullptr) out.t[i] = hit.t;
 }
-Status RowPartition::closest(const RayBatch&, const HitColumns&, const Filter&) const {
-  return Status::unsupported_volume;
+
+}  // namespace
+
+Status RowPartition::find_hit(FindHit find, const Cast& cast, Hit& hit,
+                              const Filter& filter) const {
+  hit = {};
+  const PreparedCast prepared(cast);
+  if (!prepared.valid()) return Status::invalid_argument;
+  QueryView view;
+  if (const Status status = prepare(view); status != Status::ok) return status;
+  const KernelFilter wanted(filter, view, keys_);
+  std::uint64_t found = 0;
+  if (!wanted.meets_nothing() && find(view, prepared.sweep(), wanted.wanted(), found)) {
+    hit = to_hit(keys_, found);
+  }
+  return Status::ok;
 }
-Status RowPartition::any(const RayBatch&, const HitColumns&, const Filter&) const {
-  return Status::unsupported_volume;
+
+Status RowPartition::find_hits(FindHit find, const RayBatch& rays, const HitColumns& hits,
+                               const Filter& filter) const {
+  if (!all_valid(rays)) return Status::invalid_argument;
+  QueryView view;
+  if (const Status status = prepare(view); status != Status::ok) return status;
+  const KernelFilter wanted(filter, view, keys_);
+  execution_.for_each(tasks_for(rays.count), [&](std::size_t task) {
+    const std::size_t end = std::min(rays.count, (task + 1) * kRaysPerTask);
+    for (std::size_t i = task * kRaysPerTask; i < end; ++i) {
+      std::uint64_t found = 0;
+      const bool hit =
+          !wanted.meets_nothing() && find(view, make_sweep(rays[i]), wanted.wanted(), found);
+      write_columns(hits, i, hit ? to_hit(keys_, found) : Hit{});
+    }
+  });
+  return Status::ok;
 }
-Status RowPartition::all(const RayBatch&, HitBuffer&, const Filter&) const {
-  return Status::unsupported_volume;
+
+Status RowPartition::closest(const Cast& cast, Hit& hit, const Filter& filter) const {
+  return find_hit(cast_kernels().closest, cast, hit, filter);
 }
+
+Status RowPartition::any(const Cast& cast, Hit& hit, const Filter& filter) const {
+  return find_hit(cast_kernels().any, cast, hit, filter);
+}
+
+Status RowPartition::closest(const RayBatch& rays, const HitColumns& hits,
+                             const Filter& filter) const {
+  return find_hits(cast_kernels().closest, rays, hits, filter);
+}
+
+Status RowPartition::any(const RayBatch& rays, const HitColumns& hits, const Filter& filter) const {
+  return find_hits(cast_kernels().any, rays, hits, filter);
+}
+
+Status RowPartition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) const {
+  hits.clear();
+  const PreparedCast prepared(cast);
+  if (!prepared.valid()) return Status::invalid_argument;
+  QueryView view;
+  if (const Status status = prepare(view); status != Status::ok) return status;
+  if (!HitWriter::start(hits, 1)) return Status::out_of_memory;
+  const KernelFilter wanted(filter, view, keys_);
+  const Execution here = Execution::serial();
+  PairWriter writer(HitWriter::found(hits), here);
+  const Status status = writer.append(1, [&](std::size_t, PairSink& sink) {
+    std::size_t count = 0;
+    const bool done = wanted.meets_nothing() ||
+                      cast_kernels().all(view, prepared.sweep(), wanted.wanted(), sink, count);
+    HitWriter::set_count(hits, 0, count);
+    return done;
+  });
+  if (status == Status::ok && HitWriter::finish(hits, keys_, here)) return Status::ok;
+  hits.clear();
+  return Status::out_of_memory;
+}
+
+Status RowPartition::all(const RayBatch& rays, HitBuffer& hits, const Filter& filter) const {
+  hits.clear();
+  if (!all_valid(rays)) return Status::invalid_argument;
+  QueryView view;
+  if (const Status status = prepare(view); status != Status::ok) return status;
+  if (!HitWriter::start(hits, rays.count)) return Status::out_of_memory;
+  const KernelFilter wanted(filter, view, keys_);
+  PairWriter writer(HitWriter::found(hits), execution_);
+  const Status status = writer.append(tasks_for(rays.count), [&](std::size_t task, PairSink& sink) {
+    const std::size_t end = std::min(rays.count, (task + 1) * kRaysPerTask);
+    for (std::size_t i = task * kRaysPerTask; i < end; ++i) {
+      std::size_t count = 0;
+      if (!wanted.meets_nothing() &&
+          !cast_kernels().all(view, make_sweep(rays[i]), wanted.wanted(), sink, count)) {
+        return false;
+      }
+      HitWriter::set_count(hits, i, count);
+    }
+    return true;
+  });
+  if (status == Status::ok && HitWriter::finish(hits, keys_, execution_)) return Status::ok;
+  hits.clear();
+  return Status::out_of_memory;
+}
+
 }  // namespace winnow

@@ -1,6 +1,65 @@
+// RowPartition: nearest objects.
+
+#include <winnow/partitions/queries/nearest.kernel.h>
+
+#include <winnow/partitions/queries/hit_writer.h>
+#include <winnow/partitions/queries/query_filter.h>
 #include <winnow/partitions/row_partition.h>
+
+#include <algorithm>
+
 namespace winnow {
-Status RowPartition::nearest(const Aabb&, std::size_t, float, HitBuffer&, const Filter&) const {
-  return Status::unsupported_volume;
+
+WINNOW_DEFINE_KERNELS(NearestKernels, nearest_kernels)
+
+namespace {
+
+/// A heap whose entries lie in a column.
+NearestHeap heap_in(Column<std::uint64_t>& entries, std::size_t most) noexcept {
+  NearestHeap heap;
+  heap.entries = entries.data();
+  heap.room = entries.capacity();
+  heap.most = most;
+  heap.owner = &entries;
+  heap.grow = [](NearestHeap& full) {
+    auto& column = *static_cast<Column<std::uint64_t>*>(full.owner);
+    column.set_size(full.size);
+    if (!column.grow(full.size + 1)) return false;
+    full.entries = column.data();
+    full.room = column.capacity();
+    return true;
+  };
+  return heap;
 }
+
+}  // namespace
+
+Status RowPartition::nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
+                             const Filter& filter) const {
+  hits.clear();
+  const bool finite = from.min.allFinite() && from.max.allFinite() && from.is_valid();
+  if (!finite || !(radius >= 0.0F)) return Status::invalid_argument;
+  QueryView view;
+  if (const Status status = prepare(view); status != Status::ok) return status;
+  if (!HitWriter::start(hits, 1)) return Status::out_of_memory;
+  const KernelFilter wanted(filter, view, keys_);
+  HitWriter::set_count(hits, 0, 0);
+  if (wanted.meets_nothing() || count == 0) return Status::ok;
+  NearestQuery query;
+  for (int axis = 0; axis < 3; ++axis) {
+    query.low[axis] = from.min[axis];
+    query.high[axis] = from.max[axis];
+  }
+  query.radius = radius;
+  Column<std::uint64_t>& entries = HitWriter::heap(hits);
+  entries.clear();
+  NearestHeap heap = heap_in(entries, count);
+  const bool done = nearest_kernels().nearest(view, query, wanted.wanted(), heap);
+  entries.set_size(heap.size);
+  std::sort(entries.begin(), entries.end());
+  if (done && HitWriter::write(hits, keys_, entries)) return Status::ok;
+  hits.clear();
+  return Status::out_of_memory;
+}
+
 }  // namespace winnow

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <winnow/partitions/queries/query_view.h>
+#include <winnow/simd/kernels.h>
+
+#include <cstdint>
+
+namespace winnow {
+
+/// A box that moves along a line, against boxes [low, high]: they touch during an interval of t per
+/// axis, ended by (near - origin) / d and (far - origin) / d, where near is the end of the box that
+/// is met first, and origin the end of the moving box that meets it. A ray is a box without extent.
+///
+/// The tests of 16 boxes are in float and never miss; what they let pass is decided in double. For
+/// them t is scaled by a power of two that brings the largest component of the direction into
+/// [1/2, 1), so that no product underflows by more than the tests allow for. On an axis without
+/// motion the reciprocal is infinite and the origins are moved outward by one float, so that
+/// 0 * infinity comes up only where there is no hit. An axis whose motion is too slow for a float
+/// reciprocal repeats the fastest axis instead: only the test in double looks at it.
+struct Sweep {
+  float near_origin[3];
+  float far_origin[3];
+  float inverse[3];
+  std::uint8_t near_column[3];
+  std::uint8_t far_column[3];
+  float from;  ///< scaled min_t, rounded down
+  double scale;
+
+  double exact_near_origin[3];
+  double exact_far_origin[3];
+  double exact_inverse[3];
+  std::uint8_t exact_near_column[3];
+  bool moves[3];
+  double min_t;
+  double max_t;
+
+  /// Decides instead of the sweep in double, for shapes that are not boxes: the first t at which
+  /// the shape touches the box (six floats), or a negative number.
+  double (*touch)(const void* shape, const float* box) = nullptr;
+  const void* shape = nullptr;
+};
+
+/// Results are t's bits << 32 | id, which sorts by t and then by id, since t >= 0.
+struct CastKernels {
+  /// The least (t, id) of all hits below `best`; false if there is none.
+  bool (*closest)(const QueryView&, const Sweep&, const QueryFilter&, std::uint64_t& best);
+  /// Any hit.
+  bool (*any)(const QueryView&, const Sweep&, const QueryFilter&, std::uint64_t& found);
+  /// All hits, unordered, as pairs (id, bits of t); `count` receives how many. False if the sink is
+  /// full.
+  bool (*all)(const QueryView&, const Sweep&, const QueryFilter&, PairSink&, std::size_t& count);
+};
+
+WINNOW_KERNELS(CastKernels, cast_kernels);
+
+}  // namespace winnow

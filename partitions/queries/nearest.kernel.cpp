@@ -1,0 +1,124 @@
+#include <winnow/partitions/queries/nearest.kernel.h>
+#include <winnow/partitions/queries/row_block.wide.h>
+#include <winnow/partitions/queries/walks.wide.h>
+
+namespace winnow {
+namespace WINNOW_ISA_NAME {
+namespace {
+
+/// Squares of distances to 16 boxes, in float and never too large.
+class DistanceProbe {
+ public:
+  explicit DistanceProbe(const NearestQuery& query) : query_(query) {}
+
+  Mask16 test(const float* const* column, std::size_t at, float limit, Float16& order) const {
+    const Box16 box = load_slabs<3>(column, at);
+    const Float16 zero = broadcast(0.0F);
+    Float16 square = zero;
+    for (int i = 0; i < 3; ++i) {
+      const Float16 below = subtract(box.low[i], broadcast(query_.high[i]));
+      const Float16 above = subtract(broadcast(query_.low[i]), box.high[i]);
+      const Float16 gap = max(max(below, above), zero);
+      square = add(square, multiply(gap, gap));
+    }
+    order = multiply(square, broadcast(0.999999F));
+    const Mask16 live = less_equal(box.low[0], broadcast(3.4028234e38F));
+    return less_equal(order, broadcast(limit)) & live;
+  }
+
+ private:
+  const NearestQuery& query_;
+};
+
+/// The distance to a row's box.
+double distance(const NearestQuery& query, const float* const* column, std::size_t r) {
+  double square = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double below = static_cast<double>(column[i][r]) - static_cast<double>(query.high[i]);
+    const double above = static_cast<double>(query.low[i]) - static_cast<double>(column[3 + i][r]);
+    const double gap = below > above ? below : above;
+    if (gap > 0.0) square += gap * gap;
+  }
+  return __builtin_sqrt(square);
+}
+
+/// The least square that a distance beyond `t` can show.
+float square_limit(float t) {
+  const double square = static_cast<double>(t) * static_cast<double>(t);
+  return square < 3e38 ? static_cast<float>(square) * 1.000001F + 1e-37F : __builtin_inff();
+}
+
+class Heap {
+ public:
+  explicit Heap(NearestHeap& heap) : heap_(heap) {}
+
+  [[nodiscard]] bool full() const { return heap_.size == heap_.most; }
+  [[nodiscard]] std::uint64_t worst() const { return heap_.entries[0]; }
+
+  bool add(std::uint64_t entry) {
+    if (full()) {
+      sink(entry);
+      return true;
+    }
+    if (heap_.size == heap_.room && !heap_.grow(heap_)) return false;
+    std::size_t place = heap_.size++;
+    while (place != 0 && heap_.entries[(place - 1) / 2] < entry) {
+      heap_.entries[place] = heap_.entries[(place - 1) / 2];
+      place = (place - 1) / 2;
+    }
+    heap_.entries[place] = entry;
+    return true;
+  }
+
+ private:
+  /// Replaces the worst.
+  void sink(std::uint64_t entry) {
+    std::size_t place = 0;
+    for (;;) {
+      std::size_t child = 2 * place + 1;
+      if (child >= heap_.size) break;
+      if (child + 1 < heap_.size && heap_.entries[child + 1] > heap_.entries[child]) ++child;
+      if (heap_.entries[child] <= entry) break;
+      heap_.entries[place] = heap_.entries[child];
+      place = child;
+    }
+    heap_.entries[place] = entry;
+  }
+
+  NearestHeap& heap_;
+};
+
+bool nearest(const QueryView& view, const NearestQuery& query, const QueryFilter& filter,
+             NearestHeap& nearest_heap) {
+  const DistanceProbe probe(query);
+  const Wanted wanted(view, filter);
+  Heap heap(nearest_heap);
+  float limit = square_limit(query.radius);
+  return walk_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
+    const RowBlock block(view, first_row);
+    Float16 order;
+    Mask16 mask = probe.test(block.columns(), block.at(), limit, order);
+    mask = wanted.rows(first_row, mask);
+    for (; mask != 0; mask &= mask - 1) {
+      const unsigned lane = first(mask);
+      const double far = distance(query, block.columns(), block.at() + lane);
+      if (far > static_cast<double>(query.radius)) continue;
+      const std::uint32_t bits = order_of_rounded_down(far);
+      const std::uint32_t id = view.id[first_row + lane];
+      const std::uint64_t entry = std::uint64_t{bits} << 32U | id;
+      if ((heap.full() && entry >= heap.worst()) || !wanted.accepts(id)) continue;
+      if (!heap.add(entry)) return false;
+      if (!heap.full()) continue;
+      // Up to the next float: what shows the same distance may have the smaller id.
+      limit = square_limit(value_of(static_cast<std::uint32_t>(heap.worst() >> 32U) + 1));
+    }
+    return true;
+  });
+}
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME
+
+extern const NearestKernels WINNOW_KERNEL_TABLE(nearest_kernels) = {WINNOW_ISA_NAME::nearest};
+
+}  // namespace winnow

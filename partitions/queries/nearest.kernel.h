@@ -1,0 +1,34 @@
+#pragma once
+
+#include <winnow/partitions/queries/query_view.h>
+#include <winnow/simd/kernels.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace winnow {
+
+/// The nearest objects so far: a heap of (distance's bits << 32 | id) with the worst in front.
+struct NearestHeap {
+  std::uint64_t* entries = nullptr;
+  std::size_t size = 0;
+  std::size_t room = 0;
+  std::size_t most = 0;  ///< objects wanted
+  bool (*grow)(NearestHeap& heap) = nullptr;
+  void* owner = nullptr;
+};
+
+struct NearestQuery {
+  float low[3];
+  float high[3];
+  float radius;
+};
+
+struct NearestKernels {
+  /// The heap's objects, in the order of a heap. False if it cannot grow.
+  bool (*nearest)(const QueryView&, const NearestQuery&, const QueryFilter&, NearestHeap&);
+};
+
+WINNOW_KERNELS(NearestKernels, nearest_kernels);
+
+}  // namespace winnow

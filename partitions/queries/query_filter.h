@@ -1,0 +1,39 @@
+#pragma once
+
+#include <winnow/core/filter.h>
+#include <winnow/core/key_table.h>
+#include <winnow/partitions/queries/query_view.h>
+
+namespace winnow {
+
+/// A caller's filter as kernels take it. Not to be moved: what it hands out points into it.
+class KernelFilter {
+ public:
+  KernelFilter(const Filter& filter, const QueryView& view, const KeyTable& keys) noexcept
+      : predicate_(filter.predicate), keys_(keys) {
+    wanted_.object = filter.object();
+    // Without filters in the partition every object has the default one: one answer for all.
+    wanted_.by_object = view.filter != nullptr;
+    meets_nothing_ = !wanted_.by_object && !may_meet(ObjectFilter{}, wanted_.object);
+    if (predicate_.accept == nullptr) return;
+    wanted_.context = this;
+    wanted_.accept = [](const void* context, std::uint32_t id) {
+      const auto& self = *static_cast<const KernelFilter*>(context);
+      return self.predicate_.accept(self.predicate_.context, self.keys_.key_of(id),
+                                    self.keys_.client_data(id));
+    };
+  }
+  KernelFilter(const KernelFilter&) = delete;
+  KernelFilter& operator=(const KernelFilter&) = delete;
+
+  [[nodiscard]] bool meets_nothing() const noexcept { return meets_nothing_; }
+  [[nodiscard]] const QueryFilter& wanted() const noexcept { return wanted_; }
+
+ private:
+  QueryFilter wanted_;
+  ObjectPredicate predicate_;
+  const KeyTable& keys_;
+  bool meets_nothing_ = false;
+};
+
+}  // namespace winnow

@@ -1,0 +1,43 @@
+// RowPartition: how it shows itself to queries.
+
+#include <winnow/partitions/queries/query_view.h>
+
+#include <winnow/partitions/row_partition.h>
+
+namespace winnow {
+
+Status RowPartition::prepare(QueryView& view) const {
+  if (const Status status = refresh(); status != Status::ok) return status;
+  const std::size_t slabs = pool_.volume() == Volume::sphere ? 3 : pool_.columns() / 2;
+  for (std::size_t c = 0; c < 3; ++c) {
+    view.column[c] = pool_.column(c);
+    if (slabs + c < pool_.columns()) view.column[3 + c] = pool_.column(slabs + c);
+  }
+  view.spheres = pool_.volume() == Volume::sphere;
+  const RowView rows = row_view();
+  view.id = rows.id;
+  view.filter = rows.filter;
+  if (is_flat()) {
+    view.flat_blocks = static_cast<std::uint32_t>(pool_.blocks());
+    return Status::ok;
+  }
+  if (regular_rows_ != 0) {
+    if (const Status status = refresh_row_tree(); status != Status::ok) return status;
+    view.tree[view.trees++] = &row_tree_.shape();
+  }
+  if (tree_.blocks() != 0) view.tree[view.trees++] = &tree_.shape();
+  return Status::ok;
+}
+
+Status RowPartition::refresh_row_tree() const {
+  if (!row_tree_stale_.load(std::memory_order_acquire)) return Status::ok;
+  const std::lock_guard lock(refresh_mutex_);
+  if (!row_tree_stale_.load(std::memory_order_relaxed)) return Status::ok;
+  const std::size_t blocks = (regular_rows_ + BoundsPool::kBlock - 1) / BoundsPool::kBlock;
+  if (row_tree_.blocks() != blocks && !row_tree_.cover(0, blocks)) return Status::out_of_memory;
+  row_tree_.refit_all(row_view(), execution_for(regular_rows_));
+  row_tree_stale_.store(false, std::memory_order_release);
+  return Status::ok;
+}
+
+}  // namespace winnow

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <winnow/core/object_filter.h>
+#include <winnow/partitions/block_tree.kernel.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace winnow {
+
+/// How queries see a partition: boxes in rows, and what leads to them. Every row lies either in a
+/// block of one of the trees or in the flat blocks, which are all looked at.
+struct QueryView {
+  /// Lower ends, then upper ends; of spheres the centre and the radius.
+  const float* column[6] = {};
+  bool spheres = false;  ///< flat blocks only
+  const std::uint32_t* id = nullptr;
+  const ObjectFilter* filter = nullptr;  ///< by id; null if every object has the default one
+  const TreeView* tree[2] = {};          ///< their own `rows` are unset
+  std::uint32_t trees = 0;
+  std::uint32_t flat_blocks = 0;
+};
+
+/// Whom a query wants.
+struct QueryFilter {
+  ObjectFilter object;
+  bool by_object = false;  ///< false: `object` meets every object there is
+  bool (*accept)(const void* context, std::uint32_t id) = nullptr;  ///< null: all
+  const void* context = nullptr;
+};
+
+/// Where kernels write object ids: while cursor <= limit there is room for 16.
+struct IdSink {
+  std::uint32_t* cursor = nullptr;
+  std::uint32_t* limit = nullptr;
+  bool (*grow)(IdSink& sink) = nullptr;
+  void* owner = nullptr;
+};
+
+}  // namespace winnow

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <winnow/partitions/queries/cast.kernel.h>
+#include <winnow/partitions/queries/query_view.h>
+#include <winnow/simd/kernels.h>
+
+#include <cstdint>
+
+namespace winnow {
+
+/// How a region and a box lie.
+enum class Meeting : std::uint8_t { apart, crossing, inside };
+
+/// Decides on the box of a row (six floats), for regions that 16 lanes of float cannot.
+struct ExactRegion {
+  Meeting (*meets)(const void* region, const float* box) = nullptr;
+  const void* region = nullptr;
+};
+
+/// A half-space for tests of 16 boxes: outside where normal . p + offset stays below 0 by more than
+/// slack * (largest coordinate) + margin, which bounds the rounding. The largest component of the
+/// normal lies in [1/16, 1/8), so that nothing overflows.
+struct WidePlane {
+  float normal[3];
+  float offset;
+  float slack;
+  float margin;
+};
+
+/// The part of a box that is inside of all planes. Without planes no `exact` is needed. If there
+/// are `more` conditions that only `exact` knows, no test here says "inside".
+struct PlaneRegion {
+  float low[3];
+  float high[3];
+  const WidePlane* planes = nullptr;
+  std::uint32_t count = 0;
+  bool more = false;
+  ExactRegion exact;
+};
+
+struct BallRegion {
+  float center[3];
+  float radius;
+  ExactRegion exact;
+};
+
+/// What a sweep passes over.
+struct SweptRegion {
+  Sweep sweep;
+  ExactRegion exact;
+};
+
+/// Where objects are written that lie inside, and those that cross the border.
+struct RegionSinks {
+  IdSink inside;
+  IdSink crossing;
+};
+
+/// All return false if a sink is full.
+struct RegionKernels {
+  bool (*planes)(const QueryView&, const PlaneRegion&, const QueryFilter&, RegionSinks&);
+  bool (*ball)(const QueryView&, const BallRegion&, const QueryFilter&, RegionSinks&);
+  bool (*swept)(const QueryView&, const SweptRegion&, const QueryFilter&, RegionSinks&);
+};
+
+WINNOW_KERNELS(RegionKernels, region_kernels);
+
+}  // namespace winnow

@@ -1,0 +1,153 @@
+#include <winnow/partitions/queries/regions.h>
+
+#include <winnow/partitions/queries/sweep.h>
+#include <winnow/partitions/queries/touch.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <variant>
+
+namespace winnow {
+
+WINNOW_DEFINE_KERNELS(RegionKernels, region_kernels)
+
+namespace {
+
+// Roundings of a plane test in float: three products, three sums, and what the plane's own
+// coefficients may be off by.
+constexpr float kPlaneRounding = 16 * 0x1p-24F;
+
+WidePlane widen(const Eigen::Vector3d& normal, double offset) noexcept {
+  int exponent = 0;
+  (void)std::frexp(normal.cwiseAbs().maxCoeff(), &exponent);
+  const double scale = std::ldexp(1.0, -exponent - 3);
+  WidePlane wide;
+  float length = 0.0F;
+  for (int i = 0; i < 3; ++i) {
+    wide.normal[i] = static_cast<float>(normal[i] * scale);
+    length += std::abs(wide.normal[i]);
+  }
+  // Beyond the largest float it outweighs every point there is.
+  const auto most = static_cast<double>(FLT_MAX);
+  wide.offset = static_cast<float>(std::clamp(offset * scale, -most, most));
+  wide.slack = length * kPlaneRounding;
+  // Products of tiny normals and coordinates can vanish altogether.
+  wide.margin = std::abs(wide.offset) * kPlaneRounding + 1e-36F;
+  return wide;
+}
+
+}  // namespace
+
+PreparedRegion::PreparedRegion(const Region& region) noexcept {
+  within({Eigen::Vector3f::Constant(-FLT_MAX), Eigen::Vector3f::Constant(FLT_MAX)});
+  status_ = std::visit([this](const auto& r) { return prepare(r); }, region);
+}
+
+bool PreparedRegion::run(const QueryView& view, const QueryFilter& filter,
+                         RegionSinks& sinks) const {
+  const RegionKernels& kernels = region_kernels();
+  switch (kind_) {
+    case Kind::planes:
+      return kernels.planes(view, planes_, filter, sinks);
+    case Kind::ball:
+      return kernels.ball(view, ball_, filter, sinks);
+    case Kind::swept:
+      return kernels.swept(view, swept_, filter, sinks);
+  }
+  return true;
+}
+
+void PreparedRegion::within(const Aabb& box) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    planes_.low[i] = std::max(box.min[i], -FLT_MAX);
+    planes_.high[i] = std::min(box.max[i], FLT_MAX);
+  }
+}
+
+void PreparedRegion::prune_by(const Eigen::Vector3d& normal, double offset) noexcept {
+  planes_.planes = wide_.data();
+  if (planes_.count == kMostPlanes) {
+    planes_.more = true;
+  } else {
+    wide_[planes_.count++] = widen(normal, offset);
+  }
+}
+
+Status PreparedRegion::prepare(const Eigen::Vector3f& point) noexcept {
+  if (!point.allFinite()) return Status::invalid_argument;
+  within({point, point});
+  return Status::ok;
+}
+
+Status PreparedRegion::prepare(const Aabb& box) noexcept {
+  if (!box.is_valid()) return Status::invalid_argument;
+  within(box);
+  return Status::ok;
+}
+
+Status PreparedRegion::prepare(const OrientedBox& box) noexcept {
+  if (!box.is_valid()) return Status::invalid_argument;
+  within(box.bounds());
+  const Eigen::Matrix3d axes = box.axes.cast<double>();
+  const Eigen::Vector3d center = box.center.cast<double>();
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d normal = axes.col((i + 1) % 3).cross(axes.col((i + 2) % 3));
+    // A face without a direction bounds nothing that lanes could test.
+    if (normal.isZero(0.0)) {
+      planes_.more = true;
+      continue;
+    }
+    const double reach = std::abs(normal.dot(axes.col(i))) * static_cast<double>(box.half[i]);
+    prune_by(normal, reach - normal.dot(center));
+    prune_by(-normal, reach + normal.dot(center));
+  }
+  planes_.exact = {meet_oriented_box, &box};
+  return Status::ok;
+}
+
+Status PreparedRegion::prepare(const Sphere& sphere) noexcept {
+  if (!sphere.is_valid()) return Status::invalid_argument;
+  kind_ = Kind::ball;
+  for (int i = 0; i < 3; ++i) ball_.center[i] = sphere.center[i];
+  ball_.radius = sphere.radius;
+  ball_.exact = {meet_sphere, &sphere};
+  return Status::ok;
+}
+
+Status PreparedRegion::prepare(const Capsule& capsule) noexcept {
+  if (!capsule.is_valid()) return Status::invalid_argument;
+  // The ball at one end, moved to the other.
+  const Eigen::Vector3d along = capsule.b.cast<double>() - capsule.a.cast<double>();
+  if (along.isZero(0.0)) {
+    kind_ = Kind::ball;
+    for (int i = 0; i < 3; ++i) ball_.center[i] = capsule.a[i];
+    ball_.radius = capsule.radius;
+    ball_.exact = {meet_capsule, &capsule};
+    return Status::ok;
+  }
+  kind_ = Kind::swept;
+  swept_.sweep = make_sweep(Sphere{capsule.a, capsule.radius}.bounds(), along, 0.0, 1.0);
+  swept_.exact = {meet_capsule, &capsule};
+  return Status::ok;
+}
+
+Status PreparedRegion::prepare(const Frustum& frustum) noexcept {
+  if (!frustum.is_valid()) return Status::invalid_argument;
+  within(frustum.bounds);
+  return prepare(std::span<const Plane>(frustum.planes));
+}
+
+Status PreparedRegion::prepare(const std::span<const Plane>& planes) noexcept {
+  for (const Plane& plane : planes) {
+    if (!plane.is_valid()) return Status::invalid_argument;
+  }
+  for (const Plane& plane : planes) {
+    prune_by(plane.normal.cast<double>(), static_cast<double>(plane.offset));
+  }
+  exact_planes_ = planes;
+  planes_.exact = {meet_planes, &exact_planes_};
+  return Status::ok;
+}
+
+}  // namespace winnow

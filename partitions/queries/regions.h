@@ -1,0 +1,50 @@
+#pragma once
+
+#include <winnow/core/region.h>
+#include <winnow/core/status.h>
+#include <winnow/partitions/queries/region.kernel.h>
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace winnow {
+
+/// A region that kernels can take. Not to be moved: parts of it point at each other.
+class PreparedRegion {
+ public:
+  explicit PreparedRegion(const Region& region) noexcept;
+  PreparedRegion(const PreparedRegion&) = delete;
+  PreparedRegion& operator=(const PreparedRegion&) = delete;
+
+  [[nodiscard]] Status status() const noexcept { return status_; }
+  /// False if a sink is full.
+  [[nodiscard]] bool run(const QueryView& view, const QueryFilter& filter,
+                         RegionSinks& sinks) const;
+
+ private:
+  enum class Kind : std::uint8_t { planes, ball, swept };
+
+  Status prepare(const Eigen::Vector3f& point) noexcept;
+  Status prepare(const Aabb& box) noexcept;
+  Status prepare(const OrientedBox& box) noexcept;
+  Status prepare(const Sphere& sphere) noexcept;
+  Status prepare(const Capsule& capsule) noexcept;
+  Status prepare(const Frustum& frustum) noexcept;
+  Status prepare(const std::span<const Plane>& planes) noexcept;
+  void within(const Aabb& box) noexcept;
+  void prune_by(const Eigen::Vector3d& normal, double offset) noexcept;
+
+  // Of more planes than this, the first prune and all decide.
+  static constexpr std::size_t kMostPlanes = 16;
+
+  Kind kind_ = Kind::planes;
+  Status status_;
+  PlaneRegion planes_;
+  BallRegion ball_;
+  SweptRegion swept_;
+  std::span<const Plane> exact_planes_;
+  std::array<WidePlane, kMostPlanes> wide_;
+};
+
+}  // namespace winnow

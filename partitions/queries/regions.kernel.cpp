@@ -1,0 +1,245 @@
+#include <winnow/partitions/queries/region.kernel.h>
+#include <winnow/partitions/queries/row_block.wide.h>
+#include <winnow/partitions/queries/sweep.wide.h>
+#include <winnow/partitions/queries/walks.wide.h>
+#include <winnow/simd/compress.h>
+
+namespace winnow {
+namespace WINNOW_ISA_NAME {
+namespace {
+
+/// Which of 16 boxes may meet a region, and which surely lie inside.
+struct Met {
+  Mask16 met;
+  Mask16 inside;
+};
+
+class PlaneProbe {
+ public:
+  explicit PlaneProbe(const PlaneRegion& region) : region_(region) {}
+
+  [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
+
+  [[nodiscard]] Met test(const float* const* column, std::size_t at) const {
+    const Box16 box = load_slabs<3>(column, at);
+    Met result{overlap(box, region_.low, region_.high), 0};
+    if (result.met == 0) return result;
+    result.inside = region_.more ? 0 : result.met;
+    for (int i = 0; i < 3; ++i) {
+      result.inside &= less_equal(broadcast(region_.low[i]), box.low[i]) &
+                       less_equal(box.high[i], broadcast(region_.high[i]));
+    }
+    if (region_.count != 0) test_planes(box, result);
+    return result;
+  }
+
+ private:
+  void test_planes(const Box16& box, Met& result) const {
+    const Float16 minus = broadcast(-1.0F);
+    Float16 reach = broadcast(0.0F);
+    for (int i = 0; i < 3; ++i) {
+      reach = max(reach, max(box.high[i], multiply(box.low[i], minus)));
+    }
+    for (std::uint32_t k = 0; k < region_.count && result.met != 0; ++k) {
+      const WidePlane& plane = region_.planes[k];
+      const Float16 slack = add(multiply(reach, broadcast(plane.slack)), broadcast(plane.margin));
+      const Float16 best = add(height(plane, box, false), slack);
+      result.met &= ~less_equal(best, broadcast(-kSweepTiny));
+      if (result.inside != 0) {
+        result.inside &= less_equal(slack, height(plane, box, true));
+      }
+    }
+    result.inside &= result.met;
+  }
+
+  /// normal . p + offset of each box's corner that is the farthest outside, or inside. Each step
+  /// is monotone in the box's ends: what holds for a node holds for the boxes below it.
+  static Float16 height(const WidePlane& plane, const Box16& box, bool lowest) {
+    Float16 sum = broadcast(plane.offset);
+    for (int i = 0; i < 3; ++i) {
+      const bool low = (plane.normal[i] < 0.0F) != lowest;
+      sum = add(sum, multiply(low ? box.low[i] : box.high[i], broadcast(plane.normal[i])));
+    }
+    return sum;
+  }
+
+  const PlaneRegion& region_;
+};
+
+class BallProbe {
+ public:
+  explicit BallProbe(const BallRegion& region) : region_(region) {}
+
+  [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
+
+  [[nodiscard]] Met test(const float* const* column, std::size_t at) const {
+    // More than the rounding of either side; squares may also be lost below the smallest float.
+    constexpr float kMore = 1.000002F;
+    constexpr float kTiny = 1e-36F;
+    const Box16 box = load_slabs<3>(column, at);
+    Float16 near = broadcast(-kTiny);
+    Float16 far = broadcast(kTiny);
+    const Float16 zero = broadcast(0.0F);
+    for (int i = 0; i < 3; ++i) {
+      const Float16 center = broadcast(region_.center[i]);
+      const Float16 below = subtract(box.low[i], center);
+      const Float16 above = subtract(center, box.high[i]);
+      const Float16 gap = max(max(below, above), zero);
+      const Float16 span = max(subtract(zero, below), subtract(zero, above));
+      near = add(near, multiply(gap, gap));
+      far = add(far, multiply(span, span));
+    }
+    constexpr float kLargest = 3.4028234e38F;
+    const float square = region_.radius * region_.radius;
+    // A square that overflows says nothing about what lies inside.
+    const float finite_square = square < kLargest ? square : kLargest;
+    const Mask16 live = less_equal(box.low[0], broadcast(kLargest));
+    return {less_equal(near, broadcast(square * kMore)) & live,
+            less_equal(multiply(far, broadcast(kMore)), broadcast(finite_square)) & live};
+  }
+
+ private:
+  const BallRegion& region_;
+};
+
+class SweptProbe {
+ public:
+  explicit SweptProbe(const SweptRegion& region)
+      : region_(region),
+        test_(region.sweep),
+        limit_(scaled_limit(region.sweep, region.sweep.max_t)) {}
+
+  [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
+
+  [[nodiscard]] Met test(const float* const* column, std::size_t at) const {
+    Float16 enter;
+    return {test_.test(column, at, limit_, enter), 0};
+  }
+
+ private:
+  const SweptRegion& region_;
+  SweepTest test_;
+  float limit_;
+};
+
+template <typename Probe>
+class RegionWalk {
+ public:
+  RegionWalk(const QueryView& view, const Probe& probe, const QueryFilter& filter,
+             RegionSinks& sinks)
+      : view_(view),
+        probe_(probe),
+        wanted_(view, filter),
+        chosen_(filter.accept != nullptr),
+        sinks_(sinks) {}
+
+  bool run() {
+    for (std::uint32_t block = 0; block < view_.flat_blocks; ++block) {
+      if (!test_rows(block * kLanes)) return false;
+    }
+    for (std::uint32_t t = 0; t < view_.trees; ++t) {
+      if (!walk_tree(*view_.tree[t])) return false;
+    }
+    return true;
+  }
+
+ private:
+  bool walk_tree(const TreeView& tree) {
+    Met open[kMaxTreeLevels];
+    std::uint32_t base[kMaxTreeLevels];
+    std::uint32_t level = tree.levels - 1;
+    const auto enter = [&](std::uint32_t first_node) {
+      open[level] = probe_.test(tree.node[level], first_node);
+      open[level].met = wanted_.nodes(tree, level, first_node, open[level].met);
+      base[level] = first_node;
+    };
+    enter(0);
+    for (;;) {
+      Met& here = open[level];
+      if (here.met == 0) {
+        if (++level == tree.levels) return true;
+        continue;
+      }
+      const unsigned lane = first(here.met);
+      const std::uint32_t node = base[level] + lane;
+      here.met &= here.met - 1;
+      if ((here.inside >> lane & 1U) != 0) {
+        if (!take_all(tree, level, node)) return false;
+      } else if (level != 0) {
+        --level;
+        enter(node * kLanes);
+      } else if (!test_rows((tree.first_block + node) * kLanes)) {
+        return false;
+      }
+    }
+  }
+
+  /// Every row below a node that lies inside.
+  bool take_all(const TreeView& tree, std::uint32_t level, std::uint32_t node) {
+    const std::uint64_t begin = std::uint64_t{node} << (4 * level);
+    std::uint64_t end = std::uint64_t{node + 1} << (4 * level);
+    if (end > tree.count[0]) end = tree.count[0];
+    for (std::uint64_t block = begin; block < end; ++block) {
+      const auto row = static_cast<std::uint32_t>((tree.first_block + block) * kLanes);
+      const Mask16 live = less_equal(load(view_.column[0] + row), broadcast(3.4028234e38F));
+      if (!write(sinks_.inside, row, wanted_.rows(row, live))) return false;
+    }
+    return true;
+  }
+
+  bool test_rows(std::uint32_t first_row) {
+    const RowBlock block(view_, first_row);
+    Met found = probe_.test(block.columns(), block.at());
+    found.met = wanted_.rows(first_row, found.met);
+    if (found.met == 0) return true;
+    found.inside &= found.met;
+    const ExactRegion& exact = probe_.exact();
+    if (exact.meets != nullptr) {
+      for (Mask16 rest = found.met & ~found.inside; rest != 0; rest &= rest - 1) {
+        const unsigned lane = first(rest);
+        float box[6];
+        for (int c = 0; c < 6; ++c) box[c] = block.columns()[c][block.at() + lane];
+        const Meeting meeting = exact.meets(exact.region, box);
+        if (meeting == Meeting::apart) found.met &= ~(1U << lane);
+        if (meeting == Meeting::inside) found.inside |= 1U << lane;
+      }
+    }
+    return write(sinks_.inside, first_row, found.inside) &&
+           write(sinks_.crossing, first_row, found.met & ~found.inside);
+  }
+
+  bool write(IdSink& sink, std::uint32_t first_row, Mask16 mask) {
+    if (chosen_) {
+      for (Mask16 rest = mask; rest != 0; rest &= rest - 1) {
+        if (!wanted_.accepts(view_.id[first_row + first(rest)])) mask &= ~(1U << first(rest));
+      }
+    }
+    if (mask == 0) return true;
+    if (sink.cursor > sink.limit && !sink.grow(sink)) return false;
+    sink.cursor += compress_store(mask, load_unaligned(view_.id + first_row), sink.cursor);
+    return true;
+  }
+
+  const QueryView& view_;
+  const Probe& probe_;
+  const Wanted wanted_;
+  const bool chosen_;
+  RegionSinks& sinks_;
+};
+
+template <typename Probe, typename Region>
+bool run(const QueryView& view, const Region& region, const QueryFilter& filter,
+         RegionSinks& sinks) {
+  const Probe probe(region);
+  return RegionWalk<Probe>(view, probe, filter, sinks).run();
+}
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME
+
+extern const RegionKernels WINNOW_KERNEL_TABLE(region_kernels) = {
+    WINNOW_ISA_NAME::run<WINNOW_ISA_NAME::PlaneProbe, PlaneRegion>,
+    WINNOW_ISA_NAME::run<WINNOW_ISA_NAME::BallProbe, BallRegion>,
+    WINNOW_ISA_NAME::run<WINNOW_ISA_NAME::SweptProbe, SweptRegion>};
+
+}  // namespace winnow

@@ -1,0 +1,62 @@
+#include <winnow/partitions/queries/sweep.h>
+
+#include <winnow/core/rounding.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+// Slower than this beside the fastest axis, and the reciprocal is no normal float.
+constexpr double kSlowest = 0x1p-120;
+
+}  // namespace
+
+Sweep make_sweep(const Aabb& box, const Eigen::Vector3d& direction, double min_t,
+                 double max_t) noexcept {
+  Sweep s;
+  s.min_t = min_t;
+  s.max_t = max_t;
+  int fastest = 0;
+  direction.cwiseAbs().maxCoeff(&fastest);
+  int exponent = 0;
+  (void)std::frexp(direction[fastest], &exponent);
+  s.scale = std::ldexp(1.0, exponent);
+  s.from = round_down(min_t * s.scale);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double d = direction[axis];
+    const auto a = static_cast<std::uint8_t>(axis);
+    const auto low = static_cast<std::uint8_t>(axis);
+    const auto high = static_cast<std::uint8_t>(axis + 3);
+    s.near_column[a] = d < 0.0 ? high : low;
+    s.far_column[a] = d < 0.0 ? low : high;
+    s.near_origin[a] = d < 0.0 ? box.min[axis] : box.max[axis];
+    s.far_origin[a] = d < 0.0 ? box.max[axis] : box.min[axis];
+    s.exact_near_column[a] = s.near_column[a];
+    s.exact_near_origin[a] = static_cast<double>(s.near_origin[a]);
+    s.exact_far_origin[a] = static_cast<double>(s.far_origin[a]);
+    s.moves[a] = d != 0.0;
+    s.exact_inverse[a] = 1.0 / d;
+    s.inverse[a] = static_cast<float>(s.scale / d);
+    if (d == 0.0) {
+      s.near_origin[a] = next_up(s.near_origin[a]);
+      s.far_origin[a] = -next_up(-s.far_origin[a]);
+      s.inverse[a] = kInfinity;
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const double part = std::abs(direction[axis]) / s.scale;
+    if (part == 0.0 || part >= kSlowest) continue;
+    s.near_column[axis] = s.near_column[fastest];
+    s.far_column[axis] = s.far_column[fastest];
+    s.near_origin[axis] = s.near_origin[fastest];
+    s.far_origin[axis] = s.far_origin[fastest];
+    s.inverse[axis] = s.inverse[fastest];
+  }
+  return s;
+}
+
+}  // namespace winnow

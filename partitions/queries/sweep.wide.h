@@ -1,0 +1,86 @@
+#pragma once
+
+#include <winnow/partitions/queries/cast.kernel.h>
+#include <winnow/simd/wide.h>
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// Rounding of three operations on either side, and more.
+inline constexpr float kSweepSlack = 1.0000006F;
+/// What denormal results can lose, also where the caller flushes them to zero.
+inline constexpr float kSweepTiny = 1e-37F;
+
+/// The largest scaled t that a hit at or before t can show in float.
+inline float scaled_limit(const Sweep& sweep, double t) {
+  const double scaled = t * sweep.scale * static_cast<double>(kSweepSlack) + 2e-37;
+  // Conversion of what is beyond float is undefined; infinity stands for it.
+  return scaled < 3e38 ? static_cast<float>(scaled) * kSweepSlack : __builtin_inff();
+}
+
+/// Sixteen boxes against one sweep.
+class SweepTest {
+ public:
+  explicit SweepTest(const Sweep& sweep) : sweep_(sweep), from_(broadcast(sweep.from)) {
+    for (int i = 0; i < 3; ++i) {
+      near_origin_[i] = broadcast(sweep.near_origin[i]);
+      far_origin_[i] = broadcast(sweep.far_origin[i]);
+      inverse_[i] = broadcast(sweep.inverse[i]);
+    }
+  }
+
+  /// Which of the boxes from `at` on may be touched at a scaled t <= limit, and at least when.
+  Mask16 test(const float* const* column, std::size_t at, float limit, Float16& enter) const {
+    const Float16 e0 = time(column[sweep_.near_column[0]] + at, near_origin_[0], inverse_[0]);
+    const Float16 e1 = time(column[sweep_.near_column[1]] + at, near_origin_[1], inverse_[1]);
+    const Float16 e2 = time(column[sweep_.near_column[2]] + at, near_origin_[2], inverse_[2]);
+    const Float16 x0 = time(column[sweep_.far_column[0]] + at, far_origin_[0], inverse_[0]);
+    const Float16 x1 = time(column[sweep_.far_column[1]] + at, far_origin_[1], inverse_[1]);
+    const Float16 x2 = time(column[sweep_.far_column[2]] + at, far_origin_[2], inverse_[2]);
+    enter = max(max(e0, e1), max(e2, from_));
+    const Float16 exit = min(min(x0, x1), x2);
+    const Float16 late = add(multiply(exit, broadcast(kSweepSlack)), broadcast(kSweepTiny));
+    return less_equal(enter, min(late, broadcast(limit)));
+  }
+
+ private:
+  static Float16 time(const float* end, const Float16& origin, const Float16& inverse) {
+    return multiply(subtract(load(end), origin), inverse);
+  }
+
+  const Sweep& sweep_;
+  Float16 near_origin_[3];
+  Float16 far_origin_[3];
+  Float16 inverse_[3];
+  Float16 from_;
+};
+
+/// The first t at which the sweep touches the box of row r, or a negative number. In double: of
+/// three operations each, entry and exit are off by less than 4e-16 of themselves.
+inline double touch_row(const Sweep& sweep, const float* const* column, std::size_t r) {
+  if (sweep.touch != nullptr) {
+    const float box[6] = {column[0][r], column[1][r], column[2][r],
+                          column[3][r], column[4][r], column[5][r]};
+    return sweep.touch(sweep.shape, box);
+  }
+  double enter = sweep.min_t;
+  double exit = sweep.max_t;
+  for (int i = 0; i < 3; ++i) {
+    const std::uint8_t n = sweep.exact_near_column[i];
+    const double near = static_cast<double>(column[n][r]) - sweep.exact_near_origin[i];
+    const double far =
+        static_cast<double>(column[n < 3 ? n + 3 : n - 3][r]) - sweep.exact_far_origin[i];
+    if (!sweep.moves[i]) {
+      // Without motion the ends are the low and the high one.
+      if (near > 0.0 || far < 0.0) return -1.0;
+      continue;
+    }
+    const double e = near * sweep.exact_inverse[i];
+    const double x = far * sweep.exact_inverse[i];
+    enter = e > enter ? e : enter;
+    exit = x < exit ? x : exit;
+  }
+  if (!(enter <= exit * (1.0 + 1e-15))) return -1.0;
+  return enter < sweep.max_t ? enter : sweep.max_t;
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME

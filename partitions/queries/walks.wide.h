@@ -1,0 +1,152 @@
+#pragma once
+
+// The two ways through a partition's blocks that every query takes one of. A query brings a probe,
+// which tests 16 boxes at once, and what is to be done with the rows that pass.
+
+#include <winnow/partitions/filters.wide.h>
+#include <winnow/partitions/queries/query_view.h>
+#include <winnow/simd/wide.h>
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// The rows of a view as the filters want them.
+inline RowView row_view_of(const QueryView& view) {
+  RowView rows;
+  rows.id = view.id;
+  rows.filter = view.filter;
+  return rows;
+}
+
+/// Which candidates a query wants of nodes and rows.
+class Wanted {
+ public:
+  Wanted(const QueryView& view, const QueryFilter& filter)
+      : rows_(row_view_of(view)), filter_(filter) {}
+
+  [[nodiscard]] Mask16 nodes(const TreeView& tree, std::uint32_t level, std::uint32_t first_node,
+                             Mask16 candidates) const {
+    if (!filter_.by_object || candidates == 0) return candidates;
+    return passing_nodes(tree.filters[level], first_node, candidates, filter_.object);
+  }
+  [[nodiscard]] Mask16 rows(std::uint32_t first_row, Mask16 candidates) const {
+    if (!filter_.by_object || candidates == 0) return candidates;
+    return passing_rows(rows_, first_row, candidates, filter_.object);
+  }
+  /// The caller's last word.
+  [[nodiscard]] bool accepts(std::uint32_t id) const {
+    return filter_.accept == nullptr || filter_.accept(filter_.context, id);
+  }
+
+ private:
+  RowView rows_;
+  const QueryFilter& filter_;
+};
+
+/// The bits of a float >= 0, which sort as it does.
+inline std::uint32_t order_of(float value) {
+  std::uint32_t bits;
+  __builtin_memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+inline float value_of(std::uint32_t bits) {
+  float value;
+  __builtin_memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+/// The order of the largest float <= value; value >= 0.
+inline std::uint32_t order_of_rounded_down(double value) {
+  constexpr float kLargest = 3.4028234663852886e38F;
+  if (value >= static_cast<double>(kLargest)) return order_of(kLargest);
+  const auto nearest = static_cast<float>(value);
+  return order_of(nearest) - (static_cast<double>(nearest) > value ? 1U : 0U);
+}
+
+/// Visits blocks in the order in which the probe reaches their nodes, as far as `limit` says, which
+/// visiting may lower. Probe: `Mask16 test(columns, at, limit, Float16& order)` with order >= 0.
+/// `visit(first_row)` returns false to end the walk.
+///
+/// Depth first, the nearest child next: what is open waits on a stack whose size is bounded by the
+/// depth of the tree, 16 a level.
+template <typename Probe, typename Visit>
+bool walk_in_order(const QueryView& view, const Probe& probe, const Wanted& wanted,
+                   const float& limit, Visit&& visit) {
+  for (std::uint32_t block = 0; block < view.flat_blocks; ++block) {
+    if (!visit(block * kLanes)) return false;
+  }
+  for (std::uint32_t t = 0; t < view.trees; ++t) {
+    const TreeView& tree = *view.tree[t];
+    // order << 32 | level << 28 | node
+    std::uint64_t open[16 * kMaxTreeLevels];
+    unsigned size = 0;
+    const auto push = [&](std::uint32_t level, std::uint32_t first_node) {
+      Float16 order;
+      Mask16 mask = probe.test(tree.node[level], first_node, limit, order);
+      mask = wanted.nodes(tree, level, first_node, mask);
+      if (mask == 0) return;
+      alignas(64) float at[kLanes];
+      store_unaligned(at, order);
+      const unsigned bottom = size;
+      for (; mask != 0; mask &= mask - 1) {
+        const unsigned lane = first(mask);
+        const std::uint64_t entry = std::uint64_t{order_of(at[lane])} << 32U |
+                                    std::uint64_t{level << 28U | (first_node + lane)};
+        unsigned place = size++;
+        for (; place > bottom && open[place - 1] < entry; --place) open[place] = open[place - 1];
+        open[place] = entry;
+      }
+    };
+    push(tree.levels - 1, 0);
+    while (size != 0) {
+      const std::uint64_t entry = open[--size];
+      if (value_of(static_cast<std::uint32_t>(entry >> 32U)) > limit) continue;
+      const auto level = static_cast<std::uint32_t>(entry >> 28U) & 0xFU;
+      const auto node = static_cast<std::uint32_t>(entry) & 0x0FFFFFFFU;
+      if (level != 0) {
+        push(level - 1, node * kLanes);
+      } else if (!visit((tree.first_block + node) * kLanes)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// Visits all blocks whose nodes the probe passes, in the order of the rows.
+template <typename Probe, typename Visit>
+bool walk(const QueryView& view, const Probe& probe, const Wanted& wanted, float limit,
+          Visit&& visit) {
+  for (std::uint32_t block = 0; block < view.flat_blocks; ++block) {
+    if (!visit(block * kLanes)) return false;
+  }
+  for (std::uint32_t t = 0; t < view.trees; ++t) {
+    const TreeView& tree = *view.tree[t];
+    Mask16 open[kMaxTreeLevels];
+    std::uint32_t base[kMaxTreeLevels];
+    std::uint32_t level = tree.levels - 1;
+    const auto enter = [&](std::uint32_t first_node) {
+      Float16 order;
+      const Mask16 mask = probe.test(tree.node[level], first_node, limit, order);
+      open[level] = wanted.nodes(tree, level, first_node, mask);
+      base[level] = first_node;
+    };
+    enter(0);
+    for (;;) {
+      if (open[level] == 0) {
+        if (++level == tree.levels) break;
+        continue;
+      }
+      const std::uint32_t node = base[level] + first(open[level]);
+      open[level] &= open[level] - 1;
+      if (level != 0) {
+        --level;
+        enter(node * kLanes);
+      } else if (!visit((tree.first_block + node) * kLanes)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME
