@@ -1,5 +1,6 @@
 #include <winnow/core/frustum.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>

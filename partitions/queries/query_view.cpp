@@ -34,7 +34,8 @@ Status RowPartition::refresh_row_tree() const {
   const std::lock_guard lock(refresh_mutex_);
   if (!row_tree_stale_.load(std::memory_order_relaxed)) return Status::ok;
   const std::size_t blocks = (regular_rows_ + BoundsPool::kBlock - 1) / BoundsPool::kBlock;
-  if (row_tree_.blocks() != blocks && !row_tree_.cover(0, blocks)) return Status::out_of_memory;
+  const bool reshape = row_tree_.blocks() != blocks || row_tree_.has_filters() != filters_.in_use();
+  if (reshape && !row_tree_.cover(0, blocks, node_content())) return Status::out_of_memory;
   row_tree_.refit_all(row_view(), execution_for(regular_rows_));
   row_tree_stale_.store(false, std::memory_order_release);
   return Status::ok;

@@ -3,6 +3,7 @@
 #include <winnow/partitions/queries/sweep.h>
 #include <winnow/partitions/queries/touch.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cfloat>
 #include <cmath>

@@ -1,5 +1,6 @@
 #include <winnow/partitions/queries/touch.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
