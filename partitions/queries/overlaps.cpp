@@ -74,6 +74,52 @@ namespace {
 
 constexpr std::size_t kBoxesPerTask = 64;
 
+/// Some of a caller's boxes as kernels want them.
+class BoxColumns {
+ public:
+  BoxColumns(const BoxView& boxes, std::size_t begin, std::size_t end) noexcept {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Aabb box = boxes[i];
+      for (int axis = 0; axis < 3; ++axis) {
+        // Finite, so that they miss the padding, whose ends are infinite.
+        column_[static_cast<std::size_t>(axis)][i - begin] = std::max(box.min[axis], -FLT_MAX);
+        column_[3 + static_cast<std::size_t>(axis)][i - begin] = std::min(box.max[axis], FLT_MAX);
+      }
+      index_[i - begin] = static_cast<std::uint32_t>(i);
+    }
+    for (std::size_t c = 0; c < 6; ++c) batch_.column[c] = column_[c].data();
+    batch_.id = index_.data();
+    batch_.end = static_cast<std::uint32_t>(end - begin);
+    batch_.mode = HitMode::query_first;
+  }
+  BoxColumns(const BoxColumns&) = delete;
+  BoxColumns& operator=(const BoxColumns&) = delete;
+
+  [[nodiscard]] QueryBatch& batch() noexcept { return batch_; }
+
+ private:
+  std::array<std::array<float, kBoxesPerTask>, 6> column_;
+  std::array<std::uint32_t, kBoxesPerTask> index_;
+  QueryBatch batch_;
+};
+
+bool all_valid(const BoxView& boxes) noexcept {
+  for (std::size_t i = 0; i < boxes.count; ++i) {
+    if (!boxes[i].is_valid()) return false;
+  }
+  return true;
+}
+
+/// Takes out the pairs whose object the caller does not want.
+void keep_accepted(PairBuffer& out, const QueryFilter& filter) noexcept {
+  if (filter.accept == nullptr) return;
+  Column<Pair>& pairs = out.edit();
+  const Pair* const end = std::remove_if(pairs.begin(), pairs.end(), [&](const Pair& pair) {
+    return !filter.accept(filter.context, pair.second);
+  });
+  pairs.set_size(static_cast<std::size_t>(end - pairs.begin()));
+}
+
 }  // namespace
 
 Status RowPartition::overlap(const Region& region, OverlapBuffer& objects, const Filter& filter,
@@ -93,8 +139,35 @@ Status RowPartition::overlap(const Region& region, OverlapBuffer& objects, const
   return Status::out_of_memory;
 }
 
-Status RowPartition::overlap(const BoxView&, PairBuffer&, const Filter&, Order) const {
-  return Status::unsupported_volume;
+Status RowPartition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter,
+                             Order order) const {
+  out.clear();
+  if (boxes.count > kMaxObjects || !all_valid(boxes)) return Status::invalid_argument;
+  QueryView view;
+  if (const Status status = prepare(view); status != Status::ok) return status;
+  const KernelFilter wanted(filter, view, keys_);
+  if (wanted.meets_nothing()) return Status::ok;
+  const ObjectFilter asking = filter.object();
+  PairWriter writer(out, execution_);
+  const std::size_t tasks = (boxes.count + kBoxesPerTask - 1) / kBoxesPerTask;
+  const Status status = writer.append(tasks, [&](std::size_t task, PairSink& sink) {
+    const std::size_t begin = task * kBoxesPerTask;
+    BoxColumns columns(boxes, begin, std::min(boxes.count, begin + kBoxesPerTask));
+    QueryBatch& batch = columns.batch();
+    if (is_flat()) return region_kernels().flat_boxes(view, batch, wanted.wanted(), sink);
+    if (wanted.wanted().by_object) {
+      batch.filter = &asking;
+      batch.one_filter = true;
+    }
+    return query_all(batch, sink);
+  });
+  keep_accepted(out, wanted.wanted());
+  const std::size_t slots = std::max(keys_.slot_count(), boxes.count);
+  if (status == Status::ok && (order == Order::fast || PairTracker::sort(out, slots))) {
+    return Status::ok;
+  }
+  out.clear();
+  return Status::out_of_memory;
 }
 
 }  // namespace winnow

@@ -61,6 +61,8 @@ struct RegionKernels {
   bool (*planes)(const QueryView&, const PlaneRegion&, const QueryFilter&, RegionSinks&);
   bool (*ball)(const QueryView&, const BallRegion&, const QueryFilter&, RegionSinks&);
   bool (*swept)(const QueryView&, const SweptRegion&, const QueryFilter&, RegionSinks&);
+  /// All pairs (batch.id of the box, object) of a batch of boxes with the flat blocks.
+  bool (*flat_boxes)(const QueryView&, const QueryBatch&, const QueryFilter&, PairSink&);
 };
 
 WINNOW_KERNELS(RegionKernels, region_kernels);

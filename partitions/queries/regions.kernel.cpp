@@ -1,3 +1,4 @@
+#include <winnow/partitions/hits.wide.h>
 #include <winnow/partitions/queries/region.kernel.h>
 #include <winnow/partitions/queries/row_block.wide.h>
 #include <winnow/partitions/queries/sweep.wide.h>
@@ -234,12 +235,30 @@ bool run(const QueryView& view, const Region& region, const QueryFilter& filter,
   return RegionWalk<Probe>(view, probe, filter, sinks).run();
 }
 
+bool flat_boxes(const QueryView& view, const QueryBatch& batch, const QueryFilter& filter,
+                PairSink& sink) {
+  const Wanted wanted(view, filter);
+  for (std::uint32_t b = 0; b < view.flat_blocks; ++b) {
+    const RowBlock block(view, b * kLanes);
+    const Box16 rows = load_slabs<3>(block.columns(), block.at());
+    const Uint16 ids = load_unaligned(view.id + b * kLanes);
+    for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
+      const QueryBox q(batch.column, k);
+      const Mask16 hits = wanted.rows(b * kLanes, overlap(rows, q.low, q.high));
+      if (hits == 0) continue;
+      if (!has_room(sink)) return false;
+      sink.cursor += 2 * emit_pairs<false>(hits, ids, batch.id[k], sink.cursor);
+    }
+  }
+  return true;
+}
+
 }  // namespace
 }  // namespace WINNOW_ISA_NAME
 
 extern const RegionKernels WINNOW_KERNEL_TABLE(region_kernels) = {
     WINNOW_ISA_NAME::run<WINNOW_ISA_NAME::PlaneProbe, PlaneRegion>,
     WINNOW_ISA_NAME::run<WINNOW_ISA_NAME::BallProbe, BallRegion>,
-    WINNOW_ISA_NAME::run<WINNOW_ISA_NAME::SweptProbe, SweptRegion>};
+    WINNOW_ISA_NAME::run<WINNOW_ISA_NAME::SweptProbe, SweptRegion>, WINNOW_ISA_NAME::flat_boxes};
 
 }  // namespace winnow
