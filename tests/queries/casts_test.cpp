@@ -1,0 +1,243 @@
+// Rays and swept volumes through every partition, against the slow obvious twin.
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "../support/hostile_casts.h"
+#include "../support/motion.h"
+#include "../support/scenes.h"
+#include "../support/world.h"
+#include "questions.h"
+
+namespace winnow::test {
+namespace {
+
+using Hits = std::vector<Hit>;
+
+Hits all_of(World& world, const Cast& cast, HitBuffer& buffer, const Filter& filter = {}) {
+  EXPECT_EQ(world.threads().run([&] { return world.partition().all(cast, buffer, filter); }),
+            Status::ok);
+  EXPECT_EQ(buffer.questions(), 1U);
+  return {buffer.begin(), buffer.end()};
+}
+
+Hit closest_of(World& world, const Cast& cast, const Filter& filter = {}) {
+  Hit hit{{1, 2}, 3, 4.0F};
+  EXPECT_EQ(world.partition().closest(cast, hit, filter), Status::ok);
+  return hit;
+}
+
+Hit any_of(World& world, const Cast& cast, const Filter& filter = {}) {
+  Hit hit{{1, 2}, 3, 4.0F};
+  EXPECT_EQ(world.partition().any(cast, hit, filter), Status::ok);
+  return hit;
+}
+
+std::vector<Ray> rays_among(const std::vector<Cast>& casts) {
+  std::vector<Ray> rays;
+  for (const Cast& cast : casts) {
+    if (const auto* ray = std::get_if<Ray>(&cast)) rays.push_back(*ray);
+  }
+  return rays;
+}
+
+std::vector<ClientData> data_for(std::size_t count) {
+  std::vector<ClientData> data;
+  for (std::size_t i = 0; i < count; ++i) data.push_back(~ClientData{0} - 3 * i);
+  return data;
+}
+
+class Casts : public Conformance {};
+
+// Buffers go from scene to scene and partition to partition.
+TEST_P(Casts, of_every_kind_find_exactly_what_they_touch) {
+  HitBuffer buffer;
+  for (const QuestionSet& set : question_sets()) {
+    World world(config());
+    world.insert(set.boxes, data_for(set.boxes.size()));
+    for (std::size_t i = 0; i < set.casts.size(); ++i) {
+      const Cast& cast = set.casts[i];
+      SCOPED_TRACE(set.name + ", " + to_string(cast));
+      const Hits all = all_of(world, cast, buffer);
+      ASSERT_TRUE(right_hits(all, set.cast_truths[i], world.partition()));
+      ASSERT_TRUE(is_first_of(closest_of(world, cast), all));
+      ASSERT_TRUE(is_any_of(any_of(world, cast), all));
+    }
+  }
+}
+
+TEST_P(Casts, of_a_batch_are_those_of_single_rays) {
+  HitBuffer single;
+  HitBuffer batch;
+  for (const QuestionSet& set : question_sets()) {
+    SCOPED_TRACE(set.name);
+    World world(config());
+    world.insert(set.boxes, data_for(set.boxes.size()));
+    const Partition& p = world.partition();
+    const std::vector<Ray> rays = rays_among(set.casts);
+    std::vector<Key> keys(rays.size());
+    std::vector<ClientData> data(rays.size());
+    std::vector<float> t(rays.size());
+    const HitColumns columns{keys.data(), data.data(), t.data()};
+    const auto hit = [&](std::size_t i) { return Hit{keys[i], data[i], t[i]}; };
+    ASSERT_EQ(world.threads().run([&] { return p.all(RayBatch(rays), batch); }), Status::ok);
+    ASSERT_EQ(batch.questions(), rays.size());
+    ASSERT_EQ(world.threads().run([&] { return p.closest(RayBatch(rays), columns); }), Status::ok);
+    std::size_t total = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      SCOPED_TRACE(to_string(Cast(rays[i])));
+      const Hits all = all_of(world, rays[i], single);
+      ASSERT_TRUE(same_hits(batch.of(i), all));
+      ASSERT_TRUE(is_first_of(hit(i), all));
+      total += all.size();
+    }
+    ASSERT_EQ(batch.size(), total);
+    ASSERT_EQ(world.threads().run([&] { return p.any(RayBatch(rays), columns); }), Status::ok);
+    for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(is_any_of(hit(i), batch.of(i)));
+  }
+}
+
+// Rays in columns of their own, and in a struct with other things, give what an array of them does.
+TEST_P(Casts, of_a_batch_may_be_columns_and_want_only_some_columns_back) {
+  World world(config());
+  world.insert(mixed_boxes(900), data_for(900));
+  Random random(3);
+  const std::vector<Ray> rays = plain_rays(mixed_boxes(900), 65, random);
+  std::array<std::vector<float>, 8> columns;
+  for (const Ray& ray : rays) {
+    for (int k = 0; k < 3; ++k) {
+      columns[static_cast<std::size_t>(k)].push_back(ray.origin[k]);
+      columns[static_cast<std::size_t>(k) + 3].push_back(ray.direction[k]);
+    }
+    columns[6].push_back(ray.min_t);
+    columns[7].push_back(ray.max_t);
+  }
+  const RayBatch batch({columns[0].data(), columns[1].data(), columns[2].data()},
+                       {columns[3].data(), columns[4].data(), columns[5].data()}, rays.size(),
+                       columns[6].data(), columns[7].data());
+  const Partition& p = world.partition();
+  HitBuffer expected;
+  HitBuffer got;
+  ASSERT_EQ(p.all(RayBatch(rays), expected), Status::ok);
+  ASSERT_EQ(p.all(batch, got), Status::ok);
+  EXPECT_TRUE(same_hits(got.hits(), expected.hits()));
+  ASSERT_FALSE(got.empty());
+  std::vector<Key> keys(rays.size());
+  std::vector<ClientData> data(rays.size());
+  std::vector<float> t(rays.size());
+  ASSERT_EQ(p.closest(batch, {.key = keys.data()}), Status::ok);
+  ASSERT_EQ(p.closest(batch, {.data = data.data()}), Status::ok);
+  ASSERT_EQ(p.closest(batch, {.t = t.data()}), Status::ok);
+  ASSERT_EQ(p.closest(batch, {}), Status::ok);
+  ASSERT_EQ(p.any(batch, {}), Status::ok);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_TRUE(is_first_of({keys[i], data[i], t[i]}, expected.of(i))) << i;
+  }
+}
+
+TEST_P(Casts, of_an_empty_batch_are_none) {
+  World world(config());
+  world.insert(uniform_boxes(100));
+  HitBuffer buffer;
+  ASSERT_EQ(world.partition().all(Ray{}, buffer), Status::ok);
+  ASSERT_EQ(world.partition().all(RayBatch{}, buffer), Status::ok);
+  EXPECT_TRUE(buffer.empty());
+  EXPECT_EQ(buffer.questions(), 0U);
+  EXPECT_EQ(world.partition().closest(RayBatch{}, {}), Status::ok);
+  EXPECT_EQ(world.partition().any(RayBatch{}, {}), Status::ok);
+}
+
+// Objects that came, went and moved since the structure was made stand in other places of it.
+TEST_P(Casts, are_right_while_objects_come_go_and_move) {
+  World world(config());
+  std::vector<Aabb> boxes = mixed_boxes(800);
+  std::vector<Key> keys = world.insert(boxes, data_for(boxes.size()));
+  Random random(4);
+  HitBuffer buffer;
+  for (int frame = 0; frame < 10; ++frame) {
+    SCOPED_TRACE(frame);
+    move(kMotions[static_cast<std::size_t>(frame) % kMotions.size()], boxes, random);
+    world.update(keys, boxes);
+    for (int n = 0; n < 40; ++n) {
+      const std::size_t i = random.below(keys.size());
+      world.remove(keys[i]);
+      keys[i] = world.insert(boxes[i], random.bits());
+    }
+    const std::vector<Object> objects = world.objects();
+    for (const Cast& cast : some_casts(boxes, 12, random)) {
+      SCOPED_TRACE(to_string(cast));
+      const Hits all = all_of(world, cast, buffer);
+      ASSERT_TRUE(right_hits(all, candidates(cast, objects), world.partition()));
+      ASSERT_TRUE(is_first_of(closest_of(world, cast), all));
+      ASSERT_TRUE(is_any_of(any_of(world, cast), all));
+    }
+  }
+}
+
+TEST_P(Casts, with_a_predicate_find_what_it_lets_pass) {
+  World world(config());
+  std::vector<ClientData> data;
+  for (std::size_t i = 0; i < 700; ++i) data.push_back(i);
+  const std::vector<Aabb> boxes = mixed_boxes(700);
+  world.insert(boxes, data);
+  ClientData divisor = 3;
+  Filter filter;
+  filter.predicate.context = &divisor;
+  filter.predicate.accept = [](void* context, Key key, ClientData value) {
+    return key.id == value && value % *static_cast<ClientData*>(context) == 0;
+  };
+  Random random(5);
+  HitBuffer buffer;
+  const std::vector<Cast> casts = some_casts(boxes, 60, random);
+  for (const Cast& cast : casts) {
+    SCOPED_TRACE(to_string(cast));
+    Hits expected = all_of(world, cast, buffer);
+    std::erase_if(expected, [](const Hit& hit) { return hit.data % 3 != 0; });
+    ASSERT_TRUE(same_hits(all_of(world, cast, buffer, filter), expected));
+    ASSERT_TRUE(is_first_of(closest_of(world, cast, filter), expected));
+    ASSERT_TRUE(is_any_of(any_of(world, cast, filter), expected));
+  }
+  const std::vector<Ray> rays = rays_among(casts);
+  HitBuffer batch;
+  ASSERT_EQ(world.partition().all(RayBatch(rays), batch, filter), Status::ok);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_TRUE(same_hits(batch.of(i), all_of(world, rays[i], buffer, filter)));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Casts, testing::ValuesIn(all_configs()),
+                         testing::PrintToStringParamName());
+
+// The same objects at the same t, to the bit, whoever is asked. Keys carry the partition's stamp.
+TEST(CastResults, are_identical_on_every_partition_and_instruction_set) {
+  struct Found {
+    ObjectId id;
+    std::uint32_t t;
+    bool operator==(const Found&) const = default;
+  };
+  for (const QuestionSet& set : question_sets()) {
+    std::vector<std::vector<Found>> expected;
+    for (const Config& config : all_configs()) {
+      if (config.threads == 8) continue;
+      const IsaScope isa(config.isa);
+      World world(config);
+      world.insert(set.boxes);
+      HitBuffer buffer;
+      for (std::size_t i = 0; i < set.casts.size(); ++i) {
+        std::vector<Found> found;
+        for (const Hit& hit : all_of(world, set.casts[i], buffer)) {
+          found.push_back({hit.key.id, std::bit_cast<std::uint32_t>(hit.t)});
+        }
+        if (i == expected.size()) expected.push_back(found);
+        ASSERT_TRUE(found == expected[i])
+            << to_string(config) << " on " << set.name << ", " << to_string(set.casts[i]);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test

@@ -1,0 +1,191 @@
+// Regions and boxes asked about, against the slow obvious twin.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "../support/motion.h"
+#include "../support/scenes.h"
+#include "../support/world.h"
+#include "questions.h"
+
+namespace winnow::test {
+namespace {
+
+Status ask(World& world, const Region& region, OverlapBuffer& buffer, Order order = Order::fast,
+           const Filter& filter = {}) {
+  return world.threads().run(
+      [&] { return world.partition().overlap(region, buffer, filter, order); });
+}
+
+std::vector<Pair> boxes_against(World& world, const std::vector<Aabb>& boxes, PairBuffer& buffer,
+                                Order order, const Filter& filter = {}) {
+  EXPECT_EQ(world.threads().run(
+                [&] { return world.partition().overlap(BoxView(boxes), buffer, filter, order); }),
+            Status::ok);
+  return {buffer.begin(), buffer.end()};
+}
+
+class Overlaps : public Conformance {};
+
+TEST_P(Overlaps, with_regions_of_every_kind_are_exactly_what_they_meet) {
+  OverlapBuffer buffer;
+  for (const QuestionSet& set : question_sets()) {
+    World world(config());
+    world.insert(set.boxes);
+    for (std::size_t i = 0; i < set.regions.size(); ++i) {
+      const Order order = i % 2 == 0 ? Order::fast : Order::canonical;
+      SCOPED_TRACE(set.name + ", " + to_string(set.regions[i]));
+      ASSERT_EQ(ask(world, set.regions[i], buffer, order), Status::ok);
+      ASSERT_TRUE(right_objects(buffer, set.region_truths[i], order));
+    }
+  }
+}
+
+TEST_P(Overlaps, are_right_while_objects_come_go_and_move) {
+  World world(config());
+  std::vector<Aabb> boxes = mixed_boxes(800);
+  std::vector<Key> keys = world.insert(boxes);
+  Random random(6);
+  OverlapBuffer buffer;
+  PairBuffer pairs;
+  for (int frame = 0; frame < 10; ++frame) {
+    SCOPED_TRACE(frame);
+    move(kMotions[static_cast<std::size_t>(frame) % kMotions.size()], boxes, random);
+    world.update(keys, boxes);
+    for (int n = 0; n < 40; ++n) {
+      const std::size_t i = random.below(keys.size());
+      world.remove(keys[i]);
+      keys[i] = world.insert(boxes[i]);
+    }
+    const std::vector<Object> objects = world.objects();
+    std::deque<std::vector<Plane>> planes;
+    for (const Region& region : some_regions(boxes, 14, random, planes)) {
+      SCOPED_TRACE(to_string(region));
+      ASSERT_EQ(ask(world, region, buffer, Order::canonical), Status::ok);
+      ASSERT_TRUE(right_objects(buffer, candidates(region, objects), Order::canonical));
+    }
+    const std::vector<Aabb> asked(boxes.begin() + 100, boxes.begin() + 150);
+    ASSERT_EQ(boxes_against(world, asked, pairs, Order::canonical),
+              cross_pairs(numbered(asked), objects));
+  }
+}
+
+TEST_P(Overlaps, of_boxes_are_exact_pairs) {
+  PairBuffer buffer;
+  for (const QuestionSet& set : question_sets()) {
+    SCOPED_TRACE(set.name);
+    World world(config());
+    world.insert(set.boxes);
+    std::vector<Aabb> asked;
+    for (std::size_t i = 0; i < set.boxes.size(); i += 1 + set.boxes.size() / 40) {
+      asked.push_back(set.boxes[i]);
+      asked.push_back({set.boxes[i].min, set.boxes[i].min.cwiseMax(set.boxes[0].max)});
+    }
+    std::erase_if(asked, [](const Aabb& box) { return !box.is_valid(); });
+    const std::vector<Pair> truth = cross_pairs(numbered(asked), set.objects);
+    ASSERT_EQ(boxes_against(world, asked, buffer, Order::canonical), truth);
+    std::vector<Pair> fast = boxes_against(world, asked, buffer, Order::fast);
+    std::sort(fast.begin(), fast.end());
+    ASSERT_EQ(fast, truth);
+  }
+}
+
+TEST_P(Overlaps, of_no_boxes_are_none) {
+  World world(config());
+  world.insert(uniform_boxes(100));
+  PairBuffer buffer;
+  EXPECT_TRUE(boxes_against(world, {}, buffer, Order::fast).empty());
+}
+
+TEST_P(Overlaps, with_all_of_space_are_everything_and_inside) {
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  World world(config());
+  world.insert(mixed_boxes(500));
+  OverlapBuffer buffer;
+  ASSERT_EQ(ask(world, std::span<const Plane>{}, buffer), Status::ok);
+  EXPECT_EQ(buffer.inside().size(), 500U);
+  EXPECT_EQ(buffer.size(), 500U);
+  ASSERT_EQ(
+      ask(world, Aabb{Eigen::Vector3f::Constant(-inf), Eigen::Vector3f::Constant(inf)}, buffer),
+      Status::ok);
+  EXPECT_EQ(buffer.inside().size(), 500U);
+}
+
+TEST_P(Overlaps, with_a_predicate_are_what_it_lets_pass) {
+  World world(config());
+  std::vector<ClientData> data;
+  for (std::size_t i = 0; i < 700; ++i) data.push_back(i);
+  const std::vector<Aabb> boxes = mixed_boxes(700);
+  world.insert(boxes, data);
+  Filter filter;
+  filter.predicate.accept = [](void*, Key key, ClientData value) {
+    return key.id == value && value % 3 == 0;
+  };
+  const auto refused = [](ObjectId id) { return id % 3 != 0; };
+  Random random(7);
+  std::deque<std::vector<Plane>> planes;
+  OverlapBuffer buffer;
+  for (const Region& region : some_regions(boxes, 56, random, planes)) {
+    SCOPED_TRACE(to_string(region));
+    ASSERT_EQ(ask(world, region, buffer, Order::canonical), Status::ok);
+    std::vector<ObjectId> inside(buffer.inside().begin(), buffer.inside().end());
+    std::vector<ObjectId> crossing(buffer.crossing().begin(), buffer.crossing().end());
+    std::erase_if(inside, refused);
+    std::erase_if(crossing, refused);
+    ASSERT_EQ(ask(world, region, buffer, Order::canonical, filter), Status::ok);
+    ASSERT_TRUE(std::ranges::equal(buffer.inside(), inside));
+    ASSERT_TRUE(std::ranges::equal(buffer.crossing(), crossing));
+  }
+  PairBuffer pairs;
+  std::vector<Pair> expected = boxes_against(world, boxes, pairs, Order::canonical);
+  std::erase_if(expected, [](const Pair& pair) { return pair.second % 3 != 0; });
+  EXPECT_EQ(boxes_against(world, boxes, pairs, Order::canonical, filter), expected);
+}
+
+// A buffer that pairs of boxes were written to is no complete result of `self_pairs`.
+TEST_P(Overlaps, of_boxes_do_not_pass_for_the_pairs_of_an_earlier_frame) {
+  World world(config());
+  const std::vector<Aabb> boxes = uniform_boxes(400);
+  const std::vector<Key> keys = world.insert(boxes);
+  PairBuffer buffer;
+  ASSERT_TRUE(world.agrees(buffer));
+  boxes_against(world, {boxes[0], boxes[1]}, buffer, Order::fast);
+  world.update(keys[0], boxes[5]);
+  ASSERT_TRUE(world.agrees(buffer));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Overlaps, testing::ValuesIn(all_configs()),
+                         testing::PrintToStringParamName());
+
+// The same objects, and the same of them inside, whoever is asked; and in the same order on every
+// instruction set and thread count.
+TEST(OverlapResults, are_identical_on_every_partition_and_instruction_set) {
+  for (const QuestionSet& set : question_sets()) {
+    for (const Order order : {Order::fast, Order::canonical}) {
+      std::vector<std::vector<ObjectId>> expected;
+      std::string partition;
+      for (const Config& config : all_configs()) {
+        if (config.threads == 8) continue;
+        if (order == Order::fast && config.partition != partition) expected.clear();
+        partition = config.partition;
+        const IsaScope isa(config.isa);
+        World world(config);
+        world.insert(set.boxes);
+        OverlapBuffer buffer;
+        for (std::size_t i = 0; i < set.regions.size(); ++i) {
+          ASSERT_EQ(ask(world, set.regions[i], buffer, order), Status::ok);
+          std::vector<ObjectId> found(buffer.ids().begin(), buffer.ids().end());
+          found.push_back(static_cast<ObjectId>(buffer.inside().size()));
+          if (i == expected.size()) expected.push_back(found);
+          ASSERT_TRUE(found == expected[i])
+              << to_string(config) << " on " << set.name << ", " << to_string(set.regions[i]);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test
