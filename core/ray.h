@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -57,6 +58,14 @@ struct RayBatch {
     count = rays.size();
     stride = sizeof(Ray);
   }
+
+  /// Any contiguous container of rays.
+  template <typename Rays>
+  requires(std::convertible_to<const Rays&, std::span<const Ray>> &&
+           !std::same_as<Rays, std::span<const Ray>> && !std::same_as<Rays, RayBatch>)
+      RayBatch(const Rays& rays)
+  noexcept  // NOLINT(google-explicit-constructor)
+      : RayBatch(std::span<const Ray>(rays)) {}
 
   /// Columns of `rays` floats each.
   RayBatch(std::array<const float*, 3> origins, std::array<const float*, 3> directions,

@@ -86,6 +86,31 @@ inline unsigned compress_store(Mask16 mask, const Uint16& v, std::uint32_t* out)
   return count(mask);
 }
 
+/// The same for floats.
+inline unsigned compress_store(Mask16 mask, const Float16& v, float* out) {
+#if defined(WINNOW_ISA_IS_avx512)
+  _mm512_storeu_ps(out, _mm512_maskz_compress_ps(static_cast<__mmask16>(mask), v.part[0]));
+#elif defined(WINNOW_ISA_IS_avx2)
+  const auto pack = [](__m256 part, unsigned m) {
+    return _mm256_castsi256_ps(pack8(_mm256_castps_si256(part), m));
+  };
+  _mm256_storeu_ps(out, pack(v.part[0], mask & 0xFFU));
+  _mm256_storeu_ps(out + count(mask & 0xFFU), pack(v.part[1], mask >> 8U));
+#else
+  float* at = out;
+  for (int i = 0; i < kParts; ++i) {
+    const unsigned m = (mask >> (4 * i)) & 0xFU;
+#if defined(WINNOW_ISA_IS_neon64)
+    vst1q_f32(at, vreinterpretq_f32_u32(pack4(vreinterpretq_u32_f32(v.part[i]), m)));
+#else
+    _mm_storeu_ps(at, _mm_castsi128_ps(pack4(_mm_castps_si128(v.part[i]), m)));
+#endif
+    at += count(m);
+  }
+#endif
+  return count(mask);
+}
+
 /// Writes (q, lane) for the set lanes of `v` as consecutive pairs, returns how many. `Sorted` puts
 /// the smaller of the two first; otherwise q comes first. Room for 16 pairs is needed.
 template <bool Sorted>

@@ -152,6 +152,16 @@ inline Mask16 less_equal(const Float16& a, const Float16& b) {
   return r;
 }
 
+/// v where a <= b, infinity elsewhere.
+inline Float16 keep_less_equal(const Float16& a, const Float16& b, const Float16& v) {
+  Float16 r;
+  const FloatPart infinity(__builtin_inff());
+  for (int i = 0; i < kParts; ++i) {
+    r.part[i] = xsimd::select(a.part[i] <= b.part[i], v.part[i], infinity);
+  }
+  return r;
+}
+
 /// Smallest lane; no NaN.
 inline float reduce_min(const Float16& v) {
   FloatPart m = v.part[0];

@@ -16,14 +16,15 @@ class DistanceProbe {
     const Float16 zero = broadcast(0.0F);
     Float16 square = zero;
     for (int i = 0; i < 3; ++i) {
-      const Float16 below = subtract(box.low[i], broadcast(query_.high[i]));
+      const Float16 under = subtract(box.low[i], broadcast(query_.high[i]));
       const Float16 above = subtract(broadcast(query_.low[i]), box.high[i]);
-      const Float16 gap = max(max(below, above), zero);
+      const Float16 gap = max(max(under, above), zero);
       square = add(square, multiply(gap, gap));
     }
-    order = multiply(square, broadcast(0.999999F));
+    const Float16 below = multiply(square, broadcast(0.999999F));
+    order = keep_less_equal(below, broadcast(limit), below);
     const Mask16 live = less_equal(box.low[0], broadcast(3.4028234e38F));
-    return less_equal(order, broadcast(limit)) & live;
+    return less_equal(below, broadcast(limit)) & live;
   }
 
  private:

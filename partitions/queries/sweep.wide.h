@@ -28,7 +28,8 @@ class SweepTest {
     }
   }
 
-  /// Which of the boxes from `at` on may be touched at a scaled t <= limit, and at least when.
+  /// Which of the boxes from `at` on may be touched at a scaled t <= limit, and when at the
+  /// earliest; infinity for the others.
   Mask16 test(const float* const* column, std::size_t at, float limit, Float16& enter) const {
     const Float16 e0 = time(column[sweep_.near_column[0]] + at, near_origin_[0], inverse_[0]);
     const Float16 e1 = time(column[sweep_.near_column[1]] + at, near_origin_[1], inverse_[1]);
@@ -39,8 +40,11 @@ class SweepTest {
     enter = max(max(e0, e1), max(e2, from_));
     const Float16 exit = min(min(x0, x1), x2);
     const Float16 late = add(multiply(exit, broadcast(kSweepSlack)), broadcast(kSweepTiny));
-    // Padding may have made `late` NaN, which only the second operand of min passes on.
-    return less_equal(enter, min(broadcast(limit), late));
+    // The limit first: what is not a number, as padding can make, must not become the limit.
+    const Float16 last = min(broadcast(limit), late);
+    const Mask16 touched = less_equal(enter, last);
+    enter = keep_less_equal(enter, last, enter);
+    return touched;
   }
 
  private:

@@ -5,7 +5,7 @@
 
 #include <winnow/partitions/filters.wide.h>
 #include <winnow/partitions/queries/query_view.h>
-#include <winnow/simd/wide.h>
+#include <winnow/simd/compress.h>
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -62,12 +62,41 @@ inline std::uint32_t order_of_rounded_down(double value) {
   return order_of(nearest) - (static_cast<double>(nearest) > value ? 1U : 0U);
 }
 
-/// Visits blocks in the order in which the probe reaches their nodes, as far as `limit` says, which
-/// visiting may lower. Probe: `Mask16 test(columns, at, limit, Float16& order)` with order >= 0.
-/// `visit(first_row)` returns false to end the walk.
+/// What a walk in order has still to visit: nodes with the least order that lies below them. Its
+/// size is bounded by the depth of the tree, 16 a level.
+class OpenNodes {
+ public:
+  /// Adds the children `mask` of the 16 from `first_node` on.
+  void add(Mask16 mask, const Float16& order, std::uint32_t level, std::uint32_t first_node) {
+    compress_store(mask, order, order_ + size_);
+    size_ += compress_store(mask, count_from(level << 28U | first_node), node_ + size_);
+  }
+  /// Takes the last one added that lies within `limit`; false if there is none.
+  bool take(float limit, std::uint32_t& level, std::uint32_t& node) {
+    while (size_ != 0) {
+      --size_;
+      if (order_[size_] > limit) continue;
+      level = node_[size_] >> 28U;
+      node = node_[size_] & 0x0FFFFFFFU;
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr unsigned kRoom = 16 * (kMaxTreeLevels + 1);
+
+  unsigned size_ = 0;
+  float order_[kRoom];
+  std::uint32_t node_[kRoom];
+};
+
+/// Visits blocks about in the order in which the probe reaches their nodes, as far as `limit` says,
+/// which visiting may lower. Probe: `Mask16 test(columns, at, limit, Float16& order)` with order
+/// >= 0, and infinite in the lanes that fail. `visit(first_row)` returns false to end the walk.
 ///
-/// Depth first, the nearest child next: what is open waits on a stack whose size is bounded by the
-/// depth of the tree, 16 a level.
+/// Depth first: the nearest child next, its siblings later in no order, so that neither sorting
+/// nor its branches are paid for nodes that the limit will rule out.
 template <typename Probe, typename Visit>
 bool walk_in_order(const QueryView& view, const Probe& probe, const Wanted& wanted,
                    const float& limit, Visit&& visit) {
@@ -76,38 +105,28 @@ bool walk_in_order(const QueryView& view, const Probe& probe, const Wanted& want
   }
   for (std::uint32_t t = 0; t < view.trees; ++t) {
     const TreeView& tree = *view.tree[t];
-    // order << 32 | level << 28 | node
-    std::uint64_t open[16 * kMaxTreeLevels];
-    unsigned size = 0;
-    const auto push = [&](std::uint32_t level, std::uint32_t first_node) {
-      Float16 order;
-      Mask16 mask = probe.test(tree.node[level], first_node, limit, order);
-      mask = wanted.nodes(tree, level, first_node, mask);
-      if (mask == 0) return;
-      alignas(64) float at[kLanes];
-      store_unaligned(at, order);
-      const unsigned bottom = size;
-      for (; mask != 0; mask &= mask - 1) {
-        const unsigned lane = first(mask);
-        const std::uint64_t entry = std::uint64_t{order_of(at[lane])} << 32U |
-                                    std::uint64_t{level << 28U | (first_node + lane)};
-        unsigned place = size++;
-        for (; place > bottom && open[place - 1] < entry; --place) open[place] = open[place - 1];
-        open[place] = entry;
+    OpenNodes open;
+    // The children of this node of this level are tested next; a node of level 0 is a block.
+    std::uint32_t level = tree.levels;
+    std::uint32_t node = 0;
+    do {
+      bool reached = true;
+      while (reached && level != 0) {
+        --level;
+        const std::uint32_t first_node = node * kLanes;
+        Float16 order;
+        Mask16 mask = probe.test(tree.node[level], first_node, limit, order);
+        mask = wanted.nodes(tree, level, first_node, mask);
+        reached = mask != 0;
+        if (!reached) break;
+        // The filter may have ruled the nearest out: then any will do.
+        const Mask16 least = less_equal(order, broadcast(reduce_min(order))) & mask;
+        const unsigned next = first(least != 0 ? least : mask);
+        open.add(mask & ~(1U << next), order, level, first_node);
+        node = first_node + next;
       }
-    };
-    push(tree.levels - 1, 0);
-    while (size != 0) {
-      const std::uint64_t entry = open[--size];
-      if (value_of(static_cast<std::uint32_t>(entry >> 32U)) > limit) continue;
-      const auto level = static_cast<std::uint32_t>(entry >> 28U) & 0xFU;
-      const auto node = static_cast<std::uint32_t>(entry) & 0x0FFFFFFFU;
-      if (level != 0) {
-        push(level - 1, node * kLanes);
-      } else if (!visit((tree.first_block + node) * kLanes)) {
-        return false;
-      }
-    }
+      if (reached && !visit((tree.first_block + node) * kLanes)) return false;
+    } while (open.take(limit, level, node));
   }
   return true;
 }
