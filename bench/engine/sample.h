@@ -30,4 +30,15 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
+/// Milliseconds that the calling thread has computed since it was made: what a machine does beside
+/// it does not count. Only for work that stays on one thread.
+class ThreadStopwatch {
+ public:
+  [[nodiscard]] double ms() const noexcept { return now_ms() - start_; }
+
+ private:
+  [[nodiscard]] static double now_ms() noexcept;
+  double start_ = now_ms();
+};
+
 }  // namespace winnow::bench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "peers/engine.h"
+#include "peers/query_engine.h"
 
 #include <memory>
 
@@ -12,5 +13,7 @@ namespace winnow::bench {
 [[nodiscard]] std::unique_ptr<Engine> make_cgal(int threads);
 [[nodiscard]] std::unique_ptr<Engine> make_embree();
 [[nodiscard]] std::unique_ptr<Engine> make_ode();
+
+[[nodiscard]] std::unique_ptr<QueryEngine> make_embree_queries();
 
 }  // namespace winnow::bench

@@ -24,4 +24,12 @@ std::vector<std::unique_ptr<Engine>> make_peers([[maybe_unused]] int threads) {
   return peers;
 }
 
+std::vector<std::unique_ptr<QueryEngine>> make_query_peers() {
+  std::vector<std::unique_ptr<QueryEngine>> peers;
+#ifdef WINNOW_PEER_EMBREE
+  peers.push_back(make_embree_queries());
+#endif
+  return peers;
+}
+
 }  // namespace winnow::bench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "peers/engine.h"
+#include "peers/query_engine.h"
 
 #include <memory>
 #include <vector>
@@ -10,5 +11,8 @@ namespace winnow::bench {
 /// One engine per other library found when this was built, in the order in which reports list
 /// them, each with its best settings for at most `threads` threads.
 [[nodiscard]] std::vector<std::unique_ptr<Engine>> make_peers(int threads);
+
+/// The same of those that answer questions, for any number of threads.
+[[nodiscard]] std::vector<std::unique_ptr<QueryEngine>> make_query_peers();
 
 }  // namespace winnow::bench

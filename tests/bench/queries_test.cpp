@@ -1,0 +1,135 @@
+// What `winnow queries` rests on: everyone finds the same, and it is noticed if not.
+
+#include "queries/partition_queries.h"
+#include "queries/query_race.h"
+#include "scenes/scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#if WINNOW_HAVE_PEERS
+#include "peers/peers.h"
+#endif
+
+namespace winnow::bench {
+namespace {
+
+std::vector<QueryRun> race_on(const std::string& scene, std::vector<QueryContender>& contenders,
+                              int threads) {
+  const auto source = make_scene(scene, 300, 5);
+  for (const std::string_view name : partition_names()) {
+    contenders.push_back({std::make_unique<PartitionQueries>(name, threads), false});
+  }
+#if WINNOW_HAVE_PEERS
+  for (auto& peer : make_query_peers()) contenders.push_back({std::move(peer), true});
+#endif
+  const auto sets = make_question_sets(source->boxes(), 200, 9);
+  return race_queries(source->boxes(), sets, contenders,
+                      {.rounds = 1, .threads = threads, .judged = 200});
+}
+
+class Race : public testing::TestWithParam<const char*> {};
+
+TEST_P(Race, every_engine_finds_the_same) {
+  for (const int threads : {1, 2}) {
+    std::vector<QueryContender> contenders;
+    const std::vector<QueryRun> runs = race_on(GetParam(), contenders, threads);
+    for (const QueryRun& run : runs) {
+      EXPECT_TRUE(run.answered()) << run.engine << ": " << run.set << ": " << run.refusal;
+      EXPECT_TRUE(run.comparison.agree())
+          << run.engine << ": " << run.set << ": " << run.comparison.first;
+    }
+    // Each set is put to everyone singly, and rays and boxes to the partitions also as a batch.
+    EXPECT_GE(runs.size(), partition_names().size() * (question_set_names().size() + 7));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Race, testing::Values("uniform", "mixed", "pile"));
+
+TEST(Race, finds_as_much_in_a_round_as_it_compared) {
+  std::vector<QueryContender> contenders;
+  const std::vector<QueryRun> runs = race_on("uniform", contenders, 1);
+  for (const QueryRun& run : runs) {
+    const QueryRun* first = find_run(runs, "LinearBvh", run.set, Asking::single);
+    ASSERT_NE(first, nullptr);
+    if (run.comparison.undecided == 0) {
+      EXPECT_EQ(run.found, first->found) << run.engine << ": " << run.set;
+    }
+    EXPECT_EQ(run.ms.size(), 1U);
+  }
+}
+
+/// Two unit boxes in a row and one ray through both, or past them.
+class Comparisons : public testing::Test {
+ protected:
+  static Answers answers(std::initializer_list<Found> found) {
+    Answers result;
+    for (const Found& one : found) result.add(one);
+    result.next();
+    return result;
+  }
+  Comparison exactly(std::initializer_list<Found> expected,
+                     std::initializer_list<Found> got) const {
+    return compare_exactly(judge_, set_, answers(expected), answers(got));
+  }
+  Comparison in_float(std::initializer_list<Found> expected,
+                      std::initializer_list<Found> got) const {
+    return compare_in_float(judge_, set_, answers(expected), answers(got));
+  }
+  Comparison by_force(std::initializer_list<Found> got) const {
+    return compare_by_force(judge_, set_, boxes_.size(), answers(got), 1);
+  }
+  void ask(Want want, float height) {
+    set_ = {};
+    set_.want = want;
+    set_.rays.push_back({.origin = {-1.0F, height, 0.5F}});
+  }
+
+  std::vector<Aabb> boxes_{{{0, 0, 0}, {1, 1, 1}}, {{2, 0, 0}, {3, 1, 1}}};
+  Judge judge_{boxes_};
+  QuestionSet set_;
+};
+
+TEST_F(Comparisons, notice_missing_and_false_and_misplaced_hits) {
+  ask(Want::all, 0.5F);
+  EXPECT_TRUE(by_force({{0, 1.0F}, {1, 3.0F}}).agree());
+  EXPECT_FALSE(by_force({{0, 1.0F}}).agree());
+  EXPECT_FALSE(by_force({{1, 3.0F}, {0, 1.0F}}).agree());
+  EXPECT_FALSE(by_force({{0, 1.0F}, {1, 3.1F}}).agree());
+  EXPECT_FALSE(exactly({{0, 1.0F}, {1, 3.0F}}, {{0, 1.0F}}).agree());
+  EXPECT_FALSE(exactly({{0, 1.0F}, {1, 3.0F}}, {{1, 3.0F}, {0, 1.0F}}).agree());
+  EXPECT_FALSE(in_float({{0, 1.0F}, {1, 3.0F}}, {{0, 1.0F}}).agree());
+  ask(Want::all, 2.0F);
+  EXPECT_TRUE(by_force({}).agree());
+  EXPECT_FALSE(by_force({{0, 1.0F}}).agree());
+  EXPECT_FALSE(in_float({}, {{0, 1.0F}}).agree());
+}
+
+TEST_F(Comparisons, notice_a_hit_that_is_not_the_closest) {
+  ask(Want::closest, 0.5F);
+  EXPECT_TRUE(by_force({{0, 1.0F}}).agree());
+  EXPECT_FALSE(by_force({{1, 3.0F}}).agree());
+  EXPECT_FALSE(by_force({}).agree());
+  EXPECT_FALSE(exactly({{0, 1.0F}}, {{1, 3.0F}}).agree());
+  EXPECT_FALSE(in_float({{0, 1.0F}}, {{1, 3.0F}}).agree());
+  EXPECT_FALSE(in_float({{0, 1.0F}}, {}).agree());
+}
+
+TEST_F(Comparisons, allow_float_its_rounding_and_partitions_none) {
+  ask(Want::closest, 0.5F);
+  const float later = std::nextafter(1.0F, 2.0F);
+  EXPECT_TRUE(in_float({{0, 1.0F}}, {{0, later}}).agree());
+  EXPECT_FALSE(exactly({{0, 1.0F}}, {{0, later}}).agree());
+  ask(Want::closest, 1.0F);  // along an edge: a ray computed in float may well miss
+  boxes_[0].max.y() = boxes_[1].max.y() = std::nextafter(1.0F, 2.0F);
+  set_.rays[0].direction = {1.0F, 1e-9F, 0.0F};
+  const Comparison grazing = in_float({{0, 1.0F}}, {});
+  EXPECT_TRUE(grazing.agree());
+  EXPECT_EQ(grazing.undecided, 1U);
+}
+
+}  // namespace
+}  // namespace winnow::bench
