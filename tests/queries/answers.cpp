@@ -165,6 +165,7 @@ AssertionResult right_nearest(std::span<const Hit> got, const Aabb& from, std::s
         // It may stand back only behind as many as were asked for.
         if (got.size() < count)
           return AssertionFailure() << "object " << object.id << " is missing";
+        if (got.empty()) continue;
         const Hit& last = got[got.size() - 1];
         if (truth.latest < static_cast<double>(last.t) ||
             (exact == 0.0 && last.t == 0.0F && object.id < last.key.id)) {

@@ -143,8 +143,8 @@ void add(std::deque<QuestionSet>& sets, const Scene& scene) {
   set.boxes = scene.boxes;
   set.objects = numbered(scene.boxes);
   Random random(sets.size());
-  set.casts = some_casts(set.boxes, scaled(48), random);
-  set.regions = some_regions(set.boxes, scaled(42), random, set.planes);
+  set.casts = some_casts(set.boxes, scaled(32), random);
+  set.regions = some_regions(set.boxes, scaled(35), random, set.planes);
   for (const Cast& cast : set.casts) set.cast_truths.push_back(candidates(cast, set.objects));
   for (const Region& region : set.regions) {
     set.region_truths.push_back(candidates(region, set.objects));

@@ -149,9 +149,12 @@ class Approach {
     return segment_box_square(a_ + way, b_ + way, box_);
   }
 
-  // The time of the least distance in [begin, end], by golden section. Where two values are equal
-  // but for rounding, so is the least one: the distance is convex in time.
-  [[nodiscard]] double nearest_time(double begin, double end) const {
+  // The time of the least distance in [begin, end], or any at which it is at most `enough`; by
+  // golden section. Where two values are equal but for rounding, so is the least one: the distance
+  // is convex in time.
+  [[nodiscard]] double nearest_time(double begin, double end, Real enough) const {
+    const Real limit = enough > 0.0L ? enough * enough : 0.0L;
+    if (square(begin) <= limit) return begin;
     constexpr double kPart = 0.38196601125010515;
     double lo = begin;
     double hi = end;
@@ -161,13 +164,14 @@ class Approach {
     Real at_y = square(y);
     while (lo < x && x < y && y < hi) {
       if (at_x <= at_y) {
-        if (at_x == 0.0L) return x;
+        if (at_x <= limit) return x;
         hi = y;
         y = x;
         at_y = at_x;
         x = lo + kPart * (hi - lo);
         at_x = square(x);
       } else {
+        if (at_y <= limit) return y;
         lo = x;
         x = y;
         at_x = at_y;
@@ -184,11 +188,12 @@ class Approach {
 
   // Where between `outside` and `within`, earlier or later, the distance comes to at most `reach`.
   [[nodiscard]] double touch_time(double outside, double within, Real reach) const {
+    constexpr std::uint64_t kClose = 256;  // doubles
     const Real limit = reach * reach;
     if (square(outside) <= limit) return outside;
     std::uint64_t out = std::bit_cast<std::uint64_t>(outside);
     std::uint64_t in = std::bit_cast<std::uint64_t>(within);
-    while (std::max(in, out) - std::min(in, out) > 2) {
+    while (std::max(in, out) - std::min(in, out) > kClose) {
       const std::uint64_t middle = std::midpoint(in, out);
       (square(std::bit_cast<double>(middle)) <= limit ? in : out) = middle;
     }
@@ -224,10 +229,10 @@ CastTruth truth_of_round(const CapsuleCast& cast, const Aabb& box, double tolera
   const double begin = open.entry;
   const double end = std::max(begin, std::min(open.exit, 1e200));
   const Approach approach(cast, box);
-  const double best = approach.nearest_time(begin, end);
+  const auto r = static_cast<Real>(radius);
+  const double best = approach.nearest_time(begin, end, r - static_cast<Real>(slack));
   const Real least = std::sqrt(approach.square(best));
   CastTruth truth;
-  const auto r = static_cast<Real>(radius);
   truth.must = least <= r - static_cast<Real>(1e-15 * size);
   truth.may = truth.must || least <= r + static_cast<Real>(slack);
   if (!truth.may) return truth;
@@ -267,6 +272,7 @@ Real segment_box_square(const Point& a, const Point& b, const Aabb& box) {
     const Point p = a + s * u;
     return (p - high).cwiseMax(0.0L) - (low - p).cwiseMax(0.0L);
   };
+  if (u.isZero(0.0L)) return excess(0.0L).squaredNorm();
   const auto slope = [&](Real s) { return excess(s).dot(u); };
   // The slope of the squared distance is piecewise linear and never falls.
   Real begin = 0.0L;

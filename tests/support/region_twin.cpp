@@ -62,7 +62,7 @@ RegionTruth truth_of_sphere(const Sphere& sphere, const Aabb& box) {
   truth.may = truth.must || nearest <= Exact(wide) * Exact(wide);
   const Real far = std::sqrt(farthest);
   truth.may_inside = far <= static_cast<Real>(wide);
-  truth.must_inside = far <= static_cast<Real>(radius - 1e-5 * std::max(size, radius));
+  truth.must_inside = far < static_cast<Real>(radius - 1e-5 * std::max(size, radius));
   return truth;
 }
 
@@ -85,7 +85,7 @@ RegionTruth truth_of_capsule(const Capsule& capsule, const Aabb& box) {
   truth.must = nearest <= radius - static_cast<Real>(1e-17 * size);
   truth.may = truth.must || nearest <= radius + slack;
   truth.may_inside = farthest <= radius + slack;
-  truth.must_inside = farthest <= radius - 10.0L * slack;
+  truth.must_inside = farthest < radius - 10.0L * slack;
   return truth;
 }
 
@@ -270,7 +270,7 @@ RegionTruth truth_of_oriented(const OrientedBox& oriented, const Aabb& box) {
     const Vector3d p = corner(box, i) - oriented.center.cast<double>();
     const Vector3d s = (matrix.inverse() * p).cwiseAbs() - oriented.half.cast<double>();
     truth.may_inside = truth.may_inside && s.maxCoeff() <= 1e-11 * size;
-    truth.must_inside = truth.must_inside && s.maxCoeff() <= -1e-5 * size;
+    truth.must_inside = truth.must_inside && s.maxCoeff() < -1e-5 * size;
   }
   return truth;
 }
