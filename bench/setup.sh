@@ -4,7 +4,10 @@
 # What every build of winnow needs.
 WINNOW_BUILD_PACKAGES=(cmake ninja-build g++ pkg-config libeigen3-dev libxsimd-dev libtbb-dev)
 # What the winnow tool and the micro benchmarks need on top.
-WINNOW_BENCH_PACKAGES=(libbenchmark-dev libcli11-dev nlohmann-json3-dev liblzma-dev xz-utils)
+WINNOW_BENCH_PACKAGES=(libbenchmark-dev libcli11-dev nlohmann-json3-dev liblzma-dev xz-utils
+                       libjs-three)
+# What opens the pages of `winnow draw` in a test: Chromium without its windows.
+WINNOW_BROWSER_PACKAGES=(chromium-headless-shell)
 # Other libraries that winnow can be measured against.
 WINNOW_PEER_PACKAGES=(libbullet-dev libfcl-dev libcgal-dev libembree-dev libode-dev)
 

@@ -19,15 +19,16 @@ inline constexpr Colour kCellColour{86, 180, 233, 255};     ///< a cell or strip
 inline constexpr Colour kContentsColour{0, 114, 178, 255};  ///< the box around what it holds
 inline constexpr Colour kAxisColour{240, 228, 66, 255};  ///< the axis that is swept or runs fastest
 
-/// By depth: the nodes next to the root first.
+/// By depth: the nodes next to the root first. Even a million objects go four deep: these steps are
+/// wide.
 inline constexpr std::array<Colour, 8> kNodeColours{{{253, 231, 37, 255},
-                                                     {165, 219, 54, 255},
-                                                     {74, 193, 109, 255},
-                                                     {31, 152, 139, 255},
-                                                     {42, 120, 142, 255},
-                                                     {53, 95, 141, 255},
-                                                     {65, 68, 135, 255},
-                                                     {72, 36, 117, 255}}};
+                                                     {94, 201, 98, 255},
+                                                     {33, 145, 140, 255},
+                                                     {49, 104, 142, 255},
+                                                     {62, 74, 137, 255},
+                                                     {71, 45, 123, 255},
+                                                     {72, 24, 106, 255},
+                                                     {68, 1, 84, 255}}};
 
 /// The colour of nodes at a depth, 0 or more; the last one serves all below it.
 [[nodiscard]] constexpr Colour node_colour(std::size_t depth) noexcept {

@@ -1,15 +1,11 @@
-#include "recordings/recording.h"
-#include "scenes/scene.h"
 #include "tool/arguments.h"
 #include "tool/command.h"
 #include "tool/output.h"
 #include "tool/progress.h"
 #include "tool/table.h"
+#include "tool/target.h"
 
-#include <algorithm>
-#include <filesystem>
 #include <iostream>
-#include <optional>
 
 namespace winnow::bench {
 namespace {
@@ -17,9 +13,7 @@ namespace {
 constexpr std::size_t kSceneFrames = 30;
 
 struct Replay {
-  std::string target;
-  std::optional<std::size_t> objects;
-  std::optional<std::uint64_t> seed;
+  Target target;
   std::size_t frames = 0;  // 0: all of a recording, kSceneFrames of a scene
   std::string json;
   Choice choice;
@@ -28,48 +22,27 @@ struct Replay {
   int run();
 
  private:
-  using MakeSource = std::function<std::unique_ptr<FrameSource>()>;
-
-  MakeSource open();
   void print(const std::vector<Run>& runs, const std::string& scene, std::size_t count) const;
-
-  std::optional<Recording> recording_;
 };
-
-/// Every partition gets the frames anew, so that one run does not disturb another.
-Replay::MakeSource Replay::open() {
-  const auto infos = scene_infos();
-  const bool is_scene = std::any_of(infos.begin(), infos.end(),
-                                    [&](const SceneInfo& info) { return info.name == target; });
-  if (is_scene && !std::filesystem::exists(target)) {
-    return [this] { return make_scene(target, objects.value_or(10'000), seed.value_or(1)); };
-  }
-  if (objects || seed) {
-    throw ArgumentError("--objects and --seed go with the name of a scene, and " + target +
-                        " is not one (see: winnow scenes)");
-  }
-  if (!std::filesystem::exists(target)) {
-    throw ArgumentError(target + " is neither a file nor the name of a scene (see: winnow scenes)");
-  }
-  recording_ = read_recording(target);
-  return [this] { return play(*recording_); };
-}
 
 int Replay::run() {
   choose_isa(choice.isa);
-  const MakeSource make_source = open();
-  const auto first = make_source();
+  target.open();
+  const auto first = target.source();
   const std::size_t count = first->boxes().size();
   const Partitions partitions = partitions_for(choice.partitions, count);
   RaceOptions options;
-  options.frames = frames != 0 ? frames : recording_ ? recording_->frames.size() : kSceneFrames;
+  options.frames = frames != 0          ? frames
+                   : target.recording() ? target.recording()->frames.size()
+                                        : kSceneFrames;
 
   std::vector<Run> runs;
   {
     Progress progress(partitions.taken.size());
     for (const std::string& name : partitions.taken) {
-      progress.step(target + ": " + name);
-      const auto source = make_source();
+      progress.step(target.name + ": " + name);
+      // Every partition gets the frames anew, so that one run does not disturb another.
+      const auto source = target.source();
       std::vector<Contender> contenders = make_contenders({name}, threads);
       runs.push_back(std::move(race(*source, contenders, options).front()));
     }
@@ -113,11 +86,12 @@ Command add_replay(CLI::App& app) {
       "Finds all pairs in every frame of a recording or scene. The frame's time is one bulk update "
       "of what changed (told to the partition, as a simulation knows it) and all pairs into one "
       "buffer; medians leave out the first frame.");
-  sub->add_option("target", replay->target, "A recording (.aabbs, .aabbs.xz) or a scene's name")
+  sub->add_option("target", replay->target.name,
+                  "A recording (.aabbs, .aabbs.xz) or a scene's name")
       ->required();
-  sub->add_option("--objects", replay->objects, "Number of objects of a scene (10000)")
+  sub->add_option("--objects", replay->target.objects, "Number of objects of a scene (10000)")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
-  sub->add_option("--seed", replay->seed, "What a scene is drawn from (1)");
+  sub->add_option("--seed", replay->target.seed, "What a scene is drawn from (1)");
   add_partitions_option(*sub, replay->choice);
   sub->add_option("--threads", replay->threads, "Threads")
       ->check(CLI::Range(1, 1024))

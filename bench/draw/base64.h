@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <type_traits>
+
+namespace winnow::bench {
+
+/// Bytes as text (RFC 4648, with padding).
+[[nodiscard]] std::string base64(std::span<const std::byte> bytes);
+
+/// Values as they lie in memory.
+template <typename T>
+[[nodiscard]] std::string base64_of(std::span<const T> values) {
+  static_assert(std::is_standard_layout_v<T>);
+  return base64(std::as_bytes(values));
+}
+
+}  // namespace winnow::bench

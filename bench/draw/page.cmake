@@ -1,0 +1,24 @@
+# Compiles the page's files into the tool, and finds the library that draws. The library itself is
+# read when a page is written: it is not winnow's to carry along.
+find_path(WINNOW_THREE_JS_FOLDER three.min.js
+          PATHS /usr/share/javascript/three /usr/share/nodejs/three/build)
+if(NOT WINNOW_THREE_JS_FOLDER)
+  message(STATUS "winnow draw: three.js is not installed (Debian: libjs-three)")
+  set(WINNOW_THREE_JS_FOLDER /usr/share/javascript/three)
+endif()
+
+set(winnow_page ${CMAKE_CURRENT_LIST_DIR}/page)
+set(winnow_page_scripts data.js meshes.js layers.js view.js picking.js legend.js main.js)
+file(READ ${winnow_page}/style.css WINNOW_PAGE_STYLE)
+file(READ ${winnow_page}/body.html WINNOW_PAGE_BODY)
+file(READ ${winnow_page}/three_js_notice.html WINNOW_PAGE_NOTICE)
+set(WINNOW_PAGE_SCRIPT "")
+foreach(script ${winnow_page_scripts})
+  file(READ ${winnow_page}/${script} text)
+  string(APPEND WINNOW_PAGE_SCRIPT "${text}")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${winnow_page}/${script})
+endforeach()
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+             ${winnow_page}/style.css ${winnow_page}/body.html
+             ${winnow_page}/three_js_notice.html)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/page_parts.cpp.in page_parts.cpp @ONLY)

@@ -1,0 +1,96 @@
+// The picture as the tool wrote it: columns are base64 of little-endian values.
+
+const kPicture = JSON.parse(document.getElementById("picture").textContent);
+
+function bytesOf(text) {
+  const binary = atob(text);
+  const bytes = new Uint8Array(binary.length);
+  for (let i = 0; i < binary.length; ++i) bytes[i] = binary.charCodeAt(i);
+  return bytes.buffer;
+}
+
+const floatsOf = (text) => new Float32Array(bytesOf(text));
+const indicesOf = (text) => new Uint32Array(bytesOf(text));
+const wideOf = (text) => new BigUint64Array(bytesOf(text));
+
+// Boxes are six floats: lower ends, then upper ends.
+const kObjects = {
+  boxes: floatsOf(kPicture.objects.boxes),
+  rows: indicesOf(kPicture.objects.rows),
+  data: wideOf(kPicture.objects.data),
+};
+kObjects.count = kObjects.rows.length;
+const kPairs = indicesOf(kPicture.pairs);
+const kRays = kPicture.rays.map((r) => {
+  const ray = floatsOf(r.ray);
+  return {
+    origin: ray.slice(0, 3),
+    direction: ray.slice(3, 6),
+    closest: r.closest,
+    closestT: r.closest_t,
+    hits: indicesOf(r.hits),
+    t: floatsOf(r.t),
+  };
+});
+const kQuestionBoxes = kPicture.boxes.map((b) => ({
+  box: floatsOf(b.box),
+  inside: indicesOf(b.inside),
+  crossing: indicesOf(b.crossing),
+}));
+
+// Where most of the scene is. Past the middle 96 % of the ends it goes on by half of their range at
+// most, so that one box far away does not shrink all others to a dot.
+function findFrame() {
+  const low = [0, 0, 0];
+  const high = [0, 0, 0];
+  for (let axis = 0; axis < 3; ++axis) {
+    let ends = [new Float32Array(kObjects.count), new Float32Array(kObjects.count)];
+    for (let i = 0; i < kObjects.count; ++i) {
+      ends[0][i] = kObjects.boxes[6 * i + axis];
+      ends[1][i] = kObjects.boxes[6 * i + 3 + axis];
+    }
+    ends = ends.map((column) => column.filter(Number.isFinite).sort());
+    const at = (column, share) => column[Math.round(share * (column.length - 1))];
+    if (ends[0].length === 0 || ends[1].length === 0) {
+      low[axis] = ends[0].length ? ends[0][0] : ends[1].length ? ends[1][0] : -1;
+      high[axis] = ends[1].length ? at(ends[1], 1) : ends[0].length ? at(ends[0], 1) : 1;
+      continue;
+    }
+    const from = at(ends[0], 0.02);
+    const to = at(ends[1], 0.98);
+    const margin = 0.5 * Math.abs(to - from);
+    low[axis] = Math.max(ends[0][0], from - margin);
+    high[axis] = Math.min(at(ends[1], 1), to + margin);
+    if (low[axis] > high[axis]) [low[axis], high[axis]] = [high[axis], low[axis]];
+  }
+  const centre = low.map((l, axis) => 0.5 * l + 0.5 * high[axis]);
+  const radius = Math.hypot(...low.map((l, axis) => 0.5 * high[axis] - 0.5 * l)) || 1;
+  return {low, high, centre, radius};
+}
+
+// The graphics card gets coordinates in units of the frame's radius from the frame's centre: floats
+// far from the origin, or very large or small ones, lose nothing on the way.
+const kFrame = kObjects.count ? findFrame() : {low: [-1, -1, -1], high: [1, 1, 1],
+                                               centre: [0, 0, 0], radius: Math.sqrt(3)};
+const kFarthest = 40;
+
+// Ends at infinity are drawn a little outside of the frame.
+function placed(value, axis) {
+  const c = kFrame.centre[axis];
+  const r = kFrame.radius;
+  if (value === -Infinity) return (kFrame.low[axis] - c) / r - 0.15;
+  if (value === Infinity) return (kFrame.high[axis] - c) / r + 0.15;
+  return Math.min(kFarthest, Math.max(-kFarthest, (value - c) / r));
+}
+
+function placedColumn(values) {
+  const result = new Float32Array(values.length);
+  for (let i = 0; i < values.length; ++i) result[i] = placed(values[i], i % 3);
+  return result;
+}
+
+const kPlacedObjects = placedColumn(kObjects.boxes);
+
+function centreOfObject(i, axis) {
+  return 0.5 * (kPlacedObjects[6 * i + axis] + kPlacedObjects[6 * i + 3 + axis]);
+}

@@ -1,0 +1,68 @@
+// Puts the page together, and says in #report what was drawn, as counted on the way to the graphics
+// card. If the address ends in #check it also reads back pixels, switches every layer off and on
+// again, and points at the middle of the frame.
+
+const kErrors = [];
+window.addEventListener("error", (e) => kErrors.push(String(e.message)));
+
+function readPixels() {
+  draw();
+  const gl = kRenderer.getContext();
+  const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+  const pixels = new Uint8Array(4 * width * height);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  const words = new Uint32Array(pixels.buffer);
+  const colours = new Map();
+  for (const word of words) colours.set(word, (colours.get(word) || 0) + 1);
+  const ground = Math.max(...colours.values());
+  return {width, height, colours: colours.size, drawn: words.length - ground, error: gl.getError()};
+}
+
+function check() {
+  const pixels = readPixels();
+  const boxes = [...document.querySelectorAll("#legend input[type=checkbox]")];
+  const shown = boxes.filter((box) => box.checked);
+  shown.forEach((box) => box.click());
+  const withoutLayers = readPixels().drawn;
+  shown.forEach((box) => box.click());
+  const middle = new THREE.Vector3(0, 0, 0).project(kCamera);
+  choose(objectAt(0.5 * (middle.x + 1) * window.innerWidth,
+                  0.5 * (1 - middle.y) * window.innerHeight));
+  const pointedAt = document.getElementById("info").textContent;
+  choose(-1);
+  return {pixels, withoutLayers, pointedAt};
+}
+
+function report() {
+  const drawn = {structure: {}};
+  for (const layer of kLayers) {
+    if (layer.id === "labels") continue;
+    const into = layer.part ? drawn.structure : drawn;
+    const name = layer.part || layer.id;
+    into[name] = (into[name] || 0) + drawnBy(layer.counted);
+  }
+  const result = {drawn, labels: kLabels.length, three: THREE.REVISION, errors: kErrors};
+  if (location.hash === "#check") Object.assign(result, check());
+  document.getElementById("report").textContent = JSON.stringify(result);
+}
+
+function fail(error) {
+  kErrors.push(String(error));
+  const panel = document.createElement("section");
+  panel.className = "panel";
+  panel.id = "failure";
+  panel.textContent = `This page cannot be drawn: ${error.message || error}`;
+  document.body.append(panel);
+  document.getElementById("report").textContent = JSON.stringify({errors: kErrors});
+}
+
+try {
+  writeCaption();
+  addLayers();
+  startView();
+  writeLegend();
+  startPicking();
+  report();
+} catch (error) {
+  fail(error);
+}

@@ -1,0 +1,84 @@
+// The camera, and when to draw: on demand, so that an idle page costs nothing.
+
+const kBackground = 0x12161c;
+const kRenderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: false});
+const kCamera = new THREE.PerspectiveCamera(32, 1, 0.001, 200);
+const kCanvas = kRenderer.domElement;
+const kControls = new THREE.OrbitControls(kCamera, kCanvas);
+
+let drawingIsDue = false;
+
+function drawSoon() {
+  if (drawingIsDue) return;
+  drawingIsDue = true;
+  requestAnimationFrame(() => {
+    drawingIsDue = false;
+    draw();
+  });
+}
+
+function draw() {
+  const distance = kCamera.position.distanceTo(kControls.target);
+  kUniforms.reach.value = distance;
+  kCamera.near = Math.max(1e-4, distance / 500);
+  kCamera.far = distance + 200;
+  kCamera.updateProjectionMatrix();
+  kRenderer.render(kScene, kCamera);
+  placeLabels();
+}
+
+function fitWindow() {
+  const ratio = window.devicePixelRatio || 1;
+  kRenderer.setPixelRatio(ratio);
+  kRenderer.setSize(window.innerWidth, window.innerHeight);
+  kUniforms.pixelRatio.value = ratio;
+  kUniforms.resolution.value.set(window.innerWidth * ratio, window.innerHeight * ratio);
+  kCamera.aspect = window.innerWidth / window.innerHeight;
+  // What the panels leave free is where the picture belongs.
+  const legend = window.innerWidth > 700 ? 262 : 0;
+  kCamera.setViewOffset(window.innerWidth, window.innerHeight, legend / 2, 0, window.innerWidth,
+                        window.innerHeight);
+  drawSoon();
+}
+
+// From above one corner, as far away as to have all of the frame in sight.
+function resetView() {
+  const half = Math.tan(kCamera.fov * Math.PI / 360);
+  const free = Math.max(0.4, (window.innerWidth - 262) / window.innerHeight);
+  const distance = 1.08 / Math.sin(Math.atan(half * Math.min(1, free)));
+  // A thin scene is looked at from its broad side.
+  const extent = kFrame.high.map((high, axis) => high - kFrame.low[axis]);
+  const most = Math.max(...extent);
+  const from = [0.55, -1, 0.5].map((base, axis) => base / (0.3 + extent[axis] / most));
+  const away = new THREE.Vector3(...from).normalize().multiplyScalar(distance);
+  kControls.target.set(0, 0, 0);
+  kCamera.position.copy(away);
+  kControls.update();
+  drawSoon();
+}
+
+function placeLabels() {
+  for (const {element, at, visible, layer} of kLabels) {
+    const seen = at.clone().project(kCamera);
+    const shown = layer ? layer.shown : visible;
+    const hidden = !shown || seen.z > 1 || Math.abs(seen.x) > 1 || Math.abs(seen.y) > 1;
+    element.style.display = hidden ? "none" : "";
+    const x = 0.5 * (seen.x + 1) * window.innerWidth;
+    const y = 0.5 * (1 - seen.y) * window.innerHeight;
+    element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translateY(-50%)`;
+  }
+}
+
+function startView() {
+  kRenderer.setClearColor(kBackground);
+  kRenderer.sortObjects = true;
+  kCamera.up.set(0, 0, 1);
+  document.body.prepend(kCanvas);
+  kControls.screenSpacePanning = true;
+  kControls.minDistance = 0.01;
+  kControls.maxDistance = 150;
+  kControls.addEventListener("change", drawSoon);
+  window.addEventListener("resize", fitWindow);
+  fitWindow();
+  resetView();
+}

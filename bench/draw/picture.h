@@ -1,0 +1,57 @@
+#pragma once
+
+#include "draw/questions.h"
+#include "draw/sketch.h"
+#include "draw/stage.h"
+#include "tool/output.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+
+struct PictureOptions {
+  std::size_t most_objects = 200'000;  ///< drawn, evenly chosen; hit ones are drawn in any case
+  int max_depth = 64;
+  bool labels = false;
+  std::vector<Ray> rays;
+  std::vector<Aabb> boxes;
+};
+
+/// One frame of a scene in one partition, with everything that the page shows of it.
+class Picture {
+ public:
+  Picture(std::string scene, std::size_t frame, const Stage& stage, const PictureOptions& options);
+
+  /// What is in the picture, in numbers: what the tool prints and what the page must show.
+  [[nodiscard]] Json counts() const;
+  /// All of it, as page/data.js reads it.
+  [[nodiscard]] Json data() const;
+
+ private:
+  void choose_objects(std::size_t most);
+  void choose_pairs(const std::vector<Pair>& pairs);
+  [[nodiscard]] std::string places_of(std::span<const ObjectId> ids) const;
+  [[nodiscard]] Json objects_data() const;
+  [[nodiscard]] Json structure_data() const;
+  [[nodiscard]] Json questions_data() const;
+
+  std::string scene_;
+  std::size_t frame_;
+  std::string partition_;
+  Statistics statistics_;
+  std::size_t all_pairs_;
+  std::size_t reported_;
+  Sketch sketch_;
+  std::vector<RayAnswer> rays_;
+  std::vector<BoxAnswer> boxes_;
+
+  std::vector<ObjectId> drawn_;       // ascending
+  std::vector<ClientData> data_;      // of those
+  std::vector<std::uint32_t> place_;  // of each object in drawn_
+  std::vector<std::uint32_t> pairs_;  // two places a pair
+};
+
+}  // namespace winnow::bench

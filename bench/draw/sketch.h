@@ -1,0 +1,51 @@
+#pragma once
+
+#include <winnow/core/debug_draw.h>
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace winnow::bench {
+
+/// Boxes and lines of one kind, as the page shows or hides them together.
+struct SketchLayer {
+  std::string name;
+  Colour colour;
+  std::vector<Aabb> boxes;
+  std::vector<Eigen::Vector3f> line_ends;  ///< two a line
+};
+
+struct SketchText {
+  Eigen::Vector3f at;
+  std::string text;
+  Colour colour;
+};
+
+/// Keeps what a partition draws, sorted by kind, which the colour tells.
+class Sketch final : public DebugDraw {
+ public:
+  Sketch();
+
+  void box(const Aabb& box, Colour colour) override;
+  void line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) override;
+  /// As the box around it.
+  void sphere(const Sphere& sphere, Colour colour) override;
+  void text(const Eigen::Vector3f& at, std::string_view text, Colour colour) override;
+
+  /// In the order in which they were drawn.
+  [[nodiscard]] std::span<const Aabb> objects() const noexcept { return objects_; }
+  /// The kinds of structure that were drawn, in a fixed order.
+  [[nodiscard]] std::vector<const SketchLayer*> structure() const;
+  [[nodiscard]] std::span<const SketchText> texts() const noexcept { return texts_; }
+
+ private:
+  SketchLayer& layer_of(Colour colour);
+
+  std::vector<Aabb> objects_;
+  std::vector<SketchLayer> layers_;  // the last one takes colours that are not known
+  std::vector<SketchText> texts_;
+};
+
+}  // namespace winnow::bench

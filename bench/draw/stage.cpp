@@ -1,0 +1,59 @@
+#include "draw/stage.h"
+
+#include "tool/command.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace winnow::bench {
+namespace {
+
+bool same_floats(const Aabb& a, const Aabb& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+}  // namespace
+
+void require_ok(Status status, const char* call) {
+  if (status != Status::ok) throw std::runtime_error(std::string(call) + ": " + to_string(status));
+}
+
+Stage::Stage(std::string_view partition, FrameSource& source, std::size_t frame)
+    : partition_(make_partition(partition)),
+      keys_(source.boxes().size()),
+      boxes_(source.boxes().begin(), source.boxes().end()) {
+  std::vector<ClientData> data(boxes_.size());
+  std::iota(data.begin(), data.end(), ClientData{0});
+  require_ok(partition_->insert(boxes_, data, keys_), "insert");
+  PairBuffer buffer;
+  require_ok(partition_->self_pairs(buffer), "self_pairs");
+  for (std::size_t k = 1; k <= frame; ++k) {
+    if (!source.advance()) {
+      throw ArgumentError("--frame: the last frame is " + std::to_string(k - 1));
+    }
+    step(source.boxes());
+    require_ok(partition_->self_pairs(buffer), "self_pairs");
+  }
+  reported_ = buffer.size();
+  for (const Pair& pair : buffer) {
+    if (boxes_[pair.first].overlaps(boxes_[pair.second])) pairs_.push_back(pair);
+  }
+  std::sort(pairs_.begin(), pairs_.end());
+}
+
+void Stage::step(std::span<const Aabb> boxes) {
+  std::vector<Key> moved;
+  std::vector<Aabb> places;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (same_floats(boxes[i], boxes_[i])) continue;
+    moved.push_back(keys_[i]);
+    places.push_back(boxes[i]);
+  }
+  boxes_.assign(boxes.begin(), boxes.end());
+  require_ok(partition_->update(moved, places), "update");
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,121 @@
+# What `winnow draw` says is in a picture is what a browser draws of it.
+# cmake -DWINNOW=<the tool> -DWORK=<folder> -P pages.cmake
+#
+# Opens each page in headless Chromium with a software renderer and asks the page how much went to
+# the graphics card, how many pixels came back coloured, and what comes of switching layers and of
+# pointing at an object.
+cmake_minimum_required(VERSION 3.25)
+
+find_program(browser NAMES chromium-headless-shell chromium chromium-browser google-chrome)
+if(NOT browser)
+  message("skipped: no Chromium to open pages in (Debian: chromium-headless-shell)")
+  return()
+endif()
+file(MAKE_DIRECTORY ${WORK})
+
+# draw(<name of the page> <arguments of winnow draw>...): writes <name>.html and <name>.json.
+function(draw name)
+  execute_process(
+    COMMAND ${WINNOW} draw ${ARGN} --out ${WORK}/${name}.html --json ${WORK}/${name}.json
+    RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE error)
+  if(error MATCHES "needs three.js")
+    message("skipped: ${error}")
+  endif()
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "winnow draw ${ARGN}: ${error}")
+  endif()
+endfunction()
+
+# open(<name of the page> <variable>): the page's report of itself.
+function(open name report)
+  execute_process(
+    COMMAND ${browser} --headless --no-sandbox --enable-unsafe-swiftshader
+            --user-data-dir=${WORK}/profile --window-size=900,600 --virtual-time-budget=2000
+            --enable-logging=stderr --dump-dom "file://${WORK}/${name}.html#check"
+    TIMEOUT 120 RESULT_VARIABLE status OUTPUT_VARIABLE page ERROR_VARIABLE log)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${name}: the browser ended with ${status}: ${log}")
+  endif()
+  # Of what the page logs only the driver's word on the speed of reading pixels is no complaint.
+  string(REGEX MATCHALL "[^\n]*:CONSOLE:[^\n]*" complaints "${log}")
+  list(FILTER complaints EXCLUDE REGEX "GL Driver Message \\(OpenGL, Performance")
+  if(complaints)
+    message(FATAL_ERROR "${name}: the page logged ${complaints}")
+  endif()
+  if(NOT page MATCHES "id=\"report\">([^<]+)<")
+    message(FATAL_ERROR "${name}: the page says nothing of itself: ${log}")
+  endif()
+  set(${report} "${CMAKE_MATCH_1}" PARENT_SCOPE)
+endfunction()
+
+# expect_same(<name> <what was drawn> <what the tool counted>): every number of the counts that
+# tells of something drawn.
+function(expect_same name drawn counts)
+  foreach(key objects_drawn pairs_drawn structure_lines rays rays_that_hit ray_hits boxes inside
+              crossing)
+    string(JSON expected GET "${counts}" ${key})
+    string(JSON got ERROR_VARIABLE missing GET "${drawn}" ${key})
+    if(missing)
+      set(got 0)
+    endif()
+    if(NOT got EQUAL expected)
+      message(FATAL_ERROR "${name}: ${key} is ${expected}, the page drew ${got}")
+    endif()
+  endforeach()
+  string(JSON expected GET "${counts}" structure)
+  string(JSON got GET "${drawn}" structure)
+  string(JSON same EQUAL "${expected}" "${got}")
+  if(NOT same)
+    message(FATAL_ERROR "${name}: the structure is ${expected}, the page drew ${got}")
+  endif()
+endfunction()
+
+# expect_picture(<name> <report>): not blank, and no error on the way.
+function(expect_picture name report)
+  string(JSON errors GET "${report}" errors)
+  string(JSON complaints LENGTH "${report}" errors)
+  if(complaints)
+    message(FATAL_ERROR "${name}: ${errors}")
+  endif()
+  string(JSON colours GET "${report}" pixels colours)
+  string(JSON drawn GET "${report}" pixels drawn)
+  string(JSON error GET "${report}" pixels error)
+  if(colours LESS 100 OR drawn LESS 30000 OR NOT error EQUAL 0)
+    message(FATAL_ERROR "${name}: a blank picture: ${report}")
+  endif()
+  string(JSON left GET "${report}" withoutLayers)
+  if(NOT left EQUAL 0)
+    message(FATAL_ERROR "${name}: ${left} pixels stay when every layer is switched off")
+  endif()
+endfunction()
+
+function(check name)
+  draw(${name} ${ARGN})
+  file(READ ${WORK}/${name}.json counts)
+  open(${name} report)
+  string(JSON drawn GET "${report}" drawn)
+  expect_same(${name} "${drawn}" "${counts}")
+  expect_picture(${name} "${report}")
+  message("${name}: ${drawn}")
+  string(JSON pointed_at GET "${report}" pointedAt)
+  set(pointed_at "${pointed_at}" PARENT_SCOPE)
+endfunction()
+
+set(questions --ray -2,4,4,1,0.05,0.02 --ray 5,5,30,0,0,-1 --ray 0,0,90,1,0,0 --box 2,2,2,7,6,5)
+check(grid uniform --objects 400 --frame 3 --partition FlatGrid --labels ${questions})
+check(strips pile --objects 600 --frame 2 --partition SweepAndPrune ${questions})
+check(tree mixed --objects 1000 --partition LinearBvh --max-depth 1 --max-objects 300 ${questions})
+check(plain wall --objects 200 --partition NSquared)
+
+check(one uniform --objects 1 --partition BoundsNSquared)
+if(NOT pointed_at MATCHES "^row0client data0from.*overlaps rowsnone$")
+  message(FATAL_ERROR "one: pointing at the object says '${pointed_at}'")
+endif()
+
+# The same question gives the same bytes.
+draw(again uniform --objects 400 --frame 3 --partition FlatGrid --labels ${questions})
+file(SHA256 ${WORK}/grid.html first)
+file(SHA256 ${WORK}/again.html second)
+if(NOT first STREQUAL second)
+  message(FATAL_ERROR "two pages of the same picture differ")
+endif()
