@@ -1,5 +1,6 @@
 #include <winnow/partitions/block_tree.kernel.h>
 #include <winnow/partitions/hits.wide.h>
+#include <winnow/partitions/tree_walk.wide.h>
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -35,54 +36,30 @@ void refit_nodes(const TreeView& tree, std::uint32_t level, std::uint32_t begin,
   reduce(tree.node[level - 1], begin, end, tree.node[level]);
 }
 
-/// Calls visit(child, box query) for every node of `stop` level that overlaps `q`, in order, from
-/// node `from` on. One mask per level is all the state a walk needs: depth is bounded by the number
-/// of objects, not by a stack. False as soon as visit says false.
-template <typename Visit>
-bool walk(const TreeView& tree, const QueryBox& q, std::uint32_t stop, std::uint32_t from,
-          PairSink& sink, Visit&& visit) {
-  Mask16 open[kMaxTreeLevels];
-  std::uint32_t base[kMaxTreeLevels];
-  std::uint32_t level = tree.levels - 1;
-  const auto enter = [&](std::uint32_t first_node) {
-    base[level] = first_node;
-    ++sink.tests;
-    const Box16 nodes = load_slabs<3>(tree.node[level], first_node);
-    Mask16 hits = overlap(nodes, q.low, q.high);
-    // Nodes that end before `from` hold nothing to visit.
-    const std::uint32_t first_wanted = from >> (4 * (level - stop));
-    if (first_wanted > first_node) {
-      const std::uint32_t skip = first_wanted - first_node;
-      hits &= ~lanes_below(skip < kLanes ? skip : kLanes);
-    }
-    open[level] = hits;
-  };
-  enter(0);
-  for (;;) {
-    if (open[level] == 0) {
-      if (level == tree.levels - 1) return true;
-      ++level;
-      continue;
-    }
-    const std::uint32_t child = base[level] + first(open[level]);
-    open[level] &= open[level] - 1;
-    if (level == stop) {
-      if (!visit(child)) return false;
-    } else {
-      --level;
-      enter(child * kLanes);
-    }
-  }
+/// Of the boxes `nodes`, which are nodes from `first_node` on, those that box q overlaps and whose
+/// filters `range` may meet.
+template <bool Filtered>
+Mask16 open_nodes(const TreeView& tree, std::uint32_t level, std::uint32_t first_node,
+                  const Box16& nodes, const QueryBox& q, const FilterRange& range) {
+  const Mask16 hits = overlap(nodes, q.low, q.high);
+  return Filtered ? passing_nodes(tree.filters[level], first_node, hits, range) : hits;
+}
+
+/// The filters below node i; nothing is read where nothing is filtered.
+template <bool Filtered>
+FilterRange node_range(const TreeView& tree, std::uint32_t level, std::uint32_t i) {
+  return Filtered ? range_of(tree.filters[level], i) : FilterRange{};
 }
 
 /// Finds pairs between leaves in three long loops instead of many short nested ones, whose lengths
 /// no branch predictor can guess: pairs of leaves whose boxes overlap; of each, the rows of the
 /// first leaf that reach into the second's box; of each such row, its hits among the second leaf's
-/// rows.
+/// rows. Filtered, each loop passes on what the filters let meet.
+template <bool Filtered>
 class LeafPairs {
  public:
   LeafPairs(const TreeView& tree, PairSink& sink)
-      : tree_(tree), sink_(sink), hits_(tree.rows, tree.rows.id, nullptr, sink) {}
+      : tree_(tree), sink_(sink), hits_(tree.rows, sink) {}
 
   /// Adds all pairs of leaf i with leaves base + js.
   bool add(std::uint32_t i, std::uint32_t base, Mask16 js) {
@@ -93,7 +70,11 @@ class LeafPairs {
   }
 
   /// Adds all pairs within a leaf.
-  bool add_self(std::uint32_t leaf) { return add_rows(leaf * kLanes, leaf, 0x7FFFU); }
+  bool add_self(std::uint32_t leaf) {
+    const FilterRange range = node_range<Filtered>(tree_, 0, leaf);
+    if (Filtered && !may_meet(range, range)) return true;
+    return add_rows(leaf * kLanes, leaf, 0x7FFFU);
+  }
 
   bool finish() { return find_rows() && test_rows() && hits_.flush(); }
 
@@ -116,7 +97,11 @@ class LeafPairs {
     for (unsigned k = 0; k < leaves_; ++k) {
       const QueryBox b(tree_.node[0], second_[k]);
       const Box16 a = load_slabs<3>(tree_.rows.column, row_of(first_[k]));
-      const Mask16 rows = overlap(a, b.low, b.high);
+      Mask16 rows = overlap(a, b.low, b.high);
+      if constexpr (Filtered) {
+        const auto first_row = static_cast<std::uint32_t>(row_of(first_[k]));
+        rows = passing_rows(tree_.rows, first_row, rows, node_range<true>(tree_, 0, second_[k]));
+      }
       if (!add_rows(first_[k] * kLanes, second_[k], rows)) return false;
     }
     sink_.tests += leaves_;
@@ -145,7 +130,7 @@ class LeafPairs {
 
   const TreeView& tree_;
   PairSink& sink_;
-  HitList<HitMode::unordered> hits_;
+  HitList<HitMode::unordered, Filtered> hits_;
   unsigned leaves_ = 0;
   unsigned rows_ = 0;
   std::uint32_t first_[kLeafRoom + kLanes];
@@ -155,22 +140,25 @@ class LeafPairs {
 };
 
 /// All pairs of the leaves `is` of group g with those of group h >= g.
-bool group_pair(const TreeView& tree, std::uint32_t g, std::uint32_t h, Mask16 is, LeafPairs& pairs,
-                PairSink& sink) {
+template <bool Filtered>
+bool group_pair(const TreeView& tree, std::uint32_t g, std::uint32_t h, Mask16 is,
+                LeafPairs<Filtered>& pairs, PairSink& sink) {
   const Box16 h_leaves = load_slabs<3>(tree.node[0], std::size_t{h} * kLanes);
   sink.tests += count(is);
   for (; is != 0; is &= is - 1) {
     const std::uint32_t i = g * kLanes + first(is);
     const QueryBox a(tree.node[0], i);
-    Mask16 js = overlap(h_leaves, a.low, a.high);
+    Mask16 js =
+        open_nodes<Filtered>(tree, 0, h * kLanes, h_leaves, a, node_range<Filtered>(tree, 0, i));
     if (g == h) js &= ~lanes_below(first(is) + 1);
     if (!pairs.add(i, h * kLanes, js)) return false;
   }
   return true;
 }
 
-bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-  LeafPairs pairs(tree, sink);
+template <bool Filtered>
+bool find_self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  LeafPairs<Filtered> pairs(tree, sink);
   for (std::uint32_t g = begin; g < end; ++g) {
     const std::uint32_t last =
         tree.count[0] - g * kLanes < kLanes ? tree.count[0] - g * kLanes : kLanes;
@@ -181,25 +169,37 @@ bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, Pa
     if (tree.levels == 1) continue;
     const Box16 g_leaves = load_slabs<3>(tree.node[0], std::size_t{g} * kLanes);
     const QueryBox g_box(tree.node[1], g);
-    const bool done = walk(tree, g_box, 1, g + 1, sink, [&](std::uint32_t h) {
-      const QueryBox h_box(tree.node[1], h);
+    const FilterRange g_range = node_range<Filtered>(tree, 1, g);
+    const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
       ++sink.tests;
-      const Mask16 is = overlap(g_leaves, h_box.low, h_box.high);
+      const Box16 nodes = load_slabs<3>(tree.node[level], first_node);
+      return open_nodes<Filtered>(tree, level, first_node, nodes, g_box, g_range);
+    };
+    const auto visit = [&](std::uint32_t h) {
+      ++sink.tests;
+      const QueryBox h_box(tree.node[1], h);
+      const Mask16 is = open_nodes<Filtered>(tree, 0, g * kLanes, g_leaves, h_box,
+                                             node_range<Filtered>(tree, 1, h));
       return group_pair(tree, g, h, is, pairs, sink);
-    });
-    if (!done) return false;
+    };
+    if (!walk(tree, 1, g + 1, test, visit)) return false;
   }
   return pairs.finish();
+}
+
+bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  return tree.rows.filter != nullptr ? find_self_pairs<true>(tree, begin, end, sink)
+                                     : find_self_pairs<false>(tree, begin, end, sink);
 }
 
 /// Walks many boxes down the tree together: what is open on a level waits in that level's list, and
 /// a list is worked off, in one long loop, when the next one would not fit or nothing is left
 /// above.
-template <HitMode Mode>
+template <HitMode Mode, bool Filtered>
 class Descent {
  public:
   Descent(const TreeView& tree, const QueryBatch& batch, PairSink& sink)
-      : tree_(tree), batch_(batch), sink_(sink), hits_(tree.rows, batch.id, batch.moved, sink) {}
+      : tree_(tree), batch_(batch), sink_(sink), filters_(batch), hits_(tree.rows, batch, sink) {}
 
   bool run() {
     const std::uint32_t top = tree_.levels - 1;
@@ -216,11 +216,14 @@ class Descent {
  private:
   static constexpr unsigned kRoom = 256;
 
-  /// Opens those of the 16 nodes from `first_node` on that box `row` overlaps.
+  /// Opens those of the 16 nodes from `first_node` on that box `row` overlaps and may meet.
   bool test_nodes(std::uint32_t row, std::uint32_t level, std::uint32_t first_node) {
     if (open_[level] > kRoom - kLanes && !drain(level)) return false;
     const QueryBox q(batch_.column, row);
-    const Mask16 mask = overlap(load_slabs<3>(tree_.node[level], first_node), q.low, q.high);
+    Mask16 mask = overlap(load_slabs<3>(tree_.node[level], first_node), q.low, q.high);
+    if (Filtered && mask != 0) {
+      mask = passing_nodes(tree_.filters[level], first_node, mask, filters_.of(batch_.id[row]));
+    }
     store_unaligned(row_[level] + open_[level], broadcast(row));
     open_[level] += compress_store(mask, count_from(first_node), node_[level] + open_[level]);
     ++sink_.tests;
@@ -247,16 +250,17 @@ class Descent {
   const TreeView& tree_;
   const QueryBatch& batch_;
   PairSink& sink_;
-  HitList<Mode> hits_;
+  const AskingFilters filters_;
+  HitList<Mode, Filtered> hits_;
   unsigned open_[kMaxTreeLevels] = {};
   std::uint32_t row_[kMaxTreeLevels][kRoom + kLanes];
   std::uint32_t node_[kMaxTreeLevels][kRoom + kLanes];
 };
 
 struct Query {
-  template <HitMode Mode>
+  template <HitMode Mode, bool Filtered>
   static bool run(const TreeView& tree, const QueryBatch& batch, PairSink& sink) {
-    return Descent<Mode>(tree, batch, sink).run();
+    return Descent<Mode, Filtered>(tree, batch, sink).run();
   }
 };
 

@@ -74,12 +74,12 @@ std::size_t BoundsNSquared::regular_tasks() const noexcept {
 
 bool BoundsNSquared::run_regular_task(std::size_t task, PairSink& sink) const noexcept {
   const FlatTask range(pool(), task);
-  return kernel_for(volume()).self_pairs(flat_view(row_view(), pool()), range.begin, range.end,
+  return kernel_for(volume()).self_pairs(flat_view(block_filters(), pool()), range.begin, range.end,
                                          sink);
 }
 
 bool BoundsNSquared::query_regular(const QueryBatch& batch, PairSink& sink) const noexcept {
-  return kernel_for(volume()).query(flat_view(row_view(), pool()), batch, sink);
+  return kernel_for(volume()).query(flat_view(block_filters(), pool()), batch, sink);
 }
 
 }  // namespace winnow

@@ -23,9 +23,10 @@ struct ToTheEnd {
   bool operator()(const QueryBox&, std::uint32_t) const { return true; }
 };
 
-bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+template <bool Filtered>
+bool find_self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
   const std::uint32_t cells = grid.axis[0].count;
-  HitList<HitMode::unordered> hits(grid.rows, grid.rows.id, nullptr, sink);
+  HitList<HitMode::unordered, Filtered> hits(grid.rows, sink);
   RunList list(grid.rows, grid.rows.column, hits, ToTheEnd{}, sink);
   for (std::uint32_t line = begin; line < end; ++line) {
     const std::uint32_t* start = grid.start + std::size_t{line} * cells;
@@ -51,10 +52,15 @@ bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, Pa
   return list.finish() && hits.flush();
 }
 
+bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  return grid.rows.filter != nullptr ? find_self_pairs<true>(grid, begin, end, sink)
+                                     : find_self_pairs<false>(grid, begin, end, sink);
+}
+
 struct Query {
-  template <HitMode Mode>
+  template <HitMode Mode, bool Filtered>
   static bool run(const GridView& grid, const QueryBatch& batch, PairSink& sink) {
-    HitList<Mode> hits(grid.rows, batch.id, batch.moved, sink);
+    HitList<Mode, Filtered> hits(grid.rows, batch, sink);
     RunList list(grid.rows, batch.column, hits, ToTheEnd{}, sink);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;

@@ -29,8 +29,9 @@ struct FlatTask {
   static std::uint32_t bound(const BoundsPool& pool, std::size_t task) noexcept;
 };
 
-[[nodiscard]] inline FlatView flat_view(const RowView& rows, const BoundsPool& pool) noexcept {
-  return {rows, static_cast<std::uint32_t>(pool.rows())};
+/// `blocks` are the filters of the rows' blocks.
+[[nodiscard]] inline FlatView flat_view(const TreeView& blocks, const BoundsPool& pool) noexcept {
+  return {blocks.rows, static_cast<std::uint32_t>(pool.rows()), blocks};
 }
 
 }  // namespace winnow

@@ -1,5 +1,6 @@
 #include <winnow/partitions/flat_rows.kernel.h>
 #include <winnow/partitions/hits.wide.h>
+#include <winnow/partitions/tree_walk.wide.h>
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -126,51 +127,96 @@ struct SphereTest {
   }
 };
 
-template <typename Test>
-bool self_pairs(const FlatView& view, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-  const std::uint32_t blocks = (view.row_count + kLanes - 1) / kLanes;
-  for (std::uint32_t a = begin; a < end; ++a) {
-    const std::uint32_t first_row = a * kLanes;
-    const std::uint32_t rows =
-        view.row_count - first_row < kLanes ? view.row_count - first_row : kLanes;
-    for (std::uint32_t b = a; b < blocks; ++b) {
-      if (!has_room(sink)) return false;
-      const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
-      const Uint16 ids = load_unaligned(view.rows.id + std::size_t{b} * kLanes);
-      for (std::uint32_t i = 0; i < rows; ++i) {
-        if (view.rows.id[first_row + i] == kNoId) continue;
-        Mask16 hits = Test::test(block, Test::own(view.rows, first_row + i));
-        if (a == b) hits &= ~lanes_below(i + 1);
-        if (hits != 0) {
-          sink.cursor += 2 * emit_pairs<true>(hits, ids, view.rows.id[first_row + i], sink.cursor);
-        }
-      }
-      sink.tests += rows;
+/// Calls visit(block) for every block from `from` on that may hold something that `range` may meet.
+template <bool Filtered, typename Visit>
+bool for_blocks(const FlatView& view, std::uint32_t from, const FilterRange& range, Visit&& visit) {
+  if (!Filtered || view.blocks.levels == 0) {
+    const std::uint32_t blocks = (view.row_count + kLanes - 1) / kLanes;
+    for (std::uint32_t b = from; b < blocks; ++b) {
+      if (!visit(b)) return false;
     }
+    return true;
+  }
+  const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
+    return passing_nodes(view.blocks.filters[level], first_node, 0xFFFFU, range);
+  };
+  return walk(view.blocks, 0, from, test, visit);
+}
+
+/// All pairs of rows of block a with rows of block b >= a.
+template <typename Test, bool Filtered>
+bool block_pair(const FlatView& view, std::uint32_t a, std::uint32_t b, PairSink& sink) {
+  if (!has_room(sink)) return false;
+  const std::uint32_t first_row = a * kLanes;
+  const std::uint32_t rows =
+      view.row_count - first_row < kLanes ? view.row_count - first_row : kLanes;
+  const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
+  const Uint16 ids = load_unaligned(view.rows.id + std::size_t{b} * kLanes);
+  FilterRange b_range{};
+  if constexpr (Filtered) b_range = range_of(view.blocks.filters[0], b);
+  std::uint32_t left_out = 0;
+  for (std::uint32_t i = 0; i < rows; ++i) {
+    const std::uint32_t id = view.rows.id[first_row + i];
+    if (id == kNoId) continue;
+    if (Filtered && !may_meet(range_of(view.rows.filter[id]), b_range)) {
+      ++left_out;
+      continue;
+    }
+    Mask16 hits = Test::test(block, Test::own(view.rows, first_row + i));
+    if (a == b) hits &= ~lanes_below(i + 1);
+    if constexpr (Filtered) {
+      hits = passing_rows(view.rows, b * kLanes, hits, view.rows.filter[id]);
+    }
+    if (hits != 0) sink.cursor += 2 * emit_pairs<true>(hits, ids, id, sink.cursor);
+  }
+  sink.tests += rows - left_out;
+  return true;
+}
+
+template <typename Test, bool Filtered>
+bool find_self_pairs(const FlatView& view, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  for (std::uint32_t a = begin; a < end; ++a) {
+    const FilterRange range = Filtered ? range_of(view.blocks.filters[0], a) : FilterRange{};
+    const bool done = for_blocks<Filtered>(view, a, range, [&](std::uint32_t b) {
+      return block_pair<Test, Filtered>(view, a, b, sink);
+    });
+    if (!done) return false;
   }
   return true;
 }
 
 template <typename Test>
+bool self_pairs(const FlatView& view, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  return view.rows.filter != nullptr ? find_self_pairs<Test, true>(view, begin, end, sink)
+                                     : find_self_pairs<Test, false>(view, begin, end, sink);
+}
+
+template <typename Test>
 struct Query {
-  template <HitMode Mode>
+  template <HitMode Mode, bool Filtered>
   static bool run(const FlatView& view, const QueryBatch& batch, PairSink& sink) {
-    const std::uint32_t blocks = (view.row_count + kLanes - 1) / kLanes;
+    const AskingFilters filters(batch);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
       if (batch.id[row] == kNoId) continue;
       const auto q = batch.is_box ? Test::box(batch, row) : Test::same(batch, row);
-      for (std::uint32_t b = 0; b < blocks; ++b) {
+      const FilterRange range = Filtered ? filters.of(batch.id[row]) : FilterRange{};
+      std::uint32_t tests = 0;
+      const bool done = for_blocks<Filtered>(view, 0, range, [&](std::uint32_t b) {
         const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
+        ++tests;
         Mask16 hits = batch.is_box ? Test::test_box(block, q) : Test::test(block, q);
         if constexpr (Mode == HitMode::moved) {
           hits &= reported_lanes(batch.moved, row, b * kLanes);
         }
-        if (hits == 0) continue;
+        if constexpr (Filtered) hits = passing_rows(view.rows, b * kLanes, hits, range);
+        if (hits == 0) return true;
         if (!has_room(sink)) return false;
         report<Mode>(hits, view.rows.id + std::size_t{b} * kLanes, batch.id[row], sink);
-      }
-      sink.tests += blocks;
+        return true;
+      });
+      sink.tests += tests;
+      if (!done) return false;
     }
     return true;
   }

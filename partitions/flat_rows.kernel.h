@@ -1,16 +1,17 @@
 #pragma once
 
-#include <winnow/partitions/pair_sink.h>
+#include <winnow/partitions/block_tree.kernel.h>
 #include <winnow/simd/kernels.h>
 
 #include <cstdint>
 
 namespace winnow {
 
-/// Rows without any structure.
+/// Rows without any structure but, where filters are in use, what blocks hold of them.
 struct FlatView {
   RowView rows;
   std::uint32_t row_count = 0;
+  TreeView blocks{};  ///< without boxes; no levels if filters are not in use
 };
 
 /// Kernels that test every row against every row, for one kind of volume.

@@ -2,6 +2,7 @@
 
 // What kernels do with a mask of hits.
 
+#include <winnow/partitions/filters.wide.h>
 #include <winnow/partitions/pair_sink.h>
 #include <winnow/simd/compress.h>
 
@@ -31,6 +32,22 @@ inline Mask16 reported_lanes(const std::uint64_t* moved, std::uint32_t r, std::u
   return ~(bits & up_to_r);
 }
 
+/// Filters of those who ask, by their id.
+struct AskingFilters {
+  const ObjectFilter* filter;
+  bool one_for_all;
+
+  explicit AskingFilters(const RowView& rows) : filter(rows.filter), one_for_all(false) {}
+  explicit AskingFilters(const QueryBatch& batch)
+      : filter(batch.filter), one_for_all(batch.one_filter) {}
+
+  /// `id` is not that of an empty row.
+  [[nodiscard]] FilterRange of(std::uint32_t id) const {
+    if (filter == nullptr) return range_of(ObjectFilter{});
+    return range_of(filter[one_for_all ? 0 : id]);
+  }
+};
+
 /// Reports the hits `mask` among the ids at `ids` for query q; there must be room.
 template <HitMode Mode>
 inline void report(Mask16 mask, const std::uint32_t* ids, std::uint32_t q, PairSink& sink) {
@@ -47,31 +64,39 @@ inline void report(Mask16 mask, const std::uint32_t* ids, std::uint32_t q, PairS
   }
 }
 
-/// Calls Kernel::run<Mode>(view, batch, sink) with the batch's mode as a constant.
-template <typename Kernel, typename View>
+/// Calls Kernel::run<Mode, Filtered>(view, batch, sink) with the batch's mode, and whether filters
+/// are in use, as constants.
+template <typename Kernel, bool Filtered, typename View>
 inline bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink) {
   switch (batch.mode) {
     case HitMode::unordered:
-      return Kernel::template run<HitMode::unordered>(view, batch, sink);
+      return Kernel::template run<HitMode::unordered, Filtered>(view, batch, sink);
     case HitMode::query_first:
-      return Kernel::template run<HitMode::query_first>(view, batch, sink);
+      return Kernel::template run<HitMode::query_first, Filtered>(view, batch, sink);
     case HitMode::query_second:
-      return Kernel::template run<HitMode::query_second>(view, batch, sink);
+      return Kernel::template run<HitMode::query_second, Filtered>(view, batch, sink);
     case HitMode::moved:
-      return Kernel::template run<HitMode::moved>(view, batch, sink);
+      return Kernel::template run<HitMode::moved, Filtered>(view, batch, sink);
   }
   return true;
 }
+template <typename Kernel, typename View>
+inline bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink) {
+  return view.rows.filter != nullptr || batch.filter != nullptr
+             ? with_mode<Kernel, true>(view, batch, sink)
+             : with_mode<Kernel, false>(view, batch, sink);
+}
 
 /// Hits on their way to the sink. Whether a test hits is a coin toss to the branch predictor: tests
-/// append without a branch, and pairs are written in one long loop.
-template <HitMode Mode>
+/// append without a branch, and filters are looked up and pairs written in one long loop.
+template <HitMode Mode, bool Filtered>
 class HitList {
  public:
-  /// `query_id` gives the ids of the rows that ask; `moved` is for HitMode::moved.
-  HitList(const RowView& rows, const std::uint32_t* query_id, const std::uint64_t* moved,
-          PairSink& sink)
-      : rows_(rows), query_id_(query_id), moved_(moved), sink_(sink) {}
+  HitList(const RowView& rows, const QueryBatch& batch, PairSink& sink)
+      : rows_(rows), query_id_(batch.id), moved_(batch.moved), filters_(batch), sink_(sink) {}
+  /// For rows that ask about each other.
+  HitList(const RowView& rows, PairSink& sink)
+      : rows_(rows), query_id_(rows.id), moved_(nullptr), filters_(rows), sink_(sink) {}
 
   /// Notes that row `r` hits the lanes `mask` of the rows from `at` on; does nothing for no lanes.
   /// There must be room.
@@ -89,8 +114,14 @@ class HitList {
   /// Writes everything to the sink.
   bool flush() {
     for (unsigned i = 0; i < size_; ++i) {
+      Mask16 mask = mask_[i];
+      const std::uint32_t q = query_id_[row_[i]];
+      if constexpr (Filtered) {
+        mask = passing_rows(rows_, at_[i], mask, filters_.of(q));
+        if (mask == 0) continue;
+      }
       if (!has_room(sink_)) return false;
-      report<Mode>(mask_[i], rows_.id + at_[i], query_id_[row_[i]], sink_);
+      report<Mode>(mask, rows_.id + at_[i], q, sink_);
     }
     size_ = 0;
     return true;
@@ -102,6 +133,7 @@ class HitList {
   const RowView& rows_;
   const std::uint32_t* query_id_;
   const std::uint64_t* moved_;
+  const AskingFilters filters_;
   PairSink& sink_;
   unsigned size_ = 0;
   std::uint32_t row_[kRoom];
@@ -112,11 +144,11 @@ class HitList {
 /// Runs of rows to be tested, each against one box. How long a run is is as unpredictable as a hit:
 /// one step of 16 rows of every run is made in a long loop, and runs that go on are kept for the
 /// next round. `GoesOn(q, at)` says whether box q needs the rows from `at` on.
-template <HitMode Mode, typename GoesOn>
+template <HitMode Mode, bool Filtered, typename GoesOn>
 class RunList {
  public:
   /// `query` holds the columns of the boxes that ask.
-  RunList(const RowView& rows, const float* const* query, HitList<Mode>& hits,
+  RunList(const RowView& rows, const float* const* query, HitList<Mode, Filtered>& hits,
           const GoesOn& goes_on, PairSink& sink)
       : rows_(rows), query_(query), hits_(hits), goes_on_(goes_on), sink_(sink) {}
 
@@ -158,7 +190,7 @@ class RunList {
 
   const RowView& rows_;
   const float* const* query_;
-  HitList<Mode>& hits_;
+  HitList<Mode, Filtered>& hits_;
   const GoesOn goes_on_;
   PairSink& sink_;
   unsigned size_ = 0;

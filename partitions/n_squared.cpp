@@ -12,12 +12,12 @@ std::size_t NSquared::regular_tasks() const noexcept {
 
 bool NSquared::run_regular_task(std::size_t task, PairSink& sink) const noexcept {
   const FlatTask range(pool(), task);
-  return flat_kernels().untested.self_pairs(flat_view(row_view(), pool()), range.begin, range.end,
-                                            sink);
+  return flat_kernels().untested.self_pairs(flat_view(block_filters(), pool()), range.begin,
+                                            range.end, sink);
 }
 
 bool NSquared::query_regular(const QueryBatch& batch, PairSink& sink) const noexcept {
-  return flat_kernels().untested.query(flat_view(row_view(), pool()), batch, sink);
+  return flat_kernels().untested.query(flat_view(block_filters(), pool()), batch, sink);
 }
 
 }  // namespace winnow

@@ -43,6 +43,7 @@ RowPartition::RowPartition(const PartitionOptions& options, Volume volume)
       keys_(options.memory),
       filters_(options.memory),
       tree_(options.memory),
+      block_filters_(options.memory),
       row_tree_(options.memory),
       stale_(options.memory),
       moved_(options.memory),
@@ -186,6 +187,7 @@ void RowPartition::release_memory() noexcept {
   filters_.release();
   tree_.release();
   row_tree_.release();
+  block_filters_.release();
   stale_.release();
   moved_.release();
   keys_.release_if_unused();
@@ -238,6 +240,7 @@ Footprint RowPartition::footprint() const noexcept {
   result.keys = keys_.key_bytes();
   result.client_data = keys_.client_data_bytes();
   result.structure = tree_.bytes();
+  result.structure += block_filters_.bytes();
   result.structure += filters_.bytes();
   result.structure += row_tree_.bytes();
   result.structure += stale_.bytes();

@@ -128,6 +128,8 @@ class RowPartition : public Partition {
   Status update_from(const Source& source, std::size_t count, std::span<const Key> keys);
 
   [[nodiscard]] RowView row_view() const noexcept;
+  /// Of a flat partition: the rows and what their blocks hold of filters.
+  [[nodiscard]] TreeView block_filters() const noexcept { return block_filters_.view(row_view()); }
   [[nodiscard]] const BoundsPool& pool() const noexcept { return pool_; }
   [[nodiscard]] const Execution& execution() const noexcept { return execution_; }
   [[nodiscard]] std::size_t regular_rows() const noexcept { return regular_rows_; }
@@ -146,12 +148,17 @@ class RowPartition : public Partition {
   [[nodiscard]] bool needs_build() const noexcept;
   /// Rows that may stand behind the built ones before a build is due.
   [[nodiscard]] std::size_t tail_limit() const noexcept { return keys_.size() / 16 + 64; }
+  [[nodiscard]] bool wants_grouping() const noexcept;
   Status build();
+  bool append_rest() noexcept;
+  Status build_flat();
+  bool sort_by_place(std::span<std::uint32_t> rows, const Execution& execution);
   Status absorb_changes();
   void collect_misfits(std::size_t limit) noexcept;
   bool move_to_tail(std::span<const std::uint32_t> rows) noexcept;
   bool sort_tail() noexcept;
   bool refit_tree() noexcept;
+  bool refit(BlockTree& tree, std::size_t first, BlockTree::Nodes nodes) noexcept;
   [[nodiscard]] BlockTree::Nodes node_content() const noexcept;
   void forward_changes() noexcept;
 
@@ -180,6 +187,7 @@ class RowPartition : public Partition {
   KeyTable keys_;
   FilterTable filters_;
   BlockTree tree_;
+  BlockTree block_filters_;  // of flat partitions, whose rows are in no spatial order
 
   // Over the regular rows, for all queries but pairs: made when the first one comes.
   mutable BlockTree row_tree_;

@@ -106,6 +106,7 @@ bool RowPartition::run_self_task(const SelfTasks& tasks, std::size_t task,
   QueryBatch batch;
   std::copy_n(rows.column, 6, batch.column);
   batch.id = rows.id;
+  batch.filter = rows.filter;
   batch.begin = static_cast<std::uint32_t>(begin);
   batch.end = static_cast<std::uint32_t>(std::min(pool_.rows(), begin + kQueriesPerTask));
   return query_regular(batch, sink);
@@ -135,6 +136,7 @@ Status RowPartition::incremental_self_pairs(PairBuffer& out) const {
     std::copy_n(row_view().column, kMaxColumns, batch.column);
     batch.is_box = pool_.volume() == Volume::aabb;
     batch.id = pool_.ids();
+    batch.filter = filters_.data();
     batch.rows = list_.data();
     batch.begin = static_cast<std::uint32_t>(task * kQueriesPerTask);
     batch.end = static_cast<std::uint32_t>(std::min(list_.size(), (task + 1) * kQueriesPerTask));
@@ -187,6 +189,7 @@ Status RowPartition::ask(const RowPartition& other, HitMode mode, PairBuffer& ou
 QueryBatch RowPartition::box_batch(std::size_t begin, std::size_t end,
                                    std::span<float> scratch) const noexcept {
   QueryBatch batch;
+  batch.filter = filters_.data();
   if (pool_.volume() != Volume::sphere) {
     const std::size_t slabs = pool_.columns() / 2;
     for (std::size_t s = 0; s < 3; ++s) {

@@ -1,11 +1,13 @@
 // RowPartition: how the structure follows the rows.
 
 #include <winnow/partitions/bitmap_sort.h>
+#include <winnow/partitions/environment_order.h>
 #include <winnow/partitions/morton_order.h>
 #include <winnow/partitions/row_mutation.h>
 #include <winnow/partitions/row_partition.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace winnow {
 namespace {
@@ -48,8 +50,16 @@ bool RowPartition::needs_build() const noexcept {
   const std::size_t tail = pool_.rows() > built_rows_ ? pool_.rows() - built_rows_ : 0;
   const std::size_t holes = pool_.rows() - live;
   if (holes > live / 4 + built_holes_ + 64) return true;
+  if (filters_.has_environments() && wants_grouping()) return true;
   if (is_flat()) return false;
   return tail > tail_limit() || excess_.load(std::memory_order_relaxed) > kBuildPrice * (live + 64);
+}
+
+// Rows of many environments are in no order that keeps them apart: in cells, new, or moved from one
+// environment to another.
+bool RowPartition::wants_grouping() const noexcept {
+  if (!is_flat()) return regular_rows_ != 0 || filters_.changed_environments() > tail_limit();
+  return pool_.rows() - sorted_rows_ + filters_.changed_environments() > tail_limit();
 }
 
 bool RowPartition::plan(Column<std::uint32_t>&, Column<std::uint32_t>& rest) {
@@ -60,36 +70,31 @@ bool RowPartition::plan(Column<std::uint32_t>&, Column<std::uint32_t>& rest) {
 }
 
 Status RowPartition::build() {
-  if (is_flat()) {
-    compact_rows();
-    pool_.pad();
-    regular_rows_ = pool_.rows();
-    built_ = true;
-    ++builds_;
-    return Status::ok;
-  }
+  if (is_flat()) return build_flat();
   // The rows are untouched until everything that can fail is done; the structure may be half
   // planned.
   built_ = false;
   const std::size_t room = pool_.rows() + 4 * kBlock;
   order_.clear();
   list_.clear();
-  if (!order_.grow(room) || !list_.grow(room) || !plan(order_, list_)) return Status::out_of_memory;
+  if (!order_.grow(room) || !list_.grow(room)) return Status::out_of_memory;
+  // Cells of many worlds would lie on top of each other, and a cell's objects be tested against
+  // those of all of them: the tree, whose nodes know their environments, keeps them apart.
+  const bool planned =
+      filters_.has_environments() ? RowPartition::plan(order_, list_) : plan(order_, list_);
+  if (!planned) return Status::out_of_memory;
   const std::size_t regular = order_.size();
   const std::size_t rest = list_.size();
-  if (!sort_by_morton(pool_, {list_.data(), rest}, sort_scratch_, execution_for(rest))) {
-    return Status::out_of_memory;
-  }
+  if (!sort_by_place({list_.data(), rest}, execution_for(rest))) return Status::out_of_memory;
   // The tree's blocks begin behind the regular ones: no block belongs to both.
   while (order_.size() % kBlock != 0) (void)order_.push_back(kNoObject);
   const std::size_t first_block = order_.size() / kBlock;
-  if (!order_.resize(order_.size() + rest)) return Status::out_of_memory;
-  std::copy_n(list_.data(), rest, order_.end() - rest);
+  if (!append_rest()) return Status::out_of_memory;
   const std::size_t rows = order_.size();
   if (!pool_.reserve_exact(rows) || !spare_.reserve(pool_.capacity() + 2 * kBlock)) {
     return Status::out_of_memory;
   }
-  if (!tree_.cover(first_block, (rest + kBlock - 1) / kBlock, node_content())) {
+  if (!tree_.cover(first_block, (rows + kBlock - 1) / kBlock - first_block, node_content())) {
     return Status::out_of_memory;
   }
 
@@ -108,15 +113,62 @@ Status RowPartition::build() {
   tree_.refit_all(row_view(), execution);
   built_ = true;
   ++builds_;
+  filters_.note_build();
   full_base_ = moved_base_ = excess_ = 0;
   return Status::ok;
+}
+
+bool RowPartition::append_rest() noexcept {
+  const std::span<const std::uint32_t> rest(list_.data(), list_.size());
+  if (filters_.has_environments()) {
+    return append_environments(pool_, filters_.data(), rest, order_);
+  }
+  if (!order_.resize(order_.size() + rest.size())) return false;
+  std::copy(rest.begin(), rest.end(), order_.end() - rest.size());
+  return true;
+}
+
+Status RowPartition::build_flat() {
+  compact_rows();
+  pool_.pad();
+  const std::size_t rows = pool_.rows();
+  regular_rows_ = rows;
+  sorted_rows_ = 0;
+  if (filters_.has_environments()) {
+    if (!order_.resize(rows) || !spare_.reserve(pool_.capacity() + 2 * kBlock)) {
+      return Status::out_of_memory;
+    }
+    std::iota(order_.begin(), order_.end(), 0U);
+    const Execution execution = execution_for(rows);
+    if (!sort_by_environment(pool_, filters_.data(), {order_.data(), rows}, sort_scratch_,
+                             execution)) {
+      return Status::out_of_memory;
+    }
+    pool_.reorder({order_.data(), rows}, spare_, execution);
+    for (std::size_t row = 0; row < rows; ++row) {
+      keys_.set_row(pool_.ids()[row], static_cast<std::uint32_t>(row));
+    }
+    sorted_rows_ = rows;
+  }
+  tail_changed_ = true;
+  if (!refit_tree()) return Status::out_of_memory;
+  built_ = true;
+  ++builds_;
+  filters_.note_build();
+  return Status::ok;
+}
+
+bool RowPartition::sort_by_place(std::span<std::uint32_t> rows, const Execution& execution) {
+  return filters_.has_environments() ? sort_by_environment_and_morton(pool_, filters_.data(), rows,
+                                                                      sort_scratch_, execution)
+                                     : sort_by_morton(pool_, rows, sort_scratch_, execution);
 }
 
 Status RowPartition::absorb_changes() {
   ++refits_;
   if (is_flat()) {
     regular_rows_ = pool_.rows();
-    return Status::ok;
+    return refit_tree() ? Status::ok : Status::out_of_memory;
   }
   const std::size_t limit = tail_limit();
   list_.clear();
@@ -169,8 +221,7 @@ bool RowPartition::sort_tail() noexcept {
     if (pool_.ids()[row] != kNoObject) (void)list_.push_back(static_cast<std::uint32_t>(row));
   }
   const std::span<std::uint32_t> rows(list_.data(), list_.size());
-  if (!sort_by_morton(pool_, rows, sort_scratch_, Execution::serial()) ||
-      !spare_.grow(rows.size() + 2 * kBlock)) {
+  if (!sort_by_place(rows, Execution::serial()) || !spare_.grow(rows.size() + 2 * kBlock)) {
     return false;
   }
   pool_.reorder_tail(begin, rows, spare_);
@@ -187,17 +238,22 @@ BlockTree::Nodes RowPartition::node_content() const noexcept {
 }
 
 bool RowPartition::refit_tree() noexcept {
-  const std::size_t first = (regular_rows_ + kBlock - 1) / kBlock;
+  if (!is_flat()) return refit(tree_, (regular_rows_ + kBlock - 1) / kBlock, node_content());
+  if (filters_.in_use()) return refit(block_filters_, 0, BlockTree::Nodes::filters);
+  return block_filters_.cover(0, 0);
+}
+
+bool RowPartition::refit(BlockTree& tree, std::size_t first, BlockTree::Nodes nodes) noexcept {
   const std::size_t blocks = pool_.blocks() - first;
   const RowView rows = row_view();
   const bool reshape =
-      blocks != tree_.blocks() || tree_.has_filters() != (filters_.in_use() && blocks != 0);
+      blocks != tree.blocks() || tree.has_filters() != (filters_.in_use() && blocks != 0);
   if (reshape || tail_changed_ || stale_.all()) {
-    if (reshape && !tree_.cover(first, blocks, node_content())) {
+    if (reshape && !tree.cover(first, blocks, nodes)) {
       built_ = false;
       return false;
     }
-    tree_.refit_all(rows, execution_for(pool_.rows()));
+    tree.refit_all(rows, execution_for(pool_.rows()));
     tail_changed_ = false;
     return true;
   }
@@ -209,7 +265,7 @@ bool RowPartition::refit_tree() noexcept {
     if (block >= first) (void)list_.push_back(static_cast<std::uint32_t>(block - first));
   }
   const std::size_t leaves = sort_unique({list_.data(), list_.size()}, blocks, words_);
-  tree_.refit(rows, {list_.data(), leaves});
+  tree.refit(rows, {list_.data(), leaves});
   return true;
 }
 

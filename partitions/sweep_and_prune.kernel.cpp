@@ -41,8 +41,10 @@ std::uint32_t first_reaching(const StripView& strips, std::uint32_t at, std::uin
   return at;
 }
 
-bool self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-  HitList<HitMode::unordered> hits(strips.rows, strips.rows.id, nullptr, sink);
+template <bool Filtered>
+bool find_self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end,
+                     PairSink& sink) {
+  HitList<HitMode::unordered, Filtered> hits(strips.rows, sink);
   RunList sweeps(strips.rows, strips.rows.column, hits, KeyStop{strips}, sink);
   for (std::uint32_t strip = begin; strip < end; ++strip) {
     const std::uint32_t last = strips.start[strip + 1];
@@ -68,10 +70,15 @@ bool self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end,
   return sweeps.finish() && hits.flush();
 }
 
+bool self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  return strips.rows.filter != nullptr ? find_self_pairs<true>(strips, begin, end, sink)
+                                       : find_self_pairs<false>(strips, begin, end, sink);
+}
+
 struct Query {
-  template <HitMode Mode>
+  template <HitMode Mode, bool Filtered>
   static bool run(const StripView& strips, const QueryBatch& batch, PairSink& sink) {
-    HitList<Mode> hits(strips.rows, batch.id, batch.moved, sink);
+    HitList<Mode, Filtered> hits(strips.rows, batch, sink);
     RunList sweeps(strips.rows, batch.column, hits, KeyStop{strips}, sink);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;

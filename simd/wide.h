@@ -291,9 +291,11 @@ struct Slabs16 {
 };
 using Box16 = Slabs16<3>;
 
-/// Rows [row, row + 16) of columns; `row` is a multiple of 16.
+/// Rows [row, row + 16) of columns; `row` is a multiple of 16. A call would pass the boxes through
+/// memory, and compilers stop inlining in files that instantiate a kernel many times.
 template <int Slabs>
-inline Slabs16<Slabs> load_slabs(const float* const* columns, std::size_t row) {
+[[gnu::always_inline]] inline Slabs16<Slabs> load_slabs(const float* const* columns,
+                                                        std::size_t row) {
   Slabs16<Slabs> r;
   for (int s = 0; s < Slabs; ++s) {
     r.low[s] = load(columns[s] + row);
@@ -302,7 +304,8 @@ inline Slabs16<Slabs> load_slabs(const float* const* columns, std::size_t row) {
   return r;
 }
 template <int Slabs>
-inline Slabs16<Slabs> load_slabs_unaligned(const float* const* columns, std::size_t row) {
+[[gnu::always_inline]] inline Slabs16<Slabs> load_slabs_unaligned(const float* const* columns,
+                                                                  std::size_t row) {
   Slabs16<Slabs> r;
   for (int s = 0; s < Slabs; ++s) {
     r.low[s] = load_unaligned(columns[s] + row);
@@ -343,7 +346,8 @@ inline Mask16 test_bits(const std::uint32_t* words, const Uint16& index) {
 
 /// Which of 16 volumes overlap the one whose ends are low[s], high[s]; closed.
 template <int Slabs>
-inline Mask16 overlap(const Slabs16<Slabs>& v, const float* low, const float* high) {
+[[gnu::always_inline]] inline Mask16 overlap(const Slabs16<Slabs>& v, const float* low,
+                                             const float* high) {
 #if defined(WINNOW_ISA_IS_avx512)
   // Each compare masks the next: saves the `and` of masks, which has one port only.
   __mmask16 m = 0xFFFF;

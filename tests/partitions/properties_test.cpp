@@ -13,16 +13,27 @@ namespace winnow::test {
 namespace {
 
 struct Step {
-  enum Kind { insert, insert_many, update, update_many, remove, remove_many, clear, query, cross };
+  enum Kind {
+    insert,
+    insert_many,
+    update,
+    update_many,
+    remove,
+    remove_many,
+    filter,
+    clear,
+    query,
+    cross
+  };
   int kind = query;
   std::uint64_t choice = 0;  // which objects, how many
   std::vector<Aabb> boxes;
 };
 
 std::ostream& operator<<(std::ostream& out, const Step& step) {
-  static constexpr const char* kNames[] = {"insert",      "insert_many", "update",
-                                           "update_many", "remove",      "remove_many",
-                                           "clear",       "query",       "cross"};
+  static constexpr const char* kNames[] = {"insert", "insert_many", "update", "update_many",
+                                           "remove", "remove_many", "filter", "clear",
+                                           "query",  "cross"};
   out << kNames[step.kind] << " " << step.choice;
   for (const Aabb& box : step.boxes) {
     out << " [" << box.min.transpose() << " .. " << box.max.transpose() << "]";
@@ -58,6 +69,7 @@ rc::Gen<Step> steps() {
                                                                {4, Step::update_many},
                                                                {3, Step::remove},
                                                                {2, Step::remove_many},
+                                                               {2, Step::filter},
                                                                {1, Step::clear},
                                                                {5, Step::query},
                                                                {1, Step::cross}})),
@@ -76,6 +88,15 @@ std::vector<Key> some_keys(const World& world, std::uint64_t choice, std::size_t
   std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) { return a.id < b.id; });
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   return keys;
+}
+
+// Now and then the default, or one that meets nothing; few layers and environments, so that they
+// are shared.
+ObjectFilter some_filter(std::uint64_t choice) {
+  if (choice % 5 == 0) return {};
+  const auto bits = static_cast<std::uint32_t>(choice);
+  const std::uint32_t environment = bits / 64 % 4 == 3 ? kEveryEnvironment : bits / 64 % 4;
+  return {1U << bits % 3, bits / 8 % 8, environment};
 }
 
 void take(const Step& step, World& world, const World& other, PairBuffer& buffer) {
@@ -103,6 +124,12 @@ void take(const Step& step, World& world, const World& other, PairBuffer& buffer
     case Step::remove_many:
       world.remove(some_keys(world, step.choice, 4 * count));
       break;
+    case Step::filter: {
+      const std::vector<Key> keys = some_keys(world, step.choice, 3 * count);
+      const std::vector<ObjectFilter> filters(keys.size(), some_filter(step.choice));
+      world.set_filter(keys, filters);
+      break;
+    }
     case Step::clear:
       if (step.choice % 4 == 0) world.clear();
       break;

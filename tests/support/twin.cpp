@@ -4,12 +4,19 @@
 #include <cstddef>
 
 namespace winnow::test {
+namespace {
+
+bool pair_up(const Object& a, const Object& b) {
+  return a.box.overlaps(b.box) && may_meet(a.filter, b.filter);
+}
+
+}  // namespace
 
 std::vector<Pair> brute_force_pairs(std::span<const Object> objects) {
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     for (std::size_t j = i + 1; j < objects.size(); ++j) {
-      if (!objects[i].box.overlaps(objects[j].box)) continue;
+      if (!pair_up(objects[i], objects[j])) continue;
       const auto [first, second] = std::minmax(objects[i].id, objects[j].id);
       pairs.push_back({first, second});
     }
@@ -26,7 +33,7 @@ std::vector<Pair> swept_pairs(std::span<const Object> objects) {
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     for (std::size_t j = i + 1; j < sorted.size(); ++j) {
       if (sorted[j].box.min.x() > sorted[i].box.max.x()) break;
-      if (!sorted[i].box.overlaps(sorted[j].box)) continue;
+      if (!pair_up(sorted[i], sorted[j])) continue;
       const auto [first, second] = std::minmax(sorted[i].id, sorted[j].id);
       pairs.push_back({first, second});
     }
@@ -50,7 +57,7 @@ std::vector<Pair> cross_pairs(std::span<const Object> a, std::span<const Object>
   std::vector<Pair> pairs;
   for (const Object& x : a) {
     for (const Object& y : b) {
-      if (x.box.overlaps(y.box)) pairs.push_back({x.id, y.id});
+      if (pair_up(x, y)) pairs.push_back({x.id, y.id});
     }
   }
   std::sort(pairs.begin(), pairs.end());

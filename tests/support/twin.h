@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
+#include <winnow/core/filter.h>
 #include <winnow/core/pair_buffer.h>
 
 #include <ostream>
@@ -22,9 +23,10 @@ namespace winnow::test {
 struct Object {
   ObjectId id = kNoObject;
   Aabb box;
+  ObjectFilter filter{};
 };
 
-/// The slow obvious twin: every pair tested, sorted.
+/// The slow obvious twin: every pair tested and let pass by the objects' filters, sorted.
 [[nodiscard]] std::vector<Pair> brute_force_pairs(std::span<const Object> objects);
 
 /// The same set by sorting on x first, for scenes too large for the slow twin; sorted.

@@ -67,7 +67,7 @@ std::vector<Key> World::insert(std::span<const Aabb> boxes, std::span<const Clie
   EXPECT_EQ(status, Status::ok);
   for (std::size_t i = 0; i < keys.size(); ++i) {
     EXPECT_FALSE(entries_.contains(keys[i].id)) << "a live object's id was given out again";
-    entries_[keys[i].id] = {keys[i], boxes[i], data.empty() ? 0 : data[i]};
+    entries_[keys[i].id] = {keys[i], boxes[i], data.empty() ? 0 : data[i], {}};
   }
   return keys;
 }
@@ -76,7 +76,7 @@ Key World::insert(const Aabb& box, ClientData data) {
   Key key;
   EXPECT_EQ(partition_->insert(box, data, key), Status::ok);
   EXPECT_FALSE(entries_.contains(key.id)) << "a live object's id was given out again";
-  entries_[key.id] = {key, box, data};
+  entries_[key.id] = {key, box, data, {}};
   return key;
 }
 
@@ -100,6 +100,16 @@ void World::remove(std::span<const Key> keys) {
 void World::remove(Key key) {
   EXPECT_EQ(partition_->remove(key), Status::ok);
   entries_.erase(key.id);
+}
+
+void World::set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters) {
+  EXPECT_EQ(partition_->set_filter(keys, filters), Status::ok);
+  for (std::size_t i = 0; i < keys.size(); ++i) entries_.at(keys[i].id).filter = filters[i];
+}
+
+void World::set_filter(Key key, const ObjectFilter& filter) {
+  EXPECT_EQ(partition_->set_filter(key, filter), Status::ok);
+  entries_.at(key.id).filter = filter;
 }
 
 void World::clear() {
@@ -128,7 +138,17 @@ testing::AssertionResult World::agrees(PairBuffer& buffer, const PairOptions& op
            << "statistics say " << s.objects << " objects and " << s.last_pairs << " pairs, not "
            << entries_.size() << " and " << buffer.size();
   }
+  if (const auto meet = may_all_meet(buffer.pairs()); !meet) return meet;
   return right_pairs(buffer.pairs(), true_pairs(objects()), partition_->is_exact());
+}
+
+testing::AssertionResult World::may_all_meet(std::span<const Pair> pairs) const {
+  for (const Pair& pair : pairs) {
+    if (!may_meet(entries_.at(pair.first).filter, entries_.at(pair.second).filter)) {
+      return testing::AssertionFailure() << "the filters of " << pair << " let it not pass";
+    }
+  }
+  return testing::AssertionSuccess();
 }
 
 testing::AssertionResult World::agrees() {
@@ -154,6 +174,10 @@ testing::AssertionResult World::holds_its_objects() const {
         partition_->client_data_of(id) != entry.data) {
       return testing::AssertionFailure() << "the client data of object " << id << " is another";
     }
+    ObjectFilter filter{~entry.filter.layers, 0, 0};
+    if (partition_->filter(entry.key, filter) != Status::ok || filter != entry.filter) {
+      return testing::AssertionFailure() << "the filter of object " << id << " is another";
+    }
   }
   return testing::AssertionSuccess();
 }
@@ -161,7 +185,7 @@ testing::AssertionResult World::holds_its_objects() const {
 std::vector<Object> World::objects() const {
   std::vector<Object> objects;
   objects.reserve(entries_.size());
-  for (const auto& [id, entry] : entries_) objects.push_back({id, entry.box});
+  for (const auto& [id, entry] : entries_) objects.push_back({id, entry.box, entry.filter});
   return objects;
 }
 

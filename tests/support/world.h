@@ -31,6 +31,7 @@ class World {
     Key key;
     Aabb box;
     ClientData data = 0;
+    ObjectFilter filter{};
   };
 
   explicit World(const Config& config,
@@ -47,6 +48,8 @@ class World {
   void update(Key key, const Aabb& box);
   void remove(std::span<const Key> keys);
   void remove(Key key);
+  void set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
+  void set_filter(Key key, const ObjectFilter& filter);
   void clear();
 
   /// Runs a query on the config's threads.
@@ -58,12 +61,14 @@ class World {
                                                 const PairOptions& options = {});
   /// The same with a fresh buffer.
   [[nodiscard]] testing::AssertionResult agrees();
-  /// True if size, keys, boxes (bit by bit) and client data are the model's.
+  /// True if size, keys, boxes (bit by bit), client data and filters are the model's.
   [[nodiscard]] testing::AssertionResult holds_its_objects() const;
 
   /// Live objects by id.
   [[nodiscard]] const std::map<ObjectId, Entry>& entries() const { return entries_; }
   [[nodiscard]] std::vector<Object> objects() const;
+  /// True if the filters of all pairs' objects let them meet.
+  [[nodiscard]] testing::AssertionResult may_all_meet(std::span<const Pair> pairs) const;
 
  private:
   std::map<ObjectId, Entry> entries_;

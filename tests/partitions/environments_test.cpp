@@ -1,0 +1,182 @@
+// Many small worlds in one partition: they never meet, and cost no more than each on its own.
+
+#include <algorithm>
+#include <array>
+
+#include "../support/motion.h"
+#include "../support/scenes.h"
+#include "../support/world.h"
+
+namespace winnow::test {
+namespace {
+
+// Copies of one kind of world at the same place, told apart by their environments alone.
+class Worlds {
+ public:
+  Worlds(const Config& config, std::size_t worlds, std::size_t objects)
+      : together_(config), worlds_(worlds) {
+    std::vector<ObjectFilter> filters;
+    for (std::size_t w = 0; w < worlds; ++w) {
+      for (const Aabb& box : uniform_boxes(objects, 1 + w)) boxes_.push_back(box);
+      filters.resize(boxes_.size(), {1, ~0U, environment(w)});
+    }
+    // Mixed in the order of insertion, as worlds that run at the same time insert.
+    Random random(7);
+    for (std::size_t i = boxes_.size(); i > 1; --i) {
+      const std::size_t j = random.below(i);
+      std::swap(boxes_[i - 1], boxes_[j]);
+      std::swap(filters[i - 1], filters[j]);
+    }
+    keys_ = together_.insert(boxes_);
+    together_.set_filter(keys_, filters);
+  }
+
+  [[nodiscard]] static std::uint32_t environment(std::size_t w) {
+    return static_cast<std::uint32_t>(w * 1000003U);
+  }
+  [[nodiscard]] World& together() { return together_; }
+  [[nodiscard]] std::vector<Aabb>& boxes() { return boxes_; }
+  [[nodiscard]] const std::vector<Key>& keys() const { return keys_; }
+
+  // Tests of a full query with each world in a partition of its own.
+  [[nodiscard]] std::uint64_t tests_apart(const Config& config) const {
+    std::uint64_t sum = 0;
+    for (std::size_t w = 0; w < worlds_; ++w) {
+      World apart(config);
+      for (const auto& [id, entry] : together_.entries()) {
+        if (entry.filter.environment == environment(w)) apart.insert(entry.box);
+      }
+      PairBuffer buffer;
+      EXPECT_EQ(apart.self_pairs(buffer), Status::ok);
+      sum += apart.partition().statistics().last_tests;
+    }
+    return sum;
+  }
+
+ private:
+  World together_;
+  std::size_t worlds_;
+  std::vector<Aabb> boxes_;
+  std::vector<Key> keys_;
+};
+
+class Environments : public Conformance {};
+
+TEST_P(Environments, never_meet_while_everything_moves) {
+  Worlds worlds(config(), 12, 40);
+  World& world = worlds.together();
+  PairBuffer buffer;
+  Random random(2);
+  for (const Motion motion : kMotions) {
+    move(motion, worlds.boxes(), random);
+    world.update(worlds.keys(), worlds.boxes());
+    EXPECT_TRUE(world.agrees(buffer)) << to_string(motion);
+    EXPECT_TRUE(world.agrees(buffer, {.order = Order::canonical, .incremental = false}));
+  }
+}
+
+TEST_P(Environments, come_go_and_take_objects_from_each_other) {
+  World world(config());
+  PairBuffer buffer;
+  Random random(11);
+  std::vector<Key> keys;
+  for (int frame = 0; frame < 30; ++frame) {
+    SCOPED_TRACE(frame);
+    for (const Aabb& box : uniform_boxes(20, static_cast<std::uint64_t>(frame) + 1)) {
+      keys.push_back(world.insert(box));
+      if (frame % 3 != 0) {
+        world.set_filter(keys.back(), {1, 1, static_cast<std::uint32_t>(frame) / 3});
+      }
+    }
+    for (int i = 0; i < 8; ++i) {
+      const std::uint32_t to =
+          random.chance(0.2) ? kEveryEnvironment : static_cast<std::uint32_t>(random.below(9));
+      world.set_filter(keys[random.below(keys.size())], {1, ~0U, to});
+    }
+    while (keys.size() > 120) {
+      const std::size_t at = random.below(keys.size());
+      world.remove(keys[at]);
+      keys[at] = keys.back();
+      keys.pop_back();
+    }
+    ASSERT_TRUE(world.agrees(buffer));
+  }
+}
+
+TEST_P(Environments, all_meet_objects_of_every_environment) {
+  Worlds worlds(config(), 8, 25);
+  World& world = worlds.together();
+  const Key ground = world.insert(Aabb{{-100, -100, -100}, {100, 100, 100}});
+  world.set_filter(ground, {1, 1, kEveryEnvironment});
+  PairBuffer buffer;
+  ASSERT_TRUE(world.agrees(buffer));
+  const auto touches_ground = [&](const Pair& p) {
+    return p.first == ground.id || p.second == ground.id;
+  };
+  EXPECT_EQ(std::ranges::count_if(buffer, touches_ground), 200);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Environments, testing::ValuesIn(all_configs()),
+                         testing::PrintToStringParamName());
+
+// Counted in tests of 16 boxes, never in time: one instruction set and one thread say what all do.
+class EnvironmentWork : public Conformance {
+ protected:
+  // Up to a twentieth for the few nodes that hold the end of one world and the start of the next,
+  // and for the levels above all worlds.
+  void expect_no_more_than_apart(Worlds& worlds) {
+    PairBuffer buffer;
+    ASSERT_EQ(worlds.together().self_pairs(buffer, {.incremental = false}), Status::ok);
+    const std::uint64_t together = worlds.together().partition().statistics().last_tests;
+    Config tree = config();
+    // Worlds in one partition are pruned by its tree: that is what they are held against.
+    if (tree.partition != "NSquared" && tree.partition != "BoundsNSquared") {
+      tree.partition = "LinearBvh";
+    }
+    const std::uint64_t apart = worlds.tests_apart(tree);
+    EXPECT_LE(together, apart + apart / 20);
+    EXPECT_GT(together, 0U);
+  }
+};
+
+TEST_P(EnvironmentWork, of_many_worlds_is_their_sum) {
+  Worlds worlds(config(), 40, 160);
+  expect_no_more_than_apart(worlds);
+}
+
+TEST_P(EnvironmentWork, stays_their_sum_after_objects_changed_worlds) {
+  Worlds worlds(config(), 30, 128);
+  World& world = worlds.together();
+  PairBuffer buffer;
+  ASSERT_EQ(world.self_pairs(buffer), Status::ok);
+  // Every object moves on to the next world: nothing in the order of rows is right any more.
+  for (std::size_t i = 0; i < worlds.keys().size(); ++i) {
+    ObjectFilter filter = world.entries().at(worlds.keys()[i].id).filter;
+    filter.environment =
+        (filter.environment + Worlds::environment(1 + i % 7)) % Worlds::environment(30);
+    world.set_filter(worlds.keys()[i], filter);
+  }
+  expect_no_more_than_apart(worlds);
+}
+
+TEST_P(EnvironmentWork, of_worlds_of_three_objects_is_far_from_all_against_all) {
+  constexpr std::size_t kWorlds = 1500;
+  Worlds worlds(config(), kWorlds, 3);
+  PairBuffer buffer;
+  ASSERT_TRUE(worlds.together().agrees(buffer, {.incremental = false}));
+  EXPECT_LT(worlds.together().partition().statistics().last_tests, 40 * kWorlds);
+}
+
+std::vector<Config> one_config_a_partition() {
+  std::vector<Config> configs;
+  for (const std::string_view name : partition_names()) {
+    configs.push_back({std::string(name), active_isa(), 1});
+  }
+  return configs;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EnvironmentWork, testing::ValuesIn(one_config_a_partition()),
+                         testing::PrintToStringParamName());
+
+}  // namespace
+}  // namespace winnow::test

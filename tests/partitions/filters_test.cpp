@@ -1,0 +1,271 @@
+// Filters of objects: pairs are those whose filters let them meet, whatever happened to the
+// filters; where none is set none is paid for.
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+
+#include "../support/counting_memory.h"
+#include "../support/hostile_scenes.h"
+#include "../support/motion.h"
+#include "../support/scenes.h"
+#include "../support/world.h"
+
+namespace winnow::test {
+namespace {
+
+ObjectFilter any_filter(Random& random) {
+  if (random.chance(0.2)) return {};
+  if (random.chance(0.1)) return {0, ~0U, 0};
+  if (random.chance(0.1)) return {1, 0, 0};
+  const auto layers = static_cast<std::uint32_t>(1 + random.below(15));
+  const auto mask = static_cast<std::uint32_t>(random.below(16)) | 0x80000000U;
+  const std::size_t environment = random.below(4);
+  return {layers, mask,
+          environment == 3 ? kEveryEnvironment : static_cast<std::uint32_t>(environment)};
+}
+
+std::vector<ObjectFilter> any_filters(std::size_t count, Random& random) {
+  std::vector<ObjectFilter> filters(count);
+  for (ObjectFilter& filter : filters) filter = any_filter(random);
+  return filters;
+}
+
+class Filters : public Conformance {
+ protected:
+  // Partitions that report pairs that do not touch report too many of them in large scenes.
+  [[nodiscard]] std::size_t scene_size(std::size_t wanted) const {
+    return config().make()->is_exact() ? wanted : std::min<std::size_t>(wanted, 120);
+  }
+
+  CountingMemory memory_;
+};
+
+TEST_P(Filters, say_who_pairs_in_any_scene) {
+  for (const auto* scenes : {&degenerate_scenes(), &infinite_scenes(), &extreme_float_scenes()}) {
+    for (const Scene& scene : *scenes) {
+      SCOPED_TRACE(scene.name);
+      World world(config());
+      Random random(scene.boxes.size());
+      const std::span<const Aabb> boxes(scene.boxes);
+      const auto keys = world.insert(boxes.first(std::min(boxes.size(), scene_size(250))));
+      world.set_filter(keys, any_filters(keys.size(), random));
+      ASSERT_TRUE(world.agrees());
+    }
+  }
+}
+
+TEST_P(Filters, hold_while_everything_changes) {
+  World world(config(), &memory_);
+  PairBuffer buffer;
+  Random random(5);
+  std::vector<Aabb> boxes = mixed_boxes(scene_size(400));
+  std::vector<Key> keys = world.insert(boxes);
+  for (std::size_t frame = 0; frame < 24; ++frame) {
+    SCOPED_TRACE(frame);
+    move(kMotions[frame % kMotions.size()], boxes, random);
+    world.update(keys, boxes);
+    const std::size_t first = random.below(keys.size());
+    const std::size_t some = 1 + random.below(frame % 3 == 0 ? keys.size() - first : 8);
+    const std::size_t count = std::min(some, keys.size() - first);
+    world.set_filter(std::span(keys).subspan(first, count), any_filters(count, random));
+    for (int i = 0; i < 10; ++i) {
+      const std::size_t at = random.below(keys.size());
+      world.remove(keys[at]);
+      keys[at] = world.insert(boxes[at]);
+    }
+    ASSERT_TRUE(world.agrees(buffer, {.order = frame % 4 == 3 ? Order::canonical : Order::fast,
+                                      .incremental = frame % 5 != 4}));
+    ASSERT_TRUE(world.holds_its_objects());
+    ASSERT_EQ(world.partition().footprint().total().reserved, memory_.outstanding());
+  }
+}
+
+TEST_P(Filters, that_change_alone_change_the_pairs_of_the_next_frame) {
+  World world(config());
+  PairBuffer buffer;
+  const std::vector<Key> keys = world.insert(uniform_boxes(scene_size(600)));
+  ASSERT_TRUE(world.agrees(buffer));
+  Random random(8);
+  for (int frame = 0; frame < 6; ++frame) {
+    for (int i = 0; i < 12; ++i) {
+      world.set_filter(keys[random.below(keys.size())], any_filter(random));
+    }
+    ASSERT_TRUE(world.agrees(buffer));
+  }
+  EXPECT_GT(world.partition().statistics().incremental_queries, 0U);
+  const std::vector<ObjectFilter> defaults(keys.size());
+  world.set_filter(keys, defaults);
+  EXPECT_TRUE(world.agrees(buffer));
+}
+
+TEST_P(Filters, of_both_partitions_count_between_two) {
+  PairBuffer buffer;
+  for (const bool mine_filtered : {false, true}) {
+    for (const bool other_filtered : {false, true}) {
+      for (const std::string_view name : partition_names()) {
+        SCOPED_TRACE(name);
+        World mine(config());
+        World other({std::string(name), config().isa, config().threads});
+        Random random(3);
+        const auto my_keys = mine.insert(mixed_boxes(150));
+        const auto other_keys = other.insert(mixed_boxes(90, 2));
+        if (mine_filtered) mine.set_filter(my_keys, any_filters(my_keys.size(), random));
+        if (other_filtered) other.set_filter(other_keys, any_filters(other_keys.size(), random));
+        const bool exact = mine.partition().is_exact() && other.partition().is_exact();
+        const auto meet = [](const World& a, const World& b, const Pair& pair) {
+          return may_meet(a.entries().at(pair.first).filter, b.entries().at(pair.second).filter);
+        };
+        ASSERT_EQ(mine.pairs_with(other.partition(), buffer), Status::ok);
+        EXPECT_TRUE(
+            right_cross_pairs(buffer.pairs(), cross_pairs(mine.objects(), other.objects()), exact));
+        EXPECT_TRUE(std::ranges::all_of(buffer.pairs(),
+                                        [&](const Pair& p) { return meet(mine, other, p); }));
+        ASSERT_EQ(other.pairs_with(mine.partition(), buffer), Status::ok);
+        EXPECT_TRUE(
+            right_cross_pairs(buffer.pairs(), cross_pairs(other.objects(), mine.objects()), exact));
+        EXPECT_TRUE(std::ranges::all_of(buffer.pairs(),
+                                        [&](const Pair& p) { return meet(other, mine, p); }));
+      }
+    }
+  }
+}
+
+TEST_P(Filters, of_an_id_do_not_outlive_its_object) {
+  World world(config());
+  const Aabb box{{0, 0, 0}, {1, 1, 1}};
+  const Key first = world.insert(box);
+  world.set_filter(first, {0, 0, 7});
+  world.remove(first);
+  const Key second = world.insert(box);
+  ASSERT_EQ(second.id, first.id);
+  EXPECT_TRUE(world.holds_its_objects());
+  world.insert(box);
+  EXPECT_TRUE(world.agrees());
+  world.set_filter(second, {0, 0, 7});
+  world.clear();
+  world.insert(std::array{box, box, box});
+  EXPECT_TRUE(world.holds_its_objects());
+  EXPECT_TRUE(world.agrees());
+}
+
+TEST_P(Filters, are_refused_for_a_stale_key_and_then_nothing_changes) {
+  World world(config());
+  const std::vector<Key> keys = world.insert(uniform_boxes(20));
+  const Key stale = world.insert(uniform_boxes(1)[0]);
+  world.remove(stale);
+  ObjectFilter filter{3, 4, 5};
+  EXPECT_EQ(world.partition().set_filter(stale, filter), Status::invalid_key);
+  EXPECT_EQ(world.partition().set_filter(Key{}, filter), Status::invalid_key);
+  EXPECT_EQ(world.partition().filter(stale, filter), Status::invalid_key);
+  EXPECT_EQ(filter, (ObjectFilter{3, 4, 5}));
+  const std::array mixed{keys[0], stale, keys[1]};
+  const std::vector<ObjectFilter> filters(3, filter);
+  EXPECT_EQ(world.partition().set_filter(mixed, filters), Status::invalid_key);
+  EXPECT_EQ(world.partition().set_filter(keys, filters), Status::size_mismatch);
+  EXPECT_TRUE(world.holds_its_objects());
+  EXPECT_TRUE(world.agrees());
+}
+
+TEST_P(Filters, cost_no_byte_and_no_request_before_one_is_set) {
+  World world(config(), &memory_);
+  const std::vector<Key> keys = world.insert(uniform_boxes(200));
+  ASSERT_TRUE(world.agrees());
+  const std::size_t requests = memory_.requests();
+  world.set_filter(keys, std::vector<ObjectFilter>(keys.size()));
+  EXPECT_EQ(memory_.requests(), requests);
+  world.set_filter(keys[0], {1, 1, 0});
+  EXPECT_GT(memory_.requests(), requests);
+  EXPECT_EQ(world.partition().footprint().total().reserved, memory_.outstanding());
+}
+
+TEST_P(Filters, that_memory_is_refused_for_leave_everything_as_it_was) {
+  World world(config(), &memory_);
+  const std::vector<Key> keys = world.insert(uniform_boxes(100));
+  ASSERT_TRUE(world.agrees());
+  Random random(2);
+  const std::vector<ObjectFilter> filters = any_filters(keys.size(), random);
+  memory_.refuse_after(0);
+  EXPECT_EQ(world.partition().set_filter(keys, filters), Status::out_of_memory);
+  memory_.grant_all();
+  EXPECT_TRUE(world.holds_its_objects());
+  EXPECT_TRUE(world.agrees());
+  world.set_filter(keys, filters);
+  // The tree cannot grow by what its nodes hold of filters: the query says so and succeeds later.
+  memory_.refuse_after(0);
+  PairBuffer buffer;
+  const Status refused = world.self_pairs(buffer);
+  memory_.grant_all();
+  EXPECT_TRUE(refused == Status::out_of_memory || refused == Status::ok);
+  EXPECT_TRUE(world.agrees(buffer));
+  // Growing with filters in use fails as a whole or not at all.
+  const std::vector<Aabb> more = uniform_boxes(3000);
+  std::vector<Key> more_keys(more.size());
+  for (std::size_t granted = 0;; ++granted) {
+    memory_.refuse_after(granted);
+    const Status status = world.partition().insert(more, {}, more_keys);
+    memory_.grant_all();
+    ASSERT_TRUE(world.partition().size() == (status == Status::ok ? 3100U : 100U));
+    if (status == Status::ok) break;
+    ASSERT_TRUE(world.holds_its_objects());
+  }
+}
+
+TEST_P(Filters, give_their_memory_back_with_an_empty_partition) {
+  World world(config(), &memory_);
+  const std::vector<Key> keys = world.insert(uniform_boxes(500));
+  world.set_filter(keys, std::vector<ObjectFilter>(keys.size(), ObjectFilter{2, 2, 1}));
+  ASSERT_EQ(world.partition().refresh(), Status::ok);
+  world.clear();
+  world.partition().release_memory();
+  EXPECT_EQ(world.partition().footprint().structure.reserved, 0U);
+  EXPECT_EQ(world.partition().footprint().total().reserved, memory_.outstanding());
+}
+
+TEST_P(Filters, allocate_nothing_in_steady_frames) {
+  World world(config(), &memory_);
+  CountingMemory results;
+  PairBuffer buffer(&results);
+  const std::vector<Aabb> boxes = uniform_boxes(scene_size(500));
+  const std::vector<Key> keys = world.insert(boxes);
+  Random random(4);
+  std::array<std::vector<ObjectFilter>, 3> filters;
+  for (auto& of_frame : filters) of_frame = any_filters(keys.size(), random);
+  const auto play = [&](std::size_t frame) {
+    world.set_filter(keys, filters[frame % 3]);
+    world.update(keys, boxes);
+    ASSERT_EQ(world.self_pairs(buffer), Status::ok);
+  };
+  for (std::size_t frame = 0; frame < 9; ++frame) play(frame);
+  const std::size_t requests = memory_.requests() + results.requests();
+  for (std::size_t frame = 9; frame < 18; ++frame) play(frame);
+  EXPECT_EQ(memory_.requests() + results.requests(), requests);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Filters, testing::ValuesIn(all_configs()),
+                         testing::PrintToStringParamName());
+
+// Counted in tests of 16 boxes: one instruction set and one thread say what all do.
+class FilterWork : public Conformance {};
+
+TEST_P(FilterWork, is_not_done_below_nodes_that_nothing_may_meet) {
+  World world(config());
+  const std::vector<Key> keys = world.insert(uniform_boxes(4000));
+  PairBuffer buffer;
+  ASSERT_EQ(world.self_pairs(buffer), Status::ok);
+  const std::uint64_t all = world.partition().statistics().last_tests;
+  // Objects that want to meet nobody, but for a few.
+  std::vector<ObjectFilter> filters(keys.size(), ObjectFilter{2, 1, 0});
+  for (std::size_t i = 0; i < 10; ++i) filters[i * 400] = {1, 3, 0};
+  world.set_filter(keys, filters);
+  ASSERT_TRUE(world.agrees(buffer, {.incremental = false}));
+  EXPECT_LT(8 * world.partition().statistics().last_tests, all);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FilterWork,
+                         testing::Values(Config{"LinearBvh", active_isa(), 1},
+                                         Config{"BoundsNSquared", active_isa(), 1}),
+                         testing::PrintToStringParamName());
+
+}  // namespace
+}  // namespace winnow::test
