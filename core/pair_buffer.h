@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory_resource>
 #include <span>
+#include <utility>
 
 namespace winnow {
 
@@ -36,6 +37,12 @@ class PairBuffer {
 
   explicit PairBuffer(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
       : pairs_(memory), pages_(memory), page_table_(memory) {}
+  /// `other` is left empty: its next query is a full one.
+  PairBuffer(PairBuffer&& other) noexcept
+      : pairs_(std::move(other.pairs_)),
+        pages_(std::move(other.pages_)),
+        page_table_(std::move(other.page_table_)),
+        provenance_(std::exchange(other.provenance_, {})) {}
 
   [[nodiscard]] std::span<const Pair> pairs() const noexcept { return {pairs_.data(), size()}; }
   [[nodiscard]] std::size_t size() const noexcept { return pairs_.size(); }

@@ -8,6 +8,8 @@ Footprint PairEvents::footprint() const noexcept {
   result.results += ended_.bytes();
   result.scratch = before_.bytes();
   result.scratch += after_.bytes();
+  result.scratch += dropped_.bytes();
+  result.scratch += start_.bytes();
   result.scratch += stamps_.bytes();
   return result;
 }

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory_resource>
 #include <span>
+#include <utility>
 
 namespace winnow {
 
@@ -28,7 +29,24 @@ struct KeyPair {
 class PairEvents {
  public:
   explicit PairEvents(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
-      : begun_(memory), ended_(memory), before_(memory), after_(memory), stamps_(memory) {}
+      : begun_(memory),
+        ended_(memory),
+        dropped_(memory),
+        before_(memory),
+        after_(memory),
+        start_(memory),
+        stamps_(memory) {}
+  /// `other` is left empty and starts anew.
+  PairEvents(PairEvents&& other) noexcept
+      : begun_(std::move(other.begun_)),
+        ended_(std::move(other.ended_)),
+        dropped_(std::move(other.dropped_)),
+        before_(std::move(other.before_)),
+        after_(std::move(other.after_)),
+        start_(std::move(other.start_)),
+        stamps_(std::move(other.stamps_)),
+        persisting_(std::exchange(other.persisting_, 0)),
+        provenance_(std::exchange(other.provenance_, {})) {}
 
   /// Pairs that are in this frame and were not in the last, sorted by ids.
   [[nodiscard]] std::span<const KeyPair> begun() const noexcept {
@@ -57,8 +75,10 @@ class PairEvents {
 
   Column<KeyPair> begun_;
   Column<KeyPair> ended_;
+  Column<Pair> dropped_;
   Column<std::uint64_t> before_;  // pairs that may have ended, as (first << 32 | second)
   Column<std::uint64_t> after_;   // pairs that may have begun
+  Column<std::uint32_t> start_;   // by id, while pairs are sorted
   Column<std::uint32_t> stamps_;  // by id, as of the last frame
   std::size_t persisting_ = 0;
   PairBuffer::Provenance provenance_;

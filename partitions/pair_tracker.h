@@ -20,8 +20,20 @@ class PairTracker {
   /// Drops every pair that has an object in the set, keeping the order. O(pairs).
   static void drop(PairBuffer& out, const std::uint64_t* moved) noexcept;
 
+  /// The same, adding the pairs that it drops to `dropped`. False, and `out` is no longer whole, if
+  /// memory is refused.
+  [[nodiscard]] static bool drop(PairBuffer& out, const std::uint64_t* moved,
+                                 Column<Pair>& dropped) noexcept;
+
   /// Sorts by (first, second), all ids below `slots`. O(pairs); false if memory is refused.
-  [[nodiscard]] static bool sort(PairBuffer& out, std::size_t slots) noexcept;
+  [[nodiscard]] static bool sort(PairBuffer& out, std::size_t slots) noexcept {
+    return sort(out, slots, out.size());
+  }
+  /// The same for the first `count` pairs alone.
+  [[nodiscard]] static bool sort(PairBuffer& out, std::size_t slots, std::size_t count) noexcept;
+
+  /// The pairs, which keep their provenance.
+  [[nodiscard]] static Pair* data(PairBuffer& out) noexcept { return out.pairs_.data(); }
 };
 
 }  // namespace winnow

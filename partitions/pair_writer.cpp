@@ -48,18 +48,47 @@ Status PairWriter::append(std::size_t tasks, void* context, Task run) {
                                                      : append_parallel(tasks, context, run);
 }
 
+struct PairWriter::SerialOutput {
+  const PairWriter& writer;
+  Column<Pair>& pairs;
+  std::size_t checked;  // pairs that the predicate has been asked about
+
+  // Takes in what the sink got since.
+  void take(const PairSink& sink) {
+    const auto used = static_cast<std::size_t>(sink.cursor - words(pairs.data())) / 2;
+    checked += writer.keep_accepted(pairs.data() + checked, used - checked);
+    pairs.set_size(checked);
+  }
+};
+
+std::size_t PairWriter::keep_accepted(Pair* pairs, std::size_t count) const {
+  if (predicate_.accept == nullptr) return count;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Pair pair = pairs[i];
+    if (predicate_.accept(predicate_.context, pair.first, pair.second)) pairs[kept++] = pair;
+  }
+  return kept;
+}
+
 Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
   Column<Pair>& pairs = out_.pairs_;
   const std::size_t before = pairs.size();
   if (!pairs.grow(before + 2 * kSinkSlack)) return Status::out_of_memory;
+  SerialOutput output{*this, pairs, before};
   PairSink sink;
   aim(sink, pairs.data() + before, pairs.data() + pairs.capacity());
-  sink.owner = &pairs;
+  sink.owner = &output;
   sink.grow = [](PairSink& full) {
-    auto& column = *static_cast<Column<Pair>*>(full.owner);
-    const auto used = static_cast<std::size_t>(full.cursor - words(column.data())) / 2;
-    column.set_size(used);
-    if (!column.grow(std::max(used + 2 * kSinkSlack, column.capacity() + 1))) return false;
+    auto& o = *static_cast<SerialOutput*>(full.owner);
+    o.take(full);
+    Column<Pair>& column = o.pairs;
+    const std::size_t used = column.size();
+    // A quarter that the predicate left free is room enough.
+    const bool enough = used + 2 * kSinkSlack + column.capacity() / 4 < column.capacity();
+    if (!enough && !column.grow(std::max(used + 2 * kSinkSlack, column.capacity() + 1))) {
+      return false;
+    }
     aim(full, column.data() + used, column.data() + column.capacity());
     return true;
   };
@@ -68,7 +97,7 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
     pairs.set_size(before);
     return Status::out_of_memory;
   }
-  pairs.set_size(static_cast<std::size_t>(sink.cursor - words(pairs.data())) / 2);
+  output.take(sink);
   tests_ += sink.tests;
   return Status::ok;
 }
@@ -90,6 +119,7 @@ bool PairWriter::run_on_pages(std::size_t tasks, std::size_t pages, void* contex
   PageClaims claims{out_.pages_.data(), out_.page_table_.data(), pages};
   execution_.for_each(tasks, [&](std::size_t task) {
     struct Writer {
+      const PairWriter& writer;
       PageClaims& claims;
       std::size_t task;
       std::size_t page = 0;
@@ -97,10 +127,11 @@ bool PairWriter::run_on_pages(std::size_t tasks, std::size_t pages, void* contex
 
       void close(const PairSink& sink) const {
         if (!open) return;
-        const auto used = sink.cursor - words(claims.pages + page * kPage);
-        claims.table[page] = entry(task, static_cast<std::size_t>(used) / 2);
+        Pair* const start = claims.pages + page * kPage;
+        const auto used = static_cast<std::size_t>(sink.cursor - words(start)) / 2;
+        claims.table[page] = entry(task, writer.keep_accepted(start, used));
       }
-    } writer{claims, task};
+    } writer{*this, claims, task};
     if (claims.full.load(std::memory_order_relaxed)) return;
     PairSink sink;
     // Starts without a page: a task that finds nothing takes none.

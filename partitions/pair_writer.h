@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/execution.h>
+#include <winnow/core/filter.h>
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/status.h>
 #include <winnow/partitions/pair_sink.h>
@@ -18,8 +19,10 @@ namespace winnow {
 /// depend on the results alone, so frames with the same results allocate nothing.
 class PairWriter {
  public:
-  PairWriter(PairBuffer& out, const Execution& execution) noexcept
-      : out_(out), execution_(execution) {}
+  /// Only pairs that `predicate` accepts are appended; it is asked by whichever thread found them.
+  PairWriter(PairBuffer& out, const Execution& execution,
+             const PairPredicate& predicate = {}) noexcept
+      : out_(out), execution_(execution), predicate_(predicate) {}
 
   /// Runs run(i, sink) for every i < tasks; it returns false when its sink could not grow.
   template <typename Run>
@@ -35,15 +38,18 @@ class PairWriter {
  private:
   using Task = bool (*)(void*, std::size_t, PairSink&);
   struct PageClaims;
+  struct SerialOutput;
 
   Status append(std::size_t tasks, void* context, Task run);
   Status append_serial(std::size_t tasks, void* context, Task run);
   Status append_parallel(std::size_t tasks, void* context, Task run);
   bool run_on_pages(std::size_t tasks, std::size_t pages, void* context, Task run);
   Status gather_pages(std::size_t tasks, std::size_t pages);
+  std::size_t keep_accepted(Pair* pairs, std::size_t count) const;
 
   PairBuffer& out_;
   const Execution& execution_;
+  const PairPredicate predicate_;
   std::uint64_t tests_ = 0;
   std::size_t claimed_ = 0;
 };

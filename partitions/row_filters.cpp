@@ -33,8 +33,4 @@ Status RowPartition::filter(Key key, ObjectFilter& filter) const noexcept {
   return Status::ok;
 }
 
-Status RowPartition::self_pairs(PairBuffer&, PairEvents&, const PairOptions&) const {
-  return Status::unsupported_volume;
-}
-
 }  // namespace winnow

@@ -17,6 +17,7 @@
 
 namespace winnow {
 
+class EventWriter;
 struct Sweep;
 
 /// What all partitions share: keys, rows, what changed since when, pair queries and their order.
@@ -163,12 +164,17 @@ class RowPartition : public Partition {
   void forward_changes() noexcept;
 
   struct SelfTasks;
-  Status full_self_pairs(PairBuffer& out) const;
-  Status incremental_self_pairs(PairBuffer& out) const;
+  Status find_self_pairs(PairBuffer& out, const PairOptions& options, EventWriter* events) const;
+  Status full_self_pairs(PairBuffer& out, const PairPredicate& predicate,
+                         EventWriter* events) const;
+  Status incremental_self_pairs(PairBuffer& out, const PairPredicate& predicate,
+                                EventWriter* events) const;
+  bool finish_pairs(PairBuffer& out, Order order, bool all, EventWriter* events) const noexcept;
   [[nodiscard]] bool can_update(const PairBuffer& out) const noexcept;
   bool run_self_task(const SelfTasks& tasks, std::size_t task, PairSink& sink) const noexcept;
   bool query_all(const QueryBatch& batch, PairSink& sink) const noexcept;
-  Status ask(const RowPartition& other, HitMode mode, PairBuffer& out) const;
+  Status ask(const RowPartition& other, HitMode mode, const PairPredicate& predicate,
+             PairBuffer& out) const;
   /// Brings everything up to date that queries walk.
   Status prepare(QueryView& view) const;
   Status refresh_row_tree() const;
@@ -210,7 +216,8 @@ class RowPartition : public Partition {
 
   const std::uint64_t identity_;
   mutable std::uint64_t tracked_serial_ = 0;  // 0: no buffer is tracked
-  mutable std::uint64_t last_serial_ = 0;     // never goes back, so an old buffer cannot match
+  mutable std::atomic<std::uint64_t> last_serial_{
+      0};  // never goes back, so an old buffer cannot match
   mutable std::mutex refresh_mutex_;
   mutable std::mutex tracker_mutex_;
   mutable std::atomic<bool> dirty_{false};

@@ -2,6 +2,7 @@
 
 #include <winnow/core/sphere.h>
 #include <winnow/partitions/bitmap_sort.h>
+#include <winnow/partitions/event_writer.h>
 #include <winnow/partitions/pair_tracker.h>
 #include <winnow/partitions/pair_writer.h>
 #include <winnow/partitions/row_partition.h>
@@ -45,6 +46,19 @@ struct RowPartition::SelfTasks {
 };
 
 Status RowPartition::self_pairs(PairBuffer& out, const PairOptions& options) const {
+  return find_self_pairs(out, options, nullptr);
+}
+
+Status RowPartition::self_pairs(PairBuffer& out, PairEvents& events,
+                                const PairOptions& options) const {
+  EventWriter writer(events, keys_, out, identity_);
+  const Status status = find_self_pairs(out, options, &writer);
+  if (status != Status::ok) writer.fail();
+  return status;
+}
+
+Status RowPartition::find_self_pairs(PairBuffer& out, const PairOptions& options,
+                                     EventWriter* events) const {
   if (const Status status = refresh(); status != Status::ok) {
     out.clear();
     return status;
@@ -53,9 +67,9 @@ Status RowPartition::self_pairs(PairBuffer& out, const PairOptions& options) con
   const std::unique_lock lock(tracker_mutex_, std::try_to_lock);
   const bool tracked = lock.owns_lock() && options.incremental;
   const bool update = tracked && can_update(out);
-  Status status = update ? incremental_self_pairs(out) : full_self_pairs(out);
-  if (status == Status::ok && options.order == Order::canonical &&
-      !PairTracker::sort(out, keys_.slot_count())) {
+  Status status = update ? incremental_self_pairs(out, options.predicate, events)
+                         : full_self_pairs(out, options.predicate, events);
+  if (status == Status::ok && !finish_pairs(out, options.order, !update, events)) {
     status = Status::out_of_memory;
   }
   if (status != Status::ok) {
@@ -63,12 +77,27 @@ Status RowPartition::self_pairs(PairBuffer& out, const PairOptions& options) con
     return status;
   }
   last_pairs_.store(out.size(), std::memory_order_relaxed);
+  if (!tracked && events == nullptr) return Status::ok;
+  // Untracked, the serial still tells the events whose frame the buffer holds.
+  const PairBuffer::Provenance provenance{identity_, ++last_serial_};
+  PairTracker::set_provenance(out, provenance);
+  if (events != nullptr) events->set_provenance(provenance);
   if (tracked) {
     moved_.clear();
-    tracked_serial_ = ++last_serial_;
-    PairTracker::set_provenance(out, {identity_, tracked_serial_});
+    tracked_serial_ = provenance.serial;
   }
   return Status::ok;
+}
+
+bool RowPartition::finish_pairs(PairBuffer& out, Order order, bool all,
+                                EventWriter* events) const noexcept {
+  std::size_t unsorted = out.size();
+  if (events != nullptr) {
+    const auto moved = all ? std::span<const ObjectId>() : moved_.ids();
+    if (!events->compare(out) || !events->take_stamps(moved, all)) return false;
+    unsorted = events->persisting();
+  }
+  return order == Order::fast || PairTracker::sort(out, keys_.slot_count(), unsorted);
 }
 
 bool RowPartition::can_update(const PairBuffer& out) const noexcept {
@@ -76,11 +105,13 @@ bool RowPartition::can_update(const PairBuffer& out) const noexcept {
          PairTracker::provenance(out) == PairBuffer::Provenance{identity_, tracked_serial_};
 }
 
-Status RowPartition::full_self_pairs(PairBuffer& out) const {
+Status RowPartition::full_self_pairs(PairBuffer& out, const PairPredicate& predicate,
+                                     EventWriter* events) const {
+  if (events != nullptr && !events->hold_all(out)) return Status::out_of_memory;
   out.clear();
   const SelfTasks tasks(*this);
   const Execution execution = execution_for(pool_.rows());
-  PairWriter writer(out, execution);
+  PairWriter writer(out, execution, predicate);
   const Status status = writer.append(tasks.count(), [&](std::size_t task, PairSink& sink) {
     return run_self_task(tasks, task, sink);
   });
@@ -112,9 +143,11 @@ bool RowPartition::run_self_task(const SelfTasks& tasks, std::size_t task,
   return query_regular(batch, sink);
 }
 
-Status RowPartition::incremental_self_pairs(PairBuffer& out) const {
+Status RowPartition::incremental_self_pairs(PairBuffer& out, const PairPredicate& predicate,
+                                            EventWriter* events) const {
   incremental_queries_.fetch_add(1, std::memory_order_relaxed);
   if (moved_.ids().empty()) {
+    if (events != nullptr) events->hold_none(out);
     last_tests_.store(0, std::memory_order_relaxed);
     return Status::ok;
   }
@@ -127,9 +160,13 @@ Status RowPartition::incremental_self_pairs(PairBuffer& out) const {
   }
   // Neighbours in the pool are neighbours in space: in row order queries share cache lines.
   list_.set_size(sort_unique({list_.data(), list_.size()}, pool_.rows(), words_));
-  PairTracker::drop(out, moved_.bits());
+  if (events == nullptr) {
+    PairTracker::drop(out, moved_.bits());
+  } else if (!events->hold_moved(out, moved_.bits())) {
+    return Status::out_of_memory;
+  }
   const Execution execution = execution_for(list_.size());
-  PairWriter writer(out, execution);
+  PairWriter writer(out, execution, predicate);
   const std::size_t tasks = ceil_divide(list_.size(), kQueriesPerTask);
   const Status status = writer.append(tasks, [&](std::size_t task, PairSink& sink) {
     QueryBatch batch;
@@ -163,8 +200,9 @@ Status RowPartition::pairs_with(const Partition& other, PairBuffer& out,
   if (const Status status = refresh(); status != Status::ok) return status;
   if (const Status status = other.refresh(); status != Status::ok) return status;
   // The smaller side asks: each question costs about the logarithm of the side that is asked.
-  const Status status = size() <= rows->size() ? ask(*rows, HitMode::query_first, out)
-                                               : rows->ask(*this, HitMode::query_second, out);
+  const Status status = size() <= rows->size()
+                            ? ask(*rows, HitMode::query_first, options.predicate, out)
+                            : rows->ask(*this, HitMode::query_second, options.predicate, out);
   const std::size_t slots = std::max(keys_.slot_count(), rows->keys_.slot_count());
   if (status == Status::ok && (options.order == Order::fast || PairTracker::sort(out, slots))) {
     return Status::ok;
@@ -173,9 +211,10 @@ Status RowPartition::pairs_with(const Partition& other, PairBuffer& out,
   return Status::out_of_memory;
 }
 
-Status RowPartition::ask(const RowPartition& other, HitMode mode, PairBuffer& out) const {
+Status RowPartition::ask(const RowPartition& other, HitMode mode, const PairPredicate& predicate,
+                         PairBuffer& out) const {
   const Execution execution = execution_for(pool_.rows());
-  PairWriter writer(out, execution);
+  PairWriter writer(out, execution, predicate);
   const std::size_t tasks = ceil_divide(pool_.rows(), kQueriesPerTask);
   return writer.append(tasks, [&](std::size_t task, PairSink& sink) {
     std::array<float, 6 * kQueriesPerTask> boxes;

@@ -138,6 +138,10 @@ testing::AssertionResult World::agrees(PairBuffer& buffer, const PairOptions& op
            << "statistics say " << s.objects << " objects and " << s.last_pairs << " pairs, not "
            << entries_.size() << " and " << buffer.size();
   }
+  return has_pairs(buffer);
+}
+
+testing::AssertionResult World::has_pairs(const PairBuffer& buffer) const {
   if (const auto meet = may_all_meet(buffer.pairs()); !meet) return meet;
   return right_pairs(buffer.pairs(), true_pairs(objects()), partition_->is_exact());
 }

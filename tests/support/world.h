@@ -67,6 +67,8 @@ class World {
   /// Live objects by id.
   [[nodiscard]] const std::map<ObjectId, Entry>& entries() const { return entries_; }
   [[nodiscard]] std::vector<Object> objects() const;
+  /// True if the pairs are right.
+  [[nodiscard]] testing::AssertionResult has_pairs(const PairBuffer& buffer) const;
   /// True if the filters of all pairs' objects let them meet.
   [[nodiscard]] testing::AssertionResult may_all_meet(std::span<const Pair> pairs) const;
 

@@ -1,0 +1,355 @@
+// Pair events: what begins and ends is the difference of two frames' pairs by keys, whatever
+// happened in between and however the frame was found.
+
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+
+#include "../support/counting_memory.h"
+#include "../support/motion.h"
+#include "../support/scenes.h"
+#include "../support/world.h"
+
+namespace winnow::test {
+namespace {
+
+using Ids = std::pair<ObjectId, ObjectId>;
+using Stamps = std::pair<std::uint32_t, std::uint32_t>;
+// Key pairs in the order of ids.
+using KeyPairs = std::set<std::pair<Ids, Stamps>>;
+
+std::pair<Ids, Stamps> entry_of(const KeyPair& pair) {
+  return {{pair.first.id, pair.second.id}, {pair.first.stamp, pair.second.stamp}};
+}
+
+// A frame's buffer and events beside the pairs of the frame before.
+class Frames {
+ public:
+  explicit Frames(World& world,
+                  std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : buffer(memory), events(memory), world_(world) {}
+
+  // Queries the next frame and holds its events against the difference of the key pairs.
+  testing::AssertionResult next(const PairOptions& options = {}) {
+    const Status status = world_.threads().run(
+        [&] { return world_.partition().self_pairs(buffer, events, options); });
+    if (status != Status::ok) {
+      return testing::AssertionFailure() << "answered " << winnow::to_string(status);
+    }
+    if (const auto right = world_.has_pairs(buffer); !right) return right;
+    const KeyPairs now = keys_of(buffer.pairs());
+    const auto verdict = agree(now, options.order);
+    before_ = now;
+    return verdict;
+  }
+
+  // The next frame follows none.
+  void forget() { before_.clear(); }
+
+  PairBuffer buffer;
+  PairEvents events;
+
+ private:
+  [[nodiscard]] KeyPairs keys_of(std::span<const Pair> pairs) const {
+    KeyPairs keys;
+    for (const auto& [first, second] : pairs) {
+      keys.insert(entry_of({world_.partition().key_of(first), world_.partition().key_of(second)}));
+    }
+    return keys;
+  }
+
+  [[nodiscard]] testing::AssertionResult agree(const KeyPairs& now, Order order) const {
+    std::vector<std::pair<Ids, Stamps>> begun;
+    std::vector<std::pair<Ids, Stamps>> ended;
+    std::ranges::set_difference(now, before_, std::back_inserter(begun));
+    std::ranges::set_difference(before_, now, std::back_inserter(ended));
+    if (!std::ranges::equal(events.begun(), begun, {}, entry_of)) {
+      return testing::AssertionFailure()
+             << events.begun().size() << " pairs begun, not " << begun.size();
+    }
+    if (!std::ranges::equal(events.ended(), ended, {}, entry_of)) {
+      return testing::AssertionFailure()
+             << events.ended().size() << " pairs ended, not " << ended.size();
+    }
+    if (events.persisting() + begun.size() != buffer.size()) {
+      return testing::AssertionFailure() << events.persisting() << " pairs persist";
+    }
+    const KeyPairs last = keys_of(buffer.pairs().subspan(events.persisting()));
+    if (!std::ranges::equal(last, begun)) {
+      return testing::AssertionFailure() << "the last pairs are not those that began";
+    }
+    const auto middle = buffer.begin() + events.persisting();
+    if (order == Order::canonical &&
+        !(std::is_sorted(buffer.begin(), middle) && std::is_sorted(middle, buffer.end()))) {
+      return testing::AssertionFailure() << "canonical order is not sorted";
+    }
+    return testing::AssertionSuccess();
+  }
+
+  World& world_;
+  KeyPairs before_;
+};
+
+PairOptions options_of(std::uint64_t choice) {
+  return {.order = choice % 3 == 0 ? Order::canonical : Order::fast,
+          .incremental = choice % 5 != 0};
+}
+
+class Events : public Conformance {
+ protected:
+  [[nodiscard]] std::size_t scene_size(std::size_t wanted) const {
+    return config().make()->is_exact() ? wanted : std::min<std::size_t>(wanted, 60);
+  }
+};
+
+TEST_P(Events, are_the_difference_of_frames_however_objects_move) {
+  for (const Motion motion : kMotions) {
+    SCOPED_TRACE(to_string(motion));
+    World world(config());
+    Frames frames(world);
+    std::vector<Aabb> boxes = uniform_boxes(scene_size(400));
+    const std::vector<Key> keys = world.insert(boxes);
+    Random random(3);
+    for (std::uint64_t frame = 0; frame < 6; ++frame) {
+      ASSERT_TRUE(frames.next(options_of(frame + 1)));
+      move(motion, boxes, random);
+      world.update(keys, boxes);
+    }
+  }
+}
+
+TEST_P(Events, follow_any_sequence_of_calls) {
+  const bool held = rc::check([this] {
+    World world(config());
+    Frames frames(world);
+    PairBuffer other;
+    Random random(*rc::gen::inRange<std::uint64_t>(0, 1U << 20U));
+    std::vector<Key> keys;
+    const auto some = [&] { return random.below(keys.size()); };
+    for (int step = 0; step < 20; ++step) {
+      if (keys.empty() || random.chance(0.3)) {
+        for (const Aabb& box : uniform_boxes(1 + random.below(12), random.bits())) {
+          keys.push_back(world.insert(box));
+        }
+      }
+      const std::size_t moved = random.chance(0.2) ? keys.size() : random.below(4);
+      for (std::size_t i = 0; i < moved; ++i) {
+        world.update(keys[some()], uniform_boxes(1, random.bits())[0]);
+      }
+      if (random.chance(0.3)) world.set_filter(keys[some()], {1, 1, random.chance(0.5) ? 0U : 1U});
+      // An id goes to another object at once: the old pairs end even where the new ones are alike.
+      if (random.chance(0.4)) {
+        const std::size_t at = some();
+        const Aabb box = world.entries().at(keys[at].id).box;
+        world.remove(keys[at]);
+        keys[at] = world.insert(box);
+      }
+      if (random.chance(0.3)) {
+        const std::size_t at = some();
+        world.remove(keys[at]);
+        keys.erase(keys.begin() + static_cast<std::ptrdiff_t>(at));
+      }
+      if (random.chance(0.05)) {
+        world.clear();
+        keys.clear();
+      }
+      if (random.chance(0.15)) {
+        RC_ASSERT(world.self_pairs(other) == Status::ok);
+      }
+      if (random.chance(0.05)) {
+        // Used otherwise in between: the events start anew.
+        RC_ASSERT(world.self_pairs(frames.buffer) == Status::ok);
+        frames.forget();
+      }
+      RC_ASSERT(frames.next(options_of(random.below(15))));
+    }
+  });
+  EXPECT_TRUE(held);
+}
+
+TEST_P(Events, of_an_id_that_went_to_another_object_end_and_begin) {
+  World world(config());
+  Frames frames(world);
+  const Aabb box{{0, 0, 0}, {1, 1, 1}};
+  const Key stays = world.insert(box);
+  const Key goes = world.insert(box);
+  ASSERT_TRUE(frames.next());
+  world.remove(goes);
+  const Key comes = world.insert(box);
+  ASSERT_EQ(comes.id, goes.id);
+  ASSERT_TRUE(frames.next());
+  ASSERT_EQ(frames.events.begun().size(), 1U);
+  ASSERT_EQ(frames.events.ended().size(), 1U);
+  EXPECT_EQ(frames.events.ended()[0], (KeyPair{stays, goes}));
+  EXPECT_EQ(frames.events.begun()[0], (KeyPair{stays, comes}));
+  EXPECT_EQ(frames.events.persisting(), 0U);
+}
+
+TEST_P(Events, that_belong_to_another_buffer_or_partition_start_anew) {
+  World world(config());
+  World other(config());
+  Frames frames(world);
+  const auto boxes = uniform_boxes(60);
+  world.insert(boxes);
+  other.insert(boxes);
+  ASSERT_TRUE(frames.next());
+  PairBuffer second;
+  ASSERT_EQ(world.partition().self_pairs(second, frames.events), Status::ok);
+  EXPECT_EQ(frames.events.begun().size(), second.size());
+  EXPECT_TRUE(frames.events.ended().empty());
+  ASSERT_EQ(other.partition().self_pairs(second, frames.events), Status::ok);
+  EXPECT_EQ(frames.events.begun().size(), second.size());
+  EXPECT_TRUE(frames.events.ended().empty());
+  PairEvents taken(std::move(frames.events));
+  ASSERT_EQ(other.partition().self_pairs(second, taken), Status::ok);
+  EXPECT_TRUE(taken.begun().empty());
+  ASSERT_EQ(other.partition().self_pairs(second, frames.events), Status::ok);
+  EXPECT_EQ(frames.events.begun().size(), second.size());
+}
+
+TEST_P(Events, start_anew_after_a_query_that_memory_was_refused_for) {
+  CountingMemory memory;
+  World world(config(), &memory);
+  CountingMemory results;
+  std::vector<Aabb> boxes = uniform_boxes(scene_size(300));
+  const std::vector<Key> keys = world.insert(boxes);
+  Random random(1);
+  int failures = 0;
+  for (std::size_t granted = 0; granted < 12; ++granted) {
+    Frames frames(world, &results);
+    ASSERT_TRUE(frames.next());
+    move(granted % 2 == 0 ? Motion::few : Motion::much, boxes, random);
+    world.update(keys, boxes);
+    world.insert(boxes[granted]);
+    results.refuse_after(granted / 2);
+    const Status status = world.threads().run(
+        [&] { return world.partition().self_pairs(frames.buffer, frames.events, {}); });
+    results.grant_all();
+    if (status == Status::ok) continue;
+    ++failures;
+    ASSERT_EQ(status, Status::out_of_memory);
+    EXPECT_TRUE(frames.buffer.empty());
+    EXPECT_TRUE(frames.events.begun().empty() && frames.events.ended().empty());
+    frames.forget();
+    ASSERT_TRUE(frames.next());
+    ASSERT_TRUE(frames.next());
+  }
+  EXPECT_GT(failures, 0);
+}
+
+TEST_P(Events, honour_the_predicate) {
+  World world(config());
+  std::vector<Aabb> boxes = uniform_boxes(scene_size(800));
+  const std::vector<Key> keys = world.insert(boxes);
+  // Half of all pairs; asked from several threads.
+  const auto accept = [](void*, ObjectId first, ObjectId second) {
+    return (first + second) % 2 == 0;
+  };
+  const PairPredicate predicate{accept, nullptr};
+  PairBuffer all;
+  PairBuffer some;
+  PairEvents events;
+  Random random(6);
+  for (const bool incremental : {true, false}) {
+    for (int frame = 0; frame < 4; ++frame) {
+      move(Motion::few, boxes, random);
+      world.update(keys, boxes);
+      ASSERT_EQ(world.threads().run([&] {
+        return world.partition().self_pairs(some, events, {Order::fast, incremental, predicate});
+      }),
+                Status::ok);
+      ASSERT_EQ(world.self_pairs(all, {.incremental = false}), Status::ok);
+      std::vector<Pair> wanted;
+      std::ranges::copy_if(all, std::back_inserter(wanted), [&](const Pair& pair) {
+        return accept(nullptr, pair.first, pair.second);
+      });
+      ASSERT_EQ(wanted.size(), some.size());
+      std::ranges::sort(wanted);
+      std::vector<Pair> got(some.begin(), some.end());
+      std::ranges::sort(got);
+      EXPECT_EQ(got, wanted);
+    }
+  }
+  ASSERT_EQ(world.pairs_with(world.partition(), all), Status::ok);
+  ASSERT_EQ(world.pairs_with(world.partition(), some, {Order::fast, true, predicate}), Status::ok);
+  const auto accepted = std::ranges::count_if(
+      all, [&](const Pair& pair) { return accept(nullptr, pair.first, pair.second); });
+  EXPECT_EQ(some.size(), static_cast<std::size_t>(accepted));
+}
+
+TEST_P(Events, allocate_nothing_in_steady_frames) {
+  for (const Motion motion : {Motion::few, Motion::much}) {
+    World world(config());
+    CountingMemory results;
+    PairBuffer buffer(&results);
+    PairEvents events(&results);
+    std::vector<std::vector<Aabb>> frames{uniform_boxes(scene_size(500))};
+    Random random(1);
+    while (frames.size() < 4) {
+      frames.push_back(frames.back());
+      move(motion, frames.back(), random);
+    }
+    const std::vector<Key> keys = world.insert(frames[0]);
+    const auto play = [&](std::size_t frame) {
+      world.update(keys, frames[frame % frames.size()]);
+      ASSERT_EQ(
+          world.threads().run([&] { return world.partition().self_pairs(buffer, events, {}); }),
+          Status::ok);
+    };
+    for (std::size_t frame = 0; frame < 12; ++frame) play(frame);
+    const std::size_t requests = results.requests();
+    for (std::size_t frame = 12; frame < 24; ++frame) play(frame);
+    EXPECT_EQ(results.requests(), requests);
+    EXPECT_EQ(buffer.footprint().total().reserved + events.footprint().total().reserved,
+              results.outstanding());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Events, testing::ValuesIn(all_configs()),
+                         testing::PrintToStringParamName());
+
+// The same frames on every instruction set and number of threads, byte by byte.
+TEST(EventsOfAnyConfig, are_the_same) {
+  for (const std::string_view name : partition_names()) {
+    std::vector<std::tuple<std::vector<Pair>, std::size_t, std::size_t>> expected;
+    for (const Config& config : all_configs()) {
+      if (config.partition != name) continue;
+      const IsaScope isa(config.isa);
+      World world(config);
+      PairBuffer buffer;
+      PairEvents events;
+      std::vector<Aabb> boxes = uniform_boxes(world.partition().is_exact() ? 3000 : 100);
+      const std::vector<Key> keys = world.insert(boxes);
+      Random random(9);
+      for (std::size_t frame = 0; frame < 5; ++frame) {
+        move(frame % 2 == 0 ? Motion::few : Motion::little, boxes, random);
+        world.update(keys, boxes);
+        ASSERT_EQ(
+            world.threads().run([&] { return world.partition().self_pairs(buffer, events, {}); }),
+            Status::ok);
+        const std::tuple got(std::vector<Pair>(buffer.begin(), buffer.end()), events.begun().size(),
+                             events.ended().size());
+        if (expected.size() == frame) expected.push_back(got);
+        EXPECT_EQ(got, expected[frame]) << to_string(config);
+      }
+    }
+  }
+}
+
+// Where nothing moved nothing is compared: the price of a frame is not the number of pairs.
+TEST(EventsOfAStillFrame, are_none_and_cost_no_test) {
+  for (const std::string_view name : partition_names()) {
+    World world(Config{std::string(name), active_isa(), 1});
+    Frames frames(world);
+    world.insert(uniform_boxes(100));
+    ASSERT_TRUE(frames.next());
+    ASSERT_TRUE(frames.next());
+    EXPECT_EQ(world.partition().statistics().last_tests, 0U);
+    EXPECT_EQ(frames.events.persisting(), frames.buffer.size());
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test
