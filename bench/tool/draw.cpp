@@ -80,6 +80,7 @@ Command add_draw(CLI::App& app) {
       ->allow_extra_args(false);
   sub->add_option("--max-objects", draw->options.most_objects,
                   "Objects drawn, evenly chosen; those hit by a ray or box besides")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}))
       ->capture_default_str();
   sub->add_option("--max-depth", draw->options.max_depth, "Levels of nodes drawn, from the root")
       ->check(CLI::Range(0, 64))

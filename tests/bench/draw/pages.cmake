@@ -29,7 +29,7 @@ endfunction()
 # open(<name of the page> <variable>): the page's report of itself.
 function(open name report)
   execute_process(
-    COMMAND ${browser} --headless --no-sandbox --enable-unsafe-swiftshader
+    COMMAND ${browser} --headless --no-sandbox --disable-dev-shm-usage --enable-unsafe-swiftshader
             --user-data-dir=${WORK}/profile --window-size=900,600 --virtual-time-budget=2000
             --enable-logging=stderr --dump-dom "file://${WORK}/${name}.html#check"
     TIMEOUT 120 RESULT_VARIABLE status OUTPUT_VARIABLE page ERROR_VARIABLE log)
