@@ -9,7 +9,7 @@ Footprint PairEvents::footprint() const noexcept {
   result.scratch = before_.bytes();
   result.scratch += after_.bytes();
   result.scratch += dropped_.bytes();
-  result.scratch += start_.bytes();
+  result.scratch += spare_.bytes();
   result.scratch += stamps_.bytes();
   return result;
 }

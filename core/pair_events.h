@@ -34,7 +34,7 @@ class PairEvents {
         dropped_(memory),
         before_(memory),
         after_(memory),
-        start_(memory),
+        spare_(memory),
         stamps_(memory) {}
   /// `other` is left empty and starts anew.
   PairEvents(PairEvents&& other) noexcept
@@ -43,9 +43,10 @@ class PairEvents {
         dropped_(std::move(other.dropped_)),
         before_(std::move(other.before_)),
         after_(std::move(other.after_)),
-        start_(std::move(other.start_)),
+        spare_(std::move(other.spare_)),
         stamps_(std::move(other.stamps_)),
         persisting_(std::exchange(other.persisting_, 0)),
+        after_is_all_(std::exchange(other.after_is_all_, false)),
         provenance_(std::exchange(other.provenance_, {})) {}
 
   /// Pairs that are in this frame and were not in the last, sorted by ids.
@@ -78,9 +79,10 @@ class PairEvents {
   Column<Pair> dropped_;
   Column<std::uint64_t> before_;  // pairs that may have ended, as (first << 32 | second)
   Column<std::uint64_t> after_;   // pairs that may have begun
-  Column<std::uint32_t> start_;   // by id, while pairs are sorted
+  Column<std::uint64_t> spare_;   // what pairs are sorted through
   Column<std::uint32_t> stamps_;  // by id, as of the last frame
   std::size_t persisting_ = 0;
+  bool after_is_all_ = false;  // after_ holds every pair of the last frame
   PairBuffer::Provenance provenance_;
 };
 

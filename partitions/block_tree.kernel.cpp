@@ -99,8 +99,12 @@ class LeafPairs {
       const Box16 a = load_slabs<3>(tree_.rows.column, row_of(first_[k]));
       Mask16 rows = overlap(a, b.low, b.high);
       if constexpr (Filtered) {
-        const auto first_row = static_cast<std::uint32_t>(row_of(first_[k]));
-        rows = passing_rows(tree_.rows, first_row, rows, node_range<true>(tree_, 0, second_[k]));
+        // Rows of one environment are told apart by their hits: looking at each costs more.
+        const FilterRange own = node_range<true>(tree_, 0, first_[k]);
+        if (own.first_environment != own.last_environment) {
+          const auto first_row = static_cast<std::uint32_t>(row_of(first_[k]));
+          rows = passing_rows(tree_.rows, first_row, rows, node_range<true>(tree_, 0, second_[k]));
+        }
       }
       if (!add_rows(first_[k] * kLanes, second_[k], rows)) return false;
     }

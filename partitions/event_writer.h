@@ -1,5 +1,6 @@
 #pragma once
 
+#include <winnow/core/execution.h>
 #include <winnow/core/key_table.h>
 #include <winnow/core/pair_events.h>
 #include <winnow/partitions/pair_tracker.h>
@@ -18,8 +19,8 @@ class EventWriter {
  public:
   /// `out` as it is before the query of a partition.
   EventWriter(PairEvents& events, const KeyTable& keys, const PairBuffer& out,
-              std::uint64_t partition) noexcept
-      : events_(events), keys_(keys) {
+              std::uint64_t partition, const Execution& execution) noexcept
+      : events_(events), keys_(keys), execution_(execution) {
     const PairBuffer::Provenance mine = events.provenance_;
     follows_ =
         mine.serial != 0 && mine.partition == partition && mine == PairTracker::provenance(out);
@@ -34,11 +35,9 @@ class EventWriter {
   void hold_none(const PairBuffer& out) noexcept { kept_ = follows_ ? out.size() : 0; }
 
   /// Fills the events and puts the pairs that persist first, those that began behind them.
-  /// O(pairs that were dropped or found anew).
-  [[nodiscard]] bool compare(PairBuffer& out) noexcept;
-
-  /// Takes down whose ids are whose: of all objects, or of those that moved since.
-  [[nodiscard]] bool take_stamps(std::span<const ObjectId> moved, bool all) noexcept;
+  /// `moved` are the objects that changed since the last frame, unless `all` may have. O(pairs that
+  /// were dropped or found anew + moved).
+  [[nodiscard]] bool compare(PairBuffer& out, std::span<const ObjectId> moved, bool all) noexcept;
 
   [[nodiscard]] std::size_t persisting() const noexcept { return events_.persisting_; }
   void set_provenance(PairBuffer::Provenance provenance) noexcept {
@@ -48,15 +47,22 @@ class EventWriter {
 
  private:
   [[nodiscard]] bool sort_into(Column<std::uint64_t>& list, std::span<const Pair> pairs) noexcept;
-  [[nodiscard]] Key key_before(ObjectId id) const noexcept;
-  [[nodiscard]] bool is_same(std::uint64_t pair) const noexcept;
+  [[nodiscard]] bool merge(Pair*& to) noexcept;
+  [[nodiscard]] bool take_stamps(std::span<const ObjectId> moved, bool all) noexcept;
+  [[nodiscard]] bool any_other_key(std::span<const ObjectId> moved, bool all) const noexcept;
+  [[nodiscard]] bool is_other(ObjectId id) const noexcept {
+    return events_.stamps_[id] != keys_.key_of(id).stamp;
+  }
+  [[nodiscard]] Key key_before(ObjectId id) const noexcept { return {id, events_.stamps_[id]}; }
   [[nodiscard]] bool end(std::uint64_t pair) noexcept;
   [[nodiscard]] bool begin(std::uint64_t pair) noexcept;
 
   PairEvents& events_;
   const KeyTable& keys_;
-  bool follows_ = false;  // the events tell of the frame that the buffer holds
-  std::size_t kept_ = 0;  // pairs at the front of the buffer that persist for sure
+  const Execution& execution_;
+  bool other_keys_ = false;  // an id went to another object since the last frame
+  bool follows_ = false;     // the events tell of the frame that the buffer holds
+  std::size_t kept_ = 0;     // pairs at the front of the buffer that persist for sure
 };
 
 }  // namespace winnow

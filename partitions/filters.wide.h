@@ -29,8 +29,11 @@ static inline FilterRange range_of(const NodeFilters& nodes, std::uint32_t i) {
 
 /// True if something in one range may meet something in the other; exact for two objects.
 static inline bool may_meet(const FilterRange& a, const FilterRange& b) {
-  return (a.layers & b.mask) != 0 && (b.layers & a.mask) != 0 &&
-         a.first_environment <= b.last_environment && b.first_environment <= a.last_environment;
+  // Without branches: layers are coin tosses.
+  return static_cast<bool>(static_cast<unsigned>((a.layers & b.mask) != 0) &
+                           static_cast<unsigned>((b.layers & a.mask) != 0) &
+                           static_cast<unsigned>(a.first_environment <= b.last_environment) &
+                           static_cast<unsigned>(b.first_environment <= a.last_environment));
 }
 
 /// Those of the candidate rows from `first_row` on that `q` may meet. Empty rows never pass.
@@ -41,7 +44,7 @@ static inline Mask16 passing_rows(const RowView& rows, std::uint32_t first_row, 
     const std::uint32_t id = rows.id[first_row + first(left)];
     if (id == ~0U) continue;
     const ObjectFilter own = rows.filter != nullptr ? rows.filter[id] : ObjectFilter{};
-    if (may_meet(range_of(own), q)) passed |= left & -left;
+    passed |= static_cast<Mask16>(may_meet(range_of(own), q)) << first(left);
   }
   return passed;
 }
@@ -55,7 +58,8 @@ static inline Mask16 passing_nodes(const NodeFilters& nodes, std::uint32_t first
                                    Mask16 candidates, const FilterRange& q) {
   Mask16 passed = 0;
   for (Mask16 left = candidates; left != 0; left &= left - 1) {
-    if (may_meet(range_of(nodes, first_node + first(left)), q)) passed |= left & -left;
+    const bool met = may_meet(range_of(nodes, first_node + first(left)), q);
+    passed |= static_cast<Mask16>(met) << first(left);
   }
   return passed;
 }

@@ -51,7 +51,7 @@ Status RowPartition::self_pairs(PairBuffer& out, const PairOptions& options) con
 
 Status RowPartition::self_pairs(PairBuffer& out, PairEvents& events,
                                 const PairOptions& options) const {
-  EventWriter writer(events, keys_, out, identity_);
+  EventWriter writer(events, keys_, out, identity_, execution_);
   const Status status = find_self_pairs(out, options, &writer);
   if (status != Status::ok) writer.fail();
   return status;
@@ -94,7 +94,7 @@ bool RowPartition::finish_pairs(PairBuffer& out, Order order, bool all,
   std::size_t unsorted = out.size();
   if (events != nullptr) {
     const auto moved = all ? std::span<const ObjectId>() : moved_.ids();
-    if (!events->compare(out) || !events->take_stamps(moved, all)) return false;
+    if (!events->compare(out, moved, all)) return false;
     unsorted = events->persisting();
   }
   return order == Order::fast || PairTracker::sort(out, keys_.slot_count(), unsorted);
