@@ -41,6 +41,25 @@ std::vector<Goal> same_pairs(const Ask& ask, const std::vector<Ask>& all, Lab& l
 /// folder is not there.
 std::vector<Goal> same_pairs_in_recordings(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
 
+// query_kinds.cpp
+
+/// One partition on one set of questions against another library, in the same run where that is
+/// installed.
+std::vector<Goal> query_speed(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// One partition's frustum against reading every box.
+std::vector<Goal> frustum_speed(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// Allocations of every partition when the same questions are asked again.
+std::vector<Goal> query_allocations(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// Partitions after many removals and insertions against fresh ones: pairs, rays and bytes.
+std::vector<Goal> churn(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// One partition's frames with pair events in which few objects move against one in which all do.
+std::vector<Goal> pair_events(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// One partition of many environments against a partition for each.
+std::vector<Goal> many_worlds(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+
+/// Measured where there is no answer, or a wrong one, and less is better.
+inline constexpr double kUnanswered = 1e6;
+
 /// "100,000 objects, 2 threads"
 [[nodiscard]] std::string on_size(std::size_t objects, int threads);
 

@@ -99,6 +99,30 @@ double Lab::bytes_per_object(const std::string& partition, const std::string& sc
   return most;
 }
 
+const QueryMeasurement& Lab::queries(const std::string& partition, const std::string& scene,
+                                     std::size_t objects) {
+  const auto [at, fresh] = queries_.try_emplace({partition, scene, objects});
+  if (fresh) {
+    QueryMeasureOptions options;
+    options.scene = scene;
+    options.objects = objects;
+    options.partitions = {partition};
+    options.sets = {"ray closest", "ray all", "ray all near", "box 1", "box 5", "box 20"};
+    options.rays = 50'000;
+    options.rounds = 7;
+    options.peers = true;
+    at->second = measure_queries(options);
+  }
+  return at->second;
+}
+
+const FrustumCosts& Lab::frustum(const std::string& set, std::size_t objects) {
+  const auto at = frustum_.find({set, objects});
+  if (at != frustum_.end()) return at->second;
+  FrustumCosts costs = measure_frustum_costs(frustum_partitions(), set, objects);
+  return frustum_.emplace(Where{set, objects}, std::move(costs)).first->second;
+}
+
 Spread Lab::machine_ms() const {
   std::vector<double> times;
   for (const auto& [where, cell] : cells_) times.push_back(cell.machine_ms);

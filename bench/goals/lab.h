@@ -2,7 +2,9 @@
 
 #include "engine/key_costs.h"
 #include "goals/kernel_times.h"
+#include "queries/query_costs.h"
 #include "tool/measure.h"
+#include "tool/measure_queries.h"
 
 #include <cstddef>
 #include <map>
@@ -38,6 +40,15 @@ class Lab {
   double bytes_per_object(const std::string& partition, const std::string& scene,
                           std::size_t objects);
 
+  /// One partition and the other libraries that answer questions, one thread, interleaved.
+  const QueryMeasurement& queries(const std::string& partition, const std::string& scene,
+                                  std::size_t objects);
+  /// Frusta of a set on the `frustum_partitions`. Throws Refusal.
+  const FrustumCosts& frustum(const std::string& set, std::size_t objects);
+  [[nodiscard]] static std::vector<std::string> frustum_partitions() {
+    return {"BoundsNSquared", "FlatGrid", "LinearBvh"};
+  }
+
   /// How much slower this machine was while the cell was measured than the reference machine.
   [[nodiscard]] static double scale(const Measurement& cell) noexcept {
     return cell.machine_ms / kReferenceMachineMs;
@@ -61,6 +72,8 @@ class Lab {
   std::map<Where, Measurement> by_isa_;
   std::map<Where, Measurement> peers_;
   std::map<std::tuple<std::string, std::size_t, bool>, KeyCosts> keys_;
+  std::map<std::tuple<std::string, std::string, std::size_t>, QueryMeasurement> queries_;
+  std::map<Where, FrustumCosts> frustum_;
 };
 
 }  // namespace winnow::bench

@@ -14,7 +14,7 @@ struct Kind {
   std::vector<Goal> (*measure)(const Ask&, const std::vector<Ask>&, Lab&);
 };
 
-constexpr std::array<Kind, 11> kKinds{{{"fastest_partition", fastest_partition},
+constexpr std::array<Kind, 17> kKinds{{{"fastest_partition", fastest_partition},
                                        {"no_slower_than_existing", no_slower_than_existing},
                                        {"scene_ratio", scene_ratio},
                                        {"speedup", speedup},
@@ -24,7 +24,13 @@ constexpr std::array<Kind, 11> kKinds{{{"fastest_partition", fastest_partition},
                                        {"key_operation", key_operation},
                                        {"key_flatness", key_flatness},
                                        {"same_pairs", same_pairs},
-                                       {"same_pairs_in_recordings", same_pairs_in_recordings}}};
+                                       {"same_pairs_in_recordings", same_pairs_in_recordings},
+                                       {"query_speed", query_speed},
+                                       {"frustum_speed", frustum_speed},
+                                       {"query_allocations", query_allocations},
+                                       {"churn", churn},
+                                       {"pair_events", pair_events},
+                                       {"many_worlds", many_worlds}}};
 
 }  // namespace
 

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace winnow::bench {
+
+/// What a frustum costs beside reading every box.
+struct FrustumCosts {
+  double read_ms = 0.0;         ///< to read the six columns of all boxes once
+  std::vector<double> ms;       ///< of one frustum, by partition
+  double found_a_question = 0;  ///< objects
+};
+
+/// Questions of the set (see question_set_names) about the first frame of `uniform`, on one thread:
+/// medians of rounds in which the partitions and the reading take turns. Throws Refusal.
+[[nodiscard]] FrustumCosts measure_frustum_costs(const std::vector<std::string>& partitions,
+                                                 const std::string& set, std::size_t objects);
+
+/// Allocations by a partition and its buffers when a set of questions is asked for the second time.
+struct SecondRound {
+  std::string set;  ///< and how it was asked
+  std::size_t allocations = 0;
+};
+
+/// All sets, singly and as a batch, on `uniform`, on one thread. Throws Refusal.
+[[nodiscard]] std::vector<SecondRound> measure_second_rounds(std::string_view partition,
+                                                             std::size_t objects);
+
+}  // namespace winnow::bench
