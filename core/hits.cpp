@@ -5,7 +5,7 @@ namespace winnow {
 Footprint HitBuffer::footprint() const noexcept {
   Footprint result = found_.footprint();
   result.scratch += result.results;
-  result.scratch += heap_.bytes();
+  result.scratch += keys_.bytes();
   result.results = hits_.bytes();
   result.results += start_.bytes();
   return result;

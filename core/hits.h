@@ -38,7 +38,7 @@ struct HitColumns {
 class HitBuffer {
  public:
   explicit HitBuffer(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
-      : hits_(memory), start_(memory), found_(memory), heap_(memory) {}
+      : hits_(memory), start_(memory), found_(memory), keys_(memory) {}
 
   [[nodiscard]] std::span<const Hit> hits() const noexcept { return {hits_.data(), size()}; }
   [[nodiscard]] std::size_t size() const noexcept { return hits_.size(); }
@@ -59,6 +59,7 @@ class HitBuffer {
   void clear() noexcept {
     hits_.clear();
     start_.clear();
+    found_.clear();
   }
   /// Room for `count` hits. False if memory is refused.
   [[nodiscard]] bool reserve(std::size_t count) noexcept { return hits_.reserve(count); }
@@ -71,8 +72,8 @@ class HitBuffer {
 
   Column<Hit> hits_;
   Column<std::size_t> start_;
-  PairBuffer found_;            // (object, bits of t)
-  Column<std::uint64_t> heap_;  // of a nearest query: bits of the distance << 32 | id
+  PairBuffer found_;            // what casts found, before it is put in order
+  Column<std::uint64_t> keys_;  // bits of t << 32 | id
 };
 
 /// The caller's array of objects that a region met, reused from query to query. Not for use from

@@ -1,6 +1,7 @@
 #include <winnow/partitions/block_tree.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace winnow {
@@ -92,6 +93,23 @@ void BlockTree::refit(const RowView& rows, std::span<std::uint32_t> leaves) noex
       if (has_filters()) refit_node_filters(tree, level, node, node + 1);
     }
   }
+}
+
+float BlockTree::typical_edge() const noexcept {
+  constexpr std::size_t kSample = 31;
+  std::array<float, kSample> edge;
+  const std::size_t count = std::min(kSample, blocks());
+  if (count == 0) return 0.0F;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t leaf = blocks() * i / count;
+    float sum = 0.0F;
+    for (std::size_t c = 0; c < 3; ++c) {
+      sum += (shape_.node[0][3 + c][leaf] - shape_.node[0][c][leaf]) / 3.0F;
+    }
+    edge[i] = sum;
+  }
+  std::nth_element(edge.begin(), edge.begin() + count / 2, edge.begin() + count);
+  return edge[count / 2];
 }
 
 void BlockTree::release() noexcept {

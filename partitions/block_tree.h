@@ -48,6 +48,9 @@ class BlockTree {
   /// Nodes one level above the blocks: the units in which pair finding is split.
   [[nodiscard]] std::size_t groups() const noexcept { return (blocks() + 15) / 16; }
 
+  /// The mean edge of a block in the middle of a sample; 0 if there are none.
+  [[nodiscard]] float typical_edge() const noexcept;
+
   void release() noexcept;
   [[nodiscard]] Bytes bytes() const noexcept;
 

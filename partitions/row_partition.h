@@ -18,7 +18,6 @@
 namespace winnow {
 
 class EventWriter;
-struct Sweep;
 
 /// What all partitions share: keys, rows, what changed since when, pair queries and their order.
 ///
@@ -177,12 +176,7 @@ class RowPartition : public Partition {
              PairBuffer& out) const;
   /// Brings everything up to date that queries walk.
   Status prepare(QueryView& view) const;
-  Status refresh_row_tree() const;
-  /// A kernel that finds one hit of a sweep.
-  using FindHit = bool (*)(const QueryView&, const Sweep&, const QueryFilter&, std::uint64_t&);
-  Status find_hit(FindHit find, const Cast& cast, Hit& hit, const Filter& filter) const;
-  Status find_hits(FindHit find, const RayBatch& rays, const HitColumns& hits,
-                   const Filter& filter) const;
+  Status refresh_for_queries() const;
   QueryBatch box_batch(std::size_t begin, std::size_t end, std::span<float> scratch) const noexcept;
   void note_work(std::uint64_t tests, std::uint64_t queries,
                  std::atomic<std::uint64_t>& base) const noexcept;
@@ -197,7 +191,8 @@ class RowPartition : public Partition {
 
   // Over the regular rows, for all queries but pairs: made when the first one comes.
   mutable BlockTree row_tree_;
-  mutable std::atomic<bool> row_tree_stale_{true};
+  mutable float leaf_edge_ = 0.0F;  // of a typical block
+  mutable std::atomic<bool> queries_stale_{true};
 
   std::size_t regular_rows_ = 0;  // rows [0, regular_rows_) are the derived partition's
   std::size_t built_rows_ = 0;    // rows from here on are the tail: new or moved since the build

@@ -39,7 +39,7 @@ Status RowPartition::refresh() const {
 Status RowPartition::refresh_now() {
   pool_.pad();
   const Status status = needs_build() ? build() : absorb_changes();
-  row_tree_stale_.store(true, std::memory_order_relaxed);
+  queries_stale_.store(true, std::memory_order_relaxed);
   if (status == Status::ok) forward_changes();
   return status;
 }

@@ -40,15 +40,26 @@ struct Sweep {
   const void* shape = nullptr;
 };
 
-/// Results are t's bits << 32 | id, which sorts by t and then by id, since t >= 0.
+/// Sweeps that are walked together at most.
+inline constexpr std::uint32_t kMostSweeps = 64;
+
+/// Results that are sorted together at most.
+inline constexpr std::uint32_t kMostSorted = 64;
+
+/// Results are t's bits << 32 | id, which sorts by t and then by id, since t >= 0; all bits set for
+/// no hit.
 struct CastKernels {
-  /// The least (t, id) of all hits below `best`; false if there is none.
-  bool (*closest)(const QueryView&, const Sweep&, const QueryFilter&, std::uint64_t& best);
-  /// Any hit.
+  /// For each of `count` <= kMostSweeps sweeps the least hit.
+  void (*closest)(const QueryView&, const Sweep*, std::uint32_t count, const QueryFilter&,
+                  std::uint64_t* best);
+  /// Any hit of one sweep.
   bool (*any)(const QueryView&, const Sweep&, const QueryFilter&, std::uint64_t& found);
-  /// All hits, unordered, as pairs (id, bits of t); `count` receives how many. False if the sink is
-  /// full.
-  bool (*all)(const QueryView&, const Sweep&, const QueryFilter&, PairSink&, std::size_t& count);
+  /// All hits of `count` <= kMostSweeps sweeps, in no order: two pairs each, (first + sweep, id)
+  /// and (bits of t, 0). False if the sink is full.
+  bool (*all)(const QueryView&, const Sweep*, std::uint32_t count, std::uint32_t first,
+              const QueryFilter&, PairSink&);
+  /// Sorts at most kMostSorted results.
+  void (*sort_few)(std::uint64_t* results, std::uint32_t size);
 };
 
 WINNOW_KERNELS(CastKernels, cast_kernels);

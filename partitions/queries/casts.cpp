@@ -9,6 +9,7 @@
 #include <winnow/partitions/row_partition.h>
 
 #include <algorithm>
+#include <array>
 #include <variant>
 
 namespace winnow {
@@ -61,10 +62,8 @@ class PreparedCast {
   MovingCapsule capsule_;
 };
 
-constexpr std::size_t kRaysPerTask = 64;
-
 std::size_t tasks_for(std::size_t rays) noexcept {
-  return (rays + kRaysPerTask - 1) / kRaysPerTask;
+  return (rays + kMostSweeps - 1) / kMostSweeps;
 }
 
 bool all_valid(const RayBatch& rays) noexcept {
@@ -74,16 +73,46 @@ bool all_valid(const RayBatch& rays) noexcept {
   return true;
 }
 
+/// As many rays of a batch as are walked together.
+struct Sweeps {
+  std::array<Sweep, kMostSweeps> sweep;
+  std::uint32_t first;
+  std::uint32_t count;
+
+  Sweeps(const RayBatch& rays, std::size_t task) noexcept
+      : first(static_cast<std::uint32_t>(task * kMostSweeps)),
+        count(static_cast<std::uint32_t>(std::min<std::size_t>(kMostSweeps, rays.count - first))) {
+    for (std::uint32_t i = 0; i < count; ++i) sweep[i] = make_sweep(rays[first + i]);
+  }
+};
+
 void write_columns(const HitColumns& out, std::size_t i, const Hit& hit) noexcept {
   if (out.key != nullptr) out.key[i] = hit.key;
   if (out.data != nullptr) out.data[i] = hit.data;
   if (out.t != nullptr) out.t[i] = hit.t;
 }
 
+bool is_hit(std::uint64_t found) noexcept {
+  return found != ~std::uint64_t{0};
+}
+
 }  // namespace
 
-Status RowPartition::find_hit(FindHit find, const Cast& cast, Hit& hit,
-                              const Filter& filter) const {
+Status RowPartition::closest(const Cast& cast, Hit& hit, const Filter& filter) const {
+  hit = {};
+  const PreparedCast prepared(cast);
+  if (!prepared.valid()) return Status::invalid_argument;
+  QueryView view;
+  if (const Status status = prepare(view); status != Status::ok) return status;
+  const KernelFilter wanted(filter, view, keys_);
+  if (wanted.meets_nothing()) return Status::ok;
+  std::uint64_t best = 0;
+  cast_kernels().closest(view, &prepared.sweep(), 1, wanted.wanted(), &best);
+  if (is_hit(best)) hit = to_hit(keys_, best);
+  return Status::ok;
+}
+
+Status RowPartition::any(const Cast& cast, Hit& hit, const Filter& filter) const {
   hit = {};
   const PreparedCast prepared(cast);
   if (!prepared.valid()) return Status::invalid_argument;
@@ -91,45 +120,37 @@ Status RowPartition::find_hit(FindHit find, const Cast& cast, Hit& hit,
   if (const Status status = prepare(view); status != Status::ok) return status;
   const KernelFilter wanted(filter, view, keys_);
   std::uint64_t found = 0;
-  if (!wanted.meets_nothing() && find(view, prepared.sweep(), wanted.wanted(), found)) {
+  if (!wanted.meets_nothing() &&
+      cast_kernels().any(view, prepared.sweep(), wanted.wanted(), found)) {
     hit = to_hit(keys_, found);
   }
   return Status::ok;
 }
 
-Status RowPartition::find_hits(FindHit find, const RayBatch& rays, const HitColumns& hits,
-                               const Filter& filter) const {
+Status RowPartition::closest(const RayBatch& rays, const HitColumns& hits,
+                             const Filter& filter) const {
   if (!all_valid(rays)) return Status::invalid_argument;
   QueryView view;
   if (const Status status = prepare(view); status != Status::ok) return status;
   const KernelFilter wanted(filter, view, keys_);
   execution_.for_each(tasks_for(rays.count), [&](std::size_t task) {
-    const std::size_t end = std::min(rays.count, (task + 1) * kRaysPerTask);
-    for (std::size_t i = task * kRaysPerTask; i < end; ++i) {
-      std::uint64_t found = 0;
-      const bool hit =
-          !wanted.meets_nothing() && find(view, make_sweep(rays[i]), wanted.wanted(), found);
-      write_columns(hits, i, hit ? to_hit(keys_, found) : Hit{});
+    const Sweeps sweeps(rays, task);
+    std::array<std::uint64_t, kMostSweeps> best;
+    if (wanted.meets_nothing()) {
+      best.fill(~std::uint64_t{0});
+    } else {
+      cast_kernels().closest(view, sweeps.sweep.data(), sweeps.count, wanted.wanted(), best.data());
+    }
+    for (std::uint32_t i = 0; i < sweeps.count; ++i) {
+      write_columns(hits, sweeps.first + i, is_hit(best[i]) ? to_hit(keys_, best[i]) : Hit{});
     }
   });
   return Status::ok;
 }
 
-Status RowPartition::closest(const Cast& cast, Hit& hit, const Filter& filter) const {
-  return find_hit(cast_kernels().closest, cast, hit, filter);
-}
-
-Status RowPartition::any(const Cast& cast, Hit& hit, const Filter& filter) const {
-  return find_hit(cast_kernels().any, cast, hit, filter);
-}
-
-Status RowPartition::closest(const RayBatch& rays, const HitColumns& hits,
-                             const Filter& filter) const {
-  return find_hits(cast_kernels().closest, rays, hits, filter);
-}
-
 Status RowPartition::any(const RayBatch& rays, const HitColumns& hits, const Filter& filter) const {
-  return find_hits(cast_kernels().any, rays, hits, filter);
+  // Walked together, the closest hit comes as cheap as any.
+  return closest(rays, hits, filter);
 }
 
 Status RowPartition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) const {
@@ -138,43 +159,33 @@ Status RowPartition::all(const Cast& cast, HitBuffer& hits, const Filter& filter
   if (!prepared.valid()) return Status::invalid_argument;
   QueryView view;
   if (const Status status = prepare(view); status != Status::ok) return status;
-  if (!HitWriter::start(hits, 1)) return Status::out_of_memory;
   const KernelFilter wanted(filter, view, keys_);
   const Execution here = Execution::serial();
   PairWriter writer(HitWriter::found(hits), here);
   const Status status = writer.append(1, [&](std::size_t, PairSink& sink) {
-    std::size_t count = 0;
-    const bool done = wanted.meets_nothing() ||
-                      cast_kernels().all(view, prepared.sweep(), wanted.wanted(), sink, count);
-    HitWriter::set_count(hits, 0, count);
-    return done;
+    return wanted.meets_nothing() ||
+           cast_kernels().all(view, &prepared.sweep(), 1, 0, wanted.wanted(), sink);
   });
-  if (status == Status::ok && HitWriter::finish(hits, keys_, here)) return Status::ok;
+  if (status == Status::ok && HitWriter::finish(hits, 1, keys_, here)) return Status::ok;
   hits.clear();
   return Status::out_of_memory;
 }
 
 Status RowPartition::all(const RayBatch& rays, HitBuffer& hits, const Filter& filter) const {
   hits.clear();
-  if (!all_valid(rays)) return Status::invalid_argument;
+  if (rays.count > kMaxObjects || !all_valid(rays)) return Status::invalid_argument;
   QueryView view;
   if (const Status status = prepare(view); status != Status::ok) return status;
-  if (!HitWriter::start(hits, rays.count)) return Status::out_of_memory;
   const KernelFilter wanted(filter, view, keys_);
   PairWriter writer(HitWriter::found(hits), execution_);
   const Status status = writer.append(tasks_for(rays.count), [&](std::size_t task, PairSink& sink) {
-    const std::size_t end = std::min(rays.count, (task + 1) * kRaysPerTask);
-    for (std::size_t i = task * kRaysPerTask; i < end; ++i) {
-      std::size_t count = 0;
-      if (!wanted.meets_nothing() &&
-          !cast_kernels().all(view, make_sweep(rays[i]), wanted.wanted(), sink, count)) {
-        return false;
-      }
-      HitWriter::set_count(hits, i, count);
-    }
-    return true;
+    const Sweeps sweeps(rays, task);
+    return wanted.meets_nothing() || cast_kernels().all(view, sweeps.sweep.data(), sweeps.count,
+                                                        sweeps.first, wanted.wanted(), sink);
   });
-  if (status == Status::ok && HitWriter::finish(hits, keys_, execution_)) return Status::ok;
+  if (status == Status::ok && HitWriter::finish(hits, rays.count, keys_, execution_)) {
+    return Status::ok;
+  }
   hits.clear();
   return Status::out_of_memory;
 }

@@ -1,7 +1,7 @@
 #include <winnow/partitions/hits.wide.h>
 #include <winnow/partitions/queries/cast.kernel.h>
 #include <winnow/partitions/queries/row_block.wide.h>
-#include <winnow/partitions/queries/sweep.wide.h>
+#include <winnow/partitions/queries/sweep_rounds.wide.h>
 #include <winnow/partitions/queries/walks.wide.h>
 
 namespace winnow {
@@ -27,26 +27,116 @@ bool test_rows(const QueryView& view, const Sweep& sweep, const SweepTest& probe
   return true;
 }
 
-bool closest(const QueryView& view, const Sweep& sweep, const QueryFilter& filter,
-             std::uint64_t& best) {
-  const SweepTest probe(sweep);
-  const Wanted wanted(view, filter);
-  float limit = scaled_limit(sweep, sweep.max_t);
-  bool any = false;
-  walk_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
-    return test_rows(view, sweep, probe, wanted, first_row, limit, [&](std::uint64_t hit) {
-      const auto id = static_cast<std::uint32_t>(hit);
-      if ((any && hit >= best) || !wanted.accepts(id)) return true;
-      any = true;
-      best = hit;
-      // Up to the next float: what shows the same t may have the smaller id.
-      const float t = value_of(static_cast<std::uint32_t>(hit >> 32U) + 1);
-      const float next = scaled_limit(sweep, static_cast<double>(t));
-      limit = next < limit ? next : limit;
+constexpr std::uint64_t kNoHit = ~std::uint64_t{0};
+
+/// Keeps the least hit of every sweep.
+class NearestHits {
+ public:
+  NearestHits(const Sweep* sweeps, const Wanted& wanted, std::uint64_t* best, float* limit)
+      : sweeps_(sweeps), wanted_(wanted), best_(best), limit_(limit) {}
+
+  static bool make_room() { return true; }
+  void touched(std::uint32_t s, double t, std::uint32_t id) {
+    const std::uint64_t hit = std::uint64_t{order_of_rounded_down(t)} << 32U | id;
+    if (hit >= best_[s] || !wanted_.accepts(id)) return;
+    best_[s] = hit;
+    // Up to the next float: what shows the same t may have the smaller id.
+    const float shown = value_of(static_cast<std::uint32_t>(hit >> 32U) + 1);
+    const float next = scaled_limit(sweeps_[s], static_cast<double>(shown));
+    limit_[s] = next < limit_[s] ? next : limit_[s];
+  }
+
+ private:
+  const Sweep* sweeps_;
+  const Wanted& wanted_;
+  std::uint64_t* best_;
+  float* limit_;
+};
+
+/// Looks for hits along the first stretches of every sweep in rounds, and walks in order what finds
+/// none there. A stretch reaches about as far as the first hits in a scene of even density.
+class Closest {
+ public:
+  Closest(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
+          const QueryFilter& filter, std::uint64_t* best)
+      : view_(view), sweeps_(sweeps), wanted_(view, filter), hits_(sweeps, wanted_, best, limit_) {
+    for (left_ = 0; left_ < count; ++left_) {
+      best[left_] = kNoHit;
+      open_[left_] = left_;
+      from_[left_] = sweeps[left_].from;
+      last_[left_] = scaled_limit(sweeps[left_], sweeps[left_].max_t);
+    }
+  }
+
+  void run() {
+    SweepRounds<NearestHits> rounds(view_, sweeps_, from_, limit_, wanted_, hits_);
+    const float edge = view_.leaf_edge;
+    // Without blocks to lead to them all rows are tested anyway.
+    float stretch = edge > 0.0F ? kStretch * edge : __builtin_inff();
+    for (int round = 0; round < kRounds && left_ != 0; ++round, stretch *= 4.0F) {
+      for (std::uint32_t k = 0; k < left_; ++k) {
+        const std::uint32_t s = open_[k];
+        // A unit of scaled t is about a unit of length.
+        const float end = from_[s] + stretch;
+        end_[s] = limit_[s] = end < last_[s] ? end : last_[s];
+      }
+      rounds.run(open_, left_);
+      drop_finished();
+    }
+    for (std::uint32_t k = 0; k < left_; ++k) walk_on(open_[k]);
+  }
+
+ private:
+  static constexpr float kStretch = 1.0F;
+  static constexpr int kRounds = 2;
+
+  /// A sweep is finished where nothing is left of it, or what it hit lies before the end of the
+  /// stretch by more than the rounding of the tests.
+  void drop_finished() {
+    std::uint32_t next = 0;
+    for (std::uint32_t k = 0; k < left_; ++k) {
+      const std::uint32_t s = open_[k];
+      const bool finished = limit_[s] < end_[s] || !(end_[s] < last_[s]);
+      from_[s] = end_[s];
+      open_[next] = s;
+      next += finished ? 0U : 1U;
+    }
+    left_ = next;
+  }
+
+  void walk_on(std::uint32_t s) {
+    const SweepTest probe(sweeps_[s], from_[s]);
+    float& limit = limit_[s];
+    limit = last_[s];
+    walk_in_order(view_, probe, wanted_, limit, [&](std::uint32_t first_row) {
+      const RowBlock block(view_, first_row);
+      Float16 enter;
+      Mask16 mask = probe.test(block.columns(), block.at(), limit, enter);
+      mask = wanted_.rows(first_row, mask);
+      for (; mask != 0; mask &= mask - 1) {
+        const unsigned lane = first(mask);
+        const double t = touch_row(sweeps_[s], block.columns(), block.at() + lane);
+        if (t >= 0.0) hits_.touched(s, t, view_.id[first_row + lane]);
+      }
       return true;
     });
-  });
-  return any;
+  }
+
+  const QueryView& view_;
+  const Sweep* sweeps_;
+  const Wanted wanted_;
+  NearestHits hits_;
+  std::uint32_t left_ = 0;
+  std::uint32_t open_[kMostSweeps];
+  float from_[kMostSweeps];
+  float limit_[kMostSweeps];
+  float end_[kMostSweeps];
+  float last_[kMostSweeps];
+};
+
+void closest(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
+             const QueryFilter& filter, std::uint64_t* best) {
+  Closest(view, sweeps, count, filter, best).run();
 }
 
 bool any(const QueryView& view, const Sweep& sweep, const QueryFilter& filter,
@@ -63,30 +153,79 @@ bool any(const QueryView& view, const Sweep& sweep, const QueryFilter& filter,
   });
 }
 
-bool all(const QueryView& view, const Sweep& sweep, const QueryFilter& filter, PairSink& sink,
-         std::size_t& count) {
-  const SweepTest probe(sweep);
+/// Writes every hit.
+class AllHits {
+ public:
+  AllHits(const Wanted& wanted, std::uint32_t first_sweep, PairSink& sink)
+      : wanted_(wanted), first_sweep_(first_sweep), sink_(sink) {}
+
+  /// Two pairs a hit, and a sink with room has some for 272.
+  bool make_room() { return has_room(sink_); }
+  void touched(std::uint32_t s, double t, std::uint32_t id) {
+    if (!wanted_.accepts(id)) return;
+    sink_.cursor[0] = first_sweep_ + s;
+    sink_.cursor[1] = id;
+    sink_.cursor[2] = order_of_rounded_down(t);
+    sink_.cursor[3] = 0;
+    sink_.cursor += 4;
+  }
+
+ private:
+  const Wanted& wanted_;
+  std::uint32_t first_sweep_;
+  PairSink& sink_;
+};
+
+bool all(const QueryView& view, const Sweep* sweeps, std::uint32_t count, std::uint32_t first_sweep,
+         const QueryFilter& filter, PairSink& sink) {
   const Wanted wanted(view, filter);
-  const float limit = scaled_limit(sweep, sweep.max_t);
-  count = 0;
-  return walk(view, probe, wanted, limit, [&](std::uint32_t first_row) {
-    if (!has_room(sink)) return false;
-    return test_rows(view, sweep, probe, wanted, first_row, limit, [&](std::uint64_t hit) {
-      const auto id = static_cast<std::uint32_t>(hit);
-      if (!wanted.accepts(id)) return true;
-      sink.cursor[0] = id;
-      sink.cursor[1] = static_cast<std::uint32_t>(hit >> 32U);
-      sink.cursor += 2;
-      ++count;
-      return true;
-    });
-  });
+  float from[kMostSweeps];
+  float limit[kMostSweeps];
+  for (std::uint32_t s = 0; s < count; ++s) {
+    from[s] = sweeps[s].from;
+    limit[s] = scaled_limit(sweeps[s], sweeps[s].max_t);
+  }
+  AllHits hits(wanted, first_sweep, sink);
+  return SweepRounds<AllHits>(view, sweeps, from, limit, wanted, hits).run(nullptr, count);
+}
+
+/// Every element's place is counted, 16 comparisons at once, with no branch that depends on the
+/// data. What has equal t is put right at the end.
+void sort_few(std::uint64_t* results, std::uint32_t size) {
+  alignas(64) float t[kMostSorted];
+  std::uint64_t copy[kMostSorted];
+  const std::uint32_t blocks = (size + kLanes - 1) / kLanes;
+  for (std::uint32_t i = 0; i < size; ++i) {
+    copy[i] = results[i];
+    t[i] = value_of(static_cast<std::uint32_t>(results[i] >> 32U));
+  }
+  for (std::uint32_t i = size; i < blocks * kLanes; ++i) t[i] = __builtin_inff();
+  for (std::uint32_t i = 0; i < size; ++i) {
+    const Float16 own = broadcast(t[i]);
+    std::uint32_t place = 0;
+    for (std::uint32_t b = 0; b < blocks; ++b) {
+      const Float16 others = load(t + b * kLanes);
+      const Mask16 not_before = less_equal(own, others);
+      const Mask16 equal = not_before & less_equal(others, own);
+      const std::uint32_t ahead = i > b * kLanes ? i - b * kLanes : 0;
+      place += count(~not_before & 0xFFFFU);
+      place += count(equal & lanes_below(ahead < kLanes ? ahead : kLanes));
+    }
+    results[place] = copy[i];
+  }
+  for (std::uint32_t i = 1; i < size; ++i) {
+    const std::uint64_t moved = results[i];
+    std::uint32_t place = i;
+    for (; place > 0 && results[place - 1] > moved; --place) results[place] = results[place - 1];
+    results[place] = moved;
+  }
 }
 
 }  // namespace
 }  // namespace WINNOW_ISA_NAME
 
 extern const CastKernels WINNOW_KERNEL_TABLE(cast_kernels) = {
-    WINNOW_ISA_NAME::closest, WINNOW_ISA_NAME::any, WINNOW_ISA_NAME::all};
+    WINNOW_ISA_NAME::closest, WINNOW_ISA_NAME::any, WINNOW_ISA_NAME::all,
+    WINNOW_ISA_NAME::sort_few};
 
 }  // namespace winnow

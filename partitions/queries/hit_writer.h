@@ -17,34 +17,27 @@ namespace winnow {
           std::bit_cast<float>(static_cast<std::uint32_t>(found >> 32U))};
 }
 
-/// A query's access to the inside of a HitBuffer: first come pairs (id, t's bits) question by
-/// question with their counts, then they are sorted and written as hits.
+/// A query's access to the inside of a HitBuffer. Casts first write two pairs a hit, (question,
+/// object) and (bits of t, 0), those of 64 questions at a time in any order; then `finish` puts
+/// them in order.
 class HitWriter {
  public:
-  /// What has been found so far.
-  [[nodiscard]] static PairBuffer& found(HitBuffer& out) noexcept { return out.found_; }
+  static constexpr std::size_t kQuestionsTogether = 64;
 
-  /// Empties the buffer for `questions` questions. False if memory is refused.
-  [[nodiscard]] static bool start(HitBuffer& out, std::size_t questions) noexcept {
-    out.clear();
-    out.found_.clear();
-    if (!out.start_.resize(questions + 1)) return false;
-    out.start_[0] = 0;
-    return true;
-  }
-  static void set_count(HitBuffer& out, std::size_t question, std::size_t hits) noexcept {
-    out.start_[question + 1] = hits;
-  }
+  /// What has been found so far; empty after `HitBuffer::clear`.
+  [[nodiscard]] static PairBuffer& found(HitBuffer& out) noexcept { return out.found_; }
+  /// Makes hits of everything found, sorted by question, t and id. False if memory is refused.
+  [[nodiscard]] static bool finish(HitBuffer& out, std::size_t questions, const KeyTable& keys,
+                                   const Execution& execution) noexcept;
 
   /// Scratch for a nearest query.
-  [[nodiscard]] static Column<std::uint64_t>& heap(HitBuffer& out) noexcept { return out.heap_; }
-  /// Writes these as the hits of the only question. False if memory is refused.
-  [[nodiscard]] static bool write(HitBuffer& out, const KeyTable& keys,
-                                  const Column<std::uint64_t>& found) noexcept;
+  [[nodiscard]] static Column<std::uint64_t>& heap(HitBuffer& out) noexcept { return out.keys_; }
+  /// Makes hits of what is in that scratch, of one question. False if memory is refused.
+  [[nodiscard]] static bool write_heap(HitBuffer& out, const KeyTable& keys) noexcept;
 
-  /// Sorts by (t, id) and writes every question's hits. False if memory is refused.
-  [[nodiscard]] static bool finish(HitBuffer& out, const KeyTable& keys,
-                                   const Execution& execution) noexcept;
+ private:
+  static void finish_some(HitBuffer& out, std::size_t first, std::size_t last,
+                          const KeyTable& keys) noexcept;
 };
 
 }  // namespace winnow

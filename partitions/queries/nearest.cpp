@@ -6,8 +6,6 @@
 #include <winnow/partitions/queries/query_filter.h>
 #include <winnow/partitions/row_partition.h>
 
-#include <algorithm>
-
 namespace winnow {
 
 WINNOW_DEFINE_KERNELS(NearestKernels, nearest_kernels)
@@ -41,10 +39,7 @@ Status RowPartition::nearest(const Aabb& from, std::size_t count, float radius, 
   if (!finite || !(radius >= 0.0F)) return Status::invalid_argument;
   QueryView view;
   if (const Status status = prepare(view); status != Status::ok) return status;
-  if (!HitWriter::start(hits, 1)) return Status::out_of_memory;
   const KernelFilter wanted(filter, view, keys_);
-  HitWriter::set_count(hits, 0, 0);
-  if (wanted.meets_nothing() || count == 0) return Status::ok;
   NearestQuery query;
   for (int axis = 0; axis < 3; ++axis) {
     query.low[axis] = from.min[axis];
@@ -54,10 +49,10 @@ Status RowPartition::nearest(const Aabb& from, std::size_t count, float radius, 
   Column<std::uint64_t>& entries = HitWriter::heap(hits);
   entries.clear();
   NearestHeap heap = heap_in(entries, count);
-  const bool done = nearest_kernels().nearest(view, query, wanted.wanted(), heap);
+  const bool done = wanted.meets_nothing() || count == 0 ||
+                    nearest_kernels().nearest(view, query, wanted.wanted(), heap);
   entries.set_size(heap.size);
-  std::sort(entries.begin(), entries.end());
-  if (done && HitWriter::write(hits, keys_, entries)) return Status::ok;
+  if (done && HitWriter::write_heap(hits, keys_)) return Status::ok;
   hits.clear();
   return Status::out_of_memory;
 }

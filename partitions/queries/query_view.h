@@ -19,6 +19,7 @@ struct QueryView {
   const TreeView* tree[2] = {};          ///< their own `rows` are unset
   std::uint32_t trees = 0;
   std::uint32_t flat_blocks = 0;
+  float leaf_edge = 0.0F;  ///< of a typical block; 0 if there are no trees
 };
 
 /// Whom a query wants.

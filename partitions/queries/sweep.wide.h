@@ -20,7 +20,9 @@ inline float scaled_limit(const Sweep& sweep, double t) {
 /// Sixteen boxes against one sweep.
 class SweepTest {
  public:
-  explicit SweepTest(const Sweep& sweep) : sweep_(sweep), from_(broadcast(sweep.from)) {
+  explicit SweepTest(const Sweep& sweep) : SweepTest(sweep, sweep.from) {}
+  /// From a later scaled t on.
+  SweepTest(const Sweep& sweep, float from) : sweep_(sweep), from_(broadcast(from)) {
     for (int i = 0; i < 3; ++i) {
       near_origin_[i] = broadcast(sweep.near_origin[i]);
       far_origin_[i] = broadcast(sweep.far_origin[i]);

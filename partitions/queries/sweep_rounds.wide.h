@@ -1,0 +1,130 @@
+#pragma once
+
+#include <winnow/partitions/queries/row_block.wide.h>
+#include <winnow/partitions/queries/sweep.wide.h>
+#include <winnow/partitions/queries/walks.wide.h>
+#include <winnow/simd/compress.h>
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// Walks many sweeps down the trees together, a level at a time: what is open on a level waits in
+/// that level's list, and a list is worked off in one long loop. How many children a node passes on
+/// is as hard to foresee as a coin, and each test takes long from its first load to its last bit;
+/// here neither is waited for. Nothing is visited in order: what is to be left out must lie beyond
+/// a sweep's limit from the start.
+///
+/// `Hits` takes what is touched: `void touched(sweep, t, id)`, and `bool make_room()` before 128 of
+/// them at most, which returns false to end the walk.
+template <typename Hits>
+class SweepRounds {
+ public:
+  /// `from` and `limit` are the scaled interval of each sweep; `hits` may lower a limit.
+  SweepRounds(const QueryView& view, const Sweep* sweeps, const float* from, const float* limit,
+              const Wanted& wanted, Hits& hits)
+      : view_(view), sweeps_(sweeps), from_(from), limit_(limit), wanted_(wanted), hits_(hits) {}
+
+  /// Sweeps [0, count), or those of a list.
+  bool run(const std::uint32_t* list, std::uint32_t count) {
+    for (std::uint32_t t = 0; t < view_.trees; ++t) {
+      tree_ = view_.tree[t];
+      const std::uint32_t top = tree_->levels - 1;
+      for (std::uint32_t k = 0; k < count; ++k) {
+        if (!test_nodes(list != nullptr ? list[k] : k, top, 0)) return false;
+      }
+      for (std::uint32_t level = top + 1; level-- > 0;) {
+        if (!drain(level)) return false;
+      }
+    }
+    for (std::uint32_t block = 0; block < view_.flat_blocks; ++block) {
+      for (std::uint32_t k = 0; k < count; ++k) {
+        if (!test_rows(list != nullptr ? list[k] : k, block * kLanes)) return false;
+      }
+    }
+    return touch_rows();
+  }
+
+ private:
+  static constexpr unsigned kRoom = 256;
+  static constexpr unsigned kHitsAtOnce = 128;
+
+  struct Open {
+    unsigned size = 0;
+    std::uint32_t sweep[kRoom + kLanes];
+    std::uint32_t at[kRoom + kLanes];
+
+    [[nodiscard]] bool full() const { return size > kRoom - kLanes; }
+    void add(std::uint32_t s, std::uint32_t base, Mask16 mask) {
+      store_unaligned(sweep + size, broadcast(s));
+      size += compress_store(mask, count_from(base), at + size);
+    }
+  };
+
+  [[nodiscard]] Mask16 test(std::uint32_t s, const float* const* column, std::size_t at) const {
+    Float16 enter;
+    return SweepTest(sweeps_[s], from_[s]).test(column, at, limit_[s], enter);
+  }
+
+  bool test_nodes(std::uint32_t s, std::uint32_t level, std::uint32_t first_node) {
+    if (open_[level].full() && !drain(level)) return false;
+    const Mask16 mask = test(s, tree_->node[level], first_node);
+    open_[level].add(s, first_node, wanted_.nodes(*tree_, level, first_node, mask));
+    return true;
+  }
+
+  bool drain(std::uint32_t level) {
+    Open& open = open_[level];
+    for (unsigned k = 0; k < open.size; ++k) {
+      const bool done = level == 0
+                            ? test_rows(open.sweep[k], (tree_->first_block + open.at[k]) * kLanes)
+                            : test_nodes(open.sweep[k], level - 1, open.at[k] * kLanes);
+      if (!done) return false;
+    }
+    open.size = 0;
+    return true;
+  }
+
+  bool test_rows(std::uint32_t s, std::uint32_t first_row) {
+    if (rows_.full() && !touch_rows()) return false;
+    if (view_.spheres) return test_spheres(s, first_row);
+    const Mask16 mask = test(s, view_.column, first_row);
+    rows_.add(s, first_row, wanted_.rows(first_row, mask));
+    return true;
+  }
+
+  bool test_spheres(std::uint32_t s, std::uint32_t first_row) {
+    const RowBlock block(view_, first_row);
+    const Mask16 mask = test(s, block.columns(), block.at());
+    rows_.add(s, first_row, wanted_.rows(first_row, mask));
+    return true;
+  }
+
+  bool touch_rows() {
+    for (unsigned k = 0; k < rows_.size; ++k) {
+      if (k % kHitsAtOnce == 0 && !hits_.make_room()) return false;
+      const std::uint32_t s = rows_.sweep[k];
+      const std::uint32_t row = rows_.at[k];
+      const double t =
+          view_.spheres ? touch_sphere(s, row) : touch_row(sweeps_[s], view_.column, row);
+      if (t >= 0.0) hits_.touched(s, t, view_.id[row]);
+    }
+    rows_.size = 0;
+    return true;
+  }
+
+  [[nodiscard]] double touch_sphere(std::uint32_t s, std::uint32_t row) const {
+    const RowBlock block(view_, row / kLanes * kLanes);
+    return touch_row(sweeps_[s], block.columns(), row % kLanes);
+  }
+
+  const QueryView& view_;
+  const TreeView* tree_ = nullptr;
+  const Sweep* sweeps_;
+  const float* from_;
+  const float* limit_;
+  const Wanted& wanted_;
+  Hits& hits_;
+  Open open_[kMaxTreeLevels];
+  Open rows_;
+};
+
+}  // namespace winnow::WINNOW_ISA_NAME
