@@ -40,8 +40,17 @@ struct Sweep {
   const void* shape = nullptr;
 };
 
-/// Sweeps that are walked together at most.
+/// Sweeps that are walked together at most; all must go the same way.
 inline constexpr std::uint32_t kMostSweeps = 64;
+
+/// True if two sweeps meet the same columns of boxes first.
+static inline bool same_way(const Sweep& a, const Sweep& b) {
+  bool same = true;
+  for (int i = 0; i < 3; ++i) {
+    same = same && a.near_column[i] == b.near_column[i] && a.far_column[i] == b.far_column[i];
+  }
+  return same;
+}
 
 /// Results that are sorted together at most.
 inline constexpr std::uint32_t kMostSorted = 64;
@@ -54,9 +63,9 @@ struct CastKernels {
                   std::uint64_t* best);
   /// Any hit of one sweep.
   bool (*any)(const QueryView&, const Sweep&, const QueryFilter&, std::uint64_t& found);
-  /// All hits of `count` <= kMostSweeps sweeps, in no order: two pairs each, (first + sweep, id)
-  /// and (bits of t, 0). False if the sink is full.
-  bool (*all)(const QueryView&, const Sweep*, std::uint32_t count, std::uint32_t first,
+  /// All hits of `count` <= kMostSweeps sweeps, in no order: two pairs each, (question of the
+  /// sweep, id) and (bits of t, 0). False if the sink is full.
+  bool (*all)(const QueryView&, const Sweep*, std::uint32_t count, const std::uint32_t* question,
               const QueryFilter&, PairSink&);
   /// Sorts at most kMostSorted results.
   void (*sort_few)(std::uint64_t* results, std::uint32_t size);

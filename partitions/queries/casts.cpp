@@ -62,9 +62,9 @@ class PreparedCast {
   MovingCapsule capsule_;
 };
 
-std::size_t tasks_for(std::size_t rays) noexcept {
-  return (rays + kMostSweeps - 1) / kMostSweeps;
-}
+constexpr std::size_t kGroup = HitWriter::kGroup;
+// Groups that are finished before the next ones begin: what they found stays in the cache.
+constexpr std::size_t kGroupsTogether = 16;
 
 bool all_valid(const RayBatch& rays) noexcept {
   for (std::size_t i = 0; i < rays.count; ++i) {
@@ -73,17 +73,56 @@ bool all_valid(const RayBatch& rays) noexcept {
   return true;
 }
 
-/// As many rays of a batch as are walked together.
-struct Sweeps {
-  std::array<Sweep, kMostSweeps> sweep;
-  std::uint32_t first;
-  std::uint32_t count;
-
-  Sweeps(const RayBatch& rays, std::size_t task) noexcept
-      : first(static_cast<std::uint32_t>(task * kMostSweeps)),
-        count(static_cast<std::uint32_t>(std::min<std::size_t>(kMostSweeps, rays.count - first))) {
-    for (std::uint32_t i = 0; i < count; ++i) sweep[i] = make_sweep(rays[first + i]);
+/// Which half of space each axis of a ray goes to.
+unsigned octant(const Ray& ray) noexcept {
+  unsigned result = 0;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    result |= static_cast<unsigned>(ray.direction[static_cast<int>(axis)] < 0.0F) << axis;
   }
+  return result;
+}
+
+/// Some rays of a batch, in parties that go the same way and are walked together.
+class RayGroup {
+ public:
+  RayGroup(const RayBatch& rays, std::size_t begin, std::size_t end) noexcept : rays_(rays) {
+    std::array<std::uint32_t, 9> start{};
+    for (std::size_t i = begin; i < end; ++i) ++start[octant(rays[i]) + 1];
+    for (std::size_t o = 0; o < 8; ++o) start[o + 1] += start[o];
+    for (std::size_t i = begin; i < end; ++i) {
+      question_[start[octant(rays[i])]++] = static_cast<std::uint32_t>(i);
+    }
+    left_ = question_.data();
+    end_ = left_ + (end - begin);
+  }
+  RayGroup(const RayGroup&) = delete;
+  RayGroup& operator=(const RayGroup&) = delete;
+
+  /// Prepares the next party. False if there is none.
+  bool next() noexcept {
+    questions_ = left_;
+    count_ = 0;
+    while (left_ != end_ && count_ < kMostSweeps) {
+      sweep_[count_] = make_sweep(rays_[*left_]);
+      if (count_ != 0 && !same_way(sweep_[0], sweep_[count_])) break;
+      ++count_;
+      ++left_;
+    }
+    return count_ != 0;
+  }
+  [[nodiscard]] const Sweep* sweeps() const noexcept { return sweep_.data(); }
+  [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
+  /// Of each sweep, its ray in the batch.
+  [[nodiscard]] const std::uint32_t* questions() const noexcept { return questions_; }
+
+ private:
+  const RayBatch& rays_;
+  std::array<std::uint32_t, kGroup> question_;
+  std::array<Sweep, kMostSweeps> sweep_;
+  const std::uint32_t* questions_ = nullptr;
+  const std::uint32_t* left_;
+  const std::uint32_t* end_;
+  std::uint32_t count_ = 0;
 };
 
 void write_columns(const HitColumns& out, std::size_t i, const Hit& hit) noexcept {
@@ -133,16 +172,20 @@ Status RowPartition::closest(const RayBatch& rays, const HitColumns& hits,
   QueryView view;
   if (const Status status = prepare(view); status != Status::ok) return status;
   const KernelFilter wanted(filter, view, keys_);
-  execution_.for_each(tasks_for(rays.count), [&](std::size_t task) {
-    const Sweeps sweeps(rays, task);
+  if (wanted.meets_nothing()) {
+    for (std::size_t i = 0; i < rays.count; ++i) write_columns(hits, i, {});
+    return Status::ok;
+  }
+  // Small tasks, so that a batch of some thousands has work for every thread.
+  constexpr std::size_t kTask = kGroup / 4;
+  execution_.for_each((rays.count + kTask - 1) / kTask, [&](std::size_t task) {
+    RayGroup group(rays, task * kTask, std::min(rays.count, (task + 1) * kTask));
     std::array<std::uint64_t, kMostSweeps> best;
-    if (wanted.meets_nothing()) {
-      best.fill(~std::uint64_t{0});
-    } else {
-      cast_kernels().closest(view, sweeps.sweep.data(), sweeps.count, wanted.wanted(), best.data());
-    }
-    for (std::uint32_t i = 0; i < sweeps.count; ++i) {
-      write_columns(hits, sweeps.first + i, is_hit(best[i]) ? to_hit(keys_, best[i]) : Hit{});
+    while (group.next()) {
+      cast_kernels().closest(view, group.sweeps(), group.count(), wanted.wanted(), best.data());
+      for (std::uint32_t i = 0; i < group.count(); ++i) {
+        write_columns(hits, group.questions()[i], is_hit(best[i]) ? to_hit(keys_, best[i]) : Hit{});
+      }
     }
   });
   return Status::ok;
@@ -159,14 +202,16 @@ Status RowPartition::all(const Cast& cast, HitBuffer& hits, const Filter& filter
   if (!prepared.valid()) return Status::invalid_argument;
   QueryView view;
   if (const Status status = prepare(view); status != Status::ok) return status;
+  if (!HitWriter::start(hits, 1)) return Status::out_of_memory;
   const KernelFilter wanted(filter, view, keys_);
   const Execution here = Execution::serial();
   PairWriter writer(HitWriter::found(hits), here);
   const Status status = writer.append(1, [&](std::size_t, PairSink& sink) {
+    const std::uint32_t question = 0;
     return wanted.meets_nothing() ||
-           cast_kernels().all(view, &prepared.sweep(), 1, 0, wanted.wanted(), sink);
+           cast_kernels().all(view, &prepared.sweep(), 1, &question, wanted.wanted(), sink);
   });
-  if (status == Status::ok && HitWriter::finish(hits, 1, keys_, here)) return Status::ok;
+  if (status == Status::ok && HitWriter::finish(hits, 0, 1, keys_, here)) return Status::ok;
   hits.clear();
   return Status::out_of_memory;
 }
@@ -176,18 +221,30 @@ Status RowPartition::all(const RayBatch& rays, HitBuffer& hits, const Filter& fi
   if (rays.count > kMaxObjects || !all_valid(rays)) return Status::invalid_argument;
   QueryView view;
   if (const Status status = prepare(view); status != Status::ok) return status;
+  if (!HitWriter::start(hits, rays.count)) return Status::out_of_memory;
   const KernelFilter wanted(filter, view, keys_);
-  PairWriter writer(HitWriter::found(hits), execution_);
-  const Status status = writer.append(tasks_for(rays.count), [&](std::size_t task, PairSink& sink) {
-    const Sweeps sweeps(rays, task);
-    return wanted.meets_nothing() || cast_kernels().all(view, sweeps.sweep.data(), sweeps.count,
-                                                        sweeps.first, wanted.wanted(), sink);
-  });
-  if (status == Status::ok && HitWriter::finish(hits, rays.count, keys_, execution_)) {
-    return Status::ok;
+  const std::size_t step = execution_.concurrency() == 1 ? kGroup : kGroup * kGroupsTogether;
+  for (std::size_t first = 0; first < rays.count; first += step) {
+    const std::size_t last = std::min(rays.count, first + step);
+    PairWriter writer(HitWriter::found(hits), execution_);
+    const std::size_t groups = (last - first + kGroup - 1) / kGroup;
+    const Status status = writer.append(groups, [&](std::size_t task, PairSink& sink) {
+      const std::size_t begin = first + task * kGroup;
+      RayGroup group(rays, begin, std::min(last, begin + kGroup));
+      while (!wanted.meets_nothing() && group.next()) {
+        if (!cast_kernels().all(view, group.sweeps(), group.count(), group.questions(),
+                                wanted.wanted(), sink)) {
+          return false;
+        }
+      }
+      return true;
+    });
+    if (status != Status::ok || !HitWriter::finish(hits, first, last, keys_, execution_)) {
+      hits.clear();
+      return Status::out_of_memory;
+    }
   }
-  hits.clear();
-  return Status::out_of_memory;
+  return Status::ok;
 }
 
 }  // namespace winnow

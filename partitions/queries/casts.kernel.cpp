@@ -87,7 +87,7 @@ class Closest {
   }
 
  private:
-  static constexpr float kStretch = 1.0F;
+  static constexpr float kStretch = 0.4F;
   static constexpr int kRounds = 2;
 
   /// A sweep is finished where nothing is left of it, or what it hit lies before the end of the
@@ -156,14 +156,14 @@ bool any(const QueryView& view, const Sweep& sweep, const QueryFilter& filter,
 /// Writes every hit.
 class AllHits {
  public:
-  AllHits(const Wanted& wanted, std::uint32_t first_sweep, PairSink& sink)
-      : wanted_(wanted), first_sweep_(first_sweep), sink_(sink) {}
+  AllHits(const Wanted& wanted, const std::uint32_t* question, PairSink& sink)
+      : wanted_(wanted), question_(question), sink_(sink) {}
 
   /// Two pairs a hit, and a sink with room has some for 272.
   bool make_room() { return has_room(sink_); }
   void touched(std::uint32_t s, double t, std::uint32_t id) {
     if (!wanted_.accepts(id)) return;
-    sink_.cursor[0] = first_sweep_ + s;
+    sink_.cursor[0] = question_[s];
     sink_.cursor[1] = id;
     sink_.cursor[2] = order_of_rounded_down(t);
     sink_.cursor[3] = 0;
@@ -172,12 +172,12 @@ class AllHits {
 
  private:
   const Wanted& wanted_;
-  std::uint32_t first_sweep_;
+  const std::uint32_t* question_;
   PairSink& sink_;
 };
 
-bool all(const QueryView& view, const Sweep* sweeps, std::uint32_t count, std::uint32_t first_sweep,
-         const QueryFilter& filter, PairSink& sink) {
+bool all(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
+         const std::uint32_t* question, const QueryFilter& filter, PairSink& sink) {
   const Wanted wanted(view, filter);
   float from[kMostSweeps];
   float limit[kMostSweeps];
@@ -185,7 +185,7 @@ bool all(const QueryView& view, const Sweep* sweeps, std::uint32_t count, std::u
     from[s] = sweeps[s].from;
     limit[s] = scaled_limit(sweeps[s], sweeps[s].max_t);
   }
-  AllHits hits(wanted, first_sweep, sink);
+  AllHits hits(wanted, question, sink);
   return SweepRounds<AllHits>(view, sweeps, from, limit, wanted, hits).run(nullptr, count);
 }
 

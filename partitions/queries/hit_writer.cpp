@@ -48,45 +48,61 @@ std::size_t first_of(const Pair* pairs, std::size_t hits, std::size_t question) 
 
 }  // namespace
 
-bool HitWriter::finish(HitBuffer& out, std::size_t questions, const KeyTable& keys,
-                       const Execution& execution) noexcept {
-  const std::size_t hits = out.found_.size() / 2;
-  if (!out.start_.resize(questions + 1) || !out.keys_.resize(hits) || !out.hits_.resize(hits)) {
-    return false;
-  }
-  out.start_[questions] = hits;
-  execution.for_each(
-      (questions + kQuestionsTogether - 1) / kQuestionsTogether, [&](std::size_t group) {
-        const std::size_t first = group * kQuestionsTogether;
-        finish_some(out, first, std::min(questions, first + kQuestionsTogether), keys);
-      });
+bool HitWriter::start(HitBuffer& out, std::size_t questions) noexcept {
+  out.clear();
+  if (!out.start_.resize(questions + 1)) return false;
+  out.start_[0] = 0;
   return true;
 }
 
-void HitWriter::finish_some(HitBuffer& out, std::size_t first, std::size_t last,
-                            const KeyTable& keys) noexcept {
+bool HitWriter::finish(HitBuffer& out, std::size_t first, std::size_t last, const KeyTable& keys,
+                       const Execution& execution) noexcept {
+  const std::size_t found = out.found_.size() / 2;
+  const std::size_t before = out.hits_.size();
+  if (!out.keys_.resize(found) || !out.hits_.resize(before + found)) return false;
+  execution.for_each((last - first + kGroup - 1) / kGroup, [&](std::size_t group) {
+    const std::size_t begin = first + group * kGroup;
+    finish_group(out, begin, std::min(last, begin + kGroup), before, keys);
+  });
+  out.found_.clear();
+  return true;
+}
+
+void HitWriter::finish_group(HitBuffer& out, std::size_t first, std::size_t last,
+                             std::size_t hits_before, const KeyTable& keys) noexcept {
   const Pair* const pairs = out.found_.pairs().data();
-  const std::size_t hits = out.found_.size() / 2;
-  const std::size_t begin = first_of(pairs, hits, first);
-  std::array<std::size_t, kQuestionsTogether + 1> start{};
+  const std::size_t found = out.found_.size() / 2;
+  const std::size_t begin = first_of(pairs, found, first);
+  std::array<std::size_t, kGroup + 1> start;
+  std::fill_n(start.begin(), last - first + 1, 0);
   std::size_t end = begin;
-  for (; end < hits && Found(pairs, end).question < last; ++end) {
+  for (; end < found && Found(pairs, end).question < last; ++end) {
     ++start[Found(pairs, end).question - first + 1];
   }
   start[0] = begin;
   for (std::size_t q = 0; q < last - first; ++q) {
-    out.start_[first + q] = start[q];
     start[q + 1] += start[q];
+    out.start_[first + q + 1] = hits_before + start[q + 1];
   }
   for (std::size_t i = begin; i < end; ++i) {
-    const Found found(pairs, i);
-    out.keys_[start[found.question - first]++] = found.order();
+    const Found hit(pairs, i);
+    out.keys_[start[hit.question - first]++] = hit.order();
   }
-  // Starts have moved on to the ends.
+  // Each start has moved on to the next.
+  std::uint64_t* const order = out.keys_.data();
   for (std::size_t q = 0; q < last - first; ++q) {
-    sort(out.keys_.data() + out.start_[first + q], out.keys_.data() + start[q]);
+    sort(order + (q == 0 ? begin : start[q - 1]), order + start[q]);
   }
-  for (std::size_t i = begin; i < end; ++i) out.hits_[i] = to_hit(keys, out.keys_[i]);
+  write(out, begin, end, hits_before, keys);
+}
+
+void HitWriter::write(HitBuffer& out, std::size_t begin, std::size_t end, std::size_t hits_before,
+                      const KeyTable& keys) noexcept {
+  constexpr std::size_t kAhead = 16;
+  for (std::size_t i = begin; i < end; ++i) {
+    if (i + kAhead < end) keys.fetch(static_cast<ObjectId>(out.keys_[i + kAhead]));
+    out.hits_[hits_before + i] = to_hit(keys, out.keys_[i]);
+  }
 }
 
 bool HitWriter::write_heap(HitBuffer& out, const KeyTable& keys) noexcept {
@@ -95,7 +111,7 @@ bool HitWriter::write_heap(HitBuffer& out, const KeyTable& keys) noexcept {
   sort(heap.begin(), heap.end());
   out.start_[0] = 0;
   out.start_[1] = heap.size();
-  for (std::size_t i = 0; i < heap.size(); ++i) out.hits_[i] = to_hit(keys, heap[i]);
+  write(out, 0, heap.size(), 0, keys);
   return true;
 }
 

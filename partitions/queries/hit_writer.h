@@ -18,17 +18,21 @@ namespace winnow {
 }
 
 /// A query's access to the inside of a HitBuffer. Casts first write two pairs a hit, (question,
-/// object) and (bits of t, 0), those of 64 questions at a time in any order; then `finish` puts
-/// them in order.
+/// object) and (bits of t, 0), those of one group of questions after those of another, but in no
+/// order within a group; then `finish` puts them in order.
 class HitWriter {
  public:
-  static constexpr std::size_t kQuestionsTogether = 64;
+  /// Questions in a group.
+  static constexpr std::size_t kGroup = 1024;
 
-  /// What has been found so far; empty after `HitBuffer::clear`.
+  /// Empties the buffer for `questions` questions. False if memory is refused.
+  [[nodiscard]] static bool start(HitBuffer& out, std::size_t questions) noexcept;
+  /// Found and not yet finished.
   [[nodiscard]] static PairBuffer& found(HitBuffer& out) noexcept { return out.found_; }
-  /// Makes hits of everything found, sorted by question, t and id. False if memory is refused.
-  [[nodiscard]] static bool finish(HitBuffer& out, std::size_t questions, const KeyTable& keys,
-                                   const Execution& execution) noexcept;
+  /// Makes hits of what was found for questions [first, last), where `first` begins a group, sorted
+  /// by question, t and id. False if memory is refused.
+  [[nodiscard]] static bool finish(HitBuffer& out, std::size_t first, std::size_t last,
+                                   const KeyTable& keys, const Execution& execution) noexcept;
 
   /// Scratch for a nearest query.
   [[nodiscard]] static Column<std::uint64_t>& heap(HitBuffer& out) noexcept { return out.keys_; }
@@ -36,8 +40,10 @@ class HitWriter {
   [[nodiscard]] static bool write_heap(HitBuffer& out, const KeyTable& keys) noexcept;
 
  private:
-  static void finish_some(HitBuffer& out, std::size_t first, std::size_t last,
-                          const KeyTable& keys) noexcept;
+  static void finish_group(HitBuffer& out, std::size_t first, std::size_t last,
+                           std::size_t hits_before, const KeyTable& keys) noexcept;
+  static void write(HitBuffer& out, std::size_t begin, std::size_t end, std::size_t hits_before,
+                    const KeyTable& keys) noexcept;
 };
 
 }  // namespace winnow

@@ -33,14 +33,23 @@ class SweepTest {
   /// Which of the boxes from `at` on may be touched at a scaled t <= limit, and when at the
   /// earliest; infinity for the others.
   Mask16 test(const float* const* column, std::size_t at, float limit, Float16& enter) const {
-    const Float16 e0 = time(column[sweep_.near_column[0]] + at, near_origin_[0], inverse_[0]);
-    const Float16 e1 = time(column[sweep_.near_column[1]] + at, near_origin_[1], inverse_[1]);
-    const Float16 e2 = time(column[sweep_.near_column[2]] + at, near_origin_[2], inverse_[2]);
-    const Float16 x0 = time(column[sweep_.far_column[0]] + at, far_origin_[0], inverse_[0]);
-    const Float16 x1 = time(column[sweep_.far_column[1]] + at, far_origin_[1], inverse_[1]);
-    const Float16 x2 = time(column[sweep_.far_column[2]] + at, far_origin_[2], inverse_[2]);
-    enter = max(max(e0, e1), max(e2, from_));
-    const Float16 exit = min(min(x0, x1), x2);
+    const float* const near[3] = {column[sweep_.near_column[0]], column[sweep_.near_column[1]],
+                                  column[sweep_.near_column[2]]};
+    const float* const far[3] = {column[sweep_.far_column[0]], column[sweep_.far_column[1]],
+                                 column[sweep_.far_column[2]]};
+    return test(near, far, at, limit, enter);
+  }
+  /// The same where the columns that are met first and last are known.
+  Mask16 test(const float* const* near, const float* const* far, std::size_t at, float limit,
+              Float16& enter) const {
+    Float16 e[3];
+    Float16 x[3];
+    for (int i = 0; i < 3; ++i) {
+      e[i] = time(near[i] + at, near_origin_[i], inverse_[i]);
+      x[i] = time(far[i] + at, far_origin_[i], inverse_[i]);
+    }
+    enter = max(max(e[0], e[1]), max(e[2], from_));
+    const Float16 exit = min(min(x[0], x[1]), x[2]);
     const Float16 late = add(multiply(exit, broadcast(kSweepSlack)), broadcast(kSweepTiny));
     // The limit first: what is not a number, as padding can make, must not become the limit.
     const Float16 last = min(broadcast(limit), late);

@@ -11,7 +11,8 @@ namespace winnow::WINNOW_ISA_NAME {
 /// that level's list, and a list is worked off in one long loop. How many children a node passes on
 /// is as hard to foresee as a coin, and each test takes long from its first load to its last bit;
 /// here neither is waited for. Nothing is visited in order: what is to be left out must lie beyond
-/// a sweep's limit from the start.
+/// a sweep's limit from the start. All sweeps go the same way (`same_way`), so that which columns
+/// they meet first is settled once a loop.
 ///
 /// `Hits` takes what is touched: `void touched(sweep, t, id)`, and `bool make_room()` before 128 of
 /// them at most, which returns false to end the walk.
@@ -28,8 +29,9 @@ class SweepRounds {
     for (std::uint32_t t = 0; t < view_.trees; ++t) {
       tree_ = view_.tree[t];
       const std::uint32_t top = tree_->levels - 1;
+      const Ways ways(sweeps_[0], tree_->node[top]);
       for (std::uint32_t k = 0; k < count; ++k) {
-        if (!test_nodes(list != nullptr ? list[k] : k, top, 0)) return false;
+        if (!test_nodes(list != nullptr ? list[k] : k, ways, top, 0)) return false;
       }
       for (std::uint32_t level = top + 1; level-- > 0;) {
         if (!drain(level)) return false;
@@ -37,7 +39,7 @@ class SweepRounds {
     }
     for (std::uint32_t block = 0; block < view_.flat_blocks; ++block) {
       for (std::uint32_t k = 0; k < count; ++k) {
-        if (!test_rows(list != nullptr ? list[k] : k, block * kLanes)) return false;
+        if (!test_flat(list != nullptr ? list[k] : k, block * kLanes)) return false;
       }
     }
     return touch_rows();
@@ -59,41 +61,63 @@ class SweepRounds {
     }
   };
 
-  [[nodiscard]] Mask16 test(std::uint32_t s, const float* const* column, std::size_t at) const {
+  /// The columns that all sweeps meet first, and last.
+  struct Ways {
+    const float* near[3];
+    const float* far[3];
+
+    Ways(const Sweep& sweep, const float* const* column) {
+      for (int i = 0; i < 3; ++i) {
+        near[i] = column[sweep.near_column[i]];
+        far[i] = column[sweep.far_column[i]];
+      }
+    }
+  };
+
+  [[nodiscard]] Mask16 test(std::uint32_t s, const Ways& ways, std::size_t at) const {
     Float16 enter;
-    return SweepTest(sweeps_[s], from_[s]).test(column, at, limit_[s], enter);
+    return SweepTest(sweeps_[s], from_[s]).test(ways.near, ways.far, at, limit_[s], enter);
   }
 
-  bool test_nodes(std::uint32_t s, std::uint32_t level, std::uint32_t first_node) {
+  bool test_nodes(std::uint32_t s, const Ways& ways, std::uint32_t level,
+                  std::uint32_t first_node) {
     if (open_[level].full() && !drain(level)) return false;
-    const Mask16 mask = test(s, tree_->node[level], first_node);
+    const Mask16 mask = test(s, ways, first_node);
     open_[level].add(s, first_node, wanted_.nodes(*tree_, level, first_node, mask));
     return true;
   }
 
   bool drain(std::uint32_t level) {
     Open& open = open_[level];
-    for (unsigned k = 0; k < open.size; ++k) {
-      const bool done = level == 0
-                            ? test_rows(open.sweep[k], (tree_->first_block + open.at[k]) * kLanes)
-                            : test_nodes(open.sweep[k], level - 1, open.at[k] * kLanes);
-      if (!done) return false;
+    if (open.size == 0) return true;
+    if (level == 0) {
+      if (!drain_blocks(open)) return false;
+    } else {
+      const Ways ways(sweeps_[open.sweep[0]], tree_->node[level - 1]);
+      for (unsigned k = 0; k < open.size; ++k) {
+        if (!test_nodes(open.sweep[k], ways, level - 1, open.at[k] * kLanes)) return false;
+      }
     }
     open.size = 0;
     return true;
   }
 
-  bool test_rows(std::uint32_t s, std::uint32_t first_row) {
-    if (rows_.full() && !touch_rows()) return false;
-    if (view_.spheres) return test_spheres(s, first_row);
-    const Mask16 mask = test(s, view_.column, first_row);
-    rows_.add(s, first_row, wanted_.rows(first_row, mask));
+  bool drain_blocks(const Open& open) {
+    const Ways ways(sweeps_[open.sweep[0]], view_.column);
+    for (unsigned k = 0; k < open.size; ++k) {
+      const std::uint32_t first_row = (tree_->first_block + open.at[k]) * kLanes;
+      if (rows_.full() && !touch_rows()) return false;
+      __builtin_prefetch(view_.id + first_row);
+      const Mask16 mask = test(open.sweep[k], ways, first_row);
+      rows_.add(open.sweep[k], first_row, wanted_.rows(first_row, mask));
+    }
     return true;
   }
 
-  bool test_spheres(std::uint32_t s, std::uint32_t first_row) {
+  bool test_flat(std::uint32_t s, std::uint32_t first_row) {
+    if (rows_.full() && !touch_rows()) return false;
     const RowBlock block(view_, first_row);
-    const Mask16 mask = test(s, block.columns(), block.at());
+    const Mask16 mask = test(s, Ways(sweeps_[s], block.columns()), block.at());
     rows_.add(s, first_row, wanted_.rows(first_row, mask));
     return true;
   }
