@@ -30,7 +30,6 @@ struct Sweep {
   double exact_far_origin[3];
   double exact_inverse[3];
   std::uint8_t exact_near_column[3];
-  bool moves[3];
   double min_t;
   double max_t;
 
@@ -47,7 +46,8 @@ inline constexpr std::uint32_t kMostSweeps = 64;
 static inline bool same_way(const Sweep& a, const Sweep& b) {
   bool same = true;
   for (int i = 0; i < 3; ++i) {
-    same = same && a.near_column[i] == b.near_column[i] && a.far_column[i] == b.far_column[i];
+    same = same && a.near_column[i] == b.near_column[i] && a.far_column[i] == b.far_column[i] &&
+           a.exact_near_column[i] == b.exact_near_column[i];
   }
   return same;
 }

@@ -8,26 +8,30 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Calls found(t bits << 32 | id) for every row from `first_row` on that the sweep touches by
+/// Calls found(t, id) for every row from `first_row` on that the sweep touches by
 /// `limit`; it returns false to end the walk.
 template <typename Found>
 bool test_rows(const QueryView& view, const Sweep& sweep, const SweepTest& probe,
                const Wanted& wanted, std::uint32_t first_row, const float& limit, Found&& found) {
   const RowBlock block(view, first_row);
+  const ExactSweepTest exact(sweep, block.columns());
   Float16 enter;
   Mask16 mask = probe.test(block.columns(), block.at(), limit, enter);
   mask = wanted.rows(first_row, mask);
   for (; mask != 0; mask &= mask - 1) {
     const unsigned lane = first(mask);
-    const double t = touch_row(sweep, block.columns(), block.at() + lane);
+    const double t = exact.touch(sweep, block.at() + lane);
     if (t < 0.0) continue;
-    const std::uint32_t id = view.id[first_row + lane];
-    if (!found(std::uint64_t{order_of_rounded_down(t)} << 32U | id)) return false;
+    if (!found(t, view.id[first_row + lane])) return false;
   }
   return true;
 }
 
 constexpr std::uint64_t kNoHit = ~std::uint64_t{0};
+
+inline std::uint64_t hit_of(double t, std::uint32_t id) {
+  return std::uint64_t{order_of_rounded_down(t)} << 32U | id;
+}
 
 /// Keeps the least hit of every sweep.
 class NearestHits {
@@ -37,7 +41,7 @@ class NearestHits {
 
   static bool make_room() { return true; }
   void touched(std::uint32_t s, double t, std::uint32_t id) {
-    const std::uint64_t hit = std::uint64_t{order_of_rounded_down(t)} << 32U | id;
+    const std::uint64_t hit = hit_of(t, id);
     if (hit >= best_[s] || !wanted_.accepts(id)) return;
     best_[s] = hit;
     // Up to the next float: what shows the same t may have the smaller id.
@@ -109,16 +113,11 @@ class Closest {
     float& limit = limit_[s];
     limit = last_[s];
     walk_in_order(view_, probe, wanted_, limit, [&](std::uint32_t first_row) {
-      const RowBlock block(view_, first_row);
-      Float16 enter;
-      Mask16 mask = probe.test(block.columns(), block.at(), limit, enter);
-      mask = wanted_.rows(first_row, mask);
-      for (; mask != 0; mask &= mask - 1) {
-        const unsigned lane = first(mask);
-        const double t = touch_row(sweeps_[s], block.columns(), block.at() + lane);
-        if (t >= 0.0) hits_.touched(s, t, view_.id[first_row + lane]);
-      }
-      return true;
+      return test_rows(view_, sweeps_[s], probe, wanted_, first_row, limit,
+                       [&](double t, std::uint32_t id) {
+                         hits_.touched(s, t, id);
+                         return true;
+                       });
     });
   }
 
@@ -145,9 +144,9 @@ bool any(const QueryView& view, const Sweep& sweep, const QueryFilter& filter,
   const Wanted wanted(view, filter);
   const float limit = scaled_limit(sweep, sweep.max_t);
   return !walk_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
-    return test_rows(view, sweep, probe, wanted, first_row, limit, [&](std::uint64_t hit) {
-      if (!wanted.accepts(static_cast<std::uint32_t>(hit))) return true;
-      found = hit;
+    return test_rows(view, sweep, probe, wanted, first_row, limit, [&](double t, std::uint32_t id) {
+      if (!wanted.accepts(id)) return true;
+      found = hit_of(t, id);
       return false;
     });
   });

@@ -2,8 +2,8 @@
 
 #include <winnow/core/rounding.h>
 
-#include <algorithm>
-#include <cmath>
+#include <bit>
+#include <cstdint>
 #include <limits>
 
 namespace winnow {
@@ -20,11 +20,12 @@ Sweep make_sweep(const Aabb& box, const Eigen::Vector3d& direction, double min_t
   Sweep s;
   s.min_t = min_t;
   s.max_t = max_t;
-  int fastest = 0;
-  direction.cwiseAbs().maxCoeff(&fastest);
-  int exponent = 0;
-  (void)std::frexp(direction[fastest], &exponent);
-  s.scale = std::ldexp(1.0, exponent);
+  const Eigen::Vector3d speed = direction.cwiseAbs();
+  const int faster = speed.x() >= speed.y() ? 0 : 1;
+  const int fastest = speed[faster] >= speed.z() ? faster : 2;
+  // The power of two above the fastest: its exponent bits plus one.
+  const auto exponent = std::bit_cast<std::uint64_t>(speed[fastest]) >> 52U;
+  s.scale = std::bit_cast<double>((exponent + 1) << 52U);
   s.from = round_down(min_t * s.scale);
   for (int axis = 0; axis < 3; ++axis) {
     const double d = direction[axis];
@@ -38,17 +39,17 @@ Sweep make_sweep(const Aabb& box, const Eigen::Vector3d& direction, double min_t
     s.exact_near_column[a] = s.near_column[a];
     s.exact_near_origin[a] = static_cast<double>(s.near_origin[a]);
     s.exact_far_origin[a] = static_cast<double>(s.far_origin[a]);
-    s.moves[a] = d != 0.0;
     s.exact_inverse[a] = 1.0 / d;
-    s.inverse[a] = static_cast<float>(s.scale / d);
+    s.inverse[a] = static_cast<float>(s.exact_inverse[a] * s.scale);
     if (d == 0.0) {
+      s.exact_inverse[a] = std::numeric_limits<double>::infinity();
       s.near_origin[a] = next_up(s.near_origin[a]);
       s.far_origin[a] = -next_up(-s.far_origin[a]);
       s.inverse[a] = kInfinity;
     }
   }
   for (int axis = 0; axis < 3; ++axis) {
-    const double part = std::abs(direction[axis]) / s.scale;
+    const double part = speed[axis] / s.scale;
     if (part == 0.0 || part >= kSlowest) continue;
     s.near_column[axis] = s.near_column[fastest];
     s.far_column[axis] = s.far_column[fastest];

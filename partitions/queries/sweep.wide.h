@@ -70,33 +70,45 @@ class SweepTest {
   Float16 from_;
 };
 
-/// The first t at which the sweep touches the box of row r, or a negative number. In double: of
-/// three operations each, entry and exit are off by less than 4e-16 of themselves.
-inline double touch_row(const Sweep& sweep, const float* const* column, std::size_t r) {
-  if (sweep.touch != nullptr) {
-    const float box[6] = {column[0][r], column[1][r], column[2][r],
-                          column[3][r], column[4][r], column[5][r]};
-    return sweep.touch(sweep.shape, box);
-  }
-  double enter = sweep.min_t;
-  double exit = sweep.max_t;
-  for (int i = 0; i < 3; ++i) {
-    const std::uint8_t n = sweep.exact_near_column[i];
-    const double near = static_cast<double>(column[n][r]) - sweep.exact_near_origin[i];
-    const double far =
-        static_cast<double>(column[n < 3 ? n + 3 : n - 3][r]) - sweep.exact_far_origin[i];
-    if (!sweep.moves[i]) {
-      // Without motion the ends are the low and the high one.
-      if (near > 0.0 || far < 0.0) return -1.0;
-      continue;
+/// Decides on single rows. In double: of three operations each, entry and exit are off by less than
+/// 4e-16 of themselves.
+class ExactSweepTest {
+ public:
+  /// For sweeps that go the same way as this one.
+  ExactSweepTest(const Sweep& sweep, const float* const* column) : column_(column) {
+    for (int i = 0; i < 3; ++i) {
+      near_[i] = column[sweep.exact_near_column[i]];
+      far_[i] = column[(sweep.exact_near_column[i] + 3) % 6];
     }
-    const double e = near * sweep.exact_inverse[i];
-    const double x = far * sweep.exact_inverse[i];
-    enter = e > enter ? e : enter;
-    exit = x < exit ? x : exit;
   }
-  if (!(enter <= exit * (1.0 + 1e-15))) return -1.0;
-  return enter < sweep.max_t ? enter : sweep.max_t;
-}
+
+  /// The first t at which the sweep touches the box of row r, or a negative number.
+  [[nodiscard]] double touch(const Sweep& sweep, std::size_t r) const {
+    if (sweep.touch != nullptr) {
+      const float box[6] = {column_[0][r], column_[1][r], column_[2][r],
+                            column_[3][r], column_[4][r], column_[5][r]};
+      return sweep.touch(sweep.shape, box);
+    }
+    double enter = sweep.min_t;
+    double exit = sweep.max_t;
+    for (int i = 0; i < 3; ++i) {
+      const double near = static_cast<double>(near_[i][r]) - sweep.exact_near_origin[i];
+      const double far = static_cast<double>(far_[i][r]) - sweep.exact_far_origin[i];
+      // On an axis without motion these are infinite, or not numbers where ends touch: then the
+      // comparisons keep what there was.
+      const double e = near * sweep.exact_inverse[i];
+      const double x = far * sweep.exact_inverse[i];
+      enter = e > enter ? e : enter;
+      exit = x < exit ? x : exit;
+    }
+    const bool hit = enter <= exit * (1.0 + 1e-15) && enter < __builtin_inf();
+    return hit ? (enter < sweep.max_t ? enter : sweep.max_t) : -1.0;
+  }
+
+ private:
+  const float* const* column_;
+  const float* near_[3];
+  const float* far_[3];
+};
 
 }  // namespace winnow::WINNOW_ISA_NAME

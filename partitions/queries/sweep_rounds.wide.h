@@ -123,12 +123,12 @@ class SweepRounds {
   }
 
   bool touch_rows() {
+    const ExactSweepTest exact(sweeps_[0], view_.column);
     for (unsigned k = 0; k < rows_.size; ++k) {
       if (k % kHitsAtOnce == 0 && !hits_.make_room()) return false;
       const std::uint32_t s = rows_.sweep[k];
       const std::uint32_t row = rows_.at[k];
-      const double t =
-          view_.spheres ? touch_sphere(s, row) : touch_row(sweeps_[s], view_.column, row);
+      const double t = view_.spheres ? touch_sphere(s, row) : exact.touch(sweeps_[s], row);
       if (t >= 0.0) hits_.touched(s, t, view_.id[row]);
     }
     rows_.size = 0;
@@ -137,7 +137,7 @@ class SweepRounds {
 
   [[nodiscard]] double touch_sphere(std::uint32_t s, std::uint32_t row) const {
     const RowBlock block(view_, row / kLanes * kLanes);
-    return touch_row(sweeps_[s], block.columns(), row % kLanes);
+    return ExactSweepTest(sweeps_[s], block.columns()).touch(sweeps_[s], row % kLanes);
   }
 
   const QueryView& view_;
