@@ -33,9 +33,9 @@ struct Sweep {
   double min_t;
   double max_t;
 
-  /// Decides instead of the sweep in double, for shapes that are not boxes: the first t at which
-  /// the shape touches the box (six floats), or a negative number.
-  double (*touch)(const void* shape, const float* box) = nullptr;
+  /// Goes on where the boxes touch, for shapes that are not boxes: the first t >= from at which the
+  /// shape touches the box (six floats), or a negative number.
+  double (*touch)(const void* shape, const float* box, double from) = nullptr;
   const void* shape = nullptr;
 };
 

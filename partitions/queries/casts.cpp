@@ -51,7 +51,6 @@ class PreparedCast {
   }
   void decide_by(const Capsule& capsule) noexcept {
     capsule_.capsule = capsule;
-    capsule_.min_t = sweep_.min_t;
     capsule_.max_t = sweep_.max_t;
     sweep_.touch = touch_capsule;
     sweep_.shape = &capsule_;

@@ -84,11 +84,6 @@ class ExactSweepTest {
 
   /// The first t at which the sweep touches the box of row r, or a negative number.
   [[nodiscard]] double touch(const Sweep& sweep, std::size_t r) const {
-    if (sweep.touch != nullptr) {
-      const float box[6] = {column_[0][r], column_[1][r], column_[2][r],
-                            column_[3][r], column_[4][r], column_[5][r]};
-      return sweep.touch(sweep.shape, box);
-    }
     double enter = sweep.min_t;
     double exit = sweep.max_t;
     for (int i = 0; i < 3; ++i) {
@@ -101,8 +96,12 @@ class ExactSweepTest {
       enter = e > enter ? e : enter;
       exit = x < exit ? x : exit;
     }
-    const bool hit = enter <= exit * (1.0 + 1e-15) && enter < __builtin_inf();
-    return hit ? (enter < sweep.max_t ? enter : sweep.max_t) : -1.0;
+    if (!(enter <= exit * (1.0 + 1e-15) && enter < __builtin_inf())) return -1.0;
+    enter = enter < sweep.max_t ? enter : sweep.max_t;
+    if (sweep.touch == nullptr) return enter;
+    const float box[6] = {column_[0][r], column_[1][r], column_[2][r],
+                          column_[3][r], column_[4][r], column_[5][r]};
+    return sweep.touch(sweep.shape, box, enter);
   }
 
  private:

@@ -96,12 +96,12 @@ double farthest(const Box& box, const Vector& p) noexcept {
 
 }  // namespace
 
-double touch_capsule(const void* shape, const float* six) {
+double touch_capsule(const void* shape, const float* six, double from) {
   const auto& moving = *static_cast<const MovingCapsule*>(shape);
   const Box box(six);
   const auto radius = static_cast<double>(moving.capsule.radius);
   constexpr int kSteps = 200;
-  double t = moving.min_t;
+  double t = from;
   for (int step = 0; step < kSteps; ++step) {
     const Gap gap = axis_gap(moving.capsule, t * moving.direction, box);
     const double left = gap.distance - radius;

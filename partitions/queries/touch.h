@@ -15,18 +15,18 @@ namespace winnow {
 // an end of +-FLT_MAX stands for infinity. Each errs to the side of meeting by a few roundings of
 // the coordinates that take part.
 
-/// A capsule (or a ball: ends that are equal) that moves along direction * [min_t, max_t].
+/// A capsule (or a ball: ends that are equal) that moves along direction * [0, max_t].
 struct MovingCapsule {
   Capsule capsule;
   Eigen::Vector3d direction;
-  double min_t;
   double max_t;
 };
 
-/// The first t at which it touches the box, or a negative number; `shape` is a MovingCapsule. The
-/// distance from the box is a convex function of t, so Newton's steps from the left never pass the
-/// first root; they converge quadratically, and by halves where the capsule only grazes the box.
-[[nodiscard]] double touch_capsule(const void* shape, const float* box);
+/// The first t >= from at which it touches the box, or a negative number; `shape` is a
+/// MovingCapsule. The distance from the box is a convex function of t, so Newton's steps from the
+/// left never pass the first root; they converge quadratically, and by halves where the capsule
+/// only grazes the box.
+[[nodiscard]] double touch_capsule(const void* shape, const float* box, double from);
 
 // `region` is a Sphere, Capsule, OrientedBox, std::span<const Plane>.
 [[nodiscard]] Meeting meet_sphere(const void* region, const float* box);
