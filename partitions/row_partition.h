@@ -31,6 +31,11 @@ class EventWriter;
 /// runs of rows, so a second block tree over the regular rows leads to them. It is made when such a
 /// query first comes, and refitted after changes; a scene that never asks does not pay for it.
 ///
+/// Filters are looked up where a test hits. Nodes know what the filters below them have between
+/// them, so that subtrees which a filter cannot meet are not walked; the blocks of flat partitions
+/// have such nodes, without boxes, for that alone. Where more than one environment is in use a
+/// build puts each one's rows together: worlds at the same place cost no more than their sum.
+///
 /// A build permutes the rows themselves, so the pool is the sorted copy. It happens when the share
 /// of new rows, moved rows or holes passes a limit, or when the extra tests that a worn structure
 /// has cost since the last build exceed the price of a build: at most twice the cost of the best

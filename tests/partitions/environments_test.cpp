@@ -1,5 +1,7 @@
 // Many small worlds in one partition: they never meet, and cost no more than each on its own.
 
+#include <winnow/partitions/bounds_n_squared.h>
+
 #include <algorithm>
 #include <array>
 
@@ -118,6 +120,25 @@ TEST_P(Environments, all_meet_objects_of_every_environment) {
 
 INSTANTIATE_TEST_SUITE_P(All, Environments, testing::ValuesIn(all_configs()),
                          testing::PrintToStringParamName());
+
+TEST(EnvironmentsOfSpheres, keep_apart_what_lies_on_each_other) {
+  BoundsNSquared partition({}, Volume::sphere);
+  const std::vector<Sphere> spheres(60, Sphere{{1, 2, 3}, 1.0F});
+  std::vector<Key> keys(spheres.size());
+  ASSERT_EQ(partition.insert(spheres, {}, keys), Status::ok);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const auto environment = static_cast<std::uint32_t>(i % 6);
+    ASSERT_EQ(partition.set_filter(keys[i], {1, 1, environment}), Status::ok);
+  }
+  PairBuffer buffer;
+  ASSERT_EQ(partition.self_pairs(buffer), Status::ok);
+  EXPECT_EQ(buffer.size(), 6U * 45U);
+  ASSERT_EQ(partition.remove(std::span<const Key>(keys).first(30)), Status::ok);
+  ASSERT_EQ(partition.self_pairs(buffer), Status::ok);
+  EXPECT_EQ(buffer.size(), 6U * 10U);
+  EXPECT_TRUE(std::ranges::all_of(
+      buffer, [](const Pair& pair) { return pair.first % 6 == pair.second % 6; }));
+}
 
 // Counted in tests of 16 boxes, never in time: one instruction set and one thread say what all do.
 class EnvironmentWork : public Conformance {
