@@ -19,7 +19,8 @@ namespace {
 // coefficients may be off by.
 constexpr float kPlaneRounding = 16 * 0x1p-24F;
 
-WidePlane widen(const Eigen::Vector3d& normal, double offset) noexcept {
+/// `size` bounds the terms that the offset was computed from, if it was.
+WidePlane widen(const Eigen::Vector3d& normal, double offset, double size) noexcept {
   int exponent = 0;
   (void)std::frexp(normal.cwiseAbs().maxCoeff(), &exponent);
   const double scale = std::ldexp(1.0, -exponent - 3);
@@ -34,7 +35,8 @@ WidePlane widen(const Eigen::Vector3d& normal, double offset) noexcept {
   wide.offset = static_cast<float>(std::clamp(offset * scale, -most, most));
   wide.slack = length * kPlaneRounding;
   // Products of tiny normals and coordinates can vanish altogether.
-  wide.margin = std::abs(wide.offset) * kPlaneRounding + 1e-36F;
+  wide.margin = std::abs(wide.offset) * kPlaneRounding + 1e-36F +
+                static_cast<float>(std::min(1e-14 * size * scale, most));
   return wide;
 }
 
@@ -66,12 +68,12 @@ void PreparedRegion::within(const Aabb& box) noexcept {
   }
 }
 
-void PreparedRegion::prune_by(const Eigen::Vector3d& normal, double offset) noexcept {
+void PreparedRegion::prune_by(const Eigen::Vector3d& normal, double offset, double size) noexcept {
   planes_.planes = wide_.data();
   if (planes_.count == kMostPlanes) {
     planes_.more = true;
   } else {
-    wide_[planes_.count++] = widen(normal, offset);
+    wide_[planes_.count++] = widen(normal, offset, size);
   }
 }
 
@@ -100,8 +102,10 @@ Status PreparedRegion::prepare(const OrientedBox& box) noexcept {
       continue;
     }
     const double reach = std::abs(normal.dot(axes.col(i))) * static_cast<double>(box.half[i]);
-    prune_by(normal, reach - normal.dot(center));
-    prune_by(-normal, reach + normal.dot(center));
+    const double size = normal.cwiseAbs().dot(
+        center.cwiseAbs() + axes.col(i).cwiseAbs() * static_cast<double>(box.half[i]));
+    prune_by(normal, reach - normal.dot(center), size);
+    prune_by(-normal, reach + normal.dot(center), size);
   }
   planes_.exact = {meet_oriented_box, &box};
   return Status::ok;
@@ -144,7 +148,7 @@ Status PreparedRegion::prepare(const std::span<const Plane>& planes) noexcept {
     if (!plane.is_valid()) return Status::invalid_argument;
   }
   for (const Plane& plane : planes) {
-    prune_by(plane.normal.cast<double>(), static_cast<double>(plane.offset));
+    prune_by(plane.normal.cast<double>(), static_cast<double>(plane.offset), 0.0);
   }
   exact_planes_ = planes;
   planes_.exact = {meet_planes, &exact_planes_};

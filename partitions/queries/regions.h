@@ -33,7 +33,7 @@ class PreparedRegion {
   Status prepare(const Frustum& frustum) noexcept;
   Status prepare(const std::span<const Plane>& planes) noexcept;
   void within(const Aabb& box) noexcept;
-  void prune_by(const Eigen::Vector3d& normal, double offset) noexcept;
+  void prune_by(const Eigen::Vector3d& normal, double offset, double size) noexcept;
 
   // Of more planes than this, the first prune and all decide.
   static constexpr std::size_t kMostPlanes = 16;

@@ -43,8 +43,9 @@ Sweep make_sweep(const Aabb& box, const Eigen::Vector3d& direction, double min_t
     s.inverse[a] = static_cast<float>(s.exact_inverse[a] * s.scale);
     if (d == 0.0) {
       s.exact_inverse[a] = std::numeric_limits<double>::infinity();
-      s.near_origin[a] = next_up(s.near_origin[a]);
-      s.far_origin[a] = -next_up(-s.far_origin[a]);
+      // What reaches beyond the range of float has infinite ends, which have no float beyond.
+      if (s.near_origin[a] < kInfinity) s.near_origin[a] = next_up(s.near_origin[a]);
+      if (s.far_origin[a] > -kInfinity) s.far_origin[a] = -next_up(-s.far_origin[a]);
       s.inverse[a] = kInfinity;
     }
   }
