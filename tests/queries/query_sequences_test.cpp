@@ -153,9 +153,9 @@ class Play {
         RC_ASSERT(right_objects(objects_, candidates(region, objects), Order::fast));
       }
     } else if (kind == Step::boxes) {
-      RC_ASSERT(p.overlap(BoxView(std::span<const Aabb>(boxes)), pairs_, {}, Order::canonical) ==
-                Status::ok);
-      RC_ASSERT(std::ranges::equal(pairs_, cross_pairs(numbered(boxes), world_.objects())));
+      RC_ASSERT(p.overlap(BoxView(std::span<const Aabb>(boxes)), pairs_, filter,
+                          Order::canonical) == Status::ok);
+      RC_ASSERT(std::ranges::equal(pairs_, cross_pairs(numbered(boxes), objects)));
     } else if (kind == Step::near) {
       const float radius = random.chance(0.5) ? 1e30F : static_cast<float>(random.below(6));
       const std::size_t count = random.below(20);

@@ -106,6 +106,41 @@ std::vector<Plane> some_planes(const Aabb& at, Random& random) {
   return planes;
 }
 
+// Ends of the float range, and numbers of which products leave it.
+Region extreme_region(std::size_t kind, Random& random, std::deque<std::vector<Plane>>& planes) {
+  const auto value = [&] {
+    constexpr std::array<float, 8> kValues{0.0F,  1.0F,  1e-30F,   1e-42F,
+                                           1e30F, 2e38F, kLargest, 1e19F};
+    return std::copysign(kValues[random.below(kValues.size())], random.chance(0.5) ? 1.0F : -1.0F);
+  };
+  const auto vector = [&] { return Vector3f(value(), value(), value()); };
+  switch (kind % 6) {
+    case 0:
+      return vector();
+    case 1: {
+      const Vector3f a = vector();
+      const Vector3f b = vector();
+      return Aabb{a.cwiseMin(b), a.cwiseMax(b)};
+    }
+    case 2: {
+      OrientedBox box{vector(), vector().cwiseAbs(), rotation(random)};
+      if (random.chance(0.3)) box.axes.col(static_cast<int>(random.below(3))) = vector();
+      return box;
+    }
+    case 3:
+      return Sphere{vector(), std::abs(value())};
+    case 4:
+      return Capsule{vector(), vector(), std::abs(value())};
+    default:
+      planes.emplace_back();
+      for (std::size_t n = 1 + random.below(4); n > 0; --n) {
+        const Plane plane{vector(), value()};
+        if (plane.is_valid()) planes.back().push_back(plane);
+      }
+      return std::span<const Plane>(planes.back());
+  }
+}
+
 Region some_region(std::span<const Aabb> boxes, std::size_t kind, Random& random,
                    std::deque<std::vector<Plane>>& planes) {
   const Aabb at = some_box(boxes, random);
@@ -144,7 +179,7 @@ void add(std::deque<QuestionSet>& sets, const Scene& scene) {
   set.objects = numbered(scene.boxes);
   Random random(sets.size());
   set.casts = some_casts(set.boxes, scaled(32), random);
-  set.regions = some_regions(set.boxes, scaled(35), random, set.planes);
+  set.regions = some_regions(set.boxes, scaled(48), random, set.planes);
   for (const Cast& cast : set.casts) set.cast_truths.push_back(candidates(cast, set.objects));
   for (const Region& region : set.regions) {
     set.region_truths.push_back(candidates(region, set.objects));
@@ -166,7 +201,9 @@ std::vector<Region> some_regions(std::span<const Aabb> boxes, std::size_t count,
                                  std::deque<std::vector<Plane>>& planes) {
   std::vector<Region> regions;
   while (regions.size() < count) {
-    regions.push_back(some_region(boxes, regions.size(), random, planes));
+    const std::size_t n = regions.size();
+    regions.push_back(n % 4 == 3 ? extreme_region(n / 4, random, planes)
+                                 : some_region(boxes, n - n / 4, random, planes));
   }
   return regions;
 }
