@@ -168,6 +168,7 @@ Cast hostile_cast(const Aabb& given, Random& random) {
     }
     case 1: {
       SphereCast cast{{ray.origin, some_size(box, random)}, ray.direction};
+      if (random.chance(0.05)) cast.sphere.radius = kLargest;
       // So that it grazes.
       cast.sphere.center[static_cast<int>(random.below(3))] += sign(random) * cast.sphere.radius;
       cast.sphere.center = cast.sphere.center.cwiseMax(-kLargest).cwiseMin(kLargest);
