@@ -86,6 +86,24 @@ inline Float16 multiply(const Float16& a, const Float16& b) {
   return r;
 }
 
+/// a * b + c, rounded once or twice as the instruction set has it: for bounds alone, whose callers
+/// allow for either.
+inline Float16 multiply_add(const Float16& a, const Float16& b, const Float16& c) {
+  Float16 r;
+  for (int i = 0; i < kParts; ++i) {
+#if defined(WINNOW_ISA_IS_avx512)
+    r.part[i] = _mm512_fmadd_ps(a.part[i], b.part[i], c.part[i]);
+#elif defined(WINNOW_ISA_IS_avx2)
+    r.part[i] = _mm256_fmadd_ps(a.part[i], b.part[i], c.part[i]);
+#elif defined(WINNOW_ISA_IS_neon64)
+    r.part[i] = vfmaq_f32(c.part[i], a.part[i], b.part[i]);
+#else
+    r.part[i] = a.part[i] * b.part[i] + c.part[i];
+#endif
+  }
+  return r;
+}
+
 /// base, base + 1, ..., base + 15.
 inline Uint16 count_from(std::uint32_t base) {
   alignas(64) static constexpr std::uint32_t kSteps[kLanes] = {0, 1, 2,  3,  4,  5,  6,  7,

@@ -17,14 +17,12 @@ struct ExactRegion {
   const void* region = nullptr;
 };
 
-/// A half-space for tests of 16 boxes: outside where normal . p + offset stays below 0 by more than
-/// slack * (largest coordinate) + margin, which bounds the rounding. The largest component of the
-/// normal lies in [1/16, 1/8), so that nothing overflows.
+/// A half-space for tests of 16 boxes. The largest component of the normal lies in [1/16, 1/8), so
+/// that nothing overflows.
 struct WidePlane {
   float normal[3];
   float offset;
-  float slack;
-  float margin;
+  std::uint8_t farthest[3];  ///< column of a box's end that lies the most inside
 };
 
 /// The part of a box that is inside of all planes. Without planes no `exact` is needed. If there
@@ -35,6 +33,9 @@ struct PlaneRegion {
   const WidePlane* planes = nullptr;
   std::uint32_t count = 0;
   bool more = false;
+  /// What normal . p + offset may be off by: rounding times the largest coordinate, plus margin.
+  float rounding = 0.0F;
+  float margin = 0.0F;
   ExactRegion exact;
 };
 

@@ -15,28 +15,27 @@ WINNOW_DEFINE_KERNELS(RegionKernels, region_kernels)
 
 namespace {
 
-// Roundings of a plane test in float: three products, three sums, and what the plane's own
-// coefficients may be off by.
-constexpr float kPlaneRounding = 16 * 0x1p-24F;
+// Roundings of a plane test in float, and what the plane's own coefficients may be off by, each of
+// up to three eighths of the largest coordinate.
+constexpr float kPlaneRounding = 8 * 0x1p-24F;
 
-/// `size` bounds the terms that the offset was computed from, if it was.
-WidePlane widen(const Eigen::Vector3d& normal, double offset, double size) noexcept {
+/// `size` bounds the terms that the offset was computed from, if it was; `margin` grows to cover
+/// what heights above the plane may be off by.
+WidePlane widen(const Eigen::Vector3d& normal, double offset, double size, float& margin) noexcept {
   int exponent = 0;
   (void)std::frexp(normal.cwiseAbs().maxCoeff(), &exponent);
   const double scale = std::ldexp(1.0, -exponent - 3);
   WidePlane wide;
-  float length = 0.0F;
   for (int i = 0; i < 3; ++i) {
     wide.normal[i] = static_cast<float>(normal[i] * scale);
-    length += std::abs(wide.normal[i]);
+    wide.farthest[i] = static_cast<std::uint8_t>(wide.normal[i] < 0.0F ? i : i + 3);
   }
   // Beyond the largest float it outweighs every point there is.
   const auto most = static_cast<double>(FLT_MAX);
   wide.offset = static_cast<float>(std::clamp(offset * scale, -most, most));
-  wide.slack = length * kPlaneRounding;
   // Products of tiny normals and coordinates can vanish altogether.
-  wide.margin = std::abs(wide.offset) * kPlaneRounding + 1e-36F +
-                static_cast<float>(std::min(1e-14 * size * scale, most));
+  margin = std::max(margin, std::abs(wide.offset) * kPlaneRounding + 1e-36F +
+                                static_cast<float>(std::min(1e-14 * size * scale, most)));
   return wide;
 }
 
@@ -72,9 +71,10 @@ void PreparedRegion::prune_by(const Eigen::Vector3d& normal, double offset, doub
   planes_.planes = wide_.data();
   if (planes_.count == kMostPlanes) {
     planes_.more = true;
-  } else {
-    wide_[planes_.count++] = widen(normal, offset, size);
+    return;
   }
+  planes_.rounding = kPlaneRounding;
+  wide_[planes_.count++] = widen(normal, offset, size, planes_.margin);
 }
 
 Status PreparedRegion::prepare(const Eigen::Vector3f& point) noexcept {

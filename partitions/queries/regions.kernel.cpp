@@ -25,43 +25,48 @@ class PlaneProbe {
     const Box16 box = load_slabs<3>(column, at);
     Met result{overlap(box, region_.low, region_.high), 0};
     if (result.met == 0) return result;
-    result.inside = region_.more ? 0 : result.met;
+    const Float16 slack = region_.count != 0 ? rounding_of(box) : broadcast(0.0F);
+    // All planes, whether or not boxes are left: the next plane costs less than a wrong guess.
+    for (std::uint32_t k = 0; k < region_.count; ++k) {
+      const WidePlane& plane = region_.planes[k];
+      const Float16 most = height(plane, column[plane.farthest[0]] + at,
+                                  column[plane.farthest[1]] + at, column[plane.farthest[2]] + at);
+      result.met &= ~less_equal(add(most, slack), broadcast(-kSweepTiny));
+    }
+    if (result.met == 0 || region_.more) return result;
+    result.inside = result.met;
     for (int i = 0; i < 3; ++i) {
       result.inside &= less_equal(broadcast(region_.low[i]), box.low[i]) &
                        less_equal(box.high[i], broadcast(region_.high[i]));
     }
-    if (region_.count != 0) test_planes(box, result);
+    for (std::uint32_t k = 0; k < region_.count && result.inside != 0; ++k) {
+      const WidePlane& plane = region_.planes[k];
+      const Float16 least = height(plane, column[opposite(plane.farthest[0])] + at,
+                                   column[opposite(plane.farthest[1])] + at,
+                                   column[opposite(plane.farthest[2])] + at);
+      result.inside &= less_equal(slack, least);
+    }
     return result;
   }
 
  private:
-  void test_planes(const Box16& box, Met& result) const {
-    const Float16 minus = broadcast(-1.0F);
-    Float16 reach = broadcast(0.0F);
-    for (int i = 0; i < 3; ++i) {
-      reach = max(reach, max(box.high[i], multiply(box.low[i], minus)));
-    }
-    for (std::uint32_t k = 0; k < region_.count && result.met != 0; ++k) {
-      const WidePlane& plane = region_.planes[k];
-      const Float16 slack = add(multiply(reach, broadcast(plane.slack)), broadcast(plane.margin));
-      const Float16 best = add(height(plane, box, false), slack);
-      result.met &= ~less_equal(best, broadcast(-kSweepTiny));
-      if (result.inside != 0) {
-        result.inside &= less_equal(slack, height(plane, box, true));
-      }
-    }
-    result.inside &= result.met;
+  static unsigned opposite(unsigned column) { return column < 3 ? column + 3 : column - 3; }
+
+  /// What the heights of these boxes' corners may be off by.
+  [[nodiscard]] Float16 rounding_of(const Box16& box) const {
+    const Float16 zero = broadcast(0.0F);
+    const Float16 high = max(box.high[0], max(box.high[1], box.high[2]));
+    const Float16 low = min(box.low[0], min(box.low[1], box.low[2]));
+    const Float16 reach = max(high, subtract(zero, low));
+    return multiply_add(reach, broadcast(region_.rounding), broadcast(region_.margin));
   }
 
-  /// normal . p + offset of each box's corner that is the farthest outside, or inside. Each step
-  /// is monotone in the box's ends: what holds for a node holds for the boxes below it.
-  static Float16 height(const WidePlane& plane, const Box16& box, bool lowest) {
-    Float16 sum = broadcast(plane.offset);
-    for (int i = 0; i < 3; ++i) {
-      const bool low = (plane.normal[i] < 0.0F) != lowest;
-      sum = add(sum, multiply(low ? box.low[i] : box.high[i], broadcast(plane.normal[i])));
-    }
-    return sum;
+  /// normal . p + offset of a corner of each box. Each step is monotone in the box's ends: what
+  /// holds for a node holds for the boxes below it.
+  static Float16 height(const WidePlane& plane, const float* x, const float* y, const float* z) {
+    const Float16 a = multiply_add(load(x), broadcast(plane.normal[0]), broadcast(plane.offset));
+    const Float16 b = multiply_add(load(y), broadcast(plane.normal[1]), a);
+    return multiply_add(load(z), broadcast(plane.normal[2]), b);
   }
 
   const PlaneRegion& region_;
@@ -189,8 +194,16 @@ class RegionWalk {
   }
 
   bool test_rows(std::uint32_t first_row) {
-    const RowBlock block(view_, first_row);
-    Met found = probe_.test(block.columns(), block.at());
+    if (view_.spheres) {
+      const RowBlock block(view_, first_row);
+      return take_met(probe_.test(block.columns(), block.at()), first_row, block.columns(),
+                      block.at());
+    }
+    return take_met(probe_.test(view_.column, first_row), first_row, view_.column, first_row);
+  }
+
+  /// Writes what was met of the rows from `first_row` on, whose boxes lie in columns from `at` on.
+  bool take_met(Met found, std::uint32_t first_row, const float* const* column, std::size_t at) {
     found.met = wanted_.rows(first_row, found.met);
     if (found.met == 0) return true;
     found.inside &= found.met;
@@ -199,7 +212,7 @@ class RegionWalk {
       for (Mask16 rest = found.met & ~found.inside; rest != 0; rest &= rest - 1) {
         const unsigned lane = first(rest);
         float box[6];
-        for (int c = 0; c < 6; ++c) box[c] = block.columns()[c][block.at() + lane];
+        for (int c = 0; c < 6; ++c) box[c] = column[c][at + lane];
         const Meeting meeting = exact.meets(exact.region, box);
         if (meeting == Meeting::apart) found.met &= ~(1U << lane);
         if (meeting == Meeting::inside) found.inside |= 1U << lane;
