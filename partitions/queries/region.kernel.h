@@ -33,6 +33,8 @@ struct PlaneRegion {
   const WidePlane* planes = nullptr;
   std::uint32_t count = 0;
   bool more = false;
+  /// True if a box that reaches inside of every plane meets the region, and there is nothing more.
+  bool planes_decide = false;
   /// What normal . p + offset may be off by: rounding times the largest coordinate, plus margin.
   float rounding = 0.0F;
   float margin = 0.0F;

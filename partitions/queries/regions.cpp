@@ -151,6 +151,7 @@ Status PreparedRegion::prepare(const std::span<const Plane>& planes) noexcept {
     prune_by(plane.normal.cast<double>(), static_cast<double>(plane.offset), 0.0);
   }
   exact_planes_ = planes;
+  planes_.planes_decide = !planes_.more;
   planes_.exact = {meet_planes, &exact_planes_};
   return Status::ok;
 }

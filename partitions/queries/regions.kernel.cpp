@@ -9,47 +9,115 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Which of 16 boxes may meet a region, and which surely lie inside.
+/// Which of 16 boxes may meet a region, which surely lie inside, and of which only the exact test
+/// knows.
 struct Met {
-  Mask16 met;
-  Mask16 inside;
+  Mask16 met = 0;
+  Mask16 inside = 0;
+  Mask16 open = 0;
+};
+
+/// Six planes, as a frustum has, against rows in no order, of which most miss: all that the planes
+/// need stays in registers from block to block.
+class FrustumScan {
+ public:
+  static constexpr std::uint32_t kPlanes = 6;
+
+  FrustumScan(const PlaneRegion& region, const float* const* column)
+      : region_(region),
+        column_(column),
+        rounding_(broadcast(region.rounding)),
+        margin_(broadcast(region.margin)) {
+    for (std::uint32_t k = 0; k < kPlanes; ++k) {
+      const WidePlane& plane = region.planes[k];
+      offset_[k] = broadcast(plane.offset);
+      for (int i = 0; i < 3; ++i) {
+        normal_[k][i] = broadcast(plane.normal[i]);
+        end_[k][i] = column[plane.farthest[i]];
+      }
+    }
+  }
+
+  /// False if none of the 16 boxes from `at` on meets the region.
+  [[nodiscard]] bool may_meet(std::size_t at) const {
+    const Box16 box = load_slabs<3>(column_, at);
+    Mask16 met = overlap(box, region_.low, region_.high);
+    const Float16 high = max(box.high[0], max(box.high[1], box.high[2]));
+    const Float16 low = min(box.low[0], min(box.low[1], box.low[2]));
+    const Float16 reach = max(high, subtract(broadcast(0.0F), low));
+    const Float16 below = subtract(broadcast(-kSweepTiny), multiply_add(reach, rounding_, margin_));
+    for (std::uint32_t k = 0; k < kPlanes; ++k) {
+      Float16 most = offset_[k];
+      for (int i = 0; i < 3; ++i) most = multiply_add(load(end_[k][i] + at), normal_[k][i], most);
+      met &= ~less_equal(most, below);
+    }
+    return met != 0;
+  }
+
+ private:
+  const PlaneRegion& region_;
+  const float* const* column_;
+  Float16 rounding_;
+  Float16 margin_;
+  Float16 offset_[kPlanes];
+  Float16 normal_[kPlanes][3];
+  const float* end_[kPlanes][3];
 };
 
 class PlaneProbe {
  public:
   explicit PlaneProbe(const PlaneRegion& region) : region_(region) {}
 
+  [[nodiscard]] const PlaneRegion& region() const { return region_; }
+  [[nodiscard]] bool is_frustum() const { return region_.count == FrustumScan::kPlanes; }
+
   [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
 
   [[nodiscard]] Met test(const float* const* column, std::size_t at) const {
     const Box16 box = load_slabs<3>(column, at);
-    Met result{overlap(box, region_.low, region_.high), 0};
+    Met result;
+    result.met = overlap(box, region_.low, region_.high);
     if (result.met == 0) return result;
     const Float16 slack = region_.count != 0 ? rounding_of(box) : broadcast(0.0F);
+    Mask16 surely = result.met;
     // All planes, whether or not boxes are left: the next plane costs less than a wrong guess.
     for (std::uint32_t k = 0; k < region_.count; ++k) {
       const WidePlane& plane = region_.planes[k];
       const Float16 most = height(plane, column[plane.farthest[0]] + at,
                                   column[plane.farthest[1]] + at, column[plane.farthest[2]] + at);
       result.met &= ~less_equal(add(most, slack), broadcast(-kSweepTiny));
+      surely &= less_equal(slack, most);
     }
-    if (result.met == 0 || region_.more) return result;
+    if (result.met == 0) return result;
+    find_inside(box, column, at, slack, surely, result);
+    return result;
+  }
+
+ private:
+  /// `surely`: the boxes that reach inside of all planes by more than rounding.
+  void find_inside(const Box16& box, const float* const* column, std::size_t at,
+                   const Float16& slack, Mask16 surely, Met& result) const {
+    result.open = result.met;
+    if (region_.more) return;
     result.inside = result.met;
     for (int i = 0; i < 3; ++i) {
       result.inside &= less_equal(broadcast(region_.low[i]), box.low[i]) &
                        less_equal(box.high[i], broadcast(region_.high[i]));
     }
-    for (std::uint32_t k = 0; k < region_.count && result.inside != 0; ++k) {
+    Mask16 perhaps = result.met;
+    const Float16 below = subtract(broadcast(0.0F), slack);
+    for (std::uint32_t k = 0; k < region_.count; ++k) {
       const WidePlane& plane = region_.planes[k];
       const Float16 least = height(plane, column[opposite(plane.farthest[0])] + at,
                                    column[opposite(plane.farthest[1])] + at,
                                    column[opposite(plane.farthest[2])] + at);
       result.inside &= less_equal(slack, least);
+      perhaps &= less_equal(below, least);
     }
-    return result;
+    result.open &= ~result.inside;
+    if (region_.planes_decide) result.open &= ~surely | perhaps;
   }
 
- private:
   static unsigned opposite(unsigned column) { return column < 3 ? column + 3 : column - 3; }
 
   /// What the heights of these boxes' corners may be off by.
@@ -100,8 +168,12 @@ class BallProbe {
     // A square that overflows says nothing about what lies inside.
     const float finite_square = square < kLargest ? square : kLargest;
     const Mask16 live = less_equal(box.low[0], broadcast(kLargest));
-    return {less_equal(near, broadcast(square * kMore)) & live,
-            less_equal(multiply(far, broadcast(kMore)), broadcast(finite_square)) & live};
+    Met result;
+    result.met = less_equal(near, broadcast(square * kMore)) & live;
+    result.inside =
+        less_equal(multiply(far, broadcast(kMore)), broadcast(finite_square)) & result.met;
+    result.open = result.met & ~result.inside;
+    return result;
   }
 
  private:
@@ -119,7 +191,8 @@ class SweptProbe {
 
   [[nodiscard]] Met test(const float* const* column, std::size_t at) const {
     Float16 enter;
-    return {test_.test(column, at, limit_, enter), 0};
+    const Mask16 met = test_.test(column, at, limit_, enter);
+    return {met, 0, met};
   }
 
  private:
@@ -140,9 +213,7 @@ class RegionWalk {
         sinks_(sinks) {}
 
   bool run() {
-    for (std::uint32_t block = 0; block < view_.flat_blocks; ++block) {
-      if (!test_rows(block * kLanes)) return false;
-    }
+    if (!scan_flat()) return false;
     for (std::uint32_t t = 0; t < view_.trees; ++t) {
       if (!walk_tree(*view_.tree[t])) return false;
     }
@@ -150,6 +221,38 @@ class RegionWalk {
   }
 
  private:
+  bool scan_flat() {
+    if constexpr (requires { probe_.is_frustum(); }) {
+      if (view_.flat_blocks != 0 && !view_.spheres && probe_.is_frustum()) {
+        const FrustumScan scan(probe_.region(), view_.column);
+        for (std::uint32_t begin = 0; begin < view_.flat_blocks; begin += kScanned) {
+          if (!scan_some(scan, begin)) return false;
+        }
+        return true;
+      }
+    }
+    for (std::uint32_t block = 0; block < view_.flat_blocks; ++block) {
+      if (!test_rows(block * kLanes)) return false;
+    }
+    return true;
+  }
+
+  /// Notes the blocks that pass without a branch, and looks at them after that.
+  template <typename Scan>
+  bool scan_some(const Scan& scan, std::uint32_t begin) {
+    std::uint32_t passed[kScanned];
+    unsigned count = 0;
+    const std::uint32_t left = view_.flat_blocks - begin;
+    for (std::uint32_t i = 0; i < (left < kScanned ? left : kScanned); ++i) {
+      passed[count] = (begin + i) * kLanes;
+      count += scan.may_meet(passed[count]) ? 1U : 0U;
+    }
+    for (unsigned i = 0; i < count; ++i) {
+      if (!test_rows(passed[i])) return false;
+    }
+    return true;
+  }
+
   bool walk_tree(const TreeView& tree) {
     Met open[kMaxTreeLevels];
     std::uint32_t base[kMaxTreeLevels];
@@ -209,7 +312,7 @@ class RegionWalk {
     found.inside &= found.met;
     const ExactRegion& exact = probe_.exact();
     if (exact.meets != nullptr) {
-      for (Mask16 rest = found.met & ~found.inside; rest != 0; rest &= rest - 1) {
+      for (Mask16 rest = found.met & found.open; rest != 0; rest &= rest - 1) {
         const unsigned lane = first(rest);
         float box[6];
         for (int c = 0; c < 6; ++c) box[c] = column[c][at + lane];
@@ -228,11 +331,12 @@ class RegionWalk {
         if (!wanted_.accepts(view_.id[first_row + first(rest)])) mask &= ~(1U << first(rest));
       }
     }
-    if (mask == 0) return true;
     if (sink.cursor > sink.limit && !sink.grow(sink)) return false;
     sink.cursor += compress_store(mask, load_unaligned(view_.id + first_row), sink.cursor);
     return true;
   }
+
+  static constexpr std::uint32_t kScanned = 256;
 
   const QueryView& view_;
   const Probe& probe_;
