@@ -88,8 +88,10 @@ Frustum Frustum::from_matrix(const Eigen::Ref<const Eigen::Matrix4d>& clip_from_
   for (std::size_t i = 0; i < 6; ++i) {
     frustum.planes[i] = inward(rows[i].head<3>(), rows[i].w());
   }
-  // A far plane at infinity bounds nothing: the near one stands in for it.
+  // A plane at infinity bounds nothing: the other stands in for it. Which of the two it is depends
+  // on which end of the depth range is near.
   if (!frustum.planes[5].is_valid()) frustum.planes[5] = frustum.planes[4];
+  if (!frustum.planes[4].is_valid()) frustum.planes[4] = frustum.planes[5];
 
   const Eigen::FullPivLU<Eigen::Matrix4d> inverse(m);
   if (!inverse.isInvertible()) return frustum;

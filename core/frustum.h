@@ -28,7 +28,8 @@ struct Frustum {
 
   /// From a matrix that takes column vectors of the world to clip space (Gribb and Hartmann, "Fast
   /// extraction of viewing frustum planes", 2001). Planes carry the rounding of the matrix itself.
-  /// A far plane at infinity is legal; the box is then infinite.
+  /// A far plane at infinity is legal, and so is a reversed depth; the box of an infinite frustum
+  /// is infinite.
   [[nodiscard]] static Frustum from_matrix(const Eigen::Ref<const Eigen::Matrix4d>& clip_from_world,
                                            NearDepth near_depth = NearDepth::zero) noexcept;
 

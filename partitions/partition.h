@@ -158,9 +158,9 @@ class Partition {
   virtual Status overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter = {},
                          Order order = Order::fast) const = 0;
 
-  /// The `count` objects whose boxes are nearest to a box (a point is a box of no extent) within a
-  /// distance of `radius`, which may be infinite; sorted by distance, then by id. Those that touch
-  /// are at distance 0. About O(log n + count).
+  /// The `count` objects whose boxes are nearest to a finite box (a point is one of no extent)
+  /// within a distance of `radius`, which may be infinite; sorted by distance, then by id. Those
+  /// that touch are at distance 0. About O(log n + count).
   virtual Status nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
                          const Filter& filter = {}) const = 0;
 

@@ -58,13 +58,18 @@ RowPartition::~RowPartition() = default;
 
 bool RowPartition::make_room(std::size_t objects) noexcept {
   const std::size_t added = objects - keys_.size();
-  // Holes are worth more than memory once there are many of them.
-  if (pool_.rows() + added > pool_.capacity() && pool_.rows() >= 64 &&
-      pool_.rows() >= 2 * keys_.size()) {
-    compact_rows();
-  }
-  if (pool_.rows() + added > kNoObject) compact_rows();
-  if (!pool_.reserve(pool_.rows() + added) || !keys_.reserve(objects)) return false;
+  const std::size_t rows = pool_.rows();
+  const std::size_t holes = rows - keys_.size();
+  // Holes are closed rather than paid for in memory once they are a fifth of all rows: coming and
+  // going in turn then costs the moving of four rows an object.
+  const bool worn = rows >= 64 && 5 * holes >= rows;
+  if ((rows + added > pool_.capacity() && worn) || rows + added > kNoObject) compact_rows();
+  const std::size_t needed = pool_.rows() + added;
+  // A partition that loses objects as well as gains them is not about to grow by half.
+  const std::size_t room = needed + (needed > pool_.capacity() ? needed / 8 : 0);
+  const bool grown =
+      holes == 0 ? pool_.reserve(needed) : pool_.reserve_exact(room) || pool_.reserve(needed);
+  if (!grown || !keys_.reserve(objects)) return false;
   const std::size_t slots = std::max(keys_.slot_count() + added, objects);
   return filters_.reserve(slots) && stale_.reserve(slots) && moved_.reserve(slots);
 }
