@@ -59,7 +59,7 @@ template <bool Filtered>
 class LeafPairs {
  public:
   LeafPairs(const TreeView& tree, PairSink& sink)
-      : tree_(tree), sink_(sink), hits_(tree.rows, sink) {}
+      : tree_(tree), sink_(sink), hits_(tree.rows, sink), sure_(tree.rows, sink) {}
 
   /// Adds all pairs of leaf i with leaves base + js.
   bool add(std::uint32_t i, std::uint32_t base, Mask16 js) {
@@ -76,7 +76,7 @@ class LeafPairs {
     return add_rows(leaf * kLanes, leaf, 0x7FFFU);
   }
 
-  bool finish() { return find_rows() && test_rows() && hits_.flush(); }
+  bool finish() { return find_rows() && test_rows() && hits_.flush() && sure_.flush(); }
 
  private:
   static constexpr unsigned kLeafRoom = 512;
@@ -123,18 +123,27 @@ class LeafPairs {
       // Within a leaf only rows behind r: the pair with an earlier one is that one's.
       const bool self = row_[k] / kLanes == leaf_[k];
       const Mask16 lanes = self ? ~lanes_below(row_[k] % kLanes + 1) : ~0U;
-      if (!hits_.make_room()) return false;
-      hits_.add(static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(at),
-                overlap(b, q.low, q.high) & lanes);
+      if (!hits_.make_room() || !sure_.make_room()) return false;
+      const Mask16 met = overlap(b, q.low, q.high) & lanes;
+      // Leaves that may meet and whose rows are alike leave nothing to be looked up.
+      const bool sure = !Filtered || (is_alike(row_[k] / kLanes) && is_alike(leaf_[k]));
+      const auto at_row = static_cast<std::uint32_t>(at);
+      sure_.add(static_cast<std::uint32_t>(r), at_row, sure ? met : 0);
+      if (Filtered) hits_.add(static_cast<std::uint32_t>(r), at_row, sure ? 0 : met);
     }
     sink_.tests += rows_;
     rows_ = 0;
     return true;
   }
 
+  [[nodiscard]] bool is_alike(std::uint32_t leaf) const {
+    return tree_.filters[0].alike[leaf] != 0;
+  }
+
   const TreeView& tree_;
   PairSink& sink_;
   HitList<HitMode::unordered, Filtered> hits_;
+  HitList<HitMode::unordered, false> sure_;
   unsigned leaves_ = 0;
   unsigned rows_ = 0;
   std::uint32_t first_[kLeafRoom + kLanes];

@@ -16,14 +16,24 @@ struct Joined {
   std::uint32_t mask = 0;
   std::uint32_t first = kLast;
   std::uint32_t last = 0;
+  std::uint32_t alike = 1;
 
   void add(const ObjectFilter& f) noexcept {
+    // Joined ones that are alike have what the first one has.
+    const bool some = first <= last;
+    if (some && (layers != f.layers || mask != f.mask || last != f.environment)) alike = 0;
     layers |= f.layers;
     mask |= f.mask;
     first = std::min(first, f.environment == kEveryEnvironment ? 0 : f.environment);
     last = std::max(last, f.environment);
   }
   void add(const NodeFilters& nodes, std::uint32_t i) noexcept {
+    if (nodes.first_environment[i] > nodes.last_environment[i]) return;
+    const bool some = first <= last;
+    if (nodes.alike[i] == 0 || (some && (layers != nodes.layers[i] || mask != nodes.mask[i] ||
+                                         last != nodes.last_environment[i]))) {
+      alike = 0;
+    }
     layers |= nodes.layers[i];
     mask |= nodes.mask[i];
     first = std::min(first, nodes.first_environment[i]);
@@ -34,6 +44,7 @@ struct Joined {
     nodes.mask[i] = mask;
     nodes.first_environment[i] = first;
     nodes.last_environment[i] = last;
+    nodes.alike[i] = alike;
   }
 };
 
@@ -42,7 +53,7 @@ struct Joined {
 bool lay_out_filters(TreeView& shape, Column<std::uint32_t>& memory) noexcept {
   std::size_t total = 0;
   for (std::uint32_t level = 0; level < shape.levels; ++level) {
-    total += 4 * padded_nodes(shape.count[level]);
+    total += 5 * padded_nodes(shape.count[level]);
   }
   if (!memory.grow(total)) return false;
   memory.set_size(total);
@@ -50,11 +61,11 @@ bool lay_out_filters(TreeView& shape, Column<std::uint32_t>& memory) noexcept {
   for (std::uint32_t level = 0; level < shape.levels; ++level) {
     const std::size_t stride = padded_nodes(shape.count[level]);
     NodeFilters& nodes = shape.filters[level];
-    nodes = {at, at + stride, at + 2 * stride, at + 3 * stride};
+    nodes = {at, at + stride, at + 2 * stride, at + 3 * stride, at + 4 * stride};
     for (std::size_t i = shape.count[level]; i < stride; ++i) {
       Joined{}.store(nodes, static_cast<std::uint32_t>(i));
     }
-    at += 4 * stride;
+    at += 5 * stride;
   }
   return true;
 }
