@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <vector>
 
 #include "../support/config.h"
@@ -42,6 +43,23 @@ TEST_P(Compress, packs_the_set_lanes_of_every_mask_in_order) {
     ASSERT_TRUE(std::equal(expected.begin(), expected.end(), out.begin() + 1)) << mask;
     ASSERT_EQ(out.front(), kUntouched) << mask;
     ASSERT_EQ(out.back(), kUntouched) << mask;
+  }
+}
+
+TEST_P(Compress, packs_floats_as_it_packs_integers) {
+  std::array<float, 16> lanes;
+  std::transform(kLanes.begin(), kLanes.end(), lanes.begin(),
+                 [](std::uint32_t lane) { return std::bit_cast<float>(lane); });
+  for (std::uint32_t mask = 0; mask < 65536; ++mask) {
+    std::array<float, 18> out;
+    out.fill(std::bit_cast<float>(kUntouched));
+    const std::vector<std::uint32_t> expected = packed(mask);
+    ASSERT_EQ(ops().compress_store_floats(mask, lanes.data(), out.data() + 1), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      ASSERT_EQ(std::bit_cast<std::uint32_t>(out[i + 1]), expected[i]) << mask;
+    }
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(out.front()), kUntouched) << mask;
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(out.back()), kUntouched) << mask;
   }
 }
 

@@ -21,7 +21,9 @@ struct WideOps {
   void (*max)(const float* a, const float* b, float* out);
   void (*add)(const float* a, const float* b, float* out);
   void (*multiply)(const float* a, const float* b, float* out);
+  void (*multiply_add)(const float* a, const float* b, const float* c, float* out);
   std::uint32_t (*less_equal)(const float* a, const float* b);
+  void (*keep_less_equal)(const float* a, const float* b, const float* v, float* out);
   float (*reduce_min)(const float* in);
   float (*reduce_max)(const float* in);
   unsigned (*count)(std::uint32_t mask);
@@ -35,6 +37,7 @@ struct WideOps {
   std::uint32_t (*overlap3_unaligned)(const float* const* columns, std::size_t row,
                                       const float* low, const float* high);
   unsigned (*compress_store)(std::uint32_t mask, const std::uint32_t* in, std::uint32_t* out);
+  unsigned (*compress_store_floats)(std::uint32_t mask, const float* in, float* out);
   /// `out` holds 32 elements.
   unsigned (*emit_pairs)(std::uint32_t mask, const std::uint32_t* in, std::uint32_t q,
                          std::uint32_t* out);

@@ -39,6 +39,12 @@ void add_lanes(const float* a, const float* b, float* out) {
 void multiply_lanes(const float* a, const float* b, float* out) {
   store_unaligned(out, multiply(load_unaligned(a), load_unaligned(b)));
 }
+void multiply_add_lanes(const float* a, const float* b, const float* c, float* out) {
+  store_unaligned(out, multiply_add(load_unaligned(a), load_unaligned(b), load_unaligned(c)));
+}
+void keep_less_equal_lanes(const float* a, const float* b, const float* v, float* out) {
+  store_unaligned(out, keep_less_equal(load_unaligned(a), load_unaligned(b), load_unaligned(v)));
+}
 std::uint32_t less_equal_lanes(const float* a, const float* b) {
   return less_equal(load_unaligned(a), load_unaligned(b));
 }
@@ -71,6 +77,9 @@ std::uint32_t overlap_unaligned_rows(const float* const* columns, std::size_t ro
 unsigned compress_lanes(std::uint32_t mask, const std::uint32_t* in, std::uint32_t* out) {
   return compress_store(mask, load_unaligned(in), out);
 }
+unsigned compress_float_lanes(std::uint32_t mask, const float* in, float* out) {
+  return compress_store(mask, load_unaligned(in), out);
+}
 template <bool Sorted>
 unsigned emit_lanes(std::uint32_t mask, const std::uint32_t* in, std::uint32_t q,
                     std::uint32_t* out) {
@@ -96,7 +105,9 @@ const WideOps WINNOW_KERNEL_TABLE(wide_ops){
     .max = isa::max_lanes,
     .add = isa::add_lanes,
     .multiply = isa::multiply_lanes,
+    .multiply_add = isa::multiply_add_lanes,
     .less_equal = isa::less_equal_lanes,
+    .keep_less_equal = isa::keep_less_equal_lanes,
     .reduce_min = isa::reduce_min_lanes,
     .reduce_max = isa::reduce_max_lanes,
     .count = isa::count_bits,
@@ -106,6 +117,7 @@ const WideOps WINNOW_KERNEL_TABLE(wide_ops){
     .overlap13 = isa::overlap_rows<13>,
     .overlap3_unaligned = isa::overlap_unaligned_rows,
     .compress_store = isa::compress_lanes,
+    .compress_store_floats = isa::compress_float_lanes,
     .emit_pairs = isa::emit_lanes<false>,
     .emit_sorted_pairs = isa::emit_lanes<true>,
     .isa_name = WINNOW_TEXT(WINNOW_ISA_NAME),

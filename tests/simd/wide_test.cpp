@@ -127,6 +127,33 @@ TEST_P(Wide, arithmetic_is_lane_wise) {
       ops().multiply, [](float a, float b) { return a * b; }, true);
 }
 
+TEST_P(Wide, a_product_and_sum_are_rounded_once_or_twice) {
+  for (int round = 0; round < 5000; ++round) {
+    const Floats a = lanes();
+    const Floats b = lanes();
+    const Floats c = lanes();
+    Floats out;
+    ops().multiply_add(a.data(), b.data(), c.data(), out.data());
+    for (std::size_t i = 0; i < 16; ++i) {
+      const float once = std::fma(a[i], b[i], c[i]);
+      const float twice = a[i] * b[i] + c[i];
+      ASSERT_TRUE(out[i] == once || out[i] == twice || (std::isnan(out[i]) && std::isnan(twice)))
+          << a[i] << " * " << b[i] << " + " << c[i] << " gives " << out[i];
+    }
+  }
+}
+
+TEST_P(Wide, lanes_that_do_not_compare_become_infinite) {
+  for (int round = 0; round < 5000; ++round) {
+    const Floats a = lanes(true);
+    const Floats b = lanes(true);
+    const Floats v = lanes();
+    Floats out;
+    ops().keep_less_equal(a.data(), b.data(), v.data(), out.data());
+    for (std::size_t i = 0; i < 16; ++i) ASSERT_EQ(out[i], a[i] <= b[i] ? v[i] : kInf);
+  }
+}
+
 TEST_P(Wide, compares_are_closed_and_false_for_nan) {
   for (int round = 0; round < 5000; ++round) {
     const Floats a = lanes(true);
