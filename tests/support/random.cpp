@@ -13,12 +13,24 @@ std::uint64_t base_seed() {
   return seed;
 }
 
-std::size_t scaled(std::size_t count) {
+namespace {
+
+double scale() {
   static const double factor = [] {
     const char* text = std::getenv("WINNOW_TEST_SCALE");
     return text != nullptr ? std::clamp(std::strtod(text, nullptr), 0.01, 1.0) : 1.0;
   }();
-  return std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(count) * factor));
+  return factor;
+}
+
+}  // namespace
+
+std::size_t scaled(std::size_t count) {
+  return std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(count) * scale()));
+}
+
+bool is_quick() {
+  return scale() < 0.5;
 }
 
 }  // namespace winnow::test

@@ -13,6 +13,9 @@ namespace winnow::test {
 /// set it), at least 1.
 [[nodiscard]] std::size_t scaled(std::size_t count);
 
+/// True if tests run at less than half of their scale, as slow builds do.
+[[nodiscard]] bool is_quick();
+
 /// SplitMix64 (Steele, Lea, Flood: "Fast splittable pseudorandom number generators", 2014): the
 /// same numbers on every machine and standard library.
 class Random {
