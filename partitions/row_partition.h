@@ -18,6 +18,7 @@
 namespace winnow {
 
 class EventWriter;
+struct Sweep;
 
 /// What all partitions share: keys, rows, what changed since when, pair queries and their order.
 ///
@@ -182,6 +183,10 @@ class RowPartition : public Partition {
   /// Brings everything up to date that queries walk.
   Status prepare(QueryView& view) const;
   Status refresh_for_queries() const;
+  /// A kernel that finds one hit of each of some sweeps.
+  using FindHits = void (*)(const QueryView&, const Sweep*, std::uint32_t count, const QueryFilter&,
+                            std::uint64_t* found);
+  Status find_hit(FindHits find, const Cast& cast, Hit& hit, const Filter& filter) const;
   QueryBatch box_batch(std::size_t begin, std::size_t end, std::span<float> scratch) const noexcept;
   void note_work(std::uint64_t tests, std::uint64_t queries,
                  std::atomic<std::uint64_t>& base) const noexcept;

@@ -55,14 +55,17 @@ static inline bool same_way(const Sweep& a, const Sweep& b) {
 /// Results that are sorted together at most.
 inline constexpr std::uint32_t kMostSorted = 64;
 
-/// Results are t's bits << 32 | id, which sorts by t and then by id, since t >= 0; all bits set for
-/// no hit.
+/// The result of a sweep that hits nothing.
+inline constexpr std::uint64_t kNoHit = ~std::uint64_t{0};
+
+/// Results are t's bits << 32 | id, which sorts by t and then by id, since t >= 0.
 struct CastKernels {
   /// For each of `count` <= kMostSweeps sweeps the least hit.
   void (*closest)(const QueryView&, const Sweep*, std::uint32_t count, const QueryFilter&,
                   std::uint64_t* best);
-  /// Any hit of one sweep.
-  bool (*any)(const QueryView&, const Sweep&, const QueryFilter&, std::uint64_t& found);
+  /// For each of `count` sweeps any hit.
+  void (*any)(const QueryView&, const Sweep*, std::uint32_t count, const QueryFilter&,
+              std::uint64_t* found);
   /// All hits of `count` <= kMostSweeps sweeps, in no order: two pairs each, (question of the
   /// sweep, id) and (bits of t, 0). False if the sink is full.
   bool (*all)(const QueryView&, const Sweep*, std::uint32_t count, const std::uint32_t* question,

@@ -130,13 +130,15 @@ void write_columns(const HitColumns& out, std::size_t i, const Hit& hit) noexcep
   if (out.t != nullptr) out.t[i] = hit.t;
 }
 
-bool is_hit(std::uint64_t found) noexcept {
-  return found != ~std::uint64_t{0};
+/// The hit that a kernel's result stands for; a null hit if there is none.
+Hit hit_or_null(const KeyTable& keys, std::uint64_t result) noexcept {
+  return result != kNoHit ? to_hit(keys, result) : Hit{};
 }
 
 }  // namespace
 
-Status RowPartition::closest(const Cast& cast, Hit& hit, const Filter& filter) const {
+Status RowPartition::find_hit(FindHits find, const Cast& cast, Hit& hit,
+                              const Filter& filter) const {
   hit = {};
   const PreparedCast prepared(cast);
   if (!prepared.valid()) return Status::invalid_argument;
@@ -144,25 +146,18 @@ Status RowPartition::closest(const Cast& cast, Hit& hit, const Filter& filter) c
   if (const Status status = prepare(view); status != Status::ok) return status;
   const KernelFilter wanted(filter, view, keys_);
   if (wanted.meets_nothing()) return Status::ok;
-  std::uint64_t best = 0;
-  cast_kernels().closest(view, &prepared.sweep(), 1, wanted.wanted(), &best);
-  if (is_hit(best)) hit = to_hit(keys_, best);
+  std::uint64_t found = kNoHit;
+  find(view, &prepared.sweep(), 1, wanted.wanted(), &found);
+  hit = hit_or_null(keys_, found);
   return Status::ok;
 }
 
+Status RowPartition::closest(const Cast& cast, Hit& hit, const Filter& filter) const {
+  return find_hit(cast_kernels().closest, cast, hit, filter);
+}
+
 Status RowPartition::any(const Cast& cast, Hit& hit, const Filter& filter) const {
-  hit = {};
-  const PreparedCast prepared(cast);
-  if (!prepared.valid()) return Status::invalid_argument;
-  QueryView view;
-  if (const Status status = prepare(view); status != Status::ok) return status;
-  const KernelFilter wanted(filter, view, keys_);
-  std::uint64_t found = 0;
-  if (!wanted.meets_nothing() &&
-      cast_kernels().any(view, prepared.sweep(), wanted.wanted(), found)) {
-    hit = to_hit(keys_, found);
-  }
-  return Status::ok;
+  return find_hit(cast_kernels().any, cast, hit, filter);
 }
 
 Status RowPartition::closest(const RayBatch& rays, const HitColumns& hits,
@@ -183,7 +178,7 @@ Status RowPartition::closest(const RayBatch& rays, const HitColumns& hits,
     while (group.next()) {
       cast_kernels().closest(view, group.sweeps(), group.count(), wanted.wanted(), best.data());
       for (std::uint32_t i = 0; i < group.count(); ++i) {
-        write_columns(hits, group.questions()[i], is_hit(best[i]) ? to_hit(keys_, best[i]) : Hit{});
+        write_columns(hits, group.questions()[i], hit_or_null(keys_, best[i]));
       }
     }
   });

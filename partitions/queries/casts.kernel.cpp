@@ -27,8 +27,6 @@ bool test_rows(const QueryView& view, const Sweep& sweep, const SweepTest& probe
   return true;
 }
 
-constexpr std::uint64_t kNoHit = ~std::uint64_t{0};
-
 inline std::uint64_t hit_of(double t, std::uint32_t id) {
   return std::uint64_t{order_of_rounded_down(t)} << 32U | id;
 }
@@ -138,18 +136,22 @@ void closest(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
   Closest(view, sweeps, count, filter, best).run();
 }
 
-bool any(const QueryView& view, const Sweep& sweep, const QueryFilter& filter,
-         std::uint64_t& found) {
-  const SweepTest probe(sweep);
+void any(const QueryView& view, const Sweep* sweeps, std::uint32_t count, const QueryFilter& filter,
+         std::uint64_t* found) {
   const Wanted wanted(view, filter);
-  const float limit = scaled_limit(sweep, sweep.max_t);
-  return !walk_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
-    return test_rows(view, sweep, probe, wanted, first_row, limit, [&](double t, std::uint32_t id) {
-      if (!wanted.accepts(id)) return true;
-      found = hit_of(t, id);
-      return false;
+  for (std::uint32_t s = 0; s < count; ++s) {
+    const SweepTest probe(sweeps[s]);
+    const float limit = scaled_limit(sweeps[s], sweeps[s].max_t);
+    found[s] = kNoHit;
+    walk_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
+      return test_rows(view, sweeps[s], probe, wanted, first_row, limit,
+                       [&](double t, std::uint32_t id) {
+                         if (!wanted.accepts(id)) return true;
+                         found[s] = hit_of(t, id);
+                         return false;
+                       });
     });
-  });
+  }
 }
 
 /// Writes every hit.

@@ -5,11 +5,11 @@
 #include <winnow/partitions/pair_writer.h>
 #include <winnow/partitions/queries/query_filter.h>
 #include <winnow/partitions/queries/regions.h>
-#include <winnow/partitions/row_partition.h>
+#include <winnow/partitions/row_mutation.h>
+#include <winnow/partitions/volume_source.h>
 
 #include <algorithm>
 #include <array>
-#include <cfloat>
 
 namespace winnow {
 
@@ -77,17 +77,13 @@ constexpr std::size_t kBoxesPerTask = 64;
 /// Some of a caller's boxes as kernels want them.
 class BoxColumns {
  public:
-  BoxColumns(const BoxView& boxes, std::size_t begin, std::size_t end) noexcept {
+  BoxColumns(const BoxSource& boxes, std::size_t begin, std::size_t end) noexcept {
+    std::array<float*, 6> columns;
+    for (std::size_t c = 0; c < 6; ++c) batch_.column[c] = columns[c] = column_[c].data();
     for (std::size_t i = begin; i < end; ++i) {
-      const Aabb box = boxes[i];
-      for (int axis = 0; axis < 3; ++axis) {
-        // Finite, so that they miss the padding, whose ends are infinite.
-        column_[static_cast<std::size_t>(axis)][i - begin] = std::max(box.min[axis], -FLT_MAX);
-        column_[3 + static_cast<std::size_t>(axis)][i - begin] = std::min(box.max[axis], FLT_MAX);
-      }
+      boxes.write(i, columns.data(), i - begin);
       index_[i - begin] = static_cast<std::uint32_t>(i);
     }
-    for (std::size_t c = 0; c < 6; ++c) batch_.column[c] = column_[c].data();
     batch_.id = index_.data();
     batch_.end = static_cast<std::uint32_t>(end - begin);
     batch_.mode = HitMode::query_first;
@@ -102,13 +98,6 @@ class BoxColumns {
   std::array<std::uint32_t, kBoxesPerTask> index_;
   QueryBatch batch_;
 };
-
-bool all_valid(const BoxView& boxes) noexcept {
-  for (std::size_t i = 0; i < boxes.count; ++i) {
-    if (!boxes[i].is_valid()) return false;
-  }
-  return true;
-}
 
 /// Takes out the pairs whose object the caller does not want.
 void keep_accepted(PairBuffer& out, const QueryFilter& filter) noexcept {
@@ -142,7 +131,10 @@ Status RowPartition::overlap(const Region& region, OverlapBuffer& objects, const
 Status RowPartition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter,
                              Order order) const {
   out.clear();
-  if (boxes.count > kMaxObjects || !all_valid(boxes)) return Status::invalid_argument;
+  const BoxSource source{boxes};
+  if (boxes.count > kMaxObjects || !all_valid(source, boxes.count, execution_)) {
+    return Status::invalid_argument;
+  }
   QueryView view;
   if (const Status status = prepare(view); status != Status::ok) return status;
   const KernelFilter wanted(filter, view, keys_);
@@ -152,7 +144,7 @@ Status RowPartition::overlap(const BoxView& boxes, PairBuffer& out, const Filter
   const std::size_t tasks = (boxes.count + kBoxesPerTask - 1) / kBoxesPerTask;
   const Status status = writer.append(tasks, [&](std::size_t task, PairSink& sink) {
     const std::size_t begin = task * kBoxesPerTask;
-    BoxColumns columns(boxes, begin, std::min(boxes.count, begin + kBoxesPerTask));
+    BoxColumns columns(source, begin, std::min(boxes.count, begin + kBoxesPerTask));
     QueryBatch& batch = columns.batch();
     if (is_flat()) return region_kernels().flat_boxes(view, batch, wanted.wanted(), sink);
     if (wanted.wanted().by_object) {

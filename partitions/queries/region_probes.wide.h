@@ -16,6 +16,13 @@ struct Met {
   Mask16 open = 0;
 };
 
+/// The largest coordinate of each box.
+inline Float16 reach_of(const Box16& box) {
+  const Float16 high = max(box.high[0], max(box.high[1], box.high[2]));
+  const Float16 low = min(box.low[0], min(box.low[1], box.low[2]));
+  return max(high, subtract(broadcast(0.0F), low));
+}
+
 /// Six planes, as a frustum has, against rows in no order, of which most miss: all that the planes
 /// need stays in registers from block to block.
 class FrustumScan {
@@ -41,10 +48,8 @@ class FrustumScan {
   [[nodiscard]] bool may_meet(std::size_t at) const {
     const Box16 box = load_slabs<3>(column_, at);
     Mask16 met = overlap(box, region_.low, region_.high);
-    const Float16 high = max(box.high[0], max(box.high[1], box.high[2]));
-    const Float16 low = min(box.low[0], min(box.low[1], box.low[2]));
-    const Float16 reach = max(high, subtract(broadcast(0.0F), low));
-    const Float16 below = subtract(broadcast(-kSweepTiny), multiply_add(reach, rounding_, margin_));
+    const Float16 below =
+        subtract(broadcast(-kSweepTiny), multiply_add(reach_of(box), rounding_, margin_));
     for (std::uint32_t k = 0; k < kPlanes; ++k) {
       Float16 most = offset_[k];
       for (int i = 0; i < 3; ++i) most = multiply_add(load(end_[k][i] + at), normal_[k][i], most);
@@ -121,11 +126,7 @@ class PlaneProbe {
 
   /// What the heights of these boxes' corners may be off by.
   [[nodiscard]] Float16 rounding_of(const Box16& box) const {
-    const Float16 zero = broadcast(0.0F);
-    const Float16 high = max(box.high[0], max(box.high[1], box.high[2]));
-    const Float16 low = min(box.low[0], min(box.low[1], box.low[2]));
-    const Float16 reach = max(high, subtract(zero, low));
-    return multiply_add(reach, broadcast(region_.rounding), broadcast(region_.margin));
+    return multiply_add(reach_of(box), broadcast(region_.rounding), broadcast(region_.margin));
   }
 
   /// normal . p + offset of a corner of each box. Each step is monotone in the box's ends: what

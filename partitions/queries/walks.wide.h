@@ -1,7 +1,8 @@
 #pragma once
 
-// The two ways through a partition's blocks that every query takes one of. A query brings a probe,
-// which tests 16 boxes at once, and what is to be done with the rows that pass.
+// The way through a partition's blocks in the order in which a query reaches them, and what all
+// queries share. A query brings a probe, which tests 16 boxes at once, and what is to be done with
+// the rows that pass.
 
 #include <winnow/partitions/filters.wide.h>
 #include <winnow/partitions/queries/query_view.h>
@@ -127,43 +128,6 @@ bool walk_in_order(const QueryView& view, const Probe& probe, const Wanted& want
       }
       if (reached && !visit((tree.first_block + node) * kLanes)) return false;
     } while (open.take(limit, level, node));
-  }
-  return true;
-}
-
-/// Visits all blocks whose nodes the probe passes, in the order of the rows.
-template <typename Probe, typename Visit>
-bool walk(const QueryView& view, const Probe& probe, const Wanted& wanted, float limit,
-          Visit&& visit) {
-  for (std::uint32_t block = 0; block < view.flat_blocks; ++block) {
-    if (!visit(block * kLanes)) return false;
-  }
-  for (std::uint32_t t = 0; t < view.trees; ++t) {
-    const TreeView& tree = *view.tree[t];
-    Mask16 open[kMaxTreeLevels];
-    std::uint32_t base[kMaxTreeLevels];
-    std::uint32_t level = tree.levels - 1;
-    const auto enter = [&](std::uint32_t first_node) {
-      Float16 order;
-      const Mask16 mask = probe.test(tree.node[level], first_node, limit, order);
-      open[level] = wanted.nodes(tree, level, first_node, mask);
-      base[level] = first_node;
-    };
-    enter(0);
-    for (;;) {
-      if (open[level] == 0) {
-        if (++level == tree.levels) break;
-        continue;
-      }
-      const std::uint32_t node = base[level] + first(open[level]);
-      open[level] &= open[level] - 1;
-      if (level != 0) {
-        --level;
-        enter(node * kLanes);
-      } else if (!visit((tree.first_block + node) * kLanes)) {
-        return false;
-      }
-    }
   }
   return true;
 }
