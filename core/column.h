@@ -18,7 +18,7 @@ namespace winnow {
 /// alignof(T), hence this type. Elements past `size()` up to `capacity()` are uninitialised.
 template <typename T>
 class Column {
-  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 64);
+  static_assert(std::is_trivially_copyable_v<T>);
 
  public:
   static constexpr std::size_t kAlignment = 64;

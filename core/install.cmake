@@ -2,7 +2,7 @@
 
 include(CMakePackageConfigHelpers)
 
-set(winnow_modules winnow_core winnow_simd winnow_partitions)
+set(winnow_modules winnow_core winnow_simd winnow_partitions winnow_pipeline)
 # A shared module finds its siblings beside itself, wherever the tree is moved to.
 set_target_properties(${winnow_modules} PROPERTIES
   VERSION ${PROJECT_VERSION}
@@ -14,18 +14,15 @@ install(TARGETS ${winnow_modules} winnow EXPORT winnow-targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
 # Headers written in wide types, which only kernel files can include, stay out.
-foreach(room core simd partitions)
+foreach(room core simd partitions pipeline)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room}/
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow/${room}
           FILES_MATCHING PATTERN "*.h"
           PATTERN "wide.h" EXCLUDE
           PATTERN "compress.h" EXCLUDE
-          PATTERN "*.wide.h" EXCLUDE)
+          PATTERN "*.wide.h" EXCLUDE
+          PATTERN "winnow.h" EXCLUDE)
 endforeach()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/pipeline/
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow/pipeline
-        FILES_MATCHING PATTERN "*.h"
-        PATTERN "winnow.h" EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/pipeline/winnow.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow)
 

@@ -20,6 +20,12 @@ const char* to_string(Status status) noexcept {
       return "too_many_objects";
     case Status::unsupported_volume:
       return "unsupported_volume";
+    case Status::invalid_shape:
+      return "invalid_shape";
+    case Status::invalid_pose:
+      return "invalid_pose";
+    case Status::unsupported:
+      return "unsupported";
   }
   return "unknown";
 }

@@ -22,6 +22,12 @@ enum class [[nodiscard]] Status : std::uint8_t{
     too_many_objects,
     /// The partition does not hold this kind of bounding volume.
     unsupported_volume,
+    /// A shape has a length that is negative, NaN or infinite, or no shape can be made of the points.
+    invalid_shape,
+    /// A pose is NaN or infinite, or its quaternion is zero.
+    invalid_pose,
+    /// The library was built without what this call needs.
+    unsupported,
 };
 
 /// The enumerator's name, for messages. Never null.

@@ -18,6 +18,7 @@
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/pair_events.h>
 #include <winnow/core/plane.h>
+#include <winnow/core/pose.h>
 #include <winnow/core/ray.h>
 #include <winnow/core/region.h>
 #include <winnow/core/rounding.h>
@@ -30,4 +31,7 @@
 #include <winnow/partitions/n_squared.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/partitions/sweep_and_prune.h>
+#include <winnow/pipeline/narrow_phase.h>
+#include <winnow/pipeline/shape_pool.h>
+#include <winnow/pipeline/shape_rays.h>
 #include <winnow/simd/isa.h>

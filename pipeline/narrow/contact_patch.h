@@ -1,0 +1,34 @@
+#pragma once
+
+#include <winnow/pipeline/narrow/narrow_job.h>
+
+#include <cstdint>
+
+namespace winnow {
+
+/// The feature of a core that lies farthest along (for a) or against (for b) the contact normal:
+/// one vertex, an edge, or a convex polygon in order around its boundary (either way). Vertices are
+/// relative to the position of body a, in the axes of the world.
+struct Patch {
+  const double (*vertex)[3];
+  /// What each vertex is called in its shape, and each edge from vertex i to the next. The two
+  /// number spaces may overlap.
+  const std::uint32_t* vertex_feature;
+  const std::uint32_t* edge_feature;
+  std::uint32_t count;
+  /// The number of the face or edge itself.
+  std::uint32_t feature;
+  double rounding;
+};
+
+/// The points in which two patches meet: the one more perpendicular to the normal is the reference,
+/// the other is clipped by its sides, and of what is within `margin` of the reference's plane at
+/// most four points are kept: the deepest one and those that span the largest area with it. Depths
+/// are measured along `normal` (unit, from a to b). At least one point, the deepest, comes out if
+/// the patches meet within the margin. Writes to `out` (room for kManifoldPoints), returns the
+/// number of points. Deterministic; needs no memory for patches of up to 16 vertices, and for
+/// larger ones thins them to 16 of their vertices, the outermost kept.
+std::uint32_t contact_patch(const Patch& a, const Patch& b, const double normal[3], double margin,
+                            ContactPoint* out) noexcept;
+
+}  // namespace winnow

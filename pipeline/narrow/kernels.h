@@ -1,0 +1,16 @@
+#pragma once
+
+#include <winnow/pipeline/narrow/narrow_job.h>
+#include <winnow/simd/kernels.h>
+
+namespace winnow {
+
+// One table a pair kind, defined in the file of its name.
+WINNOW_KERNELS(NarrowKernels, sphere_sphere_kernels);
+WINNOW_KERNELS(NarrowKernels, box_box_kernels);
+WINNOW_KERNELS(NarrowKernels, hull_hull_kernels);
+
+/// The active kernels of a pair kind, a <= b; null where the solver answers.
+[[nodiscard]] const NarrowKernels* narrow_kernels(ShapeKind a, ShapeKind b) noexcept;
+
+}  // namespace winnow

@@ -1,0 +1,88 @@
+#pragma once
+
+// What the narrow phase and its kernels share. Plain structs: kernel files include this.
+
+#include <winnow/core/pose.h>
+#include <winnow/pipeline/shapes.h>
+
+#include <cstdint>
+
+namespace winnow {
+
+/// Two bodies that may touch.
+struct BodyPair {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+};
+
+/// One point of a manifold: halfway between the two surfaces, in the axes of the world, relative to
+/// the position of body a. Depth is positive where the bodies overlap. The feature says which
+/// vertex, edge or face of a (upper half) and of b (lower half) made the point, and is the same
+/// from frame to frame as long as they do.
+struct ContactPoint {
+  float position[3];
+  float depth;
+  std::uint64_t feature;
+};
+
+/// At most so many points a manifold.
+inline constexpr std::uint32_t kManifoldPoints = 4;
+
+/// Contact points in the order in which they are written, one column a member.
+struct ContactWriter {
+  float* position[3];
+  float* depth;
+  std::uint64_t* feature;
+  /// Points so far. There is room for kManifoldPoints a pair of the job, and for 16 more.
+  std::uint32_t size;
+};
+
+/// A run of pairs of one kind and where their answers go: element i of every column for pairs[i].
+/// All pairs are in the kinds' order: the shape of `a` is of the smaller kind.
+struct NarrowJob {
+  const BodyPair* pairs;
+  std::uint32_t count;
+  /// By body.
+  const ShapeId* shapes;
+  const Pose* poses;
+  ShapeTables tables;
+  /// Contacts are made of pairs that are no farther apart.
+  double margin;
+
+  /// Level boolean: 1 where the shapes share a point.
+  std::uint8_t* overlap;
+  /// Levels distance and manifold. Distance is negative by the penetration depth, and <= 0 exactly
+  /// where the shapes share a point. At level manifold a pair farther apart than the margin may
+  /// have any lower bound of its distance that is above the margin.
+  double* distance;
+  /// The true distance is within distance +- error_bound.
+  double* error_bound;
+  /// Unit vectors from a to b, in the axes of the world.
+  double* normal[3];
+  /// Level distance: the point of a, relative to the position of body a, in the axes of the world.
+  /// That of b is distance * normal farther.
+  double* point[3];
+  /// Level manifold: points of pair i are contacts[contact_first[i] .. + contact_count[i]).
+  std::uint32_t* contact_first;
+  std::uint32_t* contact_count;
+  ContactWriter contacts;
+
+  /// Room for `count` indices of pairs that the kernel could not certify. Nothing of theirs needs
+  /// to have been written.
+  std::uint32_t* uncertified;
+};
+
+/// Answers a job; returns the number of uncertified pairs.
+using NarrowKernel = std::uint32_t (*)(NarrowJob& job);
+
+/// The kernels of one pair kind. Null: there is none, and the solver answers.
+struct NarrowKernels {
+  /// By NarrowLevel. Tier fast: all lanes in float; a pair goes to `uncertified` only if it left
+  /// float's range.
+  NarrowKernel fast[3];
+  /// Tier robust: what is not in `uncertified` has the right sign and a bound of at most
+  /// 1e-12 x (sizes + |distance|).
+  NarrowKernel robust[3];
+};
+
+}  // namespace winnow

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/column.h>
+#include <winnow/core/footprint.h>
+#include <winnow/core/pose.h>
+#include <winnow/core/status.h>
+#include <winnow/pipeline/shapes.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+/// A hull given by its surface: face i is the next `sizes[i]` of `indices` into `points`,
+/// counter-clockwise seen from outside. Faces may be triangles of what is coplanar.
+struct HullFaces {
+  std::span<const std::uint32_t> indices;
+  std::span<const std::uint32_t> sizes;
+};
+
+/// The convex shapes of a simulation, each kind in its own table; bodies refer to them by id and
+/// may share them. A kind that is not used takes no memory. Not for use from two threads while one
+/// of them changes it.
+class ShapePool {
+ public:
+  explicit ShapePool(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+  ~ShapePool();
+  ShapePool(ShapePool&&) noexcept;
+  ShapePool(const ShapePool&) = delete;
+  ShapePool& operator=(const ShapePool&) = delete;
+  ShapePool& operator=(ShapePool&&) = delete;
+
+  /// Adds a shape. `invalid_shape` for a length that is negative, NaN or infinite, or a half-space
+  /// without a normal; `too_many_objects` beyond 2^28 of a kind. O(1).
+  Status add(const SphereShape& shape, ShapeId& id);
+  Status add(const CapsuleShape& shape, ShapeId& id);
+  Status add(const BoxShape& shape, ShapeId& id);
+  Status add(const CylinderShape& shape, ShapeId& id);
+  Status add(const ConeShape& shape, ShapeId& id);
+  Status add(const TriangleShape& shape, ShapeId& id);
+  Status add(const HalfSpaceShape& shape, ShapeId& id);
+
+  /// The convex hull of points, by qhull: `unsupported` if the library was built without it.
+  /// Coplanar faces are merged; points inside, on faces or on edges fall away; flat sets make a
+  /// polygon, a segment or a point. `invalid_shape` if there is no point or one is not finite.
+  Status add_hull(std::span<const Eigen::Vector3d> points, double rounding, ShapeId& id);
+  /// The hull that `faces` bound. `invalid_shape` unless they are closed, consistently oriented and
+  /// convex to 1e-9 of the hull's size. Coplanar neighbours are merged.
+  Status add_hull(std::span<const Eigen::Vector3d> points, const HullFaces& faces, double rounding,
+                  ShapeId& id);
+
+  /// Takes a shape out; its place is given to the next one of its kind. Bodies must not use the id
+  /// any more: until then its place holds a point.
+  Status remove(ShapeId id);
+
+  /// True for ids of shapes that are there.
+  [[nodiscard]] bool contains(ShapeId id) const noexcept;
+  /// Shapes of a kind, removed ones excluded.
+  [[nodiscard]] std::size_t size(ShapeKind kind) const noexcept;
+
+  /// A float box that contains the shape at the pose, rounded outward, at most 1e-6 of its size
+  /// larger than the smallest; a half-space's reaches to infinity. `pose` is valid.
+  [[nodiscard]] Aabb bounds(ShapeId id, const Pose& pose) const noexcept;
+
+  /// Where kernels and the solver read shapes. Valid until the next change.
+  [[nodiscard]] const ShapeTables& tables() const noexcept { return tables_; }
+
+  [[nodiscard]] Footprint footprint() const noexcept;
+
+ private:
+  template <typename Shape>
+  struct Table {
+    explicit Table(std::pmr::memory_resource* memory) noexcept
+        : shapes(memory), live(memory), free(memory) {}
+    Column<Shape> shapes;
+    Column<std::uint8_t> live;
+    Column<std::uint32_t> free;
+  };
+
+  template <typename Shape>
+  Status put(Table<Shape>& table, ShapeKind kind, const Shape& shape, ShapeId& id);
+  template <typename Shape>
+  Status take(Table<Shape>& table, ShapeId id);
+  /// Calls `body` with the table of a kind.
+  template <typename Pool, typename Body>
+  static decltype(auto) with_table(Pool& pool, ShapeKind kind, Body&& body);
+  void refresh_tables() noexcept;
+
+  std::pmr::memory_resource* memory_;
+  Table<SphereShape> spheres_;
+  Table<CapsuleShape> capsules_;
+  Table<BoxShape> boxes_;
+  Table<CylinderShape> cylinders_;
+  Table<ConeShape> cones_;
+  Table<HullShape> hulls_;
+  Table<TriangleShape> triangles_;
+  Table<HalfSpaceShape> half_spaces_;
+  ShapeTables tables_;
+};
+
+}  // namespace winnow

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <winnow/core/pose.h>
+#include <winnow/pipeline/narrow/narrow_job.h>
+#include <winnow/pipeline/shapes.h>
+
+#include <cstdint>
+
+namespace winnow {
+
+/// How much is asked about a pair. A lower level does not pay for a higher one.
+enum class NarrowLevel : std::uint8_t { boolean, distance, manifold };
+
+/// What the solver did, for statistics.
+struct SolverCounts {
+  std::uint64_t pairs = 0;
+  /// Pairs whose sign double could not tell: decided in exact arithmetic.
+  std::uint64_t exact = 0;
+  /// Iterations that met their bound and fell back to enumeration.
+  std::uint64_t bounded = 0;
+};
+
+/// One answer, all in double. The point of b is `distance * normal` from that of a.
+struct PairAnswer {
+  double distance = 0.0;
+  double error_bound = 0.0;
+  /// Unit, from a to b, in the axes of the world.
+  double normal[3] = {1.0, 0.0, 0.0};
+  /// On a, relative to the position of a, in the axes of the world.
+  double point[3] = {0.0, 0.0, 0.0};
+  bool overlap = false;
+  std::uint32_t contact_count = 0;
+  ContactPoint contacts[kManifoldPoints] = {};
+};
+
+/// Any pair of valid shapes at valid poses, one at a time, in double and, where that cannot tell
+/// the sign, in exact arithmetic: the tier `reference`, and where the lanes of the tier `robust`
+/// send what they cannot certify. Never NaN, always ends.
+///
+/// The distance is that of the cores less the roundings; where the shapes overlap it is minus the
+/// penetration depth: the length of the shortest translation of b that leaves them touching. Shapes
+/// whose closest direction is not unique (coincident centres) take the first of +x, +y, +z and
+/// their opposites, in the frame of a, that is one of the closest.
+[[nodiscard]] PairAnswer solve_pair(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
+                                    ShapeId b, const Pose& pose_b, NarrowLevel level, double margin,
+                                    SolverCounts& counts) noexcept;
+
+}  // namespace winnow
