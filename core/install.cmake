@@ -37,11 +37,15 @@ install(FILES ${PROJECT_BINARY_DIR}/winnow-config.cmake
               ${PROJECT_BINARY_DIR}/winnow-config-version.cmake
         DESTINATION ${winnow_package_dir})
 
-# Archives leave TBB to whoever links them; shared modules carry the dependency themselves.
+# Archives leave TBB and qhull to whoever links them; shared modules carry them themselves.
+set(winnow_pc_others tbb)
+if(WINNOW_WITH_QHULL)
+  string(APPEND winnow_pc_others ", qhull_r")
+endif()
 if(BUILD_SHARED_LIBS)
-  set(winnow_pc_requires "Requires: eigen3\nRequires.private: tbb")
+  set(winnow_pc_requires "Requires: eigen3\nRequires.private: ${winnow_pc_others}")
 else()
-  set(winnow_pc_requires "Requires: eigen3, tbb")
+  set(winnow_pc_requires "Requires: eigen3, ${winnow_pc_others}")
 endif()
 file(RELATIVE_PATH winnow_pc_to_prefix
      ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})

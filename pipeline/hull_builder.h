@@ -5,8 +5,10 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <memory_resource>
 #include <span>
+#include <vector>
 
 namespace winnow {
 
@@ -23,5 +25,28 @@ Status hull_of_faces(std::span<const Eigen::Vector3d> points, const HullFaces& f
 /// Bytes of the hull's block; 0 for point_hull.
 [[nodiscard]] std::size_t hull_bytes(const HullShape& hull) noexcept;
 void release_hull(const HullShape& hull, std::pmr::memory_resource* memory) noexcept;
+
+/// The surface of a hull while it is being built: face i is loops[first[i]] to loops[first[i + 1]],
+/// indices of points, counter-clockwise seen from outside.
+struct HullSurface {
+  std::vector<std::uint32_t> loops;
+  std::vector<std::uint32_t> first{0};
+
+  [[nodiscard]] std::size_t faces() const noexcept { return first.size() - 1; }
+  [[nodiscard]] std::span<const std::uint32_t> loop(std::size_t face) const noexcept {
+    return {loops.data() + first[face], first[face + 1] - first[face]};
+  }
+  void end_face() { first.push_back(static_cast<std::uint32_t>(loops.size())); }
+};
+
+/// Joins coplanar neighbours and drops vertices that lie within faces or edges. `invalid_shape`
+/// unless every edge has exactly two faces, which run along it in opposite directions, and the
+/// surface is of one piece without handles.
+Status merge_coplanar(std::span<const Eigen::Vector3d> points, HullSurface& surface);
+
+/// Makes the block of columns: vertices are the points that the loops use (or, without faces, all
+/// points: one or two). Checks that the surface is convex.
+Status assemble_hull(std::span<const Eigen::Vector3d> points, const HullSurface& surface,
+                     std::pmr::memory_resource* memory, HullShape& hull);
 
 }  // namespace winnow
