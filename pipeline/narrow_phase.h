@@ -1,11 +1,12 @@
 #pragma once
 
-#include <winnow/core/column.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/narrow/narrow_job.h>
+#include <winnow/pipeline/narrow/narrow_result.h>
+#include <winnow/pipeline/narrow/pair_buckets.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/solver/solver.h>
 
@@ -40,89 +41,13 @@ struct Bodies {
   std::span<const Pose> poses;
 };
 
-/// Pairs of one kind, next to each other in a NarrowResult.
-struct NarrowRun {
-  ShapeKind a{};
-  ShapeKind b{};
-  std::uint32_t first = 0;
-  std::uint32_t count = 0;
-};
-
 struct NarrowStatistics {
   std::uint64_t pairs = 0;
-  /// Pairs that lanes could not certify, or that have no lanes: answered by the solver.
+  /// Pairs that lanes could not certify and the solver answered.
   std::uint64_t recomputed = 0;
+  /// Pairs that no lanes were tried on: of a kind without them, or of tier `reference`.
   std::uint64_t without_lanes = 0;
   SolverCounts solver;
-};
-
-/// Answers as columns, grouped by pair kind; within a kind in the order of the input. The caller's,
-/// reused from frame to frame.
-class NarrowResult {
- public:
-  explicit NarrowResult(
-      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
-
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] NarrowLevel level() const noexcept { return level_; }
-  /// Which pair of the input answer i is about. Points, normals and features are in its order, not
-  /// that of the kinds.
-  [[nodiscard]] std::uint32_t pair_of(std::size_t i) const noexcept { return order_[i]; }
-  [[nodiscard]] std::span<const NarrowRun> runs() const noexcept {
-    return {runs_.data(), runs_.size()};
-  }
-
-  /// At every level.
-  [[nodiscard]] bool overlaps(std::size_t i) const noexcept {
-    return level_ == NarrowLevel::boolean ? overlap_[i] != 0 : distance_[i] <= 0.0;
-  }
-  /// Levels distance and manifold; see NarrowJob for what each column says.
-  [[nodiscard]] std::span<const double> distance() const noexcept { return span(distance_); }
-  [[nodiscard]] std::span<const double> error_bound() const noexcept { return span(error_bound_); }
-  [[nodiscard]] std::span<const double> normal(int axis) const noexcept {
-    return span(normal_[axis]);
-  }
-  /// Level distance.
-  [[nodiscard]] std::span<const double> point(int axis) const noexcept {
-    return span(point_[axis]);
-  }
-  /// Level manifold: points of pair i are [contact_first()[i], + contact_count()[i]) of the columns
-  /// of contacts.
-  [[nodiscard]] std::span<const std::uint32_t> contact_first() const noexcept {
-    return {contact_first_.data(), contact_first_.size()};
-  }
-  [[nodiscard]] std::span<const std::uint32_t> contact_count() const noexcept {
-    return {contact_count_.data(), contact_count_.size()};
-  }
-  [[nodiscard]] std::size_t contacts() const noexcept { return depth_.size(); }
-  [[nodiscard]] ContactPoint contact(std::size_t point) const noexcept {
-    return {{position_[0][point], position_[1][point], position_[2][point]},
-            depth_[point],
-            feature_[point]};
-  }
-
-  [[nodiscard]] Footprint footprint() const noexcept;
-
- private:
-  friend class NarrowPhase;
-  [[nodiscard]] static std::span<const double> span(const Column<double>& c) noexcept {
-    return {c.data(), c.size()};
-  }
-
-  std::size_t size_ = 0;
-  NarrowLevel level_ = NarrowLevel::boolean;
-  Column<std::uint32_t> order_;
-  Column<NarrowRun> runs_;
-  Column<std::uint8_t> overlap_;
-  Column<double> distance_;
-  Column<double> error_bound_;
-  Column<double> normal_[3];
-  Column<double> point_[3];
-  Column<std::uint32_t> contact_first_;
-  Column<std::uint32_t> contact_count_;
-  Column<float> position_[3];
-  Column<float> depth_;
-  Column<std::uint64_t> feature_;
 };
 
 /// Pairs of bodies to overlaps, distances or contacts. Sorts pairs by the kinds of their shapes and
@@ -146,14 +71,21 @@ class NarrowPhase {
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
+  struct Chunk;
   struct Call;
 
-  std::pmr::memory_resource* memory_;
+  Status run(const Call& call, NarrowResult& result);
+  [[nodiscard]] Chunk chunk_of(const Call& call, NarrowResult& result, NarrowKernel kernel,
+                               std::uint32_t first, std::uint32_t count) const noexcept;
+  [[nodiscard]] bool answer_wave(const Call& call, std::span<Chunk> wave, NarrowResult& result);
+  static void take_contacts(const Chunk& chunk, NarrowResult& result) noexcept;
+  [[nodiscard]] bool gather_contacts(const Call& call, std::span<const Chunk> wave,
+                                     NarrowResult& result);
+
   NarrowStatistics statistics_;
   std::uint32_t bad_body_ = 0;
-  Column<BodyPair> sorted_;
-  Column<std::uint8_t> kinds_;
-  Column<std::uint32_t> uncertified_;
+  PairBuckets buckets_;
+  ContactColumns scratch_;
 };
 
 }  // namespace winnow

@@ -18,6 +18,13 @@ struct SolverCounts {
   std::uint64_t exact = 0;
   /// Iterations that met their bound and fell back to enumeration.
   std::uint64_t bounded = 0;
+
+  SolverCounts& operator+=(const SolverCounts& other) noexcept {
+    pairs += other.pairs;
+    exact += other.exact;
+    bounded += other.bounded;
+    return *this;
+  }
 };
 
 /// One answer, all in double. The point of b is `distance * normal` from that of a.

@@ -1,0 +1,93 @@
+#include <winnow/pipeline/narrow/narrow_result.h>
+
+namespace winnow {
+namespace {
+
+// ContactWriter promises room for so many more than a job can make.
+constexpr std::size_t kSlack = 16;
+
+}  // namespace
+
+ContactColumns::ContactColumns(std::pmr::memory_resource* memory) noexcept
+    : position{Column<float>(memory), Column<float>(memory), Column<float>(memory)},
+      depth(memory),
+      feature(memory) {}
+
+bool ContactColumns::grow(std::size_t count) noexcept {
+  const std::size_t room = count + kSlack;
+  return position[0].grow(room) && position[1].grow(room) && position[2].grow(room) &&
+         depth.grow(room) && feature.grow(room);
+}
+
+void ContactColumns::set_size(std::size_t count) noexcept {
+  for (Column<float>& column : position) column.set_size(count);
+  depth.set_size(count);
+  feature.set_size(count);
+}
+
+ContactWriter ContactColumns::writer(std::size_t from) noexcept {
+  return {{position[0].data() + from, position[1].data() + from, position[2].data() + from},
+          depth.data() + from,
+          feature.data() + from,
+          0};
+}
+
+Bytes ContactColumns::bytes() const noexcept {
+  Bytes bytes = depth.bytes();
+  for (const Column<float>& column : position) bytes += column.bytes();
+  bytes += feature.bytes();
+  return bytes;
+}
+
+NarrowResult::NarrowResult(std::pmr::memory_resource* memory) noexcept
+    : order_(memory),
+      runs_(memory),
+      overlap_(memory),
+      distance_(memory),
+      error_bound_(memory),
+      normal_{Column<double>(memory), Column<double>(memory), Column<double>(memory)},
+      point_{Column<double>(memory), Column<double>(memory), Column<double>(memory)},
+      contact_first_(memory),
+      contact_count_(memory),
+      contacts_(memory) {}
+
+bool NarrowResult::resize(std::size_t count, NarrowLevel level) noexcept {
+  const bool distances = level != NarrowLevel::boolean;
+  const auto size_of = [count](bool has) { return has ? count : 0; };
+  bool ok = overlap_.resize(size_of(!distances)) && distance_.resize(size_of(distances)) &&
+            error_bound_.resize(size_of(distances));
+  for (Column<double>& column : normal_) ok = ok && column.resize(size_of(distances));
+  for (Column<double>& column : point_) {
+    ok = ok && column.resize(size_of(level == NarrowLevel::distance));
+  }
+  const bool manifolds = level == NarrowLevel::manifold;
+  ok = ok && contact_first_.resize(size_of(manifolds)) && contact_count_.resize(size_of(manifolds));
+  contacts_.set_size(0);
+  size_ = count;
+  level_ = level;
+  return ok;
+}
+
+void NarrowResult::clear() noexcept {
+  order_.clear();
+  runs_.clear();
+  static_cast<void>(resize(0, NarrowLevel::boolean));
+}
+
+Footprint NarrowResult::footprint() const noexcept {
+  Footprint footprint;
+  Bytes& bytes = footprint.results;
+  bytes += order_.bytes();
+  bytes += runs_.bytes();
+  bytes += overlap_.bytes();
+  bytes += distance_.bytes();
+  bytes += error_bound_.bytes();
+  for (const Column<double>& column : normal_) bytes += column.bytes();
+  for (const Column<double>& column : point_) bytes += column.bytes();
+  bytes += contact_first_.bytes();
+  bytes += contact_count_.bytes();
+  bytes += contacts_.bytes();
+  return footprint;
+}
+
+}  // namespace winnow
