@@ -21,13 +21,15 @@ struct Patch {
   double rounding;
 };
 
-/// The points in which two patches meet: the one more perpendicular to the normal is the reference,
-/// the other is clipped by its sides, and of what is within `margin` of the reference's plane at
-/// most four points are kept: the deepest one and those that span the largest area with it. Depths
-/// are measured along `normal` (unit, from a to b). At least one point, the deepest, comes out if
-/// the patches meet within the margin. Writes to `out` (room for kManifoldPoints), returns the
-/// number of points. Deterministic; needs no memory for patches of up to 16 vertices, and for
-/// larger ones thins them to 16 of their vertices, the outermost kept.
+/// The points in which two patches meet, seen along the normal: the one that faces it better is the
+/// reference, the other is clipped by its sides. The deepest point comes first, always, then of
+/// those that are no farther apart than `margin` at most three more, which span the largest area
+/// with it. Depths are measured along `normal` (unit, from a to b). Features are a vertex's number,
+/// an edge's plus 2^30 or a face's plus 2^31. Patches that do not meet give the one point where
+/// they come closest. Writes to `out` (room for kManifoldPoints), returns the number of points, 0
+/// only for a patch without vertices. Deterministic; needs no memory for patches of up to 16
+/// vertices, and thins larger ones to 16 of their vertices, the outermost and the deepest. All
+/// numbers are finite and no product of four lengths overflows.
 std::uint32_t contact_patch(const Patch& a, const Patch& b, const double normal[3], double margin,
                             ContactPoint* out) noexcept;
 
