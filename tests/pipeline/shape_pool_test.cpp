@@ -1,0 +1,266 @@
+#include <gtest/gtest.h>
+#include <winnow/pipeline/shape_pool.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "../support/counting_memory.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+using Points = std::vector<Eigen::Vector3d>;
+
+Points on_a_ball(int count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  Points points;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector3d p(normal(random), normal(random), normal(random));
+    points.push_back(p.normalized());
+  }
+  return points;
+}
+
+// The corners of a cube and points on its faces.
+Points on_a_cube(int count, double scale) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Points points;
+  for (int i = 0; i < count; ++i) {
+    Eigen::Vector3d p(uniform(random), uniform(random), uniform(random));
+    p[i % 3] = i / 3 % 2 == 0 ? 1.0 : -1.0;
+    if (i < 8)
+      p = {(i & 1) != 0 ? 1.0 : -1.0, (i & 2) != 0 ? 1.0 : -1.0, (i & 4) != 0 ? 1.0 : -1.0};
+    points.push_back(p * scale);
+  }
+  return points;
+}
+
+#define EXPECT_COUNTS(hull, vertices, face_total, edge_total) \
+  EXPECT_EQ((hull).vertex_count, vertices);                   \
+  EXPECT_EQ((hull).face_count, face_total);                   \
+  EXPECT_EQ((hull).edge_count, edge_total)
+
+class Hulls : public testing::Test {
+ protected:
+  const HullShape& hull_of(const Points& points, const Eigen::Vector3d& at = {0, 0, 0}) {
+    Points moved;
+    for (const auto& p : points) moved.push_back(p + at);
+    ShapeId id;
+    EXPECT_EQ(pool_.add_hull(moved, 0.0, id), Status::ok);
+    return pool_.tables().hulls[id.index()];
+  }
+
+  // Every vertex is under every face, loops and edges agree, neighbours are what edges say.
+  static void expect_consistent(const HullShape& hull) {
+    for (std::uint32_t f = 0; f < hull.face_count; ++f) {
+      const HullFace& face = hull.faces[f];
+      for (std::uint32_t v = 0; v < hull.vertex_count; ++v) {
+        const double height = face.normal[0] * hull.vertex[0][v] +
+                              face.normal[1] * hull.vertex[1][v] +
+                              face.normal[2] * hull.vertex[2][v];
+        EXPECT_LE(height, face.offset + 1e-12 * hull.radius);
+      }
+      for (std::uint32_t i = 0; i < face.count; ++i) {
+        const HullEdge& edge = hull.edges[hull.loop_edge[face.first + i]];
+        const std::uint32_t from = hull.loop[face.first + i];
+        const std::uint32_t to = hull.loop[face.first + (i + 1) % face.count];
+        const bool forward = edge.vertex[0] == from && edge.vertex[1] == to && edge.face[0] == f;
+        const bool back = edge.vertex[1] == from && edge.vertex[0] == to && edge.face[1] == f;
+        EXPECT_TRUE(forward || back);
+      }
+    }
+    EXPECT_EQ(hull.neighbour_first[hull.vertex_count], 2 * hull.edge_count);
+  }
+
+  ShapePool pool_;
+};
+
+TEST_F(Hulls, of_points_in_general_position_have_triangles_for_faces) {
+  for (const int count : {4, 5, 16, 64, 1000}) {
+    const HullShape& hull = hull_of(on_a_ball(count, 1));
+    const auto n = static_cast<std::uint32_t>(count);
+    EXPECT_COUNTS(hull, n, 2 * n - 4, 3 * n - 6);
+    EXPECT_EQ(hull.dimension, 3U);
+    expect_consistent(hull);
+  }
+}
+
+TEST_F(Hulls, of_a_cube_with_points_on_its_faces_are_a_cube_at_any_size) {
+  for (const double scale : {1.0, 1e-20, 1e-300, 1e100}) {
+    const HullShape& hull = hull_of(on_a_cube(100, scale));
+    EXPECT_COUNTS(hull, 8U, 6U, 12U);
+    EXPECT_NEAR(hull.radius, std::sqrt(3.0) * scale, 1e-12 * scale);
+    EXPECT_NEAR(hull.inner_radius, scale, 1e-12 * scale);
+    expect_consistent(hull);
+  }
+}
+
+TEST_F(Hulls, of_a_turned_lattice_are_a_cube) {
+  const Eigen::Quaterniond turn = Eigen::Quaterniond(0.3, 0.4, -0.2, 0.8).normalized();
+  Points points;
+  for (int i = 0; i < 1000; ++i)
+    points.push_back(turn * Eigen::Vector3d(i % 10, i / 10 % 10, i / 100));
+  const HullShape& hull = hull_of(points);
+  EXPECT_COUNTS(hull, 8U, 6U, 12U);
+  expect_consistent(hull);
+}
+
+TEST_F(Hulls, of_flat_sets_are_polygons_segments_and_points) {
+  Points grid;
+  for (int i = 0; i < 100; ++i) grid.emplace_back(i % 10, i / 10, 0.5 * (i % 10) + 0.25 * (i / 10));
+  const HullShape& polygon = hull_of(grid);
+  EXPECT_EQ(polygon.dimension, 2U);
+  EXPECT_COUNTS(polygon, 4U, 2U, 4U);
+  EXPECT_EQ(polygon.inner_radius, 0.0);
+  expect_consistent(polygon);
+
+  Points line;
+  for (int i = 0; i < 10; ++i) line.emplace_back(0.1 * i, 0.3 * i, -0.7 * i);
+  const HullShape& segment = hull_of(line);
+  EXPECT_EQ(segment.dimension, 1U);
+  EXPECT_COUNTS(segment, 2U, 0U, 1U);
+
+  const HullShape& point = hull_of({{1, 2, 3}, {1, 2, 3}});
+  EXPECT_EQ(point.dimension, 0U);
+  EXPECT_COUNTS(point, 1U, 0U, 0U);
+  EXPECT_EQ(point.vertex[2][15], 3.0);
+}
+
+TEST_F(Hulls, keep_a_thickness_of_a_millionth) {
+  Points plate;
+  for (int i = 0; i < 8; ++i) plate.emplace_back(i & 1, i >> 1 & 1, 1e-6 * (i >> 2));
+  const HullShape& hull = hull_of(plate);
+  EXPECT_EQ(hull.dimension, 3U);
+  EXPECT_COUNTS(hull, 8U, 6U, 12U);
+}
+
+class Cube : public testing::Test {
+ protected:
+  const Points corners_{{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
+                        {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
+  std::vector<std::uint32_t> triangles_{0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                                        1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
+  const std::vector<std::uint32_t> threes_ = std::vector<std::uint32_t>(12, 3);
+  ShapePool pool_;
+  ShapeId id_;
+
+  Status add() { return pool_.add_hull(corners_, HullFaces{triangles_, threes_}, 0.0, id_); }
+};
+
+TEST_F(Cube, of_twelve_triangles_has_six_faces) {
+  ASSERT_EQ(add(), Status::ok);
+  const HullShape& hull = pool_.tables().hulls[id_.index()];
+  EXPECT_COUNTS(hull, 8U, 6U, 12U);
+  for (std::uint32_t f = 0; f < 6; ++f) EXPECT_EQ(hull.faces[f].offset, 1.0);
+}
+
+TEST_F(Cube, that_is_open_or_inside_out_or_badly_indexed_is_refused) {
+  std::swap(triangles_[0], triangles_[1]);
+  EXPECT_EQ(add(), Status::invalid_shape);
+  std::swap(triangles_[0], triangles_[1]);
+  for (std::size_t i = 0; i < triangles_.size(); i += 3)
+    std::swap(triangles_[i], triangles_[i + 1]);
+  EXPECT_EQ(add(), Status::invalid_shape);
+  triangles_[0] = 8;
+  EXPECT_EQ(add(), Status::invalid_shape);
+  triangles_.pop_back();
+  EXPECT_EQ(add(), Status::invalid_shape);
+  EXPECT_EQ(pool_.size(ShapeKind::hull), 0U);
+}
+
+TEST_F(Cube, with_a_dent_is_refused) {
+  Points dented = corners_;
+  dented[6] = {0.1, 0.1, 0.1};
+  EXPECT_EQ(pool_.add_hull(dented, HullFaces{triangles_, threes_}, 0.0, id_),
+            Status::invalid_shape);
+}
+
+TEST(ShapePools, refuse_bad_shapes_and_stay_as_they_are) {
+  ShapePool pool;
+  ShapeId id;
+  for (const double bad : {-1.0, kNan, kInf}) {
+    EXPECT_EQ(pool.add(SphereShape{bad}, id), Status::invalid_shape);
+    EXPECT_EQ(pool.add(CapsuleShape{1.0, bad}, id), Status::invalid_shape);
+    EXPECT_EQ(pool.add(BoxShape{{1.0, bad, 1.0}}, id), Status::invalid_shape);
+    EXPECT_EQ(pool.add(BoxShape{{1.0, 1.0, 1.0}, bad}, id), Status::invalid_shape);
+    EXPECT_EQ(pool.add(CylinderShape{bad, 1.0}, id), Status::invalid_shape);
+    EXPECT_EQ(pool.add(ConeShape{1.0, bad}, id), Status::invalid_shape);
+    EXPECT_EQ(pool.add_hull(Points{{0, 0, 0}}, bad, id), Status::invalid_shape);
+  }
+  EXPECT_EQ(pool.add(TriangleShape{{{0, 0, 0}, {1, kNan, 0}, {0, 1, 0}}}, id),
+            Status::invalid_shape);
+  EXPECT_EQ(pool.add(HalfSpaceShape{{0, 0, 0}}, id), Status::invalid_shape);
+  EXPECT_EQ(pool.add(HalfSpaceShape{{0, 0, 1}, kInf}, id), Status::invalid_shape);
+  EXPECT_EQ(pool.add_hull(Points{}, 0.0, id), Status::invalid_shape);
+  EXPECT_EQ(pool.add_hull(Points{{0, kInf, 0}}, 0.0, id), Status::invalid_shape);
+  EXPECT_EQ(id, ShapeId{});
+  EXPECT_EQ(pool.footprint().total().reserved, 0U);
+}
+
+TEST(ShapePools, give_a_removed_place_to_the_next_shape) {
+  ShapePool pool;
+  ShapeId first;
+  ShapeId second;
+  ASSERT_EQ(pool.add_hull(on_a_ball(16, 1), 0.0, first), Status::ok);
+  ASSERT_EQ(pool.remove(first), Status::ok);
+  EXPECT_FALSE(pool.contains(first));
+  EXPECT_EQ(pool.tables().hulls[first.index()].vertex_count, 1U);
+  EXPECT_EQ(pool.remove(first), Status::invalid_key);
+  EXPECT_EQ(pool.remove(ShapeId{}), Status::invalid_key);
+  ASSERT_EQ(pool.add_hull(on_a_ball(20, 1), 0.5, second), Status::ok);
+  EXPECT_EQ(second, first);
+  EXPECT_EQ(pool.tables().hulls[second.index()].rounding, 0.5);
+}
+
+TEST(ShapePools, account_for_every_byte_and_survive_a_refusal) {
+  CountingMemory memory;
+  {
+    ShapePool pool(&memory);
+    ShapeId id;
+    ASSERT_EQ(pool.add(SphereShape{1.0}, id), Status::ok);
+    ASSERT_EQ(pool.add_hull(on_a_ball(64, 2), 0.0, id), Status::ok);
+    EXPECT_EQ(pool.footprint().total().reserved, memory.outstanding());
+    const std::size_t before = memory.outstanding();
+    memory.refuse_after(0);
+    EXPECT_EQ(pool.add(BoxShape{{1, 1, 1}}, id), Status::out_of_memory);
+    EXPECT_EQ(pool.add_hull(on_a_ball(64, 2), 0.0, id), Status::out_of_memory);
+    EXPECT_EQ(memory.outstanding(), before);
+    EXPECT_EQ(pool.size(ShapeKind::hull), 1U);
+  }
+  EXPECT_EQ(memory.outstanding(), 0U);
+}
+
+TEST(ShapeBounds, contain_the_shape_and_are_tight) {
+  ShapePool pool;
+  ShapeId box;
+  ASSERT_EQ(pool.add(BoxShape{{1.0, 2.0, 3.0}, 0.5}, box), Status::ok);
+  const double h = std::sqrt(0.5);
+  const Aabb bounds = pool.bounds(box, {{10.0, 0.0, 1e9}, {h, 0.0, 0.0, h}});
+  EXPECT_NEAR(bounds.max.x(), 12.5F, 1e-5F);
+  EXPECT_GE(bounds.max.x(), 12.5F);
+  EXPECT_NEAR(bounds.min.y(), -1.5F, 1e-5F);
+  EXPECT_LE(bounds.min.y(), -1.5F);
+  EXPECT_GE(static_cast<double>(bounds.max.z()), 1e9 + 3.5);
+}
+
+TEST(ShapeBounds, of_half_spaces_end_only_at_their_plane) {
+  ShapePool pool;
+  ShapeId floor;
+  ASSERT_EQ(pool.add(HalfSpaceShape{{0.0, 0.0, 2.0}, 1.0}, floor), Status::ok);
+  const Aabb bounds = pool.bounds(floor, Pose::at(0.0, 0.0, 5.0));
+  EXPECT_EQ(bounds.min.z(), -std::numeric_limits<float>::infinity());
+  EXPECT_EQ(bounds.max.x(), std::numeric_limits<float>::infinity());
+  EXPECT_GE(bounds.max.z(), 6.0F);
+  EXPECT_LE(bounds.max.z(), 6.00001F);
+}
+
+}  // namespace
+}  // namespace winnow::test
