@@ -88,11 +88,16 @@ struct Reach {
       const HalfSpaceShape& s = tables.half_spaces[i];
       const Vector3d n(s.normal[0], s.normal[1], s.normal[2]);
       // Bounded only where its normal is the axis, to the last bit.
-      if (d != n) return symmetric(std::numeric_limits<double>::infinity());
+      if (d != n) return {std::numeric_limits<double>::infinity(), 0.0};
       return {s.offset, std::abs(s.offset)};
     }
   }
   return {0.0, 0.0};
+}
+
+// Rounded up; a reach may be infinite.
+[[nodiscard]] double end(double position, double far) {
+  return std::isinf(far) ? far : add_up(position, far);
 }
 
 }  // namespace
@@ -105,10 +110,8 @@ Aabb ShapePool::bounds(ShapeId id, const Pose& pose) const noexcept {
     const Reach up = reach(tables_, id, direction);
     const Reach down = reach(tables_, id, -direction);
     const double slack = kSlack * std::max(up.scale, down.scale);
-    box.max[axis] =
-        round_up(add_up(pose.position[axis], std::isinf(up.far) ? up.far : up.far + slack));
-    box.min[axis] = round_down(
-        add_down(pose.position[axis], std::isinf(down.far) ? -down.far : -down.far - slack));
+    box.max[axis] = round_up(end(pose.position[axis], up.far + slack));
+    box.min[axis] = -round_up(end(-pose.position[axis], down.far + slack));
   }
   return box;
 }
