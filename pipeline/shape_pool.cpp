@@ -106,9 +106,12 @@ Status ShapePool::add(const HalfSpaceShape& shape, ShapeId& id) {
   // Scaled by its largest component first: squares of small normals would vanish.
   const double largest = normal.cwiseAbs().maxCoeff();
   if (largest == 0.0) return Status::invalid_shape;
-  const Eigen::Vector3d unit = (normal / largest).normalized();
+  const Eigen::Vector3d scaled = normal / largest;
+  const Eigen::Vector3d unit = scaled.normalized();
+  const double offset = shape.offset / largest / scaled.norm();
+  if (!std::isfinite(offset)) return Status::invalid_shape;
   return put(half_spaces_, ShapeKind::half_space,
-             HalfSpaceShape{{unit.x(), unit.y(), unit.z()}, shape.offset}, id);
+             HalfSpaceShape{{unit.x(), unit.y(), unit.z()}, offset}, id);
 }
 
 Status ShapePool::add_hull(std::span<const Eigen::Vector3d> points, double rounding, ShapeId& id) {

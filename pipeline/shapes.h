@@ -82,8 +82,8 @@ struct TriangleShape {
   double rounding = 0.0;
 };
 
-/// normal . x <= offset, reaching to infinity. Any normal of finite length but zero; a ShapePool
-/// stores it as a unit vector.
+/// normal . x <= offset, reaching to infinity. Any finite normal but zero; a ShapePool divides both
+/// by its length.
 struct HalfSpaceShape {
   double normal[3] = {0.0, 0.0, 1.0};
   double offset = 0.0;

@@ -258,8 +258,8 @@ TEST(ShapeBounds, of_half_spaces_end_only_at_their_plane) {
   const Aabb bounds = pool.bounds(floor, Pose::at(0.0, 0.0, 5.0));
   EXPECT_EQ(bounds.min.z(), -std::numeric_limits<float>::infinity());
   EXPECT_EQ(bounds.max.x(), std::numeric_limits<float>::infinity());
-  EXPECT_GE(bounds.max.z(), 6.0F);
-  EXPECT_LE(bounds.max.z(), 6.00001F);
+  EXPECT_GE(bounds.max.z(), 5.5F);
+  EXPECT_LE(bounds.max.z(), 5.50001F);
 }
 
 }  // namespace
