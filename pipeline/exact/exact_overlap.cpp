@@ -1,10 +1,69 @@
 #include <winnow/pipeline/exact/exact_overlap.h>
+#include <winnow/pipeline/exact/half_space_exact.h>
+#include <winnow/pipeline/exact/origin_walk.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace winnow {
+namespace {
 
-ExactVerdict exact_overlap(const ShapeTables&, ShapeId, const Pose&, ShapeId, const Pose&,
-                           const double[3]) noexcept {
-  return ExactVerdict::undecided;
+/// The axis by which the search begins. Any will do, so digits that are small beside the largest
+/// are dropped; +x for none.
+[[nodiscard]] ExactVector first_direction(const double axis[3]) noexcept {
+  const double largest = std::max({std::fabs(axis[0]), std::fabs(axis[1]), std::fabs(axis[2])});
+  const double sum = axis[0] + axis[1] + axis[2];
+  if (!(largest > 0.0) || !std::isfinite(largest) || std::isnan(sum)) {
+    return {{1.0, 0.0, 0.0}};
+  }
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  ExactVector direction;
+  for (int k = 0; k < 3; ++k) {
+    constexpr int kDigits = 40;
+    direction.x[k] = std::nearbyint(std::ldexp(axis[k], kDigits - exponent));
+  }
+  return direction;
+}
+
+[[nodiscard]] ExactVerdict half_space_pair(const ShapeTables& tables, ShapeId half_space,
+                                           const Pose& half_space_pose, ShapeId other,
+                                           const Pose& other_pose) noexcept {
+  const HalfSpaceShape& shape = tables.half_spaces[half_space.index()];
+  CoreVertices core;
+  if (core_vertices(tables, other, core)) {
+    return half_space_verdict(shape, half_space_pose, core, other_pose);
+  }
+  return half_spaces_verdict(shape, half_space_pose, tables.half_spaces[other.index()], other_pose);
+}
+
+/// Of cylinders and cones only the direction given is asked.
+[[nodiscard]] ExactVerdict bounded_verdict(const CoreDifference& difference, const Dyadic& rounding,
+                                           const ExactVector& direction) noexcept {
+  const Dyadic length = root_above(dot(direction, direction));
+  const Dyadic height = difference.height_bound(direction) + rounding * difference.scale() * length;
+  return height.sign() < 0 ? ExactVerdict::separated : ExactVerdict::undecided;
+}
+
+}  // namespace
+
+ExactVerdict exact_overlap(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
+                           const Pose& pose_b, const double axis[3]) noexcept {
+  if (a.kind() == ShapeKind::half_space) return half_space_pair(tables, a, pose_a, b, pose_b);
+  if (b.kind() == ShapeKind::half_space) return half_space_pair(tables, b, pose_b, a, pose_a);
+  CoreVertices core_a;
+  CoreVertices core_b;
+  if (!core_vertices(tables, a, core_a) || !core_vertices(tables, b, core_b)) {
+    return ExactVerdict::undecided;
+  }
+  const CoreDifference difference(core_a, pose_a, core_b, pose_b);
+  if (!difference.in_range()) return ExactVerdict::undecided;
+  const ExactVector direction = first_direction(axis);
+  const Dyadic rounding = Dyadic(core_a.rounding) + core_b.rounding;
+  if (core_a.has_discs || core_b.has_discs) {
+    return bounded_verdict(difference, rounding, direction);
+  }
+  return locate_origin(difference, rounding, direction);
 }
 
 }  // namespace winnow

@@ -23,11 +23,15 @@ enum class ExactVerdict : unsigned char {
 /// normalisation. `axis` is a direction (any length, in the axes of the world, from a to b) along
 /// which the shapes are closest or overlap least, as far as double can tell: tried first.
 ///
-/// Polytopes by separating axes (Gottschalk, 1996, for boxes; face normals and products of edges
-/// for hulls; in-plane normals besides where one is flat), spheres, capsules and roundings by the
-/// square of the distance of the cores, a rational number. Numbers are sums of doubles that do not
-/// overlap (Shewchuk, 1997). For pairs whose sign double cannot tell: microseconds for small
-/// shapes, more for hulls, where candidates are first pruned in double.
+/// Cores are hulls of points, and so is the set of their differences: the algorithm of Gilbert,
+/// Johnson and Keerthi (1988) without rounding walks to its point nearest to the origin, whatever
+/// the dimension and however the shape's faces were merged. Without rounding radii that is a yes or
+/// no, and where the origin is on the boundary of what was found, a supporting plane is sought;
+/// with them the square of the distance, a rational number, is compared. Coordinates are multiplied
+/// by the squares of both quaternions' lengths, so that there are only sums and products.
+/// Half-spaces by the lowest point of the other. Cylinders and cones are decided only where `axis`
+/// proves that they are apart. For pairs whose sign double cannot tell: 5 to 100 microseconds, more
+/// for large hulls, whose vertices are first sifted in double.
 [[nodiscard]] ExactVerdict exact_overlap(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
                                          ShapeId b, const Pose& pose_b,
                                          const double axis[3]) noexcept;

@@ -1,0 +1,226 @@
+#include <winnow/pipeline/exact/core_difference.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+void set_point(CoreVertices& core, std::uint32_t i, double x, double y, double z) noexcept {
+  core.own[0][i] = x;
+  core.own[1][i] = y;
+  core.own[2][i] = z;
+}
+
+/// Two vertices on the z axis, and the discs about them.
+void set_axis(CoreVertices& core, double half_length, double low_disc, double high_disc,
+              double rounding) noexcept {
+  core.count = 2;
+  core.rounding = rounding;
+  core.has_discs = low_disc > 0.0 || high_disc > 0.0;
+  core.disc[0] = low_disc;
+  core.disc[1] = high_disc;
+  set_point(core, 0, 0.0, 0.0, -half_length);
+  set_point(core, 1, 0.0, 0.0, half_length);
+}
+
+void set_box(CoreVertices& core, const BoxShape& box) noexcept {
+  core.count = 8;
+  core.rounding = box.rounding;
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    set_point(core, i, (i & 1U) != 0 ? box.half[0] : -box.half[0],
+              (i & 2U) != 0 ? box.half[1] : -box.half[1],
+              (i & 4U) != 0 ? box.half[2] : -box.half[2]);
+  }
+}
+
+/// A direction in double, its largest component about 1.
+struct RoundedDirection {
+  explicit RoundedDirection(const ExactVector& direction) noexcept {
+    int top = std::numeric_limits<int>::min();
+    for (const Dyadic& x : direction.x) {
+      if (x.sign() != 0) top = std::max(top, x.highest_bit());
+    }
+    for (int k = 0; k < 3; ++k) {
+      d[k] = direction.x[k].sign() == 0 ? 0.0 : direction.x[k].scaled(-top);
+    }
+  }
+  double d[3];
+};
+
+struct Bounds {
+  double lower;
+  double upper;
+};
+
+/// Bounds of the product of a vertex with a direction that is rounded to 2^-51 of itself (or to
+/// what double can hold).
+[[nodiscard]] Bounds product_bounds(const CoreVertices& core, std::uint32_t i,
+                                    const RoundedDirection& direction) noexcept {
+  constexpr double kError = 0x1p-49;
+  constexpr double kUnderflow = 0x1p-1070;
+  double value = 0.0;
+  double size = 0.0;
+  double length = 1.0;
+  for (int k = 0; k < 3; ++k) {
+    const double term = direction.d[k] * core.column[k][i];
+    value += term;
+    size += std::fabs(term);
+    length += std::fabs(core.column[k][i]);
+  }
+  const double error = kError * size + kUnderflow * length;
+  if (!std::isfinite(length) || !std::isfinite(size)) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    return {-kInfinity, kInfinity};
+  }
+  return {value - error, value + error};
+}
+
+/// At least the height of every point of the core along `direction`.
+[[nodiscard]] Dyadic core_height_bound(const CoreVertices& core,
+                                       const ExactVector& direction) noexcept {
+  Dyadic height;
+  if (!core.has_discs) {
+    farthest_vertex(core, direction, kNoVertex, height);
+    return height;
+  }
+  const Dyadic across =
+      root_above(direction.x[0] * direction.x[0] + direction.x[1] * direction.x[1]);
+  height = dot(direction, core.at(0)) + across * core.disc[0];
+  const Dyadic other = dot(direction, core.at(1)) + across * core.disc[1];
+  return compare(other, height) > 0 ? other : height;
+}
+
+}  // namespace
+
+bool core_vertices(const ShapeTables& tables, ShapeId id, CoreVertices& core) noexcept {
+  switch (id.kind()) {
+    case ShapeKind::sphere:
+      core.count = 1;
+      core.rounding = tables.spheres[id.index()].radius;
+      set_point(core, 0, 0.0, 0.0, 0.0);
+      return true;
+    case ShapeKind::capsule: {
+      const CapsuleShape& capsule = tables.capsules[id.index()];
+      set_axis(core, capsule.half_length, 0.0, 0.0, capsule.radius);
+      return true;
+    }
+    case ShapeKind::cylinder: {
+      const CylinderShape& cylinder = tables.cylinders[id.index()];
+      set_axis(core, cylinder.half_length, cylinder.radius, cylinder.radius, cylinder.rounding);
+      return true;
+    }
+    case ShapeKind::cone: {
+      const ConeShape& cone = tables.cones[id.index()];
+      set_axis(core, cone.half_length, cone.radius, 0.0, cone.rounding);
+      return true;
+    }
+    case ShapeKind::box:
+      set_box(core, tables.boxes[id.index()]);
+      return true;
+    case ShapeKind::triangle: {
+      const TriangleShape& triangle = tables.triangles[id.index()];
+      core.count = 3;
+      core.rounding = triangle.rounding;
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        set_point(core, i, triangle.vertex[i][0], triangle.vertex[i][1], triangle.vertex[i][2]);
+      }
+      return true;
+    }
+    case ShapeKind::hull: {
+      const HullShape& hull = tables.hulls[id.index()];
+      core.count = hull.vertex_count;
+      core.rounding = hull.rounding;
+      for (int k = 0; k < 3; ++k) core.column[k] = hull.vertex[k];
+      return true;
+    }
+    default:
+      return false;
+  }
+}
+
+void CoreVertices::include_lengths(BitSpan& span) const noexcept {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (const double* values : column) span.include(values[i]);
+  }
+  for (const double radius : disc) span.include(radius);
+  span.include(rounding);
+}
+
+std::uint32_t farthest_vertex(const CoreVertices& core, const ExactVector& direction,
+                              std::uint32_t skip, Dyadic& height) noexcept {
+  const RoundedDirection rounded(direction);
+  const auto skipped = [&](std::uint32_t i) { return skip != kNoVertex && core.same(i, skip); };
+  double reached = -std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < core.count; ++i) {
+    if (!skipped(i)) reached = std::max(reached, product_bounds(core, i, rounded).lower);
+  }
+  std::uint32_t best = kNoVertex;
+  for (std::uint32_t i = 0; i < core.count; ++i) {
+    if (skipped(i) || product_bounds(core, i, rounded).upper < reached) continue;
+    const Dyadic product = dot(direction, core.at(i));
+    if (best != kNoVertex && compare(product, height) <= 0) continue;
+    best = i;
+    height = product;
+  }
+  return best;
+}
+
+CoreDifference::CoreDifference(const CoreVertices& core_a, const Pose& pose_a,
+                               const CoreVertices& core_b, const Pose& pose_b) noexcept
+    : a_(core_a), b_(core_b) {
+  const Dyadic square_a = square_length(pose_a.orientation);
+  const Dyadic square_b = square_length(pose_b.orientation);
+  scale_ = square_a * square_b;
+  turn_a_ = scaled_rotation(pose_a.orientation);
+  turn_b_ = scaled_rotation(pose_b.orientation);
+  for (ExactVector& row : turn_a_.row) row = row * square_b;
+  for (ExactVector& row : turn_b_.row) row = row * square_a;
+  const ExactVector between = exact_vector(pose_b.position) - exact_vector(pose_a.position);
+  offset_ = between * scale_;
+
+  BitSpan lengths;
+  core_a.include_lengths(lengths);
+  core_b.include_lengths(lengths);
+  for (const Dyadic& x : between.x) lengths.include(x);
+  constexpr int kSums = 6;
+  in_range_ =
+      fits_dyadic(6, rotation_bits(pose_a) + rotation_bits(pose_b) + lengths.bits() + kSums);
+}
+
+void CoreDifference::support(const ExactVector& direction, DifferenceVertex& vertex,
+                             Dyadic& height) const noexcept {
+  Dyadic height_a;
+  Dyadic height_b;
+  vertex.a = farthest_vertex(a_, transposed_times(turn_a_, direction), kNoVertex, height_a);
+  vertex.b = farthest_vertex(b_, transposed_times(turn_b_, -direction), kNoVertex, height_b);
+  height = height_a + height_b - dot(direction, offset_);
+  vertex.point = turn_a_ * a_.at(vertex.a) - turn_b_ * b_.at(vertex.b) - offset_;
+}
+
+bool CoreDifference::cone_support(std::uint32_t a, std::uint32_t b, const ExactVector& direction,
+                                  DifferenceVertex& vertex, Dyadic& height) const noexcept {
+  const ExactVector local_a = transposed_times(turn_a_, direction);
+  const ExactVector local_b = transposed_times(turn_b_, -direction);
+  Dyadic height_b;
+  vertex.a = farthest_vertex(a_, local_a, a, height);
+  vertex.b = farthest_vertex(b_, local_b, b, height_b);
+  if (vertex.a == kNoVertex && vertex.b == kNoVertex) return false;
+  height = height - dot(local_a, a_.at(a));
+  height_b = height_b - dot(local_b, b_.at(b));
+  if (vertex.a == kNoVertex || (vertex.b != kNoVertex && compare(height_b, height) > 0)) {
+    height = height_b;
+    vertex.point = turn_b_ * (b_.at(b) - b_.at(vertex.b));
+  } else {
+    vertex.point = turn_a_ * (a_.at(vertex.a) - a_.at(a));
+  }
+  return true;
+}
+
+Dyadic CoreDifference::height_bound(const ExactVector& direction) const noexcept {
+  return core_height_bound(a_, transposed_times(turn_a_, direction)) +
+         core_height_bound(b_, transposed_times(turn_b_, -direction)) - dot(direction, offset_);
+}
+
+}  // namespace winnow

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <winnow/core/pose.h>
+#include <winnow/pipeline/exact/bit_span.h>
+#include <winnow/pipeline/exact/exact_vector.h>
+#include <winnow/pipeline/shapes.h>
+
+#include <cstdint>
+
+namespace winnow {
+
+/// The vertices of a shape's core, in the shape's frame. The core of a cylinder or cone is the hull
+/// of discs at right angles to z, about two vertices. Points into itself or into the shape.
+struct CoreVertices {
+  CoreVertices() noexcept = default;
+  CoreVertices(const CoreVertices&) = delete;
+  CoreVertices& operator=(const CoreVertices&) = delete;
+
+  std::uint32_t count = 0;
+  const double* column[3] = {own[0], own[1], own[2]};
+  double own[3][8];
+  double rounding = 0.0;
+  bool has_discs = false;
+  double disc[2] = {};
+
+  [[nodiscard]] ExactVector at(std::uint32_t i) const noexcept {
+    return {{column[0][i], column[1][i], column[2][i]}};
+  }
+  void include_lengths(BitSpan& span) const noexcept;
+  [[nodiscard]] bool same(std::uint32_t i, std::uint32_t k) const noexcept {
+    return column[0][i] == column[0][k] && column[1][i] == column[1][k] &&
+           column[2][i] == column[2][k];
+  }
+};
+
+/// Fills `core`; false for half-spaces.
+bool core_vertices(const ShapeTables& tables, ShapeId id, CoreVertices& core) noexcept;
+
+inline constexpr std::uint32_t kNoVertex = ~0U;
+
+/// The vertex farthest along a direction and how far, exactly. Vertices equal to `skip` are left
+/// out; kNoVertex if none remains. Products in double leave only those near the maximum to exact
+/// arithmetic. O(vertices).
+std::uint32_t farthest_vertex(const CoreVertices& core, const ExactVector& direction,
+                              std::uint32_t skip, Dyadic& height) noexcept;
+
+/// A vertex of a difference of two cores, and where it comes from.
+struct DifferenceVertex {
+  ExactVector point;
+  std::uint32_t a;
+  std::uint32_t b;
+};
+
+/// The points x - y, x in the core of a and y in that of b, times `scale`: the product of the
+/// squares of both quaternions' lengths, which makes them polynomials of the input.
+class CoreDifference {
+ public:
+  /// `core_a` and `core_b` must outlive it.
+  CoreDifference(const CoreVertices& core_a, const Pose& pose_a, const CoreVertices& core_b,
+                 const Pose& pose_b) noexcept;
+
+  /// True if polynomials of degree 6 in the vertices and the roundings fit a Dyadic.
+  [[nodiscard]] bool in_range() const noexcept { return in_range_; }
+  [[nodiscard]] const Dyadic& scale() const noexcept { return scale_; }
+
+  /// The vertex farthest along `direction` and its height: the product with the direction. For
+  /// cores without discs, like `cone_support`.
+  void support(const ExactVector& direction, DifferenceVertex& vertex,
+               Dyadic& height) const noexcept;
+
+  /// The same among the points that span the difference's cone at the vertex (a, b): differences
+  /// of a's vertices to a, and of b to b's vertices, zero excluded. False if there is none.
+  bool cone_support(std::uint32_t a, std::uint32_t b, const ExactVector& direction,
+                    DifferenceVertex& vertex, Dyadic& height) const noexcept;
+
+  /// At least the height of every point along `direction`, discs included; more by 2^-50 of what
+  /// the discs add, or exact where the roots are.
+  [[nodiscard]] Dyadic height_bound(const ExactVector& direction) const noexcept;
+
+ private:
+  const CoreVertices& a_;
+  const CoreVertices& b_;
+  ExactMatrix turn_a_;
+  ExactMatrix turn_b_;
+  ExactVector offset_;  // of b from a, scaled
+  Dyadic scale_;
+  bool in_range_;
+};
+
+}  // namespace winnow

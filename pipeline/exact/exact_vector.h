@@ -1,0 +1,85 @@
+#pragma once
+
+#include <winnow/pipeline/exact/dyadic.h>
+
+namespace winnow {
+
+struct ExactVector {
+  Dyadic x[3];
+};
+
+[[nodiscard]] inline ExactVector exact_vector(const double v[3]) noexcept {
+  return {{v[0], v[1], v[2]}};
+}
+
+[[nodiscard]] inline ExactVector operator-(const ExactVector& a, const ExactVector& b) noexcept {
+  return {{a.x[0] - b.x[0], a.x[1] - b.x[1], a.x[2] - b.x[2]}};
+}
+
+[[nodiscard]] inline ExactVector operator-(const ExactVector& a) noexcept {
+  return {{-a.x[0], -a.x[1], -a.x[2]}};
+}
+
+[[nodiscard]] inline ExactVector operator*(const ExactVector& a, const Dyadic& s) noexcept {
+  return {{a.x[0] * s, a.x[1] * s, a.x[2] * s}};
+}
+
+[[nodiscard]] inline Dyadic dot(const ExactVector& a, const ExactVector& b) noexcept {
+  return a.x[0] * b.x[0] + a.x[1] * b.x[1] + a.x[2] * b.x[2];
+}
+
+[[nodiscard]] inline ExactVector cross(const ExactVector& a, const ExactVector& b) noexcept {
+  return {{a.x[1] * b.x[2] - a.x[2] * b.x[1], a.x[2] * b.x[0] - a.x[0] * b.x[2],
+           a.x[0] * b.x[1] - a.x[1] * b.x[0]}};
+}
+
+[[nodiscard]] inline bool is_zero(const ExactVector& a) noexcept {
+  return a.x[0].sign() == 0 && a.x[1].sign() == 0 && a.x[2].sign() == 0;
+}
+
+struct ExactMatrix {
+  ExactVector row[3];
+};
+
+[[nodiscard]] inline ExactVector operator*(const ExactMatrix& m, const ExactVector& v) noexcept {
+  return {{dot(m.row[0], v), dot(m.row[1], v), dot(m.row[2], v)}};
+}
+
+/// The transpose of m times v.
+[[nodiscard]] inline ExactVector transposed_times(const ExactMatrix& m,
+                                                  const ExactVector& v) noexcept {
+  ExactVector result;
+  for (int k = 0; k < 3; ++k) {
+    result.x[k] = m.row[0].x[k] * v.x[0] + m.row[1].x[k] * v.x[1] + m.row[2].x[k] * v.x[2];
+  }
+  return result;
+}
+
+/// The square of a quaternion's length.
+[[nodiscard]] inline Dyadic square_length(const double q[4]) noexcept {
+  return Dyadic(q[0]) * q[0] + Dyadic(q[1]) * q[1] + Dyadic(q[2]) * q[2] + Dyadic(q[3]) * q[3];
+}
+
+/// The rotation of a quaternion times the square of its length: a polynomial, no division.
+[[nodiscard]] inline ExactMatrix scaled_rotation(const double q[4]) noexcept {
+  const Dyadic w(q[0]);
+  const Dyadic x(q[1]);
+  const Dyadic y(q[2]);
+  const Dyadic z(q[3]);
+  const Dyadic two(2.0);
+  const Dyadic ww = w * w;
+  const Dyadic xx = x * x;
+  const Dyadic yy = y * y;
+  const Dyadic zz = z * z;
+  const Dyadic xy = x * y;
+  const Dyadic wz = w * z;
+  const Dyadic xz = x * z;
+  const Dyadic wy = w * y;
+  const Dyadic yz = y * z;
+  const Dyadic wx = w * x;
+  return {{{{ww + xx - yy - zz, two * (xy - wz), two * (xz + wy)}},
+           {{two * (xy + wz), ww - xx + yy - zz, two * (yz - wx)}},
+           {{two * (xz - wy), two * (yz + wx), ww - xx - yy + zz}}}};
+}
+
+}  // namespace winnow

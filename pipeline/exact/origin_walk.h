@@ -1,0 +1,14 @@
+#pragma once
+
+#include <winnow/pipeline/exact/core_difference.h>
+#include <winnow/pipeline/exact/exact_overlap.h>
+
+namespace winnow {
+
+/// Where the origin is to the difference of two cores rounded by `rounding`, decided exactly.
+/// `direction` is tried first. `undecided` only beyond a bound of iterations that nothing known
+/// comes near.
+[[nodiscard]] ExactVerdict locate_origin(const CoreDifference& difference, const Dyadic& rounding,
+                                         const ExactVector& direction) noexcept;
+
+}  // namespace winnow

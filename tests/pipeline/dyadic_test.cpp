@@ -1,0 +1,123 @@
+#include <gtest/gtest.h>
+#include <winnow/pipeline/exact/dyadic.h>
+
+#include <cfloat>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <vector>
+
+#include "../support/random.h"
+
+#if __has_include(<boost/multiprecision/cpp_int.hpp>)
+#define WINNOW_HAVE_BOOST_INTEGERS 1
+#include <boost/multiprecision/cpp_int.hpp>
+#endif
+
+namespace winnow::test {
+namespace {
+
+constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
+
+TEST(Dyadic, sums_and_products_of_integers_are_those_of_integers) {
+  for (int a = -9; a <= 9; ++a) {
+    for (int b = -9; b <= 9; ++b) {
+      const Dyadic x(a);
+      const Dyadic y(b);
+      EXPECT_EQ(compare(x + y, Dyadic(a + b)), 0);
+      EXPECT_EQ(compare(x - y, Dyadic(a - b)), 0);
+      EXPECT_EQ(compare(x * y, Dyadic(a * b)), 0);
+      EXPECT_EQ(compare(x, y), (a > b) - (a < b));
+      EXPECT_EQ((-x).sign(), (a < 0) - (a > 0));
+    }
+  }
+}
+
+TEST(Dyadic, keeps_every_bit_of_doubles_far_apart) {
+  const Dyadic sum = Dyadic(DBL_MAX) + kDenormal;
+  EXPECT_EQ(compare(sum, DBL_MAX), 1);
+  EXPECT_EQ(compare(sum - DBL_MAX, kDenormal), 0);
+  const Dyadic square = sum * sum;
+  const Dyadic terms =
+      Dyadic(DBL_MAX) * DBL_MAX + Dyadic(2.0) * DBL_MAX * kDenormal + Dyadic(kDenormal) * kDenormal;
+  EXPECT_EQ(compare(square, terms), 0);
+  EXPECT_EQ(square.lowest_bit(), -2148);
+  EXPECT_EQ(square.highest_bit(), 2047);
+}
+
+TEST(Dyadic, is_rounded_to_nearly_the_nearest_double) {
+  for (const double value : {1.0, 3.0, 0.1, 1e300, -7e-300, DBL_MIN, -DBL_MAX}) {
+    EXPECT_EQ(Dyadic(value).scaled(0), value);
+    const double third = (Dyadic(value) * 0x1.5555555555555p-2).scaled(0);
+    EXPECT_NEAR(third / value, 0x1.5555555555555p-2, 0x1p-52);
+  }
+}
+
+TEST(Dyadic, roots_are_exact_or_just_above) {
+  Random random(7);
+  for (const double value : {1.0, 5.0, 12.0, 0x1p-600, 3.0 * 0x1p500, 0.75}) {
+    EXPECT_EQ(compare(root_above(Dyadic(value) * value), value), 0) << value;
+  }
+  EXPECT_EQ(root_above(Dyadic(0.0)).sign(), 0);
+  for (int i = 0; i < 1000; ++i) {
+    const Dyadic square = Dyadic(random.log_uniform(1e-300, 1e300)) * random.unit();
+    if (square.sign() == 0) continue;
+    const Dyadic root = root_above(square);
+    EXPECT_GE(compare(root * root, square), 0);
+    EXPECT_LE(compare(root * root, square * (1.0 + 0x1p-50)), 0);
+  }
+}
+
+#ifdef WINNOW_HAVE_BOOST_INTEGERS
+using Integer = boost::multiprecision::cpp_int;
+
+// Numbers as multiples of 2^-1200.
+constexpr int kScale = 1200;
+
+[[nodiscard]] Integer integer_of(double value, int scale) {
+  int exponent = 0;
+  const double mantissa = std::frexp(value, &exponent);
+  const Integer digits(static_cast<long long>(std::ldexp(mantissa, 53)));
+  return digits * (Integer(1) << (scale + exponent - 53));
+}
+
+[[nodiscard]] double any_double(Random& random) {
+  static const double kNice[] = {0.0, 1.0, -1.0, 0.5, 3.0, 0x1p64, 0x1p-64, 0x1p63 - 512.0};
+  if (random.chance(0.3)) return kNice[random.below(std::size(kNice))];
+  const double value = random.log_uniform(1e-120, 1e120);
+  return random.chance(0.5) ? value : -value;
+}
+
+TEST(Dyadic, polynomials_agree_with_big_integers) {
+  Random random(11);
+  for (std::size_t i = 0; i < scaled(20000); ++i) {
+    double v[5];
+    for (double& x : v) x = any_double(random);
+    const Dyadic made = (Dyadic(v[0]) * v[1] - Dyadic(v[2]) * v[3] + v[4]) * v[0] - v[2];
+    const auto as_integer = [](double x) { return integer_of(x, kScale); };
+    const Integer pair = as_integer(v[0]) * as_integer(v[1]) - as_integer(v[2]) * as_integer(v[3]) +
+                         integer_of(v[4], 2 * kScale);
+    const Integer whole = pair * as_integer(v[0]) - integer_of(v[2], 3 * kScale);
+    ASSERT_EQ(made.sign(), whole.sign());
+    if (made.sign() == 0) continue;
+    const Integer size = abs(whole);
+    ASSERT_EQ(made.lowest_bit() + 3 * kScale, static_cast<int>(lsb(size)));
+    ASSERT_EQ(made.highest_bit() + 3 * kScale, static_cast<int>(msb(size)));
+    // Every bit between them, too: the number less its leading doubles is nothing in the end.
+    Dyadic rest = made;
+    Integer other = whole;
+    for (int part = 0; part < 64 && rest.sign() != 0; ++part) {
+      const int top = rest.highest_bit();
+      const double lead = rest.scaled(-top);
+      const Dyadic piece = Dyadic(lead) * Dyadic::power_of_two(top);
+      rest = rest - piece;
+      other -= integer_of(lead, 60) * (Integer(1) << (3 * kScale + top)) / (Integer(1) << 60);
+      ASSERT_EQ(rest.sign(), other.sign());
+    }
+    ASSERT_EQ(rest.sign(), 0);
+  }
+}
+#endif
+
+}  // namespace
+}  // namespace winnow::test

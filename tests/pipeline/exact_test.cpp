@@ -1,0 +1,261 @@
+#include <gtest/gtest.h>
+#include <winnow/pipeline/exact/exact_overlap.h>
+
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "../support/random.h"
+#include "lattice_truth.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr double kAxis[3] = {1.0, 0.0, 0.0};
+
+/// One shape of each kind for each side of a pair.
+struct Pair {
+  SphereShape spheres[2];
+  CapsuleShape capsules[2];
+  BoxShape boxes[2];
+  CylinderShape cylinders[2];
+  ConeShape cones[2];
+  TriangleShape triangles[2];
+  HalfSpaceShape half_spaces[2];
+  HullShape hulls[2];
+  Pose poses[2];
+
+  [[nodiscard]] ShapeTables tables() const {
+    ShapeTables result;
+    result.spheres = spheres;
+    result.capsules = capsules;
+    result.boxes = boxes;
+    result.cylinders = cylinders;
+    result.cones = cones;
+    result.hulls = hulls;
+    result.triangles = triangles;
+    result.half_spaces = half_spaces;
+    return result;
+  }
+  [[nodiscard]] ExactVerdict verdict(ShapeKind a, ShapeKind b,
+                                     const double (&axis)[3] = kAxis) const {
+    return exact_overlap(tables(), ShapeId::of(a, 0), poses[0], ShapeId::of(b, 1), poses[1], axis);
+  }
+  [[nodiscard]] ExactVerdict mirrored(ShapeKind a, ShapeKind b) const {
+    return exact_overlap(tables(), ShapeId::of(b, 1), poses[1], ShapeId::of(a, 0), poses[0], kAxis);
+  }
+};
+
+[[nodiscard]] double digit(Random& random, int low, int high) {
+  return low + static_cast<int>(random.below(static_cast<std::size_t>(high - low + 1)));
+}
+
+void set_orientation(Random& random, Pose& pose) {
+  static const double kTurns[][4] = {{1, 0, 0, 0}, {1, 0, 0, 0}, {1, 1, 0, 0}, {1, 0, 1, 0},
+                                     {0, 0, 0, 1}, {1, 1, 1, 1}, {2, 1, 0, 0}, {1, -1, 1, 0},
+                                     {0, 1, 1, 0}, {2, 0, -1, 1}};
+  const auto& turn = kTurns[random.below(std::size(kTurns))];
+  for (int k = 0; k < 4; ++k) pose.orientation[k] = turn[k];
+}
+
+/// Columns of the hull of shape `side`.
+using HullColumns = double[3][6];
+
+void set_lattice(Random& random, Pair& pair, HullColumns (&columns)[2]) {
+  for (int side = 0; side < 2; ++side) {
+    const double rounding = random.chance(0.5) ? 0.0 : digit(random, 1, 2);
+    pair.spheres[side].radius = digit(random, 0, 3);
+    pair.capsules[side] = {rounding, digit(random, 0, 2)};
+    BoxShape& box = pair.boxes[side];
+    for (double& half : box.half) half = digit(random, 0, 2);
+    box.rounding = rounding;
+    TriangleShape& triangle = pair.triangles[side];
+    for (auto& vertex : triangle.vertex) {
+      for (double& x : vertex) x = digit(random, -2, 2);
+    }
+    triangle.rounding = rounding;
+    HullShape& hull = pair.hulls[side];
+    hull.vertex_count = 6;
+    hull.rounding = rounding;
+    for (int k = 0; k < 3; ++k) {
+      for (double& x : columns[side][k]) x = digit(random, -2, 2);
+      hull.vertex[k] = columns[side][k];
+    }
+    for (double& x : pair.poses[side].position) x = digit(random, -2, 2);
+    set_orientation(random, pair.poses[side]);
+  }
+}
+
+/// Checks pairs of two kinds on a lattice, where many touch.
+void expect_lattice_truth(ShapeKind a, ShapeKind b, std::size_t count) {
+  Random random(static_cast<std::uint64_t>(a) * 8 + static_cast<std::uint64_t>(b) + 100);
+  Pair pair;
+  HullColumns columns[2];
+  int seen[3] = {};
+  for (std::size_t i = 0; i < count; ++i) {
+    set_lattice(random, pair, columns);
+    const ExactVerdict truth = lattice_truth(pair.tables(), ShapeId::of(a, 0), pair.poses[0],
+                                             ShapeId::of(b, 1), pair.poses[1]);
+    ++seen[static_cast<int>(truth)];
+    const double axis[3] = {digit(random, -1, 1), digit(random, -1, 1), digit(random, -1, 1)};
+    ASSERT_EQ(pair.verdict(a, b, axis), truth) << i << ' ' << to_string(a) << ' ' << to_string(b);
+    ASSERT_EQ(pair.mirrored(a, b), truth) << i;
+  }
+  if (count > 50) {
+    for (const int verdict : seen) EXPECT_GT(verdict, 0) << to_string(a) << ' ' << to_string(b);
+  }
+}
+
+constexpr ShapeKind kCores[] = {ShapeKind::sphere, ShapeKind::capsule, ShapeKind::box,
+                                ShapeKind::triangle, ShapeKind::hull};
+
+TEST(ExactOverlap, agrees_with_integers_on_small_shapes) {
+  for (const ShapeKind a : kCores) {
+    for (const ShapeKind b : kCores) {
+      const bool large = (a == ShapeKind::box || a == ShapeKind::hull) &&
+                         (b == ShapeKind::box || b == ShapeKind::hull);
+      expect_lattice_truth(a, b, scaled(large ? 200 : 1500));
+    }
+  }
+}
+
+TEST(ExactOverlap, sees_one_unit_in_the_last_place) {
+  Pair pair;
+  pair.boxes[0] = {{0.1, 0.3, 0.7}, 0.0};
+  pair.boxes[1] = {{0.1, 0.3, 0.7}, 0.0};
+  pair.poses[1] = Pose::at(0.2, 0.0, 0.0);
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::touching);
+  pair.poses[1] = Pose::at(std::nextafter(0.2, 1.0), 0.0, 0.0);
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::separated);
+  pair.poses[1] = Pose::at(std::nextafter(0.2, 0.0), 0.0, 0.0);
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::overlapping);
+
+  pair.spheres[0].radius = 0.1;
+  pair.spheres[1].radius = 0.2;
+  // 0.1 + 0.2 is below the double 0.30000000000000004 and above 0.3.
+  pair.poses[1] = Pose::at(0.0, 0.0, 0.3);
+  EXPECT_EQ(pair.verdict(ShapeKind::sphere, ShapeKind::sphere), ExactVerdict::overlapping);
+  pair.poses[1] = Pose::at(0.0, 0.0, std::nextafter(0.3, 1.0));
+  EXPECT_EQ(pair.verdict(ShapeKind::sphere, ShapeKind::sphere), ExactVerdict::separated);
+}
+
+TEST(ExactOverlap, answers_do_not_depend_on_size_or_on_where_both_stand) {
+  for (const int exponent : {-900, -60, 0, 60, 900}) {
+    const double unit = std::ldexp(1.0, exponent);
+    Pair pair;
+    pair.boxes[0] = {{unit, unit, unit}, 0.0};
+    pair.capsules[1] = {unit, 2.0 * unit};
+    for (const double at : {0.0, 1024.0, 0x1p40}) {
+      pair.poses[0] = Pose::at(at * unit, 0.0, -at * unit);
+      pair.poses[1] = Pose::at((at + 2.0) * unit, 0.0, -at * unit);
+      EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::capsule), ExactVerdict::touching);
+      pair.capsules[1].radius = std::nextafter(unit, 0.0);
+      EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::capsule), ExactVerdict::separated);
+      pair.capsules[1].radius = std::nextafter(unit, 4.0 * unit);
+      EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::capsule), ExactVerdict::overlapping);
+      pair.capsules[1].radius = unit;
+    }
+  }
+}
+
+TEST(ExactOverlap, half_turns_with_rounded_quaternions_are_decided) {
+  Pair pair;
+  // cos(pi / 2) in double is 6e-17: what a library makes of a half turn.
+  for (Pose& pose : pair.poses) pose.orientation[0] = std::cos(std::acos(-1.0) / 2.0);
+  pair.poses[0].orientation[2] = 1.0;
+  pair.poses[1].orientation[1] = 1.0;
+  pair.poses[1].position[1] = 2.0;
+  for (BoxShape& box : pair.boxes) box = {{1.0, 1.0, 1.0}, 0.0};
+  // Turned about x by a trifle, the second box lowers a corner into the first.
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::overlapping);
+  for (BoxShape& box : pair.boxes) box.rounding = 0.25;
+  pair.poses[1].position[1] = 2.5;
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::overlapping);
+  pair.poses[1].position[1] = 2.5 + 0x1p-40;
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::separated);
+}
+
+TEST(ExactOverlap, half_spaces_touch_the_lowest_point) {
+  Pair pair;
+  pair.half_spaces[0] = {{0.0, 0.0, 1.0}, 1.0};
+  pair.poses[1].orientation[1] = 1.0;  // a quarter turn about x: local z becomes -y
+  pair.spheres[1].radius = 2.0;
+  pair.capsules[1] = {2.0, 5.0};
+  pair.boxes[1] = {{1.0, 1.0, 9.0}, 1.0};
+  pair.cylinders[1] = {1.0, 5.0, 1.0};
+  pair.cones[1] = {1.0, 5.0, 1.0};
+  for (const ShapeKind kind : {ShapeKind::sphere, ShapeKind::capsule, ShapeKind::box,
+                               ShapeKind::cylinder, ShapeKind::cone}) {
+    pair.poses[1].position[2] = 3.0;
+    EXPECT_EQ(pair.verdict(ShapeKind::half_space, kind), ExactVerdict::touching) << to_string(kind);
+    EXPECT_EQ(pair.mirrored(ShapeKind::half_space, kind), ExactVerdict::touching);
+    pair.poses[1].position[2] = std::nextafter(3.0, 4.0);
+    EXPECT_EQ(pair.verdict(ShapeKind::half_space, kind), ExactVerdict::separated);
+    pair.poses[1].position[2] = std::nextafter(3.0, 2.0);
+    EXPECT_EQ(pair.verdict(ShapeKind::half_space, kind), ExactVerdict::overlapping);
+  }
+  // Stood on a tilted plane of slope 3:4 a disc reaches 4/5 of its radius down.
+  pair.half_spaces[0] = {{0.0, 0.75, 1.0}, 0.0};  // by decree a unit vector
+  pair.poses[1] = Pose::at(0.0, 0.0, 0.0);
+  pair.cylinders[1] = {4.0, 0.0, 0.0};
+  pair.poses[1].position[2] = 3.0;
+  EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::cylinder), ExactVerdict::touching);
+}
+
+TEST(ExactOverlap, half_spaces_are_apart_only_if_opposite) {
+  Pair pair;
+  pair.half_spaces[0] = {{0.0, 0.0, 1.0}, 1.0};
+  pair.half_spaces[1] = {{0.0, 0.0, 1.0}, 1.0};
+  const auto verdict = [&] { return pair.verdict(ShapeKind::half_space, ShapeKind::half_space); };
+  pair.poses[1].position[2] = 2.0;
+  EXPECT_EQ(verdict(), ExactVerdict::overlapping);
+  pair.poses[1].orientation[0] = 0.0;
+  pair.poses[1].orientation[1] = 3.0;  // upside down
+  EXPECT_EQ(verdict(), ExactVerdict::touching);
+  pair.poses[1].position[2] = 2.5;
+  EXPECT_EQ(verdict(), ExactVerdict::separated);
+  pair.poses[1].orientation[0] = 1e-9;
+  EXPECT_EQ(verdict(), ExactVerdict::overlapping);
+}
+
+TEST(ExactOverlap, discs_are_apart_where_the_axis_proves_it) {
+  Pair pair;
+  pair.cylinders[0] = {1.0, 2.0, 0.0};
+  pair.cones[1] = {1.0, 1.0, 0.5};
+  pair.poses[1] = Pose::at(2.5 + 0x1p-50, 0.0, 0.0);
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::cone), ExactVerdict::separated);
+  const double wrong[3] = {0.0, 1.0, 0.0};
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::cone, wrong), ExactVerdict::undecided);
+  pair.poses[1] = Pose::at(2.5, 0.0, 0.0);
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::cone), ExactVerdict::undecided);
+  // Without radius it is a segment, and decided.
+  pair.cylinders[0].radius = 0.0;
+  pair.triangles[1] = {{{0.0, -1.0, 0.0}, {0.0, 1.0, 0.0}, {3.0, 0.0, 0.0}}, 0.0};
+  pair.poses[1] = Pose::at(0.0, 0.0, 0.0);
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::triangle), ExactVerdict::touching);
+}
+
+TEST(ExactOverlap, any_axis_will_do) {
+  const double inf = std::numeric_limits<double>::infinity();
+  const double axes[][3] = {{0, 0, 0},     {NAN, 1, 0},       {inf, 0, 0}, {1e-320, 1e-310, 0},
+                            {1e300, 1, 0}, {1e-200, -1, 1e9}, {-1, 0, 0}};
+  Pair pair;
+  for (BoxShape& box : pair.boxes) box = {{1.0, 1.0, 1.0}, 0.0};
+  for (const auto& axis : axes) {
+    pair.poses[1] = Pose::at(2.0, 2.0, 1.0);
+    EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box, axis), ExactVerdict::touching);
+    pair.poses[1] = Pose::at(2.0, 2.5, 1.0);
+    EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box, axis), ExactVerdict::separated);
+  }
+}
+
+TEST(ExactOverlap, numbers_too_far_apart_are_undecided) {
+  Pair pair;
+  pair.poses[1].orientation[1] = 1e-300;
+  pair.poses[1].position[0] = 1.0;
+  for (BoxShape& box : pair.boxes) box = {{1.0, 1.0, 1.0}, 0.0};
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::undecided);
+}
+
+}  // namespace
+}  // namespace winnow::test
