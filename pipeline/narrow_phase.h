@@ -60,7 +60,8 @@ class NarrowPhase {
 
   /// Answers all pairs. `invalid_argument` for a bad margin or a body that does not exist,
   /// `size_mismatch` for spans of different lengths, `invalid_key` for an id that the pool does not
-  /// know, `invalid_pose` if a body of a pair has one: then `result` is empty and `bad_body` tells.
+  /// know, `invalid_pose` if a body of a pair has one (an orientation counts where its shape is not
+  /// a sphere): then `result` is empty and `bad_body` tells.
   Status collide(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
                  const NarrowOptions& options, NarrowResult& result);
 
