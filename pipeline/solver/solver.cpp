@@ -1,10 +1,126 @@
 #include <winnow/pipeline/solver/solver.h>
 
-namespace winnow {
+#include <winnow/pipeline/exact/exact_overlap.h>
+#include <winnow/pipeline/solver/core_distance.h>
+#include <winnow/pipeline/solver/manifold.h>
+#include <winnow/pipeline/solver/problem.h>
 
-PairAnswer solve_pair(const ShapeTables&, ShapeId, const Pose&, ShapeId, const Pose&, NarrowLevel,
-                      double, SolverCounts&) noexcept {
-  return {};
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+using solver::CoreDistance;
+using solver::Problem;
+using solver::Vec;
+
+struct Question {
+  const ShapeTables& tables;
+  ShapeId a;
+  const Pose& pose_a;
+  ShapeId b;
+  const Pose& pose_b;
+};
+
+/// The same pair asked in either order is solved in one, so that answers mirror.
+bool is_swapped(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b) noexcept {
+  if (a.kind() != b.kind()) return a.kind() > b.kind();
+  for (int i = 0; i < 3; ++i) {
+    if (pose_b.position[i] != pose_a.position[i]) return pose_b.position[i] < pose_a.position[i];
+  }
+  return false;
+}
+
+/// Lets exact arithmetic tell the sign of a distance that double cannot.
+void settle_sign(const Question& ask, const Problem& problem, const Vec& axis, double& distance,
+                 SolverCounts& counts) noexcept {
+  ++counts.exact;
+  const double direction[3] = {axis.x(), axis.y(), axis.z()};
+  switch (exact_overlap(ask.tables, ask.a, ask.pose_a, ask.b, ask.pose_b, direction)) {
+    case ExactVerdict::separated:
+      distance = std::max(distance, std::numeric_limits<double>::denorm_min());
+      break;
+    case ExactVerdict::touching:
+      distance = 0.0;
+      break;
+    case ExactVerdict::overlapping:
+      distance = std::min(distance, 0.0);
+      break;
+    case ExactVerdict::undecided:
+      if (std::abs(distance) <= unscaled(problem, 4.0 * solver::kEpsilon * problem.size)) {
+        distance = 0.0;
+      }
+      break;
+  }
+}
+
+void put(const Problem& problem, const Vec& from, double to[3]) noexcept {
+  for (int i = 0; i < 3; ++i) to[i] = unscaled(problem, from[i]);
+}
+
+PairAnswer solve(const Question& ask, bool swapped, NarrowLevel level, double margin,
+                 SolverCounts& counts) noexcept {
+  Problem problem;
+  prepare(ask.tables, ask.a, ask.pose_a, ask.b, ask.pose_b, swapped, problem);
+  const double roundings = problem.a.rounding + problem.b.rounding;
+  double enough = std::numeric_limits<double>::infinity();
+  if (level != NarrowLevel::distance) {
+    enough = roundings + problem.noise();
+    if (level == NarrowLevel::manifold) enough += std::ldexp(margin, -problem.exponent);
+  }
+  const CoreDistance found = core_distance(problem, level, enough, counts);
+  PairAnswer answer;
+  if (found.overlaps) {
+    answer.overlap = true;
+    return answer;
+  }
+  const double scaled = found.distance - roundings;
+  answer.distance = unscaled(problem, scaled);
+  answer.error_bound = unscaled(problem, found.doubt);
+  if (!std::isfinite(scaled)) answer.error_bound = std::numeric_limits<double>::infinity();
+  if (!found.far && std::abs(scaled) <= found.doubt) {
+    settle_sign(ask, problem, found.axis, answer.distance, counts);
+  }
+  answer.overlap = answer.distance <= 0.0;
+  Vec::Map(answer.normal) = found.axis;
+  put(problem, found.on_a + found.axis * problem.a.rounding, answer.point);
+  if (level == NarrowLevel::manifold && answer.distance <= margin) {
+    make_manifold(problem, margin, answer);
+  }
+  return answer;
+}
+
+/// The answer for (b, a) made one for (a, b).
+void mirror(const Pose& pose_a, const Pose& pose_b, PairAnswer& answer) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    const double c = pose_b.position[i] - pose_a.position[i];
+    answer.point[i] = answer.point[i] + answer.distance * answer.normal[i] + c;
+    answer.normal[i] = -answer.normal[i];
+    for (std::uint32_t k = 0; k < answer.contact_count; ++k) {
+      float& x = answer.contacts[k].position[i];
+      x = static_cast<float>(static_cast<double>(x) + c);
+    }
+  }
+  for (std::uint32_t k = 0; k < answer.contact_count; ++k) {
+    std::uint64_t& feature = answer.contacts[k].feature;
+    feature = feature << 32U | feature >> 32U;
+  }
+}
+
+}  // namespace
+
+PairAnswer solve_pair(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
+                      const Pose& pose_b, NarrowLevel level, double margin,
+                      SolverCounts& counts) noexcept {
+  ++counts.pairs;
+  if (!is_swapped(a, pose_a, b, pose_b)) {
+    return solve({tables, a, pose_a, b, pose_b}, false, level, margin, counts);
+  }
+  PairAnswer answer = solve({tables, b, pose_b, a, pose_a}, true, level, margin, counts);
+  mirror(pose_a, pose_b, answer);
+  return answer;
 }
 
 }  // namespace winnow

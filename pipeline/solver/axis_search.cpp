@@ -1,0 +1,141 @@
+#include <winnow/pipeline/solver/axis_search.h>
+
+#include <cmath>
+
+namespace winnow::solver {
+namespace {
+
+/// Differences of up to four points: the longest, and the one that spans most with it.
+struct Span {
+  Vec first = Vec::Zero();
+  Vec second = Vec::Zero();
+  double length = 0.0;
+  double area = 0.0;
+
+  void offer(const Vec& d) noexcept {
+    if (d.squaredNorm() > length) {
+      length = d.squaredNorm();
+      first = d;
+    }
+  }
+  void offer_second(const Vec& d) noexcept {
+    const double square = unit(d).cross(first).squaredNorm();
+    if (square > area) {
+      area = square;
+      second = unit(d);
+    }
+  }
+};
+
+template <typename Body>
+void for_differences(const Simplex& simplex, Body&& body) {
+  for (std::size_t i = 1; i < static_cast<std::size_t>(simplex.count); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      body(Vec(simplex.point[i].a - simplex.point[k].a));
+      body(Vec(simplex.point[i].b - simplex.point[k].b));
+    }
+  }
+}
+
+void look_at_products(const Core& a, const Core& b, AxisSearch& search) noexcept {
+  for (std::uint32_t i = 0; i < direction_count(a); ++i) {
+    const Vec e = unit(direction(a, i));
+    for (std::uint32_t k = 0; k < direction_count(b); ++k) {
+      search.look(perpendicular(e, unit(direction(b, k))));
+    }
+  }
+}
+
+/// An edge's neighbouring normals, in the world.
+struct Arc {
+  Vec direction;
+  Vec normal[2];
+  Vec point;
+};
+
+Arc arc(const Core& core, std::uint32_t i) noexcept {
+  const HullEdge& e = core.hull->edges[i];
+  return {direction(core, i),
+          {face_normal(core, e.face[0]), face_normal(core, e.face[1])},
+          vertex(core, e.vertex[0])};
+}
+
+/// True unless the arc of a and the reversed arc of b surely do not cross on the sphere of
+/// directions.
+bool may_cross(const Arc& a, const Arc& b) noexcept {
+  constexpr double kDoubt = 1e-9;
+  const double b0 = -b.normal[0].dot(a.direction);
+  const double b1 = -b.normal[1].dot(a.direction);
+  const double a0 = a.normal[0].dot(b.direction);
+  const double a1 = a.normal[1].dot(b.direction);
+  return b0 * b1 <= kDoubt && a0 * a1 <= kDoubt;
+}
+
+void look_at_hull_products(const Problem& problem, AxisSearch& search) noexcept {
+  const Core& a = problem.a;
+  const Core& b = problem.b;
+  for (std::uint32_t i = 0; i < edge_count(a); ++i) {
+    const Arc of_a = arc(a, i);
+    for (std::uint32_t k = 0; k < edge_count(b); ++k) {
+      const Arc of_b = arc(b, k);
+      if (!may_cross(of_a, of_b)) continue;
+      const Vec n = perpendicular(of_a.direction, of_b.direction);
+      // Outward of a, an axis that makes a face has no other separation than that of the edges.
+      const double outward = n.dot(of_a.normal[0] + of_a.normal[1]);
+      const double between = n.dot(of_b.point - of_a.point) * (outward < 0.0 ? -1.0 : 1.0);
+      const bool sure = std::abs(outward) > 1e-6;
+      if (sure && between < search.separation() - problem.noise()) continue;
+      search.look(n);
+    }
+  }
+}
+
+bool is_solid_hull(const Core& core) noexcept {
+  return core.kind == CoreKind::hull && core.hull->dimension == 3;
+}
+
+}  // namespace
+
+void AxisSearch::look(const Vec& axis) noexcept {
+  if (axis == Vec::Zero()) return;
+  const double offset = axis.dot(b_.center - a_.center);
+  const Range a = project(a_, axis);
+  const Range b = project(b_, axis);
+  const double forward = offset + b.low - a.high;
+  const double backward = a.low - b.high - offset;
+  if (forward > separation_) {
+    separation_ = forward;
+    axis_ = axis;
+  }
+  if (backward > separation_) {
+    separation_ = backward;
+    axis_ = -axis;
+  }
+}
+
+void look_at_simplex(const GjkResult& found, AxisSearch& search) noexcept {
+  Span span;
+  for_differences(found.simplex, [&](const Vec& d) { span.offer(d); });
+  if (span.length == 0.0) return;
+  span.first = unit(span.first);
+  for_differences(found.simplex, [&](const Vec& d) { span.offer_second(d); });
+  search.look(without(found.between, span.first));
+  if (span.area > 0.0) search.look(perpendicular(span.first, span.second));
+}
+
+bool look_at_features(const Problem& problem, AxisSearch& search) noexcept {
+  const Core& a = problem.a;
+  const Core& b = problem.b;
+  for (std::uint32_t i = 0; i < normal_count(a); ++i) search.look(normal(a, i));
+  for (std::uint32_t i = 0; i < normal_count(b); ++i) search.look(normal(b, i));
+  const std::uint64_t products = std::uint64_t{direction_count(a)} * direction_count(b);
+  if (products > kMostEdgePairs) return false;
+  if (is_solid_hull(a) && is_solid_hull(b)) {
+    look_at_hull_products(problem, search);
+  } else {
+    look_at_products(a, b, search);
+  }
+  return true;
+}
+
+}  // namespace winnow::solver

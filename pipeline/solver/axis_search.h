@@ -1,0 +1,46 @@
+#pragma once
+
+#include <winnow/pipeline/solver/core.h>
+#include <winnow/pipeline/solver/gjk.h>
+#include <winnow/pipeline/solver/problem.h>
+
+#include <limits>
+
+namespace winnow::solver {
+
+/// The best of the axes that were looked at: the unit one, from a to b, along which the cores are
+/// farthest apart or overlap least. Its separation is a lower bound of their signed distance.
+class AxisSearch {
+ public:
+  AxisSearch(const Core& a, const Core& b) noexcept : a_(a), b_(b) {}
+
+  /// The axis and its opposite; a zero vector is passed over.
+  void look(const Vec& axis) noexcept;
+
+  [[nodiscard]] const Vec& axis() const noexcept { return axis_; }
+  [[nodiscard]] double separation() const noexcept { return separation_; }
+
+ private:
+  const Core& a_;
+  const Core& b_;
+  Vec axis_ = Vec::Zero();
+  double separation_ = -std::numeric_limits<double>::infinity();
+};
+
+/// Axes that the features of a simplex give: perpendicular to what its points span on a and on b.
+/// They are right to rounding where the vector between the closest points is too short to have a
+/// good direction.
+void look_at_simplex(const GjkResult& found, AxisSearch& search) noexcept;
+
+/// Face normals of both cores and products of their edges; caps and axes of cylinders and cones.
+/// Where polytopes overlap, one of these is the axis of least depth; where they do not, one of
+/// these separates them. Between hulls only edges that make a face of the Minkowski difference
+/// (Gregorius, "The separating axis test between convex polyhedra", 2013), and of those only what
+/// may beat the best so far. O(edges of a x edges of b); false if that is above a bound of some
+/// millions and products of edges were left out.
+bool look_at_features(const Problem& problem, AxisSearch& search) noexcept;
+
+/// The most products of directions that look_at_features tries.
+inline constexpr std::uint64_t kMostEdgePairs = 4'000'000;
+
+}  // namespace winnow::solver

@@ -1,0 +1,147 @@
+#include <winnow/pipeline/solver/problem.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow::solver {
+namespace {
+
+/// Exact for the identity, half turns and quarter turns about the axes.
+Mat rotation_of(const Pose& pose) noexcept {
+  const Eigen::Map<const Eigen::Vector4d> given(pose.orientation);
+  const Eigen::Vector4d q = given / given.cwiseAbs().maxCoeff();
+  const double s = 2.0 / q.squaredNorm();
+  const double w = q[0];
+  const double x = q[1];
+  const double y = q[2];
+  const double z = q[3];
+  Mat r;
+  r << 1.0 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
+      s * (x * y + w * z), 1.0 - s * (x * x + z * z), s * (y * z - w * x),   //
+      s * (x * z - w * y), s * (y * z + w * x), 1.0 - s * (x * x + y * y);
+  return r;
+}
+
+/// The lengths of a shape, unscaled; at most 7.
+struct Lengths {
+  CoreKind kind = CoreKind::point;
+  Vec half = Vec::Zero();
+  double rounding = 0.0;
+  double largest = 0.0;
+};
+
+Lengths triangle_lengths(const TriangleShape& triangle) noexcept {
+  Lengths lengths{CoreKind::triangle, Vec::Zero(), triangle.rounding, triangle.rounding};
+  for (const auto& corner : triangle.vertex) {
+    for (const double x : corner) lengths.largest = std::max(lengths.largest, std::abs(x));
+  }
+  return lengths;
+}
+
+Lengths hull_lengths(const HullShape& hull) noexcept {
+  Lengths lengths{CoreKind::hull, Vec::Zero(), hull.rounding, hull.rounding};
+  lengths.largest = std::max(lengths.largest, hull.radius);
+  for (const double x : hull.center) lengths.largest = std::max(lengths.largest, std::abs(x));
+  return lengths;
+}
+
+Lengths lengths_of(const ShapeTables& tables, ShapeId id) noexcept {
+  const auto with = [](CoreKind kind, const Vec& half, double rounding) {
+    return Lengths{kind, half, rounding, std::max(half.maxCoeff(), rounding)};
+  };
+  switch (id.kind()) {
+    case ShapeKind::sphere:
+      return with(CoreKind::point, Vec::Zero(), tables.spheres[id.index()].radius);
+    case ShapeKind::capsule: {
+      const CapsuleShape& s = tables.capsules[id.index()];
+      const CoreKind kind = s.half_length > 0.0 ? CoreKind::segment : CoreKind::point;
+      return with(kind, {0.0, 0.0, s.half_length}, s.radius);
+    }
+    case ShapeKind::box: {
+      const BoxShape& s = tables.boxes[id.index()];
+      return with(CoreKind::box, {s.half[0], s.half[1], s.half[2]}, s.rounding);
+    }
+    case ShapeKind::cylinder: {
+      const CylinderShape& s = tables.cylinders[id.index()];
+      const CoreKind kind = s.radius > 0.0 ? CoreKind::cylinder : CoreKind::segment;
+      return with(kind, {s.radius, s.radius, s.half_length}, s.rounding);
+    }
+    case ShapeKind::cone: {
+      const ConeShape& s = tables.cones[id.index()];
+      const CoreKind kind = s.radius > 0.0 ? CoreKind::cone : CoreKind::segment;
+      return with(kind, {s.radius, s.radius, s.half_length}, s.rounding);
+    }
+    case ShapeKind::hull:
+      return hull_lengths(tables.hulls[id.index()]);
+    case ShapeKind::triangle:
+      return triangle_lengths(tables.triangles[id.index()]);
+    case ShapeKind::half_space:
+      break;
+  }
+  const double offset = tables.half_spaces[id.index()].offset;
+  return {CoreKind::half_space, Vec::Zero(), 0.0, std::abs(offset)};
+}
+
+void place_triangle(const TriangleShape& triangle, int exponent, Core& core) noexcept {
+  Vec local[3];
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) local[i][k] = std::ldexp(triangle.vertex[i][k], -exponent);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    core.corner[i] = core.rotation * local[i];
+    core.side[i] = core.rotation * unit(local[(i + 1) % 3] - local[i]);
+    core.size = std::max(core.size, local[i].norm() + core.rounding);
+  }
+}
+
+void place(const ShapeTables& tables, ShapeId id, const Pose& pose, const Lengths& lengths,
+           int exponent, Core& core) noexcept {
+  core.kind = lengths.kind;
+  core.rotation = rotation_of(pose);
+  for (int i = 0; i < 3; ++i) core.half[i] = std::ldexp(lengths.half[i], -exponent);
+  core.rounding = std::ldexp(lengths.rounding, -exponent);
+  core.size = core.half.norm() + core.rounding;
+  if (id.kind() == ShapeKind::triangle) {
+    place_triangle(tables.triangles[id.index()], exponent, core);
+  } else if (id.kind() == ShapeKind::hull) {
+    core.hull = &tables.hulls[id.index()];
+    core.unit[0] = std::ldexp(1.0, -exponent / 2);
+    core.unit[1] = std::ldexp(1.0, -exponent - -exponent / 2);
+    const Vec middle = Eigen::Map<const Vec>(core.hull->center) * core.unit[0] * core.unit[1];
+    core.size += middle.norm() + core.hull->radius * core.unit[0] * core.unit[1];
+  } else if (id.kind() == ShapeKind::half_space) {
+    const HalfSpaceShape& shape = tables.half_spaces[id.index()];
+    core.normal = unit(core.rotation * Eigen::Map<const Vec>(shape.normal));
+    core.offset = std::ldexp(shape.offset, -exponent);
+    core.size = std::abs(core.offset);
+  }
+}
+
+}  // namespace
+
+void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
+             const Pose& pose_b, bool swapped, Problem& problem) noexcept {
+  // Positions far apart on both ends of the range of doubles have no finite difference: halve.
+  const Eigen::Map<const Vec> at_a(pose_a.position);
+  const Eigen::Map<const Vec> at_b(pose_b.position);
+  Vec c = at_b - at_a;
+  const int halved = c.allFinite() ? 0 : 1;
+  if (halved != 0) c = 0.5 * at_b - 0.5 * at_a;
+  const Lengths lengths_a = lengths_of(tables, a);
+  const Lengths lengths_b = lengths_of(tables, b);
+  std::frexp(std::max({lengths_a.largest, lengths_b.largest, c.cwiseAbs().maxCoeff()}),
+             &problem.exponent);
+  problem.exponent += halved;
+  for (int i = 0; i < 3; ++i) problem.b.center[i] = std::ldexp(c[i], halved - problem.exponent);
+  place(tables, a, pose_a, lengths_a, problem.exponent, problem.a);
+  place(tables, b, pose_b, lengths_b, problem.exponent, problem.b);
+  problem.size = problem.b.center.norm() + problem.a.size + problem.b.size;
+  problem.tie_axes = swapped ? Mat(-problem.b.rotation) : problem.a.rotation;
+}
+
+double unscaled(const Problem& problem, double length) noexcept {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  return std::clamp(std::ldexp(length, problem.exponent), -kMost, kMost);
+}
+
+}  // namespace winnow::solver

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <winnow/core/pose.h>
+#include <winnow/pipeline/shapes.h>
+#include <winnow/pipeline/solver/core.h>
+
+namespace winnow::solver {
+
+/// A pair in one frame: origin at the position of a, axes of the world, lengths scaled by a power
+/// of two so that the largest is about 1.
+struct Problem {
+  Core a;
+  Core b;
+  /// A length of the problem is the caller's times 2^-exponent.
+  int exponent = 0;
+  /// |c| + size of a + size of b: what errors are relative to.
+  double size = 0.0;
+  /// Columns +x, +y, +z of the caller's a, as directions from a to b: for ties.
+  Mat tie_axes = Mat::Identity();
+
+  /// What rounding does to any length of the pair, with room to spare.
+  [[nodiscard]] double noise() const noexcept { return 32.0 * kEpsilon * size; }
+};
+
+/// `swapped`: the caller's a is this b.
+void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
+             const Pose& pose_b, bool swapped, Problem& problem) noexcept;
+
+/// x 2^exponent, at most the largest double.
+[[nodiscard]] double unscaled(const Problem& problem, double length) noexcept;
+
+}  // namespace winnow::solver
