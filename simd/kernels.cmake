@@ -30,6 +30,9 @@ foreach(isa ${WINNOW_ISAS})
   list(APPEND WINNOW_ISA_DEFINITIONS WINNOW_HAVE_${upper}=1)
 endforeach()
 
+set(WINNOW_KERNEL_OPTIMIZATION -O3 CACHE STRING "Optimization of kernels in every build type")
+mark_as_advanced(WINNOW_KERNEL_OPTIMIZATION)
+
 # winnow_add_kernels(target file.kernel.cpp ...): each file into an object library per instruction
 # set, linked into the target. The macro xsimd=xsimd_<isa> gives every build its own xsimd
 # namespace, so no inline function is shared between them.
@@ -37,7 +40,8 @@ function(winnow_add_kernels target)
   foreach(isa ${WINNOW_ISAS})
     set(objects ${target}_kernels_${isa})
     add_library(${objects} OBJECT ${ARGN})
-    target_compile_options(${objects} PRIVATE ${WINNOW_FLAGS_${isa}} -fno-exceptions -O3)
+    target_compile_options(${objects} PRIVATE ${WINNOW_FLAGS_${isa}} -fno-exceptions
+                           ${WINNOW_KERNEL_OPTIMIZATION})
     target_compile_definitions(${objects} PRIVATE WINNOW_ISA_NAME=${isa} WINNOW_ISA_IS_${isa}=1
                                xsimd=xsimd_${isa})
     target_include_directories(${objects} PRIVATE ${WINNOW_INCLUDE_DIR})
