@@ -33,6 +33,7 @@ Command add_crossover(CLI::App& app);
 Command add_queries(CLI::App& app);
 Command add_goals(CLI::App& app);
 Command add_draw(CLI::App& app);
+Command add_query(CLI::App& app);
 
 /// What the tool does if it is given no subcommand.
 int run_overview();

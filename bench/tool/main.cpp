@@ -16,7 +16,7 @@ int run_tool(int argc, char** argv) {
   const std::vector<Command> commands{add_scenes(app),     add_record(app),    add_replay(app),
                                       add_throughput(app), add_footprint(app), add_keys(app),
                                       add_crossover(app),  add_queries(app),   add_goals(app),
-                                      add_draw(app)};
+                                      add_draw(app),       add_query(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
