@@ -90,7 +90,7 @@ TEST_F(Truths, of_flat_shapes) {
 }
 
 TEST_F(Truths, over_half_spaces) {
-  const ShapeId ground = add(HalfSpaceShape{{0, 0, 2}, 1.0});
+  const ShapeId ground = add(HalfSpaceShape{{0, 0, 2}, 2.0});
   const ShapeId box = add(BoxShape{{1, 1, 1}, 0.5});
   const oracle::Truth truth = solve(box, Pose::at(7, 8, 2), ground, Pose{});
   EXPECT_EQ(truth.distance, -0.5L);

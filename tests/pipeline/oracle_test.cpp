@@ -1,0 +1,170 @@
+// Answers of all tiers against the oracle.
+
+#include <gtest/gtest.h>
+#include <winnow/simd/isa.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "../support/config.h"
+#include "oracle/oracle.h"
+#include "pair_scenes.h"
+#include "reproduction.h"
+
+namespace winnow::test {
+namespace {
+
+/// Sine of 0.01 degrees.
+constexpr double kNormalError = 1.7453292430883947e-4;
+
+struct Promise {
+  NarrowTier tier;
+  const char* name;
+  /// Largest error of the distance, relative to sizes and distance.
+  double error;
+  bool exact_sign;
+};
+constexpr Promise kPromises[] = {{NarrowTier::fast, "fast", 1e-4, false},
+                                 {NarrowTier::robust, "robust", 4e-7, true},
+                                 {NarrowTier::reference, "reference", 1e-12, true}};
+
+std::vector<oracle::Truth> truths_of(const PairScene& scene) {
+  std::vector<oracle::Truth> truths;
+  for (const BodyPair pair : scene.pairs) {
+    truths.push_back(oracle::solve(scene.pool.tables(), scene.shapes[pair.a], scene.poses[pair.a],
+                                   scene.shapes[pair.b], scene.poses[pair.b]));
+  }
+  return truths;
+}
+
+/// Answers in the order of the pairs.
+struct Answers {
+  std::vector<bool> overlap;
+  std::vector<double> distance;
+  std::vector<double> error_bound;
+  std::vector<Eigen::Vector3d> normal;
+};
+
+Answers ask(const PairScene& scene, NarrowTier tier, NarrowLevel level) {
+  NarrowPhase phase;
+  NarrowResult result;
+  const NarrowOptions options{.level = level, .tier = tier, .margin = 1e-3};
+  EXPECT_EQ(phase.collide(scene.pool, scene.bodies(), scene.pairs, options, result), Status::ok);
+  const std::size_t count = scene.pairs.size();
+  EXPECT_EQ(result.size(), count);
+  Answers answers{std::vector<bool>(count), std::vector<double>(count), std::vector<double>(count),
+                  std::vector<Eigen::Vector3d>(count)};
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const std::size_t pair = result.pair_of(i);
+    answers.overlap[pair] = result.overlaps(i);
+    if (level == NarrowLevel::boolean) continue;
+    answers.distance[pair] = result.distance()[i];
+    answers.error_bound[pair] = result.error_bound()[i];
+    answers.normal[pair] = {result.normal(0)[i], result.normal(1)[i], result.normal(2)[i]};
+  }
+  return answers;
+}
+
+/// What is wrong with an answer; empty if nothing is.
+std::string fault(const oracle::Truth& truth, const Answers& answers, std::size_t i,
+                  const Promise& promise, bool is_distance) {
+  if (!truth.known) return "the oracle has no answer";
+  const bool must_decide = promise.exact_sign;
+  if (must_decide && answers.overlap[i] != truth.overlap) {
+    return truth.overlap ? "contact lost" : "false contact";
+  }
+  if (!is_distance) return {};
+  const double distance = answers.distance[i];
+  const double bound = answers.error_bound[i];
+  const Eigen::Vector3d& n = answers.normal[i];
+  if (!std::isfinite(distance) || !std::isfinite(bound) || !n.allFinite()) return "not finite";
+  if (bound < 0.0) return "negative bound";
+  const long double error = std::abs(static_cast<long double>(distance) - truth.distance);
+  const long double scale = truth.size + std::abs(truth.distance);
+  if (error > promise.error * scale) {
+    return "error " + std::to_string(static_cast<double>(std::log10(error / scale)));
+  }
+  if (error > bound) return "error above its bound";
+  if (std::abs(n.norm() - 1.0) > (promise.exact_sign ? 1e-12 : 1e-5)) return "normal not unit";
+  const Eigen::Vector3d expected(truth.normal[0], truth.normal[1], truth.normal[2]);
+  if (promise.exact_sign && truth.normal_unique &&
+      (n.cross(expected).norm() > kNormalError || n.dot(expected) < 0.0)) {
+    return "normal";
+  }
+  return {};
+}
+
+void expect_faultless(const PairScene& scene, const std::vector<oracle::Truth>& truths,
+                      const Answers& answers, const Promise& promise, NarrowLevel level) {
+  int faults = 0;
+  for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
+    const std::string what = fault(truths[i], answers, i, promise, level == NarrowLevel::distance);
+    if (what.empty() || ++faults > 2) continue;
+    ADD_FAILURE() << promise.name << " level " << static_cast<int>(level) << ": " << what
+                  << "\ntruth " << static_cast<double>(truths[i].distance) << " along "
+                  << truths[i].normal[0] << ' ' << truths[i].normal[1] << ' ' << truths[i].normal[2]
+                  << "\nanswer " << answers.distance[i] << " +- " << answers.error_bound[i]
+                  << " along " << answers.normal[i].transpose() << '\n'
+                  << reproduction(scene, scene.pairs[i]);
+  }
+  EXPECT_EQ(faults, 0) << promise.name << " level " << static_cast<int>(level) << ", of "
+                       << scene.pairs.size();
+}
+
+using KindPair = std::tuple<ShapeKind, ShapeKind>;
+
+std::vector<KindPair> known_pairs() {
+  std::vector<KindPair> pairs;
+  const std::vector<ShapeKind> kinds = polytope_kinds();
+  for (const ShapeKind a : kinds) {
+    for (const ShapeKind b : kinds) {
+      if (a <= b) pairs.emplace_back(a, b);
+    }
+  }
+  for (const ShapeKind a : all_kinds()) {
+    if (a != ShapeKind::half_space) pairs.emplace_back(a, ShapeKind::half_space);
+  }
+  return pairs;
+}
+
+class Oracle : public testing::TestWithParam<std::tuple<KindPair, PairStyle>> {};
+
+TEST_P(Oracle, agrees_with_every_tier_and_level) {
+  const auto [kinds, style] = GetParam();
+  const auto [a, b] = kinds;
+  Random random(static_cast<std::uint64_t>(a) * 64 + static_cast<std::uint64_t>(b) * 8 +
+                static_cast<std::uint64_t>(style));
+  PairScene scene;
+  add_pairs(scene, a, b, style, scaled(100), random);
+  const std::vector<oracle::Truth> truths = truths_of(scene);
+  for (const Promise& promise : kPromises) {
+    for (const NarrowLevel level : {NarrowLevel::boolean, NarrowLevel::distance}) {
+      expect_faultless(scene, truths, ask(scene, promise.tier, level), promise, level);
+    }
+    // What the manifold's level says of pairs that touch is what the distance's says.
+    const Answers distances = ask(scene, promise.tier, NarrowLevel::distance);
+    const Answers manifolds = ask(scene, promise.tier, NarrowLevel::manifold);
+    if (promise.exact_sign) {
+      EXPECT_EQ(distances.overlap, manifolds.overlap) << promise.name;
+    }
+  }
+}
+
+std::string name_of(const testing::TestParamInfo<std::tuple<KindPair, PairStyle>>& info) {
+  const auto [kinds, style] = info.param;
+  return std::string(to_string(std::get<0>(kinds))) + "_" + to_string(std::get<1>(kinds)) + "_" +
+         to_string(style);
+}
+
+INSTANTIATE_TEST_SUITE_P(Pairs, Oracle,
+                         testing::Combine(testing::ValuesIn(known_pairs()),
+                                          testing::ValuesIn(kPairStyles)),
+                         name_of);
+
+}  // namespace
+}  // namespace winnow::test
