@@ -4,6 +4,7 @@
 #include <winnow/pipeline/solver/closest_features.h>
 #include <winnow/pipeline/solver/expanding_polytope.h>
 #include <winnow/pipeline/solver/gjk.h>
+#include <winnow/pipeline/solver/revolution.h>
 
 #include <algorithm>
 #include <cmath>
@@ -42,23 +43,24 @@ CoreDistance half_space_distance(const Problem& problem) noexcept {
 void look_across_line(const Problem& problem, AxisSearch& search) noexcept {
   Vec line = Vec::Zero();
   for (const Core* core : {&problem.a, &problem.b}) {
-    if (core->kind > CoreKind::triangle || core->kind == CoreKind::box) return;
+    const bool is_line =
+        core->kind == CoreKind::hull ? core->hull->dimension < 2 : core->kind <= CoreKind::triangle;
+    if (!is_line || core->kind == CoreKind::box) return;
     for (std::uint32_t i = 0; i < direction_count(*core) && line == Vec::Zero(); ++i) {
       line = unit(direction(*core, i));
     }
   }
-  if (line == Vec::Zero()) return;
+  // Two points have no line: any axis will do.
   for (int i = 0; i < 3; ++i) search.look(without(problem.tie_axes.col(i), line));
 }
 
 /// Of axes that are as good as the best, the first of the caller's frame.
-void break_ties(const Problem& problem, Vec& axis, double& separated) noexcept {
+void break_ties(const Problem& problem, double separated, Vec& axis) noexcept {
   for (int i = 0; i < 6; ++i) {
     const Vec candidate = problem.tie_axes.col(i / 2) * (i % 2 == 0 ? 1.0 : -1.0);
     const double along = separation(problem.a, problem.b, candidate);
     if (along < separated - 0.25 * problem.noise()) continue;
     axis = candidate;
-    separated = along;
     return;
   }
 }
@@ -116,7 +118,7 @@ CoreDistance penetration(const Problem& problem, const GjkResult& start, NarrowL
   if (polytopes && few) {
     look_at_features(problem, search);
     look_across_line(problem, search);
-  } else {
+  } else if (!look_at_revolution(problem, search)) {
     const double tolerance = polytopes ? noise : kSmoothTolerance * problem.size;
     const DepthBounds bounds = expand(a, b, start.simplex, noise, tolerance);
     search.look(bounds.axis);
@@ -132,7 +134,7 @@ CoreDistance penetration(const Problem& problem, const GjkResult& start, NarrowL
   CoreDistance found;
   found.axis = search.axis();
   found.distance = search.separation();
-  break_ties(problem, found.axis, found.distance);
+  break_ties(problem, found.distance, found.axis);
   found.doubt = noise + std::max(gap, 0.0);
   if (level != NarrowLevel::boolean) {
     found.on_a = meeting_point(problem, found.axis, -found.distance);
@@ -192,9 +194,8 @@ CoreDistance core_distance(const Problem& problem, NarrowLevel level, double eno
   if (found.upper - search.separation() > 0.125 * noise) {
     const bool all = look_at_features(problem, search);
     // No axis separates them: they overlap, whatever the simplices said.
-    if (all && polytopes && search.separation() <= 0.0) {
-      return penetration(problem, found, level, counts);
-    }
+    const bool sure = polytopes ? all : found.upper <= noise;
+    if (sure && search.separation() <= 0.0) return penetration(problem, found, level, counts);
   }
   return closest(problem, found, search, counts);
 }

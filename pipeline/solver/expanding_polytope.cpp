@@ -11,11 +11,16 @@ namespace {
 constexpr std::uint32_t kPoints = 384;
 constexpr std::uint32_t kFaces = 6 * kPoints;
 
+/// Faces so thin that their normal is right to no more than this.
+constexpr double kSliver = 1e-9;
+
 struct Face {
   std::array<std::uint16_t, 3> point;
   /// The face across the side from point i to the next.
   std::array<std::uint16_t, 3> across;
   bool alive;
+  /// Looked at, and can grow no more.
+  bool settled;
   /// Outward, and a lower bound of the distance of the face's plane.
   Vec normal;
   double low;
@@ -48,9 +53,14 @@ class Polytope {
   void make_tetrahedron() noexcept;
   bool attach(const Vec& w, std::uint16_t seen) noexcept;
   bool find_horizon(const Vec& w, std::uint16_t seen) noexcept;
+  [[nodiscard]] double triangle_distance(std::uint16_t p, std::uint16_t q,
+                                         std::uint16_t r) const noexcept;
   void push(std::uint16_t face) noexcept;
   std::uint16_t pop() noexcept;
-  [[nodiscard]] bool nearer(std::uint16_t f, std::uint16_t g) const noexcept {
+  void compact() noexcept;
+  [[nodiscard]] bool is_seen(const Vec& w, const Face& face, std::uint16_t from,
+                             std::uint16_t to) const noexcept;
+  [[nodiscard]] bool is_farther(std::uint16_t f, std::uint16_t g) const noexcept {
     return faces_[f].low > faces_[g].low || (faces_[f].low == faces_[g].low && f > g);
   }
 
@@ -62,7 +72,7 @@ class Polytope {
   std::array<Face, kFaces> faces_;
   std::array<std::uint16_t, kFaces> heap_;
   std::array<Side, kFaces> horizon_;
-  std::array<std::uint16_t, kFaces> stack_;
+  std::array<std::uint16_t, kFaces> moved_;
   std::uint32_t point_count_ = 0;
   std::uint32_t face_count_ = 0;
   std::uint32_t heap_count_ = 0;
@@ -153,28 +163,56 @@ bool Polytope::add_face(std::uint16_t p, std::uint16_t q, std::uint16_t r,
   Face& face = faces_[at];
   face.point = {p, q, r};
   face.alive = true;
+  face.settled = false;
   face.normal = unit(cross);
-  // Slivers have normals of little worth: the plane through them may be anywhere near.
-  const double longest = std::sqrt(std::max({le, lf, lg}));
-  const double tilt = noise_ * longest / area;
-  const double reach = std::max({points_[p].norm(), points_[q].norm(), points_[r].norm()});
   const double offset = std::max(
       {face.normal.dot(points_[p]), face.normal.dot(points_[q]), face.normal.dot(points_[r])});
-  face.low = offset - std::min(tilt, 1.0) * std::min(reach, longest + std::abs(offset));
+  const double tilt = noise_ / area * std::sqrt(std::max({le, lf, lg}));
+  // The normal of a sliver is of little worth; its own distance is not less than its plane's.
+  face.low = tilt < kSliver ? offset - noise_ * tilt : triangle_distance(p, q, r) - noise_;
   push(at);
   return true;
+}
+
+double Polytope::triangle_distance(std::uint16_t p, std::uint16_t q,
+                                   std::uint16_t r) const noexcept {
+  Simplex triangle;
+  triangle.count = 3;
+  triangle.point[0].w = points_[p];
+  triangle.point[1].w = points_[q];
+  triangle.point[2].w = points_[r];
+  reduce(triangle);
+  return triangle.closest().norm();
 }
 
 void Polytope::push(std::uint16_t face) noexcept {
   heap_[heap_count_++] = face;
   std::push_heap(heap_.begin(), heap_.begin() + heap_count_,
-                 [this](std::uint16_t f, std::uint16_t g) { return nearer(f, g); });
+                 [this](std::uint16_t f, std::uint16_t g) { return is_farther(f, g); });
 }
 
 std::uint16_t Polytope::pop() noexcept {
   std::pop_heap(heap_.begin(), heap_.begin() + heap_count_,
-                [this](std::uint16_t f, std::uint16_t g) { return nearer(f, g); });
+                [this](std::uint16_t f, std::uint16_t g) { return is_farther(f, g); });
   return heap_[--heap_count_];
+}
+
+/// Makes room: takes out the faces that are no more.
+void Polytope::compact() noexcept {
+  std::uint32_t kept = 0;
+  for (std::uint32_t f = 0; f < face_count_; ++f) {
+    if (!faces_[f].alive) continue;
+    moved_[f] = static_cast<std::uint16_t>(kept);
+    faces_[kept++] = faces_[f];
+  }
+  face_count_ = kept;
+  heap_count_ = 0;
+  for (std::uint32_t f = 0; f < kept; ++f) {
+    for (std::uint16_t& across : faces_[f].across) across = moved_[across];
+    if (!faces_[f].settled) heap_[heap_count_++] = static_cast<std::uint16_t>(f);
+  }
+  std::make_heap(heap_.begin(), heap_.begin() + heap_count_,
+                 [this](std::uint16_t f, std::uint16_t g) { return is_farther(f, g); });
 }
 
 void Polytope::grow(double tolerance) noexcept {
@@ -182,8 +220,10 @@ void Polytope::grow(double tolerance) noexcept {
   // Of faces that were looked at and can grow no more.
   double settled = std::numeric_limits<double>::infinity();
   while (heap_count_ > 0) {
+    // No more faces than twice the points are alive, and no more can be added at once.
+    if (face_count_ + 2 * point_count_ > kFaces) compact();
     const std::uint16_t nearest = pop();
-    const Face& face = faces_[nearest];
+    Face& face = faces_[nearest];
     if (!face.alive) continue;
     bounds_.lower = std::min(settled, face.low);
     if (bounds_.upper - bounds_.lower <= tolerance) break;
@@ -198,6 +238,7 @@ void Polytope::grow(double tolerance) noexcept {
     const double beyond = high - face.normal.dot(points_[face.point[0]]);
     if (beyond <= 0.125 * noise_) {
       settled = std::min(settled, face.low);
+      face.settled = true;
       continue;
     }
     if (!attach(w, nearest)) {
@@ -232,6 +273,18 @@ bool Polytope::attach(const Vec& w, std::uint16_t seen) noexcept {
   return true;
 }
 
+/// True if w is above the face, or in its plane and on the line of the side between `from` and
+/// `to`: there, a new face over that side would have no area.
+bool Polytope::is_seen(const Vec& w, const Face& face, std::uint16_t from,
+                       std::uint16_t to) const noexcept {
+  const double height = face.normal.dot(w - points_[face.point[0]]);
+  if (height > 0.125 * noise_) return true;
+  if (height < -0.125 * noise_) return false;
+  const Vec side = points_[to] - points_[from];
+  const Vec out = w - points_[from];
+  return side.cross(out).squaredNorm() <= 1e-16 * side.squaredNorm() * out.squaredNorm();
+}
+
 /// Collects the horizon in order: depth first over the faces that see w, each entered by a side and
 /// left by the ones after it.
 bool Polytope::find_horizon(const Vec& w, std::uint16_t seen) noexcept {
@@ -260,8 +313,7 @@ bool Polytope::find_horizon(const Vec& w, std::uint16_t seen) noexcept {
     if (!other.alive) continue;
     const std::uint16_t from = face.point[k];
     const std::uint16_t to = face.point[(k + 1U) % 3];
-    // What is in the plane of w goes too: a fan over its sides would have faces without area.
-    if (other.normal.dot(w - points_[other.point[0]]) > -0.125 * noise_) {
+    if (is_seen(w, other, from, to)) {
       if (depth == visits.size()) return false;
       std::uint8_t entered = 0;
       while (entered < 2 && other.point[entered] != to) ++entered;
