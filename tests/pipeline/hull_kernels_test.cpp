@@ -1,0 +1,319 @@
+// The kernel of hulls against a search through all features, and against itself: on every
+// instruction set, turned round, at other places of a batch.
+
+#include <gtest/gtest.h>
+#include <winnow/pipeline/narrow/kernels.h>
+#include <winnow/simd/isa.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "../support/config.h"
+#include "../support/random.h"
+#include "hull_brute_force.h"
+#include "pair_scenes.h"
+
+namespace winnow::test {
+namespace {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+/// Answers of one job, in columns as wide as the job.
+struct Answers {
+  Answers(const PairScene& scene, int level, bool robust, double margin = 0.05)
+      : count(static_cast<std::uint32_t>(scene.pairs.size())) {
+    overlap.resize(count, 2);
+    for (auto& c : column) c.resize(count, -77.0);
+    first.resize(count);
+    contacts.resize(count);
+    uncertified.resize(count);
+    for (auto& c : points) c.resize(kManifoldPoints * count + 16);
+    feature.resize(kManifoldPoints * count + 16);
+    NarrowJob job{};
+    job.pairs = scene.pairs.data();
+    job.count = count;
+    job.shapes = scene.shapes.data();
+    job.poses = scene.poses.data();
+    job.tables = scene.pool.tables();
+    job.margin = margin;
+    job.overlap = overlap.data();
+    job.distance = column[0].data();
+    job.error_bound = column[1].data();
+    for (int k = 0; k < 3; ++k) {
+      job.normal[k] = column[2 + k].data();
+      job.point[k] = column[5 + k].data();
+      job.contacts.position[k] = points[k].data();
+    }
+    job.contact_first = first.data();
+    job.contact_count = contacts.data();
+    job.contacts.depth = points[3].data();
+    job.contacts.feature = feature.data();
+    job.uncertified = uncertified.data();
+    const NarrowKernels* kernels = narrow_kernels(ShapeKind::hull, ShapeKind::hull);
+    uncertified.resize((robust ? kernels->robust : kernels->fast)[level](job));
+    is_certified.assign(count, 1);
+    for (const std::uint32_t i : uncertified) is_certified[i] = 0;
+  }
+  [[nodiscard]] Eigen::Vector3d normal(std::uint32_t i) const {
+    return {column[2][i], column[3][i], column[4][i]};
+  }
+  [[nodiscard]] Eigen::Vector3d point(std::uint32_t i) const {
+    return {column[5][i], column[6][i], column[7][i]};
+  }
+
+  std::uint32_t count;
+  std::vector<std::uint8_t> overlap;
+  /// Distance, error bound, normal, point.
+  std::vector<double> column[8];
+  std::vector<std::uint32_t> first;
+  std::vector<std::uint32_t> contacts;
+  std::vector<std::uint32_t> uncertified;
+  std::vector<std::uint8_t> is_certified;
+  std::vector<float> points[4];
+  std::vector<std::uint64_t> feature;
+};
+
+enum class Style { ball, sphere_large, box, plate, rich, rounded };
+
+Points points_of(Style style, Random& random) {
+  Points points;
+  if (style == Style::box || style == Style::plate || style == Style::rich) {
+    const Eigen::Vector3d half(random.uniform(0.4, 1), random.uniform(0.4, 1),
+                               style == Style::plate ? 1e-3 : random.uniform(0.4, 1));
+    const int steps = style == Style::rich ? 3 : 1;
+    for (int x = -steps; x <= steps; x += 2) {
+      for (int y = -steps; y <= steps; y += 2) {
+        for (int z = -steps; z <= steps; z += 2) {
+          points.emplace_back(half[0] * x / steps, half[1] * y / steps, half[2] * z / steps);
+        }
+      }
+    }
+    return points;
+  }
+  const int count = style == Style::sphere_large ? 40 : 6 + static_cast<int>(random.below(11));
+  while (points.size() < static_cast<std::size_t>(count)) {
+    Eigen::Vector3d p(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    if (p.norm() > 1) continue;
+    if (style == Style::sphere_large) p.normalize();
+    points.push_back(p);
+  }
+  return points;
+}
+
+Pose pose_near(const Eigen::Vector3d& origin, double reach, Random& random, bool turned) {
+  Pose pose;
+  for (int k = 0; k < 3; ++k) pose.position[k] = origin[k] + random.uniform(-reach, reach);
+  if (!turned) return pose;
+  for (double& q : pose.orientation) q = random.uniform(-1, 1);
+  return pose;
+}
+
+/// Pairs of hulls of one style near each other.
+PairScene scene_of(Style style, std::size_t pairs, std::uint64_t seed, bool turned = true) {
+  PairScene scene;
+  Random random(seed);
+  const double rounding = style == Style::rounded ? 0.2 : 0.0;
+  for (std::uint32_t i = 0; i < 2 * pairs; ++i) {
+    ShapeId id;
+    EXPECT_EQ(scene.pool.add_hull(points_of(style, random), rounding, id), Status::ok);
+    scene.shapes.push_back(id);
+    const Eigen::Vector3d origin(1e3 * (i / 2), -50.0, 7.0);
+    scene.poses.push_back(pose_near(origin, 0.7, random, turned));
+  }
+  for (std::uint32_t i = 0; i < pairs; ++i) scene.pairs.push_back({2 * i, 2 * i + 1});
+  return scene;
+}
+
+bool have_hulls() {
+  ShapePool pool;
+  ShapeId id;
+  const Points corner{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  return pool.add_hull(corner, 0.0, id) == Status::ok;
+}
+
+class HullKernels : public testing::TestWithParam<Style> {
+ protected:
+  void SetUp() override {
+    if (!have_hulls()) GTEST_SKIP() << "built without qhull";
+  }
+};
+
+long double truth(const PairScene& scene, std::uint32_t i) {
+  const BodyPair p = scene.pairs[i];
+  const HullShape& a = scene.pool.tables().hulls[scene.shapes[p.a].index()];
+  const HullShape& b = scene.pool.tables().hulls[scene.shapes[p.b].index()];
+  return brute_force_distance(a, scene.poses[p.a], b, scene.poses[p.b]) - a.rounding - b.rounding;
+}
+
+TEST_P(HullKernels, answers_are_within_their_bounds_of_a_search_through_all_features) {
+  const bool rounded = GetParam() == Style::rounded;
+  const PairScene scene = scene_of(GetParam(), scaled(150), 1);
+  std::vector<long double> distance;
+  for (std::uint32_t i = 0; i < scene.pairs.size(); ++i) distance.push_back(truth(scene, i));
+  for (const bool robust : {false, true}) {
+    const Answers verdicts(scene, 0, robust);
+    const Answers answers(scene, 1, robust);
+    const Answers manifolds(scene, 2, robust);
+    for (std::uint32_t i = 0; i < answers.count; ++i) {
+      const auto d = static_cast<double>(distance[i]);
+      if (robust && verdicts.is_certified[i]) {
+        EXPECT_EQ(verdicts.overlap[i] != 0, d <= 0) << i << " " << d;
+      }
+      if (answers.is_certified[i]) {
+        EXPECT_LE(std::abs(answers.column[0][i] - d), answers.column[1][i] + 1e-17) << i;
+        EXPECT_LE(answers.column[1][i], robust ? 1e-11 : 1e-3) << i;
+        EXPECT_NEAR(answers.normal(i).norm(), 1.0, 1e-12) << i;
+      }
+      if (manifolds.is_certified[i]) {
+        EXPECT_LE(std::abs(manifolds.column[0][i] - d), manifolds.column[1][i] + 1e-17) << i;
+        if (manifolds.column[0][i] > 0.05) {
+          EXPECT_LE(manifolds.column[0][i], d) << i;
+        }
+      }
+    }
+    EXPECT_LE(answers.uncertified.size(), answers.count / (rounded ? 5 : 10));
+  }
+}
+
+/// How far a point is outside of a hull, at most.
+double outside(const PairScene& scene, std::uint32_t body, const Eigen::Vector3d& world) {
+  const HullShape& hull = scene.pool.tables().hulls[scene.shapes[body].index()];
+  const double* q = scene.poses[body].orientation;
+  const Eigen::Quaterniond turn = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+  const Eigen::Vector3d x =
+      turn.conjugate() * (world - Eigen::Map<const Eigen::Vector3d>(scene.poses[body].position));
+  double most = -1e9;
+  for (std::uint32_t f = 0; f < hull.face_count; ++f) {
+    const HullFace& face = hull.faces[f];
+    most = std::max(most, Eigen::Map<const Eigen::Vector3d>(face.normal).dot(x) - face.offset);
+  }
+  return most - hull.rounding;
+}
+
+TEST_P(HullKernels, points_lie_on_both_hulls) {
+  const PairScene scene = scene_of(GetParam(), scaled(150), 2);
+  const Answers answers(scene, 1, true);
+  for (std::uint32_t i = 0; i < answers.count; ++i) {
+    if (!answers.is_certified[i]) continue;
+    const BodyPair p = scene.pairs[i];
+    const Eigen::Vector3d a =
+        answers.point(i) + Eigen::Map<const Eigen::Vector3d>(scene.poses[p.a].position);
+    const Eigen::Vector3d b = a + answers.column[0][i] * answers.normal(i);
+    // On the rounding around an edge a point is outside of no face.
+    EXPECT_LE(outside(scene, p.a, a), 1e-9) << i;
+    EXPECT_LE(outside(scene, p.b, b), 1e-9) << i;
+    if (GetParam() == Style::rounded) continue;
+    EXPECT_GE(outside(scene, p.a, a), -1e-9) << i;
+    EXPECT_GE(outside(scene, p.b, b), -1e-9) << i;
+  }
+}
+
+TEST_P(HullKernels, turned_round_pairs_have_mirrored_answers) {
+  PairScene scene = scene_of(GetParam(), scaled(100), 3);
+  for (const bool robust : {false, true}) {
+    const Answers one(scene, 1, robust);
+    PairScene& turned = scene;
+    for (BodyPair& p : turned.pairs) std::swap(p.a, p.b);
+    const Answers two(turned, 1, robust);
+    EXPECT_EQ(one.is_certified, two.is_certified);
+    for (std::uint32_t i = 0; i < one.count; ++i) {
+      if (!one.is_certified[i]) continue;
+      EXPECT_EQ(one.column[0][i], two.column[0][i]);
+      EXPECT_EQ(one.column[1][i], two.column[1][i]);
+      EXPECT_EQ(one.normal(i), -two.normal(i));
+    }
+  }
+}
+
+template <typename T>
+bool same(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+TEST_P(HullKernels, all_instruction_sets_answer_alike_to_the_bit) {
+  const PairScene scene = scene_of(GetParam(), scaled(150), 4);
+  for (int level = 0; level < 3; ++level) {
+    for (const bool robust : {false, true}) {
+      const Answers expected(scene, level, robust);
+      for (const Isa isa : available_isas()) {
+        const IsaScope scope(isa);
+        const Answers answers(scene, level, robust);
+        EXPECT_EQ(answers.is_certified, expected.is_certified) << to_string(isa);
+        EXPECT_TRUE(same(answers.overlap, expected.overlap)) << to_string(isa);
+        for (int c = 0; c < 8; ++c) EXPECT_TRUE(same(answers.column[c], expected.column[c]));
+        EXPECT_TRUE(same(answers.contacts, expected.contacts));
+        for (int c = 0; c < 4; ++c) EXPECT_TRUE(same(answers.points[c], expected.points[c]));
+      }
+    }
+  }
+}
+
+TEST_P(HullKernels, an_answer_does_not_depend_on_the_place_in_the_batch) {
+  PairScene scene = scene_of(GetParam(), scaled(150), 5);
+  const Answers forth(scene, 1, true);
+  std::reverse(scene.pairs.begin(), scene.pairs.end());
+  const Answers back(scene, 1, true);
+  for (std::uint32_t i = 0; i < forth.count; ++i) {
+    const std::uint32_t k = forth.count - 1 - i;
+    EXPECT_EQ(forth.is_certified[i], back.is_certified[k]);
+    for (int c = 0; c < 8 && forth.is_certified[i]; ++c) {
+      EXPECT_EQ(forth.column[c][i], back.column[c][k]);
+    }
+  }
+}
+
+TEST_P(HullKernels, parallel_hulls_are_within_their_bounds) {
+  const PairScene scene = scene_of(GetParam(), scaled(60), 6, false);
+  const Answers answers(scene, 2, true);
+  for (std::uint32_t i = 0; i < answers.count; ++i) {
+    if (!answers.is_certified[i]) continue;
+    EXPECT_LE(std::abs(answers.column[0][i] - static_cast<double>(truth(scene, i))),
+              answers.column[1][i] + 1e-17)
+        << i;
+    if (answers.column[0][i] <= 0) {
+      EXPECT_GE(answers.contacts[i], 1U);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, HullKernels,
+                         testing::Values(Style::ball, Style::sphere_large, Style::box, Style::plate,
+                                         Style::rich, Style::rounded));
+
+TEST(HullKernel, touching_and_bad_pairs_are_not_certified) {
+  if (!have_hulls()) GTEST_SKIP() << "built without qhull";
+  PairScene scene;
+  Random random(1);
+  ShapeId id;
+  ASSERT_EQ(scene.pool.add_hull(points_of(Style::ball, random), 0.0, id), Status::ok);
+  Points cube;
+  for (int i = 0; i < 8; ++i) cube.emplace_back(i & 1, i >> 1 & 1, i >> 2);
+  ASSERT_EQ(scene.pool.add_hull(cube, 0.0, id), Status::ok);
+  Pose nan;
+  nan.position[1] = std::nan("");
+  Pose zero;
+  zero.orientation[0] = 0.0;
+  Pose far = Pose::at(1e30, 0, 0);
+  for (const Pose& pose : {Pose::at(1, 0, 0), Pose::at(-1, 0.5, 0), nan, zero, far}) {
+    scene.pairs.push_back({static_cast<std::uint32_t>(scene.poses.size()),
+                           static_cast<std::uint32_t>(scene.poses.size()) + 1});
+    scene.poses.push_back(Pose{});
+    scene.poses.push_back(pose);
+    scene.shapes.push_back(id);
+    scene.shapes.push_back(id);
+  }
+  for (int level = 0; level < 3; ++level) {
+    const Answers answers(scene, level, true);
+    for (std::uint32_t i = 0; i < answers.count; ++i) {
+      EXPECT_FALSE(answers.is_certified[i]) << level << " " << i << " " << answers.column[0][i];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test
