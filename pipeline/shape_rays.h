@@ -24,9 +24,11 @@ struct ShapeHit {
 };
 
 /// Where a ray enters a shape. Closed: grazing is a hit, and so is a ray in the plane of a flat
-/// shape that meets it. Triangles are two-sided. `invalid_argument` for a bad ray, `invalid_pose`
-/// for a bad pose; `hit` is left alone then. Errors of t are a few 1e-16 of the coordinates
-/// relative to the shape, over the sine of the angle to the surface. O(1); hulls O(faces).
+/// shape that meets it, both as far as double can tell. Triangles are two-sided. `invalid_key` for
+/// an id that the tables do not have, `invalid_argument` for a bad ray, `invalid_pose` for a bad
+/// pose; `hit` is left alone then. Rays that begin far away lose nothing by it. Errors of t are a
+/// few 1e-16 of the coordinates relative to the shape, over the sine of the angle to the surface.
+/// O(1); hulls O(faces).
 Status cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose, const ShapeRay& ray,
                 ShapeHit& hit) noexcept;
 

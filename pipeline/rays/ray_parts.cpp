@@ -1,0 +1,132 @@
+#include <winnow/pipeline/rays/ray_parts.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace winnow {
+namespace {
+
+/// Slower than this share of its speed, a ray is parallel to a plane or an axis.
+constexpr double kParallel = 1e-15;
+
+[[nodiscard]] Eigen::Vector3d unit_or_zero(const Eigen::Vector3d& v) noexcept {
+  const double length = v.stableNorm();
+  return length > 0.0 ? Eigen::Vector3d(v / length) : Eigen::Vector3d::Zero();
+}
+
+/// The direction out of a round set of points, if its radius is not nothing.
+[[nodiscard]] Eigen::Vector3d outward(const Eigen::Vector3d& v) noexcept {
+  const double length = v.stableNorm();
+  return length > kGrazing ? Eigen::Vector3d(v / length) : Eigen::Vector3d::Zero();
+}
+
+/// Where offset + t * velocity is no longer than the radius. Taken at the nearest approach, where
+/// the difference of squares is a product and does not cancel.
+[[nodiscard]] Span round_span(const Eigen::Vector3d& offset, const Eigen::Vector3d& velocity,
+                              double radius) noexcept {
+  const double square = velocity.squaredNorm();
+  const double nearest = -offset.dot(velocity) / square;
+  const double distance = (offset + nearest * velocity).stableNorm();
+  if (!(distance <= radius + kGrazing)) return {};
+  const double half = std::sqrt(std::max(0.0, (radius - distance) * (radius + distance)) / square);
+  return {nearest - half, nearest + half, outward(offset + (nearest - half) * velocity)};
+}
+
+}  // namespace
+
+void FirstEntry::meet(const LocalRay& ray, const Span& span) noexcept {
+  if (span.is_empty() || span.out < ray.low - kGrazing / ray.speed) return;
+  inside = inside || span.in < ray.low;
+  const double entry = std::max(span.in, ray.low);
+  if (found && entry >= t) return;
+  found = true;
+  t = entry;
+  normal = span.normal;
+}
+
+void PlaneClip::below(const Eigen::Vector3d& normal, double offset) noexcept {
+  const double rate = normal.dot(ray_.direction);
+  const double height = normal.dot(ray_.origin) - offset;
+  if (std::fabs(rate) <= kParallel * ray_.speed) {
+    if (height > kGrazing) span_ = Span{};
+    return;
+  }
+  const double t = -height / rate;
+  if (rate > 0.0) {
+    span_.out = std::min(span_.out, t + kGrazing / rate);
+  } else if (t > span_.in) {
+    span_.in = t;
+    span_.normal = normal;
+  }
+}
+
+Span ball_span(const LocalRay& ray, const Eigen::Vector3d& center, double radius) noexcept {
+  return round_span(ray.origin - center, ray.direction, radius);
+}
+
+Span capsule_span(const LocalRay& ray, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                  double radius) noexcept {
+  const Eigen::Vector3d axis = unit_or_zero(b - a);
+  const double length = axis.dot(b - a);
+  const double along = axis.dot(ray.direction);
+  const double begin = axis.dot(ray.origin - a);
+  const Eigen::Vector3d velocity = ray.direction - along * axis;
+  const Eigen::Vector3d offset = ray.origin - a - begin * axis;
+  Span span;
+  double first = along > 0.0 ? -1.0 : length + 1.0;  // where it enters and leaves, along the axis
+  double last = length - first;
+  if (velocity.norm() > kParallel * ray.speed) {
+    span = round_span(offset, velocity, radius);
+    if (span.is_empty()) return span;
+    first = begin + along * span.in;
+    last = begin + along * span.out;
+  } else if (offset.norm() > radius + kGrazing) {
+    return span;
+  }
+  // An infinite cylinder that is entered beyond an end is entered by way of the ball there.
+  if (!(first >= 0.0 && first <= length)) {
+    const Span ball = ball_span(ray, first < 0.0 ? a : b, radius);
+    if (ball.is_empty()) return ball;
+    span.in = ball.in;
+    span.normal = ball.normal;
+  }
+  if (!(last >= 0.0 && last <= length)) {
+    const Span ball = ball_span(ray, last < 0.0 ? a : b, radius);
+    if (ball.is_empty()) return ball;
+    span.out = ball.out;
+  }
+  return span;
+}
+
+Span tube_span(const LocalRay& ray, double radius) noexcept {
+  const Eigen::Vector3d offset(ray.origin.x(), ray.origin.y(), 0.0);
+  const Eigen::Vector3d velocity(ray.direction.x(), ray.direction.y(), 0.0);
+  if (velocity.norm() > kParallel * ray.speed) return round_span(offset, velocity, radius);
+  if (offset.norm() > radius + kGrazing) return {};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return {-kInfinity, kInfinity, Eigen::Vector3d::Zero()};
+}
+
+Span common(const Span& a, const Span& b) noexcept {
+  return {std::max(a.in, b.in), std::min(a.out, b.out), a.in >= b.in ? a.normal : b.normal};
+}
+
+Span prism_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertices,
+                const Eigen::Vector3d& normal, double bottom, double top) noexcept {
+  PlaneClip clip(ray);
+  const double level = normal.dot(vertices[0]);
+  clip.below(normal, level + top);
+  clip.below(-normal, -(level + bottom));
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Eigen::Vector3d& a = vertices[i];
+    const Eigen::Vector3d& b = vertices[i + 1 < vertices.size() ? i + 1 : 0];
+    const Eigen::Vector3d side = unit_or_zero((b - a).cross(normal));
+    clip.below(side, side.dot(a));
+    if (clip.span().is_empty()) break;
+  }
+  return clip.span();
+}
+
+}  // namespace winnow

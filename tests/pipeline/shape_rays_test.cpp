@@ -1,0 +1,447 @@
+#include <gtest/gtest.h>
+#include <winnow/pipeline/shape_pool.h>
+#include <winnow/pipeline/shape_rays.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../support/random.h"
+
+namespace winnow::test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+/// A shape, and its distance from a point in its frame: negative inside, if it has an inside.
+struct Probe {
+  std::string name;
+  ShapeId id;
+  std::function<double(const Vector3d&)> distance;
+};
+
+[[nodiscard]] double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
+  const Vector3d edge = b - a;
+  const double length = edge.squaredNorm();
+  const double s = length > 0.0 ? std::clamp((p - a).dot(edge) / length, 0.0, 1.0) : 0.0;
+  return (p - a - s * edge).norm();
+}
+
+[[nodiscard]] double distance_to_box(const Vector3d& p, const Vector3d& half) {
+  const Vector3d q = p.cwiseAbs() - half;
+  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+[[nodiscard]] double distance_to_cylinder(const Vector3d& p, double radius, double half) {
+  const double u = std::hypot(p.x(), p.y()) - radius;
+  const double v = std::fabs(p.z()) - half;
+  return std::hypot(std::max(u, 0.0), std::max(v, 0.0)) + std::min(std::max(u, v), 0.0);
+}
+
+/// By the triangle that the cone turns about its axis.
+[[nodiscard]] double distance_to_cone(const Vector3d& p, double radius, double half) {
+  const Vector3d flat(std::hypot(p.x(), p.y()), p.z(), 0.0);
+  const Vector3d apex(0.0, half, 0.0);
+  const Vector3d rim(radius, -half, 0.0);
+  const Vector3d side = Vector3d(2.0 * half, radius, 0.0).normalized();
+  const double over = std::max(side.dot(flat - apex), -half - flat.y());
+  if (over <= 0.0) return over;
+  return std::min(distance_to_segment(flat, apex, rim),
+                  distance_to_segment(flat, Vector3d(0.0, -half, 0.0), rim));
+}
+
+[[nodiscard]] double distance_to_triangle(const Vector3d& p, const Vector3d (&v)[3]) {
+  const Vector3d normal = (v[1] - v[0]).cross(v[2] - v[0]);
+  double nearest = kInf;
+  bool over = normal.norm() > 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const Vector3d& a = v[i];
+    const Vector3d& b = v[(i + 1) % 3];
+    over = over && normal.cross(b - a).dot(p - a) >= 0.0;
+    nearest = std::min(nearest, distance_to_segment(p, a, b));
+  }
+  return over ? std::fabs(normal.normalized().dot(p - v[0])) : nearest;
+}
+
+class Shapes {
+ public:
+  Shapes() {
+    for (const double r : {0.0, 0.3}) {
+      add_box({1.0, 0.5, 2.0}, r);
+      add_box({1.0, 0.0, 2.0}, r);
+      add_box_hull({0.7, 1.3, 1.0}, r);
+      add_triangle({{-1.0, -1.0, 0.2}, {1.5, -0.5, -0.3}, {0.0, 1.2, 0.4}}, r);
+      add_cylinder(1.0, 0.7, r);
+      add_cone(1.0, 0.7, r);
+      add_cone(0.2, 1.5, r);
+    }
+    add_cylinder(1.0, 0.0, 0.0);
+    add_cone(1.0, 0.0, 0.0);
+    add_triangle({{-1.0, -1.0, 0.0}, {0.0, 0.0, 0.0}, {2.0, 2.0, 0.0}}, 0.5);  // a segment
+    add_capsule(0.4, 1.0);
+    add_capsule(1.0, 0.0);
+    ShapeId id;
+    EXPECT_EQ(pool_.add(SphereShape{1.0}, id), Status::ok);
+    probes_.push_back({"sphere", id, [](const Vector3d& p) { return p.norm() - 1.0; }});
+    EXPECT_EQ(pool_.add(HalfSpaceShape{{0.0, 0.6, 0.8}, -0.5}, id), Status::ok);
+    probes_.push_back(
+        {"half-space", id, [](const Vector3d& p) { return p.dot(Vector3d(0.0, 0.6, 0.8)) + 0.5; }});
+  }
+  [[nodiscard]] const std::vector<Probe>& probes() const { return probes_; }
+  [[nodiscard]] const ShapeTables& tables() const { return pool_.tables(); }
+
+ private:
+  void add_box(const Vector3d& half, double r) {
+    ShapeId id;
+    EXPECT_EQ(pool_.add(BoxShape{{half.x(), half.y(), half.z()}, r}, id), Status::ok);
+    probes_.push_back({"box", id, [=](const Vector3d& p) { return distance_to_box(p, half) - r; }});
+  }
+  void add_box_hull(const Vector3d& half, double r) {
+    std::vector<Vector3d> points;
+    for (unsigned i = 0; i < 8; ++i) {
+      points.push_back({(i & 1U) != 0 ? half.x() : -half.x(), (i & 2U) != 0 ? half.y() : -half.y(),
+                        (i & 4U) != 0 ? half.z() : -half.z()});
+    }
+    const std::vector<std::uint32_t> loops = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4,
+                                              2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
+    const std::vector<std::uint32_t> sizes(6, 4);
+    ShapeId id;
+    ASSERT_EQ(pool_.add_hull(points, HullFaces{loops, sizes}, r, id), Status::ok);
+    probes_.push_back(
+        {"hull", id, [=](const Vector3d& p) { return distance_to_box(p, half) - r; }});
+  }
+  void add_triangle(const Vector3d (&v)[3], double r) {
+    TriangleShape shape{{}, r};
+    std::vector<Vector3d> copy(v, v + 3);
+    for (int i = 0; i < 3; ++i) Vector3d::Map(shape.vertex[i]) = v[i];
+    ShapeId id;
+    EXPECT_EQ(pool_.add(shape, id), Status::ok);
+    probes_.push_back({"triangle", id, [=](const Vector3d& p) {
+                         const Vector3d at[3] = {copy[0], copy[1], copy[2]};
+                         return distance_to_triangle(p, at) - r;
+                       }});
+  }
+  void add_cylinder(double radius, double half, double r) {
+    ShapeId id;
+    EXPECT_EQ(pool_.add(CylinderShape{radius, half, r}, id), Status::ok);
+    probes_.push_back({"cylinder", id, [=](const Vector3d& p) {
+                         return distance_to_cylinder(p, radius, half) - r;
+                       }});
+  }
+  void add_cone(double radius, double half, double r) {
+    ShapeId id;
+    EXPECT_EQ(pool_.add(ConeShape{radius, half, r}, id), Status::ok);
+    probes_.push_back(
+        {"cone", id, [=](const Vector3d& p) { return distance_to_cone(p, radius, half) - r; }});
+  }
+  void add_capsule(double radius, double half) {
+    ShapeId id;
+    EXPECT_EQ(pool_.add(CapsuleShape{radius, half}, id), Status::ok);
+    probes_.push_back(
+        {"capsule", id, [=](const Vector3d& p) {
+           return distance_to_segment(p, {0.0, 0.0, -half}, {0.0, 0.0, half}) - radius;
+         }});
+  }
+
+  ShapePool pool_;
+  std::vector<Probe> probes_;
+};
+
+[[nodiscard]] Vector3d any_point(Random& random, double size) {
+  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
+}
+
+[[nodiscard]] Eigen::Quaterniond rotation_of(const Pose& pose) {
+  return Eigen::Quaterniond(pose.orientation[0], pose.orientation[1], pose.orientation[2],
+                            pose.orientation[3])
+      .normalized();
+}
+
+[[nodiscard]] Pose any_pose(Random& random) {
+  Pose pose;
+  Vector3d::Map(pose.position) = any_point(random, 5.0);
+  for (double& q : pose.orientation) q = random.uniform(-1.0, 1.0);
+  return pose;
+}
+
+/// Least distance between a ray and a convex shape, and where: the distance is convex along it.
+[[nodiscard]] double least(const std::function<double(double)>& distance, double low, double high,
+                           double& at) {
+  for (int i = 0; i < 200; ++i) {
+    const double a = low + (high - low) * 0.382;
+    const double b = low + (high - low) * 0.618;
+    (distance(a) < distance(b) ? high : low) = distance(a) < distance(b) ? b : a;
+  }
+  at = 0.5 * (low + high);
+  return distance(at);
+}
+
+struct Cast {
+  Status status;
+  ShapeHit hit;
+};
+
+[[nodiscard]] Cast cast(const ShapeTables& tables, ShapeId id, const Vector3d& origin,
+                        const Vector3d& direction, double max_t = kInf, const Pose& pose = {}) {
+  ShapeRay ray;
+  Vector3d::Map(ray.origin) = origin;
+  Vector3d::Map(ray.direction) = direction;
+  ray.max_t = max_t;
+  Cast result{Status::ok, {}};
+  result.status = cast_ray(tables, id, pose, ray, result.hit);
+  return result;
+}
+
+[[nodiscard]] Vector3d normal_of(const Cast& c) {
+  return Vector3d::Map(c.hit.normal);
+}
+
+TEST(ShapeRays, enter_every_shape_where_its_distance_first_is_zero) {
+  const Shapes shapes;
+  Random random(5);
+  for (const Probe& probe : shapes.probes()) {
+    int hits = 0;
+    const std::size_t count = scaled(400);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Pose pose = any_pose(random);
+      const Vector3d origin = Vector3d::Map(pose.position) + any_point(random, 4.0);
+      const Vector3d target = Vector3d::Map(pose.position) + any_point(random, 1.2);
+      const Vector3d direction = (target - origin) * random.log_uniform(0.1, 10.0);
+      const Eigen::Quaterniond turn = rotation_of(pose);
+      const auto distance = [&](double t) {
+        return probe.distance(turn.conjugate() *
+                              (origin + t * direction - Vector3d::Map(pose.position)));
+      };
+      const Cast c = cast(shapes.tables(), probe.id, origin, direction, kInf, pose);
+      ASSERT_EQ(c.status, Status::ok);
+      double at = 0.0;
+      const double nearest = least(distance, 0.0, 40.0 / direction.norm(), at);
+      if (!c.hit.hit) {
+        ASSERT_GT(nearest, -1e-12) << probe.name << i;
+        continue;
+      }
+      ++hits;
+      const double t = c.hit.t;
+      if (distance(0.0) < 0.0) {
+        ASSERT_EQ(t, 0.0) << probe.name << i;
+        ASSERT_LT((normal_of(c) + direction.normalized()).norm(), 1e-14);
+        continue;
+      }
+      ASSERT_NEAR(distance(t), 0.0, 1e-13 * (1.0 + t * direction.norm())) << probe.name << i;
+      ASSERT_NEAR(normal_of(c).norm(), 1.0, 1e-14);
+      ASSERT_LE(normal_of(c).dot(direction), 1e-12) << probe.name << i;
+      // Nothing of it comes before: just outside of the entry the distance grows with the normal.
+      if (nearest < -1e-3) {
+        ASSERT_GT(distance(t - 1e-6 / direction.norm()), 0.0) << probe.name << i;
+        ASSERT_LT(t, at);
+      }
+      // Stopped before it, the ray misses; ended right there, it hits.
+      ASSERT_TRUE(cast(shapes.tables(), probe.id, origin, direction, t, pose).hit.hit);
+      ASSERT_FALSE(
+          cast(shapes.tables(), probe.id, origin, direction, std::nextafter(t, 0.0), pose).hit.hit);
+    }
+    EXPECT_GT(hits, static_cast<int>(count / 20)) << probe.name;
+  }
+}
+
+TEST(ShapeRays, do_not_change_with_size) {
+  const Shapes shapes;
+  Random random(6);
+  ShapePool pool;
+  for (const double unit : {0x1p-70, 0x1p70, 0x1p-300, 0x1p300}) {
+    ShapeId small;
+    ShapeId box;
+    ASSERT_EQ(pool.add(BoxShape{{unit, 0.5 * unit, 2.0 * unit}, 0.3 * unit}, small), Status::ok);
+    ASSERT_EQ(pool.add(BoxShape{{1.0, 0.5, 2.0}, 0.3}, box), Status::ok);
+    for (int i = 0; i < 50; ++i) {
+      const Vector3d origin = any_point(random, 5.0);
+      const Vector3d direction = any_point(random, 1.0) - origin;
+      const Cast a = cast(pool.tables(), box, origin, direction);
+      const Cast b = cast(pool.tables(), small, unit * origin, direction);
+      ASSERT_EQ(a.hit.hit, b.hit.hit);
+      ASSERT_EQ(a.hit.t * unit, b.hit.t);
+      const Cast c = cast(pool.tables(), small, unit * origin, unit * direction);
+      ASSERT_EQ(a.hit.t, c.hit.t);
+    }
+  }
+}
+
+TEST(ShapeRays, from_far_away_hit_where_they_would_from_near) {
+  ShapePool pool;
+  ShapeId sphere;
+  ShapeId box;
+  ASSERT_EQ(pool.add(SphereShape{1.0}, sphere), Status::ok);
+  ASSERT_EQ(pool.add(BoxShape{{1.0, 1.0, 1.0}, 0.0}, box), Status::ok);
+  for (const double far : {1e3, 1e6, 1e9, 1e12}) {
+    Cast c = cast(pool.tables(), sphere, {far, 0.6, 0.0}, {-1.0, 0.0, 0.0});
+    ASSERT_TRUE(c.hit.hit);
+    EXPECT_EQ(c.hit.t, far - 0.8);
+    EXPECT_LT((normal_of(c) - Vector3d(0.8, 0.6, 0.0)).norm(), 1e-15);
+    // Grazing, and just past it.
+    EXPECT_TRUE(cast(pool.tables(), sphere, {far, 1.0, 0.0}, {-1.0, 0.0, 0.0}).hit.hit);
+    EXPECT_FALSE(cast(pool.tables(), sphere, {far, 1.0 + 1e-14, 0.0}, {-1.0, 0.0, 0.0}).hit.hit);
+    EXPECT_TRUE(cast(pool.tables(), box, {far, 1.0, 0.5}, {-1.0, 0.0, 0.0}).hit.hit);
+    EXPECT_FALSE(cast(pool.tables(), box, {far, 1.0 + 1e-14, 0.5}, {-1.0, 0.0, 0.0}).hit.hit);
+    // Away from it.
+    EXPECT_FALSE(cast(pool.tables(), sphere, {far, 0.0, 0.0}, {1.0, 0.0, 0.0}).hit.hit);
+    // Everything far from the origin.
+    const Pose pose = Pose::at(far, far, -far);
+    c = cast(pool.tables(), sphere, {far + 3.0, far, -far}, {-2.0, 0.0, 0.0}, kInf, pose);
+    EXPECT_EQ(c.hit.t, 1.0);
+  }
+  // Along a diagonal, not a number of which is round.
+  const Vector3d direction = Vector3d(0.3, -0.7, 0.1).normalized();
+  const Cast c = cast(pool.tables(), sphere, -1e9 * direction, direction);
+  ASSERT_TRUE(c.hit.hit);
+  EXPECT_NEAR(c.hit.t, 1e9 - 1.0, 1e-6);
+  EXPECT_LT((normal_of(c) + direction).norm(), 1e-6);
+}
+
+TEST(ShapeRays, in_a_face_along_an_edge_or_through_a_corner_hit) {
+  ShapePool pool;
+  ShapeId box;
+  ShapeId rounded;
+  ASSERT_EQ(pool.add(BoxShape{{1.0, 2.0, 3.0}, 0.0}, box), Status::ok);
+  ASSERT_EQ(pool.add(BoxShape{{1.0, 2.0, 3.0}, 0.5}, rounded), Status::ok);
+  const auto t = [&](ShapeId id, const Vector3d& origin, const Vector3d& direction) {
+    const Cast c = cast(pool.tables(), id, origin, direction);
+    return c.hit.hit ? c.hit.t : -1.0;
+  };
+  EXPECT_EQ(t(box, {-4.0, 2.0, 0.0}, {1.0, 0.0, 0.0}), 3.0);   // in a face
+  EXPECT_EQ(t(box, {-4.0, 2.0, 3.0}, {1.0, 0.0, 0.0}), 3.0);   // along an edge
+  EXPECT_EQ(t(box, {0.0, 3.0, 0.0}, {1.0, -1.0, 0.0}), 1.0);   // across an edge, outside else
+  EXPECT_EQ(t(box, {-3.0, -4.0, 1.0}, {1.0, 1.0, 1.0}), 2.0);  // through a corner
+  EXPECT_EQ(t(box, {-4.0, 2.0 + 1e-12, 0.0}, {1.0, 0.0, 0.0}), -1.0);
+  EXPECT_EQ(t(box, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}), 0.0);  // begins on it
+  EXPECT_EQ(t(box, {1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}), 0.0);
+  EXPECT_EQ(t(rounded, {-4.0, 2.5, 0.0}, {1.0, 0.0, 0.0}), 3.0);  // grazes from the flat part on
+  EXPECT_EQ(t(rounded, {-4.0, 0.0, 0.0}, {1.0, 0.0, 0.0}), 2.5);
+  EXPECT_EQ(t(rounded, {-4.0, 2.0, 3.0}, {1.0, 0.0, 0.0}), 2.5);
+  EXPECT_NEAR(t(rounded, {-4.0, 2.3, 0.0}, {1.0, 0.0, 0.0}), 2.6, 1e-15);
+  // The same faces met at any turn: rays aimed at corners and middles of edges are not lost.
+  Random random(9);
+  for (int i = 0; i < 500; ++i) {
+    Pose pose = any_pose(random);
+    const Vector3d corner((i & 1) != 0 ? 1.0 : -1.0, (i & 2) != 0 ? 2.0 : -2.0,
+                          (i & 4) != 0   ? 3.0
+                          : (i & 8) != 0 ? -3.0
+                                         : 0.0);
+    const Vector3d target = rotation_of(pose) * corner + Vector3d::Map(pose.position);
+    const Vector3d middle = Vector3d::Map(pose.position);
+    const Vector3d origin = target + 3.0 * (target - middle);
+    const Cast c = cast(pool.tables(), box, origin, middle - origin, kInf, pose);
+    ASSERT_TRUE(c.hit.hit);
+    ASSERT_NEAR(c.hit.t, 0.75, 1e-14);
+  }
+}
+
+TEST(ShapeRays, meet_flat_shapes_from_both_sides_and_in_their_plane) {
+  ShapePool pool;
+  ShapeId triangle;
+  ShapeId segment;
+  ShapeId point;
+  ASSERT_EQ(pool.add(TriangleShape{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, 0.0}, triangle), Status::ok);
+  ASSERT_EQ(pool.add(TriangleShape{{{0, 0, 0}, {4, 0, 0}, {2, 0, 0}}, 0.0}, segment), Status::ok);
+  ASSERT_EQ(pool.add(TriangleShape{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, 0.0}, point), Status::ok);
+  Cast c = cast(pool.tables(), triangle, {1, 1, 2}, {0, 0, -1});
+  EXPECT_TRUE(c.hit.hit && c.hit.t == 2.0 && c.hit.normal[2] == 1.0);
+  c = cast(pool.tables(), triangle, {1, 1, -2}, {0, 0, 1});
+  EXPECT_TRUE(c.hit.hit && c.hit.t == 2.0 && c.hit.normal[2] == -1.0);
+  c = cast(pool.tables(), triangle, {-1, 1, 0}, {2, 0, 0});
+  EXPECT_TRUE(c.hit.hit && c.hit.t == 0.5 && c.hit.normal[0] == -1.0);
+  EXPECT_TRUE(cast(pool.tables(), triangle, {2, 2, 2}, {0, 0, -1}).hit.hit);  // an edge
+  EXPECT_TRUE(cast(pool.tables(), triangle, {4, 0, 2}, {0, 0, -1}).hit.hit);  // a corner
+  EXPECT_FALSE(cast(pool.tables(), triangle, {2 + 1e-12, 2, 2}, {0, 0, -1}).hit.hit);
+  EXPECT_FALSE(cast(pool.tables(), triangle, {1, 1, 1e-12}, {1, 0, 0}).hit.hit);
+  EXPECT_EQ(cast(pool.tables(), segment, {3, 1, 1}, {0, -1, -1}).hit.t, 1.0);
+  EXPECT_EQ(cast(pool.tables(), segment, {-2, 0, 0}, {1, 0, 0}).hit.t, 2.0);
+  EXPECT_EQ(cast(pool.tables(), point, {1, 1, 3}, {0, 0, -1}).hit.t, 2.0);
+  EXPECT_FALSE(cast(pool.tables(), point, {1, 1.0 + 1e-12, 3}, {0, 0, -1}).hit.hit);
+}
+
+TEST(ShapeRays, meet_a_sliver_within_its_edges) {
+  ShapePool pool;
+  ShapeId id;
+  const double width = 1e-11;
+  ASSERT_EQ(pool.add(TriangleShape{{{-1, 0, 0.3}, {1, 0, 0.3}, {0, width, 0.3}}, 0.0}, id),
+            Status::ok);
+  EXPECT_EQ(cast(pool.tables(), id, {0, 0.5 * width, 1.3}, {0, 0, -1}).hit.t, 1.0);
+  EXPECT_FALSE(cast(pool.tables(), id, {0, 1.1 * width, 1.3}, {0, 0, -1}).hit.hit);
+  EXPECT_FALSE(cast(pool.tables(), id, {0, -0.1 * width, 1.3}, {0, 0, -1}).hit.hit);
+}
+
+TEST(ShapeRays, meet_cones_along_their_lines) {
+  ShapePool pool;
+  ShapeId id;
+  ASSERT_EQ(pool.add(ConeShape{1.0, 1.0, 0.0}, id), Status::ok);
+  EXPECT_EQ(cast(pool.tables(), id, {0, 0, 3}, {0, 0, -1}).hit.t, 2.0);  // by the apex
+  EXPECT_EQ(cast(pool.tables(), id, {-1, 0, 1}, {1, 0, 0}).hit.t, 1.0);  // grazing the apex
+  EXPECT_EQ(cast(pool.tables(), id, {0.5, 0, 3}, {0, 0, -1}).hit.t, 3.0);
+  EXPECT_EQ(cast(pool.tables(), id, {0.5, 0, -3}, {0, 0, 1}).hit.t, 2.0);
+  EXPECT_EQ(cast(pool.tables(), id, {-3, 0, 0}, {1, 0, 0}).hit.t, 2.5);
+  EXPECT_FALSE(cast(pool.tables(), id, {-3, 0, 1.5}, {1, 0, 0}).hit.hit);  // the other nappe
+  // Down a line of the side: from (-1/2, 0, 2), by the apex.
+  EXPECT_EQ(cast(pool.tables(), id, {-0.5, 0, 2}, {0.5, 0, -1}).hit.t, 1.0);
+  // Parallel to a line of the side.
+  EXPECT_EQ(cast(pool.tables(), id, {-2, 0, 0}, {0.5, 0, -1}).hit.hit, false);
+  EXPECT_EQ(cast(pool.tables(), id, {-1, 0, 1.5}, {1, 0, -2}).hit.t, 0.625);
+}
+
+TEST(ShapeRays, bad_rays_poses_and_ids_are_refused) {
+  const Shapes shapes;
+  for (const Probe& probe : shapes.probes()) {
+    ShapeRay ray;
+    ShapeHit hit;
+    hit.t = 7.0;
+    ray.direction[0] = 0.0;
+    EXPECT_EQ(cast_ray(shapes.tables(), probe.id, {}, ray, hit), Status::invalid_argument);
+    for (const double bad : {std::nan(""), kInf}) {
+      ray = {};
+      ray.direction[1] = bad;
+      EXPECT_EQ(cast_ray(shapes.tables(), probe.id, {}, ray, hit), Status::invalid_argument);
+      ray = {};
+      ray.origin[2] = bad;
+      EXPECT_EQ(cast_ray(shapes.tables(), probe.id, {}, ray, hit), Status::invalid_argument);
+      Pose pose;
+      pose.position[0] = bad;
+      EXPECT_EQ(cast_ray(shapes.tables(), probe.id, pose, {}, hit), Status::invalid_pose);
+    }
+    for (const double bad : {-1.0, std::nan("")}) {
+      ray = {};
+      ray.max_t = bad;
+      EXPECT_EQ(cast_ray(shapes.tables(), probe.id, {}, ray, hit), Status::invalid_argument);
+    }
+    EXPECT_EQ(hit.t, 7.0);
+  }
+  ShapeHit hit;
+  EXPECT_EQ(cast_ray(shapes.tables(), ShapeId{}, {}, {}, hit), Status::invalid_key);
+  EXPECT_EQ(cast_ray(shapes.tables(), ShapeId::of(ShapeKind::sphere, 99), {}, {}, hit),
+            Status::invalid_key);
+}
+
+TEST(ShapeRays, any_numbers_give_an_answer) {
+  const Shapes shapes;
+  Random random(12);
+  const double numbers[] = {0.0, 1.0, -1.0, 0.3, 1e-320, -1e-300, 1e308, -1e308, 1e20, -1e-20};
+  const auto any = [&] { return numbers[random.below(std::size(numbers))]; };
+  for (const Probe& probe : shapes.probes()) {
+    for (int i = 0; i < 300; ++i) {
+      Pose pose = Pose::at(any(), any(), any());
+      for (double& q : pose.orientation) q = any();
+      const Cast c =
+          cast(shapes.tables(), probe.id, {any(), any(), any()}, {any(), any(), any()}, kInf, pose);
+      if (!c.hit.hit) continue;
+      ASSERT_TRUE(std::isfinite(c.hit.t) && c.hit.t >= 0.0) << probe.name;
+      ASSERT_NEAR(normal_of(c).norm(), 1.0, 1e-14) << probe.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test
