@@ -190,7 +190,51 @@ bool makes_hulls() {
   return pool.add_hull(points, 0.0, id) != Status::unsupported;
 }
 
+/// Of one shape, about the origin of its frame.
+double extent_of(const ShapeTables& tables, ShapeId id) {
+  const std::uint32_t i = id.index();
+  switch (id.kind()) {
+    case ShapeKind::sphere:
+      return tables.spheres[i].radius;
+    case ShapeKind::capsule:
+      return tables.capsules[i].radius + tables.capsules[i].half_length;
+    case ShapeKind::box: {
+      const BoxShape& box = tables.boxes[i];
+      return std::hypot(box.half[0], box.half[1], box.half[2]) + box.rounding;
+    }
+    case ShapeKind::cylinder: {
+      const CylinderShape& c = tables.cylinders[i];
+      return c.radius + c.half_length + c.rounding;
+    }
+    case ShapeKind::cone: {
+      const ConeShape& c = tables.cones[i];
+      return c.radius + c.half_length + c.rounding;
+    }
+    case ShapeKind::hull: {
+      const HullShape& hull = tables.hulls[i];
+      return std::hypot(hull.center[0], hull.center[1], hull.center[2]) + hull.radius +
+             hull.rounding;
+    }
+    case ShapeKind::triangle: {
+      const TriangleShape& triangle = tables.triangles[i];
+      double largest = 0.0;
+      for (const auto& v : triangle.vertex) {
+        largest = std::max(largest, std::hypot(v[0], v[1], v[2]));
+      }
+      return largest + triangle.rounding;
+    }
+    case ShapeKind::half_space:
+      return std::abs(tables.half_spaces[i].offset);
+  }
+  return 0.0;
+}
+
 }  // namespace
+
+double extent(const PairScene& scene, BodyPair pair) {
+  return extent_of(scene.pool.tables(), scene.shapes[pair.a]) +
+         extent_of(scene.pool.tables(), scene.shapes[pair.b]);
+}
 
 const char* to_string(PairStyle style) {
   switch (style) {

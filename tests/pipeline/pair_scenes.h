@@ -58,4 +58,7 @@ inline void PrintTo(PairStyle style, std::ostream* out) {
 void add_pairs(PairScene& scene, ShapeKind a, ShapeKind b, PairStyle style, std::size_t count,
                Random& random);
 
+/// A length that bounds the sizes of both shapes; of a half-space it is its offset.
+[[nodiscard]] double extent(const PairScene& scene, BodyPair pair);
+
 }  // namespace winnow::test

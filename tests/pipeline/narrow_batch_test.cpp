@@ -1,0 +1,186 @@
+// Answers depend on the pair alone: not on its place in the batch, the instruction set, the number
+// of threads or what was asked before; and the levels agree with each other.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "../support/config.h"
+#include "../support/random.h"
+#include "pair_answers.h"
+#include "pair_scenes.h"
+#include "reproduction.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr NarrowTier kTiers[] = {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference};
+constexpr NarrowLevel kLevels[] = {NarrowLevel::boolean, NarrowLevel::distance,
+                                   NarrowLevel::manifold};
+constexpr double kMargin = 0.25;
+
+/// Pairs of all kinds in one list, in a random order.
+PairScene shuffled_scene(std::size_t count) {
+  Random random(17);
+  PairScene scene;
+  for (const PairStyle style : {PairStyle::ordinary, PairStyle::degenerate, PairStyle::lattice}) {
+    for (const ShapeKind a : all_kinds()) {
+      for (const ShapeKind b : all_kinds()) add_pairs(scene, a, b, style, count, random);
+    }
+  }
+  for (std::size_t i = scene.pairs.size(); i > 1; --i) {
+    std::swap(scene.pairs[i - 1], scene.pairs[random.below(i)]);
+  }
+  return scene;
+}
+
+class Batches : public testing::Test {
+ protected:
+  void expect_same(const std::vector<PairAnswers>& there, const std::vector<PairAnswers>& again,
+                   const char* what) const {
+    ASSERT_EQ(there.size(), again.size());
+    int faults = 0;
+    for (std::size_t i = 0; i < there.size(); ++i) {
+      if (same(there[i], again[i]) || ++faults > 2) continue;
+      ADD_FAILURE() << what << ": " << there[i].distance << " and " << again[i].distance << ", "
+                    << there[i].contacts.size() << " and " << again[i].contacts.size()
+                    << " contacts\n"
+                    << reproduction(scene_, scene_.pairs[i]);
+    }
+    EXPECT_EQ(faults, 0) << what;
+  }
+
+  PairScene scene_ = shuffled_scene(scaled(20));
+};
+
+TEST_F(Batches, answers_are_the_same_on_every_instruction_set_and_thread_count) {
+  const Isa widest = available_isas().back();
+  for (const NarrowTier tier : kTiers) {
+    for (const NarrowLevel level : kLevels) {
+      NarrowOptions options{.level = level, .tier = tier, .margin = kMargin};
+      std::vector<PairAnswers> first;
+      {
+        const IsaScope scope(available_isas().front());
+        first = ask(scene_, options);
+      }
+      for (const Isa isa : available_isas()) {
+        if (is_quick() && isa != widest) continue;
+        const IsaScope scope(isa);
+        expect_same(first, ask(scene_, options), to_string(isa));
+        options.execution = Execution::parallel();
+        for (const int threads : thread_counts()) {
+          if (isa != widest) continue;
+          expect_same(first, Threads(threads).run([&] { return ask(scene_, options); }),
+                      "on several threads");
+        }
+        options.execution = Execution::serial();
+      }
+    }
+  }
+}
+
+TEST_F(Batches, the_place_in_the_batch_and_earlier_calls_do_not_matter) {
+  for (const NarrowTier tier : kTiers) {
+    for (const NarrowLevel level : kLevels) {
+      const NarrowOptions options{.level = level, .tier = tier, .margin = kMargin};
+      const auto together = ask(scene_, options);
+      NarrowPhase phase;
+      NarrowResult result;
+      // Pieces of many sizes, so that pairs meet other lanes and ends of batches.
+      std::vector<PairAnswers> apart;
+      const std::span<const BodyPair> pairs(scene_.pairs);
+      for (std::size_t at = 0, size = 1; at < pairs.size(); at += size, size = size % 37 + 1) {
+        size = std::min(size, pairs.size() - at);
+        ASSERT_EQ(
+            phase.collide(scene_.pool, scene_.bodies(), pairs.subspan(at, size), options, result),
+            Status::ok);
+        const auto answers = answers_of(result, size);
+        apart.insert(apart.end(), answers.begin(), answers.end());
+      }
+      expect_same(together, apart, "in pieces");
+    }
+  }
+}
+
+TEST_F(Batches, levels_agree) {
+  for (const NarrowTier tier : kTiers) {
+    const auto yes_no = ask(scene_, {.level = NarrowLevel::boolean, .tier = tier});
+    const auto distances = ask(scene_, {.level = NarrowLevel::distance, .tier = tier});
+    const auto manifolds =
+        ask(scene_, {.level = NarrowLevel::manifold, .tier = tier, .margin = kMargin});
+    int faults = 0;
+    for (std::size_t i = 0; i < scene_.pairs.size(); ++i) {
+      const PairAnswers& d = distances[i];
+      const PairAnswers& m = manifolds[i];
+      const double slack = d.error_bound + m.error_bound;
+      // Tier fast may be wrong about the sign, but not by more than it says.
+      const bool decided = tier != NarrowTier::fast || std::abs(d.distance) > slack;
+      bool good = !decided || (yes_no[i].overlap == d.overlap && m.overlap == d.overlap);
+      good = good && d.overlap == (d.distance <= 0.0);
+      good = good && (m.distance > kMargin ? m.distance <= d.distance + slack
+                                           : std::abs(m.distance - d.distance) <= slack);
+      if (m.distance > kMargin) good = good && m.contacts.empty();
+      if (good || ++faults > 3) continue;
+      ADD_FAILURE() << "tier " << static_cast<int>(tier) << ": " << yes_no[i].overlap << ' '
+                    << d.distance << ' ' << m.distance << " +- " << slack << ", "
+                    << m.contacts.size() << " contacts\n"
+                    << reproduction(scene_, scene_.pairs[i]);
+    }
+    EXPECT_EQ(faults, 0);
+  }
+}
+
+TEST_F(Batches, pairs_within_the_margin_have_contacts_as_deep_as_they_are) {
+  for (const NarrowTier tier : kTiers) {
+    for (const double margin : {0.0, kMargin}) {
+      const auto answers = ask(scene_, {.tier = tier, .margin = margin});
+      int faults = 0;
+      for (std::size_t i = 0; i < answers.size(); ++i) {
+        const PairAnswers& m = answers[i];
+        if (m.distance > margin) continue;
+        double deepest = -INFINITY;
+        for (const ContactPoint& c : m.contacts) {
+          deepest = std::max(deepest, static_cast<double>(c.depth));
+        }
+        const double size = extent(scene_, scene_.pairs[i]) + std::abs(m.distance);
+        const double slack = 1e-5 * size + m.error_bound;
+        const bool good = !m.contacts.empty() && std::abs(deepest + m.distance) <= slack;
+        if (good || ++faults > 3) continue;
+        ADD_FAILURE() << "tier " << static_cast<int>(tier) << ", margin " << margin << ": distance "
+                      << m.distance << ", " << m.contacts.size() << " contacts, deepest " << deepest
+                      << '\n'
+                      << reproduction(scene_, scene_.pairs[i]);
+      }
+      EXPECT_EQ(faults, 0);
+    }
+  }
+}
+
+TEST_F(Batches, statistics_count_every_pair) {
+  for (const NarrowTier tier : kTiers) {
+    NarrowPhase phase;
+    NarrowResult result;
+    ASSERT_EQ(phase.collide(scene_.pool, scene_.bodies(), scene_.pairs, {.tier = tier}, result),
+              Status::ok);
+    const NarrowStatistics& counts = phase.statistics();
+    EXPECT_EQ(counts.pairs, scene_.pairs.size());
+    EXPECT_LE(counts.recomputed, counts.pairs);
+    EXPECT_LE(counts.without_lanes, counts.recomputed);
+    if (tier == NarrowTier::reference) {
+      EXPECT_EQ(counts.recomputed, counts.pairs);
+    }
+    std::size_t in_runs = 0;
+    for (const NarrowRun& run : result.runs()) {
+      EXPECT_EQ(run.first, in_runs);
+      EXPECT_LE(run.a, run.b);
+      in_runs += run.count;
+    }
+    EXPECT_EQ(in_runs, result.size());
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test

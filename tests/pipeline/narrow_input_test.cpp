@@ -1,0 +1,194 @@
+// Bad input, and what memory is asked for.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "../support/config.h"
+#include "../support/counting_memory.h"
+#include "../support/heap_count.h"
+#include "../support/random.h"
+#include "pair_answers.h"
+#include "pair_scenes.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+class NarrowInput : public testing::Test {
+ protected:
+  NarrowInput() {
+    Random random(23);
+    for (const ShapeKind a : all_kinds()) {
+      for (const ShapeKind b : all_kinds()) {
+        add_pairs(scene_, a, b, PairStyle::ordinary, 3, random);
+      }
+    }
+  }
+
+  [[nodiscard]] Status collide(const NarrowOptions& options = {}) {
+    return phase_.collide(scene_.pool, scene_.bodies(), scene_.pairs, options, result_);
+  }
+  /// Refused, the result empty, and the next good call is answered as if nothing had been.
+  void expect_refused(Status expected, const NarrowOptions& options = {}) {
+    EXPECT_EQ(collide(options), expected);
+    EXPECT_EQ(result_.size(), 0U);
+    EXPECT_EQ(result_.contacts(), 0U);
+    EXPECT_TRUE(result_.runs().empty());
+  }
+
+  PairScene scene_;
+  NarrowPhase phase_;
+  NarrowResult result_;
+};
+
+TEST_F(NarrowInput, no_pairs_are_no_answers) {
+  scene_.pairs.clear();
+  EXPECT_EQ(collide(), Status::ok);
+  EXPECT_EQ(result_.size(), 0U);
+  EXPECT_EQ(phase_.collide(scene_.pool, {}, {}, {}, result_), Status::ok);
+}
+
+TEST_F(NarrowInput, a_bad_margin_is_refused) {
+  for (const double margin : {-1.0, -1e-300, kNan, kInfinity, -kInfinity}) {
+    ASSERT_EQ(collide(), Status::ok);
+    expect_refused(Status::invalid_argument, {.margin = margin});
+  }
+}
+
+TEST_F(NarrowInput, a_body_that_is_not_there_is_refused) {
+  const auto count = static_cast<std::uint32_t>(scene_.shapes.size());
+  for (const std::uint32_t body : {count, count + 7, ~0U}) {
+    for (const bool is_a : {true, false}) {
+      const BodyPair before = scene_.pairs[5];
+      (is_a ? scene_.pairs[5].a : scene_.pairs[5].b) = body;
+      ASSERT_EQ(collide(), Status::invalid_argument);
+      expect_refused(Status::invalid_argument);
+      scene_.pairs[5] = before;
+      EXPECT_EQ(collide(), Status::ok);
+    }
+  }
+}
+
+TEST_F(NarrowInput, shapes_without_poses_are_refused) {
+  scene_.poses.pop_back();
+  expect_refused(Status::size_mismatch);
+}
+
+TEST_F(NarrowInput, a_shape_that_the_pool_does_not_hold_is_refused) {
+  ShapeId sphere;
+  ASSERT_EQ(scene_.pool.add(SphereShape{1.0}, sphere), Status::ok);
+  for (const ShapeId id : {ShapeId{}, ShapeId::of(ShapeKind::cone, 1000), ShapeId{9U << 28U},
+                           ShapeId::of(ShapeKind::half_space, (1U << 28U) - 1U)}) {
+    ShapeId& shape = scene_.shapes[scene_.pairs[7].b];
+    const ShapeId before = shape;
+    shape = id;
+    expect_refused(Status::invalid_key);
+    EXPECT_EQ(phase_.bad_body(), scene_.pairs[7].b);
+    shape = before;
+    EXPECT_EQ(collide(), Status::ok);
+  }
+}
+
+TEST_F(NarrowInput, a_bad_pose_of_a_pair_is_refused_and_named) {
+  const auto reference = ask(scene_, {});
+  for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
+    for (const NarrowLevel level :
+         {NarrowLevel::boolean, NarrowLevel::distance, NarrowLevel::manifold}) {
+      for (std::size_t i = 0; i < scene_.pairs.size(); i += 7) {
+        const std::uint32_t body = i % 2 == 0 ? scene_.pairs[i].a : scene_.pairs[i].b;
+        const Pose before = scene_.poses[body];
+        for (const double bad : {kNan, kInfinity, -kInfinity}) {
+          scene_.poses[body].position[i % 3] = bad;
+          expect_refused(Status::invalid_pose, {.level = level, .tier = tier});
+          EXPECT_EQ(phase_.bad_body(), body);
+          scene_.poses[body] = before;
+        }
+        // Quaternions that a shape does not need are not looked at.
+        if (scene_.shapes[body].kind() == ShapeKind::sphere) continue;
+        for (const Pose& bad : {Pose{{1, 2, 3}, {0, 0, 0, 0}}, Pose{{1, 2, 3}, {1, kNan, 0, 0}},
+                                Pose{{1, 2, 3}, {1, 0, 0, kInfinity}}}) {
+          scene_.poses[body] = bad;
+          expect_refused(Status::invalid_pose, {.level = level, .tier = tier});
+          EXPECT_EQ(phase_.bad_body(), body);
+          scene_.poses[body] = before;
+        }
+      }
+    }
+  }
+  ASSERT_EQ(collide(), Status::ok);
+  const auto after = answers_of(result_, scene_.pairs.size());
+  for (std::size_t i = 0; i < after.size(); ++i) EXPECT_TRUE(same(after[i], reference[i])) << i;
+}
+
+TEST_F(NarrowInput, a_bad_pose_of_a_body_that_is_in_no_pair_does_not_matter) {
+  scene_.shapes.push_back(scene_.shapes.front());
+  scene_.poses.push_back({{kNan, 0, 0}, {0, 0, 0, 0}});
+  EXPECT_EQ(collide(), Status::ok);
+}
+
+TEST_F(NarrowInput, a_body_against_itself_overlaps) {
+  for (BodyPair& pair : scene_.pairs) pair.b = pair.a;
+  for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
+    ASSERT_EQ(collide({.level = NarrowLevel::distance, .tier = tier}), Status::ok);
+    for (std::size_t i = 0; i < result_.size(); ++i) {
+      EXPECT_TRUE(result_.overlaps(i)) << to_string(scene_.shapes[scene_.pairs[i].a].kind());
+      EXPECT_FALSE(std::isnan(result_.distance()[i]));
+    }
+  }
+}
+
+TEST_F(NarrowInput, out_of_memory_is_a_status_and_leaves_nothing_behind) {
+  const auto expected = ask(scene_, {});
+  std::size_t refusals = 0;
+  for (std::size_t granted = 0;; ++granted) {
+    CountingMemory memory;
+    {
+      NarrowPhase phase(&memory);
+      NarrowResult result(&memory);
+      memory.refuse_after(granted);
+      const Status status = phase.collide(scene_.pool, scene_.bodies(), scene_.pairs, {}, result);
+      if (status == Status::ok) break;
+      ++refusals;
+      EXPECT_EQ(status, Status::out_of_memory);
+      EXPECT_EQ(result.size(), 0U);
+      memory.grant_all();
+      ASSERT_EQ(phase.collide(scene_.pool, scene_.bodies(), scene_.pairs, {}, result), Status::ok);
+      const auto answers = answers_of(result, scene_.pairs.size());
+      for (std::size_t i = 0; i < answers.size(); ++i) EXPECT_TRUE(same(answers[i], expected[i]));
+    }
+    EXPECT_EQ(memory.outstanding(), 0U);
+    ASSERT_LT(granted, 1000U);
+  }
+  EXPECT_GT(refusals, 3U);
+}
+
+TEST_F(NarrowInput, the_second_call_allocates_nothing) {
+  for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
+    for (const NarrowLevel level :
+         {NarrowLevel::boolean, NarrowLevel::distance, NarrowLevel::manifold}) {
+      CountingMemory memory;
+      NarrowPhase phase(&memory);
+      NarrowResult result(&memory);
+      const NarrowOptions options{.level = level, .tier = tier};
+      ASSERT_EQ(phase.collide(scene_.pool, scene_.bodies(), scene_.pairs, options, result),
+                Status::ok);
+      const std::size_t requests = memory.requests();
+      const std::size_t heap = heap_requests();
+      ASSERT_EQ(phase.collide(scene_.pool, scene_.bodies(), scene_.pairs, options, result),
+                Status::ok);
+      EXPECT_EQ(memory.requests(), requests);
+      EXPECT_EQ(heap_requests(), heap)
+          << "tier " << static_cast<int>(tier) << ", level " << static_cast<int>(level);
+      EXPECT_EQ(phase.footprint().total().reserved + result.footprint().total().reserved,
+                memory.outstanding());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test

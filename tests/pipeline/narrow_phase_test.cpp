@@ -1,0 +1,220 @@
+// What must hold of answers whatever the shapes: properties that need no oracle.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "../support/random.h"
+#include "pair_answers.h"
+#include "pair_scenes.h"
+#include "reproduction.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr NarrowTier kTiers[] = {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference};
+
+NarrowOptions distances(NarrowTier tier) {
+  return {.level = NarrowLevel::distance, .tier = tier};
+}
+
+/// Every pair of kinds.
+PairScene mixed_scene(PairStyle style, std::size_t count, std::uint64_t seed) {
+  Random random(seed);
+  PairScene scene;
+  for (const ShapeKind a : all_kinds()) {
+    for (const ShapeKind b : all_kinds()) {
+      if (a == ShapeKind::half_space && b == ShapeKind::half_space) continue;
+      add_pairs(scene, a, b, style, count, random);
+    }
+  }
+  return scene;
+}
+
+Eigen::Vector3d between(const PairScene& scene, BodyPair pair) {
+  return Eigen::Map<const Eigen::Vector3d>(scene.poses[pair.b].position) -
+         Eigen::Map<const Eigen::Vector3d>(scene.poses[pair.a].position);
+}
+
+bool is_curved(const PairScene& scene, BodyPair pair) {
+  for (const std::uint32_t body : {pair.a, pair.b}) {
+    const ShapeKind kind = scene.shapes[body].kind();
+    if (kind == ShapeKind::cylinder || kind == ShapeKind::cone) return true;
+  }
+  return false;
+}
+
+class Properties : public testing::TestWithParam<PairStyle> {
+ protected:
+  /// Reports the first few only.
+  void complain(const char* what, BodyPair pair, double is, double should_be) {
+    if (++complaints_ > 3) return;
+    ADD_FAILURE() << what << ": " << is << " instead of " << should_be << '\n'
+                  << reproduction(scene_, pair);
+  }
+  void TearDown() override { EXPECT_EQ(complaints_, 0); }
+
+  PairScene scene_ = mixed_scene(GetParam(), scaled(12), 3);
+
+ private:
+  int complaints_ = 0;
+};
+
+TEST_P(Properties, exchanged_bodies_have_mirrored_answers) {
+  PairScene back = mixed_scene(GetParam(), scaled(12), 3);
+  for (BodyPair& pair : back.pairs) std::swap(pair.a, pair.b);
+  for (const NarrowTier tier : kTiers) {
+    const auto there = ask(scene_, distances(tier));
+    const auto again = ask(back, distances(tier));
+    for (std::size_t i = 0; i < there.size(); ++i) {
+      const PairAnswers& p = there[i];
+      const PairAnswers& q = again[i];
+      if (p.overlap != q.overlap || p.distance != q.distance || p.error_bound != q.error_bound) {
+        complain("exchanged distance", scene_.pairs[i], q.distance, p.distance);
+      }
+      // Where several normals are equally good, the frame of a decides.
+      if (GetParam() == PairStyle::ordinary && p.normal != -q.normal) {
+        complain("exchanged normal", scene_.pairs[i], (p.normal + q.normal).norm(), 0.0);
+      }
+    }
+  }
+}
+
+TEST_P(Properties, a_common_translation_changes_nothing) {
+  PairScene near = mixed_scene(GetParam(), scaled(12), 3);
+  // Positions on a grid on which all sums are exact.
+  for (Pose& pose : near.poses) {
+    for (double& x : pose.position) x = std::abs(x) < 1e3 ? std::round(x * 0x1p10) * 0x1p-10 : 0.0;
+  }
+  for (const NarrowTier tier : kTiers) {
+    const auto here = ask(near, distances(tier));
+    for (const double offset : {1e4, 1e6, 1e9}) {
+      PairScene far = mixed_scene(GetParam(), scaled(12), 3);
+      far.poses = near.poses;
+      for (Pose& pose : far.poses) {
+        pose.position[0] += offset;
+        pose.position[1] -= 2 * offset;
+        pose.position[2] += 3 * offset;
+      }
+      const auto there = ask(far, distances(tier));
+      for (std::size_t i = 0; i < here.size(); ++i) {
+        if (!same(here[i], there[i])) {
+          complain("moved far", near.pairs[i], there[i].distance, here[i].distance);
+        }
+      }
+    }
+  }
+}
+
+TEST_P(Properties, a_common_rotation_changes_no_distance_beyond_its_bound) {
+  PairScene turned = mixed_scene(GetParam(), scaled(12), 3);
+  Random random(9);
+  for (const BodyPair pair : turned.pairs) {
+    Eigen::Quaterniond turn(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1),
+                            random.uniform(-1, 1));
+    turn.normalize();
+    for (const std::uint32_t body : {pair.a, pair.b}) {
+      Pose& pose = turned.poses[body];
+      const double* q = pose.orientation;
+      const Eigen::Quaterniond orientation =
+          turn * Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+      pose.orientation[0] = orientation.w();
+      Eigen::Map<Eigen::Vector3d>(pose.orientation + 1) = orientation.vec();
+      Eigen::Map<Eigen::Vector3d> position(pose.position);
+      position = (turn * position).eval();
+    }
+  }
+  for (const NarrowTier tier : kTiers) {
+    const auto before = ask(scene_, distances(tier));
+    const auto after = ask(turned, distances(tier));
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      // Turning rounds positions and orientations, too.
+      const BodyPair pair = scene_.pairs[i];
+      const double reach = between(scene_, pair).norm() + std::abs(before[i].distance) +
+                           Eigen::Map<const Eigen::Vector3d>(scene_.poses[pair.a].position).norm() +
+                           extent(scene_, pair);
+      const double bound = before[i].error_bound + after[i].error_bound + 1e-14 * reach;
+      if (!(std::abs(before[i].distance - after[i].distance) <= bound)) {
+        complain("turned", pair, after[i].distance, before[i].distance);
+      }
+    }
+  }
+}
+
+TEST_P(Properties, moving_b_along_the_normal_adds_to_the_distance) {
+  for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
+    const auto before = ask(scene_, distances(tier));
+    for (const double step : {0.25, 1.0}) {
+      PairScene moved = mixed_scene(GetParam(), scaled(12), 3);
+      std::vector<double> shift(before.size());
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        // One step leads out of the overlap, or as far again.
+        shift[i] = step * std::abs(before[i].distance);
+        double* position = moved.poses[moved.pairs[i].b].position;
+        for (int axis = 0; axis < 3; ++axis) position[axis] += shift[i] * before[i].normal[axis];
+      }
+      const auto after = ask(moved, distances(tier));
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        const BodyPair pair = scene_.pairs[i];
+        const double position =
+            Eigen::Map<const Eigen::Vector3d>(moved.poses[pair.b].position).norm();
+        const double rounding = 1e-14 * (position + shift[i] + extent(scene_, pair));
+        const double bound = before[i].error_bound + after[i].error_bound + rounding;
+        const double expected = before[i].distance + shift[i];
+        // A normal that is off by 0.01 degrees leads that much less far.
+        const double missed = is_curved(scene_, pair) ? 1.6e-8 * shift[i] : 0.0;
+        if (!(after[i].distance <= expected + bound) ||
+            !(after[i].distance >= expected - bound - missed)) {
+          complain("moved along the normal", pair, after[i].distance, expected);
+        }
+      }
+    }
+  }
+}
+
+TEST_P(Properties, points_lie_on_the_shapes) {
+  for (const NarrowTier tier : kTiers) {
+    const auto answers = ask(scene_, distances(tier));
+    PairScene points = mixed_scene(GetParam(), scaled(12), 3);
+    ShapeId point;
+    ASSERT_EQ(points.pool.add(SphereShape{0.0}, point), Status::ok);
+    points.pairs.clear();
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      const BodyPair pair = scene_.pairs[i];
+      for (const bool on_b : {false, true}) {
+        // Relative to body a, so that nothing is lost to its position.
+        const Eigen::Vector3d p =
+            answers[i].point + (on_b ? answers[i].distance : 0.0) * answers[i].normal;
+        const Eigen::Vector3d c = on_b ? between(scene_, pair) : Eigen::Vector3d(0, 0, 0);
+        const auto first = static_cast<std::uint32_t>(points.shapes.size());
+        points.shapes.insert(points.shapes.end(), {scene_.shapes[on_b ? pair.b : pair.a], point});
+        Pose pose = scene_.poses[on_b ? pair.b : pair.a];
+        for (int axis = 0; axis < 3; ++axis) pose.position[axis] = c[axis];
+        points.poses.insert(points.poses.end(), {pose, Pose::at(p.x(), p.y(), p.z())});
+        points.pairs.push_back({first, first + 1});
+      }
+    }
+    const auto found = ask(points, distances(NarrowTier::reference));
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const BodyPair pair = scene_.pairs[i / 2];
+      const double size = extent(scene_, pair) + between(scene_, pair).norm();
+      const double bounds = 2 * answers[i / 2].error_bound + found[i].error_bound;
+      const double share = tier == NarrowTier::fast ? 1e-4 : is_curved(scene_, pair) ? 4e-7 : 1e-9;
+      const double allowed = share * size + bounds;
+      if (!(std::abs(found[i].distance) <= allowed)) {
+        complain("point off its shape", pair, found[i].distance, 0.0);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Styles, Properties, testing::ValuesIn(kPairStyles),
+                         [](const testing::TestParamInfo<PairStyle>& style) {
+                           return std::string(to_string(style.param));
+                         });
+
+}  // namespace
+}  // namespace winnow::test
