@@ -1,0 +1,131 @@
+#pragma once
+
+// What the kernels of boxes and triangles share: the search for the best of many separating axes,
+// and the way from a distance of the cores to certified answers.
+//
+// The separation of two convex cores along a unit vector n is how far b's lowest point along n is
+// above a's highest. Its maximum over all n is the distance, or minus the penetration depth, and is
+// found at one of few axes (Gottschalk, 1996), but for distances between vertices and edges.
+
+#include <winnow/pipeline/narrow/answers.wide.h>
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// Separations along an axis of length 1 at most are so often the unit roundoff of the pair's scale
+/// (all lengths in it) wrong, or less: 10 for an entry of a rotation, 38 for one of the product of
+/// two, 82 for the offset along a product of axes.
+template <typename T>
+inline constexpr T kSlack = T(48) * kEpsilon<T>;
+
+/// Bounds are at most this share of the scale, or the pair goes to the solver. Float answers all.
+template <typename T>
+inline constexpr T kWidestBound = sizeof(T) == sizeof(double) ? T(1e-12) : T(1e30F);
+
+/// Two points are the closest if they are farther apart than the cores certainly are by no more
+/// than this share of the scale.
+template <typename T>
+inline constexpr T kWidestGap = sizeof(T) == sizeof(double) ? T(1e-12) : T(1e-4F);
+
+/// Edges whose sine has a smaller square are parallel: a separation along their product would be
+/// wrong by the slack over the sine, leaving it out is wrong by the shorter edge times the sine.
+template <typename T>
+inline constexpr T kParallelSquare = sizeof(T) == sizeof(double) ? T(1e-26) : T(1e-6F);
+
+/// The axis of the largest separation so far, compared without roots: by s|s| over the square of
+/// the axis' length.
+template <typename T>
+struct BestAxis {
+  Real<T> square;
+  Real<T> length2;
+  Real<T> index;
+
+  [[gnu::always_inline]] void offer(const Real<T>& separation, const Real<T>& axis_length2,
+                                    int axis_index) {
+    const Real<T> s = separation * abs(separation);
+    const Truth<T> better = s * length2 > square * axis_length2;
+    square = select(better, s, square);
+    length2 = select(better, axis_length2, length2);
+    index = select(better, Real<T>(T(axis_index)), index);
+  }
+  [[gnu::always_inline]] Real<T> separation() const {
+    return sign_or_one(square) * sqrt(abs(square) / length2);
+  }
+};
+
+/// The largest of separations along unit vectors, and which.
+template <typename T>
+struct BestFace {
+  Real<T> separation;
+  Real<T> index;
+
+  [[gnu::always_inline]] void offer(const Real<T>& s, int axis_index) {
+    const Truth<T> better = s > separation;
+    separation = select(better, s, separation);
+    index = select(better, Real<T>(T(axis_index)), index);
+  }
+  [[gnu::always_inline]] BestAxis<T> as_axis() const {
+    return {separation * abs(separation), Real<T>(T(1)), index};
+  }
+};
+
+/// Pairs of one kind in an order that does not depend on which is called a: the first component of
+/// the offset that is not zero is positive. Answers are turned back.
+template <typename T>
+struct OrderedBlock {
+  BodyPair pairs[Real<T>::kRealLanes];
+  /// -1 for pairs that were turned, else 1.
+  alignas(64) T sign[Real<T>::kRealLanes];
+  PairBlock<T> block;
+
+  [[gnu::always_inline]] OrderedBlock(const NarrowJob& job, const PairBlock<T>& given)
+      : block{pairs, given.first, given.count} {
+    for (int lane = 0; lane < Real<T>::kRealLanes; ++lane) {
+      const BodyPair pair = given.pairs[lane];
+      const double* a = job.poses[pair.a].position;
+      const double* b = job.poses[pair.b].position;
+      int i = 0;
+      while (i < 2 && a[i] == b[i]) ++i;
+      const bool turn = b[i] < a[i];
+      pairs[lane] = turn ? BodyPair{pair.b, pair.a} : pair;
+      sign[lane] = turn ? T(-1) : T(1);
+    }
+  }
+  OrderedBlock(const OrderedBlock&) = delete;
+};
+
+/// What a kernel has found out about the cores, in the axes of the world.
+template <typename T>
+struct CoreAnswer {
+  Real<T> distance;
+  Real<T> error_bound;
+  Vec3<T> normal;
+  /// On the core of a, relative to its position. Level distance only.
+  Vec3<T> point;
+};
+
+/// The answer about the shapes from that about their cores; returns the lanes that are certified.
+template <typename T>
+[[gnu::always_inline]] inline Mask16 with_rounding(CoreAnswer<T>& answer, const Real<T>& rounding_a,
+                                                   const Real<T>& rounding_b,
+                                                   const Real<T>& scale) {
+  answer.distance -= rounding_a + rounding_b;
+  answer.point = answer.point + answer.normal * rounding_a;
+  const Truth<T> narrow = answer.error_bound <= scale * Real<T>(kWidestBound<T>);
+  const Truth<T> valid = in_range(scale * scale) & narrow;
+  if constexpr (sizeof(T) == sizeof(double)) {
+    return bits(valid & (abs(answer.distance) > answer.error_bound));
+  }
+  return bits(valid & (abs(answer.distance) <= scale * Real<T>(T(4))));
+}
+
+/// Turns answers back to the caller's order. `offset` is from a to b as the kernel had them.
+template <typename T>
+[[gnu::always_inline]] inline AnswerLanes<T> turned_back(const CoreAnswer<T>& answer,
+                                                         const Vec3<T>& offset,
+                                                         const Real<T>& sign) {
+  const Vec3<T> on_b = answer.point + answer.normal * answer.distance - offset;
+  return {answer.distance, answer.error_bound, answer.normal * sign,
+          select(sign < Real<T>(T(0)), on_b, answer.point)};
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME
