@@ -13,16 +13,34 @@ void set_point(CoreVertices& core, std::uint32_t i, double x, double y, double z
   core.own[2][i] = z;
 }
 
-/// Two vertices on the z axis, and the discs about them.
-void set_axis(CoreVertices& core, double half_length, double low_disc, double high_disc,
+/// Adds a polygon of 16 corners inscribed in a disc, four of them on the circle, the others inside
+/// of it by their rounding. A disc without radius is a point.
+void add_disc(CoreVertices& core, const CoreDisc& disc) noexcept {
+  // Cosines of multiples of 22.5 degrees, less a few units in the last place.
+  constexpr double kShare[5] = {1.0, 0.92387953251128596, 0.70710678118654702, 0.38268343236508945,
+                                0.0};
+  constexpr double kSmallest = 0x1p-900;  // below it products are not rounded by a share of them
+  if (disc.radius == 0.0) return set_point(core, core.count++, 0.0, 0.0, disc.z);
+  const int step = disc.radius < kSmallest ? 4 : 1;
+  for (int k = 0; k < 4; k += step) {
+    const double near = disc.radius * kShare[k];
+    const double side = disc.radius * kShare[4 - k];
+    set_point(core, core.count++, near, side, disc.z);
+    set_point(core, core.count++, -side, near, disc.z);
+    set_point(core, core.count++, -near, -side, disc.z);
+    set_point(core, core.count++, side, -near, disc.z);
+  }
+}
+
+/// The hull of discs at both ends of the z axis: a segment if they have no radius.
+void set_axis(CoreVertices& core, double half_length, double low_radius, double high_radius,
               double rounding) noexcept {
-  core.count = 2;
+  core.count = 0;
   core.rounding = rounding;
-  core.has_discs = low_disc > 0.0 || high_disc > 0.0;
-  core.disc[0] = low_disc;
-  core.disc[1] = high_disc;
-  set_point(core, 0, 0.0, 0.0, -half_length);
-  set_point(core, 1, 0.0, 0.0, half_length);
+  core.has_discs = low_radius > 0.0 || high_radius > 0.0;
+  core.disc[0] = {-half_length, low_radius};
+  core.disc[1] = {half_length, high_radius};
+  for (const CoreDisc& disc : core.disc) add_disc(core, disc);
 }
 
 void set_box(CoreVertices& core, const BoxShape& box) noexcept {
@@ -87,8 +105,11 @@ struct Bounds {
   }
   const Dyadic across =
       root_above(direction.x[0] * direction.x[0] + direction.x[1] * direction.x[1]);
-  height = dot(direction, core.at(0)) + across * core.disc[0];
-  const Dyadic other = dot(direction, core.at(1)) + across * core.disc[1];
+  const auto reach = [&](const CoreDisc& disc) {
+    return direction.x[2] * disc.z + across * disc.radius;
+  };
+  height = reach(core.disc[0]);
+  const Dyadic other = reach(core.disc[1]);
   return compare(other, height) > 0 ? other : height;
 }
 
@@ -144,7 +165,10 @@ void CoreVertices::include_lengths(BitSpan& span) const noexcept {
   for (std::uint32_t i = 0; i < count; ++i) {
     for (const double* values : column) span.include(values[i]);
   }
-  for (const double radius : disc) span.include(radius);
+  for (const CoreDisc& d : disc) {
+    span.include(d.z);
+    span.include(d.radius);
+  }
   span.include(rounding);
 }
 

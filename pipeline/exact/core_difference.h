@@ -9,8 +9,15 @@
 
 namespace winnow {
 
+/// A disc about the z axis, at right angles to it.
+struct CoreDisc {
+  double z = 0.0;
+  double radius = 0.0;
+};
+
 /// The vertices of a shape's core, in the shape's frame. The core of a cylinder or cone is the hull
-/// of discs at right angles to z, about two vertices. Points into itself or into the shape.
+/// of two discs; its vertices here are those of polygons inscribed in them. Points into itself or
+/// into the shape.
 struct CoreVertices {
   CoreVertices() noexcept = default;
   CoreVertices(const CoreVertices&) = delete;
@@ -18,10 +25,10 @@ struct CoreVertices {
 
   std::uint32_t count = 0;
   const double* column[3] = {own[0], own[1], own[2]};
-  double own[3][8];
+  double own[3][32];
   double rounding = 0.0;
   bool has_discs = false;
-  double disc[2] = {};
+  CoreDisc disc[2];
 
   [[nodiscard]] ExactVector at(std::uint32_t i) const noexcept {
     return {{column[0][i], column[1][i], column[2][i]}};
@@ -63,8 +70,7 @@ class CoreDifference {
   [[nodiscard]] bool in_range() const noexcept { return in_range_; }
   [[nodiscard]] const Dyadic& scale() const noexcept { return scale_; }
 
-  /// The vertex farthest along `direction` and its height: the product with the direction. For
-  /// cores without discs, like `cone_support`.
+  /// The vertex farthest along `direction` and its height: the product with the direction.
   void support(const ExactVector& direction, DifferenceVertex& vertex,
                Dyadic& height) const noexcept;
 

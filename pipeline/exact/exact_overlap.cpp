@@ -37,12 +37,17 @@ namespace {
   return half_spaces_verdict(shape, half_space_pose, tables.half_spaces[other.index()], other_pose);
 }
 
-/// Of cylinders and cones only the direction given is asked.
+/// Cylinders and cones, between a bound from outside along the direction given and polygons
+/// inscribed in their discs: decided where one of them suffices, or both meet.
 [[nodiscard]] ExactVerdict bounded_verdict(const CoreDifference& difference, const Dyadic& rounding,
                                            const ExactVector& direction) noexcept {
   const Dyadic length = root_above(dot(direction, direction));
   const Dyadic height = difference.height_bound(direction) + rounding * difference.scale() * length;
-  return height.sign() < 0 ? ExactVerdict::separated : ExactVerdict::undecided;
+  if (height.sign() < 0) return ExactVerdict::separated;
+  const ExactVerdict inscribed = locate_origin(difference, rounding, direction);
+  if (inscribed == ExactVerdict::overlapping) return inscribed;
+  const bool both = inscribed == ExactVerdict::touching && height.sign() == 0;
+  return both ? ExactVerdict::touching : ExactVerdict::undecided;
 }
 
 }  // namespace

@@ -56,8 +56,8 @@ ExactVerdict half_space_verdict(const HalfSpaceShape& half_space, const Pose& ha
   }
   const Dyadic across = local.x[0] * local.x[0] + local.x[1] * local.x[1];
   int sign = 1;
-  for (std::uint32_t i = 0; i < 2; ++i) {
-    sign = std::min(sign, sign_less_root(center + dot(local, core.at(i)), core.disc[i], across));
+  for (const CoreDisc& disc : core.disc) {
+    sign = std::min(sign, sign_less_root(center + local.x[2] * disc.z, disc.radius, across));
   }
   return verdict_of(sign);
 }

@@ -50,7 +50,8 @@ void PlaneClip::below(const Eigen::Vector3d& normal, double offset) noexcept {
   const double rate = normal.dot(ray_.direction);
   const double height = normal.dot(ray_.origin) - offset;
   if (std::fabs(rate) <= kParallel * ray_.speed) {
-    if (height > kGrazing) span_ = Span{};
+    // A rate of exactly zero comes of axes that need no rounding: then heights are exact, too.
+    if (height > (rate == 0.0 ? 0.0 : kGrazing)) span_ = Span{};
     return;
   }
   const double t = -height / rate;

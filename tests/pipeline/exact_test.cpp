@@ -218,21 +218,48 @@ TEST(ExactOverlap, half_spaces_are_apart_only_if_opposite) {
   EXPECT_EQ(verdict(), ExactVerdict::overlapping);
 }
 
-TEST(ExactOverlap, discs_are_apart_where_the_axis_proves_it) {
+TEST(ExactOverlap, discs_are_decided_where_bounds_from_both_sides_suffice) {
   Pair pair;
   pair.cylinders[0] = {1.0, 2.0, 0.0};
   pair.cones[1] = {1.0, 1.0, 0.5};
+  const double wrong[3] = {0.0, 1.0, 0.0};
   pair.poses[1] = Pose::at(2.5 + 0x1p-50, 0.0, 0.0);
   EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::cone), ExactVerdict::separated);
-  const double wrong[3] = {0.0, 1.0, 0.0};
   EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::cone, wrong), ExactVerdict::undecided);
   pair.poses[1] = Pose::at(2.5, 0.0, 0.0);
-  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::cone), ExactVerdict::undecided);
-  // Without radius it is a segment, and decided.
-  pair.cylinders[0].radius = 0.0;
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::cone), ExactVerdict::touching);
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::cone, wrong), ExactVerdict::undecided);
+  pair.poses[1] = Pose::at(2.5 - 0x1p-50, 0.0, 0.0);
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::cone), ExactVerdict::overlapping);
+}
+
+TEST(ExactOverlap, cylinders_lie_and_stand_on_boxes) {
+  Pair pair;
+  pair.boxes[0] = {{1.0, 1.0, 1.0}, 0.0};
+  pair.cylinders[1] = {0.5, 0.25, 0.0};
+  const double up[3] = {1e-17, 0.0, 1.0};
+  const auto verdict = [&](double z) {
+    pair.poses[1].position[2] = z;
+    return pair.verdict(ShapeKind::box, ShapeKind::cylinder, up);
+  };
+  EXPECT_EQ(verdict(1.25), ExactVerdict::touching);
+  EXPECT_EQ(verdict(std::nextafter(1.25, 2.0)), ExactVerdict::separated);
+  EXPECT_EQ(verdict(std::nextafter(1.25, 1.0)), ExactVerdict::overlapping);
+  pair.poses[1].orientation[2] = 1.0;
+  EXPECT_EQ(verdict(1.5), ExactVerdict::touching);
+  EXPECT_EQ(verdict(std::nextafter(1.5, 2.0)), ExactVerdict::separated);
+  EXPECT_EQ(verdict(std::nextafter(1.5, 1.0)), ExactVerdict::overlapping);
+}
+
+TEST(ExactOverlap, discs_without_radius_are_segments) {
+  Pair pair;
+  pair.cylinders[0] = {0.0, 2.0, 0.0};
   pair.triangles[1] = {{{0.0, -1.0, 0.0}, {0.0, 1.0, 0.0}, {3.0, 0.0, 0.0}}, 0.0};
-  pair.poses[1] = Pose::at(0.0, 0.0, 0.0);
   EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::triangle), ExactVerdict::touching);
+  pair.poses[1].position[0] = 0x1p-1074;
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::triangle), ExactVerdict::undecided);
+  pair.poses[1].position[0] = 0x1p-200;
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::triangle), ExactVerdict::separated);
 }
 
 TEST(ExactOverlap, any_axis_will_do) {

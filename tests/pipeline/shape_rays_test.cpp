@@ -318,6 +318,7 @@ TEST(ShapeRays, in_a_face_along_an_edge_or_through_a_corner_hit) {
   EXPECT_EQ(t(box, {0.0, 3.0, 0.0}, {1.0, -1.0, 0.0}), 1.0);   // across an edge, outside else
   EXPECT_EQ(t(box, {-3.0, -4.0, 1.0}, {1.0, 1.0, 1.0}), 2.0);  // through a corner
   EXPECT_EQ(t(box, {-4.0, 2.0 + 1e-12, 0.0}, {1.0, 0.0, 0.0}), -1.0);
+  EXPECT_EQ(t(box, {-4.0, std::nextafter(2.0, 3.0), 0.0}, {1.0, 0.0, 0.0}), -1.0);
   EXPECT_EQ(t(box, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}), 0.0);  // begins on it
   EXPECT_EQ(t(box, {1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}), 0.0);
   EXPECT_EQ(t(rounded, {-4.0, 2.5, 0.0}, {1.0, 0.0, 0.0}), 3.0);  // grazes from the flat part on
