@@ -184,6 +184,22 @@ double separation(const Core& a, const Core& b, const Vec& axis) noexcept {
   return axis.dot(b.center - a.center) + project(b, axis).low - project(a, axis).high;
 }
 
+Core meridian(const Core& core, const Vec& direction) noexcept {
+  if (core.kind != CoreKind::cylinder && core.kind != CoreKind::cone) return core;
+  const Vec d = core.rotation.transpose() * direction;
+  const double h = core.half.z();
+  const Vec low = rim(core, d, -h);
+  const Vec high = core.kind == CoreKind::cone ? Vec(0.0, 0.0, h) : rim(core, d, h);
+  const Vec middle(0.0, 0.0, core.kind == CoreKind::cylinder && d.z() > 0.0 ? h : -h);
+  Core triangle = core;
+  triangle.kind = CoreKind::triangle;
+  triangle.corner = {core.rotation * low, core.rotation * high, core.rotation * middle};
+  for (std::size_t i = 0; i < 3; ++i) {
+    triangle.side[i] = unit(triangle.corner[(i + 1) % 3] - triangle.corner[i]);
+  }
+  return triangle;
+}
+
 std::uint32_t vertex_count(const Core& core) noexcept {
   switch (core.kind) {
     case CoreKind::segment:

@@ -67,6 +67,10 @@ struct Range {
 /// The gap between the cores along a unit axis from a to b; negative where they overlap on it.
 [[nodiscard]] double separation(const Core& a, const Core& b, const Vec& axis) noexcept;
 
+/// A triangle inside of a cylinder or cone, in the plane of its axis and `direction`, that has the
+/// supporting point and the line of the side through it. Other cores are returned as they are.
+[[nodiscard]] Core meridian(const Core& core, const Vec& direction) noexcept;
+
 // Corners, edges and faces of polytopes. Extents of zero make some of them coincide.
 [[nodiscard]] std::uint32_t vertex_count(const Core& core) noexcept;
 [[nodiscard]] Vec vertex(const Core& core, std::uint32_t i) noexcept;

@@ -5,8 +5,10 @@
 
 namespace winnow::solver {
 
-/// Fills in the contacts of an answer whose distance, normal and point are known: the supporting
-/// features of both cores along the normal, met by contact_patch. At least one point.
-void make_manifold(const Problem& problem, double margin, PairAnswer& answer) noexcept;
+/// Fills in the contacts of an answer whose normal is known: the supporting features of both cores
+/// along it, met by contact_patch. `point`: on the surface of a; `distance`: both in units of the
+/// problem. At least one point, and the deepest one is as deep as the distance says.
+void make_manifold(const Problem& problem, const Vec& point, double distance, double margin,
+                   PairAnswer& answer) noexcept;
 
 }  // namespace winnow::solver

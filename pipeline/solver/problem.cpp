@@ -140,6 +140,7 @@ void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b
 }
 
 double unscaled(const Problem& problem, double length) noexcept {
+  if (!std::isfinite(length)) return length;
   constexpr double kMost = std::numeric_limits<double>::max();
   return std::clamp(std::ldexp(length, problem.exponent), -kMost, kMost);
 }

@@ -26,7 +26,7 @@ struct Problem {
 void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
              const Pose& pose_b, bool swapped, Problem& problem) noexcept;
 
-/// x 2^exponent, at most the largest double.
+/// x 2^exponent, at most the largest double if it is finite.
 [[nodiscard]] double unscaled(const Problem& problem, double length) noexcept;
 
 }  // namespace winnow::solver

@@ -79,15 +79,17 @@ PairAnswer solve(const Question& ask, bool swapped, NarrowLevel level, double ma
   const double scaled = found.distance - roundings;
   answer.distance = unscaled(problem, scaled);
   answer.error_bound = unscaled(problem, found.doubt);
-  if (!std::isfinite(scaled)) answer.error_bound = std::numeric_limits<double>::infinity();
-  if (!found.far && std::abs(scaled) <= found.doubt) {
+  if (!found.far && std::isfinite(found.doubt) && std::abs(scaled) <= found.doubt) {
     settle_sign(ask, problem, found.axis, answer.distance, counts);
   }
   answer.overlap = answer.distance <= 0.0;
   Vec::Map(answer.normal) = found.axis;
-  put(problem, found.on_a + found.axis * problem.a.rounding, answer.point);
+  const Vec point = found.on_a + found.axis * problem.a.rounding;
+  put(problem, point, answer.point);
   if (level == NarrowLevel::manifold && answer.distance <= margin) {
-    make_manifold(problem, margin, answer);
+    // Lengths are about 1 here: a margin beyond 8 is as good as 8.
+    const double reach = std::min(std::ldexp(margin, -problem.exponent), 8.0);
+    make_manifold(problem, point, scaled, reach, answer);
   }
   return answer;
 }
