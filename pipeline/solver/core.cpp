@@ -187,6 +187,8 @@ double separation(const Core& a, const Core& b, const Vec& axis) noexcept {
 Core meridian(const Core& core, const Vec& direction) noexcept {
   if (core.kind != CoreKind::cylinder && core.kind != CoreKind::cone) return core;
   const Vec d = core.rotation.transpose() * direction;
+  // Along the axis all planes are alike.
+  if (std::hypot(d.x(), d.y()) <= 1e-7 * std::abs(d.z())) return core;
   const double h = core.half.z();
   const Vec low = rim(core, d, -h);
   const Vec high = core.kind == CoreKind::cone ? Vec(0.0, 0.0, h) : rim(core, d, h);

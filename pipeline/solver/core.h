@@ -68,7 +68,8 @@ struct Range {
 [[nodiscard]] double separation(const Core& a, const Core& b, const Vec& axis) noexcept;
 
 /// A triangle inside of a cylinder or cone, in the plane of its axis and `direction`, that has the
-/// supporting point and the line of the side through it. Other cores are returned as they are.
+/// supporting point and the line of the side through it. Other cores are returned as they are, and
+/// so are these where the direction is that of their axis.
 [[nodiscard]] Core meridian(const Core& core, const Vec& direction) noexcept;
 
 // Corners, edges and faces of polytopes. Extents of zero make some of them coincide.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace winnow::solver {
 namespace {
@@ -66,28 +67,43 @@ void break_ties(const Problem& problem, double separated, Vec& axis) noexcept {
   }
 }
 
-/// A point that is on both cores once b has been moved out along the axis.
-Vec meeting_point(const Problem& problem, const Vec& axis, double depth) noexcept {
-  Core moved = problem.b;
-  moved.center += axis * depth;
-  const GjkResult met =
-      gjk(problem.a, moved, axis, 0.125 * problem.noise(), std::numeric_limits<double>::infinity());
-  const Vec x = met.simplex.on_a();
-  return x + axis * (project(problem.a, axis).high - axis.dot(x - problem.a.center));
-}
-
 /// Where curved cores nearly touch, the iteration comes close but slowly; along a good axis the
 /// parts of them that meet are straight, and closest at once.
-void refine_curved(const Problem& problem, const AxisSearch& search, GjkResult& found) noexcept {
-  const GjkResult straight =
-      gjk(meridian(problem.a, search.axis()), meridian(problem.b, -search.axis()), search.axis(),
-          0.125 * problem.noise(), std::numeric_limits<double>::infinity());
-  if (straight.contact || straight.upper < found.upper) {
+void refine_curved(const Core& a, const Core& b, const Vec& axis, double noise,
+                   GjkResult& found) noexcept {
+  const Core straight_a = meridian(a, axis);
+  const Core straight_b = meridian(b, -axis);
+  for (const auto& [x, y] :
+       {std::pair{&straight_a, &straight_b}, {&straight_a, &b}, {&a, &straight_b}}) {
+    const GjkResult straight =
+        gjk(*x, *y, axis, 0.125 * noise, std::numeric_limits<double>::infinity());
+    if (!straight.contact && !(straight.upper < found.upper)) continue;
     found.simplex = straight.simplex;
     found.between = straight.between;
     found.upper = straight.upper;
     found.contact = straight.contact;
+    if (found.contact) return;
   }
+}
+
+/// A point that is on both cores once b has been moved out along the axis.
+Vec meeting_point(const Problem& problem, const Vec& axis, double depth) noexcept {
+  const Core& a = problem.a;
+  const double noise = problem.noise();
+  Core moved = problem.b;
+  moved.center += axis * depth;
+  GjkResult met = gjk(a, moved, axis, 0.125 * noise, std::numeric_limits<double>::infinity());
+  Vec x = met.simplex.on_a();
+  // A flat tetrahedron has the origin inside, but does not tell well where.
+  met.upper = met.simplex.closest().norm();
+  if (met.upper > 0.25 * noise && a.is_polytope() && moved.is_polytope()) {
+    ClosestPoints points;
+    if (closest_features(a, moved, axis, 0.0, met.upper, noise, points)) x = points.on_a;
+  } else if (met.upper > 0.25 * noise) {
+    refine_curved(a, moved, axis, noise, met);
+    x = met.simplex.on_a();
+  }
+  return x + axis * (project(a, axis).high - axis.dot(x - a.center));
 }
 
 CoreDistance closest(const Problem& problem, const GjkResult& start, const AxisSearch& search,
@@ -208,7 +224,7 @@ CoreDistance core_distance(const Problem& problem, NarrowLevel level, double eno
   const bool polytopes = a.is_polytope() && b.is_polytope();
   if (found.upper - search.separation() > 0.125 * noise) {
     const bool all = look_at_features(problem, search);
-    if (!polytopes) refine_curved(problem, search, found);
+    if (!polytopes) refine_curved(a, b, search.axis(), noise, found);
     // No axis separates them: they overlap, whatever the simplices said.
     const bool sure = polytopes ? all : found.upper <= noise;
     if (sure && search.separation() <= 0.0) return penetration(problem, found, level, counts);

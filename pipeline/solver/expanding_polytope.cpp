@@ -11,9 +11,6 @@ namespace {
 constexpr std::uint32_t kPoints = 384;
 constexpr std::uint32_t kFaces = 6 * kPoints;
 
-/// Faces so thin that their normal is right to no more than this.
-constexpr double kSliver = 1e-9;
-
 struct Face {
   std::array<std::uint16_t, 3> point;
   /// The face across the side from point i to the next.
@@ -167,9 +164,11 @@ bool Polytope::add_face(std::uint16_t p, std::uint16_t q, std::uint16_t r,
   face.normal = unit(cross);
   const double offset = std::max(
       {face.normal.dot(points_[p]), face.normal.dot(points_[q]), face.normal.dot(points_[r])});
-  const double tilt = noise_ / area * std::sqrt(std::max({le, lf, lg}));
-  // The normal of a sliver is of little worth; its own distance is not less than its plane's.
-  face.low = tilt < kSliver ? offset - noise_ * tilt : triangle_distance(p, q, r) - noise_;
+  // What rounding of the points makes of the distance of their plane. That of slivers is of little
+  // worth; their own distance is not less than it.
+  const double doubt = 0.125 * noise_ / area * std::max({le, lf, lg});
+  face.low = offset - std::max(doubt, noise_);
+  if (doubt > noise_) face.low = std::max(face.low, triangle_distance(p, q, r) - noise_);
   push(at);
   return true;
 }

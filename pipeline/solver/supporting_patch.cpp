@@ -156,7 +156,9 @@ void SupportingPatch::add_round(const Core& core, const Vec& outward) noexcept {
   const Vec out = radial > 1e-9 ? Vec(d.x() / radial, d.y() / radial, 0.0) : Vec::UnitX();
   const bool cone = core.kind == CoreKind::cone;
   const bool on_tip = cone && h * d.z() >= r * radial - h * d.z();
-  if (std::abs(d.z()) > kCapCosine && !on_tip) return add_cap(core, out, d.z() > 0.0 ? h : -h);
+  // A cone has but the lower cap.
+  const double over_cap = cone ? -d.z() : std::abs(d.z());
+  if (over_cap > kCapCosine) return add_cap(core, out, d.z() > 0.0 ? h : -h);
   const Vec top = cone ? Vec(0.0, 0.0, h) : Vec(out * r + Vec(0.0, 0.0, h));
   add(core.center + core.rotation * top, kLine, kLine);
   feature_ = kLine;

@@ -1,0 +1,335 @@
+// What must hold for any pair, whatever its kinds. Values are checked against the oracle elsewhere.
+
+#include <gtest/gtest.h>
+#include <winnow/pipeline/solver/problem.h>
+#include <winnow/pipeline/solver/solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pair_scenes.h"
+#include "reproduction.h"
+
+namespace winnow::test {
+namespace {
+
+using Vec = Eigen::Vector3d;
+
+/// A pair and how to ask about it.
+struct Asked {
+  const PairScene& scene;
+  BodyPair pair;
+
+  [[nodiscard]] PairAnswer solve(NarrowLevel level, double margin = 0.0) const {
+    SolverCounts counts;
+    return solve_pair(scene.pool.tables(), scene.shapes[pair.a], scene.poses[pair.a],
+                      scene.shapes[pair.b], scene.poses[pair.b], level, margin, counts);
+  }
+  [[nodiscard]] PairAnswer solve_at(const Pose& a, const Pose& b) const {
+    SolverCounts counts;
+    return solve_pair(scene.pool.tables(), scene.shapes[pair.a], a, scene.shapes[pair.b], b,
+                      NarrowLevel::distance, 0.0, counts);
+  }
+  [[nodiscard]] const Pose& pose_a() const { return scene.poses[pair.a]; }
+  [[nodiscard]] const Pose& pose_b() const { return scene.poses[pair.b]; }
+  [[nodiscard]] bool has(ShapeKind kind) const {
+    return scene.shapes[pair.a].kind() == kind || scene.shapes[pair.b].kind() == kind;
+  }
+  /// What points and normals may be off by, relative to the size: those of curved surfaces are
+  /// where distances hardly change.
+  [[nodiscard]] double looseness() const {
+    return has(ShapeKind::cylinder) || has(ShapeKind::cone) ? 1e-8 : 1e-13;
+  }
+  /// Lengths of the pair, |c| included.
+  [[nodiscard]] double size() const {
+    solver::Problem problem;
+    solver::prepare(scene.pool.tables(), scene.shapes[pair.a], pose_a(), scene.shapes[pair.b],
+                    pose_b(), false, problem);
+    return unscaled(problem, problem.size);
+  }
+};
+
+/// Calls body(asked) for pairs of all kinds but half-spaces with each other.
+template <typename Body>
+void for_pairs(PairStyle style, Body&& body) {
+  for (const ShapeKind a : all_kinds()) {
+    for (const ShapeKind b : all_kinds()) {
+      if (a == ShapeKind::half_space && b == ShapeKind::half_space) continue;
+      Random random(100 * static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+      PairScene scene;
+      add_pairs(scene, a, b, style, scaled(30), random);
+      for (const BodyPair pair : scene.pairs) {
+        SCOPED_TRACE(reproduction(scene, pair));
+        body(Asked{scene, pair});
+        if (testing::Test::HasFailure()) return;
+      }
+    }
+  }
+}
+
+/// How far x is outside of the core's shape along its worst of some directions.
+double outside(const solver::Core& core, const Vec& x, const Vec& along, Random& random) {
+  if (core.kind == solver::CoreKind::half_space) {
+    return core.normal.dot(x - core.center) - core.offset;
+  }
+  double worst = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 40; ++i) {
+    Vec d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    if (i == 0) d = along;
+    if (i == 1) d = -along;
+    d = solver::unit(d);
+    worst = std::max(worst, d.dot(x - core.center) - solver::project(core, d).high - core.rounding);
+  }
+  return worst;
+}
+
+class Solver : public testing::TestWithParam<PairStyle> {};
+INSTANTIATE_TEST_SUITE_P(Styles, Solver, testing::ValuesIn(kPairStyles),
+                         [](const auto& style) { return to_string(style.param); });
+
+TEST_P(Solver, answers_are_finite_and_levels_agree) {
+  for_pairs(GetParam(), [](const Asked& asked) {
+    const PairAnswer answer = asked.solve(NarrowLevel::distance);
+    EXPECT_TRUE(std::isfinite(answer.distance));
+    EXPECT_TRUE(std::isfinite(answer.error_bound));
+    EXPECT_NEAR(Vec::Map(answer.normal).norm(), 1.0, 1e-14);
+    EXPECT_TRUE(Vec::Map(answer.point).allFinite());
+    EXPECT_EQ(answer.overlap, answer.distance <= 0.0);
+    EXPECT_EQ(asked.solve(NarrowLevel::boolean).overlap, answer.overlap);
+    const PairAnswer manifold = asked.solve(NarrowLevel::manifold);
+    EXPECT_EQ(manifold.overlap, answer.overlap);
+    EXPECT_EQ(manifold.contact_count > 0, answer.overlap);
+  });
+}
+
+TEST_P(Solver, swapped_pairs_have_mirrored_answers) {
+  for_pairs(GetParam(), [](const Asked& asked) {
+    const PairAnswer answer = asked.solve(NarrowLevel::distance);
+    const PairAnswer mirrored =
+        Asked{asked.scene, {asked.pair.b, asked.pair.a}}.solve(NarrowLevel::distance);
+    EXPECT_EQ(answer.overlap, mirrored.overlap);
+    EXPECT_NEAR(answer.distance, mirrored.distance,
+                std::max(answer.error_bound, mirrored.error_bound));
+  });
+}
+
+TEST_P(Solver, a_common_motion_changes_answers_within_their_bounds) {
+  for_pairs(GetParam(), [](const Asked& asked) {
+    // A turn by a rational rotation, so that only rounding differs.
+    Pose moved[2] = {asked.pose_a(), asked.pose_b()};
+    const Eigen::Quaterniond turn = Eigen::Quaterniond(0.8, 0.0, 0.36, 0.48).normalized();
+    for (Pose& pose : moved) {
+      Vec::Map(pose.position) = turn * Vec::Map(pose.position);
+      const double* q = pose.orientation;
+      const Eigen::Quaterniond turned = turn * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+      pose.orientation[0] = turned.w();
+      Vec::Map(pose.orientation + 1) = turned.vec();
+    }
+    const PairAnswer answer = asked.solve(NarrowLevel::distance);
+    const PairAnswer other = asked.solve_at(moved[0], moved[1]);
+    // Positions are rounded where they stand, orientations too.
+    const double rounding = 1e-15 * (asked.size() + Vec::Map(moved[0].position).norm() +
+                                     Vec::Map(moved[1].position).norm());
+    EXPECT_NEAR(answer.distance, other.distance, answer.error_bound + other.error_bound + rounding);
+  });
+}
+
+TEST_P(Solver, points_lie_on_both_shapes_and_differ_by_the_distance) {
+  Random random(7);
+  for_pairs(GetParam(), [&](const Asked& asked) {
+    const PairAnswer answer = asked.solve(NarrowLevel::distance);
+    solver::Problem problem;
+    solver::prepare(asked.scene.pool.tables(), asked.scene.shapes[asked.pair.a], asked.pose_a(),
+                    asked.scene.shapes[asked.pair.b], asked.pose_b(), false, problem);
+    const double scale = std::ldexp(1.0, -problem.exponent);
+    const Vec n = Vec::Map(answer.normal);
+    const Vec on_a = Vec::Map(answer.point) * scale;
+    const Vec on_b = on_a + n * (answer.distance * scale);
+    // What is not proved of a distance moves its points by more.
+    const double gap = answer.error_bound * scale / problem.size;
+    const double unproved = gap > 1e-13 ? 4.0 * std::sqrt(gap) : 0.0;
+    const double tolerance = problem.size * (asked.looseness() + unproved);
+    EXPECT_LE(outside(problem.a, on_a, n, random), tolerance);
+    EXPECT_LE(outside(problem.b, on_b, n, random), tolerance);
+  });
+}
+
+TEST_P(Solver, moving_b_by_the_depth_separates) {
+  for_pairs(GetParam(), [](const Asked& asked) {
+    const PairAnswer answer = asked.solve(NarrowLevel::distance);
+    if (answer.distance > 0.0) return;
+    Pose moved = asked.pose_b();
+    Vec::Map(moved.position) -= Vec::Map(answer.normal) * answer.distance;
+    const PairAnswer after = asked.solve_at(asked.pose_a(), moved);
+    const double rounding = asked.looseness() * asked.size() +
+                            1e-15 * Vec::Map(asked.pose_b().position).cwiseAbs().maxCoeff();
+    EXPECT_NEAR(after.distance, 0.0, answer.error_bound + after.error_bound + rounding);
+  });
+}
+
+TEST_P(Solver, manifolds_begin_with_the_depth_and_stay_within_the_margin) {
+  for_pairs(GetParam(), [](const Asked& asked) {
+    const double size = asked.size();
+    const double margin = 0.1 * size;
+    const PairAnswer answer = asked.solve(NarrowLevel::manifold, margin);
+    if (answer.distance > margin) return;
+    ASSERT_GE(answer.contact_count, 1U);
+    ASSERT_LE(answer.contact_count, kManifoldPoints);
+    EXPECT_NEAR(answer.contacts[0].depth, -answer.distance, 1e-4 * size);
+    for (std::uint32_t i = 0; i < answer.contact_count; ++i) {
+      const ContactPoint& contact = answer.contacts[i];
+      EXPECT_GE(contact.depth, -margin - 1e-6 * size);
+      EXPECT_LE(contact.depth, contact.depth * 0.0F - answer.distance + 1e-4 * size);
+      EXPECT_LE(Eigen::Vector3f::Map(contact.position).norm(), 1.001 * size);
+    }
+  });
+}
+
+TEST_P(Solver, powers_of_two_scale_answers_exactly) {
+  for (const int exponent : {-900, 900}) {
+    Random random(11);
+    PairScene scene;
+    const double scale = std::ldexp(1.0, exponent);
+    for (int i = 0; i < 200; ++i) {
+      BoxShape box{{random.unit(), random.unit(), random.unit()}, 0.1 * random.unit()};
+      ConeShape cone{random.unit(), random.unit(), 0.0};
+      const Pose at{{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)},
+                    {random.unit(), random.unit(), random.unit(), random.unit()}};
+      Pose far_at = at;
+      ShapeId ids[4];
+      ASSERT_EQ(scene.pool.add(box, ids[0]), Status::ok);
+      ASSERT_EQ(scene.pool.add(cone, ids[1]), Status::ok);
+      for (double* x :
+           {&box.half[0], &box.half[1], &box.half[2], &box.rounding, &cone.radius,
+            &cone.half_length, &far_at.position[0], &far_at.position[1], &far_at.position[2]}) {
+        *x *= scale;
+      }
+      ASSERT_EQ(scene.pool.add(box, ids[2]), Status::ok);
+      ASSERT_EQ(scene.pool.add(cone, ids[3]), Status::ok);
+      SolverCounts counts;
+      const auto solve = [&](int first, const Pose& pose) {
+        return solve_pair(scene.pool.tables(), ids[first], Pose{}, ids[first + 1], pose,
+                          NarrowLevel::distance, 0.0, counts);
+      };
+      EXPECT_EQ(solve(0, at).distance * scale, solve(2, far_at).distance);
+    }
+  }
+}
+
+class SolverCases : public testing::Test {
+ protected:
+  template <typename Shape>
+  ShapeId add(const Shape& shape) {
+    ShapeId id;
+    EXPECT_EQ(pool_.add(shape, id), Status::ok);
+    return id;
+  }
+  PairAnswer solve(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
+                   NarrowLevel level = NarrowLevel::manifold, double margin = 0.0) {
+    return solve_pair(pool_.tables(), a, pose_a, b, pose_b, level, margin, counts_);
+  }
+
+  ShapePool pool_;
+  SolverCounts counts_;
+};
+
+TEST_F(SolverCases, coincident_centres_take_the_first_axis_of_a) {
+  const ShapeId sphere = add(SphereShape{1.0});
+  const ShapeId cube = add(BoxShape{{1, 1, 1}, 0.0});
+  const ShapeId rod = add(CapsuleShape{0.5, 2.0});
+  const ShapeId drum = add(CylinderShape{1.0, 3.0, 0.0});
+  // Turned by 90 degrees about z: x of a is y of the world.
+  const Pose turned{{0, 0, 0}, {1, 0, 0, 1}};
+  for (const auto& [shape, depth] :
+       {std::pair{sphere, 2.0}, {cube, 2.0}, {rod, 1.0}, {drum, 2.0}}) {
+    const PairAnswer answer = solve(shape, turned, shape, turned);
+    EXPECT_NEAR(answer.distance, -depth, 1e-14);
+    EXPECT_NEAR(answer.normal[1], 1.0, 1e-14);
+  }
+  const PairAnswer mixed = solve(sphere, Pose{}, cube, Pose{});
+  EXPECT_EQ(mixed.distance, -2.0);
+  EXPECT_EQ(mixed.normal[0], 1.0);
+  const PairAnswer other = solve(cube, Pose{}, sphere, turned);
+  EXPECT_EQ(other.normal[0], 1.0);
+}
+
+TEST_F(SolverCases, touching_is_overlap_with_distance_zero) {
+  const ShapeId sphere = add(SphereShape{1.0});
+  const ShapeId cube = add(BoxShape{{1, 1, 1}, 0.0});
+  const ShapeId drum = add(CylinderShape{0.5, 0.25, 0.0});
+  const ShapeId cone = add(ConeShape{0.5, 0.25, 0.0});
+  const Pose lying{{0, 0, 1.5}, {1, 0, 1, 0}};
+  const Pose on_tip{{0.25, 0, 1.25}, {0, 1, 0, 0}};
+  EXPECT_EQ(solve(cube, Pose{}, sphere, Pose::at(0, 0, 2)).distance, 0.0);
+  EXPECT_EQ(solve(cube, Pose{}, cube, Pose::at(2, 2, 2)).distance, 0.0);
+  EXPECT_EQ(solve(cube, Pose{}, drum, lying).distance, 0.0);
+  EXPECT_EQ(solve(cube, Pose{}, drum, Pose::at(0, 0, 1.25)).distance, 0.0);
+  EXPECT_EQ(solve(cube, Pose{}, cone, Pose::at(0, 0, 1.25)).distance, 0.0);
+  EXPECT_EQ(solve(cube, Pose{}, cone, on_tip).distance, 0.0);
+}
+
+TEST_F(SolverCases, round_shapes_on_one_axis_have_exact_depths) {
+  const ShapeId drum = add(CylinderShape{2.0, 1.0, 0.0});
+  const ShapeId cone = add(ConeShape{1.0, 1.0, 0.25});
+  const ShapeId sphere = add(SphereShape{0.5});
+  const PairAnswer drums = solve(drum, Pose{}, drum, Pose::at(0, 0, 0.5));
+  EXPECT_EQ(drums.distance, -1.5);
+  EXPECT_LE(drums.error_bound, 1e-13);
+  // In the cone's base: 0.75 from it, 1.25 / sqrt(5) from its side.
+  const PairAnswer in_cone = solve(cone, Pose{}, sphere, Pose::at(0, 0, -0.25));
+  EXPECT_NEAR(in_cone.distance, -1.25 / std::sqrt(5.0) - 0.75, 1e-14);
+  EXPECT_LE(in_cone.error_bound, 1e-13);
+}
+
+TEST_F(SolverCases, a_box_on_the_ground_has_four_points_that_keep_their_features) {
+  const ShapeId box = add(BoxShape{{1, 2, 0.5}, 0.0});
+  const ShapeId drum = add(CylinderShape{1.0, 0.5, 0.0});
+  const ShapeId ground = add(HalfSpaceShape{{0, 0, 1}, 0.0});
+  const ShapeId slab = add(BoxShape{{10, 10, 1}, 0.0});
+  for (const auto& [floor, below] : {std::pair{ground, 0.0}, {slab, -1.0}}) {
+    for (const ShapeId body : {box, drum}) {
+      const PairAnswer now = solve(body, Pose::at(0, 0, 0.49), floor, Pose::at(0, 0, below));
+      ASSERT_EQ(now.contact_count, 4U);
+      const Pose rocked{{0.1, 0, 0.491}, {1, 1e-4, 1e-4, 0}};
+      const PairAnswer next = solve(body, rocked, floor, Pose::at(0, 0, below));
+      ASSERT_EQ(next.contact_count, 4U);
+      if (body == drum) continue;
+      std::uint64_t features[2][4];
+      for (int i = 0; i < 4; ++i) {
+        features[0][i] = now.contacts[i].feature;
+        features[1][i] = next.contacts[i].feature;
+        EXPECT_NEAR(now.contacts[i].depth, 0.01F, 1e-6F);
+      }
+      std::sort(features[0], features[0] + 4);
+      std::sort(features[1], features[1] + 4);
+      EXPECT_TRUE(std::equal(features[0], features[0] + 4, features[1]));
+    }
+  }
+}
+
+TEST_F(SolverCases, half_spaces_are_apart_only_back_to_back) {
+  const ShapeId up = add(HalfSpaceShape{{0, 0, 1}, 0.0});
+  const ShapeId down = add(HalfSpaceShape{{0, 0, -1}, 0.0});
+  EXPECT_EQ(solve(up, Pose{}, down, Pose::at(5, 0, 2)).distance, 2.0);
+  EXPECT_EQ(solve(up, Pose{}, down, Pose::at(5, 0, -2)).distance, -2.0);
+  const PairAnswer endless = solve(up, Pose{}, up, Pose::at(0, 0, -9));
+  EXPECT_TRUE(endless.overlap);
+  EXPECT_LT(endless.distance, -1e300);
+  EXPECT_TRUE(std::isfinite(endless.distance));
+}
+
+TEST_F(SolverCases, positions_at_the_ends_of_doubles_are_answered) {
+  const ShapeId sphere = add(SphereShape{1.0});
+  const ShapeId dust = add(SphereShape{5e-324});
+  const double most = std::numeric_limits<double>::max();
+  const PairAnswer far = solve(sphere, Pose::at(-most, 0, 0), sphere, Pose::at(most, 0, 0));
+  EXPECT_EQ(far.distance, most);
+  EXPECT_EQ(far.normal[0], 1.0);
+  const PairAnswer tiny = solve(dust, Pose{}, dust, Pose::at(0, 1.5e-323, 0));
+  EXPECT_EQ(tiny.distance, 5e-324);
+  EXPECT_EQ(tiny.normal[1], 1.0);
+}
+
+}  // namespace
+}  // namespace winnow::test
