@@ -77,7 +77,7 @@ struct Bounds {
 [[nodiscard]] Bounds product_bounds(const CoreVertices& core, std::uint32_t i,
                                     const RoundedDirection& direction) noexcept {
   constexpr double kError = 0x1p-49;
-  constexpr double kUnderflow = 0x1p-1070;
+  constexpr double kUnderflow = 0x1p-1000;  // more than is lost, and fast to add
   double value = 0.0;
   double size = 0.0;
   double length = 1.0;

@@ -10,7 +10,6 @@ namespace {
 __extension__ using Wide = unsigned __int128;
 
 constexpr int kBits = 64;
-constexpr int kMantissa = 53;
 
 /// The digit that counts 2^exponent: rounded down, also below zero.
 [[nodiscard]] int place_of(int exponent) noexcept {
@@ -20,15 +19,17 @@ constexpr int kMantissa = 53;
 }  // namespace
 
 Dyadic::Dyadic(double value) noexcept {
-  if (value == 0.0) return;
-  int exponent = 0;
-  const double mantissa = std::frexp(std::fabs(value), &exponent);
-  const auto bits = static_cast<std::uint64_t>(std::ldexp(mantissa, kMantissa));
-  exponent -= kMantissa;
-  const int place = place_of(exponent);
-  const Wide shifted = static_cast<Wide>(bits) << (exponent - place * kBits);
-  negative_ = value < 0.0;
-  exponent_ = place;
+  constexpr int kFraction = 52;
+  constexpr std::uint64_t kImplicit = std::uint64_t{1} << kFraction;
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const int field = static_cast<int>(bits >> kFraction & 0x7FFU);
+  std::uint64_t mantissa = bits & (kImplicit - 1);
+  if (field != 0) mantissa |= kImplicit;
+  if (mantissa == 0) return;
+  const int exponent = std::max(field, 1) - 1075;
+  exponent_ = place_of(exponent);
+  const Wide shifted = static_cast<Wide>(mantissa) << (exponent - exponent_ * kBits);
+  negative_ = bits >> 63U != 0;
   size_ = 2;
   digit_[0] = static_cast<std::uint64_t>(shifted);
   digit_[1] = static_cast<std::uint64_t>(shifted >> kBits);
@@ -59,7 +60,7 @@ void Dyadic::trim() noexcept {
   if (zeros == 0) return;
   size_ -= zeros;
   exponent_ += zeros;
-  std::copy_n(digit_ + zeros, static_cast<std::size_t>(size_), digit_);
+  for (int i = 0; i < size_; ++i) digit_[i] = digit_[i + zeros];
 }
 
 int Dyadic::compare_magnitudes(const Dyadic& a, const Dyadic& b) noexcept {
@@ -140,6 +141,16 @@ Dyadic operator*(const Dyadic& a, const Dyadic& b) noexcept {
   Dyadic result;
   const int size = a.size_ + b.size_;
   if (a.size_ == 0 || b.size_ == 0 || size > kDyadicDigits) return result;
+  result.negative_ = a.negative_ != b.negative_;
+  result.exponent_ = a.exponent_ + b.exponent_;
+  result.size_ = size;
+  if (size == 2) {
+    const Wide digits = static_cast<Wide>(a.digit_[0]) * b.digit_[0];
+    result.digit_[0] = static_cast<std::uint64_t>(digits);
+    result.digit_[1] = static_cast<std::uint64_t>(digits >> kBits);
+    result.trim();
+    return result;
+  }
   std::fill_n(result.digit_, static_cast<std::size_t>(b.size_), 0U);
   for (int i = 0; i < a.size_; ++i) {
     std::uint64_t carry = 0;
@@ -151,9 +162,6 @@ Dyadic operator*(const Dyadic& a, const Dyadic& b) noexcept {
     }
     result.digit_[i + b.size_] = carry;
   }
-  result.negative_ = a.negative_ != b.negative_;
-  result.exponent_ = a.exponent_ + b.exponent_;
-  result.size_ = size;
   result.trim();
   return result;
 }

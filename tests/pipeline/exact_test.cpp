@@ -119,6 +119,27 @@ TEST(ExactOverlap, agrees_with_integers_on_small_shapes) {
   }
 }
 
+TEST(ExactOverlap, verdicts_turn_with_both_shapes) {
+  Random random(17);
+  for (const ShapeKind a : {ShapeKind::triangle, ShapeKind::hull}) {
+    for (const ShapeKind b : {ShapeKind::triangle, ShapeKind::hull}) {
+      for (std::size_t i = 0; i < scaled(300); ++i) {
+        Pair pair;
+        HullColumns columns[2];
+        set_lattice(random, pair, columns);
+        // Their places differ by their vertices only, so that any pose of both leaves them exact.
+        pair.poses[0] = pair.poses[1] = {};
+        const ExactVerdict truth = lattice_truth(pair.tables(), ShapeId::of(a, 0), pair.poses[0],
+                                                 ShapeId::of(b, 1), pair.poses[1]);
+        for (double& q : pair.poses[0].orientation) q = random.uniform(-1.0, 1.0);
+        for (double& x : pair.poses[0].position) x = random.uniform(-1e9, 1e9);
+        pair.poses[1] = pair.poses[0];
+        ASSERT_EQ(pair.verdict(a, b), truth) << i << ' ' << to_string(a) << ' ' << to_string(b);
+      }
+    }
+  }
+}
+
 TEST(ExactOverlap, sees_one_unit_in_the_last_place) {
   Pair pair;
   pair.boxes[0] = {{0.1, 0.3, 0.7}, 0.0};
