@@ -13,7 +13,8 @@ install(TARGETS ${winnow_modules} winnow EXPORT winnow-targets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
-# Headers written in wide types, which only kernel files can include, stay out.
+# Headers written in wide types, which only kernel files can include, stay out, and so does how the
+# pipeline answers.
 foreach(room core simd partitions pipeline)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room}/
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow/${room}
@@ -21,7 +22,17 @@ foreach(room core simd partitions pipeline)
           PATTERN "wide.h" EXCLUDE
           PATTERN "compress.h" EXCLUDE
           PATTERN "*.wide.h" EXCLUDE
+          PATTERN "exact" EXCLUDE
+          PATTERN "narrow" EXCLUDE
+          PATTERN "rays" EXCLUDE
+          PATTERN "solver" EXCLUDE
+          PATTERN "hull_builder.h" EXCLUDE
           PATTERN "winnow.h" EXCLUDE)
+endforeach()
+foreach(header narrow/narrow_job narrow/narrow_result narrow/pair_buckets solver/solver)
+  get_filename_component(folder ${header} DIRECTORY)
+  install(FILES ${PROJECT_SOURCE_DIR}/pipeline/${header}.h
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow/pipeline/${folder})
 endforeach()
 install(FILES ${PROJECT_SOURCE_DIR}/pipeline/winnow.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow)
