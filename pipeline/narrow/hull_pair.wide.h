@@ -54,6 +54,10 @@ struct HullPair {
   float lower;
   /// Square of an upper bound of the penetration depth, scaled.
   float depth_squared;
+  /// The latest supports, points of first - second, scaled.
+  static constexpr std::uint32_t kTrail = 8;
+  float trail[kTrail][3];
+  std::uint32_t trail_length;
 };
 
 /// Sizes beyond these leave the range in which products of four floats are normal numbers.
@@ -65,8 +69,8 @@ inline constexpr std::uint32_t kMostHullVertices = 65535;
 /// A bound of the rounding errors in lengths that are computed in double from a HullPair, over
 /// size: some forty operations of half a unit each.
 inline constexpr double kDoubleError = 40.0 * 0x1p-53;
-/// The same in float, over size.
-inline constexpr float kFloatError = 24.0F * 0x1p-24F;
+/// The same in float, over size, with the doubt about which vertex is the highest: see kLaneBits.
+inline constexpr float kFloatError = 40.0F * 0x1p-24F;
 
 static inline double dot3(const double* a, const double* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

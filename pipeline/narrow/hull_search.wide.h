@@ -2,8 +2,9 @@
 
 // Closest features of pairs of hulls in float: the algorithm of Gilbert, Johnson and Keerthi (1988)
 // one pair a lane, with supports sixteen vertices at a time. A lane that is done takes the next
-// pair, so that a hard pair does not hold fifteen easy ones. Nothing here has to be right: the
-// stages after it prove what they use.
+// pair, so that a hard pair does not hold fifteen easy ones. Where the origin is inside, the
+// search begins again from a point just outside, and finds a face of the difference that is a good
+// guess for the nearest one. Nothing here has to be right: the stages after it prove what they use.
 
 #include <winnow/pipeline/narrow/hull_simplex.wide.h>
 #include <winnow/pipeline/narrow/hull_support.wide.h>
@@ -39,6 +40,10 @@ class HullSearch {
  private:
   using Lanes = Real<float>;
   static constexpr std::uint32_t kMostSteps = 48;
+  /// Steps from outside towards the difference when the origin is inside.
+  static constexpr std::uint32_t kSinkSteps = 8;
+  /// Where these begin, over the lowest height known.
+  static constexpr float kOutside = 1.25F;
   /// Below this, scaled, the origin counts as on the simplex.
   static constexpr float kTouching = 2e-6F;
   /// A support that is nearer by less than this, scaled, is no progress.
@@ -66,6 +71,9 @@ class HullSearch {
     depth_[lane] = __builtin_inff();
     for (int s = 0; s < kSlots; ++s) present_[s][lane] = 0.0F;
     fresh_[lane] = 1.0F;
+    sinking_[lane] = 0.0F;
+    for (int k = 0; k < 3; ++k) goal_[k][lane] = 0.0F;
+    pair.trail_length = 0;
     steps_[lane] = 0;
     float center[3];
     start_direction(pair, center);
@@ -136,7 +144,7 @@ class HullSearch {
       const Lanes b = Lanes::load(turn_[3 * i]) * vertex(1, 0) +
                       Lanes::load(turn_[3 * i + 1]) * vertex(1, 1) +
                       Lanes::load(turn_[3 * i + 2]) * vertex(1, 2) + Lanes::load(shift_[i]);
-      w[i] = vertex(0, i) * scale - b;
+      w[i] = vertex(0, i) * scale - b - Lanes::load(goal_[i]);
     }
     return {w[0], w[1], w[2]};
   }
@@ -153,44 +161,110 @@ class HullSearch {
     const Vec3<float> gap{Lanes::load(gap_[0]), Lanes::load(gap_[1]), Lanes::load(gap_[2])};
     const Lanes square = Lanes::load(square_);
     const Truth<float> fresh = Lanes::load(fresh_) > zero;
+    const Truth<float> sinking = Lanes::load(sinking_) > zero;
     const Vec3<float> w = support();
     const Lanes height = dot(gap, w);
-    const Lanes height_squared = height * height;
     const Truth<float> ahead = height > zero;
-    const Truth<float> far = ahead & (height_squared > Lanes::load(far_) * square);
+    const Truth<float> far = ahead & (height * height > Lanes::load(far_) * square) & !sinking;
     height.store(height_along_);
-    const Lanes depth = select(ahead, zero, height_squared / square);
-    min(Lanes::load(depth_), depth).store(depth_);
+    if (!limits_.verdict) note_depth(w, gap, square, height);
 
     const Lanes gain = square - height;
     const Truth<float> no_gain =
         (gain <= zero) | (gain * gain <= Lanes(kNoGain * kNoGain) * square);
     const Nearest nearest = nearest_of(simplex, w);
     const Lanes next_square = dot(nearest.point, nearest.point);
-    const Truth<float> stuck =
-        (!fresh) & (no_gain | nearest.repeated | (next_square >= square)) & (!nearest.inside);
-    const Mask16 far_bits = bits(far) & active_;
-    const Mask16 stuck_bits = bits(stuck) & active_ & ~far_bits;
-    const Mask16 inside_bits = bits(nearest.inside) & active_ & ~far_bits & ~stuck_bits;
-    const Mask16 move = active_ & ~far_bits & ~stuck_bits & ~inside_bits;
-
-    const Truth<float> moves = !(far | stuck | nearest.inside);
+    const Truth<float> stuck = (!fresh) & (no_gain | nearest.repeated | (next_square >= square)) &
+                               (!(nearest.inside | far));
+    const Truth<float> inside = nearest.inside & !far;
+    const Truth<float> moves = !(far | stuck | inside);
     keep(simplex, nearest, moves, w, gap, next_square);
+    const Mask16 sinking_bits = bits(sinking);
+    const Mask16 far_bits = bits(far) & active_;
+    const Mask16 stuck_bits = bits(stuck) & active_;
+    const Mask16 inside_bits = bits(inside) & active_;
+    const Mask16 move = bits(moves) & active_;
     const Mask16 near_bits = bits(next_square <= Lanes::load(near_)) & move;
     const Mask16 touch_bits = bits(next_square <= Lanes(kTouching * kTouching)) & move & ~near_bits;
     mark(far_bits, HullState::far);
-    mark(stuck_bits, HullState::apart);
+    mark(stuck_bits & ~sinking_bits, HullState::apart);
+    mark(stuck_bits & sinking_bits, HullState::close);
     mark(inside_bits & bits(nearest.deep), HullState::inside);
     mark(inside_bits & ~bits(nearest.deep), HullState::close);
     mark(near_bits, HullState::inside);
     mark(touch_bits, HullState::close);
-    Mask16 late = 0;
-    for (Mask16 rest = move; rest != 0; rest &= rest - 1) {
-      const unsigned lane = first(rest);
-      if (++steps_[lane] == kMostSteps) late |= 1U << lane;
+    Mask16 done = far_bits | stuck_bits | inside_bits | near_bits | touch_bits;
+    if (!limits_.verdict) done &= ~sink(inside_bits & ~sinking_bits);
+    return done | give_up(active_ & ~done, sinking_bits);
+  }
+
+  /// Begins again for lanes whose origin is inside: from a point outside near the lowest support.
+  /// Returns those where there is such a point.
+  Mask16 sink(Mask16 lanes) {
+    Mask16 sunk = 0;
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const unsigned lane = first(lanes);
+      const float depth = __builtin_sqrtf(depth_[lane]);
+      if (!(depth > kTouching && depth < 2.0F)) continue;
+      float square = 0.0F;
+      for (int k = 0; k < 3; ++k) square += lowest_[k][lane] * lowest_[k][lane];
+      const float reach = depth * kOutside / __builtin_sqrtf(square);
+      square = 0.0F;
+      for (int k = 0; k < 3; ++k) {
+        gap_[k][lane] = lowest_[k][lane] * reach;
+        goal_[k][lane] = -gap_[k][lane];
+        square += gap_[k][lane] * gap_[k][lane];
+      }
+      square_[lane] = square;
+      for (int s = 0; s < kSlots; ++s) present_[s][lane] = 0.0F;
+      fresh_[lane] = 1.0F;
+      sinking_[lane] = 1.0F;
+      steps_[lane] = kMostSteps - kSinkSteps;
+      sunk |= 1U << lane;
     }
-    mark(late & ~near_bits & ~touch_bits, HullState::apart);
-    return far_bits | stuck_bits | inside_bits | near_bits | touch_bits | late;
+    return sunk;
+  }
+
+  /// Keeps the lowest height of the difference over the origin and where it was met.
+  void note_depth(const Vec3<float>& w, const Vec3<float>& gap, const Lanes& square,
+                  const Lanes& height) {
+    const Lanes zero(0.0F);
+    const Vec3<float> goal{Lanes::load(goal_[0]), Lanes::load(goal_[1]), Lanes::load(goal_[2])};
+    const Lanes over = height + dot(gap, goal);
+    const Lanes depth = select(over > zero, zero, over * over / square);
+    const Lanes before = Lanes::load(depth_);
+    const Truth<float> lower = depth < before;
+    select(lower, depth, before).store(depth_);
+    select(lower, gap.x, Lanes::load(lowest_[0])).store(lowest_[0]);
+    select(lower, gap.y, Lanes::load(lowest_[1])).store(lowest_[1]);
+    select(lower, gap.z, Lanes::load(lowest_[2])).store(lowest_[2]);
+    remember(w + goal);
+  }
+
+  /// Ends searches that take too long.
+  Mask16 give_up(Mask16 lanes, Mask16 sinking) {
+    Mask16 late = 0;
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const unsigned lane = first(lanes);
+      if (++steps_[lane] < kMostSteps) continue;
+      late |= 1U << lane;
+      pair_[lane]->state = (sinking >> lane & 1U) != 0 ? HullState::close : HullState::apart;
+    }
+    return late;
+  }
+
+  /// Points of the difference serve HullDepth.
+  void remember(const Vec3<float>& w) {
+    alignas(64) float point[3][kLanes];
+    w.x.store(point[0]);
+    w.y.store(point[1]);
+    w.z.store(point[2]);
+    for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
+      const unsigned lane = first(rest);
+      HullPair& pair = *pair_[lane];
+      float* to = pair.trail[pair.trail_length++ % HullPair::kTrail];
+      for (int k = 0; k < 3; ++k) to[k] = point[k][lane];
+    }
   }
 
   /// Where `moves`: the nearest feature becomes the simplex.
@@ -248,6 +322,10 @@ class HullSearch {
   alignas(64) float far_[kLanes] = {};
   alignas(64) float near_[kLanes] = {};
   alignas(64) float fresh_[kLanes] = {};
+  /// 1 where the origin is inside, and the search goes on from the point `goal_` outside.
+  alignas(64) float sinking_[kLanes] = {};
+  alignas(64) float goal_[3][kLanes] = {};
+  alignas(64) float lowest_[3][kLanes] = {};
   alignas(64) float depth_[kLanes] = {};
   alignas(64) float gap_[3][kLanes] = {};
   alignas(64) float square_[kLanes] = {};

@@ -62,6 +62,7 @@ static inline Nearest nearest_of(const Simplex& simplex, const Vec3<float>& w) {
   Vec3<float> normal[kSlots];
   Lanes area[kSlots];
   Lanes height[kSlots];
+  const Lanes volume = dot(cross(edge[1], edge[2]), edge[0]);
   for (int s = 0; s < kSlots; ++s) {
     const int i = (s + 1) % kSlots;
     const int k = (s + 2) % kSlots;
@@ -74,8 +75,9 @@ static inline Nearest nearest_of(const Simplex& simplex, const Vec3<float>& w) {
     const Lanes t = height[s] / max(area[s], Lanes(1e-30F));
     const Vec3<float> x = normal[s] * t;
     const Lanes square = height[s] * t;
-    const Truth<float> nearer = (area[s] > Lanes(1e-12F) * length[i] * length[k]) & (u > zero) &
-                                (v > zero) & (u + v < area[s]) & (square < best);
+    const Truth<float> wide = area[s] > Lanes(1e-12F) * length[i] * length[k];
+    const Truth<float> nearer =
+        wide & (u > zero) & (v > zero) & (u + v < area[s]) & (square < best);
     best = select(nearer, square, best);
     r.point = select(nearer, x, r.point);
     r.keep[s] = r.keep[s] & !nearer;
@@ -83,7 +85,6 @@ static inline Nearest nearest_of(const Simplex& simplex, const Vec3<float>& w) {
     r.keep[k] = r.keep[k] | nearer;
   }
   // Heights of the origin over the faces at w, and over the face across, have the volume's sign.
-  const Lanes volume = dot(normal[0], edge[0]);
   const Lanes side = sign_or_one(volume);
   const Vec3<float> across = normal[0] + normal[1] + normal[2];
   const Lanes opposite = (volume + height[0] + height[1] + height[2]) * side;

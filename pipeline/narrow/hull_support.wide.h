@@ -71,6 +71,18 @@ static inline std::uint32_t farthest_vertex(const HullShape& hull, const float* 
   return vertex_of(hull, reduce_max(load(height)), block);
 }
 
+/// The height of the highest vertex along a direction.
+static inline float highest_of(const HullShape& hull, const float* direction) {
+  const Vec3<float> d{direction[0], direction[1], direction[2]};
+  Real<float> best = along(hull.vertex_float, 0, d);
+  for (std::uint32_t row = 16; row < hull.vertex_count; row += 16) {
+    best = max(best, along(hull.vertex_float, row, d));
+  }
+  alignas(64) float value[16];
+  best.store(value);
+  return reduce_max(load(value));
+}
+
 [[gnu::always_inline]] static inline Real<double> along(const double* const* vertex,
                                                         std::uint32_t row, const Vec3<double>& d) {
   return Real<double>::load(vertex[0] + row) * d.x + Real<double>::load(vertex[1] + row) * d.y +
