@@ -3,14 +3,13 @@
 #include <winnow/pipeline/shape_rays.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
-#include <string>
-#include <vector>
 
 #include "../support/random.h"
+#include "ray_probes.h"
 
 namespace winnow::test {
 namespace {
@@ -18,140 +17,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-
-/// A shape, and its distance from a point in its frame: negative inside, if it has an inside.
-struct Probe {
-  std::string name;
-  ShapeId id;
-  std::function<double(const Vector3d&)> distance;
-};
-
-[[nodiscard]] double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
-  const Vector3d edge = b - a;
-  const double length = edge.squaredNorm();
-  const double s = length > 0.0 ? std::clamp((p - a).dot(edge) / length, 0.0, 1.0) : 0.0;
-  return (p - a - s * edge).norm();
-}
-
-[[nodiscard]] double distance_to_box(const Vector3d& p, const Vector3d& half) {
-  const Vector3d q = p.cwiseAbs() - half;
-  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
-}
-
-[[nodiscard]] double distance_to_cylinder(const Vector3d& p, double radius, double half) {
-  const double u = std::hypot(p.x(), p.y()) - radius;
-  const double v = std::fabs(p.z()) - half;
-  return std::hypot(std::max(u, 0.0), std::max(v, 0.0)) + std::min(std::max(u, v), 0.0);
-}
-
-/// By the triangle that the cone turns about its axis.
-[[nodiscard]] double distance_to_cone(const Vector3d& p, double radius, double half) {
-  const Vector3d flat(std::hypot(p.x(), p.y()), p.z(), 0.0);
-  const Vector3d apex(0.0, half, 0.0);
-  const Vector3d rim(radius, -half, 0.0);
-  const Vector3d side = Vector3d(2.0 * half, radius, 0.0).normalized();
-  const double over = std::max(side.dot(flat - apex), -half - flat.y());
-  if (over <= 0.0) return over;
-  return std::min(distance_to_segment(flat, apex, rim),
-                  distance_to_segment(flat, Vector3d(0.0, -half, 0.0), rim));
-}
-
-[[nodiscard]] double distance_to_triangle(const Vector3d& p, const Vector3d (&v)[3]) {
-  const Vector3d normal = (v[1] - v[0]).cross(v[2] - v[0]);
-  double nearest = kInf;
-  bool over = normal.norm() > 0.0;
-  for (int i = 0; i < 3; ++i) {
-    const Vector3d& a = v[i];
-    const Vector3d& b = v[(i + 1) % 3];
-    over = over && normal.cross(b - a).dot(p - a) >= 0.0;
-    nearest = std::min(nearest, distance_to_segment(p, a, b));
-  }
-  return over ? std::fabs(normal.normalized().dot(p - v[0])) : nearest;
-}
-
-class Shapes {
- public:
-  Shapes() {
-    for (const double r : {0.0, 0.3}) {
-      add_box({1.0, 0.5, 2.0}, r);
-      add_box({1.0, 0.0, 2.0}, r);
-      add_box_hull({0.7, 1.3, 1.0}, r);
-      add_triangle({{-1.0, -1.0, 0.2}, {1.5, -0.5, -0.3}, {0.0, 1.2, 0.4}}, r);
-      add_cylinder(1.0, 0.7, r);
-      add_cone(1.0, 0.7, r);
-      add_cone(0.2, 1.5, r);
-    }
-    add_cylinder(1.0, 0.0, 0.0);
-    add_cone(1.0, 0.0, 0.0);
-    add_triangle({{-1.0, -1.0, 0.0}, {0.0, 0.0, 0.0}, {2.0, 2.0, 0.0}}, 0.5);  // a segment
-    add_capsule(0.4, 1.0);
-    add_capsule(1.0, 0.0);
-    ShapeId id;
-    EXPECT_EQ(pool_.add(SphereShape{1.0}, id), Status::ok);
-    probes_.push_back({"sphere", id, [](const Vector3d& p) { return p.norm() - 1.0; }});
-    EXPECT_EQ(pool_.add(HalfSpaceShape{{0.0, 0.6, 0.8}, -0.5}, id), Status::ok);
-    probes_.push_back(
-        {"half-space", id, [](const Vector3d& p) { return p.dot(Vector3d(0.0, 0.6, 0.8)) + 0.5; }});
-  }
-  [[nodiscard]] const std::vector<Probe>& probes() const { return probes_; }
-  [[nodiscard]] const ShapeTables& tables() const { return pool_.tables(); }
-
- private:
-  void add_box(const Vector3d& half, double r) {
-    ShapeId id;
-    EXPECT_EQ(pool_.add(BoxShape{{half.x(), half.y(), half.z()}, r}, id), Status::ok);
-    probes_.push_back({"box", id, [=](const Vector3d& p) { return distance_to_box(p, half) - r; }});
-  }
-  void add_box_hull(const Vector3d& half, double r) {
-    std::vector<Vector3d> points;
-    for (unsigned i = 0; i < 8; ++i) {
-      points.push_back({(i & 1U) != 0 ? half.x() : -half.x(), (i & 2U) != 0 ? half.y() : -half.y(),
-                        (i & 4U) != 0 ? half.z() : -half.z()});
-    }
-    const std::vector<std::uint32_t> loops = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4,
-                                              2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
-    const std::vector<std::uint32_t> sizes(6, 4);
-    ShapeId id;
-    ASSERT_EQ(pool_.add_hull(points, HullFaces{loops, sizes}, r, id), Status::ok);
-    probes_.push_back(
-        {"hull", id, [=](const Vector3d& p) { return distance_to_box(p, half) - r; }});
-  }
-  void add_triangle(const Vector3d (&v)[3], double r) {
-    TriangleShape shape{{}, r};
-    std::vector<Vector3d> copy(v, v + 3);
-    for (int i = 0; i < 3; ++i) Vector3d::Map(shape.vertex[i]) = v[i];
-    ShapeId id;
-    EXPECT_EQ(pool_.add(shape, id), Status::ok);
-    probes_.push_back({"triangle", id, [=](const Vector3d& p) {
-                         const Vector3d at[3] = {copy[0], copy[1], copy[2]};
-                         return distance_to_triangle(p, at) - r;
-                       }});
-  }
-  void add_cylinder(double radius, double half, double r) {
-    ShapeId id;
-    EXPECT_EQ(pool_.add(CylinderShape{radius, half, r}, id), Status::ok);
-    probes_.push_back({"cylinder", id, [=](const Vector3d& p) {
-                         return distance_to_cylinder(p, radius, half) - r;
-                       }});
-  }
-  void add_cone(double radius, double half, double r) {
-    ShapeId id;
-    EXPECT_EQ(pool_.add(ConeShape{radius, half, r}, id), Status::ok);
-    probes_.push_back(
-        {"cone", id, [=](const Vector3d& p) { return distance_to_cone(p, radius, half) - r; }});
-  }
-  void add_capsule(double radius, double half) {
-    ShapeId id;
-    EXPECT_EQ(pool_.add(CapsuleShape{radius, half}, id), Status::ok);
-    probes_.push_back(
-        {"capsule", id, [=](const Vector3d& p) {
-           return distance_to_segment(p, {0.0, 0.0, -half}, {0.0, 0.0, half}) - radius;
-         }});
-  }
-
-  ShapePool pool_;
-  std::vector<Probe> probes_;
-};
 
 [[nodiscard]] Vector3d any_point(Random& random, double size) {
   return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
@@ -203,9 +68,9 @@ struct Cast {
 }
 
 TEST(ShapeRays, enter_every_shape_where_its_distance_first_is_zero) {
-  const Shapes shapes;
+  const RayProbes shapes;
   Random random(5);
-  for (const Probe& probe : shapes.probes()) {
+  for (const RayProbe& probe : shapes.probes()) {
     int hits = 0;
     for (std::size_t i = 0; i < scaled(400); ++i) {
       const Pose pose = any_pose(random);
@@ -250,7 +115,7 @@ TEST(ShapeRays, enter_every_shape_where_its_distance_first_is_zero) {
 }
 
 TEST(ShapeRays, do_not_change_with_size) {
-  const Shapes shapes;
+  const RayProbes shapes;
   Random random(6);
   ShapePool pool;
   for (const double unit : {0x1p-70, 0x1p70, 0x1p-300, 0x1p300}) {
@@ -394,8 +259,8 @@ TEST(ShapeRays, meet_cones_along_their_lines) {
 }
 
 TEST(ShapeRays, bad_rays_poses_and_ids_are_refused) {
-  const Shapes shapes;
-  for (const Probe& probe : shapes.probes()) {
+  const RayProbes shapes;
+  for (const RayProbe& probe : shapes.probes()) {
     ShapeRay ray;
     ShapeHit hit;
     hit.t = 7.0;
@@ -426,11 +291,11 @@ TEST(ShapeRays, bad_rays_poses_and_ids_are_refused) {
 }
 
 TEST(ShapeRays, any_numbers_give_an_answer) {
-  const Shapes shapes;
+  const RayProbes shapes;
   Random random(12);
   const double numbers[] = {0.0, 1.0, -1.0, 0.3, 1e-320, -1e-300, 1e308, -1e308, 1e20, -1e-20};
   const auto any = [&] { return numbers[random.below(std::size(numbers))]; };
-  for (const Probe& probe : shapes.probes()) {
+  for (const RayProbe& probe : shapes.probes()) {
     for (int i = 0; i < 300; ++i) {
       Pose pose = Pose::at(any(), any(), any());
       for (double& q : pose.orientation) q = any();
