@@ -67,7 +67,8 @@ struct Real {
 #undef WINNOW_REAL_OPERATOR
   [[gnu::always_inline]] friend Real operator-(const Real& a) {
     Real r;
-    for (int i = 0; i < kBatches; ++i) r.part[i] = -a.part[i];
+    // What xsimd makes of -0.0 depends on the instruction set.
+    for (int i = 0; i < kBatches; ++i) r.part[i] = Batch(T(-0.0)) - a.part[i];
     return r;
   }
 

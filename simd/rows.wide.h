@@ -135,6 +135,20 @@ template <typename Row>
   return r;
 }
 
+/// out[i] = byte i of `bytes` + base, for i < 8.
+[[gnu::always_inline]] inline void store_bytes(std::uint64_t bytes, std::uint32_t base,
+                                               std::uint32_t* out) {
+#if defined(WINNOW_ISA_IS_avx512) || defined(WINNOW_ISA_IS_avx2)
+  const __m256i wide = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(bytes)));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
+                      _mm256_add_epi32(wide, _mm256_set1_epi32(static_cast<int>(base))));
+#else
+  for (unsigned i = 0; i < 8; ++i) {
+    out[i] = base + static_cast<std::uint32_t>(bytes >> 8U * i & 0xFFU);
+  }
+#endif
+}
+
 /// Lanes rounded to the nearest float: `low` becomes lanes 0 to 7.
 [[gnu::always_inline]] inline Single16 to_single(const Double8& low, const Double8& high) {
   Single16 r;
@@ -153,6 +167,17 @@ template <typename Row>
   r = Single16::load(to);
 #endif
   return r;
+}
+
+/// The same of eight lanes; lanes 8 to 15 are unspecified.
+[[gnu::always_inline]] inline Single16 to_single(const Double8& v) {
+#if defined(WINNOW_ISA_IS_avx512)
+  Single16 r;
+  r.part[0] = _mm512_castps256_ps512(_mm512_cvtpd_ps(v.part[0]));
+  return r;
+#else
+  return to_single(v, v);
+#endif
 }
 
 /// Lanes 0 to 7, or 8 to 15, in double.

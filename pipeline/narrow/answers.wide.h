@@ -2,7 +2,7 @@
 
 // What kernels compute of the pairs in their lanes, and how it is written to the columns of a job.
 
-#include <winnow/pipeline/narrow/gather.wide.h>
+#include <winnow/pipeline/narrow/shape_lanes.wide.h>
 #include <winnow/simd/compress.h>
 
 namespace winnow::WINNOW_ISA_NAME {
@@ -125,10 +125,8 @@ template <int Points, typename T>
     std::uint32_t* first_out = job.contact_first + block.first + from;
     std::uint32_t* count_out = job.contact_count + block.first + from;
     if (from + 8 <= block.count) {
-      for (unsigned i = 0; i < 8; ++i) {
-        first_out[i] = before + static_cast<std::uint32_t>(starts >> 8U * i & 0xFFU);
-        count_out[i] = static_cast<std::uint32_t>(counts >> 8U * i & 0xFFU);
-      }
+      store_bytes(starts, before, first_out);
+      store_bytes(counts, 0, count_out);
     } else {
       for (unsigned i = 0; from + i < block.count; ++i) {
         first_out[i] = before + static_cast<std::uint32_t>(starts >> 8U * i & 0xFFU);
@@ -139,16 +137,17 @@ template <int Points, typename T>
   }
 }
 
-/// The lanes' numbers as floats; those of eight doubles come twice.
+/// The lanes' numbers as floats; what comes after those of eight doubles is unspecified.
 template <typename T>
 [[gnu::always_inline]] inline Float16 as_floats(const Real<T>& v) {
-  Float16 r;
+  Single16 s;
   if constexpr (sizeof(T) == sizeof(double)) {
-    const Single16 s = to_single(v, v);
-    for (int i = 0; i < kParts; ++i) r.part[i] = s.part[i];
+    s = to_single(v);
   } else {
-    for (int i = 0; i < kParts; ++i) r.part[i] = v.part[i];
+    s = v;
   }
+  Float16 r;
+  for (int i = 0; i < kParts; ++i) r.part[i] = s.part[i];
   return r;
 }
 

@@ -4,6 +4,16 @@
 namespace winnow {
 
 WINNOW_DEFINE_KERNELS(NarrowKernels, sphere_sphere_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, sphere_capsule_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, sphere_box_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, sphere_triangle_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, sphere_half_space_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, capsule_capsule_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, capsule_box_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, capsule_triangle_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, capsule_half_space_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, box_half_space_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, triangle_half_space_kernels)
 WINNOW_DEFINE_KERNELS(NarrowKernels, box_box_kernels)
 WINNOW_DEFINE_KERNELS(NarrowKernels, hull_hull_kernels)
 
@@ -20,6 +30,26 @@ const NarrowKernels* narrow_kernels(ShapeKind a, ShapeKind b) noexcept {
   switch (code(a, b)) {
     case code(sphere, sphere):
       return &sphere_sphere_kernels();
+    case code(sphere, capsule):
+      return &sphere_capsule_kernels();
+    case code(sphere, box):
+      return &sphere_box_kernels();
+    case code(sphere, triangle):
+      return &sphere_triangle_kernels();
+    case code(sphere, half_space):
+      return &sphere_half_space_kernels();
+    case code(capsule, capsule):
+      return &capsule_capsule_kernels();
+    case code(capsule, box):
+      return &capsule_box_kernels();
+    case code(capsule, triangle):
+      return &capsule_triangle_kernels();
+    case code(capsule, half_space):
+      return &capsule_half_space_kernels();
+    case code(box, half_space):
+      return &box_half_space_kernels();
+    case code(triangle, half_space):
+      return &triangle_half_space_kernels();
     case code(box, box):
       return &box_box_kernels();
     case code(hull, hull):

@@ -7,6 +7,16 @@ namespace winnow {
 
 // One table a pair kind, defined in the file of its name.
 WINNOW_KERNELS(NarrowKernels, sphere_sphere_kernels);
+WINNOW_KERNELS(NarrowKernels, sphere_capsule_kernels);
+WINNOW_KERNELS(NarrowKernels, sphere_box_kernels);
+WINNOW_KERNELS(NarrowKernels, sphere_triangle_kernels);
+WINNOW_KERNELS(NarrowKernels, sphere_half_space_kernels);
+WINNOW_KERNELS(NarrowKernels, capsule_capsule_kernels);
+WINNOW_KERNELS(NarrowKernels, capsule_box_kernels);
+WINNOW_KERNELS(NarrowKernels, capsule_triangle_kernels);
+WINNOW_KERNELS(NarrowKernels, capsule_half_space_kernels);
+WINNOW_KERNELS(NarrowKernels, box_half_space_kernels);
+WINNOW_KERNELS(NarrowKernels, triangle_half_space_kernels);
 WINNOW_KERNELS(NarrowKernels, box_box_kernels);
 WINNOW_KERNELS(NarrowKernels, hull_hull_kernels);
 

@@ -15,6 +15,14 @@ inline constexpr int kRoundings = 16;
 template <typename T>
 inline constexpr T kShortest = sizeof(T) == sizeof(double) ? T(1e-9) : T(1e-6F);
 
+/// The smallest sine of which a product of directions is taken for a normal of overlapping cores,
+/// and how far, relative to the pair's scale, their depth along it may be wrong: a few roundings
+/// over the sine.
+template <typename T>
+inline constexpr T kLeastSine = T(1) / T(128);
+template <typename T>
+inline constexpr T kSlack = T(8) * kEpsilon<T> / kLeastSine<T>;
+
 /// Where the cores of a pair are closest.
 template <typename T>
 struct WitnessLanes {
@@ -32,6 +40,15 @@ template <typename T>
   return abs(v.x) + abs(v.y) + abs(v.z);
 }
 
+/// Tier fast answers whatever is a number: its bound says how sure the sign is.
+template <typename T>
+[[gnu::always_inline]] inline Mask16 certified_lanes(const Real<T>& distance, const Real<T>& bound,
+                                                     const Real<T>& scale, const Truth<T>& normal) {
+  const Truth<T> valid = in_range(scale * scale) & normal;
+  if constexpr (sizeof(T) == sizeof(double)) return bits(valid & (abs(distance) > bound));
+  return bits(valid & (abs(distance) < Real<T>(T(1e30F))));
+}
+
 /// Level boolean, by squares; returns the uncertified lanes. With w wrong by e, its square is by
 /// 2 |w| e, and |w| <= scale.
 template <typename T>
@@ -41,8 +58,7 @@ template <typename T>
   const Real<T> excess = dot(witness.w, witness.w) - witness.radius * witness.radius;
   const Real<T> error = square * Real<T>(T(4 * kRoundings) * kEpsilon<T>);
   write_overlap(job, block, bits(excess <= Real<T>(T(0))));
-  const Truth<T> known = in_range(square) & (abs(excess) > error);
-  return ~bits(known);
+  return ~certified_lanes(excess, error, witness.scale, square > Real<T>(T(0)));
 }
 
 /// A distance along a normal, and whether it may be written.
@@ -54,13 +70,13 @@ struct CertifiedLanes {
   Mask16 certified;
 };
 
-/// Tier fast answers whatever is a number: its bound says how sure the sign is.
+/// Level boolean of kernels that have the distance.
 template <typename T>
-[[gnu::always_inline]] inline Mask16 certified_lanes(const Real<T>& distance, const Real<T>& bound,
-                                                     const Real<T>& scale, const Truth<T>& normal) {
-  const Truth<T> valid = in_range(scale * scale) & normal;
-  if constexpr (sizeof(T) == sizeof(double)) return bits(valid & (abs(distance) > bound));
-  return bits(valid & (abs(distance) < Real<T>(T(1e30F))));
+[[gnu::always_inline]] inline Mask16 answer_sign(const NarrowJob& job, const PairBlock<T>& block,
+                                                 const Real<T>& distance, const Real<T>& bound,
+                                                 const Real<T>& scale) {
+  write_overlap(job, block, bits(distance <= Real<T>(T(0))));
+  return ~certified_lanes(distance, bound, scale, scale > Real<T>(T(0)));
 }
 
 /// Levels distance and manifold. `shortest` is the least |w| that has a direction.
@@ -95,6 +111,55 @@ template <typename T>
   const Truth<T> near = c.distance <= Real<T>(static_cast<T>(job.margin));
   return {foot + c.normal * (radius + c.distance * half), -c.distance, feature_a, feature_b,
           bits(near) & c.certified & block.lanes()};
+}
+
+/// A signed distance that lies between the two numbers, but for kRoundings * epsilon * scale.
+template <typename T>
+struct ProofLanes {
+  /// How far the shapes are along some direction.
+  Real<T> low;
+  /// How far two of their points are, or how deep they are along a direction.
+  Real<T> high;
+  /// As in WitnessLanes.
+  Real<T> scale;
+  /// Where the direction is well defined.
+  Truth<T> unique;
+};
+
+/// Scales of which the fourth power is in T's range.
+template <typename T>
+[[gnu::always_inline]] inline Truth<T> in_narrow_range(const Real<T>& scale) {
+  constexpr bool is_double = sizeof(T) == sizeof(double);
+  return (scale > Real<T>(is_double ? T(1e-50) : T(1e-6F))) &
+         (scale < Real<T>(is_double ? T(1e50) : T(1e6F)));
+}
+
+/// Level boolean.
+template <typename T>
+[[gnu::always_inline]] inline Mask16 answer_proven_sign(const NarrowJob& job,
+                                                        const PairBlock<T>& block,
+                                                        const ProofLanes<T>& proof) {
+  write_overlap(job, block, bits(proof.high <= Real<T>(T(0))));
+  const Real<T> error = proof.scale * Real<T>(T(kRoundings) * kEpsilon<T>);
+  const Truth<T> valid = in_narrow_range(proof.scale);
+  if constexpr (sizeof(T) == sizeof(double)) {
+    return ~bits(valid & ((proof.high < -error) | (proof.low > error)));
+  }
+  return ~bits(valid & (abs(proof.high) < Real<T>(T(1e30F))));
+}
+
+/// Levels distance and manifold. Tier robust promises bounds of 1e-12 of sizes and distance, of
+/// which scale is at most twice as much; wide bounds of tier fast are those of slivers, which are
+/// better solved.
+template <typename T>
+[[gnu::always_inline]] inline CertifiedLanes<T> answer_proven(const ProofLanes<T>& proof,
+                                                              const Vec3<T>& normal) {
+  const Real<T> widest(sizeof(T) == sizeof(double) ? T(4e-13) : T(1e-2F));
+  const Real<T> bound =
+      abs(proof.high - proof.low) + proof.scale * Real<T>(T(kRoundings) * kEpsilon<T>);
+  const Truth<T> valid =
+      proof.unique & in_narrow_range(proof.scale) & (bound < proof.scale * widest);
+  return {proof.high, bound, normal, certified_lanes(proof.high, bound, proof.scale, valid)};
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME

@@ -11,15 +11,13 @@ struct SphereSphere {
     const Vec3<T> c = load_offset(job, block);
     const Real<T> ra = load_sphere<SideA>(job, block);
     const Real<T> radius = ra + load_sphere<SideB>(job, block);
-    const Mask16 bad = bad_turns<SideA>(job, block) | bad_turns<SideB>(job, block);
     const WitnessLanes<T> witness{c, radius, taxicab(c) + radius};
     if constexpr (L == kBoolean) {
-      return answer_overlap(job, block, witness) | bad;
+      return answer_overlap(job, block, witness);
     } else {
       // The offset is right to a rounding of itself, and so is the normal, however short it is.
       const Real<T> shortest(sizeof(T) == sizeof(double) ? T(1e-130) : T(1e-15F));
       CertifiedLanes<T> answer = answer_distance(witness, shortest);
-      answer.certified &= ~bad;
       const Real<T> zero(T(0));
       const Vec3<T> foot{zero, zero, zero};
       write_certified<L>(job, block, answer, foot, ra);

@@ -1,0 +1,198 @@
+// Half-spaces against spheres, capsules, boxes and triangles: the vertices' heights over the plane.
+// A half-space reaches to infinity, so the direction is always that of its plane.
+
+#include <winnow/pipeline/narrow/box_view.wide.h>
+#include <winnow/pipeline/narrow/kernels.h>
+
+namespace winnow {
+namespace WINNOW_ISA_NAME {
+namespace {
+
+/// The half-space's plane, relative to the position of body a: the outward normal, and the height
+/// of that position over it.
+template <typename T>
+struct Plane {
+  Vec3<T> normal;
+  Real<T> height;
+  /// The sum of the magnitudes of what height was made of; NaN for a bad pose.
+  Real<T> scale;
+};
+
+template <typename T>
+[[gnu::always_inline]] inline Plane<T> load_plane(const NarrowJob& job, const PairBlock<T>& block) {
+  const Vec3<T> c = load_offset(job, block);
+  const Turn<T> turn = load_turn<SideB>(job, block);
+  const HalfSpaceLanes<T> b = load_half_space<SideB>(job, block);
+  const Vec3<T> normal = rotation(turn).to_world(b.normal);
+  return {normal, -dot(normal, c) - b.offset, taxicab(c) + abs(b.offset) + doubt(turn)};
+}
+
+/// Points of a shape's core, relative to body a, in the axes of the world.
+template <typename T, int Count>
+struct Feet {
+  Vec3<T> foot[Count];
+  Real<T> height[Count];
+  Real<T> feature[Count];
+};
+
+/// Sorts foot `lower` before foot `upper` if it is lower; equal ones keep their order.
+template <typename T, int Count>
+[[gnu::always_inline]] inline void sort_two(Feet<T, Count>& f, int first, int second) {
+  const Truth<T> wrong = f.height[second] < f.height[first];
+  const auto exchange = [&](auto& a, auto& b) {
+    const auto t = select(wrong, b, a);
+    b = select(wrong, a, b);
+    a = t;
+  };
+  exchange(f.foot[first], f.foot[second]);
+  exchange(f.height[first], f.height[second]);
+  exchange(f.feature[first], f.feature[second]);
+}
+
+/// Writes the answer of a job's block: foot 0 is the lowest one, `radius` the rounding of all.
+template <int L, int Contacts, typename T, int Count>
+[[gnu::always_inline]] inline Mask16 answer_feet(NarrowJob& job, const PairBlock<T>& block,
+                                                 const Plane<T>& plane, const Feet<T, Count>& feet,
+                                                 const Real<T>& radius, const Real<T>& scale) {
+  const Real<T> distance = feet.height[0] - radius;
+  const Real<T> bound = scale * Real<T>(T(kRoundings) * kEpsilon<T>);
+  if constexpr (L == kBoolean) {
+    return answer_sign(job, block, distance, bound, scale);
+  } else {
+    const Mask16 known = certified_lanes(distance, bound, scale, scale > Real<T>(T(0)));
+    const CertifiedLanes<T> answer{distance, bound, -plane.normal, known};
+    write_certified<L>(job, block, answer, feet.foot[0], radius);
+    if constexpr (L == kManifold) {
+      ContactLanes<T> contacts[Contacts];
+      Mask16 lanes = known & block.lanes();
+      for (int i = 0; i < Contacts; ++i) {
+        const int k = i < Count ? i : 0;
+        const Real<T> d = feet.height[k] - radius;
+        lanes &= i < Count ? bits(d <= Real<T>(static_cast<T>(job.margin))) : 0U;
+        contacts[i] = {feet.foot[k] - plane.normal * (radius + d * Real<T>(T(0.5))), -d,
+                       feet.feature[k], Real<T>(T(0)), lanes};
+      }
+      write_contacts(job, block, contacts);
+    }
+    return ~known;
+  }
+}
+
+struct SphereHalfSpace {
+  template <typename T, int L>
+  [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
+    const Plane<T> plane = load_plane(job, block);
+    const Real<T> radius = load_sphere<SideA>(job, block);
+    const Real<T> zero(T(0));
+    const Feet<T, 1> feet{{{zero, zero, zero}}, {plane.height}, {zero}};
+    return answer_feet<L, 1>(job, block, plane, feet, radius, plane.scale + radius);
+  }
+};
+
+struct CapsuleHalfSpace {
+  template <typename T, int L>
+  [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
+    const Plane<T> plane = load_plane(job, block);
+    const Turn<T> turn = load_turn<SideA>(job, block);
+    const CapsuleLanes<T> a = load_capsule<SideA>(job, block);
+    const Vec3<T> arm = axis_z(turn) * a.half_length;
+    const Real<T> rise = dot(plane.normal, arm);
+    Feet<T, 2> feet{
+        {arm, -arm}, {plane.height + rise, plane.height - rise}, {Real<T>(T(1)), Real<T>(T(2))}};
+    sort_two(feet, 0, 1);
+    return answer_feet<L, 2>(job, block, plane, feet, a.radius,
+                             plane.scale + a.radius + a.half_length + doubt(turn));
+  }
+};
+
+struct TriangleHalfSpace {
+  template <typename T, int L>
+  [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
+    const Plane<T> plane = load_plane(job, block);
+    const Turn<T> turn = load_turn<SideA>(job, block);
+    const TriangleLanes<T> a = load_triangle<SideA>(job, block);
+    const Rotation<T> axes = rotation(turn);
+    Feet<T, 3> feet;
+    Real<T> reach(T(0));
+    for (int i = 0; i < 3; ++i) {
+      feet.foot[i] = axes.to_world(a.vertex[i]);
+      feet.height[i] = plane.height + dot(plane.normal, feet.foot[i]);
+      feet.feature[i] = Real<T>(T(1 + i));
+      reach = max(reach, taxicab(a.vertex[i]));
+    }
+    sort_two(feet, 0, 1);
+    sort_two(feet, 1, 2);
+    sort_two(feet, 0, 1);
+    return answer_feet<L, 4>(job, block, plane, feet, a.rounding,
+                             plane.scale + a.rounding + reach + doubt(turn));
+  }
+};
+
+struct BoxHalfSpace {
+  /// The four vertices of the face that looks most towards the plane, lowest first, the one
+  /// opposite last. A vertex is called by its signs: bit i if coordinate i is negative.
+  template <typename T, int L>
+  [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
+    const Real<T> zero(T(0));
+    const Plane<T> plane = load_plane(job, block);
+    const Turn<T> turn = load_turn<SideA>(job, block);
+    const BoxLanes<T> a = load_box<SideA>(job, block);
+    const Rotation<T> axes = rotation(turn);
+    const Vec3<T> arm[3] = {axes.x * a.half.x, axes.y * a.half.y, axes.z * a.half.z};
+    const Vec3<T> local = axes.to_local(plane.normal);
+    const Real<T> cosine[3] = {local.x, local.y, local.z};
+    Vec3<T> down[3];
+    Real<T> rise[3];
+    Real<T> name[3];
+    Real<T> flip[3];
+    for (int i = 0; i < 3; ++i) {
+      const Real<T> rises = dot(plane.normal, arm[i]);
+      const Truth<T> negative = rises > zero;
+      down[i] = select(negative, -arm[i], arm[i]);
+      rise[i] = abs(rises);
+      name[i] = select(negative, Real<T>(T(1 << i)), zero);
+      flip[i] = select(negative, Real<T>(T(-(1 << i))), Real<T>(T(1 << i)));
+    }
+    // Arms 0 and 1 span the face, arm 2 is the one nearest to the normal.
+    const auto exchange = [&](const Truth<T>& mask, int i) {
+      const auto swap = [&](auto& x, auto& y) {
+        const auto t = select(mask, y, x);
+        y = select(mask, x, y);
+        x = t;
+      };
+      swap(down[i], down[2]);
+      swap(rise[i], rise[2]);
+      swap(flip[i], flip[2]);
+    };
+    const Truth<T> is_x = (abs(cosine[0]) > abs(cosine[1])) & (abs(cosine[0]) > abs(cosine[2]));
+    const Truth<T> is_y = (!is_x) & (abs(cosine[1]) > abs(cosine[2]));
+    exchange(is_x, 0);
+    exchange(is_y, 1);
+    const Vec3<T> corner = down[0] + down[1] + down[2];
+    const Real<T> height = plane.height - (rise[0] + rise[1] + rise[2]);
+    const Real<T> lowest = name[0] + name[1] + name[2];
+    const Real<T> two(T(2));
+    Feet<T, 4> feet{{corner, corner - down[0] * two, corner - down[1] * two,
+                     corner - (down[0] + down[1]) * two},
+                    {height, height + rise[0] * two, height + rise[1] * two,
+                     height + (rise[0] + rise[1]) * two},
+                    {lowest, lowest + flip[0], lowest + flip[1], lowest + flip[0] + flip[1]}};
+    sort_two(feet, 1, 2);
+    return answer_feet<L, 4>(job, block, plane, feet, a.rounding,
+                             plane.scale + a.rounding + taxicab(a.half) + doubt(turn));
+  }
+};
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME
+
+extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_half_space_kernels) =
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::SphereHalfSpace>();
+extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_half_space_kernels) =
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::CapsuleHalfSpace>();
+extern const NarrowKernels WINNOW_KERNEL_TABLE(box_half_space_kernels) =
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::BoxHalfSpace>();
+extern const NarrowKernels WINNOW_KERNEL_TABLE(triangle_half_space_kernels) =
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::TriangleHalfSpace>();
+
+}  // namespace winnow
