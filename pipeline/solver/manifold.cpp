@@ -66,12 +66,18 @@ void make_manifold(const Problem& problem, const Vec& point, double distance, do
                      problem.a.kind == CoreKind::half_space;
   ContactPoint* contacts = answer.contacts;
   std::uint32_t count = alone ? 0 : meet(problem, normal, margin, contacts);
-  // Where the features miss the point of least distance, it is put in front of theirs.
-  const auto miss = static_cast<float>(1e-5 * problem.size);
-  if (count == 0 || std::abs(contacts[0].depth - own.depth) > miss) {
+  // Where the features miss the point of least distance, as caps with 16 corners do by a little, it
+  // takes the place of their deepest; where they miss it by much, it is put in front of them.
+  const double miss =
+      count == 0 ? problem.size : std::abs(double{contacts[0].depth} - double{own.depth});
+  if (miss > 1e-2 * problem.size) {
     count = std::min(count + 1, kManifoldPoints);
     std::copy_backward(contacts, contacts + count - 1, contacts + count);
     contacts[0] = own;
+  } else if (miss > 4e-7 * problem.size) {
+    const std::uint64_t feature = contacts[0].feature;
+    contacts[0] = own;
+    contacts[0].feature = feature;
   }
   answer.contact_count = count;
   for (std::uint32_t i = 0; i < count; ++i) {

@@ -176,11 +176,11 @@ TEST_P(Solver, manifolds_begin_with_the_depth_and_stay_within_the_margin) {
     if (answer.distance > margin) return;
     ASSERT_GE(answer.contact_count, 1U);
     ASSERT_LE(answer.contact_count, kManifoldPoints);
-    EXPECT_NEAR(answer.contacts[0].depth, -answer.distance, 1e-4 * size);
+    EXPECT_NEAR(answer.contacts[0].depth, -answer.distance, 1e-6 * size);
     for (std::uint32_t i = 0; i < answer.contact_count; ++i) {
       const ContactPoint& contact = answer.contacts[i];
       EXPECT_GE(contact.depth, -margin - 1e-6 * size);
-      EXPECT_LE(contact.depth, contact.depth * 0.0F - answer.distance + 1e-4 * size);
+      EXPECT_LE(contact.depth, -answer.distance + 1e-6 * size);
       EXPECT_LE(Eigen::Vector3f::Map(contact.position).norm(), 1.001 * size);
     }
   });
