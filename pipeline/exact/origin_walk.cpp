@@ -37,11 +37,11 @@ template <typename Support, typename Outside>
 
 /// Any direction at right angles to `line`, near `hint` if that is not along it.
 [[nodiscard]] ExactVector across(const ExactVector& line, const ExactVector& hint) noexcept {
-  const ExactVector side = cross(cross(line, hint), line);
+  ExactVector side = cross(cross(line, hint), line);
   if (!is_zero(side)) return side;
   for (int k = 0; k < 3; ++k) {
     const double unit[3] = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
-    const ExactVector other = cross(line, exact_vector(unit));
+    ExactVector other = cross(line, exact_vector(unit));
     if (!is_zero(other)) return other;
   }
   return line;

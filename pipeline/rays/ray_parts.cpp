@@ -89,13 +89,13 @@ Span capsule_span(const LocalRay& ray, const Eigen::Vector3d& a, const Eigen::Ve
   // An infinite cylinder that is entered beyond an end is entered by way of the ball there.
   if (!(first >= 0.0 && first <= length)) {
     const Span ball = ball_span(ray, first < 0.0 ? a : b, radius);
-    if (ball.is_empty()) return ball;
+    if (ball.is_empty()) return {};
     span.in = ball.in;
     span.normal = ball.normal;
   }
   if (!(last >= 0.0 && last <= length)) {
     const Span ball = ball_span(ray, last < 0.0 ? a : b, radius);
-    if (ball.is_empty()) return ball;
+    if (ball.is_empty()) return {};
     span.out = ball.out;
   }
   return span;
