@@ -5,9 +5,8 @@
 
 namespace winnow {
 
-/// The half-space against the rounded core of any other shape. Stored normals are taken as unit
-/// vectors: what is compared is normal . x with offset + rounding, polynomials both. A disc adds
-/// one root, decided by squares.
+/// The half-space against the rounded core of any other shape. A stored normal is a unit vector to
+/// rounding only: its length, and a disc's radius across it, are roots that are decided by squares.
 [[nodiscard]] ExactVerdict half_space_verdict(const HalfSpaceShape& half_space,
                                               const Pose& half_space_pose, const CoreVertices& core,
                                               const Pose& core_pose) noexcept;

@@ -216,11 +216,17 @@ TEST(ExactOverlap, half_spaces_touch_the_lowest_point) {
     EXPECT_EQ(pair.verdict(ShapeKind::half_space, kind), ExactVerdict::overlapping);
   }
   // Stood on a tilted plane of slope 3:4 a disc reaches 4/5 of its radius down.
-  pair.half_spaces[0] = {{0.0, 0.75, 1.0}, 0.0};  // by decree a unit vector
+  pair.half_spaces[0] = {{0.0, 0.75, 1.0}, 0.0};
   pair.poses[1] = Pose::at(0.0, 0.0, 0.0);
   pair.cylinders[1] = {4.0, 0.0, 0.0};
   pair.poses[1].position[2] = 3.0;
   EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::cylinder), ExactVerdict::touching);
+  // With a rounding of 1 it stands 5/4 higher: as far as 1 along the normal.
+  pair.cylinders[1].rounding = 1.0;
+  pair.poses[1].position[2] = 4.25;
+  EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::cylinder), ExactVerdict::touching);
+  pair.poses[1].position[2] = std::nextafter(4.25, 5.0);
+  EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::cylinder), ExactVerdict::separated);
 }
 
 TEST(ExactOverlap, half_spaces_are_apart_only_if_opposite) {
@@ -235,6 +241,8 @@ TEST(ExactOverlap, half_spaces_are_apart_only_if_opposite) {
   EXPECT_EQ(verdict(), ExactVerdict::touching);
   pair.poses[1].position[2] = 2.5;
   EXPECT_EQ(verdict(), ExactVerdict::separated);
+  pair.half_spaces[1] = {{0.0, 0.0, 4.0}, 6.0};  // z <= 3/2
+  EXPECT_EQ(verdict(), ExactVerdict::touching);
   pair.poses[1].orientation[0] = 1e-9;
   EXPECT_EQ(verdict(), ExactVerdict::overlapping);
 }
