@@ -11,6 +11,12 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
+/// The sum of the magnitudes.
+template <typename T>
+[[gnu::always_inline]] inline Real<T> taxicab_of(const Vec3<T>& v) {
+  return abs(v.x) + abs(v.y) + abs(v.z);
+}
+
 /// Separations along an axis of length 1 at most are so often the unit roundoff of the pair's scale
 /// (all lengths in it) wrong, or less: 10 for an entry of a rotation, 38 for one of the product of
 /// two, 82 for the offset along a product of axes.
@@ -67,6 +73,29 @@ struct BestFace {
     return {separation * abs(separation), Real<T>(T(1)), index};
   }
 };
+
+/// Offers a product of vectors, of which `size` is at least the factors' lengths multiplied. Left
+/// out if they are parallel; what that costs is no more than the product over the longer factor:
+/// seen along it, the other is as short as that.
+template <typename T>
+[[gnu::always_inline]] inline void offer_product(BestAxis<T>& best, Real<T>& left_out,
+                                                 const Real<T>& length2, const Real<T>& separation,
+                                                 const Real<T>& size, const Real<T>& slack,
+                                                 const Real<T>& longer, int index) {
+  const Truth<T> crossed = length2 > size * size * Real<T>(kParallelSquare<T>);
+  if (bits(crossed) == kAllLanes<T>) {
+    best.offer(separation + size * slack, length2, index);
+    return;
+  }
+  const Real<T> zero(T(0));
+  const Real<T> one(T(1));
+  const Real<T> lost = select(longer > zero, Real<T>(T(2)) * sqrt(length2) / longer, zero);
+  left_out += select(crossed, zero, lost);
+  // Worse than anything.
+  const Real<T> worst = slack * Real<T>(T(-3) / kSlack<T>);
+  best.offer(select(crossed, separation + size * slack, worst), select(crossed, length2, one),
+             index);
+}
 
 /// Pairs of one kind in an order that does not depend on which is called a: the first component of
 /// the offset that is not zero is positive. Answers are turned back.

@@ -15,7 +15,9 @@ WINNOW_DEFINE_KERNELS(NarrowKernels, capsule_half_space_kernels)
 WINNOW_DEFINE_KERNELS(NarrowKernels, box_half_space_kernels)
 WINNOW_DEFINE_KERNELS(NarrowKernels, triangle_half_space_kernels)
 WINNOW_DEFINE_KERNELS(NarrowKernels, box_box_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, box_triangle_kernels)
 WINNOW_DEFINE_KERNELS(NarrowKernels, hull_hull_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, triangle_triangle_kernels)
 
 namespace {
 
@@ -52,8 +54,12 @@ const NarrowKernels* narrow_kernels(ShapeKind a, ShapeKind b) noexcept {
       return &triangle_half_space_kernels();
     case code(box, box):
       return &box_box_kernels();
+    case code(box, triangle):
+      return &box_triangle_kernels();
     case code(hull, hull):
       return &hull_hull_kernels();
+    case code(triangle, triangle):
+      return &triangle_triangle_kernels();
     default:
       return nullptr;
   }

@@ -18,7 +18,9 @@ WINNOW_KERNELS(NarrowKernels, capsule_half_space_kernels);
 WINNOW_KERNELS(NarrowKernels, box_half_space_kernels);
 WINNOW_KERNELS(NarrowKernels, triangle_half_space_kernels);
 WINNOW_KERNELS(NarrowKernels, box_box_kernels);
+WINNOW_KERNELS(NarrowKernels, box_triangle_kernels);
 WINNOW_KERNELS(NarrowKernels, hull_hull_kernels);
+WINNOW_KERNELS(NarrowKernels, triangle_triangle_kernels);
 
 /// The active kernels of a pair kind, a <= b; null where the solver answers.
 [[nodiscard]] const NarrowKernels* narrow_kernels(ShapeKind a, ShapeKind b) noexcept;

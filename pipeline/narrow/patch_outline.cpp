@@ -147,17 +147,36 @@ std::uint32_t Outline::farthest_from(std::uint32_t vertex) const noexcept {
   return best;
 }
 
-// Its ends, or the deepest vertex and the end that is farther from it where an end is not as deep.
+std::uint32_t Outline::least_rise_from(std::uint32_t vertex, double up) const noexcept {
+  std::uint32_t best = vertex;
+  double least = INFINITY;
+  double farthest = 0.0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double away = std::hypot(x[i] - x[vertex], y[i] - y[vertex]);
+    if (!(away > 1e-9 * size)) continue;
+    const double rise = up * (h[vertex] - h[i]) / away;
+    if (rise < least - 1e-9 || (rise <= least + 1e-9 && away > farthest)) {
+      least = rise;
+      farthest = away;
+      best = i;
+    }
+  }
+  return best;
+}
+
+// Its ends if they are the deepest of it, else the deepest vertex and the one to which it rises
+// least: on that edge of the outline the other patch is met.
 void Outline::flatten(double up) noexcept {
+  const double same = 1e-9 * size;
   std::uint32_t ends[2] = {farthest_from(0), 0};
   ends[1] = farthest_from(ends[0]);
   std::uint32_t deepest = ends[0];
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (up * h[i] > up * h[deepest] + 1e-9 * size) deepest = i;
+    if (up * h[i] > up * h[deepest] + same) deepest = i;
   }
-  if (up * h[deepest] > std::max(up * h[ends[0]], up * h[ends[1]]) + 1e-9 * size) {
+  if (up * h[deepest] > std::min(up * h[ends[0]], up * h[ends[1]]) + same) {
     ends[0] = deepest;
-    ends[1] = farthest_from(deepest);
+    ends[1] = least_rise_from(deepest, up);
   }
   const std::uint32_t edge = edge_id[std::min(ends[0], ends[1])];
   const std::uint32_t first = std::min(ends[0], ends[1]);

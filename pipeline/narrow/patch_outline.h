@@ -59,6 +59,7 @@ struct Outline {
   void reverse() noexcept;
   void flatten(double up) noexcept;
   [[nodiscard]] std::uint32_t farthest_from(std::uint32_t vertex) const noexcept;
+  [[nodiscard]] std::uint32_t least_rise_from(std::uint32_t vertex, double up) const noexcept;
 };
 
 }  // namespace winnow
