@@ -65,9 +65,9 @@ class HullPatch {
  private:
   static constexpr std::uint32_t kRoom = 32;
   static constexpr std::uint32_t kNone = ~0U;
-  /// Cosine and sine of 15 degrees.
-  static constexpr float kAligned = 0.9659F;
-  static constexpr float kTilted = 0.2588F;
+  /// Cosine and sine of about 14 degrees, as in the solver.
+  static constexpr float kAligned = 0.97F;
+  static constexpr float kTilted = 0.25F;
 
   static bool joins(const HullEdge& e, std::uint32_t v, std::uint32_t w) {
     return (e.vertex[0] == v && e.vertex[1] == w) || (e.vertex[0] == w && e.vertex[1] == v);

@@ -19,7 +19,7 @@ enum class HullState : std::uint32_t {
   close,
 };
 
-/// "First" is body a of the pair, or body b where `swapped`: see place_hulls.
+/// "First" is body a of the pair, or body b where `swapped`: see comes_second.
 struct HullPair {
   const HullShape* first;
   const HullShape* second;
@@ -150,10 +150,10 @@ static inline float scale_of(double size) {
   return static_cast<float>(__builtin_bit_cast(double, (2046U - exponent) << 52U));
 }
 
-/// Fills what the search needs; false if poses or sizes are out of range.
+/// Fills what the search needs, b first where `swapped`; false if poses or sizes are out of range.
 static inline bool place_hulls(const HullShape& a, const HullShape& b, const Pose& pose_a,
-                               const Pose& pose_b, HullPair& pair) {
-  pair.swapped = comes_second(a, b, pose_a, pose_b);
+                               const Pose& pose_b, bool swapped, HullPair& pair) {
+  pair.swapped = swapped;
   const Pose& first = pair.swapped ? pose_b : pose_a;
   const Pose& second = pair.swapped ? pose_a : pose_b;
   pair.first = pair.swapped ? &b : &a;

@@ -18,6 +18,10 @@ WINNOW_DEFINE_KERNELS(NarrowKernels, box_box_kernels)
 WINNOW_DEFINE_KERNELS(NarrowKernels, box_triangle_kernels)
 WINNOW_DEFINE_KERNELS(NarrowKernels, hull_hull_kernels)
 WINNOW_DEFINE_KERNELS(NarrowKernels, triangle_triangle_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, sphere_hull_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, capsule_hull_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, box_hull_kernels)
+WINNOW_DEFINE_KERNELS(NarrowKernels, hull_triangle_kernels)
 
 namespace {
 
@@ -60,6 +64,14 @@ const NarrowKernels* narrow_kernels(ShapeKind a, ShapeKind b) noexcept {
       return &hull_hull_kernels();
     case code(triangle, triangle):
       return &triangle_triangle_kernels();
+    case code(sphere, hull):
+      return &sphere_hull_kernels();
+    case code(capsule, hull):
+      return &capsule_hull_kernels();
+    case code(box, hull):
+      return &box_hull_kernels();
+    case code(hull, triangle):
+      return &hull_triangle_kernels();
     default:
       return nullptr;
   }

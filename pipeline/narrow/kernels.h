@@ -21,6 +21,10 @@ WINNOW_KERNELS(NarrowKernels, box_box_kernels);
 WINNOW_KERNELS(NarrowKernels, box_triangle_kernels);
 WINNOW_KERNELS(NarrowKernels, hull_hull_kernels);
 WINNOW_KERNELS(NarrowKernels, triangle_triangle_kernels);
+WINNOW_KERNELS(NarrowKernels, sphere_hull_kernels);
+WINNOW_KERNELS(NarrowKernels, capsule_hull_kernels);
+WINNOW_KERNELS(NarrowKernels, box_hull_kernels);
+WINNOW_KERNELS(NarrowKernels, hull_triangle_kernels);
 
 /// The active kernels of a pair kind, a <= b; null where the solver answers.
 [[nodiscard]] const NarrowKernels* narrow_kernels(ShapeKind a, ShapeKind b) noexcept;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/narrow/kernels.h>
+#include <winnow/pipeline/solver/solver.h>
 #include <winnow/simd/isa.h>
 
 #include <Eigen/Core>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <ostream>
 #include <utility>
 #include <vector>
 
@@ -25,7 +27,8 @@ using Points = std::vector<Eigen::Vector3d>;
 
 /// Answers of one job, in columns as wide as the job.
 struct Answers {
-  Answers(const PairScene& scene, int level, bool robust, double margin = 0.05)
+  Answers(const PairScene& scene, int level, bool robust, ShapeKind a = ShapeKind::hull,
+          ShapeKind b = ShapeKind::hull)
       : count(static_cast<std::uint32_t>(scene.pairs.size())) {
     overlap.resize(count, 2);
     for (auto& c : column) c.resize(count, -77.0);
@@ -40,7 +43,7 @@ struct Answers {
     job.shapes = scene.shapes.data();
     job.poses = scene.poses.data();
     job.tables = scene.pool.tables();
-    job.margin = margin;
+    job.margin = 0.05;
     job.overlap = overlap.data();
     job.distance = column[0].data();
     job.error_bound = column[1].data();
@@ -54,7 +57,7 @@ struct Answers {
     job.contacts.depth = points[3].data();
     job.contacts.feature = feature.data();
     job.uncertified = uncertified.data();
-    const NarrowKernels* kernels = narrow_kernels(ShapeKind::hull, ShapeKind::hull);
+    const NarrowKernels* kernels = narrow_kernels(a, b);
     uncertified.resize((robust ? kernels->robust : kernels->fast)[level](job));
     is_certified.assign(count, 1);
     for (const std::uint32_t i : uncertified) is_certified[i] = 0;
@@ -314,6 +317,68 @@ TEST(HullKernel, touching_and_bad_pairs_are_not_certified) {
     }
   }
 }
+
+struct KindsAndStyle {
+  ShapeKind a;
+  ShapeKind b;
+  PairStyle style;
+};
+void PrintTo(const KindsAndStyle& k, std::ostream* out) {
+  *out << to_string(k.a) << "_" << to_string(k.b) << "_" << to_string(k.style);
+}
+
+class CoresAndHulls : public testing::TestWithParam<KindsAndStyle> {};
+
+TEST_P(CoresAndHulls, answers_are_those_of_the_solver_on_every_instruction_set) {
+  if (!have_hulls()) GTEST_SKIP() << "built without qhull";
+  const auto [a, b, style] = GetParam();
+  PairScene scene;
+  Random random(9);
+  add_pairs(scene, a, b, style, scaled(200), random);
+  for (BodyPair& p : scene.pairs) {
+    if (scene.shapes[p.a].kind() != a) std::swap(p.a, p.b);
+  }
+  std::vector<PairAnswer> expected;
+  SolverCounts counts;
+  for (const BodyPair& p : scene.pairs) {
+    expected.push_back(solve_pair(scene.pool.tables(), scene.shapes[p.a], scene.poses[p.a],
+                                  scene.shapes[p.b], scene.poses[p.b], NarrowLevel::distance, 0.0,
+                                  counts));
+  }
+  for (const Isa isa : available_isas()) {
+    const IsaScope scope(isa);
+    for (int level = 0; level < 3; ++level) {
+      const Answers answers(scene, level, true, a, b);
+      if (style == PairStyle::ordinary) {
+        EXPECT_LE(answers.uncertified.size(), answers.count / 10);
+      }
+      for (std::uint32_t i = 0; i < answers.count; ++i) {
+        if (!answers.is_certified[i]) continue;
+        const PairAnswer& e = expected[i];
+        if (level == 0) {
+          EXPECT_EQ(answers.overlap[i] != 0, e.overlap) << i << " " << e.distance;
+          continue;
+        }
+        EXPECT_LE(std::abs(answers.column[0][i] - e.distance), answers.column[1][i] + e.error_bound)
+            << i << " level " << level;
+      }
+    }
+  }
+}
+
+std::vector<KindsAndStyle> all_cores_and_hulls() {
+  std::vector<KindsAndStyle> all;
+  for (const PairStyle style : kPairStyles) {
+    for (const ShapeKind kind : {ShapeKind::sphere, ShapeKind::capsule, ShapeKind::box}) {
+      all.push_back({kind, ShapeKind::hull, style});
+    }
+    all.push_back({ShapeKind::hull, ShapeKind::triangle, style});
+    all.push_back({ShapeKind::hull, ShapeKind::hull, style});
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, CoresAndHulls, testing::ValuesIn(all_cores_and_hulls()));
 
 }  // namespace
 }  // namespace winnow::test
