@@ -1,38 +1,19 @@
 #include <winnow/pipeline/solver/expanding_polytope.h>
 
+#include <winnow/pipeline/solver/inner_polytope.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 namespace winnow::solver {
 namespace {
 
-constexpr std::uint32_t kPoints = 384;
-constexpr std::uint32_t kFaces = 6 * kPoints;
-
-struct Face {
-  std::array<std::uint16_t, 3> point;
-  /// The face across the side from point i to the next.
-  std::array<std::uint16_t, 3> across;
-  bool alive;
-  /// Looked at, and can grow no more.
-  bool settled;
-  /// Outward, and a lower bound of the distance of the face's plane.
-  Vec normal;
-  double low;
-};
-
-/// A side that stays when the faces that see a new point are taken away.
-struct Side {
-  std::uint16_t from;
-  std::uint16_t to;
-  std::uint16_t face;
-};
-
-class Polytope {
+/// Grows a polytope inside of the difference b - a.
+class Expansion {
  public:
-  Polytope(const Core& a, const Core& b, double noise) noexcept : a_(a), b_(b), noise_(noise) {}
+  Expansion(const Core& a, const Core& b, double noise) noexcept
+      : a_(a), b_(b), noise_(noise), inner_(noise) {}
 
   /// Completes the simplex to a tetrahedron; false if the difference is flat: see bounds().
   bool begin(const Simplex& simplex) noexcept;
@@ -46,51 +27,29 @@ class Polytope {
   bool add_farther(const Vec& direction) noexcept;
   bool add_along(const Vec& direction, const Vec& opposite) noexcept;
   bool flat_along(const Vec& n) noexcept;
-  bool add_face(std::uint16_t p, std::uint16_t q, std::uint16_t r, std::uint16_t& at) noexcept;
-  void make_tetrahedron() noexcept;
-  bool attach(const Vec& w, std::uint16_t seen) noexcept;
-  bool find_horizon(const Vec& w, std::uint16_t seen) noexcept;
-  [[nodiscard]] double triangle_distance(std::uint16_t p, std::uint16_t q,
-                                         std::uint16_t r) const noexcept;
-  void push(std::uint16_t face) noexcept;
-  std::uint16_t pop() noexcept;
-  void compact() noexcept;
-  [[nodiscard]] bool is_seen(const Vec& w, const Face& face, std::uint16_t from,
-                             std::uint16_t to) const noexcept;
-  [[nodiscard]] bool is_farther(std::uint16_t f, std::uint16_t g) const noexcept {
-    return faces_[f].low > faces_[g].low || (faces_[f].low == faces_[g].low && f > g);
-  }
 
   const Core& a_;
   const Core& b_;
   double noise_;
   DepthBounds bounds_;
-  std::array<Vec, kPoints> points_;
-  std::array<Face, kFaces> faces_;
-  std::array<std::uint16_t, kFaces> heap_;
-  std::array<Side, kFaces> horizon_;
-  std::array<std::uint16_t, kFaces> moved_;
-  std::uint32_t point_count_ = 0;
-  std::uint32_t face_count_ = 0;
-  std::uint32_t heap_count_ = 0;
-  std::uint32_t horizon_count_ = 0;
+  InnerPolytope inner_;
 };
 
 /// Adds the support along the direction if it is farther than the points so far, in a direction in
 /// which they are all alike.
-bool Polytope::add_farther(const Vec& direction) noexcept {
+bool Expansion::add_farther(const Vec& direction) noexcept {
   if (direction == Vec::Zero()) return false;
   const Vec w = support_along(direction);
-  if (direction.dot(w - points_[0]) <= noise_) return false;
-  points_[point_count_++] = w;
+  if (direction.dot(w - inner_.point(0)) <= noise_) return false;
+  inner_.add(w);
   return true;
 }
 
-bool Polytope::add_along(const Vec& direction, const Vec& opposite) noexcept {
+bool Expansion::add_along(const Vec& direction, const Vec& opposite) noexcept {
   return add_farther(direction) || add_farther(opposite);
 }
 
-bool Polytope::flat_along(const Vec& n) noexcept {
+bool Expansion::flat_along(const Vec& n) noexcept {
   const double forward = n.dot(support_along(n));
   const double backward = -n.dot(support_along(-n));
   bounds_.axis = std::abs(forward) <= std::abs(backward) ? Vec(-n) : n;
@@ -98,132 +57,40 @@ bool Polytope::flat_along(const Vec& n) noexcept {
   return false;
 }
 
-bool Polytope::begin(const Simplex& simplex) noexcept {
+bool Expansion::begin(const Simplex& simplex) noexcept {
   for (std::size_t i = 0; i < static_cast<std::size_t>(simplex.count); ++i) {
-    points_[point_count_++] = simplex.point[i].w;
+    inner_.add(simplex.point[i].w);
   }
-  if (point_count_ == 4) {
-    make_tetrahedron();
-    return true;
+  if (inner_.point_count() == 4) {
+    return inner_.make_tetrahedron() || flat_along(Vec::UnitX());
   }
-  for (int i = 0; i < 3 && point_count_ < 2; ++i) add_along(Vec::Unit(i), -Vec::Unit(i));
-  if (point_count_ < 2) return flat_along(Vec::UnitX());
-  const Vec line = unit(points_[1] - points_[0]);
+  for (int i = 0; i < 3 && inner_.point_count() < 2; ++i) add_along(Vec::Unit(i), -Vec::Unit(i));
+  if (inner_.point_count() < 2) return flat_along(Vec::UnitX());
+  const Vec line = unit(inner_.point(1) - inner_.point(0));
   int least = 0;
   line.cwiseAbs().minCoeff(&least);
   const Vec side = without(Vec::Unit(least), line);
   const Vec other = line.cross(side);
-  if (point_count_ < 3 && !add_along(side, -side) && !add_along(other, -other)) {
+  if (inner_.point_count() < 3 && !add_along(side, -side) && !add_along(other, -other)) {
     return flat_along(side);
   }
-  const Vec n = perpendicular(line, unit(points_[2] - points_[0]));
+  const Vec n = perpendicular(line, unit(inner_.point(2) - inner_.point(0)));
   if (n == Vec::Zero()) return flat_along(side);
   // The side on which there is more, so that thin differences get their better tetrahedron.
-  const double above = n.dot(support_along(n) - points_[0]);
-  const double below = n.dot(points_[0] - support_along(-n));
+  const double above = n.dot(support_along(n) - inner_.point(0));
+  const double below = n.dot(inner_.point(0) - support_along(-n));
   const Vec better = above >= below ? n : Vec(-n);
   if (!add_farther(better)) return flat_along(n);
-  make_tetrahedron();
-  return true;
+  return inner_.make_tetrahedron() || flat_along(n);
 }
 
-void Polytope::make_tetrahedron() noexcept {
-  const Vec n = (points_[1] - points_[0]).cross(points_[2] - points_[0]);
-  if (n.dot(points_[3] - points_[0]) > 0.0) std::swap(points_[1], points_[2]);
-  std::uint16_t face = 0;
-  add_face(0, 1, 2, face);
-  add_face(0, 2, 3, face);
-  add_face(0, 3, 1, face);
-  add_face(1, 3, 2, face);
-  faces_[0].across = {2, 3, 1};
-  faces_[1].across = {0, 3, 2};
-  faces_[2].across = {1, 3, 0};
-  faces_[3].across = {2, 1, 0};
-}
-
-/// Returns false if there is no room or the three points are on a line.
-bool Polytope::add_face(std::uint16_t p, std::uint16_t q, std::uint16_t r,
-                        std::uint16_t& at) noexcept {
-  if (face_count_ == kFaces) return false;
-  const Vec e = points_[q] - points_[p];
-  const Vec f = points_[r] - points_[q];
-  const Vec g = points_[p] - points_[r];
-  const double le = e.squaredNorm();
-  const double lf = f.squaredNorm();
-  const double lg = g.squaredNorm();
-  const Vec cross = le >= lf && le >= lg ? (lf < lg ? e.cross(f) : g.cross(e))
-                    : lf >= lg           ? (lg < le ? f.cross(g) : e.cross(f))
-                                         : (le < lf ? g.cross(e) : f.cross(g));
-  const double area = cross.norm();
-  if (!(area > 0.0)) return false;
-  at = static_cast<std::uint16_t>(face_count_++);
-  Face& face = faces_[at];
-  face.point = {p, q, r};
-  face.alive = true;
-  face.settled = false;
-  face.normal = unit(cross);
-  const double offset = std::max(
-      {face.normal.dot(points_[p]), face.normal.dot(points_[q]), face.normal.dot(points_[r])});
-  // What rounding of the points makes of the distance of their plane. That of slivers is of little
-  // worth; their own distance is not less than it.
-  const double doubt = 0.125 * noise_ / area * std::max({le, lf, lg});
-  face.low = offset - std::max(doubt, noise_);
-  if (doubt > noise_) face.low = std::max(face.low, triangle_distance(p, q, r) - noise_);
-  push(at);
-  return true;
-}
-
-double Polytope::triangle_distance(std::uint16_t p, std::uint16_t q,
-                                   std::uint16_t r) const noexcept {
-  Simplex triangle;
-  triangle.count = 3;
-  triangle.point[0].w = points_[p];
-  triangle.point[1].w = points_[q];
-  triangle.point[2].w = points_[r];
-  reduce(triangle);
-  return triangle.closest().norm();
-}
-
-void Polytope::push(std::uint16_t face) noexcept {
-  heap_[heap_count_++] = face;
-  std::push_heap(heap_.begin(), heap_.begin() + heap_count_,
-                 [this](std::uint16_t f, std::uint16_t g) { return is_farther(f, g); });
-}
-
-std::uint16_t Polytope::pop() noexcept {
-  std::pop_heap(heap_.begin(), heap_.begin() + heap_count_,
-                [this](std::uint16_t f, std::uint16_t g) { return is_farther(f, g); });
-  return heap_[--heap_count_];
-}
-
-/// Makes room: takes out the faces that are no more.
-void Polytope::compact() noexcept {
-  std::uint32_t kept = 0;
-  for (std::uint32_t f = 0; f < face_count_; ++f) {
-    if (!faces_[f].alive) continue;
-    moved_[f] = static_cast<std::uint16_t>(kept);
-    faces_[kept++] = faces_[f];
-  }
-  face_count_ = kept;
-  heap_count_ = 0;
-  for (std::uint32_t f = 0; f < kept; ++f) {
-    for (std::uint16_t& across : faces_[f].across) across = moved_[across];
-    if (!faces_[f].settled) heap_[heap_count_++] = static_cast<std::uint16_t>(f);
-  }
-  std::make_heap(heap_.begin(), heap_.begin() + heap_count_,
-                 [this](std::uint16_t f, std::uint16_t g) { return is_farther(f, g); });
-}
-
-void Polytope::grow(double tolerance) noexcept {
+void Expansion::grow(double tolerance) noexcept {
   bounds_.upper = std::numeric_limits<double>::infinity();
   // Of faces that were looked at and can grow no more.
   double settled = std::numeric_limits<double>::infinity();
-  while (heap_count_ > 0) {
-    // No more faces than twice the points are alive, and no more can be added at once.
-    if (face_count_ + 2 * point_count_ > kFaces) compact();
-    const std::uint16_t nearest = pop();
-    Face& face = faces_[nearest];
-    if (!face.alive) continue;
+  std::uint16_t nearest = 0;
+  while (inner_.take_nearest(nearest)) {
+    const InnerPolytope::Face& face = inner_.face(nearest);
     bounds_.lower = std::min(settled, face.low);
     if (bounds_.upper - bounds_.lower <= tolerance) break;
     const Vec w = support_along(face.normal);
@@ -234,13 +101,12 @@ void Polytope::grow(double tolerance) noexcept {
       bounds_.axis = -face.normal;
     }
     if (bounds_.upper - bounds_.lower <= tolerance) break;
-    const double beyond = high - face.normal.dot(points_[face.point[0]]);
-    if (beyond <= 0.125 * noise_) {
+    if (inner_.height(face, w) <= 0.125 * noise_) {
       settled = std::min(settled, face.low);
-      face.settled = true;
+      inner_.settle(nearest);
       continue;
     }
-    if (!attach(w, nearest)) {
+    if (!inner_.attach(w, nearest)) {
       settled = std::min(settled, face.low);
       break;
     }
@@ -248,94 +114,13 @@ void Polytope::grow(double tolerance) noexcept {
   bounds_.lower = std::clamp(std::min(bounds_.lower, settled), 0.0, std::max(bounds_.upper, 0.0));
 }
 
-/// Replaces the faces that see w by a fan from w. False if there is no room or rounding has made
-/// the horizon something else than one loop.
-bool Polytope::attach(const Vec& w, std::uint16_t seen) noexcept {
-  if (point_count_ == kPoints || !find_horizon(w, seen)) return false;
-  const auto apex = static_cast<std::uint16_t>(point_count_);
-  points_[point_count_++] = w;
-  if (face_count_ + horizon_count_ > kFaces) return false;
-  const auto first = static_cast<std::uint16_t>(face_count_);
-  for (std::uint32_t i = 0; i < horizon_count_; ++i) {
-    const Side& side = horizon_[i];
-    std::uint16_t at = 0;
-    if (!add_face(side.from, side.to, apex, at)) return false;
-    const std::uint32_t before = i == 0 ? horizon_count_ - 1 : i - 1;
-    const std::uint32_t after = i + 1 == horizon_count_ ? 0 : i + 1;
-    faces_[at].across = {side.face, static_cast<std::uint16_t>(first + after),
-                         static_cast<std::uint16_t>(first + before)};
-    Face& other = faces_[side.face];
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (other.point[k] == side.to && other.point[(k + 1) % 3] == side.from) other.across[k] = at;
-    }
-  }
-  return true;
-}
-
-/// True if w is above the face, or in its plane and on the line of the side between `from` and
-/// `to`: there, a new face over that side would have no area.
-bool Polytope::is_seen(const Vec& w, const Face& face, std::uint16_t from,
-                       std::uint16_t to) const noexcept {
-  const double height = face.normal.dot(w - points_[face.point[0]]);
-  if (height > 0.125 * noise_) return true;
-  if (height < -0.125 * noise_) return false;
-  const Vec side = points_[to] - points_[from];
-  const Vec out = w - points_[from];
-  return side.cross(out).squaredNorm() <= 1e-16 * side.squaredNorm() * out.squaredNorm();
-}
-
-/// Collects the horizon in order: depth first over the faces that see w, each entered by a side and
-/// left by the ones after it.
-bool Polytope::find_horizon(const Vec& w, std::uint16_t seen) noexcept {
-  horizon_count_ = 0;
-  struct Visit {
-    std::uint16_t face;
-    std::uint8_t side;
-    std::uint8_t left;
-  };
-  std::array<Visit, 512> visits;
-  std::size_t depth = 0;
-  faces_[seen].alive = false;
-  visits[depth++] = {seen, 0, 3};
-  while (depth > 0) {
-    Visit& visit = visits[depth - 1];
-    if (visit.left == 0) {
-      --depth;
-      continue;
-    }
-    const std::uint8_t k = visit.side;
-    visit.side = static_cast<std::uint8_t>((k + 1) % 3);
-    --visit.left;
-    const Face& face = faces_[visit.face];
-    const std::uint16_t next = face.across[k];
-    Face& other = faces_[next];
-    if (!other.alive) continue;
-    const std::uint16_t from = face.point[k];
-    const std::uint16_t to = face.point[(k + 1U) % 3];
-    if (is_seen(w, other, from, to)) {
-      if (depth == visits.size()) return false;
-      std::uint8_t entered = 0;
-      while (entered < 2 && other.point[entered] != to) ++entered;
-      other.alive = false;
-      visits[depth++] = {next, static_cast<std::uint8_t>((entered + 1) % 3), 2};
-    } else {
-      horizon_[horizon_count_++] = {from, to, next};
-    }
-  }
-  if (horizon_count_ < 3) return false;
-  for (std::uint32_t i = 0; i < horizon_count_; ++i) {
-    if (horizon_[i].to != horizon_[i + 1 == horizon_count_ ? 0 : i + 1].from) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 DepthBounds expand(const Core& a, const Core& b, const Simplex& simplex, double noise,
                    double tolerance) noexcept {
-  Polytope polytope(a, b, noise);
-  if (polytope.begin(simplex)) polytope.grow(tolerance);
-  return polytope.bounds();
+  Expansion expansion(a, b, noise);
+  if (expansion.begin(simplex)) expansion.grow(tolerance);
+  return expansion.bounds();
 }
 
 }  // namespace winnow::solver
