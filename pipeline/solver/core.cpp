@@ -34,8 +34,8 @@ std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value
 Vec rim(const Core& core, const Vec& local, double z) noexcept {
   const double length = std::hypot(local.x(), local.y());
   if (length == 0.0) return {0.0, 0.0, z};
-  const double radius = core.half.x() / length;
-  return {local.x() * radius, local.y() * radius, z};
+  // Divided first: directions may be short enough for the quotient of the radius to overflow.
+  return {core.half.x() * (local.x() / length), core.half.x() * (local.y() / length), z};
 }
 
 double radial(const Core& core, const Vec& local) noexcept {

@@ -38,10 +38,15 @@ Lengths triangle_lengths(const TriangleShape& triangle) noexcept {
   return lengths;
 }
 
+/// No vertex is farther from the position; finite even if the hull's numbers are not.
+double reach(const HullShape& hull) noexcept {
+  const double sum = Eigen::Map<const Vec>(hull.center).cwiseAbs().sum() + hull.radius;
+  return std::isfinite(sum) ? sum : std::numeric_limits<double>::max();
+}
+
 Lengths hull_lengths(const HullShape& hull) noexcept {
   Lengths lengths{CoreKind::hull, Vec::Zero(), hull.rounding, hull.rounding};
-  lengths.largest = std::max(lengths.largest, hull.radius);
-  for (const double x : hull.center) lengths.largest = std::max(lengths.largest, std::abs(x));
+  lengths.largest = std::max(lengths.largest, reach(hull));
   return lengths;
 }
 
@@ -107,8 +112,7 @@ void place(const ShapeTables& tables, ShapeId id, const Pose& pose, const Length
     core.hull = &tables.hulls[id.index()];
     core.unit[0] = std::ldexp(1.0, -exponent / 2);
     core.unit[1] = std::ldexp(1.0, -exponent - -exponent / 2);
-    const Vec middle = Eigen::Map<const Vec>(core.hull->center) * core.unit[0] * core.unit[1];
-    core.size += middle.norm() + core.hull->radius * core.unit[0] * core.unit[1];
+    core.size += reach(*core.hull) * core.unit[0] * core.unit[1];
   } else if (id.kind() == ShapeKind::half_space) {
     const HalfSpaceShape& shape = tables.half_spaces[id.index()];
     core.normal = unit(core.rotation * Eigen::Map<const Vec>(shape.normal));

@@ -94,15 +94,22 @@ PairAnswer solve(const Question& ask, bool swapped, NarrowLevel level, double ma
   return answer;
 }
 
+/// The largest double of its sign for an infinity.
+double finite(double x) noexcept {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  return std::clamp(x, -kMost, kMost);
+}
+
 /// The answer for (b, a) made one for (a, b).
 void mirror(const Pose& pose_a, const Pose& pose_b, PairAnswer& answer) noexcept {
   for (int i = 0; i < 3; ++i) {
-    const double c = pose_b.position[i] - pose_a.position[i];
-    answer.point[i] = answer.point[i] + answer.distance * answer.normal[i] + c;
+    const double c = finite(pose_b.position[i] - pose_a.position[i]);
+    answer.point[i] = finite(finite(answer.point[i] + answer.distance * answer.normal[i]) + c);
     answer.normal[i] = -answer.normal[i];
     for (std::uint32_t k = 0; k < answer.contact_count; ++k) {
+      constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
       float& x = answer.contacts[k].position[i];
-      x = static_cast<float>(static_cast<double>(x) + c);
+      x = static_cast<float>(std::clamp(static_cast<double>(x) + c, -kMost, kMost));
     }
   }
   for (std::uint32_t k = 0; k < answer.contact_count; ++k) {

@@ -319,6 +319,20 @@ TEST_F(SolverCases, half_spaces_are_apart_only_back_to_back) {
   EXPECT_TRUE(std::isfinite(endless.distance));
 }
 
+TEST_F(SolverCases, curved_shapes_of_extreme_lengths_have_finite_answers) {
+  const ShapeId plate = add(CylinderShape{2.3e12, 3e-265, 0.0});
+  const ShapeId dust = add(SphereShape{5.6e-305});
+  const ShapeId disc = add(ConeShape{std::numeric_limits<double>::max(), 5e-324, 0.0});
+  const ShapeId drum = add(CylinderShape{1e-9, 0.2, 0.0});
+  for (const auto& [a, b] : {std::pair{plate, dust}, {disc, drum}}) {
+    const PairAnswer answer = solve(a, Pose::at(-4e-296, 3e-297, 4e-296), b, Pose{});
+    EXPECT_TRUE(answer.overlap);
+    EXPECT_TRUE(std::isfinite(answer.distance));
+    EXPECT_TRUE(Vec::Map(answer.point).allFinite());
+    EXPECT_NEAR(Vec::Map(answer.normal).norm(), 1.0, 1e-14);
+  }
+}
+
 TEST_F(SolverCases, positions_at_the_ends_of_doubles_are_answered) {
   const ShapeId sphere = add(SphereShape{1.0});
   const ShapeId dust = add(SphereShape{5e-324});
