@@ -47,7 +47,8 @@ struct PairAnswer {
 /// The distance is that of the cores less the roundings; where the shapes overlap it is minus the
 /// penetration depth: the length of the shortest translation of b that leaves them touching. Shapes
 /// whose closest direction is not unique (coincident centres) take the first of +x, +y, +z and
-/// their opposites, in the frame of a, that is one of the closest.
+/// their opposites, in the frame of a, that is one of the closest. Two half-spaces that do not face
+/// each other overlap without end: the distance is minus the largest double, the bound infinite.
 [[nodiscard]] PairAnswer solve_pair(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
                                     ShapeId b, const Pose& pose_b, NarrowLevel level, double margin,
                                     SolverCounts& counts) noexcept;
