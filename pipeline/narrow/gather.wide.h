@@ -20,19 +20,8 @@ struct PairBlock {
   [[nodiscard]] Mask16 lanes() const { return lanes_below(count); }
 };
 
-/// How many pairs ahead poses are asked for: a few blocks, the time of one miss to memory.
-inline constexpr std::uint32_t kPairsAhead = 48;
-
-[[gnu::always_inline]] inline void prefetch_poses(const NarrowJob& job, std::uint32_t first,
-                                                  std::uint32_t count) {
-  if (first + count > job.count) return;
-  for (std::uint32_t i = first; i < first + count; ++i) {
-    __builtin_prefetch(job.poses + job.pairs[i].a);
-    __builtin_prefetch(job.poses + job.pairs[i].b);
-  }
-}
-
-/// Calls body(block) for all pairs of the job.
+/// Calls body(block) for all pairs of the job. Loads of a block do not depend on the one before, so
+/// misses overlap without being asked for ahead.
 template <typename T, typename Body>
 [[gnu::always_inline]] inline void for_blocks(const NarrowJob& job, Body&& body) {
   constexpr std::uint32_t lanes = Real<T>::kRealLanes;
@@ -46,7 +35,6 @@ template <typename T, typename Body>
       }
       block.pairs = tail;
     }
-    prefetch_poses(job, first + kPairsAhead, lanes);
     body(block);
   }
 }

@@ -27,15 +27,19 @@ template <typename T>
   return {normal, -dot(normal, c) - b.offset, taxicab(c) + abs(b.offset) + doubt(turn)};
 }
 
-/// Points of a shape's core, relative to body a, in the axes of the world.
+/// Points of a shape's core over a plane, relative to body a, in the axes of the world.
 template <typename T, int Count>
 struct Feet {
   Vec3<T> foot[Count];
   Real<T> height[Count];
   Real<T> feature[Count];
+  /// Foot 0 is the lowest. The rounding is that of all.
+  Real<T> rounding;
+  Vec3<T> normal;
+  Real<T> scale;
 };
 
-/// Sorts foot `lower` before foot `upper` if it is lower; equal ones keep their order.
+/// Exchanges two feet if the second is lower.
 template <typename T, int Count>
 [[gnu::always_inline]] inline void sort_two(Feet<T, Count>& f, int first, int second) {
   const Truth<T> wrong = f.height[second] < f.height[first];
@@ -49,65 +53,75 @@ template <typename T, int Count>
   exchange(f.feature[first], f.feature[second]);
 }
 
-/// Writes the answer of a job's block: foot 0 is the lowest one, `radius` the rounding of all.
-template <int L, int Contacts, typename T, int Count>
-[[gnu::always_inline]] inline Mask16 answer_feet(NarrowJob& job, const PairBlock<T>& block,
-                                                 const Plane<T>& plane, const Feet<T, Count>& feet,
-                                                 const Real<T>& radius, const Real<T>& scale) {
-  const Real<T> distance = feet.height[0] - radius;
-  const Real<T> bound = scale * Real<T>(T(kRoundings) * kEpsilon<T>);
-  if constexpr (L == kBoolean) {
-    return answer_sign(job, block, distance, bound, scale);
-  } else {
-    const Mask16 known = certified_lanes(distance, bound, scale, scale > Real<T>(T(0)));
-    const CertifiedLanes<T> answer{distance, bound, -plane.normal, known};
-    write_certified<L>(job, block, answer, feet.foot[0], radius);
-    if constexpr (L == kManifold) {
-      ContactLanes<T> contacts[Contacts];
-      Mask16 lanes = known & block.lanes();
-      for (int i = 0; i < Contacts; ++i) {
-        const int k = i < Count ? i : 0;
-        const Real<T> d = feet.height[k] - radius;
-        lanes &= i < Count ? bits(d <= Real<T>(static_cast<T>(job.margin))) : 0U;
-        contacts[i] = {feet.foot[k] - plane.normal * (radius + d * Real<T>(T(0.5))), -d,
-                       feet.feature[k], Real<T>(T(0)), lanes};
-      }
-      write_contacts(job, block, contacts);
-    }
-    return ~known;
-  }
-}
-
-struct SphereHalfSpace {
+/// The kernels of a class that finds the feet; all levels share that part, not inlined, as it takes
+/// long to compile.
+template <typename Source, int Contacts>
+struct OverPlane {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
-    const Plane<T> plane = load_plane(job, block);
-    const Real<T> radius = load_sphere<SideA>(job, block);
-    const Real<T> zero(T(0));
-    const Feet<T, 1> feet{{{zero, zero, zero}}, {plane.height}, {zero}};
-    return answer_feet<L, 1>(job, block, plane, feet, radius, plane.scale + radius);
+    const auto feet = Source::template feet<T>(job, block);
+    const Real<T> distance = feet.height[0] - feet.rounding;
+    const Real<T> bound = feet.scale * Real<T>(T(kRoundings) * kEpsilon<T>);
+    if constexpr (L == kBoolean) {
+      return answer_sign(job, block, distance, bound, feet.scale);
+    } else {
+      const Mask16 known = certified_lanes(distance, bound, feet.scale, feet.scale > Real<T>(T(0)));
+      const CertifiedLanes<T> answer{distance, bound, -feet.normal, known};
+      write_certified<L>(job, block, answer, feet.foot[0], feet.rounding);
+      if constexpr (L == kManifold) write_touches(job, block, feet, known);
+      return ~known;
+    }
+  }
+
+  template <typename T, int Count>
+  [[gnu::always_inline]] static void write_touches(NarrowJob& job, const PairBlock<T>& block,
+                                                   const Feet<T, Count>& feet, Mask16 known) {
+    ContactLanes<T> contacts[Contacts];
+    Mask16 lanes = known & block.lanes();
+    for (int i = 0; i < Contacts; ++i) {
+      const int k = i < Count ? i : 0;
+      const Real<T> d = feet.height[k] - feet.rounding;
+      lanes &= i < Count ? bits(d <= Real<T>(static_cast<T>(job.margin))) : 0U;
+      contacts[i] = {feet.foot[k] - feet.normal * (feet.rounding + d * Real<T>(T(0.5))), -d,
+                     feet.feature[k], Real<T>(T(0)), lanes};
+    }
+    write_contacts(job, block, contacts);
   }
 };
 
-struct CapsuleHalfSpace {
-  template <typename T, int L>
-  [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
+struct SphereFeet {
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 1> feet(const NarrowJob& job, const PairBlock<T>& block) {
+    const Plane<T> plane = load_plane(job, block);
+    const Real<T> radius = load_sphere<SideA>(job, block);
+    const Real<T> zero(T(0));
+    return {{{zero, zero, zero}}, {plane.height},      {zero}, radius,
+            plane.normal,         plane.scale + radius};
+  }
+};
+
+struct CapsuleFeet {
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 2> feet(const NarrowJob& job, const PairBlock<T>& block) {
     const Plane<T> plane = load_plane(job, block);
     const Turn<T> turn = load_turn<SideA>(job, block);
     const CapsuleLanes<T> a = load_capsule<SideA>(job, block);
     const Vec3<T> arm = axis_z(turn) * a.half_length;
     const Real<T> rise = dot(plane.normal, arm);
-    Feet<T, 2> feet{
-        {arm, -arm}, {plane.height + rise, plane.height - rise}, {Real<T>(T(1)), Real<T>(T(2))}};
+    Feet<T, 2> feet{{arm, -arm},
+                    {plane.height + rise, plane.height - rise},
+                    {Real<T>(T(1)), Real<T>(T(2))},
+                    a.radius,
+                    plane.normal,
+                    plane.scale + a.radius + a.half_length + doubt(turn)};
     sort_two(feet, 0, 1);
-    return answer_feet<L, 2>(job, block, plane, feet, a.radius,
-                             plane.scale + a.radius + a.half_length + doubt(turn));
+    return feet;
   }
 };
 
-struct TriangleHalfSpace {
-  template <typename T, int L>
-  [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
+struct TriangleFeet {
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 3> feet(const NarrowJob& job, const PairBlock<T>& block) {
     const Plane<T> plane = load_plane(job, block);
     const Turn<T> turn = load_turn<SideA>(job, block);
     const TriangleLanes<T> a = load_triangle<SideA>(job, block);
@@ -123,16 +137,18 @@ struct TriangleHalfSpace {
     sort_two(feet, 0, 1);
     sort_two(feet, 1, 2);
     sort_two(feet, 0, 1);
-    return answer_feet<L, 4>(job, block, plane, feet, a.rounding,
-                             plane.scale + a.rounding + reach + doubt(turn));
+    feet.rounding = a.rounding;
+    feet.normal = plane.normal;
+    feet.scale = plane.scale + a.rounding + reach + doubt(turn);
+    return feet;
   }
 };
 
-struct BoxHalfSpace {
+struct BoxFeet {
   /// The four vertices of the face that looks most towards the plane, lowest first, the one
   /// opposite last. A vertex is called by its signs: bit i if coordinate i is negative.
-  template <typename T, int L>
-  [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 4> feet(const NarrowJob& job, const PairBlock<T>& block) {
     const Real<T> zero(T(0));
     const Plane<T> plane = load_plane(job, block);
     const Turn<T> turn = load_turn<SideA>(job, block);
@@ -176,10 +192,12 @@ struct BoxHalfSpace {
                      corner - (down[0] + down[1]) * two},
                     {height, height + rise[0] * two, height + rise[1] * two,
                      height + (rise[0] + rise[1]) * two},
-                    {lowest, lowest + flip[0], lowest + flip[1], lowest + flip[0] + flip[1]}};
+                    {lowest, lowest + flip[0], lowest + flip[1], lowest + flip[0] + flip[1]},
+                    a.rounding,
+                    plane.normal,
+                    plane.scale + a.rounding + taxicab(a.half) + doubt(turn)};
     sort_two(feet, 1, 2);
-    return answer_feet<L, 4>(job, block, plane, feet, a.rounding,
-                             plane.scale + a.rounding + taxicab(a.half) + doubt(turn));
+    return feet;
   }
 };
 
@@ -187,12 +205,15 @@ struct BoxHalfSpace {
 }  // namespace WINNOW_ISA_NAME
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_half_space_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::SphereHalfSpace>();
+    WINNOW_ISA_NAME::narrow_kernels_of<
+        WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::SphereFeet, 1>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_half_space_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::CapsuleHalfSpace>();
+    WINNOW_ISA_NAME::narrow_kernels_of<
+        WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::CapsuleFeet, 2>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(box_half_space_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::BoxHalfSpace>();
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::BoxFeet, 4>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(triangle_half_space_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::TriangleHalfSpace>();
+    WINNOW_ISA_NAME::narrow_kernels_of<
+        WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::TriangleFeet, 4>>();
 
 }  // namespace winnow

@@ -37,34 +37,50 @@ template <typename T>
   return gap;
 }
 
+template <typename T>
+struct Solution {
+  ProofLanes<T> proof;
+  /// In the axes of the world.
+  Vec3<T> normal;
+  Real<T> radius;
+  Real<T> feature;
+};
+
+/// Not inlined: all levels share it, and it takes long to compile.
+template <typename T>
+[[gnu::noinline]] Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
+  const Vec3<T> c = load_offset(job, block);
+  const Turn<T> turn = load_turn<SideB>(job, block);
+  const Real<T> ra = load_sphere<SideA>(job, block);
+  const TriangleLanes<T> triangle = load_triangle<SideB>(job, block);
+
+  const Rotation<T> axes = rotation(turn);
+  const TriangleView<T> view = view_triangle(triangle, axes.to_local(c));
+  const Nearest<T> nearest = nearest_point(view);
+  const Real<T> length = sqrt(nearest.square);
+  const Gap<T> gap = widest_gap(view, nearest.w, length);
+  const Real<T> radius = ra + triangle.rounding;
+  const Real<T> scale = taxicab(c) + largest(triangle) + radius + doubt(turn);
+  return {{gap.distance - radius, length - radius, scale, length > scale * Real<T>(kShortest<T>)},
+          axes.to_world(gap.normal),
+          ra,
+          nearest.feature};
+}
+
 struct SphereTriangle {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
-    const Vec3<T> c = load_offset(job, block);
-    const Turn<T> turn = load_turn<SideB>(job, block);
-    const Real<T> ra = load_sphere<SideA>(job, block);
-    const TriangleLanes<T> triangle = load_triangle<SideB>(job, block);
-
-    const Rotation<T> axes = rotation(turn);
-    const TriangleView<T> view = view_triangle(triangle, axes.to_local(c));
-    const Nearest<T> nearest = nearest_point(view);
-    const Real<T> length = sqrt(nearest.square);
-    const Gap<T> gap = widest_gap(view, nearest.w, length);
-
-    const Real<T> radius = ra + triangle.rounding;
-    const Real<T> scale = taxicab(c) + largest(triangle) + radius + doubt(turn);
-    const ProofLanes<T> proof{gap.distance - radius, length - radius, scale,
-                              length > scale * Real<T>(kShortest<T>)};
+    const Solution<T> r = solve(job, block);
     if constexpr (L == kBoolean) {
-      return answer_proven_sign(job, block, proof);
+      return answer_proven_sign(job, block, r.proof);
     } else {
-      CertifiedLanes<T> answer = answer_proven(proof, axes.to_world(gap.normal));
+      const CertifiedLanes<T> answer = answer_proven(r.proof, r.normal);
       const Real<T> zero(T(0));
       const Vec3<T> foot{zero, zero, zero};
-      write_certified<L>(job, block, answer, foot, ra);
+      write_certified<L>(job, block, answer, foot, r.radius);
       if constexpr (L == kManifold) {
         write_contacts(job, block,
-                       {witness_contact(job, block, answer, foot, ra, zero, nearest.feature)});
+                       {witness_contact(job, block, answer, foot, r.radius, zero, r.feature)});
       }
       return ~answer.certified;
     }
