@@ -99,6 +99,17 @@ template <typename T>
                                                  const Couple<T>& p,
                                                  const CertifiedLanes<T>& answer) {
   const Real<T> margin(static_cast<T>(job.margin));
+  const Touch<T> closest{p.feet, answer.distance};
+  const Mask16 near = bits(answer.distance <= margin) & answer.certified & block.lanes();
+  // Back from b to a where the couple is.
+  const Vec3<T> normal = select(p.swapped, -answer.normal, answer.normal);
+  const Truth<T> parallel = dot(p.across, p.across) < Real<T>(T(0.01));
+  if (bits(parallel) == 0) {
+    ContactLanes<T> contact = contact_of(p, normal, closest);
+    contact.lanes = near;
+    write_contacts(job, block, {contact});
+    return;
+  }
   const Real<T> middle = dot(p.axis[0], p.c);
   const Real<T> reach = p.half[1] * abs(dot(p.axis[0], p.axis[1]));
   const Real<T> low = max(middle - reach, -p.half[0]);
@@ -107,20 +118,17 @@ template <typename T>
   // The deeper end stands for the closest point if that is hardly deeper; capsules that cross have
   // one point.
   const Real<T> behind = min(ends[0].distance, ends[1].distance) - answer.distance;
-  const Truth<T> side_by_side = (dot(p.across, p.across) < Real<T>(T(0.01))) &
+  const Truth<T> side_by_side = parallel &
                                 (high - low > (p.half[0] + p.half[1]) * Real<T>(T(1e-3))) &
                                 (behind <= p.witness.radius * Real<T>(T(1e-3)));
   ends[0].distance -= behind;
   ends[1].distance -= behind;
   const Truth<T> near_low = side_by_side & (ends[0].distance <= margin);
   const Truth<T> near_high = side_by_side & (ends[1].distance <= margin);
-  const Touch<T> closest{p.feet, answer.distance};
   const Touch<T> chosen = select(near_low, ends[0], select(near_high, ends[1], closest));
-  // Back from b to a where the couple is.
-  const Vec3<T> normal = select(p.swapped, -answer.normal, answer.normal);
   ContactLanes<T> contacts[2] = {contact_of(p, normal, chosen), contact_of(p, normal, ends[1])};
-  contacts[0].lanes = bits(answer.distance <= margin) & answer.certified & block.lanes();
-  contacts[1].lanes = bits(near_low & near_high) & contacts[0].lanes;
+  contacts[0].lanes = near;
+  contacts[1].lanes = bits(near_low & near_high) & near;
   write_contacts(job, block, contacts);
 }
 

@@ -149,7 +149,7 @@ class RoundKernels : public testing::TestWithParam<Kind> {
 };
 
 TEST_P(RoundKernels, certified_signs_are_those_of_the_twin) {
-  for_styles(3000, [&](const PairScene& scene, PairStyle style) {
+  for_styles(1500, [&](const PairScene& scene, PairStyle style) {
     const Answers answers(scene, GetParam(), 0, kRobust);
     std::size_t unknown = 0;
     for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
@@ -167,7 +167,7 @@ TEST_P(RoundKernels, certified_signs_are_those_of_the_twin) {
 }
 
 TEST_P(RoundKernels, distances_are_within_their_bounds) {
-  for_styles(3000, [&](const PairScene& scene, PairStyle style) {
+  for_styles(1500, [&](const PairScene& scene, PairStyle style) {
     for (const Tier tier : {kFast, kRobust}) {
       const Answers answers(scene, GetParam(), 1, tier);
       std::size_t unknown = 0;
@@ -192,7 +192,7 @@ TEST_P(RoundKernels, distances_are_within_their_bounds) {
 }
 
 TEST_P(RoundKernels, normals_separate_and_points_lie_on_the_shapes) {
-  for_styles(2000, [&](const PairScene& scene, PairStyle) {
+  for_styles(1000, [&](const PairScene& scene, PairStyle) {
     const Answers answers(scene, GetParam(), 1, kRobust);
     for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
       if (answers.certified[i] == 0) continue;
@@ -211,7 +211,7 @@ TEST_P(RoundKernels, normals_separate_and_points_lie_on_the_shapes) {
 
 TEST_P(RoundKernels, contacts_lie_between_the_surfaces_and_the_deepest_is_there) {
   for (const Tier tier : {kFast, kRobust}) {
-    const PairScene scene = scene_of(GetParam(), PairStyle::ordinary, scaled(4000), 3);
+    const PairScene scene = scene_of(GetParam(), PairStyle::ordinary, scaled(2000), 3);
     const Answers answers(scene, GetParam(), 2, tier);
     std::uint32_t total = 0;
     for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
@@ -268,7 +268,7 @@ std::string bytes_of(const Answers& answers, std::size_t i, int level) {
 }
 
 TEST_P(RoundKernels, answers_are_the_same_on_every_instruction_set) {
-  for_styles(500, [&](const PairScene& scene, PairStyle) {
+  for_styles(250, [&](const PairScene& scene, PairStyle) {
     for (const Tier tier : {kFast, kRobust}) {
       for (int level = 0; level < 3; ++level) {
         std::vector<std::string> expected;

@@ -1,0 +1,26 @@
+#pragma once
+
+// Every operation of simd/rows.wide.h behind plain pointers.
+
+#include <winnow/simd/kernels.h>
+
+#include <cstdint>
+
+namespace winnow::test {
+
+/// `rows`: eight addresses. Outputs: column k at out + 8 k.
+struct RowsOps {
+  void (*load_rows4)(const double* const* rows, double* out);
+  void (*load_differences4)(const double* const* rows, const double* const* base, double* out);
+  void (*load_rows2)(const double* const* rows, double* out);
+  void (*load_rows1)(const double* const* rows, double* out);
+  /// Sixteen doubles to sixteen floats and back.
+  void (*to_single)(const double* in, float* out);
+  void (*to_double)(const float* in, double* out);
+  void (*store_bytes)(std::uint64_t bytes, std::uint32_t base, std::uint32_t* out);
+  void (*negate)(const double* in, double* out);
+};
+
+WINNOW_KERNELS(RowsOps, rows_ops);
+
+}  // namespace winnow::test
