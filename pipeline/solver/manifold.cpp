@@ -68,9 +68,8 @@ void make_manifold(const Problem& problem, const Vec& point, double distance, do
   std::uint32_t count = alone ? 0 : meet(problem, normal, margin, contacts);
   // Where the features miss the point of least distance, as caps with 16 corners do by a little, it
   // takes the place of their deepest; where they miss it by much, it is put in front of them.
-  const double miss =
-      count == 0 ? problem.size : std::abs(double{contacts[0].depth} - double{own.depth});
-  if (miss > 1e-2 * problem.size) {
+  const double miss = std::abs(double{contacts[0].depth} - double{own.depth});
+  if (count == 0 || miss > 1e-2 * problem.size) {
     count = std::min(count + 1, kManifoldPoints);
     std::copy_backward(contacts, contacts + count - 1, contacts + count);
     contacts[0] = own;

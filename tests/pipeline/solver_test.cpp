@@ -254,6 +254,14 @@ TEST_F(SolverCases, coincident_centres_take_the_first_axis_of_a) {
   EXPECT_EQ(other.normal[0], 1.0);
 }
 
+TEST_F(SolverCases, two_points_in_one_place_have_a_contact) {
+  const ShapeId point = add(SphereShape{0.0});
+  const PairAnswer answer = solve(point, Pose{}, point, Pose{});
+  EXPECT_TRUE(answer.overlap);
+  EXPECT_EQ(answer.distance, 0.0);
+  EXPECT_EQ(answer.contact_count, 1U);
+}
+
 TEST_F(SolverCases, touching_is_overlap_with_distance_zero) {
   const ShapeId sphere = add(SphereShape{1.0});
   const ShapeId cube = add(BoxShape{{1, 1, 1}, 0.0});
