@@ -1,15 +1,18 @@
 # shellcheck shell=bash
 # Sourced by bench/run and tests/run: installs what a bare Debian 12 lacks.
 
-# What every build of winnow needs.
-WINNOW_BUILD_PACKAGES=(cmake ninja-build g++ pkg-config libeigen3-dev libxsimd-dev libtbb-dev)
+# What every build of winnow needs; qhull only for hulls made from points, which tests and the tool
+# do.
+WINNOW_BUILD_PACKAGES=(cmake ninja-build g++ pkg-config libeigen3-dev libxsimd-dev libtbb-dev
+                       libqhull-dev)
 # What the winnow tool and the micro benchmarks need on top.
 WINNOW_BENCH_PACKAGES=(libbenchmark-dev libcli11-dev nlohmann-json3-dev liblzma-dev xz-utils
                        libjs-three)
 # What opens the pages of `winnow draw` in a test: Chromium without its windows.
 WINNOW_BROWSER_PACKAGES=(chromium-headless-shell)
 # Other libraries that winnow can be measured against.
-WINNOW_PEER_PACKAGES=(libbullet-dev libfcl-dev libcgal-dev libembree-dev libode-dev)
+WINNOW_PEER_PACKAGES=(libbullet-dev libfcl-dev libcgal-dev libembree-dev libode-dev
+                      libccd-dev)
 
 # winnow_missing PACKAGE...: prints those that are not installed.
 winnow_missing() {

@@ -57,6 +57,22 @@ std::vector<Goal> pair_events(const Ask& ask, const std::vector<Ask>& all, Lab& 
 /// One partition of many environments against a partition for each.
 std::vector<Goal> many_worlds(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
 
+// narrow_kinds.cpp
+
+/// The tier robust on one kind of pairs at all levels against the best existing library, in this
+/// run or elsewhere, `times_faster` as fast in cache and half that where the pairs stream from
+/// memory.
+std::vector<Goal> narrow_speed(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// The tier robust against the tier fast, all kinds.
+std::vector<Goal> narrow_tiers(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// Several threads against one, all kinds.
+std::vector<Goal> narrow_threads(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// Wrong verdicts, distances, bounds and normals of one tier, over all kinds and levels.
+std::vector<Goal> narrow_accuracy(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// Questions with reasoned answers in the files of a folder, given from where the tool is started,
+/// to one tier; none if the folder is not there.
+std::vector<Goal> narrow_hard_cases(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+
 /// Measured where there is no answer, or a wrong one, and less is better.
 inline constexpr double kUnanswered = 1e6;
 

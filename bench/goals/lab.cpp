@@ -123,9 +123,23 @@ const FrustumCosts& Lab::frustum(const std::string& set, std::size_t objects) {
   return frustum_.emplace(Where{set, objects}, std::move(costs)).first->second;
 }
 
+const NarrowMeasurement& Lab::narrow(const std::string& kind, std::size_t pairs) {
+  const auto [at, fresh] = narrow_.try_emplace({kind, pairs});
+  if (fresh) {
+    at->second = measure_narrow(
+        {.kind = *find_pair_kind(kind),
+         .pairs = pairs,
+         .tiers = {NarrowTier::fast, NarrowTier::robust},
+         .threads = pairs > kMostPairsInCache ? std::vector<int>{1, 2} : std::vector<int>{1},
+         .peers = true});
+  }
+  return at->second;
+}
+
 Spread Lab::machine_ms() const {
   std::vector<double> times;
   for (const auto& [where, cell] : cells_) times.push_back(cell.machine_ms);
+  for (const auto& [where, pairs] : narrow_) times.push_back(pairs.machine_ms);
   return spread_of(times);
 }
 

@@ -4,6 +4,7 @@
 #include "goals/kernel_times.h"
 #include "queries/query_costs.h"
 #include "tool/measure.h"
+#include "tool/measure_narrow.h"
 #include "tool/measure_queries.h"
 
 #include <cstddef>
@@ -49,6 +50,10 @@ class Lab {
     return {"BoundsNSquared", "FlatGrid", "LinearBvh"};
   }
 
+  /// Pairs of one kind, fast and robust on one thread, robust on two if there are too many pairs
+  /// for the caches, and the other libraries, interleaved.
+  const NarrowMeasurement& narrow(const std::string& kind, std::size_t pairs);
+
   /// How much slower this machine was while the cell was measured than the reference machine.
   [[nodiscard]] static double scale(const Measurement& cell) noexcept {
     return cell.machine_ms / kReferenceMachineMs;
@@ -74,6 +79,7 @@ class Lab {
   std::map<std::tuple<std::string, std::size_t, bool>, KeyCosts> keys_;
   std::map<std::tuple<std::string, std::string, std::size_t>, QueryMeasurement> queries_;
   std::map<Where, FrustumCosts> frustum_;
+  std::map<Where, NarrowMeasurement> narrow_;
 };
 
 }  // namespace winnow::bench

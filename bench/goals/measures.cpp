@@ -14,7 +14,7 @@ struct Kind {
   std::vector<Goal> (*measure)(const Ask&, const std::vector<Ask>&, Lab&);
 };
 
-constexpr std::array<Kind, 17> kKinds{{{"fastest_partition", fastest_partition},
+constexpr std::array<Kind, 22> kKinds{{{"fastest_partition", fastest_partition},
                                        {"no_slower_than_existing", no_slower_than_existing},
                                        {"scene_ratio", scene_ratio},
                                        {"speedup", speedup},
@@ -30,7 +30,12 @@ constexpr std::array<Kind, 17> kKinds{{{"fastest_partition", fastest_partition},
                                        {"query_allocations", query_allocations},
                                        {"churn", churn},
                                        {"pair_events", pair_events},
-                                       {"many_worlds", many_worlds}}};
+                                       {"many_worlds", many_worlds},
+                                       {"narrow_speed", narrow_speed},
+                                       {"narrow_tiers", narrow_tiers},
+                                       {"narrow_threads", narrow_threads},
+                                       {"narrow_accuracy", narrow_accuracy},
+                                       {"narrow_hard_cases", narrow_hard_cases}}};
 
 }  // namespace
 

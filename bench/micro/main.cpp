@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   add_tree_kernels();
   add_cell_kernels();
   add_partitions();
+  add_narrow_kernels();
   benchmark::Initialize(&count, arguments.data());
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 1;
   if (own_format) {

@@ -16,5 +16,6 @@ void add_flat_kernels();
 void add_tree_kernels();
 void add_cell_kernels();
 void add_partitions();
+void add_narrow_kernels();
 
 }  // namespace winnow::bench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "peers/engine.h"
+#include "peers/narrow_engine.h"
 #include "peers/query_engine.h"
 
 #include <memory>
@@ -15,5 +16,11 @@ namespace winnow::bench {
 [[nodiscard]] std::unique_ptr<Engine> make_ode();
 
 [[nodiscard]] std::unique_ptr<QueryEngine> make_embree_queries();
+
+[[nodiscard]] std::unique_ptr<NarrowEngine> make_bullet_narrow();
+[[nodiscard]] std::unique_ptr<NarrowEngine> make_fcl_libccd();
+[[nodiscard]] std::unique_ptr<NarrowEngine> make_fcl_indep();
+[[nodiscard]] std::unique_ptr<NarrowEngine> make_libccd_gjk();
+[[nodiscard]] std::unique_ptr<NarrowEngine> make_libccd_mpr();
 
 }  // namespace winnow::bench

@@ -32,4 +32,20 @@ std::vector<std::unique_ptr<QueryEngine>> make_query_peers() {
   return peers;
 }
 
+std::vector<std::unique_ptr<NarrowEngine>> make_narrow_peers() {
+  std::vector<std::unique_ptr<NarrowEngine>> peers;
+#ifdef WINNOW_PEER_BULLET
+  peers.push_back(make_bullet_narrow());
+#endif
+#ifdef WINNOW_PEER_FCL
+  peers.push_back(make_fcl_libccd());
+  peers.push_back(make_fcl_indep());
+#endif
+#ifdef WINNOW_PEER_LIBCCD
+  peers.push_back(make_libccd_gjk());
+  peers.push_back(make_libccd_mpr());
+#endif
+  return peers;
+}
+
 }  // namespace winnow::bench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "peers/engine.h"
+#include "peers/narrow_engine.h"
 #include "peers/query_engine.h"
 
 #include <memory>
@@ -14,5 +15,8 @@ namespace winnow::bench {
 
 /// The same of those that answer questions, for any number of threads.
 [[nodiscard]] std::vector<std::unique_ptr<QueryEngine>> make_query_peers();
+
+/// The same of those that answer pairs of bodies. They use one thread.
+[[nodiscard]] std::vector<std::unique_ptr<NarrowEngine>> make_narrow_peers();
 
 }  // namespace winnow::bench

@@ -31,6 +31,8 @@ Command add_footprint(CLI::App& app);
 Command add_keys(CLI::App& app);
 Command add_crossover(CLI::App& app);
 Command add_queries(CLI::App& app);
+Command add_narrow(CLI::App& app);
+Command add_accuracy(CLI::App& app);
 Command add_goals(CLI::App& app);
 Command add_draw(CLI::App& app);
 Command add_query(CLI::App& app);

@@ -30,7 +30,7 @@ std::vector<Goal> Goals::measure_all(const std::vector<Ask>& asks, Lab& lab) con
   Progress progress(wanted.size());
   for (const Ask* ask : wanted) {
     std::string label = ask->topic() + ": " + ask->kind();
-    for (const char* member : {"partition", "scene", "operation"}) {
+    for (const char* member : {"partition", "scene", "operation", "pair", "tier"}) {
       if (ask->has(member)) label += " " + ask->text(member);
     }
     if (ask->has("objects")) label += " " + grouped(ask->count("objects"));

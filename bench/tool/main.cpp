@@ -15,8 +15,9 @@ int run_tool(int argc, char** argv) {
   app.require_subcommand(0, 1);
   const std::vector<Command> commands{add_scenes(app),     add_record(app),    add_replay(app),
                                       add_throughput(app), add_footprint(app), add_keys(app),
-                                      add_crossover(app),  add_queries(app),   add_goals(app),
-                                      add_draw(app),       add_query(app)};
+                                      add_crossover(app),  add_queries(app),   add_query(app),
+                                      add_narrow(app),     add_accuracy(app),  add_goals(app),
+                                      add_draw(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

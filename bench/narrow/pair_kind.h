@@ -1,0 +1,37 @@
+#pragma once
+
+#include <winnow/pipeline/narrow_phase.h>
+#include <winnow/pipeline/shapes.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace winnow::bench {
+
+/// A kind of pair that is measured. `a` comes before `b` in the order of the kinds.
+struct PairKind {
+  std::string_view name;
+  ShapeKind a{};
+  ShapeKind b{};
+  /// Of the hulls, if there are any: points on an ellipsoid, all of which are vertices.
+  std::uint32_t hull_vertices = 0;
+};
+
+/// All kinds, cheapest first.
+[[nodiscard]] std::span<const PairKind> pair_kinds() noexcept;
+/// Null if there is none of the name.
+[[nodiscard]] const PairKind* find_pair_kind(std::string_view name) noexcept;
+
+inline constexpr std::array<std::string_view, 3> kLevelNames{"boolean", "distance", "manifold"};
+inline constexpr std::array<std::string_view, 3> kTierNames{"fast", "robust", "reference"};
+
+[[nodiscard]] constexpr std::string_view to_text(NarrowLevel level) noexcept {
+  return kLevelNames[static_cast<std::size_t>(level)];
+}
+[[nodiscard]] constexpr std::string_view to_text(NarrowTier tier) noexcept {
+  return kTierNames[static_cast<std::size_t>(tier)];
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,319 @@
+#include "peers/adapters.h"
+#include "peers/narrow_adapter.h"
+
+#include <BulletCollision/CollisionDispatch/SphereTriangleDetector.h>
+#include <BulletCollision/CollisionDispatch/btBoxBoxDetector.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletCollision/CollisionDispatch/btSphereBoxCollisionAlgorithm.h>
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
+#include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
+
+#include <algorithm>
+#include <string>
+
+namespace winnow::bench {
+namespace {
+
+/// So far apart nothing is: algorithms report the distance of every pair.
+constexpr btScalar kFar = 1e9F;
+
+btVector3 to_bullet(const double* v) {
+  return {static_cast<btScalar>(v[0]), static_cast<btScalar>(v[1]), static_cast<btScalar>(v[2])};
+}
+
+/// Margins are nothing where the shape would grow or lose its corners by them.
+std::unique_ptr<btConvexShape> make_shape(const ShapeTables& tables, ShapeId id) {
+  const std::uint32_t i = id.index();
+  switch (id.kind()) {
+    case ShapeKind::sphere:
+      return std::make_unique<btSphereShape>(static_cast<btScalar>(tables.spheres[i].radius));
+    case ShapeKind::capsule:
+      return std::make_unique<btCapsuleShapeZ>(
+          static_cast<btScalar>(tables.capsules[i].radius),
+          static_cast<btScalar>(2.0 * tables.capsules[i].half_length));
+    case ShapeKind::box: {
+      auto box = std::make_unique<btBoxShape>(to_bullet(tables.boxes[i].half));
+      box->setMargin(0);
+      return box;
+    }
+    case ShapeKind::triangle: {
+      const auto& v = tables.triangles[i].vertex;
+      auto triangle =
+          std::make_unique<btTriangleShape>(to_bullet(v[0]), to_bullet(v[1]), to_bullet(v[2]));
+      triangle->setMargin(0);
+      return triangle;
+    }
+    default: {
+      const HullShape& from = tables.hulls[i];
+      auto hull = std::make_unique<btConvexHullShape>();
+      for (std::uint32_t v = 0; v < from.vertex_count; ++v) {
+        const double point[3] = {from.vertex[0][v], from.vertex[1][v], from.vertex[2][v]};
+        hull->addPoint(to_bullet(point), false);
+      }
+      hull->recalcLocalAabb();
+      hull->setMargin(0);
+      hull->initializePolyhedralFeatures();
+      return hull;
+    }
+  }
+}
+
+/// Takes the point that an algorithm or a detector reports and keeps the deepest.
+class Report final : public btManifoldResult {
+ public:
+  Report(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b, btScalar far)
+      : btManifoldResult(a, b) {
+    m_closestPointDistanceThreshold = far;
+  }
+
+  void addContactPoint(const btVector3& normal_on_b, const btVector3& on_b,
+                       btScalar distance) override {
+    if (distance >= distance_) return;
+    distance_ = distance;
+    normal_on_b_ = normal_on_b;
+    on_b_ = on_b;
+  }
+
+  void write(NarrowLevel level, NarrowAnswer& answer) const {
+    answer.overlap = distance_ <= 0;
+    if (level == NarrowLevel::boolean) return;
+    const btVector3 on_a = on_b_ + normal_on_b_ * distance_;
+    answer.distance = static_cast<double>(distance_);
+    write_vector(answer.normal, -normal_on_b_.x(), -normal_on_b_.y(), -normal_on_b_.z());
+    write_vector(answer.point, on_a.x(), on_a.y(), on_a.z());
+  }
+
+ private:
+  btScalar distance_ = kFar;
+  btVector3 normal_on_b_{0, 0, 0};
+  btVector3 on_b_{0, 0, 0};
+};
+
+/// Bullet in float. Manifolds by the algorithm that its dispatcher picks for the kinds (and the one
+/// for spheres and boxes, which it keeps but does not pick), into an empty manifold. Verdicts and
+/// distances by closed forms where it has them, else by the GJK and EPA of btGjkEpaSolver2, which
+/// are faster than btGjkPairDetector; verdicts of boxes by its separating axes.
+class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
+ public:
+  BulletNarrow() : dispatcher_(&configuration_) {}
+  ~BulletNarrow() override {
+    if (algorithm_ != nullptr) {
+      algorithm_->~btCollisionAlgorithm();
+      dispatcher_.freeCollisionAlgorithm(algorithm_);
+    }
+    if (manifold_ != nullptr) dispatcher_.releaseManifold(manifold_);
+  }
+
+  [[nodiscard]] std::string name() const override { return "Bullet"; }
+
+  [[nodiscard]] static Answerer answerer(const PairKind& kind, NarrowLevel level) {
+    using enum ShapeKind;
+    if (level == NarrowLevel::manifold) return &BulletNarrow::manifold;
+    const bool verdict = level == NarrowLevel::boolean;
+    const bool round = kind.b == sphere || kind.b == capsule;
+    if (round)
+      return verdict ? &BulletNarrow::closed<NarrowLevel::boolean>
+                     : &BulletNarrow::closed<NarrowLevel::distance>;
+    if (kind.a == sphere && kind.b == box)
+      return verdict ? &BulletNarrow::ball_in_box<NarrowLevel::boolean>
+                     : &BulletNarrow::ball_in_box<NarrowLevel::distance>;
+    if (kind.a == sphere)
+      return verdict ? &BulletNarrow::ball_on_triangle<NarrowLevel::boolean>
+                     : &BulletNarrow::ball_on_triangle<NarrowLevel::distance>;
+    if (kind.a == box && kind.b == box && verdict) return &BulletNarrow::axes;
+    return verdict ? &BulletNarrow::gjk_verdict : &BulletNarrow::gjk_distance;
+  }
+
+  void start(const PairSet& set) override {
+    set_kind(set.kind);
+    std::vector<btConvexShape*> hulls(set.pool.tables().count[static_cast<int>(ShapeKind::hull)]);
+    objects_.resize(set.poses.size());
+    for (std::size_t i = 0; i < set.poses.size(); ++i) {
+      const ShapeId id = set.shapes[i];
+      btConvexShape* shape = id.kind() == ShapeKind::hull ? hulls[id.index()] : nullptr;
+      if (shape == nullptr) {
+        shapes_.push_back(make_shape(set.pool.tables(), id));
+        shape = shapes_.back().get();
+        if (id.kind() == ShapeKind::hull) hulls[id.index()] = shape;
+      }
+      const Eigen::Quaternionf q = orientation_of(set.poses[i]).cast<float>();
+      objects_[i].setCollisionShape(shape);
+      objects_[i].setWorldTransform(
+          btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), to_bullet(set.poses[i].position)));
+    }
+    if (!set.pairs.empty()) make_algorithm(set.kind, set.pairs.front());
+  }
+
+ private:
+  struct Wrapped {
+    explicit Wrapped(const btCollisionObject& object)
+        : wrapper(nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1,
+                  -1) {}
+    btCollisionObjectWrapper wrapper;
+  };
+
+  template <typename Shape>
+  [[nodiscard]] const Shape& shape_of(std::uint32_t body) const {
+    return *static_cast<const Shape*>(objects_[body].getCollisionShape());
+  }
+
+  void make_algorithm(const PairKind& kind, const BodyPair& pair) {
+    const Wrapped a(objects_[pair.a]);
+    const Wrapped b(objects_[pair.b]);
+    manifold_ = dispatcher_.getNewManifold(&objects_[pair.a], &objects_[pair.b]);
+    if (kind.a == ShapeKind::sphere && kind.b == ShapeKind::box) {
+      btSphereBoxCollisionAlgorithm::CreateFunc make;
+      btCollisionAlgorithmConstructionInfo info(&dispatcher_, 1);
+      algorithm_ = make.CreateCollisionAlgorithm(info, &a.wrapper, &b.wrapper);
+    } else {
+      algorithm_ =
+          dispatcher_.findAlgorithm(&a.wrapper, &b.wrapper, manifold_, BT_CONTACT_POINT_ALGORITHMS);
+    }
+    // Some algorithms bring a manifold of their own.
+    btManifoldArray own;
+    algorithm_->getAllContactManifolds(own);
+    written_ = own.size() > 0 ? own[0] : manifold_;
+  }
+
+  void manifold(const BodyPair& pair, NarrowAnswer& answer) {
+    const Wrapped a(objects_[pair.a]);
+    const Wrapped b(objects_[pair.b]);
+    btManifoldResult result(&a.wrapper, &b.wrapper);
+    written_->clearManifold();
+    written_->setBodies(&objects_[pair.a], &objects_[pair.b]);
+    result.setPersistentManifold(written_);
+    algorithm_->processCollision(&a.wrapper, &b.wrapper, info_, &result);
+    answer = {};
+    for (int i = 0; i < written_->getNumContacts(); ++i) {
+      const btManifoldPoint& point = written_->getContactPoint(i);
+      if (point.getDistance() > 0) continue;
+      ++answer.contacts;
+      if (answer.overlap && static_cast<double>(point.getDistance()) >= answer.distance) continue;
+      answer.overlap = true;
+      const btVector3& n = point.m_normalWorldOnB;
+      answer.distance = static_cast<double>(point.getDistance());
+      write_vector(answer.normal, -n.x(), -n.y(), -n.z());
+    }
+  }
+
+  template <NarrowLevel level>
+  void closed(const BodyPair& pair, NarrowAnswer& answer) {
+    const Wrapped a(objects_[pair.a]);
+    const Wrapped b(objects_[pair.b]);
+    Report report(&a.wrapper, &b.wrapper, level == NarrowLevel::boolean ? 0 : kFar);
+    written_->setBodies(&objects_[pair.a], &objects_[pair.b]);
+    report.setPersistentManifold(written_);
+    algorithm_->processCollision(&a.wrapper, &b.wrapper, info_, &report);
+    report.write(level, answer);
+  }
+
+  template <NarrowLevel level>
+  void ball_in_box(const BodyPair& pair, NarrowAnswer& answer) {
+    const Wrapped box(objects_[pair.b]);
+    btVector3 on_box;
+    btVector3 normal;
+    btScalar depth = kFar;
+    auto& algorithm = static_cast<btSphereBoxCollisionAlgorithm&>(*algorithm_);
+    const bool found = algorithm.getSphereDistance(
+        &box.wrapper, on_box, normal, depth, objects_[pair.a].getWorldTransform().getOrigin(),
+        shape_of<btSphereShape>(pair.a).getRadius(), level == NarrowLevel::boolean ? 0 : kFar);
+    answer.overlap = found && depth <= 0;
+    if (level == NarrowLevel::boolean) return;
+    const btVector3 on_ball = on_box + normal * depth;
+    answer.distance = static_cast<double>(depth);
+    write_vector(answer.normal, -normal.x(), -normal.y(), -normal.z());
+    write_vector(answer.point, on_ball.x(), on_ball.y(), on_ball.z());
+  }
+
+  template <NarrowLevel level>
+  void ball_on_triangle(const BodyPair& pair, NarrowAnswer& answer) {
+    auto* ball = const_cast<btSphereShape*>(&shape_of<btSphereShape>(pair.a));
+    auto* triangle = const_cast<btTriangleShape*>(&shape_of<btTriangleShape>(pair.b));
+    SphereTriangleDetector detector(ball, triangle, level == NarrowLevel::boolean ? 0 : kFar);
+    btDiscreteCollisionDetectorInterface::ClosestPointInput input;
+    input.m_transformA = objects_[pair.a].getWorldTransform();
+    input.m_transformB = objects_[pair.b].getWorldTransform();
+    Report report(nullptr, nullptr, 0);
+    detector.getClosestPoints(input, report, nullptr);
+    report.write(level, answer);
+  }
+
+  void axes(const BodyPair& pair, NarrowAnswer& answer) {
+    btBoxBoxDetector detector(&shape_of<btBoxShape>(pair.a), &shape_of<btBoxShape>(pair.b));
+    btDiscreteCollisionDetectorInterface::ClosestPointInput input;
+    input.m_transformA = objects_[pair.a].getWorldTransform();
+    input.m_transformB = objects_[pair.b].getWorldTransform();
+    Report report(nullptr, nullptr, 0);
+    detector.getClosestPoints(input, report, nullptr);
+    report.write(NarrowLevel::boolean, answer);
+  }
+
+  /// What of a shape its core does not have: a capsule's radius.
+  [[nodiscard]] btScalar rounding_of(std::uint32_t body) const {
+    return shape_of<btConvexShape>(body).getMargin();
+  }
+
+  bool gjk(const BodyPair& pair, btGjkEpaSolver2::sResults& results) const {
+    const btTransform& a = objects_[pair.a].getWorldTransform();
+    const btTransform& b = objects_[pair.b].getWorldTransform();
+    return btGjkEpaSolver2::Distance(&shape_of<btConvexShape>(pair.a), a,
+                                     &shape_of<btConvexShape>(pair.b), b,
+                                     b.getOrigin() - a.getOrigin(), results);
+  }
+
+  void gjk_verdict(const BodyPair& pair, NarrowAnswer& answer) {
+    btGjkEpaSolver2::sResults results;
+    answer.overlap =
+        !gjk(pair, results) || results.distance <= rounding_of(pair.a) + rounding_of(pair.b);
+  }
+
+  void gjk_distance(const BodyPair& pair, NarrowAnswer& answer) {
+    btGjkEpaSolver2::sResults results;
+    const btScalar rounding = rounding_of(pair.a) + rounding_of(pair.b);
+    btScalar distance = -kFar;
+    btVector3 to_b(0, 0, 0);
+    btVector3 on_a(0, 0, 0);
+    if (gjk(pair, results)) {
+      to_b = (results.witnesses[1] - results.witnesses[0]).normalized();
+      on_a = results.witnesses[0] + to_b * rounding_of(pair.a);
+      distance = results.distance - rounding;
+    } else {
+      const btTransform& a = objects_[pair.a].getWorldTransform();
+      const btTransform& b = objects_[pair.b].getWorldTransform();
+      btGjkEpaSolver2::Penetration(&shape_of<btConvexShape>(pair.a), a,
+                                   &shape_of<btConvexShape>(pair.b), b,
+                                   b.getOrigin() - a.getOrigin(), results);
+      to_b = -results.normal;
+      on_a = results.witnesses[0];
+      distance = results.distance;
+    }
+    answer.overlap = distance <= 0;
+    answer.distance = static_cast<double>(distance);
+    write_vector(answer.normal, to_b.x(), to_b.y(), to_b.z());
+    write_vector(answer.point, on_a.x(), on_a.y(), on_a.z());
+  }
+
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_;
+  btDispatcherInfo info_;
+  btCollisionAlgorithm* algorithm_ = nullptr;
+  btPersistentManifold* manifold_ = nullptr;
+  btPersistentManifold* written_ = nullptr;
+  std::vector<std::unique_ptr<btConvexShape>> shapes_;
+  std::vector<btCollisionObject> objects_;
+};
+
+}  // namespace
+
+std::unique_ptr<NarrowEngine> make_bullet_narrow() {
+  return std::make_unique<BulletNarrow>();
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,337 @@
+#include "peers/adapters.h"
+#include "peers/narrow_adapter.h"
+
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/convex.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/detail/gjk_solver_indep.h>
+#include <fcl/narrowphase/detail/gjk_solver_libccd.h>
+#include <fcl/narrowphase/detail/primitive_shape_algorithm/triangle_distance.h>
+#include <fcl/narrowphase/detail/traversal/collision/intersect.h>
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <string>
+#include <type_traits>
+
+namespace winnow::bench {
+namespace {
+
+using Vector = fcl::Vector3<double>;
+using Transform = fcl::Transform3<double>;
+using Contacts = std::vector<fcl::ContactPoint<double>>;
+using SphereGeometry = fcl::Sphere<double>;
+using CapsuleGeometry = fcl::Capsule<double>;
+using BoxGeometry = fcl::Box<double>;
+using HullGeometry = fcl::Convex<double>;
+using Triangles = fcl::detail::Intersect<double>;
+using TriangleDistances = fcl::detail::TriangleDistance<double>;
+using Geometry = fcl::CollisionGeometry<double>;
+using Corners = std::array<Vector, 3>;
+
+/// A capsule's z extent, a box's sides and so on, as FCL has them.
+std::unique_ptr<Geometry> make_geometry(const ShapeTables& tables, ShapeId id) {
+  const std::uint32_t i = id.index();
+  switch (id.kind()) {
+    case ShapeKind::sphere:
+      return std::make_unique<SphereGeometry>(tables.spheres[i].radius);
+    case ShapeKind::capsule:
+      return std::make_unique<CapsuleGeometry>(tables.capsules[i].radius,
+                                               2.0 * tables.capsules[i].half_length);
+    case ShapeKind::box: {
+      const double* half = tables.boxes[i].half;
+      return std::make_unique<BoxGeometry>(2.0 * half[0], 2.0 * half[1], 2.0 * half[2]);
+    }
+    case ShapeKind::hull: {
+      const HullShape& hull = tables.hulls[i];
+      auto vertices = std::make_shared<std::vector<Vector>>();
+      for (std::uint32_t v = 0; v < hull.vertex_count; ++v) {
+        vertices->emplace_back(hull.vertex[0][v], hull.vertex[1][v], hull.vertex[2][v]);
+      }
+      auto faces = std::make_shared<std::vector<int>>();
+      for (std::uint32_t f = 0; f < hull.face_count; ++f) {
+        faces->push_back(static_cast<int>(hull.faces[f].count));
+        for (std::uint32_t k = 0; k < hull.faces[f].count; ++k) {
+          faces->push_back(static_cast<int>(hull.loop[hull.faces[f].first + k]));
+        }
+      }
+      return std::make_unique<HullGeometry>(vertices, static_cast<int>(hull.face_count), faces);
+    }
+    default:
+      return nullptr;
+  }
+}
+
+/// FCL in double, the type its library is built for, by the functions of its solvers that its
+/// collide() and distance() end in: closed forms where it has them, else GJK and EPA of libccd or
+/// of its own. FCL has no GJK for two triangles: those go to its triangle functions, which know no
+/// depth. Pairs on which the solver of libccd throws count as overlapping.
+template <typename Solver>
+class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
+ public:
+  using Self = FclNarrow<Solver>;
+  using Answerer = typename NarrowAdapter<Self>::Answerer;
+  static constexpr bool kLibccd = std::is_same_v<Solver, fcl::detail::GJKSolver_libccd<double>>;
+
+  [[nodiscard]] std::string name() const override { return kLibccd ? "FCL libccd" : "FCL indep"; }
+
+  [[nodiscard]] static Answerer answerer(const PairKind& kind, NarrowLevel level) {
+    using enum ShapeKind;
+    if (kind.a == triangle) return pick(level, &Self::cross, &Self::triangle_gap, &Self::cut);
+    if (kind.b == triangle) {
+      switch (kind.a) {
+        case sphere:
+          return against_triangle<SphereGeometry>(level);
+        case capsule:
+          return against_triangle<CapsuleGeometry>(level);
+        default:
+          return against_triangle<BoxGeometry>(level);
+      }
+    }
+    if (kind.a == capsule) return of_shapes<CapsuleGeometry, CapsuleGeometry>(level);
+    if (kind.a == box) return of_shapes<BoxGeometry, BoxGeometry>(level);
+    if (kind.a == hull) return of_shapes<HullGeometry, HullGeometry>(level);
+    switch (kind.b) {
+      case sphere:
+        return of_shapes<SphereGeometry, SphereGeometry>(level);
+      case capsule:
+        return of_shapes<SphereGeometry, CapsuleGeometry>(level);
+      default:
+        return of_shapes<SphereGeometry, BoxGeometry>(level);
+    }
+  }
+
+  void start(const PairSet& set) override {
+    this->set_kind(set.kind);
+    std::vector<Geometry*> hulls(set.pool.tables().count[static_cast<int>(ShapeKind::hull)]);
+    for (std::size_t i = 0; i < set.poses.size(); ++i) {
+      const Pose& pose = set.poses[i];
+      Body body;
+      body.at.setIdentity();
+      body.at.linear() = orientation_of(pose).toRotationMatrix();
+      body.at.translation() = Vector(pose.position[0], pose.position[1], pose.position[2]);
+      const ShapeId id = set.shapes[i];
+      const bool shared = id.kind() == ShapeKind::hull && hulls[id.index()] != nullptr;
+      if (id.kind() == ShapeKind::triangle) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double* v = set.pool.tables().triangles[id.index()].vertex[k];
+          body.corners[k] = Vector(v[0], v[1], v[2]);
+        }
+      } else if (shared) {
+        body.geometry = hulls[id.index()];
+      } else {
+        geometries_.push_back(make_geometry(set.pool.tables(), id));
+        body.geometry = geometries_.back().get();
+        if (id.kind() == ShapeKind::hull) hulls[id.index()] = geometries_.back().get();
+      }
+      bodies_.push_back(body);
+    }
+  }
+
+ private:
+  struct Body {
+    Transform at;
+    const Geometry* geometry = nullptr;
+    Corners corners;
+  };
+
+  static Answerer pick(NarrowLevel level, Answerer boolean, Answerer distance, Answerer manifold) {
+    switch (level) {
+      case NarrowLevel::boolean:
+        return boolean;
+      case NarrowLevel::distance:
+        return distance;
+      default:
+        return manifold;
+    }
+  }
+
+  template <typename A, typename B>
+  static Answerer of_shapes(NarrowLevel level) {
+    return pick(level, &Self::template verdict<A, B>, &Self::template distance<A, B>,
+                &Self::template contacts<A, B>);
+  }
+
+  template <typename A>
+  static Answerer against_triangle(NarrowLevel level) {
+    return pick(level, &Self::template triangle_verdict<A>, &Self::template triangle_distance<A>,
+                &Self::template triangle_contact<A>);
+  }
+
+  template <typename Shape>
+  static const Shape& shape_of(const Body& body) {
+    return *static_cast<const Shape*>(body.geometry);
+  }
+
+  /// Calls a function of the solver that gives a verdict.
+  template <typename Question>
+  static bool ask(Question&& question) {
+    try {
+      return question();
+    } catch (const std::exception&) {
+      return true;
+    }
+  }
+
+  static void write_points(const Vector& a, const Vector& b, double distance,
+                           NarrowAnswer& answer) {
+    answer.overlap = distance <= 0.0;
+    answer.distance = distance;
+    write_vector(answer.point, a.x(), a.y(), a.z());
+    const Vector n = (b - a) / distance;
+    write_vector(answer.normal, n.x(), n.y(), n.z());
+  }
+
+  void write_contacts(bool overlap, NarrowAnswer& answer) const {
+    answer = {};
+    answer.overlap = overlap;
+    answer.contacts = static_cast<std::uint32_t>(contacts_.size());
+    if (contacts_.empty()) return;
+    const auto* deepest = &contacts_.front();
+    for (const auto& contact : contacts_) {
+      if (contact.penetration_depth > deepest->penetration_depth) deepest = &contact;
+    }
+    answer.distance = -deepest->penetration_depth;
+    write_vector(answer.normal, deepest->normal.x(), deepest->normal.y(), deepest->normal.z());
+    write_vector(answer.point, deepest->pos.x(), deepest->pos.y(), deepest->pos.z());
+  }
+
+  template <typename A, typename B>
+  void verdict(const BodyPair& pair, NarrowAnswer& answer) {
+    const Body& a = bodies_[pair.a];
+    const Body& b = bodies_[pair.b];
+    answer.overlap =
+        ask([&] { return solver_.shapeIntersect(shape_of<A>(a), a.at, shape_of<B>(b), b.at); });
+  }
+
+  template <typename A, typename B>
+  void contacts(const BodyPair& pair, NarrowAnswer& answer) {
+    const Body& a = bodies_[pair.a];
+    const Body& b = bodies_[pair.b];
+    contacts_.clear();
+    const bool overlap = ask([&] {
+      return solver_.shapeIntersect(shape_of<A>(a), a.at, shape_of<B>(b), b.at, &contacts_);
+    });
+    write_contacts(overlap, answer);
+  }
+
+  template <typename A, typename B>
+  void distance(const BodyPair& pair, NarrowAnswer& answer) {
+    const Body& a = bodies_[pair.a];
+    const Body& b = bodies_[pair.b];
+    double distance = 0.0;
+    Vector on_a;
+    Vector on_b;
+    const bool apart =
+        solver_.shapeDistance(shape_of<A>(a), a.at, shape_of<B>(b), b.at, &distance, &on_a, &on_b);
+    if (apart && distance > 0.0) {
+      write_points(on_a, on_b, distance, answer);
+    } else {
+      contacts<A, B>(pair, answer);
+      answer.overlap = true;
+    }
+  }
+
+  template <typename A>
+  void triangle_verdict(const BodyPair& pair, NarrowAnswer& answer) {
+    const Body& a = bodies_[pair.a];
+    const Body& b = bodies_[pair.b];
+    const auto& [p, q, r] = b.corners;
+    answer.overlap =
+        ask([&] { return solver_.shapeTriangleIntersect(shape_of<A>(a), a.at, p, q, r, b.at); });
+  }
+
+  template <typename A>
+  void triangle_contact(const BodyPair& pair, NarrowAnswer& answer) {
+    const Body& a = bodies_[pair.a];
+    const Body& b = bodies_[pair.b];
+    const auto& [p, q, r] = b.corners;
+    fcl::ContactPoint<double> contact;
+    contacts_.clear();
+    const bool overlap = ask([&] {
+      return solver_.shapeTriangleIntersect(shape_of<A>(a), a.at, p, q, r, b.at, &contact.pos,
+                                            &contact.penetration_depth, &contact.normal);
+    });
+    if (overlap) contacts_.push_back(contact);
+    write_contacts(overlap, answer);
+  }
+
+  template <typename A>
+  void triangle_distance(const BodyPair& pair, NarrowAnswer& answer) {
+    const Body& a = bodies_[pair.a];
+    const Body& b = bodies_[pair.b];
+    const auto& [p, q, r] = b.corners;
+    double distance = 0.0;
+    Vector on_a;
+    Vector on_b;
+    const bool apart =
+        solver_.shapeTriangleDistance(shape_of<A>(a), a.at, p, q, r, b.at, &distance, &on_a, &on_b);
+    if (apart && distance > 0.0) {
+      write_points(on_a, on_b, distance, answer);
+    } else {
+      triangle_contact<A>(pair, answer);
+      answer.overlap = true;
+    }
+  }
+
+  static Transform relative(const Body& a, const Body& b) {
+    return a.at.inverse(Eigen::Isometry) * b.at;
+  }
+
+  void cross(const BodyPair& pair, NarrowAnswer& answer) {
+    const Body& a = bodies_[pair.a];
+    const Body& b = bodies_[pair.b];
+    const auto& [p, q, r] = a.corners;
+    const auto& [s, t, u] = b.corners;
+    answer.overlap = Triangles::intersect_Triangle(p, q, r, s, t, u, relative(a, b));
+  }
+
+  void cut(const BodyPair& pair, NarrowAnswer& answer) {
+    const Body& a = bodies_[pair.a];
+    const Body& b = bodies_[pair.b];
+    const auto& [p, q, r] = a.corners;
+    const auto& [s, t, u] = b.corners;
+    Vector points[8];
+    unsigned int count = 0;
+    double depth = 0.0;
+    Vector normal;
+    answer = {};
+    answer.overlap = Triangles::intersect_Triangle(p, q, r, s, t, u, relative(a, b), points, &count,
+                                                   &depth, &normal);
+    answer.contacts = count;
+  }
+
+  void triangle_gap(const BodyPair& pair, NarrowAnswer& answer) {
+    const Body& a = bodies_[pair.a];
+    const Body& b = bodies_[pair.b];
+    Vector on_a;
+    Vector on_b;
+    const double distance = TriangleDistances::triDistance(a.corners.data(), b.corners.data(),
+                                                           relative(a, b), on_a, on_b);
+    if (distance > 0.0) {
+      write_points(a.at * on_a, a.at * on_b, distance, answer);
+    } else {
+      answer = {};
+      answer.overlap = true;
+    }
+  }
+
+  Solver solver_;
+  std::vector<std::unique_ptr<Geometry>> geometries_;
+  std::vector<Body> bodies_;
+  Contacts contacts_;
+};
+
+}  // namespace
+
+std::unique_ptr<NarrowEngine> make_fcl_libccd() {
+  return std::make_unique<FclNarrow<fcl::detail::GJKSolver_libccd<double>>>();
+}
+
+std::unique_ptr<NarrowEngine> make_fcl_indep() {
+  return std::make_unique<FclNarrow<fcl::detail::GJKSolver_indep<double>>>();
+}
+
+}  // namespace winnow::bench

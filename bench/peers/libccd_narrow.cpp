@@ -1,0 +1,224 @@
+#include "peers/adapters.h"
+#include "peers/narrow_adapter.h"
+
+#include <ccd/ccd.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+namespace winnow::bench {
+namespace {
+
+/// A body as the support functions read it.
+struct Body {
+  double turn[9];  // rotation, by columns
+  double position[3];
+  double size[3];  // half lengths of a box; radius and half length of the round ones
+  const double* vertex[3];
+  std::uint32_t vertices;
+  double corner[3][3];
+};
+
+void to_local(const Body& body, const ccd_vec3_t& world, double (&local)[3]) {
+  for (int i = 0; i < 3; ++i) {
+    const double* column = body.turn + 3 * i;
+    local[i] = column[0] * world.v[0] + column[1] * world.v[1] + column[2] * world.v[2];
+  }
+}
+
+void to_world(const Body& body, const double (&local)[3], ccd_vec3_t& world) {
+  for (int i = 0; i < 3; ++i) {
+    world.v[i] = body.position[i] + body.turn[i] * local[0] + body.turn[3 + i] * local[1] +
+                 body.turn[6 + i] * local[2];
+  }
+}
+
+double length_of(const ccd_vec3_t& v) {
+  return std::sqrt(v.v[0] * v.v[0] + v.v[1] * v.v[1] + v.v[2] * v.v[2]);
+}
+
+void add_radius(const ccd_vec3_t& direction, double radius, ccd_vec3_t& point) {
+  const double factor = radius / length_of(direction);
+  for (int i = 0; i < 3; ++i) point.v[i] += factor * direction.v[i];
+}
+
+// Support points: of the body, in a direction of any length, both in world coordinates.
+
+void of_sphere(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
+  const Body& body = *static_cast<const Body*>(object);
+  std::copy_n(body.position, 3, point->v);
+  add_radius(*direction, body.size[0], *point);
+}
+
+void of_capsule(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
+  const Body& body = *static_cast<const Body*>(object);
+  const double* axis = body.turn + 6;
+  const double along =
+      axis[0] * direction->v[0] + axis[1] * direction->v[1] + axis[2] * direction->v[2];
+  const double h = along < 0.0 ? -body.size[1] : body.size[1];
+  for (int i = 0; i < 3; ++i) point->v[i] = body.position[i] + h * axis[i];
+  add_radius(*direction, body.size[0], *point);
+}
+
+void of_box(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
+  const Body& body = *static_cast<const Body*>(object);
+  double local[3];
+  to_local(body, *direction, local);
+  for (int i = 0; i < 3; ++i) local[i] = std::copysign(body.size[i], local[i]);
+  to_world(body, local, *point);
+}
+
+void of_triangle(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
+  const Body& body = *static_cast<const Body*>(object);
+  double local[3];
+  to_local(body, *direction, local);
+  int best = 0;
+  double most = -HUGE_VAL;
+  for (int i = 0; i < 3; ++i) {
+    const double* v = body.corner[i];
+    const double along = v[0] * local[0] + v[1] * local[1] + v[2] * local[2];
+    if (along > most) {
+      most = along;
+      best = i;
+    }
+  }
+  to_world(body, body.corner[best], *point);
+}
+
+void of_hull(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
+  const Body& body = *static_cast<const Body*>(object);
+  double local[3];
+  to_local(body, *direction, local);
+  std::uint32_t best = 0;
+  double most = -HUGE_VAL;
+  for (std::uint32_t i = 0; i < body.vertices; ++i) {
+    const double along =
+        body.vertex[0][i] * local[0] + body.vertex[1][i] * local[1] + body.vertex[2][i] * local[2];
+    if (along > most) {
+      most = along;
+      best = i;
+    }
+  }
+  const double at[3] = {body.vertex[0][best], body.vertex[1][best], body.vertex[2][best]};
+  to_world(body, at, *point);
+}
+
+/// All shapes measured contain their frame's origin.
+void center_of(const void* object, ccd_vec3_t* center) {
+  std::copy_n(static_cast<const Body*>(object)->position, 3, center->v);
+}
+
+ccd_support_fn support_of(ShapeKind kind) {
+  switch (kind) {
+    case ShapeKind::sphere:
+      return of_sphere;
+    case ShapeKind::capsule:
+      return of_capsule;
+    case ShapeKind::box:
+      return of_box;
+    case ShapeKind::triangle:
+      return of_triangle;
+    default:
+      return of_hull;
+  }
+}
+
+Body make_body(const ShapeTables& tables, ShapeId id, const Pose& pose) {
+  Body body{};
+  Eigen::Map<Eigen::Matrix3d>(body.turn) = orientation_of(pose).toRotationMatrix();
+  std::copy_n(pose.position, 3, body.position);
+  switch (id.kind()) {
+    case ShapeKind::sphere:
+      body.size[0] = tables.spheres[id.index()].radius;
+      break;
+    case ShapeKind::capsule:
+      body.size[0] = tables.capsules[id.index()].radius;
+      body.size[1] = tables.capsules[id.index()].half_length;
+      break;
+    case ShapeKind::box:
+      std::copy_n(tables.boxes[id.index()].half, 3, body.size);
+      break;
+    case ShapeKind::triangle:
+      for (int i = 0; i < 3; ++i) {
+        std::copy_n(tables.triangles[id.index()].vertex[i], 3, body.corner[i]);
+      }
+      break;
+    default:
+      std::copy_n(tables.hulls[id.index()].vertex, 3, body.vertex);
+      body.vertices = tables.hulls[id.index()].vertex_count;
+  }
+  return body;
+}
+
+/// libccd in double with support functions of our own. It has verdicts and one contact of pairs
+/// that overlap, by GJK and EPA or by MPR, and no distance of those that do not. Its own
+/// tolerances; iterations bounded, so that it ends.
+class LibccdNarrow final : public NarrowAdapter<LibccdNarrow> {
+ public:
+  explicit LibccdNarrow(bool portals) : portals_(portals) {
+    CCD_INIT(&ccd_);
+    ccd_.center1 = center_of;
+    ccd_.center2 = center_of;
+    ccd_.max_iterations = 100;
+  }
+
+  [[nodiscard]] std::string name() const override { return portals_ ? "libccd MPR" : "libccd GJK"; }
+
+  [[nodiscard]] static Answerer answerer(const PairKind&, NarrowLevel level) {
+    switch (level) {
+      case NarrowLevel::boolean:
+        return &LibccdNarrow::verdict;
+      case NarrowLevel::manifold:
+        return &LibccdNarrow::contact;
+      default:
+        return nullptr;
+    }
+  }
+
+  void start(const PairSet& set) override {
+    set_kind(set.kind);
+    ccd_.support1 = support_of(set.kind.a);
+    ccd_.support2 = support_of(set.kind.b);
+    for (std::size_t i = 0; i < set.poses.size(); ++i) {
+      bodies_.push_back(make_body(set.pool.tables(), set.shapes[i], set.poses[i]));
+    }
+  }
+
+ private:
+  void verdict(const BodyPair& pair, NarrowAnswer& answer) {
+    const auto intersect = portals_ ? ccdMPRIntersect : ccdGJKIntersect;
+    answer.overlap = intersect(&bodies_[pair.a], &bodies_[pair.b], &ccd_) != 0;
+  }
+
+  void contact(const BodyPair& pair, NarrowAnswer& answer) {
+    const auto penetration = portals_ ? ccdMPRPenetration : ccdGJKPenetration;
+    ccd_real_t depth = 0.0;
+    ccd_vec3_t along{};
+    ccd_vec3_t point{};
+    answer = {};
+    answer.overlap =
+        penetration(&bodies_[pair.a], &bodies_[pair.b], &ccd_, &depth, &along, &point) == 0;
+    if (!answer.overlap) return;
+    answer.contacts = 1;
+    answer.distance = -depth;
+    write_vector(answer.normal, along.v[0], along.v[1], along.v[2]);
+    write_vector(answer.point, point.v[0], point.v[1], point.v[2]);
+  }
+
+  bool portals_;
+  ccd_t ccd_;
+  std::vector<Body> bodies_;
+};
+
+}  // namespace
+
+std::unique_ptr<NarrowEngine> make_libccd_gjk() {
+  return std::make_unique<LibccdNarrow>(false);
+}
+
+std::unique_ptr<NarrowEngine> make_libccd_mpr() {
+  return std::make_unique<LibccdNarrow>(true);
+}
+
+}  // namespace winnow::bench

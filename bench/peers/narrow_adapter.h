@@ -1,0 +1,49 @@
+#pragma once
+
+#include "peers/narrow_engine.h"
+
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace winnow::bench {
+
+/// What adapters of other libraries share: a function that answers one pair, chosen by kind and
+/// level, and room for the answers.
+template <typename Adapter>
+class NarrowAdapter : public NarrowEngine {
+ public:
+  using Answerer = void (Adapter::*)(const BodyPair&, NarrowAnswer&);
+
+  [[nodiscard]] bool takes(const PairKind& kind, NarrowLevel level) const final {
+    return Adapter::answerer(kind, level) != nullptr;
+  }
+
+  void run(NarrowLevel level, std::span<const BodyPair> pairs) final {
+    answers_.resize(pairs.size());
+    const Answerer one = Adapter::answerer(kind_, level);
+    auto& adapter = static_cast<Adapter&>(*this);
+    for (std::size_t i = 0; i < pairs.size(); ++i) (adapter.*one)(pairs[i], answers_[i]);
+  }
+
+  [[nodiscard]] NarrowAnswer answer(std::size_t i) const final { return answers_[i]; }
+
+ protected:
+  void set_kind(const PairKind& kind) { kind_ = kind; }
+
+ private:
+  PairKind kind_;
+  std::vector<NarrowAnswer> answers_;
+};
+
+[[nodiscard]] inline Eigen::Quaterniond orientation_of(const Pose& pose) {
+  const double* q = pose.orientation;
+  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+}
+
+inline void write_vector(double (&to)[3], double x, double y, double z) noexcept {
+  to[0] = x;
+  to[1] = y;
+  to[2] = z;
+}
+
+}  // namespace winnow::bench

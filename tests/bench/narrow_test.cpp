@@ -1,0 +1,140 @@
+// Pairs that the narrow phase is measured on, and what is counted about answers.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "narrow/accuracy.h"
+#include "narrow/narrow_race.h"
+#include "narrow/winnow_narrow.h"
+
+namespace winnow::bench {
+namespace {
+
+constexpr std::size_t kPairs = 100;
+
+std::vector<bool> verdicts(const PairSet& set) {
+  WinnowNarrow engine(NarrowTier::reference, 1);
+  engine.start(set);
+  engine.run(NarrowLevel::boolean, set.pairs);
+  std::vector<bool> overlap;
+  for (std::size_t i = 0; i < set.pairs.size(); ++i) overlap.push_back(engine.answer(i).overlap);
+  return overlap;
+}
+
+bool has_hulls() {
+  ShapePool pool;
+  ShapeId id;
+  const Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  return pool.add_hull(std::span(&point, 1), 0.0, id) == Status::ok;
+}
+
+class PairSets : public testing::TestWithParam<PairKind> {
+ protected:
+  void SetUp() override {
+    if (GetParam().hull_vertices > 0 && !has_hulls()) GTEST_SKIP() << "built without qhull";
+  }
+};
+
+TEST_P(PairSets, half_of_the_pairs_overlap) {
+  const std::vector<bool> overlap = verdicts(*make_pair_set(GetParam(), {.pairs = kPairs}));
+  EXPECT_EQ(std::count(overlap.begin(), overlap.end(), true), kPairs / 2);
+}
+
+TEST_P(PairSets, are_the_same_for_the_same_seed) {
+  const auto one = make_pair_set(GetParam(), {.pairs = kPairs, .seed = 5, .scattered = true});
+  const auto other = make_pair_set(GetParam(), {.pairs = kPairs, .seed = 5, .scattered = true});
+  EXPECT_EQ(one->shapes, other->shapes);
+  EXPECT_EQ(one->radius, other->radius);
+  EXPECT_EQ(std::memcmp(one->poses.data(), other->poses.data(), 2 * kPairs * sizeof(Pose)), 0);
+}
+
+TEST_P(PairSets, give_every_pair_bodies_of_its_own) {
+  const auto set = make_pair_set(GetParam(), {.pairs = kPairs, .scattered = true});
+  std::vector<int> used(set->poses.size());
+  for (const BodyPair& pair : set->pairs) {
+    ++used[pair.a];
+    ++used[pair.b];
+    EXPECT_EQ(set->shapes[pair.a].kind(), GetParam().a);
+    EXPECT_EQ(set->shapes[pair.b].kind(), GetParam().b);
+  }
+  EXPECT_EQ(std::count(used.begin(), used.end(), 1), 2 * kPairs);
+}
+
+std::vector<PairKind> kinds() {
+  return {pair_kinds().begin(), pair_kinds().end()};
+}
+
+std::string name_of(const testing::TestParamInfo<PairKind>& kind) {
+  std::string name(kind.param.name);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, PairSets, testing::ValuesIn(kinds()), name_of);
+
+/// Says of every pair what it is told to.
+class Parrot final : public NarrowEngine {
+ public:
+  explicit Parrot(NarrowAnswer answer) : answer_(answer) {}
+  [[nodiscard]] std::string name() const override { return "parrot"; }
+  [[nodiscard]] bool takes(const PairKind&, NarrowLevel) const override { return true; }
+  void start(const PairSet&) override {}
+  void run(NarrowLevel, std::span<const BodyPair>) override {}
+  [[nodiscard]] NarrowAnswer answer(std::size_t) const override { return answer_; }
+
+ private:
+  NarrowAnswer answer_;
+};
+
+Accuracy judged(const NarrowAnswer& answer, const PairTruth& truth) {
+  const auto set = make_pair_set(pair_kinds().front(), {.pairs = 1});
+  Parrot parrot(answer);
+  return judge_engine(parrot, NarrowLevel::distance, *set, std::span(&truth, 1));
+}
+
+const PairTruth kApart{.known = true,
+                       .overlap = false,
+                       .distance = 1.0L,
+                       .normal = {1.0, 0.0, 0.0},
+                       .normal_unique = true,
+                       .size = 3.0};
+
+TEST(Accuracy, errors_are_relative_to_sizes_and_distance) {
+  const Accuracy accuracy =
+      judged({.distance = 1.5, .error_bound = 0.5, .normal = {1.0, 0.0, 0.0}}, kApart);
+  EXPECT_EQ(accuracy.worst_error, 0.125);
+  EXPECT_EQ(accuracy.p99_error, 0.125);
+  EXPECT_EQ(accuracy.beyond_bound, 0U);
+  EXPECT_EQ(accuracy.wrong, 0U);
+  EXPECT_EQ(accuracy.normals_off, 0U);
+  EXPECT_EQ(accuracy.missing, 0U);
+}
+
+TEST(Accuracy, every_fault_is_counted) {
+  const Accuracy accuracy = judged(
+      {.overlap = true, .distance = 1.5, .error_bound = 0.25, .normal = {1.0, 1e-3, 0.0}}, kApart);
+  EXPECT_EQ(accuracy.wrong, 1U);
+  EXPECT_EQ(accuracy.beyond_bound, 1U);
+  EXPECT_EQ(accuracy.normals_off, 1U);
+}
+
+TEST(Accuracy, an_answer_without_a_distance_is_missing) {
+  EXPECT_EQ(judged({}, kApart).missing, 1U);
+}
+
+TEST(NarrowRace, counts_verdicts_that_differ_from_the_first) {
+  const auto set = make_pair_set(pair_kinds().front(), {.pairs = kPairs});
+  std::vector<NarrowContender> contenders;
+  contenders.push_back({std::make_unique<WinnowNarrow>(NarrowTier::robust, 1), 1});
+  contenders.push_back({std::make_unique<Parrot>(NarrowAnswer{.overlap = true}), 1});
+  for (const NarrowContender& contender : contenders) contender.engine->start(*set);
+  const auto timings = race_pairs(*set, NarrowLevel::boolean, contenders, {.rounds = 1});
+  ASSERT_EQ(timings.size(), 2U);
+  EXPECT_EQ(timings[0].disagree, 0U);
+  EXPECT_EQ(timings[1].disagree, kPairs / 2);
+}
+
+}  // namespace
+}  // namespace winnow::bench
