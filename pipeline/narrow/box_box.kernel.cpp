@@ -58,7 +58,7 @@ template <typename T>
   const Truth<T> better = lower > axis.separation;
   for (int r = 0; r < 3; ++r) normal[r] = select(better, d[r], axis.normal[r]);
   const Real<T> least = select(better, lower, axis.separation);
-  gap = distance - least;
+  gap = abs(distance - least);
   // Points far from the closest ones, which float lanes answer with all the same: no contact is
   // lost.
   distance = select(gap <= pair.scale * Real<T>(kWidestGap<T>), distance, least);

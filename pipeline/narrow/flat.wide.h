@@ -97,6 +97,18 @@ template <typename T>
              index);
 }
 
+/// Whether bodies at one position are to be turned: by their shapes, then by their orientations.
+inline bool turn_concentric(const NarrowJob& job, const BodyPair& pair) {
+  const std::uint32_t shape_a = job.shapes[pair.a].bits;
+  const std::uint32_t shape_b = job.shapes[pair.b].bits;
+  if (shape_a != shape_b) return shape_b < shape_a;
+  const double* a = job.poses[pair.a].orientation;
+  const double* b = job.poses[pair.b].orientation;
+  int i = 0;
+  while (i < 3 && a[i] == b[i]) ++i;
+  return b[i] < a[i];
+}
+
 /// Pairs of one kind in an order that does not depend on which is called a: the first component of
 /// the offset that is not zero is positive. Answers are turned back.
 template <typename T>
@@ -114,7 +126,7 @@ struct OrderedBlock {
       const double* b = job.poses[pair.b].position;
       int i = 0;
       while (i < 2 && a[i] == b[i]) ++i;
-      const bool turn = b[i] < a[i];
+      const bool turn = a[i] == b[i] ? turn_concentric(job, pair) : b[i] < a[i];
       pairs[lane] = turn ? BodyPair{pair.b, pair.a} : pair;
       sign[lane] = turn ? T(-1) : T(1);
     }

@@ -91,7 +91,7 @@ template <int L, typename Staged, typename Pair, typename Axis, typename T>
       const Real<T> lower = pair.along(n);
       const Truth<T> better = lower > axis.separation;
       const Real<T> least = select(better, lower, axis.separation);
-      const Real<T> gap = length - least;
+      const Real<T> gap = abs(length - least);
       // Points far from the closest ones, which float lanes answer with all the same: no contact
       // is lost.
       const Real<T> distance = select(gap <= pair.scale * Real<T>(kWidestGap<T>), length, least);
