@@ -85,31 +85,24 @@ template <typename T>
 }
 
 template <typename T>
-[[gnu::always_inline]] inline Touch<T> select(const Truth<T>& mask, const Touch<T>& a,
-                                              const Touch<T>& b) {
-  return {{winnow::WINNOW_ISA_NAME::select(mask, a.feet.s, b.feet.s),
-           winnow::WINNOW_ISA_NAME::select(mask, a.feet.t, b.feet.t)},
-          winnow::WINNOW_ISA_NAME::select(mask, a.distance, b.distance)};
+[[gnu::always_inline]] inline ContactLanes<T> choose(const Truth<T>& mask, const ContactLanes<T>& a,
+                                                     const ContactLanes<T>& b) {
+  return {select(mask, a.position, b.position), select(mask, a.depth, b.depth),
+          select(mask, a.feature_a, b.feature_a), select(mask, a.feature_b, b.feature_b), b.lanes};
+}
+
+template <typename T>
+[[gnu::always_inline]] inline Truth<T> are_parallel(const Couple<T>& p) {
+  return dot(p.across, p.across) < Real<T>(T(0.01));
 }
 
 /// Capsules that are parallel to 0.1 touch at the two ends of the stretch along which they lie side
-/// by side, as far as those are within the margin; others where they are closest.
+/// by side, as far as those are within the margin; others at `closest`. By value and not inlined:
+/// few blocks have any, and the others' lanes stay in registers.
 template <typename T>
-[[gnu::always_inline]] inline void write_touches(NarrowJob& job, const PairBlock<T>& block,
-                                                 const Couple<T>& p,
-                                                 const CertifiedLanes<T>& answer) {
+[[gnu::noinline]] void write_ends(NarrowJob& job, PairBlock<T> block, Couple<T> p,
+                                  CertifiedLanes<T> answer, ContactLanes<T> closest) {
   const Real<T> margin(static_cast<T>(job.margin));
-  const Touch<T> closest{p.feet, answer.distance};
-  const Mask16 near = bits(answer.distance <= margin) & answer.certified & block.lanes();
-  // Back from b to a where the couple is.
-  const Vec3<T> normal = select(p.swapped, -answer.normal, answer.normal);
-  const Truth<T> parallel = dot(p.across, p.across) < Real<T>(T(0.01));
-  if (bits(parallel) == 0) {
-    ContactLanes<T> contact = contact_of(p, normal, closest);
-    contact.lanes = near;
-    write_contacts(job, block, {contact});
-    return;
-  }
   const Real<T> middle = dot(p.axis[0], p.c);
   const Real<T> reach = p.half[1] * abs(dot(p.axis[0], p.axis[1]));
   const Real<T> low = max(middle - reach, -p.half[0]);
@@ -118,17 +111,19 @@ template <typename T>
   // The deeper end stands for the closest point if that is hardly deeper; capsules that cross have
   // one point.
   const Real<T> behind = min(ends[0].distance, ends[1].distance) - answer.distance;
-  const Truth<T> side_by_side = parallel &
+  const Truth<T> side_by_side = are_parallel(p) &
                                 (high - low > (p.half[0] + p.half[1]) * Real<T>(T(1e-3))) &
                                 (behind <= p.witness.radius * Real<T>(T(1e-3)));
   ends[0].distance -= behind;
   ends[1].distance -= behind;
   const Truth<T> near_low = side_by_side & (ends[0].distance <= margin);
   const Truth<T> near_high = side_by_side & (ends[1].distance <= margin);
-  const Touch<T> chosen = select(near_low, ends[0], select(near_high, ends[1], closest));
-  ContactLanes<T> contacts[2] = {contact_of(p, normal, chosen), contact_of(p, normal, ends[1])};
-  contacts[0].lanes = near;
-  contacts[1].lanes = bits(near_low & near_high) & near;
+  // Back from b to a where the couple is.
+  const Vec3<T> normal = select(p.swapped, -answer.normal, answer.normal);
+  ContactLanes<T> contacts[2] = {closest, contact_of(p, normal, ends[1])};
+  contacts[0] = choose(near_high, contacts[1], contacts[0]);
+  contacts[0] = choose(near_low, contact_of(p, normal, ends[0]), contacts[0]);
+  contacts[1].lanes = bits(near_low & near_high) & closest.lanes;
   write_contacts(job, block, contacts);
 }
 
@@ -145,7 +140,18 @@ struct CapsuleCapsule {
       const Real<T> radius = select(p.swapped, p.radius[1], p.radius[0]);
       const Vec3<T> foot = select(p.swapped, p.axis[1] * p.feet.t, p.axis[0] * p.feet.s);
       write_certified<L>(job, block, answer, foot, radius);
-      if constexpr (L == kManifold) write_touches(job, block, p, answer);
+      if constexpr (L == kManifold) {
+        const Real<T> first = segment_feature(p.feet.s, p.half[0]);
+        const Real<T> second = segment_feature(p.feet.t, p.half[1]);
+        const ContactLanes<T> closest =
+            witness_contact(job, block, answer, foot, radius, select(p.swapped, second, first),
+                            select(p.swapped, first, second));
+        if (bits(are_parallel(p)) == 0) {
+          write_contacts(job, block, {closest});
+        } else {
+          write_ends(job, block, p, answer, closest);
+        }
+      }
       return ~answer.certified;
     }
   }

@@ -1,8 +1,8 @@
 // Half-spaces against spheres, capsules, boxes and triangles: the vertices' heights over the plane.
 // A half-space reaches to infinity, so the direction is always that of its plane.
 
-#include <winnow/pipeline/narrow/box_view.wide.h>
 #include <winnow/pipeline/narrow/kernels.h>
+#include <winnow/pipeline/narrow/segments.wide.h>
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {

@@ -1,4 +1,4 @@
-#include <winnow/pipeline/narrow/box_view.wide.h>
+#include <winnow/pipeline/narrow/box_feature.wide.h>
 #include <winnow/pipeline/narrow/kernels.h>
 
 namespace winnow {
