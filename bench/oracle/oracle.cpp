@@ -3,9 +3,11 @@
 #include "oracle/least_overlap.h"
 #include "oracle/min_norm.h"
 #include "oracle/polytope.h"
+#include "oracle/round_core.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace winnow::oracle {
 namespace {
@@ -15,6 +17,9 @@ namespace {
 const Number kZero("1e-58");
 /// Directions that are as good to within this part of the sizes are equally good.
 constexpr double kEquallyGood = 1e-9;
+/// Polytopes inside of round shapes come as close as this part of the sizes, in so many rounds.
+constexpr double kClosed = 1e-13;
+constexpr int kRounds = 12;
 /// Cosine of 0.1 degrees.
 constexpr double kSameDirection = 0.99999847691328769;
 
@@ -51,9 +56,8 @@ struct Placed {
   Number sizes;
 };
 
-Placed place_pair(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
-                  const Pose& pose_b) {
-  Placed placed{core_of(tables, a), core_of(tables, b), 0, 0};
+Placed place_pair(Polytope a, const Pose& pose_a, Polytope b, const Pose& pose_b) {
+  Placed placed{std::move(a), std::move(b), 0, 0};
   placed.sizes = radius_of(placed.a) + radius_of(placed.b);
   const Vector<Number> between = difference(pose_a, pose_b);
   Number reach = length(between) + placed.sizes;
@@ -65,56 +69,89 @@ Placed place_pair(const ShapeTables& tables, ShapeId a, const Pose& pose_a, Shap
   return placed;
 }
 
-Truth of_polytopes(const Placed& placed) {
-  Truth truth;
-  truth.size = placed.sizes.convert_to<double>();
+/// The signed distance of the cores, the direction of it and whether there is no other.
+struct CoreGap {
+  bool proven = false;
+  Number width = 0;
+  Vector<Number> normal;
+  bool unique = false;
+};
+
+CoreGap core_gap(const Placed& placed) {
+  CoreGap gap;
   Simplex simplex{{{0, 0}}};
   static_cast<void>(nearest_point<double>(placed.a, placed.b, simplex));
   const Nearest<Number> nearest = nearest_point<Number>(placed.a, placed.b, simplex);
-  if (!nearest.proven) return truth;
-  const Number rounding = placed.a.rounding + placed.b.rounding;
+  if (!nearest.proven) return gap;
+  gap.proven = true;
   const double slack =
       std::max(kEquallyGood * (placed.sizes * placed.scale).convert_to<double>(), 1e-30);
   if (nearest.upper > kZero) {
-    set_normal(truth, nearest.point * (1 / nearest.upper));
-    set_distance(truth, nearest.upper - rounding, 1 / placed.scale);
-    truth.normal_unique = nearest.upper > Number(slack);
-  } else {
-    const LeastOverlap least = least_overlap(placed.a, placed.b, slack);
-    const auto& best = least.direction.front();
-    set_normal(truth, best.normal);
-    set_distance(truth, best.gap - rounding, 1 / placed.scale);
-    truth.normal_unique =
-        std::all_of(least.direction.begin(), least.direction.end(),
-                    [&](const auto& d) { return dot(d.normal, best.normal) > kSameDirection; });
+    gap.width = nearest.upper;
+    gap.normal = nearest.point * (1 / nearest.upper);
+    gap.unique = nearest.upper > Number(slack);
+    return gap;
   }
+  const LeastOverlap least = least_overlap(placed.a, placed.b, slack);
+  const auto& best = least.direction.front();
+  gap.width = best.gap;
+  gap.normal = best.normal;
+  gap.unique = std::all_of(least.direction.begin(), least.direction.end(), [&](const auto& d) {
+    return dot(d.normal, best.normal) > kSameDirection;
+  });
+  return gap;
+}
+
+Truth truth_of(const Placed& placed, const CoreGap& gap) {
+  Truth truth;
+  truth.size = placed.sizes.convert_to<double>();
+  if (!gap.proven) return truth;
   truth.known = true;
+  truth.normal_unique = gap.unique;
+  set_normal(truth, gap.normal);
+  set_distance(truth, gap.width - placed.a.rounding - placed.b.rounding, 1 / placed.scale);
   return truth;
 }
 
-/// The least of n.x over a shape in its own frame, for a direction of length 1.
-Number least_along(const ShapeTables& tables, ShapeId shape, const Vector<Number>& n,
-                   Number& radius) {
-  const auto round = [&](double disc, double half, double rounding, bool apex) {
-    const Number side = sqrt(n.x * n.x + n.y * n.y) * disc;
-    radius = sqrt(Number(disc) * disc + Number(half) * half) + rounding;
-    const Number top = n.z * half - (apex ? Number(0) : side);
-    return std::min(top, Number(-n.z * half - side)) - rounding;
-  };
-  const std::uint32_t i = shape.index();
-  if (shape.kind() == ShapeKind::cylinder) {
-    const CylinderShape& s = tables.cylinders[i];
-    return round(s.radius, s.half_length, s.rounding, false);
+/// A shape of a pair with a cylinder or a cone, and where its rims are looked at closely.
+struct Body {
+  ShapeId shape;
+  const Pose& pose;
+  Vector<Number> aim;
+
+  [[nodiscard]] Polytope core(const ShapeTables& tables) const {
+    return has_polytope(shape.kind()) ? core_of(tables, shape) : inscribed(tables, shape, aim);
   }
-  if (shape.kind() == ShapeKind::cone) {
-    const ConeShape& s = tables.cones[i];
-    return round(s.radius, s.half_length, s.rounding, true);
+  /// A direction of the world in the frame of the shape.
+  [[nodiscard]] Vector<Number> local(const Vector<Number>& n) const {
+    const double* q = pose.orientation;
+    const double back[4] = {q[0], -q[1], -q[2], -q[3]};
+    return rotate(back, n);
   }
-  const Polytope core = core_of(tables, shape);
-  radius = radius_of(core);
-  Number least = dot(n, core.vertex.front());
-  for (const auto& v : core.vertex) least = std::min(least, dot(n, v));
-  return least - core.rounding;
+};
+
+/// Polytopes inside the shapes are no closer than these and overlap no more; the gap along any
+/// direction is no wider than their distance. What lies between is closed by looking closer at
+/// where the rims are farthest along the normal.
+Truth of_round_shapes(const ShapeTables& tables, Body a, Body b) {
+  const Vector<Number> between = difference(a.pose, b.pose);
+  for (int round = 0; round < kRounds; ++round) {
+    const Placed placed = place_pair(a.core(tables), a.pose, b.core(tables), b.pose);
+    const CoreGap gap = core_gap(placed);
+    if (!gap.proven) return {};
+    const Vector<Number> n = gap.normal;
+    a.aim = a.local(n);
+    b.aim = b.local(n * Number(-1));
+    const Number upper = (gap.width - placed.a.rounding - placed.b.rounding) / placed.scale;
+    const Number lower = dot(n, between) + least_along(tables, a.shape, a.aim * Number(-1)) +
+                         least_along(tables, b.shape, b.aim * Number(-1));
+    if (upper - lower > Number(kClosed) * (placed.sizes + length(between))) continue;
+    Truth truth = truth_of(placed, gap);
+    truth.slack = (upper - lower).convert_to<double>();
+    truth.known = upper <= 0 || lower > 0;
+    return truth;
+  }
+  return {};
 }
 
 /// A shape over a half-space; the normal is from the half-space to the shape.
@@ -126,8 +163,9 @@ Truth over_half_space(const ShapeTables& tables, ShapeId shape, const Pose& pose
   n = rotate(half_pose.orientation, n * (1 / length(n)));
   const double back[4] = {pose.orientation[0], -pose.orientation[1], -pose.orientation[2],
                           -pose.orientation[3]};
-  Number radius;
-  const Number least = least_along(tables, shape, rotate(back, n), radius);
+  const Number least = least_along(tables, shape, rotate(back, n));
+  const Number radius =
+      radius_of(has_polytope(shape.kind()) ? core_of(tables, shape) : inscribed(tables, shape, n));
   const Vector<Number> between = difference(half_pose, pose);
   const Number height = dot(n, between) + least - offset;
   const Number unit_length = length(between) + radius + abs(offset);
@@ -155,8 +193,11 @@ Truth solve(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
     for (double& x : truth.normal) x = -x;
     return truth;
   }
-  if (!has_polytope(a.kind()) || !has_polytope(b.kind())) return {};
-  return of_polytopes(place_pair(tables, a, pose_a, b, pose_b));
+  if (!has_polytope(a.kind()) || !has_polytope(b.kind())) {
+    return of_round_shapes(tables, {a, pose_a, {1, 0, 0}}, {b, pose_b, {1, 0, 0}});
+  }
+  const Placed placed = place_pair(core_of(tables, a), pose_a, core_of(tables, b), pose_b);
+  return truth_of(placed, core_gap(placed));
 }
 
 }  // namespace winnow::oracle

@@ -72,11 +72,16 @@ TEST_P(Properties, exchanged_bodies_have_mirrored_answers) {
     for (std::size_t i = 0; i < there.size(); ++i) {
       const PairAnswers& p = there[i];
       const PairAnswers& q = again[i];
-      if (p.overlap != q.overlap || p.distance != q.distance || p.error_bound != q.error_bound) {
+      // Bodies in one place have no first and second, and rims are closed in on from one side.
+      const bool exactly =
+          !is_curved(scene_, scene_.pairs[i]) && between(scene_, scene_.pairs[i]).norm() > 0.0;
+      const double allowed = exactly ? 0.0 : p.error_bound + q.error_bound;
+      if (p.overlap != q.overlap || !(std::abs(p.distance - q.distance) <= allowed)) {
         complain("exchanged distance", scene_.pairs[i], q.distance, p.distance);
       }
       // Where several normals are equally good, the frame of a decides.
-      if (GetParam() == PairStyle::ordinary && p.normal != -q.normal) {
+      if (GetParam() == PairStyle::ordinary &&
+          (p.normal + q.normal).norm() > (exactly ? 0.0 : 1e-5)) {
         complain("exchanged normal", scene_.pairs[i], (p.normal + q.normal).norm(), 0.0);
       }
     }

@@ -48,7 +48,7 @@ std::vector<PairAnswers> ask_tier(const PairScene& scene, NarrowTier tier, Narro
 /// What is wrong with an answer; empty if nothing is.
 std::string fault(const oracle::Truth& truth, const PairAnswers& answer, const Promise& promise,
                   bool is_distance) {
-  if (!truth.known) return "the oracle has no answer";
+  if (!truth.known) return {};
   const bool must_decide = promise.exact_sign;
   if (must_decide && answer.overlap != truth.overlap) {
     return truth.overlap ? "contact lost" : "false contact";
@@ -61,10 +61,12 @@ std::string fault(const oracle::Truth& truth, const PairAnswers& answer, const P
   if (bound < 0.0) return "negative bound";
   const long double error = std::abs(static_cast<long double>(distance) - truth.distance);
   const long double scale = truth.size + std::abs(truth.distance);
-  if (error > promise.error * scale) {
+  // Depths of rims end with the rounding of square roots.
+  const double least = truth.slack > 0.0 ? 1e-10 : 0.0;
+  if (error > std::max(promise.error, least) * scale) {
     return "error " + std::to_string(static_cast<double>(std::log10(error / scale)));
   }
-  if (error > bound) return "error above its bound";
+  if (error > bound + truth.slack) return "error above its bound";
   if (std::abs(n.norm() - 1.0) > (promise.exact_sign ? 1e-12 : 1e-5)) return "normal not unit";
   const Eigen::Vector3d expected(truth.normal[0], truth.normal[1], truth.normal[2]);
   if (promise.exact_sign && truth.normal_unique &&
@@ -94,16 +96,16 @@ void expect_faultless(const PairScene& scene, const std::vector<oracle::Truth>& 
 
 using KindPair = std::tuple<ShapeKind, ShapeKind>;
 
+bool is_round(ShapeKind kind) {
+  return kind == ShapeKind::cylinder || kind == ShapeKind::cone;
+}
+
 std::vector<KindPair> known_pairs() {
   std::vector<KindPair> pairs;
-  const std::vector<ShapeKind> kinds = polytope_kinds();
-  for (const ShapeKind a : kinds) {
-    for (const ShapeKind b : kinds) {
-      if (a <= b) pairs.emplace_back(a, b);
-    }
-  }
   for (const ShapeKind a : all_kinds()) {
-    if (a != ShapeKind::half_space) pairs.emplace_back(a, ShapeKind::half_space);
+    for (const ShapeKind b : all_kinds()) {
+      if (a <= b && a != ShapeKind::half_space) pairs.emplace_back(a, b);
+    }
   }
   return pairs;
 }
@@ -116,8 +118,11 @@ TEST_P(Oracle, agrees_with_every_tier_and_level) {
   Random random(static_cast<std::uint64_t>(a) * 64 + static_cast<std::uint64_t>(b) * 8 +
                 static_cast<std::uint64_t>(style));
   PairScene scene;
-  add_pairs(scene, a, b, style, scaled(100), random);
+  // The oracle takes its time over rims, and cannot prove that they touch.
+  const bool round = (is_round(a) || is_round(b)) && b != ShapeKind::half_space;
+  add_pairs(scene, a, b, style, scaled(round ? 2 : 100), random);
   const std::vector<oracle::Truth> truths = truths_of(scene);
+  for (const oracle::Truth& truth : truths) EXPECT_TRUE(truth.known || round);
   for (const Promise& promise : kPromises) {
     for (const NarrowLevel level : {NarrowLevel::boolean, NarrowLevel::distance}) {
       expect_faultless(scene, truths, ask_tier(scene, promise.tier, level), promise, level);

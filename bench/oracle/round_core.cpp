@@ -1,0 +1,108 @@
+#include "oracle/round_core.h"
+
+#include <algorithm>
+
+namespace winnow::oracle {
+namespace {
+
+using Vec = Vector<Number>;
+
+struct Round {
+  double radius;
+  double half_length;
+  double rounding;
+  bool has_apex;
+};
+
+Round round_of(const ShapeTables& tables, ShapeId shape) {
+  const std::uint32_t i = shape.index();
+  if (shape.kind() == ShapeKind::cylinder) {
+    const CylinderShape& s = tables.cylinders[i];
+    return {s.radius, s.half_length, s.rounding, false};
+  }
+  const ConeShape& s = tables.cones[i];
+  return {s.radius, s.half_length, s.rounding, true};
+}
+
+/// Points of the unit circle in order, crowded about the direction of (x, y).
+std::vector<Vec> circle(const Vec& aim) {
+  const Number size = sqrt(aim.x * aim.x + aim.y * aim.y);
+  const Vec to = size == 0 ? Vec{1, 0, 0} : Vec{aim.x / size, aim.y / size, 0};
+  // Tangents of half of the angles to it: a turn by 2 atan t is rational.
+  std::vector<Number> tangents{0};
+  for (int i = 2; i < 24; ++i) tangents.push_back(ldexp(Number(1), -i));
+  for (const double t : {0.5, 0.75, 1.0, 1.5, 2.5, 6.0}) tangents.push_back(t);
+  std::sort(tangents.begin(), tangents.end());
+  std::vector<Vec> points;
+  const auto add = [&](const Number& t) {
+    const Number c = (1 - t * t) / (1 + t * t);
+    const Number s = 2 * t / (1 + t * t);
+    points.push_back({to.x * c - to.y * s, to.x * s + to.y * c, 0});
+  };
+  for (auto t = tangents.rbegin(); t + 1 != tangents.rend(); ++t) add(-*t);
+  for (const Number& t : tangents) add(t);
+  return points;
+}
+
+void add_edge(Polytope& core, const Vec& from, const Vec& to, const Vec& beside, const Vec& other) {
+  const Vec along = to - from;
+  if (along.x == 0 && along.y == 0 && along.z == 0) return;
+  const auto unit = [](const Vec& v) { return rounded(v * (1 / length(v))); };
+  core.edge.push_back({along, {unit(beside), unit(other)}, true});
+}
+
+}  // namespace
+
+Polytope inscribed(const ShapeTables& tables, ShapeId shape, const Vector<Number>& aim) {
+  const Round round = round_of(tables, shape);
+  const Vec up{0, 0, 1};
+  const Vec down{0, 0, -1};
+  Polytope core;
+  core.rounding = round.rounding;
+  core.normal = {up, {1, 0, 0}, {0, 1, 0}};
+  const Vec top{0, 0, round.half_length};
+  if (round.radius == 0.0) {
+    core.vertex = {top, top * Number(-1)};
+    if (round.half_length > 0.0) core.edge.push_back({up, {}, false});
+    return core;
+  }
+  const std::vector<Vec> rim = circle(aim);
+  const std::size_t count = rim.size();
+  std::vector<Vec> side;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec middle = rim[i] + rim[(i + 1) % count];
+    const Vec out = middle * (1 / length(middle));
+    // Of a cone it rises as the side does, whose distance from the axis is that of the chord.
+    const Number chord = round.radius * length(middle) / 2;
+    side.push_back(round.has_apex ? out * (2 * Number(round.half_length)) + up * chord : out);
+    core.normal.push_back(side.back());
+  }
+  const auto at = [&](std::size_t i, int sign) {
+    return rim[i % count] * Number(round.radius) + top * Number(sign);
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec& before = side[(i + count - 1) % count];
+    core.vertex.push_back(at(i, -1));
+    if (!round.has_apex) core.vertex.push_back(at(i, 1));
+    add_edge(core, at(i, -1), at(i + 1, -1), down, side[i]);
+    if (!round.has_apex) add_edge(core, at(i, 1), at(i + 1, 1), up, side[i]);
+    add_edge(core, at(i, -1), round.has_apex ? top : at(i, 1), before, side[i]);
+  }
+  if (round.has_apex) core.vertex.push_back(top);
+  return core;
+}
+
+Number least_along(const ShapeTables& tables, ShapeId shape, const Vector<Number>& n) {
+  if (has_polytope(shape.kind())) {
+    const Polytope core = core_of(tables, shape);
+    Number least = dot(n, core.vertex.front());
+    for (const Vec& v : core.vertex) least = std::min(least, dot(n, v));
+    return least - core.rounding;
+  }
+  const Round round = round_of(tables, shape);
+  const Number side = sqrt(n.x * n.x + n.y * n.y) * round.radius;
+  const Number end = n.z * round.half_length - (round.has_apex ? Number(0) : side);
+  return std::min(end, Number(-n.z * round.half_length - side)) - round.rounding;
+}
+
+}  // namespace winnow::oracle
