@@ -22,7 +22,8 @@ enum class [[nodiscard]] Status : std::uint8_t{
     too_many_objects,
     /// The partition does not hold this kind of bounding volume.
     unsupported_volume,
-    /// A shape has a length that is negative, NaN or infinite, or no shape can be made of the points.
+    /// A shape has a length that is negative, NaN or infinite, or no shape can be made of the
+    /// points.
     invalid_shape,
     /// A pose is NaN or infinite, or its quaternion is zero.
     invalid_pose,
