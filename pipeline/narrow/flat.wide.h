@@ -23,9 +23,9 @@ template <typename T>
 template <typename T>
 inline constexpr T kSlack = T(48) * kEpsilon<T>;
 
-/// Bounds are at most this share of the scale, or the pair goes to the solver. Float answers all.
+/// Bounds are at most this share of the scale, or the pair goes to the solver.
 template <typename T>
-inline constexpr T kWidestBound = sizeof(T) == sizeof(double) ? T(1e-12) : T(1e30F);
+inline constexpr T kWidestBound = sizeof(T) == sizeof(double) ? T(1e-12) : T(1e-4F);
 
 /// Two points are the closest if they are farther apart than the cores certainly are by no more
 /// than this share of the scale.
@@ -156,7 +156,12 @@ template <typename T>
   if constexpr (sizeof(T) == sizeof(double)) {
     return bits(valid & (abs(answer.distance) > answer.error_bound));
   }
-  return bits(valid & (abs(answer.distance) <= scale * Real<T>(T(4))));
+  // Squares of products of edges must stay in range, also where one shape is 1e5 times smaller than
+  // the other, and a normal that is not unit says nothing.
+  const Truth<T> moderate = (scale > Real<T>(T(4e-3F))) & (scale < Real<T>(T(1e4F)));
+  const Real<T> length2 = dot(answer.normal, answer.normal);
+  return bits(valid & moderate & (length2 > Real<T>(T(0.99F))) &
+              (abs(answer.distance) <= scale * Real<T>(T(4))));
 }
 
 /// Turns answers back to the caller's order. `offset` is from a to b as the kernel had them.

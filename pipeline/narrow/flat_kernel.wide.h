@@ -20,6 +20,10 @@ struct PointPair {
   }
 };
 
+/// How far the deepest contact may be from the depth of the pair, as a share of the scale.
+template <typename T>
+inline constexpr T kDeepest = sizeof(T) == sizeof(double) ? T(1e-6) : T(1e-4F);
+
 template <typename T>
 [[gnu::always_inline]] inline Real<T> clamp_unit(const Real<T>& t) {
   return max(min(t, Real<T>(T(1))), Real<T>(T(0)));
@@ -131,14 +135,26 @@ template <int L, typename Staged, typename T, typename Pair>
   if constexpr (L == kManifold) {
     const Mask16 touching = certified & bits(core.distance <= margin);
     const Staged stage(pair, core.normal);
+    // A patch that leaves out where the shapes are closest is no manifold.
+    Stage<T, 2> expected;
+    expected.put(0, core.distance);
+    expected.put(1, core.error_bound + pair.scale * Real<T>(kDeepest<T>));
+    Mask16 missed = 0;
     write_patch_contacts<T>(job, given, touching, stage.offset(), sign,
-                            [&](unsigned lane, ContactPoint* points) {
+                            [&](unsigned lane, ContactPoint* points) -> std::uint32_t {
                               FlatPatch a;
                               FlatPatch b;
                               double normal[3];
                               stage.patches(lane, a, b, normal);
-                              return flat_contacts(a, b, normal, job.margin, points);
+                              const auto count = flat_contacts(a, b, normal, job.margin, points);
+                              const T off =
+                                  static_cast<T>(points[0].depth) + expected.value[0][lane];
+                              const T most = expected.value[1][lane];
+                              if (count > 0 && off <= most && off >= -most) return count;
+                              missed |= 1U << lane;
+                              return 0;
                             });
+    return ~certified | missed;
   }
   return ~certified;
 }

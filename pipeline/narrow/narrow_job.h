@@ -77,8 +77,8 @@ using NarrowKernel = std::uint32_t (*)(NarrowJob& job);
 
 /// The kernels of one pair kind. Null: there is none, and the solver answers.
 struct NarrowKernels {
-  /// By NarrowLevel. Tier fast: all lanes in float; a pair goes to `uncertified` only if it left
-  /// float's range.
+  /// By NarrowLevel. Tier fast: all lanes in float; a pair goes to `uncertified` if it left float's
+  /// range, or if its lanes found no answer that is good to about 1e-4 of the sizes.
   NarrowKernel fast[3];
   /// Tier robust: what is not in `uncertified` has the right sign and a bound of at most
   /// 1e-12 x (sizes + |distance|).
