@@ -56,9 +56,9 @@ endif()
 target_compile_options(winnow_flags INTERFACE ${winnow_sanitize})
 target_link_options(winnow_flags INTERFACE ${winnow_sanitize})
 
-# winnow_library(room SOURCES ... KERNELS ... LINKS ...): one of the four library modules.
+# winnow_library(room SOURCES ... KERNELS ... LINKS ... PRECOMPILED ...): one of the four library modules.
 function(winnow_library room)
-  cmake_parse_arguments(arg "" "" "SOURCES;KERNELS;LINKS;PRIVATE_LINKS" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;KERNELS;LINKS;PRIVATE_LINKS;PRECOMPILED" ${ARGN})
   set(target winnow_${room})
   add_library(${target} ${arg_SOURCES})
   add_library(winnow::${room} ALIAS ${target})
@@ -69,6 +69,10 @@ function(winnow_library room)
   target_link_libraries(${target} PUBLIC ${arg_LINKS} PRIVATE $<BUILD_INTERFACE:winnow_flags>
                         ${arg_PRIVATE_LINKS})
   target_compile_definitions(${target} PRIVATE ${WINNOW_ISA_DEFINITIONS})
+  # Eigen takes longer to read than what is written with it. A compiler cache does better without.
+  if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND arg_PRECOMPILED)
+    target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILED})
+  endif()
   if(arg_KERNELS)
     winnow_add_kernels(${target} ${arg_KERNELS})
   endif()
