@@ -1,5 +1,5 @@
 #include <winnow/pipeline/narrow/box_closest.wide.h>
-#include <winnow/pipeline/narrow/flat_contacts.wide.h>
+#include <winnow/pipeline/narrow/flat_kernel.wide.h>
 #include <winnow/pipeline/narrow/kernels.h>
 
 namespace winnow {
@@ -88,26 +88,6 @@ template <typename T>
   off = bits(out > near);
 }
 
-// Puts the points of some lanes to where the faces of both boxes are.
-template <typename T>
-void correct_points(const BoxPair<T>& pair, CoreAnswer<T>& answer, Mask16 lanes) {
-  const BoxStage<T> stage(pair, answer.normal);
-  Stage<T, 3> point;
-  point.put(0, answer.point);
-  for (; lanes != 0; lanes &= lanes - 1) {
-    const unsigned lane = first(lanes);
-    FlatPatch a;
-    FlatPatch b;
-    double normal[3];
-    double p[3];
-    stage.patches(lane, a, b, normal);
-    deepest_point(a, b, normal, p);
-    for (int r = 0; r < 3; ++r) point.value[r][lane] = static_cast<T>(p[r]);
-  }
-  answer.point = {Real<T>::load(point.value[0]), Real<T>::load(point.value[1]),
-                  Real<T>::load(point.value[2])};
-}
-
 // Answers about the cores of a block. Lanes that are apart get their distance if it is `wanted`,
 // else the separation.
 template <int L, typename T>
@@ -148,7 +128,7 @@ template <int L, typename T>
   if constexpr (L == kDistance) {
     answer.point = pair.to_world(point);
     off &= ~bits(apart);
-    if (off != 0) correct_points(pair, answer, off);
+    if (off != 0) correct_points<BoxStage<T>>(pair, answer, off);
   }
   return answer;
 }

@@ -105,17 +105,6 @@ TEST_F(Batches, the_place_in_the_batch_and_earlier_calls_do_not_matter) {
   }
 }
 
-/// Of the bodies of a pair; half-spaces count as nothing.
-double size_of(const PairScene& scene, BodyPair pair) {
-  double size = 0.0;
-  for (const std::uint32_t body : {pair.a, pair.b}) {
-    if (scene.shapes[body].kind() == ShapeKind::half_space) continue;
-    const Aabb box = scene.pool.bounds(scene.shapes[body], scene.poses[body]);
-    size += static_cast<double>((box.max - box.min).norm());
-  }
-  return size;
-}
-
 TEST_F(Batches, levels_agree) {
   for (const NarrowTier tier : kTiers) {
     const auto yes_no = ask(scene_, {.level = NarrowLevel::boolean, .tier = tier});
@@ -129,7 +118,7 @@ TEST_F(Batches, levels_agree) {
       const double slack = d.error_bound + m.error_bound;
       // Tier fast may be wrong about the sign, but not by more than it says or, at level boolean,
       // where it says nothing, by more than float makes of the sizes.
-      const double blur = 1e-5 * size_of(scene_, scene_.pairs[i]);
+      const double blur = 1e-5 * extent(scene_, scene_.pairs[i]);
       const bool decided = tier != NarrowTier::fast || std::abs(d.distance) > slack + blur;
       bool good = !decided || (yes_no[i].overlap == d.overlap && m.overlap == d.overlap);
       good = good && d.overlap == (d.distance <= 0.0);
