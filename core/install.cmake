@@ -23,13 +23,16 @@ foreach(room core simd partitions pipeline)
           PATTERN "compress.h" EXCLUDE
           PATTERN "*.wide.h" EXCLUDE
           PATTERN "exact" EXCLUDE
+          PATTERN "mesh" EXCLUDE
+          PATTERN "mid" EXCLUDE
           PATTERN "narrow" EXCLUDE
           PATTERN "rays" EXCLUDE
+          PATTERN "scene" EXCLUDE
           PATTERN "solver" EXCLUDE
           PATTERN "hull_builder.h" EXCLUDE
           PATTERN "winnow.h" EXCLUDE)
 endforeach()
-foreach(header narrow/narrow_job narrow/narrow_result narrow/pair_buckets solver/solver)
+foreach(header mesh/mesh_view narrow/narrow_job narrow/narrow_result narrow/pair_buckets solver/solver)
   get_filename_component(folder ${header} DIRECTORY)
   install(FILES ${PROJECT_SOURCE_DIR}/pipeline/${header}.h
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow/pipeline/${folder})

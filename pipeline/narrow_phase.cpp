@@ -58,9 +58,15 @@ NarrowPhase::NarrowPhase(std::pmr::memory_resource* memory) noexcept
 Status NarrowPhase::collide(const ShapePool& shapes, const Bodies& bodies,
                             std::span<const BodyPair> pairs, const NarrowOptions& options,
                             NarrowResult& result) {
+  return collide(shapes.tables(), bodies, pairs, options, result);
+}
+
+Status NarrowPhase::collide(const ShapeTables& tables, const Bodies& bodies,
+                            std::span<const BodyPair> pairs, const NarrowOptions& options,
+                            NarrowResult& result) {
   statistics_ = {};
   bad_body_ = ~0U;
-  const Call call{shapes.tables(), bodies, pairs, options};
+  const Call call{tables, bodies, pairs, options};
   Status status = Status::ok;
   if (bodies.shapes.size() != bodies.poses.size()) {
     status = Status::size_mismatch;

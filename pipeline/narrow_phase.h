@@ -64,6 +64,9 @@ class NarrowPhase {
   /// a sphere): then `result` is empty and `bad_body` tells.
   Status collide(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
                  const NarrowOptions& options, NarrowResult& result);
+  /// The same with shapes that lie elsewhere than in a pool.
+  Status collide(const ShapeTables& tables, const Bodies& bodies, std::span<const BodyPair> pairs,
+                 const NarrowOptions& options, NarrowResult& result);
 
   /// Of the last call.
   [[nodiscard]] const NarrowStatistics& statistics() const noexcept { return statistics_; }

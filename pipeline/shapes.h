@@ -20,6 +20,11 @@ enum class ShapeKind : std::uint8_t {
 };
 inline constexpr std::uint32_t kShapeKinds = 8;
 
+/// The kinds of shape made of many convex ones, held by a CompositePool. Numbered after those of
+/// ShapeKind, which their ids share the space with.
+enum class CompositeKind : std::uint8_t { mesh = 8, compound, height_field };
+inline constexpr std::uint32_t kAllShapeKinds = 11;
+
 /// The enumerator's name. Never null.
 [[nodiscard]] const char* to_string(ShapeKind kind) noexcept;
 
@@ -31,8 +36,18 @@ struct ShapeId {
   [[nodiscard]] static constexpr ShapeId of(ShapeKind kind, std::uint32_t index) noexcept {
     return {static_cast<std::uint32_t>(kind) << kIndexBits | index};
   }
-  /// 8 or more for the default id, which is no shape.
+  [[nodiscard]] static constexpr ShapeId of(CompositeKind kind, std::uint32_t index) noexcept {
+    return {static_cast<std::uint32_t>(kind) << kIndexBits | index};
+  }
+  /// A ShapeKind below kShapeKinds, a CompositeKind below kAllShapeKinds; 15 for the default id,
+  /// which is no shape.
   [[nodiscard]] constexpr std::uint32_t kind_index() const noexcept { return bits >> kIndexBits; }
+  [[nodiscard]] constexpr bool is_composite() const noexcept {
+    return kind_index() >= kShapeKinds && kind_index() < kAllShapeKinds;
+  }
+  [[nodiscard]] constexpr CompositeKind composite_kind() const noexcept {
+    return static_cast<CompositeKind>(kind_index());
+  }
   [[nodiscard]] constexpr ShapeKind kind() const noexcept {
     return static_cast<ShapeKind>(kind_index());
   }

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <winnow/core/pose.h>
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <span>
+
+namespace winnow {
+
+/// Poses where the caller keeps them: pointers to the three coordinates of position (double) and
+/// the four of orientation (w, x, y, z; double or float), and the distance in bytes from one pose
+/// to the next. Nothing is copied to make one, and it must not outlive the memory it looks at.
+/// Without orientations bodies do not turn.
+struct PoseView {
+  std::array<const double*, 3> position{};
+  std::size_t position_stride = sizeof(double);
+  std::array<const double*, 4> orientation{};
+  /// Read where `orientation` is null.
+  std::array<const float*, 4> orientation_float{};
+  std::size_t orientation_stride = sizeof(double);
+  std::size_t count = 0;
+
+  PoseView() = default;
+
+  /// An array of poses.
+  PoseView(std::span<const Pose> poses) noexcept {  // NOLINT(google-explicit-constructor)
+    if (poses.empty()) return;
+    for (std::size_t axis = 0; axis < 3; ++axis) position[axis] = poses.data()->position + axis;
+    for (std::size_t k = 0; k < 4; ++k) orientation[k] = poses.data()->orientation + k;
+    position_stride = orientation_stride = sizeof(Pose);
+    count = poses.size();
+  }
+
+  /// Any contiguous container of poses.
+  template <typename Poses>
+  requires(std::convertible_to<const Poses&, std::span<const Pose>> &&
+           !std::same_as<Poses, std::span<const Pose>> && !std::same_as<Poses, PoseView>)
+      PoseView(const Poses& poses)
+  noexcept  // NOLINT(google-explicit-constructor)
+      : PoseView(std::span<const Pose>(poses)) {}
+
+  /// Columns, or members of any struct.
+  PoseView(std::array<const double*, 3> positions, std::array<const float*, 4> orientations,
+           std::size_t poses, std::size_t position_bytes = sizeof(double),
+           std::size_t orientation_bytes = sizeof(float)) noexcept
+      : position(positions),
+        position_stride(position_bytes),
+        orientation_float(orientations),
+        orientation_stride(orientation_bytes),
+        count(poses) {}
+  PoseView(std::array<const double*, 3> positions, std::array<const double*, 4> orientations,
+           std::size_t poses, std::size_t position_bytes = sizeof(double),
+           std::size_t orientation_bytes = sizeof(double)) noexcept
+      : position(positions),
+        position_stride(position_bytes),
+        orientation(orientations),
+        orientation_stride(orientation_bytes),
+        count(poses) {}
+
+  [[nodiscard]] Pose operator[](std::size_t i) const noexcept {
+    Pose pose;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      pose.position[axis] = at(position[axis], i, position_stride);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (orientation[k] != nullptr) {
+        pose.orientation[k] = at(orientation[k], i, orientation_stride);
+      } else if (orientation_float[k] != nullptr) {
+        pose.orientation[k] = static_cast<double>(at(orientation_float[k], i, orientation_stride));
+      }
+    }
+    return pose;
+  }
+
+ private:
+  template <typename T>
+  [[nodiscard]] static T at(const T* column, std::size_t i, std::size_t stride) noexcept {
+    return *reinterpret_cast<const T*>(reinterpret_cast<const std::byte*>(column) + i * stride);
+  }
+};
+
+}  // namespace winnow

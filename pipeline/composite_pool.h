@@ -1,0 +1,76 @@
+#pragma once
+
+#include <winnow/core/point_view.h>
+#include <winnow/pipeline/height_field.h>
+#include <winnow/pipeline/mid_phase.h>
+#include <winnow/pipeline/triangle_mesh.h>
+
+#include <array>
+#include <memory>
+
+namespace winnow {
+
+/// A convex shape of a ShapePool and where it stands in its compound.
+struct CompoundChild {
+  ShapeId shape;
+  Pose pose;
+};
+
+/// Shapes made of many: triangle meshes, compounds of convex shapes, height fields. Bodies refer to
+/// them by id and may share them; one mesh may stand at many poses and in many scales. Queries are
+/// taken into the shape's own frame: what moves a mesh costs nothing of its tree.
+class CompositePool final : public MidPhase {
+ public:
+  /// `shapes` holds the children of compounds and must outlive this.
+  explicit CompositePool(const ShapePool& shapes, std::pmr::memory_resource* memory =
+                                                      std::pmr::get_default_resource()) noexcept;
+  ~CompositePool() override;
+
+  /// See TriangleMesh::build.
+  Status add_mesh(const PointView& vertices, const IndexView& triangles, ShapeId& id,
+                  const MeshOptions& options = {},
+                  const Execution& execution = Execution::parallel());
+  /// The same triangles, multiplied by `scale` along the axes of the mesh: an id of its own that
+  /// shares them. Finite factors, none zero; negative ones mirror. Scales of scales multiply. The
+  /// triangles live until the last id is removed.
+  Status add_scaled(ShapeId mesh, const std::array<double, 3>& scale, ShapeId& id);
+  /// New places for the vertices of a mesh, seen by all its scaled ids. See TriangleMesh::refit.
+  Status refit_mesh(ShapeId mesh, const PointView& vertices,
+                    const Execution& execution = Execution::parallel());
+  /// See HeightField::build.
+  Status add_height_field(const HeightSamples& samples, ShapeId& id);
+  Status update_height_field(ShapeId field, std::uint32_t column, std::uint32_t row,
+                             const HeightSamples& samples);
+  /// A tree of children. `invalid_shape` if there are none, `invalid_key` for a child that the
+  /// ShapePool does not have (composite children among them), `invalid_pose`. Children must stay in
+  /// the ShapePool while the compound lives.
+  Status add_compound(std::span<const CompoundChild> children, ShapeId& id);
+
+  /// Bodies must not use the id any more.
+  Status remove(ShapeId id);
+  [[nodiscard]] std::size_t size(CompositeKind kind) const noexcept;
+  /// Null for ids of other kinds, or that are not there.
+  [[nodiscard]] const TriangleMesh* mesh(ShapeId id) const noexcept;
+  [[nodiscard]] const HeightField* height_field(ShapeId id) const noexcept;
+  [[nodiscard]] std::span<const CompoundChild> children(ShapeId compound) const noexcept;
+
+  [[nodiscard]] bool contains(ShapeId id) const noexcept override;
+  [[nodiscard]] Aabb bounds(ShapeId id, const Pose& pose) const noexcept override;
+  [[nodiscard]] double radius(ShapeId id) const noexcept override;
+  [[nodiscard]] std::uint64_t revision() const noexcept override;
+  Status expand(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
+                double margin, const Execution& execution, PrimitivePairs& out) const override;
+  void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
+              NarrowResult& result) const override;
+  void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
+             const PrimitiveVisitor& visitor) const override;
+  void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
+                  const PrimitiveVisitor& visitor) const override;
+  [[nodiscard]] Footprint footprint() const noexcept override;
+
+ private:
+  struct State;
+  State* state_;
+};
+
+}  // namespace winnow

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <winnow/core/column.h>
+#include <winnow/core/footprint.h>
+#include <winnow/core/key.h>
+#include <winnow/pipeline/narrow/narrow_result.h>
+
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+/// How much a scene is asked about its pairs. A lower level does not pay for a higher one.
+enum class SceneLevel : std::uint8_t {
+  /// Pairs of bodies whose boxes, grown by half of the margin, meet.
+  pairs,
+  /// Those that share a point, and which of their parts do.
+  boolean,
+  /// Those no farther apart than the margin: distance or depth, normal, closest points.
+  distance,
+  /// The same with contact points.
+  manifold,
+};
+
+/// What became of a pair of bodies since these Contacts were last filled.
+enum class ContactEvent : std::uint8_t { begun, persisted };
+
+/// Pairs of bodies whose shapes are of the same two kinds, next to each other. Kinds as in
+/// ShapeId::kind_index.
+struct ContactRun {
+  std::uint8_t kind_a = 0;
+  std::uint8_t kind_b = 0;
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
+/// A pair that was there when these Contacts were last filled and is not now. A removed body's key
+/// is stale.
+struct EndedContact {
+  Key a;
+  Key b;
+  ClientData data_a = 0;
+  ClientData data_b = 0;
+};
+
+/// What `Scene::collide` found, as columns: pairs of bodies, sorted by the kinds of their shapes
+/// and then by body; for each pair its manifolds, one for each pair of parts that touch (one alone
+/// if both shapes are convex); for each manifold its points. In a pair, a is the body with the
+/// smaller kind of shape, or the smaller id if they are of one kind.
+///
+/// The caller's, reused from frame to frame: it remembers what was found, so that events can be
+/// told and manifolds of what rests carried over. Fresh ones, or cleared ones, remember nothing.
+/// Not for use from two threads at once.
+class Contacts {
+ public:
+  explicit Contacts(std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+  ~Contacts();
+  Contacts(Contacts&& other) noexcept;
+  Contacts(const Contacts&) = delete;
+  Contacts& operator=(const Contacts&) = delete;
+  Contacts& operator=(Contacts&&) = delete;
+
+  [[nodiscard]] SceneLevel level() const noexcept;
+  /// Pairs of bodies.
+  [[nodiscard]] std::size_t size() const noexcept;
+  [[nodiscard]] std::span<const ContactRun> runs() const noexcept;
+  [[nodiscard]] std::span<const Key> a() const noexcept;
+  [[nodiscard]] std::span<const Key> b() const noexcept;
+  [[nodiscard]] std::span<const ClientData> data_a() const noexcept;
+  [[nodiscard]] std::span<const ClientData> data_b() const noexcept;
+  [[nodiscard]] std::span<const ContactEvent> event() const noexcept;
+  [[nodiscard]] std::span<const EndedContact> ended() const noexcept;
+
+  /// Manifolds of pair i: [manifold_first()[i], manifold_first()[i + 1]). None at level pairs.
+  [[nodiscard]] std::span<const std::uint32_t> manifold_first() const noexcept;
+  [[nodiscard]] std::size_t manifolds() const noexcept;
+  /// The parts that touch: numbers of triangles or children, kWholeShape of convex shapes.
+  [[nodiscard]] std::span<const std::uint32_t> part_a() const noexcept;
+  [[nodiscard]] std::span<const std::uint32_t> part_b() const noexcept;
+  /// Levels distance and manifold: negative by the depth of penetration; the true one is within
+  /// distance +- error_bound.
+  [[nodiscard]] std::span<const double> distance() const noexcept;
+  [[nodiscard]] std::span<const double> error_bound() const noexcept;
+  /// Unit, from a to b, in the axes of the world.
+  [[nodiscard]] std::span<const double> normal(int axis) const noexcept;
+  /// Level distance: the closest (or deepest) point of a, relative to the position of body a. That
+  /// of b is distance * normal farther.
+  [[nodiscard]] std::span<const double> point(int axis) const noexcept;
+
+  /// Level manifold: points of manifold m are [point_first()[m], point_first()[m + 1]). Positions
+  /// are relative to that of body a, in the axes of the world, halfway between the surfaces.
+  [[nodiscard]] std::span<const std::uint32_t> point_first() const noexcept;
+  [[nodiscard]] std::size_t points() const noexcept;
+  [[nodiscard]] ContactPoint contact(std::size_t point) const noexcept;
+
+  /// How many pairs kept the manifolds they had.
+  [[nodiscard]] std::size_t carried() const noexcept;
+
+  /// Forgets everything; memory is kept.
+  void clear() noexcept;
+  /// Columns that can be read under `results`, what is remembered beside them under `scratch`.
+  [[nodiscard]] Footprint footprint() const noexcept;
+
+ private:
+  friend class Scene;
+  struct State;
+  State* state_;
+};
+
+}  // namespace winnow

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/column.h>
+#include <winnow/core/footprint.h>
+#include <winnow/core/status.h>
+#include <winnow/pipeline/mesh/mesh_view.h>
+#include <winnow/pipeline/shapes.h>
+
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+/// Heights where the caller keeps them: sample (column, row) is `heights[row * row_stride +
+/// column]` and stands at (column * spacing[0], row * spacing[1], height) in the shape's frame. NaN
+/// is a hole: squares with one have no triangles.
+struct HeightSamples {
+  std::span<const float> heights;
+  std::uint32_t columns = 0;
+  std::uint32_t rows = 0;
+  std::uint32_t row_stride = 0;  ///< 0: columns
+  double spacing[2] = {1.0, 1.0};
+};
+
+/// A surface over a regular grid, z up: each square is two triangles that share the diagonal from
+/// its lowest column and row to its highest. No tree of boxes: cells are found by division, and a
+/// pyramid of the least and greatest heights of 16 x 16 squares prunes. Triangle 2 * square is the
+/// one with the corner at (column + 1, row), 2 * square + 1 that at (column, row + 1); squares are
+/// numbered row by row.
+class HeightField {
+ public:
+  explicit HeightField(
+      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+  HeightField(HeightField&&) noexcept = default;
+
+  /// Takes a copy. `invalid_shape` for fewer than 2 x 2 samples, an infinite height, a spacing that
+  /// is not positive and finite; `size_mismatch` if `heights` is too short; `too_many_objects`
+  /// beyond 2^28 triangles.
+  Status build(const HeightSamples& samples);
+  /// New heights for the samples [column, column + columns) x [row, row + rows).
+  Status update(std::uint32_t column, std::uint32_t row, const HeightSamples& samples);
+
+  [[nodiscard]] Aabb bounds() const noexcept;
+  [[nodiscard]] double radius() const noexcept;
+  [[nodiscard]] std::uint32_t columns() const noexcept { return columns_; }
+  [[nodiscard]] std::uint32_t rows() const noexcept { return rows_; }
+  /// Triangles, those of holes included.
+  [[nodiscard]] std::uint32_t triangles() const noexcept;
+  /// False for a triangle of a hole.
+  [[nodiscard]] bool triangle(std::uint32_t number, TriangleShape& shape) const noexcept;
+  /// Which of its edges bend outward by more than the angle of MeshOptions; all at the border.
+  [[nodiscard]] std::uint8_t active_edges(std::uint32_t number) const noexcept;
+
+  /// The numbers of all triangles whose boxes meet [min, max] in the shape's frame, ascending;
+  /// counts on where there is no room.
+  void overlap(const double min[3], const double max[3], SlotSink& out) const noexcept;
+  /// As mesh_sweep and mesh_near.
+  void sweep(const double min[3], const double max[3], const double direction[3], double limit,
+             const SlotVisitor& visitor) const noexcept;
+  void near(const double min[3], const double max[3], double limit,
+            const SlotVisitor& visitor) const noexcept;
+
+  [[nodiscard]] Footprint footprint() const noexcept;
+
+ private:
+  Column<float> heights_;
+  std::uint32_t columns_ = 0;
+  std::uint32_t rows_ = 0;
+  double spacing_[2] = {1.0, 1.0};
+};
+
+}  // namespace winnow

@@ -1,0 +1,67 @@
+#pragma once
+
+// Plain structs: kernel files include this.
+
+#include <cstdint>
+
+namespace winnow {
+
+/// Triangles of a leaf, and children of a node.
+inline constexpr std::uint32_t kMeshFanout = 16;
+/// Levels of a 16-ary tree over at most 2^28 triangles.
+inline constexpr std::uint32_t kMaxMeshLevels = 7;
+/// Where `MeshView::triangle` keeps which edges are active: bit 28 + k for edge k.
+inline constexpr std::uint32_t kActiveEdgeShift = 28;
+
+/// A triangle mesh as its walks read it. A slot is a place in the order of the tree: leaf i holds
+/// slots [16 i, 16 i + 16). Columns of slots are padded to a multiple of 16 by copies of the last
+/// one, levels by empty boxes.
+struct MeshView {
+  const float* vertex[3] = {};
+  std::uint32_t vertex_count = 0;
+  /// Numbers of the corners, by slot.
+  const std::uint32_t* corner[3] = {};
+  /// The caller's number of the triangle in the low 28 bits, and its active edges.
+  const std::uint32_t* triangle = nullptr;
+  std::uint32_t triangle_count = 0;
+  /// A quantised bound q stands for origin + q * step; lower bounds are rounded down and upper ones
+  /// up, so that the box contains what is below it.
+  float origin[3] = {};
+  float step[3] = {};
+  /// Node i of level 0 bounds leaf i, node i of level l + 1 nodes [16 i, 16 i + 16) of level l. The
+  /// top level has at most 16 nodes.
+  std::uint32_t levels = 0;
+  std::uint32_t count[kMaxMeshLevels] = {};
+  const std::uint16_t* node[kMaxMeshLevels][6] = {};
+};
+
+/// x -> matrix x + offset: from the frame of one mesh to that of another, scales included.
+struct MeshPlacement {
+  double matrix[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  double offset[3] = {0, 0, 0};
+};
+
+/// Where a walk writes the slots it found. `size` counts on where there is no room: make room for
+/// that many and walk again.
+struct SlotSink {
+  std::uint32_t* slot = nullptr;
+  std::uint64_t capacity = 0;
+  std::uint64_t size = 0;
+};
+
+/// The same for pairs of slots.
+struct SlotPairSink {
+  std::uint32_t* first = nullptr;
+  std::uint32_t* second = nullptr;
+  std::uint64_t capacity = 0;
+  std::uint64_t size = 0;
+};
+
+/// Is shown the slots that a walk in order finds, 16 or fewer at a time; gives back the new limit.
+struct SlotVisitor {
+  double (*visit)(void* context, const std::uint32_t* slots, std::uint32_t count,
+                  double limit) = nullptr;
+  void* context = nullptr;
+};
+
+}  // namespace winnow

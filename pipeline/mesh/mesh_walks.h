@@ -1,0 +1,30 @@
+#pragma once
+
+#include <winnow/pipeline/mesh/mesh_view.h>
+
+namespace winnow {
+
+// Walks over a mesh's tree, in the mesh's own frame, unscaled. None of them misses a triangle; all
+// may show some more than asked for. Scratch of fixed size lies on the stack. Serial, and the same
+// output on any instruction set.
+
+/// Slots of all triangles whose boxes meet [min, max], ascending. Bounds may be infinite.
+void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
+                  SlotSink& out) noexcept;
+
+/// Pairs (slot of a, slot of b) of triangles that may meet once b is placed in the frame of a and
+/// grown by `margin[k]` to both sides on axis k of that frame.
+void mesh_overlap_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& b_in_a,
+                        const double margin[3], SlotPairSink& out) noexcept;
+
+/// Slots of triangles whose boxes the moving box [min, max] + t * direction may meet at some t in
+/// [0, limit], roughly in the order in which it does.
+void mesh_sweep(const MeshView& mesh, const double min[3], const double max[3],
+                const double direction[3], double limit, const SlotVisitor& visitor) noexcept;
+
+/// Slots of triangles whose boxes, all multiplied by `scale` along the axes, may be no farther than
+/// `limit` from [min, max] (in scaled coordinates), roughly the nearest first.
+void mesh_near(const MeshView& mesh, const double scale[3], const double min[3],
+               const double max[3], double limit, const SlotVisitor& visitor) noexcept;
+
+}  // namespace winnow

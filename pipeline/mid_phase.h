@@ -1,0 +1,121 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/column.h>
+#include <winnow/core/execution.h>
+#include <winnow/core/footprint.h>
+#include <winnow/core/pose.h>
+#include <winnow/core/status.h>
+#include <winnow/pipeline/narrow_phase.h>
+#include <winnow/pipeline/shape_pool.h>
+
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+/// The part of a shape that has no parts: all of a convex one.
+inline constexpr std::uint32_t kWholeShape = ~0U;
+
+/// Pairs of convex primitives that may touch: what the narrow phase is given for pairs of bodies of
+/// which one or both are composite. Coordinates are relative to the position of body a of the pair
+/// of bodies, in the axes of the world, so that answers do not depend on where the bodies stand.
+class PrimitivePairs {
+ public:
+  explicit PrimitivePairs(
+      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+
+  void clear() noexcept;
+  [[nodiscard]] Footprint footprint() const noexcept;
+
+  /// The primitives, one entry each time one is used: its shape (triangles in `triangles`, all
+  /// others in the ShapePool) and its pose.
+  Column<ShapeId> shapes;
+  Column<Pose> poses;
+  /// Which part of its body it is: the number of the triangle or child; kWholeShape.
+  Column<std::uint32_t> part;
+  Column<TriangleShape> triangles;
+  /// Of a triangle: bit k is set where edge k (from corner k to the next) is not one that a
+  /// neighbour continues: a contact there may have a normal of its own.
+  Column<std::uint8_t> active_edges;
+  /// Pairs of primitives, those of one pair of bodies next to each other in the order of the
+  /// bodies' pairs; a is of body a.
+  Column<BodyPair> pairs;
+  /// Pairs of primitives of pair i of bodies: [first[i], first[i + 1]).
+  Column<std::uint32_t> first;
+  /// What tasks write before it is put in order.
+  Column<std::uint32_t> scratch;
+
+  /// The pool's tables with `triangles` in the place of its own.
+  [[nodiscard]] ShapeTables tables(const ShapePool& pool) const noexcept;
+};
+
+/// One primitive of a composite shape.
+struct Primitive {
+  /// Of kind triangle: see `triangle`. All others are in the ShapePool.
+  ShapeId shape;
+  std::uint32_t part = kWholeShape;
+  Pose pose;
+  TriangleShape triangle;
+};
+
+/// Is shown primitives that may lie within `limit` (a value of t, or a distance) and gives back the
+/// limit to go on with: a smaller one to hear only of what comes before, below zero to end.
+struct PrimitiveVisitor {
+  double (*visit)(void* context, const Primitive& primitive, double limit) = nullptr;
+  void* context = nullptr;
+};
+
+/// A box that moves by t * direction for t in [0, max_t]; max_t = 0 for one that stands. In double,
+/// in the axes of the world.
+struct BoxSweep {
+  double min[3];
+  double max[3];
+  double direction[3] = {0.0, 0.0, 0.0};
+  double max_t = 0.0;
+};
+
+/// What composite shapes are made of, as the Scene and its queries see it. An interface, so that
+/// who has no composite shapes links and allocates nothing of it. A CompositePool is one.
+class MidPhase {
+ public:
+  MidPhase() = default;
+  MidPhase(const MidPhase&) = delete;
+  MidPhase& operator=(const MidPhase&) = delete;
+  virtual ~MidPhase() = default;
+
+  /// True for ids of shapes that are there.
+  [[nodiscard]] virtual bool contains(ShapeId id) const noexcept = 0;
+  /// A float box that contains the shape at a valid pose, rounded outward.
+  [[nodiscard]] virtual Aabb bounds(ShapeId id, const Pose& pose) const noexcept = 0;
+  /// No point of the shape is farther than this from its own origin.
+  [[nodiscard]] virtual double radius(ShapeId id) const noexcept = 0;
+  /// Grows each time a shape is changed in place (refit) or removed: what was known about pairs of
+  /// composite shapes is void then.
+  [[nodiscard]] virtual std::uint64_t revision() const noexcept = 0;
+
+  /// All pairs of primitives that are no farther apart than `margin`, and some more, of pairs of
+  /// bodies of which one at least is composite. Ids and poses are valid. The order is the same on
+  /// any number of threads and any instruction set.
+  virtual Status expand(const ShapePool& shapes, const Bodies& bodies,
+                        std::span<const BodyPair> pairs, double margin, const Execution& execution,
+                        PrimitivePairs& out) const = 0;
+  /// Gives contacts with inner edges of meshes the normal of the face, after the narrow phase has
+  /// answered `pairs` at level distance or manifold.
+  virtual void smooth(const ShapePool& shapes, const PrimitivePairs& pairs,
+                      const Execution& execution, NarrowResult& result) const = 0;
+
+  /// Shows `visitor` every primitive whose box the sweep may meet, roughly in the order in which it
+  /// does. O(log n + met).
+  virtual void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
+                     const PrimitiveVisitor& visitor) const = 0;
+  /// Shows it every primitive whose box may be no farther than `limit` from that of `from`, which
+  /// stands, roughly the nearest first.
+  virtual void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
+                          const PrimitiveVisitor& visitor) const = 0;
+
+  [[nodiscard]] virtual Footprint footprint() const noexcept = 0;
+};
+
+}  // namespace winnow

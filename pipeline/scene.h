@@ -1,0 +1,149 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/debug_draw.h>
+#include <winnow/core/execution.h>
+#include <winnow/core/filter.h>
+#include <winnow/core/footprint.h>
+#include <winnow/core/key.h>
+#include <winnow/core/pose.h>
+#include <winnow/core/pose_view.h>
+#include <winnow/core/status.h>
+#include <winnow/partitions/partition.h>
+#include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/mid_phase.h>
+#include <winnow/pipeline/narrow_phase.h>
+#include <winnow/pipeline/shape_pool.h>
+
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+#include <string_view>
+
+namespace winnow {
+
+/// Which set of a scene a body is in. Dynamic bodies meet all others; fixed ones and sleeping ones
+/// meet dynamic ones alone, and cost nothing until one of these comes near.
+enum class Motion : std::uint8_t { fixed, dynamic, sleeping };
+inline constexpr std::size_t kMotions = 3;
+
+struct SceneOptions {
+  /// Every allocation comes from here. It must outlive the scene.
+  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  Execution execution = Execution::parallel();
+  /// The partition of each set, by Motion: see partition_names(). One is made when its first body
+  /// comes.
+  std::string_view partitions[kMotions] = {"LinearBvh", "LinearBvh", "LinearBvh"};
+  /// Speculative: pairs no farther apart than this are contacts too. Finite, >= 0.
+  double margin = 0.0;
+  NarrowTier tier = NarrowTier::robust;
+  /// What rests keeps its contacts: manifolds of a pair are carried over, turned with body a, as
+  /// long as neither body has moved, against the other, by more than this (a length: translation
+  /// and turning of its farthest point together) since they were made; error_bound grows by as
+  /// much. Boxes in the partitions are larger by it, so that bodies that move less need no update
+  /// there. 0: off, and every answer is that of a fresh scene, bit by bit. Finite, >= 0.
+  double carry_over = 0.0;
+  /// What holds triangle meshes, compounds and height fields; null for a scene without. Must
+  /// outlive the scene.
+  const MidPhase* composites = nullptr;
+};
+
+/// A body as it is added.
+struct BodyDefinition {
+  ShapeId shape;
+  Pose pose;
+  Motion motion = Motion::dynamic;
+  ObjectFilter filter;
+  ClientData data = 0;
+};
+
+/// Bytes of a scene by part. The sum equals, to the byte, what is outstanding at its resource.
+struct SceneFootprint {
+  Bytes bodies;                ///< shapes, poses, keys, filters, client data
+  Bytes partitions[kMotions];  ///< by Motion
+  Bytes pairs;                 ///< what the broad phase found
+  Bytes mid_phase;             ///< pairs of primitives; nothing without composite shapes
+  Bytes narrow_phase;          ///< answers and scratch
+
+  [[nodiscard]] Bytes total() const noexcept;
+};
+
+/// Counters of the last `collide`, never timings, so that they repeat exactly.
+struct SceneStatistics {
+  std::uint64_t boxes_updated = 0;    ///< bodies whose boxes the partitions were given anew
+  std::uint64_t body_pairs = 0;       ///< pairs that the broad phase found
+  std::uint64_t carried = 0;          ///< of them kept what they had
+  std::uint64_t primitive_pairs = 0;  ///< pairs of parts that the mid phase made
+  NarrowStatistics convex;            ///< narrow phase, pairs of convex bodies
+  NarrowStatistics parts;             ///< narrow phase, pairs of parts
+};
+
+/// Bodies with shapes and poses, and what touches what: broad, mid and narrow phase in one.
+///
+///     winnow::ShapePool shapes;
+///     winnow::Scene scene(shapes);
+///     scene.add({.shape = ball, .pose = winnow::Pose::at(0, 0, 2)}, key);
+///     scene.collide(winnow::SceneLevel::manifold, contacts);
+///
+/// Parallel work runs in the arena of the thread that calls. Results and their order are the same
+/// on any number of threads and any instruction set. A refused call (any Status but ok) changed
+/// nothing. A scene wants its calls one at a time; see SceneQueries for asking from many threads.
+class Scene {
+ public:
+  /// `shapes` must outlive the scene; shapes must stay in it while bodies use them. Options that
+  /// are out of range make every `add` answer `invalid_argument`.
+  explicit Scene(const ShapePool& shapes, const SceneOptions& options = {});
+  ~Scene();
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+  /// Adds a body. `invalid_key` for a shape that neither pool has, `invalid_pose`.
+  Status add(const BodyDefinition& body, Key& key);
+  Status add(std::span<const BodyDefinition> bodies, std::span<Key> keys);
+  /// A key that occurs twice makes the whole call `invalid_key`.
+  Status remove(Key key);
+  Status remove(std::span<const Key> keys);
+  void clear() noexcept;
+
+  /// Gives bodies new poses. O(1) each; the partitions follow at the next question.
+  Status move(Key key, const Pose& pose);
+  Status move(std::span<const Key> keys, const PoseView& poses);
+  /// Moves bodies from one set to another: sleeping bodies to dynamic when they wake.
+  Status set_motion(Key key, Motion motion);
+  Status set_motion(std::span<const Key> keys, Motion motion);
+  Status set_shape(Key key, ShapeId shape);
+  Status set_filter(Key key, const ObjectFilter& filter);
+
+  [[nodiscard]] std::size_t size() const noexcept;
+  [[nodiscard]] std::size_t size(Motion motion) const noexcept;
+  [[nodiscard]] bool contains(Key key) const noexcept;
+  /// The body as it stands now.
+  Status body(Key key, BodyDefinition& body) const noexcept;
+  /// Key of a live body by its id; the null key for any other.
+  [[nodiscard]] Key key_of(ObjectId id) const noexcept;
+
+  /// Brings boxes and partitions up to date now rather than in the next question.
+  Status refresh();
+
+  /// Everything that touches. Pairs of a fixed or sleeping body with another are not looked at;
+  /// contacts of two bodies that fell asleep are remembered, neither shown nor ended, until one
+  /// wakes. `out_of_memory` leaves `contacts` cleared.
+  Status collide(SceneLevel level, Contacts& contacts);
+
+  /// The partition of a set; null while it has had no body. Its client data are bodies' ids.
+  [[nodiscard]] const Partition* partition(Motion motion) const noexcept;
+  /// Draws the partitions of all sets.
+  Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const;
+
+  [[nodiscard]] SceneFootprint footprint() const noexcept;
+  [[nodiscard]] const SceneStatistics& statistics() const noexcept;
+
+  /// What queries read; not for callers.
+  struct State;
+  [[nodiscard]] const State& state() const noexcept { return *state_; }
+
+ private:
+  State* state_;
+};
+
+}  // namespace winnow

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <winnow/core/filter.h>
+#include <winnow/core/footprint.h>
+#include <winnow/core/key.h>
+#include <winnow/core/pose.h>
+#include <winnow/core/status.h>
+#include <winnow/pipeline/mid_phase.h>
+#include <winnow/pipeline/scene.h>
+#include <winnow/pipeline/shape_rays.h>
+
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+/// Where a ray or a moving shape meets a body.
+struct SceneHit {
+  Key key;
+  ClientData data = 0;
+  /// Triangle or child; kWholeShape of a convex body.
+  std::uint32_t part = kWholeShape;
+  /// In units of the direction: of a ray, where it enters the body's shape; of a moving shape, the
+  /// time of impact, never later than the true one.
+  double t = 0.0;
+  /// Unit, of the body's surface, against the motion.
+  double normal[3] = {0.0, 0.0, 0.0};
+  /// Where they meet, in the world.
+  double point[3] = {0.0, 0.0, 0.0};
+
+  [[nodiscard]] explicit operator bool() const noexcept { return key.id != kNoObject; }
+};
+
+/// A body that a shape overlaps.
+struct SceneOverlap {
+  Key key;
+  ClientData data = 0;
+  /// The first part that does.
+  std::uint32_t part = kWholeShape;
+};
+
+/// Two points, and how far they are apart.
+struct SceneDistance {
+  Key key;
+  ClientData data = 0;
+  std::uint32_t part = kWholeShape;
+  /// Negative by the depth of penetration; of composite shapes that of the deepest pair of parts.
+  double distance = 0.0;
+  double error_bound = 0.0;
+  /// Unit, from the first (or the point) to the second.
+  double normal[3] = {0.0, 0.0, 0.0};
+  /// In the world.
+  double point_a[3] = {0.0, 0.0, 0.0};
+  double point_b[3] = {0.0, 0.0, 0.0};
+
+  [[nodiscard]] explicit operator bool() const noexcept { return key.id != kNoObject; }
+};
+
+/// A convex shape of the scene's ShapePool that moves along a line without turning.
+struct ShapeCast {
+  ShapeId shape;
+  Pose pose;
+  double direction[3] = {1.0, 0.0, 0.0};
+  double max_t = 1.0;
+};
+
+/// Questions to the exact shapes of a scene. One object a thread: it keeps scratch memory from
+/// question to question, so that one that resembles an earlier one allocates nothing. Any number of
+/// them may ask a scene at the same time while nothing changes it; call `Scene::refresh` first,
+/// else the first question is `invalid_argument`.
+class SceneQueries {
+ public:
+  explicit SceneQueries(const Scene& scene,
+                        std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+  ~SceneQueries();
+  SceneQueries(const SceneQueries&) = delete;
+  SceneQueries& operator=(const SceneQueries&) = delete;
+
+  // Rays: closed, errors as `cast_ray`'s. Equal t are ordered by the bodies' ids, then by part.
+
+  /// The hit with the least t; a null hit if there is none.
+  Status closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter = {});
+  /// Any one hit.
+  Status any(const ShapeRay& ray, SceneHit& hit, const Filter& filter = {});
+  /// The first hit of every body that the ray meets, sorted by t. Valid until the next question.
+  Status all(const ShapeRay& ray, std::span<const SceneHit>& hits, const Filter& filter = {});
+
+  /// Every body that the shape at the pose shares a point with, sorted by id. The shape may be
+  /// composite. Exact, as tier robust.
+  Status overlap(ShapeId shape, const Pose& pose, std::span<const SceneOverlap>& bodies,
+                 const Filter& filter = {});
+
+  /// Where the moving shape first touches a body, by conservative advancement (Mirtich 1996): t is
+  /// never later than the true time of impact and at most `tolerance` (a length along the way)
+  /// earlier; nothing is too thin to be hit. t = 0 if they overlap at the start. Not for half-space
+  /// shapes: `unsupported`.
+  Status closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter = {},
+                 double tolerance = 1e-6);
+  /// The first hit of every body.
+  Status all(const ShapeCast& cast, std::span<const SceneHit>& hits, const Filter& filter = {},
+             double tolerance = 1e-6);
+
+  /// The closest (or deepest) points of two bodies, whatever their filters.
+  Status distance(Key a, Key b, SceneDistance& answer);
+  /// The bodies nearest to a point, at most `count`, no farther than `radius`, sorted by distance;
+  /// inside a solid the distance is negative.
+  Status nearest(const double point[3], std::size_t count, double radius,
+                 std::span<const SceneDistance>& bodies, const Filter& filter = {});
+
+  [[nodiscard]] Footprint footprint() const noexcept;
+
+ private:
+  struct State;
+  State* state_;
+};
+
+}  // namespace winnow
