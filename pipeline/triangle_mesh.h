@@ -27,12 +27,12 @@ class TriangleMesh {
  public:
   explicit TriangleMesh(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
-  TriangleMesh(TriangleMesh&&) noexcept = default;
+  TriangleMesh(TriangleMesh&& other) noexcept;
 
   /// Takes copies of vertices (rounded to float) and triangles and builds the tree. O(n).
   /// `invalid_shape` if there is no triangle, a vertex is not finite in float, or a corner is not a
   /// vertex; `too_many_objects` beyond 2^28 triangles; `invalid_argument` for bad options. A
-  /// refused build leaves the mesh as it was.
+  /// refused build, or one without memory, leaves the mesh as it was.
   Status build(const PointView& vertices, const IndexView& triangles,
                const MeshOptions& options = {}, const Execution& execution = Execution::serial());
 
@@ -52,10 +52,19 @@ class TriangleMesh {
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
+  void swap(TriangleMesh& other) noexcept;
+  [[nodiscard]] Status take(const PointView& vertices, const IndexView& triangles,
+                            const MeshOptions& options, const Execution& execution);
+  void place_vertices(const PointView& vertices) noexcept;
+  void link() noexcept;
+  void fit(const Execution& execution) noexcept;
+
   Column<float> vertex_[3];
   Column<std::uint32_t> corner_[3];
   Column<std::uint32_t> triangle_;
   Column<std::uint16_t> nodes_;
+  /// See find_neighbours; kept by meshes that are refitted.
+  Column<std::uint32_t> neighbours_;
   MeshOptions options_;
   MeshView view_;
   Aabb bounds_;

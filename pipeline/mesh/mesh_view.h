@@ -24,8 +24,8 @@ struct MeshView {
   /// The caller's number of the triangle in the low 28 bits, and its active edges.
   const std::uint32_t* triangle = nullptr;
   std::uint32_t triangle_count = 0;
-  /// A quantised bound q stands for origin + q * step; lower bounds are rounded down and upper ones
-  /// up, so that the box contains what is below it.
+  /// A quantised bound q stands for origin + q * step in double arithmetic; lower bounds are
+  /// rounded down and upper ones up, so that the box contains what is below it.
   float origin[3] = {};
   float step[3] = {};
   /// Node i of level 0 bounds leaf i, node i of level l + 1 nodes [16 i, 16 i + 16) of level l. The

@@ -1,0 +1,152 @@
+#include <winnow/pipeline/mesh/mesh_tree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+constexpr std::uint32_t kTop = 65535;
+constexpr std::size_t kLeavesPerTask = 512;
+
+std::uint32_t padded(std::uint32_t count) {
+  return (count + kMeshFanout - 1) / kMeshFanout * kMeshFanout;
+}
+
+/// The float box of slots [first, first + 16).
+struct LeafBox {
+  float low[3];
+  float high[3];
+
+  LeafBox(const MeshView& view, std::size_t first) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float* x = view.vertex[axis];
+      float least = x[view.corner[0][first]];
+      float greatest = least;
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t i = first; i < first + kMeshFanout; ++i) {
+          least = std::min(least, x[view.corner[k][i]]);
+          greatest = std::max(greatest, x[view.corner[k][i]]);
+        }
+      }
+      low[axis] = least;
+      high[axis] = greatest;
+    }
+  }
+};
+
+/// Maps the mesh's box to 0..65534: one number is left for rounding up.
+void choose_scale(MeshView& view, const float low[3], const float high[3]) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double extent = static_cast<double>(high[axis]) - static_cast<double>(low[axis]);
+    const float step = static_cast<float>(extent / (kTop - 1));
+    view.origin[axis] = low[axis];
+    view.step[axis] = std::max(step, std::numeric_limits<float>::min()) *
+                      (1.0F + std::numeric_limits<float>::epsilon());
+  }
+}
+
+double decoded(const MeshView& view, std::size_t axis, std::uint32_t q) {
+  return static_cast<double>(view.origin[axis]) +
+         static_cast<double>(q) * static_cast<double>(view.step[axis]);
+}
+
+/// The quotient may be rounded to a whole number; what it stands for is compared, so that the
+/// decoded bound lies outside or on x for certain.
+std::uint16_t quantised_low(const MeshView& view, std::size_t axis, double x) {
+  const double t = mesh_units(view, axis, x);
+  auto q = static_cast<std::uint32_t>(t);
+  while (q > 0 && decoded(view, axis, q) > x) --q;
+  return static_cast<std::uint16_t>(q);
+}
+std::uint16_t quantised_high(const MeshView& view, std::size_t axis, double x) {
+  const double t = mesh_units(view, axis, x);
+  auto q = static_cast<std::uint32_t>(std::ceil(t));
+  while (q < kTop && decoded(view, axis, q) < x) ++q;
+  return static_cast<std::uint16_t>(q);
+}
+
+/// Level `level` from the one below.
+void fit_upper_level(const MeshView& view, std::uint32_t level, std::uint16_t* words) {
+  const std::uint32_t below = view.count[level - 1];
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    const std::uint16_t* source = view.node[level - 1][axis];
+    std::uint16_t* target = words + (view.node[level][axis] - words);
+    for (std::uint32_t i = 0; i < view.count[level]; ++i) {
+      const std::uint32_t first = i * kMeshFanout;
+      const std::uint32_t end = std::min(below, first + kMeshFanout);
+      std::uint16_t bound = source[first];
+      for (std::uint32_t child = first + 1; child < end; ++child) {
+        bound = axis < 3 ? std::min(bound, source[child]) : std::max(bound, source[child]);
+      }
+      target[i] = bound;
+    }
+  }
+}
+
+void pad_levels(const MeshView& view, std::uint16_t* words) {
+  for (std::uint32_t level = 0; level < view.levels; ++level) {
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      std::uint16_t* column = words + (view.node[level][axis] - words);
+      std::fill(column + view.count[level], column + padded(view.count[level]),
+                axis < 3 ? static_cast<std::uint16_t>(kTop) : std::uint16_t{0});
+    }
+  }
+}
+
+}  // namespace
+
+std::size_t plan_mesh_levels(MeshView& view) noexcept {
+  std::size_t words = 0;
+  std::uint32_t nodes = view.triangle_count;
+  view.levels = 0;
+  do {
+    nodes = (nodes + kMeshFanout - 1) / kMeshFanout;
+    view.count[view.levels++] = nodes;
+    words += std::size_t{6} * padded(nodes);
+  } while (nodes > kMeshFanout);
+  return words;
+}
+
+void link_mesh_levels(MeshView& view, const std::uint16_t* words) noexcept {
+  for (std::uint32_t level = 0; level < view.levels; ++level) {
+    for (auto& column : view.node[level]) {
+      column = words;
+      words += padded(view.count[level]);
+    }
+  }
+}
+
+void fit_mesh_levels(MeshView& view, std::uint16_t* words, float low[3], float high[3],
+                     const Execution& execution) noexcept {
+  std::fill_n(low, 3, std::numeric_limits<float>::infinity());
+  std::fill_n(high, 3, -std::numeric_limits<float>::infinity());
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < view.triangle_count; ++i) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float x = view.vertex[axis][view.corner[k][i]];
+        low[axis] = std::min(low[axis], x);
+        high[axis] = std::max(high[axis], x);
+      }
+    }
+  }
+  choose_scale(view, low, high);
+  const std::size_t leaves = view.count[0];
+  execution.for_each((leaves + kLeavesPerTask - 1) / kLeavesPerTask, [&](std::size_t task) {
+    const std::size_t end = std::min(leaves, (task + 1) * kLeavesPerTask);
+    for (std::size_t i = task * kLeavesPerTask; i < end; ++i) {
+      const LeafBox box(view, i * kMeshFanout);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        words[view.node[0][axis] - words + static_cast<std::ptrdiff_t>(i)] =
+            quantised_low(view, axis, static_cast<double>(box.low[axis]));
+        words[view.node[0][3 + axis] - words + static_cast<std::ptrdiff_t>(i)] =
+            quantised_high(view, axis, static_cast<double>(box.high[axis]));
+      }
+    }
+  });
+  pad_levels(view, words);
+  for (std::uint32_t level = 1; level < view.levels; ++level) fit_upper_level(view, level, words);
+}
+
+}  // namespace winnow
