@@ -103,6 +103,7 @@ class Contacts {
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
+  friend class Collision;
   friend class Scene;
   struct State;
   State* state_;

@@ -50,10 +50,10 @@ struct SceneOptions {
 
 /// A body as it is added.
 struct BodyDefinition {
-  ShapeId shape;
-  Pose pose;
+  ShapeId shape{};
+  Pose pose{};
   Motion motion = Motion::dynamic;
-  ObjectFilter filter;
+  ObjectFilter filter{};
   ClientData data = 0;
 };
 

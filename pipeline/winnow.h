@@ -18,7 +18,9 @@
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/pair_events.h>
 #include <winnow/core/plane.h>
+#include <winnow/core/point_view.h>
 #include <winnow/core/pose.h>
+#include <winnow/core/pose_view.h>
 #include <winnow/core/ray.h>
 #include <winnow/core/region.h>
 #include <winnow/core/rounding.h>
@@ -31,7 +33,10 @@
 #include <winnow/partitions/n_squared.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/partitions/sweep_and_prune.h>
+#include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/narrow_phase.h>
+#include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
 #include <winnow/simd/isa.h>

@@ -2,23 +2,31 @@
 
 #include <winnow/core/key_table.h>
 #include <winnow/pipeline/scene.h>
+#include <winnow/pipeline/scene/body_pairs.h>
 
+#include <cstdint>
 #include <memory>
 
 namespace winnow {
 
+/// A box as a column can hold it.
+struct PlainBox {
+  float min[3];
+  float max[3];
+};
+
 /// One set of bodies and its partition, made when its first body comes.
 struct SceneSet {
   explicit SceneSet(std::pmr::memory_resource* memory) noexcept
-      : body_of(memory), within(memory), across(memory) {}
+      : body_of(memory), with_dynamic(memory) {}
 
   std::unique_ptr<Partition> partition;
-  std::size_t bodies = 0;
   /// By the partition's object id.
   Column<std::uint32_t> body_of;
-  /// Dynamic: its own pairs. The others: pairs of dynamic bodies with them.
-  PairBuffer within;
-  PairBuffer across;
+  /// Pairs (dynamic body, body of this set); of the dynamic set its own.
+  PairBuffer with_dynamic;
+  /// Grows with every change of the partition.
+  std::uint64_t changes = 0;
 };
 
 /// What a Scene consists of. Bodies are numbered by the ids of their keys; columns are by id and
@@ -29,6 +37,8 @@ struct Scene::State {
   const ShapePool& shapes;
   SceneOptions options;
   bool options_are_good;
+  /// By how much boxes are grown to every side.
+  double growth;
 
   KeyTable keys;
   Column<ShapeId> shape;
@@ -36,13 +46,75 @@ struct Scene::State {
   Column<Motion> motion;
   /// Of the body in the partition of its set.
   Column<Key> place;
-  /// Bodies whose boxes may no longer be right: their ids, and a flag by id.
+  /// When the pose, and when the shape last changed, in calls of `collide`.
+  Column<std::uint32_t> moved_at;
+  Column<std::uint32_t> shaped_at;
+  /// Pose at which the partition was given the body's box. Empty without carry-over.
+  Column<Pose> anchor;
+  /// Bodies whose boxes may no longer be right, and a flag by id.
   Column<std::uint32_t> stale;
   Column<std::uint8_t> is_stale;
+  /// Boxes on their way to a partition, and whose they are.
+  Column<PlainBox> boxes;
+  Column<Key> boxes_of;
+  Column<ClientData> boxes_body;
+  /// Bodies of one set that a call is about, and where they were.
+  Column<std::uint32_t> chosen;
+  Column<Key> left;
 
   SceneSet sets[kMotions];
+  /// Tells this scene from every other one.
+  std::uint64_t serial;
+  std::uint32_t clock = 1;
+  /// Grows when a body is removed or changes its set.
+  std::uint64_t regroupings = 0;
+  std::uint64_t composites_seen = 0;
 
+  BodyPairs pairs;
+  NarrowPhase narrow;
+  NarrowResult answers;
+  /// By pair asked about: where its answer lies.
+  Column<std::uint32_t> slot;
+  /// Which pairs of `pairs` are asked about: convex ones, and those with a composite shape.
+  Column<BodyPair> convex;
+  Column<BodyPair> composite;
+  PrimitivePairs parts;
+  NarrowPhase parts_narrow;
+  NarrowResult parts_answers;
+  Column<std::uint32_t> parts_slot;
+  SceneStatistics statistics;
+
+  [[nodiscard]] SceneSet& set(Motion which) noexcept {
+    return sets[static_cast<std::size_t>(which)];
+  }
+  [[nodiscard]] const SceneSet& set(Motion which) const noexcept {
+    return sets[static_cast<std::size_t>(which)];
+  }
   [[nodiscard]] bool is_fresh() const noexcept { return stale.empty(); }
+  [[nodiscard]] Status check(ShapeId id, const Pose& at) const noexcept;
+  [[nodiscard]] bool reserve(std::size_t fresh) noexcept;
+  [[nodiscard]] Key acquire(const BodyDefinition& body) noexcept;
+  [[nodiscard]] Status settle(std::span<const BodyDefinition> bodies, std::span<const Key> given);
+  [[nodiscard]] bool are_distinct(std::span<const Key> given) noexcept;
+  void forget_stale() noexcept;
+  /// The box that a partition is given.
+  [[nodiscard]] PlainBox grown_bounds(std::uint32_t body) const noexcept;
+  [[nodiscard]] BoxView box_view() const noexcept;
+  [[nodiscard]] Status make_partition_of(Motion which);
+  /// Those of the given keys whose bodies are in a set, into `chosen`. Room was made.
+  [[nodiscard]] std::span<const std::uint32_t> choose(std::span<const Key> given,
+                                                      Motion which) noexcept;
+  /// Puts bodies, whose columns are set, into the partition of a set.
+  [[nodiscard]] Status place_bodies(Motion which, std::span<const std::uint32_t> bodies);
+  /// Takes out what lies at `places`.
+  [[nodiscard]] Status displace(Motion which, std::span<const Key> places);
+  [[nodiscard]] Status move_to_set(Motion from, Motion to, std::span<const std::uint32_t> bodies);
+  void mark_stale(std::uint32_t body) noexcept;
+  void set_pose(std::uint32_t body, const Pose& to) noexcept;
+  [[nodiscard]] Status refresh();
+  [[nodiscard]] Status refresh_set(Motion which);
+  [[nodiscard]] bool needs_box(std::uint32_t body) const noexcept;
+  [[nodiscard]] Status find_pairs();
 };
 
 }  // namespace winnow

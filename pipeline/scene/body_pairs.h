@@ -1,0 +1,59 @@
+#pragma once
+
+#include <winnow/core/column.h>
+#include <winnow/core/execution.h>
+#include <winnow/core/footprint.h>
+#include <winnow/core/pair_buffer.h>
+#include <winnow/core/status.h>
+#include <winnow/pipeline/narrow/narrow_job.h>
+#include <winnow/pipeline/shapes.h>
+
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+/// Codes of pairs of kinds: kind of a * kAllShapeKinds + kind of b.
+inline constexpr std::uint32_t kPairCodes = kAllShapeKinds * kAllShapeKinds;
+
+/// Pairs of bodies in the order of a scene's answers: by the kinds of their shapes, then by body; a
+/// is the body with the smaller kind, or the smaller number.
+class BodyPairs {
+ public:
+  explicit BodyPairs(std::pmr::memory_resource* memory) noexcept
+      : pairs_(memory), items_(memory), spare_(memory) {}
+
+  /// Pairs of objects of two partitions, and which bodies these are.
+  struct Source {
+    std::span<const Pair> pairs;
+    const std::uint32_t* first_body;
+    const std::uint32_t* second_body;
+  };
+
+  /// Takes all pairs of the sources. `bodies`: every body's number is below it. O(n).
+  Status assign(std::span<const Source> sources, const ShapeId* shapes, std::size_t bodies,
+                const Execution& execution);
+
+  [[nodiscard]] std::span<const BodyPair> pairs() const noexcept {
+    return {pairs_.data(), pairs_.size()};
+  }
+  /// Pairs of a code are [first(code), first(code + 1)).
+  [[nodiscard]] std::uint32_t first(std::uint32_t code) const noexcept { return first_[code]; }
+  /// Grows with every `assign`.
+  [[nodiscard]] std::uint64_t serial() const noexcept { return serial_; }
+  /// What the partitions had gone through when the pairs were taken.
+  std::uint64_t changes[3] = {~0ULL, ~0ULL, ~0ULL};
+
+  void clear() noexcept;
+  [[nodiscard]] Bytes bytes() const noexcept;
+
+ private:
+  Column<BodyPair> pairs_;
+  Column<std::uint64_t> items_;
+  Column<std::uint64_t> spare_;
+  std::uint32_t first_[kPairCodes + 1] = {};
+  std::uint64_t serial_ = 0;
+};
+
+}  // namespace winnow

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <winnow/pipeline/scene/contact_frame.h>
+#include <winnow/pipeline/scene/scene_state.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace winnow {
+
+/// One call of Scene::collide: which pairs keep what they had, the answers about the others, and
+/// both put into a new frame.
+class Collision {
+ public:
+  Collision(Scene::State& scene, Contacts::State& contacts, SceneLevel level) noexcept;
+
+  [[nodiscard]] Status run();
+
+ private:
+  /// Where a pair's contacts come from.
+  enum class Origin : std::uint8_t { carried, convex, composite };
+  using Place = ContactFrame::Place;
+  static constexpr std::size_t kPairsPerTask = 512;
+
+  // What is known of the pairs (pair_memory.cpp).
+  [[nodiscard]] bool wake_dormant();
+  [[nodiscard]] bool match();
+  [[nodiscard]] bool decide();
+  [[nodiscard]] bool keep(std::uint32_t pair, std::uint32_t record) noexcept;
+  void turn(CarriedPair& carried, const PairRecord& record, const double (&to)[4]) noexcept;
+  void remember(std::uint32_t pair, std::uint32_t shown) noexcept;
+  [[nodiscard]] bool close_frame();
+  [[nodiscard]] bool put_to_sleep(std::uint32_t old_shown) const noexcept;
+
+  // Answers (collide.cpp).
+  [[nodiscard]] bool list_pairs();
+  [[nodiscard]] Status answer_convex();
+  [[nodiscard]] Status answer_composite();
+
+  // The frame (show_contacts.cpp).
+  [[nodiscard]] bool show();
+  [[nodiscard]] Place extent(std::uint32_t pair) const noexcept;
+  [[nodiscard]] bool touches(const NarrowResult& answers, std::size_t at) const noexcept;
+  void write(std::uint32_t pair, const Place& to) noexcept;
+  void write_manifold(const NarrowResult& answers, std::size_t at, const double* offset,
+                      Place& to) noexcept;
+  [[nodiscard]] bool write_runs();
+  [[nodiscard]] double clearance(std::uint32_t pair) const noexcept;
+
+  [[nodiscard]] std::uint32_t pair_count() const noexcept {
+    return static_cast<std::uint32_t>(scene_.pairs.pairs().size());
+  }
+  [[nodiscard]] std::size_t task_count() const noexcept {
+    return (pair_count() + kPairsPerTask - 1) / kPairsPerTask;
+  }
+  /// Calls body(first pair, end) for runs of pairs, in parallel.
+  template <typename Body>
+  void for_tasks(Body&& body) const {
+    scene_.options.execution.for_each(task_count(), [&](std::size_t task) {
+      const auto first = static_cast<std::uint32_t>(task * kPairsPerTask);
+      body(task, first, std::min(pair_count(), first + static_cast<std::uint32_t>(kPairsPerTask)));
+    });
+  }
+
+  Scene::State& scene_;
+  Contacts::State& contacts_;
+  SceneLevel level_;
+  /// Levels at which pairs are carried over, in a scene that does.
+  bool carries_;
+  /// What the contacts remember is of this scene; and of this level.
+  bool same_scene_;
+  bool same_level_;
+  /// Record i is of pair i.
+  bool same_pairs_ = false;
+};
+
+}  // namespace winnow

@@ -1,0 +1,158 @@
+#include <winnow/pipeline/scene/contact_frame.h>
+
+#include <algorithm>
+
+namespace winnow {
+namespace {
+
+template <typename T>
+void copy_range(const Column<T>& from, std::size_t first, std::size_t count, Column<T>& to,
+                std::size_t at) noexcept {
+  if (!from.empty()) std::copy_n(from.data() + first, count, to.data() + at);
+}
+
+}  // namespace
+
+ContactFrame::ContactFrame(std::pmr::memory_resource* memory) noexcept
+    : runs(memory),
+      key{Column<Key>(memory), Column<Key>(memory)},
+      data{Column<ClientData>(memory), Column<ClientData>(memory)},
+      event(memory),
+      manifold_first(memory),
+      part{Column<std::uint32_t>(memory), Column<std::uint32_t>(memory)},
+      distance(memory),
+      error_bound(memory),
+      normal{Column<double>(memory), Column<double>(memory), Column<double>(memory)},
+      point{Column<double>(memory), Column<double>(memory), Column<double>(memory)},
+      point_first(memory),
+      points(memory) {}
+
+bool ContactFrame::resize(SceneLevel level, std::size_t pairs, std::size_t manifolds,
+                          std::size_t contact_points) noexcept {
+  const bool with_parts = level != SceneLevel::pairs;
+  const bool with_distance = level >= SceneLevel::distance;
+  const bool with_points = level == SceneLevel::manifold;
+  bool good = event.resize(pairs) && manifold_first.resize(with_parts ? pairs + 1 : 0);
+  for (int side = 0; side < 2; ++side) {
+    good =
+        good && key[side].resize(pairs) && data[side].resize(pairs) && part[side].resize(manifolds);
+  }
+  const std::size_t distances = with_distance ? manifolds : 0;
+  good = good && distance.resize(distances) && error_bound.resize(distances) &&
+         point_first.resize(with_points ? manifolds + 1 : 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    good = good && normal[axis].resize(distances) &&
+           point[axis].resize(level == SceneLevel::distance ? manifolds : 0);
+  }
+  if (!good || !points.grow(contact_points)) return false;
+  points.set_size(contact_points);
+  return true;
+}
+
+void ContactFrame::clear() noexcept {
+  runs.clear();
+  event.clear();
+  manifold_first.clear();
+  for (int side = 0; side < 2; ++side) {
+    key[side].clear();
+    data[side].clear();
+    part[side].clear();
+  }
+  distance.clear();
+  error_bound.clear();
+  for (int axis = 0; axis < 3; ++axis) {
+    normal[axis].clear();
+    point[axis].clear();
+  }
+  point_first.clear();
+  points.set_size(0);
+}
+
+void ContactFrame::swap(ContactFrame& other) noexcept {
+  runs.swap(other.runs);
+  event.swap(other.event);
+  manifold_first.swap(other.manifold_first);
+  for (int side = 0; side < 2; ++side) {
+    key[side].swap(other.key[side]);
+    data[side].swap(other.data[side]);
+    part[side].swap(other.part[side]);
+  }
+  distance.swap(other.distance);
+  error_bound.swap(other.error_bound);
+  for (int axis = 0; axis < 3; ++axis) {
+    normal[axis].swap(other.normal[axis]);
+    point[axis].swap(other.point[axis]);
+    points.position[axis].swap(other.points.position[axis]);
+  }
+  point_first.swap(other.point_first);
+  points.depth.swap(other.points.depth);
+  points.feature.swap(other.points.feature);
+}
+
+Bytes ContactFrame::bytes() const noexcept {
+  Bytes sum = points.bytes();
+  for (const Bytes& bytes : {runs.bytes(), event.bytes(), manifold_first.bytes(), distance.bytes(),
+                             error_bound.bytes(), point_first.bytes()}) {
+    sum += bytes;
+  }
+  for (int side = 0; side < 2; ++side) {
+    sum += key[side].bytes();
+    sum += data[side].bytes();
+    sum += part[side].bytes();
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    sum += normal[axis].bytes();
+    sum += point[axis].bytes();
+  }
+  return sum;
+}
+
+ContactFrame::Place ContactFrame::extent(std::uint32_t pair) const noexcept {
+  Place extent{1, 0, 0};
+  if (manifold_first.empty()) return extent;
+  const std::uint32_t first = manifold_first[pair];
+  const std::uint32_t end = manifold_first[pair + 1];
+  extent.manifold = end - first;
+  if (!point_first.empty()) extent.point = point_first[end] - point_first[first];
+  return extent;
+}
+
+void ContactFrame::copy(const ContactFrame& other, std::uint32_t from, const Place& to) noexcept {
+  for (int side = 0; side < 2; ++side) {
+    key[side][to.pair] = other.key[side][from];
+    data[side][to.pair] = other.data[side][from];
+  }
+  event[to.pair] = other.event[from];
+  if (other.manifold_first.empty()) return;
+  const std::uint32_t first = other.manifold_first[from];
+  const std::uint32_t count = other.manifold_first[from + 1] - first;
+  manifold_first[to.pair] = to.manifold;
+  for (int side = 0; side < 2; ++side) {
+    copy_range(other.part[side], first, count, part[side], to.manifold);
+  }
+  copy_range(other.distance, first, count, distance, to.manifold);
+  copy_range(other.error_bound, first, count, error_bound, to.manifold);
+  for (int axis = 0; axis < 3; ++axis) {
+    copy_range(other.normal[axis], first, count, normal[axis], to.manifold);
+    copy_range(other.point[axis], first, count, point[axis], to.manifold);
+  }
+  if (other.point_first.empty()) return;
+  const std::uint32_t point_from = other.point_first[first];
+  const std::uint32_t points_count = other.point_first[first + count] - point_from;
+  for (std::uint32_t m = 0; m < count; ++m) {
+    point_first[to.manifold + m] = other.point_first[first + m] - point_from + to.point;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    copy_range(other.points.position[axis], point_from, points_count, points.position[axis],
+               to.point);
+  }
+  copy_range(other.points.depth, point_from, points_count, points.depth, to.point);
+  copy_range(other.points.feature, point_from, points_count, points.feature, to.point);
+}
+
+void ContactFrame::close(SceneLevel level, const Place& end) noexcept {
+  if (level != SceneLevel::pairs) manifold_first[end.pair] = end.manifold;
+  if (level == SceneLevel::manifold) point_first[end.manifold] = end.point;
+}
+
+}  // namespace winnow

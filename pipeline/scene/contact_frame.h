@@ -1,0 +1,129 @@
+#pragma once
+
+#include <winnow/core/column.h>
+#include <winnow/core/pose.h>
+#include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/scene/body_pairs.h>
+
+#include <cstdint>
+#include <memory_resource>
+
+namespace winnow {
+
+/// No entry.
+inline constexpr std::uint32_t kNone = ~0U;
+
+/// What `collide` shows: see Contacts. Pairs are sorted as BodyPairs are.
+struct ContactFrame {
+  explicit ContactFrame(std::pmr::memory_resource* memory) noexcept;
+
+  Column<ContactRun> runs;
+  Column<Key> key[2];
+  Column<ClientData> data[2];
+  Column<ContactEvent> event;
+  /// One more than pairs, and one more than manifolds.
+  Column<std::uint32_t> manifold_first;
+  Column<std::uint32_t> part[2];
+  Column<double> distance;
+  Column<double> error_bound;
+  Column<double> normal[3];
+  Column<double> point[3];
+  Column<std::uint32_t> point_first;
+  ContactColumns points;
+
+  [[nodiscard]] std::size_t pairs() const noexcept { return event.size(); }
+  [[nodiscard]] std::size_t manifolds() const noexcept { return part[0].size(); }
+  /// Room for what a level has, and no more. False if memory is refused.
+  [[nodiscard]] bool resize(SceneLevel level, std::size_t pairs, std::size_t manifolds,
+                            std::size_t contact_points) noexcept;
+  void clear() noexcept;
+  void swap(ContactFrame& other) noexcept;
+  [[nodiscard]] Bytes bytes() const noexcept;
+
+  /// Where something is written: the next pair, manifold and point.
+  struct Place {
+    std::uint32_t pair = 0;
+    std::uint32_t manifold = 0;
+    std::uint32_t point = 0;
+
+    Place& operator+=(const Place& other) noexcept {
+      pair += other.pair;
+      manifold += other.manifold;
+      point += other.point;
+      return *this;
+    }
+  };
+  /// How much a pair takes.
+  [[nodiscard]] Place extent(std::uint32_t pair) const noexcept;
+  /// Copies pair `from` of another frame of the same level to a place, with its manifolds and
+  /// points, but for runs.
+  void copy(const ContactFrame& other, std::uint32_t from, const Place& to) noexcept;
+  /// Writes what ends the columns of firsts.
+  void close(SceneLevel level, const Place& end) noexcept;
+};
+
+/// What is remembered of a pair from one `collide` to the next. Without carry-over only pairs that
+/// touch are.
+struct PairRecord {
+  BodyPair pair;
+  /// The kinds of its shapes: the first key of the order.
+  std::uint32_t code;
+  /// Its place in the ContactFrame, kNone if it does not touch.
+  std::uint32_t shown;
+};
+
+/// With carry-over, of every pair.
+struct CarriedPair {
+  /// When its manifolds were made: b in the frame of a, or a in that of b if `from_b`.
+  Pose relative;
+  /// Orientation of a to which normals and points belong.
+  double turn[4];
+  /// How far it may have moved against `relative` before it must be made anew.
+  double limit;
+  /// Of the body that is looked at from the other one; and of body a.
+  float radius;
+  float radius_a;
+  /// What turning its points in float has cost so far, as a length.
+  float drift;
+  bool from_b;
+  /// `error_bound` has been widened.
+  bool widened;
+};
+
+struct Contacts::State {
+  explicit State(std::pmr::memory_resource* memory) noexcept;
+
+  SceneLevel level = SceneLevel::pairs;
+  ContactFrame frame;
+  ContactFrame before;
+  Column<EndedContact> ended;
+  Column<PairRecord> records;
+  Column<PairRecord> records_before;
+  Column<CarriedPair> carried;
+  Column<CarriedPair> carried_before;
+  /// Pairs of bodies that sleep, with what is known of them; sorted.
+  ContactFrame dormant;
+  Column<PairRecord> dormant_records;
+  Column<CarriedPair> dormant_carried;
+  /// Which scene filled these, and how it stood then.
+  std::uint64_t scene = 0;
+  std::uint32_t clock = 0;
+  std::uint64_t pairs_serial = 0;
+  std::uint64_t regroupings = 0;
+  std::size_t carried_count = 0;
+
+  /// By pair of the scene: the record it had, and where its answer comes from.
+  Column<std::uint32_t> old_record;
+  Column<std::uint32_t> source;
+  Column<std::uint8_t> origin;
+  /// By pair of the last frame: shown again.
+  Column<std::uint8_t> shown_again;
+  /// What tasks counted, then where they write.
+  Column<ContactFrame::Place> sums;
+  /// Every pair shown persisted and none ended.
+  bool is_settled = false;
+
+  void clear() noexcept;
+};
+
+}  // namespace winnow

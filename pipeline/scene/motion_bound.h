@@ -1,0 +1,103 @@
+#pragma once
+
+#include <winnow/core/pose.h>
+#include <winnow/pipeline/shapes.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+
+/// No point of a convex shape is farther than this from its own origin; infinite for half-spaces.
+[[nodiscard]] inline double shape_radius(const ShapeTables& tables, ShapeId id) noexcept {
+  const auto length = [](const double(&v)[3]) {
+    return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  };
+  const std::uint32_t i = id.index();
+  switch (id.kind()) {
+    case ShapeKind::sphere:
+      return tables.spheres[i].radius;
+    case ShapeKind::capsule:
+      return tables.capsules[i].radius + tables.capsules[i].half_length;
+    case ShapeKind::box:
+      return length(tables.boxes[i].half) + tables.boxes[i].rounding;
+    case ShapeKind::cylinder: {
+      const CylinderShape& s = tables.cylinders[i];
+      return std::sqrt(s.radius * s.radius + s.half_length * s.half_length) + s.rounding;
+    }
+    case ShapeKind::cone: {
+      const ConeShape& s = tables.cones[i];
+      return std::sqrt(s.radius * s.radius + s.half_length * s.half_length) + s.rounding;
+    }
+    case ShapeKind::hull:
+      return length(tables.hulls[i].center) + tables.hulls[i].radius + tables.hulls[i].rounding;
+    case ShapeKind::triangle: {
+      const TriangleShape& s = tables.triangles[i];
+      return std::max({length(s.vertex[0]), length(s.vertex[1]), length(s.vertex[2])}) + s.rounding;
+    }
+    case ShapeKind::half_space:
+      break;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+/// The pose of b in the frame of a, its orientation a unit quaternion.
+[[nodiscard]] inline Pose relative_pose(const Pose& a, const Pose& b) noexcept {
+  const auto& p = a.orientation;
+  const auto& q = b.orientation;
+  const double pp = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3];
+  const double qq = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  const double d[3] = {b.position[0] - a.position[0], b.position[1] - a.position[1],
+                       b.position[2] - a.position[2]};
+  Pose pose;
+  // R(conj p) d = d + (2 / |p|^2) (v x (v x d) - w (v x d)) for p = (w, v).
+  const double x[3] = {p[2] * d[2] - p[3] * d[1], p[3] * d[0] - p[1] * d[2],
+                       p[1] * d[1] - p[2] * d[0]};
+  const double y[3] = {p[2] * x[2] - p[3] * x[1] - p[0] * x[0],
+                       p[3] * x[0] - p[1] * x[2] - p[0] * x[1],
+                       p[1] * x[1] - p[2] * x[0] - p[0] * x[2]};
+  const double twice = 2.0 / pp;
+  for (int k = 0; k < 3; ++k) pose.position[k] = d[k] + twice * y[k];
+  const double unit = 1.0 / std::sqrt(pp * qq);
+  pose.orientation[0] = unit * (p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3]);
+  pose.orientation[1] = unit * (p[0] * q[1] - p[1] * q[0] - p[2] * q[3] + p[3] * q[2]);
+  pose.orientation[2] = unit * (p[0] * q[2] + p[1] * q[3] - p[2] * q[0] - p[3] * q[1]);
+  pose.orientation[3] = unit * (p[0] * q[3] - p[1] * q[2] + p[2] * q[1] - p[3] * q[0]);
+  return pose;
+}
+
+/// No point within `radius` of the origin moves farther than this from one pose to another. Both
+/// orientations are unit quaternions: the chord of a turn by t is 2 r sin(t / 2), and the
+/// quaternions are 2 sin(t / 4) apart.
+[[nodiscard]] inline double motion_bound(const Pose& from, const Pose& to, double radius) noexcept {
+  double shift = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const double d = to.position[k] - from.position[k];
+    shift += d * d;
+  }
+  double minus = 0.0;
+  double plus = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    const double d = to.orientation[k] - from.orientation[k];
+    const double s = to.orientation[k] + from.orientation[k];
+    minus += d * d;
+    plus += s * s;
+  }
+  const double turn = std::min(minus, plus);
+  // An infinite radius times no turn is no motion.
+  const double chord = turn == 0.0 ? 0.0 : 2.0 * radius * std::sqrt(turn);
+  return std::sqrt(shift) + chord;
+}
+
+/// The same pose with a unit quaternion.
+[[nodiscard]] inline Pose with_unit_turn(const Pose& pose) noexcept {
+  Pose unit = pose;
+  double square = 0.0;
+  for (const double q : pose.orientation) square += q * q;
+  const double factor = 1.0 / std::sqrt(square);
+  for (double& q : unit.orientation) q *= factor;
+  return unit;
+}
+
+}  // namespace winnow

@@ -1,0 +1,289 @@
+// What is known of a scene's pairs from the last call: matched with the pairs of this one, kept
+// where they have hardly moved, told where they have ended.
+
+#include <winnow/pipeline/scene/collision.h>
+#include <winnow/pipeline/scene/motion_bound.h>
+
+#include <atomic>
+#include <cmath>
+#include <tuple>
+
+namespace winnow {
+namespace {
+
+// Relative error of turning a point in float, once.
+constexpr double kTurnError = 4.0e-7;
+
+[[nodiscard]] auto order_of(const PairRecord& record) noexcept {
+  return std::tuple(record.code, record.pair.a, record.pair.b);
+}
+
+// How far points of a body of this radius move when it turns.
+[[nodiscard]] double turn_bound(const double (&from)[4], const double (&to)[4],
+                                double radius) noexcept {
+  Pose a;
+  Pose b;
+  std::copy_n(from, 4, a.orientation);
+  std::copy_n(to, 4, b.orientation);
+  return motion_bound(a, b, radius);
+}
+
+struct Turn {
+  double m[3][3];
+
+  // R(to) R(from)^T for unit quaternions.
+  Turn(const double (&to)[4], const double (&from)[4]) noexcept {
+    const double w = to[0] * from[0] + to[1] * from[1] + to[2] * from[2] + to[3] * from[3];
+    const double x = -to[0] * from[1] + to[1] * from[0] - to[2] * from[3] + to[3] * from[2];
+    const double y = -to[0] * from[2] + to[1] * from[3] + to[2] * from[0] - to[3] * from[1];
+    const double z = -to[0] * from[3] - to[1] * from[2] + to[2] * from[1] + to[3] * from[0];
+    const double rows[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+                               {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+                               {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+    std::copy_n(&rows[0][0], 9, &m[0][0]);
+  }
+
+  template <typename T>
+  void apply(Column<T> (&column)[3], std::uint32_t i) const noexcept {
+    const double v[3] = {static_cast<double>(column[0][i]), static_cast<double>(column[1][i]),
+                         static_cast<double>(column[2][i])};
+    for (int k = 0; k < 3; ++k) {
+      column[k][i] = static_cast<T>(m[k][0] * v[0] + m[k][1] * v[1] + m[k][2] * v[2]);
+    }
+  }
+};
+
+[[nodiscard]] double radius_of(const Scene::State& scene, std::uint32_t body) noexcept {
+  const ShapeId id = scene.shape[body];
+  return id.is_composite() ? scene.options.composites->radius(id)
+                           : shape_radius(scene.shapes.tables(), id);
+}
+
+}  // namespace
+
+// Pairs of bodies that slept are put back among those of the last frame, when bodies may have
+// woken.
+bool Collision::wake_dormant() {
+  Contacts::State& c = contacts_;
+  if (!same_level_) {
+    c.dormant_records.clear();
+    c.dormant_carried.clear();
+  }
+  const std::size_t count = c.dormant_records.size();
+  if (count == 0 || c.regroupings == scene_.regroupings) return true;
+  Place at{static_cast<std::uint32_t>(c.frame.pairs()),
+           static_cast<std::uint32_t>(c.frame.manifolds()),
+           static_cast<std::uint32_t>(c.frame.points.size())};
+  if (!c.frame.resize(level_, at.pair + count, at.manifold + c.dormant.manifolds(),
+                      at.point + c.dormant.points.size()) ||
+      !c.records_before.resize(c.records.size() + count) ||
+      (carries_ && !c.carried_before.resize(c.records.size() + count))) {
+    return false;
+  }
+  for (PairRecord& record : c.dormant_records) {
+    c.frame.copy(c.dormant, record.shown, at);
+    const Place taken = c.dormant.extent(record.shown);
+    record.shown = at.pair;
+    at += taken;
+  }
+  c.frame.close(level_, at);
+  std::size_t one = 0;
+  std::size_t other = 0;
+  for (std::size_t i = 0; i < c.records_before.size(); ++i) {
+    const bool first =
+        other == count ||
+        (one < c.records.size() && order_of(c.records[one]) < order_of(c.dormant_records[other]));
+    if (carries_) c.carried_before[i] = first ? c.carried[one] : c.dormant_carried[other];
+    c.records_before[i] = first ? c.records[one++] : c.dormant_records[other++];
+  }
+  c.records.swap(c.records_before);
+  c.carried.swap(c.carried_before);
+  c.dormant_records.clear();
+  c.dormant_carried.clear();
+  return true;
+}
+
+// Which record each pair had. Both are sorted alike.
+bool Collision::match() {
+  Contacts::State& c = contacts_;
+  const auto pairs = scene_.pairs.pairs();
+  same_pairs_ = carries_ && same_level_ && c.pairs_serial == scene_.pairs.serial() &&
+                c.records.size() == pairs.size() && c.carried.size() == pairs.size();
+  if (level_ != SceneLevel::pairs && !c.origin.resize(pairs.size())) return false;
+  if (same_pairs_) return true;
+  if (!c.old_record.resize(pairs.size())) return false;
+  std::size_t record = 0;
+  for (std::uint32_t code = 0; code < kPairCodes; ++code) {
+    for (std::uint32_t i = scene_.pairs.first(code); i < scene_.pairs.first(code + 1); ++i) {
+      const auto order = std::tuple(code, pairs[i].a, pairs[i].b);
+      while (record < c.records.size() && order_of(c.records[record]) < order) ++record;
+      const bool found = record < c.records.size() && order_of(c.records[record]) == order;
+      c.old_record[i] = found ? static_cast<std::uint32_t>(record++) : kNone;
+    }
+  }
+  return true;
+}
+
+// Says of every pair where its contacts come from. False if the last frame can stay as it is.
+bool Collision::decide() {
+  Contacts::State& c = contacts_;
+  const auto pairs = scene_.pairs.pairs();
+  if (level_ == SceneLevel::pairs) return true;
+  std::atomic<std::uint32_t> kept{0};
+  const bool may_keep = carries_ && same_level_ && c.carried.size() == c.records.size();
+  for_tasks([&](std::size_t, std::uint32_t first, std::uint32_t end) {
+    std::uint32_t count = 0;
+    for (std::uint32_t i = first; i < end; ++i) {
+      const std::uint32_t record = same_pairs_ ? i : c.old_record[i];
+      const bool composite = scene_.shape[pairs[i].b].is_composite();
+      Origin origin = composite ? Origin::composite : Origin::convex;
+      if (may_keep && record != kNone && keep(i, record)) {
+        origin = Origin::carried;
+        ++count;
+      }
+      c.origin[i] = static_cast<std::uint8_t>(origin);
+    }
+    kept.fetch_add(count, std::memory_order_relaxed);
+  });
+  c.carried_count = kept.load();
+  if (!same_pairs_ || c.carried_count != pairs.size()) return true;
+  if (!c.is_settled) {
+    std::fill(c.frame.event.begin(), c.frame.event.end(), ContactEvent::persisted);
+    c.ended.clear();
+    c.is_settled = true;
+  }
+  return false;
+}
+
+// True if a pair has moved so little that its contacts stay, and turns them if it must.
+bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
+  Contacts::State& c = contacts_;
+  const BodyPair bodies = scene_.pairs.pairs()[pair];
+  const std::uint32_t since = c.clock;
+  if (scene_.shaped_at[bodies.a] > since || scene_.shaped_at[bodies.b] > since) return false;
+  if (scene_.moved_at[bodies.a] <= since && scene_.moved_at[bodies.b] <= since) return true;
+  CarriedPair& carried = c.carried[record];
+  const PairRecord& known = c.records[record];
+  const Pose& a = scene_.pose[bodies.a];
+  const Pose& b = scene_.pose[bodies.b];
+  const Pose now = carried.from_b ? relative_pose(b, a) : relative_pose(a, b);
+  const double moved = motion_bound(carried.relative, now, static_cast<double>(carried.radius)) +
+                       static_cast<double>(carried.drift);
+  if (!(moved <= carried.limit)) return false;
+  if (known.shown == kNone) return true;
+  const Pose unit = with_unit_turn(a);
+  const double turned =
+      turn_bound(carried.turn, unit.orientation, static_cast<double>(carried.radius_a));
+  if (!(moved + turned <= carried.limit)) {
+    const double drift = static_cast<double>(carried.radius_a) * kTurnError;
+    if (!(moved + drift <= carried.limit)) return false;
+    carried.drift = round_up(static_cast<double>(carried.drift) + drift);
+    turn(carried, known, unit.orientation);
+  }
+  if (!carried.widened) {
+    carried.widened = true;
+    const std::uint32_t end = c.frame.manifold_first[known.shown + 1];
+    for (std::uint32_t m = c.frame.manifold_first[known.shown]; m < end; ++m) {
+      c.frame.error_bound[m] += scene_.options.carry_over;
+    }
+  }
+  return true;
+}
+
+// Normals and points follow body a.
+void Collision::turn(CarriedPair& carried, const PairRecord& record,
+                     const double (&to)[4]) noexcept {
+  ContactFrame& frame = contacts_.frame;
+  const Turn turn(to, carried.turn);
+  const std::uint32_t first = frame.manifold_first[record.shown];
+  const std::uint32_t end = frame.manifold_first[record.shown + 1];
+  for (std::uint32_t m = first; m < end; ++m) {
+    turn.apply(frame.normal, m);
+    if (level_ == SceneLevel::distance) turn.apply(frame.point, m);
+  }
+  if (level_ == SceneLevel::manifold) {
+    for (std::uint32_t p = frame.point_first[first]; p < frame.point_first[end]; ++p) {
+      turn.apply(frame.points.position, p);
+    }
+  }
+  std::copy_n(to, 4, carried.turn);
+}
+
+// Notes what a pair was found to be. Room was made.
+void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
+  Contacts::State& c = contacts_;
+  const BodyPair bodies = scene_.pairs.pairs()[pair];
+  const std::uint32_t code =
+      scene_.shape[bodies.a].kind_index() * kAllShapeKinds + scene_.shape[bodies.b].kind_index();
+  c.records[carries_ ? pair : shown] = {bodies, code, shown};
+  if (!carries_) return;
+  if (static_cast<Origin>(c.origin[pair]) == Origin::carried) {
+    c.carried[pair] = c.carried_before[same_pairs_ ? pair : c.old_record[pair]];
+    return;
+  }
+  CarriedPair carried{};
+  const Pose& a = scene_.pose[bodies.a];
+  const Pose& b = scene_.pose[bodies.b];
+  const double radius_a = radius_of(scene_, bodies.a);
+  const double radius_b = radius_of(scene_, bodies.b);
+  carried.from_b = radius_a <= radius_b;
+  carried.relative = carried.from_b ? relative_pose(b, a) : relative_pose(a, b);
+  std::copy_n(with_unit_turn(a).orientation, 4, carried.turn);
+  carried.radius = round_up(std::min(radius_a, radius_b));
+  carried.radius_a = round_up(radius_a);
+  const double carry_over = scene_.options.carry_over;
+  const double clear = shown == kNone ? clearance(pair) : carry_over;
+  carried.limit =
+      static_cast<Origin>(c.origin[pair]) == Origin::convex ? clear : std::min(clear, carry_over);
+  c.carried[pair] = carried;
+}
+
+// A pair that is not looked at because neither body is dynamic any more.
+bool Collision::put_to_sleep(std::uint32_t old_shown) const noexcept {
+  for (const Column<Key>& keys : contacts_.before.key) {
+    const Key key = keys[old_shown];
+    if (!scene_.keys.is_valid(key) || scene_.motion[key.id] == Motion::dynamic) return false;
+  }
+  return true;
+}
+
+// Pairs of the last frame that are not in this one have ended, or sleep.
+bool Collision::close_frame() {
+  Contacts::State& c = contacts_;
+  const ContactFrame& before = c.before;
+  c.ended.clear();
+  const bool may_sleep = same_level_ && c.regroupings != scene_.regroupings;
+  if (may_sleep && (!c.dormant_records.reserve(before.pairs()) ||
+                    (carries_ && !c.dormant_carried.reserve(before.pairs())))) {
+    return false;
+  }
+  Place room;
+  for (std::size_t r = 0; r < c.records_before.size(); ++r) {
+    PairRecord record = c.records_before[r];
+    if (record.shown == kNone || c.shown_again[record.shown] != 0) continue;
+    if (may_sleep && put_to_sleep(record.shown)) {
+      room += before.extent(record.shown);
+      (void)c.dormant_records.push_back(record);
+      if (carries_) (void)c.dormant_carried.push_back(c.carried_before[r]);
+    } else if (!c.ended.push_back({before.key[0][record.shown], before.key[1][record.shown],
+                                   before.data[0][record.shown], before.data[1][record.shown]})) {
+      return false;
+    }
+  }
+  c.is_settled =
+      c.ended.empty() && std::all_of(c.frame.event.begin(), c.frame.event.end(),
+                                     [](ContactEvent e) { return e == ContactEvent::persisted; });
+  if (room.pair == 0) return true;
+  if (!c.dormant.resize(level_, room.pair, room.manifold, room.point)) return false;
+  Place at;
+  for (PairRecord& record : c.dormant_records) {
+    c.dormant.copy(before, record.shown, at);
+    const Place taken = before.extent(record.shown);
+    record.shown = at.pair;
+    at += taken;
+  }
+  c.dormant.close(level_, at);
+  return true;
+}
+
+}  // namespace winnow
