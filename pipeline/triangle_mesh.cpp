@@ -1,5 +1,6 @@
 #include <winnow/pipeline/triangle_mesh.h>
 
+#include <winnow/pipeline/mesh/mesh_neighbours.h>
 #include <winnow/pipeline/mesh/mesh_tree.h>
 
 #include <algorithm>
@@ -11,7 +12,8 @@ namespace winnow {
 namespace {
 
 constexpr std::size_t kMaxTriangles = std::size_t{1} << kActiveEdgeShift;
-constexpr std::size_t kMaxVertices = std::numeric_limits<std::uint32_t>::max();
+// Instructions that gather take signed numbers.
+constexpr std::size_t kMaxVertices = std::numeric_limits<std::int32_t>::max();
 
 std::size_t padded(std::size_t count) {
   return (count + kMeshFanout - 1) / kMeshFanout * kMeshFanout;
@@ -118,10 +120,12 @@ Status TriangleMesh::take(const PointView& vertices, const IndexView& triangles,
   if (!order_triangles(view_.vertex, columns, order, execution)) return Status::out_of_memory;
   for (std::size_t slot = 0; slot < padded(count); ++slot) {
     const std::uint32_t number = order[std::min(slot, count - 1)];
-    triangle_[slot] = number | 7U << kActiveEdgeShift;
+    triangle_[slot] = number;
     for (std::size_t k = 0; k < 3; ++k) corner_[k][slot] = columns[k][number];
   }
+  if (!find_neighbours(view_, neighbours_)) return Status::out_of_memory;
   fit(execution);
+  neighbours_.release();
   return Status::ok;
 }
 
@@ -130,6 +134,8 @@ Status TriangleMesh::refit(const PointView& vertices, const Execution& execution
   if (vertices.count == 0) return Status::ok;
   if (!has_columns(vertices)) return Status::invalid_argument;
   if (!all_finite(vertices)) return Status::invalid_shape;
+  // Found where the vertices are now, so that those which come to lie at one place stay apart.
+  if (neighbours_.empty() && !find_neighbours(view_, neighbours_)) return Status::out_of_memory;
   place_vertices(vertices);
   fit(execution);
   return Status::ok;
@@ -161,6 +167,7 @@ void TriangleMesh::link() noexcept {
 
 void TriangleMesh::fit(const Execution& execution) noexcept {
   fit_mesh_levels(view_, nodes_.data(), bounds_.min.data(), bounds_.max.data(), execution);
+  mark_active_edges(view_, neighbours_, options_.active_edge_angle, triangle_.data());
 }
 
 Footprint TriangleMesh::footprint() const noexcept {

@@ -15,7 +15,9 @@ namespace winnow {
 
 struct MeshOptions {
   /// An edge that two triangles share is active if the mesh is convex there and bends by more than
-  /// this, in radians. Edges with one triangle or more than two are active. In [0, pi].
+  /// this, in radians. Edges with one triangle or more than two are active; where two triangles are
+  /// wound inconsistently, or one has no area, every bend is. Vertices at the same place count as
+  /// one. In [0, pi].
   double active_edge_angle = 0.02;
 };
 
@@ -31,14 +33,17 @@ class TriangleMesh {
 
   /// Takes copies of vertices (rounded to float) and triangles and builds the tree. O(n).
   /// `invalid_shape` if there is no triangle, a vertex is not finite in float, or a corner is not a
-  /// vertex; `too_many_objects` beyond 2^28 triangles; `invalid_argument` for bad options. A
+  /// vertex; `too_many_objects` beyond 2^28 triangles or 2^31 - 1 vertices; `invalid_argument` for
+  /// bad options or views without columns. A
   /// refused build, or one without memory, leaves the mesh as it was.
   Status build(const PointView& vertices, const IndexView& triangles,
                const MeshOptions& options = {}, const Execution& execution = Execution::serial());
 
   /// Gives all vertices new places and fits the tree to them, keeping its order: for meshes that
-  /// deform. Which edges are active is found anew. `size_mismatch` for another number of vertices.
-  /// O(n), several times faster than `build`; the tree gets worse as neighbours part.
+  /// deform. Which edges are active is found anew; who is whose neighbour stays, and takes 12 bytes
+  /// a triangle from the first call on: later ones allocate nothing. `size_mismatch` for another
+  /// number of vertices. O(n), several times faster than `build`; the tree gets worse as neighbours
+  /// part.
   Status refit(const PointView& vertices, const Execution& execution = Execution::serial());
 
   [[nodiscard]] std::size_t triangles() const noexcept { return view_.triangle_count; }

@@ -1,122 +1,107 @@
 #include <winnow/pipeline/mesh/mesh_walks.h>
 
+#include <winnow/core/rounding.h>
+#include <winnow/pipeline/mesh/mesh_tree.h>
+#include <winnow/pipeline/mesh/mesh_walks.kernel.h>
+#include <winnow/simd/isa.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace winnow {
+
+WINNOW_DEFINE_KERNELS(MeshKernels, mesh_kernels)
+
 namespace {
 
-struct SlotBox {
-  double low[3];
-  double high[3];
-};
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Beyond this, sums of products of coordinates may leave the range of double.
+constexpr double kLargest = 1e150;
+// Slack beyond this, in the scale of a, would leave the range of float.
+constexpr double kLargestSlack = 1e30;
 
-SlotBox box_of(const MeshView& mesh, std::uint32_t slot) {
-  SlotBox box;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float* x = mesh.vertex[axis];
-    const float a = x[mesh.corner[0][slot]];
-    const float b = x[mesh.corner[1][slot]];
-    const float c = x[mesh.corner[2][slot]];
-    box.low[axis] = static_cast<double>(std::min({a, b, c}));
-    box.high[axis] = static_cast<double>(std::max({a, b, c}));
-  }
-  return box;
+/// The largest coordinate of the decoded nodes.
+double largest(const MeshView& mesh, std::size_t axis) {
+  const double low = static_cast<double>(mesh.origin[axis]);
+  return std::max(std::abs(low), std::abs(low + 65535.0 * static_cast<double>(mesh.step[axis])));
 }
 
-bool meet(const SlotBox& box, const double min[3], const double max[3]) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(box.low[axis] <= max[axis] && min[axis] <= box.high[axis])) return false;
-  }
-  return true;
+/// 1 / the power of two next to the largest coordinate, in the range of normal floats.
+float scale_of(const MeshView& mesh) {
+  const double size = std::max({largest(mesh, 0), largest(mesh, 1), largest(mesh, 2)});
+  const int exponent = size > 0.0 ? std::ilogb(size) : 0;
+  return std::ldexp(1.0F, std::clamp(-exponent, -126, 126));
 }
 
-void put(SlotSink& out, std::uint32_t slot) {
-  if (out.size < out.capacity) out.slot[out.size] = slot;
-  ++out.size;
-}
-
-double meeting_time(const SlotBox& box, const double min[3], const double max[3],
-                    const double direction[3], double limit) {
-  double first = 0.0;
-  double last = limit;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double near = box.low[axis] - max[axis];
-    const double far = box.high[axis] - min[axis];
-    if (direction[axis] == 0.0) {
-      if (near > 0.0 || far < 0.0) return std::numeric_limits<double>::infinity();
+MeshPairJob pair_job(const MeshView& a, const MeshView& b, const MeshPlacement& b_in_a,
+                     const double margin[3]) {
+  MeshPairJob job{};
+  job.scale = scale_of(a);
+  for (std::size_t k = 0; k < 3; ++k) {
+    double reach = std::abs(b_in_a.offset[k]) + std::abs(margin[k]);
+    for (std::size_t i = 0; i < 3; ++i) reach += std::abs(b_in_a.matrix[k][i]) * largest(b, i);
+    // Less than ten roundings of sums and products of what `reach` adds up.
+    job.slack[k] = margin[k] + reach * 0x1p-48;
+    const double scaled = job.slack[k] * static_cast<double>(job.scale);
+    if (!(reach < kLargest && scaled < kLargestSlack)) {
+      job.slack[k] = kInfinity;
+      job.scaled_slack[k] = std::numeric_limits<float>::infinity();
       continue;
     }
-    const double a = near / direction[axis];
-    const double b = far / direction[axis];
-    first = std::max(first, std::min(a, b) * (1.0 - 1e-15));
-    last = std::min(last, std::max(a, b) * (1.0 + 1e-15));
+    // A slack that underflows is as good as one of 2^-100 of a's size.
+    job.scaled_slack[k] = round_up(scaled + 0x1p-100);
+    std::copy_n(b_in_a.matrix[k], 3, job.matrix[k]);
+    job.offset[k] = b_in_a.offset[k];
   }
-  return first <= last ? first : std::numeric_limits<double>::infinity();
+  return job;
 }
 
 }  // namespace
 
 void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
                   SlotSink& out) noexcept {
-  for (std::uint32_t slot = 0; slot < mesh.triangle_count; ++slot) {
-    if (meet(box_of(mesh, slot), min, max)) put(out, slot);
+  if (mesh.triangle_count == 0) return;
+  MeshBoxJob job;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    job.node_low[axis] = static_cast<float>(mesh_units(mesh, axis, min[axis]));
+    job.node_high[axis] = static_cast<float>(mesh_units(mesh, axis, max[axis]));
+    job.low[axis] = round_up(min[axis]);
+    job.high[axis] = round_down(max[axis]);
   }
+  mesh_kernels().overlap(mesh, job, out);
 }
 
 void mesh_overlap_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& b_in_a,
                         const double margin[3], SlotPairSink& out) noexcept {
-  for (std::uint32_t j = 0; j < b.triangle_count; ++j) {
-    SlotBox moved;
-    for (int axis = 0; axis < 3; ++axis) {
-      moved.low[axis] = std::numeric_limits<double>::infinity();
-      moved.high[axis] = -moved.low[axis];
-      for (int k = 0; k < 3; ++k) {
-        double x = b_in_a.offset[axis];
-        for (int i = 0; i < 3; ++i) {
-          x += b_in_a.matrix[axis][i] * static_cast<double>(b.vertex[i][b.corner[k][j]]);
-        }
-        const double slack = margin[axis] + 1e-12 * std::abs(x);
-        moved.low[axis] = std::min(moved.low[axis], x - slack);
-        moved.high[axis] = std::max(moved.high[axis], x + slack);
-      }
-    }
-    for (std::uint32_t i = 0; i < a.triangle_count; ++i) {
-      if (!meet(box_of(a, i), moved.low, moved.high)) continue;
-      if (out.size < out.capacity) {
-        out.first[out.size] = i;
-        out.second[out.size] = j;
-      }
-      ++out.size;
-    }
-  }
+  if (a.triangle_count == 0 || b.triangle_count == 0) return;
+  mesh_kernels().pairs(a, b, pair_job(a, b, b_in_a, margin), out);
 }
 
 void mesh_sweep(const MeshView& mesh, const double min[3], const double max[3],
                 const double direction[3], double limit, const SlotVisitor& visitor) noexcept {
-  for (std::uint32_t slot = 0; slot < mesh.triangle_count && limit >= 0.0; ++slot) {
-    if (meeting_time(box_of(mesh, slot), min, max, direction, limit) <= limit) {
-      limit = visitor.visit(visitor.context, &slot, 1, limit);
-    }
+  if (mesh.triangle_count == 0 || !(limit >= 0.0)) return;
+  MeshSweepJob job{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    job.min[axis] = min[axis];
+    job.max[axis] = max[axis];
+    job.inverse[axis] = 1.0 / direction[axis];
+    job.is_static[axis] = !std::isfinite(job.inverse[axis]);
+    if (direction[axis] == 0.0 || !job.is_static[axis]) continue;
+    const double way = direction[axis] * limit;
+    (way < 0.0 ? job.min : job.max)[axis] += way;
   }
+  mesh_kernels().sweep(mesh, job, limit, visitor);
 }
 
 void mesh_near(const MeshView& mesh, const double scale[3], const double min[3],
                const double max[3], double limit, const SlotVisitor& visitor) noexcept {
-  for (std::uint32_t slot = 0; slot < mesh.triangle_count && limit >= 0.0; ++slot) {
-    const SlotBox box = box_of(mesh, slot);
-    double square = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double a = box.low[axis] * scale[axis];
-      const double b = box.high[axis] * scale[axis];
-      const double gap = std::max({0.0, min[axis] - std::max(a, b), std::min(a, b) - max[axis]});
-      square += gap * gap;
-    }
-    if (std::sqrt(square) * (1.0 - 1e-15) <= limit) {
-      limit = visitor.visit(visitor.context, &slot, 1, limit);
-    }
-  }
+  if (mesh.triangle_count == 0 || !(limit >= 0.0)) return;
+  MeshNearJob job;
+  std::copy_n(min, 3, job.min);
+  std::copy_n(max, 3, job.max);
+  std::copy_n(scale, 3, job.scale);
+  mesh_kernels().near(mesh, job, limit, visitor);
 }
 
 }  // namespace winnow

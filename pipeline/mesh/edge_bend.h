@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cmath>
+
+namespace winnow {
+
+/// Whether two triangles that share an edge bend outward there by more than an angle. In double; a
+/// bend that rounding of the corners' differences could make counts as none.
+class EdgeBend {
+ public:
+  explicit EdgeBend(double angle) noexcept
+      : cosine_(std::cos(angle)), sine_(std::sin(angle)), is_straight_(cosine_ <= -1.0) {}
+
+  /// The edge runs from u to v in the first triangle; p is the third corner of that one and q that
+  /// of the second. `consistent`: outward is where u, v, p run counter-clockwise; otherwise both
+  /// sides are. True also for triangles without area.
+  [[nodiscard]] bool is_active(const double (&u)[3], const double (&v)[3], const double (&p)[3],
+                               const double (&q)[3], bool consistent) const noexcept {
+    const Vector edge = between(u, v);
+    const Vector to_p = between(u, p);
+    const Vector to_q = between(u, q);
+    Vector n = cross(edge, to_p);
+    Vector m = cross(to_q, edge);
+    const double nn = dot(n, n);
+    const double mm = dot(m, m);
+    const double ee = dot(edge, edge);
+    // The cross product of parallel edges is their rounding.
+    if (!(nn > kFlat * ee * dot(to_p, to_p)) || !(mm > kFlat * ee * dot(to_q, to_q))) return true;
+    n = scaled(n, 1.0 / std::sqrt(nn));
+    m = scaled(m, 1.0 / std::sqrt(mm));
+    // The sine of bend - angle, which lies between -pi and pi.
+    const Vector c = cross(n, m);
+    const double bend_sine = std::sqrt(dot(c, c));
+    const double bend_cosine = dot(n, m);
+    const bool folded = bend_cosine < 0.0 && bend_sine <= kRounding;
+    if (folded) return !is_straight_;
+    if (bend_sine * cosine_ - bend_cosine * sine_ <= kRounding) return false;
+    const bool concave = dot(n, to_q) > 0.0 && dot(m, to_p) > 0.0;
+    return !(consistent && concave);
+  }
+
+ private:
+  struct Vector {
+    double x, y, z;
+  };
+  static constexpr double kFlat = 1e-24;
+  static constexpr double kRounding = 1e-12;
+
+  static Vector between(const double (&a)[3], const double (&b)[3]) noexcept {
+    return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  }
+  static Vector cross(const Vector& a, const Vector& b) noexcept {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+  static Vector scaled(const Vector& a, double s) noexcept { return {a.x * s, a.y * s, a.z * s}; }
+  static double dot(const Vector& a, const Vector& b) noexcept {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+  }
+
+  double cosine_;
+  double sine_;
+  bool is_straight_;
+};
+
+}  // namespace winnow

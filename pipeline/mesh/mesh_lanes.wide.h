@@ -1,0 +1,81 @@
+#pragma once
+
+// Sixteen nodes or sixteen triangles of a mesh in lanes.
+
+#include <winnow/pipeline/mesh/mesh_view.h>
+#include <winnow/simd/compress.h>
+#include <winnow/simd/lookup.wide.h>
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// Which of the lanes [first, first + 16) of `count` are there.
+inline Mask16 present(std::uint32_t count, std::uint32_t first_lane) {
+  const std::uint32_t rest = count - first_lane;
+  return lanes_below(rest < kLanes ? rest : kLanes);
+}
+
+/// Nodes [first_node, first_node + 16) of a level, in the units of the nodes. Lanes beyond the
+/// level's count are to be masked.
+[[gnu::always_inline]] inline Box16 load_nodes(const MeshView& mesh, std::uint32_t level,
+                                               std::uint32_t first_node) {
+  Box16 box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.low[axis] = lanes_of(load_short(mesh.node[level][axis] + first_node));
+    box.high[axis] = lanes_of(load_short(mesh.node[level][3 + axis] + first_node));
+  }
+  return box;
+}
+
+/// The corners of the triangles of a leaf, by corner and axis.
+struct Corners16 {
+  Single16 at[3][3];
+};
+
+[[gnu::always_inline]] inline Corners16 load_corners(const MeshView& mesh, std::uint32_t leaf) {
+  Corners16 corners;
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t* index = mesh.corner[k] + std::size_t{leaf} * kMeshFanout;
+    for (int axis = 0; axis < 3; ++axis) corners.at[k][axis] = gather(mesh.vertex[axis], index);
+  }
+  return corners;
+}
+
+[[gnu::always_inline]] inline Box16 box_of(const Corners16& corners) {
+  Box16 box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Single16& a = corners.at[0][axis];
+    const Single16& b = corners.at[1][axis];
+    const Single16& c = corners.at[2][axis];
+    box.low[axis] = lanes_of(min(min(a, b), c));
+    box.high[axis] = lanes_of(max(max(a, b), c));
+  }
+  return box;
+}
+
+/// Sixteen boxes in double, half of them at a time.
+struct Box8 {
+  Double8 low[3];
+  Double8 high[3];
+};
+
+template <int Half>
+[[gnu::always_inline]] inline Box8 in_double(const Box16& box) {
+  Box8 r;
+  for (int axis = 0; axis < 3; ++axis) {
+    r.low[axis] = to_double<Half>(real_of(box.low[axis]));
+    r.high[axis] = to_double<Half>(real_of(box.high[axis]));
+  }
+  return r;
+}
+
+/// What boxes in the units of the nodes stand for.
+[[gnu::always_inline]] inline void decode(const MeshView& mesh, Box8& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const Double8 origin(static_cast<double>(mesh.origin[axis]));
+    const Double8 step(static_cast<double>(mesh.step[axis]));
+    box.low[axis] = origin + box.low[axis] * step;
+    box.high[axis] = origin + box.high[axis] * step;
+  }
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME
