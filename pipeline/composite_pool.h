@@ -6,7 +6,10 @@
 #include <winnow/pipeline/triangle_mesh.h>
 
 #include <array>
-#include <memory>
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
 
 namespace winnow {
 
@@ -32,7 +35,8 @@ class CompositePool final : public MidPhase {
                   const Execution& execution = Execution::parallel());
   /// The same triangles, multiplied by `scale` along the axes of the mesh: an id of its own that
   /// shares them. Finite factors, none zero; negative ones mirror. Scales of scales multiply. The
-  /// triangles live until the last id is removed.
+  /// triangles live until the last id is removed. `invalid_argument` for factors that, multiplied,
+  /// are not between 1e-100 and 1e100.
   Status add_scaled(ShapeId mesh, const std::array<double, 3>& scale, ShapeId& id);
   /// New places for the vertices of a mesh, seen by all its scaled ids. See TriangleMesh::refit.
   Status refit_mesh(ShapeId mesh, const PointView& vertices,
@@ -70,7 +74,13 @@ class CompositePool final : public MidPhase {
 
  private:
   struct State;
-  State* state_;
+  /// Null if memory is refused. Made by the first shape, so that a pool without any takes no
+  /// memory.
+  [[nodiscard]] State* state() noexcept;
+
+  const ShapePool& shapes_;
+  std::pmr::memory_resource* memory_;
+  State* state_ = nullptr;
 };
 
 }  // namespace winnow

@@ -36,14 +36,16 @@ class PrimitivePairs {
   /// Which part of its body it is: the number of the triangle or child; kWholeShape.
   Column<std::uint32_t> part;
   Column<TriangleShape> triangles;
-  /// Of a triangle: bit k is set where edge k (from corner k to the next) is not one that a
-  /// neighbour continues: a contact there may have a normal of its own.
+  /// Of `triangles`, one for each: bit k is set where edge k (from corner k to the next) is not one
+  /// that a neighbour continues: a contact there may have a normal of its own.
   Column<std::uint8_t> active_edges;
   /// Pairs of primitives, those of one pair of bodies next to each other in the order of the
   /// bodies' pairs; a is of body a.
   Column<BodyPair> pairs;
   /// Pairs of primitives of pair i of bodies: [first[i], first[i + 1]).
   Column<std::uint32_t> first;
+  /// That `expand` was given.
+  double margin = 0.0;
   /// What tasks write before it is put in order.
   Column<std::uint32_t> scratch;
 

@@ -11,6 +11,10 @@
 
 namespace winnow {
 
+namespace mid {
+class Smoothing;
+}
+
 /// Pairs of one kind, next to each other in a NarrowResult.
 struct NarrowRun {
   ShapeKind a{};
@@ -86,6 +90,7 @@ class NarrowResult {
 
  private:
   friend class NarrowPhase;
+  friend class mid::Smoothing;
   /// Room for the columns that a level has, and no others. False if memory is refused.
   [[nodiscard]] bool resize(std::size_t count, NarrowLevel level) noexcept;
   void clear() noexcept;

@@ -1,0 +1,84 @@
+#include <winnow/pipeline/mid/extent.h>
+#include <winnow/pipeline/mid/side.h>
+
+namespace winnow::mid {
+
+Side::Side(const Composites& all, const ShapeTables& pool, ShapeId shape, const Pose& pose,
+           const Vec& at) noexcept
+    : tables(pool),
+      id(shape),
+      turn(tame(pose.orientation)),
+      rotation(rotation_of(turn)),
+      position(at) {
+  to_world = rotation;
+  to_local = rotation.transpose();
+  if (!shape.is_composite()) return;
+  if (const MeshEntry* const entry = all.mesh(shape)) {
+    kind = Kind::mesh;
+    mesh = &entry->shared->mesh.view();
+    bounds = Box::of(entry->shared->mesh.bounds());
+    const Eigen::Map<const Vec> scale(entry->scale);
+    to_world = rotation * scale.asDiagonal();
+    to_local = scale.cwiseInverse().asDiagonal() * rotation.transpose();
+  } else if (const HeightField* const heights = all.field(shape)) {
+    kind = Kind::field;
+    field = heights;
+    bounds = Box::of(heights->bounds());
+  } else {
+    kind = Kind::compound;
+    compound = all.compound(shape);
+    bounds = Box::of(compound->bounds);
+  }
+}
+
+Box Side::box_in(const Side& other, double margin) const noexcept {
+  if (kind == Kind::convex) return box_of(part(0), other, margin);
+  const Vec offset = other.to_local * finite(position - other.position);
+  if (!bounds.is_finite()) {
+    // Endless in one direction, endless in all once it is turned.
+    return {Vec::Constant(-kInfinity), Vec::Constant(kInfinity)};
+  }
+  const Box box = box_under(bounds, other.to_local * to_world, offset, 0.0);
+  const Vec out = margin * other.to_local.rowwise().norm();
+  return {box.min - out, box.max + out};
+}
+
+Part Side::part(std::uint32_t number) const noexcept {
+  if (kind == Kind::convex) return {id, 0, rotation, position, radius_of(tables, id)};
+  const CompoundChild& child = compound->children[number];
+  const Eigen::Map<const Vec> at(child.pose.position);
+  return {child.shape, number, rotation * rotation_of(tame(child.pose.orientation)),
+          position + rotation * at, radius_of(tables, child.shape)};
+}
+
+Eigen::Vector4d Side::part_turn(std::uint32_t number) const noexcept {
+  if (kind == Kind::convex) return turn;
+  return product(turn, tame(compound->children[number].pose.orientation));
+}
+
+bool Side::corners(std::uint32_t number, Corners& out) const noexcept {
+  Vec local[3];
+  if (kind == Kind::mesh) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t corner = mesh->corner[k][number];
+      for (int axis = 0; axis < 3; ++axis) {
+        local[k][axis] = static_cast<double>(mesh->vertex[axis][corner]);
+      }
+    }
+  } else {
+    TriangleShape triangle;
+    if (!field->triangle(number, triangle)) return false;
+    for (int k = 0; k < 3; ++k) local[k] = Eigen::Map<const Vec>(triangle.vertex[k]);
+  }
+  out.first = to_world * local[0] + position;
+  out.edge[0] = to_world * (local[1] - local[0]);
+  out.edge[1] = to_world * (local[2] - local[0]);
+  return true;
+}
+
+Box box_of(const Part& part, const Side& other, double margin) noexcept {
+  const Vec offset = other.to_local * finite(part.position - other.position);
+  return box_under(other.tables, part.shape, other.to_local * part.rotation, offset, margin);
+}
+
+}  // namespace winnow::mid

@@ -1,0 +1,301 @@
+#include <winnow/pipeline/mid/edge_contact.h>
+#include <winnow/pipeline/mid/extent.h>
+#include <winnow/pipeline/mid/smooth.h>
+#include <winnow/pipeline/solver/problem.h>
+#include <winnow/pipeline/solver/supporting_patch.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow::mid {
+namespace {
+
+constexpr std::uint8_t kAllEdges = 7;
+constexpr std::size_t kChunk = 256;
+constexpr std::size_t kWave = 64;
+
+// Of float positions and depths.
+constexpr double kFloatError = 1.2e-7;
+
+[[nodiscard]] double rounding_of(const ShapeTables& tables, ShapeId shape) noexcept {
+  const std::uint32_t i = shape.index();
+  switch (shape.kind()) {
+    case ShapeKind::sphere:
+      return tables.spheres[i].radius;
+    case ShapeKind::capsule:
+      return tables.capsules[i].radius;
+    case ShapeKind::box:
+      return tables.boxes[i].rounding;
+    case ShapeKind::cylinder:
+      return tables.cylinders[i].rounding;
+    case ShapeKind::cone:
+      return tables.cones[i].rounding;
+    case ShapeKind::hull:
+      return tables.hulls[i].rounding;
+    case ShapeKind::triangle:
+      return tables.triangles[i].rounding;
+    case ShapeKind::half_space:
+      break;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+/// Writes to a NarrowResult, in waves of chunks: room for the contacts of a wave is made before its
+/// tasks run, and what they do not need of it is taken back.
+class Smoothing {
+ public:
+  Smoothing(const ShapePool& shapes, const PrimitivePairs& pairs, NarrowResult& result) noexcept
+      : tables_(pairs.tables(shapes)), pairs_(pairs), result_(result) {}
+
+  void run(const Execution& execution) noexcept;
+
+ private:
+  struct Found {
+    EdgeContact contact = EdgeContact::real;
+    /// From a to b, along the triangle's normal.
+    Vec normal;
+    /// How far the normal was off.
+    double off = 0.0;
+    bool is_deep = false;
+  };
+  struct Chunk {
+    std::size_t begin;
+    std::size_t end;
+    /// Contacts from there on; how many were written.
+    std::size_t base = 0;
+    std::size_t used = 0;
+    bool has_room = false;
+  };
+
+  void run_wave(const Execution& execution, std::span<Chunk> wave) noexcept;
+  void count(Chunk& chunk) const noexcept;
+  void change(Chunk& chunk) noexcept;
+  void close_gaps(std::span<Chunk> wave, std::size_t from) noexcept;
+
+  [[nodiscard]] Found find(std::size_t i) const noexcept;
+  void choose_side(const BodyPair& pair, bool second, Vec& away) const noexcept;
+  void set_normal(std::size_t i, const Vec& normal) noexcept;
+  void lower_sphere(std::size_t i, const Vec& normal) noexcept;
+  void clip(Chunk& chunk, std::size_t i, const Vec& normal) noexcept;
+  void take(Chunk& chunk, std::size_t i, std::span<const ContactPoint> points) noexcept;
+
+  [[nodiscard]] bool has_contacts() const noexcept {
+    return result_.level_ == NarrowLevel::manifold;
+  }
+  [[nodiscard]] const BodyPair& pair(std::size_t i) const noexcept {
+    return pairs_.pairs[result_.order_[i]];
+  }
+
+  ShapeTables tables_;
+  const PrimitivePairs& pairs_;
+  NarrowResult& result_;
+};
+
+void Smoothing::run(const Execution& execution) noexcept {
+  const std::size_t size = std::min(result_.size(), pairs_.pairs.size());
+  Chunk wave[kWave];
+  for (std::size_t begin = 0; begin < size;) {
+    std::size_t filled = 0;
+    for (; filled < kWave && begin < size; begin += kChunk) {
+      wave[filled++] = {begin, std::min(begin + kChunk, size)};
+    }
+    run_wave(execution, {wave, filled});
+  }
+}
+
+void Smoothing::run_wave(const Execution& execution, std::span<Chunk> wave) noexcept {
+  const std::size_t from = result_.contacts();
+  if (has_contacts()) {
+    execution.for_each(wave.size(), [&](std::size_t k) { count(wave[k]); });
+    std::size_t room = from;
+    for (Chunk& chunk : wave) {
+      chunk.base = room;
+      room += chunk.used;
+      chunk.used = 0;
+    }
+    const bool has_room = room == from || result_.contacts_.grow(room);
+    for (Chunk& chunk : wave) chunk.has_room = has_room;
+  }
+  execution.for_each(wave.size(), [&](std::size_t k) { change(wave[k]); });
+  if (has_contacts()) close_gaps(wave, from);
+}
+
+void Smoothing::count(Chunk& chunk) const noexcept {
+  for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
+    if (find(i).is_deep) chunk.used += kManifoldPoints;
+  }
+}
+
+void Smoothing::change(Chunk& chunk) noexcept {
+  for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
+    const Found found = find(i);
+    if (found.contact == EdgeContact::real) continue;
+    set_normal(i, found.normal);
+    if (found.contact == EdgeContact::nearly_face) {
+      result_.error_bound_[i] += found.off;
+    } else if (found.is_deep) {
+      clip(chunk, i, found.normal);
+    } else {
+      lower_sphere(i, found.normal);
+    }
+  }
+}
+
+void Smoothing::close_gaps(std::span<Chunk> wave, std::size_t from) noexcept {
+  std::size_t to = from;
+  for (const Chunk& chunk : wave) {
+    const std::size_t gap = chunk.base - to;
+    if (chunk.used != 0 && gap != 0) {
+      ContactColumns& all = result_.contacts_;
+      for (Column<float>& x : all.position) {
+        std::copy_n(x.data() + chunk.base, chunk.used, x.data() + to);
+      }
+      std::copy_n(all.depth.data() + chunk.base, chunk.used, all.depth.data() + to);
+      std::copy_n(all.feature.data() + chunk.base, chunk.used, all.feature.data() + to);
+      for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
+        std::uint32_t& first = result_.contact_first_[i];
+        if (first >= from) first -= static_cast<std::uint32_t>(gap);
+      }
+    }
+    to += chunk.used;
+  }
+  result_.contacts_.set_size(to);
+}
+
+Smoothing::Found Smoothing::find(std::size_t i) const noexcept {
+  Found found;
+  if (!(result_.distance_[i] <= pairs_.margin)) return found;
+  if (has_contacts() && result_.contact_count_[i] == 0) return found;
+  // Which of the two is the triangle of a mesh. Edges of other triangles are all active.
+  const BodyPair& bodies = pair(i);
+  const auto edges = [&](std::uint32_t body) {
+    const ShapeId shape = pairs_.shapes[body];
+    return shape.kind() == ShapeKind::triangle ? pairs_.active_edges[shape.index()] : kAllEdges;
+  };
+  const std::uint8_t edges_a = edges(bodies.a);
+  const std::uint8_t edges_b = edges(bodies.b);
+  const bool second = edges_b != kAllEdges;
+  if ((edges_a != kAllEdges) == second) return found;
+  const ShapeId triangle = pairs_.shapes[second ? bodies.b : bodies.a];
+  const ShapeId other = pairs_.shapes[second ? bodies.a : bodies.b];
+  if (other.kind() == ShapeKind::half_space) return found;
+
+  Vec away(result_.normal_[0][i], result_.normal_[1][i], result_.normal_[2][i]);
+  if (second) away = -away;
+  Vec face;
+  const TriangleShape& shape = tables_.triangles[triangle.index()];
+  found.contact = classify(shape, second ? edges_b : edges_a, away, face);
+  if (found.contact == EdgeContact::real) return found;
+  if (found.contact == EdgeContact::inner) {
+    choose_side(bodies, second, face);
+    const double distance = result_.distance_[i];
+    found.is_deep = other.kind() != ShapeKind::sphere && distance <= 0.0 &&
+                    distance + rounding_of(tables_, other) <= 0.0;
+  } else {
+    double size = std::abs(result_.distance_[i]);
+    for (const auto& corner : shape.vertex) size += Eigen::Map<const Vec>(corner).norm();
+    found.off = (face - away).norm() * size;
+  }
+  found.normal = second ? Vec(-face) : face;
+  return found;
+}
+
+// The side of the triangle's plane on which less of the other shape is in the way.
+void Smoothing::choose_side(const BodyPair& bodies, bool second, Vec& face) const noexcept {
+  const std::uint32_t triangle = second ? bodies.b : bodies.a;
+  const std::uint32_t other = second ? bodies.a : bodies.b;
+  const Mat rotation = rotation_of(tame(pairs_.poses[other].orientation));
+  const Extent reach = extent(tables_, pairs_.shapes[other], rotation.transpose() * face);
+  const Eigen::Map<const Vec> at(pairs_.poses[other].position);
+  const Eigen::Map<const Vec> plane(pairs_.poses[triangle].position);
+  const double base = face.dot(at - plane);
+  if (-(base + reach.low) > base + reach.high) face = -face;
+}
+
+void Smoothing::set_normal(std::size_t i, const Vec& normal) noexcept {
+  for (int axis = 0; axis < 3; ++axis) result_.normal_[axis][i] = normal[axis];
+}
+
+// The point of a sphere that is its deepest along the normal, so that the contact does not turn it.
+void Smoothing::lower_sphere(std::size_t i, const Vec& normal) noexcept {
+  const BodyPair& bodies = pair(i);
+  const double distance = result_.distance_[i];
+  Vec on_a;
+  if (pairs_.shapes[bodies.a].kind() == ShapeKind::sphere) {
+    on_a = tables_.spheres[pairs_.shapes[bodies.a].index()].radius * normal;
+  } else if (pairs_.shapes[bodies.b].kind() == ShapeKind::sphere) {
+    const Eigen::Map<const Vec> a(pairs_.poses[bodies.a].position);
+    const Eigen::Map<const Vec> b(pairs_.poses[bodies.b].position);
+    const double radius = tables_.spheres[pairs_.shapes[bodies.b].index()].radius;
+    on_a = b - a - (radius + distance) * normal;
+  } else {
+    return;
+  }
+  if (!has_contacts()) {
+    for (int axis = 0; axis < 3; ++axis) result_.point_[axis][i] = on_a[axis];
+    return;
+  }
+  const Vec middle = on_a + 0.5 * distance * normal;
+  const std::uint32_t point = result_.contact_first_[i];
+  for (int axis = 0; axis < 3; ++axis) {
+    result_.contacts_.position[axis][point] = static_cast<float>(middle[axis]);
+  }
+}
+
+void Smoothing::clip(Chunk& chunk, std::size_t i, const Vec& normal) noexcept {
+  const BodyPair& bodies = pair(i);
+  solver::Problem problem;
+  prepare(tables_, pairs_.shapes[bodies.a], pairs_.poses[bodies.a], pairs_.shapes[bodies.b],
+          pairs_.poses[bodies.b], false, problem);
+  const solver::SupportingPatch a(problem.a, normal);
+  const solver::SupportingPatch b(problem.b, -normal);
+  ContactPoint points[kManifoldPoints];
+  const double margin = std::min(std::ldexp(pairs_.margin, -problem.exponent), 8.0);
+  const std::uint32_t count = contact_patch(a.view(), b.view(), normal.data(), margin, points);
+  // The surfaces share a point whatever their features along the normal do.
+  const double least = -std::ldexp(result_.distance_[i], -problem.exponent);
+  const double depth = std::max(static_cast<double>(points[0].depth), least);
+  points[0].depth = static_cast<float>(depth);
+  result_.distance_[i] = -unscaled(problem, depth);
+  result_.error_bound_[i] += unscaled(problem, problem.noise() + kFloatError * depth);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const auto real = [&](float x) {
+      return static_cast<float>(unscaled(problem, static_cast<double>(x)));
+    };
+    for (float& x : points[k].position) x = real(x);
+    points[k].depth = real(points[k].depth);
+  }
+  if (has_contacts()) return take(chunk, i, {points, count});
+  for (int axis = 0; axis < 3; ++axis) {
+    result_.point_[axis][i] =
+        static_cast<double>(points[0].position[axis]) - 0.5 * result_.distance_[i] * normal[axis];
+  }
+}
+
+void Smoothing::take(Chunk& chunk, std::size_t i, std::span<const ContactPoint> points) noexcept {
+  // Where memory was refused, as many as there were.
+  std::size_t at = result_.contact_first_[i];
+  std::size_t count = std::min<std::size_t>(points.size(), result_.contact_count_[i]);
+  if (chunk.has_room) {
+    at = chunk.base + chunk.used;
+    count = points.size();
+    chunk.used += count;
+  }
+  ContactColumns& all = result_.contacts_;
+  for (std::size_t k = 0; k < count; ++k) {
+    for (int axis = 0; axis < 3; ++axis) all.position[axis][at + k] = points[k].position[axis];
+    all.depth[at + k] = points[k].depth;
+    all.feature[at + k] = points[k].feature;
+  }
+  result_.contact_first_[i] = static_cast<std::uint32_t>(at);
+  result_.contact_count_[i] = static_cast<std::uint32_t>(count);
+}
+
+void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
+            NarrowResult& result) noexcept {
+  if (result.level() != NarrowLevel::boolean) Smoothing(shapes, pairs, result).run(execution);
+}
+
+}  // namespace winnow::mid

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+namespace winnow::mid {
+
+/// Room made before tasks start, handed to them in blocks of words. Where it is not enough it
+/// counts on, so that who made it knows how much it takes. How much is taken does not depend on the
+/// order of tasks, only where things lie does.
+class WordArena {
+ public:
+  static constexpr std::uint32_t kBlock = 256;
+
+  WordArena(std::uint32_t* words, std::uint64_t blocks) noexcept : words_(words), blocks_(blocks) {}
+
+  /// Consecutive blocks with room for so many words; null if there are not enough.
+  [[nodiscard]] std::uint32_t* take(std::uint64_t words) noexcept {
+    const std::uint64_t count = (words + kBlock - 1) / kBlock;
+    const std::uint64_t first = next_.fetch_add(count, std::memory_order_relaxed);
+    return first + count <= blocks_ ? words_ + first * kBlock : nullptr;
+  }
+  [[nodiscard]] std::uint64_t asked() const noexcept {
+    return next_.load(std::memory_order_relaxed);
+  }
+  [[nodiscard]] bool was_enough() const noexcept { return asked() <= blocks_; }
+
+  [[nodiscard]] std::uint32_t index_of(const std::uint32_t* block) const noexcept {
+    return static_cast<std::uint32_t>((block - words_) / kBlock);
+  }
+
+ private:
+  std::uint32_t* words_;
+  std::uint64_t blocks_;
+  std::atomic<std::uint64_t> next_{0};
+};
+
+/// Words that one task writes one after another, in blocks of which each begins with the number of
+/// the next.
+class WordWriter {
+ public:
+  explicit WordWriter(WordArena& arena) noexcept : arena_(arena) {}
+
+  void put(std::uint32_t word) noexcept {
+    if (fill_ == WordArena::kBlock) turn();
+    if (block_ != nullptr) block_[fill_] = word;
+    ++fill_;
+    ++size_;
+  }
+  [[nodiscard]] std::uint32_t first_block() const noexcept { return first_; }
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+
+ private:
+  void turn() noexcept {
+    std::uint32_t* const fresh = arena_.take(WordArena::kBlock);
+    if (fresh != nullptr) {
+      (block_ != nullptr ? *block_ : first_) = arena_.index_of(fresh);
+    }
+    block_ = fresh;
+    fill_ = 1;
+  }
+
+  WordArena& arena_;
+  std::uint32_t* block_ = nullptr;
+  std::uint32_t first_ = 0;
+  std::uint32_t fill_ = WordArena::kBlock;
+  std::uint64_t size_ = 0;
+};
+
+/// Reads them again.
+class WordReader {
+ public:
+  WordReader(const std::uint32_t* words, std::uint32_t first_block) noexcept
+      : words_(words), next_(first_block) {}
+
+  [[nodiscard]] std::uint32_t get() noexcept {
+    if (fill_ == WordArena::kBlock) {
+      block_ = words_ + std::uint64_t{next_} * WordArena::kBlock;
+      next_ = block_[0];
+      fill_ = 1;
+    }
+    return block_[fill_++];
+  }
+
+ private:
+  const std::uint32_t* words_;
+  const std::uint32_t* block_ = nullptr;
+  std::uint32_t next_;
+  std::uint32_t fill_ = WordArena::kBlock;
+};
+
+}  // namespace winnow::mid
