@@ -621,7 +621,7 @@ TEST(InnerEdges, a_valley_holds_a_ball_by_its_faces) {
       add(pool, grid(8, 0.5F, Cut::alternating, [](float x, float) { return std::abs(x); }));
   const double rest = 0.5 * std::sqrt(2.0) - 0.02;
   for (int i = 0; i < 30; ++i) {
-    const Landing landing = land(shapes, pool, ball, Pose::at(0.001 * i, -0.5 + 0.03 * i, rest),
+    const Landing landing = land(shapes, pool, ball, Pose::at(0.0005 * i, -0.5 + 0.03 * i, rest),
                                  valley, Pose{}, NarrowLevel::manifold, 0.0);
     const Eigen::Vector3d left = Eigen::Vector3d(-1.0, 0.0, -1.0).normalized();
     const Eigen::Vector3d right = Eigen::Vector3d(1.0, 0.0, -1.0).normalized();
