@@ -9,6 +9,7 @@
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/shape_rays.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory_resource>
 #include <span>
@@ -24,7 +25,8 @@ struct SceneHit {
   /// In units of the direction: of a ray, where it enters the body's shape; of a moving shape, the
   /// time of impact, never later than the true one.
   double t = 0.0;
-  /// Unit, of the body's surface, against the motion.
+  /// Unit, of the body's surface, against the motion. Of a shape that overlaps the body at its
+  /// start, the direction in which it leaves it the soonest.
   double normal[3] = {0.0, 0.0, 0.0};
   /// Where they meet, in the world.
   double point[3] = {0.0, 0.0, 0.0};
@@ -36,14 +38,17 @@ struct SceneHit {
 struct SceneOverlap {
   Key key;
   ClientData data = 0;
-  /// The first part that does.
+  /// A part of it that does, the same each time.
   std::uint32_t part = kWholeShape;
 };
 
 /// Two points, and how far they are apart.
 struct SceneDistance {
+  /// The second body.
   Key key;
   ClientData data = 0;
+  /// The parts of the two that are closest; kWholeShape of a point or a convex body.
+  std::uint32_t part_a = kWholeShape;
   std::uint32_t part = kWholeShape;
   /// Negative by the depth of penetration; of composite shapes that of the deepest pair of parts.
   double distance = 0.0;
@@ -92,9 +97,10 @@ class SceneQueries {
                  const Filter& filter = {});
 
   /// Where the moving shape first touches a body, by conservative advancement (Mirtich 1996): t is
-  /// never later than the true time of impact and at most `tolerance` (a length along the way)
-  /// earlier; nothing is too thin to be hit. t = 0 if they overlap at the start. Not for half-space
-  /// shapes: `unsupported`.
+  /// never later than the true time of impact and at most `tolerance` (a length along the way,
+  /// finite, >= 0) earlier, or by what rounding makes of it: about 1e-14 of the sizes over the sine
+  /// of the angle of impact, and 1e-15 of the way. Nothing is too thin to be hit. t = 0 if they
+  /// overlap at the start. Half-spaces and composite shapes do not move: `unsupported`.
   Status closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter = {},
                  double tolerance = 1e-6);
   /// The first hit of every body.
@@ -108,10 +114,13 @@ class SceneQueries {
   Status nearest(const double point[3], std::size_t count, double radius,
                  std::span<const SceneDistance>& bodies, const Filter& filter = {});
 
+  /// All of it but results and scratch under `structure`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
- private:
+  /// Not for callers.
   struct State;
+
+ private:
   State* state_;
 };
 

@@ -1,0 +1,126 @@
+#include <winnow/pipeline/scene/queries_movers.h>
+#include <winnow/pipeline/scene/shape_cast.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A shape's pose at the origin.
+Pose at_origin(const Pose& pose) noexcept {
+  Pose result;
+  std::copy_n(pose.orientation, 4, result.orientation);
+  return result;
+}
+
+/// Before the tests of boxes round the way and what it starts from, this much of it.
+constexpr double kSlack = 0x1p-47;
+
+BoxSweep sweep_from(const Mover& mover, const double from[3], double limit) noexcept {
+  const Vector3d start = Vector3d::Map(from);
+  const PreciseBox& extent = mover.extent();
+  const double reach = start.cwiseAbs().maxCoeff() +
+                       std::max(extent.min.cwiseAbs().maxCoeff(), extent.max.cwiseAbs().maxCoeff());
+  const PreciseBox box = PreciseBox{start + extent.min, start + extent.max}.grown(kSlack * reach);
+  BoxSweep sweep = box.standing();
+  std::copy_n(mover.direction(), 3, sweep.direction);
+  sweep.max_t = limit;
+  return sweep;
+}
+
+void show(const Meeting& meeting, const double base[3], std::uint32_t part,
+          SceneHit& hit) noexcept {
+  hit.t = meeting.t;
+  hit.part = part;
+  for (int i = 0; i < 3; ++i) {
+    hit.normal[i] = meeting.normal[i];
+    hit.point[i] = base[i] + meeting.point[i];
+  }
+}
+
+}  // namespace
+
+RayMover::RayMover(const ShapePool& shapes, const ShapeRay& ray) noexcept
+    : Mover({Vector3d::Zero(), Vector3d::Zero()}, ray.origin, ray.direction, ray.max_t),
+      shapes_(shapes),
+      ray_(ray) {}
+
+bool RayMover::meets(const double from[3], const ConvexPart& part, double limit,
+                     Meeting& meeting) const noexcept {
+  PartTables tables(shapes_);
+  const ShapeId shape = tables.put(0, part);
+  ShapeRay ray = ray_;
+  std::copy_n(from, 3, ray.origin);
+  ray.max_t = limit;
+  ShapeHit hit;
+  const Status status = cast_ray(tables.tables(), shape, part.pose, ray, hit);
+  if (status != Status::ok || !hit.hit) return false;
+  meeting.t = hit.t;
+  for (int i = 0; i < 3; ++i) {
+    meeting.normal[i] = hit.normal[i];
+    meeting.point[i] = from[i] + hit.t * ray.direction[i];
+  }
+  return true;
+}
+
+ShapeMover::ShapeMover(const PartWalk& walk, const ShapeCast& cast, double tolerance) noexcept
+    : Mover(walk.box(PlacedShape{cast.shape, at_origin(cast.pose)}), cast.pose.position,
+            cast.direction, cast.max_t),
+      shapes_(walk.shapes()),
+      cast_(cast),
+      tolerance_(tolerance) {}
+
+bool ShapeMover::meets(const double from[3], const ConvexPart& part, double limit,
+                       Meeting& meeting) const noexcept {
+  PartTables tables(shapes_);
+  CastPair pair;
+  pair.moving = tables.put(0, {cast_.shape, cast_.pose});
+  pair.from = cast_.pose;
+  std::copy_n(from, 3, pair.from.position);
+  std::copy_n(cast_.direction, 3, pair.direction);
+  pair.max_t = limit;
+  pair.standing = tables.put(1, part);
+  pair.pose = part.pose;
+  CastTouch touch;
+  if (!cast_shape(tables.tables(), pair, tolerance_, touch)) return false;
+  meeting.t = touch.t;
+  for (int i = 0; i < 3; ++i) {
+    meeting.normal[i] = touch.normal[i];
+    meeting.point[i] = part.pose.position[i] + touch.point[i];
+  }
+  return true;
+}
+
+bool first_meeting(const PartWalk& walk, const Mover& mover, const PlacedShape& body, double limit,
+                   bool any, SceneHit& hit) noexcept {
+  Meeting meeting;
+  if (!body.shape.is_composite()) {
+    const double world[3] = {0.0, 0.0, 0.0};
+    if (!mover.meets(mover.start(), {body.shape, body.pose}, limit, meeting)) return false;
+    show(meeting, world, kWholeShape, hit);
+    return true;
+  }
+  // About the body, so that parts lose nothing far from the origin; what the difference of the
+  // positions loses is put into the pose, where it is small.
+  const double* const base = body.pose.position;
+  const Difference start = difference(mover.start(), base);
+  PlacedShape placed = body;
+  for (int i = 0; i < 3; ++i) placed.pose.position[i] = -start.rest[i];
+  bool found = false;
+  walk.met(placed, sweep_from(mover, start.difference, limit),
+           [&](const ConvexPart& part, double most) {
+             most = std::min(most, limit);
+             if (!mover.meets(start.difference, part, most, meeting)) return most;
+             if (found && meeting.t == hit.t && hit.part < part.part) return most;
+             found = true;
+             limit = meeting.t;
+             show(meeting, base, part.part, hit);
+             return any ? -1.0 : limit;
+           });
+  return found;
+}
+
+}  // namespace winnow

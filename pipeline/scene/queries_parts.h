@@ -1,0 +1,110 @@
+#pragma once
+
+#include <winnow/core/pose.h>
+#include <winnow/pipeline/mid_phase.h>
+#include <winnow/pipeline/shape_pool.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+
+namespace winnow {
+
+/// A box in double, in the axes of the world.
+struct PreciseBox {
+  Eigen::Vector3d min;
+  Eigen::Vector3d max;
+
+  /// Grown by `by` to all sides.
+  [[nodiscard]] PreciseBox grown(double by) const noexcept;
+  [[nodiscard]] BoxSweep standing() const noexcept;
+};
+
+/// Any shape where it stands.
+struct PlacedShape {
+  ShapeId shape;
+  Pose pose;
+};
+
+/// A convex shape that a question is about: of a body, of a part of one, or a point.
+struct ConvexPart {
+  ShapeId shape;
+  Pose pose;
+  std::uint32_t part = kWholeShape;
+  /// Triangles and balls that are not in the pool.
+  const TriangleShape* triangle = nullptr;
+  const SphereShape* ball = nullptr;
+};
+
+/// The tables of a pool in which two parts are to be found, wherever they came from.
+class PartTables {
+ public:
+  explicit PartTables(const ShapePool& pool) noexcept;
+  PartTables(const PartTables&) = delete;
+  PartTables& operator=(const PartTables&) = delete;
+
+  /// The id in `tables` of the part that is number `slot`, 0 or 1.
+  [[nodiscard]] ShapeId put(std::size_t slot, const ConvexPart& part) noexcept;
+  [[nodiscard]] const ShapeTables& tables() const noexcept { return tables_; }
+
+ private:
+  const ShapeTables& pool_;
+  ShapeTables tables_;
+  TriangleShape triangles_[2];
+  SphereShape balls_[2];
+};
+
+/// Walks over the parts of shapes, be they composite or their own only part.
+class PartWalk {
+ public:
+  PartWalk(const ShapePool& shapes, const MidPhase* composites) noexcept
+      : shapes_(shapes), composites_(composites) {}
+
+  [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
+  [[nodiscard]] bool contains(ShapeId shape) const noexcept;
+  /// Contains the shape where it stands.
+  [[nodiscard]] PreciseBox box(const PlacedShape& placed) const noexcept;
+  [[nodiscard]] PreciseBox box(const ConvexPart& part) const noexcept;
+
+  /// Calls visit(part, limit) for every part that the sweep may meet, roughly in order; it gives
+  /// back the limit of t to go on with, below zero to end.
+  template <typename Visit>
+  void met(const PlacedShape& placed, const BoxSweep& sweep, Visit&& visit) const {
+    walk(placed, sweep, sweep.max_t, false, visitor(visit));
+  }
+  /// The same for every part that may be within `limit` of a box.
+  template <typename Visit>
+  void near(const PlacedShape& placed, const PreciseBox& from, double limit, Visit&& visit) const {
+    walk(placed, from.standing(), limit, true, visitor(visit));
+  }
+
+ private:
+  struct PartVisitor {
+    double (*visit)(void* context, const ConvexPart& part, double limit);
+    void* context;
+  };
+  template <typename Visit>
+  static PartVisitor visitor(Visit& visit) noexcept {
+    return {[](void* context, const ConvexPart& part, double limit) {
+              return (*static_cast<Visit*>(context))(part, limit);
+            },
+            &visit};
+  }
+  void walk(const PlacedShape& placed, BoxSweep sweep, double limit, bool near,
+            PartVisitor visitor) const;
+
+  const ShapePool& shapes_;
+  const MidPhase* composites_;
+};
+
+/// to - from, rounded, and what was lost: to - from = difference + rest, unless that overflows.
+struct Difference {
+  double difference[3];
+  double rest[3];
+};
+[[nodiscard]] Difference difference(const double to[3], const double from[3]) noexcept;
+
+/// A shape's pose as seen from a position.
+[[nodiscard]] Pose relative(const Pose& pose, const double position[3]) noexcept;
+
+}  // namespace winnow
