@@ -1,0 +1,166 @@
+#pragma once
+
+// Scenes of every kind of shape, taken apart again: all parts of all bodies one by one, for brute
+// force.
+
+#include <gtest/gtest.h>
+#include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/scene.h>
+#include <winnow/pipeline/solver/solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "pair_scenes.h"
+
+namespace winnow::test {
+
+/// A convex part about the position of its body.
+struct FlatPart {
+  ShapeId shape;
+  Pose pose;
+  std::uint32_t part = kWholeShape;
+  TriangleShape triangle{};
+};
+
+struct QueryWorld {
+  explicit QueryWorld(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : composites(shapes.pool, memory) {}
+
+  PairScene shapes;
+  CompositePool composites;
+  std::unique_ptr<Scene> scene;
+  std::vector<BodyDefinition> bodies;
+  std::vector<Key> keys;
+  double center = 0.0;
+  double size = 1.0;
+
+  [[nodiscard]] std::vector<FlatPart> parts(ShapeId shape, const Pose& pose) const {
+    std::vector<FlatPart> result;
+    Pose here = pose;
+    std::fill_n(here.position, 3, 0.0);
+    if (!shape.is_composite()) return {{shape, here}};
+    const auto collect = [](void* list, const Primitive& p, double limit) {
+      static_cast<std::vector<FlatPart>*>(list)->push_back({p.shape, p.pose, p.part, p.triangle});
+      return limit;
+    };
+    composites.visit_near(shape, here, {}, HUGE_VAL, {collect, &result});
+    return result;
+  }
+  [[nodiscard]] std::vector<FlatPart> parts(std::size_t body) const {
+    return parts(bodies[body].shape, bodies[body].pose);
+  }
+
+  void add(ShapeId shape, const Pose& pose, Random& random) {
+    BodyDefinition body;
+    body.shape = shape;
+    body.pose = pose;
+    for (double& x : body.pose.position) x += center;
+    body.motion = static_cast<Motion>(random.below(kMotions));
+    body.data = 1000 + bodies.size();
+    bodies.push_back(body);
+  }
+  void add_to_scene(SceneOptions options = {}) {
+    options.composites = &composites;
+    scene = std::make_unique<Scene>(shapes.pool, options);
+    keys.resize(bodies.size());
+    ASSERT_EQ(scene->add(bodies, keys), Status::ok);
+    ASSERT_EQ(scene->refresh(), Status::ok);
+  }
+};
+
+inline Pose random_pose(double spread, Random& random) {
+  Pose pose;
+  for (double& x : pose.position) x = random.uniform(-spread, spread);
+  for (double& q : pose.orientation) q = random.uniform(-1.0, 1.0);
+  return pose;
+}
+
+/// A wavy sheet of 2 n^2 triangles, [-1, 1] on x and y.
+inline ShapeId add_sheet(CompositePool& pool, std::uint32_t n) {
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t j = 0; j <= n; ++j) {
+    for (std::uint32_t i = 0; i <= n; ++i) {
+      const float x = 2.0F * static_cast<float>(i) / static_cast<float>(n) - 1.0F;
+      const float y = 2.0F * static_cast<float>(j) / static_cast<float>(n) - 1.0F;
+      vertices.emplace_back(x, y, 0.2F * std::sin(5.0F * x) * std::cos(4.0F * y));
+      if (i == n || j == n) continue;
+      const std::uint32_t at = j * (n + 1) + i;
+      for (const std::uint32_t k : {0U, 1U, n + 2, 0U, n + 2, n + 1}) corners.push_back(at + k);
+    }
+  }
+  ShapeId id;
+  const std::span<const Eigen::Vector3f> points(vertices);
+  const std::span<const std::uint32_t> triangles(corners);
+  EXPECT_EQ(pool.add_mesh(points, triangles, id), Status::ok);
+  return id;
+}
+
+/// `count` convex bodies of all kinds in a cube that they fill by about a tenth, and some composite
+/// ones; all about (center, center, center).
+inline void fill(QueryWorld& world, std::size_t count, double center, Random& random) {
+  world.center = center;
+  const double spread = world.size = 1.5 * std::cbrt(static_cast<double>(count));
+  const std::vector<ShapeKind> kinds = all_kinds();
+  const auto bounded = static_cast<std::size_t>(
+      std::find(kinds.begin(), kinds.end(), ShapeKind::half_space) - kinds.begin());
+  while (world.shapes.shapes.size() < count) {
+    const PairStyle style = random.chance(0.3) ? PairStyle::degenerate : PairStyle::ordinary;
+    add_pairs(world.shapes, kinds[random.below(bounded)], kinds[random.below(bounded)], style, 1,
+              random);
+  }
+  for (const ShapeId shape : world.shapes.shapes) {
+    world.add(shape, random_pose(spread, random), random);
+  }
+  ShapeId ids[4];
+  ids[0] = add_sheet(world.composites, 6);
+  ASSERT_EQ(world.composites.add_scaled(ids[0], {2.0, 0.5, -3.0}, ids[1]), Status::ok);
+  std::vector<CompoundChild> children;
+  for (std::size_t i = 0; i < 20; ++i) {
+    children.push_back({world.shapes.shapes[i], random_pose(2.0, random)});
+  }
+  ASSERT_EQ(world.composites.add_compound(children, ids[2]), Status::ok);
+  std::vector<float> heights(12 * 9);
+  for (float& h : heights) h = static_cast<float>(random.unit());
+  ASSERT_EQ(world.composites.add_height_field({heights, 12, 9, 0, {0.4, 0.5}}, ids[3]), Status::ok);
+  for (std::size_t i = 0; i < 12; ++i) {
+    world.add(ids[i % 4], random_pose(spread, random), random);
+  }
+}
+
+/// The tables of a pool with a part's triangle in place of the pool's.
+struct PartTable {
+  ShapeTables tables;
+  ShapeId id;
+
+  PartTable(const ShapePool& pool, const FlatPart& part) : tables(pool.tables()), id(part.shape) {
+    if (part.part == kWholeShape || id.kind() != ShapeKind::triangle) return;
+    tables.triangles = &part.triangle;
+    tables.count[static_cast<std::size_t>(ShapeKind::triangle)] = 1;
+    id = ShapeId::of(ShapeKind::triangle, 0);
+  }
+};
+
+/// Two parts, `b` displaced by `offset`, solved alone.
+inline PairAnswer solve_parts(const ShapePool& pool, const FlatPart& a, FlatPart b,
+                              const double offset[3], NarrowLevel level) {
+  TriangleShape both[2];
+  ShapeTables tables = pool.tables();
+  ShapeId ids[2] = {a.shape, b.shape};
+  const FlatPart* const parts[2] = {&a, &b};
+  tables.triangles = both;
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    if (ids[i].kind() != ShapeKind::triangle) continue;
+    both[i] = parts[i]->part != kWholeShape ? parts[i]->triangle
+                                            : pool.tables().triangles[ids[i].index()];
+    ids[i] = ShapeId::of(ShapeKind::triangle, i);
+  }
+  for (int i = 0; i < 3; ++i) b.pose.position[i] += offset[i];
+  SolverCounts counts;
+  return solve_pair(tables, ids[0], a.pose, ids[1], b.pose, level, 0.0, counts);
+}
+
+}  // namespace winnow::test
