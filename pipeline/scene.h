@@ -70,7 +70,7 @@ struct SceneFootprint {
 
 /// Counters of the last `collide`, never timings, so that they repeat exactly.
 struct SceneStatistics {
-  std::uint64_t boxes_updated = 0;    ///< bodies whose boxes the partitions were given anew
+  std::uint64_t boxes_updated = 0;    ///< boxes that partitions were given since the one before
   std::uint64_t body_pairs = 0;       ///< pairs that the broad phase found
   std::uint64_t carried = 0;          ///< of them kept what they had
   std::uint64_t primitive_pairs = 0;  ///< pairs of parts that the mid phase made

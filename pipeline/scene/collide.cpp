@@ -1,5 +1,7 @@
 #include <winnow/pipeline/scene/collision.h>
 
+#include <utility>
+
 namespace winnow {
 
 Collision::Collision(Scene::State& scene, Contacts::State& contacts, SceneLevel level) noexcept
@@ -22,8 +24,11 @@ Status Collision::run() {
       if (status != Status::ok) return status;
     }
     contacts_.frame.swap(contacts_.before);
-    contacts_.records.swap(contacts_.records_before);
-    contacts_.carried.swap(contacts_.carried_before);
+    // The same pairs keep their records in place.
+    if (!same_pairs_) {
+      contacts_.records.swap(contacts_.records_before);
+      contacts_.carried.swap(contacts_.carried_before);
+    }
     if (!show() || !close_frame()) return Status::out_of_memory;
   }
   contacts_.clock = scene_.clock;
@@ -115,6 +120,7 @@ Status Scene::collide(SceneLevel level, Contacts& contacts) {
   }
   if (status == Status::ok) {
     state_->statistics.carried = contacts.state_->carried_count;
+    state_->statistics.boxes_updated = std::exchange(state_->boxes_updated, 0);
     ++state_->clock;
   } else {
     contacts.clear();

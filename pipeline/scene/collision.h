@@ -40,7 +40,12 @@ class Collision {
 
   // The frame (show_contacts.cpp).
   [[nodiscard]] bool show();
+  /// The place in the last frame of a pair's contacts; kNone.
+  [[nodiscard]] std::uint32_t shown_before(std::uint32_t pair) const noexcept;
+  [[nodiscard]] std::uint32_t carried_stretch(std::uint32_t pair, std::uint32_t end) const noexcept;
   [[nodiscard]] Place extent(std::uint32_t pair) const noexcept;
+  [[nodiscard]] Place count(std::uint32_t first, std::uint32_t end) const noexcept;
+  void write_task(std::uint32_t first, std::uint32_t end, Place at) noexcept;
   [[nodiscard]] bool touches(const NarrowResult& answers, std::size_t at) const noexcept;
   void write(std::uint32_t pair, const Place& to) noexcept;
   void write_manifold(const NarrowResult& answers, std::size_t at, const double* offset,

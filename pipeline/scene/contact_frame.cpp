@@ -107,47 +107,53 @@ Bytes ContactFrame::bytes() const noexcept {
   return sum;
 }
 
-ContactFrame::Place ContactFrame::extent(std::uint32_t pair) const noexcept {
-  Place extent{1, 0, 0};
+ContactFrame::Place ContactFrame::extent(std::uint32_t first, std::uint32_t count) const noexcept {
+  Place extent{count, 0, 0};
   if (manifold_first.empty()) return extent;
-  const std::uint32_t first = manifold_first[pair];
-  const std::uint32_t end = manifold_first[pair + 1];
-  extent.manifold = end - first;
-  if (!point_first.empty()) extent.point = point_first[end] - point_first[first];
+  const std::uint32_t begin = manifold_first[first];
+  const std::uint32_t end = manifold_first[first + count];
+  extent.manifold = end - begin;
+  if (!point_first.empty()) extent.point = point_first[end] - point_first[begin];
   return extent;
 }
 
-void ContactFrame::copy(const ContactFrame& other, std::uint32_t from, const Place& to) noexcept {
+void ContactFrame::copy(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
+                        const Place& to) noexcept {
   for (int side = 0; side < 2; ++side) {
-    key[side][to.pair] = other.key[side][from];
-    data[side][to.pair] = other.data[side][from];
+    copy_range(other.key[side], first, count, key[side], to.pair);
+    copy_range(other.data[side], first, count, data[side], to.pair);
   }
-  event[to.pair] = other.event[from];
+  copy_range(other.event, first, count, event, to.pair);
   if (other.manifold_first.empty()) return;
-  const std::uint32_t first = other.manifold_first[from];
-  const std::uint32_t count = other.manifold_first[from + 1] - first;
-  manifold_first[to.pair] = to.manifold;
+  const std::uint32_t begin = other.manifold_first[first];
+  const std::uint32_t manifolds = other.manifold_first[first + count] - begin;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    manifold_first[to.pair + i] = other.manifold_first[first + i] - begin + to.manifold;
+  }
   for (int side = 0; side < 2; ++side) {
-    copy_range(other.part[side], first, count, part[side], to.manifold);
+    copy_range(other.part[side], begin, manifolds, part[side], to.manifold);
   }
-  copy_range(other.distance, first, count, distance, to.manifold);
-  copy_range(other.error_bound, first, count, error_bound, to.manifold);
+  copy_range(other.distance, begin, manifolds, distance, to.manifold);
+  copy_range(other.error_bound, begin, manifolds, error_bound, to.manifold);
   for (int axis = 0; axis < 3; ++axis) {
-    copy_range(other.normal[axis], first, count, normal[axis], to.manifold);
-    copy_range(other.point[axis], first, count, point[axis], to.manifold);
+    copy_range(other.normal[axis], begin, manifolds, normal[axis], to.manifold);
+    copy_range(other.point[axis], begin, manifolds, point[axis], to.manifold);
   }
-  if (other.point_first.empty()) return;
-  const std::uint32_t point_from = other.point_first[first];
-  const std::uint32_t points_count = other.point_first[first + count] - point_from;
+  if (!other.point_first.empty()) copy_points(other, begin, manifolds, to);
+}
+
+void ContactFrame::copy_points(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
+                               const Place& to) noexcept {
+  const std::uint32_t begin = other.point_first[first];
+  const std::uint32_t number = other.point_first[first + count] - begin;
   for (std::uint32_t m = 0; m < count; ++m) {
-    point_first[to.manifold + m] = other.point_first[first + m] - point_from + to.point;
+    point_first[to.manifold + m] = other.point_first[first + m] - begin + to.point;
   }
   for (int axis = 0; axis < 3; ++axis) {
-    copy_range(other.points.position[axis], point_from, points_count, points.position[axis],
-               to.point);
+    copy_range(other.points.position[axis], begin, number, points.position[axis], to.point);
   }
-  copy_range(other.points.depth, point_from, points_count, points.depth, to.point);
-  copy_range(other.points.feature, point_from, points_count, points.feature, to.point);
+  copy_range(other.points.depth, begin, number, points.depth, to.point);
+  copy_range(other.points.feature, begin, number, points.feature, to.point);
 }
 
 void ContactFrame::close(SceneLevel level, const Place& end) noexcept {

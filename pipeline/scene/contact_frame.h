@@ -53,13 +53,18 @@ struct ContactFrame {
       return *this;
     }
   };
-  /// How much a pair takes.
-  [[nodiscard]] Place extent(std::uint32_t pair) const noexcept;
-  /// Copies pair `from` of another frame of the same level to a place, with its manifolds and
-  /// points, but for runs.
-  void copy(const ContactFrame& other, std::uint32_t from, const Place& to) noexcept;
+  /// How much pairs [first, first + count) take.
+  [[nodiscard]] Place extent(std::uint32_t first, std::uint32_t count = 1) const noexcept;
+  /// Copies pairs [first, first + count) of another frame of the same level to a place, with their
+  /// manifolds and points, but for runs.
+  void copy(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
+            const Place& to) noexcept;
   /// Writes what ends the columns of firsts.
   void close(SceneLevel level, const Place& end) noexcept;
+
+ private:
+  void copy_points(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
+                   const Place& to) noexcept;
 };
 
 /// What is remembered of a pair from one `collide` to the next. Without carry-over only pairs that

@@ -81,7 +81,7 @@ bool Collision::wake_dormant() {
     return false;
   }
   for (PairRecord& record : c.dormant_records) {
-    c.frame.copy(c.dormant, record.shown, at);
+    c.frame.copy(c.dormant, record.shown, 1, at);
     const Place taken = c.dormant.extent(record.shown);
     record.shown = at.pair;
     at += taken;
@@ -218,7 +218,7 @@ void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
   c.records[carries_ ? pair : shown] = {bodies, code, shown};
   if (!carries_) return;
   if (static_cast<Origin>(c.origin[pair]) == Origin::carried) {
-    c.carried[pair] = c.carried_before[same_pairs_ ? pair : c.old_record[pair]];
+    if (!same_pairs_) c.carried[pair] = c.carried_before[c.old_record[pair]];
     return;
   }
   CarriedPair carried{};
@@ -252,21 +252,25 @@ bool Collision::close_frame() {
   Contacts::State& c = contacts_;
   const ContactFrame& before = c.before;
   c.ended.clear();
-  const bool may_sleep = same_level_ && c.regroupings != scene_.regroupings;
+  // Bodies fall asleep by changing their partition, so that pairs are found anew.
+  const bool may_sleep = same_level_ && !same_pairs_ && c.regroupings != scene_.regroupings;
   if (may_sleep && (!c.dormant_records.reserve(before.pairs()) ||
                     (carries_ && !c.dormant_carried.reserve(before.pairs())))) {
     return false;
   }
   Place room;
-  for (std::size_t r = 0; r < c.records_before.size(); ++r) {
-    PairRecord record = c.records_before[r];
+  for (std::size_t r = 0; may_sleep && r < c.records_before.size(); ++r) {
+    const PairRecord record = c.records_before[r];
     if (record.shown == kNone || c.shown_again[record.shown] != 0) continue;
-    if (may_sleep && put_to_sleep(record.shown)) {
-      room += before.extent(record.shown);
-      (void)c.dormant_records.push_back(record);
-      if (carries_) (void)c.dormant_carried.push_back(c.carried_before[r]);
-    } else if (!c.ended.push_back({before.key[0][record.shown], before.key[1][record.shown],
-                                   before.data[0][record.shown], before.data[1][record.shown]})) {
+    if (!put_to_sleep(record.shown)) continue;
+    c.shown_again[record.shown] = 1;
+    room += before.extent(record.shown);
+    (void)c.dormant_records.push_back(record);
+    if (carries_) (void)c.dormant_carried.push_back(c.carried_before[r]);
+  }
+  for (std::size_t i = 0; i < before.pairs(); ++i) {
+    if (c.shown_again[i] == 0 && !c.ended.push_back({before.key[0][i], before.key[1][i],
+                                                     before.data[0][i], before.data[1][i]})) {
       return false;
     }
   }
@@ -277,7 +281,7 @@ bool Collision::close_frame() {
   if (!c.dormant.resize(level_, room.pair, room.manifold, room.point)) return false;
   Place at;
   for (PairRecord& record : c.dormant_records) {
-    c.dormant.copy(before, record.shown, at);
+    c.dormant.copy(before, record.shown, 1, at);
     const Place taken = before.extent(record.shown);
     record.shown = at.pair;
     at += taken;

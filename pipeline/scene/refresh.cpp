@@ -69,7 +69,7 @@ Status Scene::State::refresh_set(Motion which) {
   if (!anchor.empty()) {
     for (const std::uint32_t body : chosen) anchor[body] = with_unit_turn(pose[body]);
   }
-  statistics.boxes_updated += count;
+  boxes_updated += count;
   ++target.changes;
   return Status::ok;
 }

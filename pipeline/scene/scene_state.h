@@ -83,6 +83,8 @@ struct Scene::State {
   NarrowResult parts_answers;
   Column<std::uint32_t> parts_slot;
   SceneStatistics statistics;
+  /// Boxes updated since the last `collide`.
+  std::uint64_t boxes_updated = 0;
 
   [[nodiscard]] SceneSet& set(Motion which) noexcept {
     return sets[static_cast<std::size_t>(which)];

@@ -11,35 +11,104 @@ bool Collision::touches(const NarrowResult& answers, std::size_t at) const noexc
                                        : answers.distance()[at] <= scene_.options.margin;
 }
 
-// What a pair takes in the frame: nothing if it does not touch.
+std::uint32_t Collision::shown_before(std::uint32_t pair) const noexcept {
+  if (same_pairs_) return contacts_.records[pair].shown;
+  const std::uint32_t record = contacts_.old_record[pair];
+  return record == kNone ? kNone : contacts_.records_before[record].shown;
+}
+
+// How many pairs from this one on are carried over and lie next to each other in the last frame;
+// those that do not touch are passed over. What touches can be copied in one go.
+std::uint32_t Collision::carried_stretch(std::uint32_t pair, std::uint32_t end) const noexcept {
+  if (level_ == SceneLevel::pairs) return 0;
+  std::uint32_t at = pair;
+  std::uint32_t next = kNone;
+  for (; at < end && static_cast<Origin>(contacts_.origin[at]) == Origin::carried; ++at) {
+    const std::uint32_t shown = shown_before(at);
+    if (shown == kNone) continue;
+    if (next != kNone && shown != next) break;
+    next = shown + 1;
+  }
+  return at - pair;
+}
+
+// What a pair that is not carried over takes in the frame: nothing if it does not touch.
 ContactFrame::Place Collision::extent(std::uint32_t pair) const noexcept {
   if (level_ == SceneLevel::pairs) return {1, 0, 0};
   const auto points = [&](const NarrowResult& answers, std::size_t at) {
     return level_ == SceneLevel::manifold ? answers.contact_count()[at] : 0U;
   };
-  switch (static_cast<Origin>(contacts_.origin[pair])) {
-    case Origin::carried: {
-      const std::uint32_t record = same_pairs_ ? pair : contacts_.old_record[pair];
-      const std::uint32_t shown = contacts_.records_before[record].shown;
-      return shown == kNone ? Place{} : contacts_.before.extent(shown);
-    }
-    case Origin::convex: {
-      const std::uint32_t at = scene_.slot[contacts_.source[pair]];
-      if (!touches(scene_.answers, at)) return {};
-      return {1, 1, points(scene_.answers, at)};
-    }
-    case Origin::composite: {
-      Place sum;
-      const std::uint32_t* const first = scene_.parts.first.data() + contacts_.source[pair];
-      for (std::uint32_t i = first[0]; i < first[1]; ++i) {
-        const std::uint32_t at = scene_.parts_slot[i];
-        if (touches(scene_.parts_answers, at)) sum += {1, 1, points(scene_.parts_answers, at)};
-      }
-      if (sum.pair != 0) sum.pair = 1;
-      return sum;
-    }
+  if (static_cast<Origin>(contacts_.origin[pair]) == Origin::convex) {
+    const std::uint32_t at = scene_.slot[contacts_.source[pair]];
+    return touches(scene_.answers, at) ? Place{1, 1, points(scene_.answers, at)} : Place{};
   }
-  return {};
+  Place sum;
+  const std::uint32_t* const first = scene_.parts.first.data() + contacts_.source[pair];
+  for (std::uint32_t i = first[0]; i < first[1]; ++i) {
+    const std::uint32_t at = scene_.parts_slot[i];
+    if (touches(scene_.parts_answers, at)) sum += {1, 1, points(scene_.parts_answers, at)};
+  }
+  if (sum.pair != 0) sum.pair = 1;
+  return sum;
+}
+
+namespace {
+
+/// The pairs of a stretch that touch.
+struct Touching {
+  std::uint32_t first = kNone;
+  std::uint32_t count = 0;
+
+  void take(std::uint32_t shown) noexcept {
+    if (shown == kNone) return;
+    if (first == kNone) first = shown;
+    ++count;
+  }
+};
+
+}  // namespace
+
+// What pairs [first, end) take.
+ContactFrame::Place Collision::count(std::uint32_t first, std::uint32_t end) const noexcept {
+  Place sum;
+  for (std::uint32_t i = first; i < end;) {
+    const std::uint32_t stretch = carried_stretch(i, end);
+    if (stretch == 0) {
+      sum += extent(i++);
+      continue;
+    }
+    Touching touching;
+    for (const std::uint32_t last = i + stretch; i < last; ++i) touching.take(shown_before(i));
+    if (touching.count != 0) sum += contacts_.before.extent(touching.first, touching.count);
+  }
+  return sum;
+}
+
+// Writes pairs [first, end), and what is to be remembered of them.
+void Collision::write_task(std::uint32_t first, std::uint32_t end, Place at) noexcept {
+  Contacts::State& c = contacts_;
+  for (std::uint32_t i = first; i < end;) {
+    const std::uint32_t stretch = carried_stretch(i, end);
+    if (stretch == 0) {
+      const Place taken = extent(i);
+      if (taken.pair != 0) write(i, at);
+      if (taken.pair != 0 || carries_) remember(i, taken.pair != 0 ? at.pair : kNone);
+      at += taken;
+      ++i;
+      continue;
+    }
+    Touching touching;
+    for (const std::uint32_t last = i + stretch; i < last; ++i) {
+      const std::uint32_t shown = shown_before(i);
+      remember(i, shown == kNone ? kNone : at.pair + touching.count);
+      touching.take(shown);
+    }
+    if (touching.count == 0) continue;
+    c.frame.copy(c.before, touching.first, touching.count, at);
+    std::fill_n(c.frame.event.data() + at.pair, touching.count, ContactEvent::persisted);
+    std::fill_n(c.shown_again.data() + touching.first, touching.count, std::uint8_t{1});
+    at += c.before.extent(touching.first, touching.count);
+  }
 }
 
 bool Collision::show() {
@@ -48,15 +117,13 @@ bool Collision::show() {
   if (!c.sums.resize(tasks + 1) || !c.shown_again.resize(c.before.pairs())) return false;
   std::fill(c.shown_again.begin(), c.shown_again.end(), std::uint8_t{0});
   for_tasks([&](std::size_t task, std::uint32_t first, std::uint32_t end) {
-    Place sum;
-    for (std::uint32_t i = first; i < end; ++i) sum += extent(i);
-    c.sums[task] = sum;
+    c.sums[task] = count(first, end);
   });
   Place end;
   for (std::size_t task = 0; task <= tasks; ++task) {
-    const Place count = task < tasks ? c.sums[task] : Place{};
+    const Place taken = task < tasks ? c.sums[task] : Place{};
     c.sums[task] = end;
-    end += count;
+    end += taken;
   }
   const std::size_t records = carries_ ? pair_count() : end.pair;
   if (!c.frame.resize(level_, end.pair, end.manifold, end.point) || !c.records.resize(records) ||
@@ -64,28 +131,18 @@ bool Collision::show() {
     return false;
   }
   for_tasks([&](std::size_t task, std::uint32_t first, std::uint32_t last) {
-    Place at = c.sums[task];
-    for (std::uint32_t i = first; i < last; ++i) {
-      const Place taken = extent(i);
-      if (taken.pair != 0) write(i, at);
-      if (taken.pair != 0 || carries_) remember(i, taken.pair != 0 ? at.pair : kNone);
-      at += taken;
-    }
+    write_task(first, last, c.sums[task]);
   });
   c.frame.close(level_, end);
   return write_runs();
 }
 
-// Writes a pair that touches, and says whether it did before.
+// Writes a pair that touches and is not carried over, and says whether it did before.
 void Collision::write(std::uint32_t pair, const Place& to) noexcept {
   Contacts::State& c = contacts_;
   ContactFrame& frame = c.frame;
   const BodyPair bodies = scene_.pairs.pairs()[pair];
-  const std::uint32_t record = same_pairs_ ? pair : c.old_record[pair];
-  const std::uint32_t shown = record == kNone ? kNone : c.records_before[record].shown;
-  const bool carried =
-      level_ != SceneLevel::pairs && static_cast<Origin>(c.origin[pair]) == Origin::carried;
-  if (carried) frame.copy(c.before, shown, to);
+  const std::uint32_t shown = shown_before(pair);
   const std::uint32_t ids[2] = {bodies.a, bodies.b};
   bool persists = shown != kNone;
   for (int side = 0; side < 2; ++side) {
@@ -95,7 +152,7 @@ void Collision::write(std::uint32_t pair, const Place& to) noexcept {
   }
   frame.event[to.pair] = persists ? ContactEvent::persisted : ContactEvent::begun;
   if (persists) c.shown_again[shown] = 1;
-  if (carried || level_ == SceneLevel::pairs) return;
+  if (level_ == SceneLevel::pairs) return;
   frame.manifold_first[to.pair] = to.manifold;
   Place at = to;
   if (static_cast<Origin>(c.origin[pair]) == Origin::convex) {
@@ -148,21 +205,30 @@ void Collision::write_manifold(const NarrowResult& answers, std::size_t at, cons
   ++to.manifold;
 }
 
-// Runs of pairs of the same two kinds.
+// Runs of pairs of the same two kinds, which lie next to each other.
 bool Collision::write_runs() {
   ContactFrame& frame = contacts_.frame;
   frame.runs.clear();
-  const auto kind = [&](int side, std::size_t i) {
-    return static_cast<std::uint8_t>(scene_.shape[frame.key[side][i].id].kind_index());
+  const auto run_at = [&](std::uint32_t i) {
+    const auto kind = [&](int side) {
+      return static_cast<std::uint8_t>(scene_.shape[frame.key[side][i].id].kind_index());
+    };
+    return ContactRun{kind(0), kind(1), i, 0};
   };
-  for (std::size_t i = 0; i < frame.pairs(); ++i) {
-    const ContactRun run{kind(0, i), kind(1, i), static_cast<std::uint32_t>(i), 1};
-    ContactRun* const last = frame.runs.empty() ? nullptr : frame.runs.end() - 1;
-    if (last != nullptr && last->kind_a == run.kind_a && last->kind_b == run.kind_b) {
-      ++last->count;
-    } else if (!frame.runs.push_back(run)) {
-      return false;
+  const auto pairs = static_cast<std::uint32_t>(frame.pairs());
+  for (std::uint32_t first = 0; first < pairs;) {
+    ContactRun run = run_at(first);
+    // The last one of the run, by halving what may follow.
+    std::uint32_t end = first + 1;
+    for (std::uint32_t last = pairs; end < last;) {
+      const std::uint32_t middle = end + (last - end) / 2;
+      const ContactRun other = run_at(middle);
+      const bool alike = other.kind_a == run.kind_a && other.kind_b == run.kind_b;
+      (alike ? end : last) = alike ? middle + 1 : middle;
     }
+    run.count = end - first;
+    if (!frame.runs.push_back(run)) return false;
+    first = end;
   }
   return true;
 }
@@ -171,7 +237,11 @@ bool Collision::write_runs() {
 // of what the mid phase found near.
 double Collision::clearance(std::uint32_t pair) const noexcept {
   const auto of = [&](const NarrowResult& answers, std::size_t at) {
-    return answers.distance()[at] - answers.error_bound()[at] - scene_.options.margin;
+    // At level manifold the distance of what is farther than the margin may be a lower bound
+    // already, its error on the other side; half of it is one where the error is a rounding's.
+    const double beyond = answers.distance()[at] - scene_.options.margin;
+    return std::max(beyond - answers.error_bound()[at],
+                    level_ == SceneLevel::manifold ? 0.5 * beyond : 0.0);
   };
   double least = std::numeric_limits<double>::infinity();
   if (static_cast<Origin>(contacts_.origin[pair]) == Origin::convex) {
