@@ -1,0 +1,251 @@
+// What a scene keeps from frame to frame: contacts that are carried over, bytes, and what it was
+// before a call that it refused.
+
+#include "scene_world.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "../support/config.h"
+#include "../support/counting_memory.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// The pair's contact against the truth of this frame: within its error bound.
+void expect_within_bounds(const Contacts& contacts, const SceneWorld& world, double carry_over) {
+  const auto near = world.touching(carry_over);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const auto truth = near.find(names(contacts.data_a()[i], contacts.data_b()[i]));
+    ASSERT_NE(truth, near.end()) << "shown although farther apart than the bound";
+    const std::uint32_t m = contacts.manifold_first()[i];
+    EXPECT_LE(std::abs(contacts.distance()[m] - truth->second), contacts.error_bound()[m] + 1e-9);
+  }
+  const auto pairs = shown(contacts);
+  for (const auto& [pair, distance] : near) {
+    if (distance > 0.0) continue;
+    EXPECT_EQ(pairs.count(pair), 1U) << "a pair that touches is not shown";
+  }
+}
+
+TEST(CarryOver, every_pair_that_touches_is_shown_and_errors_stay_within_their_bound) {
+  for (const SceneLevel level : {SceneLevel::distance, SceneLevel::manifold}) {
+    SceneWorld world(scaled(300), 11);
+    const double carry_over = 0.02;
+    Scene scene(world.pool, {.carry_over = carry_over});
+    ASSERT_EQ(add_all(scene, world), Status::ok);
+    Contacts contacts;
+    std::size_t carried = 0;
+    for (int frame = 0; frame < 20; ++frame) {
+      ASSERT_EQ(scene.collide(level, contacts), Status::ok);
+      expect_within_bounds(contacts, world, carry_over);
+      carried += contacts.carried();
+      world.stir(0.002);
+      ASSERT_EQ(move_all(scene, world), Status::ok);
+    }
+    EXPECT_GT(carried, world.bodies.size());
+  }
+}
+
+TEST(CarryOver, a_rigid_cluster_that_turns_keeps_its_contacts_and_they_turn_along) {
+  ShapePool pool;
+  ShapeId ball;
+  ASSERT_EQ(pool.add(SphereShape{1}, ball), Status::ok);
+  Scene scene(pool, {.carry_over = 0.01});
+  Key keys[2];
+  ASSERT_EQ(scene.add({.shape = ball}, keys[0]), Status::ok);
+  ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(1.9, 0, 0)}, keys[1]), Status::ok);
+  Contacts contacts;
+  for (int frame = 0; frame < 60; ++frame) {
+    const double angle = 0.05 * frame;
+    const double turn[4] = {std::cos(angle / 2), 0, 0, std::sin(angle / 2)};
+    Pose poses[2];
+    poses[1].position[0] = 1.9 * std::cos(angle);
+    poses[1].position[1] = 1.9 * std::sin(angle);
+    for (Pose& pose : poses) std::copy_n(turn, 4, pose.orientation);
+    ASSERT_EQ(scene.move(keys, poses), Status::ok);
+    ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(contacts.size(), 1U);
+    EXPECT_EQ(contacts.carried(), frame == 0 ? 0U : 1U) << frame;
+    EXPECT_NEAR(contacts.normal(0)[0], std::cos(angle), 0.011);
+    EXPECT_NEAR(contacts.normal(1)[0], std::sin(angle), 0.011);
+    EXPECT_NEAR(static_cast<double>(contacts.contact(0).position[1]), 0.95 * std::sin(angle),
+                0.011);
+  }
+}
+
+TEST(CarryOver, the_first_frame_after_a_teleport_is_exact) {
+  SceneWorld world(scaled(300), 13);
+  Scene scene(world.pool, {.carry_over = 0.05});
+  ASSERT_EQ(add_all(scene, world), Status::ok);
+  Contacts contacts;
+  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  for (BodyDefinition& body : world.bodies) body.pose = world.random_pose();
+  ASSERT_EQ(move_all(scene, world), Status::ok);
+  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  const auto truth = world.touching();
+  EXPECT_EQ(contacts.size(), truth.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const std::uint32_t m = contacts.manifold_first()[i];
+    EXPECT_LT(contacts.error_bound()[m], 1e-4);
+  }
+  for (const auto& [pair, distance] : truth) EXPECT_EQ(shown(contacts).count(pair), 1U);
+}
+
+TEST(CarryOver, what_does_not_move_is_not_looked_at_again) {
+  SceneWorld world(scaled(300), 17);
+  Scene scene(world.pool, {.carry_over = 0.001});
+  ASSERT_EQ(add_all(scene, world), Status::ok);
+  Contacts contacts;
+  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  const auto first = digest(contacts);
+  for (int frame = 0; frame < 3; ++frame) {
+    ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+    EXPECT_EQ(scene.statistics().convex.pairs, 0U);
+    EXPECT_EQ(contacts.carried(), scene.statistics().body_pairs);
+    for (const ContactEvent event : contacts.event()) EXPECT_EQ(event, ContactEvent::persisted);
+  }
+  EXPECT_EQ(digest(contacts).size(), first.size());
+}
+
+TEST(SceneBytes, the_footprint_is_what_was_asked_for_and_a_steady_frame_asks_for_nothing) {
+  for (const double carry_over : {0.0, 0.01}) {
+    CountingMemory memory;
+    CountingMemory results;
+    {
+      SceneWorld world(scaled(600), 19);
+      Scene scene(world.pool, {.memory = &memory, .carry_over = carry_over});
+      Contacts contacts(&results);
+      ASSERT_EQ(add_all(scene, world), Status::ok);
+      const std::vector<BodyDefinition> home = world.bodies;
+      for (int frame = 0; frame < 24; ++frame) {
+        const bool warm = frame >= 12;
+        const std::size_t asked = memory.requests() + results.requests();
+        ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+        if (warm) {
+          EXPECT_EQ(memory.requests() + results.requests(), asked) << frame;
+        }
+        EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
+        EXPECT_EQ(contacts.footprint().total().reserved, results.outstanding());
+        if (frame % 4 == 3)
+          world.bodies = home;
+        else
+          world.stir(0.02);
+        ASSERT_EQ(move_all(scene, world), Status::ok);
+      }
+      EXPECT_EQ(scene.footprint().mid_phase.reserved, 0U);
+    }
+    EXPECT_EQ(memory.outstanding(), 0U);
+  }
+}
+
+TEST(SceneBytes, refused_memory_leaves_the_scene_as_it_was) {
+  CountingMemory memory;
+  SceneWorld world(60, 23);
+  Scene scene(world.pool, {.memory = &memory, .execution = Execution::serial()});
+  Contacts contacts;
+  for (std::size_t granted = 0;; ++granted) {
+    memory.refuse_after(granted);
+    const Status status = add_all(scene, world);
+    memory.grant_all();
+    if (status == Status::ok) break;
+    ASSERT_EQ(status, Status::out_of_memory);
+    ASSERT_EQ(scene.size(), 0U);
+    for (const Key& key : world.keys) ASSERT_EQ(key, Key{});
+  }
+  ASSERT_EQ(scene.size(), world.bodies.size());
+  for (std::size_t granted = 0;; ++granted) {
+    memory.refuse_after(granted);
+    const Status status = scene.collide(SceneLevel::manifold, contacts);
+    memory.grant_all();
+    if (status == Status::ok) break;
+    ASSERT_EQ(status, Status::out_of_memory);
+    ASSERT_EQ(contacts.size(), 0U);
+  }
+  EXPECT_EQ(contacts.size(), world.touching().size());
+}
+
+TEST(SceneInput, what_is_refused_changes_nothing) {
+  SceneWorld world(40, 29);
+  Scene scene(world.pool);
+  ASSERT_EQ(add_all(scene, world), Status::ok);
+  Contacts contacts;
+  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  const std::size_t pairs = contacts.size();
+  Key key;
+  BodyDefinition bad = world.bodies[0];
+  bad.shape = {};
+  EXPECT_EQ(scene.add(bad, key), Status::invalid_key);
+  bad.shape = ShapeId::of(CompositeKind::mesh, 0);
+  EXPECT_EQ(scene.add(bad, key), Status::invalid_key);
+  bad = world.bodies[0];
+  bad.pose.position[1] = kNaN;
+  EXPECT_EQ(scene.add(bad, key), Status::invalid_pose);
+  EXPECT_EQ(scene.move(world.keys[0], bad.pose), Status::invalid_pose);
+  EXPECT_EQ(scene.move(Key{}, world.bodies[0].pose), Status::invalid_key);
+  const Key twice[] = {world.keys[3], world.keys[3]};
+  EXPECT_EQ(scene.remove(twice), Status::invalid_key);
+  EXPECT_EQ(scene.set_motion(twice, Motion::fixed), Status::invalid_key);
+  EXPECT_EQ(scene.set_motion(world.keys[3], static_cast<Motion>(9)), Status::invalid_argument);
+  EXPECT_EQ(scene.set_shape(world.keys[0], {}), Status::invalid_key);
+  EXPECT_EQ(scene.collide(static_cast<SceneLevel>(7), contacts), Status::invalid_argument);
+  const Pose poses[] = {world.bodies[0].pose, bad.pose};
+  EXPECT_EQ(scene.move(std::span(world.keys).first(2), poses), Status::invalid_pose);
+  EXPECT_EQ(scene.move(std::span(world.keys).first(1), poses), Status::size_mismatch);
+  Contacts after;
+  ASSERT_EQ(scene.collide(SceneLevel::manifold, after), Status::ok);
+  EXPECT_EQ(after.size(), pairs);
+  Scene wrong(world.pool, {.margin = -1});
+  EXPECT_EQ(wrong.add(world.bodies[0], key), Status::invalid_argument);
+  Scene unknown(world.pool, {.partitions = {"LinearBvh", "none", "LinearBvh"}});
+  EXPECT_EQ(unknown.add(world.bodies[0], key), Status::invalid_argument);
+}
+
+TEST(SceneInput, storms_of_changes_leave_every_partition_right) {
+  for (const std::string_view partition : {"LinearBvh", "FlatGrid", "SweepAndPrune"}) {
+    SceneWorld world(scaled(250), 31);
+    Scene scene(world.pool, {.partitions = {partition, partition, partition}});
+    ASSERT_EQ(add_all(scene, world), Status::ok);
+    Contacts contacts;
+    Random random(37);
+    for (int round = 0; round < 12; ++round) {
+      for (int change = 0; change < 60; ++change) {
+        const std::size_t i = random.below(world.bodies.size());
+        BodyDefinition& body = world.bodies[i];
+        if (world.removed[i]) {
+          ASSERT_EQ(scene.add(body, world.keys[i]), Status::ok);
+          world.removed[i] = false;
+        } else if (random.chance(0.2)) {
+          ASSERT_EQ(scene.remove(world.keys[i]), Status::ok);
+          EXPECT_EQ(scene.remove(world.keys[i]), Status::invalid_key);
+          world.removed[i] = true;
+        } else if (random.chance(0.3)) {
+          body.motion = static_cast<Motion>(random.below(3));
+          ASSERT_EQ(scene.set_motion(world.keys[i], body.motion), Status::ok);
+        } else if (random.chance(0.3)) {
+          body.shape = world.shapes[random.below(world.shapes.size())];
+          ASSERT_EQ(scene.set_shape(world.keys[i], body.shape), Status::ok);
+        } else if (random.chance(0.2)) {
+          body.filter.layers = static_cast<std::uint32_t>(1 + random.below(3));
+          body.filter.mask = static_cast<std::uint32_t>(1 + random.below(3));
+          ASSERT_EQ(scene.set_filter(world.keys[i], body.filter), Status::ok);
+        } else {
+          body.pose = world.random_pose();
+          ASSERT_EQ(scene.move(world.keys[i], body.pose), Status::ok);
+        }
+      }
+      ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+      EXPECT_EQ(contacts.size(), world.touching().size());
+      for (const auto& [pair, distance] : world.touching()) {
+        EXPECT_EQ(shown(contacts).count(pair), 1U) << partition << ": " << distance;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test
