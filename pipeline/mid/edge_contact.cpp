@@ -28,7 +28,9 @@ EdgeContact classify(const TriangleShape& triangle, std::uint8_t active_edges, c
   double height[3];
   for (int i = 0; i < 3; ++i) height[i] = corner[i].dot(away);
   const double top = std::max({height[0], height[1], height[2]});
-  const double level = kLevel * std::max({edge[0].norm(), edge[1].norm(), edge[2].norm()});
+  const double level =
+      kLevel *
+      std::sqrt(std::max({edge[0].squaredNorm(), edge[1].squaredNorm(), edge[2].squaredNorm()}));
   int highest = 0;
   for (int i = 0; i < 3; ++i) highest += top - height[i] <= level ? 1 : 0;
   if (highest == 3) return EdgeContact::nearly_face;

@@ -56,6 +56,12 @@ namespace {
           side + std::abs(tip) + rounding};
 }
 
+// An upper bound that neither overflows nor vanishes, within 1.8 of the length.
+[[nodiscard]] double length(const Vec& v) noexcept {
+  const double exact = v.norm();
+  return exact > 1e-150 && exact < 1e150 ? exact : v.lpNorm<1>();
+}
+
 [[nodiscard]] Box finished(const Vec& center, const Vec& half, const Vec& noise) noexcept {
   Box box{center - half - noise, center + half + noise};
   box.settle();
@@ -93,6 +99,22 @@ Extent extent(const ShapeTables& tables, ShapeId shape, const Vec& d) noexcept {
   return {-kInfinity, kInfinity, 0.0};
 }
 
+double lowest(const ShapeTables& tables, ShapeId shape, const Vec& d) noexcept {
+  if (shape.kind() != ShapeKind::hull) return extent(tables, shape, d).low;
+  const HullShape& hull = tables.hulls[shape.index()];
+  constexpr std::uint32_t kBlock = 8;
+  double low[kBlock];
+  std::fill_n(low, kBlock, kInfinity);
+  for (std::uint32_t i = 0; i < hull.vertex_count; i += kBlock) {
+    for (std::uint32_t k = 0; k < kBlock; ++k) {
+      const double v = hull.vertex[0][i + k] * d.x() + hull.vertex[1][i + k] * d.y() +
+                       hull.vertex[2][i + k] * d.z();
+      low[k] = v < low[k] ? v : low[k];
+    }
+  }
+  return *std::min_element(low, low + kBlock) - hull.rounding * d.norm();
+}
+
 Box box_under(const ShapeTables& tables, ShapeId shape, const Mat& linear, const Vec& offset,
               double grow) noexcept {
   Box box;
@@ -127,7 +149,7 @@ double radius_of(const ShapeTables& tables, ShapeId shape) noexcept {
       radius = tables.capsules[i].radius + tables.capsules[i].half_length;
       break;
     case ShapeKind::box:
-      radius = Eigen::Map<const Vec>(tables.boxes[i].half).stableNorm() + tables.boxes[i].rounding;
+      radius = length(Eigen::Map<const Vec>(tables.boxes[i].half)) + tables.boxes[i].rounding;
       break;
     case ShapeKind::cylinder: {
       const CylinderShape& s = tables.cylinders[i];
@@ -141,7 +163,7 @@ double radius_of(const ShapeTables& tables, ShapeId shape) noexcept {
     }
     case ShapeKind::hull: {
       const HullShape& s = tables.hulls[i];
-      radius = Eigen::Map<const Vec>(s.center).stableNorm() + s.radius + s.rounding;
+      radius = length(Eigen::Map<const Vec>(s.center)) + s.radius + s.rounding;
       break;
     }
     case ShapeKind::triangle: {

@@ -17,6 +17,9 @@ struct Extent {
 /// few roundings of `scale`.
 [[nodiscard]] Extent extent(const ShapeTables& tables, ShapeId shape, const Vec& d) noexcept;
 
+/// The least value alone.
+[[nodiscard]] double lowest(const ShapeTables& tables, ShapeId shape, const Vec& d) noexcept;
+
 /// The box of linear * x + offset over a convex shape, grown by the image of a ball of radius
 /// `grow`, and by what rounding may have taken.
 [[nodiscard]] Box box_under(const ShapeTables& tables, ShapeId shape, const Mat& linear,

@@ -55,7 +55,10 @@ void Search::parts_parts(const Side& a, const Side& b) noexcept {
 }
 
 void Search::parts_surface(const Side& parts, const Side& surface, bool swapped) noexcept {
-  for (const std::uint32_t number : children_near(parts, surface.box_in(parts, margin_), outer_)) {
+  const bool is_one = parts.kind == Side::Kind::convex;
+  for (const std::uint32_t number :
+       is_one ? std::span<const std::uint32_t>(kOnly)
+              : children_near(parts, surface.box_in(parts, margin_), outer_)) {
     const Part part = parts.part(number);
     for (const std::uint32_t triangle : triangles_near(part, surface)) {
       Corners corners;

@@ -26,6 +26,36 @@ struct Plane {
   return std::max(low, -high) > margin * plane.length + plane.noise * scale;
 }
 
+/// From the point of a triangle that is closest to a point; both relative to its first corner.
+/// (Ericson, Real-Time Collision Detection, 5.1.5.) Rounding makes it another direction, no more.
+[[nodiscard]] Vec way_to(const Vec& point, const Corners& triangle) noexcept {
+  const Vec& ab = triangle.edge[0];
+  const Vec& ac = triangle.edge[1];
+  const double d1 = ab.dot(point);
+  const double d2 = ac.dot(point);
+  if (d1 <= 0.0 && d2 <= 0.0) return point;
+  const double aa = ab.squaredNorm();
+  const double cc = ac.squaredNorm();
+  const double bc = ab.dot(ac);
+  const double d3 = d1 - aa;
+  const double d4 = d2 - bc;
+  if (d3 >= 0.0 && d4 <= d3) return point - ab;
+  const double d5 = d1 - bc;
+  const double d6 = d2 - cc;
+  if (d6 >= 0.0 && d5 <= d6) return point - ac;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return point - ab * (d1 / (d1 - d3));
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return point - ac * (d2 / (d2 - d6));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+    const double along = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return point - ab - (ac - ab) * along;
+  }
+  const Vec normal = ab.cross(ac);
+  return normal.dot(point) < 0.0 ? Vec(-normal) : normal;
+}
+
 [[nodiscard]] bool half_space_apart(const HalfSpaceShape& shape, const Part& part, const Corners& t,
                                     double margin) noexcept {
   const Vec normal = part.rotation * Eigen::Map<const Vec>(shape.normal);
@@ -77,14 +107,21 @@ bool is_apart(const ShapeTables& tables, const Part& part, const Corners& triang
   if (part.shape.kind() == ShapeKind::half_space) {
     return half_space_apart(tables.half_spaces[part.shape.index()], part, triangle, margin);
   }
-  const Plane plane(triangle);
+  // The way from the triangle's closest point to the middle of the part: a triangle's plane where
+  // that is above its inside, and a better axis where it is not.
   const Vec from = part.position - triangle.first;
-  const double base = plane.normal.dot(from);
-  const Extent reach = extent(tables, part.shape, part.rotation.transpose() * plane.normal);
-  const double scale = from.lpNorm<1>() + triangle.first.lpNorm<1>() + part.radius;
-  return is_beyond(plane, base + reach.low, base + reach.high, scale, margin);
+  const Vec axis = way_to(from + part.middle, triangle);
+  const double length = axis.norm();
+  const double scale = from.lpNorm<1>() + triangle.first.lpNorm<1>() + part.radius +
+                       triangle.edge[0].lpNorm<1>() + triangle.edge[1].lpNorm<1>();
+  const double enough = (margin + kSlack * scale) * length;
+  const double top = std::max({0.0, axis.dot(triangle.edge[0]), axis.dot(triangle.edge[1])});
+  const double middle = axis.dot(from + part.middle) - top;
+  if (middle - part.reach * length > enough) return true;
+  if (middle - part.inner * length <= enough) return false;
+  return axis.dot(from) - top + lowest(tables, part.shape, part.rotation.transpose() * axis) >
+         enough;
 }
-
 bool is_apart(const Corners& a, const Corners& b, double margin) noexcept {
   for (int i = 0; i < 3; ++i) {
     const double low = std::min({0.0, a.edge[0][i], a.edge[1][i]});

@@ -4,8 +4,8 @@
 
 namespace winnow::mid {
 
-/// True if the triangle's plane, or for a half-space its own, shows that a part is farther from a
-/// triangle than `margin`. False proves nothing.
+/// True if one well-chosen axis shows that a part is farther from a triangle than `margin`: always
+/// the right one for spheres and half-spaces. False proves nothing.
 [[nodiscard]] bool is_apart(const ShapeTables& tables, const Part& part, const Corners& triangle,
                             double margin) noexcept;
 /// The same of two triangles, by their boxes and by both planes.

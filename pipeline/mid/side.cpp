@@ -3,6 +3,34 @@
 
 namespace winnow::mid {
 
+Part::Part(const ShapeTables& tables, ShapeId id, std::uint32_t of_body, const Mat& turned,
+           const Vec& at) noexcept
+    : shape(id), number(of_body), rotation(turned), position(at), radius(radius_of(tables, id)) {
+  reach = radius;
+  switch (id.kind()) {
+    case ShapeKind::sphere:
+      inner = tables.spheres[id.index()].radius;
+      break;
+    case ShapeKind::capsule:
+      inner = tables.capsules[id.index()].radius;
+      break;
+    case ShapeKind::box: {
+      const BoxShape& box = tables.boxes[id.index()];
+      inner = std::min({box.half[0], box.half[1], box.half[2]}) + box.rounding;
+      break;
+    }
+    case ShapeKind::hull: {
+      const HullShape& hull = tables.hulls[id.index()];
+      middle = rotation * Eigen::Map<const Vec>(hull.center);
+      reach = (hull.radius + hull.rounding) * (1.0 + kSlack);
+      inner = hull.inner_radius;
+      break;
+    }
+    default:
+      break;
+  }
+}
+
 Side::Side(const Composites& all, const ShapeTables& pool, ShapeId shape, const Pose& pose,
            const Vec& at) noexcept
     : tables(pool),
@@ -44,11 +72,11 @@ Box Side::box_in(const Side& other, double margin) const noexcept {
 }
 
 Part Side::part(std::uint32_t number) const noexcept {
-  if (kind == Kind::convex) return {id, 0, rotation, position, radius_of(tables, id)};
+  if (kind == Kind::convex) return {tables, id, 0, rotation, position};
   const CompoundChild& child = compound->children[number];
   const Eigen::Map<const Vec> at(child.pose.position);
-  return {child.shape, number, rotation * rotation_of(tame(child.pose.orientation)),
-          position + rotation * at, radius_of(tables, child.shape)};
+  return {tables, child.shape, number, rotation * rotation_of(tame(child.pose.orientation)),
+          position + rotation * at};
 }
 
 Eigen::Vector4d Side::part_turn(std::uint32_t number) const noexcept {

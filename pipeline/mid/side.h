@@ -17,10 +17,19 @@ struct Corners {
 struct Part {
   ShapeId shape;
   /// 0 or the number of a child.
-  std::uint32_t number = 0;
+  std::uint32_t number;
   Mat rotation;
   Vec position;
+  /// No point is farther from the position.
   double radius = 0.0;
+  /// A point inside, turned and relative to the position: no point of the shape is farther from it
+  /// than `reach`, none within `inner` of it is outside.
+  Vec middle = Vec::Zero();
+  double reach = 0.0;
+  double inner = 0.0;
+
+  Part(const ShapeTables& tables, ShapeId id, std::uint32_t number, const Mat& turned,
+       const Vec& at) noexcept;
 };
 
 /// One body of a pair where it stands: relative to the position of body a, in the axes of the

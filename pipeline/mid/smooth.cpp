@@ -5,6 +5,7 @@
 #include <winnow/pipeline/solver/supporting_patch.h>
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 
 namespace winnow::mid {
@@ -67,11 +68,13 @@ class Smoothing {
     std::size_t base = 0;
     std::size_t used = 0;
     bool has_room = false;
+    /// What is left to be clipped once there is room.
+    std::bitset<kChunk> is_deep{};
   };
 
   void run_wave(const Execution& execution, std::span<Chunk> wave) noexcept;
-  void count(Chunk& chunk) const noexcept;
-  void change(Chunk& chunk) noexcept;
+  void look(Chunk& chunk) noexcept;
+  void clip_all(Chunk& chunk) noexcept;
   void close_gaps(std::span<Chunk> wave, std::size_t from) noexcept;
 
   [[nodiscard]] Found find(std::size_t i) const noexcept;
@@ -107,8 +110,8 @@ void Smoothing::run(const Execution& execution) noexcept {
 
 void Smoothing::run_wave(const Execution& execution, std::span<Chunk> wave) noexcept {
   const std::size_t from = result_.contacts();
+  execution.for_each(wave.size(), [&](std::size_t k) { look(wave[k]); });
   if (has_contacts()) {
-    execution.for_each(wave.size(), [&](std::size_t k) { count(wave[k]); });
     std::size_t room = from;
     for (Chunk& chunk : wave) {
       chunk.base = room;
@@ -118,17 +121,12 @@ void Smoothing::run_wave(const Execution& execution, std::span<Chunk> wave) noex
     const bool has_room = room == from || result_.contacts_.grow(room);
     for (Chunk& chunk : wave) chunk.has_room = has_room;
   }
-  execution.for_each(wave.size(), [&](std::size_t k) { change(wave[k]); });
+  execution.for_each(wave.size(), [&](std::size_t k) { clip_all(wave[k]); });
   if (has_contacts()) close_gaps(wave, from);
 }
 
-void Smoothing::count(Chunk& chunk) const noexcept {
-  for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
-    if (find(i).is_deep) chunk.used += kManifoldPoints;
-  }
-}
-
-void Smoothing::change(Chunk& chunk) noexcept {
+// Everything that needs no room, and how much the rest needs.
+void Smoothing::look(Chunk& chunk) noexcept {
   for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
     const Found found = find(i);
     if (found.contact == EdgeContact::real) continue;
@@ -136,10 +134,19 @@ void Smoothing::change(Chunk& chunk) noexcept {
     if (found.contact == EdgeContact::nearly_face) {
       result_.error_bound_[i] += found.off;
     } else if (found.is_deep) {
-      clip(chunk, i, found.normal);
+      chunk.is_deep.set(i - chunk.begin);
+      chunk.used += kManifoldPoints;
     } else {
       lower_sphere(i, found.normal);
     }
+  }
+}
+
+void Smoothing::clip_all(Chunk& chunk) noexcept {
+  if (chunk.is_deep.none()) return;
+  for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
+    if (!chunk.is_deep.test(i - chunk.begin)) continue;
+    clip(chunk, i, Vec(result_.normal_[0][i], result_.normal_[1][i], result_.normal_[2][i]));
   }
 }
 
