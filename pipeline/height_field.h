@@ -4,6 +4,7 @@
 #include <winnow/core/column.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/status.h>
+#include <winnow/pipeline/mesh/height_pyramid.h>
 #include <winnow/pipeline/mesh/mesh_view.h>
 #include <winnow/pipeline/shapes.h>
 
@@ -26,31 +27,39 @@ struct HeightSamples {
 
 /// A surface over a regular grid, z up: each square is two triangles that share the diagonal from
 /// its lowest column and row to its highest. No tree of boxes: cells are found by division, and a
-/// pyramid of the least and greatest heights of 16 x 16 squares prunes. Triangle 2 * square is the
+/// pyramid of the least and greatest heights of 16 x 16 squares, and of 4 x 4 of what lies below,
+/// prunes: 4 bytes a sample, and a thirtieth of a byte for the pyramid. Triangle 2 * square is the
 /// one with the corner at (column + 1, row), 2 * square + 1 that at (column, row + 1); squares are
 /// numbered row by row.
 class HeightField {
  public:
   explicit HeightField(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
-  HeightField(HeightField&&) noexcept = default;
+  HeightField(HeightField&& other) noexcept;
 
   /// Takes a copy. `invalid_shape` for fewer than 2 x 2 samples, an infinite height, a spacing that
-  /// is not positive and finite; `size_mismatch` if `heights` is too short; `too_many_objects`
-  /// beyond 2^28 triangles.
+  /// is not positive and finite or with which the field leaves the range of float; `size_mismatch`
+  /// if `heights` is too short; `invalid_argument` for a row stride below the columns;
+  /// `too_many_objects` beyond 2^28 triangles. A refused build, or one without memory, leaves the
+  /// field as it was. O(n).
   Status build(const HeightSamples& samples);
-  /// New heights for the samples [column, column + columns) x [row, row + rows).
+  /// New heights for the samples [column, column + columns) x [row, row + rows); the spacing is not
+  /// read. `invalid_argument` if they are not all in the field, otherwise as `build`. O(samples).
   Status update(std::uint32_t column, std::uint32_t row, const HeightSamples& samples);
 
+  /// Of all squares, those of holes included, as high and low as those without go; empty if all
+  /// are holes.
   [[nodiscard]] Aabb bounds() const noexcept;
+  /// No point of a triangle is farther than this from the origin. 0 without triangles.
   [[nodiscard]] double radius() const noexcept;
   [[nodiscard]] std::uint32_t columns() const noexcept { return columns_; }
   [[nodiscard]] std::uint32_t rows() const noexcept { return rows_; }
   /// Triangles, those of holes included.
   [[nodiscard]] std::uint32_t triangles() const noexcept;
-  /// False for a triangle of a hole.
+  /// False for a triangle of a hole, or a number that none has.
   [[nodiscard]] bool triangle(std::uint32_t number, TriangleShape& shape) const noexcept;
-  /// Which of its edges bend outward by more than the angle of MeshOptions; all at the border.
+  /// Which of its edges bend outward, that is down on both sides, by more than the angle that
+  /// MeshOptions have by default, or have no other triangle. All for a triangle of a hole.
   [[nodiscard]] std::uint8_t active_edges(std::uint32_t number) const noexcept;
 
   /// The numbers of all triangles whose boxes meet [min, max] in the shape's frame, ascending;
@@ -65,7 +74,13 @@ class HeightField {
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
+  [[nodiscard]] HeightGrid grid() const noexcept;
+  void put(std::uint32_t column, std::uint32_t row, const HeightSamples& samples) noexcept;
+
   Column<float> heights_;
+  /// The least heights of all tiles, then the greatest.
+  Column<float> tiles_;
+  HeightPyramid pyramid_;
   std::uint32_t columns_ = 0;
   std::uint32_t rows_ = 0;
   double spacing_[2] = {1.0, 1.0};

@@ -1,0 +1,281 @@
+#include <winnow/pipeline/mesh/height_walks.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// More than the relative error of the few operations that make a measure.
+constexpr double kMeasureError = 0x1p-48;
+
+struct Box {
+  double low[3];
+  double high[3];
+};
+
+/// The squares [first, end) that reach into [min, max] along an axis. Division may be off by one;
+/// what is compared are the ends of squares as triangles have them.
+struct SquareRange {
+  std::uint32_t first = 0;
+  std::uint32_t end = 0;
+
+  SquareRange(double min, double max, double spacing, std::uint32_t count) {
+    const double length = count * spacing;
+    if (!(min <= length && max >= 0.0)) return;
+    const auto guess = [&](double x) {
+      return static_cast<std::uint32_t>(std::clamp(x / spacing, 0.0, static_cast<double>(count)));
+    };
+    first = guess(min);
+    while (first > 0 && first * spacing >= min) --first;
+    while ((first + 1.0) * spacing < min) ++first;
+    end = guess(max);
+    while (end < count && end * spacing <= max) ++end;
+    while (end > 0 && (end - 1.0) * spacing > max) --end;
+  }
+};
+
+/// The heights of the two triangles of a square; none if it is a hole.
+struct SquareHeights {
+  float low[2];
+  float high[2];
+
+  /// False for a hole.
+  [[nodiscard]] bool read(const HeightGrid& grid, std::uint32_t column, std::uint32_t row) {
+    float h[4];
+    grid.corners(column, row, h);
+    // Comparisons with NaN are false.
+    if (!(h[0] == h[0] && h[1] == h[1] && h[2] == h[2] && h[3] == h[3])) return false;
+    for (std::size_t k = 0; k < 2; ++k) {
+      low[k] = std::min({h[0], h[3], h[1 + k]});
+      high[k] = std::max({h[0], h[3], h[1 + k]});
+    }
+    return true;
+  }
+};
+
+void put(SlotSink& out, std::uint32_t number) {
+  if (out.size < out.capacity) out.slot[out.size] = number;
+  ++out.size;
+}
+
+/// The box of squares [column, last_column) x [row, last_row), without heights.
+Box floor_box(const HeightGrid& grid, std::uint32_t column, std::uint32_t row,
+              std::uint32_t last_column, std::uint32_t last_row) {
+  return {{column * grid.spacing[0], row * grid.spacing[1], 0.0},
+          {last_column * grid.spacing[0], last_row * grid.spacing[1], 0.0}};
+}
+
+/// When a moving box first meets one; infinite where it does not up to the limit.
+struct Sweep {
+  const double* min;
+  const double* max;
+  const double* direction;
+  double limit;
+
+  [[nodiscard]] double measure(const Box& box) const {
+    double entry = 0.0;
+    double exit = limit;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double near = box.low[axis] - max[axis];
+      const double far = box.high[axis] - min[axis];
+      const double d = direction[axis];
+      if (d == 0.0) {
+        if (near > 0.0 || far < 0.0) return kInfinity;
+        continue;
+      }
+      entry = std::max(entry, std::min(near / d, far / d) * (1.0 - kMeasureError));
+      exit = std::min(exit, std::max(near / d, far / d) * (1.0 + kMeasureError));
+    }
+    return entry <= exit ? entry : kInfinity;
+  }
+  [[nodiscard]] bool within(double measure) const {
+    return measure <= limit && measure < kInfinity;
+  }
+};
+
+/// The distance from a box that stands.
+struct Near {
+  const double* min;
+  const double* max;
+  double limit;
+
+  [[nodiscard]] double measure(const Box& box) const {
+    double gap[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      gap[axis] = std::max({0.0, min[axis] - box.high[axis], box.low[axis] - max[axis]});
+    }
+    return std::hypot(gap[0], gap[1], gap[2]) * (1.0 - kMeasureError);
+  }
+  [[nodiscard]] bool within(double measure) const { return measure <= limit; }
+};
+
+struct Found {
+  double measure;
+  std::uint32_t number;
+};
+
+struct Waiting {
+  double measure;
+  std::uint32_t column;
+  std::uint32_t row;
+  std::uint32_t level;
+};
+
+/// Depth first, the nearest tile first.
+template <typename Measure>
+class OrderedWalk {
+ public:
+  OrderedWalk(const HeightGrid& grid, const Measure& measure, const SlotVisitor& visitor)
+      : grid_(grid), measure_(measure), visitor_(visitor) {}
+
+  void run() {
+    wait(grid_.pyramid->levels - 1, 0, 0);
+    while (size_ != 0 && measure_.limit >= 0.0) {
+      const Waiting next = waiting_[--size_];
+      if (!measure_.within(next.measure)) continue;
+      if (next.level == 0) {
+        open_squares(next);
+      } else {
+        open_tiles(next);
+      }
+    }
+  }
+
+ private:
+  void wait(std::uint32_t level, std::uint32_t column, std::uint32_t row) {
+    const HeightPyramid::Level& tiles = grid_.pyramid->level[level];
+    const std::size_t at = tiles.first + std::size_t{row} * tiles.columns + column;
+    if (grid_.low[at] > grid_.high[at]) return;
+    const auto end = [&](std::uint32_t tile, std::uint32_t squares) {
+      const std::uint64_t last = (std::uint64_t{tile} + 1) * HeightPyramid::span(level);
+      return static_cast<std::uint32_t>(std::min<std::uint64_t>(squares, last));
+    };
+    Box box =
+        floor_box(grid_, column * HeightPyramid::span(level), row * HeightPyramid::span(level),
+                  end(column, grid_.square_columns()), end(row, grid_.square_rows()));
+    box.low[2] = static_cast<double>(grid_.low[at]);
+    box.high[2] = static_cast<double>(grid_.high[at]);
+    const double measure = measure_.measure(box);
+    if (measure_.within(measure)) waiting_[size_++] = {measure, column, row, level};
+  }
+
+  void open_tiles(const Waiting& tile) {
+    const HeightPyramid::Level& below = grid_.pyramid->level[tile.level - 1];
+    const std::uint32_t before = size_;
+    const std::uint32_t last_row = std::min(below.rows, (tile.row + 1) * kTileTiles);
+    const std::uint32_t last_column = std::min(below.columns, (tile.column + 1) * kTileTiles);
+    for (std::uint32_t row = tile.row * kTileTiles; row < last_row; ++row) {
+      for (std::uint32_t column = tile.column * kTileTiles; column < last_column; ++column) {
+        wait(tile.level - 1, column, row);
+      }
+    }
+    std::sort(waiting_ + before, waiting_ + size_, [](const Waiting& a, const Waiting& b) {
+      if (a.measure != b.measure) return a.measure > b.measure;
+      return a.row != b.row ? a.row > b.row : a.column > b.column;
+    });
+  }
+
+  void open_squares(const Waiting& tile) {
+    found_ = 0;
+    const std::uint32_t columns = grid_.square_columns();
+    const std::uint32_t last_row = std::min(grid_.square_rows(), (tile.row + 1) * kTileSquares);
+    const std::uint32_t first_column = tile.column * kTileSquares;
+    const std::uint32_t last_column = std::min(columns, first_column + kTileSquares);
+    const std::size_t at = std::size_t{tile.row} * grid_.pyramid->level[0].columns + tile.column;
+    for (std::uint32_t row = tile.row * kTileSquares; row < last_row; ++row) {
+      Box strip = floor_box(grid_, first_column, row, last_column, row + 1);
+      strip.low[2] = static_cast<double>(grid_.low[at]);
+      strip.high[2] = static_cast<double>(grid_.high[at]);
+      if (!measure_.within(measure_.measure(strip))) continue;
+      for (std::uint32_t column = first_column; column < last_column; ++column) {
+        find(column, row);
+      }
+    }
+    show();
+  }
+
+  void find(std::uint32_t column, std::uint32_t row) {
+    SquareHeights heights;
+    if (!heights.read(grid_, column, row)) return;
+    Box box = floor_box(grid_, column, row, column + 1, row + 1);
+    for (std::uint32_t k = 0; k < 2; ++k) {
+      box.low[2] = static_cast<double>(heights.low[k]);
+      box.high[2] = static_cast<double>(heights.high[k]);
+      const double measure = measure_.measure(box);
+      if (!measure_.within(measure)) continue;
+      hits_[found_++] = {measure, 2 * (row * grid_.square_columns() + column) + k};
+    }
+  }
+
+  /// In order, sixteen at a time, as long as they are within the limit.
+  void show() {
+    std::sort(hits_, hits_ + found_, [](const Found& a, const Found& b) {
+      return a.measure != b.measure ? a.measure < b.measure : a.number < b.number;
+    });
+    std::uint32_t numbers[kMeshFanout];
+    for (std::uint32_t i = 0; i < found_ && measure_.limit >= 0.0;) {
+      std::uint32_t count = 0;
+      for (; i < found_ && count < kMeshFanout && measure_.within(hits_[i].measure); ++i) {
+        numbers[count++] = hits_[i].number;
+      }
+      if (count == 0) return;
+      measure_.limit = visitor_.visit(visitor_.context, numbers, count, measure_.limit);
+    }
+  }
+
+  const HeightGrid& grid_;
+  Measure measure_;
+  const SlotVisitor& visitor_;
+  std::uint32_t size_ = 0;
+  std::uint32_t found_ = 0;
+  /// Every level leaves at most 15 tiles waiting while one is opened.
+  Waiting waiting_[HeightPyramid::kMaxLevels * kTileTiles * kTileTiles];
+  Found hits_[2 * kTileSquares * kTileSquares];
+};
+
+}  // namespace
+
+void height_overlap(const HeightGrid& grid, const double min[3], const double max[3],
+                    SlotSink& out) noexcept {
+  const SquareRange columns(min[0], max[0], grid.spacing[0], grid.square_columns());
+  const SquareRange rows(min[1], max[1], grid.spacing[1], grid.square_rows());
+  const auto meets = [&](float low, float high) {
+    return static_cast<double>(low) <= max[2] && static_cast<double>(high) >= min[2];
+  };
+  for (std::uint32_t row = rows.first; row < rows.end; ++row) {
+    const std::size_t tiles = std::size_t{row / kTileSquares} * grid.pyramid->level[0].columns;
+    for (std::uint32_t column = columns.first; column < columns.end;) {
+      const std::uint32_t tile = column / kTileSquares;
+      const std::uint32_t tile_end = std::min(columns.end, (tile + 1) * kTileSquares);
+      if (!meets(grid.low[tiles + tile], grid.high[tiles + tile])) {
+        column = tile_end;
+        continue;
+      }
+      for (; column < tile_end; ++column) {
+        SquareHeights heights;
+        if (!heights.read(grid, column, row)) continue;
+        const std::uint32_t number = 2 * (row * grid.square_columns() + column);
+        for (std::uint32_t k = 0; k < 2; ++k) {
+          if (meets(heights.low[k], heights.high[k])) put(out, number + k);
+        }
+      }
+    }
+  }
+}
+
+void height_sweep(const HeightGrid& grid, const double min[3], const double max[3],
+                  const double direction[3], double limit, const SlotVisitor& visitor) noexcept {
+  if (!(limit >= 0.0)) return;
+  OrderedWalk<Sweep>(grid, Sweep{min, max, direction, limit}, visitor).run();
+}
+
+void height_near(const HeightGrid& grid, const double min[3], const double max[3], double limit,
+                 const SlotVisitor& visitor) noexcept {
+  if (!(limit >= 0.0)) return;
+  OrderedWalk<Near>(grid, Near{min, max, limit}, visitor).run();
+}
+
+}  // namespace winnow
