@@ -33,10 +33,14 @@
 #include <winnow/partitions/n_squared.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/partitions/sweep_and_prune.h>
+#include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/height_field.h>
 #include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/scene.h>
+#include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
+#include <winnow/pipeline/triangle_mesh.h>
 #include <winnow/simd/isa.h>

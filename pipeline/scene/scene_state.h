@@ -9,6 +9,8 @@
 
 namespace winnow {
 
+inline constexpr Motion kEveryMotion[kMotions] = {Motion::fixed, Motion::dynamic, Motion::sleeping};
+
 /// A box as a column can hold it.
 struct PlainBox {
   float min[3];

@@ -1,22 +1,33 @@
-// A program outside of winnow: three boxes, and which of them touch.
+// A program outside of winnow: a ball falls on a floor and comes to rest on a soft contact.
 
 #include <winnow/winnow.h>
 
+#include <algorithm>
 #include <cstdio>
 
 int main() {
-  const winnow::Aabb boxes[] = {
-      {{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}, {{5, 5, 5}, {6, 6, 6}}};
-  const winnow::ClientData names[] = {10, 20, 30};
-  winnow::Key keys[3];
-  winnow::LinearBvh partition;
-  winnow::PairBuffer pairs;
-  if (partition.insert(boxes, names, keys) != winnow::Status::ok ||
-      partition.self_pairs(pairs) != winnow::Status::ok) {
+  winnow::ShapePool shapes;
+  winnow::ShapeId ball, floor;
+  if (shapes.add(winnow::SphereShape{0.5}, ball) != winnow::Status::ok ||
+      shapes.add(winnow::HalfSpaceShape{}, floor) != winnow::Status::ok) {
     return 1;
   }
-  for (const auto& [first, second] : pairs) {
-    std::printf("%u touches %u\n", static_cast<unsigned>(partition.client_data_of(first)),
-                static_cast<unsigned>(partition.client_data_of(second)));
+  winnow::Scene scene(shapes);
+  winnow::Key body, ground;
+  (void)scene.add({.shape = floor, .motion = winnow::Motion::fixed}, ground);
+  (void)scene.add({.shape = ball, .pose = winnow::Pose::at(0, 0, 2)}, body);
+  winnow::Contacts contacts;
+  const double step = 0.005;
+  double height = 2.0;
+  double speed = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    if (scene.collide(winnow::SceneLevel::manifold, contacts) != winnow::Status::ok) return 1;
+    speed -= 9.81 * step;
+    for (const double distance : contacts.distance()) {
+      speed += std::max(0.0, -1000.0 * distance - 20.0 * speed) * step;
+    }
+    height += speed * step;
+    (void)scene.move(body, winnow::Pose::at(0, 0, height));
   }
+  std::printf("the ball rests at %.2f\n", height);
 }

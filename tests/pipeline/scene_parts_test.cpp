@@ -1,0 +1,410 @@
+// Scenes with meshes, compounds and height fields, against every pair of parts asked one by one.
+
+#include <winnow/pipeline/solver/solver.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "../support/config.h"
+#include "../support/counting_memory.h"
+#include "../support/meshes.h"
+#include "scene_world.h"
+
+namespace winnow::test {
+namespace {
+
+/// A part as the test knows it.
+struct Piece {
+  ShapeId shape;
+  TriangleShape triangle;
+  Pose pose;
+  std::uint32_t part;
+};
+
+using Parts = std::set<std::tuple<ClientData, ClientData, std::uint32_t, std::uint32_t>>;
+
+[[nodiscard]] Eigen::Vector3d turned(const Pose& pose, const Eigen::Vector3d& v) {
+  const Eigen::Quaterniond q(pose.orientation[0], pose.orientation[1], pose.orientation[2],
+                             pose.orientation[3]);
+  return q.normalized() * v;
+}
+
+/// Shapes of all composite kinds, and what they consist of.
+class PartsWorld {
+ public:
+  PartsWorld() : pool_(convex_) {
+    add_convex();
+    for (const MeshData& data : {torus(7, 5), gear(4), degenerate_soup(30, 3)}) {
+      ShapeId id;
+      EXPECT_EQ(pool_.add_mesh(data.points(), data.indices(), id), Status::ok);
+      add_mesh_pieces(data, {1, 1, 1});
+      shapes_.push_back(id);
+      const std::array<double, 3> scale{0.7, -1.2, 0.5};
+      ShapeId scaled;
+      EXPECT_EQ(pool_.add_scaled(id, scale, scaled), Status::ok);
+      add_mesh_pieces(data, scale);
+      shapes_.push_back(scaled);
+    }
+    add_field();
+    add_compound();
+  }
+
+  [[nodiscard]] const ShapePool& convex() const { return convex_; }
+  [[nodiscard]] CompositePool& pool() { return pool_; }
+  [[nodiscard]] std::size_t kinds() const { return shapes_.size(); }
+
+  [[nodiscard]] BodyDefinition body(std::size_t kind, double side, Random& random) const {
+    BodyDefinition body;
+    body.shape = shapes_[kind];
+    for (double& p : body.pose.position) p = random.uniform(0.0, side);
+    for (double& q : body.pose.orientation) q = random.uniform(-1.0, 1.0);
+    return body;
+  }
+
+  /// Every pair of parts of two bodies that share a point.
+  void touching(const BodyDefinition& a, const BodyDefinition& b, Parts& found) const {
+    for (const Piece& one : pieces_[kind_of(a.shape)]) {
+      for (const Piece& other : pieces_[kind_of(b.shape)]) {
+        const TriangleShape triangles[2] = {one.triangle, other.triangle};
+        ShapeTables tables = convex_.tables();
+        tables.triangles = triangles;
+        tables.count[static_cast<int>(ShapeKind::triangle)] = 2;
+        const ShapeId first = id_in(one, 0);
+        const ShapeId second = id_in(other, 1);
+        SolverCounts counts;
+        if (!solve_pair(tables, first, placed(one, a.pose), second, placed(other, b.pose),
+                        NarrowLevel::boolean, 0.0, counts)
+                 .overlap) {
+          continue;
+        }
+        if (a.data < b.data)
+          found.insert({a.data, b.data, one.part, other.part});
+        else
+          found.insert({b.data, a.data, other.part, one.part});
+      }
+    }
+  }
+
+ private:
+  void add_convex() {
+    ShapeId id;
+    EXPECT_EQ(convex_.add(SphereShape{0.4}, id), Status::ok);
+    add_whole(id);
+    EXPECT_EQ(convex_.add(BoxShape{{0.5, 0.3, 0.2}}, id), Status::ok);
+    add_whole(id);
+    EXPECT_EQ(convex_.add(CapsuleShape{0.2, 0.6}, id), Status::ok);
+    add_whole(id);
+  }
+
+  void add_whole(ShapeId id) {
+    shapes_.push_back(id);
+    pieces_.push_back({{id, {}, {}, kWholeShape}});
+  }
+
+  void add_mesh_pieces(const MeshData& data, const std::array<double, 3>& scale) {
+    std::vector<Piece> pieces;
+    for (std::uint32_t t = 0; t < data.triangles(); ++t) {
+      Piece piece{ShapeId::of(ShapeKind::triangle, 0), {}, {}, t};
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Eigen::Vector3f& v = data.vertices[data.corners[3 * t + c]];
+        for (std::size_t k = 0; k < 3; ++k) {
+          piece.triangle.vertex[c][k] =
+              static_cast<double>(v[static_cast<Eigen::Index>(k)]) * scale[k];
+        }
+      }
+      pieces.push_back(piece);
+    }
+    pieces_.push_back(std::move(pieces));
+  }
+
+  void add_field() {
+    std::vector<float> heights(30);
+    Random random(41);
+    for (float& h : heights) h = static_cast<float>(random.uniform(-0.4, 0.4));
+    heights[8] = std::numeric_limits<float>::quiet_NaN();
+    HeightSamples samples;
+    samples.heights = heights;
+    samples.columns = 6;
+    samples.rows = 5;
+    samples.spacing[0] = 0.5;
+    samples.spacing[1] = 0.4;
+    ShapeId id;
+    EXPECT_EQ(pool_.add_height_field(samples, id), Status::ok);
+    std::vector<Piece> pieces;
+    for (std::uint32_t t = 0; t < pool_.height_field(id)->triangles(); ++t) {
+      Piece piece{ShapeId::of(ShapeKind::triangle, 0), {}, {}, t};
+      if (pool_.height_field(id)->triangle(t, piece.triangle)) pieces.push_back(piece);
+    }
+    EXPECT_LT(pieces.size(), 40U);
+    shapes_.push_back(id);
+    pieces_.push_back(std::move(pieces));
+  }
+
+  void add_compound() {
+    std::vector<CompoundChild> children;
+    std::vector<Piece> pieces;
+    Random random(43);
+    for (std::uint32_t i = 0; i < 20; ++i) {
+      CompoundChild child{shapes_[i % 3], {}};
+      for (double& p : child.pose.position) p = random.uniform(-1.0, 1.0);
+      for (double& q : child.pose.orientation) q = random.uniform(-1.0, 1.0);
+      children.push_back(child);
+      pieces.push_back({child.shape, {}, child.pose, i});
+    }
+    ShapeId id;
+    EXPECT_EQ(pool_.add_compound(children, id), Status::ok);
+    shapes_.push_back(id);
+    pieces_.push_back(std::move(pieces));
+  }
+
+  [[nodiscard]] std::size_t kind_of(ShapeId id) const {
+    return static_cast<std::size_t>(std::find(shapes_.begin(), shapes_.end(), id) -
+                                    shapes_.begin());
+  }
+  [[nodiscard]] static ShapeId id_in(const Piece& piece, std::uint32_t slot) {
+    return piece.shape.kind() == ShapeKind::triangle ? ShapeId::of(ShapeKind::triangle, slot)
+                                                     : piece.shape;
+  }
+  [[nodiscard]] static Pose placed(const Piece& piece, const Pose& body) {
+    const Eigen::Vector3d at = turned(body, Eigen::Vector3d(piece.pose.position));
+    const Eigen::Quaterniond q(body.orientation[0], body.orientation[1], body.orientation[2],
+                               body.orientation[3]);
+    const Eigen::Quaterniond p(piece.pose.orientation[0], piece.pose.orientation[1],
+                               piece.pose.orientation[2], piece.pose.orientation[3]);
+    const Eigen::Quaterniond r = q.normalized() * p.normalized();
+    return {{body.position[0] + at.x(), body.position[1] + at.y(), body.position[2] + at.z()},
+            {r.w(), r.x(), r.y(), r.z()}};
+  }
+
+  ShapePool convex_;
+  CompositePool pool_;
+  std::vector<ShapeId> shapes_;
+  std::vector<std::vector<Piece>> pieces_;
+};
+
+[[nodiscard]] Parts parts_of(const Contacts& contacts) {
+  Parts parts;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ClientData a = contacts.data_a()[i];
+    const ClientData b = contacts.data_b()[i];
+    for (auto m = contacts.manifold_first()[i]; m < contacts.manifold_first()[i + 1]; ++m) {
+      const std::uint32_t one = contacts.part_a()[m];
+      const std::uint32_t other = contacts.part_b()[m];
+      const bool is_new =
+          a < b ? parts.insert({a, b, one, other}).second : parts.insert({b, a, other, one}).second;
+      EXPECT_TRUE(is_new) << "a pair of parts is doubled";
+    }
+  }
+  return parts;
+}
+
+TEST(SceneParts, every_pair_of_parts_that_touches_is_reported_and_no_other) {
+  PartsWorld world;
+  Random random(47);
+  for (int round = 0; round < 3; ++round) {
+    const std::size_t count = scaled(40);
+    std::vector<BodyDefinition> bodies;
+    for (std::size_t i = 0; i < count; ++i) {
+      bodies.push_back(
+          world.body(i % world.kinds(), 1.0 * std::cbrt(8.0 * static_cast<double>(count)), random));
+      bodies.back().data = i;
+      if (i % 7 == 6) bodies.back().motion = Motion::fixed;
+    }
+    Parts truth;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = i + 1; j < count; ++j) {
+        if (bodies[i].motion == Motion::fixed && bodies[j].motion == Motion::fixed) continue;
+        world.touching(bodies[i], bodies[j], truth);
+      }
+    }
+    EXPECT_GT(truth.size(), count / 2);
+    for (const int threads : {1, 2}) {
+      Threads arena(threads);
+      arena.run([&] {
+        Scene scene(world.convex(), {.composites = &world.pool()});
+        std::vector<Key> keys(count);
+        ASSERT_EQ(scene.add(bodies, keys), Status::ok);
+        for (const SceneLevel level :
+             {SceneLevel::boolean, SceneLevel::distance, SceneLevel::manifold}) {
+          Contacts contacts;
+          ASSERT_EQ(scene.collide(level, contacts), Status::ok);
+          const Parts found = parts_of(contacts);
+          for (const auto& pair : truth) EXPECT_EQ(found.count(pair), 1U) << "missed";
+          // Inner edges may be given the depth of the face, which is the greater one.
+          EXPECT_TRUE(level != SceneLevel::boolean || found.size() == truth.size());
+        }
+      });
+    }
+  }
+}
+
+/// A floor of triangles at z = 0, over [-10, 10] x [-10, 10].
+[[nodiscard]] ShapeId flat_floor(CompositePool& pool) {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<std::uint32_t> corners;
+  constexpr std::uint32_t kCells = 20;
+  for (std::uint32_t y = 0; y <= kCells; ++y) {
+    for (std::uint32_t x = 0; x <= kCells; ++x) {
+      points.emplace_back(static_cast<float>(x) - 10, static_cast<float>(y) - 10, 0);
+    }
+  }
+  for (std::uint32_t y = 0; y < kCells; ++y) {
+    for (std::uint32_t x = 0; x < kCells; ++x) {
+      const std::uint32_t a = y * (kCells + 1) + x;
+      const std::uint32_t c = a + kCells + 1;
+      corners.insert(corners.end(), {a, a + 1, c, a + 1, c + 1, c});
+    }
+  }
+  ShapeId id;
+  EXPECT_EQ(pool.add_mesh(std::span<const Eigen::Vector3f>(points),
+                          std::span<const std::uint32_t>(corners), id),
+            Status::ok);
+  return id;
+}
+
+TEST(SceneParts, a_ball_that_rolls_over_a_flat_floor_of_triangles_feels_the_floors_normal_alone) {
+  ShapePool convex;
+  CompositePool pool(convex);
+  ShapeId ball;
+  ASSERT_EQ(convex.add(SphereShape{0.5}, ball), Status::ok);
+  Scene scene(convex, {.composites = &pool});
+  Key floor;
+  Key body;
+  ASSERT_EQ(scene.add({.shape = flat_floor(pool), .motion = Motion::fixed}, floor), Status::ok);
+  ASSERT_EQ(scene.add({.shape = ball}, body), Status::ok);
+  Contacts contacts;
+  for (int step = 0; step < 400; ++step) {
+    const double way = 0.043 * step - 8.0;
+    ASSERT_EQ(scene.move(body, Pose::at(way, 0.61 * way + 0.2, 0.48)), Status::ok);
+    ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+    ASSERT_GT(contacts.manifolds(), 0U);
+    double deepest = 0.0;
+    for (std::size_t m = 0; m < contacts.manifolds(); ++m) {
+      EXPECT_NEAR(contacts.normal(0)[m], 0.0, 1e-12);
+      EXPECT_NEAR(contacts.normal(1)[m], 0.0, 1e-12);
+      EXPECT_NEAR(contacts.normal(2)[m], -1.0, 1e-12);
+      deepest = std::min(deepest, contacts.distance()[m]);
+    }
+    EXPECT_NEAR(deepest, -0.02, 1e-9);
+  }
+}
+
+/// Of a body from a triangle of a mesh that stands at the origin.
+[[nodiscard]] double distance_to(const ShapePool& pool, const BodyDefinition& body,
+                                 const MeshData& data, std::uint32_t number) {
+  TriangleShape triangle;
+  for (std::uint32_t c = 0; c < 3; ++c) {
+    for (int k = 0; k < 3; ++k) {
+      triangle.vertex[c][k] = static_cast<double>(data.vertices[data.corners[3 * number + c]][k]);
+    }
+  }
+  ShapeTables tables = pool.tables();
+  tables.triangles = &triangle;
+  tables.count[static_cast<int>(ShapeKind::triangle)] = 1;
+  SolverCounts counts;
+  return solve_pair(tables, body.shape, body.pose, ShapeId::of(ShapeKind::triangle, 0), {},
+                    NarrowLevel::distance, 0.0, counts)
+      .distance;
+}
+
+TEST(SceneParts, carried_contacts_with_a_mesh_miss_nothing_deeper_than_the_bound) {
+  ShapePool convex;
+  CompositePool pool(convex);
+  ShapeId box;
+  ASSERT_EQ(convex.add(BoxShape{{0.6, 0.4, 0.3}}, box), Status::ok);
+  const MeshData data = terrain(24);
+  ShapeId ground;
+  ASSERT_EQ(pool.add_mesh(data.points(), data.indices(), ground), Status::ok);
+  const double carry_over = 0.01;
+  Scene carried(convex, {.carry_over = carry_over, .composites = &pool});
+  Scene exact(convex, {.composites = &pool});
+  std::vector<BodyDefinition> bodies{{.shape = ground, .motion = Motion::fixed, .data = 1000}};
+  Random random(53);
+  for (ClientData i = 0; i < 60; ++i) {
+    const Eigen::Vector3f& v = data.vertices[random.below(data.vertices.size())];
+    BodyDefinition body{.shape = box,
+                        .pose = Pose::at(static_cast<double>(v.x()), static_cast<double>(v.y()),
+                                         static_cast<double>(v.z()) + random.uniform(-0.1, 0.5)),
+                        .data = i};
+    for (double& q : body.pose.orientation) q = random.uniform(-1.0, 1.0);
+    bodies.push_back(body);
+  }
+  std::vector<Key> keys(bodies.size());
+  std::vector<Key> exact_keys(bodies.size());
+  ASSERT_EQ(carried.add(bodies, keys), Status::ok);
+  ASSERT_EQ(exact.add(bodies, exact_keys), Status::ok);
+  Contacts contacts;
+  std::size_t kept = 0;
+  for (int frame = 0; frame < 15; ++frame) {
+    Contacts truth;
+    ASSERT_EQ(carried.collide(SceneLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(exact.collide(SceneLevel::manifold, truth), Status::ok);
+    kept += contacts.carried();
+    const Parts found = parts_of(contacts);
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      for (auto m = truth.manifold_first()[i]; m < truth.manifold_first()[i + 1]; ++m) {
+        const ClientData body = truth.data_a()[i];
+        const std::uint32_t triangle = truth.part_b()[m];
+        if (found.count({body, 1000, kWholeShape, triangle}) == 1) continue;
+        EXPECT_GT(distance_to(convex, bodies[body + 1], data, triangle), -carry_over);
+      }
+      EXPECT_EQ(shown(contacts).count({truth.data_a()[i], 1000}), 1U) << "a pair is missed";
+    }
+    for (std::size_t i = 1; i < bodies.size(); ++i) {
+      for (double& p : bodies[i].pose.position) p += random.uniform(-0.001, 0.001);
+      ASSERT_EQ(carried.move(keys[i], bodies[i].pose), Status::ok);
+      ASSERT_EQ(exact.move(exact_keys[i], bodies[i].pose), Status::ok);
+    }
+  }
+  EXPECT_GT(kept, bodies.size());
+}
+
+TEST(SceneParts, a_mesh_that_is_refitted_is_seen_at_its_new_place) {
+  ShapePool convex;
+  CompositePool pool(convex);
+  ShapeId ball;
+  ASSERT_EQ(convex.add(SphereShape{0.5}, ball), Status::ok);
+  const ShapeId floor = flat_floor(pool);
+  Scene scene(convex, {.carry_over = 0.01, .composites = &pool});
+  Key keys[2];
+  ASSERT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, keys[0]), Status::ok);
+  ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(0, 0, 3)}, keys[1]), Status::ok);
+  Contacts contacts;
+  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  EXPECT_EQ(contacts.size(), 0U);
+  std::vector<Eigen::Vector3f> raised;
+  for (std::uint32_t i = 0; i < pool.mesh(floor)->vertices(); ++i) {
+    const MeshView& view = pool.mesh(floor)->view();
+    raised.emplace_back(view.vertex[0][i], view.vertex[1][i], 2.6F);
+  }
+  ASSERT_EQ(pool.refit_mesh(floor, std::span<const Eigen::Vector3f>(raised)), Status::ok);
+  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  EXPECT_EQ(contacts.size(), 1U);
+}
+
+TEST(SceneParts, a_scene_of_balls_takes_the_same_bytes_whether_or_not_there_could_be_meshes) {
+  SceneFootprint bytes[2];
+  for (const bool with_pool : {false, true}) {
+    SceneWorld world(200, 59);
+    for (BodyDefinition& body : world.bodies) body.shape = world.shapes[0];
+    CompositePool pool(world.pool);
+    (void)flat_floor(pool);
+    CountingMemory memory;
+    Scene scene(world.pool, {.memory = &memory, .composites = with_pool ? &pool : nullptr});
+    ASSERT_EQ(add_all(scene, world), Status::ok);
+    Contacts contacts;
+    ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+    EXPECT_GT(contacts.size(), 0U);
+    bytes[with_pool] = scene.footprint();
+    EXPECT_EQ(bytes[with_pool].mid_phase.reserved, 0U);
+    EXPECT_EQ(scene.statistics().primitive_pairs, 0U);
+  }
+  EXPECT_EQ(bytes[0].total().reserved, bytes[1].total().reserved);
+}
+
+}  // namespace
+}  // namespace winnow::test
