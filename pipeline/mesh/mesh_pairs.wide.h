@@ -181,23 +181,46 @@ class PairWalk {
       for (; hits != 0; hits &= hits - 1) {
         const unsigned i = first(hits);
         const std::uint32_t leaf_a = pair.a * kMeshFanout + i;
+        const Mask16 near = triangles_near(leaf_a);
+        if (near == 0) continue;
         if ((ready >> i & 1U) == 0) load_leaf(a_, job_, leaf_a, leaves_[i]);
         ready |= 1U << i;
-        test_leaves(leaf_a, leaves_[i], leaf_b);
+        test_triangles(leaf_a, leaves_[i], leaf_b, near);
       }
     });
   }
 
-  void test_leaves(std::uint32_t leaf_a, const PairLeaf& leaf, std::uint32_t leaf_b) {
-    Mask16 near = overlap(placed_.box(), leaf.low, leaf.high) & placed_.lanes;
+  /// Which of the placed triangles reach into the box of a's leaf. Decoding, scaling and rounding
+  /// keep order, so the box still contains the leaf's scaled corners.
+  Mask16 triangles_near(std::uint32_t leaf_a) const {
+    float low[3];
+    float high[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double origin = static_cast<double>(a_.origin[axis]);
+      const double step = static_cast<double>(a_.step[axis]);
+      const double scale = static_cast<double>(job_.scale);
+      low[axis] = static_cast<float>((origin + a_.node[0][axis][leaf_a] * step) * scale);
+      high[axis] = static_cast<float>((origin + a_.node[0][3 + axis][leaf_a] * step) * scale);
+    }
+    return overlap(placed_.box(), low, high) & placed_.lanes;
+  }
+
+  void test_triangles(std::uint32_t leaf_a, PairLeaf& leaf, std::uint32_t leaf_b, Mask16 near) {
     for (; near != 0; near &= near - 1) {
       const unsigned j = first(near);
-      const Mask16 hits = meeting(leaf, placed_, job_, j);
+      const float low[3] = {placed_.low[0][j], placed_.low[1][j], placed_.low[2][j]};
+      const float high[3] = {placed_.high[0][j], placed_.high[1][j], placed_.high[2][j]};
+      const Mask16 boxes = overlap(leaf.box, low, high) & leaf.lanes;
+      if (boxes == 0) continue;
+      if (!leaf.has_planes) add_planes(leaf);
+      if (!placed_.has_planes) add_planes(job_, placed_);
+      const Mask16 hits = unparted(leaf, placed_, job_, j, boxes);
       if (hits != 0) put(leaf_a * kMeshFanout, hits, leaf_b * kMeshFanout + j);
     }
   }
 
   void put(std::uint32_t first_slot, Mask16 hits, std::uint32_t other) {
+    if (out_.take != nullptr && out_.size + kLanes > out_.capacity) out_.take(out_.context, out_);
     if (out_.size + kLanes <= out_.capacity) {
       store_unaligned(out_.second + out_.size, broadcast(other));
       out_.size += compress_store(hits, count_from(first_slot), out_.first + out_.size);

@@ -13,23 +13,26 @@ inline constexpr float kUlp = 0x1p-24F;
 // More than what underflows of any product here.
 inline constexpr float kTiny = 0x1p-110F;
 
-/// Triangles of a leaf of a.
+/// Triangles of a leaf of a. What their planes take is found when first asked for.
 struct PairLeaf {
   Corners16 corners;
   Box16 box;
+  Mask16 lanes;
+  bool has_planes;
   Single16 normal[3];
   /// Sum of the absolute values of the two products whose difference `normal` is.
   Single16 size[3];
   /// Rounding of distances from the plane that is due to the extent of the triangle itself.
   Single16 doubt;
-  float low[3];
-  float high[3];
-  Mask16 lanes;
 };
 
-/// Triangles of a leaf of b, one by one to be broadcast.
+/// Triangles of a leaf of b, one by one to be broadcast; their planes too when first asked for.
 struct PlacedTriangles {
+  Mask16 lanes;
+  bool has_planes;
   alignas(64) float corner[3][3][kLanes];
+  /// The largest absolute value of a coordinate.
+  alignas(64) float largest[3][kLanes];
   /// Grown by slack and rounding.
   alignas(64) float low[3][kLanes];
   alignas(64) float high[3][kLanes];
@@ -43,7 +46,6 @@ struct PlacedTriangles {
   alignas(64) float reach[3][kLanes];
   /// How far the slack reaches along the normal, with the rounding of the corner it starts from.
   alignas(64) float thickness[kLanes];
-  Mask16 lanes;
 
   [[nodiscard]] Box16 box() const {
     Box16 r;
@@ -78,14 +80,16 @@ inline void load_leaf(const MeshView& a, const MeshPairJob& job, std::uint32_t l
   }
   out.box = box_of(out.corners);
   out.lanes = present(a.triangle_count, leaf * kMeshFanout);
+  out.has_planes = false;
+}
+
+inline void add_planes(PairLeaf& out) {
+  out.has_planes = true;
   Single16 first_edge[3];
   Single16 last_edge[3];
   for (int axis = 0; axis < 3; ++axis) {
     first_edge[axis] = out.corners.at[1][axis] - out.corners.at[0][axis];
     last_edge[axis] = out.corners.at[2][axis] - out.corners.at[0][axis];
-    // The lanes past the end repeat the last triangle.
-    out.low[axis] = reduce_min(out.box.low[axis]);
-    out.high[axis] = reduce_max(out.box.high[axis]);
   }
   cross_sizes(first_edge, last_edge, out.normal, out.size);
   out.doubt = Single16(kTiny);
@@ -121,17 +125,18 @@ inline Corners16 place_corners(const MeshView& b, const MeshPairJob& job, std::u
   return placed;
 }
 
-/// Fills what the plane test takes, from the corners and for each axis the largest coordinate.
-[[gnu::always_inline]] inline void place_planes(const Corners16& corners,
-                                                const Single16 (&largest)[3],
-                                                const MeshPairJob& job, PlacedTriangles& out) {
+inline void add_planes(const MeshPairJob& job, PlacedTriangles& out) {
+  out.has_planes = true;
   Single16 first_edge[3];
   Single16 last_edge[3];
   Single16 longest[3];
+  Single16 largest[3];
   for (int axis = 0; axis < 3; ++axis) {
-    first_edge[axis] = corners.at[1][axis] - corners.at[0][axis];
-    last_edge[axis] = corners.at[2][axis] - corners.at[0][axis];
+    const Single16 origin = Single16::load(out.corner[0][axis]);
+    first_edge[axis] = Single16::load(out.corner[1][axis]) - origin;
+    last_edge[axis] = Single16::load(out.corner[2][axis]) - origin;
     longest[axis] = max(abs(first_edge[axis]), abs(last_edge[axis]));
+    largest[axis] = Single16::load(out.largest[axis]);
   }
   Single16 normal[3];
   Single16 size[3];
@@ -158,23 +163,23 @@ inline void place_triangles(const MeshView& b, const MeshPairJob& job, std::uint
                             PlacedTriangles& out) {
   const Corners16 corners = place_corners(b, job, leaf);
   const Box16 box = box_of(corners);
-  Single16 largest[3];
   for (int axis = 0; axis < 3; ++axis) {
     const Single16 low = real_of(box.low[axis]);
     const Single16 high = real_of(box.high[axis]);
-    largest[axis] = max(abs(low), abs(high));
+    const Single16 largest = max(abs(low), abs(high));
+    largest.store(out.largest[axis]);
     const Single16 slack(job.scaled_slack[axis]);
-    const Single16 grow = slack + (largest[axis] + slack) * Single16(4.0F * kUlp);
+    const Single16 grow = slack + (largest + slack) * Single16(4.0F * kUlp);
     (low - grow).store(out.low[axis]);
     (high + grow).store(out.high[axis]);
     const Single16 reach = (high - low) + grow;
     reach.store(out.reach[axis]);
-    (reach * Single16(32.0F * kUlp) + largest[axis] * Single16(2.0F * kUlp) + Single16(kTiny))
+    (reach * Single16(32.0F * kUlp) + largest * Single16(2.0F * kUlp) + Single16(kTiny))
         .store(out.doubt[axis]);
     for (int k = 0; k < 3; ++k) corners.at[k][axis].store(out.corner[k][axis]);
   }
-  place_planes(corners, largest, job, out);
   out.lanes = present(b.triangle_count, leaf * kMeshFanout);
+  out.has_planes = false;
 }
 
 /// Which lanes have all three heights on one side, farther than `bound` from zero.
@@ -186,13 +191,9 @@ inline void place_triangles(const MeshView& b, const MeshPairJob& job, std::uint
          ((height[0] < below_bound) & (height[1] < below_bound) & (height[2] < below_bound));
 }
 
-/// Which triangles of the leaf may meet triangle j.
-[[gnu::always_inline]] inline Mask16 meeting(const PairLeaf& leaf, const PlacedTriangles& placed,
-                                             const MeshPairJob& job, unsigned j) {
-  const float low[3] = {placed.low[0][j], placed.low[1][j], placed.low[2][j]};
-  const float high[3] = {placed.high[0][j], placed.high[1][j], placed.high[2][j]};
-  const Mask16 boxes = overlap(leaf.box, low, high) & leaf.lanes;
-  if (boxes == 0) return 0;
+/// Which triangles of the leaf, out of `boxes`, are not parted from triangle j by a plane.
+[[gnu::always_inline]] inline Mask16 unparted(const PairLeaf& leaf, const PlacedTriangles& placed,
+                                              const MeshPairJob& job, unsigned j, Mask16 boxes) {
   const Single16 zero(0.0F);
   Single16 above_leaf[3] = {zero, zero, zero};
   Single16 above_placed[3] = {zero, zero, zero};

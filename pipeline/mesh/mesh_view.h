@@ -49,12 +49,16 @@ struct SlotSink {
   std::uint64_t size = 0;
 };
 
-/// The same for pairs of slots.
+/// The same for pairs of slots; or, with `take`, for any number of them in one walk: it is called
+/// where there is no room for 16 more, uses up what is there and sets size to 0. The capacity is 16
+/// at least then, and what is left when the walk ends is for the caller to use up.
 struct SlotPairSink {
   std::uint32_t* first = nullptr;
   std::uint32_t* second = nullptr;
   std::uint64_t capacity = 0;
   std::uint64_t size = 0;
+  void (*take)(void* context, SlotPairSink& sink) = nullptr;
+  void* context = nullptr;
 };
 
 /// Is shown the slots that a walk in order finds, 16 or fewer at a time; gives back the new limit.

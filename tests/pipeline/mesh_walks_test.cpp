@@ -232,6 +232,29 @@ TEST_F(Meshes, two_meshes_find_every_pair_of_triangles_that_meets_and_few_that_a
   }
 }
 
+TEST_F(Meshes, pairs_can_be_taken_from_a_small_room_as_they_are_found) {
+  const MeshPlacement placement{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0.4, 0.2, 0.1}};
+  const double margin[3] = {0, 0, 0};
+  const MeshView& mesh = meshes_[0].view();
+  const SlotPairs expected = overlap_pairs(mesh, mesh, placement, margin);
+  ASSERT_GT(expected.size(), 100U);
+  for (const std::size_t room : {16, 40}) {
+    SlotPairs taken;
+    const auto take = [](void* context, SlotPairSink& sink) {
+      for (std::size_t i = 0; i < sink.size; ++i) {
+        static_cast<SlotPairs*>(context)->emplace_back(sink.first[i], sink.second[i]);
+      }
+      sink.size = 0;
+    };
+    Slots first(room);
+    Slots second(room);
+    SlotPairSink sink{first.data(), second.data(), room, 0, take, &taken};
+    mesh_overlap_pairs(mesh, mesh, placement, margin, sink);
+    take(&taken, sink);
+    EXPECT_EQ(taken, expected);
+  }
+}
+
 TEST_F(Meshes, pairs_that_planes_tell_apart_are_dropped) {
   const TriangleMesh& mesh = meshes_[0];
   const MeshPlacement placement{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {1.3, 0.2, 0.1}};
