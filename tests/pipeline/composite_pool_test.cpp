@@ -1,0 +1,390 @@
+#include "composite_world.h"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <set>
+
+#include "../support/config.h"
+#include "../support/counting_memory.h"
+
+namespace winnow::test {
+namespace {
+
+TEST(CompositePool, refuses_what_it_cannot_hold) {
+  Random random(5);
+  World world;
+  world.add_shapes(random);
+  CompositePool& pool = world.composites;
+  const ShapeId mesh = world.ids[14];
+  ASSERT_EQ(mesh.composite_kind(), CompositeKind::mesh);
+  ShapeId id;
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const double bad : {0.0, inf, -inf, std::nan(""), 1e-200, 1e200}) {
+    EXPECT_EQ(pool.add_scaled(mesh, {1.0, bad, 1.0}, id), Status::invalid_argument);
+  }
+  EXPECT_EQ(pool.add_scaled(world.ids[0], {1.0, 1.0, 1.0}, id), Status::invalid_key);
+  EXPECT_EQ(pool.add_scaled({}, {1.0, 1.0, 1.0}, id), Status::invalid_key);
+  EXPECT_EQ(pool.add_compound({}, id), Status::invalid_shape);
+  Pose bad;
+  bad.position[1] = std::nan("");
+  const CompoundChild nowhere[] = {{world.ids[0], bad}};
+  EXPECT_EQ(pool.add_compound(nowhere, id), Status::invalid_pose);
+  const CompoundChild nested[] = {{mesh, Pose{}}};
+  EXPECT_EQ(pool.add_compound(nested, id), Status::invalid_key);
+  EXPECT_EQ(pool.remove(world.ids[0]), Status::invalid_key);
+  EXPECT_FALSE(pool.contains({}));
+  EXPECT_FALSE(pool.contains(id));
+  EXPECT_EQ(pool.bounds(id, Pose{}), Aabb{});
+}
+
+TEST(CompositePool, triangles_live_until_the_last_scaled_id_is_removed) {
+  Random random(6);
+  const Surface surface = soup(random, 30, 2.0, 0.5);
+  ShapePool shapes;
+  CountingMemory memory;
+  CompositePool pool(shapes, &memory);
+  const ShapeId first = add(pool, surface);
+  ShapeId second;
+  ASSERT_EQ(pool.add_scaled(first, {2.0, -1.0, 3.0}, second), Status::ok);
+  ShapeId third;
+  ASSERT_EQ(pool.add_scaled(second, {0.5, 1.0, 1.0}, third), Status::ok);
+  EXPECT_EQ(pool.mesh(first), pool.mesh(third));
+  const std::uint64_t revision = pool.revision();
+  EXPECT_EQ(pool.remove(first), Status::ok);
+  EXPECT_EQ(pool.remove(second), Status::ok);
+  EXPECT_GT(pool.revision(), revision);
+  ASSERT_NE(pool.mesh(third), nullptr);
+  EXPECT_EQ(pool.mesh(first), nullptr);
+  EXPECT_EQ(pool.mesh(third)->triangles(), 30U);
+  EXPECT_EQ(pool.size(CompositeKind::mesh), 1U);
+  EXPECT_EQ(memory.outstanding(), pool.footprint().total().reserved);
+  EXPECT_EQ(add(pool, surface), second);
+}
+
+TEST(CompositePool, boxes_and_radii_hold_every_part) {
+  Random random(7);
+  World world;
+  world.add_shapes(random);
+  for (const ShapeId id : world.ids) {
+    if (!id.is_composite()) continue;
+    for (int i = 0; i < 5; ++i) {
+      const Pose pose = random_pose(random, i < 3 ? 2.0 : 1e6);
+      const Aabb box = world.composites.bounds(id, pose);
+      const double radius = world.composites.radius(id);
+      ASSERT_TRUE(box.is_valid());
+      const Eigen::Map<const Eigen::Vector3d> at(pose.position);
+      for (const Primitive& part : parts_of(world, id, pose)) {
+        Aabb inner;
+        double reach = 0.0;
+        if (part.shape.kind() == ShapeKind::triangle) {
+          ShapePool one;
+          inner = one.bounds(add(one, part.triangle), part.pose);
+          for (const auto& corner : part.triangle.vertex) {
+            const Eigen::Map<const Eigen::Vector3d> from(part.pose.position);
+            if (world.composites.mesh(id) != nullptr) {
+              reach = (Eigen::Map<const Eigen::Vector3d>(corner) + from - at).norm();
+            }
+          }
+        } else {
+          inner = world.shapes.bounds(part.shape, part.pose);
+        }
+        // Both are rounded outward to float.
+        const float slack = 1e-6F * inner.max.cwiseAbs().maxCoeff();
+        for (int axis = 0; axis < 3; ++axis) {
+          if (!std::isfinite(inner.max[axis])) continue;
+          EXPECT_LE(box.min[axis], inner.min[axis] + slack);
+          EXPECT_GE(box.max[axis], inner.max[axis] - slack);
+        }
+        EXPECT_LE(reach, radius * (1.0 + 1e-9) + 1e-9);
+      }
+    }
+  }
+}
+
+TEST(Visits, show_what_all_boxes_would_and_the_nearest_first) {
+  Random random(10);
+  World world;
+  world.add_shapes(random);
+  for (const ShapeId id : world.ids) {
+    if (!id.is_composite()) continue;
+    for (int i = 0; i < 12; ++i) {
+      const Pose pose = random_pose(random, i < 6 ? 2.0 : 1e4);
+      BoxSweep box{};
+      for (int axis = 0; axis < 3; ++axis) {
+        const double middle = pose.position[axis] + random.uniform(-2.0, 2.0);
+        const double half = random.chance(0.3) ? 0.0 : random.uniform(0.0, 0.5);
+        box.min[axis] = middle - half;
+        box.max[axis] = middle + half;
+        box.direction[axis] = random.uniform(-1.0, 1.0);
+      }
+      box.max_t = random.uniform(0.0, 3.0);
+      std::set<std::uint32_t> swept;
+      std::set<std::uint32_t> near;
+      const auto note = [](void* context, const Primitive& primitive, double limit) {
+        static_cast<std::set<std::uint32_t>*>(context)->insert(primitive.part);
+        return limit;
+      };
+      world.composites.visit(id, pose, box, {note, &swept});
+      world.composites.visit_near(id, pose, box, 0.7, {note, &near});
+      // A box against parts that are seen as shapes: answered by the narrow phase.
+      World probe;
+      ShapeId cube = add(probe.shapes,
+                         BoxShape{{0.5 * (box.max[0] - box.min[0]), 0.5 * (box.max[1] - box.min[1]),
+                                   0.5 * (box.max[2] - box.min[2])},
+                                  0.0});
+      SolverCounts counts;
+      for (const Primitive& part : parts_of(world, id, pose)) {
+        const bool is_triangle = part.shape.kind() == ShapeKind::triangle;
+        const BoxShape& half = probe.shapes.tables().boxes[cube.index()];
+        for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+          Pose at;
+          for (int axis = 0; axis < 3; ++axis) {
+            at.position[axis] =
+                0.5 * (box.min[axis] + box.max[axis]) + t * box.max_t * box.direction[axis];
+          }
+          ShapeTables tables = world.shapes.tables();
+          tables.boxes = &half;
+          ShapeId shape = part.shape;
+          if (is_triangle) {
+            tables.triangles = &part.triangle;
+            shape = ShapeId::of(ShapeKind::triangle, 0);
+          } else if (shape.kind() == ShapeKind::box) {
+            continue;
+          }
+          const double distance = solve_pair(tables, ShapeId::of(ShapeKind::box, 0), at, shape,
+                                             part.pose, NarrowLevel::distance, 0.0, counts)
+                                      .distance;
+          if (distance <= 0.0) {
+            EXPECT_TRUE(swept.contains(part.part)) << id.kind_index();
+          }
+          if (t == 0.0 && distance <= 0.7) {
+            EXPECT_TRUE(near.contains(part.part)) << id.kind_index();
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Visits, end_when_told_to) {
+  Random random(11);
+  World world;
+  world.add_shapes(random);
+  for (const ShapeId id : world.ids) {
+    if (!id.is_composite()) continue;
+    int shown = 0;
+    const auto once = [](void* context, const Primitive&, double) {
+      ++*static_cast<int*>(context);
+      return -1.0;
+    };
+    const BoxSweep all{{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}};
+    world.composites.visit(id, Pose{}, all, {once, &shown});
+    EXPECT_EQ(shown, 1);
+    world.composites.visit_near(id, Pose{}, all, 1.0, {once, &shown});
+    EXPECT_EQ(shown, 2);
+  }
+}
+
+/// A body on a surface: what its contacts are, smoothed.
+struct Landing {
+  std::vector<Eigen::Vector3d> normals;  ///< from the body to the surface
+  double deepest = std::numeric_limits<double>::infinity();
+  std::size_t points = 0;
+};
+
+Landing land(const ShapePool& shapes, const CompositePool& pool, ShapeId body, const Pose& at,
+             ShapeId surface, const Pose& ground, NarrowLevel level, double margin,
+             bool ground_first = false) {
+  const ShapeId ids[2] = {ground_first ? surface : body, ground_first ? body : surface};
+  const Pose poses[2] = {ground_first ? ground : at, ground_first ? at : ground};
+  const BodyPair pair[] = {{0, 1}};
+  PrimitivePairs pairs;
+  EXPECT_EQ(pool.expand(shapes, {ids, poses}, pair, margin, Execution::serial(), pairs),
+            Status::ok);
+  NarrowPhase narrow;
+  NarrowResult result;
+  EXPECT_EQ(
+      narrow.collide(
+          pairs.tables(shapes),
+          {{pairs.shapes.data(), pairs.shapes.size()}, {pairs.poses.data(), pairs.poses.size()}},
+          {pairs.pairs.data(), pairs.pairs.size()}, {.level = level, .margin = margin}, result),
+      Status::ok);
+  std::size_t before = 0;
+  for (const double distance : result.distance()) before += distance <= margin ? 1 : 0;
+  pool.smooth(shapes, pairs, Execution::serial(), result);
+  Landing landing;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (!(result.distance()[i] <= margin)) continue;
+    const double sign = ground_first ? -1.0 : 1.0;
+    landing.normals.emplace_back(sign * result.normal(0)[i], sign * result.normal(1)[i],
+                                 sign * result.normal(2)[i]);
+    landing.deepest = std::min(landing.deepest, result.distance()[i]);
+    if (level != NarrowLevel::manifold) continue;
+    EXPECT_GE(result.contact_count()[i], 1U);
+    landing.points += result.contact_count()[i];
+    const ContactPoint first = result.contact(result.contact_first()[i]);
+    EXPECT_NEAR(static_cast<double>(first.depth), -result.distance()[i], 1e-5);
+  }
+  EXPECT_EQ(landing.normals.size(), before);
+  return landing;
+}
+
+const Cut kCuts[] = {Cut::same, Cut::mirrored, Cut::alternating, Cut::random};
+
+TEST(InnerEdges, what_slides_over_a_flat_floor_feels_only_its_normal) {
+  Random random(8);
+  ShapePool shapes;
+  CompositePool pool(shapes);
+  const ShapeId bodies[] = {add(shapes, SphereShape{0.5}),
+                            add(shapes, BoxShape{{0.4, 0.6, 0.5}, 0.0}),
+                            add_octahedron(shapes, 0.5), add(shapes, CapsuleShape{0.3, 0.2}),
+                            add(shapes, CylinderShape{0.4, 0.5, 0.0})};
+  for (const Cut cut : kCuts) {
+    const ShapeId floor = add(pool, grid(12, 0.7F, cut, [](float, float) { return 0.0F; }));
+    ShapeId scaled_floor;
+    ASSERT_EQ(pool.add_scaled(floor, {1.3, -0.8, 2.0}, scaled_floor), Status::ok);
+    for (int i = 0; i < static_cast<int>(scaled(150)); ++i) {
+      const ShapeId body = bodies[random.below(5)];
+      // Over corners, over edges and elsewhere; about its own height above the floor.
+      Pose at = Pose::at(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 0.0);
+      if (random.chance(0.3)) at.position[0] = 0.7 * std::round(at.position[0] / 0.7);
+      if (random.chance(0.3)) at.position[1] = 0.7 * std::round(at.position[1] / 0.7);
+      const double turn = random.chance(0.3) ? 0.0 : random.uniform(-3.0, 3.0);
+      at.orientation[0] = std::cos(turn);
+      at.orientation[3] = std::sin(turn);
+      at.position[2] = 0.5 + random.uniform(-0.05, 0.009);
+      for (const NarrowLevel level : {NarrowLevel::distance, NarrowLevel::manifold}) {
+        const ShapeId ground = random.chance(0.3) ? scaled_floor : floor;
+        const Landing landing =
+            land(shapes, pool, body, at, ground, Pose{}, level, 0.01, random.chance(0.5));
+        EXPECT_NEAR(landing.deepest, at.position[2] - 0.5, 1e-6);
+        for (const Eigen::Vector3d& normal : landing.normals) {
+          EXPECT_LT((normal + Eigen::Vector3d::UnitZ()).norm(), 1e-12)
+              << normal.transpose() << " kind " << body.kind_index() << " at " << at.position[0]
+              << " " << at.position[1] << " " << at.position[2];
+        }
+      }
+    }
+  }
+}
+
+TEST(InnerEdges, a_height_field_has_none_either) {
+  ShapePool shapes;
+  CompositePool pool(shapes);
+  const std::vector<float> heights(100, 2.0F);
+  ShapeId field;
+  ASSERT_EQ(pool.add_height_field({heights, 10, 10, 0, {0.5, 0.5}}, field), Status::ok);
+  const ShapeId ball = add(shapes, SphereShape{0.5});
+  for (int i = 0; i < 40; ++i) {
+    const Pose at = Pose::at(1.5 + 0.05 * i, 2.0 + 0.013 * i, 2.48);
+    const Landing landing =
+        land(shapes, pool, ball, at, field, Pose{}, NarrowLevel::manifold, 0.01);
+    EXPECT_FALSE(landing.normals.empty());
+    for (const Eigen::Vector3d& normal : landing.normals) {
+      EXPECT_LT((normal + Eigen::Vector3d::UnitZ()).norm(), 1e-12);
+    }
+  }
+}
+
+TEST(InnerEdges, ridges_and_borders_are_felt) {
+  ShapePool shapes;
+  CompositePool pool(shapes);
+  const ShapeId ball = add(shapes, SphereShape{0.5});
+  // A roof whose ridge runs along y at x = 0.
+  const ShapeId roof =
+      add(pool, grid(8, 0.5F, Cut::same, [](float x, float) { return -std::abs(x); }));
+  const Landing on_ridge =
+      land(shapes, pool, ball, Pose::at(0.0, 0.1, 0.49), roof, Pose{}, NarrowLevel::manifold, 0.0);
+  ASSERT_FALSE(on_ridge.normals.empty());
+  for (const Eigen::Vector3d& normal : on_ridge.normals) {
+    EXPECT_LT((normal + Eigen::Vector3d::UnitZ()).norm(), 1e-9);
+  }
+  // Off the border of a floor: from the ball straight to the edge.
+  const ShapeId floor = add(pool, grid(4, 0.5F, Cut::same, [](float, float) { return 0.0F; }));
+  const Landing off =
+      land(shapes, pool, ball, Pose::at(1.3, 0.1, 0.35), floor, Pose{}, NarrowLevel::manifold, 0.0);
+  ASSERT_FALSE(off.normals.empty());
+  const Eigen::Vector3d to_edge = Eigen::Vector3d(-0.3, 0.0, -0.35).normalized();
+  double nearest = 1.0;
+  for (const Eigen::Vector3d& normal : off.normals) {
+    nearest = std::min(nearest, (normal - to_edge).norm());
+  }
+  EXPECT_LT(nearest, 1e-9);
+}
+
+TEST(InnerEdges, a_valley_holds_a_ball_by_its_faces) {
+  ShapePool shapes;
+  CompositePool pool(shapes);
+  const ShapeId ball = add(shapes, SphereShape{0.5});
+  const ShapeId valley =
+      add(pool, grid(8, 0.5F, Cut::alternating, [](float x, float) { return std::abs(x); }));
+  const double rest = 0.5 * std::sqrt(2.0) - 0.02;
+  for (int i = 0; i < 30; ++i) {
+    const Landing landing = land(shapes, pool, ball, Pose::at(0.0005 * i, -0.5 + 0.03 * i, rest),
+                                 valley, Pose{}, NarrowLevel::manifold, 0.0);
+    const Eigen::Vector3d left = Eigen::Vector3d(-1.0, 0.0, -1.0).normalized();
+    const Eigen::Vector3d right = Eigen::Vector3d(1.0, 0.0, -1.0).normalized();
+    bool both[2] = {false, false};
+    for (const Eigen::Vector3d& normal : landing.normals) {
+      const double off[2] = {(normal - left).norm(), (normal - right).norm()};
+      EXPECT_LT(std::min(off[0], off[1]), 1e-12);
+      both[off[0] < off[1] ? 0 : 1] = true;
+    }
+    EXPECT_TRUE(both[0] && both[1]);
+  }
+}
+
+TEST(InnerEdges, smoothing_is_the_same_on_any_number_of_threads_and_survives_refused_memory) {
+  Random random(9);
+  World world;
+  world.ids = {add(world.shapes, BoxShape{{0.4, 0.6, 0.5}, 0.0}), add_octahedron(world.shapes, 0.5),
+               add(world.shapes, SphereShape{0.5})};
+  const ShapeId floor = add(world.composites, grid(20, 0.4F, Cut::random, [](float x, float y) {
+                              return 0.05F * std::sin(x) * std::cos(y);
+                            }));
+  world.body.push_back(floor);
+  world.pose.emplace_back();
+  for (std::uint32_t i = 1; i < 400; ++i) {
+    world.body.push_back(world.ids[random.below(3)]);
+    world.pose.push_back(
+        Pose::at(random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0), random.uniform(0.3, 0.5)));
+    world.pairs.push_back({i, 0});
+  }
+  PrimitivePairs pairs;
+  ASSERT_EQ(world.composites.expand(world.shapes, world.bodies(), world.pairs, 0.0,
+                                    Execution::serial(), pairs),
+            Status::ok);
+  const auto answer = [&](std::pmr::memory_resource* memory, Execution execution,
+                          CountingMemory* refusing) {
+    auto result = std::make_unique<NarrowResult>(memory);
+    winnow::test::answer(world.shapes, pairs, {}, *result);
+    if (refusing != nullptr) refusing->refuse_after(0);
+    world.composites.smooth(world.shapes, pairs, execution, *result);
+    if (refusing != nullptr) refusing->grant_all();
+    return result;
+  };
+  const auto one = answer(std::pmr::get_default_resource(), Execution::serial(), nullptr);
+  const auto two = Threads(2).run(
+      [&] { return answer(std::pmr::get_default_resource(), Execution::parallel(), nullptr); });
+  ASSERT_EQ(one->size(), two->size());
+  ASSERT_EQ(one->contacts(), two->contacts());
+  for (std::size_t i = 0; i < one->size(); ++i) {
+    EXPECT_EQ(one->distance()[i], two->distance()[i]);
+    EXPECT_EQ(one->contact_first()[i], two->contact_first()[i]);
+    EXPECT_EQ(one->contact_count()[i], two->contact_count()[i]);
+  }
+  for (std::size_t i = 0; i < one->contacts(); ++i) {
+    EXPECT_EQ(one->contact(i).position[0], two->contact(i).position[0]);
+    EXPECT_EQ(one->contact(i).depth, two->contact(i).depth);
+  }
+  CountingMemory memory;
+  const auto refused = answer(&memory, Execution::serial(), &memory);
+  for (std::size_t i = 0; i < one->size(); ++i) {
+    EXPECT_EQ(one->distance()[i], refused->distance()[i]);
+    EXPECT_EQ(one->contact_count()[i] == 0, refused->contact_count()[i] == 0);
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test
