@@ -13,7 +13,7 @@ namespace {
 
 TEST(CompositePool, refuses_what_it_cannot_hold) {
   Random random(5);
-  World world;
+  CompositeWorld world;
   world.add_shapes(random);
   CompositePool& pool = world.composites;
   const ShapeId mesh = world.ids[14];
@@ -64,7 +64,7 @@ TEST(CompositePool, triangles_live_until_the_last_scaled_id_is_removed) {
 
 TEST(CompositePool, boxes_and_radii_hold_every_part) {
   Random random(7);
-  World world;
+  CompositeWorld world;
   world.add_shapes(random);
   for (const ShapeId id : world.ids) {
     if (!id.is_composite()) continue;
@@ -104,7 +104,7 @@ TEST(CompositePool, boxes_and_radii_hold_every_part) {
 
 TEST(Visits, show_what_all_boxes_would_and_the_nearest_first) {
   Random random(10);
-  World world;
+  CompositeWorld world;
   world.add_shapes(random);
   for (const ShapeId id : world.ids) {
     if (!id.is_composite()) continue;
@@ -128,7 +128,7 @@ TEST(Visits, show_what_all_boxes_would_and_the_nearest_first) {
       world.composites.visit(id, pose, box, {note, &swept});
       world.composites.visit_near(id, pose, box, 0.7, {note, &near});
       // A box against parts that are seen as shapes: answered by the narrow phase.
-      World probe;
+      CompositeWorld probe;
       ShapeId cube = add(probe.shapes,
                          BoxShape{{0.5 * (box.max[0] - box.min[0]), 0.5 * (box.max[1] - box.min[1]),
                                    0.5 * (box.max[2] - box.min[2])},
@@ -169,7 +169,7 @@ TEST(Visits, show_what_all_boxes_would_and_the_nearest_first) {
 
 TEST(Visits, end_when_told_to) {
   Random random(11);
-  World world;
+  CompositeWorld world;
   world.add_shapes(random);
   for (const ShapeId id : world.ids) {
     if (!id.is_composite()) continue;
@@ -337,7 +337,7 @@ TEST(InnerEdges, a_valley_holds_a_ball_by_its_faces) {
 
 TEST(InnerEdges, smoothing_is_the_same_on_any_number_of_threads_and_survives_refused_memory) {
   Random random(9);
-  World world;
+  CompositeWorld world;
   world.ids = {add(world.shapes, BoxShape{{0.4, 0.6, 0.5}, 0.0}), add_octahedron(world.shapes, 0.5),
                add(world.shapes, SphereShape{0.5})};
   const ShapeId floor = add(world.composites, grid(20, 0.4F, Cut::random, [](float x, float y) {

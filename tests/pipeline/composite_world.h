@@ -110,8 +110,8 @@ inline Pose random_pose(Random& random, double reach) {
 }
 
 /// Shapes of every kind.
-struct World {
-  explicit World(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+struct CompositeWorld {
+  explicit CompositeWorld(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : shapes(memory), composites(shapes, memory) {}
 
   ShapePool shapes;
@@ -179,7 +179,7 @@ struct World {
 };
 
 /// All primitives of a body, shown by visit without a limit.
-inline std::vector<Primitive> parts_of(const World& world, ShapeId id, const Pose& pose) {
+inline std::vector<Primitive> parts_of(const CompositeWorld& world, ShapeId id, const Pose& pose) {
   std::vector<Primitive> parts;
   if (!id.is_composite()) {
     Primitive whole;

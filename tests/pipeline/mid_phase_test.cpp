@@ -14,7 +14,7 @@ namespace {
 using Touch = std::tuple<std::size_t, std::uint32_t, std::uint32_t>;
 
 /// Every part of a against every part of b, for all pairs.
-void expand_all(const World& world, PrimitivePairs& out, std::vector<std::size_t>& owner) {
+void expand_all(const CompositeWorld& world, PrimitivePairs& out, std::vector<std::size_t>& owner) {
   for (std::size_t i = 0; i < world.pairs.size(); ++i) {
     const BodyPair& pair = world.pairs[i];
     std::vector<std::uint32_t> side[2];
@@ -46,7 +46,7 @@ void expand_all(const World& world, PrimitivePairs& out, std::vector<std::size_t
 }
 
 /// Pairs of parts that are no farther apart than `near`.
-std::set<Touch> touching(const World& world, const PrimitivePairs& pairs,
+std::set<Touch> touching(const CompositeWorld& world, const PrimitivePairs& pairs,
                          const std::vector<std::size_t>& owner, double near) {
   NarrowPhase narrow;
   NarrowResult result;
@@ -82,7 +82,7 @@ bool same(const Column<T>& a, const Column<T>& b) {
 
 TEST(MidPhase, finds_every_pair_of_primitives_that_all_against_all_finds) {
   Random random(1);
-  World world;
+  CompositeWorld world;
   world.add_shapes(random);
   world.add_pairs(random, scaled(150), 1.2, {0.0, 0.0, 0.0});
   world.add_pairs(random, scaled(60), 4.0, {1e5, -3e4, 2e5});
@@ -108,7 +108,7 @@ TEST(MidPhase, finds_every_pair_of_primitives_that_all_against_all_finds) {
 
 TEST(MidPhase, is_the_same_on_any_number_of_threads_and_any_instruction_set) {
   Random random(2);
-  World world;
+  CompositeWorld world;
   world.add_shapes(random);
   world.add_pairs(random, scaled(300), 1.5, {0.0, 0.0, 0.0});
   PrimitivePairs one;
@@ -136,7 +136,7 @@ TEST(MidPhase, allocates_nothing_the_second_time_and_counts_every_byte) {
   CountingMemory memory;
   {
     Random random(3);
-    World world(&memory);
+    CompositeWorld world(&memory);
     EXPECT_EQ(world.composites.footprint().total().reserved, 0U);
     EXPECT_EQ(memory.outstanding(), 0U);
     world.add_shapes(random);
@@ -172,7 +172,7 @@ TEST(MidPhase, allocates_nothing_the_second_time_and_counts_every_byte) {
 
 TEST(MidPhase, a_refused_request_for_memory_changes_nothing) {
   Random random(4);
-  World world;
+  CompositeWorld world;
   world.add_shapes(random);
   world.add_pairs(random, 40, 1.0, {0.0, 0.0, 0.0});
   for (std::size_t grants = 0;; ++grants) {
@@ -222,7 +222,7 @@ TEST(MidPhase, a_refused_request_for_memory_changes_nothing) {
 
 TEST(MidPhase, any_valid_pose_and_scale_gives_what_the_narrow_phase_takes) {
   Random random(12);
-  World world;
+  CompositeWorld world;
   world.add_shapes(random);
   for (const double factor : {1e-100, 1e100}) {
     world.ids.emplace_back();
