@@ -24,8 +24,11 @@ class EdgeBend {
     const double nn = dot(n, n);
     const double mm = dot(m, m);
     const double ee = dot(edge, edge);
+    const double pp = dot(to_p, to_p);
+    const double qq = dot(to_q, to_q);
     // The cross product of parallel edges is their rounding.
-    if (!(nn > kFlat * ee * dot(to_p, to_p)) || !(mm > kFlat * ee * dot(to_q, to_q))) return true;
+    if (!(nn > kFlat * ee * pp) || !(mm > kFlat * ee * qq)) return true;
+    if (consistent && is_above(n, nn, to_q, qq) && is_above(m, mm, to_p, pp)) return false;
     n = scaled(n, 1.0 / std::sqrt(nn));
     m = scaled(m, 1.0 / std::sqrt(mm));
     // The sine of bend - angle, which lies between -pi and pi.
@@ -34,9 +37,7 @@ class EdgeBend {
     const double bend_cosine = dot(n, m);
     const bool folded = bend_cosine < 0.0 && bend_sine <= kRounding;
     if (folded) return !is_straight_;
-    if (bend_sine * cosine_ - bend_cosine * sine_ <= kRounding) return false;
-    const bool concave = dot(n, to_q) > 0.0 && dot(m, to_p) > 0.0;
-    return !(consistent && concave);
+    return bend_sine * cosine_ - bend_cosine * sine_ > kRounding;
   }
 
  private:
@@ -45,6 +46,12 @@ class EdgeBend {
   };
   static constexpr double kFlat = 1e-24;
   static constexpr double kRounding = 1e-12;
+
+  /// On the outer side of a plane, beyond rounding; given the squares of both lengths.
+  static bool is_above(const Vector& normal, double nn, const Vector& to, double tt) noexcept {
+    const double height = dot(normal, to);
+    return height > 0.0 && height * height > kFlat * nn * tt;
+  }
 
   static Vector between(const double (&a)[3], const double (&b)[3]) noexcept {
     return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};

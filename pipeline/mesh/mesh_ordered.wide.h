@@ -38,7 +38,10 @@ class SweepMeasure {
     }
     return select(met & (entry <= exit), entry, Double8(__builtin_inf()));
   }
-  [[nodiscard]] bool within(double measure) const { return measure <= limit_; }
+  /// No time is infinite, whatever the limit.
+  [[nodiscard]] bool within(double measure) const {
+    return measure <= limit_ && measure < __builtin_inf();
+  }
 
  private:
   const MeshSweepJob& job_;

@@ -10,6 +10,12 @@ namespace {
 constexpr std::uint32_t kTop = 65535;
 constexpr std::size_t kLeavesPerTask = 512;
 
+/// The column of a level, to be written: `words` is what the view points into.
+std::uint16_t* column_of(const MeshView& view, std::uint16_t* words, std::uint32_t level,
+                         std::size_t c) {
+  return words + (view.node[level][c] - words);
+}
+
 std::uint32_t padded(std::uint32_t count) {
   return (count + kMeshFanout - 1) / kMeshFanout * kMeshFanout;
 }
@@ -72,7 +78,7 @@ void fit_upper_level(const MeshView& view, std::uint32_t level, std::uint16_t* w
   const std::uint32_t below = view.count[level - 1];
   for (std::size_t axis = 0; axis < 6; ++axis) {
     const std::uint16_t* source = view.node[level - 1][axis];
-    std::uint16_t* target = words + (view.node[level][axis] - words);
+    std::uint16_t* target = column_of(view, words, level, axis);
     for (std::uint32_t i = 0; i < view.count[level]; ++i) {
       const std::uint32_t first = i * kMeshFanout;
       const std::uint32_t end = std::min(below, first + kMeshFanout);
@@ -88,7 +94,7 @@ void fit_upper_level(const MeshView& view, std::uint32_t level, std::uint16_t* w
 void pad_levels(const MeshView& view, std::uint16_t* words) {
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     for (std::size_t axis = 0; axis < 6; ++axis) {
-      std::uint16_t* column = words + (view.node[level][axis] - words);
+      std::uint16_t* column = column_of(view, words, level, axis);
       std::fill(column + view.count[level], column + padded(view.count[level]),
                 axis < 3 ? static_cast<std::uint16_t>(kTop) : std::uint16_t{0});
     }
@@ -138,9 +144,9 @@ void fit_mesh_levels(MeshView& view, std::uint16_t* words, float low[3], float h
     for (std::size_t i = task * kLeavesPerTask; i < end; ++i) {
       const LeafBox box(view, i * kMeshFanout);
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        words[view.node[0][axis] - words + static_cast<std::ptrdiff_t>(i)] =
+        column_of(view, words, 0, axis)[i] =
             quantised_low(view, axis, static_cast<double>(box.low[axis]));
-        words[view.node[0][3 + axis] - words + static_cast<std::ptrdiff_t>(i)] =
+        column_of(view, words, 0, 3 + axis)[i] =
             quantised_high(view, axis, static_cast<double>(box.high[axis]));
       }
     }
