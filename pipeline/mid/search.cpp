@@ -84,20 +84,23 @@ void Search::mesh_mesh(const Side& a, const Side& b) noexcept {
     placement.offset[i] = offset[i];
     margin[i] = margin_ * a.to_local.row(i).norm() + noise[i];
   }
-  SlotPairSink found{outer_.data(), inner_.data(), kRoom, 0};
+  PairOfSides sides{*this, a, b};
+  SlotPairSink found{outer_.data(), inner_.data(), kRoom, 0, &take_slots, &sides};
   mesh_overlap_pairs(*a.mesh, *b.mesh, placement, margin, found);
-  if (found.size > kRoom) {
-    std::uint32_t* const room = arena_.take(2 * found.size);
-    if (room == nullptr) return;
-    found = {room, room + found.size, found.size, 0};
-    mesh_overlap_pairs(*a.mesh, *b.mesh, placement, margin, found);
-  }
+  take_slots(found.context, found);
+}
+
+void Search::take_slots(void* context, SlotPairSink& found) noexcept {
+  const PairOfSides& sides = *static_cast<const PairOfSides*>(context);
+  Search& search = sides.search;
   for (std::uint64_t i = 0; i < found.size; ++i) {
     Corners corners[2];
-    static_cast<void>(a.corners(found.first[i], corners[0]));
-    static_cast<void>(b.corners(found.second[i], corners[1]));
-    if (!is_apart(corners[0], corners[1], margin_)) add(a, found.first[i], b, found.second[i]);
+    static_cast<void>(sides.a.corners(found.first[i], corners[0]));
+    static_cast<void>(sides.b.corners(found.second[i], corners[1]));
+    if (is_apart(corners[0], corners[1], search.margin_)) continue;
+    search.add(sides.a, found.first[i], sides.b, found.second[i]);
   }
+  found.size = 0;
 }
 
 // At least one of them is a height field, which answers boxes so cheaply that a walk of two trees

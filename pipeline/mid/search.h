@@ -34,9 +34,16 @@ class Search {
     std::uint64_t primitive = 0;
   };
 
+  struct PairOfSides {
+    Search& search;
+    const Side& a;
+    const Side& b;
+  };
+
   void parts_parts(const Side& a, const Side& b) noexcept;
   void parts_surface(const Side& parts, const Side& surface, bool swapped) noexcept;
   void mesh_mesh(const Side& a, const Side& b) noexcept;
+  static void take_slots(void* context, SlotPairSink& found) noexcept;
   void surfaces(const Side& a, const Side& b) noexcept;
 
   [[nodiscard]] std::span<const std::uint32_t> children_near(const Side& side, const Box& box,

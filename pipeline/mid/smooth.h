@@ -14,8 +14,11 @@ namespace winnow::mid {
 ///   centre, so that it does not turn;
 /// - others are clipped against the triangle along the normal, and the depth is that of the
 ///   clipped points, at least what it was.
-/// Contacts of triangles of two meshes stay as they are: which face's normal is meant is not known.
-/// So do those with the back of an open surface where it looks concave from the front.
+/// No contact is lost: the distance to a face's plane is never more than that to the face. Contacts
+/// of triangles of two meshes stay as they are: which face's normal is meant is not known. Which
+/// edges are active is known for the front of a surface only; on its back concave edges, which look
+/// convex from there, are taken for inner ones too, so that a floor is flat whichever way its
+/// triangles are wound.
 void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
             NarrowResult& result) noexcept;
 

@@ -131,6 +131,8 @@ void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& 
            const PrimitiveVisitor& visitor) {
   const Side side = side_at(all, id, pose);
   const Guide guide{all, side, visitor};
+  // What is never met is met at infinity: not before any limit.
+  const double max_t = std::min(sweep.max_t, std::numeric_limits<double>::max());
   Box box = box_in(side, sweep, side.to_local);
   const Vec direction = side.to_local * Eigen::Map<const Vec>(sweep.direction);
   // Rounding of the direction shifts the box, as far as it gets, by a share of where it gets.
@@ -142,17 +144,15 @@ void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& 
     box = {box.min - noise, box.max + noise};
   }
   if (side.kind == Side::Kind::mesh) {
-    mesh_sweep(*side.mesh, box.min.data(), box.max.data(), direction.data(), sweep.max_t,
-               guide.slots());
+    mesh_sweep(*side.mesh, box.min.data(), box.max.data(), direction.data(), max_t, guide.slots());
   } else if (side.kind == Side::Kind::field) {
-    side.field->sweep(box.min.data(), box.max.data(), direction.data(), sweep.max_t, guide.slots());
+    side.field->sweep(box.min.data(), box.max.data(), direction.data(), max_t, guide.slots());
   } else if (side.compound->tree != nullptr) {
-    mesh_sweep(side.compound->tree->view(), box.min.data(), box.max.data(), direction.data(),
-               sweep.max_t, guide.slots());
+    mesh_sweep(side.compound->tree->view(), box.min.data(), box.max.data(), direction.data(), max_t,
+               guide.slots());
   } else {
-    show_in_order(guide, sweep.max_t, [&](const Box& child) {
-      return meeting_time(box, direction, child, sweep.max_t);
-    });
+    show_in_order(guide, max_t,
+                  [&](const Box& child) { return meeting_time(box, direction, child, max_t); });
   }
 }
 
