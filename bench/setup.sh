@@ -8,6 +8,8 @@ WINNOW_BUILD_PACKAGES=(cmake ninja-build g++ pkg-config libeigen3-dev libxsimd-d
 # What the winnow tool and the micro benchmarks need on top.
 WINNOW_BENCH_PACKAGES=(libbenchmark-dev libcli11-dev nlohmann-json3-dev liblzma-dev xz-utils
                        libjs-three)
+# Mesh files for `winnow simulate`.
+WINNOW_MESH_PACKAGES=(libassimp-dev)
 # What opens the pages of `winnow draw` in a test: Chromium without its windows.
 WINNOW_BROWSER_PACKAGES=(chromium-headless-shell)
 # Other libraries that winnow can be measured against.

@@ -73,6 +73,20 @@ std::vector<Goal> narrow_accuracy(const Ask& ask, const std::vector<Ask>& all, L
 /// to one tier; none if the folder is not there.
 std::vector<Goal> narrow_hard_cases(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
 
+// pipeline_kinds.cpp
+
+/// winnow on a whole scene, on 1, 2, ... threads against what is asked and on one against other
+/// libraries of the same run.
+std::vector<Goal> pipeline_scene(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// Triangles of two tori that meet, against FCL: in the same run, or elsewhere.
+std::vector<Goal> pipeline_tori(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// Building a mesh's tree against FCL, and what it weighs.
+std::vector<Goal> mesh_build(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// A frame of the granular flow against its phases, each by itself.
+std::vector<Goal> flow_phases(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// A long granular flow: allocations, energy, and contacts against brute force.
+std::vector<Goal> flow_soak(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+
 /// Measured where there is no answer, or a wrong one, and less is better.
 inline constexpr double kUnanswered = 1e6;
 

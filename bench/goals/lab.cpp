@@ -136,10 +136,28 @@ const NarrowMeasurement& Lab::narrow(const std::string& kind, std::size_t pairs)
   return at->second;
 }
 
+const PipelineMeasurement& Lab::pipeline(const std::string& scene, bool resting) {
+  const auto [at, fresh] = pipeline_.try_emplace({scene, resting});
+  if (fresh) {
+    PipelineMeasureOptions options;
+    options.scene = scene;
+    options.resting = resting;
+    at->second = measure_pipeline(options);
+  }
+  return at->second;
+}
+
+const MeshMeasurement& Lab::meshes() {
+  if (!meshes_) meshes_ = measure_meshes(11, true);
+  return *meshes_;
+}
+
 Spread Lab::machine_ms() const {
   std::vector<double> times;
   for (const auto& [where, cell] : cells_) times.push_back(cell.machine_ms);
   for (const auto& [where, pairs] : narrow_) times.push_back(pairs.machine_ms);
+  for (const auto& [where, scene] : pipeline_) times.push_back(scene.machine_ms);
+  if (meshes_) times.push_back(meshes_->machine_ms);
   return spread_of(times);
 }
 

@@ -5,6 +5,7 @@
 #include "queries/query_costs.h"
 #include "tool/measure.h"
 #include "tool/measure_narrow.h"
+#include "tool/measure_pipeline.h"
 #include "tool/measure_queries.h"
 
 #include <cstddef>
@@ -54,6 +55,11 @@ class Lab {
   /// for the caches, and the other libraries, interleaved.
   const NarrowMeasurement& narrow(const std::string& kind, std::size_t pairs);
 
+  /// winnow on 1 and 2 threads and the other libraries on a scene of the pipeline, interleaved.
+  const PipelineMeasurement& pipeline(const std::string& scene, bool resting);
+  /// winnow and the other libraries on two tori, interleaved.
+  const MeshMeasurement& meshes();
+
   /// How much slower this machine was while the cell was measured than the reference machine.
   [[nodiscard]] static double scale(const Measurement& cell) noexcept {
     return cell.machine_ms / kReferenceMachineMs;
@@ -80,6 +86,8 @@ class Lab {
   std::map<std::tuple<std::string, std::string, std::size_t>, QueryMeasurement> queries_;
   std::map<Where, FrustumCosts> frustum_;
   std::map<Where, NarrowMeasurement> narrow_;
+  std::map<std::pair<std::string, bool>, PipelineMeasurement> pipeline_;
+  std::optional<MeshMeasurement> meshes_;
 };
 
 }  // namespace winnow::bench

@@ -14,7 +14,7 @@ struct Kind {
   std::vector<Goal> (*measure)(const Ask&, const std::vector<Ask>&, Lab&);
 };
 
-constexpr std::array<Kind, 22> kKinds{{{"fastest_partition", fastest_partition},
+constexpr std::array<Kind, 27> kKinds{{{"fastest_partition", fastest_partition},
                                        {"no_slower_than_existing", no_slower_than_existing},
                                        {"scene_ratio", scene_ratio},
                                        {"speedup", speedup},
@@ -35,7 +35,12 @@ constexpr std::array<Kind, 22> kKinds{{{"fastest_partition", fastest_partition},
                                        {"narrow_tiers", narrow_tiers},
                                        {"narrow_threads", narrow_threads},
                                        {"narrow_accuracy", narrow_accuracy},
-                                       {"narrow_hard_cases", narrow_hard_cases}}};
+                                       {"narrow_hard_cases", narrow_hard_cases},
+                                       {"pipeline_scene", pipeline_scene},
+                                       {"pipeline_tori", pipeline_tori},
+                                       {"mesh_build", mesh_build},
+                                       {"flow_phases", flow_phases},
+                                       {"flow_soak", flow_soak}}};
 
 }  // namespace
 

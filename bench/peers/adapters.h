@@ -3,6 +3,7 @@
 #include "peers/engine.h"
 #include "peers/narrow_engine.h"
 #include "peers/query_engine.h"
+#include "peers/scene_engine.h"
 
 #include <memory>
 
@@ -22,5 +23,9 @@ namespace winnow::bench {
 [[nodiscard]] std::unique_ptr<NarrowEngine> make_fcl_indep();
 [[nodiscard]] std::unique_ptr<NarrowEngine> make_libccd_gjk();
 [[nodiscard]] std::unique_ptr<NarrowEngine> make_libccd_mpr();
+
+[[nodiscard]] std::unique_ptr<SceneEngine> make_bullet_scene();
+[[nodiscard]] std::unique_ptr<SceneEngine> make_fcl_scene();
+[[nodiscard]] std::unique_ptr<MeshEngine> make_fcl_mesh();
 
 }  // namespace winnow::bench

@@ -48,4 +48,23 @@ std::vector<std::unique_ptr<NarrowEngine>> make_narrow_peers() {
   return peers;
 }
 
+std::vector<std::unique_ptr<SceneEngine>> make_scene_peers() {
+  std::vector<std::unique_ptr<SceneEngine>> peers;
+#ifdef WINNOW_PEER_BULLET
+  peers.push_back(make_bullet_scene());
+#endif
+#ifdef WINNOW_PEER_FCL
+  peers.push_back(make_fcl_scene());
+#endif
+  return peers;
+}
+
+std::vector<std::unique_ptr<MeshEngine>> make_mesh_peers() {
+  std::vector<std::unique_ptr<MeshEngine>> peers;
+#ifdef WINNOW_PEER_FCL
+  peers.push_back(make_fcl_mesh());
+#endif
+  return peers;
+}
+
 }  // namespace winnow::bench

@@ -3,6 +3,7 @@
 #include "peers/engine.h"
 #include "peers/narrow_engine.h"
 #include "peers/query_engine.h"
+#include "peers/scene_engine.h"
 
 #include <memory>
 #include <vector>
@@ -18,5 +19,11 @@ namespace winnow::bench {
 
 /// The same of those that answer pairs of bodies. They use one thread.
 [[nodiscard]] std::vector<std::unique_ptr<NarrowEngine>> make_narrow_peers();
+
+/// The same of those that find the contacts of whole scenes. They use one thread.
+[[nodiscard]] std::vector<std::unique_ptr<SceneEngine>> make_scene_peers();
+
+/// The same of those that collide triangle meshes. They use one thread.
+[[nodiscard]] std::vector<std::unique_ptr<MeshEngine>> make_mesh_peers();
 
 }  // namespace winnow::bench

@@ -36,6 +36,8 @@ Command add_accuracy(CLI::App& app);
 Command add_goals(CLI::App& app);
 Command add_draw(CLI::App& app);
 Command add_query(CLI::App& app);
+Command add_pipeline(CLI::App& app);
+Command add_simulate(CLI::App& app);
 
 /// What the tool does if it is given no subcommand.
 int run_overview();

@@ -1,0 +1,155 @@
+#include "peers/adapters.h"
+#include "peers/narrow_adapter.h"
+
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
+#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
+
+#include <string>
+
+namespace winnow::bench {
+namespace {
+
+/// Of hulls, which are made smaller by as much: with it GJK alone answers shallow contacts, and the
+/// expanding polytope only deep ones. Also by how much boxes in the trees are larger.
+constexpr btScalar kMargin = 0.005F;
+
+btVector3 to_bullet(double x, double y, double z) {
+  return {static_cast<btScalar>(x), static_cast<btScalar>(y), static_cast<btScalar>(z)};
+}
+
+std::unique_ptr<btCollisionShape> make_shape(const ShapeTables& tables, ShapeId id) {
+  const std::uint32_t i = id.index();
+  switch (id.kind()) {
+    case ShapeKind::sphere:
+      return std::make_unique<btSphereShape>(static_cast<btScalar>(tables.spheres[i].radius));
+    case ShapeKind::capsule:
+      return std::make_unique<btCapsuleShapeZ>(
+          static_cast<btScalar>(tables.capsules[i].radius),
+          static_cast<btScalar>(2.0 * tables.capsules[i].half_length));
+    case ShapeKind::box: {
+      const double* half = tables.boxes[i].half;
+      return std::make_unique<btBoxShape>(to_bullet(half[0], half[1], half[2]));
+    }
+    default: {
+      const HullShape& from = tables.hulls[i];
+      auto hull = std::make_unique<btConvexHullShape>();
+      const double scale = 1.0 - static_cast<double>(kMargin) / from.inner_radius;
+      for (std::uint32_t v = 0; v < from.vertex_count; ++v) {
+        const auto toward = [&](int axis) {
+          return from.center[axis] + scale * (from.vertex[axis][v] - from.center[axis]);
+        };
+        hull->addPoint(to_bullet(toward(0), toward(1), toward(2)), false);
+      }
+      hull->recalcLocalAabb();
+      hull->setMargin(kMargin);
+      return hull;
+    }
+  }
+}
+
+/// Bullet 3 in float: a btCollisionWorld over btDbvtBroadphase with the algorithms and margins that
+/// it uses by default, meshes as btBvhTriangleMeshShape with quantised nodes. It keeps pairs and
+/// manifolds from frame to frame always.
+class BulletScene final : public SceneEngine {
+ public:
+  BulletScene()
+      : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
+    broadphase_.m_deferedcollide = true;
+  }
+  ~BulletScene() override {
+    for (btCollisionObject& object : objects_) world_.removeCollisionObject(&object);
+    if (has_terrain_) world_.removeCollisionObject(&terrain_);
+  }
+
+  [[nodiscard]] std::string name() const override { return "Bullet"; }
+  [[nodiscard]] bool carries_over() const override { return true; }
+
+  void start(const BodySet& set) override {
+    gDbvtMargin = kMargin;  // a global of Bullet; another engine may have changed it
+    objects_.resize(set.poses.size());
+    for (std::size_t i = 0; i < set.poses.size(); ++i) {
+      shapes_.push_back(make_shape(set.pool.tables(), set.shapes[i]));
+      objects_[i].setCollisionShape(shapes_.back().get());
+      objects_[i].setCollisionFlags(0);
+      objects_[i].setWorldTransform(transform_of(set.poses[i]));
+      world_.addCollisionObject(&objects_[i], btBroadphaseProxy::DefaultFilter,
+                                btBroadphaseProxy::AllFilter);
+    }
+    if (set.mesh.size() != 0) add_terrain(set.mesh);
+  }
+
+  void frame(std::span<const Pose> poses) override {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      objects_[i].setWorldTransform(transform_of(poses[i]));
+    }
+    world_.performDiscreteCollisionDetection();
+  }
+
+  [[nodiscard]] SceneFinds finds() const override {
+    SceneFinds finds;
+    for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
+      const btPersistentManifold& manifold = *dispatcher_.getManifoldByIndexInternal(i);
+      std::size_t points = 0;
+      for (int p = 0; p < manifold.getNumContacts(); ++p) {
+        points += manifold.getContactPoint(p).getDistance() <= 0 ? 1 : 0;
+      }
+      finds.touching += points > 0 ? 1 : 0;
+      finds.points += points;
+    }
+    return finds;
+  }
+
+ private:
+  static btTransform transform_of(const Pose& pose) {
+    const double* q = pose.orientation;
+    const btQuaternion turn(static_cast<btScalar>(q[1]), static_cast<btScalar>(q[2]),
+                            static_cast<btScalar>(q[3]), static_cast<btScalar>(q[0]));
+    return btTransform(turn, to_bullet(pose.position[0], pose.position[1], pose.position[2]));
+  }
+
+  void add_terrain(const Triangles& mesh) {
+    for (const Eigen::Vector3d& v : mesh.vertices) {
+      for (int axis = 0; axis < 3; ++axis) vertices_.push_back(static_cast<float>(v[axis]));
+    }
+    corners_.assign(mesh.corners.begin(), mesh.corners.end());
+    triangles_ = std::make_unique<btTriangleIndexVertexArray>(
+        static_cast<int>(mesh.size()), corners_.data(), static_cast<int>(3 * sizeof(int)),
+        static_cast<int>(mesh.vertices.size()), vertices_.data(),
+        static_cast<int>(3 * sizeof(float)));
+    shapes_.push_back(std::make_unique<btBvhTriangleMeshShape>(triangles_.get(), true));
+    terrain_.setCollisionShape(shapes_.back().get());
+    terrain_.setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
+    world_.addCollisionObject(&terrain_, btBroadphaseProxy::StaticFilter,
+                              btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter);
+    has_terrain_ = true;
+  }
+
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_;
+  btDbvtBroadphase broadphase_;
+  btCollisionWorld world_;
+  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+  std::vector<btCollisionObject> objects_;
+  std::vector<float> vertices_;
+  std::vector<int> corners_;
+  std::unique_ptr<btTriangleIndexVertexArray> triangles_;
+  btCollisionObject terrain_;
+  bool has_terrain_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<SceneEngine> make_bullet_scene() {
+  return std::make_unique<BulletScene>();
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,173 @@
+#include "peers/adapters.h"
+#include "peers/narrow_adapter.h"
+
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/convex.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/collision.h>
+
+#include <string>
+
+namespace winnow::bench {
+namespace {
+
+using Vector = fcl::Vector3<double>;
+using Transform = fcl::Transform3<double>;
+using Geometry = fcl::CollisionGeometry<double>;
+using Object = fcl::CollisionObject<double>;
+using Mesh = fcl::BVHModel<fcl::OBBRSS<double>>;
+
+/// No pair has more contacts.
+constexpr std::size_t kMostContacts = 100'000;
+
+std::shared_ptr<Geometry> make_geometry(const ShapeTables& tables, ShapeId id) {
+  const std::uint32_t i = id.index();
+  switch (id.kind()) {
+    case ShapeKind::sphere:
+      return std::make_shared<fcl::Sphere<double>>(tables.spheres[i].radius);
+    case ShapeKind::capsule:
+      return std::make_shared<fcl::Capsule<double>>(tables.capsules[i].radius,
+                                                    2.0 * tables.capsules[i].half_length);
+    case ShapeKind::box: {
+      const double* half = tables.boxes[i].half;
+      return std::make_shared<fcl::Box<double>>(2.0 * half[0], 2.0 * half[1], 2.0 * half[2]);
+    }
+    default: {
+      const HullShape& hull = tables.hulls[i];
+      auto vertices = std::make_shared<std::vector<Vector>>();
+      for (std::uint32_t v = 0; v < hull.vertex_count; ++v) {
+        vertices->emplace_back(hull.vertex[0][v], hull.vertex[1][v], hull.vertex[2][v]);
+      }
+      auto faces = std::make_shared<std::vector<int>>();
+      for (std::uint32_t f = 0; f < hull.face_count; ++f) {
+        faces->push_back(static_cast<int>(hull.faces[f].count));
+        for (std::uint32_t k = 0; k < hull.faces[f].count; ++k) {
+          faces->push_back(static_cast<int>(hull.loop[hull.faces[f].first + k]));
+        }
+      }
+      return std::make_shared<fcl::Convex<double>>(vertices, static_cast<int>(hull.face_count),
+                                                   faces);
+    }
+  }
+}
+
+Transform transform_of(const Pose& pose) {
+  Transform at = Transform::Identity();
+  at.linear() = orientation_of(pose).toRotationMatrix();
+  at.translation() = Vector(pose.position[0], pose.position[1], pose.position[2]);
+  return at;
+}
+
+std::shared_ptr<Mesh> make_model(const Triangles& triangles) {
+  auto model = std::make_shared<Mesh>();
+  std::vector<fcl::Triangle> corners;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const std::uint32_t* c = &triangles.corners[3 * i];
+    corners.emplace_back(c[0], c[1], c[2]);
+  }
+  model->beginModel(static_cast<int>(triangles.size()),
+                    static_cast<int>(triangles.vertices.size()));
+  model->addSubModel(std::vector<Vector>(triangles.vertices.begin(), triangles.vertices.end()),
+                     corners);
+  model->endModel();
+  return model;
+}
+
+/// FCL in double, the type its library is built for: its dynamic AABB tree, and collide() with all
+/// contacts; meshes with OBBRSS trees. It keeps nothing of a pair.
+class FclScene final : public SceneEngine {
+ public:
+  [[nodiscard]] std::string name() const override { return "FCL"; }
+  [[nodiscard]] bool carries_over() const override { return false; }
+
+  void start(const BodySet& set) override {
+    for (std::size_t i = 0; i < set.poses.size(); ++i) {
+      objects_.push_back(std::make_unique<Object>(make_geometry(set.pool.tables(), set.shapes[i]),
+                                                  transform_of(set.poses[i])));
+      moving_.registerObject(objects_.back().get());
+    }
+    moving_.setup();
+    if (set.mesh.size() == 0) return;
+    terrain_ = std::make_unique<Object>(make_model(set.mesh));
+    terrain_->computeAABB();
+  }
+
+  void frame(std::span<const Pose> poses) override {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      objects_[i]->setTransform(transform_of(poses[i]));
+      objects_[i]->computeAABB();
+    }
+    moving_.update();
+    finds_ = {};
+    moving_.collide(this, &FclScene::meet);
+    if (terrain_ != nullptr) moving_.collide(terrain_.get(), this, &FclScene::meet);
+  }
+
+  [[nodiscard]] SceneFinds finds() const override { return finds_; }
+
+ private:
+  static bool meet(Object* a, Object* b, void* data) {
+    auto& scene = *static_cast<FclScene*>(data);
+    const fcl::CollisionRequest<double> request(kMostContacts, true);
+    scene.result_.clear();
+    fcl::collide(a, b, request, scene.result_);
+    scene.finds_.touching += scene.result_.isCollision() ? 1 : 0;
+    scene.finds_.points += scene.result_.numContacts();
+    return false;
+  }
+
+  std::vector<std::unique_ptr<Object>> objects_;
+  std::unique_ptr<Object> terrain_;
+  fcl::DynamicAABBTreeCollisionManager<double> moving_;
+  fcl::CollisionResult<double> result_;
+  SceneFinds finds_;
+};
+
+class FclMesh final : public MeshEngine {
+ public:
+  [[nodiscard]] std::string name() const override { return "FCL OBBRSS"; }
+
+  void build(const Triangles& mesh) override { model_ = make_model(mesh); }
+
+  [[nodiscard]] std::size_t bytes() const override {
+    const auto count = [](int n) { return static_cast<std::size_t>(n); };
+    return count(model_->num_vertices) * sizeof(Vector) +
+           count(model_->num_tris) * (sizeof(fcl::Triangle) + sizeof(unsigned)) +
+           count(model_->getNumBVs()) * sizeof(fcl::BVNode<fcl::OBBRSS<double>>);
+  }
+
+  void collide(const Pose& a, const Pose& b) override {
+    const fcl::CollisionRequest<double> request(kMostContacts, true);
+    result_.clear();
+    fcl::collide(model_.get(), transform_of(a), model_.get(), transform_of(b), request, result_);
+  }
+
+  [[nodiscard]] TrianglePairs pairs() const override {
+    TrianglePairs pairs;
+    for (std::size_t i = 0; i < result_.numContacts(); ++i) {
+      const fcl::Contact<double>& contact = result_.getContact(i);
+      pairs.emplace_back(static_cast<std::uint32_t>(contact.b1),
+                         static_cast<std::uint32_t>(contact.b2));
+    }
+    return pairs;
+  }
+
+ private:
+  std::shared_ptr<Mesh> model_;
+  fcl::CollisionResult<double> result_;
+};
+
+}  // namespace
+
+std::unique_ptr<SceneEngine> make_fcl_scene() {
+  return std::make_unique<FclScene>();
+}
+
+std::unique_ptr<MeshEngine> make_fcl_mesh() {
+  return std::make_unique<FclMesh>();
+}
+
+}  // namespace winnow::bench

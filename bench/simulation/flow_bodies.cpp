@@ -1,0 +1,111 @@
+#include "simulation/flow_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow::bench {
+namespace {
+
+/// Bodies a task moves.
+constexpr std::size_t kChunk = 2048;
+
+using Turn = std::array<double, 4>;
+
+Vec turned(const Turn& q, const Vec& v) {
+  const Vec u{q[1], q[2], q[3]};
+  const Vec t = 2.0 * cross(u, v);
+  return v + q[0] * t + cross(u, t);
+}
+
+Vec turned_back(const Turn& q, const Vec& v) {
+  return turned({q[0], -q[1], -q[2], -q[3]}, v);
+}
+
+/// The orientation after spinning for a while; first order in time, of unit length.
+Turn spun(const Turn& q, const Vec& spin, double time) {
+  const double h = 0.5 * time;
+  const Vec u{q[1], q[2], q[3]};
+  const Vec v = u + (h * q[0]) * spin + h * cross(spin, u);
+  const double w = q[0] - h * dot(spin, u);
+  const double scale = 1.0 / std::sqrt(w * w + dot(v, v));
+  return {scale * w, scale * v[0], scale * v[1], scale * v[2]};
+}
+
+Vec spin_of(const Turn& q, const Vec& momentum, const Vec& inverse_inertia) {
+  Vec own = turned_back(q, momentum);
+  for (std::size_t axis = 0; axis < 3; ++axis) own[axis] *= inverse_inertia[axis];
+  return turned(q, own);
+}
+
+/// Adds the energy of body i before it moves.
+void move_body(FlowBodies& bodies, std::size_t i, double gravity, double step, FlowEnergy& energy) {
+  const double inverse_mass = bodies.inverse_mass[i];
+  if (inverse_mass == 0.0) return;
+  const double mass = 1.0 / inverse_mass;
+  const Vec before = at(bodies.velocity, i);
+  const Vec pull{0.0, 0.0, -gravity};
+  const Vec after = before + step * (inverse_mass * at(bodies.force, i) + pull);
+  const Vec mean = 0.5 * (before + after);
+  const Vec place = at(bodies.position, i);
+  energy.kinetic += 0.5 * mass * dot(mean, mean);
+  energy.potential += mass * gravity * place[2];
+  put(bodies.velocity, i, after);
+  put(bodies.position, i, place + step * after);
+
+  Turn q;
+  for (std::size_t k = 0; k < 4; ++k) q[k] = static_cast<double>(bodies.orientation[k][i]);
+  const Vec inverse_inertia = at(bodies.inverse_inertia, i);
+  const Vec turn = at(bodies.momentum, i);
+  const Vec twist = step * at(bodies.torque, i);
+  const Vec middle = turn + 0.5 * twist;
+  energy.kinetic += 0.5 * dot(middle, spin_of(q, middle, inverse_inertia));
+  const Vec turning = turn + twist;
+  // By the spin halfway: bodies of unequal moments would gain energy by turning otherwise.
+  const Turn half = spun(q, spin_of(q, turning, inverse_inertia), 0.5 * step);
+  q = spun(q, spin_of(half, turning, inverse_inertia), step);
+  put(bodies.momentum, i, turning);
+  put(bodies.spin, i, spin_of(q, turning, inverse_inertia));
+  for (std::size_t k = 0; k < 4; ++k) bodies.orientation[k][i] = static_cast<float>(q[k]);
+}
+
+}  // namespace
+
+FlowBodies::FlowBodies(std::size_t count, std::pmr::memory_resource* memory)
+    : position{Column(count, memory), Column(count, memory), Column(count, memory)},
+      velocity{Column(count, memory), Column(count, memory), Column(count, memory)},
+      orientation{std::pmr::vector<float>(count, 1.0F, memory),
+                  std::pmr::vector<float>(count, memory), std::pmr::vector<float>(count, memory),
+                  std::pmr::vector<float>(count, memory)},
+      momentum{Column(count, memory), Column(count, memory), Column(count, memory)},
+      spin{Column(count, memory), Column(count, memory), Column(count, memory)},
+      force{Column(count, memory), Column(count, memory), Column(count, memory)},
+      torque{Column(count, memory), Column(count, memory), Column(count, memory)},
+      inverse_mass(count, memory),
+      inverse_inertia{Column(count, memory), Column(count, memory), Column(count, memory)} {}
+
+PoseView FlowBodies::poses(std::size_t count) const noexcept {
+  return {
+      {position[0].data(), position[1].data(), position[2].data()},
+      {orientation[0].data(), orientation[1].data(), orientation[2].data(), orientation[3].data()},
+      count};
+}
+
+FlowEnergy integrate(FlowBodies& bodies, double gravity, double step, const Execution& execution,
+                     std::pmr::vector<FlowEnergy>& scratch) {
+  const std::size_t chunks = (bodies.size() + kChunk - 1) / kChunk;
+  scratch.assign(chunks, {});
+  execution.for_each(chunks, [&](std::size_t chunk) {
+    const std::size_t end = std::min(bodies.size(), (chunk + 1) * kChunk);
+    for (std::size_t i = chunk * kChunk; i < end; ++i) {
+      move_body(bodies, i, gravity, step, scratch[chunk]);
+    }
+  });
+  FlowEnergy sum;
+  for (const FlowEnergy& part : scratch) {
+    sum.kinetic += part.kinetic;
+    sum.potential += part.potential;
+  }
+  return sum;
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <winnow/core/execution.h>
+#include <winnow/core/pose.h>
+#include <winnow/core/pose_view.h>
+
+#include <array>
+#include <cstddef>
+#include <memory_resource>
+#include <vector>
+
+namespace winnow::bench {
+
+using Vec = std::array<double, 3>;
+
+[[nodiscard]] inline Vec operator+(const Vec& a, const Vec& b) noexcept {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+[[nodiscard]] inline Vec operator-(const Vec& a, const Vec& b) noexcept {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+[[nodiscard]] inline Vec operator*(double s, const Vec& a) noexcept {
+  return {s * a[0], s * a[1], s * a[2]};
+}
+[[nodiscard]] inline double dot(const Vec& a, const Vec& b) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+[[nodiscard]] inline Vec cross(const Vec& a, const Vec& b) noexcept {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// Rigid bodies as a simulation keeps them: columns, double but for orientations. A body of no
+/// inverse mass stands still.
+struct FlowBodies {
+  using Column = std::pmr::vector<double>;
+
+  explicit FlowBodies(std::size_t count, std::pmr::memory_resource* memory);
+
+  [[nodiscard]] std::size_t size() const noexcept { return inverse_mass.size(); }
+  [[nodiscard]] PoseView poses(std::size_t count) const noexcept;
+  [[nodiscard]] Pose pose(std::size_t i) const noexcept { return poses(size())[i]; }
+
+  Column position[3];
+  Column velocity[3];
+  std::pmr::vector<float> orientation[4];
+  Column momentum[3];  ///< angular, about the centre of mass
+  Column spin[3];      ///< angular velocity, which follows from momentum and orientation
+  Column force[3];
+  Column torque[3];
+  Column inverse_mass;
+  Column inverse_inertia[3];  ///< about the body's own axes
+};
+
+[[nodiscard]] inline Vec at(const FlowBodies::Column (&columns)[3], std::size_t i) noexcept {
+  return {columns[0][i], columns[1][i], columns[2][i]};
+}
+inline void put(FlowBodies::Column (&columns)[3], std::size_t i, const Vec& value) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis) columns[axis][i] = value[axis];
+}
+
+struct FlowEnergy {
+  double kinetic = 0.0;
+  double potential = 0.0;
+  double elastic = 0.0;
+
+  [[nodiscard]] double total() const noexcept { return kinetic + potential + elastic; }
+};
+
+/// One semi-implicit Euler step: velocities by forces and gravity (along -z), then poses by the new
+/// velocities. Gives kinetic and potential energy where the step began, with the mean of the
+/// velocities before and after, which is what the positions of that moment belong to (the method is
+/// the leapfrog scheme: Hairer, Lubich and Wanner, "Geometric Numerical Integration", I.1.4).
+/// The same bits on any number of threads.
+FlowEnergy integrate(FlowBodies& bodies, double gravity, double step, const Execution& execution,
+                     std::pmr::vector<FlowEnergy>& scratch);
+
+}  // namespace winnow::bench

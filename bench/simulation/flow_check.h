@@ -1,0 +1,34 @@
+#pragma once
+
+#include "simulation/granular_flow.h"
+
+#include <cstddef>
+
+namespace winnow::bench {
+
+/// How a flow's contacts differ from those found by asking every pair.
+struct FlowFaults {
+  std::size_t compared = 0;  ///< contacts: pairs of bodies, and of a body and a triangle
+  std::size_t lost = 0;
+  std::size_t invented = 0;
+  std::size_t doubled = 0;
+
+  [[nodiscard]] std::size_t total() const noexcept { return lost + invented + doubled; }
+  FlowFaults& operator+=(const FlowFaults& other) noexcept {
+    compared += other.compared;
+    lost += other.lost;
+    invented += other.invented;
+    doubled += other.doubled;
+    return *this;
+  }
+};
+
+/// Asks the narrow phase about every pair of bodies, and of a body and a triangle of the mesh,
+/// whose bounding spheres or boxes meet: no partition, tree or scene takes part. Of many bodies
+/// only every so many-th is looked at, against all others. The flow must keep contact poses.
+[[nodiscard]] FlowFaults check_contacts(const GranularFlow& flow, const Contacts& contacts);
+[[nodiscard]] inline FlowFaults check_contacts(const GranularFlow& flow) {
+  return check_contacts(flow, flow.contacts());
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "engine/sample.h"
+#include "simulation/granular_flow.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace winnow::bench {
+
+/// One step of a flow.
+struct FlowSample {
+  double time = 0.0;
+  FlowEnergy energy{};
+  double fed = 0.0;
+  double deepest = 0.0;
+  std::size_t contacts = 0;  ///< pairs of bodies
+  std::size_t points = 0;
+  FlowTimes times{};
+
+  /// Only gravity's work is in it, which changes nothing, and what contacts take away.
+  [[nodiscard]] double balance() const noexcept { return energy.total() - fed; }
+};
+
+/// The steps of a flow, one after another.
+class FlowHistory {
+ public:
+  /// Notes the step that the flow has just made.
+  void add(const GranularFlow& flow) {
+    samples_.push_back({flow.time(), flow.energy(), flow.fed(), flow.deepest(),
+                        flow.contacts().size(), flow.contacts().points(), flow.times()});
+  }
+
+  [[nodiscard]] const std::vector<FlowSample>& samples() const noexcept { return samples_; }
+
+  /// The most that the balance ever rose above what it had been before, as a share of the greatest
+  /// kinetic energy: energy that contacts have created, or an error of the integration.
+  [[nodiscard]] double greatest_rise() const {
+    double least = samples_.empty() ? 0.0 : samples_.front().balance();
+    double rise = 0.0;
+    double kinetic = 0.0;
+    for (const FlowSample& sample : samples_) {
+      least = std::min(least, sample.balance());
+      rise = std::max(rise, sample.balance() - least);
+      kinetic = std::max(kinetic, sample.energy.kinetic);
+    }
+    return kinetic > 0.0 ? rise / kinetic : rise;
+  }
+
+  [[nodiscard]] double deepest() const {
+    double most = 0.0;
+    for (const FlowSample& sample : samples_) most = std::max(most, sample.deepest);
+    return most;
+  }
+
+  /// The median of one member of the times of a step, from step `first` on.
+  [[nodiscard]] double median_ms(double FlowTimes::*phase, std::size_t first = 0) const {
+    std::vector<double> ms;
+    for (std::size_t i = first; i < samples_.size(); ++i) {
+      if (samples_[i].times.profiled) ms.push_back(samples_[i].times.*phase);
+    }
+    return median_of(ms);
+  }
+
+ private:
+  std::vector<FlowSample> samples_;
+};
+
+}  // namespace winnow::bench

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "simulation/granular_flow.h"
+
+#include <winnow/core/pair_buffer.h>
+#include <winnow/partitions/partition.h>
+#include <winnow/pipeline/narrow_phase.h>
+
+#include <memory>
+#include <vector>
+
+namespace winnow::bench {
+
+/// The phases of a flow's frame, each by itself: a partition that is given the same boxes, a mid
+/// phase and a narrow phase that are given the same pairs, with nothing between them.
+class FlowPhases {
+ public:
+  /// The flow must keep contact poses.
+  FlowPhases(const GranularFlow& flow, const Execution& execution);
+
+  /// Milliseconds for the poses of the flow's last step.
+  FlowTimes run();
+
+ private:
+  void find_pairs();
+
+  const GranularFlow& flow_;
+  Execution execution_;
+  std::unique_ptr<Partition> bodies_;
+  std::unique_ptr<Partition> mesh_;
+  std::vector<Key> keys_;
+  std::vector<Aabb> boxes_;
+  PairBuffer own_;
+  PairBuffer with_mesh_;
+  std::vector<ShapeId> shapes_;
+  std::vector<Pose> poses_;
+  std::vector<BodyPair> pairs_;
+  std::vector<BodyPair> mesh_pairs_;
+  PrimitivePairs primitives_;
+  NarrowPhase narrow_;
+  NarrowResult convex_;
+  NarrowResult parts_;
+};
+
+}  // namespace winnow::bench

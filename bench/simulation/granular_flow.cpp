@@ -1,0 +1,284 @@
+#include "simulation/granular_flow.h"
+
+#include "scenes/exact_math.h"
+#include "scenes/random.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace winnow::bench {
+namespace {
+
+/// Shapes of each kind; bodies share them.
+constexpr std::size_t kSizes = 16;
+constexpr double kLargestRadius = 0.6;
+constexpr double kLargestHalf = 0.42;
+constexpr double kDensity = 1.0;
+/// Bodies that are put down leave this much room between each other.
+constexpr double kRoom = 1.03;
+/// Bodies fall on for so long after they left the funnel.
+constexpr double kFall = 4.0;
+
+void need(Status status, const char* what) {
+  if (status != Status::ok) {
+    throw std::invalid_argument(std::string(what) + ": " + to_string(status));
+  }
+}
+
+/// The mass of a shape and its moments of inertia about its own axes.
+struct Inertia {
+  double mass;
+  Vec moment;
+};
+
+Inertia inertia_of(const ShapeTables& tables, ShapeId id) {
+  if (id.kind() == ShapeKind::sphere) {
+    const double r = tables.spheres[id.index()].radius;
+    const double mass = kDensity * 4.18879020478639 * r * r * r;
+    const double moment = 0.4 * mass * r * r;
+    return {mass, {moment, moment, moment}};
+  }
+  const double* h = tables.boxes[id.index()].half;
+  const double mass = kDensity * 8.0 * h[0] * h[1] * h[2];
+  const auto about = [&](double u, double v) { return mass / 3.0 * (u * u + v * v); };
+  return {mass, {about(h[1], h[2]), about(h[0], h[2]), about(h[0], h[1])}};
+}
+
+FunnelSize funnel_for(std::size_t objects) {
+  const double across = cube_root(static_cast<double>(objects));
+  FunnelSize size;
+  size.radius = 3.0 + 0.7 * across;
+  size.outlet = 2.0 + 0.15 * across;
+  size.depth = size.radius;
+  size.wall = 4.0 + 0.7 * across;
+  return size;
+}
+
+}  // namespace
+
+GranularFlow::GranularFlow(const FlowOptions& options)
+    : options_(options),
+      objects_(options.objects),
+      shapes_(options.memory),
+      composites_(shapes_, options.memory),
+      mid_phase_(composites_),
+      scene_(shapes_,
+             {.memory = options.memory, .execution = options.execution, .composites = &mid_phase_}),
+      contacts_(options.memory),
+      found_pairs_(options.memory),
+      funnel_(funnel_for(options.objects)),
+      bodies_(options.objects + 1, options.memory),
+      shape_of_(options.memory),
+      keys_(options.memory),
+      spots_(options.memory),
+      spot_of_(options.objects, options.memory),
+      pair_forces_(options.memory),
+      energy_parts_(options.memory),
+      then_(options.memory) {
+  place_mesh();
+  make_shapes();
+  make_spots();
+  fill();
+  add_to_scene();
+}
+
+void GranularFlow::place_mesh() {
+  mesh_ = std::move(options_.mesh);
+  if (mesh_.vertices.empty()) {
+    mesh_ = make_funnel(funnel_);
+  } else {
+    Eigen::Vector3d low = mesh_.vertices.front();
+    Eigen::Vector3d high = low;
+    for (const Eigen::Vector3d& v : mesh_.vertices) {
+      low = low.cwiseMin(v);
+      high = high.cwiseMax(v);
+    }
+    const double across = (high - low).head<2>().maxCoeff();
+    const double scale = across > 0.0 ? 2.0 * funnel_.radius / across : 1.0;
+    const Eigen::Vector3d top(0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), high.z());
+    for (Eigen::Vector3d& v : mesh_.vertices) {
+      v = (scale * (v - top)).cast<float>().cast<double>();
+    }
+    // Bodies start above what nothing is known of.
+    funnel_.outlet = funnel_.radius;
+    funnel_.depth = 0.0;
+  }
+  need(composites_.add_mesh(std::span<const Eigen::Vector3d>(mesh_.vertices),
+                            std::span<const std::uint32_t>(mesh_.corners), mesh_shape_, {},
+                            options_.execution),
+       "the mesh");
+  floor_ = mesh_.vertices.front().z();
+  for (const Eigen::Vector3d& v : mesh_.vertices) floor_ = std::min(floor_, v.z());
+  floor_ -= kFall;
+}
+
+void GranularFlow::make_shapes() {
+  Random random(options_.seed);
+  ShapeId spheres[kSizes];
+  ShapeId boxes[kSizes];
+  for (std::size_t i = 0; i < kSizes; ++i) {
+    need(shapes_.add(SphereShape{random.in(0.4, kLargestRadius)}, spheres[i]), "a sphere");
+    const BoxShape box{
+        {random.in(0.3, kLargestHalf), random.in(0.3, kLargestHalf), random.in(0.3, kLargestHalf)}};
+    need(shapes_.add(box, boxes[i]), "a box");
+  }
+  shape_of_.reserve(objects_);
+  for (std::size_t i = 0; i < objects_; ++i) {
+    const bool is_box = options_.shape == FlowShape::boxes ||
+                        (options_.shape == FlowShape::mixed && random.below(2) == 1);
+    shape_of_.push_back((is_box ? boxes : spheres)[random.below(kSizes)]);
+    const Inertia inertia = inertia_of(shapes_.tables(), shape_of_.back());
+    bodies_.inverse_mass[i] = 1.0 / inertia.mass;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      bodies_.inverse_inertia[axis][i] = 1.0 / inertia.moment[axis];
+      bodies_.velocity[axis][i] = random.in(-options_.stir, options_.stir);
+    }
+  }
+  const bool round = options_.shape == FlowShape::spheres;
+  spacing_ = 2.0 * kRoom * (round ? kLargestRadius : std::sqrt(3.0) * kLargestHalf);
+}
+
+void GranularFlow::make_spots() {
+  const double most = funnel_.radius - spacing_;
+  const int reach = static_cast<int>(most / spacing_);
+  for (int y = -reach; y <= reach; ++y) {
+    for (int x = -reach; x <= reach; ++x) {
+      const Spot spot{spacing_ * x, spacing_ * y, objects_};
+      if (std::hypot(spot.x, spot.y) <= most) spots_.push_back(spot);
+    }
+  }
+}
+
+/// Layer by layer from the outlet up, where the cone has room.
+void GranularFlow::fill() {
+  double z = -funnel_.depth + spacing_;
+  for (std::size_t i = 0; i < objects_; z += spacing_) {
+    const double height = std::min(1.0, 1.0 + z / std::max(funnel_.depth, 1e-9));
+    const double inside = std::lerp(funnel_.outlet, funnel_.radius, height) - spacing_;
+    for (std::size_t s = 0; s < spots_.size() && i < objects_; ++s) {
+      if (std::hypot(spots_[s].x, spots_[s].y) > inside) continue;
+      put(bodies_.position, i, {spots_[s].x, spots_[s].y, z});
+      spots_[s].last = i;
+      spot_of_[i++] = s;
+    }
+  }
+  refill_ = z;
+  const double most = static_cast<double>(objects_) / static_cast<double>(spots_.size());
+  const double top = refill_ + spacing_ * (most + 2.0);
+  const double side = 4.0 * funnel_.radius;
+  world_ = Aabb::outward({-side, -side, floor_ - funnel_.radius}, {side, side, top});
+}
+
+void GranularFlow::add_to_scene() {
+  std::vector<BodyDefinition> definitions(objects_ + 1);
+  for (std::size_t i = 0; i < objects_; ++i) {
+    definitions[i].shape = shape_of_[i];
+    definitions[i].pose = bodies_.pose(i);
+    definitions[i].data = i;
+  }
+  definitions[objects_].shape = mesh_shape_;
+  definitions[objects_].motion = Motion::fixed;
+  definitions[objects_].data = objects_;
+  keys_.resize(objects_ + 1);
+  need(scene_.add(definitions, keys_), "the bodies");
+}
+
+void GranularFlow::find_contacts(bool profiled) {
+  if (keeps_poses_) {
+    then_.resize(bodies_.size());
+    for (std::size_t i = 0; i < bodies_.size(); ++i) then_[i] = bodies_.pose(i);
+  }
+  if (profiled) {
+    const Stopwatch refreshing;
+    need(scene_.refresh(), "boxes");
+    times_.broad = refreshing.ms();
+    const Stopwatch searching;
+    need(scene_.collide(SceneLevel::pairs, found_pairs_), "pairs");
+    times_.broad += searching.ms();
+    // The scene has the pairs by now, and finds them at hardly any cost again.
+    const Stopwatch colliding;
+    need(scene_.collide(SceneLevel::manifold, contacts_), "contacts");
+    times_.mid = mid_phase_.take_ms();
+    times_.narrow = colliding.ms() - times_.mid;
+    return;
+  }
+  const Stopwatch colliding;
+  need(scene_.collide(SceneLevel::manifold, contacts_), "contacts");
+  times_.narrow = colliding.ms();
+  mid_phase_.take_ms();
+}
+
+void GranularFlow::step(bool profiled) {
+  times_ = {};
+  times_.profiled = profiled;
+  find_contacts(profiled);
+
+  const Stopwatch solving;
+  const ContactSums sums =
+      apply_contacts(contacts_, options_.law, bodies_, options_.execution, pair_forces_);
+  energy_ = integrate(bodies_, options_.gravity, options_.step, options_.execution, energy_parts_);
+  energy_.elastic = sums.elastic;
+  deepest_ = sums.deepest;
+  fed_then_ = fed_;
+  for (std::size_t i = 0; i < objects_; ++i) {
+    const bool is_aside = std::abs(bodies_.position[0][i]) > 3.0 * funnel_.radius ||
+                          std::abs(bodies_.position[1][i]) > 3.0 * funnel_.radius;
+    if (bodies_.position[2][i] < floor_ || is_aside) put_back(i);
+  }
+  times_.solver = solving.ms();
+
+  const Stopwatch moving;
+  need(scene_.move(std::span(keys_).first(objects_), bodies_.poses(objects_)), "poses");
+  times_.move = moving.ms();
+  ++steps_;
+}
+
+double GranularFlow::energy_of(std::size_t i) const noexcept {
+  const double mass = 1.0 / bodies_.inverse_mass[i];
+  // As `integrate` will see it when half of the next step's pull is added.
+  Vec velocity = at(bodies_.velocity, i);
+  velocity[2] -= 0.5 * options_.gravity * options_.step;
+  return 0.5 * mass * dot(velocity, velocity) +
+         0.5 * dot(at(bodies_.spin, i), at(bodies_.momentum, i)) +
+         mass * options_.gravity * bodies_.position[2][i];
+}
+
+void GranularFlow::put_back(std::size_t i) {
+  const double before = energy_of(i);
+  const std::size_t s = next_spot_++ % spots_.size();
+  Spot& spot = spots_[s];
+  double z = refill_;
+  // On top of the one that was put there before, if that has not fallen far yet.
+  if (spot.last < objects_ && spot.last != i && spot_of_[spot.last] == s) {
+    z = std::max(z, bodies_.position[2][spot.last] + spacing_);
+  }
+  put(bodies_.position, i, {spot.x, spot.y, z});
+  for (auto* columns : {&bodies_.velocity, &bodies_.momentum, &bodies_.spin}) {
+    put(*columns, i, {});
+  }
+  spot.last = i;
+  spot_of_[i] = s;
+  fed_ += energy_of(i) - before;
+  ++returned_;
+}
+
+std::uint64_t GranularFlow::fingerprint() const noexcept {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < objects_; ++i) {
+    std::uint64_t body = i;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      body = mix(body ^ std::bit_cast<std::uint64_t>(bodies_.position[axis][i]));
+      body = mix(body ^ std::bit_cast<std::uint64_t>(bodies_.velocity[axis][i]));
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      body = mix(body ^ std::bit_cast<std::uint32_t>(bodies_.orientation[k][i]));
+    }
+    sum += body;
+  }
+  return sum;
+}
+
+}  // namespace winnow::bench

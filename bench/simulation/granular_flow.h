@@ -1,0 +1,149 @@
+#pragma once
+
+#include "simulation/flow_bodies.h"
+#include "simulation/meshes.h"
+#include "simulation/soft_contacts.h"
+#include "simulation/timed_mid_phase.h"
+
+#include <winnow/core/aabb.h>
+#include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/scene.h>
+#include <winnow/pipeline/shape_pool.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <vector>
+
+namespace winnow::bench {
+
+enum class FlowShape : std::uint8_t { spheres, boxes, mixed };
+
+struct FlowOptions {
+  std::size_t objects = 10'000;
+  FlowShape shape = FlowShape::mixed;
+  std::uint64_t seed = 1;
+  /// What the bodies fall into; a funnel that suits their number if it is empty. It is moved and
+  /// scaled to the funnel's place and width.
+  Triangles mesh{};
+  double step = 1e-3;
+  double gravity = 10.0;
+  /// Largest speed along an axis with which bodies start, in random directions.
+  double stir = 0.5;
+  SoftContacts law{};
+  Execution execution = Execution::parallel();
+  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+};
+
+/// Milliseconds of one step.
+struct FlowTimes {
+  double move = 0.0;    ///< handing over poses
+  double broad = 0.0;   ///< boxes, partitions, pairs of bodies
+  double mid = 0.0;     ///< pairs of triangles
+  double narrow = 0.0;  ///< contacts; all phases together if the step was not profiled
+  double solver = 0.0;  ///< forces and motion
+  bool profiled = false;
+
+  [[nodiscard]] double total() const noexcept { return move + broad + mid + narrow + solver; }
+};
+
+/// Granular flow, written as a simulation that embeds winnow: spheres and boxes of about unit size
+/// fall into a funnel, and those that left it are put back above, at rest. Soft contacts,
+/// semi-implicit steps. The bits of every body are the same on any number of threads and any
+/// instruction set.
+class GranularFlow {
+ public:
+  /// Throws std::invalid_argument for a mesh that winnow refuses.
+  explicit GranularFlow(const FlowOptions& options);
+
+  /// Pairs are asked for by themselves in a profiled step, to tell the phases apart.
+  void step(bool profiled = false);
+
+  [[nodiscard]] std::size_t objects() const noexcept { return objects_; }
+  [[nodiscard]] std::size_t steps() const noexcept { return steps_; }
+  [[nodiscard]] std::size_t returned() const noexcept { return returned_; }
+  [[nodiscard]] double time() const noexcept { return options_.step * static_cast<double>(steps_); }
+
+  // Of the last step, where it began.
+  [[nodiscard]] const FlowEnergy& energy() const noexcept { return energy_; }
+  /// What putting bodies back has added to the energy so far: without it the total never grows.
+  [[nodiscard]] double fed() const noexcept { return fed_then_; }
+  [[nodiscard]] double deepest() const noexcept { return deepest_; }
+  [[nodiscard]] const FlowTimes& times() const noexcept { return times_; }
+  /// Valid until the next step. Client data are rows; row objects() is the mesh.
+  [[nodiscard]] const Contacts& contacts() const noexcept { return contacts_; }
+  /// Poses with which they were found.
+  [[nodiscard]] const std::pmr::vector<Pose>& contact_poses() const noexcept { return then_; }
+  /// Keeps those poses from the next step on; costs time.
+  void keep_contact_poses() noexcept { keeps_poses_ = true; }
+
+  [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
+  [[nodiscard]] const CompositePool& composites() const noexcept { return composites_; }
+  [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
+  [[nodiscard]] ShapeId shape(std::size_t i) const noexcept { return shape_of_[i]; }
+  [[nodiscard]] Pose pose(std::size_t i) const noexcept { return bodies_.pose(i); }
+  [[nodiscard]] const Triangles& mesh() const noexcept { return mesh_; }
+  [[nodiscard]] ShapeId mesh_shape() const noexcept { return mesh_shape_; }
+  [[nodiscard]] Aabb box(std::size_t i) const noexcept {
+    return shapes_.bounds(shape_of_[i], pose(i));
+  }
+  /// Contains every body at any time.
+  [[nodiscard]] Aabb world() const noexcept { return world_; }
+
+  /// Of positions, velocities and orientations, bit by bit.
+  [[nodiscard]] std::uint64_t fingerprint() const noexcept;
+
+ private:
+  struct Spot {
+    double x;
+    double y;
+    std::size_t last;  ///< the body put there last
+  };
+
+  void place_mesh();
+  void make_shapes();
+  void make_spots();
+  void fill();
+  void add_to_scene();
+  void find_contacts(bool profiled);
+  void put_back(std::size_t i);
+  [[nodiscard]] double energy_of(std::size_t i) const noexcept;
+
+  FlowOptions options_;
+  std::size_t objects_;
+  ShapePool shapes_;
+  CompositePool composites_;
+  TimedMidPhase mid_phase_;
+  Scene scene_;
+  Contacts contacts_;
+  Contacts found_pairs_;
+  Triangles mesh_;
+  ShapeId mesh_shape_;
+  FunnelSize funnel_;
+  double spacing_ = 0.0;
+  double floor_ = 0.0;
+  double refill_ = 0.0;  ///< height at which bodies are put back
+  Aabb world_;
+
+  FlowBodies bodies_;
+  std::pmr::vector<ShapeId> shape_of_;
+  std::pmr::vector<Key> keys_;
+  std::pmr::vector<Spot> spots_;
+  std::pmr::vector<std::size_t> spot_of_;
+  std::size_t next_spot_ = 0;
+  std::pmr::vector<PairForce> pair_forces_;
+  std::pmr::vector<FlowEnergy> energy_parts_;
+  std::pmr::vector<Pose> then_;
+  bool keeps_poses_ = false;
+
+  std::size_t steps_ = 0;
+  std::size_t returned_ = 0;
+  FlowEnergy energy_;
+  double fed_ = 0.0;
+  double fed_then_ = 0.0;
+  double deepest_ = 0.0;
+  FlowTimes times_;
+};
+
+}  // namespace winnow::bench

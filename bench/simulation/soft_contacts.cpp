@@ -1,0 +1,103 @@
+#include "simulation/soft_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow::bench {
+namespace {
+
+/// Pairs a task answers.
+constexpr std::size_t kChunk = 1024;
+/// Friction of slow sliding is viscous, with this share of the spring's damping: more would
+/// overshoot where a light body touches many others.
+constexpr double kCreep = 0.25;
+
+/// Two bodies in contact, and the spring of their reduced mass.
+struct Touch {
+  Touch(const FlowBodies& bodies, std::size_t row_a, std::size_t row_b, const SoftContacts& law)
+      : a(row_a), b(row_b), between(at(bodies.position, row_b) - at(bodies.position, row_a)) {
+    const double mass = 1.0 / (bodies.inverse_mass[a] + bodies.inverse_mass[b]);
+    stiffness = mass * law.frequency * law.frequency;
+    damping = 2.0 * law.damping * mass * law.frequency;
+  }
+
+  std::size_t a;
+  std::size_t b;
+  Vec between;
+  double stiffness = 0.0;
+  double damping = 0.0;
+};
+
+/// Adds the force of one of several points, which share the spring.
+void add_point(const FlowBodies& bodies, const Touch& touch, const SoftContacts& law,
+               const ContactPoint& point, const Vec& normal, double share, PairForce& sum) {
+  const auto depth = static_cast<double>(point.depth);
+  if (depth <= 0.0) return;
+  const Vec arm_a{static_cast<double>(point.position[0]), static_cast<double>(point.position[1]),
+                  static_cast<double>(point.position[2])};
+  const Vec arm_b = arm_a - touch.between;
+  const Vec velocity = at(bodies.velocity, touch.b) + cross(at(bodies.spin, touch.b), arm_b) -
+                       at(bodies.velocity, touch.a) - cross(at(bodies.spin, touch.a), arm_a);
+  const double parting = dot(velocity, normal);
+  const double damping = share * touch.damping;
+  const double push = std::max(0.0, share * touch.stiffness * depth - damping * parting);
+  const Vec sliding = velocity - parting * normal;
+  const double speed = std::sqrt(dot(sliding, sliding));
+  const double drag = std::min(kCreep * damping, speed > 0.0 ? law.friction * push / speed : 0.0);
+  const Vec force = push * normal - drag * sliding;
+  sum.force = sum.force + force;
+  sum.torque_a = sum.torque_a - cross(arm_a, force);
+  sum.torque_b = sum.torque_b + cross(arm_b, force);
+  sum.elastic += 0.5 * share * touch.stiffness * depth * depth;
+  sum.deepest = std::max(sum.deepest, depth);
+}
+
+PairForce force_of(const Contacts& contacts, std::size_t pair, const SoftContacts& law,
+                   const FlowBodies& bodies) {
+  PairForce sum;
+  const Touch touch(bodies, contacts.data_a()[pair], contacts.data_b()[pair], law);
+  const auto manifold_first = contacts.manifold_first();
+  const auto point_first = contacts.point_first();
+  for (std::uint32_t m = manifold_first[pair]; m < manifold_first[pair + 1]; ++m) {
+    const Vec normal{contacts.normal(0)[m], contacts.normal(1)[m], contacts.normal(2)[m]};
+    const std::uint32_t count = point_first[m + 1] - point_first[m];
+    for (std::uint32_t p = point_first[m]; p < point_first[m + 1]; ++p) {
+      add_point(bodies, touch, law, contacts.contact(p), normal, 1.0 / count, sum);
+    }
+  }
+  return sum;
+}
+
+void add(FlowBodies::Column (&columns)[3], std::size_t i, const Vec& value) {
+  for (std::size_t axis = 0; axis < 3; ++axis) columns[axis][i] += value[axis];
+}
+
+}  // namespace
+
+ContactSums apply_contacts(const Contacts& contacts, const SoftContacts& law, FlowBodies& bodies,
+                           const Execution& execution, std::pmr::vector<PairForce>& scratch) {
+  scratch.resize(contacts.size());
+  execution.for_each((contacts.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+    const std::size_t end = std::min(contacts.size(), (chunk + 1) * kChunk);
+    for (std::size_t i = chunk * kChunk; i < end; ++i) {
+      scratch[i] = force_of(contacts, i, law, bodies);
+    }
+  });
+  for (auto* columns : {&bodies.force, &bodies.torque}) {
+    for (FlowBodies::Column& column : *columns) std::fill(column.begin(), column.end(), 0.0);
+  }
+  ContactSums sums;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const std::size_t a = contacts.data_a()[i];
+    const std::size_t b = contacts.data_b()[i];
+    add(bodies.force, a, -1.0 * scratch[i].force);
+    add(bodies.force, b, scratch[i].force);
+    add(bodies.torque, a, scratch[i].torque_a);
+    add(bodies.torque, b, scratch[i].torque_b);
+    sums.elastic += scratch[i].elastic;
+    sums.deepest = std::max(sums.deepest, scratch[i].deepest);
+  }
+  return sums;
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "engine/sample.h"
+
+#include <winnow/pipeline/mid_phase.h>
+
+namespace winnow::bench {
+
+/// Passes everything on to another mid phase and knows how long that took.
+class TimedMidPhase final : public MidPhase {
+ public:
+  explicit TimedMidPhase(const MidPhase& inner) noexcept : inner_(inner) {}
+
+  /// Milliseconds since this was last asked.
+  double take_ms() noexcept {
+    const double ms = ms_;
+    ms_ = 0.0;
+    return ms;
+  }
+
+  [[nodiscard]] bool contains(ShapeId id) const noexcept override { return inner_.contains(id); }
+  [[nodiscard]] Aabb bounds(ShapeId id, const Pose& pose) const noexcept override {
+    return inner_.bounds(id, pose);
+  }
+  [[nodiscard]] double radius(ShapeId id) const noexcept override { return inner_.radius(id); }
+  [[nodiscard]] std::uint64_t revision() const noexcept override { return inner_.revision(); }
+  Status expand(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
+                double margin, const Execution& execution, PrimitivePairs& out) const override {
+    const Stopwatch clock;
+    const Status status = inner_.expand(shapes, bodies, pairs, margin, execution, out);
+    ms_ += clock.ms();
+    return status;
+  }
+  void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
+              NarrowResult& result) const override {
+    const Stopwatch clock;
+    inner_.smooth(shapes, pairs, execution, result);
+    ms_ += clock.ms();
+  }
+  void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
+             const PrimitiveVisitor& visitor) const override {
+    inner_.visit(id, pose, sweep, visitor);
+  }
+  void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
+                  const PrimitiveVisitor& visitor) const override {
+    inner_.visit_near(id, pose, from, limit, visitor);
+  }
+  [[nodiscard]] Footprint footprint() const noexcept override { return inner_.footprint(); }
+
+ private:
+  const MidPhase& inner_;
+  mutable double ms_ = 0.0;
+};
+
+}  // namespace winnow::bench

@@ -1,0 +1,207 @@
+// The granular flow: the same bits however it is computed, no contact lost, no energy from nowhere,
+// no allocation once it is warm. And mesh files: what is written is what is read.
+
+#include "engine/counting_resource.h"
+#include "pipeline/scene_race.h"
+#include "simulation/flow_check.h"
+#include "simulation/flow_history.h"
+#include "simulation/flow_page.h"
+#include "simulation/mesh_files.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "../support/config.h"
+
+namespace winnow::bench {
+namespace {
+
+FlowOptions small_flow(FlowShape shape = FlowShape::mixed) {
+  FlowOptions options;
+  options.objects = 300;
+  options.shape = shape;
+  // Bodies meet soon.
+  options.stir = 3.0;
+  options.step = 2e-3;
+  options.law.frequency = 125.0;
+  options.execution = Execution::serial();
+  return options;
+}
+
+std::uint64_t fingerprint_after(std::size_t steps, const FlowOptions& options) {
+  GranularFlow flow(options);
+  for (std::size_t i = 0; i < steps; ++i) flow.step();
+  return flow.fingerprint();
+}
+
+TEST(GranularFlow, is_the_same_on_any_instruction_set_and_number_of_threads) {
+  constexpr std::size_t kSteps = 250;
+  std::uint64_t expected = 0;
+  {
+    const test::IsaScope scope(available_isas().front());
+    expected = fingerprint_after(kSteps, small_flow());
+  }
+  for (const Isa isa : available_isas()) {
+    const test::IsaScope scope(isa);
+    test::Threads threads(2);
+    FlowOptions options = small_flow();
+    options.execution = Execution::parallel();
+    EXPECT_EQ(threads.run([&] { return fingerprint_after(kSteps, options); }), expected)
+        << to_string(isa);
+    if (isa == available_isas().front()) continue;
+    EXPECT_EQ(fingerprint_after(kSteps, small_flow()), expected) << to_string(isa);
+  }
+}
+
+TEST(GranularFlow, profiling_changes_nothing) {
+  GranularFlow plain(small_flow());
+  GranularFlow profiled(small_flow());
+  for (std::size_t i = 0; i < 100; ++i) {
+    plain.step();
+    profiled.step(i % 3 == 0);
+  }
+  EXPECT_EQ(plain.fingerprint(), profiled.fingerprint());
+}
+
+TEST(GranularFlow, loses_invents_and_doubles_no_contact) {
+  for (const FlowShape shape : {FlowShape::spheres, FlowShape::boxes}) {
+    GranularFlow flow(small_flow(shape));
+    flow.keep_contact_poses();
+    FlowFaults faults;
+    for (std::size_t i = 0; i < 500; ++i) {
+      flow.step();
+      if (i % 20 == 0) faults += check_contacts(flow);
+    }
+    EXPECT_GT(faults.compared, 500U);
+    EXPECT_EQ(faults.lost, 0U);
+    EXPECT_EQ(faults.invented, 0U);
+    EXPECT_EQ(faults.doubled, 0U);
+  }
+}
+
+TEST(GranularFlow, contacts_create_no_energy) {
+  for (const FlowShape shape : {FlowShape::spheres, FlowShape::boxes}) {
+    GranularFlow flow(small_flow(shape));
+    FlowHistory history;
+    for (std::size_t i = 0; i < 800; ++i) {
+      flow.step();
+      history.add(flow);
+    }
+    EXPECT_LT(history.greatest_rise(), 1e-3);
+    const double lost = history.samples().front().balance() - history.samples().back().balance();
+    EXPECT_GT(lost, 0.0);
+    EXPECT_GT(flow.returned(), 0U);
+    EXPECT_LT(history.deepest(), 0.3);
+  }
+}
+
+TEST(GranularFlow, allocates_nothing_once_it_is_warm) {
+  CountingResource memory;
+  FlowOptions options = small_flow();
+  options.memory = &memory;
+  GranularFlow flow(options);
+  for (std::size_t i = 0; i < 1500; ++i) flow.step();
+  const std::size_t before = memory.allocations();
+  for (std::size_t i = 0; i < 300; ++i) flow.step();
+  EXPECT_EQ(memory.allocations(), before);
+}
+
+TEST(GranularFlow, falls_into_a_mesh_of_the_callers) {
+  FlowOptions options = small_flow();
+  options.mesh = make_terrain(make_hills(8, 1.0, 1.0, 3));
+  GranularFlow flow(options);
+  double low = 0.0;
+  for (const Eigen::Vector3d& v : flow.mesh().vertices) low = std::min(low, v.z());
+  std::size_t contacts = 0;
+  for (std::size_t i = 0; i < 400; ++i) {
+    flow.step();
+    for (const ContactRun& run : flow.contacts().runs()) {
+      contacts += run.kind_b == static_cast<std::uint8_t>(CompositeKind::mesh) ? run.count : 0;
+    }
+  }
+  EXPECT_GT(contacts, 100U);
+  EXPECT_LT(low, 0.0);
+}
+
+TEST(GranularFlow, its_page_needs_no_network) {
+  GranularFlow flow(small_flow());
+  FlowHistory history;
+  for (std::size_t i = 0; i < 5; ++i) {
+    flow.step(i == 0);
+    history.add(flow);
+  }
+  const std::string page = flow_page(history, {{"mesh", "<script>"}});
+  EXPECT_NE(page.find("<polyline"), std::string::npos);
+  EXPECT_EQ(page.find("<script>"), std::string::npos);
+  EXPECT_EQ(page.find("http"), std::string::npos);
+}
+
+TEST(GranularFlow, the_check_misses_what_was_not_reported) {
+  GranularFlow flow(small_flow());
+  flow.keep_contact_poses();
+  for (std::size_t i = 0; i < 300; ++i) flow.step();
+  const FlowFaults faults = check_contacts(flow, Contacts());
+  EXPECT_GT(faults.compared, 10U);
+  EXPECT_EQ(faults.lost, faults.compared);
+}
+
+TEST(MeshFiles, what_is_written_is_read) {
+  if (!reads_mesh_files()) GTEST_SKIP() << "built without assimp";
+  const Triangles torus = make_torus(12, 8, 1.0, 0.25);
+  const auto folder = std::filesystem::temp_directory_path() / "winnow_mesh_files";
+  std::filesystem::create_directories(folder);
+  for (const char* extension : {"obj", "stl", "ply"}) {
+    const std::string path = (folder / (std::string("torus.") + extension)).string();
+    write_mesh(path, torus);
+    const Triangles read = read_mesh(path);
+    ASSERT_EQ(read.size(), torus.size()) << extension;
+    EXPECT_EQ(read.vertices.size(), torus.vertices.size()) << extension;
+    for (std::size_t i = 0; i < torus.corners.size(); ++i) {
+      const Eigen::Vector3d& expected = torus.vertices[torus.corners[i]];
+      EXPECT_LT((read.vertices[read.corners[i]] - expected).norm(), 1e-5) << extension;
+    }
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST(MeshFiles, what_is_no_mesh_is_refused) {
+  EXPECT_THROW(read_mesh("/nowhere/mesh.obj"), MeshFileError);
+  const auto path = std::filesystem::temp_directory_path() / "winnow_no_mesh.ply";
+  std::ofstream(path) << "this is no mesh";
+  EXPECT_THROW(read_mesh(path.string()), MeshFileError);
+  std::filesystem::remove(path);
+}
+
+TEST(SceneRace, a_heap_is_the_same_whenever_it_is_made_and_lies_close) {
+  const auto set = make_heap(400, 7);
+  const auto again = make_heap(400, 7);
+  for (std::size_t i = 0; i < set->poses.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(set->poses[i].position[axis], again->poses[i].position[axis]);
+    }
+  }
+  std::array<SceneContender, 1> contenders{{{make_winnow_scene(1, 0.0), 1}}};
+  const auto timings = race_scene(*set, kMoving, contenders, 1);
+  EXPECT_GT(timings.front().finds.touching, 400U);
+  EXPECT_LT(timings.front().finds.touching, 2000U);
+}
+
+TEST(SceneRace, every_engine_finds_as_much_as_the_first) {
+  const auto set = make_landscape(60, 24, 5);
+  std::array<SceneContender, 2> contenders{
+      {{make_winnow_scene(1, 0.0), 1}, {make_winnow_scene(2, kCarryOver), 2}}};
+  const auto timings = race_scene(*set, kResting, contenders, 2);
+  ASSERT_EQ(timings.size(), 2U);
+  EXPECT_GE(timings[0].finds.touching, 60U);
+  EXPECT_EQ(timings[0].finds.touching, timings[1].finds.touching);
+  EXPECT_EQ(timings[0].ms.size(), 2U);
+}
+
+}  // namespace
+}  // namespace winnow::bench
