@@ -34,8 +34,8 @@ class TriangleMesh {
   /// Takes copies of vertices (rounded to float) and triangles and builds the tree. O(n).
   /// `invalid_shape` if there is no triangle, a vertex is not finite in float, or a corner is not a
   /// vertex; `too_many_objects` beyond 2^28 triangles or 2^31 - 1 vertices; `invalid_argument` for
-  /// bad options or views without columns. A
-  /// refused build, or one without memory, leaves the mesh as it was.
+  /// bad options or views without columns. A refused build, or one without memory, leaves the mesh
+  /// as it was.
   Status build(const PointView& vertices, const IndexView& triangles,
                const MeshOptions& options = {}, const Execution& execution = Execution::serial());
 
