@@ -24,30 +24,43 @@ constexpr double kSlack = 1e-14;
   return q.normalized().toRotationMatrix();
 }
 
-// How far a shape reaches along a direction, and how large the numbers were.
+// How far a shape reaches along a direction and against it, and how large the numbers were.
 struct Reach {
-  double far;
+  double up;
+  double down;
   double scale;
 };
 
 [[nodiscard]] Reach reach_of_points(const double* const (&column)[3], std::size_t count,
                                     const Vector3d& d) {
-  Reach reach{-std::numeric_limits<double>::infinity(), 0.0};
+  double most = -std::numeric_limits<double>::infinity();
+  double least = -most;
+  double scale = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3d terms(column[0][i] * d[0], column[1][i] * d[1], column[2][i] * d[2]);
-    reach.far = std::max(reach.far, terms.sum());
-    reach.scale = std::max(reach.scale, terms.cwiseAbs().sum());
+    const double sum = terms.sum();
+    most = std::max(most, sum);
+    least = std::min(least, sum);
+    scale = std::max(scale, terms.cwiseAbs().sum());
   }
-  return reach;
+  return {most, -least, scale};
 }
 
 [[nodiscard]] Reach symmetric(double reach) {
-  return {reach, reach};
+  return {reach, reach, reach};
+}
+
+[[nodiscard]] Reach grown(const Reach& core, double rounding) {
+  return {core.up + rounding, core.down + rounding, core.scale + rounding};
+}
+
+// Of a disc about z.
+[[nodiscard]] double side(const Vector3d& d) {
+  return std::sqrt(d.x() * d.x() + d.y() * d.y());
 }
 
 [[nodiscard]] Reach reach(const ShapeTables& tables, ShapeId id, const Vector3d& d) {
   const std::uint32_t i = id.index();
-  const double side = std::hypot(d.x(), d.y());
   switch (id.kind()) {
     case ShapeKind::sphere:
       return symmetric(tables.spheres[i].radius);
@@ -62,17 +75,18 @@ struct Reach {
     }
     case ShapeKind::cylinder: {
       const CylinderShape& s = tables.cylinders[i];
-      return symmetric(s.radius * side + s.half_length * std::abs(d.z()) + s.rounding);
+      return symmetric(s.radius * side(d) + s.half_length * std::abs(d.z()) + s.rounding);
     }
     case ShapeKind::cone: {
       const ConeShape& s = tables.cones[i];
-      const double far = std::max(s.half_length * d.z(), s.radius * side - s.half_length * d.z());
-      return {far + s.rounding, s.radius * side + s.half_length * std::abs(d.z()) + s.rounding};
+      const double disc = s.radius * side(d);
+      const double apex = s.half_length * d.z();
+      return {std::max(apex, disc - apex) + s.rounding, std::max(-apex, disc + apex) + s.rounding,
+              disc + std::abs(apex) + s.rounding};
     }
     case ShapeKind::hull: {
       const HullShape& s = tables.hulls[i];
-      const Reach core = reach_of_points(s.vertex, s.vertex_count, d);
-      return {core.far + s.rounding, core.scale + s.rounding};
+      return grown(reach_of_points(s.vertex, s.vertex_count, d), s.rounding);
     }
     case ShapeKind::triangle: {
       const TriangleShape& s = tables.triangles[i];
@@ -81,18 +95,18 @@ struct Reach {
         for (int axis = 0; axis < 3; ++axis) columns[axis][v] = s.vertex[v][axis];
       }
       const double* const pointers[3] = {columns[0], columns[1], columns[2]};
-      const Reach core = reach_of_points(pointers, 3, d);
-      return {core.far + s.rounding, core.scale + s.rounding};
+      return grown(reach_of_points(pointers, 3, d), s.rounding);
     }
     case ShapeKind::half_space: {
       const HalfSpaceShape& s = tables.half_spaces[i];
       const Vector3d n(s.normal[0], s.normal[1], s.normal[2]);
       // Bounded only where its normal is the axis, to the last bit.
-      if (d != n) return {std::numeric_limits<double>::infinity(), 0.0};
-      return {s.offset, std::abs(s.offset)};
+      constexpr double kFar = std::numeric_limits<double>::infinity();
+      return {d == n ? s.offset : kFar, d == -n ? s.offset : kFar,
+              d == n || d == -n ? std::abs(s.offset) : 0.0};
     }
   }
-  return {0.0, 0.0};
+  return {};
 }
 
 // Rounded up; a reach may be infinite.
@@ -103,15 +117,15 @@ struct Reach {
 }  // namespace
 
 Aabb ShapePool::bounds(ShapeId id, const Pose& pose) const noexcept {
-  const Matrix3d turn = rotation(pose);
+  // Balls need no turn.
+  const Matrix3d turn =
+      id.kind() == ShapeKind::sphere ? Matrix3d(Matrix3d::Identity()) : rotation(pose);
   Aabb box;
   for (int axis = 0; axis < 3; ++axis) {
-    const Vector3d direction = turn.row(axis);
-    const Reach up = reach(tables_, id, direction);
-    const Reach down = reach(tables_, id, -direction);
-    const double slack = kSlack * std::max(up.scale, down.scale);
-    box.max[axis] = round_up(end(pose.position[axis], up.far + slack));
-    box.min[axis] = -round_up(end(-pose.position[axis], down.far + slack));
+    const Reach far = reach(tables_, id, turn.row(axis));
+    const double slack = kSlack * far.scale;
+    box.max[axis] = round_up(end(pose.position[axis], far.up + slack));
+    box.min[axis] = -round_up(end(-pose.position[axis], far.down + slack));
   }
   return box;
 }
