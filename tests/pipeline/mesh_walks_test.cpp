@@ -77,8 +77,12 @@ Real gap_along(const TwinTriangle& a, const TwinTriangle& b, const double margin
 }
 
 Real box_gap(const TwinTriangle& a, const TwinTriangle& b, const double margin[3]) {
-  return std::max({gap_along(a, b, margin, {1, 0, 0}), gap_along(a, b, margin, {0, 1, 0}),
-                   gap_along(a, b, margin, {0, 0, 1})});
+  Real result = -1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Real between = std::max(a.low(k) - b.high(k), b.low(k) - a.high(k));
+    result = std::max(result, between - static_cast<Real>(margin[k]));
+  }
+  return result;
 }
 
 /// The largest gap along the axes of the frame and the normals, and with `all` along the cross
@@ -99,6 +103,18 @@ Real gap(const TwinTriangle& a, const TwinTriangle& b, const double margin[3], b
   return result;
 }
 
+/// Calls body on every instruction set and expects the same result from each.
+template <typename Body>
+auto on_all_isas(Body&& body) {
+  std::vector<decltype(body())> results;
+  for (const Isa isa : available_isas()) {
+    const IsaScope scope(isa);
+    results.push_back(body());
+    EXPECT_TRUE(results.back() == results.front()) << to_string(isa);
+  }
+  return results.front();
+}
+
 class Meshes : public testing::Test {
  protected:
   Meshes() {
@@ -107,18 +123,6 @@ class Meshes : public testing::Test {
       EXPECT_EQ(data.build(meshes_.back()), Status::ok) << data.name;
     }
   }
-  /// Calls body on every instruction set and expects the same result from each.
-  template <typename Body>
-  static auto on_all_isas(Body&& body) {
-    std::vector<decltype(body())> results;
-    for (const Isa isa : available_isas()) {
-      const IsaScope scope(isa);
-      results.push_back(body());
-      EXPECT_TRUE(results.back() == results.front()) << to_string(isa);
-    }
-    return results.front();
-  }
-
   std::vector<TriangleMesh> meshes_;
 };
 
@@ -199,37 +203,54 @@ TEST_F(Meshes, a_box_finds_the_triangles_whose_boxes_it_meets_and_no_others) {
   }
 }
 
-TEST_F(Meshes, two_meshes_find_every_pair_of_triangles_that_meets_and_few_that_are_apart) {
+/// Every pair that meets is found, once, and none whose boxes are apart by more than 64 u of the
+/// coordinates.
+void expect_pairs(const TriangleMesh& a, const TriangleMesh& b, const MeshPlacement& placement,
+                  const double margin[3]) {
+  const SlotPairs found =
+      on_all_isas([&] { return overlap_pairs(a.view(), b.view(), placement, margin); });
+  const std::set<SlotPairs::value_type> set(found.begin(), found.end());
+  EXPECT_EQ(set.size(), found.size());
+  const auto own = twin(a.view());
+  const auto placed = twin(b.view(), placement);
+  const Real rounding = static_cast<Real>((a.radius() + b.radius() * 4.0 + 2.0) * 64 * 0x1p-24);
+  std::size_t missed = 0;
+  std::size_t apart = 0;
+  for (std::uint32_t i = 0; i < own.size(); ++i) {
+    for (std::uint32_t j = 0; j < placed.size(); ++j) {
+      const Real between = box_gap(own[i], placed[j], margin);
+      const bool is_found = set.count({i, j}) != 0;
+      apart += is_found && between > rounding;
+      missed += !is_found && between <= 0 && gap(own[i], placed[j], margin, true) <= 0;
+    }
+  }
+  EXPECT_EQ(missed, 0U);
+  EXPECT_EQ(apart, 0U);
+}
+
+TEST_F(Meshes, two_meshes_find_every_pair_of_triangles_that_meets_and_none_whose_boxes_are_apart) {
   Random random(2);
   for (const TriangleMesh& a : meshes_) {
     const TriangleMesh& b = meshes_[random.below(meshes_.size())];
-    const auto own = twin(a.view());
     for (std::size_t k = 0; k < scaled(6); ++k) {
-      const MeshPlacement placement = random_placement(random, 1.0);
       const double grow = random.chance(0.5) ? 0.0 : 0.05;
       const double margin[3] = {grow, 2 * grow, grow};
-      const auto placed = twin(b.view(), placement);
-      const SlotPairs found =
-          on_all_isas([&] { return overlap_pairs(a.view(), b.view(), placement, margin); });
-      const std::set<SlotPairs::value_type> set(found.begin(), found.end());
-      EXPECT_EQ(set.size(), found.size()) << "a pair is reported once";
-      const double size = a.radius() + b.radius() * 4.0 + 2.0;
-      std::size_t missed = 0;
-      std::size_t apart = 0;
-      for (std::uint32_t i = 0; i < own.size(); ++i) {
-        for (std::uint32_t j = 0; j < placed.size(); ++j) {
-          const bool is_found = set.count({i, j}) != 0;
-          const Real least = gap(own[i], placed[j], margin, !is_found);
-          missed += !is_found && least <= 0;
-          // The stated rounding: 64 u of the coordinates.
-          apart += is_found &&
-                   box_gap(own[i], placed[j], margin) > static_cast<Real>(size * 64 * 0x1p-24);
-        }
-      }
-      EXPECT_EQ(missed, 0U);
-      EXPECT_EQ(apart, 0U);
+      expect_pairs(a, b, random_placement(random, 1.0), margin);
     }
   }
+}
+
+TEST_F(Meshes, trees_of_different_depth_find_their_pairs) {
+  TriangleMesh deep;
+  TriangleMesh shallow;
+  ASSERT_EQ(torus(70, 40).build(deep), Status::ok);
+  ASSERT_EQ(gear(3).build(shallow), Status::ok);
+  ASSERT_EQ(deep.view().levels, 3U);
+  ASSERT_EQ(shallow.view().levels, 1U);
+  const double margin[3] = {0, 0, 0};
+  const MeshPlacement tilted{{{0.8, -0.6, 0}, {0.6, 0.8, 0}, {0, 0, 1}}, {0.9, 0.1, 0.2}};
+  expect_pairs(deep, shallow, tilted, margin);
+  expect_pairs(shallow, deep, tilted, margin);
 }
 
 TEST_F(Meshes, pairs_can_be_taken_from_a_small_room_as_they_are_found) {
