@@ -114,6 +114,30 @@ Span common(const Span& a, const Span& b) noexcept {
   return {std::max(a.in, b.in), std::min(a.out, b.out), a.in >= b.in ? a.normal : b.normal};
 }
 
+namespace {
+
+/// The slab of a polygon's extent along its longest side.
+Span length_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertices) noexcept {
+  Eigen::Vector3d longest = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Eigen::Vector3d side = vertices[i + 1 < vertices.size() ? i + 1 : 0] - vertices[i];
+    if (side.squaredNorm() > longest.squaredNorm()) longest = side;
+  }
+  const Eigen::Vector3d axis = unit_or_zero(longest);
+  double low = axis.dot(vertices[0]);
+  double high = low;
+  for (const Eigen::Vector3d& vertex : vertices) {
+    low = std::min(low, axis.dot(vertex));
+    high = std::max(high, axis.dot(vertex));
+  }
+  PlaneClip clip(ray);
+  clip.below(axis, high);
+  clip.below(-axis, -low);
+  return clip.span();
+}
+
+}  // namespace
+
 Span prism_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertices,
                 const Eigen::Vector3d& normal, double bottom, double top) noexcept {
   PlaneClip clip(ray);
@@ -125,8 +149,10 @@ Span prism_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertices,
     const Eigen::Vector3d& b = vertices[i + 1 < vertices.size() ? i + 1 : 0];
     const Eigen::Vector3d side = unit_or_zero((b - a).cross(normal));
     clip.below(side, side.dot(a));
-    if (clip.span().is_empty()) break;
+    if (clip.span().is_empty()) return {};
   }
+  // The sides of a sliver are parallel, as far as double can tell, and do not end it.
+  if (common(clip.span(), length_span(ray, vertices)).is_empty()) return {};
   return clip.span();
 }
 

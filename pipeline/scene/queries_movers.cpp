@@ -1,8 +1,9 @@
 #include <winnow/pipeline/scene/queries_movers.h>
 #include <winnow/pipeline/scene/shape_cast.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 namespace winnow {
 namespace {
@@ -31,6 +32,37 @@ BoxSweep sweep_from(const Mover& mover, const double from[3], double limit) noex
   return sweep;
 }
 
+/// Neighbours in a mesh have their common corners a few roundings apart, once each is at its place:
+/// by less than this. As thick as this they leave nothing through between them.
+double doubt(const ConvexPart& part) noexcept {
+  if (part.triangle == nullptr) return 0.0;
+  double size = Vector3d::Map(part.pose.position).cwiseAbs().sum();
+  for (const auto& corner : part.triangle->vertex) {
+    size = std::max(size, Vector3d::Map(corner).cwiseAbs().sum());
+  }
+  return 0x1p-48 * size;
+}
+
+/// True if the ray surely passes by the triangle, grown by `doubt`, of a body at no angle: the
+/// signed volumes of the ray and each side have different signs (Platis, Theoharis, "Fast
+/// ray-tetrahedron intersection using Pluecker coordinates", 2003), beyond their rounding.
+bool passes_by(const double from[3], const double direction[3], const ConvexPart& part,
+               double doubt) noexcept {
+  const Eigen::Vector4d q = Eigen::Vector4d::Map(part.pose.orientation);
+  if (part.triangle->rounding != 0.0 || q[1] != 0.0 || q[2] != 0.0 || q[3] != 0.0) return false;
+  const Vector3d d = Vector3d::Map(direction);
+  const Vector3d first = Vector3d::Map(part.pose.position) - Vector3d::Map(from);
+  const Vector3d a = first + Vector3d::Map(part.triangle->vertex[0]);
+  const Vector3d b = first + Vector3d::Map(part.triangle->vertex[1]);
+  const Vector3d c = first + Vector3d::Map(part.triangle->vertex[2]);
+  const double far = a.cwiseAbs().sum() + b.cwiseAbs().sum() + c.cwiseAbs().sum();
+  const double error = d.cwiseAbs().sum() * far * (0x1p-48 * far + 4.0 * doubt);
+  const double volume[3] = {d.dot(c.cross(b)), d.dot(a.cross(c)), d.dot(b.cross(a))};
+  const double low = std::min({volume[0], volume[1], volume[2]});
+  const double high = std::max({volume[0], volume[1], volume[2]});
+  return low < -error && high > error;
+}
+
 void show(const Meeting& meeting, const double base[3], std::uint32_t part,
           SceneHit& hit) noexcept {
   hit.t = meeting.t;
@@ -50,18 +82,31 @@ RayMover::RayMover(const ShapePool& shapes, const ShapeRay& ray) noexcept
 
 bool RayMover::meets(const double from[3], const ConvexPart& part, double limit,
                      Meeting& meeting) const noexcept {
-  PartTables tables(shapes_);
-  const ShapeId shape = tables.put(0, part);
+  const double thickness = doubt(part);
+  if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
   ShapeRay ray = ray_;
   std::copy_n(from, 3, ray.origin);
   ray.max_t = limit;
+  if (!enters(ray, part, meeting)) {
+    if (thickness == 0.0) return false;
+    ConvexPart thick = part;
+    thick.thickness = thickness;
+    if (!enters(ray, thick, meeting)) return false;
+  }
+  return true;
+}
+
+bool RayMover::enters(const ShapeRay& ray, const ConvexPart& part,
+                      Meeting& meeting) const noexcept {
+  PartTables tables(shapes_);
+  const ShapeId shape = tables.put(0, part);
   ShapeHit hit;
   const Status status = cast_ray(tables.tables(), shape, part.pose, ray, hit);
   if (status != Status::ok || !hit.hit) return false;
   meeting.t = hit.t;
   for (int i = 0; i < 3; ++i) {
     meeting.normal[i] = hit.normal[i];
-    meeting.point[i] = from[i] + hit.t * ray.direction[i];
+    meeting.point[i] = ray.origin[i] + hit.t * ray.direction[i];
   }
   return true;
 }
@@ -82,7 +127,9 @@ bool ShapeMover::meets(const double from[3], const ConvexPart& part, double limi
   std::copy_n(from, 3, pair.from.position);
   std::copy_n(cast_.direction, 3, pair.direction);
   pair.max_t = limit;
-  pair.standing = tables.put(1, part);
+  ConvexPart thick = part;
+  thick.thickness = doubt(part);
+  pair.standing = tables.put(1, thick);
   pair.pose = part.pose;
   CastTouch touch;
   if (!cast_shape(tables.tables(), pair, tolerance_, touch)) return false;
@@ -109,6 +156,8 @@ bool first_meeting(const PartWalk& walk, const Mover& mover, const PlacedShape& 
   const Difference start = difference(mover.start(), base);
   PlacedShape placed = body;
   for (int i = 0; i < 3; ++i) placed.pose.position[i] = -start.rest[i];
+  // Walks take infinity for the t of what is never met.
+  limit = std::min(limit, std::numeric_limits<double>::max());
   bool found = false;
   walk.met(placed, sweep_from(mover, start.difference, limit),
            [&](const ConvexPart& part, double most) {

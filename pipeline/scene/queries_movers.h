@@ -50,6 +50,9 @@ class RayMover final : public Mover {
                            Meeting& meeting) const noexcept override;
 
  private:
+  [[nodiscard]] bool enters(const ShapeRay& ray, const ConvexPart& part,
+                            Meeting& meeting) const noexcept;
+
   const ShapePool& shapes_;
   const ShapeRay& ray_;
 };

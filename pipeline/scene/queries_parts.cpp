@@ -77,6 +77,7 @@ ShapeId PartTables::put(std::size_t slot, const ConvexPart& part) noexcept {
   if (kind == ShapeKind::triangle) {
     triangles_[slot] =
         part.triangle != nullptr ? *part.triangle : pool_.triangles[part.shape.index()];
+    triangles_[slot].rounding += part.thickness;
     return ShapeId::of(kind, index);
   }
   if (kind == ShapeKind::sphere) {

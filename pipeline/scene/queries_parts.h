@@ -34,6 +34,8 @@ struct ConvexPart {
   /// Triangles and balls that are not in the pool.
   const TriangleShape* triangle = nullptr;
   const SphereShape* ball = nullptr;
+  /// Added to the rounding of `triangle`.
+  double thickness = 0.0;
 };
 
 /// The tables of a pool in which two parts are to be found, wherever they came from.

@@ -377,6 +377,51 @@ TEST(SceneQueries, a_bullet_never_tunnels_a_sheet_of_triangles) {
   }
 }
 
+TEST(SceneQueries, a_turned_mesh_lets_no_ray_through_its_edges_and_corners) {
+  Random random(14);
+  QueryWorld world;
+  constexpr std::uint32_t kCells = 40;
+  const ShapeId sheet = add_sheet(world.composites, kCells);
+  ShapeId large;
+  ASSERT_EQ(world.composites.add_scaled(sheet, {100.0, 50.0, 30.0}, large), Status::ok);
+  world.add(large, random_pose(10.0, random), random);
+  ShapeId point;
+  ASSERT_EQ(world.shapes.pool.add(SphereShape{}, point), Status::ok);
+  world.add_to_scene();
+  SceneQueries queries(*world.scene);
+  const std::vector<FlatPart> parts = world.parts(0);
+  const double* const base = world.bodies[0].pose.position;
+  for (std::size_t n = scaled(2000); n-- != 0;) {
+    // Not those at the border.
+    const std::size_t i = 1 + random.below(kCells - 2);
+    const std::size_t cell = i * kCells + 1 + random.below(kCells - 2);
+    const auto inner = std::find_if(parts.begin(), parts.end(),
+                                    [&](const FlatPart& part) { return part.part == 2 * cell; });
+    ASSERT_NE(inner, parts.end());
+    const std::size_t corner = random.below(3);
+    const double along = random.chance(0.5) ? 0.0 : random.unit();
+    ShapeRay ray;
+    draw_direction(1.0, random, ray.direction);
+    for (int k = 0; k < 3; ++k) {
+      const double from = inner->triangle.vertex[corner][k];
+      const double to = inner->triangle.vertex[(corner + 1) % 3][k];
+      ray.origin[k] =
+          base[k] + inner->pose.position[k] + from + along * (to - from) - 4.0 * ray.direction[k];
+    }
+    ray.max_t = kInfinity;
+    SceneHit hit;
+    ASSERT_EQ(queries.closest(ray, hit), Status::ok);
+    ASSERT_TRUE(hit) << n;
+    EXPECT_LT(hit.t, 4.0 + 1e-6);
+    ShapeCast cast{point, {}, {}, kInfinity};
+    std::copy_n(ray.origin, 3, cast.pose.position);
+    std::copy_n(ray.direction, 3, cast.direction);
+    ASSERT_EQ(queries.closest(cast, hit), Status::ok);
+    ASSERT_TRUE(hit) << n;
+    EXPECT_LT(hit.t, 4.0 + 1e-6);
+  }
+}
+
 TEST(SceneQueries, filters_and_predicates_choose_among_bodies) {
   Random random(9);
   QueryWorld world;

@@ -290,6 +290,28 @@ TEST(ShapeRays, bad_rays_poses_and_ids_are_refused) {
             Status::invalid_key);
 }
 
+TEST(ShapeRays, meet_rounded_slivers_no_farther_than_they_reach) {
+  Random random(13);
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3d from = any_point(random, 1.0);
+    const Vector3d along = any_point(random, 1.0);
+    TriangleShape sliver;
+    sliver.rounding = 0.15;
+    Vector3d::Map(sliver.vertex[0]) = from;
+    Vector3d::Map(sliver.vertex[1]) = from + along;
+    Vector3d::Map(sliver.vertex[2]) = from + random.uniform(-1.0, 2.0) * along;
+    ShapePool pool;
+    ShapeId id;
+    ASSERT_EQ(pool.add(sliver, id), Status::ok);
+    // Through the line that it lies on, beyond its ends.
+    const double beyond = random.uniform(2.0, 20.0) + 0.2 / along.norm();
+    const Vector3d target = from + (random.chance(0.5) ? beyond : 1.0 - beyond) * along;
+    const Vector3d direction = any_point(random, 1.0).cross(along);
+    if (direction.norm() < 1e-3) continue;
+    EXPECT_FALSE(cast(pool.tables(), id, target - direction, direction).hit.hit) << i;
+  }
+}
+
 TEST(ShapeRays, any_numbers_give_an_answer) {
   const RayProbes shapes;
   Random random(12);
