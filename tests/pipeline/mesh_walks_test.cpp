@@ -259,7 +259,7 @@ TEST_F(Meshes, pairs_can_be_taken_from_a_small_room_as_they_are_found) {
   const MeshView& mesh = meshes_[0].view();
   const SlotPairs expected = overlap_pairs(mesh, mesh, placement, margin);
   ASSERT_GT(expected.size(), 100U);
-  for (const std::size_t room : {16, 40}) {
+  for (const std::size_t room : {std::size_t{16}, std::size_t{40}}) {
     SlotPairs taken;
     const auto take = [](void* context, SlotPairSink& sink) {
       for (std::size_t i = 0; i < sink.size; ++i) {
