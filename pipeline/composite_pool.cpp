@@ -181,8 +181,7 @@ std::span<const CompoundChild> CompositePool::children(ShapeId compound) const n
 }
 
 bool CompositePool::contains(ShapeId id) const noexcept {
-  return state_ != nullptr && (state_->mesh(id) != nullptr || state_->field(id) != nullptr ||
-                               state_->compound(id) != nullptr);
+  return state_ != nullptr && state_->contains(id);
 }
 
 Aabb CompositePool::bounds(ShapeId id, const Pose& pose) const noexcept {

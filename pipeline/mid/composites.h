@@ -92,6 +92,9 @@ struct Composites {
   [[nodiscard]] const MeshEntry* mesh(ShapeId id) const noexcept;
   [[nodiscard]] HeightField* field(ShapeId id) const noexcept;
   [[nodiscard]] const Compound* compound(ShapeId id) const noexcept;
+  [[nodiscard]] bool contains(ShapeId id) const noexcept {
+    return mesh(id) != nullptr || field(id) != nullptr || compound(id) != nullptr;
+  }
 
   /// Null if memory is refused.
   [[nodiscard]] SharedMesh* new_mesh() noexcept;
@@ -109,7 +112,7 @@ struct Composites {
   std::uint64_t revision = 0;
 };
 
-/// The box of a shape at a pose, relative to `from`.
+/// The box of a shape at a pose.
 [[nodiscard]] Box bounds_of(const Composites& all, ShapeId id, const Pose& pose) noexcept;
 
 }  // namespace winnow::mid

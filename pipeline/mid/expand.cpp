@@ -52,6 +52,13 @@ class Expansion {
   void write_triangle(const Side& side, std::uint32_t number, std::size_t at,
                       std::uint32_t triangle) noexcept;
 
+  // Callers promise it; what has been removed touches nothing.
+  [[nodiscard]] bool is_there(std::uint32_t body) const noexcept {
+    if (body >= bodies_.shapes.size() || body >= bodies_.poses.size()) return false;
+    const ShapeId shape = bodies_.shapes[body];
+    const std::uint32_t kind = shape.kind_index();
+    return kind < kShapeKinds ? shape.index() < tables_.count[kind] : all_.contains(shape);
+  }
   [[nodiscard]] Side side(std::uint32_t body, std::uint32_t origin) const noexcept {
     const Eigen::Map<const Vec> position(bodies_.poses[body].position);
     const Eigen::Map<const Vec> from(bodies_.poses[origin].position);
@@ -109,7 +116,9 @@ void Expansion::search(std::size_t chunk, WordArena& arena) noexcept {
   for (std::size_t i = chunk * kChunk; i < end; ++i) {
     const std::uint64_t primitives = search.primitives().size();
     const std::uint64_t found = search.pairs().size();
-    search.run(side(pairs_[i].a, pairs_[i].a), side(pairs_[i].b, pairs_[i].a));
+    if (is_there(pairs_[i].a) && is_there(pairs_[i].b)) {
+      search.run(side(pairs_[i].a, pairs_[i].a), side(pairs_[i].b, pairs_[i].a));
+    }
     primitive_counts()[i] = static_cast<std::uint32_t>(search.primitives().size() - primitives);
     out_.first[i + 1] = static_cast<std::uint32_t>((search.pairs().size() - found) / 2);
   }

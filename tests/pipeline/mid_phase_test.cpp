@@ -220,6 +220,24 @@ TEST(MidPhase, a_refused_request_for_memory_changes_nothing) {
   }
 }
 
+TEST(MidPhase, what_is_not_there_touches_nothing) {
+  Random random(13);
+  CompositeWorld world;
+  world.add_shapes(random);
+  const ShapeId gone = world.ids[14];
+  ASSERT_EQ(world.composites.remove(gone), Status::ok);
+  const ShapeId bodies[] = {gone, {}, ShapeId::of(ShapeKind::hull, 77), world.ids[15]};
+  const Pose poses[4];
+  const BodyPair some[] = {{0, 3}, {3, 1}, {2, 3}, {3, 9}, {3, 3}};
+  PrimitivePairs pairs;
+  ASSERT_EQ(
+      world.composites.expand(world.shapes, {bodies, poses}, some, 0.0, Execution::serial(), pairs),
+      Status::ok);
+  ASSERT_EQ(pairs.first.size(), 6U);
+  EXPECT_EQ(pairs.first[4], 0U);
+  EXPECT_GT(pairs.first[5], 0U);
+}
+
 TEST(MidPhase, any_valid_pose_and_scale_gives_what_the_narrow_phase_takes) {
   Random random(12);
   CompositeWorld world;
