@@ -92,13 +92,9 @@ void Search::mesh_mesh(const Side& a, const Side& b) noexcept {
 
 void Search::take_slots(void* context, SlotPairSink& found) noexcept {
   const PairOfSides& sides = *static_cast<const PairOfSides*>(context);
-  Search& search = sides.search;
+  // The walk has seen to boxes and planes of both: a second look would drop nothing.
   for (std::uint64_t i = 0; i < found.size; ++i) {
-    Corners corners[2];
-    static_cast<void>(sides.a.corners(found.first[i], corners[0]));
-    static_cast<void>(sides.b.corners(found.second[i], corners[1]));
-    if (is_apart(corners[0], corners[1], search.margin_)) continue;
-    search.add(sides.a, found.first[i], sides.b, found.second[i]);
+    sides.search.add(sides.a, found.first[i], sides.b, found.second[i]);
   }
   found.size = 0;
 }
