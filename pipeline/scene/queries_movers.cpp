@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
 
 namespace winnow {
 namespace {
@@ -156,8 +155,6 @@ bool first_meeting(const PartWalk& walk, const Mover& mover, const PlacedShape& 
   const Difference start = difference(mover.start(), base);
   PlacedShape placed = body;
   for (int i = 0; i < 3; ++i) placed.pose.position[i] = -start.rest[i];
-  // Walks take infinity for the t of what is never met.
-  limit = std::min(limit, std::numeric_limits<double>::max());
   bool found = false;
   walk.met(placed, sweep_from(mover, start.difference, limit),
            [&](const ConvexPart& part, double most) {

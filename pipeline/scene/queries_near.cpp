@@ -136,8 +136,8 @@ bool has_lesser_id(const SceneDistance& a, const SceneDistance& b) noexcept {
 }
 
 /// The bodies nearest to a point. First those are looked at whose boxes are nearest; the last of
-/// the nearest of these bodies is as far as any that is wanted can be, and every body whose box is
-/// no farther is looked at.
+/// the nearest of these bodies is as far as any that is wanted can be, and every other body whose
+/// box is no farther is looked at.
 class NearestQuestion {
  public:
   NearestQuestion(SceneQueries::State& state, const double* point, const Filter& filter) noexcept
@@ -152,67 +152,83 @@ class NearestQuestion {
   Status ask(std::size_t count, double radius);
 
  private:
-  void look(std::uint32_t body, double limit);
-  /// Looks at bodies whose boxes are no farther than `radius`: all of them, or the nearest `most`.
-  template <typename Look>
-  [[nodiscard]] Status show(double radius, std::size_t most, Look& look);
+  void look(std::uint32_t body);
+  /// Looks at bodies whose boxes are nearest and within the radius, which shrinks to what is still
+  /// of interest.
+  [[nodiscard]] Status look_at_nearest(const Partition& partition);
+  /// Looks at all others within the radius, given how many bodies were found before, sorted by id.
+  [[nodiscard]] Status look_within(const Partition& partition, std::size_t known);
+  [[nodiscard]] float reach() const noexcept;
 
   SceneQueries::State& state_;
   const Filter& filter_;
   const SphereShape point_;
   ConvexPart from_{ShapeId::of(ShapeKind::sphere, 0), {}, kWholeShape, nullptr, &point_};
   Aabb box_;
+  std::size_t count_ = 0;
+  double radius_ = 0.0;
   bool has_room_ = true;
   /// Some partition had more boxes than were asked for.
   bool is_cut_ = false;
 };
 
-void NearestQuestion::look(std::uint32_t body, double limit) {
+void NearestQuestion::look(std::uint32_t body) {
   SceneDistance answer;
-  if (!ClosestParts(state_.walk).find(from_, state_.placed(body), limit, answer)) return;
+  if (!ClosestParts(state_.walk).find(from_, state_.placed(body), radius_, answer)) return;
   answer.key = state_.scene.keys.key_of(body);
   answer.data = state_.scene.keys.client_data(body);
   has_room_ = state_.distances.push_back(answer) && has_room_;
 }
 
-template <typename Look>
-Status NearestQuestion::show(double radius, std::size_t most, Look& look) {
-  LookingFilter looking(state_.scene, filter_, look);
-  // What the solver's distance of what lies on the border of a box may be too short by.
-  const float reach = round_up(std::max(radius, 0.0) * (1.0 + 1e-9));
-  return state_.each_partition([&](const Partition& partition) {
-    const Status status = partition.nearest(box_, most, reach, state_.boxes, looking.filter());
-    is_cut_ = is_cut_ || state_.boxes.size() >= most;
-    return status;
-  });
+/// What the solver's distance to what lies on the border of a box may be too short by is added.
+float NearestQuestion::reach() const noexcept {
+  return round_up(std::max(radius_, 0.0) * (1.0 + 1e-9));
+}
+
+Status NearestQuestion::look_at_nearest(const Partition& partition) {
+  auto take = [](std::uint32_t) { return true; };
+  LookingFilter taking(state_.scene, filter_, take);
+  const Status status = partition.nearest(box_, count_, reach(), state_.boxes, taking.filter());
+  if (status != Status::ok) return status;
+  for (const Hit& hit : state_.boxes) look(static_cast<std::uint32_t>(hit.data));
+  is_cut_ = is_cut_ || state_.boxes.size() >= count_;
+  Column<SceneDistance>& found = state_.distances;
+  if (found.size() >= count_) {
+    SceneDistance* const last = found.begin() + (count_ - 1);
+    std::nth_element(found.begin(), last, found.end(), is_nearer);
+    radius_ = last->distance;
+  }
+  return Status::ok;
+}
+
+Status NearestQuestion::look_within(const Partition& partition, std::size_t known) {
+  auto look_once = [&](std::uint32_t body) {
+    const SceneDistance* const first = state_.distances.begin();
+    SceneDistance same;
+    same.key.id = body;
+    if (!std::binary_search(first, first + known, same, has_lesser_id)) look(body);
+    return false;
+  };
+  LookingFilter looking(state_.scene, filter_, look_once);
+  return partition.nearest(box_, ~std::size_t{0}, reach(), state_.boxes, looking.filter());
 }
 
 Status NearestQuestion::ask(std::size_t count, double radius) {
   Column<SceneDistance>& found = state_.distances;
   found.clear();
-  auto look_on = [&](std::uint32_t body) {
-    look(body, radius);
-    return true;
-  };
-  if (const Status status = show(radius, count, look_on); status != Status::ok) return status;
-  const auto nth = [&found](std::size_t n) { return found.begin() + n; };
-  if (found.size() >= count && count != 0) {
-    std::nth_element(found.begin(), nth(count - 1), found.end(), is_nearer);
-    radius = nth(count - 1)->distance;
+  if (count == 0) return Status::ok;
+  count_ = count;
+  radius_ = radius;
+  Status status =
+      state_.each_partition([&](const Partition& partition) { return look_at_nearest(partition); });
+  if (status == Status::ok && is_cut_) {
+    const std::size_t known = found.size();
+    std::sort(found.begin(), found.end(), has_lesser_id);
+    status = state_.each_partition(
+        [&](const Partition& partition) { return look_within(partition, known); });
   }
-  // Those that are not among the nearest boxes.
-  const std::size_t known = found.size();
-  std::sort(found.begin(), found.end(), has_lesser_id);
-  auto look_once = [&](std::uint32_t body) {
-    SceneDistance same;
-    same.key.id = body;
-    if (!std::binary_search(found.begin(), nth(known), same, has_lesser_id)) look(body, radius);
-    return false;
-  };
-  const Status status =
-      !is_cut_ || count == 0 ? Status::ok : show(radius, ~std::size_t{0}, look_once);
+  if (!has_room_) status = Status::out_of_memory;
   if (status != Status::ok) return status;
-  if (!has_room_) return Status::out_of_memory;
   std::sort(found.begin(), found.end(), is_nearer);
   found.set_size(std::min(found.size(), count));
   return Status::ok;

@@ -320,6 +320,36 @@ TEST(SceneQueries, the_closest_hit_is_found_without_asking_all_bodies_on_the_way
   EXPECT_LT(asked, 12 * rays);
 }
 
+TEST(SceneQueries, a_long_way_ends_at_a_body_smaller_than_the_rounding_of_its_direction) {
+  Random random(15);
+  QueryWorld world;
+  ShapeId grain;
+  ASSERT_EQ(world.shapes.pool.add(SphereShape{1e-4}, grain), Status::ok);
+  for (int i = 0; i < 100; ++i) world.add(grain, random_pose(100.0, random), random);
+  world.add_to_scene();
+  SceneQueries queries(*world.scene);
+  for (std::size_t n = scaled(500); n-- != 0;) {
+    const std::size_t target = random.below(world.bodies.size());
+    ShapeRay ray;
+    draw_direction(1.0, random, ray.direction);
+    const double way = random.log_uniform(1e3, 1e6) / length_of(ray.direction);
+    for (int i = 0; i < 3; ++i) {
+      ray.origin[i] = world.bodies[target].pose.position[i] - way * ray.direction[i];
+    }
+    ray.max_t = random.chance(0.5) ? kInfinity : 1.5 * way;
+    SceneHit hit;
+    ASSERT_EQ(queries.closest(ray, hit), Status::ok);
+    ASSERT_TRUE(hit) << n;
+    EXPECT_LE(hit.t, way);
+    ShapeCast cast{grain, {}, {}, ray.max_t};
+    std::copy_n(ray.origin, 3, cast.pose.position);
+    std::copy_n(ray.direction, 3, cast.direction);
+    ASSERT_EQ(queries.closest(cast, hit), Status::ok);
+    ASSERT_TRUE(hit) << n;
+    EXPECT_LE(hit.t, way);
+  }
+}
+
 TEST(SceneQueries, ways_without_end_reach_what_lies_at_the_end_of_the_world) {
   for (const double far : {1e3, 1e9, 1e20, 1e30, 1e36, 1e200}) {
     QueryWorld world;
