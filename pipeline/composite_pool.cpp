@@ -55,6 +55,7 @@ Status CompositePool::add_mesh(const PointView& vertices, const IndexView& trian
   mid::SharedMesh* const shared = s->new_mesh();
   if (shared == nullptr) return Status::out_of_memory;
   status = shared->mesh.build(vertices, triangles, options, execution);
+  if (status == Status::ok && !shared->find_corners()) status = Status::out_of_memory;
   if (status != Status::ok) {
     s->release(shared);
     return status;
@@ -81,9 +82,12 @@ Status CompositePool::add_scaled(ShapeId mesh, const std::array<double, 3>& scal
 Status CompositePool::refit_mesh(ShapeId mesh, const PointView& vertices,
                                  const Execution& execution) {
   if (!contains(mesh) || mesh.composite_kind() != CompositeKind::mesh) return Status::invalid_key;
-  const Status status = state_->mesh(mesh)->shared->mesh.refit(vertices, execution);
-  if (status == Status::ok) ++state_->revision;
-  return status;
+  mid::SharedMesh& shared = *state_->mesh(mesh)->shared;
+  const Status status = shared.mesh.refit(vertices, execution);
+  if (status != Status::ok) return status;
+  static_cast<void>(shared.find_corners());
+  ++state_->revision;
+  return Status::ok;
 }
 
 Status CompositePool::add_height_field(const HeightSamples& samples, ShapeId& id) {
@@ -247,6 +251,7 @@ Footprint CompositePool::footprint() const noexcept {
   for (const mid::SharedMesh* m = state_->first_mesh; m != nullptr; m = m->next) {
     add(sizeof(mid::SharedMesh));
     add_whole(m->mesh.footprint());
+    footprint.structure += m->active_corners.bytes();
   }
   for (const HeightField* const field : state_->fields.entries) {
     if (field == nullptr) continue;

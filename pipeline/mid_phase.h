@@ -37,7 +37,8 @@ class PrimitivePairs {
   Column<std::uint32_t> part;
   Column<TriangleShape> triangles;
   /// Of `triangles`, one for each: bit k is set where edge k (from corner k to the next) is not one
-  /// that a neighbour continues: a contact there may have a normal of its own.
+  /// that a neighbour continues, bit 3 + k where corner k is on such an edge of any triangle: a
+  /// contact there may have a normal of its own. 63 for triangles that are no mesh's.
   Column<std::uint8_t> active_edges;
   /// Pairs of primitives, those of one pair of bodies next to each other in the order of the
   /// bodies' pairs; a is of body a.

@@ -1,6 +1,7 @@
 #include <winnow/pipeline/mid/composites.h>
 #include <winnow/pipeline/mid/extent.h>
 
+#include <algorithm>
 #include <new>
 
 namespace winnow::mid {
@@ -42,6 +43,23 @@ template <typename T>
 }
 
 }  // namespace
+
+bool SharedMesh::find_corners() noexcept {
+  const MeshView& view = mesh.view();
+  if (!active_corners.reserve((view.vertex_count + std::size_t{31}) / 32)) return false;
+  active_corners.set_size((view.vertex_count + std::size_t{31}) / 32);
+  std::fill(active_corners.begin(), active_corners.end(), 0U);
+  for (std::uint32_t slot = 0; slot < view.triangle_count; ++slot) {
+    const std::uint32_t active = view.triangle[slot] >> kActiveEdgeShift;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      // On edge k and on the one before.
+      const std::uint32_t both = 1U << k | 1U << (k + 2) % 3;
+      const std::uint32_t vertex = view.corner[k][slot];
+      if ((active & both) != 0) active_corners[vertex / 32] |= 1U << vertex % 32;
+    }
+  }
+  return true;
+}
 
 Composites::Composites(const ShapePool& pool, std::pmr::memory_resource* resource) noexcept
     : shapes(pool), memory(resource), meshes(resource), fields(resource), compounds(resource) {}

@@ -14,9 +14,19 @@ namespace winnow::mid {
 
 /// Triangles that one id or several scaled ones refer to, in a list of all.
 struct SharedMesh {
-  explicit SharedMesh(std::pmr::memory_resource* memory) noexcept : mesh(memory) {}
+  explicit SharedMesh(std::pmr::memory_resource* memory) noexcept
+      : mesh(memory), active_corners(memory) {}
+
+  /// Finds the active corners of a mesh that has been built or fitted anew. False if there is no
+  /// room for them; there always is after the first time.
+  [[nodiscard]] bool find_corners() noexcept;
+  [[nodiscard]] bool is_active(std::uint32_t vertex) const noexcept {
+    return (active_corners[vertex / 32] >> vertex % 32 & 1U) != 0;
+  }
 
   TriangleMesh mesh;
+  /// A bit for each vertex that is on an active edge of any triangle.
+  Column<std::uint32_t> active_corners;
   std::uint32_t users = 0;
   SharedMesh* previous = nullptr;
   SharedMesh* next = nullptr;

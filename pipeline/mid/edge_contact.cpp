@@ -12,7 +12,7 @@ constexpr double kSameNormal = 1e-13;
 
 }  // namespace
 
-EdgeContact classify(const TriangleShape& triangle, std::uint8_t active_edges, const Vec& away,
+EdgeContact classify(const TriangleShape& triangle, std::uint8_t active, const Vec& away,
                      Vec& face) noexcept {
   Vec corner[3];
   for (int i = 0; i < 3; ++i) corner[i] = Eigen::Map<const Vec>(triangle.vertex[i]);
@@ -35,8 +35,14 @@ EdgeContact classify(const TriangleShape& triangle, std::uint8_t active_edges, c
   for (int i = 0; i < 3; ++i) highest += top - height[i] <= level ? 1 : 0;
   if (highest == 3) return EdgeContact::nearly_face;
   for (int i = 0; i < 3; ++i) {
+    // On an active edge of another triangle. Those of this one are asked below.
+    const bool is_own = (active >> i & 1U) != 0 || (active >> (i + 2) % 3 & 1U) != 0;
+    const bool is_active = (active >> (3 + i) & 1U) != 0;
+    if (highest == 1 && top - height[i] <= level && is_active && !is_own) return EdgeContact::real;
+  }
+  for (int i = 0; i < 3; ++i) {
     const int next = (i + 1) % 3;
-    if ((active_edges >> i & 1U) == 0) continue;
+    if ((active >> i & 1U) == 0) continue;
     const bool ends[2] = {top - height[i] <= level, top - height[next] <= level};
     // An edge of which both ends are highest, or one end that alone is.
     if (ends[0] && ends[1]) return EdgeContact::real;

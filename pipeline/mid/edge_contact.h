@@ -17,9 +17,13 @@ enum class EdgeContact : std::uint8_t {
   inner,
 };
 
-/// `away`: unit, from the triangle to the other shape. `face` is set to the triangle's unit normal
-/// on the side of `away`. Triangles without a normal have real contacts only.
-[[nodiscard]] EdgeContact classify(const TriangleShape& triangle, std::uint8_t active_edges,
+/// Bits of PrimitivePairs::active_edges of a triangle without inner edges.
+inline constexpr std::uint8_t kAllActive = 63;
+
+/// `active`: see PrimitivePairs::active_edges. `away`: unit, from the triangle to the other shape.
+/// `face` is set to the triangle's unit normal on the side of `away`. Triangles without a normal
+/// have real contacts only.
+[[nodiscard]] EdgeContact classify(const TriangleShape& triangle, std::uint8_t active,
                                    const Vec& away, Vec& face) noexcept;
 
 }  // namespace winnow::mid

@@ -1,3 +1,4 @@
+#include <winnow/pipeline/mid/edge_contact.h>
 #include <winnow/pipeline/mid/expand.h>
 #include <winnow/pipeline/mid/search.h>
 
@@ -7,7 +8,6 @@ namespace winnow::mid {
 namespace {
 
 constexpr std::uint32_t kChunk = 32;
-constexpr std::uint8_t kAllEdges = 7;
 
 /// What a task leaves for the one that writes its part out. Words, as all of the scratch.
 struct ChunkRecord {
@@ -22,6 +22,8 @@ struct ChunkRecord {
   std::uint32_t first_pair;
 };
 static_assert(sizeof(ChunkRecord) % sizeof(std::uint32_t) == 0);
+
+constexpr std::uint32_t kNumberMask = (1U << kActiveEdgeShift) - 1U;
 
 [[nodiscard]] constexpr std::uint64_t blocks_for(std::uint64_t words) noexcept {
   return (words + WordArena::kBlock - 1) / WordArena::kBlock;
@@ -188,7 +190,7 @@ void Expansion::write_primitive(const Side& side, std::uint32_t number, std::siz
   ShapeId shape = part.shape;
   if (shape.kind() == ShapeKind::triangle) {
     out_.triangles[triangle] = tables_.triangles[shape.index()];
-    out_.active_edges[triangle] = kAllEdges;
+    out_.active_edges[triangle] = kAllActive;
     shape = ShapeId::of(ShapeKind::triangle, triangle++);
   }
   out_.shapes[at] = shape;
@@ -205,14 +207,9 @@ void Expansion::write_triangle(const Side& side, std::uint32_t number, std::size
   for (int k = 0; k < 2; ++k) Vec::Map(shape.vertex[k + 1]) = finite(corners.edge[k]);
   out_.shapes[at] = ShapeId::of(ShapeKind::triangle, triangle);
   out_.poses[at] = pose_of(corners.first, {1.0, 0.0, 0.0, 0.0});
-  if (side.kind == Side::Kind::mesh) {
-    const std::uint32_t word = side.mesh->triangle[number];
-    out_.part[at] = word & ((1U << kActiveEdgeShift) - 1U);
-    out_.active_edges[triangle] = static_cast<std::uint8_t>(word >> kActiveEdgeShift & kAllEdges);
-  } else {
-    out_.part[at] = number;
-    out_.active_edges[triangle] = side.field->active_edges(number);
-  }
+  out_.active_edges[triangle] = side.active(number);
+  out_.part[at] =
+      side.kind == Side::Kind::mesh ? side.mesh->triangle[number] & kNumberMask : number;
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include <winnow/pipeline/mid/extent.h>
 #include <winnow/pipeline/mid/side.h>
 
+#include <algorithm>
+
 namespace winnow::mid {
 
 Part::Part(const ShapeTables& tables, ShapeId id, std::uint32_t of_body, const Mat& turned,
@@ -43,7 +45,8 @@ Side::Side(const Composites& all, const ShapeTables& pool, ShapeId shape, const 
   if (!shape.is_composite()) return;
   if (const MeshEntry* const entry = all.mesh(shape)) {
     kind = Kind::mesh;
-    mesh = &entry->shared->mesh.view();
+    shared = entry->shared;
+    mesh = &shared->mesh.view();
     bounds = Box::of(entry->shared->mesh.bounds());
     const Eigen::Map<const Vec> scale(entry->scale);
     to_world = rotation * scale.asDiagonal();
@@ -102,6 +105,40 @@ bool Side::corners(std::uint32_t number, Corners& out) const noexcept {
   out.edge[0] = to_world * (local[1] - local[0]);
   out.edge[1] = to_world * (local[2] - local[0]);
   return true;
+}
+
+std::uint8_t Side::active(std::uint32_t number) const noexcept {
+  std::uint32_t bits = 0;
+  if (kind == Kind::mesh) {
+    bits = mesh->triangle[number] >> kActiveEdgeShift & 7U;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (shared->is_active(mesh->corner[k][number])) bits |= 8U << k;
+    }
+    return static_cast<std::uint8_t>(bits);
+  }
+  // Corners of a height field are active at the border alone: ridges that end at a corner, and
+  // holes, are not looked for.
+  bits = field->active_edges(number);
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    if ((bits & (1U << k | 1U << (k + 2) % 3)) != 0) bits |= 8U << k;
+  }
+  const std::uint32_t column = number / 2 % (field->columns() - 1);
+  const std::uint32_t row = number / 2 / (field->columns() - 1);
+  const bool at_side[2][2] = {{column == 0, column + 2 == field->columns()},
+                              {row == 0, row + 2 == field->rows()}};
+  TriangleShape triangle;
+  if (!(at_side[0][0] || at_side[0][1] || at_side[1][0] || at_side[1][1]) ||
+      !field->triangle(number, triangle)) {
+    return static_cast<std::uint8_t>(bits);
+  }
+  const auto& v = triangle.vertex;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    for (int axis = 0; axis < 2; ++axis) {
+      const bool is_low = v[k][axis] == std::min({v[0][axis], v[1][axis], v[2][axis]});
+      if (at_side[axis][is_low ? 0 : 1]) bits |= 8U << k;
+    }
+  }
+  return static_cast<std::uint8_t>(bits);
 }
 
 Box box_of(const Part& part, const Side& other, double margin) noexcept {

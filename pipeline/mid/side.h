@@ -49,6 +49,8 @@ struct Side {
   [[nodiscard]] Eigen::Vector4d part_turn(std::uint32_t number) const noexcept;
   /// False for a triangle of a hole.
   [[nodiscard]] bool corners(std::uint32_t number, Corners& out) const noexcept;
+  /// Active edges and corners of a triangle: see PrimitivePairs::active_edges.
+  [[nodiscard]] std::uint8_t active(std::uint32_t number) const noexcept;
 
   const ShapeTables& tables;
   Kind kind = Kind::convex;
@@ -60,6 +62,7 @@ struct Side {
   Mat to_world;
   Mat to_local;
   const MeshView* mesh = nullptr;
+  const SharedMesh* shared = nullptr;
   const HeightField* field = nullptr;
   const Compound* compound = nullptr;
   /// Of a composite in its own frame.

@@ -11,7 +11,6 @@
 namespace winnow::mid {
 namespace {
 
-constexpr std::uint8_t kAllEdges = 7;
 constexpr std::size_t kChunk = 256;
 constexpr std::size_t kWave = 64;
 
@@ -39,6 +38,22 @@ constexpr double kFloatError = 1.2e-7;
       break;
   }
   return 0.0;
+}
+
+/// If a point, seen along the triangle's normal, is in the triangle.
+[[nodiscard]] bool is_over(const solver::Core& triangle, const Vec& normal, const float* point,
+                           double size) noexcept {
+  constexpr double kFloatSlack = 1e-6;
+  const Vec at = Eigen::Map<const Eigen::Vector3f>(point).cast<double>() - triangle.center;
+  double least = 0.0;
+  double most = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double beside = triangle.side[k].cross(at - triangle.corner[k]).dot(normal);
+    least = std::min(least, beside);
+    most = std::max(most, beside);
+  }
+  // On the same side of all edges, whichever way they run.
+  return std::min(-least, most) <= kFloatSlack * size;
 }
 
 }  // namespace
@@ -84,6 +99,11 @@ class Smoothing {
   void clip(Chunk& chunk, std::size_t i, const Vec& normal) noexcept;
   void take(Chunk& chunk, std::size_t i, std::span<const ContactPoint> points) noexcept;
 
+  /// One that may have inner edges.
+  [[nodiscard]] bool is_mesh_triangle(std::uint32_t primitive) const noexcept {
+    const ShapeId shape = pairs_.shapes[primitive];
+    return shape.kind() == ShapeKind::triangle && pairs_.active_edges[shape.index()] != kAllActive;
+  }
   [[nodiscard]] bool has_contacts() const noexcept {
     return result_.level_ == NarrowLevel::manifold;
   }
@@ -177,14 +197,8 @@ Smoothing::Found Smoothing::find(std::size_t i) const noexcept {
   if (has_contacts() && result_.contact_count_[i] == 0) return found;
   // Which of the two is the triangle of a mesh. Edges of other triangles are all active.
   const BodyPair& bodies = pair(i);
-  const auto edges = [&](std::uint32_t body) {
-    const ShapeId shape = pairs_.shapes[body];
-    return shape.kind() == ShapeKind::triangle ? pairs_.active_edges[shape.index()] : kAllEdges;
-  };
-  const std::uint8_t edges_a = edges(bodies.a);
-  const std::uint8_t edges_b = edges(bodies.b);
-  const bool second = edges_b != kAllEdges;
-  if ((edges_a != kAllEdges) == second) return found;
+  const bool second = is_mesh_triangle(bodies.b);
+  if (is_mesh_triangle(bodies.a) == second) return found;
   const ShapeId triangle = pairs_.shapes[second ? bodies.b : bodies.a];
   const ShapeId other = pairs_.shapes[second ? bodies.a : bodies.b];
   if (other.kind() == ShapeKind::half_space) return found;
@@ -193,7 +207,7 @@ Smoothing::Found Smoothing::find(std::size_t i) const noexcept {
   if (second) away = -away;
   Vec face;
   const TriangleShape& shape = tables_.triangles[triangle.index()];
-  found.contact = classify(shape, second ? edges_b : edges_a, away, face);
+  found.contact = classify(shape, pairs_.active_edges[triangle.index()], away, face);
   if (found.contact == EdgeContact::real) return found;
   if (found.contact == EdgeContact::inner) {
     choose_side(bodies, second, face);
@@ -261,6 +275,10 @@ void Smoothing::clip(Chunk& chunk, std::size_t i, const Vec& normal) noexcept {
   ContactPoint points[kManifoldPoints];
   const double margin = std::min(std::ldexp(pairs_.margin, -problem.exponent), 8.0);
   const std::uint32_t count = contact_patch(a.view(), b.view(), normal.data(), margin, points);
+  // A feature that is not over the triangle belongs to a neighbour: its depth here would be made
+  // up.
+  const bool second = is_mesh_triangle(bodies.b);
+  if (!is_over(second ? problem.b : problem.a, normal, points[0].position, problem.size)) return;
   // The surfaces share a point whatever their features along the normal do.
   const double least = -std::ldexp(result_.distance_[i], -problem.exponent);
   const double depth = std::max(static_cast<double>(points[0].depth), least);

@@ -13,7 +13,7 @@ namespace winnow::mid {
 /// - so do shapes that only their rounding lets touch, with the point of a sphere moved below its
 ///   centre, so that it does not turn;
 /// - others are clipped against the triangle along the normal, and the depth is that of the
-///   clipped points, at least what it was.
+///   clipped points, at least what it was; where nothing is left of them, as it was.
 /// No contact is lost: the distance to a face's plane is never more than that to the face. Contacts
 /// of triangles of two meshes stay as they are: which face's normal is meant is not known. Which
 /// edges are active is known for the front of a surface only; on its back concave edges, which look

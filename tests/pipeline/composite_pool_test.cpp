@@ -313,6 +313,26 @@ TEST(InnerEdges, ridges_and_borders_are_felt) {
   EXPECT_LT(nearest, 1e-9);
 }
 
+TEST(InnerEdges, a_box_at_a_corner_of_the_rim_keeps_its_contact) {
+  // The middle one of three triangles touches the border of the surface with a corner alone.
+  Surface rim;
+  rim.vertices = {{0.76816994F, 2.86684918F, -14.9698315F},
+                  {0.544054806F, 4.13250637F, -13.4728489F},
+                  {1.07880068F, 4.02613926F, -13.4728489F},
+                  {0.0F, 2.967F, -14.9698315F},
+                  {1.484F, 2.57F, -14.9698315F}};
+  rim.corners = {0, 1, 2, 0, 3, 1, 0, 2, 4};
+  ShapePool shapes;
+  CompositePool pool(shapes);
+  const ShapeId mesh = add(pool, rim);
+  const ShapeId box = add(shapes, BoxShape{{0.3687, 0.3869, 0.3775}, 0.0});
+  const Pose at{{0.361353813885254, 2.5491864294867814, -15.141072528878972},
+                {0.448063999, 0.477745563, -0.596184433, 0.464286506}};
+  const Landing landing = land(shapes, pool, box, at, mesh, Pose{}, NarrowLevel::manifold, 0.0);
+  ASSERT_FALSE(landing.normals.empty());
+  EXPECT_GT(landing.deepest, -0.01);
+}
+
 TEST(InnerEdges, a_valley_holds_a_ball_by_its_faces) {
   ShapePool shapes;
   CompositePool pool(shapes);
