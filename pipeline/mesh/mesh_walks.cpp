@@ -57,18 +57,44 @@ MeshPairJob pair_job(const MeshView& a, const MeshView& b, const MeshPlacement& 
   return job;
 }
 
-}  // namespace
-
-void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
-                  SlotSink& out) noexcept {
-  if (mesh.triangle_count == 0) return;
-  MeshBoxJob job;
+MeshBoxJob box_job(const MeshView& mesh, const double min[3], const double max[3]) {
+  MeshBoxJob job{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     job.node_low[axis] = static_cast<float>(mesh_units(mesh, axis, min[axis]));
     job.node_high[axis] = static_cast<float>(mesh_units(mesh, axis, max[axis]));
     job.low[axis] = round_up(min[axis]);
     job.high[axis] = round_down(max[axis]);
   }
+  return job;
+}
+
+/// False for balls so large, so small or so far away that floats tell nothing about them.
+bool set_ball(const double center[3], double radius, MeshBallJob& ball) {
+  constexpr double kFar = 1e30;
+  if (!(radius >= 1e-30 && radius < kFar)) return false;
+  ball.scale = std::ldexp(1.0F, -std::ilogb(radius));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!(std::abs(center[axis]) < kFar)) return false;
+    ball.center[axis] = static_cast<float>(center[axis]);
+    ball.largest = std::max(ball.largest, std::abs(ball.center[axis]) * ball.scale);
+  }
+  ball.radius = round_up(radius * static_cast<double>(ball.scale));
+  return true;
+}
+
+}  // namespace
+
+void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
+                  SlotSink& out) noexcept {
+  if (mesh.triangle_count == 0) return;
+  mesh_kernels().overlap(mesh, box_job(mesh, min, max), out);
+}
+
+void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
+                  const double center[3], double radius, SlotSink& out) noexcept {
+  if (mesh.triangle_count == 0) return;
+  MeshBoxJob job = box_job(mesh, min, max);
+  job.has_ball = set_ball(center, radius, job.ball);
   mesh_kernels().overlap(mesh, job, out);
 }
 

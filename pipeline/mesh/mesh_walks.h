@@ -12,6 +12,12 @@ namespace winnow {
 void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
                   SlotSink& out) noexcept;
 
+/// The same, but for triangles whose closest point to `center` is farther than `radius`; a few that
+/// are farther by less than the rounding of float coordinates, or by more if they are slivers, are
+/// left in. A radius that is not finite leaves in all.
+void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
+                  const double center[3], double radius, SlotSink& out) noexcept;
+
 /// Pairs (slot of a, slot of b) of triangles that may meet once b is placed in the frame of a and
 /// grown by `margin[k]` to both sides on axis k of that frame: those that neither their boxes nor
 /// the plane of one of them parts, each once.

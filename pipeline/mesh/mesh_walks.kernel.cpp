@@ -1,3 +1,4 @@
+#include <winnow/pipeline/mesh/mesh_ball.wide.h>
 #include <winnow/pipeline/mesh/mesh_ordered.wide.h>
 #include <winnow/pipeline/mesh/mesh_pairs.wide.h>
 
@@ -18,8 +19,10 @@ void put_slots(std::uint32_t first_slot, Mask16 hits, SlotSink& out) {
 void show_leaf_in_box(const MeshView& mesh, const MeshBoxJob& job, std::uint32_t leaf,
                       SlotSink& out) {
   const std::uint32_t first_slot = leaf * kMeshFanout;
-  const Mask16 hits = overlap(box_of(load_corners(mesh, leaf)), job.low, job.high) &
-                      present(mesh.triangle_count, first_slot);
+  const Corners16 corners = load_corners(mesh, leaf);
+  Mask16 hits =
+      overlap(box_of(corners), job.low, job.high) & present(mesh.triangle_count, first_slot);
+  if (job.has_ball && hits != 0) hits &= ~outside_ball(corners, job.ball);
   if (hits != 0) put_slots(first_slot, hits, out);
 }
 

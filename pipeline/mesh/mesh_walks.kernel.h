@@ -7,6 +7,16 @@
 
 namespace winnow {
 
+/// A ball to be near to: coordinates relative to the middle are multiplied by `scale`, a power of
+/// two that makes the radius about 1.
+struct MeshBallJob {
+  float center[3];
+  float scale;
+  /// Scaled; the largest coordinate of the middle too.
+  float radius;
+  float largest;
+};
+
 /// A box to find triangles in: in the units of the nodes, and rounded inward to floats, which
 /// compare with float corners as the double box does.
 struct MeshBoxJob {
@@ -14,6 +24,8 @@ struct MeshBoxJob {
   float node_high[3];
   float low[3];
   float high[3];
+  bool has_ball;
+  MeshBallJob ball;
 };
 
 /// Mesh b placed in the frame of mesh a. Rows of the matrix of axes on which b leaves the range in

@@ -130,14 +130,19 @@ using Slots = std::vector<std::uint32_t>;
 using SlotPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 /// Walks twice: first without room, then with what was counted.
-Slots overlap(const MeshView& mesh, const double min[3], const double max[3]) {
+template <typename Walk>
+Slots collect(Walk&& walk) {
   SlotSink sink;
-  mesh_overlap(mesh, min, max, sink);
+  walk(sink);
   Slots slots(sink.size);
   sink = {slots.data(), slots.size(), 0};
-  mesh_overlap(mesh, min, max, sink);
+  walk(sink);
   EXPECT_EQ(sink.size, slots.size());
   return slots;
+}
+
+Slots overlap(const MeshView& mesh, const double min[3], const double max[3]) {
+  return collect([&](SlotSink& sink) { mesh_overlap(mesh, min, max, sink); });
 }
 
 SlotPairs overlap_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& placement,
@@ -238,6 +243,64 @@ TEST_F(Meshes, two_meshes_find_every_pair_of_triangles_that_meets_and_none_whose
       expect_pairs(a, b, random_placement(random, 1.0), margin);
     }
   }
+}
+
+/// The distance of a point from a triangle: from its plane if the foot is inside, else from an
+/// edge.
+Real distance(const TwinTriangle& t, const Point& point) {
+  const auto& c = t.corner;
+  const Point normal = cross(minus(c[1], c[0]), minus(c[2], c[0]));
+  const Real length = std::sqrt(dot(normal, normal));
+  Real nearest = std::numeric_limits<Real>::infinity();
+  bool inside = length > 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point edge = minus(c[(k + 1) % 3], c[k]);
+    const Point from = minus(point, c[k]);
+    const Real square = dot(edge, edge);
+    const Real along = square > 0 ? std::clamp<Real>(dot(from, edge) / square, 0, 1) : 0;
+    const Point away = minus(from, {edge[0] * along, edge[1] * along, edge[2] * along});
+    nearest = std::min(nearest, std::sqrt(dot(away, away)));
+    inside = inside && dot(cross(normal, edge), from) >= 0;
+  }
+  return inside ? std::abs(dot(normal, minus(point, c[0]))) / length : nearest;
+}
+
+TEST_F(Meshes, a_ball_finds_the_triangles_that_come_near_its_middle) {
+  Random random(11);
+  std::size_t dropped = 0;
+  for (const TriangleMesh& mesh : meshes_) {
+    const auto triangles = twin(mesh.view());
+    for (std::size_t k = 0; k < scaled(60); ++k) {
+      const auto& corner = triangles[random.below(triangles.size())].corner[0];
+      const double radius = mesh.radius() * random.log_uniform(1e-5, 0.5);
+      double center[3];
+      double min[3];
+      double max[3];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        center[axis] = static_cast<double>(corner[axis]) + radius * random.uniform(-1.5, 1.5);
+        min[axis] = center[axis] - radius;
+        max[axis] = center[axis] + radius;
+      }
+      const Slots found = on_all_isas([&] {
+        return collect(
+            [&](SlotSink& sink) { mesh_overlap(mesh.view(), min, max, center, radius, sink); });
+      });
+      Slots expected = overlap(mesh.view(), min, max);
+      const std::size_t in_box = expected.size();
+      const Real slack = static_cast<Real>(2e-4 * mesh.radius());
+      std::erase_if(expected, [&](std::uint32_t slot) {
+        const Point middle = {center[0], center[1], center[2]};
+        const Real away = distance(triangles[slot], middle) - static_cast<Real>(radius);
+        const bool is_found = std::binary_search(found.begin(), found.end(), slot);
+        EXPECT_TRUE(away > 0 || is_found) << slot;
+        EXPECT_TRUE(away <= slack || !is_found) << slot;
+        return !is_found;
+      });
+      EXPECT_EQ(found, expected);
+      dropped += in_box - found.size();
+    }
+  }
+  EXPECT_GT(dropped, 0U);
 }
 
 TEST_F(Meshes, trees_of_different_depth_find_their_pairs) {

@@ -1,0 +1,87 @@
+#pragma once
+
+// Sixteen triangles against a ball. A convex shape and a ball are apart only along the way from the
+// ball's middle to the closest point of the shape: for a triangle that is its normal, the way to a
+// corner, or the way to an edge at a right angle (Ericson, "Real-Time Collision Detection", 2005,
+// 5.2.7 and 5.1.5). Any direction serves as long as all three corners lie beyond the ball along it,
+// so that directions need not be exact; only heights along them are, to a few roundings.
+
+#include <winnow/pipeline/mesh/mesh_lanes.wide.h>
+#include <winnow/pipeline/mesh/mesh_walks.kernel.h>
+
+namespace winnow::WINNOW_ISA_NAME {
+
+using Lanes3 = Single16[3];
+
+[[gnu::always_inline]] inline Single16 height(const Lanes3& a, const Lanes3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Corners relative to the middle of the ball, in the scale that makes its radius about 1, and how
+/// far from the middle they must be to be outside for certain.
+struct BallCorners {
+  Lanes3 at[3];
+  Single16 square;  ///< of that distance
+
+  BallCorners(const Corners16& corners, const MeshBallJob& ball) {
+    Single16 largest(ball.largest);
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int k = 0; k < 3; ++k) {
+        at[k][axis] = (corners.at[k][axis] - Single16(ball.center[axis])) * Single16(ball.scale);
+        largest = max(largest, abs(at[k][axis]));
+      }
+    }
+    // The middle and the differences were rounded, and so are heights: less than 16 u of the
+    // largest number among them, u being half an ulp of 1.
+    const Single16 distance =
+        Single16(ball.radius * (1.0F + 0x1p-20F)) + largest * Single16(0x1p-19F);
+    square = distance * distance;
+  }
+
+  /// All three lie beyond the ball along a way of this squared length, given the least height.
+  [[gnu::always_inline]] Truth<float> beyond(const Single16& least, const Single16& length) const {
+    return (least > Single16(0.0F)) & (least * least > length * square);
+  }
+  [[gnu::always_inline]] Truth<float> beyond(const Lanes3& way) const {
+    const Single16 least = min(min(height(way, at[0]), height(way, at[1])), height(way, at[2]));
+    return beyond(least, height(way, way));
+  }
+};
+
+/// Which triangles lie outside of the ball for certain. Nothing that is not a number counts.
+[[gnu::always_inline]] inline Mask16 outside_ball(const Corners16& corners,
+                                                  const MeshBallJob& ball) {
+  const BallCorners t(corners, ball);
+  const Single16 aa = height(t.at[0], t.at[0]);
+  const Single16 bb = height(t.at[1], t.at[1]);
+  const Single16 cc = height(t.at[2], t.at[2]);
+  const Single16 ab = height(t.at[0], t.at[1]);
+  const Single16 bc = height(t.at[1], t.at[2]);
+  const Single16 ca = height(t.at[2], t.at[0]);
+  Truth<float> out = t.beyond(min(min(aa, ab), ca), aa) | t.beyond(min(min(bb, ab), bc), bb) |
+                     t.beyond(min(min(cc, bc), ca), cc);
+  Lanes3 edge[3];
+  for (int k = 0; k < 3; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      edge[k][axis] = t.at[(k + 1) % 3][axis] - t.at[k][axis];
+    }
+    const Single16 along = height(t.at[k], edge[k]);
+    const Single16 length = height(edge[k], edge[k]);
+    Lanes3 way;
+    for (int axis = 0; axis < 3; ++axis) {
+      way[axis] = t.at[k][axis] * length - edge[k][axis] * along;
+    }
+    out = out | t.beyond(way);
+  }
+  Lanes3 normal;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int j = (axis + 1) % 3;
+    const int k = (axis + 2) % 3;
+    normal[axis] = edge[0][j] * edge[1][k] - edge[0][k] * edge[1][j];
+  }
+  const Truth<float> below = height(normal, t.at[0]) < Single16(0.0F);
+  for (auto& x : normal) x = select(below, -x, x);
+  return bits(out | t.beyond(normal));
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME
