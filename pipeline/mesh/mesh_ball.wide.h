@@ -84,4 +84,48 @@ struct BallCorners {
   return bits(out | t.beyond(normal));
 }
 
+/// Takes triangles of one leaf after another, of which few are left, and tests sixteen at a time.
+class BallSieve {
+ public:
+  BallSieve(const MeshBallJob& ball, SlotSink& out) : ball_(ball), out_(out) {}
+
+  void add(const Corners16& corners, Mask16 hits, std::uint32_t first_slot) {
+    for (int k = 0; k < 3; ++k) {
+      for (int axis = 0; axis < 3; ++axis) {
+        compress_store(hits, lanes_of(corners.at[k][axis]), corner_[k][axis] + size_);
+      }
+    }
+    size_ += compress_store(hits, count_from(first_slot), slot_ + size_);
+    if (size_ < kLanes) return;
+    pass(kLanes);
+    size_ -= kLanes;
+    for (auto& corner : corner_) {
+      for (auto& column : corner) Single16::load(column + kLanes).store(column);
+    }
+    store_unaligned(slot_, load_unaligned(slot_ + kLanes));
+  }
+
+  void finish() {
+    if (size_ != 0) pass(size_);
+  }
+
+ private:
+  void pass(unsigned count) {
+    Corners16 corners;
+    for (int k = 0; k < 3; ++k) {
+      for (int axis = 0; axis < 3; ++axis) {
+        corners.at[k][axis] = Single16::load(corner_[k][axis]);
+      }
+    }
+    put_slots(load_unaligned(slot_), ~outside_ball(corners, ball_) & lanes_below(count), out_);
+  }
+
+  const MeshBallJob& ball_;
+  SlotSink& out_;
+  unsigned size_ = 0;
+  // Up to 15 wait, and every store writes 16.
+  alignas(64) float corner_[3][3][2 * kLanes] = {};
+  alignas(64) std::uint32_t slot_[2 * kLanes] = {};
+};
+
 }  // namespace winnow::WINNOW_ISA_NAME

@@ -52,6 +52,19 @@ struct Corners16 {
   return box;
 }
 
+/// Writes the slots of the set lanes, or counts on where there is no room.
+inline void put_slots(const Uint16& slots, Mask16 hits, SlotSink& out) {
+  if (out.size + kLanes <= out.capacity) {
+    out.size += compress_store(hits, slots, out.slot + out.size);
+    return;
+  }
+  alignas(64) std::uint32_t lane[kLanes];
+  store_unaligned(lane, slots);
+  for (; hits != 0; hits &= hits - 1, ++out.size) {
+    if (out.size < out.capacity) out.slot[out.size] = lane[first(hits)];
+  }
+}
+
 /// Sixteen boxes in double, half of them at a time.
 struct Box8 {
   Double8 low[3];

@@ -6,28 +6,11 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-void put_slots(std::uint32_t first_slot, Mask16 hits, SlotSink& out) {
-  if (out.size + kLanes <= out.capacity) {
-    out.size += compress_store(hits, count_from(first_slot), out.slot + out.size);
-    return;
-  }
-  for (; hits != 0; hits &= hits - 1, ++out.size) {
-    if (out.size < out.capacity) out.slot[out.size] = first_slot + first(hits);
-  }
-}
-
-void show_leaf_in_box(const MeshView& mesh, const MeshBoxJob& job, std::uint32_t leaf,
-                      SlotSink& out) {
-  const std::uint32_t first_slot = leaf * kMeshFanout;
-  const Corners16 corners = load_corners(mesh, leaf);
-  Mask16 hits =
-      overlap(box_of(corners), job.low, job.high) & present(mesh.triangle_count, first_slot);
-  if (job.has_ball && hits != 0) hits &= ~outside_ball(corners, job.ball);
-  if (hits != 0) put_slots(first_slot, hits, out);
-}
-
-/// One mask a level is all the state: the walk goes on where the mask of the level left off.
-void overlap_walk(const MeshView& mesh, const MeshBoxJob& job, SlotSink& out) {
+/// Calls show(corners, hits, first slot) for leaves with triangles in the box. One mask a level is
+/// all the state: the walk goes on where the mask of the level left off.
+template <typename Show>
+[[gnu::always_inline]] inline void walk_box(const MeshView& mesh, const MeshBoxJob& job,
+                                            Show&& show) {
   Mask16 open[kMaxMeshLevels];
   std::uint32_t base[kMaxMeshLevels];
   std::uint32_t level = mesh.levels - 1;
@@ -45,12 +28,30 @@ void overlap_walk(const MeshView& mesh, const MeshBoxJob& job, SlotSink& out) {
     const std::uint32_t node = base[level] + first(open[level]);
     open[level] &= open[level] - 1;
     if (level == 0) {
-      show_leaf_in_box(mesh, job, node, out);
+      const std::uint32_t first_slot = node * kMeshFanout;
+      const Corners16 corners = load_corners(mesh, node);
+      const Mask16 hits =
+          overlap(box_of(corners), job.low, job.high) & present(mesh.triangle_count, first_slot);
+      if (hits != 0) show(corners, hits, first_slot);
     } else {
       --level;
       enter(node * kMeshFanout);
     }
   }
+}
+
+void overlap_walk(const MeshView& mesh, const MeshBoxJob& job, SlotSink& out) {
+  if (job.has_ball) {
+    BallSieve sieve(job.ball, out);
+    walk_box(mesh, job, [&](const Corners16& corners, Mask16 hits, std::uint32_t first_slot) {
+      sieve.add(corners, hits, first_slot);
+    });
+    sieve.finish();
+    return;
+  }
+  walk_box(mesh, job, [&](const Corners16&, Mask16 hits, std::uint32_t first_slot) {
+    put_slots(count_from(first_slot), hits, out);
+  });
 }
 
 void pair_walk(const MeshView& a, const MeshView& b, const MeshPairJob& job, SlotPairSink& out) {
