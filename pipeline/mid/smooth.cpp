@@ -5,6 +5,7 @@
 #include <winnow/pipeline/solver/supporting_patch.h>
 
 #include <algorithm>
+#include <array>
 #include <bitset>
 #include <cmath>
 
@@ -12,7 +13,11 @@ namespace winnow::mid {
 namespace {
 
 constexpr std::size_t kChunk = 256;
-constexpr std::size_t kWave = 64;
+constexpr std::size_t kWave = 16;
+
+// Times as deep as any contact of the same bodies is before smoothing: a point on a seam may be,
+// since the shortest way out of each triangle is over the seam.
+constexpr double kMostDeeper = 4.0;
 
 // Of float positions and depths.
 constexpr double kFloatError = 1.2e-7;
@@ -85,10 +90,19 @@ class Smoothing {
     bool has_room = false;
     /// What is left to be clipped once there is room.
     std::bitset<kChunk> is_deep{};
+    /// How deep they may become.
+    std::array<float, kChunk> most{};
+  };
+  /// Primitive pairs of one pair of bodies, and how deep the deepest of them is.
+  struct Together {
+    std::uint32_t first = 0;
+    std::uint32_t end = 0;
+    double deepest = 0.0;
   };
 
   void run_wave(const Execution& execution, std::span<Chunk> wave) noexcept;
   void look(Chunk& chunk) noexcept;
+  void meet(std::size_t i, Together& bodies) const noexcept;
   void clip_all(Chunk& chunk) noexcept;
   void close_gaps(std::span<Chunk> wave, std::size_t from) noexcept;
 
@@ -96,7 +110,7 @@ class Smoothing {
   void choose_side(const BodyPair& pair, bool second, Vec& away) const noexcept;
   void set_normal(std::size_t i, const Vec& normal) noexcept;
   void lower_sphere(std::size_t i, const Vec& normal) noexcept;
-  void clip(Chunk& chunk, std::size_t i, const Vec& normal) noexcept;
+  void clip(Chunk& chunk, std::size_t i) noexcept;
   void take(Chunk& chunk, std::size_t i, std::span<const ContactPoint> points) noexcept;
 
   /// One that may have inner edges.
@@ -147,6 +161,7 @@ void Smoothing::run_wave(const Execution& execution, std::span<Chunk> wave) noex
 
 // Everything that needs no room, and how much the rest needs.
 void Smoothing::look(Chunk& chunk) noexcept {
+  Together bodies;
   for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
     const Found found = find(i);
     if (found.contact == EdgeContact::real) continue;
@@ -154,7 +169,9 @@ void Smoothing::look(Chunk& chunk) noexcept {
     if (found.contact == EdgeContact::nearly_face) {
       result_.error_bound_[i] += found.off;
     } else if (found.is_deep) {
+      meet(i, bodies);
       chunk.is_deep.set(i - chunk.begin);
+      chunk.most[i - chunk.begin] = static_cast<float>(bodies.deepest);
       chunk.used += kManifoldPoints;
     } else {
       lower_sphere(i, found.normal);
@@ -162,11 +179,33 @@ void Smoothing::look(Chunk& chunk) noexcept {
   }
 }
 
+// Finds the deepest of the answers about the same bodies and kinds, which are next to each other.
+// Smoothing makes none deeper, so that it does not matter which have been smoothed already.
+void Smoothing::meet(std::size_t i, Together& bodies) const noexcept {
+  const std::uint32_t at = result_.order_[i];
+  if (at >= bodies.first && at < bodies.end) return;
+  const Column<std::uint32_t>& first = pairs_.first;
+  const std::uint32_t* const next = std::upper_bound(first.begin(), first.end(), at);
+  bodies = {at, at + 1, -result_.distance_[i]};
+  if (next == first.begin() || next == first.end()) return;
+  bodies.first = next[-1];
+  bodies.end = next[0];
+  const auto is_of = [&](std::size_t k) {
+    return result_.order_[k] >= bodies.first && result_.order_[k] < bodies.end;
+  };
+  for (std::size_t k = i; k < result_.size() && is_of(k); ++k) {
+    bodies.deepest = std::max(bodies.deepest, -result_.distance_[k]);
+  }
+  for (std::size_t k = i; k-- > 0 && is_of(k);) {
+    bodies.deepest = std::max(bodies.deepest, -result_.distance_[k]);
+  }
+}
+
 void Smoothing::clip_all(Chunk& chunk) noexcept {
   if (chunk.is_deep.none()) return;
   for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
     if (!chunk.is_deep.test(i - chunk.begin)) continue;
-    clip(chunk, i, Vec(result_.normal_[0][i], result_.normal_[1][i], result_.normal_[2][i]));
+    clip(chunk, i);
   }
 }
 
@@ -265,7 +304,8 @@ void Smoothing::lower_sphere(std::size_t i, const Vec& normal) noexcept {
   }
 }
 
-void Smoothing::clip(Chunk& chunk, std::size_t i, const Vec& normal) noexcept {
+void Smoothing::clip(Chunk& chunk, std::size_t i) noexcept {
+  const Vec normal(result_.normal_[0][i], result_.normal_[1][i], result_.normal_[2][i]);
   const BodyPair& bodies = pair(i);
   solver::Problem problem;
   prepare(tables_, pairs_.shapes[bodies.a], pairs_.poses[bodies.a], pairs_.shapes[bodies.b],
@@ -279,6 +319,9 @@ void Smoothing::clip(Chunk& chunk, std::size_t i, const Vec& normal) noexcept {
   // up.
   const bool second = is_mesh_triangle(bodies.b);
   if (!is_over(second ? problem.b : problem.a, normal, points[0].position, problem.size)) return;
+  // Bodies that touch a surface from aside are nowhere as deep as they are below its planes.
+  const double most = static_cast<double>(chunk.most[i - chunk.begin]);
+  if (unscaled(problem, static_cast<double>(points[0].depth)) > kMostDeeper * most) return;
   // The surfaces share a point whatever their features along the normal do.
   const double least = -std::ldexp(result_.distance_[i], -problem.exponent);
   const double depth = std::max(static_cast<double>(points[0].depth), least);

@@ -13,7 +13,9 @@ namespace winnow::mid {
 /// - so do shapes that only their rounding lets touch, with the point of a sphere moved below its
 ///   centre, so that it does not turn;
 /// - others are clipped against the triangle along the normal, and the depth is that of the
-///   clipped points, at least what it was; where nothing is left of them, as it was.
+///   clipped points, at least what it was. It is as it was where nothing is left of them, and where
+///   it would be several times what it is for any contact of the same bodies: they are beside the
+///   surface then, not above it.
 /// No contact is lost: the distance to a face's plane is never more than that to the face. Contacts
 /// of triangles of two meshes stay as they are: which face's normal is meant is not known. Which
 /// edges are active is known for the front of a surface only; on its back concave edges, which look
