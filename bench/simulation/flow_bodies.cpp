@@ -31,7 +31,12 @@ Turn spun(const Turn& q, const Vec& spin, double time) {
   return {scale * w, scale * v[0], scale * v[1], scale * v[2]};
 }
 
+bool is_round(const Vec& inertia) {
+  return inertia[0] == inertia[1] && inertia[0] == inertia[2];
+}
+
 Vec spin_of(const Turn& q, const Vec& momentum, const Vec& inverse_inertia) {
+  if (is_round(inverse_inertia)) return inverse_inertia[0] * momentum;
   Vec own = turned_back(q, momentum);
   for (std::size_t axis = 0; axis < 3; ++axis) own[axis] *= inverse_inertia[axis];
   return turned(q, own);
@@ -60,9 +65,12 @@ void move_body(FlowBodies& bodies, std::size_t i, double gravity, double step, F
   const Vec middle = turn + 0.5 * twist;
   energy.kinetic += 0.5 * dot(middle, spin_of(q, middle, inverse_inertia));
   const Vec turning = turn + twist;
+  Vec spin = spin_of(q, turning, inverse_inertia);
   // By the spin halfway: bodies of unequal moments would gain energy by turning otherwise.
-  const Turn half = spun(q, spin_of(q, turning, inverse_inertia), 0.5 * step);
-  q = spun(q, spin_of(half, turning, inverse_inertia), step);
+  if (!is_round(inverse_inertia)) {
+    spin = spin_of(spun(q, spin, 0.5 * step), turning, inverse_inertia);
+  }
+  q = spun(q, spin, step);
   put(bodies.momentum, i, turning);
   put(bodies.spin, i, spin_of(q, turning, inverse_inertia));
   for (std::size_t k = 0; k < 4; ++k) bodies.orientation[k][i] = static_cast<float>(q[k]);

@@ -51,7 +51,7 @@ FunnelSize funnel_for(std::size_t objects) {
   const double across = cube_root(static_cast<double>(objects));
   FunnelSize size;
   size.radius = 3.0 + 0.7 * across;
-  size.outlet = 2.0 + 0.15 * across;
+  size.outlet = 1.6 + 0.08 * across;
   size.depth = size.radius;
   size.wall = 4.0 + 0.7 * across;
   return size;
@@ -157,7 +157,7 @@ void GranularFlow::fill() {
   double z = -funnel_.depth + spacing_;
   for (std::size_t i = 0; i < objects_; z += spacing_) {
     const double height = std::min(1.0, 1.0 + z / std::max(funnel_.depth, 1e-9));
-    const double inside = std::lerp(funnel_.outlet, funnel_.radius, height) - spacing_;
+    const double inside = std::lerp(funnel_.outlet, funnel_.radius, height) - 0.75 * spacing_;
     for (std::size_t s = 0; s < spots_.size() && i < objects_; ++s) {
       if (std::hypot(spots_[s].x, spots_[s].y) > inside) continue;
       put(bodies_.position, i, {spots_[s].x, spots_[s].y, z});

@@ -30,7 +30,7 @@ struct FlowOptions {
   double step = 1e-3;
   double gravity = 10.0;
   /// Largest speed along an axis with which bodies start, in random directions.
-  double stir = 0.5;
+  double stir = 2.0;
   SoftContacts law{};
   Execution execution = Execution::parallel();
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();

@@ -32,7 +32,6 @@ struct Touch {
 void add_point(const FlowBodies& bodies, const Touch& touch, const SoftContacts& law,
                const ContactPoint& point, const Vec& normal, double share, PairForce& sum) {
   const auto depth = static_cast<double>(point.depth);
-  if (depth <= 0.0) return;
   const Vec arm_a{static_cast<double>(point.position[0]), static_cast<double>(point.position[1]),
                   static_cast<double>(point.position[2])};
   const Vec arm_b = arm_a - touch.between;
@@ -60,9 +59,16 @@ PairForce force_of(const Contacts& contacts, std::size_t pair, const SoftContact
   const auto point_first = contacts.point_first();
   for (std::uint32_t m = manifold_first[pair]; m < manifold_first[pair + 1]; ++m) {
     const Vec normal{contacts.normal(0)[m], contacts.normal(1)[m], contacts.normal(2)[m]};
-    const std::uint32_t count = point_first[m + 1] - point_first[m];
+    double depths = 0.0;
     for (std::uint32_t p = point_first[m]; p < point_first[m + 1]; ++p) {
-      add_point(bodies, touch, law, contacts.contact(p), normal, 1.0 / count, sum);
+      depths += std::max(0.0, static_cast<double>(contacts.contact(p).depth));
+    }
+    for (std::uint32_t p = point_first[m]; p < point_first[m + 1]; ++p) {
+      // By depth: a point that comes or goes does so at depth zero, and changes nothing then.
+      const ContactPoint point = contacts.contact(p);
+      if (point.depth <= 0.0F) continue;
+      const double share = static_cast<double>(point.depth) / depths;
+      add_point(bodies, touch, law, point, normal, share, sum);
     }
   }
   return sum;

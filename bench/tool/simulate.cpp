@@ -58,7 +58,7 @@ class FlowRun {
     }
   }
 
-  [[nodiscard]] std::size_t warm_up() const { return steps_ / 5; }
+  [[nodiscard]] std::size_t warm_up() const { return steps_ / 2; }
   [[nodiscard]] std::size_t allocations() const {
     return memory_.allocations() - allocations_before_;
   }
@@ -256,7 +256,7 @@ int Simulate::run() {
     }
     run.finish();
     std::cout << isa_name() << ", " << threads << (threads == 1 ? " thread" : " threads")
-              << "; medians of the profiled steps after the first fifth\n";
+              << "; medians of the profiled steps in the second half\n";
     print_phases(run);
     for (const auto& [what, much] : facts(run)) std::cout << what << ": " << much << '\n';
     write(run);

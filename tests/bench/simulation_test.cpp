@@ -41,21 +41,23 @@ std::uint64_t fingerprint_after(std::size_t steps, const FlowOptions& options) {
 }
 
 TEST(GranularFlow, is_the_same_on_any_instruction_set_and_number_of_threads) {
-  constexpr std::size_t kSteps = 250;
+  constexpr std::size_t kSteps = 1000;
+  FlowOptions serial = small_flow();
+  serial.objects = 120;
+  FlowOptions parallel = serial;
+  parallel.execution = Execution::parallel();
   std::uint64_t expected = 0;
   {
     const test::IsaScope scope(available_isas().front());
-    expected = fingerprint_after(kSteps, small_flow());
+    expected = fingerprint_after(kSteps, serial);
   }
   for (const Isa isa : available_isas()) {
     const test::IsaScope scope(isa);
     test::Threads threads(2);
-    FlowOptions options = small_flow();
-    options.execution = Execution::parallel();
-    EXPECT_EQ(threads.run([&] { return fingerprint_after(kSteps, options); }), expected)
+    EXPECT_EQ(threads.run([&] { return fingerprint_after(kSteps, parallel); }), expected)
         << to_string(isa);
     if (isa == available_isas().front()) continue;
-    EXPECT_EQ(fingerprint_after(kSteps, small_flow()), expected) << to_string(isa);
+    EXPECT_EQ(fingerprint_after(kSteps, serial), expected) << to_string(isa);
   }
 }
 
@@ -103,7 +105,7 @@ TEST(GranularFlow, contacts_create_no_energy) {
 
 TEST(GranularFlow, allocates_nothing_once_it_is_warm) {
   CountingResource memory;
-  FlowOptions options = small_flow();
+  FlowOptions options = small_flow(FlowShape::spheres);
   options.memory = &memory;
   GranularFlow flow(options);
   for (std::size_t i = 0; i < 1500; ++i) flow.step();
