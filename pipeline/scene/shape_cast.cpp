@@ -9,6 +9,7 @@
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/scene/shape_cast.h>
 #include <winnow/pipeline/solver/core_distance.h>
+#include <winnow/pipeline/solver/gjk.h>
 #include <winnow/pipeline/solver/problem.h>
 #include <winnow/pipeline/solver/solver.h>
 
@@ -22,6 +23,7 @@ namespace {
 
 using solver::CoreDistance;
 using solver::CoreKind;
+using solver::GjkResult;
 using solver::kEpsilon;
 using solver::Problem;
 using solver::Vec;
@@ -118,9 +120,11 @@ class Advancement {
 
  private:
   [[nodiscard]] bool search() noexcept;
-  [[nodiscard]] bool touches_at_start(const Sample& start) noexcept;
+  [[nodiscard]] bool touches_at_start() noexcept;
   [[nodiscard]] double next(std::uint32_t step) const noexcept;
   [[nodiscard]] Sample sample(double t) noexcept;
+  void face(const Vec& axis, Sample& sample) const noexcept;
+  [[nodiscard]] double surely_apart(const Problem& problem, Sample& sample) noexcept;
   void prepare_at(double t, Problem& problem) const noexcept;
   void describe(CastTouch& touch) noexcept;
 
@@ -159,37 +163,62 @@ void Advancement::prepare_at(double t, Problem& problem) const noexcept {
   }
 }
 
+/// The gap along a plane that parts the pair, less all rounding; none of shapes that touch as far
+/// as double can tell. What counts is what the plane itself parts, not what a solver says about
+/// distances.
 Sample Advancement::sample(double t) noexcept {
   ++steps_;
   Problem problem;
   prepare_at(t, problem);
-  Sample result;
-  const CoreDistance found = core_distance(problem, NarrowLevel::boolean, kInfinity, counts_);
-  if (found.overlaps) return result;
-  result.normal = swapped_ ? Vec(-found.axis) : found.axis;
-  result.closing = result.normal.dot(way_.step()) + 4.0 * kEpsilon * way_.speed();
-  // What the plane itself parts, not what the solver says about distances.
-  const double cores = problem.b.kind == CoreKind::half_space
-                           ? found.distance
-                           : separation(problem.a, problem.b, found.axis);
   const double roundings = problem.a.rounding + problem.b.rounding;
-  double gap = cores - roundings - problem.noise();
-  if (!(gap > 0.0)) {
-    // A poor plane: what is known without one is how far they are apart.
-    gap = found.distance - found.doubt - roundings;
-    if (gap > 0.0) result.closing = way_.speed();
+  const double noise = problem.noise();
+  Sample result;
+  double gap = 0.0;
+  if (problem.b.kind == CoreKind::half_space) {
+    const CoreDistance found = core_distance(problem, NarrowLevel::boolean, kInfinity, counts_);
+    gap = found.distance - roundings - noise;
+    face(found.axis, result);
+  } else {
+    const bool is_known = !normal_.isZero(0.0);
+    const Vec start = is_known ? Vec(swapped_ ? -normal_ : normal_) : problem.b.center;
+    const GjkResult found = gjk(problem.a, problem.b, start, 0.125 * noise, kInfinity);
+    if (found.contact || found.upper + noise <= roundings) return result;
+    gap = found.lower - roundings - noise;
+    face(found.axis, result);
+    if (!(gap > 0.0) && found.upper - roundings > 2.0 * noise) {
+      gap = surely_apart(problem, result) - roundings;
+    }
   }
   if (gap > 0.0) result.gap = unscaled(problem, gap);
   result.parted = result.gap > 0.0;
   return result;
 }
 
+void Advancement::face(const Vec& axis, Sample& sample) const noexcept {
+  sample.normal = swapped_ ? Vec(-axis) : axis;
+  sample.closing = sample.normal.dot(way_.step()) + 4.0 * kEpsilon * way_.speed();
+}
+
+/// For cores whose closest points iteration does not find. Without a good plane they close at full
+/// speed.
+double Advancement::surely_apart(const Problem& problem, Sample& sample) noexcept {
+  const CoreDistance found = core_distance(problem, NarrowLevel::boolean, kInfinity, counts_);
+  if (found.overlaps) return 0.0;
+  face(found.axis, sample);
+  const double roundings = problem.a.rounding + problem.b.rounding;
+  const double cores = separation(problem.a, problem.b, found.axis) - problem.noise();
+  if (cores > roundings) return cores;
+  sample.closing = way_.speed();
+  return found.distance - found.doubt;
+}
+
 /// Where double cannot tell, exact arithmetic does.
-bool Advancement::touches_at_start(const Sample& start) noexcept {
+bool Advancement::touches_at_start() noexcept {
   const PairAnswer answer = solve_pair(tables_, pair_.moving, pair_.from, pair_.standing,
-                                       pair_.pose, NarrowLevel::boolean, 0.0, counts_);
+                                       pair_.pose, NarrowLevel::distance, 0.0, counts_);
   overlap_at_start_ = answer.overlap;
-  return answer.overlap || start.closing > 8.0 * kEpsilon * way_.speed();
+  const Vec normal = Vec::Map(answer.normal);
+  return answer.overlap || normal.dot(way_.step()) > 4.0 * kEpsilon * way_.speed();
 }
 
 /// Where to look next. A little beyond what is known to be free; twice as far as Newton's method
@@ -210,7 +239,7 @@ bool Advancement::search() noexcept {
   for (std::uint32_t step = 0; step < kMostSteps; ++step) {
     const Sample found = sample(t);
     if (!found.parted) {
-      if (t == 0.0) return touches_at_start(found);
+      if (t == 0.0) return touches_at_start();
       touching_ = std::min(touching_, t);
     } else if (found.closing <= 8.0 * kEpsilon * way_.speed()) {
       // Nor do they meet later: before, the gap would be lost in the rounding of the way.
