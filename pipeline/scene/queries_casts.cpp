@@ -11,11 +11,8 @@
 namespace winnow {
 namespace {
 
-/// Equal t are ordered by the bodies' ids, then by part.
 bool is_before(const SceneHit& a, const SceneHit& b) noexcept {
-  if (a.t != b.t) return a.t < b.t;
-  if (a.key.id != b.key.id) return a.key.id < b.key.id;
-  return a.part < b.part;
+  return a.t != b.t ? a.t < b.t : a.key.id < b.key.id;
 }
 
 /// Bodies that were looked at and may be shown again: a partition asks about a body once a stretch
@@ -53,8 +50,13 @@ class CastQuestion {
 
  private:
   [[nodiscard]] PreciseBox start_box() const noexcept;
-  [[nodiscard]] bool meets(std::uint32_t body, double limit, bool any, SceneHit& hit) noexcept;
-  [[nodiscard]] double limit() const noexcept { return best_ ? best_.t : mover_.max_t(); }
+  [[nodiscard]] double limit() const noexcept { return found() ? best_.t() : mover_.max_t(); }
+  [[nodiscard]] bool found() const noexcept { return body_ != kNoObject; }
+  [[nodiscard]] bool meets(std::uint32_t body, double limit, bool any,
+                           Encounter& encounter) const noexcept {
+    return encounter.find(state_.walk, mover_, state_.placed(body), limit, any);
+  }
+  [[nodiscard]] SceneHit shown(std::uint32_t body, const Encounter& encounter) const noexcept;
   /// True if the body is now the first one met.
   bool improves(std::uint32_t body) noexcept;
   template <typename Look>
@@ -63,7 +65,9 @@ class CastQuestion {
   SceneQueries::State& state_;
   const Mover& mover_;
   const Filter& filter_;
-  SceneHit best_;
+  /// The body that is the first one met, as far as is known.
+  std::uint32_t body_ = kNoObject;
+  Encounter best_;
   Memo memo_;
 };
 
@@ -73,18 +77,23 @@ PreciseBox CastQuestion::start_box() const noexcept {
   return {start + mover_.extent().min, start + mover_.extent().max};
 }
 
-bool CastQuestion::meets(std::uint32_t body, double limit, bool any, SceneHit& hit) noexcept {
-  if (!first_meeting(state_.walk, mover_, state_.placed(body), limit, any, hit)) return false;
+SceneHit CastQuestion::shown(std::uint32_t body, const Encounter& encounter) const noexcept {
+  SceneHit hit = encounter.hit(mover_);
   hit.key = state_.scene.keys.key_of(body);
   hit.data = state_.scene.keys.client_data(body);
-  return true;
+  return hit;
 }
 
 bool CastQuestion::improves(std::uint32_t body) noexcept {
   if (const bool* const known = memo_.find(body)) return *known;
-  SceneHit hit;
-  const bool better = meets(body, limit(), false, hit) && (!best_ || is_before(hit, best_));
-  if (better) best_ = hit;
+  Encounter encounter;
+  bool better = meets(body, limit(), false, encounter);
+  // Equal t are ordered by the bodies' ids.
+  if (better && found() && encounter.t() == best_.t()) better = body < body_;
+  if (better) {
+    body_ = body;
+    best_ = encounter;
+  }
   return memo_.note(body, better);
 }
 
@@ -112,7 +121,7 @@ Status CastQuestion::closest(SceneHit& hit) {
   };
   LookingFilter first(state_.scene, filter_, look);
   LookingFilter second(state_.scene, filter_, look_only);
-  while (way.next() && !(best_ && best_.t < way.begin())) {
+  while (way.next() && !(found() && best_.t() < way.begin())) {
     const Status status = state_.each_partition([&](const Partition& partition) {
       if (way.is_rest()) return look_at_rest(partition, way, look);
       Hit box;
@@ -126,31 +135,30 @@ Status CastQuestion::closest(SceneHit& hit) {
     });
     if (status != Status::ok) return status;
   }
-  hit = best_;
+  hit = found() ? shown(body_, best_) : SceneHit{};
   return Status::ok;
 }
 
 Status CastQuestion::any(SceneHit& hit) {
   BoxWay way(start_box(), mover_.direction(), mover_.max_t());
   auto look = [&](std::uint32_t body) {
-    if (best_) return true;
+    if (found()) return true;
     if (const bool* const known = memo_.find(body)) return *known;
-    SceneHit found;
-    if (!meets(body, mover_.max_t(), true, found)) return memo_.note(body, false);
-    best_ = found;
+    if (!meets(body, mover_.max_t(), true, best_)) return memo_.note(body, false);
+    body_ = body;
     return true;
   };
   LookingFilter looking(state_.scene, filter_, look);
-  while (!best_ && way.next()) {
+  while (!found() && way.next()) {
     const Status status = state_.each_partition([&](const Partition& partition) {
-      if (best_) return Status::ok;
+      if (found()) return Status::ok;
       if (way.is_rest()) return look_at_rest(partition, way, look);
       Hit box;
       return partition.any(way.cast(mover_.max_t()), box, looking.filter());
     });
     if (status != Status::ok) return status;
   }
-  hit = best_;
+  hit = found() ? shown(body_, best_) : SceneHit{};
   return Status::ok;
 }
 
@@ -160,10 +168,12 @@ Status CastQuestion::all() {
   BoxWay way(start_box(), mover_.direction(), mover_.max_t());
   bool has_room = true;
   auto look = [&](std::uint32_t body) {
-    SceneHit hit;
     if (memo_.find(body) != nullptr) return false;
     memo_.note(body, false);
-    if (meets(body, mover_.max_t(), false, hit)) has_room = hits.push_back(hit) && has_room;
+    Encounter encounter;
+    if (meets(body, mover_.max_t(), false, encounter)) {
+      has_room = hits.push_back(shown(body, encounter)) && has_room;
+    }
     return false;
   };
   LookingFilter looking(state_.scene, filter_, look);

@@ -1,5 +1,4 @@
 #include <winnow/pipeline/scene/queries_movers.h>
-#include <winnow/pipeline/scene/shape_cast.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -62,16 +61,6 @@ bool passes_by(const double from[3], const double direction[3], const ConvexPart
   return low < -error && high > error;
 }
 
-void show(const Meeting& meeting, const double base[3], std::uint32_t part,
-          SceneHit& hit) noexcept {
-  hit.t = meeting.t;
-  hit.part = part;
-  for (int i = 0; i < 3; ++i) {
-    hit.normal[i] = meeting.normal[i];
-    hit.point[i] = base[i] + meeting.point[i];
-  }
-}
-
 }  // namespace
 
 RayMover::RayMover(const ShapePool& shapes, const ShapeRay& ray) noexcept
@@ -95,6 +84,8 @@ bool RayMover::meets(const double from[3], const ConvexPart& part, double limit,
   return true;
 }
 
+void RayMover::describe(const double[3], const ConvexPart&, Meeting&) const noexcept {}
+
 bool RayMover::enters(const ShapeRay& ray, const ConvexPart& part,
                       Meeting& meeting) const noexcept {
   PartTables tables(shapes_);
@@ -117,56 +108,97 @@ ShapeMover::ShapeMover(const PartWalk& walk, const ShapeCast& cast, double toler
       cast_(cast),
       tolerance_(tolerance) {}
 
-bool ShapeMover::meets(const double from[3], const ConvexPart& part, double limit,
-                       Meeting& meeting) const noexcept {
-  PartTables tables(shapes_);
+CastPair ShapeMover::pair(PartTables& tables, const double from[3],
+                          const ConvexPart& part) const noexcept {
   CastPair pair;
   pair.moving = tables.put(0, {cast_.shape, cast_.pose});
   pair.from = cast_.pose;
   std::copy_n(from, 3, pair.from.position);
   std::copy_n(cast_.direction, 3, pair.direction);
-  pair.max_t = limit;
   ConvexPart thick = part;
   thick.thickness = doubt(part);
   pair.standing = tables.put(1, thick);
   pair.pose = part.pose;
+  return pair;
+}
+
+bool ShapeMover::meets(const double from[3], const ConvexPart& part, double limit,
+                       Meeting& meeting) const noexcept {
+  PartTables tables(shapes_);
+  CastPair asked = pair(tables, from, part);
+  asked.max_t = limit;
   CastTouch touch;
-  if (!cast_shape(tables.tables(), pair, tolerance_, touch)) return false;
+  if (!cast_shape(tables.tables(), asked, tolerance_, touch)) return false;
   meeting.t = touch.t;
+  std::copy_n(touch.normal, 3, meeting.normal);
+  meeting.overlaps_at_start = touch.overlaps_at_start;
+  return true;
+}
+
+void ShapeMover::describe(const double from[3], const ConvexPart& part,
+                          Meeting& meeting) const noexcept {
+  PartTables tables(shapes_);
+  CastTouch touch;
+  touch.t = meeting.t;
+  touch.overlaps_at_start = meeting.overlaps_at_start;
+  std::copy_n(meeting.normal, 3, touch.normal);
+  describe_touch(tables.tables(), pair(tables, from, part), touch);
   for (int i = 0; i < 3; ++i) {
     meeting.normal[i] = touch.normal[i];
     meeting.point[i] = part.pose.position[i] + touch.point[i];
   }
-  return true;
 }
 
-bool first_meeting(const PartWalk& walk, const Mover& mover, const PlacedShape& body, double limit,
-                   bool any, SceneHit& hit) noexcept {
+void Encounter::take(const ConvexPart& part, const Meeting& meeting) noexcept {
+  meeting_ = meeting;
+  part_ = part;
+  if (part.triangle != nullptr) triangle_ = *part.triangle;
+}
+
+bool Encounter::find(const PartWalk& walk, const Mover& mover, const PlacedShape& body,
+                     double limit, bool any) noexcept {
   Meeting meeting;
   if (!body.shape.is_composite()) {
-    const double world[3] = {0.0, 0.0, 0.0};
-    if (!mover.meets(mover.start(), {body.shape, body.pose}, limit, meeting)) return false;
-    show(meeting, world, kWholeShape, hit);
+    std::copy_n(mover.start(), 3, from_);
+    std::fill_n(base_, 3, 0.0);
+    const ConvexPart whole{body.shape, body.pose};
+    if (!mover.meets(from_, whole, limit, meeting)) return false;
+    take(whole, meeting);
     return true;
   }
   // About the body, so that parts lose nothing far from the origin; what the difference of the
   // positions loses is put into the pose, where it is small.
-  const double* const base = body.pose.position;
-  const Difference start = difference(mover.start(), base);
+  std::copy_n(body.pose.position, 3, base_);
+  const Difference start = difference(mover.start(), base_);
+  std::copy_n(start.difference, 3, from_);
   PlacedShape placed = body;
   for (int i = 0; i < 3; ++i) placed.pose.position[i] = -start.rest[i];
   bool found = false;
-  walk.met(placed, sweep_from(mover, start.difference, limit),
-           [&](const ConvexPart& part, double most) {
-             most = std::min(most, limit);
-             if (!mover.meets(start.difference, part, most, meeting)) return most;
-             if (found && meeting.t == hit.t && hit.part < part.part) return most;
-             found = true;
-             limit = meeting.t;
-             show(meeting, base, part.part, hit);
-             return any ? -1.0 : limit;
-           });
+  walk.met(placed, sweep_from(mover, from_, limit), [&](const ConvexPart& part, double most) {
+    most = std::min(most, limit);
+    if (!mover.meets(from_, part, most, meeting)) return most;
+    if (found && meeting.t == meeting_.t && part_.part < part.part) return most;
+    found = true;
+    limit = meeting.t;
+    take(part, meeting);
+    return any ? -1.0 : limit;
+  });
   return found;
+}
+
+SceneHit Encounter::hit(const Mover& mover) const noexcept {
+  ConvexPart part = part_;
+  if (part.triangle != nullptr) part.triangle = &triangle_;
+  Meeting meeting = meeting_;
+  mover.describe(from_, part, meeting);
+  SceneHit hit;
+  hit.t = meeting.t;
+  hit.part = part.part;
+  for (int i = 0; i < 3; ++i) {
+    hit.normal[i] = meeting.normal[i];
+    hit.point[i] = base_[i] + meeting.point[i];
+  }
+  return hit;
 }
 
 }  // namespace winnow

@@ -1,16 +1,19 @@
 #pragma once
 
 #include <winnow/pipeline/scene/queries_parts.h>
+#include <winnow/pipeline/scene/shape_cast.h>
 #include <winnow/pipeline/scene_queries.h>
 
 namespace winnow {
 
-/// Where something that moves first meets a convex part: all in the part's axes and about its
-/// origin of coordinates.
+/// Where something that moves first meets a convex part: about the part's origin of coordinates,
+/// in the axes of the world.
 struct Meeting {
   double t = 0.0;
+  /// Of shapes: before `Mover::describe` not the last word.
   double normal[3] = {0.0, 0.0, 0.0};
   double point[3] = {0.0, 0.0, 0.0};
+  bool overlaps_at_start = false;
 };
 
 /// A ray or a convex shape that moves.
@@ -29,6 +32,9 @@ class Mover {
   /// True if it meets the part by t = limit, starting at `from`.
   [[nodiscard]] virtual bool meets(const double from[3], const ConvexPart& part, double limit,
                                    Meeting& meeting) const noexcept = 0;
+  /// Completes a meeting: dearer than to find when it is.
+  virtual void describe(const double from[3], const ConvexPart& part,
+                        Meeting& meeting) const noexcept = 0;
 
  protected:
   Mover(const PreciseBox& extent, const double* start, const double* direction,
@@ -48,6 +54,8 @@ class RayMover final : public Mover {
   RayMover(const ShapePool& shapes, const ShapeRay& ray) noexcept;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
                            Meeting& meeting) const noexcept override;
+  void describe(const double from[3], const ConvexPart& part,
+                Meeting& meeting) const noexcept override;
 
  private:
   [[nodiscard]] bool enters(const ShapeRay& ray, const ConvexPart& part,
@@ -63,16 +71,40 @@ class ShapeMover final : public Mover {
   ShapeMover(const PartWalk& walk, const ShapeCast& cast, double tolerance) noexcept;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
                            Meeting& meeting) const noexcept override;
+  void describe(const double from[3], const ConvexPart& part,
+                Meeting& meeting) const noexcept override;
 
  private:
+  [[nodiscard]] CastPair pair(PartTables& tables, const double from[3],
+                              const ConvexPart& part) const noexcept;
+
   const ShapePool& shapes_;
   const ShapeCast& cast_;
   const double tolerance_;
 };
 
-/// The mover's first meeting with a body by t = limit, of equal ones that with the least part. With
-/// `any`, the first that is found.
-[[nodiscard]] bool first_meeting(const PartWalk& walk, const Mover& mover, const PlacedShape& body,
-                                 double limit, bool any, SceneHit& hit) noexcept;
+/// A meeting with a body, and all that it takes to describe it.
+class Encounter {
+ public:
+  /// Looks for the mover's first meeting with the body by t = limit, of equal ones that with the
+  /// least part; with `any`, for whichever is found first. False if there is none.
+  [[nodiscard]] bool find(const PartWalk& walk, const Mover& mover, const PlacedShape& body,
+                          double limit, bool any) noexcept;
+
+  [[nodiscard]] double t() const noexcept { return meeting_.t; }
+  [[nodiscard]] std::uint32_t part() const noexcept { return part_.part; }
+  /// All but the body's key and data.
+  [[nodiscard]] SceneHit hit(const Mover& mover) const noexcept;
+
+ private:
+  void take(const ConvexPart& part, const Meeting& meeting) noexcept;
+
+  Meeting meeting_;
+  ConvexPart part_;
+  TriangleShape triangle_;
+  /// Where the mover starts, and the world's origin lies, as the part has it.
+  double from_[3] = {0.0, 0.0, 0.0};
+  double base_[3] = {0.0, 0.0, 0.0};
+};
 
 }  // namespace winnow

@@ -75,6 +75,7 @@ class Way {
     return result.cwiseMin(kMost).cwiseMax(-kMost);
   }
 
+  [[nodiscard]] double steps(double shown) const noexcept { return std::ldexp(shown, exponent_); }
   /// In the caller's units, not above what it was.
   [[nodiscard]] double shown(double t) const noexcept {
     const double result = std::ldexp(t, -exponent_);
@@ -114,9 +115,12 @@ class Advancement {
     touch.steps = steps_;
     if (!hit) return false;
     touch.t = std::min(way_.shown(free_until_), pair_.max_t);
-    describe(touch);
+    Vec::Map(touch.normal) = -normal_;
+    touch.overlaps_at_start = overlap_at_start_;
     return true;
   }
+
+  void describe(CastTouch& touch) noexcept;
 
  private:
   [[nodiscard]] bool search() noexcept;
@@ -126,7 +130,6 @@ class Advancement {
   void face(const Vec& axis, Sample& sample) const noexcept;
   [[nodiscard]] double surely_apart(const Problem& problem, Sample& sample) noexcept;
   void prepare_at(double t, Problem& problem) const noexcept;
-  void describe(CastTouch& touch) noexcept;
 
   const ShapeTables& tables_;
   const CastPair& pair_;
@@ -214,11 +217,14 @@ double Advancement::surely_apart(const Problem& problem, Sample& sample) noexcep
 
 /// Where double cannot tell, exact arithmetic does.
 bool Advancement::touches_at_start() noexcept {
-  const PairAnswer answer = solve_pair(tables_, pair_.moving, pair_.from, pair_.standing,
-                                       pair_.pose, NarrowLevel::distance, 0.0, counts_);
-  overlap_at_start_ = answer.overlap;
-  const Vec normal = Vec::Map(answer.normal);
-  return answer.overlap || normal.dot(way_.step()) > 4.0 * kEpsilon * way_.speed();
+  const auto solve = [this](NarrowLevel level) {
+    return solve_pair(tables_, pair_.moving, pair_.from, pair_.standing, pair_.pose, level, 0.0,
+                      counts_);
+  };
+  overlap_at_start_ = solve(NarrowLevel::boolean).overlap;
+  if (overlap_at_start_) return true;
+  const PairAnswer apart = solve(NarrowLevel::distance);
+  return Vec::Map(apart.normal).dot(way_.step()) > 4.0 * kEpsilon * way_.speed();
 }
 
 /// Where to look next. A little beyond what is known to be free; twice as far as Newton's method
@@ -266,18 +272,17 @@ bool Advancement::search() noexcept {
 
 void Advancement::describe(CastTouch& touch) noexcept {
   Problem problem;
-  prepare_at(free_until_, problem);
+  prepare_at(way_.steps(touch.t), problem);
   const CoreDistance found = core_distance(problem, NarrowLevel::distance, kInfinity, counts_);
-  Vec normal = swapped_ ? Vec(-found.axis) : found.axis;
   const double apart = found.distance - problem.a.rounding - problem.b.rounding;
   const Vec on_a = found.on_a + found.axis * problem.a.rounding;
   const Vec point = swapped_ ? on_a : Vec(on_a + found.axis * apart - problem.b.center);
   for (int i = 0; i < 3; ++i) touch.point[i] = unscaled(problem, point[i]);
+  const Vec normal = swapped_ ? found.axis : Vec(-found.axis);
   // Of shapes that all but touch, another axis may seem as good.
-  if (!overlap_at_start_ && normal.dot(way_.step()) <= 0.0 && !normal_.isZero(0.0)) {
-    normal = normal_;
-  }
-  Vec::Map(touch.normal) = -normal;
+  const bool is_known = !Vec::Map(touch.normal).isZero(0.0);
+  if (!touch.overlaps_at_start && normal.dot(way_.step()) >= 0.0 && is_known) return;
+  Vec::Map(touch.normal) = normal;
 }
 
 }  // namespace
@@ -285,6 +290,10 @@ void Advancement::describe(CastTouch& touch) noexcept {
 bool cast_shape(const ShapeTables& tables, const CastPair& pair, double tolerance,
                 CastTouch& touch) noexcept {
   return Advancement(tables, pair, tolerance).run(touch);
+}
+
+void describe_touch(const ShapeTables& tables, const CastPair& pair, CastTouch& touch) noexcept {
+  Advancement(tables, pair, 0.0).describe(touch);
 }
 
 }  // namespace winnow

@@ -22,10 +22,14 @@ struct CastPair {
 struct CastTouch {
   /// In units of the direction.
   double t = 0.0;
-  /// Unit, from the standing shape to the moving one.
+  /// Unit, from the standing shape to the moving one. Before `describe_touch` that of a plane that
+  /// parted them shortly before; zero if there was none.
   double normal[3] = {0.0, 0.0, 0.0};
-  /// On the standing shape, relative to its position, in the axes of the world.
+  /// On the standing shape, relative to its position, in the axes of the world. By
+  /// `describe_touch`.
   double point[3] = {0.0, 0.0, 0.0};
+  /// They share points at the start.
+  bool overlaps_at_start = false;
   /// How often distances were computed.
   std::uint32_t steps = 0;
 };
@@ -40,5 +44,9 @@ struct CastTouch {
 /// moving shape is no half-space.
 [[nodiscard]] bool cast_shape(const ShapeTables& tables, const CastPair& pair, double tolerance,
                               CastTouch& touch) noexcept;
+
+/// Normal and point of what `cast_shape` found; of shapes that overlap at the start the normal
+/// along which they are parted the soonest.
+void describe_touch(const ShapeTables& tables, const CastPair& pair, CastTouch& touch) noexcept;
 
 }  // namespace winnow

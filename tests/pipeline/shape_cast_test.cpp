@@ -178,6 +178,7 @@ TEST(ShapeCast, of_every_kind_is_apart_before_and_touches_after_its_answer) {
             ASSERT_GT(distance_at(scene.pool, pair, way * k / 20.0), -noise);
           }
           if (!hit) continue;
+          describe_touch(scene.pool.tables(), pair, touch);
           if (touch.t > 0.0) {
             ASSERT_GT(distance_at(scene.pool, pair, touch.t), -noise);
           }
@@ -219,6 +220,7 @@ TEST(ShapeCast, that_leaves_slides_or_starts_in_touch_ends_at_once) {
       pair.from = Pose::at(0, 0, 2.0);
       ASSERT_TRUE(cast_shape(pool.tables(), pair, 1e-6, touch));
       EXPECT_EQ(touch.t, 0.0);
+      describe_touch(pool.tables(), pair, touch);
       EXPECT_NEAR(touch.normal[2], 1.0, 1e-12);
       EXPECT_NEAR(touch.point[2], 1.0, 1e-12);
     }
