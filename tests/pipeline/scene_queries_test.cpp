@@ -153,34 +153,6 @@ TEST(SceneQueries, rays_meet_what_bodies_asked_one_by_one_say) {
   }
 }
 
-TEST(SceneQueries, moving_shapes_meet_what_bodies_asked_one_by_one_say) {
-  for (const double center : kCenters) {
-    Random random(2);
-    QueryWorld world;
-    fill(world, 150, center, random);
-    world.add_to_scene();
-    SceneQueries queries(*world.scene);
-    for (std::size_t n = scaled(24); n-- != 0;) {
-      ShapeCast cast;
-      cast.shape = world.shapes.shapes[random.below(150)];
-      cast.pose = random_pose(world.size, random);
-      for (double& x : cast.pose.position) x += center;
-      draw_direction(random.log_uniform(1e-3, 1e3), random, cast.direction);
-      cast.max_t = (random.chance(0.3) ? 1e4 : world.size) / length_of(cast.direction);
-      SceneHit closest;
-      std::span<const SceneHit> hits;
-      ASSERT_EQ(queries.closest(cast, closest, {}, 1e-7), Status::ok);
-      ASSERT_EQ(queries.all(cast, hits, {}, 1e-7), Status::ok);
-      expect_hits(world, cast_times(world, cast), hits, hits.empty() ? closest : hits[0],
-                  cast.max_t, 2e-7 / length_of(cast.direction));
-      ASSERT_EQ(static_cast<bool>(closest), !hits.empty());
-      if (closest) {
-        EXPECT_NEAR(closest.t, hits[0].t, 1e-7 / length_of(cast.direction));
-      }
-    }
-  }
-}
-
 /// The signed distance of two bodies: of all pairs of their parts the least.
 PairAnswer brute_distance(const QueryWorld& world, ShapeId a, const Pose& pose_a, std::size_t b) {
   double offset[3];
@@ -198,6 +170,44 @@ PairAnswer brute_distance(const QueryWorld& world, ShapeId a, const Pose& pose_a
   return best;
 }
 
+TEST(SceneQueries, moving_shapes_meet_what_bodies_asked_one_by_one_say) {
+  for (const double center : kCenters) {
+    Random random(2);
+    QueryWorld world;
+    fill(world, 150, center, random);
+    ShapeId point;
+    ASSERT_EQ(world.shapes.pool.add(SphereShape{}, point), Status::ok);
+    world.add_to_scene();
+    SceneQueries queries(*world.scene);
+    for (std::size_t n = scaled(24); n-- != 0;) {
+      ShapeCast cast;
+      cast.shape = world.shapes.shapes[random.below(150)];
+      cast.pose = random_pose(world.size, random);
+      for (double& x : cast.pose.position) x += center;
+      draw_direction(random.log_uniform(1e-3, 1e3), random, cast.direction);
+      cast.max_t = (random.chance(0.3) ? 1e4 : world.size) / length_of(cast.direction);
+      SceneHit closest;
+      std::span<const SceneHit> hits;
+      ASSERT_EQ(queries.closest(cast, closest, {}, 1e-7), Status::ok);
+      ASSERT_EQ(queries.all(cast, hits, {}, 1e-7), Status::ok);
+      expect_hits(world, cast_times(world, cast), hits, hits.empty() ? closest : hits[0],
+                  cast.max_t, 2e-7 / length_of(cast.direction));
+      ASSERT_EQ(static_cast<bool>(closest), !hits.empty());
+      if (!closest) continue;
+      EXPECT_NEAR(closest.t, hits[0].t, 1e-7 / length_of(cast.direction));
+      if (closest.t == 0.0) continue;
+      // Normal and point are those of the body where it is met.
+      double along = 0.0;
+      for (int i = 0; i < 3; ++i) along += closest.normal[i] * cast.direction[i];
+      EXPECT_LT(along, 1e-9 * length_of(cast.direction));
+      const Pose at = Pose::at(closest.point[0], closest.point[1], closest.point[2]);
+      const auto body = static_cast<std::size_t>(closest.data - 1000);
+      EXPECT_NEAR(brute_distance(world, point, at, body).distance, 0.0,
+                  1e-9 + 1e-15 * std::abs(center));
+    }
+  }
+}
+
 TEST(SceneQueries, a_shape_overlaps_what_bodies_asked_one_by_one_say) {
   for (const double center : kCenters) {
     Random random(3);
@@ -208,7 +218,7 @@ TEST(SceneQueries, a_shape_overlaps_what_bodies_asked_one_by_one_say) {
     for (std::size_t n = 0; n < scaled(16); ++n) {
       // Composite ones, too.
       const ShapeId shape =
-          world.bodies[n % 2 == 0 ? 60 + random.below(12) : random.below(60)].shape;
+          world.bodies[n % 4 == 0 ? 60 + random.below(12) : random.below(60)].shape;
       Pose pose = random_pose(world.size, random);
       for (double& x : pose.position) x += center;
       std::span<const SceneOverlap> found;
@@ -227,6 +237,64 @@ TEST(SceneQueries, a_shape_overlaps_what_bodies_asked_one_by_one_say) {
       }
       EXPECT_EQ(k, found.size());
     }
+  }
+}
+
+TEST(SceneQueries, what_touches_or_grazes_to_the_bit_is_met) {
+  Random random(16);
+  QueryWorld world;
+  const std::vector<ShapeKind> kinds = all_kinds();
+  for (std::size_t i = 0; i < 60; ++i) {
+    add_pairs(world.shapes, kinds[random.below(kinds.size() - 1)],
+              kinds[random.below(kinds.size() - 1)], PairStyle::lattice, 1, random);
+  }
+  const auto on_lattice = [&](double spread) {
+    return 0.5 * std::floor(random.uniform(-2.0 * spread, 2.0 * spread));
+  };
+  for (std::size_t i = 0; i < world.shapes.shapes.size(); ++i) {
+    Pose pose = world.shapes.poses[i];
+    for (double& x : pose.position) x = on_lattice(6.0);
+    world.add(world.shapes.shapes[i], pose, random);
+  }
+  world.add_to_scene();
+  SceneQueries queries(*world.scene);
+  const ShapeTables& tables = world.shapes.pool.tables();
+  for (std::size_t n = scaled(150); n-- != 0;) {
+    ShapeRay ray;
+    do {
+      for (int i = 0; i < 3; ++i) {
+        ray.origin[i] = on_lattice(9.0);
+        ray.direction[i] = static_cast<double>(random.below(3)) - 1.0;
+      }
+    } while (length_of(ray.direction) == 0.0);
+    ray.max_t = random.chance(0.5) ? kInfinity : static_cast<double>(random.below(20));
+    std::span<const SceneHit> hits;
+    ASSERT_EQ(queries.all(ray, hits), Status::ok);
+    std::vector<const SceneHit*> by_body(world.bodies.size(), nullptr);
+    for (const SceneHit& hit : hits) by_body[static_cast<std::size_t>(hit.data - 1000)] = &hit;
+    const BodyDefinition& asking = world.bodies[random.below(world.bodies.size())];
+    Pose pose = asking.pose;
+    for (double& x : pose.position) x = on_lattice(6.0);
+    std::span<const SceneOverlap> overlaps;
+    ASSERT_EQ(queries.overlap(asking.shape, pose, overlaps), Status::ok);
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+      const BodyDefinition& body = world.bodies[i];
+      ShapeHit truth;
+      ASSERT_EQ(cast_ray(tables, body.shape, body.pose, ray, truth), Status::ok);
+      ASSERT_EQ(by_body[i] != nullptr, truth.hit) << i;
+      if (truth.hit) {
+        EXPECT_EQ(by_body[i]->t, truth.t);
+      }
+      SolverCounts counts;
+      const bool overlap = solve_pair(tables, asking.shape, pose, body.shape, body.pose,
+                                      NarrowLevel::boolean, 0.0, counts)
+                               .overlap;
+      const bool listed = k < overlaps.size() && overlaps[k].key == world.keys[i];
+      ASSERT_EQ(listed, overlap) << i;
+      k += listed ? 1 : 0;
+    }
+    EXPECT_EQ(k, overlaps.size());
   }
 }
 
