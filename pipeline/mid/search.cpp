@@ -158,7 +158,16 @@ std::span<const std::uint32_t> Search::triangles_near(const Part& part,
       walk_below(tables_.half_spaces[part.shape.index()], part, surface, margin_, out);
     });
   }
-  return triangles_near(box_of(part, surface, margin_), surface, inner_);
+  const Box box = box_of(part, surface, margin_);
+  if (surface.kind != Side::Kind::mesh) return triangles_near(box, surface, inner_);
+  // A ball about the part as well: of most shapes' boxes it leaves half of the triangles.
+  const Vec center = surface.to_local * finite(part.position + part.middle - surface.position);
+  const double noise = kSlack * (center.lpNorm<1>() + surface.to_local.cwiseAbs().maxCoeff() *
+                                                          surface.position.lpNorm<1>());
+  const double radius = (part.reach + margin_) * surface.most_shrunk + noise;
+  return collect(inner_, [&](SlotSink& out) {
+    mesh_overlap(*surface.mesh, box.min.data(), box.max.data(), center.data(), radius, out);
+  });
 }
 
 std::span<const std::uint32_t> Search::triangles_near(const Box& box, const Side& surface,

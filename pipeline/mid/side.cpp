@@ -51,6 +51,7 @@ Side::Side(const Composites& all, const ShapeTables& pool, ShapeId shape, const 
     const Eigen::Map<const Vec> scale(entry->scale);
     to_world = rotation * scale.asDiagonal();
     to_local = scale.cwiseInverse().asDiagonal() * rotation.transpose();
+    most_shrunk = scale.cwiseInverse().cwiseAbs().maxCoeff() * (1.0 + kSlack);
   } else if (const HeightField* const heights = all.field(shape)) {
     kind = Kind::field;
     field = heights;

@@ -61,6 +61,8 @@ struct Side {
   /// Own units to the world's without the position, scale included, and back.
   Mat to_world;
   Mat to_local;
+  /// No length of the world is longer than this many times itself in own units.
+  double most_shrunk = 1.0;
   const MeshView* mesh = nullptr;
   const SharedMesh* shared = nullptr;
   const HeightField* field = nullptr;
