@@ -31,7 +31,10 @@ foreach(isa ${WINNOW_ISAS})
 endforeach()
 
 set(WINNOW_KERNEL_OPTIMIZATION -O3 CACHE STRING "Optimization of kernels in every build type")
-mark_as_advanced(WINNOW_KERNEL_OPTIMIZATION)
+# A wide type is four registers there, which takes the compiler long.
+set(WINNOW_BASELINE_OPTIMIZATION "" CACHE STRING
+    "Optimization of kernels for SSE4.2; empty: that of all kernels")
+mark_as_advanced(WINNOW_KERNEL_OPTIMIZATION WINNOW_BASELINE_OPTIMIZATION)
 
 # winnow_add_kernels(target file.kernel.cpp ...): each file into an object library per instruction
 # set, linked into the target. The macro xsimd=xsimd_<isa> gives every build its own xsimd
@@ -40,8 +43,12 @@ function(winnow_add_kernels target)
   foreach(isa ${WINNOW_ISAS})
     set(objects ${target}_kernels_${isa})
     add_library(${objects} OBJECT ${ARGN})
+    set(optimization ${WINNOW_KERNEL_OPTIMIZATION})
+    if(isa STREQUAL "sse42" AND WINNOW_BASELINE_OPTIMIZATION)
+      set(optimization ${WINNOW_BASELINE_OPTIMIZATION})
+    endif()
     target_compile_options(${objects} PRIVATE ${WINNOW_FLAGS_${isa}} -fno-exceptions
-                           ${WINNOW_KERNEL_OPTIMIZATION})
+                           ${optimization})
     target_compile_definitions(${objects} PRIVATE WINNOW_ISA_NAME=${isa} WINNOW_ISA_IS_${isa}=1
                                xsimd=xsimd_${isa})
     target_include_directories(${objects} PRIVATE ${WINNOW_INCLUDE_DIR})
