@@ -32,7 +32,8 @@ foreach(room core simd partitions pipeline)
           PATTERN "hull_builder.h" EXCLUDE
           PATTERN "winnow.h" EXCLUDE)
 endforeach()
-foreach(header mesh/mesh_view narrow/narrow_job narrow/narrow_result narrow/pair_buckets solver/solver)
+foreach(header mesh/height_pyramid mesh/mesh_view narrow/narrow_job narrow/narrow_result
+        narrow/pair_buckets solver/solver)
   get_filename_component(folder ${header} DIRECTORY)
   install(FILES ${PROJECT_SOURCE_DIR}/pipeline/${header}.h
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow/pipeline/${folder})
