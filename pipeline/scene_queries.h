@@ -72,8 +72,10 @@ struct ShapeCast {
 
 /// Questions to the exact shapes of a scene. One object a thread: it keeps scratch memory from
 /// question to question, so that one that resembles an earlier one allocates nothing. Any number of
-/// them may ask a scene at the same time while nothing changes it; call `Scene::refresh` first,
-/// else the first question is `invalid_argument`.
+/// them may ask a scene at the same time while nothing changes it; call `Scene::refresh` first, and
+/// after every change of bodies or of composite shapes in place, else questions are
+/// `invalid_argument`. A refused question leaves its answer alone, but spans of earlier ones are
+/// void.
 class SceneQueries {
  public:
   explicit SceneQueries(const Scene& scene,

@@ -37,7 +37,11 @@ struct SceneQueries::State {
   /// What every question begins with.
   [[nodiscard]] static Status may_ask(const State* state) noexcept {
     if (state == nullptr) return Status::out_of_memory;
-    return state->scene.is_fresh() ? Status::ok : Status::invalid_argument;
+    const Scene::State& scene = state->scene;
+    const MidPhase* const composites = scene.options.composites;
+    const bool has_changed =
+        composites != nullptr && composites->revision() != scene.composites_seen;
+    return scene.is_fresh() && !has_changed ? Status::ok : Status::invalid_argument;
   }
   /// Calls ask(partition) for every set that has one, until it does not answer ok.
   template <typename Ask>

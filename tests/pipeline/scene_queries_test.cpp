@@ -623,6 +623,11 @@ TEST(SceneQueries, bad_questions_get_a_status_and_change_nothing) {
   EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::invalid_argument);
   ASSERT_EQ(world.scene->refresh(), Status::ok);
   EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::ok);
+  // As after a change of poses, so after one of composite shapes.
+  ASSERT_EQ(world.composites.remove(add_sheet(world.composites, 2)), Status::ok);
+  EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::invalid_argument);
+  ASSERT_EQ(world.scene->refresh(), Status::ok);
+  EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::ok);
 }
 
 /// A number for all answers to many questions.
