@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 
 namespace winnow::bench {
@@ -25,6 +26,8 @@ struct Line {
 struct Plot {
   const char* title;
   std::vector<Line> lines;
+  /// What is above nearly all values is cut off: times, which the machine disturbs.
+  bool cut = false;
 };
 
 std::vector<Plot> plots() {
@@ -48,7 +51,8 @@ std::vector<Plot> plots() {
         {"broad phase", "#2c6fbb", [](const FlowSample& s) { return s.times.broad; }, true},
         {"mid phase", "#8e44ad", [](const FlowSample& s) { return s.times.mid; }, true},
         {"narrow phase", "#c4572e", [](const FlowSample& s) { return s.times.narrow; }, true},
-        {"solver", "#1d8348", [](const FlowSample& s) { return s.times.solver; }}}},
+        {"solver", "#1d8348", [](const FlowSample& s) { return s.times.solver; }}},
+       true},
   };
 }
 
@@ -95,7 +99,7 @@ double x_at(const Range& times, double time) {
   return kLeft + (kWidth - kLeft) * times.share(time);
 }
 double y_at(const Range& values, double value) {
-  return (kHeight - kBottom) * (1.0 - 0.95 * values.share(value));
+  return (kHeight - kBottom) * (1.0 - 0.95 * std::min(1.0, values.share(value)));
 }
 
 std::string axes(const Range& times, const Range& values) {
@@ -115,6 +119,16 @@ std::string axes(const Range& times, const Range& values) {
   return svg;
 }
 
+/// Of the plot's first line, which is the highest.
+double nearly_most(const Plot& plot, const std::vector<FlowSample>& samples) {
+  std::vector<double> values;
+  for (const FlowSample& sample : samples) values.push_back(plot.lines.front().value(sample));
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 9 / 10);
+  if (at == values.end()) return 0.0;
+  std::nth_element(values.begin(), at, values.end());
+  return 1.5 * *at;
+}
+
 std::string draw(const Plot& plot, const std::vector<FlowSample>& samples) {
   Range times;
   Range values;
@@ -122,6 +136,7 @@ std::string draw(const Plot& plot, const std::vector<FlowSample>& samples) {
     times.take(sample.time);
     for (const Line& line : plot.lines) values.take(line.value(sample));
   }
+  if (plot.cut) values.high = std::min(values.high, nearly_most(plot, samples));
   std::string svg = std::string("<h2>") + plot.title + "</h2>\n<p>";
   for (const Line& line : plot.lines) {
     svg += std::string("<span style=\"color:") + line.colour + "\">&#9632; " + line.name +

@@ -57,16 +57,19 @@ PairForce force_of(const Contacts& contacts, std::size_t pair, const SoftContact
   const Touch touch(bodies, contacts.data_a()[pair], contacts.data_b()[pair], law);
   const auto manifold_first = contacts.manifold_first();
   const auto point_first = contacts.point_first();
-  for (std::uint32_t m = manifold_first[pair]; m < manifold_first[pair + 1]; ++m) {
+  const std::uint32_t first = manifold_first[pair];
+  const std::uint32_t last = manifold_first[pair + 1];
+  double depths = 0.0;
+  for (std::uint32_t p = point_first[first]; p < point_first[last]; ++p) {
+    depths += std::max(0.0, static_cast<double>(contacts.contact(p).depth));
+  }
+  for (std::uint32_t m = first; m < last; ++m) {
     const Vec normal{contacts.normal(0)[m], contacts.normal(1)[m], contacts.normal(2)[m]};
-    double depths = 0.0;
     for (std::uint32_t p = point_first[m]; p < point_first[m + 1]; ++p) {
-      depths += std::max(0.0, static_cast<double>(contacts.contact(p).depth));
-    }
-    for (std::uint32_t p = point_first[m]; p < point_first[m + 1]; ++p) {
-      // By depth: a point that comes or goes does so at depth zero, and changes nothing then.
       const ContactPoint point = contacts.contact(p);
       if (point.depth <= 0.0F) continue;
+      // By depth: a point that comes or goes does so at depth zero, and changes nothing then. Over
+      // all triangles of a mesh: a fine one is not stiffer than a coarse one.
       const double share = static_cast<double>(point.depth) / depths;
       add_point(bodies, touch, law, point, normal, share, sum);
     }
