@@ -180,4 +180,27 @@ double radius_of(const ShapeTables& tables, ShapeId shape) noexcept {
   return radius * (1.0 + kSlack);
 }
 
+double rounding_of(const ShapeTables& tables, ShapeId shape) noexcept {
+  const std::uint32_t i = shape.index();
+  switch (shape.kind()) {
+    case ShapeKind::sphere:
+      return tables.spheres[i].radius;
+    case ShapeKind::capsule:
+      return tables.capsules[i].radius;
+    case ShapeKind::box:
+      return tables.boxes[i].rounding;
+    case ShapeKind::cylinder:
+      return tables.cylinders[i].rounding;
+    case ShapeKind::cone:
+      return tables.cones[i].rounding;
+    case ShapeKind::hull:
+      return tables.hulls[i].rounding;
+    case ShapeKind::triangle:
+      return tables.triangles[i].rounding;
+    case ShapeKind::half_space:
+      break;
+  }
+  return 0.0;
+}
+
 }  // namespace winnow::mid

@@ -31,4 +31,7 @@ struct Extent {
 /// No point of the convex shape is farther from its origin; infinite for a half-space.
 [[nodiscard]] double radius_of(const ShapeTables& tables, ShapeId shape) noexcept;
 
+/// How much of it is rounding: the radius of a sphere or capsule.
+[[nodiscard]] double rounding_of(const ShapeTables& tables, ShapeId shape) noexcept;
+
 }  // namespace winnow::mid

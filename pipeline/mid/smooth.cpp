@@ -1,8 +1,7 @@
 #include <winnow/pipeline/mid/edge_contact.h>
 #include <winnow/pipeline/mid/extent.h>
+#include <winnow/pipeline/mid/face_clip.h>
 #include <winnow/pipeline/mid/smooth.h>
-#include <winnow/pipeline/solver/problem.h>
-#include <winnow/pipeline/solver/supporting_patch.h>
 
 #include <algorithm>
 #include <array>
@@ -18,48 +17,6 @@ constexpr std::size_t kWave = 16;
 // Times as deep as any contact of the same bodies is before smoothing: a point on a seam may be,
 // since the shortest way out of each triangle is over the seam.
 constexpr double kMostDeeper = 4.0;
-
-// Of float positions and depths.
-constexpr double kFloatError = 1.2e-7;
-
-[[nodiscard]] double rounding_of(const ShapeTables& tables, ShapeId shape) noexcept {
-  const std::uint32_t i = shape.index();
-  switch (shape.kind()) {
-    case ShapeKind::sphere:
-      return tables.spheres[i].radius;
-    case ShapeKind::capsule:
-      return tables.capsules[i].radius;
-    case ShapeKind::box:
-      return tables.boxes[i].rounding;
-    case ShapeKind::cylinder:
-      return tables.cylinders[i].rounding;
-    case ShapeKind::cone:
-      return tables.cones[i].rounding;
-    case ShapeKind::hull:
-      return tables.hulls[i].rounding;
-    case ShapeKind::triangle:
-      return tables.triangles[i].rounding;
-    case ShapeKind::half_space:
-      break;
-  }
-  return 0.0;
-}
-
-/// If a point, seen along the triangle's normal, is in the triangle.
-[[nodiscard]] bool is_over(const solver::Core& triangle, const Vec& normal, const float* point,
-                           double size) noexcept {
-  constexpr double kFloatSlack = 1e-6;
-  const Vec at = Eigen::Map<const Eigen::Vector3f>(point).cast<double>() - triangle.center;
-  double least = 0.0;
-  double most = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double beside = triangle.side[k].cross(at - triangle.corner[k]).dot(normal);
-    least = std::min(least, beside);
-    most = std::max(most, beside);
-  }
-  // On the same side of all edges, whichever way they run.
-  return std::min(-least, most) <= kFloatSlack * size;
-}
 
 }  // namespace
 
@@ -305,40 +262,23 @@ void Smoothing::lower_sphere(std::size_t i, const Vec& normal) noexcept {
 }
 
 void Smoothing::clip(Chunk& chunk, std::size_t i) noexcept {
-  const Vec normal(result_.normal_[0][i], result_.normal_[1][i], result_.normal_[2][i]);
   const BodyPair& bodies = pair(i);
-  solver::Problem problem;
-  prepare(tables_, pairs_.shapes[bodies.a], pairs_.poses[bodies.a], pairs_.shapes[bodies.b],
-          pairs_.poses[bodies.b], false, problem);
-  const solver::SupportingPatch a(problem.a, normal);
-  const solver::SupportingPatch b(problem.b, -normal);
-  ContactPoint points[kManifoldPoints];
-  const double margin = std::min(std::ldexp(pairs_.margin, -problem.exponent), 8.0);
-  const std::uint32_t count = contact_patch(a.view(), b.view(), normal.data(), margin, points);
-  // A feature that is not over the triangle belongs to a neighbour: its depth here would be made
-  // up.
-  const bool second = is_mesh_triangle(bodies.b);
-  if (!is_over(second ? problem.b : problem.a, normal, points[0].position, problem.size)) return;
-  // Bodies that touch a surface from aside are nowhere as deep as they are below its planes.
-  const double most = static_cast<double>(chunk.most[i - chunk.begin]);
-  if (unscaled(problem, static_cast<double>(points[0].depth)) > kMostDeeper * most) return;
-  // The surfaces share a point whatever their features along the normal do.
-  const double least = -std::ldexp(result_.distance_[i], -problem.exponent);
-  const double depth = std::max(static_cast<double>(points[0].depth), least);
-  points[0].depth = static_cast<float>(depth);
-  result_.distance_[i] = -unscaled(problem, depth);
-  result_.error_bound_[i] += unscaled(problem, problem.noise() + kFloatError * depth);
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const auto real = [&](float x) {
-      return static_cast<float>(unscaled(problem, static_cast<double>(x)));
-    };
-    for (float& x : points[k].position) x = real(x);
-    points[k].depth = real(points[k].depth);
-  }
-  if (has_contacts()) return take(chunk, i, {points, count});
+  const Vec normal(result_.normal_[0][i], result_.normal_[1][i], result_.normal_[2][i]);
+  const FacePair faces{tables_,
+                       pairs_.shapes[bodies.a],
+                       pairs_.poses[bodies.a],
+                       pairs_.shapes[bodies.b],
+                       pairs_.poses[bodies.b],
+                       is_mesh_triangle(bodies.b)};
+  const double most = kMostDeeper * static_cast<double>(chunk.most[i - chunk.begin]);
+  FaceContacts found;
+  if (!clip_to_face(faces, normal, pairs_.margin, -result_.distance_[i], most, found)) return;
+  result_.distance_[i] = -found.depth;
+  result_.error_bound_[i] += found.noise;
+  if (has_contacts()) return take(chunk, i, {found.points, found.count});
   for (int axis = 0; axis < 3; ++axis) {
     result_.point_[axis][i] =
-        static_cast<double>(points[0].position[axis]) - 0.5 * result_.distance_[i] * normal[axis];
+        static_cast<double>(found.points[0].position[axis]) + 0.5 * found.depth * normal[axis];
   }
 }
 

@@ -271,5 +271,89 @@ TEST(MidPhase, any_valid_pose_and_scale_gives_what_the_narrow_phase_takes) {
   }
 }
 
+TEST(Visits, show_what_all_boxes_would_and_the_nearest_first) {
+  Random random(10);
+  CompositeWorld world;
+  world.add_shapes(random);
+  for (const ShapeId id : world.ids) {
+    if (!id.is_composite()) continue;
+    for (int i = 0; i < 12; ++i) {
+      const Pose pose = random_pose(random, i < 6 ? 2.0 : 1e4);
+      BoxSweep box{};
+      for (int axis = 0; axis < 3; ++axis) {
+        const double middle = pose.position[axis] + random.uniform(-2.0, 2.0);
+        const double half = random.chance(0.3) ? 0.0 : random.uniform(0.0, 0.5);
+        box.min[axis] = middle - half;
+        box.max[axis] = middle + half;
+        box.direction[axis] = random.uniform(-1.0, 1.0);
+      }
+      box.max_t = random.uniform(0.0, 3.0);
+      std::set<std::uint32_t> swept;
+      std::set<std::uint32_t> near;
+      const auto note = [](void* context, const Primitive& primitive, double limit) {
+        static_cast<std::set<std::uint32_t>*>(context)->insert(primitive.part);
+        return limit;
+      };
+      world.composites.visit(id, pose, box, {note, &swept});
+      world.composites.visit_near(id, pose, box, 0.7, {note, &near});
+      // A box against parts that are seen as shapes: answered by the narrow phase.
+      CompositeWorld probe;
+      ShapeId cube = add(probe.shapes,
+                         BoxShape{{0.5 * (box.max[0] - box.min[0]), 0.5 * (box.max[1] - box.min[1]),
+                                   0.5 * (box.max[2] - box.min[2])},
+                                  0.0});
+      SolverCounts counts;
+      for (const Primitive& part : parts_of(world, id, pose)) {
+        const bool is_triangle = part.shape.kind() == ShapeKind::triangle;
+        const BoxShape& half = probe.shapes.tables().boxes[cube.index()];
+        for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+          Pose at;
+          for (int axis = 0; axis < 3; ++axis) {
+            at.position[axis] =
+                0.5 * (box.min[axis] + box.max[axis]) + t * box.max_t * box.direction[axis];
+          }
+          ShapeTables tables = world.shapes.tables();
+          tables.boxes = &half;
+          ShapeId shape = part.shape;
+          if (is_triangle) {
+            tables.triangles = &part.triangle;
+            shape = ShapeId::of(ShapeKind::triangle, 0);
+          } else if (shape.kind() == ShapeKind::box) {
+            continue;
+          }
+          const double distance = solve_pair(tables, ShapeId::of(ShapeKind::box, 0), at, shape,
+                                             part.pose, NarrowLevel::distance, 0.0, counts)
+                                      .distance;
+          if (distance <= 0.0) {
+            EXPECT_TRUE(swept.contains(part.part)) << id.kind_index();
+          }
+          if (t == 0.0 && distance <= 0.7) {
+            EXPECT_TRUE(near.contains(part.part)) << id.kind_index();
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Visits, end_when_told_to) {
+  Random random(11);
+  CompositeWorld world;
+  world.add_shapes(random);
+  for (const ShapeId id : world.ids) {
+    if (!id.is_composite()) continue;
+    int shown = 0;
+    const auto once = [](void* context, const Primitive&, double) {
+      ++*static_cast<int*>(context);
+      return -1.0;
+    };
+    const BoxSweep all{{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}};
+    world.composites.visit(id, Pose{}, all, {once, &shown});
+    EXPECT_EQ(shown, 1);
+    world.composites.visit_near(id, Pose{}, all, 1.0, {once, &shown});
+    EXPECT_EQ(shown, 2);
+  }
+}
+
 }  // namespace
 }  // namespace winnow::test
