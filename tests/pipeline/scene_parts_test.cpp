@@ -386,6 +386,58 @@ TEST(SceneParts, a_mesh_that_is_refitted_is_seen_at_its_new_place) {
   EXPECT_EQ(contacts.size(), 1U);
 }
 
+/// Notes when it is asked for any work.
+class IdleMidPhase final : public MidPhase {
+ public:
+  [[nodiscard]] bool contains(ShapeId) const noexcept override { return worked(false); }
+  [[nodiscard]] Aabb bounds(ShapeId, const Pose&) const noexcept override { return worked(Aabb{}); }
+  [[nodiscard]] double radius(ShapeId) const noexcept override { return worked(0.0); }
+  [[nodiscard]] std::uint64_t revision() const noexcept override { return 0; }
+  Status expand(const ShapePool&, const Bodies&, std::span<const BodyPair>, double,
+                const Execution&, PrimitivePairs&) const override {
+    return worked(Status::unsupported);
+  }
+  void smooth(const ShapePool&, const PrimitivePairs&, const Execution&,
+              NarrowResult&) const override {
+    ++calls;
+  }
+  void visit(ShapeId, const Pose&, const BoxSweep&, const PrimitiveVisitor&) const override {
+    ++calls;
+  }
+  void visit_near(ShapeId, const Pose&, const BoxSweep&, double,
+                  const PrimitiveVisitor&) const override {
+    ++calls;
+  }
+  [[nodiscard]] Footprint footprint() const noexcept override { return {}; }
+
+  mutable int calls = 0;
+
+ private:
+  template <typename T>
+  [[nodiscard]] T worked(T answer) const noexcept {
+    ++calls;
+    return answer;
+  }
+};
+
+TEST(SceneParts, a_scene_of_balls_asks_the_mid_phase_for_nothing) {
+  SceneWorld world(200, 59);
+  for (BodyDefinition& body : world.bodies) body.shape = world.shapes[0];
+  const IdleMidPhase idle;
+  for (const double carry_over : {0.0, 0.01}) {
+    Scene scene(world.pool, {.carry_over = carry_over, .composites = &idle});
+    ASSERT_EQ(add_all(scene, world), Status::ok);
+    Contacts contacts;
+    for (int frame = 0; frame < 3; ++frame) {
+      ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+      world.stir(0.01);
+      ASSERT_EQ(move_all(scene, world), Status::ok);
+    }
+    EXPECT_GT(contacts.size(), 0U);
+  }
+  EXPECT_EQ(idle.calls, 0);
+}
+
 TEST(SceneParts, a_scene_of_balls_takes_the_same_bytes_whether_or_not_there_could_be_meshes) {
   SceneFootprint bytes[2];
   for (const bool with_pool : {false, true}) {
