@@ -4,6 +4,7 @@
 #include "simulation/granular_flow.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -65,6 +66,34 @@ class FlowHistory {
 
  private:
   std::vector<FlowSample> samples_;
+};
+
+/// Counts allocations of steps in which there is no more of anything than there has been before: a
+/// steady frame allocates nothing.
+class SteadyAllocations {
+ public:
+  /// After each step: how many allocations there have been so far.
+  void note(const GranularFlow& flow, std::size_t allocations) {
+    const Contacts& contacts = flow.contacts();
+    const SceneStatistics& statistics = flow.scene().statistics();
+    const std::array<std::size_t, 6> now{statistics.body_pairs, statistics.primitive_pairs,
+                                         contacts.size(),       contacts.manifolds(),
+                                         contacts.points(),     contacts.ended().size()};
+    bool is_more = false;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      is_more = is_more || now[i] > most_[i];
+      most_[i] = std::max(most_[i], now[i]);
+    }
+    if (!is_more) count_ += allocations - before_;
+    before_ = allocations;
+  }
+
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+
+ private:
+  std::array<std::size_t, 6> most_{};
+  std::size_t before_ = 0;
+  std::size_t count_ = 0;
 };
 
 }  // namespace winnow::bench

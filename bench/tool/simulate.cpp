@@ -49,9 +49,13 @@ class FlowRun {
     const std::size_t i = flow_.steps();
     const std::size_t every = std::max<std::size_t>(1, steps_ / kReports);
     if (i % every == 0) announce();
-    if (i == warm_up()) allocations_before_ = memory_.allocations();
+    if (i == warm_up()) {
+      allocations_before_ = memory_.allocations();
+      steady_before_ = steady_.count();
+    }
     flow_.step(i % kProfiled == 0);
     history_.add(flow_);
+    steady_.note(flow_, memory_.allocations());
     if (check_ != 0 && i % check_ == 0) {
       faults_ += check_contacts(flow_);
       ++checks_;
@@ -62,6 +66,8 @@ class FlowRun {
   [[nodiscard]] std::size_t allocations() const {
     return memory_.allocations() - allocations_before_;
   }
+  /// In steps with no more contacts than before.
+  [[nodiscard]] std::size_t steady_allocations() const { return steady_.count() - steady_before_; }
   [[nodiscard]] std::size_t bytes() const { return memory_.outstanding(); }
   [[nodiscard]] const GranularFlow& flow() const { return flow_; }
   [[nodiscard]] const FlowHistory& history() const { return history_; }
@@ -92,7 +98,9 @@ class FlowRun {
   std::size_t check_;
   FlowFaults faults_;
   std::size_t checks_ = 0;
+  SteadyAllocations steady_;
   std::size_t allocations_before_ = 0;
+  std::size_t steady_before_ = 0;
   Progress progress_;
 };
 
@@ -175,7 +183,9 @@ FlowFacts Simulate::facts(const FlowRun& run) const {
        short_number(100.0 * run.history().greatest_rise()) + " % of the greatest kinetic energy"},
       {"greatest penetration", short_number(run.history().deepest())},
       {"bytes", grouped(run.bytes())},
-      {"allocations after " + grouped(run.warm_up()) + " steps", grouped(run.allocations())}};
+      {"allocations after " + grouped(run.warm_up()) + " steps",
+       grouped(run.allocations()) + ", " + grouped(run.steady_allocations()) +
+           " in steps with no more contacts than ever before"}};
   if (check != 0) {
     const FlowFaults& faults = run.faults();
     facts.emplace_back("checked by brute force",
@@ -223,6 +233,7 @@ void Simulate::write(const FlowRun& run) const {
                     {"greatest_rise", run.history().greatest_rise()},
                     {"deepest", run.history().deepest()},
                     {"allocations_after_warm_up", run.allocations()},
+                    {"steady_allocations", run.steady_allocations()},
                     {"lost", run.faults().lost},
                     {"invented", run.faults().invented},
                     {"doubled", run.faults().doubled},
