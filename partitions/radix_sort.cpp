@@ -14,7 +14,7 @@ constexpr std::size_t kItemsPerChunk = 16384;
 using Histogram = std::array<std::uint32_t, kDigits>;
 
 std::size_t digit(std::uint64_t item, unsigned shift) {
-  return static_cast<std::size_t>(item >> (32U + shift)) & (kDigits - 1);
+  return static_cast<std::size_t>(item >> shift) & (kDigits - 1);
 }
 
 // One pass: every chunk counts its digits, starts are summed digit by digit and chunk by chunk, so
@@ -48,12 +48,12 @@ void pass(const std::uint64_t* from, std::uint64_t* to, std::size_t count, unsig
 }  // namespace
 
 std::uint64_t* radix_sort(std::uint64_t* items, std::uint64_t* spare, std::size_t count,
-                          unsigned bits, const Execution& execution) noexcept {
+                          unsigned bits, const Execution& execution, unsigned first_bit) noexcept {
   const bool share = execution.concurrency() > 1 && count >= 2 * kItemsPerChunk;
   const std::size_t chunks =
       share ? std::min({kMaxChunks, count / kItemsPerChunk, execution.concurrency()}) : 1;
   for (unsigned shift = 0; shift < bits; shift += kDigitBits) {
-    pass(items, spare, count, shift, chunks, execution);
+    pass(items, spare, count, first_bit + shift, chunks, execution);
     std::swap(items, spare);
   }
   return items;

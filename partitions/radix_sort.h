@@ -7,12 +7,13 @@
 
 namespace winnow {
 
-/// Stable sort of (key << 32 | value) by the lowest `bits` bits of the key: a
+/// Stable sort of (key << first_bit | value) by the lowest `bits` bits of the key: a
 /// least-significant-digit radix sort of 11 bits a pass. `items` and `spare` hold `count` each;
 /// returns the one of the two that holds the result. O(count * bits / 11); the same result on any
 /// number of threads.
 [[nodiscard]] std::uint64_t* radix_sort(std::uint64_t* items, std::uint64_t* spare,
                                         std::size_t count, unsigned bits,
-                                        const Execution& execution) noexcept;
+                                        const Execution& execution,
+                                        unsigned first_bit = 32) noexcept;
 
 }  // namespace winnow

@@ -91,7 +91,7 @@ Status Scene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
   State& s = *state_;
   if (!s.options_are_good) return Status::invalid_argument;
   if (bodies.size() != keys.size()) return Status::size_mismatch;
-  if (bodies.size() + s.keys.size() > kMaxObjects) return Status::too_many_objects;
+  if (bodies.size() + s.keys.slot_count() >= kMaxBodies) return Status::too_many_objects;
   for (const BodyDefinition& body : bodies) {
     if (!is_motion(body.motion)) return Status::invalid_argument;
     if (const Status good = s.check(body.shape, body.pose); good != Status::ok) return good;

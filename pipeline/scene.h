@@ -97,7 +97,8 @@ class Scene {
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  /// Adds a body. `invalid_key` for a shape that neither pool has, `invalid_pose`.
+  /// Adds a body. `invalid_key` for a shape that neither pool has, `invalid_pose`;
+  /// `too_many_objects` beyond 2^28.
   Status add(const BodyDefinition& body, Key& key);
   Status add(std::span<const BodyDefinition> bodies, std::span<Key> keys);
   /// A key that occurs twice makes the whole call `invalid_key`.

@@ -31,19 +31,38 @@ struct Reach {
   double scale;
 };
 
-[[nodiscard]] Reach reach_of_points(const double* const (&column)[3], std::size_t count,
-                                    const Vector3d& d) {
-  double most = -std::numeric_limits<double>::infinity();
-  double least = -most;
-  double scale = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vector3d terms(column[0][i] * d[0], column[1][i] * d[1], column[2][i] * d[2]);
-    const double sum = terms.sum();
-    most = std::max(most, sum);
-    least = std::min(least, sum);
-    scale = std::max(scale, terms.cwiseAbs().sum());
+// Of points in columns that are padded to whole blocks by copies of one of them, none farther from
+// the origin than `radius`: no product with a unit vector is larger.
+[[nodiscard]] Reach reach_of_columns(const double* const (&column)[3], std::size_t count,
+                                     double radius, const Vector3d& d) {
+  // As many as keep both ends of a block in registers.
+  constexpr std::size_t kBlock = 4;
+  double most[kBlock];
+  double least[kBlock];
+  std::fill_n(most, kBlock, -std::numeric_limits<double>::infinity());
+  std::fill_n(least, kBlock, std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < count; i += kBlock) {
+    for (std::size_t k = 0; k < kBlock; ++k) {
+      const double at = column[0][i + k] * d[0] + column[1][i + k] * d[1] + column[2][i + k] * d[2];
+      most[k] = at > most[k] ? at : most[k];
+      least[k] = at < least[k] ? at : least[k];
+    }
   }
-  return {most, -least, scale};
+  return {*std::max_element(most, most + kBlock), -*std::min_element(least, least + kBlock),
+          radius};
+}
+
+[[nodiscard]] Reach reach_of_corners(const double (&corner)[3][3], const Vector3d& d) {
+  Reach reach{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+              0.0};
+  for (const auto& v : corner) {
+    const Vector3d terms(v[0] * d[0], v[1] * d[1], v[2] * d[2]);
+    const double at = terms.sum();
+    reach.up = std::max(reach.up, at);
+    reach.down = std::max(reach.down, -at);
+    reach.scale = std::max(reach.scale, terms.cwiseAbs().sum());
+  }
+  return reach;
 }
 
 [[nodiscard]] Reach symmetric(double reach) {
@@ -86,16 +105,12 @@ struct Reach {
     }
     case ShapeKind::hull: {
       const HullShape& s = tables.hulls[i];
-      return grown(reach_of_points(s.vertex, s.vertex_count, d), s.rounding);
+      const double radius = Vector3d(s.center).norm() + s.radius;
+      return grown(reach_of_columns(s.vertex, s.vertex_count, radius, d), s.rounding);
     }
     case ShapeKind::triangle: {
       const TriangleShape& s = tables.triangles[i];
-      double columns[3][3];
-      for (int v = 0; v < 3; ++v) {
-        for (int axis = 0; axis < 3; ++axis) columns[axis][v] = s.vertex[v][axis];
-      }
-      const double* const pointers[3] = {columns[0], columns[1], columns[2]};
-      return grown(reach_of_points(pointers, 3, d), s.rounding);
+      return grown(reach_of_corners(s.vertex, d), s.rounding);
     }
     case ShapeKind::half_space: {
       const HalfSpaceShape& s = tables.half_spaces[i];

@@ -3,28 +3,44 @@
 
 #include <algorithm>
 #include <bit>
-#include <utility>
 
 namespace winnow {
 namespace {
 
-[[nodiscard]] std::uint64_t swap_halves(std::uint64_t item) noexcept {
-  return item << 32U | item >> 32U;
-}
+constexpr std::size_t kPairsPerTask = 8192;
 
-[[nodiscard]] std::uint32_t code_of(const ShapeId* shapes, const BodyPair& pair) noexcept {
-  return shapes[pair.a].kind_index() * kAllShapeKinds + shapes[pair.b].kind_index();
-}
+/// Code, body a and body b of a pair as one number, which sorts as pairs are sorted.
+struct Packing {
+  unsigned bits;
 
-// b << 32 | a, with a the body that comes first.
-[[nodiscard]] std::uint64_t item_of(const ShapeId* shapes, std::uint32_t one,
-                                    std::uint32_t other) noexcept {
-  const std::uint32_t kind_one = shapes[one].kind_index();
-  const std::uint32_t kind_other = shapes[other].kind_index();
-  const bool swapped = kind_one != kind_other ? kind_other < kind_one : other < one;
-  const std::uint64_t a = swapped ? other : one;
-  const std::uint64_t b = swapped ? one : other;
-  return b << 32U | a;
+  [[nodiscard]] std::uint64_t pack(const ShapeId* shapes, std::uint32_t one,
+                                   std::uint32_t other) const noexcept {
+    const std::uint32_t kind_one = shapes[one].kind_index();
+    const std::uint32_t kind_other = shapes[other].kind_index();
+    const bool swapped = kind_one != kind_other ? kind_other < kind_one : other < one;
+    const std::uint64_t code =
+        swapped ? kind_other * kAllShapeKinds + kind_one : kind_one * kAllShapeKinds + kind_other;
+    const std::uint64_t a = swapped ? other : one;
+    const std::uint64_t b = swapped ? one : other;
+    return (code << bits | a) << bits | b;
+  }
+  [[nodiscard]] BodyPair pair(std::uint64_t item) const noexcept {
+    const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+    return {static_cast<std::uint32_t>(item >> bits & mask),
+            static_cast<std::uint32_t>(item & mask)};
+  }
+  /// The least number of a code.
+  [[nodiscard]] std::uint64_t first(std::uint32_t code) const noexcept {
+    return std::uint64_t{code} << 2 * bits;
+  }
+};
+
+// Calls body(first, end) for stretches of [0, count), in parallel.
+template <typename Body>
+void for_stretches(const Execution& execution, std::size_t count, Body&& body) {
+  execution.for_each((count + kPairsPerTask - 1) / kPairsPerTask, [&](std::size_t task) {
+    body(task * kPairsPerTask, std::min(count, (task + 1) * kPairsPerTask));
+  });
 }
 
 }  // namespace
@@ -37,30 +53,27 @@ Status BodyPairs::assign(std::span<const Source> sources, const ShapeId* shapes,
     clear();
     return Status::out_of_memory;
   }
+  const Packing packing{static_cast<unsigned>(std::bit_width(bodies))};
   std::uint64_t* item = items_.data();
   for (const Source& source : sources) {
-    for (const Pair& pair : source.pairs) {
-      *item++ = item_of(shapes, source.first_body[pair.first], source.second_body[pair.second]);
-    }
+    for_stretches(execution, source.pairs.size(), [&](std::size_t first, std::size_t end) {
+      for (std::size_t i = first; i < end; ++i) {
+        const Pair& pair = source.pairs[i];
+        item[i] =
+            packing.pack(shapes, source.first_body[pair.first], source.second_body[pair.second]);
+      }
+    });
+    item += source.pairs.size();
   }
-  const auto bits = static_cast<unsigned>(std::bit_width(bodies));
-  std::uint64_t* sorted = radix_sort(items_.data(), spare_.data(), count, bits, execution);
-  std::uint64_t* other = sorted == items_.data() ? spare_.data() : items_.data();
-  std::transform(sorted, sorted + count, sorted, swap_halves);
-  sorted = radix_sort(sorted, other, count, bits, execution);
-
-  std::uint32_t place[kPairCodes + 1] = {};
-  for (std::size_t i = 0; i < count; ++i) {
-    ++place[code_of(shapes, {static_cast<std::uint32_t>(sorted[i] >> 32U),
-                             static_cast<std::uint32_t>(sorted[i])}) +
-            1];
-  }
-  for (std::uint32_t code = 0; code < kPairCodes; ++code) place[code + 1] += place[code];
-  std::copy_n(place, kPairCodes + 1, first_);
-  for (std::size_t i = 0; i < count; ++i) {
-    const BodyPair pair{static_cast<std::uint32_t>(sorted[i] >> 32U),
-                        static_cast<std::uint32_t>(sorted[i])};
-    pairs_[place[code_of(shapes, pair)]++] = pair;
+  const unsigned code_bits = std::bit_width(kPairCodes);
+  const std::uint64_t* const sorted =
+      radix_sort(items_.data(), spare_.data(), count, 2 * packing.bits + code_bits, execution, 0);
+  for_stretches(execution, count, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) pairs_[i] = packing.pair(sorted[i]);
+  });
+  for (std::uint32_t code = 0; code <= kPairCodes; ++code) {
+    first_[code] = static_cast<std::uint32_t>(
+        std::lower_bound(sorted, sorted + count, packing.first(code)) - sorted);
   }
   ++serial_;
   return Status::ok;

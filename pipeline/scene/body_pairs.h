@@ -17,6 +17,9 @@ namespace winnow {
 /// Codes of pairs of kinds: kind of a * kAllShapeKinds + kind of b.
 inline constexpr std::uint32_t kPairCodes = kAllShapeKinds * kAllShapeKinds;
 
+/// Bodies of a scene: two numbers and a code fit into 64 bits.
+inline constexpr std::size_t kMaxBodies = std::size_t{1} << 28U;
+
 /// Pairs of bodies in the order of a scene's answers: by the kinds of their shapes, then by body; a
 /// is the body with the smaller kind, or the smaller number.
 class BodyPairs {
@@ -31,7 +34,8 @@ class BodyPairs {
     const std::uint32_t* second_body;
   };
 
-  /// Takes all pairs of the sources. `bodies`: every body's number is below it. O(n).
+  /// Takes all pairs of the sources. `bodies`: every body's number is below it, at most kMaxBodies.
+  /// O(n).
   Status assign(std::span<const Source> sources, const ShapeId* shapes, std::size_t bodies,
                 const Execution& execution);
 

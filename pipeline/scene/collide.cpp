@@ -63,11 +63,16 @@ namespace {
 }
 
 // Where the answer about each pair of the input lies.
-[[nodiscard]] bool invert(const NarrowResult& answers, Column<std::uint32_t>& slots) noexcept {
+[[nodiscard]] bool invert(const NarrowResult& answers, const Execution& execution,
+                          Column<std::uint32_t>& slots) noexcept {
+  constexpr std::size_t kPerTask = 8192;
   if (!slots.resize(answers.size())) return false;
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    slots[answers.pair_of(i)] = static_cast<std::uint32_t>(i);
-  }
+  execution.for_each((answers.size() + kPerTask - 1) / kPerTask, [&](std::size_t task) {
+    const std::size_t end = std::min(answers.size(), (task + 1) * kPerTask);
+    for (std::size_t i = task * kPerTask; i < end; ++i) {
+      slots[answers.pair_of(i)] = static_cast<std::uint32_t>(i);
+    }
+  });
   return true;
 }
 
@@ -82,7 +87,8 @@ Status Collision::answer_convex() {
       scene_.answers);
   if (status != Status::ok) return status;
   scene_.statistics.convex = scene_.narrow.statistics();
-  return invert(scene_.answers, scene_.slot) ? Status::ok : Status::out_of_memory;
+  return invert(scene_.answers, scene_.options.execution, scene_.slot) ? Status::ok
+                                                                       : Status::out_of_memory;
 }
 
 Status Collision::answer_composite() {
@@ -107,7 +113,8 @@ Status Collision::answer_composite() {
   }
   scene_.statistics.parts = scene_.parts_narrow.statistics();
   scene_.statistics.primitive_pairs = parts.pairs.size();
-  return invert(scene_.parts_answers, scene_.parts_slot) ? Status::ok : Status::out_of_memory;
+  return invert(scene_.parts_answers, options.execution, scene_.parts_slot) ? Status::ok
+                                                                            : Status::out_of_memory;
 }
 
 Status Scene::collide(SceneLevel level, Contacts& contacts) {

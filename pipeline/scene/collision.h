@@ -43,6 +43,7 @@ class Collision {
   /// The place in the last frame of a pair's contacts; kNone.
   [[nodiscard]] std::uint32_t shown_before(std::uint32_t pair) const noexcept;
   [[nodiscard]] std::uint32_t carried_stretch(std::uint32_t pair, std::uint32_t end) const noexcept;
+  [[nodiscard]] bool is_fresh_convex(std::uint32_t pair) const noexcept;
   [[nodiscard]] Place extent(std::uint32_t pair) const noexcept;
   [[nodiscard]] Place count(std::uint32_t first, std::uint32_t end) const noexcept;
   void write_task(std::uint32_t first, std::uint32_t end, Place at) noexcept;

@@ -53,6 +53,10 @@ struct Turn {
   }
 };
 
+[[nodiscard]] std::uint32_t code_of(const Scene::State& scene, const BodyPair& pair) noexcept {
+  return scene.shape[pair.a].kind_index() * kAllShapeKinds + scene.shape[pair.b].kind_index();
+}
+
 [[nodiscard]] double radius_of(const Scene::State& scene, std::uint32_t body) noexcept {
   const ShapeId id = scene.shape[body];
   return id.is_composite() ? scene.options.composites->radius(id)
@@ -112,15 +116,20 @@ bool Collision::match() {
   if (level_ != SceneLevel::pairs && !c.origin.resize(pairs.size())) return false;
   if (same_pairs_) return true;
   if (!c.old_record.resize(pairs.size())) return false;
-  std::size_t record = 0;
-  for (std::uint32_t code = 0; code < kPairCodes; ++code) {
-    for (std::uint32_t i = scene_.pairs.first(code); i < scene_.pairs.first(code + 1); ++i) {
-      const auto order = std::tuple(code, pairs[i].a, pairs[i].b);
-      while (record < c.records.size() && order_of(c.records[record]) < order) ++record;
-      const bool found = record < c.records.size() && order_of(c.records[record]) == order;
-      c.old_record[i] = found ? static_cast<std::uint32_t>(record++) : kNone;
+  const auto order_of_pair = [&](std::uint32_t i) {
+    return std::tuple(code_of(scene_, pairs[i]), pairs[i].a, pairs[i].b);
+  };
+  for_tasks([&](std::size_t, std::uint32_t first, std::uint32_t end) {
+    const PairRecord* record = std::lower_bound(
+        c.records.begin(), c.records.end(), order_of_pair(first),
+        [](const PairRecord& r, const auto& order) { return order_of(r) < order; });
+    for (std::uint32_t i = first; i < end; ++i) {
+      const auto order = order_of_pair(i);
+      while (record != c.records.end() && order_of(*record) < order) ++record;
+      const bool found = record != c.records.end() && order_of(*record) == order;
+      c.old_record[i] = found ? static_cast<std::uint32_t>(record++ - c.records.begin()) : kNone;
     }
-  }
+  });
   return true;
 }
 

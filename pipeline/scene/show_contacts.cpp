@@ -72,6 +72,15 @@ struct Touching {
 ContactFrame::Place Collision::count(std::uint32_t first, std::uint32_t end) const noexcept {
   Place sum;
   for (std::uint32_t i = first; i < end;) {
+    if (is_fresh_convex(i)) {
+      // Without a branch: whether pairs touch is what cannot be foreseen.
+      const std::uint32_t at = scene_.slot[contacts_.source[i++]];
+      const std::uint32_t touching = touches(scene_.answers, at) ? 1 : 0;
+      const std::uint32_t points =
+          level_ == SceneLevel::manifold ? scene_.answers.contact_count()[at] : 0;
+      sum += {touching, touching, touching * points};
+      continue;
+    }
     const std::uint32_t stretch = carried_stretch(i, end);
     if (stretch == 0) {
       sum += extent(i++);
@@ -88,7 +97,7 @@ ContactFrame::Place Collision::count(std::uint32_t first, std::uint32_t end) con
 void Collision::write_task(std::uint32_t first, std::uint32_t end, Place at) noexcept {
   Contacts::State& c = contacts_;
   for (std::uint32_t i = first; i < end;) {
-    const std::uint32_t stretch = carried_stretch(i, end);
+    const std::uint32_t stretch = is_fresh_convex(i) ? 0 : carried_stretch(i, end);
     if (stretch == 0) {
       const Place taken = extent(i);
       if (taken.pair != 0) write(i, at);
@@ -109,6 +118,11 @@ void Collision::write_task(std::uint32_t first, std::uint32_t end, Place at) noe
     std::fill_n(c.shown_again.data() + touching.first, touching.count, std::uint8_t{1});
     at += c.before.extent(touching.first, touching.count);
   }
+}
+
+bool Collision::is_fresh_convex(std::uint32_t pair) const noexcept {
+  return level_ != SceneLevel::pairs &&
+         static_cast<Origin>(contacts_.origin[pair]) == Origin::convex;
 }
 
 bool Collision::show() {
