@@ -99,6 +99,12 @@ Status NarrowPhase::run(const Call& call, NarrowResult& result) {
     }
   }
   if (!answer_wave(call, {wave, filled}, result)) return Status::out_of_memory;
+  // Chunks write where there is room for all that they may find: with this much, a call that finds
+  // no more than this one needs no more room, wherever in it its contacts are.
+  if (call.options.level == NarrowLevel::manifold && call.options.execution.concurrency() == 1 &&
+      !result.contacts_.grow(result.contacts() + kChunkContacts)) {
+    return Status::out_of_memory;
+  }
   statistics_.pairs = call.pairs.size();
   return bad_body_ == ~0U ? Status::ok : Status::invalid_pose;
 }

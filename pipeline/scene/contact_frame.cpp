@@ -49,6 +49,27 @@ bool ContactFrame::resize(SceneLevel level, std::size_t pairs, std::size_t manif
   return true;
 }
 
+bool ContactFrame::reserve_as(const ContactFrame& other) noexcept {
+  bool good = event.reserve(other.event.capacity()) &&
+              manifold_first.reserve(other.manifold_first.capacity()) &&
+              distance.reserve(other.distance.capacity()) &&
+              error_bound.reserve(other.error_bound.capacity()) &&
+              point_first.reserve(other.point_first.capacity()) &&
+              points.depth.reserve(other.points.depth.capacity()) &&
+              points.feature.reserve(other.points.feature.capacity());
+  for (int side = 0; side < 2; ++side) {
+    good = good && key[side].reserve(other.key[side].capacity()) &&
+           data[side].reserve(other.data[side].capacity()) &&
+           part[side].reserve(other.part[side].capacity());
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    good = good && normal[axis].reserve(other.normal[axis].capacity()) &&
+           point[axis].reserve(other.point[axis].capacity()) &&
+           points.position[axis].reserve(other.points.position[axis].capacity());
+  }
+  return good;
+}
+
 void ContactFrame::clear() noexcept {
   runs.clear();
   event.clear();

@@ -36,6 +36,8 @@ struct ContactFrame {
   /// Room for what a level has, and no more. False if memory is refused.
   [[nodiscard]] bool resize(SceneLevel level, std::size_t pairs, std::size_t manifolds,
                             std::size_t contact_points) noexcept;
+  /// As much room as another frame has, so that the two can change places.
+  [[nodiscard]] bool reserve_as(const ContactFrame& other) noexcept;
   void clear() noexcept;
   void swap(ContactFrame& other) noexcept;
   [[nodiscard]] Bytes bytes() const noexcept;

@@ -144,6 +144,11 @@ bool Collision::show() {
       !c.carried.resize(carries_ ? records : 0)) {
     return false;
   }
+  // The frames change places at the next call, which may find as much as this one.
+  if (!c.before.reserve_as(c.frame) || !c.records_before.reserve(c.records.capacity()) ||
+      !c.carried_before.reserve(c.carried.capacity())) {
+    return false;
+  }
   for_tasks([&](std::size_t task, std::uint32_t first, std::uint32_t last) {
     write_task(first, last, c.sums[task]);
   });
