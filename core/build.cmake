@@ -70,7 +70,7 @@ function(winnow_library room)
                         ${arg_PRIVATE_LINKS})
   target_compile_definitions(${target} PRIVATE ${WINNOW_ISA_DEFINITIONS})
   # Eigen takes longer to read than what is written with it. A compiler cache does better without.
-  if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND arg_PRECOMPILED)
+  if(WINNOW_PRECOMPILED_HEADERS AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND arg_PRECOMPILED)
     target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILED})
   endif()
   if(arg_KERNELS)

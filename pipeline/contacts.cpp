@@ -2,7 +2,6 @@
 #include <winnow/pipeline/scene/contact_frame.h>
 
 #include <new>
-#include <utility>
 
 namespace winnow {
 namespace {
@@ -49,8 +48,6 @@ Contacts::Contacts(std::pmr::memory_resource* memory) : state_(new State(memory)
 Contacts::~Contacts() {
   delete state_;
 }
-
-Contacts::Contacts(Contacts&& other) noexcept : state_(std::exchange(other.state_, nullptr)) {}
 
 SceneLevel Contacts::level() const noexcept {
   return state_->level;

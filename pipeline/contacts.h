@@ -56,10 +56,8 @@ class Contacts {
  public:
   explicit Contacts(std::pmr::memory_resource* memory = std::pmr::get_default_resource());
   ~Contacts();
-  Contacts(Contacts&& other) noexcept;
   Contacts(const Contacts&) = delete;
   Contacts& operator=(const Contacts&) = delete;
-  Contacts& operator=(Contacts&&) = delete;
 
   [[nodiscard]] SceneLevel level() const noexcept;
   /// Pairs of bodies.

@@ -31,10 +31,11 @@ foreach(isa ${WINNOW_ISAS})
 endforeach()
 
 set(WINNOW_KERNEL_OPTIMIZATION -O3 CACHE STRING "Optimization of kernels in every build type")
-# A wide type is four registers there, which takes the compiler long.
-set(WINNOW_BASELINE_OPTIMIZATION "" CACHE STRING
-    "Optimization of kernels for SSE4.2; empty: that of all kernels")
-mark_as_advanced(WINNOW_KERNEL_OPTIMIZATION WINNOW_BASELINE_OPTIMIZATION)
+# A wide type is two or four registers there, which takes the compiler long.
+set(WINNOW_NARROWER_OPTIMIZATION "" CACHE STRING
+    "Optimization of kernels for all instruction sets but the widest; empty: that of all kernels")
+mark_as_advanced(WINNOW_KERNEL_OPTIMIZATION WINNOW_NARROWER_OPTIMIZATION)
+list(GET WINNOW_ISAS -1 winnow_widest_isa)
 
 # winnow_add_kernels(target file.kernel.cpp ...): each file into an object library per instruction
 # set, linked into the target. The macro xsimd=xsimd_<isa> gives every build its own xsimd
@@ -44,8 +45,8 @@ function(winnow_add_kernels target)
     set(objects ${target}_kernels_${isa})
     add_library(${objects} OBJECT ${ARGN})
     set(optimization ${WINNOW_KERNEL_OPTIMIZATION})
-    if(isa STREQUAL "sse42" AND WINNOW_BASELINE_OPTIMIZATION)
-      set(optimization ${WINNOW_BASELINE_OPTIMIZATION})
+    if(WINNOW_NARROWER_OPTIMIZATION AND NOT isa STREQUAL winnow_widest_isa)
+      set(optimization ${WINNOW_NARROWER_OPTIMIZATION})
     endif()
     target_compile_options(${objects} PRIVATE ${WINNOW_FLAGS_${isa}} -fno-exceptions
                            ${optimization})

@@ -1,6 +1,6 @@
 #include "narrow/narrow_race.h"
 
-#include "engine/arena.h"
+#include "engine/timed.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,21 +10,6 @@ namespace {
 
 /// Pairs that are answered before a turn is timed.
 constexpr std::size_t kWarming = 512;
-
-double timed(int threads, Arenas& arenas, const auto& work) {
-  if (threads == 1) {
-    const ThreadStopwatch own_clock;
-    work();
-    return own_clock.ms();
-  }
-  double ms = 0.0;
-  arenas.run(threads, [&] {
-    const Stopwatch clock;
-    work();
-    ms = clock.ms();
-  });
-  return ms;
-}
 
 /// One contender at the level that is being raced.
 class Entry {

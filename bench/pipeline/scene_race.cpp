@@ -1,6 +1,6 @@
 #include "pipeline/scene_race.h"
 
-#include "engine/arena.h"
+#include "engine/timed.h"
 
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/contacts.h>
@@ -36,8 +36,8 @@ std::span<const std::uint32_t> corners_of(const Triangles& mesh) {
 
 class WinnowScene final : public SceneEngine {
  public:
-  WinnowScene(int threads, double carry_over)
-      : execution_(execution_for(threads)), carry_over_(carry_over) {}
+  WinnowScene(int threads, double carry_over, SceneLevel level)
+      : execution_(execution_for(threads)), carry_over_(carry_over), level_(level) {}
 
   [[nodiscard]] std::string name() const override {
     return carry_over_ > 0.0 ? "winnow, carrying over" : "winnow";
@@ -67,7 +67,7 @@ class WinnowScene final : public SceneEngine {
 
   void frame(std::span<const Pose> poses) override {
     need(scene_->move(keys_, poses), "poses");
-    need(scene_->collide(SceneLevel::manifold, contacts_), "contacts");
+    need(scene_->collide(level_, contacts_), "contacts");
   }
 
   [[nodiscard]] SceneFinds finds() const override { return {contacts_.size(), contacts_.points()}; }
@@ -75,6 +75,7 @@ class WinnowScene final : public SceneEngine {
  private:
   Execution execution_;
   double carry_over_;
+  SceneLevel level_;
   std::optional<CompositePool> composites_;
   std::optional<Scene> scene_;
   std::vector<Key> keys_;
@@ -130,21 +131,6 @@ class WinnowMesh final : public MeshEngine {
   std::vector<Key> keys_;
 };
 
-double timed(int threads, Arenas& arenas, const auto& work) {
-  if (threads == 1) {
-    const ThreadStopwatch own_clock;
-    work();
-    return own_clock.ms();
-  }
-  double ms = 0.0;
-  arenas.run(threads, [&] {
-    const Stopwatch clock;
-    work();
-    ms = clock.ms();
-  });
-  return ms;
-}
-
 /// Makes every pair of both lists single first.
 std::size_t count_differing(MeshEngine::TrianglePairs& a, MeshEngine::TrianglePairs& b) {
   for (MeshEngine::TrianglePairs* pairs : {&a, &b}) {
@@ -158,8 +144,8 @@ std::size_t count_differing(MeshEngine::TrianglePairs& a, MeshEngine::TrianglePa
 
 }  // namespace
 
-std::unique_ptr<SceneEngine> make_winnow_scene(int threads, double carry_over) {
-  return std::make_unique<WinnowScene>(threads, carry_over);
+std::unique_ptr<SceneEngine> make_winnow_scene(int threads, double carry_over, SceneLevel level) {
+  return std::make_unique<WinnowScene>(threads, carry_over, level);
 }
 
 std::unique_ptr<MeshEngine> make_winnow_mesh() {

@@ -4,6 +4,8 @@
 #include "peers/scene_engine.h"
 #include "pipeline/scenes.h"
 
+#include <winnow/pipeline/contacts.h>
+
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -13,7 +15,8 @@
 namespace winnow::bench {
 
 /// winnow on a scene. What rests is carried over if `carry_over` is above 0.
-[[nodiscard]] std::unique_ptr<SceneEngine> make_winnow_scene(int threads, double carry_over);
+[[nodiscard]] std::unique_ptr<SceneEngine> make_winnow_scene(
+    int threads, double carry_over, SceneLevel level = SceneLevel::manifold);
 [[nodiscard]] std::unique_ptr<MeshEngine> make_winnow_mesh();
 
 struct SceneContender {

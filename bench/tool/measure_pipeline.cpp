@@ -63,7 +63,8 @@ PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options) {
   measured.triangles = set->mesh.size();
   std::vector<SceneContender> contenders;
   for (const int threads : options.threads) {
-    contenders.push_back({make_winnow_scene(threads, options.resting ? kCarryOver : 0.0), threads});
+    contenders.push_back(
+        {make_winnow_scene(threads, options.resting ? kCarryOver : 0.0, options.level), threads});
   }
   if (options.peers) {
     for (std::unique_ptr<SceneEngine>& peer : scene_peers()) {

@@ -7,15 +7,21 @@
 
 #include <algorithm>
 #include <iostream>
+#include <map>
 
 namespace winnow::bench {
 namespace {
 
 const std::vector<std::string> kScenes{"pile", "terrain", "tori"};
+const std::map<std::string, SceneLevel> kLevels{{"pairs", SceneLevel::pairs},
+                                                {"boolean", SceneLevel::boolean},
+                                                {"distance", SceneLevel::distance},
+                                                {"manifold", SceneLevel::manifold}};
 
 struct Pipeline {
   Choice choice;
   std::vector<std::string> scenes = kScenes;
+  std::vector<std::string> levels{"manifold"};
   std::vector<int> threads{1, 2};
   std::size_t frames = 9;
   bool peers = true;
@@ -24,7 +30,8 @@ struct Pipeline {
   int run();
 
  private:
-  void race(const std::string& scene, bool resting, Table& table, Json& rows) const;
+  void race(const std::string& scene, const std::string& level, bool resting, Table& table,
+            Json& rows) const;
   [[nodiscard]] Table race_tori(Json& rows) const;
 };
 
@@ -32,23 +39,27 @@ std::string times(double ms, double own_ms) {
   return short_number(ms / own_ms) + "x";
 }
 
-void Pipeline::race(const std::string& scene, bool resting, Table& table, Json& rows) const {
+// Other libraries are asked for manifolds alone.
+void Pipeline::race(const std::string& scene, const std::string& level, bool resting, Table& table,
+                    Json& rows) const {
   PipelineMeasureOptions options;
   options.scene = scene;
   options.resting = resting;
+  options.level = kLevels.at(level);
   options.threads = threads;
-  options.peers = peers;
+  options.peers = peers && options.level == SceneLevel::manifold;
   options.frames = frames;
   options.seed = choice.seed;
   const PipelineMeasurement measured = measure_pipeline(options);
   const char* how = resting ? "at rest" : "moving a little";
   const double first = measured.timings.front().median_ms();
   for (const SceneTiming& timing : measured.timings) {
-    table.add({scene, grouped(measured.bodies), grouped(measured.triangles), how, timing.engine,
-               std::to_string(timing.threads), short_number(timing.median_ms()),
+    table.add({scene, grouped(measured.bodies), grouped(measured.triangles), level, how,
+               timing.engine, std::to_string(timing.threads), short_number(timing.median_ms()),
                times(timing.median_ms(), first), grouped(timing.finds.touching),
                grouped(timing.finds.points)});
     rows.push_back({{"scene", scene},
+                    {"level", level},
                     {"resting", resting},
                     {"bodies", measured.bodies},
                     {"triangles", measured.triangles},
@@ -98,9 +109,9 @@ Table Pipeline::race_tori(Json& rows) const {
 
 int Pipeline::run() {
   choose_isa(choice.isa);
-  Table table({"scene", "bodies", "triangles", "how", "by", "threads", "ms", "times the first",
-               "touching", "points"});
-  for (const std::size_t column : {3, 4}) table.flush_left(column);
+  Table table({"scene", "bodies", "triangles", "level", "how", "by", "threads", "ms",
+               "times the first", "touching", "points"});
+  for (const std::size_t column : {3, 4, 5}) table.flush_left(column);
   std::vector<Table> tori;
   Json rows = Json::array();
   bool has_scenes = false;
@@ -115,7 +126,7 @@ int Pipeline::run() {
       has_scenes = true;
       for (const bool resting : {false, true}) {
         progress.step(scene + (resting ? ", at rest" : ", moving a little"));
-        race(scene, resting, table, rows);
+        for (const std::string& level : levels) race(scene, level, resting, table, rows);
       }
     }
   }
@@ -139,6 +150,10 @@ Command add_pipeline(CLI::App& app) {
   sub->add_option("--scene", pipeline->scenes, "Which")
       ->delimiter(',')
       ->check(CLI::IsMember(kScenes))
+      ->capture_default_str();
+  sub->add_option("--level", pipeline->levels, "How much winnow is asked for")
+      ->delimiter(',')
+      ->check(CLI::IsMember(kLevels))
       ->capture_default_str();
   sub->add_option("--threads", pipeline->threads, "Numbers of threads that winnow takes")
       ->delimiter(',')

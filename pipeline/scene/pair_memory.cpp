@@ -183,6 +183,7 @@ bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
   const Pose unit = with_unit_turn(a);
   const double turned =
       turn_bound(carried.turn, unit.orientation, static_cast<double>(carried.radius_a));
+  if (moved + turned == 0.0) return true;
   if (!(moved + turned <= carried.limit)) {
     const double drift = static_cast<double>(carried.radius_a) * kTurnError;
     if (!(moved + drift <= carried.limit)) return false;

@@ -112,6 +112,20 @@ TEST(CarryOver, what_does_not_move_is_not_looked_at_again) {
   EXPECT_EQ(digest(contacts).size(), first.size());
 }
 
+TEST(CarryOver, what_is_moved_to_where_it_stands_stays_as_it_was_to_the_bit) {
+  SceneWorld world(scaled(300), 18);
+  Scene scene(world.pool, {.carry_over = 0.01});
+  ASSERT_EQ(add_all(scene, world), Status::ok);
+  Contacts contacts;
+  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  const std::vector<double> bounds(contacts.error_bound().begin(), contacts.error_bound().end());
+  ASSERT_EQ(move_all(scene, world), Status::ok);
+  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  EXPECT_EQ(contacts.carried(), scene.statistics().body_pairs);
+  ASSERT_EQ(contacts.manifolds(), bounds.size());
+  for (std::size_t m = 0; m < bounds.size(); ++m) EXPECT_EQ(contacts.error_bound()[m], bounds[m]);
+}
+
 TEST(SceneBytes, the_footprint_is_what_was_asked_for_and_a_steady_frame_asks_for_nothing) {
   for (const double carry_over : {0.0, 0.01}) {
     CountingMemory memory;
