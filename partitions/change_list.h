@@ -45,6 +45,7 @@ class ChangeList {
 
   void clear() noexcept;
   void release() noexcept;
+  void swap(ChangeList& other) noexcept;
   [[nodiscard]] Bytes bytes() const noexcept;
 
  private:

@@ -63,6 +63,8 @@ struct Statistics {
   std::uint64_t last_pairs = 0;  ///< pairs reported by the last pair query
 };
 
+class RowPartition;
+
 /// A spatial partition: takes bounding volumes with 64 bits of client data, hands out keys, and
 /// answers which of them may touch. It never misses a pair; whether it reports pairs whose boxes do
 /// not touch is stated by each partition.
@@ -166,6 +168,9 @@ class Partition {
 
   /// Draws the objects and the partition's own structure. A picture, not a query: O(n).
   virtual Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const = 0;
+
+  /// The rows behind this partition, for `pairs_with`; null if it keeps none.
+  [[nodiscard]] virtual const RowPartition* row_partition() const noexcept { return nullptr; }
 
   [[nodiscard]] virtual Footprint footprint() const noexcept = 0;
   [[nodiscard]] virtual Statistics statistics() const noexcept = 0;

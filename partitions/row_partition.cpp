@@ -200,6 +200,38 @@ void RowPartition::release_memory() noexcept {
   clear();
 }
 
+namespace {
+
+template <typename T>
+void exchange(std::atomic<T>& a, std::atomic<T>& b) noexcept {
+  b.store(a.exchange(b.load(std::memory_order_relaxed), std::memory_order_relaxed),
+          std::memory_order_relaxed);
+}
+
+}  // namespace
+
+void RowPartition::swap_objects(RowPartition& other) noexcept {
+  pool_.swap(other.pool_);
+  keys_.swap(other.keys_);
+  filters_.swap(other.filters_);
+  stale_.swap(other.stale_);
+  moved_.swap(other.moved_);
+  std::swap(identity_, other.identity_);
+  std::swap(tracked_serial_, other.tracked_serial_);
+  exchange(last_serial_, other.last_serial_);
+  std::swap(builds_, other.builds_);
+  std::swap(refits_, other.refits_);
+  exchange(full_queries_, other.full_queries_);
+  exchange(incremental_queries_, other.incremental_queries_);
+  exchange(last_tests_, other.last_tests_);
+  exchange(last_pairs_, other.last_pairs_);
+  for (RowPartition* p : {this, &other}) {
+    p->built_ = false;
+    p->regular_rows_ = p->built_rows_ = p->sorted_rows_ = 0;
+    p->dirty_.store(true, std::memory_order_relaxed);
+  }
+}
+
 Status RowPartition::reserve(std::size_t objects) {
   if (objects > kMaxObjects) return Status::too_many_objects;
   if (objects <= keys_.size()) return Status::ok;

@@ -96,6 +96,13 @@ class RowPartition : public Partition {
   [[nodiscard]] Footprint footprint() const noexcept override;
   [[nodiscard]] Statistics statistics() const noexcept override;
 
+  [[nodiscard]] const RowPartition* row_partition() const noexcept override { return this; }
+
+  /// Exchanges the objects of two partitions of one volume and one memory resource: keys, client
+  /// data, filters, what pair buffers know of them, and the counters of Statistics. The next
+  /// refresh of either builds; what a tracked pair buffer holds is still updated. O(1).
+  void swap_objects(RowPartition& other) noexcept;
+
  protected:
   RowPartition(const PartitionOptions& options, Volume volume);
 
@@ -104,6 +111,12 @@ class RowPartition : public Partition {
   /// all other live rows to `rest`. False if memory is refused: another build follows then. The
   /// default makes every live row part of the rest.
   virtual bool plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest);
+  /// Appends the rest to `order` in the order in which the tree's blocks of 16 hold it; entries of
+  /// kNoObject leave places empty. It may reorder `rest`. False if memory is refused. The default
+  /// follows a space-filling curve, each environment's rows together.
+  virtual bool order_rest(std::span<std::uint32_t> rest, Column<std::uint32_t>& order);
+  /// What a build costs in tests of 16 volumes per object.
+  [[nodiscard]] virtual std::uint64_t build_price() const noexcept;
   /// Called when the rows stand in the planned order.
   virtual void finish_build() {}
   /// True if the object in this regular row still fits where the build put it.
@@ -137,6 +150,7 @@ class RowPartition : public Partition {
   /// Of a flat partition: the rows and what their blocks hold of filters.
   [[nodiscard]] TreeView block_filters() const noexcept { return block_filters_.view(row_view()); }
   [[nodiscard]] const BoundsPool& pool() const noexcept { return pool_; }
+  [[nodiscard]] const FilterTable& filters() const noexcept { return filters_; }
   [[nodiscard]] const Execution& execution() const noexcept { return execution_; }
   [[nodiscard]] std::size_t regular_rows() const noexcept { return regular_rows_; }
   /// Scratch that a plan may use; the build uses it afterwards.
@@ -156,7 +170,6 @@ class RowPartition : public Partition {
   [[nodiscard]] std::size_t tail_limit() const noexcept { return keys_.size() / 16 + 64; }
   [[nodiscard]] bool wants_grouping() const noexcept;
   Status build();
-  bool append_rest() noexcept;
   Status build_flat();
   bool sort_by_place(std::span<std::uint32_t> rows, const Execution& execution);
   Status absorb_changes();
@@ -219,7 +232,7 @@ class RowPartition : public Partition {
   mutable Column<std::uint64_t> words_;  // bitmap for sorting them
   Column<std::uint64_t> sort_scratch_;
 
-  const std::uint64_t identity_;
+  std::uint64_t identity_;
   mutable std::uint64_t tracked_serial_ = 0;  // 0: no buffer is tracked
   mutable std::atomic<std::uint64_t> last_serial_{
       0};  // never goes back, so an old buffer cannot match

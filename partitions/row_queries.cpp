@@ -195,7 +195,7 @@ bool RowPartition::query_all(const QueryBatch& batch, PairSink& sink) const noex
 Status RowPartition::pairs_with(const Partition& other, PairBuffer& out,
                                 const PairOptions& options) const {
   out.clear();
-  const auto* rows = dynamic_cast<const RowPartition*>(&other);
+  const RowPartition* const rows = other.row_partition();
   if (rows == nullptr) return Status::invalid_argument;
   if (const Status status = refresh(); status != Status::ok) return status;
   if (const Status status = other.refresh(); status != Status::ok) return status;

@@ -12,9 +12,6 @@
 namespace winnow {
 namespace {
 
-// Price of a build in tests of 16 volumes per object, measured on both sides of the decision.
-constexpr std::uint64_t kBuildPrice = 12;
-
 constexpr std::size_t kBlock = BoundsPool::kBlock;
 
 }  // namespace
@@ -52,7 +49,8 @@ bool RowPartition::needs_build() const noexcept {
   if (holes > live / 4 + built_holes_ + 64) return true;
   if (filters_.has_environments() && wants_grouping()) return true;
   if (is_flat()) return false;
-  return tail > tail_limit() || excess_.load(std::memory_order_relaxed) > kBuildPrice * (live + 64);
+  return tail > tail_limit() ||
+         excess_.load(std::memory_order_relaxed) > build_price() * (live + 64);
 }
 
 // Rows of many environments are in no order that keeps them apart: in cells, new, or moved from one
@@ -84,12 +82,10 @@ Status RowPartition::build() {
       filters_.has_environments() ? RowPartition::plan(order_, list_) : plan(order_, list_);
   if (!planned) return Status::out_of_memory;
   const std::size_t regular = order_.size();
-  const std::size_t rest = list_.size();
-  if (!sort_by_place({list_.data(), rest}, execution_for(rest))) return Status::out_of_memory;
   // The tree's blocks begin behind the regular ones: no block belongs to both.
   while (order_.size() % kBlock != 0) (void)order_.push_back(kNoObject);
   const std::size_t first_block = order_.size() / kBlock;
-  if (!append_rest()) return Status::out_of_memory;
+  if (!order_rest({list_.data(), list_.size()}, order_)) return Status::out_of_memory;
   const std::size_t rows = order_.size();
   if (!pool_.reserve_exact(rows) || !spare_.reserve(pool_.capacity() + 2 * kBlock)) {
     return Status::out_of_memory;
@@ -118,14 +114,19 @@ Status RowPartition::build() {
   return Status::ok;
 }
 
-bool RowPartition::append_rest() noexcept {
-  const std::span<const std::uint32_t> rest(list_.data(), list_.size());
+bool RowPartition::order_rest(std::span<std::uint32_t> rest, Column<std::uint32_t>& order) {
+  if (!sort_by_place(rest, execution_for(rest.size()))) return false;
   if (filters_.has_environments()) {
-    return append_environments(pool_, filters_.data(), rest, order_);
+    return append_environments(pool_, filters_.data(), rest, order);
   }
-  if (!order_.resize(order_.size() + rest.size())) return false;
-  std::copy(rest.begin(), rest.end(), order_.end() - rest.size());
+  if (!order.resize(order.size() + rest.size())) return false;
+  std::copy(rest.begin(), rest.end(), order.end() - rest.size());
   return true;
+}
+
+// Measured on both sides of the decision.
+std::uint64_t RowPartition::build_price() const noexcept {
+  return 12;
 }
 
 Status RowPartition::build_flat() {
