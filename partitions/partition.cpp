@@ -4,6 +4,7 @@
 #include <winnow/partitions/flat_grid.h>
 #include <winnow/partitions/linear_bvh.h>
 #include <winnow/partitions/n_squared.h>
+#include <winnow/partitions/static_bvh.h>
 #include <winnow/partitions/sweep_and_prune.h>
 
 #include <array>
@@ -18,10 +19,11 @@ std::unique_ptr<Partition> make(const PartitionOptions& options) {
   return std::make_unique<T>(options);
 }
 
-constexpr std::array<std::string_view, 5> kNames{"NSquared", "BoundsNSquared", "SweepAndPrune",
-                                                 "FlatGrid", "LinearBvh"};
-constexpr std::array<Maker, kNames.size()> kMakers{
-    make<NSquared>, make<BoundsNSquared>, make<SweepAndPrune>, make<FlatGrid>, make<LinearBvh>};
+constexpr std::array<std::string_view, 6> kNames{"NSquared", "BoundsNSquared", "SweepAndPrune",
+                                                 "FlatGrid", "LinearBvh",      "StaticBvh"};
+constexpr std::array<Maker, kNames.size()> kMakers{make<NSquared>,      make<BoundsNSquared>,
+                                                   make<SweepAndPrune>, make<FlatGrid>,
+                                                   make<LinearBvh>,     make<StaticBvh>};
 
 }  // namespace
 

@@ -32,6 +32,7 @@
 #include <winnow/partitions/linear_bvh.h>
 #include <winnow/partitions/n_squared.h>
 #include <winnow/partitions/partition.h>
+#include <winnow/partitions/static_bvh.h>
 #include <winnow/partitions/sweep_and_prune.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/contacts.h>
