@@ -76,6 +76,27 @@ std::vector<Body> uniform_bodies(std::size_t objects, std::uint64_t seed, const 
   return bodies;
 }
 
+struct Sizes {
+  double smallest;
+  double ratio;   ///< of the largest edge to the smallest
+  double volume;  ///< of the world, an object
+};
+
+/// Cubes with log-uniform edges.
+std::unique_ptr<FrameSource> log_uniform(const char* name, const Sizes& sizes, std::size_t objects,
+                                         std::uint64_t seed) {
+  const Walls walls = Walls::cube(cube_root(sizes.volume * static_cast<double>(objects)));
+  Random random(seed);
+  std::vector<Body> bodies(objects);
+  for (Body& body : bodies) {
+    const double edge = sizes.smallest * power(sizes.ratio, random.unit());
+    body.half = 0.5 * edge;
+    body.centre = draw_point(random, walls);
+    body.velocity = draw_velocity(random, edge);
+  }
+  return std::make_unique<Drifting>(name, walls, std::move(bodies), seed);
+}
+
 }  // namespace
 
 std::unique_ptr<FrameSource> make_uniform(std::size_t objects, std::uint64_t seed) {
@@ -93,19 +114,14 @@ std::unique_ptr<FrameSource> make_brownian(std::size_t objects, std::uint64_t se
   return std::make_unique<Brownian>("brownian", walls, uniform_bodies(objects, seed, walls), seed);
 }
 
+// Two cubes with edges a and b overlap with probability (a + b)^3 / volume: the volume an object
+// that gives ten pairs an object is a twentieth of the mean of (a + b)^3.
 std::unique_ptr<FrameSource> make_mixed(std::size_t objects, std::uint64_t seed) {
-  // Two cubes with edges a and b overlap with probability (a + b)^3 / volume; for log-uniform edges
-  // the mean of (a + b)^3 is 284.8, so a volume of 14.2 an object gives ten pairs an object.
-  const Walls walls = Walls::cube(cube_root(14.2 * static_cast<double>(objects)));
-  Random random(seed);
-  std::vector<Body> bodies(objects);
-  for (Body& body : bodies) {
-    const double edge = 0.1 * power(100.0, random.unit());
-    body.half = 0.5 * edge;
-    body.centre = draw_point(random, walls);
-    body.velocity = draw_velocity(random, edge);
-  }
-  return std::make_unique<Drifting>("mixed", walls, std::move(bodies), seed);
+  return log_uniform("mixed", {0.1, 100.0, 14.2}, objects, seed);
+}
+
+std::unique_ptr<FrameSource> make_mixed_1000(std::size_t objects, std::uint64_t seed) {
+  return log_uniform("mixed_1000", {0.01, 1000.0, 8.0}, objects, seed);
 }
 
 std::unique_ptr<FrameSource> make_clustered(std::size_t objects, std::uint64_t seed) {

@@ -13,6 +13,7 @@ namespace winnow::bench {
 std::unique_ptr<FrameSource> make_uniform(std::size_t objects, std::uint64_t seed);
 std::unique_ptr<FrameSource> make_sleepy(std::size_t objects, std::uint64_t seed);
 std::unique_ptr<FrameSource> make_mixed(std::size_t objects, std::uint64_t seed);
+std::unique_ptr<FrameSource> make_mixed_1000(std::size_t objects, std::uint64_t seed);
 std::unique_ptr<FrameSource> make_clustered(std::size_t objects, std::uint64_t seed);
 std::unique_ptr<FrameSource> make_wall(std::size_t objects, std::uint64_t seed);
 std::unique_ptr<FrameSource> make_brownian(std::size_t objects, std::uint64_t seed);

@@ -10,7 +10,7 @@ namespace {
 
 using Maker = std::unique_ptr<FrameSource> (*)(std::size_t objects, std::uint64_t seed);
 
-constexpr std::array<SceneInfo, 9> kInfos{{
+constexpr std::array<SceneInfo, 10> kInfos{{
     {"uniform", "unit cubes spread evenly over a cube of side cbrt(2N), all in straight flight"},
     {"sleepy", "as uniform, but in each frame only another random 5 % of the objects move"},
     {"mixed", "cubes with edges log-uniform from 0.1 to 10 in a cube of volume 14.2 N"},
@@ -20,11 +20,12 @@ constexpr std::array<SceneInfo, 9> kInfos{{
     {"brownian", "as uniform, but every object takes a new random step in every frame"},
     {"free_fall", "unit cubes fall, bounce and come to rest in a heap a quarter as high"},
     {"gravity", "unit cubes fall to the centre of the world, bounce and come to rest there"},
+    {"mixed_1000", "cubes with edges log-uniform from 0.01 to 10 in a cube of volume 8 N"},
 }};
 
-constexpr std::array<Maker, kInfos.size()> kMakers{make_uniform,   make_sleepy,    make_mixed,
-                                                   make_clustered, make_pile,      make_wall,
-                                                   make_brownian,  make_free_fall, make_gravity};
+constexpr std::array<Maker, kInfos.size()> kMakers{
+    make_uniform, make_sleepy,   make_mixed,     make_clustered, make_pile,
+    make_wall,    make_brownian, make_free_fall, make_gravity,   make_mixed_1000};
 
 }  // namespace
 
