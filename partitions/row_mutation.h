@@ -112,14 +112,15 @@ void RowPartition::write_rows(const Source& source, std::span<const Key> keys, b
     // Nearly every row changes and entry i is object first + i: going by rows reads entries out of
     // order but writes each column in order, which is a sixth of the cache lines.
     for_ranges(execution_, pool_.rows(), [&](std::size_t begin, std::size_t end) {
-      // Far enough for an entry to arrive from the second-level cache; the pool is padded by more.
-      constexpr std::size_t kAhead = 16;
       const ObjectId* const ids = pool_.ids();
-      for (std::size_t row = begin; row < end; ++row) {
-        if constexpr (requires { source.prefetch(row); }) {
-          const auto ahead = static_cast<ObjectId>(ids[row + kAhead] - first);
-          if (ahead < count) source.prefetch(ahead);
+      if constexpr (requires { source.packed(); }) {
+        const std::size_t whole = end - end % BoundsPool::kBlock;
+        if (source.packed()) {
+          source.write_rows(first, ids, columns.pointers, begin, whole);
+          begin = whole;
         }
+      }
+      for (std::size_t row = begin; row < end; ++row) {
         const std::size_t i = static_cast<ObjectId>(ids[row] - first);
         if (i < count) source.write(i, columns.pointers, row);
       }

@@ -8,7 +8,7 @@
 
 namespace winnow {
 
-WINNOW_DEFINE_KERNELS(BoxCheckKernels, box_check_kernels)
+WINNOW_DEFINE_KERNELS(BoxInputKernels, box_input_kernels)
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <winnow/core/box_view.h>
 #include <winnow/core/kdop.h>
 #include <winnow/core/sphere.h>
-#include <winnow/partitions/box_check.kernel.h>
+#include <winnow/partitions/box_input.kernel.h>
 
 #include <algorithm>
 #include <cfloat>
@@ -41,20 +41,26 @@ struct BoxSource {
     }
     return ok != 0;
   }
+  /// True if each box is six floats (min xyz, max xyz) and they lie one after another.
+  [[nodiscard]] bool packed() const noexcept {
+    const float* const first = boxes.min[0];
+    return boxes.stride == sizeof(Aabb) && boxes.min[1] == first + 1 && boxes.min[2] == first + 2 &&
+           boxes.max[0] == first + 3 && boxes.max[1] == first + 4 && boxes.max[2] == first + 5;
+  }
   /// All of [begin, end), many at a time where the boxes lie one after another.
   [[nodiscard]] bool valid_range(std::size_t begin, std::size_t end) const noexcept {
-    const float* const first = boxes.min[0];
-    const bool packed = boxes.stride == sizeof(Aabb) && boxes.min[1] == first + 1 &&
-                        boxes.min[2] == first + 2 && boxes.max[0] == first + 3 &&
-                        boxes.max[1] == first + 4 && boxes.max[2] == first + 5;
-    if (packed) return box_check_kernels().boxes(first + 6 * begin, end - begin);
+    if (packed()) return box_input_kernels().legal(boxes.min[0] + 6 * begin, end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       if (!valid(i)) return false;
     }
     return true;
   }
-  void prefetch(std::size_t i) const noexcept {
-    __builtin_prefetch(reinterpret_cast<const std::byte*>(boxes.min[0]) + i * boxes.stride);
+  /// Writes the rows of [begin, end), both multiples of 16, whose objects are among boxes.count
+  /// ones from `first` on. The boxes are packed.
+  void write_rows(ObjectId first, const ObjectId* ids, ColumnPointers columns, std::size_t begin,
+                  std::size_t end) const noexcept {
+    box_input_kernels().write_rows(boxes.min[0], first, static_cast<std::uint32_t>(boxes.count),
+                                   ids, columns, begin, end);
   }
   void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
     const Aabb box = boxes[i];
