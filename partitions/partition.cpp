@@ -1,5 +1,6 @@
 #include <winnow/partitions/partition.h>
 
+#include <winnow/partitions/auto_partition.h>
 #include <winnow/partitions/bounds_n_squared.h>
 #include <winnow/partitions/flat_grid.h>
 #include <winnow/partitions/linear_bvh.h>
@@ -19,11 +20,12 @@ std::unique_ptr<Partition> make(const PartitionOptions& options) {
   return std::make_unique<T>(options);
 }
 
-constexpr std::array<std::string_view, 6> kNames{"NSquared", "BoundsNSquared", "SweepAndPrune",
-                                                 "FlatGrid", "LinearBvh",      "StaticBvh"};
-constexpr std::array<Maker, kNames.size()> kMakers{make<NSquared>,      make<BoundsNSquared>,
-                                                   make<SweepAndPrune>, make<FlatGrid>,
-                                                   make<LinearBvh>,     make<StaticBvh>};
+constexpr std::array<std::string_view, 7> kNames{"NSquared",     "BoundsNSquared", "SweepAndPrune",
+                                                 "FlatGrid",     "LinearBvh",      "StaticBvh",
+                                                 "AutoPartition"};
+constexpr std::array<Maker, kNames.size()> kMakers{
+    make<NSquared>,  make<BoundsNSquared>, make<SweepAndPrune>, make<FlatGrid>,
+    make<LinearBvh>, make<StaticBvh>,      make<AutoPartition>};
 
 }  // namespace
 

@@ -157,6 +157,8 @@ class RowPartition : public Partition {
   [[nodiscard]] Column<std::uint64_t>& sort_scratch() noexcept { return sort_scratch_; }
 
  private:
+  friend class AutoPartition;  // which looks at a sample of the rows
+
   template <typename Source>
   void write_rows(const Source& source, std::span<const Key> keys, bool ascending);
   void fetch_row(std::size_t row) const noexcept;

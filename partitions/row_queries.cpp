@@ -195,10 +195,11 @@ bool RowPartition::query_all(const QueryBatch& batch, PairSink& sink) const noex
 Status RowPartition::pairs_with(const Partition& other, PairBuffer& out,
                                 const PairOptions& options) const {
   out.clear();
-  const RowPartition* const rows = other.row_partition();
-  if (rows == nullptr) return Status::invalid_argument;
   if (const Status status = refresh(); status != Status::ok) return status;
   if (const Status status = other.refresh(); status != Status::ok) return status;
+  // Only now: a refresh may hand the other's objects from one partition to another.
+  const RowPartition* const rows = other.row_partition();
+  if (rows == nullptr) return Status::invalid_argument;
   // The smaller side asks: each question costs about the logarithm of the side that is asked.
   const Status status = size() <= rows->size()
                             ? ask(*rows, HitMode::query_first, options.predicate, out)

@@ -26,6 +26,7 @@
 #include <winnow/core/rounding.h>
 #include <winnow/core/sphere.h>
 #include <winnow/core/status.h>
+#include <winnow/partitions/auto_partition.h>
 #include <winnow/partitions/bounds_n_squared.h>
 #include <winnow/partitions/debug_colours.h>
 #include <winnow/partitions/flat_grid.h>

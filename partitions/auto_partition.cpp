@@ -1,0 +1,179 @@
+#include <winnow/partitions/auto_partition.h>
+
+#include <winnow/partitions/bounds_n_squared.h>
+#include <winnow/partitions/flat_grid.h>
+#include <winnow/partitions/linear_bvh.h>
+#include <winnow/partitions/static_bvh.h>
+#include <winnow/partitions/sweep_and_prune.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <new>
+
+namespace winnow {
+namespace {
+
+// A kind that is only this much cheaper, or less, is no better: the prediction is not that good.
+constexpr double kWorthwhile = 0.95;
+// What handing over costs, in frames in which everything moves: a build, and cold caches.
+constexpr double kFramesToHandOver = 2.0;
+// A sample is taken anew once each object has moved this often.
+constexpr std::size_t kMovesToLook = 32;
+// Refreshes that pass before memory that was refused is asked for again.
+constexpr std::size_t kPatience = 64;
+// How often a kind is counted to have been left: past that its price is out of reach.
+constexpr std::uint8_t kMostOften = 32;
+
+template <typename T>
+RowPartition* make(void* place, const PartitionOptions& options) {
+  return ::new (place) T(options);
+}
+
+using Maker = RowPartition* (*)(void* place, const PartitionOptions& options);
+// By PartitionKind.
+constexpr std::array<Maker, kPartitionKinds> kMakers{
+    make<BoundsNSquared>, make<SweepAndPrune>, make<FlatGrid>, make<LinearBvh>, make<StaticBvh>};
+
+bool far_apart(std::size_t a, std::size_t b) noexcept {
+  return 2 * a > 3 * b + 64 || 2 * b > 3 * a + 64;
+}
+
+}  // namespace
+
+AutoPartition::AutoPartition(const PartitionOptions& options) : options_(options) {
+  static_assert(std::max({sizeof(BoundsNSquared), sizeof(SweepAndPrune), sizeof(FlatGrid),
+                          sizeof(LinearBvh), sizeof(StaticBvh)}) <= kRoom);
+  move_in(PartitionKind::linear_bvh);
+}
+
+AutoPartition::~AutoPartition() {
+  std::destroy_at(inner_);
+}
+
+// Makes an empty partition in the place that is free and has it hold the objects.
+void AutoPartition::move_in(PartitionKind kind) noexcept {
+  place_ = 1 - place_;
+  inner_ = kMakers[static_cast<std::size_t>(kind)](places_[place_].bytes, options_);
+  kind_ = kind;
+}
+
+Status AutoPartition::refresh() const {
+  if (!stale_.load(std::memory_order_acquire)) return Status::ok;
+  const std::lock_guard lock(mutex_);
+  if (!stale_.load(std::memory_order_relaxed)) return Status::ok;
+  // Which partition holds the objects is no more of a change that a caller can see than the
+  // partition's own structure is.
+  const Status status = const_cast<AutoPartition*>(this)->refresh_now();
+  if (status == Status::ok) stale_.store(false, std::memory_order_release);
+  return status;
+}
+
+Status AutoPartition::refresh_now() {
+  wanted_ = kind_;
+  if (waiting_ != 0) {
+    --waiting_;
+  } else if (inner_->size() != 0) {
+    choose();
+  }
+  const Status status = wanted_ == kind_ ? inner_->refresh() : hand_over();
+  if (status != Status::ok) return status;
+  changed_ = 0;
+  chosen_ = inner_->size() != 0;
+  return Status::ok;
+}
+
+FrameWork AutoPartition::take_frame() noexcept {
+  FrameWork frame;
+  frame.changed = std::min(changed_, inner_->size());
+  frame.pair_queries = pair_queries_.take();
+  frame.full_queries = full_queries_.take();
+  frame.casts = casts_.take();
+  frame.regions = regions_.take();
+  frame.nearest = nearest_.take();
+  return frame;
+}
+
+void AutoPartition::choose() noexcept {
+  const FrameWork frame = take_frame();
+  unseen_ += frame.changed;
+  const std::size_t live = inner_->size();
+  const std::size_t before = features_.objects;
+  const std::size_t pairs = pairs_.load(std::memory_order_relaxed);
+  if (pairs_seen_ == 0) pairs_seen_ = pairs;
+  // Where most objects came or went a build is due whatever is chosen.
+  const bool other_scene = !chosen_ || live > 2 * before || 2 * live < before;
+  if (other_scene || far_apart(live, objects_seen_) || far_apart(pairs, pairs_seen_) ||
+      unseen_ / kMovesToLook > live) {
+    features_ = SceneFeatures(inner_->pool(), live);
+    objects_seen_ = live;
+    unseen_ = 0;
+    pairs_seen_ = 0;
+  }
+  features_.objects = live;
+  if (other_scene) guess(frame);
+  if (chosen_ && wanted_ == kind_) consider(frame);
+}
+
+// As if everything moved and all pairs were wanted, unless something else was asked for.
+void AutoPartition::guess(FrameWork frame) noexcept {
+  frame.changed = features_.objects;
+  if (frame.casts + frame.regions + frame.nearest == 0) frame.pair_queries = 1;
+  const PartitionCosts costs(features_, frame,
+                             features_.pairs * static_cast<double>(features_.objects));
+  const PartitionKind best = costs.cheapest();
+  if (left_[static_cast<std::size_t>(best)] != 0) return;
+  wanted_ = best;
+  reason_ = "the best guess from a sample of the scene";
+}
+
+// What each kind would have saved is summed up until it pays for the build.
+void AutoPartition::consider(const FrameWork& frame) noexcept {
+  const std::size_t pairs = pairs_.load(std::memory_order_relaxed);
+  const PartitionCosts costs(features_, frame, static_cast<double>(pairs));
+  FrameWork all;
+  all.changed = features_.objects;
+  all.full_queries = all.pair_queries = 1;
+  const PartitionCosts building(features_, all, static_cast<double>(pairs));
+  double most = 0.0;
+  for (std::size_t k = 0; k < kPartitionKinds; ++k) {
+    const auto kind = static_cast<PartitionKind>(k);
+    const double gain = kWorthwhile * costs.of(kind_) - costs.of(kind);
+    saved_[k] = kind == kind_ ? 0.0 : std::max(0.0, saved_[k] + gain);
+    const double price = kFramesToHandOver * std::ldexp(building.of(kind), left_[k]);
+    if (saved_[k] - price <= most) continue;
+    most = saved_[k] - price;
+    wanted_ = kind;
+  }
+  if (wanted_ == kind_) return;
+  const double by_queries = costs.queries_of(kind_) - costs.queries_of(wanted_);
+  const double by_pairs = costs.of(kind_) - costs.of(wanted_) - by_queries;
+  reason_ = by_queries > by_pairs ? "cheaper for the queries that are asked"
+                                  : "cheaper for what moves and for its pairs";
+}
+
+Status AutoPartition::hand_over() {
+  RowPartition* const before = inner_;
+  const PartitionKind kind_before = kind_;
+  move_in(wanted_);
+  inner_->swap_objects(*before);
+  const Status status = inner_->refresh();
+  if (status != Status::ok) {
+    before->swap_objects(*inner_);
+    std::destroy_at(inner_);
+    inner_ = before;
+    place_ = 1 - place_;
+    kind_ = kind_before;
+    waiting_ = kPatience;
+    return inner_->refresh();
+  }
+  std::destroy_at(before);
+  saved_ = {};
+  if (!chosen_) return Status::ok;
+  ++switches_;
+  std::uint8_t& left = left_[static_cast<std::size_t>(kind_before)];
+  if (left < kMostOften) ++left;
+  return Status::ok;
+}
+
+}  // namespace winnow

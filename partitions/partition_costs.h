@@ -1,0 +1,72 @@
+#pragma once
+
+#include <winnow/partitions/scene_features.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace winnow {
+
+/// The partitions that AutoPartition chooses from.
+enum class PartitionKind : std::uint8_t {
+  bounds_n_squared,
+  sweep_and_prune,
+  flat_grid,
+  linear_bvh
+};
+
+inline constexpr std::size_t kPartitionKinds = 5;
+
+/// What a frame did.
+struct FrameWork {
+  std::size_t changed = 0;       ///< objects moved, inserted or removed, at most all
+  std::size_t pair_queries = 0;  ///< for all pairs
+  std::size_t full_queries = 0;  ///< of them, how many asked for every pair anew
+  std::size_t casts = 0;         ///< rays and swept volumes
+  std::size_t regions = 0;       ///< boxes, spheres, frusta
+  std::size_t nearest = 0;
+};
+
+/// What one frame is expected to cost each partition, in nanoseconds of one thread.
+///
+/// The cost is a sum of a few products, each of a feature and of a constant by partition:
+///
+/// - a pair query after much has moved: every object is written, sorted or refitted and asked
+///   (`object`, and `level` for each doubling of their number: depth and caches), is tested against
+///   more of the others the more sizes differ (`spread`) and the more crowd together (`crowd`), and
+///   each pair is written (`pair`); brute force tests all (`square`);
+/// - a pair query after little has moved: each object that moved is written and asked (`moved`),
+///   its share of the pairs is redone (`pair`), and flags of the rest are read (`rest`);
+/// - every other query: `ask`, `ask_level` for each doubling of the number of objects, and where
+///   there is no tree, `scan` an object. The tree of rows behind cells and strips is refitted first
+///   (`rows`, an object).
+///
+/// The constants were fitted, without negative ones, to the relative error of times measured on one
+/// thread with AVX-512 on the nine built-in scenes at 10 to 100,000 objects, all moving or 1, 5 and
+/// 20 % of them, and of single queries on those scenes.
+class PartitionCosts {
+ public:
+  using List = std::array<double, kPartitionKinds>;
+
+  /// `pairs` is the number of pairs of the scene.
+  PartitionCosts(const SceneFeatures& scene, const FrameWork& frame, double pairs) noexcept;
+
+  [[nodiscard]] double of(PartitionKind kind) const noexcept {
+    return total_[static_cast<std::size_t>(kind)];
+  }
+  /// The part of it that goes into queries other than pairs.
+  [[nodiscard]] double queries_of(PartitionKind kind) const noexcept {
+    return queries_[static_cast<std::size_t>(kind)];
+  }
+  [[nodiscard]] PartitionKind cheapest() const noexcept;
+
+ private:
+  List total_{};
+  List queries_{};
+};
+
+[[nodiscard]] std::string_view partition_name(PartitionKind kind) noexcept;
+
+}  // namespace winnow
