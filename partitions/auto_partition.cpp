@@ -16,8 +16,8 @@ namespace {
 
 // A kind that is only this much cheaper, or less, is no better: the prediction is not that good.
 constexpr double kWorthwhile = 0.95;
-// What handing over costs, in frames in which everything moves: a build, and cold caches.
-constexpr double kFramesToHandOver = 2.0;
+// Frames like the first that the first choice is made for.
+constexpr double kFramesAhead = 16.0;
 // A sample is taken anew once each object has moved this often.
 constexpr std::size_t kMovesToLook = 32;
 // Refreshes that pass before memory that was refused is asked for again.
@@ -121,7 +121,7 @@ void AutoPartition::guess(FrameWork frame) noexcept {
   if (frame.casts + frame.regions + frame.nearest == 0) frame.pair_queries = 1;
   const PartitionCosts costs(features_, frame,
                              features_.pairs * static_cast<double>(features_.objects));
-  const PartitionKind best = costs.cheapest();
+  const PartitionKind best = costs.cheapest(kFramesAhead);
   if (left_[static_cast<std::size_t>(best)] != 0) return;
   wanted_ = best;
   reason_ = "the best guess from a sample of the scene";
@@ -131,16 +131,12 @@ void AutoPartition::guess(FrameWork frame) noexcept {
 void AutoPartition::consider(const FrameWork& frame) noexcept {
   const std::size_t pairs = pairs_.load(std::memory_order_relaxed);
   const PartitionCosts costs(features_, frame, static_cast<double>(pairs));
-  FrameWork all;
-  all.changed = features_.objects;
-  all.full_queries = all.pair_queries = 1;
-  const PartitionCosts building(features_, all, static_cast<double>(pairs));
   double most = 0.0;
   for (std::size_t k = 0; k < kPartitionKinds; ++k) {
     const auto kind = static_cast<PartitionKind>(k);
     const double gain = kWorthwhile * costs.of(kind_) - costs.of(kind);
     saved_[k] = kind == kind_ ? 0.0 : std::max(0.0, saved_[k] + gain);
-    const double price = kFramesToHandOver * std::ldexp(building.of(kind), left_[k]);
+    const double price = std::ldexp(costs.build_of(kind), left_[k]);
     if (saved_[k] - price <= most) continue;
     most = saved_[k] - price;
     wanted_ = kind;

@@ -29,23 +29,27 @@ struct FrameWork {
   std::size_t nearest = 0;
 };
 
-/// What one frame is expected to cost each partition, in nanoseconds of one thread.
+/// What one frame is expected to cost each partition, and what it costs to begin with that
+/// partition, in nanoseconds of one thread.
 ///
-/// The cost is a sum of a few products, each of a feature and of a constant by partition:
+/// A frame is a sum of a few products, each of a feature and of a constant by partition:
 ///
-/// - a pair query after much has moved: every object is written, sorted or refitted and asked
-///   (`object`, and `level` for each doubling of their number: depth and caches), is tested against
-///   more of the others the more sizes differ (`spread`) and the more crowd together (`crowd`), and
-///   each pair is written (`pair`); brute force tests all (`square`);
-/// - a pair query after little has moved: each object that moved is written and asked (`moved`),
-///   its share of the pairs is redone (`pair`), and flags of the rest are read (`rest`);
+/// - a pair query after much has moved: every object is written, refitted or sorted and asked
+///   (`object`, and `level` for each doubling of their number: depth and caches), and is tested
+///   against more of the others the more their sizes differ (`spread`) and the more they crowd
+///   together (`crowd`); brute force tests all (`square`);
+/// - a pair query after little has moved: each object that moved is written and asked (`moved`,
+///   `level`, `square`), and flags of the rest are read (`rest`);
+/// - each pair that is written costs all partitions the same;
 /// - every other query: `ask`, `ask_level` for each doubling of the number of objects, and where
-///   there is no tree, `scan` an object. The tree of rows behind cells and strips is refitted first
-///   (`rows`, an object).
+///   there is no tree, `scan` an object. A tree over the rows of cells and strips is refitted first
+///   (`rows`, an object that moved).
+///
+/// To begin with a partition takes a build: `build` an object, `build_level` for each doubling.
 ///
 /// The constants were fitted, without negative ones, to the relative error of times measured on one
 /// thread with AVX-512 on the nine built-in scenes at 10 to 100,000 objects, all moving or 1, 5 and
-/// 20 % of them, and of single queries on those scenes.
+/// 20 % of them; those of other queries to single rays, boxes and nearest objects there.
 class PartitionCosts {
  public:
   using List = std::array<double, kPartitionKinds>;
@@ -53,18 +57,25 @@ class PartitionCosts {
   /// `pairs` is the number of pairs of the scene.
   PartitionCosts(const SceneFeatures& scene, const FrameWork& frame, double pairs) noexcept;
 
+  /// Of one frame.
   [[nodiscard]] double of(PartitionKind kind) const noexcept {
     return total_[static_cast<std::size_t>(kind)];
   }
-  /// The part of it that goes into queries other than pairs.
+  /// The part of it that goes into queries other than for all pairs.
   [[nodiscard]] double queries_of(PartitionKind kind) const noexcept {
     return queries_[static_cast<std::size_t>(kind)];
   }
-  [[nodiscard]] PartitionKind cheapest() const noexcept;
+  /// Of a build.
+  [[nodiscard]] double build_of(PartitionKind kind) const noexcept {
+    return build_[static_cast<std::size_t>(kind)];
+  }
+  /// The cheapest for so many frames like this one, the first build included.
+  [[nodiscard]] PartitionKind cheapest(double frames) const noexcept;
 
  private:
   List total_{};
   List queries_{};
+  List build_{};
 };
 
 [[nodiscard]] std::string_view partition_name(PartitionKind kind) noexcept;

@@ -124,7 +124,7 @@ SceneFeatures::SceneFeatures(const BoundsPool& pool, std::size_t live) noexcept 
   divide(axes, room);
   const double likelier = crowding_of(sample, axes);
   crowding = rough_log2(likelier);
-  pairs = std::min(pairs_of_one * likelier, static_cast<double>(live));
+  pairs = std::min(pairs_of_one * likelier, 0.5 * static_cast<double>(live));
 }
 
 }  // namespace winnow

@@ -110,6 +110,8 @@ class DebugDrawing : public Conformance {
     }
     const Sketch structure = draw(world, kStructureOnly);
     EXPECT_TRUE(structure.boxes_in(kObjectColour).empty());
+    if (config().partition == "AutoPartition" && structure.is_empty())
+      return;  // it chose a flat one
     if (is_flat()) {
       EXPECT_TRUE(structure.is_empty());
       return;
@@ -197,7 +199,9 @@ TEST_P(DebugDrawing, shows_as_many_levels_of_nodes_as_asked_for_each_within_the_
   world.insert(clustered_boxes(5000));
   const Sketch all = draw(world, kStructureOnly);
   const std::size_t levels = world.partition().statistics().depth;
-  EXPECT_EQ(config().partition.ends_with("Bvh"), levels == 3);
+  if (config().partition != "AutoPartition") {  // which may have chosen any
+    EXPECT_EQ(config().partition.ends_with("Bvh"), levels == 3);
+  }
   for (std::size_t depth = 0; depth <= levels; ++depth) {
     DebugDrawOptions options = kStructureOnly;
     options.max_depth = static_cast<int>(depth);
