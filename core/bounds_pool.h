@@ -89,7 +89,8 @@ class BoundsPool {
 [[nodiscard]] constexpr float empty_value(Volume volume, std::size_t c) noexcept {
   constexpr float inf = std::numeric_limits<float>::infinity();
   if (volume == Volume::sphere) return c < 3 ? inf : 0.0F;
-  return c < column_count(volume) / 2 ? inf : -inf;
+  const std::size_t slabs = slab_count(volume);
+  return c < 3 || (c >= 6 && c < 3 + slabs) ? inf : -inf;
 }
 
 }  // namespace winnow

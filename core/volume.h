@@ -8,8 +8,8 @@ namespace winnow {
 /// Kind of bounding volume that a partition stores and tests.
 enum class Volume : std::uint8_t { aabb, sphere, kdop14, kdop18, kdop26 };
 
-/// Float columns a volume takes: the lower ends of its slabs, then the upper ends; a sphere has
-/// centre and radius.
+/// Float columns a volume takes: the lower and the upper ends of its box, then the lower and the
+/// upper ends of its further slabs; a sphere has centre and radius.
 [[nodiscard]] constexpr std::size_t column_count(Volume volume) noexcept {
   switch (volume) {
     case Volume::aabb:
@@ -27,5 +27,18 @@ enum class Volume : std::uint8_t { aabb, sphere, kdop14, kdop18, kdop26 };
 }
 
 inline constexpr std::size_t kMaxColumns = 26;
+
+/// Slabs of a volume that has any.
+[[nodiscard]] constexpr std::size_t slab_count(Volume volume) noexcept {
+  return volume == Volume::sphere ? 0 : column_count(volume) / 2;
+}
+
+/// Columns of the ends of slab `s` of `slabs`: those of the box come first.
+[[nodiscard]] constexpr std::size_t low_column(std::size_t, std::size_t s) noexcept {
+  return s < 3 ? s : s + 3;
+}
+[[nodiscard]] constexpr std::size_t high_column(std::size_t slabs, std::size_t s) noexcept {
+  return s < 3 ? s + 3 : slabs + s;
+}
 
 }  // namespace winnow

@@ -29,14 +29,16 @@ namespace winnow {
 /// of threads.
 ///
 /// It changes kind only where something changed since the last refresh. A world that is built once
-/// and only asked from then on keeps its first choice. Exact.
+/// and only asked from then on keeps its first choice. Exact for boxes without a margin.
 class AutoPartition final : public Partition {
  public:
   explicit AutoPartition(const PartitionOptions& options = {});
   ~AutoPartition() override;
 
   [[nodiscard]] std::string_view name() const noexcept override { return "AutoPartition"; }
-  [[nodiscard]] bool is_exact() const noexcept override { return true; }
+  [[nodiscard]] bool is_exact() const noexcept override {
+    return options_.volume == Volume::aabb && options_.margin.is_none();
+  }
 
   /// Name of the partition that holds the objects.
   [[nodiscard]] std::string_view chosen() const noexcept;

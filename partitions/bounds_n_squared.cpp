@@ -7,11 +7,6 @@
 namespace winnow {
 namespace {
 
-template <int K>
-constexpr Volume kdop_volume() {
-  return K == 14 ? Volume::kdop14 : K == 18 ? Volume::kdop18 : Volume::kdop26;
-}
-
 const FlatKernel& kernel_for(Volume volume) noexcept {
   const FlatKernels& kernels = flat_kernels();
   switch (volume) {
@@ -31,8 +26,8 @@ const FlatKernel& kernel_for(Volume volume) noexcept {
 
 }  // namespace
 
-BoundsNSquared::BoundsNSquared(const PartitionOptions& options, Volume volume)
-    : RowPartition(options, volume) {}
+BoundsNSquared::BoundsNSquared(const PartitionOptions& options)
+    : RowPartition(options, options.volume) {}
 
 Status BoundsNSquared::insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
                               std::span<Key> keys) {

@@ -15,7 +15,7 @@ namespace winnow {
 /// each other by less than 1e-6 of their distance may be reported.
 class BoundsNSquared final : public RowPartition {
  public:
-  explicit BoundsNSquared(const PartitionOptions& options = {}, Volume volume = Volume::aabb);
+  explicit BoundsNSquared(const PartitionOptions& options = {});
 
   using RowPartition::insert;
   using RowPartition::update;
@@ -32,9 +32,7 @@ class BoundsNSquared final : public RowPartition {
   template <int K>
   Status update(std::span<const Key> keys, std::span<const Kdop<K>> kdops);
 
-  [[nodiscard]] Volume volume() const noexcept { return pool().volume(); }
   [[nodiscard]] std::string_view name() const noexcept override { return "BoundsNSquared"; }
-  [[nodiscard]] bool is_exact() const noexcept override { return volume() == Volume::aabb; }
 
  private:
   [[nodiscard]] std::size_t regular_tasks() const noexcept override;

@@ -79,10 +79,44 @@ void write_rows(const float* floats, std::uint32_t first, std::uint32_t count,
   }
 }
 
+/// The longest edge of those that end on both sides, negated.
+Float16 minus_longest_edge(const Box16& box) {
+  // Infinite ends are stored as the largest float.
+  constexpr float kMost = 3.4028232e38F;
+  Float16 least = broadcast(0.0F);
+  for (int axis = 0; axis < 3; ++axis) {
+    Float16 edge = subtract(box.low[axis], box.high[axis]);
+    edge = keep_less_equal(broadcast(-__FLT_MAX__), edge, edge);
+    edge = keep_less_equal(box.high[axis], broadcast(kMost), edge);
+    edge = keep_less_equal(broadcast(-kMost), box.low[axis], edge);
+    least = min(least, edge);
+  }
+  return least;
+}
+
+void within(const float* const* given, const float* const* stored, std::size_t count,
+            float distance, float share, std::uint64_t* words) {
+  for (std::size_t at = 0; at < count; at += kLanes) {
+    const Box16 box = load_slabs_unaligned<3>(given, at);
+    const Box16 old = load_slabs_unaligned<3>(stored, at);
+    const Float16 margin =
+        subtract(broadcast(distance), multiply(broadcast(share), minus_longest_edge(box)));
+    const Float16 spare = multiply(broadcast(4.0F), margin);
+    Mask16 ok = 0xFFFFU;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Float16 most = add(subtract(box.high[axis], box.low[axis]), spare);
+      ok &= less_equal(old.low[axis], box.low[axis]) & less_equal(box.high[axis], old.high[axis]) &
+            less_equal(subtract(old.high[axis], old.low[axis]), most);
+    }
+    const unsigned shift = at % 64;
+    words[at / 64] = (shift == 0 ? 0 : words[at / 64]) | std::uint64_t{ok} << shift;
+  }
+}
+
 }  // namespace
 }  // namespace WINNOW_ISA_NAME
 
-extern const BoxInputKernels WINNOW_KERNEL_TABLE(box_input_kernels) = {WINNOW_ISA_NAME::legal,
-                                                                       WINNOW_ISA_NAME::write_rows};
+extern const BoxInputKernels WINNOW_KERNEL_TABLE(box_input_kernels) = {
+    WINNOW_ISA_NAME::legal, WINNOW_ISA_NAME::write_rows, WINNOW_ISA_NAME::within};
 
 }  // namespace winnow

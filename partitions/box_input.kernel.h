@@ -18,6 +18,12 @@ struct BoxInputKernels {
   void (*write_rows)(const float* floats, std::uint32_t first, std::uint32_t count,
                      const std::uint32_t* id, float* const* column, std::size_t begin,
                      std::size_t end);
+
+  /// Sets the bits in `words` of those of `count` boxes that lie within the stored ones, where
+  /// these are larger by at most twice the margin distance + share * longest finite edge. Columns
+  /// of lower, then of upper ends, readable to the next multiple of 16; further bits are undefined.
+  void (*within)(const float* const* given, const float* const* stored, std::size_t count,
+                 float distance, float share, std::uint64_t* words);
 };
 
 WINNOW_KERNELS(BoxInputKernels, box_input_kernels);

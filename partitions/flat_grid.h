@@ -19,7 +19,6 @@ class FlatGrid final : public RowPartition {
   explicit FlatGrid(const PartitionOptions& options = {});
 
   [[nodiscard]] std::string_view name() const noexcept override { return "FlatGrid"; }
-  [[nodiscard]] bool is_exact() const noexcept override { return true; }
 
  private:
   bool plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) override;

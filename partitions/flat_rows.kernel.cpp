@@ -29,7 +29,7 @@ struct Untested {
   static Mask16 test_box(const Block& block, const Query&) { return block.live; }
 };
 
-/// Boxes (3 slabs) and k-DOPs.
+/// Boxes (3 slabs) and k-DOPs, whose further slabs follow the box's six columns.
 template <int Slabs>
 struct SlabTest {
   using Block = Slabs16<Slabs>;
@@ -38,7 +38,12 @@ struct SlabTest {
     float high[Slabs];
   };
   static Block load(const RowView& rows, std::size_t row) {
-    return load_slabs<Slabs>(rows.column, row);
+    Block block;
+    for (int s = 0; s < Slabs; ++s) {
+      block.low[s] = WINNOW_ISA_NAME::load(rows.column[low_end(s)] + row);
+      block.high[s] = WINNOW_ISA_NAME::load(rows.column[high_end(s)] + row);
+    }
+    return block;
   }
   static Query own(const RowView& rows, std::size_t r) { return take<Slabs>(rows.column, r); }
   static Query box(const QueryBatch& batch, std::size_t r) { return take<3>(batch.column, r); }
@@ -54,12 +59,15 @@ struct SlabTest {
   }
 
  private:
+  static constexpr int low_end(int s) { return s < 3 ? s : s + 3; }
+  static constexpr int high_end(int s) { return s < 3 ? s + 3 : Slabs + s; }
+
   template <int Taken>
   static Query take(const float* const* column, std::size_t r) {
     Query q;
     for (int s = 0; s < Taken; ++s) {
-      q.low[s] = column[s][r];
-      q.high[s] = column[Taken + s][r];
+      q.low[s] = column[low_end(s)][r];
+      q.high[s] = column[high_end(s)][r];
     }
     return q;
   }

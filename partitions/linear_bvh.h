@@ -16,7 +16,6 @@ class LinearBvh final : public RowPartition {
   explicit LinearBvh(const PartitionOptions& options = {});
 
   [[nodiscard]] std::string_view name() const noexcept override { return "LinearBvh"; }
-  [[nodiscard]] bool is_exact() const noexcept override { return true; }
 };
 
 }  // namespace winnow

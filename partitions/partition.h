@@ -9,10 +9,12 @@
 #include <winnow/core/footprint.h>
 #include <winnow/core/hits.h>
 #include <winnow/core/key.h>
+#include <winnow/core/margin.h>
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/pair_events.h>
 #include <winnow/core/region.h>
 #include <winnow/core/status.h>
+#include <winnow/core/volume.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -29,6 +31,10 @@ struct PartitionOptions {
   /// runs, only the calling thread allocates.
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
   Execution execution = Execution::parallel();
+  /// What bounds an object. Partitions that cannot store it store boxes.
+  Volume volume = Volume::aabb;
+  /// Makes what rests or moves little cost nothing; every query sees the larger volumes.
+  Margin margin{};
 };
 
 /// The order in which a query writes its results. Both are the same on any thread count and any
@@ -81,7 +87,8 @@ class Partition {
 
   /// Stable name, e.g. "LinearBvh".
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
-  /// True if `self_pairs` reports only pairs whose boxes overlap.
+  /// True if `self_pairs` reports exactly the pairs whose given boxes overlap: where the volumes
+  /// are boxes without a margin.
   [[nodiscard]] virtual bool is_exact() const noexcept = 0;
 
   /// Adds one object per box. `keys` receives a key for each; `data` may be empty (all zero).
@@ -89,7 +96,9 @@ class Partition {
                         std::span<Key> keys) = 0;
   /// Adds one object.
   virtual Status insert(const Aabb& box, ClientData data, Key& key) = 0;
-  /// Gives each object a new box. If a key occurs twice its last box counts.
+  /// Gives each object a new box. If a key occurs twice its last box counts. With a margin, a box
+  /// within the stored one leaves that as it is, unless it is larger by more than twice the margin;
+  /// the object then counts as not moved.
   virtual Status update(std::span<const Key> keys, const BoxView& boxes) = 0;
   virtual Status update(Key key, const Aabb& box) = 0;
   /// Removes the objects. A key that occurs twice makes the whole call `invalid_key`.
@@ -104,7 +113,8 @@ class Partition {
 
   [[nodiscard]] virtual std::size_t size() const noexcept = 0;
   [[nodiscard]] virtual bool contains(Key key) const noexcept = 0;
-  /// The box as it is tested: float, an infinite extent given back as infinite.
+  /// The box as it is tested: float, larger than given by the margin, the box around other volumes;
+  /// an infinite extent is given back as infinite.
   virtual Status bounds(Key key, Aabb& box) const noexcept = 0;
   virtual Status client_data(Key key, ClientData& data) const noexcept = 0;
   /// Key of a live object; the null key for any other id.

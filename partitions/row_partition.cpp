@@ -39,6 +39,7 @@ Status with_box_source(Volume volume, const BoxView& boxes, Use&& use) {
 
 RowPartition::RowPartition(const PartitionOptions& options, Volume volume)
     : execution_(options.execution),
+      margin_(options.margin.legal()),
       pool_(options.memory, volume),
       keys_(options.memory),
       filters_(options.memory),
@@ -114,13 +115,8 @@ Status RowPartition::update(std::span<const Key> keys, const BoxView& boxes) {
 Status RowPartition::update(Key key, const Aabb& box) {
   if (!keys_.is_valid(key)) return Status::invalid_key;
   const BoxView boxes(std::span<const Aabb>(&box, 1));
-  return with_box_source(pool_.volume(), boxes, [&](const auto& source) {
-    if (!source.valid(0)) return Status::invalid_bounds;
-    source.write(0, PoolColumns(pool_).pointers, keys_.row_of(key.id));
-    stale_.add(key.id);
-    dirty_.store(true, std::memory_order_relaxed);
-    return Status::ok;
-  });
+  return with_box_source(pool_.volume(), boxes,
+                         [&](const auto& source) { return update_one(source, key); });
 }
 
 void RowPartition::remove_row(ObjectId id) noexcept {
@@ -247,10 +243,9 @@ Status RowPartition::bounds(Key key, Aabb& box) const noexcept {
     return Status::ok;
   }
   constexpr float inf = std::numeric_limits<float>::infinity();
-  const std::size_t slabs = pool_.columns() / 2;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float low = pool_.column(axis)[row];
-    const float high = pool_.column(slabs + axis)[row];
+    const float high = pool_.column(3 + axis)[row];
     box.min[static_cast<Eigen::Index>(axis)] = low == -FLT_MAX ? -inf : low;
     box.max[static_cast<Eigen::Index>(axis)] = high == FLT_MAX ? inf : high;
   }

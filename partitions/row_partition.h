@@ -57,6 +57,12 @@ class RowPartition : public Partition {
   void release_memory() noexcept override;
   Status reserve(std::size_t objects) override;
 
+  [[nodiscard]] bool is_exact() const noexcept override {
+    return pool_.volume() == Volume::aabb && margin_.is_none();
+  }
+  [[nodiscard]] Volume volume() const noexcept { return pool_.volume(); }
+  [[nodiscard]] const Margin& margin() const noexcept { return margin_; }
+
   [[nodiscard]] std::size_t size() const noexcept override { return keys_.size(); }
   [[nodiscard]] bool contains(Key key) const noexcept override { return keys_.is_valid(key); }
   Status bounds(Key key, Aabb& box) const noexcept override;
@@ -98,7 +104,8 @@ class RowPartition : public Partition {
 
   [[nodiscard]] const RowPartition* row_partition() const noexcept override { return this; }
 
-  /// Exchanges the objects of two partitions of one volume and one memory resource: keys, client
+  /// Exchanges the objects of two partitions made with the same options but for `execution`: keys,
+  /// client
   /// data, filters, what pair buffers know of them, and the counters of Statistics. The next
   /// refresh of either builds; what a tracked pair buffer holds is still updated. O(1).
   void swap_objects(RowPartition& other) noexcept;
@@ -159,8 +166,21 @@ class RowPartition : public Partition {
  private:
   friend class AutoPartition;  // which looks at a sample of the rows
 
+  template <typename Source, typename Use>
+  Status with_margin(const Source& source, Use&& use);
   template <typename Source>
-  void write_rows(const Source& source, std::span<const Key> keys, bool ascending);
+  Status update_one(const Source& source, Key key);
+  template <typename Source>
+  Status write(const Source& source, std::span<const Key> keys, bool ascending);
+  template <typename Source, typename Visit>
+  void for_entries(const Source& source, std::span<const Key> keys, bool by_rows, bool ascending,
+                   const Visit& visit);
+  template <typename Source>
+  void write_left_boxes(const Source& source, std::span<const Key> keys);
+  template <typename Source>
+  void write_left(const Source& source, std::span<const Key> keys, std::size_t begin,
+                  std::size_t end);
+  void note_left(std::span<const Key> keys, bool by_rows, std::size_t slots) noexcept;
   void fetch_row(std::size_t row) const noexcept;
   [[nodiscard]] bool make_room(std::size_t objects) noexcept;
   void compact_rows() noexcept;
@@ -208,6 +228,7 @@ class RowPartition : public Partition {
   [[nodiscard]] Execution execution_for(std::size_t objects) const noexcept;
 
   Execution execution_;
+  Margin margin_;
   BoundsPool pool_;
   KeyTable keys_;
   FilterTable filters_;

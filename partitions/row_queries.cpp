@@ -231,11 +231,7 @@ QueryBatch RowPartition::box_batch(std::size_t begin, std::size_t end,
   QueryBatch batch;
   batch.filter = filters_.data();
   if (pool_.volume() != Volume::sphere) {
-    const std::size_t slabs = pool_.columns() / 2;
-    for (std::size_t s = 0; s < 3; ++s) {
-      batch.column[s] = pool_.column(s);
-      batch.column[3 + s] = pool_.column(slabs + s);
-    }
+    for (std::size_t c = 0; c < 6; ++c) batch.column[c] = pool_.column(c);
     batch.id = pool_.ids();
     batch.begin = static_cast<std::uint32_t>(begin);
     batch.end = static_cast<std::uint32_t>(end);

@@ -15,7 +15,6 @@ class StaticBvh final : public RowPartition {
   explicit StaticBvh(const PartitionOptions& options = {});
 
   [[nodiscard]] std::string_view name() const noexcept override { return "StaticBvh"; }
-  [[nodiscard]] bool is_exact() const noexcept override { return true; }
 
   void release_memory() noexcept override;
 

@@ -18,7 +18,6 @@ class SweepAndPrune final : public RowPartition {
   explicit SweepAndPrune(const PartitionOptions& options = {});
 
   [[nodiscard]] std::string_view name() const noexcept override { return "SweepAndPrune"; }
-  [[nodiscard]] bool is_exact() const noexcept override { return true; }
 
  private:
   bool plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) override;

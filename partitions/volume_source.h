@@ -6,6 +6,7 @@
 #include <winnow/core/box_view.h>
 #include <winnow/core/kdop.h>
 #include <winnow/core/sphere.h>
+#include <winnow/core/volume.h>
 #include <winnow/partitions/box_input.kernel.h>
 
 #include <algorithm>
@@ -27,6 +28,8 @@ inline void write_slab(ColumnPointers columns, std::size_t low, std::size_t high
 
 /// Boxes into AABB columns.
 struct BoxSource {
+  static constexpr Volume kVolume = Volume::aabb;
+
   const BoxView& boxes;
 
   [[nodiscard]] bool valid(std::size_t i) const noexcept {
@@ -78,6 +81,8 @@ inline void write_sphere(ColumnPointers columns, std::size_t row, const Sphere& 
 
 /// Spheres into sphere columns.
 struct SphereSource {
+  static constexpr Volume kVolume = Volume::sphere;
+
   std::span<const Sphere> spheres;
 
   [[nodiscard]] bool valid(std::size_t i) const noexcept { return spheres[i].is_valid(); }
@@ -88,6 +93,8 @@ struct SphereSource {
 
 /// Boxes into sphere columns: the sphere around the box, which must be finite.
 struct SphereAroundBoxSource {
+  static constexpr Volume kVolume = Volume::sphere;
+
   const BoxView& boxes;
 
   [[nodiscard]] bool valid(std::size_t i) const noexcept {
@@ -100,16 +107,23 @@ struct SphereAroundBoxSource {
 };
 
 template <int K>
+[[nodiscard]] constexpr Volume kdop_volume() noexcept {
+  return K == 14 ? Volume::kdop14 : K == 18 ? Volume::kdop18 : Volume::kdop26;
+}
+
+template <int K>
 inline void write_kdop(ColumnPointers columns, std::size_t row, const Kdop<K>& kdop) noexcept {
   constexpr std::size_t slabs = Kdop<K>::kSlabs;
   for (std::size_t s = 0; s < slabs; ++s) {
-    write_slab(columns, s, slabs + s, row, kdop.min[s], kdop.max[s]);
+    write_slab(columns, low_column(slabs, s), high_column(slabs, s), row, kdop.min[s], kdop.max[s]);
   }
 }
 
 /// k-DOPs into their columns.
 template <int K>
 struct KdopSource {
+  static constexpr Volume kVolume = kdop_volume<K>();
+
   std::span<const Kdop<K>> kdops;
 
   [[nodiscard]] bool valid(std::size_t i) const noexcept { return kdops[i].is_valid(); }
@@ -121,6 +135,8 @@ struct KdopSource {
 /// Boxes into k-DOP columns.
 template <int K>
 struct KdopAroundBoxSource {
+  static constexpr Volume kVolume = kdop_volume<K>();
+
   const BoxView& boxes;
 
   [[nodiscard]] bool valid(std::size_t i) const noexcept { return boxes[i].is_valid(); }

@@ -22,12 +22,12 @@ void store(const Aabb& box, std::size_t row, BoundsPool& pool) {
     return;
   }
   // The first three slabs of a k-DOP are the box; those along diagonals follow from its corners.
-  const std::size_t slabs = pool.columns() / 2;
+  const std::size_t slabs = slab_count(pool.volume());
   for (std::size_t s = 0; s < slabs; ++s) {
     const auto a = static_cast<Eigen::Index>(s % 3);
     const auto b = static_cast<Eigen::Index>((s + 1) % 3);
-    pool.column(s)[row] = s < 3 ? box.min[a] : box.min[a] + box.min[b];
-    pool.column(slabs + s)[row] = s < 3 ? box.max[a] : box.max[a] + box.max[b];
+    pool.column(low_column(slabs, s))[row] = s < 3 ? box.min[a] : box.min[a] + box.min[b];
+    pool.column(high_column(slabs, s))[row] = s < 3 ? box.max[a] : box.max[a] + box.max[b];
   }
 }
 

@@ -4,14 +4,14 @@
 
 #include <winnow/partitions/row_partition.h>
 
+#include <algorithm>
+
 namespace winnow {
 
 Status RowPartition::prepare(QueryView& view) const {
   if (const Status status = refresh(); status != Status::ok) return status;
-  const std::size_t slabs = pool_.volume() == Volume::sphere ? 3 : pool_.columns() / 2;
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (std::size_t c = 0; c < std::min<std::size_t>(6, pool_.columns()); ++c) {
     view.column[c] = pool_.column(c);
-    if (slabs + c < pool_.columns()) view.column[3 + c] = pool_.column(slabs + c);
   }
   view.spheres = pool_.volume() == Volume::sphere;
   const RowView rows = row_view();

@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(All, Environments, testing::ValuesIn(all_configs()),
                          testing::PrintToStringParamName());
 
 TEST(EnvironmentsOfSpheres, keep_apart_what_lies_on_each_other) {
-  BoundsNSquared partition({}, Volume::sphere);
+  BoundsNSquared partition({.volume = Volume::sphere});
   const std::vector<Sphere> spheres(60, Sphere{{1, 2, 3}, 1.0F});
   std::vector<Key> keys(spheres.size());
   ASSERT_EQ(partition.insert(spheres, {}, keys), Status::ok);

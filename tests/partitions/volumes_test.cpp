@@ -71,7 +71,7 @@ class Volumes : public Conformance {
   void expect_right_kdops() {
     Threads threads(config().threads);
     for (const std::size_t n : {1U, 17U, 600U}) {
-      BoundsNSquared partition({.execution = config().execution()}, volume_of(Kdop<K>{}));
+      BoundsNSquared partition({.execution = config().execution(), .volume = volume_of(Kdop<K>{})});
       std::vector<Kdop<K>> kdops = kdops_in<K>(mixed_boxes(n));
       std::vector<Key> keys(n);
       ASSERT_EQ(partition.insert(std::span<const Kdop<K>>(kdops), {}, keys), Status::ok);
@@ -100,7 +100,7 @@ TEST_P(Volumes, that_are_26_dops_are_right) {
 TEST_P(Volumes, that_are_spheres_are_right) {
   Threads threads(config().threads);
   for (const double scale : {1.0, 1e-12, 1e12}) {
-    BoundsNSquared partition({.execution = config().execution()}, Volume::sphere);
+    BoundsNSquared partition({.execution = config().execution(), .volume = Volume::sphere});
     std::vector<Sphere> spheres = spheres_around(mixed_boxes(600));
     // Touching spheres on a lattice, on which rounding must not lose a pair.
     for (int i = 0; i < 60; ++i) {
@@ -132,7 +132,7 @@ TEST_P(Volumes, given_as_boxes_report_every_pair_of_boxes) {
   const std::vector<Pair> truth = true_pairs(numbered(boxes));
   for (const Volume volume :
        {Volume::aabb, Volume::sphere, Volume::kdop14, Volume::kdop18, Volume::kdop26}) {
-    BoundsNSquared partition({.execution = config().execution()}, volume);
+    BoundsNSquared partition({.execution = config().execution(), .volume = volume});
     std::vector<Key> keys(boxes.size());
     ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
     EXPECT_EQ(partition.volume(), volume);
@@ -152,7 +152,7 @@ TEST_P(Volumes, of_another_kind_than_the_partitions_are_refused) {
   const std::vector<Sphere> sphere{{{0, 0, 0}, 1}};
   const std::vector<Kdop<14>> kdop{Kdop<14>::around(Aabb{{0, 0, 0}, {1, 1, 1}})};
   BoundsNSquared boxes;
-  BoundsNSquared kdops({}, Volume::kdop26);
+  BoundsNSquared kdops({.volume = Volume::kdop26});
   for (BoundsNSquared* partition : {&boxes, &kdops}) {
     EXPECT_EQ(partition->insert(sphere, {}, keys), Status::unsupported_volume);
     EXPECT_EQ(partition->insert(std::span<const Kdop<14>>(kdop), {}, keys),
@@ -164,7 +164,7 @@ TEST_P(Volumes, of_another_kind_than_the_partitions_are_refused) {
 
 TEST_P(Volumes, that_are_invalid_change_nothing) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  BoundsNSquared partition({.execution = config().execution()}, Volume::sphere);
+  BoundsNSquared partition({.execution = config().execution(), .volume = Volume::sphere});
   std::vector<Sphere> spheres = spheres_around(uniform_boxes(40));
   std::vector<Key> keys(spheres.size());
   ASSERT_EQ(partition.insert(spheres, {}, keys), Status::ok);
