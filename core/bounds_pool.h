@@ -88,7 +88,7 @@ class BoundsPool {
 /// upper one; an empty sphere is infinitely far away and has radius 0.
 [[nodiscard]] constexpr float empty_value(Volume volume, std::size_t c) noexcept {
   constexpr float inf = std::numeric_limits<float>::infinity();
-  if (volume == Volume::sphere) return c < 3 ? inf : 0.0F;
+  if (volume == Volume::sphere && c >= kCenterColumn) return c < kRadiusColumn ? inf : 0.0F;
   const std::size_t slabs = slab_count(volume);
   return c < 3 || (c >= 6 && c < 3 + slabs) ? inf : -inf;
 }

@@ -9,13 +9,13 @@ namespace winnow {
 enum class Volume : std::uint8_t { aabb, sphere, kdop14, kdop18, kdop26 };
 
 /// Float columns a volume takes: the lower and the upper ends of its box, then the lower and the
-/// upper ends of its further slabs; a sphere has centre and radius.
+/// upper ends of its further slabs; of a sphere its centre and radius.
 [[nodiscard]] constexpr std::size_t column_count(Volume volume) noexcept {
   switch (volume) {
     case Volume::aabb:
       return 6;
     case Volume::sphere:
-      return 4;
+      return 10;
     case Volume::kdop14:
       return 14;
     case Volume::kdop18:
@@ -28,9 +28,13 @@ enum class Volume : std::uint8_t { aabb, sphere, kdop14, kdop18, kdop26 };
 
 inline constexpr std::size_t kMaxColumns = 26;
 
-/// Slabs of a volume that has any.
+/// Columns of a sphere's centre and radius: behind those of its box.
+inline constexpr std::size_t kCenterColumn = 6;
+inline constexpr std::size_t kRadiusColumn = 9;
+
+/// Slabs of a volume: a sphere has its box's.
 [[nodiscard]] constexpr std::size_t slab_count(Volume volume) noexcept {
-  return volume == Volume::sphere ? 0 : column_count(volume) / 2;
+  return volume == Volume::sphere ? 3 : column_count(volume) / 2;
 }
 
 /// Columns of the ends of slab `s` of `slabs`: those of the box come first.

@@ -71,13 +71,14 @@ struct FatSphere {
   static constexpr std::size_t kColumns = column_count(Volume::sphere);
 
   static float margin_of(const float* given, const Margin& margin) noexcept {
-    return std::min(margin.of(std::min(2.0F * given[3], FLT_MAX)), FLT_MAX);
+    return std::min(margin.of(std::min(2.0F * given[kRadiusColumn], FLT_MAX)), FLT_MAX);
   }
   static bool serves(const float* given, float margin, const float* stored) noexcept {
-    const double room = static_cast<double>(stored[3]) - static_cast<double>(given[3]);
+    const double room =
+        static_cast<double>(stored[kRadiusColumn]) - static_cast<double>(given[kRadiusColumn]);
     double square = 0.0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double d = static_cast<double>(stored[axis]) - static_cast<double>(given[axis]);
+    for (std::size_t c = kCenterColumn; c < kCenterColumn + 3; ++c) {
+      const double d = static_cast<double>(stored[c]) - static_cast<double>(given[c]);
       square += d * d;
     }
     // The factor is more than the rounding of both squares.
@@ -85,8 +86,13 @@ struct FatSphere {
            square <= room * room * (1.0 - 1e-14);
   }
   static void grow(float* volume, float margin) noexcept {
-    const double radius = static_cast<double>(volume[3]) + static_cast<double>(margin);
-    volume[3] = std::min(round_up(radius), FLT_MAX);
+    const double radius = static_cast<double>(volume[kRadiusColumn]) + static_cast<double>(margin);
+    const Sphere grown{
+        {volume[kCenterColumn], volume[kCenterColumn + 1], volume[kCenterColumn + 2]},
+        std::min(round_up(radius), FLT_MAX)};
+    float* columns[kColumns];
+    for (std::size_t c = 0; c < kColumns; ++c) columns[c] = volume + c;
+    write_sphere(columns, 0, grown);
   }
 };
 

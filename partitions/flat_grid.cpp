@@ -18,7 +18,7 @@ constexpr std::uint32_t kOverfull = 48;
 }  // namespace
 
 FlatGrid::FlatGrid(const PartitionOptions& options)
-    : RowPartition(options, Volume::aabb),
+    : RowPartition(options, options.volume),
       layout_(options.memory),
       start_(options.memory),
       cell_(options.memory) {}

@@ -1,6 +1,7 @@
 #include <winnow/partitions/flat_rows.kernel.h>
 #include <winnow/partitions/hits.wide.h>
 #include <winnow/partitions/tree_walk.wide.h>
+#include <winnow/partitions/volume_tests.wide.h>
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -73,13 +74,8 @@ struct SlabTest {
   }
 };
 
-/// Spheres: |c1 - c2|^2 <= (r1 + r2)^2. The right side is enlarged by more than the rounding of
-/// both sides (a few ulp of each), so that touching spheres are never missed; where a square would
-/// overflow or underflow the comparison still errs to the side of a hit.
+/// Spheres.
 struct SphereTest {
-  static constexpr float kSlack = 1.000002F;
-  static constexpr float kTiny = 1e-37F;
-
   struct Block {
     Float16 center[3];
     Float16 radius;
@@ -92,9 +88,9 @@ struct SphereTest {
   static Block load(const RowView& rows, std::size_t row) {
     Block b;
     for (int axis = 0; axis < 3; ++axis) {
-      b.center[axis] = WINNOW_ISA_NAME::load(rows.column[axis] + row);
+      b.center[axis] = WINNOW_ISA_NAME::load(rows.column[kBallCenter + axis] + row);
     }
-    b.radius = WINNOW_ISA_NAME::load(rows.column[3] + row);
+    b.radius = WINNOW_ISA_NAME::load(rows.column[kBallRadius] + row);
     return b;
   }
   static Query own(const RowView& rows, std::size_t r) { return ball(rows.column, r); }
@@ -110,27 +106,16 @@ struct SphereTest {
   }
   static Mask16 test_box(const Block& b, const Query& q) { return test(b, q); }
   static Mask16 test(const Block& b, const Query& q) {
-    Float16 square = broadcast(-kTiny);
-    const Float16 minus_one = broadcast(-1.0F);
-    for (int axis = 0; axis < 3; ++axis) {
-      // Distance of the centre from [low, high] along the axis.
-      const Float16 below = add(broadcast(q.low[axis]), multiply(b.center[axis], minus_one));
-      const Float16 above = add(b.center[axis], broadcast(-q.high[axis]));
-      const Float16 d = max(max(below, above), broadcast(0.0F));
-      square = add(square, multiply(d, d));
-    }
-    const Float16 reach = add(b.radius, broadcast(q.radius));
-    const Float16 limit = multiply(multiply(reach, reach), broadcast(kSlack));
-    // An empty row's centre is infinite, and so is its square: infinity <= infinity must not count.
-    const Mask16 real = less_equal(b.center[0], broadcast(3.4028234e38F));
-    return less_equal(square, limit) & real;
+    return balls_meet(b.center, b.radius, q.low, q.high, q.radius);
   }
 
  private:
   static Query ball(const float* const* column, std::size_t r) {
     Query q;
-    for (int axis = 0; axis < 3; ++axis) q.low[axis] = q.high[axis] = column[axis][r];
-    q.radius = column[3][r];
+    for (int axis = 0; axis < 3; ++axis) {
+      q.low[axis] = q.high[axis] = column[kBallCenter + axis][r];
+    }
+    q.radius = column[kBallRadius][r];
     return q;
   }
 };

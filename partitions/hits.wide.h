@@ -4,6 +4,7 @@
 
 #include <winnow/partitions/filters.wide.h>
 #include <winnow/partitions/pair_sink.h>
+#include <winnow/partitions/volume_tests.wide.h>
 #include <winnow/simd/compress.h>
 
 namespace winnow::WINNOW_ISA_NAME {
@@ -87,16 +88,51 @@ inline bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink)
              : with_mode<Kernel, false>(view, batch, sink);
 }
 
+/// True if hits of boxes are not yet hits of the rows' volumes.
+inline bool has_more_to_test(const RowView& rows) {
+  return rows.further_slabs != 0 || rows.spheres;
+}
+
+/// Hits of boxes, kept in lists: lanes mask[i] of the rows from at[i] on for row[i] of the columns
+/// `query`. Keeps those of the volumes in the boxes, and returns how many entries are left. One for
+/// all kernels of a file: what boxes alone never call must not bloat them.
+[[gnu::noinline, maybe_unused]] static unsigned keep_volume_hits(
+    const RowView& rows, const float* const* query, std::uint32_t* row, std::uint32_t* at,
+    std::uint32_t* mask, unsigned size) {
+  unsigned kept = 0;
+  for (unsigned i = 0; i < size; ++i) {
+    const Mask16 hits = rows.spheres ? spheres_overlap(rows, at[i], query, row[i], mask[i])
+                                     : further_slabs_overlap(rows, at[i], query, row[i], mask[i]);
+    row[kept] = row[i];
+    at[kept] = at[i];
+    mask[kept] = hits;
+    kept += hits != 0 ? 1U : 0U;
+  }
+  return kept;
+}
+
 /// Hits on their way to the sink. Whether a test hits is a coin toss to the branch predictor: tests
 /// append without a branch, and filters are looked up and pairs written in one long loop.
 template <HitMode Mode, bool Filtered>
 class HitList {
  public:
   HitList(const RowView& rows, const QueryBatch& batch, PairSink& sink)
-      : rows_(rows), query_id_(batch.id), moved_(batch.moved), filters_(batch), sink_(sink) {}
+      : rows_(rows),
+        query_(batch.column),
+        more_to_test_(!batch.is_box && has_more_to_test(rows)),
+        query_id_(batch.id),
+        moved_(batch.moved),
+        filters_(batch),
+        sink_(sink) {}
   /// For rows that ask about each other.
   HitList(const RowView& rows, PairSink& sink)
-      : rows_(rows), query_id_(rows.id), moved_(nullptr), filters_(rows), sink_(sink) {}
+      : rows_(rows),
+        query_(rows.column),
+        more_to_test_(has_more_to_test(rows)),
+        query_id_(rows.id),
+        moved_(nullptr),
+        filters_(rows),
+        sink_(sink) {}
 
   /// Notes that row `r` hits the lanes `mask` of the rows from `at` on; does nothing for no lanes.
   /// There must be room.
@@ -113,6 +149,7 @@ class HitList {
 
   /// Writes everything to the sink.
   bool flush() {
+    if (more_to_test_) size_ = keep_volume_hits(rows_, query_, row_, at_, mask_, size_);
     for (unsigned i = 0; i < size_; ++i) {
       Mask16 mask = mask_[i];
       const std::uint32_t q = query_id_[row_[i]];
@@ -131,6 +168,8 @@ class HitList {
   static constexpr unsigned kRoom = 512;
 
   const RowView& rows_;
+  const float* const* query_;
+  bool more_to_test_;
   const std::uint32_t* query_id_;
   const std::uint64_t* moved_;
   const AskingFilters filters_;

@@ -2,6 +2,6 @@
 
 namespace winnow {
 
-LinearBvh::LinearBvh(const PartitionOptions& options) : RowPartition(options, Volume::aabb) {}
+LinearBvh::LinearBvh(const PartitionOptions& options) : RowPartition(options, options.volume) {}
 
 }  // namespace winnow

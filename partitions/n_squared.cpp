@@ -4,7 +4,7 @@
 
 namespace winnow {
 
-NSquared::NSquared(const PartitionOptions& options) : RowPartition(options, Volume::aabb) {}
+NSquared::NSquared(const PartitionOptions& options) : RowPartition(options, options.volume) {}
 
 std::size_t NSquared::regular_tasks() const noexcept {
   return flat_tasks(pool());

@@ -21,9 +21,12 @@ struct PairSink {
 /// One block against another, and one more full store.
 inline constexpr std::size_t kSinkSlack = 16 * 16 + 16;
 
-/// Columns that kernels test: pointers into a BoundsPool.
+/// Columns that kernels test: pointers into a BoundsPool. The first six are the box; a k-DOP's
+/// further slabs follow (lower ends, then upper ends), or a sphere's centre and radius.
 struct RowView {
   const float* column[26] = {};
+  std::uint32_t further_slabs = 0;
+  bool spheres = false;
   const std::uint32_t* id = nullptr;
   const ObjectFilter* filter = nullptr;  ///< by id; null if every object has the default one
 };
@@ -38,8 +41,7 @@ enum class HitMode : std::uint8_t {
 };
 
 /// Volumes to ask about: rows of columns, by list or, if `rows` is null, one after another. They
-/// are boxes (three slabs: lower ends, then upper ends), or volumes of the kind that the asked rows
-/// hold.
+/// are boxes (lower ends, then upper ends), or volumes of the kind that the asked rows hold.
 struct QueryBatch {
   const float* column[26] = {};
   bool is_box = true;

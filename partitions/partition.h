@@ -31,7 +31,8 @@ struct PartitionOptions {
   /// runs, only the calling thread allocates.
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
   Execution execution = Execution::parallel();
-  /// What bounds an object. Partitions that cannot store it store boxes.
+  /// What bounds an object. Every partition prunes by boxes; of spheres and k-DOPs it drops the
+  /// pairs whose boxes overlap though they themselves do not.
   Volume volume = Volume::aabb;
   /// Makes what rests or moves little cost nothing; every query sees the larger volumes.
   Margin margin{};

@@ -60,9 +60,8 @@ Status RowPartition::debug_draw(DebugDraw& draw, const DebugDrawOptions& options
     (void)bounds(keys_.key_of(id), box);
     if (options.objects && pool_.volume() == Volume::sphere) {
       const std::size_t row = keys_.row_of(id);
-      draw.sphere({{pool_.column(0)[row], pool_.column(1)[row], pool_.column(2)[row]},
-                   pool_.column(3)[row]},
-                  kObjectColour);
+      const auto at = [&](std::size_t c) { return pool_.column(kCenterColumn + c)[row]; };
+      draw.sphere({{at(0), at(1), at(2)}, at(3)}, kObjectColour);
     } else if (options.objects) {
       draw.box(box, kObjectColour);
     }

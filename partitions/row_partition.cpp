@@ -237,11 +237,6 @@ Status RowPartition::reserve(std::size_t objects) {
 Status RowPartition::bounds(Key key, Aabb& box) const noexcept {
   if (!keys_.is_valid(key)) return Status::invalid_key;
   const std::size_t row = keys_.row_of(key.id);
-  if (pool_.volume() == Volume::sphere) {
-    const Eigen::Vector3f center(pool_.column(0)[row], pool_.column(1)[row], pool_.column(2)[row]);
-    box = Sphere{center, pool_.column(3)[row]}.bounds();
-    return Status::ok;
-  }
   constexpr float inf = std::numeric_limits<float>::infinity();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float low = pool_.column(axis)[row];
@@ -261,6 +256,8 @@ Status RowPartition::client_data(Key key, ClientData& data) const noexcept {
 RowView RowPartition::row_view() const noexcept {
   RowView view;
   for (std::size_t c = 0; c < pool_.columns(); ++c) view.column[c] = pool_.column(c);
+  view.further_slabs = static_cast<std::uint32_t>(slab_count(pool_.volume())) - 3;
+  view.spheres = pool_.volume() == Volume::sphere;
   view.id = pool_.ids();
   view.filter = filters_.data();
   return view;

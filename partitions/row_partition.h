@@ -1,7 +1,9 @@
 #pragma once
 
 #include <winnow/core/bounds_pool.h>
+#include <winnow/core/kdop.h>
 #include <winnow/core/key_table.h>
+#include <winnow/core/sphere.h>
 #include <winnow/partitions/block_tree.h>
 #include <winnow/partitions/change_list.h>
 #include <winnow/partitions/filter_table.h>
@@ -51,6 +53,20 @@ class RowPartition : public Partition {
   Status insert(const Aabb& box, ClientData data, Key& key) override;
   Status update(std::span<const Key> keys, const BoxView& boxes) override;
   Status update(Key key, const Aabb& box) override;
+
+  /// Spheres, where `volume()` is Volume::sphere; else `unsupported_volume`. Given boxes, a
+  /// partition of spheres or k-DOPs stores the tightest volume around each (a sphere wants finite
+  /// boxes). Spheres that miss each other by less than 1e-6 of their distance may be reported.
+  Status insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
+                std::span<Key> keys);
+  Status update(std::span<const Key> keys, std::span<const Sphere> spheres);
+  /// k-DOPs, where `volume()` is that of the same K (14, 18 or 26); else `unsupported_volume`.
+  template <int K>
+  Status insert(std::span<const Kdop<K>> kdops, std::span<const ClientData> data,
+                std::span<Key> keys);
+  template <int K>
+  Status update(std::span<const Key> keys, std::span<const Kdop<K>> kdops);
+
   Status remove(std::span<const Key> keys) override;
   Status remove(Key key) override;
   void clear() noexcept override;
@@ -222,7 +238,7 @@ class RowPartition : public Partition {
   using FindHits = void (*)(const QueryView&, const Sweep*, std::uint32_t count, const QueryFilter&,
                             std::uint64_t* found);
   Status find_hit(FindHits find, const Cast& cast, Hit& hit, const Filter& filter) const;
-  QueryBatch box_batch(std::size_t begin, std::size_t end, std::span<float> scratch) const noexcept;
+  QueryBatch box_batch(std::size_t begin, std::size_t end) const noexcept;
   void note_work(std::uint64_t tests, std::uint64_t queries,
                  std::atomic<std::uint64_t>& base) const noexcept;
   [[nodiscard]] Execution execution_for(std::size_t objects) const noexcept;

@@ -1,6 +1,5 @@
 // RowPartition: pairs.
 
-#include <winnow/core/sphere.h>
 #include <winnow/partitions/bitmap_sort.h>
 #include <winnow/partitions/event_writer.h>
 #include <winnow/partitions/pair_tracker.h>
@@ -8,7 +7,6 @@
 #include <winnow/partitions/row_partition.h>
 
 #include <algorithm>
-#include <array>
 
 namespace winnow {
 namespace {
@@ -135,7 +133,8 @@ bool RowPartition::run_self_task(const SelfTasks& tasks, std::size_t task,
   task -= tasks.tree;
   const std::size_t begin = tasks.first_tree_row + task * kQueriesPerTask;
   QueryBatch batch;
-  std::copy_n(rows.column, 6, batch.column);
+  std::copy_n(rows.column, kMaxColumns, batch.column);
+  batch.is_box = pool_.volume() == Volume::aabb;
   batch.id = rows.id;
   batch.filter = rows.filter;
   batch.begin = static_cast<std::uint32_t>(begin);
@@ -218,37 +217,20 @@ Status RowPartition::ask(const RowPartition& other, HitMode mode, const PairPred
   PairWriter writer(out, execution, predicate);
   const std::size_t tasks = ceil_divide(pool_.rows(), kQueriesPerTask);
   return writer.append(tasks, [&](std::size_t task, PairSink& sink) {
-    std::array<float, 6 * kQueriesPerTask> boxes;
     const std::size_t begin = task * kQueriesPerTask;
-    QueryBatch batch = box_batch(begin, std::min(pool_.rows(), begin + kQueriesPerTask), boxes);
+    QueryBatch batch = box_batch(begin, std::min(pool_.rows(), begin + kQueriesPerTask));
     batch.mode = mode;
     return other.query_all(batch, sink);
   });
 }
 
-QueryBatch RowPartition::box_batch(std::size_t begin, std::size_t end,
-                                   std::span<float> scratch) const noexcept {
+QueryBatch RowPartition::box_batch(std::size_t begin, std::size_t end) const noexcept {
   QueryBatch batch;
+  std::copy_n(row_view().column, 6, batch.column);
   batch.filter = filters_.data();
-  if (pool_.volume() != Volume::sphere) {
-    for (std::size_t c = 0; c < 6; ++c) batch.column[c] = pool_.column(c);
-    batch.id = pool_.ids();
-    batch.begin = static_cast<std::uint32_t>(begin);
-    batch.end = static_cast<std::uint32_t>(end);
-    return batch;
-  }
-  for (std::size_t c = 0; c < 6; ++c) batch.column[c] = scratch.data() + c * kQueriesPerTask;
-  for (std::size_t row = begin; row < end; ++row) {
-    const Eigen::Vector3f center(pool_.column(0)[row], pool_.column(1)[row], pool_.column(2)[row]);
-    const Aabb box = Sphere{center, pool_.column(3)[row]}.bounds();
-    for (std::size_t s = 0; s < 3; ++s) {
-      const std::size_t i = row - begin;
-      scratch[s * kQueriesPerTask + i] = box.min[static_cast<Eigen::Index>(s)];
-      scratch[(3 + s) * kQueriesPerTask + i] = box.max[static_cast<Eigen::Index>(s)];
-    }
-  }
-  batch.id = pool_.ids() + begin;
-  batch.end = static_cast<std::uint32_t>(end - begin);
+  batch.id = pool_.ids();
+  batch.begin = static_cast<std::uint32_t>(begin);
+  batch.end = static_cast<std::uint32_t>(end);
   return batch;
 }
 

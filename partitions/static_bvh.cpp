@@ -3,7 +3,7 @@
 namespace winnow {
 
 StaticBvh::StaticBvh(const PartitionOptions& options)
-    : RowPartition(options, Volume::aabb), boxes_(options.memory) {}
+    : RowPartition(options, options.volume), boxes_(options.memory) {}
 
 bool StaticBvh::order_rest(std::span<std::uint32_t> rest, Column<std::uint32_t>& order) {
   if (filters().has_environments()) return RowPartition::order_rest(rest, order);

@@ -28,7 +28,7 @@ std::uint32_t sortable(float value) {
 }  // namespace
 
 SweepAndPrune::SweepAndPrune(const PartitionOptions& options)
-    : RowPartition(options, Volume::aabb),
+    : RowPartition(options, options.volume),
       layout_(options.memory),
       start_(options.memory),
       key_(options.memory),

@@ -5,6 +5,7 @@
 
 #include <winnow/core/box_view.h>
 #include <winnow/core/kdop.h>
+#include <winnow/core/key.h>
 #include <winnow/core/sphere.h>
 #include <winnow/core/volume.h>
 #include <winnow/partitions/box_input.kernel.h>
@@ -75,8 +76,13 @@ struct BoxSource {
 };
 
 inline void write_sphere(ColumnPointers columns, std::size_t row, const Sphere& s) noexcept {
-  for (int axis = 0; axis < 3; ++axis) columns[axis][row] = s.center[axis];
-  columns[3][row] = s.radius;
+  const Aabb box = s.bounds();
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    write_slab(columns, a, 3 + a, row, box.min[axis], box.max[axis]);
+    columns[kCenterColumn + a][row] = s.center[axis];
+  }
+  columns[kRadiusColumn][row] = s.radius;
 }
 
 /// Spheres into sphere columns.

@@ -15,10 +15,13 @@ constexpr std::uint64_t kSeed = 1;
 
 void store(const Aabb& box, std::size_t row, BoundsPool& pool) {
   if (pool.volume() == Volume::sphere) {
-    for (int a = 0; a < 3; ++a) {
-      pool.column(static_cast<std::size_t>(a))[row] = 0.5F * (box.min[a] + box.max[a]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto axis = static_cast<Eigen::Index>(a);
+      pool.column(a)[row] = box.min[axis];
+      pool.column(3 + a)[row] = box.max[axis];
+      pool.column(kCenterColumn + a)[row] = 0.5F * (box.min[axis] + box.max[axis]);
     }
-    pool.column(3)[row] = 0.5F * (box.max.x() - box.min.x());
+    pool.column(kRadiusColumn)[row] = 0.5F * (box.max.x() - box.min.x());
     return;
   }
   // The first three slabs of a k-DOP are the box; those along diagonals follow from its corners.
@@ -122,6 +125,8 @@ std::vector<std::uint32_t> KernelScene::order_by_cells(const std::vector<Aabb>& 
 RowView KernelScene::rows() const {
   RowView view;
   for (std::size_t c = 0; c < pool.columns(); ++c) view.column[c] = pool.column(c);
+  view.further_slabs = static_cast<std::uint32_t>(slab_count(pool.volume())) - 3;
+  view.spheres = pool.volume() == Volume::sphere;
   view.id = pool.ids();
   return view;
 }

@@ -1,6 +1,5 @@
 #include <winnow/partitions/hits.wide.h>
 #include <winnow/partitions/queries/cast.kernel.h>
-#include <winnow/partitions/queries/row_block.wide.h>
 #include <winnow/partitions/queries/sweep_rounds.wide.h>
 #include <winnow/partitions/queries/walks.wide.h>
 
@@ -13,14 +12,13 @@ namespace {
 template <typename Found>
 bool test_rows(const QueryView& view, const Sweep& sweep, const SweepTest& probe,
                const Wanted& wanted, std::uint32_t first_row, const float& limit, Found&& found) {
-  const RowBlock block(view, first_row);
-  const ExactSweepTest exact(sweep, block.columns());
+  const ExactSweepTest exact(sweep, view.column);
   Float16 enter;
-  Mask16 mask = probe.test(block.columns(), block.at(), limit, enter);
+  Mask16 mask = probe.test(view.column, first_row, limit, enter);
   mask = wanted.rows(first_row, mask);
   for (; mask != 0; mask &= mask - 1) {
     const unsigned lane = first(mask);
-    const double t = exact.touch(sweep, block.at() + lane);
+    const double t = exact.touch(sweep, first_row + lane);
     if (t < 0.0) continue;
     if (!found(t, view.id[first_row + lane])) return false;
   }

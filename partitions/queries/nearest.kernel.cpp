@@ -1,5 +1,4 @@
 #include <winnow/partitions/queries/nearest.kernel.h>
-#include <winnow/partitions/queries/row_block.wide.h>
 #include <winnow/partitions/queries/walks.wide.h>
 
 namespace winnow {
@@ -96,13 +95,12 @@ bool nearest(const QueryView& view, const NearestQuery& query, const QueryFilter
   Heap heap(nearest_heap);
   float limit = square_limit(query.radius);
   return walk_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
-    const RowBlock block(view, first_row);
     Float16 order;
-    Mask16 mask = probe.test(block.columns(), block.at(), limit, order);
+    Mask16 mask = probe.test(view.column, first_row, limit, order);
     mask = wanted.rows(first_row, mask);
     for (; mask != 0; mask &= mask - 1) {
       const unsigned lane = first(mask);
-      const double far = distance(query, block.columns(), block.at() + lane);
+      const double far = distance(query, view.column, first_row + lane);
       if (far > static_cast<double>(query.radius)) continue;
       const std::uint32_t bits = order_of_rounded_down(far);
       const std::uint32_t id = view.id[first_row + lane];

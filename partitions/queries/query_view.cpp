@@ -4,16 +4,11 @@
 
 #include <winnow/partitions/row_partition.h>
 
-#include <algorithm>
-
 namespace winnow {
 
 Status RowPartition::prepare(QueryView& view) const {
   if (const Status status = refresh(); status != Status::ok) return status;
-  for (std::size_t c = 0; c < std::min<std::size_t>(6, pool_.columns()); ++c) {
-    view.column[c] = pool_.column(c);
-  }
-  view.spheres = pool_.volume() == Volume::sphere;
+  for (std::size_t c = 0; c < 6; ++c) view.column[c] = pool_.column(c);
   const RowView rows = row_view();
   view.id = rows.id;
   view.filter = rows.filter;

@@ -11,9 +11,8 @@ namespace winnow {
 /// How queries see a partition: boxes in rows, and what leads to them. Every row lies either in a
 /// block of one of the trees or in the flat blocks, which are all looked at.
 struct QueryView {
-  /// Lower ends, then upper ends; of spheres the centre and the radius.
+  /// Of the boxes: lower ends, then upper ends.
   const float* column[6] = {};
-  bool spheres = false;  ///< flat blocks only
   const std::uint32_t* id = nullptr;
   const ObjectFilter* filter = nullptr;  ///< by id; null if every object has the default one
   const TreeView* tree[2] = {};          ///< their own `rows` are unset

@@ -1,7 +1,6 @@
 #include <winnow/partitions/hits.wide.h>
 #include <winnow/partitions/queries/region.kernel.h>
 #include <winnow/partitions/queries/region_probes.wide.h>
-#include <winnow/partitions/queries/row_block.wide.h>
 #include <winnow/partitions/queries/walks.wide.h>
 #include <winnow/simd/compress.h>
 
@@ -31,7 +30,7 @@ class RegionWalk {
  private:
   bool scan_flat() {
     if constexpr (requires { probe_.is_frustum(); }) {
-      if (view_.flat_blocks != 0 && !view_.spheres && probe_.is_frustum()) {
+      if (view_.flat_blocks != 0 && probe_.is_frustum()) {
         const FrustumScan scan(probe_.region(), view_.column);
         for (std::uint32_t begin = 0; begin < view_.flat_blocks; begin += kScanned) {
           if (!scan_some(scan, begin)) return false;
@@ -105,11 +104,6 @@ class RegionWalk {
   }
 
   bool test_rows(std::uint32_t first_row) {
-    if (view_.spheres) {
-      const RowBlock block(view_, first_row);
-      return take_met(probe_.test(block.columns(), block.at()), first_row, block.columns(),
-                      block.at());
-    }
     return take_met(probe_.test(view_.column, first_row), first_row, view_.column, first_row);
   }
 
@@ -164,8 +158,7 @@ bool flat_boxes(const QueryView& view, const QueryBatch& batch, const QueryFilte
                 PairSink& sink) {
   const Wanted wanted(view, filter);
   for (std::uint32_t b = 0; b < view.flat_blocks; ++b) {
-    const RowBlock block(view, b * kLanes);
-    const Box16 rows = load_slabs<3>(block.columns(), block.at());
+    const Box16 rows = load_slabs<3>(view.column, b * kLanes);
     const Uint16 ids = load_unaligned(view.id + b * kLanes);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const QueryBox q(batch.column, k);

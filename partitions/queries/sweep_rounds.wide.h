@@ -1,6 +1,5 @@
 #pragma once
 
-#include <winnow/partitions/queries/row_block.wide.h>
 #include <winnow/partitions/queries/sweep.wide.h>
 #include <winnow/partitions/queries/walks.wide.h>
 #include <winnow/simd/compress.h>
@@ -116,8 +115,7 @@ class SweepRounds {
 
   bool test_flat(std::uint32_t s, std::uint32_t first_row) {
     if (rows_.full() && !touch_rows()) return false;
-    const RowBlock block(view_, first_row);
-    const Mask16 mask = test(s, Ways(sweeps_[s], block.columns()), block.at());
+    const Mask16 mask = test(s, Ways(sweeps_[s], view_.column), first_row);
     rows_.add(s, first_row, wanted_.rows(first_row, mask));
     return true;
   }
@@ -128,16 +126,11 @@ class SweepRounds {
       if (k % kHitsAtOnce == 0 && !hits_.make_room()) return false;
       const std::uint32_t s = rows_.sweep[k];
       const std::uint32_t row = rows_.at[k];
-      const double t = view_.spheres ? touch_sphere(s, row) : exact.touch(sweeps_[s], row);
+      const double t = exact.touch(sweeps_[s], row);
       if (t >= 0.0) hits_.touched(s, t, view_.id[row]);
     }
     rows_.size = 0;
     return true;
-  }
-
-  [[nodiscard]] double touch_sphere(std::uint32_t s, std::uint32_t row) const {
-    const RowBlock block(view_, row / kLanes * kLanes);
-    return ExactSweepTest(sweeps_[s], block.columns()).touch(sweeps_[s], row % kLanes);
   }
 
   const QueryView& view_;

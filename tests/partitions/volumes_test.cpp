@@ -1,14 +1,16 @@
-// BoundsNSquared on spheres and k-DOPs: every pair of volumes that overlap, by the volumes' own
-// slow test.
+// Partitions of spheres and k-DOPs: every pair of volumes that overlap, by the volumes' own slow
+// test.
 
 #include <winnow/core/kdop.h>
 #include <winnow/core/sphere.h>
 #include <winnow/partitions/bounds_n_squared.h>
+#include <winnow/partitions/row_partition.h>
 
 #include <cmath>
 #include <limits>
 
 #include "../support/config.h"
+#include "../support/motion.h"
 #include "../support/random.h"
 #include "../support/scenes.h"
 #include "../support/world.h"
@@ -59,7 +61,16 @@ constexpr Volume volume_of(const Kdop<26>&) {
 
 class Volumes : public Conformance {
  protected:
-  std::vector<Pair> pairs_of(BoundsNSquared& partition, Threads& threads) {
+  std::unique_ptr<RowPartition> make(Volume volume) {
+    auto partition =
+        make_partition(config().partition, {.execution = config().execution(), .volume = volume});
+    auto* const rows = dynamic_cast<RowPartition*>(partition.get());
+    EXPECT_NE(rows, nullptr);
+    (void)partition.release();
+    return std::unique_ptr<RowPartition>(rows);
+  }
+
+  std::vector<Pair> pairs_of(const Partition& partition, Threads& threads) {
     PairBuffer buffer;
     const Status status =
         threads.run([&] { return partition.self_pairs(buffer, {.order = Order::canonical}); });
@@ -71,7 +82,8 @@ class Volumes : public Conformance {
   void expect_right_kdops() {
     Threads threads(config().threads);
     for (const std::size_t n : {1U, 17U, 600U}) {
-      BoundsNSquared partition({.execution = config().execution(), .volume = volume_of(Kdop<K>{})});
+      auto made = make(volume_of(Kdop<K>{}));
+      RowPartition& partition = *made;
       std::vector<Kdop<K>> kdops = kdops_in<K>(mixed_boxes(n));
       std::vector<Key> keys(n);
       ASSERT_EQ(partition.insert(std::span<const Kdop<K>>(kdops), {}, keys), Status::ok);
@@ -100,7 +112,8 @@ TEST_P(Volumes, that_are_26_dops_are_right) {
 TEST_P(Volumes, that_are_spheres_are_right) {
   Threads threads(config().threads);
   for (const double scale : {1.0, 1e-12, 1e12}) {
-    BoundsNSquared partition({.execution = config().execution(), .volume = Volume::sphere});
+    auto made = make(Volume::sphere);
+    RowPartition& partition = *made;
     std::vector<Sphere> spheres = spheres_around(mixed_boxes(600));
     // Touching spheres on a lattice, on which rounding must not lose a pair.
     for (int i = 0; i < 60; ++i) {
@@ -132,7 +145,8 @@ TEST_P(Volumes, given_as_boxes_report_every_pair_of_boxes) {
   const std::vector<Pair> truth = true_pairs(numbered(boxes));
   for (const Volume volume :
        {Volume::aabb, Volume::sphere, Volume::kdop14, Volume::kdop18, Volume::kdop26}) {
-    BoundsNSquared partition({.execution = config().execution(), .volume = volume});
+    auto made = make(volume);
+    RowPartition& partition = *made;
     std::vector<Key> keys(boxes.size());
     ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
     EXPECT_EQ(partition.volume(), volume);
@@ -145,6 +159,41 @@ TEST_P(Volumes, given_as_boxes_report_every_pair_of_boxes) {
       EXPECT_TRUE((box.max.array() >= boxes[i].max.array()).all());
     }
   }
+}
+
+// What moved is asked about alone, and a partition of boxes asks about boxes.
+TEST_P(Volumes, are_followed_from_frame_to_frame) {
+  Threads threads(config().threads);
+  std::vector<Aabb> boxes = uniform_boxes(700);
+  const std::vector<Aabb> others = mixed_boxes(60);
+  BoundsNSquared other({.execution = config().execution()});
+  std::vector<Key> other_keys(others.size());
+  ASSERT_EQ(other.insert(others, {}, other_keys), Status::ok);
+  auto made = make(Volume::kdop18);
+  std::vector<Kdop<18>> kdops = kdops_in<18>(boxes);
+  std::vector<Key> keys(kdops.size());
+  ASSERT_EQ(made->insert(std::span<const Kdop<18>>(kdops), {}, keys), Status::ok);
+  PairBuffer buffer;
+  Random random(5);
+  for (int frame = 0; frame < 4; ++frame) {
+    ASSERT_EQ(threads.run([&] { return made->self_pairs(buffer, {.order = Order::canonical}); }),
+              Status::ok);
+    EXPECT_EQ(std::vector<Pair>(buffer.begin(), buffer.end()), volume_pairs(kdops));
+    PairBuffer cross;
+    ASSERT_EQ(made->pairs_with(other, cross, {.order = Order::canonical}), Status::ok);
+    EXPECT_TRUE(
+        right_cross_pairs(cross.pairs(), cross_pairs(numbered(boxes), numbered(others)), true));
+    const std::vector<std::size_t> moved = move(Motion::few, boxes, random);
+    kdops = kdops_in<18>(boxes);
+    std::vector<Key> some;
+    std::vector<Kdop<18>> shapes;
+    for (const std::size_t i : moved) {
+      some.push_back(keys[i]);
+      shapes.push_back(kdops[i]);
+    }
+    ASSERT_EQ(made->update(some, std::span<const Kdop<18>>(shapes)), Status::ok);
+  }
+  EXPECT_GT(made->statistics().incremental_queries, 0U);
 }
 
 TEST_P(Volumes, of_another_kind_than_the_partitions_are_refused) {
@@ -164,7 +213,8 @@ TEST_P(Volumes, of_another_kind_than_the_partitions_are_refused) {
 
 TEST_P(Volumes, that_are_invalid_change_nothing) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  BoundsNSquared partition({.execution = config().execution(), .volume = Volume::sphere});
+  auto made = make(Volume::sphere);
+  RowPartition& partition = *made;
   std::vector<Sphere> spheres = spheres_around(uniform_boxes(40));
   std::vector<Key> keys(spheres.size());
   ASSERT_EQ(partition.insert(spheres, {}, keys), Status::ok);
@@ -179,17 +229,37 @@ TEST_P(Volumes, that_are_invalid_change_nothing) {
   }
 }
 
-// The partition's volume is what is tested here; the suite's other partitions have but one.
-std::vector<Config> brute_force_configs() {
+// Those that take volumes from the caller and test them.
+std::vector<Config> volume_configs() {
   std::vector<Config> configs;
   for (const Config& config : all_configs()) {
-    if (config.partition == "BoundsNSquared") configs.push_back(config);
+    if (config.partition == "NSquared" || config.partition == "AutoPartition") continue;
+    configs.push_back(config);
   }
   return configs;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Volumes, testing::ValuesIn(brute_force_configs()),
+INSTANTIATE_TEST_SUITE_P(All, Volumes, testing::ValuesIn(volume_configs()),
                          testing::PrintToStringParamName());
+
+// AutoPartition hands its objects from one kind of partition to another.
+TEST(VolumesGivenAsBoxes, are_kept_by_every_partition) {
+  const std::vector<Aabb> boxes = mixed_boxes(300);
+  for (const std::string_view name : partition_names()) {
+    for (const Volume volume : {Volume::sphere, Volume::kdop26}) {
+      auto partition = make_partition(name, {.execution = Execution::serial(), .volume = volume});
+      std::vector<Key> keys(boxes.size());
+      ASSERT_EQ(partition->insert(boxes, {}, keys), Status::ok);
+      EXPECT_FALSE(partition->is_exact());
+      PairBuffer buffer;
+      for (int frame = 0; frame < 3; ++frame) {
+        ASSERT_EQ(partition->self_pairs(buffer, {.incremental = false}), Status::ok);
+        EXPECT_TRUE(right_pairs(buffer.pairs(), true_pairs(numbered(boxes)), false)) << name;
+        ASSERT_EQ(partition->update(keys, boxes), Status::ok);
+      }
+    }
+  }
+}
 
 }  // namespace
 }  // namespace winnow::test
