@@ -1,6 +1,5 @@
 #include <winnow/partitions/environment_order.h>
 
-#include <winnow/partitions/morton_order.h>
 #include <winnow/partitions/radix_sort.h>
 
 #include <algorithm>
@@ -44,14 +43,14 @@ bool for_environments(const BoundsPool& pool, const ObjectFilter* filters,
 
 }  // namespace
 
-bool sort_by_environment_and_morton(const BoundsPool& pool, const ObjectFilter* filters,
-                                    std::span<std::uint32_t> rows, Column<std::uint64_t>& scratch,
-                                    const Execution& execution) {
+bool sort_by_environment_and_place(const BoundsPool& pool, const ObjectFilter* filters,
+                                   std::span<std::uint32_t> rows, Column<std::uint64_t>& scratch,
+                                   Column<KdPoint>& points, const Execution& execution) {
   if (!sort_by_environment(pool, filters, rows, scratch, execution)) return false;
   return for_environments(pool, filters, rows, [&](std::size_t begin, std::size_t end) {
     // What fits in a block needs no order.
     return end - begin <= BoundsPool::kBlock ||
-           sort_by_morton(pool, rows.subspan(begin, end - begin), scratch, execution);
+           sort_by_kd_cuts(pool, rows.subspan(begin, end - begin), points, execution);
   });
 }
 

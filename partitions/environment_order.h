@@ -4,6 +4,7 @@
 #include <winnow/core/column.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/object_filter.h>
+#include <winnow/partitions/kd_order.h>
 
 #include <cstdint>
 #include <span>
@@ -17,13 +18,11 @@ namespace winnow {
                                        std::span<std::uint32_t> rows,
                                        Column<std::uint64_t>& scratch, const Execution& execution);
 
-/// Sorts row numbers by environment and each environment by place within its own bounds (see
-/// sort_by_morton), so that worlds that lie on top of each other come one after another.
-[[nodiscard]] bool sort_by_environment_and_morton(const BoundsPool& pool,
-                                                  const ObjectFilter* filters,
-                                                  std::span<std::uint32_t> rows,
-                                                  Column<std::uint64_t>& scratch,
-                                                  const Execution& execution);
+/// Sorts row numbers by environment and each environment by place (see sort_by_kd_cuts), so that
+/// worlds that lie on top of each other come one after another.
+[[nodiscard]] bool sort_by_environment_and_place(
+    const BoundsPool& pool, const ObjectFilter* filters, std::span<std::uint32_t> rows,
+    Column<std::uint64_t>& scratch, Column<KdPoint>& points, const Execution& execution);
 
 /// Appends rows sorted by environment to `order`. An environment of more than a block has blocks
 /// to itself, padded by kNoObject: a block with the end of one world and the start of another would

@@ -4,13 +4,12 @@
 
 namespace winnow {
 
-/// Linear bounding-volume hierarchy: rows sorted by size class and place on a space-filling curve
-/// (Lauterbach et al., "Fast BVH construction on GPUs", Computer Graphics Forum 28(2), 2009; here
-/// Hilbert's curve), blocks of 16 rows as leaves, and above them implicit nodes of 16 children that
-/// one compare tests at once. A frame refits the nodes above what moved; the order is made anew
-/// when refitting has cost more tests than a build is worth. No parameter, no world bounds; suits
-/// every scene, mixed sizes included. Self pairs: O(n log n + pairs) for boxes of bounded overlap.
-/// Exact.
+/// Linearised bounding-volume hierarchy: rows in an order in which every 16, 256, 4096 ... that
+/// follow each other are near each other (see kd_order.h), blocks of 16 rows as leaves, and above
+/// them implicit nodes of 16 children that one compare tests at once: no pointers, no node that
+/// holds anything but boxes. A frame refits the nodes above what moved; the order is made anew when
+/// refitting has cost more tests than a build is worth. No parameter, no world bounds; suits every
+/// scene, mixed sizes included. Self pairs: O(n log n + pairs) for boxes of bounded overlap. Exact.
 class LinearBvh final : public RowPartition {
  public:
   explicit LinearBvh(const PartitionOptions& options = {});

@@ -53,6 +53,7 @@ RowPartition::RowPartition(const PartitionOptions& options, Volume volume)
       list_(options.memory),
       words_(options.memory),
       sort_scratch_(options.memory),
+      kd_scratch_(options.memory),
       identity_(next_identity()) {}
 
 RowPartition::~RowPartition() = default;
@@ -183,6 +184,7 @@ void RowPartition::release_memory() noexcept {
   list_.release();
   words_.release();
   sort_scratch_.release();
+  kd_scratch_.release();
   if (keys_.size() != 0) return;
   pool_.release();
   filters_.release();
@@ -279,6 +281,7 @@ Footprint RowPartition::footprint() const noexcept {
   result.scratch += list_.bytes();
   result.scratch += words_.bytes();
   result.scratch += sort_scratch_.bytes();
+  result.scratch += kd_scratch_.bytes();
   add_structure_bytes(result);
   return result;
 }

@@ -7,6 +7,7 @@
 #include <winnow/partitions/block_tree.h>
 #include <winnow/partitions/change_list.h>
 #include <winnow/partitions/filter_table.h>
+#include <winnow/partitions/kd_order.h>
 #include <winnow/partitions/pair_sink.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/partitions/queries/query_view.h>
@@ -136,7 +137,7 @@ class RowPartition : public Partition {
   virtual bool plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest);
   /// Appends the rest to `order` in the order in which the tree's blocks of 16 hold it; entries of
   /// kNoObject leave places empty. It may reorder `rest`. False if memory is refused. The default
-  /// follows a space-filling curve, each environment's rows together.
+  /// cuts at medians (see kd_order.h), each environment by itself.
   virtual bool order_rest(std::span<std::uint32_t> rest, Column<std::uint32_t>& order);
   /// What a build costs in tests of 16 volumes per object.
   [[nodiscard]] virtual std::uint64_t build_price() const noexcept;
@@ -270,6 +271,7 @@ class RowPartition : public Partition {
   mutable Column<std::uint32_t> list_;   // rows or nodes to visit
   mutable Column<std::uint64_t> words_;  // bitmap for sorting them
   Column<std::uint64_t> sort_scratch_;
+  Column<KdPoint> kd_scratch_;
 
   std::uint64_t identity_;
   mutable std::uint64_t tracked_serial_ = 0;  // 0: no buffer is tracked

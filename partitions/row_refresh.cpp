@@ -2,7 +2,7 @@
 
 #include <winnow/partitions/bitmap_sort.h>
 #include <winnow/partitions/environment_order.h>
-#include <winnow/partitions/morton_order.h>
+#include <winnow/partitions/kd_order.h>
 #include <winnow/partitions/row_mutation.h>
 #include <winnow/partitions/row_partition.h>
 
@@ -160,9 +160,10 @@ Status RowPartition::build_flat() {
 }
 
 bool RowPartition::sort_by_place(std::span<std::uint32_t> rows, const Execution& execution) {
-  return filters_.has_environments() ? sort_by_environment_and_morton(pool_, filters_.data(), rows,
-                                                                      sort_scratch_, execution)
-                                     : sort_by_morton(pool_, rows, sort_scratch_, execution);
+  return filters_.has_environments()
+             ? sort_by_environment_and_place(pool_, filters_.data(), rows, sort_scratch_,
+                                             kd_scratch_, execution)
+             : sort_by_kd_cuts(pool_, rows, kd_scratch_, execution);
 }
 
 Status RowPartition::absorb_changes() {
