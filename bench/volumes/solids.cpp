@@ -1,0 +1,108 @@
+#include "volumes/solids.h"
+
+#include "scenes/random.h"
+#include "scenes/scene.h"
+
+#include <stdexcept>
+
+namespace winnow::bench {
+namespace {
+
+/// A unit quaternion, every orientation as likely as any other.
+void random_turn(Random& random, double* q) {
+  double square = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    q[i] = random.normal();
+    square += q[i] * q[i];
+  }
+  for (int i = 0; i < 4; ++i) q[i] /= std::sqrt(square);
+}
+
+Eigen::Matrix3f matrix_of(const double* q) {
+  const double w = q[0];
+  const double x = q[1];
+  const double y = q[2];
+  const double z = q[3];
+  Eigen::Matrix3d m;
+  m << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z),
+      1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x),
+      1 - 2 * (x * x + y * y);
+  return m.cast<float>();
+}
+
+Eigen::Vector3f random_point(Random& random, double side) {
+  return Eigen::Vector3d(random.in(0.0, side), random.in(0.0, side), random.in(0.0, side))
+      .cast<float>();
+}
+
+}  // namespace
+
+void Solids::add(const OrientedBox& box, const double* quaternion) {
+  Random random(boxes_.size() + 77);
+  Pose pose = Pose::at(static_cast<double>(box.center.x()), static_cast<double>(box.center.y()),
+                       static_cast<double>(box.center.z()));
+  for (int i = 0; i < 4; ++i) pose.orientation[i] = quaternion[i];
+  BoxShape shape;
+  for (int i = 0; i < 3; ++i) shape.half[i] = static_cast<double>(box.half[i]);
+  ShapeId id;
+  if (shapes_.add(shape, id) != Status::ok) throw std::runtime_error("a box was refused");
+  const double edge = 2.0 * static_cast<double>(box.half.mean());
+  Eigen::Vector3d way(random.normal(), random.normal(), random.normal());
+  way *= edge / way.norm();
+  boxes_.push_back(box);
+  poses_.push_back(pose);
+  ids_.push_back(id);
+  way_.push_back(way.cast<float>());
+}
+
+void Solids::add_turned(const Eigen::Vector3f& center, const Eigen::Vector3f& half,
+                        std::uint64_t seed) {
+  Random random(seed);
+  double q[4];
+  random_turn(random, q);
+  add({center, half, matrix_of(q)}, q);
+}
+
+Solids Solids::of_scene(const std::string& name, std::size_t objects, std::uint64_t seed) {
+  const std::unique_ptr<FrameSource> scene = make_scene(name, objects, seed);
+  if (scene == nullptr) throw std::invalid_argument("no scene " + name);
+  constexpr double kUpright[4] = {1.0, 0.0, 0.0, 0.0};
+  Solids solids;
+  for (const Aabb& box : scene->boxes()) {
+    const Eigen::Vector3f half = 0.5F * (box.max - box.min);
+    solids.add({box.min + half, half, Eigen::Matrix3f::Identity()}, kUpright);
+  }
+  return solids;
+}
+
+Solids Solids::rotated(std::size_t objects, std::uint64_t seed) {
+  Random random(seed);
+  const double side = std::cbrt(2.0 * static_cast<double>(objects));
+  Solids solids;
+  for (std::size_t i = 0; i < objects; ++i) {
+    solids.add_turned(random_point(random, side), Eigen::Vector3f::Constant(0.5F), random.next());
+  }
+  return solids;
+}
+
+Solids Solids::rods(std::size_t objects, std::uint64_t seed) {
+  Random random(seed);
+  // A rod of 0.25 x 0.25 x 5 meets one or two others.
+  const double side = std::cbrt(8.0 * static_cast<double>(objects));
+  Solids solids;
+  for (std::size_t i = 0; i < objects; ++i) {
+    solids.add_turned(random_point(random, side), {0.125F, 0.125F, 2.5F}, random.next());
+  }
+  return solids;
+}
+
+void Solids::advance(double step) {
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    boxes_[i].center += static_cast<float>(step) * way_[i];
+    for (int axis = 0; axis < 3; ++axis) {
+      poses_[i].position[axis] = static_cast<double>(boxes_[i].center[axis]);
+    }
+  }
+}
+
+}  // namespace winnow::bench

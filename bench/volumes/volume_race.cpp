@@ -1,0 +1,190 @@
+#include "volumes/volume_race.h"
+
+#include <winnow/partitions/row_partition.h>
+
+#include <algorithm>
+#include <memory>
+#include <memory_resource>
+#include <stdexcept>
+
+namespace winnow::bench {
+namespace {
+
+void expect_ok(Status status) {
+  if (status != Status::ok) throw std::runtime_error(std::string("refused: ") + to_string(status));
+}
+
+/// A volume on a partition of its own.
+class Contestant {
+ public:
+  virtual ~Contestant() = default;
+  virtual void make(const std::vector<OrientedBox>& boxes) = 0;
+  virtual void put() = 0;
+
+  /// One frame.
+  void run(const Solids& solids, NarrowPhase& narrow, NarrowResult& result, bool timed);
+  /// Against what overlaps by everyone's reports.
+  void judge(const std::vector<std::uint64_t>& truth, bool counted);
+
+  VolumeRow row;
+  std::vector<std::uint64_t> overlapping;  // of the last frame: first << 32 | second, sorted
+
+ protected:
+  Contestant(std::string name, const VolumeRaceOptions& race, const PartitionOptions& options)
+      : made_(make_partition(race.partition, options)),
+        partition_(dynamic_cast<RowPartition*>(made_.get())) {
+    if (partition_ == nullptr) {
+      throw std::invalid_argument(race.partition + " takes no volumes from the caller");
+    }
+    row.volume = std::move(name);
+  }
+  RowPartition& partition() { return *partition_; }
+
+  std::vector<Key> keys_;
+
+ private:
+  std::unique_ptr<Partition> made_;
+  RowPartition* partition_;
+  PairBuffer pairs_;
+};
+
+template <typename V>
+class VolumeContestant final : public Contestant {
+ public:
+  using Make = V (*)(const OrientedBox&);
+  VolumeContestant(std::string name, const VolumeRaceOptions& race, const PartitionOptions& options,
+                   Make maker)
+      : Contestant(std::move(name), race, options), make_(maker) {}
+
+  void make(const std::vector<OrientedBox>& boxes) override {
+    volumes_.resize(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) volumes_[i] = make_(boxes[i]);
+  }
+  void put() override {
+    const std::span<const V> volumes(volumes_);
+    if (!keys_.empty()) return expect_ok(partition().update(keys_, volumes));
+    keys_.resize(volumes_.size());
+    expect_ok(partition().insert(volumes, {}, keys_));
+  }
+
+ private:
+  Make make_;
+  std::vector<V> volumes_;
+};
+
+void Contestant::run(const Solids& solids, NarrowPhase& narrow, NarrowResult& result, bool timed) {
+  const ThreadStopwatch make_clock;
+  make(solids.boxes());
+  const double make_ms = make_clock.ms();
+  const ThreadStopwatch broad_clock;
+  put();
+  expect_ok(partition_->self_pairs(pairs_));
+  const double broad_ms = broad_clock.ms();
+  // Keys are handed out in order: ids are the objects' numbers.
+  std::vector<BodyPair> asked;
+  asked.reserve(pairs_.size());
+  for (const Pair& pair : pairs_) asked.push_back({pair.first, pair.second});
+  const ThreadStopwatch narrow_clock;
+  expect_ok(narrow.collide(solids.shapes(), solids.bodies(), asked, {.level = NarrowLevel::boolean},
+                           result));
+  const double narrow_ms = narrow_clock.ms();
+  overlapping.clear();
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    if (!result.overlaps(i)) continue;
+    const BodyPair& pair = asked[result.pair_of(i)];
+    overlapping.push_back(std::uint64_t{std::min(pair.a, pair.b)} << 32U |
+                          std::max(pair.a, pair.b));
+  }
+  std::sort(overlapping.begin(), overlapping.end());
+  if (!timed) return;
+  row.make.push_back(make_ms);
+  row.broad.push_back(broad_ms);
+  row.narrow.push_back(narrow_ms);
+  row.reported += asked.size();
+  const Footprint bytes = partition_->footprint();
+  row.bytes_per_object =
+      static_cast<double>(bytes.total().reserved) / static_cast<double>(solids.size());
+}
+
+void Contestant::judge(const std::vector<std::uint64_t>& truth, bool counted) {
+  if (!counted) return;
+  row.overlapping += overlapping.size();
+  row.missed += truth.size() - overlapping.size();
+}
+
+Aabb box_of(const OrientedBox& box) {
+  return box.bounds();
+}
+
+Sphere sphere_of(const OrientedBox& box) {
+  return {box.center, round_up(box.half.cast<double>().norm() * (1.0 + 1e-6))};
+}
+
+std::vector<std::unique_ptr<Contestant>> all_contestants(const VolumeRaceOptions& race) {
+  const auto options = [](Volume volume, float share = 0.0F) {
+    return PartitionOptions{
+        .execution = Execution::serial(), .volume = volume, .margin = {.share = share}};
+  };
+  std::vector<std::unique_ptr<Contestant>> all;
+  all.push_back(
+      std::make_unique<VolumeContestant<Aabb>>("AABB", race, options(Volume::aabb), box_of));
+  all.push_back(std::make_unique<VolumeContestant<Sphere>>("sphere", race, options(Volume::sphere),
+                                                           sphere_of));
+  all.push_back(std::make_unique<VolumeContestant<Kdop<14>>>(
+      "14-DOP", race, options(Volume::kdop14), kdop_around<14>));
+  all.push_back(std::make_unique<VolumeContestant<Kdop<18>>>(
+      "18-DOP", race, options(Volume::kdop18), kdop_around<18>));
+  all.push_back(std::make_unique<VolumeContestant<Kdop<26>>>(
+      "26-DOP", race, options(Volume::kdop26), kdop_around<26>));
+  for (const int percent : {5, 10, 20, 50}) {
+    all.push_back(std::make_unique<VolumeContestant<Aabb>>(
+        "AABB + " + std::to_string(percent) + " %", race,
+        options(Volume::aabb, 0.01F * static_cast<float>(percent)), box_of));
+  }
+  return all;
+}
+
+}  // namespace
+
+double VolumeRow::false_positives() const noexcept {
+  if (reported == 0) return 0.0;
+  return 1.0 - static_cast<double>(overlapping) / static_cast<double>(reported);
+}
+
+std::vector<VolumeRow> race_volumes(Solids solids, const VolumeRaceOptions& options) {
+  const std::vector<std::unique_ptr<Contestant>> all = all_contestants(options);
+  NarrowPhase narrow;
+  NarrowResult result;
+  for (std::size_t frame = 0; frame <= options.frames; ++frame) {
+    const bool timed = frame != 0;
+    std::vector<std::uint64_t> truth;
+    for (const auto& one : all) {
+      one->run(solids, narrow, result, timed);
+      std::vector<std::uint64_t> both;
+      std::set_union(truth.begin(), truth.end(), one->overlapping.begin(), one->overlapping.end(),
+                     std::back_inserter(both));
+      truth.swap(both);
+    }
+    for (const auto& one : all) one->judge(truth, timed);
+    solids.advance(options.step);
+  }
+  std::vector<VolumeRow> rows;
+  for (const auto& one : all) rows.push_back(std::move(one->row));
+  return rows;
+}
+
+double pays_from_ns(const VolumeRow& row, const VolumeRow& boxes) {
+  if (row.reported >= boxes.reported) return 0.0;
+  const auto frames = static_cast<double>(boxes.make.size());
+  const double saved = static_cast<double>(boxes.reported - row.reported) / frames;
+  const double more = row.make_ms() + row.broad_ms() - boxes.make_ms() - boxes.broad_ms();
+  return std::max(0.0, 1e6 * more / saved);
+}
+
+const VolumeRow& best_of(const std::vector<VolumeRow>& rows) {
+  return *std::min_element(rows.begin(), rows.end(), [](const VolumeRow& a, const VolumeRow& b) {
+    return a.sum_ms() < b.sum_ms();
+  });
+}
+
+}  // namespace winnow::bench

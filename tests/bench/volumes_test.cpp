@@ -1,0 +1,72 @@
+// The figures of `winnow volumes` are consistent.
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "volumes/quantised.h"
+#include "volumes/volume_race.h"
+
+namespace winnow::bench {
+namespace {
+
+std::map<std::string, VolumeRow> rows_by_name(Solids solids, const std::string& partition) {
+  std::map<std::string, VolumeRow> rows;
+  for (VolumeRow& row :
+       race_volumes(std::move(solids), {.partition = partition, .frames = 2, .step = 0.02})) {
+    rows.emplace(row.volume, row);
+  }
+  return rows;
+}
+
+TEST(VolumeRace, reports_every_pair_and_tighter_volumes_report_fewer) {
+  for (const std::string partition : {"LinearBvh", "SweepAndPrune", "FlatGrid"}) {
+    for (const bool rods : {false, true}) {
+      const auto rows =
+          rows_by_name(rods ? Solids::rods(400, 1) : Solids::rotated(400, 1), partition);
+      ASSERT_EQ(rows.size(), 9U);
+      const std::size_t overlapping = rows.at("AABB").overlapping;
+      EXPECT_GT(overlapping, 50U);
+      for (const auto& [name, row] : rows) {
+        EXPECT_EQ(row.missed, 0U) << name;
+        EXPECT_EQ(row.overlapping, overlapping) << name;
+        EXPECT_GE(row.false_positives(), 0.0) << name;
+        EXPECT_LE(row.false_positives(), 1.0) << name;
+        EXPECT_GT(row.bytes_per_object, 0.0) << name;
+      }
+      const auto reported = [&](const char* name) { return rows.at(name).reported; };
+      EXPECT_LE(reported("26-DOP"), reported("18-DOP"));
+      EXPECT_LE(reported("26-DOP"), reported("14-DOP"));
+      EXPECT_LT(reported("18-DOP"), reported("AABB"));
+      EXPECT_LT(reported("14-DOP"), reported("AABB"));
+      EXPECT_LT(reported("AABB"), reported("AABB + 5 %"));
+      EXPECT_LT(reported("AABB + 5 %"), reported("AABB + 50 %"));
+    }
+  }
+}
+
+TEST(VolumeRace, refuses_a_partition_without_volumes) {
+  EXPECT_THROW((void)race_volumes(Solids::rotated(4, 1), {.partition = "AutoPartition"}),
+               std::invalid_argument);
+}
+
+TEST(QuantisedBoxes, miss_nothing_and_report_little_else) {
+  for (const bool rods : {false, true}) {
+    const Solids solids = rods ? Solids::rods(1500, 2) : Solids::rotated(1500, 2);
+    std::vector<Aabb> boxes;
+    for (const OrientedBox& box : solids.boxes()) boxes.push_back(box.bounds());
+    const std::vector<BoxWidth> widths = race_widths(boxes, 1);
+    ASSERT_EQ(widths.size(), 2U);
+    EXPECT_GT(widths[0].overlapping, 1000U);
+    EXPECT_EQ(widths[0].hits, widths[0].overlapping);
+    EXPECT_EQ(widths[1].overlapping, widths[0].overlapping);
+    EXPECT_GE(widths[1].hits, widths[1].overlapping);
+    EXPECT_LT(widths[1].false_positives(), 0.02);
+  }
+}
+
+}  // namespace
+}  // namespace winnow::bench
