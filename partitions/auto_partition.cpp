@@ -124,7 +124,9 @@ void AutoPartition::guess(FrameWork frame) noexcept {
   const PartitionKind best = costs.cheapest(kFramesAhead);
   if (left_[static_cast<std::size_t>(best)] != 0) return;
   wanted_ = best;
-  reason_ = "the best guess from a sample of the scene";
+  reason_ = best == PartitionKind::bounds_n_squared
+                ? "so few objects that no structure pays"
+                : "the least cost expected from a sample of the scene";
 }
 
 // What each kind would have saved is summed up until it pays for the build.

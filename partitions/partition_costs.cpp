@@ -9,20 +9,22 @@ namespace {
 /// See PartitionCosts. Nanoseconds.
 struct Constants {
   std::string_view name;
+  double keep;
   double object, level, spread, crowd, square;
   double moved, rest;
   double build, build_level;
   double ask, ask_level, scan, rows;
 };
 
-constexpr double kPair = 4.0;
+constexpr double kPair = 3.0;
+constexpr double kNearest = 4.0;  // times what a ray or box costs
 
 constexpr std::array<Constants, kPartitionKinds> kConstants{{
-    {"BoundsNSquared", 8, 0.5, 0, 0, 0.12, 20, 0.3, 5, 0, 60, 0, 0.12, 0},
-    {"SweepAndPrune", 30, 2.0, 2, 3, 0, 60, 1.0, 60, 4, 60, 20, 0, 1.5},
-    {"FlatGrid", 30, 2.0, 2, 3, 0, 60, 1.0, 60, 4, 60, 20, 0, 1.5},
-    {"LinearBvh", 15, 1.5, 2, 2, 0, 50, 0.6, 40, 4, 60, 20, 0, 0},
-    {"StaticBvh", 14, 1.3, 2, 2, 0, 50, 0.6, 100, 60, 50, 18, 0, 0},
+    {"BoundsNSquared", 7, 1, 0, 0, 0, 0.12, 13, 0.3, 5, 0, 120, 0, 0.75, 0},
+    {"SweepAndPrune", 11, 19, 2.0, 2, 3, 0, 50, 1.0, 60, 4, 0, 32, 0, 1.5},
+    {"FlatGrid", 15, 15, 2.0, 2, 3, 0, 50, 1.0, 60, 4, 0, 36, 0, 1.5},
+    {"LinearBvh", 10, 5, 1.5, 2, 2, 0, 40, 0.6, 40, 4, 50, 20, 0, 0},
+    {"StaticBvh", 10, 4, 1.3, 2, 2, 0, 40, 0.6, 100, 60, 80, 13, 0, 0},
 }};
 
 }  // namespace
@@ -38,13 +40,14 @@ PartitionCosts::PartitionCosts(const SceneFeatures& scene, const FrameWork& fram
   const double full = much ? queries : static_cast<double>(frame.full_queries);
   const double partial = queries - full;
   const double redone = full * pairs + partial * pairs * changed / std::max(n, 1.0);
-  const auto others = static_cast<double>(frame.casts + frame.regions + frame.nearest);
+  const auto others = static_cast<double>(frame.casts + frame.regions) +
+                      kNearest * static_cast<double>(frame.nearest);
   for (std::size_t k = 0; k < kPartitionKinds; ++k) {
     const Constants& c = kConstants[k];
     const double meets = c.level * level + c.square * n;
     const double all = c.object + meets + c.spread * scene.size_spread + c.crowd * scene.crowding;
     total_[k] = full * n * all + partial * (changed * (c.moved + meets) + c.rest * n);
-    total_[k] += kPair * redone;
+    total_[k] += c.keep * changed + kPair * redone;
     queries_[k] = others * (c.ask + c.ask_level * level + c.scan * n);
     if (others > 0.0) queries_[k] += c.rows * changed;
     total_[k] += queries_[k];

@@ -34,15 +34,17 @@ struct FrameWork {
 ///
 /// A frame is a sum of a few products, each of a feature and of a constant by partition:
 ///
-/// - a pair query after much has moved: every object is written, refitted or sorted and asked
-///   (`object`, and `level` for each doubling of their number: depth and caches), and is tested
-///   against more of the others the more their sizes differ (`spread`) and the more they crowd
-///   together (`crowd`); brute force tests all (`square`);
-/// - a pair query after little has moved: each object that moved is written and asked (`moved`,
-///   `level`, `square`), and flags of the rest are read (`rest`);
+/// - each object that moved is written and its place in the structure kept up (`keep`);
+/// - a pair query after much has moved: every object is asked (`object`, and `level` for each
+///   doubling of their number: depth and caches), and is tested against more of the others the more
+///   their sizes differ (`spread`) and the more they crowd together (`crowd`); brute force tests
+///   all (`square`);
+/// - a pair query after little has moved: each object that moved is asked (`moved`, `level`,
+///   `square`), and flags of the rest are read (`rest`);
 /// - each pair that is written costs all partitions the same;
-/// - every other query: `ask`, `ask_level` for each doubling of the number of objects, and where
-///   there is no tree, `scan` an object. A tree over the rows of cells and strips is refitted first
+/// - every other query (one for the nearest counts four times): `ask`, `ask_level` for each
+///   doubling of the number of objects, and where there is no tree, `scan` an object. A tree over
+///   the rows of cells and strips is refitted first
 ///   (`rows`, an object that moved).
 ///
 /// To begin with a partition takes a build: `build` an object, `build_level` for each doubling.

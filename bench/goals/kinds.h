@@ -87,6 +87,17 @@ std::vector<Goal> flow_phases(const Ask& ask, const std::vector<Ask>& all, Lab& 
 /// A long granular flow: allocations, energy, and contacts against brute force.
 std::vector<Goal> flow_soak(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
 
+// choice_kinds.cpp
+
+/// AutoPartition against the fastest partition of a cell: frames from the seventh on, and the first
+/// six.
+std::vector<Goal> choice_near_best(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// The same in every recording of a folder, given from where the tool is started; none if the
+/// folder is not there.
+std::vector<Goal> choice_in_recordings(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// What AutoPartition loses to the partition that is best after a scene has turned into another.
+std::vector<Goal> choice_turn(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+
 /// Measured where there is no answer, or a wrong one, and less is better.
 inline constexpr double kUnanswered = 1e6;
 

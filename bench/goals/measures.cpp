@@ -14,7 +14,7 @@ struct Kind {
   std::vector<Goal> (*measure)(const Ask&, const std::vector<Ask>&, Lab&);
 };
 
-constexpr std::array<Kind, 27> kKinds{{{"fastest_partition", fastest_partition},
+constexpr std::array<Kind, 30> kKinds{{{"fastest_partition", fastest_partition},
                                        {"no_slower_than_existing", no_slower_than_existing},
                                        {"scene_ratio", scene_ratio},
                                        {"speedup", speedup},
@@ -40,7 +40,10 @@ constexpr std::array<Kind, 27> kKinds{{{"fastest_partition", fastest_partition},
                                        {"pipeline_tori", pipeline_tori},
                                        {"mesh_build", mesh_build},
                                        {"flow_phases", flow_phases},
-                                       {"flow_soak", flow_soak}}};
+                                       {"flow_soak", flow_soak},
+                                       {"choice_near_best", choice_near_best},
+                                       {"choice_in_recordings", choice_in_recordings},
+                                       {"choice_turn", choice_turn}}};
 
 }  // namespace
 

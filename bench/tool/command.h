@@ -39,6 +39,7 @@ Command add_query(CLI::App& app);
 Command add_pipeline(CLI::App& app);
 Command add_simulate(CLI::App& app);
 Command add_volumes(CLI::App& app);
+Command add_advise(CLI::App& app);
 
 /// What the tool does if it is given no subcommand.
 int run_overview();

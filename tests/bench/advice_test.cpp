@@ -1,0 +1,60 @@
+// What `winnow advise` says: a ranking, a reason for each rank, and code that makes the winner.
+
+#include "advice/advice.h"
+
+#include <gtest/gtest.h>
+#include <winnow/partitions/partition.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace winnow::bench {
+namespace {
+
+const std::vector<std::string> kThree{"BoundsNSquared", "AutoPartition", "LinearBvh"};
+
+TEST(Advice, ranks_every_partition_and_says_why) {
+  const auto source = make_scene("sleepy", 400, 3);
+  const Advice advice = advise(*source, kThree, 12, 1);
+  EXPECT_TRUE(advice.same_pairs);
+  EXPECT_EQ(advice.frames, 12U);
+  EXPECT_EQ(advice.objects, 400U);
+  EXPECT_NEAR(advice.moving, 0.05, 0.01);
+  EXPECT_GT(advice.pairs, 0.0);
+  ASSERT_EQ(advice.ranking.size(), kThree.size());
+  EXPECT_TRUE(std::ranges::is_sorted(advice.ranking, {}, &Advised::median_ms));
+  for (const Advised& one : advice.ranking) {
+    EXPECT_FALSE(one.why.empty()) << one.partition;
+    EXPECT_GT(one.bytes, 0U) << one.partition;
+    EXPECT_GT(one.median_ms, 0.0) << one.partition;
+    EXPECT_DOUBLE_EQ(one.times_best, one.median_ms / advice.best().median_ms);
+  }
+}
+
+TEST(Advice, names_the_fastest_partition_but_the_one_that_chooses) {
+  const auto source = make_scene("uniform", 300, 3);
+  const Advice advice = advise(*source, kThree, 4, 1);
+  EXPECT_NE(advice.best().partition, "AutoPartition");
+  EXPECT_NE(advice.code().find("make_partition(\"" + advice.best().partition + "\""),
+            std::string::npos);
+  EXPECT_NE(make_partition(advice.best().partition), nullptr);
+  EXPECT_NE(make_partition(advice.chosen), nullptr);
+  EXPECT_FALSE(advice.reason.empty());
+}
+
+TEST(Advice, is_not_given_where_there_is_no_choice) {
+  const auto source = make_scene("uniform", 30, 3);
+  EXPECT_THROW((void)advise(*source, {"AutoPartition"}, 3, 1), std::invalid_argument);
+}
+
+TEST(Advice, stops_where_the_source_does) {
+  const auto source = make_scene("uniform", 30, 3);
+  EXPECT_EQ(advise(*source, kThree, 1, 1).frames, 1U);
+}
+
+}  // namespace
+}  // namespace winnow::bench
