@@ -73,7 +73,7 @@ Status AutoPartition::refresh_now() {
   wanted_ = kind_;
   if (waiting_ != 0) {
     --waiting_;
-  } else if (inner_->size() != 0) {
+  } else if (inner_->size() != 0 && inner_->volume() == Volume::aabb) {
     choose();
   }
   const Status status = wanted_ == kind_ ? inner_->refresh() : hand_over();

@@ -29,7 +29,8 @@ namespace winnow {
 /// of threads.
 ///
 /// It changes kind only where something changed since the last refresh. A world that is built once
-/// and only asked from then on keeps its first choice. Exact for boxes without a margin.
+/// and only asked from then on keeps its first choice; volumes other than boxes stay in a LinearBvh.
+/// Exact for boxes without a margin.
 class AutoPartition final : public Partition {
  public:
   explicit AutoPartition(const PartitionOptions& options = {});

@@ -44,8 +44,7 @@ struct FrameWork {
 /// - each pair that is written costs all partitions the same;
 /// - every other query (one for the nearest counts four times): `ask`, `ask_level` for each
 ///   doubling of the number of objects, and where there is no tree, `scan` an object. A tree over
-///   the rows of cells and strips is refitted first
-///   (`rows`, an object that moved).
+///   the rows of cells and strips is refitted first (`rows`, an object that moved).
 ///
 /// To begin with a partition takes a build: `build` an object, `build_level` for each doubling.
 ///
