@@ -13,7 +13,9 @@
 #include <winnow/core/frustum.h>
 #include <winnow/core/hits.h>
 #include <winnow/core/kdop.h>
+#include <winnow/core/kdop_around.h>
 #include <winnow/core/key.h>
+#include <winnow/core/margin.h>
 #include <winnow/core/oriented_box.h>
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/pair_events.h>
@@ -26,6 +28,7 @@
 #include <winnow/core/rounding.h>
 #include <winnow/core/sphere.h>
 #include <winnow/core/status.h>
+#include <winnow/core/volume.h>
 #include <winnow/partitions/auto_partition.h>
 #include <winnow/partitions/bounds_n_squared.h>
 #include <winnow/partitions/debug_colours.h>

@@ -3,6 +3,8 @@
 #include "scenes/random.h"
 #include "scenes/scene.h"
 
+#include <cmath>
+#include <memory>
 #include <stdexcept>
 
 namespace winnow::bench {

@@ -1,8 +1,10 @@
 #include "volumes/volume_race.h"
 
+#include <winnow/core/kdop_around.h>
 #include <winnow/partitions/row_partition.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <memory_resource>
 #include <stdexcept>
@@ -112,8 +114,22 @@ void Contestant::judge(const std::vector<std::uint64_t>& truth, bool counted) {
   row.missed += truth.size() - overlapping.size();
 }
 
+// As kdop_around makes its slabs, so that volumes are compared and not the ways of rounding.
 Aabb box_of(const OrientedBox& box) {
-  return box.bounds();
+  Aabb result;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const auto center = static_cast<double>(box.center[axis]);
+    double reach = 4e-15 * std::abs(center);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      reach += std::abs(static_cast<double>(box.axes(axis, i))) * static_cast<double>(box.half[i]) *
+               (1.0 + 4e-15);
+    }
+    const auto low = static_cast<float>(center - reach);
+    const auto high = static_cast<float>(center + reach);
+    result.min[axis] = low - std::abs(low) * 1.2e-7F;
+    result.max[axis] = high + std::abs(high) * 1.2e-7F;
+  }
+  return result;
 }
 
 Sphere sphere_of(const OrientedBox& box) {

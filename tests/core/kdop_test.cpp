@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 #include <winnow/core/kdop.h>
+#include <winnow/core/kdop_around.h>
+
+#include <Eigen/Geometry>
 
 #include <cstddef>
 #include <limits>
@@ -68,6 +71,47 @@ TYPED_TEST(KdopTest, around_points_contains_them) {
     const TypeParam volume = TypeParam::around(points);
     ASSERT_TRUE(volume.is_valid());
     for (const Eigen::Vector3f& p : points) ASSERT_TRUE(contains(volume, p));
+  }
+}
+
+TYPED_TEST(KdopTest, around_a_rotated_box_contains_it_and_is_tight) {
+  Random random(4);
+  for (int i = 0; i < 1000; ++i) {
+    const double scale = random.log_uniform(1e-30, 1e30);
+    OrientedBox box;
+    box.center = random_point(random, scale);
+    box.half = random_point(random, scale * random.log_uniform(1e-3, 1.0)).cwiseAbs();
+    const Eigen::Vector3d axis(random.uniform(-1, 1), random.uniform(-1, 1), 1.0);
+    box.axes = Eigen::AngleAxisd(random.uniform(-4, 4), axis.normalized())
+                   .toRotationMatrix()
+                   .cast<float>();
+    const TypeParam volume = kdop_around<faces(TypeParam{})>(box);
+    ASSERT_TRUE(volume.is_valid());
+    const auto directions = kdop_directions<faces(TypeParam{})>();
+    for (std::size_t s = 0; s < TypeParam::kSlabs; ++s) {
+      long double most = 0;
+      long double middle = 0;
+      for (Eigen::Index a = 0; a < 3; ++a) {
+        const long double d = directions[s][static_cast<std::size_t>(a)];
+        middle += d * static_cast<long double>(box.center[a]);
+      }
+      for (Eigen::Index e = 0; e < 3; ++e) {
+        long double part = 0;
+        for (Eigen::Index a = 0; a < 3; ++a) {
+          const long double d = directions[s][static_cast<std::size_t>(a)];
+          part +=
+              d * static_cast<long double>(box.axes(a, e)) * static_cast<long double>(box.half[e]);
+        }
+        most += std::abs(part);
+      }
+      const auto low = static_cast<long double>(volume.min[s]);
+      const auto high = static_cast<long double>(volume.max[s]);
+      ASSERT_LE(low, middle - most);
+      ASSERT_GE(high, middle + most);
+      const long double slack = 4e-7L * (std::abs(middle) + most) + 1e-13L * scale;
+      ASSERT_GE(low, middle - most - slack);
+      ASSERT_LE(high, middle + most + slack);
+    }
   }
 }
 

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <winnow/core/kdop.h>
+#include <winnow/core/oriented_box.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace winnow {
+
+/// The k-DOP of a rotated box, rounded outward: in each slab larger than the tightest by at most
+/// 1e-14 of the sum of the box's coordinates and edges, and by two ulp at each end. The box is
+/// valid.
+template <int K>
+[[nodiscard]] Kdop<K> kdop_around(const OrientedBox& box) noexcept {
+  constexpr auto directions = kdop_directions<K>();
+  constexpr float kUlp = 1.2e-7F;  // a little more than 2^-23
+  constexpr float kLeast = std::numeric_limits<float>::denorm_min();
+  double center[3];
+  double edge[3][3];  // half edges as vectors
+  double size = 0.0;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    center[axis] = static_cast<double>(box.center[axis]);
+    size += std::abs(center[axis]);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      edge[i][axis] = static_cast<double>(box.axes(axis, i)) * static_cast<double>(box.half[i]);
+      size += std::abs(edge[i][axis]);
+    }
+  }
+  // More than the rounding of all sums: some 2^-53 of their terms.
+  const double slack = 4e-15 * size;
+  Kdop<K> result;
+  for (std::size_t s = 0; s < Kdop<K>::kSlabs; ++s) {
+    const auto along = [&](const double* v) {
+      double sum = 0.0;
+      for (std::size_t axis = 0; axis < 3; ++axis) sum += directions[s][axis] * v[axis];
+      return sum;
+    };
+    const double middle = along(center);
+    const double reach =
+        slack + std::abs(along(edge[0])) + std::abs(along(edge[1])) + std::abs(along(edge[2]));
+    // One ulp and a little further than the nearest float, whichever way that was rounded: to ask
+    // costs more than all the rest.
+    const auto low = static_cast<float>(middle - reach);
+    const auto high = static_cast<float>(middle + reach);
+    result.min[s] = low - (std::abs(low) * kUlp + kLeast);
+    result.max[s] = high + (std::abs(high) * kUlp + kLeast);
+  }
+  return result;
+}
+
+}  // namespace winnow
