@@ -4,6 +4,8 @@
 #include <winnow/partitions/bounds_n_squared.h>
 #include <winnow/partitions/flat_grid.h>
 #include <winnow/partitions/linear_bvh.h>
+#include <winnow/partitions/loose_octree.h>
+#include <winnow/partitions/loose_quadtree.h>
 #include <winnow/partitions/n_squared.h>
 #include <winnow/partitions/static_bvh.h>
 #include <winnow/partitions/sweep_and_prune.h>
@@ -20,11 +22,12 @@ std::unique_ptr<Partition> make(const PartitionOptions& options) {
   return std::make_unique<T>(options);
 }
 
-constexpr std::array<std::string_view, 7> kNames{"NSquared",     "BoundsNSquared", "SweepAndPrune",
-                                                 "FlatGrid",     "LinearBvh",      "StaticBvh",
-                                                 "AutoPartition"};
+constexpr std::array<std::string_view, 9> kNames{"NSquared",  "BoundsNSquared", "SweepAndPrune",
+                                                 "FlatGrid",  "LooseOctree",    "LooseQuadtree",
+                                                 "LinearBvh", "StaticBvh",      "AutoPartition"};
 constexpr std::array<Maker, kNames.size()> kMakers{
-    make<NSquared>,  make<BoundsNSquared>, make<SweepAndPrune>, make<FlatGrid>,
+    make<NSquared>,  make<BoundsNSquared>, make<SweepAndPrune>,
+    make<FlatGrid>,  make<LooseOctree>,    make<LooseQuadtree>,
     make<LinearBvh>, make<StaticBvh>,      make<AutoPartition>};
 
 }  // namespace

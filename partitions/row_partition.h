@@ -156,6 +156,9 @@ class RowPartition : public Partition {
   virtual bool query_regular(const QueryBatch&, PairSink&) const noexcept { return true; }
   /// Draws cells, strips or whatever the regular region has.
   virtual void draw_regular(DebugDraw&, const DebugDrawOptions&) const {}
+  /// True for partitions that find regular rows by the boxes of their blocks: the block tree over
+  /// these is then made by each build and kept up to date by each refresh.
+  [[nodiscard]] virtual bool prunes_rows() const noexcept { return false; }
   /// True for partitions whose rows all stay in one unordered regular region.
   [[nodiscard]] virtual bool is_flat() const noexcept { return false; }
 
@@ -173,6 +176,8 @@ class RowPartition : public Partition {
   [[nodiscard]] RowView row_view() const noexcept;
   /// Of a flat partition: the rows and what their blocks hold of filters.
   [[nodiscard]] TreeView block_filters() const noexcept { return block_filters_.view(row_view()); }
+  /// The block tree over the regular rows, where `prunes_rows`.
+  [[nodiscard]] TreeView row_tree() const noexcept { return row_tree_.view(row_view()); }
   [[nodiscard]] const BoundsPool& pool() const noexcept { return pool_; }
   [[nodiscard]] const FilterTable& filters() const noexcept { return filters_; }
   [[nodiscard]] const Execution& execution() const noexcept { return execution_; }
@@ -216,7 +221,8 @@ class RowPartition : public Partition {
   bool move_to_tail(std::span<const std::uint32_t> rows) noexcept;
   bool sort_tail() noexcept;
   bool refit_tree() noexcept;
-  bool refit(BlockTree& tree, std::size_t first, BlockTree::Nodes nodes) noexcept;
+  bool refit(BlockTree& tree, std::size_t first, std::size_t blocks,
+             BlockTree::Nodes nodes) noexcept;
   [[nodiscard]] BlockTree::Nodes node_content() const noexcept;
   void forward_changes() noexcept;
 
@@ -252,7 +258,8 @@ class RowPartition : public Partition {
   BlockTree tree_;
   BlockTree block_filters_;  // of flat partitions, whose rows are in no spatial order
 
-  // Over the regular rows, for all queries but pairs: made when the first one comes.
+  // Over the regular rows. Unless `prunes_rows` it serves all queries but pairs, and is made when
+  // the first one comes.
   mutable BlockTree row_tree_;
   mutable float leaf_edge_ = 0.0F;  // of a typical block
   mutable std::atomic<bool> queries_stale_{true};

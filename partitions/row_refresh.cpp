@@ -72,7 +72,8 @@ Status RowPartition::build() {
   // The rows are untouched until everything that can fail is done; the structure may be half
   // planned.
   built_ = false;
-  const std::size_t room = pool_.rows() + 4 * kBlock;
+  const std::size_t spare = prunes_rows() ? 2 * tail_limit() : 0;
+  const std::size_t room = pool_.rows() + spare + 4 * kBlock;
   order_.clear();
   list_.clear();
   if (!order_.grow(room) || !list_.grow(room)) return Status::out_of_memory;
@@ -87,10 +88,13 @@ Status RowPartition::build() {
   const std::size_t first_block = order_.size() / kBlock;
   if (!order_rest({list_.data(), list_.size()}, order_)) return Status::out_of_memory;
   const std::size_t rows = order_.size();
-  if (!pool_.reserve_exact(rows) || !spare_.reserve(pool_.capacity() + 2 * kBlock)) {
+  if (!pool_.reserve_exact(rows + spare) || !spare_.reserve(pool_.capacity() + 2 * kBlock)) {
     return Status::out_of_memory;
   }
   if (!tree_.cover(first_block, (rows + kBlock - 1) / kBlock - first_block, node_content())) {
+    return Status::out_of_memory;
+  }
+  if (prunes_rows() && !row_tree_.cover(0, (regular + kBlock - 1) / kBlock, node_content())) {
     return Status::out_of_memory;
   }
 
@@ -107,6 +111,7 @@ Status RowPartition::build() {
   built_holes_ = rows - keys_.size();
   finish_build();
   tree_.refit_all(row_view(), execution);
+  if (prunes_rows()) row_tree_.refit_all(row_view(), execution);
   built_ = true;
   ++builds_;
   filters_.note_build();
@@ -240,23 +245,29 @@ BlockTree::Nodes RowPartition::node_content() const noexcept {
 }
 
 bool RowPartition::refit_tree() noexcept {
-  if (!is_flat()) return refit(tree_, (regular_rows_ + kBlock - 1) / kBlock, node_content());
-  if (filters_.in_use()) return refit(block_filters_, 0, BlockTree::Nodes::filters);
-  return block_filters_.cover(0, 0);
+  const std::size_t blocks = pool_.blocks();
+  if (is_flat()) {
+    return filters_.in_use() ? refit(block_filters_, 0, blocks, BlockTree::Nodes::filters)
+                             : block_filters_.cover(0, 0);
+  }
+  const std::size_t first = (regular_rows_ + kBlock - 1) / kBlock;
+  return refit(tree_, first, blocks - first, node_content()) &&
+         (!prunes_rows() || refit(row_tree_, 0, first, node_content()));
 }
 
-bool RowPartition::refit(BlockTree& tree, std::size_t first, BlockTree::Nodes nodes) noexcept {
-  const std::size_t blocks = pool_.blocks() - first;
+bool RowPartition::refit(BlockTree& tree, std::size_t first, std::size_t blocks,
+                         BlockTree::Nodes nodes) noexcept {
   const RowView rows = row_view();
   const bool reshape =
       blocks != tree.blocks() || tree.has_filters() != (filters_.in_use() && blocks != 0);
-  if (reshape || tail_changed_ || stale_.all()) {
+  const bool tail_changed = tail_changed_ && &tree != &row_tree_;
+  if (reshape || tail_changed || stale_.all()) {
     if (reshape && !tree.cover(first, blocks, nodes)) {
       built_ = false;
       return false;
     }
     tree.refit_all(rows, execution_for(pool_.rows()));
-    tail_changed_ = false;
+    if (tail_changed) tail_changed_ = false;
     return true;
   }
   list_.clear();
@@ -264,7 +275,9 @@ bool RowPartition::refit(BlockTree& tree, std::size_t first, BlockTree::Nodes no
   for (const ObjectId id : stale_.ids()) {
     if (!keys_.is_live(id)) continue;
     const std::size_t block = keys_.row_of(id) / kBlock;
-    if (block >= first) (void)list_.push_back(static_cast<std::uint32_t>(block - first));
+    if (block >= first && block - first < blocks) {
+      (void)list_.push_back(static_cast<std::uint32_t>(block - first));
+    }
   }
   const std::size_t leaves = sort_unique({list_.data(), list_.size()}, blocks, words_);
   tree.refit(rows, {list_.data(), leaves});

@@ -23,7 +23,7 @@ float key_of(const SahBox& box, std::size_t axis) {
   if (axis < 3) return 0.5F * box.low[axis] + 0.5F * box.high[axis];
   float edge = 0.0F;
   for (std::size_t a = 0; a < 3; ++a) edge = std::max(edge, box.high[a] - box.low[a]);
-  return static_cast<float>(std::bit_cast<std::int32_t>(std::min(edge, FLT_MAX)));
+  return -static_cast<float>(std::bit_cast<std::int32_t>(std::min(edge, FLT_MAX)));
 }
 
 std::uint32_t sortable(float key) {

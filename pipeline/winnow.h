@@ -34,6 +34,8 @@
 #include <winnow/partitions/debug_colours.h>
 #include <winnow/partitions/flat_grid.h>
 #include <winnow/partitions/linear_bvh.h>
+#include <winnow/partitions/loose_octree.h>
+#include <winnow/partitions/loose_quadtree.h>
 #include <winnow/partitions/n_squared.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/partitions/static_bvh.h>

@@ -27,7 +27,7 @@ Status RowPartition::refresh_for_queries() const {
   if (!queries_stale_.load(std::memory_order_acquire)) return Status::ok;
   const std::lock_guard lock(refresh_mutex_);
   if (!queries_stale_.load(std::memory_order_relaxed)) return Status::ok;
-  if (regular_rows_ != 0) {
+  if (regular_rows_ != 0 && !prunes_rows()) {
     const std::size_t blocks = (regular_rows_ + BoundsPool::kBlock - 1) / BoundsPool::kBlock;
     const bool reshape =
         row_tree_.blocks() != blocks || row_tree_.has_filters() != filters_.in_use();

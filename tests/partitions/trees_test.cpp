@@ -1,0 +1,131 @@
+// What the conformance suite cannot know of the trees: what their orders are worth, counted in
+// tests of 16 boxes, and how looseness and levels behave at their ends.
+
+#include <winnow/partitions/loose_octree.h>
+#include <winnow/partitions/loose_quadtree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "../support/motion.h"
+#include "../support/scenes.h"
+#include "../support/twin.h"
+#include "../support/world.h"
+
+namespace winnow::test {
+namespace {
+
+std::vector<Key> fill(Partition& partition, const std::vector<Aabb>& boxes) {
+  std::vector<Key> keys(boxes.size());
+  EXPECT_EQ(partition.insert(BoxView(std::span(boxes)), {}, keys), Status::ok);
+  return keys;
+}
+
+std::uint64_t tests_of_pairs(Partition& partition) {
+  PairBuffer pairs;
+  EXPECT_EQ(partition.self_pairs(pairs, {.incremental = false}), Status::ok);
+  return partition.statistics().last_tests;
+}
+
+std::uint64_t tests_of_pairs(const std::string& name, const std::vector<Aabb>& boxes) {
+  const auto partition = make_partition(name, {.execution = Execution::serial()});
+  fill(*partition, boxes);
+  return tests_of_pairs(*partition);
+}
+
+// The same pairs as brute force.
+void expect_right_pairs(const Partition& partition, const std::vector<Aabb>& boxes) {
+  const auto judge = make_partition("BoundsNSquared");
+  fill(*judge, boxes);
+  PairBuffer expected;
+  PairBuffer found;
+  ASSERT_EQ(judge->self_pairs(expected, {.order = Order::canonical}), Status::ok);
+  ASSERT_EQ(partition.self_pairs(found, {.order = Order::canonical}), Status::ok);
+  EXPECT_TRUE(std::ranges::equal(found.pairs(), expected.pairs()));
+}
+
+// All boxes in one plane.
+std::vector<Aabb> flat_boxes(std::size_t count) {
+  std::vector<Aabb> boxes = uniform_boxes(count);
+  const float spread = 3.0F;
+  for (Aabb& box : boxes) {
+    box.min.x() *= spread;
+    box.max.x() = box.min.x() + 1.0F;
+    box.min.z() = 0.0F;
+    box.max.z() = 1.0F;
+  }
+  return boxes;
+}
+
+TEST(StaticBvhOrder, costs_no_more_tests_than_that_of_linear_bvh) {
+  constexpr std::size_t kObjects = 20000;
+  for (const auto& boxes : {uniform_boxes(kObjects), clustered_boxes(kObjects),
+                            mixed_boxes(kObjects), pile_boxes(kObjects), flat_boxes(kObjects)}) {
+    EXPECT_LE(tests_of_pairs("StaticBvh", boxes), tests_of_pairs("LinearBvh", boxes));
+  }
+}
+
+TEST(StaticBvhOrder, leaves_no_places_empty) {
+  const auto tree = make_partition("StaticBvh");
+  fill(*tree, mixed_boxes(5003));
+  ASSERT_EQ(tree->refresh(), Status::ok);
+  EXPECT_EQ(tree->statistics().cells, (5003U + 15U) / 16U);
+}
+
+TEST(LooseOctreeLevels, of_two_axes_cost_no_more_than_of_three_in_a_flat_world) {
+  const std::vector<Aabb> boxes = flat_boxes(20000);
+  EXPECT_LE(tests_of_pairs("LooseQuadtree", boxes), tests_of_pairs("LooseOctree", boxes));
+}
+
+TEST(LooseOctreeLevels, are_bounded_for_any_range_of_sizes) {
+  std::vector<Aabb> boxes = uniform_boxes(600);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const float edge = std::pow(10.0F, -9.0F + 12.0F * static_cast<float>(i) / 600.0F);
+    boxes[i].max = boxes[i].min.array() + edge;
+  }
+  LooseOctree tree;
+  fill(tree, boxes);
+  expect_right_pairs(tree, boxes);
+  EXPECT_GT(tree.levels(), 1U);
+  EXPECT_LE(tree.levels(), 10U);
+  EXPECT_GT(tree.statistics().cells, 1U);
+}
+
+TEST(LooseFactor, of_any_value_gives_the_same_pairs) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const std::vector<Aabb> boxes = mixed_boxes(800);
+  for (const float loose : {-kInfinity, 0.0F, 1.0F, 1.5F, 2.0F, 100.0F, kInfinity,
+                            std::numeric_limits<float>::quiet_NaN()}) {
+    SCOPED_TRACE(loose);
+    LooseOctree octree({}, {.loose = loose});
+    fill(octree, boxes);
+    expect_right_pairs(octree, boxes);
+    LooseQuadtree quadtree({}, {.loose = loose});
+    fill(quadtree, boxes);
+    expect_right_pairs(quadtree, boxes);
+  }
+}
+
+TEST(LooseFactor, lets_objects_move_a_little_without_leaving_their_nodes) {
+  std::vector<Aabb> boxes = mixed_boxes(4000);
+  LooseOctree tree;
+  const std::vector<Key> keys = fill(tree, boxes);
+  ASSERT_EQ(tree.refresh(), Status::ok);
+  const Statistics before = tree.statistics();
+  for (Aabb& box : boxes) {
+    // An eighth of the box's own edge: less than a quarter of its cell's.
+    const float step = 0.125F * (box.max.x() - box.min.x());
+    box.min.array() += step;
+    box.max.array() += step;
+  }
+  ASSERT_EQ(tree.update(keys, BoxView(std::span(boxes))), Status::ok);
+  ASSERT_EQ(tree.refresh(), Status::ok);
+  EXPECT_EQ(tree.statistics().builds, before.builds);
+  EXPECT_EQ(tree.statistics().irregular, before.irregular);
+  expect_right_pairs(tree, boxes);
+}
+
+}  // namespace
+}  // namespace winnow::test
