@@ -78,7 +78,7 @@ class Margins : public Conformance {
 TEST_P(Margins, miss_no_pair_however_boxes_move) {
   for (const Margin margin : {Margin{.distance = 0.05F}, Margin{.share = 0.2F},
                               Margin{.distance = 0.01F, .share = 0.01F}, Margin{.share = 1e38F}}) {
-    const std::size_t count = margin.share < 1 ? 300 : 40;
+    const std::size_t count = margin.share < 1 ? 150 : 30;
     for (std::vector<Aabb> boxes : {uniform_boxes(count), mixed_boxes(count)}) {
       auto partition = with_margin(margin, boxes);
       EXPECT_FALSE(partition->is_exact());
