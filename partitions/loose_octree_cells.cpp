@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kFewest = 64;    // below this the tree alone does as well
 constexpr double kObjectsInCell = 16;  // on average, on the finest level
+constexpr double kThinWorld = 2;       // an axis of so few of its cells is not worth dividing
 constexpr unsigned kLevelShift = 28;   // in keys and codes
 constexpr std::uint32_t kCodeMask = (1U << kLevelShift) - 1U;
 
@@ -33,34 +34,42 @@ double edge_of_cells(std::array<double, 3> range, std::size_t axes, double objec
 
 bool LooseOctreeCells::choose(const SceneSample& sample, std::size_t axes, float loose) noexcept {
   if (sample.objects < kFewest || sample.count < 8) return false;
-  axes_ = axes;
-  bits_ = axes == 3 ? 9 : 14;
-  reach_ = 0.5 * (static_cast<double>(loose) - 1.0);
-  const auto room = [&](std::uint32_t a) {
-    return sample.range(a) / (sample.mean_edge[a] + 1e-30);
-  };
-  std::uint32_t least = 0;
-  for (std::uint32_t a = 1; a < 3; ++a) {
-    if (room(a) < room(least)) least = a;
-  }
-  for (std::uint32_t a = 0, k = 0; a < 3; ++a) {
-    if (axes == 3 || a != least) axis_[k++] = a;
-  }
-  std::array<double, 3> range{};
-  double longest = 0.0;
-  for (std::size_t k = 0; k < axes; ++k) {
-    range[k] = sample.range(axis_[k]) + sample.mean_edge[axis_[k]];
-    longest = std::max(longest, range[k]);
-  }
   const double cells = static_cast<double>(sample.objects) / kObjectsInCell;
-  const double edge = edge_of_cells(range, axes, cells);
+  std::array<double, 3> range{};
+  for (std::size_t a = 0; a < 3; ++a) range[a] = sample.range(a) + sample.mean_edge[a];
+  // The axis that is not divided, if there is one.
+  std::size_t whole = 3;
+  const auto least = [](auto&& measure) {
+    std::size_t best = 0;
+    for (std::size_t a = 1; a < 3; ++a) {
+      if (measure(a) < measure(best)) best = a;
+    }
+    return best;
+  };
+  if (axes == 2) {
+    whole = least([&](std::size_t a) { return sample.range(a) / (sample.mean_edge[a] + 1e-30); });
+  } else {
+    const std::size_t thin = least([&](std::size_t a) { return range[a]; });
+    if (range[thin] <= kThinWorld * edge_of_cells(range, 3, cells)) whole = thin;
+  }
+  axes_ = 0;
+  double longest = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (a == whole) continue;
+    longest = std::max(longest, range[a]);
+    range[axes_] = range[a];
+    axis_[axes_++] = static_cast<std::uint32_t>(a);
+  }
+  bits_ = axes_ == 3 ? 9 : 14;
+  reach_ = 0.5 * (static_cast<double>(loose) - 1.0);
+  const double edge = edge_of_cells(range, axes_, cells);
   // So that every place has a finite scale, whatever the axis.
   if (!(edge > longest * 1e-9) || !(longest > 1e-30) || !(longest < 1e30)) return false;
   const double halvings = std::max(0.0, std::ceil(std::log2(longest / edge)));
   finest_ = std::min(bits_, static_cast<std::uint32_t>(halvings));
   edge_ = std::max(longest, edge * std::exp2(static_cast<double>(finest_)));
   scale_ = static_cast<double>(1U << bits_) / edge_;
-  for (std::size_t k = 0; k < axes; ++k) {
+  for (std::size_t k = 0; k < axes_; ++k) {
     origin_[k] = static_cast<double>(sample.low[axis_[k]]) - 0.5 * (edge_ - range[k]);
   }
   return true;

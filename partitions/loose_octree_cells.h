@@ -17,8 +17,9 @@ namespace winnow {
 /// than the distance between objects needs no level of its own.
 class LooseOctreeCells {
  public:
-  /// Lays the root over the bulk of a scene and divides the `axes` (2 or 3) axes with the most room
-  /// in units of the objects' edges. False if the objects are too few, or at one place.
+  /// Lays the root over the bulk of a scene. Of 2 `axes` those are divided that have the most room
+  /// in units of the objects' edges; of 3 all, but for one along which the world is no thicker than
+  /// two of the finest cells. False if the objects are too few, or at one place.
   [[nodiscard]] bool choose(const SceneSample& sample, std::size_t axes, float loose) noexcept;
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
