@@ -32,7 +32,7 @@ struct SceneOptions {
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
   Execution execution = Execution::parallel();
   /// The partition of each set, by Motion: see partition_names(). One is made when its first body
-  /// comes.
+  /// comes. Fixed bodies that are asked about often may be worth the slow build of "StaticBvh".
   std::string_view partitions[kMotions] = {"LinearBvh", "LinearBvh", "LinearBvh"};
   /// Speculative: pairs no farther apart than this are contacts too. Finite, >= 0.
   double margin = 0.0;
