@@ -22,6 +22,8 @@ constexpr double kFramesAhead = 16.0;
 constexpr std::size_t kMovesToLook = 32;
 // Refreshes that pass before memory that was refused is asked for again.
 constexpr std::size_t kPatience = 64;
+// Objects up to which brute force cannot lose by more than thinking about it costs.
+constexpr std::size_t kTooFew = 32;
 // How often a kind is counted to have been left: past that its price is out of reach.
 constexpr std::uint8_t kMostOften = 32;
 
@@ -99,6 +101,10 @@ void AutoPartition::choose() noexcept {
   unseen_ += frame.changed;
   const std::size_t live = inner_->size();
   const std::size_t before = features_.objects;
+  if (chosen_ && live <= kTooFew && kind_ == PartitionKind::bounds_n_squared) {
+    features_.objects = live;
+    return;
+  }
   const std::size_t pairs = pairs_.load(std::memory_order_relaxed);
   if (pairs_seen_ == 0) pairs_seen_ = pairs;
   // Where most objects came or went a build is due whatever is chosen.

@@ -29,8 +29,8 @@ namespace winnow {
 /// of threads.
 ///
 /// It changes kind only where something changed since the last refresh. A world that is built once
-/// and only asked from then on keeps its first choice; volumes other than boxes stay in a LinearBvh.
-/// Exact for boxes without a margin.
+/// and only asked from then on keeps its first choice; volumes other than boxes stay in a
+/// LinearBvh. Exact for boxes without a margin.
 class AutoPartition final : public Partition {
  public:
   explicit AutoPartition(const PartitionOptions& options = {});
@@ -112,6 +112,7 @@ class AutoPartition final : public Partition {
       }
     }
     [[nodiscard]] std::size_t take() noexcept {
+      if (count_.load(std::memory_order_relaxed) == 0) return 0;
       const std::size_t count = count_.exchange(0, std::memory_order_relaxed);
       return count < kMost ? count : kMost;
     }

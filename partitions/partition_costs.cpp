@@ -9,22 +9,21 @@ namespace {
 /// See PartitionCosts. Nanoseconds.
 struct Constants {
   std::string_view name;
-  double keep;
-  double object, level, spread, crowd, square;
+  double frame, keep;
+  double object, level, crowd, square, pair;
   double moved, rest;
   double build, build_level;
   double ask, ask_level, scan, rows;
 };
 
-constexpr double kPair = 3.0;
 constexpr double kNearest = 4.0;  // times what a ray or box costs
 
 constexpr std::array<Constants, kPartitionKinds> kConstants{{
-    {"BoundsNSquared", 7, 1, 0, 0, 0, 0.12, 13, 0.3, 5, 0, 120, 0, 0.75, 0},
-    {"SweepAndPrune", 11, 19, 2.0, 2, 3, 0, 50, 1.0, 60, 4, 0, 32, 0, 1.5},
-    {"FlatGrid", 15, 15, 2.0, 2, 3, 0, 50, 1.0, 60, 4, 0, 36, 0, 1.5},
-    {"LinearBvh", 10, 5, 1.5, 2, 2, 0, 40, 0.6, 40, 4, 50, 20, 0, 0},
-    {"StaticBvh", 10, 4, 1.3, 2, 2, 0, 40, 0.6, 100, 60, 80, 13, 0, 0},
+    {"BoundsNSquared", 480, 7, 11, 0, 0, 0.103, 4.1, 130, 2.0, 5, 0, 120, 0, 0.75, 0},
+    {"SweepAndPrune", 640, 11, 0, 1.6, 3.5, 0, 10, 180, 1.2, 130, 0, 0, 32, 0, 1.5},
+    {"FlatGrid", 640, 15, 0, 2.0, 2.3, 0, 6.9, 165, 1.0, 63, 0, 0, 36, 0, 1.5},
+    {"LinearBvh", 630, 10, 1.6, 0.55, 1.4, 0, 6.7, 72, 1.0, 55, 8, 50, 20, 0, 0},
+    {"StaticBvh", 640, 10, 0, 0.58, 2.0, 0, 7.1, 70, 0.9, 380, 42, 80, 13, 0, 0},
 }};
 
 }  // namespace
@@ -45,9 +44,9 @@ PartitionCosts::PartitionCosts(const SceneFeatures& scene, const FrameWork& fram
   for (std::size_t k = 0; k < kPartitionKinds; ++k) {
     const Constants& c = kConstants[k];
     const double meets = c.level * level + c.square * n;
-    const double all = c.object + meets + c.spread * scene.size_spread + c.crowd * scene.crowding;
+    const double all = c.object + meets + c.crowd * scene.crowding;
     total_[k] = full * n * all + partial * (changed * (c.moved + meets) + c.rest * n);
-    total_[k] += c.keep * changed + kPair * redone;
+    total_[k] += c.frame + c.keep * changed + c.pair * redone;
     queries_[k] = others * (c.ask + c.ask_level * level + c.scan * n);
     if (others > 0.0) queries_[k] += c.rows * changed;
     total_[k] += queries_[k];

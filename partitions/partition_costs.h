@@ -34,23 +34,27 @@ struct FrameWork {
 ///
 /// A frame is a sum of a few products, each of a feature and of a constant by partition:
 ///
-/// - each object that moved is written and its place in the structure kept up (`keep`);
-/// - a pair query after much has moved: every object is asked (`object`, and `level` for each
-///   doubling of their number: depth and caches), and is tested against more of the others the more
-///   their sizes differ (`spread`) and the more they crowd together (`crowd`); brute force tests
-///   all (`square`);
-/// - a pair query after little has moved: each object that moved is asked (`moved`, `level`,
-///   `square`), and flags of the rest are read (`rest`);
-/// - each pair that is written costs all partitions the same;
-/// - every other query (one for the nearest counts four times): `ask`, `ask_level` for each
+/// - itself (`frame`), and each object that moved, which is written and its place in the structure
+///   kept up (`keep`);
+/// - for all pairs after much has moved: every object is asked (`object`, and `level` for each
+///   doubling of their number: depth and caches) and is tested against more of the others the more
+///   these crowd together (`crowd`) and the more pairs there are, which are written, too (`pair`);
+///   brute force tests all (`square`);
+/// - for all pairs after little has moved: each object that moved is asked (`moved`, `level`,
+///   `square`), its share of the pairs is redone (`pair`), and flags of the rest are read (`rest`);
+/// - for every other query (one for the nearest counts four times): `ask`, `ask_level` for each
 ///   doubling of the number of objects, and where there is no tree, `scan` an object. A tree over
 ///   the rows of cells and strips is refitted first (`rows`, an object that moved).
 ///
 /// To begin with a partition takes a build: `build` an object, `build_level` for each doubling.
 ///
 /// The constants were fitted, without negative ones, to the relative error of times measured on one
-/// thread with AVX-512 on the nine built-in scenes at 10 to 100,000 objects, all moving or 1, 5 and
-/// 20 % of them; those of other queries to single rays, boxes and nearest objects there.
+/// thread with AVX-512 on the built-in scenes at 20 to 100,000 objects, all moving or 1, 5 and 20 %
+/// of them; those of other queries to single rays, boxes and nearest objects there. They are right
+/// to a third or so. What they say is that LinearBvh is the best choice, or within a few percent of
+/// it, wherever there are more than some 50 objects; below that brute force is, and StaticBvh where
+/// much is asked and little moves. A spread of sizes tells nothing that the number of pairs does
+/// not.
 class PartitionCosts {
  public:
   using List = std::array<double, kPartitionKinds>;

@@ -10,6 +10,7 @@ namespace {
 constexpr std::size_t kMost = SceneFeatures::kMostSampled;
 constexpr double kUnbounded = 1e30;
 constexpr std::size_t kCells = 64;
+constexpr double kMostPairs = 16.0;  // an object: past that the estimate is mostly wrong
 
 // Exact at powers of two, straight between them: within 0.09 of log2, and unlike that the same on
 // every machine.
@@ -124,7 +125,7 @@ SceneFeatures::SceneFeatures(const BoundsPool& pool, std::size_t live) noexcept 
   divide(axes, room);
   const double likelier = crowding_of(sample, axes);
   crowding = rough_log2(likelier);
-  pairs = std::min(pairs_of_one * likelier, 0.5 * static_cast<double>(live));
+  pairs = std::min({pairs_of_one * likelier, kMostPairs, 0.5 * static_cast<double>(live)});
 }
 
 }  // namespace winnow
