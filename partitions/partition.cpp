@@ -3,6 +3,7 @@
 #include <winnow/partitions/auto_partition.h>
 #include <winnow/partitions/bounds_n_squared.h>
 #include <winnow/partitions/flat_grid.h>
+#include <winnow/partitions/hierarchical_grid.h>
 #include <winnow/partitions/linear_bvh.h>
 #include <winnow/partitions/loose_octree.h>
 #include <winnow/partitions/loose_quadtree.h>
@@ -22,13 +23,13 @@ std::unique_ptr<Partition> make(const PartitionOptions& options) {
   return std::make_unique<T>(options);
 }
 
-constexpr std::array<std::string_view, 9> kNames{"NSquared",  "BoundsNSquared", "SweepAndPrune",
-                                                 "FlatGrid",  "LooseOctree",    "LooseQuadtree",
-                                                 "LinearBvh", "StaticBvh",      "AutoPartition"};
+constexpr std::array<std::string_view, 10> kNames{
+    "NSquared",    "BoundsNSquared", "SweepAndPrune", "FlatGrid",  "HierarchicalGrid",
+    "LooseOctree", "LooseQuadtree",  "LinearBvh",     "StaticBvh", "AutoPartition"};
 constexpr std::array<Maker, kNames.size()> kMakers{
-    make<NSquared>,  make<BoundsNSquared>, make<SweepAndPrune>,
-    make<FlatGrid>,  make<LooseOctree>,    make<LooseQuadtree>,
-    make<LinearBvh>, make<StaticBvh>,      make<AutoPartition>};
+    make<NSquared>,         make<BoundsNSquared>, make<SweepAndPrune>, make<FlatGrid>,
+    make<HierarchicalGrid>, make<LooseOctree>,    make<LooseQuadtree>, make<LinearBvh>,
+    make<StaticBvh>,        make<AutoPartition>};
 
 }  // namespace
 

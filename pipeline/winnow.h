@@ -33,6 +33,7 @@
 #include <winnow/partitions/bounds_n_squared.h>
 #include <winnow/partitions/debug_colours.h>
 #include <winnow/partitions/flat_grid.h>
+#include <winnow/partitions/hierarchical_grid.h>
 #include <winnow/partitions/linear_bvh.h>
 #include <winnow/partitions/loose_octree.h>
 #include <winnow/partitions/loose_quadtree.h>

@@ -1,0 +1,162 @@
+// HierarchicalGrid: what the conformance suite cannot know of its levels and cells.
+
+#include <winnow/partitions/hierarchical_grid.h>
+
+#include <algorithm>
+#include <set>
+
+#include "../support/config.h"
+#include "../support/random.h"
+#include "../support/scenes.h"
+#include "../support/world.h"
+
+namespace winnow::test {
+namespace {
+
+const Config kConfig{"HierarchicalGrid", active_isa(), 2};
+
+Aabb box_at(const Eigen::Vector3d& centre, double edge) {
+  Aabb box;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    box.min[axis] = static_cast<float>(centre[axis] - 0.5 * edge);
+    box.max[axis] = static_cast<float>(centre[axis] + 0.5 * edge);
+  }
+  return box;
+}
+
+Eigen::Vector3d point(Random& random, double side) {
+  return {random.uniform(-side, side), random.uniform(-side, side), random.uniform(-side, side)};
+}
+
+// Edges over `ratio`, each at a distance from the origin of a few of its own size: objects of every
+// size meet those of every other.
+std::vector<Aabb> nested_boxes(std::size_t count, double ratio, Random& random) {
+  std::vector<Aabb> boxes(count);
+  for (Aabb& box : boxes) {
+    const double edge = random.log_uniform(1.0, ratio);
+    box = box_at(point(random, 4.0 * edge), edge);
+  }
+  return boxes;
+}
+
+std::size_t levels_of(World& world) {
+  EXPECT_EQ(world.partition().refresh(), Status::ok);
+  return dynamic_cast<const HierarchicalGrid&>(world.partition()).levels();
+}
+
+TEST(HierarchicalGrid, has_one_level_for_objects_of_one_size) {
+  World world(kConfig);
+  world.insert(uniform_boxes(3000));
+  EXPECT_EQ(levels_of(world), 1U);
+}
+
+TEST(HierarchicalGrid, meets_each_pair_once_whatever_the_sizes) {
+  Random random(61);
+  for (const double ratio : {10.0, 1e3, 1e6, 1e12}) {
+    SCOPED_TRACE(ratio);
+    World world(kConfig);
+    world.insert(nested_boxes(1500, ratio, random));
+    EXPECT_TRUE(world.agrees());
+    EXPECT_EQ(world.partition().statistics().irregular, 0U);
+  }
+}
+
+TEST(HierarchicalGrid, gives_sizes_far_apart_levels_of_their_own) {
+  Random random(62);
+  std::vector<Aabb> boxes;
+  for (const double edge : {1e-6, 1.0, 1e6}) {
+    for (int i = 0; i < 800; ++i) boxes.push_back(box_at(point(random, 8.0 * edge), edge));
+  }
+  World world(kConfig);
+  world.insert(boxes);
+  EXPECT_EQ(levels_of(world), 3U);
+  EXPECT_TRUE(world.agrees());
+}
+
+TEST(HierarchicalGrid, holds_every_size_at_one_point) {
+  Random random(63);
+  std::vector<Aabb> boxes(700);
+  for (Aabb& box : boxes) box = box_at(Eigen::Vector3d::Zero(), random.log_uniform(1e-6, 1e6));
+  World world(kConfig);
+  world.insert(boxes);
+  PairBuffer pairs;
+  ASSERT_EQ(world.self_pairs(pairs), Status::ok);
+  EXPECT_EQ(pairs.size(), boxes.size() * (boxes.size() - 1) / 2);
+}
+
+TEST(HierarchicalGrid, needs_memory_for_its_objects_and_not_for_the_world) {
+  const auto bytes_of = [](double world_side) {
+    Random random(64);
+    std::vector<Aabb> boxes;
+    for (int cluster = 0; cluster < 50; ++cluster) {
+      const Eigen::Vector3d centre = point(random, world_side);
+      for (int i = 0; i < 100; ++i) {
+        boxes.push_back(box_at(centre + point(random, 4.0), random.log_uniform(0.01, 1.0)));
+      }
+    }
+    World world(kConfig);
+    world.insert(boxes);
+    EXPECT_TRUE(world.agrees());
+    EXPECT_LE(world.partition().statistics().cells, boxes.size());
+    return world.partition().footprint().structure.reserved;
+  };
+  EXPECT_LE(bytes_of(1e6), 2 * bytes_of(10.0));
+}
+
+TEST(HierarchicalGrid, follows_objects_that_grow_and_shrink_through_its_levels) {
+  Random random(65);
+  World world(kConfig);
+  std::vector<Aabb> boxes = nested_boxes(900, 1e4, random);
+  const std::vector<Key> keys = world.insert(boxes);
+  PairBuffer pairs;
+  ASSERT_TRUE(world.agrees(pairs));
+  for (int frame = 0; frame < 6; ++frame) {
+    // At first a few, then all of them.
+    for (std::size_t i = 0; i < boxes.size(); i += frame < 4 ? 30 : 1) {
+      const Eigen::Vector3d centre = boxes[i].center().cast<double>();
+      const double edge = static_cast<double>(boxes[i].max[0] - boxes[i].min[0]);
+      boxes[i] = box_at(centre, edge * (random.chance(0.5) ? 30.0 : 1.0 / 30.0));
+    }
+    world.update(keys, boxes);
+    ASSERT_TRUE(world.agrees(pairs)) << "frame " << frame;
+  }
+}
+
+TEST(HierarchicalGrid, keeps_its_order_while_objects_drift_within_their_cells) {
+  World world(kConfig);
+  std::vector<Aabb> boxes = uniform_boxes(2000);
+  const std::vector<Key> keys = world.insert(boxes);
+  ASSERT_TRUE(world.agrees());
+  for (Aabb& box : boxes) box = {box.min.array() + 0.05F, box.max.array() + 0.05F};
+  world.update(keys, boxes);
+  ASSERT_TRUE(world.agrees());
+  EXPECT_EQ(world.partition().statistics().builds, 1U);
+  EXPECT_EQ(world.partition().statistics().irregular, 0U);
+}
+
+class CellColours final : public DebugDraw {
+ public:
+  void box(const Aabb&, Colour colour) override { seen.insert(pack(colour)); }
+  void line(const Eigen::Vector3f&, const Eigen::Vector3f&, Colour) override {}
+  void sphere(const Sphere&, Colour) override {}
+  void text(const Eigen::Vector3f&, std::string_view, Colour) override {}
+
+  std::set<std::uint32_t> seen;
+
+ private:
+  static std::uint32_t pack(Colour c) { return c.r * 65536U + c.g * 256U + c.b; }
+};
+
+TEST(HierarchicalGrid, draws_the_cells_of_each_level_in_a_colour_of_their_own) {
+  Random random(66);
+  World world(kConfig);
+  world.insert(nested_boxes(1500, 1e6, random));
+  const std::size_t levels = levels_of(world);
+  ASSERT_GT(levels, 1U);
+  CellColours colours;
+  ASSERT_EQ(world.partition().debug_draw(colours, {.objects = false}), Status::ok);
+  EXPECT_EQ(colours.seen.size(), levels + 1);  // and one for what cells hold
+}
+
+}  // namespace
+}  // namespace winnow::test
