@@ -88,6 +88,7 @@ struct CellLayout::Trial {
       width[a] = 0.0;
       if (!divided[a] || (d.sweep_fast_axis && a == fast)) continue;
       width[a] = std::max(reach[a] * (1.0 + 2.0 * d.slack_share), s.range(a) / kMostCells);
+      if (a != fast) width[a] = std::max(width[a], std::min(s.range(a), block_edge(s, d, n)));
       total *= s.range(a) / width[a];
       ++free_axes;
     }
@@ -99,6 +100,19 @@ struct CellLayout::Trial {
       width[a] *= widen;
       cells[a] = std::max(1.0, std::ceil(s.range(a) / width[a]));
     }
+  }
+
+  // Edge of a cube that holds a block of n objects spread evenly.
+  [[nodiscard]] double block_edge(const SceneSample& s, const CellDemand& d, double n) const {
+    if (d.rows_per_block == 0.0) return 0.0;
+    double sum = std::log(d.rows_per_block / n);
+    int axes = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (!divided[a]) continue;
+      sum += std::log(s.range(a));
+      ++axes;
+    }
+    return std::exp(sum / axes);
   }
 
   // Tests of 16 that the whole scene is expected to cost.

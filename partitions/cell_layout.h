@@ -34,7 +34,8 @@ struct CellDemand {
   double slack_share = 0.3;      ///< of the reach, that objects may drift by on either side
   double cells_per_object = 2;   ///< at most
   bool sweep_fast_axis = false;  ///< the fast axis is sorted, not divided
-  double rows_per_run = 12;      ///< objects wanted in a run of cells that is tested in one go
+  /// Objects that ask together: beside the fast axis cells are at least as wide as a cube of them.
+  double rows_per_block = 0;
 };
 
 /// Cells over three axes: which objects are small enough, how large the cells are, which axis runs

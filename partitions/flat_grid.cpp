@@ -25,7 +25,7 @@ FlatGrid::FlatGrid(const PartitionOptions& options)
 
 bool FlatGrid::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) {
   const SceneSample sample(pool());
-  if (!layout_.choose(sample, {})) return false;
+  if (!layout_.choose(sample, {.rows_per_block = 10})) return false;
   if (!layout_.usable()) return RowPartition::plan(regular, rest);
   if (!cell_.resize(pool().rows()) || !start_.resize(layout_.cells() + 1)) return false;
   count_cells();

@@ -6,14 +6,14 @@
 
 namespace winnow {
 
-/// Uniform grid: each object belongs to the one cell of its box's lower corner, rows are sorted by
-/// cell (counting sort), and a cell is tested against itself and the 13 neighbours after it, which
-/// are five contiguous runs of rows; so each pair is met once and no object is stored twice. Cells
-/// are wider than the boxes by a slack that objects may drift within, so that slow scenes keep
-/// their order for many frames. Cell size, the axis that runs fastest, and which objects are too
-/// large for cells come from a sample of the scene at each build. Objects too large or in overfull
-/// cells go to a block tree and are asked against the grid. Self pairs: O(n + cells + pairs) where
-/// density is even. Exact.
+/// Uniform grid: each object belongs to the one cell of its box's lower corner, and rows are sorted
+/// by cell (counting sort), so that the cells of a line are one run of rows. 16 rows of a line look
+/// for partners together, behind them in their own line and in the neighbouring ones: each pair is
+/// met once and no object is stored twice. Cells are wider than the boxes by a slack that objects
+/// may drift within, so that slow scenes keep their order for many frames. Cell size, the axis that
+/// runs fastest, and which objects are too large for cells come from a sample of the scene at each
+/// build. Objects too large or in overfull cells go to a block tree and are asked against the grid.
+/// Self pairs: O(n + cells + pairs) where density is even. Exact.
 class FlatGrid final : public RowPartition {
  public:
   explicit FlatGrid(const PartitionOptions& options = {});

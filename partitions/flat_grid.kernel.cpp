@@ -1,7 +1,6 @@
+#include <winnow/partitions/block_pairs.wide.h>
 #include <winnow/partitions/flat_grid.kernel.h>
-#include <winnow/partitions/hits.wide.h>
 #include <winnow/partitions/misfits.wide.h>
-#include <winnow/partitions/neighbour_lines.wide.h>
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -23,33 +22,40 @@ struct ToTheEnd {
   bool operator()(const QueryBox&, std::uint32_t) const { return true; }
 };
 
+/// Adds the rows that may touch a block of line `own`, of that line and those behind it.
+template <bool Filtered>
+bool add_neighbours(const GridView& grid, std::uint32_t own, BlockPairs<Filtered>& pairs) {
+  std::uint32_t first[3];
+  std::uint32_t last[3];
+  for (int a = 0; a < 3; ++a) {
+    const CellAxis& axis = grid.axis[a];
+    first[a] = first_cell(axis, pairs.low()[axis.axis] - axis.reach);
+    last[a] = last_cell(axis, pairs.high()[axis.axis]);
+  }
+  const std::uint32_t mids = grid.axis[1].count;
+  for (std::uint32_t slow = own / mids; slow <= last[2]; ++slow) {
+    const std::uint32_t from = slow * mids + first[1];
+    const std::uint32_t to = slow * mids + last[1];
+    for (std::uint32_t line = from > own ? from : own; line <= to; ++line) {
+      const Run run = run_of(grid, line, first[0], last[0]);
+      if (!pairs.add_run(run.begin, run.end)) return false;
+    }
+  }
+  return true;
+}
+
 template <bool Filtered>
 bool find_self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
   const std::uint32_t cells = grid.axis[0].count;
-  HitList<HitMode::unordered, Filtered> hits(grid.rows, sink);
-  RunList list(grid.rows, grid.rows.column, hits, ToTheEnd{}, sink);
+  BlockPairs<Filtered> pairs(grid.rows, sink);
   for (std::uint32_t line = begin; line < end; ++line) {
-    const std::uint32_t* start = grid.start + std::size_t{line} * cells;
-    if (start[0] == start[cells]) continue;
-    const NeighbourLines neighbours(grid.axis[1], grid.axis[2], line);
-    for (std::uint32_t c = 0; c < cells; ++c) {
-      if (start[c] == start[c + 1]) continue;
-      const std::uint32_t before = c > 0 ? c - 1 : 0;
-      const std::uint32_t after = c + 1 < cells ? c + 1 : c;
-      Run runs[4];
-      for (int k = 0; k < neighbours.count; ++k) {
-        runs[k] = run_of(grid, neighbours.line[k], before, after);
-      }
-      for (std::uint32_t r = start[c]; r < start[c + 1]; ++r) {
-        // Behind the row itself: the pair with an earlier one is that one's.
-        if (!list.add(r, r + 1, start[after + 1])) return false;
-        for (int k = 0; k < neighbours.count; ++k) {
-          if (!list.add(r, runs[k].begin, runs[k].end)) return false;
-        }
-      }
+    const std::uint32_t last = grid.start[std::size_t{line + 1} * cells];
+    for (std::uint32_t r = grid.start[std::size_t{line} * cells]; r < last; r += kLanes) {
+      if (!pairs.start(r, last - r < kLanes ? last : r + kLanes)) continue;
+      if (!add_neighbours(grid, line, pairs) || !pairs.finish()) return false;
     }
   }
-  return list.finish() && hits.flush();
+  return true;
 }
 
 bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {

@@ -1,5 +1,5 @@
+#include <winnow/partitions/block_pairs.wide.h>
 #include <winnow/partitions/hierarchical_grid.kernel.h>
-#include <winnow/partitions/hits.wide.h>
 #include <winnow/partitions/misfits.wide.h>
 
 namespace winnow {
@@ -64,147 +64,19 @@ template <typename Visit>
   return true;
 }
 
-/// Pairs of a block of 16 rows with the rows behind it. Rows of a block lie close together: one box
-/// around them asks the grid, 16 rows at a time, who may touch any of them, and only those are
-/// tested one by one, each against the whole block, which stays in registers.
-template <bool Filtered>
-class BlockPairs {
- public:
-  BlockPairs(const LevelsView& grid, PairSink& sink)
-      : grid_(grid), sink_(sink), filters_(grid.rows) {}
-
-  bool add(std::uint32_t block, std::uint32_t level) {
-    at_ = block * kLanes;
-    const Box16 rows = load_slabs<3>(grid_.rows.column, at_);
-    for (int a = 0; a < 3; ++a) {
-      low_[a] = reduce_min(rows.low[a]);
-      high_[a] = reduce_max(rows.high[a]);
-    }
-    if (!(low_[0] <= high_[0])) return true;  // holes only
-    test_self(rows);
-    std::uint32_t next = block + 1;
-    for (std::uint32_t l = level; l < grid_.levels; ++l) {
-      const auto visit = [&](std::uint32_t begin, std::uint32_t end) {
-        // Runs ascend but may share a block.
-        const std::uint32_t first = begin / kLanes > next ? begin / kLanes : next;
-        const std::uint32_t last = (end + kLanes - 1) / kLanes;
-        next = last > next ? last : next;
-        return add_blocks(first, last);
-      };
-      if (!visit_runs(grid_, grid_.level[l], low_, high_, visit)) return false;
-    }
-    return test_blocks() && test_rows();
-  }
-
- private:
-  static constexpr unsigned kBlockRoom = 512;
-  static constexpr unsigned kRowRoom = 1024;
-
-  /// Of two rows of the block the one in front asks.
-  void test_self(const Box16& rows) {
-    for (unsigned i = 0; i + 1 < kLanes; ++i) {
-      const QueryBox q(grid_.rows.column, at_ + i);
-      add_hits(at_ + i, overlap(rows, q.low, q.high) & ~lanes_below(i + 1), hits_);
-    }
-    sink_.tests += kLanes - 1;
-  }
-
-  /// Whether a test hits is a coin toss to the branch predictor: no branch here. The count is the
-  /// caller's, in a register.
-  void add_hits(std::uint32_t row, Mask16 mask, unsigned& count) {
-    hit_row_[count] = row;
-    hit_mask_[count] = mask;
-    count += mask != 0 ? 1U : 0U;
-  }
-
-  bool add_blocks(std::uint32_t first, std::uint32_t last) {
-    for (; first < last; first += kLanes) {
-      if (blocks_ > kBlockRoom - kLanes && !test_blocks()) return false;
-      store_unaligned(block_ + blocks_, count_from(first));
-      blocks_ += last - first < kLanes ? last - first : kLanes;
-    }
-    return true;
-  }
-
-  /// Lists the rows of the listed blocks that may touch any row of the own one.
-  bool test_blocks() {
-    const float low[3] = {low_[0], low_[1], low_[2]};
-    const float high[3] = {high_[0], high_[1], high_[2]};
-    unsigned rows = rows_;
-    for (unsigned k = 0; k < blocks_; ++k) {
-      if (rows > kRowRoom - kLanes) {
-        rows_ = rows;
-        if (!test_rows()) return false;
-        rows = 0;
-      }
-      const std::uint32_t at = block_[k] * kLanes;
-      const Mask16 mask = overlap(load_slabs<3>(grid_.rows.column, at), low, high);
-      rows += compress_store(mask, count_from(at), row_ + rows);
-    }
-    sink_.tests += blocks_;
-    rows_ = rows;
-    blocks_ = 0;
-    return true;
-  }
-
-  /// Tests the listed rows against the own block, which stays in registers.
-  bool test_rows() {
-    const Box16 rows = load_slabs<3>(grid_.rows.column, at_);
-    unsigned hits = hits_;
-    for (unsigned k = 0; k < rows_; ++k) {
-      const QueryBox q(grid_.rows.column, row_[k]);
-      add_hits(row_[k], overlap(rows, q.low, q.high), hits);
-    }
-    sink_.tests += rows_;
-    hits_ = hits;
-    rows_ = 0;
-    return report_hits();
-  }
-
-  bool report_hits() {
-    if (has_more_to_test(grid_.rows)) drop_boxes();
-    const Uint16 ids = load_unaligned(grid_.rows.id + at_);
-    for (unsigned k = 0; k < hits_; ++k) {
-      if (!has_room(sink_)) return false;
-      const std::uint32_t id = grid_.rows.id[hit_row_[k]];
-      Mask16 mask = hit_mask_[k];
-      if constexpr (Filtered) mask = passing_rows(grid_.rows, at_, mask, filters_.of(id));
-      sink_.cursor += 2 * emit_pairs<true>(mask, ids, id, sink_.cursor);
-    }
-    hits_ = 0;
-    return true;
-  }
-
-  /// Keeps the hits of the volumes in the boxes.
-  void drop_boxes() {
-    for (unsigned k = 0; k < hits_; ++k) hit_at_[k] = at_;
-    hits_ = keep_volume_hits(grid_.rows, grid_.rows.column, hit_row_, hit_at_, hit_mask_, hits_);
-  }
-
-  const LevelsView& grid_;
-  PairSink& sink_;
-  const AskingFilters filters_;
-  std::uint32_t at_ = 0;
-  float low_[3];
-  float high_[3];
-  unsigned blocks_ = 0;
-  unsigned rows_ = 0;
-  unsigned hits_ = 0;
-  std::uint32_t block_[kBlockRoom + kLanes];
-  std::uint32_t row_[kRowRoom + kLanes];
-  std::uint32_t hit_row_[kRowRoom + 2 * kLanes];
-  std::uint32_t hit_at_[kRowRoom + 2 * kLanes];  // of volumes other than boxes
-  std::uint32_t hit_mask_[kRowRoom + 2 * kLanes];
-};
-
 template <bool Filtered>
 bool find_self_pairs(const LevelsView& grid, std::uint32_t begin, std::uint32_t end,
                      PairSink& sink) {
-  BlockPairs<Filtered> pairs(grid, sink);
+  BlockPairs<Filtered> pairs(grid.rows, sink);
   std::uint32_t level = 0;
   for (std::uint32_t block = begin; block < end; ++block) {
     while (block * kLanes >= grid.level[level].end_row) ++level;
-    if (!pairs.add(block, level)) return false;
+    if (!pairs.start(block * kLanes, block * kLanes + kLanes)) continue;
+    const auto add = [&](std::uint32_t from, std::uint32_t to) { return pairs.add_run(from, to); };
+    for (std::uint32_t l = level; l < grid.levels; ++l) {
+      if (!visit_runs(grid, grid.level[l], pairs.low(), pairs.high(), add)) return false;
+    }
+    if (!pairs.finish()) return false;
   }
   return true;
 }

@@ -15,7 +15,10 @@ constexpr double kSlackOfEdge = 0.2;
 constexpr double kSlackOfCell = 0.1;
 // How wide lines are, in edges of a cube that holds a block of rows.
 constexpr double kLineWidth = 0.95;
-constexpr double kLeastWidth = 0.25;      // in longest edges
+constexpr double kLeastWidth = 0.25;  // in longest edges
+// What a line and a level cost, in tests of 16.
+constexpr double kPerLine = 0.7;
+constexpr double kPerLevel = 10.0;
 constexpr double kMostLines = 1U << 15U;  // along an axis
 constexpr unsigned kMostStepBits = 20;
 constexpr double kStepsInCell = 8.0;
@@ -79,6 +82,18 @@ double edge_for(double wanted, double count, const std::array<double, 3>& range)
   return 0.0;
 }
 
+// How long the ranges are over which n objects with these sums of places and of their squares would
+// be spread evenly.
+std::array<double, 3> spread_of(const std::array<double, 3>& sum,
+                                const std::array<double, 3>& square, double n) {
+  std::array<double, 3> range{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double mean = sum[a] / n;
+    range[a] = std::sqrt(12.0 * std::max(0.0, square[a] / n - mean * mean));
+  }
+  return range;
+}
+
 }  // namespace
 
 float longest_edge(const BoundsPool& pool, std::size_t row) noexcept {
@@ -95,6 +110,7 @@ struct SizeClasses::Group {
   double count = 0.0;
   std::array<double, 3> mean{};
   std::array<double, 3> longest{};
+  std::array<double, 3> range{};
   std::array<double, 3> block{};  ///< extent of 16 rows
 };
 
@@ -108,13 +124,17 @@ SizeClasses::SizeClasses(const BoundsPool& pool) noexcept {
     ++c.count;
     ++objects_;
     for (std::size_t a = 0; a < 3; ++a) {
-      c.edge[a] += static_cast<double>(pool.column(3 + a)[row] - pool.column(a)[row]);
+      const double low = static_cast<double>(pool.column(a)[row]);
+      c.edge[a] += static_cast<double>(pool.column(3 + a)[row]) - low;
+      c.place[a] += low;
+      c.square[a] += low * low;
     }
   }
   for (Class& c : class_) {
-    for (double& edge : c.edge) edge /= static_cast<double>(std::max<std::size_t>(1, c.count));
+    const double count = static_cast<double>(std::max<std::size_t>(1, c.count));
+    for (std::size_t a = 0; a < 3; ++a) c.edge[a] /= count;
+    c.range = spread_of(c.place, c.square, count);
   }
-  measure_range(pool);
   join();
 }
 
@@ -148,51 +168,52 @@ std::size_t SizeClasses::level_of(float edge) const noexcept {
   return size_class < kClasses ? level_[size_class] : levels_;
 }
 
-void SizeClasses::measure_range(const BoundsPool& pool) noexcept {
-  for (std::size_t a = 0; a < 3; ++a) {
-    range_[a] = range_of(pool, a, pool.rows(), [](std::size_t i) { return i; }).length();
-  }
-}
-
 SizeClasses::Group SizeClasses::group_of(std::size_t first, std::size_t last) const noexcept {
   Group group;
   group.first = first;
   group.last = last;
+  std::array<double, 3> place{};
+  std::array<double, 3> square{};
   for (std::size_t c = first; c <= last; ++c) {
     const double count = static_cast<double>(class_[c].count);
     group.count += count;
     for (std::size_t a = 0; a < 3; ++a) {
       group.mean[a] += count * class_[c].edge[a];
+      place[a] += class_[c].place[a];
+      square[a] += class_[c].square[a];
       // An octave's largest is about 1.4 times its mean.
       group.longest[a] = std::max(group.longest[a], 1.4 * class_[c].edge[a]);
     }
   }
   for (double& edge : group.mean) edge /= std::max(1.0, group.count);
-  const double edge = edge_for(kBlock, std::max(1.0, group.count), range_);
-  for (std::size_t a = 0; a < 3; ++a) group.block[a] = std::min(edge, range_[a]);
+  group.range = spread_of(place, square, std::max(1.0, group.count));
+  const double edge = edge_for(kBlock, std::max(1.0, group.count), group.range);
+  for (std::size_t a = 0; a < 3; ++a) group.block[a] = std::min(edge, group.range[a]);
   return group;
 }
 
 // What blocks of `fine` are expected to cost to look for partners in `coarse`, in tests of 16.
 double SizeClasses::cost(const Group& fine, const Group& coarse) const noexcept {
   std::array<double, 3> ask{};
-  for (std::size_t a = 0; a < 3; ++a) ask[a] = fine.block[a] + 1.3 * fine.mean[a];
-  const auto share = [&](std::size_t a, double reach) {
-    const double whole = range_[a] + reach;
-    return whole > 0.0 ? std::min(1.0, (ask[a] + reach) / whole) : 1.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    ask[a] = fine.block[a] + 0.5 * (fine.mean[a] + fine.longest[a]);
+  }
+  const auto share = [&](const Class& c, std::size_t a) {
+    const double whole = c.range[a] + c.edge[a];
+    return whole > 0.0 ? std::min(1.0, (ask[a] + c.edge[a]) / whole) : 1.0;
   };
   double rows = 0.0;
   for (std::size_t c = coarse.first; c <= coarse.last; ++c) {
     if (class_[c].count == 0) continue;
     double part = static_cast<double>(class_[c].count);
-    for (std::size_t a = 0; a < 3; ++a) part *= share(a, class_[c].edge[a]);
+    for (std::size_t a = 0; a < 3; ++a) part *= share(class_[c], a);
     rows += part;
   }
   std::array<double, 3> cells{};
   for (std::size_t a = 0; a < 3; ++a) {
     const double width = std::max(coarse.block[a], DBL_MIN);
     const double reach = (1.0 + 2.0 * kSlackOfEdge) * coarse.longest[a];
-    cells[a] = std::min(range_[a] / width + 1.0, (ask[a] + reach) / width + 1.0);
+    cells[a] = std::min(coarse.range[a] / width + 1.0, (ask[a] + reach) / width + 1.0);
   }
   std::sort(cells.begin(), cells.end());
   const double lines = cells[0] * cells[1];
@@ -202,7 +223,7 @@ double SizeClasses::cost(const Group& fine, const Group& coarse) const noexcept 
     rows = 0.5 * rows + 8.0;
     blocks *= 0.5;
   }
-  return fine.count / kBlock * (rows + blocks + 0.7 * lines + 5.0);
+  return fine.count / kBlock * (rows + blocks + kPerLine * lines + kPerLevel);
 }
 
 // Begins with a level for every class and joins neighbours while that makes it cheaper.

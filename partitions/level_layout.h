@@ -37,20 +37,21 @@ class SizeClasses {
  private:
   struct Class {
     std::size_t count = 0;
-    std::array<double, 3> edge{};  // sum, later mean
+    std::array<double, 3> edge{};    // sum, later mean
+    std::array<double, 3> place{};   // sum of lower ends
+    std::array<double, 3> square{};  // sum of their squares
+    std::array<double, 3> range{};   // over which they are spread
   };
   struct Group;
   struct Groups;
   [[nodiscard]] std::size_t class_of(float edge) const noexcept;
   void choose_octaves(const BoundsPool& pool) noexcept;
-  void measure_range(const BoundsPool& pool) noexcept;
   [[nodiscard]] Group group_of(std::size_t first, std::size_t last) const noexcept;
   [[nodiscard]] double cost(const Group& fine, const Group& coarse) const noexcept;
   void join() noexcept;
 
   std::array<Class, kClasses> class_;
   std::array<std::uint8_t, kClasses> level_{};
-  std::array<double, 3> range_{};
   std::size_t objects_ = 0;
   std::size_t levels_ = 0;
   std::size_t top_octave_ = 0;
