@@ -146,7 +146,7 @@ SizeClasses::Group SizeClasses::group_of(std::size_t first, std::size_t last) co
 double SizeClasses::cost(const Group& fine, const Group& coarse) const noexcept {
   std::array<double, 3> ask{};
   for (std::size_t a = 0; a < 3; ++a) {
-    ask[a] = fine.block[a] + 0.5 * (fine.mean[a] + fine.longest[a]);
+    ask[a] = fine.block[a] + 0.75 * fine.mean[a] + 0.25 * fine.longest[a];
   }
   const auto share = [&](const Class& c, std::size_t a) {
     const double whole = c.range[a] + c.edge[a];
