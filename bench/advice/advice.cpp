@@ -36,7 +36,7 @@ constexpr Nature kNatures[] = {
     {"HierarchicalGrid", "has a grid for each class of sizes"},
     {"LooseOctree", "has loose cells of each size in three dimensions"},
     {"LooseQuadtree", "has loose cells of each size in two dimensions"},
-    {"LinearBvh", "refits a tree over objects in the order of a curve"},
+    {"LinearBvh", "refits a tree over objects in the order of median cuts"},
     {"StaticBvh", "refits a tree over objects in an order that takes long to find"},
 };
 
