@@ -11,7 +11,7 @@ namespace {
 
 // What a line and a level cost, in tests of 16.
 constexpr double kPerLine = 0.7;
-constexpr double kPerLevel = 10.0;
+constexpr double kPerLevel = 7.0;
 
 // Power of 2 of a length; 0 for one of nothing, or next to it.
 std::size_t octave_of(float x) noexcept {
@@ -146,7 +146,7 @@ SizeClasses::Group SizeClasses::group_of(std::size_t first, std::size_t last) co
 double SizeClasses::cost(const Group& fine, const Group& coarse) const noexcept {
   std::array<double, 3> ask{};
   for (std::size_t a = 0; a < 3; ++a) {
-    ask[a] = fine.block[a] + 0.75 * fine.mean[a] + 0.25 * fine.longest[a];
+    ask[a] = fine.block[a] + 0.95 * fine.mean[a] + 0.2 * fine.longest[a];
   }
   const auto share = [&](const Class& c, std::size_t a) {
     const double whole = c.range[a] + c.edge[a];
