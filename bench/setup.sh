@@ -7,7 +7,7 @@ WINNOW_BUILD_PACKAGES=(cmake ninja-build g++ pkg-config libeigen3-dev libxsimd-d
                        libqhull-dev)
 # What the winnow tool and the micro benchmarks need on top.
 WINNOW_BENCH_PACKAGES=(libbenchmark-dev libcli11-dev nlohmann-json3-dev liblzma-dev xz-utils
-                       libjs-three)
+                       libjs-three libjs-chart.js)
 # Mesh files for `winnow simulate`.
 WINNOW_MESH_PACKAGES=(libassimp-dev)
 # What opens the pages of `winnow draw` in a test: Chromium without its windows.

@@ -40,6 +40,8 @@ Command add_pipeline(CLI::App& app);
 Command add_simulate(CLI::App& app);
 Command add_volumes(CLI::App& app);
 Command add_advise(CLI::App& app);
+Command add_growth(CLI::App& app);
+Command add_limits(CLI::App& app);
 
 /// What the tool does if it is given no subcommand.
 int run_overview();

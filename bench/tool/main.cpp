@@ -13,12 +13,12 @@ int run_tool(int argc, char** argv) {
       "six main scenes at 10,000 and 100,000 objects.",
       "winnow"};
   app.require_subcommand(0, 1);
-  const std::vector<Command> commands{add_scenes(app),     add_record(app),    add_replay(app),
-                                      add_throughput(app), add_footprint(app), add_keys(app),
-                                      add_crossover(app),  add_queries(app),   add_query(app),
-                                      add_narrow(app),     add_accuracy(app),  add_goals(app),
-                                      add_draw(app),       add_pipeline(app),  add_simulate(app),
-                                      add_volumes(app),    add_advise(app)};
+  const std::vector<Command> commands{
+      add_scenes(app),    add_record(app),   add_replay(app),    add_throughput(app),
+      add_footprint(app), add_keys(app),     add_crossover(app), add_queries(app),
+      add_query(app),     add_narrow(app),   add_accuracy(app),  add_goals(app),
+      add_draw(app),      add_pipeline(app), add_simulate(app),  add_volumes(app),
+      add_growth(app),    add_limits(app),   add_advise(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

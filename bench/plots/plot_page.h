@@ -1,0 +1,47 @@
+#pragma once
+
+#include "tool/output.h"
+
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+
+struct PlotPoint {
+  double x = 0.0;
+  double y = 0.0;
+  std::string note;  ///< shown where the pointer is
+};
+
+struct PlotSeries {
+  std::string name;  ///< one name has one colour on the whole page
+  std::vector<PlotPoint> points;
+  bool line = true;
+};
+
+struct PlotAxis {
+  std::string label;  ///< with its unit
+  bool log = false;
+};
+
+struct Plot {
+  std::string id;  ///< of the element, unique on the page
+  std::string title;
+  PlotAxis x;
+  PlotAxis y;
+  std::vector<PlotSeries> series;
+};
+
+/// Text as HTML shows it.
+[[nodiscard]] std::string escaped(const std::string& text);
+
+/// Where a plot is to stand within a page's body.
+[[nodiscard]] std::string place_of(const Plot& plot);
+
+/// Writes one HTML page that needs nothing else: no network, no other file. `body` is HTML and has
+/// a place for each plot. Throws ArgumentError if Chart.js is not installed, saying how to get it,
+/// or the file cannot be written.
+void write_plot_page(const std::string& path, const std::string& title, const std::string& body,
+                     const std::vector<Plot>& plots);
+
+}  // namespace winnow::bench
