@@ -217,6 +217,7 @@ class RowPartition : public Partition {
   Status build_flat();
   bool sort_by_place(std::span<std::uint32_t> rows, const Execution& execution);
   Status absorb_changes();
+  [[nodiscard]] bool is_torn() const noexcept;
   void collect_misfits(std::size_t limit) noexcept;
   bool move_to_tail(std::span<const std::uint32_t> rows) noexcept;
   bool sort_tail() noexcept;
@@ -267,6 +268,7 @@ class RowPartition : public Partition {
   std::size_t regular_rows_ = 0;  // rows [0, regular_rows_) are the derived partition's
   std::size_t built_rows_ = 0;    // rows from here on are the tail: new or moved since the build
   std::size_t sorted_rows_ = 0;   // tail rows below this are in spatial order
+  float built_edge_ = 0.0F;       // of a typical leaf of the tree, as the build left it
   std::size_t built_holes_ = 0;   // padding that the build left between the regions
   bool built_ = false;
   bool tail_changed_ = false;

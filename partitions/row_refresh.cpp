@@ -111,6 +111,7 @@ Status RowPartition::build() {
   built_holes_ = rows - keys_.size();
   finish_build();
   tree_.refit_all(row_view(), execution);
+  built_edge_ = tree_.typical_edge();
   if (prunes_rows()) row_tree_.refit_all(row_view(), execution);
   built_ = true;
   ++builds_;
@@ -184,7 +185,15 @@ Status RowPartition::absorb_changes() {
   const std::size_t tail = pool_.rows() > built_rows_ ? pool_.rows() - built_rows_ : 0;
   if (tail + list_.size() > limit) return build();
   if (!move_to_tail({list_.data(), list_.size()}) || !sort_tail()) return Status::out_of_memory;
-  return refit_tree() ? Status::ok : Status::out_of_memory;
+  if (!refit_tree()) return Status::out_of_memory;
+  return is_torn() ? build() : Status::ok;
+}
+
+// Where everything jumped, one query of a tree in the old order would cost many builds: leaves tell
+// before it is asked. Slow wear is left to the count of tests.
+bool RowPartition::is_torn() const noexcept {
+  constexpr float kTorn = 2.0F;
+  return stale_.all() && built_edge_ > 0.0F && tree_.typical_edge() > kTorn * built_edge_;
 }
 
 void RowPartition::collect_misfits(std::size_t limit) noexcept {

@@ -81,6 +81,18 @@ TEST_P(BoundedWork, holds_where_objects_lie_on_each_other) {
   expect_bounded(boxes);
 }
 
+// A structure made for where objects were must not be asked about where they are.
+TEST_P(BoundedWork, holds_in_the_frame_in_which_everything_jumps) {
+  World world(config());
+  const std::vector<Key> keys = world.insert(uniform_boxes(kObjects));
+  PairBuffer buffer;
+  ASSERT_EQ(world.self_pairs(buffer), Status::ok);
+  const std::vector<Aabb> boxes = clustered_boxes(kObjects);
+  world.update(keys, boxes);
+  ASSERT_EQ(world.self_pairs(buffer), Status::ok);
+  EXPECT_LE(world.partition().statistics().last_tests, 32 * boxes.size() + buffer.size());
+}
+
 TEST_P(Work, is_none_in_a_frame_in_which_nothing_moves) {
   World world(config());
   world.insert(uniform_boxes(2000));
