@@ -16,8 +16,12 @@ WINNOW_DEFINE_KERNELS(SweepKernels, sweep_kernels)
 namespace {
 
 constexpr std::size_t kPadding = 16;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Objects of a strip that begin within reach of one another.
 constexpr std::uint32_t kCrowded = 384;
+// Rows that do not fit strips ask every strip that they cross. Where more than this share of a
+// scene does so, the tree serves all of it better.
+constexpr double kMostApart = 0.1;
 
 // Order-preserving map of floats to unsigned.
 std::uint32_t sortable(float value) {
@@ -36,7 +40,8 @@ SweepAndPrune::SweepAndPrune(const PartitionOptions& options)
 
 bool SweepAndPrune::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) {
   const SceneSample sample(pool());
-  const CellDemand demand{.slack_share = 0.3, .cells_per_object = 0.03, .sweep_fast_axis = true};
+  const CellDemand demand{
+      .slack_share = 0.5, .cells_per_object = 0.25, .sweep_fast_axis = true, .rows_per_block = 10};
   if (!layout_.choose(sample, demand)) return false;
   if (!layout_.usable()) return RowPartition::plan(regular, rest);
   const std::size_t rows = pool().rows();
@@ -44,13 +49,20 @@ bool SweepAndPrune::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& 
       !key_.resize(rows + kPadding) || !sort_scratch().resize(2 * rows)) {
     return false;
   }
-  sort_rows(regular, rest);
-  drop_crowded(regular, rest);
-  return true;
+  const auto most = static_cast<std::size_t>(kMostApart * static_cast<double>(sample.objects));
+  const std::size_t count = list_rows(rest);
+  if (rest.size() <= most) {
+    sort_rows(count, regular);
+    drop_crowded(regular, rest);
+  }
+  if (rest.size() <= most) return true;
+  regular.clear();
+  rest.clear();
+  return RowPartition::plan(regular, rest);
 }
 
-void SweepAndPrune::sort_rows(Column<std::uint32_t>& regular,
-                              Column<std::uint32_t>& rest) noexcept {
+// Lists the rows that fit strips, with their keys, and returns how many there are.
+std::size_t SweepAndPrune::list_rows(Column<std::uint32_t>& rest) noexcept {
   std::fill(start_.begin(), start_.end(), 0);
   const std::size_t rows = pool().rows();
   const float* const low = pool().column(layout_.axis(0).axis);
@@ -59,14 +71,21 @@ void SweepAndPrune::sort_rows(Column<std::uint32_t>& regular,
   for (std::size_t row = 0; row < rows; ++row) {
     if (pool().ids()[row] == kNoObject) continue;
     strip_[row] = layout_.cell_of(pool(), row);
-    if (strip_[row] == CellLayout::kNoCell) {
+    // An infinite key and an infinite drift would have no sum.
+    if (strip_[row] == CellLayout::kNoCell || low[row] == -kInfinity) {
       (void)rest.push_back(static_cast<std::uint32_t>(row));
       continue;
     }
     ++start_[strip_[row]];
     items[count++] = static_cast<std::uint64_t>(sortable(low[row])) << 32U | row;
   }
-  const std::uint64_t* const by_key = radix_sort(items, items + rows, count, 32, execution());
+  return count;
+}
+
+void SweepAndPrune::sort_rows(std::size_t count, Column<std::uint32_t>& regular) noexcept {
+  std::uint64_t* const items = sort_scratch().data();
+  std::uint64_t* const spare = items + pool().rows();
+  const std::uint64_t* const by_key = radix_sort(items, spare, count, 32, execution());
   (void)positions_from_counts(start_);
   regular.set_size(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -113,7 +132,7 @@ void SweepAndPrune::finish_build() {
   const float* const low = pool().column(layout_.axis(0).axis);
   std::copy_n(low, regular_rows(), key_.data());
   // Kernels load sixteen keys at once from any row.
-  std::fill_n(key_.data() + regular_rows(), kPadding, std::numeric_limits<float>::infinity());
+  std::fill_n(key_.data() + regular_rows(), kPadding, kInfinity);
 }
 
 bool SweepAndPrune::near_key(std::size_t row) const noexcept {

@@ -8,11 +8,13 @@ namespace winnow {
 
 /// Sorted sweep-and-prune (Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", 1992) in
 /// strips: objects are bucketed on the two axes that are not swept and sorted on the third, the one
-/// with the most room in units of the objects' own edges; each row sweeps forward in its strip and
-/// in the four neighbouring strips after it, 16 boxes at a time. An axis that prunes nothing is not
-/// divided, so one bad axis ruins nothing. A row may drift from its sort key by a bound that the
-/// sweep allows for: slow motion, or rest, costs no sorting. Objects wider than strips go to a
-/// block tree. Self pairs: O(n log n + n * objects met in a sweep + pairs). Exact.
+/// with the most room in units of the objects' own edges. Sixteen rows that follow each other in a
+/// strip sweep together, forward in it and in the four neighbouring strips after it: one box around
+/// them picks the candidates, 16 at a time. An axis that prunes nothing is not divided, so one bad
+/// axis ruins nothing. A row may drift from its sort key by a bound that the sweep allows for: slow
+/// motion, or rest, costs no sorting. Objects wider than strips go to a block tree, and where they
+/// are many it holds the whole scene. Self pairs: O(n log n + n * objects met in a sweep + pairs).
+/// Exact.
 class SweepAndPrune final : public RowPartition {
  public:
   explicit SweepAndPrune(const PartitionOptions& options = {});
@@ -32,7 +34,8 @@ class SweepAndPrune final : public RowPartition {
   void add_structure_bytes(Footprint& footprint) const noexcept override;
   [[nodiscard]] std::size_t cell_count() const noexcept override;
 
-  void sort_rows(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) noexcept;
+  std::size_t list_rows(Column<std::uint32_t>& rest) noexcept;
+  void sort_rows(std::size_t count, Column<std::uint32_t>& regular) noexcept;
   void drop_crowded(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) noexcept;
   [[nodiscard]] bool near_key(std::size_t row) const noexcept;
   [[nodiscard]] bool fits_strip(std::size_t row, std::uint32_t strip) const noexcept;

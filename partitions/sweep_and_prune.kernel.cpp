@@ -1,4 +1,4 @@
-#include <winnow/partitions/hits.wide.h>
+#include <winnow/partitions/block_pairs.wide.h>
 #include <winnow/partitions/misfits.wide.h>
 #include <winnow/partitions/neighbour_lines.wide.h>
 #include <winnow/partitions/sweep_and_prune.kernel.h>
@@ -17,15 +17,25 @@ struct KeyStop {
 
 /// Moves `at` to the first row of [at, end) that may reach up to x; keys ascend. Sixteen keys a
 /// step: mostly one step is enough, and then it costs no branch.
-inline void skip_below(const StripView& strips, std::uint32_t& at, std::uint32_t end, float x) {
+inline std::uint32_t skip_below(const StripView& strips, std::uint32_t at, std::uint32_t end,
+                                float x) {
   const Float16 bound = broadcast(x);
   const Float16 drift = broadcast(strips.drift);
   while (at < end) {
     const Mask16 reaching = less_equal(bound, add(load_unaligned(strips.key + at), drift));
     const unsigned below = reaching == 0 ? static_cast<unsigned>(kLanes) : first(reaching);
     at = end - at < below ? end : at + below;
-    if (below < kLanes) return;
+    if (below < kLanes) break;
   }
+  return at;
+}
+
+/// The end of the run from `at` on that may begin at or below x; keys ascend. It may be up to
+/// fifteen rows late.
+inline std::uint32_t run_end(const StripView& strips, std::uint32_t at, std::uint32_t end,
+                             float x) {
+  while (at < end && strips.key[at] - strips.drift <= x) at += kLanes;
+  return at < end ? at : end;
 }
 
 /// The first row of [at, end) that may reach up to x on the sweep axis. Halving without a branch:
@@ -41,33 +51,53 @@ std::uint32_t first_reaching(const StripView& strips, std::uint32_t at, std::uin
   return at;
 }
 
+/// The strips behind one whose objects can touch its own, and the rows of each that blocks of the
+/// strip may yet reach. Blocks follow each other by their keys, so these only move forward.
+struct Sweeps {
+  const StripView& strips;
+  const NeighbourLines others;
+  std::uint32_t from[4];
+
+  Sweeps(const StripView& view, std::uint32_t strip)
+      : strips(view), others(view.axis[1], view.axis[2], strip) {
+    for (int k = 0; k < others.count; ++k) from[k] = strips.start[others.line[k]];
+  }
+
+  /// Adds the partners of a block that begins with row r and ends before `behind`, its strip before
+  /// `last`.
+  template <typename Pairs>
+  bool add_runs(std::uint32_t r, std::uint32_t behind, std::uint32_t last, Pairs& pairs) {
+    const std::uint32_t axis = strips.axis[0].axis;
+    const float low = pairs.low()[axis] - strips.axis[0].reach;
+    const float high = pairs.high()[axis];
+    if (!pairs.add_run(behind, run_end(strips, behind, last, high))) return false;
+    // Boxes may have drifted either way from their keys.
+    const float passed = strips.key[r] - strips.drift - strips.axis[0].reach;
+    for (int k = 0; k < others.count; ++k) {
+      const std::uint32_t end = strips.start[others.line[k] + 1];
+      from[k] = skip_below(strips, from[k], end, passed);
+      const std::uint32_t at = skip_below(strips, from[k], end, low);
+      if (!pairs.add_run(at, run_end(strips, at, end, high))) return false;
+    }
+    return true;
+  }
+};
+
 template <bool Filtered>
 bool find_self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end,
                      PairSink& sink) {
-  HitList<HitMode::unordered, Filtered> hits(strips.rows, sink);
-  RunList sweeps(strips.rows, strips.rows.column, hits, KeyStop{strips}, sink);
+  BlockPairs<Filtered> pairs(strips.rows, sink);
   for (std::uint32_t strip = begin; strip < end; ++strip) {
     const std::uint32_t last = strips.start[strip + 1];
     if (strips.start[strip] == last) continue;
-    const NeighbourLines others(strips.axis[1], strips.axis[2], strip);
-    std::uint32_t from[4];
-    std::uint32_t to[4];
-    for (int k = 0; k < others.count; ++k) {
-      from[k] = strips.start[others.line[k]];
-      to[k] = strips.start[others.line[k] + 1];
-    }
-    for (std::uint32_t r = strips.start[strip]; r < last; ++r) {
-      // Keys ascend in every strip, so starts only move forward: they go by the key, as the box
-      // itself may have drifted either way.
-      const float x = strips.key[r] - strips.drift - strips.axis[0].reach;
-      if (!sweeps.add(r, r + 1, last)) return false;
-      for (int k = 0; k < others.count; ++k) {
-        skip_below(strips, from[k], to[k], x);
-        if (!sweeps.add(r, from[k], to[k])) return false;
-      }
+    Sweeps sweeps(strips, strip);
+    for (std::uint32_t r = strips.start[strip]; r < last; r += kLanes) {
+      const std::uint32_t behind = last - r < kLanes ? last : r + kLanes;
+      if (!pairs.start(r, behind)) continue;
+      if (!sweeps.add_runs(r, behind, last, pairs) || !pairs.finish()) return false;
     }
   }
-  return sweeps.finish() && hits.flush();
+  return true;
 }
 
 bool self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
