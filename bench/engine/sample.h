@@ -41,4 +41,12 @@ class ThreadStopwatch {
   double start_ = now_ms();
 };
 
+struct GrowthPoint {
+  double size = 0.0;
+  double cost = 0.0;
+};
+
+/// Exponent b of cost = a * size^b: least squares of the logarithms. NaN for less than two sizes.
+[[nodiscard]] double fitted_exponent(std::span<const GrowthPoint> points);
+
 }  // namespace winnow::bench

@@ -26,6 +26,11 @@ std::vector<Goal> default_isa(const Ask& ask, const std::vector<Ask>& all, Lab& 
 /// Each kernel on a wide instruction set against itself on a narrow one.
 std::vector<Goal> kernel_speedup(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
 
+/// The fastest partition, one thread, over what memory alone asks for (see FrameLimit).
+std::vector<Goal> near_limit(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// How one partition's time grows with the number of objects, one thread.
+std::vector<Goal> growth_exponent(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+
 // other_kinds.cpp
 
 /// What one partition holds without results, the most over the scenes and over 1 and 2 threads.

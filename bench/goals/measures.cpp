@@ -14,7 +14,7 @@ struct Kind {
   std::vector<Goal> (*measure)(const Ask&, const std::vector<Ask>&, Lab&);
 };
 
-constexpr std::array<Kind, 30> kKinds{{{"fastest_partition", fastest_partition},
+constexpr std::array<Kind, 32> kKinds{{{"fastest_partition", fastest_partition},
                                        {"no_slower_than_existing", no_slower_than_existing},
                                        {"scene_ratio", scene_ratio},
                                        {"speedup", speedup},
@@ -43,7 +43,9 @@ constexpr std::array<Kind, 30> kKinds{{{"fastest_partition", fastest_partition},
                                        {"flow_soak", flow_soak},
                                        {"choice_near_best", choice_near_best},
                                        {"choice_in_recordings", choice_in_recordings},
-                                       {"choice_turn", choice_turn}}};
+                                       {"choice_turn", choice_turn},
+                                       {"near_limit", near_limit},
+                                       {"growth_exponent", growth_exponent}}};
 
 }  // namespace
 

@@ -1,3 +1,5 @@
+#include "engine/frame_limit.h"
+#include "engine/sample.h"
 #include "goals/kinds.h"
 
 #include "tool/table.h"
@@ -62,7 +64,8 @@ std::vector<Goal> no_slower_than_existing(const Ask& ask, const std::vector<Ask>
                            .asked = ask.number("most_unfit"),
                            .measured = static_cast<double>(unfit.size())}};
   for (const Ask& other : all) {
-    if (other.kind() != "fastest_partition" || other.count("objects") > ask.count("largest") ||
+    if (other.kind() != "fastest_partition" || other.topic() != ask.topic() ||
+        other.count("objects") > ask.count("largest") ||
         std::find(unfit.begin(), unfit.end(), other.text("scene")) != unfit.end()) {
       continue;
     }
@@ -143,6 +146,35 @@ std::vector<Goal> kernel_speedup(const Ask& ask, const std::vector<Ask>& /*all*/
     goals.push_back(goal);
   }
   return goals;
+}
+
+std::vector<Goal> near_limit(const Ask& ask, const std::vector<Ask>& /*all*/, Lab& lab) {
+  const Measurement& cell = lab.cell(ask.text("scene"), ask.count("objects"));
+  const Run* best = cell.fastest(1);
+  if (best == nullptr) ask.fail("no partition runs there");
+  const FrameLimit limit =
+      measure_frame_limit(cell.objects, static_cast<std::size_t>(best->pairs_a_frame()));
+  return {{.what = ask.text("scene") + ", " + on_size(cell.objects, 1) +
+                   ": fastest partition over bandwidth, sort, permutation and emission",
+           .unit = "ratio",
+           .asked = ask.number("asked"),
+           .measured = best->median_ms() / limit.total(),
+           .detail = best->engine + " " + short_number(best->median_ms()) + " ms over " +
+                     short_number(limit.total()) + " ms"}};
+}
+
+std::vector<Goal> growth_exponent(const Ask& ask, const std::vector<Ask>& /*all*/, Lab& lab) {
+  const std::string partition = ask.text("partition");
+  std::vector<GrowthPoint> points;
+  for (const std::size_t objects : ask.get<std::vector<std::size_t>>("sizes")) {
+    const Run* run = lab.cell(ask.text("scene"), objects).find(partition, 1);
+    if (run == nullptr) ask.fail(partition + " does not run there");
+    points.push_back({static_cast<double>(objects), run->median_ms()});
+  }
+  return {{.what = partition + " on " + ask.text("scene") + ": time grows as objects to the power",
+           .unit = "exponent",
+           .asked = ask.number("asked"),
+           .measured = fitted_exponent(points)}};
 }
 
 }  // namespace winnow::bench

@@ -1,3 +1,4 @@
+#include "engine/sample.h"
 #include "plots/plot_page.h"
 #include "tool/arguments.h"
 #include "tool/command.h"
@@ -6,7 +7,6 @@
 #include "tool/progress.h"
 #include "tool/table.h"
 
-#include <cmath>
 #include <iostream>
 #include <map>
 
@@ -22,23 +22,10 @@ struct Size {
 /// What each partition did at every size, in the order of the sizes.
 using Growths = std::map<std::string, std::vector<Size>>;
 
-/// Exponent b of ms = a * objects^b: least squares of the logarithms; NaN of less than two sizes.
-double fitted_exponent(const std::vector<Size>& sizes) {
-  double n = 0.0;
-  double sum_x = 0.0;
-  double sum_y = 0.0;
-  double sum_xx = 0.0;
-  double sum_xy = 0.0;
-  for (const Size& size : sizes) {
-    const double x = std::log(static_cast<double>(size.objects));
-    const double y = std::log(size.ms);
-    n += 1.0;
-    sum_x += x;
-    sum_y += y;
-    sum_xx += x * x;
-    sum_xy += x * y;
-  }
-  return (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x);
+double exponent_of(const std::vector<Size>& sizes) {
+  std::vector<GrowthPoint> points;
+  for (const Size& size : sizes) points.push_back({static_cast<double>(size.objects), size.ms});
+  return fitted_exponent(points);
 }
 
 struct Growth {
@@ -93,7 +80,7 @@ void Growth::print(const std::string& scene, const Growths& growths) const {
                         : "-");
       next += has ? 1 : 0;
     }
-    row.push_back(sizes.size() > 1 ? short_number(fitted_exponent(sizes)) : "-");
+    row.push_back(sizes.size() > 1 ? short_number(exponent_of(sizes)) : "-");
     table.add(std::move(row));
   }
   std::cout << table << std::flush;

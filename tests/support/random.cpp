@@ -29,6 +29,10 @@ std::size_t scaled(std::size_t count) {
   return std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(count) * scale()));
 }
 
+bool is_reduced() {
+  return scale() < 1.0;
+}
+
 bool is_quick() {
   return scale() < 0.5;
 }

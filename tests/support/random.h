@@ -13,6 +13,9 @@ namespace winnow::test {
 /// set it), at least 1.
 [[nodiscard]] std::size_t scaled(std::size_t count);
 
+/// True if tests run at less than their scale.
+[[nodiscard]] bool is_reduced();
+
 /// True if tests run at less than half of their scale, as slow builds do.
 [[nodiscard]] bool is_quick();
 
