@@ -15,7 +15,7 @@ namespace winnow::bench {
 struct Advised {
   std::string partition;
   double first_ms = 0.0;    ///< of the frame in which it was built
-  double median_ms = 0.0;   ///< of the frames after the first five, or after the first of a few
+  double median_ms = 0.0;   ///< of the frames after the first six, or after the first of a few
   double times_best = 0.0;  ///< over that of the fastest
   std::size_t bytes = 0;    ///< held, without results
   std::string why;          ///< one sentence from its counters
@@ -45,7 +45,7 @@ struct Advice {
 [[nodiscard]] Advice advise(FrameSource& source, const std::vector<std::string>& partitions,
                             std::size_t frames, int threads);
 
-/// The median of a run's frames after the first five; of fewer than nine, after the first.
+/// The median of a run's frames after the first six; of fewer than nine, after the first.
 [[nodiscard]] double settled_ms(const Run& run);
 
 }  // namespace winnow::bench

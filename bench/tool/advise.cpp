@@ -96,7 +96,7 @@ Command add_advise(CLI::App& app) {
   CLI::App* sub = app.add_subcommand(
       "advise",
       "Races the partitions on a recording or scene, frame by frame interleaved, and says which to "
-      "take, why, and how. Medians leave out the first five frames.");
+      "take, why, and how. Medians leave out the first six frames.");
   sub->add_option("target", advise->target.name,
                   "A recording (.aabbs, .aabbs.xz) or a scene's name")
       ->required();
