@@ -203,7 +203,6 @@ bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows,
   const std::size_t count = rows.size();
   if (!scratch.resize(count + Job::room_for(count))) return false;
   if (count == 0) return true;
-  const std::size_t slabs = pool.columns() / 2;
   const std::size_t tasks = (count + kPointsPerTask - 1) / kPointsPerTask;
   const auto for_points = [&](auto&& work) {
     execution.for_each(tasks, [&](std::size_t task) {
@@ -214,7 +213,7 @@ bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows,
   for_points([&](std::size_t i) {
     KdPoint& point = scratch[i];
     for (std::size_t a = 0; a < 3; ++a) {
-      point.at[a] = 0.5F * pool.column(a)[rows[i]] + 0.5F * pool.column(slabs + a)[rows[i]];
+      point.at[a] = 0.5F * pool.column(a)[rows[i]] + 0.5F * pool.column(3 + a)[rows[i]];
     }
     point.row = rows[i];
   });
