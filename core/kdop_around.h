@@ -3,6 +3,7 @@
 #include <winnow/core/kdop.h>
 #include <winnow/core/oriented_box.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -17,6 +18,7 @@ template <int K>
   constexpr auto directions = kdop_directions<K>();
   constexpr float kUlp = 1.2e-7F;  // a little more than 2^-23
   constexpr float kLeast = std::numeric_limits<float>::denorm_min();
+  constexpr double kMost = std::numeric_limits<float>::max();
   double center[3];
   double edge[3][3];  // half edges as vectors
   double size = 0.0;
@@ -42,8 +44,9 @@ template <int K>
         slack + std::abs(along(edge[0])) + std::abs(along(edge[1])) + std::abs(along(edge[2]));
     // One ulp and a little further than the nearest float, whichever way that was rounded: to ask
     // costs more than all the rest.
-    const auto low = static_cast<float>(middle - reach);
-    const auto high = static_cast<float>(middle + reach);
+    // What lies beyond all floats ends there: to a partition that is infinity.
+    const auto low = static_cast<float>(std::clamp(middle - reach, -kMost, kMost));
+    const auto high = static_cast<float>(std::clamp(middle + reach, -kMost, kMost));
     result.min[s] = low - (std::abs(low) * kUlp + kLeast);
     result.max[s] = high + (std::abs(high) * kUlp + kLeast);
   }

@@ -188,7 +188,8 @@ void HierarchicalGrid::add_structure_bytes(Footprint& footprint) const noexcept 
 }
 
 std::size_t HierarchicalGrid::cell_count() const noexcept {
-  return regular_rows() == 0 ? RowPartition::cell_count() : start_.size() - 1;
+  if (regular_rows() == 0) return RowPartition::cell_count();
+  return start_.empty() ? 0 : start_.size() - 1;
 }
 
 }  // namespace winnow

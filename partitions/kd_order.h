@@ -22,9 +22,8 @@ struct KdPoint {
 /// loading algorithm for R-tree", CAiSE 2003). Boxes of all sizes mix well: a cut follows where
 /// they lie, and a large box widens no more than the one block that it is in.
 ///
-/// Rows are live, their boxes in the pool's first six columns. O(n log n); the same result on
-/// any number of threads. False, and `rows` unchanged, if
-/// memory is refused.
+/// Rows are live, their boxes in the pool's first six columns. O(n log n); the same result on any
+/// number of threads. False, and `rows` unchanged, if memory is refused.
 [[nodiscard]] bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows,
                                    Column<KdPoint>& scratch, const Execution& execution);
 

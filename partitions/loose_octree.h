@@ -21,8 +21,8 @@ struct LooseOctreeOptions {
 /// Nodes overlap their neighbours by design and may be nearly empty, so they are not what is
 /// tested: every 16 rows in node order have a tight box, and 16 of these at once are pruned as in a
 /// block tree. Objects larger than the root, outside of it or without end, and those that have left
-/// their loose cells, are kept in a block tree beside it. In a world two cells thick it
-/// divides two axes only. Suits scenes of mixed sizes, clusters included. Self pairs: O(n log n +
+/// their loose cells, are kept in a block tree beside it. In a world two cells thick it divides two
+/// axes only. Seldom the fastest and never far from it, whatever the sizes. Self pairs: O(n log n +
 /// pairs) for boxes of bounded overlap. Exact.
 class LooseOctree : public RowPartition {
  public:

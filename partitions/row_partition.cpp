@@ -266,6 +266,8 @@ RowView RowPartition::row_view() const noexcept {
 }
 
 Footprint RowPartition::footprint() const noexcept {
+  // Queries that run at the same time may be bringing up to date what is counted here.
+  const std::scoped_lock lock(refresh_mutex_, tracker_mutex_);
   Footprint result;
   result.bounds = pool_.bytes();
   result.keys = keys_.key_bytes();

@@ -122,8 +122,7 @@ class RowPartition : public Partition {
   [[nodiscard]] const RowPartition* row_partition() const noexcept override { return this; }
 
   /// Exchanges the objects of two partitions made with the same options but for `execution`: keys,
-  /// client
-  /// data, filters, what pair buffers know of them, and the counters of Statistics. The next
+  /// client data, filters, what pair buffers know of them, and the counters of Statistics. The next
   /// refresh of either builds; what a tracked pair buffer holds is still updated. O(1).
   void swap_objects(RowPartition& other) noexcept;
 

@@ -193,7 +193,9 @@ Status RowPartition::absorb_changes() {
 // before it is asked. Slow wear is left to the count of tests.
 bool RowPartition::is_torn() const noexcept {
   constexpr float kTorn = 2.0F;
-  return stale_.all() && built_edge_ > 0.0F && tree_.typical_edge() > kTorn * built_edge_;
+  // Cells and strips find what left them; beside them the tree holds what is of many kinds.
+  if (regular_rows_ != 0 || !stale_.all()) return false;
+  return built_edge_ > 0.0F && tree_.typical_edge() > kTorn * built_edge_;
 }
 
 void RowPartition::collect_misfits(std::size_t limit) noexcept {

@@ -71,8 +71,7 @@ std::size_t SweepAndPrune::list_rows(Column<std::uint32_t>& rest) noexcept {
   for (std::size_t row = 0; row < rows; ++row) {
     if (pool().ids()[row] == kNoObject) continue;
     strip_[row] = layout_.cell_of(pool(), row);
-    // An infinite key and an infinite drift would have no sum.
-    if (strip_[row] == CellLayout::kNoCell || low[row] == -kInfinity) {
+    if (strip_[row] == CellLayout::kNoCell) {
       (void)rest.push_back(static_cast<std::uint32_t>(row));
       continue;
     }

@@ -32,11 +32,15 @@ void print(const Advice& advice, const std::string& skipped) {
             << isa_name() << '\n'
             << short_number(100.0 * advice.moving) << " % of the objects move in a frame; "
             << short_number(advice.pairs / static_cast<double>(advice.objects))
-            << " pairs an object; the large ones have " << short_number(std::exp2(f.size_spread))
-            << " times the edges of the small ones; "
-            << "room for " << short_number(f.room[0]) << " x " << short_number(f.room[1]) << " x "
-            << short_number(f.room[2]) << " of them; crowding "
-            << short_number(std::exp2(f.crowding)) << "\n\n";
+            << " pairs an object";
+  // Known where AutoPartition took part.
+  if (!advice.chosen.empty()) {
+    std::cout << "; the large ones have " << short_number(std::exp2(f.size_spread))
+              << " times the edges of the small ones; room for " << short_number(f.room[0]) << " x "
+              << short_number(f.room[1]) << " x " << short_number(f.room[2])
+              << " of them; crowding " << short_number(std::exp2(f.crowding));
+  }
+  std::cout << "\n\n";
   Table table({"partition", "ms a frame", "x best", "first ms", "bytes", "bytes/object", "why"});
   table.flush_left(6);
   for (const Advised& one : advice.ranking) {
@@ -62,14 +66,18 @@ Json to_json(const Advice& advice) {
                        {"bytes", one.bytes},
                        {"why", one.why}});
   }
-  const SceneFeatures& f = advice.features;
-  return {{"scene", advice.scene},   {"objects", advice.objects},
-          {"frames", advice.frames}, {"threads", advice.threads},
-          {"moving", advice.moving}, {"pairs", advice.pairs},
-          {"room", f.room},          {"size_spread", f.size_spread},
-          {"crowding", f.crowding},  {"ranking", ranking},
-          {"chosen", advice.chosen}, {"reason", advice.reason},
-          {"code", advice.code()}};
+  Json json{{"scene", advice.scene},     {"objects", advice.objects}, {"frames", advice.frames},
+            {"threads", advice.threads}, {"moving", advice.moving},   {"pairs", advice.pairs},
+            {"ranking", ranking},        {"code", advice.code()}};
+  if (!advice.chosen.empty()) {
+    const SceneFeatures& f = advice.features;
+    json["room"] = f.room;
+    json["size_spread"] = f.size_spread;
+    json["crowding"] = f.crowding;
+    json["chosen"] = advice.chosen;
+    json["reason"] = advice.reason;
+  }
+  return json;
 }
 
 int Advise::run() {

@@ -8,7 +8,7 @@
 #include "tool/table.h"
 
 #include <iostream>
-#include <map>
+#include <utility>
 
 namespace winnow::bench {
 namespace {
@@ -19,8 +19,16 @@ struct Size {
   double bytes_per_object = 0.0;
 };
 
-/// What each partition did at every size, in the order of the sizes.
-using Growths = std::map<std::string, std::vector<Size>>;
+/// What each partition did at every size, in the order of the sizes; partitions in the order of
+/// reports.
+using Growths = std::vector<std::pair<std::string, std::vector<Size>>>;
+
+std::vector<Size>& sizes_of(Growths& growths, const std::string& partition) {
+  for (auto& [name, sizes] : growths) {
+    if (name == partition) return sizes;
+  }
+  return growths.emplace_back(partition, std::vector<Size>()).second;
+}
 
 double exponent_of(const std::vector<Size>& sizes) {
   std::vector<GrowthPoint> points;
@@ -55,7 +63,8 @@ Growths Growth::measure_scene(const std::string& scene, Progress& progress) cons
     const Measurement measured = measure(options);
     if (!all_agree(measured.runs)) throw std::runtime_error("not all found the same pairs");
     for (const Run& run : measured.runs) {
-      growths[run.engine].push_back({objects, run.median_ms(), measured.bytes_per_object(run)});
+      sizes_of(growths, run.engine)
+          .push_back({objects, run.median_ms(), measured.bytes_per_object(run)});
     }
   }
   return growths;

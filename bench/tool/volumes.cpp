@@ -160,7 +160,8 @@ Command add_volumes(CLI::App& app) {
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   sub->add_option("--partition", volumes->race.partition, "Where the volumes are")
-      ->check(CLI::IsMember({"BoundsNSquared", "SweepAndPrune", "FlatGrid", "LinearBvh"}))
+      ->check(CLI::IsMember({"BoundsNSquared", "SweepAndPrune", "FlatGrid", "HierarchicalGrid",
+                             "LooseOctree", "LooseQuadtree", "LinearBvh", "StaticBvh"}))
       ->capture_default_str();
   sub->add_option("--frames", volumes->race.frames, "Frames that are timed")
       ->check(CLI::Range(1, 1000))

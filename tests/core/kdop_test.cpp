@@ -74,6 +74,18 @@ TYPED_TEST(KdopTest, around_points_contains_them) {
   }
 }
 
+TYPED_TEST(KdopTest, around_a_rotated_box_beyond_all_floats_is_valid) {
+  OrientedBox box;
+  box.center = {2e38F, 2e38F, 2e38F};
+  box.half = {1e38F, 1e38F, 1e38F};
+  const TypeParam volume = kdop_around<faces(TypeParam{})>(box);
+  ASSERT_TRUE(volume.is_valid());
+  for (std::size_t s = 0; s < 3; ++s) {
+    EXPECT_LE(volume.min[s], 1e38F);
+    EXPECT_GE(volume.max[s], 3e38F);
+  }
+}
+
 TYPED_TEST(KdopTest, around_a_rotated_box_contains_it_and_is_tight) {
   Random random(4);
   for (int i = 0; i < 1000; ++i) {

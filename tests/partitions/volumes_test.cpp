@@ -261,5 +261,22 @@ TEST(VolumesGivenAsBoxes, are_kept_by_every_partition) {
   }
 }
 
+// A tree of other volumes is a tree of their boxes.
+TEST(VolumesGivenAsBoxes, are_pruned_as_boxes_are) {
+  const std::vector<Aabb> boxes = uniform_boxes(5000);
+  std::uint64_t tests_of_boxes = 0;
+  for (const Volume volume : {Volume::aabb, Volume::kdop14, Volume::kdop26}) {
+    const auto partition =
+        make_partition("LinearBvh", {.execution = Execution::serial(), .volume = volume});
+    std::vector<Key> keys(boxes.size());
+    ASSERT_EQ(partition->insert(boxes, {}, keys), Status::ok);
+    PairBuffer buffer;
+    ASSERT_EQ(partition->self_pairs(buffer), Status::ok);
+    const std::uint64_t tests = partition->statistics().last_tests;
+    if (volume == Volume::aabb) tests_of_boxes = tests;
+    EXPECT_LE(tests, tests_of_boxes + tests_of_boxes / 10);
+  }
+}
+
 }  // namespace
 }  // namespace winnow::test
