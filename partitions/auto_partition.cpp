@@ -2,6 +2,7 @@
 
 #include <winnow/partitions/bounds_n_squared.h>
 #include <winnow/partitions/flat_grid.h>
+#include <winnow/partitions/hierarchical_grid.h>
 #include <winnow/partitions/linear_bvh.h>
 #include <winnow/partitions/static_bvh.h>
 #include <winnow/partitions/sweep_and_prune.h>
@@ -26,6 +27,16 @@ constexpr std::size_t kPatience = 64;
 constexpr std::size_t kTooFew = 32;
 // How often a kind is counted to have been left: past that its price is out of reach.
 constexpr std::uint8_t kMostOften = 32;
+// A first change of mind to a kind that is clearly cheaper need only have saved an eighth of its
+// price: a scene that goes on like its last frames for eight times as long is the rule. Each
+// further one needs twice as much.
+constexpr std::uint64_t kTrust = 3;
+constexpr double kClearly = 0.75;
+// The share of refreshes in which cells are built that the constants of the costs hold for, and
+// about how many refreshes it is known from. It is forgotten more slowly once trees are used.
+constexpr double kUsualBuilds = 0.25;
+constexpr double kRecent = 1.0 / 16.0;
+constexpr double kForgotten = 1.0 / 128.0;
 
 template <typename T>
 RowPartition* make(void* place, const PartitionOptions& options) {
@@ -34,8 +45,14 @@ RowPartition* make(void* place, const PartitionOptions& options) {
 
 using Maker = RowPartition* (*)(void* place, const PartitionOptions& options);
 // By PartitionKind.
-constexpr std::array<Maker, kPartitionKinds> kMakers{
-    make<BoundsNSquared>, make<SweepAndPrune>, make<FlatGrid>, make<LinearBvh>, make<StaticBvh>};
+constexpr std::array<Maker, kPartitionKinds> kMakers{make<BoundsNSquared>, make<SweepAndPrune>,
+                                                     make<FlatGrid>,       make<HierarchicalGrid>,
+                                                     make<LinearBvh>,      make<StaticBvh>};
+
+bool has_cells(PartitionKind kind) noexcept {
+  return kind == PartitionKind::sweep_and_prune || kind == PartitionKind::flat_grid ||
+         kind == PartitionKind::hierarchical_grid;
+}
 
 bool far_apart(std::size_t a, std::size_t b) noexcept {
   return 2 * a > 3 * b + 64 || 2 * b > 3 * a + 64;
@@ -45,7 +62,8 @@ bool far_apart(std::size_t a, std::size_t b) noexcept {
 
 AutoPartition::AutoPartition(const PartitionOptions& options) : options_(options) {
   static_assert(std::max({sizeof(BoundsNSquared), sizeof(SweepAndPrune), sizeof(FlatGrid),
-                          sizeof(LinearBvh), sizeof(StaticBvh)}) <= kRoom);
+                          sizeof(HierarchicalGrid), sizeof(LinearBvh), sizeof(StaticBvh)}) <=
+                kRoom);
   move_in(PartitionKind::linear_bvh);
 }
 
@@ -72,7 +90,7 @@ Status AutoPartition::refresh() const {
 }
 
 Status AutoPartition::refresh_now() {
-  wanted_ = kind_;
+  const PartitionKind kind_before = wanted_ = kind_;
   if (waiting_ != 0) {
     --waiting_;
   } else if (inner_->size() != 0 && inner_->volume() == Volume::aabb) {
@@ -80,6 +98,8 @@ Status AutoPartition::refresh_now() {
   }
   const Status status = wanted_ == kind_ ? inner_->refresh() : hand_over();
   if (status != Status::ok) return status;
+  if (wanted_ != kind_before) held_ = 0;
+  if (wanted_ != kind_before || build_due_) builds_seen_ = inner_->statistics().builds;
   changed_ = 0;
   chosen_ = inner_->size() != 0;
   return Status::ok;
@@ -117,6 +137,7 @@ void AutoPartition::choose() noexcept {
     pairs_seen_ = 0;
   }
   features_.objects = live;
+  build_due_ = other_scene;
   if (other_scene) guess(frame);
   if (chosen_ && wanted_ == kind_) consider(frame);
 }
@@ -135,23 +156,48 @@ void AutoPartition::guess(FrameWork frame) noexcept {
                 : "the least cost expected from a sample of the scene";
 }
 
-// What each kind would have saved is summed up until it pays for the build.
+// Where objects are too fast for cells and strips these are built in every frame, which nothing
+// that is known of the scene tells beforehand. Trees wear slowly.
+void AutoPartition::note_builds() noexcept {
+  const std::uint64_t builds = inner_->statistics().builds;
+  if (has_cells(kind_)) {
+    // The first frames of a kind tell more than later ones, but one build is no habit.
+    const double weight = std::max(kRecent, 1.0 / (3.0 + static_cast<double>(held_)));
+    build_share_ += weight * ((builds != builds_seen_ ? 1.0 : 0.0) - build_share_);
+  } else {
+    build_share_ -= kForgotten * build_share_;
+  }
+  held_ += held_ < kPatience ? 1 : 0;
+  builds_seen_ = builds;
+}
+
+double AutoPartition::cost_of(const PartitionCosts& costs, PartitionKind kind) const noexcept {
+  const double unusual = has_cells(kind) ? std::max(0.0, build_share_ - kUsualBuilds) : 0.0;
+  return costs.of(kind) + unusual * costs.build_of(kind);
+}
+
+// What each kind would have saved is summed up until it pays for a part of the build.
 void AutoPartition::consider(const FrameWork& frame) noexcept {
   const std::size_t pairs = pairs_.load(std::memory_order_relaxed);
   const PartitionCosts costs(features_, frame, static_cast<double>(pairs));
+  note_builds();
+  const int trust = static_cast<int>(kTrust - std::min(kTrust, switches_));
+  const double held = cost_of(costs, kind_);
   double most = 0.0;
   for (std::size_t k = 0; k < kPartitionKinds; ++k) {
     const auto kind = static_cast<PartitionKind>(k);
-    const double gain = kWorthwhile * costs.of(kind_) - costs.of(kind);
+    const double cost = cost_of(costs, kind);
+    const double gain = kWorthwhile * held - cost;
     saved_[k] = kind == kind_ ? 0.0 : std::max(0.0, saved_[k] + gain);
-    const double price = std::ldexp(costs.build_of(kind), left_[k]);
+    const double price =
+        std::ldexp(costs.build_of(kind), left_[k] - (cost < kClearly * held ? trust : 0));
     if (saved_[k] - price <= most) continue;
     most = saved_[k] - price;
     wanted_ = kind;
   }
   if (wanted_ == kind_) return;
   const double by_queries = costs.queries_of(kind_) - costs.queries_of(wanted_);
-  const double by_pairs = costs.of(kind_) - costs.of(wanted_) - by_queries;
+  const double by_pairs = held - cost_of(costs, wanted_) - by_queries;
   reason_ = by_queries > by_pairs ? "cheaper for the queries that are asked"
                                   : "cheaper for what moves and for its pairs";
 }

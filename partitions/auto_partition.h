@@ -23,8 +23,10 @@ namespace winnow {
 /// moved, pairs, rays, regions and nearest objects asked for) and from a sample of the scene (see
 /// SceneFeatures and PartitionCosts), which is taken anew only after much has moved. The first
 /// choice is the cheapest prediction. Later ones are a ski rental: another kind is taken once what
-/// it would have saved exceeds what handing over costs, and each kind that was left before must
-/// save twice as much to come back, so that a scene that alternates does not. All decisions follow
+/// it would have saved exceeds what handing over costs (an eighth, a quarter and a half of that for
+/// the first three changes, where it is clearly cheaper), and each kind that was left before must
+/// save twice as much to come back, so that a scene that alternates does not. Cells that were seen
+/// to be built often, because objects are fast, count as that much dearer. All decisions follow
 /// counts and samples, never time: they are the same on every machine, instruction set and number
 /// of threads.
 ///
@@ -128,6 +130,9 @@ class AutoPartition final : public Partition {
   void choose() noexcept;
   void guess(FrameWork frame) noexcept;
   void consider(const FrameWork& frame) noexcept;
+  void note_builds() noexcept;
+  /// With the builds of cells beyond the usual.
+  [[nodiscard]] double cost_of(const PartitionCosts& costs, PartitionKind kind) const noexcept;
   Status hand_over();
   void move_in(PartitionKind kind) noexcept;
 
@@ -172,6 +177,9 @@ class AutoPartition final : public Partition {
   SceneFeatures features_;
   PartitionCosts::List saved_{};  // by kind: what it would have saved, not yet spent
   std::array<std::uint8_t, kPartitionKinds> left_{};  // how often each was left
+  double build_share_ = 0.1;       // of refreshes with cells: about how many built them
+  std::uint64_t builds_seen_ = 0;  // by the kind that holds the objects
+  std::size_t held_ = 0;           // refreshes by it, up to a limit
   std::string_view reason_ = "nothing to choose by yet";
   std::uint64_t switches_ = 0;
   std::size_t objects_seen_ = 0;  // when the sample was taken
@@ -180,6 +188,7 @@ class AutoPartition final : public Partition {
   std::size_t pairs_seen_ = 0;    // pairs when the sample was taken
   std::size_t waiting_ = 0;       // refreshes to wait after memory was refused
   bool chosen_ = false;
+  bool build_due_ = false;                     // in the last refresh, whatever was chosen
   mutable std::atomic<std::size_t> pairs_{0};  // in the last frame that asked for all
   mutable Counter pair_queries_;
   mutable Counter full_queries_;
