@@ -26,8 +26,8 @@ function(draw name)
   endif()
 endfunction()
 
-# open(<name of the page> <variable>): the page's report of itself.
-function(open name report)
+# look(<name of the page> <variable>): the page as it stands once its scripts have run.
+function(look name result)
   execute_process(
     COMMAND ${browser} --headless --no-sandbox --disable-dev-shm-usage --enable-unsafe-swiftshader
             --user-data-dir=${WORK}/profile --window-size=900,600 --virtual-time-budget=2000
@@ -42,8 +42,14 @@ function(open name report)
   if(complaints)
     message(FATAL_ERROR "${name}: the page logged ${complaints}")
   endif()
+  set(${result} "${page}" PARENT_SCOPE)
+endfunction()
+
+# open(<name of the page> <variable>): the page's report of itself.
+function(open name report)
+  look(${name} page)
   if(NOT page MATCHES "id=\"report\">([^<]+)<")
-    message(FATAL_ERROR "${name}: the page says nothing of itself: ${log}")
+    message(FATAL_ERROR "${name}: the page says nothing of itself")
   endif()
   set(${report} "${CMAKE_MATCH_1}" PARENT_SCOPE)
 endfunction()
@@ -118,4 +124,22 @@ file(SHA256 ${WORK}/grid.html first)
 file(SHA256 ${WORK}/again.html second)
 if(NOT first STREQUAL second)
   message(FATAL_ERROR "two pages of the same picture differ")
+endif()
+
+# Plots: a mark for each partition, size and plot (time and memory), within the axes.
+execute_process(
+  COMMAND ${WINNOW} growth --partition FlatGrid,LinearBvh,StaticBvh --objects 200,400 --frames 3
+          --out ${WORK}/growth.html
+  RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE error)
+if(error MATCHES "need Chart.js")
+  message("skipped: ${error}")
+  return()
+endif()
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "winnow growth: ${error}")
+endif()
+look(growth page)
+if(NOT page MATCHES "<body data-drawn=\"12\"")
+  string(REGEX MATCH "<body[^>]*>" body "${page}")
+  message(FATAL_ERROR "growth: 12 marks were to be drawn: ${body}")
 endif()
