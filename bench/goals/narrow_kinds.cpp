@@ -18,11 +18,12 @@ namespace winnow::bench {
 namespace {
 
 /// The nearest to touching that pairs are brought, in radii of the smaller body.
-constexpr double kNearest = 1e-6;
+constexpr double kNearestPairs = 1e-6;
 /// Streaming keeps this share of what is asked in cache.
 constexpr double kStreaming = 0.5;
 
-constexpr std::array kLevels{NarrowLevel::boolean, NarrowLevel::distance, NarrowLevel::manifold};
+constexpr std::array kAskedLevels{NarrowLevel::boolean, NarrowLevel::distance,
+                                  NarrowLevel::manifold};
 
 std::string on_pairs(const std::string& kind, std::size_t pairs) {
   return kind + ", " + grouped(pairs) + " pairs";
@@ -56,7 +57,7 @@ Goal worst_ratio(Goal goal, const NarrowMeasurement& measured, const auto& over,
                  const auto& under) {
   const bool at_most = goal.sense == Goal::Sense::at_most;
   goal.measured = at_most ? 0.0 : kUnanswered;
-  for (const NarrowLevel level : kLevels) {
+  for (const NarrowLevel level : kAskedLevels) {
     const NarrowTiming* a = over(measured, level);
     const NarrowTiming* b = under(measured, level);
     if (a == nullptr || b == nullptr) continue;
@@ -141,8 +142,8 @@ std::vector<Goal> narrow_speed(const Ask& ask, const std::vector<Ask>& /*all*/, 
   std::vector<Goal> goals;
   for (const std::size_t pairs : ask.get<std::vector<std::size_t>>("pairs")) {
     const NarrowMeasurement& measured = lab.narrow(ask.text("pair"), pairs);
-    for (std::size_t i = 0; i < kLevels.size(); ++i) {
-      goals.push_back(speed_of(measured, kLevels[i], existing[i], faster[i]));
+    for (std::size_t i = 0; i < kAskedLevels.size(); ++i) {
+      goals.push_back(speed_of(measured, kAskedLevels[i], existing[i], faster[i]));
     }
   }
   return goals;
@@ -192,12 +193,12 @@ std::vector<Goal> narrow_accuracy(const Ask& ask, const std::vector<Ask>& /*all*
   for (const PairKind& kind : pair_kinds()) {
     const auto own = pairs.find(std::string(kind.name));
     const std::size_t count = own != pairs.end() ? own->second : pairs.at("others");
-    const auto set =
-        make_pair_set(kind, {.pairs = count, .ratio = ask.number("ratio"), .nearest = kNearest});
+    const auto set = make_pair_set(
+        kind, {.pairs = count, .ratio = ask.number("ratio"), .nearest = kNearestPairs});
     const auto truths = truths_of(*set, judge);
     WinnowNarrow engine(tier_of(ask), 1);
     engine.start(*set);
-    for (const NarrowLevel level : kLevels) {
+    for (const NarrowLevel level : kAskedLevels) {
       const Accuracy accuracy = judge_engine(engine, level, *set, truths);
       if (level == NarrowLevel::boolean) judged += accuracy.pairs;
       for (Fault& fault : found) {

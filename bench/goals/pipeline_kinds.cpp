@@ -12,7 +12,7 @@ namespace winnow::bench {
 namespace {
 
 /// Rises of the energy that are taken for errors of the integration.
-constexpr double kMostRise = 1e-3;
+constexpr double kMostEnergyRise = 1e-3;
 
 std::string found(const SceneTiming& timing) {
   return timing.engine + " " + short_number(timing.median_ms()) + " ms, " +
@@ -188,7 +188,7 @@ std::vector<Goal> flow_soak(const Ask& ask, const std::vector<Ask>&, Lab&) {
                      " with those of steps that have more contacts than any before"},
           {.what = what + "energy that contacts created",
            .unit = "of the kinetic",
-           .asked = kMostRise,
+           .asked = kMostEnergyRise,
            .measured = history.greatest_rise(),
            .detail = "greatest penetration " + short_number(history.deepest())},
           {.what = what + "contacts lost, invented or doubled",

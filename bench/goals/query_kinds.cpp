@@ -20,10 +20,6 @@ Goal with_refusal(Goal goal, Measure&& measure) {
   return goal;
 }
 
-std::string percent(double share) {
-  return short_number(100.0 * share) + " %";
-}
-
 }  // namespace
 
 std::vector<Goal> query_speed(const Ask& ask, const std::vector<Ask>& /*all*/, Lab& lab) {

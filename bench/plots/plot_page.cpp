@@ -2,6 +2,7 @@
 
 #include "plots/plot_parts.h"
 #include "tool/command.h"
+#include "tool/html.h"
 
 #include <cerrno>
 #include <cstring>
@@ -18,18 +19,6 @@ std::string chart_js() {
                         " is not there. On Debian:\n  apt-get install -y libjs-chart.js");
   }
   return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size()) {
-    text.replace(at, what.size(), by);
-  }
-  return text;
-}
-
-// Nothing in a script element may look like its end.
-std::string script(const std::string& text) {
-  return "<script>\n" + replaced(text, "</script", "<\\/script") + "\n</script>\n";
 }
 
 Json axis_json(const PlotAxis& axis) {
@@ -54,10 +43,6 @@ Json plot_json(const Plot& plot) {
 
 }  // namespace
 
-std::string escaped(const std::string& text) {
-  return replaced(replaced(replaced(text, "&", "&amp;"), "<", "&lt;"), ">", "&gt;");
-}
-
 std::string place_of(const Plot& plot) {
   return "<div class=\"plot\"><canvas id=\"" + plot.id + "\"></canvas></div>\n";
 }
@@ -66,15 +51,12 @@ void write_plot_page(const std::string& path, const std::string& title, const st
                      const std::vector<Plot>& plots) {
   Json data{{"plots", Json::array()}};
   for (const Plot& plot : plots) data["plots"].push_back(plot_json(plot));
-  // Names of scenes come from files and may be any bytes.
-  const std::string text = data.dump(-1, ' ', true, Json::error_handler_t::replace);
   std::string page = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   page += "<title>" + escaped(title) + "</title>\n<style>\n" + kPlotStyle + "</style>\n</head>\n";
   page += "<body>\n" + body + kChartJsNotice;
-  page += script(chart_js());
-  page += "<script type=\"application/json\" id=\"plots\">\n" + replaced(text, "<", "\\u003c") +
-          "\n</script>\n";
-  page += script(std::string("(() => {\n\"use strict\";\n") + kPlotScript + "})();");
+  page += script_element(chart_js());
+  page += data_element("plots", data);
+  page += script_element(std::string("(() => {\n\"use strict\";\n") + kPlotScript + "})();");
   page += "</body>\n</html>\n";
   std::ofstream file(path, std::ios::binary);
   file << page;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "tool/output.h"
-
 #include <string>
 #include <vector>
 
@@ -31,9 +29,6 @@ struct Plot {
   PlotAxis y;
   std::vector<PlotSeries> series;
 };
-
-/// Text as HTML shows it.
-[[nodiscard]] std::string escaped(const std::string& text);
 
 /// Where a plot is to stand within a page's body.
 [[nodiscard]] std::string place_of(const Plot& plot);

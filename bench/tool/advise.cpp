@@ -12,7 +12,7 @@
 namespace winnow::bench {
 namespace {
 
-constexpr std::size_t kSceneFrames = 41;
+constexpr std::size_t kAdviceFrames = 41;
 constexpr std::size_t kMostFrames = 201;
 
 struct Advise {
@@ -87,7 +87,7 @@ int Advise::run() {
   const Partitions partitions = partitions_for(choice.partitions, source->boxes().size());
   if (frames == 0) {
     frames = target.recording() ? std::min(target.recording()->frames.size(), kMostFrames)
-                                : kSceneFrames;
+                                : kAdviceFrames;
   }
   const Advice advice = advise(*source, partitions.taken, frames, threads);
   print(advice, skipped_line(partitions.skipped));

@@ -27,10 +27,6 @@ struct Narrow {
   [[nodiscard]] NarrowMeasureOptions options_for(const PairKind& kind, std::size_t count) const;
 };
 
-std::string percent(double share) {
-  return std::isnan(share) ? "-" : short_number(100.0 * share) + " %";
-}
-
 std::vector<std::string> row_of(const NarrowMeasurement& measured, const NarrowTiming& timing) {
   const NarrowTiming* peer = measured.best_peer(timing.level);
   const double ns = timing.median_ns();

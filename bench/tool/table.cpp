@@ -37,6 +37,10 @@ std::string short_number(double value) {
   return text;
 }
 
+std::string percent(double share) {
+  return std::isnan(share) ? "-" : short_number(100.0 * share) + " %";
+}
+
 std::string grouped(std::size_t value) {
   std::string digits = std::to_string(value);
   for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, 1, ',');

@@ -25,6 +25,8 @@ class Table {
 
 /// A number to three significant digits, without an exponent: 0.0571, 1.26, 48.3, 712.
 [[nodiscard]] std::string short_number(double value);
+/// A share to three significant digits: 12.5 %; "-" for NaN.
+[[nodiscard]] std::string percent(double share);
 /// An integer in groups of three digits: 100,000.
 [[nodiscard]] std::string grouped(std::size_t value);
 

@@ -43,10 +43,6 @@ std::vector<Volumes::Setting> Volumes::settings() const {
   return all;
 }
 
-std::string percent(double share) {
-  return short_number(100.0 * share) + " %";
-}
-
 std::string price(const VolumeRow& row, const VolumeRow& boxes) {
   const bool saves = row.reported < boxes.reported;
   return saves ? short_number(pays_from_ns(row, boxes)) + " ns/pair" : "-";
