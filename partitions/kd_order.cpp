@@ -1,5 +1,7 @@
 #include <winnow/partitions/kd_order.h>
 
+#include <winnow/partitions/split_jobs.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -14,7 +16,6 @@ constexpr std::uint32_t kMostBins = 256;
 constexpr std::size_t kFewEnough = 32;  // to be ranked
 constexpr float kLeastReach = 1e-30F;   // what is closer is at one place
 constexpr std::size_t kWorthSharing = 2048;
-constexpr std::size_t kMostJobs = 64;
 constexpr std::size_t kPointsPerTask = 16384;
 
 /// Points to be cut into subtrees, and room for a little more than half of them.
@@ -23,6 +24,7 @@ struct Job {
   std::size_t count = 0;
   KdPoint* room = nullptr;
 
+  [[nodiscard]] std::size_t size() const { return count; }
   [[nodiscard]] static std::size_t room_for(std::size_t count) { return count / 2 + count / 16; }
 };
 
@@ -176,26 +178,6 @@ void finish(Job job) noexcept {
   while (job.count > kBlock) finish(split(job));
 }
 
-void run(KdPoint* points, std::size_t count, const Execution& execution) {
-  std::array<Job, 2 * kMostJobs> jobs;
-  std::size_t open = 1;
-  jobs[0] = {points, count, points + count};
-  // Breadth first until there is enough for all threads: which jobs these are depends on the
-  // points alone.
-  for (bool more = true; more && open <= kMostJobs / 2;) {
-    execution.for_each(open, [&](std::size_t i) {
-      jobs[open + i] = jobs[i].count > kWorthSharing ? split(jobs[i]) : Job{};
-    });
-    std::size_t kept = open;
-    for (std::size_t i = open; i < 2 * open; ++i) {
-      if (jobs[i].count != 0) jobs[kept++] = jobs[i];
-    }
-    more = kept > open;
-    open = kept;
-  }
-  execution.for_each(open, [&](std::size_t i) { finish(jobs[i]); });
-}
-
 }  // namespace
 
 bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows,
@@ -217,7 +199,8 @@ bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows,
     }
     point.row = rows[i];
   });
-  run(scratch.data(), count, execution);
+  run_split_jobs(Job{scratch.data(), count, scratch.data() + count}, kWorthSharing, execution,
+                 split, finish);
   for_points([&](std::size_t i) { rows[i] = scratch[i].row; });
   return true;
 }

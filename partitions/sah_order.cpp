@@ -1,5 +1,7 @@
 #include <winnow/partitions/sah_order.h>
 
+#include <winnow/partitions/split_jobs.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -15,7 +17,6 @@ constexpr std::size_t kAxes = 4;           // the fourth is size
 constexpr std::uint32_t kFewEnough = 256;  // to be sorted rather than binned
 constexpr std::uint32_t kBins = 64;
 constexpr std::uint32_t kWorthSharing = 4096;
-constexpr std::size_t kMostJobs = 64;
 
 /// What a split compares boxes by: monotone in the centre on an axis, or in the logarithm of the
 /// longest edge.
@@ -103,24 +104,11 @@ class Builder {
   }
 
   void run() {
-    std::array<Job, 2 * kMostJobs> jobs;
-    std::size_t count = 1;
-    jobs[0] = {0, static_cast<std::uint32_t>(boxes_.size()), 0};
-    while (jobs[0].subtrees() > 16) ++jobs[0].level;
-    // Breadth first until there is enough for all threads: which jobs these are depends on the
-    // boxes alone.
-    for (bool more = true; more && count <= kMostJobs / 2;) {
-      execution_.for_each(count, [&](std::size_t i) {
-        jobs[count + i] = jobs[i].size() > kWorthSharing ? split(jobs[i]) : Job{};
-      });
-      std::size_t kept = count;
-      for (std::size_t i = count; i < 2 * count; ++i) {
-        if (jobs[i].size() != 0) jobs[kept++] = jobs[i];
-      }
-      more = kept > count;
-      count = kept;
-    }
-    execution_.for_each(count, [&](std::size_t i) { finish(jobs[i]); });
+    Job all{0, static_cast<std::uint32_t>(boxes_.size()), 0};
+    while (all.subtrees() > 16) ++all.level;
+    run_split_jobs(
+        all, kWorthSharing, execution_, [this](Job& job) { return split(job); },
+        [this](const Job& job) { finish(job); });
   }
 
  private:

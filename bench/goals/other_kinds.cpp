@@ -3,9 +3,7 @@
 #include "tool/table.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
-#include <system_error>
 
 namespace winnow::bench {
 namespace {
@@ -117,16 +115,9 @@ std::vector<Goal> same_pairs(const Ask& ask, const std::vector<Ask>& /*all*/, La
 
 std::vector<Goal> same_pairs_in_recordings(const Ask& ask, const std::vector<Ask>& /*all*/,
                                            Lab& /*lab*/) {
-  std::vector<std::filesystem::path> files;
-  std::error_code absent;
-  for (const auto& entry : std::filesystem::directory_iterator(ask.text("folder"), absent)) {
-    const std::string name = entry.path().filename().string();
-    if (name.ends_with(".aabbs") || name.ends_with(".aabbs.xz")) files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
   std::vector<Goal> goals;
-  for (const std::filesystem::path& file : files) {
-    const Recording recording = read_recording(file.string());
+  for (const std::string& file : recordings_in(ask.text("folder"))) {
+    const Recording recording = read_recording(file);
     MeasureOptions options;
     options.recording = &recording;
     options.frames = recording.frames.size();

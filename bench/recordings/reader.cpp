@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
+#include <system_error>
 
 namespace winnow::bench {
 namespace {
@@ -145,6 +147,19 @@ Recording read_recording(const std::string& path) {
   } catch (const std::bad_alloc&) {
     throw RecordingError(path + ": does not fit into memory");
   }
+}
+
+std::vector<std::string> recordings_in(const std::string& folder) {
+  std::vector<std::string> files;
+  std::error_code absent;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, absent)) {
+    const std::string name = entry.path().filename().string();
+    if (name.ends_with(".aabbs") || name.ends_with(".aabbs.xz")) {
+      files.push_back(entry.path().string());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 }  // namespace winnow::bench

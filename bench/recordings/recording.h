@@ -41,6 +41,9 @@ struct Recording {
 /// Reads a whole .aabbs file, or an .aabbs.xz if built with liblzma. Throws RecordingError.
 [[nodiscard]] Recording read_recording(const std::string& path);
 
+/// The .aabbs and .aabbs.xz files of a folder by name; none if the folder is not there.
+[[nodiscard]] std::vector<std::string> recordings_in(const std::string& folder);
+
 /// Writes the source's current frame and `steps` more. Throws RecordingError.
 void write_recording(const std::string& path, FrameSource& source, const std::string& object_type,
                      std::size_t steps);
