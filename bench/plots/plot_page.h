@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -8,13 +9,20 @@ namespace winnow::bench {
 struct PlotPoint {
   double x = 0.0;
   double y = 0.0;
-  std::string note;  ///< shown where the pointer is
+  std::string note{};  ///< shown where the pointer is
+  std::string row{};   ///< what it was made from, for who reads the page's data
+  /// Ends of the whisker; NaN: there is none.
+  double low = std::numeric_limits<double>::quiet_NaN();
+  double high = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct PlotSeries {
   std::string name;  ///< one name has one colour on the whole page
-  std::vector<PlotPoint> points;
+  std::vector<PlotPoint> points{};
   bool line = true;
+  std::string x_value{};  ///< names of what x and y are in the rows of the points
+  std::string y_value{};
+  bool front = false;  ///< a border between points: a thin black line without marks
 };
 
 struct PlotAxis {
@@ -27,7 +35,9 @@ struct Plot {
   std::string title;
   PlotAxis x;
   PlotAxis y;
-  std::vector<PlotSeries> series;
+  std::vector<PlotSeries> series{};
+  /// If there are any, the plot has stacked bars, one for each of these; x is its number.
+  std::vector<std::string> categories{};
 };
 
 /// Where a plot is to stand within a page's body.

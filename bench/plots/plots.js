@@ -6,31 +6,62 @@ const data = JSON.parse(document.getElementById("plots").textContent);
 const palette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
                  "#7f6000", "#8c8c8c", "#6a3d9a"];
 const marks = ["circle", "triangle", "rect", "rectRot", "star", "crossRot", "cross", "rectRounded"];
-const names = [];
+const first = data.names;
+const others = [];
 for (const plot of data.plots) {
   for (const series of plot.series) {
-    if (!names.includes(series.name)) names.push(series.name);
+    if (!first.includes(series.name) && !others.includes(series.name) && !series.front) {
+      others.push(series.name);
+    }
   }
 }
 
-function dataset(series) {
-  const i = names.indexOf(series.name);
+// Names that all pages know have whole lines, others dashed ones where both are in a plot.
+function look(name) {
+  const known = first.indexOf(name);
+  if (known >= 0) return {colour: palette[known % palette.length], mark: marks[known % 8]};
+  const i = others.indexOf(name);
+  return {colour: palette[i % palette.length], mark: marks[(i + 3) % 8], other: true};
+}
+
+function dataset(series, plot) {
+  const {colour, mark, other} = look(series.name);
+  const mixed = plot.series.some((one) => first.includes(one.name));
+  if (plot.categories.length > 0) {
+    return {
+      label: series.name,
+      data: series.points.map((point) => ({...point, x: plot.categories[point.x]})),
+      backgroundColor: colour,
+      borderColor: "#ffffff",
+      borderWidth: 0.5,
+    };
+  }
+  if (series.front) {
+    return {label: series.name, data: series.points, showLine: true, pointRadius: 0,
+            pointStyle: "line", borderColor: "#444444", backgroundColor: "#444444",
+            borderWidth: 1, borderDash: [2, 2]};
+  }
   return {
     label: series.name,
     data: series.points,
     showLine: series.line !== false,
-    borderColor: palette[i % palette.length],
-    backgroundColor: palette[i % palette.length],
-    pointStyle: marks[i % marks.length],
-    pointRadius: 4,
+    borderColor: colour,
+    backgroundColor: colour,
+    borderDash: mixed && other ? [6, 4] : [],
+    pointStyle: mark,
+    pointRadius: series.points.length > 60 ? 1.5 : 4,
     pointHoverRadius: 7,
     borderWidth: 1.5,
   };
 }
 
-function scale(axis) {
+function scale(axis, plot) {
+  const bars = plot.categories.length > 0;
+  const category = bars && axis === plot.x;
   return {
-    type: axis.log ? "logarithmic" : "linear",
+    type: category ? "category" : axis.log ? "logarithmic" : "linear",
+    labels: category ? plot.categories : undefined,
+    stacked: bars,
     title: {display: true, text: axis.label},
     grid: {color: "#e4e4e4"},
   };
@@ -38,12 +69,42 @@ function scale(axis) {
 
 function described(item) {
   const point = item.raw;
-  return `${item.dataset.label}: ${point.note ?? `${point.x}, ${point.y}`}`;
+  return `${item.dataset.label}: ${point.note || `${point.x}, ${point.y}`}`;
 }
 
-// The wheel zooms about the pointer, dragging moves, a double click shows everything again.
+// From the least to the greatest of what was measured.
+const whiskers = {
+  id: "whiskers",
+  afterDatasetsDraw(chart) {
+    const {ctx, chartArea: area} = chart;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(area.left, area.top, area.width, area.height);
+    ctx.clip();
+    chart.data.datasets.forEach((set, i) => {
+      if (!chart.isDatasetVisible(i)) return;
+      ctx.strokeStyle = set.borderColor;
+      ctx.lineWidth = 1;
+      chart.getDatasetMeta(i).data.forEach((mark, k) => {
+        const {low, high} = set.data[k];
+        if (low === undefined || high === undefined) return;
+        const y = chart.scales.y;
+        ctx.beginPath();
+        ctx.moveTo(mark.x, y.getPixelForValue(Math.max(low, y.min)));
+        ctx.lineTo(mark.x, y.getPixelForValue(high));
+        ctx.stroke();
+      });
+    });
+    ctx.restore();
+  },
+};
+
+// The wheel zooms about the pointer, dragging moves, a double click shows everything again. The
+// page scrolls on until a plot has been clicked.
 function zoomable(chart) {
   const canvas = chart.canvas;
+  let awake = false;
+  const axes = ["x", "y"].filter((axis) => chart.scales[axis].type !== "category");
   const along = (axis, event) => {
     const s = chart.scales[axis];
     return s.getValueForPixel(axis === "x" ? event.offsetX : event.offsetY);
@@ -55,10 +116,13 @@ function zoomable(chart) {
     chart.options.scales[axis].min = log ? Math.exp(low) : low;
     chart.options.scales[axis].max = log ? Math.exp(high) : high;
   };
+  canvas.title = "click, then turn the wheel to zoom; drag to move; double click for everything";
+  canvas.addEventListener("mouseleave", () => { awake = false; });
   canvas.addEventListener("wheel", (event) => {
+    if (!awake) return;
     event.preventDefault();
     const factor = event.deltaY > 0 ? 1.25 : 0.8;
-    for (const axis of ["x", "y"]) {
+    for (const axis of axes) {
       const value = along(axis, event);
       change(axis, (low, high, log) => {
         const at = log ? Math.log(value) : value;
@@ -68,11 +132,14 @@ function zoomable(chart) {
     chart.update("none");
   }, {passive: false});
   let held = null;
-  canvas.addEventListener("mousedown", (event) => { held = event; });
+  canvas.addEventListener("mousedown", (event) => {
+    held = event;
+    awake = true;
+  });
   window.addEventListener("mouseup", () => { held = null; });
   canvas.addEventListener("mousemove", (event) => {
     if (held === null) return;
-    for (const axis of ["x", "y"]) {
+    for (const axis of axes) {
       const from = along(axis, held);
       const to = along(axis, event);
       change(axis, (low, high, log) => {
@@ -84,7 +151,7 @@ function zoomable(chart) {
     chart.update("none");
   });
   canvas.addEventListener("dblclick", () => {
-    for (const axis of ["x", "y"]) {
+    for (const axis of axes) {
       delete chart.options.scales[axis].min;
       delete chart.options.scales[axis].max;
     }
@@ -92,29 +159,51 @@ function zoomable(chart) {
   });
 }
 
+// Marks of a series that lie within the axes; bars that have a height.
+function drawn_of(chart, i) {
+  const area = chart.chartArea;
+  return chart.getDatasetMeta(i).data.filter((mark) =>
+    Number.isFinite(mark.x) && Number.isFinite(mark.y) && mark.x >= area.left - 1 &&
+    mark.x <= area.right + 1 && mark.y >= area.top - 1 && mark.y <= area.bottom + 1).length;
+}
+
 let drawn = 0;
+let wanted = 0;
+const blank = [];
 for (const plot of data.plots) {
   const chart = new Chart(document.getElementById(plot.id), {
-    type: "scatter",
-    data: {datasets: plot.series.map(dataset)},
+    type: plot.categories.length > 0 ? "bar" : "scatter",
+    data: {datasets: plot.series.map((series) => dataset(series, plot))},
+    plugins: [whiskers],
     options: {
       animation: false,
       maintainAspectRatio: false,
-      scales: {x: scale(plot.x), y: scale(plot.y)},
+      devicePixelRatio: Math.max(2, window.devicePixelRatio || 1),
+      scales: {x: scale(plot.x, plot), y: scale(plot.y, plot)},
       plugins: {
         title: {display: true, text: plot.title, font: {size: 15}},
-        legend: {position: "right", labels: {usePointStyle: true}},
+        legend: {position: "bottom", labels: {usePointStyle: true, boxHeight: 7}},
         tooltip: {callbacks: {label: described}},
       },
     },
   });
   zoomable(chart);
-  for (let i = 0; i < plot.series.length; ++i) {
-    const area = chart.chartArea;
-    drawn += chart.getDatasetMeta(i).data.filter((mark) =>
-      mark.x >= area.left && mark.x <= area.right && mark.y >= area.top &&
-      mark.y <= area.bottom).length;
-  }
+  let here = 0;
+  let points = 0;
+  plot.series.forEach((series, i) => {
+    here += drawn_of(chart, i);
+    points += series.points.length;
+  });
+  if (here < points) blank.push(plot.id);
+  drawn += here;
+  wanted += points;
 }
 // What a test of the page looks at.
 document.body.dataset.drawn = String(drawn);
+document.body.dataset.wanted = String(wanted);
+document.body.dataset.plots = String(data.plots.length);
+document.body.dataset.blank = blank.join(" ");
+
+window.addEventListener("beforeprint", () => {
+  for (const folded of document.querySelectorAll("details")) folded.open = true;
+});

@@ -42,6 +42,7 @@ Command add_volumes(CLI::App& app);
 Command add_advise(CLI::App& app);
 Command add_growth(CLI::App& app);
 Command add_limits(CLI::App& app);
+Command add_report(CLI::App& app);
 
 /// What the tool does if it is given no subcommand.
 int run_overview();

@@ -18,7 +18,7 @@ int run_tool(int argc, char** argv) {
       add_footprint(app), add_keys(app),     add_crossover(app), add_queries(app),
       add_query(app),     add_narrow(app),   add_accuracy(app),  add_goals(app),
       add_draw(app),      add_pipeline(app), add_simulate(app),  add_volumes(app),
-      add_growth(app),    add_limits(app),   add_advise(app)};
+      add_growth(app),    add_limits(app),   add_advise(app),    add_report(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "tool/output.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace winnow::bench {
+
+/// Where and from what a measurement comes: processor, cores, memory, system, compiler, build type,
+/// commit, instruction sets, versions of the libraries, date, and the median of the reference sweep
+/// in ms, by which machines are compared.
+[[nodiscard]] Json machine_facts();
+
+/// A library that winnow can be measured against but was not built with.
+struct MissingPeer {
+  std::string name;
+  std::string package;  ///< of Debian
+};
+[[nodiscard]] std::vector<MissingPeer> missing_peers();
+
+}  // namespace winnow::bench
