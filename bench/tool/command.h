@@ -44,7 +44,4 @@ Command add_growth(CLI::App& app);
 Command add_limits(CLI::App& app);
 Command add_report(CLI::App& app);
 
-/// What the tool does if it is given no subcommand.
-int run_overview();
-
 }  // namespace winnow::bench

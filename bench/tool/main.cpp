@@ -8,17 +8,30 @@ namespace winnow::bench {
 namespace {
 
 int run_tool(int argc, char** argv) {
-  CLI::App app{
-      "winnow: collision detection, measured. Without a subcommand: every partition on the "
-      "six main scenes at 10,000 and 100,000 objects.",
-      "winnow"};
+  CLI::App app{"winnow: collision detection, measured. Without a subcommand: the report.",
+               "winnow"};
   app.require_subcommand(0, 1);
-  const std::vector<Command> commands{
-      add_scenes(app),    add_record(app),   add_replay(app),    add_throughput(app),
-      add_footprint(app), add_keys(app),     add_crossover(app), add_queries(app),
-      add_query(app),     add_narrow(app),   add_accuracy(app),  add_goals(app),
-      add_draw(app),      add_pipeline(app), add_simulate(app),  add_volumes(app),
-      add_growth(app),    add_limits(app),   add_advise(app),    add_report(app)};
+  const Command report = add_report(app);
+  const std::vector<Command> commands{report,
+                                      add_scenes(app),
+                                      add_record(app),
+                                      add_replay(app),
+                                      add_throughput(app),
+                                      add_footprint(app),
+                                      add_keys(app),
+                                      add_crossover(app),
+                                      add_queries(app),
+                                      add_query(app),
+                                      add_narrow(app),
+                                      add_accuracy(app),
+                                      add_goals(app),
+                                      add_draw(app),
+                                      add_pipeline(app),
+                                      add_simulate(app),
+                                      add_volumes(app),
+                                      add_growth(app),
+                                      add_limits(app),
+                                      add_advise(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -29,7 +42,7 @@ int run_tool(int argc, char** argv) {
   for (const Command& command : commands) {
     if (command.app->parsed()) return command.run();
   }
-  return run_overview();
+  return report.run();
 }
 
 }  // namespace

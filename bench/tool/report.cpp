@@ -22,7 +22,7 @@ struct Report {
   bool quick = false;
   bool no_peers = false;
   std::string from;
-  std::string out;
+  std::string out = "winnow-report";
 
   int run();
 
@@ -127,7 +127,7 @@ Command add_report(CLI::App& app) {
   for (const ReportSection& section : report_sections()) ids.emplace_back(section.id);
   sub->add_option("--out", report->out,
                   "Folder for index.html, results.json and CSVs; it is made if it is not there")
-      ->required();
+      ->capture_default_str();
   sub->add_option("--scene", report->choice.scenes,
                   "Built-in scenes or recordings (.aabbs, .aabbs.xz); default: the six main ones")
       ->delimiter(',');
