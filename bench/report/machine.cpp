@@ -8,6 +8,7 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <ctime>
 #include <fstream>
@@ -100,6 +101,11 @@ std::vector<MissingPeer> missing_peers() {
     }
   }
   return missing;
+}
+
+bool is_peer(std::string_view name) {
+  return std::any_of(kKnownPeers.begin(), kKnownPeers.end(),
+                     [&](const KnownPeer& peer) { return name.starts_with(peer.name); });
 }
 
 }  // namespace winnow::bench

@@ -20,4 +20,7 @@ struct MissingPeer {
 };
 [[nodiscard]] std::vector<MissingPeer> missing_peers();
 
+/// Whether a key of a row names one of them, installed or not: "FCL", "Bullet dbvt".
+[[nodiscard]] bool is_peer(std::string_view name);
+
 }  // namespace winnow::bench

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <limits>
 #include <stdexcept>
 
@@ -33,6 +34,25 @@ bool is_known(const Json& table, const std::string& member) {
                      [&](const Json& value) { return value["name"] == member; });
 }
 
+/// Whether all is there that others rely on.
+bool is_report(const Json& document) {
+  if (!document.is_object() || document.value("format", Json()) != kReportFormat) return false;
+  for (const char* facts : {"machine", "settings"}) {
+    if (!document.contains(facts) || !document[facts].is_object()) return false;
+  }
+  for (const char* list : {"missing", "problems", "sections", "tables"}) {
+    if (!document.contains(list) || !document[list].is_array()) return false;
+  }
+  return std::all_of(document["tables"].begin(), document["tables"].end(), [](const Json& table) {
+    if (!table.is_object()) return false;
+    for (const char* member : {"name", "keys", "values", "rows"}) {
+      if (!table.contains(member)) return false;
+    }
+    return std::all_of(table["rows"].begin(), table["rows"].end(),
+                       [](const Json& row) { return row.is_object() && row.contains("id"); });
+  });
+}
+
 }  // namespace
 
 Results::Results()
@@ -46,8 +66,7 @@ Results::Results()
                  {"tables", Json::array()}}) {}
 
 Results::Results(Json document) : document_(std::move(document)) {
-  if (!document_.is_object() || document_.value("format", "") != kReportFormat ||
-      !document_.contains("tables")) {
+  if (!is_report(document_)) {
     throw ArgumentError(std::string("this is not a \"") + kReportFormat + "\"");
   }
 }
@@ -125,6 +144,17 @@ const Json* Results::column(const std::string& name, const std::string& value) c
     if (column["name"] == value) return &column;
   }
   return nullptr;
+}
+
+Results read_results(const std::string& path) {
+  std::ifstream file(path);
+  Json document = Json::parse(file, nullptr, false);
+  if (document.is_discarded()) throw ArgumentError(path + " cannot be read");
+  try {
+    return Results(std::move(document));
+  } catch (const ArgumentError& error) {
+    throw ArgumentError(path + ": " + error.what());
+  }
 }
 
 Json to_value(const std::vector<double>& samples) {

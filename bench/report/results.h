@@ -82,6 +82,9 @@ class Results {
   Json document_;
 };
 
+/// Throws ArgumentError if the file cannot be read or is no such document.
+[[nodiscard]] Results read_results(const std::string& path);
+
 /// A spread as a value of a row.
 [[nodiscard]] Json to_value(const std::vector<double>& samples);
 

@@ -43,5 +43,6 @@ Command add_advise(CLI::App& app);
 Command add_growth(CLI::App& app);
 Command add_limits(CLI::App& app);
 Command add_report(CLI::App& app);
+Command add_compare(CLI::App& app);
 
 }  // namespace winnow::bench

@@ -13,6 +13,7 @@ int run_tool(int argc, char** argv) {
   app.require_subcommand(0, 1);
   const Command report = add_report(app);
   const std::vector<Command> commands{report,
+                                      add_compare(app),
                                       add_scenes(app),
                                       add_record(app),
                                       add_replay(app),

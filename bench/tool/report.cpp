@@ -7,7 +7,6 @@
 #include "tool/measure.h"
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 
 namespace winnow::bench {
@@ -97,10 +96,7 @@ void Report::note_settings(const ReportOptions& options, Results& results) const
 int Report::run() {
   choose_isa(choice.isa);
   if (!from.empty()) {
-    std::ifstream file(from);
-    Json document = Json::parse(file, nullptr, false);
-    if (document.is_discarded()) throw ArgumentError("--from: " + from + " cannot be read");
-    Results results(std::move(document));
+    Results results = read_results(from);
     write_report(out, results);
     return kDone;
   }

@@ -1,0 +1,217 @@
+#include "report/compare.h"
+
+#include "report/machine.h"
+#include "tool/table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace winnow::bench {
+namespace {
+
+enum class CompareUnit { figure, time, rate };
+
+/// "ms", "ns/pair" are times, "1/s", "GB/s" rates.
+CompareUnit unit_kind(const std::string& unit) {
+  const std::size_t slash = unit.find('/');
+  const std::string over = unit.substr(0, slash);
+  if (over == "s" || over == "ms" || over == "us" || over == "ns") return CompareUnit::time;
+  return slash != std::string::npos && unit.substr(slash + 1) == "s" ? CompareUnit::rate
+                                                                     : CompareUnit::figure;
+}
+
+/// A value as a cost: of rates, the time that one takes.
+struct Cost {
+  double best = 0.0;
+  double median = 0.0;
+  bool steady = true;  ///< can be told from noise
+};
+
+constexpr std::size_t kFewestSamples = 5;
+
+Cost cost_of(const Json& row, const Json& column) {
+  const std::string name = column["name"];
+  const bool less = column["better"] == "less";
+  Cost cost;
+  cost.best = cost.median = value_of(row, name);
+  const Json& value = row[name];
+  if (value.is_object()) cost.best = value[less ? "min" : "max"];
+  if (unit_kind(column["unit"]) != CompareUnit::figure) {
+    cost.steady = value.is_object() && value["samples"].get<std::size_t>() >= kFewestSamples;
+  }
+  return less ? cost : Cost{1.0 / cost.best, 1.0 / cost.median, cost.steady};
+}
+
+bool beyond(const Cost& good, const Cost& bad, double threshold) {
+  return good.steady && bad.steady && bad.median > threshold * good.median &&
+         bad.best > threshold * good.best && bad.best > good.median;
+}
+
+Verdict verdict_of(const Cost& before, const Cost& after, double threshold) {
+  if (beyond(before, after, threshold)) return Verdict::worse;
+  if (beyond(after, before, threshold)) return Verdict::better;
+  const double ratio = after.median / before.median;
+  return ratio > threshold || ratio < 1.0 / threshold ? Verdict::noise : Verdict::same;
+}
+
+/// Text of a value that tells which pairs were found.
+bool is_fingerprint(const Json& column) {
+  return column["name"].get<std::string>().find("fingerprint") != std::string::npos;
+}
+
+bool counts(const Json& table, const Json& row) {
+  if (row.contains("from")) return false;
+  return std::none_of(table["keys"].begin(), table["keys"].end(), [&](const Json& key) {
+    const Json& name = row[key.get<std::string>()];
+    return name.is_string() && is_peer(name.get<std::string>());
+  });
+}
+
+class Comparing {
+ public:
+  Comparing(const Results& before, const Results& after, const CompareOptions& options)
+      : before_(before), after_(after), options_(options) {}
+
+  Comparison all() {
+    remark_settings();
+    for (const Json& table : before_.document()["tables"]) {
+      for (const Json& row : table["rows"]) old_rows_[row["id"]] = &row;
+    }
+    for (const Json& table : after_.document()["tables"]) {
+      for (const Json& row : table["rows"]) add_row(table, row);
+    }
+    found_.only_before = old_rows_.size() - matched_;
+    return std::move(found_);
+  }
+
+ private:
+  const Results& before_;
+  const Results& after_;
+  CompareOptions options_;
+  bool same_questions_ = true;
+  bool quick_ = false;  // one of them, so that times say nothing
+  std::map<std::string, const Json*> old_rows_;
+  std::size_t matched_ = 0;
+  Comparison found_;
+
+  void remark_settings() {
+    const Json& was = before_.document()["settings"];
+    const Json& is = after_.document()["settings"];
+    for (const auto& [name, value] : is.items()) {
+      if (was.contains(name) && was[name] == value) continue;
+      found_.remarks.push_back("settings differ: " + name + " was " +
+                               (was.contains(name) ? was[name].dump() : "not told") + ", is " +
+                               value.dump());
+      if (name == "seed" || name == "quick") same_questions_ = false;
+    }
+    for (const auto* report : {&before_, &after_}) {
+      const std::string which = report == &before_ ? "the old report" : "the new report";
+      const Json& document = report->document();
+      if (!document.value("complete", false)) found_.remarks.push_back(which + " is not complete");
+      if (document["settings"].value("quick", false)) {
+        quick_ = true;
+        found_.remarks.push_back(which + " was made with --quick: no time of it counts");
+      }
+      for (const Json& problem : document.value("problems", Json::array())) {
+        found_.remarks.push_back(which + ", problem: " + problem.get<std::string>());
+      }
+    }
+  }
+
+  void add_row(const Json& table, const Json& row) {
+    const auto at = old_rows_.find(row["id"]);
+    if (at == old_rows_.end()) {
+      ++found_.only_after;
+      return;
+    }
+    ++matched_;
+    const Json& old = *at->second;
+    for (const Json& column : table["values"]) {
+      const std::string name = column["name"];
+      if (!old.contains(name)) continue;
+      if (!row.contains(name)) {
+        ++found_.values_gone;
+      } else if (is_fingerprint(column)) {
+        add_fingerprint(row, old, name);
+      } else if (column["better"] != "neither") {
+        add_value(table, row, old, column);
+      }
+    }
+  }
+
+  void add_fingerprint(const Json& row, const Json& old, const std::string& name) {
+    const bool same_command = row.value("command", "") == old.value("command", "");
+    if (!same_questions_ || !same_command || row[name] == old[name]) return;
+    found_.other_pairs.push_back({row["id"], name, old[name], row[name]});
+  }
+
+  void add_value(const Json& table, const Json& row, const Json& old, const Json& column) {
+    const std::string name = column["name"];
+    Change change{.table = table["name"],
+                  .row = row["id"],
+                  .value = name,
+                  .unit = column["unit"],
+                  .before = value_of(old, name),
+                  .after = value_of(row, name),
+                  .counts = counts(table, row)};
+    if (!(change.before >= 0.0) || !(change.after >= 0.0)) return;
+    if (change.before == 0.0 || change.after == 0.0) {
+      add_zero(std::move(change), column);
+      return;
+    }
+    const Cost was = cost_of(old, column);
+    Cost is = cost_of(row, column);
+    if (const CompareUnit kind = unit_kind(change.unit); kind != CompareUnit::figure) {
+      is = {is.best / options_.scale, is.median / options_.scale, is.steady && !quick_};
+      change.after =
+          kind == CompareUnit::time ? change.after / options_.scale : change.after * options_.scale;
+    }
+    change.ratio = is.median / was.median;
+    change.verdict = verdict_of(was, is, options_.threshold);
+    found_.changes.push_back(std::move(change));
+  }
+
+  /// Of a time, zero is too little to be measured, and says nothing.
+  void add_zero(Change change, const Json& column) {
+    if (change.before != change.after) {
+      if (unit_kind(change.unit) != CompareUnit::figure) return;
+      const bool worse = (change.after > change.before) == (column["better"] == "less");
+      change.verdict = worse ? Verdict::worse : Verdict::better;
+      change.ratio = worse ? std::numeric_limits<double>::infinity() : 0.0;
+    }
+    found_.changes.push_back(std::move(change));
+  }
+};
+
+double sweep_ms(const Results& results) {
+  return results.document()["machine"].value("reference_sweep_ms", 0.0);
+}
+
+}  // namespace
+
+std::size_t Comparison::regressions() const {
+  return static_cast<std::size_t>(std::count_if(
+      changes.begin(), changes.end(),
+      [](const Change& change) { return change.counts && change.verdict == Verdict::worse; }));
+}
+
+Comparison compare(const Results& before, const Results& after, const CompareOptions& options) {
+  return Comparing(before, after, options).all();
+}
+
+double machine_ratio(const Results& before, const Results& after) {
+  const double was = sweep_ms(before);
+  const double is = sweep_ms(after);
+  return was > 0.0 && is > 0.0 ? is / was : 1.0;
+}
+
+bool other_machine(const Results& before, const Results& after) {
+  const Json& was = before.document()["machine"];
+  const Json& is = after.document()["machine"];
+  return was.value("processor", Json()) != is.value("processor", Json()) ||
+         was.value("cores", Json()) != is.value("cores", Json());
+}
+
+}  // namespace winnow::bench
