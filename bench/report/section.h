@@ -35,6 +35,9 @@ struct ReportOptions {
   std::uint64_t seed = 1;
 };
 
+/// The greatest number of objects asked for that is not above `most`, or the least there is.
+[[nodiscard]] std::size_t objects_up_to(const ReportOptions& options, std::size_t most) noexcept;
+
 /// A piece of the work: it adds rows to the results. One that throws is noted as a problem, and the
 /// report goes on.
 struct ReportStep {

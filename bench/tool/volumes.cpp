@@ -1,5 +1,7 @@
+#include "engine/fingerprint.h"
 #include "tool/arguments.h"
 #include "tool/command.h"
+#include "tool/measure_volumes.h"
 #include "tool/output.h"
 #include "tool/progress.h"
 #include "tool/table.h"
@@ -7,41 +9,22 @@
 #include "volumes/volume_race.h"
 
 #include <iostream>
+#include <optional>
 
 namespace winnow::bench {
 namespace {
 
 struct Volumes {
-  std::string scene = "uniform";
-  std::size_t objects = 10'000;
-  std::uint64_t seed = 1;
+  VolumeSettingOptions objects_are;
+  std::string recording;
+  std::vector<std::string> settings;
+  double step = -1.0;  // below 0: the setting's own
   std::string isa;
   std::string json;
   VolumeRaceOptions race;
 
   int run();
-
- private:
-  struct Setting {
-    std::string what;
-    double step;
-    Solids solids;
-  };
-  std::vector<Setting> settings() const;
 };
-
-// A fast and a slow way to move: margins are for the latter.
-constexpr double kFast = 0.1;
-constexpr double kSlow = 0.002;
-
-std::vector<Volumes::Setting> Volumes::settings() const {
-  std::vector<Setting> all;
-  all.push_back({scene, kFast, Solids::of_scene(scene, objects, seed)});
-  all.push_back({"rotated cubes", kFast, Solids::rotated(objects, seed)});
-  all.push_back({"rotated rods 1:1:20", kFast, Solids::rods(objects, seed)});
-  all.push_back({"rotated cubes, slow", kSlow, Solids::rotated(objects, seed)});
-  return all;
-}
 
 std::string price(const VolumeRow& row, const VolumeRow& boxes) {
   const bool saves = row.reported < boxes.reported;
@@ -87,7 +70,8 @@ Json to_json(const VolumeRow& row, const VolumeRow& boxes, const std::string& se
           {"narrow_ms", row.narrow_ms()},
           {"sum_ms", row.sum_ms()},
           {"pays_from_ns_a_pair", pays_from_ns(row, boxes)},
-          {"bytes_per_object", row.bytes_per_object}};
+          {"bytes_per_object", row.bytes_per_object},
+          {"fingerprint", to_hex(row.fingerprint)}};
 }
 
 Json to_json(const BoxWidth& width, const std::string& setting, std::size_t objects) {
@@ -105,33 +89,34 @@ Json to_json(const BoxWidth& width, const std::string& setting, std::size_t obje
 
 int Volumes::run() {
   choose_isa(isa);
-  (void)scene_or_error(scene, objects, seed);
-  std::vector<Setting> all = settings();
+  std::optional<Recording> file;
+  if (!recording.empty()) file = read_recording(recording);
+  objects_are.recording = file ? &*file : nullptr;
   Json rows_json = Json::array();
   Json widths_json = Json::array();
   bool missed = false;
-  Progress progress(all.size());
-  for (Setting& setting : all) {
-    progress.step(setting.what);
-    std::vector<Aabb> boxes;
-    for (const OrientedBox& box : setting.solids.boxes()) boxes.push_back(box.bounds());
-    const std::vector<BoxWidth> widths = race_widths(boxes, race.frames);
-    race.step = setting.step;
+  Progress progress(settings.size());
+  for (const std::string& name : settings) {
+    progress.step(name);
+    VolumeSetting setting = make_volume_setting(name, objects_are);
+    const std::size_t objects = setting.solids.size();
+    const std::vector<BoxWidth> widths = race_widths(setting.solids.bounds(), race.frames);
+    race.step = step < 0.0 ? setting.step : step;
     const std::vector<VolumeRow> rows = race_volumes(std::move(setting.solids), race);
     progress.clear();
     std::cout << '\n'
               << setting.what << ", " << grouped(objects) << " objects that go "
-              << short_number(setting.step) << " of an edge in a frame, " << race.partition
+              << short_number(race.step) << " of an edge in a frame, " << race.partition
               << ", 1 thread, " << isa_name() << '\n';
     print(rows, race.frames);
-    if (&setting != &all.back()) {
+    if (name != "slow") {
       std::cout << "16-bit ends against floats, rows against groups of 256:\n";
       print(widths);
     }
     for (const VolumeRow& row : rows) {
       missed = missed || row.missed != 0;
       rows_json.push_back(
-          to_json(row, rows.front(), setting.what, setting.step, objects, race.frames));
+          to_json(row, rows.front(), setting.what, race.step, objects, race.frames));
     }
     for (const BoxWidth& width : widths) {
       widths_json.push_back(to_json(width, setting.what, objects));
@@ -146,23 +131,35 @@ int Volumes::run() {
 
 Command add_volumes(CLI::App& app) {
   auto volumes = std::make_shared<Volumes>();
+  const auto names = volume_setting_names();
+  const auto partitions = volume_partitions();
+  volumes->settings.assign(names.begin(), names.end());
   CLI::App* sub = app.add_subcommand(
       "volumes",
       "Bounding volumes and margins side by side: false positives against what they cost, the "
       "exact test of the pairs included");
-  sub->add_option("--scene", volumes->scene, "Built-in scene for the first table")
-      ->capture_default_str();
-  sub->add_option("--objects", volumes->objects, "How many")
+  CLI::Option* scene =
+      sub->add_option("--scene", volumes->objects_are.scene, "Built-in scene for the first table")
+          ->capture_default_str();
+  sub->add_option("--recording", volumes->recording, "The first frame of a recording instead")
+      ->excludes(scene);
+  sub->add_option("--setting", volumes->settings,
+                  "Only these: the scene, turned cubes, turned rods, slow turned cubes")
+      ->delimiter(',')
+      ->check(CLI::IsMember(volumes->settings));
+  sub->add_option("--step", volumes->step,
+                  "How far objects go in a frame, in their mean edges; default: as suits each")
+      ->check(CLI::NonNegativeNumber);
+  sub->add_option("--objects", volumes->objects_are.objects, "How many")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   sub->add_option("--partition", volumes->race.partition, "Where the volumes are")
-      ->check(CLI::IsMember({"BoundsNSquared", "SweepAndPrune", "FlatGrid", "HierarchicalGrid",
-                             "LooseOctree", "LooseQuadtree", "LinearBvh", "StaticBvh"}))
+      ->check(CLI::IsMember(std::vector<std::string>(partitions.begin(), partitions.end())))
       ->capture_default_str();
   sub->add_option("--frames", volumes->race.frames, "Frames that are timed")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  sub->add_option("--seed", volumes->seed, "Of the scenes")->capture_default_str();
+  sub->add_option("--seed", volumes->objects_are.seed, "Of the scenes")->capture_default_str();
   sub->add_option("--isa", volumes->isa, "Instruction set");
   add_json_option(*sub, volumes->json);
   return {sub, [volumes] { return volumes->run(); }};

@@ -1,10 +1,8 @@
 #include "volumes/solids.h"
 
 #include "scenes/random.h"
-#include "scenes/scene.h"
 
 #include <cmath>
-#include <memory>
 #include <stdexcept>
 
 namespace winnow::bench {
@@ -65,13 +63,12 @@ void Solids::add_turned(const Eigen::Vector3f& center, const Eigen::Vector3f& ha
   add({center, half, matrix_of(q)}, q);
 }
 
-Solids Solids::of_scene(const std::string& name, std::size_t objects, std::uint64_t seed) {
-  const std::unique_ptr<FrameSource> scene = make_scene(name, objects, seed);
-  if (scene == nullptr) throw std::invalid_argument("no scene " + name);
+Solids Solids::of_boxes(std::span<const Aabb> boxes) {
   constexpr double kUpright[4] = {1.0, 0.0, 0.0, 0.0};
   Solids solids;
-  for (const Aabb& box : scene->boxes()) {
+  for (const Aabb& box : boxes) {
     const Eigen::Vector3f half = 0.5F * (box.max - box.min);
+    if (!half.allFinite()) continue;
     solids.add({box.min + half, half, Eigen::Matrix3f::Identity()}, kUpright);
   }
   return solids;
@@ -96,6 +93,12 @@ Solids Solids::rods(std::size_t objects, std::uint64_t seed) {
     solids.add_turned(random_point(random, side), {0.125F, 0.125F, 2.5F}, random.next());
   }
   return solids;
+}
+
+std::vector<Aabb> Solids::bounds() const {
+  std::vector<Aabb> bounds;
+  for (const OrientedBox& box : boxes_) bounds.push_back(box.bounds());
+  return bounds;
 }
 
 void Solids::advance(double step) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <winnow/core/aabb.h>
 #include <winnow/core/oriented_box.h>
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/narrow_phase.h>
@@ -7,7 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
+#include <span>
 #include <vector>
 
 namespace winnow::bench {
@@ -16,8 +17,8 @@ namespace winnow::bench {
 /// around.
 class Solids {
  public:
-  /// The boxes of a built-in scene, as they lie.
-  static Solids of_scene(const std::string& name, std::size_t objects, std::uint64_t seed);
+  /// Boxes as they lie; unbounded ones are left out.
+  static Solids of_boxes(std::span<const Aabb> boxes);
   /// Unit cubes in any orientation, about as dense as `uniform`.
   static Solids rotated(std::size_t objects, std::uint64_t seed);
   /// 1 : 1 : 20 in any orientation.
@@ -25,6 +26,7 @@ class Solids {
 
   [[nodiscard]] std::size_t size() const noexcept { return boxes_.size(); }
   [[nodiscard]] const std::vector<OrientedBox>& boxes() const noexcept { return boxes_; }
+  [[nodiscard]] std::vector<Aabb> bounds() const;
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
   [[nodiscard]] Bodies bodies() const noexcept { return {ids_, poses_}; }
 

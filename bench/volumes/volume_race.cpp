@@ -1,5 +1,7 @@
 #include "volumes/volume_race.h"
 
+#include "scenes/random.h"
+
 #include <winnow/core/kdop_around.h>
 #include <winnow/partitions/row_partition.h>
 
@@ -111,6 +113,7 @@ void Contestant::run(const Solids& solids, NarrowPhase& narrow, NarrowResult& re
 void Contestant::judge(const std::vector<std::uint64_t>& truth, bool counted) {
   if (!counted) return;
   row.overlapping += overlapping.size();
+  for (const std::uint64_t pair : overlapping) row.fingerprint += mix(pair);
   row.missed += truth.size() - overlapping.size();
 }
 
@@ -165,6 +168,18 @@ std::vector<std::unique_ptr<Contestant>> all_contestants(const VolumeRaceOptions
 double VolumeRow::false_positives() const noexcept {
   if (reported == 0) return 0.0;
   return 1.0 - static_cast<double>(overlapping) / static_cast<double>(reported);
+}
+
+std::vector<double> VolumeRow::found() const {
+  std::vector<double> ms = make;
+  for (std::size_t i = 0; i < ms.size(); ++i) ms[i] += broad[i];
+  return ms;
+}
+
+std::vector<double> VolumeRow::answered() const {
+  std::vector<double> ms = found();
+  for (std::size_t i = 0; i < ms.size(); ++i) ms[i] += narrow[i];
+  return ms;
 }
 
 std::vector<VolumeRow> race_volumes(Solids solids, const VolumeRaceOptions& options) {

@@ -18,6 +18,8 @@ struct VolumeRow {
   std::size_t overlapping = 0;  ///< of these, pairs of objects that overlap
   std::size_t missed = 0;       ///< pairs that overlap and were not reported; must be 0
   double bytes_per_object = 0.0;
+  /// Of the pairs that overlap, summed over the frames, see PairSummary.
+  std::uint64_t fingerprint = 0;
   // Milliseconds a frame.
   std::vector<double> make{};    ///< of the volumes, from the oriented boxes
   std::vector<double> broad{};   ///< update and pairs
@@ -30,6 +32,9 @@ struct VolumeRow {
   [[nodiscard]] double broad_ms() const { return median_of(broad); }
   [[nodiscard]] double narrow_ms() const { return median_of(narrow); }
   [[nodiscard]] double sum_ms() const { return make_ms() + broad_ms() + narrow_ms(); }
+  // By frames, in milliseconds.
+  [[nodiscard]] std::vector<double> found() const;     ///< from oriented boxes to reported pairs
+  [[nodiscard]] std::vector<double> answered() const;  ///< to tested pairs
 };
 
 struct VolumeRaceOptions {

@@ -1,15 +1,343 @@
+#include "engine/fingerprint.h"
 #include "report/section.h"
+#include "tool/arguments.h"
+#include "tool/measure_volumes.h"
+#include "tool/table.h"
+#include "volumes/quantised.h"
+#include "volumes/volume_race.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 namespace winnow::bench {
 namespace {
 
-void declare_volumes(Results& /*results*/) {}
+constexpr const char* kVolumesPartition = "LinearBvh";
+/// Objects that speeds are compared at: where margins begin to pay, and where they cease to.
+constexpr double kMarginSteps[] = {0.001, 0.003, 0.01, 0.03, 0.1};
 
-std::vector<ReportStep> plan_volumes(const ReportOptions& /*options*/) {
-  return {};
+std::vector<ValueColumn> volume_values() {
+  return {{"reported", "reported pairs", "a frame", Better::less, Format::count},
+          {"overlapping", "of them overlap", "a frame", Better::neither, Format::count},
+          {"missed", "missed pairs", "", Better::less, Format::count},
+          {"false_positives", "false positives", "", Better::less, Format::percent},
+          {"make_ms", "making the volumes", "ms", Better::less},
+          {"broad_ms", "broad phase", "ms", Better::less},
+          {"narrow_ms", "exact test", "ms", Better::less},
+          {"found_ms", "making and broad phase", "ms", Better::less},
+          {"sum_ms", "all three", "ms", Better::less},
+          {"pays_from_ns", "pays if a test costs", "ns", Better::less},
+          {"bytes_per_object", "memory", "bytes/object", Better::less},
+          {"frames", "frames", "", Better::neither, Format::count},
+          {"fingerprint", "overlapping pairs", "", Better::neither, Format::text}};
 }
 
-void show_volumes(const Results& /*results*/, ReportPage& /*page*/) {}
+void declare_volumes(Results& results) {
+  results.declare({"volumes",
+                   "volumes",
+                   "a frame with volumes of one kind",
+                   {"objects_are", "objects", "step", "partition", "volume"},
+                   volume_values()});
+  results.declare({"margins",
+                   "volumes",
+                   "a frame of turned cubes with a margin about their boxes",
+                   {"objects", "step", "partition", "volume"},
+                   volume_values()});
+  results.declare({"box_widths",
+                   "volumes",
+                   "tests of boxes in float and in 16 bits",
+                   {"objects_are", "objects", "boxes"},
+                   {{"lanes", "tested at once", "", Better::neither, Format::count},
+                    {"hits", "hits", "", Better::less, Format::count},
+                    {"overlapping", "of them overlap", "", Better::neither, Format::count},
+                    {"false_positives", "false positives", "", Better::less, Format::percent},
+                    {"make_ms", "making", "ms", Better::less},
+                    {"test_ms", "testing", "ms", Better::less},
+                    {"bytes_per_box", "memory", "bytes/box", Better::less}}});
+}
+
+/// What one step measures.
+struct VolumesCell {
+  ReportOptions options{};
+  std::string setting{};
+  ReportScene scene{};
+  std::size_t objects = 0;
+  std::string partition = kVolumesPartition;
+  double step = -1.0;  ///< below 0: the setting's own
+  std::string table = "volumes";
+  bool with_widths = false;
+
+  [[nodiscard]] std::size_t frames() const { return options.quick ? 2 : volume_frames(objects); }
+  void measure(Results& results) const;
+  [[nodiscard]] std::string command(double taken_step) const;
+};
+
+std::string VolumesCell::command(double taken_step) const {
+  std::string text = "bench/run volumes --setting " + setting;
+  if (setting == "scene") {
+    text += (scene.recording ? " --recording " : " --scene ") + scene.argument;
+  }
+  if (setting != "scene" || !scene.recording) text += " --objects " + std::to_string(objects);
+  return text + " --step " + key_text(taken_step) + " --partition " + partition + " --frames " +
+         std::to_string(frames()) + " --seed " + std::to_string(options.seed) + " --isa " +
+         isa_name();
+}
+
+Json row_of(const VolumeRow& row, const VolumeRow& boxes) {
+  const std::size_t frames = row.broad.size();
+  Json values{{"volume", row.volume},
+              {"reported", row.reported / frames},
+              {"overlapping", row.overlapping / frames},
+              {"missed", row.missed},
+              {"false_positives", row.false_positives()},
+              {"make_ms", to_value(row.make)},
+              {"broad_ms", to_value(row.broad)},
+              {"narrow_ms", to_value(row.narrow)},
+              {"found_ms", to_value(row.found())},
+              {"sum_ms", to_value(row.answered())},
+              {"bytes_per_object", row.bytes_per_object},
+              {"frames", frames},
+              {"fingerprint", to_hex(row.fingerprint)}};
+  if (row.reported < boxes.reported) values["pays_from_ns"] = pays_from_ns(row, boxes);
+  return values;
+}
+
+void VolumesCell::measure(Results& results) const {
+  VolumeSetting made = make_volume_setting(setting, {.scene = scene.argument,
+                                                     .recording = scene.recording.get(),
+                                                     .objects = objects,
+                                                     .seed = options.seed});
+  const std::string what = setting == "scene" ? scene.name : made.what;
+  // As the command spells it.
+  const double taken_step = std::stod(key_text(step < 0.0 ? made.step : step));
+  const std::size_t count = made.solids.size();
+  const std::string again = command(taken_step);
+  if (with_widths) {
+    for (const BoxWidth& width : race_widths(made.solids.bounds(), frames())) {
+      results.add("box_widths", {{"objects_are", what},
+                                 {"objects", count},
+                                 {"boxes", width.boxes},
+                                 {"lanes", width.lanes},
+                                 {"hits", width.hits},
+                                 {"overlapping", width.overlapping},
+                                 {"false_positives", width.false_positives()},
+                                 {"make_ms", to_value(width.make)},
+                                 {"test_ms", to_value(width.test)},
+                                 {"bytes_per_box", width.bytes_per_box},
+                                 {"command", again}});
+    }
+  }
+  const auto rows = race_volumes(std::move(made.solids),
+                                 {.partition = partition, .frames = frames(), .step = taken_step});
+  bool missed = false;
+  for (const VolumeRow& one : rows) {
+    missed = missed || one.missed != 0;
+    const bool is_box = one.volume.starts_with("AABB");
+    if (table == "margins" && !is_box) continue;
+    Json row = row_of(one, rows.front());
+    if (table == "volumes") row["objects_are"] = what;
+    row.update(
+        {{"objects", count}, {"step", taken_step}, {"partition", partition}, {"command", again}});
+    results.add(table, std::move(row));
+  }
+  if (missed) throw std::runtime_error("a volume missed pairs that overlap");
+}
+
+/// Where a built-in scene was not asked for, one of them stands for all: their boxes lie upright.
+std::vector<ReportScene> volumes_scenes(const ReportOptions& options) {
+  std::vector<std::string> names;
+  for (const ReportScene& scene : options.scenes) names.push_back(scene.name);
+  if (names == main_scenes()) return {options.scenes.front()};
+  return options.scenes;
+}
+
+std::vector<VolumesCell> volumes_cells(const ReportOptions& options) {
+  const std::size_t objects = objects_up_to(options, 10'000);
+  const VolumesCell turned{.options = options, .setting = "cubes", .objects = objects};
+  std::vector<VolumesCell> cells;
+  std::vector<VolumesCell> bases;
+  for (const ReportScene& scene : volumes_scenes(options)) {
+    VolumesCell cell = turned;
+    cell.setting = "scene";
+    cell.scene = scene;
+    if (scene.recording) cell.objects = scene.recording->objects();
+    cell.with_widths = true;
+    if (scene.recording) bases.push_back(cell);
+    cells.push_back(std::move(cell));
+  }
+  bases.push_back(turned);
+  for (const char* setting : {"cubes", "rods", "slow"}) {
+    VolumesCell cell = turned;
+    cell.setting = setting;
+    cell.with_widths = cell.setting != "slow";
+    cells.push_back(std::move(cell));
+  }
+  for (VolumesCell cell : bases) {
+    cell.with_widths = false;
+    for (const std::string_view partition : volume_partitions()) {
+      const bool is_quadratic = partition == "BoundsNSquared" && cell.objects > 2000;
+      const bool is_left_out = options.quick && partition != "FlatGrid";
+      if (partition == kVolumesPartition || is_quadratic || is_left_out) continue;
+      cell.partition = partition;
+      cells.push_back(cell);
+    }
+  }
+  for (const double step : kMarginSteps) {
+    if (options.quick && step != kMarginSteps[0] && step != 0.1) continue;
+    VolumesCell cell = turned;
+    cell.table = "margins";
+    cell.step = step;
+    cells.push_back(std::move(cell));
+  }
+  return cells;
+}
+
+std::vector<ReportStep> plan_volumes(const ReportOptions& options) {
+  std::vector<ReportStep> steps;
+  for (const VolumesCell& cell : volumes_cells(options)) {
+    const std::string what = cell.setting == "scene" ? cell.scene.name : cell.setting;
+    const double each = cell.with_widths ? 4e-6 : 3e-6;  // seconds of an object in a frame
+    steps.push_back(
+        {what + " in " + cell.partition,
+         each * static_cast<double>(cell.objects) * static_cast<double>(cell.frames() + 1) * 9,
+         [cell](Results& results) { cell.measure(results); }});
+  }
+  return steps;
+}
+
+/// What a volume gives away beside what it costs, and where the time goes.
+void add_volumes_setting(const Results& results, const Json& what, const std::string& id,
+                         std::vector<Plot>& plots) {
+  const Json where{{"objects_are", what}, {"partition", kVolumesPartition}};
+  Plot front{.id = id + "_front",
+             .title = key_text(what),
+             .x = {"making and broad phase, ms a frame", true},
+             .y = {"false positives, share of reported pairs", false}};
+  front.series = series_of(
+      results, {"volumes", where, "volume", "found_ms", "false_positives", false}, true, false);
+  front.series.push_back(pareto_front(front.series));
+  plots.push_back(std::move(front));
+  Plot bars{.id = id + "_end_to_end",
+            .title = key_text(what) + ", end to end",
+            .x = {"volume", false},
+            .y = {"ms a frame", false}};
+  add_bars(bars, results, {"volumes", where, "volume", {"make_ms", "broad_ms", "narrow_ms"}});
+  plots.push_back(std::move(bars));
+}
+
+void show_volume_kinds(const Results& results, ReportPage& page) {
+  const Json where{{"partition", kVolumesPartition}};
+  const auto rows = results.rows("volumes", where);
+  if (rows.empty()) return;
+  page.heading("Volumes and margins");
+  page.paragraph(
+      "A broad phase compares simple volumes instead of shapes, and reports pairs that do not "
+      "touch: false positives, each of which costs an exact test. Left: the lower, the fewer of "
+      "them; the further left, the cheaper; only what lies on the dotted line is worth its price. "
+      "Right: the same with the exact test of overlap of every reported pair (boxes, tier robust); "
+      "dearer tests move the balance to tighter volumes. All in " +
+      std::string(kVolumesPartition) + ", one thread.");
+  std::vector<Plot> plots;
+  for (const Json& what : distinct(rows, "objects_are")) {
+    add_volumes_setting(results, what, "volumes_" + std::to_string(plots.size() / 2), plots);
+  }
+  page.add(plots);
+  page.command("bench/run volumes");
+  for (const char* value : {"false_positives", "found_ms", "sum_ms", "pays_from_ns"}) {
+    page.add(pivot(results, {"volumes", where, "volume", "objects_are", value}));
+  }
+  page.paragraph(
+      "The last table: how many nanoseconds the exact test of a pair must cost before the volume "
+      "pays off against plain boxes; without a figure, it spares no pair.");
+  page.add(pivot(results, {"volumes", where, "volume", "objects_are", "bytes_per_object"}));
+}
+
+void show_volume_partitions(const Results& results, ReportPage& page) {
+  std::vector<Plot> plots;
+  std::vector<PageTable> tables;
+  const auto rows = results.rows("volumes");
+  for (const Json& what : distinct(rows, "objects_are")) {
+    const Json where{{"objects_are", what}};
+    if (distinct(results.rows("volumes", where), "partition").size() < 2) continue;
+    Plot plot{.id = "volumes_partitions_" + std::to_string(plots.size()),
+              .title = key_text(what) + ", every partition",
+              .x = {"broad phase, ms a frame", true},
+              .y = {"false positives, share of reported pairs", false}};
+    plot.series =
+        series_of(results, {"volumes", where, "partition", "broad_ms", "false_positives", false},
+                  true, false);
+    plot.series.push_back(pareto_front(plot.series));
+    plots.push_back(std::move(plot));
+    const std::string name = key_text(what);
+    tables.push_back(pivot(results, {"volumes", where, "partition", "volume", "false_positives",
+                                     "false positives, " + name, false}));
+    tables.push_back(pivot(results, {"volumes", where, "partition", "volume", "broad_ms",
+                                     "broad phase, ms, " + name}));
+  }
+  if (plots.empty()) return;
+  page.heading("The same volumes in other partitions");
+  page.paragraph(
+      "Every partition hands on exactly the pairs whose volumes overlap, so that it decides the "
+      "time and the volume decides the false positives: rows of dots at one height are one volume "
+      "in several partitions.");
+  page.add(plots);
+  for (const PageTable& table : tables) page.add(table);
+}
+
+void show_margins(const Results& results, ReportPage& page) {
+  if (results.rows("margins").empty()) return;
+  page.heading("Margins by speed");
+  page.paragraph(
+      "A margin lets an object move a little before the partition must be told; the wider, the "
+      "more pairs are reported in vain. What it is worth depends on how far objects go in a "
+      "frame.");
+  std::vector<Plot> plots;
+  for (const auto& [value, label] :
+       {std::pair{"broad_ms", "broad phase, ms a frame"},
+        std::pair{"sum_ms", "volumes, broad phase and exact test, ms a frame"}}) {
+    Plot plot{.id = std::string("margins_") + value,
+              .title = "turned cubes",
+              .x = {"way in a frame, edges", true},
+              .y = {label, true}};
+    plot.series =
+        series_of(results, {"margins", Json::object(), "volume", "step", value}, true, true);
+    plots.push_back(std::move(plot));
+  }
+  page.add(plots);
+  const auto rows = results.rows("margins");
+  page.command((*rows.back())["command"]);
+  page.add(pivot(results, {"margins", Json::object(), "volume", "step", "sum_ms",
+                           "all three, ms, by edges in a frame"}));
+}
+
+void show_box_widths(const Results& results, ReportPage& page) {
+  if (results.rows("box_widths").empty()) return;
+  page.heading("Bounds of 16 bits");
+  page.paragraph(
+      "Boxes rounded to 16 bits within the box of their group take half the memory, and more of "
+      "them are tested at once. What they let pass in vain is small; what they save is, too, and "
+      "they must be made first.");
+  Plot plot{.id = "volumes_widths",
+            .title = "float against 16 bits",
+            .x = {"test of all boxes, ms", true},
+            .y = {"false positives, share of hits", false}};
+  plot.series = series_of(
+      results, {"box_widths", Json::object(), "boxes", "test_ms", "false_positives", false}, true,
+      false);
+  page.add({plot});
+  for (const char* value : {"false_positives", "test_ms", "make_ms"}) {
+    page.add(pivot(results, {"box_widths", Json::object(), "boxes", "objects_are", value}));
+  }
+}
+
+void show_volumes(const Results& results, ReportPage& page) {
+  show_volume_kinds(results, page);
+  show_volume_partitions(results, page);
+  show_margins(results, page);
+  show_box_widths(results, page);
+  for (const char* table : {"volumes", "margins", "box_widths"}) page.all_rows(table);
+}
 
 }  // namespace
 
