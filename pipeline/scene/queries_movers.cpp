@@ -69,7 +69,7 @@ RayMover::RayMover(const ShapePool& shapes, const ShapeRay& ray) noexcept
       ray_(ray) {}
 
 bool RayMover::meets(const double from[3], const ConvexPart& part, double limit,
-                     Meeting& meeting) const noexcept {
+                     MoverMeeting& meeting) const noexcept {
   const double thickness = doubt(part);
   if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
   ShapeRay ray = ray_;
@@ -84,10 +84,10 @@ bool RayMover::meets(const double from[3], const ConvexPart& part, double limit,
   return true;
 }
 
-void RayMover::describe(const double[3], const ConvexPart&, Meeting&) const noexcept {}
+void RayMover::describe(const double[3], const ConvexPart&, MoverMeeting&) const noexcept {}
 
 bool RayMover::enters(const ShapeRay& ray, const ConvexPart& part,
-                      Meeting& meeting) const noexcept {
+                      MoverMeeting& meeting) const noexcept {
   PartTables tables(shapes_);
   const ShapeId shape = tables.put(0, part);
   ShapeHit hit;
@@ -123,7 +123,7 @@ CastPair ShapeMover::pair(PartTables& tables, const double from[3],
 }
 
 bool ShapeMover::meets(const double from[3], const ConvexPart& part, double limit,
-                       Meeting& meeting) const noexcept {
+                       MoverMeeting& meeting) const noexcept {
   PartTables tables(shapes_);
   CastPair asked = pair(tables, from, part);
   asked.max_t = limit;
@@ -136,7 +136,7 @@ bool ShapeMover::meets(const double from[3], const ConvexPart& part, double limi
 }
 
 void ShapeMover::describe(const double from[3], const ConvexPart& part,
-                          Meeting& meeting) const noexcept {
+                          MoverMeeting& meeting) const noexcept {
   PartTables tables(shapes_);
   CastTouch touch;
   touch.t = meeting.t;
@@ -149,7 +149,7 @@ void ShapeMover::describe(const double from[3], const ConvexPart& part,
   }
 }
 
-void Encounter::take(const ConvexPart& part, const Meeting& meeting) noexcept {
+void Encounter::take(const ConvexPart& part, const MoverMeeting& meeting) noexcept {
   meeting_ = meeting;
   part_ = part;
   if (part.triangle != nullptr) triangle_ = *part.triangle;
@@ -157,7 +157,7 @@ void Encounter::take(const ConvexPart& part, const Meeting& meeting) noexcept {
 
 bool Encounter::find(const PartWalk& walk, const Mover& mover, const PlacedShape& body,
                      double limit, bool any) noexcept {
-  Meeting meeting;
+  MoverMeeting meeting;
   if (!body.shape.is_composite()) {
     std::copy_n(mover.start(), 3, from_);
     std::fill_n(base_, 3, 0.0);
@@ -189,7 +189,7 @@ bool Encounter::find(const PartWalk& walk, const Mover& mover, const PlacedShape
 SceneHit Encounter::hit(const Mover& mover) const noexcept {
   ConvexPart part = part_;
   if (part.triangle != nullptr) part.triangle = &triangle_;
-  Meeting meeting = meeting_;
+  MoverMeeting meeting = meeting_;
   mover.describe(from_, part, meeting);
   SceneHit hit;
   hit.t = meeting.t;

@@ -8,7 +8,7 @@ namespace winnow {
 
 /// Where something that moves first meets a convex part: about the part's origin of coordinates,
 /// in the axes of the world.
-struct Meeting {
+struct MoverMeeting {
   double t = 0.0;
   /// Of shapes: before `Mover::describe` not the last word.
   double normal[3] = {0.0, 0.0, 0.0};
@@ -31,10 +31,10 @@ class Mover {
 
   /// True if it meets the part by t = limit, starting at `from`.
   [[nodiscard]] virtual bool meets(const double from[3], const ConvexPart& part, double limit,
-                                   Meeting& meeting) const noexcept = 0;
+                                   MoverMeeting& meeting) const noexcept = 0;
   /// Completes a meeting: dearer than to find when it is.
   virtual void describe(const double from[3], const ConvexPart& part,
-                        Meeting& meeting) const noexcept = 0;
+                        MoverMeeting& meeting) const noexcept = 0;
 
  protected:
   Mover(const PreciseBox& extent, const double* start, const double* direction,
@@ -53,13 +53,13 @@ class RayMover final : public Mover {
  public:
   RayMover(const ShapePool& shapes, const ShapeRay& ray) noexcept;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           Meeting& meeting) const noexcept override;
+                           MoverMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
-                Meeting& meeting) const noexcept override;
+                MoverMeeting& meeting) const noexcept override;
 
  private:
   [[nodiscard]] bool enters(const ShapeRay& ray, const ConvexPart& part,
-                            Meeting& meeting) const noexcept;
+                            MoverMeeting& meeting) const noexcept;
 
   const ShapePool& shapes_;
   const ShapeRay& ray_;
@@ -70,9 +70,9 @@ class ShapeMover final : public Mover {
  public:
   ShapeMover(const PartWalk& walk, const ShapeCast& cast, double tolerance) noexcept;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           Meeting& meeting) const noexcept override;
+                           MoverMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
-                Meeting& meeting) const noexcept override;
+                MoverMeeting& meeting) const noexcept override;
 
  private:
   [[nodiscard]] CastPair pair(PartTables& tables, const double from[3],
@@ -97,9 +97,9 @@ class Encounter {
   [[nodiscard]] SceneHit hit(const Mover& mover) const noexcept;
 
  private:
-  void take(const ConvexPart& part, const Meeting& meeting) noexcept;
+  void take(const ConvexPart& part, const MoverMeeting& meeting) noexcept;
 
-  Meeting meeting_;
+  MoverMeeting meeting_;
   ConvexPart part_;
   TriangleShape triangle_;
   /// Where the mover starts, and the world's origin lies, as the part has it.
