@@ -101,6 +101,19 @@ std::vector<Aabb> Solids::bounds() const {
   return bounds;
 }
 
+std::vector<OrientedBox> Solids::when_margins_were_left(float share) const {
+  Random random(boxes_.size());
+  std::vector<OrientedBox> then = boxes_;
+  for (std::size_t i = 0; i < then.size(); ++i) {
+    const Aabb box = then[i].bounds();
+    const float fastest = way_[i].cwiseAbs().maxCoeff();
+    const auto since = static_cast<float>(random.in(0.0, 1.0));
+    if (!(fastest > 0.0F)) continue;
+    then[i].center -= since * share * (box.max - box.min).maxCoeff() / fastest * way_[i];
+  }
+  return then;
+}
+
 void Solids::advance(double step) {
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     boxes_[i].center += static_cast<float>(step) * way_[i];

@@ -27,6 +27,9 @@ class Solids {
   [[nodiscard]] std::size_t size() const noexcept { return boxes_.size(); }
   [[nodiscard]] const std::vector<OrientedBox>& boxes() const noexcept { return boxes_; }
   [[nodiscard]] std::vector<Aabb> bounds() const;
+  /// Where each object was when it last left a margin of so much of its bounds' longest edge, at a
+  /// time of its own: as partitions with margins find a scene that has been moving for long.
+  [[nodiscard]] std::vector<OrientedBox> when_margins_were_left(float share) const;
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
   [[nodiscard]] Bodies bodies() const noexcept { return {ids_, poses_}; }
 

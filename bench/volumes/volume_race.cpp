@@ -25,6 +25,11 @@ class Contestant {
   virtual void make(const std::vector<OrientedBox>& boxes) = 0;
   virtual void put() = 0;
 
+  /// Before the first frame.
+  void begin(const Solids& solids) {
+    make(solids.when_margins_were_left(margin_));
+    put();
+  }
   /// One frame.
   void run(const Solids& solids, NarrowPhase& narrow, NarrowResult& result, bool timed);
   /// Against what overlaps by everyone's reports.
@@ -36,7 +41,8 @@ class Contestant {
  protected:
   Contestant(std::string name, const VolumeRaceOptions& race, const PartitionOptions& options)
       : made_(make_partition(race.partition, options)),
-        partition_(dynamic_cast<RowPartition*>(made_.get())) {
+        partition_(dynamic_cast<RowPartition*>(made_.get())),
+        margin_(options.margin.share) {
     if (partition_ == nullptr) {
       throw std::invalid_argument(race.partition + " takes no volumes from the caller");
     }
@@ -49,6 +55,7 @@ class Contestant {
  private:
   std::unique_ptr<Partition> made_;
   RowPartition* partition_;
+  float margin_;
   PairBuffer pairs_;
 };
 
@@ -184,6 +191,7 @@ std::vector<double> VolumeRow::answered() const {
 
 std::vector<VolumeRow> race_volumes(Solids solids, const VolumeRaceOptions& options) {
   const std::vector<std::unique_ptr<Contestant>> all = all_contestants(options);
+  for (const auto& one : all) one->begin(solids);
   NarrowPhase narrow;
   NarrowResult result;
   for (std::size_t frame = 0; frame <= options.frames; ++frame) {

@@ -33,6 +33,7 @@ TEST(VolumeRace, reports_every_pair_and_tighter_volumes_report_fewer) {
       for (const auto& [name, row] : rows) {
         EXPECT_EQ(row.missed, 0U) << name;
         EXPECT_EQ(row.overlapping, overlapping) << name;
+        EXPECT_EQ(row.fingerprint, rows.at("AABB").fingerprint) << name;
         EXPECT_GE(row.false_positives(), 0.0) << name;
         EXPECT_LE(row.false_positives(), 1.0) << name;
         EXPECT_GT(row.bytes_per_object, 0.0) << name;
@@ -46,6 +47,22 @@ TEST(VolumeRace, reports_every_pair_and_tighter_volumes_report_fewer) {
       EXPECT_LT(reported("AABB + 5 %"), reported("AABB + 50 %"));
     }
   }
+}
+
+TEST(VolumeRace, begins_margins_at_times_of_their_own) {
+  constexpr float kShare = 0.2F;
+  const Solids solids = Solids::rods(200, 1);
+  const std::vector<OrientedBox> then = solids.when_margins_were_left(kShare);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < then.size(); ++i) {
+    const OrientedBox& now = solids.boxes()[i];
+    const Aabb bounds = now.bounds();
+    const float margin = kShare * (bounds.max - bounds.min).maxCoeff();
+    const float way = (then[i].center - now.center).cwiseAbs().maxCoeff();
+    EXPECT_LE(way, 1.001F * margin) << i;
+    sum += static_cast<double>(way / margin);
+  }
+  EXPECT_NEAR(sum / static_cast<double>(then.size()), 0.5, 0.1);
 }
 
 TEST(VolumeRace, refuses_a_partition_without_volumes) {
