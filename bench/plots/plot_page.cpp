@@ -50,8 +50,13 @@ Json plot_json(const Plot& plot) {
                       {"y_value", one.y_value},
                       {"points", std::move(points)}});
   }
-  return {{"id", plot.id},          {"title", plot.title},           {"x", axis_json(plot.x)},
-          {"y", axis_json(plot.y)}, {"categories", plot.categories}, {"series", std::move(series)}};
+  return {{"id", plot.id},
+          {"title", plot.title},
+          {"x", axis_json(plot.x)},
+          {"y", axis_json(plot.y)},
+          {"categories", plot.categories},
+          {"stacked", plot.stacked},
+          {"series", std::move(series)}};
 }
 
 }  // namespace

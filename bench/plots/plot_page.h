@@ -36,8 +36,9 @@ struct Plot {
   PlotAxis x;
   PlotAxis y;
   std::vector<PlotSeries> series{};
-  /// If there are any, the plot has stacked bars, one for each of these; x is its number.
+  /// If there are any, the plot has bars, one for each of these; x is its number.
   std::vector<std::string> categories{};
+  bool stacked = true;  ///< bars of one category; otherwise they stand beside each other
 };
 
 /// Where a plot is to stand within a page's body.

@@ -61,7 +61,7 @@ function scale(axis, plot) {
   return {
     type: category ? "category" : axis.log ? "logarithmic" : "linear",
     labels: category ? plot.categories : undefined,
-    stacked: bars,
+    stacked: bars && plot.stacked,
     title: {display: true, text: axis.label},
     grid: {color: "#e4e4e4"},
   };

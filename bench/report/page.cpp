@@ -224,6 +224,26 @@ void add_bars(Plot& plot, const Results& results, const BarsOf& from) {
   }
 }
 
+void add_bar_groups(Plot& plot, const Results& results, const BarGroupsOf& from) {
+  const auto rows = results.rows(from.table, from.where);
+  const auto categories = distinct(rows, from.category_key);
+  plot.stacked = false;
+  for (const Json& category : categories) plot.categories.push_back(key_text(category));
+  for (const Json& name : distinct(rows, from.series_key)) {
+    PlotSeries series{.name = key_text(name)};
+    series.y_value = from.value;
+    for (const Json* row : rows) {
+      const double y = value_of(*row, from.value);
+      if ((*row)[from.series_key] != name || !std::isfinite(y)) continue;
+      const auto at = std::find(categories.begin(), categories.end(), (*row)[from.category_key]);
+      series.points.push_back({static_cast<double>(at - categories.begin()), y,
+                               note_of(*row, {from.table, {}, {}, {}, from.value}, results),
+                               (*row)["id"]});
+    }
+    plot.series.push_back(std::move(series));
+  }
+}
+
 PlotSeries pareto_front(const std::vector<PlotSeries>& series) {
   std::vector<PlotPoint> points;
   for (const PlotSeries& one : series) {

@@ -93,6 +93,17 @@ struct BarsOf {
 };
 void add_bars(Plot& plot, const Results& results, const BarsOf& from);
 
+/// Bars beside each other: a group for each text of `category_key`, in it a bar for each text of
+/// `series_key`.
+struct BarGroupsOf {
+  std::string table;
+  Json where = Json::object();
+  std::string category_key;
+  std::string series_key;
+  std::string value;
+};
+void add_bar_groups(Plot& plot, const Results& results, const BarGroupsOf& from);
+
 /// The series of the points of which no other has both less x and less y.
 [[nodiscard]] PlotSeries pareto_front(const std::vector<PlotSeries>& series);
 

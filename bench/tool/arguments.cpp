@@ -35,6 +35,13 @@ void add_scenes_option(CLI::App& app, Choice& choice) {
       ->check(CLI::IsMember(scene_names()));
 }
 
+void add_targets_option(CLI::App& app, Choice& choice) {
+  app.add_option("--scene", choice.scenes,
+                 "Scenes, or recordings (.aabbs, .aabbs.xz), which have their own number of "
+                 "objects (default: the six main scenes)")
+      ->delimiter(',');
+}
+
 void add_objects_option(CLI::App& app, Choice& choice) {
   app.add_option("--objects", choice.objects, "Numbers of objects")
       ->delimiter(',')

@@ -23,6 +23,8 @@ struct Choice {
 
 // Each adds one option; lists are comma-separated or repeated.
 void add_scenes_option(CLI::App& app, Choice& choice);
+/// Of recordings, too.
+void add_targets_option(CLI::App& app, Choice& choice);
 void add_objects_option(CLI::App& app, Choice& choice);
 void add_threads_option(CLI::App& app, Choice& choice);
 void add_partitions_option(CLI::App& app, Choice& choice);

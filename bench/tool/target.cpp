@@ -23,6 +23,16 @@ void Target::open() {
   recording_ = read_recording(name);
 }
 
+std::vector<Target> open_targets(const std::vector<std::string>& names) {
+  std::vector<Target> targets;
+  for (const std::string& name : names) {
+    Target& target = targets.emplace_back();
+    target.name = name;
+    target.open();
+  }
+  return targets;
+}
+
 std::unique_ptr<FrameSource> Target::source() const {
   if (recording_) return play(*recording_);
   return make_scene(name, objects.value_or(10'000), seed.value_or(1));

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace winnow::bench {
 
@@ -27,5 +28,8 @@ struct Target {
  private:
   std::optional<Recording> recording_;
 };
+
+/// Each of them, opened.
+[[nodiscard]] std::vector<Target> open_targets(const std::vector<std::string>& names);
 
 }  // namespace winnow::bench

@@ -4,6 +4,7 @@
 #include "tool/output.h"
 #include "tool/progress.h"
 #include "tool/table.h"
+#include "tool/target.h"
 
 #include <iostream>
 
@@ -19,17 +20,20 @@ struct Throughput {
   int run();
 
  private:
-  std::vector<MeasureOptions> races() const;
+  std::vector<MeasureOptions> races(const std::vector<Target>& targets) const;
 };
 
-std::vector<MeasureOptions> Throughput::races() const {
+/// Those of a recording come once, whatever the numbers of objects.
+std::vector<MeasureOptions> Throughput::races(const std::vector<Target>& targets) const {
   std::vector<MeasureOptions> all;
   for (const std::size_t objects : choice.objects) {
-    for (const std::string& scene : choice.scenes) {
+    for (const Target& target : targets) {
+      if (target.recording() != nullptr && objects != choice.objects.front()) continue;
       for (const int threads : choice.threads) {
         MeasureOptions options;
-        options.scene = scene;
-        options.objects = objects;
+        options.scene = target.name;
+        options.recording = target.recording();
+        options.objects = target.recording() != nullptr ? target.recording()->objects() : objects;
         options.seed = choice.seed;
         options.partitions = choice.partitions;
         options.threads = {threads};
@@ -80,7 +84,8 @@ int Throughput::run() {
         "--peers: this tool was built without other libraries; "
         "bench/run --with-peers installs and builds them");
   }
-  const std::vector<MeasureOptions> all = races();
+  const std::vector<Target> targets = open_targets(choice.scenes);
+  const std::vector<MeasureOptions> all = races(targets);
   Json json_runs = Json::array();
   bool same = true;
   Progress progress(all.size());
@@ -112,7 +117,7 @@ Command add_throughput(CLI::App& app) {
       "throughput",
       "Races partitions, and other libraries, frame by frame interleaved; all must find the same "
       "pairs");
-  add_scenes_option(*sub, throughput->choice);
+  add_targets_option(*sub, throughput->choice);
   add_objects_option(*sub, throughput->choice);
   add_threads_option(*sub, throughput->choice);
   add_partitions_option(*sub, throughput->choice);
