@@ -149,7 +149,8 @@ PageCell cell(const Results& results, const std::string& table, const Json* row,
 }
 
 PageTable pivot(const Results& results, const Pivot& pivot) {
-  const auto rows = results.rows(pivot.table, pivot.where);
+  auto rows = results.rows(pivot.table, pivot.where);
+  std::erase_if(rows, [&](const Json* row) { return !row->contains(pivot.value); });
   const Json* column = results.column(pivot.table, pivot.value);
   PageTable table;
   if (rows.empty() || column == nullptr) return table;

@@ -58,7 +58,7 @@ class ReportPage {
                             const std::string& value);
 
 /// A table of one value: a row for each `row_key`, a column for each `column_key`, of the rows that
-/// have the members of `where`.
+/// have the members of `where` and the value.
 struct Pivot {
   std::string table;
   Json where = Json::object();

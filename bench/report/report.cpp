@@ -17,6 +17,7 @@ namespace winnow::bench {
 namespace {
 
 constexpr double kSecondsBetweenWrites = 5.0;
+constexpr double kQuickSecondsBetweenWrites = 0.5;
 
 void write_whole(const std::filesystem::path& path, const std::string& text) {
   const std::filesystem::path fresh = path.string() + ".new";
@@ -151,6 +152,7 @@ bool make_report(const std::string& folder, const ReportOptions& options,
   write_report(folder, results);
   const StopSignals signals;
   Progress progress(steps, seconds);
+  const double between = options.quick ? kQuickSecondsBetweenWrites : kSecondsBetweenWrites;
   Stopwatch since_written;
   for (std::size_t i = 0; i < all.size() && !StopSignals::asked(); ++i) {
     const Stopwatch clock;
@@ -161,7 +163,7 @@ bool make_report(const std::string& folder, const ReportOptions& options,
       Json& state = results.document()["sections"][i];
       state["done"] = state["done"].get<std::size_t>() + 1;
       state["seconds"] = clock.ms() / 1000.0;
-      if (since_written.ms() < 1000.0 * kSecondsBetweenWrites) continue;
+      if (since_written.ms() < 1000.0 * between) continue;
       write_report(folder, results);
       since_written = Stopwatch();
     }

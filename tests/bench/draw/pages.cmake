@@ -6,9 +6,8 @@
 # pointing at an object.
 cmake_minimum_required(VERSION 3.25)
 
-find_program(browser NAMES chromium-headless-shell chromium chromium-browser google-chrome)
+include(${CMAKE_CURRENT_LIST_DIR}/../browser.cmake)
 if(NOT browser)
-  message("skipped: no Chromium to open pages in (Debian: chromium-headless-shell)")
   return()
 endif()
 file(MAKE_DIRECTORY ${WORK})
@@ -26,28 +25,9 @@ function(draw name)
   endif()
 endfunction()
 
-# look(<name of the page> <variable>): the page as it stands once its scripts have run.
-function(look name result)
-  execute_process(
-    COMMAND ${browser} --headless --no-sandbox --disable-dev-shm-usage --enable-unsafe-swiftshader
-            --user-data-dir=${WORK}/profile --window-size=900,600 --virtual-time-budget=2000
-            --enable-logging=stderr --dump-dom "file://${WORK}/${name}.html#check"
-    TIMEOUT 120 RESULT_VARIABLE status OUTPUT_VARIABLE page ERROR_VARIABLE log)
-  if(NOT status EQUAL 0)
-    message(FATAL_ERROR "${name}: the browser ended with ${status}: ${log}")
-  endif()
-  # Of what the page logs only the driver's word on the speed of reading pixels is no complaint.
-  string(REGEX MATCHALL "[^\n]*:CONSOLE:[^\n]*" complaints "${log}")
-  list(FILTER complaints EXCLUDE REGEX "GL Driver Message \\(OpenGL, Performance")
-  if(complaints)
-    message(FATAL_ERROR "${name}: the page logged ${complaints}")
-  endif()
-  set(${result} "${page}" PARENT_SCOPE)
-endfunction()
-
 # open(<name of the page> <variable>): the page's report of itself.
 function(open name report)
-  look(${name} page)
+  look(${WORK}/${name}.html page)
   if(NOT page MATCHES "id=\"report\">([^<]+)<")
     message(FATAL_ERROR "${name}: the page says nothing of itself")
   endif()
@@ -138,7 +118,7 @@ endif()
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "winnow growth: ${error}")
 endif()
-look(growth page)
+look(${WORK}/growth.html page)
 if(NOT page MATCHES "<body data-drawn=\"12\"")
   string(REGEX MATCH "<body[^>]*>" body "${page}")
   message(FATAL_ERROR "growth: 12 marks were to be drawn: ${body}")

@@ -1,0 +1,31 @@
+# Pages of `winnow report`, whole and half, in a browser: no complaint, and every point is drawn.
+# cmake -DREPORTS=<folder of make_reports> -DWORK=<folder> -P pages.cmake
+cmake_minimum_required(VERSION 3.25)
+include(${CMAKE_CURRENT_LIST_DIR}/../browser.cmake)
+if(NOT browser)
+  return()
+endif()
+if(NOT EXISTS ${REPORTS}/whole/index.html)
+  message("skipped: no page without Chart.js (Debian: libjs-chart.js)")
+  return()
+endif()
+file(MAKE_DIRECTORY ${WORK})
+
+foreach(name whole killed interrupted)
+  look(${REPORTS}/${name}/index.html page)
+  string(REGEX MATCH "<body[^>]*>" body "${page}")
+  foreach(fact drawn wanted plots blank)
+    if(NOT body MATCHES "data-${fact}=\"([^\"]*)\"")
+      message(FATAL_ERROR "${name}: the page does not say data-${fact}: ${body}")
+    endif()
+    set(${fact} "${CMAKE_MATCH_1}")
+  endforeach()
+  # A canvas for each plot; the library that draws spells the word otherwise.
+  string(REGEX MATCHALL "<canvas id=" canvases "${page}")
+  list(LENGTH canvases expected)
+  if(NOT drawn EQUAL wanted OR drawn EQUAL 0 OR NOT blank STREQUAL "" OR
+     NOT plots EQUAL expected)
+    message(FATAL_ERROR "${name}: ${expected} plots were to be drawn: ${body}")
+  endif()
+  message("${name}: ${body}")
+endforeach()
