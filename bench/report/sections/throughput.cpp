@@ -127,12 +127,22 @@ std::size_t throughput_frames(const ReportOptions& options, std::size_t objects)
   if (options.quick) return 4;
   if (objects <= 2'000) return 31;
   if (objects <= 20'000) return 21;
-  return objects <= kLargestForOneRace ? 13 : 6;
+  return objects <= kLargestForOneRace ? 11 : 6;
 }
 
 std::size_t frames_of_slow(const ReportOptions& options, std::size_t objects) {
   if (options.quick) return kFingerprintFrames;
   return objects <= 20'000 ? 6 : kFingerprintFrames;
+}
+
+void note_skipped(Results& results, std::size_t objects, const std::vector<std::string>& skipped,
+                  const std::string& option) {
+  for (const std::string& text : skipped) {
+    results.add("throughput_skipped", {{"objects", objects},
+                                       {"skipped", text},
+                                       {"command", "bench/run throughput --objects " +
+                                                       std::to_string(objects) + option}});
+  }
 }
 
 /// Partitions that suit the size: those that suit any first, then those that take longer.
@@ -149,9 +159,7 @@ SplitPartitions split_partitions(Results& results, std::size_t objects) {
         PartitionEngine::largest_for(name) != std::numeric_limits<std::size_t>::max();
     (limited ? split.slow : split.fast).push_back(name);
   }
-  for (const std::string& text : partitions.skipped) {
-    results.add("throughput_skipped", {{"objects", objects}, {"skipped", text}});
-  }
+  note_skipped(results, objects, partitions.skipped, "");
   return split;
 }
 
@@ -185,9 +193,7 @@ void run_peers(Results& results, const ThroughputCell& cell, const std::string& 
   for (const Run& run : measured.peers()) {
     cell.add(results, run, "bench/run --with-peers throughput --peers" + cell.command(run, beside));
   }
-  for (const std::string& text : measured.skipped) {
-    results.add("throughput_skipped", {{"objects", cell.objects}, {"skipped", text}});
-  }
+  note_skipped(results, cell.objects, measured.skipped, " --peers");
   if (!all_agree(measured.runs)) throw std::runtime_error("a library found other pairs");
 }
 
@@ -221,11 +227,11 @@ std::vector<ReportStep> plan_throughput(const ReportOptions& options) {
       const std::size_t objects = objects_of(scene, asked);
       const auto n = static_cast<double>(objects);
       const std::string what = scene.name + ", " + grouped(objects) + " objects";
-      steps.push_back({what, 0.1 + n * 4e-5, [=](Results& results) {
+      steps.push_back({what, options.quick ? 0.1 : 0.4 + n * 5.5e-5, [=](Results& results) {
                          measure_throughput(results, options, scene, objects);
                        }});
       if (wants_peers(options, objects)) {
-        steps.push_back({what + ", other libraries", n * 5e-5, [=](Results& results) {
+        steps.push_back({what + ", other libraries", n * 6e-5, [=](Results& results) {
                            measure_peers(results, options, scene, objects);
                          }});
       }
