@@ -63,10 +63,11 @@ std::vector<Goal> frustum_speed(const Ask& ask, const std::vector<Ask>& /*all*/,
     const auto names = Lab::frustum_partitions();
     const auto at = std::find(names.begin(), names.end(), partition);
     if (at == names.end()) ask.fail("partition: " + partition + " is not measured");
-    const double ms = costs.ms[static_cast<std::size_t>(at - names.begin())];
-    row.measured = ms / costs.read_ms;
-    row.detail = short_number(1e3 * ms) + " us, reading " + short_number(1e3 * costs.read_ms) +
-                 " us; " + short_number(costs.found_a_question) + " objects found";
+    const double ms = median_of(costs.asked[static_cast<std::size_t>(at - names.begin())]);
+    const double read_ms = median_of(costs.read);
+    row.measured = ms / read_ms;
+    row.detail = short_number(1e3 * ms) + " us, reading " + short_number(1e3 * read_ms) + " us; " +
+                 short_number(costs.found_a_question) + " objects found";
   })};
 }
 

@@ -13,7 +13,6 @@
 namespace winnow::bench {
 namespace {
 
-constexpr int kRounds = 15;
 constexpr std::size_t kReadings = 50;
 
 /// The columns of boxes, as a partition keeps them.
@@ -52,7 +51,8 @@ class Columns {
 }  // namespace
 
 FrustumCosts measure_frustum_costs(const std::vector<std::string>& partitions,
-                                   const std::string& set, std::size_t objects) {
+                                   const std::string& set, std::size_t objects,
+                                   std::size_t rounds) {
   const auto scene = make_scene("uniform", objects, 1);
   const std::span<const Aabb> boxes = scene->boxes();
   const std::vector<std::string> names{set};
@@ -63,22 +63,19 @@ FrustumCosts measure_frustum_costs(const std::vector<std::string>& partitions,
     engines.push_back(std::make_unique<PartitionQueries>(name, 1));
     engines.back()->start(boxes);
   }
-  std::vector<double> reading;
-  std::vector<std::vector<double>> ms(engines.size());
   FrustumCosts costs;
+  costs.asked.resize(engines.size());
   const auto number = static_cast<double>(questions.size());
-  for (int round = 0; round < kRounds; ++round) {
-    reading.push_back(columns.time());
+  for (std::size_t round = 0; round < rounds; ++round) {
+    costs.read.push_back(columns.time());
     for (std::size_t e = 0; e < engines.size(); ++e) {
       (void)engines[e]->run(questions, Asking::single, std::min<std::size_t>(4, questions.size()));
       const ThreadStopwatch clock;
       const auto found = engines[e]->run(questions, Asking::single, questions.size());
-      ms[e].push_back(clock.ms() / number);
+      costs.asked[e].push_back(clock.ms() / number);
       costs.found_a_question = static_cast<double>(found) / number;
     }
   }
-  costs.read_ms = median_of(reading);
-  for (const std::vector<double>& times : ms) costs.ms.push_back(median_of(times));
   return costs;
 }
 

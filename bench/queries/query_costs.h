@@ -9,15 +9,17 @@ namespace winnow::bench {
 
 /// What a frustum costs beside reading every box.
 struct FrustumCosts {
-  double read_ms = 0.0;         ///< to read the six columns of all boxes once
-  std::vector<double> ms;       ///< of one frustum, by partition
-  double found_a_question = 0;  ///< objects
+  // Milliseconds, by rounds in which the partitions and the reading take turns.
+  std::vector<double> read;                ///< the six columns of all boxes once
+  std::vector<std::vector<double>> asked;  ///< one frustum, by partition
+  double found_a_question = 0;             ///< objects
 };
 
-/// Questions of the set (see question_set_names) about the first frame of `uniform`, on one thread:
-/// medians of rounds in which the partitions and the reading take turns. Throws Refusal.
+/// Questions of the set (see question_set_names) about the first frame of `uniform`, on one thread.
+/// Throws Refusal.
 [[nodiscard]] FrustumCosts measure_frustum_costs(const std::vector<std::string>& partitions,
-                                                 const std::string& set, std::size_t objects);
+                                                 const std::string& set, std::size_t objects,
+                                                 std::size_t rounds = 15);
 
 /// Allocations by a partition and its buffers when a set of questions is asked for the second time.
 struct SecondRound {

@@ -1,6 +1,7 @@
 #include "queries/query_race.h"
 
 #include "engine/arena.h"
+#include "scenes/random.h"
 
 #include <algorithm>
 #include <array>
@@ -18,6 +19,17 @@ struct Entry {
   bool in_float;
   QueryRun run;
 };
+
+std::uint64_t fingerprint_of_answers(const QuestionSet& set, const Answers& answers) {
+  std::uint64_t sum = 0;
+  for (std::size_t q = 0; q < answers.questions(); ++q) {
+    for (const Found& found : answers.of(q)) {
+      const std::uint32_t row = set.want == Want::any ? 0 : found.row;
+      sum += mix(std::uint64_t{q} << 32U | row);
+    }
+  }
+  return sum;
+}
 
 class SetRace {
  public:
@@ -44,6 +56,7 @@ class SetRace {
     for (Entry& entry : entries_) {
       try {
         Answers got = entry.engine->answers(set_, entry.run.asking, entry.run.questions);
+        entry.run.fingerprint = fingerprint_of_answers(set_, got);
         if (expected) {
           entry.run.comparison = entry.in_float ? compare_in_float(judge, set_, *expected, got)
                                                 : compare_exactly(judge, set_, *expected, got);

@@ -26,7 +26,9 @@ struct QueryRun {
   Asking asking = Asking::single;
   int threads = 1;
   std::size_t questions = 0;
-  std::uint64_t found = 0;   ///< objects, over all questions
+  std::uint64_t found = 0;  ///< objects, over all questions
+  /// Of question and object of everything found; of any hit, of the questions that had one.
+  std::uint64_t fingerprint = 0;
   std::vector<double> ms{};  ///< one entry a round
   Comparison comparison{};   ///< with the first partition that answers the set
   std::string refusal{};     ///< why it did not answer; nothing was measured then

@@ -83,7 +83,7 @@ std::string VolumesCell::command(double taken_step) const {
          isa_name();
 }
 
-Json row_of(const VolumeRow& row, const VolumeRow& boxes) {
+Json volume_row_of(const VolumeRow& row, const VolumeRow& boxes) {
   const std::size_t frames = row.broad.size();
   Json values{{"volume", row.volume},
               {"reported", row.reported / frames},
@@ -134,7 +134,7 @@ void VolumesCell::measure(Results& results) const {
     missed = missed || one.missed != 0;
     const bool is_box = one.volume.starts_with("AABB");
     if (table == "margins" && !is_box) continue;
-    Json row = row_of(one, rows.front());
+    Json row = volume_row_of(one, rows.front());
     if (table == "volumes") row["objects_are"] = what;
     row.update(
         {{"objects", count}, {"step", taken_step}, {"partition", partition}, {"command", again}});
