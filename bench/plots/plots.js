@@ -49,10 +49,21 @@ function dataset(series, plot) {
     backgroundColor: colour,
     borderDash: mixed && other ? [6, 4] : [],
     pointStyle: mark,
+    clip: 6,
     pointRadius: series.points.length > 60 ? 1.5 : 4,
     pointHoverRadius: 7,
     borderWidth: 1.5,
   };
+}
+
+// Of a logarithmic axis: powers of ten, and where there is room 2 and 5 times these, as short as they
+// can be: 20, 1,000, 1e-7.
+function log_tick(value) {
+  const size = Math.abs(value);
+  const digit = Math.round(size / 10 ** Math.floor(Math.log10(size) + 1e-9));
+  const room = this.max < 1000 * this.min;
+  if (digit !== 1 && !(room && (digit === 2 || digit === 5))) return "";
+  return size < 1e-3 || size >= 1e7 ? value.toExponential(0) : value.toLocaleString("en");
 }
 
 function scale(axis, plot) {
@@ -63,6 +74,7 @@ function scale(axis, plot) {
     labels: category ? plot.categories : undefined,
     stacked: bars && plot.stacked,
     title: {display: true, text: axis.label},
+    ticks: axis.log ? {callback: log_tick, maxRotation: 0} : {},
     grid: {color: "#e4e4e4"},
   };
 }
