@@ -33,7 +33,7 @@ void write_whole(const std::filesystem::path& path, const std::string& text) {
 }
 
 /// One row a line, so that versions of the document can be compared.
-std::string to_text(const Json& document) {
+std::string document_text(const Json& document) {
   const auto line = [](const Json& json) {
     return json.dump(-1, ' ', true, Json::error_handler_t::replace);
   };
@@ -137,7 +137,7 @@ void write_report(const std::string& folder, Results& results) {
     if (table["rows"].empty()) continue;
     write_whole(path / (table["name"].get<std::string>() + ".csv"), to_csv(table));
   }
-  write_whole(path / "results.json", to_text(results.document()));
+  write_whole(path / "results.json", document_text(results.document()));
 }
 
 bool make_report(const std::string& folder, const ReportOptions& options,
