@@ -3,6 +3,7 @@
 #include "narrow/winnow_narrow.h"
 #include "query/hard_cases.h"
 #include "query/questions.h"
+#include "tool/measure_accuracy.h"
 #include "tool/table.h"
 
 #include <algorithm>
@@ -17,8 +18,6 @@
 namespace winnow::bench {
 namespace {
 
-/// The nearest to touching that pairs are brought, in radii of the smaller body.
-constexpr double kNearestPairs = 1e-6;
 /// Streaming keeps this share of what is asked in cache.
 constexpr double kStreaming = 0.5;
 
@@ -95,7 +94,7 @@ std::array<Fault, 5> faults() {
   return {
       {{"wrong verdicts", "pairs", 0.0,
         [](const Accuracy& a) { return static_cast<double>(a.wrong); }, true},
-       {"worst error", "of the most", 1.0, [](const Accuracy& a) { return a.worst_error; }, false},
+       {"worst error", "of the most", 1.0, [](const Accuracy& a) { return a.all.worst; }, false},
        {"errors beyond their bound", "pairs", 0.0,
         [](const Accuracy& a) { return static_cast<double>(a.beyond_bound); }, true},
        {"normals more than 0.01 degrees off", "pairs", 0.0,

@@ -1,13 +1,9 @@
 #include "narrow/accuracy.h"
 
-#include "engine/sample.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 namespace winnow::bench {
 namespace {
@@ -20,78 +16,94 @@ double degrees_between(const double (&a)[3], const double (&b)[3]) {
   return std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / std::numbers::pi;
 }
 
-bool is_finite(const double (&v)[3]) {
-  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+/// False for the zero that stands where none is given.
+bool is_direction(const double (&v)[3]) {
+  const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  return std::isfinite(square) && square > 0.0;
 }
 
-class Tally {
- public:
-  Tally(Accuracy& accuracy, NarrowLevel level) : to_(accuracy), level_(level) {}
-
-  void add(const NarrowAnswer& answer, const PairTruth& truth) {
-    if (!truth.known) return;
-    ++to_.pairs;
-    to_.wrong += answer.overlap == truth.overlap ? 0 : 1;
-    if (level_ == NarrowLevel::boolean) return;
-    // Manifolds are asked for without a margin: of other pairs nothing needs to be known.
-    if (level_ == NarrowLevel::manifold && truth.distance > 0.0L) return;
-    if (!std::isfinite(answer.distance) || !is_finite(answer.normal)) {
-      ++to_.missing;
-      return;
-    }
-    add_distance(answer, truth);
-    if (truth.normal_unique) add_normal(answer, truth);
-  }
-
-  void finish() {
-    to_.measured = errors_.size();
-    if (errors_.empty()) return;
-    const auto at = errors_.begin() + static_cast<std::ptrdiff_t>(errors_.size() * 99 / 100);
-    std::nth_element(errors_.begin(), at, errors_.end());
-    to_.p99_error = *at;
-  }
-
- private:
-  void add_distance(const NarrowAnswer& answer, const PairTruth& truth) {
+PairError error_of(const NarrowAnswer& answer, const PairTruth& truth, NarrowLevel level) {
+  const long double length = std::abs(truth.distance);
+  PairError result;
+  result.gap = static_cast<double>(length / static_cast<long double>(truth.size));
+  result.overlap = truth.overlap;
+  result.wrong = answer.overlap != truth.overlap;
+  // Manifolds are asked for without a margin: of other pairs nothing needs to be known.
+  if (level == NarrowLevel::boolean) return result;
+  if (level == NarrowLevel::manifold && truth.distance > 0.0L) return result;
+  const bool has_normal = is_direction(answer.normal);
+  const bool has_distance = std::isfinite(answer.distance);
+  result.missing = !has_distance || !has_normal;
+  if (has_distance) {
     const long double off = std::abs(static_cast<long double>(answer.distance) - truth.distance);
-    const long double scale = static_cast<long double>(truth.size) + std::abs(truth.distance);
-    const auto error = static_cast<double>(off / scale);
-    errors_.push_back(error);
-    to_.worst_error = std::max(to_.worst_error, error);
-    if (std::isnan(answer.error_bound)) return;
-    to_.beyond_bound += off > static_cast<long double>(answer.error_bound) ? 1 : 0;
+    result.error = static_cast<double>(off / (static_cast<long double>(truth.size) + length));
+    result.beyond_bound = off > static_cast<long double>(answer.error_bound);
   }
-
-  void add_normal(const NarrowAnswer& answer, const PairTruth& truth) {
-    ++to_.normals;
-    const double degrees = degrees_between(answer.normal, truth.normal);
-    to_.worst_degrees = std::max(to_.worst_degrees, degrees);
-    to_.normals_off += degrees > kMostDegrees ? 1 : 0;
+  if (has_normal && truth.normal_unique) {
+    result.degrees = degrees_between(answer.normal, truth.normal);
   }
+  return result;
+}
 
-  Accuracy& to_;
-  NarrowLevel level_;
-  std::vector<double> errors_;
-};
+ErrorSpread spread_of_errors(std::vector<double>& errors) {
+  if (errors.empty()) return {};
+  const auto at = [&](std::size_t rank) {
+    const auto place = errors.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(errors.begin(), place, errors.end());
+    return *place;
+  };
+  const std::size_t count = errors.size();
+  return {count, at(count / 2), at(count * 99 / 100), at(count - 1)};
+}
 
 }  // namespace
 
+std::vector<PairError> errors_of(const NarrowEngine& engine, NarrowLevel level, const PairSet& set,
+                                 std::span<const PairTruth> truths) {
+  std::vector<PairError> errors;
+  for (std::size_t i = 0; i < set.pairs.size(); ++i) {
+    if (truths[i].known) errors.push_back(error_of(engine.answer(i), truths[i], level));
+  }
+  return errors;
+}
+
+Accuracy summary_of(std::span<const PairError> errors) {
+  Accuracy sum;
+  sum.pairs = errors.size();
+  std::vector<double> all;
+  std::vector<double> apart;
+  std::vector<double> depth;
+  std::vector<double> degrees;
+  for (const PairError& one : errors) {
+    sum.wrong += one.wrong ? 1 : 0;
+    sum.missing += one.missing ? 1 : 0;
+    sum.beyond_bound += one.beyond_bound ? 1 : 0;
+    sum.normals_off += one.degrees > kMostDegrees ? 1 : 0;
+    if (!std::isnan(one.degrees)) degrees.push_back(one.degrees);
+    if (std::isnan(one.error)) continue;
+    all.push_back(one.error);
+    (one.overlap ? depth : apart).push_back(one.error);
+  }
+  sum.all = spread_of_errors(all);
+  sum.apart = spread_of_errors(apart);
+  sum.depth = spread_of_errors(depth);
+  sum.degrees = spread_of_errors(degrees);
+  return sum;
+}
+
 Accuracy judge_engine(NarrowEngine& engine, NarrowLevel level, const PairSet& set,
-                      std::span<const PairTruth> truths) {
-  Accuracy accuracy;
-  accuracy.engine = engine.name();
-  accuracy.level = level;
-  std::array<double, 3> ns{};
-  for (double& one : ns) {
+                      std::span<const PairTruth> truths, std::size_t runs) {
+  std::vector<double> ns;
+  for (std::size_t run = 0; run < runs; ++run) {
     const ThreadStopwatch clock;
     engine.run(level, set.pairs);
-    one = clock.ms() * 1e6 / static_cast<double>(set.pairs.size());
+    ns.push_back(clock.ms() * 1e6 / static_cast<double>(set.pairs.size()));
   }
-  accuracy.ns = median_of(ns);
+  Accuracy accuracy = summary_of(errors_of(engine, level, set, truths));
+  accuracy.engine = engine.name();
+  accuracy.level = level;
+  accuracy.ns = std::move(ns);
   accuracy.recomputed = engine.recomputed();
-  Tally tally(accuracy, level);
-  for (std::size_t i = 0; i < set.pairs.size(); ++i) tally.add(engine.answer(i), truths[i]);
-  tally.finish();
   return accuracy;
 }
 

@@ -24,6 +24,10 @@ constexpr int kAttempts = 10'000;
 constexpr double kNearAtAll = 0.05;
 /// Bodies a stand in a cube of this side.
 constexpr double kWorld = 10.0;
+/// Where pairs touch is looked for to this part of the smaller body.
+constexpr double kTouching = 1e-12;
+/// Of positions that are to be moved far.
+constexpr double kGrid = 0x1p-12;
 
 /// Draws the pairs of a set.
 class PairDrawing {
@@ -38,6 +42,9 @@ class PairDrawing {
       bring_near();
     } else {
       draw_lots();
+    }
+    for (Pose& pose : set_.poses) {
+      for (double& x : pose.position) x += options_.offset.value_or(0.0);
     }
   }
 
@@ -71,8 +78,11 @@ class PairDrawing {
     std::vector<std::uint8_t> is_b(bodies);
     for (const BodyPair& pair : set_.pairs) is_b[pair.b] = 1;
     const std::uint32_t hulls = options_.scattered ? kScatteredHulls : kHulls;
-    ShapeSource a(set_.pool, set_.kind.a, set_.kind.hull_vertices, hulls, 1.0, random_);
-    ShapeSource b(set_.pool, set_.kind.b, set_.kind.hull_vertices, hulls, options_.ratio, random_);
+    ShapeStyle style{set_.kind.a, set_.kind.hull_vertices, hulls, 1.0, options_.thinness};
+    ShapeSource a(set_.pool, style, random_);
+    style.kind = set_.kind.b;
+    style.scale = options_.ratio;
+    ShapeSource b(set_.pool, style, random_);
     set_.poses.resize(bodies);
     for (std::size_t i = 0; i < bodies; ++i) {
       const DrawnShape drawn = is_b[i] != 0 ? b.draw() : a.draw();
@@ -85,13 +95,21 @@ class PairDrawing {
     Pose& a = set_.poses[pair.a];
     Pose& b = set_.poses[pair.b];
     turn_at_random(random_, a);
-    turn_at_random(random_, b);
+    if (options_.angle) {
+      turn_from(random_, a, *options_.angle, b);
+    } else {
+      turn_at_random(random_, b);
+    }
     const double reach = kReach * (set_.radius[pair.a] + set_.radius[pair.b]);
     const Eigen::Vector3d offset = random_in_ball(random_, reach);
     for (int axis = 0; axis < 3; ++axis) {
-      a.position[axis] = random_.in(-0.5 * kWorld, 0.5 * kWorld);
-      b.position[axis] = a.position[axis] + offset[axis];
+      a.position[axis] = on_grid(random_.in(-0.5 * kWorld, 0.5 * kWorld));
+      b.position[axis] = on_grid(a.position[axis] + offset[axis]);
     }
+  }
+
+  [[nodiscard]] double on_grid(double x) const {
+    return options_.offset ? kGrid * std::nearbyint(x / kGrid) : x;
   }
 
   /// What winnow says of some of the pairs.
@@ -121,15 +139,17 @@ class PairDrawing {
   /// Finds by bisection, all pairs at once, where on the line bodies begin to overlap, and puts
   /// them near that.
   void bring_near() {
-    constexpr int kSteps = 40;
     std::vector<std::uint32_t> which(set_.pairs.size());
     std::iota(which.begin(), which.end(), 0U);
     std::vector<Line> lines;
+    double ratio = 1.0;
     for (const std::uint32_t i : which) {
-      const double reach = set_.radius[set_.pairs[i].a] + set_.radius[set_.pairs[i].b];
-      lines.push_back({random_unit(random_), 0.0, kReach * reach});
+      const BodyPair& pair = set_.pairs[i];
+      const double reach = kReach * (set_.radius[pair.a] + set_.radius[pair.b]);
+      lines.push_back({random_unit(random_), 0.0, reach});
+      ratio = std::max(ratio, reach / small_radius(pair));
     }
-    for (int step = 0; step < kSteps; ++step) {
+    for (double width = ratio; width > kTouching; width *= 0.5) {
       for (std::size_t k = 0; k < which.size(); ++k) stand(which[k], lines[k], lines[k].middle());
       const std::vector<std::uint8_t> overlap = overlaps(which);
       for (std::size_t k = 0; k < which.size(); ++k) {
@@ -139,18 +159,22 @@ class PairDrawing {
     }
     for (std::size_t k = 0; k < which.size(); ++k) {
       const BodyPair& pair = set_.pairs[which[k]];
-      const double small = std::min(set_.radius[pair.a], set_.radius[pair.b]);
+      const double small = small_radius(pair);
       const double least = 2 * k < which.size() ? kNearAtAll : options_.nearest;
       const double by = small * least * power(1.0 / least, random_.unit());
       stand(which[k], lines[k], lines[k].outside + ((k & 1U) != 0 ? -by : by));
     }
   }
 
+  [[nodiscard]] double small_radius(const BodyPair& pair) const {
+    return std::min(set_.radius[pair.a], set_.radius[pair.b]);
+  }
+
   void stand(std::uint32_t i, const Line& line, double distance) {
     const BodyPair& pair = set_.pairs[i];
     for (int axis = 0; axis < 3; ++axis) {
       set_.poses[pair.b].position[axis] =
-          set_.poses[pair.a].position[axis] + distance * line.along[axis];
+          on_grid(set_.poses[pair.a].position[axis] + distance * line.along[axis]);
     }
   }
 

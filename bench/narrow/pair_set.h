@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace winnow::bench {
@@ -38,6 +39,15 @@ struct PairSetOptions {
   /// smaller body: at least 0.05 radii in one half of the set, at least this many in the other. 0:
   /// draws lots.
   double nearest = 0.0;
+  /// Moves every body so far along each axis. Positions are multiples of 2^-12 then, so that the
+  /// pairs of a seed are the same at any offset up to 1e12.
+  std::optional<double> offset{};
+  /// b stands as a does, but for a turn about a random axis by an angle whose half has half of this
+  /// as its tangent.
+  std::optional<double> angle{};
+  /// At most 1: triangles are drawn, and then one corner is brought to the opposite edge until it
+  /// is only so many times as far from it.
+  double thinness = 1.0;
 };
 
 /// Position, orientation and size are drawn uniformly, b's centre in a ball a little larger than

@@ -1,5 +1,6 @@
 #include "narrow/random_shapes.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -35,11 +36,19 @@ void turn_at_random(Random& random, Pose& pose) {
   }
 }
 
-ShapeSource::ShapeSource(ShapePool& pool, ShapeKind kind, std::uint32_t hull_vertices,
-                         std::uint32_t hulls, double scale, Random& random)
-    : pool_(pool), kind_(kind), scale_(scale), random_(random) {
-  if (kind != ShapeKind::hull) return;
-  for (std::uint32_t i = 0; i < hulls; ++i) hulls_.push_back(draw_hull(hull_vertices));
+void turn_from(Random& random, const Pose& from, double angle, Pose& pose) {
+  const Eigen::Vector3d half = 0.5 * angle * random_unit(random);
+  const Eigen::Quaterniond turn(1.0, half.x(), half.y(), half.z());
+  const double* q = from.orientation;
+  const Eigen::Quaterniond turned = turn.normalized() * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  const double parts[4] = {turned.w(), turned.x(), turned.y(), turned.z()};
+  std::copy_n(parts, 4, pose.orientation);
+}
+
+ShapeSource::ShapeSource(ShapePool& pool, const ShapeStyle& style, Random& random)
+    : pool_(pool), style_(style), random_(random) {
+  if (style_.kind != ShapeKind::hull) return;
+  for (std::uint32_t i = 0; i < style_.hulls; ++i) hulls_.push_back(draw_hull());
 }
 
 template <typename Shape>
@@ -55,6 +64,10 @@ DrawnShape ShapeSource::put(const Shape& shape, double radius) {
 DrawnShape ShapeSource::draw_triangle() {
   Eigen::Matrix3d corners;
   for (int i = 0; i < 3; ++i) corners.col(i) = random_unit(random_) * length(0.5, 1.0);
+  if (style_.thinness < 1.0) {
+    const Eigen::Vector3d foot = 0.5 * (corners.col(0) + corners.col(1));
+    corners.col(2) = foot + style_.thinness * (corners.col(2) - foot);
+  }
   corners.colwise() -= Eigen::Vector3d(corners.rowwise().mean());
   TriangleShape triangle;
   for (int i = 0; i < 3; ++i) {
@@ -63,11 +76,11 @@ DrawnShape ShapeSource::draw_triangle() {
   return put(triangle, corners.colwise().norm().maxCoeff());
 }
 
-DrawnShape ShapeSource::draw_hull(std::uint32_t vertices) {
+DrawnShape ShapeSource::draw_hull() {
   const Eigen::Array3d axes(length(0.5, 1.0), length(0.5, 1.0), length(0.5, 1.0));
   std::vector<Eigen::Vector3d> points;
   DrawnShape drawn;
-  for (std::uint32_t i = 0; i < vertices; ++i) {
+  for (std::uint32_t i = 0; i < style_.hull_vertices; ++i) {
     points.emplace_back(random_unit(random_).array() * axes);
     drawn.radius = std::max(drawn.radius, points.back().norm());
   }
@@ -79,7 +92,7 @@ DrawnShape ShapeSource::draw_hull(std::uint32_t vertices) {
 }
 
 DrawnShape ShapeSource::draw() {
-  switch (kind_) {
+  switch (style_.kind) {
     case ShapeKind::sphere: {
       const double radius = length(0.25, 1.0);
       return put(SphereShape{radius}, radius);
@@ -97,7 +110,7 @@ DrawnShape ShapeSource::draw() {
     case ShapeKind::hull:
       return hulls_[random_.below(static_cast<std::uint32_t>(hulls_.size()))];
     default:
-      throw std::runtime_error(std::string("no pairs are drawn of ") + to_string(kind_));
+      throw std::runtime_error(std::string("no pairs are drawn of ") + to_string(style_.kind));
   }
 }
 

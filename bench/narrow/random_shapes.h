@@ -17,12 +17,19 @@ struct DrawnShape {
   double radius = 0.0;
 };
 
-/// Draws shapes of one kind into a pool, 0.5 to 2 across times `scale`. Hulls are drawn from
-/// `hulls` different ones, which it makes when it is made.
+/// Which shapes are drawn: 0.5 to 2 across times `scale`.
+struct ShapeStyle {
+  ShapeKind kind{};
+  std::uint32_t hull_vertices = 0;
+  std::uint32_t hulls = 0;  ///< different ones
+  double scale = 1.0;
+  double thinness = 1.0;  ///< of triangles: at most 1, of their height
+};
+
+/// Draws shapes of one kind into a pool. Hulls are made when it is made.
 class ShapeSource {
  public:
-  ShapeSource(ShapePool& pool, ShapeKind kind, std::uint32_t hull_vertices, std::uint32_t hulls,
-              double scale, Random& random);
+  ShapeSource(ShapePool& pool, const ShapeStyle& style, Random& random);
 
   /// Throws std::runtime_error if the pool refuses.
   [[nodiscard]] DrawnShape draw();
@@ -30,15 +37,14 @@ class ShapeSource {
  private:
   template <typename Shape>
   [[nodiscard]] DrawnShape put(const Shape& shape, double radius);
-  [[nodiscard]] DrawnShape draw_hull(std::uint32_t vertices);
+  [[nodiscard]] DrawnShape draw_hull();
   [[nodiscard]] DrawnShape draw_triangle();
   [[nodiscard]] double length(double least, double most) {
-    return scale_ * random_.in(least, most);
+    return style_.scale * random_.in(least, most);
   }
 
   ShapePool& pool_;
-  ShapeKind kind_;
-  double scale_;
+  ShapeStyle style_;
   Random& random_;
   std::vector<DrawnShape> hulls_;
 };
@@ -49,5 +55,8 @@ class ShapeSource {
 [[nodiscard]] Eigen::Vector3d random_in_ball(Random& random, double radius);
 /// Uniform over all rotations.
 void turn_at_random(Random& random, Pose& pose);
+/// `pose` becomes `from` turned about a random axis by the angle whose half has the tangent
+/// `angle` / 2.
+void turn_from(Random& random, const Pose& from, double angle, Pose& pose);
 
 }  // namespace winnow::bench

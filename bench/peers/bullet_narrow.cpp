@@ -290,7 +290,8 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
       btGjkEpaSolver2::Penetration(&shape_of<btConvexShape>(pair.a), a,
                                    &shape_of<btConvexShape>(pair.b), b,
                                    b.getOrigin() - a.getOrigin(), results);
-      to_b = -results.normal;
+      // It is left in the axes of a.
+      to_b = a.getBasis() * -results.normal;
       on_a = results.witnesses[0];
       distance = results.distance;
     }

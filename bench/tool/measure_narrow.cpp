@@ -33,14 +33,18 @@ const NarrowTiming* NarrowMeasurement::find(NarrowTier tier, NarrowLevel level,
   return nullptr;
 }
 
+bool NarrowMeasurement::is_right(const NarrowTiming& timing) const noexcept {
+  if (100 * timing.disagree > timing.compared || timing.other_depth > 0.1) return false;
+  const auto first = std::find_if(timings.begin(), timings.end(), [&](const NarrowTiming& other) {
+    return other.level == timing.level;
+  });
+  return first == timings.end() || 2.0 * timing.contacts >= first->contacts;
+}
+
 const NarrowTiming* NarrowMeasurement::best_peer(NarrowLevel level) const noexcept {
-  const NarrowTiming* first = nullptr;
   const NarrowTiming* best = nullptr;
   for (const NarrowTiming& timing : timings) {
-    if (timing.level != level) continue;
-    if (first == nullptr) first = &timing;
-    if (!is_peer(timing) || 100 * timing.disagree > timing.compared) continue;
-    if (timing.other_depth > 0.1 || 2.0 * timing.contacts < first->contacts) continue;
+    if (timing.level != level || !is_peer(timing) || !is_right(timing)) continue;
     if (best == nullptr || timing.median_ns() < best->median_ns()) best = &timing;
   }
   return best;

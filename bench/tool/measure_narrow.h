@@ -36,9 +36,10 @@ struct NarrowMeasurement {
   /// Null if there is none.
   [[nodiscard]] const NarrowTiming* find(NarrowTier tier, NarrowLevel level,
                                          int threads = 1) const noexcept;
-  /// Of the libraries that are not systematically wrong the fastest; null if there is none. Wrong
-  /// are verdicts in more than 1 of 100 pairs, other depths in more than 1 of 10, and less than
-  /// half as many contacts as the first engine finds.
+  /// False for what is systematically wrong: verdicts in more than 1 of 100 pairs, other depths in
+  /// more than 1 of 10, or less than half as many contacts as the first engine of the level finds.
+  [[nodiscard]] bool is_right(const NarrowTiming& timing) const noexcept;
+  /// Of the other libraries that are right the fastest; null if there is none.
   [[nodiscard]] const NarrowTiming* best_peer(NarrowLevel level) const noexcept;
 };
 

@@ -104,8 +104,8 @@ const PairTruth kApart{.known = true,
 TEST(Accuracy, errors_are_relative_to_sizes_and_distance) {
   const Accuracy accuracy =
       judged({.distance = 1.5, .error_bound = 0.5, .normal = {1.0, 0.0, 0.0}}, kApart);
-  EXPECT_EQ(accuracy.worst_error, 0.125);
-  EXPECT_EQ(accuracy.p99_error, 0.125);
+  EXPECT_EQ(accuracy.all.worst, 0.125);
+  EXPECT_EQ(accuracy.all.p99, 0.125);
   EXPECT_EQ(accuracy.beyond_bound, 0U);
   EXPECT_EQ(accuracy.wrong, 0U);
   EXPECT_EQ(accuracy.normals_off, 0U);

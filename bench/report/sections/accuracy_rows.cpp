@@ -1,0 +1,59 @@
+#include "report/sections/accuracy_rows.h"
+
+#include <algorithm>
+
+namespace winnow::bench {
+namespace {
+
+void add_shown(Json& row, const std::string& of) {
+  const auto at = row.find("worst_" + of);
+  if (at == row.end()) return;
+  row["worst_" + of + "_or_floor"] = std::max(at->get<double>(), kLeastErrorShown);
+}
+
+void add_columns(std::vector<ValueColumn>& columns, const std::string& of, const std::string& label,
+                 const std::string& unit) {
+  for (const char* which : {"median", "p99", "worst"}) {
+    const std::string rank = which == std::string("p99") ? "99 %" : which;
+    columns.push_back({which + ("_" + of), rank + " " + label, unit, Better::less, Format::tiny});
+  }
+  columns.push_back({"worst_" + of + "_or_floor", "worst " + label + ", at least 1e-17", unit,
+                     Better::less, Format::tiny});
+}
+
+}  // namespace
+
+std::vector<ValueColumn> accuracy_columns() {
+  std::vector<ValueColumn> columns{
+      {"pairs", "pairs judged", "", Better::neither, Format::count},
+      {"wrong", "wrong verdicts", "", Better::less, Format::count},
+      {"missing", "without distance or normal", "", Better::less, Format::count}};
+  add_columns(columns, "error", "error of the signed distance", "of the size");
+  add_columns(columns, "distance", "error of the distance", "of the size");
+  add_columns(columns, "depth", "error of the depth", "of the size");
+  add_columns(columns, "degrees", "error of the normal", "degrees");
+  const std::vector<ValueColumn> counts{
+      {"measured", "distances measured", "", Better::neither, Format::count},
+      {"beyond_bound", "beyond the bound given", "", Better::less, Format::count},
+      {"normals", "normals that are unique", "", Better::neither, Format::count},
+      {"normals_off", "of them off by 0.01 degrees", "", Better::less, Format::count},
+      {"recomputed", "recomputed", "", Better::neither, Format::percent},
+      {"judge", "judge", "", Better::neither, Format::text}};
+  columns.insert(columns.end(), counts.begin(), counts.end());
+  return columns;
+}
+
+void add_accuracy_row(Results& results, const std::string& table, Json row,
+                      const Accuracy& accuracy, const AccuracyOptions& options) {
+  row.update(to_json(accuracy));
+  for (const char* of : {"error", "distance", "depth", "degrees"}) add_shown(row, of);
+  row["judge"] = judge_name(options.judge);
+  if (!row.contains("command")) row["command"] = accuracy_command(options);
+  results.add(table, std::move(row));
+}
+
+std::string power_text(double value) {
+  return key_text(Json(value));
+}
+
+}  // namespace winnow::bench

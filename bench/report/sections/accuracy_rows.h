@@ -1,0 +1,26 @@
+#pragma once
+
+#include "report/results.h"
+#include "tool/measure_accuracy.h"
+
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+
+// Errors of answers about pairs, as rows of the sections that have some.
+
+/// Logarithmic axes have no 0: plots show errors that are smaller than this as this.
+inline constexpr double kLeastErrorShown = 1e-17;
+
+/// The columns of to_json(Accuracy), of the judge, and of what is drawn.
+[[nodiscard]] std::vector<ValueColumn> accuracy_columns();
+
+/// Adds a row of the keys, the figures and how to measure them again.
+void add_accuracy_row(Results& results, const std::string& table, Json row,
+                      const Accuracy& accuracy, const AccuracyOptions& options);
+
+/// "1e-06".
+[[nodiscard]] std::string power_text(double value);
+
+}  // namespace winnow::bench

@@ -1,0 +1,191 @@
+#include "report/sections/narrow_show.h"
+
+#include "report/sections/accuracy_rows.h"
+
+#include <array>
+
+namespace winnow::bench {
+namespace {
+
+struct ErrorOf {
+  const char* level;
+  const char* value;
+  const char* what;
+  const char* axis;
+};
+constexpr const char* kOfTheSize = "worst error / (size + |distance|), none as 1e-17";
+constexpr std::array<ErrorOf, 3> kErrorPlots{
+    {{"distance", "worst_distance_or_floor", "distance of pairs apart", kOfTheSize},
+     {"manifold", "worst_depth_or_floor", "depth of pairs that overlap", kOfTheSize},
+     {"distance", "worst_degrees_or_floor", "normal", "worst error in degrees, none as 1e-17"}}};
+
+Plot speed_against_error(const Results& results, const ErrorOf& error, Json where,
+                         const std::string& id, const std::string& title) {
+  Plot plot{.id = id, .title = title, .x = {"ns a pair", true}, .y = {error.axis, true}};
+  where["level"] = error.level;
+  plot.series = series_of(
+      results, {"narrow_error", std::move(where), "engine", "ns", error.value, false}, true, true);
+  plot.series.push_back(pareto_front(plot.series));
+  return plot;
+}
+
+void show_all_kinds(const Results& results, ReportPage& page) {
+  std::vector<Plot> plots;
+  for (const ErrorOf& error : kErrorPlots) {
+    plots.push_back(
+        speed_against_error(results, error, Json::object(), std::string("narrow_") + error.value,
+                            std::string("Error of the ") + error.what + ", level " + error.level));
+  }
+  page.add(plots);
+}
+
+void show_each_kind(const Results& results, ReportPage& page) {
+  const ErrorOf all{"distance", "worst_error_or_floor", "", kOfTheSize};
+  std::vector<Plot> plots;
+  for (const Json& kind : distinct(results.rows("narrow_error"), "kind")) {
+    const std::string name = key_text(kind);
+    plots.push_back(speed_against_error(results, all, {{"kind", kind}}, "narrow_kind_" + name,
+                                        name + ", distance and depth"));
+  }
+  page.add(plots);
+}
+
+void show_error_tables(const Results& results, ReportPage& page) {
+  for (const char* level : {"boolean", "distance", "manifold"}) {
+    page.add(pivot(results, {"narrow_error",
+                             {{"level", level}},
+                             "engine",
+                             "kind",
+                             "wrong",
+                             std::string("wrong verdicts at level ") + level,
+                             false}));
+  }
+  for (const ErrorOf& error : kErrorPlots) {
+    std::string value = error.value;
+    value.resize(value.rfind("_or_floor"));
+    page.add(pivot(results,
+                   {"narrow_error",
+                    {{"level", error.level}},
+                    "engine",
+                    "kind",
+                    value,
+                    std::string("worst error of the ") + error.what + ", level " + error.level}));
+  }
+}
+
+/// Kinds down, levels across: the tier robust, and the fastest other library that is right.
+PageTable table_of_times(const Results& results) {
+  PageTable table;
+  const auto rows = results.rows("narrow_speed", {{"engine", "robust"}});
+  const std::vector<Json> levels = distinct(rows, "level");
+  table.caption =
+      "ns a pair: the tier robust, the fastest other library that is right, and their "
+      "ratio";
+  table.header = {"kind"};
+  for (const Json& level : levels) {
+    const std::string name = key_text(level);
+    table.header.insert(table.header.end(), {name + ": robust", "best other", "ns", "ratio"});
+  }
+  for (const Json& kind : distinct(rows, "kind")) {
+    std::vector<PageCell> cells{text_cell(key_text(kind))};
+    for (const Json& level : levels) {
+      const auto of = [&](const Json& engine) {
+        const Json* row =
+            results.row("narrow_speed", {{"kind", kind}, {"level", level}, {"engine", engine}});
+        return cell(results, "narrow_speed", row, "ns");
+      };
+      const Json* best = results.row("narrow_best", {{"kind", kind}, {"level", level}});
+      cells.push_back(of("robust"));
+      cells.push_back(cell(results, "narrow_best", best, "best_peer"));
+      cells.push_back(best == nullptr ? text_cell("-") : of((*best)["best_peer"]));
+      cells.push_back(cell(results, "narrow_best", best, "speedup"));
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+void show_times(const Results& results, ReportPage& page) {
+  if (results.rows("narrow_speed").empty()) return;
+  page.heading("What a pair costs");
+  page.paragraph(
+      "Random pairs, every second one overlapping; all that a caller needs is in the time: shapes "
+      "and poses are gathered, answers are written. A library is right by and large if its "
+      "verdicts differ from those of the tier robust in at most one of a hundred pairs, its depths "
+      "in at most one of ten, and it finds at least half as many contacts.");
+  page.add(table_of_times(results));
+  for (const char* level : {"boolean", "distance", "manifold"}) {
+    page.add(pivot(results, {"narrow_speed",
+                             {{"level", level}},
+                             "engine",
+                             "kind",
+                             "ns",
+                             std::string(level) + ", ns a pair"}));
+  }
+  page.command("bench/run narrow --kind box-box --tier all --pairs 8192");
+  page.all_rows("narrow_speed");
+  page.all_rows("narrow_best");
+}
+
+struct NarrowCurve {
+  const char* table;
+  const char* parameter;
+  const char* axis;
+};
+constexpr std::array<NarrowCurve, 3> kNarrowCurves{
+    {{"narrow_gap", "gap", "|distance| / size: from this to ten times as much"},
+     {"narrow_ratio", "ratio", "size of the second shape over that of the first"},
+     {"narrow_offset", "offset",
+      "offset from the origin along each axis, lengths of about a shape"}}};
+
+void show_narrow_curves(const Results& results, ReportPage& page) {
+  std::vector<Plot> plots;
+  for (const NarrowCurve& curve : kNarrowCurves) {
+    for (const Json& kind : distinct(results.rows(curve.table), "kind")) {
+      Plot plot{.id = std::string(curve.table) + "_" + key_text(kind),
+                .title = key_text(kind),
+                .x = {curve.axis, true},
+                .y = {kOfTheSize, true}};
+      plot.series = series_of(
+          results,
+          {curve.table, {{"kind", kind}}, "engine", curve.parameter, "worst_error_or_floor"}, true,
+          true);
+      plots.push_back(std::move(plot));
+    }
+  }
+  if (plots.empty()) return;
+  page.heading("Error against distance, sizes and offset");
+  page.paragraph(
+      "The worst error of the signed distance. winnow works in the frame of one of the shapes: its "
+      "curves stay where they are however far the pair stands from the origin. A library that "
+      "computes in single precision in the world's axes loses a digit with every power of ten.");
+  page.add(plots);
+  page.command("bench/run accuracy --kind box-box --ratio 1 --pairs 400 --offset 1e6 --by-gap");
+  for (const NarrowCurve& curve : kNarrowCurves) page.all_rows(curve.table);
+}
+
+}  // namespace
+
+void show_narrow(const Results& results, ReportPage& page) {
+  const auto rows = results.rows("narrow_error");
+  if (!rows.empty()) {
+    page.paragraph(
+        "Each point is a kind of pair, answered by one of winnow's tiers or by another library, "
+        "all "
+        "on the same pairs: down is more exact, left is faster, and nothing is better in both than "
+        "the points on the front. Half of the pairs overlap, and half are nearly touching, down to "
+        "a millionth of their size. Errors are relative to size + |distance|, judged by arithmetic "
+        "of 100 digits where the tool was built with it (column judge), and normals count only "
+        "where they are unique.");
+    show_all_kinds(results, page);
+    show_error_tables(results, page);
+    page.command("bench/run accuracy --kind box-box --ratio 1 --pairs 2000");
+    page.all_rows("narrow_error");
+    page.heading("Kind by kind");
+    show_each_kind(results, page);
+  }
+  show_times(results, page);
+  show_narrow_curves(results, page);
+}
+
+}  // namespace winnow::bench
