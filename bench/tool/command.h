@@ -44,5 +44,6 @@ Command add_growth(CLI::App& app);
 Command add_limits(CLI::App& app);
 Command add_report(CLI::App& app);
 Command add_compare(CLI::App& app);
+Command add_tables(CLI::App& app);
 
 }  // namespace winnow::bench

@@ -14,6 +14,7 @@ int run_tool(int argc, char** argv) {
   const Command report = add_report(app);
   const std::vector<Command> commands{report,
                                       add_compare(app),
+                                      add_tables(app),
                                       add_scenes(app),
                                       add_record(app),
                                       add_replay(app),

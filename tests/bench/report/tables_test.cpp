@@ -1,0 +1,112 @@
+// `winnow tables`: the readme's figures are those of a report, and nothing else of it is touched.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+namespace {
+
+using TableJson = nlohmann::json;
+
+/// A readme and a report beside it, for as long as a test runs.
+class Tables : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_);
+    write_results(1.5);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  /// Of one engine on two scenes and another on one.
+  void write_results(double ms) const {
+    TableJson rows = TableJson::array();
+    const auto add = [&](const char* scene, const char* engine, double median) {
+      rows.push_back({{"id", std::string(scene) + engine},
+                      {"scene", scene},
+                      {"objects", 10000},
+                      {"partition", engine},
+                      {"threads", 1},
+                      {"isa", "wide"},
+                      {"frame_ms", {{"min", 0.1}, {"median", median}, {"max", 9.0}}},
+                      {"bytes_per_object", 83.61}});
+    };
+    add("uniform", "FlatGrid", ms);
+    add("pile", "FlatGrid", 0.0571);
+    add("uniform", "Embree", 12.345);
+    TableJson column{{"label", ""}, {"unit", ""}, {"better", "less"}, {"format", "number"}};
+    TableJson columns{column, column};
+    columns[0]["name"] = "frame_ms";
+    columns[1]["name"] = "bytes_per_object";
+    const TableJson document{{"format", "winnow report 1"},
+                             {"machine", {{"isa", "wide"}}},
+                             {"settings", {{"seed", 1}}},
+                             {"missing", TableJson::array()},
+                             {"problems", TableJson::array()},
+                             {"sections", TableJson::array()},
+                             {"tables",
+                              {{{"name", "throughput"},
+                                {"keys", {"scene", "objects", "partition", "threads", "isa"}},
+                                {"values", columns},
+                                {"rows", rows}}}}};
+    std::ofstream(folder_ / "results.json") << document;
+  }
+  void write_readme(const std::string& text) const { std::ofstream(folder_ / "readme.md") << text; }
+  [[nodiscard]] std::string readme() const {
+    std::ifstream file(folder_ / "readme.md");
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  [[nodiscard]] int run(const std::string& option = "") const {
+    const std::string command = std::string("'") + WINNOW_TOOL + "' tables " + option + " '" +
+                                (folder_ / "results.json").string() + "' '" +
+                                (folder_ / "readme.md").string() + "' >/dev/null 2>&1";
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  const std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("winnow_tables_" + std::to_string(::getpid()));
+};
+
+constexpr const char* kEmpty =
+    "before\n<!-- table throughput 10,000 -->\nold\n<!-- end of table -->\nafter 1 2 3\n";
+
+TEST_F(Tables, are_filled_with_the_medians_of_the_report) {
+  write_readme(kEmpty);
+  EXPECT_EQ(run(), 0);
+  EXPECT_EQ(readme(),
+            "before\n<!-- table throughput 10,000 -->\n\n"
+            "| 10,000 objects, 1 thread | uniform | pile | bytes/object |\n"
+            "|---|---|---|---|\n"
+            "| `FlatGrid` | 1.50 | 0.0571 | 83.6 |\n"
+            "| Embree | 12.3 | - | 83.6 |\n"
+            "\n<!-- end of table -->\nafter 1 2 3\n");
+}
+
+TEST_F(Tables, are_found_to_differ_from_another_report) {
+  write_readme(kEmpty);
+  EXPECT_EQ(run("--check"), 1);
+  EXPECT_EQ(readme(), kEmpty);
+  EXPECT_EQ(run(), 0);
+  EXPECT_EQ(run("--check"), 0);
+  write_results(1.51);
+  EXPECT_EQ(run("--check"), 1);
+}
+
+TEST_F(Tables, are_refused_if_they_cannot_be_made) {
+  for (const char* text : {"<!-- table of nothing -->\n<!-- end of table -->\n",
+                           "<!-- table throughput 10,000 -->\nwithout an end\n",
+                           "<!-- table volumes -->\n<!-- end of table -->\n"}) {
+    write_readme(text);
+    EXPECT_EQ(run(), 2) << text;
+    EXPECT_EQ(readme(), text);
+  }
+}
+
+}  // namespace
