@@ -15,6 +15,8 @@ class CountingResource final : public std::pmr::memory_resource {
 
   [[nodiscard]] std::size_t outstanding() const noexcept { return outstanding_; }
   [[nodiscard]] std::size_t peak() const noexcept { return peak_; }
+  /// From now on the peak is that of what follows.
+  void forget_peak() noexcept { peak_ = outstanding_; }
   [[nodiscard]] std::size_t allocations() const noexcept { return allocations_; }
 
  private:

@@ -31,6 +31,10 @@ class PartitionEngine final : public Engine {
   [[nodiscard]] const CountingResource& memory() const noexcept { return memory_; }
   [[nodiscard]] const PairBuffer& buffer() const noexcept { return pairs_; }
 
+  void forget_peak() noexcept { memory_.forget_peak(); }
+  /// Gives the partition's memory back; after it there is nothing but the pair buffer.
+  void drop_partition() noexcept { partition_.reset(); }
+
   /// The number of objects up to which a partition is run on whole scenes.
   [[nodiscard]] static std::size_t largest_for(std::string_view partition) noexcept;
 

@@ -1,82 +1,29 @@
-#include "engine/arena.h"
-#include "engine/partition_engine.h"
 #include "tool/arguments.h"
 #include "tool/command.h"
-#include "tool/output.h"
+#include "tool/measure_footprint.h"
+#include "tool/resident_set.h"
 #include "tool/table.h"
+#include "tool/target.h"
 
-#include <array>
+#include <algorithm>
 #include <iostream>
-#include <numeric>
 
 namespace winnow::bench {
 namespace {
 
-constexpr std::size_t kFrames = 5;
-
-struct Purpose {
-  const char* name;
-  Bytes Footprint::*bytes;
-};
-
-constexpr std::array<Purpose, 6> kPurposes{{{"bounds", &Footprint::bounds},
-                                            {"keys", &Footprint::keys},
-                                            {"client_data", &Footprint::client_data},
-                                            {"structure", &Footprint::structure},
-                                            {"scratch", &Footprint::scratch},
-                                            {"results", &Footprint::results}}};
-
-struct Held {
-  std::string partition;
-  Footprint footprint;
-  Footprint buffer;             // the caller's pair buffer
-  std::size_t outstanding = 0;  // at the memory resource
-
-  [[nodiscard]] bool exact() const { return footprint.total().reserved == outstanding; }
-};
-
-Held measure_held(const std::string& partition, const std::string& scene, std::size_t objects,
-                  std::uint64_t seed, int threads) {
-  const auto source = scene_or_error(scene, objects, seed);
-  PartitionEngine engine(partition, threads);
-  std::vector<std::uint32_t> rows(objects);
-  std::iota(rows.begin(), rows.end(), 0U);
-  Arenas(threads).run(threads, [&] {
-    engine.start(source->boxes());
-    for (std::size_t f = 1; f < kFrames && source->advance(); ++f) {
-      engine.frame(rows, source->boxes());
-    }
-  });
-  return {partition, engine.partition().footprint(), engine.buffer().footprint(),
-          engine.memory().outstanding()};
-}
-
-Json to_json(const Held& held, const std::string& scene, std::size_t objects, int threads) {
-  Json row{
-      {"scene", scene}, {"objects", objects}, {"partition", held.partition}, {"threads", threads}};
-  for (const Purpose& purpose : kPurposes) {
-    const Bytes& bytes = held.footprint.*purpose.bytes;
-    row[purpose.name] = {{"used", bytes.used}, {"reserved", bytes.reserved}};
-  }
-  const std::size_t bytes = held.footprint.total().reserved - held.footprint.results.reserved;
-  row["bytes"] = bytes;
-  row["bytes_per_object"] = static_cast<double>(bytes) / static_cast<double>(objects);
-  row["pair_buffer"] = held.buffer.total().reserved;
-  row["allocated"] = held.outstanding;
-  row["exact"] = held.exact();
-  return row;
-}
-
-void print(const std::vector<Held>& all, const std::string& scene, std::size_t objects) {
+void print(const std::vector<Held>& all, const std::string& scene) {
+  const std::size_t objects = all.front().objects;
   const auto each = [objects](std::size_t bytes) {
     return short_number(static_cast<double>(bytes) / static_cast<double>(objects));
   };
   std::cout << '\n'
             << scene << ", " << grouped(objects)
-            << " objects: bytes an object, used / reserved, after " << kFrames << " frames\n";
+            << " objects: bytes an object, used / reserved, after " << kFootprintFrames
+            << " frames\n";
   std::vector<std::string> header{"partition"};
-  for (const Purpose& purpose : kPurposes) header.emplace_back(purpose.name);
-  header.insert(header.end(), {"all but results", "pair buffer", "equals allocated"});
+  for (const Purpose& purpose : kPurposes) header.emplace_back(purpose.label);
+  header.insert(header.end(), {"all but results", "pair buffer", "equals allocated", "resident",
+                               "peak, first frame", "peak, later"});
   Table table(std::move(header));
   for (const Held& held : all) {
     std::vector<std::string> row{held.partition};
@@ -87,6 +34,9 @@ void print(const std::vector<Held>& all, const std::string& scene, std::size_t o
     row.push_back(each(held.footprint.total().reserved - held.footprint.results.reserved));
     row.push_back(each(held.buffer.total().reserved));
     row.emplace_back(held.exact() ? "yes" : "NO");
+    row.push_back(held.resident != 0 ? each(held.resident) : "-");
+    row.push_back(each(held.peak_first));
+    row.push_back(each(held.peak_later));
     table.add(std::move(row));
   }
   std::cout << table;
@@ -97,27 +47,41 @@ struct FootprintCommand {
   std::string json;
 
   int run();
+
+ private:
+  [[nodiscard]] bool measure_all(const Target& target, int threads, Json& rows) const;
 };
+
+/// True if every footprint equals what was allocated.
+bool FootprintCommand::measure_all(const Target& target, int threads, Json& rows) const {
+  const auto first = target.source();
+  const Partitions partitions = partitions_for(choice.partitions, first->boxes().size());
+  std::vector<Held> all;
+  for (const std::string& name : partitions.taken) {
+    all.push_back(measure_held(name, *target.source(), threads));
+    rows.push_back(to_json(all.back(), first->name(), threads));
+  }
+  if (!all.empty()) print(all, first->name());
+  std::cout << skipped_line(partitions.skipped);
+  return std::all_of(all.begin(), all.end(), [](const Held& held) { return held.exact(); });
+}
 
 int FootprintCommand::run() {
   if (choice.scenes.empty()) choice.scenes = {"uniform"};
   if (choice.objects.empty()) choice.objects = {10'000, 100'000};
   if (choice.threads.empty()) choice.threads = {usual_threads().back()};
+  std::vector<Target> targets = open_targets(choice.scenes);
   Json rows = Json::array();
   bool exact = true;
+  keep_resident_set_exact();
   for (const std::size_t objects : choice.objects) {
-    const Partitions partitions = partitions_for(choice.partitions, objects);
-    for (const std::string& scene : choice.scenes) {
-      for (const int threads : choice.threads) {
-        std::vector<Held> all;
-        for (const std::string& name : partitions.taken) {
-          all.push_back(measure_held(name, scene, objects, choice.seed, threads));
-          rows.push_back(to_json(all.back(), scene, objects, threads));
-          exact = exact && all.back().exact();
-        }
-        print(all, scene, objects);
-        std::cout << skipped_line(partitions.skipped);
+    for (Target& target : targets) {
+      if (target.recording() != nullptr && objects != choice.objects.front()) continue;
+      if (target.recording() == nullptr) {
+        target.objects = objects;
+        target.seed = choice.seed;
       }
+      for (const int threads : choice.threads) exact = measure_all(target, threads, rows) && exact;
     }
   }
   write_json(json, rows);
@@ -131,8 +95,10 @@ int FootprintCommand::run() {
 Command add_footprint(CLI::App& app) {
   auto command = std::make_shared<FootprintCommand>();
   CLI::App* sub = app.add_subcommand(
-      "footprint", "Bytes an object by purpose, checked against what was really allocated");
-  add_scenes_option(*sub, command->choice);
+      "footprint",
+      "Bytes an object by purpose, checked against what was really allocated and against the "
+      "process's resident set");
+  add_targets_option(*sub, command->choice);
   add_objects_option(*sub, command->choice);
   add_threads_option(*sub, command->choice);
   add_partitions_option(*sub, command->choice);
