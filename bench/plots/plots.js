@@ -63,7 +63,8 @@ function log_tick(value) {
   const digit = Math.round(size / 10 ** Math.floor(Math.log10(size) + 1e-9));
   const room = this.max < 1000 * this.min;
   if (digit !== 1 && !(room && (digit === 2 || digit === 5))) return "";
-  return size < 1e-3 || size >= 1e7 ? value.toExponential(0) : value.toLocaleString("en");
+  const long = size < 1e-3 || size >= 1e7 || (size >= 1e5 && this.max >= 1e8);
+  return long ? value.toExponential(0).replace("+", "") : value.toLocaleString("en");
 }
 
 function scale(axis, plot) {

@@ -31,19 +31,6 @@ double size_of(const Json& shape) {
   return size;
 }
 
-/// The largest error of a distance, relative to sizes and distance.
-double promised_error(NarrowTier tier) {
-  switch (tier) {
-    case NarrowTier::fast:
-      return 1e-4;
-    case NarrowTier::robust:
-      return 4e-7;
-    case NarrowTier::reference:
-      return 1e-12;
-  }
-  return 0.0;
-}
-
 /// Sine of 0.01 degrees.
 constexpr double kNormalError = 1.7453292430883947e-4;
 
@@ -55,20 +42,24 @@ std::string fault_of_normal(const Json& expect, const Json& answer, double sign)
   return n.cross(expected).norm() <= kNormalError && n.dot(expected) > 0.0 ? "" : "normal";
 }
 
-std::string fault_of_pair(const Json& question, const Json& answer, NarrowTier tier, double sign) {
+/// Numbers of the answer against what is true and allowed.
+std::string fault_of_numbers(const Json& question, const Json& answer, double promised, double sign,
+                             CaseVerdict& verdict) {
   const Json& expect = question["expect"];
-  if (answer["overlap"] != expect["overlap"]) {
-    return expect["overlap"] ? "contact lost" : "false contact";
-  }
   const double truth = number(expect["distance"]);
-  const double distance = number(answer["distance"]);
-  const double bound = number(answer["error_bound"]);
   // The truth in the file is rounded to the nearest double, at least.
   const double slack = expect.value("tolerance", 0.0) + 0x1p-52 * std::abs(truth);
-  const double size = size_of(question["a"]) + size_of(question["b"]);
-  const double error = std::abs(distance - truth);
-  if (!(error <= promised_error(tier) * (size + std::abs(truth)) + slack)) return "distance";
-  if (!(error <= bound + slack)) return "error above its bound";
+  const double scale = size_of(question["a"]) + size_of(question["b"]) + std::abs(truth);
+  const double error = std::abs(number(answer["distance"]) - truth);
+  const double allowed = promised * scale + slack;
+  if (scale > 0.0) verdict.error = error / scale;
+  if (allowed > 0.0) verdict.over_allowed = error / allowed;
+  if (answer["overlap"] != expect["overlap"]) {
+    return expect["overlap"] ? kContactLost : kFalseContact;
+  }
+  if (std::isnan(error)) return "no distance";
+  if (!(error <= allowed)) return "distance";
+  if (!(error <= number(answer["error_bound"]) + slack)) return "error above its bound";
   return fault_of_normal(expect, answer, sign);
 }
 
@@ -84,14 +75,38 @@ std::string fault_of_ray(const Json& question, const Json& answer) {
 
 }  // namespace
 
-std::string fault(const Json& question, const Json& answer, NarrowTier tier, double sign) {
+CaseVerdict judge_case(const Json& question, const Json& answer, double promised, double sign) {
   const Json& expect = question["expect"];
-  if (answer["id"] != question["id"]) return "id";
   const std::string status = expect.value("status", "ok");
-  if (answer["status"] != status) return "status";
-  if (status != "ok") return answer.size() == 2 ? "" : "says more than the status";
-  return question.contains("ray") ? fault_of_ray(question, answer)
-                                  : fault_of_pair(question, answer, tier, sign);
+  CaseVerdict verdict;
+  if (answer["id"] != question["id"]) {
+    verdict.fault = "id";
+  } else if (answer["status"] != status) {
+    verdict.fault = "status";
+  } else if (status != "ok") {
+    verdict.fault = answer.size() == 2 ? "" : "says more than the status";
+  } else if (question.contains("ray")) {
+    verdict.fault = fault_of_ray(question, answer);
+  } else {
+    verdict.fault = fault_of_numbers(question, answer, promised, sign, verdict);
+  }
+  return verdict;
+}
+
+double promised_error(NarrowTier tier) {
+  switch (tier) {
+    case NarrowTier::fast:
+      return 1e-4;
+    case NarrowTier::robust:
+      return 4e-7;
+    case NarrowTier::reference:
+      return 1e-12;
+  }
+  return 0.0;
+}
+
+std::string fault(const Json& question, const Json& answer, NarrowTier tier, double sign) {
+  return judge_case(question, answer, promised_error(tier), sign).fault;
 }
 
 }  // namespace winnow::bench

@@ -1,0 +1,151 @@
+#include "tool/measure_hard_cases.h"
+
+#include "narrow/pair_set.h"
+#include "query/questions.h"
+#include "tool/measure_narrow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <memory>
+#include <optional>
+
+namespace winnow::bench {
+namespace {
+
+/// A case as other libraries can be asked it.
+struct PeerCase {
+  PairSet set;
+  double sign = 1.0;          ///< -1: a and b stand the other way round
+  bool around_origin = true;  ///< both shapes contain it
+};
+
+const PairKind* kind_of_shapes(ShapeKind a, ShapeKind b) {
+  for (const PairKind& kind : pair_kinds()) {
+    if (kind.a == a && kind.b == b) return &kind;
+  }
+  return nullptr;
+}
+
+/// Of shapes with corners: whether the origin lies within the bounds of these.
+bool is_around_origin(const Json& shape) {
+  if (!shape.contains("v")) return true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double low = 0.0;
+    double high = 0.0;
+    bool first = true;
+    for (const Json& v : shape["v"]) {
+      double x = 0.0;
+      if (!read_number(v[axis], x)) return false;
+      low = first ? x : std::min(low, x);
+      high = first ? x : std::max(high, x);
+      first = false;
+    }
+    if (low > 0.0 || high < 0.0) return false;
+  }
+  return true;
+}
+
+/// Nothing where other libraries have no such case.
+std::unique_ptr<PeerCase> peer_case(const Json& question) {
+  if (!question.contains("a") || !question.contains("b")) return nullptr;
+  if (question["expect"].contains("status")) return nullptr;
+  auto made = std::make_unique<PeerCase>();
+  PairSet& set = made->set;
+  set.shapes.resize(2);
+  set.poses.resize(2);
+  set.radius.resize(2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Json& shape = question[i == 0 ? "a" : "b"];
+    if (read_shape(shape, set.pool, set.shapes[i], set.poses[i]) != Status::ok) return nullptr;
+    // They would be asked about it without its rounding.
+    if (shape.contains("rounding")) return nullptr;
+    made->around_origin = made->around_origin && is_around_origin(shape);
+  }
+  const PairKind* straight = kind_of_shapes(set.shapes[0].kind(), set.shapes[1].kind());
+  const PairKind* turned = kind_of_shapes(set.shapes[1].kind(), set.shapes[0].kind());
+  if (straight == nullptr && turned == nullptr) return nullptr;
+  made->sign = straight != nullptr ? 1.0 : -1.0;
+  set.kind = straight != nullptr ? *straight : *turned;
+  set.pairs.push_back(straight != nullptr ? BodyPair{0, 1} : BodyPair{1, 0});
+  return made;
+}
+
+Json to_json(const Json& question, const NarrowAnswer& answer, double sign) {
+  Json normal = Json::array();
+  for (const double n : answer.normal) normal.push_back(number_to_json(sign * n));
+  return {{"id", question["id"]},        {"status", "ok"},
+          {"overlap", answer.overlap},   {"distance", number_to_json(answer.distance)},
+          {"normal", std::move(normal)}, {"error_bound", "inf"}};
+}
+
+CaseVerdict ask_peer(NarrowEngine& engine, const PeerCase& asked, const Json& question) {
+  const bool tells_distance = engine.takes(asked.set.kind, NarrowLevel::distance);
+  try {
+    engine.start(asked.set);
+    engine.run(tells_distance ? NarrowLevel::distance : NarrowLevel::manifold, asked.set.pairs);
+  } catch (const std::exception&) {
+    return {.fault = "exception"};
+  }
+  const NarrowAnswer answer = engine.answer(0);
+  // Without distances it knows only of a pair that is apart that it is.
+  if (!tells_distance && !question["expect"]["overlap"].get<bool>()) {
+    return {.fault = answer.overlap ? kFalseContact : ""};
+  }
+  return judge_case(question, to_json(question, answer, asked.sign),
+                    promised_error(NarrowTier::fast));
+}
+
+void add_peers(const Json& questions, std::vector<HardCaseTally>& tallies) {
+  std::vector<HardCaseTally> peers;
+  for (const auto& peer : narrow_peers()) peers.push_back({.engine = peer->name()});
+  for (const Json& question : questions) {
+    const auto asked = peer_case(question);
+    // They are started once.
+    const auto fresh = narrow_peers();
+    for (std::size_t i = 0; i < peers.size(); ++i) {
+      const bool needs_origin = peers[i].engine.starts_with("libccd");
+      if (asked == nullptr || !fresh[i]->takes(asked->set.kind, NarrowLevel::manifold) ||
+          (needs_origin && !asked->around_origin)) {
+        ++peers[i].not_taken;
+      } else {
+        peers[i].add(ask_peer(*fresh[i], *asked, question));
+      }
+    }
+  }
+  tallies.insert(tallies.end(), peers.begin(), peers.end());
+}
+
+}  // namespace
+
+void HardCaseTally::add(const CaseVerdict& verdict) {
+  ++(verdict.fault.empty() ? right : wrong);
+  if (!verdict.fault.empty()) ++faults[verdict.fault];
+  if (verdict.fault == kContactLost || verdict.fault == kFalseContact) ++wrong_verdicts;
+  worst_error = std::fmax(worst_error, verdict.error);
+  worst_over_allowed = std::fmax(worst_over_allowed, verdict.over_allowed);
+}
+
+std::string HardCaseTally::faults_text() const {
+  std::string text;
+  for (const auto& [what, count] : faults) {
+    text += (text.empty() ? "" : ", ") + what + " " + std::to_string(count);
+  }
+  return text;
+}
+
+std::vector<HardCaseTally> judge_hard_cases(const Json& questions, bool peers) {
+  std::vector<HardCaseTally> tallies;
+  for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
+    HardCaseTally tally{.engine = std::string(to_text(tier))};
+    const Json answers = answer(questions, tier);
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      tally.add(judge_case(questions[i], answers[i], promised_error(tier)));
+    }
+    tallies.push_back(std::move(tally));
+  }
+  if (peers) add_peers(questions, tallies);
+  return tallies;
+}
+
+}  // namespace winnow::bench
