@@ -66,6 +66,12 @@ class BulletScene final : public SceneEngine {
     broadphase_.m_deferedcollide = true;
   }
   ~BulletScene() override {
+    // Each by itself: taking an object out of the world looks through all pairs that there are.
+    btOverlappingPairCache& pairs = *broadphase_.getOverlappingPairCache();
+    for (int last = pairs.getNumOverlappingPairs() - 1; last >= 0; --last) {
+      const btBroadphasePair pair = pairs.getOverlappingPairArray()[last];
+      pairs.removeOverlappingPair(pair.m_pProxy0, pair.m_pProxy1, &dispatcher_);
+    }
     for (btCollisionObject& object : objects_) world_.removeCollisionObject(&object);
     if (has_terrain_) world_.removeCollisionObject(&terrain_);
   }

@@ -10,6 +10,19 @@
 
 namespace winnow::bench {
 
+/// Of the steps, one in so many tells how long each phase took.
+inline constexpr std::size_t kProfiledSteps = 16;
+
+struct FlowPhase {
+  const char* name;
+  double FlowTimes::*ms;
+};
+inline constexpr std::array<FlowPhase, 5> kFlowPhases{{{"handing over poses", &FlowTimes::move},
+                                                       {"broad phase", &FlowTimes::broad},
+                                                       {"mid phase", &FlowTimes::mid},
+                                                       {"narrow phase", &FlowTimes::narrow},
+                                                       {"solver", &FlowTimes::solver}}};
+
 /// One step of a flow.
 struct FlowSample {
   double time = 0.0;
@@ -55,13 +68,14 @@ class FlowHistory {
     return most;
   }
 
-  /// The median of one member of the times of a step, from step `first` on.
-  [[nodiscard]] double median_ms(double FlowTimes::*phase, std::size_t first = 0) const {
+  /// One member of the times of the steps that were profiled, from step `first` on.
+  [[nodiscard]] std::vector<double> phase_ms(double FlowTimes::*phase,
+                                             std::size_t first = 0) const {
     std::vector<double> ms;
     for (std::size_t i = first; i < samples_.size(); ++i) {
       if (samples_[i].times.profiled) ms.push_back(samples_[i].times.*phase);
     }
-    return median_of(ms);
+    return ms;
   }
 
  private:

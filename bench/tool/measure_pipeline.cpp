@@ -3,6 +3,8 @@
 #include "engine/reference_sweep.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #if WINNOW_HAVE_PEERS
 #include "peers/peers.h"
@@ -33,8 +35,8 @@ std::vector<std::unique_ptr<MeshEngine>> mesh_peers() {
 #endif
 }
 
-void tick(MachineClock& clock) {
-  for (int i = 0; i < kTicks; ++i) clock.tick();
+void tick(std::optional<MachineClock>& clock) {
+  for (int i = 0; clock && i < kTicks; ++i) clock->tick();
 }
 
 }  // namespace
@@ -54,10 +56,21 @@ const SceneTiming* PipelineMeasurement::peer(const std::string& name) const noex
   return nullptr;
 }
 
+std::unique_ptr<BodySet> make_pipeline_scene(const std::string& scene, std::size_t bodies,
+                                             std::uint64_t seed) {
+  if (scene == "pile") return make_heap(bodies != 0 ? bodies : kPileBodies, seed);
+  if (bodies == 0) return make_landscape(kTerrainBodies, kTerrainCells, seed);
+  const double share = static_cast<double>(bodies) / static_cast<double>(kTerrainBodies);
+  const auto cells = static_cast<std::uint32_t>(std::lround(kTerrainCells * std::sqrt(share)));
+  return make_landscape(bodies, std::max(1U, cells), seed);
+}
+
 PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options) {
-  const auto set = options.scene == "pile"
-                       ? make_heap(kPileBodies, options.seed)
-                       : make_landscape(kTerrainBodies, kTerrainCells, options.seed);
+  std::unique_ptr<BodySet> made;
+  if (options.set == nullptr) {
+    made = make_pipeline_scene(options.scene, options.bodies, options.seed);
+  }
+  const BodySet* set = options.set != nullptr ? options.set : made.get();
   PipelineMeasurement measured;
   measured.bodies = set->poses.size();
   measured.triangles = set->mesh.size();
@@ -73,27 +86,29 @@ PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options) {
       contenders.push_back({std::move(peer), 1});
     }
   }
-  MachineClock clock;
+  std::optional<MachineClock> clock;
+  if (options.machine_clock) clock.emplace();
   tick(clock);
   measured.timings =
       race_scene(*set, options.resting ? kResting : kMoving, contenders, options.frames);
   tick(clock);
-  measured.machine_ms = clock.median_ms();
+  if (clock) measured.machine_ms = clock->median_ms();
   return measured;
 }
 
-MeshMeasurement measure_meshes(std::size_t rounds, bool peers) {
+MeshMeasurement measure_meshes(std::size_t rounds, bool peers, bool machine_clock) {
   std::vector<std::unique_ptr<MeshEngine>> engines;
   engines.push_back(make_winnow_mesh());
   if (peers) {
     for (std::unique_ptr<MeshEngine>& peer : mesh_peers()) engines.push_back(std::move(peer));
   }
   MeshMeasurement measured;
-  MachineClock clock;
+  std::optional<MachineClock> clock;
+  if (machine_clock) clock.emplace();
   tick(clock);
   measured.timings = race_meshes(engines, rounds);
   tick(clock);
-  measured.machine_ms = clock.median_ms();
+  if (clock) measured.machine_ms = clock->median_ms();
   return measured;
 }
 

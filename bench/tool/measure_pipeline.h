@@ -3,6 +3,8 @@
 #include "pipeline/scene_race.h"
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,15 +18,22 @@ struct PipelineMeasureOptions {
   std::vector<int> threads{1, 2};
   bool peers = true;
   std::size_t frames = 9;
+  const BodySet* set = nullptr;  ///< the scene's, if it was made before
+  std::size_t bodies = 0;        ///< of the scene to make; 0: as many as suit it
   std::uint64_t seed = 1;
+  bool machine_clock = true;
 };
+
+/// The bodies of a scene, which are the same in each race on it. Takes seconds for the pile.
+[[nodiscard]] std::unique_ptr<BodySet> make_pipeline_scene(const std::string& scene,
+                                                           std::size_t bodies, std::uint64_t seed);
 
 struct PipelineMeasurement {
   std::vector<SceneTiming> timings;
   std::vector<std::string> peers;  ///< names of the other libraries that took part
   std::size_t bodies = 0;
   std::size_t triangles = 0;
-  double machine_ms = 0.0;  ///< of the MachineClock, before and after the race
+  double machine_ms = 0.0;  ///< of the MachineClock, before and after the race, if asked for
 
   /// Null if there is none.
   [[nodiscard]] const SceneTiming* winnow(int threads) const noexcept;
@@ -43,6 +52,7 @@ struct MeshMeasurement {
 };
 
 /// Two tori, one thread.
-[[nodiscard]] MeshMeasurement measure_meshes(std::size_t rounds, bool peers);
+[[nodiscard]] MeshMeasurement measure_meshes(std::size_t rounds, bool peers,
+                                             bool machine_clock = true);
 
 }  // namespace winnow::bench

@@ -5,6 +5,7 @@
 #include "tool/arguments.h"
 
 #include <algorithm>
+#include <optional>
 
 #if WINNOW_HAVE_PEERS
 #include "peers/peers.h"
@@ -48,16 +49,19 @@ QueryMeasurement measure_queries(const QueryMeasureOptions& options) {
       contenders.push_back({std::move(peer), true});
     }
   }
-  MachineClock clock;
+  std::optional<MachineClock> clock;
+  if (options.machine_clock) clock.emplace();
   QueryRaceOptions race{.rounds = options.rounds, .threads = options.threads};
   race.before_set = [&](const QuestionSet& set) {
     if (options.before_set) options.before_set(set);
-    clock.tick();
+    if (clock) clock->tick();
   };
   const auto sets = make_question_sets(boxes, options.rays, options.seed, options.sets);
   result.runs = race_queries(boxes, sets, contenders, race);
-  clock.tick();
-  result.machine_ms = clock.median_ms();
+  if (clock) {
+    clock->tick();
+    result.machine_ms = clock->median_ms();
+  }
   return result;
 }
 

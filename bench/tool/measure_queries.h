@@ -22,7 +22,8 @@ struct QueryMeasureOptions {
   std::size_t rays = 100'000;
   std::size_t rounds = 5;
   std::vector<std::string> sets;  ///< empty: all
-  bool peers = false;             ///< other libraries too, where the tool was built with them
+  bool machine_clock = true;
+  bool peers = false;  ///< other libraries too, where the tool was built with them
   std::function<void(const QuestionSet&)> before_set;
 };
 
@@ -32,7 +33,7 @@ struct QueryMeasurement {
   std::vector<QueryRun> runs;
   std::vector<std::string> peers;    ///< names of the other libraries that took part
   std::vector<std::string> skipped;  ///< too slow for the size
-  double machine_ms = 0.0;           ///< of the MachineClock, interleaved with the race
+  double machine_ms = 0.0;  ///< of the MachineClock, interleaved with the race, if asked for
 
   [[nodiscard]] bool is_peer(const QueryRun& run) const noexcept;
 };

@@ -24,6 +24,7 @@ struct Pipeline {
   std::vector<std::string> levels{"manifold"};
   std::vector<int> threads{1, 2};
   std::size_t frames = 9;
+  std::size_t bodies = 0;
   bool peers = true;
   std::string json;
 
@@ -49,6 +50,7 @@ void Pipeline::race(const std::string& scene, const std::string& level, bool res
   options.threads = threads;
   options.peers = peers && options.level == SceneLevel::manifold;
   options.frames = frames;
+  options.bodies = bodies;
   options.seed = choice.seed;
   const PipelineMeasurement measured = measure_pipeline(options);
   const char* how = resting ? "at rest" : "moving a little";
@@ -162,6 +164,8 @@ Command add_pipeline(CLI::App& app) {
   sub->add_option("--frames", pipeline->frames, "Timed frames")
       ->check(CLI::Range(std::size_t{1}, std::size_t{10'000}))
       ->capture_default_str();
+  sub->add_option("--bodies", pipeline->bodies, "Fewer or more of them in pile and terrain")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}));
   sub->add_flag("!--no-peers", pipeline->peers, "Without other libraries");
   add_isa_option(*sub, pipeline->choice);
   add_seed_option(*sub, pipeline->choice);

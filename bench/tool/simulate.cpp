@@ -13,7 +13,6 @@
 #include "tool/table.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -23,8 +22,6 @@
 namespace winnow::bench {
 namespace {
 
-/// Of the steps, one in so many tells how long each phase took.
-constexpr std::size_t kProfiled = 16;
 /// Steps from one recorded frame to the next: bodies move about a hundredth of their size.
 constexpr std::size_t kRecorded = 10;
 constexpr std::size_t kReports = 20;
@@ -53,7 +50,7 @@ class FlowRun {
       allocations_before_ = memory_.allocations();
       steady_before_ = steady_.count();
     }
-    flow_.step(i % kProfiled == 0);
+    flow_.step(i % kProfiledSteps == 0);
     history_.add(flow_);
     steady_.note(flow_, memory_.allocations());
     if (check_ != 0 && i % check_ == 0) {
@@ -146,19 +143,14 @@ struct Simulate {
   void write(const FlowRun& run) const;
 };
 
-constexpr std::array<std::pair<const char*, double FlowTimes::*>, 5> kPhases{
-    {{"handing over poses", &FlowTimes::move},
-     {"broad phase", &FlowTimes::broad},
-     {"mid phase", &FlowTimes::mid},
-     {"narrow phase", &FlowTimes::narrow},
-     {"solver", &FlowTimes::solver}}};
-
 void print_phases(const FlowRun& run) {
   double all = 0.0;
-  for (const auto& [name, phase] : kPhases) all += run.history().median_ms(phase, run.warm_up());
+  for (const auto& [name, phase] : kFlowPhases) {
+    all += median_of(run.history().phase_ms(phase, run.warm_up()));
+  }
   Table table({"phase", "ms a step", "share"});
-  for (const auto& [name, phase] : kPhases) {
-    const double ms = run.history().median_ms(phase, run.warm_up());
+  for (const auto& [name, phase] : kFlowPhases) {
+    const double ms = median_of(run.history().phase_ms(phase, run.warm_up()));
     table.add({name, short_number(ms), short_number(100.0 * ms / std::max(all, 1e-9)) + " %"});
   }
   table.add({"all", short_number(all), "100 %"});
@@ -219,8 +211,8 @@ void Simulate::write(const FlowRun& run) const {
   }
   if (json.empty()) return;
   Json phases;
-  for (const auto& [name, phase] : kPhases) {
-    phases[name] = run.history().median_ms(phase, run.warm_up());
+  for (const auto& [name, phase] : kFlowPhases) {
+    phases[name] = median_of(run.history().phase_ms(phase, run.warm_up()));
   }
   Json samples = Json::array();
   for (const FlowSample& sample : run.history().samples()) samples.push_back(to_json(sample));

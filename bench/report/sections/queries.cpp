@@ -93,6 +93,7 @@ void QueriesCell::measure(Results& results) const {
   asked.rays = rays;
   asked.rounds = rounds();
   asked.peers = options.peers;
+  asked.machine_clock = false;
   const QueryMeasurement measured = measure_queries(asked);
   std::string problems;
   for (const QueryRun& run : measured.runs) {
