@@ -98,10 +98,14 @@ class Watched final : public FrameSource {
 
 }  // namespace
 
-double settled_ms(const Run& run) {
+std::vector<double> settled_frames(const Run& run) {
   const std::size_t first =
       run.frame_ms.size() < 9 ? std::min<std::size_t>(1, run.frame_ms.size() - 1) : 6;
-  return median_of(std::span(run.frame_ms).subspan(first));
+  return {run.frame_ms.begin() + static_cast<std::ptrdiff_t>(first), run.frame_ms.end()};
+}
+
+double settled_ms(const Run& run) {
+  return median_of(settled_frames(run));
 }
 
 const Advised& Advice::best() const {
@@ -141,6 +145,7 @@ Advice advise(FrameSource& source, const std::vector<std::string>& partitions, s
     const double ms = settled_ms(runs[i]);
     advice.ranking.push_back({.partition = runs[i].engine,
                               .first_ms = runs[i].frame_ms.front(),
+                              .settled = settled_frames(runs[i]),
                               .median_ms = ms,
                               .bytes = runs[i].bytes,
                               .why = why(*raced[i], runs[i], ms)});

@@ -14,8 +14,10 @@ namespace winnow::bench {
 /// One partition in a race on somebody's scene.
 struct Advised {
   std::string partition;
-  double first_ms = 0.0;    ///< of the frame in which it was built
-  double median_ms = 0.0;   ///< of the frames after the first six, or after the first of a few
+  double first_ms = 0.0;  ///< of the frame in which it was built
+  std::vector<double>
+      settled;              ///< ms of the frames after the first six, or after the first of a few
+  double median_ms = 0.0;   ///< of those
   double times_best = 0.0;  ///< over that of the fastest
   std::size_t bytes = 0;    ///< held, without results
   std::string why;          ///< one sentence from its counters
@@ -45,7 +47,9 @@ struct Advice {
 [[nodiscard]] Advice advise(FrameSource& source, const std::vector<std::string>& partitions,
                             std::size_t frames, int threads);
 
-/// The median of a run's frames after the first six; of fewer than nine, after the first.
+/// A run's frames after the first six; of fewer than nine, after the first.
+[[nodiscard]] std::vector<double> settled_frames(const Run& run);
+/// The median of those.
 [[nodiscard]] double settled_ms(const Run& run);
 
 }  // namespace winnow::bench

@@ -23,7 +23,7 @@ std::string attribute(const std::string& name, const std::string& text) {
 
 std::string html_of(const PageCell& cell) {
   std::string html = "<td";
-  if (cell.best) html += " class=\"best\"";
+  if (cell.best || cell.words) html += attribute("class", cell.best ? "best" : "words");
   if (!cell.row.empty()) {
     html += attribute("data-row", cell.row) + attribute("data-value", cell.value) +
             attribute("title", cell.row);
@@ -35,7 +35,11 @@ std::string html_of(const PageTable& table) {
   std::string html = "<div class=\"wide\"><table>\n";
   if (!table.caption.empty()) html += "<caption>" + escaped(table.caption) + "</caption>\n";
   html += "<thead><tr>";
-  for (const std::string& head : table.header) html += "<th>" + escaped(head) + "</th>";
+  for (std::size_t c = 0; c < table.header.size(); ++c) {
+    const bool words = std::any_of(table.rows.begin(), table.rows.end(),
+                                   [&](const auto& row) { return c < row.size() && row[c].words; });
+    html += (words ? "<th class=\"words\">" : "<th>") + escaped(table.header[c]) + "</th>";
+  }
   html += "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
     html += "<tr>";
@@ -145,7 +149,10 @@ PageCell cell(const Results& results, const std::string& table, const Json* row,
               const std::string& value) {
   const Json* column = results.column(table, value);
   if (row == nullptr || column == nullptr || !row->contains(value)) return {"-"};
-  return {shown(*row, *column), (*row)["id"], value};
+  return {.text = shown(*row, *column),
+          .row = (*row)["id"],
+          .value = value,
+          .words = (*row)[value].is_string()};
 }
 
 PageTable pivot(const Results& results, const Pivot& pivot) {

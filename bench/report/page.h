@@ -14,6 +14,7 @@ struct PageCell {
   std::string row{};
   std::string value{};
   bool best = false;
+  bool words = false;  ///< set flush left, and broken into lines
 };
 
 struct PageTable {
