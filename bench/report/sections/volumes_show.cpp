@@ -7,8 +7,11 @@ namespace {
 void add_volumes_setting(const Results& results, const Json& what, const std::string& id,
                          std::vector<Plot>& plots) {
   const Json where{{"objects_are", what}, {"partition", kVolumesPartition}};
+  const Json* first = results.row("volumes", where);
+  const std::string title =
+      key_text(what) + ", " + shown((*first)["objects"].get<double>(), "count") + " objects";
   Plot front{.id = id + "_front",
-             .title = key_text(what),
+             .title = title,
              .x = {"making and broad phase, ms a frame", true},
              .y = {"false positives, share of reported pairs", false}};
   front.series = series_of(
@@ -16,7 +19,7 @@ void add_volumes_setting(const Results& results, const Json& what, const std::st
   front.series.push_back(pareto_front(front.series));
   plots.push_back(std::move(front));
   Plot bars{.id = id + "_end_to_end",
-            .title = key_text(what) + ", end to end",
+            .title = title + ", end to end",
             .x = {"volume", false},
             .y = {"ms a frame", false}};
   add_bars(bars, results, {"volumes", where, "volume", {"make_ms", "broad_ms", "narrow_ms"}});
@@ -115,9 +118,9 @@ void show_box_widths(const Results& results, ReportPage& page) {
   if (results.rows("box_widths").empty()) return;
   page.heading("Bounds of 16 bits");
   page.paragraph(
-      "Boxes rounded outward to 16 bits within the box of their group take half the memory, and "
-      "more of them are tested at once; but they let some pairs pass in vain, and must be made "
-      "anew in each frame.");
+      "Boxes rounded to 16 bits within the box of their group take half the memory, and more of "
+      "them are tested at once; but they let some pairs pass in vain, and must be made anew in "
+      "each frame. One mark for each kind of objects.");
   Plot plot{.id = "volumes_widths",
             .title = "float against 16 bits",
             .x = {"test of all boxes, ms", true},
