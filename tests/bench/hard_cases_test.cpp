@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../support/config.h"
+#include "query/hard_case_files.h"
 #include "query/hard_cases.h"
 #include "query/questions.h"
 
@@ -107,6 +108,36 @@ TEST_P(HardCases, agree_with_the_oracle) {
   }
 }
 #endif
+
+TEST(HardCaseFiles, are_compiled_in) {
+  std::vector<Json> compiled;
+  for (const HardCaseFile& file : hard_case_files()) compiled.push_back(Json::parse(file.json));
+  std::vector<Json> read;
+  for (const Path& file : case_files()) read.push_back(read_cases(file));
+  EXPECT_EQ(compiled, read);
+}
+
+TEST(HardCaseVerdicts, tell_by_how_much) {
+  const Json question = {{"id", 1},
+                         {"a", {{"type", "sphere"}, {"radius", 1.0}}},
+                         {"b", {{"type", "sphere"}, {"radius", 1.0}}},
+                         {"expect", {{"overlap", false}, {"distance", 2.0}}}};
+  Json said = {{"id", 1},
+               {"status", "ok"},
+               {"overlap", false},
+               {"distance", 2.0 + 4e-3},
+               {"normal", {1, 0, 0}},
+               {"error_bound", "inf"}};
+  const CaseVerdict verdict = judge_case(question, said, 1e-4);
+  EXPECT_EQ(verdict.fault, "distance");
+  EXPECT_NEAR(verdict.error, 1e-3, 1e-12);
+  EXPECT_NEAR(verdict.over_allowed, 10.0, 1e-9);
+  said["overlap"] = true;
+  EXPECT_EQ(judge_case(question, said, 1e-2).fault, kFalseContact);
+  said["distance"] = "nan";
+  said["overlap"] = false;
+  EXPECT_EQ(judge_case(question, said, 1e-2).fault, "no distance");
+}
 
 std::string family_of(const testing::TestParamInfo<Path>& file) {
   return file.param.stem().string();

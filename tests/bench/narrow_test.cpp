@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstring>
 
@@ -60,6 +61,41 @@ TEST_P(PairSets, give_every_pair_bodies_of_its_own) {
     EXPECT_EQ(set->shapes[pair.b].kind(), GetParam().b);
   }
   EXPECT_EQ(std::count(used.begin(), used.end(), 1), 2 * kPairs);
+}
+
+TEST(MovedPairs, are_the_same_at_any_offset) {
+  const PairKind& kind = *find_pair_kind("box-box");
+  const auto here = make_pair_set(kind, {.pairs = kPairs, .offset = 0.0});
+  const auto far = make_pair_set(kind, {.pairs = kPairs, .offset = 1e12});
+  for (std::size_t i = 0; i < here->poses.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(far->poses[i].position[axis] - 1e12, here->poses[i].position[axis]);
+    }
+  }
+}
+
+TEST(TurnedPairs, stand_as_each_other_but_for_the_angle) {
+  const auto set = make_pair_set(*find_pair_kind("box-box"), {.pairs = kPairs, .angle = 1e-3});
+  for (const BodyPair& pair : set->pairs) {
+    const double* a = set->poses[pair.a].orientation;
+    const double* b = set->poses[pair.b].orientation;
+    const Eigen::Quaterniond from(a[0], a[1], a[2], a[3]);
+    const Eigen::Quaterniond to(b[0], b[1], b[2], b[3]);
+    EXPECT_NEAR(from.angularDistance(to), 1e-3, 1e-9);
+  }
+}
+
+TEST(ThinTriangles, keep_so_much_of_their_height) {
+  const PairKind& kind = *find_pair_kind("sphere-triangle");
+  const auto area = [&](double thinness) {
+    const auto set = make_pair_set(kind, {.pairs = 1, .thinness = thinness});
+    const auto& v = set->pool.tables().triangles[0].vertex;
+    const Eigen::Vector3d p(v[0][0], v[0][1], v[0][2]);
+    const Eigen::Vector3d q(v[1][0], v[1][1], v[1][2]);
+    const Eigen::Vector3d r(v[2][0], v[2][1], v[2][2]);
+    return (q - p).cross(r - p).norm();
+  };
+  EXPECT_NEAR(area(1e-3) / area(1.0), 1e-3, 1e-9);
 }
 
 std::vector<PairKind> kinds() {
@@ -122,6 +158,25 @@ TEST(Accuracy, every_fault_is_counted) {
 
 TEST(Accuracy, an_answer_without_a_distance_is_missing) {
   EXPECT_EQ(judged({}, kApart).missing, 1U);
+}
+
+TEST(Accuracy, an_answer_without_a_normal_is_missing_but_its_distance_counts) {
+  const Accuracy accuracy = judged({.distance = 1.5}, kApart);
+  EXPECT_EQ(accuracy.missing, 1U);
+  EXPECT_EQ(accuracy.apart.count, 1U);
+  EXPECT_EQ(accuracy.degrees.count, 0U);
+}
+
+TEST(Accuracy, tells_depths_from_distances) {
+  std::vector<PairError> errors(4);
+  for (std::size_t i = 0; i < 3; ++i) errors[i].error = static_cast<double>(i);
+  errors[3].overlap = true;
+  errors[3].error = 9.0;
+  const Accuracy accuracy = summary_of(errors);
+  EXPECT_EQ(accuracy.apart.median, 1.0);
+  EXPECT_EQ(accuracy.apart.worst, 2.0);
+  EXPECT_EQ(accuracy.depth.worst, 9.0);
+  EXPECT_EQ(accuracy.all.count, 4U);
 }
 
 TEST(NarrowRace, counts_verdicts_that_differ_from_the_first) {

@@ -1,6 +1,8 @@
 #include "report/sections/accuracy_rows.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 namespace winnow::bench {
 namespace {
@@ -43,11 +45,33 @@ std::vector<ValueColumn> accuracy_columns() {
   return columns;
 }
 
+std::vector<ValueColumn> accuracy_curve_columns() {
+  constexpr std::array<std::string_view, 11> kept{"pairs",
+                                                  "wrong",
+                                                  "missing",
+                                                  "median_error",
+                                                  "p99_error",
+                                                  "worst_error",
+                                                  "worst_error_or_floor",
+                                                  "worst_distance",
+                                                  "worst_depth",
+                                                  "worst_degrees",
+                                                  "judge"};
+  std::vector<ValueColumn> columns = accuracy_columns();
+  std::erase_if(columns, [&](const ValueColumn& column) {
+    return std::find(kept.begin(), kept.end(), column.name) == kept.end();
+  });
+  return columns;
+}
+
 void add_accuracy_row(Results& results, const std::string& table, Json row,
                       const Accuracy& accuracy, const AccuracyOptions& options) {
-  row.update(to_json(accuracy));
-  for (const char* of : {"error", "distance", "depth", "degrees"}) add_shown(row, of);
-  row["judge"] = judge_name(options.judge);
+  Json figures = to_json(accuracy);
+  for (const char* of : {"error", "distance", "depth", "degrees"}) add_shown(figures, of);
+  figures["judge"] = judge_name(options.judge);
+  for (const auto& [name, value] : figures.items()) {
+    if (results.column(table, name) != nullptr) row[name] = value;
+  }
   if (!row.contains("command")) row["command"] = accuracy_command(options);
   results.add(table, std::move(row));
 }

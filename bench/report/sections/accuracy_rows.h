@@ -15,8 +15,11 @@ inline constexpr double kLeastErrorShown = 1e-17;
 
 /// The columns of to_json(Accuracy), of the judge, and of what is drawn.
 [[nodiscard]] std::vector<ValueColumn> accuracy_columns();
+/// Those of them that rows of curves have, of which there are many.
+[[nodiscard]] std::vector<ValueColumn> accuracy_curve_columns();
 
-/// Adds a row of the keys, the figures and how to measure them again.
+/// Adds a row of the keys, the figures that the table has columns for, and how to measure them
+/// again.
 void add_accuracy_row(Results& results, const std::string& table, Json row,
                       const Accuracy& accuracy, const AccuracyOptions& options);
 

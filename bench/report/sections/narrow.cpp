@@ -21,6 +21,24 @@ bool has_curves(const PairKind& kind) {
   return kind.name == "sphere-box" || kind.name == "box-box" || kind.name == "hull16-hull16";
 }
 
+/// False where the library was built without qhull.
+bool narrow_has_hulls() {
+  ShapePool pool;
+  ShapeId id;
+  const Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  return pool.add_hull(std::span(&point, 1), 0.0, id) == Status::ok;
+}
+
+std::vector<PairKind> narrow_kinds(bool quick) {
+  const bool hulls = narrow_has_hulls();
+  std::vector<PairKind> kinds;
+  for (const PairKind& kind : pair_kinds()) {
+    const bool is_quick = kind.name == "sphere-box" || kind.name == "box-box";
+    if ((is_quick || !quick) && (hulls || kind.hull_vertices == 0)) kinds.push_back(kind);
+  }
+  return kinds;
+}
+
 void declare_narrow(Results& results) {
   results.declare({"narrow_speed",
                    "narrow",
@@ -52,17 +70,17 @@ void declare_narrow(Results& results) {
                    "narrow",
                    of + "|distance| over their size",
                    {"kind", "engine", "gap"},
-                   accuracy_columns()});
+                   accuracy_curve_columns()});
   results.declare({"narrow_ratio",
                    "narrow",
                    of + "the size of the second shape over that of the first",
                    {"kind", "engine", "ratio"},
-                   accuracy_columns()});
+                   accuracy_curve_columns()});
   results.declare({"narrow_offset",
                    "narrow",
                    of + "the offset from the origin along each axis",
                    {"kind", "engine", "offset"},
-                   accuracy_columns()});
+                   accuracy_curve_columns()});
 }
 
 std::string narrow_command(const NarrowMeasurement& measured, std::size_t rounds) {
@@ -178,7 +196,7 @@ void add_curve_steps(std::vector<ReportStep>& steps, const ReportOptions& option
                      const PairKind& kind) {
   const auto add = [&](const std::string& parameter, double value) {
     steps.push_back({std::string(kind.name) + ", " + parameter + " " + power_text(value),
-                     options.quick ? 0.02 : 0.2, [=](Results& results) {
+                     options.quick ? 0.02 : 0.3, [=](Results& results) {
                        measure_narrow_curve(results, options, kind, parameter, value);
                      }});
   };
@@ -188,21 +206,20 @@ void add_curve_steps(std::vector<ReportStep>& steps, const ReportOptions& option
 
 std::vector<ReportStep> plan_narrow(const ReportOptions& options) {
   std::vector<ReportStep> steps;
-  std::vector<PairKind> kinds;
-  for (const PairKind& kind : pair_kinds()) {
-    const bool is_small = kind.name == "sphere-box" || kind.name == "box-box";
-    if (is_small || !options.quick) kinds.push_back(kind);
-  }
+  const std::vector<PairKind> kinds = narrow_kinds(options.quick);
   for (const PairKind& kind : kinds) {
     const std::string name(kind.name);
-    steps.push_back({"time of " + name, options.quick ? 0.1 : 1.2,
+    const double hull = kind.hull_vertices;
+    steps.push_back({"time of " + name, options.quick ? 0.1 : hull * 0.07 + 0.8,
                      [=](Results& results) { measure_narrow_times(results, options, kind); }});
   }
   for (const PairKind& kind : kinds) {
     const std::string name(kind.name);
-    steps.push_back({"errors of " + name, options.quick ? 0.05 : 0.7, [=](Results& results) {
-                       measure_narrow_errors(results, options, kind, has_curves(kind));
-                     }});
+    const double hull = kind.hull_vertices;
+    steps.push_back(
+        {"errors of " + name, options.quick ? 0.05 : hull * 0.02 + 0.5, [=](Results& results) {
+           measure_narrow_errors(results, options, kind, has_curves(kind));
+         }});
   }
   for (const PairKind& kind : kinds) {
     if (has_curves(kind)) add_curve_steps(steps, options, kind);

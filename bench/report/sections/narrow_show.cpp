@@ -7,17 +7,24 @@
 namespace winnow::bench {
 namespace {
 
+/// What is drawn against ns a pair at a level, and from how much on.
 struct ErrorOf {
   const char* level;
   const char* value;
   const char* what;
   const char* axis;
 };
-constexpr const char* kOfTheSize = "worst error / (size + |distance|), none as 1e-17";
-constexpr std::array<ErrorOf, 3> kErrorPlots{
-    {{"distance", "worst_distance_or_floor", "distance of pairs apart", kOfTheSize},
-     {"manifold", "worst_depth_or_floor", "depth of pairs that overlap", kOfTheSize},
-     {"distance", "worst_degrees_or_floor", "normal", "worst error in degrees, none as 1e-17"}}};
+constexpr const char* kOfTheSize = "error / (size + |distance|)";
+constexpr std::array<ErrorOf, 9> kErrorPlots{
+    {{"distance", "worst_distance_or_floor", "worst error of the distance", kOfTheSize},
+     {"manifold", "worst_depth_or_floor", "worst error of the depth", kOfTheSize},
+     {"distance", "worst_degrees_or_floor", "worst error of the normal", "degrees"},
+     {"distance", "p99_distance", "99 % error of the distance", kOfTheSize},
+     {"manifold", "p99_depth", "99 % error of the depth", kOfTheSize},
+     {"distance", "p99_degrees", "99 % error of the normal", "degrees"},
+     {"distance", "median_distance", "median error of the distance", kOfTheSize},
+     {"manifold", "median_depth", "median error of the depth", kOfTheSize},
+     {"distance", "median_degrees", "median error of the normal", "degrees"}}};
 
 Plot speed_against_error(const Results& results, const ErrorOf& error, Json where,
                          const std::string& id, const std::string& title) {
@@ -32,9 +39,9 @@ Plot speed_against_error(const Results& results, const ErrorOf& error, Json wher
 void show_all_kinds(const Results& results, ReportPage& page) {
   std::vector<Plot> plots;
   for (const ErrorOf& error : kErrorPlots) {
-    plots.push_back(
-        speed_against_error(results, error, Json::object(), std::string("narrow_") + error.value,
-                            std::string("Error of the ") + error.what + ", level " + error.level));
+    plots.push_back(speed_against_error(results, error, Json::object(),
+                                        std::string("narrow_") + error.value,
+                                        std::string(error.what) + ", level " + error.level));
   }
   page.add(plots);
 }
@@ -45,7 +52,7 @@ void show_each_kind(const Results& results, ReportPage& page) {
   for (const Json& kind : distinct(results.rows("narrow_error"), "kind")) {
     const std::string name = key_text(kind);
     plots.push_back(speed_against_error(results, all, {{"kind", kind}}, "narrow_kind_" + name,
-                                        name + ", distance and depth"));
+                                        name + ", worst of distance and depth"));
   }
   page.add(plots);
 }
@@ -61,15 +68,15 @@ void show_error_tables(const Results& results, ReportPage& page) {
                              false}));
   }
   for (const ErrorOf& error : kErrorPlots) {
-    std::string value = error.value;
-    value.resize(value.rfind("_or_floor"));
-    page.add(pivot(results,
-                   {"narrow_error",
-                    {{"level", error.level}},
-                    "engine",
-                    "kind",
-                    value,
-                    std::string("worst error of the ") + error.what + ", level " + error.level}));
+    const std::string value = error.value;
+    const std::size_t end = value.rfind("_or_floor");
+    if (end == std::string::npos) continue;
+    page.add(pivot(results, {"narrow_error",
+                             {{"level", error.level}},
+                             "engine",
+                             "kind",
+                             value.substr(0, end),
+                             std::string(error.what) + ", level " + error.level}));
   }
 }
 
@@ -156,9 +163,10 @@ void show_narrow_curves(const Results& results, ReportPage& page) {
   if (plots.empty()) return;
   page.heading("Error against distance, sizes and offset");
   page.paragraph(
-      "The worst error of the signed distance. winnow works in the frame of one of the shapes: its "
-      "curves stay where they are however far the pair stands from the origin. A library that "
-      "computes in single precision in the world's axes loses a digit with every power of ten.");
+      "The worst error of the signed distance. winnow subtracts positions in double before it does "
+      "anything else, so that its curves do not depend on where the pair stands; a library that "
+      "computes in the world's axes loses about a digit with every power of ten, from where the "
+      "steps between its numbers are no longer small beside the shapes.");
   page.add(plots);
   page.command("bench/run accuracy --kind box-box --ratio 1 --pairs 400 --offset 1e6 --by-gap");
   for (const NarrowCurve& curve : kNarrowCurves) page.all_rows(curve.table);
@@ -176,7 +184,14 @@ void show_narrow(const Results& results, ReportPage& page) {
         "the points on the front. Half of the pairs overlap, and half are nearly touching, down to "
         "a millionth of their size. Errors are relative to size + |distance|, judged by arithmetic "
         "of 100 digits where the tool was built with it (column judge), and normals count only "
-        "where they are unique.");
+        "where they are unique. Distances are of pairs apart, depths of pairs that overlap. An "
+        "error of nothing is drawn at 1e-17 where the worst is shown, and left out elsewhere.");
+    if (results.row("narrow_error", {{"engine", "FCL indep"}}) != nullptr) {
+      page.paragraph(
+          "Answers are taken as a library's functions return them: the EPA of FCL's own solver "
+          "(FCL indep) returns depths with the other sign, and normals in the axes of the first "
+          "shape.");
+    }
     show_all_kinds(results, page);
     show_error_tables(results, page);
     page.command("bench/run accuracy --kind box-box --ratio 1 --pairs 2000");

@@ -33,7 +33,7 @@ void declare_stability(Results& results) {
                    "stability",
                    "errors of pairs, half of which are nearly touching, that get harder and harder",
                    {"curve", "kind", "engine", "parameter"},
-                   accuracy_columns()});
+                   accuracy_curve_columns()});
 }
 
 /// Sums of the rows that are there.
