@@ -107,7 +107,7 @@ void measure_advice(Results& results, const ReportOptions& options, const Report
   const std::size_t frames =
       scene.recording ? std::min(wanted, scene.recording->frames.size()) : wanted;
   const Advice advice = advise(*source, partitions_for({"all"}, objects).taken, frames, threads);
-  std::string command = "bench/run advise " + scene.argument;
+  std::string command = "bench/run advise " + shell_word(scene.argument);
   if (!scene.recording) {
     command += " --objects " + std::to_string(objects) + " --seed " + std::to_string(options.seed);
   }

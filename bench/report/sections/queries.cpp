@@ -1,5 +1,6 @@
 #include "engine/fingerprint.h"
 #include "queries/query_costs.h"
+#include "report/scene_words.h"
 #include "report/section.h"
 #include "tool/arguments.h"
 #include "tool/measure_queries.h"
@@ -51,7 +52,7 @@ struct QueriesCell {
 
 std::string QueriesCell::command(const QueryRun& run, bool is_peer) const {
   std::string text = "bench/run queries";
-  text += (scene.recording ? " --recording " : " --scene ") + scene.argument;
+  text += (scene.recording ? " --recording " : " --scene ") + shell_word(scene.argument);
   if (!scene.recording) text += " --objects " + std::to_string(objects);
   return text + " --set \"" + run.set + "\" --partition " + (is_peer ? "LinearBvh" : run.engine) +
          " --threads " + std::to_string(threads) + " --rays " + std::to_string(rays) +

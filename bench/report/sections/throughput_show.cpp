@@ -177,10 +177,19 @@ void show_throughput(const Results& results, ReportPage& page) {
   page.paragraph(
       "A frame is what a simulation pays each step: the boxes that moved are brought in, whatever "
       "the structure needs is rebuilt, and every pair of overlapping boxes is written to an array. "
-      "All run on the same frames, interleaved, so that they meet the same disturbances. Lower is "
-      "better; a line that stays level costs the same for each object however many there are.");
+      "Partitions take turns, some frames each, so that they meet the same disturbances. Those "
+      "that "
+      "test every box against every other, and other libraries, take long: they have races of "
+      "their own, on the first of the same frames (all rows tell how many frames they had). Lower "
+      "is better; a line that stays level costs the same for each object however many there are.");
   plot_growth(of, of.threads.front(), page);
-  if (of.threads.size() > 1) plot_growth(of, of.threads.back(), page);
+  if (of.threads.size() > 1) {
+    page.paragraph(
+        "With all threads, and beside other libraries (dashed). Of these Embree uses the "
+        "threads there are, CGAL does where that is faster for it, and Bullet, FCL and ODE find "
+        "pairs on one thread, whatever the heading says.");
+    plot_growth(of, of.threads.back(), page);
+  }
   for (const Json& objects : of.sizes) {
     page.heading(objects_text(objects));
     show_size(of, objects, page);

@@ -1,5 +1,6 @@
 #include "report/sections/volumes.h"
 #include "engine/fingerprint.h"
+#include "report/scene_words.h"
 #include "report/section.h"
 #include "tool/arguments.h"
 #include "tool/measure_volumes.h"
@@ -75,7 +76,7 @@ struct VolumesCell {
 std::string VolumesCell::command(double taken_step) const {
   std::string text = "bench/run volumes --setting " + setting;
   if (setting == "scene") {
-    text += (scene.recording ? " --recording " : " --scene ") + scene.argument;
+    text += (scene.recording ? " --recording " : " --scene ") + shell_word(scene.argument);
   }
   if (setting != "scene" || !scene.recording) text += " --objects " + std::to_string(objects);
   return text + " --step " + key_text(taken_step) + " --partition " + partition + " --frames " +
