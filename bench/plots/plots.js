@@ -67,10 +67,25 @@ function log_tick(value) {
   return long ? value.toExponential(0).replace("+", "") : value.toLocaleString("en");
 }
 
+// Axes have room for the whiskers.
+function ends(plot) {
+  const points = plot.series.flatMap((series) => series.points);
+  const lows = points.map((point) => point.low).filter((low) => low > 0 || !plot.y.log);
+  const known = (values) => values.filter(Number.isFinite);
+  return {
+    suggestedMin: known(lows).reduce((a, b) => Math.min(a, b), Infinity),
+    suggestedMax: known(points.map((point) => point.high)).reduce((a, b) => Math.max(a, b),
+                                                                    -Infinity),
+  };
+}
+
 function scale(axis, plot) {
   const bars = plot.categories.length > 0;
   const category = bars && axis === plot.x;
+  const {suggestedMin, suggestedMax} = ends(plot);
+  const whiskered = axis === plot.y && !bars && suggestedMin < suggestedMax;
   return {
+    ...(whiskered ? {suggestedMin, suggestedMax} : {}),
     type: category ? "category" : axis.log ? "logarithmic" : "linear",
     labels: category ? plot.categories : undefined,
     stacked: bars && plot.stacked,

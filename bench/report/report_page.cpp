@@ -79,7 +79,7 @@ void write_report_page(const std::string& path, const Results& results) {
   const std::string body =
       "<h1>winnow: speed against error</h1>\n" + notes_of(document) + "<nav>" + contents +
       "</nav>\n<p>Every number is a row of results.json beside this page: point at it to read "
-      "which. Times are medians; whiskers and brackets go from the least to the greatest.</p>\n" +
+      "which. Times are medians; brackets and upright whiskers go from the least to the greatest.</p>\n" +
       facts_table("measured on", document["machine"]) +
       facts_table("settings", document["settings"]) + sections;
   write_plot_page(path, "winnow: speed against error", body, plots);

@@ -1,5 +1,6 @@
 #include "report/results.h"
 
+#include "report/document_check.h"
 #include "report/machine.h"
 #include "tool/command.h"
 #include "tool/table.h"
@@ -15,7 +16,6 @@
 namespace winnow::bench {
 namespace {
 
-constexpr const char* kReportFormat = "winnow report 1";
 constexpr std::array<const char*, 5> kFormats{"number", "tiny", "count", "percent", "text"};
 constexpr std::array<const char*, 3> kBetter{"neither", "less", "more"};
 
@@ -34,25 +34,6 @@ bool is_known(const Json& table, const std::string& member) {
                      [&](const Json& value) { return value["name"] == member; });
 }
 
-/// Whether all is there that others rely on.
-bool is_report(const Json& document) {
-  if (!document.is_object() || document.value("format", Json()) != kReportFormat) return false;
-  for (const char* facts : {"machine", "settings"}) {
-    if (!document.contains(facts) || !document[facts].is_object()) return false;
-  }
-  for (const char* list : {"missing", "problems", "sections", "tables"}) {
-    if (!document.contains(list) || !document[list].is_array()) return false;
-  }
-  return std::all_of(document["tables"].begin(), document["tables"].end(), [](const Json& table) {
-    if (!table.is_object()) return false;
-    for (const char* member : {"name", "keys", "values", "rows"}) {
-      if (!table.contains(member)) return false;
-    }
-    return std::all_of(table["rows"].begin(), table["rows"].end(),
-                       [](const Json& row) { return row.is_object() && row.contains("id"); });
-  });
-}
-
 }  // namespace
 
 Results::Results()
@@ -66,8 +47,8 @@ Results::Results()
                  {"tables", Json::array()}}) {}
 
 Results::Results(Json document) : document_(std::move(document)) {
-  if (!is_report(document_)) {
-    throw ArgumentError(std::string("this is not a \"") + kReportFormat + "\"");
+  if (const std::string fault = fault_of_report(document_); !fault.empty()) {
+    throw ArgumentError(std::string("this is no \"") + kReportFormat + "\": " + fault);
   }
 }
 

@@ -100,10 +100,10 @@ void print_queries(const Results& results) {
 void print_advice(const Results& results) {
   const auto rows = results.rows("advice");
   if (rows.empty()) return;
-  Table text({"take", "for", "objects"});
+  Table text({"take", "for", "objects", "threads"});
   for (const Json* row : rows) {
     text.add({row->value("take", "-"), key_text((*row)["scene"]),
-              grouped((*row)["objects"].get<std::size_t>())});
+              grouped((*row)["objects"].get<std::size_t>()), key_text((*row)["threads"])});
   }
   std::cout << '\n' << text;
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <utility>
 
 namespace winnow::bench {
 namespace {
@@ -31,18 +32,43 @@ struct Report {
   void note_settings(const ReportOptions& options, Results& results) const;
 };
 
-ReportScene scene_named(const std::string& name) {
-  for (const SceneInfo& info : scene_infos()) {
-    if (info.name == name) return {name, name};
+bool is_built_in(const std::string& name) {
+  const auto infos = scene_infos();
+  return std::any_of(infos.begin(), infos.end(),
+                     [&](const SceneInfo& info) { return info.name == name; });
+}
+
+/// Rows of two scenes are told apart by their names: a recording whose own is taken has its file's
+/// besides.
+void add_scene(const std::string& argument, std::vector<ReportScene>& scenes) {
+  const auto is_taken = [&](const std::string& name) {
+    return std::any_of(scenes.begin(), scenes.end(),
+                       [&](const ReportScene& scene) { return scene.name == name; });
+  };
+  if (std::any_of(scenes.begin(), scenes.end(),
+                  [&](const ReportScene& scene) { return scene.argument == argument; })) {
+    return;
   }
-  auto recording = std::make_shared<const Recording>(read_recording(name));
-  return {recording->scene.empty() ? name : recording->scene, name, std::move(recording)};
+  if (is_built_in(argument)) {
+    scenes.push_back({argument, argument});
+    return;
+  }
+  auto recording = std::make_shared<const Recording>(read_recording(argument));
+  std::string name = recording->scene.empty() ? argument : recording->scene;
+  if (is_built_in(name) || is_taken(name)) name += " (" + argument + ")";
+  scenes.push_back({std::move(name), argument, std::move(recording)});
+}
+
+template <typename T>
+void sort_once(std::vector<T>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
 ReportOptions Report::options() const {
   ReportOptions options;
   for (const std::string& name : choice.scenes.empty() ? main_scenes() : choice.scenes) {
-    options.scenes.push_back(scene_named(name));
+    add_scene(name, options.scenes);
   }
   options.objects = choice.objects;
   if (options.objects.empty()) {
@@ -50,9 +76,9 @@ ReportOptions Report::options() const {
                             : std::vector<std::size_t>{1000, 10'000, 100'000};
     if (million) options.objects.push_back(1'000'000);
   }
-  std::sort(options.objects.begin(), options.objects.end());
+  sort_once(options.objects);
   options.threads = choice.threads.empty() ? usual_threads() : choice.threads;
-  std::sort(options.threads.begin(), options.threads.end());
+  sort_once(options.threads);
   for (const Isa isa : available_isas()) {
     if (isa != active_isa()) options.isas.push_back(isa);
   }
@@ -97,7 +123,11 @@ int Report::run() {
   choose_isa(choice.isa);
   if (!from.empty()) {
     Results results = read_results(from);
-    write_report(out, results);
+    try {
+      write_report(out, results);
+    } catch (const Json::exception& error) {
+      throw ArgumentError("--from: " + from + ": " + error.what());
+    }
     return kDone;
   }
   const ReportOptions chosen = options();
