@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <map>
 #include <memory>
 
@@ -25,6 +26,16 @@ void add_spread(Json& row, const std::string& of, const ErrorSpread& spread) {
   row["worst_" + of] = spread.worst;
   row["p99_" + of] = spread.p99;
   row["median_" + of] = spread.median;
+}
+
+/// Of an engine that gave up.
+Accuracy no_answers(const NarrowEngine& engine, NarrowLevel level, std::size_t pairs) {
+  Accuracy accuracy;
+  accuracy.engine = engine.name();
+  accuracy.level = level;
+  accuracy.pairs = pairs;
+  accuracy.missing = pairs;
+  return accuracy;
 }
 
 std::vector<AccuracyAtGap> split_by_gap(const Accuracy& whole,
@@ -60,7 +71,12 @@ AccuracyMeasurement measure_accuracy(const AccuracyOptions& options) {
   for (const NarrowLevel level : options.levels) {
     for (const auto& engine : engines) {
       if (!engine->takes(options.kind, level)) continue;
-      measured.engines.push_back(judge_engine(*engine, level, *set, truths, options.runs));
+      try {
+        measured.engines.push_back(judge_engine(*engine, level, *set, truths, options.runs));
+      } catch (const std::exception&) {
+        measured.engines.push_back(no_answers(*engine, level, set->pairs.size()));
+        continue;
+      }
       const auto errors = errors_of(*engine, level, *set, truths);
       for (AccuracyAtGap& one : split_by_gap(measured.engines.back(), errors)) {
         measured.by_gap.push_back(std::move(one));

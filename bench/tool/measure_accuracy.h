@@ -35,6 +35,7 @@ struct AccuracyMeasurement {
   std::vector<AccuracyAtGap> by_gap;  ///< of each of them from the smallest gap, touching left out
 };
 
+/// Of an engine that throws, all answers are missing.
 [[nodiscard]] AccuracyMeasurement measure_accuracy(const AccuracyOptions& options);
 
 /// "100 digits", or the tier that takes their place where the tool was built without.

@@ -83,10 +83,11 @@ void declare_narrow(Results& results) {
                    accuracy_curve_columns()});
 }
 
-std::string narrow_command(const NarrowMeasurement& measured, std::size_t rounds) {
+std::string narrow_command(const NarrowMeasurement& measured, std::size_t rounds,
+                           std::uint64_t seed) {
   return "bench/run narrow --kind " + std::string(measured.kind.name) + " --tier all --pairs " +
          std::to_string(measured.pairs) + " --rounds " + std::to_string(rounds) + " --isa " +
-         isa_name();
+         isa_name() + (seed == 1 ? "" : " --seed " + std::to_string(seed));
 }
 
 /// Adds the row of one engine; its id.
@@ -118,7 +119,7 @@ void measure_narrow_times(Results& results, const ReportOptions& options, const 
   if (options.quick) asked.race.turn_ms = 0.5;
   if (options.quick) asked.race.smallest_part = 128;
   const NarrowMeasurement measured = measure_narrow(asked);
-  const std::string command = narrow_command(measured, asked.race.rounds);
+  const std::string command = narrow_command(measured, asked.race.rounds, asked.seed);
   std::map<const NarrowTiming*, std::string> ids;
   for (const NarrowTiming& timing : measured.timings) {
     ids[&timing] = add_timing(results, measured, timing, command);

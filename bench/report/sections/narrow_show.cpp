@@ -137,12 +137,13 @@ void show_times(const Results& results, ReportPage& page) {
 struct NarrowCurve {
   const char* table;
   const char* parameter;
+  const char* against;
   const char* axis;
 };
 constexpr std::array<NarrowCurve, 3> kNarrowCurves{
-    {{"narrow_gap", "gap", "|distance| / size: from this to ten times as much"},
-     {"narrow_ratio", "ratio", "size of the second shape over that of the first"},
-     {"narrow_offset", "offset",
+    {{"narrow_gap", "gap", "distance", "|distance| / size: from this to ten times as much"},
+     {"narrow_ratio", "ratio", "size ratio", "size of the second shape over that of the first"},
+     {"narrow_offset", "offset", "offset",
       "offset from the origin along each axis, lengths of about a shape"}}};
 
 void show_narrow_curves(const Results& results, ReportPage& page) {
@@ -150,7 +151,7 @@ void show_narrow_curves(const Results& results, ReportPage& page) {
   for (const NarrowCurve& curve : kNarrowCurves) {
     for (const Json& kind : distinct(results.rows(curve.table), "kind")) {
       Plot plot{.id = std::string(curve.table) + "_" + key_text(kind),
-                .title = key_text(kind),
+                .title = key_text(kind) + ": worst error against " + curve.against,
                 .x = {curve.axis, true},
                 .y = {kOfTheSize, true}};
       plot.series = series_of(

@@ -62,7 +62,7 @@ std::vector<Plot> curve_plots(const Results& results, const CurveText& curve) {
     const Json where{{"curve", curve.name}, {"kind", kind}};
     const std::string name = std::string(curve.name) + "_" + key_text(kind);
     Plot errors{.id = "stability_" + name,
-                .title = key_text(kind) + ", " + curve.name,
+                .title = key_text(kind) + ": worst error against " + curve.name,
                 .x = {curve.axis, true},
                 .y = {"worst error / (size + |distance|), none as 1e-17", true}};
     errors.series = series_of(
@@ -70,7 +70,7 @@ std::vector<Plot> curve_plots(const Results& results, const CurveText& curve) {
         true);
     plots.push_back(std::move(errors));
     Plot wrong{.id = "stability_wrong_" + name,
-               .title = key_text(kind) + ", " + curve.name + ": verdicts",
+               .title = key_text(kind) + ": wrong verdicts against " + curve.name,
                .x = {curve.axis, true},
                .y = {"wrong verdicts", false}};
     wrong.series = series_of(results, {"stability_curves", where, "engine", "parameter", "wrong"},
