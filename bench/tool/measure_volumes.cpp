@@ -54,7 +54,8 @@ VolumeSetting make_volume_setting(std::string_view name, const VolumeSettingOpti
   if (name == "rods") return {"rotated rods 1:1:20", kFast, Solids::rods(objects, seed)};
   if (name == "slow") return {"rotated cubes, slow", kSlow, Solids::rotated(objects, seed)};
   if (recording != nullptr) {
-    return {recording->scene, step_of(*recording), Solids::of_boxes(recording->frames.front())};
+    return {recording->scene, step_of(*recording), Solids::of_boxes(recording->frames.front()),
+            recording->frames};
   }
   return {scene, kFast, Solids::of_boxes(scene_or_error(scene, objects, seed)->boxes())};
 }

@@ -3,11 +3,13 @@
 #include "recordings/recording.h"
 #include "volumes/solids.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace winnow::bench {
 
@@ -16,6 +18,12 @@ struct VolumeSetting {
   std::string what;   ///< "rotated cubes"
   double step = 0.1;  ///< how far an object goes in a frame, in its mean edges
   Solids solids{};
+  std::span<const std::vector<Aabb>> recorded{};  ///< frames to follow, if there are any
+
+  /// How many frames can be timed.
+  [[nodiscard]] std::size_t frames(std::size_t wanted) const noexcept {
+    return recorded.size() < 2 ? wanted : std::min(wanted, recorded.size() - 1);
+  }
 };
 
 struct VolumeSettingOptions {
@@ -31,8 +39,8 @@ struct VolumeSettingOptions {
 /// Partitions that take volumes from the caller.
 [[nodiscard]] std::span<const std::string_view> volume_partitions() noexcept;
 
-/// One of the settings. Objects of a recording's first frame go as far as they do in it on average,
-/// but in any direction. Throws ArgumentError for an unknown scene.
+/// One of the settings. Objects of a recording go as they do in it; `step` is how far on average.
+/// Throws ArgumentError for an unknown scene.
 [[nodiscard]] VolumeSetting make_volume_setting(std::string_view name,
                                                 const VolumeSettingOptions& options);
 

@@ -100,23 +100,27 @@ int Volumes::run() {
     progress.step(name);
     VolumeSetting setting = make_volume_setting(name, objects_are);
     const std::size_t objects = setting.solids.size();
-    const std::vector<BoxWidth> widths = race_widths(setting.solids.bounds(), race.frames);
-    race.step = step < 0.0 ? setting.step : step;
-    const std::vector<VolumeRow> rows = race_volumes(std::move(setting.solids), race);
+    VolumeRaceOptions how = race;
+    how.step = step < 0.0 ? setting.step : step;
+    if (step < 0.0) {
+      how.frames = setting.frames(race.frames);
+      how.recorded = setting.recorded;
+    }
+    const std::vector<BoxWidth> widths = race_widths(setting.solids.bounds(), how.frames);
+    const std::vector<VolumeRow> rows = race_volumes(std::move(setting.solids), how);
     progress.clear();
     std::cout << '\n'
               << setting.what << ", " << grouped(objects) << " objects that go "
-              << short_number(race.step) << " of an edge in a frame, " << race.partition
+              << short_number(how.step) << " of an edge in a frame, " << race.partition
               << ", 1 thread, " << isa_name() << '\n';
-    print(rows, race.frames);
+    print(rows, how.frames);
     if (name != "slow") {
       std::cout << "16-bit ends against floats, rows against groups of 256:\n";
       print(widths);
     }
     for (const VolumeRow& row : rows) {
       missed = missed || row.missed != 0;
-      rows_json.push_back(
-          to_json(row, rows.front(), setting.what, race.step, objects, race.frames));
+      rows_json.push_back(to_json(row, rows.front(), setting.what, how.step, objects, how.frames));
     }
     for (const BoxWidth& width : widths) {
       widths_json.push_back(to_json(width, setting.what, objects));
@@ -141,14 +145,16 @@ Command add_volumes(CLI::App& app) {
   CLI::Option* scene =
       sub->add_option("--scene", volumes->objects_are.scene, "Built-in scene for the first table")
           ->capture_default_str();
-  sub->add_option("--recording", volumes->recording, "The first frame of a recording instead")
+  sub->add_option("--recording", volumes->recording, "The frames of a recording instead")
       ->excludes(scene);
   sub->add_option("--setting", volumes->settings,
                   "Only these: the scene, turned cubes, turned rods, slow turned cubes")
       ->delimiter(',')
       ->check(CLI::IsMember(volumes->settings));
-  sub->add_option("--step", volumes->step,
-                  "How far objects go in a frame, in their mean edges; default: as suits each")
+  sub->add_option(
+         "--step", volumes->step,
+         "How far objects go in a frame, in their mean edges; default: as suits each, and as "
+         "recorded")
       ->check(CLI::NonNegativeNumber);
   sub->add_option("--objects", volumes->objects_are.objects, "How many")
       ->check(CLI::Range(1, 1'000'000))

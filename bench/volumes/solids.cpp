@@ -42,17 +42,21 @@ void Solids::add(const OrientedBox& box, const double* quaternion) {
   Pose pose = Pose::at(static_cast<double>(box.center.x()), static_cast<double>(box.center.y()),
                        static_cast<double>(box.center.z()));
   for (int i = 0; i < 4; ++i) pose.orientation[i] = quaternion[i];
-  BoxShape shape;
-  for (int i = 0; i < 3; ++i) shape.half[i] = static_cast<double>(box.half[i]);
-  ShapeId id;
-  if (shapes_.add(shape, id) != Status::ok) throw std::runtime_error("a box was refused");
   const double edge = 2.0 * static_cast<double>(box.half.mean());
   Eigen::Vector3d way(random.normal(), random.normal(), random.normal());
   way *= edge / way.norm();
   boxes_.push_back(box);
   poses_.push_back(pose);
-  ids_.push_back(id);
+  ids_.push_back(shape_of(box.half));
   way_.push_back(way.cast<float>());
+}
+
+ShapeId Solids::shape_of(const Eigen::Vector3f& half) {
+  BoxShape shape;
+  for (int i = 0; i < 3; ++i) shape.half[i] = static_cast<double>(half[i]);
+  ShapeId id;
+  if (shapes_.add(shape, id) != Status::ok) throw std::runtime_error("a box was refused");
+  return id;
 }
 
 void Solids::add_turned(const Eigen::Vector3f& center, const Eigen::Vector3f& half,
@@ -66,10 +70,11 @@ void Solids::add_turned(const Eigen::Vector3f& center, const Eigen::Vector3f& ha
 Solids Solids::of_boxes(std::span<const Aabb> boxes) {
   constexpr double kUpright[4] = {1.0, 0.0, 0.0, 0.0};
   Solids solids;
-  for (const Aabb& box : boxes) {
-    const Eigen::Vector3f half = 0.5F * (box.max - box.min);
+  for (std::size_t row = 0; row < boxes.size(); ++row) {
+    const Eigen::Vector3f half = 0.5F * (boxes[row].max - boxes[row].min);
     if (!half.allFinite()) continue;
-    solids.add({box.min + half, half, Eigen::Matrix3f::Identity()}, kUpright);
+    solids.add({boxes[row].min + half, half, Eigen::Matrix3f::Identity()}, kUpright);
+    solids.row_.push_back(row);
   }
   return solids;
 }
@@ -114,12 +119,27 @@ std::vector<OrientedBox> Solids::when_margins_were_left(float share) const {
   return then;
 }
 
+void Solids::follow(std::span<const Aabb> boxes) {
+  for (std::size_t i = 0; i < row_.size(); ++i) {
+    const Aabb& box = boxes[row_[i]];
+    const Eigen::Vector3f half = 0.5F * (box.max - box.min);
+    if (!half.allFinite()) continue;
+    if (half != boxes_[i].half) ids_[i] = shape_of(half);
+    boxes_[i].half = half;
+    put(i, box.min + half);
+  }
+}
+
 void Solids::advance(double step) {
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    boxes_[i].center += static_cast<float>(step) * way_[i];
-    for (int axis = 0; axis < 3; ++axis) {
-      poses_[i].position[axis] = static_cast<double>(boxes_[i].center[axis]);
-    }
+    put(i, boxes_[i].center + static_cast<float>(step) * way_[i]);
+  }
+}
+
+void Solids::put(std::size_t i, const Eigen::Vector3f& center) {
+  boxes_[i].center = center;
+  for (int axis = 0; axis < 3; ++axis) {
+    poses_[i].position[axis] = static_cast<double>(center[axis]);
   }
 }
 

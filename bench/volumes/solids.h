@@ -33,10 +33,15 @@ class Solids {
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
   [[nodiscard]] Bodies bodies() const noexcept { return {ids_, poses_}; }
 
+  /// Each object becomes its box among these, of which the first ones of `of_boxes` were; it stays
+  /// as it is where that is unbounded. Only for solids of boxes.
+  void follow(std::span<const Aabb> boxes);
   /// Each object goes on by `step` times its mean edge, in a direction of its own.
   void advance(double step);
 
  private:
+  ShapeId shape_of(const Eigen::Vector3f& half);
+  void put(std::size_t i, const Eigen::Vector3f& center);
   void add(const OrientedBox& box, const double* quaternion);
   void add_turned(const Eigen::Vector3f& center, const Eigen::Vector3f& half, std::uint64_t seed);
 
@@ -44,6 +49,7 @@ class Solids {
   std::vector<Pose> poses_;
   std::vector<ShapeId> ids_;
   std::vector<Eigen::Vector3f> way_;
+  std::vector<std::size_t> row_;  // of boxes, among those they were made of
   ShapePool shapes_;
 };
 

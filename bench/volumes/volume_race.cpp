@@ -205,7 +205,11 @@ std::vector<VolumeRow> race_volumes(Solids solids, const VolumeRaceOptions& opti
       truth.swap(both);
     }
     for (const auto& one : all) one->judge(truth, timed);
-    solids.advance(options.step);
+    if (options.recorded.empty()) {
+      solids.advance(options.step);
+    } else {
+      solids.follow(options.recorded[std::min(frame + 1, options.recorded.size() - 1)]);
+    }
   }
   std::vector<VolumeRow> rows;
   for (const auto& one : all) rows.push_back(std::move(one->row));

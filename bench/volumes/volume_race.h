@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +42,8 @@ struct VolumeRaceOptions {
   std::string partition = "LinearBvh";
   std::size_t frames = 9;  ///< timed ones; one more comes before them
   double step = 0.1;       ///< how far an object goes in a frame, in mean edges
+  /// Instead of that, the frames of a recording whose first one the solids are made of.
+  std::span<const std::vector<Aabb>> recorded{};
 };
 
 /// All volumes, then margins of 5, 10, 20 and 50 % about boxes, in turns over the same frames.

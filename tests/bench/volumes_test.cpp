@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -63,6 +64,23 @@ TEST(VolumeRace, begins_margins_at_times_of_their_own) {
     sum += static_cast<double>(way / margin);
   }
   EXPECT_NEAR(sum / static_cast<double>(then.size()), 0.5, 0.1);
+}
+
+TEST(VolumeRace, follows_a_recording) {
+  const auto box = [](float x, float edge) {
+    return Aabb{{x, 0.0F, 0.0F}, {x + edge, edge, edge}};
+  };
+  const float kInfinite = std::numeric_limits<float>::infinity();
+  const Aabb ground{{-kInfinite, -kInfinite, -1.0F}, {kInfinite, kInfinite, -0.5F}};
+  // The second box comes to the first, then grows until it meets the third as well.
+  const std::vector<std::vector<Aabb>> frames{{ground, box(0, 1), box(1.5F, 1), box(3, 1)},
+                                              {ground, box(0, 1), box(0.9F, 1), box(3, 1)},
+                                              {ground, box(0, 1), box(0.9F, 2.5F), box(3, 1)}};
+  const auto rows =
+      race_volumes(Solids::of_boxes(frames.front()), {.frames = 2, .recorded = frames});
+  EXPECT_EQ(rows.front().reported, 1U + 2U);
+  EXPECT_EQ(rows.front().overlapping, 1U + 2U);
+  for (const VolumeRow& row : rows) EXPECT_EQ(row.missed, 0U) << row.volume;
 }
 
 TEST(VolumeRace, refuses_a_partition_without_volumes) {

@@ -175,8 +175,8 @@ std::vector<ReportStep> plan_queries(const ReportOptions& options) {
   return steps;
 }
 
-/// Nanoseconds a question against how much it finds, for the kinds of which there are several
-/// sizes.
+/// Nanoseconds a question against how much it finds. Only boxes are one question of several sizes,
+/// joined by lines.
 std::vector<Plot> queries_plots(const Results& results, const Json& scene) {
   std::vector<Plot> plots;
   for (const auto& [kind, asked, what] : {std::tuple{"box", "single", "boxes, one at a time"},
@@ -192,7 +192,8 @@ std::vector<Plot> queries_plots(const Results& results, const Json& scene) {
                              {{"scene", scene}, {"kind", kind}, {"asked", asked}, {"threads", 1}},
                              "engine",
                              "found",
-                             "ns"},
+                             "ns",
+                             kind == std::string("box")},
                             true, true);
     for (PlotSeries& series : plot.series) {
       std::stable_sort(series.points.begin(), series.points.end(),
@@ -236,8 +237,9 @@ void show_queries(const Results& results, ReportPage& page) {
     page.paragraph(
         "Rays, boxes, balls, frusta, swept volumes and nearest objects, on one frame. Boxes are 1, "
         "5 and 20 mean edges of the objects wide, a ball 5; a near ray is 10 long; frusta see 1 % "
-        "or 50 % of everything. How high a line begins is the price of asking at all; how steeply "
-        "it rises, that of each object found. Answers are compared one by one: a wrong one is a "
+        "or 50 % of everything. Where a box finds few "
+        "objects, its time is the price of asking; where it finds many, that of handing them "
+        "over. Answers are compared one by one: a wrong one is a "
         "problem at the top of this page; \"undecided\" counts those that lie within the rounding "
         "of a library that computes in float.");
     for (const Json& scene : distinct(rows, "scene")) show_queries_of(results, scene, page);

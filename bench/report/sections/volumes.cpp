@@ -14,7 +14,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Objects that speeds are compared at: where margins begin to pay, and where they cease to.
+/// Ways of objects in a frame, in edges, at which margins are compared.
 constexpr double kMarginSteps[] = {0.001, 0.003, 0.01, 0.03, 0.1};
 
 std::vector<ValueColumn> volume_values() {
@@ -79,9 +79,9 @@ std::string VolumesCell::command(double taken_step) const {
     text += (scene.recording ? " --recording " : " --scene ") + shell_word(scene.argument);
   }
   if (setting != "scene" || !scene.recording) text += " --objects " + std::to_string(objects);
-  return text + " --step " + key_text(taken_step) + " --partition " + partition + " --frames " +
-         std::to_string(frames()) + " --seed " + std::to_string(options.seed) + " --isa " +
-         isa_name();
+  if (setting != "scene" || !scene.recording) text += " --step " + key_text(taken_step);
+  return text + " --partition " + partition + " --frames " + std::to_string(frames()) + " --seed " +
+         std::to_string(options.seed) + " --isa " + isa_name();
 }
 
 Json volume_row_of(const VolumeRow& row, const VolumeRow& boxes) {
@@ -128,8 +128,10 @@ void VolumesCell::measure(Results& results) const {
                                  {"command", again}});
     }
   }
-  const auto rows = race_volumes(std::move(made.solids),
-                                 {.partition = partition, .frames = frames(), .step = taken_step});
+  const std::size_t timed = made.frames(frames());
+  const auto rows = race_volumes(
+      std::move(made.solids),
+      {.partition = partition, .frames = timed, .step = taken_step, .recorded = made.recorded});
   bool missed = false;
   for (const VolumeRow& one : rows) {
     missed = missed || one.missed != 0;

@@ -36,14 +36,15 @@ void show_volume_kinds(const Results& results, ReportPage& page) {
       "touch: false positives, each of which costs an exact test. Left: the lower, the fewer of "
       "them; the further left, the cheaper; only what lies on the dotted line is worth its price. "
       "Right: the same with the exact test of overlap of every reported pair (boxes, tier robust); "
-      "dearer tests move the balance to tighter volumes. All in " +
+      "dearer tests move the balance to tighter volumes. Objects of built-in scenes and recordings "
+      "are upright boxes: there an AABB is the object itself and has no false positives. All in " +
       std::string(kVolumesPartition) + ", one thread.");
   std::vector<Plot> plots;
   for (const Json& what : distinct(rows, "objects_are")) {
     add_volumes_setting(results, what, "volumes_" + std::to_string(plots.size() / 2), plots);
   }
   page.add(plots);
-  page.command("bench/run volumes");
+  page.command((*rows.front())["command"]);
   for (const char* value : {"false_positives", "found_ms", "sum_ms", "pays_from_ns"}) {
     page.add(pivot(results, {"volumes", where, "volume", "objects_are", value}));
   }
