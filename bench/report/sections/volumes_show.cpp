@@ -37,7 +37,8 @@ void show_volume_kinds(const Results& results, ReportPage& page) {
       "them; the further left, the cheaper; only what lies on the dotted line is worth its price. "
       "Right: the same with the exact test of overlap of every reported pair (boxes, tier robust); "
       "dearer tests move the balance to tighter volumes. Objects of built-in scenes and recordings "
-      "are upright boxes: there an AABB is the object itself and has no false positives. All in " +
+      "are upright boxes: there an AABB is the object itself and reports nothing in vain, but for "
+      "rounding. All in " +
       std::string(kVolumesPartition) + ", one thread.");
   std::vector<Plot> plots;
   for (const Json& what : distinct(rows, "objects_are")) {
