@@ -53,7 +53,7 @@ ErrorSpread spread_of_errors(std::vector<double>& errors) {
     return *place;
   };
   const std::size_t count = errors.size();
-  return {count, at(count / 2), at(count * 99 / 100), at(count - 1)};
+  return {count, at(count / 2), at((count * 99 + 99) / 100 - 1), at(count - 1)};
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ std::string accuracy_number(double value) {
 void add_spread(Json& row, const std::string& of, const ErrorSpread& spread) {
   if (spread.count == 0) return;
   row["worst_" + of] = spread.worst;
-  row["p99_" + of] = spread.p99;
+  if (spread.count >= 100) row["p99_" + of] = spread.p99;
   row["median_" + of] = spread.median;
 }
 

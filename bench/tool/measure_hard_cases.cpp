@@ -2,6 +2,7 @@
 
 #include "narrow/pair_set.h"
 #include "query/questions.h"
+#include "tool/command.h"
 #include "tool/measure_narrow.h"
 
 #include <algorithm>
@@ -44,6 +45,23 @@ bool is_around_origin(const Json& shape) {
     if (low > 0.0 || high < 0.0) return false;
   }
   return true;
+}
+
+/// Throws unless the members are there that are read without asking.
+void check_case(const Json& question) {
+  const auto fail = [&](const std::string& what) {
+    throw ArgumentError("not a hard case, " + what + ": " + question.dump().substr(0, 200));
+  };
+  if (!question.is_object() || !question.contains("id")) fail("without an id");
+  const auto expect = question.find("expect");
+  if (expect == question.end() || !expect->is_object()) fail("without \"expect\"");
+  if (expect->contains("status")) return;
+  const bool is_ray = question.contains("ray");
+  if (!is_ray && !(question.contains("a") && question.contains("b"))) fail("without shapes");
+  const char* verdict = is_ray ? "hit" : "overlap";
+  if (!expect->contains(verdict) || !(*expect)[verdict].is_boolean()) fail("without a verdict");
+  const bool is_miss = is_ray && !(*expect)["hit"].get<bool>();
+  if (!is_miss && !expect->contains(is_ray ? "t" : "distance")) fail("without a number");
 }
 
 /// Nothing where other libraries have no such case.
@@ -98,7 +116,8 @@ CaseVerdict ask_peer(NarrowEngine& engine, const PeerCase& asked, const Json& qu
 
 void add_peers(const Json& questions, std::vector<HardCaseTally>& tallies) {
   std::vector<HardCaseTally> peers;
-  for (const auto& peer : narrow_peers()) peers.push_back({.engine = peer->name()});
+  for (const auto& peer : narrow_peers())
+    peers.push_back({.engine = peer->name(), .is_peer = true});
   for (const Json& question : questions) {
     const auto asked = peer_case(question);
     // They are started once.
@@ -135,6 +154,7 @@ std::string HardCaseTally::faults_text() const {
 }
 
 std::vector<HardCaseTally> judge_hard_cases(const Json& questions, bool peers) {
+  for (const Json& question : questions) check_case(question);
   std::vector<HardCaseTally> tallies;
   for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
     HardCaseTally tally{.engine = std::string(to_text(tier))};

@@ -13,6 +13,7 @@ namespace winnow::bench {
 /// How one engine did on some hard cases.
 struct HardCaseTally {
   std::string engine;
+  bool is_peer = false;
   std::size_t right = 0;
   std::size_t wrong = 0;
   std::size_t wrong_verdicts = 0;  ///< of them
@@ -30,7 +31,7 @@ struct HardCaseTally {
 /// Asks winnow's tiers, each held to what it promises, and other libraries, held to what `fast`
 /// promises. Those are asked without roundings, rays and bad input, and libccd, which starts from
 /// it, only about shapes that contain their origin; what an engine throws is wrong. Throws
-/// Json::exception if these are no hard cases.
+/// ArgumentError if one of these is no hard case.
 [[nodiscard]] std::vector<HardCaseTally> judge_hard_cases(const Json& questions, bool peers);
 
 }  // namespace winnow::bench

@@ -25,6 +25,11 @@ void add_columns(std::vector<ValueColumn>& columns, const std::string& of, const
 
 }  // namespace
 
+std::string with_peers(const std::string& command) {
+  const std::string run = "bench/run ";
+  return run + "--with-peers " + command.substr(run.size());
+}
+
 std::vector<ValueColumn> accuracy_columns() {
   std::vector<ValueColumn> columns{
       {"pairs", "pairs judged", "", Better::neither, Format::count},
@@ -73,7 +78,15 @@ void add_accuracy_row(Results& results, const std::string& table, Json row,
     if (results.column(table, name) != nullptr) row[name] = value;
   }
   if (!row.contains("command")) row["command"] = accuracy_command(options);
+  const bool is_tier =
+      std::find(kTierNames.begin(), kTierNames.end(), accuracy.engine) != kTierNames.end();
+  if (!is_tier) row["command"] = with_peers(row["command"]);
   results.add(table, std::move(row));
+}
+
+void show_command(ReportPage& page, const std::string& table, const Json& where) {
+  const Json* row = page.results().row(table, where);
+  if (row != nullptr && row->contains("command")) page.command((*row)["command"]);
 }
 
 std::string power_text(double value) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "report/page.h"
 #include "report/results.h"
 #include "tool/measure_accuracy.h"
 
@@ -22,6 +23,12 @@ inline constexpr double kLeastErrorShown = 1e-17;
 /// again.
 void add_accuracy_row(Results& results, const std::string& table, Json row,
                       const Accuracy& accuracy, const AccuracyOptions& options);
+
+/// A command, by which other libraries are installed first.
+[[nodiscard]] std::string with_peers(const std::string& command);
+
+/// The command of the first row that has these members, if there is one.
+void show_command(ReportPage& page, const std::string& table, const Json& where);
 
 /// "1e-06".
 [[nodiscard]] std::string power_text(double value);

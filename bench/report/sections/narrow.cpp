@@ -103,7 +103,7 @@ std::string add_timing(Results& results, const NarrowMeasurement& measured,
            {"compared", timing.compared},
            {"disagree", timing.disagree},
            {"recomputed", timing.recomputed},
-           {"command", command}};
+           {"command", measured.is_peer(timing) ? with_peers(command) : command}};
   if (timing.level != NarrowLevel::boolean) row["other_depth"] = timing.other_depth;
   if (manifold) row["contacts"] = timing.contacts;
   return results.add("narrow_speed", std::move(row));
@@ -133,7 +133,7 @@ void measure_narrow_times(Results& results, const ReportOptions& options, const 
                  {"level", to_text(level)},
                  {"best_peer", best->engine},
                  {"speedup", best->median_ns() / own->median_ns()},
-                 {"command", command},
+                 {"command", with_peers(command)},
                  {"from", derived("speedup", "ratio", "ns", {ids[best], ids[own]})}});
   }
 }

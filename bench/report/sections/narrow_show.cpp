@@ -27,12 +27,12 @@ constexpr std::array<ErrorOf, 9> kErrorPlots{
      {"distance", "median_degrees", "median error of the normal", "degrees"}}};
 
 Plot speed_against_error(const Results& results, const ErrorOf& error, Json where,
-                         const std::string& id, const std::string& title) {
+                         const std::string& id, const std::string& title, bool front) {
   Plot plot{.id = id, .title = title, .x = {"ns a pair", true}, .y = {error.axis, true}};
   where["level"] = error.level;
   plot.series = series_of(
       results, {"narrow_error", std::move(where), "engine", "ns", error.value, false}, true, true);
-  plot.series.push_back(pareto_front(plot.series));
+  if (front) plot.series.push_back(pareto_front(plot.series));
   return plot;
 }
 
@@ -41,7 +41,7 @@ void show_all_kinds(const Results& results, ReportPage& page) {
   for (const ErrorOf& error : kErrorPlots) {
     plots.push_back(speed_against_error(results, error, Json::object(),
                                         std::string("narrow_") + error.value,
-                                        std::string(error.what) + ", level " + error.level));
+                                        std::string(error.what) + ", level " + error.level, false));
   }
   page.add(plots);
 }
@@ -52,7 +52,7 @@ void show_each_kind(const Results& results, ReportPage& page) {
   for (const Json& kind : distinct(results.rows("narrow_error"), "kind")) {
     const std::string name = key_text(kind);
     plots.push_back(speed_against_error(results, all, {{"kind", kind}}, "narrow_kind_" + name,
-                                        name + ", worst of distance and depth"));
+                                        name + ", worst of distance and depth", true));
   }
   page.add(plots);
 }
@@ -65,6 +65,16 @@ void show_error_tables(const Results& results, ReportPage& page) {
                              "kind",
                              "wrong",
                              std::string("wrong verdicts at level ") + level,
+                             false}));
+  }
+  for (const char* level : {"distance", "manifold"}) {
+    page.add(pivot(results, {"narrow_error",
+                             {{"level", level}},
+                             "engine",
+                             "kind",
+                             "missing",
+                             std::string("answers without a distance or a normal at level ") +
+                                 level + ", which no error counts",
                              false}));
   }
   for (const ErrorOf& error : kErrorPlots) {
@@ -127,9 +137,10 @@ void show_times(const Results& results, ReportPage& page) {
                              "engine",
                              "kind",
                              "ns",
-                             std::string(level) + ", ns a pair"}));
+                             std::string(level) + ", ns a pair",
+                             false}));
   }
-  page.command("bench/run narrow --kind box-box --tier all --pairs 8192");
+  show_command(page, "narrow_speed", {{"kind", "box-box"}});
   page.all_rows("narrow_speed");
   page.all_rows("narrow_best");
 }
@@ -169,7 +180,7 @@ void show_narrow_curves(const Results& results, ReportPage& page) {
       "computes in the world's axes loses about a digit with every power of ten, from where the "
       "steps between its numbers are no longer small beside the shapes.");
   page.add(plots);
-  page.command("bench/run accuracy --kind box-box --ratio 1 --pairs 400 --offset 1e6 --by-gap");
+  show_command(page, "narrow_offset", {{"kind", "box-box"}});
   for (const NarrowCurve& curve : kNarrowCurves) page.all_rows(curve.table);
 }
 
@@ -181,8 +192,10 @@ void show_narrow(const Results& results, ReportPage& page) {
     page.paragraph(
         "Each point is a kind of pair, answered by one of winnow's tiers or by another library, "
         "all "
-        "on the same pairs: down is more exact, left is faster, and nothing is better in both than "
-        "the points on the front. Half of the pairs overlap, and half are nearly touching, down to "
+        "on the same pairs: down is more exact, left is faster. Kind by kind further down, nothing "
+        "is "
+        "better in both than the points on the front. Half of the pairs overlap, and half are "
+        "nearly touching, down to "
         "a millionth of their size. Errors are relative to size + |distance|, judged by arithmetic "
         "of 100 digits where the tool was built with it (column judge), and normals count only "
         "where they are unique. Distances are of pairs apart, depths of pairs that overlap. An "
@@ -195,7 +208,7 @@ void show_narrow(const Results& results, ReportPage& page) {
     }
     show_all_kinds(results, page);
     show_error_tables(results, page);
-    page.command("bench/run accuracy --kind box-box --ratio 1 --pairs 2000");
+    show_command(page, "narrow_error", {{"kind", "box-box"}});
     page.all_rows("narrow_error");
     page.heading("Kind by kind");
     show_each_kind(results, page);

@@ -62,18 +62,18 @@ void add_hard_case_totals(Results& results) {
 void measure_hard_cases(Results& results, const ReportOptions& options) {
   for (const HardCaseFile& file : hard_case_files()) {
     const std::string family = file.family;
+    const std::string command = "bench/run query tests/hard_cases/" + family + ".json --judge";
     for (const HardCaseTally& one : judge_hard_cases(Json::parse(file.json), options.peers)) {
-      results.add("hard_cases",
-                  {{"family", family},
-                   {"engine", one.engine},
-                   {"right", one.right},
-                   {"wrong", one.wrong},
-                   {"wrong_verdicts", one.wrong_verdicts},
-                   {"not_taken", one.not_taken},
-                   {"worst_error", one.worst_error},
-                   {"worst_over_allowed", one.worst_over_allowed},
-                   {"faults", one.wrong == 0 ? "-" : one.faults_text()},
-                   {"command", "bench/run query tests/hard_cases/" + family + ".json --judge"}});
+      results.add("hard_cases", {{"family", family},
+                                 {"engine", one.engine},
+                                 {"right", one.right},
+                                 {"wrong", one.wrong},
+                                 {"wrong_verdicts", one.wrong_verdicts},
+                                 {"not_taken", one.not_taken},
+                                 {"worst_error", one.worst_error},
+                                 {"worst_over_allowed", one.worst_over_allowed},
+                                 {"faults", one.wrong == 0 ? "-" : one.faults_text()},
+                                 {"command", one.is_peer ? with_peers(command) : command}});
     }
   }
   add_hard_case_totals(results);

@@ -1,5 +1,7 @@
 #include "report/sections/stability_show.h"
 
+#include "report/sections/accuracy_rows.h"
+
 #include <array>
 
 namespace winnow::bench {
@@ -40,7 +42,7 @@ void show_hard_cases(const Results& results, ReportPage& page) {
   page.add(
       pivot(results, {"hard_cases", Json::object(), "family", "engine", "worst_over_allowed",
                       "worst error of a distance over what is allowed: above 1 is wrong", false}));
-  page.command("bench/run query tests/hard_cases/touching.json --judge");
+  show_command(page, "hard_cases", {{"family", "touching"}});
   page.all_rows("hard_cases");
   page.all_rows("hard_cases_all");
 }
@@ -90,13 +92,14 @@ void show_stability(const Results& results, ReportPage& page) {
       "Random pairs, half of them nearly touching, that get harder from one end of the axis to the "
       "other: the worst error of the signed distance, and how many verdicts are wrong. A flat line "
       "is a kernel that does not mind; one that climbs loses digits, and where a line ends there "
-      "are no finite distances any more. Angle: the second body stands as the first but for a "
+      "are no finite distances at all any more (column missing). Angle: the second body stands as "
+      "the first but for a "
       "small turn, so that edges are nearly parallel and their cross products next to nothing. "
       "Ratio: a small shape at a large one, where an error that is small beside the large one "
       "exceeds the small one, and verdicts are lost. Offset: the same pairs, moved as a whole. "
       "Thinness: needle triangles.");
   for (const CurveText& curve : kCurveTexts) page.add(curve_plots(results, curve));
-  page.command("bench/run accuracy --kind box-box --ratio 1 --angle 1e-9 --pairs 200");
+  show_command(page, "stability_curves", {{"curve", "angle"}, {"kind", "box-box"}});
   page.all_rows("stability_curves");
 }
 
