@@ -103,6 +103,16 @@ std::vector<Goal> choice_in_recordings(const Ask& ask, const std::vector<Ask>& a
 /// What AutoPartition loses to the partition that is best after a scene has turned into another.
 std::vector<Goal> choice_turn(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
 
+// report_kinds.cpp
+
+/// How long the default report takes, whether all of it was measured, and some of its figures,
+/// picked at random, against their rows.
+std::vector<Goal> report_default(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// A quick report without other libraries: whether it completes, and says so.
+std::vector<Goal> report_without_peers(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+/// What is left of a quick report that is killed once it has written rows.
+std::vector<Goal> report_killed(const Ask& ask, const std::vector<Ask>& all, Lab& lab);
+
 /// Measured where there is no answer, or a wrong one, and less is better.
 inline constexpr double kUnanswered = 1e6;
 

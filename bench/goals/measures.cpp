@@ -14,7 +14,7 @@ struct Kind {
   std::vector<Goal> (*measure)(const Ask&, const std::vector<Ask>&, Lab&);
 };
 
-constexpr std::array<Kind, 32> kKinds{{{"fastest_partition", fastest_partition},
+constexpr std::array<Kind, 35> kKinds{{{"fastest_partition", fastest_partition},
                                        {"no_slower_than_existing", no_slower_than_existing},
                                        {"scene_ratio", scene_ratio},
                                        {"speedup", speedup},
@@ -45,7 +45,10 @@ constexpr std::array<Kind, 32> kKinds{{{"fastest_partition", fastest_partition},
                                        {"choice_in_recordings", choice_in_recordings},
                                        {"choice_turn", choice_turn},
                                        {"near_limit", near_limit},
-                                       {"growth_exponent", growth_exponent}}};
+                                       {"growth_exponent", growth_exponent},
+                                       {"report_default", report_default},
+                                       {"report_without_peers", report_without_peers},
+                                       {"report_killed", report_killed}}};
 
 }  // namespace
 

@@ -61,11 +61,21 @@ bool is_fingerprint(const Json& column) {
   return column["name"].get<std::string>().find("fingerprint") != std::string::npos;
 }
 
-bool counts(const Json& table, const Json& row) {
-  if (row.contains("from")) return false;
+/// Whether a value was computed from those of other rows.
+bool is_derived(const Json& row, const std::string& name) {
+  if (!row.contains("from")) return false;
+  const Json& from = row["from"];
+  const auto tells = [&](const Json& one) {
+    return one.is_object() && one.value("value", Json()) == name;
+  };
+  return from.is_array() ? std::any_of(from.begin(), from.end(), tells) : tells(from);
+}
+
+bool counts(const Json& table, const Json& row, const std::string& name) {
+  if (is_derived(row, name)) return false;
   return std::none_of(table["keys"].begin(), table["keys"].end(), [&](const Json& key) {
-    const Json& name = row[key.get<std::string>()];
-    return name.is_string() && is_peer(name.get<std::string>());
+    const Json& text = row[key.get<std::string>()];
+    return text.is_string() && is_peer(text.get<std::string>());
   });
 }
 
@@ -110,7 +120,7 @@ class Comparing {
       const std::string which = report == &before_ ? "the old report" : "the new report";
       const Json& document = report->document();
       if (!document.value("complete", false)) found_.remarks.push_back(which + " is not complete");
-      if (document["settings"].value("quick", false)) {
+      if (document["settings"].value("quick", Json(false)) == true) {
         quick_ = true;
         found_.remarks.push_back(which + " was made with --quick: no time of it counts");
       }
@@ -155,7 +165,7 @@ class Comparing {
                   .unit = column["unit"],
                   .before = value_of(old, name),
                   .after = value_of(row, name),
-                  .counts = counts(table, row)};
+                  .counts = counts(table, row, name)};
     if (!(change.before >= 0.0) || !(change.after >= 0.0)) return;
     if (change.before == 0.0 || change.after == 0.0) {
       add_zero(std::move(change), column);
@@ -186,7 +196,9 @@ class Comparing {
 };
 
 double sweep_ms(const Results& results) {
-  return results.document()["machine"].value("reference_sweep_ms", 0.0);
+  const Json& machine = results.document()["machine"];
+  const auto at = machine.find("reference_sweep_ms");
+  return at != machine.end() && at->is_number() ? at->get<double>() : 0.0;
 }
 
 }  // namespace

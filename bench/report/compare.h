@@ -31,8 +31,8 @@ struct Change {
   double after = 0.0;  ///< scaled
   double ratio = 1.0;  ///< above 1: that many times worse; infinite if there was nothing before
   Verdict verdict = Verdict::same;
-  /// False for rows of other libraries, which tell of the machine alone, and for rows computed from
-  /// others, which are compared themselves.
+  /// False for rows of other libraries, which tell of the machine alone, and for values computed
+  /// from other rows, which are compared themselves.
   bool counts = true;
 };
 

@@ -88,7 +88,8 @@ class ReadmeTables {
     }
     const std::string name = part["value"];
     const Json* column = results_.column(context.text("table"), name);
-    const auto found = rows(context);
+    auto found = rows(context);
+    std::erase_if(found, [&](const Json* row) { return !row->contains(name); });
     if (column == nullptr || found.empty()) return "-";
     const Json* row = found.front();
     if (part.value("sum", false)) {
@@ -96,9 +97,11 @@ class ReadmeTables {
       for (const Json* one : found) sum += value_of(*one, name);
       return shown(sum, (*column)["format"].get<std::string>());
     }
-    if (part.value("least", false)) {
+    const bool most = part.value("most", false);
+    if (most || part.value("least", false)) {
       row = *std::min_element(found.begin(), found.end(), [&](const Json* a, const Json* b) {
-        return value_of(*a, name) < value_of(*b, name);
+        return most ? value_of(*a, name) > value_of(*b, name)
+                    : value_of(*a, name) < value_of(*b, name);
       });
     } else if (found.size() > 1) {
       throw ArgumentError("readme.json: " + part.dump() + " could be that of " +
@@ -189,10 +192,15 @@ class ReadmeTables {
     return text;
   }
 
+  /// All of its figures must be known.
   [[nodiscard]] std::string paragraph(const Json& spec) const {
     const Json none = Json::object();
-    const auto [text, known] = filled(spec["text"], none, none, spec);
-    if (!known) throw ArgumentError(no_figures(spec));
+    for (const Json& part : spec["text"]) {
+      if (part.is_object() && figure(part, {&part, &spec}) == "-") {
+        throw ArgumentError(no_figures(spec) + ": " + part.dump());
+      }
+    }
+    const std::string text = filled(spec["text"], none, none, spec).first;
     std::istringstream words(text);
     std::string wrapped;
     std::size_t column = 0;

@@ -137,14 +137,27 @@ class Tracing {
     for (const TracedCell& cell : cells) check_cell(cell);
   }
 
-  /// A text with digits that says of no row where it is from must be a key of its neighbours.
+  [[nodiscard]] static bool is_key_of(const std::string& text, const Known& known) {
+    const TraceJson& keys = known.table->at("keys");
+    return std::any_of(keys.begin(), keys.end(), [&](const TraceJson& key) {
+      return is_text_of(text, known.row->value(key.get<std::string>(), TraceJson()));
+    });
+  }
+
+  /// A text with digits that says of no row where it is from must be a key of its neighbours, or,
+  /// where all cells are such texts, of any row.
   void check_key(const TracedRow& shown_row, const std::string& text) {
+    bool has_neighbours = false;
     for (const TracedCell& cell : shown_row) {
       const auto at = rows_.find(cell.row);
       if (at == rows_.end()) continue;
-      for (const TraceJson& key : at->second.table->at("keys")) {
-        if (is_text_of(text, at->second.row->value(key.get<std::string>(), TraceJson()))) return;
-      }
+      has_neighbours = true;
+      if (is_key_of(text, at->second)) return;
+    }
+    if (!has_neighbours && std::any_of(rows_.begin(), rows_.end(), [&](const auto& one) {
+          return is_key_of(text, one.second);
+        })) {
+      return;
     }
     complain("a table shows \"" + text + "\", which is of no row");
   }
@@ -229,11 +242,7 @@ class Tracing {
     }
     const auto number = static_cast<std::size_t>(x);
     if (number >= categories.size()) return false;
-    const auto name = categories[number].get<std::string>();
-    const TraceJson& keys = known.table->at("keys");
-    return std::any_of(keys.begin(), keys.end(), [&](const TraceJson& key) {
-      return is_text_of(name, known.row->value(key.get<std::string>(), TraceJson()));
-    });
+    return is_key_of(categories[number].get<std::string>(), known);
   }
 
   void check_derived() {

@@ -23,16 +23,16 @@ struct Times {
 /// A report of one row, which a test changes.
 Json report() {
   return Json::parse(R"({"format": "winnow report 1", "complete": true,
-    "machine": {"processor": "some", "cores": 2, "reference_sweep_ms": 20.0},
+    "machine": {"processor": "some", "cores": 2, "isa": "wide", "reference_sweep_ms": 20.0},
     "settings": {"seed": 1, "quick": false, "objects": [100]},
     "missing": [], "problems": [], "sections": [],
     "tables": [{"name": "speed", "section": "s", "title": "t", "keys": ["who"],
-      "values": [{"name": "frame_ms", "label": "", "unit": "ms", "better": "less"},
-                 {"name": "rate", "label": "", "unit": "1/s", "better": "more"},
-                 {"name": "bytes", "label": "", "unit": "bytes", "better": "less"},
-                 {"name": "worst_error", "label": "", "unit": "", "better": "less"},
-                 {"name": "pairs", "label": "", "unit": "", "better": "neither"},
-                 {"name": "fingerprint", "label": "", "unit": "", "better": "neither"}],
+      "values": [{"name": "frame_ms", "label": "", "unit": "ms", "better": "less", "format": "number"},
+                 {"name": "rate", "label": "", "unit": "1/s", "better": "more", "format": "number"},
+                 {"name": "bytes", "label": "", "unit": "bytes", "better": "less", "format": "number"},
+                 {"name": "worst_error", "label": "", "unit": "", "better": "less", "format": "number"},
+                 {"name": "pairs", "label": "", "unit": "", "better": "neither", "format": "number"},
+                 {"name": "fingerprint", "label": "", "unit": "", "better": "neither", "format": "number"}],
       "rows": [{"id": "speed/Grid", "who": "Grid", "command": "bench/run x"}]}]})");
 }
 
@@ -185,13 +185,13 @@ TEST(Compare, says_which_settings_differ) {
   EXPECT_NE(outcome.found["remarks"][0].get<std::string>().find("objects"), std::string::npos);
 }
 
-TEST(Compare, counts_neither_other_libraries_nor_rows_made_from_others) {
+TEST(Compare, counts_neither_other_libraries_nor_values_made_from_other_rows) {
   for (const bool derived : {false, true}) {
     Json before = with("bytes", 100);
     Json after = with("bytes", 200);
     for (Json* report : {&before, &after}) {
       if (derived)
-        row(*report)["from"] = Json::object();
+        row(*report)["from"] = {{"value", "bytes"}};
       else
         row(*report)["who"] = "Bullet dbvt";
     }
@@ -200,6 +200,13 @@ TEST(Compare, counts_neither_other_libraries_nor_rows_made_from_others) {
     EXPECT_EQ(outcome.found["changes"][0]["counts"], false);
     EXPECT_EQ(outcome.status, 0);
   }
+}
+
+TEST(Compare, counts_what_was_measured_in_a_row_that_has_a_value_made_from_others) {
+  Json before = with("bytes", 100);
+  Json after = with("bytes", 200);
+  for (Json* report : {&before, &after}) row(*report)["from"] = {{{"value", "share"}}};
+  EXPECT_EQ(compared(before, after).status, 1);
 }
 
 TEST(Compare, counts_rows_that_only_one_has) {
@@ -215,7 +222,8 @@ TEST(Compare, counts_rows_that_only_one_has) {
 TEST(Compare, scales_times_if_the_machines_differ) {
   Json slow = with("frame_ms", value({2.0, 2.2, 2.4}));
   row(slow)["bytes"] = 100;
-  slow["machine"] = {{"processor", "other"}, {"cores", 2}, {"reference_sweep_ms", 40.0}};
+  slow["machine"] = {
+      {"processor", "other"}, {"cores", 2}, {"isa", "wide"}, {"reference_sweep_ms", 40.0}};
   Json fast = with("frame_ms", value({1.0, 1.1, 1.2}));
   row(fast)["bytes"] = 100;
   const Outcome scaled = compared(fast, slow);
@@ -232,12 +240,16 @@ TEST(Compare, scales_times_if_the_machines_differ) {
 TEST(Compare, ends_with_two_if_a_file_is_no_report) {
   const std::string good = report().dump();
   EXPECT_EQ(compared(good, good).status, 0);
-  Json no_rows = report();
-  no_rows["tables"][0].erase("rows");
-  Json no_number = report();
-  no_number["machine"]["reference_sweep_ms"] = "fast";
-  for (const std::string& bad : {std::string(), good.substr(0, good.size() / 2), std::string("[]"),
-                                 no_rows.dump(), no_number.dump()}) {
+  std::vector<Json> wrong(6, with("frame_ms", value({1.0, 1.1, 1.2})));
+  wrong[0]["tables"][0].erase("rows");
+  wrong[1]["tables"][0]["values"][0] = Json::object();
+  wrong[2]["complete"] = 1;
+  row(wrong[3])["frame_ms"].erase("min");
+  row(wrong[4]).erase("who");
+  wrong[5]["problems"] = {1};
+  std::vector<std::string> texts{"", good.substr(0, good.size() / 2), "[]", "{}"};
+  for (const Json& document : wrong) texts.push_back(document.dump());
+  for (const std::string& bad : texts) {
     EXPECT_EQ(compared(good, bad).status, 2) << bad;
     EXPECT_EQ(compared(bad, good).status, 2) << bad;
   }
