@@ -147,6 +147,7 @@ void show_phases(const Results& results, ReportPage& page) {
   page.heading("A simulation that embeds winnow: where the time of a step goes");
   page.paragraph(
       "Spheres and boxes fall through a funnel made of triangles, with soft contacts and friction. "
+      "Handing over poses: telling winnow where bodies are now. "
       "Broad phase: which boxes overlap. Mid phase: which triangles of the funnel each body "
       "meets. Narrow phase: contact points. Solver: forces and motion, which are the simulation's "
       "own.");
