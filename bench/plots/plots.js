@@ -39,7 +39,7 @@ function dataset(series, plot) {
   if (series.front) {
     return {label: series.name, data: series.points, showLine: true, pointRadius: 0,
             pointStyle: "line", borderColor: "#444444", backgroundColor: "#444444",
-            borderWidth: 1, borderDash: [2, 2]};
+            borderWidth: 1, borderDash: [2, 2], stepped: "before"};
   }
   return {
     label: series.name,
@@ -84,13 +84,20 @@ function scale(axis, plot) {
   const category = bars && axis === plot.x;
   const {suggestedMin, suggestedMax} = ends(plot);
   const whiskered = axis === plot.y && !bars && suggestedMin < suggestedMax;
+  // What is nowhere below zero begins there; counts have whole ticks.
+  const values = axis === plot.y && !axis.log
+    ? plot.series.flatMap((series) => series.points.map((point) => point.y)) : [];
+  const from_zero = values.length > 0 && values.every((y) => y >= 0);
+  const whole = values.length > 0 && values.every(Number.isInteger);
   return {
     ...(whiskered ? {suggestedMin, suggestedMax} : {}),
+    ...(from_zero ? {min: 0} : {}),
+    ...(from_zero && values.every((y) => y === 0) ? {suggestedMax: 1} : {}),
     type: category ? "category" : axis.log ? "logarithmic" : "linear",
     labels: category ? plot.categories : undefined,
     stacked: bars && plot.stacked,
     title: {display: true, text: axis.label},
-    ticks: axis.log ? {callback: log_tick, maxRotation: 0} : {},
+    ticks: axis.log ? {callback: log_tick, maxRotation: 0} : whole ? {precision: 0} : {},
     grid: {color: "#e4e4e4"},
   };
 }
@@ -178,9 +185,10 @@ function zoomable(chart) {
     held = event;
     chart.update("none");
   });
+  const least = Object.fromEntries(axes.map((axis) => [axis, chart.options.scales[axis].min]));
   canvas.addEventListener("dblclick", () => {
     for (const axis of axes) {
-      delete chart.options.scales[axis].min;
+      chart.options.scales[axis].min = least[axis];
       delete chart.options.scales[axis].max;
     }
     chart.update("none");
@@ -231,7 +239,3 @@ document.body.dataset.drawn = String(drawn);
 document.body.dataset.wanted = String(wanted);
 document.body.dataset.plots = String(data.plots.length);
 document.body.dataset.blank = blank.join(" ");
-
-window.addEventListener("beforeprint", () => {
-  for (const folded of document.querySelectorAll("details")) folded.open = true;
-});

@@ -73,6 +73,10 @@ void check_row(const Json& table, const Json& row, const std::string& table_text
 void check_table(const Json& table) {
   const std::string name = demand_member(table, "name", is_text, "a table");
   const std::string where = "table \"" + name + "\"";
+  // A file is named after it.
+  demand(!name.empty() &&
+             name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos,
+         where + " has a name that is not of small letters");
   demand_texts(table, {"section", "title"}, where);
   (void)demand_member(table, "keys", kIsTexts, where);
   for (const Json& column : demand_member(table, "values", kIsArray, where)) {
@@ -90,7 +94,8 @@ void check_report(const Json& document) {
   const Json& machine = demand_member(document, "machine", kIsObject, "it");
   demand_texts(machine, {"isa"}, "\"machine\"");
   (void)demand_member(machine, "reference_sweep_ms", kIsNumber, "\"machine\"");
-  (void)demand_member(document, "settings", kIsObject, "it");
+  const Json& settings = demand_member(document, "settings", kIsObject, "it");
+  if (settings.contains("quick")) (void)demand_member(settings, "quick", kIsBool, "\"settings\"");
   (void)demand_member(document, "missing", kIsTexts, "it");
   (void)demand_member(document, "problems", kIsTexts, "it");
   for (const Json& section : demand_member(document, "sections", kIsArray, "it")) {

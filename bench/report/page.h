@@ -38,7 +38,8 @@ class ReportPage {
   /// Plots beside each other, where the page is wide enough. Their ids must be unique on the page;
   /// those without points are left out.
   void add(const std::vector<Plot>& plots);
-  /// Every row of a table of the results, folded away on the screen and shown in print.
+  /// Every row of a table of the results, folded away on the screen and left out in print, for
+  /// which it is too wide: that is what the CSVs are for.
   void all_rows(const std::string& table);
 
   [[nodiscard]] const Results& results() const noexcept { return results_; }

@@ -4,13 +4,15 @@
 #include "tool/command.h"
 #include "tool/progress.h"
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
-#include <numeric>
+#include <string_view>
 #include <system_error>
 
 namespace winnow::bench {
@@ -24,11 +26,28 @@ void write_whole(const std::filesystem::path& path, const std::string& text) {
   std::ofstream file(fresh, std::ios::binary);
   file << text;
   file.close();
+  std::string fault = file ? "" : std::strerror(errno);
   std::error_code failed;
   if (file) std::filesystem::rename(fresh, path, failed);
-  if (!file || failed) {
-    throw ArgumentError("cannot write " + path.string() + ": " +
-                        (failed ? failed.message() : std::strerror(errno)));
+  if (failed) fault = failed.message();
+  if (fault.empty()) return;
+  std::filesystem::remove(fresh, failed);
+  throw ArgumentError("cannot write " + path.string() + ": " + fault);
+}
+
+/// Why there is none; empty if there is.
+std::string write_page(const std::filesystem::path& path, const Results& results) {
+  const std::filesystem::path fresh = path.string() + ".new";
+  std::error_code failed;
+  try {
+    write_report_page(fresh.string(), results);
+    std::filesystem::rename(fresh, path, failed);
+    if (!failed) return "";
+    std::filesystem::remove(fresh, failed);
+    return "cannot write " + path.string();
+  } catch (const ArgumentError& error) {
+    std::filesystem::remove(fresh, failed);
+    return error.what();
   }
 }
 
@@ -70,7 +89,12 @@ class StopSignals {
   StopSignals() {
     g_asked_to_stop = 0;
     struct sigaction action {};
-    action.sa_handler = [](int) { g_asked_to_stop = 1; };
+    action.sa_handler = [](int) {
+      g_asked_to_stop = 1;
+      constexpr std::string_view kWord =
+          "\nwinnow: stopping after the step that runs; once more stops at once\n";
+      if (::write(STDERR_FILENO, kWord.data(), kWord.size()) < 0) return;
+    };
     action.sa_flags = static_cast<int>(SA_RESETHAND);
     sigaction(SIGINT, &action, &old_interrupt_);
     sigaction(SIGTERM, &action, &old_terminate_);
@@ -124,20 +148,21 @@ void write_report(const std::string& folder, Results& results) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   const std::filesystem::path path(folder);
-  const std::string page = (path / "index.html").string();
-  try {
-    write_report_page(page + ".new", results);
-    std::filesystem::rename(page + ".new", page);
-  } catch (const ArgumentError& error) {
-    Json& missing = results.document()["missing"];
-    const std::string what = std::string("There is no page: ") + error.what();
-    if (std::find(missing.begin(), missing.end(), what) == missing.end()) missing.push_back(what);
+  Json& document = results.document();
+  // What matters most comes first, should there be no room for all.
+  write_whole(path / "results.json", document_text(document));
+  if (const std::string fault = write_page(path / "index.html", results); !fault.empty()) {
+    Json& missing = document["missing"];
+    const std::string what = "There is no page: " + fault;
+    if (std::find(missing.begin(), missing.end(), what) == missing.end()) {
+      missing.push_back(what);
+      write_whole(path / "results.json", document_text(document));
+    }
   }
-  for (const Json& table : results.document()["tables"]) {
+  for (const Json& table : document["tables"]) {
     if (table["rows"].empty()) continue;
     write_whole(path / (table["name"].get<std::string>() + ".csv"), to_csv(table));
   }
-  write_whole(path / "results.json", document_text(results.document()));
 }
 
 bool make_report(const std::string& folder, const ReportOptions& options,
@@ -154,12 +179,14 @@ bool make_report(const std::string& folder, const ReportOptions& options,
   Progress progress(steps, seconds);
   const double between = options.quick ? kQuickSecondsBetweenWrites : kSecondsBetweenWrites;
   Stopwatch since_written;
+  std::size_t done = 0;
   for (std::size_t i = 0; i < all.size() && !StopSignals::asked(); ++i) {
     const Stopwatch clock;
     for (const ReportStep& step : all[i].steps) {
       if (StopSignals::asked()) break;
       progress.step(all[i].id + ": " + step.what, step.seconds);
       run_step(all[i].id, step, results);
+      ++done;
       Json& state = results.document()["sections"][i];
       state["done"] = state["done"].get<std::size_t>() + 1;
       state["seconds"] = clock.ms() / 1000.0;
@@ -168,7 +195,7 @@ bool make_report(const std::string& folder, const ReportOptions& options,
       since_written = Stopwatch();
     }
   }
-  const bool complete = !StopSignals::asked();
+  const bool complete = done == steps;
   results.document()["complete"] = complete;
   write_report(folder, results);
   return complete;

@@ -79,7 +79,14 @@ void write_report_page(const std::string& path, const Results& results) {
   const std::string body =
       "<h1>winnow: speed against error</h1>\n" + notes_of(document) + "<nav>" + contents +
       "</nav>\n<p>Every number is a row of results.json beside this page: point at it to read "
-      "which. Times are medians; brackets and upright whiskers go from the least to the greatest.</p>\n" +
+      "which. Times are medians; brackets and upright whiskers go from the least to the "
+      "greatest. What is folded away is in the CSVs, too.</p>\n<p>The reference sweep is a plain "
+      "sort and sweep over 10,000 boxes, by which machines are compared; a + behind the commit "
+      "says "
+      "that the source was changed since. Scenes are described by bench/run scenes; the "
+      "tiers of the narrow phase are fast (float lanes), robust (each answer certified in double, "
+      "or "
+      "solved again, the default) and reference (each pair solved by itself).</p>\n" +
       facts_table("measured on", document["machine"]) +
       facts_table("settings", document["settings"]) + sections;
   write_plot_page(path, "winnow: speed against error", body, plots);

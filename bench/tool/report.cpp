@@ -121,6 +121,7 @@ void Report::note_settings(const ReportOptions& options, Results& results) const
 
 int Report::run() {
   choose_isa(choice.isa);
+  if (out.empty()) throw ArgumentError("--out: a folder, please");
   if (!from.empty()) {
     Results results = read_results(from);
     try {
@@ -128,6 +129,7 @@ int Report::run() {
     } catch (const Json::exception& error) {
       throw ArgumentError("--from: " + from + ": " + error.what());
     }
+    std::cout << out << "/index.html\n";
     return kDone;
   }
   const ReportOptions chosen = options();
