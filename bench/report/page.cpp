@@ -11,12 +11,6 @@
 namespace winnow::bench {
 namespace {
 
-std::string heading_of(const Json& column) {
-  const std::string unit = column["unit"];
-  const std::string label = column["label"];
-  return unit.empty() ? label : label + ", " + unit;
-}
-
 std::string attribute(const std::string& name, const std::string& text) {
   return " " + name + "=\"" + replaced(escaped(text), "\"", "&quot;") + "\"";
 }
@@ -139,6 +133,12 @@ void ReportPage::all_rows(const std::string& name) {
   const std::string title = (*table)["title"];
   html_ += "<details><summary>All " + grouped(whole.rows.size()) + " rows: " + escaped(title) +
            "</summary>\n" + html_of(whole) + "</details>\n";
+}
+
+std::string heading_of(const Json& column) {
+  const std::string unit = column["unit"];
+  const std::string label = column["label"];
+  return unit.empty() ? label : label + ", " + unit;
 }
 
 PageCell text_cell(const std::string& text) {

@@ -53,6 +53,8 @@ class ReportPage {
   std::vector<Plot> plots_;
 };
 
+/// Of a column of the results: its label and unit.
+[[nodiscard]] std::string heading_of(const Json& column);
 /// A text.
 [[nodiscard]] PageCell text_cell(const std::string& text);
 /// A value of a row (null: "-"), as its column says; spreads show their median.

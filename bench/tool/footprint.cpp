@@ -67,6 +67,7 @@ bool FootprintCommand::measure_all(const Target& target, int threads, Json& rows
 }
 
 int FootprintCommand::run() {
+  choose_isa(choice.isa);
   if (choice.scenes.empty()) choice.scenes = {"uniform"};
   if (choice.objects.empty()) choice.objects = {10'000, 100'000};
   if (choice.threads.empty()) choice.threads = {usual_threads().back()};
@@ -102,6 +103,7 @@ Command add_footprint(CLI::App& app) {
   add_objects_option(*sub, command->choice);
   add_threads_option(*sub, command->choice);
   add_partitions_option(*sub, command->choice);
+  add_isa_option(*sub, command->choice);
   add_seed_option(*sub, command->choice);
   add_json_option(*sub, command->json);
   return {sub, [command] { return command->run(); }};

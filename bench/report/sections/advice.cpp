@@ -119,19 +119,10 @@ void measure_advice(Results& results, const ReportOptions& options, const Report
   if (!advice.same_pairs) throw std::runtime_error("not all found the same pairs");
 }
 
-/// The size that is wanted, or what comes closest to it.
-std::size_t advised_objects(const ReportOptions& options) {
-  std::size_t chosen = options.objects.front();
-  for (const std::size_t objects : options.objects) {
-    if (objects <= kAdvisedObjects) chosen = objects;
-  }
-  return chosen;
-}
-
 std::vector<ReportStep> plan_advice(const ReportOptions& options) {
   std::vector<ReportStep> steps;
   for (const ReportScene& scene : options.scenes) {
-    const std::size_t objects = objects_of(scene, advised_objects(options));
+    const std::size_t objects = objects_of(scene, objects_up_to(options, kAdvisedObjects));
     for (const int threads : options.threads) {
       steps.push_back(
           {scene.name + ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads"),
@@ -152,11 +143,6 @@ PageCell frame_of_best(const Results& results, const Json& advised) {
   return cell(results, "advice_ranking", results.row("advice_ranking", where), kFrameOfBest);
 }
 
-std::string advice_head(const Json& column) {
-  const std::string unit = column["unit"];
-  return column["label"].get<std::string>() + (unit.empty() ? "" : ", " + unit);
-}
-
 PageTable advice_table(const Results& results, const Json& threads,
                        const std::vector<std::string>& values, const std::string& caption) {
   PageTable table;
@@ -164,7 +150,7 @@ PageTable advice_table(const Results& results, const Json& threads,
   table.header = {"scene", "objects"};
   for (const std::string& value : values) {
     const Json* column = results.column(value == kFrameOfBest ? "advice_ranking" : "advice", value);
-    if (column != nullptr) table.header.push_back(advice_head(*column));
+    if (column != nullptr) table.header.push_back(heading_of(*column));
   }
   for (const Json* row : results.rows("advice", {{"threads", threads}})) {
     std::vector<PageCell> cells{text_cell(key_text((*row)["scene"])),
@@ -191,9 +177,6 @@ void plot_advice(const Results& results, const Json& threads, ReportPage& page) 
     const Json where{{"scene", scene}, {"objects", (*row)["objects"]}, {"threads", threads}};
     plot.series = series_of(
         results, {"advice_ranking", where, "partition", "first_ms", "frame_ms", false}, true, true);
-    std::erase_if(plot.series, [](const PlotSeries& one) {
-      return one.name == "NSquared" || one.name == "BoundsNSquared";
-    });
     plot.series.push_back(pareto_front(plot.series));
     plots.push_back(std::move(plot));
   }
@@ -225,7 +208,7 @@ void show_advice(const Results& results, ReportPage& page) {
   page.command(rows.front()->value("command", ""));
   page.paragraph(
       "A scene that is built anew often, or lives for few frames, pays for building too. Lower and "
-      "further left is better; nothing beats what lies on the dashed line in both.");
+      "further left is better; nothing beats what lies on the dotted line in both.");
   plot_advice(results, all_threads.front(), page);
   for (const char* table : {"advice", "advice_ranking"}) page.all_rows(table);
 }

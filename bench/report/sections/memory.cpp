@@ -89,8 +89,9 @@ void add_held(Results& results, const std::string& scene, const Json& held,
 /// In a process of its own, whose memory nothing else disturbs.
 void measure_memory(Results& results, const ReportOptions& options, const ReportScene& scene,
                     std::size_t objects) {
+  const std::string threads = std::to_string(options.threads.back());
   std::vector<std::string> arguments{"footprint", "--scene", scene.argument, "--threads",
-                                     std::to_string(options.threads.back())};
+                                     threads,     "--isa",   isa_name()};
   if (!scene.recording) {
     arguments.insert(arguments.end(), {"--objects", std::to_string(objects), "--seed",
                                        std::to_string(options.seed)});
@@ -99,7 +100,7 @@ void measure_memory(Results& results, const ReportOptions& options, const Report
   for (const Json& held : run_own(arguments)) {
     add_held(results, scene.name, held,
              "bench/run footprint" + scene_words(options, scene, objects) + " --threads " +
-                 std::to_string(options.threads.back()) + " --partition " +
+                 threads + " --isa " + isa_name() + " --partition " +
                  held["partition"].get<std::string>());
     exact = exact && held["exact"].get<bool>();
   }

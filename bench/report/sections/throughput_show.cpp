@@ -139,7 +139,8 @@ void show_derived(const ThroughputPage& of, ReportPage& page) {
                                 "partition",
                                 "scene",
                                 "exponent",
-                                "Exponent of growth, " + threads_text(threads)}));
+                                "Exponent of growth, " + threads_text(threads),
+                                false}));
   }
   const Json& size = of.sizes.back();
   for (const Json& isa : distinct(of.results.rows("throughput_simd"), "isa")) {
@@ -149,7 +150,8 @@ void show_derived(const ThroughputPage& of, ReportPage& page) {
                                 "scene",
                                 "speedup",
                                 key_text(isa) + " against the narrowest instruction set, times, " +
-                                    objects_text(size) + ", " + threads_text(of.threads.front())}));
+                                    objects_text(size) + ", " + threads_text(of.threads.front()),
+                                false}));
   }
   page.add(pivot(of.results, {"throughput_threads",
                               {{"objects", size}, {"threads", of.threads.back()}},
@@ -157,7 +159,8 @@ void show_derived(const ThroughputPage& of, ReportPage& page) {
                               "scene",
                               "speedup",
                               threads_text(of.threads.back()) + " against 1 thread, times, " +
-                                  objects_text(size)}));
+                                  objects_text(size),
+                              false}));
 }
 
 void show_skipped(const Results& results, ReportPage& page) {
@@ -197,8 +200,10 @@ void show_throughput(const Results& results, ReportPage& page) {
   show_skipped(results, page);
   page.heading("Growth, instruction sets, threads");
   page.paragraph(
-      "An exponent of 1 means that twice the objects take twice the time; 2 means four times. The "
-      "speedups compare medians of the same race.");
+      "An exponent of 1 means that twice the objects take twice the time; 2 means four times. "
+      "It is fitted to the sizes that the engine was run at, and tells of growth alone: one that "
+      "is "
+      "slow at every size may have a small one. The speedups compare medians of the same race.");
   plot_speedups(of, page);
   show_derived(of, page);
   page.heading("The same pairs");
