@@ -108,7 +108,8 @@ Goal traced(const ReportProcess& report, std::size_t picked) {
   std::string detail = grouped(trace.cells) + " cells, " + grouped(trace.points) + " points, " +
                        grouped(trace.derived) + " derived rows; seed " + std::to_string(seed);
   if (!trace.wrong.empty()) detail = trace.wrong.front() + "; " + detail;
-  return none_of(what, static_cast<double>(trace.wrong.size()), detail);
+  const bool any = trace.cells > 0 && trace.points > 0;
+  return none_of(what, any ? static_cast<double>(trace.wrong.size()) : kUnanswered, detail);
 }
 
 /// Problems, and steps that were not measured.
