@@ -14,6 +14,7 @@
 #include <fstream>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace winnow::bench {
 namespace {
@@ -21,35 +22,59 @@ namespace {
 constexpr double kSecondsBetweenWrites = 5.0;
 constexpr double kQuickSecondsBetweenWrites = 0.5;
 
-void write_whole(const std::filesystem::path& path, const std::string& text) {
-  const std::filesystem::path fresh = path.string() + ".new";
-  std::ofstream file(fresh, std::ios::binary);
-  file << text;
-  file.close();
-  std::string fault = file ? "" : std::strerror(errno);
-  std::error_code failed;
-  if (file) std::filesystem::rename(fresh, path, failed);
-  if (failed) fault = failed.message();
-  if (fault.empty()) return;
-  std::filesystem::remove(fresh, failed);
-  throw ArgumentError("cannot write " + path.string() + ": " + fault);
-}
-
-/// Why there is none; empty if there is.
-std::string write_page(const std::filesystem::path& path, const Results& results) {
-  const std::filesystem::path fresh = path.string() + ".new";
-  std::error_code failed;
-  try {
-    write_report_page(fresh.string(), results);
-    std::filesystem::rename(fresh, path, failed);
-    if (!failed) return "";
-    std::filesystem::remove(fresh, failed);
-    return "cannot write " + path.string();
-  } catch (const ArgumentError& error) {
-    std::filesystem::remove(fresh, failed);
-    return error.what();
+/// Files that are written beside those that they replace, all of them at once: whatever ends the
+/// process, what is there belongs together.
+class FreshFiles {
+ public:
+  explicit FreshFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  FreshFiles(const FreshFiles&) = delete;
+  FreshFiles& operator=(const FreshFiles&) = delete;
+  ~FreshFiles() {
+    std::error_code ignored;
+    for (const std::string& name : names_) std::filesystem::remove(fresh(name), ignored);
   }
-}
+
+  /// Where to write a file of this name.
+  std::filesystem::path add(const std::string& name) {
+    if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.push_back(name);
+    return fresh(name);
+  }
+  void drop(const std::string& name) {
+    std::error_code ignored;
+    std::filesystem::remove(fresh(name), ignored);
+    std::erase(names_, name);
+  }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream file(add(name), std::ios::binary);
+    file << text;
+    file.close();
+    if (file) return;
+    const std::string fault = std::strerror(errno);
+    drop(name);
+    throw ArgumentError("cannot write " + (folder_ / name).string() + ": " + fault);
+  }
+  /// The last one first.
+  void replace() {
+    std::string fault;
+    for (; !names_.empty(); names_.pop_back()) {
+      const std::filesystem::path path = folder_ / names_.back();
+      std::error_code failed;
+      std::filesystem::rename(fresh(names_.back()), path, failed);
+      if (!failed) continue;
+      fault = "cannot write " + path.string() + ": " + failed.message();
+      std::filesystem::remove(fresh(names_.back()), failed);
+    }
+    if (!fault.empty()) throw ArgumentError(fault);
+  }
+
+ private:
+  [[nodiscard]] std::filesystem::path fresh(const std::string& name) const {
+    return folder_ / (name + ".new");
+  }
+
+  std::filesystem::path folder_;
+  std::vector<std::string> names_;
+};
 
 /// One row a line, so that versions of the document can be compared.
 std::string document_text(const Json& document) {
@@ -147,22 +172,29 @@ void run_step(const std::string& section, const ReportStep& step, Results& resul
 void write_report(const std::string& folder, Results& results) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
-  const std::filesystem::path path(folder);
   Json& document = results.document();
+  FreshFiles files(folder);
   // What matters most comes first, should there be no room for all.
-  write_whole(path / "results.json", document_text(document));
-  if (const std::string fault = write_page(path / "index.html", results); !fault.empty()) {
+  files.write("results.json", document_text(document));
+  try {
+    write_report_page(files.add("index.html").string(), results);
+  } catch (const ArgumentError& error) {
+    files.drop("index.html");
     Json& missing = document["missing"];
-    const std::string what = "There is no page: " + fault;
-    if (std::find(missing.begin(), missing.end(), what) == missing.end()) {
-      missing.push_back(what);
-      write_whole(path / "results.json", document_text(document));
+    const std::string what = std::string("There is no page: ") + error.what();
+    if (std::find(missing.begin(), missing.end(), what) == missing.end()) missing.push_back(what);
+    files.write("results.json", document_text(document));
+  }
+  try {
+    for (const Json& table : document["tables"]) {
+      if (table["rows"].empty()) continue;
+      files.write(table["name"].get<std::string>() + ".csv", to_csv(table));
     }
+  } catch (const ArgumentError&) {
+    files.replace();
+    throw;
   }
-  for (const Json& table : document["tables"]) {
-    if (table["rows"].empty()) continue;
-    write_whole(path / (table["name"].get<std::string>() + ".csv"), to_csv(table));
-  }
+  files.replace();
 }
 
 bool make_report(const std::string& folder, const ReportOptions& options,
