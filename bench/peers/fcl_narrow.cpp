@@ -184,8 +184,16 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     write_vector(answer.normal, n.x(), n.y(), n.z());
   }
 
-  void write_contacts(bool overlap, NarrowAnswer& answer) const {
+  /// EPA of the solver "indep" gives depths below zero, and normals in the axes of a.
+  static void put_right(fcl::ContactPoint<double>& contact, const Transform& a) {
+    if (contact.penetration_depth >= 0.0) return;
+    contact.penetration_depth = -contact.penetration_depth;
+    contact.normal = a.linear() * contact.normal;
+  }
+
+  void write_contacts(bool overlap, const Body& a, NarrowAnswer& answer) {
     answer = {};
+    for (auto& contact : contacts_) put_right(contact, a.at);
     answer.overlap = overlap;
     answer.contacts = static_cast<std::uint32_t>(contacts_.size());
     if (contacts_.empty()) return;
@@ -214,7 +222,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     const bool overlap = ask([&] {
       return solver_.shapeIntersect(shape_of<A>(a), a.at, shape_of<B>(b), b.at, &contacts_);
     });
-    write_contacts(overlap, answer);
+    write_contacts(overlap, a, answer);
   }
 
   template <typename A, typename B>
@@ -254,8 +262,10 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
       return solver_.shapeTriangleIntersect(shape_of<A>(a), a.at, p, q, r, b.at, &contact.pos,
                                             &contact.penetration_depth, &contact.normal);
     });
+    // Of triangles EPA's normals go from b to a.
+    if (contact.penetration_depth < 0.0) contact.normal = -contact.normal;
     if (overlap) contacts_.push_back(contact);
-    write_contacts(overlap, answer);
+    write_contacts(overlap, a, answer);
   }
 
   template <typename A>

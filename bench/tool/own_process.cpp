@@ -50,9 +50,14 @@ Json run_own(std::vector<std::string> arguments) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  // What a terminal's interrupt asks of this process is not asked of the other.
+  posix_spawnattr_t apart;
+  posix_spawnattr_init(&apart);
+  posix_spawnattr_setflags(&apart, POSIX_SPAWN_SETPGROUP);
   pid_t process = 0;
   const int failed =
-      posix_spawn(&process, "/proc/self/exe", &actions, nullptr, words.data(), environ);
+      posix_spawn(&process, "/proc/self/exe", &actions, &apart, words.data(), environ);
+  posix_spawnattr_destroy(&apart);
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) throw std::runtime_error("cannot start this tool once more");
   wait_for(process);

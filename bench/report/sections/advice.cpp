@@ -188,11 +188,10 @@ void show_advice(const Results& results, ReportPage& page) {
   if (rows.empty()) return;
   page.paragraph(
       "For each scene, the partition that took the least time for a frame once it had settled, "
-      "what made it so, and the line that makes it. How far the next best lies behind says how "
-      "much "
-      "the choice matters. AutoPartition chooses by itself, from counts and a sample and never "
-      "from "
-      "time; take it where a scene changes its nature, or where only your users know it.");
+      "of those that do not choose by themselves; what made it so, and the line that makes it. How "
+      "far the next best lies behind says how much the choice matters. AutoPartition chooses by "
+      "itself, from counts and a sample and never from time; take it where a scene changes its "
+      "nature, or where only your users know it.");
   const auto all_threads = distinct(rows, "threads");
   for (const Json& threads : all_threads) {
     page.add(advice_table(results, threads,

@@ -197,9 +197,8 @@ void show_memory(const Results& results, ReportPage& page) {
   if (rows.empty()) return;
   page.paragraph(
       "What a partition itself holds after some frames, by what it is for: the objects' boxes, "
-      "keys "
-      "and client data, what its structure adds, buffers that it keeps from frame to frame, and "
-      "pairs on their way out. Used is what has content, reserved what it asked its memory "
+      "keys and client data, what its structure adds, buffers that it keeps from frame to frame, "
+      "and pairs on their way out. Used is what has content, reserved what it asked its memory "
       "resource for. The caller's array of pairs is not part of it.");
   plot_memory(results, page);
   page.paragraph(

@@ -191,20 +191,17 @@ void show_narrow(const Results& results, ReportPage& page) {
   if (!rows.empty()) {
     page.paragraph(
         "Each point is a kind of pair, answered by one of winnow's tiers or by another library, "
-        "all "
-        "on the same pairs: down is more exact, left is faster. Kind by kind further down, nothing "
-        "is "
-        "better in both than the points on the front. Half of the pairs overlap, and half are "
-        "nearly touching, down to "
-        "a millionth of their size. Errors are relative to size + |distance|, judged by arithmetic "
-        "of 100 digits where the tool was built with it (column judge), and normals count only "
-        "where they are unique. Distances are of pairs apart, depths of pairs that overlap. An "
-        "error of nothing is drawn at 1e-17 where the worst is shown, and left out elsewhere.");
+        "all on the same pairs: down is more exact, left is faster. Kind by kind further down, "
+        "nothing is better in both than the points on the front. Half of the pairs overlap, and "
+        "half are nearly touching, down to a millionth of their size. Errors are relative to size "
+        "+ |distance|, judged by arithmetic of 100 digits where the tool was built with it (column "
+        "judge), and normals count only where they are unique. Distances are of pairs apart, "
+        "depths of pairs that overlap. An error of nothing is drawn at 1e-17 where the worst is "
+        "shown, and left out elsewhere.");
     if (results.row("narrow_error", {{"engine", "FCL indep"}}) != nullptr) {
       page.paragraph(
-          "Answers are taken as a library's functions return them: the EPA of FCL's own solver "
-          "(FCL indep) returns depths with the other sign, and normals in the axes of the first "
-          "shape.");
+          "Answers are what a library's functions return, brought to the same signs and axes where "
+          "these differ (Bullet and FCL solve some pairs in the axes of the first shape).");
     }
     show_all_kinds(results, page);
     show_error_tables(results, page);

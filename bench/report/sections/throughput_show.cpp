@@ -181,8 +181,7 @@ void show_throughput(const Results& results, ReportPage& page) {
       "A frame is what a simulation pays each step: the boxes that moved are brought in, whatever "
       "the structure needs is rebuilt, and every pair of overlapping boxes is written to an array. "
       "Partitions take turns, some frames each, so that they meet the same disturbances. Those "
-      "that "
-      "test every box against every other, and other libraries, take long: they have races of "
+      "that test every box against every other, and other libraries, take long: they have races of "
       "their own, on the first of the same frames (all rows tell how many frames they had). Lower "
       "is better; a line that stays level costs the same for each object however many there are.");
   plot_growth(of, of.threads.front(), page);
@@ -200,9 +199,8 @@ void show_throughput(const Results& results, ReportPage& page) {
   show_skipped(results, page);
   page.heading("Growth, instruction sets, threads");
   page.paragraph(
-      "An exponent of 1 means that twice the objects take twice the time; 2 means four times. "
-      "It is fitted to the sizes that the engine was run at, and tells of growth alone: one that "
-      "is "
+      "An exponent of 1 means that twice the objects take twice the time; 2 means four times. It "
+      "is fitted to the sizes that the engine was run at, and tells of growth alone: one that is "
       "slow at every size may have a small one. The speedups compare medians of the same race.");
   plot_speedups(of, page);
   show_derived(of, page);
