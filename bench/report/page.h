@@ -45,7 +45,6 @@ class ReportPage {
   [[nodiscard]] const Results& results() const noexcept { return results_; }
   [[nodiscard]] const std::string& html() const noexcept { return html_; }
   [[nodiscard]] const std::vector<Plot>& plots() const noexcept { return plots_; }
-  [[nodiscard]] std::string& html() noexcept { return html_; }
 
  private:
   const Results& results_;
