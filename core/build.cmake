@@ -2,15 +2,21 @@
 
 include(FetchContent)
 
-# <winnow/core/aabb.h> in the tree is the same spelling as after installation: a folder of links in
-# the build tree, so that the source folders stay flat.
+# <winnow/core/aabb.h> is spelled in the tree as it is after installation: one line in the build tree
+# leads to each public header, the headers that lie at a room's root. Everything else is spelled by its
+# path from the root of the tree.
 set(WINNOW_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
-file(MAKE_DIRECTORY ${WINNOW_INCLUDE_DIR}/winnow)
+set(WINNOW_PUBLIC_HEADERS "")
 foreach(room core simd partitions pipeline)
-  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${room} ${WINNOW_INCLUDE_DIR}/winnow/${room} SYMBOLIC)
+  file(GLOB headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
+       ${PROJECT_SOURCE_DIR}/${room}/*.h)
+  list(APPEND WINNOW_PUBLIC_HEADERS ${headers})
 endforeach()
-file(CREATE_LINK ${PROJECT_SOURCE_DIR}/pipeline/winnow.h ${WINNOW_INCLUDE_DIR}/winnow/winnow.h
-     SYMBOLIC)
+foreach(header ${WINNOW_PUBLIC_HEADERS})
+  string(REPLACE "pipeline/winnow.h" "winnow.h" public ${header})
+  file(CONFIGURE OUTPUT ${WINNOW_INCLUDE_DIR}/winnow/${public}
+       CONTENT "#include \"${PROJECT_SOURCE_DIR}/${header}\"\n" @ONLY)
+endforeach()
 
 find_package(Eigen3 3.4 QUIET NO_MODULE)
 if(NOT TARGET Eigen3::Eigen)
@@ -38,6 +44,7 @@ if(NOT WINNOW_XSIMD_INCLUDE_DIR)
 endif()
 
 add_library(winnow_flags INTERFACE)
+target_include_directories(winnow_flags INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_features(winnow_flags INTERFACE cxx_std_20)
 # Contraction to fused multiply-add would make results depend on the instruction set.
 target_compile_options(winnow_flags INTERFACE
@@ -56,13 +63,28 @@ endif()
 target_compile_options(winnow_flags INTERFACE ${winnow_sanitize})
 target_link_options(winnow_flags INTERFACE ${winnow_sanitize})
 
-# winnow_library(room SOURCES ... KERNELS ... LINKS ... PRECOMPILED ...): one of the four library modules.
+# winnow_library(room LINKS ... PRIVATE_LINKS ... PRECOMPILED ... APART ...): one of the four library
+# modules, made of every source below its folder. A `*.kernel.cpp` is compiled once per instruction
+# set. Reading headers is most of what compiling the others takes: those of one folder, which a program
+# links together anyway, are compiled together, but for those APART whose own names meet others'.
 function(winnow_library room)
-  cmake_parse_arguments(arg "" "" "SOURCES;KERNELS;LINKS;PRIVATE_LINKS;PRECOMPILED" ${ARGN})
+  cmake_parse_arguments(arg "" "" "LINKS;PRIVATE_LINKS;PRECOMPILED;APART" ${ARGN})
+  file(GLOB_RECURSE sources RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.cpp)
+  set(kernels ${sources})
+  list(FILTER kernels INCLUDE REGEX "\\.kernel\\.cpp$")
+  list(FILTER sources EXCLUDE REGEX "\\.kernel\\.cpp$")
   set(target winnow_${room})
-  add_library(${target} ${arg_SOURCES})
+  add_library(${target} ${sources})
   add_library(winnow::${room} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${room} POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${room} POSITION_INDEPENDENT_CODE ON
+                                             UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  foreach(source ${sources})
+    get_filename_component(folder ${source} DIRECTORY)
+    if(folder AND NOT source IN_LIST arg_APART)
+      string(REPLACE "/" "_" group ${folder})
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+    endif()
+  endforeach()
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${WINNOW_INCLUDE_DIR}>
                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -73,8 +95,8 @@ function(winnow_library room)
   if(WINNOW_PRECOMPILED_HEADERS AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND arg_PRECOMPILED)
     target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILED})
   endif()
-  if(arg_KERNELS)
-    winnow_add_kernels(${target} ${arg_KERNELS})
+  if(kernels)
+    winnow_add_kernels(${target} ${kernels})
   endif()
 endfunction()
 include(GNUInstallDirs)

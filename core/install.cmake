@@ -13,33 +13,11 @@ install(TARGETS ${winnow_modules} winnow EXPORT winnow-targets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
-# Headers written in wide types, which only kernel files can include, stay out, and so does how the
-# pipeline answers.
-foreach(room core simd partitions pipeline)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room}/
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow/${room}
-          FILES_MATCHING PATTERN "*.h"
-          PATTERN "wide.h" EXCLUDE
-          PATTERN "compress.h" EXCLUDE
-          PATTERN "*.wide.h" EXCLUDE
-          PATTERN "exact" EXCLUDE
-          PATTERN "mesh" EXCLUDE
-          PATTERN "mid" EXCLUDE
-          PATTERN "narrow" EXCLUDE
-          PATTERN "rays" EXCLUDE
-          PATTERN "scene" EXCLUDE
-          PATTERN "solver" EXCLUDE
-          PATTERN "hull_builder.h" EXCLUDE
-          PATTERN "winnow.h" EXCLUDE)
+foreach(header ${WINNOW_PUBLIC_HEADERS})
+  string(REPLACE "pipeline/winnow.h" "winnow.h" public ${header})
+  get_filename_component(room winnow/${public} DIRECTORY)
+  install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${room})
 endforeach()
-foreach(header mesh/height_pyramid mesh/mesh_view narrow/narrow_job narrow/narrow_result
-        narrow/pair_buckets solver/solver)
-  get_filename_component(folder ${header} DIRECTORY)
-  install(FILES ${PROJECT_SOURCE_DIR}/pipeline/${header}.h
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow/pipeline/${folder})
-endforeach()
-install(FILES ${PROJECT_SOURCE_DIR}/pipeline/winnow.h
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/winnow)
 
 set(winnow_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/winnow)
 install(EXPORT winnow-targets NAMESPACE winnow:: DESTINATION ${winnow_package_dir})

@@ -1,15 +1,15 @@
 #include <winnow/partitions/partition.h>
 
-#include <winnow/partitions/auto_partition.h>
-#include <winnow/partitions/bounds_n_squared.h>
-#include <winnow/partitions/flat_grid.h>
-#include <winnow/partitions/hierarchical_grid.h>
-#include <winnow/partitions/linear_bvh.h>
-#include <winnow/partitions/loose_octree.h>
-#include <winnow/partitions/loose_quadtree.h>
-#include <winnow/partitions/n_squared.h>
-#include <winnow/partitions/static_bvh.h>
-#include <winnow/partitions/sweep_and_prune.h>
+#include "partitions/choice/auto_partition.h"
+#include "partitions/structures/brute_force/bounds_n_squared.h"
+#include "partitions/structures/brute_force/n_squared.h"
+#include "partitions/structures/bvh/linear_bvh.h"
+#include "partitions/structures/bvh/static_bvh.h"
+#include "partitions/structures/grid/flat_grid.h"
+#include "partitions/structures/levels/hierarchical_grid.h"
+#include "partitions/structures/octree/loose_octree.h"
+#include "partitions/structures/octree/loose_quadtree.h"
+#include "partitions/structures/sweep/sweep_and_prune.h"
 
 #include <array>
 

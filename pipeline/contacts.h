@@ -3,7 +3,7 @@
 #include <winnow/core/column.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
-#include <winnow/pipeline/narrow/narrow_result.h>
+#include <winnow/pipeline/narrow_result.h>
 
 #include <cstdint>
 #include <memory_resource>

@@ -4,9 +4,9 @@
 #include <winnow/core/column.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/status.h>
-#include <winnow/pipeline/mesh/height_pyramid.h>
-#include <winnow/pipeline/mesh/mesh_view.h>
 #include <winnow/pipeline/shapes.h>
+#include "pipeline/mesh/height_pyramid.h"
+#include "pipeline/mesh/mesh_view.h"
 
 #include <cstdint>
 #include <memory_resource>

@@ -4,11 +4,11 @@
 #include <winnow/core/footprint.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
-#include <winnow/pipeline/narrow/narrow_job.h>
-#include <winnow/pipeline/narrow/narrow_result.h>
-#include <winnow/pipeline/narrow/pair_buckets.h>
+#include <winnow/pipeline/narrow_result.h>
 #include <winnow/pipeline/shape_pool.h>
-#include <winnow/pipeline/solver/solver.h>
+#include "pipeline/narrow/narrow_job.h"
+#include "pipeline/narrow/pair_buckets.h"
+#include "pipeline/solver/solver.h"
 
 #include <cstdint>
 #include <memory_resource>

@@ -6,7 +6,7 @@
 #include <winnow/core/footprint.h>
 #include <winnow/core/point_view.h>
 #include <winnow/core/status.h>
-#include <winnow/pipeline/mesh/mesh_view.h>
+#include "pipeline/mesh/mesh_view.h"
 
 #include <cstdint>
 #include <memory_resource>

@@ -52,7 +52,7 @@ function(winnow_add_kernels target)
                            ${optimization})
     target_compile_definitions(${objects} PRIVATE WINNOW_ISA_NAME=${isa} WINNOW_ISA_IS_${isa}=1
                                xsimd=xsimd_${isa})
-    target_include_directories(${objects} PRIVATE ${WINNOW_INCLUDE_DIR})
+    target_include_directories(${objects} PRIVATE ${WINNOW_INCLUDE_DIR} ${PROJECT_SOURCE_DIR})
     target_include_directories(${objects} SYSTEM PRIVATE ${WINNOW_XSIMD_INCLUDE_DIR})
     target_link_libraries(${objects} PRIVATE winnow_flags)
     set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)

@@ -2,7 +2,7 @@
 
 #include "engine/partition_engine.h"
 
-#include <winnow/partitions/auto_partition.h>
+#include "partitions/choice/auto_partition.h"
 
 #include <algorithm>
 #include <cstdio>

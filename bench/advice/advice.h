@@ -3,7 +3,7 @@
 #include "engine/race.h"
 #include "scenes/frame_source.h"
 
-#include <winnow/partitions/scene_features.h>
+#include "partitions/choice/scene_features.h"
 
 #include <cstddef>
 #include <string>

@@ -4,7 +4,7 @@
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/pair_buffer.h>
-#include <winnow/partitions/radix_sort.h>
+#include "core/sort/radix_sort.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,8 +1,8 @@
 #include "micro/run_kernel.h"
 #include "micro/suite.h"
 
-#include <winnow/partitions/flat_grid.kernel.h>
-#include <winnow/partitions/sweep_and_prune.kernel.h>
+#include "partitions/structures/grid/flat_grid.kernel.h"
+#include "partitions/structures/sweep/sweep_and_prune.kernel.h"
 
 #include <memory>
 #include <vector>

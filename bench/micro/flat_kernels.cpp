@@ -1,7 +1,7 @@
 #include "micro/run_kernel.h"
 #include "micro/suite.h"
 
-#include <winnow/partitions/flat_rows.kernel.h>
+#include "partitions/structures/brute_force/flat_rows.kernel.h"
 
 #include <memory>
 

@@ -1,9 +1,9 @@
 #include "micro/suite.h"
 #include "narrow/pair_set.h"
 
-#include <winnow/pipeline/narrow/kernels.h>
-#include <winnow/pipeline/narrow/narrow_chunk.h>
-#include <winnow/pipeline/solver/solver.h>
+#include "pipeline/kernels/kernels.h"
+#include "pipeline/narrow/narrow_chunk.h"
+#include "pipeline/solver/solver.h"
 
 #include <memory>
 #include <span>

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
-#include <winnow/core/bounds_pool.h>
-#include <winnow/partitions/cell_axis.h>
-#include <winnow/partitions/pair_sink.h>
+#include "core/memory/bounds_pool.h"
+#include "partitions/pairs/pair_sink.h"
+#include "partitions/structures/cells/cell_axis.h"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #include "micro/run_kernel.h"
 #include "micro/suite.h"
 
-#include <winnow/partitions/block_tree.h>
+#include "partitions/tree/block_tree.h"
 
 #include <memory>
 #include <new>

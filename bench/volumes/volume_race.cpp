@@ -3,7 +3,7 @@
 #include "scenes/random.h"
 
 #include <winnow/core/kdop_around.h>
-#include <winnow/partitions/row_partition.h>
+#include "partitions/rows/row_partition.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 // RowPartition: rays and swept volumes.
 
-#include <winnow/partitions/pair_writer.h>
-#include <winnow/partitions/queries/cast.kernel.h>
-#include <winnow/partitions/queries/hit_writer.h>
-#include <winnow/partitions/queries/query_filter.h>
-#include <winnow/partitions/queries/sweep.h>
-#include <winnow/partitions/queries/touch.h>
-#include <winnow/partitions/row_partition.h>
+#include "partitions/pairs/pair_writer.h"
+#include "partitions/queries/cast.kernel.h"
+#include "partitions/queries/hit_writer.h"
+#include "partitions/queries/query_filter.h"
+#include "partitions/queries/sweep.h"
+#include "partitions/queries/touch.h"
+#include "partitions/rows/row_partition.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
-#include <winnow/partitions/hits.wide.h>
-#include <winnow/partitions/queries/cast.kernel.h>
-#include <winnow/partitions/queries/sweep_rounds.wide.h>
-#include <winnow/partitions/queries/walks.wide.h>
+#include "partitions/pairs/hits.wide.h"
+#include "partitions/queries/cast.kernel.h"
+#include "partitions/queries/sweep_rounds.wide.h"
+#include "partitions/queries/walks.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {

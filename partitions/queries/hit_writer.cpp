@@ -1,6 +1,6 @@
-#include <winnow/partitions/queries/hit_writer.h>
+#include "partitions/queries/hit_writer.h"
 
-#include <winnow/partitions/queries/cast.kernel.h>
+#include "partitions/queries/cast.kernel.h"
 
 #include <algorithm>
 #include <array>

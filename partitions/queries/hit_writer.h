@@ -2,7 +2,7 @@
 
 #include <winnow/core/execution.h>
 #include <winnow/core/hits.h>
-#include <winnow/core/key_table.h>
+#include "core/memory/key_table.h"
 
 #include <bit>
 #include <cstddef>

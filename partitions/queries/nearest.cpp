@@ -1,10 +1,10 @@
 // RowPartition: nearest objects.
 
-#include <winnow/partitions/queries/nearest.kernel.h>
+#include "partitions/queries/nearest.kernel.h"
 
-#include <winnow/partitions/queries/hit_writer.h>
-#include <winnow/partitions/queries/query_filter.h>
-#include <winnow/partitions/row_partition.h>
+#include "partitions/queries/hit_writer.h"
+#include "partitions/queries/query_filter.h"
+#include "partitions/rows/row_partition.h"
 
 namespace winnow {
 

@@ -1,5 +1,5 @@
-#include <winnow/partitions/queries/nearest.kernel.h>
-#include <winnow/partitions/queries/walks.wide.h>
+#include "partitions/queries/nearest.kernel.h"
+#include "partitions/queries/walks.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {

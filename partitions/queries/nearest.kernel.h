@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/partitions/queries/query_view.h>
-#include <winnow/simd/kernels.h>
+#include "partitions/queries/query_view.h"
+#include "simd/kernels/kernels.h"
 
 #include <cstddef>
 #include <cstdint>

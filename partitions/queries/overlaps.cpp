@@ -1,12 +1,12 @@
 // RowPartition: which objects meet a region.
 
 #include <winnow/core/hits.h>
-#include <winnow/partitions/pair_tracker.h>
-#include <winnow/partitions/pair_writer.h>
-#include <winnow/partitions/queries/query_filter.h>
-#include <winnow/partitions/queries/regions.h>
-#include <winnow/partitions/row_mutation.h>
-#include <winnow/partitions/volume_source.h>
+#include "partitions/pairs/pair_tracker.h"
+#include "partitions/pairs/pair_writer.h"
+#include "partitions/queries/query_filter.h"
+#include "partitions/queries/regions.h"
+#include "partitions/rows/row_mutation.h"
+#include "partitions/rows/volume_source.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <winnow/core/filter.h>
-#include <winnow/core/key_table.h>
-#include <winnow/partitions/queries/query_view.h>
+#include "core/memory/key_table.h"
+#include "partitions/queries/query_view.h"
 
 namespace winnow {
 

@@ -1,8 +1,8 @@
 // RowPartition: how it shows itself to queries.
 
-#include <winnow/partitions/queries/query_view.h>
+#include "partitions/queries/query_view.h"
 
-#include <winnow/partitions/row_partition.h>
+#include "partitions/rows/row_partition.h"
 
 namespace winnow {
 

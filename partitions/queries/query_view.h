@@ -1,7 +1,7 @@
 #pragma once
 
 #include <winnow/core/object_filter.h>
-#include <winnow/partitions/block_tree.kernel.h>
+#include "partitions/tree/block_tree.kernel.h"
 
 #include <cstddef>
 #include <cstdint>

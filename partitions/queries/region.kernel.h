@@ -1,8 +1,8 @@
 #pragma once
 
-#include <winnow/partitions/queries/cast.kernel.h>
-#include <winnow/partitions/queries/query_view.h>
-#include <winnow/simd/kernels.h>
+#include "partitions/queries/cast.kernel.h"
+#include "partitions/queries/query_view.h"
+#include "simd/kernels/kernels.h"
 
 #include <cstdint>
 

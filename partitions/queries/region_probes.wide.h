@@ -2,9 +2,9 @@
 
 // Sixteen boxes against each kind of region.
 
-#include <winnow/partitions/queries/region.kernel.h>
-#include <winnow/partitions/queries/sweep.wide.h>
-#include <winnow/simd/wide.h>
+#include "partitions/queries/region.kernel.h"
+#include "partitions/queries/sweep.wide.h"
+#include "simd/lanes/wide.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

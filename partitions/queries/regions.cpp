@@ -1,7 +1,7 @@
-#include <winnow/partitions/queries/regions.h>
+#include "partitions/queries/regions.h"
 
-#include <winnow/partitions/queries/sweep.h>
-#include <winnow/partitions/queries/touch.h>
+#include "partitions/queries/sweep.h"
+#include "partitions/queries/touch.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include <winnow/core/region.h>
 #include <winnow/core/status.h>
-#include <winnow/partitions/queries/region.kernel.h>
+#include "partitions/queries/region.kernel.h"
 
 #include <array>
 #include <cstddef>

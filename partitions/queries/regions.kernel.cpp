@@ -1,8 +1,8 @@
-#include <winnow/partitions/hits.wide.h>
-#include <winnow/partitions/queries/region.kernel.h>
-#include <winnow/partitions/queries/region_probes.wide.h>
-#include <winnow/partitions/queries/walks.wide.h>
-#include <winnow/simd/compress.h>
+#include "partitions/pairs/hits.wide.h"
+#include "partitions/queries/region.kernel.h"
+#include "partitions/queries/region_probes.wide.h"
+#include "partitions/queries/walks.wide.h"
+#include "simd/lanes/compress.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {

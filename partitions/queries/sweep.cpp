@@ -1,4 +1,4 @@
-#include <winnow/partitions/queries/sweep.h>
+#include "partitions/queries/sweep.h"
 
 #include <winnow/core/rounding.h>
 

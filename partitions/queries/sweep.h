@@ -1,7 +1,7 @@
 #pragma once
 
 #include <winnow/core/cast.h>
-#include <winnow/partitions/queries/cast.kernel.h>
+#include "partitions/queries/cast.kernel.h"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/partitions/queries/cast.kernel.h>
-#include <winnow/simd/wide.h>
+#include "partitions/queries/cast.kernel.h"
+#include "simd/lanes/wide.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

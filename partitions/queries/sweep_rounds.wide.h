@@ -1,8 +1,8 @@
 #pragma once
 
-#include <winnow/partitions/queries/sweep.wide.h>
-#include <winnow/partitions/queries/walks.wide.h>
-#include <winnow/simd/compress.h>
+#include "partitions/queries/sweep.wide.h"
+#include "partitions/queries/walks.wide.h"
+#include "simd/lanes/compress.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

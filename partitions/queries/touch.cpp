@@ -1,4 +1,4 @@
-#include <winnow/partitions/queries/touch.h>
+#include "partitions/queries/touch.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include <winnow/core/oriented_box.h>
 #include <winnow/core/plane.h>
 #include <winnow/core/sphere.h>
-#include <winnow/partitions/queries/region.kernel.h>
+#include "partitions/queries/region.kernel.h"
 
 #include <Eigen/Core>
 #include <span>

@@ -4,9 +4,9 @@
 // queries share. A query brings a probe, which tests 16 boxes at once, and what is to be done with
 // the rows that pass.
 
-#include <winnow/partitions/filters.wide.h>
-#include <winnow/partitions/queries/query_view.h>
-#include <winnow/simd/compress.h>
+#include "partitions/pairs/filters.wide.h"
+#include "partitions/queries/query_view.h"
+#include "simd/lanes/compress.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <winnow/core/pose.h>
-#include <winnow/pipeline/exact/dyadic.h>
+#include "pipeline/exact/dyadic.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include <winnow/pipeline/exact/core_difference.h>
+#include "pipeline/exact/core_difference.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <winnow/core/pose.h>
-#include <winnow/pipeline/exact/bit_span.h>
-#include <winnow/pipeline/exact/exact_vector.h>
 #include <winnow/pipeline/shapes.h>
+#include "pipeline/exact/bit_span.h"
+#include "pipeline/exact/exact_vector.h"
 
 #include <cstdint>
 

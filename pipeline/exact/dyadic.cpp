@@ -1,4 +1,4 @@
-#include <winnow/pipeline/exact/dyadic.h>
+#include "pipeline/exact/dyadic.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,6 +1,6 @@
-#include <winnow/pipeline/exact/exact_overlap.h>
-#include <winnow/pipeline/exact/half_space_exact.h>
-#include <winnow/pipeline/exact/origin_walk.h>
+#include "pipeline/exact/exact_overlap.h"
+#include "pipeline/exact/half_space_exact.h"
+#include "pipeline/exact/origin_walk.h"
 
 #include <algorithm>
 #include <cmath>

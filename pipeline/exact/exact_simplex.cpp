@@ -1,4 +1,4 @@
-#include <winnow/pipeline/exact/exact_simplex.h>
+#include "pipeline/exact/exact_simplex.h"
 
 namespace winnow {
 namespace {

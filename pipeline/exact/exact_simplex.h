@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/pipeline/exact/exact_vector.h>
+#include "pipeline/exact/exact_vector.h"
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/pipeline/exact/dyadic.h>
+#include "pipeline/exact/dyadic.h"
 
 namespace winnow {
 

@@ -1,5 +1,5 @@
-#include <winnow/pipeline/exact/bit_span.h>
-#include <winnow/pipeline/exact/half_space_exact.h>
+#include "pipeline/exact/half_space_exact.h"
+#include "pipeline/exact/bit_span.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/pipeline/exact/core_difference.h>
-#include <winnow/pipeline/exact/exact_overlap.h>
+#include "pipeline/exact/core_difference.h"
+#include "pipeline/exact/exact_overlap.h"
 
 namespace winnow {
 

@@ -1,5 +1,5 @@
-#include <winnow/pipeline/exact/exact_simplex.h>
-#include <winnow/pipeline/exact/origin_walk.h>
+#include "pipeline/exact/origin_walk.h"
+#include "pipeline/exact/exact_simplex.h"
 
 namespace winnow {
 namespace {

@@ -1,5 +1,5 @@
-#include <winnow/pipeline/mesh/edge_bend.h>
-#include <winnow/pipeline/mesh/mesh_neighbours.h>
+#include "pipeline/mesh/edge_bend.h"
+#include "pipeline/mesh/mesh_neighbours.h"
 
 #include <cstddef>
 

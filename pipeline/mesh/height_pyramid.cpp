@@ -1,4 +1,4 @@
-#include <winnow/pipeline/mesh/height_pyramid.h>
+#include "pipeline/mesh/height_pyramid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <winnow/pipeline/mesh/height_walks.h>
+#include "pipeline/mesh/height_walks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/pipeline/mesh/height_pyramid.h>
-#include <winnow/pipeline/mesh/mesh_view.h>
+#include "pipeline/mesh/height_pyramid.h"
+#include "pipeline/mesh/mesh_view.h"
 
 namespace winnow {
 

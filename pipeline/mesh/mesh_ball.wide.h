@@ -6,8 +6,8 @@
 // 5.2.7 and 5.1.5). Any direction serves as long as all three corners lie beyond the ball along it,
 // so that directions need not be exact; only heights along them are, to a few roundings.
 
-#include <winnow/pipeline/mesh/mesh_lanes.wide.h>
-#include <winnow/pipeline/mesh/mesh_walks.kernel.h>
+#include "pipeline/mesh/mesh_lanes.wide.h"
+#include "pipeline/mesh/mesh_walks.kernel.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

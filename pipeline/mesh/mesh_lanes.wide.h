@@ -2,9 +2,9 @@
 
 // Sixteen nodes or sixteen triangles of a mesh in lanes.
 
-#include <winnow/pipeline/mesh/mesh_view.h>
-#include <winnow/simd/compress.h>
-#include <winnow/simd/lookup.wide.h>
+#include "pipeline/mesh/mesh_view.h"
+#include "simd/lanes/compress.h"
+#include "simd/lanes/lookup.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

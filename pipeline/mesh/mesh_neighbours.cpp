@@ -1,4 +1,4 @@
-#include <winnow/pipeline/mesh/mesh_neighbours.h>
+#include "pipeline/mesh/mesh_neighbours.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <winnow/core/column.h>
-#include <winnow/pipeline/mesh/mesh_view.h>
+#include "pipeline/mesh/mesh_view.h"
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
-#include <winnow/core/bounds_pool.h>
-#include <winnow/partitions/morton_order.h>
-#include <winnow/pipeline/mesh/mesh_tree.h>
+#include "core/memory/bounds_pool.h"
+#include "partitions/tree/morton_order.h"
+#include "pipeline/mesh/mesh_tree.h"
 
 #include <algorithm>
 #include <span>

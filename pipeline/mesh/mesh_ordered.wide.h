@@ -3,8 +3,8 @@
 // Walks that come upon triangles roughly in the order of a measure: the time at which a moving box
 // meets theirs, or the squared distance from it. Boxes are measured in double.
 
-#include <winnow/pipeline/mesh/mesh_lanes.wide.h>
-#include <winnow/pipeline/mesh/mesh_walks.kernel.h>
+#include "pipeline/mesh/mesh_lanes.wide.h"
+#include "pipeline/mesh/mesh_walks.kernel.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

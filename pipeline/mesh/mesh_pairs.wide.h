@@ -4,7 +4,7 @@
 // its absolute value and tested against sixteen nodes of a; at pairs of leaves the triangles of b,
 // brought there in double, against sixteen triangles of a.
 
-#include <winnow/pipeline/mesh/mesh_triangles.wide.h>
+#include "pipeline/mesh/mesh_triangles.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

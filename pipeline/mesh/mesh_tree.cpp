@@ -1,4 +1,4 @@
-#include <winnow/pipeline/mesh/mesh_tree.h>
+#include "pipeline/mesh/mesh_tree.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <winnow/core/column.h>
 #include <winnow/core/execution.h>
-#include <winnow/pipeline/mesh/mesh_view.h>
+#include "pipeline/mesh/mesh_view.h"
 
 #include <cstddef>
 #include <cstdint>

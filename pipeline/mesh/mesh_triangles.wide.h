@@ -4,8 +4,8 @@
 // then the planes of both as separating ones. A pair is dropped only where it is apart by more than
 // rounding can have added; u is half an ulp of 1. A number that is not finite drops nothing.
 
-#include <winnow/pipeline/mesh/mesh_lanes.wide.h>
-#include <winnow/pipeline/mesh/mesh_walks.kernel.h>
+#include "pipeline/mesh/mesh_lanes.wide.h"
+#include "pipeline/mesh/mesh_walks.kernel.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

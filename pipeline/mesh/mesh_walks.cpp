@@ -1,9 +1,9 @@
-#include <winnow/pipeline/mesh/mesh_walks.h>
+#include "pipeline/mesh/mesh_walks.h"
 
 #include <winnow/core/rounding.h>
-#include <winnow/pipeline/mesh/mesh_tree.h>
-#include <winnow/pipeline/mesh/mesh_walks.kernel.h>
 #include <winnow/simd/isa.h>
+#include "pipeline/mesh/mesh_tree.h"
+#include "pipeline/mesh/mesh_walks.kernel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/pipeline/mesh/mesh_view.h>
+#include "pipeline/mesh/mesh_view.h"
 
 namespace winnow {
 

@@ -1,6 +1,6 @@
-#include <winnow/pipeline/mesh/mesh_ball.wide.h>
-#include <winnow/pipeline/mesh/mesh_ordered.wide.h>
-#include <winnow/pipeline/mesh/mesh_pairs.wide.h>
+#include "pipeline/mesh/mesh_ball.wide.h"
+#include "pipeline/mesh/mesh_ordered.wide.h"
+#include "pipeline/mesh/mesh_pairs.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {

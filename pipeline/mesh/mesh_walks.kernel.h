@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/pipeline/mesh/mesh_view.h>
-#include <winnow/simd/kernels.h>
+#include "pipeline/mesh/mesh_view.h"
+#include "simd/kernels/kernels.h"
 
 #include <cstdint>
 

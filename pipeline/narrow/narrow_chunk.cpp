@@ -1,4 +1,4 @@
-#include <winnow/pipeline/narrow/narrow_chunk.h>
+#include "pipeline/narrow/narrow_chunk.h"
 
 #include <algorithm>
 #include <numeric>

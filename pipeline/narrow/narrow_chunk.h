@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/pipeline/narrow/narrow_job.h>
-#include <winnow/pipeline/solver/solver.h>
+#include "pipeline/narrow/narrow_job.h"
+#include "pipeline/solver/solver.h"
 
 #include <cstdint>
 

@@ -1,4 +1,4 @@
-#include <winnow/pipeline/narrow/narrow_result.h>
+#include <winnow/pipeline/narrow_result.h>
 
 namespace winnow {
 namespace {

@@ -1,4 +1,4 @@
-#include <winnow/pipeline/narrow/pair_buckets.h>
+#include "pipeline/narrow/pair_buckets.h"
 
 #include <algorithm>
 #include <numeric>

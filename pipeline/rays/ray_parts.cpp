@@ -1,4 +1,4 @@
-#include <winnow/pipeline/rays/ray_parts.h>
+#include "pipeline/rays/ray_parts.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <winnow/pipeline/rays/shape_entries.h>
+#include "pipeline/rays/shape_entries.h"
 
 #include <algorithm>
 #include <cmath>

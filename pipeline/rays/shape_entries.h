@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/pipeline/rays/ray_parts.h>
 #include <winnow/pipeline/shapes.h>
+#include "pipeline/rays/ray_parts.h"
 
 namespace winnow {
 

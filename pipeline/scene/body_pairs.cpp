@@ -1,5 +1,5 @@
-#include <winnow/partitions/radix_sort.h>
-#include <winnow/pipeline/scene/body_pairs.h>
+#include "pipeline/scene/body_pairs.h"
+#include "core/sort/radix_sort.h"
 
 #include <algorithm>
 #include <bit>

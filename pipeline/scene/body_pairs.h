@@ -5,8 +5,8 @@
 #include <winnow/core/footprint.h>
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/status.h>
-#include <winnow/pipeline/narrow/narrow_job.h>
 #include <winnow/pipeline/shapes.h>
+#include "pipeline/narrow/narrow_job.h"
 
 #include <cstdint>
 #include <memory_resource>

@@ -1,4 +1,4 @@
-#include <winnow/pipeline/scene/collision.h>
+#include "pipeline/scene/collision.h"
 
 #include <utility>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/pipeline/scene/contact_frame.h>
-#include <winnow/pipeline/scene/scene_state.h>
+#include "pipeline/scene/contact_frame.h"
+#include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
 #include <cstddef>

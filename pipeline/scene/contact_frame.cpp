@@ -1,4 +1,4 @@
-#include <winnow/pipeline/scene/contact_frame.h>
+#include "pipeline/scene/contact_frame.h"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 #include <winnow/core/column.h>
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/contacts.h>
-#include <winnow/pipeline/scene/body_pairs.h>
+#include "pipeline/scene/body_pairs.h"
 
 #include <cstdint>
 #include <memory_resource>

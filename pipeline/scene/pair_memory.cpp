@@ -1,8 +1,8 @@
 // What is known of a scene's pairs from the last call: matched with the pairs of this one, kept
 // where they have hardly moved, told where they have ended.
 
-#include <winnow/pipeline/scene/collision.h>
-#include <winnow/pipeline/scene/motion_bound.h>
+#include "pipeline/scene/collision.h"
+#include "pipeline/scene/motion_bound.h"
 
 #include <atomic>
 #include <cmath>

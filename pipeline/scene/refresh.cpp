@@ -1,7 +1,7 @@
 // Boxes and partitions follow what moved, and partitions tell which bodies may meet.
 
-#include <winnow/pipeline/scene/motion_bound.h>
-#include <winnow/pipeline/scene/scene_state.h>
+#include "pipeline/scene/motion_bound.h"
+#include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
 

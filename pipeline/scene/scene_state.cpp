@@ -1,5 +1,5 @@
-#include <winnow/pipeline/scene/motion_bound.h>
-#include <winnow/pipeline/scene/scene_state.h>
+#include "pipeline/scene/scene_state.h"
+#include "pipeline/scene/motion_bound.h"
 
 #include <algorithm>
 #include <new>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <winnow/core/key_table.h>
 #include <winnow/pipeline/scene.h>
-#include <winnow/pipeline/scene/body_pairs.h>
+#include "core/memory/key_table.h"
+#include "pipeline/scene/body_pairs.h"
 
 #include <cstdint>
 #include <memory>

@@ -1,6 +1,6 @@
 // The frame of contacts: its size is counted by tasks, then each writes its own stretch.
 
-#include <winnow/pipeline/scene/collision.h>
+#include "pipeline/scene/collision.h"
 
 #include <limits>
 

@@ -1,4 +1,4 @@
-#include <winnow/pipeline/solver/axis_search.h>
+#include "pipeline/solver/axis_search.h"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <winnow/pipeline/solver/core.h>
-#include <winnow/pipeline/solver/gjk.h>
-#include <winnow/pipeline/solver/problem.h>
+#include "pipeline/solver/core.h"
+#include "pipeline/solver/gjk.h"
+#include "pipeline/solver/problem.h"
 
 #include <limits>
 

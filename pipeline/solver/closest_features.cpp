@@ -1,4 +1,4 @@
-#include <winnow/pipeline/solver/closest_features.h>
+#include "pipeline/solver/closest_features.h"
 
 #include <algorithm>
 #include <cmath>

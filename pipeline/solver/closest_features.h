@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/pipeline/solver/core.h>
+#include "pipeline/solver/core.h"
 
 #include <limits>
 

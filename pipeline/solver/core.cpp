@@ -1,4 +1,4 @@
-#include <winnow/pipeline/solver/core.h>
+#include "pipeline/solver/core.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include <winnow/pipeline/solver/core_distance.h>
+#include "pipeline/solver/core_distance.h"
 
-#include <winnow/pipeline/solver/axis_search.h>
-#include <winnow/pipeline/solver/closest_features.h>
-#include <winnow/pipeline/solver/expanding_polytope.h>
-#include <winnow/pipeline/solver/gjk.h>
-#include <winnow/pipeline/solver/revolution.h>
+#include "pipeline/solver/axis_search.h"
+#include "pipeline/solver/closest_features.h"
+#include "pipeline/solver/expanding_polytope.h"
+#include "pipeline/solver/gjk.h"
+#include "pipeline/solver/revolution.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include <winnow/pipeline/solver/expanding_polytope.h>
+#include "pipeline/solver/expanding_polytope.h"
 
-#include <winnow/pipeline/solver/inner_polytope.h>
+#include "pipeline/solver/inner_polytope.h"
 
 #include <algorithm>
 #include <cmath>

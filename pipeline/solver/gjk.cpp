@@ -1,4 +1,4 @@
-#include <winnow/pipeline/solver/gjk.h>
+#include "pipeline/solver/gjk.h"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/pipeline/solver/core.h>
-#include <winnow/pipeline/solver/simplex.h>
+#include "pipeline/solver/core.h"
+#include "pipeline/solver/simplex.h"
 
 namespace winnow::solver {
 

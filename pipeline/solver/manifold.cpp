@@ -1,7 +1,7 @@
-#include <winnow/pipeline/solver/manifold.h>
+#include "pipeline/solver/manifold.h"
 
-#include <winnow/pipeline/narrow/contact_patch.h>
-#include <winnow/pipeline/solver/supporting_patch.h>
+#include "pipeline/manifold/contact_patch.h"
+#include "pipeline/solver/supporting_patch.h"
 
 #include <algorithm>
 #include <cmath>

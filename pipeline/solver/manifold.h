@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/pipeline/solver/problem.h>
-#include <winnow/pipeline/solver/solver.h>
+#include "pipeline/solver/problem.h"
+#include "pipeline/solver/solver.h"
 
 namespace winnow::solver {
 

@@ -1,4 +1,4 @@
-#include <winnow/pipeline/solver/problem.h>
+#include "pipeline/solver/problem.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/shapes.h>
-#include <winnow/pipeline/solver/core.h>
+#include "pipeline/solver/core.h"
 
 namespace winnow::solver {
 

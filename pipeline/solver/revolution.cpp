@@ -1,4 +1,4 @@
-#include <winnow/pipeline/solver/revolution.h>
+#include "pipeline/solver/revolution.h"
 
 namespace winnow::solver {
 namespace {

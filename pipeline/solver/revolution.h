@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/pipeline/solver/axis_search.h>
-#include <winnow/pipeline/solver/problem.h>
+#include "pipeline/solver/axis_search.h"
+#include "pipeline/solver/problem.h"
 
 namespace winnow::solver {
 

@@ -1,4 +1,4 @@
-#include <winnow/pipeline/solver/simplex.h>
+#include "pipeline/solver/simplex.h"
 
 #include <cmath>
 #include <limits>

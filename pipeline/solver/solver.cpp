@@ -1,9 +1,9 @@
-#include <winnow/pipeline/solver/solver.h>
+#include "pipeline/solver/solver.h"
 
-#include <winnow/pipeline/exact/exact_overlap.h>
-#include <winnow/pipeline/solver/core_distance.h>
-#include <winnow/pipeline/solver/manifold.h>
-#include <winnow/pipeline/solver/problem.h>
+#include "pipeline/exact/exact_overlap.h"
+#include "pipeline/solver/core_distance.h"
+#include "pipeline/solver/manifold.h"
+#include "pipeline/solver/problem.h"
 
 #include <algorithm>
 #include <cmath>

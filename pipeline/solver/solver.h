@@ -1,8 +1,8 @@
 #pragma once
 
 #include <winnow/core/pose.h>
-#include <winnow/pipeline/narrow/narrow_job.h>
 #include <winnow/pipeline/shapes.h>
+#include "pipeline/narrow/narrow_job.h"
 
 #include <cstdint>
 

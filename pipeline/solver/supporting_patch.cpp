@@ -1,4 +1,4 @@
-#include <winnow/pipeline/solver/supporting_patch.h>
+#include "pipeline/solver/supporting_patch.h"
 
 #include <cmath>
 

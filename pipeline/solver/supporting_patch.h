@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/pipeline/narrow/contact_patch.h>
-#include <winnow/pipeline/solver/core.h>
+#include "pipeline/manifold/contact_patch.h"
+#include "pipeline/solver/core.h"
 
 #include <array>
 #include <cstdint>

@@ -1,5 +1,5 @@
+#include "core/memory/key_table.h"
 #include <gtest/gtest.h>
-#include <winnow/core/key_table.h>
 
 #include <set>
 #include <vector>

@@ -1,7 +1,7 @@
 // AutoPartition where it changes from one partition to another: nobody may notice. What it has in
 // common with all partitions is tested with them, by name.
 
-#include <winnow/partitions/auto_partition.h>
+#include "partitions/choice/auto_partition.h"
 
 #include <array>
 #include <set>

@@ -1,8 +1,8 @@
 // What a partition shows of itself: every object once, a structure that holds them all, and nothing
 // that was not asked for.
 
-#include <winnow/partitions/bounds_n_squared.h>
 #include <winnow/partitions/debug_colours.h>
+#include "partitions/structures/brute_force/bounds_n_squared.h"
 
 #include <algorithm>
 #include <string>

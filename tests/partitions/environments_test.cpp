@@ -1,6 +1,6 @@
 // Many small worlds in one partition: they never meet, and cost no more than each on its own.
 
-#include <winnow/partitions/bounds_n_squared.h>
+#include "partitions/structures/brute_force/bounds_n_squared.h"
 
 #include <algorithm>
 #include <array>

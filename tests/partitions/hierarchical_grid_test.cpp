@@ -1,6 +1,6 @@
 // HierarchicalGrid: what the conformance suite cannot know of its levels and cells.
 
-#include <winnow/partitions/hierarchical_grid.h>
+#include "partitions/structures/levels/hierarchical_grid.h"
 
 #include <algorithm>
 #include <set>

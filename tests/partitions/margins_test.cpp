@@ -2,7 +2,7 @@
 // not count as moved.
 
 #include <winnow/core/hits.h>
-#include <winnow/partitions/bounds_n_squared.h>
+#include "partitions/structures/brute_force/bounds_n_squared.h"
 
 #include <cmath>
 #include <limits>

@@ -1,8 +1,8 @@
 // What the conformance suite cannot know of the trees: what their orders are worth, counted in
 // tests of 16 boxes, and how looseness and levels behave at their ends.
 
-#include <winnow/partitions/loose_octree.h>
-#include <winnow/partitions/loose_quadtree.h>
+#include "partitions/structures/octree/loose_octree.h"
+#include "partitions/structures/octree/loose_quadtree.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 
 #include <winnow/core/kdop.h>
 #include <winnow/core/sphere.h>
-#include <winnow/partitions/bounds_n_squared.h>
-#include <winnow/partitions/row_partition.h>
+#include "partitions/rows/row_partition.h"
+#include "partitions/structures/brute_force/bounds_n_squared.h"
 
 #include <cmath>
 #include <limits>

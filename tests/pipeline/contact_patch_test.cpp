@@ -1,4 +1,4 @@
-#include <winnow/pipeline/narrow/contact_patch.h>
+#include "pipeline/manifold/contact_patch.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Dense>

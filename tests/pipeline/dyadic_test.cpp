@@ -1,5 +1,5 @@
+#include "pipeline/exact/dyadic.h"
 #include <gtest/gtest.h>
-#include <winnow/pipeline/exact/dyadic.h>
 
 #include <cfloat>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <winnow/pipeline/exact/exact_overlap.h>
+#include "pipeline/exact/exact_overlap.h"
 
 #include <cmath>
 #include <iterator>

@@ -1,9 +1,9 @@
 // The kernels of boxes and triangles against a plain twin in long double.
 
-#include <winnow/pipeline/narrow/kernels.h>
 #include <winnow/pipeline/shape_pool.h>
-#include <winnow/pipeline/solver/solver.h>
 #include <winnow/simd/isa.h>
+#include "pipeline/kernels/kernels.h"
+#include "pipeline/solver/solver.h"
 
 #include <gtest/gtest.h>
 #include <algorithm>

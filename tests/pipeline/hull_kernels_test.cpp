@@ -2,9 +2,9 @@
 // instruction set, turned round, at other places of a batch.
 
 #include <gtest/gtest.h>
-#include <winnow/pipeline/narrow/kernels.h>
-#include <winnow/pipeline/solver/solver.h>
 #include <winnow/simd/isa.h>
+#include "pipeline/kernels/kernels.h"
+#include "pipeline/solver/solver.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

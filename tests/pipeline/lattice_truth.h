@@ -1,8 +1,8 @@
 #pragma once
 
 #include <winnow/core/pose.h>
-#include <winnow/pipeline/exact/exact_overlap.h>
 #include <winnow/pipeline/shapes.h>
+#include "pipeline/exact/exact_overlap.h"
 
 namespace winnow::test {
 

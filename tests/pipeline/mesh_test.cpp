@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <winnow/pipeline/mesh/mesh_walks.h>
+#include "pipeline/mesh/mesh_walks.h"
 
 #include <algorithm>
 #include <cmath>

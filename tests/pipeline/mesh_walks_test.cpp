@@ -1,5 +1,5 @@
+#include "pipeline/mesh/mesh_walks.h"
 #include <gtest/gtest.h>
-#include <winnow/pipeline/mesh/mesh_walks.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/scene.h>
-#include <winnow/pipeline/solver/solver.h>
+#include "pipeline/solver/solver.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 // and against themselves: on every instruction set, turned round, at other places of a batch.
 
 #include <gtest/gtest.h>
-#include <winnow/pipeline/narrow/kernels.h>
 #include <winnow/simd/isa.h>
+#include "pipeline/kernels/kernels.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Scenes with meshes, compounds and height fields, against every pair of parts asked one by one.
 
-#include <winnow/pipeline/solver/solver.h>
+#include "pipeline/solver/solver.h"
 
 #include <gtest/gtest.h>
 

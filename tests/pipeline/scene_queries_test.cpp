@@ -1,8 +1,8 @@
 // Questions to the exact shapes of a scene, against every part of every body one by one.
 
 #include <gtest/gtest.h>
-#include <winnow/pipeline/scene/shape_cast.h>
 #include <winnow/pipeline/scene_queries.h>
+#include "pipeline/scene/queries/shape_cast.h"
 
 #include <cstring>
 #include <limits>

@@ -1,6 +1,6 @@
 #include "scene_world.h"
 
-#include <winnow/pipeline/solver/solver.h>
+#include "pipeline/solver/solver.h"
 
 #include <bit>
 #include <cmath>

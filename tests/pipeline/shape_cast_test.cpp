@@ -1,11 +1,11 @@
 // A convex shape that moves against one that stands: the time of impact against closed forms, and
 // against the solver just before and just after it.
 
+#include "pipeline/scene/queries/shape_cast.h"
 #include <gtest/gtest.h>
-#include <winnow/pipeline/scene/shape_cast.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
-#include <winnow/pipeline/solver/solver.h>
+#include "pipeline/solver/solver.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // What must hold for any pair, whatever its kinds. Values are checked against the oracle elsewhere.
 
+#include "pipeline/solver/solver.h"
 #include <gtest/gtest.h>
-#include <winnow/pipeline/solver/problem.h>
-#include <winnow/pipeline/solver/solver.h>
+#include "pipeline/solver/problem.h"
 
 #include <algorithm>
 #include <cmath>

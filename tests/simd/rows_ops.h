@@ -2,7 +2,7 @@
 
 // Every operation of simd/rows.wide.h behind plain pointers.
 
-#include <winnow/simd/kernels.h>
+#include "simd/kernels/kernels.h"
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 #include "rows_ops.h"
 
-#include <winnow/simd/rows.wide.h>
+#include "simd/lanes/rows.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 namespace {

@@ -3,7 +3,7 @@
 // Every operation of simd/wide.h and simd/compress.h behind plain pointers, so that an ordinary
 // test can compare each instruction set with a scalar loop. Arrays hold 16 elements unless said.
 
-#include <winnow/simd/kernels.h>
+#include "simd/kernels/kernels.h"
 
 #include <cstddef>
 #include <cstdint>

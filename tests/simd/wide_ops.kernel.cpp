@@ -1,5 +1,5 @@
-#include <winnow/simd/compress.h>
-#include <winnow/simd/wide.h>
+#include "simd/lanes/compress.h"
+#include "simd/lanes/wide.h"
 
 #include "wide_ops.h"
 

@@ -1,0 +1,102 @@
+#include "core/memory/bounds_pool.h"
+
+#include <algorithm>
+
+namespace winnow {
+namespace {
+
+constexpr std::size_t kRowsPerTask = 16384;
+
+template <typename T>
+void gather(const T* from, std::span<const std::uint32_t> order, T* to, T missing,
+            const Execution& execution) {
+  const std::size_t tasks = (order.size() + kRowsPerTask - 1) / kRowsPerTask;
+  execution.for_each(tasks, [&](std::size_t task) {
+    const std::size_t begin = task * kRowsPerTask;
+    const std::size_t end = std::min(order.size(), begin + kRowsPerTask);
+    for (std::size_t i = begin; i < end; ++i) {
+      to[i] = order[i] == kNoObject ? missing : from[order[i]];
+    }
+  });
+}
+
+}  // namespace
+
+bool BoundsPool::reserve(std::size_t rows) noexcept {
+  if (rows <= capacity()) return true;
+  return reserve_exact(std::max(rows, capacity() + capacity() / 2)) || reserve_exact(rows);
+}
+
+bool BoundsPool::reserve_exact(std::size_t rows) noexcept {
+  const std::size_t padded = (rows + kBlock - 1) / kBlock * kBlock + 2 * kBlock;
+  for (std::size_t c = 0; c < columns(); ++c) {
+    columns_[c].set_size(rows_);
+    if (!columns_[c].reserve(padded)) return false;
+  }
+  ids_.set_size(rows_);
+  return ids_.reserve(padded);
+}
+
+void BoundsPool::blank(std::size_t row) noexcept {
+  for (std::size_t c = 0; c < columns(); ++c) columns_[c].data()[row] = empty_value(volume_, c);
+  ids_.data()[row] = kNoObject;
+}
+
+void BoundsPool::pad() noexcept {
+  if (ids_.data() == nullptr) return;
+  const std::size_t end = (rows_ + kBlock - 1) / kBlock * kBlock + kBlock;
+  for (std::size_t c = 0; c < columns(); ++c) {
+    std::fill(columns_[c].data() + rows_, columns_[c].data() + end, empty_value(volume_, c));
+  }
+  std::fill(ids_.data() + rows_, ids_.data() + end, kNoObject);
+}
+
+void BoundsPool::reorder(std::span<const std::uint32_t> order, Column<float>& spare,
+                         const Execution& execution) noexcept {
+  for (std::size_t c = 0; c < columns(); ++c) {
+    gather(columns_[c].data(), order, spare.data(), empty_value(volume_, c), execution);
+    columns_[c].swap(spare);
+  }
+  // Ids and floats have one size: the spare column's bytes serve both.
+  static_assert(sizeof(float) == sizeof(ObjectId));
+  gather(ids_.data(), order, reinterpret_cast<ObjectId*>(spare.data()), kNoObject, execution);
+  std::copy_n(reinterpret_cast<const ObjectId*>(spare.data()), order.size(), ids_.data());
+  rows_ = order.size();
+  pad();
+}
+
+void BoundsPool::reorder_tail(std::size_t begin, std::span<const std::uint32_t> order,
+                              Column<float>& spare) noexcept {
+  const Execution here = Execution::serial();
+  for (std::size_t c = 0; c < columns(); ++c) {
+    gather(columns_[c].data(), order, spare.data(), empty_value(volume_, c), here);
+    std::copy_n(spare.data(), order.size(), columns_[c].data() + begin);
+  }
+  gather(ids_.data(), order, reinterpret_cast<ObjectId*>(spare.data()), kNoObject, here);
+  std::copy_n(reinterpret_cast<const ObjectId*>(spare.data()), order.size(), ids_.data() + begin);
+  rows_ = begin + order.size();
+  pad();
+}
+
+void BoundsPool::release() noexcept {
+  for (Column<float>& column : columns_) column.release();
+  ids_.release();
+  rows_ = 0;
+}
+
+void BoundsPool::swap(BoundsPool& other) noexcept {
+  for (std::size_t c = 0; c < columns_.size(); ++c) columns_[c].swap(other.columns_[c]);
+  ids_.swap(other.ids_);
+  std::swap(rows_, other.rows_);
+}
+
+Bytes BoundsPool::bytes() const noexcept {
+  Bytes sum;
+  for (std::size_t c = 0; c < columns(); ++c) {
+    sum += {rows_ * sizeof(float), columns_[c].bytes().reserved};
+  }
+  sum += {rows_ * sizeof(ObjectId), ids_.bytes().reserved};
+  return sum;
+}
+
+}  // namespace winnow

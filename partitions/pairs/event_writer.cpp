@@ -1,0 +1,155 @@
+#include "partitions/pairs/event_writer.h"
+
+#include "core/sort/radix_sort.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace winnow {
+namespace {
+
+constexpr std::uint64_t packed(const Pair& pair) {
+  return static_cast<std::uint64_t>(pair.first) << 32U | pair.second;
+}
+constexpr ObjectId first_of(std::uint64_t pair) {
+  return static_cast<ObjectId>(pair >> 32U);
+}
+constexpr ObjectId second_of(std::uint64_t pair) {
+  return static_cast<ObjectId>(pair);
+}
+
+// Sorts a list that is sorted by first object by the second one, too.
+void sort_runs(std::span<std::uint64_t> list) {
+  constexpr std::size_t kShort = 16;
+  std::size_t begin = 0;
+  while (begin < list.size()) {
+    std::size_t end = begin + 1;
+    while (end < list.size() && first_of(list[end]) == first_of(list[begin])) {
+      // Short runs are sorted as they are met.
+      if (end - begin < kShort) {
+        const std::uint64_t pair = list[end];
+        std::size_t at = end;
+        for (; at > begin && list[at - 1] > pair; --at) list[at] = list[at - 1];
+        list[at] = pair;
+      }
+      ++end;
+    }
+    if (end - begin > kShort) {
+      std::sort(list.begin() + static_cast<std::ptrdiff_t>(begin),
+                list.begin() + static_cast<std::ptrdiff_t>(end));
+    }
+    begin = end;
+  }
+}
+
+}  // namespace
+
+bool EventWriter::hold_all(const PairBuffer& out) noexcept {
+  kept_ = 0;
+  if (!follows_) return true;
+  if (!events_.after_is_all_) return sort_into(events_.before_, out.pairs());
+  events_.before_.swap(events_.after_);
+  return true;
+}
+
+bool EventWriter::hold_moved(PairBuffer& out, const std::uint64_t* moved) noexcept {
+  kept_ = 0;
+  if (!follows_) {
+    PairTracker::drop(out, moved);
+    return true;
+  }
+  events_.dropped_.clear();
+  if (!PairTracker::drop(out, moved, events_.dropped_)) return false;
+  kept_ = out.size();
+  return sort_into(events_.before_, {events_.dropped_.data(), events_.dropped_.size()});
+}
+
+bool EventWriter::sort_into(Column<std::uint64_t>& list, std::span<const Pair> pairs) noexcept {
+  constexpr std::size_t kFew = 512;
+  const std::size_t count = pairs.size();
+  if (!list.resize(count)) return false;
+  std::transform(pairs.begin(), pairs.end(), list.begin(), packed);
+  if (count < kFew) {
+    std::sort(list.begin(), list.end());
+    return true;
+  }
+  // By the first object in linear time; of each there are few.
+  if (!events_.spare_.resize(count)) return false;
+  const auto bits = static_cast<unsigned>(std::bit_width(keys_.slot_count()));
+  const std::uint64_t* const sorted =
+      radix_sort(list.data(), events_.spare_.data(), count, bits, execution_);
+  if (sorted != list.data()) list.swap(events_.spare_);
+  sort_runs({list.data(), count});
+  return true;
+}
+
+bool EventWriter::compare(PairBuffer& out, std::span<const ObjectId> moved, bool all) noexcept {
+  PairEvents& e = events_;
+  e.begun_.clear();
+  e.ended_.clear();
+  e.after_is_all_ = false;
+  if (!sort_into(e.after_, out.pairs().subspan(kept_))) return false;
+  other_keys_ = follows_ && any_other_key(moved, all);
+  Pair* to = PairTracker::data(out) + kept_;
+  if (!merge(to)) return false;
+  e.persisting_ = static_cast<std::size_t>(to - PairTracker::data(out));
+  for (const KeyPair& pair : e.begun_) *to++ = {pair.first.id, pair.second.id};
+  e.after_is_all_ = kept_ == 0;
+  return take_stamps(moved, all);
+}
+
+// Both lists ascend. Writes the pairs that persist to `to` on.
+bool EventWriter::merge(Pair*& to) noexcept {
+  const std::uint64_t* before = events_.before_.begin();
+  const std::uint64_t* const before_end = events_.before_.end();
+  for (const std::uint64_t pair : std::span(events_.after_.data(), events_.after_.size())) {
+    while (before != before_end && *before < pair) {
+      if (!end(*before++)) return false;
+    }
+    const bool was = before != before_end && *before == pair;
+    if (was) ++before;
+    if (was && !(other_keys_ && (is_other(first_of(pair)) || is_other(second_of(pair))))) {
+      *to++ = {first_of(pair), second_of(pair)};
+    } else if ((was && !end(pair)) || !begin(pair)) {
+      return false;
+    }
+  }
+  while (before != before_end) {
+    if (!end(*before++)) return false;
+  }
+  return true;
+}
+
+bool EventWriter::any_other_key(std::span<const ObjectId> moved, bool all) const noexcept {
+  const std::size_t known = events_.stamps_.size();
+  if (!all) {
+    return std::ranges::any_of(moved, [&](ObjectId id) { return id < known && is_other(id); });
+  }
+  bool any = false;
+  for (std::size_t id = 0; id < known; ++id) any |= is_other(static_cast<ObjectId>(id));
+  return any;
+}
+
+bool EventWriter::end(std::uint64_t pair) noexcept {
+  return events_.ended_.push_back({key_before(first_of(pair)), key_before(second_of(pair))});
+}
+
+bool EventWriter::begin(std::uint64_t pair) noexcept {
+  return events_.begun_.push_back({keys_.key_of(first_of(pair)), keys_.key_of(second_of(pair))});
+}
+
+bool EventWriter::take_stamps(std::span<const ObjectId> moved, bool all) noexcept {
+  Column<std::uint32_t>& stamps = events_.stamps_;
+  const std::size_t slots = keys_.slot_count();
+  if (!stamps.resize(slots)) return false;
+  if (all || !follows_) {
+    for (std::size_t id = 0; id < slots; ++id) {
+      stamps[id] = keys_.key_of(static_cast<ObjectId>(id)).stamp;
+    }
+  } else {
+    for (const ObjectId id : moved) stamps[id] = keys_.key_of(id).stamp;
+  }
+  return true;
+}
+
+}  // namespace winnow

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <winnow/core/execution.h>
+#include <winnow/core/pair_events.h>
+#include "core/memory/key_table.h"
+#include "partitions/pairs/pair_tracker.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace winnow {
+
+/// Finds for one query which pairs begin and end. It is told what the buffer holds before it
+/// changes (one of the `hold` functions) and compares that with what it holds afterwards. Pairs are
+/// told apart by keys: the stamps of the last frame say whether an id is still the same object's.
+/// A function that returns false was refused memory.
+class EventWriter {
+ public:
+  /// `out` as it is before the query of a partition.
+  EventWriter(PairEvents& events, const KeyTable& keys, const PairBuffer& out,
+              std::uint64_t partition, const Execution& execution) noexcept
+      : events_(events), keys_(keys), execution_(execution) {
+    const PairBuffer::Provenance mine = events.provenance_;
+    follows_ =
+        mine.serial != 0 && mine.partition == partition && mine == PairTracker::provenance(out);
+    events_.before_.clear();
+  }
+
+  /// All pairs may end.
+  [[nodiscard]] bool hold_all(const PairBuffer& out) noexcept;
+  /// Pairs of objects that moved may end; they are dropped from the buffer.
+  [[nodiscard]] bool hold_moved(PairBuffer& out, const std::uint64_t* moved) noexcept;
+  /// No pair ends.
+  void hold_none(const PairBuffer& out) noexcept { kept_ = follows_ ? out.size() : 0; }
+
+  /// Fills the events and puts the pairs that persist first, those that began behind them.
+  /// `moved` are the objects that changed since the last frame, unless `all` may have. O(pairs that
+  /// were dropped or found anew + moved).
+  [[nodiscard]] bool compare(PairBuffer& out, std::span<const ObjectId> moved, bool all) noexcept;
+
+  [[nodiscard]] std::size_t persisting() const noexcept { return events_.persisting_; }
+  void set_provenance(PairBuffer::Provenance provenance) noexcept {
+    events_.provenance_ = provenance;
+  }
+  void fail() noexcept { events_.clear(); }
+
+ private:
+  [[nodiscard]] bool sort_into(Column<std::uint64_t>& list, std::span<const Pair> pairs) noexcept;
+  [[nodiscard]] bool merge(Pair*& to) noexcept;
+  [[nodiscard]] bool take_stamps(std::span<const ObjectId> moved, bool all) noexcept;
+  [[nodiscard]] bool any_other_key(std::span<const ObjectId> moved, bool all) const noexcept;
+  [[nodiscard]] bool is_other(ObjectId id) const noexcept {
+    return events_.stamps_[id] != keys_.key_of(id).stamp;
+  }
+  [[nodiscard]] Key key_before(ObjectId id) const noexcept { return {id, events_.stamps_[id]}; }
+  [[nodiscard]] bool end(std::uint64_t pair) noexcept;
+  [[nodiscard]] bool begin(std::uint64_t pair) noexcept;
+
+  PairEvents& events_;
+  const KeyTable& keys_;
+  const Execution& execution_;
+  bool other_keys_ = false;  // an id went to another object since the last frame
+  bool follows_ = false;     // the events tell of the frame that the buffer holds
+  std::size_t kept_ = 0;     // pairs at the front of the buffer that persist for sure
+};
+
+}  // namespace winnow

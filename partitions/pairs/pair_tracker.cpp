@@ -1,0 +1,79 @@
+#include "partitions/pairs/pair_tracker.h"
+
+#include "partitions/pairs/pair_drop.kernel.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+namespace winnow {
+
+WINNOW_DEFINE_KERNELS(PairDropKernels, pair_drop_kernels)
+
+namespace {
+
+constexpr unsigned kDigitBits = 11;
+constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+
+// One stable pass of a radix sort by `kDigitBits` of member `Key` from `shift` on.
+template <ObjectId Pair::*Key>
+void pass(const Pair* from, Pair* to, std::size_t count, unsigned shift) {
+  std::array<std::size_t, kDigits> start{};
+  for (std::size_t i = 0; i < count; ++i) ++start[from[i].*Key >> shift & (kDigits - 1)];
+  std::size_t sum = 0;
+  for (std::size_t& s : start) {
+    const std::size_t n = s;
+    s = sum;
+    sum += n;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    to[start[from[i].*Key >> shift & (kDigits - 1)]++] = from[i];
+  }
+}
+
+}  // namespace
+
+void PairTracker::drop(PairBuffer& out, const std::uint64_t* moved) noexcept {
+  auto* const ids = reinterpret_cast<std::uint32_t*>(out.pairs_.data());
+  out.pairs_.set_size(pair_drop_kernels().drop(ids, out.pairs_.size(), moved));
+}
+
+bool PairTracker::drop(PairBuffer& out, const std::uint64_t* moved,
+                       Column<Pair>& dropped) noexcept {
+  // A piece at a time, so that the list need not have room for all.
+  constexpr std::size_t kPiece = 4096;
+  constexpr std::size_t kSlack = 8;
+  const std::size_t count = out.pairs_.size();
+  auto* const ids = reinterpret_cast<std::uint32_t*>(out.pairs_.data());
+  std::size_t kept = 0;
+  for (std::size_t begin = 0; begin < count; begin += kPiece) {
+    const std::size_t piece = std::min(kPiece, count - begin);
+    if (!dropped.grow(dropped.size() + piece + kSlack)) return false;
+    auto* const to = reinterpret_cast<std::uint32_t*>(dropped.data() + dropped.size());
+    const std::size_t stayed =
+        pair_drop_kernels().part(ids + 2 * begin, piece, moved, ids + 2 * kept, to);
+    kept += stayed;
+    dropped.set_size(dropped.size() + piece - stayed);
+  }
+  out.pairs_.set_size(kept);
+  return true;
+}
+
+bool PairTracker::sort(PairBuffer& out, std::size_t slots, std::size_t count) noexcept {
+  if (!out.pages_.reserve(count)) return false;
+  const auto bits = static_cast<unsigned>(std::bit_width(slots));
+  Pair* from = out.pairs_.data();
+  Pair* to = out.pages_.data();
+  for (unsigned shift = 0; shift < bits; shift += kDigitBits) {
+    pass<&Pair::second>(from, to, count, shift);
+    std::swap(from, to);
+  }
+  for (unsigned shift = 0; shift < bits; shift += kDigitBits) {
+    pass<&Pair::first>(from, to, count, shift);
+    std::swap(from, to);
+  }
+  // As many passes for each member: an even number, so the result stands where it began.
+  return true;
+}
+
+}  // namespace winnow

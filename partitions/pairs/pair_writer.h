@@ -1,0 +1,57 @@
+#pragma once
+
+#include <winnow/core/execution.h>
+#include <winnow/core/filter.h>
+#include <winnow/core/pair_buffer.h>
+#include <winnow/core/status.h>
+#include "partitions/pairs/pair_sink.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace winnow {
+
+/// Appends the output of many tasks to a PairBuffer, in the order of the tasks whatever thread runs
+/// which. On one thread tasks write straight into the buffer. On several, a task claims pages of
+/// the buffer's scratch one at a time, and pages are copied into order at the end: the pages needed
+/// depend on the results alone, so frames with the same results allocate nothing.
+class PairWriter {
+ public:
+  /// Only pairs that `predicate` accepts are appended; it is asked by whichever thread found them.
+  PairWriter(PairBuffer& out, const Execution& execution,
+             const PairPredicate& predicate = {}) noexcept
+      : out_(out), execution_(execution), predicate_(predicate) {}
+
+  /// Runs run(i, sink) for every i < tasks; it returns false when its sink could not grow.
+  template <typename Run>
+  Status append(std::size_t tasks, Run&& run) {
+    return append(tasks, &run, [](void* context, std::size_t i, PairSink& sink) {
+      return (*static_cast<std::remove_reference_t<Run>*>(context))(i, sink);
+    });
+  }
+
+  /// Tests of 16 volumes that the tasks counted.
+  [[nodiscard]] std::uint64_t tests() const noexcept { return tests_; }
+
+ private:
+  using Task = bool (*)(void*, std::size_t, PairSink&);
+  struct PageClaims;
+  struct SerialOutput;
+
+  Status append(std::size_t tasks, void* context, Task run);
+  Status append_serial(std::size_t tasks, void* context, Task run);
+  Status append_parallel(std::size_t tasks, void* context, Task run);
+  bool run_on_pages(std::size_t tasks, std::size_t pages, void* context, Task run);
+  Status gather_pages(std::size_t tasks, std::size_t pages);
+  std::size_t keep_accepted(Pair* pairs, std::size_t count) const;
+
+  PairBuffer& out_;
+  const Execution& execution_;
+  const PairPredicate predicate_;
+  std::uint64_t tests_ = 0;
+  std::size_t claimed_ = 0;
+};
+
+}  // namespace winnow

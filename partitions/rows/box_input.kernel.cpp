@@ -1,0 +1,122 @@
+#include "partitions/rows/box_input.kernel.h"
+#include "simd/lanes/boxes.wide.h"
+
+namespace winnow {
+namespace WINNOW_ISA_NAME {
+namespace {
+
+constexpr std::size_t kFloats = 6;
+
+bool box_is_legal(const float* f, float infinity) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const float low = f[axis];
+    const float high = f[3 + axis];
+    if (!(low <= high && low < infinity && high > -infinity)) return false;
+  }
+  return true;
+}
+
+/// Sixteen boxes are 96 floats. Against the same floats three places on, each lower end meets its
+/// upper end; the other lanes are left out.
+bool legal(const float* floats, std::size_t count) {
+  const float infinity = __builtin_inff();
+  // The largest finite float: compared by <= it does what < infinity does.
+  const Float16 most = broadcast(__FLT_MAX__);
+  const Float16 least = broadcast(-__FLT_MAX__);
+  constexpr Mask16 kLower[3] = {0x71C7U, 0xC71CU, 0x1C71U};
+  std::size_t i = 0;
+  // One box short of the end, because the shifted loads run three floats over.
+  for (; i + kLanes < count; i += kLanes) {
+    Mask16 bad = 0;
+    for (unsigned part = 0; part < kFloats; ++part) {
+      const float* p = floats + i * kFloats + part * kLanes;
+      const Float16 low = load_unaligned(p);
+      const Float16 high = load_unaligned(p + 3);
+      const Mask16 good = less_equal(low, high) & less_equal(low, most) & less_equal(least, high);
+      bad |= kLower[part % 3] & ~good;
+    }
+    if (bad != 0) return false;
+  }
+  for (; i < count; ++i) {
+    if (!box_is_legal(floats + i * kFloats, infinity)) return false;
+  }
+  return true;
+}
+
+float clamp(float value) {
+  const float least = value < -__FLT_MAX__ ? -__FLT_MAX__ : value;
+  return least > __FLT_MAX__ ? __FLT_MAX__ : least;
+}
+
+void write_rows(const float* floats, std::uint32_t first, std::uint32_t count,
+                const std::uint32_t* id, float* const* column, std::size_t begin, std::size_t end) {
+  const Float16 most = broadcast(__FLT_MAX__);
+  const Float16 least = broadcast(-__FLT_MAX__);
+  for (std::size_t row = begin; row < end; row += kLanes) {
+    // Boxes are met in any order: those of the next but one block are on their way meanwhile.
+    std::uint32_t inside = 0;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const std::uint32_t ahead = id[row + 2 * kLanes + static_cast<std::size_t>(lane)] - first;
+      if (ahead < count) __builtin_prefetch(floats + ahead * kFloats);
+      inside += id[row + static_cast<std::size_t>(lane)] - first < count ? 1U : 0U;
+    }
+    const auto box = [&](int lane) {
+      return floats + std::size_t{id[row + static_cast<std::size_t>(lane)] - first} * kFloats;
+    };
+    if (inside == kLanes) {
+      const Box16 boxes = load_boxes(box);
+      for (int s = 0; s < 3; ++s) {
+        store_unaligned(column[s] + row, max(boxes.low[s], least));
+        store_unaligned(column[3 + s] + row, min(boxes.high[s], most));
+      }
+      continue;
+    }
+    for (int lane = 0; lane < kLanes && inside != 0; ++lane) {
+      const std::size_t r = row + static_cast<std::size_t>(lane);
+      if (!(id[r] - first < count)) continue;
+      for (std::size_t c = 0; c < kFloats; ++c) column[c][r] = clamp(box(lane)[c]);
+    }
+  }
+}
+
+/// The longest edge of those that end on both sides, negated.
+Float16 minus_longest_edge(const Box16& box) {
+  // Infinite ends are stored as the largest float.
+  constexpr float kMost = 3.4028232e38F;
+  Float16 least = broadcast(0.0F);
+  for (int axis = 0; axis < 3; ++axis) {
+    Float16 edge = subtract(box.low[axis], box.high[axis]);
+    edge = keep_less_equal(broadcast(-__FLT_MAX__), edge, edge);
+    edge = keep_less_equal(box.high[axis], broadcast(kMost), edge);
+    edge = keep_less_equal(broadcast(-kMost), box.low[axis], edge);
+    least = min(least, edge);
+  }
+  return least;
+}
+
+void within(const float* const* given, const float* const* stored, std::size_t count,
+            float distance, float share, std::uint64_t* words) {
+  for (std::size_t at = 0; at < count; at += kLanes) {
+    const Box16 box = load_slabs_unaligned<3>(given, at);
+    const Box16 old = load_slabs_unaligned<3>(stored, at);
+    const Float16 margin =
+        subtract(broadcast(distance), multiply(broadcast(share), minus_longest_edge(box)));
+    const Float16 spare = multiply(broadcast(4.0F), margin);
+    Mask16 ok = 0xFFFFU;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Float16 most = add(subtract(box.high[axis], box.low[axis]), spare);
+      ok &= less_equal(old.low[axis], box.low[axis]) & less_equal(box.high[axis], old.high[axis]) &
+            less_equal(subtract(old.high[axis], old.low[axis]), most);
+    }
+    const unsigned shift = at % 64;
+    words[at / 64] = (shift == 0 ? 0 : words[at / 64]) | std::uint64_t{ok} << shift;
+  }
+}
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME
+
+extern const BoxInputKernels WINNOW_KERNEL_TABLE(box_input_kernels) = {
+    WINNOW_ISA_NAME::legal, WINNOW_ISA_NAME::write_rows, WINNOW_ISA_NAME::within};
+
+}  // namespace winnow

@@ -1,0 +1,45 @@
+#include "partitions/rows/change_list.h"
+
+#include <algorithm>
+
+namespace winnow {
+
+bool ChangeList::reserve(std::size_t slots) noexcept {
+  const std::size_t words = (slots + 63) / 64;
+  const std::size_t limit = slots / 4 + 16;
+  if (!bits_.grow(words) || !list_.grow(limit)) return false;
+  if (words > bits_.size()) {
+    std::fill(bits_.data() + bits_.size(), bits_.data() + words, 0);
+    bits_.set_size(words);
+  }
+  limit_ = std::max(limit_, limit);
+  return true;
+}
+
+void ChangeList::clear() noexcept {
+  for (const ObjectId id : list_) bits_[id >> 6U] = 0;
+  list_.clear();
+  all_ = false;
+}
+
+void ChangeList::release() noexcept {
+  bits_.release();
+  list_.release();
+  limit_ = 0;
+  all_ = false;
+}
+
+void ChangeList::swap(ChangeList& other) noexcept {
+  bits_.swap(other.bits_);
+  list_.swap(other.list_);
+  std::swap(limit_, other.limit_);
+  std::swap(all_, other.all_);
+}
+
+Bytes ChangeList::bytes() const noexcept {
+  Bytes sum = bits_.bytes();
+  sum += list_.bytes();
+  return sum;
+}
+
+}  // namespace winnow

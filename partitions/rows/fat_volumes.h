@@ -1,0 +1,156 @@
+#pragma once
+
+// Volumes that are stored larger by a margin. Included by the source files that offer a source, not
+// by headers.
+
+#include <winnow/core/margin.h>
+#include <winnow/core/rounding.h>
+#include <winnow/core/volume.h>
+#include "partitions/rows/volume_source.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <cstddef>
+
+namespace winnow {
+
+/// How slab volumes grow, and when a stored one still serves.
+template <Volume V>
+struct FatSlabs {
+  static constexpr std::size_t kColumns = column_count(V);
+  static constexpr std::size_t kSlabs = slab_count(V);
+
+  /// The margin of the volume in `given`.
+  static float margin_of(const float* given, const Margin& margin) noexcept {
+    float edge = 0.0F;
+    for (std::size_t s = 0; s < 3; ++s) {
+      const float low = given[low_column(kSlabs, s)];
+      const float high = given[high_column(kSlabs, s)];
+      const bool finite = (low > -FLT_MAX) & (high < FLT_MAX) & (high - low <= FLT_MAX);
+      edge = std::max(edge, finite ? high - low : 0.0F);
+    }
+    return margin.of(edge);
+  }
+
+  /// True if the stored volume holds the given one and is larger by at most twice its margin.
+  static bool serves(const float* given, float margin, const float* stored) noexcept {
+    bool ok = true;
+    for (std::size_t s = 0; s < kSlabs; ++s) {
+      const float low = given[low_column(kSlabs, s)];
+      const float high = given[high_column(kSlabs, s)];
+      const float stored_low = stored[low_column(kSlabs, s)];
+      const float stored_high = stored[high_column(kSlabs, s)];
+      const float most = high - low + 4.0F * margin * length(s);
+      ok &= (stored_low <= low) & (high <= stored_high) & (stored_high - stored_low <= most);
+    }
+    return ok;
+  }
+
+  static void grow(float* volume, float margin) noexcept {
+    for (std::size_t s = 0; s < kSlabs; ++s) {
+      const double by = static_cast<double>(margin) * static_cast<double>(length(s));
+      float& low = volume[low_column(kSlabs, s)];
+      float& high = volume[high_column(kSlabs, s)];
+      low = std::max(round_down(static_cast<double>(low) - by), -FLT_MAX);
+      high = std::min(round_up(static_cast<double>(high) + by), FLT_MAX);
+    }
+  }
+
+ private:
+  /// Of a slab's direction (see kdop_directions), rounded up.
+  static constexpr float length(std::size_t s) noexcept {
+    if (s < 3) return 1.0F;
+    const bool corner = V != Volume::kdop18 && s < 7;
+    return corner ? 1.7320509F : 1.4142137F;
+  }
+};
+
+/// The same for spheres.
+struct FatSphere {
+  static constexpr std::size_t kColumns = column_count(Volume::sphere);
+
+  static float margin_of(const float* given, const Margin& margin) noexcept {
+    return std::min(margin.of(std::min(2.0F * given[kRadiusColumn], FLT_MAX)), FLT_MAX);
+  }
+  static bool serves(const float* given, float margin, const float* stored) noexcept {
+    const double room =
+        static_cast<double>(stored[kRadiusColumn]) - static_cast<double>(given[kRadiusColumn]);
+    double square = 0.0;
+    for (std::size_t c = kCenterColumn; c < kCenterColumn + 3; ++c) {
+      const double d = static_cast<double>(stored[c]) - static_cast<double>(given[c]);
+      square += d * d;
+    }
+    // The factor is more than the rounding of both squares.
+    return room >= 0.0 && room <= 2.0 * static_cast<double>(margin) &&
+           square <= room * room * (1.0 - 1e-14);
+  }
+  static void grow(float* volume, float margin) noexcept {
+    const double radius = static_cast<double>(volume[kRadiusColumn]) + static_cast<double>(margin);
+    const Sphere grown{
+        {volume[kCenterColumn], volume[kCenterColumn + 1], volume[kCenterColumn + 2]},
+        std::min(round_up(radius), FLT_MAX)};
+    float* columns[kColumns];
+    for (std::size_t c = 0; c < kColumns; ++c) columns[c] = volume + c;
+    write_sphere(columns, 0, grown);
+  }
+};
+
+template <Volume V>
+struct FatVolume : FatSlabs<V> {};
+template <>
+struct FatVolume<Volume::sphere> : FatSphere {};
+
+/// Writes what another source offers larger by a margin, and leaves alone what still serves.
+template <typename Source>
+struct FatSource {
+  static constexpr Volume kVolume = Source::kVolume;
+  using Fat = FatVolume<kVolume>;
+
+  const Source& source;
+  Margin margin;
+
+  [[nodiscard]] bool valid(std::size_t i) const noexcept { return source.valid(i); }
+  [[nodiscard]] bool valid_range(std::size_t begin, std::size_t end) const noexcept {
+    if constexpr (requires { source.valid_range(begin, end); }) {
+      return source.valid_range(begin, end);
+    } else {
+      bool ok = true;
+      for (std::size_t i = begin; i < end; ++i) ok = ok && valid(i);
+      return ok;
+    }
+  }
+
+  void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
+    Values given(source, i);
+    Fat::grow(given.value, Fat::margin_of(given.value, margin));
+    for (std::size_t c = 0; c < Fat::kColumns; ++c) columns[c][row] = given.value[c];
+  }
+
+  /// False, and nothing is written, if the row's volume still serves.
+  bool write_if_left(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
+    Values given(source, i);
+    float stored[Fat::kColumns];
+    for (std::size_t c = 0; c < Fat::kColumns; ++c) stored[c] = columns[c][row];
+    const float by = Fat::margin_of(given.value, margin);
+    if (Fat::serves(given.value, by, stored)) return false;
+    Fat::grow(given.value, by);
+    // Where a margin is lost in rounding a volume at rest is known by this alone.
+    if (std::equal(stored, stored + Fat::kColumns, given.value)) return false;
+    for (std::size_t c = 0; c < Fat::kColumns; ++c) columns[c][row] = given.value[c];
+    return true;
+  }
+
+ private:
+  /// One entry of the source as a row of columns.
+  struct Values {
+    float value[Fat::kColumns];
+    Values(const Source& source, std::size_t i) noexcept {
+      float* columns[Fat::kColumns];
+      for (std::size_t c = 0; c < Fat::kColumns; ++c) columns[c] = value + c;
+      source.write(i, columns, 0);
+    }
+  };
+};
+
+}  // namespace winnow

@@ -1,0 +1,154 @@
+#pragma once
+
+// Where the rows of a bulk insert or update come from: each source says whether entry i is legal
+// and writes it into the columns of a row. Legal infinite ends become +-FLT_MAX (see BoundsPool).
+
+#include <winnow/core/box_view.h>
+#include <winnow/core/kdop.h>
+#include <winnow/core/key.h>
+#include <winnow/core/sphere.h>
+#include <winnow/core/volume.h>
+#include "partitions/rows/box_input.kernel.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+namespace winnow {
+
+/// Column pointers of a pool.
+using ColumnPointers = float* const*;
+
+inline void write_slab(ColumnPointers columns, std::size_t low, std::size_t high, std::size_t row,
+                       float a, float b) noexcept {
+  columns[low][row] = std::max(a, -FLT_MAX);
+  columns[high][row] = std::min(b, FLT_MAX);
+}
+
+/// Boxes into AABB columns.
+struct BoxSource {
+  static constexpr Volume kVolume = Volume::aabb;
+
+  const BoxView& boxes;
+
+  [[nodiscard]] bool valid(std::size_t i) const noexcept {
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    const Aabb box = boxes[i];
+    // Bitwise, not short-circuit: all of it is needed for nearly every box.
+    int ok = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float lo = box.min[axis];
+      const float hi = box.max[axis];
+      ok &= static_cast<int>(lo <= hi) & static_cast<int>(lo < inf) & static_cast<int>(hi > -inf);
+    }
+    return ok != 0;
+  }
+  /// True if each box is six floats (min xyz, max xyz) and they lie one after another.
+  [[nodiscard]] bool packed() const noexcept {
+    const float* const first = boxes.min[0];
+    return boxes.stride == sizeof(Aabb) && boxes.min[1] == first + 1 && boxes.min[2] == first + 2 &&
+           boxes.max[0] == first + 3 && boxes.max[1] == first + 4 && boxes.max[2] == first + 5;
+  }
+  /// All of [begin, end), many at a time where the boxes lie one after another.
+  [[nodiscard]] bool valid_range(std::size_t begin, std::size_t end) const noexcept {
+    if (packed()) return box_input_kernels().legal(boxes.min[0] + 6 * begin, end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!valid(i)) return false;
+    }
+    return true;
+  }
+  /// Writes the rows of [begin, end), both multiples of 16, whose objects are among boxes.count
+  /// ones from `first` on. The boxes are packed.
+  void write_rows(ObjectId first, const ObjectId* ids, ColumnPointers columns, std::size_t begin,
+                  std::size_t end) const noexcept {
+    box_input_kernels().write_rows(boxes.min[0], first, static_cast<std::uint32_t>(boxes.count),
+                                   ids, columns, begin, end);
+  }
+  void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
+    const Aabb box = boxes[i];
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      write_slab(columns, a, 3 + a, row, box.min[axis], box.max[axis]);
+    }
+  }
+};
+
+inline void write_sphere(ColumnPointers columns, std::size_t row, const Sphere& s) noexcept {
+  const Aabb box = s.bounds();
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    write_slab(columns, a, 3 + a, row, box.min[axis], box.max[axis]);
+    columns[kCenterColumn + a][row] = s.center[axis];
+  }
+  columns[kRadiusColumn][row] = s.radius;
+}
+
+/// Spheres into sphere columns.
+struct SphereSource {
+  static constexpr Volume kVolume = Volume::sphere;
+
+  std::span<const Sphere> spheres;
+
+  [[nodiscard]] bool valid(std::size_t i) const noexcept { return spheres[i].is_valid(); }
+  void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
+    write_sphere(columns, row, spheres[i]);
+  }
+};
+
+/// Boxes into sphere columns: the sphere around the box, which must be finite.
+struct SphereAroundBoxSource {
+  static constexpr Volume kVolume = Volume::sphere;
+
+  const BoxView& boxes;
+
+  [[nodiscard]] bool valid(std::size_t i) const noexcept {
+    const Aabb box = boxes[i];
+    return box.is_valid() && Sphere::around(box).is_valid();
+  }
+  void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
+    write_sphere(columns, row, Sphere::around(boxes[i]));
+  }
+};
+
+template <int K>
+[[nodiscard]] constexpr Volume kdop_volume() noexcept {
+  return K == 14 ? Volume::kdop14 : K == 18 ? Volume::kdop18 : Volume::kdop26;
+}
+
+template <int K>
+inline void write_kdop(ColumnPointers columns, std::size_t row, const Kdop<K>& kdop) noexcept {
+  constexpr std::size_t slabs = Kdop<K>::kSlabs;
+  for (std::size_t s = 0; s < slabs; ++s) {
+    write_slab(columns, low_column(slabs, s), high_column(slabs, s), row, kdop.min[s], kdop.max[s]);
+  }
+}
+
+/// k-DOPs into their columns.
+template <int K>
+struct KdopSource {
+  static constexpr Volume kVolume = kdop_volume<K>();
+
+  std::span<const Kdop<K>> kdops;
+
+  [[nodiscard]] bool valid(std::size_t i) const noexcept { return kdops[i].is_valid(); }
+  void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
+    write_kdop(columns, row, kdops[i]);
+  }
+};
+
+/// Boxes into k-DOP columns.
+template <int K>
+struct KdopAroundBoxSource {
+  static constexpr Volume kVolume = kdop_volume<K>();
+
+  const BoxView& boxes;
+
+  [[nodiscard]] bool valid(std::size_t i) const noexcept { return boxes[i].is_valid(); }
+  void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
+    write_kdop(columns, row, Kdop<K>::around(boxes[i]));
+  }
+};
+
+}  // namespace winnow

@@ -1,0 +1,258 @@
+#include "partitions/structures/cells/cell_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kUnbounded = 1e30F;
+constexpr std::size_t kFewest = 64;  // below this the tree alone does as well
+constexpr double kMostCells = 2048;  // on an axis
+constexpr double kTreeQuery = 14.0;  // tests of 16 that an object of the tree costs
+
+}  // namespace
+
+SceneSample::SceneSample(const BoundsPool& pool) noexcept {
+  std::size_t live = 0;
+  for (std::size_t row = 0; row < pool.rows(); ++row) live += pool.ids()[row] != kNoObject;
+  objects = live;
+  if (live == 0) return;
+  const std::size_t step = std::max<std::size_t>(1, pool.rows() / kMost);
+  std::array<std::array<float, kMost>, 3> ends;
+  for (std::size_t row = step / 2; row < pool.rows() && count < kMost; row += step) {
+    if (pool.ids()[row] == kNoObject) continue;
+    for (std::size_t a = 0; a < 3; ++a) {
+      ends[a][count] = pool.column(a)[row];
+      edge[a][count] = pool.column(3 + a)[row] - pool.column(a)[row];
+    }
+    ++count;
+  }
+  if (count == 0) return;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto begin = ends[a].begin();
+    std::sort(begin, begin + static_cast<std::ptrdiff_t>(count));
+    // Outliers must not stretch the cells: past the middle 96 % the range goes on by half of it.
+    const double q02 = static_cast<double>(ends[a][count / 50]);
+    const double q98 = static_cast<double>(ends[a][count - 1 - count / 50]);
+    const double margin = 0.5 * (q98 - q02);
+    low[a] = std::max(ends[a][0], static_cast<float>(std::max(q02 - margin, -3e38)));
+    high[a] = std::min(ends[a][count - 1], static_cast<float>(std::min(q98 + margin, 3e38)));
+    std::size_t bounded = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!(edge[a][i] < kUnbounded)) continue;
+      mean_edge[a] += static_cast<double>(edge[a][i]);
+      ++bounded;
+    }
+    mean_edge[a] /= static_cast<double>(std::max<std::size_t>(1, bounded));
+  }
+}
+
+/// One way to lay out cells, and what it is expected to cost.
+struct CellLayout::Trial {
+  std::array<double, 3> reach{};  // by axis
+  std::array<double, 3> width{};
+  std::array<double, 3> cells{};
+  std::array<bool, 3> divided{};
+  double small_share = 0.0;
+  double cost = std::numeric_limits<double>::infinity();
+
+  // Axes along which objects are spread over several of their own size.
+  void divide(const SceneSample& s, float quantile_edge_of[3]) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      // A little more, for what the sample did not see and for edges that differ by rounding.
+      reach[a] = 1.001 * static_cast<double>(quantile_edge_of[a]);
+      divided[a] = s.range(a) > 3.0 * reach[a] && s.range(a) > 0.0 && std::isfinite(s.range(a));
+    }
+  }
+
+  [[nodiscard]] bool is_small(const SceneSample& s, std::size_t i) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const float e = s.edge[a][i];
+      if (divided[a] && static_cast<double>(e) > reach[a]) return false;
+    }
+    return true;
+  }
+
+  void size_cells(const SceneSample& s, const CellDemand& d, std::size_t fast) {
+    std::size_t small = 0;
+    for (std::size_t i = 0; i < s.count; ++i) small += is_small(s, i);
+    small_share = static_cast<double>(small) / static_cast<double>(s.count);
+    const double n = std::max(1.0, small_share * static_cast<double>(s.objects));
+    double total = 1.0;
+    int free_axes = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      cells[a] = 1.0;
+      width[a] = 0.0;
+      if (!divided[a] || (d.sweep_fast_axis && a == fast)) continue;
+      width[a] = std::max(reach[a] * (1.0 + 2.0 * d.slack_share), s.range(a) / kMostCells);
+      if (a != fast) width[a] = std::max(width[a], std::min(s.range(a), block_edge(s, d, n)));
+      total *= s.range(a) / width[a];
+      ++free_axes;
+    }
+    if (free_axes == 0) return;
+    const double most = std::max(8.0, d.cells_per_object * n);
+    const double widen = total > most ? std::pow(total / most, 1.0 / free_axes) : 1.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (width[a] == 0.0) continue;
+      width[a] *= widen;
+      cells[a] = std::max(1.0, std::ceil(s.range(a) / width[a]));
+    }
+  }
+
+  // Edge of a cube that holds a block of n objects spread evenly.
+  [[nodiscard]] double block_edge(const SceneSample& s, const CellDemand& d, double n) const {
+    if (d.rows_per_block == 0.0) return 0.0;
+    double sum = std::log(d.rows_per_block / n);
+    int axes = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (!divided[a]) continue;
+      sum += std::log(s.range(a));
+      ++axes;
+    }
+    return std::exp(sum / axes);
+  }
+
+  // Tests of 16 that the whole scene is expected to cost.
+  void estimate(const SceneSample& s, const CellDemand& d, std::size_t fast) {
+    const double n = small_share * static_cast<double>(s.objects);
+    const double total = cells[0] * cells[1] * cells[2];
+    const double in_cell = n / total;
+    double run = 3.0 * in_cell;
+    if (d.sweep_fast_axis) {
+      run = in_cell * std::min(1.0, (3.0 * reach[fast]) / std::max(s.range(fast), 1e-30));
+    }
+    double lines = 0.5;
+    double neighbours = 1.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (a != fast && cells[a] > 1.0) neighbours *= 3.0;
+    }
+    lines += (neighbours - 1.0) / 2.0;
+    cost = n * (2.0 + lines * std::max(1.0, run / 16.0));
+    for (std::size_t i = 0; i < s.count; ++i) {
+      if (is_small(s, i)) continue;
+      double visited = 1.0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        if (a == fast || cells[a] <= 1.0) continue;
+        const double edge = static_cast<double>(s.edge[a][i]);
+        visited *= std::min(cells[a], (edge + reach[a]) / width[a] + 2.0);
+      }
+      const double edge = static_cast<double>(s.edge[fast][i]) + reach[fast];
+      const double share = std::min(1.0, edge / std::max(s.range(fast), 1e-30));
+      const double on_line = n / std::max(1.0, total / cells[fast]) * share;
+      cost += static_cast<double>(s.objects) / static_cast<double>(s.count) *
+              (kTreeQuery + visited * std::max(1.0, on_line / 16.0));
+    }
+  }
+};
+
+bool CellLayout::choose(const SceneSample& s, const CellDemand& d) noexcept {
+  usable_ = false;
+  if (s.objects < kFewest || s.count < 8) return true;
+  // The axis with the most room in units of the objects' edges prunes best: it runs fastest.
+  std::size_t fast = 0;
+  const auto room = [&](std::size_t a) { return s.range(a) / (s.mean_edge[a] + 1e-30); };
+  for (std::size_t a = 1; a < 3; ++a) {
+    if (room(a) > room(fast)) fast = a;
+  }
+  std::array<std::array<float, SceneSample::kMost>, 3> sorted = s.edge;
+  for (auto& edges : sorted) {
+    std::sort(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(s.count));
+  }
+  Trial best;
+  for (const double quantile : {1.0, 0.99, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.35}) {
+    const auto at = static_cast<std::size_t>(quantile * static_cast<double>(s.count - 1));
+    float edges[3] = {sorted[0][at], sorted[1][at], sorted[2][at]};
+    Trial trial;
+    trial.divide(s, edges);
+    trial.size_cells(s, d, fast);
+    trial.estimate(s, d, fast);
+    const bool divides = trial.divided[0] || trial.divided[1] || trial.divided[2];
+    if (divides && trial.cost < best.cost) best = trial;
+  }
+  if (!(best.cost < kTreeQuery * 8.0 * static_cast<double>(s.objects))) return true;
+
+  axes_[0].axis = static_cast<std::uint32_t>(fast);
+  std::uint32_t next = 1;
+  for (std::uint32_t a = 0; a < 3; ++a) {
+    if (a != fast) axes_[next++].axis = a;
+  }
+  drift_ = static_cast<float>(std::max(d.slack_share * best.reach[fast],
+                                       s.range(fast) / (4.0 * static_cast<double>(s.objects))));
+  return lay_edges(best, s);
+}
+
+bool CellLayout::lay_edges(const Trial& trial, const SceneSample& s) noexcept {
+  std::size_t total = 0;
+  for (CellAxis& axis : axes_) {
+    axis.count = static_cast<std::uint32_t>(trial.cells[axis.axis]);
+    total += 2 * std::size_t{axis.count};
+  }
+  edges_.clear();
+  if (!edges_.resize(total)) return false;
+  usable_ = true;
+  float* at = edges_.data();
+  for (CellAxis& axis : axes_) {
+    float* const from = at;
+    float* const to = at + axis.count;
+    at += 2 * axis.count;
+    const double low = static_cast<double>(s.low[axis.axis]);
+    const double width = trial.width[axis.axis];
+    // An axis that is not divided puts no bound on edges.
+    axis.reach = trial.divided[axis.axis] ? static_cast<float>(trial.reach[axis.axis]) : kInfinity;
+    // Room for the rounding of the difference that is compared with it.
+    axis.limit = axis.reach * 0.9999995F;
+    const double slack = 0.499 * (width - trial.reach[axis.axis]);
+    for (std::uint32_t c = 0; c < axis.count; ++c) {
+      from[c] = static_cast<float>(low + c * width - slack);
+      to[c] = static_cast<float>(low + (c + 1) * width + slack);
+    }
+    from[0] = -kInfinity;
+    to[axis.count - 1] = kInfinity;
+    axis.from = from;
+    axis.to = to;
+    axis.origin = s.low[axis.axis];
+    axis.inverse = axis.count > 1 ? static_cast<float>(1.0 / width) : 0.0F;
+    // Far from the origin floats may be too coarse to keep cells two apart from touching.
+    for (std::uint32_t c = 0; c + 2 < axis.count; ++c) {
+      const double end = static_cast<double>(to[c]) + static_cast<double>(axis.reach);
+      usable_ =
+          usable_ && static_cast<double>(from[c + 2]) > end * (end > 0 ? 1.0000001 : 0.9999999);
+    }
+    usable_ = usable_ && std::isfinite(axis.inverse);
+  }
+  return true;
+}
+
+std::uint32_t CellLayout::cell_of(const BoundsPool& pool, std::size_t row) const noexcept {
+  std::uint32_t cell = 0;
+  for (std::size_t k = 3; k-- > 0;) {
+    const CellAxis& axis = axes_[k];
+    const float low = pool.column(axis.axis)[row];
+    const std::uint32_t c = guess_cell(axis, low);
+    if (!(low >= axis.from[c] && low <= axis.to[c])) return kNoCell;
+    if (!(pool.column(3 + axis.axis)[row] - low <= axis.limit)) return kNoCell;
+    cell = cell * axis.count + c;
+  }
+  return cell;
+}
+
+bool CellLayout::fits(const BoundsPool& pool, std::size_t row, std::uint32_t cell) const noexcept {
+  for (const CellAxis& axis : axes_) {
+    const float low = pool.column(axis.axis)[row];
+    const std::uint32_t c = cell % axis.count;
+    cell /= axis.count;
+    if (!(low >= axis.from[c] && low <= axis.to[c])) return false;
+    if (!(pool.column(3 + axis.axis)[row] - low <= axis.limit)) return false;
+  }
+  return true;
+}
+
+void CellLayout::release() noexcept {
+  edges_.release();
+  usable_ = false;
+}
+
+}  // namespace winnow

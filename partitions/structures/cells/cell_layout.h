@@ -1,0 +1,80 @@
+#pragma once
+
+#include <winnow/core/column.h>
+#include "core/memory/bounds_pool.h"
+#include "partitions/structures/cells/cell_axis.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+
+namespace winnow {
+
+/// Where and how large the objects of a scene are, from a sample: enough to lay out cells.
+struct SceneSample {
+  static constexpr std::size_t kMost = 2048;
+
+  explicit SceneSample(const BoundsPool& pool) noexcept;
+
+  std::size_t objects = 0;  ///< live rows in all
+  std::size_t count = 0;    ///< rows in the sample
+  std::array<std::array<float, kMost>, 3> edge;
+  std::array<float, 3> low{};  ///< of the lower ends, outliers clipped
+  std::array<float, 3> high{};
+  std::array<double, 3> mean_edge{};  ///< of the bounded ones
+
+  [[nodiscard]] double range(std::size_t axis) const noexcept {
+    return static_cast<double>(high[axis]) - static_cast<double>(low[axis]);
+  }
+};
+
+/// What a layout is asked to weigh up.
+struct CellDemand {
+  double slack_share = 0.3;      ///< of the reach, that objects may drift by on either side
+  double cells_per_object = 2;   ///< at most
+  bool sweep_fast_axis = false;  ///< the fast axis is sorted, not divided
+  /// Objects that ask together: beside the fast axis cells are at least as wide as a cube of them.
+  double rows_per_block = 0;
+};
+
+/// Cells over three axes: which objects are small enough, how large the cells are, which axis runs
+/// fastest. Cells of an axis are wide enough that boxes two cells apart cannot touch.
+class CellLayout {
+ public:
+  explicit CellLayout(std::pmr::memory_resource* memory) noexcept : edges_(memory) {}
+
+  /// Lays out cells for the objects of a pool. False if memory is refused; `usable()` is false
+  /// afterwards if no layout beats keeping every object in the tree.
+  [[nodiscard]] bool choose(const SceneSample& sample, const CellDemand& demand) noexcept;
+
+  [[nodiscard]] bool usable() const noexcept { return usable_; }
+  /// Axes by how fast they run: 0 is the one along which cells of a run follow each other.
+  [[nodiscard]] const CellAxis& axis(std::size_t speed) const noexcept { return axes_[speed]; }
+  [[nodiscard]] std::size_t cells() const noexcept {
+    return std::size_t{axes_[0].count} * axes_[1].count * axes_[2].count;
+  }
+  /// How far an object may drift along the fast axis if that is swept.
+  [[nodiscard]] float drift() const noexcept { return drift_; }
+
+  static constexpr std::uint32_t kNoCell = 0xFFFFFFFFU;
+  /// The cell for a row's box, or kNoCell if it does not suit any.
+  [[nodiscard]] std::uint32_t cell_of(const BoundsPool& pool, std::size_t row) const noexcept;
+  /// True if the row's box may stay in the cell.
+  [[nodiscard]] bool fits(const BoundsPool& pool, std::size_t row,
+                          std::uint32_t cell) const noexcept;
+
+  void release() noexcept;
+  [[nodiscard]] Bytes bytes() const noexcept { return edges_.bytes(); }
+
+ private:
+  struct Trial;
+  [[nodiscard]] bool lay_edges(const Trial& trial, const SceneSample& sample) noexcept;
+
+  std::array<CellAxis, 3> axes_;
+  Column<float> edges_;
+  float drift_ = 0.0F;
+  bool usable_ = false;
+};
+
+}  // namespace winnow

@@ -1,0 +1,159 @@
+#include "partitions/structures/grid/flat_grid.kernel.h"
+#include "partitions/structures/cells/misfits.wide.h"
+#include "partitions/tree/block_pairs.wide.h"
+
+namespace winnow {
+namespace WINNOW_ISA_NAME {
+namespace {
+
+struct Run {
+  std::uint32_t begin;
+  std::uint32_t end;
+};
+
+/// Rows of cells [first, last] of a line.
+Run run_of(const GridView& grid, std::uint32_t line, std::uint32_t first, std::uint32_t last) {
+  const std::uint32_t* start = grid.start + std::size_t{line} * grid.axis[0].count;
+  return {start[first], start[last + 1]};
+}
+
+/// A run of cells is tested to its end.
+struct ToTheEnd {
+  bool operator()(const QueryBox&, std::uint32_t) const { return true; }
+};
+
+/// Adds the rows that may touch a block of line `own`, of that line and those behind it.
+template <bool Filtered>
+bool add_neighbours(const GridView& grid, std::uint32_t own, BlockPairs<Filtered>& pairs) {
+  std::uint32_t first[3];
+  std::uint32_t last[3];
+  for (int a = 0; a < 3; ++a) {
+    const CellAxis& axis = grid.axis[a];
+    first[a] = first_cell(axis, pairs.low()[axis.axis] - axis.reach);
+    last[a] = last_cell(axis, pairs.high()[axis.axis]);
+  }
+  const std::uint32_t mids = grid.axis[1].count;
+  for (std::uint32_t slow = own / mids; slow <= last[2]; ++slow) {
+    const std::uint32_t from = slow * mids + first[1];
+    const std::uint32_t to = slow * mids + last[1];
+    for (std::uint32_t line = from > own ? from : own; line <= to; ++line) {
+      const Run run = run_of(grid, line, first[0], last[0]);
+      if (!pairs.add_run(run.begin, run.end)) return false;
+    }
+  }
+  return true;
+}
+
+template <bool Filtered>
+bool find_self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  const std::uint32_t cells = grid.axis[0].count;
+  BlockPairs<Filtered> pairs(grid.rows, sink);
+  for (std::uint32_t line = begin; line < end; ++line) {
+    const std::uint32_t last = grid.start[std::size_t{line + 1} * cells];
+    for (std::uint32_t r = grid.start[std::size_t{line} * cells]; r < last; r += kLanes) {
+      if (!pairs.start(r, last - r < kLanes ? last : r + kLanes)) continue;
+      if (!add_neighbours(grid, line, pairs) || !pairs.finish()) return false;
+    }
+  }
+  return true;
+}
+
+bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  return grid.rows.filter != nullptr ? find_self_pairs<true>(grid, begin, end, sink)
+                                     : find_self_pairs<false>(grid, begin, end, sink);
+}
+
+struct Query {
+  template <HitMode Mode, bool Filtered>
+  static bool run(const GridView& grid, const QueryBatch& batch, PairSink& sink) {
+    HitList<Mode, Filtered> hits(grid.rows, batch, sink);
+    RunList list(grid.rows, batch.column, hits, ToTheEnd{}, sink);
+    for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
+      const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
+      const QueryBox q(batch.column, row);
+      if (!(q.low[0] <= q.high[0])) continue;
+      std::uint32_t first[3];
+      std::uint32_t last[3];
+      for (int a = 0; a < 3; ++a) {
+        const CellAxis& axis = grid.axis[a];
+        first[a] = first_cell(axis, q.low[axis.axis] - axis.reach);
+        last[a] = last_cell(axis, q.high[axis.axis]);
+      }
+      for (std::uint32_t slow = first[2]; slow <= last[2]; ++slow) {
+        const std::uint32_t lines = slow * grid.axis[1].count;
+        std::uint32_t mid = first[1];
+        while (mid <= last[1]) {
+          // Whole lines follow each other in memory: one run.
+          const bool whole = first[0] == 0 && last[0] + 1 == grid.axis[0].count;
+          const std::uint32_t until = whole ? last[1] : mid;
+          const Run run{run_of(grid, lines + mid, first[0], last[0]).begin,
+                        run_of(grid, lines + until, first[0], last[0]).end};
+          if (!list.add(row, run.begin, run.end)) return false;
+          mid = until + 1;
+        }
+      }
+    }
+    return list.finish() && hits.flush();
+  }
+};
+
+bool query(const GridView& grid, const QueryBatch& batch, PairSink& sink) {
+  return with_mode<Query>(grid, batch, sink);
+}
+
+bool holds(const std::uint32_t* rows, std::uint32_t count, std::uint32_t row) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (rows[i] == row) return true;
+  }
+  return false;
+}
+
+/// Appends to the `found` rows of a line at `out` those that left their cell along the line, and
+/// returns the new count. Cells are short: this goes row by row and leaves the rest to the wide
+/// test.
+std::uint32_t left_along_line(const GridView& grid, const std::uint32_t* start, std::uint32_t* out,
+                              std::uint32_t found) {
+  const CellAxis& axis = grid.axis[0];
+  const float* const low = grid.rows.column[axis.axis];
+  const std::uint32_t before = found;
+  for (std::uint32_t c = 0; c < axis.count; ++c) {
+    const float from = axis.from[c];
+    const float to = axis.to[c];
+    for (std::uint32_t r = start[c]; r < start[c + 1]; ++r) {
+      const bool kept = (low[r] >= from) & (low[r] <= to);
+      if (kept || grid.rows.id[r] == ~0U || holds(out, before, r)) continue;
+      out[found++] = r;
+    }
+  }
+  return found;
+}
+
+std::uint32_t find_misfits(const GridView& grid, std::uint32_t begin, std::uint32_t end,
+                           std::uint32_t* out) {
+  std::uint32_t found = 0;
+  const std::uint32_t cells = grid.axis[0].count;
+  const std::uint32_t mids = grid.axis[1].count;
+  for (std::uint32_t line = begin; line < end; ++line) {
+    const std::uint32_t* start = grid.start + std::size_t{line} * cells;
+    if (start[0] == start[cells]) continue;
+    const AxisBounds mid(grid.rows, grid.axis[1], line % mids);
+    const AxisBounds slow(grid.rows, grid.axis[2], line / mids);
+    const AxisBounds along(grid.rows, grid.axis[0], 0);
+    std::uint32_t* const line_out = out + found;
+    const std::uint32_t wide =
+        write_misfits(grid.rows, start[0], start[cells], line_out, [&](std::size_t row) {
+          return mid.kept(row) & slow.kept(row) &
+                 along.short_enough(load_unaligned(along.low + row), row);
+        });
+    found += left_along_line(grid, start, line_out, wide);
+  }
+  return found;
+}
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME
+
+extern const FlatGridKernels WINNOW_KERNEL_TABLE(flat_grid_kernels) = {
+    WINNOW_ISA_NAME::self_pairs, WINNOW_ISA_NAME::query, WINNOW_ISA_NAME::find_misfits};
+
+}  // namespace winnow

@@ -1,0 +1,183 @@
+#include "partitions/structures/levels/hierarchical_grid.kernel.h"
+#include "partitions/structures/cells/misfits.wide.h"
+#include "partitions/tree/block_pairs.wide.h"
+
+namespace winnow {
+namespace WINNOW_ISA_NAME {
+namespace {
+
+/// Stored lines with a number below `number`.
+std::uint32_t lines_below(const LevelsView& grid, const GridLevel& g, std::uint32_t number) {
+  std::uint32_t at = g.first_line;
+  std::uint32_t left = g.end_line - at;
+  while (left > 0) {
+    const std::uint32_t half = (left + 1) / 2;
+    at += grid.number[at + half - 1] < number ? half : 0;
+    left -= half;
+  }
+  return at;
+}
+
+/// Calls visit(begin, end) with runs of rows, ascending, among which are all whose boxes may
+/// overlap [low, high]. Stops when it says false.
+template <typename Visit>
+[[gnu::always_inline]] inline bool visit_runs(const LevelsView& grid, const GridLevel& g,
+                                              const float* low, const float* high, Visit&& visit) {
+  const std::uint32_t from = first_cell(g.fast, low[g.fast.axis]);
+  const std::uint32_t to = last_cell(g.fast, high[g.fast.axis]);
+  const std::uint32_t first_mid = first_cell(g.mid, low[g.mid.axis]);
+  const std::uint32_t last_mid = last_cell(g.mid, high[g.mid.axis]);
+  const std::uint32_t last_slow = last_cell(g.slow, high[g.slow.axis]);
+  for (std::uint32_t slow = first_cell(g.slow, low[g.slow.axis]); slow <= last_slow; ++slow) {
+    const bool backwards = (slow & 1U) != 0;
+    const std::uint32_t a = line_number(g, backwards ? last_mid : first_mid, slow);
+    const std::uint32_t b = line_number(g, backwards ? first_mid : last_mid, slow) + 1;
+    const std::uint32_t* rank = grid.rank + g.first_rank;
+    std::uint32_t line = g.ranked ? rank[a] : lines_below(grid, g, a);
+    const std::uint32_t end = g.ranked ? rank[b] : lines_below(grid, g, b);
+    if (line == end && !g.ranked) {
+      // Objects far apart: on to where the next line is.
+      if (line == g.end_line) break;
+      const std::uint32_t next = grid.number[line] / g.mids;
+      slow = next > slow ? next - 1 : slow;
+      continue;
+    }
+    if (from == 0 && to == g.steps && line < end) {
+      const GridLine& last = grid.line[end - 1];
+      if (!visit(grid.start[grid.line[line].cell], grid.start[last.cell + last.last_cell + 1])) {
+        return false;
+      }
+      continue;
+    }
+    for (; line < end; ++line) {
+      const GridLine& l = grid.line[line];
+      const bool back = (grid.number[line] & 1U) != 0;
+      const std::uint32_t first = back ? g.steps - to : from;
+      const std::uint32_t last = back ? g.steps - from : to;
+      const std::uint32_t cell = (first > l.first ? first - l.first : 0) >> l.shift;
+      if (last < l.first || cell > l.last_cell) continue;
+      const std::uint32_t until = (last - l.first) >> l.shift;
+      const std::uint32_t end_cell = (until < l.last_cell ? until : l.last_cell) + 1;
+      if (!visit(grid.start[l.cell + cell], grid.start[l.cell + end_cell])) return false;
+    }
+  }
+  return true;
+}
+
+template <bool Filtered>
+bool find_self_pairs(const LevelsView& grid, std::uint32_t begin, std::uint32_t end,
+                     PairSink& sink) {
+  BlockPairs<Filtered> pairs(grid.rows, sink);
+  std::uint32_t level = 0;
+  for (std::uint32_t block = begin; block < end; ++block) {
+    while (block * kLanes >= grid.level[level].end_row) ++level;
+    if (!pairs.start(block * kLanes, block * kLanes + kLanes)) continue;
+    const auto add = [&](std::uint32_t from, std::uint32_t to) { return pairs.add_run(from, to); };
+    for (std::uint32_t l = level; l < grid.levels; ++l) {
+      if (!visit_runs(grid, grid.level[l], pairs.low(), pairs.high(), add)) return false;
+    }
+    if (!pairs.finish()) return false;
+  }
+  return true;
+}
+
+bool self_pairs(const LevelsView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  return grid.rows.filter != nullptr ? find_self_pairs<true>(grid, begin, end, sink)
+                                     : find_self_pairs<false>(grid, begin, end, sink);
+}
+
+/// A run of cells is tested to its end.
+struct ToTheEnd {
+  bool operator()(const QueryBox&, std::uint32_t) const { return true; }
+};
+
+struct Query {
+  template <HitMode Mode, bool Filtered>
+  static bool run(const LevelsView& grid, const QueryBatch& batch, PairSink& sink) {
+    HitList<Mode, Filtered> hits(grid.rows, batch, sink);
+    RunList list(grid.rows, batch.column, hits, ToTheEnd{}, sink);
+    for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
+      const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
+      const QueryBox q(batch.column, row);
+      if (!(q.low[0] <= q.high[0])) continue;
+      for (std::uint32_t l = 0; l < grid.levels; ++l) {
+        const auto add = [&](std::uint32_t begin, std::uint32_t end) {
+          return list.add(row, begin, end);
+        };
+        if (!visit_runs(grid, grid.level[l], q.low, q.high, add)) return false;
+      }
+    }
+    return list.finish() && hits.flush();
+  }
+};
+
+bool query(const LevelsView& grid, const QueryBatch& batch, PairSink& sink) {
+  return with_mode<Query>(grid, batch, sink);
+}
+
+/// The rows that may stay in one cell of an axis.
+class Keeping {
+ public:
+  Keeping(const RowView& rows, const LevelAxis& axis, std::uint32_t cell)
+      : low_(rows.column[axis.axis]),
+        high_(rows.column[3 + axis.axis]),
+        axis_(axis),
+        // The first and the last cell have no end.
+        from_(cell == 0 ? -__builtin_inff() : static_cast<float>(cell)),
+        to_(static_cast<float>(cell) == axis.last ? __builtin_inff()
+                                                  : static_cast<float>(cell + 1)) {}
+
+  [[nodiscard]] Mask16 kept(std::size_t row) const {
+    const Float16 x = load_unaligned(low_ + row);
+    const Float16 slack = broadcast(axis_.slack);
+    return less_equal(broadcast(from_), place(add(x, slack))) &
+           ~less_equal(broadcast(to_), place(subtract(x, slack))) & short_enough(x, row);
+  }
+  [[nodiscard]] Mask16 near_key(std::size_t row, const float* key) const {
+    const Float16 x = load_unaligned(low_ + row);
+    const Float16 slack = broadcast(axis_.slack);
+    const Float16 at = load_unaligned(key + row);
+    return less_equal(subtract(x, slack), at) & less_equal(at, add(x, slack)) &
+           short_enough(x, row);
+  }
+
+ private:
+  [[nodiscard]] Float16 place(const Float16& x) const {
+    return multiply(subtract(x, broadcast(axis_.origin)), broadcast(axis_.inverse));
+  }
+  [[nodiscard]] Mask16 short_enough(const Float16& x, std::size_t row) const {
+    return less_equal(subtract(load_unaligned(high_ + row), x), broadcast(axis_.limit));
+  }
+
+  const float* low_;
+  const float* high_;
+  const LevelAxis& axis_;
+  float from_;
+  float to_;
+};
+
+std::uint32_t find_misfits(const LevelsView& grid, const GridLevel& g, std::uint32_t begin,
+                           std::uint32_t end, std::uint32_t* out) {
+  std::uint32_t found = 0;
+  for (std::uint32_t l = begin; l < end; ++l) {
+    const LineCells cells = cells_of_line(g, grid.number[l]);
+    const Keeping mids(grid.rows, g.mid, cells.mid);
+    const Keeping slows(grid.rows, g.slow, cells.slow);
+    const Keeping fasts(grid.rows, g.fast, 0);
+    const GridLine& line = grid.line[l];
+    found +=
+        write_misfits(grid.rows, grid.start[line.cell], grid.start[line.cell + line.last_cell + 1],
+                      out + found, [&](std::size_t row) {
+                        return mids.kept(row) & slows.kept(row) & fasts.near_key(row, grid.key);
+                      });
+  }
+  return found;
+}
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME
+
+extern const HierarchicalGridKernels WINNOW_KERNEL_TABLE(hierarchical_grid_kernels) = {
+    WINNOW_ISA_NAME::self_pairs, WINNOW_ISA_NAME::query, WINNOW_ISA_NAME::find_misfits};
+
+}  // namespace winnow

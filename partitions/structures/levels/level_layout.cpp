@@ -1,0 +1,151 @@
+#include "partitions/structures/levels/level_layout.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+// How far objects of a level may drift, in cells, beside kSlackOfEdge.
+constexpr double kSlackOfCell = 0.1;
+// How wide lines are, in edges of a cube that holds a block of rows.
+constexpr double kLineWidth = 0.95;
+constexpr double kLeastWidth = 0.25;      // in longest edges
+constexpr double kMostLines = 1U << 15U;  // along an axis
+constexpr unsigned kMostStepBits = 20;
+constexpr double kStepsInCell = 8.0;
+
+// The i-th of a sample of one in `step`. Rows lie in the order of earlier cells: even strides would
+// be in step with that.
+std::size_t sampled(std::size_t i, std::size_t step) noexcept {
+  const std::uint64_t hash = (i + 1) * 0x9E3779B97F4A7C15ULL;
+  return i * step + static_cast<std::size_t>((hash >> 32U) % step);
+}
+
+struct Range {
+  double low = 0.0;
+  double high = 0.0;
+  [[nodiscard]] double length() const { return high - low; }
+};
+
+// Where the lower ends of rows lie on an axis, from a sample. Outliers must not stretch cells: past
+// the middle 96 % the range goes on by half of it.
+template <typename RowOf>
+Range range_of(const BoundsPool& pool, std::size_t axis, std::size_t count, RowOf&& row_of) {
+  constexpr std::size_t kSample = 512;
+  std::array<float, kSample> low;
+  const std::size_t step = std::max<std::size_t>(1, count / kSample);
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < count / step && n < kSample; ++i) {
+    const std::size_t row = row_of(sampled(i, step));
+    if (pool.ids()[row] != kNoObject) low[n++] = pool.column(axis)[row];
+  }
+  if (n == 0) return {};
+  const auto at = [&](std::size_t i) { return low.begin() + static_cast<std::ptrdiff_t>(i); };
+  const auto [least, most] = std::minmax_element(at(0), at(n));
+  const double first = static_cast<double>(*least);
+  const double last = static_cast<double>(*most);
+  std::nth_element(at(0), at(n / 50), at(n));
+  if (n > 2) std::nth_element(at(n / 50 + 1), at(n - 1 - n / 50), at(n));
+  const double q02 = static_cast<double>(low[n / 50]);
+  const double q98 = static_cast<double>(low[n - 1 - n / 50]);
+  const double margin = 0.5 * (q98 - q02);
+  return {std::max(first, q02 - margin), std::min(last, q98 + margin)};
+}
+
+// How many objects an object finds in its own cube of a raster, itself included, from a sample:
+// crowds count by how many are in them.
+double company(const BoundsPool& pool, std::span<const std::uint32_t> rows,
+               const std::array<Range, 3>& range, double edge) {
+  constexpr std::size_t kSlots = 16384;
+  std::array<std::uint8_t, kSlots> cube{};
+  const std::size_t wanted = std::clamp<std::size_t>(rows.size() / 32, 256, 4096);
+  const std::size_t step = std::max<std::size_t>(1, rows.size() / wanted);
+  const std::size_t count = rows.size() / step;
+  std::size_t met = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t row = rows[sampled(i, step)];
+    std::uint64_t hash = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double x = static_cast<double>(pool.column(a)[row]) - range[a].low;
+      const auto cell = static_cast<std::int64_t>(std::clamp(x / edge, -1e15, 1e15));
+      hash = (hash ^ static_cast<std::uint64_t>(cell)) * 0x9E3779B97F4A7C15ULL;
+      hash ^= hash >> 29U;
+    }
+    std::uint8_t& in = cube[hash % kSlots];
+    met += in;
+    if (in < 255) ++in;
+  }
+  const double n = static_cast<double>(count);
+  const double by_chance = 0.5 * n * n / static_cast<double>(kSlots);
+  const double pairs = std::max(0.0, static_cast<double>(met) - by_chance);
+  return 1.0 + 2.0 * pairs / n * static_cast<double>(rows.size()) / n;
+}
+
+void lay_axis(LevelAxis& axis, const Range& range, double cells, double longest, double width) {
+  const double inverse = cells / range.length();
+  // What hardly differs needs no cells.
+  if (!(cells > 1.0) || !(inverse < FLT_MAX)) {
+    axis.origin = axis.inverse = axis.last = 0.0F;
+    axis.limit = std::numeric_limits<float>::infinity();
+    axis.slack = axis.pad = SizeClasses::kUnbounded;
+    return;
+  }
+  axis.origin = static_cast<float>(range.low);
+  axis.inverse = static_cast<float>(inverse);
+  axis.last = static_cast<float>(cells - 1.0);
+  // A little more than there is now, for edges that differ by rounding.
+  axis.limit = static_cast<float>(1.001 * longest);
+  axis.slack = static_cast<float>(kSlackOfEdge * longest + kSlackOfCell * width);
+  const double pad = static_cast<double>(axis.limit) + static_cast<double>(axis.slack);
+  axis.pad = static_cast<float>(1.000001 * pad);
+}
+
+}  // namespace
+
+void lay_level(const BoundsPool& pool, std::span<const std::uint32_t> rows,
+               GridLevel& level) noexcept {
+  std::array<Range, 3> range;
+  std::array<double, 3> length{};
+  std::array<float, 3> longest{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    range[a] = range_of(pool, a, rows.size(), [&](std::size_t i) { return rows[i]; });
+    length[a] = range[a].length();
+    for (const std::uint32_t row : rows) {
+      longest[a] = std::max(longest[a], pool.column(3 + a)[row] - pool.column(a)[row]);
+    }
+  }
+  double width = edge_for(kRowsOfBlock, static_cast<double>(rows.size()), length);
+  // Where objects crowd the cells they find there count, not those of an even spread.
+  for (int i = 0; i < 6 && width > 0.0; ++i) {
+    const double found = company(pool, rows, range, width);
+    if (found < 1.6 * kRowsOfBlock) break;
+    width *= std::cbrt(kRowsOfBlock / found);
+  }
+  width *= kLineWidth;
+  std::array<std::uint32_t, 3> by_length{0, 1, 2};
+  std::sort(by_length.begin(), by_length.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return length[a] > length[b] || (length[a] == length[b] && a < b);
+  });
+  level.fast.axis = by_length[0];
+  level.mid.axis = by_length[1];
+  level.slow.axis = by_length[2];
+  for (LevelAxis* const axis : {&level.mid, &level.slow}) {
+    const std::size_t a = axis->axis;
+    // Cells much smaller than the objects would tell nothing more apart.
+    const double edge = static_cast<double>(longest[a]);
+    const double wide = std::max(width, kLeastWidth * edge);
+    lay_axis(*axis, range[a], std::min(kMostLines, std::floor(length[a] / wide)), edge, wide);
+  }
+  level.mids = static_cast<std::uint32_t>(level.mid.last) + 1;
+  const double steps = kStepsInCell * length[level.fast.axis] / width;
+  unsigned bits = 0;
+  while (bits < kMostStepBits && static_cast<double>(1U << bits) < steps) ++bits;
+  lay_axis(level.fast, range[level.fast.axis], bits > 2 ? static_cast<double>(1U << bits) : 1.0,
+           static_cast<double>(longest[level.fast.axis]), width);
+  level.steps = static_cast<std::uint32_t>(level.fast.last);
+}
+
+}  // namespace winnow

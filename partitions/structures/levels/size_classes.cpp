@@ -1,0 +1,219 @@
+#include "partitions/structures/levels/size_classes.h"
+
+#include <algorithm>
+#include <bit>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+// What a line and a level cost, in tests of 16.
+constexpr double kPerLine = 0.7;
+constexpr double kPerLevel = 7.0;
+
+// Power of 2 of a length; 0 for one of nothing, or next to it.
+std::size_t octave_of(float x) noexcept {
+  return std::bit_cast<std::uint32_t>(x) >> 23U & 0xFFU;
+}
+
+// How long the ranges are over which n objects with these sums of places and of their squares would
+// be spread evenly.
+std::array<double, 3> spread_of(const std::array<double, 3>& sum,
+                                const std::array<double, 3>& square, double n) {
+  std::array<double, 3> range{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double mean = sum[a] / n;
+    range[a] = std::sqrt(12.0 * std::max(0.0, square[a] / n - mean * mean));
+  }
+  return range;
+}
+
+}  // namespace
+
+double edge_for(double wanted, double count, const std::array<double, 3>& range) noexcept {
+  std::array<double, 3> sorted = range;
+  std::sort(sorted.begin(), sorted.end());
+  double share = wanted / count;
+  for (std::size_t a = 0; a < 3; ++a) {
+    // Logarithms: a product of ranges may overflow.
+    double sum = std::log(share);
+    for (std::size_t b = a; b < 3; ++b) sum += std::log(std::max(sorted[b], DBL_MIN));
+    const double edge = std::exp(sum / static_cast<double>(3 - a));
+    if (edge <= sorted[a] || a == 2) return edge;
+  }
+  return 0.0;
+}
+
+float longest_edge(const BoundsPool& pool, std::size_t row) noexcept {
+  const float x = pool.column(3)[row] - pool.column(0)[row];
+  const float y = pool.column(4)[row] - pool.column(1)[row];
+  const float z = pool.column(5)[row] - pool.column(2)[row];
+  return std::max(x, std::max(y, z));
+}
+
+/// Neighbouring classes that share a level.
+struct SizeClasses::Group {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  double count = 0.0;
+  std::array<double, 3> mean{};
+  std::array<double, 3> longest{};
+  std::array<double, 3> range{};
+  std::array<double, 3> block{};  ///< extent of 16 rows
+};
+
+SizeClasses::SizeClasses(const BoundsPool& pool) noexcept {
+  choose_octaves(pool);
+  for (std::size_t row = 0; row < pool.rows(); ++row) {
+    if (pool.ids()[row] == kNoObject) continue;
+    const float edge = longest_edge(pool, row);
+    if (class_of(edge) == kClasses) continue;
+    Class& c = class_[class_of(edge)];
+    ++c.count;
+    ++objects_;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double low = static_cast<double>(pool.column(a)[row]);
+      c.edge[a] += static_cast<double>(pool.column(3 + a)[row]) - low;
+      c.place[a] += low;
+      c.square[a] += low * low;
+    }
+  }
+  for (Class& c : class_) {
+    const double count = static_cast<double>(std::max<std::size_t>(1, c.count));
+    for (std::size_t a = 0; a < 3; ++a) c.edge[a] /= count;
+    c.range = spread_of(c.place, c.square, count);
+  }
+  join();
+}
+
+// Where sizes span more octaves than there are classes, those that hold the most objects count.
+void SizeClasses::choose_octaves(const BoundsPool& pool) noexcept {
+  std::array<std::size_t, 256> count{};
+  for (std::size_t row = 0; row < pool.rows(); ++row) {
+    const float edge = longest_edge(pool, row);
+    if (pool.ids()[row] != kNoObject && edge < kUnbounded) ++count[octave_of(edge)];
+  }
+  std::size_t inside = 0;
+  std::size_t most = 0;
+  for (std::size_t top = 1; top < count.size(); ++top) {
+    inside += count[top];
+    if (top > kClasses) inside -= count[top - kClasses];
+    if (inside < most) continue;
+    most = inside;
+    if (count[top] != 0 || most == 0) top_octave_ = top;
+  }
+}
+
+std::size_t SizeClasses::class_of(float edge) const noexcept {
+  const std::size_t octave = octave_of(edge);
+  if (octave == 0) return kClasses - 1;
+  if (!(edge < kUnbounded) || octave > top_octave_) return kClasses;
+  return std::min(top_octave_ - octave, kClasses);
+}
+
+std::size_t SizeClasses::level_of(float edge) const noexcept {
+  const std::size_t size_class = class_of(edge);
+  return size_class < kClasses ? level_[size_class] : levels_;
+}
+
+SizeClasses::Group SizeClasses::group_of(std::size_t first, std::size_t last) const noexcept {
+  Group group;
+  group.first = first;
+  group.last = last;
+  std::array<double, 3> place{};
+  std::array<double, 3> square{};
+  for (std::size_t c = first; c <= last; ++c) {
+    const double count = static_cast<double>(class_[c].count);
+    group.count += count;
+    for (std::size_t a = 0; a < 3; ++a) {
+      group.mean[a] += count * class_[c].edge[a];
+      place[a] += class_[c].place[a];
+      square[a] += class_[c].square[a];
+      // An octave's largest is about 1.4 times its mean.
+      group.longest[a] = std::max(group.longest[a], 1.4 * class_[c].edge[a]);
+    }
+  }
+  for (double& edge : group.mean) edge /= std::max(1.0, group.count);
+  group.range = spread_of(place, square, std::max(1.0, group.count));
+  const double edge = edge_for(kRowsOfBlock, std::max(1.0, group.count), group.range);
+  for (std::size_t a = 0; a < 3; ++a) group.block[a] = std::min(edge, group.range[a]);
+  return group;
+}
+
+// What blocks of `fine` are expected to cost to look for partners in `coarse`, in tests of 16.
+double SizeClasses::cost(const Group& fine, const Group& coarse) const noexcept {
+  std::array<double, 3> ask{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    ask[a] = fine.block[a] + 0.95 * fine.mean[a] + 0.2 * fine.longest[a];
+  }
+  const auto share = [&](const Class& c, std::size_t a) {
+    const double whole = c.range[a] + c.edge[a];
+    return whole > 0.0 ? std::min(1.0, (ask[a] + c.edge[a]) / whole) : 1.0;
+  };
+  double rows = 0.0;
+  for (std::size_t c = coarse.first; c <= coarse.last; ++c) {
+    if (class_[c].count == 0) continue;
+    double part = static_cast<double>(class_[c].count);
+    for (std::size_t a = 0; a < 3; ++a) part *= share(class_[c], a);
+    rows += part;
+  }
+  std::array<double, 3> cells{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double width = std::max(coarse.block[a], DBL_MIN);
+    const double reach = (1.0 + 2.0 * kSlackOfEdge) * coarse.longest[a];
+    cells[a] = std::min(coarse.range[a] / width + 1.0, (ask[a] + reach) / width + 1.0);
+  }
+  std::sort(cells.begin(), cells.end());
+  const double lines = cells[0] * cells[1];
+  const double in_line = std::min(coarse.count, kRowsOfBlock * cells[2]);
+  double blocks = lines * (in_line / kRowsOfBlock + 0.5);
+  if (fine.first == coarse.first) {
+    rows = 0.5 * rows + 8.0;
+    blocks *= 0.5;
+  }
+  return fine.count / kRowsOfBlock * (rows + blocks + kPerLine * lines + kPerLevel);
+}
+
+// Begins with a level for every class and joins neighbours while that makes it cheaper.
+void SizeClasses::join() noexcept {
+  std::array<Group, kClasses> group;
+  std::size_t count = 0;
+  for (std::size_t c = kClasses; c-- > 0;) {
+    if (class_[c].count != 0) group[count++] = group_of(c, c);
+  }
+  while (count > 1) {
+    double best = std::numeric_limits<double>::infinity();
+    std::size_t where = 0;
+    for (std::size_t k = 0; k + 1 < count; ++k) {
+      const Group joined = group_of(group[k + 1].first, group[k].last);
+      double change = cost(joined, joined) - cost(group[k], group[k]) -
+                      cost(group[k + 1], group[k + 1]) - cost(group[k], group[k + 1]);
+      for (std::size_t j = 0; j < k; ++j) {
+        change += cost(group[j], joined) - cost(group[j], group[k]) - cost(group[j], group[k + 1]);
+      }
+      for (std::size_t j = k + 2; j < count; ++j) {
+        change += cost(joined, group[j]) - cost(group[k], group[j]) - cost(group[k + 1], group[j]);
+      }
+      if (change < best) {
+        best = change;
+        where = k;
+      }
+    }
+    if (!(best < 0.0) && count <= kMostLevels) break;
+    group[where] = group_of(group[where + 1].first, group[where].last);
+    std::copy(group.begin() + static_cast<std::ptrdiff_t>(where) + 2,
+              group.begin() + static_cast<std::ptrdiff_t>(count),
+              group.begin() + static_cast<std::ptrdiff_t>(where) + 1);
+    --count;
+  }
+  levels_ = count;
+  for (std::size_t l = 0; l < count; ++l) {
+    for (std::size_t c = group[l].first; c <= group[l].last; ++c) {
+      level_[c] = static_cast<std::uint8_t>(l);
+    }
+  }
+}
+
+}  // namespace winnow

@@ -1,0 +1,173 @@
+#include "partitions/structures/octree/loose_octree_cells.h"
+
+#include "partitions/tree/hilbert_curve.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow {
+namespace {
+
+constexpr std::size_t kFewest = 64;    // below this the tree alone does as well
+constexpr double kObjectsInCell = 16;  // on average, on the finest level
+constexpr double kThinWorld = 2;       // an axis of so few of its cells is not worth dividing
+constexpr unsigned kLevelShift = 28;   // in keys and codes
+constexpr std::uint32_t kCodeMask = (1U << kLevelShift) - 1U;
+
+/// The edge of cells that hold `objects` on average. Axes on which all lies within one such cell
+/// count for nothing.
+double edge_of_cells(std::array<double, 3> range, std::size_t axes, double objects) {
+  for (;; --axes) {
+    double volume = 1.0;
+    std::size_t least = 0;
+    for (std::size_t k = 0; k < axes; ++k) {
+      volume *= range[k];
+      if (range[k] < range[least]) least = k;
+    }
+    const double edge = std::pow(volume / objects, 1.0 / static_cast<double>(axes));
+    if (axes == 1 || edge <= range[least]) return edge;
+    range[least] = range[axes - 1];
+  }
+}
+
+}  // namespace
+
+bool LooseOctreeCells::choose(const SceneSample& sample, std::size_t axes, float loose) noexcept {
+  if (sample.objects < kFewest || sample.count < 8) return false;
+  const double cells = static_cast<double>(sample.objects) / kObjectsInCell;
+  std::array<double, 3> range{};
+  for (std::size_t a = 0; a < 3; ++a) range[a] = sample.range(a) + sample.mean_edge[a];
+  // The axis that is not divided, if there is one.
+  std::size_t whole = 3;
+  const auto least = [](auto&& measure) {
+    std::size_t best = 0;
+    for (std::size_t a = 1; a < 3; ++a) {
+      if (measure(a) < measure(best)) best = a;
+    }
+    return best;
+  };
+  if (axes == 2) {
+    whole = least([&](std::size_t a) { return sample.range(a) / (sample.mean_edge[a] + 1e-30); });
+  } else {
+    const std::size_t thin = least([&](std::size_t a) { return range[a]; });
+    if (range[thin] <= kThinWorld * edge_of_cells(range, 3, cells)) whole = thin;
+  }
+  axes_ = 0;
+  double longest = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (a == whole) continue;
+    longest = std::max(longest, range[a]);
+    range[axes_] = range[a];
+    axis_[axes_++] = static_cast<std::uint32_t>(a);
+  }
+  bits_ = axes_ == 3 ? 9 : 14;
+  reach_ = 0.5 * (static_cast<double>(loose) - 1.0);
+  const double edge = edge_of_cells(range, axes_, cells);
+  // So that every place has a finite scale, whatever the axis.
+  if (!(edge > longest * 1e-9) || !(longest > 1e-30) || !(longest < 1e30)) return false;
+  const double halvings = std::max(0.0, std::ceil(std::log2(longest / edge)));
+  finest_ = std::min(bits_, static_cast<std::uint32_t>(halvings));
+  edge_ = std::max(longest, edge * std::exp2(static_cast<double>(finest_)));
+  scale_ = static_cast<double>(1U << bits_) / edge_;
+  for (std::size_t k = 0; k < axes_; ++k) {
+    origin_[k] = static_cast<double>(sample.low[axis_[k]]) - 0.5 * (edge_ - range[k]);
+  }
+  return true;
+}
+
+std::uint32_t LooseOctreeCells::level_of(const BoundsPool& pool, std::size_t row) const noexcept {
+  float longest = 0.0F;
+  for (std::size_t k = 0; k < axes_; ++k) {
+    const std::size_t a = axis_[k];
+    longest = std::max(longest, pool.column(3 + a)[row] - pool.column(a)[row]);
+  }
+  // A box by its centre reaches out by half of its edge.
+  double edge = 2.0 * reach_ * edge_;
+  if (!(static_cast<double>(longest) <= edge)) return kNone;
+  std::uint32_t level = 0;
+  while (level < finest_ && static_cast<double>(longest) <= (edge *= 0.5)) ++level;
+  return level;
+}
+
+bool LooseOctreeCells::find_place(const BoundsPool& pool, std::size_t row,
+                                  std::array<std::uint32_t, 3>& place) const noexcept {
+  const double places = static_cast<double>(1U << bits_);
+  for (std::size_t k = 0; k < axes_; ++k) {
+    const std::size_t a = axis_[k];
+    const float centre = 0.5F * pool.column(a)[row] + 0.5F * pool.column(3 + a)[row];
+    const double at = (static_cast<double>(centre) - origin_[k]) * scale_;
+    if (!(at >= 0.0 && at < places)) return false;
+    place[k] = static_cast<std::uint32_t>(at);
+  }
+  return true;
+}
+
+std::uint32_t LooseOctreeCells::key_of(const BoundsPool& pool, std::size_t row) const noexcept {
+  static constexpr HilbertCurve<2> kSquare;
+  static constexpr HilbertCurve<3> kCube;
+  std::array<std::uint32_t, 3> place{};
+  const std::uint32_t level = level_of(pool, row);
+  if (level == kNone || !find_place(pool, row, place)) return kNone;
+  std::uint32_t code = 0;
+  unsigned state = 0;
+  for (unsigned bit = bits_; bit-- > 0;) {
+    const unsigned cell =
+        (place[0] >> bit & 1U) | (place[1] >> bit & 1U) << 1U | (place[2] >> bit & 1U) << 2U;
+    const unsigned step =
+        axes_ == 3 ? kCube.step[state << 3U | cell] : kSquare.step[state << 2U | cell];
+    code = code << axes_ | (step & ((1U << axes_) - 1U));
+    state = step >> axes_;
+  }
+  return level << kLevelShift | code;
+}
+
+std::uint32_t LooseOctreeCells::cell_of_key(std::uint32_t key) const noexcept {
+  const std::uint32_t level = key >> kLevelShift;
+  const unsigned within = static_cast<unsigned>(axes_) * (bits_ - level);
+  return level << kLevelShift | (key & kCodeMask) >> within;
+}
+
+std::uint32_t LooseOctreeCells::code_of(const BoundsPool& pool, std::size_t row,
+                                        std::uint32_t key) const noexcept {
+  const std::uint32_t level = key >> kLevelShift;
+  std::array<std::uint32_t, 3> place{};
+  (void)find_place(pool, row, place);
+  std::uint32_t code = 0;
+  for (unsigned bit = bits_; bit-- > bits_ - level;) {
+    for (std::size_t k = axes_; k-- > 0;) code = code << 1U | (place[k] >> bit & 1U);
+  }
+  return level << kLevelShift | code;
+}
+
+LooseOctreeCells::Bounds LooseOctreeCells::bounds_of(std::uint32_t code,
+                                                     double reach) const noexcept {
+  const std::uint32_t level = code >> kLevelShift;
+  const double edge = std::ldexp(edge_, -static_cast<int>(level));
+  Bounds bounds{};
+  for (std::size_t k = 0; k < axes_; ++k) {
+    std::uint32_t cell = 0;
+    for (std::uint32_t bit = 0; bit < level; ++bit) cell |= (code >> (bit * axes_ + k) & 1U) << bit;
+    const double low = origin_[k] + cell * edge;
+    bounds.low[k] = static_cast<float>(low - reach * edge);
+    bounds.high[k] = static_cast<float>(low + edge + reach * edge);
+  }
+  return bounds;
+}
+
+bool LooseOctreeCells::hold(const Bounds& bounds, const BoundsPool& pool, std::size_t begin,
+                            std::size_t end) const noexcept {
+  unsigned outside = 0;
+  for (std::size_t k = 0; k < axes_; ++k) {
+    const float* const low = pool.column(axis_[k]);
+    const float* const high = pool.column(3 + axis_[k]);
+    const float from = bounds.low[k];
+    const float to = bounds.high[k];
+    // No branch: compilers test several rows at once.
+    for (std::size_t row = begin; row < end; ++row) {
+      outside |= static_cast<unsigned>(low[row] < from) | static_cast<unsigned>(high[row] > to);
+    }
+  }
+  return outside == 0;
+}
+
+}  // namespace winnow

@@ -1,0 +1,168 @@
+#include "partitions/structures/sweep/sweep_and_prune.kernel.h"
+#include "partitions/structures/cells/misfits.wide.h"
+#include "partitions/structures/sweep/neighbour_lines.wide.h"
+#include "partitions/tree/block_pairs.wide.h"
+
+namespace winnow {
+namespace WINNOW_ISA_NAME {
+namespace {
+
+/// A sweep goes on until a key shows that nothing further can touch the box.
+struct KeyStop {
+  const StripView& strips;
+  bool operator()(const QueryBox& q, std::uint32_t at) const {
+    return strips.key[at] - strips.drift <= q.high[strips.axis[0].axis];
+  }
+};
+
+/// Moves `at` to the first row of [at, end) that may reach up to x; keys ascend. Sixteen keys a
+/// step: mostly one step is enough, and then it costs no branch.
+inline std::uint32_t skip_below(const StripView& strips, std::uint32_t at, std::uint32_t end,
+                                float x) {
+  const Float16 bound = broadcast(x);
+  const Float16 drift = broadcast(strips.drift);
+  while (at < end) {
+    const Mask16 reaching = less_equal(bound, add(load_unaligned(strips.key + at), drift));
+    const unsigned below = reaching == 0 ? static_cast<unsigned>(kLanes) : first(reaching);
+    at = end - at < below ? end : at + below;
+    if (below < kLanes) break;
+  }
+  return at;
+}
+
+/// The end of the run from `at` on that may begin at or below x; keys ascend. It may be up to
+/// fifteen rows late.
+inline std::uint32_t run_end(const StripView& strips, std::uint32_t at, std::uint32_t end,
+                             float x) {
+  while (at < end && strips.key[at] - strips.drift <= x) at += kLanes;
+  return at < end ? at : end;
+}
+
+/// The first row of [at, end) that may reach up to x on the sweep axis. Halving without a branch:
+/// the number of steps depends on the length alone.
+std::uint32_t first_reaching(const StripView& strips, std::uint32_t at, std::uint32_t end,
+                             float x) {
+  std::uint32_t left = end - at;
+  while (left > 0) {
+    const std::uint32_t half = (left + 1) / 2;
+    at += strips.key[at + half - 1] + strips.drift < x ? half : 0;
+    left -= half;
+  }
+  return at;
+}
+
+/// The strips behind one whose objects can touch its own, and the rows of each that blocks of the
+/// strip may yet reach. Blocks follow each other by their keys, so these only move forward.
+struct Sweeps {
+  const StripView& strips;
+  const NeighbourLines others;
+  std::uint32_t from[4];
+
+  Sweeps(const StripView& view, std::uint32_t strip)
+      : strips(view), others(view.axis[1], view.axis[2], strip) {
+    for (int k = 0; k < others.count; ++k) from[k] = strips.start[others.line[k]];
+  }
+
+  /// Adds the partners of a block that begins with row r and ends before `behind`, its strip before
+  /// `last`.
+  template <typename Pairs>
+  bool add_runs(std::uint32_t r, std::uint32_t behind, std::uint32_t last, Pairs& pairs) {
+    const std::uint32_t axis = strips.axis[0].axis;
+    const float low = pairs.low()[axis] - strips.axis[0].reach;
+    const float high = pairs.high()[axis];
+    if (!pairs.add_run(behind, run_end(strips, behind, last, high))) return false;
+    // Boxes may have drifted either way from their keys.
+    const float passed = strips.key[r] - strips.drift - strips.axis[0].reach;
+    for (int k = 0; k < others.count; ++k) {
+      const std::uint32_t end = strips.start[others.line[k] + 1];
+      from[k] = skip_below(strips, from[k], end, passed);
+      const std::uint32_t at = skip_below(strips, from[k], end, low);
+      if (!pairs.add_run(at, run_end(strips, at, end, high))) return false;
+    }
+    return true;
+  }
+};
+
+template <bool Filtered>
+bool find_self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end,
+                     PairSink& sink) {
+  BlockPairs<Filtered> pairs(strips.rows, sink);
+  for (std::uint32_t strip = begin; strip < end; ++strip) {
+    const std::uint32_t last = strips.start[strip + 1];
+    if (strips.start[strip] == last) continue;
+    Sweeps sweeps(strips, strip);
+    for (std::uint32_t r = strips.start[strip]; r < last; r += kLanes) {
+      const std::uint32_t behind = last - r < kLanes ? last : r + kLanes;
+      if (!pairs.start(r, behind)) continue;
+      if (!sweeps.add_runs(r, behind, last, pairs) || !pairs.finish()) return false;
+    }
+  }
+  return true;
+}
+
+bool self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  return strips.rows.filter != nullptr ? find_self_pairs<true>(strips, begin, end, sink)
+                                       : find_self_pairs<false>(strips, begin, end, sink);
+}
+
+struct Query {
+  template <HitMode Mode, bool Filtered>
+  static bool run(const StripView& strips, const QueryBatch& batch, PairSink& sink) {
+    HitList<Mode, Filtered> hits(strips.rows, batch, sink);
+    RunList sweeps(strips.rows, batch.column, hits, KeyStop{strips}, sink);
+    for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
+      const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
+      const QueryBox q(batch.column, row);
+      if (!(q.low[0] <= q.high[0])) continue;
+      std::uint32_t first[3];
+      std::uint32_t last[3];
+      for (int a = 1; a < 3; ++a) {
+        const CellAxis& axis = strips.axis[a];
+        first[a] = first_cell(axis, q.low[axis.axis] - axis.reach);
+        last[a] = last_cell(axis, q.high[axis.axis]);
+      }
+      const float x = q.low[strips.axis[0].axis] - strips.axis[0].reach;
+      for (std::uint32_t slow = first[2]; slow <= last[2]; ++slow) {
+        for (std::uint32_t mid = first[1]; mid <= last[1]; ++mid) {
+          const std::uint32_t strip = slow * strips.axis[1].count + mid;
+          const std::uint32_t end = strips.start[strip + 1];
+          const std::uint32_t from = first_reaching(strips, strips.start[strip], end, x);
+          if (!sweeps.add(row, from, end)) return false;
+        }
+      }
+    }
+    return sweeps.finish() && hits.flush();
+  }
+};
+
+bool query(const StripView& strips, const QueryBatch& batch, PairSink& sink) {
+  return with_mode<Query>(strips, batch, sink);
+}
+
+std::uint32_t find_misfits(const StripView& strips, std::uint32_t begin, std::uint32_t end,
+                           std::uint32_t* out) {
+  const Float16 drift = broadcast(strips.drift);
+  const AxisBounds swept(strips.rows, strips.axis[0], 0);
+  std::uint32_t found = 0;
+  for (std::uint32_t strip = begin; strip < end; ++strip) {
+    const AxisBounds mid(strips.rows, strips.axis[1], strip % strips.axis[1].count);
+    const AxisBounds slow(strips.rows, strips.axis[2], strip / strips.axis[1].count);
+    found += write_misfits(strips.rows, strips.start[strip], strips.start[strip + 1], out + found,
+                           [&](std::size_t row) {
+                             const Float16 key = load_unaligned(strips.key + row);
+                             const Float16 x = load_unaligned(swept.low + row);
+                             return less_equal(subtract(key, drift), x) &
+                                    less_equal(x, add(key, drift)) & swept.short_enough(x, row) &
+                                    mid.kept(row) & slow.kept(row);
+                           });
+  }
+  return found;
+}
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME
+
+extern const SweepKernels WINNOW_KERNEL_TABLE(sweep_kernels) = {
+    WINNOW_ISA_NAME::self_pairs, WINNOW_ISA_NAME::query, WINNOW_ISA_NAME::find_misfits};
+
+}  // namespace winnow

@@ -1,0 +1,165 @@
+#pragma once
+
+// Pairs of rows that lie close together, found sixteen at a time.
+
+#include "partitions/pairs/hits.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// Pairs of a block of up to 16 rows with each other and with rows behind them. Rows of a block lie
+/// close together: one box around them asks the grid, 16 rows at a time, who may touch any of them,
+/// and only those are tested one by one, each against the whole block, which stays in registers.
+template <bool Filtered>
+class BlockPairs {
+ public:
+  BlockPairs(const RowView& rows, PairSink& sink) : rows_(rows), sink_(sink), filters_(rows) {}
+
+  /// Begins with rows [begin, end). False if they are all holes.
+  bool start(std::uint32_t begin, std::uint32_t end) {
+    at_ = begin;
+    behind_ = end;
+    next_ = end / kLanes;
+    for (int s = 0; s < 6; ++s) {
+      store_unaligned(own_[s], load_unaligned(rows_.column[s] + begin));
+      const float empty = s < 3 ? __builtin_inff() : -__builtin_inff();
+      for (std::uint32_t i = end - begin; i < kLanes; ++i) own_[s][i] = empty;
+    }
+    for (int a = 0; a < 3; ++a) {
+      low_[a] = reduce_min(load(own_[a]));
+      high_[a] = reduce_max(load(own_[3 + a]));
+    }
+    if (!(low_[0] <= high_[0])) return false;
+    test_self();
+    return true;
+  }
+
+  /// The box around the block.
+  [[nodiscard]] const float* low() const { return low_; }
+  [[nodiscard]] const float* high() const { return high_; }
+
+  /// Adds rows [begin, end) as partners, those behind the block. Runs must ascend, but may share a
+  /// block of rows.
+  bool add_run(std::uint32_t begin, std::uint32_t end) {
+    std::uint32_t first = begin / kLanes > next_ ? begin / kLanes : next_;
+    const std::uint32_t last = (end + kLanes - 1) / kLanes;
+    next_ = last > next_ ? last : next_;
+    for (; first < last; first += kLanes) {
+      if (blocks_ > kBlockRoom - kLanes && !test_blocks()) return false;
+      store_unaligned(block_ + blocks_, count_from(first));
+      blocks_ += last - first < kLanes ? last - first : kLanes;
+    }
+    return true;
+  }
+
+  /// Tests the block. False if the sink is full.
+  bool finish() { return test_blocks() && test_rows(); }
+
+ private:
+  static constexpr unsigned kBlockRoom = 512;
+  static constexpr unsigned kRowRoom = 1024;
+
+  /// Of two rows of the block the one in front asks.
+  void test_self() {
+    const Box16 rows = own_rows();
+    for (unsigned i = 0; i + 1 < kLanes; ++i) {
+      const QueryBox q(rows_.column, at_ + i);
+      add_hits(at_ + i, overlap(rows, q.low, q.high) & ~lanes_below(i + 1), hits_);
+    }
+    sink_.tests += kLanes - 1;
+  }
+
+  /// Whether a test hits is a coin toss to the branch predictor: no branch here. The count is the
+  /// caller's, in a register.
+  void add_hits(std::uint32_t row, Mask16 mask, unsigned& count) {
+    hit_row_[count] = row;
+    hit_mask_[count] = mask;
+    count += mask != 0 ? 1U : 0U;
+  }
+
+  /// Lists the rows of the listed blocks that may touch any row of the own one.
+  bool test_blocks() {
+    const float low[3] = {low_[0], low_[1], low_[2]};
+    const float high[3] = {high_[0], high_[1], high_[2]};
+    unsigned listed = listed_;
+    for (unsigned k = 0; k < blocks_; ++k) {
+      if (listed > kRowRoom - kLanes) {
+        listed_ = listed;
+        if (!test_rows()) return false;
+        listed = 0;
+      }
+      const std::uint32_t at = block_[k] * kLanes;
+      // The block's own rows may end within this one.
+      const std::uint32_t own = behind_ > at ? behind_ - at : 0;
+      const Mask16 met = overlap(load_slabs<3>(rows_.column, at), low, high);
+      const Mask16 mask = met & ~lanes_below(own);
+      listed += compress_store(mask, count_from(at), row_ + listed);
+    }
+    sink_.tests += blocks_;
+    listed_ = listed;
+    blocks_ = 0;
+    return true;
+  }
+
+  /// Tests the listed rows against the own block, which stays in registers.
+  bool test_rows() {
+    const Box16 rows = own_rows();
+    unsigned hits = hits_;
+    for (unsigned k = 0; k < listed_; ++k) {
+      const QueryBox q(rows_.column, row_[k]);
+      add_hits(row_[k], overlap(rows, q.low, q.high), hits);
+    }
+    sink_.tests += listed_;
+    hits_ = hits;
+    listed_ = 0;
+    return report_hits();
+  }
+
+  bool report_hits() {
+    if (has_more_to_test(rows_)) drop_boxes();
+    const Uint16 ids = load_unaligned(rows_.id + at_);
+    for (unsigned k = 0; k < hits_; ++k) {
+      if (!has_room(sink_)) return false;
+      const std::uint32_t id = rows_.id[hit_row_[k]];
+      Mask16 mask = hit_mask_[k];
+      if constexpr (Filtered) mask = passing_rows(rows_, at_, mask, filters_.of(id));
+      sink_.cursor += 2 * emit_pairs<true>(mask, ids, id, sink_.cursor);
+    }
+    hits_ = 0;
+    return true;
+  }
+
+  /// Keeps the hits of the volumes in the boxes.
+  void drop_boxes() {
+    for (unsigned k = 0; k < hits_; ++k) hit_at_[k] = at_;
+    hits_ = keep_volume_hits(rows_, rows_.column, hit_row_, hit_at_, hit_mask_, hits_);
+  }
+
+  [[nodiscard]] Box16 own_rows() const {
+    Box16 box;
+    for (int a = 0; a < 3; ++a) {
+      box.low[a] = load(own_[a]);
+      box.high[a] = load(own_[3 + a]);
+    }
+    return box;
+  }
+
+  const RowView& rows_;
+  PairSink& sink_;
+  const AskingFilters filters_;
+  alignas(64) float own_[6][kLanes];
+  std::uint32_t at_ = 0;
+  std::uint32_t behind_ = 0;
+  std::uint32_t next_ = 0;  // block of rows that is not listed yet
+  float low_[3];
+  float high_[3];
+  unsigned blocks_ = 0;
+  unsigned listed_ = 0;
+  unsigned hits_ = 0;
+  std::uint32_t block_[kBlockRoom + kLanes];
+  std::uint32_t row_[kRowRoom + kLanes];
+  std::uint32_t hit_row_[kRowRoom + 2 * kLanes];
+  std::uint32_t hit_at_[kRowRoom + 2 * kLanes];  // of volumes other than boxes
+  std::uint32_t hit_mask_[kRowRoom + 2 * kLanes];
+};
+
+}  // namespace winnow::WINNOW_ISA_NAME

@@ -1,0 +1,127 @@
+#include "partitions/tree/block_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace winnow {
+
+WINNOW_DEFINE_KERNELS(BlockTreeKernels, block_tree_kernels)
+
+namespace {
+
+constexpr std::size_t kLeavesPerTask = 1024;
+
+}  // namespace
+
+bool BlockTree::cover(std::size_t first_block, std::size_t blocks, Nodes nodes) noexcept {
+  TreeView shape;
+  shape.first_block = static_cast<std::uint32_t>(first_block);
+  if (blocks != 0) {
+    std::size_t count = blocks;
+    for (;;) {
+      shape.count[shape.levels++] = static_cast<std::uint32_t>(count);
+      if (count <= 16) break;
+      count = (count + 15) / 16;
+    }
+  }
+  // Node values are recomputed: nothing to carry over into larger memory.
+  nodes_.clear();
+  filters_.clear();
+  const bool done = (nodes == Nodes::filters || lay_boxes(shape)) &&
+                    (nodes == Nodes::boxes || lay_out_filters(shape, filters_));
+  shape_ = done ? shape : TreeView{};
+  return done;
+}
+
+bool BlockTree::lay_boxes(TreeView& shape) noexcept {
+  std::size_t total = 0;
+  for (std::uint32_t level = 0; level < shape.levels; ++level) {
+    total += 6 * padded_nodes(shape.count[level]);
+  }
+  if (!nodes_.grow(total)) return false;
+  nodes_.set_size(total);
+  float* at = nodes_.data();
+  for (std::uint32_t level = 0; level < shape.levels; ++level) {
+    const std::size_t stride = padded_nodes(shape.count[level]);
+    for (std::size_t c = 0; c < 6; ++c) {
+      shape.node[level][c] = at;
+      const float inf = std::numeric_limits<float>::infinity();
+      std::fill(at + shape.count[level], at + stride, c < 3 ? inf : -inf);
+      at += stride;
+    }
+  }
+  return true;
+}
+
+TreeView BlockTree::view(const RowView& rows) const noexcept {
+  TreeView result = shape_;
+  result.rows = rows;
+  return result;
+}
+
+void BlockTree::refit_all(const RowView& rows, const Execution& execution) noexcept {
+  const TreeView tree = view(rows);
+  const BlockTreeKernels& kernels = block_tree_kernels();
+  const std::size_t tasks = (blocks() + kLeavesPerTask - 1) / kLeavesPerTask;
+  execution.for_each(tasks, [&](std::size_t task) {
+    const std::size_t begin = task * kLeavesPerTask;
+    const std::size_t end = std::min(blocks(), begin + kLeavesPerTask);
+    const auto first = static_cast<std::uint32_t>(begin);
+    const auto last = static_cast<std::uint32_t>(end);
+    if (!nodes_.empty()) kernels.refit_leaves(tree, first, last);
+    if (has_filters()) refit_leaf_filters(tree, first, last);
+  });
+  for (std::uint32_t level = 1; level < tree.levels; ++level) {
+    if (!nodes_.empty()) kernels.refit_nodes(tree, level, 0, tree.count[level]);
+    if (has_filters()) refit_node_filters(tree, level, 0, tree.count[level]);
+  }
+}
+
+void BlockTree::refit(const RowView& rows, std::span<std::uint32_t> leaves) noexcept {
+  const TreeView tree = view(rows);
+  const BlockTreeKernels& kernels = block_tree_kernels();
+  for (const std::uint32_t leaf : leaves) {
+    if (!nodes_.empty()) kernels.refit_leaves(tree, leaf, leaf + 1);
+    if (has_filters()) refit_leaf_filters(tree, leaf, leaf + 1);
+  }
+  for (std::uint32_t level = 1; level < tree.levels; ++level) {
+    for (std::uint32_t& node : leaves) node /= 16;
+    leaves = {leaves.begin(), std::unique(leaves.begin(), leaves.end())};
+    for (const std::uint32_t node : leaves) {
+      if (!nodes_.empty()) kernels.refit_nodes(tree, level, node, node + 1);
+      if (has_filters()) refit_node_filters(tree, level, node, node + 1);
+    }
+  }
+}
+
+float BlockTree::typical_edge() const noexcept {
+  constexpr std::size_t kSample = 31;
+  std::array<float, kSample> edge;
+  const std::size_t count = std::min(kSample, blocks());
+  if (count == 0) return 0.0F;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t leaf = blocks() * i / count;
+    float sum = 0.0F;
+    for (std::size_t c = 0; c < 3; ++c) {
+      sum += (shape_.node[0][3 + c][leaf] - shape_.node[0][c][leaf]) / 3.0F;
+    }
+    edge[i] = sum;
+  }
+  std::nth_element(edge.begin(), edge.begin() + count / 2, edge.begin() + count);
+  return edge[count / 2];
+}
+
+void BlockTree::release() noexcept {
+  nodes_.release();
+  filters_.release();
+  shape_ = {};
+}
+
+Bytes BlockTree::bytes() const noexcept {
+  Bytes sum = nodes_.bytes();
+  sum += filters_.bytes();
+  return sum;
+}
+
+}  // namespace winnow

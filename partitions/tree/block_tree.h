@@ -1,0 +1,65 @@
+#pragma once
+
+#include <winnow/core/column.h>
+#include <winnow/core/execution.h>
+#include "partitions/tree/block_tree.kernel.h"
+#include "partitions/tree/node_filters.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+/// The node boxes of an implicit 16-ary tree over consecutive blocks of rows. It owns no order:
+/// rows that lie near each other in space must lie near each other in the pool for it to prune. Any
+/// order gives right answers.
+class BlockTree {
+ public:
+  explicit BlockTree(std::pmr::memory_resource* memory) noexcept
+      : nodes_(memory), filters_(memory) {}
+
+  /// What nodes hold.
+  enum class Nodes : std::uint8_t {
+    boxes,          ///< of the rows below them
+    boxes_filters,  ///< and what the rows' filters have between them
+    filters,        ///< that alone: of rows in no spatial order
+  };
+
+  /// Sets which blocks the tree covers; nodes are then undefined until `refit_all`. False, and then
+  /// it covers none, if memory is refused.
+  [[nodiscard]] bool cover(std::size_t first_block, std::size_t blocks,
+                           Nodes nodes = Nodes::boxes) noexcept;
+
+  /// Recomputes every node. O(blocks).
+  void refit_all(const RowView& rows, const Execution& execution) noexcept;
+
+  /// Recomputes the nodes above the given leaves (ascending, without repeats; overwritten).
+  void refit(const RowView& rows, std::span<std::uint32_t> leaves) noexcept;
+
+  [[nodiscard]] TreeView view(const RowView& rows) const noexcept;
+  /// The same without rows; stays where it is until `cover` is called.
+  [[nodiscard]] const TreeView& shape() const noexcept { return shape_; }
+  [[nodiscard]] std::size_t first_block() const noexcept { return shape_.first_block; }
+  [[nodiscard]] std::size_t blocks() const noexcept { return shape_.count[0]; }
+  [[nodiscard]] std::size_t levels() const noexcept { return shape_.levels; }
+  [[nodiscard]] bool has_filters() const noexcept { return shape_.filters[0].layers != nullptr; }
+  /// Nodes one level above the blocks: the units in which pair finding is split.
+  [[nodiscard]] std::size_t groups() const noexcept { return (blocks() + 15) / 16; }
+
+  /// The mean edge of a block in the middle of a sample; 0 if there are none.
+  [[nodiscard]] float typical_edge() const noexcept;
+
+  void release() noexcept;
+  [[nodiscard]] Bytes bytes() const noexcept;
+
+ private:
+  [[nodiscard]] bool lay_boxes(TreeView& shape) noexcept;
+
+  Column<float> nodes_;
+  Column<std::uint32_t> filters_;
+  TreeView shape_;  // rows unset: the pool may move between calls
+};
+
+}  // namespace winnow

@@ -1,0 +1,291 @@
+#include "partitions/tree/block_tree.kernel.h"
+#include "partitions/pairs/hits.wide.h"
+#include "partitions/tree/tree_walk.wide.h"
+
+namespace winnow {
+namespace WINNOW_ISA_NAME {
+namespace {
+
+/// Nodes [begin, end) of `to` from 16 boxes each of `from`.
+void reduce(const float* const* from, std::uint32_t begin, std::uint32_t end, float* const* to) {
+  std::size_t i = begin;
+  for (; i + kLanes <= end; i += kLanes) {
+    for (int s = 0; s < 3; ++s) {
+      store_unaligned(to[s] + i, reduce_min_rows(from[s] + i * kLanes));
+      store_unaligned(to[3 + s] + i, reduce_max_rows(from[3 + s] + i * kLanes));
+    }
+  }
+  for (; i < end; ++i) {
+    for (int s = 0; s < 3; ++s) {
+      to[s][i] = reduce_min(load(from[s] + i * kLanes));
+      to[3 + s][i] = reduce_max(load(from[3 + s] + i * kLanes));
+    }
+  }
+}
+
+void refit_leaves(const TreeView& tree, std::uint32_t begin, std::uint32_t end) {
+  const float* shifted[6];
+  for (int c = 0; c < 6; ++c) {
+    shifted[c] = tree.rows.column[c] + std::size_t{tree.first_block} * kLanes;
+  }
+  reduce(shifted, begin, end, tree.node[0]);
+}
+
+void refit_nodes(const TreeView& tree, std::uint32_t level, std::uint32_t begin,
+                 std::uint32_t end) {
+  reduce(tree.node[level - 1], begin, end, tree.node[level]);
+}
+
+/// Of the boxes `nodes`, which are nodes from `first_node` on, those that box q overlaps and whose
+/// filters `range` may meet.
+template <bool Filtered>
+Mask16 open_nodes(const TreeView& tree, std::uint32_t level, std::uint32_t first_node,
+                  const Box16& nodes, const QueryBox& q, const FilterRange& range) {
+  const Mask16 hits = overlap(nodes, q.low, q.high);
+  return Filtered ? passing_nodes(tree.filters[level], first_node, hits, range) : hits;
+}
+
+/// The filters below node i; nothing is read where nothing is filtered.
+template <bool Filtered>
+FilterRange node_range(const TreeView& tree, std::uint32_t level, std::uint32_t i) {
+  return Filtered ? range_of(tree.filters[level], i) : FilterRange{};
+}
+
+/// Finds pairs between leaves in three long loops instead of many short nested ones, whose lengths
+/// no branch predictor can guess: pairs of leaves whose boxes overlap; of each, the rows of the
+/// first leaf that reach into the second's box; of each such row, its hits among the second leaf's
+/// rows. Filtered, each loop passes on what the filters let meet.
+template <bool Filtered>
+class LeafPairs {
+ public:
+  LeafPairs(const TreeView& tree, PairSink& sink)
+      : tree_(tree), sink_(sink), hits_(tree.rows, sink), sure_(tree.rows, sink) {}
+
+  /// Adds all pairs of leaf i with leaves base + js.
+  bool add(std::uint32_t i, std::uint32_t base, Mask16 js) {
+    if (leaves_ > kLeafRoom - kLanes && !find_rows()) return false;
+    store_unaligned(first_ + leaves_, broadcast(i));
+    leaves_ += compress_store(js, count_from(base), second_ + leaves_);
+    return true;
+  }
+
+  /// Adds all pairs within a leaf.
+  bool add_self(std::uint32_t leaf) {
+    const FilterRange range = node_range<Filtered>(tree_, 0, leaf);
+    if (Filtered && !may_meet(range, range)) return true;
+    return add_rows(leaf * kLanes, leaf, 0x7FFFU);
+  }
+
+  bool finish() { return find_rows() && test_rows() && hits_.flush() && sure_.flush(); }
+
+ private:
+  static constexpr unsigned kLeafRoom = 512;
+  static constexpr unsigned kRowRoom = 1024;
+
+  [[nodiscard]] std::size_t row_of(std::uint32_t leaf) const {
+    return (std::size_t{tree_.first_block} + leaf) * kLanes;
+  }
+
+  bool add_rows(std::uint32_t first_row, std::uint32_t leaf, Mask16 mask) {
+    if (rows_ > kRowRoom - kLanes && !test_rows()) return false;
+    store_unaligned(leaf_ + rows_, broadcast(leaf));
+    rows_ += compress_store(mask, count_from(first_row), row_ + rows_);
+    return true;
+  }
+
+  bool find_rows() {
+    for (unsigned k = 0; k < leaves_; ++k) {
+      const QueryBox b(tree_.node[0], second_[k]);
+      const Box16 a = load_slabs<3>(tree_.rows.column, row_of(first_[k]));
+      Mask16 rows = overlap(a, b.low, b.high);
+      if constexpr (Filtered) {
+        // Rows of one environment are told apart by their hits: looking at each costs more.
+        const FilterRange own = node_range<true>(tree_, 0, first_[k]);
+        if (own.first_environment != own.last_environment) {
+          const auto first_row = static_cast<std::uint32_t>(row_of(first_[k]));
+          rows = passing_rows(tree_.rows, first_row, rows, node_range<true>(tree_, 0, second_[k]));
+        }
+      }
+      if (!add_rows(first_[k] * kLanes, second_[k], rows)) return false;
+    }
+    sink_.tests += leaves_;
+    leaves_ = 0;
+    return true;
+  }
+
+  bool test_rows() {
+    const std::size_t base = row_of(0);
+    for (unsigned k = 0; k < rows_; ++k) {
+      const std::size_t r = base + row_[k];
+      const std::size_t at = base + std::size_t{leaf_[k]} * kLanes;
+      const Box16 b = load_slabs<3>(tree_.rows.column, at);
+      const QueryBox q(tree_.rows.column, r);
+      // Within a leaf only rows behind r: the pair with an earlier one is that one's.
+      const bool self = row_[k] / kLanes == leaf_[k];
+      const Mask16 lanes = self ? ~lanes_below(row_[k] % kLanes + 1) : ~0U;
+      if (!hits_.make_room() || !sure_.make_room()) return false;
+      const Mask16 met = overlap(b, q.low, q.high) & lanes;
+      // Leaves that may meet and whose rows are alike leave nothing to be looked up.
+      const bool sure = !Filtered || (is_alike(row_[k] / kLanes) && is_alike(leaf_[k]));
+      const auto at_row = static_cast<std::uint32_t>(at);
+      sure_.add(static_cast<std::uint32_t>(r), at_row, sure ? met : 0);
+      if (Filtered) hits_.add(static_cast<std::uint32_t>(r), at_row, sure ? 0 : met);
+    }
+    sink_.tests += rows_;
+    rows_ = 0;
+    return true;
+  }
+
+  [[nodiscard]] bool is_alike(std::uint32_t leaf) const {
+    return tree_.filters[0].alike[leaf] != 0;
+  }
+
+  const TreeView& tree_;
+  PairSink& sink_;
+  HitList<HitMode::unordered, Filtered> hits_;
+  HitList<HitMode::unordered, false> sure_;
+  unsigned leaves_ = 0;
+  unsigned rows_ = 0;
+  std::uint32_t first_[kLeafRoom + kLanes];
+  std::uint32_t second_[kLeafRoom + kLanes];
+  std::uint32_t row_[kRowRoom + kLanes];  // counted from the tree's first row
+  std::uint32_t leaf_[kRowRoom + kLanes];
+};
+
+/// All pairs of the leaves `is` of group g with those of group h >= g.
+template <bool Filtered>
+bool group_pair(const TreeView& tree, std::uint32_t g, std::uint32_t h, Mask16 is,
+                LeafPairs<Filtered>& pairs, PairSink& sink) {
+  const Box16 h_leaves = load_slabs<3>(tree.node[0], std::size_t{h} * kLanes);
+  sink.tests += count(is);
+  for (; is != 0; is &= is - 1) {
+    const std::uint32_t i = g * kLanes + first(is);
+    const QueryBox a(tree.node[0], i);
+    Mask16 js =
+        open_nodes<Filtered>(tree, 0, h * kLanes, h_leaves, a, node_range<Filtered>(tree, 0, i));
+    if (g == h) js &= ~lanes_below(first(is) + 1);
+    if (!pairs.add(i, h * kLanes, js)) return false;
+  }
+  return true;
+}
+
+template <bool Filtered>
+bool find_self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  LeafPairs<Filtered> pairs(tree, sink);
+  for (std::uint32_t g = begin; g < end; ++g) {
+    const std::uint32_t last =
+        tree.count[0] - g * kLanes < kLanes ? tree.count[0] - g * kLanes : kLanes;
+    for (std::uint32_t i = 0; i < last; ++i) {
+      if (!pairs.add_self(g * kLanes + i)) return false;
+    }
+    if (!group_pair(tree, g, g, lanes_below(last), pairs, sink)) return false;
+    if (tree.levels == 1) continue;
+    const Box16 g_leaves = load_slabs<3>(tree.node[0], std::size_t{g} * kLanes);
+    const QueryBox g_box(tree.node[1], g);
+    const FilterRange g_range = node_range<Filtered>(tree, 1, g);
+    const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
+      ++sink.tests;
+      const Box16 nodes = load_slabs<3>(tree.node[level], first_node);
+      return open_nodes<Filtered>(tree, level, first_node, nodes, g_box, g_range);
+    };
+    const auto visit = [&](std::uint32_t h) {
+      ++sink.tests;
+      const QueryBox h_box(tree.node[1], h);
+      const Mask16 is = open_nodes<Filtered>(tree, 0, g * kLanes, g_leaves, h_box,
+                                             node_range<Filtered>(tree, 1, h));
+      return group_pair(tree, g, h, is, pairs, sink);
+    };
+    if (!walk(tree, 1, g + 1, test, visit)) return false;
+  }
+  return pairs.finish();
+}
+
+bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+  return tree.rows.filter != nullptr ? find_self_pairs<true>(tree, begin, end, sink)
+                                     : find_self_pairs<false>(tree, begin, end, sink);
+}
+
+/// Walks many boxes down the tree together: what is open on a level waits in that level's list, and
+/// a list is worked off, in one long loop, when the next one would not fit or nothing is left
+/// above.
+template <HitMode Mode, bool Filtered>
+class Descent {
+ public:
+  Descent(const TreeView& tree, const QueryBatch& batch, PairSink& sink)
+      : tree_(tree), batch_(batch), sink_(sink), filters_(batch), hits_(tree.rows, batch, sink) {}
+
+  bool run() {
+    const std::uint32_t top = tree_.levels - 1;
+    for (std::uint32_t k = batch_.begin; k < batch_.end; ++k) {
+      const std::uint32_t row = batch_.rows != nullptr ? batch_.rows[k] : k;
+      if (!test_nodes(row, top, 0)) return false;
+    }
+    for (std::uint32_t level = top + 1; level-- > 0;) {
+      if (!drain(level)) return false;
+    }
+    return hits_.flush();
+  }
+
+ private:
+  static constexpr unsigned kRoom = 256;
+
+  /// Opens those of the 16 nodes from `first_node` on that box `row` overlaps and may meet.
+  bool test_nodes(std::uint32_t row, std::uint32_t level, std::uint32_t first_node) {
+    if (open_[level] > kRoom - kLanes && !drain(level)) return false;
+    const QueryBox q(batch_.column, row);
+    Mask16 mask = overlap(load_slabs<3>(tree_.node[level], first_node), q.low, q.high);
+    if (Filtered && mask != 0) {
+      mask = passing_nodes(tree_.filters[level], first_node, mask, filters_.of(batch_.id[row]));
+    }
+    store_unaligned(row_[level] + open_[level], broadcast(row));
+    open_[level] += compress_store(mask, count_from(first_node), node_[level] + open_[level]);
+    ++sink_.tests;
+    return true;
+  }
+
+  bool drain(std::uint32_t level) {
+    for (unsigned k = 0; k < open_[level]; ++k) {
+      const std::uint32_t row = row_[level][k];
+      if (level > 0) {
+        if (!test_nodes(row, level - 1, node_[level][k] * kLanes)) return false;
+        continue;
+      }
+      const std::uint32_t at = (tree_.first_block + node_[0][k]) * kLanes;
+      const QueryBox q(batch_.column, row);
+      if (!hits_.make_room()) return false;
+      hits_.add(row, at, overlap(load_slabs<3>(tree_.rows.column, at), q.low, q.high));
+      ++sink_.tests;
+    }
+    open_[level] = 0;
+    return true;
+  }
+
+  const TreeView& tree_;
+  const QueryBatch& batch_;
+  PairSink& sink_;
+  const AskingFilters filters_;
+  HitList<Mode, Filtered> hits_;
+  unsigned open_[kMaxTreeLevels] = {};
+  std::uint32_t row_[kMaxTreeLevels][kRoom + kLanes];
+  std::uint32_t node_[kMaxTreeLevels][kRoom + kLanes];
+};
+
+struct Query {
+  template <HitMode Mode, bool Filtered>
+  static bool run(const TreeView& tree, const QueryBatch& batch, PairSink& sink) {
+    return Descent<Mode, Filtered>(tree, batch, sink).run();
+  }
+};
+
+bool query(const TreeView& tree, const QueryBatch& batch, PairSink& sink) {
+  return with_mode<Query>(tree, batch, sink);
+}
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME
+
+extern const BlockTreeKernels WINNOW_KERNEL_TABLE(block_tree_kernels) = {
+    WINNOW_ISA_NAME::refit_leaves, WINNOW_ISA_NAME::refit_nodes, WINNOW_ISA_NAME::self_pairs,
+    WINNOW_ISA_NAME::query};
+
+}  // namespace winnow

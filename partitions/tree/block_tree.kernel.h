@@ -1,0 +1,49 @@
+#pragma once
+
+#include "partitions/pairs/pair_sink.h"
+#include "simd/kernels/kernels.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace winnow {
+
+/// Levels of a 16-ary tree over at most 2^28 blocks.
+inline constexpr std::uint32_t kMaxTreeLevels = 8;
+
+/// What the objects below the nodes of one level have in their filters; all null if no filter was
+/// ever set. An object of every environment counts as first 0, last ~0.
+struct NodeFilters {
+  std::uint32_t* layers = nullptr;  ///< or of all
+  std::uint32_t* mask = nullptr;    ///< or of all
+  std::uint32_t* first_environment = nullptr;
+  std::uint32_t* last_environment = nullptr;
+  std::uint32_t* alike = nullptr;  ///< 1 if all objects have the same filter
+};
+
+/// An implicit 16-ary tree: node i of level l + 1 bounds nodes [16 i, 16 i + 16) of level l, and
+/// node i of level 0 bounds the rows of block first_block + i. Level arrays are padded to 16 with
+/// empty boxes. The top level has at most 16 nodes.
+struct TreeView {
+  RowView rows;
+  std::uint32_t first_block = 0;
+  std::uint32_t levels = 0;  ///< 0 if there are no blocks
+  std::uint32_t count[kMaxTreeLevels] = {};
+  float* node[kMaxTreeLevels][6] = {};
+  NodeFilters filters[kMaxTreeLevels];
+};
+
+struct BlockTreeKernels {
+  /// Recomputes nodes [begin, end) of level 0 from the rows.
+  void (*refit_leaves)(const TreeView&, std::uint32_t begin, std::uint32_t end);
+  /// Recomputes nodes [begin, end) of `level` > 0 from the level below.
+  void (*refit_nodes)(const TreeView&, std::uint32_t level, std::uint32_t begin, std::uint32_t end);
+  /// All pairs within and between blocks, for the first block in groups [begin, end) of 16.
+  bool (*self_pairs)(const TreeView&, std::uint32_t begin, std::uint32_t end, PairSink&);
+  /// All hits of the batch's boxes.
+  bool (*query)(const TreeView&, const QueryBatch&, PairSink&);
+};
+
+WINNOW_KERNELS(BlockTreeKernels, block_tree_kernels);
+
+}  // namespace winnow

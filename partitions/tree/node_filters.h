@@ -1,0 +1,27 @@
+#pragma once
+
+#include <winnow/core/column.h>
+#include "partitions/tree/block_tree.kernel.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace winnow {
+
+/// Node arrays are padded to a block.
+[[nodiscard]] constexpr std::size_t padded_nodes(std::size_t nodes) noexcept {
+  return (nodes + 15) / 16 * 16;
+}
+
+/// Gives every level of a tree its NodeFilters in `memory`, padded with nodes that nothing meets.
+/// False if memory is refused.
+[[nodiscard]] bool lay_out_filters(TreeView& shape, Column<std::uint32_t>& memory) noexcept;
+
+/// Recomputes the filters of nodes [begin, end) of level 0 from those of the rows.
+void refit_leaf_filters(const TreeView& tree, std::uint32_t begin, std::uint32_t end) noexcept;
+
+/// Recomputes the filters of nodes [begin, end) of `level` > 0 from the level below.
+void refit_node_filters(const TreeView& tree, std::uint32_t level, std::uint32_t begin,
+                        std::uint32_t end) noexcept;
+
+}  // namespace winnow

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <winnow/core/column.h>
+#include <winnow/pipeline/composite_pool.h>
+#include "pipeline/shapes/frame.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow::mid {
+
+/// Triangles that one id or several scaled ones refer to, in a list of all.
+struct SharedMesh {
+  explicit SharedMesh(std::pmr::memory_resource* memory) noexcept
+      : mesh(memory), active_corners(memory) {}
+
+  /// Finds the active corners of a mesh that has been built or fitted anew. False if there is no
+  /// room for them; there always is after the first time.
+  [[nodiscard]] bool find_corners() noexcept;
+  [[nodiscard]] bool is_active(std::uint32_t vertex) const noexcept {
+    return (active_corners[vertex / 32] >> vertex % 32 & 1U) != 0;
+  }
+
+  TriangleMesh mesh;
+  /// A bit for each vertex that is on an active edge of any triangle.
+  Column<std::uint32_t> active_corners;
+  std::uint32_t users = 0;
+  SharedMesh* previous = nullptr;
+  SharedMesh* next = nullptr;
+};
+
+struct MeshEntry {
+  SharedMesh* shared = nullptr;
+  double scale[3] = {1.0, 1.0, 1.0};
+};
+
+/// So many children are tested one by one; more get a tree.
+inline constexpr std::uint32_t kFlatChildren = 16;
+
+/// A compound and its children, in one block of memory.
+///
+/// The tree of many children is that of a triangle mesh: the box of a child is the box of the
+/// degenerate triangle between its corners, so that every walk of meshes is one of compounds. A
+/// Partition would prune as well, but its keys, change lists and free places are for objects that
+/// come, move and go; children never do, and scenes have many compounds of few children.
+struct Compound {
+  std::uint32_t count = 0;
+  double radius = 0.0;
+  /// Of all children, in the compound's frame.
+  Aabb bounds;
+  const CompoundChild* children = nullptr;
+  const Aabb* boxes = nullptr;
+  /// Null for few children, or where one reaches to infinity.
+  TriangleMesh* tree = nullptr;
+  std::size_t bytes = 0;
+};
+
+/// Entries of one kind of shape with their free places. Entry must be false where it is free.
+template <typename Entry>
+struct Places {
+  explicit Places(std::pmr::memory_resource* memory) noexcept : entries(memory), free(memory) {}
+
+  Column<Entry> entries;
+  Column<std::uint32_t> free;
+
+  /// Makes sure that `put` and a later `take` need no memory.
+  [[nodiscard]] Status prepare() noexcept {
+    if (!free.empty()) return Status::ok;
+    const std::size_t count = entries.size() + 1;
+    if (entries.size() >> ShapeId::kIndexBits != 0) return Status::too_many_objects;
+    return entries.grow(count) && free.grow(count) ? Status::ok : Status::out_of_memory;
+  }
+  [[nodiscard]] std::uint32_t put(const Entry& entry) noexcept {
+    if (free.empty()) {
+      entries.set_size(entries.size() + 1);
+      entries[entries.size() - 1] = entry;
+      return static_cast<std::uint32_t>(entries.size() - 1);
+    }
+    const std::uint32_t index = free[free.size() - 1];
+    free.set_size(free.size() - 1);
+    entries[index] = entry;
+    return index;
+  }
+  void take(std::uint32_t index) noexcept {
+    entries[index] = Entry{};
+    free.set_size(free.size() + 1);
+    free[free.size() - 1] = index;
+  }
+  [[nodiscard]] std::size_t size() const noexcept { return entries.size() - free.size(); }
+};
+
+/// What a CompositePool holds.
+struct Composites {
+  Composites(const ShapePool& pool, std::pmr::memory_resource* memory) noexcept;
+  ~Composites();
+  Composites(const Composites&) = delete;
+  Composites& operator=(const Composites&) = delete;
+
+  [[nodiscard]] const MeshEntry* mesh(ShapeId id) const noexcept;
+  [[nodiscard]] HeightField* field(ShapeId id) const noexcept;
+  [[nodiscard]] const Compound* compound(ShapeId id) const noexcept;
+  [[nodiscard]] bool contains(ShapeId id) const noexcept {
+    return mesh(id) != nullptr || field(id) != nullptr || compound(id) != nullptr;
+  }
+
+  /// Null if memory is refused.
+  [[nodiscard]] SharedMesh* new_mesh() noexcept;
+  /// One user less; with the last one it is given back.
+  void release(SharedMesh* shared) noexcept;
+  Status new_compound(std::span<const CompoundChild> children, Compound*& made) noexcept;
+  void release(Compound* compound) noexcept;
+
+  const ShapePool& shapes;
+  std::pmr::memory_resource* memory;
+  Places<MeshEntry> meshes;
+  Places<HeightField*> fields;
+  Places<Compound*> compounds;
+  SharedMesh* first_mesh = nullptr;
+  std::uint64_t revision = 0;
+};
+
+/// The box of a shape at a pose.
+[[nodiscard]] Box bounds_of(const Composites& all, ShapeId id, const Pose& pose) noexcept;
+
+}  // namespace winnow::mid

@@ -1,0 +1,232 @@
+#include "pipeline/composites/expand.h"
+#include "pipeline/composites/edge_contact.h"
+#include "pipeline/composites/search.h"
+
+#include <algorithm>
+
+namespace winnow::mid {
+namespace {
+
+constexpr std::uint32_t kChunk = 32;
+
+/// What a task leaves for the one that writes its part out. Words, as all of the scratch.
+struct ChunkRecord {
+  std::uint32_t primitive_block;
+  std::uint32_t pair_block;
+  std::uint32_t primitives;
+  std::uint32_t triangles;
+  std::uint32_t pairs;
+  // Of the chunks before.
+  std::uint32_t first_primitive;
+  std::uint32_t first_triangle;
+  std::uint32_t first_pair;
+};
+static_assert(sizeof(ChunkRecord) % sizeof(std::uint32_t) == 0);
+
+constexpr std::uint32_t kNumberMask = (1U << kActiveEdgeShift) - 1U;
+
+[[nodiscard]] constexpr std::uint64_t blocks_for(std::uint64_t words) noexcept {
+  return (words + WordArena::kBlock - 1) / WordArena::kBlock;
+}
+
+class Expansion {
+ public:
+  Expansion(const Composites& all, const ShapeTables& tables, const Bodies& bodies,
+            std::span<const BodyPair> pairs, PrimitivePairs& out) noexcept
+      : all_(all),
+        tables_(tables),
+        bodies_(bodies),
+        pairs_(pairs),
+        out_(out),
+        chunks_((pairs.size() + kChunk - 1) / kChunk),
+        head_(blocks_for(chunks_ * sizeof(ChunkRecord) / sizeof(std::uint32_t)) +
+              blocks_for(pairs.size())) {}
+
+  [[nodiscard]] Status run(const Execution& execution) noexcept;
+
+ private:
+  [[nodiscard]] bool search_all(const Execution& execution) noexcept;
+  void search(std::size_t chunk, WordArena& arena) noexcept;
+  [[nodiscard]] Status count() noexcept;
+  void write(std::size_t chunk) noexcept;
+  void write_primitive(const Side& side, std::uint32_t number, std::size_t at,
+                       std::uint32_t& triangle) noexcept;
+  void write_triangle(const Side& side, std::uint32_t number, std::size_t at,
+                      std::uint32_t triangle) noexcept;
+
+  // Callers promise it; what has been removed touches nothing.
+  [[nodiscard]] bool is_there(std::uint32_t body) const noexcept {
+    if (body >= bodies_.shapes.size() || body >= bodies_.poses.size()) return false;
+    const ShapeId shape = bodies_.shapes[body];
+    const std::uint32_t kind = shape.kind_index();
+    return kind < kShapeKinds ? shape.index() < tables_.count[kind] : all_.contains(shape);
+  }
+  [[nodiscard]] Side side(std::uint32_t body, std::uint32_t origin) const noexcept {
+    const Eigen::Map<const Vec> position(bodies_.poses[body].position);
+    const Eigen::Map<const Vec> from(bodies_.poses[origin].position);
+    return Side(all_, tables_, bodies_.shapes[body], bodies_.poses[body],
+                body == origin ? Vec(Vec::Zero()) : finite(position - from));
+  }
+  [[nodiscard]] ChunkRecord* records() const noexcept {
+    return reinterpret_cast<ChunkRecord*>(out_.scratch.data());
+  }
+  /// How many primitives each pair of bodies has.
+  [[nodiscard]] std::uint32_t* primitive_counts() const noexcept {
+    const std::uint64_t records = blocks_for(chunks_ * sizeof(ChunkRecord) / sizeof(std::uint32_t));
+    return out_.scratch.data() + records * WordArena::kBlock;
+  }
+  [[nodiscard]] std::uint32_t* blocks() const noexcept {
+    return out_.scratch.data() + head_ * WordArena::kBlock;
+  }
+
+  const Composites& all_;
+  const ShapeTables& tables_;
+  const Bodies& bodies_;
+  std::span<const BodyPair> pairs_;
+  PrimitivePairs& out_;
+  std::size_t chunks_;
+  std::uint64_t head_;
+};
+
+Status Expansion::run(const Execution& execution) noexcept {
+  if (!out_.first.resize(pairs_.size() + 1)) return Status::out_of_memory;
+  out_.first[0] = 0;
+  if (!search_all(execution)) return Status::out_of_memory;
+  const Status status = count();
+  if (status != Status::ok) return status;
+  execution.for_each(chunks_, [&](std::size_t chunk) { write(chunk); });
+  return Status::ok;
+}
+
+bool Expansion::search_all(const Execution& execution) noexcept {
+  // Each chunk fills one block of both kinds at least, if it finds anything.
+  std::uint64_t blocks = 2 * chunks_;
+  while (true) {
+    if (!out_.scratch.resize((head_ + blocks) * WordArena::kBlock)) return false;
+    // All that there is, so that a call like the last one needs no second run.
+    blocks = out_.scratch.capacity() / WordArena::kBlock - head_;
+    WordArena arena(this->blocks(), blocks);
+    execution.for_each(chunks_, [&](std::size_t chunk) { search(chunk, arena); });
+    if (arena.was_enough()) return true;
+    blocks = std::max(arena.asked(), blocks + blocks / 2);
+  }
+}
+
+void Expansion::search(std::size_t chunk, WordArena& arena) noexcept {
+  Search search(tables_, out_.margin, arena);
+  const std::size_t end = std::min((chunk + 1) * kChunk, pairs_.size());
+  for (std::size_t i = chunk * kChunk; i < end; ++i) {
+    const std::uint64_t primitives = search.primitives().size();
+    const std::uint64_t found = search.pairs().size();
+    if (is_there(pairs_[i].a) && is_there(pairs_[i].b)) {
+      search.run(side(pairs_[i].a, pairs_[i].a), side(pairs_[i].b, pairs_[i].a));
+    }
+    primitive_counts()[i] = static_cast<std::uint32_t>(search.primitives().size() - primitives);
+    out_.first[i + 1] = static_cast<std::uint32_t>((search.pairs().size() - found) / 2);
+  }
+  records()[chunk] = {search.primitives().first_block(),
+                      search.pairs().first_block(),
+                      static_cast<std::uint32_t>(search.primitives().size()),
+                      static_cast<std::uint32_t>(search.triangles()),
+                      static_cast<std::uint32_t>(search.pairs().size() / 2),
+                      0,
+                      0,
+                      0};
+}
+
+Status Expansion::count() noexcept {
+  std::uint64_t primitives = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t pairs = 0;
+  for (std::size_t chunk = 0; chunk < chunks_; ++chunk) {
+    ChunkRecord& record = records()[chunk];
+    record.first_primitive = static_cast<std::uint32_t>(primitives);
+    record.first_triangle = static_cast<std::uint32_t>(triangles);
+    record.first_pair = static_cast<std::uint32_t>(pairs);
+    primitives += record.primitives;
+    triangles += record.triangles;
+    pairs += record.pairs;
+  }
+  constexpr std::uint64_t kMost = std::uint64_t{1} << ShapeId::kIndexBits;
+  if (triangles > kMost || primitives >> 32U != 0 || pairs >> 32U != 0) {
+    return Status::too_many_objects;
+  }
+  for (std::size_t i = 0; i < pairs_.size(); ++i) out_.first[i + 1] += out_.first[i];
+  const bool ok = out_.shapes.resize(primitives) && out_.poses.resize(primitives) &&
+                  out_.part.resize(primitives) && out_.triangles.resize(triangles) &&
+                  out_.active_edges.resize(triangles) && out_.pairs.resize(pairs);
+  return ok ? Status::ok : Status::out_of_memory;
+}
+
+void Expansion::write(std::size_t chunk) noexcept {
+  const ChunkRecord& record = records()[chunk];
+  WordReader primitives(blocks(), record.primitive_block);
+  WordReader pairs(blocks(), record.pair_block);
+  std::size_t at = record.first_primitive;
+  std::uint32_t triangle = record.first_triangle;
+  const std::size_t end = std::min((chunk + 1) * kChunk, pairs_.size());
+  for (std::size_t i = chunk * kChunk; i < end; ++i) {
+    const std::uint32_t count = primitive_counts()[i];
+    if (count == 0) continue;
+    const Side a = side(pairs_[i].a, pairs_[i].a);
+    const Side b = side(pairs_[i].b, pairs_[i].a);
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const std::uint32_t word = primitives.get();
+      const bool second = (word & Search::kSecond) != 0;
+      write_primitive(second ? b : a, word & ~Search::kSecond, at++, triangle);
+    }
+  }
+  for (std::uint32_t i = 0; i < record.pairs; ++i) {
+    const std::uint32_t a = pairs.get();
+    const std::uint32_t b = pairs.get();
+    out_.pairs[record.first_pair + i] = {record.first_primitive + a, record.first_primitive + b};
+  }
+}
+
+void Expansion::write_primitive(const Side& side, std::uint32_t number, std::size_t at,
+                                std::uint32_t& triangle) noexcept {
+  if (side.is_surface()) return write_triangle(side, number, at, triangle++);
+  const Part part = side.part(number);
+  ShapeId shape = part.shape;
+  if (shape.kind() == ShapeKind::triangle) {
+    out_.triangles[triangle] = tables_.triangles[shape.index()];
+    out_.active_edges[triangle] = kAllActive;
+    shape = ShapeId::of(ShapeKind::triangle, triangle++);
+  }
+  out_.shapes[at] = shape;
+  out_.poses[at] = pose_of(part.position, side.part_turn(number));
+  out_.part[at] = side.kind == Side::Kind::convex ? kWholeShape : number;
+}
+
+void Expansion::write_triangle(const Side& side, std::uint32_t number, std::size_t at,
+                               std::uint32_t triangle) noexcept {
+  Corners corners;
+  static_cast<void>(side.corners(number, corners));
+  TriangleShape& shape = out_.triangles[triangle];
+  shape = {};
+  for (int k = 0; k < 2; ++k) Vec::Map(shape.vertex[k + 1]) = finite(corners.edge[k]);
+  out_.shapes[at] = ShapeId::of(ShapeKind::triangle, triangle);
+  out_.poses[at] = pose_of(corners.first, {1.0, 0.0, 0.0, 0.0});
+  out_.active_edges[triangle] = side.active(number);
+  out_.part[at] =
+      side.kind == Side::Kind::mesh ? side.mesh->triangle[number] & kNumberMask : number;
+}
+
+}  // namespace
+
+Status expand(const Composites* all, const ShapeTables& tables, const Bodies& bodies,
+              std::span<const BodyPair> pairs, double margin, const Execution& execution,
+              PrimitivePairs& out) {
+  out.clear();
+  out.margin = margin;
+  if (pairs.empty() || all == nullptr) {
+    if (!out.first.resize(pairs.size() + 1)) return Status::out_of_memory;
+    std::fill(out.first.begin(), out.first.end(), 0U);
+    return Status::ok;
+  }
+  const Status status = Expansion(*all, tables, bodies, pairs, out).run(execution);
+  if (status != Status::ok) out.clear();
+  return status;
+}
+
+}  // namespace winnow::mid

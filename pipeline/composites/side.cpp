@@ -1,0 +1,150 @@
+#include "pipeline/composites/side.h"
+#include "pipeline/shapes/extent.h"
+
+#include <algorithm>
+
+namespace winnow::mid {
+
+Part::Part(const ShapeTables& tables, ShapeId id, std::uint32_t of_body, const Mat& turned,
+           const Vec& at) noexcept
+    : shape(id), number(of_body), rotation(turned), position(at), radius(radius_of(tables, id)) {
+  reach = radius;
+  switch (id.kind()) {
+    case ShapeKind::sphere:
+      inner = tables.spheres[id.index()].radius;
+      break;
+    case ShapeKind::capsule:
+      inner = tables.capsules[id.index()].radius;
+      break;
+    case ShapeKind::box: {
+      const BoxShape& box = tables.boxes[id.index()];
+      inner = std::min({box.half[0], box.half[1], box.half[2]}) + box.rounding;
+      break;
+    }
+    case ShapeKind::hull: {
+      const HullShape& hull = tables.hulls[id.index()];
+      middle = rotation * Eigen::Map<const Vec>(hull.center);
+      reach = (hull.radius + hull.rounding) * (1.0 + kSlack);
+      inner = hull.inner_radius;
+      break;
+    }
+    default:
+      break;
+  }
+}
+
+Side::Side(const Composites& all, const ShapeTables& pool, ShapeId shape, const Pose& pose,
+           const Vec& at) noexcept
+    : tables(pool),
+      id(shape),
+      turn(tame(pose.orientation)),
+      rotation(rotation_of(turn)),
+      position(at) {
+  to_world = rotation;
+  to_local = rotation.transpose();
+  if (!shape.is_composite()) return;
+  if (const MeshEntry* const entry = all.mesh(shape)) {
+    kind = Kind::mesh;
+    shared = entry->shared;
+    mesh = &shared->mesh.view();
+    bounds = Box::of(entry->shared->mesh.bounds());
+    const Eigen::Map<const Vec> scale(entry->scale);
+    to_world = rotation * scale.asDiagonal();
+    to_local = scale.cwiseInverse().asDiagonal() * rotation.transpose();
+    most_shrunk = scale.cwiseInverse().cwiseAbs().maxCoeff() * (1.0 + kSlack);
+  } else if (const HeightField* const heights = all.field(shape)) {
+    kind = Kind::field;
+    field = heights;
+    bounds = Box::of(heights->bounds());
+  } else {
+    kind = Kind::compound;
+    compound = all.compound(shape);
+    bounds = Box::of(compound->bounds);
+  }
+}
+
+Box Side::box_in(const Side& other, double margin) const noexcept {
+  if (kind == Kind::convex) return box_of(part(0), other, margin);
+  const Vec offset = other.to_local * finite(position - other.position);
+  if (!bounds.is_finite()) {
+    // Endless in one direction, endless in all once it is turned.
+    return {Vec::Constant(-kInfinity), Vec::Constant(kInfinity)};
+  }
+  const Box box = box_under(bounds, other.to_local * to_world, offset, 0.0);
+  const Vec out = margin * other.to_local.rowwise().norm();
+  return {box.min - out, box.max + out};
+}
+
+Part Side::part(std::uint32_t number) const noexcept {
+  if (kind == Kind::convex) return {tables, id, 0, rotation, position};
+  const CompoundChild& child = compound->children[number];
+  const Eigen::Map<const Vec> at(child.pose.position);
+  return {tables, child.shape, number, rotation * rotation_of(tame(child.pose.orientation)),
+          position + rotation * at};
+}
+
+Eigen::Vector4d Side::part_turn(std::uint32_t number) const noexcept {
+  if (kind == Kind::convex) return turn;
+  return product(turn, tame(compound->children[number].pose.orientation));
+}
+
+bool Side::corners(std::uint32_t number, Corners& out) const noexcept {
+  Vec local[3];
+  if (kind == Kind::mesh) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t corner = mesh->corner[k][number];
+      for (int axis = 0; axis < 3; ++axis) {
+        local[k][axis] = static_cast<double>(mesh->vertex[axis][corner]);
+      }
+    }
+  } else {
+    TriangleShape triangle;
+    if (!field->triangle(number, triangle)) return false;
+    for (int k = 0; k < 3; ++k) local[k] = Eigen::Map<const Vec>(triangle.vertex[k]);
+  }
+  out.first = to_world * local[0] + position;
+  out.edge[0] = to_world * (local[1] - local[0]);
+  out.edge[1] = to_world * (local[2] - local[0]);
+  return true;
+}
+
+std::uint8_t Side::active(std::uint32_t number) const noexcept {
+  std::uint32_t bits = 0;
+  if (kind == Kind::mesh) {
+    bits = mesh->triangle[number] >> kActiveEdgeShift & 7U;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (shared->is_active(mesh->corner[k][number])) bits |= 8U << k;
+    }
+    return static_cast<std::uint8_t>(bits);
+  }
+  // Corners of a height field are active at the border alone: ridges that end at a corner, and
+  // holes, are not looked for.
+  bits = field->active_edges(number);
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    if ((bits & (1U << k | 1U << (k + 2) % 3)) != 0) bits |= 8U << k;
+  }
+  const std::uint32_t column = number / 2 % (field->columns() - 1);
+  const std::uint32_t row = number / 2 / (field->columns() - 1);
+  const bool at_side[2][2] = {{column == 0, column + 2 == field->columns()},
+                              {row == 0, row + 2 == field->rows()}};
+  TriangleShape triangle;
+  if (!(at_side[0][0] || at_side[0][1] || at_side[1][0] || at_side[1][1]) ||
+      !field->triangle(number, triangle)) {
+    return static_cast<std::uint8_t>(bits);
+  }
+  const auto& v = triangle.vertex;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    for (int axis = 0; axis < 2; ++axis) {
+      const bool is_low = v[k][axis] == std::min({v[0][axis], v[1][axis], v[2][axis]});
+      if (at_side[axis][is_low ? 0 : 1]) bits |= 8U << k;
+    }
+  }
+  return static_cast<std::uint8_t>(bits);
+}
+
+Box box_of(const Part& part, const Side& other, double margin) noexcept {
+  const Vec offset = other.to_local * finite(part.position - other.position);
+  return box_under(other.tables, part.shape, other.to_local * part.rotation, offset, margin);
+}
+
+}  // namespace winnow::mid

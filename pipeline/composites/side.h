@@ -1,0 +1,77 @@
+#pragma once
+
+#include "pipeline/composites/composites.h"
+#include "pipeline/shapes/frame.h"
+
+#include <cstdint>
+
+namespace winnow::mid {
+
+/// Corner 0 of a triangle and the way from it to the others.
+struct Corners {
+  Vec first;
+  Vec edge[2];
+};
+
+/// A convex shape where it stands.
+struct Part {
+  ShapeId shape;
+  /// 0 or the number of a child.
+  std::uint32_t number;
+  Mat rotation;
+  Vec position;
+  /// No point is farther from the position.
+  double radius = 0.0;
+  /// A point inside, turned and relative to the position: no point of the shape is farther from it
+  /// than `reach`, none within `inner` of it is outside.
+  Vec middle = Vec::Zero();
+  double reach = 0.0;
+  double inner = 0.0;
+
+  Part(const ShapeTables& tables, ShapeId id, std::uint32_t number, const Mat& turned,
+       const Vec& at) noexcept;
+};
+
+/// One body of a pair where it stands: relative to the position of body a, in the axes of the
+/// world. What it is made of has numbers: 0 for a convex shape, the child of a compound, the slot
+/// of a mesh, the triangle of a height field.
+struct Side {
+  enum class Kind : std::uint8_t { convex, compound, mesh, field };
+
+  /// `at`: its position relative to that of body a.
+  Side(const Composites& all, const ShapeTables& tables, ShapeId shape, const Pose& pose,
+       const Vec& at) noexcept;
+
+  [[nodiscard]] bool is_surface() const noexcept { return kind >= Kind::mesh; }
+  /// Of all of this, grown by `margin` in the world, in the frame of `other`.
+  [[nodiscard]] Box box_in(const Side& other, double margin) const noexcept;
+  [[nodiscard]] Part part(std::uint32_t number) const noexcept;
+  [[nodiscard]] Eigen::Vector4d part_turn(std::uint32_t number) const noexcept;
+  /// False for a triangle of a hole.
+  [[nodiscard]] bool corners(std::uint32_t number, Corners& out) const noexcept;
+  /// Active edges and corners of a triangle: see PrimitivePairs::active_edges.
+  [[nodiscard]] std::uint8_t active(std::uint32_t number) const noexcept;
+
+  const ShapeTables& tables;
+  Kind kind = Kind::convex;
+  ShapeId id;
+  Eigen::Vector4d turn;
+  Mat rotation;
+  Vec position;
+  /// Own units to the world's without the position, scale included, and back.
+  Mat to_world;
+  Mat to_local;
+  /// No length of the world is longer than this many times itself in own units.
+  double most_shrunk = 1.0;
+  const MeshView* mesh = nullptr;
+  const SharedMesh* shared = nullptr;
+  const HeightField* field = nullptr;
+  const Compound* compound = nullptr;
+  /// Of a composite in its own frame.
+  Box bounds;
+};
+
+/// The box of a part, grown by `margin` in the world, in the frame of `other`.
+[[nodiscard]] Box box_of(const Part& part, const Side& other, double margin) noexcept;
+
+}  // namespace winnow::mid

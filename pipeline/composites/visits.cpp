@@ -1,0 +1,179 @@
+#include "pipeline/composites/visits.h"
+#include "pipeline/composites/side.h"
+#include "pipeline/mesh/mesh_walks.h"
+#include "pipeline/shapes/extent.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow::mid {
+namespace {
+
+constexpr std::uint32_t kNumberMask = (1U << kActiveEdgeShift) - 1U;
+
+/// Makes primitives of the numbers that a walk finds, in the world.
+struct Guide {
+  const Composites& all;
+  const Side& side;
+  const PrimitiveVisitor& visitor;
+
+  [[nodiscard]] double show(std::uint32_t number, double limit) const {
+    Primitive primitive;
+    if (side.is_surface()) {
+      Corners corners;
+      if (!side.corners(number, corners)) return limit;
+      primitive.shape = ShapeId::of(ShapeKind::triangle, 0);
+      primitive.part =
+          side.kind == Side::Kind::mesh ? side.mesh->triangle[number] & kNumberMask : number;
+      primitive.pose = pose_of(corners.first, {1.0, 0.0, 0.0, 0.0});
+      for (int k = 0; k < 2; ++k) {
+        Vec::Map(primitive.triangle.vertex[k + 1]) = finite(corners.edge[k]);
+      }
+    } else {
+      const Part part = side.part(number);
+      primitive.shape = part.shape;
+      primitive.part = number;
+      primitive.pose = pose_of(part.position, side.part_turn(number));
+      if (part.shape.kind() == ShapeKind::triangle) {
+        primitive.triangle = all.shapes.tables().triangles[part.shape.index()];
+      }
+    }
+    return visitor.visit(visitor.context, primitive, limit);
+  }
+
+  // The children of a compound with a tree are the triangles of that.
+  static double show_slots(void* context, const std::uint32_t* slots, std::uint32_t count,
+                           double limit) {
+    const Guide& guide = *static_cast<const Guide*>(context);
+    const Compound* const compound = guide.side.compound;
+    for (std::uint32_t i = 0; i < count && limit >= 0.0; ++i) {
+      const std::uint32_t number =
+          compound != nullptr ? compound->tree->view().triangle[slots[i]] & kNumberMask : slots[i];
+      limit = guide.show(number, limit);
+    }
+    return limit;
+  }
+  [[nodiscard]] SlotVisitor slots() const noexcept {
+    return {&show_slots, const_cast<Guide*>(this)};
+  }
+};
+
+/// Shows children in ascending order of a measure, which is infinite for those not to be shown.
+template <typename Measure>
+void show_in_order(const Guide& guide, double limit, Measure&& measure) {
+  const Compound& compound = *guide.side.compound;
+  double last = -1.0;
+  std::uint32_t last_child = 0;
+  while (limit >= 0.0) {
+    // The next after the last one shown, by measure and number. No room is needed for an order.
+    double best = kInfinity;
+    std::uint32_t child = compound.count;
+    for (std::uint32_t i = 0; i < compound.count; ++i) {
+      const double value = measure(Box::of(compound.boxes[i]));
+      if (value < last || (value == last && i <= last_child) || !(value < best)) continue;
+      best = value;
+      child = i;
+    }
+    if (child == compound.count || best > limit) return;
+    limit = guide.show(child, limit);
+    last = best;
+    last_child = child;
+  }
+}
+
+/// When a moving box first meets another: infinite if it does not before `limit`.
+[[nodiscard]] double meeting_time(const Box& moving, const Vec& direction, const Box& box,
+                                  double limit) noexcept {
+  double first = 0.0;
+  double last = limit;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double near = box.min[axis] - moving.max[axis];
+    const double far = box.max[axis] - moving.min[axis];
+    if (direction[axis] == 0.0) {
+      if (near > 0.0 || far < 0.0) return kInfinity;
+      continue;
+    }
+    const double a = near / direction[axis];
+    const double b = far / direction[axis];
+    // No comparison with NaN, from infinities, narrows the interval.
+    const double enter = std::min(a, b) * (1.0 - 1e-15);
+    const double leave = std::max(a, b) * (1.0 + 1e-15);
+    if (enter > first) first = enter;
+    if (leave < last) last = leave;
+  }
+  return first <= last ? first : kInfinity;
+}
+
+[[nodiscard]] double gap(const Box& a, const Box& b) noexcept {
+  double square = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double apart = std::max({0.0, a.min[axis] - b.max[axis], b.min[axis] - a.max[axis]});
+    square += apart * apart;
+  }
+  return std::sqrt(square) * (1.0 - 1e-15);
+}
+
+[[nodiscard]] Side side_at(const Composites& all, ShapeId id, const Pose& pose) noexcept {
+  return Side(all, all.shapes.tables(), id, pose, Eigen::Map<const Vec>(pose.position));
+}
+
+/// A box of the world in a frame at the side's position: grown by what rounding of either may take.
+[[nodiscard]] Box box_in(const Side& side, const BoxSweep& sweep, const Mat& to_local) noexcept {
+  const Eigen::Map<const Vec> min(sweep.min);
+  const Eigen::Map<const Vec> max(sweep.max);
+  const Box box{finite(min - side.position), finite(max - side.position)};
+  return box_under(box, to_local, Vec::Zero(), 0.0);
+}
+
+}  // namespace
+
+void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,
+           const PrimitiveVisitor& visitor) {
+  const Side side = side_at(all, id, pose);
+  const Guide guide{all, side, visitor};
+  // What is never met is met at infinity: not before any limit.
+  const double max_t = std::min(sweep.max_t, std::numeric_limits<double>::max());
+  Box box = box_in(side, sweep, side.to_local);
+  const Vec direction = side.to_local * Eigen::Map<const Vec>(sweep.direction);
+  // Rounding of the direction shifts the box, as far as it gets, by a share of where it gets.
+  if (side.bounds.is_finite()) {
+    const Vec noise = Vec::Constant(4.0 * kSlack *
+                                    (side.bounds.min.cwiseAbs() + side.bounds.max.cwiseAbs() +
+                                     box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()))
+                                        .sum());
+    box = {box.min - noise, box.max + noise};
+  }
+  if (side.kind == Side::Kind::mesh) {
+    mesh_sweep(*side.mesh, box.min.data(), box.max.data(), direction.data(), max_t, guide.slots());
+  } else if (side.kind == Side::Kind::field) {
+    side.field->sweep(box.min.data(), box.max.data(), direction.data(), max_t, guide.slots());
+  } else if (side.compound->tree != nullptr) {
+    mesh_sweep(side.compound->tree->view(), box.min.data(), box.max.data(), direction.data(), max_t,
+               guide.slots());
+  } else {
+    show_in_order(guide, max_t,
+                  [&](const Box& child) { return meeting_time(box, direction, child, max_t); });
+  }
+}
+
+void visit_near(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& from,
+                double limit, const PrimitiveVisitor& visitor) {
+  const Side side = side_at(all, id, pose);
+  const Guide guide{all, side, visitor};
+  // Turned, but in the lengths of the world.
+  const Box box = box_in(side, from, side.rotation.transpose());
+  if (side.kind == Side::Kind::mesh) {
+    mesh_near(*side.mesh, all.mesh(id)->scale, box.min.data(), box.max.data(), limit,
+              guide.slots());
+  } else if (side.kind == Side::Kind::field) {
+    side.field->near(box.min.data(), box.max.data(), limit, guide.slots());
+  } else if (side.compound->tree != nullptr) {
+    constexpr double kUnscaled[3] = {1.0, 1.0, 1.0};
+    mesh_near(side.compound->tree->view(), kUnscaled, box.min.data(), box.max.data(), limit,
+              guide.slots());
+  } else {
+    show_in_order(guide, limit, [&](const Box& child) { return gap(box, child); });
+  }
+}
+
+}  // namespace winnow::mid

@@ -1,0 +1,300 @@
+#pragma once
+
+// What kernels compute of the pairs in their lanes, and how it is written to the columns of a job.
+
+#include "pipeline/kernels/shape_lanes.wide.h"
+#include "simd/lanes/compress.h"
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// NarrowLevel, as a template argument.
+enum Level : int { kBoolean, kDistance, kManifold };
+
+/// The distance from 1 to the next number.
+template <typename T>
+inline constexpr T kEpsilon = sizeof(T) == sizeof(double) ? T(0x1p-52) : T(0x1p-23F);
+
+/// Levels distance and manifold; as the columns of NarrowJob say.
+template <typename T>
+struct AnswerLanes {
+  Real<T> distance;
+  Real<T> error_bound;
+  Vec3<T> normal;
+  /// Read at level distance only.
+  Vec3<T> point;
+};
+
+/// One contact point a lane, for the lanes of a mask.
+template <typename T>
+struct ContactLanes {
+  Vec3<T> position;
+  Real<T> depth;
+  /// Whole numbers below 2^24: the halves of ContactPoint::feature.
+  Real<T> feature_a;
+  Real<T> feature_b;
+  Mask16 lanes;
+};
+
+/// Lanes of sizes whose squares neither overflow nor lose digits. `square` is a sum of squares of
+/// all lengths that matter.
+template <typename T>
+[[gnu::always_inline]] inline Truth<T> in_range(const Real<T>& square) {
+  constexpr bool is_double = sizeof(T) == sizeof(double);
+  return (square > Real<T>(is_double ? T(1e-100) : T(1e-24F))) &
+         (square < Real<T>(is_double ? T(1e100) : T(1e24F)));
+}
+
+/// Eight bits as the lowest bits of eight bytes.
+[[gnu::always_inline]] inline std::uint64_t bytes_of_bits(Mask16 bits) {
+  const std::uint64_t low = (bits & 0x7FU) * 0x02040810204081ULL & 0x0101010101010101ULL;
+  return low | static_cast<std::uint64_t>(bits >> 7U & 1U) << 56U;
+}
+
+/// Level boolean.
+template <typename T>
+[[gnu::always_inline]] inline void write_overlap(const NarrowJob& job, const PairBlock<T>& block,
+                                                 Mask16 overlap) {
+  std::uint8_t* out = job.overlap + block.first;
+  if (block.count == Real<T>::kRealLanes) {
+    for (unsigned byte = 0; byte < Real<T>::kRealLanes; byte += 8) {
+      const std::uint64_t bytes = bytes_of_bits(overlap >> byte & 0xFFU);
+      __builtin_memcpy(out + byte, &bytes, 8);
+    }
+  } else {
+    for (unsigned lane = 0; lane < block.count; ++lane) {
+      out[lane] = static_cast<std::uint8_t>(overlap >> lane & 1U);
+    }
+  }
+}
+
+template <typename T>
+[[gnu::always_inline]] inline void write_column(double* column, const PairBlock<T>& block,
+                                                const Real<T>& v) {
+  constexpr unsigned lanes = Real<T>::kRealLanes;
+  alignas(64) double stage[lanes];
+  double* out = column + block.first;
+  double* to = block.count == lanes ? out : stage;
+  if constexpr (sizeof(T) == sizeof(double)) {
+    v.store_unaligned(to);
+  } else {
+    to_double<0>(v).store_unaligned(to);
+    to_double<1>(v).store_unaligned(to + 8);
+  }
+  if (block.count == lanes) return;
+  for (unsigned lane = 0; lane < block.count; ++lane) out[lane] = stage[lane];
+}
+
+/// Levels distance and manifold, all but contacts.
+template <int L, typename T>
+[[gnu::always_inline]] inline void write_answer(const NarrowJob& job, const PairBlock<T>& block,
+                                                const AnswerLanes<T>& answer) {
+  write_column(job.distance, block, answer.distance);
+  write_column(job.error_bound, block, answer.error_bound);
+  write_column(job.normal[0], block, answer.normal.x);
+  write_column(job.normal[1], block, answer.normal.y);
+  write_column(job.normal[2], block, answer.normal.z);
+  if constexpr (L == kDistance) {
+    write_column(job.point[0], block, answer.point.x);
+    write_column(job.point[1], block, answer.point.y);
+    write_column(job.point[2], block, answer.point.z);
+  }
+}
+
+/// Appends the lanes' pairs to the list of those without an answer.
+template <typename T>
+[[gnu::always_inline]] inline std::uint32_t write_uncertified(const NarrowJob& job,
+                                                              const PairBlock<T>& block,
+                                                              std::uint32_t size, Mask16 lanes) {
+  for (; lanes != 0; lanes &= lanes - 1) job.uncertified[size++] = block.first + first(lanes);
+  return size;
+}
+
+/// Columns contact_first and contact_count, of the masks of lanes that have a first, second, ...
+/// point.
+template <int Points, typename T>
+[[gnu::always_inline]] inline void write_contact_runs(const NarrowJob& job,
+                                                      const PairBlock<T>& block,
+                                                      const Mask16 (&lanes)[Points]) {
+  std::uint32_t before = job.contacts.size;
+  for (unsigned from = 0; from < block.count; from += 8) {
+    std::uint64_t counts = 0;
+    for (int p = 0; p < Points; ++p) counts += bytes_of_bits(lanes[p] >> from & 0xFFU);
+    // Byte i of the product is the sum of bytes 0 to i.
+    const std::uint64_t sums = counts * 0x0101010101010101ULL;
+    const std::uint64_t starts = sums << 8U;
+    std::uint32_t* first_out = job.contact_first + block.first + from;
+    std::uint32_t* count_out = job.contact_count + block.first + from;
+    if (from + 8 <= block.count) {
+      store_bytes(starts, before, first_out);
+      store_bytes(counts, 0, count_out);
+    } else {
+      for (unsigned i = 0; from + i < block.count; ++i) {
+        first_out[i] = before + static_cast<std::uint32_t>(starts >> 8U * i & 0xFFU);
+        count_out[i] = static_cast<std::uint32_t>(counts >> 8U * i & 0xFFU);
+      }
+    }
+    before += static_cast<std::uint32_t>(sums >> 56U);
+  }
+}
+
+/// The lanes' numbers as floats; what comes after those of eight doubles is unspecified.
+template <typename T>
+[[gnu::always_inline]] inline Float16 as_floats(const Real<T>& v) {
+  Single16 s;
+  if constexpr (sizeof(T) == sizeof(double)) {
+    s = to_single(v);
+  } else {
+    s = v;
+  }
+  Float16 r;
+  for (int i = 0; i < kParts; ++i) r.part[i] = s.part[i];
+  return r;
+}
+
+/// A contact's columns: position x, y, z, depth, feature of a, feature of b.
+struct ContactColumns {
+  Float16 column[6];
+};
+
+template <typename T>
+[[gnu::always_inline]] inline ContactColumns columns_of(const ContactLanes<T>& point) {
+  return {{as_floats(point.position.x), as_floats(point.position.y), as_floats(point.position.z),
+           as_floats(point.depth), as_floats(point.feature_a), as_floats(point.feature_b)}};
+}
+
+/// a0 b0 a1 b1 ... of eight lanes, from lane 0 or from lane 8.
+template <int From>
+[[gnu::always_inline]] inline Float16 zip(const Float16& a, const Float16& b) {
+#if defined(WINNOW_ISA_IS_avx512)
+  Float16 r;
+  const __m512i order =
+      _mm512_add_epi32(_mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23),
+                       _mm512_set1_epi32(From));
+  r.part[0] = _mm512_permutex2var_ps(a.part[0], order, b.part[0]);
+  return r;
+#else
+  alignas(64) float from[2][kLanes];
+  alignas(64) float to[kLanes];
+  store_unaligned(from[0], a);
+  store_unaligned(from[1], b);
+  for (int i = 0; i < kLanes; ++i) to[i] = from[i % 2][From + i / 2];
+  return load(to);
+#endif
+}
+/// The same of the bits of two masks of eight lanes.
+[[gnu::always_inline]] inline Mask16 zip_bits(Mask16 a, Mask16 b) {
+  const auto spread = [](Mask16 m) {
+    m = (m | m << 4U) & 0x0F0FU;
+    m = (m | m << 2U) & 0x3333U;
+    return (m | m << 1U) & 0x5555U;
+  };
+  return spread(a & 0xFFU) | spread(b & 0xFFU) << 1U;
+}
+
+/// Appends the contacts in the lanes.
+[[gnu::always_inline]] inline void append_contacts(ContactWriter& out, Mask16 lanes,
+                                                   const ContactColumns& c) {
+  for (int k = 0; k < 3; ++k) compress_store(lanes, c.column[k], out.position[k] + out.size);
+  compress_store(lanes, c.column[3], out.depth + out.size);
+  std::uint64_t* feature = out.feature + out.size;
+#if defined(WINNOW_ISA_IS_avx512)
+  const auto m = static_cast<__mmask16>(lanes);
+  const auto pack = [m](__m512 v) { return _mm512_maskz_compress_epi32(m, _mm512_cvtps_epi32(v)); };
+  const __m512i a = pack(c.column[4].part[0]);
+  const __m512i b = pack(c.column[5].part[0]);
+  const __m512i low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+  const __m512i high = _mm512_add_epi32(low, _mm512_set1_epi32(8));
+  _mm512_storeu_si512(feature, _mm512_permutex2var_epi32(b, low, a));
+  _mm512_storeu_si512(feature + 8, _mm512_permutex2var_epi32(b, high, a));
+#else
+  alignas(64) float a[kLanes];
+  alignas(64) float b[kLanes];
+  store_unaligned(a, c.column[4]);
+  store_unaligned(b, c.column[5]);
+  for (Mask16 rest = lanes; rest != 0; rest &= rest - 1) {
+    const unsigned lane = first(rest);
+    *feature++ = static_cast<std::uint64_t>(a[lane]) << 32U | static_cast<std::uint64_t>(b[lane]);
+  }
+#endif
+  out.size += count(lanes);
+}
+
+/// Two points a lane.
+template <typename T>
+[[gnu::always_inline]] inline void append_zipped(ContactWriter& out, const PairBlock<T>&,
+                                                 const Mask16 (&lanes)[2],
+                                                 const ContactColumns (&c)[2]) {
+  ContactColumns zipped;
+  for (int k = 0; k < 6; ++k) zipped.column[k] = zip<0>(c[0].column[k], c[1].column[k]);
+  append_contacts(out, zip_bits(lanes[0], lanes[1]), zipped);
+  if constexpr (Real<T>::kRealLanes == 16) {
+    for (int k = 0; k < 6; ++k) zipped.column[k] = zip<8>(c[0].column[k], c[1].column[k]);
+    append_contacts(out, zip_bits(lanes[0] >> 8U, lanes[1] >> 8U), zipped);
+  }
+}
+
+/// Any number of points a lane.
+template <int Points>
+inline void append_pair_by_pair(ContactWriter& out, const Mask16 (&lanes)[Points],
+                                const ContactColumns (&columns)[Points]) {
+  alignas(64) float stage[Points][6][kLanes];
+  for (int p = 0; p < Points; ++p) {
+    for (int c = 0; c < 6; ++c) store_unaligned(stage[p][c], columns[p].column[c]);
+  }
+  std::uint32_t size = out.size;
+  for (Mask16 rest = lanes[0]; rest != 0; rest &= rest - 1) {
+    const unsigned lane = first(rest);
+    for (int p = 0; p < Points && (lanes[p] >> lane & 1U) != 0; ++p, ++size) {
+      for (int c = 0; c < 3; ++c) out.position[c][size] = stage[p][c][lane];
+      out.depth[size] = stage[p][3][lane];
+      out.feature[size] = static_cast<std::uint64_t>(stage[p][4][lane]) << 32U |
+                          static_cast<std::uint64_t>(stage[p][5][lane]);
+    }
+  }
+  out.size = size;
+}
+
+/// Contacts of the pairs in the lanes, pair after pair; a lane that has a point has all before it.
+/// Lanes of pairs that are not certified or not of the job must not be in the masks.
+template <int Points, typename T>
+[[gnu::always_inline]] inline void write_contacts(NarrowJob& job, const PairBlock<T>& block,
+                                                  const ContactLanes<T> (&points)[Points]) {
+  static_assert(Points == 1 || Points == 2 || Points == 4);
+  Mask16 lanes[Points];
+  for (int p = 0; p < Points; ++p) lanes[p] = points[p].lanes;
+  write_contact_runs(job, block, lanes);
+  if (lanes[0] == 0) return;
+  ContactColumns columns[Points];
+  for (int p = 0; p < Points; ++p) columns[p] = columns_of(points[p]);
+  if constexpr (Points == 1) {
+    append_contacts(job.contacts, lanes[0], columns[0]);
+  } else if constexpr (Points == 2) {
+    append_zipped(job.contacts, block, lanes, columns);
+  } else {
+    append_pair_by_pair(job.contacts, lanes, columns);
+  }
+}
+
+/// The kernels of a pair kind, from a class with a template
+/// `Mask16 block<T, L>(NarrowJob&, const PairBlock<T>&)` that answers the pairs of a block and
+/// returns the lanes that it could not certify.
+template <typename Kind, typename T, int L>
+std::uint32_t answer_job(NarrowJob& job) {
+  std::uint32_t uncertified = 0;
+  for_blocks<T>(
+      job, [&](const PairBlock<T>& block) __attribute__((always_inline)) {
+        const Mask16 lanes = Kind::template block<T, L>(job, block) & block.lanes();
+        if (lanes != 0) uncertified = write_uncertified(job, block, uncertified, lanes);
+      });
+  return uncertified;
+}
+
+template <typename Kind>
+constexpr NarrowKernels narrow_kernels_of() {
+  return {{answer_job<Kind, float, kBoolean>, answer_job<Kind, float, kDistance>,
+           answer_job<Kind, float, kManifold>},
+          {answer_job<Kind, double, kBoolean>, answer_job<Kind, double, kDistance>,
+           answer_job<Kind, double, kManifold>}};
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME

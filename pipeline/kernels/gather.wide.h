@@ -1,0 +1,150 @@
+#pragma once
+
+// Pairs of a job into lanes: the loop over blocks of one pair a lane, the difference of the
+// positions, orientations and the shapes' numbers.
+
+#include "pipeline/narrow/narrow_job.h"
+#include "simd/lanes/rows.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// The pairs in the lanes of Real<T>.
+template <typename T>
+struct PairBlock {
+  /// One a lane. Lanes from `count` on repeat the job's last pair.
+  const BodyPair* pairs;
+  /// Index in the job of the pair in lane 0.
+  std::uint32_t first;
+  std::uint32_t count;
+
+  [[nodiscard]] Mask16 lanes() const { return lanes_below(count); }
+};
+
+/// Calls body(block) for all pairs of the job. Loads of a block do not depend on the one before, so
+/// misses overlap without being asked for ahead.
+template <typename T, typename Body>
+[[gnu::always_inline]] inline void for_blocks(const NarrowJob& job, Body&& body) {
+  constexpr std::uint32_t lanes = Real<T>::kRealLanes;
+  BodyPair tail[lanes];
+  for (std::uint32_t first = 0; first < job.count; first += lanes) {
+    PairBlock<T> block{job.pairs + first, first, lanes};
+    if (job.count - first < lanes) {
+      block.count = job.count - first;
+      for (std::uint32_t i = 0; i < lanes; ++i) {
+        tail[i] = block.pairs[i < block.count ? i : block.count - 1];
+      }
+      block.pairs = tail;
+    }
+    body(block);
+  }
+}
+
+/// A plain struct of doubles as an array of them.
+template <typename Plain>
+[[gnu::always_inline]] inline const double* numbers(const Plain& plain) {
+  static_assert(sizeof(Plain) % sizeof(double) == 0);
+  return reinterpret_cast<const double*>(&plain);
+}
+
+/// Which body of a pair.
+struct SideA {
+  [[gnu::always_inline]] static std::uint32_t body(const BodyPair& pair) { return pair.a; }
+};
+struct SideB {
+  [[gnu::always_inline]] static std::uint32_t body(const BodyPair& pair) { return pair.b; }
+};
+
+/// Numbers of type T from rows of doubles: `load(first_lane, out)` fills eight lanes.
+template <typename T, int Count, typename Load>
+[[gnu::always_inline]] inline void in_precision(Load&& load, Real<T> (&out)[Count]) {
+  if constexpr (sizeof(T) == sizeof(double)) {
+    load(0, out);
+  } else {
+    Double8 low[Count];
+    Double8 high[Count];
+    load(0, low);
+    load(8, high);
+    for (int k = 0; k < Count; ++k) out[k] = to_single(low[k], high[k]);
+  }
+}
+
+/// Position of b less that of a, subtracted in double.
+template <typename T>
+[[gnu::always_inline]] inline Vec3<T> load_offset(const NarrowJob& job, const PairBlock<T>& block) {
+  Real<T> d[4];
+  in_precision<T>(
+      [&](int from, Double8(&out)[4]) {
+        load_differences4([&](int lane) { return numbers(job.poses[block.pairs[from + lane].b]); },
+                          [&](int lane) { return numbers(job.poses[block.pairs[from + lane].a]); },
+                          out);
+      },
+      d);
+  return {d[0], d[1], d[2]};
+}
+
+/// A quaternion of any length and the factor 2 / |q|^2 that makes its products those of a rotation:
+/// NaN if the quaternion is not finite, or so short or long that squares leave T's range.
+template <typename T>
+struct Turn {
+  Real<T> w;
+  Vec3<T> v;
+  Real<T> scale;
+};
+
+template <typename Side, typename T>
+[[gnu::always_inline]] inline Turn<T> load_turn(const NarrowJob& job, const PairBlock<T>& block) {
+  constexpr T limit = sizeof(T) == sizeof(double) ? T(1e250) : T(1e25F);
+  Real<T> q[4];
+  in_precision<T>(
+      [&](int from, Double8(&out)[4]) {
+        load_rows4(
+            [&](int lane) { return job.poses[Side::body(block.pairs[from + lane])].orientation; },
+            out);
+      },
+      q);
+  const Real<T> norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  const Truth<T> usable = (norm > Real<T>(T(1) / limit)) & (norm < Real<T>(limit));
+  const Real<T> scale = select(usable, Real<T>(T(2)) / norm, Real<T>(T(__builtin_nan(""))));
+  return {q[0], {q[1], q[2], q[3]}, scale};
+}
+
+/// The local z axis in the axes of the world.
+template <typename T>
+[[gnu::always_inline]] inline Vec3<T> axis_z(const Turn<T>& q) {
+  return {(q.v.x * q.v.z + q.w * q.v.y) * q.scale, (q.v.y * q.v.z - q.w * q.v.x) * q.scale,
+          Real<T>(T(1)) - (q.v.x * q.v.x + q.v.y * q.v.y) * q.scale};
+}
+
+/// A rotation as the images of the local axes.
+template <typename T>
+struct Rotation {
+  Vec3<T> x;
+  Vec3<T> y;
+  Vec3<T> z;
+
+  /// From the body's axes to those of the world.
+  [[gnu::always_inline]] Vec3<T> to_world(const Vec3<T>& v) const {
+    return x * v.x + y * v.y + z * v.z;
+  }
+  [[gnu::always_inline]] Vec3<T> to_local(const Vec3<T>& v) const {
+    return {dot(x, v), dot(y, v), dot(z, v)};
+  }
+};
+
+template <typename T>
+[[gnu::always_inline]] inline Rotation<T> rotation(const Turn<T>& q) {
+  const Real<T> one(T(1));
+  const Vec3<T> v = q.v * q.scale;
+  const Real<T> xx = v.x * q.v.x;
+  const Real<T> yy = v.y * q.v.y;
+  const Real<T> zz = v.z * q.v.z;
+  const Real<T> xy = v.x * q.v.y;
+  const Real<T> xz = v.x * q.v.z;
+  const Real<T> yz = v.y * q.v.z;
+  const Vec3<T> w = v * q.w;
+  return {{one - (yy + zz), xy + w.z, xz - w.y},
+          {xy - w.z, one - (xx + zz), yz + w.x},
+          {xz + w.y, yz - w.x, one - (xx + yy)}};
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME

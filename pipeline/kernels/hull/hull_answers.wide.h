@@ -1,0 +1,214 @@
+#pragma once
+
+// Jobs of the hull kernels: pairs are placed, searched in float lanes and finished one by one.
+
+#include "pipeline/kernels/hull/hull_contacts.wide.h"
+#include "pipeline/kernels/hull/hull_search.wide.h"
+#include "pipeline/kernels/kernels.h"
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// Answers jobs of one level in one precision. Shapes says which hulls the pairs of a job are:
+/// `kRoom` at a time, by place(job, bodies, slot, pair), which is false for what is out of range.
+template <typename Shapes, typename T, int Level>
+class HullAnswers {
+ public:
+  static std::uint32_t run(NarrowJob& job) {
+    HullAnswers answers(job);
+    for (std::uint32_t i = 0; i < job.count; i += kChunk) {
+      const std::uint32_t left = job.count - i;
+      answers.chunk(i, left < kChunk ? left : kChunk);
+    }
+    return answers.uncertified_;
+  }
+
+ private:
+  static constexpr bool kRobust = sizeof(T) == 8;
+  static constexpr std::uint32_t kChunk = Shapes::kRoom;
+
+  explicit HullAnswers(NarrowJob& job) : job_(job) {}
+
+  void chunk(std::uint32_t begin, std::uint32_t count) {
+    std::uint32_t placed = 0;
+    for (std::uint32_t i = begin; i < begin + count; ++i) {
+      HullPair& pair = pair_[placed];
+      if (i + kAhead < job_.count) {
+        __builtin_prefetch(job_.poses + job_.pairs[i + kAhead].a);
+        __builtin_prefetch(job_.poses + job_.pairs[i + kAhead].b);
+      }
+      if (!place(i, placed, pair)) {
+        give_up(i);
+      } else if (Level == 0 && balls_meet(pair)) {
+        job_.overlap[i] = 1;
+      } else {
+        ++placed;
+      }
+    }
+    HullLimits limits{0.0, Level == 0};
+    if (Level == 1) limits.far = __builtin_inf();
+    if (Level == 2) limits.far = job_.margin < kFarthest ? job_.margin : kFarthest;
+    HullSearch(pair_, placed, limits).run();
+    for (std::uint32_t i = 0; i < placed; ++i) {
+      if (!answer(pair_[i])) give_up(pair_[i].index);
+    }
+  }
+
+  /// How many pairs ahead poses are asked for.
+  static constexpr std::uint32_t kAhead = 16;
+  /// Beyond all distances that occur.
+  static constexpr double kFarthest = 1e10;
+
+  bool place(std::uint32_t i, std::uint32_t slot, HullPair& pair) {
+    pair.index = i;
+    return shapes_.place(job_, job_.pairs[i], slot, pair) &&
+           pair.first->vertex_count <= kMostHullVertices &&
+           pair.second->vertex_count <= kMostHullVertices;
+  }
+
+  static bool balls_meet(const HullPair& pair) {
+    double middle[3];
+    turn3(pair.turn, pair.second->center, middle);
+    double square = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const double d = pair.first->center[k] - (middle[k] + pair.shift[k]);
+      square += d * d;
+    }
+    const double reach = pair.first->inner_radius + pair.second->inner_radius;
+    return square < reach * reach * (1.0 - 1e-9);
+  }
+
+  void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
+
+  bool answer(const HullPair& pair) {
+    if (pair.state == HullState::far) {
+      if constexpr (Level == 0) {
+        job_.overlap[pair.index] = 0;
+      } else {
+        write_far(pair);
+      }
+      return true;
+    }
+    if (Level == 0 && pair.state == HullState::inside) {
+      job_.overlap[pair.index] = 1;
+      return true;
+    }
+    const HullPlace<T> place(pair);
+    CoreAnswer<T> core{};
+    if (pair.state == HullState::apart) {
+      finish_apart(pair, place, core);
+      // An error of the length is one of the direction: this keeps it below 0.01 degrees.
+      if (kRobust && !(core.error <= T(1e-8) * core.distance)) return false;
+    } else {
+      if (!depth_.find(pair)) return false;
+      finish_depth(pair, place, depth_, core);
+      if (kRobust && !(core.error < -core.distance)) return false;
+    }
+    return finish(pair, place, core);
+  }
+
+  bool finish(const HullPair& pair, const HullPlace<T>& place, CoreAnswer<T>& core) {
+    const double distance = static_cast<double>(core.distance) - pair.rounding;
+    const double error = static_cast<double>(core.error) + kDoubleError * pair.rounding;
+    if (kRobust) {
+      if (!(error < __builtin_fabs(distance))) return false;
+      if (!(error <= kCertified * (pair.size + pair.rounding))) return false;
+    } else if (!(error < __builtin_inf())) {
+      return false;
+    }
+    if constexpr (Level == 0) {
+      job_.overlap[pair.index] = distance <= 0.0;
+      return true;
+    } else {
+      if (Level == 1 && pair.state != HullState::apart && !touching_point(pair, place, core) &&
+          kRobust) {
+        return false;
+      }
+      job_.distance[pair.index] = distance;
+      job_.error_bound[pair.index] = error;
+      double normal[3];
+      double world[3];
+      write_normal(pair, core.normal, normal, world);
+      if constexpr (Level == 1) {
+        write_point(pair, core.point, normal, distance);
+      } else {
+        contacts(pair, normal, world, core.winner, distance);
+      }
+      return true;
+    }
+  }
+
+  static constexpr double kCertified = 1e-12;
+
+  void write_normal(const HullPair& pair, const T* local, double* normal, double* world) {
+    for (int k = 0; k < 3; ++k) normal[k] = static_cast<double>(local[k]);
+    turn3(pair.frame, normal, world);
+    if (!kRobust) {
+      // Unit to double's precision, as everywhere.
+      const double scale = 1.0 / __builtin_sqrt(dot3(world, world));
+      for (int k = 0; k < 3; ++k) world[k] *= scale;
+    }
+    if (pair.swapped) {
+      for (int k = 0; k < 3; ++k) world[k] = -world[k];
+    }
+    for (int k = 0; k < 3; ++k) job_.normal[k][pair.index] = world[k];
+  }
+
+  /// The point of body a: on the first, or where swapped on the second, `distance` farther.
+  void write_point(const HullPair& pair, const T* core, const double* normal, double distance) {
+    const double reach = pair.first->rounding + (pair.swapped ? distance : 0.0);
+    double point[3];
+    double world[3];
+    for (int k = 0; k < 3; ++k) point[k] = static_cast<double>(core[k]) + reach * normal[k];
+    turn3(pair.frame, point, world);
+    for (int k = 0; k < 3; ++k) {
+      job_.point[k][pair.index] = pair.swapped ? world[k] - pair.offset[k] : world[k];
+    }
+  }
+
+  void contacts(const HullPair& pair, const double* normal, const double* world,
+                const HullCandidate* winner, double distance) {
+    job_.contact_first[pair.index] = job_.contacts.size;
+    job_.contact_count[pair.index] =
+        distance <= job_.margin
+            ? write_contacts(pair, normal, world, winner, job_.margin, job_.contacts)
+            : 0;
+  }
+
+  /// Farther apart than the margin: a lower bound of the distance.
+  void write_far(const HullPair& pair) {
+    const double gap[3] = {static_cast<double>(pair.gap[0]), static_cast<double>(pair.gap[1]),
+                           static_cast<double>(pair.gap[2])};
+    const double length = __builtin_sqrt(dot3(gap, gap));
+    const double scale = 1.0 / static_cast<double>(pair.scale);
+    // HullSearch::kDoubt, of which a part is left for roundings here.
+    const double lower = (static_cast<double>(pair.lower) / length - 5.5e-6) * scale;
+    const double upper = (length + 5.5e-6) * scale;
+    T normal[3];
+    for (int k = 0; k < 3; ++k) normal[k] = static_cast<T>(-gap[k] / length);
+    double local[3];
+    double world[3];
+    write_normal(pair, normal, local, world);
+    job_.distance[pair.index] = lower - pair.rounding;
+    job_.error_bound[pair.index] = upper - lower;
+    if constexpr (Level == 2) {
+      job_.contact_first[pair.index] = job_.contacts.size;
+      job_.contact_count[pair.index] = 0;
+    }
+  }
+
+  NarrowJob& job_;
+  Shapes shapes_;
+  std::uint32_t uncertified_ = 0;
+  HullPair pair_[kChunk];
+  HullDepth depth_;
+};
+
+/// The kernels of a pair kind.
+template <typename Shapes>
+inline constexpr NarrowKernels kHullKernels = {
+    {HullAnswers<Shapes, float, 0>::run, HullAnswers<Shapes, float, 1>::run,
+     HullAnswers<Shapes, float, 2>::run},
+    {HullAnswers<Shapes, double, 0>::run, HullAnswers<Shapes, double, 1>::run,
+     HullAnswers<Shapes, double, 2>::run}};
+
+}  // namespace winnow::WINNOW_ISA_NAME

@@ -1,0 +1,463 @@
+#pragma once
+
+// Penetration depth of two hulls in float: the smallest height of their difference over all
+// directions, found among those where it can be: normals of faces of either, and arcs between the
+// normals of neighbouring faces of the first, where the vertex of the second that is farthest
+// changes. Most are left out because a known point of the difference is higher than the best depth
+// along them (and over an arc, if it is at both ends: such heights are concave in between). What is
+// left out is deeper than the result by more than float's errors, so that the few candidates kept
+// hold the true minimum.
+
+#include "pipeline/kernels/hull/hull_support.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// Height of the difference along a direction: of the first's face, or a point on an arc.
+struct HullDirection {
+  /// Unit, outward from the hull whose face it is, in that hull's frame.
+  float normal[3];
+  /// normal . x <= offset for that hull.
+  float offset;
+  float depth;
+  /// The other hull's vertex farthest against the normal, in the same frame.
+  float point[3];
+  std::uint32_t vertex;
+  /// The face; on an arc the one it begins at.
+  std::uint32_t face;
+};
+
+/// Part of the arc between two neighbouring faces of the first: from s[0] n + t[0] m to
+/// s[1] n + t[1] m, for their normals n and m.
+struct HullArc {
+  std::uint32_t face[2];
+  std::uint32_t edge;
+  std::uint32_t vertex[2];
+  float s[2];
+  float t[2];
+};
+
+/// What can be the smallest depth, as far as float can tell.
+struct HullCandidate {
+  enum class Kind : std::uint8_t { first_face, second_face, arc } kind;
+  std::uint32_t face;
+  float depth;
+  HullArc arc;
+};
+
+class HullDepth {
+ public:
+  static constexpr std::uint32_t kMostFaces = 512;
+  static constexpr std::uint32_t kMostCandidates = 24;
+
+  /// False if there is more to look at than there is room for, or nothing certain to find.
+  bool find(const HullPair& pair) {
+    if (pair.first->dimension != 3 || pair.first->face_count > kMostFaces ||
+        pair.second->face_count > kMostFaces) {
+      return false;
+    }
+    slack_ = 2.0F * kFloatError * static_cast<float>(pair.size);
+    best_ = __builtin_sqrtf(pair.depth_squared) / pair.scale * 1.00001F + slack_;
+    count_ = 0;
+    records_ = 0;
+    place(pair);
+    close_faces(second_);
+    measure_open_faces();
+    close_faces(first_);
+    return best_ + slack_ > 0.0F && follow_arcs() && count_ <= kMostCandidates;
+  }
+
+  [[nodiscard]] float best() const { return best_; }
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+  [[nodiscard]] const HullCandidate& candidate(std::uint32_t i) const { return candidates_[i]; }
+  /// All others are at least this deep.
+  [[nodiscard]] float floor() const { return best_ + slack_; }
+
+ private:
+  using Lanes = Real<float>;
+  /// Three edges for two faces.
+  static constexpr std::uint32_t kMostEdges = kMostFaces / 2 * 3;
+
+  /// A hull whose faces are tried, against the vertices of the other.
+  struct Side {
+    const HullShape* hull;
+    const HullShape* other;
+    HullCandidate::Kind kind;
+    /// The other's place in this hull's frame.
+    float turn[9];
+    float shift[3];
+    float center[3];
+    /// Known points of this hull less the other.
+    float known[HullPair::kTrail][3];
+    std::uint32_t known_count;
+    /// By face: bits that say which known points lie higher than the best depth; 0.0F if none.
+    alignas(64) float closed[kMostFaces];
+  };
+
+  /// A bit of `closed`, in a pattern that is a normal number.
+  static float closed_bit(std::uint32_t i) {
+    return __builtin_bit_cast(float, kClosedPattern | 1U << i);
+  }
+  static constexpr std::uint32_t kClosedPattern = 0x40000000U;
+  static constexpr std::uint32_t kBallBit = HullPair::kTrail;
+
+  void place(const HullPair& pair) {
+    first_.hull = pair.first;
+    first_.other = pair.second;
+    first_.kind = HullCandidate::Kind::first_face;
+    second_.hull = pair.second;
+    second_.other = pair.first;
+    second_.kind = HullCandidate::Kind::second_face;
+    double back[3];
+    turn_back3(pair.turn, pair.shift, back);
+    for (int i = 0; i < 3; ++i) {
+      first_.shift[i] = static_cast<float>(pair.shift[i]);
+      second_.shift[i] = static_cast<float>(-back[i]);
+      for (int k = 0; k < 3; ++k) {
+        first_.turn[3 * i + k] = pair.turn_float[3 * i + k];
+        second_.turn[3 * k + i] = pair.turn_float[3 * i + k];
+      }
+    }
+    for (Side* side : {&first_, &second_}) {
+      float middle[3];
+      for (int i = 0; i < 3; ++i) middle[i] = static_cast<float>(side->other->center[i]);
+      turn3(side->turn, middle, side->center);
+      for (int i = 0; i < 3; ++i) side->center[i] += side->shift[i];
+      side->known_count =
+          pair.trail_length < HullPair::kTrail ? pair.trail_length : HullPair::kTrail;
+    }
+    const float scale = 1.0F / pair.scale;
+    for (std::uint32_t i = 0; i < first_.known_count; ++i) {
+      float* w = first_.known[i];
+      for (int k = 0; k < 3; ++k) w[k] = pair.trail[i][k] * scale;
+      turn_back3(first_.turn, w, second_.known[i]);
+      for (int k = 0; k < 3; ++k) second_.known[i][k] = -second_.known[i][k];
+    }
+  }
+
+  static Lanes either(const Lanes& a, const Lanes& b) {
+    Lanes r;
+    for (int i = 0; i < Lanes::kBatches; ++i) r.part[i] = a.part[i] | b.part[i];
+    return r;
+  }
+
+  /// Finds for each face the known points that are higher along its normal than the best depth. The
+  /// ball in the other hull makes one more, where its middle is inside the face: there its height
+  /// is concave over arcs too.
+  void close_faces(Side& side) {
+    const float* const* plane = side.hull->plane_float;
+    const Vec3<float> middle{side.center[0], side.center[1], side.center[2]};
+    const Lanes radius(static_cast<float>(side.other->inner_radius));
+    const Lanes limit(best_ + slack_);
+    const Lanes none(0.0F);
+    for (std::uint32_t row = 0; row < side.hull->face_count; row += 16) {
+      const Vec3<float> n{Lanes::load(plane[0] + row), Lanes::load(plane[1] + row),
+                          Lanes::load(plane[2] + row)};
+      const Lanes height = Lanes::load(plane[3] + row) - dot(n, middle);
+      Lanes closed = select((height + radius > limit) & (height > Lanes(slack_)),
+                            Lanes(closed_bit(kBallBit)), none);
+      for (std::uint32_t i = 0; i < side.known_count; ++i) {
+        const float* w = side.known[i];
+        const Truth<float> higher = dot(n, Vec3<float>{w[0], w[1], w[2]}) > limit;
+        closed = either(closed, select(higher, Lanes(closed_bit(i)), none));
+      }
+      closed.store(side.closed + row);
+    }
+  }
+
+  /// Depths along the normals of the second's faces that no known point closes.
+  void measure_open_faces() {
+    const float* const* plane = second_.hull->plane_float;
+    for (std::uint32_t row = 0; row < second_.hull->face_count; row += 16) {
+      Mask16 hit = bits(Lanes::load(second_.closed + row) <= Lanes(0.0F));
+      const std::uint32_t left = second_.hull->face_count - row;
+      if (left < 16) hit &= lanes_below(left);
+      for (; hit != 0; hit &= hit - 1) {
+        const std::uint32_t face = row + first(hit);
+        const float normal[3] = {plane[0][face], plane[1][face], plane[2][face]};
+        float direction[3];
+        turn_back3(second_.turn, normal, direction);
+        for (float& x : direction) x = -x;
+        const float depth =
+            plane[3][face] - dot3(normal, second_.shift) + highest_of(*second_.other, direction);
+        propose_face(HullCandidate::Kind::second_face, face, depth);
+      }
+    }
+  }
+
+  /// The depth along the normal of a face of the first.
+  void measure(std::uint32_t face, HullDirection& record) {
+    const float* const* plane = first_.hull->plane_float;
+    for (int k = 0; k < 3; ++k) record.normal[k] = plane[k][face];
+    record.offset = plane[3][face];
+    record.face = face;
+    meet(record);
+    propose_face(HullCandidate::Kind::first_face, face, record.depth);
+  }
+
+  /// Finds the vertex of the second that a direction meets, and so the depth along it.
+  void meet(HullDirection& direction) const {
+    float local[3];
+    turn_back3(first_.turn, direction.normal, local);
+    for (float& x : local) x = -x;
+    direction.vertex = farthest_vertex(*first_.other, local);
+    float x[3];
+    vertex_at(*first_.other, direction.vertex, x);
+    turn3(first_.turn, x, direction.point);
+    for (int k = 0; k < 3; ++k) direction.point[k] += first_.shift[k];
+    direction.depth = direction.offset - dot3(direction.normal, direction.point);
+  }
+
+  void propose_face(HullCandidate::Kind kind, std::uint32_t face, float depth) {
+    best_ = depth < best_ ? depth : best_;
+    if (!(depth <= best_ + slack_)) return;
+    HullCandidate c;
+    c.kind = kind;
+    c.face = face;
+    c.depth = depth;
+    propose(c);
+  }
+
+  /// Adds a candidate, dropping those that have become too deep when the room runs out.
+  void propose(const HullCandidate& candidate) {
+    if (count_ >= kMostCandidates) drop_deep();
+    if (count_ < kMostCandidates) candidates_[count_] = candidate;
+    ++count_;
+  }
+
+  void drop_deep() {
+    if (count_ > kMostCandidates) return;
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      if (candidates_[i].depth <= best_ + slack_) candidates_[kept++] = candidates_[i];
+    }
+    count_ = kept;
+  }
+
+  /// All arcs of the first whose ends no known point closes both.
+  bool follow_arcs() {
+    const HullShape& hull = *first_.hull;
+    if (hull.edge_count > kMostEdges) return false;
+    const std::uint32_t count = list_open_arcs(hull);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const HullEdge& edge = hull.edges[open_[i]];
+      if (is_deep(edge)) continue;
+      const HullDirection& a = measured(edge.face[0]);
+      const HullDirection& b = measured(edge.face[1]);
+      if (a.vertex == b.vertex || is_deep(edge)) continue;
+      HullArc arc;
+      arc.face[0] = edge.face[0];
+      arc.face[1] = edge.face[1];
+      arc.edge = open_[i];
+      arc.s[0] = 1.0F;
+      arc.t[0] = 0.0F;
+      arc.s[1] = 0.0F;
+      arc.t[1] = 1.0F;
+      if (!follow(arc, a, b)) return false;
+    }
+    drop_deep();
+    return true;
+  }
+
+  /// Fills open_; measures at all faces that are not closed.
+  std::uint32_t list_open_arcs(const HullShape& hull) {
+    std::uint32_t count = 0;
+    for (std::uint32_t e = 0; e < hull.edge_count; ++e) {
+      const HullEdge& edge = hull.edges[e];
+      const std::uint32_t a = closed_by(edge.face[0]);
+      const std::uint32_t b = closed_by(edge.face[1]);
+      // Without a branch, which would be mispredicted at every arc found.
+      open_[count] = e;
+      count += (a & b) == 0 ? 1U : 0U;
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+      for (const std::uint32_t face : hull.edges[open_[i]].face) {
+        if (closed_by(face) == 0) measured(face);
+      }
+    }
+    return count;
+  }
+
+  /// Bits of the known points that are higher than the best depth along a face of the first.
+  [[nodiscard]] std::uint32_t closed_by(std::uint32_t face) const {
+    return __builtin_bit_cast(std::uint32_t, first_.closed[face]) & ~kClosedPattern;
+  }
+
+  [[nodiscard]] bool has_record(std::uint32_t face) const {
+    const std::uint32_t record = record_of_[face];
+    return record < records_ && record_[record].face == face;
+  }
+
+  const HullDirection& measured(std::uint32_t face) {
+    if (!has_record(face)) {
+      record_of_[face] = static_cast<std::uint16_t>(records_);
+      measure(face, record_[records_++]);
+    }
+    return record_[record_of_[face]];
+  }
+
+  /// Heights of one point of the difference along the normals of two faces of the first.
+  struct Heights {
+    float here;
+    float there;
+  };
+
+  /// Of a point that is high along the normal of `here`: the highest, if that has been measured.
+  [[nodiscard]] Heights high_point(std::uint32_t here, std::uint32_t there, float cosine) const {
+    const float* const* plane = first_.hull->plane_float;
+    const float n[3] = {plane[0][here], plane[1][here], plane[2][here]};
+    const float m[3] = {plane[0][there], plane[1][there], plane[2][there]};
+    if (has_record(here)) {
+      const HullDirection& record = record_[record_of_[here]];
+      return {record.depth, plane[3][there] - dot3(m, record.point)};
+    }
+    const std::uint32_t closed = closed_by(here);
+    if ((closed >> kBallBit & 1U) != 0) {
+      // A point of the ball in the other hull, against the normal from its middle.
+      const auto radius = static_cast<float>(first_.other->inner_radius);
+      return {plane[3][here] - dot3(n, first_.center) + radius,
+              plane[3][there] - dot3(m, first_.center) + radius * cosine};
+    }
+    const float* w = first_.known[__builtin_ctz(closed)];
+    return {dot3(n, w), dot3(m, w)};
+  }
+
+  /// Whether two known points say that all of an arc is deeper than the best, as in `cut`; for
+  /// ends less than a right angle apart.
+  [[nodiscard]] bool is_deep(const HullEdge& edge) const {
+    const float* const* plane = first_.hull->plane_float;
+    const std::uint32_t f = edge.face[0];
+    const std::uint32_t g = edge.face[1];
+    const float cosine =
+        plane[0][f] * plane[0][g] + plane[1][f] * plane[1][g] + plane[2][f] * plane[2][g];
+    if (!(cosine > 0.0F)) return false;
+    const Heights a = high_point(f, g, cosine);
+    const Heights b = high_point(g, f, cosine);
+    float p = b.here - a.there;
+    float q = a.here - b.there;
+    // (p + q)^2 is at most twice the square below.
+    const float limit = best_ + 1.5F * slack_;
+    // One of the points is the higher one at both ends, or they are equal there.
+    if (!(p > 0.0F)) {
+      return a.here > 0.0F && a.there > 0.0F && has_deep_ends(a.here, a.there, limit, f, g);
+    }
+    if (!(q > 0.0F)) {
+      return b.here > 0.0F && b.there > 0.0F && has_deep_ends(b.there, b.here, limit, f, g);
+    }
+    const float height_a = p * a.here + q * a.there;
+    const float height_b = p * b.there + q * b.here;
+    const float height = height_a < height_b ? height_a : height_b;
+    const float square = p * p + q * q + 2.0F * p * q * cosine;
+    return height > 0.0F && height * height > limit * limit * square &&
+           has_deep_ends(a.here, b.here, limit, f, g);
+  }
+
+  /// The bound of an arc holds between its ends, which are candidates themselves if they were
+  /// measured.
+  [[nodiscard]] bool has_deep_ends(float a, float b, float limit, std::uint32_t f,
+                                   std::uint32_t g) const {
+    return (a > limit || has_record(f)) && (b > limit || has_record(g));
+  }
+
+  /// Searches an arc, halved where a third vertex of the second shows up, for depths near the best.
+  bool follow(const HullArc& whole, const HullDirection& from, const HullDirection& to) {
+    struct Part {
+      HullDirection end[2];
+      HullArc arc;
+    };
+    constexpr int kDeepest = 12;
+    Part stack[kDeepest];
+    int height = 0;
+    if (!search(whole, from, to, stack, height)) return false;
+    while (height > 0) {
+      if (height + 1 > kDeepest) return false;
+      const Part part = stack[--height];
+      if (!search(part.arc, part.end[0], part.end[1], stack, height)) return false;
+    }
+    return true;
+  }
+
+  /// Of one arc: a candidate, or two parts more on the stack, or neither.
+  template <typename Part>
+  bool search(HullArc arc, const HullDirection& from, const HullDirection& to, Part* stack,
+              int& height) {
+    HullDirection middle;
+    float weight[2];
+    float lowest = 0.0F;
+    const Verdict verdict = cut(from, to, middle, weight, lowest);
+    if (verdict != Verdict::near) return verdict == Verdict::deep;
+    arc.vertex[0] = from.vertex;
+    arc.vertex[1] = to.vertex;
+    if (middle.vertex == arc.vertex[0] || middle.vertex == arc.vertex[1] ||
+        middle.depth <= lowest + 0.25F * slack_) {
+      if (!(lowest <= best_ + slack_)) return true;
+      HullCandidate c;
+      c.kind = HullCandidate::Kind::arc;
+      c.face = arc.face[0];
+      c.depth = lowest;
+      c.arc = arc;
+      propose(c);
+      return true;
+    }
+    const float s = weight[0] * arc.s[0] + weight[1] * arc.s[1];
+    const float t = weight[0] * arc.t[0] + weight[1] * arc.t[1];
+    Part& left = stack[height++];
+    left = {{from, middle}, arc};
+    left.arc.s[1] = s;
+    left.arc.t[1] = t;
+    Part& right = stack[height++];
+    right = {{middle, to}, arc};
+    right.arc.s[0] = s;
+    right.arc.t[0] = t;
+    return true;
+  }
+
+  enum class Verdict : std::uint8_t { deep, near, lost };
+
+  /// Heights along an arc are at least those of the two points of the difference known at its ends:
+  /// where the two are equal this bound is smallest (or at an end, which has been looked at). If
+  /// that is near the best depth, measures there. Any direction between the ends will do for a
+  /// bound: to one side of the crossing one point is lower than there, to the other the other.
+  Verdict cut(const HullDirection& a, const HullDirection& b, HullDirection& middle, float* weight,
+              float& lowest) {
+    const float cosine = dot3(a.normal, b.normal);
+    if (!(cosine > -0.98F)) return Verdict::lost;
+    const float a_at_b = b.offset - dot3(b.normal, a.point);
+    const float b_at_a = a.offset - dot3(a.normal, b.point);
+    float p = b.depth - a_at_b;
+    float q = a.depth - b_at_a;
+    p = p > 0.0F ? p : 0.0F;
+    q = q > 0.0F ? q : 0.0F;
+    if (!(p + q > 0.0F)) return Verdict::deep;
+    const float height_a = p * a.depth + q * a_at_b;
+    const float height_b = p * b_at_a + q * b.depth;
+    const float height = height_a < height_b ? height_a : height_b;
+    const float square = p * p + q * q + 2.0F * p * q * cosine;
+    const float limit = best_ + slack_ * (p + q) / __builtin_sqrtf(square);
+    if (height > 0.0F && height * height > limit * limit * square) return Verdict::deep;
+    const float scale = 1.0F / __builtin_sqrtf(square);
+    weight[0] = p * scale;
+    weight[1] = q * scale;
+    lowest = height * scale;
+    for (int k = 0; k < 3; ++k) {
+      middle.normal[k] = weight[0] * a.normal[k] + weight[1] * b.normal[k];
+    }
+    middle.offset = weight[0] * a.offset + weight[1] * b.offset;
+    middle.face = a.face;
+    meet(middle);
+    best_ = middle.depth < best_ ? middle.depth : best_;
+    return Verdict::near;
+  }
+
+  Side first_;
+  Side second_;
+  float best_;
+  float slack_;
+  std::uint32_t count_;
+  std::uint32_t records_;
+  HullCandidate candidates_[kMostCandidates];
+  std::uint32_t open_[kMostEdges + 1];
+  std::uint16_t record_of_[kMostFaces] = {};
+  HullDirection record_[kMostFaces];
+};
+
+}  // namespace winnow::WINNOW_ISA_NAME

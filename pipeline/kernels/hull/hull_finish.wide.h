@@ -1,0 +1,311 @@
+#pragma once
+
+// From the features that the float search found to an answer in double (tier robust) or float (tier
+// fast): the distance between points that lie on the hulls is an upper bound, the separation of all
+// vertices along the direction found a lower one, and their difference the error.
+
+#include "pipeline/kernels/hull/hull_depth.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// Distance of the cores (negative: depth) along `normal`, from the first to the second, in the
+/// first's frame; `point` is on the first.
+template <typename T>
+struct CoreAnswer {
+  T distance;
+  T error;
+  T normal[3];
+  T point[3];
+  /// Features that touch, for contacts: vertices of the closest simplex are used where this is not
+  /// set.
+  const HullCandidate* winner;
+};
+
+template <typename T>
+inline constexpr T kRounding = static_cast<T>(kDoubleError);
+template <>
+inline constexpr float kRounding<float> = kFloatError;
+
+/// Where the second stands, in the precision of the answer.
+template <typename T>
+struct HullPlace {
+  T turn[9];
+  T shift[3];
+
+  explicit HullPlace(const HullPair& pair) {
+    for (int i = 0; i < 9; ++i) turn[i] = static_cast<T>(pair.turn[i]);
+    for (int i = 0; i < 3; ++i) shift[i] = static_cast<T>(pair.shift[i]);
+  }
+  void of_second(const HullShape& hull, std::uint32_t vertex, T* x) const {
+    T local[3];
+    vertex_at(hull, vertex, local);
+    turn3(turn, local, x);
+    for (int k = 0; k < 3; ++k) x[k] += shift[k];
+  }
+  /// The smallest product of a vertex of the second and `direction`.
+  T lowest_of_second(const HullShape& hull, const T* direction) const {
+    T local[3];
+    turn_back3(turn, direction, local);
+    for (T& x : local) x = -x;
+    return dot3(direction, shift) - height_of(hull, local);
+  }
+  static T dot3(const T* a, const T* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+};
+
+template <typename T>
+static inline T root(T x) {
+  return static_cast<T>(__builtin_sqrt(static_cast<double>(x)));
+}
+
+/// Weights of the point nearest to the origin on the segment w0, w1; on the triangle.
+template <typename T>
+static inline void nearest_on_segment(const T (*w)[3], T* weight) {
+  T e[3];
+  for (int k = 0; k < 3; ++k) e[k] = w[1][k] - w[0][k];
+  const T length = HullPlace<T>::dot3(e, e);
+  const T along = -HullPlace<T>::dot3(e, w[0]);
+  T t = length > T(0) ? along / length : T(0);
+  t = t > T(0) ? t : T(0);
+  t = t < T(1) ? t : T(1);
+  weight[0] = T(1) - t;
+  weight[1] = t;
+}
+
+template <typename T>
+static inline T square_of_mix(const T (*w)[3], const T* weight, std::uint32_t count) {
+  T square = T(0);
+  for (int k = 0; k < 3; ++k) {
+    T x = T(0);
+    for (std::uint32_t i = 0; i < count; ++i) x += weight[i] * w[i][k];
+    square += x * x;
+  }
+  return square;
+}
+
+template <typename T>
+static inline void nearest_on_triangle(const T (*w)[3], T* weight) {
+  T e[3];
+  T f[3];
+  for (int k = 0; k < 3; ++k) {
+    e[k] = w[1][k] - w[0][k];
+    f[k] = w[2][k] - w[0][k];
+  }
+  const T n[3] = {e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]};
+  const T area = HullPlace<T>::dot3(n, n);
+  const T* p = w[0];
+  // Of the second and the third corner, times the area.
+  const T u = n[0] * (f[1] * p[2] - f[2] * p[1]) + n[1] * (f[2] * p[0] - f[0] * p[2]) +
+              n[2] * (f[0] * p[1] - f[1] * p[0]);
+  const T v = -(n[0] * (e[1] * p[2] - e[2] * p[1]) + n[1] * (e[2] * p[0] - e[0] * p[2]) +
+                n[2] * (e[0] * p[1] - e[1] * p[0]));
+  if (u >= T(0) && v >= T(0) && u + v <= area && area > T(0)) {
+    weight[1] = u / area;
+    weight[2] = v / area;
+    weight[0] = T(1) - weight[1] - weight[2];
+    return;
+  }
+  T best = T(0);
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    const T side[2][3] = {{w[i][0], w[i][1], w[i][2]}, {w[j][0], w[j][1], w[j][2]}};
+    T t[2];
+    nearest_on_segment(side, t);
+    const T square = square_of_mix(side, t, 2);
+    if (i > 0 && !(square < best)) continue;
+    best = square;
+    weight[i] = t[0];
+    weight[j] = t[1];
+    weight[(i + 2) % 3] = T(0);
+  }
+}
+
+/// Cores that are apart, from the search's simplex.
+template <typename T>
+static inline void finish_apart(const HullPair& pair, const HullPlace<T>& place,
+                                CoreAnswer<T>& answer) {
+  T a[3][3];
+  T w[3][3];
+  for (std::uint32_t i = 0; i < pair.count; ++i) {
+    T b[3];
+    vertex_at(*pair.first, pair.vertices[i] & 0xFFFFU, a[i]);
+    place.of_second(*pair.second, pair.vertices[i] >> 16U, b);
+    for (int k = 0; k < 3; ++k) w[i][k] = a[i][k] - b[k];
+  }
+  T weight[3] = {T(1), T(0), T(0)};
+  if (pair.count == 2) nearest_on_segment(w, weight);
+  if (pair.count == 3) nearest_on_triangle(w, weight);
+  T gap[3] = {};
+  for (int k = 0; k < 3; ++k) {
+    answer.point[k] = T(0);
+    for (std::uint32_t i = 0; i < pair.count; ++i) {
+      gap[k] += weight[i] * w[i][k];
+      answer.point[k] += weight[i] * a[i][k];
+    }
+  }
+  const T length = root(HullPlace<T>::dot3(gap, gap));
+  const T inverse = T(1) / length;
+  for (int k = 0; k < 3; ++k) answer.normal[k] = -gap[k] * inverse;
+  const T lower =
+      place.lowest_of_second(*pair.second, answer.normal) - height_of(*pair.first, answer.normal);
+  const T doubt = length - lower;
+  answer.distance = length;
+  answer.error = (doubt > T(0) ? doubt : T(0)) + kRounding<T> * static_cast<T>(pair.size);
+  answer.winner = nullptr;
+  // Not a number if the length is 0.
+  if (!(length > T(0))) answer.error = static_cast<T>(__builtin_inf());
+}
+
+/// Depth along a unit direction from the first to the second, over all vertices.
+template <typename T>
+static inline T depth_along(const HullPair& pair, const HullPlace<T>& place, const T* normal) {
+  return height_of(*pair.first, normal) - place.lowest_of_second(*pair.second, normal);
+}
+
+/// The depth of one candidate: an upper bound of the smallest in `depth` and its direction, and in
+/// `lower` a lower bound for all directions that the candidate stands for.
+template <typename T>
+class HullMeasure {
+ public:
+  HullMeasure(const HullPair& pair, const HullPlace<T>& place) : pair_(pair), place_(place) {}
+
+  T depth;
+  T lower;
+  T normal[3];
+
+  void face(const HullCandidate& c) {
+    if (c.kind == HullCandidate::Kind::first_face) {
+      for (int k = 0; k < 3; ++k) normal[k] = static_cast<T>(pair_.first->faces[c.face].normal[k]);
+    } else {
+      T n[3];
+      for (int k = 0; k < 3; ++k) n[k] = static_cast<T>(pair_.second->faces[c.face].normal[k]);
+      turn3(place_.turn, n, normal);
+      for (T& x : normal) x = -x;
+    }
+    depth = depth_along(pair_, place_, normal);
+    lower = depth;
+  }
+
+  /// As HullDepth::cut bounds an arc.
+  void arc(const HullArc& arc) {
+    T end[2][3];
+    T mine[3];
+    vertex_at(*pair_.first, pair_.first->edges[arc.edge].vertex[0], mine);
+    T w[2][3];
+    for (int i = 0; i < 2; ++i) {
+      const double* n = pair_.first->faces[arc.face[0]].normal;
+      const double* m = pair_.first->faces[arc.face[1]].normal;
+      T theirs[3];
+      place_.of_second(*pair_.second, arc.vertex[i], theirs);
+      for (int k = 0; k < 3; ++k) {
+        end[i][k] = static_cast<T>(arc.s[i]) * static_cast<T>(n[k]) +
+                    static_cast<T>(arc.t[i]) * static_cast<T>(m[k]);
+        w[i][k] = mine[k] - theirs[k];
+      }
+    }
+    const T here = dot(end[0], w[0]);
+    const T there = dot(end[1], w[1]);
+    T p = there - dot(end[1], w[0]);
+    T q = here - dot(end[0], w[1]);
+    p = p > T(0) ? p : T(0);
+    q = q > T(0) ? q : T(0);
+    for (int k = 0; k < 3; ++k) normal[k] = p * end[0][k] + q * end[1][k];
+    const T scale = T(1) / root(dot(normal, normal));
+    for (T& x : normal) x *= scale;
+    depth = depth_along(pair_, place_, normal);
+    lower = dot(normal, w[0]);
+    const T other = dot(normal, w[1]);
+    lower = other < lower ? other : lower;
+    if (p + q > T(0)) return;
+    // Both points are as high at either end: the ends are candidates themselves.
+    depth = static_cast<T>(__builtin_inf());
+    lower = depth;
+  }
+
+ private:
+  static T dot(const T* a, const T* b) { return HullPlace<T>::dot3(a, b); }
+  const HullPair& pair_;
+  const HullPlace<T>& place_;
+};
+
+/// Cores that overlap: measures the candidates. The error is not small where a candidate that is
+/// left out in double is not surely deeper.
+template <typename T>
+static inline void finish_depth(const HullPair& pair, const HullPlace<T>& place,
+                                const HullDepth& found, CoreAnswer<T>& answer) {
+  HullMeasure<T> measure(pair, place);
+  T best = static_cast<T>(__builtin_inf());
+  T lower = best;
+  answer.winner = nullptr;
+  for (std::uint32_t i = 0; i < found.count(); ++i) {
+    const HullCandidate& c = found.candidate(i);
+    if (c.kind == HullCandidate::Kind::arc) {
+      measure.arc(c.arc);
+    } else {
+      measure.face(c);
+    }
+    lower = measure.lower < lower ? measure.lower : lower;
+    if (!(measure.depth < best)) continue;
+    best = measure.depth;
+    answer.winner = &c;
+    for (int k = 0; k < 3; ++k) answer.normal[k] = measure.normal[k];
+  }
+  const T doubt = best - lower;
+  answer.distance = -best;
+  answer.error = (doubt > T(0) ? doubt : T(0)) + kRounding<T> * static_cast<T>(pair.size);
+  if (answer.winner == nullptr) answer.error = static_cast<T>(__builtin_inf());
+}
+
+/// Where the second's vertex nearest to the first's inside touches, or the first's; false if the
+/// touching features are parallel, so that one vertex does not tell.
+template <typename T>
+static inline bool touching_point(const HullPair& pair, const HullPlace<T>& place,
+                                  CoreAnswer<T>& answer) {
+  using Kind = HullCandidate::Kind;
+  const HullCandidate& c = *answer.winner;
+  if (c.kind == Kind::arc) {
+    const HullEdge& edge = pair.first->edges[c.arc.edge];
+    T a[2][3];
+    T b[2][3];
+    for (int i = 0; i < 2; ++i) {
+      vertex_at(*pair.first, edge.vertex[i], a[i]);
+      place.of_second(*pair.second, c.arc.vertex[i], b[i]);
+    }
+    T d[3];
+    T e[3];
+    T r[3];
+    for (int k = 0; k < 3; ++k) {
+      d[k] = a[1][k] - a[0][k];
+      e[k] = b[1][k] - b[0][k];
+      r[k] = b[0][k] - a[0][k];
+    }
+    // Across the second edge and the normal: where the edges cross as seen along the normal.
+    const T* n = answer.normal;
+    const T across[3] = {e[1] * n[2] - e[2] * n[1], e[2] * n[0] - e[0] * n[2],
+                         e[0] * n[1] - e[1] * n[0]};
+    const T sine = HullPlace<T>::dot3(across, d);
+    const T t = HullPlace<T>::dot3(across, r) / sine;
+    for (int k = 0; k < 3; ++k) answer.point[k] = a[0][k] + t * d[k];
+    return t >= T(0) && t <= T(1);
+  }
+  const bool mine = c.kind == Kind::second_face;
+  const HullShape& hull = mine ? *pair.first : *pair.second;
+  T direction[3];
+  if (mine) {
+    for (int k = 0; k < 3; ++k) direction[k] = answer.normal[k];
+  } else {
+    turn_back3(place.turn, answer.normal, direction);
+    for (T& x : direction) x = -x;
+  }
+  std::uint32_t vertex = 0;
+  const T doubt = T(8) * kRounding<T> * static_cast<T>(pair.size);
+  if (!sole_vertex(hull, direction, doubt, vertex)) return false;
+  if (mine) {
+    vertex_at(hull, vertex, answer.point);
+  } else {
+    place.of_second(hull, vertex, answer.point);
+    for (int k = 0; k < 3; ++k) answer.point[k] -= answer.distance * answer.normal[k];
+  }
+  return true;
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME

@@ -1,0 +1,24 @@
+#include "pipeline/kernels/hull/hull_answers.wide.h"
+
+namespace winnow {
+namespace WINNOW_ISA_NAME {
+
+/// Both hulls as they stand in the pool.
+struct HullAndHull {
+  static constexpr std::uint32_t kRoom = 128;
+
+  static bool place(const NarrowJob& job, BodyPair bodies, std::uint32_t /*slot*/, HullPair& pair) {
+    const HullShape& a = job.tables.hulls[job.shapes[bodies.a].index()];
+    const HullShape& b = job.tables.hulls[job.shapes[bodies.b].index()];
+    const Pose& pose_a = job.poses[bodies.a];
+    const Pose& pose_b = job.poses[bodies.b];
+    return place_hulls(a, b, pose_a, pose_b, comes_second(a, b, pose_a, pose_b), pair);
+  }
+};
+
+}  // namespace WINNOW_ISA_NAME
+
+extern const NarrowKernels WINNOW_KERNEL_TABLE(hull_hull_kernels) =
+    WINNOW_ISA_NAME::kHullKernels<WINNOW_ISA_NAME::HullAndHull>;
+
+}  // namespace winnow

@@ -1,0 +1,343 @@
+#pragma once
+
+// Closest features of pairs of hulls in float: the algorithm of Gilbert, Johnson and Keerthi (1988)
+// one pair a lane, with supports sixteen vertices at a time. A lane that is done takes the next
+// pair, so that a hard pair does not hold fifteen easy ones. Where the origin is inside, the
+// search begins again from a point just outside, and finds a face of the difference that is a good
+// guess for the nearest one. Nothing here has to be right: the stages after it prove what they use.
+
+#include "pipeline/kernels/hull/hull_simplex.wide.h"
+#include "pipeline/kernels/hull/hull_support.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// Where the search may stop before it has found the closest features, in lengths between cores.
+struct HullLimits {
+  /// Stops with state far beyond this, rounding excluded; infinite: never.
+  double far;
+  /// Stops with state inside where roundings surely overlap, for verdicts.
+  bool verdict;
+};
+
+class HullSearch {
+ public:
+  HullSearch(HullPair* pairs, std::uint32_t count, const HullLimits& limits)
+      : next_(pairs), end_(pairs + count), limits_(limits) {}
+
+  void run() {
+    for (int lane = 0; lane < kLanes; ++lane) refill(lane);
+    while (active_ != 0) {
+      find_supports();
+      Mask16 done = step();
+      for (; done != 0; done &= done - 1) {
+        const int lane = static_cast<int>(first(done));
+        hand_back(lane);
+        refill(lane);
+      }
+    }
+  }
+
+ private:
+  using Lanes = Real<float>;
+  static constexpr std::uint32_t kMostSteps = 48;
+  /// Steps from outside towards the difference when the origin is inside.
+  static constexpr std::uint32_t kSinkSteps = 8;
+  /// Where these begin, over the lowest height known.
+  static constexpr float kOutside = 1.25F;
+  /// Below this, scaled, the origin counts as on the simplex.
+  static constexpr float kTouching = 2e-6F;
+  /// A support that is nearer by less than this, scaled, is no progress.
+  static constexpr float kNoGain = 4e-7F;
+  /// Doubt about a support's height, scaled: it may not be the highest by kLaneBits units in the
+  /// last place.
+  static constexpr float kDoubt = 6e-6F;
+
+  void refill(int lane) {
+    if (next_ == end_) {
+      active_ &= ~(1U << lane);
+      return;
+    }
+    HullPair& pair = *next_++;
+    active_ |= 1U << lane;
+    pair_[lane] = &pair;
+    for (int i = 0; i < 9; ++i) turn_[i][lane] = pair.scaled_turn[i];
+    for (int i = 0; i < 3; ++i) shift_[i][lane] = pair.scaled_shift[i];
+    scale_[lane] = pair.scale;
+    const auto scaled = [&](double length) { return static_cast<float>(length) * pair.scale; };
+    const float far = scaled(limits_.far + pair.rounding) + kDoubt;
+    far_[lane] = far * far;
+    const float near = scaled(pair.rounding) - kDoubt;
+    near_[lane] = limits_.verdict && near > 0.0F ? near * near : -1.0F;
+    depth_[lane] = __builtin_inff();
+    for (int s = 0; s < kSlots; ++s) present_[s][lane] = 0.0F;
+    fresh_[lane] = 1.0F;
+    sinking_[lane] = 0.0F;
+    for (int k = 0; k < 3; ++k) goal_[k][lane] = 0.0F;
+    pair.trail_length = 0;
+    steps_[lane] = 0;
+    float center[3];
+    start_direction(pair, center);
+    float square = 0.0F;
+    for (int i = 0; i < 3; ++i) {
+      gap_[i][lane] = center[i];
+      square += center[i] * center[i];
+    }
+    square_[lane] = square;
+  }
+
+  /// From the second's middle to the first's: a point of their difference.
+  static void start_direction(const HullPair& pair, float* d) {
+    double middle[3];
+    turn3(pair.turn, pair.second->center, middle);
+    for (int i = 0; i < 3; ++i) {
+      d[i] = static_cast<float>(pair.first->center[i] - (middle[i] + pair.shift[i])) * pair.scale;
+    }
+    if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > kTouching * kTouching)) {
+      d[0] = 1.0F;
+      d[1] = 0.0F;
+      d[2] = 0.0F;
+    }
+  }
+
+  /// The vertex of the first that lies farthest against the gap, and of the second along it.
+  void find_supports() {
+    const Vec3<float> gap{Lanes::load(gap_[0]), Lanes::load(gap_[1]), Lanes::load(gap_[2])};
+    (-gap).x.store(toward_[0][0]);
+    (-gap).y.store(toward_[0][1]);
+    (-gap).z.store(toward_[0][2]);
+    Lanes t[9];
+    for (int i = 0; i < 9; ++i) t[i] = Lanes::load(turn_[i]);
+    for (int i = 0; i < 3; ++i) {
+      (t[i] * gap.x + t[3 + i] * gap.y + t[6 + i] * gap.z).store(toward_[1][i]);
+    }
+    for (int side = 0; side < 2; ++side) {
+      for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
+        const int lane = static_cast<int>(first(rest));
+        const float direction[3] = {toward_[side][0][lane], toward_[side][1][lane],
+                                    toward_[side][2][lane]};
+        heights(hull(side, lane), direction, height_ + lane * kLanes, block_ + lane * kLanes);
+      }
+      alignas(64) float highest[kLanes];
+      store_unaligned(highest, reduce_max_rows(height_));
+      for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
+        const int lane = static_cast<int>(first(rest));
+        const HullShape& h = hull(side, lane);
+        const std::uint32_t vertex = vertex_of(h, highest[lane], block_ + lane * kLanes);
+        number_[side][lane] = vertex;
+        for (int i = 0; i < 3; ++i) vertex_[side][i][lane] = h.vertex_float[i][vertex];
+      }
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+      name_[lane] = __builtin_bit_cast(float, number_[0][lane] | number_[1][lane] << 16U);
+    }
+  }
+
+  [[nodiscard]] const HullShape& hull(int side, int lane) const {
+    return side == 0 ? *pair_[lane]->first : *pair_[lane]->second;
+  }
+
+  [[nodiscard]] Vec3<float> support() const {
+    const auto vertex = [&](int side, int i) { return Lanes::load(vertex_[side][i]); };
+    const Lanes scale = Lanes::load(scale_);
+    Lanes w[3];
+    for (int i = 0; i < 3; ++i) {
+      const Lanes b = Lanes::load(turn_[3 * i]) * vertex(1, 0) +
+                      Lanes::load(turn_[3 * i + 1]) * vertex(1, 1) +
+                      Lanes::load(turn_[3 * i + 2]) * vertex(1, 2) + Lanes::load(shift_[i]);
+      w[i] = vertex(0, i) * scale - b - Lanes::load(goal_[i]);
+    }
+    return {w[0], w[1], w[2]};
+  }
+
+  /// One step of all lanes; returns those that are done.
+  Mask16 step() {
+    const Lanes zero(0.0F);
+    Simplex simplex;
+    for (int s = 0; s < kSlots; ++s) {
+      simplex.point[s] = {Lanes::load(slot_[s][0]), Lanes::load(slot_[s][1]),
+                          Lanes::load(slot_[s][2])};
+      simplex.present[s] = Lanes::load(present_[s]) > zero;
+    }
+    const Vec3<float> gap{Lanes::load(gap_[0]), Lanes::load(gap_[1]), Lanes::load(gap_[2])};
+    const Lanes square = Lanes::load(square_);
+    const Truth<float> fresh = Lanes::load(fresh_) > zero;
+    const Truth<float> sinking = Lanes::load(sinking_) > zero;
+    const Vec3<float> w = support();
+    const Lanes height = dot(gap, w);
+    const Truth<float> ahead = height > zero;
+    const Truth<float> far = ahead & (height * height > Lanes::load(far_) * square) & !sinking;
+    height.store(height_along_);
+    if (!limits_.verdict) note_depth(w, gap, square, height);
+
+    const Lanes gain = square - height;
+    const Truth<float> no_gain =
+        (gain <= zero) | (gain * gain <= Lanes(kNoGain * kNoGain) * square);
+    const Nearest nearest = nearest_of(simplex, w);
+    const Lanes next_square = dot(nearest.point, nearest.point);
+    const Truth<float> stuck = (!fresh) & (no_gain | nearest.repeated | (next_square >= square)) &
+                               (!(nearest.inside | far));
+    const Truth<float> inside = nearest.inside & !far;
+    const Truth<float> moves = !(far | stuck | inside);
+    keep(simplex, nearest, moves, w, gap, next_square);
+    const Mask16 sinking_bits = bits(sinking);
+    const Mask16 far_bits = bits(far) & active_;
+    const Mask16 stuck_bits = bits(stuck) & active_;
+    const Mask16 inside_bits = bits(inside) & active_;
+    const Mask16 move = bits(moves) & active_;
+    const Mask16 near_bits = bits(next_square <= Lanes::load(near_)) & move;
+    const Mask16 touch_bits = bits(next_square <= Lanes(kTouching * kTouching)) & move & ~near_bits;
+    mark(far_bits, HullState::far);
+    mark(stuck_bits & ~sinking_bits, HullState::apart);
+    mark(stuck_bits & sinking_bits, HullState::close);
+    mark(inside_bits & bits(nearest.deep), HullState::inside);
+    mark(inside_bits & ~bits(nearest.deep), HullState::close);
+    mark(near_bits, HullState::inside);
+    mark(touch_bits, HullState::close);
+    Mask16 done = far_bits | stuck_bits | inside_bits | near_bits | touch_bits;
+    if (!limits_.verdict) done &= ~sink(inside_bits & ~sinking_bits);
+    return done | give_up(active_ & ~done, sinking_bits);
+  }
+
+  /// Begins again for lanes whose origin is inside: from a point outside near the lowest support.
+  /// Returns those where there is such a point.
+  Mask16 sink(Mask16 lanes) {
+    Mask16 sunk = 0;
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const unsigned lane = first(lanes);
+      const float depth = __builtin_sqrtf(depth_[lane]);
+      if (!(depth > kTouching && depth < 2.0F)) continue;
+      float square = 0.0F;
+      for (int k = 0; k < 3; ++k) square += lowest_[k][lane] * lowest_[k][lane];
+      const float reach = depth * kOutside / __builtin_sqrtf(square);
+      square = 0.0F;
+      for (int k = 0; k < 3; ++k) {
+        gap_[k][lane] = lowest_[k][lane] * reach;
+        goal_[k][lane] = -gap_[k][lane];
+        square += gap_[k][lane] * gap_[k][lane];
+      }
+      square_[lane] = square;
+      for (int s = 0; s < kSlots; ++s) present_[s][lane] = 0.0F;
+      fresh_[lane] = 1.0F;
+      sinking_[lane] = 1.0F;
+      steps_[lane] = kMostSteps - kSinkSteps;
+      sunk |= 1U << lane;
+    }
+    return sunk;
+  }
+
+  /// Keeps the lowest height of the difference over the origin and where it was met.
+  void note_depth(const Vec3<float>& w, const Vec3<float>& gap, const Lanes& square,
+                  const Lanes& height) {
+    const Lanes zero(0.0F);
+    const Vec3<float> goal{Lanes::load(goal_[0]), Lanes::load(goal_[1]), Lanes::load(goal_[2])};
+    const Lanes over = height + dot(gap, goal);
+    const Lanes depth = select(over > zero, zero, over * over / square);
+    const Lanes before = Lanes::load(depth_);
+    const Truth<float> lower = depth < before;
+    select(lower, depth, before).store(depth_);
+    select(lower, gap.x, Lanes::load(lowest_[0])).store(lowest_[0]);
+    select(lower, gap.y, Lanes::load(lowest_[1])).store(lowest_[1]);
+    select(lower, gap.z, Lanes::load(lowest_[2])).store(lowest_[2]);
+    remember(w + goal);
+  }
+
+  /// Ends searches that take too long.
+  Mask16 give_up(Mask16 lanes, Mask16 sinking) {
+    Mask16 late = 0;
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const unsigned lane = first(lanes);
+      if (++steps_[lane] < kMostSteps) continue;
+      late |= 1U << lane;
+      pair_[lane]->state = (sinking >> lane & 1U) != 0 ? HullState::close : HullState::apart;
+    }
+    return late;
+  }
+
+  /// Points of the difference serve HullDepth.
+  void remember(const Vec3<float>& w) {
+    alignas(64) float point[3][kLanes];
+    w.x.store(point[0]);
+    w.y.store(point[1]);
+    w.z.store(point[2]);
+    for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
+      const unsigned lane = first(rest);
+      HullPair& pair = *pair_[lane];
+      float* to = pair.trail[pair.trail_length++ % HullPair::kTrail];
+      for (int k = 0; k < 3; ++k) to[k] = point[k][lane];
+    }
+  }
+
+  /// Where `moves`: the nearest feature becomes the simplex.
+  void keep(const Simplex& simplex, const Nearest& nearest, const Truth<float>& moves,
+            const Vec3<float>& w, const Vec3<float>& gap, const Lanes& next_square) {
+    const Lanes zero(0.0F);
+    const Lanes one(1.0F);
+    const Lanes name = Lanes::load(name_);
+    Truth<float> placed = !moves;
+    for (int s = 0; s < kSlots; ++s) {
+      const Truth<float> take = (!placed) & (!nearest.keep[s]);
+      placed = placed | take;
+      select(take, w.x, simplex.point[s].x).store(slot_[s][0]);
+      select(take, w.y, simplex.point[s].y).store(slot_[s][1]);
+      select(take, w.z, simplex.point[s].z).store(slot_[s][2]);
+      select(take, name, Lanes::load(slot_name_[s])).store(slot_name_[s]);
+      const Lanes held = select(take | nearest.keep[s], one, zero);
+      select(moves, held, Lanes::load(present_[s])).store(present_[s]);
+    }
+    const Vec3<float> next = select(moves, nearest.point, gap);
+    next.x.store(gap_[0]);
+    next.y.store(gap_[1]);
+    next.z.store(gap_[2]);
+    select(moves, next_square, Lanes::load(square_)).store(square_);
+    zero.store(fresh_);
+  }
+
+  void mark(Mask16 lanes, HullState state) {
+    for (; lanes != 0; lanes &= lanes - 1) pair_[first(lanes)]->state = state;
+  }
+
+  void hand_back(int lane) {
+    HullPair& pair = *pair_[lane];
+    pair.count = 0;
+    for (int s = 0; s < kSlots; ++s) {
+      if (present_[s][lane] > 0.0F && pair.count < 3) {
+        pair.vertices[pair.count++] = __builtin_bit_cast(std::uint32_t, slot_name_[s][lane]);
+      }
+    }
+    for (int i = 0; i < 3; ++i) pair.gap[i] = gap_[i][lane];
+    pair.lower = height_along_[lane];
+    pair.depth_squared = depth_[lane];
+  }
+
+  HullPair* next_;
+  HullPair* end_;
+  HullLimits limits_;
+  Mask16 active_ = 0;
+  HullPair* pair_[kLanes] = {};
+  std::uint32_t steps_[kLanes] = {};
+  std::uint32_t number_[2][kLanes] = {};
+  alignas(64) float turn_[9][kLanes] = {};
+  alignas(64) float shift_[3][kLanes] = {};
+  alignas(64) float scale_[kLanes] = {};
+  alignas(64) float far_[kLanes] = {};
+  alignas(64) float near_[kLanes] = {};
+  alignas(64) float fresh_[kLanes] = {};
+  /// 1 where the origin is inside, and the search goes on from the point `goal_` outside.
+  alignas(64) float sinking_[kLanes] = {};
+  alignas(64) float goal_[3][kLanes] = {};
+  alignas(64) float lowest_[3][kLanes] = {};
+  alignas(64) float depth_[kLanes] = {};
+  alignas(64) float gap_[3][kLanes] = {};
+  alignas(64) float square_[kLanes] = {};
+  alignas(64) float height_along_[kLanes] = {};
+  alignas(64) float slot_[kSlots][3][kLanes] = {};
+  alignas(64) float slot_name_[kSlots][kLanes] = {};
+  alignas(64) float present_[kSlots][kLanes] = {};
+  alignas(64) float toward_[2][3][kLanes] = {};
+  alignas(64) float vertex_[2][3][kLanes] = {};
+  alignas(64) float name_[kLanes] = {};
+  alignas(64) float height_[kLanes * kLanes] = {};
+  alignas(64) float block_[kLanes * kLanes] = {};
+};
+
+}  // namespace winnow::WINNOW_ISA_NAME

@@ -1,0 +1,219 @@
+// Half-spaces against spheres, capsules, boxes and triangles: the vertices' heights over the plane.
+// A half-space reaches to infinity, so the direction is always that of its plane.
+
+#include "pipeline/kernels/kernels.h"
+#include "pipeline/kernels/round/segments.wide.h"
+
+namespace winnow {
+namespace WINNOW_ISA_NAME {
+namespace {
+
+/// The half-space's plane, relative to the position of body a: the outward normal, and the height
+/// of that position over it.
+template <typename T>
+struct Plane {
+  Vec3<T> normal;
+  Real<T> height;
+  /// The sum of the magnitudes of what height was made of; NaN for a bad pose.
+  Real<T> scale;
+};
+
+template <typename T>
+[[gnu::always_inline]] inline Plane<T> load_plane(const NarrowJob& job, const PairBlock<T>& block) {
+  const Vec3<T> c = load_offset(job, block);
+  const Turn<T> turn = load_turn<SideB>(job, block);
+  const HalfSpaceLanes<T> b = load_half_space<SideB>(job, block);
+  const Vec3<T> normal = rotation(turn).to_world(b.normal);
+  return {normal, -dot(normal, c) - b.offset, taxicab(c) + abs(b.offset) + doubt(turn)};
+}
+
+/// Points of a shape's core over a plane, relative to body a, in the axes of the world.
+template <typename T, int Count>
+struct Feet {
+  Vec3<T> foot[Count];
+  Real<T> height[Count];
+  Real<T> feature[Count];
+  /// Foot 0 is the lowest. The rounding is that of all.
+  Real<T> rounding;
+  Vec3<T> normal;
+  Real<T> scale;
+};
+
+/// Exchanges two feet if the second is lower.
+template <typename T, int Count>
+[[gnu::always_inline]] inline void sort_two(Feet<T, Count>& f, int first, int second) {
+  const Truth<T> wrong = f.height[second] < f.height[first];
+  const auto exchange = [&](auto& a, auto& b) {
+    const auto t = select(wrong, b, a);
+    b = select(wrong, a, b);
+    a = t;
+  };
+  exchange(f.foot[first], f.foot[second]);
+  exchange(f.height[first], f.height[second]);
+  exchange(f.feature[first], f.feature[second]);
+}
+
+/// The kernels of a class that finds the feet; all levels share that part, not inlined, as it takes
+/// long to compile.
+template <typename Source, int Contacts>
+struct OverPlane {
+  template <typename T, int L>
+  [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
+    const auto feet = Source::template feet<T>(job, block);
+    const Real<T> distance = feet.height[0] - feet.rounding;
+    const Real<T> bound = feet.scale * Real<T>(T(kRoundings) * kEpsilon<T>);
+    if constexpr (L == kBoolean) {
+      return answer_sign(job, block, distance, bound, feet.scale);
+    } else {
+      const Mask16 known = certified_lanes(distance, bound, feet.scale, feet.scale > Real<T>(T(0)));
+      const CertifiedLanes<T> answer{distance, bound, -feet.normal, known};
+      write_certified<L>(job, block, answer, feet.foot[0], feet.rounding);
+      if constexpr (L == kManifold) write_touches(job, block, feet, known);
+      return ~known;
+    }
+  }
+
+  template <typename T, int Count>
+  [[gnu::always_inline]] static void write_touches(NarrowJob& job, const PairBlock<T>& block,
+                                                   const Feet<T, Count>& feet, Mask16 known) {
+    ContactLanes<T> contacts[Contacts];
+    Mask16 lanes = known & block.lanes();
+    for (int i = 0; i < Contacts; ++i) {
+      const int k = i < Count ? i : 0;
+      const Real<T> d = feet.height[k] - feet.rounding;
+      lanes &= i < Count ? bits(d <= Real<T>(static_cast<T>(job.margin))) : 0U;
+      contacts[i] = {feet.foot[k] - feet.normal * (feet.rounding + d * Real<T>(T(0.5))), -d,
+                     feet.feature[k], Real<T>(T(0)), lanes};
+    }
+    write_contacts(job, block, contacts);
+  }
+};
+
+struct SphereFeet {
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 1> feet(const NarrowJob& job, const PairBlock<T>& block) {
+    const Plane<T> plane = load_plane(job, block);
+    const Real<T> radius = load_sphere<SideA>(job, block);
+    const Real<T> zero(T(0));
+    return {{{zero, zero, zero}}, {plane.height},      {zero}, radius,
+            plane.normal,         plane.scale + radius};
+  }
+};
+
+struct CapsuleFeet {
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 2> feet(const NarrowJob& job, const PairBlock<T>& block) {
+    const Plane<T> plane = load_plane(job, block);
+    const Turn<T> turn = load_turn<SideA>(job, block);
+    const CapsuleLanes<T> a = load_capsule<SideA>(job, block);
+    const Vec3<T> arm = axis_z(turn) * a.half_length;
+    const Real<T> rise = dot(plane.normal, arm);
+    Feet<T, 2> feet{{arm, -arm},
+                    {plane.height + rise, plane.height - rise},
+                    {Real<T>(T(1)), Real<T>(T(2))},
+                    a.radius,
+                    plane.normal,
+                    plane.scale + a.radius + a.half_length + doubt(turn)};
+    sort_two(feet, 0, 1);
+    return feet;
+  }
+};
+
+struct TriangleFeet {
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 3> feet(const NarrowJob& job, const PairBlock<T>& block) {
+    const Plane<T> plane = load_plane(job, block);
+    const Turn<T> turn = load_turn<SideA>(job, block);
+    const TriangleLanes<T> a = load_triangle<SideA>(job, block);
+    const Rotation<T> axes = rotation(turn);
+    Feet<T, 3> feet;
+    Real<T> reach(T(0));
+    for (int i = 0; i < 3; ++i) {
+      feet.foot[i] = axes.to_world(a.vertex[i]);
+      feet.height[i] = plane.height + dot(plane.normal, feet.foot[i]);
+      feet.feature[i] = Real<T>(T(1 + i));
+      reach = max(reach, taxicab(a.vertex[i]));
+    }
+    sort_two(feet, 0, 1);
+    sort_two(feet, 1, 2);
+    sort_two(feet, 0, 1);
+    feet.rounding = a.rounding;
+    feet.normal = plane.normal;
+    feet.scale = plane.scale + a.rounding + reach + doubt(turn);
+    return feet;
+  }
+};
+
+struct BoxFeet {
+  /// The four vertices of the face that looks most towards the plane, lowest first, the one
+  /// opposite last. A vertex is called by its signs: bit i if coordinate i is negative.
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 4> feet(const NarrowJob& job, const PairBlock<T>& block) {
+    const Real<T> zero(T(0));
+    const Plane<T> plane = load_plane(job, block);
+    const Turn<T> turn = load_turn<SideA>(job, block);
+    const BoxLanes<T> a = load_box<SideA>(job, block);
+    const Rotation<T> axes = rotation(turn);
+    const Vec3<T> arm[3] = {axes.x * a.half.x, axes.y * a.half.y, axes.z * a.half.z};
+    const Vec3<T> local = axes.to_local(plane.normal);
+    const Real<T> cosine[3] = {local.x, local.y, local.z};
+    Vec3<T> down[3];
+    Real<T> rise[3];
+    Real<T> name[3];
+    Real<T> flip[3];
+    for (int i = 0; i < 3; ++i) {
+      const Real<T> rises = dot(plane.normal, arm[i]);
+      const Truth<T> negative = rises > zero;
+      down[i] = select(negative, -arm[i], arm[i]);
+      rise[i] = abs(rises);
+      name[i] = select(negative, Real<T>(T(1 << i)), zero);
+      flip[i] = select(negative, Real<T>(T(-(1 << i))), Real<T>(T(1 << i)));
+    }
+    // Arms 0 and 1 span the face, arm 2 is the one nearest to the normal.
+    const auto exchange = [&](const Truth<T>& mask, int i) {
+      const auto swap = [&](auto& x, auto& y) {
+        const auto t = select(mask, y, x);
+        y = select(mask, x, y);
+        x = t;
+      };
+      swap(down[i], down[2]);
+      swap(rise[i], rise[2]);
+      swap(flip[i], flip[2]);
+    };
+    const Truth<T> is_x = (abs(cosine[0]) > abs(cosine[1])) & (abs(cosine[0]) > abs(cosine[2]));
+    const Truth<T> is_y = (!is_x) & (abs(cosine[1]) > abs(cosine[2]));
+    exchange(is_x, 0);
+    exchange(is_y, 1);
+    const Vec3<T> corner = down[0] + down[1] + down[2];
+    const Real<T> height = plane.height - (rise[0] + rise[1] + rise[2]);
+    const Real<T> lowest = name[0] + name[1] + name[2];
+    const Real<T> two(T(2));
+    Feet<T, 4> feet{{corner, corner - down[0] * two, corner - down[1] * two,
+                     corner - (down[0] + down[1]) * two},
+                    {height, height + rise[0] * two, height + rise[1] * two,
+                     height + (rise[0] + rise[1]) * two},
+                    {lowest, lowest + flip[0], lowest + flip[1], lowest + flip[0] + flip[1]},
+                    a.rounding,
+                    plane.normal,
+                    plane.scale + a.rounding + taxicab(a.half) + doubt(turn)};
+    sort_two(feet, 1, 2);
+    return feet;
+  }
+};
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME
+
+extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_half_space_kernels) =
+    WINNOW_ISA_NAME::narrow_kernels_of<
+        WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::SphereFeet, 1>>();
+extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_half_space_kernels) =
+    WINNOW_ISA_NAME::narrow_kernels_of<
+        WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::CapsuleFeet, 2>>();
+extern const NarrowKernels WINNOW_KERNEL_TABLE(box_half_space_kernels) =
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::BoxFeet, 4>>();
+extern const NarrowKernels WINNOW_KERNEL_TABLE(triangle_half_space_kernels) =
+    WINNOW_ISA_NAME::narrow_kernels_of<
+        WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::TriangleFeet, 4>>();
+
+}  // namespace winnow

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "pipeline/narrow/narrow_job.h"
+
+#include <cstdint>
+
+namespace winnow {
+
+/// The feature of a core that lies farthest along (for a) or against (for b) the contact normal:
+/// one vertex, an edge, or a convex polygon in order around its boundary (either way). Vertices are
+/// relative to the position of body a, in the axes of the world.
+struct Patch {
+  const double (*vertex)[3];
+  /// What each vertex is called in its shape, and each edge from vertex i to the next. The two
+  /// number spaces may overlap.
+  const std::uint32_t* vertex_feature;
+  const std::uint32_t* edge_feature;
+  std::uint32_t count;
+  /// The number of the face or edge itself.
+  std::uint32_t feature;
+  double rounding;
+};
+
+/// The points in which two patches meet, seen along the normal: the one that faces it better is the
+/// reference, the other is clipped by its sides. The deepest point comes first, always, then of
+/// those that are no farther apart than `margin` at most three more, which span the largest area
+/// with it. Depths are measured along `normal` (unit, from a to b). Features are a vertex's number,
+/// an edge's plus 2^30 or a face's plus 2^31. Patches that do not meet give the one point where
+/// they come closest. Writes to `out` (room for kManifoldPoints), returns the number of points, 0
+/// only for a patch without vertices. Deterministic; needs no memory for patches of up to 16
+/// vertices, and thins larger ones to 16 of their vertices, the outermost and the deepest. All
+/// numbers are finite and no product of four lengths overflows.
+std::uint32_t contact_patch(const Patch& a, const Patch& b, const double normal[3], double margin,
+                            ContactPoint* out) noexcept;
+
+}  // namespace winnow

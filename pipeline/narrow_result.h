@@ -1,0 +1,115 @@
+#pragma once
+
+#include <winnow/core/column.h>
+#include <winnow/core/footprint.h>
+#include "pipeline/narrow/narrow_job.h"
+#include "pipeline/solver/solver.h"
+
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+namespace mid {
+class Smoothing;
+}
+
+/// Pairs of one kind, next to each other in a NarrowResult.
+struct NarrowRun {
+  ShapeKind a{};
+  ShapeKind b{};
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
+/// Contact points as columns.
+struct ContactColumns {
+  explicit ContactColumns(std::pmr::memory_resource* memory) noexcept;
+
+  [[nodiscard]] bool grow(std::size_t count) noexcept;
+  void set_size(std::size_t count) noexcept;
+  [[nodiscard]] std::size_t size() const noexcept { return depth.size(); }
+  /// Writes from element `from` on.
+  [[nodiscard]] ContactWriter writer(std::size_t from) noexcept;
+  [[nodiscard]] Bytes bytes() const noexcept;
+
+  Column<float> position[3];
+  Column<float> depth;
+  Column<std::uint64_t> feature;
+};
+
+/// Answers as columns, grouped by pair kind; within a kind in the order of the input. The caller's,
+/// reused from frame to frame.
+class NarrowResult {
+ public:
+  explicit NarrowResult(
+      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] NarrowLevel level() const noexcept { return level_; }
+  /// Which pair of the input answer i is about. Points, normals and features are in its order, not
+  /// that of the kinds.
+  [[nodiscard]] std::uint32_t pair_of(std::size_t i) const noexcept { return order_[i]; }
+  [[nodiscard]] std::span<const NarrowRun> runs() const noexcept {
+    return {runs_.data(), runs_.size()};
+  }
+
+  /// At every level.
+  [[nodiscard]] bool overlaps(std::size_t i) const noexcept {
+    return level_ == NarrowLevel::boolean ? overlap_[i] != 0 : distance_[i] <= 0.0;
+  }
+  /// Levels distance and manifold; see NarrowJob for what each column says.
+  [[nodiscard]] std::span<const double> distance() const noexcept { return span(distance_); }
+  [[nodiscard]] std::span<const double> error_bound() const noexcept { return span(error_bound_); }
+  [[nodiscard]] std::span<const double> normal(int axis) const noexcept {
+    return span(normal_[axis]);
+  }
+  /// Level distance.
+  [[nodiscard]] std::span<const double> point(int axis) const noexcept {
+    return span(point_[axis]);
+  }
+  /// Level manifold: points of pair i are [contact_first()[i], + contact_count()[i]) of the columns
+  /// of contacts.
+  [[nodiscard]] std::span<const std::uint32_t> contact_first() const noexcept {
+    return {contact_first_.data(), contact_first_.size()};
+  }
+  [[nodiscard]] std::span<const std::uint32_t> contact_count() const noexcept {
+    return {contact_count_.data(), contact_count_.size()};
+  }
+  [[nodiscard]] std::size_t contacts() const noexcept { return contacts_.size(); }
+  [[nodiscard]] ContactPoint contact(std::size_t point) const noexcept {
+    return {
+        {contacts_.position[0][point], contacts_.position[1][point], contacts_.position[2][point]},
+        contacts_.depth[point],
+        contacts_.feature[point]};
+  }
+  [[nodiscard]] const ContactColumns& contact_columns() const noexcept { return contacts_; }
+
+  [[nodiscard]] Footprint footprint() const noexcept;
+
+ private:
+  friend class NarrowPhase;
+  friend class mid::Smoothing;
+  /// Room for the columns that a level has, and no others. False if memory is refused.
+  [[nodiscard]] bool resize(std::size_t count, NarrowLevel level) noexcept;
+  void clear() noexcept;
+  [[nodiscard]] static std::span<const double> span(const Column<double>& c) noexcept {
+    return {c.data(), c.size()};
+  }
+
+  std::size_t size_ = 0;
+  NarrowLevel level_ = NarrowLevel::boolean;
+  Column<std::uint32_t> order_;
+  Column<NarrowRun> runs_;
+  Column<std::uint8_t> overlap_;
+  Column<double> distance_;
+  Column<double> error_bound_;
+  Column<double> normal_[3];
+  Column<double> point_[3];
+  Column<std::uint32_t> contact_first_;
+  Column<std::uint32_t> contact_count_;
+  ContactColumns contacts_;
+};
+
+}  // namespace winnow

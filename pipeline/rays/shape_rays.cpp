@@ -1,0 +1,178 @@
+#include <winnow/pipeline/shape_rays.h>
+#include "pipeline/rays/shape_entries.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+using Eigen::Vector3d;
+
+[[nodiscard]] bool is_valid(const ShapeRay& ray) noexcept {
+  const Eigen::Map<const Vector3d> origin(ray.origin);
+  const Eigen::Map<const Vector3d> direction(ray.direction);
+  return origin.allFinite() && direction.allFinite() && !direction.isZero(0.0) && ray.max_t >= 0.0;
+}
+
+/// The rotation of a pose. The quaternion is scaled first, so that its squares stay in range.
+[[nodiscard]] Eigen::Matrix3d rotation(const Pose& pose) noexcept {
+  const Eigen::Map<const Eigen::Vector4d> q(pose.orientation);
+  const Eigen::Vector4d unit = (q / q.cwiseAbs().maxCoeff()).normalized();
+  return Eigen::Quaterniond(unit[0], unit[1], unit[2], unit[3]).toRotationMatrix();
+}
+
+/// A power of two that takes a length to [1/2, 1); 1 for none.
+[[nodiscard]] int exponent_of(double length) noexcept {
+  int exponent = 0;
+  if (length > 0.0) std::frexp(length, &exponent);
+  // So that the inverse is a double, too.
+  return std::clamp(exponent, -1000, 1000);
+}
+
+[[nodiscard]] double size_of(const SphereShape& s) noexcept {
+  return s.radius;
+}
+[[nodiscard]] double size_of(const CapsuleShape& s) noexcept {
+  return std::max(s.radius, s.half_length);
+}
+[[nodiscard]] double size_of(const BoxShape& s) noexcept {
+  return std::max({s.half[0], s.half[1], s.half[2], s.rounding});
+}
+[[nodiscard]] double size_of(const CylinderShape& s) noexcept {
+  return std::max({s.radius, s.half_length, s.rounding});
+}
+[[nodiscard]] double size_of(const ConeShape& s) noexcept {
+  return std::max({s.radius, s.half_length, s.rounding});
+}
+[[nodiscard]] double size_of(const HullShape& s) noexcept {
+  return std::max({s.radius, s.rounding, Vector3d::Map(s.center).cwiseAbs().maxCoeff()});
+}
+[[nodiscard]] double size_of(const TriangleShape& s) noexcept {
+  double size = s.rounding;
+  for (const auto& vertex : s.vertex) {
+    size = std::max(size, Vector3d::Map(vertex).cwiseAbs().maxCoeff());
+  }
+  return size;
+}
+[[nodiscard]] double size_of(const HalfSpaceShape& s) noexcept {
+  return std::fabs(s.offset);
+}
+
+/// A ray relative to a body's position, in the axes of the world, and how to get back: the caller's
+/// t is (shift + local t * 2^stretch) * 2^exponent.
+struct RelativeRay {
+  Vector3d origin;
+  Vector3d direction;
+  double shift = 0.0;
+  int stretch = 0;
+  int exponent = 0;
+  int lengths = 0;  // the shape's lengths count 2^-lengths
+};
+
+/// Scales by powers of two. A ray that begins far from the shape is first moved to where it comes
+/// nearest to the shape's origin, with the errors of differences and products carried along, so
+/// that what remains is as exact as if it had begun there.
+[[nodiscard]] RelativeRay approach(const ShapeRay& ray, const Pose& pose, double size,
+                                   bool may_move) noexcept {
+  constexpr double kFar = 8.0;
+  const Vector3d direction = Vector3d::Map(ray.direction);
+  // A quarter of it, as the difference of two doubles may not be one.
+  const Vector3d from = 0.25 * Vector3d::Map(pose.position);
+  const Vector3d to = 0.25 * Vector3d::Map(ray.origin);
+  const Vector3d between = to - from;
+  const double reach = between.cwiseAbs().maxCoeff();
+  RelativeRay result;
+  const int distance = exponent_of(std::max(reach, 0.25 * size));
+  const int speed = exponent_of(direction.cwiseAbs().maxCoeff());
+  result.direction = std::ldexp(1.0, -speed) * direction;
+  const double unit = std::ldexp(1.0, -distance);
+  result.origin = unit * between;
+  result.exponent = distance + 2 - speed;
+  if (may_move && reach > kFar * 0.25 * size) {
+    const double nearest = -result.origin.dot(result.direction) / result.direction.squaredNorm();
+    for (int k = 0; k < 3; ++k) {
+      const double back = between[k] - to[k];
+      const double lost = (to[k] - (between[k] - back)) + (-from[k] - back);
+      const double step = nearest * result.direction[k];
+      const double step_error = std::fma(nearest, result.direction[k], -step);
+      const double sum = result.origin[k] + step;
+      const double half = sum - step;
+      const double sum_error = (result.origin[k] - half) + (step - (sum - half));
+      result.origin[k] = sum + (sum_error + step_error + unit * lost);
+    }
+    result.shift = nearest;
+  }
+  const double scaled_size = unit * 0.25 * size;
+  result.stretch = exponent_of(std::max(result.origin.cwiseAbs().maxCoeff(), scaled_size));
+  result.origin *= std::ldexp(1.0, -result.stretch);
+  result.lengths = distance + 2 + result.stretch;
+  return result;
+}
+
+template <typename Shape>
+void cast(const Shape& shape, const Pose& pose, const ShapeRay& ray, ShapeHit& hit) noexcept {
+  constexpr bool kBounded = !std::is_same_v<Shape, HalfSpaceShape>;
+  const RelativeRay relative = approach(ray, pose, size_of(shape), kBounded);
+  const Eigen::Matrix3d turn = rotation(pose);
+  LocalRay local;
+  local.origin = turn.transpose() * relative.origin;
+  local.direction = turn.transpose() * relative.direction;
+  local.speed = local.direction.norm();
+  local.low = std::ldexp(-relative.shift, -relative.stretch);
+  const FirstEntry entry = enter(local, shape, std::ldexp(1.0, -relative.lengths));
+  hit = {};
+  if (!entry.found) return;
+  const double t = entry.inside ? 0.0
+                                : std::ldexp(relative.shift + std::ldexp(entry.t, relative.stretch),
+                                             relative.exponent);
+  if (!(t <= ray.max_t) || t < 0.0 || std::isinf(t)) return;
+  hit.hit = true;
+  hit.t = t;
+  Vector3d normal = turn * entry.normal;
+  if (entry.inside || normal.isZero(0.0)) normal = -relative.direction;
+  Vector3d::Map(hit.normal) = normal.normalized();
+}
+
+}  // namespace
+
+Status cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose, const ShapeRay& ray,
+                ShapeHit& hit) noexcept {
+  if (shape.kind_index() >= kShapeKinds || shape.index() >= tables.count[shape.kind_index()]) {
+    return Status::invalid_key;
+  }
+  if (!is_valid(ray)) return Status::invalid_argument;
+  if (!pose.is_valid()) return Status::invalid_pose;
+  const std::uint32_t i = shape.index();
+  switch (shape.kind()) {
+    case ShapeKind::sphere:
+      cast(tables.spheres[i], pose, ray, hit);
+      break;
+    case ShapeKind::capsule:
+      cast(tables.capsules[i], pose, ray, hit);
+      break;
+    case ShapeKind::box:
+      cast(tables.boxes[i], pose, ray, hit);
+      break;
+    case ShapeKind::cylinder:
+      cast(tables.cylinders[i], pose, ray, hit);
+      break;
+    case ShapeKind::cone:
+      cast(tables.cones[i], pose, ray, hit);
+      break;
+    case ShapeKind::hull:
+      cast(tables.hulls[i], pose, ray, hit);
+      break;
+    case ShapeKind::triangle:
+      cast(tables.triangles[i], pose, ray, hit);
+      break;
+    case ShapeKind::half_space:
+      cast(tables.half_spaces[i], pose, ray, hit);
+      break;
+  }
+  return Status::ok;
+}
+
+}  // namespace winnow

@@ -1,0 +1,93 @@
+#pragma once
+
+// What questions to a scene are made of; see queries_casts.cpp and queries_near.cpp for the
+// questions.
+
+#include <winnow/pipeline/scene_queries.h>
+#include "pipeline/scene/queries/queries_parts.h"
+#include "pipeline/scene/scene_state.h"
+
+namespace winnow {
+
+struct SceneQueries::State {
+  State(const Scene& asked, std::pmr::memory_resource* resource) noexcept
+      : scene(asked.state()),
+        walk(scene.shapes, scene.options.composites),
+        memory(resource),
+        boxes(resource),
+        objects(resource),
+        hits(resource),
+        overlaps(resource),
+        distances(resource) {}
+
+  const Scene::State& scene;
+  PartWalk walk;
+  std::pmr::memory_resource* memory;
+  /// What partitions find; bodies that they show are looked at at once, by their predicates.
+  HitBuffer boxes;
+  OverlapBuffer objects;
+  /// Answers of the last question.
+  Column<SceneHit> hits;
+  Column<SceneOverlap> overlaps;
+  Column<SceneDistance> distances;
+
+  [[nodiscard]] PlacedShape placed(std::uint32_t body) const noexcept {
+    return {scene.shape[body], scene.pose[body]};
+  }
+  /// What every question begins with.
+  [[nodiscard]] static Status may_ask(const State* state) noexcept {
+    if (state == nullptr) return Status::out_of_memory;
+    const Scene::State& scene = state->scene;
+    const MidPhase* const composites = scene.options.composites;
+    const bool has_changed =
+        composites != nullptr && composites->revision() != scene.composites_seen;
+    return scene.is_fresh() && !has_changed ? Status::ok : Status::invalid_argument;
+  }
+  /// Calls ask(partition) for every set that has one, until it does not answer ok.
+  template <typename Ask>
+  [[nodiscard]] Status each_partition(Ask&& ask) const {
+    for (const SceneSet& set : scene.sets) {
+      if (set.partition == nullptr) continue;
+      if (const Status status = ask(*set.partition); status != Status::ok) return status;
+    }
+    return Status::ok;
+  }
+};
+
+/// A caller's filter as the partitions take it: their client data are ids of bodies. Bodies that it
+/// lets pass are shown to `Look`, bool(std::uint32_t body), whose answer the partition gets; so no
+/// list of candidates is ever made.
+template <typename Look>
+class LookingFilter {
+ public:
+  LookingFilter(const Scene::State& scene, const Filter& filter, Look& look) noexcept
+      : scene_(scene), filter_(filter), look_(look) {}
+  LookingFilter(const LookingFilter&) = delete;
+  LookingFilter& operator=(const LookingFilter&) = delete;
+
+  [[nodiscard]] Filter filter() noexcept {
+    Filter result = filter_;
+    result.predicate.context = this;
+    result.predicate.accept = [](void* context, Key, ClientData body) {
+      return static_cast<LookingFilter*>(context)->accept(static_cast<std::uint32_t>(body));
+    };
+    return result;
+  }
+
+ private:
+  [[nodiscard]] bool accept(std::uint32_t body) const {
+    const ObjectPredicate& predicate = filter_.predicate;
+    if (predicate.accept != nullptr &&
+        !predicate.accept(predicate.context, scene_.keys.key_of(body),
+                          scene_.keys.client_data(body))) {
+      return false;
+    }
+    return look_(body);
+  }
+
+  const Scene::State& scene_;
+  const Filter& filter_;
+  Look& look_;
+};
+
+}  // namespace winnow

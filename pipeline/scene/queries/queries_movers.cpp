@@ -1,0 +1,204 @@
+#include "pipeline/scene/queries/queries_movers.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace winnow {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A shape's pose at the origin.
+Pose at_origin(const Pose& pose) noexcept {
+  Pose result;
+  std::copy_n(pose.orientation, 4, result.orientation);
+  return result;
+}
+
+/// Before the tests of boxes round the way and what it starts from, this much of it.
+constexpr double kSlack = 0x1p-47;
+
+BoxSweep sweep_from(const Mover& mover, const double from[3], double limit) noexcept {
+  const Vector3d start = Vector3d::Map(from);
+  const PreciseBox& extent = mover.extent();
+  const double reach = start.cwiseAbs().maxCoeff() +
+                       std::max(extent.min.cwiseAbs().maxCoeff(), extent.max.cwiseAbs().maxCoeff());
+  const PreciseBox box = PreciseBox{start + extent.min, start + extent.max}.grown(kSlack * reach);
+  BoxSweep sweep = box.standing();
+  std::copy_n(mover.direction(), 3, sweep.direction);
+  sweep.max_t = limit;
+  return sweep;
+}
+
+/// Neighbours in a mesh have their common corners a few roundings apart, once each is at its place:
+/// by less than this. As thick as this they leave nothing through between them.
+double doubt(const ConvexPart& part) noexcept {
+  if (part.triangle == nullptr) return 0.0;
+  double size = Vector3d::Map(part.pose.position).cwiseAbs().sum();
+  for (const auto& corner : part.triangle->vertex) {
+    size = std::max(size, Vector3d::Map(corner).cwiseAbs().sum());
+  }
+  return 0x1p-48 * size;
+}
+
+/// True if the ray surely passes by the triangle, grown by `doubt`, of a body at no angle: the
+/// signed volumes of the ray and each side have different signs (Platis, Theoharis, "Fast
+/// ray-tetrahedron intersection using Pluecker coordinates", 2003), beyond their rounding.
+bool passes_by(const double from[3], const double direction[3], const ConvexPart& part,
+               double doubt) noexcept {
+  const Eigen::Vector4d q = Eigen::Vector4d::Map(part.pose.orientation);
+  if (part.triangle->rounding != 0.0 || q[1] != 0.0 || q[2] != 0.0 || q[3] != 0.0) return false;
+  const Vector3d d = Vector3d::Map(direction);
+  const Vector3d first = Vector3d::Map(part.pose.position) - Vector3d::Map(from);
+  const Vector3d a = first + Vector3d::Map(part.triangle->vertex[0]);
+  const Vector3d b = first + Vector3d::Map(part.triangle->vertex[1]);
+  const Vector3d c = first + Vector3d::Map(part.triangle->vertex[2]);
+  const double far = a.cwiseAbs().sum() + b.cwiseAbs().sum() + c.cwiseAbs().sum();
+  const double error = d.cwiseAbs().sum() * far * (0x1p-48 * far + 4.0 * doubt);
+  const double volume[3] = {d.dot(c.cross(b)), d.dot(a.cross(c)), d.dot(b.cross(a))};
+  const double low = std::min({volume[0], volume[1], volume[2]});
+  const double high = std::max({volume[0], volume[1], volume[2]});
+  return low < -error && high > error;
+}
+
+}  // namespace
+
+RayMover::RayMover(const ShapePool& shapes, const ShapeRay& ray) noexcept
+    : Mover({Vector3d::Zero(), Vector3d::Zero()}, ray.origin, ray.direction, ray.max_t),
+      shapes_(shapes),
+      ray_(ray) {}
+
+bool RayMover::meets(const double from[3], const ConvexPart& part, double limit,
+                     MoverMeeting& meeting) const noexcept {
+  const double thickness = doubt(part);
+  if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
+  ShapeRay ray = ray_;
+  std::copy_n(from, 3, ray.origin);
+  ray.max_t = limit;
+  if (!enters(ray, part, meeting)) {
+    if (thickness == 0.0) return false;
+    ConvexPart thick = part;
+    thick.thickness = thickness;
+    if (!enters(ray, thick, meeting)) return false;
+  }
+  return true;
+}
+
+void RayMover::describe(const double[3], const ConvexPart&, MoverMeeting&) const noexcept {}
+
+bool RayMover::enters(const ShapeRay& ray, const ConvexPart& part,
+                      MoverMeeting& meeting) const noexcept {
+  PartTables tables(shapes_);
+  const ShapeId shape = tables.put(0, part);
+  ShapeHit hit;
+  const Status status = cast_ray(tables.tables(), shape, part.pose, ray, hit);
+  if (status != Status::ok || !hit.hit) return false;
+  meeting.t = hit.t;
+  for (int i = 0; i < 3; ++i) {
+    meeting.normal[i] = hit.normal[i];
+    meeting.point[i] = ray.origin[i] + hit.t * ray.direction[i];
+  }
+  return true;
+}
+
+ShapeMover::ShapeMover(const PartWalk& walk, const ShapeCast& cast, double tolerance) noexcept
+    : Mover(walk.box(PlacedShape{cast.shape, at_origin(cast.pose)}), cast.pose.position,
+            cast.direction, cast.max_t),
+      shapes_(walk.shapes()),
+      cast_(cast),
+      tolerance_(tolerance) {}
+
+CastPair ShapeMover::pair(PartTables& tables, const double from[3],
+                          const ConvexPart& part) const noexcept {
+  CastPair pair;
+  pair.moving = tables.put(0, {cast_.shape, cast_.pose});
+  pair.from = cast_.pose;
+  std::copy_n(from, 3, pair.from.position);
+  std::copy_n(cast_.direction, 3, pair.direction);
+  ConvexPart thick = part;
+  thick.thickness = doubt(part);
+  pair.standing = tables.put(1, thick);
+  pair.pose = part.pose;
+  return pair;
+}
+
+bool ShapeMover::meets(const double from[3], const ConvexPart& part, double limit,
+                       MoverMeeting& meeting) const noexcept {
+  PartTables tables(shapes_);
+  CastPair asked = pair(tables, from, part);
+  asked.max_t = limit;
+  CastTouch touch;
+  if (!cast_shape(tables.tables(), asked, tolerance_, touch)) return false;
+  meeting.t = touch.t;
+  std::copy_n(touch.normal, 3, meeting.normal);
+  meeting.overlaps_at_start = touch.overlaps_at_start;
+  return true;
+}
+
+void ShapeMover::describe(const double from[3], const ConvexPart& part,
+                          MoverMeeting& meeting) const noexcept {
+  PartTables tables(shapes_);
+  CastTouch touch;
+  touch.t = meeting.t;
+  touch.overlaps_at_start = meeting.overlaps_at_start;
+  std::copy_n(meeting.normal, 3, touch.normal);
+  describe_touch(tables.tables(), pair(tables, from, part), touch);
+  for (int i = 0; i < 3; ++i) {
+    meeting.normal[i] = touch.normal[i];
+    meeting.point[i] = part.pose.position[i] + touch.point[i];
+  }
+}
+
+void Encounter::take(const ConvexPart& part, const MoverMeeting& meeting) noexcept {
+  meeting_ = meeting;
+  part_ = part;
+  if (part.triangle != nullptr) triangle_ = *part.triangle;
+}
+
+bool Encounter::find(const PartWalk& walk, const Mover& mover, const PlacedShape& body,
+                     double limit, bool any) noexcept {
+  MoverMeeting meeting;
+  if (!body.shape.is_composite()) {
+    std::copy_n(mover.start(), 3, from_);
+    std::fill_n(base_, 3, 0.0);
+    const ConvexPart whole{body.shape, body.pose};
+    if (!mover.meets(from_, whole, limit, meeting)) return false;
+    take(whole, meeting);
+    return true;
+  }
+  // About the body, so that parts lose nothing far from the origin; what the difference of the
+  // positions loses is put into the pose, where it is small.
+  std::copy_n(body.pose.position, 3, base_);
+  const Difference start = difference(mover.start(), base_);
+  std::copy_n(start.difference, 3, from_);
+  PlacedShape placed = body;
+  for (int i = 0; i < 3; ++i) placed.pose.position[i] = -start.rest[i];
+  bool found = false;
+  walk.met(placed, sweep_from(mover, from_, limit), [&](const ConvexPart& part, double most) {
+    most = std::min(most, limit);
+    if (!mover.meets(from_, part, most, meeting)) return most;
+    if (found && meeting.t == meeting_.t && part_.part < part.part) return most;
+    found = true;
+    limit = meeting.t;
+    take(part, meeting);
+    return any ? -1.0 : limit;
+  });
+  return found;
+}
+
+SceneHit Encounter::hit(const Mover& mover) const noexcept {
+  ConvexPart part = part_;
+  if (part.triangle != nullptr) part.triangle = &triangle_;
+  MoverMeeting meeting = meeting_;
+  mover.describe(from_, part, meeting);
+  SceneHit hit;
+  hit.t = meeting.t;
+  hit.part = part.part;
+  for (int i = 0; i < 3; ++i) {
+    hit.normal[i] = meeting.normal[i];
+    hit.point[i] = base_[i] + meeting.point[i];
+  }
+  return hit;
+}
+
+}  // namespace winnow

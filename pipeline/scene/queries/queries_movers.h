@@ -1,0 +1,110 @@
+#pragma once
+
+#include <winnow/pipeline/scene_queries.h>
+#include "pipeline/scene/queries/queries_parts.h"
+#include "pipeline/scene/queries/shape_cast.h"
+
+namespace winnow {
+
+/// Where something that moves first meets a convex part: about the part's origin of coordinates,
+/// in the axes of the world.
+struct MoverMeeting {
+  double t = 0.0;
+  /// Of shapes: before `Mover::describe` not the last word.
+  double normal[3] = {0.0, 0.0, 0.0};
+  double point[3] = {0.0, 0.0, 0.0};
+  bool overlaps_at_start = false;
+};
+
+/// A ray or a convex shape that moves.
+class Mover {
+ public:
+  Mover(const Mover&) = delete;
+  Mover& operator=(const Mover&) = delete;
+  virtual ~Mover() = default;
+
+  /// Where it starts, and a box of it about there.
+  [[nodiscard]] const double* start() const noexcept { return start_; }
+  [[nodiscard]] const PreciseBox& extent() const noexcept { return extent_; }
+  [[nodiscard]] const double* direction() const noexcept { return direction_; }
+  [[nodiscard]] double max_t() const noexcept { return max_t_; }
+
+  /// True if it meets the part by t = limit, starting at `from`.
+  [[nodiscard]] virtual bool meets(const double from[3], const ConvexPart& part, double limit,
+                                   MoverMeeting& meeting) const noexcept = 0;
+  /// Completes a meeting: dearer than to find when it is.
+  virtual void describe(const double from[3], const ConvexPart& part,
+                        MoverMeeting& meeting) const noexcept = 0;
+
+ protected:
+  Mover(const PreciseBox& extent, const double* start, const double* direction,
+        double max_t) noexcept
+      : extent_(extent), start_(start), direction_(direction), max_t_(max_t) {}
+
+ private:
+  PreciseBox extent_;
+  const double* start_;
+  const double* direction_;
+  double max_t_;
+};
+
+/// The ray must outlive it.
+class RayMover final : public Mover {
+ public:
+  RayMover(const ShapePool& shapes, const ShapeRay& ray) noexcept;
+  [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
+                           MoverMeeting& meeting) const noexcept override;
+  void describe(const double from[3], const ConvexPart& part,
+                MoverMeeting& meeting) const noexcept override;
+
+ private:
+  [[nodiscard]] bool enters(const ShapeRay& ray, const ConvexPart& part,
+                            MoverMeeting& meeting) const noexcept;
+
+  const ShapePool& shapes_;
+  const ShapeRay& ray_;
+};
+
+/// The cast must outlive it.
+class ShapeMover final : public Mover {
+ public:
+  ShapeMover(const PartWalk& walk, const ShapeCast& cast, double tolerance) noexcept;
+  [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
+                           MoverMeeting& meeting) const noexcept override;
+  void describe(const double from[3], const ConvexPart& part,
+                MoverMeeting& meeting) const noexcept override;
+
+ private:
+  [[nodiscard]] CastPair pair(PartTables& tables, const double from[3],
+                              const ConvexPart& part) const noexcept;
+
+  const ShapePool& shapes_;
+  const ShapeCast& cast_;
+  const double tolerance_;
+};
+
+/// A meeting with a body, and all that it takes to describe it.
+class Encounter {
+ public:
+  /// Looks for the mover's first meeting with the body by t = limit, of equal ones that with the
+  /// least part; with `any`, for whichever is found first. False if there is none.
+  [[nodiscard]] bool find(const PartWalk& walk, const Mover& mover, const PlacedShape& body,
+                          double limit, bool any) noexcept;
+
+  [[nodiscard]] double t() const noexcept { return meeting_.t; }
+  [[nodiscard]] std::uint32_t part() const noexcept { return part_.part; }
+  /// All but the body's key and data.
+  [[nodiscard]] SceneHit hit(const Mover& mover) const noexcept;
+
+ private:
+  void take(const ConvexPart& part, const MoverMeeting& meeting) noexcept;
+
+  MoverMeeting meeting_;
+  ConvexPart part_;
+  TriangleShape triangle_;
+  /// Where the mover starts, and the world's origin lies, as the part has it.
+  double from_[3] = {0.0, 0.0, 0.0};
+  double base_[3] = {0.0, 0.0, 0.0};
+};
+
+}  // namespace winnow

@@ -1,0 +1,158 @@
+#include "pipeline/scene/queries/queries_parts.h"
+#include <winnow/core/rounding.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace winnow {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A float box about the origin of a shape, brought to its place.
+PreciseBox placed_box(const Aabb& box, const double position[3]) noexcept {
+  PreciseBox result;
+  for (int i = 0; i < 3; ++i) {
+    const auto low = static_cast<double>(box.min[i]);
+    const auto high = static_cast<double>(box.max[i]);
+    result.min[i] = std::isinf(low) ? low : add_down(position[i], low);
+    result.max[i] = std::isinf(high) ? high : add_up(position[i], high);
+  }
+  return result;
+}
+
+/// The pose without its position.
+Pose turned(const Pose& pose) noexcept {
+  Pose result;
+  std::copy_n(pose.orientation, 4, result.orientation);
+  return result;
+}
+
+PreciseBox triangle_box(const TriangleShape& triangle, const Pose& pose) noexcept {
+  const Eigen::Vector4d q = Eigen::Vector4d::Map(pose.orientation);
+  const Eigen::Vector4d unit = (q / q.cwiseAbs().maxCoeff()).normalized();
+  const Eigen::Matrix3d turn =
+      Eigen::Quaterniond(unit[0], unit[1], unit[2], unit[3]).toRotationMatrix();
+  PreciseBox box;
+  double scale = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3d local = Vector3d::Map(triangle.vertex[k]);
+    const Vector3d corner = turn * local;
+    scale = std::max(scale, local.cwiseAbs().sum());
+    box.min = k == 0 ? corner : Vector3d(box.min.cwiseMin(corner));
+    box.max = k == 0 ? corner : Vector3d(box.max.cwiseMax(corner));
+  }
+  // Of the rotation, and of the sums below.
+  const Vector3d position = Vector3d::Map(pose.position);
+  const double slack =
+      triangle.rounding + 1e-14 * (scale + triangle.rounding + position.cwiseAbs().maxCoeff());
+  return PreciseBox{position + box.min, position + box.max}.grown(slack);
+}
+
+}  // namespace
+
+PreciseBox PreciseBox::grown(double by) const noexcept {
+  return {min.array() - by, max.array() + by};
+}
+
+BoxSweep PreciseBox::standing() const noexcept {
+  BoxSweep sweep;
+  Vector3d::Map(sweep.min) = min;
+  Vector3d::Map(sweep.max) = max;
+  return sweep;
+}
+
+PartTables::PartTables(const ShapePool& pool) noexcept
+    : pool_(pool.tables()), tables_(pool.tables()) {
+  tables_.triangles = triangles_;
+  tables_.spheres = balls_;
+  tables_.count[static_cast<std::size_t>(ShapeKind::triangle)] = 2;
+  tables_.count[static_cast<std::size_t>(ShapeKind::sphere)] = 2;
+}
+
+ShapeId PartTables::put(std::size_t slot, const ConvexPart& part) noexcept {
+  const ShapeKind kind = part.shape.kind();
+  const auto index = static_cast<std::uint32_t>(slot);
+  if (kind == ShapeKind::triangle) {
+    triangles_[slot] =
+        part.triangle != nullptr ? *part.triangle : pool_.triangles[part.shape.index()];
+    triangles_[slot].rounding += part.thickness;
+    return ShapeId::of(kind, index);
+  }
+  if (kind == ShapeKind::sphere) {
+    balls_[slot] = part.ball != nullptr ? *part.ball : pool_.spheres[part.shape.index()];
+    return ShapeId::of(kind, index);
+  }
+  return part.shape;
+}
+
+bool PartWalk::contains(ShapeId shape) const noexcept {
+  if (shape.is_composite()) return composites_ != nullptr && composites_->contains(shape);
+  return shapes_.contains(shape);
+}
+
+PreciseBox PartWalk::box(const PlacedShape& placed) const noexcept {
+  const Pose here = turned(placed.pose);
+  const Aabb local = placed.shape.is_composite() ? composites_->bounds(placed.shape, here)
+                                                 : shapes_.bounds(placed.shape, here);
+  return placed_box(local, placed.pose.position);
+}
+
+PreciseBox PartWalk::box(const ConvexPart& part) const noexcept {
+  if (part.triangle != nullptr) return triangle_box(*part.triangle, part.pose);
+  if (part.ball != nullptr) {
+    const Vector3d center = Vector3d::Map(part.pose.position);
+    return PreciseBox{center, center}.grown(part.ball->radius);
+  }
+  return box(PlacedShape{part.shape, part.pose});
+}
+
+void PartWalk::walk(const PlacedShape& placed, BoxSweep sweep, double limit, bool near,
+                    PartVisitor visitor) const {
+  if (!placed.shape.is_composite()) {
+    visitor.visit(visitor.context, ConvexPart{placed.shape, placed.pose}, limit);
+    return;
+  }
+  // What reaches to infinity need not reach farther than the shape.
+  const PreciseBox own = box(placed);
+  for (int i = 0; i < 3; ++i) {
+    if (std::isinf(sweep.min[i])) sweep.min[i] = std::min(own.min[i], sweep.max[i]);
+    if (std::isinf(sweep.max[i])) sweep.max[i] = std::max(own.max[i], sweep.min[i]);
+  }
+  const PrimitiveVisitor primitives{
+      [](void* context, const Primitive& primitive, double most) {
+        const auto& to = *static_cast<const PartVisitor*>(context);
+        ConvexPart part{primitive.shape, primitive.pose, primitive.part};
+        if (primitive.shape.kind() == ShapeKind::triangle) part.triangle = &primitive.triangle;
+        return to.visit(to.context, part, most);
+      },
+      &visitor};
+  if (near) {
+    composites_->visit_near(placed.shape, placed.pose, sweep, limit, primitives);
+  } else {
+    composites_->visit(placed.shape, placed.pose, sweep, primitives);
+  }
+}
+
+Difference difference(const double to[3], const double from[3]) noexcept {
+  Difference result{};
+  constexpr double kMost = std::numeric_limits<double>::max();
+  for (int i = 0; i < 3; ++i) {
+    // The error of a difference is a double (Knuth, TAOCP vol. 2, 4.2.2, theorem B).
+    const double d = to[i] - from[i];
+    const double back = d - to[i];
+    const double rest = (to[i] - (d - back)) + (-from[i] - back);
+    result.difference[i] = std::clamp(d, -kMost, kMost);
+    result.rest[i] = std::isfinite(rest) ? rest : 0.0;
+  }
+  return result;
+}
+
+Pose relative(const Pose& pose, const double position[3]) noexcept {
+  Pose result = pose;
+  std::copy_n(difference(pose.position, position).difference, 3, result.position);
+  return result;
+}
+
+}  // namespace winnow

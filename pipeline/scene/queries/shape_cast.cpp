@@ -1,0 +1,299 @@
+// The distance g(t) of two convex shapes of which one moves along a line is a convex function of t.
+// A plane that parts them at some t with gap s, along whose normal they close at the speed v, parts
+// them until t + s / v, and has parted them ever before: a certificate, however the plane was
+// found. Where v <= 0 it parts them for ever after, and since t - s / |v|. So every sample that is
+// parted, before the impact or beyond it, bounds the impact from one side or rules it out. Samples
+// are taken where Newton's method would (the planes of closest points are the tangents of g), a
+// little ahead, so that the last of them meets the shapes touching and closes the bracket.
+
+#include "pipeline/scene/queries/shape_cast.h"
+#include <winnow/core/rounding.h>
+#include "pipeline/solver/core_distance.h"
+#include "pipeline/solver/gjk.h"
+#include "pipeline/solver/problem.h"
+#include "pipeline/solver/solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace winnow {
+namespace {
+
+using solver::CoreDistance;
+using solver::CoreKind;
+using solver::GjkResult;
+using solver::kEpsilon;
+using solver::Problem;
+using solver::Vec;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Halving a bracket every other time, doubles run out of numbers first.
+constexpr std::uint32_t kMostSteps = 256;
+
+/// Where the standing shape is, seen from the moving one: to the last bit, however long the way.
+class Way {
+ public:
+  explicit Way(const CastPair& pair) noexcept {
+    const Vec direction = Vec::Map(pair.direction);
+    std::frexp(direction.cwiseAbs().maxCoeff(), &exponent_);
+    for (int i = 0; i < 3; ++i) {
+      step_[i] = std::ldexp(direction[i], -exponent_);
+      const double to = pair.pose.position[i];
+      const double from = pair.from.position[i];
+      between_[i] = to - from;
+      const double back = between_[i] - to;
+      lost_[i] = (to - (between_[i] - back)) + (-from - back);
+    }
+    // Positions at both ends of the range of doubles.
+    constexpr double kMost = std::numeric_limits<double>::max();
+    between_ = between_.cwiseMin(kMost).cwiseMax(-kMost);
+    if (!lost_.allFinite()) lost_.setZero();
+    speed_ = step_.norm();
+    end_ = std::ldexp(pair.max_t, exponent_);
+  }
+
+  // t counts in steps here: the direction times a power of two, of a length near 1.
+
+  [[nodiscard]] const Vec& step() const noexcept { return step_; }
+  [[nodiscard]] double speed() const noexcept { return speed_; }
+  [[nodiscard]] double end() const noexcept { return end_; }
+
+  [[nodiscard]] Vec offset(double t) const noexcept {
+    Vec result;
+    for (int i = 0; i < 3; ++i) {
+      const double way = t * step_[i];
+      const double way_error = std::fma(t, step_[i], -way);
+      const double sum = between_[i] - way;
+      const double back = sum - between_[i];
+      const double sum_error = (between_[i] - (sum - back)) + (-way - back);
+      const double errors = sum_error + (lost_[i] - way_error);
+      result[i] = std::isfinite(errors) ? sum + errors : sum;
+    }
+    constexpr double kMost = std::numeric_limits<double>::max();
+    return result.cwiseMin(kMost).cwiseMax(-kMost);
+  }
+
+  [[nodiscard]] double steps(double shown) const noexcept { return std::ldexp(shown, exponent_); }
+  /// In the caller's units, not above what it was.
+  [[nodiscard]] double shown(double t) const noexcept {
+    const double result = std::ldexp(t, -exponent_);
+    return std::ldexp(result, exponent_) > t ? std::nextafter(result, 0.0) : result;
+  }
+
+ private:
+  Vec step_;
+  Vec between_;
+  Vec lost_;
+  double speed_ = 1.0;
+  double end_ = 0.0;
+  int exponent_ = 0;
+};
+
+/// The pair at one t.
+struct Sample {
+  /// Surely apart by `gap` > 0 along `normal`, which points from the moving to the standing shape.
+  bool parted = false;
+  double gap = 0.0;
+  Vec normal = Vec::Zero();
+  /// Closing speed along it, not too low.
+  double closing = 0.0;
+};
+
+class Advancement {
+ public:
+  Advancement(const ShapeTables& tables, const CastPair& pair, double tolerance) noexcept
+      : tables_(tables),
+        pair_(pair),
+        way_(pair),
+        tolerance_(tolerance / way_.speed()),
+        swapped_(pair.moving.kind() > pair.standing.kind()) {}
+
+  bool run(CastTouch& touch) noexcept {
+    const bool hit = search();
+    touch.steps = steps_;
+    if (!hit) return false;
+    touch.t = std::min(way_.shown(free_until_), pair_.max_t);
+    Vec::Map(touch.normal) = -normal_;
+    touch.overlaps_at_start = overlap_at_start_;
+    return true;
+  }
+
+  void describe(CastTouch& touch) noexcept;
+
+ private:
+  [[nodiscard]] bool search() noexcept;
+  [[nodiscard]] bool touches_at_start() noexcept;
+  [[nodiscard]] double next(std::uint32_t step) const noexcept;
+  [[nodiscard]] Sample sample(double t) noexcept;
+  void face(const Vec& axis, Sample& sample) const noexcept;
+  [[nodiscard]] double surely_apart(const Problem& problem, Sample& sample) noexcept;
+  void prepare_at(double t, Problem& problem) const noexcept;
+
+  const ShapeTables& tables_;
+  const CastPair& pair_;
+  const Way way_;
+  const double tolerance_;
+  /// The solver takes the lesser kind first.
+  const bool swapped_;
+  SolverCounts counts_;
+  std::uint32_t steps_ = 0;
+
+  /// They do not touch before the one, nor from the other on.
+  double free_until_ = 0.0;
+  double free_from_ = kInfinity;
+  /// As far as is known, they touch here.
+  double touching_ = kInfinity;
+  /// The last two advances of `free_until_`.
+  double advance_ = 0.0;
+  double advance_before_ = 0.0;
+  /// Of the last plane that they were nearing.
+  Vec normal_ = Vec::Zero();
+  bool overlap_at_start_ = false;
+};
+
+void Advancement::prepare_at(double t, Problem& problem) const noexcept {
+  Pose moving;
+  Pose standing;
+  std::copy_n(pair_.from.orientation, 4, moving.orientation);
+  std::copy_n(pair_.pose.orientation, 4, standing.orientation);
+  Vec::Map(standing.position) = way_.offset(t);
+  if (swapped_) {
+    prepare(tables_, pair_.standing, standing, pair_.moving, moving, true, problem);
+  } else {
+    prepare(tables_, pair_.moving, moving, pair_.standing, standing, false, problem);
+  }
+}
+
+/// The gap along a plane that parts the pair, less all rounding; none of shapes that touch as far
+/// as double can tell. What counts is what the plane itself parts, not what a solver says about
+/// distances.
+Sample Advancement::sample(double t) noexcept {
+  ++steps_;
+  Problem problem;
+  prepare_at(t, problem);
+  const double roundings = problem.a.rounding + problem.b.rounding;
+  const double noise = problem.noise();
+  Sample result;
+  double gap = 0.0;
+  if (problem.b.kind == CoreKind::half_space) {
+    const CoreDistance found = core_distance(problem, NarrowLevel::boolean, kInfinity, counts_);
+    gap = found.distance - roundings - noise;
+    face(found.axis, result);
+  } else {
+    const bool is_known = !normal_.isZero(0.0);
+    const Vec start = is_known ? Vec(swapped_ ? -normal_ : normal_) : problem.b.center;
+    const GjkResult found = gjk(problem.a, problem.b, start, 0.125 * noise, kInfinity);
+    if (found.contact || found.upper + noise <= roundings) return result;
+    gap = found.lower - roundings - noise;
+    face(found.axis, result);
+    if (!(gap > 0.0) && found.upper - roundings > 2.0 * noise) {
+      gap = surely_apart(problem, result) - roundings;
+    }
+  }
+  if (gap > 0.0) result.gap = unscaled(problem, gap);
+  result.parted = result.gap > 0.0;
+  return result;
+}
+
+void Advancement::face(const Vec& axis, Sample& sample) const noexcept {
+  sample.normal = swapped_ ? Vec(-axis) : axis;
+  sample.closing = sample.normal.dot(way_.step()) + 4.0 * kEpsilon * way_.speed();
+}
+
+/// For cores whose closest points iteration does not find. Without a good plane they close at full
+/// speed.
+double Advancement::surely_apart(const Problem& problem, Sample& sample) noexcept {
+  const CoreDistance found = core_distance(problem, NarrowLevel::boolean, kInfinity, counts_);
+  if (found.overlaps) return 0.0;
+  face(found.axis, sample);
+  const double roundings = problem.a.rounding + problem.b.rounding;
+  const double cores = separation(problem.a, problem.b, found.axis) - problem.noise();
+  if (cores > roundings) return cores;
+  sample.closing = way_.speed();
+  return found.distance - found.doubt;
+}
+
+/// Where double cannot tell, exact arithmetic does.
+bool Advancement::touches_at_start() noexcept {
+  const auto solve = [this](NarrowLevel level) {
+    return solve_pair(tables_, pair_.moving, pair_.from, pair_.standing, pair_.pose, level, 0.0,
+                      counts_);
+  };
+  overlap_at_start_ = solve(NarrowLevel::boolean).overlap;
+  if (overlap_at_start_) return true;
+  const PairAnswer apart = solve(NarrowLevel::distance);
+  return Vec::Map(apart.normal).dot(way_.step()) > 4.0 * kEpsilon * way_.speed();
+}
+
+/// Where to look next. A little beyond what is known to be free; twice as far as Newton's method
+/// came where it is as slow as at double roots, of shapes that graze each other. In a bracket every
+/// other time in its middle, so that it ends whatever the shapes are.
+double Advancement::next(std::uint32_t step) const noexcept {
+  const bool slow = advance_ > 0.25 * advance_before_ && advance_before_ > 0.0;
+  double t = free_until_ + std::max(0.5 * tolerance_, slow ? advance_ : 0.0);
+  const double last = std::min(touching_, free_from_);
+  if (last < kInfinity && (step % 2 == 0 || t >= last)) {
+    t = free_until_ + 0.5 * (last - free_until_);
+  }
+  return std::min(std::max(t, std::nextafter(free_until_, kInfinity)), way_.end());
+}
+
+bool Advancement::search() noexcept {
+  double t = 0.0;
+  for (std::uint32_t step = 0; step < kMostSteps; ++step) {
+    const Sample found = sample(t);
+    if (!found.parted) {
+      if (t == 0.0) return touches_at_start();
+      touching_ = std::min(touching_, t);
+    } else if (found.closing <= 8.0 * kEpsilon * way_.speed()) {
+      // Nor do they meet later: before, the gap would be lost in the rounding of the way.
+      const double leaving = std::max(-found.closing, 0.0);
+      free_from_ = std::min(free_from_, add_up(t, -found.gap / leaving));
+    } else {
+      if (t >= way_.end()) return false;
+      const double free = add_down(t, found.gap / found.closing * (1.0 - 4.0 * kEpsilon));
+      if (!std::isfinite(free)) return false;
+      advance_before_ = advance_;
+      advance_ = std::max(free - free_until_, 0.0);
+      free_until_ = std::max(free_until_, free);
+      normal_ = found.normal;
+    }
+    if (free_until_ > way_.end() || free_until_ >= free_from_) return false;
+    if (touching_ - free_until_ <= tolerance_) return true;
+    const double before = t;
+    t = next(step);
+    // No number left between.
+    if (t == before || t >= touching_ || t >= free_from_) return true;
+  }
+  return true;
+}
+
+void Advancement::describe(CastTouch& touch) noexcept {
+  Problem problem;
+  prepare_at(way_.steps(touch.t), problem);
+  const CoreDistance found = core_distance(problem, NarrowLevel::distance, kInfinity, counts_);
+  const double apart = found.distance - problem.a.rounding - problem.b.rounding;
+  const Vec on_a = found.on_a + found.axis * problem.a.rounding;
+  const Vec point = swapped_ ? on_a : Vec(on_a + found.axis * apart - problem.b.center);
+  for (int i = 0; i < 3; ++i) touch.point[i] = unscaled(problem, point[i]);
+  const Vec normal = swapped_ ? found.axis : Vec(-found.axis);
+  // Of shapes that all but touch, another axis may seem as good.
+  const bool is_known = !Vec::Map(touch.normal).isZero(0.0);
+  if (!touch.overlaps_at_start && normal.dot(way_.step()) >= 0.0 && is_known) return;
+  Vec::Map(touch.normal) = normal;
+}
+
+}  // namespace
+
+bool cast_shape(const ShapeTables& tables, const CastPair& pair, double tolerance,
+                CastTouch& touch) noexcept {
+  return Advancement(tables, pair, tolerance).run(touch);
+}
+
+void describe_touch(const ShapeTables& tables, const CastPair& pair, CastTouch& touch) noexcept {
+  Advancement(tables, pair, 0.0).describe(touch);
+}
+
+}  // namespace winnow

@@ -1,0 +1,273 @@
+#include "pipeline/scene/scene_state.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace winnow {
+namespace {
+
+[[nodiscard]] bool is_length(double value) noexcept {
+  return std::isfinite(value) && value >= 0.0;
+}
+
+[[nodiscard]] bool are_good(const SceneOptions& options) noexcept {
+  const auto known = [](std::string_view name) {
+    const auto names = partition_names();
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  return is_length(options.margin) && is_length(options.carry_over) &&
+         std::all_of(std::begin(options.partitions), std::end(options.partitions), known) &&
+         options.tier <= NarrowTier::reference;
+}
+
+[[nodiscard]] std::uint64_t next_serial() noexcept {
+  static std::atomic<std::uint64_t> serial{0};
+  return ++serial;
+}
+
+[[nodiscard]] bool is_motion(Motion motion) noexcept {
+  return motion <= Motion::sleeping;
+}
+
+}  // namespace
+
+Bytes SceneFootprint::total() const noexcept {
+  Bytes sum;
+  for (const Bytes* part : {&bodies, &partitions[0], &partitions[1], &partitions[2], &pairs,
+                            &mid_phase, &narrow_phase}) {
+    sum += *part;
+  }
+  return sum;
+}
+
+Scene::State::State(const ShapePool& pool, const SceneOptions& given)
+    : shapes(pool),
+      options(given),
+      options_are_good(are_good(given)),
+      growth(given.margin * 0.5 + given.carry_over),
+      keys(given.memory),
+      shape(given.memory),
+      pose(given.memory),
+      motion(given.memory),
+      place(given.memory),
+      moved_at(given.memory),
+      shaped_at(given.memory),
+      anchor(given.memory),
+      stale(given.memory),
+      is_stale(given.memory),
+      boxes(given.memory),
+      boxes_of(given.memory),
+      boxes_body(given.memory),
+      chosen(given.memory),
+      left(given.memory),
+      sets{SceneSet(given.memory), SceneSet(given.memory), SceneSet(given.memory)},
+      serial(next_serial()),
+      pairs(given.memory),
+      narrow(given.memory),
+      answers(given.memory),
+      slot(given.memory),
+      convex(given.memory),
+      composite(given.memory),
+      parts(given.memory),
+      parts_narrow(given.memory),
+      parts_answers(given.memory),
+      parts_slot(given.memory) {
+  if (given.composites != nullptr) composites_seen = given.composites->revision();
+}
+
+Scene::Scene(const ShapePool& shapes, const SceneOptions& options)
+    : state_(new State(shapes, options)) {}
+
+Scene::~Scene() {
+  delete state_;
+}
+
+Status Scene::add(const BodyDefinition& body, Key& key) {
+  return add({&body, 1}, {&key, 1});
+}
+
+Status Scene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
+  State& s = *state_;
+  if (!s.options_are_good) return Status::invalid_argument;
+  if (bodies.size() != keys.size()) return Status::size_mismatch;
+  if (bodies.size() + s.keys.slot_count() >= kMaxBodies) return Status::too_many_objects;
+  for (const BodyDefinition& body : bodies) {
+    if (!is_motion(body.motion)) return Status::invalid_argument;
+    if (const Status good = s.check(body.shape, body.pose); good != Status::ok) return good;
+  }
+  if (!s.reserve(bodies.size())) return Status::out_of_memory;
+  for (std::size_t i = 0; i < bodies.size(); ++i) keys[i] = s.acquire(bodies[i]);
+  const Status status = s.settle(bodies, keys);
+  if (status == Status::ok) return status;
+  for (Key& key : keys) {
+    if (s.place[key.id] != Key{}) {
+      (void)s.displace(s.motion[key.id], {&s.place[key.id], 1});
+    }
+    s.keys.release(key.id);
+    key = {};
+  }
+  return status;
+}
+
+Status Scene::remove(Key key) {
+  return remove({&key, 1});
+}
+
+Status Scene::remove(std::span<const Key> keys) {
+  State& s = *state_;
+  if (!s.are_distinct(keys)) return Status::invalid_key;
+  if (!s.left.resize(keys.size())) return Status::out_of_memory;
+  for (const Motion which : kEveryMotion) {
+    std::size_t count = 0;
+    for (const std::uint32_t body : s.choose(keys, which)) s.left[count++] = s.place[body];
+    const Status status = s.displace(which, {s.left.data(), count});
+    if (status != Status::ok) return status;
+    for (const std::uint32_t body : s.chosen) s.keys.release(body);
+  }
+  ++s.regroupings;
+  s.forget_stale();
+  return Status::ok;
+}
+
+void Scene::clear() noexcept {
+  State& s = *state_;
+  for (SceneSet& set : s.sets) {
+    if (set.partition == nullptr) continue;
+    set.partition->clear();
+    ++set.changes;
+  }
+  s.keys.clear();
+  s.forget_stale();
+  ++s.regroupings;
+}
+
+Status Scene::move(Key key, const Pose& pose) {
+  if (!state_->keys.is_valid(key)) return Status::invalid_key;
+  if (!pose.is_valid()) return Status::invalid_pose;
+  state_->set_pose(key.id, pose);
+  return Status::ok;
+}
+
+Status Scene::move(std::span<const Key> keys, const PoseView& poses) {
+  State& s = *state_;
+  if (keys.size() != poses.count) return Status::size_mismatch;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (!s.keys.is_valid(keys[i])) return Status::invalid_key;
+    if (!poses[i].is_valid()) return Status::invalid_pose;
+  }
+  for (std::size_t i = 0; i < keys.size(); ++i) s.set_pose(keys[i].id, poses[i]);
+  return Status::ok;
+}
+
+Status Scene::set_motion(Key key, Motion motion) {
+  return set_motion({&key, 1}, motion);
+}
+
+Status Scene::set_motion(std::span<const Key> keys, Motion motion) {
+  State& s = *state_;
+  if (!is_motion(motion)) return Status::invalid_argument;
+  if (!s.are_distinct(keys)) return Status::invalid_key;
+  for (const Motion from : kEveryMotion) {
+    if (from == motion) continue;
+    const Status status = s.move_to_set(from, motion, s.choose(keys, from));
+    if (status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
+Status Scene::set_shape(Key key, ShapeId shape) {
+  State& s = *state_;
+  if (!s.keys.is_valid(key)) return Status::invalid_key;
+  if (const Status good = s.check(shape, s.pose[key.id]); good != Status::ok) return good;
+  s.shape[key.id] = shape;
+  s.shaped_at[key.id] = s.clock;
+  s.mark_stale(key.id);
+  return Status::ok;
+}
+
+Status Scene::set_filter(Key key, const ObjectFilter& filter) {
+  State& s = *state_;
+  if (!s.keys.is_valid(key)) return Status::invalid_key;
+  SceneSet& set = s.set(s.motion[key.id]);
+  const Status status = set.partition->set_filter(s.place[key.id], filter);
+  if (status == Status::ok) ++set.changes;
+  return status;
+}
+
+std::size_t Scene::size() const noexcept {
+  return state_->keys.size();
+}
+
+std::size_t Scene::size(Motion motion) const noexcept {
+  if (!is_motion(motion)) return 0;
+  const Partition* const partition = state_->set(motion).partition.get();
+  return partition == nullptr ? 0 : partition->size();
+}
+
+bool Scene::contains(Key key) const noexcept {
+  return state_->keys.is_valid(key);
+}
+
+Status Scene::body(Key key, BodyDefinition& body) const noexcept {
+  const State& s = *state_;
+  if (!s.keys.is_valid(key)) return Status::invalid_key;
+  body.shape = s.shape[key.id];
+  body.pose = s.pose[key.id];
+  body.motion = s.motion[key.id];
+  body.data = s.keys.client_data(key.id);
+  return s.set(body.motion).partition->filter(s.place[key.id], body.filter);
+}
+
+Key Scene::key_of(ObjectId id) const noexcept {
+  return state_->keys.key_of(id);
+}
+
+const Partition* Scene::partition(Motion motion) const noexcept {
+  return is_motion(motion) ? state_->set(motion).partition.get() : nullptr;
+}
+
+Status Scene::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const {
+  for (const SceneSet& set : state_->sets) {
+    if (set.partition == nullptr) continue;
+    const Status status = set.partition->debug_draw(draw, options);
+    if (status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
+const SceneStatistics& Scene::statistics() const noexcept {
+  return state_->statistics;
+}
+
+SceneFootprint Scene::footprint() const noexcept {
+  const State& s = *state_;
+  SceneFootprint footprint;
+  footprint.bodies += s.keys.key_bytes();
+  footprint.bodies += s.keys.client_data_bytes();
+  for (const Bytes& bytes :
+       {s.shape.bytes(), s.pose.bytes(), s.motion.bytes(), s.place.bytes(), s.moved_at.bytes(),
+        s.shaped_at.bytes(), s.anchor.bytes(), s.stale.bytes(), s.is_stale.bytes(), s.boxes.bytes(),
+        s.boxes_of.bytes(), s.boxes_body.bytes(), s.chosen.bytes(), s.left.bytes()}) {
+    footprint.bodies += bytes;
+  }
+  for (std::size_t i = 0; i < kMotions; ++i) {
+    const SceneSet& set = s.sets[i];
+    if (set.partition != nullptr) footprint.partitions[i] += set.partition->footprint().total();
+    footprint.partitions[i] += set.body_of.bytes();
+    footprint.pairs += set.with_dynamic.footprint().total();
+  }
+  footprint.pairs += s.pairs.bytes();
+  footprint.mid_phase += s.composite.bytes();
+  footprint.mid_phase += s.parts.footprint().total();
+  footprint.mid_phase += s.parts_narrow.footprint().total();
+  footprint.mid_phase += s.parts_answers.footprint().total();
+  footprint.mid_phase += s.parts_slot.bytes();
+  footprint.narrow_phase += s.convex.bytes();
+  footprint.narrow_phase += s.slot.bytes();
+  footprint.narrow_phase += s.narrow.footprint().total();
+  footprint.narrow_phase += s.answers.footprint().total();
+  return footprint;
+}
+
+}  // namespace winnow

@@ -1,0 +1,308 @@
+#include "pipeline/shapes/hull_builder.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <unordered_map>
+
+namespace winnow {
+namespace {
+
+constexpr std::size_t kLine = 64;
+constexpr double kConvex = 1e-9;
+
+[[nodiscard]] constexpr std::size_t padded(std::size_t count) {
+  return (count + 15) / 16 * 16;
+}
+
+// Hands out parts of a block, each on a line of its own; without a block it only counts.
+class Block {
+ public:
+  explicit Block(std::byte* base) : base_(base) {}
+
+  template <typename T>
+  T* take(std::size_t count) {
+    T* const part = base_ == nullptr ? nullptr : new (base_ + used_) T[count == 0 ? 1 : count];
+    used_ += (count * sizeof(T) + kLine - 1) / kLine * kLine;
+    return part;
+  }
+  [[nodiscard]] std::size_t used() const { return used_; }
+
+ private:
+  std::byte* base_;
+  std::size_t used_ = 0;
+};
+
+struct Columns {
+  double* vertex[3];
+  float* vertex_float[3];
+  HullFace* faces;
+  float* plane_float[4];
+  HullEdge* edges;
+  std::uint32_t* loop;
+  std::uint32_t* loop_edge;
+  std::uint32_t* neighbour_first;
+  std::uint32_t* neighbour;
+};
+
+Columns lay_out(Block& block, const HullShape& hull) {
+  Columns c{};
+  for (auto& column : c.vertex) column = block.take<double>(padded(hull.vertex_count));
+  for (auto& column : c.vertex_float) column = block.take<float>(padded(hull.vertex_count));
+  c.faces = block.take<HullFace>(hull.face_count);
+  for (auto& column : c.plane_float) column = block.take<float>(padded(hull.face_count));
+  c.edges = block.take<HullEdge>(hull.edge_count);
+  c.loop = block.take<std::uint32_t>(2 * std::size_t{hull.edge_count});
+  c.loop_edge = block.take<std::uint32_t>(2 * std::size_t{hull.edge_count});
+  c.neighbour_first = block.take<std::uint32_t>(std::size_t{hull.vertex_count} + 1);
+  c.neighbour = block.take<std::uint32_t>(2 * std::size_t{hull.edge_count});
+  return c;
+}
+
+class Assembly {
+ public:
+  Assembly(std::span<const Eigen::Vector3d> points, const HullSurface& surface)
+      : points_(points), surface_(surface) {}
+
+  Status run(std::pmr::memory_resource* memory, HullShape& hull) {
+    number_vertices();
+    hull_.vertex_count = static_cast<std::uint32_t>(used_.size());
+    hull_.face_count = static_cast<std::uint32_t>(surface_.faces());
+    hull_.edge_count = hull_.face_count == 0
+                           ? hull_.vertex_count - 1
+                           : static_cast<std::uint32_t>(surface_.loops.size() / 2);
+    hull_.dimension = hull_.face_count == 0   ? hull_.vertex_count - 1
+                      : hull_.face_count == 2 ? 2
+                                              : 3;
+    const std::size_t bytes = hull_bytes(hull_);
+    auto* const base = static_cast<std::byte*>(memory->allocate(bytes, kLine));
+    Block block(base);
+    c_ = lay_out(block, hull_);
+    write_vertices();
+    write_edges();
+    write_neighbours();
+    if (!write_faces()) {
+      memory->deallocate(base, bytes, kLine);
+      return Status::invalid_shape;
+    }
+    publish();
+    hull = hull_;
+    return Status::ok;
+  }
+
+ private:
+  void number_vertices() {
+    used_ = surface_.loops;
+    if (surface_.faces() == 0) {
+      for (std::uint32_t i = 0; i < points_.size(); ++i) used_.push_back(i);
+    }
+    std::sort(used_.begin(), used_.end());
+    used_.erase(std::unique(used_.begin(), used_.end()), used_.end());
+  }
+  [[nodiscard]] std::uint32_t number(std::uint32_t point) const {
+    return static_cast<std::uint32_t>(std::ranges::lower_bound(used_, point) - used_.begin());
+  }
+  [[nodiscard]] Eigen::Vector3d at(std::uint32_t v) const { return points_[used_[v]]; }
+
+  void write_vertices() {
+    const std::size_t room = padded(used_.size());
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < room; ++i) {
+      const Eigen::Vector3d p = points_[used_[i < used_.size() ? i : 0]];
+      for (int axis = 0; axis < 3; ++axis) {
+        c_.vertex[axis][i] = p[axis];
+        c_.vertex_float[axis][i] = static_cast<float>(p[axis]);
+      }
+      // Shares instead of a sum: a mean of numbers near the largest double does not overflow.
+      if (i < used_.size()) sum += p / static_cast<double>(used_.size());
+    }
+    for (std::uint32_t v = 0; v < hull_.vertex_count; ++v) {
+      hull_.radius = std::max(hull_.radius, (at(v) - sum).stableNorm());
+    }
+    hull_.radius *= 1.0 + 1e-15;
+    for (int axis = 0; axis < 3; ++axis) hull_.center[axis] = sum[axis];
+  }
+
+  void write_edges() {
+    if (hull_.face_count == 0) {
+      if (hull_.edge_count == 1) c_.edges[0] = {{0, 1}, {~0U, ~0U}};
+      return;
+    }
+    std::unordered_map<std::uint64_t, std::uint32_t> seen;
+    std::uint32_t edges = 0;
+    std::uint32_t slot = 0;
+    for (std::uint32_t f = 0; f < hull_.face_count; ++f) {
+      const auto loop = surface_.loop(f);
+      for (std::size_t i = 0; i < loop.size(); ++i, ++slot) {
+        const std::uint32_t from = number(loop[i]);
+        const std::uint32_t to = number(loop[(i + 1) % loop.size()]);
+        c_.loop[slot] = from;
+        const auto back = seen.find(std::uint64_t{to} << 32U | from);
+        if (back != seen.end()) {
+          c_.edges[back->second].face[1] = f;
+          c_.loop_edge[slot] = back->second;
+          continue;
+        }
+        seen.emplace(std::uint64_t{from} << 32U | to, edges);
+        c_.edges[edges] = {{from, to}, {f, f}};
+        c_.loop_edge[slot] = edges++;
+      }
+    }
+  }
+
+  void write_neighbours() {
+    std::fill_n(c_.neighbour_first, hull_.vertex_count + 1, 0U);
+    const std::span edges(c_.edges, hull_.edge_count);
+    for (const HullEdge& e : edges) {
+      for (const std::uint32_t v : e.vertex) ++c_.neighbour_first[v + 1];
+    }
+    for (std::uint32_t v = 0; v < hull_.vertex_count; ++v) {
+      c_.neighbour_first[v + 1] += c_.neighbour_first[v];
+    }
+    std::vector<std::uint32_t> fill(c_.neighbour_first, c_.neighbour_first + hull_.vertex_count);
+    for (const HullEdge& e : edges) {
+      c_.neighbour[fill[e.vertex[0]]++] = e.vertex[1];
+      c_.neighbour[fill[e.vertex[1]]++] = e.vertex[0];
+    }
+  }
+
+  // False if the surface is not convex along an edge, which for a closed surface without handles is
+  // the whole question (van Heijenoort, "On locally convex manifolds", 1952).
+  bool write_faces() {
+    const Eigen::Vector3d center(hull_.center[0], hull_.center[1], hull_.center[2]);
+    std::uint32_t first = 0;
+    hull_.inner_radius = hull_.dimension == 3 ? hull_.radius : 0.0;
+    for (std::uint32_t f = 0; f < hull_.face_count; ++f) {
+      HullFace& face = c_.faces[f];
+      face.first = first;
+      face.count = static_cast<std::uint32_t>(surface_.loop(f).size());
+      first += face.count;
+      const Eigen::Vector3d normal = normal_of(face);
+      if (normal.isZero()) return false;
+      face.offset = normal.dot(at(c_.loop[face.first]));
+      for (std::uint32_t i = 1; i < face.count; ++i) {
+        face.offset = std::max(face.offset, normal.dot(at(c_.loop[face.first + i])));
+      }
+      for (int axis = 0; axis < 3; ++axis) face.normal[axis] = normal[axis];
+      if (hull_.dimension == 3) {
+        hull_.inner_radius = std::min(hull_.inner_radius, face.offset - normal.dot(center));
+      }
+    }
+    hull_.inner_radius = std::max(0.0, hull_.inner_radius * (1.0 - 1e-15));
+    for (std::uint32_t f = 0; f < hull_.face_count; ++f) {
+      if (!is_convex_around(f)) return false;
+    }
+    return true;
+  }
+
+  // Newell's normal, with edges scaled so that small hulls keep their digits.
+  [[nodiscard]] Eigen::Vector3d normal_of(const HullFace& face) const {
+    const Eigen::Vector3d origin = at(c_.loop[face.first]);
+    const double scale = hull_.radius > 0.0 ? 1.0 / hull_.radius : 1.0;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::uint32_t i = 1; i + 1 < face.count; ++i) {
+      const Eigen::Vector3d a = (at(c_.loop[face.first + i]) - origin) * scale;
+      const Eigen::Vector3d b = (at(c_.loop[face.first + i + 1]) - origin) * scale;
+      sum += a.cross(b);
+    }
+    return sum.stableNormalized();
+  }
+
+  bool is_convex_around(std::uint32_t f) {
+    HullFace& face = c_.faces[f];
+    const Eigen::Vector3d normal(face.normal[0], face.normal[1], face.normal[2]);
+    double farthest = face.offset;
+    for (std::uint32_t i = 0; i < face.count; ++i) {
+      const HullEdge& edge = c_.edges[c_.loop_edge[face.first + i]];
+      const HullFace& other = c_.faces[edge.face[0] == f ? edge.face[1] : edge.face[0]];
+      for (std::uint32_t k = 0; k < other.count; ++k) {
+        farthest = std::max(farthest, normal.dot(at(c_.loop[other.first + k])));
+      }
+    }
+    if (farthest > face.offset + kConvex * hull_.radius) return false;
+    face.offset = farthest;
+    return true;
+  }
+
+  void publish() {
+    const std::size_t room = padded(hull_.face_count);
+    for (std::size_t f = 0; f < room; ++f) {
+      const HullFace& face = c_.faces[f < hull_.face_count ? f : 0];
+      for (int axis = 0; axis < 3; ++axis) {
+        c_.plane_float[axis][f] = static_cast<float>(face.normal[axis]);
+      }
+      c_.plane_float[3][f] = static_cast<float>(face.offset);
+    }
+    std::copy_n(c_.vertex, 3, hull_.vertex);
+    std::copy_n(c_.vertex_float, 3, hull_.vertex_float);
+    std::copy_n(c_.plane_float, 4, hull_.plane_float);
+    hull_.faces = c_.faces;
+    hull_.edges = c_.edges;
+    hull_.loop = c_.loop;
+    hull_.loop_edge = c_.loop_edge;
+    hull_.neighbour_first = c_.neighbour_first;
+    hull_.neighbour = c_.neighbour;
+  }
+
+  std::span<const Eigen::Vector3d> points_;
+  const HullSurface& surface_;
+  std::vector<std::uint32_t> used_;
+  HullShape hull_;
+  Columns c_{};
+};
+
+}  // namespace
+
+Status assemble_hull(std::span<const Eigen::Vector3d> points, const HullSurface& surface,
+                     std::pmr::memory_resource* memory, HullShape& hull) {
+  return Assembly(points, surface).run(memory, hull);
+}
+
+Status hull_of_faces(std::span<const Eigen::Vector3d> points, const HullFaces& faces,
+                     std::pmr::memory_resource* memory, HullShape& hull) try {
+  HullSurface surface;
+  std::size_t at = 0;
+  for (const std::uint32_t size : faces.sizes) {
+    if (size > faces.indices.size() - at) return Status::invalid_shape;
+    for (const std::uint32_t index : faces.indices.subspan(at, size)) {
+      if (index >= points.size() || !points[index].allFinite()) return Status::invalid_shape;
+      surface.loops.push_back(index);
+    }
+    at += size;
+    surface.end_face();
+  }
+  if (at != faces.indices.size() || surface.faces() < 2) return Status::invalid_shape;
+  const Status status = merge_coplanar(points, surface);
+  return status == Status::ok ? assemble_hull(points, surface, memory, hull) : status;
+} catch (...) {
+  return Status::out_of_memory;
+}
+
+HullShape point_hull() noexcept {
+  alignas(64) static constexpr double kZeros[16] = {};
+  alignas(64) static constexpr float kFloatZeros[16] = {};
+  static constexpr std::uint32_t kNoNeighbours[2] = {};
+  HullShape hull;
+  hull.vertex_count = 1;
+  for (auto& column : hull.vertex) column = kZeros;
+  for (auto& column : hull.vertex_float) column = kFloatZeros;
+  for (auto& column : hull.plane_float) column = kFloatZeros;
+  hull.neighbour_first = kNoNeighbours;
+  return hull;
+}
+
+std::size_t hull_bytes(const HullShape& hull) noexcept {
+  if (hull.vertex[0] != nullptr && hull.vertex[0] == point_hull().vertex[0]) return 0;
+  Block block(nullptr);
+  lay_out(block, hull);
+  return block.used();
+}
+
+void release_hull(const HullShape& hull, std::pmr::memory_resource* memory) noexcept {
+  const std::size_t bytes = hull_bytes(hull);
+  if (bytes == 0) return;
+  memory->deallocate(const_cast<double*>(hull.vertex[0]), bytes, kLine);
+}
+
+}  // namespace winnow

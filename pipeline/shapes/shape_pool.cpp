@@ -1,0 +1,220 @@
+#include <winnow/pipeline/shape_pool.h>
+#include "pipeline/shapes/hull_builder.h"
+
+#include <cmath>
+#include <initializer_list>
+#include <type_traits>
+#include <utility>
+
+namespace winnow {
+namespace {
+
+[[nodiscard]] bool are_lengths(std::initializer_list<double> values) noexcept {
+  for (const double v : values) {
+    if (!std::isfinite(v) || v < 0.0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+ShapePool::ShapePool(std::pmr::memory_resource* memory) noexcept
+    : memory_(memory),
+      spheres_(memory),
+      capsules_(memory),
+      boxes_(memory),
+      cylinders_(memory),
+      cones_(memory),
+      hulls_(memory),
+      triangles_(memory),
+      half_spaces_(memory) {}
+
+ShapePool::ShapePool(ShapePool&& other) noexcept
+    : memory_(other.memory_),
+      spheres_(std::move(other.spheres_)),
+      capsules_(std::move(other.capsules_)),
+      boxes_(std::move(other.boxes_)),
+      cylinders_(std::move(other.cylinders_)),
+      cones_(std::move(other.cones_)),
+      hulls_(std::move(other.hulls_)),
+      triangles_(std::move(other.triangles_)),
+      half_spaces_(std::move(other.half_spaces_)),
+      tables_(std::exchange(other.tables_, {})) {}
+
+ShapePool::~ShapePool() {
+  for (const HullShape& hull : hulls_.shapes) release_hull(hull, memory_);
+}
+
+template <typename Shape>
+Status ShapePool::put(Table<Shape>& table, ShapeKind kind, const Shape& shape, ShapeId& id) {
+  std::uint32_t index = 0;
+  if (!table.free.empty()) {
+    index = table.free[table.free.size() - 1];
+    table.free.set_size(table.free.size() - 1);
+    table.shapes[index] = shape;
+    table.live[index] = 1;
+  } else {
+    if (table.shapes.size() >> ShapeId::kIndexBits != 0) return Status::too_many_objects;
+    index = static_cast<std::uint32_t>(table.shapes.size());
+    // Room to remember the place, so that removal needs no memory.
+    if (!table.free.grow(index + 1U) || !table.live.grow(index + 1U) ||
+        !table.shapes.push_back(shape)) {
+      return Status::out_of_memory;
+    }
+    table.live.set_size(index + 1U);
+    table.live[index] = 1;
+  }
+  id = ShapeId::of(kind, index);
+  refresh_tables();
+  return Status::ok;
+}
+
+Status ShapePool::add(const SphereShape& shape, ShapeId& id) {
+  if (!are_lengths({shape.radius})) return Status::invalid_shape;
+  return put(spheres_, ShapeKind::sphere, shape, id);
+}
+Status ShapePool::add(const CapsuleShape& shape, ShapeId& id) {
+  if (!are_lengths({shape.radius, shape.half_length})) return Status::invalid_shape;
+  return put(capsules_, ShapeKind::capsule, shape, id);
+}
+Status ShapePool::add(const BoxShape& shape, ShapeId& id) {
+  if (!are_lengths({shape.half[0], shape.half[1], shape.half[2], shape.rounding})) {
+    return Status::invalid_shape;
+  }
+  return put(boxes_, ShapeKind::box, shape, id);
+}
+Status ShapePool::add(const CylinderShape& shape, ShapeId& id) {
+  if (!are_lengths({shape.radius, shape.half_length, shape.rounding})) return Status::invalid_shape;
+  return put(cylinders_, ShapeKind::cylinder, shape, id);
+}
+Status ShapePool::add(const ConeShape& shape, ShapeId& id) {
+  if (!are_lengths({shape.radius, shape.half_length, shape.rounding})) return Status::invalid_shape;
+  return put(cones_, ShapeKind::cone, shape, id);
+}
+Status ShapePool::add(const TriangleShape& shape, ShapeId& id) {
+  if (!are_lengths({shape.rounding})) return Status::invalid_shape;
+  for (const auto& vertex : shape.vertex) {
+    for (const double v : vertex) {
+      if (!std::isfinite(v)) return Status::invalid_shape;
+    }
+  }
+  return put(triangles_, ShapeKind::triangle, shape, id);
+}
+Status ShapePool::add(const HalfSpaceShape& shape, ShapeId& id) {
+  const Eigen::Map<const Eigen::Vector3d> normal(shape.normal);
+  if (!std::isfinite(shape.offset) || !normal.allFinite()) return Status::invalid_shape;
+  // Scaled by its largest component first: squares of small normals would vanish.
+  const double largest = normal.cwiseAbs().maxCoeff();
+  if (largest == 0.0) return Status::invalid_shape;
+  const Eigen::Vector3d scaled = normal / largest;
+  const Eigen::Vector3d unit = scaled.normalized();
+  const double offset = shape.offset / largest / scaled.norm();
+  if (!std::isfinite(offset)) return Status::invalid_shape;
+  return put(half_spaces_, ShapeKind::half_space,
+             HalfSpaceShape{{unit.x(), unit.y(), unit.z()}, offset}, id);
+}
+
+Status ShapePool::add_hull(std::span<const Eigen::Vector3d> points, double rounding, ShapeId& id) {
+  HullShape hull;
+  if (!are_lengths({rounding})) return Status::invalid_shape;
+  Status status = hull_of_points(points, memory_, hull);
+  if (status != Status::ok) return status;
+  hull.rounding = rounding;
+  status = put(hulls_, ShapeKind::hull, hull, id);
+  if (status != Status::ok) release_hull(hull, memory_);
+  return status;
+}
+
+Status ShapePool::add_hull(std::span<const Eigen::Vector3d> points, const HullFaces& faces,
+                           double rounding, ShapeId& id) {
+  HullShape hull;
+  if (!are_lengths({rounding})) return Status::invalid_shape;
+  Status status = hull_of_faces(points, faces, memory_, hull);
+  if (status != Status::ok) return status;
+  hull.rounding = rounding;
+  status = put(hulls_, ShapeKind::hull, hull, id);
+  if (status != Status::ok) release_hull(hull, memory_);
+  return status;
+}
+
+template <typename Pool, typename Body>
+decltype(auto) ShapePool::with_table(Pool& pool, ShapeKind kind, Body&& body) {
+  switch (kind) {
+    case ShapeKind::capsule:
+      return body(pool.capsules_);
+    case ShapeKind::box:
+      return body(pool.boxes_);
+    case ShapeKind::cylinder:
+      return body(pool.cylinders_);
+    case ShapeKind::cone:
+      return body(pool.cones_);
+    case ShapeKind::hull:
+      return body(pool.hulls_);
+    case ShapeKind::triangle:
+      return body(pool.triangles_);
+    case ShapeKind::half_space:
+      return body(pool.half_spaces_);
+    case ShapeKind::sphere:
+      break;
+  }
+  return body(pool.spheres_);
+}
+
+bool ShapePool::contains(ShapeId id) const noexcept {
+  if (id.kind_index() >= kShapeKinds) return false;
+  return with_table(*this, id.kind(), [&](const auto& table) {
+    return id.index() < table.live.size() && table.live[id.index()] != 0;
+  });
+}
+
+std::size_t ShapePool::size(ShapeKind kind) const noexcept {
+  return with_table(*this, kind,
+                    [](const auto& table) { return table.shapes.size() - table.free.size(); });
+}
+
+Status ShapePool::remove(ShapeId id) {
+  if (!contains(id)) return Status::invalid_key;
+  with_table(*this, id.kind(), [&](auto& table) {
+    auto& shape = table.shapes[id.index()];
+    using Shape = std::remove_reference_t<decltype(shape)>;
+    if constexpr (std::is_same_v<Shape, HullShape>) {
+      release_hull(shape, memory_);
+      shape = point_hull();
+    } else {
+      shape = Shape{};
+    }
+    table.live[id.index()] = 0;
+    table.free.set_size(table.free.size() + 1);
+    table.free[table.free.size() - 1] = id.index();
+  });
+  return Status::ok;
+}
+
+void ShapePool::refresh_tables() noexcept {
+  tables_ = {spheres_.shapes.data(),   capsules_.shapes.data(),   boxes_.shapes.data(),
+             cylinders_.shapes.data(), cones_.shapes.data(),      hulls_.shapes.data(),
+             triangles_.shapes.data(), half_spaces_.shapes.data()};
+  for (std::uint32_t kind = 0; kind < kShapeKinds; ++kind) {
+    tables_.count[kind] = with_table(*this, static_cast<ShapeKind>(kind), [](const auto& table) {
+      return static_cast<std::uint32_t>(table.shapes.size());
+    });
+  }
+}
+
+Footprint ShapePool::footprint() const noexcept {
+  Footprint footprint;
+  for (std::uint32_t kind = 0; kind < kShapeKinds; ++kind) {
+    with_table(*this, static_cast<ShapeKind>(kind), [&](const auto& table) {
+      footprint.structure += table.shapes.bytes();
+      footprint.keys += table.live.bytes();
+      footprint.keys += table.free.bytes();
+    });
+  }
+  for (const HullShape& hull : hulls_.shapes) {
+    const std::size_t bytes = hull_bytes(hull);
+    footprint.structure += {bytes, bytes};
+  }
+  return footprint;
+}
+
+}  // namespace winnow
