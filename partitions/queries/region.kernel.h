@@ -1,7 +1,7 @@
 #pragma once
 
+#include "partitions/index/query_view.h"
 #include "partitions/queries/cast.kernel.h"
-#include "partitions/queries/query_view.h"
 #include "simd/kernels/kernels.h"
 
 #include <cstdint>

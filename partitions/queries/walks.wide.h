@@ -4,8 +4,8 @@
 // queries share. A query brings a probe, which tests 16 boxes at once, and what is to be done with
 // the rows that pass.
 
+#include "partitions/index/query_view.h"
 #include "partitions/pairs/filters.wide.h"
-#include "partitions/queries/query_view.h"
 #include "simd/lanes/compress.h"
 
 namespace winnow::WINNOW_ISA_NAME {

@@ -1,8 +1,8 @@
-// RowPartition: what it looks like.
+// SpatialIndex: what it looks like.
 
 #include <winnow/core/sphere.h>
 #include <winnow/partitions/debug_colours.h>
-#include "partitions/rows/row_partition.h"
+#include "partitions/index/spatial_index.h"
 #include "partitions/structures/cells/cell_drawing.h"
 
 #include <algorithm>
@@ -46,28 +46,28 @@ void draw_label(DebugDraw& draw, const Aabb& box, ClientData data) {
 
 }  // namespace
 
-Status RowPartition::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const {
-  if (options.max_depth < 0) return Status::invalid_argument;
-  if (const Status status = refresh(); status != Status::ok) return status;
-  if (keys_.size() == 0) return Status::ok;
-  if (options.structure && !is_flat()) {
-    if (regular_rows_ != 0) draw_regular(draw, options);
-    draw_tree(draw, tree_.view(row_view()), static_cast<std::size_t>(options.max_depth));
-  }
-  for (ObjectId id = 0; id < keys_.slot_count(); ++id) {
-    if (!keys_.is_live(id)) continue;
+void SpatialIndex::draw(DebugDraw& draw, std::size_t max_depth) const {
+  if (rows_.size() == 0 || structure_->is_flat()) return;
+  if (rows_.regions().regular != 0) structure_->draw(draw);
+  draw_tree(draw, tree_.view(rows_.view()), max_depth);
+}
+
+void SpatialIndex::draw_objects(DebugDraw& draw, const DebugDrawOptions& options) const {
+  const KeyTable& keys = rows_.keys();
+  const BoundsPool& pool = rows_.pool();
+  for (ObjectId id = 0; id < keys.slot_count(); ++id) {
+    if (!keys.is_live(id)) continue;
     Aabb box;
-    (void)bounds(keys_.key_of(id), box);
-    if (options.objects && pool_.volume() == Volume::sphere) {
-      const std::size_t row = keys_.row_of(id);
-      const auto at = [&](std::size_t c) { return pool_.column(kCenterColumn + c)[row]; };
+    (void)rows_.bounds(keys.key_of(id), box);
+    if (options.objects && pool.volume() == Volume::sphere) {
+      const std::size_t row = keys.row_of(id);
+      const auto at = [&](std::size_t c) { return pool.column(kCenterColumn + c)[row]; };
       draw.sphere({{at(0), at(1), at(2)}, at(3)}, kObjectColour);
     } else if (options.objects) {
       draw.box(box, kObjectColour);
     }
-    if (options.labels) draw_label(draw, box, keys_.client_data(id));
+    if (options.labels) draw_label(draw, box, keys.client_data(id));
   }
-  return Status::ok;
 }
 
 }  // namespace winnow

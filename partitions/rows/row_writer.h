@@ -1,11 +1,10 @@
 #pragma once
 
-// Bulk insert and update of RowPartition from any source of volumes. Included by the source files
-// that offer a source, not by headers.
+// How Rows takes volumes in bulk from any source. Included by the source files that offer a source,
+// not by headers.
 
-#include "core/sort/bitmap_sort.h"
 #include "partitions/rows/fat_volumes.h"
-#include "partitions/rows/row_partition.h"
+#include "partitions/rows/rows.h"
 
 #include <algorithm>
 #include <atomic>
@@ -62,14 +61,14 @@ inline constexpr bool kMayStay = requires(const Source& source) {
 /// Calls use(source) with the source itself or, if volumes are stored larger, with one that makes
 /// them so.
 template <typename Source, typename Use>
-Status RowPartition::with_margin(const Source& source, Use&& use) {
+Status Rows::with_margin(const Source& source, Use&& use) {
   if (margin_.is_none()) return use(source);
   return use(FatSource<Source>{source, margin_});
 }
 
 template <typename Source>
-Status RowPartition::insert_from(const Source& source, std::size_t count,
-                                 std::span<const ClientData> data, std::span<Key> keys) {
+Status Rows::insert_from(const Source& source, std::size_t count, std::span<const ClientData> data,
+                         std::span<Key> keys) {
   if (keys.size() != count || (!data.empty() && data.size() != count)) return Status::size_mismatch;
   if (count > kMaxObjects - keys_.size()) return Status::too_many_objects;
   if (!all_valid(source, count, execution_)) return Status::invalid_bounds;
@@ -87,14 +86,13 @@ Status RowPartition::insert_from(const Source& source, std::size_t count,
     for_ranges(execution_, count, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) volumes.write(i, columns.pointers, first + i);
     });
-    if (count != 0) dirty_.store(true, std::memory_order_relaxed);
+    changed_ = changed_ || count != 0;
     return Status::ok;
   });
 }
 
 template <typename Source>
-Status RowPartition::update_from(const Source& source, std::size_t count,
-                                 std::span<const Key> keys) {
+Status Rows::update_from(const Source& source, std::size_t count, std::span<const Key> keys) {
   if (keys.size() != count) return Status::size_mismatch;
   std::atomic<bool> known{true};
   std::atomic<bool> ascending{true};
@@ -116,7 +114,7 @@ Status RowPartition::update_from(const Source& source, std::size_t count,
 }
 
 template <typename Source>
-Status RowPartition::update_one(const Source& source, Key key) {
+Status Rows::update_one(const Source& source, Key key) {
   if (!source.valid(0)) return Status::invalid_bounds;
   return with_margin(source, [&](const auto& volumes) {
     const PoolColumns columns(pool_);
@@ -127,17 +125,17 @@ Status RowPartition::update_one(const Source& source, Key key) {
       volumes.write(0, columns.pointers, row);
     }
     stale_.add(key.id);
-    dirty_.store(true, std::memory_order_relaxed);
+    changed_ = true;
     return Status::ok;
   });
 }
 
-inline void RowPartition::fetch_row(std::size_t row) const noexcept {
+inline void Rows::fetch_row(std::size_t row) const noexcept {
   for (std::size_t c = 0; c < pool_.columns(); ++c) __builtin_prefetch(pool_.column(c) + row, 1);
 }
 
 template <typename Source>
-Status RowPartition::write(const Source& source, std::span<const Key> keys, bool ascending) {
+Status Rows::write(const Source& source, std::span<const Key> keys, bool ascending) {
   const PoolColumns columns(pool_);
   const std::size_t count = keys.size();
   // Nearly every row changes and entry i is object first + i.
@@ -145,8 +143,8 @@ Status RowPartition::write(const Source& source, std::span<const Key> keys, bool
                        2 * count > pool_.rows();
   if constexpr (kMayStay<Source>) {
     const std::size_t slots = by_rows ? pool_.rows() : count;
-    if (!words_.grow(bitmap_words(slots))) return Status::out_of_memory;
-    std::uint64_t* const left = words_.data();
+    if (!selection_.reserve_bits(slots)) return Status::out_of_memory;
+    std::uint64_t* const left = selection_.bits.data();
     std::fill_n(left, bitmap_words(slots), 0);
     const auto one = [&](std::size_t i, std::size_t row, std::size_t slot) {
       const bool wrote = source.write_if_left(i, columns.pointers, row);
@@ -172,15 +170,15 @@ Status RowPartition::write(const Source& source, std::span<const Key> keys, bool
     } else {
       for (const Key key : keys) stale_.add(key.id);
     }
-    dirty_.store(true, std::memory_order_relaxed);
+    changed_ = true;
     return Status::ok;
   }
 }
 
 /// Of boxes that go by rows: writes those of rows [begin, end) that left their stored ones, and
-/// sets their rows' bits in words_. Most have not: that is found for 16 at a time.
+/// sets their rows' bits in the selection. Most have not: that is found for 16 at a time.
 template <typename Source>
-void RowPartition::write_left_boxes(const Source& source, std::span<const Key> keys) {
+void Rows::write_left_boxes(const Source& source, std::span<const Key> keys) {
   for_ranges(execution_, pool_.rows(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; row += kRowsAtOnce) {
       write_left(source, keys, row, std::min(end, row + kRowsAtOnce));
@@ -188,8 +186,8 @@ void RowPartition::write_left_boxes(const Source& source, std::span<const Key> k
   });
 }
 template <typename Source>
-void RowPartition::write_left(const Source& source, std::span<const Key> keys, std::size_t begin,
-                              std::size_t end) {
+void Rows::write_left(const Source& source, std::span<const Key> keys, std::size_t begin,
+                      std::size_t end) {
   const PoolColumns columns(pool_);
   const ObjectId* const ids = pool_.ids();
   alignas(64) float given[6][kRowsAtOnce];
@@ -218,30 +216,29 @@ void RowPartition::write_left(const Source& source, std::span<const Key> keys, s
       const std::size_t k = 64 * w + static_cast<std::size_t>(std::countr_zero(out));
       const std::size_t i = static_cast<ObjectId>(ids[begin + k] - keys.front().id);
       if (!source.write_if_left(i, columns.pointers, begin + k)) continue;
-      words_.data()[begin / 64 + w] |= std::uint64_t{1} << (k % 64);
+      selection_.bits.data()[begin / 64 + w] |= std::uint64_t{1} << (k % 64);
     }
   }
 }
 
-/// Notes the objects whose bits are set in words_ as changed: those of rows, or of entries.
-inline void RowPartition::note_left(std::span<const Key> keys, bool by_rows,
-                                    std::size_t slots) noexcept {
+/// Notes the objects whose bits are set in the selection as changed: those of rows, or of entries.
+inline void Rows::note_left(std::span<const Key> keys, bool by_rows, std::size_t slots) noexcept {
   bool any = false;
   for (std::size_t w = 0; w < bitmap_words(slots); ++w) {
-    for (std::uint64_t bits = words_.data()[w]; bits != 0; bits &= bits - 1) {
+    for (std::uint64_t bits = selection_.bits.data()[w]; bits != 0; bits &= bits - 1) {
       const std::size_t slot = 64 * w + static_cast<std::size_t>(std::countr_zero(bits));
       stale_.add(by_rows ? pool_.ids()[slot] : keys[slot].id);
       any = true;
     }
   }
-  if (any) dirty_.store(true, std::memory_order_relaxed);
+  if (any) changed_ = true;
 }
 
 /// Calls visit(i, row, slot) for every entry i and its row. No two threads meet in 64 slots that
 /// follow each other: slots are rows, if it goes by rows, else entries.
 template <typename Source, typename Visit>
-void RowPartition::for_entries(const Source& source, std::span<const Key> keys, bool by_rows,
-                               bool ascending, const Visit& visit) {
+void Rows::for_entries(const Source& source, std::span<const Key> keys, bool by_rows,
+                       bool ascending, const Visit& visit) {
   const ObjectId first = keys.front().id;
   const std::size_t count = keys.size();
   if (by_rows) {

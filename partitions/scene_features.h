@@ -1,21 +1,13 @@
 #pragma once
 
-#include "core/memory/bounds_pool.h"
-
 #include <array>
 #include <cstddef>
 
 namespace winnow {
 
-/// What a sample of the boxes tells of a scene: enough to predict what a partition would cost. O(1)
-/// whatever the scene's size; the same on every machine.
+/// What a sample of the boxes tells of a scene: enough to predict what a structure would cost. The
+/// same on every machine.
 struct SceneFeatures {
-  /// At most this many rows are looked at, and of small scenes one in eight, but no fewer than 64.
-  static constexpr std::size_t kMostSampled = 512;
-
-  SceneFeatures() = default;
-  explicit SceneFeatures(const BoundsPool& pool, std::size_t live) noexcept;
-
   std::size_t objects = 0;
   /// By axis: where the middle 96 % of the objects lie, in units of their mean edge on this axis.
   /// An axis with little room prunes nothing.

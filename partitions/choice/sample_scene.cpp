@@ -1,4 +1,4 @@
-#include "partitions/choice/scene_features.h"
+#include "partitions/choice/sample_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,8 @@
 namespace winnow {
 namespace {
 
-constexpr std::size_t kMost = SceneFeatures::kMostSampled;
+// At most this many rows are looked at, and of small scenes one in eight, but no fewer than 64.
+constexpr std::size_t kMost = 512;
 constexpr double kUnbounded = 1e30;
 constexpr std::size_t kCells = 64;
 constexpr double kMostPairs = 16.0;  // an object: past that the estimate is mostly wrong
@@ -104,9 +105,10 @@ double crowding_of(const Sample& sample, const std::array<Axis, 3>& axes) noexce
 
 }  // namespace
 
-SceneFeatures::SceneFeatures(const BoundsPool& pool, std::size_t live) noexcept : objects(live) {
+SceneFeatures sample_scene(const BoundsPool& pool, std::size_t live) noexcept {
+  SceneFeatures features{.objects = live};
   Sample sample(pool, live);
-  if (sample.count < 2) return;
+  if (sample.count < 2) return features;
   std::array<Axis, 3> axes;
   std::array<float, kMost> scratch;
   double pairs_of_one = 0.5 * static_cast<double>(live);
@@ -115,17 +117,18 @@ SceneFeatures::SceneFeatures(const BoundsPool& pool, std::size_t live) noexcept 
     axes[a].from = sample.quantile(scratch, 0.02);
     axes[a].range = sample.quantile(scratch, 0.98) - axes[a].from;
     const double edge = sample.mean_edge(a);
-    room[a] = std::min(axes[a].range / std::max(edge, 1e-30), 1e12);
+    features.room[a] = std::min(axes[a].range / std::max(edge, 1e-30), 1e12);
     // Two objects meet on this axis where their lower ends are less than an edge apart.
-    pairs_of_one *= std::min(1.0, 2.0 / std::max(room[a], 1e-12));
+    pairs_of_one *= std::min(1.0, 2.0 / std::max(features.room[a], 1e-12));
   }
   const double small = std::max(sample.quantile(sample.longest, 0.05), 1e-30);
   const double large = std::min(sample.quantile(sample.longest, 0.95), kUnbounded);
-  size_spread = std::clamp(rough_log2(large / small), 0.0, 64.0);
-  divide(axes, room);
+  features.size_spread = std::clamp(rough_log2(large / small), 0.0, 64.0);
+  divide(axes, features.room);
   const double likelier = crowding_of(sample, axes);
-  crowding = rough_log2(likelier);
-  pairs = std::min({pairs_of_one * likelier, kMostPairs, 0.5 * static_cast<double>(live)});
+  features.crowding = rough_log2(likelier);
+  features.pairs = std::min({pairs_of_one * likelier, kMostPairs, 0.5 * static_cast<double>(live)});
+  return features;
 }
 
 }  // namespace winnow

@@ -1,25 +1,18 @@
 #pragma once
 
-#include "partitions/choice/scene_features.h"
+#include <winnow/partitions/scene_features.h>
+#include <winnow/partitions/structures.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
+#include <span>
 
 namespace winnow {
 
-/// The partitions that AutoPartition chooses from.
-enum class PartitionKind : std::uint8_t {
-  bounds_n_squared,
-  sweep_and_prune,
-  flat_grid,
-  hierarchical_grid,
-  linear_bvh,
-  static_bvh
-};
-
-inline constexpr std::size_t kPartitionKinds = 6;
+/// The structures that are chosen from: those of all_structures() that have costs.
+inline constexpr std::size_t kMostCandidates = 16;
+[[nodiscard]] std::span<const StructureKind> candidates() noexcept;
 
 /// What a frame did.
 struct FrameWork {
@@ -31,10 +24,10 @@ struct FrameWork {
   std::size_t nearest = 0;
 };
 
-/// What one frame is expected to cost each partition, and what it costs to begin with that
-/// partition, in nanoseconds of one thread.
+/// What one frame is expected to cost each candidate, and what it costs to begin with that
+/// structure, in nanoseconds of one thread.
 ///
-/// A frame is a sum of a few products, each of a feature and of a constant by partition:
+/// A frame is a sum of a few products, each of a feature and of a constant of the structure:
 ///
 /// - itself (`frame`), and each object that moved, which is written and its place in the structure
 ///   kept up (`keep`);
@@ -48,7 +41,7 @@ struct FrameWork {
 ///   doubling of the number of objects, and where there is no tree, `scan` an object. A tree over
 ///   the rows of cells and strips is refitted first (`rows`, an object that moved).
 ///
-/// To begin with a partition takes a build: `build` an object, `build_level` for each doubling.
+/// To begin with a structure takes a build: `build` an object, `build_level` for each doubling.
 ///
 /// The constants were fitted, without negative ones, to the relative error of times measured on one
 /// thread with AVX-512 on the built-in scenes and on recordings of simulations: of 20 to 100,000
@@ -57,37 +50,30 @@ struct FrameWork {
 /// single rays, boxes and nearest objects there. They are right to a sixth or so where all moves
 /// and to a third elsewhere. What they say is that where most objects move, HierarchicalGrid is the
 /// best choice from one or two thousand objects on and LinearBvh below; LinearBvh where few move,
-/// and StaticBvh where much is asked, too; brute force below some 50 objects. LooseOctree and
-/// LooseQuadtree are not among the kinds: no scene, flat worlds included, is cheaper by them than
-/// by the best of the others. A spread of sizes tells nothing that the number of pairs does not.
-class PartitionCosts {
+/// and StaticBvh where much is asked, too; brute force below some 50 objects. A spread of sizes
+/// tells nothing that the number of pairs does not.
+class PredictedCosts {
  public:
-  using List = std::array<double, kPartitionKinds>;
+  using List = std::array<double, kMostCandidates>;
 
   /// `pairs` is the number of pairs of the scene.
-  PartitionCosts(const SceneFeatures& scene, const FrameWork& frame, double pairs) noexcept;
+  PredictedCosts(const SceneFeatures& scene, const FrameWork& frame, double pairs) noexcept;
 
   /// Of one frame.
-  [[nodiscard]] double of(PartitionKind kind) const noexcept {
-    return total_[static_cast<std::size_t>(kind)];
-  }
+  [[nodiscard]] double of(std::size_t candidate) const noexcept { return total_[candidate]; }
   /// The part of it that goes into queries other than for all pairs.
-  [[nodiscard]] double queries_of(PartitionKind kind) const noexcept {
-    return queries_[static_cast<std::size_t>(kind)];
+  [[nodiscard]] double queries_of(std::size_t candidate) const noexcept {
+    return queries_[candidate];
   }
   /// Of a build.
-  [[nodiscard]] double build_of(PartitionKind kind) const noexcept {
-    return build_[static_cast<std::size_t>(kind)];
-  }
+  [[nodiscard]] double build_of(std::size_t candidate) const noexcept { return build_[candidate]; }
   /// The cheapest for so many frames like this one, the first build included.
-  [[nodiscard]] PartitionKind cheapest(double frames) const noexcept;
+  [[nodiscard]] std::size_t cheapest(double frames) const noexcept;
 
  private:
   List total_{};
   List queries_{};
   List build_{};
 };
-
-[[nodiscard]] std::string_view partition_name(PartitionKind kind) noexcept;
 
 }  // namespace winnow
