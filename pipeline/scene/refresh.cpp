@@ -47,7 +47,7 @@ Status Scene::State::refresh() {
 
 Status Scene::State::refresh_set(Motion which) {
   SceneSet& target = set(which);
-  if (target.partition == nullptr) return Status::ok;
+  if (!target.partition.has_value()) return Status::ok;
   chosen.clear();
   for (const std::uint32_t body : stale) {
     if (motion[body] != which || !needs_box(body)) continue;
@@ -86,7 +86,7 @@ Status Scene::State::find_pairs() {
   BodyPairs::Source sources[kMotions];
   std::size_t count = 0;
   for (SceneSet& other : sets) {
-    if (dynamic.partition == nullptr || other.partition == nullptr) continue;
+    if (!dynamic.partition.has_value() || !other.partition.has_value()) continue;
     const Status status = &other == &dynamic
                               ? dynamic.partition->self_pairs(other.with_dynamic)
                               : dynamic.partition->pairs_with(*other.partition, other.with_dynamic);

@@ -12,12 +12,9 @@ namespace {
 }
 
 [[nodiscard]] bool are_good(const SceneOptions& options) noexcept {
-  const auto known = [](std::string_view name) {
-    const auto names = partition_names();
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
+  const auto known = [](StructureKind kind) { return kind != StructureKind{}; };
   return is_length(options.margin) && is_length(options.carry_over) &&
-         std::all_of(std::begin(options.partitions), std::end(options.partitions), known) &&
+         std::all_of(std::begin(options.structures), std::end(options.structures), known) &&
          options.tier <= NarrowTier::reference;
 }
 
@@ -133,7 +130,7 @@ Status Scene::remove(std::span<const Key> keys) {
 void Scene::clear() noexcept {
   State& s = *state_;
   for (SceneSet& set : s.sets) {
-    if (set.partition == nullptr) continue;
+    if (!set.partition.has_value()) continue;
     set.partition->clear();
     ++set.changes;
   }
@@ -201,8 +198,8 @@ std::size_t Scene::size() const noexcept {
 
 std::size_t Scene::size(Motion motion) const noexcept {
   if (!is_motion(motion)) return 0;
-  const Partition* const partition = state_->set(motion).partition.get();
-  return partition == nullptr ? 0 : partition->size();
+  const Partition* const of_set = partition(motion);
+  return of_set == nullptr ? 0 : of_set->size();
 }
 
 bool Scene::contains(Key key) const noexcept {
@@ -224,12 +221,14 @@ Key Scene::key_of(ObjectId id) const noexcept {
 }
 
 const Partition* Scene::partition(Motion motion) const noexcept {
-  return is_motion(motion) ? state_->set(motion).partition.get() : nullptr;
+  if (!is_motion(motion)) return nullptr;
+  const SceneSet& set = state_->set(motion);
+  return set.partition.has_value() ? &*set.partition : nullptr;
 }
 
 Status Scene::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const {
   for (const SceneSet& set : state_->sets) {
-    if (set.partition == nullptr) continue;
+    if (!set.partition.has_value()) continue;
     const Status status = set.partition->debug_draw(draw, options);
     if (status != Status::ok) return status;
   }
@@ -253,7 +252,7 @@ SceneFootprint Scene::footprint() const noexcept {
   }
   for (std::size_t i = 0; i < kMotions; ++i) {
     const SceneSet& set = s.sets[i];
-    if (set.partition != nullptr) footprint.partitions[i] += set.partition->footprint().total();
+    if (set.partition.has_value()) footprint.partitions[i] += set.partition->footprint().total();
     footprint.partitions[i] += set.body_of.bytes();
     footprint.pairs += set.with_dynamic.footprint().total();
   }

@@ -2,7 +2,7 @@
 #include "pipeline/scene/motion_bound.h"
 
 #include <algorithm>
-#include <new>
+#include <utility>
 
 namespace winnow {
 
@@ -16,13 +16,12 @@ Status Scene::State::check(ShapeId id, const Pose& at) const noexcept {
 
 Status Scene::State::make_partition_of(Motion which) {
   SceneSet& target = set(which);
-  if (target.partition != nullptr) return Status::ok;
-  try {
-    target.partition = make_partition(options.partitions[static_cast<std::size_t>(which)],
-                                      {options.memory, options.execution});
-  } catch (const std::bad_alloc&) {
-  }
-  return target.partition == nullptr ? Status::out_of_memory : Status::ok;
+  if (target.partition.has_value()) return Status::ok;
+  Partition made(options.structures[static_cast<std::size_t>(which)],
+                 {.memory = options.memory, .execution = options.execution});
+  const Status status = made.status();
+  if (status == Status::ok) target.partition.emplace(std::move(made));
+  return status;
 }
 
 PlainBox Scene::State::grown_bounds(std::uint32_t body) const noexcept {

@@ -1,7 +1,7 @@
-// AutoPartition where it changes from one partition to another: nobody may notice. What it has in
-// common with all partitions is tested with them, by name.
+// The automatic choice where it changes from one structure to another: nobody may notice. What it
+// has in common with all structures is tested with them, by name.
 
-#include "partitions/choice/auto_partition.h"
+#include <winnow/partitions/partition.h>
 
 #include <array>
 #include <set>
@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kFew = 20;     // brute force is the best choice whatever the scene
 constexpr std::size_t kMany = 1200;  // and the worst
 
-// A world whose number of objects changes so much that its partition must.
+// A world whose number of objects changes so much that its structure must.
 class TurningWorld {
  public:
   explicit TurningWorld(const Config& config,
@@ -43,9 +43,10 @@ class TurningWorld {
     move(motion, boxes, random_);
     world.update(keys, boxes);
   }
-  [[nodiscard]] const AutoPartition& partition() const {
-    return dynamic_cast<const AutoPartition&>(world.partition());
-  }
+  [[nodiscard]] const Partition& partition() const { return world.partition(); }
+  /// Name of the structure that prunes the objects.
+  [[nodiscard]] std::string_view chosen() const { return partition().choice().structure.name(); }
+  [[nodiscard]] std::uint64_t changes() const { return partition().choice().changes; }
 
   World world;
   std::vector<Aabb> boxes;
@@ -71,9 +72,9 @@ std::vector<Config> auto_configs() {
   return configs;
 }
 
-class AutoPartitions : public Conformance {};
+class AutomaticChoice : public Conformance {};
 
-TEST_P(AutoPartitions, keep_keys_filters_data_and_pairs_when_they_change) {
+TEST_P(AutomaticChoice, keep_keys_filters_data_and_pairs_when_they_change) {
   TurningWorld scene(config());
   PairBuffer buffer;
   std::set<std::string_view> chosen;
@@ -85,9 +86,9 @@ TEST_P(AutoPartitions, keep_keys_filters_data_and_pairs_when_they_change) {
     scene.step(Motion::few);
     ASSERT_TRUE(scene.world.agrees(buffer)) << count << " objects";
     ASSERT_TRUE(scene.world.holds_its_objects()) << count << " objects";
-    chosen.insert(scene.partition().chosen());
+    chosen.insert(scene.chosen());
   }
-  EXPECT_GE(scene.partition().switches(), 2U);
+  EXPECT_GE(scene.changes(), 2U);
   EXPECT_GE(chosen.size(), 2U);
 }
 
@@ -98,7 +99,7 @@ std::vector<Pair> ids_of(std::span<const KeyPair> pairs) {
   return ids;
 }
 
-TEST_P(AutoPartitions, tell_the_same_pair_events_as_one_that_never_changes) {
+TEST_P(AutomaticChoice, tell_the_same_pair_events_as_one_that_never_changes) {
   TurningWorld turning(config());
   TurningWorld steady({"LinearBvh", config().isa, config().threads});
   PairBuffer turning_pairs;
@@ -119,28 +120,28 @@ TEST_P(AutoPartitions, tell_the_same_pair_events_as_one_that_never_changes) {
     ASSERT_EQ(ids_of(turning_events.ended()), ids_of(steady_events.ended())) << count;
     ASSERT_EQ(turning_events.persisting(), steady_events.persisting()) << count;
   }
-  EXPECT_GE(turning.partition().switches(), 2U);
+  EXPECT_GE(turning.changes(), 2U);
 }
 
 // A frame that asks about what moved alone must not become one that asks about everything.
-TEST_P(AutoPartitions, update_tracked_buffers_across_a_change) {
+TEST_P(AutomaticChoice, update_tracked_buffers_across_a_change) {
   TurningWorld scene(config());
   PairBuffer buffer;
   scene.fill(kMany);
   ASSERT_TRUE(scene.world.agrees(buffer));
   scene.fill(kFew);
   ASSERT_TRUE(scene.world.agrees(buffer));
-  const std::uint64_t switches = scene.partition().switches();
+  const std::uint64_t changes = scene.changes();
   scene.fill(kMany / 2);
   const std::uint64_t full = scene.partition().statistics().full_queries;
   ASSERT_TRUE(scene.world.agrees(buffer));
-  ASSERT_GT(switches, 0U);
+  ASSERT_GT(changes, 0U);
   scene.world.update(scene.keys[0], scene.boxes[1]);
   ASSERT_TRUE(scene.world.agrees(buffer));
   EXPECT_LE(scene.partition().statistics().full_queries, full + 1);
 }
 
-TEST_P(AutoPartitions, choose_alike_whatever_runs_them) {
+TEST_P(AutomaticChoice, choose_alike_whatever_runs_them) {
   const auto choices = [](const Config& config) {
     const IsaScope isa(config.isa);
     TurningWorld scene(config);
@@ -150,7 +151,7 @@ TEST_P(AutoPartitions, choose_alike_whatever_runs_them) {
       scene.fill(count);
       scene.step(Motion::little);
       EXPECT_EQ(scene.world.self_pairs(buffer), Status::ok);
-      chosen.push_back(scene.partition().chosen());
+      chosen.push_back(scene.chosen());
     }
     return chosen;
   };
@@ -159,22 +160,22 @@ TEST_P(AutoPartitions, choose_alike_whatever_runs_them) {
 
 // Each change of mind must pay for twice as much as the one before: their number grows with the
 // logarithm of the frames alone.
-TEST_P(AutoPartitions, change_less_and_less_in_a_scene_that_alternates) {
+TEST_P(AutomaticChoice, change_less_and_less_in_a_scene_that_alternates) {
   TurningWorld scene(config());
   PairBuffer buffer;
-  std::array<std::uint64_t, 2> switches{};
+  std::array<std::uint64_t, 2> changes{};
   for (int frame = 0; frame < 160; ++frame) {
     scene.fill(frame % 2 == 0 ? kFew : kMany);
     ASSERT_EQ(scene.world.self_pairs(buffer), Status::ok);
-    if (frame == 39) switches[0] = scene.partition().switches();
+    if (frame == 39) changes[0] = scene.changes();
   }
-  switches[1] = scene.partition().switches();
-  EXPECT_LE(switches[0], 10U);
-  EXPECT_LE(switches[1] - switches[0], 4U)
-      << "in the three times as many frames after " << switches[0];
+  changes[1] = scene.changes();
+  EXPECT_LE(changes[0], 10U);
+  EXPECT_LE(changes[1] - changes[0], 4U)
+      << "in the three times as many frames after " << changes[0];
 }
 
-TEST_P(AutoPartitions, stay_usable_when_memory_is_refused_while_they_change) {
+TEST_P(AutomaticChoice, stay_usable_when_memory_is_refused_while_they_change) {
   CountingMemory memory;
   for (const auto& [from, to] : {std::pair{kFew, kMany}, std::pair{kMany, kFew}}) {
     bool refused = true;
@@ -184,7 +185,7 @@ TEST_P(AutoPartitions, stay_usable_when_memory_is_refused_while_they_change) {
       PairBuffer buffer;
       scene.fill(from);
       ASSERT_TRUE(scene.world.agrees(buffer));
-      const std::string_view before = scene.partition().chosen();
+      const std::string_view before = scene.chosen();
       scene.fill(to);
       const std::size_t refusals = memory.refusals();
       memory.refuse_after(n);
@@ -193,7 +194,7 @@ TEST_P(AutoPartitions, stay_usable_when_memory_is_refused_while_they_change) {
       refused = memory.refusals() != refusals;
       ASSERT_TRUE(status == Status::ok || (refused && status == Status::out_of_memory));
       if (!refused) {
-        EXPECT_NE(scene.partition().chosen(), before);
+        EXPECT_NE(scene.chosen(), before);
       }
       ASSERT_TRUE(scene.world.holds_its_objects()) << "refused after " << n;
       EXPECT_EQ(scene.partition().footprint().total().reserved, memory.outstanding());
@@ -202,7 +203,7 @@ TEST_P(AutoPartitions, stay_usable_when_memory_is_refused_while_they_change) {
   }
 }
 
-TEST_P(AutoPartitions, may_be_asked_by_several_threads_while_they_change) {
+TEST_P(AutomaticChoice, may_be_asked_by_several_threads_while_they_change) {
   TurningWorld scene(config());
   constexpr std::size_t kReaders = 4;
   std::array<PairBuffer, kReaders> buffers;
@@ -210,14 +211,14 @@ TEST_P(AutoPartitions, may_be_asked_by_several_threads_while_they_change) {
   for (const std::size_t count : turning_counts()) {
     scene.fill(count);
     scene.step(Motion::few);
-    const AutoPartition& p = scene.partition();
+    const Partition& p = scene.partition();
     const std::vector<Pair> truth = true_pairs(scene.world.objects());
     std::vector<std::thread> readers;
     for (std::size_t i = 0; i < kReaders; ++i) {
       readers.emplace_back([&, i] {
         Aabb box;
         right[i] = p.size() == count && p.contains(scene.keys[i]) &&
-                   p.bounds(scene.keys[i], box) == Status::ok && !p.chosen().empty() &&
+                   p.bounds(scene.keys[i], box) == Status::ok && !scene.chosen().empty() &&
                    p.footprint().total().reserved != 0 && p.self_pairs(buffers[i]) == Status::ok &&
                    box == scene.boxes[i] && right_pairs(buffers[i].pairs(), truth, true);
       });
@@ -225,10 +226,10 @@ TEST_P(AutoPartitions, may_be_asked_by_several_threads_while_they_change) {
     for (std::thread& reader : readers) reader.join();
     for (const bool one : right) ASSERT_TRUE(one) << count << " objects";
   }
-  EXPECT_GE(scene.partition().switches(), 2U);
+  EXPECT_GE(scene.changes(), 2U);
 }
 
-TEST_P(AutoPartitions, pair_with_each_other_while_they_change) {
+TEST_P(AutomaticChoice, pair_with_each_other_while_they_change) {
   TurningWorld a(config());
   TurningWorld b(config());
   b.fill(kFew);
@@ -241,10 +242,10 @@ TEST_P(AutoPartitions, pair_with_each_other_while_they_change) {
         right_cross_pairs(buffer.pairs(), cross_pairs(a.world.objects(), b.world.objects()), true))
         << count << " objects";
   }
-  EXPECT_GE(a.partition().switches() + b.partition().switches(), 2U);
+  EXPECT_GE(a.changes() + b.changes(), 2U);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, AutoPartitions, testing::ValuesIn(auto_configs()),
+INSTANTIATE_TEST_SUITE_P(All, AutomaticChoice, testing::ValuesIn(auto_configs()),
                          testing::PrintToStringParamName());
 
 }  // namespace
