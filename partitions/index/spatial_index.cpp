@@ -9,10 +9,8 @@
 namespace winnow {
 namespace {
 
-constexpr std::size_t kBlock = BoundsPool::kBlock;
-
 constexpr std::size_t blocks_of(std::size_t rows) noexcept {
-  return (rows + kBlock - 1) / kBlock;
+  return (rows + kBlockRows - 1) / kBlockRows;
 }
 
 }  // namespace
@@ -114,13 +112,14 @@ Status SpatialIndex::build() {
   if (!plan_order()) return Status::out_of_memory;
   const std::size_t regular = order_.size();
   // The tree's blocks begin behind the regular ones: no block belongs to both.
-  while (order_.size() % kBlock != 0) (void)order_.push_back(kNoObject);
-  const std::size_t first_block = order_.size() / kBlock;
+  while (order_.size() % kBlockRows != 0) (void)order_.push_back(kNoObject);
+  const std::size_t first_block = order_.size() / kBlockRows;
   if (!order_rest()) return Status::out_of_memory;
   const std::size_t rows = order_.size();
   const bool prunes = structure_->prunes_rows();
   const std::size_t spare = prunes ? 2 * tail_limit() : 0;
-  if (!rows_.reserve_rows(rows + spare) || !spare_.reserve(rows_.pool().capacity() + 2 * kBlock) ||
+  if (!rows_.reserve_rows(rows + spare) ||
+      !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows) ||
       !tree_.cover(first_block, blocks_of(rows) - first_block, node_content()) ||
       (prunes && !regular_tree_.cover(0, blocks_of(regular), node_content()))) {
     return Status::out_of_memory;
@@ -144,7 +143,7 @@ Status SpatialIndex::build() {
 // Leaves the regular rows in order_ and all others in the selection.
 bool SpatialIndex::plan_order() {
   const std::size_t spare = structure_->prunes_rows() ? 2 * tail_limit() : 0;
-  const std::size_t room = rows_.pool().rows() + spare + 4 * kBlock;
+  const std::size_t room = rows_.pool().rows() + spare + 4 * kBlockRows;
   RowSelection& rest = rows_.selection();
   order_.clear();
   if (!order_.grow(room) || !rest.start(room)) return false;
@@ -178,7 +177,7 @@ Status SpatialIndex::build_flat() {
   regions.regular = rows;
   regions.sorted = 0;
   if (rows_.filters().has_environments()) {
-    if (!order_.resize(rows) || !spare_.reserve(rows_.pool().capacity() + 2 * kBlock)) {
+    if (!order_.resize(rows) || !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows)) {
       return Status::out_of_memory;
     }
     std::iota(order_.begin(), order_.end(), 0U);
@@ -255,7 +254,7 @@ bool SpatialIndex::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
 bool SpatialIndex::sort_tail() noexcept {
   RowRegions& regions = rows_.regions();
   const BoundsPool& pool = rows_.pool();
-  if (pool.rows() < regions.sorted + kBlock) return true;
+  if (pool.rows() < regions.sorted + kBlockRows) return true;
   const std::size_t begin = regions.ordered;
   RowSelection& live = rows_.selection();
   if (!live.start(pool.rows() - begin)) return false;
@@ -263,7 +262,7 @@ bool SpatialIndex::sort_tail() noexcept {
     if (pool.ids()[row] != kNoObject) live.add(row);
   }
   if (!sort_by_place(live.entries(), Execution::serial()) ||
-      !spare_.grow(live.list.size() + 2 * kBlock)) {
+      !spare_.grow(live.list.size() + 2 * kBlockRows)) {
     return false;
   }
   rows_.reorder_tail(begin, live.entries(), spare_);
@@ -307,7 +306,7 @@ bool SpatialIndex::refit(BlockTree& tree, std::size_t first, std::size_t blocks,
   if (!leaves.start(rows_.stale().ids().size()) || !leaves.reserve_bits(blocks)) return false;
   for (const ObjectId id : rows_.stale().ids()) {
     if (!rows_.keys().is_live(id)) continue;
-    const std::size_t block = rows_.keys().row_of(id) / kBlock;
+    const std::size_t block = rows_.keys().row_of(id) / kBlockRows;
     if (block >= first && block - first < blocks) leaves.add(block - first);
   }
   leaves.sort(blocks);
@@ -367,7 +366,7 @@ void SpatialIndex::add_statistics(Statistics& s) const noexcept {
   const RowRegions& regions = rows_.regions();
   const std::size_t rows = rows_.pool().rows();
   const std::size_t regular_end =
-      regions.regular == 0 ? regions.ordered : tree_.first_block() * kBlock;
+      regions.regular == 0 ? regions.ordered : tree_.first_block() * kBlockRows;
   const std::size_t behind = rows > regular_end ? rows - regular_end : 0;
   s.objects = rows_.size();
   s.irregular = structure_->is_flat() ? 0 : std::min(rows_.size(), behind);

@@ -41,7 +41,7 @@ class OverlapWriter {
   }
 
  private:
-  static constexpr std::size_t kLanes = BoundsPool::kBlock;
+  static constexpr std::size_t kLanes = kBlockRows;
 
   static std::size_t written(const IdSink& sink, const Column<ObjectId>& column) noexcept {
     return column.data() == nullptr ? 0 : static_cast<std::size_t>(sink.cursor - column.data());

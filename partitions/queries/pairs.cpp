@@ -10,7 +10,6 @@
 namespace winnow {
 namespace {
 
-constexpr std::size_t kBlock = BoundsPool::kBlock;
 constexpr std::size_t kQueriesPerTask = 64;
 constexpr std::size_t kTreeTasks = 64;
 
@@ -45,7 +44,7 @@ struct PartitionState::SelfTasks {
   explicit SelfTasks(const PartitionState& p) noexcept
       : regular(p.index.structure().pair_tasks()),
         groups_per_task(std::max<std::size_t>(1, p.index.tree().groups() / kTreeTasks)),
-        first_tree_row(p.index.tree().first_block() * kBlock) {
+        first_tree_row(p.index.tree().first_block() * kBlockRows) {
     if (p.index.structure().is_flat() || p.index.tree().blocks() == 0) return;
     tree = ceil_divide(p.index.tree().groups(), groups_per_task);
     if (p.rows.regions().regular != 0) {

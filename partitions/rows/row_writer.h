@@ -199,7 +199,7 @@ void Rows::write_left(const Source& source, std::span<const Key> keys, std::size
   }
   std::size_t written = 0;
   if (source.source.packed()) {
-    written = (end - begin) / BoundsPool::kBlock * BoundsPool::kBlock;
+    written = (end - begin) / kBlockRows * kBlockRows;
     source.source.write_rows(keys.front().id, ids + begin, given_columns, 0, written);
   }
   std::uint64_t asked[kRowsAtOnce / 64] = {};
@@ -248,7 +248,7 @@ void Rows::for_entries(const Source& source, std::span<const Key> keys, bool by_
       const ObjectId* const ids = pool_.ids();
       if constexpr (requires { source.packed(); }) {
         // Not visited but written in registers.
-        const std::size_t whole = end - end % BoundsPool::kBlock;
+        const std::size_t whole = end - end % kBlockRows;
         if (source.packed()) {
           source.write_rows(first, ids, PoolColumns(pool_).pointers, begin, whole);
           begin = whole;

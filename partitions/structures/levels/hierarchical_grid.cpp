@@ -17,7 +17,6 @@ WINNOW_DEFINE_KERNELS(HierarchicalGridKernels, hierarchical_grid_kernels)
 
 namespace {
 
-constexpr std::size_t kBlock = BoundsPool::kBlock;
 constexpr std::size_t kFewest = 64;  // below this the tree alone does as well
 // More objects than this in a cell, beyond what its line is cut into, are pruned better by the
 // tree.
@@ -208,8 +207,8 @@ bool HierarchicalGrid::plan(const RowPlan& plan) noexcept {
   }
   // By objects, not rows, so that a later build of as many asks for no more.
   const std::size_t objects = classes.objects();
-  const std::size_t room = objects + (kMostLevels + 1) * kBlock;
-  if (!list_.reserve(room) || !key_.reserve(room) || !plan.regular.reserve(room + kBlock) ||
+  const std::size_t room = objects + (kMostLevels + 1) * kBlockRows;
+  if (!list_.reserve(room) || !key_.reserve(room) || !plan.regular.reserve(room + kBlockRows) ||
       !plan.items.resize(2 * objects)) {
     return false;
   }
@@ -226,7 +225,7 @@ bool HierarchicalGrid::plan(const RowPlan& plan) noexcept {
     begin = end[l];
     if (!build_level(own, plan)) return false;
   }
-  key_.set_size(plan.regular.size() + kBlock);
+  key_.set_size(plan.regular.size() + kBlockRows);
   return start_.push_back(static_cast<std::uint32_t>(plan.regular.size()));
 }
 
@@ -270,7 +269,7 @@ bool HierarchicalGrid::build_level(std::span<const std::uint32_t> rows,
   level.end_line = static_cast<std::uint32_t>(line_.size());
   if (level.end_row == level.first_row) return true;
   // No block of rows belongs to two levels.
-  while (plan.regular.size() % kBlock != 0) {
+  while (plan.regular.size() % kBlockRows != 0) {
     if (!plan.regular.push_back(kNoObject)) return false;
   }
   ++level_count_;
@@ -392,11 +391,11 @@ std::uint32_t HierarchicalGrid::first_line(std::size_t task) const noexcept {
 }
 
 std::size_t HierarchicalGrid::pair_tasks() const noexcept {
-  return std::min(kMostTasks, (regular_rows() + kBlock - 1) / kBlock);
+  return std::min(kMostTasks, (regular_rows() + kBlockRows - 1) / kBlockRows);
 }
 
 bool HierarchicalGrid::run_pair_task(std::size_t task, PairSink& sink) const noexcept {
-  const std::size_t blocks = (regular_rows() + kBlock - 1) / kBlock;
+  const std::size_t blocks = (regular_rows() + kBlockRows - 1) / kBlockRows;
   const auto begin = static_cast<std::uint32_t>(blocks * task / pair_tasks());
   const auto end = static_cast<std::uint32_t>(blocks * (task + 1) / pair_tasks());
   return hierarchical_grid_kernels().self_pairs(view(), begin, end, sink);

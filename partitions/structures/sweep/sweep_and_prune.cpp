@@ -8,7 +8,6 @@
 #include "partitions/structures/sweep/sweep_and_prune.kernel.h"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 namespace winnow {
@@ -24,12 +23,6 @@ constexpr std::uint32_t kCrowded = 384;
 // Rows that do not fit strips ask every strip that they cross. Where more than this share of a
 // scene does so, the tree serves all of it better.
 constexpr double kMostApart = 0.1;
-
-// Order-preserving map of floats to unsigned.
-std::uint32_t sortable(float value) {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
-}
 
 /// Sorted sweep-and-prune (Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", 1992) in
 /// strips: objects are bucketed on the two axes that are not swept and sorted on the third, the one
