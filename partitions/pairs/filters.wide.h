@@ -3,7 +3,7 @@
 // Which rows and nodes a filter lets pass.
 
 #include "partitions/tree/block_tree.kernel.h"
-#include "simd/lanes/wide.h"
+#include "simd/lanes/lanes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

@@ -5,6 +5,7 @@
 #include "partitions/pairs/filters.wide.h"
 #include "partitions/pairs/pair_sink.h"
 #include "partitions/pairs/volume_tests.wide.h"
+#include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
 
 namespace winnow::WINNOW_ISA_NAME {
@@ -53,7 +54,7 @@ struct AskingFilters {
 template <HitMode Mode>
 inline void report(Mask16 mask, const std::uint32_t* ids, std::uint32_t q, PairSink& sink) {
   if constexpr (Mode == HitMode::query_first) {
-    sink.cursor += 2 * emit_pairs<false>(mask, load_unaligned(ids), q, sink.cursor);
+    sink.cursor += 2 * emit_pairs<false>(mask, Uints::load_unaligned(ids), q, sink.cursor);
   } else if constexpr (Mode == HitMode::query_second) {
     for (; mask != 0; mask &= mask - 1) {
       sink.cursor[0] = ids[first(mask)];
@@ -61,7 +62,7 @@ inline void report(Mask16 mask, const std::uint32_t* ids, std::uint32_t q, PairS
       sink.cursor += 2;
     }
   } else {
-    sink.cursor += 2 * emit_pairs<true>(mask, load_unaligned(ids), q, sink.cursor);
+    sink.cursor += 2 * emit_pairs<true>(mask, Uints::load_unaligned(ids), q, sink.cursor);
   }
 }
 

@@ -13,7 +13,7 @@ template <typename Found>
 bool test_rows(const QueryView& view, const Sweep& sweep, const SweepTest& probe,
                const Wanted& wanted, std::uint32_t first_row, const float& limit, Found&& found) {
   const ExactSweepTest exact(sweep, view.column);
-  Float16 enter;
+  Floats enter;
   Mask16 mask = probe.test(view.column, first_row, limit, enter);
   mask = wanted.rows(first_row, mask);
   for (; mask != 0; mask &= mask - 1) {
@@ -200,12 +200,12 @@ void sort_few(std::uint64_t* results, std::uint32_t size) {
   }
   for (std::uint32_t i = size; i < blocks * kLanes; ++i) t[i] = __builtin_inff();
   for (std::uint32_t i = 0; i < size; ++i) {
-    const Float16 own = broadcast(t[i]);
+    const Floats own = Floats(t[i]);
     std::uint32_t place = 0;
     for (std::uint32_t b = 0; b < blocks; ++b) {
-      const Float16 others = load(t + b * kLanes);
-      const Mask16 not_before = less_equal(own, others);
-      const Mask16 equal = not_before & less_equal(others, own);
+      const Floats others = Floats::load(t + b * kLanes);
+      const Mask16 not_before = bits(own <= others);
+      const Mask16 equal = not_before & bits(others <= own);
       const std::uint32_t ahead = i > b * kLanes ? i - b * kLanes : 0;
       place += count(~not_before & 0xFFFFU);
       place += count(equal & lanes_below(ahead < kLanes ? ahead : kLanes));

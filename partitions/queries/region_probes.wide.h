@@ -4,7 +4,7 @@
 
 #include "partitions/queries/region.kernel.h"
 #include "partitions/queries/sweep.wide.h"
-#include "simd/lanes/wide.h"
+#include "simd/lanes/boxes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -17,10 +17,10 @@ struct Met {
 };
 
 /// The largest coordinate of each box.
-inline Float16 reach_of(const Box16& box) {
-  const Float16 high = max(box.high[0], max(box.high[1], box.high[2]));
-  const Float16 low = min(box.low[0], min(box.low[1], box.low[2]));
-  return max(high, subtract(broadcast(0.0F), low));
+inline Floats reach_of(const Box16& box) {
+  const Floats high = max(box.high[0], max(box.high[1], box.high[2]));
+  const Floats low = min(box.low[0], min(box.low[1], box.low[2]));
+  return max(high, 0.0F - low);
 }
 
 /// Six planes, as a frustum has, against rows in no order, of which most miss: all that the planes
@@ -30,15 +30,12 @@ class FrustumScan {
   static constexpr std::uint32_t kPlanes = 6;
 
   FrustumScan(const PlaneRegion& region, const float* const* column)
-      : region_(region),
-        column_(column),
-        rounding_(broadcast(region.rounding)),
-        margin_(broadcast(region.margin)) {
+      : region_(region), column_(column), rounding_(region.rounding), margin_(region.margin) {
     for (std::uint32_t k = 0; k < kPlanes; ++k) {
       const WidePlane& plane = region.planes[k];
-      offset_[k] = broadcast(plane.offset);
+      offset_[k] = Floats(plane.offset);
       for (int i = 0; i < 3; ++i) {
-        normal_[k][i] = broadcast(plane.normal[i]);
+        normal_[k][i] = Floats(plane.normal[i]);
         end_[k][i] = column[plane.farthest[i]];
       }
     }
@@ -48,12 +45,12 @@ class FrustumScan {
   [[nodiscard]] bool may_meet(std::size_t at) const {
     const Box16 box = load_slabs<3>(column_, at);
     Mask16 met = overlap(box, region_.low, region_.high);
-    const Float16 below =
-        subtract(broadcast(-kSweepTiny), multiply_add(reach_of(box), rounding_, margin_));
+    const Floats below = -kSweepTiny - multiply_add(reach_of(box), rounding_, margin_);
     for (std::uint32_t k = 0; k < kPlanes; ++k) {
-      Float16 most = offset_[k];
-      for (int i = 0; i < 3; ++i) most = multiply_add(load(end_[k][i] + at), normal_[k][i], most);
-      met &= ~less_equal(most, below);
+      Floats most = offset_[k];
+      for (int i = 0; i < 3; ++i)
+        most = multiply_add(Floats::load(end_[k][i] + at), normal_[k][i], most);
+      met &= ~bits(most <= below);
     }
     return met != 0;
   }
@@ -61,10 +58,10 @@ class FrustumScan {
  private:
   const PlaneRegion& region_;
   const float* const* column_;
-  Float16 rounding_;
-  Float16 margin_;
-  Float16 offset_[kPlanes];
-  Float16 normal_[kPlanes][3];
+  Floats rounding_;
+  Floats margin_;
+  Floats offset_[kPlanes];
+  Floats normal_[kPlanes][3];
   const float* end_[kPlanes][3];
 };
 
@@ -82,15 +79,15 @@ class PlaneProbe {
     Met result;
     result.met = overlap(box, region_.low, region_.high);
     if (result.met == 0) return result;
-    const Float16 slack = region_.count != 0 ? rounding_of(box) : broadcast(0.0F);
+    const Floats slack = region_.count != 0 ? rounding_of(box) : Floats(0.0F);
     Mask16 surely = result.met;
     // All planes, whether or not boxes are left: the next plane costs less than a wrong guess.
     for (std::uint32_t k = 0; k < region_.count; ++k) {
       const WidePlane& plane = region_.planes[k];
-      const Float16 most = height(plane, column[plane.farthest[0]] + at,
-                                  column[plane.farthest[1]] + at, column[plane.farthest[2]] + at);
-      result.met &= ~less_equal(add(most, slack), broadcast(-kSweepTiny));
-      surely &= less_equal(slack, most);
+      const Floats most = height(plane, column[plane.farthest[0]] + at,
+                                 column[plane.farthest[1]] + at, column[plane.farthest[2]] + at);
+      result.met &= ~bits(most + slack <= -kSweepTiny);
+      surely &= bits(slack <= most);
     }
     if (result.met == 0) return result;
     find_inside(box, column, at, slack, surely, result);
@@ -100,23 +97,22 @@ class PlaneProbe {
  private:
   /// `surely`: the boxes that reach inside of all planes by more than rounding.
   void find_inside(const Box16& box, const float* const* column, std::size_t at,
-                   const Float16& slack, Mask16 surely, Met& result) const {
+                   const Floats& slack, Mask16 surely, Met& result) const {
     result.open = result.met;
     if (region_.more) return;
     result.inside = result.met;
     for (int i = 0; i < 3; ++i) {
-      result.inside &= less_equal(broadcast(region_.low[i]), box.low[i]) &
-                       less_equal(box.high[i], broadcast(region_.high[i]));
+      result.inside &= bits(region_.low[i] <= box.low[i]) & bits(box.high[i] <= region_.high[i]);
     }
     Mask16 perhaps = result.met;
-    const Float16 below = subtract(broadcast(0.0F), slack);
+    const Floats below = 0.0F - slack;
     for (std::uint32_t k = 0; k < region_.count; ++k) {
       const WidePlane& plane = region_.planes[k];
-      const Float16 least = height(plane, column[opposite(plane.farthest[0])] + at,
-                                   column[opposite(plane.farthest[1])] + at,
-                                   column[opposite(plane.farthest[2])] + at);
-      result.inside &= less_equal(slack, least);
-      perhaps &= less_equal(below, least);
+      const Floats least = height(plane, column[opposite(plane.farthest[0])] + at,
+                                  column[opposite(plane.farthest[1])] + at,
+                                  column[opposite(plane.farthest[2])] + at);
+      result.inside &= bits(slack <= least);
+      perhaps &= bits(below <= least);
     }
     result.open &= ~result.inside;
     if (region_.planes_decide) result.open &= ~surely | perhaps;
@@ -125,16 +121,16 @@ class PlaneProbe {
   static unsigned opposite(unsigned column) { return column < 3 ? column + 3 : column - 3; }
 
   /// What the heights of these boxes' corners may be off by.
-  [[nodiscard]] Float16 rounding_of(const Box16& box) const {
-    return multiply_add(reach_of(box), broadcast(region_.rounding), broadcast(region_.margin));
+  [[nodiscard]] Floats rounding_of(const Box16& box) const {
+    return multiply_add(reach_of(box), Floats(region_.rounding), Floats(region_.margin));
   }
 
   /// normal . p + offset of a corner of each box. Each step is monotone in the box's ends: what
   /// holds for a node holds for the boxes below it.
-  static Float16 height(const WidePlane& plane, const float* x, const float* y, const float* z) {
-    const Float16 a = multiply_add(load(x), broadcast(plane.normal[0]), broadcast(plane.offset));
-    const Float16 b = multiply_add(load(y), broadcast(plane.normal[1]), a);
-    return multiply_add(load(z), broadcast(plane.normal[2]), b);
+  static Floats height(const WidePlane& plane, const float* x, const float* y, const float* z) {
+    const Floats a = multiply_add(Floats::load(x), Floats(plane.normal[0]), Floats(plane.offset));
+    const Floats b = multiply_add(Floats::load(y), Floats(plane.normal[1]), a);
+    return multiply_add(Floats::load(z), Floats(plane.normal[2]), b);
   }
 
   const PlaneRegion& region_;
@@ -151,27 +147,26 @@ class BallProbe {
     constexpr float kMore = 1.000002F;
     constexpr float kTiny = 1e-36F;
     const Box16 box = load_slabs<3>(column, at);
-    Float16 near = broadcast(-kTiny);
-    Float16 far = broadcast(kTiny);
-    const Float16 zero = broadcast(0.0F);
+    Floats near = Floats(-kTiny);
+    Floats far = Floats(kTiny);
+    const Floats zero = Floats(0.0F);
     for (int i = 0; i < 3; ++i) {
-      const Float16 center = broadcast(region_.center[i]);
-      const Float16 below = subtract(box.low[i], center);
-      const Float16 above = subtract(center, box.high[i]);
-      const Float16 gap = max(max(below, above), zero);
-      const Float16 span = max(subtract(zero, below), subtract(zero, above));
-      near = add(near, multiply(gap, gap));
-      far = add(far, multiply(span, span));
+      const Floats center = Floats(region_.center[i]);
+      const Floats below = box.low[i] - center;
+      const Floats above = center - box.high[i];
+      const Floats gap = max(max(below, above), zero);
+      const Floats span = max(zero - below, zero - above);
+      near = near + gap * gap;
+      far = far + span * span;
     }
     constexpr float kLargest = 3.4028234e38F;
     const float square = region_.radius * region_.radius;
     // A square that overflows says nothing about what lies inside.
     const float finite_square = square < kLargest ? square : kLargest;
-    const Mask16 live = less_equal(box.low[0], broadcast(kLargest));
+    const Mask16 live = bits(box.low[0] <= kLargest);
     Met result;
-    result.met = less_equal(near, broadcast(square * kMore)) & live;
-    result.inside =
-        less_equal(multiply(far, broadcast(kMore)), broadcast(finite_square)) & result.met;
+    result.met = bits(near <= square * kMore) & live;
+    result.inside = bits(far * kMore <= finite_square) & result.met;
     result.open = result.met & ~result.inside;
     return result;
   }
@@ -190,7 +185,7 @@ class SweptProbe {
   [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
 
   [[nodiscard]] Met test(const float* const* column, std::size_t at) const {
-    Float16 enter;
+    Floats enter;
     const Mask16 met = test_.test(column, at, limit_, enter);
     return {met, 0, met};
   }

@@ -2,6 +2,7 @@
 #include "partitions/queries/region.kernel.h"
 #include "partitions/queries/region_probes.wide.h"
 #include "partitions/queries/walks.wide.h"
+#include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
 
 namespace winnow {
@@ -97,7 +98,7 @@ class RegionWalk {
     if (end > tree.count[0]) end = tree.count[0];
     for (std::uint64_t block = begin; block < end; ++block) {
       const auto row = static_cast<std::uint32_t>((tree.first_block + block) * kLanes);
-      const Mask16 live = less_equal(load(view_.column[0] + row), broadcast(3.4028234e38F));
+      const Mask16 live = bits(Floats::load(view_.column[0] + row) <= 3.4028234e38F);
       if (!write(sinks_.inside, row, wanted_.rows(row, live))) return false;
     }
     return true;
@@ -134,7 +135,7 @@ class RegionWalk {
       }
     }
     if (sink.cursor > sink.limit && !sink.grow(sink)) return false;
-    sink.cursor += compress_store(mask, load_unaligned(view_.id + first_row), sink.cursor);
+    sink.cursor += compress_store(mask, Uints::load_unaligned(view_.id + first_row), sink.cursor);
     return true;
   }
 
@@ -159,7 +160,7 @@ bool flat_boxes(const QueryView& view, const QueryBatch& batch, const QueryFilte
   const Wanted wanted(view, filter);
   for (std::uint32_t b = 0; b < view.flat_blocks; ++b) {
     const Box16 rows = load_slabs<3>(view.column, b * kLanes);
-    const Uint16 ids = load_unaligned(view.id + b * kLanes);
+    const Uints ids = Uints::load_unaligned(view.id + b * kLanes);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const QueryBox q(batch.column, k);
       const Mask16 hits = wanted.rows(b * kLanes, overlap(rows, q.low, q.high));

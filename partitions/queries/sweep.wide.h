@@ -1,7 +1,7 @@
 #pragma once
 
 #include "partitions/queries/cast.kernel.h"
-#include "simd/lanes/wide.h"
+#include "simd/lanes/lanes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -22,17 +22,17 @@ class SweepTest {
  public:
   explicit SweepTest(const Sweep& sweep) : SweepTest(sweep, sweep.from) {}
   /// From a later scaled t on.
-  SweepTest(const Sweep& sweep, float from) : sweep_(sweep), from_(broadcast(from)) {
+  SweepTest(const Sweep& sweep, float from) : sweep_(sweep), from_(from) {
     for (int i = 0; i < 3; ++i) {
-      near_origin_[i] = broadcast(sweep.near_origin[i]);
-      far_origin_[i] = broadcast(sweep.far_origin[i]);
-      inverse_[i] = broadcast(sweep.inverse[i]);
+      near_origin_[i] = Floats(sweep.near_origin[i]);
+      far_origin_[i] = Floats(sweep.far_origin[i]);
+      inverse_[i] = Floats(sweep.inverse[i]);
     }
   }
 
   /// Which of the boxes from `at` on may be touched at a scaled t <= limit, and when at the
   /// earliest; infinity for the others.
-  Mask16 test(const float* const* column, std::size_t at, float limit, Float16& enter) const {
+  Mask16 test(const float* const* column, std::size_t at, float limit, Floats& enter) const {
     const float* const near[3] = {column[sweep_.near_column[0]], column[sweep_.near_column[1]],
                                   column[sweep_.near_column[2]]};
     const float* const far[3] = {column[sweep_.far_column[0]], column[sweep_.far_column[1]],
@@ -41,33 +41,33 @@ class SweepTest {
   }
   /// The same where the columns that are met first and last are known.
   Mask16 test(const float* const* near, const float* const* far, std::size_t at, float limit,
-              Float16& enter) const {
-    Float16 e[3];
-    Float16 x[3];
+              Floats& enter) const {
+    Floats e[3];
+    Floats x[3];
     for (int i = 0; i < 3; ++i) {
       e[i] = time(near[i] + at, near_origin_[i], inverse_[i]);
       x[i] = time(far[i] + at, far_origin_[i], inverse_[i]);
     }
     enter = max(max(e[0], e[1]), max(e[2], from_));
-    const Float16 exit = min(min(x[0], x[1]), x[2]);
-    const Float16 late = add(multiply(exit, broadcast(kSweepSlack)), broadcast(kSweepTiny));
+    const Floats exit = min(min(x[0], x[1]), x[2]);
+    const Floats late = exit * kSweepSlack + kSweepTiny;
     // The limit first: what is not a number, as padding can make, must not become the limit.
-    const Float16 last = min(broadcast(limit), late);
-    const Mask16 touched = less_equal(enter, last);
-    enter = keep_less_equal(enter, last, enter);
+    const Floats last = min(Floats(limit), late);
+    const Mask16 touched = bits(enter <= last);
+    enter = or_infinity(enter <= last, enter);
     return touched;
   }
 
  private:
-  static Float16 time(const float* end, const Float16& origin, const Float16& inverse) {
-    return multiply(subtract(load(end), origin), inverse);
+  static Floats time(const float* end, const Floats& origin, const Floats& inverse) {
+    return (Floats::load(end) - origin) * inverse;
   }
 
   const Sweep& sweep_;
-  Float16 near_origin_[3];
-  Float16 far_origin_[3];
-  Float16 inverse_[3];
-  Float16 from_;
+  Floats near_origin_[3];
+  Floats far_origin_[3];
+  Floats inverse_[3];
+  Floats from_;
 };
 
 /// Decides on single rows. In double: of three operations each, entry and exit are off by less than

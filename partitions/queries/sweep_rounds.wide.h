@@ -55,7 +55,7 @@ class SweepRounds {
 
     [[nodiscard]] bool full() const { return size > kRoom - kLanes; }
     void add(std::uint32_t s, std::uint32_t base, Mask16 mask) {
-      store_unaligned(sweep + size, broadcast(s));
+      Uints(s).store_unaligned(sweep + size);
       size += compress_store(mask, count_from(base), at + size);
     }
   };
@@ -74,7 +74,7 @@ class SweepRounds {
   };
 
   [[nodiscard]] Mask16 test(std::uint32_t s, const Ways& ways, std::size_t at) const {
-    Float16 enter;
+    Floats enter;
     return SweepTest(sweeps_[s], from_[s]).test(ways.near, ways.far, at, limit_[s], enter);
   }
 

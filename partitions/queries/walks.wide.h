@@ -68,7 +68,7 @@ inline std::uint32_t order_of_rounded_down(double value) {
 class OpenNodes {
  public:
   /// Adds the children `mask` of the 16 from `first_node` on.
-  void add(Mask16 mask, const Float16& order, std::uint32_t level, std::uint32_t first_node) {
+  void add(Mask16 mask, const Floats& order, std::uint32_t level, std::uint32_t first_node) {
     compress_store(mask, order, order_ + size_);
     size_ += compress_store(mask, count_from(level << 28U | first_node), node_ + size_);
   }
@@ -93,7 +93,7 @@ class OpenNodes {
 };
 
 /// Visits blocks about in the order in which the probe reaches their nodes, as far as `limit` says,
-/// which visiting may lower. Probe: `Mask16 test(columns, at, limit, Float16& order)` with order
+/// which visiting may lower. Probe: `Mask16 test(columns, at, limit, Floats& order)` with order
 /// >= 0, and infinite in the lanes that fail. `visit(first_row)` returns false to end the walk.
 ///
 /// Depth first: the nearest child next, its siblings later in no order, so that neither sorting
@@ -115,13 +115,13 @@ bool walk_in_order(const QueryView& view, const Probe& probe, const Wanted& want
       while (reached && level != 0) {
         --level;
         const std::uint32_t first_node = node * kLanes;
-        Float16 order;
+        Floats order;
         Mask16 mask = probe.test(tree.node[level], first_node, limit, order);
         mask = wanted.nodes(tree, level, first_node, mask);
         reached = mask != 0;
         if (!reached) break;
         // The filter may have ruled the nearest out: then any will do.
-        const Mask16 least = less_equal(order, broadcast(reduce_min(order))) & mask;
+        const Mask16 least = bits(order <= reduce_min(order)) & mask;
         const unsigned next = first(least != 0 ? least : mask);
         open.add(mask & ~(1U << next), order, level, first_node);
         node = first_node + next;

@@ -1,6 +1,9 @@
 #include "partitions/tree/block_tree.kernel.h"
 #include "partitions/pairs/hits.wide.h"
 #include "partitions/tree/tree_walk.wide.h"
+#include "simd/lanes/boxes.h"
+#include "simd/lanes/compress.h"
+#include "simd/lanes/rows.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -11,14 +14,14 @@ void reduce(const float* const* from, std::uint32_t begin, std::uint32_t end, fl
   std::size_t i = begin;
   for (; i + kLanes <= end; i += kLanes) {
     for (int s = 0; s < 3; ++s) {
-      store_unaligned(to[s] + i, reduce_min_rows(from[s] + i * kLanes));
-      store_unaligned(to[3 + s] + i, reduce_max_rows(from[3 + s] + i * kLanes));
+      reduce_min_rows(from[s] + i * kLanes).store_unaligned(to[s] + i);
+      reduce_max_rows(from[3 + s] + i * kLanes).store_unaligned(to[3 + s] + i);
     }
   }
   for (; i < end; ++i) {
     for (int s = 0; s < 3; ++s) {
-      to[s][i] = reduce_min(load(from[s] + i * kLanes));
-      to[3 + s][i] = reduce_max(load(from[3 + s] + i * kLanes));
+      to[s][i] = reduce_min(Floats::load(from[s] + i * kLanes));
+      to[3 + s][i] = reduce_max(Floats::load(from[3 + s] + i * kLanes));
     }
   }
 }
@@ -64,7 +67,7 @@ class LeafPairs {
   /// Adds all pairs of leaf i with leaves base + js.
   bool add(std::uint32_t i, std::uint32_t base, Mask16 js) {
     if (leaves_ > kLeafRoom - kLanes && !find_rows()) return false;
-    store_unaligned(first_ + leaves_, broadcast(i));
+    Uints(i).store_unaligned(first_ + leaves_);
     leaves_ += compress_store(js, count_from(base), second_ + leaves_);
     return true;
   }
@@ -88,7 +91,7 @@ class LeafPairs {
 
   bool add_rows(std::uint32_t first_row, std::uint32_t leaf, Mask16 mask) {
     if (rows_ > kRowRoom - kLanes && !test_rows()) return false;
-    store_unaligned(leaf_ + rows_, broadcast(leaf));
+    Uints(leaf).store_unaligned(leaf_ + rows_);
     rows_ += compress_store(mask, count_from(first_row), row_ + rows_);
     return true;
   }
@@ -237,7 +240,7 @@ class Descent {
     if (Filtered && mask != 0) {
       mask = passing_nodes(tree_.filters[level], first_node, mask, filters_.of(batch_.id[row]));
     }
-    store_unaligned(row_[level] + open_[level], broadcast(row));
+    Uints(row).store_unaligned(row_[level] + open_[level]);
     open_[level] += compress_store(mask, count_from(first_node), node_[level] + open_[level]);
     ++sink_.tests;
     return true;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "partitions/tree/block_tree.kernel.h"
-#include "simd/lanes/wide.h"
+#include "simd/lanes/lanes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

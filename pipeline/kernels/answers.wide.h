@@ -17,8 +17,8 @@ inline constexpr T kEpsilon = sizeof(T) == sizeof(double) ? T(0x1p-52) : T(0x1p-
 /// Levels distance and manifold; as the columns of NarrowJob say.
 template <typename T>
 struct AnswerLanes {
-  Real<T> distance;
-  Real<T> error_bound;
+  Lanes<T> distance;
+  Lanes<T> error_bound;
   Vec3<T> normal;
   /// Read at level distance only.
   Vec3<T> point;
@@ -28,20 +28,20 @@ struct AnswerLanes {
 template <typename T>
 struct ContactLanes {
   Vec3<T> position;
-  Real<T> depth;
+  Lanes<T> depth;
   /// Whole numbers below 2^24: the halves of ContactPoint::feature.
-  Real<T> feature_a;
-  Real<T> feature_b;
+  Lanes<T> feature_a;
+  Lanes<T> feature_b;
   Mask16 lanes;
 };
 
 /// Lanes of sizes whose squares neither overflow nor lose digits. `square` is a sum of squares of
 /// all lengths that matter.
 template <typename T>
-[[gnu::always_inline]] inline Truth<T> in_range(const Real<T>& square) {
+[[gnu::always_inline]] inline LaneMask<T> in_range(const Lanes<T>& square) {
   constexpr bool is_double = sizeof(T) == sizeof(double);
-  return (square > Real<T>(is_double ? T(1e-100) : T(1e-24F))) &
-         (square < Real<T>(is_double ? T(1e100) : T(1e24F)));
+  return (square > Lanes<T>(is_double ? T(1e-100) : T(1e-24F))) &
+         (square < Lanes<T>(is_double ? T(1e100) : T(1e24F)));
 }
 
 /// Eight bits as the lowest bits of eight bytes.
@@ -55,8 +55,8 @@ template <typename T>
 [[gnu::always_inline]] inline void write_overlap(const NarrowJob& job, const PairBlock<T>& block,
                                                  Mask16 overlap) {
   std::uint8_t* out = job.overlap + block.first;
-  if (block.count == Real<T>::kRealLanes) {
-    for (unsigned byte = 0; byte < Real<T>::kRealLanes; byte += 8) {
+  if (block.count == Lanes<T>::kCount) {
+    for (unsigned byte = 0; byte < Lanes<T>::kCount; byte += 8) {
       const std::uint64_t bytes = bytes_of_bits(overlap >> byte & 0xFFU);
       __builtin_memcpy(out + byte, &bytes, 8);
     }
@@ -69,8 +69,8 @@ template <typename T>
 
 template <typename T>
 [[gnu::always_inline]] inline void write_column(double* column, const PairBlock<T>& block,
-                                                const Real<T>& v) {
-  constexpr unsigned lanes = Real<T>::kRealLanes;
+                                                const Lanes<T>& v) {
+  constexpr unsigned lanes = Lanes<T>::kCount;
   alignas(64) double stage[lanes];
   double* out = column + block.first;
   double* to = block.count == lanes ? out : stage;
@@ -139,21 +139,17 @@ template <int Points, typename T>
 
 /// The lanes' numbers as floats; what comes after those of eight doubles is unspecified.
 template <typename T>
-[[gnu::always_inline]] inline Float16 as_floats(const Real<T>& v) {
-  Single16 s;
+[[gnu::always_inline]] inline Floats as_floats(const Lanes<T>& v) {
   if constexpr (sizeof(T) == sizeof(double)) {
-    s = to_single(v);
+    return to_single(v);
   } else {
-    s = v;
+    return v;
   }
-  Float16 r;
-  for (int i = 0; i < kParts; ++i) r.part[i] = s.part[i];
-  return r;
 }
 
 /// A contact's columns: position x, y, z, depth, feature of a, feature of b.
 struct ContactColumns {
-  Float16 column[6];
+  Floats column[6];
 };
 
 template <typename T>
@@ -164,9 +160,9 @@ template <typename T>
 
 /// a0 b0 a1 b1 ... of eight lanes, from lane 0 or from lane 8.
 template <int From>
-[[gnu::always_inline]] inline Float16 zip(const Float16& a, const Float16& b) {
+[[gnu::always_inline]] inline Floats zip(const Floats& a, const Floats& b) {
 #if defined(WINNOW_ISA_IS_avx512)
-  Float16 r;
+  Floats r;
   const __m512i order =
       _mm512_add_epi32(_mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23),
                        _mm512_set1_epi32(From));
@@ -175,10 +171,10 @@ template <int From>
 #else
   alignas(64) float from[2][kLanes];
   alignas(64) float to[kLanes];
-  store_unaligned(from[0], a);
-  store_unaligned(from[1], b);
+  a.store_unaligned(from[0]);
+  b.store_unaligned(from[1]);
   for (int i = 0; i < kLanes; ++i) to[i] = from[i % 2][From + i / 2];
-  return load(to);
+  return Floats::load(to);
 #endif
 }
 /// The same of the bits of two masks of eight lanes.
@@ -209,8 +205,8 @@ template <int From>
 #else
   alignas(64) float a[kLanes];
   alignas(64) float b[kLanes];
-  store_unaligned(a, c.column[4]);
-  store_unaligned(b, c.column[5]);
+  c.column[4].store_unaligned(a);
+  c.column[5].store_unaligned(b);
   for (Mask16 rest = lanes; rest != 0; rest &= rest - 1) {
     const unsigned lane = first(rest);
     *feature++ = static_cast<std::uint64_t>(a[lane]) << 32U | static_cast<std::uint64_t>(b[lane]);
@@ -227,7 +223,7 @@ template <typename T>
   ContactColumns zipped;
   for (int k = 0; k < 6; ++k) zipped.column[k] = zip<0>(c[0].column[k], c[1].column[k]);
   append_contacts(out, zip_bits(lanes[0], lanes[1]), zipped);
-  if constexpr (Real<T>::kRealLanes == 16) {
+  if constexpr (Lanes<T>::kCount == 16) {
     for (int k = 0; k < 6; ++k) zipped.column[k] = zip<8>(c[0].column[k], c[1].column[k]);
     append_contacts(out, zip_bits(lanes[0] >> 8U, lanes[1] >> 8U), zipped);
   }
@@ -239,7 +235,7 @@ inline void append_pair_by_pair(ContactWriter& out, const Mask16 (&lanes)[Points
                                 const ContactColumns (&columns)[Points]) {
   alignas(64) float stage[Points][6][kLanes];
   for (int p = 0; p < Points; ++p) {
-    for (int c = 0; c < 6; ++c) store_unaligned(stage[p][c], columns[p].column[c]);
+    for (int c = 0; c < 6; ++c) columns[p].column[c].store_unaligned(stage[p][c]);
   }
   std::uint32_t size = out.size;
   for (Mask16 rest = lanes[0]; rest != 0; rest &= rest - 1) {

@@ -4,11 +4,12 @@
 // positions, orientations and the shapes' numbers.
 
 #include "pipeline/narrow/narrow_job.h"
-#include "simd/lanes/rows.wide.h"
+#include "simd/lanes/rows.h"
+#include "simd/lanes/vectors.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// The pairs in the lanes of Real<T>.
+/// The pairs in the lanes of Lanes<T>.
 template <typename T>
 struct PairBlock {
   /// One a lane. Lanes from `count` on repeat the job's last pair.
@@ -24,7 +25,7 @@ struct PairBlock {
 /// misses overlap without being asked for ahead.
 template <typename T, typename Body>
 [[gnu::always_inline]] inline void for_blocks(const NarrowJob& job, Body&& body) {
-  constexpr std::uint32_t lanes = Real<T>::kRealLanes;
+  constexpr std::uint32_t lanes = Lanes<T>::kCount;
   BodyPair tail[lanes];
   for (std::uint32_t first = 0; first < job.count; first += lanes) {
     PairBlock<T> block{job.pairs + first, first, lanes};
@@ -56,12 +57,12 @@ struct SideB {
 
 /// Numbers of type T from rows of doubles: `load(first_lane, out)` fills eight lanes.
 template <typename T, int Count, typename Load>
-[[gnu::always_inline]] inline void in_precision(Load&& load, Real<T> (&out)[Count]) {
+[[gnu::always_inline]] inline void in_precision(Load&& load, Lanes<T> (&out)[Count]) {
   if constexpr (sizeof(T) == sizeof(double)) {
     load(0, out);
   } else {
-    Double8 low[Count];
-    Double8 high[Count];
+    Doubles low[Count];
+    Doubles high[Count];
     load(0, low);
     load(8, high);
     for (int k = 0; k < Count; ++k) out[k] = to_single(low[k], high[k]);
@@ -71,9 +72,9 @@ template <typename T, int Count, typename Load>
 /// Position of b less that of a, subtracted in double.
 template <typename T>
 [[gnu::always_inline]] inline Vec3<T> load_offset(const NarrowJob& job, const PairBlock<T>& block) {
-  Real<T> d[4];
+  Lanes<T> d[4];
   in_precision<T>(
-      [&](int from, Double8(&out)[4]) {
+      [&](int from, Doubles(&out)[4]) {
         load_differences4([&](int lane) { return numbers(job.poses[block.pairs[from + lane].b]); },
                           [&](int lane) { return numbers(job.poses[block.pairs[from + lane].a]); },
                           out);
@@ -86,25 +87,25 @@ template <typename T>
 /// NaN if the quaternion is not finite, or so short or long that squares leave T's range.
 template <typename T>
 struct Turn {
-  Real<T> w;
+  Lanes<T> w;
   Vec3<T> v;
-  Real<T> scale;
+  Lanes<T> scale;
 };
 
 template <typename Side, typename T>
 [[gnu::always_inline]] inline Turn<T> load_turn(const NarrowJob& job, const PairBlock<T>& block) {
   constexpr T limit = sizeof(T) == sizeof(double) ? T(1e250) : T(1e25F);
-  Real<T> q[4];
+  Lanes<T> q[4];
   in_precision<T>(
-      [&](int from, Double8(&out)[4]) {
+      [&](int from, Doubles(&out)[4]) {
         load_rows4(
             [&](int lane) { return job.poses[Side::body(block.pairs[from + lane])].orientation; },
             out);
       },
       q);
-  const Real<T> norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  const Truth<T> usable = (norm > Real<T>(T(1) / limit)) & (norm < Real<T>(limit));
-  const Real<T> scale = select(usable, Real<T>(T(2)) / norm, Real<T>(T(__builtin_nan(""))));
+  const Lanes<T> norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  const LaneMask<T> usable = (norm > Lanes<T>(T(1) / limit)) & (norm < Lanes<T>(limit));
+  const Lanes<T> scale = select(usable, Lanes<T>(T(2)) / norm, Lanes<T>(T(__builtin_nan(""))));
   return {q[0], {q[1], q[2], q[3]}, scale};
 }
 
@@ -112,7 +113,7 @@ template <typename Side, typename T>
 template <typename T>
 [[gnu::always_inline]] inline Vec3<T> axis_z(const Turn<T>& q) {
   return {(q.v.x * q.v.z + q.w * q.v.y) * q.scale, (q.v.y * q.v.z - q.w * q.v.x) * q.scale,
-          Real<T>(T(1)) - (q.v.x * q.v.x + q.v.y * q.v.y) * q.scale};
+          Lanes<T>(T(1)) - (q.v.x * q.v.x + q.v.y * q.v.y) * q.scale};
 }
 
 /// A rotation as the images of the local axes.
@@ -133,14 +134,14 @@ struct Rotation {
 
 template <typename T>
 [[gnu::always_inline]] inline Rotation<T> rotation(const Turn<T>& q) {
-  const Real<T> one(T(1));
+  const Lanes<T> one(T(1));
   const Vec3<T> v = q.v * q.scale;
-  const Real<T> xx = v.x * q.v.x;
-  const Real<T> yy = v.y * q.v.y;
-  const Real<T> zz = v.z * q.v.z;
-  const Real<T> xy = v.x * q.v.y;
-  const Real<T> xz = v.x * q.v.z;
-  const Real<T> yz = v.y * q.v.z;
+  const Lanes<T> xx = v.x * q.v.x;
+  const Lanes<T> yy = v.y * q.v.y;
+  const Lanes<T> zz = v.z * q.v.z;
+  const Lanes<T> xy = v.x * q.v.y;
+  const Lanes<T> xz = v.x * q.v.z;
+  const Lanes<T> yz = v.y * q.v.z;
   const Vec3<T> w = v * q.w;
   return {{one - (yy + zz), xy + w.z, xz - w.y},
           {xy - w.z, one - (xx + zz), yz + w.x},

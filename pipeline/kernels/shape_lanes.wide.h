@@ -14,35 +14,36 @@ template <typename Side, typename T>
 
 template <typename T>
 struct CapsuleLanes {
-  Real<T> radius;
-  Real<T> half_length;
+  Lanes<T> radius;
+  Lanes<T> half_length;
 };
 
 template <typename T>
 struct BoxLanes {
   Vec3<T> half;
-  Real<T> rounding;
+  Lanes<T> rounding;
 };
 
 /// In the triangle's own frame.
 template <typename T>
 struct TriangleLanes {
   Vec3<T> vertex[3];
-  Real<T> rounding;
+  Lanes<T> rounding;
 };
 
 /// normal . x <= offset in the half-space's own frame.
 template <typename T>
 struct HalfSpaceLanes {
   Vec3<T> normal;
-  Real<T> offset;
+  Lanes<T> offset;
 };
 
 template <typename Side, typename T>
-[[gnu::always_inline]] inline Real<T> load_sphere(const NarrowJob& job, const PairBlock<T>& block) {
-  Real<T> r[1];
+[[gnu::always_inline]] inline Lanes<T> load_sphere(const NarrowJob& job,
+                                                   const PairBlock<T>& block) {
+  Lanes<T> r[1];
   in_precision<T>(
-      [&](int from, Double8(&out)[1]) {
+      [&](int from, Doubles(&out)[1]) {
         out[0] = load_rows1([&](int lane) {
           return &job.tables.spheres[shape_index<Side>(job, block, from + lane)].radius;
         });
@@ -54,9 +55,9 @@ template <typename Side, typename T>
 template <typename Side, typename T>
 [[gnu::always_inline]] inline CapsuleLanes<T> load_capsule(const NarrowJob& job,
                                                            const PairBlock<T>& block) {
-  Real<T> r[2];
+  Lanes<T> r[2];
   in_precision<T>(
-      [&](int from, Double8(&out)[2]) {
+      [&](int from, Doubles(&out)[2]) {
         load_rows2(
             [&](int lane) {
               return numbers(job.tables.capsules[shape_index<Side>(job, block, from + lane)]);
@@ -70,9 +71,9 @@ template <typename Side, typename T>
 template <typename Side, typename T>
 [[gnu::always_inline]] inline BoxLanes<T> load_box(const NarrowJob& job,
                                                    const PairBlock<T>& block) {
-  Real<T> r[4];
+  Lanes<T> r[4];
   in_precision<T>(
-      [&](int from, Double8(&out)[4]) {
+      [&](int from, Doubles(&out)[4]) {
         load_rows4(
             [&](int lane) {
               return numbers(job.tables.boxes[shape_index<Side>(job, block, from + lane)]);
@@ -89,15 +90,15 @@ template <typename Side, typename T>
   const auto row = [&](int lane) {
     return numbers(job.tables.triangles[shape_index<Side>(job, block, lane)]);
   };
-  Real<T> r[10];
+  Lanes<T> r[10];
   in_precision<T>(
-      [&](int from, Double8(&out)[10]) {
-        Double8 quad[4];
+      [&](int from, Doubles(&out)[10]) {
+        Doubles quad[4];
         for (int part = 0; part < 2; ++part) {
           load_rows4([&](int lane) { return row(from + lane) + 4 * part; }, quad);
           for (int k = 0; k < 4; ++k) out[4 * part + k] = quad[k];
         }
-        Double8 two[2];
+        Doubles two[2];
         load_rows2([&](int lane) { return row(from + lane) + 8; }, two);
         out[8] = two[0];
         out[9] = two[1];
@@ -109,9 +110,9 @@ template <typename Side, typename T>
 template <typename Side, typename T>
 [[gnu::always_inline]] inline HalfSpaceLanes<T> load_half_space(const NarrowJob& job,
                                                                 const PairBlock<T>& block) {
-  Real<T> r[4];
+  Lanes<T> r[4];
   in_precision<T>(
-      [&](int from, Double8(&out)[4]) {
+      [&](int from, Doubles(&out)[4]) {
         load_rows4(
             [&](int lane) {
               return numbers(job.tables.half_spaces[shape_index<Side>(job, block, from + lane)]);

@@ -8,12 +8,13 @@
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_walks.kernel.h"
+#include "simd/lanes/compress.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
-using Lanes3 = Single16[3];
+using Lanes3 = Floats[3];
 
-[[gnu::always_inline]] inline Single16 height(const Lanes3& a, const Lanes3& b) {
+[[gnu::always_inline]] inline Floats height(const Lanes3& a, const Lanes3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
@@ -21,29 +22,28 @@ using Lanes3 = Single16[3];
 /// far from the middle they must be to be outside for certain.
 struct BallCorners {
   Lanes3 at[3];
-  Single16 square;  ///< of that distance
+  Floats square;  ///< of that distance
 
   BallCorners(const Corners16& corners, const MeshBallJob& ball) {
-    Single16 largest(ball.largest);
+    Floats largest(ball.largest);
     for (int axis = 0; axis < 3; ++axis) {
       for (int k = 0; k < 3; ++k) {
-        at[k][axis] = (corners.at[k][axis] - Single16(ball.center[axis])) * Single16(ball.scale);
+        at[k][axis] = (corners.at[k][axis] - Floats(ball.center[axis])) * Floats(ball.scale);
         largest = max(largest, abs(at[k][axis]));
       }
     }
     // The middle and the differences were rounded, and so are heights: less than 16 u of the
     // largest number among them, u being half an ulp of 1.
-    const Single16 distance =
-        Single16(ball.radius * (1.0F + 0x1p-20F)) + largest * Single16(0x1p-19F);
+    const Floats distance = Floats(ball.radius * (1.0F + 0x1p-20F)) + largest * Floats(0x1p-19F);
     square = distance * distance;
   }
 
   /// All three lie beyond the ball along a way of this squared length, given the least height.
-  [[gnu::always_inline]] Truth<float> beyond(const Single16& least, const Single16& length) const {
-    return (least > Single16(0.0F)) & (least * least > length * square);
+  [[gnu::always_inline]] LaneMask<float> beyond(const Floats& least, const Floats& length) const {
+    return (least > Floats(0.0F)) & (least * least > length * square);
   }
-  [[gnu::always_inline]] Truth<float> beyond(const Lanes3& way) const {
-    const Single16 least = min(min(height(way, at[0]), height(way, at[1])), height(way, at[2]));
+  [[gnu::always_inline]] LaneMask<float> beyond(const Lanes3& way) const {
+    const Floats least = min(min(height(way, at[0]), height(way, at[1])), height(way, at[2]));
     return beyond(least, height(way, way));
   }
 };
@@ -52,21 +52,21 @@ struct BallCorners {
 [[gnu::always_inline]] inline Mask16 outside_ball(const Corners16& corners,
                                                   const MeshBallJob& ball) {
   const BallCorners t(corners, ball);
-  const Single16 aa = height(t.at[0], t.at[0]);
-  const Single16 bb = height(t.at[1], t.at[1]);
-  const Single16 cc = height(t.at[2], t.at[2]);
-  const Single16 ab = height(t.at[0], t.at[1]);
-  const Single16 bc = height(t.at[1], t.at[2]);
-  const Single16 ca = height(t.at[2], t.at[0]);
-  Truth<float> out = t.beyond(min(min(aa, ab), ca), aa) | t.beyond(min(min(bb, ab), bc), bb) |
-                     t.beyond(min(min(cc, bc), ca), cc);
+  const Floats aa = height(t.at[0], t.at[0]);
+  const Floats bb = height(t.at[1], t.at[1]);
+  const Floats cc = height(t.at[2], t.at[2]);
+  const Floats ab = height(t.at[0], t.at[1]);
+  const Floats bc = height(t.at[1], t.at[2]);
+  const Floats ca = height(t.at[2], t.at[0]);
+  LaneMask<float> out = t.beyond(min(min(aa, ab), ca), aa) | t.beyond(min(min(bb, ab), bc), bb) |
+                        t.beyond(min(min(cc, bc), ca), cc);
   Lanes3 edge[3];
   for (int k = 0; k < 3; ++k) {
     for (int axis = 0; axis < 3; ++axis) {
       edge[k][axis] = t.at[(k + 1) % 3][axis] - t.at[k][axis];
     }
-    const Single16 along = height(t.at[k], edge[k]);
-    const Single16 length = height(edge[k], edge[k]);
+    const Floats along = height(t.at[k], edge[k]);
+    const Floats length = height(edge[k], edge[k]);
     Lanes3 way;
     for (int axis = 0; axis < 3; ++axis) {
       way[axis] = t.at[k][axis] * length - edge[k][axis] * along;
@@ -79,7 +79,7 @@ struct BallCorners {
     const int k = (axis + 2) % 3;
     normal[axis] = edge[0][j] * edge[1][k] - edge[0][k] * edge[1][j];
   }
-  const Truth<float> below = height(normal, t.at[0]) < Single16(0.0F);
+  const LaneMask<float> below = height(normal, t.at[0]) < Floats(0.0F);
   for (auto& x : normal) x = select(below, -x, x);
   return bits(out | t.beyond(normal));
 }
@@ -92,7 +92,7 @@ class BallSieve {
   void add(const Corners16& corners, Mask16 hits, std::uint32_t first_slot) {
     for (int k = 0; k < 3; ++k) {
       for (int axis = 0; axis < 3; ++axis) {
-        compress_store(hits, lanes_of(corners.at[k][axis]), corner_[k][axis] + size_);
+        compress_store(hits, corners.at[k][axis], corner_[k][axis] + size_);
       }
     }
     size_ += compress_store(hits, count_from(first_slot), slot_ + size_);
@@ -100,9 +100,9 @@ class BallSieve {
     pass(kLanes);
     size_ -= kLanes;
     for (auto& corner : corner_) {
-      for (auto& column : corner) Single16::load(column + kLanes).store(column);
+      for (auto& column : corner) Floats::load(column + kLanes).store(column);
     }
-    store_unaligned(slot_, load_unaligned(slot_ + kLanes));
+    Uints::load_unaligned(slot_ + kLanes).store_unaligned(slot_);
   }
 
   void finish() {
@@ -114,10 +114,11 @@ class BallSieve {
     Corners16 corners;
     for (int k = 0; k < 3; ++k) {
       for (int axis = 0; axis < 3; ++axis) {
-        corners.at[k][axis] = Single16::load(corner_[k][axis]);
+        corners.at[k][axis] = Floats::load(corner_[k][axis]);
       }
     }
-    put_slots(load_unaligned(slot_), ~outside_ball(corners, ball_) & lanes_below(count), out_);
+    put_slots(Uints::load_unaligned(slot_), ~outside_ball(corners, ball_) & lanes_below(count),
+              out_);
   }
 
   const MeshBallJob& ball_;

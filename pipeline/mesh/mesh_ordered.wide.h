@@ -5,6 +5,7 @@
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_walks.kernel.h"
+#include "simd/lanes/boxes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -19,24 +20,24 @@ class SweepMeasure {
   void set_limit(double limit) { limit_ = limit; }
   [[nodiscard]] double limit() const { return limit_; }
 
-  [[gnu::always_inline]] Double8 operator()(const Box8& box) const {
-    Double8 entry(0.0);
-    Double8 exit(limit_);
-    Truth<double> met = entry <= entry;
+  [[gnu::always_inline]] Doubles operator()(const Box8& box) const {
+    Doubles entry(0.0);
+    Doubles exit(limit_);
+    LaneMask<double> met = entry <= entry;
     for (int axis = 0; axis < 3; ++axis) {
-      const Double8 near = box.low[axis] - Double8(job_.max[axis]);
-      const Double8 far = box.high[axis] - Double8(job_.min[axis]);
+      const Doubles near = box.low[axis] - Doubles(job_.max[axis]);
+      const Doubles far = box.high[axis] - Doubles(job_.min[axis]);
       if (job_.is_static[axis]) {
-        met = met & (near <= Double8(0.0)) & (far >= Double8(0.0));
+        met = met & (near <= Doubles(0.0)) & (far >= Doubles(0.0));
         continue;
       }
-      const Double8 inverse(job_.inverse[axis]);
-      const Double8 a = near * inverse;
-      const Double8 b = far * inverse;
-      entry = max(entry, min(a, b) * Double8(1.0 - kMeasureError));
-      exit = min(exit, max(a, b) * Double8(1.0 + kMeasureError));
+      const Doubles inverse(job_.inverse[axis]);
+      const Doubles a = near * inverse;
+      const Doubles b = far * inverse;
+      entry = max(entry, min(a, b) * Doubles(1.0 - kMeasureError));
+      exit = min(exit, max(a, b) * Doubles(1.0 + kMeasureError));
     }
-    return select(met & (entry <= exit), entry, Double8(__builtin_inf()));
+    return select(met & (entry <= exit), entry, Doubles(__builtin_inf()));
   }
   /// No time is infinite, whatever the limit.
   [[nodiscard]] bool within(double measure) const {
@@ -60,19 +61,19 @@ class NearMeasure {
   }
   [[nodiscard]] double limit() const { return limit_; }
 
-  [[gnu::always_inline]] Double8 operator()(const Box8& box) const {
-    Double8 square(0.0);
+  [[gnu::always_inline]] Doubles operator()(const Box8& box) const {
+    Doubles square(0.0);
     for (int axis = 0; axis < 3; ++axis) {
-      const Double8 scale(job_.scale[axis]);
-      const Double8 a = box.low[axis] * scale;
-      const Double8 b = box.high[axis] * scale;
-      const Double8 error = max(abs(a), abs(b)) * Double8(0x1p-50);
-      const Double8 below = Double8(job_.min[axis]) - (max(a, b) + error);
-      const Double8 above = (min(a, b) - error) - Double8(job_.max[axis]);
-      const Double8 gap = max(Double8(0.0), max(below, above));
+      const Doubles scale(job_.scale[axis]);
+      const Doubles a = box.low[axis] * scale;
+      const Doubles b = box.high[axis] * scale;
+      const Doubles error = max(abs(a), abs(b)) * Doubles(0x1p-50);
+      const Doubles below = Doubles(job_.min[axis]) - (max(a, b) + error);
+      const Doubles above = (min(a, b) - error) - Doubles(job_.max[axis]);
+      const Doubles gap = max(Doubles(0.0), max(below, above));
       square += gap * gap;
     }
-    return square * Double8(1.0 - kMeasureError);
+    return square * Doubles(1.0 - kMeasureError);
   }
   [[nodiscard]] bool within(double measure) const { return measure <= square_; }
 

@@ -5,6 +5,8 @@
 // brought there in double, against sixteen triangles of a.
 
 #include "pipeline/mesh/mesh_triangles.wide.h"
+#include "simd/lanes/boxes.h"
+#include "simd/lanes/compress.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -17,8 +19,8 @@ struct PlacedNodes {
   [[nodiscard]] Box16 box() const {
     Box16 r;
     for (int axis = 0; axis < 3; ++axis) {
-      r.low[axis] = load(low[axis]);
-      r.high[axis] = load(high[axis]);
+      r.low[axis] = Floats::load(low[axis]);
+      r.high[axis] = Floats::load(high[axis]);
     }
     return r;
   }
@@ -30,35 +32,35 @@ struct PlacedNodes {
 template <int Half>
 [[gnu::always_inline]] inline void place_half(const MeshView& a, const MeshView& b,
                                               const MeshPairJob& job, const Box16& nodes,
-                                              Double8 (&low)[3], Double8 (&high)[3]) {
+                                              Doubles (&low)[3], Doubles (&high)[3]) {
   Box8 box = in_double<Half>(nodes);
   decode(b, box);
-  Double8 center[3];
-  Double8 half[3];
+  Doubles center[3];
+  Doubles half[3];
   for (int axis = 0; axis < 3; ++axis) {
-    center[axis] = (box.low[axis] + box.high[axis]) * Double8(0.5);
-    half[axis] = (box.high[axis] - box.low[axis]) * Double8(0.5);
+    center[axis] = (box.low[axis] + box.high[axis]) * Doubles(0.5);
+    half[axis] = (box.high[axis] - box.low[axis]) * Doubles(0.5);
   }
   for (int k = 0; k < 3; ++k) {
-    Double8 middle(job.offset[k]);
-    Double8 radius(job.slack[k]);
+    Doubles middle(job.offset[k]);
+    Doubles radius(job.slack[k]);
     for (int axis = 0; axis < 3; ++axis) {
       const double m = job.matrix[k][axis];
-      middle += Double8(m) * center[axis];
-      radius += Double8(m < 0.0 ? -m : m) * half[axis];
+      middle += Doubles(m) * center[axis];
+      radius += Doubles(m < 0.0 ? -m : m) * half[axis];
     }
-    const Double8 origin(static_cast<double>(a.origin[k]));
-    const Double8 per_unit(1.0 / static_cast<double>(a.step[k]));
-    low[k] = (middle - radius - origin) * per_unit - Double8(0.125);
-    high[k] = (middle + radius - origin) * per_unit + Double8(0.125);
+    const Doubles origin(static_cast<double>(a.origin[k]));
+    const Doubles per_unit(1.0 / static_cast<double>(a.step[k]));
+    low[k] = (middle - radius - origin) * per_unit - Doubles(0.125);
+    high[k] = (middle + radius - origin) * per_unit + Doubles(0.125);
   }
 }
 
 inline void place_nodes(const MeshView& a, const MeshView& b, const MeshPairJob& job,
                         std::uint32_t level, std::uint32_t first_node, PlacedNodes& out) {
   const Box16 nodes = load_nodes(b, level, first_node);
-  Double8 low[2][3];
-  Double8 high[2][3];
+  Doubles low[2][3];
+  Doubles high[2][3];
   place_half<0>(a, b, job, nodes, low[0], high[0]);
   place_half<1>(a, b, job, nodes, low[1], high[1]);
   for (int k = 0; k < 3; ++k) {
@@ -222,7 +224,7 @@ class PairWalk {
   void put(std::uint32_t first_slot, Mask16 hits, std::uint32_t other) {
     if (out_.take != nullptr && out_.size + kLanes > out_.capacity) out_.take(out_.context, out_);
     if (out_.size + kLanes <= out_.capacity) {
-      store_unaligned(out_.second + out_.size, broadcast(other));
+      Uints(other).store_unaligned(out_.second + out_.size);
       out_.size += compress_store(hits, count_from(first_slot), out_.first + out_.size);
       return;
     }

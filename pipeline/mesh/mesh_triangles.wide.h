@@ -6,6 +6,7 @@
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_walks.kernel.h"
+#include "simd/lanes/boxes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -19,11 +20,11 @@ struct PairLeaf {
   Box16 box;
   Mask16 lanes;
   bool has_planes;
-  Single16 normal[3];
+  Floats normal[3];
   /// Sum of the absolute values of the two products whose difference `normal` is.
-  Single16 size[3];
+  Floats size[3];
   /// Rounding of distances from the plane that is due to the extent of the triangle itself.
-  Single16 doubt;
+  Floats doubt;
 };
 
 /// Triangles of a leaf of b, one by one to be broadcast; their planes too when first asked for.
@@ -50,8 +51,8 @@ struct PlacedTriangles {
   [[nodiscard]] Box16 box() const {
     Box16 r;
     for (int axis = 0; axis < 3; ++axis) {
-      r.low[axis] = load(low[axis]);
-      r.high[axis] = load(high[axis]);
+      r.low[axis] = Floats::load(low[axis]);
+      r.high[axis] = Floats::load(high[axis]);
     }
     return r;
   }
@@ -59,13 +60,13 @@ struct PlacedTriangles {
 
 /// The two products of each component of the cross product of p and q, subtracted and, by absolute
 /// value, added.
-[[gnu::always_inline]] inline void cross_sizes(const Single16 (&p)[3], const Single16 (&q)[3],
-                                               Single16 (&normal)[3], Single16 (&size)[3]) {
+[[gnu::always_inline]] inline void cross_sizes(const Floats (&p)[3], const Floats (&q)[3],
+                                               Floats (&normal)[3], Floats (&size)[3]) {
   for (int axis = 0; axis < 3; ++axis) {
     const int j = (axis + 1) % 3;
     const int k = (axis + 2) % 3;
-    const Single16 plus = p[j] * q[k];
-    const Single16 minus = p[k] * q[j];
+    const Floats plus = p[j] * q[k];
+    const Floats minus = p[k] * q[j];
     normal[axis] = plus - minus;
     size[axis] = abs(plus) + abs(minus);
   }
@@ -74,7 +75,7 @@ struct PlacedTriangles {
 inline void load_leaf(const MeshView& a, const MeshPairJob& job, std::uint32_t leaf,
                       PairLeaf& out) {
   out.corners = load_corners(a, leaf);
-  const Single16 scale(job.scale);
+  const Floats scale(job.scale);
   for (auto& corner : out.corners.at) {
     for (auto& x : corner) x *= scale;
   }
@@ -85,37 +86,37 @@ inline void load_leaf(const MeshView& a, const MeshPairJob& job, std::uint32_t l
 
 inline void add_planes(PairLeaf& out) {
   out.has_planes = true;
-  Single16 first_edge[3];
-  Single16 last_edge[3];
+  Floats first_edge[3];
+  Floats last_edge[3];
   for (int axis = 0; axis < 3; ++axis) {
     first_edge[axis] = out.corners.at[1][axis] - out.corners.at[0][axis];
     last_edge[axis] = out.corners.at[2][axis] - out.corners.at[0][axis];
   }
   cross_sizes(first_edge, last_edge, out.normal, out.size);
-  out.doubt = Single16(kTiny);
+  out.doubt = Floats(kTiny);
   for (int axis = 0; axis < 3; ++axis) {
-    const Single16 extent = real_of(out.box.high[axis]) - real_of(out.box.low[axis]);
-    out.doubt += out.size[axis] * extent * Single16(32.0F * kUlp);
+    const Floats extent = out.box.high[axis] - out.box.low[axis];
+    out.doubt += out.size[axis] * extent * Floats(32.0F * kUlp);
   }
 }
 
 /// The corners of b's leaf in double, brought into the scaled frame of a and rounded.
 inline Corners16 place_corners(const MeshView& b, const MeshPairJob& job, std::uint32_t leaf) {
   const Corners16 own = load_corners(b, leaf);
-  const Double8 scale(static_cast<double>(job.scale));
+  const Doubles scale(static_cast<double>(job.scale));
   Corners16 placed;
   for (int k = 0; k < 3; ++k) {
-    Double8 low[3];
-    Double8 high[3];
+    Doubles low[3];
+    Doubles high[3];
     for (int axis = 0; axis < 3; ++axis) {
       low[axis] = to_double<0>(own.at[k][axis]);
       high[axis] = to_double<1>(own.at[k][axis]);
     }
     for (int row = 0; row < 3; ++row) {
-      Double8 x(job.offset[row]);
-      Double8 y(job.offset[row]);
+      Doubles x(job.offset[row]);
+      Doubles y(job.offset[row]);
       for (int axis = 0; axis < 3; ++axis) {
-        const Double8 m(job.matrix[row][axis]);
+        const Doubles m(job.matrix[row][axis]);
         x += m * low[axis];
         y += m * high[axis];
       }
@@ -127,33 +128,33 @@ inline Corners16 place_corners(const MeshView& b, const MeshPairJob& job, std::u
 
 inline void add_planes(const MeshPairJob& job, PlacedTriangles& out) {
   out.has_planes = true;
-  Single16 first_edge[3];
-  Single16 last_edge[3];
-  Single16 longest[3];
-  Single16 largest[3];
+  Floats first_edge[3];
+  Floats last_edge[3];
+  Floats longest[3];
+  Floats largest[3];
   for (int axis = 0; axis < 3; ++axis) {
-    const Single16 origin = Single16::load(out.corner[0][axis]);
-    first_edge[axis] = Single16::load(out.corner[1][axis]) - origin;
-    last_edge[axis] = Single16::load(out.corner[2][axis]) - origin;
+    const Floats origin = Floats::load(out.corner[0][axis]);
+    first_edge[axis] = Floats::load(out.corner[1][axis]) - origin;
+    last_edge[axis] = Floats::load(out.corner[2][axis]) - origin;
     longest[axis] = max(abs(first_edge[axis]), abs(last_edge[axis]));
-    largest[axis] = Single16::load(out.largest[axis]);
+    largest[axis] = Floats::load(out.largest[axis]);
   }
-  Single16 normal[3];
-  Single16 size[3];
+  Floats normal[3];
+  Floats size[3];
   cross_sizes(first_edge, last_edge, normal, size);
-  Single16 thickness(kTiny);
+  Floats thickness(kTiny);
   for (int axis = 0; axis < 3; ++axis) {
     const int j = (axis + 1) % 3;
     const int k = (axis + 2) % 3;
     // Edges are wrong by 4 u of the coordinates: each corner was rounded once, the edge once more.
-    const Single16 edges = longest[j] * largest[k] + longest[k] * largest[j] +
-                           largest[j] * largest[k] * Single16(4.0F * kUlp);
-    const Single16 error = edges * Single16(8.0F * kUlp) + size[axis] * Single16(4.0F * kUlp);
-    const Single16 steep = abs(normal[axis]) + error;
-    thickness += steep * (Single16(job.scaled_slack[axis]) * Single16(1.0F + 16.0F * kUlp) +
-                          largest[axis] * Single16(2.0F * kUlp));
+    const Floats edges = longest[j] * largest[k] + longest[k] * largest[j] +
+                         largest[j] * largest[k] * Floats(4.0F * kUlp);
+    const Floats error = edges * Floats(8.0F * kUlp) + size[axis] * Floats(4.0F * kUlp);
+    const Floats steep = abs(normal[axis]) + error;
+    thickness += steep * (Floats(job.scaled_slack[axis]) * Floats(1.0F + 16.0F * kUlp) +
+                          largest[axis] * Floats(2.0F * kUlp));
     normal[axis].store(out.normal[axis]);
-    (error * Single16(2.0F) + abs(normal[axis]) * Single16(32.0F * kUlp) + Single16(kTiny))
+    (error * Floats(2.0F) + abs(normal[axis]) * Floats(32.0F * kUlp) + Floats(kTiny))
         .store(out.wobble[axis]);
   }
   thickness.store(out.thickness);
@@ -164,17 +165,17 @@ inline void place_triangles(const MeshView& b, const MeshPairJob& job, std::uint
   const Corners16 corners = place_corners(b, job, leaf);
   const Box16 box = box_of(corners);
   for (int axis = 0; axis < 3; ++axis) {
-    const Single16 low = real_of(box.low[axis]);
-    const Single16 high = real_of(box.high[axis]);
-    const Single16 largest = max(abs(low), abs(high));
+    const Floats low = box.low[axis];
+    const Floats high = box.high[axis];
+    const Floats largest = max(abs(low), abs(high));
     largest.store(out.largest[axis]);
-    const Single16 slack(job.scaled_slack[axis]);
-    const Single16 grow = slack + (largest + slack) * Single16(4.0F * kUlp);
+    const Floats slack(job.scaled_slack[axis]);
+    const Floats grow = slack + (largest + slack) * Floats(4.0F * kUlp);
     (low - grow).store(out.low[axis]);
     (high + grow).store(out.high[axis]);
-    const Single16 reach = (high - low) + grow;
+    const Floats reach = (high - low) + grow;
     reach.store(out.reach[axis]);
-    (reach * Single16(32.0F * kUlp) + largest * Single16(2.0F * kUlp) + Single16(kTiny))
+    (reach * Floats(32.0F * kUlp) + largest * Floats(2.0F * kUlp) + Floats(kTiny))
         .store(out.doubt[axis]);
     for (int k = 0; k < 3; ++k) corners.at[k][axis].store(out.corner[k][axis]);
   }
@@ -183,10 +184,10 @@ inline void place_triangles(const MeshView& b, const MeshPairJob& job, std::uint
 }
 
 /// Which lanes have all three heights on one side, farther than `bound` from zero.
-[[gnu::always_inline]] inline Truth<float> aside(const Single16 (&height)[3],
-                                                 const Single16& bound) {
-  const Truth<float> above = (height[0] > bound) & (height[1] > bound) & (height[2] > bound);
-  const Single16 below_bound = -bound;
+[[gnu::always_inline]] inline LaneMask<float> aside(const Floats (&height)[3],
+                                                    const Floats& bound) {
+  const LaneMask<float> above = (height[0] > bound) & (height[1] > bound) & (height[2] > bound);
+  const Floats below_bound = -bound;
   return above |
          ((height[0] < below_bound) & (height[1] < below_bound) & (height[2] < below_bound));
 }
@@ -194,23 +195,23 @@ inline void place_triangles(const MeshView& b, const MeshPairJob& job, std::uint
 /// Which triangles of the leaf, out of `boxes`, are not parted from triangle j by a plane.
 [[gnu::always_inline]] inline Mask16 unparted(const PairLeaf& leaf, const PlacedTriangles& placed,
                                               const MeshPairJob& job, unsigned j, Mask16 boxes) {
-  const Single16 zero(0.0F);
-  Single16 above_leaf[3] = {zero, zero, zero};
-  Single16 above_placed[3] = {zero, zero, zero};
-  Single16 leaf_bound = leaf.doubt;
-  Single16 placed_bound(placed.thickness[j]);
+  const Floats zero(0.0F);
+  Floats above_leaf[3] = {zero, zero, zero};
+  Floats above_placed[3] = {zero, zero, zero};
+  Floats leaf_bound = leaf.doubt;
+  Floats placed_bound(placed.thickness[j]);
   for (int axis = 0; axis < 3; ++axis) {
-    const Single16 origin = leaf.corners.at[0][axis];
-    const Single16 other_origin(placed.corner[0][axis][j]);
-    const Single16 normal(placed.normal[axis][j]);
+    const Floats origin = leaf.corners.at[0][axis];
+    const Floats other_origin(placed.corner[0][axis][j]);
+    const Floats normal(placed.normal[axis][j]);
     for (int k = 0; k < 3; ++k) {
-      above_leaf[k] += leaf.normal[axis] * (Single16(placed.corner[k][axis][j]) - origin);
+      above_leaf[k] += leaf.normal[axis] * (Floats(placed.corner[k][axis][j]) - origin);
       above_placed[k] += normal * (leaf.corners.at[k][axis] - other_origin);
     }
-    leaf_bound += leaf.size[axis] * Single16(placed.doubt[axis][j]) +
-                  abs(leaf.normal[axis]) * Single16(job.scaled_slack[axis]);
-    const Single16 extent = real_of(leaf.box.high[axis]) - real_of(leaf.box.low[axis]);
-    placed_bound += Single16(placed.wobble[axis][j]) * (extent + Single16(placed.reach[axis][j]));
+    leaf_bound += leaf.size[axis] * Floats(placed.doubt[axis][j]) +
+                  abs(leaf.normal[axis]) * Floats(job.scaled_slack[axis]);
+    const Floats extent = leaf.box.high[axis] - leaf.box.low[axis];
+    placed_bound += Floats(placed.wobble[axis][j]) * (extent + Floats(placed.reach[axis][j]));
   }
   return boxes & ~bits(aside(above_leaf, leaf_bound) | aside(above_placed, placed_bound));
 }

@@ -1,6 +1,7 @@
 #include "pipeline/mesh/mesh_ball.wide.h"
 #include "pipeline/mesh/mesh_ordered.wide.h"
 #include "pipeline/mesh/mesh_pairs.wide.h"
+#include "simd/lanes/boxes.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {

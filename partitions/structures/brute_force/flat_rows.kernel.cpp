@@ -2,6 +2,8 @@
 #include "partitions/pairs/hits.wide.h"
 #include "partitions/pairs/volume_tests.wide.h"
 #include "partitions/tree/tree_walk.wide.h"
+#include "simd/lanes/boxes.h"
+#include "simd/lanes/compress.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -41,8 +43,8 @@ struct SlabTest {
   static Block load(const RowView& rows, std::size_t row) {
     Block block;
     for (int s = 0; s < Slabs; ++s) {
-      block.low[s] = WINNOW_ISA_NAME::load(rows.column[low_end(s)] + row);
-      block.high[s] = WINNOW_ISA_NAME::load(rows.column[high_end(s)] + row);
+      block.low[s] = Floats::load(rows.column[low_end(s)] + row);
+      block.high[s] = Floats::load(rows.column[high_end(s)] + row);
     }
     return block;
   }
@@ -77,8 +79,8 @@ struct SlabTest {
 /// Spheres.
 struct SphereTest {
   struct Block {
-    Float16 center[3];
-    Float16 radius;
+    Floats center[3];
+    Floats radius;
   };
   struct Query {
     float low[3];  // of a box; a sphere has low == high == centre
@@ -88,9 +90,9 @@ struct SphereTest {
   static Block load(const RowView& rows, std::size_t row) {
     Block b;
     for (int axis = 0; axis < 3; ++axis) {
-      b.center[axis] = WINNOW_ISA_NAME::load(rows.column[kBallCenter + axis] + row);
+      b.center[axis] = Floats::load(rows.column[kBallCenter + axis] + row);
     }
-    b.radius = WINNOW_ISA_NAME::load(rows.column[kBallRadius] + row);
+    b.radius = Floats::load(rows.column[kBallRadius] + row);
     return b;
   }
   static Query own(const RowView& rows, std::size_t r) { return ball(rows.column, r); }
@@ -144,7 +146,7 @@ bool block_pair(const FlatView& view, std::uint32_t a, std::uint32_t b, PairSink
   const std::uint32_t rows =
       view.row_count - first_row < kLanes ? view.row_count - first_row : kLanes;
   const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
-  const Uint16 ids = load_unaligned(view.rows.id + std::size_t{b} * kLanes);
+  const Uints ids = Uints::load_unaligned(view.rows.id + std::size_t{b} * kLanes);
   FilterRange b_range{};
   if constexpr (Filtered) b_range = range_of(view.blocks.filters[0], b);
   std::uint32_t left_out = 0;

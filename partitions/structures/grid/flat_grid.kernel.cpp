@@ -143,7 +143,7 @@ std::uint32_t find_misfits(const GridView& grid, std::uint32_t begin, std::uint3
     const std::uint32_t wide =
         write_misfits(grid.rows, start[0], start[cells], line_out, [&](std::size_t row) {
           return mid.kept(row) & slow.kept(row) &
-                 along.short_enough(load_unaligned(along.low + row), row);
+                 along.short_enough(Floats::load_unaligned(along.low + row), row);
         });
     found += left_along_line(grid, start, line_out, wide);
   }

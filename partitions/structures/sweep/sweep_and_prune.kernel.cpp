@@ -19,10 +19,10 @@ struct KeyStop {
 /// step: mostly one step is enough, and then it costs no branch.
 inline std::uint32_t skip_below(const StripView& strips, std::uint32_t at, std::uint32_t end,
                                 float x) {
-  const Float16 bound = broadcast(x);
-  const Float16 drift = broadcast(strips.drift);
+  const Floats bound = Floats(x);
+  const Floats drift = Floats(strips.drift);
   while (at < end) {
-    const Mask16 reaching = less_equal(bound, add(load_unaligned(strips.key + at), drift));
+    const Mask16 reaching = bits(bound <= Floats::load_unaligned(strips.key + at) + drift);
     const unsigned below = reaching == 0 ? static_cast<unsigned>(kLanes) : first(reaching);
     at = end - at < below ? end : at + below;
     if (below < kLanes) break;
@@ -141,7 +141,7 @@ bool query(const StripView& strips, const QueryBatch& batch, PairSink& sink) {
 
 std::uint32_t find_misfits(const StripView& strips, std::uint32_t begin, std::uint32_t end,
                            std::uint32_t* out) {
-  const Float16 drift = broadcast(strips.drift);
+  const Floats drift = Floats(strips.drift);
   const AxisBounds swept(strips.rows, strips.axis[0], 0);
   std::uint32_t found = 0;
   for (std::uint32_t strip = begin; strip < end; ++strip) {
@@ -149,11 +149,10 @@ std::uint32_t find_misfits(const StripView& strips, std::uint32_t begin, std::ui
     const AxisBounds slow(strips.rows, strips.axis[2], strip / strips.axis[1].count);
     found += write_misfits(strips.rows, strips.start[strip], strips.start[strip + 1], out + found,
                            [&](std::size_t row) {
-                             const Float16 key = load_unaligned(strips.key + row);
-                             const Float16 x = load_unaligned(swept.low + row);
-                             return less_equal(subtract(key, drift), x) &
-                                    less_equal(x, add(key, drift)) & swept.short_enough(x, row) &
-                                    mid.kept(row) & slow.kept(row);
+                             const Floats key = Floats::load_unaligned(strips.key + row);
+                             const Floats x = Floats::load_unaligned(swept.low + row);
+                             return bits(key - drift <= x) & bits(x <= key + drift) &
+                                    swept.short_enough(x, row) & mid.kept(row) & slow.kept(row);
                            });
   }
   return found;

@@ -9,17 +9,17 @@ namespace winnow::WINNOW_ISA_NAME {
 
 template <typename T>
 struct BoxPair {
-  Real<T> half_a[3];
-  Real<T> half_b[3];
+  Lanes<T> half_a[3];
+  Lanes<T> half_b[3];
   /// Axis j of b is the column turn[0..2][j].
-  Real<T> turn[3][3];
+  Lanes<T> turn[3][3];
   /// Center of b, along the axes of a and along those of b.
-  Real<T> center[3];
-  Real<T> center_b[3];
-  Real<T> rounding_a;
-  Real<T> rounding_b;
+  Lanes<T> center[3];
+  Lanes<T> center_b[3];
+  Lanes<T> rounding_a;
+  Lanes<T> rounding_b;
   /// The sum of all lengths.
-  Real<T> scale;
+  Lanes<T> scale;
   Vec3<T> offset;
   Rotation<T> frame_a;
   Rotation<T> frame_b;
@@ -53,39 +53,39 @@ struct BoxPair {
     scale = abs(c.x) + abs(c.y) + abs(c.z) + half_a[0] + half_a[1] + half_a[2] + half_b[0] +
             half_b[1] + half_b[2] + rounding_a + rounding_b;
     // Not a number for a bad orientation of b either.
-    scale += turn[0][0] * Real<T>(T(0));
+    scale += turn[0][0] * Lanes<T>(T(0));
   }
 
-  [[gnu::always_inline]] Real<T> face_a(int i) const {
+  [[gnu::always_inline]] Lanes<T> face_a(int i) const {
     return abs(center[i]) - half_a[i] -
            (abs(turn[i][0]) * half_b[0] + abs(turn[i][1]) * half_b[1] +
             abs(turn[i][2]) * half_b[2]);
   }
-  [[gnu::always_inline]] Real<T> face_b(int j) const {
+  [[gnu::always_inline]] Lanes<T> face_b(int j) const {
     return abs(center_b[j]) - half_b[j] -
            (abs(turn[0][j]) * half_a[0] + abs(turn[1][j]) * half_a[1] +
             abs(turn[2][j]) * half_a[2]);
   }
   /// Along the product of two axes, which is shorter than 1.
-  [[gnu::always_inline]] Real<T> edges(int i, int j) const {
+  [[gnu::always_inline]] Lanes<T> edges(int i, int j) const {
     const int k = (i + 1) % 3;
     const int l = (i + 2) % 3;
     const int m = (j + 1) % 3;
     const int n = (j + 2) % 3;
-    const Real<T> apart = abs(turn[k][j] * center[l] - turn[l][j] * center[k]);
-    const Real<T> reach_a = half_a[k] * abs(turn[l][j]) + half_a[l] * abs(turn[k][j]);
-    const Real<T> reach_b = half_b[m] * abs(turn[i][n]) + half_b[n] * abs(turn[i][m]);
+    const Lanes<T> apart = abs(turn[k][j] * center[l] - turn[l][j] * center[k]);
+    const Lanes<T> reach_a = half_a[k] * abs(turn[l][j]) + half_a[l] * abs(turn[k][j]);
+    const Lanes<T> reach_b = half_b[m] * abs(turn[i][n]) + half_b[n] * abs(turn[i][m]);
     return apart - (reach_a + reach_b);
   }
   /// Along any unit vector from a to b, in the frame of a.
-  [[gnu::always_inline]] Real<T> along(const Real<T> (&n)[3]) const {
-    Real<T> reach = abs(n[0]) * half_a[0] + abs(n[1]) * half_a[1] + abs(n[2]) * half_a[2];
+  [[gnu::always_inline]] Lanes<T> along(const Lanes<T> (&n)[3]) const {
+    Lanes<T> reach = abs(n[0]) * half_a[0] + abs(n[1]) * half_a[1] + abs(n[2]) * half_a[2];
     for (int j = 0; j < 3; ++j) {
       reach += abs(n[0] * turn[0][j] + n[1] * turn[1][j] + n[2] * turn[2][j]) * half_b[j];
     }
     return n[0] * center[0] + n[1] * center[1] + n[2] * center[2] - reach;
   }
-  [[gnu::always_inline]] Vec3<T> to_world(const Real<T> (&v)[3]) const {
+  [[gnu::always_inline]] Vec3<T> to_world(const Lanes<T> (&v)[3]) const {
     return frame_a.to_world({v[0], v[1], v[2]});
   }
 };
@@ -94,58 +94,58 @@ struct BoxPair {
 template <typename T>
 struct BoxAxis {
   /// Unit, from a to b, in the frame of a.
-  Real<T> normal[3];
-  Real<T> separation;
+  Lanes<T> normal[3];
+  Lanes<T> separation;
   /// No unit vector separates more.
-  Real<T> most;
-  Real<T> index;
+  Lanes<T> most;
+  Lanes<T> index;
   /// Square of the length of a product of edges.
-  Real<T> length2;
+  Lanes<T> length2;
 };
 
 /// The largest separation along the fifteen axes, unscaled: enough for a verdict where no edges
 /// are parallel.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> largest_face_separation(const BoxPair<T>& pair) {
-  Real<T> s = max(pair.face_a(0), pair.face_b(0));
+[[gnu::always_inline]] inline Lanes<T> largest_face_separation(const BoxPair<T>& pair) {
+  Lanes<T> s = max(pair.face_a(0), pair.face_b(0));
   for (int i = 1; i < 3; ++i) s = max(s, max(pair.face_a(i), pair.face_b(i)));
   return s;
 }
 template <typename T>
-[[gnu::always_inline]] inline Real<T> largest_edge_separation(const BoxPair<T>& pair) {
-  Real<T> s = pair.edges(0, 0);
+[[gnu::always_inline]] inline Lanes<T> largest_edge_separation(const BoxPair<T>& pair) {
+  Lanes<T> s = pair.edges(0, 0);
   for (int k = 1; k < 9; ++k) s = max(s, pair.edges(k / 3, k % 3));
   return s;
 }
 
 /// The axis of a number, of any sign.
 template <typename T>
-[[gnu::always_inline]] inline void axis_of(const BoxPair<T>& pair, const Real<T>& index,
-                                           Real<T> (&axis)[3]) {
-  const Real<T> zero(T(0));
-  const Real<T> one(T(1));
-  const Truth<T> face_of_a = index < Real<T>(T(2.5));
-  const Truth<T> product = index > Real<T>(T(5.5));
-  const Real<T> k = select(product, index - Real<T>(T(6)), index);
+[[gnu::always_inline]] inline void axis_of(const BoxPair<T>& pair, const Lanes<T>& index,
+                                           Lanes<T> (&axis)[3]) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
+  const LaneMask<T> face_of_a = index < Lanes<T>(T(2.5));
+  const LaneMask<T> product = index > Lanes<T>(T(5.5));
+  const Lanes<T> k = select(product, index - Lanes<T>(T(6)), index);
   // Row i of a product, or the face of a; column j.
-  const Truth<T> past_two = k > Real<T>(T(2.5));
-  const Truth<T> past_five = k > Real<T>(T(5.5));
-  const Real<T> three = select(past_five, Real<T>(T(6)), select(past_two, Real<T>(T(3)), zero));
-  const Real<T> j = k - three;
-  const Truth<T> j1 = j > Real<T>(T(0.5));
-  const Truth<T> j2 = j > Real<T>(T(1.5));
-  Real<T> b[3];
+  const LaneMask<T> past_two = k > Lanes<T>(T(2.5));
+  const LaneMask<T> past_five = k > Lanes<T>(T(5.5));
+  const Lanes<T> three = select(past_five, Lanes<T>(T(6)), select(past_two, Lanes<T>(T(3)), zero));
+  const Lanes<T> j = k - three;
+  const LaneMask<T> j1 = j > Lanes<T>(T(0.5));
+  const LaneMask<T> j2 = j > Lanes<T>(T(1.5));
+  Lanes<T> b[3];
   for (int r = 0; r < 3; ++r) {
     b[r] = select(j2, pair.turn[r][2], select(j1, pair.turn[r][1], pair.turn[r][0]));
   }
   // Axis i of a times b: two of b's numbers, one of them negated.
-  const Truth<T> i0 = !past_two;
-  const Truth<T> i2 = past_five;
-  const Real<T> cross[3] = {select(i0, zero, select(i2, -b[1], b[2])),
-                            select(i0, -b[2], select(i2, b[0], zero)),
-                            select(i0, b[1], select(i2, zero, -b[0]))};
-  const Real<T> unit[3] = {select(j1, zero, one), select(j2, zero, select(j1, one, zero)),
-                           select(j2, one, zero)};
+  const LaneMask<T> i0 = !past_two;
+  const LaneMask<T> i2 = past_five;
+  const Lanes<T> cross[3] = {select(i0, zero, select(i2, -b[1], b[2])),
+                             select(i0, -b[2], select(i2, b[0], zero)),
+                             select(i0, b[1], select(i2, zero, -b[0]))};
+  const Lanes<T> unit[3] = {select(j1, zero, one), select(j2, zero, select(j1, one, zero)),
+                            select(j2, one, zero)};
   for (int r = 0; r < 3; ++r) {
     axis[r] = select(face_of_a, unit[r], select(product, cross[r], b[r]));
   }
@@ -156,18 +156,18 @@ template <typename T>
 /// edges, the boxes are a rectangle and a parallelogram but for that, and the sides' normals are
 /// among the axes. Returns the largest reach left out.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> offer_edges(const BoxPair<T>& pair, const Real<T>& slack,
-                                                  BestAxis<T>& best) {
-  Real<T> square[3][3];
+[[gnu::always_inline]] inline Lanes<T> offer_edges(const BoxPair<T>& pair, const Lanes<T>& slack,
+                                                   BestAxis<T>& best) {
+  Lanes<T> square[3][3];
   for (int k = 0; k < 9; ++k)
     square[k / 3][k % 3] = pair.turn[k / 3][k % 3] * pair.turn[k / 3][k % 3];
-  Real<T> least = square[1][0] + square[2][0];
+  Lanes<T> least = square[1][0] + square[2][0];
   for (int k = 1; k < 9; ++k) {
     const int i = k / 3;
     least = min(least, square[(i + 1) % 3][k % 3] + square[(i + 2) % 3][k % 3]);
   }
-  const Real<T> parallel(kParallelSquare<T>);
-  Real<T> left_out(T(0));
+  const Lanes<T> parallel(kParallelSquare<T>);
+  Lanes<T> left_out(T(0));
   if (bits(least > parallel) == kAllLanes<T>) {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
@@ -179,13 +179,13 @@ template <typename T>
   }
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      const Real<T> length2 = square[(i + 1) % 3][j] + square[(i + 2) % 3][j];
-      const Truth<T> crossed = length2 > parallel;
-      const Real<T> reach =
+      const Lanes<T> length2 = square[(i + 1) % 3][j] + square[(i + 2) % 3][j];
+      const LaneMask<T> crossed = length2 > parallel;
+      const Lanes<T> reach =
           pair.half_b[j] * (abs(pair.turn[(i + 1) % 3][j]) + abs(pair.turn[(i + 2) % 3][j]));
-      left_out = max(left_out, select(crossed, Real<T>(T(0)), reach));
+      left_out = max(left_out, select(crossed, Lanes<T>(T(0)), reach));
       best.offer(select(crossed, pair.edges(i, j) + slack, -pair.scale),
-                 select(crossed, length2, Real<T>(T(1))), 6 + 3 * i + j);
+                 select(crossed, length2, Lanes<T>(T(1))), 6 + 3 * i + j);
     }
   }
   return left_out;
@@ -193,23 +193,23 @@ template <typename T>
 
 template <typename T>
 [[gnu::always_inline]] inline BoxAxis<T> best_axis(const BoxPair<T>& pair) {
-  const Real<T> slack = pair.scale * Real<T>(kSlack<T>);
-  BestFace<T> face{pair.face_a(0), Real<T>(T(0))};
+  const Lanes<T> slack = pair.scale * Lanes<T>(kSlack<T>);
+  BestFace<T> face{pair.face_a(0), Lanes<T>(T(0))};
   for (int i = 1; i < 3; ++i) face.offer(pair.face_a(i), i);
   for (int j = 0; j < 3; ++j) face.offer(pair.face_b(j), 3 + j);
   face.separation += slack;
   BestAxis<T> best = face.as_axis();
-  const Real<T> left_out = offer_edges(pair, slack, best);
+  const Lanes<T> left_out = offer_edges(pair, slack, best);
 
   BoxAxis<T> r;
   r.index = best.index;
   r.length2 = best.length2;
   r.most = best.separation() + left_out;
-  Real<T> axis[3];
+  Lanes<T> axis[3];
   axis_of(pair, best.index, axis);
-  const Real<T> apart =
+  const Lanes<T> apart =
       axis[0] * pair.center[0] + axis[1] * pair.center[1] + axis[2] * pair.center[2];
-  const Real<T> shrink = sign_or_one(apart) / sqrt(best.length2);
+  const Lanes<T> shrink = sign_or_one(apart) / sqrt(best.length2);
   for (int k = 0; k < 3; ++k) r.normal[k] = axis[k] * shrink;
   r.separation = pair.along(r.normal);
   return r;

@@ -41,8 +41,8 @@ struct BoxTriangle {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& given) {
     if constexpr (L == kBoolean) return overlap<T>(job, given);
-    alignas(64) T sign[Real<T>::kRealLanes];
-    Real<T>(T(1)).store(sign);
+    alignas(64) T sign[Lanes<T>::kCount];
+    Lanes<T>(T(1)).store(sign);
     const BoxTrianglePair<T> pair(job, given);
     return answer_flat<L, BoxTriangleStage<T>>(job, given, pair, sign);
   }
@@ -50,16 +50,16 @@ struct BoxTriangle {
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const BoxTrianglePair<T> pair(job, block);
-    const Real<T> slack = pair.scale * Real<T>(kSlack<T>);
+    const Lanes<T> slack = pair.scale * Lanes<T>(kSlack<T>);
     const Mask16 valid = bits(in_range(pair.scale * pair.scale));
-    const Real<T> reach = slack + pair.box_rounding + pair.b.rounding;
-    const Real<T> face = max(pair.face(0), max(pair.face(1), pair.face(2)));
-    const Real<T> above = pair.over_triangle();
-    Truth<T> apart = (face > reach) | (above > reach * pair.b.area);
-    Truth<T> over = (face < -slack) & (above < -(slack * pair.b.area));
+    const Lanes<T> reach = slack + pair.box_rounding + pair.b.rounding;
+    const Lanes<T> face = max(pair.face(0), max(pair.face(1), pair.face(2)));
+    const Lanes<T> above = pair.over_triangle();
+    LaneMask<T> apart = (face > reach) | (above > reach * pair.b.area);
+    LaneMask<T> over = (face < -slack) & (above < -(slack * pair.b.area));
     if ((bits(apart) & valid) != kAllLanes<T>) {
       for_products(
-          pair, [&](int, int j, const Real<T>&, const Real<T>& s) __attribute__((always_inline)) {
+          pair, [&](int, int j, const Lanes<T>&, const Lanes<T>& s) __attribute__((always_inline)) {
             apart = apart | (s > reach * pair.b.length[j]);
             over = over & (s < -(slack * pair.b.length[j]));
           });

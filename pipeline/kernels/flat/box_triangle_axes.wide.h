@@ -12,7 +12,7 @@ namespace winnow::WINNOW_ISA_NAME {
 /// The numbers of a vector in a loop.
 template <typename T>
 struct Numbers {
-  Real<T> at[3];
+  Lanes<T> at[3];
 
   [[gnu::always_inline]] explicit Numbers(const Vec3<T>& v) : at{v.x, v.y, v.z} {}
 };
@@ -24,8 +24,8 @@ struct BoxTrianglePair {
   Rotation<T> frame;
   /// In the axes of the world.
   Vec3<T> offset;
-  Real<T> box_rounding;
-  Real<T> scale;
+  Lanes<T> box_rounding;
+  Lanes<T> scale;
 
   [[gnu::always_inline]] BoxTrianglePair(const NarrowJob& job, const PairBlock<T>& block) {
     offset = load_offset(job, block);
@@ -40,28 +40,28 @@ struct BoxTrianglePair {
     b.move(frame.to_local(offset));
   }
 
-  [[gnu::always_inline]] Real<T> rounding_a() const { return box_rounding; }
-  [[gnu::always_inline]] Real<T> rounding_b() const { return b.rounding; }
+  [[gnu::always_inline]] Lanes<T> rounding_a() const { return box_rounding; }
+  [[gnu::always_inline]] Lanes<T> rounding_b() const { return b.rounding; }
   [[gnu::always_inline]] Vec3<T> to_world(const Vec3<T>& v) const { return frame.to_world(v); }
   /// How far the box reaches along a vector.
-  [[gnu::always_inline]] Real<T> reach(const Vec3<T>& n) const {
+  [[gnu::always_inline]] Lanes<T> reach(const Vec3<T>& n) const {
     return abs(n.x) * half.x + abs(n.y) * half.y + abs(n.z) * half.z;
   }
   /// Separation along a unit vector from the box to the triangle.
-  [[gnu::always_inline]] Real<T> along(const Vec3<T>& n) const {
-    Real<T> low;
-    Real<T> high;
+  [[gnu::always_inline]] Lanes<T> along(const Vec3<T>& n) const {
+    Lanes<T> low;
+    Lanes<T> high;
     b.span(n, low, high);
     return low - reach(n);
   }
-  [[gnu::always_inline]] Real<T> face(int i) const {
+  [[gnu::always_inline]] Lanes<T> face(int i) const {
     const Numbers<T> v[3] = {Numbers<T>(b.vertex[0]), Numbers<T>(b.vertex[1]),
                              Numbers<T>(b.vertex[2])};
-    const Real<T> low = min(v[0].at[i], min(v[1].at[i], v[2].at[i]));
-    const Real<T> high = max(v[0].at[i], max(v[1].at[i], v[2].at[i]));
+    const Lanes<T> low = min(v[0].at[i], min(v[1].at[i], v[2].at[i]));
+    const Lanes<T> high = max(v[0].at[i], max(v[1].at[i], v[2].at[i]));
     return max(low, -high) - Numbers<T>(half).at[i];
   }
-  [[gnu::always_inline]] Real<T> over_triangle() const {
+  [[gnu::always_inline]] Lanes<T> over_triangle() const {
     return abs(dot(b.normal, b.vertex[0])) - reach(b.normal);
   }
 };
@@ -71,19 +71,20 @@ struct BoxTrianglePair {
 /// third is off it by a number of the normal.
 template <typename T, typename Body>
 [[gnu::always_inline]] inline void for_products(const BoxTrianglePair<T>& pair, Body&& body) {
-  const Real<T> zero(T(0));
+  const Lanes<T> zero(T(0));
   const Numbers<T> normal(pair.b.normal);
   const Numbers<T> h(pair.half);
   for (int i = 0; i < 3; ++i) {
     const int k = (i + 1) % 3;
     const int l = (i + 2) % 3;
-    const Real<T> low = min(normal.at[i], zero);
-    const Real<T> high = max(normal.at[i], zero);
+    const Lanes<T> low = min(normal.at[i], zero);
+    const Lanes<T> high = max(normal.at[i], zero);
     for (int j = 0; j < 3; ++j) {
       const Numbers<T> f(pair.b.edge[j]);
       const Numbers<T> q(pair.b.vertex[j]);
-      const Real<T> t = f.at[k] * q.at[l] - f.at[l] * q.at[k];
-      const Real<T> s = max(t + low, -t - high) - (h.at[k] * abs(f.at[l]) + h.at[l] * abs(f.at[k]));
+      const Lanes<T> t = f.at[k] * q.at[l] - f.at[l] * q.at[k];
+      const Lanes<T> s =
+          max(t + low, -t - high) - (h.at[k] * abs(f.at[l]) + h.at[l] * abs(f.at[k]));
       body(i, j, f.at[k] * f.at[k] + f.at[l] * f.at[l], s);
     }
   }
@@ -94,13 +95,13 @@ template <typename T>
 struct BoxTriangleAxis {
   /// Unit, from the box to the triangle.
   Vec3<T> normal;
-  Real<T> separation;
+  Lanes<T> separation;
   /// No unit vector separates more.
-  Real<T> most;
-  Real<T> index;
+  Lanes<T> most;
+  Lanes<T> index;
   /// Square of the length of the axis; for products the axis of the box, and the edge and where it
   /// begins.
-  Real<T> length2;
+  Lanes<T> length2;
   Vec3<T> axis;
   Vec3<T> edge;
   Vec3<T> start;
@@ -109,15 +110,15 @@ struct BoxTriangleAxis {
 template <typename T>
 [[gnu::always_inline]] inline void find_edges(const BoxTrianglePair<T>& pair,
                                               BoxTriangleAxis<T>& r) {
-  const Real<T> zero(T(0));
-  const Real<T> one(T(1));
-  const Truth<T> face = r.index < Real<T>(T(2.5));
-  const Real<T> k = select(face, r.index * Real<T>(T(3)), r.index - Real<T>(T(4)));
-  const Truth<T> i0 = k < Real<T>(T(2.5));
-  const Truth<T> i1 = k < Real<T>(T(5.5));
-  const Real<T> j = k - select(i0, zero, select(i1, Real<T>(T(3)), Real<T>(T(6))));
-  const Truth<T> j0 = j < Real<T>(T(0.5));
-  const Truth<T> j1 = j < Real<T>(T(1.5));
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
+  const LaneMask<T> face = r.index < Lanes<T>(T(2.5));
+  const Lanes<T> k = select(face, r.index * Lanes<T>(T(3)), r.index - Lanes<T>(T(4)));
+  const LaneMask<T> i0 = k < Lanes<T>(T(2.5));
+  const LaneMask<T> i1 = k < Lanes<T>(T(5.5));
+  const Lanes<T> j = k - select(i0, zero, select(i1, Lanes<T>(T(3)), Lanes<T>(T(6))));
+  const LaneMask<T> j0 = j < Lanes<T>(T(0.5));
+  const LaneMask<T> j1 = j < Lanes<T>(T(1.5));
   r.axis = {select(i0, one, zero), select(i0, zero, select(i1, one, zero)), select(i1, zero, one)};
   r.edge = pick(j0, j1, pair.b.edge);
   r.start = pick(j0, j1, pair.b.vertex);
@@ -125,19 +126,19 @@ template <typename T>
 
 template <typename T>
 [[gnu::always_inline]] inline BoxTriangleAxis<T> best_axis(const BoxTrianglePair<T>& pair) {
-  const Real<T> slack = pair.scale * Real<T>(kSlack<T>);
-  const Real<T> one(T(1));
-  BestFace<T> face{pair.face(0), Real<T>(T(0))};
+  const Lanes<T> slack = pair.scale * Lanes<T>(kSlack<T>);
+  const Lanes<T> one(T(1));
+  BestFace<T> face{pair.face(0), Lanes<T>(T(0))};
   face.offer(pair.face(1), 1);
   face.offer(pair.face(2), 2);
   face.separation += slack;
   BestAxis<T> best = face.as_axis();
-  Real<T> left_out(T(0));
+  Lanes<T> left_out(T(0));
   offer_product(best, left_out, dot(pair.b.normal, pair.b.normal), pair.over_triangle(),
                 pair.b.area, slack, pair.b.longest(), 3);
   for_products(
-      pair, [&](int i, int j, const Real<T>& length2,
-                const Real<T>& s) __attribute__((always_inline)) {
+      pair, [&](int i, int j, const Lanes<T>& length2,
+                const Lanes<T>& s) __attribute__((always_inline)) {
         offer_product(best, left_out, length2, s, pair.b.length[j], slack, one, 4 + 3 * i + j);
       });
   BoxTriangleAxis<T> r;
@@ -145,15 +146,15 @@ template <typename T>
   r.length2 = best.length2;
   r.most = best.separation() + left_out;
   find_edges(pair, r);
-  const Truth<T> of_triangle = (r.index > Real<T>(T(2.5))) & (r.index < Real<T>(T(3.5)));
-  const Vec3<T> axis = select(r.index < Real<T>(T(2.5)), r.axis,
+  const LaneMask<T> of_triangle = (r.index > Lanes<T>(T(2.5))) & (r.index < Lanes<T>(T(3.5)));
+  const Vec3<T> axis = select(r.index < Lanes<T>(T(2.5)), r.axis,
                               select(of_triangle, pair.b.normal, cross(r.axis, r.edge)));
   const Vec3<T> n = axis * (one / sqrt(best.length2));
-  Real<T> low;
-  Real<T> high;
+  Lanes<T> low;
+  Lanes<T> high;
   pair.b.span(n, low, high);
-  const Real<T> reach = pair.reach(n);
-  const Truth<T> ahead = low >= -high;
+  const Lanes<T> reach = pair.reach(n);
+  const LaneMask<T> ahead = low >= -high;
   r.separation = select(ahead, low, -high) - reach;
   r.normal = select(ahead, n, -n);
   return r;

@@ -13,7 +13,7 @@ namespace winnow::WINNOW_ISA_NAME {
 
 /// The sum of the magnitudes.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> taxicab_of(const Vec3<T>& v) {
+[[gnu::always_inline]] inline Lanes<T> taxicab_of(const Vec3<T>& v) {
   return abs(v.x) + abs(v.y) + abs(v.z);
 }
 
@@ -41,19 +41,19 @@ inline constexpr T kParallelSquare = sizeof(T) == sizeof(double) ? T(1e-26) : T(
 /// the axis' length.
 template <typename T>
 struct BestAxis {
-  Real<T> square;
-  Real<T> length2;
-  Real<T> index;
+  Lanes<T> square;
+  Lanes<T> length2;
+  Lanes<T> index;
 
-  [[gnu::always_inline]] void offer(const Real<T>& separation, const Real<T>& axis_length2,
+  [[gnu::always_inline]] void offer(const Lanes<T>& separation, const Lanes<T>& axis_length2,
                                     int axis_index) {
-    const Real<T> s = separation * abs(separation);
-    const Truth<T> better = s * length2 > square * axis_length2;
+    const Lanes<T> s = separation * abs(separation);
+    const LaneMask<T> better = s * length2 > square * axis_length2;
     square = select(better, s, square);
     length2 = select(better, axis_length2, length2);
-    index = select(better, Real<T>(T(axis_index)), index);
+    index = select(better, Lanes<T>(T(axis_index)), index);
   }
-  [[gnu::always_inline]] Real<T> separation() const {
+  [[gnu::always_inline]] Lanes<T> separation() const {
     return sign_or_one(square) * sqrt(abs(square) / length2);
   }
 };
@@ -61,16 +61,16 @@ struct BestAxis {
 /// The largest of separations along unit vectors, and which.
 template <typename T>
 struct BestFace {
-  Real<T> separation;
-  Real<T> index;
+  Lanes<T> separation;
+  Lanes<T> index;
 
-  [[gnu::always_inline]] void offer(const Real<T>& s, int axis_index) {
-    const Truth<T> better = s > separation;
+  [[gnu::always_inline]] void offer(const Lanes<T>& s, int axis_index) {
+    const LaneMask<T> better = s > separation;
     separation = select(better, s, separation);
-    index = select(better, Real<T>(T(axis_index)), index);
+    index = select(better, Lanes<T>(T(axis_index)), index);
   }
   [[gnu::always_inline]] BestAxis<T> as_axis() const {
-    return {separation * abs(separation), Real<T>(T(1)), index};
+    return {separation * abs(separation), Lanes<T>(T(1)), index};
   }
 };
 
@@ -78,21 +78,22 @@ struct BestFace {
 /// out if they are parallel; what that costs is no more than the product over the longer factor:
 /// seen along it, the other is as short as that.
 template <typename T>
-[[gnu::always_inline]] inline void offer_product(BestAxis<T>& best, Real<T>& left_out,
-                                                 const Real<T>& length2, const Real<T>& separation,
-                                                 const Real<T>& size, const Real<T>& slack,
-                                                 const Real<T>& longer, int index) {
-  const Truth<T> crossed = length2 > size * size * Real<T>(kParallelSquare<T>);
+[[gnu::always_inline]] inline void offer_product(BestAxis<T>& best, Lanes<T>& left_out,
+                                                 const Lanes<T>& length2,
+                                                 const Lanes<T>& separation, const Lanes<T>& size,
+                                                 const Lanes<T>& slack, const Lanes<T>& longer,
+                                                 int index) {
+  const LaneMask<T> crossed = length2 > size * size * Lanes<T>(kParallelSquare<T>);
   if (bits(crossed) == kAllLanes<T>) {
     best.offer(separation + size * slack, length2, index);
     return;
   }
-  const Real<T> zero(T(0));
-  const Real<T> one(T(1));
-  const Real<T> lost = select(longer > zero, Real<T>(T(2)) * sqrt(length2) / longer, zero);
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
+  const Lanes<T> lost = select(longer > zero, Lanes<T>(T(2)) * sqrt(length2) / longer, zero);
   left_out += select(crossed, zero, lost);
   // Worse than anything.
-  const Real<T> worst = slack * Real<T>(T(-3) / kSlack<T>);
+  const Lanes<T> worst = slack * Lanes<T>(T(-3) / kSlack<T>);
   best.offer(select(crossed, separation + size * slack, worst), select(crossed, length2, one),
              index);
 }
@@ -113,14 +114,14 @@ inline bool turn_concentric(const NarrowJob& job, const BodyPair& pair) {
 /// the offset that is not zero is positive. Answers are turned back.
 template <typename T>
 struct OrderedBlock {
-  BodyPair pairs[Real<T>::kRealLanes];
+  BodyPair pairs[Lanes<T>::kCount];
   /// -1 for pairs that were turned, else 1.
-  alignas(64) T sign[Real<T>::kRealLanes];
+  alignas(64) T sign[Lanes<T>::kCount];
   PairBlock<T> block;
 
   [[gnu::always_inline]] OrderedBlock(const NarrowJob& job, const PairBlock<T>& given)
       : block{pairs, given.first, given.count} {
-    for (int lane = 0; lane < Real<T>::kRealLanes; ++lane) {
+    for (int lane = 0; lane < Lanes<T>::kCount; ++lane) {
       const BodyPair pair = given.pairs[lane];
       const double* a = job.poses[pair.a].position;
       const double* b = job.poses[pair.b].position;
@@ -137,8 +138,8 @@ struct OrderedBlock {
 /// What a kernel has found out about the cores, in the axes of the world.
 template <typename T>
 struct CoreAnswer {
-  Real<T> distance;
-  Real<T> error_bound;
+  Lanes<T> distance;
+  Lanes<T> error_bound;
   Vec3<T> normal;
   /// On the core of a, relative to its position. Level distance only.
   Vec3<T> point;
@@ -146,32 +147,33 @@ struct CoreAnswer {
 
 /// The answer about the shapes from that about their cores; returns the lanes that are certified.
 template <typename T>
-[[gnu::always_inline]] inline Mask16 with_rounding(CoreAnswer<T>& answer, const Real<T>& rounding_a,
-                                                   const Real<T>& rounding_b,
-                                                   const Real<T>& scale) {
+[[gnu::always_inline]] inline Mask16 with_rounding(CoreAnswer<T>& answer,
+                                                   const Lanes<T>& rounding_a,
+                                                   const Lanes<T>& rounding_b,
+                                                   const Lanes<T>& scale) {
   answer.distance -= rounding_a + rounding_b;
   answer.point = answer.point + answer.normal * rounding_a;
-  const Truth<T> narrow = answer.error_bound <= scale * Real<T>(kWidestBound<T>);
-  const Truth<T> valid = in_range(scale * scale) & narrow;
+  const LaneMask<T> narrow = answer.error_bound <= scale * Lanes<T>(kWidestBound<T>);
+  const LaneMask<T> valid = in_range(scale * scale) & narrow;
   if constexpr (sizeof(T) == sizeof(double)) {
     return bits(valid & (abs(answer.distance) > answer.error_bound));
   }
   // Squares of products of edges must stay in range, also where one shape is 1e5 times smaller than
   // the other, and a normal that is not unit says nothing.
-  const Truth<T> moderate = (scale > Real<T>(T(4e-3F))) & (scale < Real<T>(T(1e4F)));
-  const Real<T> length2 = dot(answer.normal, answer.normal);
-  return bits(valid & moderate & (length2 > Real<T>(T(0.99F))) &
-              (abs(answer.distance) <= scale * Real<T>(T(4))));
+  const LaneMask<T> moderate = (scale > Lanes<T>(T(4e-3F))) & (scale < Lanes<T>(T(1e4F)));
+  const Lanes<T> length2 = dot(answer.normal, answer.normal);
+  return bits(valid & moderate & (length2 > Lanes<T>(T(0.99F))) &
+              (abs(answer.distance) <= scale * Lanes<T>(T(4))));
 }
 
 /// Turns answers back to the caller's order. `offset` is from a to b as the kernel had them.
 template <typename T>
 [[gnu::always_inline]] inline AnswerLanes<T> turned_back(const CoreAnswer<T>& answer,
                                                          const Vec3<T>& offset,
-                                                         const Real<T>& sign) {
+                                                         const Lanes<T>& sign) {
   const Vec3<T> on_b = answer.point + answer.normal * answer.distance - offset;
   return {answer.distance, answer.error_bound, answer.normal * sign,
-          select(sign < Real<T>(T(0)), on_b, answer.point)};
+          select(sign < Lanes<T>(T(0)), on_b, answer.point)};
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME

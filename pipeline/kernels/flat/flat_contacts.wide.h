@@ -10,14 +10,14 @@ namespace winnow::WINNOW_ISA_NAME {
 /// Vectors and numbers of all lanes in memory, to be read one lane at a time.
 template <typename T, int Count>
 struct Stage {
-  alignas(64) T value[Count][Real<T>::kRealLanes];
+  alignas(64) T value[Count][Lanes<T>::kCount];
 
   [[gnu::always_inline]] void put(int at, const Vec3<T>& v) {
     v.x.store(value[at]);
     v.y.store(value[at + 1]);
     v.z.store(value[at + 2]);
   }
-  [[gnu::always_inline]] void put(int at, const Real<T>& v) { v.store(value[at]); }
+  [[gnu::always_inline]] void put(int at, const Lanes<T>& v) { v.store(value[at]); }
   [[gnu::always_inline]] void get(int at, int count, unsigned lane, double* out) const {
     for (int i = 0; i < count; ++i) out[i] = static_cast<double>(value[at + i][lane]);
   }
@@ -28,8 +28,7 @@ struct Stage {
 /// the caller has them the other way round.
 template <typename T, typename Meet>
 inline void write_patch_contacts(NarrowJob& job, const PairBlock<T>& block, Mask16 touching,
-                                 const T (*offset)[Real<T>::kRealLanes], const T* sign,
-                                 Meet&& meet) {
+                                 const T (*offset)[Lanes<T>::kCount], const T* sign, Meet&& meet) {
   ContactWriter& out = job.contacts;
   for (unsigned lane = 0; lane < block.count; ++lane) {
     job.contact_first[block.first + lane] = out.size;

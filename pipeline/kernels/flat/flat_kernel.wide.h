@@ -14,7 +14,7 @@ struct PointPair {
   Vec3<T> a;
   Vec3<T> b;
 
-  [[gnu::always_inline]] Real<T> square() const {
+  [[gnu::always_inline]] Lanes<T> square() const {
     const Vec3<T> d = b - a;
     return dot(d, d);
   }
@@ -25,14 +25,14 @@ template <typename T>
 inline constexpr T kDeepest = sizeof(T) == sizeof(double) ? T(1e-6) : T(1e-4F);
 
 template <typename T>
-[[gnu::always_inline]] inline Real<T> clamp_unit(const Real<T>& t) {
-  return max(min(t, Real<T>(T(1))), Real<T>(T(0)));
+[[gnu::always_inline]] inline Lanes<T> clamp_unit(const Lanes<T>& t) {
+  return max(min(t, Lanes<T>(T(1))), Lanes<T>(T(0)));
 }
 
 /// 1 / v; 0 for 0.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> inverse(const Real<T>& v) {
-  return select(v > Real<T>(T(0)), Real<T>(T(1)) / v, Real<T>(T(0)));
+[[gnu::always_inline]] inline Lanes<T> inverse(const Lanes<T>& v) {
+  return select(v > Lanes<T>(T(0)), Lanes<T>(T(1)) / v, Lanes<T>(T(0)));
 }
 
 /// What the best axis says: a vertex and its foot on a face, or a point of each of two edges.
@@ -41,9 +41,9 @@ struct AxisPoints {
   PointPair<T> points;
   /// The foot is inside of the face, or little outside where the triangles overlap; the edges
   /// cross.
-  Truth<T> meets;
+  LaneMask<T> meets;
   /// How far off the foot may be, as a multiple of the slack.
-  Real<T> doubt;
+  Lanes<T> doubt;
 };
 
 /// Puts the points of some lanes to where both shapes are.
@@ -62,8 +62,8 @@ inline void correct_points(const Pair& pair, CoreAnswer<T>& answer, Mask16 lanes
     deepest_point(a, b, normal, p);
     for (int r = 0; r < 3; ++r) point.value[r][lane] = static_cast<T>(p[r]);
   }
-  answer.point = {Real<T>::load(point.value[0]), Real<T>::load(point.value[1]),
-                  Real<T>::load(point.value[2])};
+  answer.point = {Lanes<T>::load(point.value[0]), Lanes<T>::load(point.value[1]),
+                  Lanes<T>::load(point.value[2])};
 }
 
 /// Answers about the cores of a block. Lanes that are apart get their distance if it is `wanted`,
@@ -71,36 +71,37 @@ inline void correct_points(const Pair& pair, CoreAnswer<T>& answer, Mask16 lanes
 /// above it the way between two points.
 template <int L, typename Staged, typename Pair, typename Axis, typename T>
 [[gnu::always_inline]] inline CoreAnswer<T> measure(const Pair& pair, const Axis& axis,
-                                                    const Truth<T>& wanted) {
-  const Real<T> slack = pair.scale * Real<T>(kSlack<T>);
-  const Truth<T> apart = axis.separation > Real<T>(T(0));
+                                                    const LaneMask<T>& wanted) {
+  const Lanes<T> slack = pair.scale * Lanes<T>(kSlack<T>);
+  const LaneMask<T> apart = axis.separation > Lanes<T>(T(0));
   CoreAnswer<T> answer;
   answer.distance = select(apart & !wanted, axis.separation - slack, axis.separation);
   answer.error_bound = abs(axis.most - axis.separation) + slack;
   answer.normal = axis.normal;
   answer.point = axis.normal;
-  const Truth<T> measured = apart & wanted;
+  const LaneMask<T> measured = apart & wanted;
   const bool any_measured = bits(measured) != 0;
   if (L == kDistance || any_measured) {
     const AxisPoints<T> by_axis = axis_points(pair, axis);
     answer.point = by_axis.points.a;
     if (any_measured) {
       PointPair<T> points = closest_by_vertices(pair);
-      const Truth<T> axis_is_closer = by_axis.meets & (by_axis.points.square() <= points.square());
+      const LaneMask<T> axis_is_closer =
+          by_axis.meets & (by_axis.points.square() <= points.square());
       points.a = select(axis_is_closer, by_axis.points.a, points.a);
       points.b = select(axis_is_closer, by_axis.points.b, points.b);
       const Vec3<T> d = points.b - points.a;
-      const Real<T> length = sqrt(dot(d, d));
-      const Vec3<T> n = d * (Real<T>(T(1)) / length);
-      const Real<T> lower = pair.along(n);
-      const Truth<T> better = lower > axis.separation;
-      const Real<T> least = select(better, lower, axis.separation);
-      const Real<T> gap = abs(length - least);
+      const Lanes<T> length = sqrt(dot(d, d));
+      const Vec3<T> n = d * (Lanes<T>(T(1)) / length);
+      const Lanes<T> lower = pair.along(n);
+      const LaneMask<T> better = lower > axis.separation;
+      const Lanes<T> least = select(better, lower, axis.separation);
+      const Lanes<T> gap = abs(length - least);
       // Points far from the closest ones, which float lanes answer with all the same: no contact
       // is lost.
-      const Real<T> distance = select(gap <= pair.scale * Real<T>(kWidestGap<T>), length, least);
+      const Lanes<T> distance = select(gap <= pair.scale * Lanes<T>(kWidestGap<T>), length, least);
       answer.distance = select(measured, distance, answer.distance);
-      const Real<T> doubt = slack + slack * select(axis_is_closer, by_axis.doubt, Real<T>(T(1)));
+      const Lanes<T> doubt = slack + slack * select(axis_is_closer, by_axis.doubt, Lanes<T>(T(1)));
       answer.error_bound = select(measured, gap + doubt, answer.error_bound);
       answer.normal = select(measured & better, n, answer.normal);
       answer.point = select(measured, points.a, answer.point);
@@ -123,22 +124,22 @@ template <int L, typename Staged, typename T, typename Pair>
 [[gnu::always_inline]] inline Mask16 answer_flat(NarrowJob& job, const PairBlock<T>& given,
                                                  const Pair& pair, const T* sign) {
   const auto axis = best_axis(pair);
-  const Real<T> margin(static_cast<T>(job.margin));
-  Truth<T> wanted = pair.scale == pair.scale;
+  const Lanes<T> margin(static_cast<T>(job.margin));
+  LaneMask<T> wanted = pair.scale == pair.scale;
   if constexpr (L == kManifold) {
     wanted = axis.separation <= margin + pair.rounding_a() + pair.rounding_b() +
-                                    pair.scale * Real<T>(T(2) * kSlack<T>);
+                                    pair.scale * Lanes<T>(T(2) * kSlack<T>);
   }
   CoreAnswer<T> core = measure<L, Staged>(pair, axis, wanted);
   const Mask16 certified = with_rounding(core, pair.rounding_a(), pair.rounding_b(), pair.scale);
-  write_answer<L>(job, given, turned_back(core, pair.offset, Real<T>::load(sign)));
+  write_answer<L>(job, given, turned_back(core, pair.offset, Lanes<T>::load(sign)));
   if constexpr (L == kManifold) {
     const Mask16 touching = certified & bits(core.distance <= margin);
     const Staged stage(pair, core.normal);
     // A patch that leaves out where the shapes are closest is no manifold.
     Stage<T, 2> expected;
     expected.put(0, core.distance);
-    expected.put(1, core.error_bound + pair.scale * Real<T>(kDeepest<T>));
+    expected.put(1, core.error_bound + pair.scale * Lanes<T>(kDeepest<T>));
     Mask16 missed = 0;
     write_patch_contacts<T>(job, given, touching, stage.offset(), sign,
                             [&](unsigned lane, ContactPoint* points) -> std::uint32_t {
@@ -162,17 +163,17 @@ template <int L, typename Staged, typename T, typename Pair>
 /// Level boolean: the pairs that `apart` and `over` leave open are measured.
 template <typename Staged, typename T, typename Pair>
 [[gnu::always_inline]] inline Mask16 answer_overlaps(NarrowJob& job, const PairBlock<T>& block,
-                                                     const Pair& pair, const Truth<T>& apart,
-                                                     const Truth<T>& over) {
+                                                     const Pair& pair, const LaneMask<T>& apart,
+                                                     const LaneMask<T>& over) {
   const Mask16 valid = bits(in_range(pair.scale * pair.scale));
   Mask16 hit = bits(over);
   Mask16 known = hit | bits(apart);
   const Mask16 unknown = ~known & valid & block.lanes();
   if (unknown != 0) {
-    const Truth<T> all = pair.scale == pair.scale;
+    const LaneMask<T> all = pair.scale == pair.scale;
     CoreAnswer<T> core = measure<kManifold, Staged>(pair, best_axis(pair), all);
     known |= with_rounding(core, pair.rounding_a(), pair.rounding_b(), pair.scale) & unknown;
-    hit |= bits(core.distance <= Real<T>(T(0))) & unknown;
+    hit |= bits(core.distance <= Lanes<T>(T(0))) & unknown;
   }
   write_overlap(job, block, hit);
   return ~(known & valid);

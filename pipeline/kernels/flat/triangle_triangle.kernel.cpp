@@ -46,18 +46,18 @@ struct TriangleTriangle {
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const TrianglePair<T> pair(job, block);
-    const Real<T> slack = pair.scale * Real<T>(kSlack<T>);
+    const Lanes<T> slack = pair.scale * Lanes<T>(kSlack<T>);
     const Mask16 valid = bits(in_range(pair.scale * pair.scale));
     // An axis is at most as long as the edges' product: what is above the slack and the roundings
     // times that is separated by more.
-    const Real<T> reach = slack + pair.a.rounding + pair.b.rounding;
-    const Real<T> over_a = pair.over_a();
-    const Real<T> over_b = pair.over_b();
-    Truth<T> apart = (over_a > reach * pair.a.area) | (over_b > reach * pair.b.area);
-    Truth<T> over = (over_a < -(slack * pair.a.area)) & (over_b < -(slack * pair.b.area));
+    const Lanes<T> reach = slack + pair.a.rounding + pair.b.rounding;
+    const Lanes<T> over_a = pair.over_a();
+    const Lanes<T> over_b = pair.over_b();
+    LaneMask<T> apart = (over_a > reach * pair.a.area) | (over_b > reach * pair.b.area);
+    LaneMask<T> over = (over_a < -(slack * pair.a.area)) & (over_b < -(slack * pair.b.area));
     if ((bits(apart) & valid) != kAllLanes<T>) {
       for_products(
-          pair, [&](int, int, const Vec3<T>&, const Real<T>& s, const Real<T>& size)
+          pair, [&](int, int, const Vec3<T>&, const Lanes<T>& s, const Lanes<T>& size)
                     __attribute__((always_inline)) {
                       apart = apart | (s > reach * size);
                       over = over & (s < -(slack * size));

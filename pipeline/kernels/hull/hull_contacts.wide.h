@@ -75,17 +75,16 @@ class HullPatch {
 
   /// The face most along the direction of those at the vertex at x.
   [[nodiscard]] std::uint32_t face_across(const float* direction, const float* x) const {
-    using Lanes = Real<float>;
     const float* const* plane = hull_.plane_float;
-    const Lanes slack(kFloatError * static_cast<float>(pair_.size));
+    const Floats slack(kFloatError * static_cast<float>(pair_.size));
     std::uint32_t best = kNone;
     float most = kAligned;
     for (std::uint32_t row = 0; row < hull_.face_count; row += 16) {
-      const Vec3<float> n{Lanes::load(plane[0] + row), Lanes::load(plane[1] + row),
-                          Lanes::load(plane[2] + row)};
-      const Lanes cosine = dot(n, Vec3<float>{direction[0], direction[1], direction[2]});
-      const Lanes below = Lanes::load(plane[3] + row) - dot(n, Vec3<float>{x[0], x[1], x[2]});
-      Mask16 hit = bits((cosine > Lanes(most)) & (below <= slack));
+      const Vec3<float> n{Floats::load(plane[0] + row), Floats::load(plane[1] + row),
+                          Floats::load(plane[2] + row)};
+      const Floats cosine = dot(n, Vec3<float>{direction[0], direction[1], direction[2]});
+      const Floats below = Floats::load(plane[3] + row) - dot(n, Vec3<float>{x[0], x[1], x[2]});
+      Mask16 hit = bits((cosine > Floats(most)) & (below <= slack));
       const std::uint32_t left = hull_.face_count - row;
       if (left < 16) hit &= lanes_below(left);
       if (hit == 0) continue;

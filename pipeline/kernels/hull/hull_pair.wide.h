@@ -3,7 +3,7 @@
 // A pair of convex polytopes, possibly rounded, as the hull kernels pass it from stage to stage.
 
 #include "pipeline/narrow/narrow_job.h"
-#include "simd/lanes/real.wide.h"
+#include "simd/lanes/vectors.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

@@ -8,6 +8,7 @@
 
 #include "pipeline/kernels/hull/hull_simplex.wide.h"
 #include "pipeline/kernels/hull/hull_support.wide.h"
+#include "simd/lanes/rows.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -38,7 +39,6 @@ class HullSearch {
   }
 
  private:
-  using Lanes = Real<float>;
   static constexpr std::uint32_t kMostSteps = 48;
   /// Steps from outside towards the difference when the origin is inside.
   static constexpr std::uint32_t kSinkSteps = 8;
@@ -101,12 +101,12 @@ class HullSearch {
 
   /// The vertex of the first that lies farthest against the gap, and of the second along it.
   void find_supports() {
-    const Vec3<float> gap{Lanes::load(gap_[0]), Lanes::load(gap_[1]), Lanes::load(gap_[2])};
+    const Vec3<float> gap{Floats::load(gap_[0]), Floats::load(gap_[1]), Floats::load(gap_[2])};
     (-gap).x.store(toward_[0][0]);
     (-gap).y.store(toward_[0][1]);
     (-gap).z.store(toward_[0][2]);
-    Lanes t[9];
-    for (int i = 0; i < 9; ++i) t[i] = Lanes::load(turn_[i]);
+    Floats t[9];
+    for (int i = 0; i < 9; ++i) t[i] = Floats::load(turn_[i]);
     for (int i = 0; i < 3; ++i) {
       (t[i] * gap.x + t[3 + i] * gap.y + t[6 + i] * gap.z).store(toward_[1][i]);
     }
@@ -118,7 +118,7 @@ class HullSearch {
         heights(hull(side, lane), direction, height_ + lane * kLanes, block_ + lane * kLanes);
       }
       alignas(64) float highest[kLanes];
-      store_unaligned(highest, reduce_max_rows(height_));
+      reduce_max_rows(height_).store_unaligned(highest);
       for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
         const int lane = static_cast<int>(first(rest));
         const HullShape& h = hull(side, lane);
@@ -137,55 +137,57 @@ class HullSearch {
   }
 
   [[nodiscard]] Vec3<float> support() const {
-    const auto vertex = [&](int side, int i) { return Lanes::load(vertex_[side][i]); };
-    const Lanes scale = Lanes::load(scale_);
-    Lanes w[3];
+    const auto vertex = [&](int side, int i) { return Floats::load(vertex_[side][i]); };
+    const Floats scale = Floats::load(scale_);
+    Floats w[3];
     for (int i = 0; i < 3; ++i) {
-      const Lanes b = Lanes::load(turn_[3 * i]) * vertex(1, 0) +
-                      Lanes::load(turn_[3 * i + 1]) * vertex(1, 1) +
-                      Lanes::load(turn_[3 * i + 2]) * vertex(1, 2) + Lanes::load(shift_[i]);
-      w[i] = vertex(0, i) * scale - b - Lanes::load(goal_[i]);
+      const Floats b = Floats::load(turn_[3 * i]) * vertex(1, 0) +
+                       Floats::load(turn_[3 * i + 1]) * vertex(1, 1) +
+                       Floats::load(turn_[3 * i + 2]) * vertex(1, 2) + Floats::load(shift_[i]);
+      w[i] = vertex(0, i) * scale - b - Floats::load(goal_[i]);
     }
     return {w[0], w[1], w[2]};
   }
 
   /// One step of all lanes; returns those that are done.
   Mask16 step() {
-    const Lanes zero(0.0F);
+    const Floats zero(0.0F);
     Simplex simplex;
     for (int s = 0; s < kSlots; ++s) {
-      simplex.point[s] = {Lanes::load(slot_[s][0]), Lanes::load(slot_[s][1]),
-                          Lanes::load(slot_[s][2])};
-      simplex.present[s] = Lanes::load(present_[s]) > zero;
+      simplex.point[s] = {Floats::load(slot_[s][0]), Floats::load(slot_[s][1]),
+                          Floats::load(slot_[s][2])};
+      simplex.present[s] = Floats::load(present_[s]) > zero;
     }
-    const Vec3<float> gap{Lanes::load(gap_[0]), Lanes::load(gap_[1]), Lanes::load(gap_[2])};
-    const Lanes square = Lanes::load(square_);
-    const Truth<float> fresh = Lanes::load(fresh_) > zero;
-    const Truth<float> sinking = Lanes::load(sinking_) > zero;
+    const Vec3<float> gap{Floats::load(gap_[0]), Floats::load(gap_[1]), Floats::load(gap_[2])};
+    const Floats square = Floats::load(square_);
+    const LaneMask<float> fresh = Floats::load(fresh_) > zero;
+    const LaneMask<float> sinking = Floats::load(sinking_) > zero;
     const Vec3<float> w = support();
-    const Lanes height = dot(gap, w);
-    const Truth<float> ahead = height > zero;
-    const Truth<float> far = ahead & (height * height > Lanes::load(far_) * square) & !sinking;
+    const Floats height = dot(gap, w);
+    const LaneMask<float> ahead = height > zero;
+    const LaneMask<float> far = ahead & (height * height > Floats::load(far_) * square) & !sinking;
     height.store(height_along_);
     if (!limits_.verdict) note_depth(w, gap, square, height);
 
-    const Lanes gain = square - height;
-    const Truth<float> no_gain =
-        (gain <= zero) | (gain * gain <= Lanes(kNoGain * kNoGain) * square);
+    const Floats gain = square - height;
+    const LaneMask<float> no_gain =
+        (gain <= zero) | (gain * gain <= Floats(kNoGain * kNoGain) * square);
     const Nearest nearest = nearest_of(simplex, w);
-    const Lanes next_square = dot(nearest.point, nearest.point);
-    const Truth<float> stuck = (!fresh) & (no_gain | nearest.repeated | (next_square >= square)) &
-                               (!(nearest.inside | far));
-    const Truth<float> inside = nearest.inside & !far;
-    const Truth<float> moves = !(far | stuck | inside);
+    const Floats next_square = dot(nearest.point, nearest.point);
+    const LaneMask<float> stuck = (!fresh) &
+                                  (no_gain | nearest.repeated | (next_square >= square)) &
+                                  (!(nearest.inside | far));
+    const LaneMask<float> inside = nearest.inside & !far;
+    const LaneMask<float> moves = !(far | stuck | inside);
     keep(simplex, nearest, moves, w, gap, next_square);
     const Mask16 sinking_bits = bits(sinking);
     const Mask16 far_bits = bits(far) & active_;
     const Mask16 stuck_bits = bits(stuck) & active_;
     const Mask16 inside_bits = bits(inside) & active_;
     const Mask16 move = bits(moves) & active_;
-    const Mask16 near_bits = bits(next_square <= Lanes::load(near_)) & move;
-    const Mask16 touch_bits = bits(next_square <= Lanes(kTouching * kTouching)) & move & ~near_bits;
+    const Mask16 near_bits = bits(next_square <= Floats::load(near_)) & move;
+    const Mask16 touch_bits =
+        bits(next_square <= Floats(kTouching * kTouching)) & move & ~near_bits;
     mark(far_bits, HullState::far);
     mark(stuck_bits & ~sinking_bits, HullState::apart);
     mark(stuck_bits & sinking_bits, HullState::close);
@@ -226,18 +228,18 @@ class HullSearch {
   }
 
   /// Keeps the lowest height of the difference over the origin and where it was met.
-  void note_depth(const Vec3<float>& w, const Vec3<float>& gap, const Lanes& square,
-                  const Lanes& height) {
-    const Lanes zero(0.0F);
-    const Vec3<float> goal{Lanes::load(goal_[0]), Lanes::load(goal_[1]), Lanes::load(goal_[2])};
-    const Lanes over = height + dot(gap, goal);
-    const Lanes depth = select(over > zero, zero, over * over / square);
-    const Lanes before = Lanes::load(depth_);
-    const Truth<float> lower = depth < before;
+  void note_depth(const Vec3<float>& w, const Vec3<float>& gap, const Floats& square,
+                  const Floats& height) {
+    const Floats zero(0.0F);
+    const Vec3<float> goal{Floats::load(goal_[0]), Floats::load(goal_[1]), Floats::load(goal_[2])};
+    const Floats over = height + dot(gap, goal);
+    const Floats depth = select(over > zero, zero, over * over / square);
+    const Floats before = Floats::load(depth_);
+    const LaneMask<float> lower = depth < before;
     select(lower, depth, before).store(depth_);
-    select(lower, gap.x, Lanes::load(lowest_[0])).store(lowest_[0]);
-    select(lower, gap.y, Lanes::load(lowest_[1])).store(lowest_[1]);
-    select(lower, gap.z, Lanes::load(lowest_[2])).store(lowest_[2]);
+    select(lower, gap.x, Floats::load(lowest_[0])).store(lowest_[0]);
+    select(lower, gap.y, Floats::load(lowest_[1])).store(lowest_[1]);
+    select(lower, gap.z, Floats::load(lowest_[2])).store(lowest_[2]);
     remember(w + goal);
   }
 
@@ -268,27 +270,27 @@ class HullSearch {
   }
 
   /// Where `moves`: the nearest feature becomes the simplex.
-  void keep(const Simplex& simplex, const Nearest& nearest, const Truth<float>& moves,
-            const Vec3<float>& w, const Vec3<float>& gap, const Lanes& next_square) {
-    const Lanes zero(0.0F);
-    const Lanes one(1.0F);
-    const Lanes name = Lanes::load(name_);
-    Truth<float> placed = !moves;
+  void keep(const Simplex& simplex, const Nearest& nearest, const LaneMask<float>& moves,
+            const Vec3<float>& w, const Vec3<float>& gap, const Floats& next_square) {
+    const Floats zero(0.0F);
+    const Floats one(1.0F);
+    const Floats name = Floats::load(name_);
+    LaneMask<float> placed = !moves;
     for (int s = 0; s < kSlots; ++s) {
-      const Truth<float> take = (!placed) & (!nearest.keep[s]);
+      const LaneMask<float> take = (!placed) & (!nearest.keep[s]);
       placed = placed | take;
       select(take, w.x, simplex.point[s].x).store(slot_[s][0]);
       select(take, w.y, simplex.point[s].y).store(slot_[s][1]);
       select(take, w.z, simplex.point[s].z).store(slot_[s][2]);
-      select(take, name, Lanes::load(slot_name_[s])).store(slot_name_[s]);
-      const Lanes held = select(take | nearest.keep[s], one, zero);
-      select(moves, held, Lanes::load(present_[s])).store(present_[s]);
+      select(take, name, Floats::load(slot_name_[s])).store(slot_name_[s]);
+      const Floats held = select(take | nearest.keep[s], one, zero);
+      select(moves, held, Floats::load(present_[s])).store(present_[s]);
     }
     const Vec3<float> next = select(moves, nearest.point, gap);
     next.x.store(gap_[0]);
     next.y.store(gap_[1]);
     next.z.store(gap_[2]);
-    select(moves, next_square, Lanes::load(square_)).store(square_);
+    select(moves, next_square, Floats::load(square_)).store(square_);
     zero.store(fresh_);
   }
 

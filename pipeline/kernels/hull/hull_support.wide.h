@@ -10,7 +10,7 @@ namespace winnow::WINNOW_ISA_NAME {
 /// was found: an error of 16 units in the last place in the choice of a vertex.
 inline constexpr std::uint32_t kLaneBits = 15;
 
-[[gnu::always_inline]] static inline Real<float> with_lane_number(const Real<float>& value) {
+[[gnu::always_inline]] static inline Floats with_lane_number(const Floats& value) {
 #define WINNOW_LANE_NUMBER(i) __builtin_bit_cast(float, std::uint32_t{i})
   alignas(64) static constexpr float kNumbers[16] = {
       WINNOW_LANE_NUMBER(0),  WINNOW_LANE_NUMBER(1),  WINNOW_LANE_NUMBER(2),
@@ -20,19 +20,15 @@ inline constexpr std::uint32_t kLaneBits = 15;
       WINNOW_LANE_NUMBER(12), WINNOW_LANE_NUMBER(13), WINNOW_LANE_NUMBER(14),
       WINNOW_LANE_NUMBER(15)};
 #undef WINNOW_LANE_NUMBER
-  const Real<float> numbers = Real<float>::load(kNumbers);
-  const Real<float> keep(__builtin_bit_cast(float, ~kLaneBits));
-  Real<float> r;
-  for (int i = 0; i < Real<float>::kBatches; ++i) {
-    r.part[i] = (value.part[i] & keep.part[i]) | numbers.part[i];
-  }
-  return r;
+  const Floats numbers = Floats::load(kNumbers);
+  const Floats keep(__builtin_bit_cast(float, ~kLaneBits));
+  return (value & keep) | numbers;
 }
 
-[[gnu::always_inline]] static inline Real<float> along(const float* const* vertex,
-                                                       std::uint32_t row, const Vec3<float>& d) {
-  return Real<float>::load(vertex[0] + row) * d.x + Real<float>::load(vertex[1] + row) * d.y +
-         Real<float>::load(vertex[2] + row) * d.z;
+[[gnu::always_inline]] static inline Floats along(const float* const* vertex, std::uint32_t row,
+                                                  const Vec3<float>& d) {
+  return Floats::load(vertex[0] + row) * d.x + Floats::load(vertex[1] + row) * d.y +
+         Floats::load(vertex[2] + row) * d.z;
 }
 
 /// Sixteen heights along `direction`, of which the largest is the hull's, with its lane's number in
@@ -40,14 +36,14 @@ inline constexpr std::uint32_t kLaneBits = 15;
 [[gnu::always_inline]] static inline void heights(const HullShape& hull, const float* direction,
                                                   float* height, float* block) {
   const Vec3<float> d{direction[0], direction[1], direction[2]};
-  Real<float> best = with_lane_number(along(hull.vertex_float, 0, d));
+  Floats best = with_lane_number(along(hull.vertex_float, 0, d));
   if (hull.vertex_count > 16) {
-    Real<float> where(0.0F);
+    Floats where(0.0F);
     for (std::uint32_t row = 16; row < hull.vertex_count; row += 16) {
-      const Real<float> value = with_lane_number(along(hull.vertex_float, row, d));
-      const Truth<float> higher = value > best;
+      const Floats value = with_lane_number(along(hull.vertex_float, row, d));
+      const LaneMask<float> higher = value > best;
       best = select(higher, value, best);
-      where = select(higher, Real<float>(static_cast<float>(row)), where);
+      where = select(higher, Floats(static_cast<float>(row)), where);
     }
     where.store(block);
   }
@@ -68,25 +64,25 @@ static inline std::uint32_t farthest_vertex(const HullShape& hull, const float* 
   alignas(64) float height[16];
   alignas(64) float block[16];
   heights(hull, direction, height, block);
-  return vertex_of(hull, reduce_max(load(height)), block);
+  return vertex_of(hull, reduce_max(Floats::load(height)), block);
 }
 
 /// The height of the highest vertex along a direction.
 static inline float highest_of(const HullShape& hull, const float* direction) {
   const Vec3<float> d{direction[0], direction[1], direction[2]};
-  Real<float> best = along(hull.vertex_float, 0, d);
+  Floats best = along(hull.vertex_float, 0, d);
   for (std::uint32_t row = 16; row < hull.vertex_count; row += 16) {
     best = max(best, along(hull.vertex_float, row, d));
   }
   alignas(64) float value[16];
   best.store(value);
-  return reduce_max(load(value));
+  return reduce_max(Floats::load(value));
 }
 
-[[gnu::always_inline]] static inline Real<double> along(const double* const* vertex,
-                                                        std::uint32_t row, const Vec3<double>& d) {
-  return Real<double>::load(vertex[0] + row) * d.x + Real<double>::load(vertex[1] + row) * d.y +
-         Real<double>::load(vertex[2] + row) * d.z;
+[[gnu::always_inline]] static inline Doubles along(const double* const* vertex, std::uint32_t row,
+                                                   const Vec3<double>& d) {
+  return Doubles::load(vertex[0] + row) * d.x + Doubles::load(vertex[1] + row) * d.y +
+         Doubles::load(vertex[2] + row) * d.z;
 }
 [[gnu::always_inline]] static inline const double* const* columns_of(const HullShape& hull,
                                                                      double) {
@@ -99,10 +95,10 @@ static inline float highest_of(const HullShape& hull, const float* direction) {
 /// The largest product of a vertex and `direction`.
 template <typename T>
 static inline T height_of(const HullShape& hull, const T* direction) {
-  constexpr std::uint32_t kWidth = Real<T>::kRealLanes;
+  constexpr std::uint32_t kWidth = Lanes<T>::kCount;
   const Vec3<T> d{direction[0], direction[1], direction[2]};
   const T* const* vertex = columns_of(hull, T());
-  Real<T> best = along(vertex, 0, d);
+  Lanes<T> best = along(vertex, 0, d);
   for (std::uint32_t row = kWidth; row < hull.vertex_count; row += kWidth) {
     best = max(best, along(vertex, row, d));
   }
@@ -120,12 +116,12 @@ static inline T height_of(const HullShape& hull, const T* direction) {
 template <typename T>
 static inline bool sole_vertex(const HullShape& hull, const T* direction, T doubt,
                                std::uint32_t& vertex) {
-  constexpr std::uint32_t kWidth = Real<T>::kRealLanes;
+  constexpr std::uint32_t kWidth = Lanes<T>::kCount;
   const T limit = height_of(hull, direction) - doubt;
   const Vec3<T> d{direction[0], direction[1], direction[2]};
   std::uint32_t found = 0;
   for (std::uint32_t row = 0; row < hull.vertex_count; row += kWidth) {
-    Mask16 high = bits(along(columns_of(hull, T()), row, d) >= Real<T>(limit));
+    Mask16 high = bits(along(columns_of(hull, T()), row, d) >= Lanes<T>(limit));
     const std::uint32_t left = hull.vertex_count - row;
     if (left < kWidth) high &= lanes_below(left);
     if (high == 0) continue;

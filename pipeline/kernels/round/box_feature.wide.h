@@ -8,17 +8,17 @@ namespace winnow::WINNOW_ISA_NAME {
 
 /// -1, 0, 1 for numbers below, at and above zero.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> sign(const Real<T>& v) {
-  const Real<T> zero(T(0));
-  return select(v > zero, Real<T>(T(1)), select(v < zero, Real<T>(T(-1)), zero));
+[[gnu::always_inline]] inline Lanes<T> sign(const Lanes<T>& v) {
+  const Lanes<T> zero(T(0));
+  return select(v > zero, Lanes<T>(T(1)), select(v < zero, Lanes<T>(T(-1)), zero));
 }
 
 /// What the closest point of a box is called, by the signs of the direction towards the box: the
 /// digits of a number to the base of three.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> box_feature(const Vec3<T>& towards) {
-  const Real<T> three(T(3));
-  return Real<T>(T(13)) - (sign(towards.x) + three * (sign(towards.y) + three * sign(towards.z)));
+[[gnu::always_inline]] inline Lanes<T> box_feature(const Vec3<T>& towards) {
+  const Lanes<T> three(T(3));
+  return Lanes<T>(T(13)) - (sign(towards.x) + three * (sign(towards.y) + three * sign(towards.z)));
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME

@@ -29,24 +29,25 @@ struct WitnessLanes {
   /// From the point of core a to that of core b, at most kRoundings * epsilon * scale wrong.
   Vec3<T> w;
   /// Both roundings.
-  Real<T> radius;
+  Lanes<T> radius;
   /// At least the sum of all lengths that w was made of, and of the radius; NaN for a bad pose.
-  Real<T> scale;
+  Lanes<T> scale;
 };
 
 /// The sum of the magnitudes.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> taxicab(const Vec3<T>& v) {
+[[gnu::always_inline]] inline Lanes<T> taxicab(const Vec3<T>& v) {
   return abs(v.x) + abs(v.y) + abs(v.z);
 }
 
 /// Tier fast answers whatever is a number: its bound says how sure the sign is.
 template <typename T>
-[[gnu::always_inline]] inline Mask16 certified_lanes(const Real<T>& distance, const Real<T>& bound,
-                                                     const Real<T>& scale, const Truth<T>& normal) {
-  const Truth<T> valid = in_range(scale * scale) & normal;
+[[gnu::always_inline]] inline Mask16 certified_lanes(const Lanes<T>& distance,
+                                                     const Lanes<T>& bound, const Lanes<T>& scale,
+                                                     const LaneMask<T>& normal) {
+  const LaneMask<T> valid = in_range(scale * scale) & normal;
   if constexpr (sizeof(T) == sizeof(double)) return bits(valid & (abs(distance) > bound));
-  return bits(valid & (abs(distance) < Real<T>(T(1e30F))));
+  return bits(valid & (abs(distance) < Lanes<T>(T(1e30F))));
 }
 
 /// Level boolean, by squares; returns the uncertified lanes. With w wrong by e, its square is by
@@ -54,18 +55,18 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline Mask16 answer_overlap(const NarrowJob& job, const PairBlock<T>& block,
                                                     const WitnessLanes<T>& witness) {
-  const Real<T> square = witness.scale * witness.scale;
-  const Real<T> excess = dot(witness.w, witness.w) - witness.radius * witness.radius;
-  const Real<T> error = square * Real<T>(T(4 * kRoundings) * kEpsilon<T>);
-  write_overlap(job, block, bits(excess <= Real<T>(T(0))));
-  return ~certified_lanes(excess, error, witness.scale, square > Real<T>(T(0)));
+  const Lanes<T> square = witness.scale * witness.scale;
+  const Lanes<T> excess = dot(witness.w, witness.w) - witness.radius * witness.radius;
+  const Lanes<T> error = square * Lanes<T>(T(4 * kRoundings) * kEpsilon<T>);
+  write_overlap(job, block, bits(excess <= Lanes<T>(T(0))));
+  return ~certified_lanes(excess, error, witness.scale, square > Lanes<T>(T(0)));
 }
 
 /// A distance along a normal, and whether it may be written.
 template <typename T>
 struct CertifiedLanes {
-  Real<T> distance;
-  Real<T> error_bound;
+  Lanes<T> distance;
+  Lanes<T> error_bound;
   Vec3<T> normal;
   Mask16 certified;
 };
@@ -73,20 +74,20 @@ struct CertifiedLanes {
 /// Level boolean of kernels that have the distance.
 template <typename T>
 [[gnu::always_inline]] inline Mask16 answer_sign(const NarrowJob& job, const PairBlock<T>& block,
-                                                 const Real<T>& distance, const Real<T>& bound,
-                                                 const Real<T>& scale) {
-  write_overlap(job, block, bits(distance <= Real<T>(T(0))));
-  return ~certified_lanes(distance, bound, scale, scale > Real<T>(T(0)));
+                                                 const Lanes<T>& distance, const Lanes<T>& bound,
+                                                 const Lanes<T>& scale) {
+  write_overlap(job, block, bits(distance <= Lanes<T>(T(0))));
+  return ~certified_lanes(distance, bound, scale, scale > Lanes<T>(T(0)));
 }
 
 /// Levels distance and manifold. `shortest` is the least |w| that has a direction.
 template <typename T>
 [[gnu::always_inline]] inline CertifiedLanes<T> answer_distance(const WitnessLanes<T>& witness,
-                                                                const Real<T>& shortest) {
-  const Real<T> length = sqrt(dot(witness.w, witness.w));
-  const Real<T> distance = length - witness.radius;
-  const Real<T> bound = witness.scale * Real<T>(T(kRoundings) * kEpsilon<T>);
-  return {distance, bound, witness.w * (Real<T>(T(1)) / length),
+                                                                const Lanes<T>& shortest) {
+  const Lanes<T> length = sqrt(dot(witness.w, witness.w));
+  const Lanes<T> distance = length - witness.radius;
+  const Lanes<T> bound = witness.scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
+  return {distance, bound, witness.w * (Lanes<T>(T(1)) / length),
           certified_lanes(distance, bound, witness.scale, length > shortest)};
 }
 
@@ -95,7 +96,7 @@ template <typename T>
 template <int L, typename T>
 [[gnu::always_inline]] inline void write_certified(const NarrowJob& job, const PairBlock<T>& block,
                                                    const CertifiedLanes<T>& c, const Vec3<T>& foot,
-                                                   const Real<T>& radius) {
+                                                   const Lanes<T>& radius) {
   AnswerLanes<T> answer{c.distance, c.error_bound, c.normal, {}};
   if constexpr (L == kDistance) answer.point = foot + c.normal * radius;
   write_answer<L>(job, block, answer);
@@ -105,10 +106,10 @@ template <int L, typename T>
 template <typename T>
 [[gnu::always_inline]] inline ContactLanes<T> witness_contact(
     const NarrowJob& job, const PairBlock<T>& block, const CertifiedLanes<T>& c,
-    const Vec3<T>& foot, const Real<T>& radius, const Real<T>& feature_a,
-    const Real<T>& feature_b) {
-  const Real<T> half(T(0.5));
-  const Truth<T> near = c.distance <= Real<T>(static_cast<T>(job.margin));
+    const Vec3<T>& foot, const Lanes<T>& radius, const Lanes<T>& feature_a,
+    const Lanes<T>& feature_b) {
+  const Lanes<T> half(T(0.5));
+  const LaneMask<T> near = c.distance <= Lanes<T>(static_cast<T>(job.margin));
   return {foot + c.normal * (radius + c.distance * half), -c.distance, feature_a, feature_b,
           bits(near) & c.certified & block.lanes()};
 }
@@ -117,21 +118,21 @@ template <typename T>
 template <typename T>
 struct ProofLanes {
   /// How far the shapes are along some direction.
-  Real<T> low;
+  Lanes<T> low;
   /// How far two of their points are, or how deep they are along a direction.
-  Real<T> high;
+  Lanes<T> high;
   /// As in WitnessLanes.
-  Real<T> scale;
+  Lanes<T> scale;
   /// Where the direction is well defined.
-  Truth<T> unique;
+  LaneMask<T> unique;
 };
 
 /// Scales of which the fourth power is in T's range.
 template <typename T>
-[[gnu::always_inline]] inline Truth<T> in_narrow_range(const Real<T>& scale) {
+[[gnu::always_inline]] inline LaneMask<T> in_narrow_range(const Lanes<T>& scale) {
   constexpr bool is_double = sizeof(T) == sizeof(double);
-  return (scale > Real<T>(is_double ? T(1e-50) : T(1e-6F))) &
-         (scale < Real<T>(is_double ? T(1e50) : T(1e6F)));
+  return (scale > Lanes<T>(is_double ? T(1e-50) : T(1e-6F))) &
+         (scale < Lanes<T>(is_double ? T(1e50) : T(1e6F)));
 }
 
 /// Level boolean.
@@ -139,13 +140,13 @@ template <typename T>
 [[gnu::always_inline]] inline Mask16 answer_proven_sign(const NarrowJob& job,
                                                         const PairBlock<T>& block,
                                                         const ProofLanes<T>& proof) {
-  write_overlap(job, block, bits(proof.high <= Real<T>(T(0))));
-  const Real<T> error = proof.scale * Real<T>(T(kRoundings) * kEpsilon<T>);
-  const Truth<T> valid = in_narrow_range(proof.scale);
+  write_overlap(job, block, bits(proof.high <= Lanes<T>(T(0))));
+  const Lanes<T> error = proof.scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
+  const LaneMask<T> valid = in_narrow_range(proof.scale);
   if constexpr (sizeof(T) == sizeof(double)) {
     return ~bits(valid & ((proof.high < -error) | (proof.low > error)));
   }
-  return ~bits(valid & (abs(proof.high) < Real<T>(T(1e30F))));
+  return ~bits(valid & (abs(proof.high) < Lanes<T>(T(1e30F))));
 }
 
 /// Levels distance and manifold. Tier robust promises bounds of 1e-12 of sizes and distance, of
@@ -154,10 +155,10 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline CertifiedLanes<T> answer_proven(const ProofLanes<T>& proof,
                                                               const Vec3<T>& normal) {
-  const Real<T> widest(sizeof(T) == sizeof(double) ? T(4e-13) : T(1e-2F));
-  const Real<T> bound =
-      abs(proof.high - proof.low) + proof.scale * Real<T>(T(kRoundings) * kEpsilon<T>);
-  const Truth<T> valid =
+  const Lanes<T> widest(sizeof(T) == sizeof(double) ? T(4e-13) : T(1e-2F));
+  const Lanes<T> bound =
+      abs(proof.high - proof.low) + proof.scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
+  const LaneMask<T> valid =
       proof.unique & in_narrow_range(proof.scale) & (bound < proof.scale * widest);
   return {proof.high, bound, normal, certified_lanes(proof.high, bound, proof.scale, valid)};
 }

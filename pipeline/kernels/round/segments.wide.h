@@ -7,31 +7,31 @@
 namespace winnow::WINNOW_ISA_NAME {
 
 template <typename T>
-[[gnu::always_inline]] inline Real<T> clamp(const Real<T>& v, const Real<T>& low,
-                                            const Real<T>& high) {
+[[gnu::always_inline]] inline Lanes<T> clamp(const Lanes<T>& v, const Lanes<T>& low,
+                                             const Lanes<T>& high) {
   return min(max(v, low), high);
 }
 
 /// 0, or NaN where the orientation is not usable.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> doubt(const Turn<T>& turn) {
+[[gnu::always_inline]] inline Lanes<T> doubt(const Turn<T>& turn) {
   return turn.scale - turn.scale;
 }
 
 /// What a contact at t of a capsule's segment is called: 1 and 2 the ends, 0 between them.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> segment_feature(const Real<T>& t,
-                                                      const Real<T>& half_length) {
-  const Real<T> zero(T(0));
-  const Real<T> low = select(t <= -half_length, Real<T>(T(2)), zero);
-  return select(t >= half_length, Real<T>(T(1)), low);
+[[gnu::always_inline]] inline Lanes<T> segment_feature(const Lanes<T>& t,
+                                                       const Lanes<T>& half_length) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> low = select(t <= -half_length, Lanes<T>(T(2)), zero);
+  return select(t >= half_length, Lanes<T>(T(1)), low);
 }
 
 /// Points s u and c + t e.
 template <typename T>
 struct SegmentFeet {
-  Real<T> s;
-  Real<T> t;
+  Lanes<T> s;
+  Lanes<T> t;
 };
 
 /// The second segment: c + t e, low <= t <= high; `square` is |e|^2, which may be 0.
@@ -39,9 +39,9 @@ template <typename T>
 struct SegmentLanes {
   Vec3<T> c;
   Vec3<T> e;
-  Real<T> square;
-  Real<T> low;
-  Real<T> high;
+  Lanes<T> square;
+  Lanes<T> low;
+  Lanes<T> high;
 };
 
 /// The closest points of the segment s u, |u| = 1, |s| <= h, and another. After Ericson, Real-Time
@@ -51,17 +51,17 @@ struct SegmentLanes {
 /// |c|, whatever the angle; where u x e vanishes any s will do, as the last two steps find the
 /// closest points then.
 template <typename T>
-[[gnu::always_inline]] inline SegmentFeet<T> closest_feet(const Vec3<T>& u, const Real<T>& h,
+[[gnu::always_inline]] inline SegmentFeet<T> closest_feet(const Vec3<T>& u, const Lanes<T>& h,
                                                           const SegmentLanes<T>& b,
-                                                          const Vec3<T>& k, const Real<T>& over) {
-  const Real<T> zero(T(0));
-  const Real<T> along = dot(u, b.e);
-  const Real<T> place_on_line = dot(k, cross(b.c, b.e)) * over;
+                                                          const Vec3<T>& k, const Lanes<T>& over) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> along = dot(u, b.e);
+  const Lanes<T> place_on_line = dot(k, cross(b.c, b.e)) * over;
   // Neither infinite nor NaN.
-  const Real<T> line = select(place_on_line - place_on_line == zero, place_on_line, zero);
-  const Real<T> first = clamp(line, -h, h);
-  const Real<T> place = (along * first - dot(b.e, b.c)) / b.square;
-  const Real<T> t = clamp(select(b.square > zero, place, b.low), b.low, b.high);
+  const Lanes<T> line = select(place_on_line - place_on_line == zero, place_on_line, zero);
+  const Lanes<T> first = clamp(line, -h, h);
+  const Lanes<T> place = (along * first - dot(b.e, b.c)) / b.square;
+  const Lanes<T> t = clamp(select(b.square > zero, place, b.low), b.low, b.high);
   return {clamp(dot(u, b.c) + along * t, -h, h), t};
 }
 

@@ -12,9 +12,9 @@ template <typename T>
 struct TriangleView {
   Vec3<T> vertex[3];
   Vec3<T> edge[3];
-  Real<T> square[3];
+  Lanes<T> square[3];
   Vec3<T> normal;
-  Real<T> normal_square;
+  Lanes<T> normal_square;
 };
 
 /// `offset` is added to the vertices.
@@ -34,14 +34,14 @@ template <typename T>
 
 /// Where the normal is more than rounding.
 template <typename T>
-[[gnu::always_inline]] inline Truth<T> has_normal(const TriangleView<T>& b) {
-  const Real<T> least(T(16) * kEpsilon<T> * kEpsilon<T>);
+[[gnu::always_inline]] inline LaneMask<T> has_normal(const TriangleView<T>& b) {
+  const Lanes<T> least(T(16) * kEpsilon<T> * kEpsilon<T>);
   return b.normal_square > b.square[0] * b.square[1] * least;
 }
 
 /// The largest coordinates of a vertex, summed.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> largest(const TriangleLanes<T>& triangle) {
+[[gnu::always_inline]] inline Lanes<T> largest(const TriangleLanes<T>& triangle) {
   return max(taxicab(triangle.vertex[0]),
              max(taxicab(triangle.vertex[1]), taxicab(triangle.vertex[2])));
 }
@@ -50,16 +50,16 @@ template <typename T>
 template <typename T>
 struct Gap {
   /// How far they are, negative if they overlap.
-  Real<T> distance;
+  Lanes<T> distance;
   /// Unit, from a to b.
   Vec3<T> normal;
 };
 
 /// Keeps the direction along which the cores are farther apart.
 template <typename T>
-[[gnu::always_inline]] inline void widen(Gap<T>& gap, const Truth<T>& valid,
-                                         const Real<T>& distance, const Vec3<T>& normal) {
-  const Truth<T> better = valid & (distance > gap.distance);
+[[gnu::always_inline]] inline void widen(Gap<T>& gap, const LaneMask<T>& valid,
+                                         const Lanes<T>& distance, const Vec3<T>& normal) {
+  const LaneMask<T> better = valid & (distance > gap.distance);
   gap.distance = select(better, distance, gap.distance);
   gap.normal = select(better, normal, gap.normal);
 }
@@ -68,12 +68,12 @@ template <typename T>
 /// the two ways. `reach` is that of the segment, whose middle is the origin.
 template <typename T>
 [[gnu::always_inline]] inline Gap<T> gap_along(const TriangleView<T>& b, const Vec3<T>& n,
-                                               const Real<T>& reach) {
-  const Real<T> x = dot(b.vertex[0], n);
-  const Real<T> y = dot(b.vertex[1], n);
-  const Real<T> z = dot(b.vertex[2], n);
-  const Real<T> ahead = min(min(x, y), z) - reach;
-  const Real<T> behind = -max(max(x, y), z) - reach;
+                                               const Lanes<T>& reach) {
+  const Lanes<T> x = dot(b.vertex[0], n);
+  const Lanes<T> y = dot(b.vertex[1], n);
+  const Lanes<T> z = dot(b.vertex[2], n);
+  const Lanes<T> ahead = min(min(x, y), z) - reach;
+  const Lanes<T> behind = -max(max(x, y), z) - reach;
   return {max(ahead, behind), select(ahead >= behind, n, -n)};
 }
 
@@ -82,19 +82,19 @@ template <typename T>
 struct Nearest {
   /// From a to b.
   Vec3<T> w;
-  Real<T> square;
+  Lanes<T> square;
   /// Where on the segment of a.
-  Real<T> s;
+  Lanes<T> s;
   /// Vertices of the triangle are 1, 2, 3, edges 4, 5, 6, the face is 7.
-  Real<T> feature;
+  Lanes<T> feature;
 };
 
 template <typename T>
-[[gnu::always_inline]] inline void nearer(Nearest<T>& nearest, const Truth<T>& valid,
-                                          const Vec3<T>& w, const Real<T>& s,
-                                          const Real<T>& feature) {
-  const Real<T> square = dot(w, w);
-  const Truth<T> better = valid & (square < nearest.square);
+[[gnu::always_inline]] inline void nearer(Nearest<T>& nearest, const LaneMask<T>& valid,
+                                          const Vec3<T>& w, const Lanes<T>& s,
+                                          const Lanes<T>& feature) {
+  const Lanes<T> square = dot(w, w);
+  const LaneMask<T> better = valid & (square < nearest.square);
   nearest.w = select(better, w, nearest.w);
   nearest.square = select(better, square, nearest.square);
   nearest.s = select(better, s, nearest.s);
@@ -105,27 +105,27 @@ template <typename T>
 /// point, so that it lies on the triangle however thin that is.
 template <typename T>
 [[gnu::always_inline]] inline void nearer_in_face(Nearest<T>& nearest, const TriangleView<T>& b,
-                                                  const Vec3<T>& point, const Real<T>& s) {
-  const Real<T> zero(T(0));
+                                                  const Vec3<T>& point, const Lanes<T>& s) {
+  const Lanes<T> zero(T(0));
   const Vec3<T> v[3] = {b.vertex[0] - point, b.vertex[1] - point, b.vertex[2] - point};
-  const Real<T> weight[3] = {dot(cross(v[1], b.edge[1]), b.normal),
-                             dot(cross(v[2], b.edge[2]), b.normal),
-                             dot(cross(v[0], b.edge[0]), b.normal)};
-  const Real<T> sum = weight[0] + weight[1] + weight[2];
-  const Truth<T> over =
+  const Lanes<T> weight[3] = {dot(cross(v[1], b.edge[1]), b.normal),
+                              dot(cross(v[2], b.edge[2]), b.normal),
+                              dot(cross(v[0], b.edge[0]), b.normal)};
+  const Lanes<T> sum = weight[0] + weight[1] + weight[2];
+  const LaneMask<T> over =
       (weight[0] >= zero) & (weight[1] >= zero) & (weight[2] >= zero) & (sum > zero);
   const Vec3<T> w =
-      (v[0] * weight[0] + v[1] * weight[1] + v[2] * weight[2]) * (Real<T>(T(1)) / sum);
-  nearer(nearest, over, w, s, Real<T>(T(7)));
+      (v[0] * weight[0] + v[1] * weight[1] + v[2] * weight[2]) * (Lanes<T>(T(1)) / sum);
+  nearer(nearest, over, w, s, Lanes<T>(T(7)));
 }
 
 /// What an edge's point at t is called.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> edge_feature(const Real<T>& t, int edge) {
-  const Real<T> zero(T(0));
-  const Real<T> one(T(1));
-  const Real<T> next(T(edge == 2 ? 1 : edge + 2));
-  return select(t <= zero, Real<T>(T(edge + 1)), select(t >= one, next, Real<T>(T(edge + 4))));
+[[gnu::always_inline]] inline Lanes<T> edge_feature(const Lanes<T>& t, int edge) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
+  const Lanes<T> next(T(edge == 2 ? 1 : edge + 2));
+  return select(t <= zero, Lanes<T>(T(edge + 1)), select(t >= one, next, Lanes<T>(T(edge + 4))));
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME
