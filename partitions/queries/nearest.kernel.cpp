@@ -1,5 +1,5 @@
 #include "partitions/queries/nearest.kernel.h"
-#include "partitions/queries/walks.wide.h"
+#include "partitions/queries/descent.wide.h"
 #include "simd/lanes/boxes.h"
 
 namespace winnow {
@@ -23,7 +23,7 @@ class DistanceProbe {
     }
     const Floats below = square * 0.999999F;
     order = or_infinity(below <= limit, below);
-    const Mask16 live = bits(box.low[0] <= 3.4028234e38F);
+    const Mask16 live = bits(box.low[0] <= kLargest<float>);
     return bits(below <= limit) & live;
   }
 
@@ -95,7 +95,7 @@ bool nearest(const QueryView& view, const NearestQuery& query, const QueryFilter
   const Wanted wanted(view, filter);
   Heap heap(nearest_heap);
   float limit = square_limit(query.radius);
-  return walk_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
+  return visit_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
     Floats order;
     Mask16 mask = probe.test(view.column, first_row, limit, order);
     mask = wanted.rows(first_row, mask);

@@ -2,7 +2,7 @@
 
 // What kernels compute of the pairs in their lanes, and how it is written to the columns of a job.
 
-#include "pipeline/kernels/shape_lanes.wide.h"
+#include "pipeline/kernels/pair_lanes.wide.h"
 #include "simd/lanes/compress.h"
 
 namespace winnow::WINNOW_ISA_NAME {

@@ -7,7 +7,7 @@
 #include "simd/lanes/compress.h"
 #include "simd/lanes/rows.h"
 
-namespace winnow::WINNOW_ISA_NAME {
+namespace winnow::WINNOW_ISA_NAME::mesh {
 
 /// Which of the lanes [first, first + 16) of `count` are there.
 inline Mask16 present(std::uint32_t count, std::uint32_t first_lane) {
@@ -92,4 +92,4 @@ template <int Half>
   }
 }
 
-}  // namespace winnow::WINNOW_ISA_NAME
+}  // namespace winnow::WINNOW_ISA_NAME::mesh

@@ -86,12 +86,7 @@ bool self_pairs(const LevelsView& grid, std::uint32_t begin, std::uint32_t end, 
                                      : find_self_pairs<false>(grid, begin, end, sink);
 }
 
-/// A run of cells is tested to its end.
-struct ToTheEnd {
-  bool operator()(const QueryBox&, std::uint32_t) const { return true; }
-};
-
-struct Query {
+struct LevelsQuery {
   template <HitMode Mode, bool Filtered>
   static bool run(const LevelsView& grid, const QueryBatch& batch, PairSink& sink) {
     HitList<Mode, Filtered> hits(grid.rows, batch, sink);
@@ -112,7 +107,7 @@ struct Query {
 };
 
 bool query(const LevelsView& grid, const QueryBatch& batch, PairSink& sink) {
-  return with_mode<Query>(grid, batch, sink);
+  return with_mode<LevelsQuery>(grid, batch, sink);
 }
 
 /// The rows that may stay in one cell of an axis.

@@ -1,11 +1,27 @@
 #include "partitions/structures/sweep/sweep_and_prune.kernel.h"
 #include "partitions/structures/cells/misfits.wide.h"
-#include "partitions/structures/sweep/neighbour_lines.wide.h"
 #include "partitions/tree/block_pairs.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
+
+/// Lines of cells (or strips) lie on two axes, line = slow * mids + mid. Those after a line whose
+/// objects can touch its own: each pair of neighbours is met from one side only.
+struct NeighbourLines {
+  std::uint32_t line[4];
+  int count = 0;
+
+  NeighbourLines(const CellAxis& mid_axis, const CellAxis& slow_axis, std::uint32_t own) {
+    const std::uint32_t mids = mid_axis.count;
+    const std::uint32_t mid = own % mids;
+    if (mid + 1 < mids) line[count++] = own + 1;
+    if (own / mids + 1 == slow_axis.count) return;
+    if (mid > 0) line[count++] = own + mids - 1;
+    line[count++] = own + mids;
+    if (mid + 1 < mids) line[count++] = own + mids + 1;
+  }
+};
 
 /// A sweep goes on until a key shows that nothing further can touch the box.
 struct KeyStop {
@@ -105,7 +121,7 @@ bool self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end,
                                        : find_self_pairs<false>(strips, begin, end, sink);
 }
 
-struct Query {
+struct SweepQuery {
   template <HitMode Mode, bool Filtered>
   static bool run(const StripView& strips, const QueryBatch& batch, PairSink& sink) {
     HitList<Mode, Filtered> hits(strips.rows, batch, sink);
@@ -136,7 +152,7 @@ struct Query {
 };
 
 bool query(const StripView& strips, const QueryBatch& batch, PairSink& sink) {
-  return with_mode<Query>(strips, batch, sink);
+  return with_mode<SweepQuery>(strips, batch, sink);
 }
 
 std::uint32_t find_misfits(const StripView& strips, std::uint32_t begin, std::uint32_t end,

@@ -1,9 +1,8 @@
-#include "pipeline/kernels/flat/box_closest.wide.h"
-#include "pipeline/kernels/flat/flat_kernel.wide.h"
+#include "pipeline/kernels/flat/box_pair.wide.h"
 #include "pipeline/kernels/kernels.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::flat {
 namespace {
 
 // Where a pair stands, and its normal, in memory.
@@ -81,7 +80,7 @@ template <typename T>
   }
   Lanes<T> q[3];
   to_b(pair, other, q);
-  const Lanes<T> near = pair.scale * Lanes<T>(T(4) * kSlack<T>);
+  const Lanes<T> near = pair.scale * Lanes<T>(T(4) * kFlatSlack<T>);
   Lanes<T> out = abs(point[0]) - pair.half_a[0];
   for (int r = 1; r < 3; ++r) out = max(out, abs(point[r]) - pair.half_a[r]);
   for (int r = 0; r < 3; ++r) out = max(out, abs(q[r]) - pair.half_b[r]);
@@ -93,7 +92,7 @@ template <typename T>
 template <int L, typename T>
 [[gnu::always_inline]] inline CoreAnswer<T> measure(const BoxPair<T>& pair, const BoxAxis<T>& axis,
                                                     const LaneMask<T>& wanted) {
-  const Lanes<T> slack = pair.scale * Lanes<T>(kSlack<T>);
+  const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
   const LaneMask<T> apart = axis.separation > Lanes<T>(T(0));
   CoreAnswer<T> answer;
   // What is not measured is a lower bound.
@@ -144,7 +143,7 @@ struct BoxBox {
     LaneMask<T> wanted = pair.scale == pair.scale;
     if constexpr (L == kManifold) {
       const Lanes<T> margin(static_cast<T>(job.margin));
-      wanted = axis.separation <= margin + reach + pair.scale * Lanes<T>(T(2) * kSlack<T>);
+      wanted = axis.separation <= margin + reach + pair.scale * Lanes<T>(T(2) * kFlatSlack<T>);
     }
     CoreAnswer<T> core = measure<L>(pair, axis, wanted);
     const Mask16 certified = with_rounding(core, pair.rounding_a, pair.rounding_b, pair.scale);
@@ -170,7 +169,7 @@ struct BoxBox {
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const BoxPair<T> pair(job, block);
-    const Lanes<T> slack = pair.scale * Lanes<T>(kSlack<T>);
+    const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
     const Lanes<T> reach = slack + pair.rounding_a + pair.rounding_b;
     const Mask16 valid = bits(in_range(pair.scale * pair.scale));
     const Lanes<T> face = largest_face_separation(pair);
@@ -193,9 +192,10 @@ struct BoxBox {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+
+}  // namespace WINNOW_ISA_NAME::flat
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(box_box_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::BoxBox>();
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::flat::BoxBox>();
 
 }  // namespace winnow

@@ -8,9 +8,9 @@
 // left out is deeper than the result by more than float's errors, so that the few candidates kept
 // hold the true minimum.
 
-#include "pipeline/kernels/hull/hull_support.wide.h"
+#include "pipeline/kernels/hull/hull_pair.wide.h"
 
-namespace winnow::WINNOW_ISA_NAME {
+namespace winnow::WINNOW_ISA_NAME::hull {
 
 /// Height of the difference along a direction: of the first's face, or a point on an arc.
 struct HullDirection {
@@ -459,4 +459,4 @@ class HullDepth {
   HullDirection record_[kMostFaces];
 };
 
-}  // namespace winnow::WINNOW_ISA_NAME
+}  // namespace winnow::WINNOW_ISA_NAME::hull

@@ -1,13 +1,13 @@
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/box_feature.wide.h"
+#include "pipeline/kernels/round/round.wide.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::round {
 namespace {
 
 /// A capsule's segment middle + s axis, |s| <= half, in the frame of the box |x_i| <= size_i.
 template <typename T>
-struct Scene {
+struct CapsuleAndBox {
   Lanes<T> middle[3];
   Lanes<T> axis[3];
   Lanes<T> half;
@@ -15,7 +15,7 @@ struct Scene {
 };
 
 template <typename T>
-[[gnu::always_inline]] inline Vec3<T> towards_box(const Scene<T>& p, const Lanes<T>& s) {
+[[gnu::always_inline]] inline Vec3<T> towards_box(const CapsuleAndBox<T>& p, const Lanes<T>& s) {
   Lanes<T> w[3];
   for (int i = 0; i < 3; ++i) {
     const Lanes<T> x = p.middle[i] + p.axis[i] * s;
@@ -26,7 +26,7 @@ template <typename T>
 
 /// Half the derivative by s of the squared distance to the box: piecewise linear and never falling.
 template <typename T>
-[[gnu::always_inline]] inline Lanes<T> slope_at(const Scene<T>& p, const Lanes<T>& s) {
+[[gnu::always_inline]] inline Lanes<T> slope_at(const CapsuleAndBox<T>& p, const Lanes<T>& s) {
   const Vec3<T> w = towards_box(p, s);
   return -(w.x * p.axis[0] + w.y * p.axis[1] + w.z * p.axis[2]);
 }
@@ -37,7 +37,7 @@ template <typename T>
 /// of, and the root's is that over the square of the same part, so the distance is as good as the
 /// poses, whatever the angle.
 template <typename T>
-[[gnu::always_inline]] inline Lanes<T> closest_place(const Scene<T>& p) {
+[[gnu::always_inline]] inline Lanes<T> closest_place(const CapsuleAndBox<T>& p) {
   const Lanes<T> zero(T(0));
   Lanes<T> low = -p.half;
   Lanes<T> high = p.half;
@@ -76,7 +76,7 @@ struct Overlap {
 };
 
 template <typename T>
-[[gnu::always_inline]] inline Overlap<T> least_overlap(const Scene<T>& p) {
+[[gnu::always_inline]] inline Overlap<T> least_overlap(const CapsuleAndBox<T>& p) {
   const Lanes<T> zero(T(0));
   const Lanes<T> one(T(1));
   Overlap<T> r{Lanes<T>(T(-__builtin_inff())), {zero, zero, zero}, zero < one};
@@ -117,7 +117,7 @@ template <typename T>
 /// as the segment is level with what it touches, nearest to the edge (of the box's directions of
 /// which the normal is made) and over the face (the other directions).
 template <typename T>
-[[gnu::always_inline]] inline Lanes<T> deepest_place(const Scene<T>& p, const Vec3<T>& n) {
+[[gnu::always_inline]] inline Lanes<T> deepest_place(const CapsuleAndBox<T>& p, const Vec3<T>& n) {
   const Lanes<T> zero(T(0));
   const Lanes<T> one(T(1));
   const Lanes<T> level(T(64) * kEpsilon<T>);
@@ -144,8 +144,8 @@ template <typename T>
 }
 
 template <typename T>
-struct Solution {
-  Scene<T> scene;
+struct CapsuleBoxSolution {
+  CapsuleAndBox<T> scene;
   Rotation<T> axes;
   ProofLanes<T> proof;
   /// In the box's frame, from the capsule to the box.
@@ -157,13 +157,13 @@ struct Solution {
 
 /// Not inlined: all levels share it, and it takes long to compile.
 template <typename T>
-[[gnu::noinline]] Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
+[[gnu::noinline]] CapsuleBoxSolution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
   const Vec3<T> c = load_offset(job, block);
   const Turn<T> turn_a = load_turn<SideA>(job, block);
   const Turn<T> turn_b = load_turn<SideB>(job, block);
   const CapsuleLanes<T> capsule = load_capsule<SideA>(job, block);
   const BoxLanes<T> box = load_box<SideB>(job, block);
-  Solution<T> r;
+  CapsuleBoxSolution<T> r;
   r.axes = rotation(turn_b);
   const Vec3<T> u = r.axes.to_local(axis_z(turn_a));
   const Vec3<T> m = -r.axes.to_local(c);
@@ -180,7 +180,7 @@ template <typename T>
   const Vec3<T> w = towards_box(r.scene, s);
   const Lanes<T> length = sqrt(dot(w, w));
   // An error of the products is one over their sines. A flat sum is never deep but by rounding.
-  const Lanes<T> slack = scale * Lanes<T>(kSlack<T>);
+  const Lanes<T> slack = scale * Lanes<T>(kRoundSlack<T>);
   const LaneMask<T> inside = overlap.sharp & (overlap.distance < -slack);
   r.proof = {select(inside, overlap.distance - slack, length) - both,
              select(inside, overlap.distance, length) - both, scale,
@@ -193,12 +193,12 @@ template <typename T>
 
 template <typename T>
 [[gnu::always_inline]] inline void write_touches(NarrowJob& job, const PairBlock<T>& block,
-                                                 const Solution<T>& r,
+                                                 const CapsuleBoxSolution<T>& r,
                                                  const CertifiedLanes<T>& answer) {
   const Lanes<T> margin(static_cast<T>(job.margin));
   const Lanes<T> zero(T(0));
   const Lanes<T> one(T(1));
-  const Scene<T>& p = r.scene;
+  const CapsuleAndBox<T>& p = r.scene;
   const Vec3<T> axis = r.axes.to_world(Vec3<T>{p.axis[0], p.axis[1], p.axis[2]});
   const Lanes<T> normal[3] = {r.normal.x, r.normal.y, r.normal.z};
   Lanes<T> low = -p.half;
@@ -245,12 +245,12 @@ template <typename T>
 struct CapsuleBox {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
-    const Solution<T> r = solve(job, block);
+    const CapsuleBoxSolution<T> r = solve(job, block);
     if constexpr (L == kBoolean) {
       return answer_proven_sign(job, block, r.proof);
     } else {
       const CertifiedLanes<T> answer = answer_proven(r.proof, r.axes.to_world(r.normal));
-      const Scene<T>& p = r.scene;
+      const CapsuleAndBox<T>& p = r.scene;
       const Vec3<T> foot =
           r.axes.to_world(Vec3<T>{p.axis[0] * r.s, p.axis[1] * r.s, p.axis[2] * r.s});
       write_certified<L>(job, block, answer, foot, r.radius);
@@ -261,9 +261,9 @@ struct CapsuleBox {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+}  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_box_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::CapsuleBox>();
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::CapsuleBox>();
 
 }  // namespace winnow

@@ -1,8 +1,8 @@
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/segments.wide.h"
+#include "pipeline/kernels/round/round.wide.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::round {
 namespace {
 
 /// Two capsules, the first at the origin. Which body is the first depends on the sign of the offset
@@ -159,9 +159,9 @@ struct CapsuleCapsule {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+}  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_capsule_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::CapsuleCapsule>();
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::CapsuleCapsule>();
 
 }  // namespace winnow

@@ -1,13 +1,13 @@
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/triangle.wide.h"
+#include "pipeline/kernels/round/round.wide.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::round {
 namespace {
 
 /// A capsule's segment about the origin and a triangle, in the triangle's frame.
 template <typename T>
-struct Scene {
+struct CapsuleAndTriangle {
   Vec3<T> axis;
   Lanes<T> half;
   TriangleView<T> triangle;
@@ -43,7 +43,7 @@ template <typename T>
 }
 
 template <typename T>
-[[gnu::always_inline]] inline Verdict<T> prism_verdict(const Scene<T>& p,
+[[gnu::always_inline]] inline Verdict<T> prism_verdict(const CapsuleAndTriangle<T>& p,
                                                        const SegmentFeet<T> (&feet)[3]) {
   const Lanes<T> zero(T(0));
   const Lanes<T> one(T(1));
@@ -68,11 +68,11 @@ template <typename T>
 }
 
 template <typename T>
-[[gnu::always_inline]] inline Nearest<T> nearest_points(const Scene<T>& p,
-                                                        const SegmentFeet<T> (&feet)[3]) {
+[[gnu::always_inline]] inline NearestCandidate<T> nearest_points(const CapsuleAndTriangle<T>& p,
+                                                                 const SegmentFeet<T> (&feet)[3]) {
   const Lanes<T> zero(T(0));
   const TriangleView<T>& b = p.triangle;
-  Nearest<T> nearest{{zero, zero, zero}, Lanes<T>(T(__builtin_inff())), zero, zero};
+  NearestCandidate<T> nearest{{zero, zero, zero}, Lanes<T>(T(__builtin_inff())), zero, zero};
   for (int i = 0; i < 3; ++i) {
     const Vec3<T> w = b.vertex[i] + b.edge[i] * feet[i].t - p.axis * feet[i].s;
     nearer(nearest, w.x == w.x, w, feet[i].s, edge_feature(feet[i].t, i));
@@ -86,8 +86,8 @@ template <typename T>
 
 /// What all levels need.
 template <typename T>
-struct Solution {
-  Scene<T> scene;
+struct CapsuleTriangleSolution {
+  CapsuleAndTriangle<T> scene;
   Rotation<T> axes;
   ProofLanes<T> proof;
   Vec3<T> normal;
@@ -98,10 +98,10 @@ struct Solution {
 };
 
 template <typename T>
-[[gnu::always_inline]] inline void prove(Solution<T>& r, const Lanes<T>& scale) {
+[[gnu::always_inline]] inline void prove(CapsuleTriangleSolution<T>& r, const Lanes<T>& scale) {
   const Lanes<T> zero(T(0));
   const Lanes<T> one(T(1));
-  const Scene<T>& p = r.scene;
+  const CapsuleAndTriangle<T>& p = r.scene;
   const TriangleView<T>& b = p.triangle;
   SegmentFeet<T> feet[3];
   for (int i = 0; i < 3; ++i) {
@@ -109,14 +109,14 @@ template <typename T>
                            p.across[i], p.across_over[i] * p.across_over[i]);
   }
   Verdict<T> v = prism_verdict(p, feet);
-  const Nearest<T> nearest = nearest_points(p, feet);
+  const NearestCandidate<T> nearest = nearest_points(p, feet);
   const Lanes<T> length = sqrt(nearest.square);
   const Vec3<T> n = nearest.w * (one / length);
   const Lanes<T> along = min(min(dot(b.vertex[0], n), dot(b.vertex[1], n)), dot(b.vertex[2], n)) -
                          p.half * abs(dot(p.axis, n));
   // An error of the prism's normals is one over their sines. A flat prism is never deep but by
   // rounding.
-  const Lanes<T> slack = scale * Lanes<T>(kSlack<T>);
+  const Lanes<T> slack = scale * Lanes<T>(kRoundSlack<T>);
   const LaneMask<T> pierced = v.sharp & (v.gap.distance < -slack);
   const Lanes<T> depth = v.gap.distance;
   widen(v.gap, !pierced, along, n);
@@ -130,17 +130,18 @@ template <typename T>
 
 /// Not inlined: all levels share it, and it takes long to compile.
 template <typename T>
-[[gnu::noinline]] Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
+[[gnu::noinline]] CapsuleTriangleSolution<T> solve(const NarrowJob& job,
+                                                   const PairBlock<T>& block) {
   const Vec3<T> c = load_offset(job, block);
   const Turn<T> turn_a = load_turn<SideA>(job, block);
   const Turn<T> turn_b = load_turn<SideB>(job, block);
   const CapsuleLanes<T> capsule = load_capsule<SideA>(job, block);
   const TriangleLanes<T> triangle = load_triangle<SideB>(job, block);
-  Solution<T> r;
+  CapsuleTriangleSolution<T> r;
   r.axes = rotation(turn_b);
   r.radius = capsule.radius;
   r.radius_b = triangle.rounding;
-  Scene<T>& p = r.scene;
+  CapsuleAndTriangle<T>& p = r.scene;
   p.axis = r.axes.to_local(axis_z(turn_a));
   p.half = capsule.half_length;
   p.triangle = view_triangle(triangle, r.axes.to_local(c));
@@ -165,7 +166,7 @@ struct Stretch {
 };
 
 template <typename T>
-[[gnu::always_inline]] inline Stretch<T> stretch_over(const Scene<T>& p) {
+[[gnu::always_inline]] inline Stretch<T> stretch_over(const CapsuleAndTriangle<T>& p) {
   const Lanes<T> zero(T(0));
   const Lanes<T> face(T(7));
   Stretch<T> r{-p.half, p.half, face, face};
@@ -192,10 +193,10 @@ template <typename T>
 /// they are closest.
 template <typename T>
 [[gnu::always_inline]] inline void write_touches(NarrowJob& job, const PairBlock<T>& block,
-                                                 const Solution<T>& r,
+                                                 const CapsuleTriangleSolution<T>& r,
                                                  const CertifiedLanes<T>& answer) {
   const Lanes<T> margin(static_cast<T>(job.margin));
-  const Scene<T>& p = r.scene;
+  const CapsuleAndTriangle<T>& p = r.scene;
   const Vec3<T> axis = r.axes.to_world(p.axis);
   const Lanes<T> rise = dot(p.triangle.normal, r.normal);
   const Lanes<T> tilt = dot(p.axis, r.normal);
@@ -225,7 +226,7 @@ template <typename T>
 struct CapsuleTriangle {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
-    const Solution<T> r = solve(job, block);
+    const CapsuleTriangleSolution<T> r = solve(job, block);
     if constexpr (L == kBoolean) {
       return answer_proven_sign(job, block, r.proof);
     } else {
@@ -239,9 +240,9 @@ struct CapsuleTriangle {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+}  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_triangle_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::CapsuleTriangle>();
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::CapsuleTriangle>();
 
 }  // namespace winnow

@@ -2,10 +2,10 @@
 // A half-space reaches to infinity, so the direction is always that of its plane.
 
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/segments.wide.h"
+#include "pipeline/kernels/round/round.wide.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::round {
 namespace {
 
 /// The half-space's plane, relative to the position of body a: the outward normal, and the height
@@ -203,18 +203,19 @@ struct BoxFeet {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+}  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_half_space_kernels) =
     WINNOW_ISA_NAME::narrow_kernels_of<
-        WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::SphereFeet, 1>>();
+        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::SphereFeet, 1>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_half_space_kernels) =
     WINNOW_ISA_NAME::narrow_kernels_of<
-        WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::CapsuleFeet, 2>>();
+        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::CapsuleFeet, 2>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(box_half_space_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::BoxFeet, 4>>();
+    WINNOW_ISA_NAME::narrow_kernels_of<
+        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::BoxFeet, 4>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(triangle_half_space_kernels) =
     WINNOW_ISA_NAME::narrow_kernels_of<
-        WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::TriangleFeet, 4>>();
+        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::TriangleFeet, 4>>();
 
 }  // namespace winnow

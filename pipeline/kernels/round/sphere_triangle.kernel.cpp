@@ -1,17 +1,17 @@
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/triangle.wide.h"
+#include "pipeline/kernels/round/round.wide.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::round {
 namespace {
 
 /// The closest point of the triangle to the origin.
 template <typename T>
-[[gnu::always_inline]] inline Nearest<T> nearest_point(const TriangleView<T>& b) {
+[[gnu::always_inline]] inline NearestCandidate<T> nearest_point(const TriangleView<T>& b) {
   const Lanes<T> zero(T(0));
   const Lanes<T> one(T(1));
   const Vec3<T> origin{zero, zero, zero};
-  Nearest<T> nearest{origin, Lanes<T>(T(__builtin_inff())), zero, zero};
+  NearestCandidate<T> nearest{origin, Lanes<T>(T(__builtin_inff())), zero, zero};
   for (int i = 0; i < 3; ++i) {
     const Lanes<T> place = -dot(b.vertex[i], b.edge[i]) / b.square[i];
     const Lanes<T> t = clamp(select(b.square[i] > zero, place, zero), zero, one);
@@ -38,7 +38,7 @@ template <typename T>
 }
 
 template <typename T>
-struct Solution {
+struct SphereTriangleSolution {
   ProofLanes<T> proof;
   /// In the axes of the world.
   Vec3<T> normal;
@@ -48,7 +48,7 @@ struct Solution {
 
 /// Not inlined: all levels share it, and it takes long to compile.
 template <typename T>
-[[gnu::noinline]] Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
+[[gnu::noinline]] SphereTriangleSolution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
   const Vec3<T> c = load_offset(job, block);
   const Turn<T> turn = load_turn<SideB>(job, block);
   const Lanes<T> ra = load_sphere<SideA>(job, block);
@@ -56,7 +56,7 @@ template <typename T>
 
   const Rotation<T> axes = rotation(turn);
   const TriangleView<T> view = view_triangle(triangle, axes.to_local(c));
-  const Nearest<T> nearest = nearest_point(view);
+  const NearestCandidate<T> nearest = nearest_point(view);
   const Lanes<T> length = sqrt(nearest.square);
   const Gap<T> gap = widest_gap(view, nearest.w, length);
   const Lanes<T> radius = ra + triangle.rounding;
@@ -70,7 +70,7 @@ template <typename T>
 struct SphereTriangle {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
-    const Solution<T> r = solve(job, block);
+    const SphereTriangleSolution<T> r = solve(job, block);
     if constexpr (L == kBoolean) {
       return answer_proven_sign(job, block, r.proof);
     } else {
@@ -88,9 +88,9 @@ struct SphereTriangle {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+}  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_triangle_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::SphereTriangle>();
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::SphereTriangle>();
 
 }  // namespace winnow

@@ -1,13 +1,13 @@
 #pragma once
 
-// Walks that come upon triangles roughly in the order of a measure: the time at which a moving box
-// meets theirs, or the squared distance from it. Boxes are measured in double.
+// Descents that come upon triangles roughly in the order of a measure: the time at which a moving
+// box meets theirs, or the squared distance from it. Boxes are measured in double.
 
+#include "partitions/tree/traversal.wide.h"
 #include "pipeline/mesh/mesh_lanes.wide.h"
-#include "pipeline/mesh/mesh_walks.kernel.h"
-#include "simd/lanes/boxes.h"
+#include "pipeline/mesh/mesh_traversal.kernel.h"
 
-namespace winnow::WINNOW_ISA_NAME {
+namespace winnow::WINNOW_ISA_NAME::mesh {
 
 /// More than the relative error of the few operations that make a measure.
 inline constexpr double kMeasureError = 0x1p-48;
@@ -110,10 +110,52 @@ inline void order_lanes(const Measure& measure, const Box8& low, const Box8& hig
   }
 }
 
-struct WaitingNode {
-  double measure;
-  std::uint32_t node;
-  std::uint32_t level;
+/// The open nodes of a descent, of which the nearest is the last. Every level leaves at most 15
+/// nodes waiting while one is descended into, which bounds the stack.
+template <typename Measure>
+class OpenMeshNodes {
+ public:
+  OpenMeshNodes(const MeshView& mesh, const Measure& measure) : mesh_(mesh), measure_(measure) {}
+
+  bool open(std::uint32_t level, std::uint32_t first_node, std::uint32_t& node) {
+    const Box16 nodes = load_nodes(mesh_, level, first_node);
+    Box8 low = in_double<0>(nodes);
+    Box8 high = in_double<1>(nodes);
+    decode(mesh_, low);
+    decode(mesh_, high);
+    OrderedLanes found;
+    order_lanes(measure_, low, high, present(mesh_.count[level], first_node), found);
+    if (found.count == 0) return false;
+    for (std::uint32_t i = found.count; i-- > 1;) {
+      waiting_[size_++] = {found.measure[i], first_node + found.lane[i], level};
+    }
+    node = first_node + found.lane[0];
+    return true;
+  }
+
+  /// A negative limit ends the descent.
+  bool take(std::uint32_t& level, std::uint32_t& node) {
+    while (size_ != 0 && measure_.limit() >= 0.0) {
+      const Waiting& next = waiting_[--size_];
+      if (!measure_.within(next.measure)) continue;
+      level = next.level;
+      node = next.node;
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  struct Waiting {
+    double measure;
+    std::uint32_t node;
+    std::uint32_t level;
+  };
+
+  const MeshView& mesh_;
+  const Measure& measure_;
+  Waiting waiting_[kMaxMeshLevels * kMeshFanout];
+  std::uint32_t size_ = 0;
 };
 
 /// Shows a leaf's triangles within the limit.
@@ -130,34 +172,15 @@ inline void show_leaf(const MeshView& mesh, std::uint32_t leaf, Measure& measure
   measure.set_limit(visitor.visit(visitor.context, found.lane, found.count, measure.limit()));
 }
 
-/// Depth first, the nearest child first. Every level leaves at most 15 nodes waiting while one is
-/// descended into, which bounds the stack.
+/// Shows the triangles within the measure's limit, the nearest leaf first.
 template <typename Measure>
-inline void walk_in_order(const MeshView& mesh, Measure& measure, const SlotVisitor& visitor) {
-  WaitingNode waiting[kMaxMeshLevels * kMeshFanout];
-  std::uint32_t size = 0;
-  const auto open = [&](std::uint32_t level, std::uint32_t first_node) {
-    const Box16 nodes = load_nodes(mesh, level, first_node);
-    Box8 low = in_double<0>(nodes);
-    Box8 high = in_double<1>(nodes);
-    decode(mesh, low);
-    decode(mesh, high);
-    OrderedLanes found;
-    order_lanes(measure, low, high, present(mesh.count[level], first_node), found);
-    for (std::uint32_t i = found.count; i-- > 0;) {
-      waiting[size++] = {found.measure[i], first_node + found.lane[i], level};
-    }
-  };
-  open(mesh.levels - 1, 0);
-  while (size != 0 && measure.limit() >= 0.0) {
-    const WaitingNode next = waiting[--size];
-    if (!measure.within(next.measure)) continue;
-    if (next.level == 0) {
-      show_leaf(mesh, next.node, measure, visitor);
-    } else {
-      open(next.level - 1, next.node * kMeshFanout);
-    }
-  }
+inline void show_in_order(const MeshView& mesh, Measure& measure, const SlotVisitor& visitor) {
+  if (!(measure.limit() >= 0.0)) return;
+  OpenMeshNodes<Measure> open(mesh, measure);
+  descend(mesh.levels, open, [&](std::uint32_t leaf) {
+    show_leaf(mesh, leaf, measure, visitor);
+    return true;
+  });
 }
 
-}  // namespace winnow::WINNOW_ISA_NAME
+}  // namespace winnow::WINNOW_ISA_NAME::mesh

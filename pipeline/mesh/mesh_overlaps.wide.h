@@ -1,16 +1,18 @@
 #pragma once
 
+// Triangles of a mesh that meet a box, or a ball in it.
+//
 // Sixteen triangles against a ball. A convex shape and a ball are apart only along the way from the
 // ball's middle to the closest point of the shape: for a triangle that is its normal, the way to a
 // corner, or the way to an edge at a right angle (Ericson, "Real-Time Collision Detection", 2005,
 // 5.2.7 and 5.1.5). Any direction serves as long as all three corners lie beyond the ball along it,
 // so that directions need not be exact; only heights along them are, to a few roundings.
 
+#include "partitions/tree/traversal.wide.h"
 #include "pipeline/mesh/mesh_lanes.wide.h"
-#include "pipeline/mesh/mesh_walks.kernel.h"
-#include "simd/lanes/compress.h"
+#include "pipeline/mesh/mesh_traversal.kernel.h"
 
-namespace winnow::WINNOW_ISA_NAME {
+namespace winnow::WINNOW_ISA_NAME::mesh {
 
 using Lanes3 = Floats[3];
 
@@ -129,4 +131,39 @@ class BallSieve {
   alignas(64) std::uint32_t slot_[2 * kLanes] = {};
 };
 
-}  // namespace winnow::WINNOW_ISA_NAME
+/// Calls show(corners, hits, first slot) for leaves with triangles in the box.
+template <typename Show>
+[[gnu::always_inline]] inline void visit_box(const MeshView& mesh, const MeshBoxJob& job,
+                                             Show&& show) {
+  traverse<kMaxMeshLevels>(
+      mesh.levels,
+      [&](std::uint32_t level, std::uint32_t first_node) {
+        return overlap(load_nodes(mesh, level, first_node), job.node_low, job.node_high) &
+               present(mesh.count[level], first_node);
+      },
+      [&](std::uint32_t level, std::uint32_t node) {
+        if (level != 0) return Next::below;
+        const std::uint32_t first_slot = node * kMeshFanout;
+        const Corners16 corners = load_corners(mesh, node);
+        const Mask16 hits =
+            overlap(box_of(corners), job.low, job.high) & present(mesh.triangle_count, first_slot);
+        if (hits != 0) show(corners, hits, first_slot);
+        return Next::past;
+      });
+}
+
+inline void find_overlaps(const MeshView& mesh, const MeshBoxJob& job, SlotSink& out) {
+  if (job.has_ball) {
+    BallSieve sieve(job.ball, out);
+    visit_box(mesh, job, [&](const Corners16& corners, Mask16 hits, std::uint32_t first_slot) {
+      sieve.add(corners, hits, first_slot);
+    });
+    sieve.finish();
+    return;
+  }
+  visit_box(mesh, job, [&](const Corners16&, Mask16 hits, std::uint32_t first_slot) {
+    put_slots(count_from(first_slot), hits, out);
+  });
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME::mesh
