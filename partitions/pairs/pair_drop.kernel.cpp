@@ -20,7 +20,7 @@ std::size_t split(const std::uint32_t* pairs, std::size_t count, const std::uint
     const Mask16 hits = test_bits(words, ids);
     const Mask16 stay = ~(hits | hits >> 1U) & 0x5555U;
     const Mask16 both = stay | stay << 1U;
-    if constexpr (KeepDropped) dropped += compress_store(~both & 0xFFFFU, ids, dropped);
+    if constexpr (KeepDropped) dropped += compress_store(~both & kAllRows, ids, dropped);
     out += compress_store(both, ids, out);
   }
   for (; i < count; ++i) {

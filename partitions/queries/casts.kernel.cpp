@@ -157,7 +157,7 @@ class AllHits {
   AllHits(const Wanted& wanted, const std::uint32_t* question, PairSink& sink)
       : wanted_(wanted), question_(question), sink_(sink) {}
 
-  /// Two pairs a hit, and a sink with room has some for 272.
+  /// Two pairs per hit, and a sink with room has some for 272.
   bool make_room() { return has_room(sink_); }
   void touched(std::uint32_t s, double t, std::uint32_t id) {
     if (!wanted_.accepts(id)) return;
@@ -206,7 +206,7 @@ void sort_few(std::uint64_t* results, std::uint32_t size) {
       const Mask16 not_before = bits(own <= others);
       const Mask16 equal = not_before & bits(others <= own);
       const std::uint32_t ahead = i > b * kLanes ? i - b * kLanes : 0;
-      place += count(~not_before & 0xFFFFU);
+      place += count(~not_before & kAllRows);
       place += count(equal & lanes_below(ahead < kLanes ? ahead : kLanes));
     }
     results[place] = copy[i];

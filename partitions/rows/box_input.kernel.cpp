@@ -21,8 +21,8 @@ bool box_is_legal(const float* f, float infinity) {
 bool legal(const float* floats, std::size_t count) {
   const float infinity = __builtin_inff();
   // The largest finite float: compared by <= it does what < infinity does.
-  const Floats most = Floats(__FLT_MAX__);
-  const Floats least = Floats(-__FLT_MAX__);
+  const Floats most = Floats(kLargest<float>);
+  const Floats least = Floats(-kLargest<float>);
   constexpr Mask16 kLower[3] = {0x71C7U, 0xC71CU, 0x1C71U};
   std::size_t i = 0;
   // One box short of the end, because the shifted loads run three floats over.
@@ -44,14 +44,14 @@ bool legal(const float* floats, std::size_t count) {
 }
 
 float clamp(float value) {
-  const float least = value < -__FLT_MAX__ ? -__FLT_MAX__ : value;
-  return least > __FLT_MAX__ ? __FLT_MAX__ : least;
+  const float least = value < -kLargest<float> ? -kLargest<float> : value;
+  return least > kLargest<float> ? kLargest<float> : least;
 }
 
 void write_rows(const float* floats, std::uint32_t first, std::uint32_t count,
                 const std::uint32_t* id, float* const* column, std::size_t begin, std::size_t end) {
-  const Floats most = Floats(__FLT_MAX__);
-  const Floats least = Floats(-__FLT_MAX__);
+  const Floats most = Floats(kLargest<float>);
+  const Floats least = Floats(-kLargest<float>);
   for (std::size_t row = begin; row < end; row += kLanes) {
     // Boxes are met in any order: those of the next but one block are on their way meanwhile.
     std::uint32_t inside = 0;
@@ -81,12 +81,13 @@ void write_rows(const float* floats, std::uint32_t first, std::uint32_t count,
 
 /// The longest edge of those that end on both sides, negated.
 Floats minus_longest_edge(const Box16& box) {
-  // Infinite ends are stored as the largest float.
-  constexpr float kMost = 3.4028232e38F;
+  // Infinite ends are stored as the largest float: all others are at most the one below it.
+  constexpr float kMost = 0x1.fffffcp127F;
+  static_assert(kMost < kLargest<float>);
   Floats least = Floats(0.0F);
   for (int axis = 0; axis < 3; ++axis) {
     Floats edge = box.low[axis] - box.high[axis];
-    edge = or_infinity(-__FLT_MAX__ <= edge, edge);
+    edge = or_infinity(-kLargest<float> <= edge, edge);
     edge = or_infinity(box.high[axis] <= kMost, edge);
     edge = or_infinity(-kMost <= box.low[axis], edge);
     least = min(least, edge);
@@ -101,7 +102,7 @@ void within(const float* const* given, const float* const* stored, std::size_t c
     const Box16 old = load_slabs_unaligned<3>(stored, at);
     const Floats margin = distance - share * minus_longest_edge(box);
     const Floats spare = 4.0F * margin;
-    Mask16 ok = 0xFFFFU;
+    Mask16 ok = kAllRows;
     for (int axis = 0; axis < 3; ++axis) {
       const Floats most = box.high[axis] - box.low[axis] + spare;
       ok &= bits(old.low[axis] <= box.low[axis]) & bits(box.high[axis] <= old.high[axis]) &

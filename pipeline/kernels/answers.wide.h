@@ -24,7 +24,7 @@ struct AnswerLanes {
   Vec3<T> point;
 };
 
-/// One contact point a lane, for the lanes of a mask.
+/// One contact point per lane, for the lanes of a mask.
 template <typename T>
 struct ContactLanes {
   Vec3<T> position;
@@ -158,78 +158,30 @@ template <typename T>
            as_floats(point.depth), as_floats(point.feature_a), as_floats(point.feature_b)}};
 }
 
-/// a0 b0 a1 b1 ... of eight lanes, from lane 0 or from lane 8.
-template <int From>
-[[gnu::always_inline]] inline Floats zip(const Floats& a, const Floats& b) {
-#if defined(WINNOW_ISA_IS_avx512)
-  Floats r;
-  const __m512i order =
-      _mm512_add_epi32(_mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23),
-                       _mm512_set1_epi32(From));
-  r.part[0] = _mm512_permutex2var_ps(a.part[0], order, b.part[0]);
-  return r;
-#else
-  alignas(64) float from[2][kLanes];
-  alignas(64) float to[kLanes];
-  a.store_unaligned(from[0]);
-  b.store_unaligned(from[1]);
-  for (int i = 0; i < kLanes; ++i) to[i] = from[i % 2][From + i / 2];
-  return Floats::load(to);
-#endif
-}
-/// The same of the bits of two masks of eight lanes.
-[[gnu::always_inline]] inline Mask16 zip_bits(Mask16 a, Mask16 b) {
-  const auto spread = [](Mask16 m) {
-    m = (m | m << 4U) & 0x0F0FU;
-    m = (m | m << 2U) & 0x3333U;
-    return (m | m << 1U) & 0x5555U;
-  };
-  return spread(a & 0xFFU) | spread(b & 0xFFU) << 1U;
-}
-
 /// Appends the contacts in the lanes.
 [[gnu::always_inline]] inline void append_contacts(ContactWriter& out, Mask16 lanes,
                                                    const ContactColumns& c) {
   for (int k = 0; k < 3; ++k) compress_store(lanes, c.column[k], out.position[k] + out.size);
   compress_store(lanes, c.column[3], out.depth + out.size);
-  std::uint64_t* feature = out.feature + out.size;
-#if defined(WINNOW_ISA_IS_avx512)
-  const auto m = static_cast<__mmask16>(lanes);
-  const auto pack = [m](__m512 v) { return _mm512_maskz_compress_epi32(m, _mm512_cvtps_epi32(v)); };
-  const __m512i a = pack(c.column[4].part[0]);
-  const __m512i b = pack(c.column[5].part[0]);
-  const __m512i low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
-  const __m512i high = _mm512_add_epi32(low, _mm512_set1_epi32(8));
-  _mm512_storeu_si512(feature, _mm512_permutex2var_epi32(b, low, a));
-  _mm512_storeu_si512(feature + 8, _mm512_permutex2var_epi32(b, high, a));
-#else
-  alignas(64) float a[kLanes];
-  alignas(64) float b[kLanes];
-  c.column[4].store_unaligned(a);
-  c.column[5].store_unaligned(b);
-  for (Mask16 rest = lanes; rest != 0; rest &= rest - 1) {
-    const unsigned lane = first(rest);
-    *feature++ = static_cast<std::uint64_t>(a[lane]) << 32U | static_cast<std::uint64_t>(b[lane]);
-  }
-#endif
+  compress_words(lanes, c.column[5], c.column[4], out.feature + out.size);
   out.size += count(lanes);
 }
 
-/// Two points a lane.
+/// Two points per lane.
 template <typename T>
 [[gnu::always_inline]] inline void append_zipped(ContactWriter& out, const PairBlock<T>&,
                                                  const Mask16 (&lanes)[2],
                                                  const ContactColumns (&c)[2]) {
   ContactColumns zipped;
-  for (int k = 0; k < 6; ++k) zipped.column[k] = zip<0>(c[0].column[k], c[1].column[k]);
-  append_contacts(out, zip_bits(lanes[0], lanes[1]), zipped);
-  if constexpr (Lanes<T>::kCount == 16) {
-    for (int k = 0; k < 6; ++k) zipped.column[k] = zip<8>(c[0].column[k], c[1].column[k]);
-    append_contacts(out, zip_bits(lanes[0] >> 8U, lanes[1] >> 8U), zipped);
+  for (int k = 0; k < 6; ++k) zipped.column[k] = interleave<0>(c[0].column[k], c[1].column[k]);
+  append_contacts(out, interleave_bits(lanes[0], lanes[1]), zipped);
+  if constexpr (Lanes<T>::kCount == kLanes) {
+    for (int k = 0; k < 6; ++k) zipped.column[k] = interleave<8>(c[0].column[k], c[1].column[k]);
+    append_contacts(out, interleave_bits(lanes[0] >> 8U, lanes[1] >> 8U), zipped);
   }
 }
 
-/// Any number of points a lane.
+/// Any number of points per lane.
 template <int Points>
 inline void append_pair_by_pair(ContactWriter& out, const Mask16 (&lanes)[Points],
                                 const ContactColumns (&columns)[Points]) {

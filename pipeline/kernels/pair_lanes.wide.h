@@ -13,7 +13,7 @@ namespace winnow::WINNOW_ISA_NAME {
 /// The pairs in the lanes of Lanes<T>.
 template <typename T>
 struct PairBlock {
-  /// One a lane. Lanes from `count` on repeat the job's last pair.
+  /// One per lane. Lanes from `count` on repeat the job's last pair.
   const BodyPair* pairs;
   /// Index in the job of the pair in lane 0.
   std::uint32_t first;

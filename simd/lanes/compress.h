@@ -1,6 +1,7 @@
 #pragma once
 
-// Indices from masks and masks from bitmaps. The set lanes are packed to the front. Every store
+// Indices from masks, masks from bitmaps, and lanes of two interleaved. The set lanes are packed to
+// the front. Every store
 // writes whole registers, so the destination needs room for 16 elements from where it starts,
 // whatever the mask.
 
@@ -184,6 +185,61 @@ inline unsigned emit_pairs(Mask16 mask, const Uints& v, std::uint32_t q, std::ui
   }
 #endif
   return count(mask);
+}
+
+/// Writes low + 2^32 high for the set lanes, whose numbers are whole and below 2^24; room for 16 is
+/// needed.
+[[gnu::always_inline]] inline void compress_words(Mask16 mask, const Floats& low,
+                                                  const Floats& high, std::uint64_t* out) {
+#if defined(WINNOW_ISA_IS_avx512)
+  const auto m = static_cast<__mmask16>(mask);
+  const auto pack = [m](__m512 v) { return _mm512_maskz_compress_epi32(m, _mm512_cvtps_epi32(v)); };
+  const __m512i a = pack(high.part[0]);
+  const __m512i b = pack(low.part[0]);
+  const __m512i first_half =
+      _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+  const __m512i last_half = _mm512_add_epi32(first_half, _mm512_set1_epi32(8));
+  _mm512_storeu_si512(out, _mm512_permutex2var_epi32(b, first_half, a));
+  _mm512_storeu_si512(out + 8, _mm512_permutex2var_epi32(b, last_half, a));
+#else
+  alignas(64) float a[kLanes];
+  alignas(64) float b[kLanes];
+  high.store_unaligned(a);
+  low.store_unaligned(b);
+  for (; mask != 0; mask &= mask - 1) {
+    const unsigned lane = first(mask);
+    *out++ = static_cast<std::uint64_t>(a[lane]) << 32U | static_cast<std::uint64_t>(b[lane]);
+  }
+#endif
+}
+
+/// a0 b0 a1 b1 ... of eight lanes, from lane 0 or from lane 8.
+template <int From>
+[[gnu::always_inline]] inline Floats interleave(const Floats& a, const Floats& b) {
+#if defined(WINNOW_ISA_IS_avx512)
+  const __m512i order =
+      _mm512_add_epi32(_mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23),
+                       _mm512_set1_epi32(From));
+  Floats r;
+  r.part[0] = _mm512_permutex2var_ps(a.part[0], order, b.part[0]);
+  return r;
+#else
+  alignas(64) float from[2][kLanes];
+  alignas(64) float to[kLanes];
+  a.store_unaligned(from[0]);
+  b.store_unaligned(from[1]);
+  for (int i = 0; i < kLanes; ++i) to[i] = from[i % 2][From + i / 2];
+  return Floats::load(to);
+#endif
+}
+/// The same of the bits of two masks of eight lanes.
+[[gnu::always_inline]] inline Mask16 interleave_bits(Mask16 a, Mask16 b) {
+  const auto spread = [](Mask16 m) {
+    m = (m | m << 4U) & 0x0F0FU;
+    m = (m | m << 2U) & 0x3333U;
+    return (m | m << 1U) & 0x5555U;
+  };
+  return spread(a & 0xFFU) | spread(b & 0xFFU) << 1U;
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME

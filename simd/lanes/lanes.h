@@ -325,11 +325,11 @@ inline float reduce_max(const Floats& v) {
   r.part[0] = _mm256_set_m128(_mm256_cvtpd_ps(low.part[1]), _mm256_cvtpd_ps(low.part[0]));
   r.part[1] = _mm256_set_m128(_mm256_cvtpd_ps(high.part[1]), _mm256_cvtpd_ps(high.part[0]));
 #else
-  alignas(64) double from[16];
-  alignas(64) float to[16];
+  alignas(64) double from[kLanes];
+  alignas(64) float to[kLanes];
   low.store(from);
   high.store(from + 8);
-  for (int lane = 0; lane < 16; ++lane) to[lane] = static_cast<float>(from[lane]);
+  for (int lane = 0; lane < kLanes; ++lane) to[lane] = static_cast<float>(from[lane]);
   r = Floats::load(to);
 #endif
   return r;
@@ -357,7 +357,7 @@ template <int Half>
   r.part[0] = _mm256_cvtps_pd(_mm256_castps256_ps128(half));
   r.part[1] = _mm256_cvtps_pd(_mm256_extractf128_ps(half, 1));
 #else
-  alignas(64) float from[16];
+  alignas(64) float from[kLanes];
   alignas(64) double to[8];
   v.store(from);
   for (int lane = 0; lane < 8; ++lane) to[lane] = static_cast<double>(from[Half * 8 + lane]);

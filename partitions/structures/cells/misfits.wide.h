@@ -39,7 +39,7 @@ std::uint32_t write_misfits(const RowView& rows, std::uint32_t begin, std::uint3
                             std::uint32_t* out, Kept&& kept) {
   std::uint32_t found = 0;
   for (std::uint32_t row = begin; row < end; row += kLanes) {
-    const Mask16 lanes = end - row < kLanes ? lanes_below(end - row) : 0xFFFFU;
+    const Mask16 lanes = end - row < kLanes ? lanes_below(end - row) : kAllRows;
     for (Mask16 bad = ~kept(row) & lanes; bad != 0; bad &= bad - 1) {
       const std::uint32_t r = row + first(bad);
       out[found] = r;

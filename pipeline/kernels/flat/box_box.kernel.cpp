@@ -8,33 +8,45 @@ namespace {
 // Where a pair stands, and its normal, in memory.
 template <typename T>
 struct BoxStage {
-  Stage<T, 32> stage;
+  /// Where the numbers begin.
+  enum Place {
+    kAxesA = 0,
+    kAxesB = 9,
+    kHalfA = 18,
+    kHalfB = 21,
+    kOffset = 24,
+    kNormal = 27,
+    kRoundingA = 30,
+    kRoundingB,
+    kCount
+  };
+  Stage<T, kCount> stage;
 
   [[gnu::always_inline]] BoxStage(const BoxPair<T>& pair, const Vec3<T>& normal) {
-    stage.put(0, pair.frame_a.x);
-    stage.put(3, pair.frame_a.y);
-    stage.put(6, pair.frame_a.z);
-    stage.put(9, pair.frame_b.x);
-    stage.put(12, pair.frame_b.y);
-    stage.put(15, pair.frame_b.z);
-    stage.put(18, Vec3<T>{pair.half_a[0], pair.half_a[1], pair.half_a[2]});
-    stage.put(21, Vec3<T>{pair.half_b[0], pair.half_b[1], pair.half_b[2]});
-    stage.put(24, pair.offset);
-    stage.put(27, normal);
-    stage.put(30, pair.rounding_a);
-    stage.put(31, pair.rounding_b);
+    stage.put(kAxesA, pair.frame_a.x);
+    stage.put(kAxesA + 3, pair.frame_a.y);
+    stage.put(kAxesA + 6, pair.frame_a.z);
+    stage.put(kAxesB, pair.frame_b.x);
+    stage.put(kAxesB + 3, pair.frame_b.y);
+    stage.put(kAxesB + 6, pair.frame_b.z);
+    stage.put(kHalfA, Vec3<T>{pair.half_a[0], pair.half_a[1], pair.half_a[2]});
+    stage.put(kHalfB, Vec3<T>{pair.half_b[0], pair.half_b[1], pair.half_b[2]});
+    stage.put(kOffset, pair.offset);
+    stage.put(kNormal, normal);
+    stage.put(kRoundingA, pair.rounding_a);
+    stage.put(kRoundingB, pair.rounding_b);
   }
   void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
     BoxFrame box_a;
     BoxFrame box_b;
-    stage.get(0, 9, lane, &box_a.axis[0][0]);
-    stage.get(9, 9, lane, &box_b.axis[0][0]);
-    stage.get(18, 3, lane, box_a.half);
-    stage.get(21, 3, lane, box_b.half);
-    stage.get(24, 3, lane, box_b.center);
-    stage.get(27, 3, lane, normal);
-    stage.get(30, 1, lane, &box_a.rounding);
-    stage.get(31, 1, lane, &box_b.rounding);
+    stage.get(kAxesA, 9, lane, &box_a.axis[0][0]);
+    stage.get(kAxesB, 9, lane, &box_b.axis[0][0]);
+    stage.get(kHalfA, 3, lane, box_a.half);
+    stage.get(kHalfB, 3, lane, box_b.half);
+    stage.get(kOffset, 3, lane, box_b.center);
+    stage.get(kNormal, 3, lane, normal);
+    stage.get(kRoundingA, 1, lane, &box_a.rounding);
+    stage.get(kRoundingB, 1, lane, &box_b.rounding);
     for (double& c : box_a.center) c = 0.0;
     const double back[3] = {-normal[0], -normal[1], -normal[2]};
     a = box_patch(box_a, normal);

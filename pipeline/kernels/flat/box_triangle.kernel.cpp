@@ -280,29 +280,40 @@ template <typename T>
 // Where a pair stands, and its normal, in memory.
 template <typename T>
 struct BoxTriangleStage {
-  Stage<T, 29> stage;
+  /// Where the numbers begin.
+  enum Place {
+    kAxes = 0,
+    kHalf = 9,
+    kVertices = 12,
+    kNormal = 21,
+    kOffset = 24,
+    kBoxRounding = 27,
+    kTriangleRounding,
+    kCount
+  };
+  Stage<T, kCount> stage;
 
   [[gnu::always_inline]] BoxTriangleStage(const BoxTrianglePair<T>& pair, const Vec3<T>& normal) {
-    stage.put(0, pair.frame.x);
-    stage.put(3, pair.frame.y);
-    stage.put(6, pair.frame.z);
-    stage.put(9, pair.half);
-    for (int i = 0; i < 3; ++i) stage.put(12 + 3 * i, pair.to_world(pair.b.vertex[i]));
-    stage.put(21, normal);
-    stage.put(24, pair.offset);
-    stage.put(27, pair.box_rounding);
-    stage.put(28, pair.b.rounding);
+    stage.put(kAxes, pair.frame.x);
+    stage.put(kAxes + 3, pair.frame.y);
+    stage.put(kAxes + 6, pair.frame.z);
+    stage.put(kHalf, pair.half);
+    for (int i = 0; i < 3; ++i) stage.put(kVertices + 3 * i, pair.to_world(pair.b.vertex[i]));
+    stage.put(kNormal, normal);
+    stage.put(kOffset, pair.offset);
+    stage.put(kBoxRounding, pair.box_rounding);
+    stage.put(kTriangleRounding, pair.b.rounding);
   }
-  [[nodiscard]] auto offset() const { return stage.value + 24; }
+  [[nodiscard]] auto offset() const { return stage.value + kOffset; }
   void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
     BoxFrame box;
     TriangleFrame triangle;
-    stage.get(0, 9, lane, &box.axis[0][0]);
-    stage.get(9, 3, lane, box.half);
-    stage.get(12, 9, lane, &triangle.vertex[0][0]);
-    stage.get(21, 3, lane, normal);
-    stage.get(27, 1, lane, &box.rounding);
-    stage.get(28, 1, lane, &triangle.rounding);
+    stage.get(kAxes, 9, lane, &box.axis[0][0]);
+    stage.get(kHalf, 3, lane, box.half);
+    stage.get(kVertices, 9, lane, &triangle.vertex[0][0]);
+    stage.get(kNormal, 3, lane, normal);
+    stage.get(kBoxRounding, 1, lane, &box.rounding);
+    stage.get(kTriangleRounding, 1, lane, &triangle.rounding);
     for (double& c : box.center) c = 0.0;
     a = box_patch(box, normal);
     b = triangle_patch(triangle);

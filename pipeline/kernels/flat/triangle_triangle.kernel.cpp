@@ -250,27 +250,29 @@ template <typename T>
 // Where a pair stands, and its normal, in memory.
 template <typename T>
 struct TriangleStage {
-  Stage<T, 26> stage;
+  /// Where the numbers begin.
+  enum Place { kA = 0, kB = 9, kNormal = 18, kOffset = 21, kRoundingA = 24, kRoundingB, kCount };
+  Stage<T, kCount> stage;
 
   [[gnu::always_inline]] TriangleStage(const TrianglePair<T>& pair, const Vec3<T>& normal) {
     for (int i = 0; i < 3; ++i) {
-      stage.put(3 * i, pair.a.vertex[i]);
-      stage.put(9 + 3 * i, pair.b.vertex[i]);
+      stage.put(kA + 3 * i, pair.a.vertex[i]);
+      stage.put(kB + 3 * i, pair.b.vertex[i]);
     }
-    stage.put(18, normal);
-    stage.put(21, pair.offset);
-    stage.put(24, pair.a.rounding);
-    stage.put(25, pair.b.rounding);
+    stage.put(kNormal, normal);
+    stage.put(kOffset, pair.offset);
+    stage.put(kRoundingA, pair.a.rounding);
+    stage.put(kRoundingB, pair.b.rounding);
   }
-  [[nodiscard]] auto offset() const { return stage.value + 21; }
+  [[nodiscard]] auto offset() const { return stage.value + kOffset; }
   void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
     TriangleFrame frame_a;
     TriangleFrame frame_b;
-    stage.get(0, 9, lane, &frame_a.vertex[0][0]);
-    stage.get(9, 9, lane, &frame_b.vertex[0][0]);
-    stage.get(18, 3, lane, normal);
-    stage.get(24, 1, lane, &frame_a.rounding);
-    stage.get(25, 1, lane, &frame_b.rounding);
+    stage.get(kA, 9, lane, &frame_a.vertex[0][0]);
+    stage.get(kB, 9, lane, &frame_b.vertex[0][0]);
+    stage.get(kNormal, 3, lane, normal);
+    stage.get(kRoundingA, 1, lane, &frame_a.rounding);
+    stage.get(kRoundingB, 1, lane, &frame_b.rounding);
     a = triangle_patch(frame_a);
     b = triangle_patch(frame_b);
   }

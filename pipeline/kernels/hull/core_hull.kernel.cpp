@@ -177,7 +177,7 @@ class CoreHull {
     hull_.rounding = rounding;
     is_sliver_ = false;
     for (int k = 0; k < 3; ++k) {
-      for (std::uint32_t i = 0; i < 16; ++i) {
+      for (std::uint32_t i = 0; i < kLanes; ++i) {
         vertex_[k][i] = vertex[i < count ? i : 0][k];
         vertex_float_[k][i] = static_cast<float>(vertex_[k][i]);
       }
@@ -195,10 +195,10 @@ class CoreHull {
   HullShape hull_;
   bool is_sliver_ = false;
   HullFace face_[2] = {};
-  alignas(64) double vertex_[3][16];
-  alignas(64) float vertex_float_[3][16];
+  alignas(64) double vertex_[3][kLanes];
+  alignas(64) float vertex_float_[3][kLanes];
   /// Rows from the count of faces on are not read as faces.
-  alignas(64) float plane_[4][16] = {};
+  alignas(64) float plane_[4][kLanes] = {};
 };
 
 static inline const SphereShape* table_of(const ShapeTables& t, const SphereShape*) {

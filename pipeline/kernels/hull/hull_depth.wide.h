@@ -148,7 +148,7 @@ class HullDepth {
     const Floats radius(static_cast<float>(side.other->inner_radius));
     const Floats limit(best_ + slack_);
     const Floats none(0.0F);
-    for (std::uint32_t row = 0; row < side.hull->face_count; row += 16) {
+    for (std::uint32_t row = 0; row < side.hull->face_count; row += kLanes) {
       const Vec3<float> n{Floats::load(plane[0] + row), Floats::load(plane[1] + row),
                           Floats::load(plane[2] + row)};
       const Floats height = Floats::load(plane[3] + row) - dot(n, middle);
@@ -166,10 +166,10 @@ class HullDepth {
   /// Depths along the normals of the second's faces that no known point closes.
   void measure_open_faces() {
     const float* const* plane = second_.hull->plane_float;
-    for (std::uint32_t row = 0; row < second_.hull->face_count; row += 16) {
+    for (std::uint32_t row = 0; row < second_.hull->face_count; row += kLanes) {
       Mask16 hit = bits(Floats::load(second_.closed + row) <= Floats(0.0F));
       const std::uint32_t left = second_.hull->face_count - row;
-      if (left < 16) hit &= lanes_below(left);
+      if (left < kLanes) hit &= lanes_below(left);
       for (; hit != 0; hit &= hit - 1) {
         const std::uint32_t face = row + first(hit);
         const float normal[3] = {plane[0][face], plane[1][face], plane[2][face]};

@@ -383,16 +383,16 @@ class HullPatch {
     const Floats slack(kFloatError * static_cast<float>(pair_.size));
     std::uint32_t best = kNone;
     float most = kAligned;
-    for (std::uint32_t row = 0; row < hull_.face_count; row += 16) {
+    for (std::uint32_t row = 0; row < hull_.face_count; row += kLanes) {
       const Vec3<float> n{Floats::load(plane[0] + row), Floats::load(plane[1] + row),
                           Floats::load(plane[2] + row)};
       const Floats cosine = dot(n, Vec3<float>{direction[0], direction[1], direction[2]});
       const Floats below = Floats::load(plane[3] + row) - dot(n, Vec3<float>{x[0], x[1], x[2]});
       Mask16 hit = bits((cosine > Floats(most)) & (below <= slack));
       const std::uint32_t left = hull_.face_count - row;
-      if (left < 16) hit &= lanes_below(left);
+      if (left < kLanes) hit &= lanes_below(left);
       if (hit == 0) continue;
-      alignas(64) float value[16];
+      alignas(64) float value[kLanes];
       cosine.store(value);
       for (; hit != 0; hit &= hit - 1) {
         const unsigned lane = winnow::WINNOW_ISA_NAME::first(hit);

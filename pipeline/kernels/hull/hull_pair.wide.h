@@ -189,7 +189,7 @@ inline constexpr std::uint32_t kLaneBits = 15;
 
 [[gnu::always_inline]] static inline Floats with_lane_number(const Floats& value) {
 #define WINNOW_LANE_NUMBER(i) __builtin_bit_cast(float, std::uint32_t{i})
-  alignas(64) static constexpr float kNumbers[16] = {
+  alignas(64) static constexpr float kNumbers[kLanes] = {
       WINNOW_LANE_NUMBER(0),  WINNOW_LANE_NUMBER(1),  WINNOW_LANE_NUMBER(2),
       WINNOW_LANE_NUMBER(3),  WINNOW_LANE_NUMBER(4),  WINNOW_LANE_NUMBER(5),
       WINNOW_LANE_NUMBER(6),  WINNOW_LANE_NUMBER(7),  WINNOW_LANE_NUMBER(8),
@@ -214,9 +214,9 @@ inline constexpr std::uint32_t kLaneBits = 15;
                                                   float* height, float* block) {
   const Vec3<float> d{direction[0], direction[1], direction[2]};
   Floats best = with_lane_number(along(hull.vertex_float, 0, d));
-  if (hull.vertex_count > 16) {
+  if (hull.vertex_count > kLanes) {
     Floats where(0.0F);
-    for (std::uint32_t row = 16; row < hull.vertex_count; row += 16) {
+    for (std::uint32_t row = kLanes; row < hull.vertex_count; row += kLanes) {
       const Floats value = with_lane_number(along(hull.vertex_float, row, d));
       const LaneMask<float> higher = value > best;
       best = select(higher, value, best);
@@ -231,15 +231,15 @@ inline constexpr std::uint32_t kLaneBits = 15;
 [[gnu::always_inline]] static inline std::uint32_t vertex_of(const HullShape& hull, float highest,
                                                              const float* block) {
   std::uint32_t vertex = __builtin_bit_cast(std::uint32_t, highest) & kLaneBits;
-  if (hull.vertex_count > 16) vertex += static_cast<std::uint32_t>(block[vertex]);
+  if (hull.vertex_count > kLanes) vertex += static_cast<std::uint32_t>(block[vertex]);
   // Padding repeats vertex 0.
   return vertex < hull.vertex_count ? vertex : 0;
 }
 
 /// The same for one direction.
 static inline std::uint32_t farthest_vertex(const HullShape& hull, const float* direction) {
-  alignas(64) float height[16];
-  alignas(64) float block[16];
+  alignas(64) float height[kLanes];
+  alignas(64) float block[kLanes];
   heights(hull, direction, height, block);
   return vertex_of(hull, reduce_max(Floats::load(height)), block);
 }
@@ -248,10 +248,10 @@ static inline std::uint32_t farthest_vertex(const HullShape& hull, const float* 
 static inline float highest_of(const HullShape& hull, const float* direction) {
   const Vec3<float> d{direction[0], direction[1], direction[2]};
   Floats best = along(hull.vertex_float, 0, d);
-  for (std::uint32_t row = 16; row < hull.vertex_count; row += 16) {
+  for (std::uint32_t row = kLanes; row < hull.vertex_count; row += kLanes) {
     best = max(best, along(hull.vertex_float, row, d));
   }
-  alignas(64) float value[16];
+  alignas(64) float value[kLanes];
   best.store(value);
   return reduce_max(Floats::load(value));
 }
