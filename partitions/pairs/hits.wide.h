@@ -1,13 +1,128 @@
 #pragma once
 
-// What kernels do with a mask of hits.
+// What kernels do with a mask of hits: which rows the filters let pass, which volumes meet inside
+// of boxes that do, and how pairs get to the sink.
 
-#include "partitions/pairs/filters.wide.h"
 #include "partitions/pairs/pair_sink.h"
-#include "partitions/pairs/volume_tests.wide.h"
+#include "partitions/tree/block_tree.kernel.h"
+#include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
 
 namespace winnow::WINNOW_ISA_NAME {
+
+/// A filter, or what the filters below a node have between them. An object of every environment
+/// spans them all, so that one test of intervals serves objects and nodes.
+struct FilterRange {
+  std::uint32_t layers;
+  std::uint32_t mask;
+  std::uint32_t first_environment;
+  std::uint32_t last_environment;
+};
+
+static inline FilterRange range_of(const ObjectFilter& f) {
+  const std::uint32_t first = f.environment == kEveryEnvironment ? 0U : f.environment;
+  return {f.layers, f.mask, first, f.environment};
+}
+
+/// The range of node i; that of the default filter if no filters are kept.
+static inline FilterRange range_of(const NodeFilters& nodes, std::uint32_t i) {
+  if (nodes.layers == nullptr) return range_of(ObjectFilter{});
+  return {nodes.layers[i], nodes.mask[i], nodes.first_environment[i], nodes.last_environment[i]};
+}
+
+/// True if something in one range may meet something in the other; exact for two objects.
+static inline bool may_meet(const FilterRange& a, const FilterRange& b) {
+  // Without branches: layers are coin tosses.
+  return static_cast<bool>(static_cast<unsigned>((a.layers & b.mask) != 0) &
+                           static_cast<unsigned>((b.layers & a.mask) != 0) &
+                           static_cast<unsigned>(a.first_environment <= b.last_environment) &
+                           static_cast<unsigned>(b.first_environment <= a.last_environment));
+}
+
+/// Those of the candidate rows from `first_row` on that `q` may meet. Empty rows never pass.
+static inline Mask16 passing_rows(const RowView& rows, std::uint32_t first_row, Mask16 candidates,
+                                  const FilterRange& q) {
+  Mask16 passed = 0;
+  for (Mask16 left = candidates; left != 0; left &= left - 1) {
+    const std::uint32_t id = rows.id[first_row + first(left)];
+    if (id == ~0U) continue;
+    const ObjectFilter own = rows.filter != nullptr ? rows.filter[id] : ObjectFilter{};
+    passed |= static_cast<Mask16>(may_meet(range_of(own), q)) << first(left);
+  }
+  return passed;
+}
+static inline Mask16 passing_rows(const RowView& rows, std::uint32_t first_row, Mask16 candidates,
+                                  const ObjectFilter& q) {
+  return passing_rows(rows, first_row, candidates, range_of(q));
+}
+
+/// Those of the candidate nodes from `first_node` on that may hold something that `q` may meet.
+static inline Mask16 passing_nodes(const NodeFilters& nodes, std::uint32_t first_node,
+                                   Mask16 candidates, const FilterRange& q) {
+  Mask16 passed = 0;
+  for (Mask16 left = candidates; left != 0; left &= left - 1) {
+    const bool met = may_meet(range_of(nodes, first_node + first(left)), q);
+    passed |= static_cast<Mask16>(met) << first(left);
+  }
+  return passed;
+}
+static inline Mask16 passing_nodes(const NodeFilters& nodes, std::uint32_t first_node,
+                                   Mask16 candidates, const ObjectFilter& q) {
+  return passing_nodes(nodes, first_node, candidates, range_of(q));
+}
+
+// Columns of a sphere's centre and radius.
+inline constexpr int kBallCenter = 6;
+inline constexpr int kBallRadius = 9;
+
+/// Balls against the points within `reach` of a box; of a ball, low == high == centre. The right
+/// side of |distance|^2 <= (r1 + r2)^2 is enlarged by more than the rounding of both sides (a few
+/// ulp of each), so that touching balls are never missed; where a square would overflow or
+/// underflow the comparison still errs to the side of a hit.
+inline Mask16 balls_meet(const Floats* center, const Floats& radius, const float* low,
+                         const float* high, float reach) {
+  constexpr float kSlack = 1.000002F;
+  constexpr float kTiny = 1e-37F;
+  Floats square = Floats(-kTiny);
+  for (int axis = 0; axis < 3; ++axis) {
+    // Distance of the centre from [low, high] along the axis.
+    const Floats below = low[axis] - center[axis];
+    const Floats above = center[axis] - high[axis];
+    const Floats d = max(max(below, above), Floats(0.0F));
+    square = square + d * d;
+  }
+  const Floats sum = radius + reach;
+  const Floats limit = sum * sum * kSlack;
+  // An empty row's centre is infinite, and so is its square: infinity <= infinity must not count.
+  const Mask16 real = bits(center[0] <= kLargest<float>);
+  return bits(square <= limit) & real;
+}
+
+/// Of the lanes `mask` of the rows from `at` on, whose boxes overlap that of row r of the columns
+/// `query`, those whose further slabs do so too.
+inline Mask16 further_slabs_overlap(const RowView& rows, std::uint32_t at,
+                                    const float* const* query, std::uint32_t r, Mask16 mask) {
+  const std::uint32_t slabs = rows.further_slabs;
+  for (std::uint32_t low = 6; low < 6 + slabs; ++low) {
+    const std::uint32_t high = low + slabs;
+    mask &= bits(Floats::load_unaligned(rows.column[low] + at) <= query[high][r]) &
+            bits(query[low][r] <= Floats::load_unaligned(rows.column[high] + at));
+  }
+  return mask;
+}
+
+/// The same for spheres.
+inline Mask16 spheres_overlap(const RowView& rows, std::uint32_t at, const float* const* query,
+                              std::uint32_t r, Mask16 mask) {
+  Floats center[3];
+  float point[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    center[axis] = Floats::load_unaligned(rows.column[kBallCenter + axis] + at);
+    point[axis] = query[kBallCenter + axis][r];
+  }
+  const Floats radius = Floats::load_unaligned(rows.column[kBallRadius] + at);
+  return mask & balls_meet(center, radius, point, point, query[kBallRadius][r]);
+}
 
 /// False if the sink is full and cannot grow.
 inline bool has_room(PairSink& sink) {
@@ -29,7 +144,7 @@ inline Mask16 reported_lanes(const std::uint64_t* moved, std::uint32_t r, std::u
   std::uint32_t bits;
   __builtin_memcpy(&bits, reinterpret_cast<const unsigned char*>(moved) + (at >> 3U), sizeof bits);
   bits >>= at & 7U;
-  const Mask16 up_to_r = r < at ? 0U : r - at >= kLanes ? 0xFFFFU : lanes_below(r - at + 1);
+  const Mask16 up_to_r = r < at ? 0U : r - at >= kLanes ? kAllRows : lanes_below(r - at + 1);
   return ~(bits & up_to_r);
 }
 
@@ -53,7 +168,7 @@ struct AskingFilters {
 template <HitMode Mode>
 inline void report(Mask16 mask, const std::uint32_t* ids, std::uint32_t q, PairSink& sink) {
   if constexpr (Mode == HitMode::query_first) {
-    sink.cursor += 2 * emit_pairs<false>(mask, load_unaligned(ids), q, sink.cursor);
+    sink.cursor += 2 * emit_pairs<false>(mask, Uints::load_unaligned(ids), q, sink.cursor);
   } else if constexpr (Mode == HitMode::query_second) {
     for (; mask != 0; mask &= mask - 1) {
       sink.cursor[0] = ids[first(mask)];
@@ -61,7 +176,7 @@ inline void report(Mask16 mask, const std::uint32_t* ids, std::uint32_t q, PairS
       sink.cursor += 2;
     }
   } else {
-    sink.cursor += 2 * emit_pairs<true>(mask, load_unaligned(ids), q, sink.cursor);
+    sink.cursor += 2 * emit_pairs<true>(mask, Uints::load_unaligned(ids), q, sink.cursor);
   }
 }
 
@@ -178,6 +293,11 @@ class HitList {
   std::uint32_t row_[kRoom];
   std::uint32_t at_[kRoom];
   std::uint32_t mask_[kRoom];
+};
+
+/// A run of rows is tested to its end.
+struct ToTheEnd {
+  bool operator()(const QueryBox&, std::uint32_t) const { return true; }
 };
 
 /// Runs of rows to be tested, each against one box. How long a run is is as unpredictable as a hit:

@@ -13,9 +13,9 @@ inline constexpr std::uint32_t kMaxMeshLevels = 7;
 /// Where `MeshView::triangle` keeps which edges are active: bit 28 + k for edge k.
 inline constexpr std::uint32_t kActiveEdgeShift = 28;
 
-/// A triangle mesh as its walks read it. A slot is a place in the order of the tree: leaf i holds
-/// slots [16 i, 16 i + 16). Columns of slots are padded to a multiple of 16 by copies of the last
-/// one, levels by empty boxes.
+/// A triangle mesh as its traversals read it. A slot is a place in the order of the tree: leaf i
+/// holds slots [16 i, 16 i + 16). Columns of slots are padded to a multiple of 16 by copies of the
+/// last one, levels by empty boxes.
 struct MeshView {
   const float* vertex[3] = {};
   std::uint32_t vertex_count = 0;

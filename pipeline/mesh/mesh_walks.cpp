@@ -2,8 +2,8 @@
 
 #include <winnow/core/rounding.h>
 #include <winnow/simd/isa.h>
+#include "pipeline/mesh/mesh_traversal.kernel.h"
 #include "pipeline/mesh/mesh_tree.h"
-#include "pipeline/mesh/mesh_walks.kernel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 // the rows that pass.
 
 #include "partitions/index/query_view.h"
-#include "partitions/pairs/filters.wide.h"
-#include "simd/lanes/compress.h"
+#include "partitions/pairs/hits.wide.h"
+#include "partitions/tree/traversal.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -57,26 +57,41 @@ inline float value_of(std::uint32_t bits) {
 
 /// The order of the largest float <= value; value >= 0.
 inline std::uint32_t order_of_rounded_down(double value) {
-  constexpr float kLargest = 3.4028234663852886e38F;
-  if (value >= static_cast<double>(kLargest)) return order_of(kLargest);
+  if (value >= static_cast<double>(kLargest<float>)) return order_of(kLargest<float>);
   const auto nearest = static_cast<float>(value);
   return order_of(nearest) - (static_cast<double>(nearest) > value ? 1U : 0U);
 }
 
-/// What a walk in order has still to visit: nodes with the least order that lies below them. Its
-/// size is bounded by the depth of the tree, 16 a level.
+/// The open nodes of a descent, each with the least order that lies below it. What it holds is
+/// bounded by the depth of the tree, 16 per level. Probe: `Mask16 test(columns, at, limit, Floats&
+/// order)` with order >= 0, and infinite in the lanes that fail.
+template <typename Probe>
 class OpenNodes {
  public:
-  /// Adds the children `mask` of the 16 from `first_node` on.
-  void add(Mask16 mask, const Float16& order, std::uint32_t level, std::uint32_t first_node) {
-    compress_store(mask, order, order_ + size_);
-    size_ += compress_store(mask, count_from(level << 28U | first_node), node_ + size_);
+  /// `limit` may be lowered from visit to visit.
+  OpenNodes(const TreeView& tree, const Probe& probe, const Wanted& wanted, const float& limit)
+      : tree_(tree), probe_(probe), wanted_(wanted), limit_(limit) {}
+
+  /// Only the nearest child is looked for; its siblings wait in no order, so that neither sorting
+  /// nor its branches are paid for nodes that the limit will rule out.
+  bool open(std::uint32_t level, std::uint32_t first_node, std::uint32_t& node) {
+    Floats order;
+    Mask16 mask = probe_.test(tree_.node[level], first_node, limit_, order);
+    mask = wanted_.nodes(tree_, level, first_node, mask);
+    if (mask == 0) return false;
+    // The filter may have ruled the nearest out: then any will do.
+    const Mask16 least = bits(order <= reduce_min(order)) & mask;
+    const unsigned next = first(least != 0 ? least : mask);
+    add(mask & ~(1U << next), order, level, first_node);
+    node = first_node + next;
+    return true;
   }
-  /// Takes the last one added that lies within `limit`; false if there is none.
-  bool take(float limit, std::uint32_t& level, std::uint32_t& node) {
+
+  /// The last one added that lies within the limit.
+  bool take(std::uint32_t& level, std::uint32_t& node) {
     while (size_ != 0) {
       --size_;
-      if (order_[size_] > limit) continue;
+      if (order_[size_] > limit_) continue;
       level = node_[size_] >> 28U;
       node = node_[size_] & 0x0FFFFFFFU;
       return true;
@@ -85,49 +100,37 @@ class OpenNodes {
   }
 
  private:
-  static constexpr unsigned kRoom = 16 * (kMaxTreeLevels + 1);
+  static constexpr unsigned kRoom = kLanes * (kMaxTreeLevels + 1);
 
+  void add(Mask16 mask, const Floats& order, std::uint32_t level, std::uint32_t first_node) {
+    compress_store(mask, order, order_ + size_);
+    size_ += compress_store(mask, count_from(level << 28U | first_node), node_ + size_);
+  }
+
+  const TreeView& tree_;
+  const Probe& probe_;
+  const Wanted& wanted_;
+  const float& limit_;
   unsigned size_ = 0;
   float order_[kRoom];
   std::uint32_t node_[kRoom];
 };
 
 /// Visits blocks about in the order in which the probe reaches their nodes, as far as `limit` says,
-/// which visiting may lower. Probe: `Mask16 test(columns, at, limit, Float16& order)` with order
-/// >= 0, and infinite in the lanes that fail. `visit(first_row)` returns false to end the walk.
-///
-/// Depth first: the nearest child next, its siblings later in no order, so that neither sorting
-/// nor its branches are paid for nodes that the limit will rule out.
+/// which visiting may lower. `visit(first_row)` returns false to end the descent.
 template <typename Probe, typename Visit>
-bool walk_in_order(const QueryView& view, const Probe& probe, const Wanted& wanted,
-                   const float& limit, Visit&& visit) {
+bool visit_in_order(const QueryView& view, const Probe& probe, const Wanted& wanted,
+                    const float& limit, Visit&& visit) {
   for (std::uint32_t block = 0; block < view.flat_blocks; ++block) {
     if (!visit(block * kLanes)) return false;
   }
   for (std::uint32_t t = 0; t < view.trees; ++t) {
     const TreeView& tree = *view.tree[t];
-    OpenNodes open;
-    // The children of this node of this level are tested next; a node of level 0 is a block.
-    std::uint32_t level = tree.levels;
-    std::uint32_t node = 0;
-    do {
-      bool reached = true;
-      while (reached && level != 0) {
-        --level;
-        const std::uint32_t first_node = node * kLanes;
-        Float16 order;
-        Mask16 mask = probe.test(tree.node[level], first_node, limit, order);
-        mask = wanted.nodes(tree, level, first_node, mask);
-        reached = mask != 0;
-        if (!reached) break;
-        // The filter may have ruled the nearest out: then any will do.
-        const Mask16 least = less_equal(order, broadcast(reduce_min(order))) & mask;
-        const unsigned next = first(least != 0 ? least : mask);
-        open.add(mask & ~(1U << next), order, level, first_node);
-        node = first_node + next;
-      }
-      if (reached && !visit((tree.first_block + node) * kLanes)) return false;
-    } while (open.take(limit, level, node));
+    OpenNodes<Probe> open(tree, probe, wanted, limit);
+    const bool whole = descend(tree.levels, open, [&](std::uint32_t node) {
+      return visit((tree.first_block + node) * kLanes);
+    });
+    if (!whole) return false;
   }
   return true;
 }
