@@ -3,7 +3,6 @@
 #include <winnow/core/sphere.h>
 #include <winnow/partitions/debug_colours.h>
 #include "partitions/index/spatial_index.h"
-#include "partitions/structures/cells/cell_drawing.h"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 // the rows that pass.
 
 #include "partitions/index/query_view.h"
-#include "partitions/pairs/hits.wide.h"
+#include "partitions/tree/hits.wide.h"
 #include "partitions/tree/traversal.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME {

@@ -1,7 +1,7 @@
-#include "partitions/pairs/hits.wide.h"
 #include "partitions/queries/descent.wide.h"
 #include "partitions/queries/region.kernel.h"
 #include "partitions/queries/sweep.wide.h"
+#include "partitions/tree/hits.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {

@@ -197,14 +197,21 @@ Status Rows::set_filter(std::span<const Key> keys, std::span<const ObjectFilter>
 Status Rows::bounds(Key key, Aabb& box) const noexcept {
   if (!keys_.is_valid(key)) return Status::invalid_key;
   const std::size_t row = keys_.row_of(key.id);
-  constexpr float inf = std::numeric_limits<float>::infinity();
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const float low = pool_.column(axis)[row];
-    const float high = pool_.column(3 + axis)[row];
-    box.min[static_cast<Eigen::Index>(axis)] = low == -FLT_MAX ? -inf : low;
-    box.max[static_cast<Eigen::Index>(axis)] = high == FLT_MAX ? inf : high;
-  }
+  box = stored_box(view().column, row);
   return Status::ok;
+}
+
+Aabb stored_box(const float* const columns[6], std::size_t row) noexcept {
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  Aabb box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<Eigen::Index>(axis);
+    const float low = columns[axis][row];
+    const float high = columns[3 + axis][row];
+    box.min[a] = low == -FLT_MAX ? -inf : low;
+    box.max[a] = high == FLT_MAX ? inf : high;
+  }
+  return box;
 }
 
 RowView Rows::view() const noexcept {

@@ -7,10 +7,10 @@
 #include <winnow/core/status.h>
 #include "core/memory/bounds_pool.h"
 #include "core/memory/key_table.h"
-#include "partitions/pairs/pair_sink.h"
 #include "partitions/rows/change_list.h"
 #include "partitions/rows/filter_table.h"
 #include "partitions/rows/row_selection.h"
+#include "partitions/rows/row_view.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -18,6 +18,10 @@
 #include <span>
 
 namespace winnow {
+
+/// The box of one row, with what is stored for an infinite end given back as infinite. A hole gives
+/// an empty box.
+[[nodiscard]] Aabb stored_box(const float* const columns[6], std::size_t row) noexcept;
 
 /// How the rows of a partition lie. The *regular* ones are ordered by the structure: cells, strips,
 /// or plain rows. Behind them, from the next whole block on, every row is a leaf of a block tree:

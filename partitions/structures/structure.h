@@ -8,7 +8,7 @@
 #include <winnow/partitions/structures.h>
 #include "core/memory/bounds_pool.h"
 #include "core/memory/new_in.h"
-#include "partitions/pairs/pair_sink.h"
+#include "partitions/rows/row_view.h"
 #include "partitions/rows/rows.h"
 #include "partitions/tree/block_tree.h"
 

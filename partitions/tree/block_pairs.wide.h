@@ -2,7 +2,7 @@
 
 // Pairs of rows that lie close together, found sixteen at a time.
 
-#include "partitions/pairs/hits.wide.h"
+#include "partitions/tree/hits.wide.h"
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
 

@@ -1,5 +1,5 @@
 #include "partitions/structures/brute_force/flat_rows.kernel.h"
-#include "partitions/pairs/hits.wide.h"
+#include "partitions/tree/hits.wide.h"
 #include "partitions/tree/traversal.wide.h"
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"

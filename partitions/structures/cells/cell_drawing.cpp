@@ -105,16 +105,6 @@ void CellPicture::arrow(DebugDraw& draw, std::string_view meaning) const {
 
 }  // namespace
 
-Aabb stored_box(const float* const columns[6], std::size_t row) noexcept {
-  Aabb box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<Eigen::Index>(axis);
-    box.min[a] = columns[axis][row] == -FLT_MAX ? -kEndless : columns[axis][row];
-    box.max[a] = columns[3 + axis][row] == FLT_MAX ? kEndless : columns[3 + axis][row];
-  }
-  return box;
-}
-
 void draw_cells(DebugDraw& draw, const CellLayout& layout, const RowView& rows,
                 const Column<std::uint32_t>& start, std::string_view meaning) {
   const std::size_t cells = layout.cells();

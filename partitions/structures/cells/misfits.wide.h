@@ -2,7 +2,7 @@
 
 // Which rows no longer keep to the bounds of their cell or strip.
 
-#include "partitions/pairs/pair_sink.h"
+#include "partitions/rows/row_view.h"
 #include "partitions/structures/cells/cell_axis.h"
 #include "simd/lanes/lanes.h"
 

@@ -3,7 +3,7 @@
 // What kernels do with a mask of hits: which rows the filters let pass, which volumes meet inside
 // of boxes that do, and how pairs get to the sink.
 
-#include "partitions/pairs/pair_sink.h"
+#include "partitions/rows/row_view.h"
 #include "partitions/tree/block_tree.kernel.h"
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
