@@ -16,6 +16,8 @@
 
 namespace winnow {
 
+struct QueryState;
+
 /// Where a ray or a moving shape meets a body.
 struct SceneHit {
   Key key;
@@ -78,8 +80,8 @@ struct ShapeCast {
 /// void.
 class SceneQueries {
  public:
-  explicit SceneQueries(const Scene& scene,
-                        std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+  explicit SceneQueries(const Scene& scene, std::pmr::memory_resource* memory =
+                                                std::pmr::get_default_resource()) noexcept;
   ~SceneQueries();
   SceneQueries(const SceneQueries&) = delete;
   SceneQueries& operator=(const SceneQueries&) = delete;
@@ -119,11 +121,10 @@ class SceneQueries {
   /// All of it but results and scratch under `structure`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
-  /// Not for callers.
-  struct State;
-
  private:
-  State* state_;
+  std::pmr::memory_resource* memory_;
+  /// Null where memory was refused: questions are `out_of_memory` then.
+  QueryState* state_ = nullptr;
 };
 
 }  // namespace winnow

@@ -7,7 +7,7 @@
 // so that directions need not be exact; only heights along them are, to a few roundings.
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
-#include "pipeline/mesh/mesh_walks.kernel.h"
+#include "pipeline/mesh/mesh_traversals.kernel.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

@@ -4,7 +4,7 @@
 // meets theirs, or the squared distance from it. Boxes are measured in double.
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
-#include "pipeline/mesh/mesh_walks.kernel.h"
+#include "pipeline/mesh/mesh_traversals.kernel.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

@@ -17,11 +17,10 @@ struct Packing {
                                    std::uint32_t other) const noexcept {
     const std::uint32_t kind_one = shapes[one].kind_index();
     const std::uint32_t kind_other = shapes[other].kind_index();
-    const bool swapped = kind_one != kind_other ? kind_other < kind_one : other < one;
-    const std::uint64_t code =
-        swapped ? kind_other * kAllShapeKinds + kind_one : kind_one * kAllShapeKinds + kind_other;
-    const std::uint64_t a = swapped ? other : one;
-    const std::uint64_t b = swapped ? one : other;
+    const bool mirrored = kind_one != kind_other ? kind_other < kind_one : other < one;
+    const std::uint32_t a = mirrored ? other : one;
+    const std::uint32_t b = mirrored ? one : other;
+    const std::uint64_t code = pair_code(shapes[a], shapes[b]);
     return (code << bits | a) << bits | b;
   }
   [[nodiscard]] BodyPair pair(std::uint64_t item) const noexcept {

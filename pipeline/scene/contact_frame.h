@@ -97,8 +97,8 @@ struct CarriedPair {
   bool widened;
 };
 
-struct Contacts::State {
-  explicit State(std::pmr::memory_resource* memory) noexcept;
+struct ContactsState {
+  explicit ContactsState(std::pmr::memory_resource* memory) noexcept;
 
   SceneLevel level = SceneLevel::pairs;
   ContactFrame frame;
