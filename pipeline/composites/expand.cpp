@@ -22,10 +22,6 @@ struct ChunkRecord {
 };
 static_assert(sizeof(ChunkRecord) % sizeof(std::uint32_t) == 0);
 
-[[nodiscard]] constexpr std::uint64_t blocks_for(std::uint64_t words) noexcept {
-  return (words + WordArena::kBlock - 1) / WordArena::kBlock;
-}
-
 class Expansion {
  public:
   Expansion(const Composites& all, const ShapeTables& tables, const Bodies& bodies,
@@ -36,8 +32,8 @@ class Expansion {
         pairs_(pairs),
         out_(out),
         chunks_((pairs.size() + kPairsPerTask - 1) / kPairsPerTask),
-        head_(blocks_for(chunks_ * sizeof(ChunkRecord) / sizeof(std::uint32_t)) +
-              blocks_for(pairs.size())) {}
+        head_(WordArena::blocks_for(chunks_ * sizeof(ChunkRecord) / sizeof(std::uint32_t)) +
+              WordArena::blocks_for(pairs.size())) {}
 
   [[nodiscard]] Status run(const Execution& execution) noexcept;
 
@@ -69,7 +65,8 @@ class Expansion {
   }
   /// How many primitives each pair of bodies has.
   [[nodiscard]] std::uint32_t* primitive_counts() const noexcept {
-    const std::uint64_t records = blocks_for(chunks_ * sizeof(ChunkRecord) / sizeof(std::uint32_t));
+    const std::uint64_t records =
+        WordArena::blocks_for(chunks_ * sizeof(ChunkRecord) / sizeof(std::uint32_t));
     return out_.scratch.data() + records * WordArena::kBlock;
   }
   [[nodiscard]] std::uint32_t* blocks() const noexcept {

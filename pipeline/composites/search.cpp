@@ -105,8 +105,8 @@ struct TrianglePlane {
   if (part.shape.kind() == ShapeKind::half_space) {
     return half_space_apart(tables.half_spaces[part.shape.index()], part, triangle, margin);
   }
-  // The way from the triangle's closest point to the middle of the part: a triangle's plane where
-  // that is above its inside, and a better axis where it is not.
+  // The direction from the triangle's closest point to the middle of the part: a triangle's plane
+  // where that is above its inside, and a better axis where it is not.
   const Vec from = part.position - triangle.first;
   const Vec axis = direction_to(from + part.middle, triangle);
   const double length = axis.norm();

@@ -1,5 +1,6 @@
 #include "pipeline/composites/composites.h"
 #include "pipeline/composites/placed_body.h"
+#include "pipeline/mesh/box_measures.h"
 #include "pipeline/mesh/height_grid.h"
 #include "pipeline/mesh/mesh_traversals.h"
 #include "pipeline/shapes/extent.h"
@@ -78,38 +79,6 @@ void show_in_order(const Guide& guide, double limit, Measure&& measure) {
   }
 }
 
-/// When a moving box first meets another: infinite if it does not before `limit`.
-[[nodiscard]] double meeting_time(const Box& moving, const Vec& direction, const Box& box,
-                                  double limit) noexcept {
-  double first = 0.0;
-  double last = limit;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double near = box.min[axis] - moving.max[axis];
-    const double far = box.max[axis] - moving.min[axis];
-    if (direction[axis] == 0.0) {
-      if (near > 0.0 || far < 0.0) return kInfinity;
-      continue;
-    }
-    const double a = near / direction[axis];
-    const double b = far / direction[axis];
-    // No comparison with NaN, from infinities, narrows the interval.
-    const double enter = std::min(a, b) * (1.0 - 1e-15);
-    const double leave = std::max(a, b) * (1.0 + 1e-15);
-    if (enter > first) first = enter;
-    if (leave < last) last = leave;
-  }
-  return first <= last ? first : kInfinity;
-}
-
-[[nodiscard]] double gap(const Box& a, const Box& b) noexcept {
-  double square = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double apart = std::max({0.0, a.min[axis] - b.max[axis], b.min[axis] - a.max[axis]});
-    square += apart * apart;
-  }
-  return std::sqrt(square) * (1.0 - 1e-15);
-}
-
 [[nodiscard]] PlacedBody placed_at(const Composites& all, ShapeId id, const Pose& pose) noexcept {
   return PlacedBody(all, all.shapes.tables(), id, pose, Eigen::Map<const Vec>(pose.position));
 }
@@ -150,8 +119,10 @@ void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& 
     mesh_sweep(view_of(*body.compound->tree), box.min.data(), box.max.data(), direction.data(),
                max_t, guide.slots());
   } else {
-    show_in_order(guide, max_t,
-                  [&](const Box& child) { return meeting_time(box, direction, child, max_t); });
+    show_in_order(guide, max_t, [&](const Box& child) {
+      return meeting_time(box.min.data(), box.max.data(), direction.data(), max_t, child.min.data(),
+                          child.max.data());
+    });
   }
 }
 
@@ -171,7 +142,9 @@ void visit_near(const Composites& all, ShapeId id, const Pose& pose, const BoxSw
     mesh_near(view_of(*body.compound->tree), kUnscaled, box.min.data(), box.max.data(), limit,
               guide.slots());
   } else {
-    show_in_order(guide, limit, [&](const Box& child) { return gap(box, child); });
+    show_in_order(guide, limit, [&](const Box& child) {
+      return box_gap(box.min.data(), box.max.data(), child.min.data(), child.max.data());
+    });
   }
 }
 

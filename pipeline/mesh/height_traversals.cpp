@@ -1,3 +1,4 @@
+#include "pipeline/mesh/box_measures.h"
 #include "pipeline/mesh/height_grid.h"
 #include "pipeline/shapes/frame.h"
 
@@ -9,9 +10,6 @@ namespace winnow {
 namespace {
 
 using mid::kInfinity;
-/// More than the relative error of the few operations that make a measure.
-constexpr double kMeasureError = 0x1p-48;
-
 struct GridBox {
   double low[3];
   double high[3];
@@ -72,20 +70,7 @@ struct GridSweep {
   double limit;
 
   [[nodiscard]] double measure(const GridBox& box) const {
-    double entry = 0.0;
-    double exit = limit;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double near = box.low[axis] - max[axis];
-      const double far = box.high[axis] - min[axis];
-      const double d = direction[axis];
-      if (d == 0.0) {
-        if (near > 0.0 || far < 0.0) return kInfinity;
-        continue;
-      }
-      entry = std::max(entry, std::min(near / d, far / d) * (1.0 - kMeasureError));
-      exit = std::min(exit, std::max(near / d, far / d) * (1.0 + kMeasureError));
-    }
-    return entry <= exit ? entry : kInfinity;
+    return meeting_time(min, max, direction, limit, box.low, box.high);
   }
   [[nodiscard]] bool within(double measure) const {
     return measure <= limit && measure < kInfinity;
@@ -99,11 +84,7 @@ struct GridNear {
   double limit;
 
   [[nodiscard]] double measure(const GridBox& box) const {
-    double gap[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      gap[axis] = std::max({0.0, min[axis] - box.high[axis], box.low[axis] - max[axis]});
-    }
-    return std::hypot(gap[0], gap[1], gap[2]) * (1.0 - kMeasureError);
+    return box_gap(min, max, box.low, box.high);
   }
   [[nodiscard]] bool within(double measure) const { return measure <= limit; }
 };

@@ -9,7 +9,10 @@
 namespace winnow {
 
 Status Scene::collide(SceneLevel level, Contacts& contacts) {
-  if (state_ == nullptr || contacts.state_ == nullptr) return Status::out_of_memory;
+  if (state_ == nullptr || contacts.state_ == nullptr) {
+    contacts.clear();
+    return Status::out_of_memory;
+  }
   if (!state_->options_are_good || level > SceneLevel::manifold) return Status::invalid_argument;
   state_->statistics = {};
   Status status = state_->find_pairs();

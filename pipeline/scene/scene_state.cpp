@@ -1,5 +1,6 @@
 #include "pipeline/scene/scene_state.h"
 #include "pipeline/scene/motion_bound.h"
+#include "pipeline/shapes/extent.h"
 
 #include <algorithm>
 #include <new>
@@ -32,7 +33,7 @@ Status SceneState::make_partition_of(Motion which) {
 
 double SceneState::radius(std::uint32_t body) const noexcept {
   const ShapeId id = shape[body];
-  return id.is_composite() ? options.composites->radius(id) : shape_radius(shapes.tables(), id);
+  return id.is_composite() ? options.composites->radius(id) : mid::radius_of(shapes.tables(), id);
 }
 
 PlainBox SceneState::grown_bounds(std::uint32_t body) const noexcept {

@@ -1,5 +1,6 @@
-// SceneQueries: rays and moving shapes. Partitions tell which bodies' boxes are met on the path
-// (SweptBox says why none is missed), and show them to a predicate, which asks the exact shapes.
+// SceneQueries: rays and moving shapes. Partitions tell which bodies' boxes the swept box
+// meets (SweptBox says why none is missed), and show them to a predicate, which asks the exact
+// shapes.
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/cast.h>
@@ -49,7 +50,7 @@ class SweptBox {
   [[nodiscard]] PreciseBox at(double path) const noexcept;
   [[nodiscard]] double slack(double end) const noexcept;
 
-  // Lengths of path are t times a power of two that makes them about lengths.
+  // Lengths along the path are t times a power of two that makes them about lengths.
   PreciseBox box_;
   Eigen::Vector3d step_;
   int exponent_ = 0;
@@ -61,7 +62,7 @@ class SweptBox {
   bool is_rest_ = false;
 };
 
-/// Longer by this factor is a piece than the distance from where it begins.
+/// A piece is at most so many times as long as the distance from the start to where it begins.
 constexpr double kStretch = 0x1p10;
 constexpr int kMostPieces = 5;
 /// Floats end a little after this.

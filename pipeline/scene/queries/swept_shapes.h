@@ -10,13 +10,13 @@ namespace winnow {
 /// in the axes of the world.
 struct SweepMeeting {
   double t = 0.0;
-  /// Of shapes: before `SweptShape::describe` not the last word.
+  /// Of shapes: that of a parting plane until `SweptShape::describe` gives the surface's.
   double normal[3] = {0.0, 0.0, 0.0};
   double point[3] = {0.0, 0.0, 0.0};
   bool overlaps_at_start = false;
 };
 
-/// A ray or a convex shape that moves.
+/// A ray or a convex shape that moves along a line without turning.
 class SweptShape {
  public:
   SweptShape(const SweptShape&) = delete;
@@ -32,7 +32,8 @@ class SweptShape {
   /// True if it meets the part by t = limit, starting at `from`.
   [[nodiscard]] virtual bool meets(const double from[3], const ConvexPart& part, double limit,
                                    SweepMeeting& meeting) const noexcept = 0;
-  /// Completes a meeting: dearer than to find when it is.
+  /// Fills in normal and point of a meeting, which costs more than finding its time: done once, for
+  /// the meeting that is shown.
   virtual void describe(const double from[3], const ConvexPart& part,
                         SweepMeeting& meeting) const noexcept = 0;
 
@@ -86,8 +87,8 @@ class ShapeSweep final : public SweptShape {
 /// A meeting with a body, and all that it takes to describe it.
 class BodyMeeting {
  public:
-  /// Looks for the swept's first meeting with the body by t = limit, of equal ones that with the
-  /// least part; with `any`, for whichever is found first. False if there is none.
+  /// Looks for the swept shape's first meeting with the body by t = limit, of equal ones that with
+  /// the least part; with `any`, for whichever is found first. False if there is none.
   [[nodiscard]] bool find(const PartTraversal& parts, const SweptShape& swept,
                           const PlacedShape& body, double limit, bool any) noexcept;
 
@@ -102,7 +103,7 @@ class BodyMeeting {
   SweepMeeting meeting_;
   ConvexPart part_;
   TriangleShape triangle_;
-  /// Where the swept starts, and the world's origin lies, as the part has it.
+  /// Where the sweep starts, and the world's origin lies, in the part's coordinates.
   double from_[3] = {0.0, 0.0, 0.0};
   double base_[3] = {0.0, 0.0, 0.0};
 };
