@@ -123,8 +123,7 @@ struct Composites {
 };
 
 /// See MidPhase::expand. `all` may be null: there are no composite shapes then. O(pairs of bodies +
-/// pairs of primitives, each found in a
-/// traversal of O(log n + found)).
+/// pairs of primitives, each found in a traversal of O(log n + found)).
 ///
 /// Fixed chunks of pairs of bodies are searched as tasks, which write numbers to shared room; then
 /// what they found is counted, and the same chunks write it out where it belongs. Neither depends

@@ -1,6 +1,7 @@
 #include "pipeline/mesh/mesh_tree.h"
 
 #include "core/memory/bounds_pool.h"
+#include "core/sort/stretches.h"
 #include "partitions/tree/morton_order.h"
 
 #include <algorithm>
@@ -11,8 +12,8 @@
 namespace winnow {
 namespace {
 
-constexpr std::size_t kLeavesPerTask = 512;
-constexpr std::size_t kTrianglesPerTask = 8192;
+constexpr std::size_t kLeavesPerStretch = 512;
+constexpr std::size_t kTrianglesPerStretch = 8192;
 
 /// The box of a triangle, into row i.
 void box_triangle(BoundsPool& pool, const float* const vertex[3],
@@ -125,9 +126,8 @@ bool order_triangles(const float* const vertex[3], const std::uint32_t* const co
   Column<std::uint64_t> scratch(order.memory());
   if (!pool.reserve_exact(count) || !scratch.reserve(2 * count)) return false;
   pool.append(count);
-  execution.for_each((count + kTrianglesPerTask - 1) / kTrianglesPerTask, [&](std::size_t task) {
-    const std::size_t end = std::min(count, (task + 1) * kTrianglesPerTask);
-    for (std::size_t i = task * kTrianglesPerTask; i < end; ++i) {
+  for_stretches(execution, count, kTrianglesPerStretch, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
       box_triangle(pool, vertex, corner, i);
       order[i] = static_cast<std::uint32_t>(i);
     }
@@ -171,9 +171,8 @@ void fit_mesh_levels(MeshView& view, std::uint16_t* words, float low[3], float h
   }
   choose_scale(view, low, high);
   const std::size_t leaves = view.count[0];
-  execution.for_each((leaves + kLeavesPerTask - 1) / kLeavesPerTask, [&](std::size_t task) {
-    const std::size_t end = std::min(leaves, (task + 1) * kLeavesPerTask);
-    for (std::size_t i = task * kLeavesPerTask; i < end; ++i) {
+  for_stretches(execution, leaves, kLeavesPerStretch, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
       const LeafBox box(view, i * kMeshFanout);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         column_of(view, words, 0, axis)[i] =

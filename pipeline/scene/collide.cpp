@@ -1,6 +1,7 @@
 // One call of Scene::collide: pairs are listed, answered by the narrow phase, and put into a frame,
 // whose size is counted by tasks before each writes its own stretch.
 
+#include "core/sort/stretches.h"
 #include "pipeline/scene/collision.h"
 
 #include <limits>
@@ -91,14 +92,14 @@ namespace {
 // Where the answer about each pair of the input lies.
 [[nodiscard]] bool invert(const NarrowResult& answers, const Execution& execution,
                           Column<std::uint32_t>& slots) noexcept {
-  constexpr std::size_t kPerTask = 8192;
+  constexpr std::size_t kAnswersPerStretch = 8192;
   if (!slots.resize(answers.size())) return false;
-  execution.for_each((answers.size() + kPerTask - 1) / kPerTask, [&](std::size_t task) {
-    const std::size_t end = std::min(answers.size(), (task + 1) * kPerTask);
-    for (std::size_t i = task * kPerTask; i < end; ++i) {
-      slots[answers.pair_of(i)] = static_cast<std::uint32_t>(i);
-    }
-  });
+  for_stretches(execution, answers.size(), kAnswersPerStretch,
+                [&](std::size_t first, std::size_t end) {
+                  for (std::size_t i = first; i < end; ++i) {
+                    slots[answers.pair_of(i)] = static_cast<std::uint32_t>(i);
+                  }
+                });
   return true;
 }
 
@@ -151,7 +152,7 @@ bool Collision::touches(const NarrowResult& answers, std::size_t at) const noexc
 std::uint32_t Collision::shown_before(std::uint32_t pair) const noexcept {
   if (same_pairs_) return contacts_.records[pair].shown;
   const std::uint32_t record = contacts_.old_record[pair];
-  return record == kNone ? kNone : contacts_.records_before[record].shown;
+  return record == kNoEntry ? kNoEntry : contacts_.records_before[record].shown;
 }
 
 // How many pairs from this one on are carried over and lie next to each other in the last frame;
@@ -159,11 +160,11 @@ std::uint32_t Collision::shown_before(std::uint32_t pair) const noexcept {
 std::uint32_t Collision::carried_stretch(std::uint32_t pair, std::uint32_t end) const noexcept {
   if (level_ == SceneLevel::pairs) return 0;
   std::uint32_t at = pair;
-  std::uint32_t next = kNone;
+  std::uint32_t next = kNoEntry;
   for (; at < end && static_cast<Origin>(contacts_.origin[at]) == Origin::carried; ++at) {
     const std::uint32_t shown = shown_before(at);
-    if (shown == kNone) continue;
-    if (next != kNone && shown != next) break;
+    if (shown == kNoEntry) continue;
+    if (next != kNoEntry && shown != next) break;
     next = shown + 1;
   }
   return at - pair;
@@ -193,12 +194,12 @@ namespace {
 
 /// The pairs of a stretch that touch.
 struct Touching {
-  std::uint32_t first = kNone;
+  std::uint32_t first = kNoEntry;
   std::uint32_t count = 0;
 
   void take(std::uint32_t shown) noexcept {
-    if (shown == kNone) return;
-    if (first == kNone) first = shown;
+    if (shown == kNoEntry) return;
+    if (first == kNoEntry) first = shown;
     ++count;
   }
 };
@@ -238,7 +239,7 @@ void Collision::write_task(std::uint32_t first, std::uint32_t end, Place at) noe
     if (stretch == 0) {
       const Place taken = extent(i);
       if (taken.pair != 0) write(i, at);
-      if (taken.pair != 0 || carries_) remember(i, taken.pair != 0 ? at.pair : kNone);
+      if (taken.pair != 0 || carries_) remember(i, taken.pair != 0 ? at.pair : kNoEntry);
       at += taken;
       ++i;
       continue;
@@ -246,7 +247,7 @@ void Collision::write_task(std::uint32_t first, std::uint32_t end, Place at) noe
     Touching touching;
     for (const std::uint32_t last = i + stretch; i < last; ++i) {
       const std::uint32_t shown = shown_before(i);
-      remember(i, shown == kNone ? kNone : at.pair + touching.count);
+      remember(i, shown == kNoEntry ? kNoEntry : at.pair + touching.count);
       touching.take(shown);
     }
     if (touching.count == 0) continue;
@@ -300,7 +301,7 @@ void Collision::write(std::uint32_t pair, const Place& to) noexcept {
   const BodyPair bodies = scene_.pairs.pairs()[pair];
   const std::uint32_t shown = shown_before(pair);
   const std::uint32_t ids[2] = {bodies.a, bodies.b};
-  bool persists = shown != kNone;
+  bool persists = shown != kNoEntry;
   for (int side = 0; side < 2; ++side) {
     frame.key[side][to.pair] = scene_.keys.key_of(ids[side]);
     frame.data[side][to.pair] = scene_.keys.client_data(ids[side]);

@@ -40,7 +40,7 @@ class Collision {
 
   // The frame (collide.cpp).
   [[nodiscard]] bool show();
-  /// The place in the last frame of a pair's contacts; kNone.
+  /// The place in the last frame of a pair's contacts; kNoEntry.
   [[nodiscard]] std::uint32_t shown_before(std::uint32_t pair) const noexcept;
   [[nodiscard]] std::uint32_t carried_stretch(std::uint32_t pair, std::uint32_t end) const noexcept;
   [[nodiscard]] bool is_fresh_convex(std::uint32_t pair) const noexcept;

@@ -121,7 +121,7 @@ bool Collision::match() {
       const auto order = order_of_pair(i);
       while (record != c.records.end() && order_of(*record) < order) ++record;
       const bool found = record != c.records.end() && order_of(*record) == order;
-      c.old_record[i] = found ? static_cast<std::uint32_t>(record++ - c.records.begin()) : kNone;
+      c.old_record[i] = found ? static_cast<std::uint32_t>(record++ - c.records.begin()) : kNoEntry;
     }
   });
   return true;
@@ -140,7 +140,7 @@ bool Collision::decide() {
       const std::uint32_t record = same_pairs_ ? i : c.old_record[i];
       const bool composite = scene_.shape[pairs[i].b].is_composite();
       Origin origin = composite ? Origin::composite : Origin::convex;
-      if (may_keep && record != kNone && keep(i, record)) {
+      if (may_keep && record != kNoEntry && keep(i, record)) {
         origin = Origin::carried;
         ++count;
       }
@@ -173,7 +173,7 @@ bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
   const double moved = motion_bound(carried.relative, now, static_cast<double>(carried.radius)) +
                        static_cast<double>(carried.drift);
   if (!(moved <= carried.limit)) return false;
-  if (known.shown == kNone) return true;
+  if (known.shown == kNoEntry) return true;
   const Pose unit = with_unit_turn(a);
   const double turned =
       turn_bound(carried.turn, unit.orientation, static_cast<double>(carried.radius_a));
@@ -234,7 +234,7 @@ void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
   carried.radius = round_up(std::min(radius_a, radius_b));
   carried.radius_a = round_up(radius_a);
   const double carry_over = scene_.options.carry_over;
-  const double clear = shown == kNone ? clearance(pair) : carry_over;
+  const double clear = shown == kNoEntry ? clearance(pair) : carry_over;
   carried.limit =
       static_cast<Origin>(c.origin[pair]) == Origin::convex ? clear : std::min(clear, carry_over);
   c.carried[pair] = carried;
@@ -263,7 +263,7 @@ bool Collision::close_frame() {
   Place room;
   for (std::size_t r = 0; may_sleep && r < c.records_before.size(); ++r) {
     const PairRecord record = c.records_before[r];
-    if (record.shown == kNone || c.shown_again[record.shown] != 0) continue;
+    if (record.shown == kNoEntry || c.shown_again[record.shown] != 0) continue;
     if (!put_to_sleep(record.shown)) continue;
     c.shown_again[record.shown] = 1;
     room += before.extent(record.shown);

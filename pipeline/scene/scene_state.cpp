@@ -1,4 +1,6 @@
 #include "pipeline/scene/scene_state.h"
+
+#include "core/sort/stretches.h"
 #include "pipeline/scene/motion_bound.h"
 #include "pipeline/shapes/extent.h"
 
@@ -8,7 +10,7 @@
 namespace winnow {
 namespace {
 
-constexpr std::size_t kBodiesPerTask = 256;
+constexpr std::size_t kBodiesPerStretch = 256;
 
 }  // namespace
 
@@ -256,13 +258,13 @@ Status SceneState::refresh_set(Motion which) {
   const std::size_t count = chosen.size();
   if (count == 0) return Status::ok;
   if (!boxes.resize(count) || !boxes_of.resize(count)) return Status::out_of_memory;
-  options.execution.for_each((count + kBodiesPerTask - 1) / kBodiesPerTask, [&](std::size_t task) {
-    const std::size_t end = std::min(count, (task + 1) * kBodiesPerTask);
-    for (std::size_t i = task * kBodiesPerTask; i < end; ++i) {
-      boxes[i] = grown_bounds(chosen[i]);
-      boxes_of[i] = place[chosen[i]];
-    }
-  });
+  for_stretches(options.execution, count, kBodiesPerStretch,
+                [&](std::size_t first, std::size_t end) {
+                  for (std::size_t i = first; i < end; ++i) {
+                    boxes[i] = grown_bounds(chosen[i]);
+                    boxes_of[i] = place[chosen[i]];
+                  }
+                });
   const Status status = target.partition->update({boxes_of.data(), count}, box_view());
   if (status != Status::ok) return status;
   if (!anchor.empty()) {

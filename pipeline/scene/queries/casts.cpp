@@ -63,7 +63,7 @@ class SweptBox {
 };
 
 /// A piece is at most so many times as long as the distance from the start to where it begins.
-constexpr double kStretch = 0x1p10;
+constexpr double kPieceGrowth = 0x1p10;
 constexpr int kMostPieces = 5;
 /// Floats end a little after this.
 constexpr double kFarthest = 0x1p120;
@@ -80,7 +80,7 @@ SweptBox::SweptBox(const PreciseBox& box, const double direction[3], double max_
 bool SweptBox::next() noexcept {
   if (is_rest_ || (pieces_ != 0 && to_ >= last_)) return false;
   from_ = to_;
-  to_ = std::min(last_, kStretch * std::max({reach_, from_, 1.0}));
+  to_ = std::min(last_, kPieceGrowth * std::max({reach_, from_, 1.0}));
   is_rest_ = pieces_ == kMostPieces || !(reach_ + to_ < kFarthest);
   ++pieces_;
   if (is_rest_) to_ = last_;

@@ -33,7 +33,7 @@ using solver::Problem;
 using solver::Vec;
 
 /// Halving a bracket every other time, doubles run out of numbers first.
-constexpr std::uint32_t kMostSteps = 256;
+constexpr std::uint32_t kMostSamples = 256;
 
 /// Where the standing shape is, seen from the moving one: to the last bit, however long the path.
 class Path {
@@ -238,7 +238,7 @@ double Advancement::next(std::uint32_t step) const noexcept {
 
 bool Advancement::search() noexcept {
   double t = 0.0;
-  for (std::uint32_t step = 0; step < kMostSteps; ++step) {
+  for (std::uint32_t step = 0; step < kMostSamples; ++step) {
     const PartedAt found = sample(t);
     if (!found.parted) {
       if (t == 0.0) return touches_at_start();
