@@ -13,6 +13,10 @@
 
 namespace winnow {
 
+namespace mid {
+struct Composites;
+}
+
 /// A convex shape of a ShapePool and where it stands in its compound.
 struct CompoundChild {
   ShapeId shape;
@@ -73,14 +77,13 @@ class CompositePool final : public MidPhase {
   [[nodiscard]] Footprint footprint() const noexcept override;
 
  private:
-  struct State;
   /// Null if memory is refused. Made by the first shape, so that a pool without any takes no
   /// memory.
-  [[nodiscard]] State* state() noexcept;
+  [[nodiscard]] mid::Composites* state() noexcept;
 
   const ShapePool& shapes_;
   std::pmr::memory_resource* memory_;
-  State* state_ = nullptr;
+  mid::Composites* state_ = nullptr;
 };
 
 }  // namespace winnow

@@ -11,6 +11,8 @@
 
 namespace winnow {
 
+struct ContactsState;
+
 /// How much a scene is asked about its pairs. A lower level does not pay for a higher one.
 enum class SceneLevel : std::uint8_t {
   /// Pairs of bodies whose boxes, grown by half of the margin, meet.
@@ -51,10 +53,11 @@ struct EndedContact {
 ///
 /// The caller's, reused from frame to frame: it remembers what was found, so that events can be
 /// told and manifolds of what rests carried over. Fresh ones, or cleared ones, remember nothing.
-/// Not for use from two threads at once.
+/// Not for use from two threads at once. Where memory for them is refused at once, `collide`
+/// answers `out_of_memory` and they stay empty.
 class Contacts {
  public:
-  explicit Contacts(std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+  explicit Contacts(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
   ~Contacts();
   Contacts(const Contacts&) = delete;
   Contacts& operator=(const Contacts&) = delete;
@@ -97,14 +100,18 @@ class Contacts {
 
   /// Forgets everything; memory is kept.
   void clear() noexcept;
-  /// Columns that can be read under `results`, what is remembered beside them under `scratch`.
+  /// Columns that can be read under `results`, what is remembered beside them under `scratch`, and
+  /// what holds both under `structure`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
-  friend class Collision;
   friend class Scene;
-  struct State;
-  State* state_;
+  /// That of contacts with nothing in them where memory was refused.
+  [[nodiscard]] const ContactsState& state() const noexcept;
+
+  std::pmr::memory_resource* memory_;
+  /// Null where memory was refused.
+  ContactsState* state_;
 };
 
 }  // namespace winnow

@@ -1,18 +1,17 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
-#include <winnow/core/column.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/shapes.h>
-#include "pipeline/mesh/height_pyramid.h"
-#include "pipeline/mesh/mesh_view.h"
 
 #include <cstdint>
 #include <memory_resource>
 #include <span>
 
 namespace winnow {
+
+struct HeightGrid;
 
 /// Heights where the caller keeps them: sample (column, row) is `heights[row * row_stride +
 /// column]` and stands at (column * spacing[0], row * spacing[1], height) in the shape's frame. NaN
@@ -34,8 +33,12 @@ struct HeightSamples {
 class HeightField {
  public:
   explicit HeightField(
-      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
+      : memory_(memory) {}
   HeightField(HeightField&& other) noexcept;
+  ~HeightField();
+  HeightField(const HeightField&) = delete;
+  HeightField& operator=(const HeightField&) = delete;
 
   /// Takes a copy. `invalid_shape` for fewer than 2 x 2 samples, an infinite height, a spacing that
   /// is not positive and finite or with which the field leaves the range of float; `size_mismatch`
@@ -52,8 +55,8 @@ class HeightField {
   [[nodiscard]] Aabb bounds() const noexcept;
   /// No point of a triangle is farther than this from the origin. 0 without triangles.
   [[nodiscard]] double radius() const noexcept;
-  [[nodiscard]] std::uint32_t columns() const noexcept { return columns_; }
-  [[nodiscard]] std::uint32_t rows() const noexcept { return rows_; }
+  [[nodiscard]] std::uint32_t columns() const noexcept;
+  [[nodiscard]] std::uint32_t rows() const noexcept;
   /// Triangles, those of holes included.
   [[nodiscard]] std::uint32_t triangles() const noexcept;
   /// False for a triangle of a hole, or a number that none has.
@@ -62,28 +65,16 @@ class HeightField {
   /// MeshOptions have by default, or have no other triangle. All for a triangle of a hole.
   [[nodiscard]] std::uint8_t active_edges(std::uint32_t number) const noexcept;
 
-  /// The numbers of all triangles whose boxes meet [min, max] in the shape's frame, ascending;
-  /// counts on where there is no room.
-  void overlap(const double min[3], const double max[3], SlotSink& out) const noexcept;
-  /// As mesh_sweep and mesh_near.
-  void sweep(const double min[3], const double max[3], const double direction[3], double limit,
-             const SlotVisitor& visitor) const noexcept;
-  void near(const double min[3], const double max[3], double limit,
-            const SlotVisitor& visitor) const noexcept;
-
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
-  [[nodiscard]] HeightGrid grid() const noexcept;
-  void put(std::uint32_t column, std::uint32_t row, const HeightSamples& samples) noexcept;
+  /// As traversals read it.
+  friend HeightGrid grid_of(const HeightField& field) noexcept;
+  struct State;
 
-  Column<float> heights_;
-  /// The least heights of all tiles, then the greatest.
-  Column<float> tiles_;
-  HeightPyramid pyramid_;
-  std::uint32_t columns_ = 0;
-  std::uint32_t rows_ = 0;
-  double spacing_[2] = {1.0, 1.0};
+  std::pmr::memory_resource* memory_;
+  /// Null until something is built.
+  State* state_ = nullptr;
 };
 
 }  // namespace winnow

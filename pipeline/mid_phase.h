@@ -38,8 +38,9 @@ class PrimitivePairs {
   Column<TriangleShape> triangles;
   /// Of `triangles`, one for each: bit k is set where edge k (from corner k to the next) is not one
   /// that a neighbour continues, bit 3 + k where corner k is on such an edge of any triangle: a
-  /// contact there may have a normal of its own. 63 for triangles that are no mesh's.
+  /// contact there may have a normal of its own. kAllActive for triangles that are no mesh's.
   Column<std::uint8_t> active_edges;
+  static constexpr std::uint8_t kAllActive = 63;
   /// Pairs of primitives, those of one pair of bodies next to each other in the order of the
   /// bodies' pairs; a is of body a.
   Column<BodyPair> pairs;
@@ -104,8 +105,8 @@ class MidPhase {
   virtual Status expand(const ShapePool& shapes, const Bodies& bodies,
                         std::span<const BodyPair> pairs, double margin, const Execution& execution,
                         PrimitivePairs& out) const = 0;
-  /// Gives contacts with inner edges of meshes the normal of the face, after the narrow phase has
-  /// answered `pairs` at level distance or manifold.
+  /// Gives contacts with internal edges of meshes the normal of the face, after the narrow phase
+  /// has answered `pairs` at level distance or manifold.
   virtual void smooth(const ShapePool& shapes, const PrimitivePairs& pairs,
                       const Execution& execution, NarrowResult& result) const = 0;
 

@@ -21,6 +21,8 @@
 
 namespace winnow {
 
+struct SceneState;
+
 /// Which set of a scene a body is in. Dynamic bodies meet all others; fixed ones and sleeping ones
 /// meet dynamic ones alone, and cost nothing until one of these comes near.
 enum class Motion : std::uint8_t { fixed, dynamic, sleeping };
@@ -58,7 +60,7 @@ struct BodyDefinition {
 
 /// Bytes of a scene by part. The sum equals, to the byte, what is outstanding at its resource.
 struct SceneFootprint {
-  Bytes bodies;                ///< shapes, poses, keys, filters, client data
+  Bytes bodies;                ///< shapes, poses, keys, filters, client data, the scene itself
   Bytes partitions[kMotions];  ///< by Motion
   Bytes pairs;                 ///< what the broad phase found
   Bytes mid_phase;             ///< pairs of primitives; nothing without composite shapes
@@ -90,8 +92,9 @@ struct SceneStatistics {
 class Scene {
  public:
   /// `shapes` must outlive the scene; shapes must stay in it while bodies use them. Options that
-  /// are out of range make every `add` answer `invalid_argument`.
-  explicit Scene(const ShapePool& shapes, const SceneOptions& options = {});
+  /// are out of range make every `add` answer `invalid_argument`. A scene for which no memory was
+  /// left stays empty and answers `out_of_memory`.
+  explicit Scene(const ShapePool& shapes, const SceneOptions& options = {}) noexcept;
   ~Scene();
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
@@ -138,12 +141,11 @@ class Scene {
   [[nodiscard]] SceneFootprint footprint() const noexcept;
   [[nodiscard]] const SceneStatistics& statistics() const noexcept;
 
-  /// What queries read; not for callers.
-  struct State;
-  [[nodiscard]] const State& state() const noexcept { return *state_; }
-
  private:
-  State* state_;
+  friend class SceneQueries;
+
+  /// Null where memory was refused.
+  SceneState* state_;
 };
 
 }  // namespace winnow

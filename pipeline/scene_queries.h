@@ -16,6 +16,8 @@
 
 namespace winnow {
 
+struct QueryState;
+
 /// Where a ray or a moving shape meets a body.
 struct SceneHit {
   Key key;
@@ -78,8 +80,8 @@ struct ShapeCast {
 /// void.
 class SceneQueries {
  public:
-  explicit SceneQueries(const Scene& scene,
-                        std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+  explicit SceneQueries(const Scene& scene, std::pmr::memory_resource* memory =
+                                                std::pmr::get_default_resource()) noexcept;
   ~SceneQueries();
   SceneQueries(const SceneQueries&) = delete;
   SceneQueries& operator=(const SceneQueries&) = delete;
@@ -99,9 +101,9 @@ class SceneQueries {
                  const Filter& filter = {});
 
   /// Where the moving shape first touches a body, by conservative advancement (Mirtich 1996): t is
-  /// never later than the true time of impact and at most `tolerance` (a length along the way,
+  /// never later than the true time of impact and at most `tolerance` (a length along the path,
   /// finite, >= 0) earlier, or by what rounding makes of it: about 1e-14 of the sizes over the sine
-  /// of the angle of impact, and 1e-15 of the way. Nothing is too thin to be hit. t = 0 if they
+  /// of the angle of impact, and 1e-15 of the path. Nothing is too thin to be hit. t = 0 if they
   /// overlap at the start. Half-spaces and composite shapes do not move: `unsupported`.
   Status closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter = {},
                  double tolerance = 1e-6);
@@ -119,11 +121,10 @@ class SceneQueries {
   /// All of it but results and scratch under `structure`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
-  /// Not for callers.
-  struct State;
-
  private:
-  State* state_;
+  std::pmr::memory_resource* memory_;
+  /// Null where memory was refused: questions are `out_of_memory` then.
+  QueryState* state_ = nullptr;
 };
 
 }  // namespace winnow

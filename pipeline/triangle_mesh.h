@@ -1,17 +1,17 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
-#include <winnow/core/column.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/point_view.h>
 #include <winnow/core/status.h>
-#include "pipeline/mesh/mesh_view.h"
 
-#include <cstdint>
+#include <cstddef>
 #include <memory_resource>
 
 namespace winnow {
+
+struct MeshView;
 
 struct MeshOptions {
   /// An edge that two triangles share is active if the mesh is convex there and bends by more than
@@ -28,8 +28,12 @@ struct MeshOptions {
 class TriangleMesh {
  public:
   explicit TriangleMesh(
-      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
+      : memory_(memory) {}
   TriangleMesh(TriangleMesh&& other) noexcept;
+  ~TriangleMesh();
+  TriangleMesh(const TriangleMesh&) = delete;
+  TriangleMesh& operator=(const TriangleMesh&) = delete;
 
   /// Takes copies of vertices (rounded to float) and triangles and builds the tree. O(n).
   /// `invalid_shape` if there is no triangle, a vertex is not finite in float, or a corner is not a
@@ -46,34 +50,23 @@ class TriangleMesh {
   /// part.
   Status refit(const PointView& vertices, const Execution& execution = Execution::serial());
 
-  [[nodiscard]] std::size_t triangles() const noexcept { return view_.triangle_count; }
-  [[nodiscard]] std::size_t vertices() const noexcept { return view_.vertex_count; }
+  [[nodiscard]] std::size_t triangles() const noexcept;
+  [[nodiscard]] std::size_t vertices() const noexcept;
   /// Of all triangles; empty if there are none.
-  [[nodiscard]] Aabb bounds() const noexcept { return bounds_; }
+  [[nodiscard]] Aabb bounds() const noexcept;
   /// No vertex is farther than this from the origin.
-  [[nodiscard]] double radius() const noexcept { return radius_; }
-  [[nodiscard]] const MeshView& view() const noexcept { return view_; }
+  [[nodiscard]] double radius() const noexcept;
 
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
-  void swap(TriangleMesh& other) noexcept;
-  [[nodiscard]] Status take(const PointView& vertices, const IndexView& triangles,
-                            const MeshOptions& options, const Execution& execution);
-  void place_vertices(const PointView& vertices) noexcept;
-  void link() noexcept;
-  void fit(const Execution& execution) noexcept;
+  /// As traversals read it.
+  friend const MeshView& view_of(const TriangleMesh& mesh) noexcept;
+  struct State;
 
-  Column<float> vertex_[3];
-  Column<std::uint32_t> corner_[3];
-  Column<std::uint32_t> triangle_;
-  Column<std::uint16_t> nodes_;
-  /// See find_neighbours; kept by meshes that are refitted.
-  Column<std::uint32_t> neighbours_;
-  MeshOptions options_;
-  MeshView view_;
-  Aabb bounds_;
-  double radius_ = 0.0;
+  std::pmr::memory_resource* memory_;
+  /// Null until something is built.
+  State* state_ = nullptr;
 };
 
 }  // namespace winnow

@@ -43,8 +43,8 @@ inline constexpr std::uint32_t kFlatChildren = 16;
 /// A compound and its children, in one block of memory.
 ///
 /// The tree of many children is that of a triangle mesh: the box of a child is the box of the
-/// degenerate triangle between its corners, so that every walk of meshes is one of compounds. A
-/// Partition would prune as well, but its keys, change lists and free places are for objects that
+/// degenerate triangle between its corners, so that every traversal of meshes is one of compounds.
+/// A Partition would prune as well, but its keys, change lists and free places are for objects that
 /// come, move and go; children never do, and scenes have many compounds of few children.
 struct Compound {
   std::uint32_t count = 0;
@@ -122,7 +122,40 @@ struct Composites {
   std::uint64_t revision = 0;
 };
 
-/// The box of a shape at a pose.
-[[nodiscard]] Box bounds_of(const Composites& all, ShapeId id, const Pose& pose) noexcept;
+/// See MidPhase::expand. `all` may be null: there are no composite shapes then. O(pairs of bodies +
+/// pairs of primitives, each found in a traversal of O(log n + found)).
+///
+/// Fixed chunks of pairs of bodies are searched as tasks, which write numbers to shared room; then
+/// what they found is counted, and the same chunks write it out where it belongs. Neither depends
+/// on how many threads there are.
+Status expand(const Composites* all, const ShapeTables& tables, const Bodies& bodies,
+              std::span<const BodyPair> pairs, double margin, const Execution& execution,
+              PrimitivePairs& out);
+
+/// See MidPhase::smooth.
+///
+/// A contact of a triangle is one with an edge or a corner if that is what lies farthest along the
+/// contact's normal. Where a neighbour continues the surface beyond, the surface as a whole has no
+/// edge there, and only the face's normal makes sense. Then:
+/// - shapes that are apart keep their distance, its bound and their points, and get the normal;
+/// - so do shapes that only their rounding lets touch, with the point of a sphere moved below its
+///   centre, so that it does not turn;
+/// - others are clipped against the triangle along the normal, and the depth is that of the
+///   clipped points, at least what it was. It is as it was where nothing is left of them, and where
+///   it would be several times what it is for any contact of the same bodies: they are beside the
+///   surface then, not above it.
+/// No contact is lost: the distance to a face's plane is never more than that to the face. Contacts
+/// of triangles of two meshes stay as they are: which face's normal is meant is not known. Which
+/// edges are active is known for the front of a surface only; on its back concave edges, which look
+/// convex from there, are taken for internal ones too, so that a floor is flat whichever way its
+/// triangles are wound.
+void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
+            NarrowResult& result) noexcept;
+
+/// See MidPhase::visit and visit_near. `id` is there, `pose` is valid.
+void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,
+           const PrimitiveVisitor& visitor);
+void visit_near(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& from,
+                double limit, const PrimitiveVisitor& visitor);
 
 }  // namespace winnow::mid

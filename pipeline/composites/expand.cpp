@@ -1,5 +1,4 @@
-#include "pipeline/composites/expand.h"
-#include "pipeline/composites/edge_contact.h"
+#include "pipeline/composites/composites.h"
 #include "pipeline/composites/search.h"
 
 #include <algorithm>
@@ -7,7 +6,7 @@
 namespace winnow::mid {
 namespace {
 
-constexpr std::uint32_t kChunk = 32;
+constexpr std::size_t kPairsPerTask = 32;
 
 /// What a task leaves for the one that writes its part out. Words, as all of the scratch.
 struct ChunkRecord {
@@ -23,12 +22,6 @@ struct ChunkRecord {
 };
 static_assert(sizeof(ChunkRecord) % sizeof(std::uint32_t) == 0);
 
-constexpr std::uint32_t kNumberMask = (1U << kActiveEdgeShift) - 1U;
-
-[[nodiscard]] constexpr std::uint64_t blocks_for(std::uint64_t words) noexcept {
-  return (words + WordArena::kBlock - 1) / WordArena::kBlock;
-}
-
 class Expansion {
  public:
   Expansion(const Composites& all, const ShapeTables& tables, const Bodies& bodies,
@@ -38,9 +31,9 @@ class Expansion {
         bodies_(bodies),
         pairs_(pairs),
         out_(out),
-        chunks_((pairs.size() + kChunk - 1) / kChunk),
-        head_(blocks_for(chunks_ * sizeof(ChunkRecord) / sizeof(std::uint32_t)) +
-              blocks_for(pairs.size())) {}
+        chunks_((pairs.size() + kPairsPerTask - 1) / kPairsPerTask),
+        head_(WordArena::blocks_for(chunks_ * sizeof(ChunkRecord) / sizeof(std::uint32_t)) +
+              WordArena::blocks_for(pairs.size())) {}
 
   [[nodiscard]] Status run(const Execution& execution) noexcept;
 
@@ -49,9 +42,9 @@ class Expansion {
   void search(std::size_t chunk, WordArena& arena) noexcept;
   [[nodiscard]] Status count() noexcept;
   void write(std::size_t chunk) noexcept;
-  void write_primitive(const Side& side, std::uint32_t number, std::size_t at,
+  void write_primitive(const PlacedBody& body, std::uint32_t number, std::size_t at,
                        std::uint32_t& triangle) noexcept;
-  void write_triangle(const Side& side, std::uint32_t number, std::size_t at,
+  void write_triangle(const PlacedBody& body, std::uint32_t number, std::size_t at,
                       std::uint32_t triangle) noexcept;
 
   // Callers promise it; what has been removed touches nothing.
@@ -61,18 +54,19 @@ class Expansion {
     const std::uint32_t kind = shape.kind_index();
     return kind < kShapeKinds ? shape.index() < tables_.count[kind] : all_.contains(shape);
   }
-  [[nodiscard]] Side side(std::uint32_t body, std::uint32_t origin) const noexcept {
+  [[nodiscard]] PlacedBody placed(std::uint32_t body, std::uint32_t origin) const noexcept {
     const Eigen::Map<const Vec> position(bodies_.poses[body].position);
     const Eigen::Map<const Vec> from(bodies_.poses[origin].position);
-    return Side(all_, tables_, bodies_.shapes[body], bodies_.poses[body],
-                body == origin ? Vec(Vec::Zero()) : finite(position - from));
+    return PlacedBody(all_, tables_, bodies_.shapes[body], bodies_.poses[body],
+                      body == origin ? Vec(Vec::Zero()) : finite(position - from));
   }
   [[nodiscard]] ChunkRecord* records() const noexcept {
     return reinterpret_cast<ChunkRecord*>(out_.scratch.data());
   }
   /// How many primitives each pair of bodies has.
   [[nodiscard]] std::uint32_t* primitive_counts() const noexcept {
-    const std::uint64_t records = blocks_for(chunks_ * sizeof(ChunkRecord) / sizeof(std::uint32_t));
+    const std::uint64_t records =
+        WordArena::blocks_for(chunks_ * sizeof(ChunkRecord) / sizeof(std::uint32_t));
     return out_.scratch.data() + records * WordArena::kBlock;
   }
   [[nodiscard]] std::uint32_t* blocks() const noexcept {
@@ -114,12 +108,12 @@ bool Expansion::search_all(const Execution& execution) noexcept {
 
 void Expansion::search(std::size_t chunk, WordArena& arena) noexcept {
   Search search(tables_, out_.margin, arena);
-  const std::size_t end = std::min((chunk + 1) * kChunk, pairs_.size());
-  for (std::size_t i = chunk * kChunk; i < end; ++i) {
+  const std::size_t end = std::min((chunk + 1) * kPairsPerTask, pairs_.size());
+  for (std::size_t i = chunk * kPairsPerTask; i < end; ++i) {
     const std::uint64_t primitives = search.primitives().size();
     const std::uint64_t found = search.pairs().size();
     if (is_there(pairs_[i].a) && is_there(pairs_[i].b)) {
-      search.run(side(pairs_[i].a, pairs_[i].a), side(pairs_[i].b, pairs_[i].a));
+      search.run(placed(pairs_[i].a, pairs_[i].a), placed(pairs_[i].b, pairs_[i].a));
     }
     primitive_counts()[i] = static_cast<std::uint32_t>(search.primitives().size() - primitives);
     out_.first[i + 1] = static_cast<std::uint32_t>((search.pairs().size() - found) / 2);
@@ -164,12 +158,12 @@ void Expansion::write(std::size_t chunk) noexcept {
   WordReader pairs(blocks(), record.pair_block);
   std::size_t at = record.first_primitive;
   std::uint32_t triangle = record.first_triangle;
-  const std::size_t end = std::min((chunk + 1) * kChunk, pairs_.size());
-  for (std::size_t i = chunk * kChunk; i < end; ++i) {
+  const std::size_t end = std::min((chunk + 1) * kPairsPerTask, pairs_.size());
+  for (std::size_t i = chunk * kPairsPerTask; i < end; ++i) {
     const std::uint32_t count = primitive_counts()[i];
     if (count == 0) continue;
-    const Side a = side(pairs_[i].a, pairs_[i].a);
-    const Side b = side(pairs_[i].b, pairs_[i].a);
+    const PlacedBody a = placed(pairs_[i].a, pairs_[i].a);
+    const PlacedBody b = placed(pairs_[i].b, pairs_[i].a);
     for (std::uint32_t k = 0; k < count; ++k) {
       const std::uint32_t word = primitives.get();
       const bool second = (word & Search::kSecond) != 0;
@@ -183,33 +177,30 @@ void Expansion::write(std::size_t chunk) noexcept {
   }
 }
 
-void Expansion::write_primitive(const Side& side, std::uint32_t number, std::size_t at,
+void Expansion::write_primitive(const PlacedBody& body, std::uint32_t number, std::size_t at,
                                 std::uint32_t& triangle) noexcept {
-  if (side.is_surface()) return write_triangle(side, number, at, triangle++);
-  const Part part = side.part(number);
+  if (body.is_surface()) return write_triangle(body, number, at, triangle++);
+  const PlacedPart part = body.part(number);
   ShapeId shape = part.shape;
   if (shape.kind() == ShapeKind::triangle) {
     out_.triangles[triangle] = tables_.triangles[shape.index()];
-    out_.active_edges[triangle] = kAllActive;
+    out_.active_edges[triangle] = PrimitivePairs::kAllActive;
     shape = ShapeId::of(ShapeKind::triangle, triangle++);
   }
   out_.shapes[at] = shape;
-  out_.poses[at] = pose_of(part.position, side.part_turn(number));
-  out_.part[at] = side.kind == Side::Kind::convex ? kWholeShape : number;
+  out_.poses[at] = pose_of(part.position, body.part_turn(number));
+  out_.part[at] = body.shown_number(number);
 }
 
-void Expansion::write_triangle(const Side& side, std::uint32_t number, std::size_t at,
+void Expansion::write_triangle(const PlacedBody& body, std::uint32_t number, std::size_t at,
                                std::uint32_t triangle) noexcept {
   Corners corners;
-  static_cast<void>(side.corners(number, corners));
-  TriangleShape& shape = out_.triangles[triangle];
-  shape = {};
-  for (int k = 0; k < 2; ++k) Vec::Map(shape.vertex[k + 1]) = finite(corners.edge[k]);
+  static_cast<void>(body.corners(number, corners));
+  out_.triangles[triangle] = corners.triangle();
   out_.shapes[at] = ShapeId::of(ShapeKind::triangle, triangle);
   out_.poses[at] = pose_of(corners.first, {1.0, 0.0, 0.0, 0.0});
-  out_.active_edges[triangle] = side.active(number);
-  out_.part[at] =
-      side.kind == Side::Kind::mesh ? side.mesh->triangle[number] & kNumberMask : number;
+  out_.active_edges[triangle] = body.active(number);
+  out_.part[at] = body.shown_number(number);
 }
 
 }  // namespace

@@ -1,30 +1,140 @@
 #include "pipeline/composites/search.h"
-#include "pipeline/composites/separation.h"
-#include "pipeline/mesh/mesh_walks.h"
+
+#include "pipeline/mesh/height_grid.h"
+#include "pipeline/mesh/mesh_traversals.h"
 #include "pipeline/shapes/extent.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace winnow::mid {
 namespace {
 
-constexpr std::uint32_t kNumberMask = (1U << kActiveEdgeShift) - 1U;
-
 // A convex shape is its own only part.
 constexpr std::uint32_t kOnly[1] = {0};
 
-void put(SlotSink& out, std::uint32_t number) noexcept {
-  if (out.size < out.capacity) out.slot[out.size] = number;
-  ++out.size;
-}
-
 /// What a half-space is in the frame of a mesh.
-void walk_below(const HalfSpaceShape& shape, const Part& part, const Side& surface, double margin,
-                SlotSink& out) noexcept {
+void find_below(const HalfSpaceShape& shape, const PlacedPart& part, const PlacedBody& surface,
+                double margin, SlotSink& out) noexcept {
   const Vec normal = part.rotation * Eigen::Map<const Vec>(shape.normal);
   const Vec from = surface.position - part.position;
   const double base = normal.dot(from);
   const double noise = kSlack * (from.lpNorm<1>() + std::abs(shape.offset));
-  mesh_below(*surface.mesh, surface.to_world.transpose() * normal,
-             shape.offset - base + margin + noise, out);
+  const Vec own_normal = surface.to_world.transpose() * normal;
+  mesh_below(*surface.mesh, own_normal.data(), shape.offset - base + margin + noise, out);
+}
+
+/// A plane through a triangle: its normal, not of unit length, and what rounding does to heights
+/// above it, for each unit of length of what is asked.
+struct TrianglePlane {
+  explicit TrianglePlane(const Corners& t) noexcept
+      : normal(t.edge[0].cross(t.edge[1])),
+        length(normal.norm()),
+        noise(kSlack * t.edge[0].lpNorm<1>() * t.edge[1].lpNorm<1>()) {}
+
+  Vec normal;
+  double length;
+  double noise;
+};
+
+// All above or all below `low` and `high`, in units of the plane's normal.
+[[nodiscard]] bool is_beyond(const TrianglePlane& plane, double low, double high, double scale,
+                             double margin) noexcept {
+  return std::max(low, -high) > margin * plane.length + plane.noise * scale;
+}
+
+/// The direction from the point of a triangle that is closest to a point; both relative to its
+/// first corner. (Ericson, Real-Time Collision Detection, 5.1.5.) Rounding makes it another
+/// direction, no more.
+[[nodiscard]] Vec direction_to(const Vec& point, const Corners& triangle) noexcept {
+  const Vec& ab = triangle.edge[0];
+  const Vec& ac = triangle.edge[1];
+  const double d1 = ab.dot(point);
+  const double d2 = ac.dot(point);
+  if (d1 <= 0.0 && d2 <= 0.0) return point;
+  const double aa = ab.squaredNorm();
+  const double cc = ac.squaredNorm();
+  const double bc = ab.dot(ac);
+  const double d3 = d1 - aa;
+  const double d4 = d2 - bc;
+  if (d3 >= 0.0 && d4 <= d3) return point - ab;
+  const double d5 = d1 - bc;
+  const double d6 = d2 - cc;
+  if (d6 >= 0.0 && d5 <= d6) return point - ac;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return point - ab * (d1 / (d1 - d3));
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return point - ac * (d2 / (d2 - d6));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+    const double along = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return point - ab - (ac - ab) * along;
+  }
+  const Vec normal = ab.cross(ac);
+  return normal.dot(point) < 0.0 ? Vec(-normal) : normal;
+}
+
+[[nodiscard]] bool half_space_apart(const HalfSpaceShape& shape, const PlacedPart& part,
+                                    const Corners& t, double margin) noexcept {
+  const Vec normal = part.rotation * Eigen::Map<const Vec>(shape.normal);
+  const Vec from = t.first - part.position;
+  const double base = normal.dot(from);
+  const double rise[2] = {normal.dot(t.edge[0]), normal.dot(t.edge[1])};
+  const double scale = from.lpNorm<1>() + t.edge[0].lpNorm<1>() + t.edge[1].lpNorm<1>();
+  return base + std::min({0.0, rise[0], rise[1]}) - shape.offset >
+         margin + kSlack * (scale + std::abs(shape.offset));
+}
+
+[[nodiscard]] bool corners_beyond(const Corners& plane_of, const Corners& t,
+                                  double margin) noexcept {
+  const TrianglePlane plane(plane_of);
+  const Vec from = t.first - plane_of.first;
+  const double base = plane.normal.dot(from);
+  const double one = plane.normal.dot(t.edge[0]);
+  const double two = plane.normal.dot(t.edge[1]);
+  return is_beyond(
+      plane, base + std::min({0.0, one, two}), base + std::max({0.0, one, two}),
+      from.lpNorm<1>() + t.edge[0].lpNorm<1>() + t.edge[1].lpNorm<1>() + plane_of.first.lpNorm<1>(),
+      margin);
+}
+
+/// True if one well-chosen axis shows that a part is farther from a triangle than `margin`: always
+/// the right one for spheres and half-spaces. False proves nothing.
+[[nodiscard]] bool is_apart(const ShapeTables& tables, const PlacedPart& part,
+                            const Corners& triangle, double margin) noexcept {
+  if (part.shape.kind() == ShapeKind::half_space) {
+    return half_space_apart(tables.half_spaces[part.shape.index()], part, triangle, margin);
+  }
+  // The direction from the triangle's closest point to the middle of the part: a triangle's plane
+  // where that is above its inside, and a better axis where it is not.
+  const Vec from = part.position - triangle.first;
+  const Vec axis = direction_to(from + part.middle, triangle);
+  const double length = axis.norm();
+  const double scale = from.lpNorm<1>() + triangle.first.lpNorm<1>() + part.radius +
+                       triangle.edge[0].lpNorm<1>() + triangle.edge[1].lpNorm<1>();
+  const double enough = (margin + kSlack * scale) * length;
+  const double top = std::max({0.0, axis.dot(triangle.edge[0]), axis.dot(triangle.edge[1])});
+  const double middle = axis.dot(from + part.middle) - top;
+  if (middle - part.reach * length > enough) return true;
+  if (middle - part.inner * length <= enough) return false;
+  return axis.dot(from) - top + lowest(tables, part.shape, part.rotation.transpose() * axis) >
+         enough;
+}
+
+/// The same of two triangles, by their boxes and by both planes.
+[[nodiscard]] bool is_apart(const Corners& a, const Corners& b, double margin) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    const double low = std::min({0.0, a.edge[0][i], a.edge[1][i]});
+    const double high = std::max({0.0, a.edge[0][i], a.edge[1][i]});
+    const double low_b = std::min({0.0, b.edge[0][i], b.edge[1][i]});
+    const double high_b = std::max({0.0, b.edge[0][i], b.edge[1][i]});
+    const double out =
+        margin +
+        4.0 * kSlack * (std::abs(a.first[i]) + std::abs(b.first[i]) + high - low + high_b - low_b);
+    const double from = b.first[i] - a.first[i];
+    if (from + low_b - high > out || low - high_b - from > out) return true;
+  }
+  return corners_beyond(a, b, margin) || corners_beyond(b, a, margin);
 }
 
 }  // namespace
@@ -32,7 +142,7 @@ void walk_below(const HalfSpaceShape& shape, const Part& part, const Side& surfa
 Search::Search(const ShapeTables& tables, double margin, WordArena& arena) noexcept
     : tables_(tables), margin_(margin), arena_(arena), primitives_(arena), pairs_(arena) {}
 
-void Search::run(const Side& a, const Side& b) noexcept {
+void Search::run(const PlacedBody& a, const PlacedBody& b) noexcept {
   before_ = primitives_.size();
   if (!a.is_surface() && !b.is_surface()) {
     parts_parts(a, b);
@@ -40,31 +150,32 @@ void Search::run(const Side& a, const Side& b) noexcept {
     parts_surface(a, b, false);
   } else if (!b.is_surface()) {
     parts_surface(b, a, true);
-  } else if (a.kind == Side::Kind::mesh && b.kind == Side::Kind::mesh) {
+  } else if (a.kind == PlacedBody::Kind::mesh && b.kind == PlacedBody::Kind::mesh) {
     mesh_mesh(a, b);
   } else {
     surfaces(a, b);
   }
 }
 
-void Search::parts_parts(const Side& a, const Side& b) noexcept {
+void Search::parts_parts(const PlacedBody& a, const PlacedBody& b) noexcept {
   for (const std::uint32_t of_a : children_near(a, b.box_in(a, margin_), outer_)) {
     const Box box = box_of(a.part(of_a), b, margin_);
     for (const std::uint32_t of_b : children_near(b, box, inner_)) add(a, of_a, b, of_b);
   }
 }
 
-void Search::parts_surface(const Side& parts, const Side& surface, bool swapped) noexcept {
-  const bool is_one = parts.kind == Side::Kind::convex;
+void Search::parts_surface(const PlacedBody& parts, const PlacedBody& surface,
+                           bool mirrored) noexcept {
+  const bool is_one = parts.kind == PlacedBody::Kind::convex;
   for (const std::uint32_t number :
        is_one ? std::span<const std::uint32_t>(kOnly)
               : children_near(parts, surface.box_in(parts, margin_), outer_)) {
-    const Part part = parts.part(number);
+    const PlacedPart part = parts.part(number);
     for (const std::uint32_t triangle : triangles_near(part, surface)) {
       Corners corners;
       if (!surface.corners(triangle, corners)) continue;
       if (is_apart(tables_, part, corners, margin_)) continue;
-      if (swapped) {
+      if (mirrored) {
         add(surface, triangle, parts, number);
       } else {
         add(parts, number, surface, triangle);
@@ -73,7 +184,7 @@ void Search::parts_surface(const Side& parts, const Side& surface, bool swapped)
   }
 }
 
-void Search::mesh_mesh(const Side& a, const Side& b) noexcept {
+void Search::mesh_mesh(const PlacedBody& a, const PlacedBody& b) noexcept {
   MeshPlacement placement;
   const Mat linear = a.to_local * b.to_world;
   const Vec offset = a.to_local * finite(b.position - a.position);
@@ -84,24 +195,24 @@ void Search::mesh_mesh(const Side& a, const Side& b) noexcept {
     placement.offset[i] = offset[i];
     margin[i] = margin_ * a.to_local.row(i).norm() + noise[i];
   }
-  PairOfSides sides{*this, a, b};
+  PairOfBodies sides{*this, a, b};
   SlotPairSink found{outer_.data(), inner_.data(), kRoom, 0, &take_slots, &sides};
   mesh_overlap_pairs(*a.mesh, *b.mesh, placement, margin, found);
   take_slots(found.context, found);
 }
 
 void Search::take_slots(void* context, SlotPairSink& found) noexcept {
-  const PairOfSides& sides = *static_cast<const PairOfSides*>(context);
-  // The walk has seen to boxes and planes of both: a second look would drop nothing.
+  const PairOfBodies& sides = *static_cast<const PairOfBodies*>(context);
+  // The traversal has seen to boxes and planes of both: a second look would drop nothing.
   for (std::uint64_t i = 0; i < found.size; ++i) {
     sides.search.add(sides.a, found.first[i], sides.b, found.second[i]);
   }
   found.size = 0;
 }
 
-// At least one of them is a height field, which answers boxes so cheaply that a walk of two trees
-// would gain little.
-void Search::surfaces(const Side& a, const Side& b) noexcept {
+// At least one of them is a height field, which answers boxes so cheaply that a traversal of two
+// trees would gain little.
+void Search::surfaces(const PlacedBody& a, const PlacedBody& b) noexcept {
   for (const std::uint32_t of_a : triangles_near(b.box_in(a, margin_), a, outer_)) {
     Corners corners[2];
     if (!a.corners(of_a, corners[0])) continue;
@@ -116,50 +227,50 @@ void Search::surfaces(const Side& a, const Side& b) noexcept {
   }
 }
 
-template <typename Walk>
-std::span<const std::uint32_t> Search::collect(Room& room, Walk&& walk) noexcept {
+template <typename Find>
+std::span<const std::uint32_t> Search::collect(Room& room, Find&& find) noexcept {
   SlotSink found{room.data(), kRoom, 0};
-  walk(found);
+  find(found);
   if (found.size <= kRoom) return {room.data(), found.size};
   // The room that all tasks share: not given back before the next call.
   std::uint32_t* const more = arena_.take(found.size);
   if (more == nullptr) return {};
   found = {more, found.size, 0};
-  walk(found);
+  find(found);
   return {more, found.size};
 }
 
-std::span<const std::uint32_t> Search::children_near(const Side& side, const Box& box,
+std::span<const std::uint32_t> Search::children_near(const PlacedBody& body, const Box& box,
                                                      Room& room) noexcept {
-  if (side.kind == Side::Kind::convex) return kOnly;
-  const Compound& compound = *side.compound;
+  if (body.kind == PlacedBody::Kind::convex) return kOnly;
+  const Compound& compound = *body.compound;
   if (compound.tree == nullptr) {
     return collect(room, [&](SlotSink& out) {
       for (std::uint32_t i = 0; i < compound.count; ++i) {
-        if (Box::of(compound.boxes[i]).meets(box)) put(out, i);
+        if (Box::of(compound.boxes[i]).meets(box)) put_slot(out, i);
       }
     });
   }
-  const MeshView& tree = compound.tree->view();
+  const MeshView& tree = view_of(*compound.tree);
   const std::span<const std::uint32_t> slots = collect(
       room, [&](SlotSink& out) { mesh_overlap(tree, box.min.data(), box.max.data(), out); });
   // The room is this search's own.
   auto* const children = const_cast<std::uint32_t*>(slots.data());
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    children[i] = tree.triangle[slots[i]] & kNumberMask;
+    children[i] = tree.triangle[slots[i]] & kTriangleNumberMask;
   }
   return slots;
 }
 
-std::span<const std::uint32_t> Search::triangles_near(const Part& part,
-                                                      const Side& surface) noexcept {
-  if (part.shape.kind() == ShapeKind::half_space && surface.kind == Side::Kind::mesh) {
+std::span<const std::uint32_t> Search::triangles_near(const PlacedPart& part,
+                                                      const PlacedBody& surface) noexcept {
+  if (part.shape.kind() == ShapeKind::half_space && surface.kind == PlacedBody::Kind::mesh) {
     return collect(inner_, [&](SlotSink& out) {
-      walk_below(tables_.half_spaces[part.shape.index()], part, surface, margin_, out);
+      find_below(tables_.half_spaces[part.shape.index()], part, surface, margin_, out);
     });
   }
   const Box box = box_of(part, surface, margin_);
-  if (surface.kind != Side::Kind::mesh) return triangles_near(box, surface, inner_);
+  if (surface.kind != PlacedBody::Kind::mesh) return triangles_near(box, surface, inner_);
   // A ball about the part as well: of most shapes' boxes it leaves half of the triangles.
   const Vec center = surface.to_local * finite(part.position + part.middle - surface.position);
   const double noise = kSlack * (center.lpNorm<1>() + surface.to_local.cwiseAbs().maxCoeff() *
@@ -170,33 +281,34 @@ std::span<const std::uint32_t> Search::triangles_near(const Part& part,
   });
 }
 
-std::span<const std::uint32_t> Search::triangles_near(const Box& box, const Side& surface,
+std::span<const std::uint32_t> Search::triangles_near(const Box& box, const PlacedBody& surface,
                                                       Room& room) noexcept {
   return collect(room, [&](SlotSink& out) {
-    if (surface.kind == Side::Kind::mesh) {
+    if (surface.kind == PlacedBody::Kind::mesh) {
       mesh_overlap(*surface.mesh, box.min.data(), box.max.data(), out);
     } else {
-      surface.field->overlap(box.min.data(), box.max.data(), out);
+      height_overlap(grid_of(*surface.field), box.min.data(), box.max.data(), out);
     }
   });
 }
 
-void Search::add(const Side& a, std::uint32_t of_a, const Side& b, std::uint32_t of_b) noexcept {
+void Search::add(const PlacedBody& a, std::uint32_t of_a, const PlacedBody& b,
+                 std::uint32_t of_b) noexcept {
   const std::uint32_t first = primitive(a, of_a, 0);
   const std::uint32_t second = primitive(b, of_b, kSecond);
   pairs_.put(first);
   pairs_.put(second);
 }
 
-std::uint32_t Search::primitive(const Side& side, std::uint32_t number,
+std::uint32_t Search::primitive(const PlacedBody& body, std::uint32_t number,
                                 std::uint32_t flag) noexcept {
   Memory& seen = memory_[flag != 0 ? 1 : 0][number % kRemembered];
   if (seen.number != number || seen.primitive < before_) {
     seen = {number, primitives_.size()};
     primitives_.put(number | flag);
     const ShapeId shape =
-        side.kind == Side::Kind::compound ? side.compound->children[number].shape : side.id;
-    if (side.is_surface() || shape.kind() == ShapeKind::triangle) ++triangles_;
+        body.kind == PlacedBody::Kind::compound ? body.compound->children[number].shape : body.id;
+    if (body.is_surface() || shape.kind() == ShapeKind::triangle) ++triangles_;
   }
   return static_cast<std::uint32_t>(seen.primitive);
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/composites/side.h"
+#include "pipeline/composites/placed_body.h"
 #include "pipeline/composites/word_arena.h"
 
 #include <array>
@@ -17,7 +17,7 @@ class Search {
 
   /// Primitives are written to `primitives()` as numbers with kSecond set for those of b, pairs to
   /// `pairs()` as two numbers of this search's primitives.
-  void run(const Side& a, const Side& b) noexcept;
+  void run(const PlacedBody& a, const PlacedBody& b) noexcept;
 
   static constexpr std::uint32_t kSecond = 1U << 31U;
 
@@ -34,29 +34,31 @@ class Search {
     std::uint64_t primitive = 0;
   };
 
-  struct PairOfSides {
+  struct PairOfBodies {
     Search& search;
-    const Side& a;
-    const Side& b;
+    const PlacedBody& a;
+    const PlacedBody& b;
   };
 
-  void parts_parts(const Side& a, const Side& b) noexcept;
-  void parts_surface(const Side& parts, const Side& surface, bool swapped) noexcept;
-  void mesh_mesh(const Side& a, const Side& b) noexcept;
+  void parts_parts(const PlacedBody& a, const PlacedBody& b) noexcept;
+  void parts_surface(const PlacedBody& parts, const PlacedBody& surface, bool mirrored) noexcept;
+  void mesh_mesh(const PlacedBody& a, const PlacedBody& b) noexcept;
   static void take_slots(void* context, SlotPairSink& found) noexcept;
-  void surfaces(const Side& a, const Side& b) noexcept;
+  void surfaces(const PlacedBody& a, const PlacedBody& b) noexcept;
 
-  [[nodiscard]] std::span<const std::uint32_t> children_near(const Side& side, const Box& box,
+  [[nodiscard]] std::span<const std::uint32_t> children_near(const PlacedBody& body, const Box& box,
                                                              Room& room) noexcept;
-  [[nodiscard]] std::span<const std::uint32_t> triangles_near(const Part& part,
-                                                              const Side& surface) noexcept;
-  [[nodiscard]] std::span<const std::uint32_t> triangles_near(const Box& box, const Side& surface,
+  [[nodiscard]] std::span<const std::uint32_t> triangles_near(const PlacedPart& part,
+                                                              const PlacedBody& surface) noexcept;
+  [[nodiscard]] std::span<const std::uint32_t> triangles_near(const Box& box,
+                                                              const PlacedBody& surface,
                                                               Room& room) noexcept;
-  template <typename Walk>
-  [[nodiscard]] std::span<const std::uint32_t> collect(Room& room, Walk&& walk) noexcept;
+  template <typename Find>
+  [[nodiscard]] std::span<const std::uint32_t> collect(Room& room, Find&& find) noexcept;
 
-  void add(const Side& a, std::uint32_t of_a, const Side& b, std::uint32_t of_b) noexcept;
-  [[nodiscard]] std::uint32_t primitive(const Side& side, std::uint32_t number,
+  void add(const PlacedBody& a, std::uint32_t of_a, const PlacedBody& b,
+           std::uint32_t of_b) noexcept;
+  [[nodiscard]] std::uint32_t primitive(const PlacedBody& body, std::uint32_t number,
                                         std::uint32_t flag) noexcept;
 
   const ShapeTables& tables_;

@@ -1,18 +1,156 @@
-#include "pipeline/composites/smooth.h"
-#include "pipeline/composites/edge_contact.h"
-#include "pipeline/composites/face_clip.h"
+#include "pipeline/composites/composites.h"
+#include "pipeline/narrow/narrow_job.h"
 #include "pipeline/shapes/extent.h"
+#include "pipeline/solver/problem.h"
+#include "pipeline/solver/supporting_patch.h"
 
 #include <algorithm>
 #include <array>
 #include <bitset>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace winnow::mid {
+
+/// What a contact with a triangle is.
+enum class EdgeContact : std::uint8_t {
+  /// With the face, or with an edge or corner that the surface really has.
+  real,
+  /// With the face, but the normal is off by more than rounding of unit vectors.
+  nearly_face,
+  /// With an edge or corner that neighbours continue.
+  internal,
+};
+
 namespace {
 
-constexpr std::size_t kChunk = 256;
-constexpr std::size_t kWave = 16;
+// Of the size: corners whose heights differ by less are equally far along the normal. Narrow-phase
+// normals of tier `fast` are as exact as that.
+constexpr double kLevel = 1e-6;
+constexpr double kSameNormal = 1e-13;
+
+/// `active`: see PrimitivePairs::active_edges. `away`: unit, from the triangle to the other shape.
+/// `face` is set to the triangle's unit normal on the side of `away`. Triangles without a normal
+/// have real contacts only.
+[[nodiscard]] EdgeContact classify(const TriangleShape& triangle, std::uint8_t active,
+                                   const Vec& away, Vec& face) noexcept {
+  Vec corner[3];
+  for (int i = 0; i < 3; ++i) corner[i] = Eigen::Map<const Vec>(triangle.vertex[i]);
+  const Vec edge[3] = {corner[1] - corner[0], corner[2] - corner[1], corner[0] - corner[2]};
+  const Vec normal = edge[0].cross(edge[1]);
+  const double length = normal.norm();
+  // NaN fails too.
+  if (!(length > 0.0 && length < kInfinity)) return EdgeContact::real;
+  const double rise = normal.dot(away) / length;
+  face = normal / (rise < 0.0 ? -length : length);
+  if ((away - face).squaredNorm() <= kSameNormal * kSameNormal) return EdgeContact::real;
+
+  double height[3];
+  for (int i = 0; i < 3; ++i) height[i] = corner[i].dot(away);
+  const double top = std::max({height[0], height[1], height[2]});
+  const double level =
+      kLevel *
+      std::sqrt(std::max({edge[0].squaredNorm(), edge[1].squaredNorm(), edge[2].squaredNorm()}));
+  int highest = 0;
+  for (int i = 0; i < 3; ++i) highest += top - height[i] <= level ? 1 : 0;
+  if (highest == 3) return EdgeContact::nearly_face;
+  for (int i = 0; i < 3; ++i) {
+    // On an active edge of another triangle. Those of this one are asked below.
+    const bool is_own = (active >> i & 1U) != 0 || (active >> (i + 2) % 3 & 1U) != 0;
+    const bool is_active = (active >> (3 + i) & 1U) != 0;
+    if (highest == 1 && top - height[i] <= level && is_active && !is_own) return EdgeContact::real;
+  }
+  for (int i = 0; i < 3; ++i) {
+    const int next = (i + 1) % 3;
+    if ((active >> i & 1U) == 0) continue;
+    const bool ends[2] = {top - height[i] <= level, top - height[next] <= level};
+    // An edge of which both ends are highest, or one end that alone is.
+    if (ends[0] && ends[1]) return EdgeContact::real;
+    if (highest != 1 || (!ends[0] && !ends[1])) continue;
+    // A corner belongs to the edge if the other shape is beyond the edge. Seen from the face's
+    // side that `away` is on, edges may run either way.
+    const Vec inward = corner[(i + 2) % 3] - corner[i];
+    const Vec along = edge[i] / edge[i].norm();
+    if ((inward - along * along.dot(inward)).dot(away) < 0.0) return EdgeContact::real;
+  }
+  return EdgeContact::internal;
+}
+
+/// A triangle of a mesh and another shape, which overlap.
+struct FacePair {
+  const ShapeTables& tables;
+  ShapeId a;
+  const Pose& pose_a;
+  ShapeId b;
+  const Pose& pose_b;
+  /// The mesh's triangle is b.
+  bool second;
+};
+
+/// Contacts along the normal of the triangle's face.
+struct FaceContacts {
+  ContactPoint points[kManifoldPoints];
+  std::uint32_t count = 0;
+  /// Of the first point, the deepest; and what rounding may have done to it.
+  double depth = 0.0;
+  double noise = 0.0;
+};
+
+// Of float positions and depths.
+constexpr double kFloatError = 1.2e-7;
+constexpr double kFloatSlack = 1e-6;
+
+/// If a point, seen along the triangle's normal, is in the triangle.
+[[nodiscard]] bool is_over(const solver::Core& triangle, const Vec& normal, const float* point,
+                           double size) noexcept {
+  const Vec at = Eigen::Map<const Eigen::Vector3f>(point).cast<double>() - triangle.center;
+  double least = 0.0;
+  double most = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double beside = triangle.side[k].cross(at - triangle.corner[k]).dot(normal);
+    least = std::min(least, beside);
+    most = std::max(most, beside);
+  }
+  // On the same side of all edges, whichever way they run.
+  return std::min(-least, most) <= kFloatSlack * size;
+}
+
+/// To the caller's units, at most the largest float.
+[[nodiscard]] float scaled(float x, double unit) noexcept {
+  constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
+  return static_cast<float>(std::clamp(static_cast<double>(x) * unit, -kMost, kMost));
+}
+
+/// Clips the feature of the other shape that lies farthest along `normal` (the face's, from a to b)
+/// against the triangle. The depth is at least `least`. False if the feature is not over the
+/// triangle, where its depth would be made up, or if it is deeper than `most`.
+[[nodiscard]] bool clip_to_face(const FacePair& pair, const Vec& normal, double margin,
+                                double least, double most, FaceContacts& out) noexcept {
+  solver::Problem problem;
+  prepare(pair.tables, pair.a, pair.pose_a, pair.b, pair.pose_b, false, problem);
+  const solver::SupportingPatch a(problem.a, normal);
+  const solver::SupportingPatch b(problem.b, -normal);
+  const double reach = std::min(std::ldexp(margin, -problem.exponent), 8.0);
+  out.count = contact_patch(a.view(), b.view(), normal.data(), reach, out.points);
+  ContactPoint& deepest = out.points[0];
+  const solver::Core& triangle = pair.second ? problem.b : problem.a;
+  if (!is_over(triangle, normal, deepest.position, problem.size)) return false;
+  const double unit = unscaled(problem, 1.0);
+  out.depth = static_cast<double>(deepest.depth) * unit;
+  if (!(out.depth <= most)) return false;
+  out.depth = std::max(out.depth, least);
+  out.noise = unscaled(problem, problem.noise()) + kFloatError * out.depth;
+  for (std::uint32_t k = 0; k < out.count; ++k) {
+    for (float& x : out.points[k].position) x = scaled(x, unit);
+    out.points[k].depth = scaled(out.points[k].depth, unit);
+  }
+  deepest.depth = std::max(deepest.depth, scaled(1.0F, least));
+  return true;
+}
+
+constexpr std::size_t kAnswersPerTask = 256;
+constexpr std::size_t kTasksPerWave = 16;
 
 // Times as deep as any contact of the same bodies is before smoothing: a point on a seam may be,
 // since the shortest way out of each triangle is over the seam.
@@ -46,9 +184,9 @@ class Smoothing {
     std::size_t used = 0;
     bool has_room = false;
     /// What is left to be clipped once there is room.
-    std::bitset<kChunk> is_deep{};
+    std::bitset<kAnswersPerTask> is_deep{};
     /// How deep they may become.
-    std::array<float, kChunk> most{};
+    std::array<float, kAnswersPerTask> most{};
   };
   /// Primitive pairs of one pair of bodies, and how deep the deepest of them is.
   struct Together {
@@ -70,10 +208,11 @@ class Smoothing {
   void clip(Chunk& chunk, std::size_t i) noexcept;
   void take(Chunk& chunk, std::size_t i, std::span<const ContactPoint> points) noexcept;
 
-  /// One that may have inner edges.
+  /// One that may have internal edges.
   [[nodiscard]] bool is_mesh_triangle(std::uint32_t primitive) const noexcept {
     const ShapeId shape = pairs_.shapes[primitive];
-    return shape.kind() == ShapeKind::triangle && pairs_.active_edges[shape.index()] != kAllActive;
+    return shape.kind() == ShapeKind::triangle &&
+           pairs_.active_edges[shape.index()] != PrimitivePairs::kAllActive;
   }
   [[nodiscard]] bool has_contacts() const noexcept {
     return result_.level_ == NarrowLevel::manifold;
@@ -89,11 +228,11 @@ class Smoothing {
 
 void Smoothing::run(const Execution& execution) noexcept {
   const std::size_t size = std::min(result_.size(), pairs_.pairs.size());
-  Chunk wave[kWave];
+  Chunk wave[kTasksPerWave];
   for (std::size_t begin = 0; begin < size;) {
     std::size_t filled = 0;
-    for (; filled < kWave && begin < size; begin += kChunk) {
-      wave[filled++] = {begin, std::min(begin + kChunk, size)};
+    for (; filled < kTasksPerWave && begin < size; begin += kAnswersPerTask) {
+      wave[filled++] = {begin, std::min(begin + kAnswersPerTask, size)};
     }
     run_wave(execution, {wave, filled});
   }
@@ -205,7 +344,7 @@ Smoothing::Found Smoothing::find(std::size_t i) const noexcept {
   const TriangleShape& shape = tables_.triangles[triangle.index()];
   found.contact = classify(shape, pairs_.active_edges[triangle.index()], away, face);
   if (found.contact == EdgeContact::real) return found;
-  if (found.contact == EdgeContact::inner) {
+  if (found.contact == EdgeContact::internal) {
     choose_side(bodies, second, face);
     const double distance = result_.distance_[i];
     found.is_deep = other.kind() != ShapeKind::sphere && distance <= 0.0 &&

@@ -1,6 +1,8 @@
-#include "pipeline/composites/visits.h"
-#include "pipeline/composites/side.h"
-#include "pipeline/mesh/mesh_walks.h"
+#include "pipeline/composites/composites.h"
+#include "pipeline/composites/placed_body.h"
+#include "pipeline/mesh/box_measures.h"
+#include "pipeline/mesh/height_grid.h"
+#include "pipeline/mesh/mesh_traversals.h"
 #include "pipeline/shapes/extent.h"
 
 #include <algorithm>
@@ -9,31 +11,26 @@
 namespace winnow::mid {
 namespace {
 
-constexpr std::uint32_t kNumberMask = (1U << kActiveEdgeShift) - 1U;
-
-/// Makes primitives of the numbers that a walk finds, in the world.
+/// Makes primitives, in the world, of the numbers that a traversal finds.
 struct Guide {
   const Composites& all;
-  const Side& side;
+  const PlacedBody& body;
   const PrimitiveVisitor& visitor;
 
   [[nodiscard]] double show(std::uint32_t number, double limit) const {
     Primitive primitive;
-    if (side.is_surface()) {
+    if (body.is_surface()) {
       Corners corners;
-      if (!side.corners(number, corners)) return limit;
+      if (!body.corners(number, corners)) return limit;
       primitive.shape = ShapeId::of(ShapeKind::triangle, 0);
-      primitive.part =
-          side.kind == Side::Kind::mesh ? side.mesh->triangle[number] & kNumberMask : number;
+      primitive.part = body.shown_number(number);
       primitive.pose = pose_of(corners.first, {1.0, 0.0, 0.0, 0.0});
-      for (int k = 0; k < 2; ++k) {
-        Vec::Map(primitive.triangle.vertex[k + 1]) = finite(corners.edge[k]);
-      }
+      primitive.triangle = corners.triangle();
     } else {
-      const Part part = side.part(number);
+      const PlacedPart part = body.part(number);
       primitive.shape = part.shape;
-      primitive.part = number;
-      primitive.pose = pose_of(part.position, side.part_turn(number));
+      primitive.part = body.shown_number(number);
+      primitive.pose = pose_of(part.position, body.part_turn(number));
       if (part.shape.kind() == ShapeKind::triangle) {
         primitive.triangle = all.shapes.tables().triangles[part.shape.index()];
       }
@@ -45,10 +42,11 @@ struct Guide {
   static double show_slots(void* context, const std::uint32_t* slots, std::uint32_t count,
                            double limit) {
     const Guide& guide = *static_cast<const Guide*>(context);
-    const Compound* const compound = guide.side.compound;
+    const Compound* const compound = guide.body.compound;
     for (std::uint32_t i = 0; i < count && limit >= 0.0; ++i) {
       const std::uint32_t number =
-          compound != nullptr ? compound->tree->view().triangle[slots[i]] & kNumberMask : slots[i];
+          compound != nullptr ? view_of(*compound->tree).triangle[slots[i]] & kTriangleNumberMask
+                              : slots[i];
       limit = guide.show(number, limit);
     }
     return limit;
@@ -61,7 +59,7 @@ struct Guide {
 /// Shows children in ascending order of a measure, which is infinite for those not to be shown.
 template <typename Measure>
 void show_in_order(const Guide& guide, double limit, Measure&& measure) {
-  const Compound& compound = *guide.side.compound;
+  const Compound& compound = *guide.body.compound;
   double last = -1.0;
   std::uint32_t last_child = 0;
   while (limit >= 0.0) {
@@ -81,47 +79,16 @@ void show_in_order(const Guide& guide, double limit, Measure&& measure) {
   }
 }
 
-/// When a moving box first meets another: infinite if it does not before `limit`.
-[[nodiscard]] double meeting_time(const Box& moving, const Vec& direction, const Box& box,
-                                  double limit) noexcept {
-  double first = 0.0;
-  double last = limit;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double near = box.min[axis] - moving.max[axis];
-    const double far = box.max[axis] - moving.min[axis];
-    if (direction[axis] == 0.0) {
-      if (near > 0.0 || far < 0.0) return kInfinity;
-      continue;
-    }
-    const double a = near / direction[axis];
-    const double b = far / direction[axis];
-    // No comparison with NaN, from infinities, narrows the interval.
-    const double enter = std::min(a, b) * (1.0 - 1e-15);
-    const double leave = std::max(a, b) * (1.0 + 1e-15);
-    if (enter > first) first = enter;
-    if (leave < last) last = leave;
-  }
-  return first <= last ? first : kInfinity;
+[[nodiscard]] PlacedBody placed_at(const Composites& all, ShapeId id, const Pose& pose) noexcept {
+  return PlacedBody(all, all.shapes.tables(), id, pose, Eigen::Map<const Vec>(pose.position));
 }
 
-[[nodiscard]] double gap(const Box& a, const Box& b) noexcept {
-  double square = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double apart = std::max({0.0, a.min[axis] - b.max[axis], b.min[axis] - a.max[axis]});
-    square += apart * apart;
-  }
-  return std::sqrt(square) * (1.0 - 1e-15);
-}
-
-[[nodiscard]] Side side_at(const Composites& all, ShapeId id, const Pose& pose) noexcept {
-  return Side(all, all.shapes.tables(), id, pose, Eigen::Map<const Vec>(pose.position));
-}
-
-/// A box of the world in a frame at the side's position: grown by what rounding of either may take.
-[[nodiscard]] Box box_in(const Side& side, const BoxSweep& sweep, const Mat& to_local) noexcept {
+/// A box of the world in a frame at the body's position: grown by what rounding of either may take.
+[[nodiscard]] Box box_in(const PlacedBody& body, const BoxSweep& sweep,
+                         const Mat& to_local) noexcept {
   const Eigen::Map<const Vec> min(sweep.min);
   const Eigen::Map<const Vec> max(sweep.max);
-  const Box box{finite(min - side.position), finite(max - side.position)};
+  const Box box{finite(min - body.position), finite(max - body.position)};
   return box_under(box, to_local, Vec::Zero(), 0.0);
 }
 
@@ -129,50 +96,55 @@ void show_in_order(const Guide& guide, double limit, Measure&& measure) {
 
 void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,
            const PrimitiveVisitor& visitor) {
-  const Side side = side_at(all, id, pose);
-  const Guide guide{all, side, visitor};
+  const PlacedBody body = placed_at(all, id, pose);
+  const Guide guide{all, body, visitor};
   // What is never met is met at infinity: not before any limit.
   const double max_t = std::min(sweep.max_t, std::numeric_limits<double>::max());
-  Box box = box_in(side, sweep, side.to_local);
-  const Vec direction = side.to_local * Eigen::Map<const Vec>(sweep.direction);
+  Box box = box_in(body, sweep, body.to_local);
+  const Vec direction = body.to_local * Eigen::Map<const Vec>(sweep.direction);
   // Rounding of the direction shifts the box, as far as it gets, by a share of where it gets.
-  if (side.bounds.is_finite()) {
+  if (body.bounds.is_finite()) {
     const Vec noise = Vec::Constant(4.0 * kSlack *
-                                    (side.bounds.min.cwiseAbs() + side.bounds.max.cwiseAbs() +
+                                    (body.bounds.min.cwiseAbs() + body.bounds.max.cwiseAbs() +
                                      box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()))
                                         .sum());
     box = {box.min - noise, box.max + noise};
   }
-  if (side.kind == Side::Kind::mesh) {
-    mesh_sweep(*side.mesh, box.min.data(), box.max.data(), direction.data(), max_t, guide.slots());
-  } else if (side.kind == Side::Kind::field) {
-    side.field->sweep(box.min.data(), box.max.data(), direction.data(), max_t, guide.slots());
-  } else if (side.compound->tree != nullptr) {
-    mesh_sweep(side.compound->tree->view(), box.min.data(), box.max.data(), direction.data(), max_t,
-               guide.slots());
+  if (body.kind == PlacedBody::Kind::mesh) {
+    mesh_sweep(*body.mesh, box.min.data(), box.max.data(), direction.data(), max_t, guide.slots());
+  } else if (body.kind == PlacedBody::Kind::field) {
+    height_sweep(grid_of(*body.field), box.min.data(), box.max.data(), direction.data(), max_t,
+                 guide.slots());
+  } else if (body.compound->tree != nullptr) {
+    mesh_sweep(view_of(*body.compound->tree), box.min.data(), box.max.data(), direction.data(),
+               max_t, guide.slots());
   } else {
-    show_in_order(guide, max_t,
-                  [&](const Box& child) { return meeting_time(box, direction, child, max_t); });
+    show_in_order(guide, max_t, [&](const Box& child) {
+      return meeting_time(box.min.data(), box.max.data(), direction.data(), max_t, child.min.data(),
+                          child.max.data());
+    });
   }
 }
 
 void visit_near(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& from,
                 double limit, const PrimitiveVisitor& visitor) {
-  const Side side = side_at(all, id, pose);
-  const Guide guide{all, side, visitor};
+  const PlacedBody body = placed_at(all, id, pose);
+  const Guide guide{all, body, visitor};
   // Turned, but in the lengths of the world.
-  const Box box = box_in(side, from, side.rotation.transpose());
-  if (side.kind == Side::Kind::mesh) {
-    mesh_near(*side.mesh, all.mesh(id)->scale, box.min.data(), box.max.data(), limit,
+  const Box box = box_in(body, from, body.rotation.transpose());
+  if (body.kind == PlacedBody::Kind::mesh) {
+    mesh_near(*body.mesh, all.mesh(id)->scale, box.min.data(), box.max.data(), limit,
               guide.slots());
-  } else if (side.kind == Side::Kind::field) {
-    side.field->near(box.min.data(), box.max.data(), limit, guide.slots());
-  } else if (side.compound->tree != nullptr) {
+  } else if (body.kind == PlacedBody::Kind::field) {
+    height_near(grid_of(*body.field), box.min.data(), box.max.data(), limit, guide.slots());
+  } else if (body.compound->tree != nullptr) {
     constexpr double kUnscaled[3] = {1.0, 1.0, 1.0};
-    mesh_near(side.compound->tree->view(), kUnscaled, box.min.data(), box.max.data(), limit,
+    mesh_near(view_of(*body.compound->tree), kUnscaled, box.min.data(), box.max.data(), limit,
               guide.slots());
   } else {
-    show_in_order(guide, limit, [&](const Box& child) { return gap(box, child); });
+    show_in_order(guide, limit, [&](const Box& child) {
+      return box_gap(box.min.data(), box.max.data(), child.min.data(), child.max.data());
+    });
   }
 }
 

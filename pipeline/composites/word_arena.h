@@ -12,11 +12,15 @@ class WordArena {
  public:
   static constexpr std::uint32_t kBlock = 256;
 
+  [[nodiscard]] static constexpr std::uint64_t blocks_for(std::uint64_t words) noexcept {
+    return (words + kBlock - 1) / kBlock;
+  }
+
   WordArena(std::uint32_t* words, std::uint64_t blocks) noexcept : words_(words), blocks_(blocks) {}
 
   /// Consecutive blocks with room for so many words; null if there are not enough.
   [[nodiscard]] std::uint32_t* take(std::uint64_t words) noexcept {
-    const std::uint64_t count = (words + kBlock - 1) / kBlock;
+    const std::uint64_t count = blocks_for(words);
     const std::uint64_t first = next_.fetch_add(count, std::memory_order_relaxed);
     return first + count <= blocks_ ? words_ + first * kBlock : nullptr;
   }

@@ -1,17 +1,19 @@
 #include <winnow/pipeline/height_field.h>
 
+#include <winnow/core/column.h>
+#include <winnow/core/rounding.h>
 #include <winnow/pipeline/triangle_mesh.h>
+#include "core/memory/new_in.h"
 #include "pipeline/mesh/edge_bend.h"
-#include "pipeline/mesh/height_walks.h"
+#include "pipeline/mesh/height_grid.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace winnow {
 namespace {
-
-constexpr double kMaxTriangles = 268435456.0;
 
 std::size_t stride_of(const HeightSamples& samples) {
   return samples.row_stride != 0 ? samples.row_stride : samples.columns;
@@ -47,109 +49,221 @@ Status check_field(const HeightSamples& samples) {
 
 /// Samples of a square's even and odd triangle, as steps from its own sample: the corners, and for
 /// the edge from each to the next the far corner of the triangle beyond.
-struct Steps {
+struct SampleStep {
   int column;
   int row;
 };
-constexpr Steps kCorner[2][3] = {{{0, 0}, {1, 0}, {1, 1}}, {{0, 0}, {1, 1}, {0, 1}}};
-constexpr Steps kBeyond[2][3] = {{{0, -1}, {2, 1}, {0, 1}}, {{1, 0}, {1, 2}, {-1, 0}}};
+constexpr SampleStep kCorner[2][3] = {{{0, 0}, {1, 0}, {1, 1}}, {{0, 0}, {1, 1}, {0, 1}}};
+constexpr SampleStep kBeyond[2][3] = {{{0, -1}, {2, 1}, {0, 1}}, {{1, 0}, {1, 2}, {-1, 0}}};
 /// The square that the triangle beyond is of.
-constexpr Steps kSquareBeyond[2][3] = {{{0, -1}, {1, 0}, {0, 0}}, {{0, 0}, {0, 1}, {-1, 0}}};
+constexpr SampleStep kSquareBeyond[2][3] = {{{0, -1}, {1, 0}, {0, 0}}, {{0, 0}, {0, 1}, {-1, 0}}};
 
 /// Below zero it wraps to a number that no column has.
 std::uint32_t moved(std::uint32_t from, int by) {
   return from + static_cast<std::uint32_t>(by);
 }
 
-struct Sample {
+/// The least and the greatest of many heights.
+struct Heights {
+  float low = std::numeric_limits<float>::infinity();
+  float high = -std::numeric_limits<float>::infinity();
+
+  void add(float least, float greatest) {
+    low = std::min(low, least);
+    high = std::max(high, greatest);
+  }
+};
+
+bool has_all(const float (&height)[4]) {
+  return !(std::isnan(height[0]) || std::isnan(height[1]) || std::isnan(height[2]) ||
+           std::isnan(height[3]));
+}
+
+Heights over_squares(const HeightGrid& grid, std::uint32_t tile_column, std::uint32_t tile_row) {
+  Heights result;
+  const std::uint32_t last_row = std::min(grid.square_rows(), (tile_row + 1) * kTileSquares);
+  const std::uint32_t last_column =
+      std::min(grid.square_columns(), (tile_column + 1) * kTileSquares);
+  for (std::uint32_t row = tile_row * kTileSquares; row < last_row; ++row) {
+    for (std::uint32_t column = tile_column * kTileSquares; column < last_column; ++column) {
+      float height[4];
+      grid.corners(column, row, height);
+      if (!has_all(height)) continue;
+      result.add(std::min({height[0], height[1], height[2], height[3]}),
+                 std::max({height[0], height[1], height[2], height[3]}));
+    }
+  }
+  return result;
+}
+
+Heights over_tiles(const HeightPyramid& pyramid, std::uint32_t level, std::uint32_t tile_column,
+                   std::uint32_t tile_row, const float* low, const float* high) {
+  const HeightPyramid::Level& below = pyramid.level[level - 1];
+  Heights result;
+  const std::uint32_t last_row = std::min(below.rows, (tile_row + 1) * kTileTiles);
+  const std::uint32_t last_column = std::min(below.columns, (tile_column + 1) * kTileTiles);
+  for (std::uint32_t row = tile_row * kTileTiles; row < last_row; ++row) {
+    for (std::uint32_t column = tile_column * kTileTiles; column < last_column; ++column) {
+      const std::size_t at = below.first + std::size_t{row} * below.columns + column;
+      result.add(low[at], high[at]);
+    }
+  }
+  return result;
+}
+
+struct GridPoint {
   double at[3];
 
-  Sample(const HeightGrid& grid, std::uint32_t column, std::uint32_t row)
+  GridPoint(const HeightGrid& grid, std::uint32_t column, std::uint32_t row)
       : at{column * grid.spacing[0], row * grid.spacing[1],
            static_cast<double>(grid.heights[std::size_t{row} * grid.columns + column])} {}
 };
 
 }  // namespace
 
-HeightField::HeightField(std::pmr::memory_resource* memory) noexcept
-    : heights_(memory), tiles_(memory) {}
-
-HeightField::HeightField(HeightField&& other) noexcept : HeightField(other.heights_.memory()) {
-  heights_.swap(other.heights_);
-  tiles_.swap(other.tiles_);
-  std::swap(pyramid_, other.pyramid_);
-  std::swap(columns_, other.columns_);
-  std::swap(rows_, other.rows_);
-  std::swap(spacing_, other.spacing_);
+HeightPyramid HeightPyramid::plan(std::uint32_t columns, std::uint32_t rows) noexcept {
+  HeightPyramid result;
+  std::uint32_t side = kTileSquares;
+  do {
+    columns = (columns + side - 1) / side;
+    rows = (rows + side - 1) / side;
+    result.level[result.levels++] = {columns, rows, result.tiles};
+    result.tiles += std::size_t{columns} * rows;
+    side = kTileTiles;
+  } while (columns > 1 || rows > 1);
+  return result;
 }
 
-HeightGrid HeightField::grid() const noexcept {
-  return {heights_.data(),
-          columns_,
-          rows_,
-          {spacing_[0], spacing_[1]},
-          &pyramid_,
-          tiles_.data(),
-          tiles_.data() + pyramid_.tiles};
+bool HeightGrid::has_square(std::uint32_t column, std::uint32_t row) const noexcept {
+  if (column >= square_columns() || row >= square_rows()) return false;
+  float height[4];
+  corners(column, row, height);
+  return has_all(height);
+}
+
+void fit_tiles(const HeightGrid& grid, const TileRange& squares, float* low, float* high) noexcept {
+  const HeightPyramid& pyramid = *grid.pyramid;
+  for (std::uint32_t level = 0; level < pyramid.levels; ++level) {
+    const HeightPyramid::Level& tiles = pyramid.level[level];
+    const std::uint32_t span = HeightPyramid::span(level);
+    for (std::uint32_t row = squares.low[1] / span; row <= (squares.high[1] - 1) / span; ++row) {
+      for (std::uint32_t column = squares.low[0] / span; column <= (squares.high[0] - 1) / span;
+           ++column) {
+        const Heights heights = level == 0 ? over_squares(grid, column, row)
+                                           : over_tiles(pyramid, level, column, row, low, high);
+        const std::size_t at = tiles.first + std::size_t{row} * tiles.columns + column;
+        low[at] = heights.low;
+        high[at] = heights.high;
+      }
+    }
+  }
+}
+
+/// Samples and the pyramid over them.
+struct HeightField::State {
+  explicit State(std::pmr::memory_resource* memory) noexcept : heights(memory), tiles(memory) {}
+
+  [[nodiscard]] HeightGrid grid() const noexcept {
+    return {heights.data(),
+            columns,
+            rows,
+            {spacing[0], spacing[1]},
+            &pyramid,
+            tiles.data(),
+            tiles.data() + pyramid.tiles};
+  }
+  [[nodiscard]] Status take(const HeightSamples& samples) noexcept;
+  void put(std::uint32_t column, std::uint32_t row, const HeightSamples& samples) noexcept;
+
+  Column<float> heights;
+  /// The least heights of all tiles, then the greatest.
+  Column<float> tiles;
+  HeightPyramid pyramid;
+  std::uint32_t columns = 0;
+  std::uint32_t rows = 0;
+  double spacing[2] = {1.0, 1.0};
+};
+
+HeightField::HeightField(HeightField&& other) noexcept
+    : memory_(other.memory_), state_(std::exchange(other.state_, nullptr)) {}
+
+HeightField::~HeightField() {
+  delete_in(memory_, state_);
 }
 
 Status HeightField::build(const HeightSamples& samples) {
   const Status status = check_field(samples);
   if (status != Status::ok) return status;
-  const HeightPyramid pyramid = HeightPyramid::plan(samples.columns - 1, samples.rows - 1);
-  Column<float> heights(heights_.memory());
-  Column<float> tiles(heights_.memory());
+  State* fresh = new_in<State>(memory_, memory_);
+  if (fresh == nullptr) return Status::out_of_memory;
+  const Status taken = fresh->take(samples);
+  if (taken == Status::ok) std::swap(state_, fresh);
+  delete_in(memory_, fresh);
+  return taken;
+}
+
+Status HeightField::State::take(const HeightSamples& samples) noexcept {
+  pyramid = HeightPyramid::plan(samples.columns - 1, samples.rows - 1);
   if (!heights.resize(std::size_t{samples.columns} * samples.rows) ||
       !tiles.resize(2 * pyramid.tiles)) {
     return Status::out_of_memory;
   }
-  heights_.swap(heights);
-  tiles_.swap(tiles);
-  pyramid_ = pyramid;
-  columns_ = samples.columns;
-  rows_ = samples.rows;
-  std::copy_n(samples.spacing, 2, spacing_);
+  columns = samples.columns;
+  rows = samples.rows;
+  std::copy_n(samples.spacing, 2, spacing);
   put(0, 0, samples);
   return Status::ok;
 }
 
 Status HeightField::update(std::uint32_t column, std::uint32_t row, const HeightSamples& samples) {
-  if (column > columns_ || row > rows_ || samples.columns > columns_ - column ||
-      samples.rows > rows_ - row) {
+  if (column > columns() || row > rows() || samples.columns > columns() - column ||
+      samples.rows > rows() - row) {
     return Status::invalid_argument;
   }
   if (samples.columns == 0 || samples.rows == 0) return Status::ok;
   const Status status = check(samples);
-  if (status == Status::ok) put(column, row, samples);
+  if (status == Status::ok) state_->put(column, row, samples);
   return status;
 }
 
-void HeightField::put(std::uint32_t column, std::uint32_t row,
-                      const HeightSamples& samples) noexcept {
+void HeightField::State::put(std::uint32_t column, std::uint32_t row,
+                             const HeightSamples& samples) noexcept {
   const std::size_t stride = stride_of(samples);
   for (std::size_t r = 0; r < samples.rows; ++r) {
     std::copy_n(samples.heights.data() + r * stride, samples.columns,
-                heights_.data() + (row + r) * columns_ + column);
+                heights.data() + (row + r) * columns + column);
   }
   // A sample is a corner of the squares before it too.
   const TileRange squares{
       {column - std::min(column, 1U), row - std::min(row, 1U)},
-      {std::min(columns_ - 1, column + samples.columns), std::min(rows_ - 1, row + samples.rows)}};
-  fit_tiles(grid(), squares, tiles_.data(), tiles_.data() + pyramid_.tiles);
+      {std::min(columns - 1, column + samples.columns), std::min(rows - 1, row + samples.rows)}};
+  fit_tiles(grid(), squares, tiles.data(), tiles.data() + pyramid.tiles);
+}
+
+HeightGrid grid_of(const HeightField& field) noexcept {
+  return field.state_ != nullptr ? field.state_->grid() : HeightGrid{};
+}
+
+std::uint32_t HeightField::columns() const noexcept {
+  return state_ != nullptr ? state_->columns : 0;
+}
+
+std::uint32_t HeightField::rows() const noexcept {
+  return state_ != nullptr ? state_->rows : 0;
 }
 
 std::uint32_t HeightField::triangles() const noexcept {
-  return columns_ < 2 ? 0 : 2 * (columns_ - 1) * (rows_ - 1);
+  return state_ != nullptr ? 2 * (columns() - 1) * (rows() - 1) : 0;
 }
 
 bool HeightField::triangle(std::uint32_t number, TriangleShape& shape) const noexcept {
   if (number >= triangles()) return false;
-  const HeightGrid grid = this->grid();
+  const HeightGrid grid = state_->grid();
   const std::uint32_t column = number / 2 % grid.square_columns();
   const std::uint32_t row = number / 2 / grid.square_columns();
   for (int k = 0; k < 3; ++k) {
-    const Steps& step = kCorner[number % 2][k];
-    const Sample corner(grid, moved(column, step.column), moved(row, step.row));
+    const SampleStep& step = kCorner[number % 2][k];
+    const GridPoint corner(grid, moved(column, step.column), moved(row, step.row));
     std::copy_n(corner.at, 3, shape.vertex[k]);
   }
   shape.rounding = 0.0;
@@ -161,14 +275,14 @@ std::uint8_t HeightField::active_edges(std::uint32_t number) const noexcept {
   TriangleShape shape;
   std::uint8_t active = 7;
   if (!triangle(number, shape)) return active;
-  const HeightGrid grid = this->grid();
+  const HeightGrid grid = state_->grid();
   const std::uint32_t column = number / 2 % grid.square_columns();
   const std::uint32_t row = number / 2 / grid.square_columns();
   for (unsigned k = 0; k < 3; ++k) {
-    const Steps& square = kSquareBeyond[number % 2][k];
+    const SampleStep& square = kSquareBeyond[number % 2][k];
     if (!grid.has_square(moved(column, square.column), moved(row, square.row))) continue;
-    const Steps& far = kBeyond[number % 2][k];
-    const Sample beyond(grid, moved(column, far.column), moved(row, far.row));
+    const SampleStep& far = kBeyond[number % 2][k];
+    const GridPoint beyond(grid, moved(column, far.column), moved(row, far.row));
     if (!kBend.is_active(shape.vertex[k], shape.vertex[(k + 1) % 3], shape.vertex[(k + 2) % 3],
                          beyond.at, true)) {
       active = static_cast<std::uint8_t>(active & ~(1U << k));
@@ -178,13 +292,14 @@ std::uint8_t HeightField::active_edges(std::uint32_t number) const noexcept {
 }
 
 Aabb HeightField::bounds() const noexcept {
-  if (triangles() == 0) return {};
-  const float low = tiles_[pyramid_.tiles - 1];
-  const float high = tiles_[2 * pyramid_.tiles - 1];
+  if (state_ == nullptr) return {};
+  const State& s = *state_;
+  const float low = s.tiles[s.pyramid.tiles - 1];
+  const float high = s.tiles[2 * s.pyramid.tiles - 1];
   if (low > high) return {};
   Aabb box;
   box.min = {0.0F, 0.0F, low};
-  box.max = {round_up((columns_ - 1) * spacing_[0]), round_up((rows_ - 1) * spacing_[1]), high};
+  box.max = {round_up((s.columns - 1) * s.spacing[0]), round_up((s.rows - 1) * s.spacing[1]), high};
   return box;
 }
 
@@ -195,24 +310,12 @@ double HeightField::radius() const noexcept {
   return farthest.cast<double>().norm() * (1.0 + 4.0 * std::numeric_limits<double>::epsilon());
 }
 
-void HeightField::overlap(const double min[3], const double max[3], SlotSink& out) const noexcept {
-  if (triangles() != 0) height_overlap(grid(), min, max, out);
-}
-
-void HeightField::sweep(const double min[3], const double max[3], const double direction[3],
-                        double limit, const SlotVisitor& visitor) const noexcept {
-  if (triangles() != 0) height_sweep(grid(), min, max, direction, limit, visitor);
-}
-
-void HeightField::near(const double min[3], const double max[3], double limit,
-                       const SlotVisitor& visitor) const noexcept {
-  if (triangles() != 0) height_near(grid(), min, max, limit, visitor);
-}
-
 Footprint HeightField::footprint() const noexcept {
   Footprint result;
-  result.bounds = heights_.bytes();
-  result.structure = tiles_.bytes();
+  if (state_ == nullptr) return result;
+  result.bounds = state_->heights.bytes();
+  result.structure = {sizeof(State), sizeof(State)};
+  result.structure += state_->tiles.bytes();
   return result;
 }
 

@@ -42,7 +42,7 @@ struct MeshPairJob {
 };
 
 /// A box that moves by t * direction. On static axes it does not, or so little that [min, max] is
-/// grown by its way.
+/// grown by its path.
 struct MeshSweepJob {
   double min[3];
   double max[3];

@@ -1,23 +1,37 @@
 #include "pipeline/mesh/mesh_tree.h"
 
+#include "core/memory/bounds_pool.h"
+#include "core/sort/stretches.h"
+#include "partitions/tree/morton_order.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace winnow {
 namespace {
 
-constexpr std::uint32_t kTop = 65535;
-constexpr std::size_t kLeavesPerTask = 512;
+constexpr std::size_t kLeavesPerStretch = 512;
+constexpr std::size_t kTrianglesPerStretch = 8192;
+
+/// The box of a triangle, into row i.
+void box_triangle(BoundsPool& pool, const float* const vertex[3],
+                  const std::uint32_t* const corner[3], std::size_t i) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float* x = vertex[axis];
+    const float a = x[corner[0][i]];
+    const float b = x[corner[1][i]];
+    const float c = x[corner[2][i]];
+    pool.column(axis)[i] = std::min({a, b, c});
+    pool.column(3 + axis)[i] = std::max({a, b, c});
+  }
+}
 
 /// The column of a level, to be written: `words` is what the view points into.
 std::uint16_t* column_of(const MeshView& view, std::uint16_t* words, std::uint32_t level,
                          std::size_t c) {
   return words + (view.node[level][c] - words);
-}
-
-std::uint32_t padded(std::uint32_t count) {
-  return (count + kMeshFanout - 1) / kMeshFanout * kMeshFanout;
 }
 
 /// The float box of slots [first, first + 16).
@@ -46,7 +60,7 @@ struct LeafBox {
 void choose_scale(MeshView& view, const float low[3], const float high[3]) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double extent = static_cast<double>(high[axis]) - static_cast<double>(low[axis]);
-    const float step = static_cast<float>(extent / (kTop - 1));
+    const float step = static_cast<float>(extent / (kMaxNodeBound - 1));
     view.origin[axis] = low[axis];
     view.step[axis] = std::max(step, std::numeric_limits<float>::min()) *
                       (1.0F + std::numeric_limits<float>::epsilon());
@@ -69,7 +83,7 @@ std::uint16_t quantised_low(const MeshView& view, std::size_t axis, double x) {
 std::uint16_t quantised_high(const MeshView& view, std::size_t axis, double x) {
   const double t = mesh_units(view, axis, x);
   auto q = static_cast<std::uint32_t>(std::ceil(t));
-  while (q < kTop && decoded(view, axis, q) < x) ++q;
+  while (q < kMaxNodeBound && decoded(view, axis, q) < x) ++q;
   return static_cast<std::uint16_t>(q);
 }
 
@@ -95,13 +109,31 @@ void pad_levels(const MeshView& view, std::uint16_t* words) {
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     for (std::size_t axis = 0; axis < 6; ++axis) {
       std::uint16_t* column = column_of(view, words, level, axis);
-      std::fill(column + view.count[level], column + padded(view.count[level]),
-                axis < 3 ? static_cast<std::uint16_t>(kTop) : std::uint16_t{0});
+      std::fill(column + view.count[level], column + whole_leaves(view.count[level]),
+                axis < 3 ? static_cast<std::uint16_t>(kMaxNodeBound) : std::uint16_t{0});
     }
   }
 }
 
 }  // namespace
+
+// Here partition code serves the mid phase: triangles are put in the order in which a LinearBvh
+// puts its rows, by size and along Hilbert's curve.
+bool order_triangles(const float* const vertex[3], const std::uint32_t* const corner[3],
+                     Column<std::uint32_t>& order, const Execution& execution) {
+  const std::size_t count = order.size();
+  BoundsPool pool(order.memory(), Volume::aabb);
+  Column<std::uint64_t> scratch(order.memory());
+  if (!pool.reserve_exact(count) || !scratch.reserve(2 * count)) return false;
+  pool.append(count);
+  for_stretches(execution, count, kTrianglesPerStretch, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      box_triangle(pool, vertex, corner, i);
+      order[i] = static_cast<std::uint32_t>(i);
+    }
+  });
+  return sort_by_morton(pool, std::span<std::uint32_t>(order.data(), count), scratch, execution);
+}
 
 std::size_t plan_mesh_levels(MeshView& view) noexcept {
   std::size_t words = 0;
@@ -110,7 +142,7 @@ std::size_t plan_mesh_levels(MeshView& view) noexcept {
   do {
     nodes = (nodes + kMeshFanout - 1) / kMeshFanout;
     view.count[view.levels++] = nodes;
-    words += std::size_t{6} * padded(nodes);
+    words += 6 * whole_leaves(nodes);
   } while (nodes > kMeshFanout);
   return words;
 }
@@ -119,7 +151,7 @@ void link_mesh_levels(MeshView& view, const std::uint16_t* words) noexcept {
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     for (auto& column : view.node[level]) {
       column = words;
-      words += padded(view.count[level]);
+      words += whole_leaves(view.count[level]);
     }
   }
 }
@@ -139,9 +171,8 @@ void fit_mesh_levels(MeshView& view, std::uint16_t* words, float low[3], float h
   }
   choose_scale(view, low, high);
   const std::size_t leaves = view.count[0];
-  execution.for_each((leaves + kLeavesPerTask - 1) / kLeavesPerTask, [&](std::size_t task) {
-    const std::size_t end = std::min(leaves, (task + 1) * kLeavesPerTask);
-    for (std::size_t i = task * kLeavesPerTask; i < end; ++i) {
+  for_stretches(execution, leaves, kLeavesPerStretch, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
       const LeafBox box(view, i * kMeshFanout);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         column_of(view, words, 0, axis)[i] =

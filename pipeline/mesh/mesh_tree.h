@@ -9,6 +9,11 @@
 
 namespace winnow {
 
+/// How many there are with the last leaf, or the last sixteen nodes, filled up.
+[[nodiscard]] constexpr std::size_t whole_leaves(std::size_t count) noexcept {
+  return (count + kMeshFanout - 1) / kMeshFanout * kMeshFanout;
+}
+
 /// x in the units of the nodes on an axis. Grows with x, rounding included, so that of two values
 /// neither passes the other: tests made in these units miss nothing.
 [[nodiscard]] inline double mesh_units(const MeshView& view, std::size_t axis, double x) noexcept {

@@ -6,12 +6,19 @@
 
 namespace winnow {
 
+class TriangleMesh;
+
 /// Triangles of a leaf, and children of a node.
 inline constexpr std::uint32_t kMeshFanout = 16;
 /// Levels of a 16-ary tree over at most 2^28 triangles.
 inline constexpr std::uint32_t kMaxMeshLevels = 7;
-/// Where `MeshView::triangle` keeps which edges are active: bit 28 + k for edge k.
+/// Where `MeshView::triangle` keeps which edges are active: bit 28 + k for edge k. Below are the
+/// caller's numbers of triangles.
 inline constexpr std::uint32_t kActiveEdgeShift = 28;
+inline constexpr std::uint32_t kMaxTriangles = 1U << kActiveEdgeShift;
+inline constexpr std::uint32_t kTriangleNumberMask = kMaxTriangles - 1U;
+/// The largest bound of a node.
+inline constexpr std::uint32_t kMaxNodeBound = 65535;
 
 /// A triangle mesh as its traversals read it. A slot is a place in the order of the tree: leaf i
 /// holds slots [16 i, 16 i + 16). Columns of slots are padded to a multiple of 16 by copies of the
@@ -35,23 +42,32 @@ struct MeshView {
   const std::uint16_t* node[kMaxMeshLevels][6] = {};
 };
 
+/// That of a mesh with nothing built has no triangles.
+[[nodiscard]] const MeshView& view_of(const TriangleMesh& mesh) noexcept;
+
 /// x -> matrix x + offset: from the frame of one mesh to that of another, scales included.
 struct MeshPlacement {
   double matrix[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   double offset[3] = {0, 0, 0};
 };
 
-/// Where a walk writes the slots it found. `size` counts on where there is no room: make room for
-/// that many and walk again.
+/// Where a traversal writes the slots that it finds. `size` counts on where there is no room: make
+/// room for that many and ask again.
 struct SlotSink {
   std::uint32_t* slot = nullptr;
   std::uint64_t capacity = 0;
   std::uint64_t size = 0;
 };
 
-/// The same for pairs of slots; or, with `take`, for any number of them in one walk: it is called
+inline void put_slot(SlotSink& out, std::uint32_t slot) {
+  if (out.size < out.capacity) out.slot[out.size] = slot;
+  ++out.size;
+}
+
+/// The same for pairs of slots; or, with `take`, for any number of them in one
+/// traversal: it is called
 /// where there is no room for 16 more, uses up what is there and sets size to 0. The capacity is 16
-/// at least then, and what is left when the walk ends is for the caller to use up.
+/// at least then, and what is left when it ends is for the caller to use up.
 struct SlotPairSink {
   std::uint32_t* first = nullptr;
   std::uint32_t* second = nullptr;
@@ -61,7 +77,8 @@ struct SlotPairSink {
   void* context = nullptr;
 };
 
-/// Is shown the slots that a walk in order finds, 16 or fewer at a time; gives back the new limit.
+/// Is shown the slots that a traversal in order finds, 16 or fewer at a time; gives back the new
+/// limit.
 struct SlotVisitor {
   double (*visit)(void* context, const std::uint32_t* slots, std::uint32_t count,
                   double limit) = nullptr;

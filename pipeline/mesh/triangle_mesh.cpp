@@ -1,23 +1,20 @@
 #include <winnow/pipeline/triangle_mesh.h>
 
-#include "pipeline/mesh/mesh_neighbours.h"
+#include "core/memory/new_in.h"
+#include "pipeline/mesh/mesh_edges.h"
 #include "pipeline/mesh/mesh_tree.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace winnow {
 namespace {
 
-constexpr std::size_t kMaxTriangles = std::size_t{1} << kActiveEdgeShift;
 // Instructions that gather take signed numbers.
 constexpr std::size_t kMaxVertices = std::numeric_limits<std::int32_t>::max();
-
-std::size_t padded(std::size_t count) {
-  return (count + kMeshFanout - 1) / kMeshFanout * kMeshFanout;
-}
 
 bool has_columns(const PointView& points) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -57,56 +54,70 @@ Status check(const PointView& vertices, const IndexView& triangles, const MeshOp
 
 }  // namespace
 
-TriangleMesh::TriangleMesh(std::pmr::memory_resource* memory) noexcept
-    : vertex_{Column<float>(memory), Column<float>(memory), Column<float>(memory)},
-      corner_{Column<std::uint32_t>(memory), Column<std::uint32_t>(memory),
-              Column<std::uint32_t>(memory)},
-      triangle_(memory),
-      nodes_(memory),
-      neighbours_(memory) {}
+/// Columns and the view of them.
+struct TriangleMesh::State {
+  explicit State(std::pmr::memory_resource* memory) noexcept;
 
-TriangleMesh::TriangleMesh(TriangleMesh&& other) noexcept : TriangleMesh(other.nodes_.memory()) {
-  swap(other);
-}
+  [[nodiscard]] Status take(const PointView& vertices, const IndexView& triangles,
+                            const MeshOptions& given, const Execution& execution) noexcept;
+  [[nodiscard]] Status refit(const PointView& vertices, const Execution& execution) noexcept;
+  void place_vertices(const PointView& vertices) noexcept;
+  void link() noexcept;
+  void fit(const Execution& execution) noexcept;
 
-void TriangleMesh::swap(TriangleMesh& other) noexcept {
-  for (std::size_t k = 0; k < 3; ++k) {
-    vertex_[k].swap(other.vertex_[k]);
-    corner_[k].swap(other.corner_[k]);
-  }
-  triangle_.swap(other.triangle_);
-  nodes_.swap(other.nodes_);
-  neighbours_.swap(other.neighbours_);
-  std::swap(options_, other.options_);
-  std::swap(view_, other.view_);
-  std::swap(bounds_, other.bounds_);
-  std::swap(radius_, other.radius_);
+  Column<float> vertex[3];
+  Column<std::uint32_t> corner[3];
+  Column<std::uint32_t> triangle;
+  Column<std::uint16_t> nodes;
+  /// See find_neighbours; kept by meshes that are refitted.
+  Column<std::uint32_t> neighbours;
+  MeshOptions options;
+  MeshView view;
+  Aabb bounds;
+  double radius = 0.0;
+};
+
+TriangleMesh::State::State(std::pmr::memory_resource* memory) noexcept
+    : vertex{Column<float>(memory), Column<float>(memory), Column<float>(memory)},
+      corner{Column<std::uint32_t>(memory), Column<std::uint32_t>(memory),
+             Column<std::uint32_t>(memory)},
+      triangle(memory),
+      nodes(memory),
+      neighbours(memory) {}
+
+TriangleMesh::TriangleMesh(TriangleMesh&& other) noexcept
+    : memory_(other.memory_), state_(std::exchange(other.state_, nullptr)) {}
+
+TriangleMesh::~TriangleMesh() {
+  delete_in(memory_, state_);
 }
 
 Status TriangleMesh::build(const PointView& vertices, const IndexView& triangles,
                            const MeshOptions& options, const Execution& execution) {
   const Status status = check(vertices, triangles, options);
   if (status != Status::ok) return status;
-  TriangleMesh fresh(nodes_.memory());
-  const Status taken = fresh.take(vertices, triangles, options, execution);
-  if (taken == Status::ok) swap(fresh);
+  State* fresh = new_in<State>(memory_, memory_);
+  if (fresh == nullptr) return Status::out_of_memory;
+  const Status taken = fresh->take(vertices, triangles, options, execution);
+  if (taken == Status::ok) std::swap(state_, fresh);
+  delete_in(memory_, fresh);
   return taken;
 }
 
-Status TriangleMesh::take(const PointView& vertices, const IndexView& triangles,
-                          const MeshOptions& options, const Execution& execution) {
-  options_ = options;
+Status TriangleMesh::State::take(const PointView& vertices, const IndexView& triangles,
+                                 const MeshOptions& given, const Execution& execution) noexcept {
+  options = given;
   const std::size_t count = triangles.count;
-  view_.vertex_count = static_cast<std::uint32_t>(vertices.count);
-  view_.triangle_count = static_cast<std::uint32_t>(count);
-  Column<std::uint32_t> order(nodes_.memory());
-  Column<std::uint32_t> unsorted[3] = {Column<std::uint32_t>(nodes_.memory()),
-                                       Column<std::uint32_t>(nodes_.memory()),
-                                       Column<std::uint32_t>(nodes_.memory())};
-  bool room = order.resize(count) && triangle_.resize(padded(count)) &&
-              nodes_.resize(plan_mesh_levels(view_));
+  view.vertex_count = static_cast<std::uint32_t>(vertices.count);
+  view.triangle_count = static_cast<std::uint32_t>(count);
+  std::pmr::memory_resource* const memory = nodes.memory();
+  Column<std::uint32_t> order(memory);
+  Column<std::uint32_t> unsorted[3] = {Column<std::uint32_t>(memory), Column<std::uint32_t>(memory),
+                                       Column<std::uint32_t>(memory)};
+  bool room = order.resize(count) && triangle.resize(whole_leaves(count)) &&
+              nodes.resize(plan_mesh_levels(view));
   for (std::size_t k = 0; k < 3; ++k) {
-    room = room && vertex_[k].resize(vertices.count) && corner_[k].resize(padded(count)) &&
+    room = room && vertex[k].resize(vertices.count) && corner[k].resize(whole_leaves(count)) &&
            unsorted[k].resize(count);
   }
   if (!room) return Status::out_of_memory;
@@ -117,68 +128,95 @@ Status TriangleMesh::take(const PointView& vertices, const IndexView& triangles,
     for (std::size_t i = 0; i < count; ++i) unsorted[k][i] = triangles.corner(i, k);
     columns[k] = unsorted[k].data();
   }
-  if (!order_triangles(view_.vertex, columns, order, execution)) return Status::out_of_memory;
-  for (std::size_t slot = 0; slot < padded(count); ++slot) {
+  if (!order_triangles(view.vertex, columns, order, execution)) return Status::out_of_memory;
+  for (std::size_t slot = 0; slot < whole_leaves(count); ++slot) {
     const std::uint32_t number = order[std::min(slot, count - 1)];
-    triangle_[slot] = number;
-    for (std::size_t k = 0; k < 3; ++k) corner_[k][slot] = columns[k][number];
+    triangle[slot] = number;
+    for (std::size_t k = 0; k < 3; ++k) corner[k][slot] = columns[k][number];
   }
-  if (!find_neighbours(view_, neighbours_)) return Status::out_of_memory;
+  if (!find_neighbours(view, neighbours)) return Status::out_of_memory;
   fit(execution);
-  neighbours_.release();
+  neighbours.release();
   return Status::ok;
 }
 
 Status TriangleMesh::refit(const PointView& vertices, const Execution& execution) {
-  if (vertices.count != view_.vertex_count) return Status::size_mismatch;
+  if (vertices.count != this->vertices()) return Status::size_mismatch;
   if (vertices.count == 0) return Status::ok;
   if (!has_columns(vertices)) return Status::invalid_argument;
   if (!all_finite(vertices)) return Status::invalid_shape;
+  return state_->refit(vertices, execution);
+}
+
+Status TriangleMesh::State::refit(const PointView& vertices, const Execution& execution) noexcept {
   // Found where the vertices are now, so that those which come to lie at one place stay apart.
-  if (neighbours_.empty() && !find_neighbours(view_, neighbours_)) return Status::out_of_memory;
+  if (neighbours.empty() && !find_neighbours(view, neighbours)) return Status::out_of_memory;
   place_vertices(vertices);
   fit(execution);
   return Status::ok;
 }
 
-void TriangleMesh::place_vertices(const PointView& vertices) noexcept {
+void TriangleMesh::State::place_vertices(const PointView& vertices) noexcept {
   double farthest = 0.0;
   for (std::size_t i = 0; i < vertices.count; ++i) {
     double square = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto x = static_cast<float>(vertices.coordinate(i, axis));
-      vertex_[axis][i] = x;
+      vertex[axis][i] = x;
       square += static_cast<double>(x) * static_cast<double>(x);
     }
     farthest = std::max(farthest, square);
   }
   // Three roundings of the sum and one of the root, each of half an ulp.
-  radius_ = std::sqrt(farthest) * (1.0 + 4.0 * std::numeric_limits<double>::epsilon());
+  radius = std::sqrt(farthest) * (1.0 + 4.0 * std::numeric_limits<double>::epsilon());
 }
 
-void TriangleMesh::link() noexcept {
+void TriangleMesh::State::link() noexcept {
   for (std::size_t k = 0; k < 3; ++k) {
-    view_.vertex[k] = vertex_[k].data();
-    view_.corner[k] = corner_[k].data();
+    view.vertex[k] = vertex[k].data();
+    view.corner[k] = corner[k].data();
   }
-  view_.triangle = triangle_.data();
-  link_mesh_levels(view_, nodes_.data());
+  view.triangle = triangle.data();
+  link_mesh_levels(view, nodes.data());
 }
 
-void TriangleMesh::fit(const Execution& execution) noexcept {
-  fit_mesh_levels(view_, nodes_.data(), bounds_.min.data(), bounds_.max.data(), execution);
-  mark_active_edges(view_, neighbours_, options_.active_edge_angle, triangle_.data());
+void TriangleMesh::State::fit(const Execution& execution) noexcept {
+  fit_mesh_levels(view, nodes.data(), bounds.min.data(), bounds.max.data(), execution);
+  mark_active_edges(view, neighbours, options.active_edge_angle, triangle.data());
+}
+
+const MeshView& view_of(const TriangleMesh& mesh) noexcept {
+  static constexpr MeshView kNothing;
+  return mesh.state_ != nullptr ? mesh.state_->view : kNothing;
+}
+
+std::size_t TriangleMesh::triangles() const noexcept {
+  return view_of(*this).triangle_count;
+}
+
+std::size_t TriangleMesh::vertices() const noexcept {
+  return view_of(*this).vertex_count;
+}
+
+Aabb TriangleMesh::bounds() const noexcept {
+  return state_ != nullptr ? state_->bounds : Aabb{};
+}
+
+double TriangleMesh::radius() const noexcept {
+  return state_ != nullptr ? state_->radius : 0.0;
 }
 
 Footprint TriangleMesh::footprint() const noexcept {
   Footprint result;
+  if (state_ == nullptr) return result;
   for (std::size_t k = 0; k < 3; ++k) {
-    result.bounds += vertex_[k].bytes();
-    result.keys += corner_[k].bytes();
+    result.bounds += state_->vertex[k].bytes();
+    result.keys += state_->corner[k].bytes();
   }
-  result.keys += triangle_.bytes();
-  result.structure += nodes_.bytes();
-  result.scratch += neighbours_.bytes();
+  result.keys += state_->triangle.bytes();
+  result.structure += {sizeof(State), sizeof(State)};
+  result.structure += state_->nodes.bytes();
+  result.scratch += state_->neighbours.bytes();
   return result;
 }
 

@@ -1,5 +1,7 @@
 #include "pipeline/scene/body_pairs.h"
+
 #include "core/sort/radix_sort.h"
+#include "core/sort/stretches.h"
 
 #include <algorithm>
 #include <bit>
@@ -7,7 +9,7 @@
 namespace winnow {
 namespace {
 
-constexpr std::size_t kPairsPerTask = 8192;
+constexpr std::size_t kPairsPerStretch = 8192;
 
 /// Code, body a and body b of a pair as one number, which sorts as pairs are sorted.
 struct Packing {
@@ -17,11 +19,10 @@ struct Packing {
                                    std::uint32_t other) const noexcept {
     const std::uint32_t kind_one = shapes[one].kind_index();
     const std::uint32_t kind_other = shapes[other].kind_index();
-    const bool swapped = kind_one != kind_other ? kind_other < kind_one : other < one;
-    const std::uint64_t code =
-        swapped ? kind_other * kAllShapeKinds + kind_one : kind_one * kAllShapeKinds + kind_other;
-    const std::uint64_t a = swapped ? other : one;
-    const std::uint64_t b = swapped ? one : other;
+    const bool mirrored = kind_one != kind_other ? kind_other < kind_one : other < one;
+    const std::uint32_t a = mirrored ? other : one;
+    const std::uint32_t b = mirrored ? one : other;
+    const std::uint64_t code = pair_code(shapes[a], shapes[b]);
     return (code << bits | a) << bits | b;
   }
   [[nodiscard]] BodyPair pair(std::uint64_t item) const noexcept {
@@ -34,14 +35,6 @@ struct Packing {
     return std::uint64_t{code} << 2 * bits;
   }
 };
-
-// Calls body(first, end) for stretches of [0, count), in parallel.
-template <typename Body>
-void for_stretches(const Execution& execution, std::size_t count, Body&& body) {
-  execution.for_each((count + kPairsPerTask - 1) / kPairsPerTask, [&](std::size_t task) {
-    body(task * kPairsPerTask, std::min(count, (task + 1) * kPairsPerTask));
-  });
-}
 
 }  // namespace
 
@@ -56,19 +49,20 @@ Status BodyPairs::assign(std::span<const Source> sources, const ShapeId* shapes,
   const Packing packing{static_cast<unsigned>(std::bit_width(bodies))};
   std::uint64_t* item = items_.data();
   for (const Source& source : sources) {
-    for_stretches(execution, source.pairs.size(), [&](std::size_t first, std::size_t end) {
-      for (std::size_t i = first; i < end; ++i) {
-        const Pair& pair = source.pairs[i];
-        item[i] =
-            packing.pack(shapes, source.first_body[pair.first], source.second_body[pair.second]);
-      }
-    });
+    for_stretches(execution, source.pairs.size(), kPairsPerStretch,
+                  [&](std::size_t first, std::size_t end) {
+                    for (std::size_t i = first; i < end; ++i) {
+                      const Pair& pair = source.pairs[i];
+                      item[i] = packing.pack(shapes, source.first_body[pair.first],
+                                             source.second_body[pair.second]);
+                    }
+                  });
     item += source.pairs.size();
   }
   const unsigned code_bits = std::bit_width(kPairCodes);
   const std::uint64_t* const sorted =
       radix_sort(items_.data(), spare_.data(), count, 2 * packing.bits + code_bits, execution, 0);
-  for_stretches(execution, count, [&](std::size_t first, std::size_t end) {
+  for_stretches(execution, count, kPairsPerStretch, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) pairs_[i] = packing.pair(sorted[i]);
   });
   for (std::uint32_t code = 0; code <= kPairCodes; ++code) {

@@ -14,7 +14,10 @@
 
 namespace winnow {
 
-/// Codes of pairs of kinds: kind of a * kAllShapeKinds + kind of b.
+/// The kinds of two shapes as one number, below kPairCodes: the first key of the order of pairs.
+[[nodiscard]] constexpr std::uint32_t pair_code(ShapeId a, ShapeId b) noexcept {
+  return a.kind_index() * kAllShapeKinds + b.kind_index();
+}
 inline constexpr std::uint32_t kPairCodes = kAllShapeKinds * kAllShapeKinds;
 
 /// Bodies of a scene: two numbers and a code fit into 64 bits.

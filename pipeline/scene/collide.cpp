@@ -1,10 +1,37 @@
+// One call of Scene::collide: pairs are listed, answered by the narrow phase, and put into a frame,
+// whose size is counted by tasks before each writes its own stretch.
+
+#include "core/sort/stretches.h"
 #include "pipeline/scene/collision.h"
 
+#include <limits>
 #include <utility>
 
 namespace winnow {
 
-Collision::Collision(Scene::State& scene, Contacts::State& contacts, SceneLevel level) noexcept
+Status Scene::collide(SceneLevel level, Contacts& contacts) {
+  if (state_ == nullptr || contacts.state_ == nullptr) {
+    contacts.clear();
+    return Status::out_of_memory;
+  }
+  if (!state_->options_are_good || level > SceneLevel::manifold) return Status::invalid_argument;
+  state_->statistics = {};
+  Status status = state_->find_pairs();
+  if (status == Status::ok) {
+    state_->statistics.body_pairs = state_->pairs.pairs().size();
+    status = Collision(*state_, *contacts.state_, level).run();
+  }
+  if (status == Status::ok) {
+    state_->statistics.carried = contacts.state_->carried_count;
+    state_->statistics.boxes_updated = std::exchange(state_->boxes_updated, 0);
+    ++state_->clock;
+  } else {
+    contacts.clear();
+  }
+  return status;
+}
+
+Collision::Collision(SceneState& scene, ContactsState& contacts, SceneLevel level) noexcept
     : scene_(scene),
       contacts_(contacts),
       level_(level),
@@ -65,14 +92,14 @@ namespace {
 // Where the answer about each pair of the input lies.
 [[nodiscard]] bool invert(const NarrowResult& answers, const Execution& execution,
                           Column<std::uint32_t>& slots) noexcept {
-  constexpr std::size_t kPerTask = 8192;
+  constexpr std::size_t kAnswersPerStretch = 8192;
   if (!slots.resize(answers.size())) return false;
-  execution.for_each((answers.size() + kPerTask - 1) / kPerTask, [&](std::size_t task) {
-    const std::size_t end = std::min(answers.size(), (task + 1) * kPerTask);
-    for (std::size_t i = task * kPerTask; i < end; ++i) {
-      slots[answers.pair_of(i)] = static_cast<std::uint32_t>(i);
-    }
-  });
+  for_stretches(execution, answers.size(), kAnswersPerStretch,
+                [&](std::size_t first, std::size_t end) {
+                  for (std::size_t i = first; i < end; ++i) {
+                    slots[answers.pair_of(i)] = static_cast<std::uint32_t>(i);
+                  }
+                });
   return true;
 }
 
@@ -117,22 +144,272 @@ Status Collision::answer_composite() {
                                                                             : Status::out_of_memory;
 }
 
-Status Scene::collide(SceneLevel level, Contacts& contacts) {
-  if (!state_->options_are_good || level > SceneLevel::manifold) return Status::invalid_argument;
-  state_->statistics = {};
-  Status status = state_->find_pairs();
-  if (status == Status::ok) {
-    state_->statistics.body_pairs = state_->pairs.pairs().size();
-    status = Collision(*state_, *contacts.state_, level).run();
+bool Collision::touches(const NarrowResult& answers, std::size_t at) const noexcept {
+  return level_ == SceneLevel::boolean ? answers.overlaps(at)
+                                       : answers.distance()[at] <= scene_.options.margin;
+}
+
+std::uint32_t Collision::shown_before(std::uint32_t pair) const noexcept {
+  if (same_pairs_) return contacts_.records[pair].shown;
+  const std::uint32_t record = contacts_.old_record[pair];
+  return record == kNoEntry ? kNoEntry : contacts_.records_before[record].shown;
+}
+
+// How many pairs from this one on are carried over and lie next to each other in the last frame;
+// those that do not touch are passed over. What touches can be copied in one go.
+std::uint32_t Collision::carried_stretch(std::uint32_t pair, std::uint32_t end) const noexcept {
+  if (level_ == SceneLevel::pairs) return 0;
+  std::uint32_t at = pair;
+  std::uint32_t next = kNoEntry;
+  for (; at < end && static_cast<Origin>(contacts_.origin[at]) == Origin::carried; ++at) {
+    const std::uint32_t shown = shown_before(at);
+    if (shown == kNoEntry) continue;
+    if (next != kNoEntry && shown != next) break;
+    next = shown + 1;
   }
-  if (status == Status::ok) {
-    state_->statistics.carried = contacts.state_->carried_count;
-    state_->statistics.boxes_updated = std::exchange(state_->boxes_updated, 0);
-    ++state_->clock;
+  return at - pair;
+}
+
+// What a pair that is not carried over takes in the frame: nothing if it does not touch.
+ContactFrame::Place Collision::extent(std::uint32_t pair) const noexcept {
+  if (level_ == SceneLevel::pairs) return {1, 0, 0};
+  const auto points = [&](const NarrowResult& answers, std::size_t at) {
+    return level_ == SceneLevel::manifold ? answers.contact_count()[at] : 0U;
+  };
+  if (static_cast<Origin>(contacts_.origin[pair]) == Origin::convex) {
+    const std::uint32_t at = scene_.slot[contacts_.source[pair]];
+    return touches(scene_.answers, at) ? Place{1, 1, points(scene_.answers, at)} : Place{};
+  }
+  Place sum;
+  const std::uint32_t* const first = scene_.parts.first.data() + contacts_.source[pair];
+  for (std::uint32_t i = first[0]; i < first[1]; ++i) {
+    const std::uint32_t at = scene_.parts_slot[i];
+    if (touches(scene_.parts_answers, at)) sum += {1, 1, points(scene_.parts_answers, at)};
+  }
+  if (sum.pair != 0) sum.pair = 1;
+  return sum;
+}
+
+namespace {
+
+/// The pairs of a stretch that touch.
+struct Touching {
+  std::uint32_t first = kNoEntry;
+  std::uint32_t count = 0;
+
+  void take(std::uint32_t shown) noexcept {
+    if (shown == kNoEntry) return;
+    if (first == kNoEntry) first = shown;
+    ++count;
+  }
+};
+
+}  // namespace
+
+// What pairs [first, end) take.
+ContactFrame::Place Collision::count(std::uint32_t first, std::uint32_t end) const noexcept {
+  Place sum;
+  for (std::uint32_t i = first; i < end;) {
+    if (is_fresh_convex(i)) {
+      // Without a branch: whether pairs touch is what cannot be foreseen.
+      const std::uint32_t at = scene_.slot[contacts_.source[i++]];
+      const std::uint32_t touching = touches(scene_.answers, at) ? 1 : 0;
+      const std::uint32_t points =
+          level_ == SceneLevel::manifold ? scene_.answers.contact_count()[at] : 0;
+      sum += {touching, touching, touching * points};
+      continue;
+    }
+    const std::uint32_t stretch = carried_stretch(i, end);
+    if (stretch == 0) {
+      sum += extent(i++);
+      continue;
+    }
+    Touching touching;
+    for (const std::uint32_t last = i + stretch; i < last; ++i) touching.take(shown_before(i));
+    if (touching.count != 0) sum += contacts_.before.extent(touching.first, touching.count);
+  }
+  return sum;
+}
+
+// Writes pairs [first, end), and what is to be remembered of them.
+void Collision::write_task(std::uint32_t first, std::uint32_t end, Place at) noexcept {
+  ContactsState& c = contacts_;
+  for (std::uint32_t i = first; i < end;) {
+    const std::uint32_t stretch = is_fresh_convex(i) ? 0 : carried_stretch(i, end);
+    if (stretch == 0) {
+      const Place taken = extent(i);
+      if (taken.pair != 0) write(i, at);
+      if (taken.pair != 0 || carries_) remember(i, taken.pair != 0 ? at.pair : kNoEntry);
+      at += taken;
+      ++i;
+      continue;
+    }
+    Touching touching;
+    for (const std::uint32_t last = i + stretch; i < last; ++i) {
+      const std::uint32_t shown = shown_before(i);
+      remember(i, shown == kNoEntry ? kNoEntry : at.pair + touching.count);
+      touching.take(shown);
+    }
+    if (touching.count == 0) continue;
+    c.frame.copy(c.before, touching.first, touching.count, at);
+    std::fill_n(c.frame.event.data() + at.pair, touching.count, ContactEvent::persisted);
+    std::fill_n(c.shown_again.data() + touching.first, touching.count, std::uint8_t{1});
+    at += c.before.extent(touching.first, touching.count);
+  }
+}
+
+bool Collision::is_fresh_convex(std::uint32_t pair) const noexcept {
+  return level_ != SceneLevel::pairs &&
+         static_cast<Origin>(contacts_.origin[pair]) == Origin::convex;
+}
+
+bool Collision::show() {
+  ContactsState& c = contacts_;
+  const std::size_t tasks = task_count();
+  if (!c.sums.resize(tasks + 1) || !c.shown_again.resize(c.before.pairs())) return false;
+  std::fill(c.shown_again.begin(), c.shown_again.end(), std::uint8_t{0});
+  for_tasks([&](std::size_t task, std::uint32_t first, std::uint32_t end) {
+    c.sums[task] = count(first, end);
+  });
+  Place end;
+  for (std::size_t task = 0; task <= tasks; ++task) {
+    const Place taken = task < tasks ? c.sums[task] : Place{};
+    c.sums[task] = end;
+    end += taken;
+  }
+  const std::size_t records = carries_ ? pair_count() : end.pair;
+  if (!c.frame.resize(level_, end.pair, end.manifold, end.point) || !c.records.resize(records) ||
+      !c.carried.resize(carries_ ? records : 0)) {
+    return false;
+  }
+  // The frames change places at the next call, which may find as much as this one.
+  if (!c.before.reserve_as(c.frame) || !c.records_before.reserve(c.records.capacity()) ||
+      !c.carried_before.reserve(c.carried.capacity())) {
+    return false;
+  }
+  for_tasks([&](std::size_t task, std::uint32_t first, std::uint32_t last) {
+    write_task(first, last, c.sums[task]);
+  });
+  c.frame.close(level_, end);
+  return write_runs();
+}
+
+// Writes a pair that touches and is not carried over, and says whether it did before.
+void Collision::write(std::uint32_t pair, const Place& to) noexcept {
+  ContactsState& c = contacts_;
+  ContactFrame& frame = c.frame;
+  const BodyPair bodies = scene_.pairs.pairs()[pair];
+  const std::uint32_t shown = shown_before(pair);
+  const std::uint32_t ids[2] = {bodies.a, bodies.b};
+  bool persists = shown != kNoEntry;
+  for (int side = 0; side < 2; ++side) {
+    frame.key[side][to.pair] = scene_.keys.key_of(ids[side]);
+    frame.data[side][to.pair] = scene_.keys.client_data(ids[side]);
+    persists = persists && c.before.key[side][shown] == frame.key[side][to.pair];
+  }
+  frame.event[to.pair] = persists ? ContactEvent::persisted : ContactEvent::begun;
+  if (persists) c.shown_again[shown] = 1;
+  if (level_ == SceneLevel::pairs) return;
+  frame.manifold_first[to.pair] = to.manifold;
+  Place at = to;
+  if (static_cast<Origin>(c.origin[pair]) == Origin::convex) {
+    frame.part[0][at.manifold] = frame.part[1][at.manifold] = kWholeShape;
+    write_manifold(scene_.answers, scene_.slot[c.source[pair]], nullptr, at);
+    return;
+  }
+  const PrimitivePairs& parts = scene_.parts;
+  const std::uint32_t* const first = parts.first.data() + c.source[pair];
+  for (std::uint32_t i = first[0]; i < first[1]; ++i) {
+    const std::uint32_t answer = scene_.parts_slot[i];
+    if (!touches(scene_.parts_answers, answer)) continue;
+    const BodyPair primitives = parts.pairs[i];
+    frame.part[0][at.manifold] = parts.part[primitives.a];
+    frame.part[1][at.manifold] = parts.part[primitives.b];
+    write_manifold(scene_.parts_answers, answer, parts.poses[primitives.a].position, at);
+  }
+}
+
+// `offset`: where the primitive of a stands, relative to body a; null if it is the body.
+void Collision::write_manifold(const NarrowResult& answers, std::size_t at, const double* offset,
+                               Place& to) noexcept {
+  ContactFrame& frame = contacts_.frame;
+  if (level_ >= SceneLevel::distance) {
+    frame.distance[to.manifold] = answers.distance()[at];
+    frame.error_bound[to.manifold] = answers.error_bound()[at];
+    for (int k = 0; k < 3; ++k) {
+      frame.normal[k][to.manifold] = answers.normal(k)[at];
+      if (level_ == SceneLevel::distance) {
+        frame.point[k][to.manifold] = answers.point(k)[at] + (offset == nullptr ? 0.0 : offset[k]);
+      }
+    }
+  }
+  if (level_ == SceneLevel::manifold) {
+    const std::uint32_t first = answers.contact_first()[at];
+    const std::uint32_t count = answers.contact_count()[at];
+    const ContactColumns& from = answers.contact_columns();
+    frame.point_first[to.manifold] = to.point;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const float p = from.position[k][first + i];
+        frame.points.position[k][to.point + i] =
+            offset == nullptr ? p : static_cast<float>(static_cast<double>(p) + offset[k]);
+      }
+      frame.points.depth[to.point + i] = from.depth[first + i];
+      frame.points.feature[to.point + i] = from.feature[first + i];
+    }
+    to.point += count;
+  }
+  ++to.manifold;
+}
+
+// Runs of pairs of the same two kinds, which lie next to each other.
+bool Collision::write_runs() {
+  ContactFrame& frame = contacts_.frame;
+  frame.runs.clear();
+  const auto run_at = [&](std::uint32_t i) {
+    const auto kind = [&](int side) {
+      return static_cast<std::uint8_t>(scene_.shape[frame.key[side][i].id].kind_index());
+    };
+    return ContactRun{kind(0), kind(1), i, 0};
+  };
+  const auto pairs = static_cast<std::uint32_t>(frame.pairs());
+  for (std::uint32_t first = 0; first < pairs;) {
+    ContactRun run = run_at(first);
+    // The last one of the run, by halving what may follow.
+    std::uint32_t end = first + 1;
+    for (std::uint32_t last = pairs; end < last;) {
+      const std::uint32_t middle = end + (last - end) / 2;
+      const ContactRun other = run_at(middle);
+      const bool alike = other.kind_a == run.kind_a && other.kind_b == run.kind_b;
+      (alike ? end : last) = alike ? middle + 1 : middle;
+    }
+    run.count = end - first;
+    if (!frame.runs.push_back(run)) return false;
+    first = end;
+  }
+  return true;
+}
+
+// How much farther than the margin a pair that does not touch is at least; of composite shapes that
+// of what the mid phase found near.
+double Collision::clearance(std::uint32_t pair) const noexcept {
+  const auto of = [&](const NarrowResult& answers, std::size_t at) {
+    // At level manifold the distance of what is farther than the margin may be a lower bound
+    // already, its error on the other side; half of it is one where the error is a rounding's.
+    const double beyond = answers.distance()[at] - scene_.options.margin;
+    return std::max(beyond - answers.error_bound()[at],
+                    level_ == SceneLevel::manifold ? 0.5 * beyond : 0.0);
+  };
+  double least = std::numeric_limits<double>::infinity();
+  if (static_cast<Origin>(contacts_.origin[pair]) == Origin::convex) {
+    least = of(scene_.answers, scene_.slot[contacts_.source[pair]]);
   } else {
-    contacts.clear();
+    const std::uint32_t* const first = scene_.parts.first.data() + contacts_.source[pair];
+    for (std::uint32_t i = first[0]; i < first[1]; ++i) {
+      least = std::min(least, of(scene_.parts_answers, scene_.parts_slot[i]));
+    }
   }
-  return status;
+  return least;
 }
 
 }  // namespace winnow

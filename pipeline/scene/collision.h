@@ -13,7 +13,7 @@ namespace winnow {
 /// both put into a new frame.
 class Collision {
  public:
-  Collision(Scene::State& scene, Contacts::State& contacts, SceneLevel level) noexcept;
+  Collision(SceneState& scene, ContactsState& contacts, SceneLevel level) noexcept;
 
   [[nodiscard]] Status run();
 
@@ -38,9 +38,9 @@ class Collision {
   [[nodiscard]] Status answer_convex();
   [[nodiscard]] Status answer_composite();
 
-  // The frame (show_contacts.cpp).
+  // The frame (collide.cpp).
   [[nodiscard]] bool show();
-  /// The place in the last frame of a pair's contacts; kNone.
+  /// The place in the last frame of a pair's contacts; kNoEntry.
   [[nodiscard]] std::uint32_t shown_before(std::uint32_t pair) const noexcept;
   [[nodiscard]] std::uint32_t carried_stretch(std::uint32_t pair, std::uint32_t end) const noexcept;
   [[nodiscard]] bool is_fresh_convex(std::uint32_t pair) const noexcept;
@@ -69,8 +69,8 @@ class Collision {
     });
   }
 
-  Scene::State& scene_;
-  Contacts::State& contacts_;
+  SceneState& scene_;
+  ContactsState& contacts_;
   SceneLevel level_;
   /// Levels at which pairs are carried over, in a scene that does.
   bool carries_;

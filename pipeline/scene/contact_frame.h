@@ -11,7 +11,7 @@
 namespace winnow {
 
 /// No entry.
-inline constexpr std::uint32_t kNone = ~0U;
+inline constexpr std::uint32_t kNoEntry = ~0U;
 
 /// What `collide` shows: see Contacts. Pairs are sorted as BodyPairs are.
 struct ContactFrame {
@@ -75,7 +75,7 @@ struct PairRecord {
   BodyPair pair;
   /// The kinds of its shapes: the first key of the order.
   std::uint32_t code;
-  /// Its place in the ContactFrame, kNone if it does not touch.
+  /// Its place in the ContactFrame, kNoEntry if it does not touch.
   std::uint32_t shown;
 };
 
@@ -97,8 +97,8 @@ struct CarriedPair {
   bool widened;
 };
 
-struct Contacts::State {
-  explicit State(std::pmr::memory_resource* memory) noexcept;
+struct ContactsState {
+  explicit ContactsState(std::pmr::memory_resource* memory) noexcept;
 
   SceneLevel level = SceneLevel::pairs;
   ContactFrame frame;

@@ -1,7 +1,9 @@
 #include <winnow/pipeline/contacts.h>
+
+#include "core/memory/new_in.h"
 #include "pipeline/scene/contact_frame.h"
 
-#include <new>
+#include <algorithm>
 
 namespace winnow {
 namespace {
@@ -11,9 +13,184 @@ template <typename T>
   return {column.data(), column.size()};
 }
 
+template <typename T>
+void copy_range(const Column<T>& from, std::size_t first, std::size_t count, Column<T>& to,
+                std::size_t at) noexcept {
+  if (!from.empty()) std::copy_n(from.data() + first, count, to.data() + at);
+}
+
 }  // namespace
 
-Contacts::State::State(std::pmr::memory_resource* memory) noexcept
+ContactFrame::ContactFrame(std::pmr::memory_resource* memory) noexcept
+    : runs(memory),
+      key{Column<Key>(memory), Column<Key>(memory)},
+      data{Column<ClientData>(memory), Column<ClientData>(memory)},
+      event(memory),
+      manifold_first(memory),
+      part{Column<std::uint32_t>(memory), Column<std::uint32_t>(memory)},
+      distance(memory),
+      error_bound(memory),
+      normal{Column<double>(memory), Column<double>(memory), Column<double>(memory)},
+      point{Column<double>(memory), Column<double>(memory), Column<double>(memory)},
+      point_first(memory),
+      points(memory) {}
+
+bool ContactFrame::resize(SceneLevel level, std::size_t pairs, std::size_t manifolds,
+                          std::size_t contact_points) noexcept {
+  const bool with_parts = level != SceneLevel::pairs;
+  const bool with_distance = level >= SceneLevel::distance;
+  const bool with_points = level == SceneLevel::manifold;
+  bool good = event.resize(pairs) && manifold_first.resize(with_parts ? pairs + 1 : 0);
+  for (int side = 0; side < 2; ++side) {
+    good =
+        good && key[side].resize(pairs) && data[side].resize(pairs) && part[side].resize(manifolds);
+  }
+  const std::size_t distances = with_distance ? manifolds : 0;
+  good = good && distance.resize(distances) && error_bound.resize(distances) &&
+         point_first.resize(with_points ? manifolds + 1 : 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    good = good && normal[axis].resize(distances) &&
+           point[axis].resize(level == SceneLevel::distance ? manifolds : 0);
+  }
+  if (!good || !points.grow(contact_points)) return false;
+  points.set_size(contact_points);
+  return true;
+}
+
+bool ContactFrame::reserve_as(const ContactFrame& other) noexcept {
+  bool good = event.reserve(other.event.capacity()) &&
+              manifold_first.reserve(other.manifold_first.capacity()) &&
+              distance.reserve(other.distance.capacity()) &&
+              error_bound.reserve(other.error_bound.capacity()) &&
+              point_first.reserve(other.point_first.capacity()) &&
+              points.depth.reserve(other.points.depth.capacity()) &&
+              points.feature.reserve(other.points.feature.capacity());
+  for (int side = 0; side < 2; ++side) {
+    good = good && key[side].reserve(other.key[side].capacity()) &&
+           data[side].reserve(other.data[side].capacity()) &&
+           part[side].reserve(other.part[side].capacity());
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    good = good && normal[axis].reserve(other.normal[axis].capacity()) &&
+           point[axis].reserve(other.point[axis].capacity()) &&
+           points.position[axis].reserve(other.points.position[axis].capacity());
+  }
+  return good;
+}
+
+void ContactFrame::clear() noexcept {
+  runs.clear();
+  event.clear();
+  manifold_first.clear();
+  for (int side = 0; side < 2; ++side) {
+    key[side].clear();
+    data[side].clear();
+    part[side].clear();
+  }
+  distance.clear();
+  error_bound.clear();
+  for (int axis = 0; axis < 3; ++axis) {
+    normal[axis].clear();
+    point[axis].clear();
+  }
+  point_first.clear();
+  points.set_size(0);
+}
+
+void ContactFrame::swap(ContactFrame& other) noexcept {
+  runs.swap(other.runs);
+  event.swap(other.event);
+  manifold_first.swap(other.manifold_first);
+  for (int side = 0; side < 2; ++side) {
+    key[side].swap(other.key[side]);
+    data[side].swap(other.data[side]);
+    part[side].swap(other.part[side]);
+  }
+  distance.swap(other.distance);
+  error_bound.swap(other.error_bound);
+  for (int axis = 0; axis < 3; ++axis) {
+    normal[axis].swap(other.normal[axis]);
+    point[axis].swap(other.point[axis]);
+    points.position[axis].swap(other.points.position[axis]);
+  }
+  point_first.swap(other.point_first);
+  points.depth.swap(other.points.depth);
+  points.feature.swap(other.points.feature);
+}
+
+Bytes ContactFrame::bytes() const noexcept {
+  Bytes sum = points.bytes();
+  for (const Bytes& bytes : {runs.bytes(), event.bytes(), manifold_first.bytes(), distance.bytes(),
+                             error_bound.bytes(), point_first.bytes()}) {
+    sum += bytes;
+  }
+  for (int side = 0; side < 2; ++side) {
+    sum += key[side].bytes();
+    sum += data[side].bytes();
+    sum += part[side].bytes();
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    sum += normal[axis].bytes();
+    sum += point[axis].bytes();
+  }
+  return sum;
+}
+
+ContactFrame::Place ContactFrame::extent(std::uint32_t first, std::uint32_t count) const noexcept {
+  Place extent{count, 0, 0};
+  if (manifold_first.empty()) return extent;
+  const std::uint32_t begin = manifold_first[first];
+  const std::uint32_t end = manifold_first[first + count];
+  extent.manifold = end - begin;
+  if (!point_first.empty()) extent.point = point_first[end] - point_first[begin];
+  return extent;
+}
+
+void ContactFrame::copy(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
+                        const Place& to) noexcept {
+  for (int side = 0; side < 2; ++side) {
+    copy_range(other.key[side], first, count, key[side], to.pair);
+    copy_range(other.data[side], first, count, data[side], to.pair);
+  }
+  copy_range(other.event, first, count, event, to.pair);
+  if (other.manifold_first.empty()) return;
+  const std::uint32_t begin = other.manifold_first[first];
+  const std::uint32_t manifolds = other.manifold_first[first + count] - begin;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    manifold_first[to.pair + i] = other.manifold_first[first + i] - begin + to.manifold;
+  }
+  for (int side = 0; side < 2; ++side) {
+    copy_range(other.part[side], begin, manifolds, part[side], to.manifold);
+  }
+  copy_range(other.distance, begin, manifolds, distance, to.manifold);
+  copy_range(other.error_bound, begin, manifolds, error_bound, to.manifold);
+  for (int axis = 0; axis < 3; ++axis) {
+    copy_range(other.normal[axis], begin, manifolds, normal[axis], to.manifold);
+    copy_range(other.point[axis], begin, manifolds, point[axis], to.manifold);
+  }
+  if (!other.point_first.empty()) copy_points(other, begin, manifolds, to);
+}
+
+void ContactFrame::copy_points(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
+                               const Place& to) noexcept {
+  const std::uint32_t begin = other.point_first[first];
+  const std::uint32_t number = other.point_first[first + count] - begin;
+  for (std::uint32_t m = 0; m < count; ++m) {
+    point_first[to.manifold + m] = other.point_first[first + m] - begin + to.point;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    copy_range(other.points.position[axis], begin, number, points.position[axis], to.point);
+  }
+  copy_range(other.points.depth, begin, number, points.depth, to.point);
+  copy_range(other.points.feature, begin, number, points.feature, to.point);
+}
+
+void ContactFrame::close(SceneLevel level, const Place& end) noexcept {
+  if (level != SceneLevel::pairs) manifold_first[end.pair] = end.manifold;
+  if (level == SceneLevel::manifold) point_first[end.manifold] = end.point;
+}
+
+ContactsState::ContactsState(std::pmr::memory_resource* memory) noexcept
     : frame(memory),
       before(memory),
       ended(memory),
@@ -30,7 +207,7 @@ Contacts::State::State(std::pmr::memory_resource* memory) noexcept
       shown_again(memory),
       sums(memory) {}
 
-void Contacts::State::clear() noexcept {
+void ContactsState::clear() noexcept {
   frame.clear();
   before.clear();
   dormant.clear();
@@ -43,106 +220,114 @@ void Contacts::State::clear() noexcept {
   carried_count = 0;
 }
 
-Contacts::Contacts(std::pmr::memory_resource* memory) : state_(new State(memory)) {}
+Contacts::Contacts(std::pmr::memory_resource* memory) noexcept
+    : memory_(memory), state_(new_in<ContactsState>(memory, memory)) {}
 
 Contacts::~Contacts() {
-  delete state_;
+  delete_in(memory_, state_);
+}
+
+const ContactsState& Contacts::state() const noexcept {
+  static const ContactsState kNothing(std::pmr::null_memory_resource());
+  return state_ != nullptr ? *state_ : kNothing;
 }
 
 SceneLevel Contacts::level() const noexcept {
-  return state_->level;
+  return state().level;
 }
 
 std::size_t Contacts::size() const noexcept {
-  return state_->frame.pairs();
+  return state().frame.pairs();
 }
 
 std::span<const ContactRun> Contacts::runs() const noexcept {
-  return span_of(state_->frame.runs);
+  return span_of(state().frame.runs);
 }
 
 std::span<const Key> Contacts::a() const noexcept {
-  return span_of(state_->frame.key[0]);
+  return span_of(state().frame.key[0]);
 }
 
 std::span<const Key> Contacts::b() const noexcept {
-  return span_of(state_->frame.key[1]);
+  return span_of(state().frame.key[1]);
 }
 
 std::span<const ClientData> Contacts::data_a() const noexcept {
-  return span_of(state_->frame.data[0]);
+  return span_of(state().frame.data[0]);
 }
 
 std::span<const ClientData> Contacts::data_b() const noexcept {
-  return span_of(state_->frame.data[1]);
+  return span_of(state().frame.data[1]);
 }
 
 std::span<const ContactEvent> Contacts::event() const noexcept {
-  return span_of(state_->frame.event);
+  return span_of(state().frame.event);
 }
 
 std::span<const EndedContact> Contacts::ended() const noexcept {
-  return span_of(state_->ended);
+  return span_of(state().ended);
 }
 
 std::span<const std::uint32_t> Contacts::manifold_first() const noexcept {
-  return span_of(state_->frame.manifold_first);
+  return span_of(state().frame.manifold_first);
 }
 
 std::size_t Contacts::manifolds() const noexcept {
-  return state_->frame.manifolds();
+  return state().frame.manifolds();
 }
 
 std::span<const std::uint32_t> Contacts::part_a() const noexcept {
-  return span_of(state_->frame.part[0]);
+  return span_of(state().frame.part[0]);
 }
 
 std::span<const std::uint32_t> Contacts::part_b() const noexcept {
-  return span_of(state_->frame.part[1]);
+  return span_of(state().frame.part[1]);
 }
 
 std::span<const double> Contacts::distance() const noexcept {
-  return span_of(state_->frame.distance);
+  return span_of(state().frame.distance);
 }
 
 std::span<const double> Contacts::error_bound() const noexcept {
-  return span_of(state_->frame.error_bound);
+  return span_of(state().frame.error_bound);
 }
 
 std::span<const double> Contacts::normal(int axis) const noexcept {
-  return span_of(state_->frame.normal[axis]);
+  return span_of(state().frame.normal[axis]);
 }
 
 std::span<const double> Contacts::point(int axis) const noexcept {
-  return span_of(state_->frame.point[axis]);
+  return span_of(state().frame.point[axis]);
 }
 
 std::span<const std::uint32_t> Contacts::point_first() const noexcept {
-  return span_of(state_->frame.point_first);
+  return span_of(state().frame.point_first);
 }
 
 std::size_t Contacts::points() const noexcept {
-  return state_->frame.points.size();
+  return state().frame.points.size();
 }
 
 ContactPoint Contacts::contact(std::size_t point) const noexcept {
-  const ContactColumns& points = state_->frame.points;
+  const ContactColumns& points = state().frame.points;
   return {{points.position[0][point], points.position[1][point], points.position[2][point]},
           points.depth[point],
           points.feature[point]};
 }
 
 std::size_t Contacts::carried() const noexcept {
-  return state_->carried_count;
+  return state().carried_count;
 }
 
 void Contacts::clear() noexcept {
-  state_->clear();
+  if (state_ != nullptr) state_->clear();
 }
 
 Footprint Contacts::footprint() const noexcept {
-  const State& s = *state_;
   Footprint footprint;
+  if (state_ == nullptr) return footprint;
+  const ContactsState& s = *state_;
+  footprint.structure = {sizeof(ContactsState), sizeof(ContactsState)};
   footprint.results += s.frame.bytes();
   footprint.results += s.ended.bytes();
   for (const Bytes& bytes :

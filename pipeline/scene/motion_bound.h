@@ -1,46 +1,11 @@
 #pragma once
 
 #include <winnow/core/pose.h>
-#include <winnow/pipeline/shapes.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace winnow {
-
-/// No point of a convex shape is farther than this from its own origin; infinite for half-spaces.
-[[nodiscard]] inline double shape_radius(const ShapeTables& tables, ShapeId id) noexcept {
-  const auto length = [](const double(&v)[3]) {
-    return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  };
-  const std::uint32_t i = id.index();
-  switch (id.kind()) {
-    case ShapeKind::sphere:
-      return tables.spheres[i].radius;
-    case ShapeKind::capsule:
-      return tables.capsules[i].radius + tables.capsules[i].half_length;
-    case ShapeKind::box:
-      return length(tables.boxes[i].half) + tables.boxes[i].rounding;
-    case ShapeKind::cylinder: {
-      const CylinderShape& s = tables.cylinders[i];
-      return std::sqrt(s.radius * s.radius + s.half_length * s.half_length) + s.rounding;
-    }
-    case ShapeKind::cone: {
-      const ConeShape& s = tables.cones[i];
-      return std::sqrt(s.radius * s.radius + s.half_length * s.half_length) + s.rounding;
-    }
-    case ShapeKind::hull:
-      return length(tables.hulls[i].center) + tables.hulls[i].radius + tables.hulls[i].rounding;
-    case ShapeKind::triangle: {
-      const TriangleShape& s = tables.triangles[i];
-      return std::max({length(s.vertex[0]), length(s.vertex[1]), length(s.vertex[2])}) + s.rounding;
-    }
-    case ShapeKind::half_space:
-      break;
-  }
-  return std::numeric_limits<double>::infinity();
-}
 
 /// The pose of b in the frame of a, its orientation a unit quaternion.
 [[nodiscard]] inline Pose relative_pose(const Pose& a, const Pose& b) noexcept {

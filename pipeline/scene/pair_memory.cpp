@@ -53,14 +53,8 @@ struct Turn {
   }
 };
 
-[[nodiscard]] std::uint32_t code_of(const Scene::State& scene, const BodyPair& pair) noexcept {
-  return scene.shape[pair.a].kind_index() * kAllShapeKinds + scene.shape[pair.b].kind_index();
-}
-
-[[nodiscard]] double radius_of(const Scene::State& scene, std::uint32_t body) noexcept {
-  const ShapeId id = scene.shape[body];
-  return id.is_composite() ? scene.options.composites->radius(id)
-                           : shape_radius(scene.shapes.tables(), id);
+[[nodiscard]] std::uint32_t code_of(const SceneState& scene, const BodyPair& pair) noexcept {
+  return pair_code(scene.shape[pair.a], scene.shape[pair.b]);
 }
 
 }  // namespace
@@ -68,7 +62,7 @@ struct Turn {
 // Pairs of bodies that slept are put back among those of the last frame, when bodies may have
 // woken.
 bool Collision::wake_dormant() {
-  Contacts::State& c = contacts_;
+  ContactsState& c = contacts_;
   if (!same_level_) {
     c.dormant_records.clear();
     c.dormant_carried.clear();
@@ -109,7 +103,7 @@ bool Collision::wake_dormant() {
 
 // Which record each pair had. Both are sorted alike.
 bool Collision::match() {
-  Contacts::State& c = contacts_;
+  ContactsState& c = contacts_;
   const auto pairs = scene_.pairs.pairs();
   same_pairs_ = carries_ && same_level_ && c.pairs_serial == scene_.pairs.serial() &&
                 c.records.size() == pairs.size() && c.carried.size() == pairs.size();
@@ -127,7 +121,7 @@ bool Collision::match() {
       const auto order = order_of_pair(i);
       while (record != c.records.end() && order_of(*record) < order) ++record;
       const bool found = record != c.records.end() && order_of(*record) == order;
-      c.old_record[i] = found ? static_cast<std::uint32_t>(record++ - c.records.begin()) : kNone;
+      c.old_record[i] = found ? static_cast<std::uint32_t>(record++ - c.records.begin()) : kNoEntry;
     }
   });
   return true;
@@ -135,7 +129,7 @@ bool Collision::match() {
 
 // Says of every pair where its contacts come from. False if the last frame can stay as it is.
 bool Collision::decide() {
-  Contacts::State& c = contacts_;
+  ContactsState& c = contacts_;
   const auto pairs = scene_.pairs.pairs();
   if (level_ == SceneLevel::pairs) return true;
   std::atomic<std::uint32_t> kept{0};
@@ -146,7 +140,7 @@ bool Collision::decide() {
       const std::uint32_t record = same_pairs_ ? i : c.old_record[i];
       const bool composite = scene_.shape[pairs[i].b].is_composite();
       Origin origin = composite ? Origin::composite : Origin::convex;
-      if (may_keep && record != kNone && keep(i, record)) {
+      if (may_keep && record != kNoEntry && keep(i, record)) {
         origin = Origin::carried;
         ++count;
       }
@@ -166,7 +160,7 @@ bool Collision::decide() {
 
 // True if a pair has moved so little that its contacts stay, and turns them if it must.
 bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
-  Contacts::State& c = contacts_;
+  ContactsState& c = contacts_;
   const BodyPair bodies = scene_.pairs.pairs()[pair];
   const std::uint32_t since = c.clock;
   if (scene_.shaped_at[bodies.a] > since || scene_.shaped_at[bodies.b] > since) return false;
@@ -179,7 +173,7 @@ bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
   const double moved = motion_bound(carried.relative, now, static_cast<double>(carried.radius)) +
                        static_cast<double>(carried.drift);
   if (!(moved <= carried.limit)) return false;
-  if (known.shown == kNone) return true;
+  if (known.shown == kNoEntry) return true;
   const Pose unit = with_unit_turn(a);
   const double turned =
       turn_bound(carried.turn, unit.orientation, static_cast<double>(carried.radius_a));
@@ -221,11 +215,9 @@ void Collision::turn(CarriedPair& carried, const PairRecord& record,
 
 // Notes what a pair was found to be. Room was made.
 void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
-  Contacts::State& c = contacts_;
+  ContactsState& c = contacts_;
   const BodyPair bodies = scene_.pairs.pairs()[pair];
-  const std::uint32_t code =
-      scene_.shape[bodies.a].kind_index() * kAllShapeKinds + scene_.shape[bodies.b].kind_index();
-  c.records[carries_ ? pair : shown] = {bodies, code, shown};
+  c.records[carries_ ? pair : shown] = {bodies, code_of(scene_, bodies), shown};
   if (!carries_) return;
   if (static_cast<Origin>(c.origin[pair]) == Origin::carried) {
     if (!same_pairs_) c.carried[pair] = c.carried_before[c.old_record[pair]];
@@ -234,15 +226,15 @@ void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
   CarriedPair carried{};
   const Pose& a = scene_.pose[bodies.a];
   const Pose& b = scene_.pose[bodies.b];
-  const double radius_a = radius_of(scene_, bodies.a);
-  const double radius_b = radius_of(scene_, bodies.b);
+  const double radius_a = scene_.radius(bodies.a);
+  const double radius_b = scene_.radius(bodies.b);
   carried.from_b = radius_a <= radius_b;
   carried.relative = carried.from_b ? relative_pose(b, a) : relative_pose(a, b);
   std::copy_n(with_unit_turn(a).orientation, 4, carried.turn);
   carried.radius = round_up(std::min(radius_a, radius_b));
   carried.radius_a = round_up(radius_a);
   const double carry_over = scene_.options.carry_over;
-  const double clear = shown == kNone ? clearance(pair) : carry_over;
+  const double clear = shown == kNoEntry ? clearance(pair) : carry_over;
   carried.limit =
       static_cast<Origin>(c.origin[pair]) == Origin::convex ? clear : std::min(clear, carry_over);
   c.carried[pair] = carried;
@@ -259,7 +251,7 @@ bool Collision::put_to_sleep(std::uint32_t old_shown) const noexcept {
 
 // Pairs of the last frame that are not in this one have ended, or sleep.
 bool Collision::close_frame() {
-  Contacts::State& c = contacts_;
+  ContactsState& c = contacts_;
   const ContactFrame& before = c.before;
   c.ended.clear();
   // Bodies fall asleep by changing their partition, so that pairs are found anew.
@@ -271,7 +263,7 @@ bool Collision::close_frame() {
   Place room;
   for (std::size_t r = 0; may_sleep && r < c.records_before.size(); ++r) {
     const PairRecord record = c.records_before[r];
-    if (record.shown == kNone || c.shown_again[record.shown] != 0) continue;
+    if (record.shown == kNoEntry || c.shown_again[record.shown] != 0) continue;
     if (!put_to_sleep(record.shown)) continue;
     c.shown_again[record.shown] = 1;
     room += before.extent(record.shown);

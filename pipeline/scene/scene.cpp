@@ -1,3 +1,6 @@
+#include <winnow/pipeline/scene.h>
+
+#include "core/memory/new_in.h"
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
@@ -38,7 +41,7 @@ Bytes SceneFootprint::total() const noexcept {
   return sum;
 }
 
-Scene::State::State(const ShapePool& pool, const SceneOptions& given)
+SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcept
     : shapes(pool),
       options(given),
       options_are_good(are_good(given)),
@@ -73,11 +76,11 @@ Scene::State::State(const ShapePool& pool, const SceneOptions& given)
   if (given.composites != nullptr) composites_seen = given.composites->revision();
 }
 
-Scene::Scene(const ShapePool& shapes, const SceneOptions& options)
-    : state_(new State(shapes, options)) {}
+Scene::Scene(const ShapePool& shapes, const SceneOptions& options) noexcept
+    : state_(new_in<SceneState>(options.memory, shapes, options)) {}
 
 Scene::~Scene() {
-  delete state_;
+  if (state_ != nullptr) delete_in(state_->options.memory, state_);
 }
 
 Status Scene::add(const BodyDefinition& body, Key& key) {
@@ -85,7 +88,8 @@ Status Scene::add(const BodyDefinition& body, Key& key) {
 }
 
 Status Scene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
-  State& s = *state_;
+  if (state_ == nullptr) return Status::out_of_memory;
+  SceneState& s = *state_;
   if (!s.options_are_good) return Status::invalid_argument;
   if (bodies.size() != keys.size()) return Status::size_mismatch;
   if (bodies.size() + s.keys.slot_count() >= kMaxBodies) return Status::too_many_objects;
@@ -112,7 +116,8 @@ Status Scene::remove(Key key) {
 }
 
 Status Scene::remove(std::span<const Key> keys) {
-  State& s = *state_;
+  if (state_ == nullptr) return Status::out_of_memory;
+  SceneState& s = *state_;
   if (!s.are_distinct(keys)) return Status::invalid_key;
   if (!s.left.resize(keys.size())) return Status::out_of_memory;
   for (const Motion which : kEveryMotion) {
@@ -128,7 +133,8 @@ Status Scene::remove(std::span<const Key> keys) {
 }
 
 void Scene::clear() noexcept {
-  State& s = *state_;
+  if (state_ == nullptr) return;
+  SceneState& s = *state_;
   for (SceneSet& set : s.sets) {
     if (!set.partition.has_value()) continue;
     set.partition->clear();
@@ -140,6 +146,7 @@ void Scene::clear() noexcept {
 }
 
 Status Scene::move(Key key, const Pose& pose) {
+  if (state_ == nullptr) return Status::out_of_memory;
   if (!state_->keys.is_valid(key)) return Status::invalid_key;
   if (!pose.is_valid()) return Status::invalid_pose;
   state_->set_pose(key.id, pose);
@@ -147,7 +154,8 @@ Status Scene::move(Key key, const Pose& pose) {
 }
 
 Status Scene::move(std::span<const Key> keys, const PoseView& poses) {
-  State& s = *state_;
+  if (state_ == nullptr) return Status::out_of_memory;
+  SceneState& s = *state_;
   if (keys.size() != poses.count) return Status::size_mismatch;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     if (!s.keys.is_valid(keys[i])) return Status::invalid_key;
@@ -162,7 +170,8 @@ Status Scene::set_motion(Key key, Motion motion) {
 }
 
 Status Scene::set_motion(std::span<const Key> keys, Motion motion) {
-  State& s = *state_;
+  if (state_ == nullptr) return Status::out_of_memory;
+  SceneState& s = *state_;
   if (!is_motion(motion)) return Status::invalid_argument;
   if (!s.are_distinct(keys)) return Status::invalid_key;
   for (const Motion from : kEveryMotion) {
@@ -174,7 +183,8 @@ Status Scene::set_motion(std::span<const Key> keys, Motion motion) {
 }
 
 Status Scene::set_shape(Key key, ShapeId shape) {
-  State& s = *state_;
+  if (state_ == nullptr) return Status::out_of_memory;
+  SceneState& s = *state_;
   if (!s.keys.is_valid(key)) return Status::invalid_key;
   if (const Status good = s.check(shape, s.pose[key.id]); good != Status::ok) return good;
   s.shape[key.id] = shape;
@@ -184,7 +194,8 @@ Status Scene::set_shape(Key key, ShapeId shape) {
 }
 
 Status Scene::set_filter(Key key, const ObjectFilter& filter) {
-  State& s = *state_;
+  if (state_ == nullptr) return Status::out_of_memory;
+  SceneState& s = *state_;
   if (!s.keys.is_valid(key)) return Status::invalid_key;
   SceneSet& set = s.set(s.motion[key.id]);
   const Status status = set.partition->set_filter(s.place[key.id], filter);
@@ -193,21 +204,21 @@ Status Scene::set_filter(Key key, const ObjectFilter& filter) {
 }
 
 std::size_t Scene::size() const noexcept {
-  return state_->keys.size();
+  return state_ != nullptr ? state_->keys.size() : 0;
 }
 
 std::size_t Scene::size(Motion motion) const noexcept {
-  if (!is_motion(motion)) return 0;
-  const Partition* const of_set = partition(motion);
-  return of_set == nullptr ? 0 : of_set->size();
+  const Partition* const held = partition(motion);
+  return held == nullptr ? 0 : held->size();
 }
 
 bool Scene::contains(Key key) const noexcept {
-  return state_->keys.is_valid(key);
+  return state_ != nullptr && state_->keys.is_valid(key);
 }
 
 Status Scene::body(Key key, BodyDefinition& body) const noexcept {
-  const State& s = *state_;
+  if (state_ == nullptr) return Status::out_of_memory;
+  const SceneState& s = *state_;
   if (!s.keys.is_valid(key)) return Status::invalid_key;
   body.shape = s.shape[key.id];
   body.pose = s.pose[key.id];
@@ -217,16 +228,21 @@ Status Scene::body(Key key, BodyDefinition& body) const noexcept {
 }
 
 Key Scene::key_of(ObjectId id) const noexcept {
-  return state_->keys.key_of(id);
+  return state_ != nullptr ? state_->keys.key_of(id) : Key{};
+}
+
+Status Scene::refresh() {
+  return state_ != nullptr ? state_->refresh() : Status::out_of_memory;
 }
 
 const Partition* Scene::partition(Motion motion) const noexcept {
-  if (!is_motion(motion)) return nullptr;
+  if (state_ == nullptr || !is_motion(motion)) return nullptr;
   const SceneSet& set = state_->set(motion);
   return set.partition.has_value() ? &*set.partition : nullptr;
 }
 
 Status Scene::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const {
+  if (state_ == nullptr) return Status::out_of_memory;
   for (const SceneSet& set : state_->sets) {
     if (!set.partition.has_value()) continue;
     const Status status = set.partition->debug_draw(draw, options);
@@ -236,12 +252,15 @@ Status Scene::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const
 }
 
 const SceneStatistics& Scene::statistics() const noexcept {
-  return state_->statistics;
+  static const SceneStatistics kNothing;
+  return state_ != nullptr ? state_->statistics : kNothing;
 }
 
 SceneFootprint Scene::footprint() const noexcept {
-  const State& s = *state_;
   SceneFootprint footprint;
+  if (state_ == nullptr) return footprint;
+  const SceneState& s = *state_;
+  footprint.bodies = {sizeof(SceneState), sizeof(SceneState)};
   footprint.bodies += s.keys.key_bytes();
   footprint.bodies += s.keys.client_data_bytes();
   for (const Bytes& bytes :

@@ -1,12 +1,20 @@
 #include "pipeline/scene/scene_state.h"
+
+#include "core/sort/stretches.h"
 #include "pipeline/scene/motion_bound.h"
+#include "pipeline/shapes/extent.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace winnow {
+namespace {
 
-Status Scene::State::check(ShapeId id, const Pose& at) const noexcept {
+constexpr std::size_t kBodiesPerStretch = 256;
+
+}  // namespace
+
+Status SceneState::check(ShapeId id, const Pose& at) const noexcept {
   const bool known = id.is_composite()
                          ? options.composites != nullptr && options.composites->contains(id)
                          : shapes.contains(id);
@@ -14,7 +22,7 @@ Status Scene::State::check(ShapeId id, const Pose& at) const noexcept {
   return at.is_valid() ? Status::ok : Status::invalid_pose;
 }
 
-Status Scene::State::make_partition_of(Motion which) {
+Status SceneState::make_partition_of(Motion which) {
   SceneSet& target = set(which);
   if (target.partition.has_value()) return Status::ok;
   Partition made(options.structures[static_cast<std::size_t>(which)],
@@ -24,7 +32,12 @@ Status Scene::State::make_partition_of(Motion which) {
   return status;
 }
 
-PlainBox Scene::State::grown_bounds(std::uint32_t body) const noexcept {
+double SceneState::radius(std::uint32_t body) const noexcept {
+  const ShapeId id = shape[body];
+  return id.is_composite() ? options.composites->radius(id) : mid::radius_of(shapes.tables(), id);
+}
+
+PlainBox SceneState::grown_bounds(std::uint32_t body) const noexcept {
   const ShapeId id = shape[body];
   const Aabb box = id.is_composite() ? options.composites->bounds(id, pose[body])
                                      : shapes.bounds(id, pose[body]);
@@ -37,7 +50,7 @@ PlainBox Scene::State::grown_bounds(std::uint32_t body) const noexcept {
 }
 
 // Of what lies in `boxes`.
-BoxView Scene::State::box_view() const noexcept {
+BoxView SceneState::box_view() const noexcept {
   const PlainBox* const first = boxes.data();
   return {{&first->min[0], &first->min[1], &first->min[2]},
           {&first->max[0], &first->max[1], &first->max[2]},
@@ -45,7 +58,7 @@ BoxView Scene::State::box_view() const noexcept {
           sizeof(PlainBox)};
 }
 
-Status Scene::State::place_bodies(Motion which, std::span<const std::uint32_t> bodies) {
+Status SceneState::place_bodies(Motion which, std::span<const std::uint32_t> bodies) {
   if (bodies.empty()) return Status::ok;
   SceneSet& target = set(which);
   if (const Status made = make_partition_of(which); made != Status::ok) return made;
@@ -77,7 +90,7 @@ Status Scene::State::place_bodies(Motion which, std::span<const std::uint32_t> b
   return Status::ok;
 }
 
-Status Scene::State::displace(Motion which, std::span<const Key> places) {
+Status SceneState::displace(Motion which, std::span<const Key> places) {
   if (places.empty()) return Status::ok;
   const Status status = set(which).partition->remove(places);
   if (status == Status::ok) ++set(which).changes;
@@ -85,7 +98,7 @@ Status Scene::State::displace(Motion which, std::span<const Key> places) {
 }
 
 // Room in every column, so that what follows cannot fail.
-bool Scene::State::reserve(std::size_t fresh) noexcept {
+bool SceneState::reserve(std::size_t fresh) noexcept {
   if (!keys.reserve(keys.size() + fresh)) return false;
   const std::size_t slots = keys.slot_count() + fresh;
   const bool with_anchors = options.carry_over == 0.0 || anchor.grow(slots);
@@ -94,7 +107,7 @@ bool Scene::State::reserve(std::size_t fresh) noexcept {
          is_stale.grow(slots) && chosen.grow(slots) && left.grow(slots);
 }
 
-Key Scene::State::acquire(const BodyDefinition& body) noexcept {
+Key SceneState::acquire(const BodyDefinition& body) noexcept {
   const Key key = keys.acquire(0, body.data);
   const std::size_t slots = keys.slot_count();
   if (key.id >= shape.size()) {
@@ -116,8 +129,8 @@ Key Scene::State::acquire(const BodyDefinition& body) noexcept {
   return key;
 }
 
-std::span<const std::uint32_t> Scene::State::choose(std::span<const Key> given,
-                                                    Motion which) noexcept {
+std::span<const std::uint32_t> SceneState::choose(std::span<const Key> given,
+                                                  Motion which) noexcept {
   chosen.clear();
   for (const Key& key : given) {
     if (motion[key.id] == which) (void)chosen.push_back(key.id);
@@ -126,7 +139,7 @@ std::span<const std::uint32_t> Scene::State::choose(std::span<const Key> given,
 }
 
 // Places bodies that have just got their keys.
-Status Scene::State::settle(std::span<const BodyDefinition> bodies, std::span<const Key> given) {
+Status SceneState::settle(std::span<const BodyDefinition> bodies, std::span<const Key> given) {
   for (const Motion which : kEveryMotion) {
     const Status status = place_bodies(which, choose(given, which));
     if (status != Status::ok) return status;
@@ -141,7 +154,7 @@ Status Scene::State::settle(std::span<const BodyDefinition> bodies, std::span<co
 }
 
 // Marks by the second bit of the flags; keys.size() <= slots is implied by being distinct.
-bool Scene::State::are_distinct(std::span<const Key> given) noexcept {
+bool SceneState::are_distinct(std::span<const Key> given) noexcept {
   constexpr std::uint8_t kSeen = 2;
   std::size_t marked = 0;
   for (; marked < given.size(); ++marked) {
@@ -156,7 +169,7 @@ bool Scene::State::are_distinct(std::span<const Key> given) noexcept {
 }
 
 // Takes removed bodies off the list.
-void Scene::State::forget_stale() noexcept {
+void SceneState::forget_stale() noexcept {
   std::size_t kept = 0;
   for (const std::uint32_t body : stale) {
     if (keys.is_live(body)) {
@@ -168,20 +181,20 @@ void Scene::State::forget_stale() noexcept {
   stale.set_size(kept);
 }
 
-void Scene::State::mark_stale(std::uint32_t body) noexcept {
+void SceneState::mark_stale(std::uint32_t body) noexcept {
   if (is_stale[body] != 0) return;
   is_stale[body] = 1;
   stale[stale.size()] = body;
   stale.set_size(stale.size() + 1);
 }
 
-void Scene::State::set_pose(std::uint32_t body, const Pose& to) noexcept {
+void SceneState::set_pose(std::uint32_t body, const Pose& to) noexcept {
   pose[body] = to;
   moved_at[body] = clock;
   mark_stale(body);
 }
 
-Status Scene::State::move_to_set(Motion from, Motion to, std::span<const std::uint32_t> bodies) {
+Status SceneState::move_to_set(Motion from, Motion to, std::span<const std::uint32_t> bodies) {
   if (bodies.empty()) return Status::ok;
   if (!left.resize(bodies.size())) return Status::out_of_memory;
   for (std::size_t i = 0; i < bodies.size(); ++i) left[i] = place[bodies[i]];
@@ -202,6 +215,88 @@ Status Scene::State::move_to_set(Motion from, Motion to, std::span<const std::ui
   }
   for (const std::uint32_t body : bodies) motion[body] = to;
   ++regroupings;
+  return Status::ok;
+}
+
+// False if the box that the partition has still holds the body, its growth included.
+bool SceneState::needs_box(std::uint32_t body) const noexcept {
+  if (anchor.empty() || shaped_at[body] >= moved_at[body]) return true;
+  // The comparison is false for NaN too.
+  return !(motion_bound(anchor[body], with_unit_turn(pose[body]), radius(body)) <=
+           options.carry_over);
+}
+
+Status SceneState::refresh() {
+  if (options.composites != nullptr && options.composites->revision() != composites_seen) {
+    composites_seen = options.composites->revision();
+    for (std::uint32_t body = 0; body < shape.size(); ++body) {
+      if (!keys.is_live(body) || !shape[body].is_composite()) continue;
+      shaped_at[body] = clock;
+      mark_stale(body);
+    }
+  }
+  if (stale.empty()) return Status::ok;
+  for (std::size_t which = 0; which < kMotions; ++which) {
+    const Status status = refresh_set(static_cast<Motion>(which));
+    if (status != Status::ok) return status;
+  }
+  for (const std::uint32_t body : stale) is_stale[body] = 0;
+  stale.clear();
+  return Status::ok;
+}
+
+Status SceneState::refresh_set(Motion which) {
+  SceneSet& target = set(which);
+  if (!target.partition.has_value()) return Status::ok;
+  chosen.clear();
+  for (const std::uint32_t body : stale) {
+    if (motion[body] != which || !needs_box(body)) continue;
+    chosen[chosen.size()] = body;
+    chosen.set_size(chosen.size() + 1);
+  }
+  const std::size_t count = chosen.size();
+  if (count == 0) return Status::ok;
+  if (!boxes.resize(count) || !boxes_of.resize(count)) return Status::out_of_memory;
+  for_stretches(options.execution, count, kBodiesPerStretch,
+                [&](std::size_t first, std::size_t end) {
+                  for (std::size_t i = first; i < end; ++i) {
+                    boxes[i] = grown_bounds(chosen[i]);
+                    boxes_of[i] = place[chosen[i]];
+                  }
+                });
+  const Status status = target.partition->update({boxes_of.data(), count}, box_view());
+  if (status != Status::ok) return status;
+  if (!anchor.empty()) {
+    for (const std::uint32_t body : chosen) anchor[body] = with_unit_turn(pose[body]);
+  }
+  boxes_updated += count;
+  ++target.changes;
+  return Status::ok;
+}
+
+// Dynamic bodies among themselves, then with each other set. Asked only if something changed.
+Status SceneState::find_pairs() {
+  if (const Status status = refresh(); status != Status::ok) return status;
+  bool changed = false;
+  for (std::size_t i = 0; i < kMotions; ++i) {
+    changed = changed || pairs.changes[i] != sets[i].changes;
+  }
+  if (!changed) return Status::ok;
+  const SceneSet& dynamic = set(Motion::dynamic);
+  BodyPairs::Source sources[kMotions];
+  std::size_t count = 0;
+  for (SceneSet& other : sets) {
+    if (!dynamic.partition.has_value() || !other.partition.has_value()) continue;
+    const Status status = &other == &dynamic
+                              ? dynamic.partition->self_pairs(other.with_dynamic)
+                              : dynamic.partition->pairs_with(*other.partition, other.with_dynamic);
+    if (status != Status::ok) return status;
+    sources[count++] = {other.with_dynamic.pairs(), dynamic.body_of.data(), other.body_of.data()};
+  }
+  const Status status =
+      pairs.assign({sources, count}, shape.data(), keys.slot_count(), options.execution);
+  if (status != Status::ok) return status;
+  for (std::size_t i = 0; i < kMotions; ++i) pairs.changes[i] = sets[i].changes;
   return Status::ok;
 }
 

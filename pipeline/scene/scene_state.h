@@ -33,8 +33,8 @@ struct SceneSet {
 
 /// What a Scene consists of. Bodies are numbered by the ids of their keys; columns are by id and
 /// have holes where bodies were removed.
-struct Scene::State {
-  State(const ShapePool& pool, const SceneOptions& given);
+struct SceneState {
+  SceneState(const ShapePool& pool, const SceneOptions& given) noexcept;
 
   const ShapePool& shapes;
   SceneOptions options;
@@ -101,6 +101,8 @@ struct Scene::State {
   [[nodiscard]] Status settle(std::span<const BodyDefinition> bodies, std::span<const Key> given);
   [[nodiscard]] bool are_distinct(std::span<const Key> given) noexcept;
   void forget_stale() noexcept;
+  /// No point of the body is farther than this from its position.
+  [[nodiscard]] double radius(std::uint32_t body) const noexcept;
   /// The box that a partition is given.
   [[nodiscard]] PlainBox grown_bounds(std::uint32_t body) const noexcept;
   [[nodiscard]] BoxView box_view() const noexcept;

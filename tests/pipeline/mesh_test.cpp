@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
-#include "pipeline/mesh/mesh_walks.h"
+#include <winnow/pipeline/triangle_mesh.h>
+#include "pipeline/mesh/mesh_traversals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,15 +19,14 @@ using Vertices = std::vector<Eigen::Vector3f>;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
-constexpr std::uint32_t kNumber = (1U << kActiveEdgeShift) - 1U;
 
 /// The caller's numbers of the triangles whose boxes meet [min, max], in order.
 Slots numbers_in(const TriangleMesh& mesh, const double min[3], const double max[3]) {
   Slots slots(mesh.triangles());
   SlotSink sink{slots.data(), slots.size(), 0};
-  mesh_overlap(mesh.view(), min, max, sink);
+  mesh_overlap(view_of(mesh), min, max, sink);
   slots.resize(sink.size);
-  for (auto& slot : slots) slot = mesh.view().triangle[slot] & kNumber;
+  for (auto& slot : slots) slot = view_of(mesh).triangle[slot] & kTriangleNumberMask;
   std::sort(slots.begin(), slots.end());
   return slots;
 }
@@ -35,8 +35,8 @@ Slots numbers_in(const TriangleMesh& mesh, const double min[3], const double max
 std::vector<unsigned> edges_of(const TriangleMesh& mesh) {
   std::vector<unsigned> edges(mesh.triangles());
   for (std::size_t slot = 0; slot < edges.size(); ++slot) {
-    const std::uint32_t word = mesh.view().triangle[slot];
-    edges[word & kNumber] = word >> kActiveEdgeShift;
+    const std::uint32_t word = view_of(mesh).triangle[slot];
+    edges[word & kTriangleNumberMask] = word >> kActiveEdgeShift;
   }
   return edges;
 }
@@ -56,10 +56,10 @@ TEST(TriangleMeshes, hold_each_triangle_once_with_its_own_corners) {
     ASSERT_EQ(mesh.triangles(), data.triangles());
     std::vector<int> seen(data.triangles());
     for (std::size_t slot = 0; slot < mesh.triangles(); ++slot) {
-      const std::uint32_t number = mesh.view().triangle[slot] & kNumber;
+      const std::uint32_t number = view_of(mesh).triangle[slot] & kTriangleNumberMask;
       ++seen[number];
       for (std::size_t k = 0; k < 3; ++k) {
-        EXPECT_EQ(mesh.view().corner[k][slot], data.corners[3 * number + k]);
+        EXPECT_EQ(view_of(mesh).corner[k][slot], data.corners[3 * number + k]);
       }
     }
     EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<int>(seen.size()));
@@ -95,7 +95,7 @@ TEST(TriangleMeshes, read_strided_columns_of_either_precision_and_short_indices_
                           IndexView(faces[0].corner, faces.size(), sizeof(Face))),
             Status::ok);
   for (std::size_t slot = 0; slot < plain.triangles(); ++slot) {
-    EXPECT_EQ(plain.view().triangle[slot], strided.view().triangle[slot]);
+    EXPECT_EQ(view_of(plain).triangle[slot], view_of(strided).triangle[slot]);
   }
 }
 
@@ -130,11 +130,12 @@ TEST(TriangleMeshes, are_the_same_built_by_any_number_of_threads) {
       return mesh.build(data.points(), data.indices(), {}, Execution::parallel());
     }),
               Status::ok);
-    EXPECT_TRUE(std::equal(mesh.view().triangle, mesh.view().triangle + mesh.triangles(),
-                           serial.view().triangle));
+    EXPECT_TRUE(std::equal(view_of(mesh).triangle, view_of(mesh).triangle + mesh.triangles(),
+                           view_of(serial).triangle));
     for (int c = 0; c < 6; ++c) {
-      EXPECT_TRUE(std::equal(mesh.view().node[0][c], mesh.view().node[0][c] + mesh.view().count[0],
-                             serial.view().node[0][c]));
+      EXPECT_TRUE(std::equal(view_of(mesh).node[0][c],
+                             view_of(mesh).node[0][c] + view_of(mesh).count[0],
+                             view_of(serial).node[0][c]));
     }
   }
 }

@@ -184,6 +184,54 @@ TEST(SceneBytes, refused_memory_leaves_the_scene_as_it_was) {
   EXPECT_EQ(contacts.size(), world.touching().size());
 }
 
+TEST(SceneBytes, a_scene_without_memory_for_itself_stays_empty_and_says_so) {
+  CountingMemory memory;
+  SceneWorld world(3, 23);
+  memory.refuse_after(0);
+  Scene scene(world.pool, {.memory = &memory});
+  memory.grant_all();
+  Key key;
+  EXPECT_EQ(scene.add(world.bodies[0], key), Status::out_of_memory);
+  EXPECT_EQ(scene.remove(key), Status::out_of_memory);
+  EXPECT_EQ(scene.move(key, Pose{}), Status::out_of_memory);
+  EXPECT_EQ(scene.set_motion(key, Motion::fixed), Status::out_of_memory);
+  EXPECT_EQ(scene.set_shape(key, world.bodies[0].shape), Status::out_of_memory);
+  EXPECT_EQ(scene.set_filter(key, {}), Status::out_of_memory);
+  EXPECT_EQ(scene.refresh(), Status::out_of_memory);
+  BodyDefinition body;
+  EXPECT_EQ(scene.body(key, body), Status::out_of_memory);
+  Contacts contacts;
+  EXPECT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::out_of_memory);
+  scene.clear();
+  EXPECT_EQ(scene.size(), 0U);
+  EXPECT_EQ(scene.size(Motion::dynamic), 0U);
+  EXPECT_FALSE(scene.contains(key));
+  EXPECT_EQ(scene.key_of(0), Key{});
+  EXPECT_EQ(scene.partition(Motion::dynamic), nullptr);
+  EXPECT_EQ(scene.statistics().body_pairs, 0U);
+  EXPECT_EQ(scene.footprint().total().reserved, 0U);
+  SceneQueries queries(scene);
+  SceneDistance distance;
+  EXPECT_EQ(queries.distance(key, key, distance), Status::out_of_memory);
+}
+
+TEST(SceneBytes, contacts_without_memory_for_themselves_stay_empty_and_say_so) {
+  CountingMemory memory;
+  SceneWorld world(20, 23);
+  Scene scene(world.pool);
+  ASSERT_EQ(add_all(scene, world), Status::ok);
+  memory.refuse_after(0);
+  Contacts contacts(&memory);
+  memory.grant_all();
+  EXPECT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::out_of_memory);
+  contacts.clear();
+  EXPECT_EQ(contacts.size(), 0U);
+  EXPECT_EQ(contacts.manifolds(), 0U);
+  EXPECT_EQ(contacts.points(), 0U);
+  EXPECT_TRUE(contacts.runs().empty());
+  EXPECT_EQ(contacts.footprint().total().reserved, 0U);
+}
+
 TEST(SceneInput, what_is_refused_changes_nothing) {
   SceneWorld world(40, 29);
   Scene scene(world.pool);

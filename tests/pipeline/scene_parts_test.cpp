@@ -1,5 +1,6 @@
 // Scenes with meshes, compounds and height fields, against every pair of parts asked one by one.
 
+#include "pipeline/mesh/mesh_view.h"
 #include "pipeline/solver/solver.h"
 
 #include <gtest/gtest.h>
@@ -379,7 +380,7 @@ TEST(SceneParts, a_mesh_that_is_refitted_is_seen_at_its_new_place) {
   EXPECT_EQ(contacts.size(), 0U);
   std::vector<Eigen::Vector3f> raised;
   for (std::uint32_t i = 0; i < pool.mesh(floor)->vertices(); ++i) {
-    const MeshView& view = pool.mesh(floor)->view();
+    const MeshView& view = view_of(*pool.mesh(floor));
     raised.emplace_back(view.vertex[0][i], view.vertex[1][i], 2.6F);
   }
   ASSERT_EQ(pool.refit_mesh(floor, std::span<const Eigen::Vector3f>(raised)), Status::ok);

@@ -4,25 +4,23 @@
 // questions.
 
 #include <winnow/pipeline/scene_queries.h>
-#include "pipeline/scene/queries/queries_parts.h"
+#include "pipeline/scene/queries/parts.h"
 #include "pipeline/scene/scene_state.h"
 
 namespace winnow {
 
-struct SceneQueries::State {
-  State(const Scene& asked, std::pmr::memory_resource* resource) noexcept
-      : scene(asked.state()),
-        walk(scene.shapes, scene.options.composites),
-        memory(resource),
-        boxes(resource),
-        objects(resource),
-        hits(resource),
-        overlaps(resource),
-        distances(resource) {}
+struct QueryState {
+  QueryState(const SceneState& asked, std::pmr::memory_resource* memory) noexcept
+      : scene(asked),
+        parts(scene.shapes, scene.options.composites),
+        boxes(memory),
+        objects(memory),
+        hits(memory),
+        overlaps(memory),
+        distances(memory) {}
 
-  const Scene::State& scene;
-  PartWalk walk;
-  std::pmr::memory_resource* memory;
+  const SceneState& scene;
+  PartTraversal parts;
   /// What partitions find; bodies that they show are looked at at once, by their predicates.
   HitBuffer boxes;
   OverlapBuffer objects;
@@ -35,9 +33,9 @@ struct SceneQueries::State {
     return {scene.shape[body], scene.pose[body]};
   }
   /// What every question begins with.
-  [[nodiscard]] static Status may_ask(const State* state) noexcept {
+  [[nodiscard]] static Status may_ask(const QueryState* state) noexcept {
     if (state == nullptr) return Status::out_of_memory;
-    const Scene::State& scene = state->scene;
+    const SceneState& scene = state->scene;
     const MidPhase* const composites = scene.options.composites;
     const bool has_changed =
         composites != nullptr && composites->revision() != scene.composites_seen;
@@ -60,7 +58,7 @@ struct SceneQueries::State {
 template <typename Look>
 class LookingFilter {
  public:
-  LookingFilter(const Scene::State& scene, const Filter& filter, Look& look) noexcept
+  LookingFilter(const SceneState& scene, const Filter& filter, Look& look) noexcept
       : scene_(scene), filter_(filter), look_(look) {}
   LookingFilter(const LookingFilter&) = delete;
   LookingFilter& operator=(const LookingFilter&) = delete;
@@ -85,7 +83,7 @@ class LookingFilter {
     return look_(body);
   }
 
-  const Scene::State& scene_;
+  const SceneState& scene_;
   const Filter& filter_;
   Look& look_;
 };

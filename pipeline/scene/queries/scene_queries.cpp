@@ -1,33 +1,260 @@
-#include <winnow/pipeline/scene_queries.h>
-#include "pipeline/scene/queries/queries.h"
+// SceneQueries: what a shape overlaps, how far two bodies are apart, what is nearest to a point.
 
-#include <new>
+#include <winnow/core/rounding.h>
+#include "core/memory/new_in.h"
+#include "pipeline/scene/queries/queries.h"
+#include "pipeline/shapes/frame.h"
+#include "pipeline/solver/solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 namespace winnow {
+namespace {
 
-SceneQueries::SceneQueries(const Scene& scene, std::pmr::memory_resource* memory)
-    : state_(nullptr) {
-  void* place = nullptr;
-  try {
-    place = memory->allocate(sizeof(State), alignof(State));
-  } catch (...) {
-    // Every question will say so.
-    return;
+using Eigen::Vector3d;
+
+using mid::kInfinity;
+
+PairAnswer solve(const PartTraversal& parts, const ConvexPart& a, const ConvexPart& b,
+                 NarrowLevel level) noexcept {
+  PartTables tables(parts.shapes());
+  const ShapeId first = tables.put(0, a);
+  const ShapeId second = tables.put(1, b);
+  SolverCounts counts;
+  return solve_pair(tables.tables(), first, a.pose, second, b.pose, level, 0.0, counts);
+}
+
+/// Both about the position of the first where that helps: parts of composite shapes lose nothing
+/// then where the scene is far from the origin. Convex pairs are solved as they stand.
+struct Pairing {
+  PlacedShape a;
+  PlacedShape b;
+  double base[3] = {0.0, 0.0, 0.0};
+
+  Pairing(const PlacedShape& first, const PlacedShape& second) noexcept : a(first), b(second) {
+    if (!a.shape.is_composite() && !b.shape.is_composite()) return;
+    std::copy_n(a.pose.position, 3, base);
+    b.pose = relative(b.pose, base);
+    a.pose = relative(a.pose, base);
   }
-  state_ = new (place) State(scene, memory);
+};
+
+/// True if they share a point; `part` is then one of b that does.
+bool do_overlap(const PartTraversal& parts, const PlacedShape& first, const PlacedShape& second,
+                std::uint32_t& part) noexcept {
+  const Pairing pair(first, second);
+  bool found = false;
+  parts.met(pair.a, parts.box(pair.b).standing(), [&](const ConvexPart& a, double) {
+    parts.met(pair.b, parts.box(a).standing(), [&](const ConvexPart& b, double) {
+      found = solve(parts, a, b, NarrowLevel::boolean).overlap;
+      if (found) part = b.part;
+      return found ? -1.0 : 0.0;
+    });
+    return found ? -1.0 : 0.0;
+  });
+  return found;
+}
+
+/// The closest parts of two shapes, no farther apart than a limit.
+class ClosestParts {
+ public:
+  explicit ClosestParts(const PartTraversal& parts) noexcept : parts_(parts) {}
+
+  /// False if they are farther apart.
+  bool find(const PlacedShape& first, const PlacedShape& second, double limit,
+            SceneDistance& answer) noexcept {
+    const Pairing pair(first, second);
+    begin(pair.base, limit, answer);
+    parts_.near(pair.a, parts_.box(pair.b), limit,
+                [&](const ConvexPart& a, double) { return look_about(a, pair.b); });
+    return found_;
+  }
+  /// The same for a part of nothing, such as a point.
+  bool find(ConvexPart first, PlacedShape second, double limit, SceneDistance& answer) noexcept {
+    double base[3] = {0.0, 0.0, 0.0};
+    if (second.shape.is_composite()) {
+      std::copy_n(first.pose.position, 3, base);
+      second.pose = relative(second.pose, base);
+      first.pose = relative(first.pose, base);
+    }
+    begin(base, limit, answer);
+    look_about(first, second);
+    return found_;
+  }
+
+ private:
+  void begin(const double* base, double limit, SceneDistance& answer) noexcept {
+    found_ = false;
+    limit_ = limit;
+    answer_ = &answer;
+    base_ = base;
+  }
+  /// What no box can be nearer than; overlapping parts may be deeper than others.
+  [[nodiscard]] double reach() const noexcept { return std::max(limit_, 0.0); }
+  double look_about(const ConvexPart& a, const PlacedShape& second) noexcept {
+    parts_.near(second, parts_.box(a), reach(), [&](const ConvexPart& b, double) {
+      look(a, b);
+      return reach();
+    });
+    return reach();
+  }
+  void look(const ConvexPart& a, const ConvexPart& b) noexcept {
+    const PairAnswer pair = solve(parts_, a, b, NarrowLevel::distance);
+    if (!(pair.distance <= limit_)) return;
+    SceneDistance& answer = *answer_;
+    if (found_ && pair.distance == limit_ &&
+        std::pair(answer.part, answer.part_a) <= std::pair(b.part, a.part)) {
+      return;
+    }
+    found_ = true;
+    limit_ = pair.distance;
+    answer.distance = pair.distance;
+    answer.error_bound = pair.error_bound;
+    answer.part_a = a.part;
+    answer.part = b.part;
+    for (int i = 0; i < 3; ++i) {
+      answer.normal[i] = pair.normal[i];
+      const double on_a = a.pose.position[i] + pair.point[i];
+      answer.point_a[i] = base_[i] + on_a;
+      answer.point_b[i] = base_[i] + (on_a + pair.distance * pair.normal[i]);
+    }
+  }
+
+  const PartTraversal& parts_;
+  double limit_ = 0.0;
+  bool found_ = false;
+  SceneDistance* answer_ = nullptr;
+  const double* base_ = nullptr;
+};
+
+bool is_nearer(const SceneDistance& a, const SceneDistance& b) noexcept {
+  return a.distance != b.distance ? a.distance < b.distance : a.key.id < b.key.id;
+}
+bool has_lesser_id(const SceneDistance& a, const SceneDistance& b) noexcept {
+  return a.key.id < b.key.id;
+}
+
+/// The bodies nearest to a point. First those are looked at whose boxes are nearest; the last of
+/// the nearest of these bodies is as far as any that is wanted can be, and every other body whose
+/// box is no farther is looked at.
+class NearestQuestion {
+ public:
+  NearestQuestion(QueryState& state, const double* point, const Filter& filter) noexcept
+      : state_(state), filter_(filter) {
+    std::copy_n(point, 3, from_.pose.position);
+    // To the nearest place in the range of float, which brings no box farther away.
+    constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
+    const Vector3d place = Vector3d::Map(point).cwiseMin(kMost).cwiseMax(-kMost);
+    box_ = Aabb::outward(place, place);
+  }
+
+  Status ask(std::size_t count, double radius);
+
+ private:
+  void look(std::uint32_t body);
+  /// Looks at bodies whose boxes are nearest and within the radius, which shrinks to what is still
+  /// of interest.
+  [[nodiscard]] Status look_at_nearest(const Partition& partition);
+  /// Looks at all others within the radius, given how many bodies were found before, sorted by id.
+  [[nodiscard]] Status look_within(const Partition& partition, std::size_t known);
+  [[nodiscard]] float reach() const noexcept;
+
+  QueryState& state_;
+  const Filter& filter_;
+  const SphereShape point_;
+  ConvexPart from_{ShapeId::of(ShapeKind::sphere, 0), {}, kWholeShape, nullptr, &point_};
+  Aabb box_;
+  std::size_t count_ = 0;
+  double radius_ = 0.0;
+  bool has_room_ = true;
+  /// Some partition had more boxes than were asked for.
+  bool is_cut_ = false;
+};
+
+void NearestQuestion::look(std::uint32_t body) {
+  SceneDistance answer;
+  if (!ClosestParts(state_.parts).find(from_, state_.placed(body), radius_, answer)) return;
+  answer.key = state_.scene.keys.key_of(body);
+  answer.data = state_.scene.keys.client_data(body);
+  has_room_ = state_.distances.push_back(answer) && has_room_;
+}
+
+/// What the solver's distance to what lies on the border of a box may be too short by is added.
+float NearestQuestion::reach() const noexcept {
+  return round_up(std::max(radius_, 0.0) * (1.0 + 1e-9));
+}
+
+Status NearestQuestion::look_at_nearest(const Partition& partition) {
+  auto take = [](std::uint32_t) { return true; };
+  LookingFilter taking(state_.scene, filter_, take);
+  const Status status = partition.nearest(box_, count_, reach(), state_.boxes, taking.filter());
+  if (status != Status::ok) return status;
+  for (const Hit& hit : state_.boxes) look(static_cast<std::uint32_t>(hit.data));
+  is_cut_ = is_cut_ || state_.boxes.size() >= count_;
+  Column<SceneDistance>& found = state_.distances;
+  if (found.size() >= count_) {
+    SceneDistance* const last = found.begin() + (count_ - 1);
+    std::nth_element(found.begin(), last, found.end(), is_nearer);
+    radius_ = last->distance;
+  }
+  return Status::ok;
+}
+
+Status NearestQuestion::look_within(const Partition& partition, std::size_t known) {
+  auto look_once = [&](std::uint32_t body) {
+    const SceneDistance* const first = state_.distances.begin();
+    SceneDistance same;
+    same.key.id = body;
+    if (!std::binary_search(first, first + known, same, has_lesser_id)) look(body);
+    return false;
+  };
+  LookingFilter looking(state_.scene, filter_, look_once);
+  return partition.nearest(box_, ~std::size_t{0}, reach(), state_.boxes, looking.filter());
+}
+
+Status NearestQuestion::ask(std::size_t count, double radius) {
+  Column<SceneDistance>& found = state_.distances;
+  found.clear();
+  if (count == 0) return Status::ok;
+  count_ = count;
+  radius_ = radius;
+  Status status =
+      state_.each_partition([&](const Partition& partition) { return look_at_nearest(partition); });
+  if (status == Status::ok && is_cut_) {
+    const std::size_t known = found.size();
+    std::sort(found.begin(), found.end(), has_lesser_id);
+    status = state_.each_partition(
+        [&](const Partition& partition) { return look_within(partition, known); });
+  }
+  if (!has_room_) status = Status::out_of_memory;
+  if (status != Status::ok) return status;
+  std::sort(found.begin(), found.end(), is_nearer);
+  found.set_size(std::min(found.size(), count));
+  return Status::ok;
+}
+
+bool has_lesser_overlap_id(const SceneOverlap& a, const SceneOverlap& b) noexcept {
+  return a.key.id < b.key.id;
+}
+
+}  // namespace
+
+SceneQueries::SceneQueries(const Scene& scene, std::pmr::memory_resource* memory) noexcept
+    : memory_(memory) {
+  if (scene.state_ != nullptr) state_ = new_in<QueryState>(memory, *scene.state_, memory);
 }
 
 SceneQueries::~SceneQueries() {
-  if (state_ == nullptr) return;
-  std::pmr::memory_resource* const memory = state_->memory;
-  state_->~State();
-  memory->deallocate(state_, sizeof(State), alignof(State));
+  delete_in(memory_, state_);
 }
 
 Footprint SceneQueries::footprint() const noexcept {
   Footprint sum;
   if (state_ == nullptr) return sum;
-  sum.structure = {sizeof(State), sizeof(State)};
+  sum.structure = {sizeof(QueryState), sizeof(QueryState)};
   for (const Bytes& bytes :
        {state_->boxes.footprint().total(), state_->objects.footprint().total()}) {
     sum.scratch += bytes;
@@ -37,6 +264,61 @@ Footprint SceneQueries::footprint() const noexcept {
     sum.results += bytes;
   }
   return sum;
+}
+
+Status SceneQueries::overlap(ShapeId shape, const Pose& pose, std::span<const SceneOverlap>& bodies,
+                             const Filter& filter) {
+  if (const Status status = QueryState::may_ask(state_); status != Status::ok) return status;
+  QueryState& state = *state_;
+  if (!state.parts.contains(shape)) return Status::invalid_key;
+  if (!pose.is_valid()) return Status::invalid_pose;
+  const PlacedShape asking{shape, pose};
+  Column<SceneOverlap>& found = state.overlaps;
+  found.clear();
+  bool has_room = true;
+  auto look = [&](std::uint32_t body) {
+    SceneOverlap answer;
+    if (do_overlap(state.parts, asking, state.placed(body), answer.part)) {
+      answer.key = state.scene.keys.key_of(body);
+      answer.data = state.scene.keys.client_data(body);
+      has_room = found.push_back(answer) && has_room;
+    }
+    return false;
+  };
+  LookingFilter looking(state.scene, filter, look);
+  const Aabb box = shape.is_composite() ? state.scene.options.composites->bounds(shape, pose)
+                                        : state.scene.shapes.bounds(shape, pose);
+  Status status = state.each_partition([&](const Partition& partition) {
+    return partition.overlap(box, state.objects, looking.filter());
+  });
+  if (!has_room) status = Status::out_of_memory;
+  if (status != Status::ok) return status;
+  std::sort(found.begin(), found.end(), has_lesser_overlap_id);
+  bodies = {found.data(), found.size()};
+  return Status::ok;
+}
+
+Status SceneQueries::distance(Key a, Key b, SceneDistance& answer) {
+  if (const Status status = QueryState::may_ask(state_); status != Status::ok) return status;
+  const KeyTable& keys = state_->scene.keys;
+  if (!keys.is_valid(a) || !keys.is_valid(b)) return Status::invalid_key;
+  SceneDistance found;
+  ClosestParts parts(state_->parts);
+  if (parts.find(state_->placed(a.id), state_->placed(b.id), kInfinity, found)) {
+    found.key = b;
+    found.data = keys.client_data(b.id);
+  }
+  answer = found;
+  return Status::ok;
+}
+
+Status SceneQueries::nearest(const double point[3], std::size_t count, double radius,
+                             std::span<const SceneDistance>& bodies, const Filter& filter) {
+  if (const Status status = QueryState::may_ask(state_); status != Status::ok) return status;
+  if (!is_finite(point) || !(radius >= 0.0)) return Status::invalid_argument;
+  const Status status = NearestQuestion(*state_, point, filter).ask(count, radius);
+  if (status == Status::ok) bodies = {state_->distances.data(), state_->distances.size()};
+  return status;
 }
 
 }  // namespace winnow

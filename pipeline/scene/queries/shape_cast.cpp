@@ -7,7 +7,10 @@
 // little ahead, so that the last of them meets the shapes touching and closes the bracket.
 
 #include "pipeline/scene/queries/shape_cast.h"
+
 #include <winnow/core/rounding.h>
+#include "pipeline/scene/queries/parts.h"
+#include "pipeline/shapes/frame.h"
 #include "pipeline/solver/core_distance.h"
 #include "pipeline/solver/gjk.h"
 #include "pipeline/solver/problem.h"
@@ -21,6 +24,7 @@
 namespace winnow {
 namespace {
 
+using mid::kInfinity;
 using solver::CoreDistance;
 using solver::CoreKind;
 using solver::GjkResult;
@@ -28,28 +32,21 @@ using solver::kEpsilon;
 using solver::Problem;
 using solver::Vec;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Halving a bracket every other time, doubles run out of numbers first.
-constexpr std::uint32_t kMostSteps = 256;
+constexpr std::uint32_t kMostSamples = 256;
 
-/// Where the standing shape is, seen from the moving one: to the last bit, however long the way.
-class Way {
+/// Where the standing shape is, seen from the moving one: to the last bit, however long the path.
+class Path {
  public:
-  explicit Way(const CastPair& pair) noexcept {
+  explicit Path(const CastPair& pair) noexcept {
     const Vec direction = Vec::Map(pair.direction);
     std::frexp(direction.cwiseAbs().maxCoeff(), &exponent_);
     for (int i = 0; i < 3; ++i) {
       step_[i] = std::ldexp(direction[i], -exponent_);
-      const double to = pair.pose.position[i];
-      const double from = pair.from.position[i];
-      between_[i] = to - from;
-      const double back = between_[i] - to;
-      lost_[i] = (to - (between_[i] - back)) + (-from - back);
     }
-    // Positions at both ends of the range of doubles.
-    constexpr double kMost = std::numeric_limits<double>::max();
-    between_ = between_.cwiseMin(kMost).cwiseMax(-kMost);
-    if (!lost_.allFinite()) lost_.setZero();
+    const Difference apart = difference(pair.pose.position, pair.from.position);
+    between_ = Vec::Map(apart.difference);
+    lost_ = Vec::Map(apart.rest);
     speed_ = step_.norm();
     end_ = std::ldexp(pair.max_t, exponent_);
   }
@@ -63,16 +60,15 @@ class Way {
   [[nodiscard]] Vec offset(double t) const noexcept {
     Vec result;
     for (int i = 0; i < 3; ++i) {
-      const double way = t * step_[i];
-      const double way_error = std::fma(t, step_[i], -way);
-      const double sum = between_[i] - way;
+      const double path = t * step_[i];
+      const double path_error = std::fma(t, step_[i], -path);
+      const double sum = between_[i] - path;
       const double back = sum - between_[i];
-      const double sum_error = (between_[i] - (sum - back)) + (-way - back);
-      const double errors = sum_error + (lost_[i] - way_error);
+      const double sum_error = (between_[i] - (sum - back)) + (-path - back);
+      const double errors = sum_error + (lost_[i] - path_error);
       result[i] = std::isfinite(errors) ? sum + errors : sum;
     }
-    constexpr double kMost = std::numeric_limits<double>::max();
-    return result.cwiseMin(kMost).cwiseMax(-kMost);
+    return mid::finite(result);
   }
 
   [[nodiscard]] double steps(double shown) const noexcept { return std::ldexp(shown, exponent_); }
@@ -92,7 +88,7 @@ class Way {
 };
 
 /// The pair at one t.
-struct Sample {
+struct PartedAt {
   /// Surely apart by `gap` > 0 along `normal`, which points from the moving to the standing shape.
   bool parted = false;
   double gap = 0.0;
@@ -106,15 +102,15 @@ class Advancement {
   Advancement(const ShapeTables& tables, const CastPair& pair, double tolerance) noexcept
       : tables_(tables),
         pair_(pair),
-        way_(pair),
-        tolerance_(tolerance / way_.speed()),
-        swapped_(pair.moving.kind() > pair.standing.kind()) {}
+        path_(pair),
+        tolerance_(tolerance / path_.speed()),
+        mirrored_(pair.moving.kind() > pair.standing.kind()) {}
 
   bool run(CastTouch& touch) noexcept {
     const bool hit = search();
     touch.steps = steps_;
     if (!hit) return false;
-    touch.t = std::min(way_.shown(free_until_), pair_.max_t);
+    touch.t = std::min(path_.shown(free_until_), pair_.max_t);
     Vec::Map(touch.normal) = -normal_;
     touch.overlaps_at_start = overlap_at_start_;
     return true;
@@ -126,17 +122,17 @@ class Advancement {
   [[nodiscard]] bool search() noexcept;
   [[nodiscard]] bool touches_at_start() noexcept;
   [[nodiscard]] double next(std::uint32_t step) const noexcept;
-  [[nodiscard]] Sample sample(double t) noexcept;
-  void face(const Vec& axis, Sample& sample) const noexcept;
-  [[nodiscard]] double surely_apart(const Problem& problem, Sample& sample) noexcept;
+  [[nodiscard]] PartedAt sample(double t) noexcept;
+  void face(const Vec& axis, PartedAt& sample) const noexcept;
+  [[nodiscard]] double surely_apart(const Problem& problem, PartedAt& sample) noexcept;
   void prepare_at(double t, Problem& problem) const noexcept;
 
   const ShapeTables& tables_;
   const CastPair& pair_;
-  const Way way_;
+  const Path path_;
   const double tolerance_;
   /// The solver takes the lesser kind first.
-  const bool swapped_;
+  const bool mirrored_;
   SolverCounts counts_;
   std::uint32_t steps_ = 0;
 
@@ -158,8 +154,8 @@ void Advancement::prepare_at(double t, Problem& problem) const noexcept {
   Pose standing;
   std::copy_n(pair_.from.orientation, 4, moving.orientation);
   std::copy_n(pair_.pose.orientation, 4, standing.orientation);
-  Vec::Map(standing.position) = way_.offset(t);
-  if (swapped_) {
+  Vec::Map(standing.position) = path_.offset(t);
+  if (mirrored_) {
     prepare(tables_, pair_.standing, standing, pair_.moving, moving, true, problem);
   } else {
     prepare(tables_, pair_.moving, moving, pair_.standing, standing, false, problem);
@@ -169,13 +165,13 @@ void Advancement::prepare_at(double t, Problem& problem) const noexcept {
 /// The gap along a plane that parts the pair, less all rounding; none of shapes that touch as far
 /// as double can tell. What counts is what the plane itself parts, not what a solver says about
 /// distances.
-Sample Advancement::sample(double t) noexcept {
+PartedAt Advancement::sample(double t) noexcept {
   ++steps_;
   Problem problem;
   prepare_at(t, problem);
   const double roundings = problem.a.rounding + problem.b.rounding;
   const double noise = problem.noise();
-  Sample result;
+  PartedAt result;
   double gap = 0.0;
   if (problem.b.kind == CoreKind::half_space) {
     const CoreDistance found = core_distance(problem, NarrowLevel::boolean, kInfinity, counts_);
@@ -183,7 +179,7 @@ Sample Advancement::sample(double t) noexcept {
     face(found.axis, result);
   } else {
     const bool is_known = !normal_.isZero(0.0);
-    const Vec start = is_known ? Vec(swapped_ ? -normal_ : normal_) : problem.b.center;
+    const Vec start = is_known ? Vec(mirrored_ ? -normal_ : normal_) : problem.b.center;
     const GjkResult found = gjk(problem.a, problem.b, start, 0.125 * noise, kInfinity);
     if (found.contact || found.upper + noise <= roundings) return result;
     gap = found.lower - roundings - noise;
@@ -197,21 +193,21 @@ Sample Advancement::sample(double t) noexcept {
   return result;
 }
 
-void Advancement::face(const Vec& axis, Sample& sample) const noexcept {
-  sample.normal = swapped_ ? Vec(-axis) : axis;
-  sample.closing = sample.normal.dot(way_.step()) + 4.0 * kEpsilon * way_.speed();
+void Advancement::face(const Vec& axis, PartedAt& sample) const noexcept {
+  sample.normal = mirrored_ ? Vec(-axis) : axis;
+  sample.closing = sample.normal.dot(path_.step()) + 4.0 * kEpsilon * path_.speed();
 }
 
 /// For cores whose closest points iteration does not find. Without a good plane they close at full
 /// speed.
-double Advancement::surely_apart(const Problem& problem, Sample& sample) noexcept {
+double Advancement::surely_apart(const Problem& problem, PartedAt& sample) noexcept {
   const CoreDistance found = core_distance(problem, NarrowLevel::boolean, kInfinity, counts_);
   if (found.overlaps) return 0.0;
   face(found.axis, sample);
   const double roundings = problem.a.rounding + problem.b.rounding;
   const double cores = separation(problem.a, problem.b, found.axis) - problem.noise();
   if (cores > roundings) return cores;
-  sample.closing = way_.speed();
+  sample.closing = path_.speed();
   return found.distance - found.doubt;
 }
 
@@ -224,7 +220,7 @@ bool Advancement::touches_at_start() noexcept {
   overlap_at_start_ = solve(NarrowLevel::boolean).overlap;
   if (overlap_at_start_) return true;
   const PairAnswer apart = solve(NarrowLevel::distance);
-  return Vec::Map(apart.normal).dot(way_.step()) > 4.0 * kEpsilon * way_.speed();
+  return Vec::Map(apart.normal).dot(path_.step()) > 4.0 * kEpsilon * path_.speed();
 }
 
 /// Where to look next. A little beyond what is known to be free; twice as far as Newton's method
@@ -237,22 +233,22 @@ double Advancement::next(std::uint32_t step) const noexcept {
   if (last < kInfinity && (step % 2 == 0 || t >= last)) {
     t = free_until_ + 0.5 * (last - free_until_);
   }
-  return std::min(std::max(t, std::nextafter(free_until_, kInfinity)), way_.end());
+  return std::min(std::max(t, std::nextafter(free_until_, kInfinity)), path_.end());
 }
 
 bool Advancement::search() noexcept {
   double t = 0.0;
-  for (std::uint32_t step = 0; step < kMostSteps; ++step) {
-    const Sample found = sample(t);
+  for (std::uint32_t step = 0; step < kMostSamples; ++step) {
+    const PartedAt found = sample(t);
     if (!found.parted) {
       if (t == 0.0) return touches_at_start();
       touching_ = std::min(touching_, t);
-    } else if (found.closing <= 8.0 * kEpsilon * way_.speed()) {
-      // Nor do they meet later: before, the gap would be lost in the rounding of the way.
+    } else if (found.closing <= 8.0 * kEpsilon * path_.speed()) {
+      // Nor do they meet later: before, the gap would be lost in the rounding of the path.
       const double leaving = std::max(-found.closing, 0.0);
       free_from_ = std::min(free_from_, add_up(t, -found.gap / leaving));
     } else {
-      if (t >= way_.end()) return false;
+      if (t >= path_.end()) return false;
       const double free = add_down(t, found.gap / found.closing * (1.0 - 4.0 * kEpsilon));
       if (!std::isfinite(free)) return false;
       advance_before_ = advance_;
@@ -260,7 +256,7 @@ bool Advancement::search() noexcept {
       free_until_ = std::max(free_until_, free);
       normal_ = found.normal;
     }
-    if (free_until_ > way_.end() || free_until_ >= free_from_) return false;
+    if (free_until_ > path_.end() || free_until_ >= free_from_) return false;
     if (touching_ - free_until_ <= tolerance_) return true;
     const double before = t;
     t = next(step);
@@ -272,16 +268,16 @@ bool Advancement::search() noexcept {
 
 void Advancement::describe(CastTouch& touch) noexcept {
   Problem problem;
-  prepare_at(way_.steps(touch.t), problem);
+  prepare_at(path_.steps(touch.t), problem);
   const CoreDistance found = core_distance(problem, NarrowLevel::distance, kInfinity, counts_);
   const double apart = found.distance - problem.a.rounding - problem.b.rounding;
   const Vec on_a = found.on_a + found.axis * problem.a.rounding;
-  const Vec point = swapped_ ? on_a : Vec(on_a + found.axis * apart - problem.b.center);
+  const Vec point = mirrored_ ? on_a : Vec(on_a + found.axis * apart - problem.b.center);
   for (int i = 0; i < 3; ++i) touch.point[i] = unscaled(problem, point[i]);
-  const Vec normal = swapped_ ? found.axis : Vec(-found.axis);
+  const Vec normal = mirrored_ ? found.axis : Vec(-found.axis);
   // Of shapes that all but touch, another axis may seem as good.
   const bool is_known = !Vec::Map(touch.normal).isZero(0.0);
-  if (!touch.overlaps_at_start && normal.dot(way_.step()) >= 0.0 && is_known) return;
+  if (!touch.overlaps_at_start && normal.dot(path_.step()) >= 0.0 && is_known) return;
   Vec::Map(touch.normal) = normal;
 }
 

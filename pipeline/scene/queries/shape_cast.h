@@ -37,8 +37,8 @@ struct CastTouch {
 /// Where the moving shape first touches the standing one; false if it does not. Conservative
 /// advancement (Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996) on
 /// separating planes: see shape_cast.cpp. t is never later than the true time of impact, and
-/// earlier by at most `tolerance`, a length along the way, or by what rounding makes of it: about
-/// 1e-14 of the shapes' sizes over the sine of the angle at which they meet, and 1e-15 of the way.
+/// earlier by at most `tolerance`, a length along the path, or by what rounding makes of it: about
+/// 1e-14 of the shapes' sizes over the sine of the angle at which they meet, and 1e-15 of the path.
 /// Shapes that pass each other by less than rounding touch. t = 0 for shapes that touch at the
 /// start, with the normal along which they are parted the soonest. Shapes and poses are valid, the
 /// moving shape is no half-space.

@@ -1,27 +1,27 @@
 #pragma once
 
 #include <winnow/pipeline/scene_queries.h>
-#include "pipeline/scene/queries/queries_parts.h"
+#include "pipeline/scene/queries/parts.h"
 #include "pipeline/scene/queries/shape_cast.h"
 
 namespace winnow {
 
 /// Where something that moves first meets a convex part: about the part's origin of coordinates,
 /// in the axes of the world.
-struct MoverMeeting {
+struct SweepMeeting {
   double t = 0.0;
-  /// Of shapes: before `Mover::describe` not the last word.
+  /// Of shapes: that of a parting plane until `SweptShape::describe` gives the surface's.
   double normal[3] = {0.0, 0.0, 0.0};
   double point[3] = {0.0, 0.0, 0.0};
   bool overlaps_at_start = false;
 };
 
-/// A ray or a convex shape that moves.
-class Mover {
+/// A ray or a convex shape that moves along a line without turning.
+class SweptShape {
  public:
-  Mover(const Mover&) = delete;
-  Mover& operator=(const Mover&) = delete;
-  virtual ~Mover() = default;
+  SweptShape(const SweptShape&) = delete;
+  SweptShape& operator=(const SweptShape&) = delete;
+  virtual ~SweptShape() = default;
 
   /// Where it starts, and a box of it about there.
   [[nodiscard]] const double* start() const noexcept { return start_; }
@@ -31,14 +31,15 @@ class Mover {
 
   /// True if it meets the part by t = limit, starting at `from`.
   [[nodiscard]] virtual bool meets(const double from[3], const ConvexPart& part, double limit,
-                                   MoverMeeting& meeting) const noexcept = 0;
-  /// Completes a meeting: dearer than to find when it is.
+                                   SweepMeeting& meeting) const noexcept = 0;
+  /// Fills in normal and point of a meeting, which costs more than finding its time: done once, for
+  /// the meeting that is shown.
   virtual void describe(const double from[3], const ConvexPart& part,
-                        MoverMeeting& meeting) const noexcept = 0;
+                        SweepMeeting& meeting) const noexcept = 0;
 
  protected:
-  Mover(const PreciseBox& extent, const double* start, const double* direction,
-        double max_t) noexcept
+  SweptShape(const PreciseBox& extent, const double* start, const double* direction,
+             double max_t) noexcept
       : extent_(extent), start_(start), direction_(direction), max_t_(max_t) {}
 
  private:
@@ -49,30 +50,30 @@ class Mover {
 };
 
 /// The ray must outlive it.
-class RayMover final : public Mover {
+class RaySweep final : public SweptShape {
  public:
-  RayMover(const ShapePool& shapes, const ShapeRay& ray) noexcept;
+  RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           MoverMeeting& meeting) const noexcept override;
+                           SweepMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
-                MoverMeeting& meeting) const noexcept override;
+                SweepMeeting& meeting) const noexcept override;
 
  private:
   [[nodiscard]] bool enters(const ShapeRay& ray, const ConvexPart& part,
-                            MoverMeeting& meeting) const noexcept;
+                            SweepMeeting& meeting) const noexcept;
 
   const ShapePool& shapes_;
   const ShapeRay& ray_;
 };
 
 /// The cast must outlive it.
-class ShapeMover final : public Mover {
+class ShapeSweep final : public SweptShape {
  public:
-  ShapeMover(const PartWalk& walk, const ShapeCast& cast, double tolerance) noexcept;
+  ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           MoverMeeting& meeting) const noexcept override;
+                           SweepMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
-                MoverMeeting& meeting) const noexcept override;
+                SweepMeeting& meeting) const noexcept override;
 
  private:
   [[nodiscard]] CastPair pair(PartTables& tables, const double from[3],
@@ -84,25 +85,25 @@ class ShapeMover final : public Mover {
 };
 
 /// A meeting with a body, and all that it takes to describe it.
-class Encounter {
+class BodyMeeting {
  public:
-  /// Looks for the mover's first meeting with the body by t = limit, of equal ones that with the
-  /// least part; with `any`, for whichever is found first. False if there is none.
-  [[nodiscard]] bool find(const PartWalk& walk, const Mover& mover, const PlacedShape& body,
-                          double limit, bool any) noexcept;
+  /// Looks for the swept shape's first meeting with the body by t = limit, of equal ones that with
+  /// the least part; with `any`, for whichever is found first. False if there is none.
+  [[nodiscard]] bool find(const PartTraversal& parts, const SweptShape& swept,
+                          const PlacedShape& body, double limit, bool any) noexcept;
 
   [[nodiscard]] double t() const noexcept { return meeting_.t; }
   [[nodiscard]] std::uint32_t part() const noexcept { return part_.part; }
   /// All but the body's key and data.
-  [[nodiscard]] SceneHit hit(const Mover& mover) const noexcept;
+  [[nodiscard]] SceneHit hit(const SweptShape& swept) const noexcept;
 
  private:
-  void take(const ConvexPart& part, const MoverMeeting& meeting) noexcept;
+  void take(const ConvexPart& part, const SweepMeeting& meeting) noexcept;
 
-  MoverMeeting meeting_;
+  SweepMeeting meeting_;
   ConvexPart part_;
   TriangleShape triangle_;
-  /// Where the mover starts, and the world's origin lies, as the part has it.
+  /// Where the sweep starts, and the world's origin lies, in the part's coordinates.
   double from_[3] = {0.0, 0.0, 0.0};
   double base_[3] = {0.0, 0.0, 0.0};
 };

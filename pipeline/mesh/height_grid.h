@@ -1,9 +1,13 @@
 #pragma once
 
+#include "pipeline/mesh/mesh_view.h"
+
 #include <cstddef>
 #include <cstdint>
 
 namespace winnow {
+
+class HeightField;
 
 /// Squares along a side of a tile of level 0, and tiles along a side of one of a higher level.
 inline constexpr std::uint32_t kTileSquares = 16;
@@ -66,5 +70,21 @@ struct HeightGrid {
 /// Finds the heights of the tiles over a range of squares anew, on all levels. Tiles without
 /// triangles get +inf and -inf. `low` and `high` are those of the grid.
 void fit_tiles(const HeightGrid& grid, const TileRange& squares, float* low, float* high) noexcept;
+
+/// Without columns if nothing is built.
+[[nodiscard]] HeightGrid grid_of(const HeightField& field) noexcept;
+
+// Traversals, in the field's own frame. A slot is the number of a triangle.
+
+/// The numbers of all triangles whose boxes meet [min, max], ascending; counts on where there is no
+/// room.
+void height_overlap(const HeightGrid& grid, const double min[3], const double max[3],
+                    SlotSink& out) noexcept;
+/// As mesh_sweep.
+void height_sweep(const HeightGrid& grid, const double min[3], const double max[3],
+                  const double direction[3], double limit, const SlotVisitor& visitor) noexcept;
+/// As mesh_near.
+void height_near(const HeightGrid& grid, const double min[3], const double max[3], double limit,
+                 const SlotVisitor& visitor) noexcept;
 
 }  // namespace winnow

@@ -5,8 +5,8 @@
 #include <winnow/pipeline/shape_pool.h>
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace winnow {
 
@@ -56,10 +56,10 @@ class PartTables {
   SphereShape balls_[2];
 };
 
-/// Walks over the parts of shapes, be they composite or their own only part.
-class PartWalk {
+/// Traverses the parts of shapes, be they composite or their own only part.
+class PartTraversal {
  public:
-  PartWalk(const ShapePool& shapes, const MidPhase* composites) noexcept
+  PartTraversal(const ShapePool& shapes, const MidPhase* composites) noexcept
       : shapes_(shapes), composites_(composites) {}
 
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
@@ -72,12 +72,12 @@ class PartWalk {
   /// back the limit of t to go on with, below zero to end.
   template <typename Visit>
   void met(const PlacedShape& placed, const BoxSweep& sweep, Visit&& visit) const {
-    walk(placed, sweep, sweep.max_t, false, visitor(visit));
+    traverse(placed, sweep, sweep.max_t, false, visitor(visit));
   }
   /// The same for every part that may be within `limit` of a box.
   template <typename Visit>
   void near(const PlacedShape& placed, const PreciseBox& from, double limit, Visit&& visit) const {
-    walk(placed, from.standing(), limit, true, visitor(visit));
+    traverse(placed, from.standing(), limit, true, visitor(visit));
   }
 
  private:
@@ -92,12 +92,16 @@ class PartWalk {
             },
             &visit};
   }
-  void walk(const PlacedShape& placed, BoxSweep sweep, double limit, bool near,
-            PartVisitor visitor) const;
+  void traverse(const PlacedShape& placed, BoxSweep sweep, double limit, bool near,
+                PartVisitor visitor) const;
 
   const ShapePool& shapes_;
   const MidPhase* composites_;
 };
+
+[[nodiscard]] inline bool is_finite(const double point[3]) noexcept {
+  return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
+}
 
 /// to - from, rounded, and what was lost: to - from = difference + rest, unless that overflows.
 struct Difference {

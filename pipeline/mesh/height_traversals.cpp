@@ -1,4 +1,6 @@
-#include "pipeline/mesh/height_walks.h"
+#include "pipeline/mesh/box_measures.h"
+#include "pipeline/mesh/height_grid.h"
+#include "pipeline/shapes/frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +9,8 @@
 namespace winnow {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// More than the relative error of the few operations that make a measure.
-constexpr double kMeasureError = 0x1p-48;
-
-struct Box {
+using mid::kInfinity;
+struct GridBox {
   double low[3];
   double high[3];
 };
@@ -56,40 +55,22 @@ struct SquareHeights {
   }
 };
 
-void put(SlotSink& out, std::uint32_t number) {
-  if (out.size < out.capacity) out.slot[out.size] = number;
-  ++out.size;
-}
-
 /// The box of squares [column, last_column) x [row, last_row), without heights.
-Box floor_box(const HeightGrid& grid, std::uint32_t column, std::uint32_t row,
-              std::uint32_t last_column, std::uint32_t last_row) {
+GridBox floor_box(const HeightGrid& grid, std::uint32_t column, std::uint32_t row,
+                  std::uint32_t last_column, std::uint32_t last_row) {
   return {{column * grid.spacing[0], row * grid.spacing[1], 0.0},
           {last_column * grid.spacing[0], last_row * grid.spacing[1], 0.0}};
 }
 
 /// When a moving box first meets one; infinite where it does not up to the limit.
-struct Sweep {
+struct GridSweep {
   const double* min;
   const double* max;
   const double* direction;
   double limit;
 
-  [[nodiscard]] double measure(const Box& box) const {
-    double entry = 0.0;
-    double exit = limit;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double near = box.low[axis] - max[axis];
-      const double far = box.high[axis] - min[axis];
-      const double d = direction[axis];
-      if (d == 0.0) {
-        if (near > 0.0 || far < 0.0) return kInfinity;
-        continue;
-      }
-      entry = std::max(entry, std::min(near / d, far / d) * (1.0 - kMeasureError));
-      exit = std::min(exit, std::max(near / d, far / d) * (1.0 + kMeasureError));
-    }
-    return entry <= exit ? entry : kInfinity;
+  [[nodiscard]] double measure(const GridBox& box) const {
+    return meeting_time(min, max, direction, limit, box.low, box.high);
   }
   [[nodiscard]] bool within(double measure) const {
     return measure <= limit && measure < kInfinity;
@@ -97,27 +78,23 @@ struct Sweep {
 };
 
 /// The distance from a box that stands.
-struct Near {
+struct GridNear {
   const double* min;
   const double* max;
   double limit;
 
-  [[nodiscard]] double measure(const Box& box) const {
-    double gap[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      gap[axis] = std::max({0.0, min[axis] - box.high[axis], box.low[axis] - max[axis]});
-    }
-    return std::hypot(gap[0], gap[1], gap[2]) * (1.0 - kMeasureError);
+  [[nodiscard]] double measure(const GridBox& box) const {
+    return box_gap(min, max, box.low, box.high);
   }
   [[nodiscard]] bool within(double measure) const { return measure <= limit; }
 };
 
-struct Found {
+struct FoundTriangle {
   double measure;
   std::uint32_t number;
 };
 
-struct Waiting {
+struct WaitingTile {
   double measure;
   std::uint32_t column;
   std::uint32_t row;
@@ -126,15 +103,15 @@ struct Waiting {
 
 /// Depth first, the nearest tile first.
 template <typename Measure>
-class OrderedWalk {
+class OrderedTraversal {
  public:
-  OrderedWalk(const HeightGrid& grid, const Measure& measure, const SlotVisitor& visitor)
+  OrderedTraversal(const HeightGrid& grid, const Measure& measure, const SlotVisitor& visitor)
       : grid_(grid), measure_(measure), visitor_(visitor) {}
 
   void run() {
     wait(grid_.pyramid->levels - 1, 0, 0);
     while (size_ != 0 && measure_.limit >= 0.0) {
-      const Waiting next = waiting_[--size_];
+      const WaitingTile next = waiting_[--size_];
       if (!measure_.within(next.measure)) continue;
       if (next.level == 0) {
         open_squares(next);
@@ -153,7 +130,7 @@ class OrderedWalk {
       const std::uint64_t last = (std::uint64_t{tile} + 1) * HeightPyramid::span(level);
       return static_cast<std::uint32_t>(std::min<std::uint64_t>(squares, last));
     };
-    Box box =
+    GridBox box =
         floor_box(grid_, column * HeightPyramid::span(level), row * HeightPyramid::span(level),
                   end(column, grid_.square_columns()), end(row, grid_.square_rows()));
     box.low[2] = static_cast<double>(grid_.low[at]);
@@ -162,7 +139,7 @@ class OrderedWalk {
     if (measure_.within(measure)) waiting_[size_++] = {measure, column, row, level};
   }
 
-  void open_tiles(const Waiting& tile) {
+  void open_tiles(const WaitingTile& tile) {
     const HeightPyramid::Level& below = grid_.pyramid->level[tile.level - 1];
     const std::uint32_t before = size_;
     const std::uint32_t last_row = std::min(below.rows, (tile.row + 1) * kTileTiles);
@@ -172,13 +149,13 @@ class OrderedWalk {
         wait(tile.level - 1, column, row);
       }
     }
-    std::sort(waiting_ + before, waiting_ + size_, [](const Waiting& a, const Waiting& b) {
+    std::sort(waiting_ + before, waiting_ + size_, [](const WaitingTile& a, const WaitingTile& b) {
       if (a.measure != b.measure) return a.measure > b.measure;
       return a.row != b.row ? a.row > b.row : a.column > b.column;
     });
   }
 
-  void open_squares(const Waiting& tile) {
+  void open_squares(const WaitingTile& tile) {
     found_ = 0;
     const std::uint32_t columns = grid_.square_columns();
     const std::uint32_t last_row = std::min(grid_.square_rows(), (tile.row + 1) * kTileSquares);
@@ -186,7 +163,7 @@ class OrderedWalk {
     const std::uint32_t last_column = std::min(columns, first_column + kTileSquares);
     const std::size_t at = std::size_t{tile.row} * grid_.pyramid->level[0].columns + tile.column;
     for (std::uint32_t row = tile.row * kTileSquares; row < last_row; ++row) {
-      Box strip = floor_box(grid_, first_column, row, last_column, row + 1);
+      GridBox strip = floor_box(grid_, first_column, row, last_column, row + 1);
       strip.low[2] = static_cast<double>(grid_.low[at]);
       strip.high[2] = static_cast<double>(grid_.high[at]);
       if (!measure_.within(measure_.measure(strip))) continue;
@@ -200,7 +177,7 @@ class OrderedWalk {
   void find(std::uint32_t column, std::uint32_t row) {
     SquareHeights heights;
     if (!heights.read(grid_, column, row)) return;
-    Box box = floor_box(grid_, column, row, column + 1, row + 1);
+    GridBox box = floor_box(grid_, column, row, column + 1, row + 1);
     for (std::uint32_t k = 0; k < 2; ++k) {
       box.low[2] = static_cast<double>(heights.low[k]);
       box.high[2] = static_cast<double>(heights.high[k]);
@@ -212,7 +189,7 @@ class OrderedWalk {
 
   /// In order, sixteen at a time, as long as they are within the limit.
   void show() {
-    std::sort(hits_, hits_ + found_, [](const Found& a, const Found& b) {
+    std::sort(hits_, hits_ + found_, [](const FoundTriangle& a, const FoundTriangle& b) {
       return a.measure != b.measure ? a.measure < b.measure : a.number < b.number;
     });
     std::uint32_t numbers[kMeshFanout];
@@ -232,14 +209,15 @@ class OrderedWalk {
   std::uint32_t size_ = 0;
   std::uint32_t found_ = 0;
   /// Every level leaves at most 15 tiles waiting while one is opened.
-  Waiting waiting_[HeightPyramid::kMaxLevels * kTileTiles * kTileTiles];
-  Found hits_[2 * kTileSquares * kTileSquares];
+  WaitingTile waiting_[HeightPyramid::kMaxLevels * kTileTiles * kTileTiles];
+  FoundTriangle hits_[2 * kTileSquares * kTileSquares];
 };
 
 }  // namespace
 
 void height_overlap(const HeightGrid& grid, const double min[3], const double max[3],
                     SlotSink& out) noexcept {
+  if (grid.columns == 0) return;
   const SquareRange columns(min[0], max[0], grid.spacing[0], grid.square_columns());
   const SquareRange rows(min[1], max[1], grid.spacing[1], grid.square_rows());
   const auto meets = [&](float low, float high) {
@@ -259,7 +237,7 @@ void height_overlap(const HeightGrid& grid, const double min[3], const double ma
         if (!heights.read(grid, column, row)) continue;
         const std::uint32_t number = 2 * (row * grid.square_columns() + column);
         for (std::uint32_t k = 0; k < 2; ++k) {
-          if (meets(heights.low[k], heights.high[k])) put(out, number + k);
+          if (meets(heights.low[k], heights.high[k])) put_slot(out, number + k);
         }
       }
     }
@@ -268,14 +246,14 @@ void height_overlap(const HeightGrid& grid, const double min[3], const double ma
 
 void height_sweep(const HeightGrid& grid, const double min[3], const double max[3],
                   const double direction[3], double limit, const SlotVisitor& visitor) noexcept {
-  if (!(limit >= 0.0)) return;
-  OrderedWalk<Sweep>(grid, Sweep{min, max, direction, limit}, visitor).run();
+  if (grid.columns == 0 || !(limit >= 0.0)) return;
+  OrderedTraversal<GridSweep>(grid, GridSweep{min, max, direction, limit}, visitor).run();
 }
 
 void height_near(const HeightGrid& grid, const double min[3], const double max[3], double limit,
                  const SlotVisitor& visitor) noexcept {
-  if (!(limit >= 0.0)) return;
-  OrderedWalk<Near>(grid, Near{min, max, limit}, visitor).run();
+  if (grid.columns == 0 || !(limit >= 0.0)) return;
+  OrderedTraversal<GridNear>(grid, GridNear{min, max, limit}, visitor).run();
 }
 
 }  // namespace winnow

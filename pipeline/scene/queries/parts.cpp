@@ -1,9 +1,11 @@
-#include "pipeline/scene/queries/queries_parts.h"
-#include <winnow/core/rounding.h>
+#include "pipeline/scene/queries/parts.h"
 
-#include <Eigen/Geometry>
+#include <winnow/core/rounding.h>
+#include "pipeline/shapes/frame.h"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace winnow {
 namespace {
@@ -30,10 +32,7 @@ Pose turned(const Pose& pose) noexcept {
 }
 
 PreciseBox triangle_box(const TriangleShape& triangle, const Pose& pose) noexcept {
-  const Eigen::Vector4d q = Eigen::Vector4d::Map(pose.orientation);
-  const Eigen::Vector4d unit = (q / q.cwiseAbs().maxCoeff()).normalized();
-  const Eigen::Matrix3d turn =
-      Eigen::Quaterniond(unit[0], unit[1], unit[2], unit[3]).toRotationMatrix();
+  const Eigen::Matrix3d turn = mid::rotation_of(mid::tame(pose.orientation));
   PreciseBox box;
   double scale = 0.0;
   for (int k = 0; k < 3; ++k) {
@@ -87,19 +86,19 @@ ShapeId PartTables::put(std::size_t slot, const ConvexPart& part) noexcept {
   return part.shape;
 }
 
-bool PartWalk::contains(ShapeId shape) const noexcept {
+bool PartTraversal::contains(ShapeId shape) const noexcept {
   if (shape.is_composite()) return composites_ != nullptr && composites_->contains(shape);
   return shapes_.contains(shape);
 }
 
-PreciseBox PartWalk::box(const PlacedShape& placed) const noexcept {
+PreciseBox PartTraversal::box(const PlacedShape& placed) const noexcept {
   const Pose here = turned(placed.pose);
   const Aabb local = placed.shape.is_composite() ? composites_->bounds(placed.shape, here)
                                                  : shapes_.bounds(placed.shape, here);
   return placed_box(local, placed.pose.position);
 }
 
-PreciseBox PartWalk::box(const ConvexPart& part) const noexcept {
+PreciseBox PartTraversal::box(const ConvexPart& part) const noexcept {
   if (part.triangle != nullptr) return triangle_box(*part.triangle, part.pose);
   if (part.ball != nullptr) {
     const Vector3d center = Vector3d::Map(part.pose.position);
@@ -108,8 +107,8 @@ PreciseBox PartWalk::box(const ConvexPart& part) const noexcept {
   return box(PlacedShape{part.shape, part.pose});
 }
 
-void PartWalk::walk(const PlacedShape& placed, BoxSweep sweep, double limit, bool near,
-                    PartVisitor visitor) const {
+void PartTraversal::traverse(const PlacedShape& placed, BoxSweep sweep, double limit, bool near,
+                             PartVisitor visitor) const {
   if (!placed.shape.is_composite()) {
     visitor.visit(visitor.context, ConvexPart{placed.shape, placed.pose}, limit);
     return;

@@ -1,4 +1,6 @@
-#include "pipeline/mesh/mesh_neighbours.h"
+#include "pipeline/mesh/mesh_edges.h"
+
+#include "pipeline/mesh/edge_bend.h"
 
 #include <algorithm>
 #include <bit>
@@ -45,10 +47,10 @@ constexpr std::uint32_t kUpward = 1U << 30U;   ///< from the lower place to the 
 constexpr std::uint32_t kSegment = 1U << 31U;  ///< of a triangle with fewer than three places
 constexpr std::uint32_t kCode = kUpward - 1U;  ///< 4 * slot + edge
 
-struct Places {
+struct CornerPlaces {
   std::uint32_t at[3];
 
-  Places(const MeshView& mesh, const Column<std::uint32_t>& place, std::size_t slot) {
+  CornerPlaces(const MeshView& mesh, const Column<std::uint32_t>& place, std::size_t slot) {
     for (std::size_t k = 0; k < 3; ++k) at[k] = place[mesh.corner[k][slot]];
   }
   [[nodiscard]] std::uint32_t low(std::size_t edge) const {
@@ -130,18 +132,70 @@ bool find_neighbours(const MeshView& mesh, Column<std::uint32_t>& neighbours) {
   first.set_size(std::size_t{mesh.vertex_count} + 2);
   std::fill(first.begin(), first.end(), 0U);
   for (std::size_t slot = 0; slot < count; ++slot) {
-    const Places corners(mesh, place, slot);
+    const CornerPlaces corners(mesh, place, slot);
     for (std::size_t edge = 0; edge < 3; ++edge) ++first[corners.low(edge) + std::size_t{2}];
   }
   for (std::size_t v = 2; v < first.size(); ++v) first[v] += first[v - 1];
   for (std::size_t slot = 0; slot < count; ++slot) {
-    const Places corners(mesh, place, slot);
+    const CornerPlaces corners(mesh, place, slot);
     for (std::size_t edge = 0; edge < 3; ++edge) {
       edges[first[corners.low(edge) + std::size_t{1}]++] = corners.entry(slot, edge);
     }
   }
   join_all(mesh.vertex_count, first, edges, neighbours);
   return true;
+}
+
+namespace {
+
+constexpr std::uint32_t kEdgeBits = 7U << kActiveEdgeShift;
+
+void read(const MeshView& mesh, std::size_t slot, std::size_t corner, double (&point)[3]) {
+  const std::uint32_t vertex = mesh.corner[corner][slot];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    point[axis] = static_cast<double>(mesh.vertex[axis][vertex]);
+  }
+}
+
+bool is_active(const MeshView& mesh, const EdgeBend& bend, std::size_t slot, std::size_t edge,
+               std::uint32_t neighbour) {
+  double u[3];
+  double v[3];
+  double p[3];
+  double q[3];
+  read(mesh, slot, edge, u);
+  read(mesh, slot, (edge + 1) % 3, v);
+  read(mesh, slot, (edge + 2) % 3, p);
+  const std::uint32_t other = neighbour & ~kSameWay;
+  read(mesh, other >> 2U, ((other & 3U) + 2) % 3, q);
+  return bend.is_active(u, v, p, q, (neighbour & kSameWay) == 0);
+}
+
+}  // namespace
+
+void mark_active_edges(const MeshView& mesh, const Column<std::uint32_t>& neighbours, double angle,
+                       std::uint32_t* triangle) noexcept {
+  const EdgeBend bend(angle);
+  for (std::size_t slot = 0; slot < mesh.triangle_count; ++slot) triangle[slot] |= kEdgeBits;
+  for (std::size_t slot = 0; slot < mesh.triangle_count; ++slot) {
+    for (std::size_t edge = 0; edge < 3; ++edge) {
+      const std::uint32_t neighbour = neighbours[3 * slot + edge];
+      if (neighbour == kNoNeighbour) continue;
+      if (neighbour == kCoveredEdge) {
+        triangle[slot] &= ~(1U << (kActiveEdgeShift + edge));
+        continue;
+      }
+      // Each pair once: both triangles get the same answer.
+      const std::uint32_t other = neighbour & ~kSameWay;
+      if (other < 4 * slot + edge || is_active(mesh, bend, slot, edge, neighbour)) continue;
+      triangle[slot] &= ~(1U << (kActiveEdgeShift + edge));
+      triangle[other >> 2U] &= ~(1U << (kActiveEdgeShift + (other & 3U)));
+    }
+  }
+  // Padding repeats the last slot.
+  const std::size_t last = mesh.triangle_count - 1;
+  for (std::size_t slot = last + 1; slot % kMeshFanout != 0; ++slot)
+    triangle[slot] = triangle[last];
 }
 
 }  // namespace winnow

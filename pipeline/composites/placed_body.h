@@ -7,14 +7,17 @@
 
 namespace winnow::mid {
 
-/// Corner 0 of a triangle and the way from it to the others.
+/// Corner 0 of a triangle and the edges from it to the others.
 struct Corners {
   Vec first;
   Vec edge[2];
+
+  /// With corner 0 at the origin.
+  [[nodiscard]] TriangleShape triangle() const noexcept;
 };
 
 /// A convex shape where it stands.
-struct Part {
+struct PlacedPart {
   ShapeId shape;
   /// 0 or the number of a child.
   std::uint32_t number;
@@ -28,27 +31,29 @@ struct Part {
   double reach = 0.0;
   double inner = 0.0;
 
-  Part(const ShapeTables& tables, ShapeId id, std::uint32_t number, const Mat& turned,
-       const Vec& at) noexcept;
+  PlacedPart(const ShapeTables& tables, ShapeId id, std::uint32_t number, const Mat& turned,
+             const Vec& at) noexcept;
 };
 
 /// One body of a pair where it stands: relative to the position of body a, in the axes of the
 /// world. What it is made of has numbers: 0 for a convex shape, the child of a compound, the slot
 /// of a mesh, the triangle of a height field.
-struct Side {
+struct PlacedBody {
   enum class Kind : std::uint8_t { convex, compound, mesh, field };
 
   /// `at`: its position relative to that of body a.
-  Side(const Composites& all, const ShapeTables& tables, ShapeId shape, const Pose& pose,
-       const Vec& at) noexcept;
+  PlacedBody(const Composites& all, const ShapeTables& tables, ShapeId shape, const Pose& pose,
+             const Vec& at) noexcept;
 
   [[nodiscard]] bool is_surface() const noexcept { return kind >= Kind::mesh; }
   /// Of all of this, grown by `margin` in the world, in the frame of `other`.
-  [[nodiscard]] Box box_in(const Side& other, double margin) const noexcept;
-  [[nodiscard]] Part part(std::uint32_t number) const noexcept;
+  [[nodiscard]] Box box_in(const PlacedBody& other, double margin) const noexcept;
+  [[nodiscard]] PlacedPart part(std::uint32_t number) const noexcept;
   [[nodiscard]] Eigen::Vector4d part_turn(std::uint32_t number) const noexcept;
   /// False for a triangle of a hole.
   [[nodiscard]] bool corners(std::uint32_t number, Corners& out) const noexcept;
+  /// As callers know it: see Primitive::part.
+  [[nodiscard]] std::uint32_t shown_number(std::uint32_t number) const noexcept;
   /// Active edges and corners of a triangle: see PrimitivePairs::active_edges.
   [[nodiscard]] std::uint8_t active(std::uint32_t number) const noexcept;
 
@@ -72,6 +77,6 @@ struct Side {
 };
 
 /// The box of a part, grown by `margin` in the world, in the frame of `other`.
-[[nodiscard]] Box box_of(const Part& part, const Side& other, double margin) noexcept;
+[[nodiscard]] Box box_of(const PlacedPart& part, const PlacedBody& other, double margin) noexcept;
 
 }  // namespace winnow::mid

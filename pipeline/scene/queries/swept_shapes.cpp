@@ -1,4 +1,4 @@
-#include "pipeline/scene/queries/queries_movers.h"
+#include "pipeline/scene/queries/swept_shapes.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -15,17 +15,18 @@ Pose at_origin(const Pose& pose) noexcept {
   return result;
 }
 
-/// Before the tests of boxes round the way and what it starts from, this much of it.
-constexpr double kSlack = 0x1p-47;
+/// By this much of its coordinates a box is grown before the tests of boxes, which round them.
+constexpr double kSweptBoxGrowth = 0x1p-47;
 
-BoxSweep sweep_from(const Mover& mover, const double from[3], double limit) noexcept {
+BoxSweep sweep_from(const SweptShape& swept, const double from[3], double limit) noexcept {
   const Vector3d start = Vector3d::Map(from);
-  const PreciseBox& extent = mover.extent();
+  const PreciseBox& extent = swept.extent();
   const double reach = start.cwiseAbs().maxCoeff() +
                        std::max(extent.min.cwiseAbs().maxCoeff(), extent.max.cwiseAbs().maxCoeff());
-  const PreciseBox box = PreciseBox{start + extent.min, start + extent.max}.grown(kSlack * reach);
+  const PreciseBox box =
+      PreciseBox{start + extent.min, start + extent.max}.grown(kSweptBoxGrowth * reach);
   BoxSweep sweep = box.standing();
-  std::copy_n(mover.direction(), 3, sweep.direction);
+  std::copy_n(swept.direction(), 3, sweep.direction);
   sweep.max_t = limit;
   return sweep;
 }
@@ -63,13 +64,13 @@ bool passes_by(const double from[3], const double direction[3], const ConvexPart
 
 }  // namespace
 
-RayMover::RayMover(const ShapePool& shapes, const ShapeRay& ray) noexcept
-    : Mover({Vector3d::Zero(), Vector3d::Zero()}, ray.origin, ray.direction, ray.max_t),
+RaySweep::RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept
+    : SweptShape({Vector3d::Zero(), Vector3d::Zero()}, ray.origin, ray.direction, ray.max_t),
       shapes_(shapes),
       ray_(ray) {}
 
-bool RayMover::meets(const double from[3], const ConvexPart& part, double limit,
-                     MoverMeeting& meeting) const noexcept {
+bool RaySweep::meets(const double from[3], const ConvexPart& part, double limit,
+                     SweepMeeting& meeting) const noexcept {
   const double thickness = doubt(part);
   if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
   ShapeRay ray = ray_;
@@ -84,10 +85,10 @@ bool RayMover::meets(const double from[3], const ConvexPart& part, double limit,
   return true;
 }
 
-void RayMover::describe(const double[3], const ConvexPart&, MoverMeeting&) const noexcept {}
+void RaySweep::describe(const double[3], const ConvexPart&, SweepMeeting&) const noexcept {}
 
-bool RayMover::enters(const ShapeRay& ray, const ConvexPart& part,
-                      MoverMeeting& meeting) const noexcept {
+bool RaySweep::enters(const ShapeRay& ray, const ConvexPart& part,
+                      SweepMeeting& meeting) const noexcept {
   PartTables tables(shapes_);
   const ShapeId shape = tables.put(0, part);
   ShapeHit hit;
@@ -101,14 +102,14 @@ bool RayMover::enters(const ShapeRay& ray, const ConvexPart& part,
   return true;
 }
 
-ShapeMover::ShapeMover(const PartWalk& walk, const ShapeCast& cast, double tolerance) noexcept
-    : Mover(walk.box(PlacedShape{cast.shape, at_origin(cast.pose)}), cast.pose.position,
-            cast.direction, cast.max_t),
-      shapes_(walk.shapes()),
+ShapeSweep::ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept
+    : SweptShape(parts.box(PlacedShape{cast.shape, at_origin(cast.pose)}), cast.pose.position,
+                 cast.direction, cast.max_t),
+      shapes_(parts.shapes()),
       cast_(cast),
       tolerance_(tolerance) {}
 
-CastPair ShapeMover::pair(PartTables& tables, const double from[3],
+CastPair ShapeSweep::pair(PartTables& tables, const double from[3],
                           const ConvexPart& part) const noexcept {
   CastPair pair;
   pair.moving = tables.put(0, {cast_.shape, cast_.pose});
@@ -122,8 +123,8 @@ CastPair ShapeMover::pair(PartTables& tables, const double from[3],
   return pair;
 }
 
-bool ShapeMover::meets(const double from[3], const ConvexPart& part, double limit,
-                       MoverMeeting& meeting) const noexcept {
+bool ShapeSweep::meets(const double from[3], const ConvexPart& part, double limit,
+                       SweepMeeting& meeting) const noexcept {
   PartTables tables(shapes_);
   CastPair asked = pair(tables, from, part);
   asked.max_t = limit;
@@ -135,8 +136,8 @@ bool ShapeMover::meets(const double from[3], const ConvexPart& part, double limi
   return true;
 }
 
-void ShapeMover::describe(const double from[3], const ConvexPart& part,
-                          MoverMeeting& meeting) const noexcept {
+void ShapeSweep::describe(const double from[3], const ConvexPart& part,
+                          SweepMeeting& meeting) const noexcept {
   PartTables tables(shapes_);
   CastTouch touch;
   touch.t = meeting.t;
@@ -149,34 +150,34 @@ void ShapeMover::describe(const double from[3], const ConvexPart& part,
   }
 }
 
-void Encounter::take(const ConvexPart& part, const MoverMeeting& meeting) noexcept {
+void BodyMeeting::take(const ConvexPart& part, const SweepMeeting& meeting) noexcept {
   meeting_ = meeting;
   part_ = part;
   if (part.triangle != nullptr) triangle_ = *part.triangle;
 }
 
-bool Encounter::find(const PartWalk& walk, const Mover& mover, const PlacedShape& body,
-                     double limit, bool any) noexcept {
-  MoverMeeting meeting;
+bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, const PlacedShape& body,
+                       double limit, bool any) noexcept {
+  SweepMeeting meeting;
   if (!body.shape.is_composite()) {
-    std::copy_n(mover.start(), 3, from_);
+    std::copy_n(swept.start(), 3, from_);
     std::fill_n(base_, 3, 0.0);
     const ConvexPart whole{body.shape, body.pose};
-    if (!mover.meets(from_, whole, limit, meeting)) return false;
+    if (!swept.meets(from_, whole, limit, meeting)) return false;
     take(whole, meeting);
     return true;
   }
   // About the body, so that parts lose nothing far from the origin; what the difference of the
   // positions loses is put into the pose, where it is small.
   std::copy_n(body.pose.position, 3, base_);
-  const Difference start = difference(mover.start(), base_);
+  const Difference start = difference(swept.start(), base_);
   std::copy_n(start.difference, 3, from_);
   PlacedShape placed = body;
   for (int i = 0; i < 3; ++i) placed.pose.position[i] = -start.rest[i];
   bool found = false;
-  walk.met(placed, sweep_from(mover, from_, limit), [&](const ConvexPart& part, double most) {
+  parts.met(placed, sweep_from(swept, from_, limit), [&](const ConvexPart& part, double most) {
     most = std::min(most, limit);
-    if (!mover.meets(from_, part, most, meeting)) return most;
+    if (!swept.meets(from_, part, most, meeting)) return most;
     if (found && meeting.t == meeting_.t && part_.part < part.part) return most;
     found = true;
     limit = meeting.t;
@@ -186,11 +187,11 @@ bool Encounter::find(const PartWalk& walk, const Mover& mover, const PlacedShape
   return found;
 }
 
-SceneHit Encounter::hit(const Mover& mover) const noexcept {
+SceneHit BodyMeeting::hit(const SweptShape& swept) const noexcept {
   ConvexPart part = part_;
   if (part.triangle != nullptr) part.triangle = &triangle_;
-  MoverMeeting meeting = meeting_;
-  mover.describe(from_, part, meeting);
+  SweepMeeting meeting = meeting_;
+  swept.describe(from_, part, meeting);
   SceneHit hit;
   hit.t = meeting.t;
   hit.part = part.part;

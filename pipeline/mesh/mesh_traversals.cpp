@@ -1,9 +1,10 @@
-#include "pipeline/mesh/mesh_walks.h"
+#include "pipeline/mesh/mesh_traversals.h"
 
 #include <winnow/core/rounding.h>
 #include <winnow/simd/isa.h>
 #include "pipeline/mesh/mesh_traversal.kernel.h"
 #include "pipeline/mesh/mesh_tree.h"
+#include "pipeline/shapes/frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,7 @@ WINNOW_DEFINE_KERNELS(MeshKernels, mesh_kernels)
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using mid::kInfinity;
 // Beyond this, sums of products of coordinates may leave the range of double.
 constexpr double kLargest = 1e150;
 // Slack beyond this, in the scale of a, would leave the range of float.
@@ -24,7 +25,8 @@ constexpr double kLargestSlack = 1e30;
 /// The largest coordinate of the decoded nodes.
 double largest(const MeshView& mesh, std::size_t axis) {
   const double low = static_cast<double>(mesh.origin[axis]);
-  return std::max(std::abs(low), std::abs(low + 65535.0 * static_cast<double>(mesh.step[axis])));
+  return std::max(std::abs(low), std::abs(low + static_cast<double>(kMaxNodeBound) *
+                                                    static_cast<double>(mesh.step[axis])));
 }
 
 /// 1 / the power of two next to the largest coordinate, in the range of normal floats.
@@ -82,6 +84,26 @@ bool set_ball(const double center[3], double radius, MeshBallJob& ball) {
   return true;
 }
 
+/// Whether nodes reach below a plane.
+struct HalfSpaceTest {
+  const MeshView& mesh;
+  const double* normal;
+  double offset;
+  double noise;
+
+  /// By the least of normal . x over a node's box.
+  [[nodiscard]] bool reaches(std::uint32_t level, std::uint32_t node) const noexcept {
+    double least = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int bound = normal[axis] < 0.0 ? axis + 3 : axis;
+      const double q = mesh.node[level][bound][node];
+      least += normal[axis] *
+               (static_cast<double>(mesh.origin[axis]) + q * static_cast<double>(mesh.step[axis]));
+    }
+    return !(least > offset + noise);
+  }
+};
+
 }  // namespace
 
 void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
@@ -96,6 +118,42 @@ void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3]
   MeshBoxJob job = box_job(mesh, min, max);
   job.has_ball = set_ball(center, radius, job.ball);
   mesh_kernels().overlap(mesh, job, out);
+}
+
+void mesh_below(const MeshView& mesh, const double normal[3], double offset,
+                SlotSink& out) noexcept {
+  double noise = std::abs(offset);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double step =
+        static_cast<double>(kMaxNodeBound + 1) * static_cast<double>(mesh.step[axis]);
+    noise += std::abs(normal[axis]) * (std::abs(static_cast<double>(mesh.origin[axis])) + step);
+  }
+  const HalfSpaceTest test{mesh, normal, offset, mid::kSlack * noise};
+  // Children of a node are taken from the last to the first, so that slots come out ascending.
+  std::uint32_t level_of[kMaxMeshLevels * kMeshFanout];
+  std::uint32_t stack[kMaxMeshLevels * kMeshFanout];
+  std::uint32_t depth = 0;
+  const auto push = [&](std::uint32_t level, std::uint32_t first, std::uint32_t end) {
+    for (std::uint32_t node = end; node-- > first;) {
+      if (!test.reaches(level, node)) continue;
+      level_of[depth] = level;
+      stack[depth++] = node;
+    }
+  };
+  if (mesh.levels == 0) return;
+  push(mesh.levels - 1, 0, mesh.count[mesh.levels - 1]);
+  while (depth != 0) {
+    const std::uint32_t level = level_of[--depth];
+    const std::uint32_t first = stack[depth] * kMeshFanout;
+    if (level != 0) {
+      push(level - 1, first, std::min(first + kMeshFanout, mesh.count[level - 1]));
+      continue;
+    }
+    const std::uint32_t end = std::min(first + kMeshFanout, mesh.triangle_count);
+    for (std::uint32_t slot = first; slot < end; ++slot) {
+      put_slot(out, slot);
+    }
+  }
 }
 
 void mesh_overlap_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& b_in_a,
@@ -114,8 +172,8 @@ void mesh_sweep(const MeshView& mesh, const double min[3], const double max[3],
     job.inverse[axis] = 1.0 / direction[axis];
     job.is_static[axis] = !std::isfinite(job.inverse[axis]);
     if (direction[axis] == 0.0 || !job.is_static[axis]) continue;
-    const double way = direction[axis] * limit;
-    (way < 0.0 ? job.min : job.max)[axis] += way;
+    const double shift = direction[axis] * limit;
+    (shift < 0.0 ? job.min : job.max)[axis] += shift;
   }
   mesh_kernels().sweep(mesh, job, limit, visitor);
 }

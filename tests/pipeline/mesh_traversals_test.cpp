@@ -1,4 +1,4 @@
-#include "pipeline/mesh/mesh_walks.h"
+#include "pipeline/mesh/mesh_traversals.h"
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -178,7 +178,7 @@ MeshPlacement random_placement(Random& random, double reach) {
 TEST_F(Meshes, a_box_finds_the_triangles_whose_boxes_it_meets_and_no_others) {
   Random random(1);
   for (const TriangleMesh& mesh : meshes_) {
-    const auto triangles = twin(mesh.view());
+    const auto triangles = twin(view_of(mesh));
     const Eigen::Vector3f size = mesh.bounds().max - mesh.bounds().min;
     for (std::size_t k = 0; k < scaled(60); ++k) {
       double min[3];
@@ -203,7 +203,7 @@ TEST_F(Meshes, a_box_finds_the_triangles_whose_boxes_it_meets_and_no_others) {
         }
         if (met) expected.push_back(slot);
       }
-      EXPECT_EQ(on_all_isas([&] { return overlap(mesh.view(), min, max); }), expected);
+      EXPECT_EQ(on_all_isas([&] { return overlap(view_of(mesh), min, max); }), expected);
     }
   }
 }
@@ -213,11 +213,11 @@ TEST_F(Meshes, a_box_finds_the_triangles_whose_boxes_it_meets_and_no_others) {
 void expect_pairs(const TriangleMesh& a, const TriangleMesh& b, const MeshPlacement& placement,
                   const double margin[3]) {
   const SlotPairs found =
-      on_all_isas([&] { return overlap_pairs(a.view(), b.view(), placement, margin); });
+      on_all_isas([&] { return overlap_pairs(view_of(a), view_of(b), placement, margin); });
   const std::set<SlotPairs::value_type> set(found.begin(), found.end());
   EXPECT_EQ(set.size(), found.size());
-  const auto own = twin(a.view());
-  const auto placed = twin(b.view(), placement);
+  const auto own = twin(view_of(a));
+  const auto placed = twin(view_of(b), placement);
   const Real rounding = static_cast<Real>((a.radius() + b.radius() * 4.0 + 2.0) * 64 * 0x1p-24);
   std::size_t missed = 0;
   std::size_t apart = 0;
@@ -269,7 +269,7 @@ TEST_F(Meshes, a_ball_finds_the_triangles_that_come_near_its_middle) {
   Random random(11);
   std::size_t dropped = 0;
   for (const TriangleMesh& mesh : meshes_) {
-    const auto triangles = twin(mesh.view());
+    const auto triangles = twin(view_of(mesh));
     for (std::size_t k = 0; k < scaled(60); ++k) {
       const auto& corner = triangles[random.below(triangles.size())].corner[0];
       const double radius = mesh.radius() * random.log_uniform(1e-5, 0.5);
@@ -283,9 +283,9 @@ TEST_F(Meshes, a_ball_finds_the_triangles_that_come_near_its_middle) {
       }
       const Slots found = on_all_isas([&] {
         return collect(
-            [&](SlotSink& sink) { mesh_overlap(mesh.view(), min, max, center, radius, sink); });
+            [&](SlotSink& sink) { mesh_overlap(view_of(mesh), min, max, center, radius, sink); });
       });
-      Slots expected = overlap(mesh.view(), min, max);
+      Slots expected = overlap(view_of(mesh), min, max);
       const std::size_t in_box = expected.size();
       const Real slack = static_cast<Real>(2e-4 * mesh.radius());
       std::erase_if(expected, [&](std::uint32_t slot) {
@@ -308,8 +308,8 @@ TEST_F(Meshes, trees_of_different_depth_find_their_pairs) {
   TriangleMesh shallow;
   ASSERT_EQ(torus(70, 40).build(deep), Status::ok);
   ASSERT_EQ(gear(3).build(shallow), Status::ok);
-  ASSERT_EQ(deep.view().levels, 3U);
-  ASSERT_EQ(shallow.view().levels, 1U);
+  ASSERT_EQ(view_of(deep).levels, 3U);
+  ASSERT_EQ(view_of(shallow).levels, 1U);
   const double margin[3] = {0, 0, 0};
   const MeshPlacement tilted{{{0.8, -0.6, 0}, {0.6, 0.8, 0}, {0, 0, 1}}, {0.9, 0.1, 0.2}};
   expect_pairs(deep, shallow, tilted, margin);
@@ -319,7 +319,7 @@ TEST_F(Meshes, trees_of_different_depth_find_their_pairs) {
 TEST_F(Meshes, pairs_can_be_taken_from_a_small_room_as_they_are_found) {
   const MeshPlacement placement{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0.4, 0.2, 0.1}};
   const double margin[3] = {0, 0, 0};
-  const MeshView& mesh = meshes_[0].view();
+  const MeshView& mesh = view_of(meshes_[0]);
   const SlotPairs expected = overlap_pairs(mesh, mesh, placement, margin);
   ASSERT_GT(expected.size(), 100U);
   for (const std::size_t room : {std::size_t{16}, std::size_t{40}}) {
@@ -343,9 +343,9 @@ TEST_F(Meshes, pairs_that_planes_tell_apart_are_dropped) {
   const TriangleMesh& mesh = meshes_[0];
   const MeshPlacement placement{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {1.3, 0.2, 0.1}};
   const double margin[3] = {0, 0, 0};
-  const auto own = twin(mesh.view());
-  const auto placed = twin(mesh.view(), placement);
-  const SlotPairs found = overlap_pairs(mesh.view(), mesh.view(), placement, margin);
+  const auto own = twin(view_of(mesh));
+  const auto placed = twin(view_of(mesh), placement);
+  const SlotPairs found = overlap_pairs(view_of(mesh), view_of(mesh), placement, margin);
   EXPECT_GT(found.size(), 20U);
   for (const auto& [i, j] : found) EXPECT_LE(gap(own[i], placed[j], margin, false), 1e-5L);
 }
@@ -359,7 +359,7 @@ TEST_F(Meshes, scales_and_offsets_of_any_size_miss_nothing) {
     ASSERT_EQ(data.build(mesh), Status::ok);
     const double margin[3] = {0, 0, 0};
     const SlotPairs found =
-        on_all_isas([&] { return overlap_pairs(mesh.view(), mesh.view(), {}, margin); });
+        on_all_isas([&] { return overlap_pairs(view_of(mesh), view_of(mesh), {}, margin); });
     const std::set<SlotPairs::value_type> set(found.begin(), found.end());
     for (std::uint32_t i = 0; i < data.triangles(); ++i) EXPECT_TRUE(set.count({i, i})) << scale;
   }
@@ -370,7 +370,7 @@ TEST_F(Meshes, scales_and_offsets_of_any_size_miss_nothing) {
     const double margin[3] = {0, 0, huge};
     // Slot 0 of the huge mesh is grown over all of the small one.
     const SlotPairs found =
-        on_all_isas([&] { return overlap_pairs(mesh.view(), mesh.view(), placement, margin); });
+        on_all_isas([&] { return overlap_pairs(view_of(mesh), view_of(mesh), placement, margin); });
     for (const auto& [i, j] : found) EXPECT_LT(std::max(i, j), mesh.triangles());
     if (huge > 1e200) {
       EXPECT_EQ(found.size(), mesh.triangles() * mesh.triangles());
@@ -415,7 +415,7 @@ Real meeting_time(const TwinTriangle& triangle, const double min[3], const doubl
 TEST_F(Meshes, a_sweep_shows_the_triangles_it_may_meet_and_ends_where_it_is_told) {
   Random random(3);
   for (const TriangleMesh& mesh : meshes_) {
-    const auto triangles = twin(mesh.view());
+    const auto triangles = twin(view_of(mesh));
     const Eigen::Vector3d middle = (mesh.bounds().min + mesh.bounds().max).cast<double>() * 0.5;
     for (std::size_t k = 0; k < scaled(40); ++k) {
       const double r = mesh.radius();
@@ -433,7 +433,7 @@ TEST_F(Meshes, a_sweep_shows_the_triangles_it_may_meet_and_ends_where_it_is_told
       const double limit = random.chance(0.3) ? std::numeric_limits<double>::infinity() : 1.5;
       const Slots shown = on_all_isas([&] {
         Seen seen{{}, 0.0, true};
-        mesh_sweep(mesh.view(), min, max, direction, limit, {Seen::visit, &seen});
+        mesh_sweep(view_of(mesh), min, max, direction, limit, {Seen::visit, &seen});
         return seen.slots;
       });
       const std::set<std::uint32_t> set(shown.begin(), shown.end());
@@ -450,7 +450,7 @@ TEST_F(Meshes, a_sweep_shows_the_triangles_it_may_meet_and_ends_where_it_is_told
       }
       // Told the earliest time after the first leaf, it shows what is earlier yet and ends.
       Seen seen{{}, static_cast<double>(earliest), false};
-      mesh_sweep(mesh.view(), min, max, direction, limit, {Seen::visit, &seen});
+      mesh_sweep(view_of(mesh), min, max, direction, limit, {Seen::visit, &seen});
       EXPECT_LE(seen.slots.size(), shown.size());
       if (!shown.empty()) {
         EXPECT_TRUE(std::any_of(seen.slots.begin(), seen.slots.end(), [&](std::uint32_t slot) {
@@ -458,7 +458,7 @@ TEST_F(Meshes, a_sweep_shows_the_triangles_it_may_meet_and_ends_where_it_is_told
         }));
       }
       seen = {{}, -1.0, false};
-      mesh_sweep(mesh.view(), min, max, direction, limit, {Seen::visit, &seen});
+      mesh_sweep(view_of(mesh), min, max, direction, limit, {Seen::visit, &seen});
       EXPECT_LE(seen.slots.size(), 16U);
     }
   }
@@ -474,7 +474,7 @@ TEST_F(Meshes, what_is_near_a_box_is_shown_at_any_scale_of_the_mesh) {
         scale[axis] = random.chance(0.3) ? 1.0 : random.uniform(-3, 3);
         placement.matrix[axis][axis] = scale[axis];
       }
-      const auto triangles = twin(mesh.view(), placement);
+      const auto triangles = twin(view_of(mesh), placement);
       double min[3];
       double max[3];
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -484,7 +484,7 @@ TEST_F(Meshes, what_is_near_a_box_is_shown_at_any_scale_of_the_mesh) {
       const double limit = mesh.radius() * random.uniform(0, 1);
       const Slots shown = on_all_isas([&] {
         Seen seen{{}, 0.0, true};
-        mesh_near(mesh.view(), scale, min, max, limit, {Seen::visit, &seen});
+        mesh_near(view_of(mesh), scale, min, max, limit, {Seen::visit, &seen});
         return seen.slots;
       });
       const std::set<std::uint32_t> set(shown.begin(), shown.end());
@@ -509,7 +509,7 @@ TEST_F(Meshes, what_is_near_a_box_is_shown_at_any_scale_of_the_mesh) {
 
 TEST_F(Meshes, decoded_nodes_contain_the_triangles_below_them) {
   for (const TriangleMesh& mesh : meshes_) {
-    const MeshView& view = mesh.view();
+    const MeshView& view = view_of(mesh);
     const auto triangles = twin(view);
     std::uint32_t below = kMeshFanout;
     for (std::uint32_t level = 0; level < view.levels; ++level, below *= kMeshFanout) {

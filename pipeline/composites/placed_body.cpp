@@ -1,12 +1,20 @@
-#include "pipeline/composites/side.h"
+#include "pipeline/composites/placed_body.h"
+
+#include "pipeline/mesh/mesh_view.h"
 #include "pipeline/shapes/extent.h"
 
 #include <algorithm>
 
 namespace winnow::mid {
 
-Part::Part(const ShapeTables& tables, ShapeId id, std::uint32_t of_body, const Mat& turned,
-           const Vec& at) noexcept
+TriangleShape Corners::triangle() const noexcept {
+  TriangleShape shape{};
+  for (int k = 0; k < 2; ++k) Vec::Map(shape.vertex[k + 1]) = finite(edge[k]);
+  return shape;
+}
+
+PlacedPart::PlacedPart(const ShapeTables& tables, ShapeId id, std::uint32_t of_body,
+                       const Mat& turned, const Vec& at) noexcept
     : shape(id), number(of_body), rotation(turned), position(at), radius(radius_of(tables, id)) {
   reach = radius;
   switch (id.kind()) {
@@ -33,8 +41,8 @@ Part::Part(const ShapeTables& tables, ShapeId id, std::uint32_t of_body, const M
   }
 }
 
-Side::Side(const Composites& all, const ShapeTables& pool, ShapeId shape, const Pose& pose,
-           const Vec& at) noexcept
+PlacedBody::PlacedBody(const Composites& all, const ShapeTables& pool, ShapeId shape,
+                       const Pose& pose, const Vec& at) noexcept
     : tables(pool),
       id(shape),
       turn(tame(pose.orientation)),
@@ -46,7 +54,7 @@ Side::Side(const Composites& all, const ShapeTables& pool, ShapeId shape, const 
   if (const MeshEntry* const entry = all.mesh(shape)) {
     kind = Kind::mesh;
     shared = entry->shared;
-    mesh = &shared->mesh.view();
+    mesh = &view_of(shared->mesh);
     bounds = Box::of(entry->shared->mesh.bounds());
     const Eigen::Map<const Vec> scale(entry->scale);
     to_world = rotation * scale.asDiagonal();
@@ -63,7 +71,7 @@ Side::Side(const Composites& all, const ShapeTables& pool, ShapeId shape, const 
   }
 }
 
-Box Side::box_in(const Side& other, double margin) const noexcept {
+Box PlacedBody::box_in(const PlacedBody& other, double margin) const noexcept {
   if (kind == Kind::convex) return box_of(part(0), other, margin);
   const Vec offset = other.to_local * finite(position - other.position);
   if (!bounds.is_finite()) {
@@ -75,7 +83,7 @@ Box Side::box_in(const Side& other, double margin) const noexcept {
   return {box.min - out, box.max + out};
 }
 
-Part Side::part(std::uint32_t number) const noexcept {
+PlacedPart PlacedBody::part(std::uint32_t number) const noexcept {
   if (kind == Kind::convex) return {tables, id, 0, rotation, position};
   const CompoundChild& child = compound->children[number];
   const Eigen::Map<const Vec> at(child.pose.position);
@@ -83,12 +91,12 @@ Part Side::part(std::uint32_t number) const noexcept {
           position + rotation * at};
 }
 
-Eigen::Vector4d Side::part_turn(std::uint32_t number) const noexcept {
+Eigen::Vector4d PlacedBody::part_turn(std::uint32_t number) const noexcept {
   if (kind == Kind::convex) return turn;
   return product(turn, tame(compound->children[number].pose.orientation));
 }
 
-bool Side::corners(std::uint32_t number, Corners& out) const noexcept {
+bool PlacedBody::corners(std::uint32_t number, Corners& out) const noexcept {
   Vec local[3];
   if (kind == Kind::mesh) {
     for (int k = 0; k < 3; ++k) {
@@ -108,7 +116,12 @@ bool Side::corners(std::uint32_t number, Corners& out) const noexcept {
   return true;
 }
 
-std::uint8_t Side::active(std::uint32_t number) const noexcept {
+std::uint32_t PlacedBody::shown_number(std::uint32_t number) const noexcept {
+  if (kind == Kind::convex) return kWholeShape;
+  return kind == Kind::mesh ? mesh->triangle[number] & kTriangleNumberMask : number;
+}
+
+std::uint8_t PlacedBody::active(std::uint32_t number) const noexcept {
   std::uint32_t bits = 0;
   if (kind == Kind::mesh) {
     bits = mesh->triangle[number] >> kActiveEdgeShift & 7U;
@@ -142,7 +155,7 @@ std::uint8_t Side::active(std::uint32_t number) const noexcept {
   return static_cast<std::uint8_t>(bits);
 }
 
-Box box_of(const Part& part, const Side& other, double margin) noexcept {
+Box box_of(const PlacedPart& part, const PlacedBody& other, double margin) noexcept {
   const Vec offset = other.to_local * finite(part.position - other.position);
   return box_under(other.tables, part.shape, other.to_local * part.rotation, offset, margin);
 }

@@ -1,0 +1,387 @@
+// SceneQueries: rays and moving shapes. Partitions tell which bodies' boxes the swept box
+// meets (SweptBox says why none is missed), and show them to a predicate, which asks the exact
+// shapes.
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/cast.h>
+#include <winnow/core/rounding.h>
+#include "pipeline/scene/queries/queries.h"
+#include "pipeline/scene/queries/swept_shapes.h"
+#include "pipeline/shapes/frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+using Eigen::Vector3d;
+using mid::kInfinity;
+
+/// A swept box in double as the partitions can be asked about it, in float, so that nothing is
+/// missed. It comes in pieces, each an interval of t, in order:
+///
+/// A piece begins where the box is at its beginning, in double, and moves by the direction rounded
+/// to float; up to its end, that leaves the true path by at most 2^-24 of the length of the piece,
+/// and what double and float make of the beginning is a few roundings of the coordinates: the box
+/// of the BoxCast is larger by more than both, and so contains the true box at every t. A body's
+/// own box in the partition contains the body. The first piece is no longer than the coordinates at
+/// its beginning times 2^10, and each further one 2^10 times as long: at every t the box is so at
+/// most 2^-14 of the distance from the beginning too large. After some of these, and where floats
+/// end, the rest of the path is asked about as a box that contains all of it.
+class SweptBox {
+ public:
+  /// The direction is finite and not zero, max_t >= 0 may be infinite, the box is finite.
+  SweptBox(const PreciseBox& box, const double direction[3], double max_t) noexcept;
+
+  /// Goes to the next piece, the first one to begin with. False if there is none.
+  [[nodiscard]] bool next() noexcept;
+  /// True for a last piece that is to be asked about by `rest`.
+  [[nodiscard]] bool is_rest() const noexcept { return is_rest_; }
+
+  /// Where the piece begins, in the caller's t.
+  [[nodiscard]] double begin() const noexcept;
+  /// The piece up to t = limit, and a little more; min_t = 0 is its beginning.
+  [[nodiscard]] BoxCast cast(double limit) const noexcept;
+  [[nodiscard]] Aabb rest(double limit) const noexcept;
+
+ private:
+  [[nodiscard]] PreciseBox at(double path) const noexcept;
+  [[nodiscard]] double slack(double end) const noexcept;
+
+  // Lengths along the path are t times a power of two that makes them about lengths.
+  PreciseBox box_;
+  Eigen::Vector3d step_;
+  int exponent_ = 0;
+  double reach_ = 0.0;
+  double from_ = 0.0;
+  double to_ = 0.0;
+  double last_ = 0.0;
+  int pieces_ = 0;
+  bool is_rest_ = false;
+};
+
+/// A piece is at most so many times as long as the distance from the start to where it begins.
+constexpr double kPieceGrowth = 0x1p10;
+constexpr int kMostPieces = 5;
+/// Floats end a little after this.
+constexpr double kFarthest = 0x1p120;
+
+SweptBox::SweptBox(const PreciseBox& box, const double direction[3], double max_t) noexcept
+    : box_(box) {
+  const Vector3d given = Vector3d::Map(direction);
+  std::frexp(given.cwiseAbs().maxCoeff(), &exponent_);
+  for (int i = 0; i < 3; ++i) step_[i] = std::ldexp(given[i], -exponent_);
+  last_ = std::ldexp(max_t, exponent_);
+  reach_ = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+}
+
+bool SweptBox::next() noexcept {
+  if (is_rest_ || (pieces_ != 0 && to_ >= last_)) return false;
+  from_ = to_;
+  to_ = std::min(last_, kPieceGrowth * std::max({reach_, from_, 1.0}));
+  is_rest_ = pieces_ == kMostPieces || !(reach_ + to_ < kFarthest);
+  ++pieces_;
+  if (is_rest_) to_ = last_;
+  return true;
+}
+
+double SweptBox::begin() const noexcept {
+  return std::ldexp(from_, -exponent_);
+}
+
+/// Rounding of the direction to float, and of coordinates; cast_ray takes rays that pass by no
+/// farther than rounding.
+double SweptBox::slack(double end) const noexcept {
+  return 0x1p-23 * (end - from_) + 0x1p-47 * (reach_ + end);
+}
+
+PreciseBox SweptBox::at(double path) const noexcept {
+  return {box_.min + path * step_, box_.max + path * step_};
+}
+
+BoxCast SweptBox::cast(double limit) const noexcept {
+  const double end = std::clamp(std::ldexp(limit, exponent_), from_, to_);
+  const PreciseBox start = at(from_).grown(slack(to_));
+  BoxCast cast;
+  cast.box = Aabb::outward(start.min, start.max);
+  cast.direction = step_.cast<float>();
+  cast.max_t = round_up((end - from_) * (1.0 + 0x1p-50));
+  return cast;
+}
+
+Aabb SweptBox::rest(double limit) const noexcept {
+  const double end = std::clamp(std::ldexp(limit, exponent_), from_, to_);
+  PreciseBox sum = at(from_);
+  for (int i = 0; i < 3; ++i) {
+    if (step_[i] == 0.0) continue;
+    const double path = end * step_[i];
+    sum.min[i] = std::min(sum.min[i], box_.min[i] + path);
+    sum.max[i] = std::max(sum.max[i], box_.max[i] + path);
+  }
+  // What is lost of a finite path is as small beside its ends.
+  for (int i = 0; i < 3; ++i) {
+    const double slack = 0x1p-47 * (reach_ + from_);
+    sum.min[i] -= slack + 0x1p-47 * std::abs(sum.min[i]);
+    sum.max[i] += slack + 0x1p-47 * std::abs(sum.max[i]);
+  }
+  Aabb box;
+  constexpr float kMost = std::numeric_limits<float>::max();
+  box.min = round_down(sum.min).cwiseMin(kMost);
+  box.max = round_up(sum.max).cwiseMax(-kMost);
+  return box;
+}
+
+bool is_before(const SceneHit& a, const SceneHit& b) noexcept {
+  return a.t != b.t ? a.t < b.t : a.key.id < b.key.id;
+}
+
+/// Bodies that were looked at and may be shown again: a partition asks about a body once a stretch
+/// of the path. Forgets, when two want the same place.
+class Memo {
+ public:
+  /// What was noted about the body; null if nothing is known.
+  [[nodiscard]] const bool* find(std::uint32_t body) const noexcept {
+    const Entry& entry = entries_[body % kEntries];
+    return entry.body == body ? &entry.met : nullptr;
+  }
+  bool note(std::uint32_t body, bool met) noexcept {
+    entries_[body % kEntries] = {body, met};
+    return met;
+  }
+
+ private:
+  static constexpr std::size_t kEntries = 64;
+  struct Entry {
+    std::uint32_t body = kNoObject;
+    bool met = false;
+  };
+  Entry entries_[kEntries];
+};
+
+/// One question: something moves through the scene.
+class CastQuestion {
+ public:
+  CastQuestion(QueryState& state, const SweptShape& swept, const Filter& filter) noexcept
+      : state_(state), swept_(swept), filter_(filter) {}
+
+  Status closest(SceneHit& hit);
+  Status any(SceneHit& hit);
+  Status all();
+
+ private:
+  [[nodiscard]] PreciseBox start_box() const noexcept;
+  [[nodiscard]] double limit() const noexcept { return found() ? best_.t() : swept_.max_t(); }
+  [[nodiscard]] bool found() const noexcept { return body_ != kNoObject; }
+  [[nodiscard]] bool meets(std::uint32_t body, double limit, bool any,
+                           BodyMeeting& meeting) const noexcept {
+    return meeting.find(state_.parts, swept_, state_.placed(body), limit, any);
+  }
+  [[nodiscard]] SceneHit shown(std::uint32_t body, const BodyMeeting& meeting) const noexcept;
+  /// True if the body is now the first one met.
+  bool improves(std::uint32_t body) noexcept;
+  template <typename Look>
+  [[nodiscard]] Status look_at_rest(const Partition& partition, const SweptBox& path, Look& look);
+
+  QueryState& state_;
+  const SweptShape& swept_;
+  const Filter& filter_;
+  /// The body that is the first one met, as far as is known.
+  std::uint32_t body_ = kNoObject;
+  BodyMeeting best_;
+  Memo memo_;
+};
+
+PreciseBox CastQuestion::start_box() const noexcept {
+  // Rounding is covered by the slack of the path.
+  const Eigen::Vector3d start = Eigen::Vector3d::Map(swept_.start());
+  return {start + swept_.extent().min, start + swept_.extent().max};
+}
+
+SceneHit CastQuestion::shown(std::uint32_t body, const BodyMeeting& meeting) const noexcept {
+  SceneHit hit = meeting.hit(swept_);
+  hit.key = state_.scene.keys.key_of(body);
+  hit.data = state_.scene.keys.client_data(body);
+  return hit;
+}
+
+bool CastQuestion::improves(std::uint32_t body) noexcept {
+  if (const bool* const known = memo_.find(body)) return *known;
+  BodyMeeting meeting;
+  bool better = meets(body, limit(), false, meeting);
+  // Equal t are ordered by the bodies' ids.
+  if (better && found() && meeting.t() == best_.t()) better = body < body_;
+  if (better) {
+    body_ = body;
+    best_ = meeting;
+  }
+  return memo_.note(body, better);
+}
+
+/// What lies on a path that is too long to be swept.
+template <typename Look>
+Status CastQuestion::look_at_rest(const Partition& partition, const SweptBox& path, Look& look) {
+  auto look_only = [&](std::uint32_t body) {
+    look(body);
+    return false;
+  };
+  LookingFilter looking(state_.scene, filter_, look_only);
+  return partition.overlap(path.rest(limit()), state_.objects, looking.filter());
+}
+
+/// In two traversals per partition and piece of the path. In the first one bodies that improve the
+/// answer count as hits, so that the partition looks at no box behind theirs; it gives the box that
+/// was met first of all that count, and every box before it has been looked at. What is left are
+/// boxes from there to where the exact shape was met: the second traversal. Both are short where
+/// boxes fit.
+Status CastQuestion::closest(SceneHit& hit) {
+  SweptBox path(start_box(), swept_.direction(), swept_.max_t());
+  auto look = [&](std::uint32_t body) { return improves(body); };
+  auto look_only = [&](std::uint32_t body) {
+    improves(body);
+    return false;
+  };
+  LookingFilter first(state_.scene, filter_, look);
+  LookingFilter second(state_.scene, filter_, look_only);
+  while (path.next() && !(found() && best_.t() < path.begin())) {
+    const Status status = state_.each_partition([&](const Partition& partition) {
+      if (path.is_rest()) return look_at_rest(partition, path, look);
+      Hit box;
+      BoxCast cast = path.cast(limit());
+      Status asked = partition.closest(cast, box, first.filter());
+      if (asked != Status::ok || !box) return asked;
+      cast = path.cast(limit());
+      cast.min_t = box.t;
+      if (cast.max_t >= cast.min_t) asked = partition.closest(cast, box, second.filter());
+      return asked;
+    });
+    if (status != Status::ok) return status;
+  }
+  hit = found() ? shown(body_, best_) : SceneHit{};
+  return Status::ok;
+}
+
+Status CastQuestion::any(SceneHit& hit) {
+  SweptBox path(start_box(), swept_.direction(), swept_.max_t());
+  auto look = [&](std::uint32_t body) {
+    if (found()) return true;
+    if (const bool* const known = memo_.find(body)) return *known;
+    if (!meets(body, swept_.max_t(), true, best_)) return memo_.note(body, false);
+    body_ = body;
+    return true;
+  };
+  LookingFilter looking(state_.scene, filter_, look);
+  while (!found() && path.next()) {
+    const Status status = state_.each_partition([&](const Partition& partition) {
+      if (found()) return Status::ok;
+      if (path.is_rest()) return look_at_rest(partition, path, look);
+      Hit box;
+      return partition.any(path.cast(swept_.max_t()), box, looking.filter());
+    });
+    if (status != Status::ok) return status;
+  }
+  hit = found() ? shown(body_, best_) : SceneHit{};
+  return Status::ok;
+}
+
+Status CastQuestion::all() {
+  Column<SceneHit>& hits = state_.hits;
+  hits.clear();
+  SweptBox path(start_box(), swept_.direction(), swept_.max_t());
+  bool has_room = true;
+  auto look = [&](std::uint32_t body) {
+    if (memo_.find(body) != nullptr) return false;
+    memo_.note(body, false);
+    BodyMeeting meeting;
+    if (meets(body, swept_.max_t(), false, meeting)) {
+      has_room = hits.push_back(shown(body, meeting)) && has_room;
+    }
+    return false;
+  };
+  LookingFilter looking(state_.scene, filter_, look);
+  Status status = Status::ok;
+  while (status == Status::ok && path.next()) {
+    status = state_.each_partition([&](const Partition& partition) {
+      if (path.is_rest()) return look_at_rest(partition, path, look);
+      return partition.all(path.cast(swept_.max_t()), state_.boxes, looking.filter());
+    });
+  }
+  if (!has_room) status = Status::out_of_memory;
+  if (status != Status::ok) {
+    hits.clear();
+    return status;
+  }
+  std::sort(hits.begin(), hits.end(), is_before);
+  // A body whose box reaches from one piece of the path into the next was met in both.
+  const SceneHit* const end =
+      std::unique(hits.begin(), hits.end(),
+                  [](const SceneHit& a, const SceneHit& b) { return a.key == b.key; });
+  hits.set_size(static_cast<std::size_t>(end - hits.begin()));
+  return Status::ok;
+}
+
+bool is_valid(const double (&direction)[3], double max_t) noexcept {
+  const bool moves = direction[0] != 0.0 || direction[1] != 0.0 || direction[2] != 0.0;
+  return is_finite(direction) && moves && max_t >= 0.0;
+}
+
+Status check(const QueryState* state, const ShapeRay& ray) noexcept {
+  if (const Status status = QueryState::may_ask(state); status != Status::ok) {
+    return status;
+  }
+  const bool valid = is_finite(ray.origin) && is_valid(ray.direction, ray.max_t);
+  return valid ? Status::ok : Status::invalid_argument;
+}
+
+Status check(const QueryState* state, const ShapeCast& cast, double tolerance) noexcept {
+  if (const Status status = QueryState::may_ask(state); status != Status::ok) {
+    return status;
+  }
+  if (!state->parts.contains(cast.shape)) return Status::invalid_key;
+  if (cast.shape.is_composite() || cast.shape.kind() == ShapeKind::half_space) {
+    return Status::unsupported;
+  }
+  if (!cast.pose.is_valid()) return Status::invalid_pose;
+  const bool valid = is_valid(cast.direction, cast.max_t) && tolerance >= 0.0 &&
+                     tolerance <= std::numeric_limits<double>::max();
+  return valid ? Status::ok : Status::invalid_argument;
+}
+
+}  // namespace
+
+Status SceneQueries::closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
+  if (const Status status = check(state_, ray); status != Status::ok) return status;
+  return CastQuestion(*state_, RaySweep(state_->scene.shapes, ray), filter).closest(hit);
+}
+
+Status SceneQueries::any(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
+  if (const Status status = check(state_, ray); status != Status::ok) return status;
+  return CastQuestion(*state_, RaySweep(state_->scene.shapes, ray), filter).any(hit);
+}
+
+Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
+                         const Filter& filter) {
+  if (const Status status = check(state_, ray); status != Status::ok) return status;
+  const RaySweep swept(state_->scene.shapes, ray);
+  const Status status = CastQuestion(*state_, swept, filter).all();
+  if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
+  return status;
+}
+
+Status SceneQueries::closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter,
+                             double tolerance) {
+  if (const Status status = check(state_, cast, tolerance); status != Status::ok) return status;
+  return CastQuestion(*state_, ShapeSweep(state_->parts, cast, tolerance), filter).closest(hit);
+}
+
+Status SceneQueries::all(const ShapeCast& cast, std::span<const SceneHit>& hits,
+                         const Filter& filter, double tolerance) {
+  if (const Status status = check(state_, cast, tolerance); status != Status::ok) return status;
+  const ShapeSweep swept(state_->parts, cast, tolerance);
+  const Status status = CastQuestion(*state_, swept, filter).all();
+  if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
+  return status;
+}
+
+}  // namespace winnow
