@@ -3,7 +3,7 @@
 #include <winnow/core/column.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
-#include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/contact_types.h>
 
 #include <cstdint>
 #include <memory_resource>
@@ -12,18 +12,6 @@
 namespace winnow {
 
 struct ContactsState;
-
-/// How much a scene is asked about its pairs. A lower level does not pay for a higher one.
-enum class SceneLevel : std::uint8_t {
-  /// Pairs of bodies whose boxes, grown by half of the margin, meet.
-  pairs,
-  /// Those that share a point, and which of their parts do.
-  boolean,
-  /// Those no farther apart than the margin: distance or depth, normal, closest points.
-  distance,
-  /// The same with contact points.
-  manifold,
-};
 
 /// What became of a pair of bodies since these Contacts were last filled.
 enum class ContactEvent : std::uint8_t { begun, persisted };
@@ -62,7 +50,7 @@ class Contacts {
   Contacts(const Contacts&) = delete;
   Contacts& operator=(const Contacts&) = delete;
 
-  [[nodiscard]] SceneLevel level() const noexcept;
+  [[nodiscard]] ContactLevel level() const noexcept;
   /// Pairs of bodies.
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] std::span<const ContactRun> runs() const noexcept;

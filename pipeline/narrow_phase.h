@@ -4,11 +4,9 @@
 #include <winnow/core/footprint.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
+#include <winnow/pipeline/contact_types.h>
 #include <winnow/pipeline/narrow_result.h>
 #include <winnow/pipeline/shape_pool.h>
-#include "pipeline/narrow/narrow_job.h"
-#include "pipeline/narrow/pair_buckets.h"
-#include "pipeline/solver/solver.h"
 
 #include <cstdint>
 #include <memory_resource>
@@ -28,7 +26,8 @@ enum class NarrowTier : std::uint8_t {
 };
 
 struct NarrowOptions {
-  NarrowLevel level = NarrowLevel::manifold;
+  /// Any but `pairs`, which asks nothing of shapes.
+  ContactLevel level = ContactLevel::manifold;
   NarrowTier tier = NarrowTier::robust;
   /// Speculative: pairs no farther apart than this get contacts, with depth <= 0. Finite, >= 0.
   double margin = 0.0;
@@ -47,21 +46,32 @@ struct NarrowStatistics {
   std::uint64_t recomputed = 0;
   /// Pairs that no lanes were tried on: of a kind without them, or of tier `reference`.
   std::uint64_t without_lanes = 0;
-  SolverCounts solver;
+  /// Pairs whose sign double could not tell: decided in exact arithmetic.
+  std::uint64_t exact = 0;
+  /// Iterations of the solver that met their bound and fell back to enumeration.
+  std::uint64_t bounded = 0;
 };
 
 /// Pairs of bodies to overlaps, distances or contacts. Sorts pairs by the kinds of their shapes and
 /// computes those of one kind many at a time. Keeps scratch memory from call to call: one object a
-/// thread of the caller.
+/// thread of the caller. What was moved from is as if new.
 class NarrowPhase {
  public:
+  /// Every allocation comes from `memory`, which must outlive the object; none before the first
+  /// call.
   explicit NarrowPhase(
-      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
+      : memory_(memory) {}
+  ~NarrowPhase();
+  NarrowPhase(NarrowPhase&& other) noexcept;
+  NarrowPhase(const NarrowPhase&) = delete;
+  NarrowPhase& operator=(const NarrowPhase&) = delete;
+  NarrowPhase& operator=(NarrowPhase&&) = delete;
 
-  /// Answers all pairs. `invalid_argument` for a bad margin or a body that does not exist,
-  /// `size_mismatch` for spans of different lengths, `invalid_key` for an id that the pool does not
-  /// know, `invalid_pose` if a body of a pair has one (an orientation counts where its shape is not
-  /// a sphere): then `result` is empty and `bad_body` tells.
+  /// Answers all pairs. `invalid_argument` for level `pairs`, a bad margin or a body that does not
+  /// exist, `size_mismatch` for spans of different lengths, `invalid_key` for an id that the pool
+  /// does not know, `invalid_pose` if a body of a pair has one (an orientation counts where its
+  /// shape is not a sphere), `out_of_memory`: then `result` is empty and `bad_body` tells.
   Status collide(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
                  const NarrowOptions& options, NarrowResult& result);
   /// The same with shapes that lie elsewhere than in a pool.
@@ -75,21 +85,12 @@ class NarrowPhase {
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
-  struct Chunk;
-  struct Call;
+  struct State;
 
-  Status run(const Call& call, NarrowResult& result);
-  [[nodiscard]] Chunk chunk_of(const Call& call, NarrowResult& result, NarrowKernel kernel,
-                               std::uint32_t first, std::uint32_t count) const noexcept;
-  [[nodiscard]] bool answer_wave(const Call& call, std::span<Chunk> wave, NarrowResult& result);
-  static void take_contacts(const Chunk& chunk, NarrowResult& result) noexcept;
-  [[nodiscard]] bool gather_contacts(const Call& call, std::span<const Chunk> wave,
-                                     NarrowResult& result);
-
+  std::pmr::memory_resource* memory_;
+  State* state_ = nullptr;
   NarrowStatistics statistics_;
   std::uint32_t bad_body_ = 0;
-  PairBuckets buckets_;
-  ContactColumns scratch_;
 };
 
 }  // namespace winnow

@@ -2,8 +2,8 @@
 
 #include <winnow/core/column.h>
 #include <winnow/core/footprint.h>
-#include "pipeline/narrow/narrow_job.h"
-#include "pipeline/solver/solver.h"
+#include <winnow/pipeline/contact_types.h>
+#include <winnow/pipeline/shapes.h>
 
 #include <cstdint>
 #include <memory_resource>
@@ -30,8 +30,6 @@ struct ContactColumns {
   [[nodiscard]] bool grow(std::size_t count) noexcept;
   void set_size(std::size_t count) noexcept;
   [[nodiscard]] std::size_t size() const noexcept { return depth.size(); }
-  /// Writes from element `from` on.
-  [[nodiscard]] ContactWriter writer(std::size_t from) noexcept;
   [[nodiscard]] Bytes bytes() const noexcept;
 
   Column<float> position[3];
@@ -47,7 +45,7 @@ class NarrowResult {
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] NarrowLevel level() const noexcept { return level_; }
+  [[nodiscard]] ContactLevel level() const noexcept { return level_; }
   /// Which pair of the input answer i is about. Points, normals and features are in its order, not
   /// that of the kinds.
   [[nodiscard]] std::uint32_t pair_of(std::size_t i) const noexcept { return order_[i]; }
@@ -57,15 +55,20 @@ class NarrowResult {
 
   /// At every level.
   [[nodiscard]] bool overlaps(std::size_t i) const noexcept {
-    return level_ == NarrowLevel::boolean ? overlap_[i] != 0 : distance_[i] <= 0.0;
+    return level_ == ContactLevel::boolean ? overlap_[i] != 0 : distance_[i] <= 0.0;
   }
-  /// Levels distance and manifold; see NarrowJob for what each column says.
+  /// Levels distance and manifold. Negative by the penetration depth, and <= 0 exactly where the
+  /// shapes share a point. At level manifold a pair farther apart than the margin may have any
+  /// lower bound of its distance that is above the margin.
   [[nodiscard]] std::span<const double> distance() const noexcept { return span(distance_); }
+  /// The true distance is within distance +- error_bound.
   [[nodiscard]] std::span<const double> error_bound() const noexcept { return span(error_bound_); }
+  /// Unit vectors from a to b, in the axes of the world.
   [[nodiscard]] std::span<const double> normal(int axis) const noexcept {
     return span(normal_[axis]);
   }
-  /// Level distance.
+  /// Level distance: the point of a, relative to the position of body a, in the axes of the world.
+  /// That of b is distance * normal farther.
   [[nodiscard]] std::span<const double> point(int axis) const noexcept {
     return span(point_[axis]);
   }
@@ -92,14 +95,14 @@ class NarrowResult {
   friend class NarrowPhase;
   friend class mid::Smoothing;
   /// Room for the columns that a level has, and no others. False if memory is refused.
-  [[nodiscard]] bool resize(std::size_t count, NarrowLevel level) noexcept;
+  [[nodiscard]] bool resize(std::size_t count, ContactLevel level) noexcept;
   void clear() noexcept;
   [[nodiscard]] static std::span<const double> span(const Column<double>& c) noexcept {
     return {c.data(), c.size()};
   }
 
   std::size_t size_ = 0;
-  NarrowLevel level_ = NarrowLevel::boolean;
+  ContactLevel level_ = ContactLevel::boolean;
   Column<std::uint32_t> order_;
   Column<NarrowRun> runs_;
   Column<std::uint8_t> overlap_;

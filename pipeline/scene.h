@@ -84,7 +84,7 @@ struct SceneStatistics {
 ///     winnow::ShapePool shapes;
 ///     winnow::Scene scene(shapes);
 ///     scene.add({.shape = ball, .pose = winnow::Pose::at(0, 0, 2)}, key);
-///     scene.collide(winnow::SceneLevel::manifold, contacts);
+///     scene.collide(winnow::ContactLevel::manifold, contacts);
 ///
 /// Parallel work runs in the arena of the thread that calls. Results and their order are the same
 /// on any number of threads and any instruction set. A refused call (any Status but ok) changed
@@ -131,7 +131,7 @@ class Scene {
   /// Everything that touches. Pairs of a fixed or sleeping body with another are not looked at;
   /// contacts of two bodies that fell asleep are remembered, neither shown nor ended, until one
   /// wakes. `out_of_memory` leaves `contacts` cleared.
-  Status collide(SceneLevel level, Contacts& contacts);
+  Status collide(ContactLevel level, Contacts& contacts);
 
   /// The partition of a set; null while it has had no body. Its client data are bodies' ids.
   [[nodiscard]] const Partition* partition(Motion motion) const noexcept;

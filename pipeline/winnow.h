@@ -25,6 +25,7 @@
 #include <winnow/core/pose_view.h>
 #include <winnow/core/ray.h>
 #include <winnow/core/region.h>
+#include <winnow/core/rotation.h>
 #include <winnow/core/rounding.h>
 #include <winnow/core/sphere.h>
 #include <winnow/core/status.h>

@@ -21,14 +21,14 @@ namespace {
 /// Streaming keeps this share of what is asked in cache.
 constexpr double kStreaming = 0.5;
 
-constexpr std::array kAskedLevels{NarrowLevel::boolean, NarrowLevel::distance,
-                                  NarrowLevel::manifold};
+constexpr std::array kAskedLevels{ContactLevel::boolean, ContactLevel::distance,
+                                  ContactLevel::manifold};
 
 std::string on_pairs(const std::string& kind, std::size_t pairs) {
   return kind + ", " + grouped(pairs) + " pairs";
 }
 
-Goal speed_of(const NarrowMeasurement& measured, NarrowLevel level, double existing_ns,
+Goal speed_of(const NarrowMeasurement& measured, ContactLevel level, double existing_ns,
               double times_faster) {
   const bool streaming = measured.pairs > kMostPairsInCache;
   const double ratio = streaming ? kStreaming * times_faster : times_faster;
@@ -56,7 +56,7 @@ Goal worst_ratio(Goal goal, const NarrowMeasurement& measured, const auto& over,
                  const auto& under) {
   const bool at_most = goal.sense == Goal::Sense::at_most;
   goal.measured = at_most ? 0.0 : kUnanswered;
-  for (const NarrowLevel level : kAskedLevels) {
+  for (const ContactLevel level : kAskedLevels) {
     const NarrowTiming* a = over(measured, level);
     const NarrowTiming* b = under(measured, level);
     if (a == nullptr || b == nullptr) continue;
@@ -157,8 +157,8 @@ std::vector<Goal> narrow_tiers(const Ask& ask, const std::vector<Ask>& /*all*/, 
                     .asked = ask.number("asked")};
     goals.push_back(worst_ratio(
         goal, lab.narrow(name, ask.count("pairs")),
-        [](const NarrowMeasurement& m, NarrowLevel l) { return m.find(NarrowTier::robust, l); },
-        [](const NarrowMeasurement& m, NarrowLevel l) { return m.find(NarrowTier::fast, l); }));
+        [](const NarrowMeasurement& m, ContactLevel l) { return m.find(NarrowTier::robust, l); },
+        [](const NarrowMeasurement& m, ContactLevel l) { return m.find(NarrowTier::fast, l); }));
   }
   return goals;
 }
@@ -174,8 +174,8 @@ std::vector<Goal> narrow_threads(const Ask& ask, const std::vector<Ask>& /*all*/
                     .asked = ask.number("asked")};
     goals.push_back(worst_ratio(
         goal, lab.narrow(name, ask.count("pairs")),
-        [](const NarrowMeasurement& m, NarrowLevel l) { return m.find(NarrowTier::robust, l); },
-        [&](const NarrowMeasurement& m, NarrowLevel l) {
+        [](const NarrowMeasurement& m, ContactLevel l) { return m.find(NarrowTier::robust, l); },
+        [&](const NarrowMeasurement& m, ContactLevel l) {
           return m.find(NarrowTier::robust, l, ask.threads());
         }));
   }
@@ -197,9 +197,9 @@ std::vector<Goal> narrow_accuracy(const Ask& ask, const std::vector<Ask>& /*all*
     const auto truths = truths_of(*set, judge);
     WinnowNarrow engine(tier_of(ask), 1);
     engine.start(*set);
-    for (const NarrowLevel level : kAskedLevels) {
+    for (const ContactLevel level : kAskedLevels) {
       const Accuracy accuracy = judge_engine(engine, level, *set, truths);
-      if (level == NarrowLevel::boolean) judged += accuracy.pairs;
+      if (level == ContactLevel::boolean) judged += accuracy.pairs;
       for (Fault& fault : found) {
         fault.add(std::string(kind.name), accuracy, fault.is_sum ? 1.0 : most);
       }

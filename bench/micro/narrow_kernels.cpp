@@ -2,7 +2,6 @@
 #include "narrow/pair_set.h"
 
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/narrow/narrow_chunk.h"
 #include "pipeline/solver/solver.h"
 
 #include <memory>
@@ -14,8 +13,8 @@ namespace winnow::bench {
 namespace {
 
 /// As many pairs as NarrowPhase hands to a kernel at once.
-constexpr std::uint32_t kPairs = kChunkPairs;
-constexpr std::size_t kContacts = std::size_t{kPairs} * kManifoldPoints + 16;
+constexpr std::uint32_t kPairs = kJobPairs;
+constexpr std::size_t kContacts = std::size_t{kPairs} * kManifoldPoints + kContactSlack;
 
 /// Pairs of one kind and room for all that a kernel writes about them.
 class Fixture {
@@ -63,7 +62,7 @@ class Fixture {
 /// Made when the first benchmark of its kind runs.
 using LazyFixture = std::shared_ptr<std::unique_ptr<Fixture>>;
 
-std::string name_of(const PairKind& kind, NarrowTier tier, NarrowLevel level) {
+std::string name_of(const PairKind& kind, NarrowTier tier, ContactLevel level) {
   return "pairs: " + std::string(kind.name) + ", " + std::string(to_text(level)) + ", " +
          std::string(to_text(tier));
 }
@@ -73,14 +72,14 @@ Fixture& made(const LazyFixture& fixture, const PairKind& kind) {
   return **fixture;
 }
 
-NarrowKernel kernel_of(const PairKind& kind, NarrowTier tier, NarrowLevel level) {
+NarrowKernel kernel_of(const PairKind& kind, NarrowTier tier, ContactLevel level) {
   const NarrowKernels* kernels = narrow_kernels(kind.a, kind.b);
   if (kernels == nullptr) return nullptr;
-  const auto at = static_cast<std::size_t>(level);
+  const std::uint32_t at = kernel_index(level);
   return tier == NarrowTier::fast ? kernels->fast[at] : kernels->robust[at];
 }
 
-void add_kernel(const PairKind& kind, NarrowTier tier, NarrowLevel level,
+void add_kernel(const PairKind& kind, NarrowTier tier, ContactLevel level,
                 const LazyFixture& fixture) {
   if (kernel_of(kind, tier, level) == nullptr) return;
   add_per_isa(name_of(kind, tier, level), [=](benchmark::State& state) {
@@ -98,7 +97,7 @@ void add_kernel(const PairKind& kind, NarrowTier tier, NarrowLevel level,
 }
 
 // The same on every instruction set.
-void add_solver(const PairKind& kind, NarrowLevel level, const LazyFixture& fixture) {
+void add_solver(const PairKind& kind, ContactLevel level, const LazyFixture& fixture) {
   const std::string name = name_of(kind, NarrowTier::reference, level) + "/any";
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
     const NarrowJob job = made(fixture, kind).job();
@@ -118,8 +117,7 @@ void add_solver(const PairKind& kind, NarrowLevel level, const LazyFixture& fixt
 void add_narrow_kernels() {
   for (const PairKind& kind : pair_kinds()) {
     const auto fixture = std::make_shared<std::unique_ptr<Fixture>>();
-    for (std::size_t i = 0; i < kLevelNames.size(); ++i) {
-      const auto level = static_cast<NarrowLevel>(i);
+    for (const ContactLevel level : kLevels) {
       add_kernel(kind, NarrowTier::fast, level, fixture);
       add_kernel(kind, NarrowTier::robust, level, fixture);
       add_solver(kind, level, fixture);

@@ -22,15 +22,15 @@ bool is_direction(const double (&v)[3]) {
   return std::isfinite(square) && square > 0.0;
 }
 
-PairError error_of(const NarrowAnswer& answer, const PairTruth& truth, NarrowLevel level) {
+PairError error_of(const NarrowAnswer& answer, const PairTruth& truth, ContactLevel level) {
   const long double length = std::abs(truth.distance);
   PairError result;
   result.gap = static_cast<double>(length / static_cast<long double>(truth.size));
   result.overlap = truth.overlap;
   result.wrong = answer.overlap != truth.overlap;
   // Manifolds are asked for without a margin: of other pairs nothing needs to be known.
-  if (level == NarrowLevel::boolean) return result;
-  if (level == NarrowLevel::manifold && truth.distance > 0.0L) return result;
+  if (level == ContactLevel::boolean) return result;
+  if (level == ContactLevel::manifold && truth.distance > 0.0L) return result;
   const bool has_normal = is_direction(answer.normal);
   const bool has_distance = std::isfinite(answer.distance);
   result.missing = !has_distance || !has_normal;
@@ -58,7 +58,7 @@ ErrorSpread spread_of_errors(std::vector<double>& errors) {
 
 }  // namespace
 
-std::vector<PairError> errors_of(const NarrowEngine& engine, NarrowLevel level, const PairSet& set,
+std::vector<PairError> errors_of(const NarrowEngine& engine, ContactLevel level, const PairSet& set,
                                  std::span<const PairTruth> truths) {
   std::vector<PairError> errors;
   for (std::size_t i = 0; i < set.pairs.size(); ++i) {
@@ -91,7 +91,7 @@ Accuracy summary_of(std::span<const PairError> errors) {
   return sum;
 }
 
-Accuracy judge_engine(NarrowEngine& engine, NarrowLevel level, const PairSet& set,
+Accuracy judge_engine(NarrowEngine& engine, ContactLevel level, const PairSet& set,
                       std::span<const PairTruth> truths, std::size_t runs) {
   std::vector<double> ns;
   for (std::size_t run = 0; run < runs; ++run) {

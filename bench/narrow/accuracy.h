@@ -37,7 +37,7 @@ struct ErrorSpread {
 /// How wrong one engine is about the pairs of a set at a level, and how long it takes.
 struct Accuracy {
   std::string engine;
-  NarrowLevel level{};
+  ContactLevel level{};
   std::size_t pairs = 0;  ///< those of which the truth is known
   std::size_t wrong = 0;
   /// Other libraries are not asked for manifolds of pairs that do not overlap.
@@ -56,7 +56,7 @@ struct Accuracy {
 
 /// What was wrong in the engine's last run, which was over all pairs of the set: an entry for each
 /// pair of which the truth is known.
-[[nodiscard]] std::vector<PairError> errors_of(const NarrowEngine& engine, NarrowLevel level,
+[[nodiscard]] std::vector<PairError> errors_of(const NarrowEngine& engine, ContactLevel level,
                                                const PairSet& set,
                                                std::span<const PairTruth> truths);
 
@@ -65,7 +65,7 @@ struct Accuracy {
 
 /// Runs a started engine over all pairs of the set several times and compares what it says with the
 /// truth.
-[[nodiscard]] Accuracy judge_engine(NarrowEngine& engine, NarrowLevel level, const PairSet& set,
+[[nodiscard]] Accuracy judge_engine(NarrowEngine& engine, ContactLevel level, const PairSet& set,
                                     std::span<const PairTruth> truths, std::size_t runs = 3);
 
 }  // namespace winnow::bench

@@ -14,7 +14,7 @@ constexpr std::size_t kWarming = 512;
 /// One contender at the level that is being raced.
 class Entry {
  public:
-  Entry(const PairSet& set, NarrowLevel level, const NarrowContender& contender)
+  Entry(const PairSet& set, ContactLevel level, const NarrowContender& contender)
       : set_(set), engine_(*contender.engine) {
     timing_.engine = engine_.name();
     timing_.level = level;
@@ -89,7 +89,7 @@ class Entry {
 
 }  // namespace
 
-std::vector<NarrowTiming> race_pairs(const PairSet& set, NarrowLevel level,
+std::vector<NarrowTiming> race_pairs(const PairSet& set, ContactLevel level,
                                      std::span<NarrowContender> contenders,
                                      const NarrowRaceOptions& options) {
   int most_threads = 1;

@@ -15,7 +15,7 @@ namespace winnow::bench {
 /// One engine on the pairs of one set at one level.
 struct NarrowTiming {
   std::string engine;
-  NarrowLevel level{};
+  ContactLevel level{};
   int threads = 1;
   /// Pairs a turn; fewer than the set has where an engine is slow.
   std::size_t pairs = 0;
@@ -54,7 +54,7 @@ struct NarrowRaceOptions {
 /// compare verdicts with those of the first, then in rounds in which they take turns. Time on one
 /// thread is what the thread computed, so that other work on the machine counts for little; on
 /// several it is that of the clock on the wall. The engines must have been started with the set.
-[[nodiscard]] std::vector<NarrowTiming> race_pairs(const PairSet& set, NarrowLevel level,
+[[nodiscard]] std::vector<NarrowTiming> race_pairs(const PairSet& set, ContactLevel level,
                                                    std::span<NarrowContender> contenders,
                                                    const NarrowRaceOptions& options);
 

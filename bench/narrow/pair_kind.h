@@ -24,11 +24,17 @@ struct PairKind {
 /// Null if there is none of the name.
 [[nodiscard]] const PairKind* find_pair_kind(std::string_view name) noexcept;
 
+/// What is asked about shapes.
+inline constexpr std::array kLevels{ContactLevel::boolean, ContactLevel::distance,
+                                    ContactLevel::manifold};
 inline constexpr std::array<std::string_view, 3> kLevelNames{"boolean", "distance", "manifold"};
 inline constexpr std::array<std::string_view, 3> kTierNames{"fast", "robust", "reference"};
 
-[[nodiscard]] constexpr std::string_view to_text(NarrowLevel level) noexcept {
-  return kLevelNames[static_cast<std::size_t>(level)];
+[[nodiscard]] constexpr std::string_view to_text(ContactLevel level) noexcept {
+  for (std::size_t i = 0; i < kLevels.size(); ++i) {
+    if (kLevels[i] == level) return kLevelNames[i];
+  }
+  return "pairs";
 }
 [[nodiscard]] constexpr std::string_view to_text(NarrowTier tier) noexcept {
   return kTierNames[static_cast<std::size_t>(tier)];

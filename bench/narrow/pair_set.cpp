@@ -116,7 +116,7 @@ class PairDrawing {
   std::vector<std::uint8_t> overlaps(const std::vector<std::uint32_t>& which) {
     std::vector<BodyPair> pairs;
     for (const std::uint32_t i : which) pairs.push_back(set_.pairs[i]);
-    const NarrowOptions boolean{.level = NarrowLevel::boolean};
+    const NarrowOptions boolean{.level = ContactLevel::boolean};
     const Status status = narrow_.collide(set_.pool, set_.bodies(), pairs, boolean, result_);
     if (status != Status::ok) {
       throw std::runtime_error(std::string("pairs were refused: ") + to_string(status));

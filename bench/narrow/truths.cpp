@@ -31,7 +31,7 @@ PairTruth ask_oracle(const PairSet& set, const BodyPair& pair) {
 std::vector<PairTruth> ask_reference(const PairSet& set) {
   WinnowNarrow reference(NarrowTier::reference, 2);
   reference.start(set);
-  reference.run(NarrowLevel::distance, set.pairs);
+  reference.run(ContactLevel::distance, set.pairs);
   std::vector<PairTruth> truths(set.pairs.size());
   for (std::size_t i = 0; i < truths.size(); ++i) {
     const NarrowAnswer answer = reference.answer(i);

@@ -9,7 +9,7 @@ WinnowNarrow::WinnowNarrow(NarrowTier tier, int threads)
     : options_{.tier = tier,
                .execution = threads > 1 ? Execution::parallel() : Execution::serial()} {}
 
-void WinnowNarrow::run(NarrowLevel level, std::span<const BodyPair> pairs) {
+void WinnowNarrow::run(ContactLevel level, std::span<const BodyPair> pairs) {
   options_.level = level;
   pairs_ = pairs;
   const Status status = narrow_.collide(set_->pool, set_->bodies(), pairs, options_, result_);
@@ -23,17 +23,17 @@ NarrowAnswer WinnowNarrow::answer(std::size_t i) const {
   if (result_.pair_of(i) != i) throw std::logic_error("pairs of one kind changed their order");
   NarrowAnswer answer;
   answer.overlap = result_.overlaps(i);
-  if (result_.level() == NarrowLevel::boolean) return answer;
+  if (result_.level() == ContactLevel::boolean) return answer;
   answer.distance = result_.distance()[i];
   answer.error_bound = result_.error_bound()[i];
   const Pose& a = set_->poses[pairs_[i].a];
   for (int axis = 0; axis < 3; ++axis) {
     answer.normal[axis] = result_.normal(axis)[i];
-    if (result_.level() == NarrowLevel::distance) {
+    if (result_.level() == ContactLevel::distance) {
       answer.point[axis] = a.position[axis] + result_.point(axis)[i];
     }
   }
-  if (result_.level() == NarrowLevel::manifold) answer.contacts = result_.contact_count()[i];
+  if (result_.level() == ContactLevel::manifold) answer.contacts = result_.contact_count()[i];
   return answer;
 }
 

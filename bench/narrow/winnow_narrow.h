@@ -16,10 +16,10 @@ class WinnowNarrow final : public NarrowEngine {
   WinnowNarrow(NarrowTier tier, int threads);
 
   [[nodiscard]] std::string name() const override { return std::string(to_text(options_.tier)); }
-  [[nodiscard]] bool takes(const PairKind&, NarrowLevel) const override { return true; }
+  [[nodiscard]] bool takes(const PairKind&, ContactLevel) const override { return true; }
   void start(const PairSet& set) override { set_ = &set; }
   /// Throws std::runtime_error if the pairs are refused.
-  void run(NarrowLevel level, std::span<const BodyPair> pairs) override;
+  void run(ContactLevel level, std::span<const BodyPair> pairs) override;
   [[nodiscard]] NarrowAnswer answer(std::size_t i) const override;
   [[nodiscard]] double recomputed() const override;
 

@@ -81,9 +81,9 @@ class Report final : public btManifoldResult {
     on_b_ = on_b;
   }
 
-  void write(NarrowLevel level, NarrowAnswer& answer) const {
+  void write(ContactLevel level, NarrowAnswer& answer) const {
     answer.overlap = distance_ <= 0;
-    if (level == NarrowLevel::boolean) return;
+    if (level == ContactLevel::boolean) return;
     const btVector3 on_a = on_b_ + normal_on_b_ * distance_;
     answer.distance = static_cast<double>(distance_);
     write_vector(answer.normal, -normal_on_b_.x(), -normal_on_b_.y(), -normal_on_b_.z());
@@ -113,20 +113,20 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
 
   [[nodiscard]] std::string name() const override { return "Bullet"; }
 
-  [[nodiscard]] static Answerer answerer(const PairKind& kind, NarrowLevel level) {
+  [[nodiscard]] static Answerer answerer(const PairKind& kind, ContactLevel level) {
     using enum ShapeKind;
-    if (level == NarrowLevel::manifold) return &BulletNarrow::manifold;
-    const bool verdict = level == NarrowLevel::boolean;
+    if (level == ContactLevel::manifold) return &BulletNarrow::manifold;
+    const bool verdict = level == ContactLevel::boolean;
     const bool round = kind.b == sphere || kind.b == capsule;
     if (round)
-      return verdict ? &BulletNarrow::closed<NarrowLevel::boolean>
-                     : &BulletNarrow::closed<NarrowLevel::distance>;
+      return verdict ? &BulletNarrow::closed<ContactLevel::boolean>
+                     : &BulletNarrow::closed<ContactLevel::distance>;
     if (kind.a == sphere && kind.b == box)
-      return verdict ? &BulletNarrow::ball_in_box<NarrowLevel::boolean>
-                     : &BulletNarrow::ball_in_box<NarrowLevel::distance>;
+      return verdict ? &BulletNarrow::ball_in_box<ContactLevel::boolean>
+                     : &BulletNarrow::ball_in_box<ContactLevel::distance>;
     if (kind.a == sphere)
-      return verdict ? &BulletNarrow::ball_on_triangle<NarrowLevel::boolean>
-                     : &BulletNarrow::ball_on_triangle<NarrowLevel::distance>;
+      return verdict ? &BulletNarrow::ball_on_triangle<ContactLevel::boolean>
+                     : &BulletNarrow::ball_on_triangle<ContactLevel::distance>;
     if (kind.a == box && kind.b == box && verdict) return &BulletNarrow::axes;
     return verdict ? &BulletNarrow::gjk_verdict : &BulletNarrow::gjk_distance;
   }
@@ -203,18 +203,18 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
     }
   }
 
-  template <NarrowLevel level>
+  template <ContactLevel level>
   void closed(const BodyPair& pair, NarrowAnswer& answer) {
     const Wrapped a(objects_[pair.a]);
     const Wrapped b(objects_[pair.b]);
-    Report report(&a.wrapper, &b.wrapper, level == NarrowLevel::boolean ? 0 : kFar);
+    Report report(&a.wrapper, &b.wrapper, level == ContactLevel::boolean ? 0 : kFar);
     written_->setBodies(&objects_[pair.a], &objects_[pair.b]);
     report.setPersistentManifold(written_);
     algorithm_->processCollision(&a.wrapper, &b.wrapper, info_, &report);
     report.write(level, answer);
   }
 
-  template <NarrowLevel level>
+  template <ContactLevel level>
   void ball_in_box(const BodyPair& pair, NarrowAnswer& answer) {
     const Wrapped box(objects_[pair.b]);
     btVector3 on_box;
@@ -223,20 +223,20 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
     auto& algorithm = static_cast<btSphereBoxCollisionAlgorithm&>(*algorithm_);
     const bool found = algorithm.getSphereDistance(
         &box.wrapper, on_box, normal, depth, objects_[pair.a].getWorldTransform().getOrigin(),
-        shape_of<btSphereShape>(pair.a).getRadius(), level == NarrowLevel::boolean ? 0 : kFar);
+        shape_of<btSphereShape>(pair.a).getRadius(), level == ContactLevel::boolean ? 0 : kFar);
     answer.overlap = found && depth <= 0;
-    if (level == NarrowLevel::boolean) return;
+    if (level == ContactLevel::boolean) return;
     const btVector3 on_ball = on_box + normal * depth;
     answer.distance = static_cast<double>(depth);
     write_vector(answer.normal, -normal.x(), -normal.y(), -normal.z());
     write_vector(answer.point, on_ball.x(), on_ball.y(), on_ball.z());
   }
 
-  template <NarrowLevel level>
+  template <ContactLevel level>
   void ball_on_triangle(const BodyPair& pair, NarrowAnswer& answer) {
     auto* ball = const_cast<btSphereShape*>(&shape_of<btSphereShape>(pair.a));
     auto* triangle = const_cast<btTriangleShape*>(&shape_of<btTriangleShape>(pair.b));
-    SphereTriangleDetector detector(ball, triangle, level == NarrowLevel::boolean ? 0 : kFar);
+    SphereTriangleDetector detector(ball, triangle, level == ContactLevel::boolean ? 0 : kFar);
     btDiscreteCollisionDetectorInterface::ClosestPointInput input;
     input.m_transformA = objects_[pair.a].getWorldTransform();
     input.m_transformB = objects_[pair.b].getWorldTransform();
@@ -252,7 +252,7 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
     input.m_transformB = objects_[pair.b].getWorldTransform();
     Report report(nullptr, nullptr, 0);
     detector.getClosestPoints(input, report, nullptr);
-    report.write(NarrowLevel::boolean, answer);
+    report.write(ContactLevel::boolean, answer);
   }
 
   /// What of a shape its core does not have: a capsule's radius.

@@ -77,7 +77,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
 
   [[nodiscard]] std::string name() const override { return kLibccd ? "FCL libccd" : "FCL indep"; }
 
-  [[nodiscard]] static Answerer answerer(const PairKind& kind, NarrowLevel level) {
+  [[nodiscard]] static Answerer answerer(const PairKind& kind, ContactLevel level) {
     using enum ShapeKind;
     if (kind.a == triangle) return pick(level, &Self::cross, &Self::triangle_gap, &Self::cut);
     if (kind.b == triangle) {
@@ -137,11 +137,11 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     Corners corners;
   };
 
-  static Answerer pick(NarrowLevel level, Answerer boolean, Answerer distance, Answerer manifold) {
+  static Answerer pick(ContactLevel level, Answerer boolean, Answerer distance, Answerer manifold) {
     switch (level) {
-      case NarrowLevel::boolean:
+      case ContactLevel::boolean:
         return boolean;
-      case NarrowLevel::distance:
+      case ContactLevel::distance:
         return distance;
       default:
         return manifold;
@@ -149,13 +149,13 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
   }
 
   template <typename A, typename B>
-  static Answerer of_shapes(NarrowLevel level) {
+  static Answerer of_shapes(ContactLevel level) {
     return pick(level, &Self::template verdict<A, B>, &Self::template distance<A, B>,
                 &Self::template contacts<A, B>);
   }
 
   template <typename A>
-  static Answerer against_triangle(NarrowLevel level) {
+  static Answerer against_triangle(ContactLevel level) {
     return pick(level, &Self::template triangle_verdict<A>, &Self::template triangle_distance<A>,
                 &Self::template triangle_contact<A>);
   }

@@ -165,11 +165,11 @@ class LibccdNarrow final : public NarrowAdapter<LibccdNarrow> {
 
   [[nodiscard]] std::string name() const override { return portals_ ? "libccd MPR" : "libccd GJK"; }
 
-  [[nodiscard]] static Answerer answerer(const PairKind&, NarrowLevel level) {
+  [[nodiscard]] static Answerer answerer(const PairKind&, ContactLevel level) {
     switch (level) {
-      case NarrowLevel::boolean:
+      case ContactLevel::boolean:
         return &LibccdNarrow::verdict;
-      case NarrowLevel::manifold:
+      case ContactLevel::manifold:
         return &LibccdNarrow::contact;
       default:
         return nullptr;

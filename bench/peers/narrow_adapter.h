@@ -14,11 +14,11 @@ class NarrowAdapter : public NarrowEngine {
  public:
   using Answerer = void (Adapter::*)(const BodyPair&, NarrowAnswer&);
 
-  [[nodiscard]] bool takes(const PairKind& kind, NarrowLevel level) const final {
+  [[nodiscard]] bool takes(const PairKind& kind, ContactLevel level) const final {
     return Adapter::answerer(kind, level) != nullptr;
   }
 
-  void run(NarrowLevel level, std::span<const BodyPair> pairs) final {
+  void run(ContactLevel level, std::span<const BodyPair> pairs) final {
     answers_.resize(pairs.size());
     const Answerer one = Adapter::answerer(kind_, level);
     auto& adapter = static_cast<Adapter&>(*this);

@@ -36,11 +36,11 @@ class NarrowEngine {
   /// Short and stable, e.g. "robust" or "FCL libccd".
   [[nodiscard]] virtual std::string name() const = 0;
   /// True if it has a way to answer such pairs at the level.
-  [[nodiscard]] virtual bool takes(const PairKind& kind, NarrowLevel level) const = 0;
+  [[nodiscard]] virtual bool takes(const PairKind& kind, ContactLevel level) const = 0;
   /// Makes everything ready. Called once, before any run; `set` outlives the engine.
   virtual void start(const PairSet& set) = 0;
   /// Answers some of the set's pairs.
-  virtual void run(NarrowLevel level, std::span<const BodyPair> pairs) = 0;
+  virtual void run(ContactLevel level, std::span<const BodyPair> pairs) = 0;
   /// What the last run said of its pair i.
   [[nodiscard]] virtual NarrowAnswer answer(std::size_t i) const = 0;
   /// Share of the pairs of the last run that were computed a second time; NaN: cannot tell.

@@ -36,7 +36,7 @@ std::span<const std::uint32_t> corners_of(const Triangles& mesh) {
 
 class WinnowScene final : public SceneEngine {
  public:
-  WinnowScene(int threads, double carry_over, SceneLevel level)
+  WinnowScene(int threads, double carry_over, ContactLevel level)
       : execution_(execution_for(threads)), carry_over_(carry_over), level_(level) {}
 
   [[nodiscard]] std::string name() const override {
@@ -75,7 +75,7 @@ class WinnowScene final : public SceneEngine {
  private:
   Execution execution_;
   double carry_over_;
-  SceneLevel level_;
+  ContactLevel level_;
   std::optional<CompositePool> composites_;
   std::optional<Scene> scene_;
   std::vector<Key> keys_;
@@ -101,7 +101,7 @@ class WinnowMesh final : public MeshEngine {
     if (keys_.empty()) add_bodies();
     const Pose poses[] = {a, b};
     need(scene_.move(keys_, poses), "poses");
-    need(scene_.collide(SceneLevel::manifold, contacts_), "contacts");
+    need(scene_.collide(ContactLevel::manifold, contacts_), "contacts");
   }
 
   [[nodiscard]] TrianglePairs pairs() const override {
@@ -144,7 +144,7 @@ std::size_t count_differing(MeshEngine::TrianglePairs& a, MeshEngine::TrianglePa
 
 }  // namespace
 
-std::unique_ptr<SceneEngine> make_winnow_scene(int threads, double carry_over, SceneLevel level) {
+std::unique_ptr<SceneEngine> make_winnow_scene(int threads, double carry_over, ContactLevel level) {
   return std::make_unique<WinnowScene>(threads, carry_over, level);
 }
 

@@ -101,7 +101,7 @@ void push_apart(BodySet& set, double side) {
   need(scene.add(bodies, keys), "the heap");
   Contacts contacts;
   for (int push = 0; push < kPushes; ++push) {
-    need(scene.collide(SceneLevel::distance, contacts), "the heap");
+    need(scene.collide(ContactLevel::distance, contacts), "the heap");
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       const double share = -0.4 * contacts.distance()[i];
       for (int axis = 0; axis < 3; ++axis) {

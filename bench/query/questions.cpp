@@ -30,7 +30,7 @@ class Questionnaire {
   void ask_pairs(NarrowTier tier) {
     NarrowPhase phase;
     NarrowResult result;
-    const NarrowOptions options{.level = NarrowLevel::distance, .tier = tier};
+    const NarrowOptions options{.level = ContactLevel::distance, .tier = tier};
     const Status status = phase.collide(pool_, {shapes_, poses_}, pairs_, options, result);
     if (status != Status::ok) {
       for (const std::size_t row : rows_) refuse(answers_[row], status);

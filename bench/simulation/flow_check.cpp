@@ -157,7 +157,7 @@ class Check {
     NarrowPhase narrow;
     NarrowResult result;
     RowPairs touching;
-    if (narrow.collide(tables, {shapes, poses}, pairs, {.level = NarrowLevel::boolean}, result) !=
+    if (narrow.collide(tables, {shapes, poses}, pairs, {.level = ContactLevel::boolean}, result) !=
         Status::ok) {
       return touching;
     }

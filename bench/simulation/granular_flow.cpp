@@ -196,17 +196,17 @@ void GranularFlow::find_contacts(bool profiled) {
     need(scene_.refresh(), "boxes");
     times_.broad = refreshing.ms();
     const Stopwatch searching;
-    need(scene_.collide(SceneLevel::pairs, found_pairs_), "pairs");
+    need(scene_.collide(ContactLevel::pairs, found_pairs_), "pairs");
     times_.broad += searching.ms();
     // The scene has the pairs by now, and finds them at hardly any cost again.
     const Stopwatch colliding;
-    need(scene_.collide(SceneLevel::manifold, contacts_), "contacts");
+    need(scene_.collide(ContactLevel::manifold, contacts_), "contacts");
     times_.mid = mid_phase_.take_ms();
     times_.narrow = colliding.ms() - times_.mid;
     return;
   }
   const Stopwatch colliding;
-  need(scene_.collide(SceneLevel::manifold, contacts_), "contacts");
+  need(scene_.collide(ContactLevel::manifold, contacts_), "contacts");
   times_.narrow = colliding.ms();
   mid_phase_.take_ms();
 }

@@ -29,7 +29,7 @@ void add_spread(Json& row, const std::string& of, const ErrorSpread& spread) {
 }
 
 /// Of an engine that gave up.
-Accuracy no_answers(const NarrowEngine& engine, NarrowLevel level, std::size_t pairs) {
+Accuracy no_answers(const NarrowEngine& engine, ContactLevel level, std::size_t pairs) {
   Accuracy accuracy;
   accuracy.engine = engine.name();
   accuracy.level = level;
@@ -68,7 +68,7 @@ AccuracyMeasurement measure_accuracy(const AccuracyOptions& options) {
   }
   AccuracyMeasurement measured;
   for (const auto& engine : engines) engine->start(*set);
-  for (const NarrowLevel level : options.levels) {
+  for (const ContactLevel level : options.levels) {
     for (const auto& engine : engines) {
       if (!engine->takes(options.kind, level)) continue;
       try {

@@ -17,7 +17,7 @@ inline constexpr double kNearestPairs = 1e-6;
 struct AccuracyOptions {
   PairKind kind;
   PairSetOptions set{.pairs = 400, .nearest = kNearestPairs};
-  std::vector<NarrowLevel> levels{NarrowLevel::distance};
+  std::vector<ContactLevel> levels{ContactLevel::distance};
   std::vector<NarrowTier> tiers{NarrowTier::fast, NarrowTier::robust, NarrowTier::reference};
   bool peers = true;  ///< other libraries too, where the tool was built with them
   TruthSource judge = TruthSource::oracle;

@@ -98,10 +98,10 @@ Json to_json(const Json& question, const NarrowAnswer& answer, double sign) {
 }
 
 CaseVerdict ask_peer(NarrowEngine& engine, const PeerCase& asked, const Json& question) {
-  const bool tells_distance = engine.takes(asked.set.kind, NarrowLevel::distance);
+  const bool tells_distance = engine.takes(asked.set.kind, ContactLevel::distance);
   try {
     engine.start(asked.set);
-    engine.run(tells_distance ? NarrowLevel::distance : NarrowLevel::manifold, asked.set.pairs);
+    engine.run(tells_distance ? ContactLevel::distance : ContactLevel::manifold, asked.set.pairs);
   } catch (const std::exception&) {
     return {.fault = "exception"};
   }
@@ -124,7 +124,7 @@ void add_peers(const Json& questions, std::vector<HardCaseTally>& tallies) {
     const auto fresh = narrow_peers();
     for (std::size_t i = 0; i < peers.size(); ++i) {
       const bool needs_origin = peers[i].engine.starts_with("libccd");
-      if (asked == nullptr || !fresh[i]->takes(asked->set.kind, NarrowLevel::manifold) ||
+      if (asked == nullptr || !fresh[i]->takes(asked->set.kind, ContactLevel::manifold) ||
           (needs_origin && !asked->around_origin)) {
         ++peers[i].not_taken;
       } else {

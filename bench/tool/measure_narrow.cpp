@@ -23,7 +23,7 @@ bool NarrowMeasurement::is_peer(const NarrowTiming& timing) const noexcept {
   return std::find(peers.begin(), peers.end(), timing.engine) != peers.end();
 }
 
-const NarrowTiming* NarrowMeasurement::find(NarrowTier tier, NarrowLevel level,
+const NarrowTiming* NarrowMeasurement::find(NarrowTier tier, ContactLevel level,
                                             int threads) const noexcept {
   for (const NarrowTiming& timing : timings) {
     if (timing.engine == to_text(tier) && timing.level == level && timing.threads == threads) {
@@ -41,7 +41,7 @@ bool NarrowMeasurement::is_right(const NarrowTiming& timing) const noexcept {
   return first == timings.end() || 2.0 * timing.contacts >= first->contacts;
 }
 
-const NarrowTiming* NarrowMeasurement::best_peer(NarrowLevel level) const noexcept {
+const NarrowTiming* NarrowMeasurement::best_peer(ContactLevel level) const noexcept {
   const NarrowTiming* best = nullptr;
   for (const NarrowTiming& timing : timings) {
     if (timing.level != level || !is_peer(timing) || !is_right(timing)) continue;
@@ -71,7 +71,7 @@ NarrowMeasurement measure_narrow(const NarrowMeasureOptions& options) {
   }
   for (const NarrowContender& contender : contenders) contender.engine->start(*set);
   MachineClock clock;
-  for (const NarrowLevel level : options.levels) {
+  for (const ContactLevel level : options.levels) {
     clock.tick();
     for (NarrowTiming& timing : race_pairs(*set, level, contenders, options.race)) {
       measured.timings.push_back(std::move(timing));

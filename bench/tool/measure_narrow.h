@@ -16,8 +16,8 @@ inline constexpr std::size_t kMostPairsInCache = 16'384;
 struct NarrowMeasureOptions {
   PairKind kind;
   std::size_t pairs = 8192;
-  std::vector<NarrowLevel> levels{NarrowLevel::boolean, NarrowLevel::distance,
-                                  NarrowLevel::manifold};
+  std::vector<ContactLevel> levels{ContactLevel::boolean, ContactLevel::distance,
+                                   ContactLevel::manifold};
   std::vector<NarrowTier> tiers{NarrowTier::robust};
   std::vector<int> threads{1};  ///< winnow's; other libraries use one
   bool peers = false;           ///< other libraries too, where the tool was built with them
@@ -34,13 +34,13 @@ struct NarrowMeasurement {
 
   [[nodiscard]] bool is_peer(const NarrowTiming& timing) const noexcept;
   /// Null if there is none.
-  [[nodiscard]] const NarrowTiming* find(NarrowTier tier, NarrowLevel level,
+  [[nodiscard]] const NarrowTiming* find(NarrowTier tier, ContactLevel level,
                                          int threads = 1) const noexcept;
   /// False for what is systematically wrong: verdicts in more than 1 of 100 pairs, other depths in
   /// more than 1 of 10, or less than half as many contacts as the first engine of the level finds.
   [[nodiscard]] bool is_right(const NarrowTiming& timing) const noexcept;
   /// Of the other libraries that are right the fastest; null if there is none.
-  [[nodiscard]] const NarrowTiming* best_peer(NarrowLevel level) const noexcept;
+  [[nodiscard]] const NarrowTiming* best_peer(ContactLevel level) const noexcept;
 };
 
 [[nodiscard]] NarrowMeasurement measure_narrow(const NarrowMeasureOptions& options);

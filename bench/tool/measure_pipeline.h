@@ -14,7 +14,7 @@ namespace winnow::bench {
 struct PipelineMeasureOptions {
   std::string scene = "pile";  ///< pile or terrain
   bool resting = false;        ///< and winnow carries contacts over
-  SceneLevel level = SceneLevel::manifold;
+  ContactLevel level = ContactLevel::manifold;
   std::vector<int> threads{1, 2};
   bool peers = true;
   std::size_t frames = 9;

@@ -40,8 +40,8 @@ std::vector<std::string> row_of(const NarrowMeasurement& measured, const NarrowT
           compared ? short_number(peer->median_ns() / ns) + "x" : "-",
           percent(timing.recomputed),
           std::to_string(timing.disagree),
-          timing.level == NarrowLevel::boolean ? "-" : percent(timing.other_depth),
-          timing.level == NarrowLevel::manifold ? short_number(timing.contacts) : "-"};
+          timing.level == ContactLevel::boolean ? "-" : percent(timing.other_depth),
+          timing.level == ContactLevel::manifold ? short_number(timing.contacts) : "-"};
 }
 
 Json to_json(const NarrowMeasurement& measured, const NarrowTiming& timing) {

@@ -25,12 +25,13 @@ std::vector<std::string> strings(const Names& names) {
   return {names.begin(), names.end()};
 }
 
-/// The enumerators whose names are chosen.
+/// Those of `all` whose names are chosen.
 template <typename Enum, typename Names>
-std::vector<Enum> chosen(const std::vector<std::string>& choice, const Names& names) {
+std::vector<Enum> chosen(const std::vector<std::string>& choice, std::span<const Enum> all,
+                         const Names& names) {
   std::vector<Enum> taken;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (is_chosen(choice, names[i])) taken.push_back(static_cast<Enum>(i));
+    if (is_chosen(choice, names[i])) taken.push_back(all[i]);
   }
   return taken;
 }
@@ -45,12 +46,13 @@ std::vector<PairKind> NarrowChoice::chosen_kinds() const {
   return taken;
 }
 
-std::vector<NarrowLevel> NarrowChoice::chosen_levels() const {
-  return chosen<NarrowLevel>(levels, kLevelNames);
+std::vector<ContactLevel> NarrowChoice::chosen_levels() const {
+  return chosen<ContactLevel>(levels, kLevels, kLevelNames);
 }
 
 std::vector<NarrowTier> NarrowChoice::chosen_tiers() const {
-  return chosen<NarrowTier>(tiers, kTierNames);
+  constexpr NarrowTier kTiers[] = {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference};
+  return chosen<NarrowTier>(tiers, kTiers, kTierNames);
 }
 
 void add_kind_option(CLI::App& app, NarrowChoice& choice) {

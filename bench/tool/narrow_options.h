@@ -15,7 +15,7 @@ struct NarrowChoice {
   std::vector<std::string> tiers;
 
   [[nodiscard]] std::vector<PairKind> chosen_kinds() const;
-  [[nodiscard]] std::vector<NarrowLevel> chosen_levels() const;
+  [[nodiscard]] std::vector<ContactLevel> chosen_levels() const;
   [[nodiscard]] std::vector<NarrowTier> chosen_tiers() const;
 };
 

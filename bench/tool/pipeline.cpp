@@ -13,10 +13,10 @@ namespace winnow::bench {
 namespace {
 
 const std::vector<std::string> kScenes{"pile", "terrain", "tori"};
-const std::map<std::string, SceneLevel> kLevels{{"pairs", SceneLevel::pairs},
-                                                {"boolean", SceneLevel::boolean},
-                                                {"distance", SceneLevel::distance},
-                                                {"manifold", SceneLevel::manifold}};
+const std::map<std::string, ContactLevel> kLevelsByName{{"pairs", ContactLevel::pairs},
+                                                        {"boolean", ContactLevel::boolean},
+                                                        {"distance", ContactLevel::distance},
+                                                        {"manifold", ContactLevel::manifold}};
 
 struct Pipeline {
   Choice choice;
@@ -46,9 +46,9 @@ void Pipeline::race(const std::string& scene, const std::string& level, bool res
   PipelineMeasureOptions options;
   options.scene = scene;
   options.resting = resting;
-  options.level = kLevels.at(level);
+  options.level = kLevelsByName.at(level);
   options.threads = threads;
-  options.peers = peers && options.level == SceneLevel::manifold;
+  options.peers = peers && options.level == ContactLevel::manifold;
   options.frames = frames;
   options.bodies = bodies;
   options.seed = choice.seed;
@@ -155,7 +155,7 @@ Command add_pipeline(CLI::App& app) {
       ->capture_default_str();
   sub->add_option("--level", pipeline->levels, "How much winnow is asked for")
       ->delimiter(',')
-      ->check(CLI::IsMember(kLevels))
+      ->check(CLI::IsMember(kLevelsByName))
       ->capture_default_str();
   sub->add_option("--threads", pipeline->threads, "Numbers of threads that winnow takes")
       ->delimiter(',')

@@ -1,5 +1,6 @@
 #include "volumes/solids.h"
 
+#include <winnow/core/rotation.h>
 #include "scenes/random.h"
 
 #include <cmath>
@@ -19,15 +20,7 @@ void random_turn(Random& random, double* q) {
 }
 
 Eigen::Matrix3f matrix_of(const double* q) {
-  const double w = q[0];
-  const double x = q[1];
-  const double y = q[2];
-  const double z = q[3];
-  Eigen::Matrix3d m;
-  m << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z),
-      1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x),
-      1 - 2 * (x * x + y * y);
-  return m.cast<float>();
+  return rotation_of_unit({q[0], q[1], q[2], q[3]}).cast<float>();
 }
 
 Eigen::Vector3f random_point(Random& random, double side) {

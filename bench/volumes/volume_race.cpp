@@ -96,8 +96,8 @@ void Contestant::run(const Solids& solids, NarrowPhase& narrow, NarrowResult& re
   asked.reserve(pairs_.size());
   for (const Pair& pair : pairs_) asked.push_back({pair.first, pair.second});
   const ThreadStopwatch narrow_clock;
-  expect_ok(narrow.collide(solids.shapes(), solids.bodies(), asked, {.level = NarrowLevel::boolean},
-                           result));
+  expect_ok(narrow.collide(solids.shapes(), solids.bodies(), asked,
+                           {.level = ContactLevel::boolean}, result));
   const double narrow_ms = narrow_clock.ms();
   overlapping.clear();
   for (std::size_t i = 0; i < asked.size(); ++i) {

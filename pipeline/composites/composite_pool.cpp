@@ -33,7 +33,7 @@ namespace {
 }
 
 [[nodiscard]] Aabb box_of(const ShapePool& shapes, const CompoundChild& child) noexcept {
-  const Eigen::Vector4d turn = tame(child.pose.orientation);
+  const Quaternion turn = tame(child.pose.orientation);
   const Box box = box_under(shapes.tables(), child.shape, rotation_of(turn),
                             Eigen::Map<const Vec>(child.pose.position), 0.0);
   return Aabb::outward(box.min, box.max);
@@ -41,7 +41,7 @@ namespace {
 
 /// The box of a shape at a pose.
 [[nodiscard]] Box bounds_of(const Composites& all, ShapeId id, const Pose& pose) noexcept {
-  const Eigen::Vector4d turn = tame(pose.orientation);
+  const Quaternion turn = tame(pose.orientation);
   const Mat rotation = rotation_of(turn);
   const Eigen::Map<const Vec> position(pose.position);
   if (const MeshEntry* const mesh = all.mesh(id)) {
@@ -151,7 +151,8 @@ Status Composites::new_compound(std::span<const CompoundChild> children, Compoun
     new (boxes + i) Aabb(box_of(shapes, children[i]));
     compound->bounds.merge(boxes[i]);
     const Eigen::Map<const Vec> at(children[i].pose.position);
-    const double radius = radius_of(shapes.tables(), children[i].shape) + at.stableNorm();
+    const double radius =
+        radius_of(shapes.tables(), children[i].shape) * (1.0 + kSlack) + at.stableNorm();
     compound->radius = std::max(compound->radius, radius * (1.0 + kSlack));
   }
   if (many && Box::of(compound->bounds).is_finite()) {

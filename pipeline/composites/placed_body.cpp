@@ -15,7 +15,11 @@ TriangleShape Corners::triangle() const noexcept {
 
 PlacedPart::PlacedPart(const ShapeTables& tables, ShapeId id, std::uint32_t of_body,
                        const Mat& turned, const Vec& at) noexcept
-    : shape(id), number(of_body), rotation(turned), position(at), radius(radius_of(tables, id)) {
+    : shape(id),
+      number(of_body),
+      rotation(turned),
+      position(at),
+      radius(radius_of(tables, id) * (1.0 + kSlack)) {
   reach = radius;
   switch (id.kind()) {
     case ShapeKind::sphere:
@@ -91,7 +95,7 @@ PlacedPart PlacedBody::part(std::uint32_t number) const noexcept {
           position + rotation * at};
 }
 
-Eigen::Vector4d PlacedBody::part_turn(std::uint32_t number) const noexcept {
+Quaternion PlacedBody::part_turn(std::uint32_t number) const noexcept {
   if (kind == Kind::convex) return turn;
   return product(turn, tame(compound->children[number].pose.orientation));
 }

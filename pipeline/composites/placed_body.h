@@ -49,7 +49,7 @@ struct PlacedBody {
   /// Of all of this, grown by `margin` in the world, in the frame of `other`.
   [[nodiscard]] Box box_in(const PlacedBody& other, double margin) const noexcept;
   [[nodiscard]] PlacedPart part(std::uint32_t number) const noexcept;
-  [[nodiscard]] Eigen::Vector4d part_turn(std::uint32_t number) const noexcept;
+  [[nodiscard]] Quaternion part_turn(std::uint32_t number) const noexcept;
   /// False for a triangle of a hole.
   [[nodiscard]] bool corners(std::uint32_t number, Corners& out) const noexcept;
   /// As callers know it: see Primitive::part.
@@ -60,7 +60,7 @@ struct PlacedBody {
   const ShapeTables& tables;
   Kind kind = Kind::convex;
   ShapeId id;
-  Eigen::Vector4d turn;
+  Quaternion turn;
   Mat rotation;
   Vec position;
   /// Own units to the world's without the position, scale included, and back.

@@ -1,8 +1,8 @@
+#include <winnow/pipeline/contact_types.h>
 #include "pipeline/composites/composites.h"
-#include "pipeline/narrow/narrow_job.h"
 #include "pipeline/shapes/extent.h"
+#include "pipeline/solver/manifold.h"
 #include "pipeline/solver/problem.h"
-#include "pipeline/solver/supporting_patch.h"
 
 #include <algorithm>
 #include <array>
@@ -215,7 +215,7 @@ class Smoothing {
            pairs_.active_edges[shape.index()] != PrimitivePairs::kAllActive;
   }
   [[nodiscard]] bool has_contacts() const noexcept {
-    return result_.level_ == NarrowLevel::manifold;
+    return result_.level_ == ContactLevel::manifold;
   }
   [[nodiscard]] const BodyPair& pair(std::size_t i) const noexcept {
     return pairs_.pairs[result_.order_[i]];
@@ -442,7 +442,7 @@ void Smoothing::take(Chunk& chunk, std::size_t i, std::span<const ContactPoint> 
 
 void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
             NarrowResult& result) noexcept {
-  if (result.level() != NarrowLevel::boolean) Smoothing(shapes, pairs, result).run(execution);
+  if (result.level() != ContactLevel::boolean) Smoothing(shapes, pairs, result).run(execution);
 }
 
 }  // namespace winnow::mid

@@ -2,7 +2,6 @@
 
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/shapes.h>
-#include "pipeline/exact/bit_span.h"
 #include "pipeline/exact/exact_vector.h"
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// NarrowLevel, as a template argument.
+/// ContactLevel, as a template argument.
 enum Level : int { kBoolean, kDistance, kManifold };
 
 /// The distance from 1 to the next number.

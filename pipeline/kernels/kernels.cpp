@@ -1,5 +1,6 @@
 #include "pipeline/kernels/kernels.h"
 #include <winnow/simd/isa.h>
+#include "pipeline/shapes/pair_order.h"
 
 namespace winnow {
 
@@ -23,54 +24,46 @@ WINNOW_DEFINE_KERNELS(NarrowKernels, capsule_hull_kernels)
 WINNOW_DEFINE_KERNELS(NarrowKernels, box_hull_kernels)
 WINNOW_DEFINE_KERNELS(NarrowKernels, hull_triangle_kernels)
 
-namespace {
-
-constexpr std::uint32_t code(ShapeKind a, ShapeKind b) {
-  return static_cast<std::uint32_t>(a) * kShapeKinds + static_cast<std::uint32_t>(b);
-}
-
-}  // namespace
-
 const NarrowKernels* narrow_kernels(ShapeKind a, ShapeKind b) noexcept {
   using enum ShapeKind;
-  switch (code(a, b)) {
-    case code(sphere, sphere):
+  switch (ConvexKindPairs::index(a, b)) {
+    case ConvexKindPairs::index(sphere, sphere):
       return &sphere_sphere_kernels();
-    case code(sphere, capsule):
+    case ConvexKindPairs::index(sphere, capsule):
       return &sphere_capsule_kernels();
-    case code(sphere, box):
+    case ConvexKindPairs::index(sphere, box):
       return &sphere_box_kernels();
-    case code(sphere, triangle):
+    case ConvexKindPairs::index(sphere, triangle):
       return &sphere_triangle_kernels();
-    case code(sphere, half_space):
+    case ConvexKindPairs::index(sphere, half_space):
       return &sphere_half_space_kernels();
-    case code(capsule, capsule):
+    case ConvexKindPairs::index(capsule, capsule):
       return &capsule_capsule_kernels();
-    case code(capsule, box):
+    case ConvexKindPairs::index(capsule, box):
       return &capsule_box_kernels();
-    case code(capsule, triangle):
+    case ConvexKindPairs::index(capsule, triangle):
       return &capsule_triangle_kernels();
-    case code(capsule, half_space):
+    case ConvexKindPairs::index(capsule, half_space):
       return &capsule_half_space_kernels();
-    case code(box, half_space):
+    case ConvexKindPairs::index(box, half_space):
       return &box_half_space_kernels();
-    case code(triangle, half_space):
+    case ConvexKindPairs::index(triangle, half_space):
       return &triangle_half_space_kernels();
-    case code(box, box):
+    case ConvexKindPairs::index(box, box):
       return &box_box_kernels();
-    case code(box, triangle):
+    case ConvexKindPairs::index(box, triangle):
       return &box_triangle_kernels();
-    case code(hull, hull):
+    case ConvexKindPairs::index(hull, hull):
       return &hull_hull_kernels();
-    case code(triangle, triangle):
+    case ConvexKindPairs::index(triangle, triangle):
       return &triangle_triangle_kernels();
-    case code(sphere, hull):
+    case ConvexKindPairs::index(sphere, hull):
       return &sphere_hull_kernels();
-    case code(capsule, hull):
+    case ConvexKindPairs::index(capsule, hull):
       return &capsule_hull_kernels();
-    case code(box, hull):
+    case ConvexKindPairs::index(box, hull):
       return &box_hull_kernels();
-    case code(hull, triangle):
+    case ConvexKindPairs::index(hull, triangle):
       return &hull_triangle_kernels();
     default:
       return nullptr;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/narrow/narrow_job.h"
+#include "pipeline/kernels/narrow_job.h"
 #include "simd/kernels/kernels.h"
 
 namespace winnow {
@@ -25,6 +25,11 @@ WINNOW_KERNELS(NarrowKernels, sphere_hull_kernels);
 WINNOW_KERNELS(NarrowKernels, capsule_hull_kernels);
 WINNOW_KERNELS(NarrowKernels, box_hull_kernels);
 WINNOW_KERNELS(NarrowKernels, hull_triangle_kernels);
+
+/// Where the kernel of a level stands in NarrowKernels. Level pairs has none.
+[[nodiscard]] constexpr std::uint32_t kernel_index(ContactLevel level) noexcept {
+  return static_cast<std::uint32_t>(level) - static_cast<std::uint32_t>(ContactLevel::boolean);
+}
 
 /// The active kernels of a pair kind, a <= b; null where the solver answers.
 [[nodiscard]] const NarrowKernels* narrow_kernels(ShapeKind a, ShapeKind b) noexcept;

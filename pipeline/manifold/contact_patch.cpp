@@ -12,17 +12,17 @@ namespace {
 constexpr double kSame = 1e-9;
 
 // Twice the area of a triangle, positive if it is counter-clockwise.
-double area(const Meeting& a, const Meeting& b, const Meeting& c) {
+double area(const PatchMeeting& a, const PatchMeeting& b, const PatchMeeting& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-double squared_distance(const Meeting& a, const Meeting& b) {
+double squared_distance(const PatchMeeting& a, const PatchMeeting& b) {
   return (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
 }
 
 // The first of the points of the largest value.
 template <typename Value>
-std::uint32_t largest(const Meetings& points, Value&& value) {
+std::uint32_t largest(const PatchMeetings& points, Value&& value) {
   std::uint32_t best = 0;
   double most = value(points.point[0]);
   for (std::uint32_t i = 1; i < points.count; ++i) {
@@ -37,15 +37,15 @@ std::uint32_t largest(const Meetings& points, Value&& value) {
 
 // The point 0, the one farthest from it, the one that makes the largest triangle with both, and the
 // one that adds most to its area. Returns how many: none is taken twice.
-std::uint32_t spread(const Meetings& m, std::uint32_t kept[kManifoldPoints]) {
-  const Meeting& p = m.point[0];
+std::uint32_t spread(const PatchMeetings& m, std::uint32_t kept[kManifoldPoints]) {
+  const PatchMeeting& p = m.point[0];
   kept[0] = 0;
-  kept[1] = largest(m, [&](const Meeting& x) { return squared_distance(p, x); });
-  const Meeting& q = m.point[kept[1]];
-  kept[2] = largest(m, [&](const Meeting& x) { return std::abs(area(p, q, x)); });
-  const Meeting& r = m.point[kept[2]];
+  kept[1] = largest(m, [&](const PatchMeeting& x) { return squared_distance(p, x); });
+  const PatchMeeting& q = m.point[kept[1]];
+  kept[2] = largest(m, [&](const PatchMeeting& x) { return std::abs(area(p, q, x)); });
+  const PatchMeeting& r = m.point[kept[2]];
   const double turn = area(p, q, r) < 0.0 ? -1.0 : 1.0;
-  kept[3] = largest(m, [&](const Meeting& x) {
+  kept[3] = largest(m, [&](const PatchMeeting& x) {
     return -std::min({turn * area(p, q, x), turn * area(q, r, x), turn * area(r, p, x)});
   });
   std::uint32_t count = 1;
@@ -55,7 +55,7 @@ std::uint32_t spread(const Meetings& m, std::uint32_t kept[kManifoldPoints]) {
   return count;
 }
 
-ContactPoint write(const Meeting& m, const PatchFrame& frame, const double rounding[2]) {
+ContactPoint write(const PatchMeeting& m, const PatchFrame& frame, const double rounding[2]) {
   const double top = m.height[0] + rounding[0];
   const double bottom = m.height[1] - rounding[1];
   const double middle = 0.5 * (top + bottom);
@@ -77,11 +77,11 @@ std::uint32_t contact_patch(const Patch& a, const Patch& b, const double normal[
   const PatchFrame frame(normal);
   const Outline outline[2] = {{a, frame, 1.0}, {b, frame, -1.0}};
   const double size = std::max(outline[0].size, outline[1].size);
-  Meetings m(kSame * size);
+  PatchMeetings m(kSame * size);
   find_meetings(outline[0], outline[1], m);
 
   const double rounding[2] = {a.rounding, b.rounding};
-  const auto rise = [](const Meeting& x) { return x.height[0] - x.height[1]; };
+  const auto rise = [](const PatchMeeting& x) { return x.height[0] - x.height[1]; };
   const double highest = rise(m.point[largest(m, rise)]);
   // Of equally deep points always the same is first.
   std::uint32_t deepest = 0;

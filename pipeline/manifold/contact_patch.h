@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/narrow/narrow_job.h"
+#include <winnow/pipeline/contact_types.h>
 
 #include <cstdint>
 

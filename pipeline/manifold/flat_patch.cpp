@@ -8,10 +8,6 @@ namespace winnow {
 
 namespace {
 
-double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 Patch view(const FlatPatch& p) {
   return {p.vertex, p.vertex_feature, p.edge_feature, p.count, p.feature, p.rounding};
 }
@@ -76,11 +72,11 @@ void deepest_point(const FlatPatch& a, const FlatPatch& b, const double normal[3
                    double point[3]) noexcept {
   const PatchFrame frame(normal);
   const Outline outline[2] = {{view(a), frame, 1.0}, {view(b), frame, -1.0}};
-  Meetings m(1e-9 * std::max(outline[0].size, outline[1].size));
+  PatchMeetings m(1e-9 * std::max(outline[0].size, outline[1].size));
   find_meetings(outline[0], outline[1], m);
-  const Meeting* best = m.point;
+  const PatchMeeting* best = m.point;
   for (std::uint32_t i = 1; i < m.count; ++i) {
-    const Meeting& p = m.point[i];
+    const PatchMeeting& p = m.point[i];
     if (p.height[0] - p.height[1] > best->height[0] - best->height[1]) best = &p;
   }
   for (int r = 0; r < 3; ++r) {

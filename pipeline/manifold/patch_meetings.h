@@ -1,14 +1,74 @@
 #pragma once
 
-#include "pipeline/manifold/patch_outline.h"
+#include "pipeline/manifold/contact_patch.h"
 
 #include <cmath>
 #include <cstdint>
 
 namespace winnow {
 
+inline constexpr std::uint32_t kOutlineVertices = 16;
+
+[[nodiscard]] inline double dot(const double a[3], const double b[3]) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Axes in which the normal is the third.
+struct PatchFrame {
+  double axis[3][3];
+
+  /// `normal` is a unit vector.
+  explicit PatchFrame(const double normal[3]) noexcept;
+};
+
+/// What a feature id says about its number: the upper two of 32 bits.
+enum class FeatureKind : std::uint32_t { vertex = 0, edge = 1, face = 2 };
+
+[[nodiscard]] constexpr std::uint32_t feature_id(FeatureKind kind, std::uint32_t number) noexcept {
+  return static_cast<std::uint32_t>(kind) << 30U | (number & 0x3FFFFFFFU);
+}
+
+/// A patch seen along the normal: counter-clockwise in x and y, with its heights h. What looks like
+/// a segment or a point from there has become one.
+struct Outline {
+  double x[kOutlineVertices];
+  double y[kOutlineVertices];
+  double h[kOutlineVertices];
+  std::uint32_t vertex_id[kOutlineVertices];
+  /// Of the edge from vertex i to the next.
+  std::uint32_t edge_id[kOutlineVertices];
+  std::uint32_t face_id;
+  std::uint32_t count;
+  /// Largest side of its bounds in x and y.
+  double size;
+  /// With three vertices or more: how fast h grows along x and y, and the cosine between the normal
+  /// and that of the polygon.
+  double slope[2];
+  double cosine;
+
+  /// `up` is 1 for the patch of a, whose highest point is its deepest, and -1 for that of b.
+  Outline(const Patch& patch, const PatchFrame& frame, double up) noexcept;
+
+  /// Height of the polygon's plane.
+  [[nodiscard]] double height(double px, double py) const noexcept {
+    return h[0] + slope[0] * (px - x[0]) + slope[1] * (py - y[0]);
+  }
+  [[nodiscard]] std::uint32_t next(std::uint32_t i) const noexcept {
+    return i + 1 == count ? 0 : i + 1;
+  }
+
+ private:
+  void take(const Patch& patch, const PatchFrame& frame, std::uint32_t vertex) noexcept;
+  void take_outermost(const Patch& patch, const PatchFrame& frame, double up) noexcept;
+  void orient(double up) noexcept;
+  void reverse() noexcept;
+  void flatten(double up) noexcept;
+  [[nodiscard]] std::uint32_t farthest_from(std::uint32_t vertex) const noexcept;
+  [[nodiscard]] std::uint32_t least_rise_from(std::uint32_t vertex, double up) const noexcept;
+};
+
 /// A place where two patches are, seen along the normal: patch 0 is that of a.
-struct Meeting {
+struct PatchMeeting {
   double x;
   double y;
   double height[2];
@@ -16,15 +76,15 @@ struct Meeting {
 };
 
 /// The corners of what two outlines share, in order around it.
-struct Meetings {
-  Meeting point[2 * kOutlineVertices];
+struct PatchMeetings {
+  PatchMeeting point[2 * kOutlineVertices];
   std::uint32_t count = 0;
   /// Points closer than that are one, and points so little outside of a side are inside.
   double same;
 
-  explicit Meetings(double tolerance) noexcept : same(tolerance) {}
+  explicit PatchMeetings(double tolerance) noexcept : same(tolerance) {}
 
-  void add(const Meeting& m) noexcept {
+  void add(const PatchMeeting& m) noexcept {
     for (std::uint32_t i = 0; i<count; i += count> 1 ? count - 1 : 1) {
       if (std::abs(point[i].x - m.x) <= same && std::abs(point[i].y - m.y) <= same) return;
     }
@@ -34,6 +94,6 @@ struct Meetings {
 
 /// Finds them; where outlines do not meet, as rounding or a caller's normal may have it, the one
 /// place where they come closest.
-void find_meetings(const Outline& a, const Outline& b, Meetings& out) noexcept;
+void find_meetings(const Outline& a, const Outline& b, PatchMeetings& out) noexcept;
 
 }  // namespace winnow

@@ -1,10 +1,14 @@
 #include <winnow/pipeline/narrow_phase.h>
+#include "core/memory/new_in.h"
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/narrow/narrow_chunk.h"
+#include "pipeline/manifold/mirrored.h"
+#include "pipeline/narrow/pair_buckets.h"
+#include "pipeline/solver/solver.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <numeric>
+#include <utility>
 
 namespace winnow {
 namespace {
@@ -12,7 +16,7 @@ namespace {
 // Chunks between two moments at which parallel tasks' contacts are put in order: bounds what is
 // held twice.
 constexpr std::size_t kWave = 64;
-constexpr std::size_t kChunkContacts = std::size_t{kChunkPairs} * kManifoldPoints;
+constexpr std::size_t kChunkContacts = std::size_t{kJobPairs} * kManifoldPoints;
 
 template <typename T>
 [[nodiscard]] T* offset(T* column, std::size_t first) noexcept {
@@ -22,38 +26,164 @@ template <typename T>
 [[nodiscard]] NarrowKernel pick(const NarrowRun& run, const NarrowOptions& options) noexcept {
   const NarrowKernels* const kernels = narrow_kernels(run.a, run.b);
   if (kernels == nullptr || options.tier == NarrowTier::reference) return nullptr;
-  const auto level = static_cast<std::size_t>(options.level);
+  const std::uint32_t level = kernel_index(options.level);
   const bool fast = options.tier == NarrowTier::fast && kernels->fast[level] != nullptr;
   return fast ? kernels->fast[level] : kernels->robust[level];
 }
 
-}  // namespace
+/// What became of a job.
+struct ChunkOutcome {
+  std::uint32_t contacts = 0;
+  std::uint32_t uncertified = 0;
+  /// The smallest body with an invalid pose, or ~0U.
+  std::uint32_t bad_body = ~0U;
+  SolverCounts solver;
+};
 
-struct NarrowPhase::Chunk {
+/// Pairs of one kind, next to each other, that one task answers.
+struct Chunk {
   NarrowJob job;
   NarrowKernel kernel;
   std::uint32_t first;
   ChunkOutcome outcome;
 };
 
-struct NarrowPhase::Call {
+void write_contacts(const NarrowJob& job, std::uint32_t i, const PairAnswer& answer,
+                    ContactWriter& contacts) noexcept {
+  job.contact_first[i] = contacts.size;
+  job.contact_count[i] = answer.contact_count;
+  for (std::uint32_t k = 0; k < answer.contact_count; ++k) {
+    const ContactPoint& point = answer.contacts[k];
+    for (int axis = 0; axis < 3; ++axis) {
+      contacts.position[axis][contacts.size] = point.position[axis];
+    }
+    contacts.depth[contacts.size] = point.depth;
+    contacts.feature[contacts.size] = point.feature;
+    ++contacts.size;
+  }
+}
+
+void write_answer(NarrowJob& job, ContactLevel level, std::uint32_t i,
+                  const PairAnswer& answer) noexcept {
+  if (level == ContactLevel::boolean) {
+    job.overlap[i] = answer.overlap ? 1 : 0;
+    return;
+  }
+  job.distance[i] = answer.distance;
+  job.error_bound[i] = answer.error_bound;
+  for (int axis = 0; axis < 3; ++axis) job.normal[axis][i] = answer.normal[axis];
+  if (level == ContactLevel::manifold) return write_contacts(job, i, answer, job.contacts);
+  for (int axis = 0; axis < 3; ++axis) job.point[axis][i] = answer.point[axis];
+}
+
+/// Answers a job: by `kernel` (null: there is none), then one by one what it could not certify.
+[[nodiscard]] ChunkOutcome answer_job(NarrowJob& job, ContactLevel level,
+                                      NarrowKernel kernel) noexcept {
+  std::uint32_t uncertified[kJobPairs];
+  ChunkOutcome outcome;
+  if (kernel != nullptr) {
+    job.uncertified = uncertified;
+    outcome.uncertified = kernel(job);
+  } else {
+    std::iota(uncertified, uncertified + job.count, 0U);
+    outcome.uncertified = job.count;
+  }
+  for (std::uint32_t k = 0; k < outcome.uncertified; ++k) {
+    const std::uint32_t i = uncertified[k];
+    const BodyPair pair = job.pairs[i];
+    const Pose& a = job.poses[pair.a];
+    const Pose& b = job.poses[pair.b];
+    if (!a.is_valid() || !b.is_valid()) [[unlikely]] {
+      if (!a.is_valid()) outcome.bad_body = std::min(outcome.bad_body, pair.a);
+      if (!b.is_valid()) outcome.bad_body = std::min(outcome.bad_body, pair.b);
+      continue;
+    }
+    const PairAnswer answer = solve_pair(job.tables, job.shapes[pair.a], a, job.shapes[pair.b], b,
+                                         level, job.margin, outcome.solver);
+    write_answer(job, level, i, answer);
+  }
+  outcome.contacts = job.contacts.size;
+  return outcome;
+}
+
+/// Answer i of a job becomes that about (b, a).
+void mirror_answer(const NarrowJob& job, ContactLevel level, std::uint32_t i) noexcept {
+  if (level == ContactLevel::boolean) return;
+  const double* const a = job.poses[job.pairs[i].a].position;
+  const double* const b = job.poses[job.pairs[i].b].position;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double apart = b[axis] - a[axis];
+    if (level == ContactLevel::distance) {
+      job.point[axis][i] += job.distance[i] * job.normal[axis][i] - apart;
+    } else {
+      float* const column = job.contacts.position[axis] + job.contact_first[i];
+      for (std::uint32_t k = 0; k < job.contact_count[i]; ++k) {
+        column[k] = mirrored_position(column[k], apart);
+      }
+    }
+    job.normal[axis][i] = -job.normal[axis][i];
+  }
+  if (level != ContactLevel::manifold) return;
+  std::uint64_t* const feature = job.contacts.feature + job.contact_first[i];
+  for (std::uint32_t k = 0; k < job.contact_count[i]; ++k) {
+    feature[k] = mirrored_feature(feature[k]);
+  }
+}
+
+/// What `collide` was given.
+struct Call {
   const ShapeTables& tables;
   const Bodies& bodies;
   std::span<const BodyPair> pairs;
   const NarrowOptions& options;
 
-  void answer(Chunk& chunk, const NarrowResult& result, bool any_turned) const noexcept {
-    chunk.outcome = answer_chunk(chunk.job, options.level, chunk.kernel);
-    if (!any_turned) return;
+  void answer(Chunk& chunk, const NarrowResult& result, bool any_mirrored) const noexcept {
+    chunk.outcome = answer_job(chunk.job, options.level, chunk.kernel);
+    if (!any_mirrored) return;
     for (std::uint32_t i = 0; i < chunk.job.count; ++i) {
       const BodyPair& given = pairs[result.pair_of(chunk.first + i)];
-      if (given.a != chunk.job.pairs[i].a) turn_answer(chunk.job, options.level, i);
+      if (given.a != chunk.job.pairs[i].a) mirror_answer(chunk.job, options.level, i);
     }
   }
 };
 
-NarrowPhase::NarrowPhase(std::pmr::memory_resource* memory) noexcept
-    : buckets_(memory), scratch_(memory) {}
+[[nodiscard]] ContactWriter writer_to(ContactColumns& to, std::size_t from) noexcept {
+  return {
+      {to.position[0].data() + from, to.position[1].data() + from, to.position[2].data() + from},
+      to.depth.data() + from,
+      to.feature.data() + from,
+      0};
+}
+
+}  // namespace
+
+struct NarrowPhase::State {
+  explicit State(std::pmr::memory_resource* memory) noexcept : buckets(memory), scratch(memory) {}
+
+  [[nodiscard]] Status collide(const Call& call, NarrowResult& result);
+  [[nodiscard]] Status run(const Call& call, NarrowResult& result);
+  [[nodiscard]] Chunk chunk_of(const Call& call, NarrowResult& result, NarrowKernel kernel,
+                               std::uint32_t first, std::uint32_t count) const noexcept;
+  [[nodiscard]] bool answer_wave(const Call& call, std::span<Chunk> wave, NarrowResult& result);
+  static void take_contacts(const Chunk& chunk, NarrowResult& result) noexcept;
+  [[nodiscard]] bool gather_contacts(const Call& call, std::span<const Chunk> wave,
+                                     NarrowResult& result);
+
+  NarrowStatistics statistics;
+  std::uint32_t bad_body = ~0U;
+  PairBuckets buckets;
+  ContactColumns scratch;
+};
+
+NarrowPhase::~NarrowPhase() {
+  delete_in(memory_, state_);
+}
+
+NarrowPhase::NarrowPhase(NarrowPhase&& other) noexcept
+    : memory_(other.memory_),
+      state_(std::exchange(other.state_, nullptr)),
+      statistics_(std::exchange(other.statistics_, {})),
+      bad_body_(std::exchange(other.bad_body_, 0)) {}
 
 Status NarrowPhase::collide(const ShapePool& shapes, const Bodies& bodies,
                             std::span<const BodyPair> pairs, const NarrowOptions& options,
@@ -66,32 +196,42 @@ Status NarrowPhase::collide(const ShapeTables& tables, const Bodies& bodies,
                             NarrowResult& result) {
   statistics_ = {};
   bad_body_ = ~0U;
-  const Call call{tables, bodies, pairs, options};
-  Status status = Status::ok;
-  if (bodies.shapes.size() != bodies.poses.size()) {
-    status = Status::size_mismatch;
-  } else if (!std::isfinite(options.margin) || options.margin < 0.0) {
-    status = Status::invalid_argument;
-  } else {
-    status =
-        buckets_.sort(call.tables, bodies.shapes, pairs, result.order_, result.runs_, bad_body_);
+  if (state_ == nullptr) state_ = new_in<State>(memory_, memory_);
+  Status status = Status::out_of_memory;
+  if (state_ != nullptr) {
+    status = state_->collide({tables, bodies, pairs, options}, result);
+    statistics_ = state_->statistics;
+    bad_body_ = state_->bad_body;
   }
-  if (status == Status::ok && !result.resize(pairs.size(), options.level)) {
-    status = Status::out_of_memory;
-  }
-  if (status == Status::ok) status = run(call, result);
   if (status != Status::ok) result.clear();
   return status;
 }
 
-Status NarrowPhase::run(const Call& call, NarrowResult& result) {
+Status NarrowPhase::State::collide(const Call& call, NarrowResult& result) {
+  const NarrowOptions& options = call.options;
+  statistics = {};
+  bad_body = ~0U;
+  if (call.bodies.shapes.size() != call.bodies.poses.size()) return Status::size_mismatch;
+  const bool has_level =
+      options.level >= ContactLevel::boolean && options.level <= ContactLevel::manifold;
+  if (!has_level || !std::isfinite(options.margin) || options.margin < 0.0) {
+    return Status::invalid_argument;
+  }
+  const Status status = buckets.sort(call.tables, call.bodies.shapes, call.pairs, result.order_,
+                                     result.runs_, bad_body);
+  if (status != Status::ok) return status;
+  return result.resize(call.pairs.size(), options.level) ? run(call, result)
+                                                         : Status::out_of_memory;
+}
+
+Status NarrowPhase::State::run(const Call& call, NarrowResult& result) {
   Chunk wave[kWave];
   std::size_t filled = 0;
   for (const NarrowRun& run : result.runs()) {
     const NarrowKernel kernel = pick(run, call.options);
-    if (kernel == nullptr) statistics_.without_lanes += run.count;
-    for (std::uint32_t at = 0; at < run.count; at += kChunkPairs) {
-      const std::uint32_t count = std::min(kChunkPairs, run.count - at);
+    if (kernel == nullptr) statistics.without_lanes += run.count;
+    for (std::uint32_t at = 0; at < run.count; at += kJobPairs) {
+      const std::uint32_t count = std::min(kJobPairs, run.count - at);
       wave[filled++] = chunk_of(call, result, kernel, run.first + at, count);
       if (filled < kWave) continue;
       if (!answer_wave(call, {wave, filled}, result)) return Status::out_of_memory;
@@ -101,19 +241,18 @@ Status NarrowPhase::run(const Call& call, NarrowResult& result) {
   if (!answer_wave(call, {wave, filled}, result)) return Status::out_of_memory;
   // Chunks write where there is room for all that they may find: with this much, a call that finds
   // no more than this one needs no more room, wherever in it its contacts are.
-  if (call.options.level == NarrowLevel::manifold && call.options.execution.concurrency() == 1 &&
+  if (call.options.level == ContactLevel::manifold && call.options.execution.concurrency() == 1 &&
       !result.contacts_.grow(result.contacts() + kChunkContacts)) {
     return Status::out_of_memory;
   }
-  statistics_.pairs = call.pairs.size();
-  return bad_body_ == ~0U ? Status::ok : Status::invalid_pose;
+  statistics.pairs = call.pairs.size();
+  return bad_body == ~0U ? Status::ok : Status::invalid_pose;
 }
 
-NarrowPhase::Chunk NarrowPhase::chunk_of(const Call& call, NarrowResult& result,
-                                         NarrowKernel kernel, std::uint32_t first,
-                                         std::uint32_t count) const noexcept {
+Chunk NarrowPhase::State::chunk_of(const Call& call, NarrowResult& result, NarrowKernel kernel,
+                                   std::uint32_t first, std::uint32_t count) const noexcept {
   NarrowJob job{};
-  job.pairs = buckets_.pairs() + first;
+  job.pairs = buckets.pairs() + first;
   job.count = count;
   job.shapes = call.bodies.shapes.data();
   job.poses = call.bodies.poses.data();
@@ -131,50 +270,52 @@ NarrowPhase::Chunk NarrowPhase::chunk_of(const Call& call, NarrowResult& result,
   return {job, kernel, first, {}};
 }
 
-bool NarrowPhase::answer_wave(const Call& call, std::span<Chunk> wave, NarrowResult& result) {
-  const bool manifold = call.options.level == NarrowLevel::manifold;
-  const bool turned = buckets_.any_turned();
+bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
+                                     NarrowResult& result) {
+  const bool manifold = call.options.level == ContactLevel::manifold;
+  const bool any_mirrored = buckets.any_mirrored();
   if (!manifold) {
-    call.options.execution.for_each(wave.size(),
-                                    [&](std::size_t i) { call.answer(wave[i], result, turned); });
+    call.options.execution.for_each(
+        wave.size(), [&](std::size_t i) { call.answer(wave[i], result, any_mirrored); });
   } else if (call.options.execution.concurrency() == 1) {
     for (Chunk& chunk : wave) {
       if (!result.contacts_.grow(result.contacts() + kChunkContacts)) return false;
-      chunk.job.contacts = result.contacts_.writer(result.contacts());
-      call.answer(chunk, result, turned);
+      chunk.job.contacts = writer_to(result.contacts_, result.contacts());
+      call.answer(chunk, result, any_mirrored);
       take_contacts(chunk, result);
     }
   } else {
-    if (!scratch_.grow(wave.size() * kChunkContacts)) return false;
+    if (!scratch.grow(wave.size() * kChunkContacts)) return false;
     call.options.execution.for_each(wave.size(), [&](std::size_t i) {
-      wave[i].job.contacts = scratch_.writer(i * kChunkContacts);
-      call.answer(wave[i], result, turned);
+      wave[i].job.contacts = writer_to(scratch, i * kChunkContacts);
+      call.answer(wave[i], result, any_mirrored);
     });
     if (!gather_contacts(call, wave, result)) return false;
   }
   for (const Chunk& chunk : wave) {
-    if (chunk.kernel != nullptr) statistics_.recomputed += chunk.outcome.uncertified;
-    statistics_.solver += chunk.outcome.solver;
-    bad_body_ = std::min(bad_body_, chunk.outcome.bad_body);
+    if (chunk.kernel != nullptr) statistics.recomputed += chunk.outcome.uncertified;
+    statistics.exact += chunk.outcome.solver.exact;
+    statistics.bounded += chunk.outcome.solver.bounded;
+    bad_body = std::min(bad_body, chunk.outcome.bad_body);
   }
   return true;
 }
 
 // Of a chunk that wrote to where its contacts stay.
-void NarrowPhase::take_contacts(const Chunk& chunk, NarrowResult& result) noexcept {
+void NarrowPhase::State::take_contacts(const Chunk& chunk, NarrowResult& result) noexcept {
   const auto base = static_cast<std::uint32_t>(result.contacts());
   for (std::uint32_t i = 0; i < chunk.job.count; ++i) chunk.job.contact_first[i] += base;
   result.contacts_.set_size(base + chunk.outcome.contacts);
 }
 
-bool NarrowPhase::gather_contacts(const Call& call, std::span<const Chunk> wave,
-                                  NarrowResult& result) {
+bool NarrowPhase::State::gather_contacts(const Call& call, std::span<const Chunk> wave,
+                                         NarrowResult& result) {
   std::size_t base[kWave + 1] = {result.contacts()};
   for (std::size_t i = 0; i < wave.size(); ++i) base[i + 1] = base[i] + wave[i].outcome.contacts;
   if (!result.contacts_.grow(base[wave.size()])) return false;
   call.options.execution.for_each(wave.size(), [&](std::size_t i) {
-    const ContactWriter from = scratch_.writer(i * kChunkContacts);
-    const ContactWriter to = result.contacts_.writer(base[i]);
+    const ContactWriter from = writer_to(scratch, i * kChunkContacts);
+    const ContactWriter to = writer_to(result.contacts_, base[i]);
     const std::size_t count = wave[i].outcome.contacts;
     for (int axis = 0; axis < 3; ++axis) {
       std::copy_n(from.position[axis], count, to.position[axis]);
@@ -191,8 +332,10 @@ bool NarrowPhase::gather_contacts(const Call& call, std::span<const Chunk> wave,
 
 Footprint NarrowPhase::footprint() const noexcept {
   Footprint footprint;
-  footprint.scratch += buckets_.bytes();
-  footprint.scratch += scratch_.bytes();
+  if (state_ == nullptr) return footprint;
+  footprint.scratch += {sizeof(State), sizeof(State)};
+  footprint.scratch += state_->buckets.bytes();
+  footprint.scratch += state_->scratch.bytes();
   return footprint;
 }
 

@@ -1,20 +1,14 @@
 #include <winnow/pipeline/narrow_result.h>
+#include "pipeline/kernels/narrow_job.h"
 
 namespace winnow {
-namespace {
-
-// ContactWriter promises room for so many more than a job can make.
-constexpr std::size_t kSlack = 16;
-
-}  // namespace
-
 ContactColumns::ContactColumns(std::pmr::memory_resource* memory) noexcept
     : position{Column<float>(memory), Column<float>(memory), Column<float>(memory)},
       depth(memory),
       feature(memory) {}
 
 bool ContactColumns::grow(std::size_t count) noexcept {
-  const std::size_t room = count + kSlack;
+  const std::size_t room = count + kContactSlack;
   return position[0].grow(room) && position[1].grow(room) && position[2].grow(room) &&
          depth.grow(room) && feature.grow(room);
 }
@@ -23,13 +17,6 @@ void ContactColumns::set_size(std::size_t count) noexcept {
   for (Column<float>& column : position) column.set_size(count);
   depth.set_size(count);
   feature.set_size(count);
-}
-
-ContactWriter ContactColumns::writer(std::size_t from) noexcept {
-  return {{position[0].data() + from, position[1].data() + from, position[2].data() + from},
-          depth.data() + from,
-          feature.data() + from,
-          0};
 }
 
 Bytes ContactColumns::bytes() const noexcept {
@@ -51,16 +38,16 @@ NarrowResult::NarrowResult(std::pmr::memory_resource* memory) noexcept
       contact_count_(memory),
       contacts_(memory) {}
 
-bool NarrowResult::resize(std::size_t count, NarrowLevel level) noexcept {
-  const bool distances = level != NarrowLevel::boolean;
+bool NarrowResult::resize(std::size_t count, ContactLevel level) noexcept {
+  const bool distances = level != ContactLevel::boolean;
   const auto size_of = [count](bool has) { return has ? count : 0; };
   bool ok = overlap_.resize(size_of(!distances)) && distance_.resize(size_of(distances)) &&
             error_bound_.resize(size_of(distances));
   for (Column<double>& column : normal_) ok = ok && column.resize(size_of(distances));
   for (Column<double>& column : point_) {
-    ok = ok && column.resize(size_of(level == NarrowLevel::distance));
+    ok = ok && column.resize(size_of(level == ContactLevel::distance));
   }
-  const bool manifolds = level == NarrowLevel::manifold;
+  const bool manifolds = level == ContactLevel::manifold;
   ok = ok && contact_first_.resize(size_of(manifolds)) && contact_count_.resize(size_of(manifolds));
   contacts_.set_size(0);
   size_ = count;
@@ -71,7 +58,7 @@ bool NarrowResult::resize(std::size_t count, NarrowLevel level) noexcept {
 void NarrowResult::clear() noexcept {
   order_.clear();
   runs_.clear();
-  static_cast<void>(resize(0, NarrowLevel::boolean));
+  static_cast<void>(resize(0, ContactLevel::boolean));
 }
 
 Footprint NarrowResult::footprint() const noexcept {

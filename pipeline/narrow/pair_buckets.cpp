@@ -6,10 +6,8 @@
 namespace winnow {
 namespace {
 
-constexpr std::uint32_t kCodes = kShapeKinds * kShapeKinds;
-constexpr std::uint32_t kTop = 1U << 31U;
-// A pair whose first shape is of the larger kind.
-constexpr std::uint8_t kTurned = 0x80;
+constexpr std::uint32_t kTopBit = 1U << 31U;
+constexpr std::uint8_t kMirrored = 0x80;
 
 // True if all of a, b < limit <= 2^31: sums and ors alone, so that every compiler makes it wide.
 [[nodiscard]] bool all_below(std::span<const BodyPair> pairs, std::uint32_t limit) noexcept {
@@ -17,7 +15,7 @@ constexpr std::uint8_t kTurned = 0x80;
   for (const BodyPair& pair : pairs) {
     outside |= pair.a | pair.b | (limit - 1 - pair.a) | (limit - 1 - pair.b);
   }
-  return (outside & kTop) == 0;
+  return (outside & kTopBit) == 0;
 }
 
 // The only kind that a pool holds, or kShapeKinds.
@@ -39,7 +37,7 @@ constexpr std::uint8_t kTurned = 0x80;
     const std::uint32_t index = id.bits - base;
     outside |= index | (limit - 1 - index);
   }
-  return (outside & kTop) == 0;
+  return (outside & kTopBit) == 0;
 }
 
 }  // namespace
@@ -48,9 +46,9 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
                          std::span<const BodyPair> pairs, Column<std::uint32_t>& order,
                          Column<NarrowRun>& runs, std::uint32_t& bad_body) {
   runs.clear();
-  any_turned_ = false;
+  any_mirrored_ = false;
   pairs_ = pairs.data();
-  if (shapes.size() >= kTop || !all_below(pairs, static_cast<std::uint32_t>(shapes.size()))) {
+  if (shapes.size() >= kTopBit || !all_below(pairs, static_cast<std::uint32_t>(shapes.size()))) {
     return Status::invalid_argument;
   }
   if (!order.resize(pairs.size())) return Status::out_of_memory;
@@ -59,21 +57,21 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   // A scene of one kind needs no look at every pair.
   const std::uint32_t only = only_kind(tables);
   if (only != kShapeKinds && all_are(shapes, only, tables.count[only])) {
-    counts_[only * kShapeKinds + only] = static_cast<std::uint32_t>(pairs.size());
+    counts_[ConvexKindPairs::index(only, only)] = static_cast<std::uint32_t>(pairs.size());
     return add_runs(runs);
   }
   const Status status = classify(tables, shapes, pairs, bad_body);
   if (status != Status::ok) return status;
   const bool one_run = std::ranges::count_if(counts_, [](auto n) { return n != 0; }) <= 1;
-  if (one_run && !any_turned_) return add_runs(runs);
+  if (one_run && !any_mirrored_) return add_runs(runs);
   if (!sorted_.resize(pairs.size())) return Status::out_of_memory;
-  std::uint32_t next[kCodes];
+  std::uint32_t next[ConvexKindPairs::kCount];
   std::exclusive_scan(std::begin(counts_), std::end(counts_), std::begin(next), 0U);
   for (std::uint32_t i = 0; i < pairs.size(); ++i) {
     const std::uint32_t code = codes_[i];
-    const std::uint32_t at = next[code & (kTurned - 1U)]++;
+    const std::uint32_t at = next[code & (kMirrored - 1U)]++;
     const BodyPair pair = pairs[i];
-    sorted_[at] = (code & kTurned) != 0 ? BodyPair{pair.b, pair.a} : pair;
+    sorted_[at] = (code & kMirrored) != 0 ? BodyPair{pair.b, pair.a} : pair;
     order[at] = i;
   }
   pairs_ = sorted_.data();
@@ -83,10 +81,9 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
 Status PairBuckets::classify(const ShapeTables& tables, std::span<const ShapeId> shapes,
                              std::span<const BodyPair> pairs, std::uint32_t& bad_body) {
   if (!codes_.resize(pairs.size())) return Status::out_of_memory;
-  // The default id has kind 15.
-  std::uint32_t limit[16] = {};
+  std::uint32_t limit[ShapeId{}.kind_index() + 1] = {};
   std::copy_n(tables.count, kShapeKinds, limit);
-  std::uint32_t turned = 0;
+  std::uint32_t any = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const ShapeId a = shapes[pairs[i].a];
     const ShapeId b = shapes[pairs[i].b];
@@ -96,22 +93,23 @@ Status PairBuckets::classify(const ShapeTables& tables, std::span<const ShapeId>
     }
     const std::uint32_t low = std::min(a.kind_index(), b.kind_index());
     const std::uint32_t high = std::max(a.kind_index(), b.kind_index());
-    const std::uint32_t code = low * kShapeKinds + high;
-    const std::uint32_t turn = a.kind_index() > b.kind_index() ? kTurned : 0U;
-    turned |= turn;
+    const std::uint32_t code = ConvexKindPairs::index(low, high);
+    const std::uint32_t flag = is_mirrored(a, b) ? kMirrored : 0U;
+    any |= flag;
     ++counts_[code];
-    codes_[i] = static_cast<std::uint8_t>(code | turn);
+    codes_[i] = static_cast<std::uint8_t>(code | flag);
   }
-  any_turned_ = turned != 0;
+  any_mirrored_ = any != 0;
   return Status::ok;
 }
 
 Status PairBuckets::add_runs(Column<NarrowRun>& runs) const {
   std::uint32_t first = 0;
-  for (std::uint32_t code = 0; code < kCodes; ++code) {
+  for (std::uint32_t code = 0; code < ConvexKindPairs::kCount; ++code) {
     if (counts_[code] == 0) continue;
-    const NarrowRun run{static_cast<ShapeKind>(code / kShapeKinds),
-                        static_cast<ShapeKind>(code % kShapeKinds), first, counts_[code]};
+    const NarrowRun run{static_cast<ShapeKind>(ConvexKindPairs::first(code)),
+                        static_cast<ShapeKind>(ConvexKindPairs::second(code)), first,
+                        counts_[code]};
     if (!runs.push_back(run)) return Status::out_of_memory;
     first += counts_[code];
   }

@@ -4,6 +4,7 @@
 #include <winnow/core/footprint.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/narrow_result.h>
+#include "pipeline/shapes/pair_order.h"
 
 #include <cstdint>
 #include <memory_resource>
@@ -25,8 +26,8 @@ class PairBuckets {
               Column<NarrowRun>& runs, std::uint32_t& bad_body);
 
   [[nodiscard]] const BodyPair* pairs() const noexcept { return pairs_; }
-  /// True if some pair was turned round.
-  [[nodiscard]] bool any_turned() const noexcept { return any_turned_; }
+  /// True if some pair is given the other way round than it was.
+  [[nodiscard]] bool any_mirrored() const noexcept { return any_mirrored_; }
   [[nodiscard]] Bytes bytes() const noexcept;
 
  private:
@@ -36,9 +37,9 @@ class PairBuckets {
 
   Column<BodyPair> sorted_;
   Column<std::uint8_t> codes_;
-  std::uint32_t counts_[kShapeKinds * kShapeKinds] = {};
+  std::uint32_t counts_[ConvexKindPairs::kCount] = {};
   const BodyPair* pairs_ = nullptr;
-  bool any_turned_ = false;
+  bool any_mirrored_ = false;
 };
 
 }  // namespace winnow

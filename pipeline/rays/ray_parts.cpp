@@ -9,7 +9,7 @@ namespace winnow {
 namespace {
 
 /// Slower than this share of its speed, a ray is parallel to a plane or an axis.
-constexpr double kParallel = 1e-15;
+constexpr double kParallelRate = 1e-15;
 
 [[nodiscard]] Eigen::Vector3d unit_or_zero(const Eigen::Vector3d& v) noexcept {
   const double length = v.stableNorm();
@@ -24,8 +24,8 @@ constexpr double kParallel = 1e-15;
 
 /// Where offset + t * velocity is no longer than the radius. Taken at the nearest approach, where
 /// the difference of squares is a product and does not cancel.
-[[nodiscard]] Span round_span(const Eigen::Vector3d& offset, const Eigen::Vector3d& velocity,
-                              double radius) noexcept {
+[[nodiscard]] RaySpan round_span(const Eigen::Vector3d& offset, const Eigen::Vector3d& velocity,
+                                 double radius) noexcept {
   const double square = velocity.squaredNorm();
   const double nearest = -offset.dot(velocity) / square;
   const double distance = (offset + nearest * velocity).stableNorm();
@@ -36,7 +36,7 @@ constexpr double kParallel = 1e-15;
 
 }  // namespace
 
-void FirstEntry::meet(const LocalRay& ray, const Span& span) noexcept {
+void FirstEntry::meet(const LocalRay& ray, const RaySpan& span) noexcept {
   if (span.is_empty() || span.out < ray.low - kGrazing / ray.speed) return;
   inside = inside || span.in < ray.low;
   const double entry = std::max(span.in, ray.low);
@@ -49,9 +49,9 @@ void FirstEntry::meet(const LocalRay& ray, const Span& span) noexcept {
 void PlaneClip::below(const Eigen::Vector3d& normal, double offset) noexcept {
   const double rate = normal.dot(ray_.direction);
   const double height = normal.dot(ray_.origin) - offset;
-  if (std::fabs(rate) <= kParallel * ray_.speed) {
+  if (std::fabs(rate) <= kParallelRate * ray_.speed) {
     // A rate of exactly zero comes of axes that need no rounding: then heights are exact, too.
-    if (height > (rate == 0.0 ? 0.0 : kGrazing)) span_ = Span{};
+    if (height > (rate == 0.0 ? 0.0 : kGrazing)) span_ = RaySpan{};
     return;
   }
   const double t = -height / rate;
@@ -63,22 +63,22 @@ void PlaneClip::below(const Eigen::Vector3d& normal, double offset) noexcept {
   }
 }
 
-Span ball_span(const LocalRay& ray, const Eigen::Vector3d& center, double radius) noexcept {
+RaySpan ball_span(const LocalRay& ray, const Eigen::Vector3d& center, double radius) noexcept {
   return round_span(ray.origin - center, ray.direction, radius);
 }
 
-Span capsule_span(const LocalRay& ray, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                  double radius) noexcept {
+RaySpan capsule_span(const LocalRay& ray, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                     double radius) noexcept {
   const Eigen::Vector3d axis = unit_or_zero(b - a);
   const double length = axis.dot(b - a);
   const double along = axis.dot(ray.direction);
   const double begin = axis.dot(ray.origin - a);
   const Eigen::Vector3d velocity = ray.direction - along * axis;
   const Eigen::Vector3d offset = ray.origin - a - begin * axis;
-  Span span;
+  RaySpan span;
   double first = along > 0.0 ? -1.0 : length + 1.0;  // where it enters and leaves, along the axis
   double last = length - first;
-  if (velocity.norm() > kParallel * ray.speed) {
+  if (velocity.norm() > kParallelRate * ray.speed) {
     span = round_span(offset, velocity, radius);
     if (span.is_empty()) return span;
     first = begin + along * span.in;
@@ -88,36 +88,36 @@ Span capsule_span(const LocalRay& ray, const Eigen::Vector3d& a, const Eigen::Ve
   }
   // An infinite cylinder that is entered beyond an end is entered by way of the ball there.
   if (!(first >= 0.0 && first <= length)) {
-    const Span ball = ball_span(ray, first < 0.0 ? a : b, radius);
+    const RaySpan ball = ball_span(ray, first < 0.0 ? a : b, radius);
     if (ball.is_empty()) return {};
     span.in = ball.in;
     span.normal = ball.normal;
   }
   if (!(last >= 0.0 && last <= length)) {
-    const Span ball = ball_span(ray, last < 0.0 ? a : b, radius);
+    const RaySpan ball = ball_span(ray, last < 0.0 ? a : b, radius);
     if (ball.is_empty()) return {};
     span.out = ball.out;
   }
   return span;
 }
 
-Span tube_span(const LocalRay& ray, double radius) noexcept {
+RaySpan tube_span(const LocalRay& ray, double radius) noexcept {
   const Eigen::Vector3d offset(ray.origin.x(), ray.origin.y(), 0.0);
   const Eigen::Vector3d velocity(ray.direction.x(), ray.direction.y(), 0.0);
-  if (velocity.norm() > kParallel * ray.speed) return round_span(offset, velocity, radius);
+  if (velocity.norm() > kParallelRate * ray.speed) return round_span(offset, velocity, radius);
   if (offset.norm() > radius + kGrazing) return {};
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   return {-kInfinity, kInfinity, Eigen::Vector3d::Zero()};
 }
 
-Span common(const Span& a, const Span& b) noexcept {
+RaySpan common(const RaySpan& a, const RaySpan& b) noexcept {
   return {std::max(a.in, b.in), std::min(a.out, b.out), a.in >= b.in ? a.normal : b.normal};
 }
 
 namespace {
 
 /// The slab of a polygon's extent along its longest side.
-Span length_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertices) noexcept {
+RaySpan length_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertices) noexcept {
   Eigen::Vector3d longest = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const Eigen::Vector3d side = vertices[i + 1 < vertices.size() ? i + 1 : 0] - vertices[i];
@@ -138,8 +138,8 @@ Span length_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertices)
 
 }  // namespace
 
-Span prism_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertices,
-                const Eigen::Vector3d& normal, double bottom, double top) noexcept {
+RaySpan prism_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertices,
+                   const Eigen::Vector3d& normal, double bottom, double top) noexcept {
   PlaneClip clip(ray);
   const double level = normal.dot(vertices[0]);
   clip.below(normal, level + top);

@@ -23,7 +23,7 @@ struct LocalRay {
 inline constexpr double kGrazing = 1e-15;
 
 /// The part of a ray within a convex set. Empty if in > out.
-struct Span {
+struct RaySpan {
   double in = std::numeric_limits<double>::infinity();
   double out = -std::numeric_limits<double>::infinity();
   /// Outward where it enters; zero if there is no such direction.
@@ -40,7 +40,7 @@ struct FirstEntry {
   double t = std::numeric_limits<double>::infinity();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 
-  void meet(const LocalRay& ray, const Span& span) noexcept;
+  void meet(const LocalRay& ray, const RaySpan& span) noexcept;
 };
 
 /// Clips a ray by planes. Exits are a grazing distance late, so that rays through edges, or in a
@@ -53,26 +53,26 @@ class PlaneClip {
   }
   /// Keeps normal . x <= offset; `normal` is a unit vector.
   void below(const Eigen::Vector3d& normal, double offset) noexcept;
-  [[nodiscard]] const Span& span() const noexcept { return span_; }
+  [[nodiscard]] const RaySpan& span() const noexcept { return span_; }
 
  private:
   const LocalRay& ray_;
-  Span span_;
+  RaySpan span_;
 };
 
-[[nodiscard]] Span ball_span(const LocalRay& ray, const Eigen::Vector3d& center,
-                             double radius) noexcept;
+[[nodiscard]] RaySpan ball_span(const LocalRay& ray, const Eigen::Vector3d& center,
+                                double radius) noexcept;
 /// Points within `radius` of the segment.
-[[nodiscard]] Span capsule_span(const LocalRay& ray, const Eigen::Vector3d& a,
-                                const Eigen::Vector3d& b, double radius) noexcept;
+[[nodiscard]] RaySpan capsule_span(const LocalRay& ray, const Eigen::Vector3d& a,
+                                   const Eigen::Vector3d& b, double radius) noexcept;
 /// The infinite cylinder about the z axis.
-[[nodiscard]] Span tube_span(const LocalRay& ray, double radius) noexcept;
+[[nodiscard]] RaySpan tube_span(const LocalRay& ray, double radius) noexcept;
 /// Points of both; the normal is that of the later entry.
-[[nodiscard]] Span common(const Span& a, const Span& b) noexcept;
+[[nodiscard]] RaySpan common(const RaySpan& a, const RaySpan& b) noexcept;
 
 /// Points that project into a convex polygon, `vertices` counter-clockwise about the unit vector
 /// `normal`, at heights between `bottom` and `top` over the polygon. O(vertices).
-[[nodiscard]] Span prism_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertices,
-                              const Eigen::Vector3d& normal, double bottom, double top) noexcept;
+[[nodiscard]] RaySpan prism_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertices,
+                                 const Eigen::Vector3d& normal, double bottom, double top) noexcept;
 
 }  // namespace winnow

@@ -1,3 +1,4 @@
+#include <winnow/core/rotation.h>
 #include <winnow/pipeline/shape_rays.h>
 #include "pipeline/rays/shape_entries.h"
 
@@ -15,13 +16,6 @@ using Eigen::Vector3d;
   const Eigen::Map<const Vector3d> origin(ray.origin);
   const Eigen::Map<const Vector3d> direction(ray.direction);
   return origin.allFinite() && direction.allFinite() && !direction.isZero(0.0) && ray.max_t >= 0.0;
-}
-
-/// The rotation of a pose. The quaternion is scaled first, so that its squares stay in range.
-[[nodiscard]] Eigen::Matrix3d rotation(const Pose& pose) noexcept {
-  const Eigen::Map<const Eigen::Vector4d> q(pose.orientation);
-  const Eigen::Vector4d unit = (q / q.cwiseAbs().maxCoeff()).normalized();
-  return Eigen::Quaterniond(unit[0], unit[1], unit[2], unit[3]).toRotationMatrix();
 }
 
 /// A power of two that takes a length to [1/2, 1); 1 for none.
@@ -116,7 +110,7 @@ template <typename Shape>
 void cast(const Shape& shape, const Pose& pose, const ShapeRay& ray, ShapeHit& hit) noexcept {
   constexpr bool kBounded = !std::is_same_v<Shape, HalfSpaceShape>;
   const RelativeRay relative = approach(ray, pose, size_of(shape), kBounded);
-  const Eigen::Matrix3d turn = rotation(pose);
+  const Eigen::Matrix3d turn = rotation_of_unit(normalized(tame(pose.orientation)));
   LocalRay local;
   local.origin = turn.transpose() * relative.origin;
   local.direction = turn.transpose() * relative.direction;

@@ -17,12 +17,11 @@ struct Packing {
 
   [[nodiscard]] std::uint64_t pack(const ShapeId* shapes, std::uint32_t one,
                                    std::uint32_t other) const noexcept {
-    const std::uint32_t kind_one = shapes[one].kind_index();
-    const std::uint32_t kind_other = shapes[other].kind_index();
-    const bool mirrored = kind_one != kind_other ? kind_other < kind_one : other < one;
+    const bool same_kind = shapes[one].kind_index() == shapes[other].kind_index();
+    const bool mirrored = same_kind ? other < one : is_mirrored(shapes[one], shapes[other]);
     const std::uint32_t a = mirrored ? other : one;
     const std::uint32_t b = mirrored ? one : other;
-    const std::uint64_t code = pair_code(shapes[a], shapes[b]);
+    const std::uint64_t code = BodyKindPairs::index(shapes[a], shapes[b]);
     return (code << bits | a) << bits | b;
   }
   [[nodiscard]] BodyPair pair(std::uint64_t item) const noexcept {
@@ -59,13 +58,13 @@ Status BodyPairs::assign(std::span<const Source> sources, const ShapeId* shapes,
                   });
     item += source.pairs.size();
   }
-  const unsigned code_bits = std::bit_width(kPairCodes);
+  const unsigned code_bits = std::bit_width(BodyKindPairs::kCount);
   const std::uint64_t* const sorted =
       radix_sort(items_.data(), spare_.data(), count, 2 * packing.bits + code_bits, execution, 0);
   for_stretches(execution, count, kPairsPerStretch, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) pairs_[i] = packing.pair(sorted[i]);
   });
-  for (std::uint32_t code = 0; code <= kPairCodes; ++code) {
+  for (std::uint32_t code = 0; code <= BodyKindPairs::kCount; ++code) {
     first_[code] = static_cast<std::uint32_t>(
         std::lower_bound(sorted, sorted + count, packing.first(code)) - sorted);
   }
@@ -75,7 +74,7 @@ Status BodyPairs::assign(std::span<const Source> sources, const ShapeId* shapes,
 
 void BodyPairs::clear() noexcept {
   pairs_.clear();
-  std::fill_n(first_, kPairCodes + 1, 0U);
+  std::fill_n(first_, BodyKindPairs::kCount + 1, 0U);
   for (std::uint64_t& change : changes) change = ~0ULL;
   ++serial_;
 }

@@ -5,20 +5,15 @@
 #include <winnow/core/footprint.h>
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/status.h>
+#include <winnow/pipeline/contact_types.h>
 #include <winnow/pipeline/shapes.h>
-#include "pipeline/narrow/narrow_job.h"
+#include "pipeline/shapes/pair_order.h"
 
 #include <cstdint>
 #include <memory_resource>
 #include <span>
 
 namespace winnow {
-
-/// The kinds of two shapes as one number, below kPairCodes: the first key of the order of pairs.
-[[nodiscard]] constexpr std::uint32_t pair_code(ShapeId a, ShapeId b) noexcept {
-  return a.kind_index() * kAllShapeKinds + b.kind_index();
-}
-inline constexpr std::uint32_t kPairCodes = kAllShapeKinds * kAllShapeKinds;
 
 /// Bodies of a scene: two numbers and a code fit into 64 bits.
 inline constexpr std::size_t kMaxBodies = std::size_t{1} << 28U;
@@ -59,7 +54,7 @@ class BodyPairs {
   Column<BodyPair> pairs_;
   Column<std::uint64_t> items_;
   Column<std::uint64_t> spare_;
-  std::uint32_t first_[kPairCodes + 1] = {};
+  std::uint32_t first_[BodyKindPairs::kCount + 1] = {};
   std::uint64_t serial_ = 0;
 };
 

@@ -9,12 +9,12 @@
 
 namespace winnow {
 
-Status Scene::collide(SceneLevel level, Contacts& contacts) {
+Status Scene::collide(ContactLevel level, Contacts& contacts) {
   if (state_ == nullptr || contacts.state_ == nullptr) {
     contacts.clear();
     return Status::out_of_memory;
   }
-  if (!state_->options_are_good || level > SceneLevel::manifold) return Status::invalid_argument;
+  if (!state_->options_are_good || level > ContactLevel::manifold) return Status::invalid_argument;
   state_->statistics = {};
   Status status = state_->find_pairs();
   if (status == Status::ok) {
@@ -31,11 +31,11 @@ Status Scene::collide(SceneLevel level, Contacts& contacts) {
   return status;
 }
 
-Collision::Collision(SceneState& scene, ContactsState& contacts, SceneLevel level) noexcept
+Collision::Collision(SceneState& scene, ContactsState& contacts, ContactLevel level) noexcept
     : scene_(scene),
       contacts_(contacts),
       level_(level),
-      carries_(scene.options.carry_over > 0.0 && level >= SceneLevel::distance),
+      carries_(scene.options.carry_over > 0.0 && level >= ContactLevel::distance),
       same_scene_(contacts.scene == scene.serial),
       same_level_(same_scene_ && contacts.level == level) {}
 
@@ -69,7 +69,7 @@ Status Collision::run() {
 bool Collision::list_pairs() {
   scene_.convex.clear();
   scene_.composite.clear();
-  if (level_ == SceneLevel::pairs) return true;
+  if (level_ == ContactLevel::pairs) return true;
   const auto pairs = scene_.pairs.pairs();
   if (!contacts_.source.resize(pairs.size())) return false;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -84,9 +84,9 @@ bool Collision::list_pairs() {
 
 namespace {
 
-[[nodiscard]] NarrowOptions narrow_options(const SceneOptions& options, SceneLevel level) noexcept {
-  return {static_cast<NarrowLevel>(static_cast<int>(level) - 1), options.tier, options.margin,
-          options.execution};
+[[nodiscard]] NarrowOptions narrow_options(const SceneOptions& options,
+                                           ContactLevel level) noexcept {
+  return {level, options.tier, options.margin, options.execution};
 }
 
 // Where the answer about each pair of the input lies.
@@ -106,7 +106,7 @@ namespace {
 }  // namespace
 
 Status Collision::answer_convex() {
-  if (level_ == SceneLevel::pairs || scene_.convex.empty()) return Status::ok;
+  if (level_ == ContactLevel::pairs || scene_.convex.empty()) return Status::ok;
   const Status status = scene_.narrow.collide(
       scene_.shapes,
       {{scene_.shape.data(), scene_.shape.size()}, {scene_.pose.data(), scene_.pose.size()}},
@@ -119,7 +119,7 @@ Status Collision::answer_convex() {
 }
 
 Status Collision::answer_composite() {
-  if (level_ == SceneLevel::pairs || scene_.composite.empty()) return Status::ok;
+  if (level_ == ContactLevel::pairs || scene_.composite.empty()) return Status::ok;
   const SceneOptions& options = scene_.options;
   PrimitivePairs& parts = scene_.parts;
   // What is farther apart than this cannot touch before its pair is made anew.
@@ -135,7 +135,7 @@ Status Collision::answer_composite() {
       {parts.pairs.data(), parts.pairs.size()}, narrow_options(options, level_),
       scene_.parts_answers);
   if (status != Status::ok) return status;
-  if (level_ >= SceneLevel::distance) {
+  if (level_ >= ContactLevel::distance) {
     options.composites->smooth(scene_.shapes, parts, options.execution, scene_.parts_answers);
   }
   scene_.statistics.parts = scene_.parts_narrow.statistics();
@@ -145,8 +145,8 @@ Status Collision::answer_composite() {
 }
 
 bool Collision::touches(const NarrowResult& answers, std::size_t at) const noexcept {
-  return level_ == SceneLevel::boolean ? answers.overlaps(at)
-                                       : answers.distance()[at] <= scene_.options.margin;
+  return level_ == ContactLevel::boolean ? answers.overlaps(at)
+                                         : answers.distance()[at] <= scene_.options.margin;
 }
 
 std::uint32_t Collision::shown_before(std::uint32_t pair) const noexcept {
@@ -158,7 +158,7 @@ std::uint32_t Collision::shown_before(std::uint32_t pair) const noexcept {
 // How many pairs from this one on are carried over and lie next to each other in the last frame;
 // those that do not touch are passed over. What touches can be copied in one go.
 std::uint32_t Collision::carried_stretch(std::uint32_t pair, std::uint32_t end) const noexcept {
-  if (level_ == SceneLevel::pairs) return 0;
+  if (level_ == ContactLevel::pairs) return 0;
   std::uint32_t at = pair;
   std::uint32_t next = kNoEntry;
   for (; at < end && static_cast<Origin>(contacts_.origin[at]) == Origin::carried; ++at) {
@@ -172,9 +172,9 @@ std::uint32_t Collision::carried_stretch(std::uint32_t pair, std::uint32_t end) 
 
 // What a pair that is not carried over takes in the frame: nothing if it does not touch.
 ContactFrame::Place Collision::extent(std::uint32_t pair) const noexcept {
-  if (level_ == SceneLevel::pairs) return {1, 0, 0};
+  if (level_ == ContactLevel::pairs) return {1, 0, 0};
   const auto points = [&](const NarrowResult& answers, std::size_t at) {
-    return level_ == SceneLevel::manifold ? answers.contact_count()[at] : 0U;
+    return level_ == ContactLevel::manifold ? answers.contact_count()[at] : 0U;
   };
   if (static_cast<Origin>(contacts_.origin[pair]) == Origin::convex) {
     const std::uint32_t at = scene_.slot[contacts_.source[pair]];
@@ -215,7 +215,7 @@ ContactFrame::Place Collision::count(std::uint32_t first, std::uint32_t end) con
       const std::uint32_t at = scene_.slot[contacts_.source[i++]];
       const std::uint32_t touching = touches(scene_.answers, at) ? 1 : 0;
       const std::uint32_t points =
-          level_ == SceneLevel::manifold ? scene_.answers.contact_count()[at] : 0;
+          level_ == ContactLevel::manifold ? scene_.answers.contact_count()[at] : 0;
       sum += {touching, touching, touching * points};
       continue;
     }
@@ -259,7 +259,7 @@ void Collision::write_task(std::uint32_t first, std::uint32_t end, Place at) noe
 }
 
 bool Collision::is_fresh_convex(std::uint32_t pair) const noexcept {
-  return level_ != SceneLevel::pairs &&
+  return level_ != ContactLevel::pairs &&
          static_cast<Origin>(contacts_.origin[pair]) == Origin::convex;
 }
 
@@ -309,7 +309,7 @@ void Collision::write(std::uint32_t pair, const Place& to) noexcept {
   }
   frame.event[to.pair] = persists ? ContactEvent::persisted : ContactEvent::begun;
   if (persists) c.shown_again[shown] = 1;
-  if (level_ == SceneLevel::pairs) return;
+  if (level_ == ContactLevel::pairs) return;
   frame.manifold_first[to.pair] = to.manifold;
   Place at = to;
   if (static_cast<Origin>(c.origin[pair]) == Origin::convex) {
@@ -333,17 +333,17 @@ void Collision::write(std::uint32_t pair, const Place& to) noexcept {
 void Collision::write_manifold(const NarrowResult& answers, std::size_t at, const double* offset,
                                Place& to) noexcept {
   ContactFrame& frame = contacts_.frame;
-  if (level_ >= SceneLevel::distance) {
+  if (level_ >= ContactLevel::distance) {
     frame.distance[to.manifold] = answers.distance()[at];
     frame.error_bound[to.manifold] = answers.error_bound()[at];
     for (int k = 0; k < 3; ++k) {
       frame.normal[k][to.manifold] = answers.normal(k)[at];
-      if (level_ == SceneLevel::distance) {
+      if (level_ == ContactLevel::distance) {
         frame.point[k][to.manifold] = answers.point(k)[at] + (offset == nullptr ? 0.0 : offset[k]);
       }
     }
   }
-  if (level_ == SceneLevel::manifold) {
+  if (level_ == ContactLevel::manifold) {
     const std::uint32_t first = answers.contact_first()[at];
     const std::uint32_t count = answers.contact_count()[at];
     const ContactColumns& from = answers.contact_columns();
@@ -398,7 +398,7 @@ double Collision::clearance(std::uint32_t pair) const noexcept {
     // already, its error on the other side; half of it is one where the error is a rounding's.
     const double beyond = answers.distance()[at] - scene_.options.margin;
     return std::max(beyond - answers.error_bound()[at],
-                    level_ == SceneLevel::manifold ? 0.5 * beyond : 0.0);
+                    level_ == ContactLevel::manifold ? 0.5 * beyond : 0.0);
   };
   double least = std::numeric_limits<double>::infinity();
   if (static_cast<Origin>(contacts_.origin[pair]) == Origin::convex) {

@@ -13,7 +13,7 @@ namespace winnow {
 /// both put into a new frame.
 class Collision {
  public:
-  Collision(SceneState& scene, ContactsState& contacts, SceneLevel level) noexcept;
+  Collision(SceneState& scene, ContactsState& contacts, ContactLevel level) noexcept;
 
   [[nodiscard]] Status run();
 
@@ -71,7 +71,7 @@ class Collision {
 
   SceneState& scene_;
   ContactsState& contacts_;
-  SceneLevel level_;
+  ContactLevel level_;
   /// Levels at which pairs are carried over, in a scene that does.
   bool carries_;
   /// What the contacts remember is of this scene; and of this level.

@@ -3,6 +3,7 @@
 #include <winnow/core/column.h>
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/narrow_result.h>
 #include "pipeline/scene/body_pairs.h"
 
 #include <cstdint>
@@ -34,7 +35,7 @@ struct ContactFrame {
   [[nodiscard]] std::size_t pairs() const noexcept { return event.size(); }
   [[nodiscard]] std::size_t manifolds() const noexcept { return part[0].size(); }
   /// Room for what a level has, and no more. False if memory is refused.
-  [[nodiscard]] bool resize(SceneLevel level, std::size_t pairs, std::size_t manifolds,
+  [[nodiscard]] bool resize(ContactLevel level, std::size_t pairs, std::size_t manifolds,
                             std::size_t contact_points) noexcept;
   /// As much room as another frame has, so that the two can change places.
   [[nodiscard]] bool reserve_as(const ContactFrame& other) noexcept;
@@ -62,7 +63,7 @@ struct ContactFrame {
   void copy(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
             const Place& to) noexcept;
   /// Writes what ends the columns of firsts.
-  void close(SceneLevel level, const Place& end) noexcept;
+  void close(ContactLevel level, const Place& end) noexcept;
 
  private:
   void copy_points(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
@@ -100,7 +101,7 @@ struct CarriedPair {
 struct ContactsState {
   explicit ContactsState(std::pmr::memory_resource* memory) noexcept;
 
-  SceneLevel level = SceneLevel::pairs;
+  ContactLevel level = ContactLevel::pairs;
   ContactFrame frame;
   ContactFrame before;
   Column<EndedContact> ended;

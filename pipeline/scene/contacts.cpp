@@ -35,11 +35,11 @@ ContactFrame::ContactFrame(std::pmr::memory_resource* memory) noexcept
       point_first(memory),
       points(memory) {}
 
-bool ContactFrame::resize(SceneLevel level, std::size_t pairs, std::size_t manifolds,
+bool ContactFrame::resize(ContactLevel level, std::size_t pairs, std::size_t manifolds,
                           std::size_t contact_points) noexcept {
-  const bool with_parts = level != SceneLevel::pairs;
-  const bool with_distance = level >= SceneLevel::distance;
-  const bool with_points = level == SceneLevel::manifold;
+  const bool with_parts = level != ContactLevel::pairs;
+  const bool with_distance = level >= ContactLevel::distance;
+  const bool with_points = level == ContactLevel::manifold;
   bool good = event.resize(pairs) && manifold_first.resize(with_parts ? pairs + 1 : 0);
   for (int side = 0; side < 2; ++side) {
     good =
@@ -50,7 +50,7 @@ bool ContactFrame::resize(SceneLevel level, std::size_t pairs, std::size_t manif
          point_first.resize(with_points ? manifolds + 1 : 0);
   for (int axis = 0; axis < 3; ++axis) {
     good = good && normal[axis].resize(distances) &&
-           point[axis].resize(level == SceneLevel::distance ? manifolds : 0);
+           point[axis].resize(level == ContactLevel::distance ? manifolds : 0);
   }
   if (!good || !points.grow(contact_points)) return false;
   points.set_size(contact_points);
@@ -185,9 +185,9 @@ void ContactFrame::copy_points(const ContactFrame& other, std::uint32_t first, s
   copy_range(other.points.feature, begin, number, points.feature, to.point);
 }
 
-void ContactFrame::close(SceneLevel level, const Place& end) noexcept {
-  if (level != SceneLevel::pairs) manifold_first[end.pair] = end.manifold;
-  if (level == SceneLevel::manifold) point_first[end.manifold] = end.point;
+void ContactFrame::close(ContactLevel level, const Place& end) noexcept {
+  if (level != ContactLevel::pairs) manifold_first[end.pair] = end.manifold;
+  if (level == ContactLevel::manifold) point_first[end.manifold] = end.point;
 }
 
 ContactsState::ContactsState(std::pmr::memory_resource* memory) noexcept
@@ -232,7 +232,7 @@ const ContactsState& Contacts::state() const noexcept {
   return state_ != nullptr ? *state_ : kNothing;
 }
 
-SceneLevel Contacts::level() const noexcept {
+ContactLevel Contacts::level() const noexcept {
   return state().level;
 }
 

@@ -1,6 +1,7 @@
 // What is known of a scene's pairs from the last call: matched with the pairs of this one, kept
 // where they have hardly moved, told where they have ended.
 
+#include <winnow/core/rotation.h>
 #include "pipeline/scene/collision.h"
 #include "pipeline/scene/motion_bound.h"
 
@@ -29,32 +30,25 @@ constexpr double kTurnError = 4.0e-7;
 }
 
 struct Turn {
-  double m[3][3];
+  Eigen::Matrix3d m;
 
   // R(to) R(from)^T for unit quaternions.
-  Turn(const double (&to)[4], const double (&from)[4]) noexcept {
-    const double w = to[0] * from[0] + to[1] * from[1] + to[2] * from[2] + to[3] * from[3];
-    const double x = -to[0] * from[1] + to[1] * from[0] - to[2] * from[3] + to[3] * from[2];
-    const double y = -to[0] * from[2] + to[1] * from[3] + to[2] * from[0] - to[3] * from[1];
-    const double z = -to[0] * from[3] - to[1] * from[2] + to[2] * from[1] + to[3] * from[0];
-    const double rows[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-                               {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-                               {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
-    std::copy_n(&rows[0][0], 9, &m[0][0]);
-  }
+  Turn(const double (&to)[4], const double (&from)[4]) noexcept
+      : m(rotation_of_unit(
+            product({to[0], to[1], to[2], to[3]}, {from[0], -from[1], -from[2], -from[3]}))) {}
 
   template <typename T>
   void apply(Column<T> (&column)[3], std::uint32_t i) const noexcept {
     const double v[3] = {static_cast<double>(column[0][i]), static_cast<double>(column[1][i]),
                          static_cast<double>(column[2][i])};
     for (int k = 0; k < 3; ++k) {
-      column[k][i] = static_cast<T>(m[k][0] * v[0] + m[k][1] * v[1] + m[k][2] * v[2]);
+      column[k][i] = static_cast<T>(m(k, 0) * v[0] + m(k, 1) * v[1] + m(k, 2) * v[2]);
     }
   }
 };
 
 [[nodiscard]] std::uint32_t code_of(const SceneState& scene, const BodyPair& pair) noexcept {
-  return pair_code(scene.shape[pair.a], scene.shape[pair.b]);
+  return BodyKindPairs::index(scene.shape[pair.a], scene.shape[pair.b]);
 }
 
 }  // namespace
@@ -107,7 +101,7 @@ bool Collision::match() {
   const auto pairs = scene_.pairs.pairs();
   same_pairs_ = carries_ && same_level_ && c.pairs_serial == scene_.pairs.serial() &&
                 c.records.size() == pairs.size() && c.carried.size() == pairs.size();
-  if (level_ != SceneLevel::pairs && !c.origin.resize(pairs.size())) return false;
+  if (level_ != ContactLevel::pairs && !c.origin.resize(pairs.size())) return false;
   if (same_pairs_) return true;
   if (!c.old_record.resize(pairs.size())) return false;
   const auto order_of_pair = [&](std::uint32_t i) {
@@ -131,7 +125,7 @@ bool Collision::match() {
 bool Collision::decide() {
   ContactsState& c = contacts_;
   const auto pairs = scene_.pairs.pairs();
-  if (level_ == SceneLevel::pairs) return true;
+  if (level_ == ContactLevel::pairs) return true;
   std::atomic<std::uint32_t> kept{0};
   const bool may_keep = carries_ && same_level_ && c.carried.size() == c.records.size();
   for_tasks([&](std::size_t, std::uint32_t first, std::uint32_t end) {
@@ -203,9 +197,9 @@ void Collision::turn(CarriedPair& carried, const PairRecord& record,
   const std::uint32_t end = frame.manifold_first[record.shown + 1];
   for (std::uint32_t m = first; m < end; ++m) {
     turn.apply(frame.normal, m);
-    if (level_ == SceneLevel::distance) turn.apply(frame.point, m);
+    if (level_ == ContactLevel::distance) turn.apply(frame.point, m);
   }
-  if (level_ == SceneLevel::manifold) {
+  if (level_ == ContactLevel::manifold) {
     for (std::uint32_t p = frame.point_first[first]; p < frame.point_first[end]; ++p) {
       turn.apply(frame.points.position, p);
     }

@@ -1,18 +1,52 @@
 #include "pipeline/shapes/extent.h"
+#include <winnow/core/rotation.h>
+#include <winnow/core/rounding.h>
+#include <winnow/pipeline/shape_pool.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace winnow::mid {
+namespace winnow {
+namespace mid {
 namespace {
+
+// A direction in a shape's own frame, and what an extent along it needs to be told of it.
+
+/// Of any length.
+struct AnyDirection {
+  const Vec& d;
+
+  [[nodiscard]] double length() const noexcept { return d.norm(); }
+  /// Of its part at right angles to the z axis.
+  [[nodiscard]] double across() const noexcept { return std::hypot(d.x(), d.y()); }
+  /// No product with a point of a hull's core is larger.
+  [[nodiscard]] double most(const HullShape& hull) const noexcept {
+    return d.lpNorm<1>() * (Eigen::Map<const Vec>(hull.center).cwiseAbs().maxCoeff() + hull.radius);
+  }
+};
+
+/// Of length 1, to rounding: its squares stay in range.
+struct UnitDirection {
+  const Vec& d;
+
+  [[nodiscard]] static double length() noexcept { return 1.0; }
+  [[nodiscard]] double across() const noexcept { return std::sqrt(d.x() * d.x() + d.y() * d.y()); }
+  [[nodiscard]] static double most(const HullShape& hull) noexcept {
+    return Eigen::Map<const Vec>(hull.center).norm() + hull.radius;
+  }
+};
 
 [[nodiscard]] Extent symmetric(double reach) noexcept {
   return {-reach, reach, reach};
 }
 
+[[nodiscard]] Extent rounded(const Extent& core, double rounding) noexcept {
+  return {core.low - rounding, core.high + rounding, core.scale + rounding};
+}
+
 // Vertex columns are padded to 16 by copies of vertex 0; four independent minima and maxima keep
 // the loop from waiting for each comparison.
-[[nodiscard]] Extent of_hull(const HullShape& hull, const Vec& d) noexcept {
+[[nodiscard]] Extent of_vertices(const HullShape& hull, const Vec& d, double scale) noexcept {
   constexpr std::uint32_t kBlock = 4;
   double low[kBlock];
   double high[kBlock];
@@ -28,14 +62,11 @@ namespace {
       high[k] = v > high[k] ? v : high[k];
     }
   }
-  const double rounding = hull.rounding * d.norm();
-  const double size = Eigen::Map<const Vec>(hull.center).cwiseAbs().maxCoeff() + hull.radius;
-  return {std::min({low[0], low[1], low[2], low[3]}) - rounding,
-          std::max({high[0], high[1], high[2], high[3]}) + rounding,
-          d.lpNorm<1>() * size + rounding};
+  return {std::min({low[0], low[1], low[2], low[3]}),
+          std::max({high[0], high[1], high[2], high[3]}), scale};
 }
 
-[[nodiscard]] Extent of_triangle(const TriangleShape& triangle, const Vec& d) noexcept {
+[[nodiscard]] Extent of_corners(const TriangleShape& triangle, const Vec& d) noexcept {
   Extent extent{kInfinity, -kInfinity, 0.0};
   for (const auto& corner : triangle.vertex) {
     const Eigen::Map<const Vec> v(corner);
@@ -44,22 +75,73 @@ namespace {
     extent.high = std::max(extent.high, at);
     extent.scale = std::max(extent.scale, v.cwiseAbs().dot(d.cwiseAbs()));
   }
-  const double rounding = triangle.rounding * d.norm();
-  return {extent.low - rounding, extent.high + rounding, extent.scale + rounding};
+  return extent;
 }
 
-[[nodiscard]] Extent of_cone(const ConeShape& cone, const Vec& d) noexcept {
-  const double side = cone.radius * std::hypot(d.x(), d.y());
-  const double tip = cone.half_length * d.z();
-  const double rounding = cone.rounding * d.norm();
-  return {std::min(tip, -side - tip) - rounding, std::max(tip, side - tip) + rounding,
-          side + std::abs(tip) + rounding};
+/// Of a cone's core, whose disc reaches to `side`.
+[[nodiscard]] Extent of_cone(double side, double tip) noexcept {
+  return {std::min(tip, -side - tip), std::max(tip, side - tip), side + std::abs(tip)};
+}
+
+template <typename Direction>
+[[nodiscard]] Extent extent_along(const ShapeTables& tables, ShapeId shape,
+                                  const Direction& direction) noexcept {
+  const Vec& d = direction.d;
+  const std::uint32_t i = shape.index();
+  switch (shape.kind()) {
+    case ShapeKind::sphere:
+      return symmetric(tables.spheres[i].radius * direction.length());
+    case ShapeKind::capsule:
+      return symmetric(tables.capsules[i].radius * direction.length() +
+                       tables.capsules[i].half_length * std::abs(d.z()));
+    case ShapeKind::box: {
+      const BoxShape& s = tables.boxes[i];
+      return symmetric(Eigen::Map<const Vec>(s.half).dot(d.cwiseAbs()) +
+                       s.rounding * direction.length());
+    }
+    case ShapeKind::cylinder: {
+      const CylinderShape& s = tables.cylinders[i];
+      return symmetric(s.radius * direction.across() + s.half_length * std::abs(d.z()) +
+                       s.rounding * direction.length());
+    }
+    case ShapeKind::cone: {
+      const ConeShape& s = tables.cones[i];
+      return rounded(of_cone(s.radius * direction.across(), s.half_length * d.z()),
+                     s.rounding * direction.length());
+    }
+    case ShapeKind::hull: {
+      const HullShape& s = tables.hulls[i];
+      return rounded(of_vertices(s, d, direction.most(s)), s.rounding * direction.length());
+    }
+    case ShapeKind::triangle: {
+      const TriangleShape& s = tables.triangles[i];
+      return rounded(of_corners(s, d), s.rounding * direction.length());
+    }
+    case ShapeKind::half_space:
+      break;
+  }
+  return {-kInfinity, kInfinity, 0.0};
+}
+
+/// Bounded only where its normal is the axis, to the last bit.
+[[nodiscard]] Extent of_half_space(const HalfSpaceShape& shape, const Vec& axis) noexcept {
+  const Eigen::Map<const Vec> n(shape.normal);
+  const bool is_above = axis == n;
+  const bool is_below = axis == -n;
+  return {is_below ? -shape.offset : -kInfinity, is_above ? shape.offset : kInfinity,
+          is_above || is_below ? std::abs(shape.offset) : 0.0};
 }
 
 // An upper bound that neither overflows nor vanishes, within 1.8 of the length.
-[[nodiscard]] double length(const Vec& v) noexcept {
-  const double exact = v.norm();
-  return exact > 1e-150 && exact < 1e150 ? exact : v.lpNorm<1>();
+[[nodiscard]] double length_bound(const Vec& v) noexcept {
+  constexpr double kLeast = 1e-150;
+  const double length = v.norm();
+  return length > kLeast && length < 1.0 / kLeast ? length : v.lpNorm<1>();
+}
+
+// Rounded up; a reach may be infinite.
+[[nodiscard]] double end_of(double position, double reach) noexcept {
+  return std::isinf(reach) ? reach : add_up(position, reach);
 }
 
 [[nodiscard]] Box finished(const Vec& center, const Vec& half, const Vec& noise) noexcept {
@@ -71,32 +153,7 @@ namespace {
 }  // namespace
 
 Extent extent(const ShapeTables& tables, ShapeId shape, const Vec& d) noexcept {
-  const std::uint32_t i = shape.index();
-  switch (shape.kind()) {
-    case ShapeKind::sphere:
-      return symmetric(tables.spheres[i].radius * d.norm());
-    case ShapeKind::capsule:
-      return symmetric(tables.capsules[i].radius * d.norm() +
-                       tables.capsules[i].half_length * std::abs(d.z()));
-    case ShapeKind::box: {
-      const BoxShape& s = tables.boxes[i];
-      return symmetric(Eigen::Map<const Vec>(s.half).dot(d.cwiseAbs()) + s.rounding * d.norm());
-    }
-    case ShapeKind::cylinder: {
-      const CylinderShape& s = tables.cylinders[i];
-      return symmetric(s.radius * std::hypot(d.x(), d.y()) + s.half_length * std::abs(d.z()) +
-                       s.rounding * d.norm());
-    }
-    case ShapeKind::cone:
-      return of_cone(tables.cones[i], d);
-    case ShapeKind::hull:
-      return of_hull(tables.hulls[i], d);
-    case ShapeKind::triangle:
-      return of_triangle(tables.triangles[i], d);
-    case ShapeKind::half_space:
-      break;
-  }
-  return {-kInfinity, kInfinity, 0.0};
+  return extent_along(tables, shape, AnyDirection{d});
 }
 
 double lowest(const ShapeTables& tables, ShapeId shape, const Vec& d) noexcept {
@@ -149,7 +206,7 @@ double radius_of(const ShapeTables& tables, ShapeId shape) noexcept {
       radius = tables.capsules[i].radius + tables.capsules[i].half_length;
       break;
     case ShapeKind::box:
-      radius = length(Eigen::Map<const Vec>(tables.boxes[i].half)) + tables.boxes[i].rounding;
+      radius = length_bound(Eigen::Map<const Vec>(tables.boxes[i].half)) + tables.boxes[i].rounding;
       break;
     case ShapeKind::cylinder: {
       const CylinderShape& s = tables.cylinders[i];
@@ -163,7 +220,7 @@ double radius_of(const ShapeTables& tables, ShapeId shape) noexcept {
     }
     case ShapeKind::hull: {
       const HullShape& s = tables.hulls[i];
-      radius = length(Eigen::Map<const Vec>(s.center)) + s.radius + s.rounding;
+      radius = length_bound(Eigen::Map<const Vec>(s.center)) + s.radius + s.rounding;
       break;
     }
     case ShapeKind::triangle: {
@@ -177,7 +234,7 @@ double radius_of(const ShapeTables& tables, ShapeId shape) noexcept {
     case ShapeKind::half_space:
       break;
   }
-  return radius * (1.0 + kSlack);
+  return radius;
 }
 
 double rounding_of(const ShapeTables& tables, ShapeId shape) noexcept {
@@ -203,4 +260,25 @@ double rounding_of(const ShapeTables& tables, ShapeId shape) noexcept {
   return 0.0;
 }
 
-}  // namespace winnow::mid
+}  // namespace mid
+
+Aabb ShapePool::bounds(ShapeId id, const Pose& pose) const noexcept {
+  // Balls need no turn.
+  const mid::Mat turn = id.kind() == ShapeKind::sphere
+                            ? mid::Mat(mid::Mat::Identity())
+                            : rotation_of_unit(normalized(tame(pose.orientation)));
+  Aabb box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const mid::Vec row = turn.row(axis);
+    const mid::Extent reach = id.kind() == ShapeKind::half_space
+                                  ? mid::of_half_space(tables_.half_spaces[id.index()], row)
+                                  : mid::extent_along(tables_, id, mid::UnitDirection{row});
+    // For the rounding of the rotation and of the sums below.
+    const double slack = mid::kSlack * reach.scale;
+    box.max[axis] = round_up(mid::end_of(pose.position[axis], reach.high + slack));
+    box.min[axis] = -round_up(mid::end_of(-pose.position[axis], -reach.low + slack));
+  }
+  return box;
+}
+
+}  // namespace winnow

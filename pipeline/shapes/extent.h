@@ -28,7 +28,8 @@ struct Extent {
 [[nodiscard]] Box box_under(const Box& box, const Mat& linear, const Vec& offset,
                             double grow) noexcept;
 
-/// No point of the convex shape is farther from its origin; infinite for a half-space.
+/// No point of the convex shape is farther from its origin, but for a few roundings; infinite for a
+/// half-space.
 [[nodiscard]] double radius_of(const ShapeTables& tables, ShapeId shape) noexcept;
 
 /// How much of it is rounding: the radius of a sphere or capsule.

@@ -2,6 +2,7 @@
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/pose.h>
+#include <winnow/core/rotation.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -52,41 +53,7 @@ struct Box {
   return v.cwiseMin(kMost).cwiseMax(-kMost);
 }
 
-/// w, x, y, z divided by the largest, so that no product overflows. Exact for the identity.
-[[nodiscard]] inline Eigen::Vector4d tame(const double q[4]) noexcept {
-  const Eigen::Map<const Eigen::Vector4d> given(q);
-  return given / given.cwiseAbs().maxCoeff();
-}
-
-/// Of a tame quaternion. Exact for the identity and for half and quarter turns about the axes.
-[[nodiscard]] inline Mat rotation_of(const Eigen::Vector4d& q) noexcept {
-  const double s = 2.0 / q.squaredNorm();
-  const double w = q[0];
-  const double x = q[1];
-  const double y = q[2];
-  const double z = q[3];
-  Mat r;
-  r << 1.0 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
-      s * (x * y + w * z), 1.0 - s * (x * x + z * z), s * (y * z - w * x),   //
-      s * (x * z - w * y), s * (y * z + w * x), 1.0 - s * (x * x + y * y);
-  return r;
-}
-
-/// First `inner`, then `outer`.
-[[nodiscard]] inline Eigen::Vector4d product(const Eigen::Vector4d& outer,
-                                             const Eigen::Vector4d& inner) noexcept {
-  const double w = outer[0];
-  const double x = outer[1];
-  const double y = outer[2];
-  const double z = outer[3];
-  return {w * inner[0] - x * inner[1] - y * inner[2] - z * inner[3],
-          w * inner[1] + x * inner[0] + y * inner[3] - z * inner[2],
-          w * inner[2] - x * inner[3] + y * inner[0] + z * inner[1],
-          w * inner[3] + x * inner[2] - y * inner[1] + z * inner[0]};
-}
-
-[[nodiscard]] inline Pose pose_of(const Vec& position,
-                                  const Eigen::Vector4d& orientation) noexcept {
+[[nodiscard]] inline Pose pose_of(const Vec& position, const Quaternion& orientation) noexcept {
   const Vec p = finite(position);
   return {{p.x(), p.y(), p.z()}, {orientation[0], orientation[1], orientation[2], orientation[3]}};
 }

@@ -1,4 +1,5 @@
 #include <winnow/pipeline/shape_pool.h>
+
 #include "pipeline/shapes/hull_builder.h"
 
 #include <cmath>
@@ -7,6 +8,14 @@
 #include <utility>
 
 namespace winnow {
+
+const char* to_string(ShapeKind kind) noexcept {
+  constexpr const char* kNames[kShapeKinds] = {"sphere", "capsule", "box",      "cylinder",
+                                               "cone",   "hull",    "triangle", "half_space"};
+  const auto index = static_cast<std::uint32_t>(kind);
+  return index < kShapeKinds ? kNames[index] : "none";
+}
+
 namespace {
 
 [[nodiscard]] bool are_lengths(std::initializer_list<double> values) noexcept {

@@ -58,6 +58,9 @@ struct Range {
   double high;
 };
 
+/// The first vertex of a hull that is farthest along a direction in the hull's frame, and how far.
+std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value) noexcept;
+
 /// A point of the core that is farthest along `direction`.
 [[nodiscard]] Vec support(const Core& core, const Vec& direction) noexcept;
 

@@ -23,7 +23,7 @@ struct CoreDistance {
 /// Distance or depth of the cores of a pair, half-spaces included. Only as far as `level` needs
 /// it: boolean ends where the sign of the distance of the rounded shapes is sure. `enough`: a
 /// larger distance of the cores need not be known.
-[[nodiscard]] CoreDistance core_distance(const Problem& problem, NarrowLevel level, double enough,
+[[nodiscard]] CoreDistance core_distance(const Problem& problem, ContactLevel level, double enough,
                                          SolverCounts& counts) noexcept;
 
 }  // namespace winnow::solver

@@ -1,13 +1,267 @@
 #include "pipeline/solver/expanding_polytope.h"
 
-#include "pipeline/solver/inner_polytope.h"
-
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace winnow::solver {
 namespace {
+
+/// A polytope of triangles that grows by points outside of it, its faces in the order of their
+/// distance from the origin, which is inside. Of fixed size: some 130 KB, for the stack.
+class InnerPolytope {
+ public:
+  struct Face {
+    std::array<std::uint16_t, 3> point;
+    /// The face across the side from point i to the next.
+    std::array<std::uint16_t, 3> across;
+    bool alive;
+    /// Looked at, and can grow no more.
+    bool settled;
+    /// Outward, and a lower bound of the distance of the face's plane.
+    Vec normal;
+    double low;
+  };
+
+  /// `noise`: lengths that cannot be told from zero.
+  explicit InnerPolytope(double noise) noexcept : noise_(noise) {}
+
+  [[nodiscard]] std::uint32_t point_count() const noexcept { return point_count_; }
+  [[nodiscard]] const Vec& point(std::uint32_t i) const noexcept { return points_[i]; }
+  /// For the first four points.
+  void add(const Vec& w) noexcept { points_[point_count_++] = w; }
+  /// Of the first four points; false if they are in a plane.
+  bool make_tetrahedron() noexcept;
+
+  /// Takes the nearest face that was not taken yet; false if there is none.
+  bool take_nearest(std::uint16_t& face) noexcept;
+  [[nodiscard]] const Face& face(std::uint16_t f) const noexcept { return faces_[f]; }
+  /// How far a point is above the face.
+  [[nodiscard]] double height(const Face& face, const Vec& w) const noexcept {
+    return face.normal.dot(w - points_[face.point[0]]);
+  }
+  /// The face is on the surface of whatever the points are taken from.
+  void settle(std::uint16_t f) noexcept { faces_[f].settled = true; }
+
+  /// Replaces the faces that see w, of which `seen` is one, by a fan from w. False if there is no
+  /// room or rounding has made the horizon something else than one loop: the end of it then.
+  bool attach(const Vec& w, std::uint16_t seen) noexcept;
+
+ private:
+  static constexpr std::uint32_t kPoints = 384;
+  static constexpr std::uint32_t kFaces = 6 * kPoints;
+
+  /// A side that stays when the faces that see a new point are taken away.
+  struct Side {
+    std::uint16_t from;
+    std::uint16_t to;
+    std::uint16_t face;
+  };
+
+  bool add_face(std::uint16_t p, std::uint16_t q, std::uint16_t r, std::uint16_t& at) noexcept;
+  bool find_horizon(const Vec& w, std::uint16_t seen) noexcept;
+  [[nodiscard]] double triangle_distance(std::uint16_t p, std::uint16_t q,
+                                         std::uint16_t r) const noexcept;
+  [[nodiscard]] bool is_seen(const Vec& w, const Face& face, std::uint16_t from,
+                             std::uint16_t to) const noexcept;
+  void push(std::uint16_t face) noexcept;
+  std::uint16_t pop() noexcept;
+  void compact() noexcept;
+  [[nodiscard]] bool is_farther(std::uint16_t f, std::uint16_t g) const noexcept {
+    return faces_[f].low > faces_[g].low || (faces_[f].low == faces_[g].low && f > g);
+  }
+
+  double noise_;
+  std::array<Vec, kPoints> points_;
+  std::array<Face, kFaces> faces_;
+  std::array<std::uint16_t, kFaces> heap_;
+  std::array<Side, kFaces> horizon_;
+  std::array<std::uint16_t, kFaces> moved_;
+  std::uint32_t point_count_ = 0;
+  std::uint32_t face_count_ = 0;
+  std::uint32_t heap_count_ = 0;
+  std::uint32_t horizon_count_ = 0;
+};
+
+bool InnerPolytope::make_tetrahedron() noexcept {
+  const Vec n = (points_[1] - points_[0]).cross(points_[2] - points_[0]);
+  if (n.dot(points_[3] - points_[0]) > 0.0) std::swap(points_[1], points_[2]);
+  std::uint16_t face = 0;
+  if (!add_face(0, 1, 2, face) || !add_face(0, 2, 3, face) || !add_face(0, 3, 1, face) ||
+      !add_face(1, 3, 2, face)) {
+    return false;
+  }
+  faces_[0].across = {2, 3, 1};
+  faces_[1].across = {0, 3, 2};
+  faces_[2].across = {1, 3, 0};
+  faces_[3].across = {2, 1, 0};
+  return true;
+}
+
+bool InnerPolytope::take_nearest(std::uint16_t& face) noexcept {
+  // No more faces than twice the points are alive, and no more can be added at once.
+  if (face_count_ + 2 * point_count_ > kFaces) compact();
+  while (heap_count_ > 0) {
+    face = pop();
+    if (faces_[face].alive) return true;
+  }
+  return false;
+}
+
+/// Returns false if there is no room or the three points are on a line.
+bool InnerPolytope::add_face(std::uint16_t p, std::uint16_t q, std::uint16_t r,
+                             std::uint16_t& at) noexcept {
+  if (face_count_ == kFaces) return false;
+  const Vec e = points_[q] - points_[p];
+  const Vec f = points_[r] - points_[q];
+  const Vec g = points_[p] - points_[r];
+  const double le = e.squaredNorm();
+  const double lf = f.squaredNorm();
+  const double lg = g.squaredNorm();
+  const Vec cross = le >= lf && le >= lg ? (lf < lg ? e.cross(f) : g.cross(e))
+                    : lf >= lg           ? (lg < le ? f.cross(g) : e.cross(f))
+                                         : (le < lf ? g.cross(e) : f.cross(g));
+  const double area = cross.norm();
+  if (!(area > 0.0)) return false;
+  at = static_cast<std::uint16_t>(face_count_++);
+  Face& face = faces_[at];
+  face.point = {p, q, r};
+  face.alive = true;
+  face.settled = false;
+  face.normal = unit(cross);
+  const double offset = std::max(
+      {face.normal.dot(points_[p]), face.normal.dot(points_[q]), face.normal.dot(points_[r])});
+  // What rounding of the points makes of the distance of their plane. That of slivers is of little
+  // worth; their own distance is not less than it.
+  const double doubt = 0.125 * noise_ / area * std::max({le, lf, lg});
+  face.low = offset - std::max(doubt, noise_);
+  if (doubt > noise_) face.low = std::max(face.low, triangle_distance(p, q, r) - noise_);
+  push(at);
+  return true;
+}
+
+double InnerPolytope::triangle_distance(std::uint16_t p, std::uint16_t q,
+                                        std::uint16_t r) const noexcept {
+  Simplex triangle;
+  triangle.count = 3;
+  triangle.point[0].w = points_[p];
+  triangle.point[1].w = points_[q];
+  triangle.point[2].w = points_[r];
+  reduce(triangle);
+  return triangle.closest().norm();
+}
+
+void InnerPolytope::push(std::uint16_t face) noexcept {
+  heap_[heap_count_++] = face;
+  std::push_heap(heap_.begin(), heap_.begin() + heap_count_,
+                 [this](std::uint16_t f, std::uint16_t g) { return is_farther(f, g); });
+}
+
+std::uint16_t InnerPolytope::pop() noexcept {
+  std::pop_heap(heap_.begin(), heap_.begin() + heap_count_,
+                [this](std::uint16_t f, std::uint16_t g) { return is_farther(f, g); });
+  return heap_[--heap_count_];
+}
+
+/// Makes room: takes out the faces that are no more.
+void InnerPolytope::compact() noexcept {
+  std::uint32_t kept = 0;
+  for (std::uint32_t f = 0; f < face_count_; ++f) {
+    if (!faces_[f].alive) continue;
+    moved_[f] = static_cast<std::uint16_t>(kept);
+    faces_[kept++] = faces_[f];
+  }
+  face_count_ = kept;
+  heap_count_ = 0;
+  for (std::uint32_t f = 0; f < kept; ++f) {
+    for (std::uint16_t& across : faces_[f].across) across = moved_[across];
+    if (!faces_[f].settled) heap_[heap_count_++] = static_cast<std::uint16_t>(f);
+  }
+  std::make_heap(heap_.begin(), heap_.begin() + heap_count_,
+                 [this](std::uint16_t f, std::uint16_t g) { return is_farther(f, g); });
+}
+
+bool InnerPolytope::attach(const Vec& w, std::uint16_t seen) noexcept {
+  if (point_count_ == kPoints || !find_horizon(w, seen)) return false;
+  const auto apex = static_cast<std::uint16_t>(point_count_);
+  points_[point_count_++] = w;
+  if (face_count_ + horizon_count_ > kFaces) return false;
+  const auto first = static_cast<std::uint16_t>(face_count_);
+  for (std::uint32_t i = 0; i < horizon_count_; ++i) {
+    const Side& side = horizon_[i];
+    std::uint16_t at = 0;
+    if (!add_face(side.from, side.to, apex, at)) return false;
+    const std::uint32_t before = i == 0 ? horizon_count_ - 1 : i - 1;
+    const std::uint32_t after = i + 1 == horizon_count_ ? 0 : i + 1;
+    faces_[at].across = {side.face, static_cast<std::uint16_t>(first + after),
+                         static_cast<std::uint16_t>(first + before)};
+    Face& other = faces_[side.face];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (other.point[k] == side.to && other.point[(k + 1) % 3] == side.from) other.across[k] = at;
+    }
+  }
+  return true;
+}
+
+/// True if w is above the face, or in its plane and on the line of the side between `from` and
+/// `to`: there, a new face over that side would have no area.
+bool InnerPolytope::is_seen(const Vec& w, const Face& face, std::uint16_t from,
+                            std::uint16_t to) const noexcept {
+  const double above = height(face, w);
+  if (above > 0.125 * noise_) return true;
+  if (above < -0.125 * noise_) return false;
+  const Vec side = points_[to] - points_[from];
+  const Vec out = w - points_[from];
+  return side.cross(out).squaredNorm() <= 1e-16 * side.squaredNorm() * out.squaredNorm();
+}
+
+/// Collects the horizon in order: depth first over the faces that see w, each entered by a side and
+/// left by the ones after it.
+bool InnerPolytope::find_horizon(const Vec& w, std::uint16_t seen) noexcept {
+  horizon_count_ = 0;
+  struct Visit {
+    std::uint16_t face;
+    std::uint8_t side;
+    std::uint8_t left;
+  };
+  std::array<Visit, 2 * kPoints> visits;
+  std::size_t depth = 0;
+  faces_[seen].alive = false;
+  visits[depth++] = {seen, 0, 3};
+  while (depth > 0) {
+    Visit& visit = visits[depth - 1];
+    if (visit.left == 0) {
+      --depth;
+      continue;
+    }
+    const std::uint8_t k = visit.side;
+    visit.side = static_cast<std::uint8_t>((k + 1) % 3);
+    --visit.left;
+    const Face& face = faces_[visit.face];
+    const std::uint16_t next = face.across[k];
+    Face& other = faces_[next];
+    if (!other.alive) continue;
+    const std::uint16_t from = face.point[k];
+    const std::uint16_t to = face.point[(k + 1U) % 3];
+    if (is_seen(w, other, from, to)) {
+      if (depth == visits.size()) return false;
+      std::uint8_t entered = 0;
+      while (entered < 2 && other.point[entered] != to) ++entered;
+      other.alive = false;
+      visits[depth++] = {next, static_cast<std::uint8_t>((entered + 1) % 3), 2};
+    } else {
+      horizon_[horizon_count_++] = {from, to, next};
+    }
+  }
+  if (horizon_count_ < 3) return false;
+  for (std::uint32_t i = 0; i < horizon_count_; ++i) {
+    if (horizon_[i].to != horizon_[i + 1 == horizon_count_ ? 0 : i + 1].from) return false;
+  }
+  return true;
+}
 
 /// Grows a polytope inside of the difference b - a.
 class Expansion {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "pipeline/solver/core.h"
-#include "pipeline/solver/simplex.h"
+#include "pipeline/solver/gjk.h"
 
 namespace winnow::solver {
 

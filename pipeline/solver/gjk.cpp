@@ -1,8 +1,164 @@
 #include "pipeline/solver/gjk.h"
 
 #include <cmath>
+#include <limits>
 
 namespace winnow::solver {
+namespace {
+
+/// A closest point as weights of the corners of the whole simplex.
+struct Candidate {
+  std::array<double, 4> weight{};
+  double square = std::numeric_limits<double>::infinity();
+};
+
+void offer(const Simplex& s, const std::array<double, 4>& weight, Candidate& best) noexcept {
+  Vec v = Vec::Zero();
+  for (int i = 0; i < s.count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (weight[k] != 0.0) v += weight[k] * s.point[k].w;
+  }
+  const double square = v.squaredNorm();
+  if (square < best.square) best = {weight, square};
+}
+
+void try_segment(const Simplex& s, std::size_t i, std::size_t j, Candidate& best) noexcept {
+  const Vec& p = s.point[i].w;
+  const Vec& q = s.point[j].w;
+  const Vec edge = q - p;
+  const double length = edge.squaredNorm();
+  std::array<double, 4> weight{};
+  const double from_p = -p.dot(edge);
+  const double from_q = q.dot(edge);
+  if (!(length > 0.0) || from_p <= 0.0) {
+    weight[i] = 1.0;
+  } else if (from_q <= 0.0) {
+    weight[j] = 1.0;
+  } else if (from_p < from_q) {
+    // From the nearer end, whose share is the one with the smaller error.
+    weight[j] = from_p / length;
+    weight[i] = 1.0 - weight[j];
+  } else {
+    weight[i] = from_q / length;
+    weight[j] = 1.0 - weight[i];
+  }
+  offer(s, weight, best);
+}
+
+void try_triangle(const Simplex& s, std::size_t i, std::size_t j, std::size_t k,
+                  Candidate& best) noexcept {
+  const Vec& p = s.point[i].w;
+  const Vec& q = s.point[j].w;
+  const Vec& r = s.point[k].w;
+  const Vec n = (q - p).cross(r - p);
+  const double area = n.squaredNorm();
+  // Signed areas of the triangles that the origin's projection makes with the sides.
+  const double ap = n.dot((q - r).cross(r));
+  const double aq = n.dot((r - p).cross(p));
+  const double ar = n.dot((p - q).cross(q));
+  const double total = ap + aq + ar;
+  if (area > 0.0 && total > 0.0 && ap >= 0.0 && aq >= 0.0 && ar >= 0.0) {
+    std::array<double, 4> weight{};
+    weight[i] = ap / total;
+    weight[j] = aq / total;
+    weight[k] = ar / total;
+    offer(s, weight, best);
+  }
+  // A sliver's areas have no sure signs: then its sides are tried as well.
+  const double scale = std::max({(q - p).squaredNorm(), (r - p).squaredNorm()});
+  const bool sliver = !(area > 1e-16 * scale * scale);
+  if (ap <= 0.0 || sliver) try_segment(s, j, k, best);
+  if (aq <= 0.0 || sliver) try_segment(s, i, k, best);
+  if (ar <= 0.0 || sliver) try_segment(s, i, j, best);
+}
+
+void try_tetrahedron(Simplex& s, Candidate& best) noexcept {
+  constexpr std::size_t kFace[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
+  std::array<double, 4> weight{};
+  std::array<bool, 4> beyond{};
+  bool inside = true;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec& p = s.point[kFace[i][0]].w;
+    const Vec& q = s.point[kFace[i][1]].w;
+    const Vec& r = s.point[kFace[i][2]].w;
+    const Vec e = q - p;
+    const Vec f = r - p;
+    const Vec g = s.point[i].w - p;
+    const Vec n = e.cross(f);
+    const double height = n.dot(g);
+    const double origin = -n.dot(p);
+    const double largest = std::sqrt(e.squaredNorm() * f.squaredNorm());
+    const double doubt = 8.0 * kEpsilon * largest * (g.norm() + p.norm());
+    const bool flat = std::abs(height) <= doubt;
+    weight[i] = flat ? 0.0 : origin / height;
+    beyond[i] = flat || weight[i] * height * (height > 0.0 ? 1.0 : -1.0) <= doubt;
+    if (flat || weight[i] < 0.0) inside = false;
+  }
+  const double sum = weight[0] + weight[1] + weight[2] + weight[3];
+  if (inside && sum > 0.0) {
+    for (double& w : weight) w /= sum;
+    s.inside = true;
+    best = {weight, 0.0};
+    return;
+  }
+  bool any = false;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!beyond[i]) continue;
+    any = true;
+    try_triangle(s, kFace[i][0], kFace[i][1], kFace[i][2], best);
+  }
+  if (any) return;
+  for (const auto& face : kFace) try_triangle(s, face[0], face[1], face[2], best);
+}
+
+}  // namespace
+
+Vec Simplex::closest() const noexcept {
+  Vec v = Vec::Zero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) v += weight[i] * point[i].w;
+  return v;
+}
+
+Vec Simplex::on_a() const noexcept {
+  Vec v = Vec::Zero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) v += weight[i] * point[i].a;
+  return v;
+}
+
+Vec Simplex::on_b() const noexcept {
+  Vec v = Vec::Zero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) v += weight[i] * point[i].b;
+  return v;
+}
+
+void reduce(Simplex& simplex) noexcept {
+  Candidate best;
+  simplex.inside = false;
+  switch (simplex.count) {
+    case 1:
+      best.weight[0] = 1.0;
+      break;
+    case 2:
+      try_segment(simplex, 0, 1, best);
+      break;
+    case 3:
+      try_triangle(simplex, 0, 1, 2, best);
+      break;
+    default:
+      try_tetrahedron(simplex, best);
+      break;
+  }
+  const auto given = static_cast<std::size_t>(simplex.count);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < given; ++i) {
+    if (best.weight[i] == 0.0 && !simplex.inside) continue;
+    simplex.point[kept] = simplex.point[i];
+    simplex.weight[kept] = best.weight[i];
+    ++kept;
+  }
+  simplex.count = static_cast<int>(kept);
+}
+
 namespace {
 
 constexpr int kIterations = 256;

@@ -1,26 +1,11 @@
 #include "pipeline/solver/problem.h"
+#include <winnow/core/rotation.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace winnow::solver {
 namespace {
-
-/// Exact for the identity, half turns and quarter turns about the axes.
-Mat rotation_of(const Pose& pose) noexcept {
-  const Eigen::Map<const Eigen::Vector4d> given(pose.orientation);
-  const Eigen::Vector4d q = given / given.cwiseAbs().maxCoeff();
-  const double s = 2.0 / q.squaredNorm();
-  const double w = q[0];
-  const double x = q[1];
-  const double y = q[2];
-  const double z = q[3];
-  Mat r;
-  r << 1.0 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
-      s * (x * y + w * z), 1.0 - s * (x * x + z * z), s * (y * z - w * x),   //
-      s * (x * z - w * y), s * (y * z + w * x), 1.0 - s * (x * x + y * y);
-  return r;
-}
 
 /// The lengths of a shape, unscaled; at most 7.
 struct Lengths {
@@ -102,7 +87,7 @@ void place_triangle(const TriangleShape& triangle, int exponent, Core& core) noe
 void place(const ShapeTables& tables, ShapeId id, const Pose& pose, const Lengths& lengths,
            int exponent, Core& core) noexcept {
   core.kind = lengths.kind;
-  core.rotation = rotation_of(pose);
+  core.rotation = rotation_of(tame(pose.orientation));
   for (int i = 0; i < 3; ++i) core.half[i] = std::ldexp(lengths.half[i], -exponent);
   core.rounding = std::ldexp(lengths.rounding, -exponent);
   core.size = core.half.norm() + core.rounding;
@@ -124,7 +109,7 @@ void place(const ShapeTables& tables, ShapeId id, const Pose& pose, const Length
 }  // namespace
 
 void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
-             const Pose& pose_b, bool swapped, Problem& problem) noexcept {
+             const Pose& pose_b, bool mirrored, Problem& problem) noexcept {
   // Positions far apart on both ends of the range of doubles have no finite difference: halve.
   const Eigen::Map<const Vec> at_a(pose_a.position);
   const Eigen::Map<const Vec> at_b(pose_b.position);
@@ -140,7 +125,7 @@ void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b
   place(tables, a, pose_a, lengths_a, problem.exponent, problem.a);
   place(tables, b, pose_b, lengths_b, problem.exponent, problem.b);
   problem.size = problem.b.center.norm() + problem.a.size + problem.b.size;
-  problem.tie_axes = swapped ? Mat(-problem.b.rotation) : problem.a.rotation;
+  problem.tie_axes = mirrored ? Mat(-problem.b.rotation) : problem.a.rotation;
 }
 
 double unscaled(const Problem& problem, double length) noexcept {

@@ -22,9 +22,9 @@ struct Problem {
   [[nodiscard]] double noise() const noexcept { return 32.0 * kEpsilon * size; }
 };
 
-/// `swapped`: the caller's a is this b.
+/// `mirrored`: the caller's a is this b.
 void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
-             const Pose& pose_b, bool swapped, Problem& problem) noexcept;
+             const Pose& pose_b, bool mirrored, Problem& problem) noexcept;
 
 /// x 2^exponent, at most the largest double if it is finite.
 [[nodiscard]] double unscaled(const Problem& problem, double length) noexcept;

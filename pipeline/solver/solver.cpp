@@ -1,6 +1,8 @@
 #include "pipeline/solver/solver.h"
 
 #include "pipeline/exact/exact_overlap.h"
+#include "pipeline/manifold/mirrored.h"
+#include "pipeline/shapes/pair_order.h"
 #include "pipeline/solver/core_distance.h"
 #include "pipeline/solver/manifold.h"
 #include "pipeline/solver/problem.h"
@@ -25,8 +27,8 @@ struct Question {
 };
 
 /// The same pair asked in either order is solved in one, so that answers mirror.
-bool is_swapped(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b) noexcept {
-  if (a.kind() != b.kind()) return a.kind() > b.kind();
+bool is_solved_mirrored(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b) noexcept {
+  if (a.kind() != b.kind()) return is_mirrored(a, b);
   for (int i = 0; i < 3; ++i) {
     if (pose_b.position[i] != pose_a.position[i]) return pose_b.position[i] < pose_a.position[i];
   }
@@ -60,15 +62,15 @@ void put(const Problem& problem, const Vec& from, double to[3]) noexcept {
   for (int i = 0; i < 3; ++i) to[i] = unscaled(problem, from[i]);
 }
 
-PairAnswer solve(const Question& ask, bool swapped, NarrowLevel level, double margin,
+PairAnswer solve(const Question& ask, bool mirrored, ContactLevel level, double margin,
                  SolverCounts& counts) noexcept {
   Problem problem;
-  prepare(ask.tables, ask.a, ask.pose_a, ask.b, ask.pose_b, swapped, problem);
+  prepare(ask.tables, ask.a, ask.pose_a, ask.b, ask.pose_b, mirrored, problem);
   const double roundings = problem.a.rounding + problem.b.rounding;
   double enough = std::numeric_limits<double>::infinity();
-  if (level != NarrowLevel::distance) {
+  if (level != ContactLevel::distance) {
     enough = roundings + problem.noise();
-    if (level == NarrowLevel::manifold) enough += std::ldexp(margin, -problem.exponent);
+    if (level == ContactLevel::manifold) enough += std::ldexp(margin, -problem.exponent);
   }
   const CoreDistance found = core_distance(problem, level, enough, counts);
   PairAnswer answer;
@@ -86,7 +88,7 @@ PairAnswer solve(const Question& ask, bool swapped, NarrowLevel level, double ma
   Vec::Map(answer.normal) = found.axis;
   const Vec point = found.on_a + found.axis * problem.a.rounding;
   put(problem, point, answer.point);
-  if (level == NarrowLevel::manifold && answer.distance <= margin) {
+  if (level == ContactLevel::manifold && answer.distance <= margin) {
     // Lengths are about 1 here: a margin beyond 8 is as good as 8.
     const double reach = std::min(std::ldexp(margin, -problem.exponent), 8.0);
     make_manifold(problem, point, scaled, reach, answer);
@@ -107,24 +109,23 @@ void mirror(const Pose& pose_a, const Pose& pose_b, PairAnswer& answer) noexcept
     answer.point[i] = finite(finite(answer.point[i] + answer.distance * answer.normal[i]) + c);
     answer.normal[i] = -answer.normal[i];
     for (std::uint32_t k = 0; k < answer.contact_count; ++k) {
-      constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
       float& x = answer.contacts[k].position[i];
-      x = static_cast<float>(std::clamp(static_cast<double>(x) + c, -kMost, kMost));
+      x = mirrored_position(x, -c);
     }
   }
   for (std::uint32_t k = 0; k < answer.contact_count; ++k) {
     std::uint64_t& feature = answer.contacts[k].feature;
-    feature = feature << 32U | feature >> 32U;
+    feature = mirrored_feature(feature);
   }
 }
 
 }  // namespace
 
 PairAnswer solve_pair(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
-                      const Pose& pose_b, NarrowLevel level, double margin,
+                      const Pose& pose_b, ContactLevel level, double margin,
                       SolverCounts& counts) noexcept {
   ++counts.pairs;
-  if (!is_swapped(a, pose_a, b, pose_b)) {
+  if (!is_solved_mirrored(a, pose_a, b, pose_b)) {
     return solve({tables, a, pose_a, b, pose_b}, false, level, margin, counts);
   }
   PairAnswer answer = solve({tables, b, pose_b, a, pose_a}, true, level, margin, counts);

@@ -1,15 +1,12 @@
 #pragma once
 
 #include <winnow/core/pose.h>
+#include <winnow/pipeline/contact_types.h>
 #include <winnow/pipeline/shapes.h>
-#include "pipeline/narrow/narrow_job.h"
 
 #include <cstdint>
 
 namespace winnow {
-
-/// How much is asked about a pair. A lower level does not pay for a higher one.
-enum class NarrowLevel : std::uint8_t { boolean, distance, manifold };
 
 /// What the solver did, for statistics.
 struct SolverCounts {
@@ -50,7 +47,7 @@ struct PairAnswer {
 /// their opposites, in the frame of a, that is one of the closest. Two half-spaces that do not face
 /// each other overlap without end: the distance is minus the largest double, the bound infinite.
 [[nodiscard]] PairAnswer solve_pair(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
-                                    ShapeId b, const Pose& pose_b, NarrowLevel level, double margin,
-                                    SolverCounts& counts) noexcept;
+                                    ShapeId b, const Pose& pose_b, ContactLevel level,
+                                    double margin, SolverCounts& counts) noexcept;
 
 }  // namespace winnow

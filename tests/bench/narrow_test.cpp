@@ -18,7 +18,7 @@ constexpr std::size_t kPairs = 100;
 std::vector<bool> verdicts(const PairSet& set) {
   WinnowNarrow engine(NarrowTier::reference, 1);
   engine.start(set);
-  engine.run(NarrowLevel::boolean, set.pairs);
+  engine.run(ContactLevel::boolean, set.pairs);
   std::vector<bool> overlap;
   for (std::size_t i = 0; i < set.pairs.size(); ++i) overlap.push_back(engine.answer(i).overlap);
   return overlap;
@@ -115,9 +115,9 @@ class Parrot final : public NarrowEngine {
  public:
   explicit Parrot(NarrowAnswer answer) : answer_(answer) {}
   [[nodiscard]] std::string name() const override { return "parrot"; }
-  [[nodiscard]] bool takes(const PairKind&, NarrowLevel) const override { return true; }
+  [[nodiscard]] bool takes(const PairKind&, ContactLevel) const override { return true; }
   void start(const PairSet&) override {}
-  void run(NarrowLevel, std::span<const BodyPair>) override {}
+  void run(ContactLevel, std::span<const BodyPair>) override {}
   [[nodiscard]] NarrowAnswer answer(std::size_t) const override { return answer_; }
 
  private:
@@ -127,7 +127,7 @@ class Parrot final : public NarrowEngine {
 Accuracy judged(const NarrowAnswer& answer, const PairTruth& truth) {
   const auto set = make_pair_set(pair_kinds().front(), {.pairs = 1});
   Parrot parrot(answer);
-  return judge_engine(parrot, NarrowLevel::distance, *set, std::span(&truth, 1));
+  return judge_engine(parrot, ContactLevel::distance, *set, std::span(&truth, 1));
 }
 
 const PairTruth kApart{.known = true,
@@ -185,7 +185,7 @@ TEST(NarrowRace, counts_verdicts_that_differ_from_the_first) {
   contenders.push_back({std::make_unique<WinnowNarrow>(NarrowTier::robust, 1), 1});
   contenders.push_back({std::make_unique<Parrot>(NarrowAnswer{.overlap = true}), 1});
   for (const NarrowContender& contender : contenders) contender.engine->start(*set);
-  const auto timings = race_pairs(*set, NarrowLevel::boolean, contenders, {.rounds = 1});
+  const auto timings = race_pairs(*set, ContactLevel::boolean, contenders, {.rounds = 1});
   ASSERT_EQ(timings.size(), 2U);
   EXPECT_EQ(timings[0].disagree, 0U);
   EXPECT_EQ(timings[1].disagree, kPairs / 2);

@@ -22,7 +22,7 @@ int main() {
   double height = 2.0;
   double speed = 0.0;
   for (int i = 0; i < 1000; ++i) {
-    if (scene.collide(winnow::SceneLevel::manifold, contacts) != winnow::Status::ok) return 1;
+    if (scene.collide(winnow::ContactLevel::manifold, contacts) != winnow::Status::ok) return 1;
     speed -= 9.81 * step;
     for (const double distance : contacts.distance()) {
       speed += std::max(0.0, -1000.0 * distance - 20.0 * speed) * step;

@@ -49,8 +49,8 @@ int main() {
   winnow::Contacts contacts;
   const auto step = [&] {
     // [contacts]
-    scene.collide(winnow::SceneLevel::manifold, contacts);  // or pairs, boolean, distance
-    for (std::size_t i = 0; i < contacts.size(); ++i) {     // pairs of bodies
+    scene.collide(winnow::ContactLevel::manifold, contacts);  // or pairs, boolean, distance
+    for (std::size_t i = 0; i < contacts.size(); ++i) {       // pairs of bodies
       for (auto m = contacts.manifold_first()[i]; m < contacts.manifold_first()[i + 1]; ++m) {
         push_apart(contacts.a()[i], contacts.b()[i], -contacts.distance()[m]);
         // also part_a(), part_b(): triangle or child; error_bound(), normal(axis), contact(point)

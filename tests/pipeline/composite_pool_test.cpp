@@ -110,7 +110,7 @@ struct Landing {
 };
 
 Landing land(const ShapePool& shapes, const CompositePool& pool, ShapeId body, const Pose& at,
-             ShapeId surface, const Pose& ground, NarrowLevel level, double margin,
+             ShapeId surface, const Pose& ground, ContactLevel level, double margin,
              bool ground_first = false) {
   const ShapeId ids[2] = {ground_first ? surface : body, ground_first ? body : surface};
   const Pose poses[2] = {ground_first ? ground : at, ground_first ? at : ground};
@@ -136,7 +136,7 @@ Landing land(const ShapePool& shapes, const CompositePool& pool, ShapeId body, c
     landing.normals.emplace_back(sign * result.normal(0)[i], sign * result.normal(1)[i],
                                  sign * result.normal(2)[i]);
     landing.deepest = std::min(landing.deepest, result.distance()[i]);
-    if (level != NarrowLevel::manifold) continue;
+    if (level != ContactLevel::manifold) continue;
     EXPECT_GE(result.contact_count()[i], 1U);
     landing.points += result.contact_count()[i];
     const ContactPoint first = result.contact(result.contact_first()[i]);
@@ -170,7 +170,7 @@ TEST(InnerEdges, what_slides_over_a_flat_floor_feels_only_its_normal) {
       at.orientation[0] = std::cos(turn);
       at.orientation[3] = std::sin(turn);
       at.position[2] = 0.5 + random.uniform(-0.05, 0.009);
-      for (const NarrowLevel level : {NarrowLevel::distance, NarrowLevel::manifold}) {
+      for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
         const ShapeId ground = random.chance(0.3) ? scaled_floor : floor;
         const Landing landing =
             land(shapes, pool, body, at, ground, Pose{}, level, 0.01, random.chance(0.5));
@@ -195,7 +195,7 @@ TEST(InnerEdges, a_height_field_has_none_either) {
   for (int i = 0; i < 40; ++i) {
     const Pose at = Pose::at(1.5 + 0.05 * i, 2.0 + 0.013 * i, 2.48);
     const Landing landing =
-        land(shapes, pool, ball, at, field, Pose{}, NarrowLevel::manifold, 0.01);
+        land(shapes, pool, ball, at, field, Pose{}, ContactLevel::manifold, 0.01);
     EXPECT_FALSE(landing.normals.empty());
     for (const Eigen::Vector3d& normal : landing.normals) {
       EXPECT_LT((normal + Eigen::Vector3d::UnitZ()).norm(), 1e-12);
@@ -211,15 +211,15 @@ TEST(InnerEdges, ridges_and_borders_are_felt) {
   const ShapeId roof =
       add(pool, grid(8, 0.5F, Cut::same, [](float x, float) { return -std::abs(x); }));
   const Landing on_ridge =
-      land(shapes, pool, ball, Pose::at(0.0, 0.1, 0.49), roof, Pose{}, NarrowLevel::manifold, 0.0);
+      land(shapes, pool, ball, Pose::at(0.0, 0.1, 0.49), roof, Pose{}, ContactLevel::manifold, 0.0);
   ASSERT_FALSE(on_ridge.normals.empty());
   for (const Eigen::Vector3d& normal : on_ridge.normals) {
     EXPECT_LT((normal + Eigen::Vector3d::UnitZ()).norm(), 1e-9);
   }
   // Off the border of a floor: from the ball straight to the edge.
   const ShapeId floor = add(pool, grid(4, 0.5F, Cut::same, [](float, float) { return 0.0F; }));
-  const Landing off =
-      land(shapes, pool, ball, Pose::at(1.3, 0.1, 0.35), floor, Pose{}, NarrowLevel::manifold, 0.0);
+  const Landing off = land(shapes, pool, ball, Pose::at(1.3, 0.1, 0.35), floor, Pose{},
+                           ContactLevel::manifold, 0.0);
   ASSERT_FALSE(off.normals.empty());
   const Eigen::Vector3d to_edge = Eigen::Vector3d(-0.3, 0.0, -0.35).normalized();
   double nearest = 1.0;
@@ -244,7 +244,7 @@ TEST(InnerEdges, a_box_at_a_corner_of_the_rim_keeps_its_contact) {
   const ShapeId box = add(shapes, BoxShape{{0.3687, 0.3869, 0.3775}, 0.0});
   const Pose at{{0.361353813885254, 2.5491864294867814, -15.141072528878972},
                 {0.448063999, 0.477745563, -0.596184433, 0.464286506}};
-  const Landing landing = land(shapes, pool, box, at, mesh, Pose{}, NarrowLevel::manifold, 0.0);
+  const Landing landing = land(shapes, pool, box, at, mesh, Pose{}, ContactLevel::manifold, 0.0);
   ASSERT_FALSE(landing.normals.empty());
   EXPECT_GT(landing.deepest, -0.01);
 }
@@ -258,7 +258,7 @@ TEST(InnerEdges, a_valley_holds_a_ball_by_its_faces) {
   const double rest = 0.5 * std::sqrt(2.0) - 0.02;
   for (int i = 0; i < 30; ++i) {
     const Landing landing = land(shapes, pool, ball, Pose::at(0.0005 * i, -0.5 + 0.03 * i, rest),
-                                 valley, Pose{}, NarrowLevel::manifold, 0.0);
+                                 valley, Pose{}, ContactLevel::manifold, 0.0);
     const Eigen::Vector3d left = Eigen::Vector3d(-1.0, 0.0, -1.0).normalized();
     const Eigen::Vector3d right = Eigen::Vector3d(1.0, 0.0, -1.0).normalized();
     bool both[2] = {false, false};

@@ -61,7 +61,7 @@ struct Answers {
   }
 };
 
-Answers run(const Scene& scene, Tier tier, NarrowLevel level, double margin = 0.0) {
+Answers run(const Scene& scene, Tier tier, ContactLevel level, double margin = 0.0) {
   const std::size_t n = scene.pairs.size();
   Answers r;
   const std::size_t room = 4 * n + 16;
@@ -97,7 +97,7 @@ Answers run(const Scene& scene, Tier tier, NarrowLevel level, double margin = 0.
                     0},
                    uncertified.data()};
   const NarrowKernels* kernels = narrow_kernels(scene.kind[0], scene.kind[1]);
-  const auto index = static_cast<std::size_t>(level);
+  const std::uint32_t index = kernel_index(level);
   const std::uint32_t left = (tier == kFast ? kernels->fast : kernels->robust)[index](job);
   EXPECT_LE(left, n);
   for (std::uint32_t i = 0; i < left; ++i) r.certified[uncertified[i]] = false;
@@ -288,10 +288,10 @@ void expect_all_right(const Scene& scene, std::initializer_list<Tier> tiers) {
     const IsaScope scope(isa);
     for (const Tier tier : tiers) {
       SCOPED_TRACE(tier == kFast ? "fast" : "robust");
-      expect_overlaps(twins, run(scene, tier, NarrowLevel::boolean), tier);
-      expect_distances(twins, run(scene, tier, NarrowLevel::distance), tier);
+      expect_overlaps(twins, run(scene, tier, ContactLevel::boolean), tier);
+      expect_distances(twins, run(scene, tier, ContactLevel::distance), tier);
       for (const double margin : {0.0, 0.25}) {
-        expect_manifolds(twins, run(scene, tier, NarrowLevel::manifold, margin), margin, tier);
+        expect_manifolds(twins, run(scene, tier, ContactLevel::manifold, margin), margin, tier);
       }
     }
   }
@@ -307,7 +307,7 @@ TEST_P(FlatKernels, hostile_pairs_are_right_or_left_to_the_solver) {
 
 TEST_P(FlatKernels, random_pairs_are_practically_never_left_to_the_solver) {
   const Scene scene = random_scene(GetParam().a, GetParam().b, 4'096);
-  for (const auto level : {NarrowLevel::boolean, NarrowLevel::distance, NarrowLevel::manifold}) {
+  for (const auto level : {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
     for (const Tier tier : {kFast, kRobust}) {
       const Answers answers = run(scene, tier, level);
       const auto left = std::count(answers.certified.begin(), answers.certified.end(), false);
@@ -320,11 +320,11 @@ TEST_P(FlatKernels, swapped_pairs_of_one_kind_give_the_mirrored_answer) {
   if (GetParam().a != GetParam().b) GTEST_SKIP() << "one order only";
   Scene scene = random_scene(GetParam().a, GetParam().b, 515);
   for (const Tier tier : {kFast, kRobust}) {
-    const Answers given = run(scene, tier, NarrowLevel::distance);
-    const Answers manifold = run(scene, tier, NarrowLevel::manifold, 0.1);
+    const Answers given = run(scene, tier, ContactLevel::distance);
+    const Answers manifold = run(scene, tier, ContactLevel::manifold, 0.1);
     for (BodyPair& pair : scene.pairs) std::swap(pair.a, pair.b);
-    const Answers mirrored = run(scene, tier, NarrowLevel::distance);
-    const Answers mirrored_manifold = run(scene, tier, NarrowLevel::manifold, 0.1);
+    const Answers mirrored = run(scene, tier, ContactLevel::distance);
+    const Answers mirrored_manifold = run(scene, tier, ContactLevel::manifold, 0.1);
     for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
       ASSERT_EQ(given.distance[i], mirrored.distance[i]);
       ASSERT_EQ(given.bound[i], mirrored.bound[i]);
@@ -350,7 +350,8 @@ TEST_P(FlatKernels, swapped_pairs_of_one_kind_give_the_mirrored_answer) {
 TEST_P(FlatKernels, answers_are_the_same_bits_everywhere_in_a_batch_and_on_all_instruction_sets) {
   Scene scene = hostile_scene(GetParam().a, GetParam().b, 301);
   for (const Tier tier : {kFast, kRobust}) {
-    for (const auto level : {NarrowLevel::boolean, NarrowLevel::distance, NarrowLevel::manifold}) {
+    for (const auto level :
+         {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
       const Answers whole = run(scene, tier, level, 0.1);
       for (const Isa isa : available_isas()) {
         const IsaScope scope(isa);
@@ -361,14 +362,14 @@ TEST_P(FlatKernels, answers_are_the_same_bits_everywhere_in_a_batch_and_on_all_i
         for (std::size_t i = 0; i + 5 < all.size(); ++i) {
           ASSERT_EQ(again.certified[i], whole.certified[i + 5]) << i;
           if (!again.certified[i]) continue;
-          if (level == NarrowLevel::boolean) {
+          if (level == ContactLevel::boolean) {
             ASSERT_EQ(again.overlap[i], whole.overlap[i + 5]) << i;
             continue;
           }
           ASSERT_EQ(again.distance[i], whole.distance[i + 5]) << i;
           ASSERT_EQ(again.bound[i], whole.bound[i + 5]) << i;
           ASSERT_EQ(again.normal_of(i), whole.normal_of(i + 5)) << i;
-          if (level == NarrowLevel::distance) {
+          if (level == ContactLevel::distance) {
             ASSERT_EQ(again.point_of(i), whole.point_of(i + 5)) << i;
           } else {
             ASSERT_EQ(again.count[i], whole.count[i + 5]) << i;
@@ -398,7 +399,7 @@ TEST_P(FlatKernels, bad_poses_and_sizes_out_of_range_are_left_to_the_solver) {
     const IsaScope scope(isa);
     for (const Tier tier : {kFast, kRobust}) {
       for (const auto level :
-           {NarrowLevel::boolean, NarrowLevel::distance, NarrowLevel::manifold}) {
+           {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
         const Answers answers = run(scene, tier, level);
         for (const std::size_t i : {3U, 9U, 20U, 21U, 40U, 41U, 50U}) {
           EXPECT_FALSE(answers.certified[i]) << i;

@@ -342,7 +342,7 @@ TEST_P(CoresAndHulls, answers_are_those_of_the_solver_on_every_instruction_set) 
   SolverCounts counts;
   for (const BodyPair& p : scene.pairs) {
     expected.push_back(solve_pair(scene.pool.tables(), scene.shapes[p.a], scene.poses[p.a],
-                                  scene.shapes[p.b], scene.poses[p.b], NarrowLevel::distance, 0.0,
+                                  scene.shapes[p.b], scene.poses[p.b], ContactLevel::distance, 0.0,
                                   counts));
   }
   for (const Isa isa : available_isas()) {

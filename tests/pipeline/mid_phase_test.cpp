@@ -1,5 +1,7 @@
 #include "composite_world.h"
 
+#include "pipeline/solver/solver.h"
+
 #include <algorithm>
 #include <cstring>
 #include <set>
@@ -54,7 +56,7 @@ std::set<Touch> touching(const CompositeWorld& world, const PrimitivePairs& pair
       narrow.collide(
           pairs.tables(world.shapes),
           {{pairs.shapes.data(), pairs.shapes.size()}, {pairs.poses.data(), pairs.poses.size()}},
-          {pairs.pairs.data(), pairs.pairs.size()}, {.level = NarrowLevel::distance}, result),
+          {pairs.pairs.data(), pairs.pairs.size()}, {.level = ContactLevel::distance}, result),
       Status::ok);
   std::set<Touch> found;
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -322,7 +324,7 @@ TEST(Visits, show_what_all_boxes_would_and_the_nearest_first) {
             continue;
           }
           const double distance = solve_pair(tables, ShapeId::of(ShapeKind::box, 0), at, shape,
-                                             part.pose, NarrowLevel::distance, 0.0, counts)
+                                             part.pose, ContactLevel::distance, 0.0, counts)
                                       .distance;
           if (distance <= 0.0) {
             EXPECT_TRUE(swept.contains(part.part)) << id.kind_index();

@@ -18,8 +18,8 @@ namespace winnow::test {
 namespace {
 
 constexpr NarrowTier kTiers[] = {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference};
-constexpr NarrowLevel kLevels[] = {NarrowLevel::boolean, NarrowLevel::distance,
-                                   NarrowLevel::manifold};
+constexpr ContactLevel kLevels[] = {ContactLevel::boolean, ContactLevel::distance,
+                                    ContactLevel::manifold};
 constexpr double kMargin = 0.25;
 
 /// Pairs of all kinds in one list, in a random order.
@@ -59,7 +59,7 @@ class Batches : public testing::Test {
 TEST_F(Batches, answers_are_the_same_on_every_instruction_set_and_thread_count) {
   const Isa widest = available_isas().back();
   for (const NarrowTier tier : kTiers) {
-    for (const NarrowLevel level : kLevels) {
+    for (const ContactLevel level : kLevels) {
       NarrowOptions options{.level = level, .tier = tier, .margin = kMargin};
       std::vector<PairAnswers> first;
       {
@@ -84,7 +84,7 @@ TEST_F(Batches, answers_are_the_same_on_every_instruction_set_and_thread_count) 
 
 TEST_F(Batches, the_place_in_the_batch_and_earlier_calls_do_not_matter) {
   for (const NarrowTier tier : kTiers) {
-    for (const NarrowLevel level : kLevels) {
+    for (const ContactLevel level : kLevels) {
       const NarrowOptions options{.level = level, .tier = tier, .margin = kMargin};
       const auto together = ask(scene_, options);
       NarrowPhase phase;
@@ -107,10 +107,10 @@ TEST_F(Batches, the_place_in_the_batch_and_earlier_calls_do_not_matter) {
 
 TEST_F(Batches, levels_agree) {
   for (const NarrowTier tier : kTiers) {
-    const auto yes_no = ask(scene_, {.level = NarrowLevel::boolean, .tier = tier});
-    const auto distances = ask(scene_, {.level = NarrowLevel::distance, .tier = tier});
+    const auto yes_no = ask(scene_, {.level = ContactLevel::boolean, .tier = tier});
+    const auto distances = ask(scene_, {.level = ContactLevel::distance, .tier = tier});
     const auto manifolds =
-        ask(scene_, {.level = NarrowLevel::manifold, .tier = tier, .margin = kMargin});
+        ask(scene_, {.level = ContactLevel::manifold, .tier = tier, .margin = kMargin});
     int faults = 0;
     for (std::size_t i = 0; i < scene_.pairs.size(); ++i) {
       const PairAnswers& d = distances[i];

@@ -97,8 +97,8 @@ TEST_F(NarrowInput, a_shape_that_the_pool_does_not_hold_is_refused) {
 TEST_F(NarrowInput, a_bad_pose_of_a_pair_is_refused_and_named) {
   const auto reference = ask(scene_, {});
   for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
-    for (const NarrowLevel level :
-         {NarrowLevel::boolean, NarrowLevel::distance, NarrowLevel::manifold}) {
+    for (const ContactLevel level :
+         {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
       for (std::size_t i = 0; i < scene_.pairs.size(); i += 7) {
         const std::uint32_t body = i % 2 == 0 ? scene_.pairs[i].a : scene_.pairs[i].b;
         const Pose before = scene_.poses[body];
@@ -134,7 +134,7 @@ TEST_F(NarrowInput, a_bad_pose_of_a_body_that_is_in_no_pair_does_not_matter) {
 TEST_F(NarrowInput, a_body_against_itself_overlaps) {
   for (BodyPair& pair : scene_.pairs) pair.b = pair.a;
   for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
-    ASSERT_EQ(collide({.level = NarrowLevel::distance, .tier = tier}), Status::ok);
+    ASSERT_EQ(collide({.level = ContactLevel::distance, .tier = tier}), Status::ok);
     for (std::size_t i = 0; i < result_.size(); ++i) {
       EXPECT_TRUE(result_.overlaps(i)) << to_string(scene_.shapes[scene_.pairs[i].a].kind());
       EXPECT_FALSE(std::isnan(result_.distance()[i]));
@@ -169,8 +169,8 @@ TEST_F(NarrowInput, out_of_memory_is_a_status_and_leaves_nothing_behind) {
 
 TEST_F(NarrowInput, the_second_call_allocates_nothing) {
   for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
-    for (const NarrowLevel level :
-         {NarrowLevel::boolean, NarrowLevel::distance, NarrowLevel::manifold}) {
+    for (const ContactLevel level :
+         {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
       CountingMemory memory;
       NarrowPhase phase(&memory);
       NarrowResult result(&memory);

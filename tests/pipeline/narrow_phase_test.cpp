@@ -18,7 +18,7 @@ namespace {
 constexpr NarrowTier kTiers[] = {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference};
 
 NarrowOptions distances(NarrowTier tier) {
-  return {.level = NarrowLevel::distance, .tier = tier};
+  return {.level = ContactLevel::distance, .tier = tier};
 }
 
 /// Every pair of kinds.

@@ -41,7 +41,7 @@ std::vector<oracle::Truth> truths_of(const PairScene& scene) {
   return truths;
 }
 
-std::vector<PairAnswers> ask_tier(const PairScene& scene, NarrowTier tier, NarrowLevel level) {
+std::vector<PairAnswers> ask_tier(const PairScene& scene, NarrowTier tier, ContactLevel level) {
   return ask(scene, {.level = level, .tier = tier, .margin = 1e-3});
 }
 
@@ -78,10 +78,10 @@ std::string fault(const oracle::Truth& truth, const PairAnswers& answer, const P
 
 void expect_faultless(const PairScene& scene, const std::vector<oracle::Truth>& truths,
                       const std::vector<PairAnswers>& answers, const Promise& promise,
-                      NarrowLevel level) {
+                      ContactLevel level) {
   int faults = 0;
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
-    const std::string what = fault(truths[i], answers[i], promise, level == NarrowLevel::distance);
+    const std::string what = fault(truths[i], answers[i], promise, level == ContactLevel::distance);
     if (what.empty() || ++faults > 2) continue;
     ADD_FAILURE() << promise.name << " level " << static_cast<int>(level) << ": " << what
                   << "\ntruth " << static_cast<double>(truths[i].distance) << " along "
@@ -124,7 +124,7 @@ TEST_P(Oracle, agrees_with_every_tier_and_level) {
   const std::vector<oracle::Truth> truths = truths_of(scene);
   for (const oracle::Truth& truth : truths) EXPECT_TRUE(truth.known || round);
   for (const Promise& promise : kPromises) {
-    for (const NarrowLevel level : {NarrowLevel::boolean, NarrowLevel::distance}) {
+    for (const ContactLevel level : {ContactLevel::boolean, ContactLevel::distance}) {
       expect_faultless(scene, truths, ask_tier(scene, promise.tier, level), promise, level);
     }
   }

@@ -15,11 +15,11 @@ bool same_contact(const ContactPoint& p, const ContactPoint& q) {
 PairAnswers answer_of(const NarrowResult& result, std::size_t i) {
   PairAnswers answer;
   answer.overlap = result.overlaps(i);
-  if (result.level() == NarrowLevel::boolean) return answer;
+  if (result.level() == ContactLevel::boolean) return answer;
   answer.distance = result.distance()[i];
   answer.error_bound = result.error_bound()[i];
   for (int axis = 0; axis < 3; ++axis) answer.normal[axis] = result.normal(axis)[i];
-  if (result.level() == NarrowLevel::distance) {
+  if (result.level() == ContactLevel::distance) {
     for (int axis = 0; axis < 3; ++axis) answer.point[axis] = result.point(axis)[i];
     return answer;
   }

@@ -146,7 +146,7 @@ struct PartTable {
 
 /// Two parts, `b` displaced by `offset`, solved alone.
 inline PairAnswer solve_parts(const ShapePool& pool, const FlatPart& a, FlatPart b,
-                              const double offset[3], NarrowLevel level) {
+                              const double offset[3], ContactLevel level) {
   TriangleShape both[2];
   ShapeTables tables = pool.tables();
   ShapeId ids[2] = {a.shape, b.shape};

@@ -33,7 +33,7 @@ void expect_within_bounds(const Contacts& contacts, const SceneWorld& world, dou
 }
 
 TEST(CarryOver, every_pair_that_touches_is_shown_and_errors_stay_within_their_bound) {
-  for (const SceneLevel level : {SceneLevel::distance, SceneLevel::manifold}) {
+  for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
     SceneWorld world(scaled(300), 11);
     const double carry_over = 0.02;
     Scene scene(world.pool, {.carry_over = carry_over});
@@ -68,7 +68,7 @@ TEST(CarryOver, a_rigid_cluster_that_turns_keeps_its_contacts_and_they_turn_alon
     poses[1].position[1] = 1.9 * std::sin(angle);
     for (Pose& pose : poses) std::copy_n(turn, 4, pose.orientation);
     ASSERT_EQ(scene.move(keys, poses), Status::ok);
-    ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     ASSERT_EQ(contacts.size(), 1U);
     EXPECT_EQ(contacts.carried(), frame == 0 ? 0U : 1U) << frame;
     EXPECT_NEAR(contacts.normal(0)[0], std::cos(angle), 0.011);
@@ -83,10 +83,10 @@ TEST(CarryOver, the_first_frame_after_a_teleport_is_exact) {
   Scene scene(world.pool, {.carry_over = 0.05});
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;
-  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   for (BodyDefinition& body : world.bodies) body.pose = world.random_pose();
   ASSERT_EQ(move_all(scene, world), Status::ok);
-  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   const auto truth = world.touching();
   EXPECT_EQ(contacts.size(), truth.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -101,10 +101,10 @@ TEST(CarryOver, what_does_not_move_is_not_looked_at_again) {
   Scene scene(world.pool, {.carry_over = 0.001});
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;
-  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   const auto first = digest(contacts);
   for (int frame = 0; frame < 3; ++frame) {
-    ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     EXPECT_EQ(scene.statistics().convex.pairs, 0U);
     EXPECT_EQ(contacts.carried(), scene.statistics().body_pairs);
     for (const ContactEvent event : contacts.event()) EXPECT_EQ(event, ContactEvent::persisted);
@@ -117,10 +117,10 @@ TEST(CarryOver, what_is_moved_to_where_it_stands_stays_as_it_was_to_the_bit) {
   Scene scene(world.pool, {.carry_over = 0.01});
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;
-  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   const std::vector<double> bounds(contacts.error_bound().begin(), contacts.error_bound().end());
   ASSERT_EQ(move_all(scene, world), Status::ok);
-  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   EXPECT_EQ(contacts.carried(), scene.statistics().body_pairs);
   ASSERT_EQ(contacts.manifolds(), bounds.size());
   for (std::size_t m = 0; m < bounds.size(); ++m) EXPECT_EQ(contacts.error_bound()[m], bounds[m]);
@@ -145,7 +145,7 @@ TEST(SceneBytes, the_footprint_is_what_was_asked_for_and_a_steady_frame_asks_for
         world.bodies = frames[static_cast<std::size_t>(frame % 4)];
         ASSERT_EQ(move_all(scene, world), Status::ok);
         const std::size_t asked = memory.requests() + results.requests();
-        ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+        ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
         if (frame >= 12) {
           EXPECT_EQ(memory.requests() + results.requests(), asked) << frame;
         }
@@ -175,7 +175,7 @@ TEST(SceneBytes, refused_memory_leaves_the_scene_as_it_was) {
   ASSERT_EQ(scene.size(), world.bodies.size());
   for (std::size_t granted = 0;; ++granted) {
     memory.refuse_after(granted);
-    const Status status = scene.collide(SceneLevel::manifold, contacts);
+    const Status status = scene.collide(ContactLevel::manifold, contacts);
     memory.grant_all();
     if (status == Status::ok) break;
     ASSERT_EQ(status, Status::out_of_memory);
@@ -201,7 +201,7 @@ TEST(SceneBytes, a_scene_without_memory_for_itself_stays_empty_and_says_so) {
   BodyDefinition body;
   EXPECT_EQ(scene.body(key, body), Status::out_of_memory);
   Contacts contacts;
-  EXPECT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::out_of_memory);
+  EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::out_of_memory);
   scene.clear();
   EXPECT_EQ(scene.size(), 0U);
   EXPECT_EQ(scene.size(Motion::dynamic), 0U);
@@ -223,7 +223,7 @@ TEST(SceneBytes, contacts_without_memory_for_themselves_stay_empty_and_say_so) {
   memory.refuse_after(0);
   Contacts contacts(&memory);
   memory.grant_all();
-  EXPECT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::out_of_memory);
+  EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::out_of_memory);
   contacts.clear();
   EXPECT_EQ(contacts.size(), 0U);
   EXPECT_EQ(contacts.manifolds(), 0U);
@@ -237,7 +237,7 @@ TEST(SceneInput, what_is_refused_changes_nothing) {
   Scene scene(world.pool);
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;
-  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   const std::size_t pairs = contacts.size();
   Key key;
   BodyDefinition bad = world.bodies[0];
@@ -255,12 +255,12 @@ TEST(SceneInput, what_is_refused_changes_nothing) {
   EXPECT_EQ(scene.set_motion(twice, Motion::fixed), Status::invalid_key);
   EXPECT_EQ(scene.set_motion(world.keys[3], static_cast<Motion>(9)), Status::invalid_argument);
   EXPECT_EQ(scene.set_shape(world.keys[0], {}), Status::invalid_key);
-  EXPECT_EQ(scene.collide(static_cast<SceneLevel>(7), contacts), Status::invalid_argument);
+  EXPECT_EQ(scene.collide(static_cast<ContactLevel>(7), contacts), Status::invalid_argument);
   const Pose poses[] = {world.bodies[0].pose, bad.pose};
   EXPECT_EQ(scene.move(std::span(world.keys).first(2), poses), Status::invalid_pose);
   EXPECT_EQ(scene.move(std::span(world.keys).first(1), poses), Status::size_mismatch);
   Contacts after;
-  ASSERT_EQ(scene.collide(SceneLevel::manifold, after), Status::ok);
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, after), Status::ok);
   EXPECT_EQ(after.size(), pairs);
   Scene wrong(world.pool, {.margin = -1});
   EXPECT_EQ(wrong.add(world.bodies[0], key), Status::invalid_argument);
@@ -301,7 +301,7 @@ TEST(SceneInput, storms_of_changes_leave_every_partition_right) {
           ASSERT_EQ(scene.move(world.keys[i], body.pose), Status::ok);
         }
       }
-      ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+      ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
       EXPECT_EQ(contacts.size(), world.touching().size());
       for (const auto& [pair, distance] : world.touching()) {
         EXPECT_EQ(shown(contacts).count(pair), 1U) << partition << ": " << distance;

@@ -78,7 +78,7 @@ class PartsWorld {
         const ShapeId second = id_in(other, 1);
         SolverCounts counts;
         if (!solve_pair(tables, first, placed(one, a.pose), second, placed(other, b.pose),
-                        NarrowLevel::boolean, 0.0, counts)
+                        ContactLevel::boolean, 0.0, counts)
                  .overlap) {
           continue;
         }
@@ -229,14 +229,14 @@ TEST(SceneParts, every_pair_of_parts_that_touches_is_reported_and_no_other) {
         Scene scene(world.convex(), {.composites = &world.pool()});
         std::vector<Key> keys(count);
         ASSERT_EQ(scene.add(bodies, keys), Status::ok);
-        for (const SceneLevel level :
-             {SceneLevel::boolean, SceneLevel::distance, SceneLevel::manifold}) {
+        for (const ContactLevel level :
+             {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
           Contacts contacts;
           ASSERT_EQ(scene.collide(level, contacts), Status::ok);
           const Parts found = parts_of(contacts);
           for (const auto& pair : truth) EXPECT_EQ(found.count(pair), 1U) << "missed";
           // Inner edges may be given the depth of the face, which is the greater one.
-          EXPECT_TRUE(level != SceneLevel::boolean || found.size() == truth.size());
+          EXPECT_TRUE(level != ContactLevel::boolean || found.size() == truth.size());
         }
       });
     }
@@ -281,7 +281,7 @@ TEST(SceneParts, a_ball_that_rolls_over_a_flat_floor_of_triangles_feels_the_floo
   for (int step = 0; step < 400; ++step) {
     const double way = 0.043 * step - 8.0;
     ASSERT_EQ(scene.move(body, Pose::at(way, 0.61 * way + 0.2, 0.48)), Status::ok);
-    ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     ASSERT_GT(contacts.manifolds(), 0U);
     double deepest = 0.0;
     for (std::size_t m = 0; m < contacts.manifolds(); ++m) {
@@ -308,7 +308,7 @@ TEST(SceneParts, a_ball_that_rolls_over_a_flat_floor_of_triangles_feels_the_floo
   tables.count[static_cast<int>(ShapeKind::triangle)] = 1;
   SolverCounts counts;
   return solve_pair(tables, body.shape, body.pose, ShapeId::of(ShapeKind::triangle, 0), {},
-                    NarrowLevel::distance, 0.0, counts)
+                    ContactLevel::distance, 0.0, counts)
       .distance;
 }
 
@@ -342,8 +342,8 @@ TEST(SceneParts, carried_contacts_with_a_mesh_miss_nothing_deeper_than_the_bound
   std::size_t kept = 0;
   for (int frame = 0; frame < 15; ++frame) {
     Contacts truth;
-    ASSERT_EQ(carried.collide(SceneLevel::manifold, contacts), Status::ok);
-    ASSERT_EQ(exact.collide(SceneLevel::manifold, truth), Status::ok);
+    ASSERT_EQ(carried.collide(ContactLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(exact.collide(ContactLevel::manifold, truth), Status::ok);
     kept += contacts.carried();
     const Parts found = parts_of(contacts);
     for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -376,7 +376,7 @@ TEST(SceneParts, a_mesh_that_is_refitted_is_seen_at_its_new_place) {
   ASSERT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, keys[0]), Status::ok);
   ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(0, 0, 3)}, keys[1]), Status::ok);
   Contacts contacts;
-  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   EXPECT_EQ(contacts.size(), 0U);
   std::vector<Eigen::Vector3f> raised;
   for (std::uint32_t i = 0; i < pool.mesh(floor)->vertices(); ++i) {
@@ -384,7 +384,7 @@ TEST(SceneParts, a_mesh_that_is_refitted_is_seen_at_its_new_place) {
     raised.emplace_back(view.vertex[0][i], view.vertex[1][i], 2.6F);
   }
   ASSERT_EQ(pool.refit_mesh(floor, std::span<const Eigen::Vector3f>(raised)), Status::ok);
-  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   EXPECT_EQ(contacts.size(), 1U);
 }
 
@@ -431,7 +431,7 @@ TEST(SceneParts, a_scene_of_balls_asks_the_mid_phase_for_nothing) {
     ASSERT_EQ(add_all(scene, world), Status::ok);
     Contacts contacts;
     for (int frame = 0; frame < 3; ++frame) {
-      ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+      ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
       world.stir(0.01);
       ASSERT_EQ(move_all(scene, world), Status::ok);
     }
@@ -451,7 +451,7 @@ TEST(SceneParts, a_scene_of_balls_takes_the_same_bytes_whether_or_not_there_coul
     Scene scene(world.pool, {.memory = &memory, .composites = with_pool ? &pool : nullptr});
     ASSERT_EQ(add_all(scene, world), Status::ok);
     Contacts contacts;
-    ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     EXPECT_GT(contacts.size(), 0U);
     bytes[with_pool] = scene.footprint();
     EXPECT_EQ(bytes[with_pool].mid_phase.reserved, 0U);

@@ -163,7 +163,7 @@ PairAnswer brute_distance(const QueryWorld& world, ShapeId a, const Pose& pose_a
   for (const FlatPart& part_a : world.parts(a, pose_a)) {
     for (const FlatPart& part_b : parts_b) {
       const PairAnswer answer =
-          solve_parts(world.shapes.pool, part_a, part_b, offset, NarrowLevel::distance);
+          solve_parts(world.shapes.pool, part_a, part_b, offset, ContactLevel::distance);
       if (answer.distance < best.distance) best = answer;
     }
   }
@@ -289,7 +289,7 @@ TEST(SceneQueries, what_touches_or_grazes_to_the_bit_is_met) {
       }
       SolverCounts counts;
       const bool overlap = solve_pair(tables, asking.shape, pose, body.shape, body.pose,
-                                      NarrowLevel::boolean, 0.0, counts)
+                                      ContactLevel::boolean, 0.0, counts)
                                .overlap;
       const bool listed = k < overlaps.size() && overlaps[k].key == world.keys[i];
       ASSERT_EQ(listed, overlap) << i;

@@ -13,7 +13,8 @@
 namespace winnow::test {
 namespace {
 
-constexpr SceneLevel kLevels[] = {SceneLevel::boolean, SceneLevel::distance, SceneLevel::manifold};
+constexpr ContactLevel kLevels[] = {ContactLevel::boolean, ContactLevel::distance,
+                                    ContactLevel::manifold};
 
 [[nodiscard]] std::set<Names> keys_of(const std::map<Names, double>& pairs) {
   std::set<Names> names;
@@ -28,9 +29,9 @@ TEST(Scene, every_pair_that_touches_is_reported_and_no_other) {
     ASSERT_EQ(add_all(scene, world), Status::ok);
     Contacts contacts;
     for (int frame = 0; frame < 4; ++frame) {
-      for (const SceneLevel level : kLevels) {
+      for (const ContactLevel level : kLevels) {
         ASSERT_EQ(scene.collide(level, contacts), Status::ok);
-        const double reach = level == SceneLevel::boolean ? 0.0 : margin;
+        const double reach = level == ContactLevel::boolean ? 0.0 : margin;
         EXPECT_EQ(shown(contacts), keys_of(world.touching(reach)));
         EXPECT_EQ(shown(contacts).size(), contacts.size()) << "a pair is doubled";
       }
@@ -45,7 +46,7 @@ TEST(Scene, distances_are_those_of_the_pairs_and_points_lie_between_the_bodies) 
   Scene scene(world.pool, {.margin = 0.1});
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;
-  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   const auto truth = world.touching(0.1);
   ASSERT_EQ(contacts.size(), truth.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -80,7 +81,7 @@ TEST(Scene, the_five_bodies_of_the_drawing_make_three_pairs) {
   }
   ASSERT_EQ(scene.move(scene.key_of(1), Pose::at(3.5, 0, 0)), Status::ok);
   Contacts contacts;
-  ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   EXPECT_EQ(shown(contacts), (std::set<Names>{{'A', 'D'}, {'B', 'D'}, {'C', 'E'}}));
 }
 
@@ -96,7 +97,8 @@ TEST(Scene, pairs_of_bodies_that_are_not_dynamic_are_never_reported) {
       ASSERT_EQ(scene.add({.shape = ball, .motion = motions[i], .data = i}, keys[i]), Status::ok);
     }
   }
-  for (const SceneLevel level : {SceneLevel::pairs, SceneLevel::boolean, SceneLevel::manifold}) {
+  for (const ContactLevel level :
+       {ContactLevel::pairs, ContactLevel::boolean, ContactLevel::manifold}) {
     Contacts contacts;
     ASSERT_EQ(scene.collide(level, contacts), Status::ok);
     EXPECT_EQ(contacts.size(), 9U);
@@ -114,7 +116,7 @@ TEST(Scene, events_tell_what_began_what_persists_and_what_ended) {
     Contacts contacts;
     std::set<Names> before;
     for (int frame = 0; frame < 12; ++frame) {
-      ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+      ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
       std::set<Names> now = shown(contacts);
       std::set<Names> ended;
       for (const EndedContact& pair : contacts.ended()) {
@@ -153,21 +155,21 @@ TEST(Scene, contacts_of_bodies_that_fell_asleep_are_neither_shown_nor_ended_and_
                 Status::ok);
     }
     Contacts contacts;
-    ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     EXPECT_EQ(contacts.size(), 3U);
     ASSERT_EQ(scene.set_motion(keys, Motion::sleeping), Status::ok);
     for (int frame = 0; frame < 3; ++frame) {
-      ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+      ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
       EXPECT_EQ(contacts.size(), 0U);
       EXPECT_TRUE(contacts.ended().empty());
     }
     ASSERT_EQ(scene.set_motion(keys[1], Motion::dynamic), Status::ok);
-    ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     EXPECT_EQ(shown(contacts), (std::set<Names>{{0, 1}, {1, 2}}));
     for (const ContactEvent event : contacts.event()) EXPECT_EQ(event, ContactEvent::persisted);
     EXPECT_TRUE(contacts.ended().empty());
     ASSERT_EQ(scene.remove(keys[3]), Status::ok);
-    ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     ASSERT_EQ(contacts.ended().size(), 1U);
     EXPECT_EQ(names(contacts.ended()[0].data_a, contacts.ended()[0].data_b), names(2, 3));
   }
@@ -191,7 +193,7 @@ TEST(Scene, answers_and_their_order_are_the_same_on_any_threads_and_instruction_
           Contacts contacts;
           std::vector<std::uint64_t> bits;
           for (int frame = 0; frame < 5; ++frame) {
-            EXPECT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+            EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
             const auto more = digest(contacts);
             bits.insert(bits.end(), more.begin(), more.end());
             world.stir(0.004);
@@ -212,12 +214,12 @@ TEST(Scene, without_carry_over_every_frame_is_that_of_a_fresh_scene) {
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;
   for (int frame = 0; frame < 5; ++frame) {
-    ASSERT_EQ(scene.collide(SceneLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     Scene fresh(world.pool);
     std::vector<Key> keys(world.bodies.size());
     ASSERT_EQ(fresh.add(world.bodies, keys), Status::ok);
     Contacts fresh_contacts;
-    ASSERT_EQ(fresh.collide(SceneLevel::manifold, fresh_contacts), Status::ok);
+    ASSERT_EQ(fresh.collide(ContactLevel::manifold, fresh_contacts), Status::ok);
     ASSERT_EQ(contacts.points(), fresh_contacts.points());
     for (std::size_t m = 0; m < contacts.manifolds(); ++m) {
       ASSERT_EQ(contacts.distance()[m], fresh_contacts.distance()[m]);

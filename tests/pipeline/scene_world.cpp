@@ -68,7 +68,7 @@ std::map<Names, double> SceneWorld::touching(double margin) const {
       // No shape reaches farther than 0.8 from its origin.
       if (square > (1.6 + margin) * (1.6 + margin)) continue;
       const PairAnswer answer = solve_pair(pool.tables(), a.shape, a.pose, b.shape, b.pose,
-                                           NarrowLevel::distance, margin, counts);
+                                           ContactLevel::distance, margin, counts);
       if (answer.distance <= margin) found[names(a.data, b.data)] = answer.distance;
     }
   }
@@ -111,11 +111,11 @@ std::vector<std::uint64_t> digest(const Contacts& contacts) {
   for (const std::uint32_t first : contacts.manifold_first()) bits.push_back(first);
   for (std::size_t m = 0; m < contacts.manifolds(); ++m) {
     bits.insert(bits.end(), {contacts.part_a()[m], contacts.part_b()[m]});
-    if (contacts.level() < SceneLevel::distance) continue;
+    if (contacts.level() < ContactLevel::distance) continue;
     put(contacts.distance()[m]);
     put(contacts.error_bound()[m]);
     for (int k = 0; k < 3; ++k) put(contacts.normal(k)[m]);
-    for (int k = 0; k < 3 && contacts.level() == SceneLevel::distance; ++k) {
+    for (int k = 0; k < 3 && contacts.level() == ContactLevel::distance; ++k) {
       put(contacts.point(k)[m]);
     }
   }

@@ -49,7 +49,7 @@ Pose moved(const CastPair& pair, double t) {
 double distance_at(const ShapePool& pool, const CastPair& pair, double t) {
   SolverCounts counts;
   return solve_pair(pool.tables(), pair.moving, moved(pair, t), pair.standing, pair.pose,
-                    NarrowLevel::distance, 0.0, counts)
+                    ContactLevel::distance, 0.0, counts)
       .distance;
 }
 

@@ -21,7 +21,7 @@ struct Asked {
   const PairScene& scene;
   BodyPair pair;
 
-  [[nodiscard]] PairAnswer solve(NarrowLevel level, double margin = 0.0) const {
+  [[nodiscard]] PairAnswer solve(ContactLevel level, double margin = 0.0) const {
     SolverCounts counts;
     return solve_pair(scene.pool.tables(), scene.shapes[pair.a], scene.poses[pair.a],
                       scene.shapes[pair.b], scene.poses[pair.b], level, margin, counts);
@@ -29,7 +29,7 @@ struct Asked {
   [[nodiscard]] PairAnswer solve_at(const Pose& a, const Pose& b) const {
     SolverCounts counts;
     return solve_pair(scene.pool.tables(), scene.shapes[pair.a], a, scene.shapes[pair.b], b,
-                      NarrowLevel::distance, 0.0, counts);
+                      ContactLevel::distance, 0.0, counts);
   }
   [[nodiscard]] const Pose& pose_a() const { return scene.poses[pair.a]; }
   [[nodiscard]] const Pose& pose_b() const { return scene.poses[pair.b]; }
@@ -90,14 +90,14 @@ INSTANTIATE_TEST_SUITE_P(Styles, Solver, testing::ValuesIn(kPairStyles),
 
 TEST_P(Solver, answers_are_finite_and_levels_agree) {
   for_pairs(GetParam(), [](const Asked& asked) {
-    const PairAnswer answer = asked.solve(NarrowLevel::distance);
+    const PairAnswer answer = asked.solve(ContactLevel::distance);
     EXPECT_TRUE(std::isfinite(answer.distance));
     EXPECT_TRUE(std::isfinite(answer.error_bound));
     EXPECT_NEAR(Vec::Map(answer.normal).norm(), 1.0, 1e-14);
     EXPECT_TRUE(Vec::Map(answer.point).allFinite());
     EXPECT_EQ(answer.overlap, answer.distance <= 0.0);
-    EXPECT_EQ(asked.solve(NarrowLevel::boolean).overlap, answer.overlap);
-    const PairAnswer manifold = asked.solve(NarrowLevel::manifold);
+    EXPECT_EQ(asked.solve(ContactLevel::boolean).overlap, answer.overlap);
+    const PairAnswer manifold = asked.solve(ContactLevel::manifold);
     EXPECT_EQ(manifold.overlap, answer.overlap);
     EXPECT_EQ(manifold.contact_count > 0, answer.overlap);
   });
@@ -105,9 +105,9 @@ TEST_P(Solver, answers_are_finite_and_levels_agree) {
 
 TEST_P(Solver, swapped_pairs_have_mirrored_answers) {
   for_pairs(GetParam(), [](const Asked& asked) {
-    const PairAnswer answer = asked.solve(NarrowLevel::distance);
+    const PairAnswer answer = asked.solve(ContactLevel::distance);
     const PairAnswer mirrored =
-        Asked{asked.scene, {asked.pair.b, asked.pair.a}}.solve(NarrowLevel::distance);
+        Asked{asked.scene, {asked.pair.b, asked.pair.a}}.solve(ContactLevel::distance);
     EXPECT_EQ(answer.overlap, mirrored.overlap);
     EXPECT_NEAR(answer.distance, mirrored.distance,
                 std::max(answer.error_bound, mirrored.error_bound));
@@ -126,7 +126,7 @@ TEST_P(Solver, a_common_motion_changes_answers_within_their_bounds) {
       pose.orientation[0] = turned.w();
       Vec::Map(pose.orientation + 1) = turned.vec();
     }
-    const PairAnswer answer = asked.solve(NarrowLevel::distance);
+    const PairAnswer answer = asked.solve(ContactLevel::distance);
     const PairAnswer other = asked.solve_at(moved[0], moved[1]);
     // Positions are rounded where they stand, orientations too.
     const double rounding = 1e-15 * (asked.size() + Vec::Map(moved[0].position).norm() +
@@ -138,7 +138,7 @@ TEST_P(Solver, a_common_motion_changes_answers_within_their_bounds) {
 TEST_P(Solver, points_lie_on_both_shapes_and_differ_by_the_distance) {
   Random random(7);
   for_pairs(GetParam(), [&](const Asked& asked) {
-    const PairAnswer answer = asked.solve(NarrowLevel::distance);
+    const PairAnswer answer = asked.solve(ContactLevel::distance);
     solver::Problem problem;
     solver::prepare(asked.scene.pool.tables(), asked.scene.shapes[asked.pair.a], asked.pose_a(),
                     asked.scene.shapes[asked.pair.b], asked.pose_b(), false, problem);
@@ -157,7 +157,7 @@ TEST_P(Solver, points_lie_on_both_shapes_and_differ_by_the_distance) {
 
 TEST_P(Solver, moving_b_by_the_depth_separates) {
   for_pairs(GetParam(), [](const Asked& asked) {
-    const PairAnswer answer = asked.solve(NarrowLevel::distance);
+    const PairAnswer answer = asked.solve(ContactLevel::distance);
     if (answer.distance > 0.0) return;
     Pose moved = asked.pose_b();
     Vec::Map(moved.position) -= Vec::Map(answer.normal) * answer.distance;
@@ -172,7 +172,7 @@ TEST_P(Solver, manifolds_begin_with_the_depth_and_stay_within_the_margin) {
   for_pairs(GetParam(), [](const Asked& asked) {
     const double size = asked.size();
     const double margin = 0.1 * size;
-    const PairAnswer answer = asked.solve(NarrowLevel::manifold, margin);
+    const PairAnswer answer = asked.solve(ContactLevel::manifold, margin);
     if (answer.distance > margin) return;
     ASSERT_GE(answer.contact_count, 1U);
     ASSERT_LE(answer.contact_count, kManifoldPoints);
@@ -210,7 +210,7 @@ TEST_P(Solver, powers_of_two_scale_answers_exactly) {
       SolverCounts counts;
       const auto solve = [&](int first, const Pose& pose) {
         return solve_pair(scene.pool.tables(), ids[first], Pose{}, ids[first + 1], pose,
-                          NarrowLevel::distance, 0.0, counts);
+                          ContactLevel::distance, 0.0, counts);
       };
       EXPECT_EQ(solve(0, at).distance * scale, solve(2, far_at).distance);
     }
@@ -226,7 +226,7 @@ class SolverCases : public testing::Test {
     return id;
   }
   PairAnswer solve(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
-                   NarrowLevel level = NarrowLevel::manifold, double margin = 0.0) {
+                   ContactLevel level = ContactLevel::manifold, double margin = 0.0) {
     return solve_pair(pool_.tables(), a, pose_a, b, pose_b, level, margin, counts_);
   }
 

@@ -93,7 +93,7 @@ std::string narrow_command(const NarrowMeasurement& measured, std::size_t rounds
 /// Adds the row of one engine; its id.
 std::string add_timing(Results& results, const NarrowMeasurement& measured,
                        const NarrowTiming& timing, const std::string& command) {
-  const bool manifold = timing.level == NarrowLevel::manifold;
+  const bool manifold = timing.level == ContactLevel::manifold;
   Json row{{"kind", measured.kind.name},
            {"level", to_text(timing.level)},
            {"engine", timing.engine},
@@ -104,7 +104,7 @@ std::string add_timing(Results& results, const NarrowMeasurement& measured,
            {"disagree", timing.disagree},
            {"recomputed", timing.recomputed},
            {"command", measured.is_peer(timing) ? with_peers(command) : command}};
-  if (timing.level != NarrowLevel::boolean) row["other_depth"] = timing.other_depth;
+  if (timing.level != ContactLevel::boolean) row["other_depth"] = timing.other_depth;
   if (manifold) row["contacts"] = timing.contacts;
   return results.add("narrow_speed", std::move(row));
 }
@@ -124,7 +124,7 @@ void measure_narrow_times(Results& results, const ReportOptions& options, const 
   for (const NarrowTiming& timing : measured.timings) {
     ids[&timing] = add_timing(results, measured, timing, command);
   }
-  for (const NarrowLevel level : asked.levels) {
+  for (const ContactLevel level : asked.levels) {
     const NarrowTiming* best = measured.best_peer(level);
     if (best == nullptr) continue;
     const NarrowTiming* own = measured.find(NarrowTier::robust, level);
@@ -155,7 +155,7 @@ AccuracyOptions narrow_accuracy_of(const ReportOptions& options, const PairKind&
 void measure_narrow_errors(Results& results, const ReportOptions& options, const PairKind& kind,
                            bool by_gap) {
   AccuracyOptions asked = narrow_accuracy_of(options, kind);
-  asked.levels = {NarrowLevel::boolean, NarrowLevel::distance, NarrowLevel::manifold};
+  asked.levels = {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold};
   const AccuracyMeasurement measured = measure_accuracy(asked);
   for (const Accuracy& one : measured.engines) {
     add_accuracy_row(results, "narrow_error",
@@ -167,7 +167,7 @@ void measure_narrow_errors(Results& results, const ReportOptions& options, const
   }
   if (!by_gap) return;
   for (const AccuracyAtGap& one : measured.by_gap) {
-    if (one.accuracy.level != NarrowLevel::distance) continue;
+    if (one.accuracy.level != ContactLevel::distance) continue;
     add_accuracy_row(results, "narrow_gap",
                      {{"kind", kind.name},
                       {"engine", one.accuracy.engine},

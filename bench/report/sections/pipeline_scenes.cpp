@@ -11,10 +11,11 @@ namespace {
 
 constexpr const char* kMovingText = "moving a little";
 constexpr const char* kRestingText = "at rest";
-constexpr std::pair<const char*, SceneLevel> kSceneLevels[] = {{"pairs", SceneLevel::pairs},
-                                                               {"boolean", SceneLevel::boolean},
-                                                               {"distance", SceneLevel::distance},
-                                                               {"manifold", SceneLevel::manifold}};
+constexpr std::pair<const char*, ContactLevel> kSceneLevels[] = {
+    {"pairs", ContactLevel::pairs},
+    {"boolean", ContactLevel::boolean},
+    {"distance", ContactLevel::distance},
+    {"manifold", ContactLevel::manifold}};
 
 /// The races on one scene.
 struct SceneCell {

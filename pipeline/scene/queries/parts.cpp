@@ -1,7 +1,7 @@
 #include "pipeline/scene/queries/parts.h"
 
+#include <winnow/core/rotation.h>
 #include <winnow/core/rounding.h>
-#include "pipeline/shapes/frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,7 @@ Pose turned(const Pose& pose) noexcept {
 }
 
 PreciseBox triangle_box(const TriangleShape& triangle, const Pose& pose) noexcept {
-  const Eigen::Matrix3d turn = mid::rotation_of(mid::tame(pose.orientation));
+  const Eigen::Matrix3d turn = rotation_of_unit(normalized(tame(pose.orientation)));
   PreciseBox box;
   double scale = 0.0;
   for (int k = 0; k < 3; ++k) {

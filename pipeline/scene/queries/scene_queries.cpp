@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 using mid::kInfinity;
 
 PairAnswer solve(const PartTraversal& parts, const ConvexPart& a, const ConvexPart& b,
-                 NarrowLevel level) noexcept {
+                 ContactLevel level) noexcept {
   PartTables tables(parts.shapes());
   const ShapeId first = tables.put(0, a);
   const ShapeId second = tables.put(1, b);
@@ -49,7 +49,7 @@ bool do_overlap(const PartTraversal& parts, const PlacedShape& first, const Plac
   bool found = false;
   parts.met(pair.a, parts.box(pair.b).standing(), [&](const ConvexPart& a, double) {
     parts.met(pair.b, parts.box(a).standing(), [&](const ConvexPart& b, double) {
-      found = solve(parts, a, b, NarrowLevel::boolean).overlap;
+      found = solve(parts, a, b, ContactLevel::boolean).overlap;
       if (found) part = b.part;
       return found ? -1.0 : 0.0;
     });
@@ -102,7 +102,7 @@ class ClosestParts {
     return reach();
   }
   void look(const ConvexPart& a, const ConvexPart& b) noexcept {
-    const PairAnswer pair = solve(parts_, a, b, NarrowLevel::distance);
+    const PairAnswer pair = solve(parts_, a, b, ContactLevel::distance);
     if (!(pair.distance <= limit_)) return;
     SceneDistance& answer = *answer_;
     if (found_ && pair.distance == limit_ &&

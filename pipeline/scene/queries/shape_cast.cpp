@@ -174,7 +174,7 @@ PartedAt Advancement::sample(double t) noexcept {
   PartedAt result;
   double gap = 0.0;
   if (problem.b.kind == CoreKind::half_space) {
-    const CoreDistance found = core_distance(problem, NarrowLevel::boolean, kInfinity, counts_);
+    const CoreDistance found = core_distance(problem, ContactLevel::boolean, kInfinity, counts_);
     gap = found.distance - roundings - noise;
     face(found.axis, result);
   } else {
@@ -201,7 +201,7 @@ void Advancement::face(const Vec& axis, PartedAt& sample) const noexcept {
 /// For cores whose closest points iteration does not find. Without a good plane they close at full
 /// speed.
 double Advancement::surely_apart(const Problem& problem, PartedAt& sample) noexcept {
-  const CoreDistance found = core_distance(problem, NarrowLevel::boolean, kInfinity, counts_);
+  const CoreDistance found = core_distance(problem, ContactLevel::boolean, kInfinity, counts_);
   if (found.overlaps) return 0.0;
   face(found.axis, sample);
   const double roundings = problem.a.rounding + problem.b.rounding;
@@ -213,13 +213,13 @@ double Advancement::surely_apart(const Problem& problem, PartedAt& sample) noexc
 
 /// Where double cannot tell, exact arithmetic does.
 bool Advancement::touches_at_start() noexcept {
-  const auto solve = [this](NarrowLevel level) {
+  const auto solve = [this](ContactLevel level) {
     return solve_pair(tables_, pair_.moving, pair_.from, pair_.standing, pair_.pose, level, 0.0,
                       counts_);
   };
-  overlap_at_start_ = solve(NarrowLevel::boolean).overlap;
+  overlap_at_start_ = solve(ContactLevel::boolean).overlap;
   if (overlap_at_start_) return true;
-  const PairAnswer apart = solve(NarrowLevel::distance);
+  const PairAnswer apart = solve(ContactLevel::distance);
   return Vec::Map(apart.normal).dot(path_.step()) > 4.0 * kEpsilon * path_.speed();
 }
 
@@ -269,7 +269,7 @@ bool Advancement::search() noexcept {
 void Advancement::describe(CastTouch& touch) noexcept {
   Problem problem;
   prepare_at(path_.steps(touch.t), problem);
-  const CoreDistance found = core_distance(problem, NarrowLevel::distance, kInfinity, counts_);
+  const CoreDistance found = core_distance(problem, ContactLevel::distance, kInfinity, counts_);
   const double apart = found.distance - problem.a.rounding - problem.b.rounding;
   const Vec on_a = found.on_a + found.axis * problem.a.rounding;
   const Vec point = mirrored_ ? on_a : Vec(on_a + found.axis * apart - problem.b.center);

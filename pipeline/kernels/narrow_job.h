@@ -3,37 +3,26 @@
 // What the narrow phase and its kernels share. Plain structs: kernel files include this.
 
 #include <winnow/core/pose.h>
+#include <winnow/pipeline/contact_types.h>
 #include <winnow/pipeline/shapes.h>
 
 #include <cstdint>
 
 namespace winnow {
 
-/// Two bodies that may touch.
-struct BodyPair {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
-};
+/// At most so many pairs a job.
+inline constexpr std::uint32_t kJobPairs = 512;
 
-/// One point of a manifold: halfway between the two surfaces, in the axes of the world, relative to
-/// the position of body a. Depth is positive where the bodies overlap. The feature says which
-/// vertex, edge or face of a (upper half) and of b (lower half) made the point, and is the same
-/// from frame to frame as long as they do.
-struct ContactPoint {
-  float position[3];
-  float depth;
-  std::uint64_t feature;
-};
-
-/// At most so many points a manifold.
-inline constexpr std::uint32_t kManifoldPoints = 4;
+/// Kernels write contact points by whole vectors: the last of them may reach this far beyond.
+inline constexpr std::uint32_t kContactSlack = 16;
 
 /// Contact points in the order in which they are written, one column a member.
 struct ContactWriter {
   float* position[3];
   float* depth;
   std::uint64_t* feature;
-  /// Points so far. There is room for kManifoldPoints a pair of the job, and for 16 more.
+  /// Points so far. There is room for kManifoldPoints a pair of the job, and for kContactSlack
+  /// more.
   std::uint32_t size;
 };
 
@@ -77,8 +66,9 @@ using NarrowKernel = std::uint32_t (*)(NarrowJob& job);
 
 /// The kernels of one pair kind. Null: there is none, and the solver answers.
 struct NarrowKernels {
-  /// By NarrowLevel. Tier fast: all lanes in float; a pair goes to `uncertified` if it left float's
-  /// range, or if its lanes found no answer that is good to about 1e-4 of the sizes.
+  /// By kernel_index of the level. Tier fast: all lanes in float; a pair goes to `uncertified` if
+  /// it left float's range, or if its lanes found no answer that is good to about 1e-4 of the
+  /// sizes.
   NarrowKernel fast[3];
   /// Tier robust: what is not in `uncertified` has the right sign and a bound of at most
   /// 1e-12 x (sizes + |distance|).

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+
+namespace winnow {
+
+/// w, x, y, z, as a Pose holds it.
+using Quaternion = std::array<double, 4>;
+
+namespace detail {
+
+/// With `scale` 2 / |q|^2.
+[[nodiscard]] inline Eigen::Matrix3d scaled_rotation(const Quaternion& q, double scale) noexcept {
+  const auto [w, x, y, z] = q;
+  Eigen::Matrix3d r;
+  r << 1.0 - scale * (y * y + z * z), scale * (x * y - w * z), scale * (x * z + w * y),  //
+      scale * (x * y + w * z), 1.0 - scale * (x * x + z * z), scale * (y * z - w * x),   //
+      scale * (x * z - w * y), scale * (y * z + w * x), 1.0 - scale * (x * x + y * y);
+  return r;
+}
+
+[[nodiscard]] inline double squared_length(const Quaternion& q) noexcept {
+  return (q[0] * q[0] + q[2] * q[2]) + (q[1] * q[1] + q[3] * q[3]);
+}
+
+}  // namespace detail
+
+/// The orientation of a valid pose divided by its largest component, so that no product of two
+/// components leaves double. Exact for the identity.
+[[nodiscard]] inline Quaternion tame(const double (&orientation)[4]) noexcept {
+  double largest = 0.0;
+  for (const double q : orientation) largest = std::fabs(q) > largest ? std::fabs(q) : largest;
+  return {orientation[0] / largest, orientation[1] / largest, orientation[2] / largest,
+          orientation[3] / largest};
+}
+
+/// Of a tame quaternion: the same rotation, of length 1 to rounding.
+[[nodiscard]] inline Quaternion normalized(const Quaternion& q) noexcept {
+  const double length = std::sqrt(detail::squared_length(q));
+  return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
+}
+
+/// The rotation of a tame quaternion. Exact for the identity and for half and quarter turns about
+/// the axes.
+[[nodiscard]] inline Eigen::Matrix3d rotation_of(const Quaternion& q) noexcept {
+  return detail::scaled_rotation(q, 2.0 / detail::squared_length(q));
+}
+
+/// That of a quaternion of length 1.
+[[nodiscard]] inline Eigen::Matrix3d rotation_of_unit(const Quaternion& q) noexcept {
+  return detail::scaled_rotation(q, 2.0);
+}
+
+/// First `inner`, then `outer`.
+[[nodiscard]] inline Quaternion product(const Quaternion& outer, const Quaternion& inner) noexcept {
+  const auto [w, x, y, z] = outer;
+  return {w * inner[0] - x * inner[1] - y * inner[2] - z * inner[3],
+          w * inner[1] + x * inner[0] + y * inner[3] - z * inner[2],
+          w * inner[2] - x * inner[3] + y * inner[0] + z * inner[1],
+          w * inner[3] + x * inner[2] - y * inner[1] + z * inner[0]};
+}
+
+}  // namespace winnow

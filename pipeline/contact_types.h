@@ -1,0 +1,41 @@
+#pragma once
+
+// What is asked about pairs of bodies and what a contact is. Plain structs on purpose: kernel files
+// include this.
+
+#include <cstdint>
+
+namespace winnow {
+
+/// How much is asked about pairs. A lower level does not pay for a higher one.
+enum class ContactLevel : std::uint8_t {
+  /// Of a scene alone: pairs of bodies whose boxes, grown by half of the margin, meet.
+  pairs,
+  /// Those that share a point, and which of their parts do.
+  boolean,
+  /// Those no farther apart than the margin: distance or depth, normal, closest points.
+  distance,
+  /// The same with contact points.
+  manifold,
+};
+
+/// Two bodies that may touch.
+struct BodyPair {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+};
+
+/// One point of a manifold: halfway between the two surfaces, in the axes of the world, relative to
+/// the position of body a. Depth is positive where the bodies overlap. The feature says which
+/// vertex, edge or face of a (upper half) and of b (lower half) made the point, and is the same
+/// from frame to frame as long as they do.
+struct ContactPoint {
+  float position[3];
+  float depth;
+  std::uint64_t feature;
+};
+
+/// At most so many points a manifold.
+inline constexpr std::uint32_t kManifoldPoints = 4;
+
+}  // namespace winnow

@@ -1,0 +1,44 @@
+#pragma once
+
+// Which shape of a pair comes first, and how pairs of kinds are numbered.
+
+#include <winnow/pipeline/shapes.h>
+
+#include <cstdint>
+
+namespace winnow {
+
+/// Pairs are answered with the shape of the smaller kind first. One given the other way round is
+/// mirrored: it is answered as (b, a), and the answer is mirrored back.
+[[nodiscard]] constexpr bool is_mirrored(ShapeId a, ShapeId b) noexcept {
+  return a.kind_index() > b.kind_index();
+}
+
+/// The numbers of pairs of kinds: that of a counts `Kinds` times, that of b once.
+template <std::uint32_t Kinds>
+struct KindPairs {
+  static constexpr std::uint32_t kCount = Kinds * Kinds;
+
+  [[nodiscard]] static constexpr std::uint32_t index(std::uint32_t a, std::uint32_t b) noexcept {
+    return a * Kinds + b;
+  }
+  [[nodiscard]] static constexpr std::uint32_t index(ShapeKind a, ShapeKind b) noexcept {
+    return index(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
+  }
+  [[nodiscard]] static constexpr std::uint32_t index(ShapeId a, ShapeId b) noexcept {
+    return index(a.kind_index(), b.kind_index());
+  }
+  [[nodiscard]] static constexpr std::uint32_t first(std::uint32_t index) noexcept {
+    return index / Kinds;
+  }
+  [[nodiscard]] static constexpr std::uint32_t second(std::uint32_t index) noexcept {
+    return index % Kinds;
+  }
+};
+
+/// Of convex shapes.
+using ConvexKindPairs = KindPairs<kShapeKinds>;
+/// Of convex and composite ones.
+using BodyKindPairs = KindPairs<kAllShapeKinds>;
+
+}  // namespace winnow
