@@ -1,47 +1,204 @@
 #include <winnow/partitions/partition.h>
 
-#include "partitions/choice/auto_partition.h"
-#include "partitions/structures/brute_force/bounds_n_squared.h"
-#include "partitions/structures/brute_force/n_squared.h"
-#include "partitions/structures/bvh/linear_bvh.h"
-#include "partitions/structures/bvh/static_bvh.h"
-#include "partitions/structures/grid/flat_grid.h"
-#include "partitions/structures/levels/hierarchical_grid.h"
-#include "partitions/structures/octree/loose_octree.h"
-#include "partitions/structures/octree/loose_quadtree.h"
-#include "partitions/structures/sweep/sweep_and_prune.h"
-
-#include <array>
+#include "core/memory/new_in.h"
+#include "partitions/rows/row_writer.h"
+#include "partitions/rows/volume_source.h"
+#include "partitions/state/partition_state.h"
 
 namespace winnow {
 namespace {
 
-using Maker = std::unique_ptr<Partition> (*)(const PartitionOptions&);
-
-template <typename T>
-std::unique_ptr<Partition> make(const PartitionOptions& options) {
-  return std::make_unique<T>(options);
+/// Calls change(rows) for a mutation of so many objects, and has the structure follow.
+template <typename Change>
+Status mutate(PartitionState* state, Status otherwise, std::size_t count, Change&& change) {
+  if (state == nullptr) return otherwise;
+  const Status status = change(state->rows);
+  state->note_changes(count);
+  return status;
 }
-
-constexpr std::array<std::string_view, 10> kNames{
-    "NSquared",    "BoundsNSquared", "SweepAndPrune", "FlatGrid",  "HierarchicalGrid",
-    "LooseOctree", "LooseQuadtree",  "LinearBvh",     "StaticBvh", "AutoPartition"};
-constexpr std::array<Maker, kNames.size()> kMakers{
-    make<NSquared>,         make<BoundsNSquared>, make<SweepAndPrune>, make<FlatGrid>,
-    make<HierarchicalGrid>, make<LooseOctree>,    make<LooseQuadtree>, make<LinearBvh>,
-    make<StaticBvh>,        make<AutoPartition>};
 
 }  // namespace
 
-std::span<const std::string_view> partition_names() noexcept {
-  return kNames;
+Partition::Partition(StructureKind structure, const PartitionOptions& options) noexcept {
+  if (structure.info() == nullptr) return;
+  state_ = PartitionState::make(structure, options);
+  status_ = state_ == nullptr ? Status::out_of_memory : Status::ok;
 }
 
-std::unique_ptr<Partition> make_partition(std::string_view name, const PartitionOptions& options) {
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (kNames[i] == name) return kMakers[i](options);
-  }
-  return nullptr;
+Partition::~Partition() {
+  if (state_ != nullptr) delete_in(state_->memory, state_);
+}
+
+StructureKind Partition::structure() const noexcept {
+  return state_ == nullptr ? StructureKind{} : state_->kind;
+}
+
+Status Partition::set_structure(StructureKind structure) {
+  if (structure.info() == nullptr) return Status::invalid_argument;
+  if (state_ == nullptr) return status_;
+  return state_->set_structure(structure) ? Status::ok : Status::out_of_memory;
+}
+
+StructureChoice Partition::choice() const noexcept {
+  return state_ == nullptr ? StructureChoice{} : state_->choice();
+}
+
+bool Partition::is_exact() const noexcept {
+  return state_ == nullptr ||
+         (state_->rows.pool().volume() == Volume::aabb && state_->rows.margin().is_none() &&
+          state_->steadily([&] { return state_->index.structure().tests_volumes(); }));
+}
+
+Volume Partition::volume() const noexcept {
+  return state_ == nullptr ? Volume::aabb : state_->rows.pool().volume();
+}
+
+Margin Partition::margin() const noexcept {
+  return state_ == nullptr ? Margin{} : state_->rows.margin();
+}
+
+Status Partition::insert(const BoxView& boxes, std::span<const ClientData> data,
+                         std::span<Key> keys) {
+  return mutate(state_, status_, keys.size(),
+                [&](Rows& rows) { return rows.insert(boxes, data, keys); });
+}
+
+Status Partition::insert(const Aabb& box, ClientData data, Key& key) {
+  return insert(BoxView(std::span<const Aabb>(&box, 1)), std::span<const ClientData>(&data, 1),
+                std::span<Key>(&key, 1));
+}
+
+Status Partition::insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
+                         std::span<Key> keys) {
+  if (volume() != Volume::sphere) return Status::unsupported_volume;
+  return mutate(state_, status_, keys.size(), [&](Rows& rows) {
+    return rows.insert_from(SphereSource{spheres}, spheres.size(), data, keys);
+  });
+}
+
+template <int K>
+Status Partition::insert(std::span<const Kdop<K>> kdops, std::span<const ClientData> data,
+                         std::span<Key> keys) {
+  if (volume() != kdop_volume<K>()) return Status::unsupported_volume;
+  return mutate(state_, status_, keys.size(), [&](Rows& rows) {
+    return rows.insert_from(KdopSource<K>{kdops}, kdops.size(), data, keys);
+  });
+}
+
+Status Partition::update(std::span<const Key> keys, const BoxView& boxes) {
+  return mutate(state_, status_, keys.size(), [&](Rows& rows) { return rows.update(keys, boxes); });
+}
+
+Status Partition::update(Key key, const Aabb& box) {
+  return mutate(state_, status_, 1, [&](Rows& rows) { return rows.update(key, box); });
+}
+
+Status Partition::update(std::span<const Key> keys, std::span<const Sphere> spheres) {
+  if (volume() != Volume::sphere) return Status::unsupported_volume;
+  return mutate(state_, status_, keys.size(), [&](Rows& rows) {
+    return rows.update_from(SphereSource{spheres}, spheres.size(), keys);
+  });
+}
+
+template <int K>
+Status Partition::update(std::span<const Key> keys, std::span<const Kdop<K>> kdops) {
+  if (volume() != kdop_volume<K>()) return Status::unsupported_volume;
+  return mutate(state_, status_, keys.size(), [&](Rows& rows) {
+    return rows.update_from(KdopSource<K>{kdops}, kdops.size(), keys);
+  });
+}
+
+template Status Partition::insert(std::span<const Kdop<14>>, std::span<const ClientData>,
+                                  std::span<Key>);
+template Status Partition::insert(std::span<const Kdop<18>>, std::span<const ClientData>,
+                                  std::span<Key>);
+template Status Partition::insert(std::span<const Kdop<26>>, std::span<const ClientData>,
+                                  std::span<Key>);
+template Status Partition::update(std::span<const Key>, std::span<const Kdop<14>>);
+template Status Partition::update(std::span<const Key>, std::span<const Kdop<18>>);
+template Status Partition::update(std::span<const Key>, std::span<const Kdop<26>>);
+
+Status Partition::remove(std::span<const Key> keys) {
+  return mutate(state_, status_, keys.size(), [&](Rows& rows) { return rows.remove(keys); });
+}
+
+Status Partition::remove(Key key) {
+  return mutate(state_, status_, 1, [&](Rows& rows) { return rows.remove(key); });
+}
+
+void Partition::clear() noexcept {
+  if (state_ != nullptr) state_->clear();
+}
+
+void Partition::release_memory() noexcept {
+  if (state_ != nullptr) state_->release_memory();
+}
+
+Status Partition::reserve(std::size_t objects) {
+  return mutate(state_, status_, 0, [&](Rows& rows) { return rows.reserve(objects); });
+}
+
+std::size_t Partition::size() const noexcept {
+  return state_ == nullptr ? 0 : state_->rows.size();
+}
+
+bool Partition::contains(Key key) const noexcept {
+  return state_ != nullptr && state_->rows.keys().is_valid(key);
+}
+
+Status Partition::bounds(Key key, Aabb& box) const noexcept {
+  if (state_ == nullptr) return status_;
+  return state_->steadily([&] { return state_->rows.bounds(key, box); });
+}
+
+Status Partition::client_data(Key key, ClientData& data) const noexcept {
+  if (!contains(key)) return state_ == nullptr ? status_ : Status::invalid_key;
+  data = state_->rows.keys().client_data(key.id);
+  return Status::ok;
+}
+
+Key Partition::key_of(ObjectId id) const noexcept {
+  return state_ == nullptr ? Key{} : state_->rows.keys().key_of(id);
+}
+
+ClientData Partition::client_data_of(ObjectId id) const noexcept {
+  return state_ != nullptr && state_->rows.keys().is_live(id) ? state_->rows.keys().client_data(id)
+                                                              : 0;
+}
+
+Status Partition::set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters) {
+  return mutate(state_, status_, 0, [&](Rows& rows) { return rows.set_filter(keys, filters); });
+}
+
+Status Partition::set_filter(Key key, const ObjectFilter& filter) {
+  return set_filter(std::span<const Key>(&key, 1), std::span<const ObjectFilter>(&filter, 1));
+}
+
+Status Partition::filter(Key key, ObjectFilter& filter) const noexcept {
+  if (!contains(key)) return state_ == nullptr ? status_ : Status::invalid_key;
+  filter = state_->rows.filters().of(key.id);
+  return Status::ok;
+}
+
+Status Partition::refresh() const {
+  return state_ == nullptr ? status_ : state_->refresh();
+}
+
+Status Partition::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const {
+  if (state_ == nullptr) return status_;
+  if (options.max_depth < 0) return Status::invalid_argument;
+  if (const Status status = refresh(); status != Status::ok) return status;
+  if (options.structure) state_->index.draw(draw, static_cast<std::size_t>(options.max_depth));
+  state_->index.draw_objects(draw, options);
+  return Status::ok;
+}
+
+Footprint Partition::footprint() const noexcept {
+  return state_ == nullptr ? Footprint{} : state_->footprint();
+}
+
+Statistics Partition::statistics() const noexcept {
+  return state_ == nullptr ? Statistics{} : state_->statistics();
 }
 
 }  // namespace winnow

@@ -8,20 +8,24 @@
 #include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/hits.h>
+#include <winnow/core/kdop.h>
 #include <winnow/core/key.h>
 #include <winnow/core/margin.h>
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/pair_events.h>
 #include <winnow/core/region.h>
+#include <winnow/core/sphere.h>
 #include <winnow/core/status.h>
 #include <winnow/core/volume.h>
+#include <winnow/partitions/scene_features.h>
+#include <winnow/partitions/structures.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <memory_resource>
 #include <span>
 #include <string_view>
+#include <utility>
 
 namespace winnow {
 
@@ -62,6 +66,7 @@ struct Statistics {
   std::size_t irregular = 0;  ///< objects kept apart: oversize, new, or moved away
   std::size_t cells = 0;      ///< cells, strips or leaf blocks
   std::size_t depth = 0;      ///< levels of the node tree; 0 if there is none
+  std::size_t levels = 0;     ///< of sizes: grids laid over each other, or depths of an octree
   std::uint64_t builds = 0;   ///< since construction
   std::uint64_t refits = 0;   ///< refreshes that did not need a build
   std::uint64_t full_queries = 0;
@@ -70,77 +75,121 @@ struct Statistics {
   std::uint64_t last_pairs = 0;  ///< pairs reported by the last pair query
 };
 
-class RowPartition;
+class PartitionState;
 
-/// A spatial partition: takes bounding volumes with 64 bits of client data, hands out keys, and
-/// answers which of them may touch. It never misses a pair; whether it reports pairs whose boxes do
-/// not touch is stated by each partition.
+/// What the automatic choice holds, and why.
+struct StructureChoice {
+  StructureKind structure;    ///< that prunes the objects now
+  std::string_view reason;    ///< in a few words
+  std::uint64_t changes = 0;  ///< of the structure, after the first choice
+  SceneFeatures features;     ///< what is known of the scene
+};
+
+/// Takes bounding volumes with 64 bits of client data, hands out keys, and answers which of them
+/// may touch. It never misses a pair; `is_exact` says whether it reports pairs whose boxes do not
+/// touch. What differs between partitions is the structure that prunes: it can be exchanged while
+/// the objects stay, with their keys, filters, tracked pairs and events.
+///
+///     winnow::Partition partition(winnow::linear_bvh());
+///     partition.insert(boxes, data, keys);
+///     partition.self_pairs(pairs);
 ///
 /// Mutation costs O(1) an object; the structure follows at the next query (or `refresh`). Queries
 /// that are const may run at the same time from several threads; everything else wants the
 /// partition to itself. A refused call (any Status but ok) changed nothing: of a span, either all
-/// entries are taken or none.
-class Partition {
+/// entries are taken or none. Nothing throws.
+class Partition final {
  public:
-  Partition(const Partition&) = delete;
-  Partition& operator=(const Partition&) = delete;
-  virtual ~Partition() = default;
+  explicit Partition(StructureKind structure, const PartitionOptions& options = {}) noexcept;
+  Partition(Partition&& other) noexcept
+      : state_(std::exchange(other.state_, nullptr)),
+        status_(std::exchange(other.status_, Status::invalid_argument)) {}
+  Partition& operator=(Partition&& other) noexcept {
+    std::swap(state_, other.state_);
+    std::swap(status_, other.status_);
+    return *this;
+  }
+  ~Partition();
 
-  /// Stable name, e.g. "LinearBvh".
-  [[nodiscard]] virtual std::string_view name() const noexcept = 0;
-  /// True if `self_pairs` reports exactly the pairs whose given boxes overlap: where the volumes
-  /// are boxes without a margin.
-  [[nodiscard]] virtual bool is_exact() const noexcept = 0;
+  /// `ok`, or what every call that has a status answers: `out_of_memory` if memory for its state
+  /// was refused, `invalid_argument` if the structure names none, or if it has been moved from.
+  [[nodiscard]] Status status() const noexcept { return status_; }
+
+  /// What it was made with, or given last.
+  [[nodiscard]] StructureKind structure() const noexcept;
+  /// That structure's name, e.g. "LinearBvh".
+  [[nodiscard]] std::string_view name() const noexcept { return structure().name(); }
+  /// Exchanges the structure; the next refresh builds it. `automatic()` starts choosing anew.
+  Status set_structure(StructureKind structure);
+  /// What `automatic()` has chosen; of any other structure that one itself.
+  [[nodiscard]] StructureChoice choice() const noexcept;
+
+  /// True if `self_pairs` reports exactly the pairs whose given boxes overlap: where the structure
+  /// tests bounds, and these are boxes without a margin.
+  [[nodiscard]] bool is_exact() const noexcept;
+  [[nodiscard]] Volume volume() const noexcept;
+  [[nodiscard]] Margin margin() const noexcept;
 
   /// Adds one object per box. `keys` receives a key for each; `data` may be empty (all zero).
-  virtual Status insert(const BoxView& boxes, std::span<const ClientData> data,
-                        std::span<Key> keys) = 0;
+  Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
   /// Adds one object.
-  virtual Status insert(const Aabb& box, ClientData data, Key& key) = 0;
+  Status insert(const Aabb& box, ClientData data, Key& key);
   /// Gives each object a new box. If a key occurs twice its last box counts. With a margin, a box
   /// within the stored one leaves that as it is, unless it is larger by more than twice the margin;
   /// the object then counts as not moved.
-  virtual Status update(std::span<const Key> keys, const BoxView& boxes) = 0;
-  virtual Status update(Key key, const Aabb& box) = 0;
-  /// Removes the objects. A key that occurs twice makes the whole call `invalid_key`.
-  virtual Status remove(std::span<const Key> keys) = 0;
-  virtual Status remove(Key key) = 0;
-  /// Removes every object. Memory is kept; `release_memory` gives it back.
-  virtual void clear() noexcept = 0;
-  /// Gives back all memory that an empty partition, or scratch, holds.
-  virtual void release_memory() noexcept = 0;
-  /// Room for `objects` in all, so that inserting up to there allocates no columns.
-  virtual Status reserve(std::size_t objects) = 0;
+  Status update(std::span<const Key> keys, const BoxView& boxes);
+  Status update(Key key, const Aabb& box);
 
-  [[nodiscard]] virtual std::size_t size() const noexcept = 0;
-  [[nodiscard]] virtual bool contains(Key key) const noexcept = 0;
+  /// Spheres, where `volume()` is Volume::sphere; else `unsupported_volume`. Given boxes, a
+  /// partition of spheres or k-DOPs stores the tightest volume around each (a sphere wants finite
+  /// boxes). Spheres that miss each other by less than 1e-6 of their distance may be reported.
+  Status insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
+                std::span<Key> keys);
+  Status update(std::span<const Key> keys, std::span<const Sphere> spheres);
+  /// k-DOPs, where `volume()` is that of the same K (14, 18 or 26); else `unsupported_volume`.
+  template <int K>
+  Status insert(std::span<const Kdop<K>> kdops, std::span<const ClientData> data,
+                std::span<Key> keys);
+  template <int K>
+  Status update(std::span<const Key> keys, std::span<const Kdop<K>> kdops);
+
+  /// Removes the objects. A key that occurs twice makes the whole call `invalid_key`.
+  Status remove(std::span<const Key> keys);
+  Status remove(Key key);
+  /// Removes every object. Memory is kept; `release_memory` gives it back.
+  void clear() noexcept;
+  /// Gives back all memory that an empty partition, or scratch, holds.
+  void release_memory() noexcept;
+  /// Room for `objects` in all, so that inserting up to there allocates no columns.
+  Status reserve(std::size_t objects);
+
+  [[nodiscard]] std::size_t size() const noexcept;
+  [[nodiscard]] bool contains(Key key) const noexcept;
   /// The box as it is tested: float, larger than given by the margin, the box around other volumes;
   /// an infinite extent is given back as infinite.
-  virtual Status bounds(Key key, Aabb& box) const noexcept = 0;
-  virtual Status client_data(Key key, ClientData& data) const noexcept = 0;
+  Status bounds(Key key, Aabb& box) const noexcept;
+  Status client_data(Key key, ClientData& data) const noexcept;
   /// Key of a live object; the null key for any other id.
-  [[nodiscard]] virtual Key key_of(ObjectId id) const noexcept = 0;
+  [[nodiscard]] Key key_of(ObjectId id) const noexcept;
   /// Client data of a live object; 0 for any other id.
-  [[nodiscard]] virtual ClientData client_data_of(ObjectId id) const noexcept = 0;
+  [[nodiscard]] ClientData client_data_of(ObjectId id) const noexcept;
 
   /// Sets what the objects let themselves be paired with. Every object starts with ObjectFilter{};
   /// a partition in which no other was ever set stores none.
-  virtual Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters) = 0;
-  virtual Status set_filter(Key key, const ObjectFilter& filter) = 0;
-  virtual Status filter(Key key, ObjectFilter& filter) const noexcept = 0;
+  Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
+  Status set_filter(Key key, const ObjectFilter& filter);
+  Status filter(Key key, ObjectFilter& filter) const noexcept;
 
   /// Brings the structure up to date now rather than in the next query.
-  virtual Status refresh() const = 0;
+  Status refresh() const;
 
   /// All pairs of objects whose volumes overlap, each once, first < second.
-  virtual Status self_pairs(PairBuffer& out, const PairOptions& options = {}) const = 0;
+  Status self_pairs(PairBuffer& out, const PairOptions& options = {}) const;
   /// All pairs (object of this, object of other) whose boxes overlap, each once.
-  virtual Status pairs_with(const Partition& other, PairBuffer& out,
-                            const PairOptions& options = {}) const = 0;
+  Status pairs_with(const Partition& other, PairBuffer& out, const PairOptions& options = {}) const;
 
   /// The same, and what changed since the frame that `out` holds. The cost follows what moved.
-  virtual Status self_pairs(PairBuffer& out, PairEvents& events,
-                            const PairOptions& options = {}) const = 0;
+  Status self_pairs(PairBuffer& out, PairEvents& events, const PairOptions& options = {}) const;
 
   // Casts: rays and swept volumes against the objects' boxes (of spheres and k-DOPs: the box around
   // them). A start inside a box, or touching it, is a hit at min_t. Never a miss; a false hit only
@@ -148,53 +197,43 @@ class Partition {
   // by id.
 
   /// The hit with the least t; a null hit if there is none. About O(log n).
-  virtual Status closest(const Cast& cast, Hit& hit, const Filter& filter = {}) const = 0;
+  Status closest(const Cast& cast, Hit& hit, const Filter& filter = {}) const;
   /// Any one hit, whichever is found first; a null hit if there is none.
-  virtual Status any(const Cast& cast, Hit& hit, const Filter& filter = {}) const = 0;
+  Status any(const Cast& cast, Hit& hit, const Filter& filter = {}) const;
   /// All hits, sorted by t.
-  virtual Status all(const Cast& cast, HitBuffer& hits, const Filter& filter = {}) const = 0;
+  Status all(const Cast& cast, HitBuffer& hits, const Filter& filter = {}) const;
   /// The same for many rays at once, which share the work where they are alike. One bad ray makes
   /// the whole batch `invalid_argument`.
-  virtual Status closest(const RayBatch& rays, const HitColumns& hits,
-                         const Filter& filter = {}) const = 0;
-  virtual Status any(const RayBatch& rays, const HitColumns& hits,
-                     const Filter& filter = {}) const = 0;
-  virtual Status all(const RayBatch& rays, HitBuffer& hits, const Filter& filter = {}) const = 0;
+  Status closest(const RayBatch& rays, const HitColumns& hits, const Filter& filter = {}) const;
+  Status any(const RayBatch& rays, const HitColumns& hits, const Filter& filter = {}) const;
+  Status all(const RayBatch& rays, HitBuffer& hits, const Filter& filter = {}) const;
 
   /// Every object whose box meets the region, those that lie wholly inside told from those that
   /// cross its border. A frustum or set of planes "meets" a box that is not wholly outside of one
   /// of its planes (or of the frustum's own box). Never a miss; a false hit only within rounding.
   /// Order::canonical sorts each of the two groups by id.
-  virtual Status overlap(const Region& region, OverlapBuffer& objects, const Filter& filter = {},
-                         Order order = Order::fast) const = 0;
+  Status overlap(const Region& region, OverlapBuffer& objects, const Filter& filter = {},
+                 Order order = Order::fast) const;
   /// All pairs (index of the box, object) that overlap. Boxes may reach to infinity.
-  virtual Status overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter = {},
-                         Order order = Order::fast) const = 0;
+  Status overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter = {},
+                 Order order = Order::fast) const;
 
   /// The `count` objects whose boxes are nearest to a finite box (a point is one of no extent)
   /// within a distance of `radius`, which may be infinite; sorted by distance, then by id. Those
   /// that touch are at distance 0. About O(log n + count).
-  virtual Status nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
-                         const Filter& filter = {}) const = 0;
+  Status nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
+                 const Filter& filter = {}) const;
 
   /// Draws the objects and the partition's own structure. A picture, not a query: O(n).
-  virtual Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const = 0;
+  Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const;
 
-  /// The rows behind this partition, for `pairs_with`; null if it keeps none.
-  [[nodiscard]] virtual const RowPartition* row_partition() const noexcept { return nullptr; }
+  /// Every byte that the memory resource was asked for and has not got back.
+  [[nodiscard]] Footprint footprint() const noexcept;
+  [[nodiscard]] Statistics statistics() const noexcept;
 
-  [[nodiscard]] virtual Footprint footprint() const noexcept = 0;
-  [[nodiscard]] virtual Statistics statistics() const noexcept = 0;
-
- protected:
-  Partition() = default;
+ private:
+  PartitionState* state_ = nullptr;
+  Status status_ = Status::invalid_argument;
 };
-
-/// Names of all partitions, in the order in which reports list them.
-[[nodiscard]] std::span<const std::string_view> partition_names() noexcept;
-
-/// A partition by name with its default settings; null if there is no such name.
-[[nodiscard]] std::unique_ptr<Partition> make_partition(std::string_view name,
-                                                        const PartitionOptions& options = {});
 
 }  // namespace winnow

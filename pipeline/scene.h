@@ -18,7 +18,6 @@
 #include <cstdint>
 #include <memory_resource>
 #include <span>
-#include <string_view>
 
 namespace winnow {
 
@@ -33,9 +32,9 @@ struct SceneOptions {
   /// Every allocation comes from here. It must outlive the scene.
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
   Execution execution = Execution::parallel();
-  /// The partition of each set, by Motion: see partition_names(). One is made when its first body
-  /// comes. Fixed bodies that are asked about often may be worth the slow build of "StaticBvh".
-  std::string_view partitions[kMotions] = {"LinearBvh", "LinearBvh", "LinearBvh"};
+  /// The structure of each set's partition, by Motion. A partition is made when its first body
+  /// comes. Fixed bodies that are asked about often may be worth the slow build of static_bvh().
+  StructureKind structures[kMotions] = {linear_bvh(), linear_bvh(), linear_bvh()};
   /// Speculative: pairs no farther apart than this are contacts too. Finite, >= 0.
   double margin = 0.0;
   NarrowTier tier = NarrowTier::robust;

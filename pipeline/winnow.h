@@ -31,6 +31,8 @@
 #include <winnow/core/volume.h>
 #include <winnow/partitions/debug_colours.h>
 #include <winnow/partitions/partition.h>
+#include <winnow/partitions/scene_features.h>
+#include <winnow/partitions/structures.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/height_field.h>
@@ -42,13 +44,3 @@
 #include <winnow/pipeline/shape_rays.h>
 #include <winnow/pipeline/triangle_mesh.h>
 #include <winnow/simd/isa.h>
-#include "partitions/choice/auto_partition.h"
-#include "partitions/structures/brute_force/bounds_n_squared.h"
-#include "partitions/structures/brute_force/n_squared.h"
-#include "partitions/structures/bvh/linear_bvh.h"
-#include "partitions/structures/bvh/static_bvh.h"
-#include "partitions/structures/grid/flat_grid.h"
-#include "partitions/structures/levels/hierarchical_grid.h"
-#include "partitions/structures/octree/loose_octree.h"
-#include "partitions/structures/octree/loose_quadtree.h"
-#include "partitions/structures/sweep/sweep_and_prune.h"

@@ -2,7 +2,7 @@
 
 #include <winnow/core/aabb.h>
 #include "core/memory/bounds_pool.h"
-#include "partitions/pairs/pair_sink.h"
+#include "partitions/rows/row_view.h"
 #include "partitions/structures/cells/cell_axis.h"
 
 #include <array>

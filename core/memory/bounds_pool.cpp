@@ -28,7 +28,7 @@ bool BoundsPool::reserve(std::size_t rows) noexcept {
 }
 
 bool BoundsPool::reserve_exact(std::size_t rows) noexcept {
-  const std::size_t padded = (rows + kBlock - 1) / kBlock * kBlock + 2 * kBlock;
+  const std::size_t padded = (rows + kBlockRows - 1) / kBlockRows * kBlockRows + 2 * kBlockRows;
   for (std::size_t c = 0; c < columns(); ++c) {
     columns_[c].set_size(rows_);
     if (!columns_[c].reserve(padded)) return false;
@@ -44,7 +44,7 @@ void BoundsPool::blank(std::size_t row) noexcept {
 
 void BoundsPool::pad() noexcept {
   if (ids_.data() == nullptr) return;
-  const std::size_t end = (rows_ + kBlock - 1) / kBlock * kBlock + kBlock;
+  const std::size_t end = (rows_ + kBlockRows - 1) / kBlockRows * kBlockRows + kBlockRows;
   for (std::size_t c = 0; c < columns(); ++c) {
     std::fill(columns_[c].data() + rows_, columns_[c].data() + end, empty_value(volume_, c));
   }

@@ -15,6 +15,9 @@
 
 namespace winnow {
 
+/// Rows in a block: one 512-bit register of floats, and the unit in which rows are tested.
+inline constexpr std::size_t kBlockRows = 16;
+
 /// Bounding volumes in a structure of arrays: one float column per slab end (see `column_count`)
 /// and a column of object ids, all 64-byte aligned. Rows are dense but for holes that a removal
 /// leaves; a hole and the padding behind the last row hold an empty volume, which overlaps nothing,
@@ -22,18 +25,17 @@ namespace winnow {
 /// can tell from infinity), so that the padding's infinities touch nothing.
 class BoundsPool {
  public:
-  /// Rows in a block: one 512-bit register of floats, and the unit in which rows are tested.
-  static constexpr std::size_t kBlock = 16;
-
   BoundsPool(std::pmr::memory_resource* memory, Volume volume) noexcept
       : BoundsPool(memory, volume, std::make_index_sequence<kMaxColumns>{}) {}
 
   [[nodiscard]] Volume volume() const noexcept { return volume_; }
   [[nodiscard]] std::size_t columns() const noexcept { return column_count(volume_); }
   [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
-  [[nodiscard]] std::size_t blocks() const noexcept { return (rows_ + kBlock - 1) / kBlock; }
+  [[nodiscard]] std::size_t blocks() const noexcept {
+    return (rows_ + kBlockRows - 1) / kBlockRows;
+  }
   [[nodiscard]] std::size_t capacity() const noexcept {
-    return ids_.capacity() < 2 * kBlock ? 0 : ids_.capacity() - 2 * kBlock;
+    return ids_.capacity() < 2 * kBlockRows ? 0 : ids_.capacity() - 2 * kBlockRows;
   }
 
   [[nodiscard]] float* column(std::size_t c) noexcept { return columns_[c].data(); }
@@ -59,7 +61,7 @@ class BoundsPool {
   void pad() noexcept;
 
   /// New row i becomes a copy of old row order[i], or empty where order[i] is kNoObject. All
-  /// columns go through `spare`, which must have room for order.size() + 2 * kBlock elements.
+  /// columns go through `spare`, which must have room for order.size() + 2 * kBlockRows elements.
   void reorder(std::span<const std::uint32_t> order, Column<float>& spare,
                const Execution& execution) noexcept;
 

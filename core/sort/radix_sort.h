@@ -2,10 +2,17 @@
 
 #include <winnow/core/execution.h>
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
 namespace winnow {
+
+/// Order-preserving map of floats to unsigned; -0 comes before 0.
+[[nodiscard]] inline std::uint32_t sortable(float value) noexcept {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
+}
 
 /// Stable sort of (key << first_bit | value) by the lowest `bits` bits of the key: a
 /// least-significant-digit radix sort of 11 bits a pass. `items` and `spare` hold `count` each;

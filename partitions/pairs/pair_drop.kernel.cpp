@@ -16,11 +16,11 @@ std::size_t split(const std::uint32_t* pairs, std::size_t count, const std::uint
   std::size_t i = 0;
   for (; i + kPairs <= count; i += kPairs) {
     // Stores run over by a register at most, up to the end of what has just been read.
-    const Uint16 ids = load_unaligned(pairs + 2 * i);
+    const Uints ids = Uints::load_unaligned(pairs + 2 * i);
     const Mask16 hits = test_bits(words, ids);
     const Mask16 stay = ~(hits | hits >> 1U) & 0x5555U;
     const Mask16 both = stay | stay << 1U;
-    if constexpr (KeepDropped) dropped += compress_store(~both & 0xFFFFU, ids, dropped);
+    if constexpr (KeepDropped) dropped += compress_store(~both & kAllRows, ids, dropped);
     out += compress_store(both, ids, out);
   }
   for (; i < count; ++i) {

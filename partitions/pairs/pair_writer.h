@@ -4,7 +4,7 @@
 #include <winnow/core/filter.h>
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/status.h>
-#include "partitions/pairs/pair_sink.h"
+#include "partitions/rows/row_view.h"
 
 #include <atomic>
 #include <cstddef>

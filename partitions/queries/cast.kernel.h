@@ -1,6 +1,6 @@
 #pragma once
 
-#include "partitions/queries/query_view.h"
+#include "partitions/index/query_view.h"
 #include "simd/kernels/kernels.h"
 
 #include <cstdint>
@@ -39,7 +39,7 @@ struct Sweep {
   const void* shape = nullptr;
 };
 
-/// Sweeps that are walked together at most; all must go the same way.
+/// Sweeps that go down the trees together at most; all must go the same way.
 inline constexpr std::uint32_t kMostSweeps = 64;
 
 /// True if two sweeps meet the same columns of boxes first.

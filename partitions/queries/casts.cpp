@@ -1,4 +1,4 @@
-// RowPartition: rays and swept volumes.
+// Rays and swept volumes.
 
 #include "partitions/pairs/pair_writer.h"
 #include "partitions/queries/cast.kernel.h"
@@ -6,7 +6,7 @@
 #include "partitions/queries/query_filter.h"
 #include "partitions/queries/sweep.h"
 #include "partitions/queries/touch.h"
-#include "partitions/rows/row_partition.h"
+#include "partitions/state/partition_state.h"
 
 #include <algorithm>
 #include <array>
@@ -135,69 +135,85 @@ Hit hit_or_null(const KeyTable& keys, std::uint64_t result) noexcept {
   return result != kNoHit ? to_hit(keys, result) : Hit{};
 }
 
-}  // namespace
+/// A kernel that finds one hit of each of some sweeps.
+using FindHits = void (*)(const QueryView&, const Sweep*, std::uint32_t count, const QueryFilter&,
+                          std::uint64_t* found);
 
-Status RowPartition::find_hit(FindHits find, const Cast& cast, Hit& hit,
-                              const Filter& filter) const {
-  hit = {};
+Status find_hit(const PartitionState& state, FindHits find, const Cast& cast, Hit& hit,
+                const Filter& filter) {
   const PreparedCast prepared(cast);
   if (!prepared.valid()) return Status::invalid_argument;
   QueryView view;
-  if (const Status status = prepare(view); status != Status::ok) return status;
-  const KernelFilter wanted(filter, view, keys_);
+  if (const Status status = state.prepare(Question::casts, 1, view); status != Status::ok) {
+    return status;
+  }
+  const KernelFilter wanted(filter, view, state.rows.keys());
   if (wanted.meets_nothing()) return Status::ok;
   std::uint64_t found = kNoHit;
   find(view, &prepared.sweep(), 1, wanted.wanted(), &found);
-  hit = hit_or_null(keys_, found);
+  hit = hit_or_null(state.rows.keys(), found);
   return Status::ok;
 }
 
-Status RowPartition::closest(const Cast& cast, Hit& hit, const Filter& filter) const {
-  return find_hit(cast_kernels().closest, cast, hit, filter);
+}  // namespace
+
+Status Partition::closest(const Cast& cast, Hit& hit, const Filter& filter) const {
+  hit = {};
+  return state_ == nullptr ? status_ : find_hit(*state_, cast_kernels().closest, cast, hit, filter);
 }
 
-Status RowPartition::any(const Cast& cast, Hit& hit, const Filter& filter) const {
-  return find_hit(cast_kernels().any, cast, hit, filter);
+Status Partition::any(const Cast& cast, Hit& hit, const Filter& filter) const {
+  hit = {};
+  return state_ == nullptr ? status_ : find_hit(*state_, cast_kernels().any, cast, hit, filter);
 }
 
-Status RowPartition::closest(const RayBatch& rays, const HitColumns& hits,
-                             const Filter& filter) const {
+Status Partition::closest(const RayBatch& rays, const HitColumns& hits,
+                          const Filter& filter) const {
+  if (state_ == nullptr) return status_;
   if (!all_valid(rays)) return Status::invalid_argument;
   QueryView view;
-  if (const Status status = prepare(view); status != Status::ok) return status;
-  const KernelFilter wanted(filter, view, keys_);
+  if (const Status status = state_->prepare(Question::casts, rays.count, view);
+      status != Status::ok) {
+    return status;
+  }
+  const KeyTable& keys = state_->rows.keys();
+  const KernelFilter wanted(filter, view, keys);
   if (wanted.meets_nothing()) {
     for (std::size_t i = 0; i < rays.count; ++i) write_columns(hits, i, {});
     return Status::ok;
   }
   // Small tasks, so that a batch of some thousands has work for every thread.
   constexpr std::size_t kTask = kGroup / 4;
-  execution_.for_each((rays.count + kTask - 1) / kTask, [&](std::size_t task) {
+  state_->rows.execution().for_each((rays.count + kTask - 1) / kTask, [&](std::size_t task) {
     RayGroup group(rays, task * kTask, std::min(rays.count, (task + 1) * kTask));
     std::array<std::uint64_t, kMostSweeps> best;
     while (group.next()) {
       cast_kernels().closest(view, group.sweeps(), group.count(), wanted.wanted(), best.data());
       for (std::uint32_t i = 0; i < group.count(); ++i) {
-        write_columns(hits, group.questions()[i], hit_or_null(keys_, best[i]));
+        write_columns(hits, group.questions()[i], hit_or_null(keys, best[i]));
       }
     }
   });
   return Status::ok;
 }
 
-Status RowPartition::any(const RayBatch& rays, const HitColumns& hits, const Filter& filter) const {
+Status Partition::any(const RayBatch& rays, const HitColumns& hits, const Filter& filter) const {
   // Walked together, the closest hit comes as cheap as any.
   return closest(rays, hits, filter);
 }
 
-Status RowPartition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) const {
+Status Partition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) const {
   hits.clear();
+  if (state_ == nullptr) return status_;
   const PreparedCast prepared(cast);
   if (!prepared.valid()) return Status::invalid_argument;
   QueryView view;
-  if (const Status status = prepare(view); status != Status::ok) return status;
+  if (const Status status = state_->prepare(Question::casts, 1, view); status != Status::ok) {
+    return status;
+  }
+  const KeyTable& keys = state_->rows.keys();
   if (!HitWriter::start(hits, 1)) return Status::out_of_memory;
-  const KernelFilter wanted(filter, view, keys_);
+  const KernelFilter wanted(filter, view, keys);
   const Execution here = Execution::serial();
   PairWriter writer(HitWriter::found(hits), here);
   const Status status = writer.append(1, [&](std::size_t, PairSink& sink) {
@@ -205,22 +221,28 @@ Status RowPartition::all(const Cast& cast, HitBuffer& hits, const Filter& filter
     return wanted.meets_nothing() ||
            cast_kernels().all(view, &prepared.sweep(), 1, &question, wanted.wanted(), sink);
   });
-  if (status == Status::ok && HitWriter::finish(hits, 0, 1, keys_, here)) return Status::ok;
+  if (status == Status::ok && HitWriter::finish(hits, 0, 1, keys, here)) return Status::ok;
   hits.clear();
   return Status::out_of_memory;
 }
 
-Status RowPartition::all(const RayBatch& rays, HitBuffer& hits, const Filter& filter) const {
+Status Partition::all(const RayBatch& rays, HitBuffer& hits, const Filter& filter) const {
   hits.clear();
+  if (state_ == nullptr) return status_;
   if (rays.count > kMaxObjects || !all_valid(rays)) return Status::invalid_argument;
   QueryView view;
-  if (const Status status = prepare(view); status != Status::ok) return status;
+  if (const Status status = state_->prepare(Question::casts, rays.count, view);
+      status != Status::ok) {
+    return status;
+  }
+  const KeyTable& keys = state_->rows.keys();
+  const Execution& execution = state_->rows.execution();
   if (!HitWriter::start(hits, rays.count)) return Status::out_of_memory;
-  const KernelFilter wanted(filter, view, keys_);
-  const std::size_t step = execution_.concurrency() == 1 ? kGroup : kGroup * kGroupsTogether;
+  const KernelFilter wanted(filter, view, keys);
+  const std::size_t step = execution.concurrency() == 1 ? kGroup : kGroup * kGroupsTogether;
   for (std::size_t first = 0; first < rays.count; first += step) {
     const std::size_t last = std::min(rays.count, first + step);
-    PairWriter writer(HitWriter::found(hits), execution_);
+    PairWriter writer(HitWriter::found(hits), execution);
     const std::size_t groups = (last - first + kGroup - 1) / kGroup;
     const Status status = writer.append(groups, [&](std::size_t task, PairSink& sink) {
       const std::size_t begin = first + task * kGroup;
@@ -233,7 +255,7 @@ Status RowPartition::all(const RayBatch& rays, HitBuffer& hits, const Filter& fi
       }
       return true;
     });
-    if (status != Status::ok || !HitWriter::finish(hits, first, last, keys_, execution_)) {
+    if (status != Status::ok || !HitWriter::finish(hits, first, last, keys, execution)) {
       hits.clear();
       return Status::out_of_memory;
     }

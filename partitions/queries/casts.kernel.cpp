@@ -1,19 +1,17 @@
-#include "partitions/pairs/hits.wide.h"
 #include "partitions/queries/cast.kernel.h"
-#include "partitions/queries/sweep_rounds.wide.h"
-#include "partitions/queries/walks.wide.h"
+#include "partitions/queries/sweep.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
 /// Calls found(t, id) for every row from `first_row` on that the sweep touches by
-/// `limit`; it returns false to end the walk.
+/// `limit`; it returns false to end the descent.
 template <typename Found>
 bool test_rows(const QueryView& view, const Sweep& sweep, const SweepTest& probe,
                const Wanted& wanted, std::uint32_t first_row, const float& limit, Found&& found) {
   const ExactSweepTest exact(sweep, view.column);
-  Float16 enter;
+  Floats enter;
   Mask16 mask = probe.test(view.column, first_row, limit, enter);
   mask = wanted.rows(first_row, mask);
   for (; mask != 0; mask &= mask - 1) {
@@ -53,8 +51,9 @@ class NearestHits {
   float* limit_;
 };
 
-/// Looks for hits along the first stretches of every sweep in rounds, and walks in order what finds
-/// none there. A stretch reaches about as far as the first hits in a scene of even density.
+/// Looks for hits along the first stretches of every sweep in rounds, and descends in order with
+/// what finds none there. A stretch reaches about as far as the first hits in a scene of even
+/// density.
 class Closest {
  public:
   Closest(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
@@ -83,7 +82,7 @@ class Closest {
       rounds.run(open_, left_);
       drop_finished();
     }
-    for (std::uint32_t k = 0; k < left_; ++k) walk_on(open_[k]);
+    for (std::uint32_t k = 0; k < left_; ++k) descend_on(open_[k]);
   }
 
  private:
@@ -104,11 +103,11 @@ class Closest {
     left_ = next;
   }
 
-  void walk_on(std::uint32_t s) {
+  void descend_on(std::uint32_t s) {
     const SweepTest probe(sweeps_[s], from_[s]);
     float& limit = limit_[s];
     limit = last_[s];
-    walk_in_order(view_, probe, wanted_, limit, [&](std::uint32_t first_row) {
+    visit_in_order(view_, probe, wanted_, limit, [&](std::uint32_t first_row) {
       return test_rows(view_, sweeps_[s], probe, wanted_, first_row, limit,
                        [&](double t, std::uint32_t id) {
                          hits_.touched(s, t, id);
@@ -141,7 +140,7 @@ void any(const QueryView& view, const Sweep* sweeps, std::uint32_t count, const 
     const SweepTest probe(sweeps[s]);
     const float limit = scaled_limit(sweeps[s], sweeps[s].max_t);
     found[s] = kNoHit;
-    walk_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
+    visit_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
       return test_rows(view, sweeps[s], probe, wanted, first_row, limit,
                        [&](double t, std::uint32_t id) {
                          if (!wanted.accepts(id)) return true;
@@ -158,7 +157,7 @@ class AllHits {
   AllHits(const Wanted& wanted, const std::uint32_t* question, PairSink& sink)
       : wanted_(wanted), question_(question), sink_(sink) {}
 
-  /// Two pairs a hit, and a sink with room has some for 272.
+  /// Two pairs per hit, and a sink with room has some for 272.
   bool make_room() { return has_room(sink_); }
   void touched(std::uint32_t s, double t, std::uint32_t id) {
     if (!wanted_.accepts(id)) return;
@@ -200,14 +199,14 @@ void sort_few(std::uint64_t* results, std::uint32_t size) {
   }
   for (std::uint32_t i = size; i < blocks * kLanes; ++i) t[i] = __builtin_inff();
   for (std::uint32_t i = 0; i < size; ++i) {
-    const Float16 own = broadcast(t[i]);
+    const Floats own = Floats(t[i]);
     std::uint32_t place = 0;
     for (std::uint32_t b = 0; b < blocks; ++b) {
-      const Float16 others = load(t + b * kLanes);
-      const Mask16 not_before = less_equal(own, others);
-      const Mask16 equal = not_before & less_equal(others, own);
+      const Floats others = Floats::load(t + b * kLanes);
+      const Mask16 not_before = bits(own <= others);
+      const Mask16 equal = not_before & bits(others <= own);
       const std::uint32_t ahead = i > b * kLanes ? i - b * kLanes : 0;
-      place += count(~not_before & 0xFFFFU);
+      place += count(~not_before & kAllRows);
       place += count(equal & lanes_below(ahead < kLanes ? ahead : kLanes));
     }
     results[place] = copy[i];

@@ -1,10 +1,10 @@
-// RowPartition: nearest objects.
+// Nearest objects.
 
 #include "partitions/queries/nearest.kernel.h"
 
 #include "partitions/queries/hit_writer.h"
 #include "partitions/queries/query_filter.h"
-#include "partitions/rows/row_partition.h"
+#include "partitions/state/partition_state.h"
 
 namespace winnow {
 
@@ -32,14 +32,18 @@ NearestHeap heap_in(Column<std::uint64_t>& entries, std::size_t most) noexcept {
 
 }  // namespace
 
-Status RowPartition::nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
-                             const Filter& filter) const {
+Status Partition::nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
+                          const Filter& filter) const {
   hits.clear();
+  if (state_ == nullptr) return status_;
   const bool finite = from.min.allFinite() && from.max.allFinite() && from.is_valid();
   if (!finite || !(radius >= 0.0F)) return Status::invalid_argument;
   QueryView view;
-  if (const Status status = prepare(view); status != Status::ok) return status;
-  const KernelFilter wanted(filter, view, keys_);
+  if (const Status status = state_->prepare(Question::nearest, 1, view); status != Status::ok) {
+    return status;
+  }
+  const KeyTable& keys = state_->rows.keys();
+  const KernelFilter wanted(filter, view, keys);
   NearestQuery query;
   for (int axis = 0; axis < 3; ++axis) {
     query.low[axis] = from.min[axis];
@@ -52,7 +56,7 @@ Status RowPartition::nearest(const Aabb& from, std::size_t count, float radius, 
   const bool done = wanted.meets_nothing() || count == 0 ||
                     nearest_kernels().nearest(view, query, wanted.wanted(), heap);
   entries.set_size(heap.size);
-  if (done && HitWriter::write_heap(hits, keys_)) return Status::ok;
+  if (done && HitWriter::write_heap(hits, keys)) return Status::ok;
   hits.clear();
   return Status::out_of_memory;
 }

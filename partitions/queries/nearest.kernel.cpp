@@ -1,5 +1,6 @@
 #include "partitions/queries/nearest.kernel.h"
-#include "partitions/queries/walks.wide.h"
+#include "partitions/queries/descent.wide.h"
+#include "simd/lanes/boxes.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -10,20 +11,20 @@ class DistanceProbe {
  public:
   explicit DistanceProbe(const NearestQuery& query) : query_(query) {}
 
-  Mask16 test(const float* const* column, std::size_t at, float limit, Float16& order) const {
+  Mask16 test(const float* const* column, std::size_t at, float limit, Floats& order) const {
     const Box16 box = load_slabs<3>(column, at);
-    const Float16 zero = broadcast(0.0F);
-    Float16 square = zero;
+    const Floats zero = Floats(0.0F);
+    Floats square = zero;
     for (int i = 0; i < 3; ++i) {
-      const Float16 under = subtract(box.low[i], broadcast(query_.high[i]));
-      const Float16 above = subtract(broadcast(query_.low[i]), box.high[i]);
-      const Float16 gap = max(max(under, above), zero);
-      square = add(square, multiply(gap, gap));
+      const Floats under = box.low[i] - query_.high[i];
+      const Floats above = query_.low[i] - box.high[i];
+      const Floats gap = max(max(under, above), zero);
+      square = square + gap * gap;
     }
-    const Float16 below = multiply(square, broadcast(0.999999F));
-    order = keep_less_equal(below, broadcast(limit), below);
-    const Mask16 live = less_equal(box.low[0], broadcast(3.4028234e38F));
-    return less_equal(below, broadcast(limit)) & live;
+    const Floats below = square * 0.999999F;
+    order = or_infinity(below <= limit, below);
+    const Mask16 live = bits(box.low[0] <= kLargest<float>);
+    return bits(below <= limit) & live;
   }
 
  private:
@@ -94,8 +95,8 @@ bool nearest(const QueryView& view, const NearestQuery& query, const QueryFilter
   const Wanted wanted(view, filter);
   Heap heap(nearest_heap);
   float limit = square_limit(query.radius);
-  return walk_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
-    Float16 order;
+  return visit_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
+    Floats order;
     Mask16 mask = probe.test(view.column, first_row, limit, order);
     mask = wanted.rows(first_row, mask);
     for (; mask != 0; mask &= mask - 1) {

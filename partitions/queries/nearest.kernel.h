@@ -1,6 +1,6 @@
 #pragma once
 
-#include "partitions/queries/query_view.h"
+#include "partitions/index/query_view.h"
 #include "simd/kernels/kernels.h"
 
 #include <cstddef>

@@ -1,12 +1,13 @@
-// RowPartition: which objects meet a region.
+// Which objects meet a region.
 
 #include <winnow/core/hits.h>
 #include "partitions/pairs/pair_tracker.h"
 #include "partitions/pairs/pair_writer.h"
 #include "partitions/queries/query_filter.h"
 #include "partitions/queries/regions.h"
-#include "partitions/rows/row_mutation.h"
+#include "partitions/rows/row_writer.h"
 #include "partitions/rows/volume_source.h"
+#include "partitions/state/partition_state.h"
 
 #include <algorithm>
 #include <array>
@@ -40,7 +41,7 @@ class OverlapWriter {
   }
 
  private:
-  static constexpr std::size_t kLanes = BoundsPool::kBlock;
+  static constexpr std::size_t kLanes = kBlockRows;
 
   static std::size_t written(const IdSink& sink, const Column<ObjectId>& column) noexcept {
     return column.data() == nullptr ? 0 : static_cast<std::size_t>(sink.cursor - column.data());
@@ -111,14 +112,17 @@ void keep_accepted(PairBuffer& out, const QueryFilter& filter) noexcept {
 
 }  // namespace
 
-Status RowPartition::overlap(const Region& region, OverlapBuffer& objects, const Filter& filter,
-                             Order order) const {
+Status Partition::overlap(const Region& region, OverlapBuffer& objects, const Filter& filter,
+                          Order order) const {
   objects.clear();
+  if (state_ == nullptr) return status_;
   const PreparedRegion prepared(region);
   if (prepared.status() != Status::ok) return prepared.status();
   QueryView view;
-  if (const Status status = prepare(view); status != Status::ok) return status;
-  const KernelFilter wanted(filter, view, keys_);
+  if (const Status status = state_->prepare(Question::regions, 1, view); status != Status::ok) {
+    return status;
+  }
+  const KernelFilter wanted(filter, view, state_->rows.keys());
   if (wanted.meets_nothing()) return Status::ok;
   OverlapWriter writer(objects);
   if (prepared.run(view, wanted.wanted(), writer.sinks()) && writer.finish(order)) {
@@ -128,33 +132,40 @@ Status RowPartition::overlap(const Region& region, OverlapBuffer& objects, const
   return Status::out_of_memory;
 }
 
-Status RowPartition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter,
-                             Order order) const {
+Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter,
+                          Order order) const {
   out.clear();
+  if (state_ == nullptr) return status_;
+  const Execution& execution = state_->rows.execution();
   const BoxSource source{boxes};
-  if (boxes.count > kMaxObjects || !all_valid(source, boxes.count, execution_)) {
+  if (boxes.count > kMaxObjects || !all_valid(source, boxes.count, execution)) {
     return Status::invalid_argument;
   }
   QueryView view;
-  if (const Status status = prepare(view); status != Status::ok) return status;
-  const KernelFilter wanted(filter, view, keys_);
+  if (const Status status = state_->prepare(Question::regions, boxes.count, view);
+      status != Status::ok) {
+    return status;
+  }
+  const SpatialIndex& index = state_->index;
+  const KernelFilter wanted(filter, view, state_->rows.keys());
   if (wanted.meets_nothing()) return Status::ok;
   const ObjectFilter asking = filter.object();
-  PairWriter writer(out, execution_);
+  PairWriter writer(out, execution);
   const std::size_t tasks = (boxes.count + kBoxesPerTask - 1) / kBoxesPerTask;
   const Status status = writer.append(tasks, [&](std::size_t task, PairSink& sink) {
     const std::size_t begin = task * kBoxesPerTask;
     BoxColumns columns(source, begin, std::min(boxes.count, begin + kBoxesPerTask));
     QueryBatch& batch = columns.batch();
-    if (is_flat()) return region_kernels().flat_boxes(view, batch, wanted.wanted(), sink);
+    if (index.structure().is_flat())
+      return region_kernels().flat_boxes(view, batch, wanted.wanted(), sink);
     if (wanted.wanted().by_object) {
       batch.filter = &asking;
       batch.one_filter = true;
     }
-    return query_all(batch, sink);
+    return index.query(batch, sink);
   });
   keep_accepted(out, wanted.wanted());
-  const std::size_t slots = std::max(keys_.slot_count(), boxes.count);
+  const std::size_t slots = std::max(state_->rows.keys().slot_count(), boxes.count);
   if (status == Status::ok && (order == Order::fast || PairTracker::sort(out, slots))) {
     return Status::ok;
   }

@@ -2,7 +2,7 @@
 
 #include <winnow/core/filter.h>
 #include "core/memory/key_table.h"
-#include "partitions/queries/query_view.h"
+#include "partitions/index/query_view.h"
 
 namespace winnow {
 

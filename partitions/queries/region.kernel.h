@@ -1,7 +1,7 @@
 #pragma once
 
+#include "partitions/index/query_view.h"
 #include "partitions/queries/cast.kernel.h"
-#include "partitions/queries/query_view.h"
 #include "simd/kernels/kernels.h"
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 namespace winnow {
 
 /// How a region and a box lie.
-enum class Meeting : std::uint8_t { apart, crossing, inside };
+enum class Containment : std::uint8_t { apart, crossing, inside };
 
 /// Decides on the box of a row (six floats), for regions that 16 lanes of float cannot.
 struct ExactRegion {
-  Meeting (*meets)(const void* region, const float* box) = nullptr;
+  Containment (*meets)(const void* region, const float* box) = nullptr;
   const void* region = nullptr;
 };
 

@@ -1,18 +1,204 @@
-#include "partitions/pairs/hits.wide.h"
+#include "partitions/queries/descent.wide.h"
 #include "partitions/queries/region.kernel.h"
-#include "partitions/queries/region_probes.wide.h"
-#include "partitions/queries/walks.wide.h"
-#include "simd/lanes/compress.h"
+#include "partitions/queries/sweep.wide.h"
+#include "partitions/tree/hits.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-template <typename Probe>
-class RegionWalk {
+/// Which of 16 boxes may meet a region, which surely lie inside, and of which only the exact test
+/// knows.
+struct Met {
+  Mask16 met = 0;
+  Mask16 inside = 0;
+  Mask16 open = 0;
+};
+
+/// The largest coordinate of each box.
+inline Floats reach_of(const Box16& box) {
+  const Floats high = max(box.high[0], max(box.high[1], box.high[2]));
+  const Floats low = min(box.low[0], min(box.low[1], box.low[2]));
+  return max(high, 0.0F - low);
+}
+
+/// Six planes, as a frustum has, against rows in no order, of which most miss: all that the planes
+/// need stays in registers from block to block.
+class FrustumScan {
  public:
-  RegionWalk(const QueryView& view, const Probe& probe, const QueryFilter& filter,
-             RegionSinks& sinks)
+  static constexpr std::uint32_t kPlanes = 6;
+
+  FrustumScan(const PlaneRegion& region, const float* const* column)
+      : region_(region), column_(column), rounding_(region.rounding), margin_(region.margin) {
+    for (std::uint32_t k = 0; k < kPlanes; ++k) {
+      const WidePlane& plane = region.planes[k];
+      offset_[k] = Floats(plane.offset);
+      for (int i = 0; i < 3; ++i) {
+        normal_[k][i] = Floats(plane.normal[i]);
+        end_[k][i] = column[plane.farthest[i]];
+      }
+    }
+  }
+
+  /// False if none of the 16 boxes from `at` on meets the region.
+  [[nodiscard]] bool may_meet(std::size_t at) const {
+    const Box16 box = load_slabs<3>(column_, at);
+    Mask16 met = overlap(box, region_.low, region_.high);
+    const Floats below = -kSweepTiny - multiply_add(reach_of(box), rounding_, margin_);
+    for (std::uint32_t k = 0; k < kPlanes; ++k) {
+      Floats most = offset_[k];
+      for (int i = 0; i < 3; ++i)
+        most = multiply_add(Floats::load(end_[k][i] + at), normal_[k][i], most);
+      met &= ~bits(most <= below);
+    }
+    return met != 0;
+  }
+
+ private:
+  const PlaneRegion& region_;
+  const float* const* column_;
+  Floats rounding_;
+  Floats margin_;
+  Floats offset_[kPlanes];
+  Floats normal_[kPlanes][3];
+  const float* end_[kPlanes][3];
+};
+
+class PlaneProbe {
+ public:
+  explicit PlaneProbe(const PlaneRegion& region) : region_(region) {}
+
+  [[nodiscard]] const PlaneRegion& region() const { return region_; }
+  [[nodiscard]] bool is_frustum() const { return region_.count == FrustumScan::kPlanes; }
+
+  [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
+
+  [[nodiscard]] Met test(const float* const* column, std::size_t at) const {
+    const Box16 box = load_slabs<3>(column, at);
+    Met result;
+    result.met = overlap(box, region_.low, region_.high);
+    if (result.met == 0) return result;
+    const Floats slack = region_.count != 0 ? rounding_of(box) : Floats(0.0F);
+    Mask16 surely = result.met;
+    // All planes, whether or not boxes are left: the next plane costs less than a wrong guess.
+    for (std::uint32_t k = 0; k < region_.count; ++k) {
+      const WidePlane& plane = region_.planes[k];
+      const Floats most = height(plane, column[plane.farthest[0]] + at,
+                                 column[plane.farthest[1]] + at, column[plane.farthest[2]] + at);
+      result.met &= ~bits(most + slack <= -kSweepTiny);
+      surely &= bits(slack <= most);
+    }
+    if (result.met == 0) return result;
+    find_inside(box, column, at, slack, surely, result);
+    return result;
+  }
+
+ private:
+  /// `surely`: the boxes that reach inside of all planes by more than rounding.
+  void find_inside(const Box16& box, const float* const* column, std::size_t at,
+                   const Floats& slack, Mask16 surely, Met& result) const {
+    result.open = result.met;
+    if (region_.more) return;
+    result.inside = result.met;
+    for (int i = 0; i < 3; ++i) {
+      result.inside &= bits(region_.low[i] <= box.low[i]) & bits(box.high[i] <= region_.high[i]);
+    }
+    Mask16 perhaps = result.met;
+    const Floats below = 0.0F - slack;
+    for (std::uint32_t k = 0; k < region_.count; ++k) {
+      const WidePlane& plane = region_.planes[k];
+      const Floats least = height(plane, column[opposite(plane.farthest[0])] + at,
+                                  column[opposite(plane.farthest[1])] + at,
+                                  column[opposite(plane.farthest[2])] + at);
+      result.inside &= bits(slack <= least);
+      perhaps &= bits(below <= least);
+    }
+    result.open &= ~result.inside;
+    if (region_.planes_decide) result.open &= ~surely | perhaps;
+  }
+
+  static unsigned opposite(unsigned column) { return column < 3 ? column + 3 : column - 3; }
+
+  /// What the heights of these boxes' corners may be off by.
+  [[nodiscard]] Floats rounding_of(const Box16& box) const {
+    return multiply_add(reach_of(box), Floats(region_.rounding), Floats(region_.margin));
+  }
+
+  /// normal . p + offset of a corner of each box. Each step is monotone in the box's ends: what
+  /// holds for a node holds for the boxes below it.
+  static Floats height(const WidePlane& plane, const float* x, const float* y, const float* z) {
+    const Floats a = multiply_add(Floats::load(x), Floats(plane.normal[0]), Floats(plane.offset));
+    const Floats b = multiply_add(Floats::load(y), Floats(plane.normal[1]), a);
+    return multiply_add(Floats::load(z), Floats(plane.normal[2]), b);
+  }
+
+  const PlaneRegion& region_;
+};
+
+class BallProbe {
+ public:
+  explicit BallProbe(const BallRegion& region) : region_(region) {}
+
+  [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
+
+  [[nodiscard]] Met test(const float* const* column, std::size_t at) const {
+    // More than the rounding of either side; squares may also be lost below the smallest float.
+    constexpr float kMore = 1.000002F;
+    constexpr float kTiny = 1e-36F;
+    const Box16 box = load_slabs<3>(column, at);
+    Floats near = Floats(-kTiny);
+    Floats far = Floats(kTiny);
+    const Floats zero = Floats(0.0F);
+    for (int i = 0; i < 3; ++i) {
+      const Floats center = Floats(region_.center[i]);
+      const Floats below = box.low[i] - center;
+      const Floats above = center - box.high[i];
+      const Floats gap = max(max(below, above), zero);
+      const Floats span = max(zero - below, zero - above);
+      near = near + gap * gap;
+      far = far + span * span;
+    }
+    const float square = region_.radius * region_.radius;
+    // A square that overflows says nothing about what lies inside.
+    const float finite_square = square < kLargest<float> ? square : kLargest<float>;
+    const Mask16 live = bits(box.low[0] <= kLargest<float>);
+    Met result;
+    result.met = bits(near <= square * kMore) & live;
+    result.inside = bits(far * kMore <= finite_square) & result.met;
+    result.open = result.met & ~result.inside;
+    return result;
+  }
+
+ private:
+  const BallRegion& region_;
+};
+
+class SweptProbe {
+ public:
+  explicit SweptProbe(const SweptRegion& region)
+      : region_(region),
+        test_(region.sweep),
+        limit_(scaled_limit(region.sweep, region.sweep.max_t)) {}
+
+  [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
+
+  [[nodiscard]] Met test(const float* const* column, std::size_t at) const {
+    Floats enter;
+    const Mask16 met = test_.test(column, at, limit_, enter);
+    return {met, 0, met};
+  }
+
+ private:
+  const SweptRegion& region_;
+  SweepTest test_;
+  float limit_;
+};
+
+template <typename Probe>
+class RegionTraversal {
+ public:
+  RegionTraversal(const QueryView& view, const Probe& probe, const QueryFilter& filter,
+                  RegionSinks& sinks)
       : view_(view),
         probe_(probe),
         wanted_(view, filter),
@@ -22,7 +208,7 @@ class RegionWalk {
   bool run() {
     if (!scan_flat()) return false;
     for (std::uint32_t t = 0; t < view_.trees; ++t) {
-      if (!walk_tree(*view_.tree[t])) return false;
+      if (!traverse_tree(*view_.tree[t])) return false;
     }
     return true;
   }
@@ -60,34 +246,22 @@ class RegionWalk {
     return true;
   }
 
-  bool walk_tree(const TreeView& tree) {
-    Met open[kMaxTreeLevels];
-    std::uint32_t base[kMaxTreeLevels];
-    std::uint32_t level = tree.levels - 1;
-    const auto enter = [&](std::uint32_t first_node) {
-      open[level] = probe_.test(tree.node[level], first_node);
-      open[level].met = wanted_.nodes(tree, level, first_node, open[level].met);
-      base[level] = first_node;
-    };
-    enter(0);
-    for (;;) {
-      Met& here = open[level];
-      if (here.met == 0) {
-        if (++level == tree.levels) return true;
-        continue;
-      }
-      const unsigned lane = first(here.met);
-      const std::uint32_t node = base[level] + lane;
-      here.met &= here.met - 1;
-      if ((here.inside >> lane & 1U) != 0) {
-        if (!take_all(tree, level, node)) return false;
-      } else if (level != 0) {
-        --level;
-        enter(node * kLanes);
-      } else if (!test_rows((tree.first_block + node) * kLanes)) {
-        return false;
-      }
-    }
+  bool traverse_tree(const TreeView& tree) {
+    Mask16 inside[kMaxTreeLevels];
+    return traverse<kMaxTreeLevels>(
+        tree.levels,
+        [&](std::uint32_t level, std::uint32_t first_node) {
+          const Met found = probe_.test(tree.node[level], first_node);
+          inside[level] = found.inside;
+          return wanted_.nodes(tree, level, first_node, found.met);
+        },
+        [&](std::uint32_t level, std::uint32_t node) {
+          if ((inside[level] >> node % kLanes & 1U) != 0) {
+            return take_all(tree, level, node) ? Next::past : Next::stop;
+          }
+          if (level != 0) return Next::below;
+          return test_rows((tree.first_block + node) * kLanes) ? Next::past : Next::stop;
+        });
   }
 
   /// Every row below a node that lies inside.
@@ -97,7 +271,7 @@ class RegionWalk {
     if (end > tree.count[0]) end = tree.count[0];
     for (std::uint64_t block = begin; block < end; ++block) {
       const auto row = static_cast<std::uint32_t>((tree.first_block + block) * kLanes);
-      const Mask16 live = less_equal(load(view_.column[0] + row), broadcast(3.4028234e38F));
+      const Mask16 live = bits(Floats::load(view_.column[0] + row) <= kLargest<float>);
       if (!write(sinks_.inside, row, wanted_.rows(row, live))) return false;
     }
     return true;
@@ -118,9 +292,9 @@ class RegionWalk {
         const unsigned lane = first(rest);
         float box[6];
         for (int c = 0; c < 6; ++c) box[c] = column[c][at + lane];
-        const Meeting meeting = exact.meets(exact.region, box);
-        if (meeting == Meeting::apart) found.met &= ~(1U << lane);
-        if (meeting == Meeting::inside) found.inside |= 1U << lane;
+        const Containment meeting = exact.meets(exact.region, box);
+        if (meeting == Containment::apart) found.met &= ~(1U << lane);
+        if (meeting == Containment::inside) found.inside |= 1U << lane;
       }
     }
     return write(sinks_.inside, first_row, found.inside) &&
@@ -134,7 +308,7 @@ class RegionWalk {
       }
     }
     if (sink.cursor > sink.limit && !sink.grow(sink)) return false;
-    sink.cursor += compress_store(mask, load_unaligned(view_.id + first_row), sink.cursor);
+    sink.cursor += compress_store(mask, Uints::load_unaligned(view_.id + first_row), sink.cursor);
     return true;
   }
 
@@ -151,7 +325,7 @@ template <typename Probe, typename Region>
 bool run(const QueryView& view, const Region& region, const QueryFilter& filter,
          RegionSinks& sinks) {
   const Probe probe(region);
-  return RegionWalk<Probe>(view, probe, filter, sinks).run();
+  return RegionTraversal<Probe>(view, probe, filter, sinks).run();
 }
 
 bool flat_boxes(const QueryView& view, const QueryBatch& batch, const QueryFilter& filter,
@@ -159,7 +333,7 @@ bool flat_boxes(const QueryView& view, const QueryBatch& batch, const QueryFilte
   const Wanted wanted(view, filter);
   for (std::uint32_t b = 0; b < view.flat_blocks; ++b) {
     const Box16 rows = load_slabs<3>(view.column, b * kLanes);
-    const Uint16 ids = load_unaligned(view.id + b * kLanes);
+    const Uints ids = Uints::load_unaligned(view.id + b * kLanes);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const QueryBox q(batch.column, k);
       const Mask16 hits = wanted.rows(b * kLanes, overlap(rows, q.low, q.high));

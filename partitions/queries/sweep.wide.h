@@ -1,7 +1,10 @@
 #pragma once
 
+// Moving boxes against the boxes of rows and nodes: sixteen against one sweep in float, single rows
+// in double, and many sweeps together.
+
 #include "partitions/queries/cast.kernel.h"
-#include "simd/lanes/wide.h"
+#include "partitions/queries/descent.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -22,17 +25,17 @@ class SweepTest {
  public:
   explicit SweepTest(const Sweep& sweep) : SweepTest(sweep, sweep.from) {}
   /// From a later scaled t on.
-  SweepTest(const Sweep& sweep, float from) : sweep_(sweep), from_(broadcast(from)) {
+  SweepTest(const Sweep& sweep, float from) : sweep_(sweep), from_(from) {
     for (int i = 0; i < 3; ++i) {
-      near_origin_[i] = broadcast(sweep.near_origin[i]);
-      far_origin_[i] = broadcast(sweep.far_origin[i]);
-      inverse_[i] = broadcast(sweep.inverse[i]);
+      near_origin_[i] = Floats(sweep.near_origin[i]);
+      far_origin_[i] = Floats(sweep.far_origin[i]);
+      inverse_[i] = Floats(sweep.inverse[i]);
     }
   }
 
   /// Which of the boxes from `at` on may be touched at a scaled t <= limit, and when at the
   /// earliest; infinity for the others.
-  Mask16 test(const float* const* column, std::size_t at, float limit, Float16& enter) const {
+  Mask16 test(const float* const* column, std::size_t at, float limit, Floats& enter) const {
     const float* const near[3] = {column[sweep_.near_column[0]], column[sweep_.near_column[1]],
                                   column[sweep_.near_column[2]]};
     const float* const far[3] = {column[sweep_.far_column[0]], column[sweep_.far_column[1]],
@@ -41,33 +44,33 @@ class SweepTest {
   }
   /// The same where the columns that are met first and last are known.
   Mask16 test(const float* const* near, const float* const* far, std::size_t at, float limit,
-              Float16& enter) const {
-    Float16 e[3];
-    Float16 x[3];
+              Floats& enter) const {
+    Floats e[3];
+    Floats x[3];
     for (int i = 0; i < 3; ++i) {
       e[i] = time(near[i] + at, near_origin_[i], inverse_[i]);
       x[i] = time(far[i] + at, far_origin_[i], inverse_[i]);
     }
     enter = max(max(e[0], e[1]), max(e[2], from_));
-    const Float16 exit = min(min(x[0], x[1]), x[2]);
-    const Float16 late = add(multiply(exit, broadcast(kSweepSlack)), broadcast(kSweepTiny));
+    const Floats exit = min(min(x[0], x[1]), x[2]);
+    const Floats late = exit * kSweepSlack + kSweepTiny;
     // The limit first: what is not a number, as padding can make, must not become the limit.
-    const Float16 last = min(broadcast(limit), late);
-    const Mask16 touched = less_equal(enter, last);
-    enter = keep_less_equal(enter, last, enter);
+    const Floats last = min(Floats(limit), late);
+    const Mask16 touched = bits(enter <= last);
+    enter = or_infinity(enter <= last, enter);
     return touched;
   }
 
  private:
-  static Float16 time(const float* end, const Float16& origin, const Float16& inverse) {
-    return multiply(subtract(load(end), origin), inverse);
+  static Floats time(const float* end, const Floats& origin, const Floats& inverse) {
+    return (Floats::load(end) - origin) * inverse;
   }
 
   const Sweep& sweep_;
-  Float16 near_origin_[3];
-  Float16 far_origin_[3];
-  Float16 inverse_[3];
-  Float16 from_;
+  Floats near_origin_[3];
+  Floats far_origin_[3];
+  Floats inverse_[3];
+  Floats from_;
 };
 
 /// Decides on single rows. In double: of three operations each, entry and exit are off by less than
@@ -108,6 +111,108 @@ class ExactSweepTest {
   const float* const* column_;
   const float* near_[3];
   const float* far_[3];
+};
+
+/// Takes many sweeps down the trees together. What is to be left out must lie beyond a sweep's
+/// limit from the start. All sweeps go the same way (`same_way`), so that which columns they meet
+/// first is settled once per loop.
+///
+/// `Hits` takes what is touched: `void touched(sweep, t, id)`, and `bool make_room()` before 128 of
+/// them at most, which returns false to end the traversal.
+template <typename Hits>
+class SweepRounds {
+ public:
+  /// `from` and `limit` are the scaled interval of each sweep; `hits` may lower a limit.
+  SweepRounds(const QueryView& view, const Sweep* sweeps, const float* from, const float* limit,
+              const Wanted& wanted, Hits& hits)
+      : view_(view), sweeps_(sweeps), from_(from), limit_(limit), wanted_(wanted), hits_(hits) {}
+
+  /// Sweeps [0, count), or those of a list.
+  bool run(const std::uint32_t* list, std::uint32_t count) {
+    const auto sweep_of = [&](std::uint32_t k) { return list != nullptr ? list[k] : k; };
+    for (std::uint32_t t = 0; t < view_.trees; ++t) {
+      tree_ = view_.tree[t];
+      if (!traversal_.run(*tree_, count, sweep_of)) return false;
+    }
+    for (std::uint32_t block = 0; block < view_.flat_blocks; ++block) {
+      for (std::uint32_t k = 0; k < count; ++k) {
+        if (!test_flat(sweep_of(k), block * kLanes)) return false;
+      }
+    }
+    return touch_rows();
+  }
+
+ private:
+  friend JointTraversal<SweepRounds>;
+  static constexpr unsigned kHitsAtOnce = 128;
+
+  /// The columns that all sweeps meet first, and last.
+  struct Ways {
+    const float* near[3];
+    const float* far[3];
+
+    Ways(const Sweep& sweep, const float* const* column) {
+      for (int i = 0; i < 3; ++i) {
+        near[i] = column[sweep.near_column[i]];
+        far[i] = column[sweep.far_column[i]];
+      }
+    }
+  };
+
+  [[nodiscard]] Mask16 touching(const Ways& ways, std::uint32_t s, std::size_t at) const {
+    Floats enter;
+    return SweepTest(sweeps_[s], from_[s]).test(ways.near, ways.far, at, limit_[s], enter);
+  }
+
+  [[nodiscard]] Ways prepare(const TreeView& tree, std::uint32_t level, std::uint32_t s) const {
+    return Ways(sweeps_[s], tree.node[level]);
+  }
+  [[nodiscard]] Mask16 test(const Ways& ways, std::uint32_t s, std::uint32_t level,
+                            std::uint32_t first_node) const {
+    return wanted_.nodes(*tree_, level, first_node, touching(ways, s, first_node));
+  }
+
+  bool visit(const OpenList& blocks) {
+    const Ways ways(sweeps_[blocks.question[0]], view_.column);
+    for (unsigned k = 0; k < blocks.size; ++k) {
+      const std::uint32_t first_row = (tree_->first_block + blocks.at[k]) * kLanes;
+      if (rows_.full() && !touch_rows()) return false;
+      __builtin_prefetch(view_.id + first_row);
+      const Mask16 mask = touching(ways, blocks.question[k], first_row);
+      rows_.add(blocks.question[k], first_row, wanted_.rows(first_row, mask));
+    }
+    return true;
+  }
+
+  bool test_flat(std::uint32_t s, std::uint32_t first_row) {
+    if (rows_.full() && !touch_rows()) return false;
+    const Mask16 mask = touching(Ways(sweeps_[s], view_.column), s, first_row);
+    rows_.add(s, first_row, wanted_.rows(first_row, mask));
+    return true;
+  }
+
+  bool touch_rows() {
+    const ExactSweepTest exact(sweeps_[0], view_.column);
+    for (unsigned k = 0; k < rows_.size; ++k) {
+      if (k % kHitsAtOnce == 0 && !hits_.make_room()) return false;
+      const std::uint32_t s = rows_.question[k];
+      const std::uint32_t row = rows_.at[k];
+      const double t = exact.touch(sweeps_[s], row);
+      if (t >= 0.0) hits_.touched(s, t, view_.id[row]);
+    }
+    rows_.size = 0;
+    return true;
+  }
+
+  const QueryView& view_;
+  const TreeView* tree_ = nullptr;
+  const Sweep* sweeps_;
+  const float* from_;
+  const float* limit_;
+  const Wanted& wanted_;
+  Hits& hits_;
+  JointTraversal<SweepRounds> traversal_{*this};
+  OpenList rows_;
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME

@@ -116,22 +116,23 @@ double touch_capsule(const void* shape, const float* six, double from) {
   return t;
 }
 
-Meeting meet_sphere(const void* region, const float* six) {
+Containment meet_sphere(const void* region, const float* six) {
   const auto& sphere = *static_cast<const Sphere*>(region);
   const Box box(six);
   const Vector center = sphere.center.cast<double>();
   const auto radius = static_cast<double>(sphere.radius);
   const Gap gap = gap_to(box, center, center.cwiseAbs());
-  if (gap.distance - gap.error > radius * (1.0 + kRounding)) return Meeting::apart;
-  return farthest(box, center) * (1.0 + kRounding) <= radius ? Meeting::inside : Meeting::crossing;
+  if (gap.distance - gap.error > radius * (1.0 + kRounding)) return Containment::apart;
+  return farthest(box, center) * (1.0 + kRounding) <= radius ? Containment::inside
+                                                             : Containment::crossing;
 }
 
-Meeting meet_capsule(const void* region, const float* six) {
+Containment meet_capsule(const void* region, const float* six) {
   const auto& capsule = *static_cast<const Capsule*>(region);
   const Box box(six);
   const auto radius = static_cast<double>(capsule.radius);
   const Gap gap = axis_gap(capsule, Vector::Zero(), box);
-  if (gap.distance - gap.error > radius * (1.0 + kRounding)) return Meeting::apart;
+  if (gap.distance - gap.error > radius * (1.0 + kRounding)) return Containment::apart;
   // A convex region holds the box if it holds its corners.
   const Vector a = capsule.a.cast<double>();
   const Vector along = capsule.b.cast<double>() - a;
@@ -143,9 +144,9 @@ Meeting meet_capsule(const void* region, const float* six) {
     const double s = square > 0.0 ? std::clamp((p - a).dot(along) / square, 0.0, 1.0) : 0.0;
     const double reach = (p - a - s * along).norm();
     const double error = kRounding * (p.cwiseAbs().maxCoeff() + a.cwiseAbs().maxCoeff());
-    if (!(reach + error <= radius)) return Meeting::crossing;
+    if (!(reach + error <= radius)) return Containment::crossing;
   }
-  return Meeting::inside;
+  return Containment::inside;
 }
 
 namespace {
@@ -173,7 +174,7 @@ struct Shadow {
 
 }  // namespace
 
-Meeting meet_oriented_box(const void* region, const float* six) {
+Containment meet_oriented_box(const void* region, const float* six) {
   const auto& oriented = *static_cast<const OrientedBox*>(region);
   const Box box(six);
   const Vector center = oriented.center.cast<double>();
@@ -190,36 +191,36 @@ Meeting meet_oriented_box(const void* region, const float* six) {
            -shadow.high > reach + error + shadow.high_error;
   };
   for (int i = 0; i < 3; ++i) {
-    if (apart(Vector::Unit(i))) return Meeting::apart;
+    if (apart(Vector::Unit(i))) return Containment::apart;
   }
   bool inside = true;
   for (int i = 0; i < 3; ++i) {
     const Vector normal = axes.col((i + 1) % 3).cross(axes.col((i + 2) % 3));
-    if (apart(normal)) return Meeting::apart;
+    if (apart(normal)) return Containment::apart;
     const Shadow shadow(box, center, normal);
     const double reach = std::abs(normal.dot(axes.col(i))) * half[i] * (1.0 - 4.0 * kRounding);
     inside = inside && reach > 0.0 && shadow.high + shadow.high_error <= reach &&
              -shadow.low + shadow.low_error <= reach;
   }
-  if (inside) return Meeting::inside;
+  if (inside) return Containment::inside;
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
-      if (apart(Vector::Unit(i).cross(axes.col(k)))) return Meeting::apart;
+      if (apart(Vector::Unit(i).cross(axes.col(k)))) return Containment::apart;
     }
   }
-  return Meeting::crossing;
+  return Containment::crossing;
 }
 
-Meeting meet_planes(const void* region, const float* six) {
+Containment meet_planes(const void* region, const float* six) {
   const auto& planes = *static_cast<const std::span<const Plane>*>(region);
   const Box box(six);
-  Meeting result = Meeting::inside;
+  Containment result = Containment::inside;
   for (const Plane& plane : planes) {
     const Shadow shadow(box, Vector::Zero(), plane.normal.cast<double>());
     const auto offset = static_cast<double>(plane.offset);
     const double error = kRounding * std::abs(offset);
-    if (shadow.high + offset < -(shadow.high_error + error)) return Meeting::apart;
-    if (!(shadow.low + offset >= shadow.low_error + error)) result = Meeting::crossing;
+    if (shadow.high + offset < -(shadow.high_error + error)) return Containment::apart;
+    if (!(shadow.low + offset >= shadow.low_error + error)) result = Containment::crossing;
   }
   return result;
 }

@@ -29,11 +29,11 @@ struct MovingCapsule {
 [[nodiscard]] double touch_capsule(const void* shape, const float* box, double from);
 
 // `region` is a Sphere, Capsule, OrientedBox, std::span<const Plane>.
-[[nodiscard]] Meeting meet_sphere(const void* region, const float* box);
-[[nodiscard]] Meeting meet_capsule(const void* region, const float* box);
+[[nodiscard]] Containment meet_sphere(const void* region, const float* box);
+[[nodiscard]] Containment meet_capsule(const void* region, const float* box);
 /// Separating axes: three of the box, three of the oriented one, nine products of edges
 /// (Gottschalk, Lin, Manocha, "OBBTree", SIGGRAPH 1996).
-[[nodiscard]] Meeting meet_oriented_box(const void* region, const float* box);
-[[nodiscard]] Meeting meet_planes(const void* region, const float* box);
+[[nodiscard]] Containment meet_oriented_box(const void* region, const float* box);
+[[nodiscard]] Containment meet_planes(const void* region, const float* box);
 
 }  // namespace winnow

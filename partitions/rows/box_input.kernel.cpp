@@ -1,5 +1,5 @@
 #include "partitions/rows/box_input.kernel.h"
-#include "simd/lanes/boxes.wide.h"
+#include "simd/lanes/boxes.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -21,8 +21,8 @@ bool box_is_legal(const float* f, float infinity) {
 bool legal(const float* floats, std::size_t count) {
   const float infinity = __builtin_inff();
   // The largest finite float: compared by <= it does what < infinity does.
-  const Float16 most = broadcast(__FLT_MAX__);
-  const Float16 least = broadcast(-__FLT_MAX__);
+  const Floats most = Floats(kLargest<float>);
+  const Floats least = Floats(-kLargest<float>);
   constexpr Mask16 kLower[3] = {0x71C7U, 0xC71CU, 0x1C71U};
   std::size_t i = 0;
   // One box short of the end, because the shifted loads run three floats over.
@@ -30,9 +30,9 @@ bool legal(const float* floats, std::size_t count) {
     Mask16 bad = 0;
     for (unsigned part = 0; part < kFloats; ++part) {
       const float* p = floats + i * kFloats + part * kLanes;
-      const Float16 low = load_unaligned(p);
-      const Float16 high = load_unaligned(p + 3);
-      const Mask16 good = less_equal(low, high) & less_equal(low, most) & less_equal(least, high);
+      const Floats low = Floats::load_unaligned(p);
+      const Floats high = Floats::load_unaligned(p + 3);
+      const Mask16 good = bits(low <= high) & bits(low <= most) & bits(least <= high);
       bad |= kLower[part % 3] & ~good;
     }
     if (bad != 0) return false;
@@ -44,14 +44,14 @@ bool legal(const float* floats, std::size_t count) {
 }
 
 float clamp(float value) {
-  const float least = value < -__FLT_MAX__ ? -__FLT_MAX__ : value;
-  return least > __FLT_MAX__ ? __FLT_MAX__ : least;
+  const float least = value < -kLargest<float> ? -kLargest<float> : value;
+  return least > kLargest<float> ? kLargest<float> : least;
 }
 
 void write_rows(const float* floats, std::uint32_t first, std::uint32_t count,
                 const std::uint32_t* id, float* const* column, std::size_t begin, std::size_t end) {
-  const Float16 most = broadcast(__FLT_MAX__);
-  const Float16 least = broadcast(-__FLT_MAX__);
+  const Floats most = Floats(kLargest<float>);
+  const Floats least = Floats(-kLargest<float>);
   for (std::size_t row = begin; row < end; row += kLanes) {
     // Boxes are met in any order: those of the next but one block are on their way meanwhile.
     std::uint32_t inside = 0;
@@ -66,8 +66,8 @@ void write_rows(const float* floats, std::uint32_t first, std::uint32_t count,
     if (inside == kLanes) {
       const Box16 boxes = load_boxes(box);
       for (int s = 0; s < 3; ++s) {
-        store_unaligned(column[s] + row, max(boxes.low[s], least));
-        store_unaligned(column[3 + s] + row, min(boxes.high[s], most));
+        max(boxes.low[s], least).store_unaligned(column[s] + row);
+        min(boxes.high[s], most).store_unaligned(column[3 + s] + row);
       }
       continue;
     }
@@ -80,15 +80,16 @@ void write_rows(const float* floats, std::uint32_t first, std::uint32_t count,
 }
 
 /// The longest edge of those that end on both sides, negated.
-Float16 minus_longest_edge(const Box16& box) {
-  // Infinite ends are stored as the largest float.
-  constexpr float kMost = 3.4028232e38F;
-  Float16 least = broadcast(0.0F);
+Floats minus_longest_edge(const Box16& box) {
+  // Infinite ends are stored as the largest float: all others are at most the one below it.
+  constexpr float kMost = 0x1.fffffcp127F;
+  static_assert(kMost < kLargest<float>);
+  Floats least = Floats(0.0F);
   for (int axis = 0; axis < 3; ++axis) {
-    Float16 edge = subtract(box.low[axis], box.high[axis]);
-    edge = keep_less_equal(broadcast(-__FLT_MAX__), edge, edge);
-    edge = keep_less_equal(box.high[axis], broadcast(kMost), edge);
-    edge = keep_less_equal(broadcast(-kMost), box.low[axis], edge);
+    Floats edge = box.low[axis] - box.high[axis];
+    edge = or_infinity(-kLargest<float> <= edge, edge);
+    edge = or_infinity(box.high[axis] <= kMost, edge);
+    edge = or_infinity(-kMost <= box.low[axis], edge);
     least = min(least, edge);
   }
   return least;
@@ -99,14 +100,13 @@ void within(const float* const* given, const float* const* stored, std::size_t c
   for (std::size_t at = 0; at < count; at += kLanes) {
     const Box16 box = load_slabs_unaligned<3>(given, at);
     const Box16 old = load_slabs_unaligned<3>(stored, at);
-    const Float16 margin =
-        subtract(broadcast(distance), multiply(broadcast(share), minus_longest_edge(box)));
-    const Float16 spare = multiply(broadcast(4.0F), margin);
-    Mask16 ok = 0xFFFFU;
+    const Floats margin = distance - share * minus_longest_edge(box);
+    const Floats spare = 4.0F * margin;
+    Mask16 ok = kAllRows;
     for (int axis = 0; axis < 3; ++axis) {
-      const Float16 most = add(subtract(box.high[axis], box.low[axis]), spare);
-      ok &= less_equal(old.low[axis], box.low[axis]) & less_equal(box.high[axis], old.high[axis]) &
-            less_equal(subtract(old.high[axis], old.low[axis]), most);
+      const Floats most = box.high[axis] - box.low[axis] + spare;
+      ok &= bits(old.low[axis] <= box.low[axis]) & bits(box.high[axis] <= old.high[axis]) &
+            bits(old.high[axis] - old.low[axis] <= most);
     }
     const unsigned shift = at % 64;
     words[at / 64] = (shift == 0 ? 0 : words[at / 64]) | std::uint64_t{ok} << shift;

@@ -2,7 +2,9 @@
 
 // Pairs of rows that lie close together, found sixteen at a time.
 
-#include "partitions/pairs/hits.wide.h"
+#include "partitions/tree/hits.wide.h"
+#include "simd/lanes/boxes.h"
+#include "simd/lanes/compress.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -20,13 +22,13 @@ class BlockPairs {
     behind_ = end;
     next_ = end / kLanes;
     for (int s = 0; s < 6; ++s) {
-      store_unaligned(own_[s], load_unaligned(rows_.column[s] + begin));
+      Floats::load_unaligned(rows_.column[s] + begin).store_unaligned(own_[s]);
       const float empty = s < 3 ? __builtin_inff() : -__builtin_inff();
       for (std::uint32_t i = end - begin; i < kLanes; ++i) own_[s][i] = empty;
     }
     for (int a = 0; a < 3; ++a) {
-      low_[a] = reduce_min(load(own_[a]));
-      high_[a] = reduce_max(load(own_[3 + a]));
+      low_[a] = reduce_min(Floats::load(own_[a]));
+      high_[a] = reduce_max(Floats::load(own_[3 + a]));
     }
     if (!(low_[0] <= high_[0])) return false;
     test_self();
@@ -45,7 +47,7 @@ class BlockPairs {
     next_ = last > next_ ? last : next_;
     for (; first < last; first += kLanes) {
       if (blocks_ > kBlockRoom - kLanes && !test_blocks()) return false;
-      store_unaligned(block_ + blocks_, count_from(first));
+      count_from(first).store_unaligned(block_ + blocks_);
       blocks_ += last - first < kLanes ? last - first : kLanes;
     }
     return true;
@@ -116,7 +118,7 @@ class BlockPairs {
 
   bool report_hits() {
     if (has_more_to_test(rows_)) drop_boxes();
-    const Uint16 ids = load_unaligned(rows_.id + at_);
+    const Uints ids = Uints::load_unaligned(rows_.id + at_);
     for (unsigned k = 0; k < hits_; ++k) {
       if (!has_room(sink_)) return false;
       const std::uint32_t id = rows_.id[hit_row_[k]];
@@ -137,8 +139,8 @@ class BlockPairs {
   [[nodiscard]] Box16 own_rows() const {
     Box16 box;
     for (int a = 0; a < 3; ++a) {
-      box.low[a] = load(own_[a]);
-      box.high[a] = load(own_[3 + a]);
+      box.low[a] = Floats::load(own_[a]);
+      box.high[a] = Floats::load(own_[3 + a]);
     }
     return box;
   }

@@ -1,6 +1,9 @@
 #include "partitions/tree/block_tree.kernel.h"
-#include "partitions/pairs/hits.wide.h"
-#include "partitions/tree/tree_walk.wide.h"
+#include "partitions/tree/hits.wide.h"
+#include "partitions/tree/traversal.wide.h"
+#include "simd/lanes/boxes.h"
+#include "simd/lanes/compress.h"
+#include "simd/lanes/rows.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -11,14 +14,14 @@ void reduce(const float* const* from, std::uint32_t begin, std::uint32_t end, fl
   std::size_t i = begin;
   for (; i + kLanes <= end; i += kLanes) {
     for (int s = 0; s < 3; ++s) {
-      store_unaligned(to[s] + i, reduce_min_rows(from[s] + i * kLanes));
-      store_unaligned(to[3 + s] + i, reduce_max_rows(from[3 + s] + i * kLanes));
+      reduce_min_rows(from[s] + i * kLanes).store_unaligned(to[s] + i);
+      reduce_max_rows(from[3 + s] + i * kLanes).store_unaligned(to[3 + s] + i);
     }
   }
   for (; i < end; ++i) {
     for (int s = 0; s < 3; ++s) {
-      to[s][i] = reduce_min(load(from[s] + i * kLanes));
-      to[3 + s][i] = reduce_max(load(from[3 + s] + i * kLanes));
+      to[s][i] = reduce_min(Floats::load(from[s] + i * kLanes));
+      to[3 + s][i] = reduce_max(Floats::load(from[3 + s] + i * kLanes));
     }
   }
 }
@@ -64,7 +67,7 @@ class LeafPairs {
   /// Adds all pairs of leaf i with leaves base + js.
   bool add(std::uint32_t i, std::uint32_t base, Mask16 js) {
     if (leaves_ > kLeafRoom - kLanes && !find_rows()) return false;
-    store_unaligned(first_ + leaves_, broadcast(i));
+    Uints(i).store_unaligned(first_ + leaves_);
     leaves_ += compress_store(js, count_from(base), second_ + leaves_);
     return true;
   }
@@ -88,7 +91,7 @@ class LeafPairs {
 
   bool add_rows(std::uint32_t first_row, std::uint32_t leaf, Mask16 mask) {
     if (rows_ > kRowRoom - kLanes && !test_rows()) return false;
-    store_unaligned(leaf_ + rows_, broadcast(leaf));
+    Uints(leaf).store_unaligned(leaf_ + rows_);
     rows_ += compress_store(mask, count_from(first_row), row_ + rows_);
     return true;
   }
@@ -195,7 +198,7 @@ bool find_self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t en
                                              node_range<Filtered>(tree, 1, h));
       return group_pair(tree, g, h, is, pairs, sink);
     };
-    if (!walk(tree, 1, g + 1, test, visit)) return false;
+    if (!traverse_from(tree, 1, g + 1, test, visit)) return false;
   }
   return pairs.finish();
 }
@@ -205,58 +208,46 @@ bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, Pa
                                      : find_self_pairs<false>(tree, begin, end, sink);
 }
 
-/// Walks many boxes down the tree together: what is open on a level waits in that level's list, and
-/// a list is worked off, in one long loop, when the next one would not fit or nothing is left
-/// above.
+/// The boxes of a batch on their way down the tree together.
 template <HitMode Mode, bool Filtered>
-class Descent {
+class BoxQuestions {
  public:
-  Descent(const TreeView& tree, const QueryBatch& batch, PairSink& sink)
+  BoxQuestions(const TreeView& tree, const QueryBatch& batch, PairSink& sink)
       : tree_(tree), batch_(batch), sink_(sink), filters_(batch), hits_(tree.rows, batch, sink) {}
 
   bool run() {
-    const std::uint32_t top = tree_.levels - 1;
-    for (std::uint32_t k = batch_.begin; k < batch_.end; ++k) {
-      const std::uint32_t row = batch_.rows != nullptr ? batch_.rows[k] : k;
-      if (!test_nodes(row, top, 0)) return false;
-    }
-    for (std::uint32_t level = top + 1; level-- > 0;) {
-      if (!drain(level)) return false;
-    }
-    return hits_.flush();
+    const auto row_of = [&](std::uint32_t k) {
+      return batch_.rows != nullptr ? batch_.rows[batch_.begin + k] : batch_.begin + k;
+    };
+    return traversal_.run(tree_, batch_.end - batch_.begin, row_of) && hits_.flush();
   }
 
  private:
-  static constexpr unsigned kRoom = 256;
+  friend JointTraversal<BoxQuestions>;
+  struct Nothing {};
 
-  /// Opens those of the 16 nodes from `first_node` on that box `row` overlaps and may meet.
-  bool test_nodes(std::uint32_t row, std::uint32_t level, std::uint32_t first_node) {
-    if (open_[level] > kRoom - kLanes && !drain(level)) return false;
+  [[nodiscard]] static Nothing prepare(const TreeView&, std::uint32_t, std::uint32_t) { return {}; }
+
+  /// Those of the 16 nodes from `first_node` on that box `row` overlaps and may meet.
+  Mask16 test(Nothing, std::uint32_t row, std::uint32_t level, std::uint32_t first_node) {
     const QueryBox q(batch_.column, row);
     Mask16 mask = overlap(load_slabs<3>(tree_.node[level], first_node), q.low, q.high);
     if (Filtered && mask != 0) {
       mask = passing_nodes(tree_.filters[level], first_node, mask, filters_.of(batch_.id[row]));
     }
-    store_unaligned(row_[level] + open_[level], broadcast(row));
-    open_[level] += compress_store(mask, count_from(first_node), node_[level] + open_[level]);
     ++sink_.tests;
-    return true;
+    return mask;
   }
 
-  bool drain(std::uint32_t level) {
-    for (unsigned k = 0; k < open_[level]; ++k) {
-      const std::uint32_t row = row_[level][k];
-      if (level > 0) {
-        if (!test_nodes(row, level - 1, node_[level][k] * kLanes)) return false;
-        continue;
-      }
-      const std::uint32_t at = (tree_.first_block + node_[0][k]) * kLanes;
+  bool visit(const OpenList& blocks) {
+    for (unsigned k = 0; k < blocks.size; ++k) {
+      const std::uint32_t row = blocks.question[k];
+      const std::uint32_t at = (tree_.first_block + blocks.at[k]) * kLanes;
       const QueryBox q(batch_.column, row);
       if (!hits_.make_room()) return false;
       hits_.add(row, at, overlap(load_slabs<3>(tree_.rows.column, at), q.low, q.high));
       ++sink_.tests;
     }
-    open_[level] = 0;
     return true;
   }
 
@@ -265,20 +256,18 @@ class Descent {
   PairSink& sink_;
   const AskingFilters filters_;
   HitList<Mode, Filtered> hits_;
-  unsigned open_[kMaxTreeLevels] = {};
-  std::uint32_t row_[kMaxTreeLevels][kRoom + kLanes];
-  std::uint32_t node_[kMaxTreeLevels][kRoom + kLanes];
+  JointTraversal<BoxQuestions> traversal_{*this};
 };
 
-struct Query {
+struct TreeQuery {
   template <HitMode Mode, bool Filtered>
   static bool run(const TreeView& tree, const QueryBatch& batch, PairSink& sink) {
-    return Descent<Mode, Filtered>(tree, batch, sink).run();
+    return BoxQuestions<Mode, Filtered>(tree, batch, sink).run();
   }
 };
 
 bool query(const TreeView& tree, const QueryBatch& batch, PairSink& sink) {
-  return with_mode<Query>(tree, batch, sink);
+  return with_mode<TreeQuery>(tree, batch, sink);
 }
 
 }  // namespace

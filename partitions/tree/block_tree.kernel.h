@@ -1,6 +1,6 @@
 #pragma once
 
-#include "partitions/pairs/pair_sink.h"
+#include "partitions/rows/row_view.h"
 #include "simd/kernels/kernels.h"
 
 #include <cstddef>

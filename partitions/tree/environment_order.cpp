@@ -49,7 +49,7 @@ bool sort_by_environment_and_place(const BoundsPool& pool, const ObjectFilter* f
   if (!sort_by_environment(pool, filters, rows, scratch, execution)) return false;
   return for_environments(pool, filters, rows, [&](std::size_t begin, std::size_t end) {
     // What fits in a block needs no order.
-    return end - begin <= BoundsPool::kBlock ||
+    return end - begin <= kBlockRows ||
            sort_by_kd_cuts(pool, rows.subspan(begin, end - begin), points, execution);
   });
 }
@@ -59,11 +59,10 @@ bool append_environments(const BoundsPool& pool, const ObjectFilter* filters,
                          Column<std::uint32_t>& order) noexcept {
   bool was_large = false;
   return for_environments(pool, filters, rows, [&](std::size_t begin, std::size_t end) {
-    const bool large = end - begin > BoundsPool::kBlock;
+    const bool large = end - begin > kBlockRows;
     const std::size_t at = order.size();
     const std::size_t padding =
-        large || was_large ? (BoundsPool::kBlock - at % BoundsPool::kBlock) % BoundsPool::kBlock
-                           : 0;
+        large || was_large ? (kBlockRows - at % kBlockRows) % kBlockRows : 0;
     if (!order.resize(at + padding + end - begin)) return false;
     std::fill_n(order.data() + at, padding, kNoObject);
     std::copy_n(rows.data() + begin, end - begin, order.data() + at + padding);

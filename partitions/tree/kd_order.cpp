@@ -11,15 +11,14 @@
 namespace winnow {
 namespace {
 
-constexpr std::size_t kBlock = BoundsPool::kBlock;
 constexpr std::uint32_t kMostBins = 256;
-constexpr std::size_t kFewEnough = 32;  // to be ranked
+constexpr std::size_t kFewToRank = 32;  // to be ranked
 constexpr float kLeastReach = 1e-30F;   // what is closer is at one place
-constexpr std::size_t kWorthSharing = 2048;
+constexpr std::size_t kKdWorthSharing = 2048;
 constexpr std::size_t kPointsPerTask = 16384;
 
 /// Points to be cut into subtrees, and room for a little more than half of them.
-struct Job {
+struct KdJob {
   KdPoint* points = nullptr;
   std::size_t count = 0;
   KdPoint* room = nullptr;
@@ -43,7 +42,7 @@ struct Span {
   float low = 0.0F;
   float high = 0.0F;
 
-  explicit Span(const Job& job) noexcept {
+  explicit Span(const KdJob& job) noexcept {
     Lanes4 least = lanes_of(job.points[0]);
     Lanes4 most = least;
     for (std::size_t i = 1; i < job.count; ++i) {
@@ -79,7 +78,7 @@ struct Steps {
 
 /// How many points the first side takes: half of the subtrees, all of them full.
 std::size_t cut_of(std::size_t count) noexcept {
-  std::size_t places = kBlock;
+  std::size_t places = kBlockRows;
   while (16 * places < count) places *= 16;
   return ((count + places - 1) / places + 1) / 2 * places;
 }
@@ -88,8 +87,8 @@ std::size_t cut_of(std::size_t count) noexcept {
 /// `last`. Which side a point is on no branch predictor can guess: each is written to both places
 /// that it may go to. False, and nothing is moved, if the room does not hold sides 1 and 2.
 template <typename Side>
-bool partition(const Job& job, std::size_t first, std::size_t last, Side&& side) noexcept {
-  if (job.count - first > Job::room_for(job.count)) return false;
+bool partition(const KdJob& job, std::size_t first, std::size_t last, Side&& side) noexcept {
+  if (job.count - first > KdJob::room_for(job.count)) return false;
   KdPoint unused;
   KdPoint* kept = job.points;
   std::array<KdPoint*, 3> to{&unused, job.room, job.room + (last - first)};
@@ -107,9 +106,9 @@ bool partition(const Job& job, std::size_t first, std::size_t last, Side&& side)
 
 /// Moves the `cut` points that come first on an axis to the front: by counting in bins, so that
 /// only those of one bin have to be compared.
-void select(const Job& job, const Span& span, std::size_t cut) noexcept {
+void select(const KdJob& job, const Span& span, std::size_t cut) noexcept {
   std::uint32_t bins = kMostBins;
-  while (4 * bins > job.count && bins > kBlock) bins /= 2;
+  while (4 * bins > job.count && bins > kBlockRows) bins /= 2;
   const Steps steps(span, static_cast<float>(bins));
   const auto bin_of = [&](const KdPoint& point) {
     return std::min(static_cast<std::uint32_t>(steps.of(point)), bins - 1);
@@ -139,15 +138,15 @@ void select(const Job& job, const Span& span, std::size_t cut) noexcept {
 
 /// Sorts a few points on an axis, as finely as it takes: each counts how many come before it, which
 /// is loops without branches.
-void rank(const Job& job, const Span& span) noexcept {
+void rank(const KdJob& job, const Span& span) noexcept {
   const Steps steps(span, 1U << 25U);
   // The index behind the place on the axis: no two keys are alike.
-  std::array<std::int32_t, kFewEnough> key;
-  std::array<KdPoint, kFewEnough> point;
+  std::array<std::int32_t, kFewToRank> key;
+  std::array<KdPoint, kFewToRank> point;
   key.fill(std::numeric_limits<std::int32_t>::max());
   for (std::size_t i = 0; i < job.count; ++i) {
     point[i] = job.points[i];
-    key[i] = static_cast<std::int32_t>(steps.of(point[i])) * static_cast<std::int32_t>(kFewEnough) +
+    key[i] = static_cast<std::int32_t>(steps.of(point[i])) * static_cast<std::int32_t>(kFewToRank) +
              static_cast<std::int32_t>(i);
   }
   for (std::size_t i = 0; i < job.count; ++i) {
@@ -158,24 +157,24 @@ void rank(const Job& job, const Span& span) noexcept {
 }
 
 /// Leaves the first side to `job` and returns the other.
-Job split(Job& job) noexcept {
+KdJob split(KdJob& job) noexcept {
   const std::size_t cut = cut_of(job.count);
   const Span span(job);
-  if (job.count <= kFewEnough) {
+  if (job.count <= kFewToRank) {
     rank(job, span);
   } else {
     select(job, span, cut);
   }
-  Job second = job;
+  KdJob second = job;
   second.points += cut;
   second.count -= cut;
-  second.room += Job::room_for(cut);
+  second.room += KdJob::room_for(cut);
   job.count = cut;
   return second;
 }
 
-void finish(Job job) noexcept {
-  while (job.count > kBlock) finish(split(job));
+void finish(KdJob job) noexcept {
+  while (job.count > kBlockRows) finish(split(job));
 }
 
 }  // namespace
@@ -183,7 +182,7 @@ void finish(Job job) noexcept {
 bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows,
                      Column<KdPoint>& scratch, const Execution& execution) {
   const std::size_t count = rows.size();
-  if (!scratch.resize(count + Job::room_for(count))) return false;
+  if (!scratch.resize(count + KdJob::room_for(count))) return false;
   if (count == 0) return true;
   const std::size_t tasks = (count + kPointsPerTask - 1) / kPointsPerTask;
   const auto for_points = [&](auto&& work) {
@@ -199,7 +198,7 @@ bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows,
     }
     point.row = rows[i];
   });
-  run_split_jobs(Job{scratch.data(), count, scratch.data() + count}, kWorthSharing, execution,
+  run_split_jobs(KdJob{scratch.data(), count, scratch.data() + count}, kKdWorthSharing, execution,
                  split, finish);
   for_points([&](std::size_t i) { rows[i] = scratch[i].row; });
   return true;

@@ -1,5 +1,6 @@
 #include "partitions/tree/sah_order.h"
 
+#include "core/sort/radix_sort.h"
 #include "core/sort/split_jobs.h"
 
 #include <algorithm>
@@ -12,11 +13,10 @@
 namespace winnow {
 namespace {
 
-constexpr std::uint32_t kBlock = BoundsPool::kBlock;
 constexpr std::size_t kAxes = 4;           // the fourth is size
-constexpr std::uint32_t kFewEnough = 256;  // to be sorted rather than binned
+constexpr std::uint32_t kFewToSort = 256;  // to be sorted rather than binned
 constexpr std::uint32_t kBins = 64;
-constexpr std::uint32_t kWorthSharing = 4096;
+constexpr std::uint32_t kSahWorthSharing = 4096;
 
 /// What a split compares boxes by: monotone in the centre on an axis, or in the logarithm of the
 /// longest edge.
@@ -27,16 +27,11 @@ float key_of(const SahBox& box, std::size_t axis) {
   return -static_cast<float>(std::bit_cast<std::int32_t>(std::min(edge, FLT_MAX)));
 }
 
-std::uint32_t sortable(float key) {
-  const auto bits = std::bit_cast<std::uint32_t>(key + 0.0F);  // there is one zero
-  return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
-}
-
-struct Extent {
+struct SahExtent {
   std::array<float, 3> low;
   std::array<float, 3> high;
 
-  Extent() {
+  SahExtent() {
     low.fill(std::numeric_limits<float>::infinity());
     high.fill(-std::numeric_limits<float>::infinity());
   }
@@ -46,7 +41,7 @@ struct Extent {
       high[a] = std::max(high[a], box.high[a]);
     }
   }
-  void merge(const Extent& other) {
+  void merge(const SahExtent& other) {
     for (std::size_t a = 0; a < 3; ++a) {
       low[a] = std::min(low[a], other.low[a]);
       high[a] = std::max(high[a], other.high[a]);
@@ -68,14 +63,16 @@ struct Extent {
 };
 
 /// Boxes [begin, end), to be put into subtrees of 16^level blocks; all but the last one full.
-struct Job {
+struct SahJob {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
   std::uint32_t level = 0;
 
   [[nodiscard]] std::uint32_t size() const { return end - begin; }
   /// Boxes in a subtree.
-  [[nodiscard]] std::uint32_t places() const { return kBlock << (4 * level); }
+  [[nodiscard]] std::uint32_t places() const {
+    return static_cast<std::uint32_t>(kBlockRows) << (4 * level);
+  }
   [[nodiscard]] std::uint32_t subtrees() const { return (size() + places() - 1) / places(); }
 };
 
@@ -93,7 +90,7 @@ class Builder {
     double sum = 0.0;
     double bounded = 0.0;
     for (const SahBox& box : boxes) {
-      Extent extent;
+      SahExtent extent;
       extent.add(box);
       const double edges = extent.edge(0) + extent.edge(1) + extent.edge(2);
       if (!(edges < 1e30)) continue;
@@ -104,24 +101,24 @@ class Builder {
   }
 
   void run() {
-    Job all{0, static_cast<std::uint32_t>(boxes_.size()), 0};
+    SahJob all{0, static_cast<std::uint32_t>(boxes_.size()), 0};
     while (all.subtrees() > 16) ++all.level;
     run_split_jobs(
-        all, kWorthSharing, execution_, [this](Job& job) { return split(job); },
-        [this](const Job& job) { finish(job); });
+        all, kSahWorthSharing, execution_, [this](SahJob& job) { return split(job); },
+        [this](const SahJob& job) { finish(job); });
   }
 
  private:
-  void finish(Job job) const {
-    while (job.size() > kBlock) finish(split(job));
+  void finish(SahJob job) const {
+    while (job.size() > kBlockRows) finish(split(job));
     std::sort(boxes_.begin() + job.begin, boxes_.begin() + job.end,
               [](const SahBox& a, const SahBox& b) { return a.row < b.row; });
   }
 
   /// Leaves the first side to `job` and returns the other.
-  Job split(Job& job) const {
+  SahJob split(SahJob& job) const {
     while (job.subtrees() == 1) --job.level;
-    const Cut cut = job.size() <= kFewEnough ? best_sorted_cut(job) : best_binned_cut(job);
+    const Cut cut = job.size() <= kFewToSort ? best_sorted_cut(job) : best_binned_cut(job);
     const auto begin = boxes_.begin() + job.begin;
     std::nth_element(begin, begin + cut.count, boxes_.begin() + job.end,
                      [&](const SahBox& a, const SahBox& b) {
@@ -129,14 +126,14 @@ class Builder {
                        const float y = key_of(b, cut.axis);
                        return x != y ? x < y : a.row < b.row;
                      });
-    Job second = job;
+    SahJob second = job;
     second.begin = job.end = job.begin + cut.count;
     return second;
   }
 
   /// Keeps in `best` the cut behind `count` boxes if it is better; `first` and `second` are the
   /// costs of the boxes around its sides.
-  static void consider(const Job& job, std::size_t axis, std::uint32_t count, double first,
+  static void consider(const SahJob& job, std::size_t axis, std::uint32_t count, double first,
                        double second, Cut& best) {
     // A side is looked at itself, and then some of what it holds.
     const auto weight = [&](std::uint32_t boxes) {
@@ -146,26 +143,27 @@ class Builder {
     if (cost < best.cost) best = {axis, count, cost};
   }
 
-  [[nodiscard]] Cut best_sorted_cut(const Job& job) const {
+  [[nodiscard]] Cut best_sorted_cut(const SahJob& job) const {
     const std::uint32_t size = job.size();
     const SahBox* const boxes = boxes_.data() + job.begin;
-    std::array<std::uint64_t, kFewEnough> sorted;
-    std::array<double, kFewEnough> behind;
+    std::array<std::uint64_t, kFewToSort> sorted;
+    std::array<double, kFewToSort> behind;
     Cut best;
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
       for (std::uint32_t i = 0; i < size; ++i) {
-        sorted[i] = std::uint64_t{sortable(key_of(boxes[i], axis))} << 32U | i;
+        // The sum, because there is one zero.
+        sorted[i] = std::uint64_t{sortable(key_of(boxes[i], axis) + 0.0F)} << 32U | i;
       }
       std::sort(sorted.begin(), sorted.begin() + size);
       const auto box = [&](std::uint32_t i) -> const SahBox& {
         return boxes[static_cast<std::uint32_t>(sorted[i])];
       };
-      Extent last;
+      SahExtent last;
       for (std::uint32_t i = size; i-- > job.places();) {
         last.add(box(i));
         if (i % job.places() == 0) behind[i] = last.cost(margin_);
       }
-      Extent first;
+      SahExtent first;
       for (std::uint32_t i = 0; i < size; ++i) {
         if (i != 0 && i % job.places() == 0) {
           consider(job, axis, i, first.cost(margin_), behind[i], best);
@@ -176,13 +174,13 @@ class Builder {
     return best;
   }
 
-  [[nodiscard]] Cut best_binned_cut(const Job& job) const {
+  [[nodiscard]] Cut best_binned_cut(const SahJob& job) const {
     Cut best;
     for (std::size_t axis = 0; axis < kAxes; ++axis) consider_bins(job, axis, best);
     return best;
   }
 
-  void consider_bins(const Job& job, std::size_t axis, Cut& best) const {
+  void consider_bins(const SahJob& job, std::size_t axis, Cut& best) const {
     const auto boxes = boxes_.subspan(job.begin, job.size());
     float low = std::numeric_limits<float>::infinity();
     float high = -low;
@@ -193,7 +191,7 @@ class Builder {
     }
     const double range = static_cast<double>(high) - static_cast<double>(low);
     const double scale = range > 0.0 ? kBins / range : 0.0;
-    std::array<Extent, kBins> extent;
+    std::array<SahExtent, kBins> extent;
     std::array<std::uint32_t, kBins> count{};
     for (const SahBox& box : boxes) {
       const double at = static_cast<double>(key_of(box, axis)) - static_cast<double>(low);
@@ -202,13 +200,13 @@ class Builder {
       ++count[bin];
     }
     std::array<double, kBins + 1> from{};  // of the bins from each one on
-    Extent last;
+    SahExtent last;
     for (std::size_t b = kBins; b-- > 0;) {
       last.merge(extent[b]);
       from[b] = last.cost(margin_);
     }
     // Most cuts go through a bin: then both sides are taken to reach through all of it.
-    Extent first;
+    SahExtent first;
     std::uint32_t before = 0;
     std::uint32_t cut = job.places();
     for (std::size_t b = 0; b < kBins; ++b) {

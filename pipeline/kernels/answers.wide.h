@@ -2,7 +2,7 @@
 
 // What kernels compute of the pairs in their lanes, and how it is written to the columns of a job.
 
-#include "pipeline/kernels/shape_lanes.wide.h"
+#include "pipeline/kernels/pair_lanes.wide.h"
 #include "simd/lanes/compress.h"
 
 namespace winnow::WINNOW_ISA_NAME {
@@ -17,31 +17,31 @@ inline constexpr T kEpsilon = sizeof(T) == sizeof(double) ? T(0x1p-52) : T(0x1p-
 /// Levels distance and manifold; as the columns of NarrowJob say.
 template <typename T>
 struct AnswerLanes {
-  Real<T> distance;
-  Real<T> error_bound;
+  Lanes<T> distance;
+  Lanes<T> error_bound;
   Vec3<T> normal;
   /// Read at level distance only.
   Vec3<T> point;
 };
 
-/// One contact point a lane, for the lanes of a mask.
+/// One contact point per lane, for the lanes of a mask.
 template <typename T>
 struct ContactLanes {
   Vec3<T> position;
-  Real<T> depth;
+  Lanes<T> depth;
   /// Whole numbers below 2^24: the halves of ContactPoint::feature.
-  Real<T> feature_a;
-  Real<T> feature_b;
+  Lanes<T> feature_a;
+  Lanes<T> feature_b;
   Mask16 lanes;
 };
 
 /// Lanes of sizes whose squares neither overflow nor lose digits. `square` is a sum of squares of
 /// all lengths that matter.
 template <typename T>
-[[gnu::always_inline]] inline Truth<T> in_range(const Real<T>& square) {
+[[gnu::always_inline]] inline LaneMask<T> in_range(const Lanes<T>& square) {
   constexpr bool is_double = sizeof(T) == sizeof(double);
-  return (square > Real<T>(is_double ? T(1e-100) : T(1e-24F))) &
-         (square < Real<T>(is_double ? T(1e100) : T(1e24F)));
+  return (square > Lanes<T>(is_double ? T(1e-100) : T(1e-24F))) &
+         (square < Lanes<T>(is_double ? T(1e100) : T(1e24F)));
 }
 
 /// Eight bits as the lowest bits of eight bytes.
@@ -55,8 +55,8 @@ template <typename T>
 [[gnu::always_inline]] inline void write_overlap(const NarrowJob& job, const PairBlock<T>& block,
                                                  Mask16 overlap) {
   std::uint8_t* out = job.overlap + block.first;
-  if (block.count == Real<T>::kRealLanes) {
-    for (unsigned byte = 0; byte < Real<T>::kRealLanes; byte += 8) {
+  if (block.count == Lanes<T>::kCount) {
+    for (unsigned byte = 0; byte < Lanes<T>::kCount; byte += 8) {
       const std::uint64_t bytes = bytes_of_bits(overlap >> byte & 0xFFU);
       __builtin_memcpy(out + byte, &bytes, 8);
     }
@@ -69,8 +69,8 @@ template <typename T>
 
 template <typename T>
 [[gnu::always_inline]] inline void write_column(double* column, const PairBlock<T>& block,
-                                                const Real<T>& v) {
-  constexpr unsigned lanes = Real<T>::kRealLanes;
+                                                const Lanes<T>& v) {
+  constexpr unsigned lanes = Lanes<T>::kCount;
   alignas(64) double stage[lanes];
   double* out = column + block.first;
   double* to = block.count == lanes ? out : stage;
@@ -139,21 +139,17 @@ template <int Points, typename T>
 
 /// The lanes' numbers as floats; what comes after those of eight doubles is unspecified.
 template <typename T>
-[[gnu::always_inline]] inline Float16 as_floats(const Real<T>& v) {
-  Single16 s;
+[[gnu::always_inline]] inline Floats as_floats(const Lanes<T>& v) {
   if constexpr (sizeof(T) == sizeof(double)) {
-    s = to_single(v);
+    return to_single(v);
   } else {
-    s = v;
+    return v;
   }
-  Float16 r;
-  for (int i = 0; i < kParts; ++i) r.part[i] = s.part[i];
-  return r;
 }
 
 /// A contact's columns: position x, y, z, depth, feature of a, feature of b.
 struct ContactColumns {
-  Float16 column[6];
+  Floats column[6];
 };
 
 template <typename T>
@@ -162,84 +158,36 @@ template <typename T>
            as_floats(point.depth), as_floats(point.feature_a), as_floats(point.feature_b)}};
 }
 
-/// a0 b0 a1 b1 ... of eight lanes, from lane 0 or from lane 8.
-template <int From>
-[[gnu::always_inline]] inline Float16 zip(const Float16& a, const Float16& b) {
-#if defined(WINNOW_ISA_IS_avx512)
-  Float16 r;
-  const __m512i order =
-      _mm512_add_epi32(_mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23),
-                       _mm512_set1_epi32(From));
-  r.part[0] = _mm512_permutex2var_ps(a.part[0], order, b.part[0]);
-  return r;
-#else
-  alignas(64) float from[2][kLanes];
-  alignas(64) float to[kLanes];
-  store_unaligned(from[0], a);
-  store_unaligned(from[1], b);
-  for (int i = 0; i < kLanes; ++i) to[i] = from[i % 2][From + i / 2];
-  return load(to);
-#endif
-}
-/// The same of the bits of two masks of eight lanes.
-[[gnu::always_inline]] inline Mask16 zip_bits(Mask16 a, Mask16 b) {
-  const auto spread = [](Mask16 m) {
-    m = (m | m << 4U) & 0x0F0FU;
-    m = (m | m << 2U) & 0x3333U;
-    return (m | m << 1U) & 0x5555U;
-  };
-  return spread(a & 0xFFU) | spread(b & 0xFFU) << 1U;
-}
-
 /// Appends the contacts in the lanes.
 [[gnu::always_inline]] inline void append_contacts(ContactWriter& out, Mask16 lanes,
                                                    const ContactColumns& c) {
   for (int k = 0; k < 3; ++k) compress_store(lanes, c.column[k], out.position[k] + out.size);
   compress_store(lanes, c.column[3], out.depth + out.size);
-  std::uint64_t* feature = out.feature + out.size;
-#if defined(WINNOW_ISA_IS_avx512)
-  const auto m = static_cast<__mmask16>(lanes);
-  const auto pack = [m](__m512 v) { return _mm512_maskz_compress_epi32(m, _mm512_cvtps_epi32(v)); };
-  const __m512i a = pack(c.column[4].part[0]);
-  const __m512i b = pack(c.column[5].part[0]);
-  const __m512i low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
-  const __m512i high = _mm512_add_epi32(low, _mm512_set1_epi32(8));
-  _mm512_storeu_si512(feature, _mm512_permutex2var_epi32(b, low, a));
-  _mm512_storeu_si512(feature + 8, _mm512_permutex2var_epi32(b, high, a));
-#else
-  alignas(64) float a[kLanes];
-  alignas(64) float b[kLanes];
-  store_unaligned(a, c.column[4]);
-  store_unaligned(b, c.column[5]);
-  for (Mask16 rest = lanes; rest != 0; rest &= rest - 1) {
-    const unsigned lane = first(rest);
-    *feature++ = static_cast<std::uint64_t>(a[lane]) << 32U | static_cast<std::uint64_t>(b[lane]);
-  }
-#endif
+  compress_words(lanes, c.column[5], c.column[4], out.feature + out.size);
   out.size += count(lanes);
 }
 
-/// Two points a lane.
+/// Two points per lane.
 template <typename T>
 [[gnu::always_inline]] inline void append_zipped(ContactWriter& out, const PairBlock<T>&,
                                                  const Mask16 (&lanes)[2],
                                                  const ContactColumns (&c)[2]) {
   ContactColumns zipped;
-  for (int k = 0; k < 6; ++k) zipped.column[k] = zip<0>(c[0].column[k], c[1].column[k]);
-  append_contacts(out, zip_bits(lanes[0], lanes[1]), zipped);
-  if constexpr (Real<T>::kRealLanes == 16) {
-    for (int k = 0; k < 6; ++k) zipped.column[k] = zip<8>(c[0].column[k], c[1].column[k]);
-    append_contacts(out, zip_bits(lanes[0] >> 8U, lanes[1] >> 8U), zipped);
+  for (int k = 0; k < 6; ++k) zipped.column[k] = interleave<0>(c[0].column[k], c[1].column[k]);
+  append_contacts(out, interleave_bits(lanes[0], lanes[1]), zipped);
+  if constexpr (Lanes<T>::kCount == kLanes) {
+    for (int k = 0; k < 6; ++k) zipped.column[k] = interleave<8>(c[0].column[k], c[1].column[k]);
+    append_contacts(out, interleave_bits(lanes[0] >> 8U, lanes[1] >> 8U), zipped);
   }
 }
 
-/// Any number of points a lane.
+/// Any number of points per lane.
 template <int Points>
 inline void append_pair_by_pair(ContactWriter& out, const Mask16 (&lanes)[Points],
                                 const ContactColumns (&columns)[Points]) {
   alignas(64) float stage[Points][6][kLanes];
   for (int p = 0; p < Points; ++p) {
-    for (int c = 0; c < 6; ++c) store_unaligned(stage[p][c], columns[p].column[c]);
+    for (int c = 0; c < 6; ++c) columns[p].column[c].store_unaligned(stage[p][c]);
   }
   std::uint32_t size = out.size;
   for (Mask16 rest = lanes[0]; rest != 0; rest &= rest - 1) {

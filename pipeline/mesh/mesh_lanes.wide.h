@@ -3,10 +3,11 @@
 // Sixteen nodes or sixteen triangles of a mesh in lanes.
 
 #include "pipeline/mesh/mesh_view.h"
+#include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
-#include "simd/lanes/lookup.wide.h"
+#include "simd/lanes/rows.h"
 
-namespace winnow::WINNOW_ISA_NAME {
+namespace winnow::WINNOW_ISA_NAME::mesh {
 
 /// Which of the lanes [first, first + 16) of `count` are there.
 inline Mask16 present(std::uint32_t count, std::uint32_t first_lane) {
@@ -20,15 +21,15 @@ inline Mask16 present(std::uint32_t count, std::uint32_t first_lane) {
                                                std::uint32_t first_node) {
   Box16 box;
   for (int axis = 0; axis < 3; ++axis) {
-    box.low[axis] = lanes_of(load_short(mesh.node[level][axis] + first_node));
-    box.high[axis] = lanes_of(load_short(mesh.node[level][3 + axis] + first_node));
+    box.low[axis] = load_short(mesh.node[level][axis] + first_node);
+    box.high[axis] = load_short(mesh.node[level][3 + axis] + first_node);
   }
   return box;
 }
 
 /// The corners of the triangles of a leaf, by corner and axis.
 struct Corners16 {
-  Single16 at[3][3];
+  Floats at[3][3];
 };
 
 [[gnu::always_inline]] inline Corners16 load_corners(const MeshView& mesh, std::uint32_t leaf) {
@@ -43,23 +44,23 @@ struct Corners16 {
 [[gnu::always_inline]] inline Box16 box_of(const Corners16& corners) {
   Box16 box;
   for (int axis = 0; axis < 3; ++axis) {
-    const Single16& a = corners.at[0][axis];
-    const Single16& b = corners.at[1][axis];
-    const Single16& c = corners.at[2][axis];
-    box.low[axis] = lanes_of(min(min(a, b), c));
-    box.high[axis] = lanes_of(max(max(a, b), c));
+    const Floats& a = corners.at[0][axis];
+    const Floats& b = corners.at[1][axis];
+    const Floats& c = corners.at[2][axis];
+    box.low[axis] = min(min(a, b), c);
+    box.high[axis] = max(max(a, b), c);
   }
   return box;
 }
 
 /// Writes the slots of the set lanes, or counts on where there is no room.
-inline void put_slots(const Uint16& slots, Mask16 hits, SlotSink& out) {
+inline void put_slots(const Uints& slots, Mask16 hits, SlotSink& out) {
   if (out.size + kLanes <= out.capacity) {
     out.size += compress_store(hits, slots, out.slot + out.size);
     return;
   }
   alignas(64) std::uint32_t lane[kLanes];
-  store_unaligned(lane, slots);
+  slots.store_unaligned(lane);
   for (; hits != 0; hits &= hits - 1, ++out.size) {
     if (out.size < out.capacity) out.slot[out.size] = lane[first(hits)];
   }
@@ -67,16 +68,16 @@ inline void put_slots(const Uint16& slots, Mask16 hits, SlotSink& out) {
 
 /// Sixteen boxes in double, half of them at a time.
 struct Box8 {
-  Double8 low[3];
-  Double8 high[3];
+  Doubles low[3];
+  Doubles high[3];
 };
 
 template <int Half>
 [[gnu::always_inline]] inline Box8 in_double(const Box16& box) {
   Box8 r;
   for (int axis = 0; axis < 3; ++axis) {
-    r.low[axis] = to_double<Half>(real_of(box.low[axis]));
-    r.high[axis] = to_double<Half>(real_of(box.high[axis]));
+    r.low[axis] = to_double<Half>(box.low[axis]);
+    r.high[axis] = to_double<Half>(box.high[axis]);
   }
   return r;
 }
@@ -84,11 +85,11 @@ template <int Half>
 /// What boxes in the units of the nodes stand for.
 [[gnu::always_inline]] inline void decode(const MeshView& mesh, Box8& box) {
   for (int axis = 0; axis < 3; ++axis) {
-    const Double8 origin(static_cast<double>(mesh.origin[axis]));
-    const Double8 step(static_cast<double>(mesh.step[axis]));
+    const Doubles origin(static_cast<double>(mesh.origin[axis]));
+    const Doubles step(static_cast<double>(mesh.step[axis]));
     box.low[axis] = origin + box.low[axis] * step;
     box.high[axis] = origin + box.high[axis] * step;
   }
 }
 
-}  // namespace winnow::WINNOW_ISA_NAME
+}  // namespace winnow::WINNOW_ISA_NAME::mesh

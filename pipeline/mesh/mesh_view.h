@@ -20,9 +20,9 @@ inline constexpr std::uint32_t kTriangleNumberMask = kMaxTriangles - 1U;
 /// The largest bound of a node.
 inline constexpr std::uint32_t kMaxNodeBound = 65535;
 
-/// A triangle mesh as traversals read it. A slot is a place in the order of the tree: leaf i holds
-/// slots [16 i, 16 i + 16). Columns of slots are padded to a multiple of 16 by copies of the last
-/// one, levels by empty boxes.
+/// A triangle mesh as its traversals read it. A slot is a place in the order of the tree: leaf i
+/// holds slots [16 i, 16 i + 16). Columns of slots are padded to a multiple of 16 by copies of the
+/// last one, levels by empty boxes.
 struct MeshView {
   const float* vertex[3] = {};
   std::uint32_t vertex_count = 0;

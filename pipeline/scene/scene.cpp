@@ -15,12 +15,9 @@ namespace {
 }
 
 [[nodiscard]] bool are_good(const SceneOptions& options) noexcept {
-  const auto known = [](std::string_view name) {
-    const auto names = partition_names();
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
+  const auto known = [](StructureKind kind) { return kind != StructureKind{}; };
   return is_length(options.margin) && is_length(options.carry_over) &&
-         std::all_of(std::begin(options.partitions), std::end(options.partitions), known) &&
+         std::all_of(std::begin(options.structures), std::end(options.structures), known) &&
          options.tier <= NarrowTier::reference;
 }
 
@@ -139,7 +136,7 @@ void Scene::clear() noexcept {
   if (state_ == nullptr) return;
   SceneState& s = *state_;
   for (SceneSet& set : s.sets) {
-    if (set.partition == nullptr) continue;
+    if (!set.partition.has_value()) continue;
     set.partition->clear();
     ++set.changes;
   }
@@ -240,13 +237,14 @@ Status Scene::refresh() {
 
 const Partition* Scene::partition(Motion motion) const noexcept {
   if (state_ == nullptr || !is_motion(motion)) return nullptr;
-  return state_->set(motion).partition.get();
+  const SceneSet& set = state_->set(motion);
+  return set.partition.has_value() ? &*set.partition : nullptr;
 }
 
 Status Scene::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const {
   if (state_ == nullptr) return Status::out_of_memory;
   for (const SceneSet& set : state_->sets) {
-    if (set.partition == nullptr) continue;
+    if (!set.partition.has_value()) continue;
     const Status status = set.partition->debug_draw(draw, options);
     if (status != Status::ok) return status;
   }
@@ -273,7 +271,7 @@ SceneFootprint Scene::footprint() const noexcept {
   }
   for (std::size_t i = 0; i < kMotions; ++i) {
     const SceneSet& set = s.sets[i];
-    if (set.partition != nullptr) footprint.partitions[i] += set.partition->footprint().total();
+    if (set.partition.has_value()) footprint.partitions[i] += set.partition->footprint().total();
     footprint.partitions[i] += set.body_of.bytes();
     footprint.pairs += set.with_dynamic.footprint().total();
   }

@@ -5,7 +5,7 @@
 #include "pipeline/shapes/extent.h"
 
 #include <algorithm>
-#include <new>
+#include <utility>
 
 namespace winnow {
 namespace {
@@ -24,13 +24,12 @@ Status SceneState::check(ShapeId id, const Pose& at) const noexcept {
 
 Status SceneState::make_partition_of(Motion which) {
   SceneSet& target = set(which);
-  if (target.partition != nullptr) return Status::ok;
-  try {
-    target.partition = make_partition(options.partitions[static_cast<std::size_t>(which)],
-                                      {options.memory, options.execution});
-  } catch (const std::bad_alloc&) {
-  }
-  return target.partition == nullptr ? Status::out_of_memory : Status::ok;
+  if (target.partition.has_value()) return Status::ok;
+  Partition made(options.structures[static_cast<std::size_t>(which)],
+                 {.memory = options.memory, .execution = options.execution});
+  const Status status = made.status();
+  if (status == Status::ok) target.partition.emplace(std::move(made));
+  return status;
 }
 
 double SceneState::radius(std::uint32_t body) const noexcept {
@@ -248,7 +247,7 @@ Status SceneState::refresh() {
 
 Status SceneState::refresh_set(Motion which) {
   SceneSet& target = set(which);
-  if (target.partition == nullptr) return Status::ok;
+  if (!target.partition.has_value()) return Status::ok;
   chosen.clear();
   for (const std::uint32_t body : stale) {
     if (motion[body] != which || !needs_box(body)) continue;
@@ -287,7 +286,7 @@ Status SceneState::find_pairs() {
   BodyPairs::Source sources[kMotions];
   std::size_t count = 0;
   for (SceneSet& other : sets) {
-    if (dynamic.partition == nullptr || other.partition == nullptr) continue;
+    if (!dynamic.partition.has_value() || !other.partition.has_value()) continue;
     const Status status = &other == &dynamic
                               ? dynamic.partition->self_pairs(other.with_dynamic)
                               : dynamic.partition->pairs_with(*other.partition, other.with_dynamic);

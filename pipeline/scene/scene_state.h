@@ -5,7 +5,7 @@
 #include "pipeline/scene/body_pairs.h"
 
 #include <cstdint>
-#include <memory>
+#include <optional>
 
 namespace winnow {
 
@@ -22,7 +22,7 @@ struct SceneSet {
   explicit SceneSet(std::pmr::memory_resource* memory) noexcept
       : body_of(memory), with_dynamic(memory) {}
 
-  std::unique_ptr<Partition> partition;
+  std::optional<Partition> partition;
   /// By the partition's object id.
   Column<std::uint32_t> body_of;
   /// Pairs (dynamic body, body of this set); of the dynamic set its own.

@@ -1,11 +1,43 @@
 #pragma once
 
-// Indices from masks: the set lanes packed to the front. Every store writes whole registers, so the
-// destination needs room for 16 elements from where it starts, whatever the mask.
+// Indices from masks, masks from bitmaps, and lanes of two interleaved. The set lanes are packed to
+// the front. Every store
+// writes whole registers, so the destination needs room for 16 elements from where it starts,
+// whatever the mask.
 
-#include "simd/lanes/wide.h"
+#include "simd/lanes/lanes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
+
+/// Which lanes' bits are set in a bitmap: bit i is bit i % 32 of words[i / 32].
+inline Mask16 test_bits(const std::uint32_t* words, const Uints& index) {
+#if defined(WINNOW_ISA_IS_avx512)
+  const __m512i i = index.part[0];
+  const __m512i word = _mm512_i32gather_epi32(_mm512_srli_epi32(i, 5), words, 4);
+  const __m512i bit =
+      _mm512_sllv_epi32(_mm512_set1_epi32(1), _mm512_and_si512(i, _mm512_set1_epi32(31)));
+  return _mm512_test_epi32_mask(word, bit);
+#elif defined(WINNOW_ISA_IS_avx2)
+  Mask16 r = 0;
+  for (int p = 0; p < Floats::kParts; ++p) {
+    const __m256i i = index.part[p];
+    const __m256i word =
+        _mm256_i32gather_epi32(reinterpret_cast<const int*>(words), _mm256_srli_epi32(i, 5), 4);
+    // The wanted bit becomes the sign bit.
+    const __m256i up =
+        _mm256_sub_epi32(_mm256_set1_epi32(31), _mm256_and_si256(i, _mm256_set1_epi32(31)));
+    const __m256 sign = _mm256_castsi256_ps(_mm256_sllv_epi32(word, up));
+    r |= static_cast<Mask16>(_mm256_movemask_ps(sign)) << (p * Floats::kPartLanes);
+  }
+  return r;
+#else
+  alignas(64) std::uint32_t lane[kLanes];
+  index.store(lane);
+  Mask16 r = 0;
+  for (int i = 0; i < kLanes; ++i) r |= (words[lane[i] >> 5U] >> (lane[i] & 31U) & 1U) << i;
+  return r;
+#endif
+}
 
 #if defined(WINNOW_ISA_IS_avx2)
 
@@ -45,7 +77,7 @@ struct Shuffles4 {
 };
 inline constexpr Shuffles4 kShuffles4{};
 
-inline UintPart pack4(UintPart v, unsigned m) {
+inline Uints::Part pack4(Uints::Part v, unsigned m) {
 #if defined(WINNOW_ISA_IS_neon64)
   return vreinterpretq_u32_u8(vqtbl1q_u8(vreinterpretq_u8_u32(v), vld1q_u8(kShuffles4.byte[m])));
 #else
@@ -54,7 +86,7 @@ inline UintPart pack4(UintPart v, unsigned m) {
 }
 
 /// Writes a0 b0 a1 b1 ... a3 b3.
-inline void interleave4(UintPart a, UintPart b, std::uint32_t* out) {
+inline void interleave4(Uints::Part a, Uints::Part b, std::uint32_t* out) {
 #if defined(WINNOW_ISA_IS_neon64)
   vst1q_u32(out, vzip1q_u32(a, b));
   vst1q_u32(out + 4, vzip2q_u32(a, b));
@@ -68,7 +100,7 @@ inline void interleave4(UintPart a, UintPart b, std::uint32_t* out) {
 #endif
 
 /// Writes the set lanes of `v` to `out`, in order; returns how many. Room for 16 is needed.
-inline unsigned compress_store(Mask16 mask, const Uint16& v, std::uint32_t* out) {
+inline unsigned compress_store(Mask16 mask, const Uints& v, std::uint32_t* out) {
 #if defined(WINNOW_ISA_IS_avx512)
   _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), v.part[0]));
 #elif defined(WINNOW_ISA_IS_avx2)
@@ -77,7 +109,7 @@ inline unsigned compress_store(Mask16 mask, const Uint16& v, std::uint32_t* out)
                       pack8(v.part[1], mask >> 8U));
 #else
   std::uint32_t* at = out;
-  for (int i = 0; i < kParts; ++i) {
+  for (int i = 0; i < Uints::kParts; ++i) {
     const unsigned m = (mask >> (4 * i)) & 0xFU;
     pack4(v.part[i], m).store_unaligned(at);
     at += count(m);
@@ -87,7 +119,7 @@ inline unsigned compress_store(Mask16 mask, const Uint16& v, std::uint32_t* out)
 }
 
 /// The same for floats.
-inline unsigned compress_store(Mask16 mask, const Float16& v, float* out) {
+inline unsigned compress_store(Mask16 mask, const Floats& v, float* out) {
 #if defined(WINNOW_ISA_IS_avx512)
   _mm512_storeu_ps(out, _mm512_maskz_compress_ps(static_cast<__mmask16>(mask), v.part[0]));
 #elif defined(WINNOW_ISA_IS_avx2)
@@ -98,7 +130,7 @@ inline unsigned compress_store(Mask16 mask, const Float16& v, float* out) {
   _mm256_storeu_ps(out + count(mask & 0xFFU), pack(v.part[1], mask >> 8U));
 #else
   float* at = out;
-  for (int i = 0; i < kParts; ++i) {
+  for (int i = 0; i < Uints::kParts; ++i) {
     const unsigned m = (mask >> (4 * i)) & 0xFU;
 #if defined(WINNOW_ISA_IS_neon64)
     vst1q_f32(at, vreinterpretq_f32_u32(pack4(vreinterpretq_u32_f32(v.part[i]), m)));
@@ -114,7 +146,7 @@ inline unsigned compress_store(Mask16 mask, const Float16& v, float* out) {
 /// Writes (q, lane) for the set lanes of `v` as consecutive pairs, returns how many. `Sorted` puts
 /// the smaller of the two first; otherwise q comes first. Room for 16 pairs is needed.
 template <bool Sorted>
-inline unsigned emit_pairs(Mask16 mask, const Uint16& v, std::uint32_t q, std::uint32_t* out) {
+inline unsigned emit_pairs(Mask16 mask, const Uints& v, std::uint32_t q, std::uint32_t* out) {
 #if defined(WINNOW_ISA_IS_avx512)
   const __m512i packed = _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), v.part[0]);
   const __m512i query = _mm512_set1_epi32(static_cast<int>(q));
@@ -128,7 +160,7 @@ inline unsigned emit_pairs(Mask16 mask, const Uint16& v, std::uint32_t q, std::u
 #elif defined(WINNOW_ISA_IS_avx2)
   const __m256i query = _mm256_set1_epi32(static_cast<int>(q));
   std::uint32_t* at = out;
-  for (int i = 0; i < kParts; ++i) {
+  for (int i = 0; i < Uints::kParts; ++i) {
     const unsigned m = (mask >> (8 * i)) & 0xFFU;
     const __m256i packed = pack8(v.part[i], m);
     const __m256i a = Sorted ? _mm256_min_epu32(query, packed) : query;
@@ -142,17 +174,72 @@ inline unsigned emit_pairs(Mask16 mask, const Uint16& v, std::uint32_t q, std::u
   }
 #else
   std::uint32_t* at = out;
-  for (int i = 0; i < kParts; ++i) {
+  for (int i = 0; i < Uints::kParts; ++i) {
     const unsigned m = (mask >> (4 * i)) & 0xFU;
-    const UintPart packed = pack4(v.part[i], m);
-    const UintPart query(q);
-    const UintPart a = Sorted ? xsimd::min(query, packed) : query;
-    const UintPart b = Sorted ? xsimd::max(query, packed) : packed;
+    const Uints::Part packed = pack4(v.part[i], m);
+    const Uints::Part query(q);
+    const Uints::Part a = Sorted ? xsimd::min(query, packed) : query;
+    const Uints::Part b = Sorted ? xsimd::max(query, packed) : packed;
     interleave4(a, b, at);
     at += 2 * count(m);
   }
 #endif
   return count(mask);
+}
+
+/// Writes low + 2^32 high for the set lanes, whose numbers are whole and below 2^24; room for 16 is
+/// needed.
+[[gnu::always_inline]] inline void compress_words(Mask16 mask, const Floats& low,
+                                                  const Floats& high, std::uint64_t* out) {
+#if defined(WINNOW_ISA_IS_avx512)
+  const auto m = static_cast<__mmask16>(mask);
+  const auto pack = [m](__m512 v) { return _mm512_maskz_compress_epi32(m, _mm512_cvtps_epi32(v)); };
+  const __m512i a = pack(high.part[0]);
+  const __m512i b = pack(low.part[0]);
+  const __m512i first_half =
+      _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+  const __m512i last_half = _mm512_add_epi32(first_half, _mm512_set1_epi32(8));
+  _mm512_storeu_si512(out, _mm512_permutex2var_epi32(b, first_half, a));
+  _mm512_storeu_si512(out + 8, _mm512_permutex2var_epi32(b, last_half, a));
+#else
+  alignas(64) float a[kLanes];
+  alignas(64) float b[kLanes];
+  high.store_unaligned(a);
+  low.store_unaligned(b);
+  for (; mask != 0; mask &= mask - 1) {
+    const unsigned lane = first(mask);
+    *out++ = static_cast<std::uint64_t>(a[lane]) << 32U | static_cast<std::uint64_t>(b[lane]);
+  }
+#endif
+}
+
+/// a0 b0 a1 b1 ... of eight lanes, from lane 0 or from lane 8.
+template <int From>
+[[gnu::always_inline]] inline Floats interleave(const Floats& a, const Floats& b) {
+#if defined(WINNOW_ISA_IS_avx512)
+  const __m512i order =
+      _mm512_add_epi32(_mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23),
+                       _mm512_set1_epi32(From));
+  Floats r;
+  r.part[0] = _mm512_permutex2var_ps(a.part[0], order, b.part[0]);
+  return r;
+#else
+  alignas(64) float from[2][kLanes];
+  alignas(64) float to[kLanes];
+  a.store_unaligned(from[0]);
+  b.store_unaligned(from[1]);
+  for (int i = 0; i < kLanes; ++i) to[i] = from[i % 2][From + i / 2];
+  return Floats::load(to);
+#endif
+}
+/// The same of the bits of two masks of eight lanes.
+[[gnu::always_inline]] inline Mask16 interleave_bits(Mask16 a, Mask16 b) {
+  const auto spread = [](Mask16 m) {
+    m = (m | m << 4U) & 0x0F0FU;
+    m = (m | m << 2U) & 0x3333U;
+    return (m | m << 1U) & 0x5555U;
+  };
+  return spread(a & 0xFFU) | spread(b & 0xFFU) << 1U;
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME

@@ -39,10 +39,10 @@ TEST(Advice, names_the_fastest_partition_but_the_one_that_chooses) {
   const auto source = make_scene("uniform", 300, 3);
   const Advice advice = advise(*source, kThree, 4, 1);
   EXPECT_NE(advice.best().partition, "AutoPartition");
-  EXPECT_NE(advice.code().find("make_partition(\"" + advice.best().partition + "\""),
+  EXPECT_NE(advice.code().find("Partition(structure_named(\"" + advice.best()).partition + "\""),
             std::string::npos);
-  EXPECT_NE(make_partition(advice.best().partition), nullptr);
-  EXPECT_NE(make_partition(advice.chosen), nullptr);
+  EXPECT_NE(Partition(structure_named(advice.best()).partition), nullptr);
+  EXPECT_NE(Partition(structure_named(advice.chosen)), nullptr);
   EXPECT_FALSE(advice.reason.empty());
 }
 

@@ -55,7 +55,7 @@ std::vector<Case> all_cases() {
 class Field {
  public:
   Field(Isa isa, const std::vector<Aabb>& boxes) {
-    for (const std::string_view name : partition_names()) {
+    for (const std::string_view name : structure_names()) {
       const int threads = thread_counts()[players_.size() % thread_counts().size()];
       auto world = std::make_unique<World>(Config{std::string(name), isa, threads});
       if (!world->partition().is_exact()) continue;

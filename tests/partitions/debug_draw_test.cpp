@@ -2,7 +2,6 @@
 // that was not asked for.
 
 #include <winnow/partitions/debug_colours.h>
-#include "partitions/structures/brute_force/bounds_n_squared.h"
 
 #include <algorithm>
 #include <string>
@@ -294,7 +293,8 @@ TEST_P(DebugDrawing, shows_spheres_as_spheres_and_k_dops_as_the_boxes_around_the
   if (config().partition != "BoundsNSquared") return;
   const std::vector<Aabb> boxes = uniform_boxes(40);
   std::vector<Key> keys(boxes.size());
-  BoundsNSquared spheres({.execution = config().execution(), .volume = Volume::sphere});
+  Partition spheres(bounds_n_squared(),
+                    {.execution = config().execution(), .volume = Volume::sphere});
   ASSERT_EQ(spheres.insert(boxes, {}, keys), Status::ok);
   Sketch sketch;
   ASSERT_EQ(spheres.debug_draw(sketch), Status::ok);
@@ -305,7 +305,8 @@ TEST_P(DebugDrawing, shows_spheres_as_spheres_and_k_dops_as_the_boxes_around_the
     EXPECT_EQ(sketch.spheres[i].center, truth.center);
     EXPECT_EQ(sketch.spheres[i].radius, truth.radius);
   }
-  BoundsNSquared kdops({.execution = config().execution(), .volume = Volume::kdop18});
+  Partition kdops(bounds_n_squared(),
+                  {.execution = config().execution(), .volume = Volume::kdop18});
   ASSERT_EQ(kdops.insert(boxes, {}, keys), Status::ok);
   sketch = {};
   ASSERT_EQ(kdops.debug_draw(sketch), Status::ok);

@@ -1,7 +1,5 @@
 // Many small worlds in one partition: they never meet, and cost no more than each on its own.
 
-#include "partitions/structures/brute_force/bounds_n_squared.h"
-
 #include <algorithm>
 #include <array>
 
@@ -122,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(All, Environments, testing::ValuesIn(all_configs()),
                          testing::PrintToStringParamName());
 
 TEST(EnvironmentsOfSpheres, keep_apart_what_lies_on_each_other) {
-  BoundsNSquared partition({.volume = Volume::sphere});
+  Partition partition(bounds_n_squared(), {.volume = Volume::sphere});
   const std::vector<Sphere> spheres(60, Sphere{{1, 2, 3}, 1.0F});
   std::vector<Key> keys(spheres.size());
   ASSERT_EQ(partition.insert(spheres, {}, keys), Status::ok);
@@ -190,7 +188,7 @@ TEST_P(EnvironmentWork, of_worlds_of_three_objects_is_far_from_all_against_all) 
 
 std::vector<Config> one_config_a_partition() {
   std::vector<Config> configs;
-  for (const std::string_view name : partition_names()) {
+  for (const std::string_view name : structure_names()) {
     configs.push_back({std::string(name), active_isa(), 1});
   }
   return configs;

@@ -23,7 +23,7 @@ class Frames : public Conformance {
   template <typename Body>
   void from_each_start(std::size_t wanted, const Body& body) {
     // What reports every pair is judged by every pair.
-    const std::size_t count = config().make()->is_exact() ? wanted : std::min(wanted, kFew);
+    const std::size_t count = config().make().is_exact() ? wanted : std::min(wanted, kFew);
     for (const auto& [name, boxes] :
          {std::pair{"uniform", uniform_boxes(count)}, std::pair{"mixed", mixed_boxes(count)},
           std::pair{"clustered", clustered_boxes(count)}}) {
@@ -119,7 +119,7 @@ TEST_P(Frames, with_other_buffers_in_between_are_right) {
 
 TEST_P(Frames, with_the_buffer_lent_to_another_partition_are_right) {
   from_each_start(kObjects, [&] {
-    for (const std::string_view name : partition_names()) {
+    for (const std::string_view name : structure_names()) {
       World other({std::string(name), config().isa, config().threads});
       std::vector<Aabb> boxes = uniform_boxes(200);
       const std::vector<Key> keys = other.insert(boxes);

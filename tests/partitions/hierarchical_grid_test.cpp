@@ -1,6 +1,6 @@
 // HierarchicalGrid: what the conformance suite cannot know of its levels and cells.
 
-#include "partitions/structures/levels/hierarchical_grid.h"
+#include <winnow/partitions/partition.h>
 
 #include <algorithm>
 #include <set>
@@ -41,7 +41,7 @@ std::vector<Aabb> nested_boxes(std::size_t count, double ratio, Random& random) 
 
 std::size_t levels_of(World& world) {
   EXPECT_EQ(world.partition().refresh(), Status::ok);
-  return dynamic_cast<const HierarchicalGrid&>(world.partition()).levels();
+  return world.partition().statistics().levels;
 }
 
 TEST(HierarchicalGrid, has_one_level_for_objects_of_one_size) {

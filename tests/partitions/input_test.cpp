@@ -135,10 +135,10 @@ TEST_P(Input, may_be_columns_or_members_of_a_struct) {
     EXPECT_TRUE(world.agrees());
     auto fresh = config().make();
     std::vector<Key> others(view.count);
-    ASSERT_EQ(fresh->insert(view, {}, others), Status::ok);
+    ASSERT_EQ(fresh.insert(view, {}, others), Status::ok);
     for (std::size_t i = 0; i < others.size(); ++i) {
       Aabb box;
-      EXPECT_EQ(fresh->bounds(others[i], box), Status::ok);
+      EXPECT_EQ(fresh.bounds(others[i], box), Status::ok);
       EXPECT_EQ(box, boxes_[i]);
     }
   }

@@ -2,7 +2,6 @@
 // not count as moved.
 
 #include <winnow/core/hits.h>
-#include "partitions/structures/brute_force/bounds_n_squared.h"
 
 #include <cmath>
 #include <limits>
@@ -35,11 +34,11 @@ std::vector<Aabb> all_moved(const std::vector<Aabb>& boxes, float by) {
 
 class Margins : public Conformance {
  protected:
-  std::unique_ptr<Partition> with_margin(const Margin& margin, const std::vector<Aabb>& boxes) {
-    auto partition =
-        make_partition(config().partition, {.execution = config().execution(), .margin = margin});
+  Partition with_margin(const Margin& margin, const std::vector<Aabb>& boxes) {
+    Partition partition(structure_named(config().partition),
+                        {.execution = config().execution(), .margin = margin});
     keys_.resize(boxes.size());
-    EXPECT_EQ(partition->insert(boxes, {}, keys_), Status::ok);
+    EXPECT_EQ(partition.insert(boxes, {}, keys_), Status::ok);
     return partition;
   }
 
@@ -81,19 +80,19 @@ TEST_P(Margins, miss_no_pair_however_boxes_move) {
     const std::size_t count = margin.share < 1 ? 150 : 30;
     for (std::vector<Aabb> boxes : {uniform_boxes(count), mixed_boxes(count)}) {
       auto partition = with_margin(margin, boxes);
-      EXPECT_FALSE(partition->is_exact());
+      EXPECT_FALSE(partition.is_exact());
       Random random(7);
       for (const Motion motion : kMotions) {
         (void)move(motion, boxes, random);
-        update(*partition, keys_, boxes);
-        expect_right(*partition, boxes);
+        update(partition, keys_, boxes);
+        expect_right(partition, boxes);
         // Some of them in an order that is none.
         const std::vector<Key> some{keys_[3], keys_[1], keys_[2]};
         for (const std::size_t i : {1U, 2U, 3U}) boxes[i] = moved(boxes[i], 0.03F);
-        update(*partition, some, {boxes[3], boxes[1], boxes[2]});
+        update(partition, some, {boxes[3], boxes[1], boxes[2]});
         boxes[4] = moved(boxes[4], 0.3F);
-        EXPECT_EQ(partition->update(keys_[4], boxes[4]), Status::ok);
-        expect_right(*partition, boxes);
+        EXPECT_EQ(partition.update(keys_[4], boxes[4]), Status::ok);
+        expect_right(partition, boxes);
       }
     }
   }
@@ -109,24 +108,24 @@ TEST_P(Margins, miss_no_pair_of_infinite_huge_and_tiny_boxes) {
   for (const Margin margin : {Margin{.distance = 1.0F}, Margin{.share = 0.5F},
                               Margin{.distance = 3e38F}, Margin{.distance = kInf, .share = kInf}}) {
     auto partition = with_margin(margin, boxes);
-    expect_right(*partition, boxes);
+    expect_right(partition, boxes);
     // At rest nothing changes, be the margin lost in rounding or reach to infinity.
-    const std::vector<Aabb> before = stored(*partition);
-    update(*partition, keys_, boxes);
-    EXPECT_EQ(after_query(*partition).last_tests, 0U);
-    EXPECT_EQ(stored(*partition), before);
+    const std::vector<Aabb> before = stored(partition);
+    update(partition, keys_, boxes);
+    EXPECT_EQ(after_query(partition).last_tests, 0U);
+    EXPECT_EQ(stored(partition), before);
   }
 }
 
 TEST_P(Margins, cost_nothing_while_objects_stay_within_them) {
   const std::vector<Aabb> boxes = uniform_boxes(400);
   auto partition = with_margin({.distance = 0.1F}, boxes);
-  (void)after_query(*partition);
-  const Statistics before = after_query(*partition);
+  (void)after_query(partition);
+  const Statistics before = after_query(partition);
   for (const float by : {0.0F, 0.04F, -0.09F, 0.09F}) {
-    update(*partition, keys_, all_moved(boxes, by));
-    EXPECT_EQ(partition->update(keys_[9], moved(boxes[9], -by)), Status::ok);
-    const Statistics now = after_query(*partition);
+    update(partition, keys_, all_moved(boxes, by));
+    EXPECT_EQ(partition.update(keys_[9], moved(boxes[9], -by)), Status::ok);
+    const Statistics now = after_query(partition);
     EXPECT_EQ(now.last_tests, 0U) << by;
     EXPECT_EQ(now.builds, before.builds);
     EXPECT_EQ(now.refits, before.refits);
@@ -134,25 +133,25 @@ TEST_P(Margins, cost_nothing_while_objects_stay_within_them) {
   // One that leaves costs what one object costs.
   std::vector<Aabb> next = boxes;
   next[7] = moved(next[7], 0.2F);
-  update(*partition, keys_, next);
-  const Statistics now = after_query(*partition);
+  update(partition, keys_, next);
+  const Statistics now = after_query(partition);
   EXPECT_EQ(now.incremental_queries, before.incremental_queries + 5);
   EXPECT_GT(now.last_tests, 0U);
   EXPECT_LE(now.last_tests, 40U);
-  expect_right(*partition, next);
+  expect_right(partition, next);
 }
 
 TEST_P(Margins, are_as_large_as_asked_and_shrink_with_the_object) {
   const Aabb large{{0, 0, 0}, {8, 2, 4}};
   auto partition = with_margin({.distance = 0.5F, .share = 0.25F}, {large});
   Aabb box;
-  ASSERT_EQ(partition->bounds(keys_[0], box), Status::ok);
+  ASSERT_EQ(partition.bounds(keys_[0], box), Status::ok);
   EXPECT_EQ(box, (Aabb{{-2.5F, -2.5F, -2.5F}, {10.5F, 4.5F, 6.5F}}));
-  ASSERT_EQ(partition->update(keys_[0], {{1, 0, 1}, {7, 2, 4}}), Status::ok);
-  ASSERT_EQ(partition->bounds(keys_[0], box), Status::ok);
+  ASSERT_EQ(partition.update(keys_[0], {{1, 0, 1}, {7, 2, 4}}), Status::ok);
+  ASSERT_EQ(partition.bounds(keys_[0], box), Status::ok);
   EXPECT_EQ(box.max.x(), 10.5F) << "a little smaller";
-  ASSERT_EQ(partition->update(keys_[0], {{1, 1, 1}, {2, 2, 2}}), Status::ok);
-  ASSERT_EQ(partition->bounds(keys_[0], box), Status::ok);
+  ASSERT_EQ(partition.update(keys_[0], {{1, 1, 1}, {2, 2, 2}}), Status::ok);
+  ASSERT_EQ(partition.bounds(keys_[0], box), Status::ok);
   EXPECT_EQ(box, (Aabb{{0.25F, 0.25F, 0.25F}, {2.75F, 2.75F, 2.75F}})) << "much smaller";
 }
 
@@ -161,9 +160,9 @@ TEST_P(Margins, take_the_last_box_of_a_repeated_key) {
   const Aabb box{{0, 0, 0}, {1, 1, 1}};
   auto partition = with_margin({.distance = 0.5F}, {box});
   const Key key = keys_[0];
-  update(*partition, std::vector<Key>{key, key}, {moved(box, 5.0F), box});
+  update(partition, std::vector<Key>{key, key}, {moved(box, 5.0F), box});
   Aabb now;
-  ASSERT_EQ(partition->bounds(key, now), Status::ok);
+  ASSERT_EQ(partition.bounds(key, now), Status::ok);
   EXPECT_TRUE(holds(now, box));
 }
 
@@ -171,16 +170,16 @@ TEST_P(Margins, are_seen_by_every_other_query) {
   const std::vector<Aabb> boxes = uniform_boxes(300);
   auto partition = with_margin({.share = 0.1F}, boxes);
   const std::vector<Aabb> given = all_moved(boxes, 0.05F);
-  update(*partition, keys_, given);
-  const std::vector<Aabb> now = stored(*partition);
+  update(partition, keys_, given);
+  const std::vector<Aabb> now = stored(partition);
   const std::vector<Aabb> asked = uniform_boxes(40, 2);
-  ASSERT_EQ(partition->overlap(BoxView(asked), buffer_, {}, Order::canonical), Status::ok);
+  ASSERT_EQ(partition.overlap(BoxView(asked), buffer_, {}, Order::canonical), Status::ok);
   EXPECT_TRUE(
       right_cross_pairs(buffer_.pairs(), cross_pairs(numbered(asked), numbered(now)), true));
   EXPECT_TRUE(
       right_cross_pairs(buffer_.pairs(), cross_pairs(numbered(asked), numbered(given)), false));
   HitBuffer hits;
-  ASSERT_EQ(partition->nearest({{0, 0, 0}, {0, 0, 0}}, 300, kInf, hits), Status::ok);
+  ASSERT_EQ(partition.nearest({{0, 0, 0}, {0, 0, 0}}, 300, kInf, hits), Status::ok);
   EXPECT_EQ(hits.size(), 300U);
 }
 
@@ -189,7 +188,8 @@ INSTANTIATE_TEST_SUITE_P(All, Margins, testing::ValuesIn(all_configs()),
 
 template <int K>
 void expect_fat_kdops(Volume volume) {
-  BoundsNSquared partition(
+  Partition partition(
+      bounds_n_squared(),
       {.execution = Execution::serial(), .volume = volume, .margin = {.distance = 0.1F}});
   const std::vector<Aabb> boxes = uniform_boxes(200);
   std::vector<Kdop<K>> kdops;
@@ -226,7 +226,8 @@ TEST(FatVolumes, that_are_kdops_hold_what_moves_within_the_margin) {
 }
 
 TEST(FatVolumes, that_are_spheres_hold_what_moves_within_the_margin) {
-  BoundsNSquared partition(
+  Partition partition(
+      bounds_n_squared(),
       {.execution = Execution::serial(), .volume = Volume::sphere, .margin = {.share = 0.25F}});
   std::vector<Sphere> spheres{{{0, 0, 0}, 1.0F}, {{2.8F, 0, 0}, 1.0F}};
   std::vector<Key> keys(2);

@@ -86,7 +86,8 @@ TEST_P(ResultOrder, of_pairs_with_is_the_same_on_every_thread_count_and_instruct
 }
 
 std::vector<std::string> names() {
-  return {partition_names().begin(), partition_names().end()};
+  const std::vector<std::string_view> all = structure_names();
+  return {all.begin(), all.end()};
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ResultOrder, testing::ValuesIn(names()),

@@ -100,7 +100,7 @@ PairOptions options_of(std::uint64_t choice) {
 class Events : public Conformance {
  protected:
   [[nodiscard]] std::size_t scene_size(std::size_t wanted) const {
-    return config().make()->is_exact() ? wanted : std::min<std::size_t>(wanted, 60);
+    return config().make().is_exact() ? wanted : std::min<std::size_t>(wanted, 60);
   }
 };
 
@@ -312,7 +312,7 @@ INSTANTIATE_TEST_SUITE_P(All, Events, testing::ValuesIn(all_configs()),
 
 // The same frames on every instruction set and number of threads, byte by byte.
 TEST(EventsOfAnyConfig, are_the_same) {
-  for (const std::string_view name : partition_names()) {
+  for (const std::string_view name : structure_names()) {
     std::vector<std::tuple<std::vector<Pair>, std::size_t, std::size_t>> expected;
     for (const Config& config : all_configs()) {
       if (config.partition != name) continue;
@@ -340,7 +340,7 @@ TEST(EventsOfAnyConfig, are_the_same) {
 
 // Where nothing moved nothing is compared: the price of a frame is not the number of pairs.
 TEST(EventsOfAStillFrame, are_none_and_cost_no_test) {
-  for (const std::string_view name : partition_names()) {
+  for (const std::string_view name : structure_names()) {
     World world(Config{std::string(name), active_isa(), 1});
     Frames frames(world);
     world.insert(uniform_boxes(100));

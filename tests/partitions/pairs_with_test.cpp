@@ -34,7 +34,7 @@ TEST_P(PairsWith, every_other_kind_of_partition_are_right) {
   World mine(config());
   mine.insert(mixed_boxes(300));
   PairBuffer buffer;
-  for (const std::string_view name : partition_names()) {
+  for (const std::string_view name : structure_names()) {
     World other(like_this(name));
     other.insert(mixed_boxes(200, 2));
     EXPECT_TRUE(agree(mine, other, buffer)) << name;

@@ -1,8 +1,7 @@
 // What the conformance suite cannot know of the trees: what their orders are worth, counted in
 // tests of 16 boxes, and how looseness and levels behave at their ends.
 
-#include "partitions/structures/octree/loose_octree.h"
-#include "partitions/structures/octree/loose_quadtree.h"
+#include <winnow/partitions/partition.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,18 +29,18 @@ std::uint64_t tests_of_pairs(Partition& partition) {
 }
 
 std::uint64_t tests_of_pairs(const std::string& name, const std::vector<Aabb>& boxes) {
-  const auto partition = make_partition(name, {.execution = Execution::serial()});
-  fill(*partition, boxes);
-  return tests_of_pairs(*partition);
+  Partition partition(structure_named(name), {.execution = Execution::serial()});
+  fill(partition, boxes);
+  return tests_of_pairs(partition);
 }
 
 // The same pairs as brute force.
 void expect_right_pairs(const Partition& partition, const std::vector<Aabb>& boxes) {
-  const auto judge = make_partition("BoundsNSquared");
-  fill(*judge, boxes);
+  Partition judge(bounds_n_squared());
+  fill(judge, boxes);
   PairBuffer expected;
   PairBuffer found;
-  ASSERT_EQ(judge->self_pairs(expected, {.order = Order::canonical}), Status::ok);
+  ASSERT_EQ(judge.self_pairs(expected, {.order = Order::canonical}), Status::ok);
   ASSERT_EQ(partition.self_pairs(found, {.order = Order::canonical}), Status::ok);
   EXPECT_TRUE(std::ranges::equal(found.pairs(), expected.pairs()));
 }
@@ -68,10 +67,10 @@ TEST(StaticBvhOrder, costs_no_more_tests_than_that_of_linear_bvh) {
 }
 
 TEST(StaticBvhOrder, leaves_no_places_empty) {
-  const auto tree = make_partition("StaticBvh");
-  fill(*tree, mixed_boxes(5003));
-  ASSERT_EQ(tree->refresh(), Status::ok);
-  EXPECT_EQ(tree->statistics().cells, (5003U + 15U) / 16U);
+  Partition tree(static_bvh());
+  fill(tree, mixed_boxes(5003));
+  ASSERT_EQ(tree.refresh(), Status::ok);
+  EXPECT_EQ(tree.statistics().cells, (5003U + 15U) / 16U);
 }
 
 TEST(LooseOctreeLevels, of_two_axes_cost_no_more_than_of_three_in_a_flat_world) {
@@ -85,11 +84,11 @@ TEST(LooseOctreeLevels, are_bounded_for_any_range_of_sizes) {
     const float edge = std::pow(10.0F, -9.0F + 12.0F * static_cast<float>(i) / 600.0F);
     boxes[i].max = boxes[i].min.array() + edge;
   }
-  LooseOctree tree;
+  Partition tree(loose_octree());
   fill(tree, boxes);
   expect_right_pairs(tree, boxes);
-  EXPECT_GT(tree.levels(), 1U);
-  EXPECT_LE(tree.levels(), 10U);
+  EXPECT_GT(tree.statistics().levels, 1U);
+  EXPECT_LE(tree.statistics().levels, 10U);
   EXPECT_GT(tree.statistics().cells, 1U);
 }
 
@@ -99,10 +98,10 @@ TEST(LooseFactor, of_any_value_gives_the_same_pairs) {
   for (const float loose : {-kInfinity, 0.0F, 1.0F, 1.5F, 2.0F, 100.0F, kInfinity,
                             std::numeric_limits<float>::quiet_NaN()}) {
     SCOPED_TRACE(loose);
-    LooseOctree octree({}, {.loose = loose});
+    Partition octree(loose_octree(loose));
     fill(octree, boxes);
     expect_right_pairs(octree, boxes);
-    LooseQuadtree quadtree({}, {.loose = loose});
+    Partition quadtree(loose_quadtree(loose));
     fill(quadtree, boxes);
     expect_right_pairs(quadtree, boxes);
   }
@@ -110,7 +109,7 @@ TEST(LooseFactor, of_any_value_gives_the_same_pairs) {
 
 TEST(LooseFactor, lets_objects_move_a_little_without_leaving_their_nodes) {
   std::vector<Aabb> boxes = mixed_boxes(4000);
-  LooseOctree tree;
+  Partition tree(loose_octree());
   const std::vector<Key> keys = fill(tree, boxes);
   ASSERT_EQ(tree.refresh(), Status::ok);
   const Statistics before = tree.statistics();

@@ -3,8 +3,6 @@
 
 #include <winnow/core/kdop.h>
 #include <winnow/core/sphere.h>
-#include "partitions/rows/row_partition.h"
-#include "partitions/structures/brute_force/bounds_n_squared.h"
 
 #include <cmath>
 #include <limits>
@@ -61,13 +59,9 @@ constexpr Volume volume_of(const Kdop<26>&) {
 
 class Volumes : public Conformance {
  protected:
-  std::unique_ptr<RowPartition> make(Volume volume) {
-    auto partition =
-        make_partition(config().partition, {.execution = config().execution(), .volume = volume});
-    auto* const rows = dynamic_cast<RowPartition*>(partition.get());
-    EXPECT_NE(rows, nullptr);
-    (void)partition.release();
-    return std::unique_ptr<RowPartition>(rows);
+  Partition make(Volume volume) {
+    return Partition(structure_named(config().partition),
+                     {.execution = config().execution(), .volume = volume});
   }
 
   std::vector<Pair> pairs_of(const Partition& partition, Threads& threads) {
@@ -82,8 +76,7 @@ class Volumes : public Conformance {
   void expect_right_kdops() {
     Threads threads(config().threads);
     for (const std::size_t n : {1U, 17U, 600U}) {
-      auto made = make(volume_of(Kdop<K>{}));
-      RowPartition& partition = *made;
+      Partition partition = make(volume_of(Kdop<K>{}));
       std::vector<Kdop<K>> kdops = kdops_in<K>(mixed_boxes(n));
       std::vector<Key> keys(n);
       ASSERT_EQ(partition.insert(std::span<const Kdop<K>>(kdops), {}, keys), Status::ok);
@@ -112,8 +105,7 @@ TEST_P(Volumes, that_are_26_dops_are_right) {
 TEST_P(Volumes, that_are_spheres_are_right) {
   Threads threads(config().threads);
   for (const double scale : {1.0, 1e-12, 1e12}) {
-    auto made = make(Volume::sphere);
-    RowPartition& partition = *made;
+    Partition partition = make(Volume::sphere);
     std::vector<Sphere> spheres = spheres_around(mixed_boxes(600));
     // Touching spheres on a lattice, on which rounding must not lose a pair.
     for (int i = 0; i < 60; ++i) {
@@ -145,8 +137,7 @@ TEST_P(Volumes, given_as_boxes_report_every_pair_of_boxes) {
   const std::vector<Pair> truth = true_pairs(numbered(boxes));
   for (const Volume volume :
        {Volume::aabb, Volume::sphere, Volume::kdop14, Volume::kdop18, Volume::kdop26}) {
-    auto made = make(volume);
-    RowPartition& partition = *made;
+    Partition partition = make(volume);
     std::vector<Key> keys(boxes.size());
     ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
     EXPECT_EQ(partition.volume(), volume);
@@ -166,21 +157,21 @@ TEST_P(Volumes, are_followed_from_frame_to_frame) {
   Threads threads(config().threads);
   std::vector<Aabb> boxes = uniform_boxes(700);
   const std::vector<Aabb> others = mixed_boxes(60);
-  BoundsNSquared other({.execution = config().execution()});
+  Partition other(bounds_n_squared(), {.execution = config().execution()});
   std::vector<Key> other_keys(others.size());
   ASSERT_EQ(other.insert(others, {}, other_keys), Status::ok);
   auto made = make(Volume::kdop18);
   std::vector<Kdop<18>> kdops = kdops_in<18>(boxes);
   std::vector<Key> keys(kdops.size());
-  ASSERT_EQ(made->insert(std::span<const Kdop<18>>(kdops), {}, keys), Status::ok);
+  ASSERT_EQ(made.insert(std::span<const Kdop<18>>(kdops), {}, keys), Status::ok);
   PairBuffer buffer;
   Random random(5);
   for (int frame = 0; frame < 4; ++frame) {
-    ASSERT_EQ(threads.run([&] { return made->self_pairs(buffer, {.order = Order::canonical}); }),
+    ASSERT_EQ(threads.run([&] { return made.self_pairs(buffer, {.order = Order::canonical}); }),
               Status::ok);
     EXPECT_EQ(std::vector<Pair>(buffer.begin(), buffer.end()), volume_pairs(kdops));
     PairBuffer cross;
-    ASSERT_EQ(made->pairs_with(other, cross, {.order = Order::canonical}), Status::ok);
+    ASSERT_EQ(made.pairs_with(other, cross, {.order = Order::canonical}), Status::ok);
     EXPECT_TRUE(
         right_cross_pairs(cross.pairs(), cross_pairs(numbered(boxes), numbered(others)), true));
     const std::vector<std::size_t> moved = move(Motion::few, boxes, random);
@@ -191,18 +182,18 @@ TEST_P(Volumes, are_followed_from_frame_to_frame) {
       some.push_back(keys[i]);
       shapes.push_back(kdops[i]);
     }
-    ASSERT_EQ(made->update(some, std::span<const Kdop<18>>(shapes)), Status::ok);
+    ASSERT_EQ(made.update(some, std::span<const Kdop<18>>(shapes)), Status::ok);
   }
-  EXPECT_GT(made->statistics().incremental_queries, 0U);
+  EXPECT_GT(made.statistics().incremental_queries, 0U);
 }
 
 TEST_P(Volumes, of_another_kind_than_the_partitions_are_refused) {
   std::vector<Key> keys(1);
   const std::vector<Sphere> sphere{{{0, 0, 0}, 1}};
   const std::vector<Kdop<14>> kdop{Kdop<14>::around(Aabb{{0, 0, 0}, {1, 1, 1}})};
-  BoundsNSquared boxes;
-  BoundsNSquared kdops({.volume = Volume::kdop26});
-  for (BoundsNSquared* partition : {&boxes, &kdops}) {
+  Partition boxes(bounds_n_squared());
+  Partition kdops(bounds_n_squared(), {.volume = Volume::kdop26});
+  for (Partition* partition : {&boxes, &kdops}) {
     EXPECT_EQ(partition->insert(sphere, {}, keys), Status::unsupported_volume);
     EXPECT_EQ(partition->insert(std::span<const Kdop<14>>(kdop), {}, keys),
               Status::unsupported_volume);
@@ -213,8 +204,7 @@ TEST_P(Volumes, of_another_kind_than_the_partitions_are_refused) {
 
 TEST_P(Volumes, that_are_invalid_change_nothing) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  auto made = make(Volume::sphere);
-  RowPartition& partition = *made;
+  Partition partition = make(Volume::sphere);
   std::vector<Sphere> spheres = spheres_around(uniform_boxes(40));
   std::vector<Key> keys(spheres.size());
   ASSERT_EQ(partition.insert(spheres, {}, keys), Status::ok);
@@ -233,7 +223,7 @@ TEST_P(Volumes, that_are_invalid_change_nothing) {
 std::vector<Config> volume_configs() {
   std::vector<Config> configs;
   for (const Config& config : all_configs()) {
-    if (config.partition == "NSquared" || config.partition == "AutoPartition") continue;
+    if (config.partition == "NSquared") continue;
     configs.push_back(config);
   }
   return configs;
@@ -242,20 +232,20 @@ std::vector<Config> volume_configs() {
 INSTANTIATE_TEST_SUITE_P(All, Volumes, testing::ValuesIn(volume_configs()),
                          testing::PrintToStringParamName());
 
-// AutoPartition hands its objects from one kind of partition to another.
 TEST(VolumesGivenAsBoxes, are_kept_by_every_partition) {
   const std::vector<Aabb> boxes = mixed_boxes(300);
-  for (const std::string_view name : partition_names()) {
+  for (const std::string_view name : structure_names()) {
     for (const Volume volume : {Volume::sphere, Volume::kdop26}) {
-      auto partition = make_partition(name, {.execution = Execution::serial(), .volume = volume});
+      Partition partition(structure_named(name),
+                          {.execution = Execution::serial(), .volume = volume});
       std::vector<Key> keys(boxes.size());
-      ASSERT_EQ(partition->insert(boxes, {}, keys), Status::ok);
-      EXPECT_FALSE(partition->is_exact());
+      ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
+      EXPECT_FALSE(partition.is_exact());
       PairBuffer buffer;
       for (int frame = 0; frame < 3; ++frame) {
-        ASSERT_EQ(partition->self_pairs(buffer, {.incremental = false}), Status::ok);
+        ASSERT_EQ(partition.self_pairs(buffer, {.incremental = false}), Status::ok);
         EXPECT_TRUE(right_pairs(buffer.pairs(), true_pairs(numbered(boxes)), false)) << name;
-        ASSERT_EQ(partition->update(keys, boxes), Status::ok);
+        ASSERT_EQ(partition.update(keys, boxes), Status::ok);
       }
     }
   }
@@ -266,13 +256,13 @@ TEST(VolumesGivenAsBoxes, are_pruned_as_boxes_are) {
   const std::vector<Aabb> boxes = uniform_boxes(5000);
   std::uint64_t tests_of_boxes = 0;
   for (const Volume volume : {Volume::aabb, Volume::kdop14, Volume::kdop26}) {
-    const auto partition =
-        make_partition("LinearBvh", {.execution = Execution::serial(), .volume = volume});
+    Partition partition(structure_named("LinearBvh"),
+                        {.execution = Execution::serial(), .volume = volume});
     std::vector<Key> keys(boxes.size());
-    ASSERT_EQ(partition->insert(boxes, {}, keys), Status::ok);
+    ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
     PairBuffer buffer;
-    ASSERT_EQ(partition->self_pairs(buffer), Status::ok);
-    const std::uint64_t tests = partition->statistics().last_tests;
+    ASSERT_EQ(partition.self_pairs(buffer), Status::ok);
+    const std::uint64_t tests = partition.statistics().last_tests;
     if (volume == Volume::aabb) tests_of_boxes = tests;
     EXPECT_LE(tests, tests_of_boxes + tests_of_boxes / 10);
   }

@@ -125,7 +125,7 @@ TEST_P(Work, is_less_than_half_in_a_frame_in_which_one_in_twenty_moves) {
 // Counters, never timings: one instruction set and one thread say what all do.
 std::vector<Config> configs_without(std::initializer_list<std::string_view> names) {
   std::vector<Config> configs;
-  for (const std::string_view name : partition_names()) {
+  for (const std::string_view name : structure_names()) {
     if (std::ranges::find(names, name) != names.end()) continue;
     configs.push_back({std::string(name), active_isa(), 1});
   }

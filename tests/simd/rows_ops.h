@@ -1,6 +1,6 @@
 #pragma once
 
-// Every operation of simd/rows.wide.h behind plain pointers.
+// Every operation of simd/lanes/rows.h behind plain pointers.
 
 #include "simd/kernels/kernels.h"
 

@@ -1,28 +1,28 @@
 #include "rows_ops.h"
 
-#include "simd/lanes/rows.wide.h"
+#include "simd/lanes/rows.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 namespace {
 
 template <int Count>
-void store_columns(const Double8 (&columns)[Count], double* out) {
+void store_columns(const Doubles (&columns)[Count], double* out) {
   for (int k = 0; k < Count; ++k) columns[k].store_unaligned(out + 8 * k);
 }
 
 void rows4(const double* const* rows, double* out) {
-  Double8 columns[4];
+  Doubles columns[4];
   load_rows4([&](int lane) { return rows[lane]; }, columns);
   store_columns(columns, out);
 }
 void differences4(const double* const* rows, const double* const* base, double* out) {
-  Double8 columns[4];
+  Doubles columns[4];
   load_differences4([&](int lane) { return rows[lane]; }, [&](int lane) { return base[lane]; },
                     columns);
   store_columns(columns, out);
 }
 void rows2(const double* const* rows, double* out) {
-  Double8 columns[2];
+  Doubles columns[2];
   load_rows2([&](int lane) { return rows[lane]; }, columns);
   store_columns(columns, out);
 }
@@ -30,10 +30,10 @@ void rows1(const double* const* rows, double* out) {
   load_rows1([&](int lane) { return rows[lane]; }).store_unaligned(out);
 }
 void single(const double* in, float* out) {
-  to_single(Double8::load_unaligned(in), Double8::load_unaligned(in + 8)).store_unaligned(out);
+  to_single(Doubles::load_unaligned(in), Doubles::load_unaligned(in + 8)).store_unaligned(out);
 }
 void both_halves(const float* in, double* out) {
-  const Single16 v = Single16::load_unaligned(in);
+  const Floats v = Floats::load_unaligned(in);
   to_double<0>(v).store_unaligned(out);
   to_double<1>(v).store_unaligned(out + 8);
 }
@@ -41,7 +41,7 @@ void bytes_to_words(std::uint64_t bytes, std::uint32_t base, std::uint32_t* out)
   store_bytes(bytes, base, out);
 }
 void negative(const double* in, double* out) {
-  (-Double8::load_unaligned(in)).store_unaligned(out);
+  (-Doubles::load_unaligned(in)).store_unaligned(out);
 }
 
 }  // namespace

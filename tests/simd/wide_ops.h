@@ -1,6 +1,6 @@
 #pragma once
 
-// Every operation of simd/wide.h and simd/compress.h behind plain pointers, so that an ordinary
+// Every operation of simd/lanes/lanes.h, boxes.h and compress.h behind plain pointers, so that an ordinary
 // test can compare each instruction set with a scalar loop. Arrays hold 16 elements unless said.
 
 #include "simd/kernels/kernels.h"

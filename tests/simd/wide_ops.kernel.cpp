@@ -1,5 +1,7 @@
+#include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
-#include "simd/lanes/wide.h"
+#include "simd/lanes/lanes.h"
+#include "simd/lanes/rows.h"
 
 #include "wide_ops.h"
 
@@ -10,49 +12,51 @@ namespace winnow::WINNOW_ISA_NAME {
 namespace {
 
 void load_store_floats(const float* in, float* out) {
-  store_unaligned(out, load(in));
+  Floats::load(in).store_unaligned(out);
 }
 void load_unaligned_store_floats(const float* in, float* out) {
-  store_unaligned(out, load_unaligned(in));
+  Floats::load_unaligned(in).store_unaligned(out);
 }
 void load_store_uints(const std::uint32_t* in, std::uint32_t* out) {
-  store_unaligned(out, load_unaligned(in));
+  Uints::load_unaligned(in).store_unaligned(out);
 }
 void broadcast_float(float value, float* out) {
-  store_unaligned(out, broadcast(value));
+  Floats(value).store_unaligned(out);
 }
 void broadcast_uint(std::uint32_t value, std::uint32_t* out) {
-  store_unaligned(out, broadcast(value));
+  Uints(value).store_unaligned(out);
 }
 void count_from_base(std::uint32_t base, std::uint32_t* out) {
-  store_unaligned(out, count_from(base));
+  count_from(base).store_unaligned(out);
 }
 void min_lanes(const float* a, const float* b, float* out) {
-  store_unaligned(out, min(load_unaligned(a), load_unaligned(b)));
+  min(Floats::load_unaligned(a), Floats::load_unaligned(b)).store_unaligned(out);
 }
 void max_lanes(const float* a, const float* b, float* out) {
-  store_unaligned(out, max(load_unaligned(a), load_unaligned(b)));
+  max(Floats::load_unaligned(a), Floats::load_unaligned(b)).store_unaligned(out);
 }
 void add_lanes(const float* a, const float* b, float* out) {
-  store_unaligned(out, add(load_unaligned(a), load_unaligned(b)));
+  (Floats::load_unaligned(a) + Floats::load_unaligned(b)).store_unaligned(out);
 }
 void multiply_lanes(const float* a, const float* b, float* out) {
-  store_unaligned(out, multiply(load_unaligned(a), load_unaligned(b)));
+  (Floats::load_unaligned(a) * Floats::load_unaligned(b)).store_unaligned(out);
 }
 void multiply_add_lanes(const float* a, const float* b, const float* c, float* out) {
-  store_unaligned(out, multiply_add(load_unaligned(a), load_unaligned(b), load_unaligned(c)));
+  multiply_add(Floats::load_unaligned(a), Floats::load_unaligned(b), Floats::load_unaligned(c))
+      .store_unaligned(out);
 }
 void keep_less_equal_lanes(const float* a, const float* b, const float* v, float* out) {
-  store_unaligned(out, keep_less_equal(load_unaligned(a), load_unaligned(b), load_unaligned(v)));
+  or_infinity(Floats::load_unaligned(a) <= Floats::load_unaligned(b), Floats::load_unaligned(v))
+      .store_unaligned(out);
 }
 std::uint32_t less_equal_lanes(const float* a, const float* b) {
-  return less_equal(load_unaligned(a), load_unaligned(b));
+  return bits(Floats::load_unaligned(a) <= Floats::load_unaligned(b));
 }
 float reduce_min_lanes(const float* in) {
-  return reduce_min(load_unaligned(in));
+  return reduce_min(Floats::load_unaligned(in));
 }
 float reduce_max_lanes(const float* in) {
-  return reduce_max(load_unaligned(in));
+  return reduce_max(Floats::load_unaligned(in));
 }
 unsigned count_bits(std::uint32_t mask) {
   return count(mask);
@@ -75,15 +79,15 @@ std::uint32_t overlap_unaligned_rows(const float* const* columns, std::size_t ro
 }
 
 unsigned compress_lanes(std::uint32_t mask, const std::uint32_t* in, std::uint32_t* out) {
-  return compress_store(mask, load_unaligned(in), out);
+  return compress_store(mask, Uints::load_unaligned(in), out);
 }
 unsigned compress_float_lanes(std::uint32_t mask, const float* in, float* out) {
-  return compress_store(mask, load_unaligned(in), out);
+  return compress_store(mask, Floats::load_unaligned(in), out);
 }
 template <bool Sorted>
 unsigned emit_lanes(std::uint32_t mask, const std::uint32_t* in, std::uint32_t q,
                     std::uint32_t* out) {
-  return emit_pairs<Sorted>(mask, load_unaligned(in), q, out);
+  return emit_pairs<Sorted>(mask, Uints::load_unaligned(in), q, out);
 }
 
 }  // namespace

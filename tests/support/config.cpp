@@ -41,6 +41,12 @@ std::vector<int> thread_counts() {
   return {1, 2, 8};
 }
 
+std::vector<std::string_view> structure_names() {
+  std::vector<std::string_view> names;
+  for (const StructureKind kind : all_structures()) names.push_back(kind.name());
+  return names;
+}
+
 namespace {
 
 /// Every instruction set, or the narrowest and the widest.
@@ -55,7 +61,7 @@ std::vector<Isa> tested_isas() {
 std::vector<Config> all_configs() {
   std::vector<Config> configs;
   const std::vector<Isa> isas = tested_isas();
-  for (const std::string_view partition : partition_names()) {
+  for (const std::string_view partition : structure_names()) {
     for (const Isa isa : isas) {
       for (const int threads : thread_counts()) {
         // In smaller runs every instruction set and every number of threads, but not each with
@@ -71,7 +77,7 @@ std::vector<Config> all_configs() {
 std::vector<Config> exact_configs() {
   std::vector<Config> configs;
   for (const Config& config : all_configs()) {
-    if (config.make()->is_exact()) configs.push_back(config);
+    if (config.make().is_exact()) configs.push_back(config);
   }
   return configs;
 }

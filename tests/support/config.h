@@ -5,16 +5,20 @@
 #include <winnow/partitions/partition.h>
 #include <winnow/simd/isa.h>
 
-#include <memory>
+#include <memory_resource>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace winnow::test {
 
-/// A partition, an instruction set and a number of threads (1 means Execution::serial()).
+/// Names of all structures, in the order of `all_structures()`.
+[[nodiscard]] std::vector<std::string_view> structure_names();
+
+/// A structure, an instruction set and a number of threads (1 means Execution::serial()).
 struct Config {
   std::string partition;
   Isa isa{};
@@ -23,9 +27,9 @@ struct Config {
   [[nodiscard]] Execution execution() const {
     return threads == 1 ? Execution::serial() : Execution::parallel();
   }
-  [[nodiscard]] std::unique_ptr<Partition> make(
+  [[nodiscard]] Partition make(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) const {
-    return make_partition(partition, {.memory = memory, .execution = execution()});
+    return Partition(structure_named(partition), {.memory = memory, .execution = execution()});
   }
 };
 

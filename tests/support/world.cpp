@@ -63,7 +63,7 @@ World::World(const Config& config, std::pmr::memory_resource* memory)
 
 std::vector<Key> World::insert(std::span<const Aabb> boxes, std::span<const ClientData> data) {
   std::vector<Key> keys(boxes.size());
-  const Status status = threads_.run([&] { return partition_->insert(boxes, data, keys); });
+  const Status status = threads_.run([&] { return partition_.insert(boxes, data, keys); });
   EXPECT_EQ(status, Status::ok);
   for (std::size_t i = 0; i < keys.size(); ++i) {
     EXPECT_FALSE(entries_.contains(keys[i].id)) << "a live object's id was given out again";
@@ -74,55 +74,55 @@ std::vector<Key> World::insert(std::span<const Aabb> boxes, std::span<const Clie
 
 Key World::insert(const Aabb& box, ClientData data) {
   Key key;
-  EXPECT_EQ(partition_->insert(box, data, key), Status::ok);
+  EXPECT_EQ(partition_.insert(box, data, key), Status::ok);
   EXPECT_FALSE(entries_.contains(key.id)) << "a live object's id was given out again";
   entries_[key.id] = {key, box, data, {}};
   return key;
 }
 
 void World::update(std::span<const Key> keys, std::span<const Aabb> boxes) {
-  const Status status = threads_.run([&] { return partition_->update(keys, boxes); });
+  const Status status = threads_.run([&] { return partition_.update(keys, boxes); });
   EXPECT_EQ(status, Status::ok);
   for (std::size_t i = 0; i < keys.size(); ++i) entries_.at(keys[i].id).box = boxes[i];
 }
 
 void World::update(Key key, const Aabb& box) {
-  EXPECT_EQ(partition_->update(key, box), Status::ok);
+  EXPECT_EQ(partition_.update(key, box), Status::ok);
   entries_.at(key.id).box = box;
 }
 
 void World::remove(std::span<const Key> keys) {
-  const Status status = threads_.run([&] { return partition_->remove(keys); });
+  const Status status = threads_.run([&] { return partition_.remove(keys); });
   EXPECT_EQ(status, Status::ok);
   for (const Key& key : keys) entries_.erase(key.id);
 }
 
 void World::remove(Key key) {
-  EXPECT_EQ(partition_->remove(key), Status::ok);
+  EXPECT_EQ(partition_.remove(key), Status::ok);
   entries_.erase(key.id);
 }
 
 void World::set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters) {
-  EXPECT_EQ(partition_->set_filter(keys, filters), Status::ok);
+  EXPECT_EQ(partition_.set_filter(keys, filters), Status::ok);
   for (std::size_t i = 0; i < keys.size(); ++i) entries_.at(keys[i].id).filter = filters[i];
 }
 
 void World::set_filter(Key key, const ObjectFilter& filter) {
-  EXPECT_EQ(partition_->set_filter(key, filter), Status::ok);
+  EXPECT_EQ(partition_.set_filter(key, filter), Status::ok);
   entries_.at(key.id).filter = filter;
 }
 
 void World::clear() {
-  partition_->clear();
+  partition_.clear();
   entries_.clear();
 }
 
 Status World::self_pairs(PairBuffer& buffer, const PairOptions& options) {
-  return threads_.run([&] { return partition_->self_pairs(buffer, options); });
+  return threads_.run([&] { return partition_.self_pairs(buffer, options); });
 }
 
 Status World::pairs_with(const Partition& other, PairBuffer& buffer, const PairOptions& options) {
-  return threads_.run([&] { return partition_->pairs_with(other, buffer, options); });
+  return threads_.run([&] { return partition_.pairs_with(other, buffer, options); });
 }
 
 testing::AssertionResult World::agrees(PairBuffer& buffer, const PairOptions& options) {
@@ -132,7 +132,7 @@ testing::AssertionResult World::agrees(PairBuffer& buffer, const PairOptions& op
   if (options.order == Order::canonical && !std::is_sorted(buffer.begin(), buffer.end())) {
     return testing::AssertionFailure() << "canonical order is not sorted";
   }
-  if (const Statistics s = partition_->statistics();
+  if (const Statistics s = partition_.statistics();
       s.objects != entries_.size() || s.last_pairs != buffer.size()) {
     return testing::AssertionFailure()
            << "statistics say " << s.objects << " objects and " << s.last_pairs << " pairs, not "
@@ -143,7 +143,7 @@ testing::AssertionResult World::agrees(PairBuffer& buffer, const PairOptions& op
 
 testing::AssertionResult World::has_pairs(const PairBuffer& buffer) const {
   if (const auto meet = may_all_meet(buffer.pairs()); !meet) return meet;
-  return right_pairs(buffer.pairs(), true_pairs(objects()), partition_->is_exact());
+  return right_pairs(buffer.pairs(), true_pairs(objects()), partition_.is_exact());
 }
 
 testing::AssertionResult World::may_all_meet(std::span<const Pair> pairs) const {
@@ -161,25 +161,25 @@ testing::AssertionResult World::agrees() {
 }
 
 testing::AssertionResult World::holds_its_objects() const {
-  if (partition_->size() != entries_.size()) {
+  if (partition_.size() != entries_.size()) {
     return testing::AssertionFailure()
-           << "size is " << partition_->size() << " instead of " << entries_.size();
+           << "size is " << partition_.size() << " instead of " << entries_.size();
   }
   for (const auto& [id, entry] : entries_) {
     Aabb box;
     ClientData data = ~entry.data;
-    if (!partition_->contains(entry.key) || partition_->key_of(id) != entry.key) {
+    if (!partition_.contains(entry.key) || partition_.key_of(id) != entry.key) {
       return testing::AssertionFailure() << "the key of object " << id << " is lost";
     }
-    if (partition_->bounds(entry.key, box) != Status::ok || !same_box(box, entry.box)) {
+    if (partition_.bounds(entry.key, box) != Status::ok || !same_box(box, entry.box)) {
       return testing::AssertionFailure() << "the box of object " << id << " is another";
     }
-    if (partition_->client_data(entry.key, data) != Status::ok || data != entry.data ||
-        partition_->client_data_of(id) != entry.data) {
+    if (partition_.client_data(entry.key, data) != Status::ok || data != entry.data ||
+        partition_.client_data_of(id) != entry.data) {
       return testing::AssertionFailure() << "the client data of object " << id << " is another";
     }
     ObjectFilter filter{~entry.filter.layers, 0, 0};
-    if (partition_->filter(entry.key, filter) != Status::ok || filter != entry.filter) {
+    if (partition_.filter(entry.key, filter) != Status::ok || filter != entry.filter) {
       return testing::AssertionFailure() << "the filter of object " << id << " is another";
     }
   }

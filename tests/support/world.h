@@ -37,8 +37,8 @@ class World {
   explicit World(const Config& config,
                  std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-  [[nodiscard]] Partition& partition() { return *partition_; }
-  [[nodiscard]] const Partition& partition() const { return *partition_; }
+  [[nodiscard]] Partition& partition() { return partition_; }
+  [[nodiscard]] const Partition& partition() const { return partition_; }
   [[nodiscard]] Threads& threads() { return threads_; }
 
   // Each must be accepted; each is told to the model.
@@ -74,7 +74,7 @@ class World {
 
  private:
   std::map<ObjectId, Entry> entries_;
-  std::unique_ptr<Partition> partition_;
+  Partition partition_;
   Threads threads_;
 };
 

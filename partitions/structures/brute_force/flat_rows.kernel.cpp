@@ -1,7 +1,8 @@
 #include "partitions/structures/brute_force/flat_rows.kernel.h"
-#include "partitions/pairs/hits.wide.h"
-#include "partitions/pairs/volume_tests.wide.h"
-#include "partitions/tree/tree_walk.wide.h"
+#include "partitions/tree/hits.wide.h"
+#include "partitions/tree/traversal.wide.h"
+#include "simd/lanes/boxes.h"
+#include "simd/lanes/compress.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -41,8 +42,8 @@ struct SlabTest {
   static Block load(const RowView& rows, std::size_t row) {
     Block block;
     for (int s = 0; s < Slabs; ++s) {
-      block.low[s] = WINNOW_ISA_NAME::load(rows.column[low_end(s)] + row);
-      block.high[s] = WINNOW_ISA_NAME::load(rows.column[high_end(s)] + row);
+      block.low[s] = Floats::load(rows.column[low_end(s)] + row);
+      block.high[s] = Floats::load(rows.column[high_end(s)] + row);
     }
     return block;
   }
@@ -77,8 +78,8 @@ struct SlabTest {
 /// Spheres.
 struct SphereTest {
   struct Block {
-    Float16 center[3];
-    Float16 radius;
+    Floats center[3];
+    Floats radius;
   };
   struct Query {
     float low[3];  // of a box; a sphere has low == high == centre
@@ -88,9 +89,9 @@ struct SphereTest {
   static Block load(const RowView& rows, std::size_t row) {
     Block b;
     for (int axis = 0; axis < 3; ++axis) {
-      b.center[axis] = WINNOW_ISA_NAME::load(rows.column[kBallCenter + axis] + row);
+      b.center[axis] = Floats::load(rows.column[kBallCenter + axis] + row);
     }
-    b.radius = WINNOW_ISA_NAME::load(rows.column[kBallRadius] + row);
+    b.radius = Floats::load(rows.column[kBallRadius] + row);
     return b;
   }
   static Query own(const RowView& rows, std::size_t r) { return ball(rows.column, r); }
@@ -122,7 +123,8 @@ struct SphereTest {
 
 /// Calls visit(block) for every block from `from` on that may hold something that `range` may meet.
 template <bool Filtered, typename Visit>
-bool for_blocks(const FlatView& view, std::uint32_t from, const FilterRange& range, Visit&& visit) {
+bool visit_blocks(const FlatView& view, std::uint32_t from, const FilterRange& range,
+                  Visit&& visit) {
   if (!Filtered || view.blocks.levels == 0) {
     const std::uint32_t blocks = (view.row_count + kLanes - 1) / kLanes;
     for (std::uint32_t b = from; b < blocks; ++b) {
@@ -131,9 +133,9 @@ bool for_blocks(const FlatView& view, std::uint32_t from, const FilterRange& ran
     return true;
   }
   const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
-    return passing_nodes(view.blocks.filters[level], first_node, 0xFFFFU, range);
+    return passing_nodes(view.blocks.filters[level], first_node, kAllRows, range);
   };
-  return walk(view.blocks, 0, from, test, visit);
+  return traverse_from(view.blocks, 0, from, test, visit);
 }
 
 /// All pairs of rows of block a with rows of block b >= a.
@@ -144,7 +146,7 @@ bool block_pair(const FlatView& view, std::uint32_t a, std::uint32_t b, PairSink
   const std::uint32_t rows =
       view.row_count - first_row < kLanes ? view.row_count - first_row : kLanes;
   const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
-  const Uint16 ids = load_unaligned(view.rows.id + std::size_t{b} * kLanes);
+  const Uints ids = Uints::load_unaligned(view.rows.id + std::size_t{b} * kLanes);
   FilterRange b_range{};
   if constexpr (Filtered) b_range = range_of(view.blocks.filters[0], b);
   std::uint32_t left_out = 0;
@@ -170,7 +172,7 @@ template <typename Test, bool Filtered>
 bool find_self_pairs(const FlatView& view, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
   for (std::uint32_t a = begin; a < end; ++a) {
     const FilterRange range = Filtered ? range_of(view.blocks.filters[0], a) : FilterRange{};
-    const bool done = for_blocks<Filtered>(view, a, range, [&](std::uint32_t b) {
+    const bool done = visit_blocks<Filtered>(view, a, range, [&](std::uint32_t b) {
       return block_pair<Test, Filtered>(view, a, b, sink);
     });
     if (!done) return false;
@@ -185,7 +187,7 @@ bool self_pairs(const FlatView& view, std::uint32_t begin, std::uint32_t end, Pa
 }
 
 template <typename Test>
-struct Query {
+struct FlatQuery {
   template <HitMode Mode, bool Filtered>
   static bool run(const FlatView& view, const QueryBatch& batch, PairSink& sink) {
     const AskingFilters filters(batch);
@@ -195,7 +197,7 @@ struct Query {
       const auto q = batch.is_box ? Test::box(batch, row) : Test::same(batch, row);
       const FilterRange range = Filtered ? filters.of(batch.id[row]) : FilterRange{};
       std::uint32_t tests = 0;
-      const bool done = for_blocks<Filtered>(view, 0, range, [&](std::uint32_t b) {
+      const bool done = visit_blocks<Filtered>(view, 0, range, [&](std::uint32_t b) {
         const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
         ++tests;
         Mask16 hits = batch.is_box ? Test::test_box(block, q) : Test::test(block, q);
@@ -217,7 +219,7 @@ struct Query {
 
 template <typename Test>
 bool query(const FlatView& view, const QueryBatch& batch, PairSink& sink) {
-  return with_mode<Query<Test>>(view, batch, sink);
+  return with_mode<FlatQuery<Test>>(view, batch, sink);
 }
 
 template <typename Test>

@@ -11,11 +11,9 @@
 namespace winnow {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 struct Extent {
-  float low = kInfinity;
-  float high = -kInfinity;
+  float low = kEndless;
+  float high = -kEndless;
 };
 
 // Where the finite ends of the first `count` rows lie; all of the axis if there are none.
@@ -28,7 +26,7 @@ Extent bounded_part(const RowView& rows, std::size_t axis, std::size_t count) no
       part.high = std::max(part.high, end);
     }
   }
-  return part.low <= part.high ? part : Extent{-kInfinity, kInfinity};
+  return part.low <= part.high ? part : Extent{-kEndless, kEndless};
 }
 
 class CellPicture {
@@ -106,16 +104,6 @@ void CellPicture::arrow(DebugDraw& draw, std::string_view meaning) const {
 }
 
 }  // namespace
-
-Aabb stored_box(const float* const columns[6], std::size_t row) noexcept {
-  Aabb box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<Eigen::Index>(axis);
-    box.min[a] = columns[axis][row] == -FLT_MAX ? -kInfinity : columns[axis][row];
-    box.max[a] = columns[3 + axis][row] == FLT_MAX ? kInfinity : columns[3 + axis][row];
-  }
-  return box;
-}
 
 void draw_cells(DebugDraw& draw, const CellLayout& layout, const RowView& rows,
                 const Column<std::uint32_t>& start, std::string_view meaning) {

@@ -2,17 +2,13 @@
 
 #include <winnow/core/column.h>
 #include <winnow/core/debug_draw.h>
-#include "partitions/pairs/pair_sink.h"
+#include "partitions/rows/rows.h"
 #include "partitions/structures/cells/cell_layout.h"
 
 #include <cstdint>
 #include <string_view>
 
 namespace winnow {
-
-/// The box of one row, with what is stored for an infinite end given back as infinite. A hole gives
-/// an empty box.
-[[nodiscard]] Aabb stored_box(const float* const columns[6], std::size_t row) noexcept;
 
 /// Draws every cell that holds an object, the box around what it holds, and an arrow along axis 0
 /// with its name and `meaning`. Cell c holds rows [start[c], start[c + 1]).

@@ -7,7 +7,6 @@
 namespace winnow {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kUnbounded = 1e30F;
 constexpr std::size_t kFewest = 64;  // below this the tree alone does as well
 constexpr double kMostCells = 2048;  // on an axis
@@ -201,7 +200,7 @@ bool CellLayout::lay_edges(const Trial& trial, const SceneSample& s) noexcept {
     const double low = static_cast<double>(s.low[axis.axis]);
     const double width = trial.width[axis.axis];
     // An axis that is not divided puts no bound on edges.
-    axis.reach = trial.divided[axis.axis] ? static_cast<float>(trial.reach[axis.axis]) : kInfinity;
+    axis.reach = trial.divided[axis.axis] ? static_cast<float>(trial.reach[axis.axis]) : kEndless;
     // Room for the rounding of the difference that is compared with it.
     axis.limit = axis.reach * 0.9999995F;
     const double slack = 0.499 * (width - trial.reach[axis.axis]);
@@ -209,8 +208,8 @@ bool CellLayout::lay_edges(const Trial& trial, const SceneSample& s) noexcept {
       from[c] = static_cast<float>(low + c * width - slack);
       to[c] = static_cast<float>(low + (c + 1) * width + slack);
     }
-    from[0] = -kInfinity;
-    to[axis.count - 1] = kInfinity;
+    from[0] = -kEndless;
+    to[axis.count - 1] = kEndless;
     axis.from = from;
     axis.to = to;
     axis.origin = s.low[axis.axis];

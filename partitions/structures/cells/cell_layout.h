@@ -7,9 +7,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory_resource>
 
 namespace winnow {
+
+/// Where an axis, or a box, has no end.
+inline constexpr float kEndless = std::numeric_limits<float>::infinity();
 
 /// Where and how large the objects of a scene are, from a sample: enough to lay out cells.
 struct SceneSample {

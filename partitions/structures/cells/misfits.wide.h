@@ -2,9 +2,9 @@
 
 // Which rows no longer keep to the bounds of their cell or strip.
 
-#include "partitions/pairs/pair_sink.h"
+#include "partitions/rows/row_view.h"
 #include "partitions/structures/cells/cell_axis.h"
-#include "simd/lanes/wide.h"
+#include "simd/lanes/lanes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -24,11 +24,11 @@ struct AxisBounds {
         limit(axis.limit) {}
 
   [[nodiscard]] Mask16 kept(std::size_t row) const {
-    const Float16 x = load_unaligned(low + row);
-    return less_equal(broadcast(from), x) & less_equal(x, broadcast(to)) & short_enough(x, row);
+    const Floats x = Floats::load_unaligned(low + row);
+    return bits(from <= x) & bits(x <= to) & short_enough(x, row);
   }
-  [[nodiscard]] Mask16 short_enough(const Float16& x, std::size_t row) const {
-    return less_equal(subtract(load_unaligned(high + row), x), broadcast(limit));
+  [[nodiscard]] Mask16 short_enough(const Floats& x, std::size_t row) const {
+    return bits(Floats::load_unaligned(high + row) - x <= limit);
   }
 };
 
@@ -39,7 +39,7 @@ std::uint32_t write_misfits(const RowView& rows, std::uint32_t begin, std::uint3
                             std::uint32_t* out, Kept&& kept) {
   std::uint32_t found = 0;
   for (std::uint32_t row = begin; row < end; row += kLanes) {
-    const Mask16 lanes = end - row < kLanes ? lanes_below(end - row) : 0xFFFFU;
+    const Mask16 lanes = end - row < kLanes ? lanes_below(end - row) : kAllRows;
     for (Mask16 bad = ~kept(row) & lanes; bad != 0; bad &= bad - 1) {
       const std::uint32_t r = row + first(bad);
       out[found] = r;

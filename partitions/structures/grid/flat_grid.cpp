@@ -1,8 +1,10 @@
-#include "partitions/structures/grid/flat_grid.h"
-
 #include "core/sort/counting_sort.h"
 #include "partitions/structures/cells/cell_drawing.h"
+#include "partitions/structures/cells/cell_layout.h"
 #include "partitions/structures/cells/task_lists.h"
+#include "partitions/structures/costs.h"
+#include "partitions/structures/grid/flat_grid.kernel.h"
+#include "partitions/structures/structure.h"
 
 #include <algorithm>
 
@@ -15,27 +17,60 @@ namespace {
 // More objects than this in a cell are pruned better by the tree.
 constexpr std::uint32_t kOverfull = 48;
 
-}  // namespace
+/// Uniform grid: each object belongs to the one cell of its box's lower corner, and rows are sorted
+/// by cell (counting sort), so that the cells of a line are one run of rows. 16 rows of a line look
+/// for partners together, behind them in their own line and in the neighbouring ones: each pair is
+/// met once and no object is stored twice. Cells are wider than the boxes by a slack that objects
+/// may drift within, so that slow scenes keep their order for many frames. Cell size, the axis that
+/// runs fastest, and which objects are too large for cells come from a sample of the scene at each
+/// build. Objects too large or in overfull cells go to a block tree and are asked against the grid.
+/// Self pairs: O(n + cells + pairs) where density is even. Exact.
+class FlatGrid final : public Structure {
+ public:
+  explicit FlatGrid(const StructureInput& input) noexcept;
 
-FlatGrid::FlatGrid(const PartitionOptions& options)
-    : RowPartition(options, options.volume),
-      layout_(options.memory),
-      start_(options.memory),
-      cell_(options.memory) {}
+ private:
+  [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
+  [[nodiscard]] bool fits(std::size_t row) const noexcept override;
+  void find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept override;
+  [[nodiscard]] std::size_t pair_tasks() const noexcept override;
+  bool run_pair_task(std::size_t task, PairSink& sink) const noexcept override;
+  bool query(const QueryBatch& batch, PairSink& sink) const noexcept override;
+  void draw(DebugDraw& draw) const override;
+  void release_memory() noexcept override;
+  void add_bytes(Footprint& footprint) const noexcept override;
+  [[nodiscard]] std::size_t cells() const noexcept override;
 
-bool FlatGrid::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) {
+  void count_cells() noexcept;
+  void drop_overfull() noexcept;
+  [[nodiscard]] std::size_t lines() const noexcept;
+  [[nodiscard]] std::uint32_t first_line(std::size_t task) const noexcept;
+  [[nodiscard]] GridView view() const noexcept;
+
+  CellLayout layout_;
+  Column<std::uint32_t> start_;  // first row of each cell, and the end
+  Column<std::uint32_t> cell_;   // cell of each row, while building; then scratch
+};
+
+FlatGrid::FlatGrid(const StructureInput& input) noexcept
+    : Structure(input), layout_(input.memory), start_(input.memory), cell_(input.memory) {}
+
+bool FlatGrid::plan(const RowPlan& plan) noexcept {
   const SceneSample sample(pool());
   if (!layout_.choose(sample, {.rows_per_block = 10})) return false;
-  if (!layout_.usable()) return RowPartition::plan(regular, rest);
+  if (!layout_.usable()) {
+    leave_all(plan);
+    return true;
+  }
   if (!cell_.resize(pool().rows()) || !start_.resize(layout_.cells() + 1)) return false;
   count_cells();
   drop_overfull();
-  regular.set_size(positions_from_counts(start_));
+  plan.regular.set_size(positions_from_counts(start_));
   for (std::size_t row = 0; row < pool().rows(); ++row) {
     if (cell_[row] != CellLayout::kNoCell) {
-      regular[start_[cell_[row]]++] = static_cast<std::uint32_t>(row);
+      plan.regular[start_[cell_[row]]++] = static_cast<std::uint32_t>(row);
     } else if (pool().ids()[row] != kNoObject) {
-      (void)rest.push_back(static_cast<std::uint32_t>(row));
+      (void)plan.rest.push_back(static_cast<std::uint32_t>(row));
     }
   }
   starts_from_positions(start_);
@@ -72,7 +107,7 @@ void FlatGrid::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noex
   const GridView grid = view();
   const std::size_t cells = layout_.axis(0).count;
   append_in_order(
-      execution(), regular_tasks(), cell_.data(),
+      execution(), pair_tasks(), cell_.data(),
       [&](std::size_t task) { return start_[first_line(task) * cells]; },
       [&](std::size_t task, std::uint32_t* out) {
         return flat_grid_kernels().find_misfits(grid, first_line(task), first_line(task + 1), out);
@@ -81,22 +116,22 @@ void FlatGrid::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noex
 }
 
 std::uint32_t FlatGrid::first_line(std::size_t task) const noexcept {
-  return static_cast<std::uint32_t>(lines() * task / regular_tasks());
+  return static_cast<std::uint32_t>(lines() * task / pair_tasks());
 }
 
 std::size_t FlatGrid::lines() const noexcept {
   return std::size_t{layout_.axis(1).count} * layout_.axis(2).count;
 }
 
-std::size_t FlatGrid::regular_tasks() const noexcept {
+std::size_t FlatGrid::pair_tasks() const noexcept {
   return regular_rows() == 0 ? 0 : std::min(kMostTasks, lines());
 }
 
-bool FlatGrid::run_regular_task(std::size_t task, PairSink& sink) const noexcept {
+bool FlatGrid::run_pair_task(std::size_t task, PairSink& sink) const noexcept {
   return flat_grid_kernels().self_pairs(view(), first_line(task), first_line(task + 1), sink);
 }
 
-bool FlatGrid::query_regular(const QueryBatch& batch, PairSink& sink) const noexcept {
+bool FlatGrid::query(const QueryBatch& batch, PairSink& sink) const noexcept {
   return flat_grid_kernels().query(view(), batch, sink);
 }
 
@@ -104,24 +139,43 @@ GridView FlatGrid::view() const noexcept {
   return {row_view(), start_.data(), {layout_.axis(0), layout_.axis(1), layout_.axis(2)}};
 }
 
-void FlatGrid::draw_regular(DebugDraw& draw, const DebugDrawOptions&) const {
+void FlatGrid::draw(DebugDraw& draw) const {
   draw_cells(draw, layout_, row_view(), start_, "runs fastest");
 }
 
-void FlatGrid::release_structure() noexcept {
+void FlatGrid::release_memory() noexcept {
   layout_.release();
   start_.release();
   cell_.release();
 }
 
-void FlatGrid::add_structure_bytes(Footprint& footprint) const noexcept {
+void FlatGrid::add_bytes(Footprint& footprint) const noexcept {
   footprint.structure += layout_.bytes();
   footprint.structure += start_.bytes();
   footprint.scratch += cell_.bytes();
 }
 
-std::size_t FlatGrid::cell_count() const noexcept {
-  return regular_rows() == 0 ? RowPartition::cell_count() : layout_.cells();
+std::size_t FlatGrid::cells() const noexcept {
+  return layout_.cells();
+}
+
+constexpr StructureCosts kCosts{.has_cells = true,
+                                .frame = 640,
+                                .keep = 15,
+                                .object = 7.5,
+                                .crowd = 6.3,
+                                .pair = 7.4,
+                                .moved = 190,
+                                .rest = 1.3,
+                                .build = 60,
+                                .ask_level = 36,
+                                .rows = 1.5};
+constexpr StructureInfo kInfo = structure_info<FlatGrid>("FlatGrid", &kCosts);
+
+}  // namespace
+
+StructureKind flat_grid() noexcept {
+  return StructureKind(kInfo);
 }
 
 }  // namespace winnow

@@ -17,11 +17,6 @@ Run run_of(const GridView& grid, std::uint32_t line, std::uint32_t first, std::u
   return {start[first], start[last + 1]};
 }
 
-/// A run of cells is tested to its end.
-struct ToTheEnd {
-  bool operator()(const QueryBox&, std::uint32_t) const { return true; }
-};
-
 /// Adds the rows that may touch a block of line `own`, of that line and those behind it.
 template <bool Filtered>
 bool add_neighbours(const GridView& grid, std::uint32_t own, BlockPairs<Filtered>& pairs) {
@@ -63,7 +58,7 @@ bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, Pa
                                      : find_self_pairs<false>(grid, begin, end, sink);
 }
 
-struct Query {
+struct GridQuery {
   template <HitMode Mode, bool Filtered>
   static bool run(const GridView& grid, const QueryBatch& batch, PairSink& sink) {
     HitList<Mode, Filtered> hits(grid.rows, batch, sink);
@@ -98,7 +93,7 @@ struct Query {
 };
 
 bool query(const GridView& grid, const QueryBatch& batch, PairSink& sink) {
-  return with_mode<Query>(grid, batch, sink);
+  return with_mode<GridQuery>(grid, batch, sink);
 }
 
 bool holds(const std::uint32_t* rows, std::uint32_t count, std::uint32_t row) {
@@ -143,7 +138,7 @@ std::uint32_t find_misfits(const GridView& grid, std::uint32_t begin, std::uint3
     const std::uint32_t wide =
         write_misfits(grid.rows, start[0], start[cells], line_out, [&](std::size_t row) {
           return mid.kept(row) & slow.kept(row) &
-                 along.short_enough(load_unaligned(along.low + row), row);
+                 along.short_enough(Floats::load_unaligned(along.low + row), row);
         });
     found += left_along_line(grid, start, line_out, wide);
   }

@@ -1,10 +1,15 @@
-#include "partitions/structures/levels/hierarchical_grid.h"
-
 #include <winnow/partitions/debug_colours.h>
+#include "core/sort/radix_sort.h"
 #include "partitions/structures/cells/cell_drawing.h"
 #include "partitions/structures/cells/task_lists.h"
+#include "partitions/structures/costs.h"
+#include "partitions/structures/levels/hierarchical_grid.kernel.h"
+#include "partitions/structures/levels/level_layout.h"
+#include "partitions/structures/structure.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 
 namespace winnow {
 
@@ -12,7 +17,12 @@ WINNOW_DEFINE_KERNELS(HierarchicalGridKernels, hierarchical_grid_kernels)
 
 namespace {
 
-constexpr std::size_t kBlock = BoundsPool::kBlock;
+constexpr std::size_t kFewest = 64;  // below this the tree alone does as well
+// More objects than this in a cell, beyond what its line is cut into, are pruned better by the
+// tree.
+constexpr std::size_t kCrowd = 512;
+// Objects for each cell of a line.
+constexpr std::size_t kInCell = 4;
 
 // One colour for each level, beside those of other things: from Okabe and Ito, as these, and darker
 // from the sixth level on.
@@ -53,18 +63,268 @@ Aabb cell_box(const GridLevel& g, const GridLine& line, std::uint32_t number, st
   return box;
 }
 
-}  // namespace
+/// Uniform grids laid over each other, one for each range of sizes (Overmars, "Point location in
+/// fat subdivisions", Information Processing Letters 44, 1992; Ericson, "Real-Time Collision
+/// Detection", 2005, 7.2), for scenes of small and large objects, up to 1e12 : 1. Which ranges of
+/// sizes get a level of their own is worked out at each build from how many objects of which size
+/// there are: a scene of one size has one level. No parameter, no world bounds.
+///
+/// An object belongs to the one cell, of its level, of its box's lower corner. Cells lie in lines
+/// of which only those are stored that hold objects, and a line's cells reach from its first object
+/// to its last: memory follows the number of objects, whatever the size of the world. Rows are
+/// sorted by level, line and cell; 16 rows that follow each other lie close together and look for
+/// partners together, in their own level and in those of larger objects, so each pair is met once.
+/// Objects may drift from their cell by a slack, so that slow scenes keep their order for many
+/// frames.
+///
+/// Unbounded objects, those of sizes beyond 1e12 : 1, and crowds that no cell tells apart go to a
+/// block tree and are asked against the levels. Self pairs: O(n log n + n * levels + pairs) where
+/// density is even. Exact. `statistics().cells` counts the cells of all levels.
+class HierarchicalGrid final : public Structure {
+ public:
+  explicit HierarchicalGrid(const StructureInput& input) noexcept;
 
-HierarchicalGrid::HierarchicalGrid(const PartitionOptions& options)
-    : RowPartition(options, options.volume),
-      line_(options.memory),
-      number_(options.memory),
-      rank_(options.memory),
-      start_(options.memory),
-      key_(options.memory),
-      list_(options.memory) {}
+  /// Levels made by the last build, 0 if it made none.
+  [[nodiscard]] std::size_t levels() const noexcept override {
+    return regular_rows() == 0 ? 0 : level_count_;
+  }
 
-void HierarchicalGrid::finish_build() {
+ private:
+  [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
+  void finish_build() noexcept override;
+  [[nodiscard]] bool fits(std::size_t row) const noexcept override;
+  void find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept override;
+  [[nodiscard]] std::size_t pair_tasks() const noexcept override;
+  bool run_pair_task(std::size_t task, PairSink& sink) const noexcept override;
+  bool query(const QueryBatch& batch, PairSink& sink) const noexcept override;
+  void draw(DebugDraw& draw) const override;
+  void release_memory() noexcept override;
+  void add_bytes(Footprint& footprint) const noexcept override;
+  [[nodiscard]] std::size_t cells() const noexcept override;
+
+  struct Sorted;
+  void sort_by_level(const SizeClasses& classes, std::span<std::uint32_t> end,
+                     const RowPlan& plan) noexcept;
+  bool build_level(std::span<const std::uint32_t> rows, const RowPlan& plan) noexcept;
+  bool add_line(const Sorted& sorted, std::size_t begin, std::size_t end, const RowPlan& plan);
+  bool rank_lines(GridLevel& level);
+  [[nodiscard]] std::uint32_t line_of(const GridLevel& level, std::size_t row) const noexcept;
+  [[nodiscard]] std::uint32_t first_line(std::size_t task) const noexcept;
+  [[nodiscard]] LevelsView view() const noexcept;
+
+  std::array<GridLevel, kMostLevels> level_;
+  std::size_t level_count_ = 0;
+  Column<GridLine> line_;
+  Column<std::uint32_t> number_;  // of each line
+  Column<std::uint32_t> rank_;    // lines below each number, level by level
+  Column<std::uint32_t> start_;   // first row of each cell, and the end
+  Column<float> key_;             // by row: lower end on the fast axis at the build
+  Column<std::uint32_t> list_;    // rows by level, while building; then scratch
+};
+
+HierarchicalGrid::HierarchicalGrid(const StructureInput& input) noexcept
+    : Structure(input),
+      line_(input.memory),
+      number_(input.memory),
+      rank_(input.memory),
+      start_(input.memory),
+      key_(input.memory),
+      list_(input.memory) {}
+
+struct Place {
+  std::uint32_t line;
+  std::uint32_t step;
+};
+
+Place place_of(const GridLevel& g, const BoundsPool& pool, std::size_t row) noexcept {
+  const std::uint32_t mid = cell_at(g.mid, pool.column(g.mid.axis)[row]);
+  const std::uint32_t slow = cell_at(g.slow, pool.column(g.slow.axis)[row]);
+  const std::uint32_t step = cell_at(g.fast, pool.column(g.fast.axis)[row]);
+  const std::uint32_t line = line_number(g, mid, slow);
+  return {line, (line & 1U) != 0 ? g.steps - step : step};
+}
+
+/// Rows of a level in the order of their cells.
+struct HierarchicalGrid::Sorted {
+  const BoundsPool& pool;
+  const GridLevel& level;
+  const std::uint64_t* items = nullptr;
+  std::size_t count = 0;
+  unsigned step_bits = 0;
+  bool packed = false;  ///< line and step fit in an item's upper half, else only the line does
+
+  [[nodiscard]] std::uint32_t row(std::size_t i) const {
+    return static_cast<std::uint32_t>(items[i]);
+  }
+  [[nodiscard]] std::uint32_t line(std::size_t i) const {
+    const std::uint64_t key = items[i] >> 32U;
+    return static_cast<std::uint32_t>(packed ? key >> step_bits : key);
+  }
+  [[nodiscard]] std::uint32_t step(std::size_t i) const {
+    if (packed) return static_cast<std::uint32_t>(items[i] >> 32U) & level.steps;
+    return place_of(level, pool, row(i)).step;
+  }
+
+  void sort(std::uint64_t* room, std::uint64_t* spare, std::span<const std::uint32_t> rows,
+            const Execution& execution) {
+    count = rows.size();
+    step_bits = static_cast<unsigned>(std::bit_width(level.steps));
+    const std::uint32_t last_line =
+        level.mids * (static_cast<std::uint32_t>(level.slow.last) + 1) - 1;
+    const auto line_bits = static_cast<unsigned>(std::bit_width(last_line));
+    packed = line_bits + step_bits <= 32;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Place place = place_of(level, pool, rows[i]);
+      const std::uint64_t key =
+          packed ? std::uint64_t{place.line} << step_bits | place.step : place.step;
+      room[i] = key << 32U | rows[i];
+    }
+    if (packed && count < 1024) {
+      std::sort(room, room + count);
+      items = room;
+      return;
+    }
+    const unsigned bits = packed ? line_bits + step_bits : step_bits;
+    std::uint64_t* sorted = radix_sort(room, spare, count, bits, execution);
+    if (!packed) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto row_number = static_cast<std::uint32_t>(sorted[i]);
+        const Place place = place_of(level, pool, row_number);
+        sorted[i] = std::uint64_t{place.line} << 32U | row_number;
+      }
+      sorted = radix_sort(sorted, sorted == room ? spare : room, count, line_bits, execution);
+    }
+    items = sorted;
+  }
+};
+
+bool HierarchicalGrid::plan(const RowPlan& plan) noexcept {
+  const SizeClasses classes(pool());
+  level_count_ = 0;
+  if (classes.objects() < kFewest) {
+    leave_all(plan);
+    return true;
+  }
+  // By objects, not rows, so that a later build of as many asks for no more.
+  const std::size_t objects = classes.objects();
+  const std::size_t room = objects + (kMostLevels + 1) * kBlockRows;
+  if (!list_.reserve(room) || !key_.reserve(room) || !plan.regular.reserve(room + kBlockRows) ||
+      !plan.items.resize(2 * objects)) {
+    return false;
+  }
+  list_.set_size(objects);
+  std::array<std::uint32_t, kMostLevels + 1> end{};
+  sort_by_level(classes, end, plan);
+  line_.clear();
+  number_.clear();
+  rank_.clear();
+  start_.clear();
+  std::uint32_t begin = 0;
+  for (std::size_t l = 0; l < classes.levels(); ++l) {
+    const std::span<const std::uint32_t> own(list_.data() + begin, end[l] - begin);
+    begin = end[l];
+    if (!build_level(own, plan)) return false;
+  }
+  key_.set_size(plan.regular.size() + kBlockRows);
+  return start_.push_back(static_cast<std::uint32_t>(plan.regular.size()));
+}
+
+// Puts the rows of each level together in list_, and where each ends into `end`.
+void HierarchicalGrid::sort_by_level(const SizeClasses& classes, std::span<std::uint32_t> end,
+                                     const RowPlan& plan) noexcept {
+  const std::size_t rows = pool().rows();
+  std::array<std::uint32_t, kMostLevels + 2> at{};
+  for (std::size_t row = 0; row < rows; ++row) {
+    if (pool().ids()[row] != kNoObject) ++at[classes.level_of(longest_edge(pool(), row)) + 1];
+  }
+  for (std::size_t l = 0; l < classes.levels(); ++l) at[l + 1] += at[l];
+  for (std::size_t row = 0; row < rows; ++row) {
+    if (pool().ids()[row] == kNoObject) continue;
+    const std::size_t level = classes.level_of(longest_edge(pool(), row));
+    if (level == classes.levels()) {
+      (void)plan.rest.push_back(static_cast<std::uint32_t>(row));
+    } else {
+      list_[at[level]++] = static_cast<std::uint32_t>(row);
+    }
+  }
+  std::copy_n(at.begin(), classes.levels(), end.begin());
+}
+
+bool HierarchicalGrid::build_level(std::span<const std::uint32_t> rows,
+                                   const RowPlan& plan) noexcept {
+  GridLevel& level = level_[level_count_];
+  lay_level(pool(), rows, level);
+  Sorted sorted{pool(), level};
+  std::uint64_t* const room = plan.items.data();
+  sorted.sort(room, room + plan.items.size() / 2, rows, execution());
+  level.first_row = static_cast<std::uint32_t>(plan.regular.size());
+  level.first_line = static_cast<std::uint32_t>(line_.size());
+  std::size_t next = 0;
+  for (std::size_t begin = 0; begin < sorted.count; begin = next) {
+    next = begin + 1;
+    while (next < sorted.count && sorted.line(next) == sorted.line(begin)) ++next;
+    if (!add_line(sorted, begin, next, plan)) return false;
+  }
+  level.end_row = static_cast<std::uint32_t>(plan.regular.size());
+  level.end_line = static_cast<std::uint32_t>(line_.size());
+  if (level.end_row == level.first_row) return true;
+  // No block of rows belongs to two levels.
+  while (plan.regular.size() % kBlockRows != 0) {
+    if (!plan.regular.push_back(kNoObject)) return false;
+  }
+  ++level_count_;
+  return rank_lines(level);
+}
+
+// Cuts a line into cells of a few objects each, were they spread evenly.
+bool HierarchicalGrid::add_line(const Sorted& sorted, std::size_t begin, std::size_t end,
+                                const RowPlan& plan) {
+  const std::size_t most = (end - begin + kInCell - 1) / kInCell;
+  GridLine line;
+  line.first = sorted.step(begin);
+  line.cell = static_cast<std::uint32_t>(start_.size());
+  const std::uint32_t length = sorted.step(end - 1) - line.first;
+  while ((length >> line.shift) >= most) ++line.shift;
+  line.last_cell = length >> line.shift;
+  if (!start_.grow(start_.size() + line.last_cell + 1)) return false;
+  const std::size_t before = plan.regular.size();
+  std::uint32_t cells = 0;
+  std::size_t next = 0;
+  for (std::size_t i = begin; i < end; i = next) {
+    const std::uint32_t cell = (sorted.step(i) - line.first) >> line.shift;
+    next = i + 1;
+    while (next < end && (sorted.step(next) - line.first) >> line.shift == cell) ++next;
+    for (; cells <= cell; ++cells) {
+      (void)start_.push_back(static_cast<std::uint32_t>(plan.regular.size()));
+    }
+    Column<std::uint32_t>& to = next - i > kCrowd ? plan.rest : plan.regular;
+    for (std::size_t k = i; k < next; ++k) (void)to.push_back(sorted.row(k));
+  }
+  if (plan.regular.size() == before) {
+    start_.set_size(line.cell);
+    return true;
+  }
+  return line_.push_back(line) && number_.push_back(sorted.line(begin));
+}
+
+// A table of all lines where they are not many more than the objects.
+bool HierarchicalGrid::rank_lines(GridLevel& level) {
+  const std::size_t lines =
+      std::size_t{level.mids} * (static_cast<std::size_t>(level.slow.last) + 1);
+  level.first_rank = static_cast<std::uint32_t>(rank_.size());
+  level.ranked = lines <= (level.end_row - level.first_row) / 2 + 16;
+  if (!level.ranked) return true;
+  if (!rank_.resize(rank_.size() + lines + 1)) return false;
+  std::uint32_t* const rank = rank_.data() + level.first_rank;
+  std::size_t number = 0;
+  for (std::uint32_t line = level.first_line; line < level.end_line; ++line) {
+    while (number <= number_[line]) rank[number++] = line;
+  }
+  while (number <= lines) rank[number++] = level.end_line;
+  return true;
+}
+
+void HierarchicalGrid::finish_build() noexcept {
   for (std::size_t l = 0; l < level_count_ && regular_rows() != 0; ++l) {
     const GridLevel& level = level_[l];
     const float* const low = pool().column(level.fast.axis);
@@ -130,18 +390,18 @@ std::uint32_t HierarchicalGrid::first_line(std::size_t task) const noexcept {
   return static_cast<std::uint32_t>(line_.size() * task / std::min(kMostTasks, line_.size()));
 }
 
-std::size_t HierarchicalGrid::regular_tasks() const noexcept {
-  return std::min(kMostTasks, (regular_rows() + kBlock - 1) / kBlock);
+std::size_t HierarchicalGrid::pair_tasks() const noexcept {
+  return std::min(kMostTasks, (regular_rows() + kBlockRows - 1) / kBlockRows);
 }
 
-bool HierarchicalGrid::run_regular_task(std::size_t task, PairSink& sink) const noexcept {
-  const std::size_t blocks = (regular_rows() + kBlock - 1) / kBlock;
-  const auto begin = static_cast<std::uint32_t>(blocks * task / regular_tasks());
-  const auto end = static_cast<std::uint32_t>(blocks * (task + 1) / regular_tasks());
+bool HierarchicalGrid::run_pair_task(std::size_t task, PairSink& sink) const noexcept {
+  const std::size_t blocks = (regular_rows() + kBlockRows - 1) / kBlockRows;
+  const auto begin = static_cast<std::uint32_t>(blocks * task / pair_tasks());
+  const auto end = static_cast<std::uint32_t>(blocks * (task + 1) / pair_tasks());
   return hierarchical_grid_kernels().self_pairs(view(), begin, end, sink);
 }
 
-bool HierarchicalGrid::query_regular(const QueryBatch& batch, PairSink& sink) const noexcept {
+bool HierarchicalGrid::query(const QueryBatch& batch, PairSink& sink) const noexcept {
   return hierarchical_grid_kernels().query(view(), batch, sink);
 }
 
@@ -151,7 +411,7 @@ LevelsView HierarchicalGrid::view() const noexcept {
           start_.data(), key_.data()};
 }
 
-void HierarchicalGrid::draw_regular(DebugDraw& draw, const DebugDrawOptions&) const {
+void HierarchicalGrid::draw(DebugDraw& draw) const {
   for (std::size_t l = 0; l < level_count_; ++l) {
     const GridLevel& g = level_[l];
     for (std::uint32_t i = g.first_line; i < g.end_line; ++i) {
@@ -169,7 +429,7 @@ void HierarchicalGrid::draw_regular(DebugDraw& draw, const DebugDrawOptions&) co
   }
 }
 
-void HierarchicalGrid::release_structure() noexcept {
+void HierarchicalGrid::release_memory() noexcept {
   line_.release();
   number_.release();
   rank_.release();
@@ -178,7 +438,7 @@ void HierarchicalGrid::release_structure() noexcept {
   list_.release();
 }
 
-void HierarchicalGrid::add_structure_bytes(Footprint& footprint) const noexcept {
+void HierarchicalGrid::add_bytes(Footprint& footprint) const noexcept {
   footprint.structure += line_.bytes();
   footprint.structure += number_.bytes();
   footprint.structure += rank_.bytes();
@@ -187,9 +447,28 @@ void HierarchicalGrid::add_structure_bytes(Footprint& footprint) const noexcept 
   footprint.scratch += list_.bytes();
 }
 
-std::size_t HierarchicalGrid::cell_count() const noexcept {
-  if (regular_rows() == 0) return RowPartition::cell_count();
+std::size_t HierarchicalGrid::cells() const noexcept {
   return start_.empty() ? 0 : start_.size() - 1;
+}
+
+constexpr StructureCosts kCosts{.has_cells = true,
+                                .frame = 2160,
+                                .keep = 15,
+                                .level = 0.14,
+                                .crowd = 2.4,
+                                .pair = 4.9,
+                                .moved = 190,
+                                .rest = 1.0,
+                                .build = 150,
+                                .ask = 40,
+                                .ask_level = 24,
+                                .rows = 1.0};
+constexpr StructureInfo kInfo = structure_info<HierarchicalGrid>("HierarchicalGrid", &kCosts);
+
+}  // namespace
+
+StructureKind hierarchical_grid() noexcept {
+  return StructureKind(kInfo);
 }
 
 }  // namespace winnow

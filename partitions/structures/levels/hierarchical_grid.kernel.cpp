@@ -86,12 +86,7 @@ bool self_pairs(const LevelsView& grid, std::uint32_t begin, std::uint32_t end, 
                                      : find_self_pairs<false>(grid, begin, end, sink);
 }
 
-/// A run of cells is tested to its end.
-struct ToTheEnd {
-  bool operator()(const QueryBox&, std::uint32_t) const { return true; }
-};
-
-struct Query {
+struct LevelsQuery {
   template <HitMode Mode, bool Filtered>
   static bool run(const LevelsView& grid, const QueryBatch& batch, PairSink& sink) {
     HitList<Mode, Filtered> hits(grid.rows, batch, sink);
@@ -112,7 +107,7 @@ struct Query {
 };
 
 bool query(const LevelsView& grid, const QueryBatch& batch, PairSink& sink) {
-  return with_mode<Query>(grid, batch, sink);
+  return with_mode<LevelsQuery>(grid, batch, sink);
 }
 
 /// The rows that may stay in one cell of an axis.
@@ -128,25 +123,21 @@ class Keeping {
                                                   : static_cast<float>(cell + 1)) {}
 
   [[nodiscard]] Mask16 kept(std::size_t row) const {
-    const Float16 x = load_unaligned(low_ + row);
-    const Float16 slack = broadcast(axis_.slack);
-    return less_equal(broadcast(from_), place(add(x, slack))) &
-           ~less_equal(broadcast(to_), place(subtract(x, slack))) & short_enough(x, row);
+    const Floats x = Floats::load_unaligned(low_ + row);
+    const Floats slack = Floats(axis_.slack);
+    return bits(from_ <= place(x + slack)) & ~bits(to_ <= place(x - slack)) & short_enough(x, row);
   }
   [[nodiscard]] Mask16 near_key(std::size_t row, const float* key) const {
-    const Float16 x = load_unaligned(low_ + row);
-    const Float16 slack = broadcast(axis_.slack);
-    const Float16 at = load_unaligned(key + row);
-    return less_equal(subtract(x, slack), at) & less_equal(at, add(x, slack)) &
-           short_enough(x, row);
+    const Floats x = Floats::load_unaligned(low_ + row);
+    const Floats slack = Floats(axis_.slack);
+    const Floats at = Floats::load_unaligned(key + row);
+    return bits(x - slack <= at) & bits(at <= x + slack) & short_enough(x, row);
   }
 
  private:
-  [[nodiscard]] Float16 place(const Float16& x) const {
-    return multiply(subtract(x, broadcast(axis_.origin)), broadcast(axis_.inverse));
-  }
-  [[nodiscard]] Mask16 short_enough(const Float16& x, std::size_t row) const {
-    return less_equal(subtract(load_unaligned(high_ + row), x), broadcast(axis_.limit));
+  [[nodiscard]] Floats place(const Floats& x) const { return (x - axis_.origin) * axis_.inverse; }
+  [[nodiscard]] Mask16 short_enough(const Floats& x, std::size_t row) const {
+    return bits(Floats::load_unaligned(high_ + row) - x <= axis_.limit);
   }
 
   const float* low_;

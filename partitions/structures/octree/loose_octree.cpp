@@ -1,9 +1,9 @@
-#include "partitions/structures/octree/loose_octree.h"
-
 #include <winnow/partitions/debug_colours.h>
 #include "core/sort/radix_sort.h"
 #include "partitions/structures/cells/cell_drawing.h"
 #include "partitions/structures/cells/task_lists.h"
+#include "partitions/structures/octree/loose_octree_cells.h"
+#include "partitions/structures/structure.h"
 
 #include <algorithm>
 #include <cfloat>
@@ -19,38 +19,82 @@ constexpr std::uint32_t key_in(std::uint64_t item) {
   return static_cast<std::uint32_t>(item >> 32U);
 }
 
-}  // namespace
+/// Loose octree (Ulrich, "Loose Octrees", Game Programming Gems, 2000) without pointers: an object
+/// lives in the one node of its size's level whose cell holds its centre. Nodes are runs of rows in
+/// flat arrays, sorted by level, large objects first, and along Hilbert's curve within a level
+/// (which leaves blocks of rows a third less surface than Morton's); each has its linear code. A
+/// node's cell is loose, so objects may move by a good part of it, and the node stays as it is.
+///
+/// Nodes overlap their neighbours by design and may be nearly empty, so they are not what is
+/// tested: every 16 rows in node order have a tight box, and 16 of these at once are pruned as in a
+/// block tree. Objects larger than the root, outside of it or without end, and those that have left
+/// their loose cells, are kept in a block tree beside it. In a world two cells thick it divides two
+/// axes only. Seldom the fastest and never far from it, whatever the sizes. Self pairs: O(n log n +
+/// pairs) for boxes of bounded overlap. Exact.
+class LooseTree : public Structure {
+ public:
+  LooseTree(const StructureInput& input, std::size_t axes) noexcept;
 
-LooseOctree::LooseOctree(const PartitionOptions& options, const LooseOctreeOptions& loose)
-    : LooseOctree(options, loose, 3) {}
+  /// From the root to the finest nodes; 0 if there are none. Statistics counts the nodes that hold
+  /// objects as cells.
+  [[nodiscard]] std::size_t levels() const noexcept override {
+    return regular_rows() == 0 ? 0 : cells_.levels();
+  }
 
-LooseOctree::LooseOctree(const PartitionOptions& options, const LooseOctreeOptions& loose,
-                         std::size_t axes)
-    : RowPartition(options, options.volume),
+ private:
+  [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
+  [[nodiscard]] bool prunes_rows() const noexcept override { return true; }
+  [[nodiscard]] bool fits(std::size_t row) const noexcept override;
+  void find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept override;
+  [[nodiscard]] std::size_t pair_tasks() const noexcept override;
+  bool run_pair_task(std::size_t task, PairSink& sink) const noexcept override;
+  bool query(const QueryBatch& batch, PairSink& sink) const noexcept override;
+  void draw(DebugDraw& draw) const override;
+  void release_memory() noexcept override;
+  void add_bytes(Footprint& footprint) const noexcept override;
+  [[nodiscard]] std::size_t cells() const noexcept override;
+
+  void find_keys(std::uint64_t* items) const noexcept;
+  [[nodiscard]] bool add_node(std::size_t row, std::uint32_t key, std::size_t start) noexcept;
+
+  const std::size_t axes_;
+  const float loose_;
+  LooseOctreeCells cells_;
+  Column<std::uint32_t> node_;               // level and Morton code
+  Column<std::uint32_t> start_;              // first row of each node, and the end
+  Column<LooseOctreeCells::Bounds> bounds_;  // of each node's loose cell
+  Column<std::uint32_t> left_;               // scratch: rows found to have left their node
+};
+
+LooseTree::LooseTree(const StructureInput& input, std::size_t axes) noexcept
+    : Structure(input),
       axes_(axes),
       // Written so that NaN becomes the least.
-      loose_(std::min(8.0F, std::max(1.125F, loose.loose))),
-      node_(options.memory),
-      start_(options.memory),
-      bounds_(options.memory),
-      left_(options.memory) {}
+      loose_(std::min(8.0F, std::max(1.125F, input.parameter))),
+      node_(input.memory),
+      start_(input.memory),
+      bounds_(input.memory),
+      left_(input.memory) {}
 
-bool LooseOctree::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) {
+bool LooseTree::plan(const RowPlan& plan) noexcept {
   node_.clear();
   start_.clear();
   bounds_.clear();
   const SceneSample sample(pool());
-  if (!cells_.choose(sample, axes_, loose_)) return RowPartition::plan(regular, rest);
+  if (!cells_.choose(sample, axes_, loose_)) {
+    leave_all(plan);
+    return true;
+  }
   const std::size_t rows = pool().rows();
   // Of a scene in motion builds meet now more rows, now more nodes: this is enough for mostly all.
-  const std::size_t most_rows = std::max(rows, size() + size() / 8 + 256);
-  const std::size_t nodes = size() / 8 + 64;
-  if (!sort_scratch().reserve(2 * most_rows) || !left_.reserve(most_rows)) return false;
+  const std::size_t most_rows = std::max(rows, objects() + objects() / 8 + 256);
+  const std::size_t nodes = objects() / 8 + 64;
+  if (!plan.items.reserve(2 * most_rows) || !left_.reserve(most_rows)) return false;
   if (!node_.reserve(nodes) || !start_.reserve(nodes) || !bounds_.reserve(nodes)) return false;
-  sort_scratch().set_size(2 * rows);
+  plan.items.set_size(2 * rows);
   left_.set_size(rows);
-  find_keys();
-  std::uint64_t* const items = sort_scratch().data();
+  std::uint64_t* const items = plan.items.data();
+  find_keys(items);
   const std::uint64_t* const sorted = radix_sort(items, items + rows, rows, 32, execution());
   std::uint32_t cell = LooseOctreeCells::kNone;
   std::size_t run = 0;
@@ -61,27 +105,27 @@ bool LooseOctree::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& re
     const bool apart = end - run <= kLongRun;
     if (apart && cells_.cell_of_key(key) != cell) {
       cell = cells_.cell_of_key(key);
-      if (!add_node(static_cast<std::uint32_t>(sorted[run]), key, regular.size())) return false;
+      if (!add_node(static_cast<std::uint32_t>(sorted[run]), key, plan.regular.size()))
+        return false;
     }
-    Column<std::uint32_t>& rows_of_run = apart ? regular : rest;
+    Column<std::uint32_t>& rows_of_run = apart ? plan.regular : plan.rest;
     for (; run < end; ++run) (void)rows_of_run.push_back(static_cast<std::uint32_t>(sorted[run]));
   }
   for (; run < rows; ++run) {
     const auto row = static_cast<std::uint32_t>(sorted[run]);
-    if (pool().ids()[row] != kNoObject) (void)rest.push_back(row);
+    if (pool().ids()[row] != kNoObject) (void)plan.rest.push_back(row);
   }
-  return start_.push_back(static_cast<std::uint32_t>(regular.size()));
+  return start_.push_back(static_cast<std::uint32_t>(plan.regular.size()));
 }
 
-bool LooseOctree::add_node(std::size_t row, std::uint32_t key, std::size_t start) {
+bool LooseTree::add_node(std::size_t row, std::uint32_t key, std::size_t start) noexcept {
   const std::uint32_t code = cells_.code_of(pool(), row, key);
   return node_.push_back(code) && start_.push_back(static_cast<std::uint32_t>(start)) &&
          bounds_.push_back(cells_.loose_bounds(code));
 }
 
-void LooseOctree::find_keys() noexcept {
+void LooseTree::find_keys(std::uint64_t* items) const noexcept {
   const std::size_t rows = pool().rows();
-  std::uint64_t* const items = sort_scratch().data();
   execution().for_each((rows + kRowsPerTask - 1) / kRowsPerTask, [&](std::size_t task) {
     const std::size_t end = std::min(rows, (task + 1) * kRowsPerTask);
     for (std::size_t row = task * kRowsPerTask; row < end; ++row) {
@@ -92,13 +136,13 @@ void LooseOctree::find_keys() noexcept {
   });
 }
 
-bool LooseOctree::fits(std::size_t row) const noexcept {
+bool LooseTree::fits(std::size_t row) const noexcept {
   const auto after = std::upper_bound(start_.begin(), start_.end(), row);
   const auto node = static_cast<std::size_t>(after - start_.begin() - 1);
   return cells_.hold(bounds_[node], pool(), row, row + 1);
 }
 
-void LooseOctree::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept {
+void LooseTree::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept {
   const std::size_t tasks = std::min(kMostTasks, node_.size());
   const auto first_node = [&](std::size_t task) { return node_.size() * task / tasks; };
   append_in_order(
@@ -118,23 +162,23 @@ void LooseOctree::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) n
       rows, limit);
 }
 
-std::size_t LooseOctree::regular_tasks() const noexcept {
+std::size_t LooseTree::pair_tasks() const noexcept {
   return std::min<std::size_t>(kMostTasks, (regular_rows() + 255) / 256);
 }
 
-bool LooseOctree::run_regular_task(std::size_t task, PairSink& sink) const noexcept {
+bool LooseTree::run_pair_task(std::size_t task, PairSink& sink) const noexcept {
   const std::size_t groups = (regular_rows() + 255) / 256;
-  const std::size_t tasks = regular_tasks();
+  const std::size_t tasks = pair_tasks();
   const auto begin = static_cast<std::uint32_t>(groups * task / tasks);
   const auto end = static_cast<std::uint32_t>(groups * (task + 1) / tasks);
-  return block_tree_kernels().self_pairs(row_tree(), begin, end, sink);
+  return block_tree_kernels().self_pairs(regular_tree(), begin, end, sink);
 }
 
-bool LooseOctree::query_regular(const QueryBatch& batch, PairSink& sink) const noexcept {
-  return block_tree_kernels().query(row_tree(), batch, sink);
+bool LooseTree::query(const QueryBatch& batch, PairSink& sink) const noexcept {
+  return block_tree_kernels().query(regular_tree(), batch, sink);
 }
 
-void LooseOctree::draw_regular(DebugDraw& draw, const DebugDrawOptions&) const {
+void LooseTree::draw(DebugDraw& draw) const {
   const RowView rows = row_view();
   for (std::size_t node = 0; node < node_.size(); ++node) {
     Aabb contents;
@@ -153,22 +197,49 @@ void LooseOctree::draw_regular(DebugDraw& draw, const DebugDrawOptions&) const {
   }
 }
 
-void LooseOctree::release_structure() noexcept {
+void LooseTree::release_memory() noexcept {
   node_.release();
   start_.release();
   bounds_.release();
   left_.release();
 }
 
-void LooseOctree::add_structure_bytes(Footprint& footprint) const noexcept {
+void LooseTree::add_bytes(Footprint& footprint) const noexcept {
   footprint.structure += node_.bytes();
   footprint.structure += start_.bytes();
   footprint.structure += bounds_.bytes();
   footprint.scratch += left_.bytes();
 }
 
-std::size_t LooseOctree::cell_count() const noexcept {
-  return regular_rows() == 0 ? RowPartition::cell_count() : node_.size();
+std::size_t LooseTree::cells() const noexcept {
+  return node_.size();
+}
+
+class LooseOctree final : public LooseTree {
+ public:
+  explicit LooseOctree(const StructureInput& input) noexcept : LooseTree(input, 3) {}
+};
+
+/// In two dimensions: the two axes with the most room are divided, and edges along the third put no
+/// object on a coarser level. Suits flat worlds.
+class LooseQuadtree final : public LooseTree {
+ public:
+  explicit LooseQuadtree(const StructureInput& input) noexcept : LooseTree(input, 2) {}
+};
+
+// Never chosen automatically: no scene, flat worlds included, is cheaper by them than by the best
+// of the others.
+constexpr StructureInfo kOctree = structure_info<LooseOctree>("LooseOctree");
+constexpr StructureInfo kQuadtree = structure_info<LooseQuadtree>("LooseQuadtree");
+
+}  // namespace
+
+StructureKind loose_octree(float loose) noexcept {
+  return StructureKind(kOctree, loose);
+}
+
+StructureKind loose_quadtree(float loose) noexcept {
+  return StructureKind(kQuadtree, loose);
 }
 
 }  // namespace winnow

@@ -1,12 +1,13 @@
-#include "partitions/structures/sweep/sweep_and_prune.h"
-
 #include "core/sort/counting_sort.h"
 #include "core/sort/radix_sort.h"
 #include "partitions/structures/cells/cell_drawing.h"
+#include "partitions/structures/cells/cell_layout.h"
 #include "partitions/structures/cells/task_lists.h"
+#include "partitions/structures/costs.h"
+#include "partitions/structures/structure.h"
+#include "partitions/structures/sweep/sweep_and_prune.kernel.h"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 namespace winnow {
@@ -23,56 +24,92 @@ constexpr std::uint32_t kCrowded = 384;
 // scene does so, the tree serves all of it better.
 constexpr double kMostApart = 0.1;
 
-// Order-preserving map of floats to unsigned.
-std::uint32_t sortable(float value) {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
-}
+/// Sorted sweep-and-prune (Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", 1992) in
+/// strips: objects are bucketed on the two axes that are not swept and sorted on the third, the one
+/// with the most room in units of the objects' own edges. Sixteen rows that follow each other in a
+/// strip sweep together, forward in it and in the four neighbouring strips after it: one box around
+/// them picks the candidates, 16 at a time. An axis that prunes nothing is not divided, so one bad
+/// axis ruins nothing. A row may drift from its sort key by a bound that the sweep allows for: slow
+/// motion, or rest, costs no sorting. Objects wider than strips go to a block tree, and where they
+/// are many it holds the whole scene. Self pairs: O(n log n + n * objects met in a sweep + pairs).
+/// Exact.
+class SweepAndPrune final : public Structure {
+ public:
+  explicit SweepAndPrune(const StructureInput& input) noexcept;
 
-}  // namespace
+ private:
+  [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
+  void finish_build() noexcept override;
+  [[nodiscard]] bool fits(std::size_t row) const noexcept override;
+  void find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept override;
+  [[nodiscard]] std::size_t pair_tasks() const noexcept override;
+  bool run_pair_task(std::size_t task, PairSink& sink) const noexcept override;
+  bool query(const QueryBatch& batch, PairSink& sink) const noexcept override;
+  void draw(DebugDraw& draw) const override;
+  void release_memory() noexcept override;
+  void add_bytes(Footprint& footprint) const noexcept override;
+  [[nodiscard]] std::size_t cells() const noexcept override;
 
-SweepAndPrune::SweepAndPrune(const PartitionOptions& options)
-    : RowPartition(options, options.volume),
-      layout_(options.memory),
-      start_(options.memory),
-      key_(options.memory),
-      strip_(options.memory) {}
+  [[nodiscard]] std::size_t list_rows(const RowPlan& plan) noexcept;
+  void sort_rows(std::size_t count, const RowPlan& plan) noexcept;
+  void drop_crowded(const RowPlan& plan) noexcept;
+  [[nodiscard]] bool near_key(std::size_t row) const noexcept;
+  [[nodiscard]] bool fits_strip(std::size_t row, std::uint32_t strip) const noexcept;
+  [[nodiscard]] std::uint32_t first_strip(std::size_t task) const noexcept;
+  [[nodiscard]] StripView view() const noexcept;
 
-bool SweepAndPrune::plan(Column<std::uint32_t>& regular, Column<std::uint32_t>& rest) {
+  CellLayout layout_;
+  Column<std::uint32_t> start_;  // first row of each strip, and the end
+  Column<float> key_;            // by row: lower end on the sweep axis at the build
+  Column<std::uint32_t> strip_;  // of each row, while building; then scratch
+};
+
+SweepAndPrune::SweepAndPrune(const StructureInput& input) noexcept
+    : Structure(input),
+      layout_(input.memory),
+      start_(input.memory),
+      key_(input.memory),
+      strip_(input.memory) {}
+
+bool SweepAndPrune::plan(const RowPlan& plan) noexcept {
   const SceneSample sample(pool());
   const CellDemand demand{
       .slack_share = 0.5, .cells_per_object = 0.25, .sweep_fast_axis = true, .rows_per_block = 10};
   if (!layout_.choose(sample, demand)) return false;
-  if (!layout_.usable()) return RowPartition::plan(regular, rest);
+  if (!layout_.usable()) {
+    leave_all(plan);
+    return true;
+  }
   const std::size_t rows = pool().rows();
   if (!strip_.resize(rows) || !start_.resize(layout_.cells() + 1) ||
-      !key_.resize(rows + kPadding) || !sort_scratch().resize(2 * rows)) {
+      !key_.resize(rows + kPadding) || !plan.items.resize(2 * rows)) {
     return false;
   }
   const auto most = static_cast<std::size_t>(kMostApart * static_cast<double>(sample.objects));
-  const std::size_t count = list_rows(rest);
-  if (rest.size() <= most) {
-    sort_rows(count, regular);
-    drop_crowded(regular, rest);
+  const std::size_t count = list_rows(plan);
+  if (plan.rest.size() <= most) {
+    sort_rows(count, plan);
+    drop_crowded(plan);
   }
-  if (rest.size() <= most) return true;
-  regular.clear();
-  rest.clear();
-  return RowPartition::plan(regular, rest);
+  if (plan.rest.size() <= most) return true;
+  plan.regular.clear();
+  plan.rest.clear();
+  leave_all(plan);
+  return true;
 }
 
 // Lists the rows that fit strips, with their keys, and returns how many there are.
-std::size_t SweepAndPrune::list_rows(Column<std::uint32_t>& rest) noexcept {
+std::size_t SweepAndPrune::list_rows(const RowPlan& plan) noexcept {
   std::fill(start_.begin(), start_.end(), 0);
   const std::size_t rows = pool().rows();
   const float* const low = pool().column(layout_.axis(0).axis);
-  std::uint64_t* const items = sort_scratch().data();
+  std::uint64_t* const items = plan.items.data();
   std::size_t count = 0;
   for (std::size_t row = 0; row < rows; ++row) {
     if (pool().ids()[row] == kNoObject) continue;
     strip_[row] = layout_.cell_of(pool(), row);
     if (strip_[row] == CellLayout::kNoCell) {
-      (void)rest.push_back(static_cast<std::uint32_t>(row));
+      (void)plan.rest.push_back(static_cast<std::uint32_t>(row));
       continue;
     }
     ++start_[strip_[row]];
@@ -81,23 +118,22 @@ std::size_t SweepAndPrune::list_rows(Column<std::uint32_t>& rest) noexcept {
   return count;
 }
 
-void SweepAndPrune::sort_rows(std::size_t count, Column<std::uint32_t>& regular) noexcept {
-  std::uint64_t* const items = sort_scratch().data();
+void SweepAndPrune::sort_rows(std::size_t count, const RowPlan& plan) noexcept {
+  std::uint64_t* const items = plan.items.data();
   std::uint64_t* const spare = items + pool().rows();
   const std::uint64_t* const by_key = radix_sort(items, spare, count, 32, execution());
   (void)positions_from_counts(start_);
-  regular.set_size(count);
+  plan.regular.set_size(count);
   for (std::size_t i = 0; i < count; ++i) {
     const auto row = static_cast<std::uint32_t>(by_key[i]);
-    regular[start_[strip_[row]]++] = row;
+    plan.regular[start_[strip_[row]]++] = row;
   }
   starts_from_positions(start_);
 }
 
 // Where many objects begin within one reach of each other on the sweep axis, as when half of a
 // scene is tiny, a sweep would look at all of them: the tree prunes these better.
-void SweepAndPrune::drop_crowded(Column<std::uint32_t>& regular,
-                                 Column<std::uint32_t>& rest) noexcept {
+void SweepAndPrune::drop_crowded(const RowPlan& plan) noexcept {
   const CellAxis& axis = layout_.axis(0);
   const float* const low = pool().column(axis.axis);
   const float window = axis.reach + 2.0F * layout_.drift();
@@ -110,23 +146,23 @@ void SweepAndPrune::drop_crowded(Column<std::uint32_t>& regular,
     std::uint32_t ahead = begin;
     // Kept rows move to the front; the window is measured on the rows not yet passed and those
     // noted in strip_, which is free from here on.
-    for (std::uint32_t i = begin; i < end; ++i) strip_[i] = regular[i];
+    for (std::uint32_t i = begin; i < end; ++i) strip_[i] = plan.regular[i];
     for (std::uint32_t i = begin; i < end; ++i) {
       const float x = low[strip_[i]];
       while (low[strip_[behind]] < x - window) ++behind;
       while (ahead < end && low[strip_[ahead]] <= x + window) ++ahead;
       if (ahead - behind > kCrowded) {
-        (void)rest.push_back(strip_[i]);
+        (void)plan.rest.push_back(strip_[i]);
       } else {
-        regular[kept++] = strip_[i];
+        plan.regular[kept++] = strip_[i];
       }
     }
   }
   start_[start_.size() - 1] = kept;
-  regular.set_size(kept);
+  plan.regular.set_size(kept);
 }
 
-void SweepAndPrune::finish_build() {
+void SweepAndPrune::finish_build() noexcept {
   if (regular_rows() == 0) return;
   const float* const low = pool().column(layout_.axis(0).axis);
   std::copy_n(low, regular_rows(), key_.data());
@@ -155,7 +191,7 @@ bool SweepAndPrune::fits(std::size_t row) const noexcept {
 void SweepAndPrune::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept {
   const StripView strips = view();
   append_in_order(
-      execution(), regular_tasks(), strip_.data(),
+      execution(), pair_tasks(), strip_.data(),
       [&](std::size_t task) { return start_[first_strip(task)]; },
       [&](std::size_t task, std::uint32_t* out) {
         return sweep_kernels().find_misfits(strips, first_strip(task), first_strip(task + 1), out);
@@ -163,19 +199,19 @@ void SweepAndPrune::find_misfits(Column<std::uint32_t>& rows, std::size_t limit)
       rows, limit);
 }
 
-std::size_t SweepAndPrune::regular_tasks() const noexcept {
+std::size_t SweepAndPrune::pair_tasks() const noexcept {
   return regular_rows() == 0 ? 0 : std::min(kMostTasks, layout_.cells());
 }
 
 std::uint32_t SweepAndPrune::first_strip(std::size_t task) const noexcept {
-  return static_cast<std::uint32_t>(layout_.cells() * task / regular_tasks());
+  return static_cast<std::uint32_t>(layout_.cells() * task / pair_tasks());
 }
 
-bool SweepAndPrune::run_regular_task(std::size_t task, PairSink& sink) const noexcept {
+bool SweepAndPrune::run_pair_task(std::size_t task, PairSink& sink) const noexcept {
   return sweep_kernels().self_pairs(view(), first_strip(task), first_strip(task + 1), sink);
 }
 
-bool SweepAndPrune::query_regular(const QueryBatch& batch, PairSink& sink) const noexcept {
+bool SweepAndPrune::query(const QueryBatch& batch, PairSink& sink) const noexcept {
   return sweep_kernels().query(view(), batch, sink);
 }
 
@@ -187,26 +223,46 @@ StripView SweepAndPrune::view() const noexcept {
           layout_.drift()};
 }
 
-void SweepAndPrune::draw_regular(DebugDraw& draw, const DebugDrawOptions&) const {
+void SweepAndPrune::draw(DebugDraw& draw) const {
   draw_cells(draw, layout_, row_view(), start_, "is swept");
 }
 
-void SweepAndPrune::release_structure() noexcept {
+void SweepAndPrune::release_memory() noexcept {
   layout_.release();
   start_.release();
   key_.release();
   strip_.release();
 }
 
-void SweepAndPrune::add_structure_bytes(Footprint& footprint) const noexcept {
+void SweepAndPrune::add_bytes(Footprint& footprint) const noexcept {
   footprint.structure += layout_.bytes();
   footprint.structure += start_.bytes();
   footprint.structure += key_.bytes();
   footprint.scratch += strip_.bytes();
 }
 
-std::size_t SweepAndPrune::cell_count() const noexcept {
-  return regular_rows() == 0 ? RowPartition::cell_count() : layout_.cells();
+std::size_t SweepAndPrune::cells() const noexcept {
+  return layout_.cells();
+}
+
+constexpr StructureCosts kCosts{.has_cells = true,
+                                .frame = 640,
+                                .keep = 11,
+                                .object = 10.1,
+                                .level = 0.05,
+                                .crowd = 5.5,
+                                .pair = 5.0,
+                                .moved = 200,
+                                .rest = 1.4,
+                                .build = 110,
+                                .ask_level = 32,
+                                .rows = 1.5};
+constexpr StructureInfo kInfo = structure_info<SweepAndPrune>("SweepAndPrune", &kCosts);
+
+}  // namespace
+
+StructureKind sweep_and_prune() noexcept {
+  return StructureKind(kInfo);
 }
 
 }  // namespace winnow

@@ -1,11 +1,27 @@
 #include "partitions/structures/sweep/sweep_and_prune.kernel.h"
 #include "partitions/structures/cells/misfits.wide.h"
-#include "partitions/structures/sweep/neighbour_lines.wide.h"
 #include "partitions/tree/block_pairs.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
+
+/// Lines of cells (or strips) lie on two axes, line = slow * mids + mid. Those after a line whose
+/// objects can touch its own: each pair of neighbours is met from one side only.
+struct NeighbourLines {
+  std::uint32_t line[4];
+  int count = 0;
+
+  NeighbourLines(const CellAxis& mid_axis, const CellAxis& slow_axis, std::uint32_t own) {
+    const std::uint32_t mids = mid_axis.count;
+    const std::uint32_t mid = own % mids;
+    if (mid + 1 < mids) line[count++] = own + 1;
+    if (own / mids + 1 == slow_axis.count) return;
+    if (mid > 0) line[count++] = own + mids - 1;
+    line[count++] = own + mids;
+    if (mid + 1 < mids) line[count++] = own + mids + 1;
+  }
+};
 
 /// A sweep goes on until a key shows that nothing further can touch the box.
 struct KeyStop {
@@ -19,10 +35,10 @@ struct KeyStop {
 /// step: mostly one step is enough, and then it costs no branch.
 inline std::uint32_t skip_below(const StripView& strips, std::uint32_t at, std::uint32_t end,
                                 float x) {
-  const Float16 bound = broadcast(x);
-  const Float16 drift = broadcast(strips.drift);
+  const Floats bound = Floats(x);
+  const Floats drift = Floats(strips.drift);
   while (at < end) {
-    const Mask16 reaching = less_equal(bound, add(load_unaligned(strips.key + at), drift));
+    const Mask16 reaching = bits(bound <= Floats::load_unaligned(strips.key + at) + drift);
     const unsigned below = reaching == 0 ? static_cast<unsigned>(kLanes) : first(reaching);
     at = end - at < below ? end : at + below;
     if (below < kLanes) break;
@@ -105,7 +121,7 @@ bool self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end,
                                        : find_self_pairs<false>(strips, begin, end, sink);
 }
 
-struct Query {
+struct SweepQuery {
   template <HitMode Mode, bool Filtered>
   static bool run(const StripView& strips, const QueryBatch& batch, PairSink& sink) {
     HitList<Mode, Filtered> hits(strips.rows, batch, sink);
@@ -136,12 +152,12 @@ struct Query {
 };
 
 bool query(const StripView& strips, const QueryBatch& batch, PairSink& sink) {
-  return with_mode<Query>(strips, batch, sink);
+  return with_mode<SweepQuery>(strips, batch, sink);
 }
 
 std::uint32_t find_misfits(const StripView& strips, std::uint32_t begin, std::uint32_t end,
                            std::uint32_t* out) {
-  const Float16 drift = broadcast(strips.drift);
+  const Floats drift = Floats(strips.drift);
   const AxisBounds swept(strips.rows, strips.axis[0], 0);
   std::uint32_t found = 0;
   for (std::uint32_t strip = begin; strip < end; ++strip) {
@@ -149,11 +165,10 @@ std::uint32_t find_misfits(const StripView& strips, std::uint32_t begin, std::ui
     const AxisBounds slow(strips.rows, strips.axis[2], strip / strips.axis[1].count);
     found += write_misfits(strips.rows, strips.start[strip], strips.start[strip + 1], out + found,
                            [&](std::size_t row) {
-                             const Float16 key = load_unaligned(strips.key + row);
-                             const Float16 x = load_unaligned(swept.low + row);
-                             return less_equal(subtract(key, drift), x) &
-                                    less_equal(x, add(key, drift)) & swept.short_enough(x, row) &
-                                    mid.kept(row) & slow.kept(row);
+                             const Floats key = Floats::load_unaligned(strips.key + row);
+                             const Floats x = Floats::load_unaligned(swept.low + row);
+                             return bits(key - drift <= x) & bits(x <= key + drift) &
+                                    swept.short_enough(x, row) & mid.kept(row) & slow.kept(row);
                            });
   }
   return found;

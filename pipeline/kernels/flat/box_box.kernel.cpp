@@ -1,41 +1,52 @@
-#include "pipeline/kernels/flat/box_closest.wide.h"
-#include "pipeline/kernels/flat/flat_kernel.wide.h"
+#include "pipeline/kernels/flat/box_pair.wide.h"
 #include "pipeline/kernels/kernels.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::flat {
 namespace {
 
 // Where a pair stands, and its normal, in memory.
 template <typename T>
 struct BoxStage {
-  Stage<T, 32> stage;
+  /// Where the numbers begin.
+  enum Place {
+    kAxesA = 0,
+    kAxesB = 9,
+    kHalfA = 18,
+    kHalfB = 21,
+    kOffset = 24,
+    kNormal = 27,
+    kRoundingA = 30,
+    kRoundingB,
+    kCount
+  };
+  Stage<T, kCount> stage;
 
   [[gnu::always_inline]] BoxStage(const BoxPair<T>& pair, const Vec3<T>& normal) {
-    stage.put(0, pair.frame_a.x);
-    stage.put(3, pair.frame_a.y);
-    stage.put(6, pair.frame_a.z);
-    stage.put(9, pair.frame_b.x);
-    stage.put(12, pair.frame_b.y);
-    stage.put(15, pair.frame_b.z);
-    stage.put(18, Vec3<T>{pair.half_a[0], pair.half_a[1], pair.half_a[2]});
-    stage.put(21, Vec3<T>{pair.half_b[0], pair.half_b[1], pair.half_b[2]});
-    stage.put(24, pair.offset);
-    stage.put(27, normal);
-    stage.put(30, pair.rounding_a);
-    stage.put(31, pair.rounding_b);
+    stage.put(kAxesA, pair.frame_a.x);
+    stage.put(kAxesA + 3, pair.frame_a.y);
+    stage.put(kAxesA + 6, pair.frame_a.z);
+    stage.put(kAxesB, pair.frame_b.x);
+    stage.put(kAxesB + 3, pair.frame_b.y);
+    stage.put(kAxesB + 6, pair.frame_b.z);
+    stage.put(kHalfA, Vec3<T>{pair.half_a[0], pair.half_a[1], pair.half_a[2]});
+    stage.put(kHalfB, Vec3<T>{pair.half_b[0], pair.half_b[1], pair.half_b[2]});
+    stage.put(kOffset, pair.offset);
+    stage.put(kNormal, normal);
+    stage.put(kRoundingA, pair.rounding_a);
+    stage.put(kRoundingB, pair.rounding_b);
   }
   void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
     BoxFrame box_a;
     BoxFrame box_b;
-    stage.get(0, 9, lane, &box_a.axis[0][0]);
-    stage.get(9, 9, lane, &box_b.axis[0][0]);
-    stage.get(18, 3, lane, box_a.half);
-    stage.get(21, 3, lane, box_b.half);
-    stage.get(24, 3, lane, box_b.center);
-    stage.get(27, 3, lane, normal);
-    stage.get(30, 1, lane, &box_a.rounding);
-    stage.get(31, 1, lane, &box_b.rounding);
+    stage.get(kAxesA, 9, lane, &box_a.axis[0][0]);
+    stage.get(kAxesB, 9, lane, &box_b.axis[0][0]);
+    stage.get(kHalfA, 3, lane, box_a.half);
+    stage.get(kHalfB, 3, lane, box_b.half);
+    stage.get(kOffset, 3, lane, box_b.center);
+    stage.get(kNormal, 3, lane, normal);
+    stage.get(kRoundingA, 1, lane, &box_a.rounding);
+    stage.get(kRoundingB, 1, lane, &box_b.rounding);
     for (double& c : box_a.center) c = 0.0;
     const double back[3] = {-normal[0], -normal[1], -normal[2]};
     a = box_patch(box_a, normal);
@@ -47,42 +58,42 @@ struct BoxStage {
 // separates, above it the way between two points.
 template <typename T>
 [[gnu::always_inline]] inline void measure_apart(const BoxPair<T>& pair, const BoxAxis<T>& axis,
-                                                 const BoxPoints<T>& points, Real<T> (&normal)[3],
-                                                 Real<T>& distance, Real<T>& gap) {
-  Real<T> d[3];
+                                                 const BoxPoints<T>& points, Lanes<T> (&normal)[3],
+                                                 Lanes<T>& distance, Lanes<T>& gap) {
+  Lanes<T> d[3];
   for (int r = 0; r < 3; ++r) d[r] = points.b[r] - points.a[r];
   distance = sqrt(square_of(d));
-  const Real<T> shrink = Real<T>(T(1)) / distance;
+  const Lanes<T> shrink = Lanes<T>(T(1)) / distance;
   for (int r = 0; r < 3; ++r) d[r] = d[r] * shrink;
-  const Real<T> lower = pair.along(d);
-  const Truth<T> better = lower > axis.separation;
+  const Lanes<T> lower = pair.along(d);
+  const LaneMask<T> better = lower > axis.separation;
   for (int r = 0; r < 3; ++r) normal[r] = select(better, d[r], axis.normal[r]);
-  const Real<T> least = select(better, lower, axis.separation);
+  const Lanes<T> least = select(better, lower, axis.separation);
   gap = abs(distance - least);
   // Points far from the closest ones, which float lanes answer with all the same: no contact is
   // lost.
-  distance = select(gap <= pair.scale * Real<T>(kWidestGap<T>), distance, least);
+  distance = select(gap <= pair.scale * Lanes<T>(kWidestGap<T>), distance, least);
 }
 
 // The point of a that touches b when it has been moved out; `off` gets the lanes in which it is not
 // on a's face, or that of b not on b's, because more than a vertex is as deep.
 template <typename T>
 [[gnu::always_inline]] inline void touching_point(const BoxPair<T>& pair, const BoxAxis<T>& axis,
-                                                  const BoxReach<T>& reach, Real<T> (&point)[3],
+                                                  const BoxReach<T>& reach, Lanes<T> (&point)[3],
                                                   Mask16& off) {
-  Real<T> b[3];
+  Lanes<T> b[3];
   from_b(pair, reach.b, b);
-  const Truth<T> face_of_a = axis.index < Real<T>(T(2.5));
-  Real<T> other[3];
+  const LaneMask<T> face_of_a = axis.index < Lanes<T>(T(2.5));
+  Lanes<T> other[3];
   for (int r = 0; r < 3; ++r) {
-    const Real<T> step = axis.normal[r] * axis.separation;
+    const Lanes<T> step = axis.normal[r] * axis.separation;
     point[r] = select(face_of_a, b[r] - step, reach.a[r]);
     other[r] = select(face_of_a, b[r], reach.a[r] + step);
   }
-  Real<T> q[3];
+  Lanes<T> q[3];
   to_b(pair, other, q);
-  const Real<T> near = pair.scale * Real<T>(T(4) * kSlack<T>);
-  Real<T> out = abs(point[0]) - pair.half_a[0];
+  const Lanes<T> near = pair.scale * Lanes<T>(T(4) * kFlatSlack<T>);
+  Lanes<T> out = abs(point[0]) - pair.half_a[0];
   for (int r = 1; r < 3; ++r) out = max(out, abs(point[r]) - pair.half_a[r]);
   for (int r = 0; r < 3; ++r) out = max(out, abs(q[r]) - pair.half_b[r]);
   off = bits(out > near);
@@ -92,17 +103,17 @@ template <typename T>
 // else the separation.
 template <int L, typename T>
 [[gnu::always_inline]] inline CoreAnswer<T> measure(const BoxPair<T>& pair, const BoxAxis<T>& axis,
-                                                    const Truth<T>& wanted) {
-  const Real<T> slack = pair.scale * Real<T>(kSlack<T>);
-  const Truth<T> apart = axis.separation > Real<T>(T(0));
+                                                    const LaneMask<T>& wanted) {
+  const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
+  const LaneMask<T> apart = axis.separation > Lanes<T>(T(0));
   CoreAnswer<T> answer;
   // What is not measured is a lower bound.
   answer.distance = select(apart & !wanted, axis.separation - slack, axis.separation);
-  Real<T> gap = abs(axis.most - axis.separation);
-  Real<T> normal[3] = {axis.normal[0], axis.normal[1], axis.normal[2]};
-  Real<T> point[3];
+  Lanes<T> gap = abs(axis.most - axis.separation);
+  Lanes<T> normal[3] = {axis.normal[0], axis.normal[1], axis.normal[2]};
+  Lanes<T> point[3];
   Mask16 off = 0;
-  const Truth<T> measured = apart & wanted;
+  const LaneMask<T> measured = apart & wanted;
   const bool any_measured = bits(measured) != 0;
   if (L == kDistance || any_measured) {
     BoxReach<T> reach = reach_along(pair, axis);
@@ -110,9 +121,9 @@ template <int L, typename T>
     if constexpr (L == kDistance) touching_point(pair, axis, reach, point, off);
     if (any_measured) {
       const BoxPoints<T> points = closest_points(pair, axis, reach);
-      Real<T> away[3];
-      Real<T> distance;
-      Real<T> away_gap;
+      Lanes<T> away[3];
+      Lanes<T> distance;
+      Lanes<T> away_gap;
       measure_apart(pair, axis, points, away, distance, away_gap);
       answer.distance = select(measured, distance, answer.distance);
       gap = select(measured, away_gap, gap);
@@ -140,19 +151,19 @@ struct BoxBox {
     const OrderedBlock<T> ordered(job, given);
     const BoxPair<T> pair(job, ordered.block);
     const BoxAxis<T> axis = best_axis(pair);
-    const Real<T> reach = pair.rounding_a + pair.rounding_b;
-    Truth<T> wanted = pair.scale == pair.scale;
+    const Lanes<T> reach = pair.rounding_a + pair.rounding_b;
+    LaneMask<T> wanted = pair.scale == pair.scale;
     if constexpr (L == kManifold) {
-      const Real<T> margin(static_cast<T>(job.margin));
-      wanted = axis.separation <= margin + reach + pair.scale * Real<T>(T(2) * kSlack<T>);
+      const Lanes<T> margin(static_cast<T>(job.margin));
+      wanted = axis.separation <= margin + reach + pair.scale * Lanes<T>(T(2) * kFlatSlack<T>);
     }
     CoreAnswer<T> core = measure<L>(pair, axis, wanted);
     const Mask16 certified = with_rounding(core, pair.rounding_a, pair.rounding_b, pair.scale);
-    const Real<T> sign = Real<T>::load(ordered.sign);
+    const Lanes<T> sign = Lanes<T>::load(ordered.sign);
     const AnswerLanes<T> answer = turned_back(core, pair.offset, sign);
     write_answer<L>(job, given, answer);
     if constexpr (L == kManifold) {
-      const Real<T> margin(static_cast<T>(job.margin));
+      const Lanes<T> margin(static_cast<T>(job.margin));
       const Mask16 touching = certified & bits(answer.distance <= margin);
       const BoxStage<T> stage(pair, core.normal);
       write_patch_contacts<T>(job, given, touching, stage.stage.value + 24, ordered.sign,
@@ -170,14 +181,14 @@ struct BoxBox {
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const BoxPair<T> pair(job, block);
-    const Real<T> slack = pair.scale * Real<T>(kSlack<T>);
-    const Real<T> reach = slack + pair.rounding_a + pair.rounding_b;
+    const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
+    const Lanes<T> reach = slack + pair.rounding_a + pair.rounding_b;
     const Mask16 valid = bits(in_range(pair.scale * pair.scale));
-    const Real<T> face = largest_face_separation(pair);
+    const Lanes<T> face = largest_face_separation(pair);
     Mask16 known = bits(face > reach);
     Mask16 over = 0;
     if ((known & valid) != kAllLanes<T>) {
-      const Real<T> s = max(face, largest_edge_separation(pair));
+      const Lanes<T> s = max(face, largest_edge_separation(pair));
       over = bits(s < -slack);
       known = over | bits(s > reach);
     }
@@ -185,7 +196,7 @@ struct BoxBox {
     if (unknown != 0) {
       CoreAnswer<T> core = measure<kManifold>(pair, best_axis(pair), pair.scale == pair.scale);
       known |= with_rounding(core, pair.rounding_a, pair.rounding_b, pair.scale) & unknown;
-      over |= bits(core.distance <= Real<T>(T(0))) & unknown;
+      over |= bits(core.distance <= Lanes<T>(T(0))) & unknown;
     }
     write_overlap(job, block, over);
     return ~(known & valid);
@@ -193,9 +204,10 @@ struct BoxBox {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+
+}  // namespace WINNOW_ISA_NAME::flat
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(box_box_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::BoxBox>();
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::flat::BoxBox>();
 
 }  // namespace winnow

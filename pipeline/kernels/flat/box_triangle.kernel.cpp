@@ -1,36 +1,319 @@
-#include "pipeline/kernels/flat/box_triangle_closest.wide.h"
+// A box and a triangle in the frame of the box, and what separates them (Akenine-Moller, "Fast 3D
+// triangle-box overlap testing", 2001): axes 0 to 2 the faces of the box, 3 the triangle's normal,
+// 4 + 3 i + j the product of axis i of the box and edge j of the triangle.
+//
+// Closest and deepest points of a box and a triangle: those that the best axis tells, or a vertex
+// of the triangle and the point of the box next to it, or a vertex of the box and a point of an
+// edge.
+
+#include "pipeline/kernels/flat/flat.wide.h"
 #include "pipeline/kernels/kernels.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::flat {
 namespace {
+
+/// The numbers of a vector in a loop.
+template <typename T>
+struct BoxTriangleNumbers {
+  Lanes<T> at[3];
+
+  [[gnu::always_inline]] explicit BoxTriangleNumbers(const Vec3<T>& v) : at{v.x, v.y, v.z} {}
+};
+
+template <typename T>
+struct BoxTrianglePair {
+  Vec3<T> half;
+  PlacedTriangle<T> b;
+  Rotation<T> frame;
+  /// In the axes of the world.
+  Vec3<T> offset;
+  Lanes<T> box_rounding;
+  Lanes<T> scale;
+
+  [[gnu::always_inline]] BoxTrianglePair(const NarrowJob& job, const PairBlock<T>& block) {
+    offset = load_offset(job, block);
+    frame = rotation(load_turn<SideA>(job, block));
+    const Rotation<T> turn = rotation(load_turn<SideB>(job, block));
+    b.place(load_triangle<SideB>(job, block),
+            {frame.to_local(turn.x), frame.to_local(turn.y), frame.to_local(turn.z)});
+    const BoxLanes<T> box = load_box<SideA>(job, block);
+    half = box.half;
+    box_rounding = box.rounding;
+    scale = taxicab_of(offset) + b.scale + taxicab_of(half) + box_rounding;
+    b.move(frame.to_local(offset));
+  }
+
+  [[gnu::always_inline]] Lanes<T> rounding_a() const { return box_rounding; }
+  [[gnu::always_inline]] Lanes<T> rounding_b() const { return b.rounding; }
+  [[gnu::always_inline]] Vec3<T> to_world(const Vec3<T>& v) const { return frame.to_world(v); }
+  /// How far the box reaches along a vector.
+  [[gnu::always_inline]] Lanes<T> reach(const Vec3<T>& n) const {
+    return abs(n.x) * half.x + abs(n.y) * half.y + abs(n.z) * half.z;
+  }
+  /// Separation along a unit vector from the box to the triangle.
+  [[gnu::always_inline]] Lanes<T> along(const Vec3<T>& n) const {
+    Lanes<T> low;
+    Lanes<T> high;
+    b.span(n, low, high);
+    return low - reach(n);
+  }
+  [[gnu::always_inline]] Lanes<T> face(int i) const {
+    const BoxTriangleNumbers<T> v[3] = {BoxTriangleNumbers<T>(b.vertex[0]),
+                                        BoxTriangleNumbers<T>(b.vertex[1]),
+                                        BoxTriangleNumbers<T>(b.vertex[2])};
+    const Lanes<T> low = min(v[0].at[i], min(v[1].at[i], v[2].at[i]));
+    const Lanes<T> high = max(v[0].at[i], max(v[1].at[i], v[2].at[i]));
+    return max(low, -high) - BoxTriangleNumbers<T>(half).at[i];
+  }
+  [[gnu::always_inline]] Lanes<T> over_triangle() const {
+    return abs(dot(b.normal, b.vertex[0])) - reach(b.normal);
+  }
+};
+
+/// Calls body(i, j, length2, separation) for the nine products: the separation along an axis whose
+/// length has the square length2 and is at most that of edge j. Two vertices are on the edge, the
+/// third is off it by a number of the normal.
+template <typename T, typename Body>
+[[gnu::always_inline]] inline void for_products(const BoxTrianglePair<T>& pair, Body&& body) {
+  const Lanes<T> zero(T(0));
+  const BoxTriangleNumbers<T> normal(pair.b.normal);
+  const BoxTriangleNumbers<T> h(pair.half);
+  for (int i = 0; i < 3; ++i) {
+    const int k = (i + 1) % 3;
+    const int l = (i + 2) % 3;
+    const Lanes<T> low = min(normal.at[i], zero);
+    const Lanes<T> high = max(normal.at[i], zero);
+    for (int j = 0; j < 3; ++j) {
+      const BoxTriangleNumbers<T> f(pair.b.edge[j]);
+      const BoxTriangleNumbers<T> q(pair.b.vertex[j]);
+      const Lanes<T> t = f.at[k] * q.at[l] - f.at[l] * q.at[k];
+      const Lanes<T> s =
+          max(t + low, -t - high) - (h.at[k] * abs(f.at[l]) + h.at[l] * abs(f.at[k]));
+      body(i, j, f.at[k] * f.at[k] + f.at[l] * f.at[l], s);
+    }
+  }
+}
+
+/// The axis of the largest separation.
+template <typename T>
+struct BoxTriangleAxis {
+  /// Unit, from the box to the triangle.
+  Vec3<T> normal;
+  Lanes<T> separation;
+  /// No unit vector separates more.
+  Lanes<T> most;
+  Lanes<T> index;
+  /// Square of the length of the axis; for products the axis of the box, and the edge and where it
+  /// begins.
+  Lanes<T> length2;
+  Vec3<T> axis;
+  Vec3<T> edge;
+  Vec3<T> start;
+};
+
+template <typename T>
+[[gnu::always_inline]] inline void find_edges(const BoxTrianglePair<T>& pair,
+                                              BoxTriangleAxis<T>& r) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
+  const LaneMask<T> face = r.index < Lanes<T>(T(2.5));
+  const Lanes<T> k = select(face, r.index * Lanes<T>(T(3)), r.index - Lanes<T>(T(4)));
+  const LaneMask<T> i0 = k < Lanes<T>(T(2.5));
+  const LaneMask<T> i1 = k < Lanes<T>(T(5.5));
+  const Lanes<T> j = k - select(i0, zero, select(i1, Lanes<T>(T(3)), Lanes<T>(T(6))));
+  const LaneMask<T> j0 = j < Lanes<T>(T(0.5));
+  const LaneMask<T> j1 = j < Lanes<T>(T(1.5));
+  r.axis = {select(i0, one, zero), select(i0, zero, select(i1, one, zero)), select(i1, zero, one)};
+  r.edge = pick(j0, j1, pair.b.edge);
+  r.start = pick(j0, j1, pair.b.vertex);
+}
+
+template <typename T>
+[[gnu::always_inline]] inline BoxTriangleAxis<T> best_axis(const BoxTrianglePair<T>& pair) {
+  const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
+  const Lanes<T> one(T(1));
+  BestFace<T> face{pair.face(0), Lanes<T>(T(0))};
+  face.offer(pair.face(1), 1);
+  face.offer(pair.face(2), 2);
+  face.separation += slack;
+  BestAxis<T> best = face.as_axis();
+  Lanes<T> left_out(T(0));
+  offer_product(best, left_out, dot(pair.b.normal, pair.b.normal), pair.over_triangle(),
+                pair.b.area, slack, pair.b.longest(), 3);
+  for_products(
+      pair, [&](int i, int j, const Lanes<T>& length2,
+                const Lanes<T>& s) __attribute__((always_inline)) {
+        offer_product(best, left_out, length2, s, pair.b.length[j], slack, one, 4 + 3 * i + j);
+      });
+  BoxTriangleAxis<T> r;
+  r.index = best.index;
+  r.length2 = best.length2;
+  r.most = best.separation() + left_out;
+  find_edges(pair, r);
+  const LaneMask<T> of_triangle = (r.index > Lanes<T>(T(2.5))) & (r.index < Lanes<T>(T(3.5)));
+  const Vec3<T> axis = select(r.index < Lanes<T>(T(2.5)), r.axis,
+                              select(of_triangle, pair.b.normal, cross(r.axis, r.edge)));
+  const Vec3<T> n = axis * (one / sqrt(best.length2));
+  Lanes<T> low;
+  Lanes<T> high;
+  pair.b.span(n, low, high);
+  const Lanes<T> reach = pair.reach(n);
+  const LaneMask<T> ahead = low >= -high;
+  r.separation = select(ahead, low, -high) - reach;
+  r.normal = select(ahead, n, -n);
+  return r;
+}
+
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> clamp_to(const Lanes<T>& v, const Lanes<T>& reach) {
+  return max(min(v, reach), -reach);
+}
+template <typename T>
+[[gnu::always_inline]] inline Vec3<T> clamp_to(const Vec3<T>& v, const Vec3<T>& half) {
+  return {clamp_to(v.x, half.x), clamp_to(v.y, half.y), clamp_to(v.z, half.z)};
+}
+
+/// The closest of the vertices: i for vertex i of the triangle and the box, 3 + 8 j + v for vertex
+/// v of the box (a bit for each positive coordinate) and edge j.
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> nearest_vertex(const BoxTrianglePair<T>& pair) {
+  const Lanes<T> two(T(2));
+  Lanes<T> square(sizeof(T) == sizeof(double) ? T(1e300) : T(1e38F));
+  Lanes<T> index(T(0));
+  const auto offer = [&](const Lanes<T>& d, int number) __attribute__((always_inline)) {
+    const LaneMask<T> nearer = d < square;
+    square = select(nearer, d, square);
+    index = select(nearer, Lanes<T>(T(number)), index);
+  };
+  for (int i = 0; i < 3; ++i) {
+    const Vec3<T> out = pair.b.vertex[i] - clamp_to(pair.b.vertex[i], pair.half);
+    offer(dot(out, out), i);
+  }
+  const Vec3<T>& h = pair.half;
+  const Lanes<T> hh = dot(h, h);
+  for (int j = 0; j < 3; ++j) {
+    const Vec3<T>& q = pair.b.vertex[j];
+    const Vec3<T>& f = pair.b.edge[j];
+    const Lanes<T> ff = dot(f, f);
+    const Lanes<T> per_ff = inverse(ff);
+    const Lanes<T> qf = dot(q, f);
+    const Lanes<T> ww = hh + dot(q, q);
+    const Vec3<T> hq{h.x * q.x, h.y * q.y, h.z * q.z};
+    const Vec3<T> hf{h.x * f.x, h.y * f.y, h.z * f.z};
+    for (int v = 0; v < 8; ++v) {
+      const auto sum = [&](const Vec3<T>& p) __attribute__((always_inline)) {
+        const Lanes<T> xy = ((v & 2) != 0 ? p.y : -p.y) + ((v & 1) != 0 ? p.x : -p.x);
+        return (v & 4) != 0 ? xy + p.z : xy - p.z;
+      };
+      const Lanes<T> along = sum(hf) - qf;
+      const Lanes<T> t = clamp_unit(along * per_ff);
+      offer(ww - two * sum(hq) - t * (two * along - t * ff), 3 + 8 * j + v);
+    }
+  }
+  return index;
+}
+
+template <typename T>
+[[gnu::always_inline]] inline PointPair<T> closest_by_vertices(const BoxTrianglePair<T>& pair) {
+  const Lanes<T> index = nearest_vertex(pair);
+  const LaneMask<T> of_triangle = index < Lanes<T>(T(2.5));
+  const Vec3<T> vertex = pick(index < Lanes<T>(T(0.5)), index < Lanes<T>(T(1.5)), pair.b.vertex);
+  const Lanes<T> k = index - Lanes<T>(T(3));
+  const LaneMask<T> j0 = k < Lanes<T>(T(7.5));
+  const LaneMask<T> j1 = k < Lanes<T>(T(15.5));
+  Lanes<T> v = k - select(j0, Lanes<T>(T(0)), select(j1, Lanes<T>(T(8)), Lanes<T>(T(16))));
+  const LaneMask<T> up_z = v > Lanes<T>(T(3.5));
+  v = select(up_z, v - Lanes<T>(T(4)), v);
+  const LaneMask<T> up_y = v > Lanes<T>(T(1.5));
+  v = select(up_y, v - Lanes<T>(T(2)), v);
+  const LaneMask<T> up_x = v > Lanes<T>(T(0.5));
+  const Vec3<T> corner{select(up_x, pair.half.x, -pair.half.x),
+                       select(up_y, pair.half.y, -pair.half.y),
+                       select(up_z, pair.half.z, -pair.half.z)};
+  const Vec3<T> edge = pick(j0, j1, pair.b.edge);
+  const Vec3<T> start = pick(j0, j1, pair.b.vertex);
+  const Lanes<T> t = clamp_unit(dot(corner - start, edge) * inverse(dot(edge, edge)));
+  return {select(of_triangle, clamp_to(vertex, pair.half), corner),
+          select(of_triangle, vertex, start + edge * t)};
+}
+
+template <typename T>
+[[gnu::always_inline]] inline AxisPoints<T> axis_points(const BoxTrianglePair<T>& pair,
+                                                        const BoxTriangleAxis<T>& axis) {
+  const Lanes<T> near = pair.scale * Lanes<T>(T(4) * kFlatSlack<T>);
+  const Lanes<T> zero(T(0));
+  const Vec3<T>& n = axis.normal;
+  const Vec3<T> step = n * axis.separation;
+  const LaneMask<T> of_box = axis.index < Lanes<T>(T(2.5));
+  const LaneMask<T> of_face = axis.index < Lanes<T>(T(3.5));
+  const LaneMask<T> apart = axis.separation > zero;
+  const Vec3<T> vertex = pair.b.lowest(n);
+  const Vec3<T> foot = vertex - step;
+  const Vec3<T> corner{sign_or_one(n.x) * pair.half.x, sign_or_one(n.y) * pair.half.y,
+                       sign_or_one(n.z) * pair.half.z};
+  const LaneMask<T> on_box = taxicab_of(foot - clamp_to(foot, pair.half)) <= near;
+  const LaneMask<T> on_triangle = pair.b.is_over(corner, select(apart, zero, near));
+
+  // The edge of the box along its axis, through the corner.
+  const Vec3<T>& e = axis.axis;
+  const Vec3<T>& f = axis.edge;
+  const Vec3<T> middle{corner.x - corner.x * e.x, corner.y - corner.y * e.y,
+                       corner.z - corner.z * e.z};
+  const Vec3<T> r = axis.start - middle;
+  const Lanes<T> ef = dot(e, f);
+  const Lanes<T> re = dot(r, e);
+  const Lanes<T> rf = dot(r, f);
+  const Lanes<T> s = clamp_to((dot(f, f) * re - ef * rf) / axis.length2, dot(pair.half, e));
+  const Lanes<T> t = clamp_unit((ef * re - rf) / axis.length2);
+  const PointPair<T> edges{middle + e * s, axis.start + f * t};
+  const LaneMask<T> crossing = apart | (taxicab_of(edges.b - edges.a - step) <= near);
+
+  AxisPoints<T> p;
+  p.points.a = select(of_box, foot, select(of_face, corner, edges.a));
+  p.points.b = select(of_box, vertex, select(of_face, corner + step, edges.b));
+  p.meets = (of_box & on_box) | (of_face & on_triangle & !of_box) | (crossing & !of_face);
+  p.doubt = select(of_face & !of_box, pair.b.area / sqrt(axis.length2), Lanes<T>(T(1)));
+  return p;
+}
 
 // Where a pair stands, and its normal, in memory.
 template <typename T>
 struct BoxTriangleStage {
-  Stage<T, 29> stage;
+  /// Where the numbers begin.
+  enum Place {
+    kAxes = 0,
+    kHalf = 9,
+    kVertices = 12,
+    kNormal = 21,
+    kOffset = 24,
+    kBoxRounding = 27,
+    kTriangleRounding,
+    kCount
+  };
+  Stage<T, kCount> stage;
 
   [[gnu::always_inline]] BoxTriangleStage(const BoxTrianglePair<T>& pair, const Vec3<T>& normal) {
-    stage.put(0, pair.frame.x);
-    stage.put(3, pair.frame.y);
-    stage.put(6, pair.frame.z);
-    stage.put(9, pair.half);
-    for (int i = 0; i < 3; ++i) stage.put(12 + 3 * i, pair.to_world(pair.b.vertex[i]));
-    stage.put(21, normal);
-    stage.put(24, pair.offset);
-    stage.put(27, pair.box_rounding);
-    stage.put(28, pair.b.rounding);
+    stage.put(kAxes, pair.frame.x);
+    stage.put(kAxes + 3, pair.frame.y);
+    stage.put(kAxes + 6, pair.frame.z);
+    stage.put(kHalf, pair.half);
+    for (int i = 0; i < 3; ++i) stage.put(kVertices + 3 * i, pair.to_world(pair.b.vertex[i]));
+    stage.put(kNormal, normal);
+    stage.put(kOffset, pair.offset);
+    stage.put(kBoxRounding, pair.box_rounding);
+    stage.put(kTriangleRounding, pair.b.rounding);
   }
-  [[nodiscard]] auto offset() const { return stage.value + 24; }
+  [[nodiscard]] auto offset() const { return stage.value + kOffset; }
   void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
     BoxFrame box;
     TriangleFrame triangle;
-    stage.get(0, 9, lane, &box.axis[0][0]);
-    stage.get(9, 3, lane, box.half);
-    stage.get(12, 9, lane, &triangle.vertex[0][0]);
-    stage.get(21, 3, lane, normal);
-    stage.get(27, 1, lane, &box.rounding);
-    stage.get(28, 1, lane, &triangle.rounding);
+    stage.get(kAxes, 9, lane, &box.axis[0][0]);
+    stage.get(kHalf, 3, lane, box.half);
+    stage.get(kVertices, 9, lane, &triangle.vertex[0][0]);
+    stage.get(kNormal, 3, lane, normal);
+    stage.get(kBoxRounding, 1, lane, &box.rounding);
+    stage.get(kTriangleRounding, 1, lane, &triangle.rounding);
     for (double& c : box.center) c = 0.0;
     a = box_patch(box, normal);
     b = triangle_patch(triangle);
@@ -41,8 +324,8 @@ struct BoxTriangle {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& given) {
     if constexpr (L == kBoolean) return overlap<T>(job, given);
-    alignas(64) T sign[Real<T>::kRealLanes];
-    Real<T>(T(1)).store(sign);
+    alignas(64) T sign[Lanes<T>::kCount];
+    Lanes<T>(T(1)).store(sign);
     const BoxTrianglePair<T> pair(job, given);
     return answer_flat<L, BoxTriangleStage<T>>(job, given, pair, sign);
   }
@@ -50,16 +333,16 @@ struct BoxTriangle {
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const BoxTrianglePair<T> pair(job, block);
-    const Real<T> slack = pair.scale * Real<T>(kSlack<T>);
+    const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
     const Mask16 valid = bits(in_range(pair.scale * pair.scale));
-    const Real<T> reach = slack + pair.box_rounding + pair.b.rounding;
-    const Real<T> face = max(pair.face(0), max(pair.face(1), pair.face(2)));
-    const Real<T> above = pair.over_triangle();
-    Truth<T> apart = (face > reach) | (above > reach * pair.b.area);
-    Truth<T> over = (face < -slack) & (above < -(slack * pair.b.area));
+    const Lanes<T> reach = slack + pair.box_rounding + pair.b.rounding;
+    const Lanes<T> face = max(pair.face(0), max(pair.face(1), pair.face(2)));
+    const Lanes<T> above = pair.over_triangle();
+    LaneMask<T> apart = (face > reach) | (above > reach * pair.b.area);
+    LaneMask<T> over = (face < -slack) & (above < -(slack * pair.b.area));
     if ((bits(apart) & valid) != kAllLanes<T>) {
       for_products(
-          pair, [&](int, int j, const Real<T>&, const Real<T>& s) __attribute__((always_inline)) {
+          pair, [&](int, int j, const Lanes<T>&, const Lanes<T>& s) __attribute__((always_inline)) {
             apart = apart | (s > reach * pair.b.length[j]);
             over = over & (s < -(slack * pair.b.length[j]));
           });
@@ -69,9 +352,10 @@ struct BoxTriangle {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+
+}  // namespace WINNOW_ISA_NAME::flat
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(box_triangle_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::BoxTriangle>();
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::flat::BoxTriangle>();
 
 }  // namespace winnow

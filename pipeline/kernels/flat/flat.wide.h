@@ -1,19 +1,24 @@
 #pragma once
 
 // What the kernels of boxes and triangles share: the search for the best of many separating axes,
-// and the way from a distance of the cores to certified answers.
+// triangles as they stand, and the way from the best axis of a pair of cores to certified answers
+// and contacts.
 //
 // The separation of two convex cores along a unit vector n is how far b's lowest point along n is
 // above a's highest. Its maximum over all n is the distance, or minus the penetration depth, and is
 // found at one of few axes (Gottschalk, 1996), but for distances between vertices and edges.
+//
+// A kind of pair has scale, offset, along, to_world and its roundings, and the functions best_axis,
+// axis_points and closest_by_vertices; a Staged holds its lanes in memory.
 
 #include "pipeline/kernels/answers.wide.h"
+#include "pipeline/manifold/flat_patch.h"
 
-namespace winnow::WINNOW_ISA_NAME {
+namespace winnow::WINNOW_ISA_NAME::flat {
 
 /// The sum of the magnitudes.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> taxicab_of(const Vec3<T>& v) {
+[[gnu::always_inline]] inline Lanes<T> taxicab_of(const Vec3<T>& v) {
   return abs(v.x) + abs(v.y) + abs(v.z);
 }
 
@@ -21,7 +26,7 @@ template <typename T>
 /// (all lengths in it) wrong, or less: 10 for an entry of a rotation, 38 for one of the product of
 /// two, 82 for the offset along a product of axes.
 template <typename T>
-inline constexpr T kSlack = T(48) * kEpsilon<T>;
+inline constexpr T kFlatSlack = T(48) * kEpsilon<T>;
 
 /// Bounds are at most this share of the scale, or the pair goes to the solver.
 template <typename T>
@@ -41,19 +46,19 @@ inline constexpr T kParallelSquare = sizeof(T) == sizeof(double) ? T(1e-26) : T(
 /// the axis' length.
 template <typename T>
 struct BestAxis {
-  Real<T> square;
-  Real<T> length2;
-  Real<T> index;
+  Lanes<T> square;
+  Lanes<T> length2;
+  Lanes<T> index;
 
-  [[gnu::always_inline]] void offer(const Real<T>& separation, const Real<T>& axis_length2,
+  [[gnu::always_inline]] void offer(const Lanes<T>& separation, const Lanes<T>& axis_length2,
                                     int axis_index) {
-    const Real<T> s = separation * abs(separation);
-    const Truth<T> better = s * length2 > square * axis_length2;
+    const Lanes<T> s = separation * abs(separation);
+    const LaneMask<T> better = s * length2 > square * axis_length2;
     square = select(better, s, square);
     length2 = select(better, axis_length2, length2);
-    index = select(better, Real<T>(T(axis_index)), index);
+    index = select(better, Lanes<T>(T(axis_index)), index);
   }
-  [[gnu::always_inline]] Real<T> separation() const {
+  [[gnu::always_inline]] Lanes<T> separation() const {
     return sign_or_one(square) * sqrt(abs(square) / length2);
   }
 };
@@ -61,16 +66,16 @@ struct BestAxis {
 /// The largest of separations along unit vectors, and which.
 template <typename T>
 struct BestFace {
-  Real<T> separation;
-  Real<T> index;
+  Lanes<T> separation;
+  Lanes<T> index;
 
-  [[gnu::always_inline]] void offer(const Real<T>& s, int axis_index) {
-    const Truth<T> better = s > separation;
+  [[gnu::always_inline]] void offer(const Lanes<T>& s, int axis_index) {
+    const LaneMask<T> better = s > separation;
     separation = select(better, s, separation);
-    index = select(better, Real<T>(T(axis_index)), index);
+    index = select(better, Lanes<T>(T(axis_index)), index);
   }
   [[gnu::always_inline]] BestAxis<T> as_axis() const {
-    return {separation * abs(separation), Real<T>(T(1)), index};
+    return {separation * abs(separation), Lanes<T>(T(1)), index};
   }
 };
 
@@ -78,21 +83,22 @@ struct BestFace {
 /// out if they are parallel; what that costs is no more than the product over the longer factor:
 /// seen along it, the other is as short as that.
 template <typename T>
-[[gnu::always_inline]] inline void offer_product(BestAxis<T>& best, Real<T>& left_out,
-                                                 const Real<T>& length2, const Real<T>& separation,
-                                                 const Real<T>& size, const Real<T>& slack,
-                                                 const Real<T>& longer, int index) {
-  const Truth<T> crossed = length2 > size * size * Real<T>(kParallelSquare<T>);
+[[gnu::always_inline]] inline void offer_product(BestAxis<T>& best, Lanes<T>& left_out,
+                                                 const Lanes<T>& length2,
+                                                 const Lanes<T>& separation, const Lanes<T>& size,
+                                                 const Lanes<T>& slack, const Lanes<T>& longer,
+                                                 int index) {
+  const LaneMask<T> crossed = length2 > size * size * Lanes<T>(kParallelSquare<T>);
   if (bits(crossed) == kAllLanes<T>) {
     best.offer(separation + size * slack, length2, index);
     return;
   }
-  const Real<T> zero(T(0));
-  const Real<T> one(T(1));
-  const Real<T> lost = select(longer > zero, Real<T>(T(2)) * sqrt(length2) / longer, zero);
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
+  const Lanes<T> lost = select(longer > zero, Lanes<T>(T(2)) * sqrt(length2) / longer, zero);
   left_out += select(crossed, zero, lost);
   // Worse than anything.
-  const Real<T> worst = slack * Real<T>(T(-3) / kSlack<T>);
+  const Lanes<T> worst = slack * Lanes<T>(T(-3) / kFlatSlack<T>);
   best.offer(select(crossed, separation + size * slack, worst), select(crossed, length2, one),
              index);
 }
@@ -113,14 +119,14 @@ inline bool turn_concentric(const NarrowJob& job, const BodyPair& pair) {
 /// the offset that is not zero is positive. Answers are turned back.
 template <typename T>
 struct OrderedBlock {
-  BodyPair pairs[Real<T>::kRealLanes];
+  BodyPair pairs[Lanes<T>::kCount];
   /// -1 for pairs that were turned, else 1.
-  alignas(64) T sign[Real<T>::kRealLanes];
+  alignas(64) T sign[Lanes<T>::kCount];
   PairBlock<T> block;
 
   [[gnu::always_inline]] OrderedBlock(const NarrowJob& job, const PairBlock<T>& given)
       : block{pairs, given.first, given.count} {
-    for (int lane = 0; lane < Real<T>::kRealLanes; ++lane) {
+    for (int lane = 0; lane < Lanes<T>::kCount; ++lane) {
       const BodyPair pair = given.pairs[lane];
       const double* a = job.poses[pair.a].position;
       const double* b = job.poses[pair.b].position;
@@ -137,8 +143,8 @@ struct OrderedBlock {
 /// What a kernel has found out about the cores, in the axes of the world.
 template <typename T>
 struct CoreAnswer {
-  Real<T> distance;
-  Real<T> error_bound;
+  Lanes<T> distance;
+  Lanes<T> error_bound;
   Vec3<T> normal;
   /// On the core of a, relative to its position. Level distance only.
   Vec3<T> point;
@@ -146,32 +152,317 @@ struct CoreAnswer {
 
 /// The answer about the shapes from that about their cores; returns the lanes that are certified.
 template <typename T>
-[[gnu::always_inline]] inline Mask16 with_rounding(CoreAnswer<T>& answer, const Real<T>& rounding_a,
-                                                   const Real<T>& rounding_b,
-                                                   const Real<T>& scale) {
+[[gnu::always_inline]] inline Mask16 with_rounding(CoreAnswer<T>& answer,
+                                                   const Lanes<T>& rounding_a,
+                                                   const Lanes<T>& rounding_b,
+                                                   const Lanes<T>& scale) {
   answer.distance -= rounding_a + rounding_b;
   answer.point = answer.point + answer.normal * rounding_a;
-  const Truth<T> narrow = answer.error_bound <= scale * Real<T>(kWidestBound<T>);
-  const Truth<T> valid = in_range(scale * scale) & narrow;
+  const LaneMask<T> narrow = answer.error_bound <= scale * Lanes<T>(kWidestBound<T>);
+  const LaneMask<T> valid = in_range(scale * scale) & narrow;
   if constexpr (sizeof(T) == sizeof(double)) {
     return bits(valid & (abs(answer.distance) > answer.error_bound));
   }
   // Squares of products of edges must stay in range, also where one shape is 1e5 times smaller than
   // the other, and a normal that is not unit says nothing.
-  const Truth<T> moderate = (scale > Real<T>(T(4e-3F))) & (scale < Real<T>(T(1e4F)));
-  const Real<T> length2 = dot(answer.normal, answer.normal);
-  return bits(valid & moderate & (length2 > Real<T>(T(0.99F))) &
-              (abs(answer.distance) <= scale * Real<T>(T(4))));
+  const LaneMask<T> moderate = (scale > Lanes<T>(T(4e-3F))) & (scale < Lanes<T>(T(1e4F)));
+  const Lanes<T> length2 = dot(answer.normal, answer.normal);
+  return bits(valid & moderate & (length2 > Lanes<T>(T(0.99F))) &
+              (abs(answer.distance) <= scale * Lanes<T>(T(4))));
 }
 
 /// Turns answers back to the caller's order. `offset` is from a to b as the kernel had them.
 template <typename T>
 [[gnu::always_inline]] inline AnswerLanes<T> turned_back(const CoreAnswer<T>& answer,
                                                          const Vec3<T>& offset,
-                                                         const Real<T>& sign) {
+                                                         const Lanes<T>& sign) {
   const Vec3<T> on_b = answer.point + answer.normal * answer.distance - offset;
   return {answer.distance, answer.error_bound, answer.normal * sign,
-          select(sign < Real<T>(T(0)), on_b, answer.point)};
+          select(sign < Lanes<T>(T(0)), on_b, answer.point)};
 }
 
-}  // namespace winnow::WINNOW_ISA_NAME
+/// Of three vectors the one whose mask holds, the last if none.
+template <typename T>
+[[gnu::always_inline]] inline Vec3<T> pick(const LaneMask<T>& is_0, const LaneMask<T>& is_1,
+                                           const Vec3<T> (&v)[3]) {
+  return select(is_0, v[0], select(is_1, v[1], v[2]));
+}
+
+/// In the axes of the world, relative to the position of a.
+template <typename T>
+struct PlacedTriangle {
+  Vec3<T> vertex[3];
+  /// From vertex i to the next, turned from the shape's own numbers, so that it does not carry the
+  /// rounding of vertices far from the origin.
+  Vec3<T> edge[3];
+  /// Not less than the edges' lengths.
+  Lanes<T> length[3];
+  /// The product of the two shorter edges, and that of their lengths.
+  Vec3<T> normal;
+  Lanes<T> area;
+  Lanes<T> rounding;
+  /// The sum of all numbers.
+  Lanes<T> scale;
+
+  [[gnu::always_inline]] void place(const TriangleLanes<T>& shape, const Rotation<T>& turn) {
+    for (int i = 0; i < 3; ++i) {
+      edge[i] = turn.to_world(shape.vertex[(i + 1) % 3] - shape.vertex[i]);
+      length[i] = taxicab_of(edge[i]);
+    }
+    vertex[0] = turn.to_world(shape.vertex[0]);
+    vertex[1] = turn.to_world(shape.vertex[1]);
+    vertex[2] = turn.to_world(shape.vertex[2]);
+    rounding = shape.rounding;
+    scale = taxicab_of(vertex[0]) + taxicab_of(vertex[1]) + taxicab_of(vertex[2]) + rounding;
+    const LaneMask<T> longest_0 = (length[0] >= length[1]) & (length[0] >= length[2]);
+    const LaneMask<T> longest_1 = length[1] >= length[2];
+    const Vec3<T> after[3] = {edge[1], edge[2], edge[0]};
+    const Vec3<T> before[3] = {edge[2], edge[0], edge[1]};
+    normal = cross(pick(longest_0, longest_1, after), pick(longest_0, longest_1, before));
+    area = select(longest_0, length[1] * length[2],
+                  select(longest_1, length[2] * length[0], length[0] * length[1]));
+  }
+  [[gnu::always_inline]] Lanes<T> longest() const {
+    return max(length[0], max(length[1], length[2]));
+  }
+  [[gnu::always_inline]] void move(const Vec3<T>& offset) {
+    for (Vec3<T>& v : vertex) v = v + offset;
+  }
+  /// Smallest and largest along a vector.
+  [[gnu::always_inline]] void span(const Vec3<T>& n, Lanes<T>& low, Lanes<T>& high) const {
+    const Lanes<T> d[3] = {dot(n, vertex[0]), dot(n, vertex[1]), dot(n, vertex[2])};
+    low = min(d[0], min(d[1], d[2]));
+    high = max(d[0], max(d[1], d[2]));
+  }
+  /// The vertex that is lowest along a vector.
+  [[gnu::always_inline]] Vec3<T> lowest(const Vec3<T>& n) const {
+    const Lanes<T> d[3] = {dot(n, vertex[0]), dot(n, vertex[1]), dot(n, vertex[2])};
+    return pick((d[0] <= d[1]) & (d[0] <= d[2]), d[1] <= d[2], vertex);
+  }
+  /// Whether a point projects into the triangle, or beside it by no more than a share of its edge.
+  [[gnu::always_inline]] LaneMask<T> is_over(const Vec3<T>& p, const Lanes<T>& slack) const {
+    LaneMask<T> in = slack == slack;
+    for (int i = 0; i < 3; ++i) {
+      in = in & (dot(cross(normal, edge[i]), p - vertex[i]) >= -(slack * area * length[i]));
+    }
+    return in;
+  }
+};
+
+/// Vectors and numbers of all lanes in memory, to be read one lane at a time.
+template <typename T, int Count>
+struct Stage {
+  alignas(64) T value[Count][Lanes<T>::kCount];
+
+  [[gnu::always_inline]] void put(int at, const Vec3<T>& v) {
+    v.x.store(value[at]);
+    v.y.store(value[at + 1]);
+    v.z.store(value[at + 2]);
+  }
+  [[gnu::always_inline]] void put(int at, const Lanes<T>& v) { v.store(value[at]); }
+  [[gnu::always_inline]] void get(int at, int count, unsigned lane, double* out) const {
+    for (int i = 0; i < count; ++i) out[i] = static_cast<double>(value[at + i][lane]);
+  }
+};
+
+/// Contacts of the lanes of `touching` by `meet(lane, points)`, in the caller's order; runs for all
+/// lanes of the block. `offset` of a lane is from a to b as the kernel had them, `sign` -1 where
+/// the caller has them the other way round.
+template <typename T, typename Meet>
+inline void write_patch_contacts(NarrowJob& job, const PairBlock<T>& block, Mask16 touching,
+                                 const T (*offset)[Lanes<T>::kCount], const T* sign, Meet&& meet) {
+  ContactWriter& out = job.contacts;
+  for (unsigned lane = 0; lane < block.count; ++lane) {
+    job.contact_first[block.first + lane] = out.size;
+    std::uint32_t count = 0;
+    if ((touching >> lane & 1U) != 0) {
+      ContactPoint points[kManifoldPoints];
+      count = meet(lane, points);
+      const bool turned = sign[lane] < T(0);
+      for (std::uint32_t k = 0; k < count; ++k, ++out.size) {
+        const ContactPoint& p = points[k];
+        for (int r = 0; r < 3; ++r) {
+          const double from_b =
+              static_cast<double>(p.position[r]) - static_cast<double>(offset[r][lane]);
+          out.position[r][out.size] = turned ? static_cast<float>(from_b) : p.position[r];
+        }
+        out.depth[out.size] = p.depth;
+        out.feature[out.size] = turned ? p.feature << 32U | p.feature >> 32U : p.feature;
+      }
+    }
+    job.contact_count[block.first + lane] = count;
+  }
+}
+
+/// A point of each, relative to the position of a.
+template <typename T>
+struct PointPair {
+  Vec3<T> a;
+  Vec3<T> b;
+
+  [[gnu::always_inline]] Lanes<T> square() const {
+    const Vec3<T> d = b - a;
+    return dot(d, d);
+  }
+};
+
+/// How far the deepest contact may be from the depth of the pair, as a share of the scale.
+template <typename T>
+inline constexpr T kDeepest = sizeof(T) == sizeof(double) ? T(1e-6) : T(1e-4F);
+
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> clamp_unit(const Lanes<T>& t) {
+  return max(min(t, Lanes<T>(T(1))), Lanes<T>(T(0)));
+}
+
+/// 1 / v; 0 for 0.
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> inverse(const Lanes<T>& v) {
+  return select(v > Lanes<T>(T(0)), Lanes<T>(T(1)) / v, Lanes<T>(T(0)));
+}
+
+/// What the best axis says: a vertex and its foot on a face, or a point of each of two edges.
+template <typename T>
+struct AxisPoints {
+  PointPair<T> points;
+  /// The foot is inside of the face, or little outside where the triangles overlap; the edges
+  /// cross.
+  LaneMask<T> meets;
+  /// How far off the foot may be, as a multiple of the slack.
+  Lanes<T> doubt;
+};
+
+/// Puts the points of some lanes to where both shapes are.
+template <typename Staged, typename Pair, typename T>
+inline void correct_points(const Pair& pair, CoreAnswer<T>& answer, Mask16 lanes) {
+  const Staged stage(pair, answer.normal);
+  Stage<T, 3> point;
+  point.put(0, answer.point);
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const unsigned lane = first(lanes);
+    FlatPatch a;
+    FlatPatch b;
+    double normal[3];
+    double p[3];
+    stage.patches(lane, a, b, normal);
+    deepest_point(a, b, normal, p);
+    for (int r = 0; r < 3; ++r) point.value[r][lane] = static_cast<T>(p[r]);
+  }
+  answer.point = {Lanes<T>::load(point.value[0]), Lanes<T>::load(point.value[1]),
+                  Lanes<T>::load(point.value[2])};
+}
+
+/// Answers about the cores of a block. Lanes that are apart get their distance if it is `wanted`,
+/// else a lower bound. Below the true distance is what the better of two directions separates,
+/// above it the way between two points.
+template <int L, typename Staged, typename Pair, typename Axis, typename T>
+[[gnu::always_inline]] inline CoreAnswer<T> measure(const Pair& pair, const Axis& axis,
+                                                    const LaneMask<T>& wanted) {
+  const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
+  const LaneMask<T> apart = axis.separation > Lanes<T>(T(0));
+  CoreAnswer<T> answer;
+  answer.distance = select(apart & !wanted, axis.separation - slack, axis.separation);
+  answer.error_bound = abs(axis.most - axis.separation) + slack;
+  answer.normal = axis.normal;
+  answer.point = axis.normal;
+  const LaneMask<T> measured = apart & wanted;
+  const bool any_measured = bits(measured) != 0;
+  if (L == kDistance || any_measured) {
+    const AxisPoints<T> by_axis = axis_points(pair, axis);
+    answer.point = by_axis.points.a;
+    if (any_measured) {
+      PointPair<T> points = closest_by_vertices(pair);
+      const LaneMask<T> axis_is_closer =
+          by_axis.meets & (by_axis.points.square() <= points.square());
+      points.a = select(axis_is_closer, by_axis.points.a, points.a);
+      points.b = select(axis_is_closer, by_axis.points.b, points.b);
+      const Vec3<T> d = points.b - points.a;
+      const Lanes<T> length = sqrt(dot(d, d));
+      const Vec3<T> n = d * (Lanes<T>(T(1)) / length);
+      const Lanes<T> lower = pair.along(n);
+      const LaneMask<T> better = lower > axis.separation;
+      const Lanes<T> least = select(better, lower, axis.separation);
+      const Lanes<T> gap = abs(length - least);
+      // Points far from the closest ones, which float lanes answer with all the same: no contact
+      // is lost.
+      const Lanes<T> distance = select(gap <= pair.scale * Lanes<T>(kWidestGap<T>), length, least);
+      answer.distance = select(measured, distance, answer.distance);
+      const Lanes<T> doubt = slack + slack * select(axis_is_closer, by_axis.doubt, Lanes<T>(T(1)));
+      answer.error_bound = select(measured, gap + doubt, answer.error_bound);
+      answer.normal = select(measured & better, n, answer.normal);
+      answer.point = select(measured, points.a, answer.point);
+    }
+    answer.point = pair.to_world(answer.point);
+    answer.normal = pair.to_world(answer.normal);
+    if constexpr (L == kDistance) {
+      const Mask16 off = ~bits(apart | by_axis.meets) & kAllLanes<T>;
+      if (off != 0) correct_points<Staged>(pair, answer, off);
+    }
+    return answer;
+  }
+  answer.normal = pair.to_world(answer.normal);
+  return answer;
+}
+
+/// Levels distance and manifold of a block; `sign` as OrderedBlock has it. Returns the uncertified
+/// lanes.
+template <int L, typename Staged, typename T, typename Pair>
+[[gnu::always_inline]] inline Mask16 answer_flat(NarrowJob& job, const PairBlock<T>& given,
+                                                 const Pair& pair, const T* sign) {
+  const auto axis = best_axis(pair);
+  const Lanes<T> margin(static_cast<T>(job.margin));
+  LaneMask<T> wanted = pair.scale == pair.scale;
+  if constexpr (L == kManifold) {
+    wanted = axis.separation <= margin + pair.rounding_a() + pair.rounding_b() +
+                                    pair.scale * Lanes<T>(T(2) * kFlatSlack<T>);
+  }
+  CoreAnswer<T> core = measure<L, Staged>(pair, axis, wanted);
+  const Mask16 certified = with_rounding(core, pair.rounding_a(), pair.rounding_b(), pair.scale);
+  write_answer<L>(job, given, turned_back(core, pair.offset, Lanes<T>::load(sign)));
+  if constexpr (L == kManifold) {
+    const Mask16 touching = certified & bits(core.distance <= margin);
+    const Staged stage(pair, core.normal);
+    // A patch that leaves out where the shapes are closest is no manifold.
+    Stage<T, 2> expected;
+    expected.put(0, core.distance);
+    expected.put(1, core.error_bound + pair.scale * Lanes<T>(kDeepest<T>));
+    Mask16 missed = 0;
+    write_patch_contacts<T>(job, given, touching, stage.offset(), sign,
+                            [&](unsigned lane, ContactPoint* points) -> std::uint32_t {
+                              FlatPatch a;
+                              FlatPatch b;
+                              double normal[3];
+                              stage.patches(lane, a, b, normal);
+                              const auto count = flat_contacts(a, b, normal, job.margin, points);
+                              const T off =
+                                  static_cast<T>(points[0].depth) + expected.value[0][lane];
+                              const T most = expected.value[1][lane];
+                              if (count > 0 && off <= most && off >= -most) return count;
+                              missed |= 1U << lane;
+                              return 0;
+                            });
+    return ~certified | missed;
+  }
+  return ~certified;
+}
+
+/// Level boolean: the pairs that `apart` and `over` leave open are measured.
+template <typename Staged, typename T, typename Pair>
+[[gnu::always_inline]] inline Mask16 answer_overlaps(NarrowJob& job, const PairBlock<T>& block,
+                                                     const Pair& pair, const LaneMask<T>& apart,
+                                                     const LaneMask<T>& over) {
+  const Mask16 valid = bits(in_range(pair.scale * pair.scale));
+  Mask16 hit = bits(over);
+  Mask16 known = hit | bits(apart);
+  const Mask16 unknown = ~known & valid & block.lanes();
+  if (unknown != 0) {
+    const LaneMask<T> all = pair.scale == pair.scale;
+    CoreAnswer<T> core = measure<kManifold, Staged>(pair, best_axis(pair), all);
+    known |= with_rounding(core, pair.rounding_a(), pair.rounding_b(), pair.scale) & unknown;
+    hit |= bits(core.distance <= Lanes<T>(T(0))) & unknown;
+  }
+  write_overlap(job, block, hit);
+  return ~(known & valid);
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME::flat

@@ -1,10 +1,205 @@
-// Spheres, capsules and boxes against hulls, and hulls against triangles.
+// Spheres, capsules and boxes against hulls, and hulls against triangles: the simple shapes as
+// hulls, so that they meet hulls by the same kernels.
 
 #include "pipeline/kernels/hull/hull_answers.wide.h"
-#include "pipeline/kernels/hull/hull_cores.wide.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::hull {
+/// Faces, edges and neighbours of boxes. Vertex i is at the high end of axis k where bit k is set;
+/// face 2 k + 1 looks along axis k, face 2 k against it; edge 4 k + j is along axis k, at the ends
+/// of the others that the bits of j say. The numbers are those of flat_patch.h.
+struct BoxTopology {
+  std::uint32_t loop[24];
+  std::uint32_t loop_edge[24];
+  HullEdge edges[12];
+  HullFace faces[6];
+  std::uint32_t neighbour_first[9];
+  std::uint32_t neighbour[24];
+};
+
+/// The axes other than one, in order.
+constexpr std::uint32_t lower_other(std::uint32_t axis) {
+  return axis == 0 ? 1 : 0;
+}
+constexpr std::uint32_t upper_other(std::uint32_t axis) {
+  return axis == 2 ? 1 : 2;
+}
+
+constexpr std::uint32_t box_edge(std::uint32_t v, std::uint32_t w) {
+  const std::uint32_t axis = (v ^ w) >> 1U;
+  const std::uint32_t low = v & w;
+  return 4 * axis + (low >> lower_other(axis) & 1U) + 2 * (low >> upper_other(axis) & 1U);
+}
+
+constexpr BoxTopology make_box_topology() {
+  BoxTopology t{};
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    const std::uint32_t u = 1U << (axis + 1) % 3;
+    const std::uint32_t v = 1U << (axis + 2) % 3;
+    for (std::uint32_t side = 0; side < 2; ++side) {
+      const std::uint32_t face = 2 * axis + side;
+      const std::uint32_t base = side << axis;
+      const std::uint32_t corner[4] = {base, base + (side == 1 ? u : v), base + u + v,
+                                       base + (side == 1 ? v : u)};
+      t.faces[face].normal[axis] = side == 1 ? 1.0 : -1.0;
+      t.faces[face].first = 4 * face;
+      t.faces[face].count = 4;
+      for (std::uint32_t i = 0; i < 4; ++i) {
+        t.loop[4 * face + i] = corner[i];
+        t.loop_edge[4 * face + i] = box_edge(corner[i], corner[(i + 1) % 4]);
+      }
+    }
+    for (std::uint32_t j = 0; j < 4; ++j) {
+      const std::uint32_t p = lower_other(axis);
+      const std::uint32_t q = upper_other(axis);
+      const std::uint32_t low = (j & 1U) << p | (j >> 1U) << q;
+      t.edges[4 * axis + j] = {{low, low + (1U << axis)}, {2 * p + (j & 1U), 2 * q + (j >> 1U)}};
+    }
+  }
+  for (std::uint32_t v = 0; v < 8; ++v) {
+    t.neighbour_first[v + 1] = 3 * (v + 1);
+    for (std::uint32_t k = 0; k < 3; ++k) t.neighbour[3 * v + k] = v ^ 1U << k;
+  }
+  return t;
+}
+
+inline constexpr BoxTopology kBoxTopology = make_box_topology();
+
+/// A triangle's two sides, and an edge that both have.
+inline constexpr std::uint32_t kTriangleLoop[6] = {0, 1, 2, 0, 2, 1};
+inline constexpr std::uint32_t kTriangleLoopEdge[6] = {0, 1, 2, 2, 1, 0};
+inline constexpr HullEdge kTriangleEdges[3] = {
+    {{0, 1}, {0, 1}}, {{1, 2}, {0, 1}}, {{2, 0}, {0, 1}}};
+inline constexpr std::uint32_t kTriangleNeighbourFirst[4] = {0, 2, 4, 6};
+inline constexpr std::uint32_t kTriangleNeighbours[6] = {1, 2, 0, 2, 0, 1};
+inline constexpr HullEdge kSegmentEdge[1] = {{{0, 1}, {~0U, ~0U}}};
+inline constexpr std::uint32_t kSegmentNeighbourFirst[3] = {0, 1, 2};
+inline constexpr std::uint32_t kSegmentNeighbours[2] = {1, 0};
+
+/// A hull of up to eight vertices and six faces with what it points to. Does not move.
+class CoreHull {
+ public:
+  CoreHull() = default;
+  CoreHull(const CoreHull&) = delete;
+  CoreHull& operator=(const CoreHull&) = delete;
+
+  const HullShape& of(const SphereShape& sphere) {
+    const double origin[1][3] = {{0.0, 0.0, 0.0}};
+    begin(origin, 1, 0, sphere.radius);
+    return hull_;
+  }
+
+  const HullShape& of(const CapsuleShape& capsule) {
+    const double h = capsule.half_length;
+    const double ends[2][3] = {{0.0, 0.0, -h}, {0.0, 0.0, h}};
+    begin(ends, 2, 1, capsule.radius);
+    hull_.radius = h;
+    hull_.edge_count = 1;
+    hull_.edges = kSegmentEdge;
+    hull_.neighbour_first = kSegmentNeighbourFirst;
+    hull_.neighbour = kSegmentNeighbours;
+    return hull_;
+  }
+
+  const HullShape& of(const BoxShape& box) {
+    double corner[8][3];
+    double least = box.half[0];
+    double square = 0.0;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const double h = box.half[k];
+      least = h < least ? h : least;
+      square += h * h;
+      for (std::uint32_t i = 0; i < 8; ++i) corner[i][k] = (i >> k & 1U) != 0 ? h : -h;
+      for (std::uint32_t side = 0; side < 2; ++side) {
+        set_plane(2 * k + side, kBoxTopology.faces[2 * k + side].normal, h);
+      }
+    }
+    begin(corner, 8, 3, box.rounding);
+    hull_.radius = __builtin_sqrt(square) * (1.0 + 1e-15);
+    hull_.inner_radius = least;
+    hull_.face_count = 6;
+    hull_.edge_count = 12;
+    hull_.faces = kBoxTopology.faces;
+    hull_.edges = kBoxTopology.edges;
+    hull_.loop = kBoxTopology.loop;
+    hull_.loop_edge = kBoxTopology.loop_edge;
+    hull_.neighbour_first = kBoxTopology.neighbour_first;
+    hull_.neighbour = kBoxTopology.neighbour;
+    return hull_;
+  }
+
+  const HullShape& of(const TriangleShape& triangle) {
+    double e[3];
+    double f[3];
+    double n[3];
+    begin(triangle.vertex, 3, 2, triangle.rounding);
+    for (int k = 0; k < 3; ++k) {
+      e[k] = triangle.vertex[1][k] - triangle.vertex[0][k];
+      f[k] = triangle.vertex[2][k] - triangle.vertex[0][k];
+      hull_.center[k] =
+          (triangle.vertex[0][k] + triangle.vertex[1][k] + triangle.vertex[2][k]) / 3.0;
+    }
+    for (const auto& v : triangle.vertex) {
+      const double d[3] = {v[0] - hull_.center[0], v[1] - hull_.center[1], v[2] - hull_.center[2]};
+      const double reach = __builtin_sqrt(dot3(d, d)) * (1.0 + 1e-15);
+      hull_.radius = reach > hull_.radius ? reach : hull_.radius;
+    }
+    cross3(e, f, n);
+    const double area = __builtin_sqrt(dot3(n, n));
+    hull_.edge_count = 3;
+    hull_.edges = kTriangleEdges;
+    hull_.loop = kTriangleLoop;
+    hull_.loop_edge = kTriangleLoopEdge;
+    hull_.neighbour_first = kTriangleNeighbourFirst;
+    hull_.neighbour = kTriangleNeighbours;
+    // A sliver has no normal that can be relied on: it is left to the solver.
+    is_sliver_ = !(area > 1e-6 * (dot3(e, e) + dot3(f, f)));
+    for (std::uint32_t side = 0; side < 2; ++side) {
+      for (int k = 0; k < 3; ++k) face_[side].normal[k] = (side == 0 ? n[k] : -n[k]) / area;
+      face_[side].offset = dot3(face_[side].normal, triangle.vertex[0]);
+      face_[side].first = 3 * side;
+      face_[side].count = 3;
+      set_plane(side, face_[side].normal, face_[side].offset);
+    }
+    hull_.face_count = 2;
+    hull_.faces = face_;
+    return hull_;
+  }
+
+  [[nodiscard]] bool is_sliver() const { return is_sliver_; }
+
+ private:
+  void begin(const double (*vertex)[3], std::uint32_t count, std::uint32_t dimension,
+             double rounding) {
+    hull_ = HullShape{};
+    hull_.vertex_count = count;
+    hull_.dimension = dimension;
+    hull_.rounding = rounding;
+    is_sliver_ = false;
+    for (int k = 0; k < 3; ++k) {
+      for (std::uint32_t i = 0; i < kLanes; ++i) {
+        vertex_[k][i] = vertex[i < count ? i : 0][k];
+        vertex_float_[k][i] = static_cast<float>(vertex_[k][i]);
+      }
+      hull_.vertex[k] = vertex_[k];
+      hull_.vertex_float[k] = vertex_float_[k];
+    }
+    for (int k = 0; k < 4; ++k) hull_.plane_float[k] = plane_[k];
+  }
+
+  void set_plane(std::uint32_t face, const double* normal, double offset) {
+    for (int k = 0; k < 3; ++k) plane_[k][face] = static_cast<float>(normal[k]);
+    plane_[3][face] = static_cast<float>(offset);
+  }
+
+  HullShape hull_;
+  bool is_sliver_ = false;
+  HullFace face_[2] = {};
+  alignas(64) double vertex_[3][kLanes];
+  alignas(64) float vertex_float_[3][kLanes];
+  /// Rows from the count of faces on are not read as faces.
+  alignas(64) float plane_[4][kLanes] = {};
+};
 
 static inline const SphereShape* table_of(const ShapeTables& t, const SphereShape*) {
   return t.spheres;
@@ -42,15 +237,15 @@ class CoreAndHull {
   CoreHull core_[kRoom];
 };
 
-}  // namespace WINNOW_ISA_NAME
+}  // namespace WINNOW_ISA_NAME::hull
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_hull_kernels) =
-    WINNOW_ISA_NAME::kHullKernels<WINNOW_ISA_NAME::CoreAndHull<SphereShape, true>>;
+    WINNOW_ISA_NAME::hull::kHullKernels<WINNOW_ISA_NAME::hull::CoreAndHull<SphereShape, true>>;
 extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_hull_kernels) =
-    WINNOW_ISA_NAME::kHullKernels<WINNOW_ISA_NAME::CoreAndHull<CapsuleShape, true>>;
+    WINNOW_ISA_NAME::hull::kHullKernels<WINNOW_ISA_NAME::hull::CoreAndHull<CapsuleShape, true>>;
 extern const NarrowKernels WINNOW_KERNEL_TABLE(box_hull_kernels) =
-    WINNOW_ISA_NAME::kHullKernels<WINNOW_ISA_NAME::CoreAndHull<BoxShape, true>>;
+    WINNOW_ISA_NAME::hull::kHullKernels<WINNOW_ISA_NAME::hull::CoreAndHull<BoxShape, true>>;
 extern const NarrowKernels WINNOW_KERNEL_TABLE(hull_triangle_kernels) =
-    WINNOW_ISA_NAME::kHullKernels<WINNOW_ISA_NAME::CoreAndHull<TriangleShape, false>>;
+    WINNOW_ISA_NAME::hull::kHullKernels<WINNOW_ISA_NAME::hull::CoreAndHull<TriangleShape, false>>;
 
 }  // namespace winnow

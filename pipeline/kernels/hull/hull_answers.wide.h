@@ -2,11 +2,11 @@
 
 // Jobs of the hull kernels: pairs are placed, searched in float lanes and finished one by one.
 
-#include "pipeline/kernels/hull/hull_contacts.wide.h"
+#include "pipeline/kernels/hull/hull_finish.wide.h"
 #include "pipeline/kernels/hull/hull_search.wide.h"
 #include "pipeline/kernels/kernels.h"
 
-namespace winnow::WINNOW_ISA_NAME {
+namespace winnow::WINNOW_ISA_NAME::hull {
 
 /// Answers jobs of one level in one precision. Shapes says which hulls the pairs of a job are:
 /// `kRoom` at a time, by place(job, bodies, slot, pair), which is false for what is out of range.
@@ -93,7 +93,7 @@ class HullAnswers {
       return true;
     }
     const HullPlace<T> place(pair);
-    CoreAnswer<T> core{};
+    HullDistance<T> core{};
     if (pair.state == HullState::apart) {
       finish_apart(pair, place, core);
       // An error of the length is one of the direction: this keeps it below 0.01 degrees.
@@ -106,7 +106,7 @@ class HullAnswers {
     return finish(pair, place, core);
   }
 
-  bool finish(const HullPair& pair, const HullPlace<T>& place, CoreAnswer<T>& core) {
+  bool finish(const HullPair& pair, const HullPlace<T>& place, HullDistance<T>& core) {
     const double distance = static_cast<double>(core.distance) - pair.rounding;
     const double error = static_cast<double>(core.error) + kDoubleError * pair.rounding;
     if (kRobust) {
@@ -211,4 +211,4 @@ inline constexpr NarrowKernels kHullKernels = {
     {HullAnswers<Shapes, double, 0>::run, HullAnswers<Shapes, double, 1>::run,
      HullAnswers<Shapes, double, 2>::run}};
 
-}  // namespace winnow::WINNOW_ISA_NAME
+}  // namespace winnow::WINNOW_ISA_NAME::hull

@@ -8,9 +8,9 @@
 // left out is deeper than the result by more than float's errors, so that the few candidates kept
 // hold the true minimum.
 
-#include "pipeline/kernels/hull/hull_support.wide.h"
+#include "pipeline/kernels/hull/hull_pair.wide.h"
 
-namespace winnow::WINNOW_ISA_NAME {
+namespace winnow::WINNOW_ISA_NAME::hull {
 
 /// Height of the difference along a direction: of the first's face, or a point on an arc.
 struct HullDirection {
@@ -73,7 +73,6 @@ class HullDepth {
   [[nodiscard]] float floor() const { return best_ + slack_; }
 
  private:
-  using Lanes = Real<float>;
   /// Three edges for two faces.
   static constexpr std::uint32_t kMostEdges = kMostFaces / 2 * 3;
 
@@ -134,9 +133,9 @@ class HullDepth {
     }
   }
 
-  static Lanes either(const Lanes& a, const Lanes& b) {
-    Lanes r;
-    for (int i = 0; i < Lanes::kBatches; ++i) r.part[i] = a.part[i] | b.part[i];
+  static Floats either(const Floats& a, const Floats& b) {
+    Floats r;
+    for (int i = 0; i < Floats::kParts; ++i) r.part[i] = a.part[i] | b.part[i];
     return r;
   }
 
@@ -146,19 +145,19 @@ class HullDepth {
   void close_faces(Side& side) {
     const float* const* plane = side.hull->plane_float;
     const Vec3<float> middle{side.center[0], side.center[1], side.center[2]};
-    const Lanes radius(static_cast<float>(side.other->inner_radius));
-    const Lanes limit(best_ + slack_);
-    const Lanes none(0.0F);
-    for (std::uint32_t row = 0; row < side.hull->face_count; row += 16) {
-      const Vec3<float> n{Lanes::load(plane[0] + row), Lanes::load(plane[1] + row),
-                          Lanes::load(plane[2] + row)};
-      const Lanes height = Lanes::load(plane[3] + row) - dot(n, middle);
-      Lanes closed = select((height + radius > limit) & (height > Lanes(slack_)),
-                            Lanes(closed_bit(kBallBit)), none);
+    const Floats radius(static_cast<float>(side.other->inner_radius));
+    const Floats limit(best_ + slack_);
+    const Floats none(0.0F);
+    for (std::uint32_t row = 0; row < side.hull->face_count; row += kLanes) {
+      const Vec3<float> n{Floats::load(plane[0] + row), Floats::load(plane[1] + row),
+                          Floats::load(plane[2] + row)};
+      const Floats height = Floats::load(plane[3] + row) - dot(n, middle);
+      Floats closed = select((height + radius > limit) & (height > Floats(slack_)),
+                             Floats(closed_bit(kBallBit)), none);
       for (std::uint32_t i = 0; i < side.known_count; ++i) {
         const float* w = side.known[i];
-        const Truth<float> higher = dot(n, Vec3<float>{w[0], w[1], w[2]}) > limit;
-        closed = either(closed, select(higher, Lanes(closed_bit(i)), none));
+        const LaneMask<float> higher = dot(n, Vec3<float>{w[0], w[1], w[2]}) > limit;
+        closed = either(closed, select(higher, Floats(closed_bit(i)), none));
       }
       closed.store(side.closed + row);
     }
@@ -167,10 +166,10 @@ class HullDepth {
   /// Depths along the normals of the second's faces that no known point closes.
   void measure_open_faces() {
     const float* const* plane = second_.hull->plane_float;
-    for (std::uint32_t row = 0; row < second_.hull->face_count; row += 16) {
-      Mask16 hit = bits(Lanes::load(second_.closed + row) <= Lanes(0.0F));
+    for (std::uint32_t row = 0; row < second_.hull->face_count; row += kLanes) {
+      Mask16 hit = bits(Floats::load(second_.closed + row) <= Floats(0.0F));
       const std::uint32_t left = second_.hull->face_count - row;
-      if (left < 16) hit &= lanes_below(left);
+      if (left < kLanes) hit &= lanes_below(left);
       for (; hit != 0; hit &= hit - 1) {
         const std::uint32_t face = row + first(hit);
         const float normal[3] = {plane[0][face], plane[1][face], plane[2][face]};
@@ -460,4 +459,4 @@ class HullDepth {
   HullDirection record_[kMostFaces];
 };
 
-}  // namespace winnow::WINNOW_ISA_NAME
+}  // namespace winnow::WINNOW_ISA_NAME::hull

@@ -1,8 +1,7 @@
 #include "pipeline/kernels/hull/hull_answers.wide.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
-
+namespace WINNOW_ISA_NAME::hull {
 /// Both hulls as they stand in the pool.
 struct HullAndHull {
   static constexpr std::uint32_t kRoom = 128;
@@ -16,9 +15,9 @@ struct HullAndHull {
   }
 };
 
-}  // namespace WINNOW_ISA_NAME
+}  // namespace WINNOW_ISA_NAME::hull
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(hull_hull_kernels) =
-    WINNOW_ISA_NAME::kHullKernels<WINNOW_ISA_NAME::HullAndHull>;
+    WINNOW_ISA_NAME::hull::kHullKernels<WINNOW_ISA_NAME::hull::HullAndHull>;
 
 }  // namespace winnow

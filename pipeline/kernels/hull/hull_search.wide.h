@@ -1,15 +1,108 @@
 #pragma once
 
 // Closest features of pairs of hulls in float: the algorithm of Gilbert, Johnson and Keerthi (1988)
-// one pair a lane, with supports sixteen vertices at a time. A lane that is done takes the next
+// one pair per lane, with supports sixteen vertices at a time. A lane that is done takes the next
 // pair, so that a hard pair does not hold fifteen easy ones. Where the origin is inside, the
 // search begins again from a point just outside, and finds a face of the difference that is a good
 // guess for the nearest one. Nothing here has to be right: the stages after it prove what they use.
 
-#include "pipeline/kernels/hull/hull_simplex.wide.h"
-#include "pipeline/kernels/hull/hull_support.wide.h"
+#include "pipeline/kernels/hull/hull_pair.wide.h"
+#include "simd/lanes/rows.h"
 
-namespace winnow::WINNOW_ISA_NAME {
+namespace winnow::WINNOW_ISA_NAME::hull {
+
+inline constexpr int kSlots = 3;
+
+/// Up to three points; with the support that comes next at most a tetrahedron.
+struct Simplex {
+  Vec3<float> point[kSlots];
+  LaneMask<float> present[kSlots];
+};
+
+struct SimplexNearest {
+  Vec3<float> point;
+  /// Which points of the simplex span the nearest feature together with the new one.
+  LaneMask<float> keep[kSlots];
+  /// The origin is in the tetrahedron; `deep` where that is beyond doubt.
+  LaneMask<float> inside;
+  LaneMask<float> deep;
+  /// The new point was there before.
+  LaneMask<float> repeated;
+};
+
+/// Of a simplex whose nearest point is known and `w`, which is nearer along the line to it: the
+/// nearest feature holds w, so of the tetrahedron's fifteen features eight are left. Lengths are
+/// about 1.
+static inline SimplexNearest nearest_of(const Simplex& simplex, const Vec3<float>& w) {
+  const Floats zero(0.0F);
+  const Floats one(1.0F);
+  const Vec3<float> none{zero, zero, zero};
+  SimplexNearest r;
+  Vec3<float> edge[kSlots];
+  Vec3<float> arm[kSlots];
+  Floats length[kSlots];
+  r.repeated = zero > one;
+  Floats best = dot(w, w);
+  r.point = w;
+  for (int s = 0; s < kSlots; ++s) {
+    r.keep[s] = zero > one;
+    edge[s] = select(simplex.present[s], simplex.point[s] - w, none);
+    length[s] = dot(edge[s], edge[s]);
+    r.repeated = r.repeated | (simplex.present[s] & (length[s] <= zero));
+    // From w to the origin, across the edge.
+    arm[s] = cross(edge[s], w);
+  }
+  for (int s = 0; s < kSlots; ++s) {
+    const Floats reach = -dot(edge[s], w);
+    const Floats t = min(reach / max(length[s], Floats(1e-30F)), one);
+    const Vec3<float> x = w + edge[s] * t;
+    const Floats square = dot(x, x);
+    const LaneMask<float> nearer = (reach > zero) & (square < best);
+    best = select(nearer, square, best);
+    r.point = select(nearer, x, r.point);
+    for (int k = 0; k < s; ++k) r.keep[k] = r.keep[k] & !nearer;
+    r.keep[s] = nearer;
+  }
+  Vec3<float> normal[kSlots];
+  Floats area[kSlots];
+  Floats height[kSlots];
+  const Floats volume = dot(cross(edge[1], edge[2]), edge[0]);
+  for (int s = 0; s < kSlots; ++s) {
+    const int i = (s + 1) % kSlots;
+    const int k = (s + 2) % kSlots;
+    normal[s] = cross(edge[i], edge[k]);
+    area[s] = dot(normal[s], normal[s]);
+    height[s] = dot(normal[s], w);
+    // Barycentric coordinates of i and k, times the area.
+    const Floats u = dot(normal[s], arm[k]);
+    const Floats v = -dot(normal[s], arm[i]);
+    const Floats t = height[s] / max(area[s], Floats(1e-30F));
+    const Vec3<float> x = normal[s] * t;
+    const Floats square = height[s] * t;
+    const LaneMask<float> wide = area[s] > Floats(1e-12F) * length[i] * length[k];
+    const LaneMask<float> nearer =
+        wide & (u > zero) & (v > zero) & (u + v < area[s]) & (square < best);
+    best = select(nearer, square, best);
+    r.point = select(nearer, x, r.point);
+    r.keep[s] = r.keep[s] & !nearer;
+    r.keep[i] = r.keep[i] | nearer;
+    r.keep[k] = r.keep[k] | nearer;
+  }
+  // Heights of the origin over the faces at w, and over the face across, have the volume's sign.
+  const Floats side = sign_or_one(volume);
+  const Vec3<float> across = normal[0] + normal[1] + normal[2];
+  const Floats opposite = (volume + height[0] + height[1] + height[2]) * side;
+  const Floats doubt(1e-10F);
+  r.inside = abs(volume) > zero;
+  r.inside = r.inside & (opposite > zero);
+  r.deep = opposite * opposite > doubt * dot(across, across);
+  for (int s = 0; s < kSlots; ++s) {
+    const Floats h = -height[s] * side;
+    r.inside = r.inside & (h > zero);
+    r.deep = r.deep & (h * h > doubt * area[s]);
+  }
+  return r;
+}
 
 /// Where the search may stop before it has found the closest features, in lengths between cores.
 struct HullLimits {
@@ -38,7 +131,6 @@ class HullSearch {
   }
 
  private:
-  using Lanes = Real<float>;
   static constexpr std::uint32_t kMostSteps = 48;
   /// Steps from outside towards the difference when the origin is inside.
   static constexpr std::uint32_t kSinkSteps = 8;
@@ -101,12 +193,12 @@ class HullSearch {
 
   /// The vertex of the first that lies farthest against the gap, and of the second along it.
   void find_supports() {
-    const Vec3<float> gap{Lanes::load(gap_[0]), Lanes::load(gap_[1]), Lanes::load(gap_[2])};
+    const Vec3<float> gap{Floats::load(gap_[0]), Floats::load(gap_[1]), Floats::load(gap_[2])};
     (-gap).x.store(toward_[0][0]);
     (-gap).y.store(toward_[0][1]);
     (-gap).z.store(toward_[0][2]);
-    Lanes t[9];
-    for (int i = 0; i < 9; ++i) t[i] = Lanes::load(turn_[i]);
+    Floats t[9];
+    for (int i = 0; i < 9; ++i) t[i] = Floats::load(turn_[i]);
     for (int i = 0; i < 3; ++i) {
       (t[i] * gap.x + t[3 + i] * gap.y + t[6 + i] * gap.z).store(toward_[1][i]);
     }
@@ -118,7 +210,7 @@ class HullSearch {
         heights(hull(side, lane), direction, height_ + lane * kLanes, block_ + lane * kLanes);
       }
       alignas(64) float highest[kLanes];
-      store_unaligned(highest, reduce_max_rows(height_));
+      reduce_max_rows(height_).store_unaligned(highest);
       for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
         const int lane = static_cast<int>(first(rest));
         const HullShape& h = hull(side, lane);
@@ -137,55 +229,57 @@ class HullSearch {
   }
 
   [[nodiscard]] Vec3<float> support() const {
-    const auto vertex = [&](int side, int i) { return Lanes::load(vertex_[side][i]); };
-    const Lanes scale = Lanes::load(scale_);
-    Lanes w[3];
+    const auto vertex = [&](int side, int i) { return Floats::load(vertex_[side][i]); };
+    const Floats scale = Floats::load(scale_);
+    Floats w[3];
     for (int i = 0; i < 3; ++i) {
-      const Lanes b = Lanes::load(turn_[3 * i]) * vertex(1, 0) +
-                      Lanes::load(turn_[3 * i + 1]) * vertex(1, 1) +
-                      Lanes::load(turn_[3 * i + 2]) * vertex(1, 2) + Lanes::load(shift_[i]);
-      w[i] = vertex(0, i) * scale - b - Lanes::load(goal_[i]);
+      const Floats b = Floats::load(turn_[3 * i]) * vertex(1, 0) +
+                       Floats::load(turn_[3 * i + 1]) * vertex(1, 1) +
+                       Floats::load(turn_[3 * i + 2]) * vertex(1, 2) + Floats::load(shift_[i]);
+      w[i] = vertex(0, i) * scale - b - Floats::load(goal_[i]);
     }
     return {w[0], w[1], w[2]};
   }
 
   /// One step of all lanes; returns those that are done.
   Mask16 step() {
-    const Lanes zero(0.0F);
+    const Floats zero(0.0F);
     Simplex simplex;
     for (int s = 0; s < kSlots; ++s) {
-      simplex.point[s] = {Lanes::load(slot_[s][0]), Lanes::load(slot_[s][1]),
-                          Lanes::load(slot_[s][2])};
-      simplex.present[s] = Lanes::load(present_[s]) > zero;
+      simplex.point[s] = {Floats::load(slot_[s][0]), Floats::load(slot_[s][1]),
+                          Floats::load(slot_[s][2])};
+      simplex.present[s] = Floats::load(present_[s]) > zero;
     }
-    const Vec3<float> gap{Lanes::load(gap_[0]), Lanes::load(gap_[1]), Lanes::load(gap_[2])};
-    const Lanes square = Lanes::load(square_);
-    const Truth<float> fresh = Lanes::load(fresh_) > zero;
-    const Truth<float> sinking = Lanes::load(sinking_) > zero;
+    const Vec3<float> gap{Floats::load(gap_[0]), Floats::load(gap_[1]), Floats::load(gap_[2])};
+    const Floats square = Floats::load(square_);
+    const LaneMask<float> fresh = Floats::load(fresh_) > zero;
+    const LaneMask<float> sinking = Floats::load(sinking_) > zero;
     const Vec3<float> w = support();
-    const Lanes height = dot(gap, w);
-    const Truth<float> ahead = height > zero;
-    const Truth<float> far = ahead & (height * height > Lanes::load(far_) * square) & !sinking;
+    const Floats height = dot(gap, w);
+    const LaneMask<float> ahead = height > zero;
+    const LaneMask<float> far = ahead & (height * height > Floats::load(far_) * square) & !sinking;
     height.store(height_along_);
     if (!limits_.verdict) note_depth(w, gap, square, height);
 
-    const Lanes gain = square - height;
-    const Truth<float> no_gain =
-        (gain <= zero) | (gain * gain <= Lanes(kNoGain * kNoGain) * square);
-    const Nearest nearest = nearest_of(simplex, w);
-    const Lanes next_square = dot(nearest.point, nearest.point);
-    const Truth<float> stuck = (!fresh) & (no_gain | nearest.repeated | (next_square >= square)) &
-                               (!(nearest.inside | far));
-    const Truth<float> inside = nearest.inside & !far;
-    const Truth<float> moves = !(far | stuck | inside);
+    const Floats gain = square - height;
+    const LaneMask<float> no_gain =
+        (gain <= zero) | (gain * gain <= Floats(kNoGain * kNoGain) * square);
+    const SimplexNearest nearest = nearest_of(simplex, w);
+    const Floats next_square = dot(nearest.point, nearest.point);
+    const LaneMask<float> stuck = (!fresh) &
+                                  (no_gain | nearest.repeated | (next_square >= square)) &
+                                  (!(nearest.inside | far));
+    const LaneMask<float> inside = nearest.inside & !far;
+    const LaneMask<float> moves = !(far | stuck | inside);
     keep(simplex, nearest, moves, w, gap, next_square);
     const Mask16 sinking_bits = bits(sinking);
     const Mask16 far_bits = bits(far) & active_;
     const Mask16 stuck_bits = bits(stuck) & active_;
     const Mask16 inside_bits = bits(inside) & active_;
     const Mask16 move = bits(moves) & active_;
-    const Mask16 near_bits = bits(next_square <= Lanes::load(near_)) & move;
-    const Mask16 touch_bits = bits(next_square <= Lanes(kTouching * kTouching)) & move & ~near_bits;
+    const Mask16 near_bits = bits(next_square <= Floats::load(near_)) & move;
+    const Mask16 touch_bits =
+        bits(next_square <= Floats(kTouching * kTouching)) & move & ~near_bits;
     mark(far_bits, HullState::far);
     mark(stuck_bits & ~sinking_bits, HullState::apart);
     mark(stuck_bits & sinking_bits, HullState::close);
@@ -226,18 +320,18 @@ class HullSearch {
   }
 
   /// Keeps the lowest height of the difference over the origin and where it was met.
-  void note_depth(const Vec3<float>& w, const Vec3<float>& gap, const Lanes& square,
-                  const Lanes& height) {
-    const Lanes zero(0.0F);
-    const Vec3<float> goal{Lanes::load(goal_[0]), Lanes::load(goal_[1]), Lanes::load(goal_[2])};
-    const Lanes over = height + dot(gap, goal);
-    const Lanes depth = select(over > zero, zero, over * over / square);
-    const Lanes before = Lanes::load(depth_);
-    const Truth<float> lower = depth < before;
+  void note_depth(const Vec3<float>& w, const Vec3<float>& gap, const Floats& square,
+                  const Floats& height) {
+    const Floats zero(0.0F);
+    const Vec3<float> goal{Floats::load(goal_[0]), Floats::load(goal_[1]), Floats::load(goal_[2])};
+    const Floats over = height + dot(gap, goal);
+    const Floats depth = select(over > zero, zero, over * over / square);
+    const Floats before = Floats::load(depth_);
+    const LaneMask<float> lower = depth < before;
     select(lower, depth, before).store(depth_);
-    select(lower, gap.x, Lanes::load(lowest_[0])).store(lowest_[0]);
-    select(lower, gap.y, Lanes::load(lowest_[1])).store(lowest_[1]);
-    select(lower, gap.z, Lanes::load(lowest_[2])).store(lowest_[2]);
+    select(lower, gap.x, Floats::load(lowest_[0])).store(lowest_[0]);
+    select(lower, gap.y, Floats::load(lowest_[1])).store(lowest_[1]);
+    select(lower, gap.z, Floats::load(lowest_[2])).store(lowest_[2]);
     remember(w + goal);
   }
 
@@ -268,27 +362,27 @@ class HullSearch {
   }
 
   /// Where `moves`: the nearest feature becomes the simplex.
-  void keep(const Simplex& simplex, const Nearest& nearest, const Truth<float>& moves,
-            const Vec3<float>& w, const Vec3<float>& gap, const Lanes& next_square) {
-    const Lanes zero(0.0F);
-    const Lanes one(1.0F);
-    const Lanes name = Lanes::load(name_);
-    Truth<float> placed = !moves;
+  void keep(const Simplex& simplex, const SimplexNearest& nearest, const LaneMask<float>& moves,
+            const Vec3<float>& w, const Vec3<float>& gap, const Floats& next_square) {
+    const Floats zero(0.0F);
+    const Floats one(1.0F);
+    const Floats name = Floats::load(name_);
+    LaneMask<float> placed = !moves;
     for (int s = 0; s < kSlots; ++s) {
-      const Truth<float> take = (!placed) & (!nearest.keep[s]);
+      const LaneMask<float> take = (!placed) & (!nearest.keep[s]);
       placed = placed | take;
       select(take, w.x, simplex.point[s].x).store(slot_[s][0]);
       select(take, w.y, simplex.point[s].y).store(slot_[s][1]);
       select(take, w.z, simplex.point[s].z).store(slot_[s][2]);
-      select(take, name, Lanes::load(slot_name_[s])).store(slot_name_[s]);
-      const Lanes held = select(take | nearest.keep[s], one, zero);
-      select(moves, held, Lanes::load(present_[s])).store(present_[s]);
+      select(take, name, Floats::load(slot_name_[s])).store(slot_name_[s]);
+      const Floats held = select(take | nearest.keep[s], one, zero);
+      select(moves, held, Floats::load(present_[s])).store(present_[s]);
     }
     const Vec3<float> next = select(moves, nearest.point, gap);
     next.x.store(gap_[0]);
     next.y.store(gap_[1]);
     next.z.store(gap_[2]);
-    select(moves, next_square, Lanes::load(square_)).store(square_);
+    select(moves, next_square, Floats::load(square_)).store(square_);
     zero.store(fresh_);
   }
 
@@ -340,4 +434,4 @@ class HullSearch {
   alignas(64) float block_[kLanes * kLanes] = {};
 };
 
-}  // namespace winnow::WINNOW_ISA_NAME
+}  // namespace winnow::WINNOW_ISA_NAME::hull

@@ -1,24 +1,24 @@
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/box_feature.wide.h"
+#include "pipeline/kernels/round/round.wide.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::round {
 namespace {
 
 /// A capsule's segment middle + s axis, |s| <= half, in the frame of the box |x_i| <= size_i.
 template <typename T>
-struct Scene {
-  Real<T> middle[3];
-  Real<T> axis[3];
-  Real<T> half;
-  Real<T> size[3];
+struct CapsuleAndBox {
+  Lanes<T> middle[3];
+  Lanes<T> axis[3];
+  Lanes<T> half;
+  Lanes<T> size[3];
 };
 
 template <typename T>
-[[gnu::always_inline]] inline Vec3<T> towards_box(const Scene<T>& p, const Real<T>& s) {
-  Real<T> w[3];
+[[gnu::always_inline]] inline Vec3<T> towards_box(const CapsuleAndBox<T>& p, const Lanes<T>& s) {
+  Lanes<T> w[3];
   for (int i = 0; i < 3; ++i) {
-    const Real<T> x = p.middle[i] + p.axis[i] * s;
+    const Lanes<T> x = p.middle[i] + p.axis[i] * s;
     w[i] = clamp(x, -p.size[i], p.size[i]) - x;
   }
   return {w[0], w[1], w[2]};
@@ -26,7 +26,7 @@ template <typename T>
 
 /// Half the derivative by s of the squared distance to the box: piecewise linear and never falling.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> slope_at(const Scene<T>& p, const Real<T>& s) {
+[[gnu::always_inline]] inline Lanes<T> slope_at(const CapsuleAndBox<T>& p, const Lanes<T>& s) {
   const Vec3<T> w = towards_box(p, s);
   return -(w.x * p.axis[0] + w.y * p.axis[1] + w.z * p.axis[2]);
 }
@@ -37,29 +37,29 @@ template <typename T>
 /// of, and the root's is that over the square of the same part, so the distance is as good as the
 /// poses, whatever the angle.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> closest_place(const Scene<T>& p) {
-  const Real<T> zero(T(0));
-  Real<T> low = -p.half;
-  Real<T> high = p.half;
-  Real<T> slope_low = slope_at(p, low);
-  Real<T> slope_high = slope_at(p, high);
-  const Real<T> ends[2] = {slope_low, slope_high};
+[[gnu::always_inline]] inline Lanes<T> closest_place(const CapsuleAndBox<T>& p) {
+  const Lanes<T> zero(T(0));
+  Lanes<T> low = -p.half;
+  Lanes<T> high = p.half;
+  Lanes<T> slope_low = slope_at(p, low);
+  Lanes<T> slope_high = slope_at(p, high);
+  const Lanes<T> ends[2] = {slope_low, slope_high};
   for (int i = 0; i < 3; ++i) {
-    const Real<T> over = select(p.axis[i] == zero, zero, Real<T>(T(1)) / p.axis[i]);
+    const Lanes<T> over = select(p.axis[i] == zero, zero, Lanes<T>(T(1)) / p.axis[i]);
     for (int side = 0; side < 2; ++side) {
-      const Real<T> face = side == 0 ? -p.size[i] : p.size[i];
-      const Real<T> s = clamp((face - p.middle[i]) * over, -p.half, p.half);
-      const Real<T> slope = slope_at(p, s);
-      const Truth<T> below = (slope < zero) & (s > low);
-      const Truth<T> above = (slope >= zero) & (s < high);
+      const Lanes<T> face = side == 0 ? -p.size[i] : p.size[i];
+      const Lanes<T> s = clamp((face - p.middle[i]) * over, -p.half, p.half);
+      const Lanes<T> slope = slope_at(p, s);
+      const LaneMask<T> below = (slope < zero) & (s > low);
+      const LaneMask<T> above = (slope >= zero) & (s < high);
       low = select(below, s, low);
       slope_low = select(below, slope, slope_low);
       high = select(above, s, high);
       slope_high = select(above, slope, slope_high);
     }
   }
-  const Real<T> root = low - slope_low * ((high - low) / (slope_high - slope_low));
-  const Real<T> inner = clamp(select(slope_high > slope_low, root, low), low, high);
+  const Lanes<T> root = low - slope_low * ((high - low) / (slope_high - slope_low));
+  const Lanes<T> inner = clamp(select(slope_high > slope_low, root, low), low, high);
   return select(ends[0] >= zero, -p.half, select(ends[1] <= zero, p.half, inner));
 }
 
@@ -68,42 +68,42 @@ template <typename T>
 template <typename T>
 struct Overlap {
   /// Negative where they overlap.
-  Real<T> distance;
+  Lanes<T> distance;
   /// Unit, from the segment to the box, in the box's frame.
-  Real<T> normal[3];
+  Lanes<T> normal[3];
   /// The sines between the axis and the box's edges are 0, or no less than kLeastSine.
-  Truth<T> sharp;
+  LaneMask<T> sharp;
 };
 
 template <typename T>
-[[gnu::always_inline]] inline Overlap<T> least_overlap(const Scene<T>& p) {
-  const Real<T> zero(T(0));
-  const Real<T> one(T(1));
-  Overlap<T> r{Real<T>(T(-__builtin_inff())), {zero, zero, zero}, zero < one};
+[[gnu::always_inline]] inline Overlap<T> least_overlap(const CapsuleAndBox<T>& p) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
+  Overlap<T> r{Lanes<T>(T(-__builtin_inff())), {zero, zero, zero}, zero < one};
   for (int i = 0; i < 3; ++i) {
-    const Real<T> distance = abs(p.middle[i]) - p.size[i] - p.half * abs(p.axis[i]);
-    const Truth<T> better = distance > r.distance;
+    const Lanes<T> distance = abs(p.middle[i]) - p.size[i] - p.half * abs(p.axis[i]);
+    const LaneMask<T> better = distance > r.distance;
     r.distance = select(better, distance, r.distance);
     for (int k = 0; k < 3; ++k) {
-      const Real<T> towards = k == i ? -sign_or_one(p.middle[i]) : zero;
+      const Lanes<T> towards = k == i ? -sign_or_one(p.middle[i]) : zero;
       r.normal[k] = select(better, towards, r.normal[k]);
     }
   }
-  const Real<T> parallel(T(64) * kEpsilon<T> * kEpsilon<T>);
-  const Real<T> least(kLeastSine<T> * kLeastSine<T>);
+  const Lanes<T> parallel(T(64) * kEpsilon<T> * kEpsilon<T>);
+  const Lanes<T> least(kLeastSine<T> * kLeastSine<T>);
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;
     const int k = (i + 2) % 3;
-    const Real<T> square = p.axis[j] * p.axis[j] + p.axis[k] * p.axis[k];
-    const Truth<T> valid = square > parallel;
-    const Real<T> over = one / sqrt(square);
+    const Lanes<T> square = p.axis[j] * p.axis[j] + p.axis[k] * p.axis[k];
+    const LaneMask<T> valid = square > parallel;
+    const Lanes<T> over = one / sqrt(square);
     // e_i x axis
-    const Real<T> nj = -p.axis[k] * over;
-    const Real<T> nk = p.axis[j] * over;
-    const Real<T> place = p.middle[j] * nj + p.middle[k] * nk;
-    const Real<T> distance = abs(place) - p.size[j] * abs(nj) - p.size[k] * abs(nk);
-    const Truth<T> better = valid & (distance > r.distance);
-    const Real<T> side = -sign_or_one(place);
+    const Lanes<T> nj = -p.axis[k] * over;
+    const Lanes<T> nk = p.axis[j] * over;
+    const Lanes<T> place = p.middle[j] * nj + p.middle[k] * nk;
+    const Lanes<T> distance = abs(place) - p.size[j] * abs(nj) - p.size[k] * abs(nk);
+    const LaneMask<T> better = valid & (distance > r.distance);
+    const Lanes<T> side = -sign_or_one(place);
     r.distance = select(better, distance, r.distance);
     r.normal[i] = select(better, zero, r.normal[i]);
     r.normal[j] = select(better, nj * side, r.normal[j]);
@@ -117,53 +117,53 @@ template <typename T>
 /// as the segment is level with what it touches, nearest to the edge (of the box's directions of
 /// which the normal is made) and over the face (the other directions).
 template <typename T>
-[[gnu::always_inline]] inline Real<T> deepest_place(const Scene<T>& p, const Vec3<T>& n) {
-  const Real<T> zero(T(0));
-  const Real<T> one(T(1));
-  const Real<T> level(T(64) * kEpsilon<T>);
-  const Real<T> normal[3] = {n.x, n.y, n.z};
-  const Real<T> along = n.x * p.axis[0] + n.y * p.axis[1] + n.z * p.axis[2];
-  Real<T> over = zero;
-  Real<T> weight = zero;
-  Real<T> low = -p.half;
-  Real<T> high = p.half;
+[[gnu::always_inline]] inline Lanes<T> deepest_place(const CapsuleAndBox<T>& p, const Vec3<T>& n) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
+  const Lanes<T> level(T(64) * kEpsilon<T>);
+  const Lanes<T> normal[3] = {n.x, n.y, n.z};
+  const Lanes<T> along = n.x * p.axis[0] + n.y * p.axis[1] + n.z * p.axis[2];
+  Lanes<T> over = zero;
+  Lanes<T> weight = zero;
+  Lanes<T> low = -p.half;
+  Lanes<T> high = p.half;
   for (int i = 0; i < 3; ++i) {
-    const Real<T> corner = select(normal[i] > zero, -p.size[i], p.size[i]);
-    const Truth<T> counts = abs(normal[i]) > level;
+    const Lanes<T> corner = select(normal[i] > zero, -p.size[i], p.size[i]);
+    const LaneMask<T> counts = abs(normal[i]) > level;
     over += select(counts, (corner - p.middle[i]) * p.axis[i], zero);
     weight += select(counts, p.axis[i] * p.axis[i], zero);
-    const Truth<T> slab = (!counts) & (abs(p.axis[i]) > level);
-    const Real<T> from = (-p.size[i] - p.middle[i]) * (one / p.axis[i]);
-    const Real<T> to = (p.size[i] - p.middle[i]) * (one / p.axis[i]);
+    const LaneMask<T> slab = (!counts) & (abs(p.axis[i]) > level);
+    const Lanes<T> from = (-p.size[i] - p.middle[i]) * (one / p.axis[i]);
+    const Lanes<T> to = (p.size[i] - p.middle[i]) * (one / p.axis[i]);
     low = select(slab, max(low, min(from, to)), low);
     high = select(slab, min(high, max(from, to)), high);
   }
-  const Real<T> crossing = select(weight > level * level, over / weight, zero);
-  const Real<T> end = select(along < zero, -p.half, p.half);
+  const Lanes<T> crossing = select(weight > level * level, over / weight, zero);
+  const Lanes<T> end = select(along < zero, -p.half, p.half);
   return clamp(select(abs(along) > level, end, clamp(crossing, low, high)), -p.half, p.half);
 }
 
 template <typename T>
-struct Solution {
-  Scene<T> scene;
+struct CapsuleBoxSolution {
+  CapsuleAndBox<T> scene;
   Rotation<T> axes;
   ProofLanes<T> proof;
   /// In the box's frame, from the capsule to the box.
   Vec3<T> normal;
-  Real<T> s;
-  Real<T> radius;
-  Real<T> radius_b;
+  Lanes<T> s;
+  Lanes<T> radius;
+  Lanes<T> radius_b;
 };
 
 /// Not inlined: all levels share it, and it takes long to compile.
 template <typename T>
-[[gnu::noinline]] Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
+[[gnu::noinline]] CapsuleBoxSolution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
   const Vec3<T> c = load_offset(job, block);
   const Turn<T> turn_a = load_turn<SideA>(job, block);
   const Turn<T> turn_b = load_turn<SideB>(job, block);
   const CapsuleLanes<T> capsule = load_capsule<SideA>(job, block);
   const BoxLanes<T> box = load_box<SideB>(job, block);
-  Solution<T> r;
+  CapsuleBoxSolution<T> r;
   r.axes = rotation(turn_b);
   const Vec3<T> u = r.axes.to_local(axis_z(turn_a));
   const Vec3<T> m = -r.axes.to_local(c);
@@ -172,70 +172,70 @@ template <typename T>
   r.radius = capsule.radius;
   r.radius_b = box.rounding;
 
-  const Real<T> both = capsule.radius + box.rounding;
-  const Real<T> scale =
+  const Lanes<T> both = capsule.radius + box.rounding;
+  const Lanes<T> scale =
       taxicab(c) + taxicab(box.half) + capsule.half_length + both + doubt(turn_a) + doubt(turn_b);
   const Overlap<T> overlap = least_overlap(r.scene);
-  const Real<T> s = closest_place(r.scene);
+  const Lanes<T> s = closest_place(r.scene);
   const Vec3<T> w = towards_box(r.scene, s);
-  const Real<T> length = sqrt(dot(w, w));
+  const Lanes<T> length = sqrt(dot(w, w));
   // An error of the products is one over their sines. A flat sum is never deep but by rounding.
-  const Real<T> slack = scale * Real<T>(kSlack<T>);
-  const Truth<T> inside = overlap.sharp & (overlap.distance < -slack);
+  const Lanes<T> slack = scale * Lanes<T>(kRoundSlack<T>);
+  const LaneMask<T> inside = overlap.sharp & (overlap.distance < -slack);
   r.proof = {select(inside, overlap.distance - slack, length) - both,
              select(inside, overlap.distance, length) - both, scale,
-             inside | (length > scale * Real<T>(kShortest<T>))};
+             inside | (length > scale * Lanes<T>(kShortest<T>))};
   const Vec3<T> flat{overlap.normal[0], overlap.normal[1], overlap.normal[2]};
-  r.normal = select(inside, flat, w * (Real<T>(T(1)) / length));
+  r.normal = select(inside, flat, w * (Lanes<T>(T(1)) / length));
   r.s = select(inside, deepest_place(r.scene, flat), s);
   return r;
 }
 
 template <typename T>
 [[gnu::always_inline]] inline void write_touches(NarrowJob& job, const PairBlock<T>& block,
-                                                 const Solution<T>& r,
+                                                 const CapsuleBoxSolution<T>& r,
                                                  const CertifiedLanes<T>& answer) {
-  const Real<T> margin(static_cast<T>(job.margin));
-  const Real<T> zero(T(0));
-  const Real<T> one(T(1));
-  const Scene<T>& p = r.scene;
+  const Lanes<T> margin(static_cast<T>(job.margin));
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
+  const CapsuleAndBox<T>& p = r.scene;
   const Vec3<T> axis = r.axes.to_world(Vec3<T>{p.axis[0], p.axis[1], p.axis[2]});
-  const Real<T> normal[3] = {r.normal.x, r.normal.y, r.normal.z};
-  Real<T> low = -p.half;
-  Real<T> high = p.half;
-  Real<T> base = -(r.radius + r.radius_b);
-  Real<T> tilt = zero;
-  Truth<T> lies = zero > one;
+  const Lanes<T> normal[3] = {r.normal.x, r.normal.y, r.normal.z};
+  Lanes<T> low = -p.half;
+  Lanes<T> high = p.half;
+  Lanes<T> base = -(r.radius + r.radius_b);
+  Lanes<T> tilt = zero;
+  LaneMask<T> lies = zero > one;
   for (int i = 0; i < 3; ++i) {
-    const Truth<T> face = abs(normal[i]) > Real<T>(T(1) - T(16) * kEpsilon<T>);
+    const LaneMask<T> face = abs(normal[i]) > Lanes<T>(T(1) - T(16) * kEpsilon<T>);
     lies = lies | face;
     base -= normal[i] * p.middle[i] + abs(normal[i]) * p.size[i];
     tilt += normal[i] * p.axis[i];
-    const Real<T> over = one / p.axis[i];
-    const Real<T> from = (-p.size[i] - p.middle[i]) * over;
-    const Real<T> to = (p.size[i] - p.middle[i]) * over;
-    const Truth<T> slab = (!face) & !(p.axis[i] == zero);
+    const Lanes<T> over = one / p.axis[i];
+    const Lanes<T> from = (-p.size[i] - p.middle[i]) * over;
+    const Lanes<T> to = (p.size[i] - p.middle[i]) * over;
+    const LaneMask<T> slab = (!face) & !(p.axis[i] == zero);
     low = select(slab, max(low, min(from, to)), low);
     high = select(slab, min(high, max(from, to)), high);
   }
-  lies = lies & (tilt * tilt < Real<T>(T(0.01))) & (high - low > p.half * Real<T>(T(1e-3)));
-  const Real<T> distance[2] = {base - tilt * low, base - tilt * high};
-  const Truth<T> near_low = lies & (distance[0] <= margin);
-  const Truth<T> near_high = lies & (distance[1] <= margin);
-  const Real<T> name = box_feature(r.normal);
-  const auto contact = [&](const Real<T>& s, const Real<T>& d, const Real<T>& feature) {
-    return ContactLanes<T>{axis * s + answer.normal * (r.radius + d * Real<T>(T(0.5))), -d, feature,
-                           name, 0};
+  lies = lies & (tilt * tilt < Lanes<T>(T(0.01))) & (high - low > p.half * Lanes<T>(T(1e-3)));
+  const Lanes<T> distance[2] = {base - tilt * low, base - tilt * high};
+  const LaneMask<T> near_low = lies & (distance[0] <= margin);
+  const LaneMask<T> near_high = lies & (distance[1] <= margin);
+  const Lanes<T> name = box_feature(r.normal);
+  const auto contact = [&](const Lanes<T>& s, const Lanes<T>& d, const Lanes<T>& feature) {
+    return ContactLanes<T>{axis * s + answer.normal * (r.radius + d * Lanes<T>(T(0.5))), -d,
+                           feature, name, 0};
   };
   // Ends of the stretch over the face that are not ends of the capsule: 3 and 4.
-  const auto end_name = [&](const Real<T>& s, const Real<T>& cut) {
+  const auto end_name = [&](const Lanes<T>& s, const Lanes<T>& cut) {
     return select(abs(s) >= p.half, segment_feature(s, p.half), cut);
   };
-  const Real<T> s = select(near_low, low, select(near_high, high, r.s));
-  const Real<T> d = select(near_low, distance[0], select(near_high, distance[1], answer.distance));
-  const Real<T> high_name = end_name(high, Real<T>(T(4)));
-  const Real<T> feature = select(near_low, end_name(low, Real<T>(T(3))),
-                                 select(near_high, high_name, segment_feature(r.s, p.half)));
+  const Lanes<T> s = select(near_low, low, select(near_high, high, r.s));
+  const Lanes<T> d = select(near_low, distance[0], select(near_high, distance[1], answer.distance));
+  const Lanes<T> high_name = end_name(high, Lanes<T>(T(4)));
+  const Lanes<T> feature = select(near_low, end_name(low, Lanes<T>(T(3))),
+                                  select(near_high, high_name, segment_feature(r.s, p.half)));
   ContactLanes<T> contacts[2] = {contact(s, d, feature), contact(high, distance[1], high_name)};
   contacts[0].lanes = bits(answer.distance <= margin) & answer.certified & block.lanes();
   contacts[1].lanes = bits(near_low & near_high) & contacts[0].lanes;
@@ -245,12 +245,12 @@ template <typename T>
 struct CapsuleBox {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
-    const Solution<T> r = solve(job, block);
+    const CapsuleBoxSolution<T> r = solve(job, block);
     if constexpr (L == kBoolean) {
       return answer_proven_sign(job, block, r.proof);
     } else {
       const CertifiedLanes<T> answer = answer_proven(r.proof, r.axes.to_world(r.normal));
-      const Scene<T>& p = r.scene;
+      const CapsuleAndBox<T>& p = r.scene;
       const Vec3<T> foot =
           r.axes.to_world(Vec3<T>{p.axis[0] * r.s, p.axis[1] * r.s, p.axis[2] * r.s});
       write_certified<L>(job, block, answer, foot, r.radius);
@@ -261,9 +261,9 @@ struct CapsuleBox {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+}  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_box_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::CapsuleBox>();
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::CapsuleBox>();
 
 }  // namespace winnow

@@ -1,19 +1,19 @@
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/segments.wide.h"
+#include "pipeline/kernels/round/round.wide.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::round {
 namespace {
 
 /// Two capsules, the first at the origin. Which body is the first depends on the sign of the offset
 /// alone, so that (a, b) and (b, a) are the same problem.
 template <typename T>
 struct Couple {
-  Truth<T> swapped;
+  LaneMask<T> swapped;
   Vec3<T> c;
   Vec3<T> axis[2];
-  Real<T> radius[2];
-  Real<T> half[2];
+  Lanes<T> radius[2];
+  Lanes<T> half[2];
   SegmentFeet<T> feet;
   WitnessLanes<T> witness;
   /// axis[0] x axis[1]
@@ -21,8 +21,8 @@ struct Couple {
 };
 
 template <typename T>
-[[gnu::always_inline]] inline Truth<T> points_back(const Vec3<T>& c) {
-  const Real<T> zero(T(0));
+[[gnu::always_inline]] inline LaneMask<T> points_back(const Vec3<T>& c) {
+  const Lanes<T> zero(T(0));
   return (c.x < zero) | ((c.x == zero) & ((c.y < zero) | ((c.y == zero) & (c.z < zero))));
 }
 
@@ -48,9 +48,9 @@ template <typename T>
   r.radius[1] = select(r.swapped, a.radius, b.radius);
   r.across = cross(r.axis[0], r.axis[1]);
   r.feet =
-      closest_feet(r.axis[0], r.half[0], {r.c, r.axis[1], Real<T>(T(1)), -r.half[1], r.half[1]},
-                   r.across, Real<T>(T(1)) / dot(r.across, r.across));
-  const Real<T> radius = r.radius[0] + r.radius[1];
+      closest_feet(r.axis[0], r.half[0], {r.c, r.axis[1], Lanes<T>(T(1)), -r.half[1], r.half[1]},
+                   r.across, Lanes<T>(T(1)) / dot(r.across, r.across));
+  const Lanes<T> radius = r.radius[0] + r.radius[1];
   r.witness = {r.c + r.axis[1] * r.feet.t - r.axis[0] * r.feet.s, radius,
                taxicab(r.c) + r.half[0] + r.half[1] + radius + doubt(turn_a) + doubt(turn_b)};
   return r;
@@ -60,7 +60,7 @@ template <typename T>
 template <typename T>
 struct Touch {
   SegmentFeet<T> feet;
-  Real<T> distance;
+  Lanes<T> distance;
 };
 
 template <typename T>
@@ -68,32 +68,33 @@ template <typename T>
                                                          const Touch<T>& touch) {
   const Vec3<T> on_first = p.axis[0] * touch.feet.s + normal * p.radius[0];
   const Vec3<T> on_second = p.c + p.axis[1] * touch.feet.t - normal * p.radius[1];
-  const Vec3<T> middle = (on_first + on_second) * Real<T>(T(0.5));
-  const Real<T> feature_first = segment_feature(touch.feet.s, p.half[0]);
-  const Real<T> feature_second = segment_feature(touch.feet.t, p.half[1]);
+  const Vec3<T> middle = (on_first + on_second) * Lanes<T>(T(0.5));
+  const Lanes<T> feature_first = segment_feature(touch.feet.s, p.half[0]);
+  const Lanes<T> feature_second = segment_feature(touch.feet.t, p.half[1]);
   return {select(p.swapped, middle - p.c, middle), -touch.distance,
           select(p.swapped, feature_second, feature_first),
           select(p.swapped, feature_first, feature_second), 0};
 }
 
 template <typename T>
-[[gnu::always_inline]] inline Touch<T> touch_at(const Couple<T>& p, const Real<T>& s) {
-  const Real<T> place = dot(p.axis[0], p.axis[1]) * s - dot(p.axis[1], p.c);
-  const Real<T> t = clamp(place, -p.half[1], p.half[1]);
+[[gnu::always_inline]] inline Touch<T> touch_at(const Couple<T>& p, const Lanes<T>& s) {
+  const Lanes<T> place = dot(p.axis[0], p.axis[1]) * s - dot(p.axis[1], p.c);
+  const Lanes<T> t = clamp(place, -p.half[1], p.half[1]);
   const Vec3<T> w = p.c + p.axis[1] * t - p.axis[0] * s;
   return {{s, t}, sqrt(dot(w, w)) - p.witness.radius};
 }
 
 template <typename T>
-[[gnu::always_inline]] inline ContactLanes<T> choose(const Truth<T>& mask, const ContactLanes<T>& a,
+[[gnu::always_inline]] inline ContactLanes<T> choose(const LaneMask<T>& mask,
+                                                     const ContactLanes<T>& a,
                                                      const ContactLanes<T>& b) {
   return {select(mask, a.position, b.position), select(mask, a.depth, b.depth),
           select(mask, a.feature_a, b.feature_a), select(mask, a.feature_b, b.feature_b), b.lanes};
 }
 
 template <typename T>
-[[gnu::always_inline]] inline Truth<T> are_parallel(const Couple<T>& p) {
-  return dot(p.across, p.across) < Real<T>(T(0.01));
+[[gnu::always_inline]] inline LaneMask<T> are_parallel(const Couple<T>& p) {
+  return dot(p.across, p.across) < Lanes<T>(T(0.01));
 }
 
 /// Capsules that are parallel to 0.1 touch at the two ends of the stretch along which they lie side
@@ -102,22 +103,22 @@ template <typename T>
 template <typename T>
 [[gnu::noinline]] void write_ends(NarrowJob& job, PairBlock<T> block, Couple<T> p,
                                   CertifiedLanes<T> answer, ContactLanes<T> closest) {
-  const Real<T> margin(static_cast<T>(job.margin));
-  const Real<T> middle = dot(p.axis[0], p.c);
-  const Real<T> reach = p.half[1] * abs(dot(p.axis[0], p.axis[1]));
-  const Real<T> low = max(middle - reach, -p.half[0]);
-  const Real<T> high = min(middle + reach, p.half[0]);
+  const Lanes<T> margin(static_cast<T>(job.margin));
+  const Lanes<T> middle = dot(p.axis[0], p.c);
+  const Lanes<T> reach = p.half[1] * abs(dot(p.axis[0], p.axis[1]));
+  const Lanes<T> low = max(middle - reach, -p.half[0]);
+  const Lanes<T> high = min(middle + reach, p.half[0]);
   Touch<T> ends[2] = {touch_at(p, low), touch_at(p, high)};
   // The deeper end stands for the closest point if that is hardly deeper; capsules that cross have
   // one point.
-  const Real<T> behind = min(ends[0].distance, ends[1].distance) - answer.distance;
-  const Truth<T> side_by_side = are_parallel(p) &
-                                (high - low > (p.half[0] + p.half[1]) * Real<T>(T(1e-3))) &
-                                (behind <= p.witness.radius * Real<T>(T(1e-3)));
+  const Lanes<T> behind = min(ends[0].distance, ends[1].distance) - answer.distance;
+  const LaneMask<T> side_by_side = are_parallel(p) &
+                                   (high - low > (p.half[0] + p.half[1]) * Lanes<T>(T(1e-3))) &
+                                   (behind <= p.witness.radius * Lanes<T>(T(1e-3)));
   ends[0].distance -= behind;
   ends[1].distance -= behind;
-  const Truth<T> near_low = side_by_side & (ends[0].distance <= margin);
-  const Truth<T> near_high = side_by_side & (ends[1].distance <= margin);
+  const LaneMask<T> near_low = side_by_side & (ends[0].distance <= margin);
+  const LaneMask<T> near_high = side_by_side & (ends[1].distance <= margin);
   // Back from b to a where the couple is.
   const Vec3<T> normal = select(p.swapped, -answer.normal, answer.normal);
   ContactLanes<T> contacts[2] = {closest, contact_of(p, normal, ends[1])};
@@ -135,14 +136,14 @@ struct CapsuleCapsule {
       return answer_overlap(job, block, p.witness);
     } else {
       CertifiedLanes<T> answer =
-          answer_distance(p.witness, p.witness.scale * Real<T>(kShortest<T>));
+          answer_distance(p.witness, p.witness.scale * Lanes<T>(kShortest<T>));
       answer.normal = select(p.swapped, -answer.normal, answer.normal);
-      const Real<T> radius = select(p.swapped, p.radius[1], p.radius[0]);
+      const Lanes<T> radius = select(p.swapped, p.radius[1], p.radius[0]);
       const Vec3<T> foot = select(p.swapped, p.axis[1] * p.feet.t, p.axis[0] * p.feet.s);
       write_certified<L>(job, block, answer, foot, radius);
       if constexpr (L == kManifold) {
-        const Real<T> first = segment_feature(p.feet.s, p.half[0]);
-        const Real<T> second = segment_feature(p.feet.t, p.half[1]);
+        const Lanes<T> first = segment_feature(p.feet.s, p.half[0]);
+        const Lanes<T> second = segment_feature(p.feet.t, p.half[1]);
         const ContactLanes<T> closest =
             witness_contact(job, block, answer, foot, radius, select(p.swapped, second, first),
                             select(p.swapped, first, second));
@@ -158,9 +159,9 @@ struct CapsuleCapsule {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+}  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_capsule_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::CapsuleCapsule>();
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::CapsuleCapsule>();
 
 }  // namespace winnow

@@ -1,20 +1,20 @@
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/triangle.wide.h"
+#include "pipeline/kernels/round/round.wide.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::round {
 namespace {
 
 /// A capsule's segment about the origin and a triangle, in the triangle's frame.
 template <typename T>
-struct Scene {
+struct CapsuleAndTriangle {
   Vec3<T> axis;
-  Real<T> half;
+  Lanes<T> half;
   TriangleView<T> triangle;
   /// axis x edge, its square, and one over its length
   Vec3<T> across[3];
-  Real<T> across_square[3];
-  Real<T> across_over[3];
+  Lanes<T> across_square[3];
+  Lanes<T> across_over[3];
 };
 
 /// The direction in which the cores are farthest apart or least deep. The difference of segment and
@@ -25,16 +25,17 @@ template <typename T>
 struct Verdict {
   Gap<T> gap;
   /// Where on the segment the cores touch if they are moved apart along the prism's normal.
-  Real<T> s;
-  Real<T> feature;
+  Lanes<T> s;
+  Lanes<T> feature;
   /// No normal of the prism was made from a sine below kLeastSine.
-  Truth<T> sharp;
+  LaneMask<T> sharp;
 };
 
 template <typename T>
-[[gnu::always_inline]] inline void try_axis(Verdict<T>& v, const Truth<T>& valid, const Gap<T>& gap,
-                                            const Real<T>& s, const Real<T>& feature) {
-  const Truth<T> better = valid & (gap.distance > v.gap.distance);
+[[gnu::always_inline]] inline void try_axis(Verdict<T>& v, const LaneMask<T>& valid,
+                                            const Gap<T>& gap, const Lanes<T>& s,
+                                            const Lanes<T>& feature) {
+  const LaneMask<T> better = valid & (gap.distance > v.gap.distance);
   v.gap.distance = select(better, gap.distance, v.gap.distance);
   v.gap.normal = select(better, gap.normal, v.gap.normal);
   v.s = select(better, s, v.s);
@@ -42,65 +43,65 @@ template <typename T>
 }
 
 template <typename T>
-[[gnu::always_inline]] inline Verdict<T> prism_verdict(const Scene<T>& p,
+[[gnu::always_inline]] inline Verdict<T> prism_verdict(const CapsuleAndTriangle<T>& p,
                                                        const SegmentFeet<T> (&feet)[3]) {
-  const Real<T> zero(T(0));
-  const Real<T> one(T(1));
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
   const TriangleView<T>& b = p.triangle;
-  const Real<T> least(kLeastSine<T> * kLeastSine<T>);
-  Verdict<T> v{{Real<T>(T(-__builtin_inff())), {zero, zero, zero}}, zero, zero, zero < one};
+  const Lanes<T> least(kLeastSine<T> * kLeastSine<T>);
+  Verdict<T> v{{Lanes<T>(T(-__builtin_inff())), {zero, zero, zero}}, zero, zero, zero < one};
   const Vec3<T> n = b.normal * (one / sqrt(b.normal_square));
-  const Real<T> rise = dot(n, p.axis);
+  const Lanes<T> rise = dot(n, p.axis);
   const Gap<T> flat = gap_along(b, n, p.half * abs(rise));
   // The end that is deepest.
-  const Real<T> end = select(dot(flat.normal, p.axis) < zero, -p.half, p.half);
-  try_axis(v, has_normal(b), flat, end, Real<T>(T(7)));
+  const Lanes<T> end = select(dot(flat.normal, p.axis) < zero, -p.half, p.half);
+  try_axis(v, has_normal(b), flat, end, Lanes<T>(T(7)));
   v.sharp = b.normal_square > b.square[0] * b.square[1] * least;
   for (int i = 0; i < 3; ++i) {
-    const Truth<T> valid =
-        p.across_square[i] > b.square[i] * Real<T>(T(16) * kEpsilon<T> * kEpsilon<T>);
+    const LaneMask<T> valid =
+        p.across_square[i] > b.square[i] * Lanes<T>(T(16) * kEpsilon<T> * kEpsilon<T>);
     const Vec3<T> k = p.across[i] * p.across_over[i];
-    try_axis(v, valid, gap_along(b, k, zero), feet[i].s, Real<T>(T(4 + i)));
+    try_axis(v, valid, gap_along(b, k, zero), feet[i].s, Lanes<T>(T(4 + i)));
     v.sharp = v.sharp & (p.across_square[i] > b.square[i] * least);
   }
   return v;
 }
 
 template <typename T>
-[[gnu::always_inline]] inline Nearest<T> nearest_points(const Scene<T>& p,
-                                                        const SegmentFeet<T> (&feet)[3]) {
-  const Real<T> zero(T(0));
+[[gnu::always_inline]] inline NearestCandidate<T> nearest_points(const CapsuleAndTriangle<T>& p,
+                                                                 const SegmentFeet<T> (&feet)[3]) {
+  const Lanes<T> zero(T(0));
   const TriangleView<T>& b = p.triangle;
-  Nearest<T> nearest{{zero, zero, zero}, Real<T>(T(__builtin_inff())), zero, zero};
+  NearestCandidate<T> nearest{{zero, zero, zero}, Lanes<T>(T(__builtin_inff())), zero, zero};
   for (int i = 0; i < 3; ++i) {
     const Vec3<T> w = b.vertex[i] + b.edge[i] * feet[i].t - p.axis * feet[i].s;
     nearer(nearest, w.x == w.x, w, feet[i].s, edge_feature(feet[i].t, i));
   }
   // Only the end that is nearer to the plane can be closest to the face's inside.
-  const Real<T> side = dot(b.normal, b.vertex[0]) * dot(b.normal, p.axis);
-  const Real<T> end = select(side < zero, -p.half, p.half);
+  const Lanes<T> side = dot(b.normal, b.vertex[0]) * dot(b.normal, p.axis);
+  const Lanes<T> end = select(side < zero, -p.half, p.half);
   nearer_in_face(nearest, b, p.axis * end, end);
   return nearest;
 }
 
 /// What all levels need.
 template <typename T>
-struct Solution {
-  Scene<T> scene;
+struct CapsuleTriangleSolution {
+  CapsuleAndTriangle<T> scene;
   Rotation<T> axes;
   ProofLanes<T> proof;
   Vec3<T> normal;
-  Real<T> s;
-  Real<T> feature;
-  Real<T> radius;
-  Real<T> radius_b;
+  Lanes<T> s;
+  Lanes<T> feature;
+  Lanes<T> radius;
+  Lanes<T> radius_b;
 };
 
 template <typename T>
-[[gnu::always_inline]] inline void prove(Solution<T>& r, const Real<T>& scale) {
-  const Real<T> zero(T(0));
-  const Real<T> one(T(1));
-  const Scene<T>& p = r.scene;
+[[gnu::always_inline]] inline void prove(CapsuleTriangleSolution<T>& r, const Lanes<T>& scale) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
+  const CapsuleAndTriangle<T>& p = r.scene;
   const TriangleView<T>& b = p.triangle;
   SegmentFeet<T> feet[3];
   for (int i = 0; i < 3; ++i) {
@@ -108,20 +109,20 @@ template <typename T>
                            p.across[i], p.across_over[i] * p.across_over[i]);
   }
   Verdict<T> v = prism_verdict(p, feet);
-  const Nearest<T> nearest = nearest_points(p, feet);
-  const Real<T> length = sqrt(nearest.square);
+  const NearestCandidate<T> nearest = nearest_points(p, feet);
+  const Lanes<T> length = sqrt(nearest.square);
   const Vec3<T> n = nearest.w * (one / length);
-  const Real<T> along = min(min(dot(b.vertex[0], n), dot(b.vertex[1], n)), dot(b.vertex[2], n)) -
-                        p.half * abs(dot(p.axis, n));
+  const Lanes<T> along = min(min(dot(b.vertex[0], n), dot(b.vertex[1], n)), dot(b.vertex[2], n)) -
+                         p.half * abs(dot(p.axis, n));
   // An error of the prism's normals is one over their sines. A flat prism is never deep but by
   // rounding.
-  const Real<T> slack = scale * Real<T>(kSlack<T>);
-  const Truth<T> pierced = v.sharp & (v.gap.distance < -slack);
-  const Real<T> depth = v.gap.distance;
+  const Lanes<T> slack = scale * Lanes<T>(kRoundSlack<T>);
+  const LaneMask<T> pierced = v.sharp & (v.gap.distance < -slack);
+  const Lanes<T> depth = v.gap.distance;
   widen(v.gap, !pierced, along, n);
   r.proof = {select(pierced, depth - slack, v.gap.distance) - r.radius - r.radius_b,
              select(pierced, depth, length) - r.radius - r.radius_b, scale,
-             pierced | (length > scale * Real<T>(kShortest<T>))};
+             pierced | (length > scale * Lanes<T>(kShortest<T>))};
   r.normal = v.gap.normal;
   r.s = select(pierced, v.s, nearest.s);
   r.feature = select(pierced, v.feature, nearest.feature);
@@ -129,24 +130,25 @@ template <typename T>
 
 /// Not inlined: all levels share it, and it takes long to compile.
 template <typename T>
-[[gnu::noinline]] Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
+[[gnu::noinline]] CapsuleTriangleSolution<T> solve(const NarrowJob& job,
+                                                   const PairBlock<T>& block) {
   const Vec3<T> c = load_offset(job, block);
   const Turn<T> turn_a = load_turn<SideA>(job, block);
   const Turn<T> turn_b = load_turn<SideB>(job, block);
   const CapsuleLanes<T> capsule = load_capsule<SideA>(job, block);
   const TriangleLanes<T> triangle = load_triangle<SideB>(job, block);
-  Solution<T> r;
+  CapsuleTriangleSolution<T> r;
   r.axes = rotation(turn_b);
   r.radius = capsule.radius;
   r.radius_b = triangle.rounding;
-  Scene<T>& p = r.scene;
+  CapsuleAndTriangle<T>& p = r.scene;
   p.axis = r.axes.to_local(axis_z(turn_a));
   p.half = capsule.half_length;
   p.triangle = view_triangle(triangle, r.axes.to_local(c));
   for (int i = 0; i < 3; ++i) {
     p.across[i] = cross(p.axis, p.triangle.edge[i]);
     p.across_square[i] = dot(p.across[i], p.across[i]);
-    p.across_over[i] = Real<T>(T(1)) / sqrt(p.across_square[i]);
+    p.across_over[i] = Lanes<T>(T(1)) / sqrt(p.across_square[i]);
   }
   prove(r, taxicab(c) + largest(triangle) + capsule.half_length + capsule.radius +
                triangle.rounding + doubt(turn_a) + doubt(turn_b));
@@ -156,32 +158,32 @@ template <typename T>
 /// The stretch of the segment over the triangle, low > high if there is none.
 template <typename T>
 struct Stretch {
-  Real<T> low;
-  Real<T> high;
+  Lanes<T> low;
+  Lanes<T> high;
   /// What of the triangle ends it: an edge, or the face where the segment ends first.
-  Real<T> low_feature;
-  Real<T> high_feature;
+  Lanes<T> low_feature;
+  Lanes<T> high_feature;
 };
 
 template <typename T>
-[[gnu::always_inline]] inline Stretch<T> stretch_over(const Scene<T>& p) {
-  const Real<T> zero(T(0));
-  const Real<T> face(T(7));
+[[gnu::always_inline]] inline Stretch<T> stretch_over(const CapsuleAndTriangle<T>& p) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> face(T(7));
   Stretch<T> r{-p.half, p.half, face, face};
   for (int i = 0; i < 3; ++i) {
     const Vec3<T> inward = cross(p.triangle.normal, p.triangle.edge[i]);
     // inward . (s axis - vertex) >= 0
-    const Real<T> slope = dot(inward, p.axis);
-    const Real<T> offset = dot(inward, p.triangle.vertex[i]);
-    const Real<T> at = offset / slope;
-    const Real<T> edge(T(4 + i));
-    const Truth<T> begins = (slope > zero) & (at > r.low);
-    const Truth<T> ends = (slope < zero) & (at < r.high);
+    const Lanes<T> slope = dot(inward, p.axis);
+    const Lanes<T> offset = dot(inward, p.triangle.vertex[i]);
+    const Lanes<T> at = offset / slope;
+    const Lanes<T> edge(T(4 + i));
+    const LaneMask<T> begins = (slope > zero) & (at > r.low);
+    const LaneMask<T> ends = (slope < zero) & (at < r.high);
     r.low = select(begins, at, r.low);
     r.low_feature = select(begins, edge, r.low_feature);
     r.high = select(ends, at, r.high);
     r.high_feature = select(ends, edge, r.high_feature);
-    const Truth<T> never = (slope == zero) & (offset > zero);
+    const LaneMask<T> never = (slope == zero) & (offset > zero);
     r.high = select(never, -p.half - p.half, r.high);
   }
   return r;
@@ -191,28 +193,28 @@ template <typename T>
 /// they are closest.
 template <typename T>
 [[gnu::always_inline]] inline void write_touches(NarrowJob& job, const PairBlock<T>& block,
-                                                 const Solution<T>& r,
+                                                 const CapsuleTriangleSolution<T>& r,
                                                  const CertifiedLanes<T>& answer) {
-  const Real<T> margin(static_cast<T>(job.margin));
-  const Scene<T>& p = r.scene;
+  const Lanes<T> margin(static_cast<T>(job.margin));
+  const CapsuleAndTriangle<T>& p = r.scene;
   const Vec3<T> axis = r.axes.to_world(p.axis);
-  const Real<T> rise = dot(p.triangle.normal, r.normal);
-  const Real<T> tilt = dot(p.axis, r.normal);
+  const Lanes<T> rise = dot(p.triangle.normal, r.normal);
+  const Lanes<T> tilt = dot(p.axis, r.normal);
   const Stretch<T> over = stretch_over(p);
-  const Truth<T> lies =
-      (rise * rise > p.triangle.normal_square * Real<T>(T(1) - T(64) * kEpsilon<T>)) &
-      (tilt * tilt < Real<T>(T(0.01))) & (over.high - over.low > p.half * Real<T>(T(1e-3)));
-  const Real<T> base = dot(p.triangle.vertex[0], r.normal) - r.radius - r.radius_b;
-  const Real<T> distance[2] = {base - tilt * over.low, base - tilt * over.high};
-  const Truth<T> near_low = lies & (distance[0] <= margin);
-  const Truth<T> near_high = lies & (distance[1] <= margin);
-  const auto contact = [&](const Real<T>& s, const Real<T>& d, const Real<T>& feature) {
-    const Vec3<T> position = axis * s + answer.normal * (r.radius + d * Real<T>(T(0.5)));
+  const LaneMask<T> lies =
+      (rise * rise > p.triangle.normal_square * Lanes<T>(T(1) - T(64) * kEpsilon<T>)) &
+      (tilt * tilt < Lanes<T>(T(0.01))) & (over.high - over.low > p.half * Lanes<T>(T(1e-3)));
+  const Lanes<T> base = dot(p.triangle.vertex[0], r.normal) - r.radius - r.radius_b;
+  const Lanes<T> distance[2] = {base - tilt * over.low, base - tilt * over.high};
+  const LaneMask<T> near_low = lies & (distance[0] <= margin);
+  const LaneMask<T> near_high = lies & (distance[1] <= margin);
+  const auto contact = [&](const Lanes<T>& s, const Lanes<T>& d, const Lanes<T>& feature) {
+    const Vec3<T> position = axis * s + answer.normal * (r.radius + d * Lanes<T>(T(0.5)));
     return ContactLanes<T>{position, -d, segment_feature(s, p.half), feature, 0};
   };
-  const Real<T> s = select(near_low, over.low, select(near_high, over.high, r.s));
-  const Real<T> d = select(near_low, distance[0], select(near_high, distance[1], answer.distance));
-  const Real<T> feature =
+  const Lanes<T> s = select(near_low, over.low, select(near_high, over.high, r.s));
+  const Lanes<T> d = select(near_low, distance[0], select(near_high, distance[1], answer.distance));
+  const Lanes<T> feature =
       select(near_low, over.low_feature, select(near_high, over.high_feature, r.feature));
   ContactLanes<T> contacts[2] = {contact(s, d, feature),
                                  contact(over.high, distance[1], over.high_feature)};
@@ -224,7 +226,7 @@ template <typename T>
 struct CapsuleTriangle {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
-    const Solution<T> r = solve(job, block);
+    const CapsuleTriangleSolution<T> r = solve(job, block);
     if constexpr (L == kBoolean) {
       return answer_proven_sign(job, block, r.proof);
     } else {
@@ -238,9 +240,9 @@ struct CapsuleTriangle {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+}  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_triangle_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::CapsuleTriangle>();
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::CapsuleTriangle>();
 
 }  // namespace winnow

@@ -2,10 +2,10 @@
 // A half-space reaches to infinity, so the direction is always that of its plane.
 
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/segments.wide.h"
+#include "pipeline/kernels/round/round.wide.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::round {
 namespace {
 
 /// The half-space's plane, relative to the position of body a: the outward normal, and the height
@@ -13,9 +13,9 @@ namespace {
 template <typename T>
 struct Plane {
   Vec3<T> normal;
-  Real<T> height;
+  Lanes<T> height;
   /// The sum of the magnitudes of what height was made of; NaN for a bad pose.
-  Real<T> scale;
+  Lanes<T> scale;
 };
 
 template <typename T>
@@ -31,18 +31,18 @@ template <typename T>
 template <typename T, int Count>
 struct Feet {
   Vec3<T> foot[Count];
-  Real<T> height[Count];
-  Real<T> feature[Count];
+  Lanes<T> height[Count];
+  Lanes<T> feature[Count];
   /// Foot 0 is the lowest. The rounding is that of all.
-  Real<T> rounding;
+  Lanes<T> rounding;
   Vec3<T> normal;
-  Real<T> scale;
+  Lanes<T> scale;
 };
 
 /// Exchanges two feet if the second is lower.
 template <typename T, int Count>
 [[gnu::always_inline]] inline void sort_two(Feet<T, Count>& f, int first, int second) {
-  const Truth<T> wrong = f.height[second] < f.height[first];
+  const LaneMask<T> wrong = f.height[second] < f.height[first];
   const auto exchange = [&](auto& a, auto& b) {
     const auto t = select(wrong, b, a);
     b = select(wrong, a, b);
@@ -60,12 +60,13 @@ struct OverPlane {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
     const auto feet = Source::template feet<T>(job, block);
-    const Real<T> distance = feet.height[0] - feet.rounding;
-    const Real<T> bound = feet.scale * Real<T>(T(kRoundings) * kEpsilon<T>);
+    const Lanes<T> distance = feet.height[0] - feet.rounding;
+    const Lanes<T> bound = feet.scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
     if constexpr (L == kBoolean) {
       return answer_sign(job, block, distance, bound, feet.scale);
     } else {
-      const Mask16 known = certified_lanes(distance, bound, feet.scale, feet.scale > Real<T>(T(0)));
+      const Mask16 known =
+          certified_lanes(distance, bound, feet.scale, feet.scale > Lanes<T>(T(0)));
       const CertifiedLanes<T> answer{distance, bound, -feet.normal, known};
       write_certified<L>(job, block, answer, feet.foot[0], feet.rounding);
       if constexpr (L == kManifold) write_touches(job, block, feet, known);
@@ -80,10 +81,10 @@ struct OverPlane {
     Mask16 lanes = known & block.lanes();
     for (int i = 0; i < Contacts; ++i) {
       const int k = i < Count ? i : 0;
-      const Real<T> d = feet.height[k] - feet.rounding;
-      lanes &= i < Count ? bits(d <= Real<T>(static_cast<T>(job.margin))) : 0U;
-      contacts[i] = {feet.foot[k] - feet.normal * (feet.rounding + d * Real<T>(T(0.5))), -d,
-                     feet.feature[k], Real<T>(T(0)), lanes};
+      const Lanes<T> d = feet.height[k] - feet.rounding;
+      lanes &= i < Count ? bits(d <= Lanes<T>(static_cast<T>(job.margin))) : 0U;
+      contacts[i] = {feet.foot[k] - feet.normal * (feet.rounding + d * Lanes<T>(T(0.5))), -d,
+                     feet.feature[k], Lanes<T>(T(0)), lanes};
     }
     write_contacts(job, block, contacts);
   }
@@ -93,8 +94,8 @@ struct SphereFeet {
   template <typename T>
   [[gnu::noinline]] static Feet<T, 1> feet(const NarrowJob& job, const PairBlock<T>& block) {
     const Plane<T> plane = load_plane(job, block);
-    const Real<T> radius = load_sphere<SideA>(job, block);
-    const Real<T> zero(T(0));
+    const Lanes<T> radius = load_sphere<SideA>(job, block);
+    const Lanes<T> zero(T(0));
     return {{{zero, zero, zero}}, {plane.height},      {zero}, radius,
             plane.normal,         plane.scale + radius};
   }
@@ -107,10 +108,10 @@ struct CapsuleFeet {
     const Turn<T> turn = load_turn<SideA>(job, block);
     const CapsuleLanes<T> a = load_capsule<SideA>(job, block);
     const Vec3<T> arm = axis_z(turn) * a.half_length;
-    const Real<T> rise = dot(plane.normal, arm);
+    const Lanes<T> rise = dot(plane.normal, arm);
     Feet<T, 2> feet{{arm, -arm},
                     {plane.height + rise, plane.height - rise},
-                    {Real<T>(T(1)), Real<T>(T(2))},
+                    {Lanes<T>(T(1)), Lanes<T>(T(2))},
                     a.radius,
                     plane.normal,
                     plane.scale + a.radius + a.half_length + doubt(turn)};
@@ -127,11 +128,11 @@ struct TriangleFeet {
     const TriangleLanes<T> a = load_triangle<SideA>(job, block);
     const Rotation<T> axes = rotation(turn);
     Feet<T, 3> feet;
-    Real<T> reach(T(0));
+    Lanes<T> reach(T(0));
     for (int i = 0; i < 3; ++i) {
       feet.foot[i] = axes.to_world(a.vertex[i]);
       feet.height[i] = plane.height + dot(plane.normal, feet.foot[i]);
-      feet.feature[i] = Real<T>(T(1 + i));
+      feet.feature[i] = Lanes<T>(T(1 + i));
       reach = max(reach, taxicab(a.vertex[i]));
     }
     sort_two(feet, 0, 1);
@@ -149,28 +150,28 @@ struct BoxFeet {
   /// opposite last. A vertex is called by its signs: bit i if coordinate i is negative.
   template <typename T>
   [[gnu::noinline]] static Feet<T, 4> feet(const NarrowJob& job, const PairBlock<T>& block) {
-    const Real<T> zero(T(0));
+    const Lanes<T> zero(T(0));
     const Plane<T> plane = load_plane(job, block);
     const Turn<T> turn = load_turn<SideA>(job, block);
     const BoxLanes<T> a = load_box<SideA>(job, block);
     const Rotation<T> axes = rotation(turn);
     const Vec3<T> arm[3] = {axes.x * a.half.x, axes.y * a.half.y, axes.z * a.half.z};
     const Vec3<T> local = axes.to_local(plane.normal);
-    const Real<T> cosine[3] = {local.x, local.y, local.z};
+    const Lanes<T> cosine[3] = {local.x, local.y, local.z};
     Vec3<T> down[3];
-    Real<T> rise[3];
-    Real<T> name[3];
-    Real<T> flip[3];
+    Lanes<T> rise[3];
+    Lanes<T> name[3];
+    Lanes<T> flip[3];
     for (int i = 0; i < 3; ++i) {
-      const Real<T> rises = dot(plane.normal, arm[i]);
-      const Truth<T> negative = rises > zero;
+      const Lanes<T> rises = dot(plane.normal, arm[i]);
+      const LaneMask<T> negative = rises > zero;
       down[i] = select(negative, -arm[i], arm[i]);
       rise[i] = abs(rises);
-      name[i] = select(negative, Real<T>(T(1 << i)), zero);
-      flip[i] = select(negative, Real<T>(T(-(1 << i))), Real<T>(T(1 << i)));
+      name[i] = select(negative, Lanes<T>(T(1 << i)), zero);
+      flip[i] = select(negative, Lanes<T>(T(-(1 << i))), Lanes<T>(T(1 << i)));
     }
     // Arms 0 and 1 span the face, arm 2 is the one nearest to the normal.
-    const auto exchange = [&](const Truth<T>& mask, int i) {
+    const auto exchange = [&](const LaneMask<T>& mask, int i) {
       const auto swap = [&](auto& x, auto& y) {
         const auto t = select(mask, y, x);
         y = select(mask, x, y);
@@ -180,14 +181,14 @@ struct BoxFeet {
       swap(rise[i], rise[2]);
       swap(flip[i], flip[2]);
     };
-    const Truth<T> is_x = (abs(cosine[0]) > abs(cosine[1])) & (abs(cosine[0]) > abs(cosine[2]));
-    const Truth<T> is_y = (!is_x) & (abs(cosine[1]) > abs(cosine[2]));
+    const LaneMask<T> is_x = (abs(cosine[0]) > abs(cosine[1])) & (abs(cosine[0]) > abs(cosine[2]));
+    const LaneMask<T> is_y = (!is_x) & (abs(cosine[1]) > abs(cosine[2]));
     exchange(is_x, 0);
     exchange(is_y, 1);
     const Vec3<T> corner = down[0] + down[1] + down[2];
-    const Real<T> height = plane.height - (rise[0] + rise[1] + rise[2]);
-    const Real<T> lowest = name[0] + name[1] + name[2];
-    const Real<T> two(T(2));
+    const Lanes<T> height = plane.height - (rise[0] + rise[1] + rise[2]);
+    const Lanes<T> lowest = name[0] + name[1] + name[2];
+    const Lanes<T> two(T(2));
     Feet<T, 4> feet{{corner, corner - down[0] * two, corner - down[1] * two,
                      corner - (down[0] + down[1]) * two},
                     {height, height + rise[0] * two, height + rise[1] * two,
@@ -202,18 +203,19 @@ struct BoxFeet {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+}  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_half_space_kernels) =
     WINNOW_ISA_NAME::narrow_kernels_of<
-        WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::SphereFeet, 1>>();
+        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::SphereFeet, 1>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_half_space_kernels) =
     WINNOW_ISA_NAME::narrow_kernels_of<
-        WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::CapsuleFeet, 2>>();
+        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::CapsuleFeet, 2>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(box_half_space_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::BoxFeet, 4>>();
+    WINNOW_ISA_NAME::narrow_kernels_of<
+        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::BoxFeet, 4>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(triangle_half_space_kernels) =
     WINNOW_ISA_NAME::narrow_kernels_of<
-        WINNOW_ISA_NAME::OverPlane<WINNOW_ISA_NAME::TriangleFeet, 4>>();
+        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::TriangleFeet, 4>>();
 
 }  // namespace winnow

@@ -4,7 +4,7 @@
 
 #include "pipeline/kernels/answers.wide.h"
 
-namespace winnow::WINNOW_ISA_NAME {
+namespace winnow::WINNOW_ISA_NAME::round {
 
 /// How often the unit roundoff of a pair's scale the closed forms may be wrong: about three times
 /// the sum over their operations.
@@ -21,7 +21,7 @@ inline constexpr T kShortest = sizeof(T) == sizeof(double) ? T(1e-9) : T(1e-6F);
 template <typename T>
 inline constexpr T kLeastSine = T(1) / T(128);
 template <typename T>
-inline constexpr T kSlack = T(8) * kEpsilon<T> / kLeastSine<T>;
+inline constexpr T kRoundSlack = T(8) * kEpsilon<T> / kLeastSine<T>;
 
 /// Where the cores of a pair are closest.
 template <typename T>
@@ -29,24 +29,25 @@ struct WitnessLanes {
   /// From the point of core a to that of core b, at most kRoundings * epsilon * scale wrong.
   Vec3<T> w;
   /// Both roundings.
-  Real<T> radius;
+  Lanes<T> radius;
   /// At least the sum of all lengths that w was made of, and of the radius; NaN for a bad pose.
-  Real<T> scale;
+  Lanes<T> scale;
 };
 
 /// The sum of the magnitudes.
 template <typename T>
-[[gnu::always_inline]] inline Real<T> taxicab(const Vec3<T>& v) {
+[[gnu::always_inline]] inline Lanes<T> taxicab(const Vec3<T>& v) {
   return abs(v.x) + abs(v.y) + abs(v.z);
 }
 
 /// Tier fast answers whatever is a number: its bound says how sure the sign is.
 template <typename T>
-[[gnu::always_inline]] inline Mask16 certified_lanes(const Real<T>& distance, const Real<T>& bound,
-                                                     const Real<T>& scale, const Truth<T>& normal) {
-  const Truth<T> valid = in_range(scale * scale) & normal;
+[[gnu::always_inline]] inline Mask16 certified_lanes(const Lanes<T>& distance,
+                                                     const Lanes<T>& bound, const Lanes<T>& scale,
+                                                     const LaneMask<T>& normal) {
+  const LaneMask<T> valid = in_range(scale * scale) & normal;
   if constexpr (sizeof(T) == sizeof(double)) return bits(valid & (abs(distance) > bound));
-  return bits(valid & (abs(distance) < Real<T>(T(1e30F))));
+  return bits(valid & (abs(distance) < Lanes<T>(T(1e30F))));
 }
 
 /// Level boolean, by squares; returns the uncertified lanes. With w wrong by e, its square is by
@@ -54,18 +55,18 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline Mask16 answer_overlap(const NarrowJob& job, const PairBlock<T>& block,
                                                     const WitnessLanes<T>& witness) {
-  const Real<T> square = witness.scale * witness.scale;
-  const Real<T> excess = dot(witness.w, witness.w) - witness.radius * witness.radius;
-  const Real<T> error = square * Real<T>(T(4 * kRoundings) * kEpsilon<T>);
-  write_overlap(job, block, bits(excess <= Real<T>(T(0))));
-  return ~certified_lanes(excess, error, witness.scale, square > Real<T>(T(0)));
+  const Lanes<T> square = witness.scale * witness.scale;
+  const Lanes<T> excess = dot(witness.w, witness.w) - witness.radius * witness.radius;
+  const Lanes<T> error = square * Lanes<T>(T(4 * kRoundings) * kEpsilon<T>);
+  write_overlap(job, block, bits(excess <= Lanes<T>(T(0))));
+  return ~certified_lanes(excess, error, witness.scale, square > Lanes<T>(T(0)));
 }
 
 /// A distance along a normal, and whether it may be written.
 template <typename T>
 struct CertifiedLanes {
-  Real<T> distance;
-  Real<T> error_bound;
+  Lanes<T> distance;
+  Lanes<T> error_bound;
   Vec3<T> normal;
   Mask16 certified;
 };
@@ -73,20 +74,20 @@ struct CertifiedLanes {
 /// Level boolean of kernels that have the distance.
 template <typename T>
 [[gnu::always_inline]] inline Mask16 answer_sign(const NarrowJob& job, const PairBlock<T>& block,
-                                                 const Real<T>& distance, const Real<T>& bound,
-                                                 const Real<T>& scale) {
-  write_overlap(job, block, bits(distance <= Real<T>(T(0))));
-  return ~certified_lanes(distance, bound, scale, scale > Real<T>(T(0)));
+                                                 const Lanes<T>& distance, const Lanes<T>& bound,
+                                                 const Lanes<T>& scale) {
+  write_overlap(job, block, bits(distance <= Lanes<T>(T(0))));
+  return ~certified_lanes(distance, bound, scale, scale > Lanes<T>(T(0)));
 }
 
 /// Levels distance and manifold. `shortest` is the least |w| that has a direction.
 template <typename T>
 [[gnu::always_inline]] inline CertifiedLanes<T> answer_distance(const WitnessLanes<T>& witness,
-                                                                const Real<T>& shortest) {
-  const Real<T> length = sqrt(dot(witness.w, witness.w));
-  const Real<T> distance = length - witness.radius;
-  const Real<T> bound = witness.scale * Real<T>(T(kRoundings) * kEpsilon<T>);
-  return {distance, bound, witness.w * (Real<T>(T(1)) / length),
+                                                                const Lanes<T>& shortest) {
+  const Lanes<T> length = sqrt(dot(witness.w, witness.w));
+  const Lanes<T> distance = length - witness.radius;
+  const Lanes<T> bound = witness.scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
+  return {distance, bound, witness.w * (Lanes<T>(T(1)) / length),
           certified_lanes(distance, bound, witness.scale, length > shortest)};
 }
 
@@ -95,7 +96,7 @@ template <typename T>
 template <int L, typename T>
 [[gnu::always_inline]] inline void write_certified(const NarrowJob& job, const PairBlock<T>& block,
                                                    const CertifiedLanes<T>& c, const Vec3<T>& foot,
-                                                   const Real<T>& radius) {
+                                                   const Lanes<T>& radius) {
   AnswerLanes<T> answer{c.distance, c.error_bound, c.normal, {}};
   if constexpr (L == kDistance) answer.point = foot + c.normal * radius;
   write_answer<L>(job, block, answer);
@@ -105,10 +106,10 @@ template <int L, typename T>
 template <typename T>
 [[gnu::always_inline]] inline ContactLanes<T> witness_contact(
     const NarrowJob& job, const PairBlock<T>& block, const CertifiedLanes<T>& c,
-    const Vec3<T>& foot, const Real<T>& radius, const Real<T>& feature_a,
-    const Real<T>& feature_b) {
-  const Real<T> half(T(0.5));
-  const Truth<T> near = c.distance <= Real<T>(static_cast<T>(job.margin));
+    const Vec3<T>& foot, const Lanes<T>& radius, const Lanes<T>& feature_a,
+    const Lanes<T>& feature_b) {
+  const Lanes<T> half(T(0.5));
+  const LaneMask<T> near = c.distance <= Lanes<T>(static_cast<T>(job.margin));
   return {foot + c.normal * (radius + c.distance * half), -c.distance, feature_a, feature_b,
           bits(near) & c.certified & block.lanes()};
 }
@@ -117,21 +118,21 @@ template <typename T>
 template <typename T>
 struct ProofLanes {
   /// How far the shapes are along some direction.
-  Real<T> low;
+  Lanes<T> low;
   /// How far two of their points are, or how deep they are along a direction.
-  Real<T> high;
+  Lanes<T> high;
   /// As in WitnessLanes.
-  Real<T> scale;
+  Lanes<T> scale;
   /// Where the direction is well defined.
-  Truth<T> unique;
+  LaneMask<T> unique;
 };
 
 /// Scales of which the fourth power is in T's range.
 template <typename T>
-[[gnu::always_inline]] inline Truth<T> in_narrow_range(const Real<T>& scale) {
+[[gnu::always_inline]] inline LaneMask<T> in_narrow_range(const Lanes<T>& scale) {
   constexpr bool is_double = sizeof(T) == sizeof(double);
-  return (scale > Real<T>(is_double ? T(1e-50) : T(1e-6F))) &
-         (scale < Real<T>(is_double ? T(1e50) : T(1e6F)));
+  return (scale > Lanes<T>(is_double ? T(1e-50) : T(1e-6F))) &
+         (scale < Lanes<T>(is_double ? T(1e50) : T(1e6F)));
 }
 
 /// Level boolean.
@@ -139,13 +140,13 @@ template <typename T>
 [[gnu::always_inline]] inline Mask16 answer_proven_sign(const NarrowJob& job,
                                                         const PairBlock<T>& block,
                                                         const ProofLanes<T>& proof) {
-  write_overlap(job, block, bits(proof.high <= Real<T>(T(0))));
-  const Real<T> error = proof.scale * Real<T>(T(kRoundings) * kEpsilon<T>);
-  const Truth<T> valid = in_narrow_range(proof.scale);
+  write_overlap(job, block, bits(proof.high <= Lanes<T>(T(0))));
+  const Lanes<T> error = proof.scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
+  const LaneMask<T> valid = in_narrow_range(proof.scale);
   if constexpr (sizeof(T) == sizeof(double)) {
     return ~bits(valid & ((proof.high < -error) | (proof.low > error)));
   }
-  return ~bits(valid & (abs(proof.high) < Real<T>(T(1e30F))));
+  return ~bits(valid & (abs(proof.high) < Lanes<T>(T(1e30F))));
 }
 
 /// Levels distance and manifold. Tier robust promises bounds of 1e-12 of sizes and distance, of
@@ -154,12 +155,209 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline CertifiedLanes<T> answer_proven(const ProofLanes<T>& proof,
                                                               const Vec3<T>& normal) {
-  const Real<T> widest(sizeof(T) == sizeof(double) ? T(4e-13) : T(1e-2F));
-  const Real<T> bound =
-      abs(proof.high - proof.low) + proof.scale * Real<T>(T(kRoundings) * kEpsilon<T>);
-  const Truth<T> valid =
+  const Lanes<T> widest(sizeof(T) == sizeof(double) ? T(4e-13) : T(1e-2F));
+  const Lanes<T> bound =
+      abs(proof.high - proof.low) + proof.scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
+  const LaneMask<T> valid =
       proof.unique & in_narrow_range(proof.scale) & (bound < proof.scale * widest);
   return {proof.high, bound, normal, certified_lanes(proof.high, bound, proof.scale, valid)};
 }
 
-}  // namespace winnow::WINNOW_ISA_NAME
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> clamp(const Lanes<T>& v, const Lanes<T>& low,
+                                             const Lanes<T>& high) {
+  return min(max(v, low), high);
+}
+
+/// 0, or NaN where the orientation is not usable.
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> doubt(const Turn<T>& turn) {
+  return turn.scale - turn.scale;
+}
+
+/// What a contact at t of a capsule's segment is called: 1 and 2 the ends, 0 between them.
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> segment_feature(const Lanes<T>& t,
+                                                       const Lanes<T>& half_length) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> low = select(t <= -half_length, Lanes<T>(T(2)), zero);
+  return select(t >= half_length, Lanes<T>(T(1)), low);
+}
+
+/// Points s u and c + t e.
+template <typename T>
+struct SegmentFeet {
+  Lanes<T> s;
+  Lanes<T> t;
+};
+
+/// The second segment: c + t e, low <= t <= high; `square` is |e|^2, which may be 0.
+template <typename T>
+struct SegmentLanes {
+  Vec3<T> c;
+  Vec3<T> e;
+  Lanes<T> square;
+  Lanes<T> low;
+  Lanes<T> high;
+};
+
+/// The closest points of the segment s u, |u| = 1, |s| <= h, and another. After Ericson, Real-Time
+/// Collision Detection (2005), 5.1.9, but s comes from products of cross products, `k` = u x e,
+/// `over` = 1 / |k|^2: by Lagrange's identity the same numbers without the cancellation of parallel
+/// segments. An error of s is then eps |c| / sin, of the distance in which it enters times sin eps
+/// |c|, whatever the angle; where u x e vanishes any s will do, as the last two steps find the
+/// closest points then.
+template <typename T>
+[[gnu::always_inline]] inline SegmentFeet<T> closest_feet(const Vec3<T>& u, const Lanes<T>& h,
+                                                          const SegmentLanes<T>& b,
+                                                          const Vec3<T>& k, const Lanes<T>& over) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> along = dot(u, b.e);
+  const Lanes<T> place_on_line = dot(k, cross(b.c, b.e)) * over;
+  // Neither infinite nor NaN.
+  const Lanes<T> line = select(place_on_line - place_on_line == zero, place_on_line, zero);
+  const Lanes<T> first = clamp(line, -h, h);
+  const Lanes<T> place = (along * first - dot(b.e, b.c)) / b.square;
+  const Lanes<T> t = clamp(select(b.square > zero, place, b.low), b.low, b.high);
+  return {clamp(dot(u, b.c) + along * t, -h, h), t};
+}
+
+/// A triangle around the origin of the question: vertices, edge i from vertex i to the next one,
+/// squares of the edges' lengths, and the normal e0 x e1 of any length.
+template <typename T>
+struct TriangleView {
+  Vec3<T> vertex[3];
+  Vec3<T> edge[3];
+  Lanes<T> square[3];
+  Vec3<T> normal;
+  Lanes<T> normal_square;
+};
+
+/// `offset` is added to the vertices.
+template <typename T>
+[[gnu::always_inline]] inline TriangleView<T> view_triangle(const TriangleLanes<T>& triangle,
+                                                            const Vec3<T>& offset) {
+  TriangleView<T> r;
+  for (int i = 0; i < 3; ++i) {
+    r.vertex[i] = triangle.vertex[i] + offset;
+    r.edge[i] = triangle.vertex[i == 2 ? 0 : i + 1] - triangle.vertex[i];
+    r.square[i] = dot(r.edge[i], r.edge[i]);
+  }
+  r.normal = cross(r.edge[0], r.edge[1]);
+  r.normal_square = dot(r.normal, r.normal);
+  return r;
+}
+
+/// Where the normal is more than rounding.
+template <typename T>
+[[gnu::always_inline]] inline LaneMask<T> has_normal(const TriangleView<T>& b) {
+  const Lanes<T> least(T(16) * kEpsilon<T> * kEpsilon<T>);
+  return b.normal_square > b.square[0] * b.square[1] * least;
+}
+
+/// The largest coordinates of a vertex, summed.
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> largest(const TriangleLanes<T>& triangle) {
+  return max(taxicab(triangle.vertex[0]),
+             max(taxicab(triangle.vertex[1]), taxicab(triangle.vertex[2])));
+}
+
+/// The best so far of directions along which two cores are apart.
+template <typename T>
+struct Gap {
+  /// How far they are, negative if they overlap.
+  Lanes<T> distance;
+  /// Unit, from a to b.
+  Vec3<T> normal;
+};
+
+/// Keeps the direction along which the cores are farther apart.
+template <typename T>
+[[gnu::always_inline]] inline void widen(Gap<T>& gap, const LaneMask<T>& valid,
+                                         const Lanes<T>& distance, const Vec3<T>& normal) {
+  const LaneMask<T> better = valid & (distance > gap.distance);
+  gap.distance = select(better, distance, gap.distance);
+  gap.normal = select(better, normal, gap.normal);
+}
+
+/// How far a triangle lies on one side of a segment's ends along a unit direction, the better of
+/// the two ways. `reach` is that of the segment, whose middle is the origin.
+template <typename T>
+[[gnu::always_inline]] inline Gap<T> gap_along(const TriangleView<T>& b, const Vec3<T>& n,
+                                               const Lanes<T>& reach) {
+  const Lanes<T> x = dot(b.vertex[0], n);
+  const Lanes<T> y = dot(b.vertex[1], n);
+  const Lanes<T> z = dot(b.vertex[2], n);
+  const Lanes<T> ahead = min(min(x, y), z) - reach;
+  const Lanes<T> behind = -max(max(x, y), z) - reach;
+  return {max(ahead, behind), select(ahead >= behind, n, -n)};
+}
+
+/// The nearest candidate so far for the closest points.
+template <typename T>
+struct NearestCandidate {
+  /// From a to b.
+  Vec3<T> w;
+  Lanes<T> square;
+  /// Where on the segment of a.
+  Lanes<T> s;
+  /// Vertices of the triangle are 1, 2, 3, edges 4, 5, 6, the face is 7.
+  Lanes<T> feature;
+};
+
+template <typename T>
+[[gnu::always_inline]] inline void nearer(NearestCandidate<T>& nearest, const LaneMask<T>& valid,
+                                          const Vec3<T>& w, const Lanes<T>& s,
+                                          const Lanes<T>& feature) {
+  const Lanes<T> square = dot(w, w);
+  const LaneMask<T> better = valid & (square < nearest.square);
+  nearest.w = select(better, w, nearest.w);
+  nearest.square = select(better, square, nearest.square);
+  nearest.s = select(better, s, nearest.s);
+  nearest.feature = select(better, feature, nearest.feature);
+}
+
+/// A candidate in the face for a point: the convex combination of the vertices at the foot of the
+/// point, so that it lies on the triangle however thin that is.
+template <typename T>
+[[gnu::always_inline]] inline void nearer_in_face(NearestCandidate<T>& nearest,
+                                                  const TriangleView<T>& b, const Vec3<T>& point,
+                                                  const Lanes<T>& s) {
+  const Lanes<T> zero(T(0));
+  const Vec3<T> v[3] = {b.vertex[0] - point, b.vertex[1] - point, b.vertex[2] - point};
+  const Lanes<T> weight[3] = {dot(cross(v[1], b.edge[1]), b.normal),
+                              dot(cross(v[2], b.edge[2]), b.normal),
+                              dot(cross(v[0], b.edge[0]), b.normal)};
+  const Lanes<T> sum = weight[0] + weight[1] + weight[2];
+  const LaneMask<T> over =
+      (weight[0] >= zero) & (weight[1] >= zero) & (weight[2] >= zero) & (sum > zero);
+  const Vec3<T> w =
+      (v[0] * weight[0] + v[1] * weight[1] + v[2] * weight[2]) * (Lanes<T>(T(1)) / sum);
+  nearer(nearest, over, w, s, Lanes<T>(T(7)));
+}
+
+/// What an edge's point at t is called.
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> edge_feature(const Lanes<T>& t, int edge) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
+  const Lanes<T> next(T(edge == 2 ? 1 : edge + 2));
+  return select(t <= zero, Lanes<T>(T(edge + 1)), select(t >= one, next, Lanes<T>(T(edge + 4))));
+}
+
+/// -1, 0, 1 for numbers below, at and above zero.
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> sign(const Lanes<T>& v) {
+  const Lanes<T> zero(T(0));
+  return select(v > zero, Lanes<T>(T(1)), select(v < zero, Lanes<T>(T(-1)), zero));
+}
+
+/// What the closest point of a box is called, by the signs of the direction towards the box: the
+/// digits of a number to the base of three.
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> box_feature(const Vec3<T>& towards) {
+  const Lanes<T> three(T(3));
+  return Lanes<T>(T(13)) - (sign(towards.x) + three * (sign(towards.y) + three * sign(towards.z)));
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME::round

@@ -1,8 +1,8 @@
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/segments.wide.h"
+#include "pipeline/kernels/round/round.wide.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::round {
 namespace {
 
 struct SphereCapsule {
@@ -10,20 +10,20 @@ struct SphereCapsule {
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
     const Vec3<T> c = load_offset(job, block);
     const Turn<T> turn = load_turn<SideB>(job, block);
-    const Real<T> ra = load_sphere<SideA>(job, block);
+    const Lanes<T> ra = load_sphere<SideA>(job, block);
     const CapsuleLanes<T> capsule = load_capsule<SideB>(job, block);
 
     // The distance to a point of the segment grows by at most the error of its place on it.
     const Vec3<T> axis = axis_z(turn);
-    const Real<T> t = clamp(-dot(c, axis), -capsule.half_length, capsule.half_length);
-    const Real<T> radius = ra + capsule.radius;
+    const Lanes<T> t = clamp(-dot(c, axis), -capsule.half_length, capsule.half_length);
+    const Lanes<T> radius = ra + capsule.radius;
     const WitnessLanes<T> witness{c + axis * t, radius,
                                   taxicab(c) + capsule.half_length + radius + doubt(turn)};
     if constexpr (L == kBoolean) {
       return answer_overlap(job, block, witness);
     } else {
-      CertifiedLanes<T> answer = answer_distance(witness, witness.scale * Real<T>(kShortest<T>));
-      const Real<T> zero(T(0));
+      CertifiedLanes<T> answer = answer_distance(witness, witness.scale * Lanes<T>(kShortest<T>));
+      const Lanes<T> zero(T(0));
       const Vec3<T> foot{zero, zero, zero};
       write_certified<L>(job, block, answer, foot, ra);
       if constexpr (L == kManifold) {
@@ -37,9 +37,9 @@ struct SphereCapsule {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+}  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_capsule_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::SphereCapsule>();
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::SphereCapsule>();
 
 }  // namespace winnow

@@ -2,23 +2,23 @@
 #include "pipeline/kernels/round/round.wide.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::round {
 namespace {
 
 struct SphereSphere {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
     const Vec3<T> c = load_offset(job, block);
-    const Real<T> ra = load_sphere<SideA>(job, block);
-    const Real<T> radius = ra + load_sphere<SideB>(job, block);
+    const Lanes<T> ra = load_sphere<SideA>(job, block);
+    const Lanes<T> radius = ra + load_sphere<SideB>(job, block);
     const WitnessLanes<T> witness{c, radius, taxicab(c) + radius};
     if constexpr (L == kBoolean) {
       return answer_overlap(job, block, witness);
     } else {
       // The offset is right to a rounding of itself, and so is the normal, however short it is.
-      const Real<T> shortest(sizeof(T) == sizeof(double) ? T(1e-130) : T(1e-15F));
+      const Lanes<T> shortest(sizeof(T) == sizeof(double) ? T(1e-130) : T(1e-15F));
       CertifiedLanes<T> answer = answer_distance(witness, shortest);
-      const Real<T> zero(T(0));
+      const Lanes<T> zero(T(0));
       const Vec3<T> foot{zero, zero, zero};
       write_certified<L>(job, block, answer, foot, ra);
       if constexpr (L == kManifold) {
@@ -30,9 +30,9 @@ struct SphereSphere {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+}  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_sphere_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::SphereSphere>();
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::SphereSphere>();
 
 }  // namespace winnow

@@ -1,20 +1,20 @@
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/triangle.wide.h"
+#include "pipeline/kernels/round/round.wide.h"
 
 namespace winnow {
-namespace WINNOW_ISA_NAME {
+namespace WINNOW_ISA_NAME::round {
 namespace {
 
 /// The closest point of the triangle to the origin.
 template <typename T>
-[[gnu::always_inline]] inline Nearest<T> nearest_point(const TriangleView<T>& b) {
-  const Real<T> zero(T(0));
-  const Real<T> one(T(1));
+[[gnu::always_inline]] inline NearestCandidate<T> nearest_point(const TriangleView<T>& b) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
   const Vec3<T> origin{zero, zero, zero};
-  Nearest<T> nearest{origin, Real<T>(T(__builtin_inff())), zero, zero};
+  NearestCandidate<T> nearest{origin, Lanes<T>(T(__builtin_inff())), zero, zero};
   for (int i = 0; i < 3; ++i) {
-    const Real<T> place = -dot(b.vertex[i], b.edge[i]) / b.square[i];
-    const Real<T> t = clamp(select(b.square[i] > zero, place, zero), zero, one);
+    const Lanes<T> place = -dot(b.vertex[i], b.edge[i]) / b.square[i];
+    const Lanes<T> t = clamp(select(b.square[i] > zero, place, zero), zero, one);
     const Vec3<T> w = b.vertex[i] + b.edge[i] * t;
     nearer(nearest, w.x == w.x, w, zero, edge_feature(t, i));
   }
@@ -26,11 +26,11 @@ template <typename T>
 /// closest point.
 template <typename T>
 [[gnu::always_inline]] inline Gap<T> widest_gap(const TriangleView<T>& b, const Vec3<T>& w,
-                                                const Real<T>& length) {
-  const Real<T> zero(T(0));
-  const Real<T> one(T(1));
+                                                const Lanes<T>& length) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
   const Vec3<T> n = w * (one / length);
-  const Real<T> along = min(min(dot(b.vertex[0], n), dot(b.vertex[1], n)), dot(b.vertex[2], n));
+  const Lanes<T> along = min(min(dot(b.vertex[0], n), dot(b.vertex[1], n)), dot(b.vertex[2], n));
   Gap<T> gap{along, n};
   const Gap<T> flat = gap_along(b, b.normal * (one / sqrt(b.normal_square)), zero);
   widen(gap, has_normal(b), flat.distance, flat.normal);
@@ -38,30 +38,30 @@ template <typename T>
 }
 
 template <typename T>
-struct Solution {
+struct SphereTriangleSolution {
   ProofLanes<T> proof;
   /// In the axes of the world.
   Vec3<T> normal;
-  Real<T> radius;
-  Real<T> feature;
+  Lanes<T> radius;
+  Lanes<T> feature;
 };
 
 /// Not inlined: all levels share it, and it takes long to compile.
 template <typename T>
-[[gnu::noinline]] Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
+[[gnu::noinline]] SphereTriangleSolution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
   const Vec3<T> c = load_offset(job, block);
   const Turn<T> turn = load_turn<SideB>(job, block);
-  const Real<T> ra = load_sphere<SideA>(job, block);
+  const Lanes<T> ra = load_sphere<SideA>(job, block);
   const TriangleLanes<T> triangle = load_triangle<SideB>(job, block);
 
   const Rotation<T> axes = rotation(turn);
   const TriangleView<T> view = view_triangle(triangle, axes.to_local(c));
-  const Nearest<T> nearest = nearest_point(view);
-  const Real<T> length = sqrt(nearest.square);
+  const NearestCandidate<T> nearest = nearest_point(view);
+  const Lanes<T> length = sqrt(nearest.square);
   const Gap<T> gap = widest_gap(view, nearest.w, length);
-  const Real<T> radius = ra + triangle.rounding;
-  const Real<T> scale = taxicab(c) + largest(triangle) + radius + doubt(turn);
-  return {{gap.distance - radius, length - radius, scale, length > scale * Real<T>(kShortest<T>)},
+  const Lanes<T> radius = ra + triangle.rounding;
+  const Lanes<T> scale = taxicab(c) + largest(triangle) + radius + doubt(turn);
+  return {{gap.distance - radius, length - radius, scale, length > scale * Lanes<T>(kShortest<T>)},
           axes.to_world(gap.normal),
           ra,
           nearest.feature};
@@ -70,12 +70,12 @@ template <typename T>
 struct SphereTriangle {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
-    const Solution<T> r = solve(job, block);
+    const SphereTriangleSolution<T> r = solve(job, block);
     if constexpr (L == kBoolean) {
       return answer_proven_sign(job, block, r.proof);
     } else {
       const CertifiedLanes<T> answer = answer_proven(r.proof, r.normal);
-      const Real<T> zero(T(0));
+      const Lanes<T> zero(T(0));
       const Vec3<T> foot{zero, zero, zero};
       write_certified<L>(job, block, answer, foot, r.radius);
       if constexpr (L == kManifold) {
@@ -88,9 +88,9 @@ struct SphereTriangle {
 };
 
 }  // namespace
-}  // namespace WINNOW_ISA_NAME
+}  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_triangle_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::SphereTriangle>();
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::SphereTriangle>();
 
 }  // namespace winnow

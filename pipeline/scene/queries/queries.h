@@ -45,7 +45,7 @@ struct QueryState {
   template <typename Ask>
   [[nodiscard]] Status each_partition(Ask&& ask) const {
     for (const SceneSet& set : scene.sets) {
-      if (set.partition == nullptr) continue;
+      if (!set.partition.has_value()) continue;
       if (const Status status = ask(*set.partition); status != Status::ok) return status;
     }
     return Status::ok;

@@ -1,0 +1,262 @@
+// The automatic choice of a structure.
+
+#include "partitions/choice/chooser.h"
+#include "partitions/choice/predicted_costs.h"
+#include "partitions/choice/sample_scene.h"
+#include "partitions/structures/costs.h"
+#include "partitions/structures/structure.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace winnow {
+namespace {
+
+// A structure that is only this much cheaper, or less, is no better: the prediction is not that
+// good.
+constexpr double kWorthwhile = 0.95;
+// Frames like the first that the first choice is made for.
+constexpr double kFramesAhead = 16.0;
+// A sample is taken anew once each object has moved this often.
+constexpr std::size_t kMovesToLook = 32;
+// Refreshes that pass before memory that was refused is asked for again.
+constexpr std::size_t kPatience = 64;
+// Objects up to which brute force cannot lose by more than thinking about it costs.
+constexpr std::size_t kTooFew = 32;
+// How often a structure is counted to have been left: past that its price is out of reach.
+constexpr std::uint8_t kMostOften = 32;
+// A first change of mind to a structure that is clearly cheaper need only have saved an eighth of
+// its price: a scene that goes on like its last frames for eight times as long is the rule. Each
+// further one needs twice as much.
+constexpr std::uint64_t kTrust = 3;
+constexpr double kClearly = 0.75;
+// The share of refreshes in which cells are built that the constants of the costs hold for, and
+// about how many refreshes it is known from. It is forgotten more slowly once trees are used.
+constexpr double kUsualBuilds = 0.25;
+constexpr double kRecent = 1.0 / 16.0;
+constexpr double kForgotten = 1.0 / 128.0;
+
+bool has_cells(StructureKind kind) noexcept {
+  return kind.info()->costs->has_cells;
+}
+
+bool is_brute_force(StructureKind kind) noexcept {
+  return kind.info()->costs->square > 0;
+}
+
+bool far_apart(std::size_t a, std::size_t b) noexcept {
+  return 2 * a > 3 * b + 64 || 2 * b > 3 * a + 64;
+}
+
+/// Picks a structure for the scene it is given and goes on picking. At a refresh it may have the
+/// partition exchange its structure, which costs one build and which no caller can see but by the
+/// time taken; results in canonical order are the same.
+///
+/// What each structure would have cost is predicted in every frame from what the frame did (objects
+/// moved, pairs, rays, regions and nearest objects asked for) and from a sample of the scene (see
+/// SceneFeatures and PredictedCosts), which is taken anew only after much has moved. The first
+/// choice is the cheapest prediction. Later ones are a ski rental: another structure is taken once
+/// what it would have saved exceeds what its build costs (an eighth, a quarter and a half of that
+/// for the first three changes, where it is clearly cheaper), and each structure that was left
+/// before must save twice as much to come back, so that a scene that alternates does not. Cells
+/// that were seen to be built often, because objects are fast, count as that much dearer. All
+/// decisions follow counts and samples, never time: they are the same on every machine, instruction
+/// set and number of threads.
+///
+/// It changes only where something changed since the last refresh. A world that is built once and
+/// only asked from then on keeps its first choice; volumes other than boxes stay with the structure
+/// that it begins with.
+class AutomaticChoice final : public Chooser {
+ public:
+  [[nodiscard]] StructureKind first() const noexcept override { return linear_bvh(); }
+
+  [[nodiscard]] StructureKind choose(const Rows& rows, StructureKind now,
+                                     std::uint64_t builds) noexcept override {
+    before_ = wanted_ = now;
+    if (waiting_ != 0) {
+      --waiting_;
+    } else if (rows.size() != 0 && rows.pool().volume() == Volume::aabb) {
+      look(rows, builds);
+    }
+    return wanted_;
+  }
+  void refused() noexcept override { waiting_ = kPatience; }
+  void refreshed(const Rows& rows, StructureKind now, std::uint64_t builds) noexcept override {
+    if (now != before_) note_change();
+    if (wanted_ != before_) held_ = 0;
+    if (wanted_ != before_ || build_due_) builds_seen_ = builds;
+    changed_ = 0;
+    chosen_ = rows.size() != 0;
+  }
+  void clear() noexcept override {
+    chosen_ = false;
+    saved_ = {};
+    left_ = {};
+    pairs_ = 0;
+  }
+  void report(StructureChoice& choice) const noexcept override {
+    choice.reason = reason_;
+    choice.changes = changes_;
+    choice.features = features_;
+  }
+  [[nodiscard]] std::size_t bytes() const noexcept override { return sizeof *this; }
+  void end(std::pmr::memory_resource* memory) noexcept override { delete_in(memory, this); }
+
+ private:
+  [[nodiscard]] FrameWork take_frame(std::size_t live) noexcept;
+  void look(const Rows& rows, std::uint64_t builds) noexcept;
+  void guess(FrameWork frame) noexcept;
+  void consider(const FrameWork& frame, std::uint64_t builds) noexcept;
+  void note_builds(std::uint64_t builds) noexcept;
+  void note_change() noexcept;
+  /// With the builds of cells beyond the usual.
+  [[nodiscard]] double cost_of(const PredictedCosts& costs, std::size_t candidate) const noexcept;
+
+  StructureKind before_;  // of this refresh: what was there, and what is chosen
+  StructureKind wanted_;
+  SceneFeatures features_;
+  // By candidate: what it would have saved, not yet spent, and how often it was left.
+  PredictedCosts::List saved_{};
+  std::array<std::uint8_t, kMostCandidates> left_{};
+  double build_share_ = 0.1;       // of refreshes with cells: about how many built them
+  std::uint64_t builds_seen_ = 0;  // by the structure that is there
+  std::size_t held_ = 0;           // refreshes by it, up to a limit
+  std::string_view reason_ = "nothing to choose by yet";
+  std::uint64_t changes_ = 0;
+  std::size_t objects_seen_ = 0;  // when the sample was taken
+  std::size_t unseen_ = 0;        // changes since the last sample
+  std::size_t pairs_seen_ = 0;    // pairs when the sample was taken
+  std::size_t waiting_ = 0;       // refreshes to wait after memory was refused
+  bool chosen_ = false;
+  bool build_due_ = false;  // in the last refresh, whatever was chosen
+};
+
+std::size_t number_of(StructureKind kind) noexcept {
+  const auto all = candidates();
+  return static_cast<std::size_t>(std::ranges::find(all, kind) - all.begin());
+}
+
+FrameWork AutomaticChoice::take_frame(std::size_t live) noexcept {
+  FrameWork frame;
+  frame.changed = std::min(changed_, live);
+  frame.pair_queries = take(Question::pairs);
+  frame.full_queries = take(Question::all_pairs);
+  frame.casts = take(Question::casts);
+  frame.regions = take(Question::regions);
+  frame.nearest = take(Question::nearest);
+  return frame;
+}
+
+void AutomaticChoice::look(const Rows& rows, std::uint64_t builds) noexcept {
+  const std::size_t live = rows.size();
+  const FrameWork frame = take_frame(live);
+  unseen_ += frame.changed;
+  const std::size_t before = features_.objects;
+  if (chosen_ && live <= kTooFew && is_brute_force(before_)) {
+    features_.objects = live;
+    return;
+  }
+  const std::size_t pairs = pairs_.load(std::memory_order_relaxed);
+  if (pairs_seen_ == 0) pairs_seen_ = pairs;
+  // Where most objects came or went a build is due whatever is chosen.
+  const bool other_scene = !chosen_ || live > 2 * before || 2 * live < before;
+  if (other_scene || far_apart(live, objects_seen_) || far_apart(pairs, pairs_seen_) ||
+      unseen_ / kMovesToLook > live) {
+    features_ = sample_scene(rows.pool(), live);
+    objects_seen_ = live;
+    unseen_ = 0;
+    pairs_seen_ = 0;
+  }
+  features_.objects = live;
+  build_due_ = other_scene;
+  if (other_scene) guess(frame);
+  if (chosen_ && wanted_ == before_) consider(frame, builds);
+}
+
+// As if everything moved and all pairs were wanted, unless something else was asked for.
+void AutomaticChoice::guess(FrameWork frame) noexcept {
+  frame.changed = features_.objects;
+  if (frame.casts + frame.regions + frame.nearest == 0) frame.pair_queries = 1;
+  const PredictedCosts costs(features_, frame,
+                             features_.pairs * static_cast<double>(features_.objects));
+  const std::size_t best = costs.cheapest(kFramesAhead);
+  if (left_[best] != 0) return;
+  wanted_ = candidates()[best];
+  reason_ = is_brute_force(wanted_) ? "so few objects that no structure pays"
+                                    : "the least cost expected from a sample of the scene";
+}
+
+// Where objects are too fast for cells and strips these are built in every frame, which nothing
+// that is known of the scene tells beforehand. Trees wear slowly.
+void AutomaticChoice::note_builds(std::uint64_t builds) noexcept {
+  if (has_cells(before_)) {
+    // The first frames of a structure tell more than later ones, but one build is no habit.
+    const double weight = std::max(kRecent, 1.0 / (3.0 + static_cast<double>(held_)));
+    build_share_ += weight * ((builds != builds_seen_ ? 1.0 : 0.0) - build_share_);
+  } else {
+    build_share_ -= kForgotten * build_share_;
+  }
+  held_ += held_ < kPatience ? 1 : 0;
+  builds_seen_ = builds;
+}
+
+double AutomaticChoice::cost_of(const PredictedCosts& costs, std::size_t candidate) const noexcept {
+  const bool cells = has_cells(candidates()[candidate]);
+  const double unusual = cells ? std::max(0.0, build_share_ - kUsualBuilds) : 0.0;
+  return costs.of(candidate) + unusual * costs.build_of(candidate);
+}
+
+// What each structure would have saved is summed up until it pays for a part of the build.
+void AutomaticChoice::consider(const FrameWork& frame, std::uint64_t builds) noexcept {
+  const std::size_t pairs = pairs_.load(std::memory_order_relaxed);
+  const PredictedCosts costs(features_, frame, static_cast<double>(pairs));
+  note_builds(builds);
+  const int trust = static_cast<int>(kTrust - std::min(kTrust, changes_));
+  const std::size_t now = number_of(before_);
+  const double held = cost_of(costs, now);
+  std::size_t best = now;
+  double most = 0.0;
+  for (std::size_t k = 0; k < candidates().size(); ++k) {
+    const double cost = cost_of(costs, k);
+    const double gain = kWorthwhile * held - cost;
+    saved_[k] = k == now ? 0.0 : std::max(0.0, saved_[k] + gain);
+    const double price =
+        std::ldexp(costs.build_of(k), left_[k] - (cost < kClearly * held ? trust : 0));
+    if (saved_[k] - price <= most) continue;
+    most = saved_[k] - price;
+    best = k;
+  }
+  if (best == now) return;
+  wanted_ = candidates()[best];
+  const double by_queries = costs.queries_of(now) - costs.queries_of(best);
+  const double by_pairs = held - cost_of(costs, best) - by_queries;
+  reason_ = by_queries > by_pairs ? "cheaper for the queries that are asked"
+                                  : "cheaper for what moves and for its pairs";
+}
+
+// What has been paid for is spent.
+void AutomaticChoice::note_change() noexcept {
+  saved_ = {};
+  if (!chosen_) return;
+  ++changes_;
+  std::uint8_t& left = left_[number_of(before_)];
+  if (left < kMostOften) ++left;
+}
+
+constexpr StructureInfo kInfo{
+    .name = "AutoPartition",
+    .make = nullptr,
+    .end = nullptr,
+    .bytes = 0,
+    .make_chooser = [](std::pmr::memory_resource* memory) noexcept -> Chooser* {
+      return new_in<AutomaticChoice>(memory);
+    }};
+
+}  // namespace
+
+StructureKind automatic() noexcept {
+  return StructureKind(kInfo);
+}
+
+}  // namespace winnow

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <winnow/partitions/partition.h>
+#include <winnow/partitions/structures.h>
+#include "partitions/rows/rows.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+namespace winnow {
+
+/// Counts questions since the last look. Up to a limit, past which the line is only read, so that
+/// threads which ask at once do not wait for each other.
+class QuestionCounter {
+ public:
+  void add(std::size_t count) noexcept {
+    if (count_.load(std::memory_order_relaxed) < kMost) {
+      count_.fetch_add(count, std::memory_order_relaxed);
+    }
+  }
+  [[nodiscard]] std::size_t take() noexcept {
+    if (count_.load(std::memory_order_relaxed) == 0) return 0;
+    const std::size_t count = count_.exchange(0, std::memory_order_relaxed);
+    return count < kMost ? count : kMost;
+  }
+
+ private:
+  static constexpr std::size_t kMost = std::size_t{1} << 16U;
+  std::atomic<std::size_t> count_{0};
+};
+
+/// What was asked of a partition.
+enum class Question : std::uint8_t { pairs, all_pairs, casts, regions, nearest };
+inline constexpr std::size_t kQuestions = 5;
+
+/// What goes on choosing a partition's structure, and what it is told of the partition's work.
+class Chooser {
+ public:
+  Chooser() = default;
+  Chooser(const Chooser&) = delete;
+  Chooser& operator=(const Chooser&) = delete;
+
+  /// A structure to begin with.
+  [[nodiscard]] virtual StructureKind first() const noexcept = 0;
+  /// The structure to refresh with; it holds `now`, which has been built so often.
+  [[nodiscard]] virtual StructureKind choose(const Rows& rows, StructureKind now,
+                                             std::uint64_t builds) noexcept = 0;
+  /// Ends a refresh that succeeded, with what was chosen or, if that did not get its memory, with
+  /// what was there before.
+  virtual void refreshed(const Rows& rows, StructureKind now, std::uint64_t builds) noexcept = 0;
+  /// Memory for what was chosen was refused.
+  virtual void refused() noexcept = 0;
+  /// All objects are gone.
+  virtual void clear() noexcept = 0;
+  virtual void report(StructureChoice& choice) const noexcept = 0;
+
+  /// Its sizeof.
+  [[nodiscard]] virtual std::size_t bytes() const noexcept = 0;
+  virtual void end(std::pmr::memory_resource* memory) noexcept = 0;
+
+  void note_changes(std::size_t count) noexcept { changed_ += count; }
+  void note(Question question, std::size_t count) noexcept {
+    asked_[static_cast<std::size_t>(question)].add(count);
+  }
+  /// Of a query for all pairs that says something about the scene.
+  void note_pairs(std::size_t pairs) noexcept { pairs_.store(pairs, std::memory_order_relaxed); }
+
+ protected:
+  ~Chooser() = default;
+
+  [[nodiscard]] std::size_t take(Question question) noexcept {
+    return asked_[static_cast<std::size_t>(question)].take();
+  }
+
+  std::size_t changed_ = 0;            // objects since the last refresh
+  std::atomic<std::size_t> pairs_{0};  // in the last frame that asked for all
+
+ private:
+  QuestionCounter asked_[kQuestions];
+};
+
+}  // namespace winnow

@@ -1,0 +1,409 @@
+#include "partitions/index/spatial_index.h"
+
+#include <winnow/partitions/partition.h>
+#include "partitions/tree/environment_order.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace winnow {
+namespace {
+
+constexpr std::size_t blocks_of(std::size_t rows) noexcept {
+  return (rows + kBlockRows - 1) / kBlockRows;
+}
+
+}  // namespace
+
+SpatialIndex::SpatialIndex(std::pmr::memory_resource* memory, Rows& rows) noexcept
+    : memory_(memory),
+      rows_(rows),
+      tree_(memory),
+      regular_tree_(memory),
+      spare_(memory),
+      order_(memory),
+      items_(memory),
+      points_(memory) {}
+
+SpatialIndex::~SpatialIndex() {
+  if (structure_ != nullptr) kind_.info()->end(structure_, memory_);
+}
+
+Structure* SpatialIndex::make(StructureKind kind) noexcept {
+  return kind.info()->make({memory_, rows_, regular_tree_, kind.parameter()});
+}
+
+void SpatialIndex::install(Structure* structure, StructureKind kind) noexcept {
+  structure_ = structure;
+  kind_ = kind;
+  tree_.release();
+  regular_tree_.release();
+  release_scratch();
+  rows_.selection().release();
+  built_edge_ = 0.0F;
+  built_holes_ = 0;
+  full_base_ = moved_base_ = excess_ = 0;
+  rows_.disorder();
+}
+
+bool SpatialIndex::set_structure(StructureKind kind) noexcept {
+  Structure* const made = make(kind);
+  if (made == nullptr) return false;
+  if (structure_ != nullptr) kind_.info()->end(structure_, memory_);
+  install(made, kind);
+  return true;
+}
+
+Status SpatialIndex::refresh_as(StructureKind kind, bool& taken) {
+  taken = false;
+  Structure* const made = make(kind);
+  if (made == nullptr) return refresh();
+  Structure* const structure_before = structure_;
+  const StructureKind kind_before = kind_;
+  install(made, kind);
+  taken = refresh() == Status::ok;
+  if (taken) {
+    kind_before.info()->end(structure_before, memory_);
+    return Status::ok;
+  }
+  kind.info()->end(made, memory_);
+  install(structure_before, kind_before);
+  return refresh();
+}
+
+Status SpatialIndex::refresh() {
+  rows_.pad();
+  const Status status = needs_build() ? build() : absorb_changes();
+  queries_stale_.store(true, std::memory_order_relaxed);
+  return status;
+}
+
+std::size_t SpatialIndex::tail() const noexcept {
+  const std::size_t rows = rows_.pool().rows();
+  const std::size_t ordered = rows_.regions().ordered;
+  return rows > ordered ? rows - ordered : 0;
+}
+
+bool SpatialIndex::needs_build() const noexcept {
+  if (!rows_.regions().built) return true;
+  const std::size_t live = rows_.size();
+  const std::size_t holes = rows_.pool().rows() - live;
+  if (holes > live / 4 + built_holes_ + 64) return true;
+  if (rows_.filters().has_environments() && wants_grouping()) return true;
+  if (structure_->is_flat()) return false;
+  return tail() > tail_limit() ||
+         excess_.load(std::memory_order_relaxed) > structure_->build_price() * (live + 64);
+}
+
+// Rows of many environments are in no order that keeps them apart: in cells, new, or moved from one
+// environment to another.
+bool SpatialIndex::wants_grouping() const noexcept {
+  const RowRegions& regions = rows_.regions();
+  const std::size_t changed = rows_.filters().changed_environments();
+  if (!structure_->is_flat()) return regions.regular != 0 || changed > tail_limit();
+  return rows_.pool().rows() - regions.sorted + changed > tail_limit();
+}
+
+// The rows are untouched until everything that can fail is done; the structure may be half planned.
+Status SpatialIndex::build() {
+  if (structure_->is_flat()) return build_flat();
+  RowRegions& regions = rows_.regions();
+  regions.built = false;
+  if (!plan_order()) return Status::out_of_memory;
+  const std::size_t regular = order_.size();
+  // The tree's blocks begin behind the regular ones: no block belongs to both.
+  while (order_.size() % kBlockRows != 0) (void)order_.push_back(kNoObject);
+  const std::size_t first_block = order_.size() / kBlockRows;
+  if (!order_rest()) return Status::out_of_memory;
+  const std::size_t rows = order_.size();
+  const bool prunes = structure_->prunes_rows();
+  const std::size_t spare = prunes ? 2 * tail_limit() : 0;
+  if (!rows_.reserve_rows(rows + spare) ||
+      !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows) ||
+      !tree_.cover(first_block, blocks_of(rows) - first_block, node_content()) ||
+      (prunes && !regular_tree_.cover(0, blocks_of(regular), node_content()))) {
+    return Status::out_of_memory;
+  }
+
+  rows_.reorder({order_.data(), rows}, spare_);
+  regions = {.built = false, .regular = regular, .ordered = rows, .sorted = rows};
+  built_holes_ = rows - rows_.size();
+  structure_->finish_build();
+  const Execution execution = rows_.execution_for(rows);
+  tree_.refit_all(rows_.view(), execution);
+  built_edge_ = tree_.typical_edge();
+  if (prunes) regular_tree_.refit_all(rows_.view(), execution);
+  regions.built = true;
+  ++builds_;
+  rows_.note_build();
+  full_base_ = moved_base_ = excess_ = 0;
+  return Status::ok;
+}
+
+// Leaves the regular rows in order_ and all others in the selection.
+bool SpatialIndex::plan_order() {
+  const std::size_t spare = structure_->prunes_rows() ? 2 * tail_limit() : 0;
+  const std::size_t room = rows_.pool().rows() + spare + 4 * kBlockRows;
+  RowSelection& rest = rows_.selection();
+  order_.clear();
+  if (!order_.grow(room) || !rest.start(room)) return false;
+  const RowPlan plan{order_, rest.list, items_};
+  // Cells of many worlds would lie on top of each other, and a cell's objects be tested against
+  // those of all of them: the tree, whose nodes know their environments, keeps them apart.
+  if (!rows_.filters().has_environments()) return structure_->plan(plan);
+  structure_->leave_all(plan);
+  return true;
+}
+
+bool SpatialIndex::order_rest() {
+  const std::span<std::uint32_t> rest = rows_.selection().entries();
+  const bool environments = rows_.filters().has_environments();
+  if (!environments) {
+    const Structure::Ordered ordered = structure_->order_rest(rest, order_);
+    if (ordered != Structure::Ordered::none) return ordered == Structure::Ordered::done;
+  }
+  if (!sort_by_place(rest, rows_.execution_for(rest.size()))) return false;
+  if (environments) return append_environments(rows_.pool(), rows_.filters().data(), rest, order_);
+  if (!order_.resize(order_.size() + rest.size())) return false;
+  std::copy(rest.begin(), rest.end(), order_.end() - rest.size());
+  return true;
+}
+
+Status SpatialIndex::build_flat() {
+  rows_.compact();
+  rows_.pad();
+  RowRegions& regions = rows_.regions();
+  const std::size_t rows = rows_.pool().rows();
+  regions.regular = rows;
+  regions.sorted = 0;
+  if (rows_.filters().has_environments()) {
+    if (!order_.resize(rows) || !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows)) {
+      return Status::out_of_memory;
+    }
+    std::iota(order_.begin(), order_.end(), 0U);
+    if (!sort_by_environment(rows_.pool(), rows_.filters().data(), {order_.data(), rows}, items_,
+                             rows_.execution_for(rows))) {
+      return Status::out_of_memory;
+    }
+    rows_.reorder({order_.data(), rows}, spare_);
+    regions.sorted = rows;
+  }
+  tail_changed_ = true;
+  if (!refit_trees()) return Status::out_of_memory;
+  regions.built = true;
+  ++builds_;
+  rows_.note_build();
+  return Status::ok;
+}
+
+bool SpatialIndex::sort_by_place(std::span<std::uint32_t> rows, const Execution& execution) {
+  return rows_.filters().has_environments()
+             ? sort_by_environment_and_place(rows_.pool(), rows_.filters().data(), rows, items_,
+                                             points_, execution)
+             : sort_by_kd_cuts(rows_.pool(), rows, points_, execution);
+}
+
+Status SpatialIndex::absorb_changes() {
+  ++refits_;
+  if (structure_->is_flat()) {
+    rows_.regions().regular = rows_.pool().rows();
+    return refit_trees() ? Status::ok : Status::out_of_memory;
+  }
+  const std::size_t limit = tail_limit();
+  RowSelection& misfits = rows_.selection();
+  if (!misfits.start(limit + 1)) return Status::out_of_memory;
+  collect_misfits(limit + 1);
+  if (tail() + misfits.list.size() > limit) return build();
+  if (!move_to_tail(misfits.entries()) || !sort_tail() || !refit_trees()) {
+    return Status::out_of_memory;
+  }
+  return is_torn() ? build() : Status::ok;
+}
+
+// Where everything jumped, one query of a tree in the old order would cost many builds: leaves tell
+// before it is asked. Slow wear is left to the count of tests.
+bool SpatialIndex::is_torn() const noexcept {
+  constexpr float kTorn = 2.0F;
+  // Cells and strips find what left them; beside them the tree holds what is of many kinds.
+  if (rows_.regions().regular != 0 || !rows_.stale().all()) return false;
+  return built_edge_ > 0.0F && tree_.typical_edge() > kTorn * built_edge_;
+}
+
+void SpatialIndex::collect_misfits(std::size_t limit) noexcept {
+  const std::size_t regular = rows_.regions().regular;
+  if (regular == 0) return;
+  Column<std::uint32_t>& misfits = rows_.selection().list;
+  if (rows_.stale().all()) {
+    structure_->find_misfits(misfits, limit);
+    return;
+  }
+  for (const ObjectId id : rows_.stale().ids()) {
+    if (!rows_.keys().is_live(id) || misfits.size() == limit) continue;
+    const std::uint32_t row = rows_.keys().row_of(id);
+    if (row < regular && !structure_->fits(row)) (void)misfits.push_back(row);
+  }
+}
+
+bool SpatialIndex::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
+  if (rows.empty()) return true;
+  if (!rows_.reserve_rows(rows_.pool().rows() + rows.size() + tail_limit())) return false;
+  rows_.move_to_end(rows);
+  return true;
+}
+
+bool SpatialIndex::sort_tail() noexcept {
+  RowRegions& regions = rows_.regions();
+  const BoundsPool& pool = rows_.pool();
+  if (pool.rows() < regions.sorted + kBlockRows) return true;
+  const std::size_t begin = regions.ordered;
+  RowSelection& live = rows_.selection();
+  if (!live.start(pool.rows() - begin)) return false;
+  for (std::size_t row = begin; row < pool.rows(); ++row) {
+    if (pool.ids()[row] != kNoObject) live.add(row);
+  }
+  if (!sort_by_place(live.entries(), Execution::serial()) ||
+      !spare_.grow(live.list.size() + 2 * kBlockRows)) {
+    return false;
+  }
+  rows_.reorder_tail(begin, live.entries(), spare_);
+  regions.sorted = pool.rows();
+  tail_changed_ = true;
+  return true;
+}
+
+BlockTree::Nodes SpatialIndex::node_content() const noexcept {
+  return rows_.filters().in_use() ? BlockTree::Nodes::boxes_filters : BlockTree::Nodes::boxes;
+}
+
+bool SpatialIndex::refit_trees() noexcept {
+  const std::size_t blocks = rows_.pool().blocks();
+  if (structure_->is_flat()) {
+    return rows_.filters().in_use() ? refit(regular_tree_, 0, blocks, BlockTree::Nodes::filters)
+                                    : regular_tree_.cover(0, 0);
+  }
+  const std::size_t first = blocks_of(rows_.regions().regular);
+  return refit(tree_, first, blocks - first, node_content()) &&
+         (!structure_->prunes_rows() || refit(regular_tree_, 0, first, node_content()));
+}
+
+bool SpatialIndex::refit(BlockTree& tree, std::size_t first, std::size_t blocks,
+                         BlockTree::Nodes nodes) noexcept {
+  const RowView rows = rows_.view();
+  const bool reshape =
+      blocks != tree.blocks() || tree.has_filters() != (rows_.filters().in_use() && blocks != 0);
+  const bool of_tail = &tree == &tree_ || structure_->is_flat();
+  const bool tail_changed = tail_changed_ && of_tail;
+  if (reshape || tail_changed || rows_.stale().all()) {
+    if (reshape && !tree.cover(first, blocks, nodes)) {
+      rows_.regions().built = false;
+      return false;
+    }
+    tree.refit_all(rows, rows_.execution_for(rows_.pool().rows()));
+    if (tail_changed) tail_changed_ = false;
+    return true;
+  }
+  RowSelection& leaves = rows_.selection();
+  if (!leaves.start(rows_.stale().ids().size()) || !leaves.reserve_bits(blocks)) return false;
+  for (const ObjectId id : rows_.stale().ids()) {
+    if (!rows_.keys().is_live(id)) continue;
+    const std::size_t block = rows_.keys().row_of(id) / kBlockRows;
+    if (block >= first && block - first < blocks) leaves.add(block - first);
+  }
+  leaves.sort(blocks);
+  tree.refit(rows, leaves.entries());
+  return true;
+}
+
+Status SpatialIndex::refresh_queries() const {
+  const std::size_t regular = rows_.regions().regular;
+  const bool own_tree = !structure_->is_flat() && !structure_->prunes_rows();
+  if (regular != 0 && own_tree) {
+    const std::size_t blocks = blocks_of(regular);
+    const bool reshape =
+        regular_tree_.blocks() != blocks || regular_tree_.has_filters() != rows_.filters().in_use();
+    if (reshape && !regular_tree_.cover(0, blocks, node_content())) return Status::out_of_memory;
+    regular_tree_.refit_all(rows_.view(), rows_.execution_for(regular));
+  }
+  const bool mostly_regular = 2 * regular > rows_.pool().rows();
+  leaf_edge_ = (mostly_regular ? regular_tree_ : tree_).typical_edge();
+  queries_stale_.store(false, std::memory_order_release);
+  return Status::ok;
+}
+
+void SpatialIndex::view(QueryView& view) const noexcept {
+  const RowView rows = rows_.view();
+  std::copy_n(rows.column, 6, view.column);
+  view.id = rows.id;
+  view.filter = rows.filter;
+  if (structure_->is_flat()) {
+    view.flat_blocks = static_cast<std::uint32_t>(rows_.pool().blocks());
+    return;
+  }
+  if (rows_.regions().regular != 0) view.tree[view.trees++] = &regular_tree_.shape();
+  if (tree_.blocks() != 0) view.tree[view.trees++] = &tree_.shape();
+  view.leaf_edge = leaf_edge_;
+}
+
+bool SpatialIndex::query(const QueryBatch& batch, PairSink& sink) const noexcept {
+  if (rows_.regions().regular != 0 && !structure_->query(batch, sink)) return false;
+  if (structure_->is_flat() || tree_.blocks() == 0) return true;
+  return block_tree_kernels().query(tree_.view(rows_.view()), batch, sink);
+}
+
+void SpatialIndex::note_work(std::uint64_t tests, std::uint64_t queries,
+                             Asked asked) const noexcept {
+  // The first query after a build sets what a query costs on a fresh structure.
+  std::atomic<std::uint64_t>& base = asked == Asked::all ? full_base_ : moved_base_;
+  const std::uint64_t each = tests / queries + 1;
+  std::uint64_t expected = 0;
+  if (base.compare_exchange_strong(expected, each, std::memory_order_relaxed)) return;
+  if (each > expected) {
+    excess_.fetch_add((each - expected) * queries, std::memory_order_relaxed);
+  }
+}
+
+void SpatialIndex::add_statistics(Statistics& s) const noexcept {
+  const RowRegions& regions = rows_.regions();
+  const std::size_t rows = rows_.pool().rows();
+  const std::size_t regular_end =
+      regions.regular == 0 ? regions.ordered : tree_.first_block() * kBlockRows;
+  const std::size_t behind = rows > regular_end ? rows - regular_end : 0;
+  s.objects = rows_.size();
+  s.irregular = structure_->is_flat() ? 0 : std::min(rows_.size(), behind);
+  s.regular = rows_.size() - s.irregular;
+  s.cells = regions.regular == 0 ? tree_.blocks() : structure_->cells();
+  s.depth = tree_.levels();
+  s.levels = structure_->levels();
+  s.builds = builds_;
+  s.refits = refits_;
+}
+
+void SpatialIndex::add_bytes(Footprint& footprint) const noexcept {
+  const std::size_t own = kind_.info()->bytes;
+  footprint.structure += {own, own};
+  footprint.structure += tree_.bytes();
+  footprint.structure += regular_tree_.bytes();
+  footprint.scratch += spare_.bytes();
+  footprint.scratch += order_.bytes();
+  footprint.scratch += items_.bytes();
+  footprint.scratch += points_.bytes();
+  structure_->add_bytes(footprint);
+}
+
+void SpatialIndex::release_scratch() noexcept {
+  spare_.release();
+  order_.release();
+  items_.release();
+  points_.release();
+}
+
+void SpatialIndex::release_memory() noexcept {
+  release_scratch();
+  structure_->release_scratch();
+  if (rows_.size() != 0) return;
+  tree_.release();
+  regular_tree_.release();
+  structure_->release_memory();
+}
+
+}  // namespace winnow

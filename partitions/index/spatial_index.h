@@ -1,0 +1,147 @@
+#pragma once
+
+#include <winnow/core/debug_draw.h>
+#include <winnow/partitions/structures.h>
+#include "partitions/index/query_view.h"
+#include "partitions/rows/rows.h"
+#include "partitions/structures/structure.h"
+#include "partitions/tree/block_tree.h"
+#include "partitions/tree/kd_order.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+struct Statistics;
+
+/// How rows are found: a structure over the regular rows, a block tree over all others, and what
+/// keeps both right while rows change.
+///
+/// Behind the regular rows every row is a leaf of a block tree: objects that do not suit the
+/// structure (oversize, unbounded, in overfull cells), objects inserted since the last build, and
+/// objects that moved out of where the build put them. So no input can make a structure degenerate:
+/// what does not fit it is pruned by the tree.
+///
+/// Queries other than pairs go through blocks of rows, whatever region these lie in: cells and
+/// strips are runs of rows, so a second block tree over the regular rows leads to them. It is made
+/// when such a query first comes, and refitted after changes; a scene that never asks does not pay
+/// for it.
+///
+/// Filters are looked up where a test hits. Nodes know what the filters below them have between
+/// them, so that subtrees which a filter cannot meet are not entered; the blocks of flat structures
+/// have such nodes, without boxes, for that alone. Where more than one environment is in use a
+/// build puts each one's rows together: worlds at the same place cost no more than their sum.
+///
+/// A build permutes the rows themselves, so the pool is the sorted copy. It happens when the share
+/// of new rows, moved rows or holes passes a limit, or when the extra tests that a worn structure
+/// has cost since the last build exceed the price of a build: at most twice the cost of the best
+/// schedule known in hindsight (the ski-rental bound; Karlin et al., Algorithmica 3, 1988). The
+/// decision counts tests, never time, so every machine takes it at the same frame.
+class SpatialIndex {
+ public:
+  SpatialIndex(std::pmr::memory_resource* memory, Rows& rows) noexcept;
+  ~SpatialIndex();
+  SpatialIndex(const SpatialIndex&) = delete;
+  SpatialIndex& operator=(const SpatialIndex&) = delete;
+
+  /// Exchanges the structure; the next refresh orders the rows. False, and nothing changed, if
+  /// memory is refused.
+  [[nodiscard]] bool set_structure(StructureKind kind) noexcept;
+  [[nodiscard]] StructureKind kind() const noexcept { return kind_; }
+  [[nodiscard]] const Structure& structure() const noexcept { return *structure_; }
+
+  /// Brings everything up to date that pair queries read. What fails is tried again by the next
+  /// refresh.
+  Status refresh();
+  /// The same with another structure; where that does not get the memory it needs, with the one
+  /// that is there. `taken` says which.
+  Status refresh_as(StructureKind kind, bool& taken);
+
+  /// True if `refresh_queries` has to be called, by one thread, before queries other than pairs.
+  [[nodiscard]] bool queries_stale() const noexcept {
+    return queries_stale_.load(std::memory_order_acquire) && !structure_->is_flat();
+  }
+  Status refresh_queries() const;
+  /// How queries other than pairs see the rows.
+  void view(QueryView& view) const noexcept;
+
+  /// Over the rows behind the regular ones.
+  [[nodiscard]] const BlockTree& tree() const noexcept { return tree_; }
+  /// All hits of a batch.
+  bool query(const QueryBatch& batch, PairSink& sink) const noexcept;
+
+  /// What answering so many pair queries has cost, in tests of 16 volumes. Of objects that asked
+  /// for all their pairs, or of those that asked because they moved.
+  enum class Asked : std::uint8_t { all, moved };
+  void note_work(std::uint64_t tests, std::uint64_t queries, Asked asked) const noexcept;
+
+  /// The structure and, as far as levels from the root down, the tree.
+  void draw(DebugDraw& draw, std::size_t max_depth) const;
+  void draw_objects(DebugDraw& draw, const DebugDrawOptions& options) const;
+  [[nodiscard]] std::uint64_t builds() const noexcept { return builds_; }
+  void add_statistics(Statistics& statistics) const noexcept;
+  void add_bytes(Footprint& footprint) const noexcept;
+  /// Gives back scratch and, where there are no objects, everything.
+  void release_memory() noexcept;
+
+ private:
+  [[nodiscard]] Structure* make(StructureKind kind) noexcept;
+  void install(Structure* structure, StructureKind kind) noexcept;
+  [[nodiscard]] bool needs_build() const noexcept;
+  /// Rows that may stand behind the built ones before a build is due.
+  [[nodiscard]] std::size_t tail_limit() const noexcept { return rows_.size() / 16 + 64; }
+  [[nodiscard]] std::size_t tail() const noexcept;
+  [[nodiscard]] bool wants_grouping() const noexcept;
+  Status build();
+  [[nodiscard]] bool plan_order();
+  [[nodiscard]] bool order_rest();
+  Status build_flat();
+  bool sort_by_place(std::span<std::uint32_t> rows, const Execution& execution);
+  Status absorb_changes();
+  [[nodiscard]] bool is_torn() const noexcept;
+  void collect_misfits(std::size_t limit) noexcept;
+  bool move_to_tail(std::span<const std::uint32_t> rows) noexcept;
+  bool sort_tail() noexcept;
+  bool refit_trees() noexcept;
+  bool refit(BlockTree& tree, std::size_t first, std::size_t blocks,
+             BlockTree::Nodes nodes) noexcept;
+  [[nodiscard]] BlockTree::Nodes node_content() const noexcept;
+  void release_scratch() noexcept;
+
+  std::pmr::memory_resource* memory_;
+  Rows& rows_;
+  StructureKind kind_;
+  Structure* structure_ = nullptr;
+  BlockTree tree_;
+
+  // Unless the structure prunes rows or is flat it serves all queries but pairs, and is made when
+  // the first one comes.
+  mutable BlockTree regular_tree_;
+  mutable float leaf_edge_ = 0.0F;  // of a typical block
+  mutable std::atomic<bool> queries_stale_{true};
+
+  float built_edge_ = 0.0F;      // of a typical leaf of the tree, as the build left it
+  std::size_t built_holes_ = 0;  // padding that the build left between the regions
+  bool tail_changed_ = false;
+
+  // While building.
+  Column<float> spare_;          // what columns are permuted through
+  Column<std::uint32_t> order_;  // old row of each new row
+  Column<std::uint64_t> items_;  // what is sorted by an integer
+  Column<KdPoint> points_;       // what is sorted by place
+
+  // Wear, in tests of 16 volumes: what a query costs on a fresh structure, and what those since
+  // have cost beyond that.
+  mutable std::atomic<std::uint64_t> full_base_{0};
+  mutable std::atomic<std::uint64_t> moved_base_{0};
+  mutable std::atomic<std::uint64_t> excess_{0};
+
+  std::uint64_t builds_ = 0;
+  std::uint64_t refits_ = 0;
+};
+
+}  // namespace winnow

@@ -1,0 +1,258 @@
+// All pairs of a partition, anew or by what moved, and those between two.
+
+#include "partitions/pairs/event_writer.h"
+#include "partitions/pairs/pair_tracker.h"
+#include "partitions/pairs/pair_writer.h"
+#include "partitions/state/partition_state.h"
+
+#include <algorithm>
+
+namespace winnow {
+namespace {
+
+constexpr std::size_t kQueriesPerTask = 64;
+constexpr std::size_t kTreeTasks = 64;
+
+constexpr std::size_t ceil_divide(std::size_t a, std::size_t b) {
+  return (a + b - 1) / b;
+}
+
+/// Rows [begin, end) of a partition asking about volumes of their own kind.
+QueryBatch volume_batch(const Rows& rows, std::size_t begin, std::size_t end) noexcept {
+  const RowView view = rows.view();
+  QueryBatch batch;
+  std::copy_n(view.column, kMaxColumns, batch.column);
+  batch.is_box = rows.pool().volume() == Volume::aabb;
+  batch.id = view.id;
+  batch.filter = view.filter;
+  batch.begin = static_cast<std::uint32_t>(begin);
+  batch.end = static_cast<std::uint32_t>(end);
+  return batch;
+}
+
+}  // namespace
+
+/// How the tasks of a full pair query are numbered: the regular region's own, then the tree's, then
+/// the tree's rows against the regular region.
+struct PartitionState::SelfTasks {
+  std::size_t regular = 0;
+  std::size_t tree = 0;
+  std::size_t cross = 0;
+  std::size_t groups_per_task = 1;
+  std::size_t first_tree_row = 0;
+
+  explicit SelfTasks(const PartitionState& p) noexcept
+      : regular(p.index.structure().pair_tasks()),
+        groups_per_task(std::max<std::size_t>(1, p.index.tree().groups() / kTreeTasks)),
+        first_tree_row(p.index.tree().first_block() * kBlockRows) {
+    if (p.index.structure().is_flat() || p.index.tree().blocks() == 0) return;
+    tree = ceil_divide(p.index.tree().groups(), groups_per_task);
+    if (p.rows.regions().regular != 0) {
+      cross = ceil_divide(p.rows.pool().rows() - first_tree_row, kQueriesPerTask);
+    }
+  }
+  [[nodiscard]] std::size_t count() const noexcept { return regular + tree + cross; }
+};
+
+Status Partition::self_pairs(PairBuffer& out, const PairOptions& options) const {
+  if (state_ != nullptr) return state_->find_self_pairs(out, options, nullptr);
+  out.clear();
+  return status_;
+}
+
+Status Partition::self_pairs(PairBuffer& out, PairEvents& events,
+                             const PairOptions& options) const {
+  if (state_ != nullptr) return state_->find_self_pairs(out, options, &events);
+  out.clear();
+  events.clear();
+  return status_;
+}
+
+Status PartitionState::find_self_pairs(PairBuffer& out, const PairOptions& options,
+                                       PairEvents* events) const {
+  const bool all = !options.incremental || out.empty();
+  if (const Status status = refresh(); status != Status::ok) {
+    out.clear();
+    if (events != nullptr) events->clear();
+    return status;
+  }
+  note(Question::pairs, 1);
+  Status status;
+  if (events == nullptr) {
+    status = track_self_pairs(out, options, nullptr);
+  } else {
+    EventWriter writer(*events, rows.keys(), out, pairs_.identity, rows.execution());
+    status = track_self_pairs(out, options, &writer);
+    if (status != Status::ok) writer.fail();
+  }
+  if (status != Status::ok || chooser_ == nullptr) return status;
+  if (all) note(Question::all_pairs, 1);
+  // What a predicate leaves says nothing about the scene.
+  if (options.predicate.accept == nullptr) chooser_->note_pairs(out.size());
+  return Status::ok;
+}
+
+Status PartitionState::track_self_pairs(PairBuffer& out, const PairOptions& options,
+                                        EventWriter* events) const {
+  // One buffer at a time is tracked; a query that runs beside a tracked one does without.
+  const std::unique_lock lock(tracker_mutex_, std::try_to_lock);
+  const bool tracked = lock.owns_lock() && options.incremental;
+  const bool update = tracked && can_update(out);
+  Status status = update ? incremental_self_pairs(out, options.predicate, events)
+                         : full_self_pairs(out, options.predicate, events);
+  if (status == Status::ok && !finish_pairs(out, options.order, !update, events)) {
+    status = Status::out_of_memory;
+  }
+  if (status != Status::ok) {
+    out.clear();
+    return status;
+  }
+  pairs_.last_pairs.store(out.size(), std::memory_order_relaxed);
+  if (!tracked && events == nullptr) return Status::ok;
+  // Untracked, the serial still tells the events whose frame the buffer holds.
+  const PairBuffer::Provenance provenance{pairs_.identity, ++pairs_.last_serial};
+  PairTracker::set_provenance(out, provenance);
+  if (events != nullptr) events->set_provenance(provenance);
+  if (tracked) {
+    rows.forget_moves();
+    pairs_.tracked_serial = provenance.serial;
+  }
+  return Status::ok;
+}
+
+bool PartitionState::finish_pairs(PairBuffer& out, Order order, bool all,
+                                  EventWriter* events) const noexcept {
+  std::size_t unsorted = out.size();
+  if (events != nullptr) {
+    const auto moved = all ? std::span<const ObjectId>() : rows.moved().ids();
+    if (!events->compare(out, moved, all)) return false;
+    unsorted = events->persisting();
+  }
+  return order == Order::fast || PairTracker::sort(out, rows.keys().slot_count(), unsorted);
+}
+
+bool PartitionState::can_update(const PairBuffer& out) const noexcept {
+  return pairs_.tracked_serial != 0 && !rows.moved().all() &&
+         PairTracker::provenance(out) ==
+             PairBuffer::Provenance{pairs_.identity, pairs_.tracked_serial};
+}
+
+Status PartitionState::full_self_pairs(PairBuffer& out, const PairPredicate& predicate,
+                                       EventWriter* events) const {
+  if (events != nullptr && !events->hold_all(out)) return Status::out_of_memory;
+  out.clear();
+  const SelfTasks tasks(*this);
+  const Execution execution = rows.execution_for(rows.pool().rows());
+  PairWriter writer(out, execution, predicate);
+  const Status status = writer.append(tasks.count(), [&](std::size_t task, PairSink& sink) {
+    return run_self_task(tasks, task, sink);
+  });
+  if (status != Status::ok) return status;
+  pairs_.full_queries.fetch_add(1, std::memory_order_relaxed);
+  note_work(writer.tests(), 1, SpatialIndex::Asked::all);
+  return Status::ok;
+}
+
+bool PartitionState::run_self_task(const SelfTasks& tasks, std::size_t task,
+                                   PairSink& sink) const noexcept {
+  if (task < tasks.regular) return index.structure().run_pair_task(task, sink);
+  task -= tasks.regular;
+  if (task < tasks.tree) {
+    const BlockTree& tree = index.tree();
+    const std::size_t begin = task * tasks.groups_per_task;
+    const std::size_t end = std::min(tree.groups(), begin + tasks.groups_per_task);
+    return block_tree_kernels().self_pairs(tree.view(rows.view()),
+                                           static_cast<std::uint32_t>(begin),
+                                           static_cast<std::uint32_t>(end), sink);
+  }
+  task -= tasks.tree;
+  const std::size_t begin = tasks.first_tree_row + task * kQueriesPerTask;
+  const std::size_t end = std::min(rows.pool().rows(), begin + kQueriesPerTask);
+  return index.structure().query(volume_batch(rows, begin, end), sink);
+}
+
+Status PartitionState::incremental_self_pairs(PairBuffer& out, const PairPredicate& predicate,
+                                              EventWriter* events) const {
+  pairs_.incremental_queries.fetch_add(1, std::memory_order_relaxed);
+  const std::span<const ObjectId> moved = rows.moved().ids();
+  if (moved.empty()) {
+    if (events != nullptr) events->hold_none(out);
+    pairs_.last_tests.store(0, std::memory_order_relaxed);
+    return Status::ok;
+  }
+  RowSelection& asking = rows.selection();
+  if (!asking.start(moved.size()) || !asking.reserve_bits(rows.pool().rows())) {
+    return Status::out_of_memory;
+  }
+  for (const ObjectId id : moved) {
+    if (rows.keys().is_live(id)) asking.add(rows.keys().row_of(id));
+  }
+  // Neighbours in the pool are neighbours in space: in row order queries share cache lines.
+  asking.sort(rows.pool().rows());
+  if (events == nullptr) {
+    PairTracker::drop(out, rows.moved().bits());
+  } else if (!events->hold_moved(out, rows.moved().bits())) {
+    return Status::out_of_memory;
+  }
+  const std::size_t count = asking.list.size();
+  const Execution execution = rows.execution_for(count);
+  PairWriter writer(out, execution, predicate);
+  const std::size_t tasks = ceil_divide(count, kQueriesPerTask);
+  const Status status = writer.append(tasks, [&](std::size_t task, PairSink& sink) {
+    const std::size_t begin = task * kQueriesPerTask;
+    QueryBatch batch = volume_batch(rows, begin, std::min(count, begin + kQueriesPerTask));
+    batch.rows = asking.list.data();
+    batch.mode = HitMode::moved;
+    batch.moved = asking.bits.data();
+    return index.query(batch, sink);
+  });
+  if (status != Status::ok) return status;
+  note_work(writer.tests(), std::max<std::size_t>(1, count), SpatialIndex::Asked::moved);
+  return Status::ok;
+}
+
+void PartitionState::note_work(std::uint64_t tests, std::uint64_t queries,
+                               SpatialIndex::Asked asked) const noexcept {
+  pairs_.last_tests.store(tests, std::memory_order_relaxed);
+  index.note_work(tests, queries, asked);
+}
+
+Status Partition::pairs_with(const Partition& other, PairBuffer& out,
+                             const PairOptions& options) const {
+  out.clear();
+  if (const Status status = refresh(); status != Status::ok) return status;
+  if (const Status status = other.refresh(); status != Status::ok) return status;
+  const PartitionState& mine = *state_;
+  const PartitionState& theirs = *other.state_;
+  // The smaller side asks: each question costs about the logarithm of the side that is asked.
+  const Status status = size() <= other.size()
+                            ? mine.ask(theirs, HitMode::query_first, options.predicate, out)
+                            : theirs.ask(mine, HitMode::query_second, options.predicate, out);
+  const std::size_t slots =
+      std::max(mine.rows.keys().slot_count(), theirs.rows.keys().slot_count());
+  if (status == Status::ok && (options.order == Order::fast || PairTracker::sort(out, slots))) {
+    return Status::ok;
+  }
+  out.clear();
+  return Status::out_of_memory;
+}
+
+Status PartitionState::ask(const PartitionState& other, HitMode mode,
+                           const PairPredicate& predicate, PairBuffer& out) const {
+  const Execution execution = rows.execution_for(rows.pool().rows());
+  PairWriter writer(out, execution, predicate);
+  const std::size_t tasks = ceil_divide(rows.pool().rows(), kQueriesPerTask);
+  return writer.append(tasks, [&](std::size_t task, PairSink& sink) {
+    const std::size_t begin = task * kQueriesPerTask;
+    QueryBatch batch;
+    std::copy_n(rows.view().column, 6, batch.column);
+    batch.filter = rows.filters().data();
+    batch.id = rows.pool().ids();
+    batch.begin = static_cast<std::uint32_t>(begin);
+    batch.end = static_cast<std::uint32_t>(std::min(rows.pool().rows(), begin + kQueriesPerTask));
+    batch.mode = mode;
+    return other.index.query(batch, sink);
+  });
+}
+
+}  // namespace winnow

@@ -1,0 +1,143 @@
+#pragma once
+
+#include <winnow/core/box_view.h>
+#include <winnow/core/execution.h>
+#include <winnow/core/footprint.h>
+#include <winnow/core/margin.h>
+#include <winnow/core/status.h>
+#include "core/memory/bounds_pool.h"
+#include "core/memory/key_table.h"
+#include "partitions/rows/change_list.h"
+#include "partitions/rows/filter_table.h"
+#include "partitions/rows/row_selection.h"
+#include "partitions/rows/row_view.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+/// The box of one row, with what is stored for an infinite end given back as infinite. A hole gives
+/// an empty box.
+[[nodiscard]] Aabb stored_box(const float* const columns[6], std::size_t row) noexcept;
+
+/// How the rows of a partition lie. The *regular* ones are ordered by the structure: cells, strips,
+/// or plain rows. Behind them, from the next whole block on, every row is a leaf of a block tree:
+/// first what a build put there, then the *tail* of objects that are new, or moved out of where the
+/// build had put them.
+struct RowRegions {
+  bool built = false;       ///< false: the next refresh has to order the rows
+  std::size_t regular = 0;  ///< rows [0, regular) are the structure's
+  std::size_t ordered = 0;  ///< rows from here on are the tail
+  std::size_t sorted = 0;   ///< tail rows below this are in spatial order
+};
+
+/// The objects of a partition: keys, client data, filters, and bounding volumes in rows; and what
+/// changed since when. It knows nothing of how rows are pruned but how they lie.
+class Rows {
+ public:
+  Rows(std::pmr::memory_resource* memory, const Execution& execution, Volume volume,
+       const Margin& margin) noexcept;
+
+  Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
+  Status update(std::span<const Key> keys, const BoxView& boxes);
+  Status update(Key key, const Aabb& box);
+  /// The same from any source of volumes; see row_writer.h.
+  template <typename Source>
+  Status insert_from(const Source& source, std::size_t count, std::span<const ClientData> data,
+                     std::span<Key> keys);
+  template <typename Source>
+  Status update_from(const Source& source, std::size_t count, std::span<const Key> keys);
+
+  Status remove(Key key);
+  Status remove(std::span<const Key> keys);
+  void clear() noexcept;
+  Status reserve(std::size_t objects);
+  /// Gives back what nobody's objects need; everything if there are none.
+  void release_memory() noexcept;
+
+  Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
+  Status bounds(Key key, Aabb& box) const noexcept;
+
+  [[nodiscard]] std::size_t size() const noexcept { return keys_.size(); }
+  [[nodiscard]] const BoundsPool& pool() const noexcept { return pool_; }
+  [[nodiscard]] const KeyTable& keys() const noexcept { return keys_; }
+  [[nodiscard]] const FilterTable& filters() const noexcept { return filters_; }
+  [[nodiscard]] const Execution& execution() const noexcept { return execution_; }
+  [[nodiscard]] const Margin& margin() const noexcept { return margin_; }
+  [[nodiscard]] const RowRegions& regions() const noexcept { return regions_; }
+  /// What kernels see of the rows.
+  [[nodiscard]] RowView view() const noexcept;
+  /// How work on so many objects is best run.
+  [[nodiscard]] Execution execution_for(std::size_t objects) const noexcept;
+  void add_bytes(Footprint& footprint) const noexcept;
+
+  // For who brings the rows in order.
+
+  /// True from a change on until `settle`.
+  [[nodiscard]] bool changed() const noexcept { return changed_; }
+  /// Objects that changed since the last `settle`.
+  [[nodiscard]] const ChangeList& stale() const noexcept { return stale_; }
+  /// Ends a refresh: nothing is stale any more. Objects that were have moved, if anybody tracks
+  /// moves.
+  void settle(bool track_moves) noexcept;
+  /// Objects that changed since `forget_moves`, as far as they were tracked.
+  [[nodiscard]] const ChangeList& moved() const noexcept { return moved_; }
+  void forget_moves() const noexcept { moved_.clear(); }
+
+  [[nodiscard]] RowRegions& regions() noexcept { return regions_; }
+  /// The next refresh has to order the rows.
+  void disorder() noexcept;
+  void pad() noexcept { pool_.pad(); }
+  [[nodiscard]] bool reserve_rows(std::size_t rows) noexcept { return pool_.reserve_exact(rows); }
+  /// Closes all holes; the rows are in no order then.
+  void compact() noexcept;
+  /// Row i becomes what row order[i] is. `spare` must have room for the pool's capacity and two
+  /// blocks more.
+  void reorder(std::span<const std::uint32_t> order, Column<float>& spare) noexcept;
+  /// The same for the rows from `begin` on alone, on the calling thread.
+  void reorder_tail(std::size_t begin, std::span<const std::uint32_t> order,
+                    Column<float>& spare) noexcept;
+  /// Puts rows behind the last one, and leaves holes. Room was made.
+  void move_to_end(std::span<const std::uint32_t> rows) noexcept;
+  void note_build() noexcept { filters_.note_build(); }
+
+  /// Scratch for who selects some of the rows; what it holds lasts until the next one does.
+  [[nodiscard]] RowSelection& selection() const noexcept { return selection_; }
+
+ private:
+  [[nodiscard]] bool make_room(std::size_t objects) noexcept;
+  void remove_row(ObjectId id) noexcept;
+  void fetch_row(std::size_t row) const noexcept;
+
+  template <typename Source, typename Use>
+  Status with_margin(const Source& source, Use&& use);
+  template <typename Source>
+  Status update_one(const Source& source, Key key);
+  template <typename Source>
+  Status write(const Source& source, std::span<const Key> keys, bool ascending);
+  template <typename Source, typename Visit>
+  void for_entries(const Source& source, std::span<const Key> keys, bool by_rows, bool ascending,
+                   const Visit& visit);
+  template <typename Source>
+  void write_left_boxes(const Source& source, std::span<const Key> keys);
+  template <typename Source>
+  void write_left(const Source& source, std::span<const Key> keys, std::size_t begin,
+                  std::size_t end);
+  void note_left(std::span<const Key> keys, bool by_rows, std::size_t slots) noexcept;
+
+  Execution execution_;
+  Margin margin_;
+  BoundsPool pool_;
+  KeyTable keys_;
+  FilterTable filters_;
+  RowRegions regions_;
+  ChangeList stale_;
+  mutable ChangeList moved_;
+  mutable RowSelection selection_;
+  bool changed_ = false;
+};
+
+}  // namespace winnow

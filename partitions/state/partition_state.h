@@ -1,0 +1,104 @@
+#pragma once
+
+#include <winnow/partitions/partition.h>
+#include "partitions/choice/chooser.h"
+#include "partitions/index/query_view.h"
+#include "partitions/index/spatial_index.h"
+#include "partitions/rows/rows.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+
+namespace winnow {
+
+/// Which pair buffer is kept up to date by what moved, and what pair queries have done.
+struct PairRecord {
+  PairRecord() noexcept;
+
+  const std::uint64_t identity;      // of the partition
+  std::uint64_t tracked_serial = 0;  // 0: no buffer is tracked
+  // Never goes back, so an old buffer cannot match.
+  std::atomic<std::uint64_t> last_serial{0};
+  std::atomic<std::uint64_t> full_queries{0};
+  std::atomic<std::uint64_t> incremental_queries{0};
+  std::atomic<std::uint64_t> last_tests{0};
+  std::atomic<std::uint64_t> last_pairs{0};
+};
+
+/// All that a partition consists of: objects, how they are found, which pairs are tracked, and what
+/// chooses the structure, if anything does.
+class PartitionState {
+ public:
+  PartitionState(std::pmr::memory_resource* memory, const PartitionOptions& options) noexcept;
+  ~PartitionState();
+  PartitionState(const PartitionState&) = delete;
+  PartitionState& operator=(const PartitionState&) = delete;
+
+  /// Null if memory is refused.
+  [[nodiscard]] static PartitionState* make(StructureKind kind,
+                                            const PartitionOptions& options) noexcept;
+  /// False, and nothing changed, if memory is refused.
+  [[nodiscard]] bool set_structure(StructureKind kind) noexcept;
+
+  /// Ends a mutation of so many objects.
+  void note_changes(std::size_t count) noexcept;
+  /// Brings up to date what pair queries read.
+  Status refresh() const;
+  /// The same for other queries, of which there are `count`; tells them how to see the rows.
+  Status prepare(Question question, std::size_t count, QueryView& view) const;
+  void note(Question question, std::size_t count) const noexcept;
+
+  /// Calls look() while no other thread can be exchanging what it looks at.
+  template <typename Look>
+  auto steadily(Look&& look) const {
+    std::unique_lock lock(refresh_mutex_, std::defer_lock);
+    if (stale_.load(std::memory_order_acquire)) lock.lock();
+    return look();
+  }
+
+  [[nodiscard]] Status find_self_pairs(PairBuffer& out, const PairOptions& options,
+                                       PairEvents* events) const;
+  /// Pairs (object of this, object of other); asks about every object of this.
+  Status ask(const PartitionState& other, HitMode mode, const PairPredicate& predicate,
+             PairBuffer& out) const;
+
+  [[nodiscard]] Footprint footprint() const noexcept;
+  [[nodiscard]] Statistics statistics() const noexcept;
+  [[nodiscard]] StructureChoice choice() const noexcept;
+  void clear() noexcept;
+  void release_memory() noexcept;
+
+  std::pmr::memory_resource* const memory;
+  StructureKind kind;  // as it was given
+  Rows rows;
+  SpatialIndex index;
+
+ private:
+  struct SelfTasks;
+
+  Status refresh_now();
+  Status full_self_pairs(PairBuffer& out, const PairPredicate& predicate,
+                         class EventWriter* events) const;
+  Status incremental_self_pairs(PairBuffer& out, const PairPredicate& predicate,
+                                class EventWriter* events) const;
+  Status track_self_pairs(PairBuffer& out, const PairOptions& options,
+                          class EventWriter* events) const;
+  bool finish_pairs(PairBuffer& out, Order order, bool all,
+                    class EventWriter* events) const noexcept;
+  [[nodiscard]] bool can_update(const PairBuffer& out) const noexcept;
+  bool run_self_task(const SelfTasks& tasks, std::size_t task, PairSink& sink) const noexcept;
+  void note_work(std::uint64_t tests, std::uint64_t queries,
+                 SpatialIndex::Asked asked) const noexcept;
+
+  Chooser* chooser_ = nullptr;
+  mutable PairRecord pairs_;
+  mutable std::mutex refresh_mutex_;
+  mutable std::mutex tracker_mutex_;
+  // True from a change on until a refresh is through. Only in between are rows reordered and
+  // structures exchanged, and only under the mutex.
+  mutable std::atomic<bool> stale_{true};
+};
+
+}  // namespace winnow

@@ -1,0 +1,118 @@
+// Structures without any structure: every row against every other.
+
+#include "partitions/structures/brute_force/flat_rows.kernel.h"
+#include "partitions/structures/costs.h"
+#include "partitions/structures/structure.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow {
+
+WINNOW_DEFINE_KERNELS(FlatKernels, flat_kernels)
+
+namespace {
+
+constexpr std::size_t kMostTasks = 64;
+
+const FlatKernel& untested(Volume) noexcept {
+  return flat_kernels().untested;
+}
+
+const FlatKernel& testing(Volume volume) noexcept {
+  const FlatKernels& kernels = flat_kernels();
+  switch (volume) {
+    case Volume::aabb:
+      return kernels.aabb;
+    case Volume::sphere:
+      return kernels.sphere;
+    case Volume::kdop14:
+      return kernels.kdop14;
+    case Volume::kdop18:
+      return kernels.kdop18;
+    case Volume::kdop26:
+      return kernels.kdop26;
+  }
+  return kernels.aabb;
+}
+
+/// Unordered rows, and a kernel for their volume that goes through them.
+class BruteForce : public Structure {
+ public:
+  using KernelFor = const FlatKernel& (*)(Volume) noexcept;
+
+  BruteForce(const StructureInput& input, KernelFor kernel_for) noexcept
+      : Structure(input), kernel_for_(kernel_for) {}
+
+  [[nodiscard]] bool is_flat() const noexcept override { return true; }
+
+  [[nodiscard]] std::size_t pair_tasks() const noexcept override {
+    return std::min(kMostTasks, pool().blocks());
+  }
+  bool run_pair_task(std::size_t task, PairSink& sink) const noexcept override {
+    return kernel_for_(pool().volume())
+        .self_pairs(view(), first_block(task), first_block(task + 1), sink);
+  }
+  bool query(const QueryBatch& batch, PairSink& sink) const noexcept override {
+    return kernel_for_(pool().volume()).query(view(), batch, sink);
+  }
+
+ private:
+  // Early blocks meet more later ones: tasks take blocks so that each has about the same number of
+  // block pairs. Blocks behind x of all meet x^2 of the pairs.
+  [[nodiscard]] std::uint32_t first_block(std::size_t task) const noexcept {
+    const std::size_t tasks = pair_tasks();
+    if (task >= tasks) return static_cast<std::uint32_t>(pool().blocks());
+    const double left = 1.0 - static_cast<double>(task) / static_cast<double>(tasks);
+    const double done = (1.0 - std::sqrt(left)) * static_cast<double>(pool().blocks());
+    return static_cast<std::uint32_t>(done);
+  }
+  [[nodiscard]] FlatView view() const noexcept {
+    const TreeView blocks = regular_tree();
+    return {blocks.rows, static_cast<std::uint32_t>(pool().rows()), blocks};
+  }
+
+  const KernelFor kernel_for_;
+};
+
+/// Reports every pair of objects without looking at their bounds: the baseline that says what a
+/// test is worth, and the slow obvious twin of every other structure.
+class NSquared final : public BruteForce {
+ public:
+  explicit NSquared(const StructureInput& input) noexcept : BruteForce(input, untested) {}
+
+  [[nodiscard]] bool tests_volumes() const noexcept override { return false; }
+};
+
+/// Tests the bounding volume of every object against every other, 16 at a time: no structure at
+/// all, the least memory, and the fastest choice for some dozens of objects. O(n^2 / 16) tests.
+/// Exact for its volume.
+class BoundsNSquared final : public BruteForce {
+ public:
+  explicit BoundsNSquared(const StructureInput& input) noexcept : BruteForce(input, testing) {}
+};
+
+constexpr StructureCosts kCosts{.frame = 480,
+                                .keep = 7,
+                                .object = 11,
+                                .square = 0.103,
+                                .pair = 4.1,
+                                .moved = 130,
+                                .rest = 2.0,
+                                .build = 5,
+                                .ask = 120,
+                                .scan = 0.75};
+constexpr StructureInfo kNSquared = structure_info<NSquared>("NSquared");
+constexpr StructureInfo kBoundsNSquared = structure_info<BoundsNSquared>("BoundsNSquared", &kCosts);
+
+}  // namespace
+
+StructureKind n_squared() noexcept {
+  return StructureKind(kNSquared);
+}
+
+StructureKind bounds_n_squared() noexcept {
+  return StructureKind(kBoundsNSquared);
+}
+
+}  // namespace winnow

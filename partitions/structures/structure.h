@@ -1,0 +1,163 @@
+#pragma once
+
+// What a partition asks of a structure. A structure knows rows of bounding volumes and how it put
+// them in order; objects, queries, pairs and events are the partition's.
+
+#include <winnow/core/debug_draw.h>
+#include <winnow/core/footprint.h>
+#include <winnow/partitions/structures.h>
+#include "core/memory/bounds_pool.h"
+#include "core/memory/new_in.h"
+#include "partitions/rows/row_view.h"
+#include "partitions/rows/rows.h"
+#include "partitions/tree/block_tree.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+#include <string_view>
+
+namespace winnow {
+
+class Chooser;
+class Structure;
+struct StructureCosts;
+
+/// What a structure is made with: the rows it is about, and the tree over those of them that are
+/// regular, which the partition keeps. Both outlive it.
+struct StructureInput {
+  std::pmr::memory_resource* memory;
+  const Rows& rows;
+  const BlockTree& regular_tree;
+  float parameter;  ///< of the StructureKind
+};
+
+/// What is known of a structure before one is made. Each is a constant in a structure's own source.
+struct StructureInfo {
+  std::string_view name;
+  /// Null if memory is refused.
+  Structure* (*make)(const StructureInput&) noexcept;
+  /// Ends one that `make` made with this resource.
+  void (*end)(Structure*, std::pmr::memory_resource*) noexcept;
+  /// Its sizeof.
+  std::size_t bytes;
+  /// What it costs, for the automatic choice; null: it is never chosen.
+  const StructureCosts* costs = nullptr;
+  /// Makes what goes on choosing the structure; null for all but the automatic one. Null is
+  /// returned if memory is refused.
+  Chooser* (*make_chooser)(std::pmr::memory_resource*) noexcept = nullptr;
+};
+
+template <typename T>
+[[nodiscard]] constexpr StructureInfo structure_info(
+    std::string_view name, const StructureCosts* costs = nullptr) noexcept {
+  return {.name = name,
+          .make = [](const StructureInput& input) noexcept -> Structure* {
+            return new_in<T>(input.memory, input);
+          },
+          .end =
+              [](Structure* structure, std::pmr::memory_resource* memory) noexcept {
+                delete_in(memory, static_cast<T*>(structure));
+              },
+          .bytes = sizeof(T),
+          .costs = costs};
+}
+
+/// Where a plan writes which rows go where.
+struct RowPlan {
+  /// The regular rows in their order; has room for every row. Entries of kNoObject leave places
+  /// empty.
+  Column<std::uint32_t>& regular;
+  /// All other live rows.
+  Column<std::uint32_t>& rest;
+  /// Scratch for sorting.
+  Column<std::uint64_t>& items;
+};
+
+class Structure {
+ public:
+  explicit Structure(const StructureInput& input) noexcept
+      : rows_(input.rows), regular_tree_(input.regular_tree) {}
+  Structure(const Structure&) = delete;
+  Structure& operator=(const Structure&) = delete;
+
+  /// True if all rows stay in one unordered regular region.
+  [[nodiscard]] virtual bool is_flat() const noexcept { return false; }
+  /// True if regular rows are found by the boxes of their blocks: the tree over these is then made
+  /// by each build and kept up to date by each refresh.
+  [[nodiscard]] virtual bool prunes_rows() const noexcept { return false; }
+  /// False if it reports pairs whose volumes do not overlap.
+  [[nodiscard]] virtual bool tests_volumes() const noexcept { return true; }
+
+  // Ordering rows.
+
+  /// Chooses the rows of the regular region and their order. False if memory is refused: another
+  /// build follows then. By default every live row is part of the rest.
+  [[nodiscard]] virtual bool plan(const RowPlan& plan) noexcept {
+    leave_all(plan);
+    return true;
+  }
+  /// Makes every live row part of the rest.
+  void leave_all(const RowPlan& plan) const noexcept;
+  /// Appends rows to `order` in the order in which the tree's blocks of 16 are to hold them; no
+  /// environments are in use. It may reorder `rest`. `Order::none` leaves that to the partition,
+  /// which cuts at medians.
+  enum class Ordered : std::uint8_t { none, done, out_of_memory };
+  [[nodiscard]] virtual Ordered order_rest(std::span<std::uint32_t>,
+                                           Column<std::uint32_t>&) noexcept {
+    return Ordered::none;
+  }
+  /// What a build costs in tests of 16 volumes per object. The default was measured on both sides
+  /// of the decision to build anew.
+  [[nodiscard]] virtual std::uint64_t build_price() const noexcept { return 12; }
+  /// Called when the rows stand in the planned order.
+  virtual void finish_build() noexcept {}
+
+  // What no longer fits.
+
+  /// True if the object in this regular row still fits where the build put it.
+  [[nodiscard]] virtual bool fits(std::size_t) const noexcept { return true; }
+  /// Appends the regular rows that no longer fit, until the list holds `limit`; any may have
+  /// changed.
+  virtual void find_misfits(Column<std::uint32_t>&, std::size_t) noexcept {}
+
+  // Pairs.
+
+  /// Pairs within the regular region, in independent tasks. False if the sink could not grow.
+  [[nodiscard]] virtual std::size_t pair_tasks() const noexcept { return 0; }
+  virtual bool run_pair_task(std::size_t, PairSink&) const noexcept { return true; }
+  /// Hits of boxes in the regular region.
+  virtual bool query(const QueryBatch&, PairSink&) const noexcept { return true; }
+
+  // Looking at it.
+
+  /// Draws cells, strips or whatever the regular region has.
+  virtual void draw(DebugDraw&) const {}
+  /// Cells, strips or nodes of the regular region; 0 if leaf blocks are all there is.
+  [[nodiscard]] virtual std::size_t cells() const noexcept { return 0; }
+  [[nodiscard]] virtual std::size_t levels() const noexcept { return 0; }
+  /// Gives back what only builds need.
+  virtual void release_scratch() noexcept {}
+  /// Gives back what an empty structure holds.
+  virtual void release_memory() noexcept {}
+  virtual void add_bytes(Footprint&) const noexcept {}
+
+ protected:
+  ~Structure() = default;
+
+  [[nodiscard]] const BoundsPool& pool() const noexcept { return rows_.pool(); }
+  [[nodiscard]] const Execution& execution() const noexcept { return rows_.execution(); }
+  [[nodiscard]] std::size_t objects() const noexcept { return rows_.size(); }
+  [[nodiscard]] std::size_t regular_rows() const noexcept { return rows_.regions().regular; }
+  [[nodiscard]] RowView row_view() const noexcept { return rows_.view(); }
+  /// Over the regular rows: boxes where `prunes_rows`, and what filters have between them where
+  /// filters are in use.
+  [[nodiscard]] TreeView regular_tree() const noexcept { return regular_tree_.view(row_view()); }
+
+ private:
+  const Rows& rows_;
+  const BlockTree& regular_tree_;
+};
+
+}  // namespace winnow

@@ -1,0 +1,361 @@
+#pragma once
+
+// What kernels do with a mask of hits: which rows the filters let pass, which volumes meet inside
+// of boxes that do, and how pairs get to the sink.
+
+#include "partitions/rows/row_view.h"
+#include "partitions/tree/block_tree.kernel.h"
+#include "simd/lanes/boxes.h"
+#include "simd/lanes/compress.h"
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// A filter, or what the filters below a node have between them. An object of every environment
+/// spans them all, so that one test of intervals serves objects and nodes.
+struct FilterRange {
+  std::uint32_t layers;
+  std::uint32_t mask;
+  std::uint32_t first_environment;
+  std::uint32_t last_environment;
+};
+
+static inline FilterRange range_of(const ObjectFilter& f) {
+  const std::uint32_t first = f.environment == kEveryEnvironment ? 0U : f.environment;
+  return {f.layers, f.mask, first, f.environment};
+}
+
+/// The range of node i; that of the default filter if no filters are kept.
+static inline FilterRange range_of(const NodeFilters& nodes, std::uint32_t i) {
+  if (nodes.layers == nullptr) return range_of(ObjectFilter{});
+  return {nodes.layers[i], nodes.mask[i], nodes.first_environment[i], nodes.last_environment[i]};
+}
+
+/// True if something in one range may meet something in the other; exact for two objects.
+static inline bool may_meet(const FilterRange& a, const FilterRange& b) {
+  // Without branches: layers are coin tosses.
+  return static_cast<bool>(static_cast<unsigned>((a.layers & b.mask) != 0) &
+                           static_cast<unsigned>((b.layers & a.mask) != 0) &
+                           static_cast<unsigned>(a.first_environment <= b.last_environment) &
+                           static_cast<unsigned>(b.first_environment <= a.last_environment));
+}
+
+/// Those of the candidate rows from `first_row` on that `q` may meet. Empty rows never pass.
+static inline Mask16 passing_rows(const RowView& rows, std::uint32_t first_row, Mask16 candidates,
+                                  const FilterRange& q) {
+  Mask16 passed = 0;
+  for (Mask16 left = candidates; left != 0; left &= left - 1) {
+    const std::uint32_t id = rows.id[first_row + first(left)];
+    if (id == ~0U) continue;
+    const ObjectFilter own = rows.filter != nullptr ? rows.filter[id] : ObjectFilter{};
+    passed |= static_cast<Mask16>(may_meet(range_of(own), q)) << first(left);
+  }
+  return passed;
+}
+static inline Mask16 passing_rows(const RowView& rows, std::uint32_t first_row, Mask16 candidates,
+                                  const ObjectFilter& q) {
+  return passing_rows(rows, first_row, candidates, range_of(q));
+}
+
+/// Those of the candidate nodes from `first_node` on that may hold something that `q` may meet.
+static inline Mask16 passing_nodes(const NodeFilters& nodes, std::uint32_t first_node,
+                                   Mask16 candidates, const FilterRange& q) {
+  Mask16 passed = 0;
+  for (Mask16 left = candidates; left != 0; left &= left - 1) {
+    const bool met = may_meet(range_of(nodes, first_node + first(left)), q);
+    passed |= static_cast<Mask16>(met) << first(left);
+  }
+  return passed;
+}
+static inline Mask16 passing_nodes(const NodeFilters& nodes, std::uint32_t first_node,
+                                   Mask16 candidates, const ObjectFilter& q) {
+  return passing_nodes(nodes, first_node, candidates, range_of(q));
+}
+
+// Columns of a sphere's centre and radius.
+inline constexpr int kBallCenter = 6;
+inline constexpr int kBallRadius = 9;
+
+/// Balls against the points within `reach` of a box; of a ball, low == high == centre. The right
+/// side of |distance|^2 <= (r1 + r2)^2 is enlarged by more than the rounding of both sides (a few
+/// ulp of each), so that touching balls are never missed; where a square would overflow or
+/// underflow the comparison still errs to the side of a hit.
+inline Mask16 balls_meet(const Floats* center, const Floats& radius, const float* low,
+                         const float* high, float reach) {
+  constexpr float kSlack = 1.000002F;
+  constexpr float kTiny = 1e-37F;
+  Floats square = Floats(-kTiny);
+  for (int axis = 0; axis < 3; ++axis) {
+    // Distance of the centre from [low, high] along the axis.
+    const Floats below = low[axis] - center[axis];
+    const Floats above = center[axis] - high[axis];
+    const Floats d = max(max(below, above), Floats(0.0F));
+    square = square + d * d;
+  }
+  const Floats sum = radius + reach;
+  const Floats limit = sum * sum * kSlack;
+  // An empty row's centre is infinite, and so is its square: infinity <= infinity must not count.
+  const Mask16 real = bits(center[0] <= kLargest<float>);
+  return bits(square <= limit) & real;
+}
+
+/// Of the lanes `mask` of the rows from `at` on, whose boxes overlap that of row r of the columns
+/// `query`, those whose further slabs do so too.
+inline Mask16 further_slabs_overlap(const RowView& rows, std::uint32_t at,
+                                    const float* const* query, std::uint32_t r, Mask16 mask) {
+  const std::uint32_t slabs = rows.further_slabs;
+  for (std::uint32_t low = 6; low < 6 + slabs; ++low) {
+    const std::uint32_t high = low + slabs;
+    mask &= bits(Floats::load_unaligned(rows.column[low] + at) <= query[high][r]) &
+            bits(query[low][r] <= Floats::load_unaligned(rows.column[high] + at));
+  }
+  return mask;
+}
+
+/// The same for spheres.
+inline Mask16 spheres_overlap(const RowView& rows, std::uint32_t at, const float* const* query,
+                              std::uint32_t r, Mask16 mask) {
+  Floats center[3];
+  float point[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    center[axis] = Floats::load_unaligned(rows.column[kBallCenter + axis] + at);
+    point[axis] = query[kBallCenter + axis][r];
+  }
+  const Floats radius = Floats::load_unaligned(rows.column[kBallRadius] + at);
+  return mask & balls_meet(center, radius, point, point, query[kBallRadius][r]);
+}
+
+/// False if the sink is full and cannot grow.
+inline bool has_room(PairSink& sink) {
+  return sink.cursor <= sink.limit || sink.grow(sink);
+}
+
+/// The box that row r of six columns holds.
+struct QueryBox {
+  float low[3];
+  float high[3];
+  QueryBox(const float* const* column, std::size_t r)
+      : low{column[0][r], column[1][r], column[2][r]},
+        high{column[3][r], column[4][r], column[5][r]} {}
+};
+
+/// The lanes of the rows from `at` on that row r reports in HitMode::moved: those that did not
+/// move, and those that did and stand behind r. `moved` is readable for 32 bits from any row on.
+inline Mask16 reported_lanes(const std::uint64_t* moved, std::uint32_t r, std::uint32_t at) {
+  std::uint32_t bits;
+  __builtin_memcpy(&bits, reinterpret_cast<const unsigned char*>(moved) + (at >> 3U), sizeof bits);
+  bits >>= at & 7U;
+  const Mask16 up_to_r = r < at ? 0U : r - at >= kLanes ? kAllRows : lanes_below(r - at + 1);
+  return ~(bits & up_to_r);
+}
+
+/// Filters of those who ask, by their id.
+struct AskingFilters {
+  const ObjectFilter* filter;
+  bool one_for_all;
+
+  explicit AskingFilters(const RowView& rows) : filter(rows.filter), one_for_all(false) {}
+  explicit AskingFilters(const QueryBatch& batch)
+      : filter(batch.filter), one_for_all(batch.one_filter) {}
+
+  /// `id` is not that of an empty row.
+  [[nodiscard]] FilterRange of(std::uint32_t id) const {
+    if (filter == nullptr) return range_of(ObjectFilter{});
+    return range_of(filter[one_for_all ? 0 : id]);
+  }
+};
+
+/// Reports the hits `mask` among the ids at `ids` for query q; there must be room.
+template <HitMode Mode>
+inline void report(Mask16 mask, const std::uint32_t* ids, std::uint32_t q, PairSink& sink) {
+  if constexpr (Mode == HitMode::query_first) {
+    sink.cursor += 2 * emit_pairs<false>(mask, Uints::load_unaligned(ids), q, sink.cursor);
+  } else if constexpr (Mode == HitMode::query_second) {
+    for (; mask != 0; mask &= mask - 1) {
+      sink.cursor[0] = ids[first(mask)];
+      sink.cursor[1] = q;
+      sink.cursor += 2;
+    }
+  } else {
+    sink.cursor += 2 * emit_pairs<true>(mask, Uints::load_unaligned(ids), q, sink.cursor);
+  }
+}
+
+/// Calls Kernel::run<Mode, Filtered>(view, batch, sink) with the batch's mode, and whether filters
+/// are in use, as constants.
+template <typename Kernel, bool Filtered, typename View>
+inline bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink) {
+  switch (batch.mode) {
+    case HitMode::unordered:
+      return Kernel::template run<HitMode::unordered, Filtered>(view, batch, sink);
+    case HitMode::query_first:
+      return Kernel::template run<HitMode::query_first, Filtered>(view, batch, sink);
+    case HitMode::query_second:
+      return Kernel::template run<HitMode::query_second, Filtered>(view, batch, sink);
+    case HitMode::moved:
+      return Kernel::template run<HitMode::moved, Filtered>(view, batch, sink);
+  }
+  return true;
+}
+template <typename Kernel, typename View>
+inline bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink) {
+  return view.rows.filter != nullptr || batch.filter != nullptr
+             ? with_mode<Kernel, true>(view, batch, sink)
+             : with_mode<Kernel, false>(view, batch, sink);
+}
+
+/// True if hits of boxes are not yet hits of the rows' volumes.
+inline bool has_more_to_test(const RowView& rows) {
+  return rows.further_slabs != 0 || rows.spheres;
+}
+
+/// Hits of boxes, kept in lists: lanes mask[i] of the rows from at[i] on for row[i] of the columns
+/// `query`. Keeps those of the volumes in the boxes, and returns how many entries are left. One for
+/// all kernels of a file: what boxes alone never call must not bloat them.
+[[gnu::noinline, maybe_unused]] static unsigned keep_volume_hits(
+    const RowView& rows, const float* const* query, std::uint32_t* row, std::uint32_t* at,
+    std::uint32_t* mask, unsigned size) {
+  unsigned kept = 0;
+  for (unsigned i = 0; i < size; ++i) {
+    const Mask16 hits = rows.spheres ? spheres_overlap(rows, at[i], query, row[i], mask[i])
+                                     : further_slabs_overlap(rows, at[i], query, row[i], mask[i]);
+    row[kept] = row[i];
+    at[kept] = at[i];
+    mask[kept] = hits;
+    kept += hits != 0 ? 1U : 0U;
+  }
+  return kept;
+}
+
+/// Hits on their way to the sink. Whether a test hits is a coin toss to the branch predictor: tests
+/// append without a branch, and filters are looked up and pairs written in one long loop.
+template <HitMode Mode, bool Filtered>
+class HitList {
+ public:
+  HitList(const RowView& rows, const QueryBatch& batch, PairSink& sink)
+      : rows_(rows),
+        query_(batch.column),
+        more_to_test_(!batch.is_box && has_more_to_test(rows)),
+        query_id_(batch.id),
+        moved_(batch.moved),
+        filters_(batch),
+        sink_(sink) {}
+  /// For rows that ask about each other.
+  HitList(const RowView& rows, PairSink& sink)
+      : rows_(rows),
+        query_(rows.column),
+        more_to_test_(has_more_to_test(rows)),
+        query_id_(rows.id),
+        moved_(nullptr),
+        filters_(rows),
+        sink_(sink) {}
+
+  /// Notes that row `r` hits the lanes `mask` of the rows from `at` on; does nothing for no lanes.
+  /// There must be room.
+  void add(std::uint32_t r, std::uint32_t at, Mask16 mask) {
+    if constexpr (Mode == HitMode::moved) mask &= reported_lanes(moved_, r, at);
+    row_[size_] = r;
+    at_[size_] = at;
+    mask_[size_] = mask;
+    size_ += mask != 0 ? 1U : 0U;
+  }
+
+  /// Makes room for one more entry. False if the sink is full.
+  bool make_room() { return size_ < kRoom || flush(); }
+
+  /// Writes everything to the sink.
+  bool flush() {
+    if (more_to_test_) size_ = keep_volume_hits(rows_, query_, row_, at_, mask_, size_);
+    for (unsigned i = 0; i < size_; ++i) {
+      Mask16 mask = mask_[i];
+      const std::uint32_t q = query_id_[row_[i]];
+      if constexpr (Filtered) {
+        mask = passing_rows(rows_, at_[i], mask, filters_.of(q));
+        if (mask == 0) continue;
+      }
+      if (!has_room(sink_)) return false;
+      report<Mode>(mask, rows_.id + at_[i], q, sink_);
+    }
+    size_ = 0;
+    return true;
+  }
+
+ private:
+  static constexpr unsigned kRoom = 512;
+
+  const RowView& rows_;
+  const float* const* query_;
+  bool more_to_test_;
+  const std::uint32_t* query_id_;
+  const std::uint64_t* moved_;
+  const AskingFilters filters_;
+  PairSink& sink_;
+  unsigned size_ = 0;
+  std::uint32_t row_[kRoom];
+  std::uint32_t at_[kRoom];
+  std::uint32_t mask_[kRoom];
+};
+
+/// A run of rows is tested to its end.
+struct ToTheEnd {
+  bool operator()(const QueryBox&, std::uint32_t) const { return true; }
+};
+
+/// Runs of rows to be tested, each against one box. How long a run is is as unpredictable as a hit:
+/// one step of 16 rows of every run is made in a long loop, and runs that go on are kept for the
+/// next round. `GoesOn(q, at)` says whether box q needs the rows from `at` on.
+template <HitMode Mode, bool Filtered, typename GoesOn>
+class RunList {
+ public:
+  /// `query` holds the columns of the boxes that ask.
+  RunList(const RowView& rows, const float* const* query, HitList<Mode, Filtered>& hits,
+          const GoesOn& goes_on, PairSink& sink)
+      : rows_(rows), query_(query), hits_(hits), goes_on_(goes_on), sink_(sink) {}
+
+  /// Adds rows [at, end) for the box of row r of the query columns. False if the sink is full.
+  bool add(std::uint32_t r, std::uint32_t at, std::uint32_t end) {
+    if (size_ == kRoom && !finish()) return false;
+    row_[size_] = r;
+    at_[size_] = at;
+    end_[size_] = end;
+    size_ += at < end ? 1U : 0U;
+    return true;
+  }
+
+  /// Tests everything. False if the sink is full.
+  bool finish() {
+    while (size_ != 0) {
+      unsigned next = 0;
+      sink_.tests += size_;
+      for (unsigned k = 0; k < size_; ++k) {
+        const std::uint32_t at = at_[k];
+        const std::uint32_t end = end_[k];
+        const std::uint32_t left = end - at < kLanes ? end - at : kLanes;
+        const QueryBox q(query_, row_[k]);
+        const Box16 box = load_slabs_unaligned<3>(rows_.column, at);
+        if (!hits_.make_room()) return false;
+        hits_.add(row_[k], at, overlap(box, q.low, q.high) & lanes_below(left));
+        row_[next] = row_[k];
+        at_[next] = at + left;
+        end_[next] = end;
+        next += at + left < end && goes_on_(q, at + left) ? 1U : 0U;
+      }
+      size_ = next;
+    }
+    return true;
+  }
+
+ private:
+  static constexpr unsigned kRoom = 256;
+
+  const RowView& rows_;
+  const float* const* query_;
+  HitList<Mode, Filtered>& hits_;
+  const GoesOn goes_on_;
+  PairSink& sink_;
+  unsigned size_ = 0;
+  std::uint32_t row_[kRoom + 1];
+  std::uint32_t at_[kRoom + 1];
+  std::uint32_t end_[kRoom + 1];
+};
+
+}  // namespace winnow::WINNOW_ISA_NAME

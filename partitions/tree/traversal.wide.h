@@ -1,0 +1,162 @@
+#pragma once
+
+// The ways down an implicit 16-ary tree, of blocks of rows or of triangles of a mesh: the children
+// of node i of level l + 1 are the nodes [16 i, 16 i + 16) of level l, whose boxes are tested at
+// once; those of the top level are the only ones without a node above. A traversal visits in the
+// order of rows, a joint traversal takes many questions down together, and a descent goes to the
+// nearest first.
+
+#include "partitions/tree/block_tree.kernel.h"
+#include "simd/lanes/compress.h"
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// How a traversal goes on after a visit: with the node's children, past them, or not at all.
+enum class Next : std::uint8_t { below, past, stop };
+
+/// Calls visit(level, node) for every node that test(level, first of 16 nodes) lets through, a node
+/// before its children. One mask per level is all the state that it needs: depth is bounded by the
+/// number of objects, not by a stack. False if a visit stopped it.
+template <std::uint32_t MaxLevels, typename Test, typename Visit>
+[[gnu::always_inline]] inline bool traverse(std::uint32_t levels, Test&& test, Visit&& visit) {
+  Mask16 open[MaxLevels];
+  std::uint32_t base[MaxLevels];
+  std::uint32_t level = levels - 1;
+  base[level] = 0;
+  open[level] = test(level, 0U);
+  for (;;) {
+    if (open[level] == 0) {
+      if (++level == levels) return true;
+      continue;
+    }
+    const std::uint32_t node = base[level] + first(open[level]);
+    open[level] &= open[level] - 1;
+    const Next next = visit(level, node);
+    if (next == Next::stop) return false;
+    if (next == Next::past) continue;
+    --level;
+    base[level] = node * kLanes;
+    open[level] = test(level, base[level]);
+  }
+}
+
+/// Calls visit(node) for every node of level `bottom` that is let through on its own level and all
+/// above, from node `from` on. False as soon as visit says false.
+template <typename Test, typename Visit>
+bool traverse_from(const TreeView& tree, std::uint32_t bottom, std::uint32_t from, Test&& test,
+                   Visit&& visit) {
+  return traverse<kMaxTreeLevels>(
+      tree.levels,
+      [&](std::uint32_t level, std::uint32_t first_node) {
+        Mask16 hits = test(level, first_node);
+        // Nodes that end before `from` hold nothing to visit.
+        const std::uint32_t first_wanted = from >> (4 * (level - bottom));
+        if (first_wanted > first_node) {
+          const std::uint32_t skip = first_wanted - first_node;
+          hits &= ~lanes_below(skip < kLanes ? skip : kLanes);
+        }
+        return hits;
+      },
+      [&](std::uint32_t level, std::uint32_t node) {
+        if (level != bottom) return Next::below;
+        return visit(node) ? Next::past : Next::stop;
+      });
+}
+
+/// Pairs of a question and a node, or a row, that wait for each other.
+struct OpenList {
+  static constexpr unsigned kRoom = 256;
+
+  unsigned size = 0;
+  std::uint32_t question[kRoom + kLanes];
+  std::uint32_t at[kRoom + kLanes];
+
+  /// True if another 16 may not fit.
+  [[nodiscard]] bool full() const { return size > kRoom - kLanes; }
+  void add(std::uint32_t q, std::uint32_t first_at, Mask16 mask) {
+    Uints(q).store_unaligned(question + size);
+    size += compress_store(mask, count_from(first_at), at + size);
+  }
+};
+
+/// Takes many questions down a tree together, a level at a time: what is open on a level waits in
+/// that level's list, and a list is worked off, in one long loop, when the next nodes might not fit
+/// or nothing is left above. How many children a node passes on is as hard to foresee as a coin,
+/// and each test takes long from its first load to its last bit; here neither is waited for.
+/// Nothing is visited in order.
+///
+/// `Questions` brings `auto prepare(tree, level, first question)`, what a loop settles once;
+/// `Mask16 test(prepared, question, level, first of 16 nodes)`; and `bool visit(blocks)`, which
+/// takes a list of blocks that were reached and returns false to end the traversal.
+template <typename Questions>
+class JointTraversal {
+ public:
+  explicit JointTraversal(Questions& questions) : questions_(questions) {}
+
+  /// Asks question_of(0), ..., question_of(count - 1). False if a visit ended it.
+  template <typename QuestionOf>
+  bool run(const TreeView& tree, std::uint32_t count, QuestionOf&& question_of) {
+    if (count == 0) return true;
+    tree_ = &tree;
+    const std::uint32_t top = tree.levels - 1;
+    const auto prepared = questions_.prepare(tree, top, question_of(0U));
+    for (std::uint32_t k = 0; k < count; ++k) {
+      if (!test(prepared, question_of(k), top, 0)) return false;
+    }
+    for (std::uint32_t level = top + 1; level-- > 0;) {
+      if (!drain(level)) return false;
+    }
+    return true;
+  }
+
+ private:
+  /// Opens those of the 16 nodes from `first_node` on that the question wants.
+  template <typename Prepared>
+  bool test(const Prepared& prepared, std::uint32_t q, std::uint32_t level,
+            std::uint32_t first_node) {
+    if (open_[level].full() && !drain(level)) return false;
+    open_[level].add(q, first_node, questions_.test(prepared, q, level, first_node));
+    return true;
+  }
+
+  bool drain(std::uint32_t level) {
+    OpenList& open = open_[level];
+    if (open.size == 0) return true;
+    if (level == 0) {
+      if (!questions_.visit(open)) return false;
+    } else {
+      const auto prepared = questions_.prepare(*tree_, level - 1, open.question[0]);
+      for (unsigned k = 0; k < open.size; ++k) {
+        if (!test(prepared, open.question[k], level - 1, open.at[k] * kLanes)) return false;
+      }
+    }
+    open.size = 0;
+    return true;
+  }
+
+  Questions& questions_;
+  const TreeView* tree_ = nullptr;
+  OpenList open_[kMaxTreeLevels];
+};
+
+/// Visits nodes of level 0 about in the order of a measure, the nearest child first. `Waiting`
+/// keeps what is open: `bool open(level, first of 16 nodes, node)` gives the child to go on with
+/// and lets the others wait, or says that there is none; `bool take(level, node)` gives the next
+/// one that waits, or says that there is none. `visit(node)` returns false to end the descent.
+template <typename Waiting, typename Visit>
+[[gnu::always_inline]] inline bool descend(std::uint32_t levels, Waiting& waiting, Visit&& visit) {
+  // The children of this node of this level are opened next; a node of level 0 is visited.
+  std::uint32_t level = levels;
+  std::uint32_t node = 0;
+  do {
+    bool reached = true;
+    while (reached && level != 0) {
+      --level;
+      reached = waiting.open(level, node * kLanes, node);
+    }
+    if (reached && !visit(node)) return false;
+  } while (waiting.take(level, node));
+  return true;
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME

@@ -1,0 +1,269 @@
+#pragma once
+
+// Pairs of a job into lanes: the loop over blocks of one pair per lane, the difference of the
+// positions, orientations, and the numbers of the shapes in the order in which the structs hold
+// them.
+
+#include "pipeline/narrow/narrow_job.h"
+#include "simd/lanes/rows.h"
+#include "simd/lanes/vectors.h"
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// The pairs in the lanes of Lanes<T>.
+template <typename T>
+struct PairBlock {
+  /// One per lane. Lanes from `count` on repeat the job's last pair.
+  const BodyPair* pairs;
+  /// Index in the job of the pair in lane 0.
+  std::uint32_t first;
+  std::uint32_t count;
+
+  [[nodiscard]] Mask16 lanes() const { return lanes_below(count); }
+};
+
+/// Calls body(block) for all pairs of the job. Loads of a block do not depend on the one before, so
+/// misses overlap without being asked for ahead.
+template <typename T, typename Body>
+[[gnu::always_inline]] inline void for_blocks(const NarrowJob& job, Body&& body) {
+  constexpr std::uint32_t lanes = Lanes<T>::kCount;
+  BodyPair tail[lanes];
+  for (std::uint32_t first = 0; first < job.count; first += lanes) {
+    PairBlock<T> block{job.pairs + first, first, lanes};
+    if (job.count - first < lanes) {
+      block.count = job.count - first;
+      for (std::uint32_t i = 0; i < lanes; ++i) {
+        tail[i] = block.pairs[i < block.count ? i : block.count - 1];
+      }
+      block.pairs = tail;
+    }
+    body(block);
+  }
+}
+
+/// A plain struct of doubles as an array of them.
+template <typename Plain>
+[[gnu::always_inline]] inline const double* numbers(const Plain& plain) {
+  static_assert(sizeof(Plain) % sizeof(double) == 0);
+  return reinterpret_cast<const double*>(&plain);
+}
+
+/// Which body of a pair.
+struct SideA {
+  [[gnu::always_inline]] static std::uint32_t body(const BodyPair& pair) { return pair.a; }
+};
+struct SideB {
+  [[gnu::always_inline]] static std::uint32_t body(const BodyPair& pair) { return pair.b; }
+};
+
+/// Numbers of type T from rows of doubles: `load(first_lane, out)` fills eight lanes.
+template <typename T, int Count, typename Load>
+[[gnu::always_inline]] inline void in_precision(Load&& load, Lanes<T> (&out)[Count]) {
+  if constexpr (sizeof(T) == sizeof(double)) {
+    load(0, out);
+  } else {
+    Doubles low[Count];
+    Doubles high[Count];
+    load(0, low);
+    load(8, high);
+    for (int k = 0; k < Count; ++k) out[k] = to_single(low[k], high[k]);
+  }
+}
+
+/// Position of b less that of a, subtracted in double.
+template <typename T>
+[[gnu::always_inline]] inline Vec3<T> load_offset(const NarrowJob& job, const PairBlock<T>& block) {
+  Lanes<T> d[4];
+  in_precision<T>(
+      [&](int from, Doubles(&out)[4]) {
+        load_differences4([&](int lane) { return numbers(job.poses[block.pairs[from + lane].b]); },
+                          [&](int lane) { return numbers(job.poses[block.pairs[from + lane].a]); },
+                          out);
+      },
+      d);
+  return {d[0], d[1], d[2]};
+}
+
+/// A quaternion of any length and the factor 2 / |q|^2 that makes its products those of a rotation:
+/// NaN if the quaternion is not finite, or so short or long that squares leave T's range.
+template <typename T>
+struct Turn {
+  Lanes<T> w;
+  Vec3<T> v;
+  Lanes<T> scale;
+};
+
+template <typename Side, typename T>
+[[gnu::always_inline]] inline Turn<T> load_turn(const NarrowJob& job, const PairBlock<T>& block) {
+  constexpr T limit = sizeof(T) == sizeof(double) ? T(1e250) : T(1e25F);
+  Lanes<T> q[4];
+  in_precision<T>(
+      [&](int from, Doubles(&out)[4]) {
+        load_rows4(
+            [&](int lane) { return job.poses[Side::body(block.pairs[from + lane])].orientation; },
+            out);
+      },
+      q);
+  const Lanes<T> norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  const LaneMask<T> usable = (norm > Lanes<T>(T(1) / limit)) & (norm < Lanes<T>(limit));
+  const Lanes<T> scale = select(usable, Lanes<T>(T(2)) / norm, Lanes<T>(T(__builtin_nan(""))));
+  return {q[0], {q[1], q[2], q[3]}, scale};
+}
+
+/// The local z axis in the axes of the world.
+template <typename T>
+[[gnu::always_inline]] inline Vec3<T> axis_z(const Turn<T>& q) {
+  return {(q.v.x * q.v.z + q.w * q.v.y) * q.scale, (q.v.y * q.v.z - q.w * q.v.x) * q.scale,
+          Lanes<T>(T(1)) - (q.v.x * q.v.x + q.v.y * q.v.y) * q.scale};
+}
+
+/// A rotation as the images of the local axes.
+template <typename T>
+struct Rotation {
+  Vec3<T> x;
+  Vec3<T> y;
+  Vec3<T> z;
+
+  /// From the body's axes to those of the world.
+  [[gnu::always_inline]] Vec3<T> to_world(const Vec3<T>& v) const {
+    return x * v.x + y * v.y + z * v.z;
+  }
+  [[gnu::always_inline]] Vec3<T> to_local(const Vec3<T>& v) const {
+    return {dot(x, v), dot(y, v), dot(z, v)};
+  }
+};
+
+template <typename T>
+[[gnu::always_inline]] inline Rotation<T> rotation(const Turn<T>& q) {
+  const Lanes<T> one(T(1));
+  const Vec3<T> v = q.v * q.scale;
+  const Lanes<T> xx = v.x * q.v.x;
+  const Lanes<T> yy = v.y * q.v.y;
+  const Lanes<T> zz = v.z * q.v.z;
+  const Lanes<T> xy = v.x * q.v.y;
+  const Lanes<T> xz = v.x * q.v.z;
+  const Lanes<T> yz = v.y * q.v.z;
+  const Vec3<T> w = v * q.w;
+  return {{one - (yy + zz), xy + w.z, xz - w.y},
+          {xy - w.z, one - (xx + zz), yz + w.x},
+          {xz + w.y, yz - w.x, one - (xx + yy)}};
+}
+
+template <typename Side, typename T>
+[[gnu::always_inline]] inline std::uint32_t shape_index(const NarrowJob& job,
+                                                        const PairBlock<T>& block, int lane) {
+  return job.shapes[Side::body(block.pairs[lane])].index();
+}
+
+template <typename T>
+struct CapsuleLanes {
+  Lanes<T> radius;
+  Lanes<T> half_length;
+};
+
+template <typename T>
+struct BoxLanes {
+  Vec3<T> half;
+  Lanes<T> rounding;
+};
+
+/// In the triangle's own frame.
+template <typename T>
+struct TriangleLanes {
+  Vec3<T> vertex[3];
+  Lanes<T> rounding;
+};
+
+/// normal . x <= offset in the half-space's own frame.
+template <typename T>
+struct HalfSpaceLanes {
+  Vec3<T> normal;
+  Lanes<T> offset;
+};
+
+template <typename Side, typename T>
+[[gnu::always_inline]] inline Lanes<T> load_sphere(const NarrowJob& job,
+                                                   const PairBlock<T>& block) {
+  Lanes<T> r[1];
+  in_precision<T>(
+      [&](int from, Doubles(&out)[1]) {
+        out[0] = load_rows1([&](int lane) {
+          return &job.tables.spheres[shape_index<Side>(job, block, from + lane)].radius;
+        });
+      },
+      r);
+  return r[0];
+}
+
+template <typename Side, typename T>
+[[gnu::always_inline]] inline CapsuleLanes<T> load_capsule(const NarrowJob& job,
+                                                           const PairBlock<T>& block) {
+  Lanes<T> r[2];
+  in_precision<T>(
+      [&](int from, Doubles(&out)[2]) {
+        load_rows2(
+            [&](int lane) {
+              return numbers(job.tables.capsules[shape_index<Side>(job, block, from + lane)]);
+            },
+            out);
+      },
+      r);
+  return {r[0], r[1]};
+}
+
+template <typename Side, typename T>
+[[gnu::always_inline]] inline BoxLanes<T> load_box(const NarrowJob& job,
+                                                   const PairBlock<T>& block) {
+  Lanes<T> r[4];
+  in_precision<T>(
+      [&](int from, Doubles(&out)[4]) {
+        load_rows4(
+            [&](int lane) {
+              return numbers(job.tables.boxes[shape_index<Side>(job, block, from + lane)]);
+            },
+            out);
+      },
+      r);
+  return {{r[0], r[1], r[2]}, r[3]};
+}
+
+template <typename Side, typename T>
+[[gnu::always_inline]] inline TriangleLanes<T> load_triangle(const NarrowJob& job,
+                                                             const PairBlock<T>& block) {
+  const auto row = [&](int lane) {
+    return numbers(job.tables.triangles[shape_index<Side>(job, block, lane)]);
+  };
+  Lanes<T> r[10];
+  in_precision<T>(
+      [&](int from, Doubles(&out)[10]) {
+        Doubles quad[4];
+        for (int part = 0; part < 2; ++part) {
+          load_rows4([&](int lane) { return row(from + lane) + 4 * part; }, quad);
+          for (int k = 0; k < 4; ++k) out[4 * part + k] = quad[k];
+        }
+        Doubles two[2];
+        load_rows2([&](int lane) { return row(from + lane) + 8; }, two);
+        out[8] = two[0];
+        out[9] = two[1];
+      },
+      r);
+  return {{{r[0], r[1], r[2]}, {r[3], r[4], r[5]}, {r[6], r[7], r[8]}}, r[9]};
+}
+
+template <typename Side, typename T>
+[[gnu::always_inline]] inline HalfSpaceLanes<T> load_half_space(const NarrowJob& job,
+                                                                const PairBlock<T>& block) {
+  Lanes<T> r[4];
+  in_precision<T>(
+      [&](int from, Doubles(&out)[4]) {
+        load_rows4(
+            [&](int lane) {
+              return numbers(job.tables.half_spaces[shape_index<Side>(job, block, from + lane)]);
+            },
+            out);
+      },
+      r);
+  return {{r[0], r[1], r[2]}, r[3]};
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME

@@ -1,0 +1,169 @@
+#pragma once
+
+// Triangles of a mesh that meet a box, or a ball in it.
+//
+// Sixteen triangles against a ball. A convex shape and a ball are apart only along the way from the
+// ball's middle to the closest point of the shape: for a triangle that is its normal, the way to a
+// corner, or the way to an edge at a right angle (Ericson, "Real-Time Collision Detection", 2005,
+// 5.2.7 and 5.1.5). Any direction serves as long as all three corners lie beyond the ball along it,
+// so that directions need not be exact; only heights along them are, to a few roundings.
+
+#include "partitions/tree/traversal.wide.h"
+#include "pipeline/mesh/mesh_lanes.wide.h"
+#include "pipeline/mesh/mesh_traversal.kernel.h"
+
+namespace winnow::WINNOW_ISA_NAME::mesh {
+
+using Lanes3 = Floats[3];
+
+[[gnu::always_inline]] inline Floats height(const Lanes3& a, const Lanes3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Corners relative to the middle of the ball, in the scale that makes its radius about 1, and how
+/// far from the middle they must be to be outside for certain.
+struct BallCorners {
+  Lanes3 at[3];
+  Floats square;  ///< of that distance
+
+  BallCorners(const Corners16& corners, const MeshBallJob& ball) {
+    Floats largest(ball.largest);
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int k = 0; k < 3; ++k) {
+        at[k][axis] = (corners.at[k][axis] - Floats(ball.center[axis])) * Floats(ball.scale);
+        largest = max(largest, abs(at[k][axis]));
+      }
+    }
+    // The middle and the differences were rounded, and so are heights: less than 16 u of the
+    // largest number among them, u being half an ulp of 1.
+    const Floats distance = Floats(ball.radius * (1.0F + 0x1p-20F)) + largest * Floats(0x1p-19F);
+    square = distance * distance;
+  }
+
+  /// All three lie beyond the ball along a way of this squared length, given the least height.
+  [[gnu::always_inline]] LaneMask<float> beyond(const Floats& least, const Floats& length) const {
+    return (least > Floats(0.0F)) & (least * least > length * square);
+  }
+  [[gnu::always_inline]] LaneMask<float> beyond(const Lanes3& way) const {
+    const Floats least = min(min(height(way, at[0]), height(way, at[1])), height(way, at[2]));
+    return beyond(least, height(way, way));
+  }
+};
+
+/// Which triangles lie outside of the ball for certain. Nothing that is not a number counts.
+[[gnu::always_inline]] inline Mask16 outside_ball(const Corners16& corners,
+                                                  const MeshBallJob& ball) {
+  const BallCorners t(corners, ball);
+  const Floats aa = height(t.at[0], t.at[0]);
+  const Floats bb = height(t.at[1], t.at[1]);
+  const Floats cc = height(t.at[2], t.at[2]);
+  const Floats ab = height(t.at[0], t.at[1]);
+  const Floats bc = height(t.at[1], t.at[2]);
+  const Floats ca = height(t.at[2], t.at[0]);
+  LaneMask<float> out = t.beyond(min(min(aa, ab), ca), aa) | t.beyond(min(min(bb, ab), bc), bb) |
+                        t.beyond(min(min(cc, bc), ca), cc);
+  Lanes3 edge[3];
+  for (int k = 0; k < 3; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      edge[k][axis] = t.at[(k + 1) % 3][axis] - t.at[k][axis];
+    }
+    const Floats along = height(t.at[k], edge[k]);
+    const Floats length = height(edge[k], edge[k]);
+    Lanes3 way;
+    for (int axis = 0; axis < 3; ++axis) {
+      way[axis] = t.at[k][axis] * length - edge[k][axis] * along;
+    }
+    out = out | t.beyond(way);
+  }
+  Lanes3 normal;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int j = (axis + 1) % 3;
+    const int k = (axis + 2) % 3;
+    normal[axis] = edge[0][j] * edge[1][k] - edge[0][k] * edge[1][j];
+  }
+  const LaneMask<float> below = height(normal, t.at[0]) < Floats(0.0F);
+  for (auto& x : normal) x = select(below, -x, x);
+  return bits(out | t.beyond(normal));
+}
+
+/// Takes triangles of one leaf after another, of which few are left, and tests sixteen at a time.
+class BallSieve {
+ public:
+  BallSieve(const MeshBallJob& ball, SlotSink& out) : ball_(ball), out_(out) {}
+
+  void add(const Corners16& corners, Mask16 hits, std::uint32_t first_slot) {
+    for (int k = 0; k < 3; ++k) {
+      for (int axis = 0; axis < 3; ++axis) {
+        compress_store(hits, corners.at[k][axis], corner_[k][axis] + size_);
+      }
+    }
+    size_ += compress_store(hits, count_from(first_slot), slot_ + size_);
+    if (size_ < kLanes) return;
+    pass(kLanes);
+    size_ -= kLanes;
+    for (auto& corner : corner_) {
+      for (auto& column : corner) Floats::load(column + kLanes).store(column);
+    }
+    Uints::load_unaligned(slot_ + kLanes).store_unaligned(slot_);
+  }
+
+  void finish() {
+    if (size_ != 0) pass(size_);
+  }
+
+ private:
+  void pass(unsigned count) {
+    Corners16 corners;
+    for (int k = 0; k < 3; ++k) {
+      for (int axis = 0; axis < 3; ++axis) {
+        corners.at[k][axis] = Floats::load(corner_[k][axis]);
+      }
+    }
+    put_slots(Uints::load_unaligned(slot_), ~outside_ball(corners, ball_) & lanes_below(count),
+              out_);
+  }
+
+  const MeshBallJob& ball_;
+  SlotSink& out_;
+  unsigned size_ = 0;
+  // Up to 15 wait, and every store writes 16.
+  alignas(64) float corner_[3][3][2 * kLanes] = {};
+  alignas(64) std::uint32_t slot_[2 * kLanes] = {};
+};
+
+/// Calls show(corners, hits, first slot) for leaves with triangles in the box.
+template <typename Show>
+[[gnu::always_inline]] inline void visit_box(const MeshView& mesh, const MeshBoxJob& job,
+                                             Show&& show) {
+  traverse<kMaxMeshLevels>(
+      mesh.levels,
+      [&](std::uint32_t level, std::uint32_t first_node) {
+        return overlap(load_nodes(mesh, level, first_node), job.node_low, job.node_high) &
+               present(mesh.count[level], first_node);
+      },
+      [&](std::uint32_t level, std::uint32_t node) {
+        if (level != 0) return Next::below;
+        const std::uint32_t first_slot = node * kMeshFanout;
+        const Corners16 corners = load_corners(mesh, node);
+        const Mask16 hits =
+            overlap(box_of(corners), job.low, job.high) & present(mesh.triangle_count, first_slot);
+        if (hits != 0) show(corners, hits, first_slot);
+        return Next::past;
+      });
+}
+
+inline void find_overlaps(const MeshView& mesh, const MeshBoxJob& job, SlotSink& out) {
+  if (job.has_ball) {
+    BallSieve sieve(job.ball, out);
+    visit_box(mesh, job, [&](const Corners16& corners, Mask16 hits, std::uint32_t first_slot) {
+      sieve.add(corners, hits, first_slot);
+    });
+    sieve.finish();
+    return;
+  }
+  visit_box(mesh, job, [&](const Corners16&, Mask16 hits, std::uint32_t first_slot) {
+    put_slots(count_from(first_slot), hits, out);
+  });
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME::mesh

@@ -1,0 +1,191 @@
+#include "pipeline/mesh/mesh_traversal.h"
+
+#include <winnow/core/rounding.h>
+#include <winnow/simd/isa.h>
+#include "pipeline/mesh/mesh_traversal.kernel.h"
+#include "pipeline/mesh/mesh_tree.h"
+#include "pipeline/shapes/frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+
+WINNOW_DEFINE_KERNELS(MeshKernels, mesh_kernels)
+
+namespace {
+
+using mid::kInfinity;
+// Beyond this, sums of products of coordinates may leave the range of double.
+constexpr double kLargest = 1e150;
+// Slack beyond this, in the scale of a, would leave the range of float.
+constexpr double kLargestSlack = 1e30;
+
+/// The largest coordinate of the decoded nodes.
+double largest(const MeshView& mesh, std::size_t axis) {
+  const double low = static_cast<double>(mesh.origin[axis]);
+  return std::max(std::abs(low), std::abs(low + static_cast<double>(kMaxNodeBound) *
+                                                    static_cast<double>(mesh.step[axis])));
+}
+
+/// 1 / the power of two next to the largest coordinate, in the range of normal floats.
+float scale_of(const MeshView& mesh) {
+  const double size = std::max({largest(mesh, 0), largest(mesh, 1), largest(mesh, 2)});
+  const int exponent = size > 0.0 ? std::ilogb(size) : 0;
+  return std::ldexp(1.0F, std::clamp(-exponent, -126, 126));
+}
+
+MeshPairJob pair_job(const MeshView& a, const MeshView& b, const MeshPlacement& b_in_a,
+                     const double margin[3]) {
+  MeshPairJob job{};
+  job.scale = scale_of(a);
+  for (std::size_t k = 0; k < 3; ++k) {
+    double reach = std::abs(b_in_a.offset[k]) + std::abs(margin[k]);
+    for (std::size_t i = 0; i < 3; ++i) reach += std::abs(b_in_a.matrix[k][i]) * largest(b, i);
+    // Less than ten roundings of sums and products of what `reach` adds up.
+    job.slack[k] = margin[k] + reach * 0x1p-48;
+    const double scaled = job.slack[k] * static_cast<double>(job.scale);
+    if (!(reach < kLargest && scaled < kLargestSlack)) {
+      job.slack[k] = kInfinity;
+      job.scaled_slack[k] = std::numeric_limits<float>::infinity();
+      continue;
+    }
+    // A slack that underflows is as good as one of 2^-100 of a's size.
+    job.scaled_slack[k] = round_up(scaled + 0x1p-100);
+    std::copy_n(b_in_a.matrix[k], 3, job.matrix[k]);
+    job.offset[k] = b_in_a.offset[k];
+  }
+  return job;
+}
+
+MeshBoxJob box_job(const MeshView& mesh, const double min[3], const double max[3]) {
+  MeshBoxJob job{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    job.node_low[axis] = static_cast<float>(mesh_units(mesh, axis, min[axis]));
+    job.node_high[axis] = static_cast<float>(mesh_units(mesh, axis, max[axis]));
+    job.low[axis] = round_up(min[axis]);
+    job.high[axis] = round_down(max[axis]);
+  }
+  return job;
+}
+
+/// False for balls so large, so small or so far away that floats tell nothing about them.
+bool set_ball(const double center[3], double radius, MeshBallJob& ball) {
+  constexpr double kFar = 1e30;
+  if (!(radius >= 1e-30 && radius < kFar)) return false;
+  ball.scale = std::ldexp(1.0F, -std::ilogb(radius));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!(std::abs(center[axis]) < kFar)) return false;
+    ball.center[axis] = static_cast<float>(center[axis]);
+    ball.largest = std::max(ball.largest, std::abs(ball.center[axis]) * ball.scale);
+  }
+  ball.radius = round_up(radius * static_cast<double>(ball.scale));
+  return true;
+}
+
+/// Whether nodes reach below a plane.
+struct HalfSpaceTest {
+  const MeshView& mesh;
+  const double* normal;
+  double offset;
+  double noise;
+
+  /// By the least of normal . x over a node's box.
+  [[nodiscard]] bool reaches(std::uint32_t level, std::uint32_t node) const noexcept {
+    double least = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int bound = normal[axis] < 0.0 ? axis + 3 : axis;
+      const double q = mesh.node[level][bound][node];
+      least += normal[axis] *
+               (static_cast<double>(mesh.origin[axis]) + q * static_cast<double>(mesh.step[axis]));
+    }
+    return !(least > offset + noise);
+  }
+};
+
+}  // namespace
+
+void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
+                  SlotSink& out) noexcept {
+  if (mesh.triangle_count == 0) return;
+  mesh_kernels().overlap(mesh, box_job(mesh, min, max), out);
+}
+
+void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
+                  const double center[3], double radius, SlotSink& out) noexcept {
+  if (mesh.triangle_count == 0) return;
+  MeshBoxJob job = box_job(mesh, min, max);
+  job.has_ball = set_ball(center, radius, job.ball);
+  mesh_kernels().overlap(mesh, job, out);
+}
+
+void mesh_below(const MeshView& mesh, const double normal[3], double offset,
+                SlotSink& out) noexcept {
+  double noise = std::abs(offset);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double step =
+        static_cast<double>(kMaxNodeBound + 1) * static_cast<double>(mesh.step[axis]);
+    noise += std::abs(normal[axis]) * (std::abs(static_cast<double>(mesh.origin[axis])) + step);
+  }
+  const HalfSpaceTest test{mesh, normal, offset, mid::kSlack * noise};
+  // Children of a node are taken from the last to the first, so that slots come out ascending.
+  std::uint32_t level_of[kMaxMeshLevels * kMeshFanout];
+  std::uint32_t stack[kMaxMeshLevels * kMeshFanout];
+  std::uint32_t depth = 0;
+  const auto push = [&](std::uint32_t level, std::uint32_t first, std::uint32_t end) {
+    for (std::uint32_t node = end; node-- > first;) {
+      if (!test.reaches(level, node)) continue;
+      level_of[depth] = level;
+      stack[depth++] = node;
+    }
+  };
+  if (mesh.levels == 0) return;
+  push(mesh.levels - 1, 0, mesh.count[mesh.levels - 1]);
+  while (depth != 0) {
+    const std::uint32_t level = level_of[--depth];
+    const std::uint32_t first = stack[depth] * kMeshFanout;
+    if (level != 0) {
+      push(level - 1, first, std::min(first + kMeshFanout, mesh.count[level - 1]));
+      continue;
+    }
+    const std::uint32_t end = std::min(first + kMeshFanout, mesh.triangle_count);
+    for (std::uint32_t slot = first; slot < end; ++slot) {
+      put_slot(out, slot);
+    }
+  }
+}
+
+void mesh_overlap_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& b_in_a,
+                        const double margin[3], SlotPairSink& out) noexcept {
+  if (a.triangle_count == 0 || b.triangle_count == 0) return;
+  mesh_kernels().pairs(a, b, pair_job(a, b, b_in_a, margin), out);
+}
+
+void mesh_sweep(const MeshView& mesh, const double min[3], const double max[3],
+                const double direction[3], double limit, const SlotVisitor& visitor) noexcept {
+  if (mesh.triangle_count == 0 || !(limit >= 0.0)) return;
+  MeshSweepJob job{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    job.min[axis] = min[axis];
+    job.max[axis] = max[axis];
+    job.inverse[axis] = 1.0 / direction[axis];
+    job.is_static[axis] = !std::isfinite(job.inverse[axis]);
+    if (direction[axis] == 0.0 || !job.is_static[axis]) continue;
+    const double shift = direction[axis] * limit;
+    (shift < 0.0 ? job.min : job.max)[axis] += shift;
+  }
+  mesh_kernels().sweep(mesh, job, limit, visitor);
+}
+
+void mesh_near(const MeshView& mesh, const double scale[3], const double min[3],
+               const double max[3], double limit, const SlotVisitor& visitor) noexcept {
+  if (mesh.triangle_count == 0 || !(limit >= 0.0)) return;
+  MeshNearJob job;
+  std::copy_n(min, 3, job.min);
+  std::copy_n(max, 3, job.max);
+  std::copy_n(scale, 3, job.scale);
+  mesh_kernels().near(mesh, job, limit, visitor);
+}
+
+}  // namespace winnow

@@ -1,0 +1,35 @@
+#include "pipeline/mesh/mesh_descent.wide.h"
+#include "pipeline/mesh/mesh_overlaps.wide.h"
+#include "pipeline/mesh/mesh_pairs.wide.h"
+
+namespace winnow {
+namespace WINNOW_ISA_NAME::mesh {
+namespace {
+
+void find_pairs(const MeshView& a, const MeshView& b, const MeshPairJob& job, SlotPairSink& out) {
+  PairTraversal(a, b, job, out).run();
+}
+
+void show_swept(const MeshView& mesh, const MeshSweepJob& job, double limit,
+                const SlotVisitor& visitor) {
+  SweepMeasure measure(job, limit);
+  show_in_order(mesh, measure, visitor);
+}
+
+void show_near(const MeshView& mesh, const MeshNearJob& job, double limit,
+               const SlotVisitor& visitor) {
+  NearMeasure measure(job, limit);
+  show_in_order(mesh, measure, visitor);
+}
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME::mesh
+
+extern const MeshKernels WINNOW_KERNEL_TABLE(mesh_kernels) = {
+    WINNOW_ISA_NAME::mesh::find_overlaps,
+    WINNOW_ISA_NAME::mesh::find_pairs,
+    WINNOW_ISA_NAME::mesh::show_swept,
+    WINNOW_ISA_NAME::mesh::show_near,
+};
+
+}  // namespace winnow

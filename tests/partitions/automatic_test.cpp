@@ -1,0 +1,252 @@
+// The automatic choice where it changes from one structure to another: nobody may notice. What it
+// has in common with all structures is tested with them, by name.
+
+#include <winnow/partitions/partition.h>
+
+#include <array>
+#include <set>
+#include <thread>
+
+#include "../support/counting_memory.h"
+#include "../support/motion.h"
+#include "../support/scenes.h"
+#include "../support/world.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr std::size_t kFew = 20;     // brute force is the best choice whatever the scene
+constexpr std::size_t kMany = 1200;  // and the worst
+
+// A world whose number of objects changes so much that its structure must.
+class TurningWorld {
+ public:
+  explicit TurningWorld(const Config& config,
+                        std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : world(config, memory) {}
+
+  void fill(std::size_t count) {
+    if (keys.size() > count) {
+      world.remove(std::span<const Key>(keys).subspan(count));
+      keys.resize(count);
+      boxes.resize(count);
+      return;
+    }
+    const std::vector<Aabb> all = mixed_boxes(kMany);
+    const std::vector<Aabb> added(all.begin() + static_cast<std::ptrdiff_t>(keys.size()),
+                                  all.begin() + static_cast<std::ptrdiff_t>(count));
+    const std::vector<Key> fresh = world.insert(added, std::vector<ClientData>(added.size(), 7));
+    keys.insert(keys.end(), fresh.begin(), fresh.end());
+    boxes.insert(boxes.end(), added.begin(), added.end());
+  }
+  void step(Motion motion) {
+    move(motion, boxes, random_);
+    world.update(keys, boxes);
+  }
+  [[nodiscard]] const Partition& partition() const { return world.partition(); }
+  /// Name of the structure that prunes the objects.
+  [[nodiscard]] std::string_view chosen() const { return partition().choice().structure.name(); }
+  [[nodiscard]] std::uint64_t changes() const { return partition().choice().changes; }
+
+  World world;
+  std::vector<Aabb> boxes;
+  std::vector<Key> keys;
+
+ private:
+  Random random_{17};
+};
+
+// Few, many, few, many, few: numbers of objects of successive frames.
+std::vector<std::size_t> turning_counts() {
+  std::vector<std::size_t> counts;
+  for (const std::size_t count : {kFew, kMany, kFew, kMany, kFew})
+    counts.insert(counts.end(), 4, count);
+  return counts;
+}
+
+std::vector<Config> auto_configs() {
+  std::vector<Config> configs;
+  for (const Config& config : all_configs()) {
+    if (config.partition == "AutoPartition") configs.push_back(config);
+  }
+  return configs;
+}
+
+class AutomaticChoice : public Conformance {};
+
+TEST_P(AutomaticChoice, keep_keys_filters_data_and_pairs_when_they_change) {
+  TurningWorld scene(config());
+  PairBuffer buffer;
+  std::set<std::string_view> chosen;
+  scene.fill(kFew);
+  scene.world.set_filter(scene.keys[3], {.layers = 2});
+  scene.world.set_filter(scene.keys[5], {.environment = 4});
+  for (const std::size_t count : turning_counts()) {
+    scene.fill(count);
+    scene.step(Motion::few);
+    ASSERT_TRUE(scene.world.agrees(buffer)) << count << " objects";
+    ASSERT_TRUE(scene.world.holds_its_objects()) << count << " objects";
+    chosen.insert(scene.chosen());
+  }
+  EXPECT_GE(scene.changes(), 2U);
+  EXPECT_GE(chosen.size(), 2U);
+}
+
+// The ids of pairs that began or ended.
+std::vector<Pair> ids_of(std::span<const KeyPair> pairs) {
+  std::vector<Pair> ids;
+  for (const auto& [first, second] : pairs) ids.push_back({first.id, second.id});
+  return ids;
+}
+
+TEST_P(AutomaticChoice, tell_the_same_pair_events_as_one_that_never_changes) {
+  TurningWorld turning(config());
+  TurningWorld steady({"LinearBvh", config().isa, config().threads});
+  PairBuffer turning_pairs;
+  PairBuffer steady_pairs;
+  PairEvents turning_events;
+  PairEvents steady_events;
+  const PairOptions canonical{.order = Order::canonical};
+  for (const std::size_t count : turning_counts()) {
+    for (TurningWorld* scene : {&turning, &steady}) {
+      scene->fill(count);
+      scene->step(Motion::few);
+    }
+    ASSERT_EQ(turning.world.partition().self_pairs(turning_pairs, turning_events, canonical),
+              Status::ok);
+    ASSERT_EQ(steady.world.partition().self_pairs(steady_pairs, steady_events, canonical),
+              Status::ok);
+    ASSERT_EQ(ids_of(turning_events.begun()), ids_of(steady_events.begun())) << count;
+    ASSERT_EQ(ids_of(turning_events.ended()), ids_of(steady_events.ended())) << count;
+    ASSERT_EQ(turning_events.persisting(), steady_events.persisting()) << count;
+  }
+  EXPECT_GE(turning.changes(), 2U);
+}
+
+// A frame that asks about what moved alone must not become one that asks about everything.
+TEST_P(AutomaticChoice, update_tracked_buffers_across_a_change) {
+  TurningWorld scene(config());
+  PairBuffer buffer;
+  scene.fill(kMany);
+  ASSERT_TRUE(scene.world.agrees(buffer));
+  scene.fill(kFew);
+  ASSERT_TRUE(scene.world.agrees(buffer));
+  const std::uint64_t changes = scene.changes();
+  scene.fill(kMany / 2);
+  const std::uint64_t full = scene.partition().statistics().full_queries;
+  ASSERT_TRUE(scene.world.agrees(buffer));
+  ASSERT_GT(changes, 0U);
+  scene.world.update(scene.keys[0], scene.boxes[1]);
+  ASSERT_TRUE(scene.world.agrees(buffer));
+  EXPECT_LE(scene.partition().statistics().full_queries, full + 1);
+}
+
+TEST_P(AutomaticChoice, choose_alike_whatever_runs_them) {
+  const auto choices = [](const Config& config) {
+    const IsaScope isa(config.isa);
+    TurningWorld scene(config);
+    PairBuffer buffer;
+    std::vector<std::string_view> chosen;
+    for (const std::size_t count : turning_counts()) {
+      scene.fill(count);
+      scene.step(Motion::little);
+      EXPECT_EQ(scene.world.self_pairs(buffer), Status::ok);
+      chosen.push_back(scene.chosen());
+    }
+    return chosen;
+  };
+  EXPECT_EQ(choices(config()), choices(auto_configs().front()));
+}
+
+// Each change of mind must pay for twice as much as the one before: their number grows with the
+// logarithm of the frames alone.
+TEST_P(AutomaticChoice, change_less_and_less_in_a_scene_that_alternates) {
+  TurningWorld scene(config());
+  PairBuffer buffer;
+  std::array<std::uint64_t, 2> changes{};
+  for (int frame = 0; frame < 160; ++frame) {
+    scene.fill(frame % 2 == 0 ? kFew : kMany);
+    ASSERT_EQ(scene.world.self_pairs(buffer), Status::ok);
+    if (frame == 39) changes[0] = scene.changes();
+  }
+  changes[1] = scene.changes();
+  EXPECT_LE(changes[0], 10U);
+  EXPECT_LE(changes[1] - changes[0], 4U)
+      << "in the three times as many frames after " << changes[0];
+}
+
+TEST_P(AutomaticChoice, stay_usable_when_memory_is_refused_while_they_change) {
+  CountingMemory memory;
+  for (const auto& [from, to] : {std::pair{kFew, kMany}, std::pair{kMany, kFew}}) {
+    bool refused = true;
+    for (std::size_t n = 0; refused; ++n) {
+      ASSERT_LT(n, 100U) << "never enough memory";
+      TurningWorld scene(config(), &memory);
+      PairBuffer buffer;
+      scene.fill(from);
+      ASSERT_TRUE(scene.world.agrees(buffer));
+      const std::string_view before = scene.chosen();
+      scene.fill(to);
+      const std::size_t refusals = memory.refusals();
+      memory.refuse_after(n);
+      const Status status = scene.world.threads().run([&] { return scene.partition().refresh(); });
+      memory.grant_all();
+      refused = memory.refusals() != refusals;
+      ASSERT_TRUE(status == Status::ok || (refused && status == Status::out_of_memory));
+      if (!refused) {
+        EXPECT_NE(scene.chosen(), before);
+      }
+      ASSERT_TRUE(scene.world.holds_its_objects()) << "refused after " << n;
+      EXPECT_EQ(scene.partition().footprint().total().reserved, memory.outstanding());
+      ASSERT_TRUE(scene.world.agrees(buffer)) << "refused after " << n;
+    }
+  }
+}
+
+TEST_P(AutomaticChoice, may_be_asked_by_several_threads_while_they_change) {
+  TurningWorld scene(config());
+  constexpr std::size_t kReaders = 4;
+  std::array<PairBuffer, kReaders> buffers;
+  std::array<bool, kReaders> right{};
+  for (const std::size_t count : turning_counts()) {
+    scene.fill(count);
+    scene.step(Motion::few);
+    const Partition& p = scene.partition();
+    const std::vector<Pair> truth = true_pairs(scene.world.objects());
+    std::vector<std::thread> readers;
+    for (std::size_t i = 0; i < kReaders; ++i) {
+      readers.emplace_back([&, i] {
+        Aabb box;
+        right[i] = p.size() == count && p.contains(scene.keys[i]) &&
+                   p.bounds(scene.keys[i], box) == Status::ok && !scene.chosen().empty() &&
+                   p.footprint().total().reserved != 0 && p.self_pairs(buffers[i]) == Status::ok &&
+                   box == scene.boxes[i] && right_pairs(buffers[i].pairs(), truth, true);
+      });
+    }
+    for (std::thread& reader : readers) reader.join();
+    for (const bool one : right) ASSERT_TRUE(one) << count << " objects";
+  }
+  EXPECT_GE(scene.changes(), 2U);
+}
+
+TEST_P(AutomaticChoice, pair_with_each_other_while_they_change) {
+  TurningWorld a(config());
+  TurningWorld b(config());
+  b.fill(kFew);
+  PairBuffer buffer;
+  for (const std::size_t count : turning_counts()) {
+    a.fill(count);
+    b.fill(kMany + kFew - count);
+    ASSERT_EQ(a.world.pairs_with(b.world.partition(), buffer), Status::ok);
+    ASSERT_TRUE(
+        right_cross_pairs(buffer.pairs(), cross_pairs(a.world.objects(), b.world.objects()), true))
+        << count << " objects";
+  }
+  EXPECT_GE(a.changes() + b.changes(), 2U);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, AutomaticChoice, testing::ValuesIn(auto_configs()),
+                         testing::PrintToStringParamName());
+
+}  // namespace
+}  // namespace winnow::test

@@ -1,0 +1,196 @@
+// Structures as values: which there are, and how a partition exchanges its own while the objects
+// stay.
+
+#include <winnow/partitions/partition.h>
+
+#include <algorithm>
+#include <atomic>
+#include <set>
+#include <thread>
+
+#include "../support/counting_memory.h"
+#include "../support/motion.h"
+#include "../support/scenes.h"
+#include "../support/world.h"
+
+namespace winnow::test {
+namespace {
+
+TEST(Structures, are_found_by_their_names) {
+  std::set<std::string_view> names;
+  for (const StructureKind kind : all_structures()) {
+    EXPECT_TRUE(names.insert(kind.name()).second) << kind.name();
+    EXPECT_EQ(structure_named(kind.name()), kind);
+  }
+  EXPECT_TRUE(names.contains(linear_bvh().name()));
+  EXPECT_TRUE(names.contains(automatic().name()));
+  EXPECT_EQ(structure_named("no such structure"), StructureKind{});
+}
+
+TEST(Structures, can_be_exchanged_while_objects_stay) {
+  Partition partition(linear_bvh());
+  const std::vector<Aabb> boxes{{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}};
+  std::vector<Key> keys(2);
+  ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
+
+  ASSERT_EQ(partition.set_structure(flat_grid()), Status::ok);
+
+  PairBuffer pairs;
+  ASSERT_EQ(partition.self_pairs(pairs), Status::ok);
+  EXPECT_EQ(pairs.size(), 1U);
+  EXPECT_TRUE(partition.contains(keys[0]));
+  EXPECT_EQ(partition.name(), "FlatGrid");
+}
+
+// Every structure after every other one, in a scene that moves, with filters, a tracked buffer and
+// events.
+TEST(Structures, keep_keys_filters_pairs_and_events_when_exchanged) {
+  const Config config{"LinearBvh", active_isa(), 2};
+  World world(config);
+  World twin(config);
+  std::vector<Aabb> boxes = mixed_boxes(400);
+  const std::vector<Key> keys = world.insert(boxes);
+  const std::vector<Key> twin_keys = twin.insert(boxes);
+  world.set_filter(keys[7], {.environment = 3});
+  twin.set_filter(twin_keys[7], {.environment = 3});
+  PairBuffer pairs;
+  PairBuffer twin_pairs;
+  PairEvents events;
+  PairEvents twin_events;
+  Random random(23);
+  const PairOptions canonical{.order = Order::canonical};
+  for (const StructureKind from : all_structures()) {
+    for (const StructureKind to : all_structures()) {
+      if (from.name() == "NSquared" || to.name() == "NSquared") continue;
+      for (const StructureKind kind : {from, to}) {
+        ASSERT_EQ(world.partition().set_structure(kind), Status::ok);
+        (void)move(Motion::few, boxes, random);
+        world.update(keys, boxes);
+        twin.update(twin_keys, boxes);
+        ASSERT_EQ(world.partition().self_pairs(pairs, events, canonical), Status::ok);
+        ASSERT_EQ(twin.partition().self_pairs(twin_pairs, twin_events, canonical), Status::ok);
+        ASSERT_EQ(pairs.size(), twin_pairs.size()) << from.name() << " to " << to.name();
+        ASSERT_EQ(events.begun().size(), twin_events.begun().size());
+        ASSERT_EQ(events.ended().size(), twin_events.ended().size());
+        ASSERT_EQ(events.persisting(), twin_events.persisting());
+        ASSERT_TRUE(world.holds_its_objects());
+      }
+    }
+  }
+}
+
+TEST(Structures, are_told_what_the_automatic_choice_holds) {
+  Partition partition(automatic());
+  const std::vector<Aabb> boxes = uniform_boxes(3000);
+  std::vector<Key> keys(boxes.size());
+  ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
+  ASSERT_EQ(partition.refresh(), Status::ok);
+  EXPECT_EQ(partition.name(), "AutoPartition");
+  const StructureChoice choice = partition.choice();
+  EXPECT_NE(choice.structure.name(), "AutoPartition");
+  EXPECT_EQ(choice.features.objects, boxes.size());
+  EXPECT_FALSE(choice.reason.empty());
+}
+
+// What holds no state refuses every call with one status, and changes nothing.
+void expect_all_refused(Partition& partition, Status status) {
+  const std::vector<Aabb> boxes(1);
+  std::vector<Key> keys(1);
+  PairBuffer pairs;
+  PairEvents events;
+  Hit hit;
+  HitBuffer hits;
+  OverlapBuffer objects;
+  Aabb box;
+  const Aabb point{{0, 0, 0}, {0, 0, 0}};
+  EXPECT_EQ(partition.status(), status);
+  EXPECT_EQ(partition.insert(boxes, {}, keys), status);
+  EXPECT_EQ(partition.update(keys, boxes), status);
+  EXPECT_EQ(partition.remove(keys), status);
+  EXPECT_EQ(partition.reserve(10), status);
+  EXPECT_EQ(partition.bounds(keys[0], box), status);
+  EXPECT_EQ(partition.set_filter(keys[0], ObjectFilter{}), status);
+  EXPECT_EQ(partition.refresh(), status);
+  EXPECT_EQ(partition.self_pairs(pairs), status);
+  EXPECT_EQ(partition.self_pairs(pairs, events), status);
+  EXPECT_EQ(partition.closest(Ray{{0, 0, 0}, {1, 0, 0}}, hit), status);
+  EXPECT_EQ(partition.all(Ray{{0, 0, 0}, {1, 0, 0}}, hits), status);
+  EXPECT_EQ(partition.overlap(Region(point), objects), status);
+  EXPECT_EQ(partition.overlap(BoxView(boxes), pairs), status);
+  EXPECT_EQ(partition.nearest(point, 1, 1.0F, hits), status);
+  EXPECT_EQ(partition.size(), 0U);
+  EXPECT_FALSE(partition.contains(keys[0]));
+  EXPECT_EQ(partition.footprint().total().reserved, 0U);
+  partition.clear();
+  partition.release_memory();
+}
+
+TEST(Structures, that_are_none_are_refused) {
+  Partition partition{StructureKind{}};
+  expect_all_refused(partition, Status::invalid_argument);
+  Partition good(linear_bvh());
+  EXPECT_EQ(good.set_structure(StructureKind{}), Status::invalid_argument);
+  EXPECT_EQ(good.name(), "LinearBvh");
+}
+
+TEST(Structures, leave_nothing_behind_when_a_partition_moves) {
+  Partition from(sweep_and_prune());
+  Key key;
+  ASSERT_EQ(from.insert(Aabb{{0, 0, 0}, {1, 1, 1}}, 5, key), Status::ok);
+  Partition to(std::move(from));
+  EXPECT_TRUE(to.contains(key));
+  expect_all_refused(from, Status::invalid_argument);  // NOLINT(bugprone-use-after-move)
+  from = std::move(to);
+  EXPECT_EQ(from.client_data_of(key.id), 5U);
+}
+
+TEST(Structures, whose_memory_is_refused_say_so) {
+  for (const StructureKind kind : all_structures()) {
+    CountingMemory memory;
+    std::size_t granted = 0;
+    for (;; ++granted) {
+      ASSERT_LT(granted, 10U);
+      memory.refuse_after(granted);
+      Partition partition(kind, {.memory = &memory});
+      memory.grant_all();
+      if (partition.status() == Status::ok) break;
+      expect_all_refused(partition, Status::out_of_memory);
+      EXPECT_EQ(memory.outstanding(), 0U);
+    }
+    EXPECT_GT(granted, 0U) << kind.name();
+    Partition held(linear_bvh(), {.memory = &memory});
+    memory.refuse_after(0);
+    EXPECT_EQ(held.set_structure(kind), Status::out_of_memory) << kind.name();
+    memory.grant_all();
+    EXPECT_EQ(held.name(), "LinearBvh");
+    EXPECT_EQ(held.footprint().total().reserved, memory.outstanding());
+  }
+}
+
+// A refresh orders rows anew; who looks up a box meanwhile must get that object's.
+TEST(Structures, give_right_boxes_while_a_query_refreshes) {
+  for (const StructureKind kind : {linear_bvh(), hierarchical_grid(), automatic()}) {
+    Partition partition(kind);
+    std::vector<Aabb> boxes = uniform_boxes(3000);
+    std::vector<Key> keys(boxes.size());
+    ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
+    for (int round = 0; round < 8; ++round) {
+      std::reverse(boxes.begin(), boxes.end());
+      ASSERT_EQ(partition.update(keys, boxes), Status::ok);
+      std::atomic<std::size_t> wrong{0};
+      std::thread reader([&] {
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+          Aabb box;
+          if (partition.bounds(keys[i], box) != Status::ok || box != boxes[i]) ++wrong;
+        }
+      });
+      PairBuffer pairs;
+      EXPECT_EQ(partition.self_pairs(pairs), Status::ok);
+      reader.join();
+      ASSERT_EQ(wrong, 0U) << kind.name();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test

@@ -1,0 +1,531 @@
+#include "pipeline/mesh/mesh_traversal.h"
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "../support/config.h"
+#include "../support/meshes.h"
+#include "../support/random.h"
+
+namespace winnow::test {
+namespace {
+
+using Real = long double;
+using Point = std::array<Real, 3>;
+
+struct TwinTriangle {
+  Point corner[3];
+
+  [[nodiscard]] Real low(std::size_t axis) const {
+    return std::min({corner[0][axis], corner[1][axis], corner[2][axis]});
+  }
+  [[nodiscard]] Real high(std::size_t axis) const {
+    return std::max({corner[0][axis], corner[1][axis], corner[2][axis]});
+  }
+};
+
+/// The triangles of a mesh by slot, once they are placed.
+std::vector<TwinTriangle> twin(const MeshView& mesh, const MeshPlacement& placement = {}) {
+  std::vector<TwinTriangle> result(mesh.triangle_count);
+  for (std::size_t slot = 0; slot < result.size(); ++slot) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t row = 0; row < 3; ++row) {
+        Real x = static_cast<Real>(placement.offset[row]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          x += static_cast<Real>(placement.matrix[row][axis]) *
+               static_cast<Real>(mesh.vertex[axis][mesh.corner[k][slot]]);
+        }
+        result[slot].corner[k][row] = x;
+      }
+    }
+  }
+  return result;
+}
+
+Point minus(const Point& a, const Point& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Point cross(const Point& a, const Point& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Real dot(const Point& a, const Point& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// How far b, grown by the margin, lies from a along an axis; below zero if they overlap on it.
+Real gap_along(const TwinTriangle& a, const TwinTriangle& b, const double margin[3],
+               const Point& axis) {
+  const Real length = std::sqrt(dot(axis, axis));
+  if (length == 0) return -1;
+  Real ends[2][2];
+  for (int side = 0; side < 2; ++side) {
+    const TwinTriangle& t = side == 0 ? a : b;
+    const Real x = dot(axis, t.corner[0]);
+    const Real y = dot(axis, t.corner[1]);
+    const Real z = dot(axis, t.corner[2]);
+    ends[side][0] = std::min({x, y, z});
+    ends[side][1] = std::max({x, y, z});
+  }
+  Real grow = 0;
+  for (std::size_t k = 0; k < 3; ++k) grow += std::abs(axis[k]) * static_cast<Real>(margin[k]);
+  return (std::max(ends[0][0] - ends[1][1], ends[1][0] - ends[0][1]) - grow) / length;
+}
+
+Real box_gap(const TwinTriangle& a, const TwinTriangle& b, const double margin[3]) {
+  Real result = -1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Real between = std::max(a.low(k) - b.high(k), b.low(k) - a.high(k));
+    result = std::max(result, between - static_cast<Real>(margin[k]));
+  }
+  return result;
+}
+
+/// The largest gap along the axes of the frame and the normals, and with `all` along the cross
+/// products of edges too: above zero only if the triangles, one of them grown, do not meet.
+Real gap(const TwinTriangle& a, const TwinTriangle& b, const double margin[3], bool all) {
+  Real result = box_gap(a, b, margin);
+  if (result > 0) return result;
+  Point edges[2][3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    edges[0][k] = minus(a.corner[(k + 1) % 3], a.corner[k]);
+    edges[1][k] = minus(b.corner[(k + 1) % 3], b.corner[k]);
+  }
+  for (const auto& e : edges) result = std::max(result, gap_along(a, b, margin, cross(e[0], e[1])));
+  if (!all) return result;
+  for (const Point& e : edges[0]) {
+    for (const Point& f : edges[1]) result = std::max(result, gap_along(a, b, margin, cross(e, f)));
+  }
+  return result;
+}
+
+/// Calls body on every instruction set and expects the same result from each.
+template <typename Body>
+auto on_all_isas(Body&& body) {
+  std::vector<decltype(body())> results;
+  for (const Isa isa : available_isas()) {
+    const IsaScope scope(isa);
+    results.push_back(body());
+    EXPECT_TRUE(results.back() == results.front()) << to_string(isa);
+  }
+  return results.front();
+}
+
+class Meshes : public testing::Test {
+ protected:
+  Meshes() {
+    for (const MeshData& data : sample_meshes()) {
+      meshes_.emplace_back();
+      EXPECT_EQ(data.build(meshes_.back()), Status::ok) << data.name;
+    }
+  }
+  std::vector<TriangleMesh> meshes_;
+};
+
+using Slots = std::vector<std::uint32_t>;
+using SlotPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// Walks twice: first without room, then with what was counted.
+template <typename Walk>
+Slots collect(Walk&& walk) {
+  SlotSink sink;
+  walk(sink);
+  Slots slots(sink.size);
+  sink = {slots.data(), slots.size(), 0};
+  walk(sink);
+  EXPECT_EQ(sink.size, slots.size());
+  return slots;
+}
+
+Slots overlap(const MeshView& mesh, const double min[3], const double max[3]) {
+  return collect([&](SlotSink& sink) { mesh_overlap(mesh, min, max, sink); });
+}
+
+SlotPairs overlap_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& placement,
+                        const double margin[3]) {
+  SlotPairSink sink;
+  mesh_overlap_pairs(a, b, placement, margin, sink);
+  Slots first(sink.size);
+  Slots second(sink.size);
+  sink = {first.data(), second.data(), first.size(), 0};
+  mesh_overlap_pairs(a, b, placement, margin, sink);
+  EXPECT_EQ(sink.size, first.size());
+  SlotPairs pairs;
+  for (std::size_t i = 0; i < first.size(); ++i) pairs.emplace_back(first[i], second[i]);
+  return pairs;
+}
+
+MeshPlacement random_placement(Random& random, double reach) {
+  const Eigen::Quaterniond turn = Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
+                                                     random.uniform(-1, 1), random.uniform(-1, 1))
+                                      .normalized();
+  const Eigen::Matrix3d rotation = turn.toRotationMatrix();
+  MeshPlacement placement;
+  for (int row = 0; row < 3; ++row) {
+    placement.offset[row] = random.uniform(-reach, reach);
+    for (int column = 0; column < 3; ++column) {
+      const double scale = random.chance(0.5) ? 1.0 : random.uniform(-2, 2);
+      placement.matrix[row][column] = rotation(row, column) * scale;
+    }
+  }
+  return placement;
+}
+
+TEST_F(Meshes, a_box_finds_the_triangles_whose_boxes_it_meets_and_no_others) {
+  Random random(1);
+  for (const TriangleMesh& mesh : meshes_) {
+    const auto triangles = twin(view_of(mesh));
+    const Eigen::Vector3f size = mesh.bounds().max - mesh.bounds().min;
+    for (std::size_t k = 0; k < scaled(60); ++k) {
+      double min[3];
+      double max[3];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<int>(axis);
+        min[axis] = static_cast<double>(mesh.bounds().min[a] +
+                                        size[a] * static_cast<float>(random.uniform(-0.1, 1.0)));
+        max[axis] = min[axis] + static_cast<double>(size[a]) * random.uniform(0.0, 0.3);
+        // Boxes that end at a corner touch it.
+        const auto& corner = triangles[random.below(triangles.size())].corner[0];
+        if (random.chance(0.2)) max[axis] = static_cast<double>(corner[axis]);
+        if (random.chance(0.1)) max[axis] = std::numeric_limits<double>::infinity();
+        min[axis] = std::min(min[axis], max[axis]);
+      }
+      Slots expected;
+      for (std::uint32_t slot = 0; slot < triangles.size(); ++slot) {
+        bool met = true;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          met = met && triangles[slot].low(axis) <= static_cast<Real>(max[axis]) &&
+                triangles[slot].high(axis) >= static_cast<Real>(min[axis]);
+        }
+        if (met) expected.push_back(slot);
+      }
+      EXPECT_EQ(on_all_isas([&] { return overlap(view_of(mesh), min, max); }), expected);
+    }
+  }
+}
+
+/// Every pair that meets is found, once, and none whose boxes are apart by more than 64 u of the
+/// coordinates.
+void expect_pairs(const TriangleMesh& a, const TriangleMesh& b, const MeshPlacement& placement,
+                  const double margin[3]) {
+  const SlotPairs found =
+      on_all_isas([&] { return overlap_pairs(view_of(a), view_of(b), placement, margin); });
+  const std::set<SlotPairs::value_type> set(found.begin(), found.end());
+  EXPECT_EQ(set.size(), found.size());
+  const auto own = twin(view_of(a));
+  const auto placed = twin(view_of(b), placement);
+  const Real rounding = static_cast<Real>((a.radius() + b.radius() * 4.0 + 2.0) * 64 * 0x1p-24);
+  std::size_t missed = 0;
+  std::size_t apart = 0;
+  for (std::uint32_t i = 0; i < own.size(); ++i) {
+    for (std::uint32_t j = 0; j < placed.size(); ++j) {
+      const Real between = box_gap(own[i], placed[j], margin);
+      const bool is_found = set.count({i, j}) != 0;
+      apart += is_found && between > rounding;
+      missed += !is_found && between <= 0 && gap(own[i], placed[j], margin, true) <= 0;
+    }
+  }
+  EXPECT_EQ(missed, 0U);
+  EXPECT_EQ(apart, 0U);
+}
+
+TEST_F(Meshes, two_meshes_find_every_pair_of_triangles_that_meets_and_none_whose_boxes_are_apart) {
+  Random random(2);
+  for (const TriangleMesh& a : meshes_) {
+    const TriangleMesh& b = meshes_[random.below(meshes_.size())];
+    for (std::size_t k = 0; k < scaled(6); ++k) {
+      const double grow = random.chance(0.5) ? 0.0 : 0.05;
+      const double margin[3] = {grow, 2 * grow, grow};
+      expect_pairs(a, b, random_placement(random, 1.0), margin);
+    }
+  }
+}
+
+/// The distance of a point from a triangle: from its plane if the foot is inside, else from an
+/// edge.
+Real distance(const TwinTriangle& t, const Point& point) {
+  const auto& c = t.corner;
+  const Point normal = cross(minus(c[1], c[0]), minus(c[2], c[0]));
+  const Real length = std::sqrt(dot(normal, normal));
+  Real nearest = std::numeric_limits<Real>::infinity();
+  bool inside = length > 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point edge = minus(c[(k + 1) % 3], c[k]);
+    const Point from = minus(point, c[k]);
+    const Real square = dot(edge, edge);
+    const Real along = square > 0 ? std::clamp<Real>(dot(from, edge) / square, 0, 1) : 0;
+    const Point away = minus(from, {edge[0] * along, edge[1] * along, edge[2] * along});
+    nearest = std::min(nearest, std::sqrt(dot(away, away)));
+    inside = inside && dot(cross(normal, edge), from) >= 0;
+  }
+  return inside ? std::abs(dot(normal, minus(point, c[0]))) / length : nearest;
+}
+
+TEST_F(Meshes, a_ball_finds_the_triangles_that_come_near_its_middle) {
+  Random random(11);
+  std::size_t dropped = 0;
+  for (const TriangleMesh& mesh : meshes_) {
+    const auto triangles = twin(view_of(mesh));
+    for (std::size_t k = 0; k < scaled(60); ++k) {
+      const auto& corner = triangles[random.below(triangles.size())].corner[0];
+      const double radius = mesh.radius() * random.log_uniform(1e-5, 0.5);
+      double center[3];
+      double min[3];
+      double max[3];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        center[axis] = static_cast<double>(corner[axis]) + radius * random.uniform(-1.5, 1.5);
+        min[axis] = center[axis] - radius;
+        max[axis] = center[axis] + radius;
+      }
+      const Slots found = on_all_isas([&] {
+        return collect(
+            [&](SlotSink& sink) { mesh_overlap(view_of(mesh), min, max, center, radius, sink); });
+      });
+      Slots expected = overlap(view_of(mesh), min, max);
+      const std::size_t in_box = expected.size();
+      const Real slack = static_cast<Real>(2e-4 * mesh.radius());
+      std::erase_if(expected, [&](std::uint32_t slot) {
+        const Point middle = {center[0], center[1], center[2]};
+        const Real away = distance(triangles[slot], middle) - static_cast<Real>(radius);
+        const bool is_found = std::binary_search(found.begin(), found.end(), slot);
+        EXPECT_TRUE(away > 0 || is_found) << slot;
+        EXPECT_TRUE(away <= slack || !is_found) << slot;
+        return !is_found;
+      });
+      EXPECT_EQ(found, expected);
+      dropped += in_box - found.size();
+    }
+  }
+  EXPECT_GT(dropped, 0U);
+}
+
+TEST_F(Meshes, trees_of_different_depth_find_their_pairs) {
+  TriangleMesh deep;
+  TriangleMesh shallow;
+  ASSERT_EQ(torus(70, 40).build(deep), Status::ok);
+  ASSERT_EQ(gear(3).build(shallow), Status::ok);
+  ASSERT_EQ(view_of(deep).levels, 3U);
+  ASSERT_EQ(view_of(shallow).levels, 1U);
+  const double margin[3] = {0, 0, 0};
+  const MeshPlacement tilted{{{0.8, -0.6, 0}, {0.6, 0.8, 0}, {0, 0, 1}}, {0.9, 0.1, 0.2}};
+  expect_pairs(deep, shallow, tilted, margin);
+  expect_pairs(shallow, deep, tilted, margin);
+}
+
+TEST_F(Meshes, pairs_can_be_taken_from_a_small_room_as_they_are_found) {
+  const MeshPlacement placement{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0.4, 0.2, 0.1}};
+  const double margin[3] = {0, 0, 0};
+  const MeshView& mesh = view_of(meshes_[0]);
+  const SlotPairs expected = overlap_pairs(mesh, mesh, placement, margin);
+  ASSERT_GT(expected.size(), 100U);
+  for (const std::size_t room : {std::size_t{16}, std::size_t{40}}) {
+    SlotPairs taken;
+    const auto take = [](void* context, SlotPairSink& sink) {
+      for (std::size_t i = 0; i < sink.size; ++i) {
+        static_cast<SlotPairs*>(context)->emplace_back(sink.first[i], sink.second[i]);
+      }
+      sink.size = 0;
+    };
+    Slots first(room);
+    Slots second(room);
+    SlotPairSink sink{first.data(), second.data(), room, 0, take, &taken};
+    mesh_overlap_pairs(mesh, mesh, placement, margin, sink);
+    take(&taken, sink);
+    EXPECT_EQ(taken, expected);
+  }
+}
+
+TEST_F(Meshes, pairs_that_planes_tell_apart_are_dropped) {
+  const TriangleMesh& mesh = meshes_[0];
+  const MeshPlacement placement{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {1.3, 0.2, 0.1}};
+  const double margin[3] = {0, 0, 0};
+  const auto own = twin(view_of(mesh));
+  const auto placed = twin(view_of(mesh), placement);
+  const SlotPairs found = overlap_pairs(view_of(mesh), view_of(mesh), placement, margin);
+  EXPECT_GT(found.size(), 20U);
+  for (const auto& [i, j] : found) EXPECT_LE(gap(own[i], placed[j], margin, false), 1e-5L);
+}
+
+TEST_F(Meshes, scales_and_offsets_of_any_size_miss_nothing) {
+  // A mesh meets itself in every triangle, whatever the scale of both.
+  for (const float scale : {1e-40F, 1e-30F, 1.0F, 1e30F, 1e37F}) {
+    MeshData data = torus(12, 8);
+    for (auto& v : data.vertices) v *= scale;
+    TriangleMesh mesh;
+    ASSERT_EQ(data.build(mesh), Status::ok);
+    const double margin[3] = {0, 0, 0};
+    const SlotPairs found =
+        on_all_isas([&] { return overlap_pairs(view_of(mesh), view_of(mesh), {}, margin); });
+    const std::set<SlotPairs::value_type> set(found.begin(), found.end());
+    for (std::uint32_t i = 0; i < data.triangles(); ++i) EXPECT_TRUE(set.count({i, i})) << scale;
+  }
+  const TriangleMesh& mesh = meshes_[0];
+  for (const double huge : {1e100, 1e300}) {
+    MeshPlacement placement;
+    for (int k = 0; k < 3; ++k) placement.matrix[k][k] = huge;
+    const double margin[3] = {0, 0, huge};
+    // Slot 0 of the huge mesh is grown over all of the small one.
+    const SlotPairs found =
+        on_all_isas([&] { return overlap_pairs(view_of(mesh), view_of(mesh), placement, margin); });
+    for (const auto& [i, j] : found) EXPECT_LT(std::max(i, j), mesh.triangles());
+    if (huge > 1e200) {
+      EXPECT_EQ(found.size(), mesh.triangles() * mesh.triangles());
+    }
+  }
+}
+
+struct Seen {
+  Slots slots;
+  double answer = 0.0;
+  bool keep = false;
+
+  static double visit(void* context, const std::uint32_t* slots, std::uint32_t count,
+                      double limit) {
+    auto& seen = *static_cast<Seen*>(context);
+    EXPECT_GE(count, 1U);
+    EXPECT_LE(count, 16U);
+    seen.slots.insert(seen.slots.end(), slots, slots + count);
+    return seen.keep ? limit : seen.answer;
+  }
+};
+
+/// When the box moving from [min, max] first meets a triangle's box, up to the last end of it.
+Real meeting_time(const TwinTriangle& triangle, const double min[3], const double max[3],
+                  const double direction[3], Real limit, Real slack) {
+  Real first = 0;
+  Real last = limit;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Real near = triangle.low(axis) - static_cast<Real>(max[axis]) - slack;
+    const Real far = triangle.high(axis) - static_cast<Real>(min[axis]) + slack;
+    const auto d = static_cast<Real>(direction[axis]);
+    if (d == 0) {
+      if (near > 0 || far < 0) return std::numeric_limits<Real>::infinity();
+      continue;
+    }
+    first = std::max(first, std::min(near / d, far / d));
+    last = std::min(last, std::max(near / d, far / d));
+  }
+  return first <= last ? first : std::numeric_limits<Real>::infinity();
+}
+
+TEST_F(Meshes, a_sweep_shows_the_triangles_it_may_meet_and_ends_where_it_is_told) {
+  Random random(3);
+  for (const TriangleMesh& mesh : meshes_) {
+    const auto triangles = twin(view_of(mesh));
+    const Eigen::Vector3d middle = (mesh.bounds().min + mesh.bounds().max).cast<double>() * 0.5;
+    for (std::size_t k = 0; k < scaled(40); ++k) {
+      const double r = mesh.radius();
+      double min[3];
+      double max[3];
+      double direction[3];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        min[axis] = middle[static_cast<int>(axis)] + r * random.uniform(-1, 1);
+        max[axis] = min[axis] + (random.chance(0.5) ? 0.0 : r * random.uniform(0, 0.1));
+        direction[axis] = random.chance(0.2) ? 0.0 : r * random.uniform(-1, 1);
+      }
+      // A direction whose inverse is infinite is taken for none, and the way for part of the box.
+      const bool slow = random.chance(0.1);
+      if (slow) direction[0] = 1e-310;
+      const double limit = random.chance(0.3) ? std::numeric_limits<double>::infinity() : 1.5;
+      const Slots shown = on_all_isas([&] {
+        Seen seen{{}, 0.0, true};
+        mesh_sweep(view_of(mesh), min, max, direction, limit, {Seen::visit, &seen});
+        return seen.slots;
+      });
+      const std::set<std::uint32_t> set(shown.begin(), shown.end());
+      EXPECT_EQ(set.size(), shown.size());
+      Real earliest = std::numeric_limits<Real>::infinity();
+      for (std::uint32_t slot = 0; slot < triangles.size(); ++slot) {
+        const Real time = meeting_time(triangles[slot], min, max, direction, limit, 0);
+        earliest = std::min(earliest, time);
+        EXPECT_TRUE(time > static_cast<Real>(limit) || std::isinf(time) || set.count(slot) != 0);
+        if (set.count(slot) == 0 || slow) continue;
+        EXPECT_FALSE(
+            std::isinf(meeting_time(triangles[slot], min, max, direction, limit, r * 1e-9)))
+            << "what is not met is not shown, however late the limit";
+      }
+      // Told the earliest time after the first leaf, it shows what is earlier yet and ends.
+      Seen seen{{}, static_cast<double>(earliest), false};
+      mesh_sweep(view_of(mesh), min, max, direction, limit, {Seen::visit, &seen});
+      EXPECT_LE(seen.slots.size(), shown.size());
+      if (!shown.empty()) {
+        EXPECT_TRUE(std::any_of(seen.slots.begin(), seen.slots.end(), [&](std::uint32_t slot) {
+          return meeting_time(triangles[slot], min, max, direction, limit, 0) == earliest;
+        }));
+      }
+      seen = {{}, -1.0, false};
+      mesh_sweep(view_of(mesh), min, max, direction, limit, {Seen::visit, &seen});
+      EXPECT_LE(seen.slots.size(), 16U);
+    }
+  }
+}
+
+TEST_F(Meshes, what_is_near_a_box_is_shown_at_any_scale_of_the_mesh) {
+  Random random(4);
+  for (const TriangleMesh& mesh : meshes_) {
+    for (std::size_t k = 0; k < scaled(40); ++k) {
+      double scale[3];
+      MeshPlacement placement;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        scale[axis] = random.chance(0.3) ? 1.0 : random.uniform(-3, 3);
+        placement.matrix[axis][axis] = scale[axis];
+      }
+      const auto triangles = twin(view_of(mesh), placement);
+      double min[3];
+      double max[3];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        min[axis] = mesh.radius() * random.uniform(-2, 2);
+        max[axis] = min[axis] + mesh.radius() * random.uniform(0, 0.2);
+      }
+      const double limit = mesh.radius() * random.uniform(0, 1);
+      const Slots shown = on_all_isas([&] {
+        Seen seen{{}, 0.0, true};
+        mesh_near(view_of(mesh), scale, min, max, limit, {Seen::visit, &seen});
+        return seen.slots;
+      });
+      const std::set<std::uint32_t> set(shown.begin(), shown.end());
+      EXPECT_EQ(set.size(), shown.size());
+      for (std::uint32_t slot = 0; slot < triangles.size(); ++slot) {
+        Real square = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const Real below = static_cast<Real>(min[axis]) - triangles[slot].high(axis);
+          const Real above = triangles[slot].low(axis) - static_cast<Real>(max[axis]);
+          const Real away = std::max({Real(0), below, above});
+          square += away * away;
+        }
+        const bool is_near = std::sqrt(square) <= static_cast<Real>(limit);
+        EXPECT_TRUE(!is_near || set.count(slot) != 0) << slot;
+        if (set.count(slot) != 0) {
+          EXPECT_LE(std::sqrt(square), static_cast<Real>(limit * (1 + 1e-9)));
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Meshes, decoded_nodes_contain_the_triangles_below_them) {
+  for (const TriangleMesh& mesh : meshes_) {
+    const MeshView& view = view_of(mesh);
+    const auto triangles = twin(view);
+    std::uint32_t below = kMeshFanout;
+    for (std::uint32_t level = 0; level < view.levels; ++level, below *= kMeshFanout) {
+      for (std::uint32_t slot = 0; slot < triangles.size(); ++slot) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const auto decode = [&](std::uint16_t q) {
+            return static_cast<Real>(static_cast<double>(view.origin[axis]) +
+                                     q * static_cast<double>(view.step[axis]));
+          };
+          EXPECT_LE(decode(view.node[level][axis][slot / below]), triangles[slot].low(axis));
+          EXPECT_GE(decode(view.node[level][3 + axis][slot / below]), triangles[slot].high(axis));
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test
