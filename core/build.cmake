@@ -1,6 +1,12 @@
 # What every winnow target is built with, the dependencies, and the include tree.
 
 include(FetchContent)
+include(GNUInstallDirs)
+
+set(WINNOW_SHARED OFF)
+if(BUILD_SHARED_LIBS)
+  set(WINNOW_SHARED ON)
+endif()
 
 # <winnow/core/aabb.h> is spelled in the tree as it is after installation: one line in the build tree
 # leads to each public header, the headers that lie at a room's root. Everything else is spelled by its
@@ -34,6 +40,13 @@ if(NOT TARGET TBB::tbb)
   FetchContent_MakeAvailable(TBB)
 endif()
 
+# Hulls from points, where it is installed.
+find_package(Qhull QUIET CONFIG)
+set(WINNOW_WITH_QHULL OFF)
+if(TARGET Qhull::qhull_r)
+  set(WINNOW_WITH_QHULL ON)
+endif()
+
 # Only the headers: the CMake target of Debian's xsimd links a library that does not exist there.
 find_path(WINNOW_XSIMD_INCLUDE_DIR xsimd/xsimd.hpp)
 if(NOT WINNOW_XSIMD_INCLUDE_DIR)
@@ -63,8 +76,8 @@ endif()
 target_compile_options(winnow_flags INTERFACE ${winnow_sanitize})
 target_link_options(winnow_flags INTERFACE ${winnow_sanitize})
 
-# winnow_library(room LINKS ... PRIVATE_LINKS ... PRECOMPILED ... APART ...): one of the four library
-# modules, made of every source below its folder. A `*.kernel.cpp` is compiled once per instruction
+# winnow_library(room LINKS ... PRIVATE_LINKS ... PRECOMPILED ... APART ...): one of the four rooms of the
+# library, an archive of every source below its folder. A `*.kernel.cpp` is compiled once per instruction
 # set. Reading headers is most of what compiling the others takes: those of one folder, which a program
 # links together anyway, are compiled together, but for those APART whose own names meet others'.
 function(winnow_library room)
@@ -74,9 +87,12 @@ function(winnow_library room)
   list(FILTER kernels INCLUDE REGEX "\\.kernel\\.cpp$")
   list(FILTER sources EXCLUDE REGEX "\\.kernel\\.cpp$")
   set(target winnow_${room})
-  add_library(${target} ${sources})
+  add_library(${target} STATIC ${sources})
   add_library(winnow::${room} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${room} POSITION_INDEPENDENT_CODE ON
+                                             CXX_VISIBILITY_PRESET hidden
+                                             VISIBILITY_INLINES_HIDDEN ON
+                                             EXCLUDE_FROM_ALL ${WINNOW_SHARED}
                                              UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   foreach(source ${sources})
     get_filename_component(folder ${source} DIRECTORY)
@@ -90,7 +106,8 @@ function(winnow_library room)
                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} PUBLIC ${arg_LINKS} PRIVATE $<BUILD_INTERFACE:winnow_flags>
                         ${arg_PRIVATE_LINKS})
-  target_compile_definitions(${target} PRIVATE ${WINNOW_ISA_DEFINITIONS})
+  target_compile_definitions(${target} PRIVATE ${WINNOW_ISA_DEFINITIONS}
+                             $<$<BOOL:${WINNOW_SHARED}>:WINNOW_SHARED=1>)
   # Eigen takes longer to read than what is written with it. A compiler cache does better without.
   if(WINNOW_PRECOMPILED_HEADERS AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND arg_PRECOMPILED)
     target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILED})
@@ -99,4 +116,30 @@ function(winnow_library room)
     winnow_add_kernels(${target} ${kernels})
   endif()
 endfunction()
-include(GNUInstallDirs)
+
+# winnow::winnow, what a simulation links: all rooms. Shared, it is one library of all their objects that
+# exports what WINNOW_API marks; tests and bench, which look inside, link the archive winnow::pipeline and
+# with it all rooms below.
+function(winnow_whole_library)
+  if(NOT WINNOW_SHARED)
+    add_library(winnow INTERFACE)
+    target_link_libraries(winnow INTERFACE winnow_pipeline)
+  else()
+    get_property(kernels GLOBAL PROPERTY WINNOW_KERNEL_OBJECTS)
+    add_library(winnow SHARED)
+    foreach(objects winnow_core winnow_simd winnow_partitions winnow_pipeline ${kernels})
+      target_sources(winnow PRIVATE $<TARGET_OBJECTS:${objects}>)
+    endforeach()
+    set_target_properties(winnow PROPERTIES
+      LINKER_LANGUAGE CXX
+      VERSION ${PROJECT_VERSION}
+      SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+    target_compile_features(winnow INTERFACE cxx_std_20)
+    target_compile_definitions(winnow INTERFACE WINNOW_SHARED=1)
+    target_include_directories(winnow INTERFACE $<BUILD_INTERFACE:${WINNOW_INCLUDE_DIR}>
+                               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    target_link_libraries(winnow INTERFACE Eigen3::Eigen
+                          PRIVATE winnow_flags TBB::tbb $<TARGET_NAME_IF_EXISTS:Qhull::qhull_r>)
+  endif()
+  add_library(winnow::winnow ALIAS winnow)
+endfunction()

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 
 #include <algorithm>
@@ -12,6 +13,10 @@
 #include <utility>
 
 namespace winnow {
+
+/// `memory.allocate(bytes, alignment)`, or null if the resource throws.
+[[nodiscard]] WINNOW_API void* try_allocate(std::pmr::memory_resource& memory, std::size_t bytes,
+                                            std::size_t alignment) noexcept;
 
 /// One column of a structure of arrays: 64-byte aligned, its memory a whole number of 64-byte
 /// lines, growth reported instead of thrown. `std::pmr::vector` asks its resource only for
@@ -51,12 +56,8 @@ class Column {
   [[nodiscard]] bool reserve(std::size_t count) noexcept {
     if (count <= capacity_) return true;
     const std::size_t bytes = (count * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
-    T* fresh = nullptr;
-    try {
-      fresh = static_cast<T*>(memory_->allocate(bytes, kAlignment));
-    } catch (...) {
-      return false;
-    }
+    T* fresh = static_cast<T*>(try_allocate(*memory_, bytes, kAlignment));
+    if (fresh == nullptr) return false;
     if (size_ != 0) std::memcpy(static_cast<void*>(fresh), data_, size_ * sizeof(T));
     const std::size_t size = size_;
     release();

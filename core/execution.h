@@ -1,5 +1,7 @@
 #pragma once
 
+#include <winnow/core/export.h>
+
 #include <cstddef>
 #include <type_traits>
 
@@ -14,7 +16,7 @@ class Execution {
   [[nodiscard]] static constexpr Execution parallel() noexcept { return Execution(true); }
 
   /// Threads that can work on a call made from here.
-  [[nodiscard]] std::size_t concurrency() const noexcept;
+  [[nodiscard]] WINNOW_API std::size_t concurrency() const noexcept;
 
   /// Calls `task(i)` once for every i < count, in any order; returns when all are done. Tasks must
   /// not throw. A task never runs unrelated work of the arena while it waits, so it may be called
@@ -30,7 +32,7 @@ class Execution {
 
  private:
   explicit constexpr Execution(bool parallel) noexcept : parallel_(parallel) {}
-  void run(std::size_t count, void* context, void (*task)(void*, std::size_t)) const;
+  WINNOW_API void run(std::size_t count, void* context, void (*task)(void*, std::size_t)) const;
 
   bool parallel_;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
+#include <winnow/core/export.h>
 #include <winnow/core/plane.h>
 
 #include <Eigen/Core>
@@ -9,7 +10,7 @@
 namespace winnow {
 
 /// What a camera sees: six planes that face inward, and a box around what lies within them.
-struct Frustum {
+struct WINNOW_API Frustum {
   /// Depth that the near plane has in clip space.
   enum class NearDepth { zero, minus_one };
 

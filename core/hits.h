@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/column.h>
+#include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
 #include <winnow/core/pair_buffer.h>
@@ -35,7 +36,7 @@ struct HitColumns {
 
 /// The caller's array of hits, reused from query to query; a query with as many hits as an earlier
 /// one allocates nothing. Not for use from two threads at once.
-class HitBuffer {
+class WINNOW_API HitBuffer {
  public:
   explicit HitBuffer(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
       : hits_(memory), start_(memory), found_(memory), keys_(memory) {}
@@ -78,7 +79,7 @@ class HitBuffer {
 
 /// The caller's array of objects that a region met, reused from query to query. Not for use from
 /// two threads at once.
-class OverlapBuffer {
+class WINNOW_API OverlapBuffer {
  public:
   explicit OverlapBuffer(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept

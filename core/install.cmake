@@ -1,14 +1,24 @@
-# Install rules: libraries, public headers, and what find_package(winnow) and pkg-config read.
+# Install rules: the library, public headers, the licence, and what find_package(winnow) and pkg-config
+# read.
 
 include(CMakePackageConfigHelpers)
 
-set(winnow_modules winnow_core winnow_simd winnow_partitions winnow_pipeline)
-# A shared module finds its siblings beside itself, wherever the tree is moved to.
-set_target_properties(${winnow_modules} PROPERTIES
-  VERSION ${PROJECT_VERSION}
-  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-  INSTALL_RPATH $ORIGIN)
-install(TARGETS ${winnow_modules} winnow EXPORT winnow-targets
+# Archives leave TBB and qhull to whoever links them; a shared library finds its own.
+if(WINNOW_SHARED)
+  set(winnow_targets winnow)
+  set(winnow_pc_requires eigen3)
+  set(winnow_pc_libs -lwinnow)
+  set(winnow_pc_flags -DWINNOW_SHARED=1)
+else()
+  set(winnow_targets winnow_core winnow_simd winnow_partitions winnow_pipeline winnow)
+  set(winnow_pc_requires "eigen3, tbb")
+  if(WINNOW_WITH_QHULL)
+    string(APPEND winnow_pc_requires ", qhull_r")
+  endif()
+  set(winnow_pc_libs "-lwinnow_pipeline -lwinnow_partitions -lwinnow_simd -lwinnow_core")
+  set(winnow_pc_flags "")
+endif()
+install(TARGETS ${winnow_targets} EXPORT winnow-targets
         RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
@@ -18,6 +28,7 @@ foreach(header ${WINNOW_PUBLIC_HEADERS})
   get_filename_component(room winnow/${public} DIRECTORY)
   install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${room})
 endforeach()
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(winnow_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/winnow)
 install(EXPORT winnow-targets NAMESPACE winnow:: DESTINATION ${winnow_package_dir})
@@ -30,15 +41,11 @@ install(FILES ${PROJECT_BINARY_DIR}/winnow-config.cmake
               ${PROJECT_BINARY_DIR}/winnow-config-version.cmake
         DESTINATION ${winnow_package_dir})
 
-# Archives leave TBB and qhull to whoever links them; shared modules carry them themselves.
-set(winnow_pc_others tbb)
-if(WINNOW_WITH_QHULL)
-  string(APPEND winnow_pc_others ", qhull_r")
-endif()
-if(BUILD_SHARED_LIBS)
-  set(winnow_pc_requires "Requires: eigen3\nRequires.private: ${winnow_pc_others}")
-else()
-  set(winnow_pc_requires "Requires: eigen3, ${winnow_pc_others}")
+# Warnings about our headers are not their user's. /usr/include must not be named as a system folder
+# again: the standard library's own #include_next would lose its way.
+set(winnow_pc_include "-isystem \${includedir}")
+if(CMAKE_INSTALL_FULL_INCLUDEDIR STREQUAL "/usr/include")
+  set(winnow_pc_include "-I\${includedir}")
 endif()
 file(RELATIVE_PATH winnow_pc_to_prefix
      ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/column.h>
+#include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
 
@@ -26,7 +27,7 @@ struct Pair {
 /// carries last frame's pairs along: where few objects moved, only their pairs are redone. Any
 /// other use (another partition, `clear`, `edit`) makes the next query a full one; the result is
 /// the same set either way. Not for use from two threads at once.
-class PairBuffer {
+class WINNOW_API PairBuffer {
  public:
   /// Which complete query the content came from; 0 is none.
   struct Provenance {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/column.h>
+#include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
 #include <winnow/core/pair_buffer.h>
@@ -26,7 +27,7 @@ struct KeyPair {
 /// What changed between two frames: handed to `Partition::self_pairs` with the PairBuffer that
 /// holds the earlier frame's pairs. With another buffer, or one that was used otherwise in between,
 /// it starts anew: every pair begins and none ends.
-class PairEvents {
+class WINNOW_API PairEvents {
  public:
   explicit PairEvents(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
       : begun_(memory),

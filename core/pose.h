@@ -2,6 +2,8 @@
 
 // Plain arrays on purpose: kernel files read poses too, and they include no Eigen.
 
+#include <winnow/core/export.h>
+
 namespace winnow {
 
 /// Where a body is: x -> position + R(orientation) x. Position and orientation are in double, so

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <winnow/core/export.h>
+
 #include <cstdint>
 
 namespace winnow {
@@ -32,6 +34,6 @@ enum class [[nodiscard]] Status : std::uint8_t{
 };
 
 /// The enumerator's name, for messages. Never null.
-[[nodiscard]] const char* to_string(Status status) noexcept;
+[[nodiscard]] WINNOW_API const char* to_string(Status status) noexcept;
 
 }  // namespace winnow

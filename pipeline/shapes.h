@@ -2,6 +2,8 @@
 
 // Plain structs on purpose: kernel files read them straight from a ShapePool.
 
+#include <winnow/core/export.h>
+
 #include <cstddef>
 #include <cstdint>
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <winnow/core/export.h>
 #include <winnow/core/status.h>
 
 #include <cstdint>
@@ -16,24 +17,24 @@ enum class Isa : std::uint8_t {
   neon64,  ///< AArch64
 };
 
-[[nodiscard]] const char* to_string(Isa isa) noexcept;
+[[nodiscard]] WINNOW_API const char* to_string(Isa isa) noexcept;
 
 /// The instruction sets in this build that this machine and operating system can run, narrowest
 /// first. Never empty on a machine that winnow supports.
-[[nodiscard]] std::span<const Isa> available_isas() noexcept;
+[[nodiscard]] WINNOW_API std::span<const Isa> available_isas() noexcept;
 
 /// The one in use: the widest available, unless the environment variable WINNOW_ISA (read once)
 /// names another available one or `set_isa` chose.
-[[nodiscard]] Isa active_isa() noexcept;
+[[nodiscard]] WINNOW_API Isa active_isa() noexcept;
 
 /// Name of the active instruction set.
-[[nodiscard]] const char* isa_name() noexcept;
+[[nodiscard]] WINNOW_API const char* isa_name() noexcept;
 
 /// Chooses for the whole process. `invalid_argument`, and no change, if this build or machine does
 /// not have it. Queries already under way keep the one they started with.
-Status set_isa(Isa isa) noexcept;
+WINNOW_API Status set_isa(Isa isa) noexcept;
 
 /// As above by name ("sse42", "avx2", "avx512", "neon64").
-Status set_isa(std::string_view name) noexcept;
+WINNOW_API Status set_isa(std::string_view name) noexcept;
 
 }  // namespace winnow

@@ -1,5 +1,8 @@
 # The rule by which a kernel file is built once per instruction set.
 
+# WINNOW_ISAS, narrowest first, holds sse42 on x86-64: all of winnow is compiled for that, and kernels
+# for each of them; a program takes the widest that its machine has. Each adds its copy of the kernels to
+# a program, and its time to the build.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
   set(WINNOW_ISAS "sse42;avx2;avx512" CACHE STRING "Instruction sets to build kernels for")
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
@@ -55,7 +58,9 @@ function(winnow_add_kernels target)
     target_include_directories(${objects} PRIVATE ${WINNOW_INCLUDE_DIR} ${PROJECT_SOURCE_DIR})
     target_include_directories(${objects} SYSTEM PRIVATE ${WINNOW_XSIMD_INCLUDE_DIR})
     target_link_libraries(${objects} PRIVATE winnow_flags)
-    set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON
+                                                CXX_VISIBILITY_PRESET hidden
+                                                VISIBILITY_INLINES_HIDDEN ON)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
     set_property(GLOBAL APPEND PROPERTY WINNOW_KERNEL_OBJECTS ${objects})
   endforeach()

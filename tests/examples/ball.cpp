@@ -1,5 +1,6 @@
-// A program outside of winnow: a ball falls on a floor and comes to rest on a soft contact.
+// A ball falls on a floor and comes to rest on a soft contact.
 
+// [a program]
 #include <winnow/winnow.h>
 
 #include <algorithm>
@@ -31,3 +32,4 @@ int main() {
   }
   std::printf("the ball rests at %.2f\n", height);
 }
+// [end]

@@ -1,0 +1,64 @@
+// Boxes in a row, one of which moves into its neighbour.
+
+#include <winnow/partitions/partition.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "tests/examples/check.h"
+
+namespace {
+
+std::vector<winnow::KeyPair> begun;
+void meet(const winnow::KeyPair& pair) {
+  begun.push_back(pair);
+}
+void part(const winnow::KeyPair&) {}
+
+}  // namespace
+
+int main() {
+  std::vector<winnow::Aabb> boxes;
+  for (int i = 0; i < 1000; ++i) {
+    const float x = 1.5F * static_cast<float>(i);
+    boxes.push_back({{x, 0, 0}, {x + 1, 1, 1}});
+  }
+  const std::vector<winnow::ClientData> names(boxes.size(), 7);
+  std::vector<winnow::Key> keys(boxes.size());
+
+  // [boxes]
+  winnow::Partition partition(winnow::linear_bvh());
+  partition.insert(boxes, names, keys);  // Aabb, or your own columns or structs: see BoxView
+  winnow::PairBuffer pairs;              // yours, reused from frame to frame
+  partition.self_pairs(pairs);           // pairs of ids: keys[i].id
+  // [end]
+  check(pairs.empty(), "boxes that stand apart make no pairs");
+
+  const std::vector<winnow::Key> moved_keys{keys[3]};
+  const std::vector<winnow::Aabb> moved_boxes{{{4, 0, 0}, {5, 1, 1}}};
+  // [frames]
+  winnow::PairEvents events;
+  partition.self_pairs(pairs, events);
+  partition.update(moved_keys, moved_boxes);
+  partition.self_pairs(pairs, events);  // where little moved, only its pairs are redone
+  for (const winnow::KeyPair& pair : events.begun()) meet(pair);
+  for (const winnow::KeyPair& pair : events.ended()) part(pair);
+  // [end]
+  check(pairs.size() == 1, "two boxes overlap");
+  check(begun.size() == 1 && begun[0].first == keys[2] && begun[0].second == keys[3],
+        "their pair has begun");
+
+  // [structures]
+  partition.set_structure(winnow::hierarchical_grid());  // keys, filters and events stay
+  partition.set_structure(winnow::automatic());          // picks one and goes on picking
+  winnow::Partition bodies(
+      winnow::linear_bvh(),
+      {.volume = winnow::Volume::kdop14,                 // or aabb, sphere, ...
+       .margin = {.distance = 0.02F, .share = 0.05F}});  // moves within are free
+  // [end]
+  partition.self_pairs(pairs);
+  check(pairs.size() == 1, "another structure finds the same");
+  bodies.insert(boxes, names, keys);
+  check(bodies.size() == boxes.size(), "they hold the same objects");
+}

@@ -1,0 +1,84 @@
+// Chairs of two boxes each stand on a terrain of triangles, and are asked about.
+
+#include <winnow/winnow.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tests/examples/check.h"
+
+namespace {
+
+std::size_t manifolds = 0;
+std::size_t forgotten = 0;
+void push_apart(winnow::Key, winnow::Key, double depth) {
+  if (depth >= 0.0) ++manifolds;
+}
+void forget(const winnow::EndedContact&) {
+  ++forgotten;
+}
+
+}  // namespace
+
+int main() {
+  const std::vector<Eigen::Vector3f> points{{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}};
+  const std::vector<std::uint32_t> corners{0, 1, 2, 0, 2, 3};
+  winnow::ShapePool shapes;
+  winnow::ShapeId seat, back;
+  shapes.add(winnow::BoxShape{{0.5, 0.5, 0.5}}, seat);
+  shapes.add(winnow::BoxShape{{0.1, 0.5, 0.5}}, back);
+  const std::vector<winnow::CompoundChild> parts{{seat, winnow::Pose::at(0, 0, 0)},
+                                                 {back, winnow::Pose::at(-0.4, 0, 1)}};
+
+  // [scene]
+  winnow::CompositePool composites(shapes);  // a scene without meshes needs, and links, none
+  winnow::ShapeId terrain, chair;
+  composites.add_mesh(std::span(points), std::span(corners), terrain);  // see PointView, IndexView
+  composites.add_compound(parts, chair);  // convex children; also add_height_field, add_scaled
+  winnow::Scene scene(shapes, {.margin = 0.01, .carry_over = 0.001, .composites = &composites});
+
+  winnow::Key ground, one, other;  // a body: shape, pose, fixed, dynamic or sleeping, filter, data
+  scene.add({.shape = terrain, .motion = winnow::Motion::fixed}, ground);
+  scene.add({.shape = chair, .pose = winnow::Pose::at(0, 0, 0.495)}, one);
+  scene.add({.shape = chair, .pose = winnow::Pose::at(9, 0, 0.495)}, other);
+  // [end]
+  check(scene.size() == 3, "there are three bodies");
+
+  winnow::Contacts contacts;
+  const auto step = [&] {
+    // [contacts]
+    scene.collide(winnow::SceneLevel::manifold, contacts);  // or pairs, boolean, distance
+    for (std::size_t i = 0; i < contacts.size(); ++i) {     // pairs of bodies
+      for (auto m = contacts.manifold_first()[i]; m < contacts.manifold_first()[i + 1]; ++m) {
+        push_apart(contacts.a()[i], contacts.b()[i], -contacts.distance()[m]);
+        // also part_a(), part_b(): triangle or child; error_bound(), normal(axis), contact(point)
+      }
+    }
+    for (const winnow::EndedContact& pair : contacts.ended()) forget(pair);
+    // [end]
+  };
+  step();
+  check(contacts.size() == 2 && manifolds >= 2, "both chairs touch the terrain");
+  scene.move(other, winnow::Pose::at(9, 0, 5));
+  step();
+  check(contacts.size() == 1 && forgotten == 1, "one has been lifted");
+
+  winnow::ShapeId ball;
+  shapes.add(winnow::SphereShape{0.25}, ball);
+  // [scene queries]
+  scene.refresh();                  // after changes; then any number of threads may ask
+  winnow::SceneQueries ask(scene);  // one a thread
+  winnow::SceneHit hit;             // body, triangle or child, t, normal, point
+  ask.closest(winnow::ShapeRay{{20, 0, 9}, {0, 0, -1}, 100.0}, hit);
+  ask.closest(winnow::ShapeCast{ball, winnow::Pose::at(0, 0, 9), {0, 0, -20}, 1.0}, hit);
+  std::span<const winnow::SceneOverlap> bodies;
+  ask.overlap(chair, winnow::Pose::at(0.5, 0, 0.4), bodies);
+  winnow::SceneDistance gap;  // closest or deepest points
+  ask.distance(one, other, gap);
+  // [end]
+  check(hit.key == one, "the ball would fall on the first chair");
+  check(bodies.size() == 2, "there the terrain and a chair are in the way");
+  check(gap.distance > 7.9, "the chairs are apart");
+}
