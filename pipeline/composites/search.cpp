@@ -1,7 +1,7 @@
 #include "pipeline/composites/search.h"
 
 #include "pipeline/mesh/height_grid.h"
-#include "pipeline/mesh/mesh_traversals.h"
+#include "pipeline/mesh/mesh_traversal.h"
 #include "pipeline/shapes/extent.h"
 
 #include <algorithm>

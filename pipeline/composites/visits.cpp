@@ -2,7 +2,7 @@
 #include "pipeline/composites/placed_body.h"
 #include "pipeline/mesh/box_measures.h"
 #include "pipeline/mesh/height_grid.h"
-#include "pipeline/mesh/mesh_traversals.h"
+#include "pipeline/mesh/mesh_traversal.h"
 #include "pipeline/shapes/extent.h"
 
 #include <algorithm>

@@ -42,7 +42,7 @@ struct MeshPairJob {
 };
 
 /// A box that moves by t * direction. On static axes it does not, or so little that [min, max] is
-/// grown by its path.
+/// grown by its way.
 struct MeshSweepJob {
   double min[3];
   double max[3];

@@ -117,8 +117,9 @@ void pad_levels(const MeshView& view, std::uint16_t* words) {
 
 }  // namespace
 
-// Here partition code serves the mid phase: triangles are put in the order in which a LinearBvh
-// puts its rows, by size and along Hilbert's curve.
+// By size and along Hilbert's curve. Median cuts (sort_by_kd_cuts) find the same triangles in 0.4 to
+// 0.9 of the time on smooth meshes and in a fifth to a third on soups of all sizes, but their builds
+// take 1.05 times the instructions for 20,000 triangles and 1.17 times for 200,000.
 bool order_triangles(const float* const vertex[3], const std::uint32_t* const corner[3],
                      Column<std::uint32_t>& order, const Execution& execution) {
   const std::size_t count = order.size();

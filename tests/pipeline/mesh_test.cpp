@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <winnow/pipeline/triangle_mesh.h>
-#include "pipeline/mesh/mesh_traversals.h"
+#include "pipeline/mesh/mesh_traversal.h"
 
 #include <algorithm>
 #include <cmath>

@@ -264,14 +264,15 @@ TEST(SceneInput, what_is_refused_changes_nothing) {
   EXPECT_EQ(after.size(), pairs);
   Scene wrong(world.pool, {.margin = -1});
   EXPECT_EQ(wrong.add(world.bodies[0], key), Status::invalid_argument);
-  Scene unknown(world.pool, {.partitions = {"LinearBvh", "none", "LinearBvh"}});
+  Scene unknown(world.pool, {.structures = {linear_bvh(), StructureKind{}, linear_bvh()}});
   EXPECT_EQ(unknown.add(world.bodies[0], key), Status::invalid_argument);
 }
 
 TEST(SceneInput, storms_of_changes_leave_every_partition_right) {
   for (const std::string_view partition : {"LinearBvh", "FlatGrid", "SweepAndPrune"}) {
     SceneWorld world(scaled(250), 31);
-    Scene scene(world.pool, {.partitions = {partition, partition, partition}});
+    const StructureKind structure = structure_named(partition);
+    Scene scene(world.pool, {.structures = {structure, structure, structure}});
     ASSERT_EQ(add_all(scene, world), Status::ok);
     Contacts contacts;
     Random random(37);

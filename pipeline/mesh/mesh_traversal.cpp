@@ -1,4 +1,4 @@
-#include "pipeline/mesh/mesh_traversals.h"
+#include "pipeline/mesh/mesh_traversal.h"
 
 #include <winnow/core/rounding.h>
 #include <winnow/simd/isa.h>
