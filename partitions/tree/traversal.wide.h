@@ -22,21 +22,20 @@ template <std::uint32_t MaxLevels, typename Test, typename Visit>
   Mask16 open[MaxLevels];
   std::uint32_t base[MaxLevels];
   std::uint32_t level = levels - 1;
-  base[level] = 0;
-  open[level] = test(level, 0U);
-  for (;;) {
-    if (open[level] == 0) {
-      if (++level == levels) return true;
-      continue;
+  std::uint32_t node = 0;
+  for (Next next = Next::below;;) {
+    if (next == Next::below) {
+      base[level] = node * kLanes;
+      open[level] = test(level, base[level]);
     }
-    const std::uint32_t node = base[level] + first(open[level]);
+    while (open[level] == 0) {
+      if (++level == levels) return true;
+    }
+    node = base[level] + first(open[level]);
     open[level] &= open[level] - 1;
-    const Next next = visit(level, node);
+    next = visit(level, node);
     if (next == Next::stop) return false;
-    if (next == Next::past) continue;
-    --level;
-    base[level] = node * kLanes;
-    open[level] = test(level, base[level]);
+    if (next == Next::below) --level;
   }
 }
 
