@@ -8,9 +8,9 @@ if(BUILD_SHARED_LIBS)
   set(WINNOW_SHARED ON)
 endif()
 
-# <winnow/core/aabb.h> is spelled in the tree as it is after installation: one line in the build tree
-# leads to each public header, the headers that lie at a room's root. Everything else is spelled by its
-# path from the root of the tree.
+# <winnow/core/aabb.h> is spelled in the tree as it is after installation: one line in the build
+# tree leads to each public header, the headers that lie at a room's root. Everything else is
+# spelled by its path from the root of the tree.
 set(WINNOW_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
 set(WINNOW_PUBLIC_HEADERS "")
 foreach(room core simd partitions pipeline)
@@ -76,10 +76,11 @@ endif()
 target_compile_options(winnow_flags INTERFACE ${winnow_sanitize})
 target_link_options(winnow_flags INTERFACE ${winnow_sanitize})
 
-# winnow_library(room LINKS ... PRIVATE_LINKS ... PRECOMPILED ... APART ...): one of the four rooms of the
-# library, an archive of every source below its folder. A `*.kernel.cpp` is compiled once per instruction
-# set. Reading headers is most of what compiling the others takes: those of one folder, which a program
-# links together anyway, are compiled together, but for those APART whose own names meet others'.
+# winnow_library(room LINKS ... PRIVATE_LINKS ... PRECOMPILED ... APART ...): one of the four rooms
+# of the library, an archive of every source below its folder. A `*.kernel.cpp` is compiled once per
+# instruction set. Reading headers is most of what compiling the others takes: those of one folder,
+# which a program links together anyway, are compiled together, but for those APART whose own names
+# meet others'.
 function(winnow_library room)
   cmake_parse_arguments(arg "" "" "LINKS;PRIVATE_LINKS;PRECOMPILED;APART" ${ARGN})
   file(GLOB_RECURSE sources RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.cpp)
@@ -117,9 +118,9 @@ function(winnow_library room)
   endif()
 endfunction()
 
-# winnow::winnow, what a simulation links: all rooms. Shared, it is one library of all their objects that
-# exports what WINNOW_API marks; tests and bench, which look inside, link the archive winnow::pipeline and
-# with it all rooms below.
+# winnow::winnow, what a simulation links: all rooms. Shared, it is one library of all their objects
+# that exports what WINNOW_API marks; tests and bench, which look inside, link the archive
+# winnow::pipeline and with it all rooms below.
 function(winnow_whole_library)
   if(NOT WINNOW_SHARED)
     add_library(winnow INTERFACE)

@@ -1,5 +1,5 @@
-# Install rules: the library, public headers, the licence, and what find_package(winnow) and pkg-config
-# read.
+# Install rules: the library, public headers, the licence, and what find_package(winnow) and
+# pkg-config read.
 
 include(CMakePackageConfigHelpers)
 

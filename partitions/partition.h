@@ -5,6 +5,7 @@
 #include <winnow/core/cast.h>
 #include <winnow/core/debug_draw.h>
 #include <winnow/core/execution.h>
+#include <winnow/core/export.h>
 #include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/hits.h>
@@ -98,7 +99,7 @@ struct StructureChoice {
 /// that are const may run at the same time from several threads; everything else wants the
 /// partition to itself. A refused call (any Status but ok) changed nothing: of a span, either all
 /// entries are taken or none. Nothing throws.
-class Partition final {
+class WINNOW_API Partition final {
  public:
   explicit Partition(StructureKind structure, const PartitionOptions& options = {}) noexcept;
   Partition(Partition&& other) noexcept

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <winnow/core/export.h>
+
 #include <span>
 #include <string_view>
 
@@ -9,7 +11,7 @@ struct StructureInfo;
 
 /// Which structure prunes the objects of a partition: a value, made by one of the functions below.
 /// A program gets the code of the structures that it names, and of no other.
-class StructureKind {
+class WINNOW_API StructureKind {
  public:
   /// Names no structure; what takes one answers `invalid_argument`.
   constexpr StructureKind() noexcept = default;
@@ -60,14 +62,14 @@ class StructureKind {
   X(automatic, )
 
 #define WINNOW_DECLARE_STRUCTURE(function, ...) \
-  [[nodiscard]] StructureKind function(__VA_ARGS__) noexcept;
+  [[nodiscard]] WINNOW_API StructureKind function(__VA_ARGS__) noexcept;
 WINNOW_STRUCTURES(WINNOW_DECLARE_STRUCTURE)
 #undef WINNOW_DECLARE_STRUCTURE
 
 /// All of them with their default parameters. Links them all.
-[[nodiscard]] std::span<const StructureKind> all_structures() noexcept;
+[[nodiscard]] WINNOW_API std::span<const StructureKind> all_structures() noexcept;
 
 /// The one of this name; one that names none if there is no such name. Links them all.
-[[nodiscard]] StructureKind structure_named(std::string_view name) noexcept;
+[[nodiscard]] WINNOW_API StructureKind structure_named(std::string_view name) noexcept;
 
 }  // namespace winnow

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <winnow/core/export.h>
 #include <winnow/core/point_view.h>
 #include <winnow/pipeline/height_field.h>
 #include <winnow/pipeline/mid_phase.h>
@@ -26,7 +27,7 @@ struct CompoundChild {
 /// Shapes made of many: triangle meshes, compounds of convex shapes, height fields. Bodies refer to
 /// them by id and may share them; one mesh may stand at many poses and in many scales. Queries are
 /// taken into the shape's own frame: what moves a mesh costs nothing of its tree.
-class CompositePool final : public MidPhase {
+class WINNOW_API CompositePool final : public MidPhase {
  public:
   /// `shapes` holds the children of compounds and must outlive this.
   explicit CompositePool(const ShapePool& shapes, std::pmr::memory_resource* memory =

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/column.h>
+#include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
 #include <winnow/pipeline/contact_types.h>
@@ -43,7 +44,7 @@ struct EndedContact {
 /// told and manifolds of what rests carried over. Fresh ones, or cleared ones, remember nothing.
 /// Not for use from two threads at once. Where memory for them is refused at once, `collide`
 /// answers `out_of_memory` and they stay empty.
-class Contacts {
+class WINNOW_API Contacts {
  public:
   explicit Contacts(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
   ~Contacts();

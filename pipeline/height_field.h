@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
+#include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/shapes.h>
@@ -30,7 +31,7 @@ struct HeightSamples {
 /// prunes: 4 bytes a sample, and a thirtieth of a byte for the pyramid. Triangle 2 * square is the
 /// one with the corner at (column + 1, row), 2 * square + 1 that at (column, row + 1); squares are
 /// numbered row by row.
-class HeightField {
+class WINNOW_API HeightField {
  public:
   explicit HeightField(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept

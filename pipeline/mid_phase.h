@@ -3,6 +3,7 @@
 #include <winnow/core/aabb.h>
 #include <winnow/core/column.h>
 #include <winnow/core/execution.h>
+#include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
@@ -21,7 +22,7 @@ inline constexpr std::uint32_t kWholeShape = ~0U;
 /// Pairs of convex primitives that may touch: what the narrow phase is given for pairs of bodies of
 /// which one or both are composite. Coordinates are relative to the position of body a of the pair
 /// of bodies, in the axes of the world, so that answers do not depend on where the bodies stand.
-class PrimitivePairs {
+class WINNOW_API PrimitivePairs {
  public:
   explicit PrimitivePairs(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
@@ -82,7 +83,7 @@ struct BoxSweep {
 
 /// What composite shapes are made of, as the Scene and its queries see it. An interface, so that
 /// who has no composite shapes links and allocates nothing of it. A CompositePool is one.
-class MidPhase {
+class WINNOW_API MidPhase {
  public:
   MidPhase() = default;
   MidPhase(const MidPhase&) = delete;

@@ -3,6 +3,7 @@
 #include <winnow/core/aabb.h>
 #include <winnow/core/debug_draw.h>
 #include <winnow/core/execution.h>
+#include <winnow/core/export.h>
 #include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
@@ -59,7 +60,7 @@ struct BodyDefinition {
 };
 
 /// Bytes of a scene by part. The sum equals, to the byte, what is outstanding at its resource.
-struct SceneFootprint {
+struct WINNOW_API SceneFootprint {
   Bytes bodies;                ///< shapes, poses, keys, filters, client data, the scene itself
   Bytes partitions[kMotions];  ///< by Motion
   Bytes pairs;                 ///< what the broad phase found
@@ -89,7 +90,7 @@ struct SceneStatistics {
 /// Parallel work runs in the arena of the thread that calls. Results and their order are the same
 /// on any number of threads and any instruction set. A refused call (any Status but ok) changed
 /// nothing. A scene wants its calls one at a time; see SceneQueries for asking from many threads.
-class Scene {
+class WINNOW_API Scene {
  public:
   /// `shapes` must outlive the scene; shapes must stay in it while bodies use them. Options that
   /// are out of range make every `add` answer `invalid_argument`. A scene for which no memory was

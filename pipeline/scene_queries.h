@@ -1,5 +1,6 @@
 #pragma once
 
+#include <winnow/core/export.h>
 #include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
@@ -78,7 +79,7 @@ struct ShapeCast {
 /// after every change of bodies or of composite shapes in place, else questions are
 /// `invalid_argument`. A refused question leaves its answer alone, but spans of earlier ones are
 /// void.
-class SceneQueries {
+class WINNOW_API SceneQueries {
  public:
   explicit SceneQueries(const Scene& scene, std::pmr::memory_resource* memory =
                                                 std::pmr::get_default_resource()) noexcept;

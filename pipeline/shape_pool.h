@@ -2,6 +2,7 @@
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/column.h>
+#include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
@@ -25,7 +26,7 @@ struct HullFaces {
 /// The convex shapes of a simulation, each kind in its own table; bodies refer to them by id and
 /// may share them. A kind that is not used takes no memory. Not for use from two threads while one
 /// of them changes it.
-class ShapePool {
+class WINNOW_API ShapePool {
  public:
   explicit ShapePool(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
   ~ShapePool();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <winnow/core/export.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/shapes.h>
@@ -29,7 +30,7 @@ struct ShapeHit {
 /// pose; `hit` is left alone then. Rays that begin far away lose nothing by it. Errors of t are a
 /// few 1e-16 of the coordinates relative to the shape, over the sine of the angle to the surface.
 /// O(1); hulls O(faces).
-Status cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose, const ShapeRay& ray,
-                ShapeHit& hit) noexcept;
+WINNOW_API Status cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose,
+                           const ShapeRay& ray, ShapeHit& hit) noexcept;
 
 }  // namespace winnow

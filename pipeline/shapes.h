@@ -28,7 +28,7 @@ enum class CompositeKind : std::uint8_t { mesh = 8, compound, height_field };
 inline constexpr std::uint32_t kAllShapeKinds = 11;
 
 /// The enumerator's name. Never null.
-[[nodiscard]] const char* to_string(ShapeKind kind) noexcept;
+[[nodiscard]] WINNOW_API const char* to_string(ShapeKind kind) noexcept;
 
 /// A shape in a ShapePool: its kind and its place among those of the kind.
 struct ShapeId {

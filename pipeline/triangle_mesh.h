@@ -2,6 +2,7 @@
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/execution.h>
+#include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/point_view.h>
 #include <winnow/core/status.h>
@@ -25,7 +26,7 @@ struct MeshOptions {
 /// order of Hilbert's curve, above every 16 of them a box of 16-bit bounds, above every 16 boxes
 /// another. 16 bytes a triangle, 12 a vertex, and about 0.8 a triangle for the tree: under 24 bytes
 /// a triangle for a closed mesh. Triangles are two-sided and may be degenerate.
-class TriangleMesh {
+class WINNOW_API TriangleMesh {
  public:
   explicit TriangleMesh(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept

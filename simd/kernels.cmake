@@ -1,8 +1,8 @@
 # The rule by which a kernel file is built once per instruction set.
 
-# WINNOW_ISAS, narrowest first, holds sse42 on x86-64: all of winnow is compiled for that, and kernels
-# for each of them; a program takes the widest that its machine has. Each adds its copy of the kernels to
-# a program, and its time to the build.
+# WINNOW_ISAS, narrowest first, holds sse42 on x86-64: all of winnow is compiled for that, and
+# kernels for each of them; a program takes the widest that its machine has. Each adds its copy of
+# the kernels to a program, and its time to the build.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
   set(WINNOW_ISAS "sse42;avx2;avx512" CACHE STRING "Instruction sets to build kernels for")
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
