@@ -1,4 +1,4 @@
-#include "draw/base64.h"
+#include "bench/draw/base64.h"
 
 #include <cstdint>
 

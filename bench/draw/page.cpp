@@ -1,8 +1,8 @@
-#include "draw/page.h"
+#include "bench/draw/page.h"
 
-#include "draw/page_parts.h"
-#include "tool/command.h"
-#include "tool/html.h"
+#include "bench/common/errors.h"
+#include "bench/draw/page_parts.h"
+#include "bench/pages/html.h"
 
 #include <cerrno>
 #include <cstring>

@@ -1,6 +1,6 @@
-#include "draw/picture.h"
+#include "bench/draw/picture.h"
 
-#include "draw/base64.h"
+#include "bench/draw/base64.h"
 
 #include <algorithm>
 #include <bit>

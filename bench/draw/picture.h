@@ -1,9 +1,9 @@
 #pragma once
 
-#include "draw/questions.h"
-#include "draw/sketch.h"
-#include "draw/stage.h"
-#include "tool/output.h"
+#include "bench/common/json.h"
+#include "bench/draw/questions.h"
+#include "bench/draw/sketch.h"
+#include "bench/draw/stage.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
-#include "draw/questions.h"
+#include "bench/draw/questions.h"
 
-#include "draw/stage.h"
-#include "tool/command.h"
+#include "bench/common/errors.h"
+#include "bench/draw/stage.h"
 
 #include <array>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "draw/sketch.h"
+#include "bench/draw/sketch.h"
 
 #include <winnow/partitions/debug_colours.h>
 

@@ -1,6 +1,7 @@
-#include "draw/stage.h"
+#include "bench/draw/stage.h"
 
-#include "tool/command.h"
+#include "bench/common/errors.h"
+#include "bench/contenders/partitions.h"
 
 #include <algorithm>
 #include <cstring>
@@ -22,7 +23,7 @@ void require_ok(Status status, const char* call) {
 }
 
 Stage::Stage(std::string_view partition, FrameSource& source, std::size_t frame)
-    : partition_(make_partition(partition)),
+    : partition_(make_named(partition)),
       keys_(source.boxes().size()),
       boxes_(source.boxes().begin(), source.boxes().end()) {
   std::vector<ClientData> data(boxes_.size());

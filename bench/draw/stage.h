@@ -1,8 +1,7 @@
 #pragma once
 
-#include "scenes/frame_source.h"
-
 #include <winnow/partitions/partition.h>
+#include "bench/scenes/frame_source.h"
 
 #include <cstddef>
 #include <memory>

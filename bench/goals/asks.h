@@ -1,8 +1,8 @@
 #pragma once
 
+#include "bench/common/json.h"
+
 #include <array>
-#include <cstddef>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,39 +16,19 @@ inline constexpr std::array<std::string_view, 6> kTopics{"engine",   "queries", 
 /// The text of goals/goals.json.
 extern const char* const kGoalsJson;
 
-/// One entry of goals.json: a kind, which says how it is measured, and that kind's parameters.
-/// The getters throw, naming the entry, if a member is missing or of another type.
-class Ask {
- public:
-  Ask(std::size_t index, nlohmann::json members);
+/// The asks of a text
+///
+///   {"lists": {"name": [{...}, ...]}, "asks": [{...}, ...]}
+///
+/// one by one. An entry with "each": [SOURCE, ...] stands for one entry for each combination of its
+/// sources' objects; a source is the name of a list, or a list. "only": {"member": [values]} keeps
+/// some of them. "{member}" in its texts becomes that member of the objects; a text that is nothing
+/// else takes its value. What an entry says is described in goals/evaluate.h. Throws
+/// std::runtime_error if the text is not what it should be.
+[[nodiscard]] std::vector<Json> parse_asks(std::string_view text);
 
-  [[nodiscard]] const std::string& topic() const noexcept { return topic_; }
-  [[nodiscard]] const std::string& kind() const noexcept { return kind_; }
-  [[nodiscard]] bool has(const char* member) const { return members_.contains(member); }
-
-  template <typename T>
-  [[nodiscard]] T get(const char* member) const {
-    try {
-      return members_.at(member).template get<T>();
-    } catch (const nlohmann::json::exception& error) {
-      fail(std::string(member) + ": " + error.what());
-    }
-  }
-  [[nodiscard]] std::string text(const char* member) const { return get<std::string>(member); }
-  [[nodiscard]] double number(const char* member) const { return get<double>(member); }
-  [[nodiscard]] std::size_t count(const char* member) const { return get<std::size_t>(member); }
-  [[nodiscard]] int threads() const { return get<int>("threads"); }
-
-  [[noreturn]] void fail(const std::string& what) const;
-
- private:
-  std::size_t index_;
-  nlohmann::json members_;
-  std::string topic_;
-  std::string kind_;
-};
-
-/// All asks. Throws if the text is not what it should be.
-[[nodiscard]] std::vector<Ask> parse_asks(std::string_view json);
+/// A text with "{member}" replaced where the object has it: numbers in groups of three digits, and
+/// "threads" as "2 threads".
+[[nodiscard]] std::string filled(const std::string& text, const Json& object);
 
 }  // namespace winnow::bench

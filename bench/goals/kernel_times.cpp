@@ -1,4 +1,4 @@
-#include "goals/kernel_times.h"
+#include "bench/goals/kernel_times.h"
 
 #include <array>
 #include <cstdio>
@@ -34,9 +34,7 @@ std::string quoted(const std::string& path) {
   return text + "'";
 }
 
-}  // namespace
-
-std::optional<KernelTimes> measure_kernels() {
+std::optional<KernelTimes> measured_times() {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
   const auto program = self.parent_path() / "micro" / "winnow_micro";
@@ -57,6 +55,13 @@ std::optional<KernelTimes> measure_kernels() {
     const std::size_t end = name.find('/', isa + 1);
     times[name.substr(0, isa)][name.substr(isa + 1, end - isa - 1)] = row.value("real_time", 0.0);
   }
+  return times;
+}
+
+}  // namespace
+
+const std::optional<KernelTimes>& kernel_times() {
+  static const std::optional<KernelTimes> times = measured_times();
   return times;
 }
 

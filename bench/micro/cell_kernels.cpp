@@ -1,6 +1,5 @@
-#include "micro/run_kernel.h"
-#include "micro/suite.h"
-
+#include "bench/micro/run_kernel.h"
+#include "bench/micro/suite.h"
 #include "partitions/structures/grid/flat_grid.kernel.h"
 #include "partitions/structures/sweep/sweep_and_prune.kernel.h"
 
@@ -12,8 +11,8 @@ namespace {
 
 constexpr std::size_t kObjects = 4096;
 
-struct Fixture {
-  explicit Fixture(const KernelScene::Cells& cells) : scene(random_cubes(kObjects), cells) {}
+struct CellFixture {
+  explicit CellFixture(const KernelScene::Cells& cells) : scene(random_cubes(kObjects), cells) {}
 
   [[nodiscard]] GridView grid() const {
     return {scene.rows(), scene.start.data(), {scene.axis[0], scene.axis[1], scene.axis[2]}};
@@ -33,7 +32,7 @@ struct Fixture {
 
 void add_grid() {
   // The world is 20 wide: cells of 1.4.
-  const auto fixture = std::make_shared<Fixture>(KernelScene::Cells{{15, 15, 15}});
+  const auto fixture = std::make_shared<CellFixture>(KernelScene::Cells{{15, 15, 15}});
   add_per_isa("kernel: grid self pairs", [=](benchmark::State& state) {
     const GridView grid = fixture->grid();
     run_pair_kernel(state, fixture->buffer, [&](PairSink& sink) {
@@ -60,7 +59,7 @@ void add_grid() {
 }
 
 void add_strips() {
-  const auto fixture = std::make_shared<Fixture>(KernelScene::Cells{{1, 5, 5}});
+  const auto fixture = std::make_shared<CellFixture>(KernelScene::Cells{{1, 5, 5}});
   add_per_isa("kernel: sweep self pairs", [=](benchmark::State& state) {
     const StripView strips = fixture->strips();
     run_pair_kernel(state, fixture->buffer, [&](PairSink& sink) {

@@ -1,6 +1,5 @@
-#include "micro/run_kernel.h"
-#include "micro/suite.h"
-
+#include "bench/micro/run_kernel.h"
+#include "bench/micro/suite.h"
 #include "partitions/structures/brute_force/flat_rows.kernel.h"
 
 #include <memory>
@@ -8,8 +7,8 @@
 namespace winnow::bench {
 namespace {
 
-struct Fixture {
-  Fixture(std::size_t objects, Volume volume) : scene(random_cubes(objects), {}, volume) {}
+struct FlatFixture {
+  FlatFixture(std::size_t objects, Volume volume) : scene(random_cubes(objects), {}, volume) {}
 
   [[nodiscard]] FlatView view() const { return {scene.rows(), scene.row_count()}; }
 
@@ -19,7 +18,7 @@ struct Fixture {
 
 void add(const std::string& name, std::size_t objects, Volume volume,
          FlatKernel FlatKernels::*kernel) {
-  const auto fixture = std::make_shared<Fixture>(objects, volume);
+  const auto fixture = std::make_shared<FlatFixture>(objects, volume);
   const std::string suffix = name + " " + std::to_string(objects);
   add_per_isa("kernel: flat self pairs, " + suffix, [=](benchmark::State& state) {
     const FlatView view = fixture->view();

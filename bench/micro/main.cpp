@@ -3,8 +3,8 @@
 // that drift of the machine falls on all rows alike, and a summary is printed at the end. With
 // --benchmark_format the library's own reporter prints instead.
 
-#include "micro/suite.h"
-#include "micro/summary.h"
+#include "bench/micro/suite.h"
+#include "bench/micro/summary.h"
 
 #include <benchmark/benchmark.h>
 

@@ -1,6 +1,5 @@
-#include "micro/suite.h"
-#include "narrow/pair_set.h"
-
+#include "bench/micro/suite.h"
+#include "bench/scenes/pair_set.h"
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/solver/solver.h"
 
@@ -17,9 +16,9 @@ constexpr std::uint32_t kPairs = kJobPairs;
 constexpr std::size_t kContacts = std::size_t{kPairs} * kManifoldPoints + kContactSlack;
 
 /// Pairs of one kind and room for all that a kernel writes about them.
-class Fixture {
+class NarrowFixture {
  public:
-  explicit Fixture(const PairKind& kind)
+  explicit NarrowFixture(const PairKind& kind)
       : set_(make_pair_set(kind, {.pairs = kPairs})),
         bytes_(kPairs + 64),
         doubles_(8, std::vector<double>(kPairs + 64)),
@@ -60,15 +59,15 @@ class Fixture {
 };
 
 /// Made when the first benchmark of its kind runs.
-using LazyFixture = std::shared_ptr<std::unique_ptr<Fixture>>;
+using LazyFixture = std::shared_ptr<std::unique_ptr<NarrowFixture>>;
 
 std::string name_of(const PairKind& kind, NarrowTier tier, ContactLevel level) {
   return "pairs: " + std::string(kind.name) + ", " + std::string(to_text(level)) + ", " +
          std::string(to_text(tier));
 }
 
-Fixture& made(const LazyFixture& fixture, const PairKind& kind) {
-  if (*fixture == nullptr) *fixture = std::make_unique<Fixture>(kind);
+NarrowFixture& made(const LazyFixture& fixture, const PairKind& kind) {
+  if (*fixture == nullptr) *fixture = std::make_unique<NarrowFixture>(kind);
   return **fixture;
 }
 
@@ -83,7 +82,7 @@ void add_kernel(const PairKind& kind, NarrowTier tier, ContactLevel level,
                 const LazyFixture& fixture) {
   if (kernel_of(kind, tier, level) == nullptr) return;
   add_per_isa(name_of(kind, tier, level), [=](benchmark::State& state) {
-    Fixture& pairs = made(fixture, kind);
+    NarrowFixture& pairs = made(fixture, kind);
     const NarrowKernel kernel = kernel_of(kind, tier, level);
     std::uint32_t uncertified = 0;
     for (auto _ : state) {
@@ -116,7 +115,7 @@ void add_solver(const PairKind& kind, ContactLevel level, const LazyFixture& fix
 
 void add_narrow_kernels() {
   for (const PairKind& kind : pair_kinds()) {
-    const auto fixture = std::make_shared<std::unique_ptr<Fixture>>();
+    const auto fixture = std::make_shared<std::unique_ptr<NarrowFixture>>();
     for (const ContactLevel level : kLevels) {
       add_kernel(kind, NarrowTier::fast, level, fixture);
       add_kernel(kind, NarrowTier::robust, level, fixture);

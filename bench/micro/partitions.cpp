@@ -1,7 +1,6 @@
-#include "micro/scene.h"
-#include "micro/suite.h"
-
 #include <winnow/partitions/partition.h>
+#include "bench/micro/scene.h"
+#include "bench/micro/suite.h"
 
 #include <memory>
 #include <span>

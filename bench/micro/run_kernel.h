@@ -1,6 +1,6 @@
 #pragma once
 
-#include "micro/scene.h"
+#include "bench/micro/scene.h"
 
 #include <benchmark/benchmark.h>
 

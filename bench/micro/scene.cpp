@@ -1,6 +1,6 @@
-#include "micro/scene.h"
+#include "bench/micro/scene.h"
 
-#include "scenes/random.h"
+#include "bench/common/random.h"
 
 #include <algorithm>
 #include <cmath>

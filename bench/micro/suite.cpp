@@ -1,4 +1,4 @@
-#include "micro/suite.h"
+#include "bench/micro/suite.h"
 
 #include <winnow/simd/isa.h>
 

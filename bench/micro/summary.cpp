@@ -1,6 +1,6 @@
-#include "micro/summary.h"
+#include "bench/micro/summary.h"
 
-#include "engine/sample.h"
+#include "bench/common/sample.h"
 
 #include <cstdio>
 #include <utility>

@@ -1,6 +1,5 @@
-#include "micro/run_kernel.h"
-#include "micro/suite.h"
-
+#include "bench/micro/run_kernel.h"
+#include "bench/micro/suite.h"
 #include "partitions/tree/block_tree.h"
 
 #include <memory>
@@ -11,9 +10,10 @@ namespace {
 
 constexpr std::size_t kObjects = 4096;
 
-struct Fixture {
+struct TreeFixture {
   // Rows in the order of cells of some 16 objects, so that blocks are compact.
-  Fixture() : scene(random_cubes(kObjects), {{6, 6, 6}}), tree(std::pmr::get_default_resource()) {
+  TreeFixture()
+      : scene(random_cubes(kObjects), {{6, 6, 6}}), tree(std::pmr::get_default_resource()) {
     if (!tree.cover(0, scene.pool.blocks())) throw std::bad_alloc();
     tree.refit_all(scene.rows(), Execution::serial());
   }
@@ -28,7 +28,7 @@ struct Fixture {
 }  // namespace
 
 void add_tree_kernels() {
-  const auto fixture = std::make_shared<Fixture>();
+  const auto fixture = std::make_shared<TreeFixture>();
   add_per_isa("kernel: tree refit", [=](benchmark::State& state) {
     const TreeView tree = fixture->view();
     for (auto _ : state) {

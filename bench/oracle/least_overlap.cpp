@@ -1,6 +1,6 @@
-#include "oracle/least_overlap.h"
+#include "bench/oracle/least_overlap.h"
 
-#include "oracle/min_norm.h"
+#include "bench/oracle/min_norm.h"
 
 #include <algorithm>
 #include <cmath>

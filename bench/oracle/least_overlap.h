@@ -1,6 +1,6 @@
 #pragma once
 
-#include "oracle/polytope.h"
+#include "bench/oracle/polytope.h"
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "oracle/min_norm.h"
+#include "bench/oracle/min_norm.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,9 +1,9 @@
-#include "oracle/oracle.h"
+#include "bench/oracle/oracle.h"
 
-#include "oracle/least_overlap.h"
-#include "oracle/min_norm.h"
-#include "oracle/polytope.h"
-#include "oracle/round_core.h"
+#include "bench/oracle/least_overlap.h"
+#include "bench/oracle/min_norm.h"
+#include "bench/oracle/polytope.h"
+#include "bench/oracle/round_core.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "oracle/polytope.h"
+#include "bench/oracle/polytope.h"
 
 #include <algorithm>
 

@@ -1,9 +1,8 @@
 #pragma once
 
-#include "oracle/number.h"
-
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/shapes.h>
+#include "bench/oracle/number.h"
 
 #include <vector>
 

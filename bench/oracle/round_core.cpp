@@ -1,4 +1,4 @@
-#include "oracle/round_core.h"
+#include "bench/oracle/round_core.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
-#include "peers/adapters.h"
-#include "peers/narrow_adapter.h"
+#include "bench/peers/adapters.h"
+#include "bench/peers/narrow_adapter.h"
 
 #include <BulletCollision/CollisionDispatch/SphereTriangleDetector.h>
 #include <BulletCollision/CollisionDispatch/btBoxBoxDetector.h>

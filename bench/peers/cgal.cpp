@@ -1,6 +1,6 @@
-#include "engine/sample.h"
-#include "peers/adapter_tools.h"
-#include "peers/adapters.h"
+#include "bench/common/sample.h"
+#include "bench/peers/adapter_tools.h"
+#include "bench/peers/adapters.h"
 
 // Its parallel version is compiled in only on request.
 #define CGAL_LINKED_WITH_TBB

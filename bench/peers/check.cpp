@@ -1,7 +1,7 @@
 // Every peer against brute force: random, touching, mixed-size, degenerate and moving scenes,
 // several frames each, one and two threads. Prints what differs; exit status 1 if anything does.
 
-#include "peers/peers.h"
+#include "bench/peers/peers.h"
 
 #include <tbb/task_arena.h>
 
@@ -20,19 +20,20 @@ using winnow::Pair;
 using winnow::bench::Engine;
 
 using Boxes = std::vector<Aabb>;
-using Random = std::mt19937;
+using Generator = std::mt19937;
 
 constexpr int kFrames = 8;
 
-float uniform(Random& random, float lo, float hi) {
+float uniform(Generator& random, float lo, float hi) {
   return std::uniform_real_distribution<float>(lo, hi)(random);
 }
 
-Eigen::Vector3f point(Random& random, float lo, float hi) {
+Eigen::Vector3f point(Generator& random, float lo, float hi) {
   return {uniform(random, lo, hi), uniform(random, lo, hi), uniform(random, lo, hi)};
 }
 
-Boxes random_cubes(Random& random, std::size_t count, float world, float smallest, float largest) {
+Boxes random_cubes(Generator& random, std::size_t count, float world, float smallest,
+                   float largest) {
   Boxes boxes;
   for (std::size_t i = 0; i < count; ++i) {
     const float edge = std::exp(uniform(random, std::log(smallest), std::log(largest)));
@@ -58,7 +59,7 @@ Boxes lattice(int side) {
 }
 
 /// Points on a coarse lattice: zero extents, many of them equal.
-Boxes points(Random& random, std::size_t count) {
+Boxes points(Generator& random, std::size_t count) {
   Boxes boxes;
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3f p = point(random, 0.0F, 6.0F).array().floor();
@@ -80,7 +81,7 @@ struct Scene {
 };
 
 std::vector<Scene> scenes() {
-  Random random(20);
+  Generator random(20);
   Scene wall{"wall", random_cubes(random, 600, 40.0F, 0.5F, 2.0F), 0.2F, 1.0F};
   for (Aabb& box : wall.boxes) box.min.x() = -box.max.x() - 1.0F;
   return {
@@ -101,7 +102,7 @@ std::vector<Scene> scenes() {
 
 /// Moves some boxes and gives their rows. Lattice-like scenes move by whole units, so that boxes
 /// keep touching exactly.
-std::vector<std::uint32_t> move(Scene& scene, Random& random) {
+std::vector<std::uint32_t> move(Scene& scene, Generator& random) {
   const bool whole_units = scene.step == 1.0F;
   std::vector<std::uint32_t> rows;
   for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
@@ -138,7 +139,7 @@ bool agrees(const Engine& engine, const Scene& scene, int frame) {
 
 /// True if the engine is right in every frame.
 bool run(Engine& engine, Scene scene) {
-  Random random(7);
+  Generator random(7);
   if (scene.name == "far from the origin") {
     for (Aabb& box : scene.boxes) {
       box.min += Eigen::Vector3f::Constant(1e5F);

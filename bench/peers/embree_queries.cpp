@@ -1,4 +1,4 @@
-#include "peers/adapters.h"
+#include "bench/peers/adapters.h"
 
 #include <embree3/rtcore.h>
 #include <tbb/blocked_range.h>

@@ -1,5 +1,5 @@
-#include "peers/adapters.h"
-#include "peers/narrow_adapter.h"
+#include "bench/peers/adapters.h"
+#include "bench/peers/narrow_adapter.h"
 
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
@@ -26,7 +26,7 @@ using SphereGeometry = fcl::Sphere<double>;
 using CapsuleGeometry = fcl::Capsule<double>;
 using BoxGeometry = fcl::Box<double>;
 using HullGeometry = fcl::Convex<double>;
-using Triangles = fcl::detail::Intersect<double>;
+using TriangleTests = fcl::detail::Intersect<double>;
 using TriangleDistances = fcl::detail::TriangleDistance<double>;
 using Geometry = fcl::CollisionGeometry<double>;
 using Corners = std::array<Vector, 3>;
@@ -295,7 +295,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     const Body& b = bodies_[pair.b];
     const auto& [p, q, r] = a.corners;
     const auto& [s, t, u] = b.corners;
-    answer.overlap = Triangles::intersect_Triangle(p, q, r, s, t, u, relative(a, b));
+    answer.overlap = TriangleTests::intersect_Triangle(p, q, r, s, t, u, relative(a, b));
   }
 
   void cut(const BodyPair& pair, NarrowAnswer& answer) {
@@ -308,8 +308,8 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     double depth = 0.0;
     Vector normal;
     answer = {};
-    answer.overlap = Triangles::intersect_Triangle(p, q, r, s, t, u, relative(a, b), points, &count,
-                                                   &depth, &normal);
+    answer.overlap = TriangleTests::intersect_Triangle(p, q, r, s, t, u, relative(a, b), points,
+                                                       &count, &depth, &normal);
     answer.contacts = count;
   }
 

@@ -1,5 +1,5 @@
-#include "peers/adapters.h"
-#include "peers/narrow_adapter.h"
+#include "bench/peers/adapters.h"
+#include "bench/peers/narrow_adapter.h"
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/bvh/BVH_model.h>

@@ -1,5 +1,5 @@
-#include "peers/adapters.h"
-#include "peers/narrow_adapter.h"
+#include "bench/peers/adapters.h"
+#include "bench/peers/narrow_adapter.h"
 
 #include <ccd/ccd.h>
 
@@ -11,7 +11,7 @@ namespace winnow::bench {
 namespace {
 
 /// A body as the support functions read it.
-struct Body {
+struct CcdBody {
   double turn[9];  // rotation, by columns
   double position[3];
   double size[3];  // half lengths of a box; radius and half length of the round ones
@@ -20,14 +20,14 @@ struct Body {
   double corner[3][3];
 };
 
-void to_local(const Body& body, const ccd_vec3_t& world, double (&local)[3]) {
+void to_local(const CcdBody& body, const ccd_vec3_t& world, double (&local)[3]) {
   for (int i = 0; i < 3; ++i) {
     const double* column = body.turn + 3 * i;
     local[i] = column[0] * world.v[0] + column[1] * world.v[1] + column[2] * world.v[2];
   }
 }
 
-void to_world(const Body& body, const double (&local)[3], ccd_vec3_t& world) {
+void to_world(const CcdBody& body, const double (&local)[3], ccd_vec3_t& world) {
   for (int i = 0; i < 3; ++i) {
     world.v[i] = body.position[i] + body.turn[i] * local[0] + body.turn[3 + i] * local[1] +
                  body.turn[6 + i] * local[2];
@@ -46,13 +46,13 @@ void add_radius(const ccd_vec3_t& direction, double radius, ccd_vec3_t& point) {
 // Support points: of the body, in a direction of any length, both in world coordinates.
 
 void of_sphere(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const Body& body = *static_cast<const Body*>(object);
+  const CcdBody& body = *static_cast<const CcdBody*>(object);
   std::copy_n(body.position, 3, point->v);
   add_radius(*direction, body.size[0], *point);
 }
 
 void of_capsule(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const Body& body = *static_cast<const Body*>(object);
+  const CcdBody& body = *static_cast<const CcdBody*>(object);
   const double* axis = body.turn + 6;
   const double along =
       axis[0] * direction->v[0] + axis[1] * direction->v[1] + axis[2] * direction->v[2];
@@ -62,7 +62,7 @@ void of_capsule(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* poi
 }
 
 void of_box(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const Body& body = *static_cast<const Body*>(object);
+  const CcdBody& body = *static_cast<const CcdBody*>(object);
   double local[3];
   to_local(body, *direction, local);
   for (int i = 0; i < 3; ++i) local[i] = std::copysign(body.size[i], local[i]);
@@ -70,7 +70,7 @@ void of_box(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) 
 }
 
 void of_triangle(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const Body& body = *static_cast<const Body*>(object);
+  const CcdBody& body = *static_cast<const CcdBody*>(object);
   double local[3];
   to_local(body, *direction, local);
   int best = 0;
@@ -87,7 +87,7 @@ void of_triangle(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* po
 }
 
 void of_hull(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const Body& body = *static_cast<const Body*>(object);
+  const CcdBody& body = *static_cast<const CcdBody*>(object);
   double local[3];
   to_local(body, *direction, local);
   std::uint32_t best = 0;
@@ -106,7 +106,7 @@ void of_hull(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point)
 
 /// All shapes measured contain their frame's origin.
 void center_of(const void* object, ccd_vec3_t* center) {
-  std::copy_n(static_cast<const Body*>(object)->position, 3, center->v);
+  std::copy_n(static_cast<const CcdBody*>(object)->position, 3, center->v);
 }
 
 ccd_support_fn support_of(ShapeKind kind) {
@@ -124,8 +124,8 @@ ccd_support_fn support_of(ShapeKind kind) {
   }
 }
 
-Body make_body(const ShapeTables& tables, ShapeId id, const Pose& pose) {
-  Body body{};
+CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose) {
+  CcdBody body{};
   Eigen::Map<Eigen::Matrix3d>(body.turn) = orientation_of(pose).toRotationMatrix();
   std::copy_n(pose.position, 3, body.position);
   switch (id.kind()) {
@@ -208,7 +208,7 @@ class LibccdNarrow final : public NarrowAdapter<LibccdNarrow> {
 
   bool portals_;
   ccd_t ccd_;
-  std::vector<Body> bodies_;
+  std::vector<CcdBody> bodies_;
 };
 
 }  // namespace

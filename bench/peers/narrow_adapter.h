@@ -1,6 +1,6 @@
 #pragma once
 
-#include "peers/narrow_engine.h"
+#include "bench/contenders/narrow_engine.h"
 
 #include <Eigen/Geometry>
 #include <vector>

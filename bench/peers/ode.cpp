@@ -1,6 +1,6 @@
-#include "engine/sample.h"
-#include "peers/adapter_tools.h"
-#include "peers/adapters.h"
+#include "bench/common/sample.h"
+#include "bench/peers/adapter_tools.h"
+#include "bench/peers/adapters.h"
 
 #include <ode/ode.h>
 

@@ -1,6 +1,6 @@
-#include "peers/peers.h"
+#include "bench/peers/peers.h"
 
-#include "peers/adapters.h"
+#include "bench/peers/adapters.h"
 
 namespace winnow::bench {
 

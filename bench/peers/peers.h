@@ -1,9 +1,9 @@
 #pragma once
 
-#include "peers/engine.h"
-#include "peers/narrow_engine.h"
-#include "peers/query_engine.h"
-#include "peers/scene_engine.h"
+#include "bench/contenders/engine.h"
+#include "bench/contenders/narrow_engine.h"
+#include "bench/contenders/query_engine.h"
+#include "bench/contenders/scene_engine.h"
 
 #include <memory>
 #include <vector>

@@ -1,6 +1,6 @@
-#include "recordings/byte_source.h"
+#include "bench/recordings/byte_source.h"
 
-#include "recordings/recording.h"
+#include "bench/recordings/recording.h"
 
 #include <algorithm>
 #include <array>

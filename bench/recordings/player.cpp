@@ -1,4 +1,4 @@
-#include "recordings/recording.h"
+#include "bench/recordings/recording.h"
 
 namespace winnow::bench {
 namespace {

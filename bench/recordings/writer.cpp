@@ -1,5 +1,5 @@
-#include "recordings/layout.h"
-#include "recordings/recording.h"
+#include "bench/recordings/layout.h"
+#include "bench/recordings/recording.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -1,5 +1,5 @@
-#include "recordings/byte_source.h"
-#include "recordings/recording.h"
+#include "bench/recordings/byte_source.h"
+#include "bench/recordings/recording.h"
 
 #include <array>
 

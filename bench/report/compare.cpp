@@ -1,7 +1,7 @@
-#include "report/compare.h"
+#include "bench/report/compare.h"
 
-#include "report/machine.h"
-#include "tool/table.h"
+#include "bench/common/table.h"
+#include "bench/rows/machine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,11 +49,11 @@ bool beyond(const Cost& good, const Cost& bad, double threshold) {
          bad.best > threshold * good.best && bad.best > good.median;
 }
 
-Verdict verdict_of(const Cost& before, const Cost& after, double threshold) {
-  if (beyond(before, after, threshold)) return Verdict::worse;
-  if (beyond(after, before, threshold)) return Verdict::better;
+ChangeVerdict verdict_of(const Cost& before, const Cost& after, double threshold) {
+  if (beyond(before, after, threshold)) return ChangeVerdict::worse;
+  if (beyond(after, before, threshold)) return ChangeVerdict::better;
   const double ratio = after.median / before.median;
-  return ratio > threshold || ratio < 1.0 / threshold ? Verdict::noise : Verdict::same;
+  return ratio > threshold || ratio < 1.0 / threshold ? ChangeVerdict::noise : ChangeVerdict::same;
 }
 
 /// Text of a value that tells which pairs were found.
@@ -84,7 +84,7 @@ class Comparing {
   Comparing(const Results& before, const Results& after, const CompareOptions& options)
       : before_(before), after_(after), options_(options) {}
 
-  Comparison all() {
+  ReportComparison all() {
     remark_settings();
     for (const Json& table : before_.document()["tables"]) {
       for (const Json& row : table["rows"]) old_rows_[row["id"]] = &row;
@@ -104,7 +104,7 @@ class Comparing {
   bool quick_ = false;  // one of them, so that times say nothing
   std::map<std::string, const Json*> old_rows_;
   std::size_t matched_ = 0;
-  Comparison found_;
+  ReportComparison found_;
 
   void remark_settings() {
     const Json& was = before_.document()["settings"];
@@ -188,7 +188,7 @@ class Comparing {
     if (change.before != change.after) {
       if (unit_kind(change.unit) != CompareUnit::figure) return;
       const bool worse = (change.after > change.before) == (column["better"] == "less");
-      change.verdict = worse ? Verdict::worse : Verdict::better;
+      change.verdict = worse ? ChangeVerdict::worse : ChangeVerdict::better;
       change.ratio = worse ? std::numeric_limits<double>::infinity() : 0.0;
     }
     found_.changes.push_back(std::move(change));
@@ -203,13 +203,15 @@ double sweep_ms(const Results& results) {
 
 }  // namespace
 
-std::size_t Comparison::regressions() const {
-  return static_cast<std::size_t>(std::count_if(
-      changes.begin(), changes.end(),
-      [](const Change& change) { return change.counts && change.verdict == Verdict::worse; }));
+std::size_t ReportComparison::regressions() const {
+  return static_cast<std::size_t>(
+      std::count_if(changes.begin(), changes.end(), [](const Change& change) {
+        return change.counts && change.verdict == ChangeVerdict::worse;
+      }));
 }
 
-Comparison compare(const Results& before, const Results& after, const CompareOptions& options) {
+ReportComparison compare(const Results& before, const Results& after,
+                         const CompareOptions& options) {
   return Comparing(before, after, options).all();
 }
 

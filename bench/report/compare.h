@@ -1,6 +1,6 @@
 #pragma once
 
-#include "report/results.h"
+#include "bench/rows/results.h"
 
 #include <cstddef>
 #include <string>
@@ -14,7 +14,7 @@ struct CompareOptions {
   double scale = 1.0;       ///< times of the new report are divided by it, rates multiplied
 };
 
-enum class Verdict {
+enum class ChangeVerdict {
   same,    ///< within the threshold
   noise,   ///< beyond it, but so might another run of the same be
   better,  ///< beyond it
@@ -30,7 +30,7 @@ struct Change {
   double before = 0.0;
   double after = 0.0;  ///< scaled
   double ratio = 1.0;  ///< above 1: that many times worse; infinite if there was nothing before
-  Verdict verdict = Verdict::same;
+  ChangeVerdict verdict = ChangeVerdict::same;
   /// False for rows of other libraries, which tell of the machine alone, and for values computed
   /// from other rows, which are compared themselves.
   bool counts = true;
@@ -44,7 +44,7 @@ struct OtherPairs {
   std::string after;
 };
 
-struct Comparison {
+struct ReportComparison {
   std::vector<Change> changes;  ///< all values compared, in the order of the new report
   std::vector<OtherPairs> other_pairs;
   std::size_t only_before = 0;       ///< rows of the old report that the new one lacks
@@ -68,8 +68,8 @@ struct Comparison {
 /// soon as it is not. The same rule, the other way round, says what has got better.
 ///
 /// Fingerprints are compared where the same command was run with the same seed.
-[[nodiscard]] Comparison compare(const Results& before, const Results& after,
-                                 const CompareOptions& options);
+[[nodiscard]] ReportComparison compare(const Results& before, const Results& after,
+                                       const CompareOptions& options);
 
 /// How many times slower the machine of `after` is, by the reference sweeps; 1 if one is unknown.
 [[nodiscard]] double machine_ratio(const Results& before, const Results& after);

@@ -1,7 +1,7 @@
-#include "report/csv.h"
+#include "bench/report/csv.h"
 
-#include "report/results.h"
-#include "tool/html.h"
+#include "bench/pages/html.h"
+#include "bench/rows/results.h"
 
 #include <algorithm>
 

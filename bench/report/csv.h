@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tool/output.h"
+#include "bench/common/json.h"
 
 #include <string>
 

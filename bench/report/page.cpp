@@ -1,8 +1,8 @@
-#include "report/page.h"
+#include "bench/report/page.h"
 
-#include "report/section.h"
-#include "tool/html.h"
-#include "tool/table.h"
+#include "bench/common/table.h"
+#include "bench/pages/html.h"
+#include "bench/report/section.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,14 +41,6 @@ std::string html_of(const PageTable& table) {
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";
-}
-
-/// The spread of a value in brackets, if it has one.
-std::string spread_text(const Json& row, const std::string& name, const std::string& format) {
-  const auto at = row.find(name);
-  if (at == row.end() || !at->is_object()) return "";
-  return " (" + shown((*at)["min"].get<double>(), format) + " to " +
-         shown((*at)["max"].get<double>(), format) + ")";
 }
 
 void mark_best(PageTable& table, const std::vector<std::vector<double>>& values, bool less) {
@@ -97,6 +89,11 @@ void ReportPage::command(const std::string& text) {
   html_ += "<pre>" + escaped(text) + "</pre>\n";
 }
 
+void ReportPage::command_of(const std::string& table, const Json& where) {
+  const Json* row = results_.row(table, where);
+  if (row != nullptr && row->contains("command")) command((*row)["command"]);
+}
+
 void ReportPage::add(const PageTable& table) {
   if (!table.rows.empty()) html_ += html_of(table);
 }
@@ -133,12 +130,6 @@ void ReportPage::all_rows(const std::string& name) {
   const std::string title = (*table)["title"];
   html_ += "<details><summary>All " + grouped(whole.rows.size()) + " rows: " + escaped(title) +
            "</summary>\n" + html_of(whole) + "</details>\n";
-}
-
-std::string heading_of(const Json& column) {
-  const std::string unit = column["unit"];
-  const std::string label = column["label"];
-  return unit.empty() ? label : label + ", " + unit;
 }
 
 PageCell text_cell(const std::string& text) {

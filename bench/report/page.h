@@ -1,7 +1,7 @@
 #pragma once
 
-#include "plots/plot_page.h"
-#include "report/results.h"
+#include "bench/pages/plot_page.h"
+#include "bench/rows/results.h"
 
 #include <string>
 #include <vector>
@@ -34,6 +34,8 @@ class ReportPage {
   void paragraph(const std::string& text);
   /// How to measure what stands above it again.
   void command(const std::string& text);
+  /// That of the first row of a table that has these members, if there is one.
+  void command_of(const std::string& table, const Json& where);
   void add(const PageTable& table);
   /// Plots beside each other, where the page is wide enough. Their ids must be unique on the page;
   /// those without points are left out.
@@ -52,8 +54,6 @@ class ReportPage {
   std::vector<Plot> plots_;
 };
 
-/// Of a column of the results: its label and unit.
-[[nodiscard]] std::string heading_of(const Json& column);
 /// A text.
 [[nodiscard]] PageCell text_cell(const std::string& text);
 /// A value of a row (null: "-"), as its column says; spreads show their median.

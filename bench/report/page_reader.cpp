@@ -1,4 +1,4 @@
-#include "report/page_reader.h"
+#include "bench/report/page_reader.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "report/report.h"
+#include "bench/report/report.h"
 
-#include "report/csv.h"
-#include "tool/command.h"
-#include "tool/progress.h"
+#include "bench/common/errors.h"
+#include "bench/common/progress.h"
+#include "bench/report/csv.h"
 
 #include <unistd.h>
 

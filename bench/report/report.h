@@ -1,6 +1,6 @@
 #pragma once
 
-#include "report/section.h"
+#include "bench/report/section.h"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
-#include "report/page.h"
-#include "report/section.h"
-#include "tool/html.h"
-#include "tool/table.h"
+#include "bench/common/table.h"
+#include "bench/pages/html.h"
+#include "bench/report/page.h"
+#include "bench/report/section.h"
 
 namespace winnow::bench {
 namespace {

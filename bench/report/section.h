@@ -1,10 +1,9 @@
 #pragma once
 
-#include "recordings/recording.h"
-#include "report/page.h"
-#include "report/results.h"
-
 #include <winnow/simd/isa.h>
+#include "bench/report/page.h"
+#include "bench/rows/named_scene.h"
+#include "bench/rows/results.h"
 
 #include <cstdint>
 #include <functional>
@@ -16,16 +15,9 @@
 
 namespace winnow::bench {
 
-/// A built-in scene, or a recording.
-struct ReportScene {
-  std::string name;
-  std::string argument;  ///< how a command names it: the scene, or the file
-  std::shared_ptr<const Recording> recording{};
-};
-
 /// What a report is about.
 struct ReportOptions {
-  std::vector<ReportScene> scenes;
+  std::vector<NamedScene> scenes;
   std::vector<std::size_t> objects;  ///< of built-in scenes, ascending
   std::vector<int> threads;          ///< ascending; the first is 1 unless asked otherwise
   std::vector<Isa> isas;             ///< narrowest first; the last one is the active one
@@ -59,7 +51,10 @@ struct ReportSection {
 /// All of them, in the order of the page.
 [[nodiscard]] std::span<const ReportSection> report_sections() noexcept;
 
-// One file each, in sections/.
+/// What the section about the pipeline shows of granular flows: also the page of a single one.
+void show_flows(const Results& results, ReportPage& page);
+
+// One file each.
 extern const ReportSection kThroughputSection;
 extern const ReportSection kMemorySection;
 extern const ReportSection kVolumesSection;

@@ -1,4 +1,4 @@
-#include "report/section.h"
+#include "bench/report/section.h"
 
 #include <array>
 

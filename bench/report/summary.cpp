@@ -1,5 +1,5 @@
-#include "report/report.h"
-#include "tool/table.h"
+#include "bench/common/table.h"
+#include "bench/report/report.h"
 
 #include <iostream>
 

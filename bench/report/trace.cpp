@@ -1,6 +1,6 @@
-#include "report/trace.h"
+#include "bench/report/trace.h"
 
-#include "report/page_reader.h"
+#include "bench/report/page_reader.h"
 
 #include <algorithm>
 #include <cmath>

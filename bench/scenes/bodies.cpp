@@ -1,4 +1,4 @@
-#include "scenes/bodies.h"
+#include "bench/scenes/bodies.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "scenes/frame_source.h"
-#include "scenes/random.h"
+#include "bench/common/random.h"
+#include "bench/scenes/frame_source.h"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
-#include "scenes/resting.h"
+#include "bench/scenes/resting.h"
 
-#include "scenes/bodies.h"
-#include "scenes/exact_math.h"
+#include "bench/common/exact_math.h"
+#include "bench/scenes/bodies.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scenes/frame_source.h"
+#include "bench/scenes/frame_source.h"
 
 #include <cstddef>
 #include <cstdint>

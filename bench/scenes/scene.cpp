@@ -1,8 +1,11 @@
-#include "scenes/scene.h"
+#include "bench/scenes/scene.h"
 
-#include "scenes/drifting.h"
-#include "scenes/resting.h"
+#include "bench/common/errors.h"
+#include "bench/common/table.h"
+#include "bench/scenes/drifting.h"
+#include "bench/scenes/resting.h"
 
+#include <algorithm>
 #include <array>
 
 namespace winnow::bench {
@@ -39,6 +42,31 @@ std::unique_ptr<FrameSource> make_scene(std::string_view name, std::size_t objec
     if (kInfos[i].name == name) return kMakers[i](objects, seed);
   }
   return nullptr;
+}
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const SceneInfo& info : kInfos) names.emplace_back(info.name);
+  return names;
+}
+
+std::vector<std::string> main_scenes() {
+  std::vector<std::string> names = scene_names();
+  names.resize(kMainScenes);
+  return names;
+}
+
+bool is_built_in(const std::string& name) {
+  return std::any_of(kInfos.begin(), kInfos.end(),
+                     [&](const SceneInfo& info) { return info.name == name; });
+}
+
+std::unique_ptr<FrameSource> scene_or_error(const std::string& name, std::size_t objects,
+                                            std::uint64_t seed) {
+  auto scene = make_scene(name, objects, seed);
+  if (!scene)
+    throw ArgumentError("there is no scene " + name + "; there are " + listed(scene_names()));
+  return scene;
 }
 
 }  // namespace winnow::bench

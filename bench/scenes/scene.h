@@ -1,12 +1,14 @@
 #pragma once
 
-#include "scenes/frame_source.h"
+#include "bench/scenes/frame_source.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace winnow::bench {
 
@@ -21,9 +23,17 @@ struct SceneInfo {
 /// How many of them, from the front, every figure is given for.
 inline constexpr std::size_t kMainScenes = 6;
 
+[[nodiscard]] std::vector<std::string> scene_names();
+/// Of those that every figure is given for.
+[[nodiscard]] std::vector<std::string> main_scenes();
+[[nodiscard]] bool is_built_in(const std::string& name);
+
 /// A built-in scene in its first frame; it goes on for ever. The same name, number and seed give
 /// the same bits on every machine. Null if there is no such name. `objects` >= 1.
 [[nodiscard]] std::unique_ptr<FrameSource> make_scene(std::string_view name, std::size_t objects,
                                                       std::uint64_t seed);
+/// The same, or ArgumentError with the names there are.
+[[nodiscard]] std::unique_ptr<FrameSource> scene_or_error(const std::string& name,
+                                                          std::size_t objects, std::uint64_t seed);
 
 }  // namespace winnow::bench

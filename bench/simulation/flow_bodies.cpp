@@ -1,4 +1,4 @@
-#include "simulation/flow_bodies.h"
+#include "bench/simulation/flow_bodies.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "simulation/flow_check.h"
+#include "bench/simulation/flow_check.h"
 
 #include <winnow/pipeline/narrow_phase.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "simulation/granular_flow.h"
+#include "bench/simulation/granular_flow.h"
 
 #include <cstddef>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "engine/sample.h"
-#include "simulation/granular_flow.h"
+#include "bench/common/sample.h"
+#include "bench/simulation/granular_flow.h"
 
 #include <algorithm>
 #include <array>

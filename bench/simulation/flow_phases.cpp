@@ -1,4 +1,6 @@
-#include "simulation/flow_phases.h"
+#include "bench/simulation/flow_phases.h"
+
+#include "bench/contenders/partitions.h"
 
 #include <span>
 #include <stdexcept>
@@ -22,8 +24,8 @@ BodyPair to_bodies(const Pair& pair) {
 FlowPhases::FlowPhases(const GranularFlow& flow, const Execution& execution)
     : flow_(flow),
       execution_(execution),
-      bodies_(make_partition("LinearBvh", {.execution = execution})),
-      mesh_(make_partition("LinearBvh", {.execution = execution})),
+      bodies_(make_named("LinearBvh", {.execution = execution})),
+      mesh_(make_named("LinearBvh", {.execution = execution})),
       keys_(flow.objects()),
       boxes_(flow.objects()) {
   for (std::size_t i = 0; i < boxes_.size(); ++i) boxes_[i] = flow.box(i);

@@ -1,10 +1,9 @@
 #pragma once
 
-#include "simulation/granular_flow.h"
-
 #include <winnow/core/pair_buffer.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/narrow_phase.h>
+#include "bench/simulation/granular_flow.h"
 
 #include <memory>
 #include <vector>

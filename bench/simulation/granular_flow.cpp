@@ -1,7 +1,7 @@
-#include "simulation/granular_flow.h"
+#include "bench/simulation/granular_flow.h"
 
-#include "scenes/exact_math.h"
-#include "scenes/random.h"
+#include "bench/common/exact_math.h"
+#include "bench/common/random.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,15 +1,14 @@
 #pragma once
 
-#include "simulation/flow_bodies.h"
-#include "simulation/meshes.h"
-#include "simulation/soft_contacts.h"
-#include "simulation/timed_mid_phase.h"
-
 #include <winnow/core/aabb.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/shape_pool.h>
+#include "bench/scenes/meshes.h"
+#include "bench/simulation/flow_bodies.h"
+#include "bench/simulation/soft_contacts.h"
+#include "bench/simulation/timed_mid_phase.h"
 
 #include <cstddef>
 #include <cstdint>

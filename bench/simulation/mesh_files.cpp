@@ -1,4 +1,4 @@
-#include "simulation/mesh_files.h"
+#include "bench/simulation/mesh_files.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "simulation/meshes.h"
+#include "bench/scenes/meshes.h"
 
 #include <stdexcept>
 #include <string>

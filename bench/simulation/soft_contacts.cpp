@@ -1,4 +1,4 @@
-#include "simulation/soft_contacts.h"
+#include "bench/simulation/soft_contacts.h"
 
 #include <algorithm>
 #include <cmath>

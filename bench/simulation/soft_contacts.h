@@ -1,9 +1,8 @@
 #pragma once
 
-#include "simulation/flow_bodies.h"
-
 #include <winnow/core/execution.h>
 #include <winnow/pipeline/contacts.h>
+#include "bench/simulation/flow_bodies.h"
 
 #include <cstddef>
 #include <memory_resource>

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "engine/sample.h"
-
 #include <winnow/pipeline/mid_phase.h>
+#include "bench/common/sample.h"
 
 namespace winnow::bench {
 

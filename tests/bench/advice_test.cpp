@@ -1,16 +1,15 @@
 // What `winnow advise` says: a ranking, a reason for each rank, and code that makes the winner.
 
-#include "advice/advice.h"
+#include "bench/measure/advice.h"
+#include <winnow/partitions/partition.h>
+#include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>
-#include <winnow/partitions/partition.h>
 
 #include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <vector>
-
-#include "scenes/scene.h"
 
 namespace winnow::bench {
 namespace {

@@ -1,6 +1,6 @@
 // The fingerprint of a frame's pairs, as the contract of the winnow tool defines it.
 
-#include "engine/fingerprint.h"
+#include "bench/measure/fingerprint.h"
 
 #include <gtest/gtest.h>
 

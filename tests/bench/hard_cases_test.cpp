@@ -1,7 +1,11 @@
 // tests/hard_cases/*.json, asked as `winnow query` asks them.
 
-#include <gtest/gtest.h>
+#include "bench/questions/hard_cases.h"
 #include <winnow/simd/isa.h>
+#include "bench/questions/hard_case_files.h"
+#include "bench/questions/questions.h"
+
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +16,9 @@
 #include <vector>
 
 #include "../support/config.h"
-#include "query/hard_case_files.h"
-#include "query/hard_cases.h"
-#include "query/questions.h"
 
 #if WINNOW_HAVE_ORACLE
-#include "oracle/oracle.h"
+#include "bench/oracle/oracle.h"
 #endif
 
 namespace winnow::bench {

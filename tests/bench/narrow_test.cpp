@@ -1,14 +1,14 @@
 // Pairs that the narrow phase is measured on, and what is counted about answers.
 
+#include "bench/contenders/winnow_narrow.h"
+#include "bench/measure/accuracy.h"
+#include "bench/measure/narrow_race.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstring>
-
-#include "narrow/accuracy.h"
-#include "narrow/narrow_race.h"
-#include "narrow/winnow_narrow.h"
 
 namespace winnow::bench {
 namespace {

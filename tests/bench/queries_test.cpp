@@ -1,8 +1,8 @@
 // What `winnow queries` rests on: everyone finds the same, and it is noticed if not.
 
-#include "queries/partition_queries.h"
-#include "queries/query_race.h"
-#include "scenes/scene.h"
+#include "bench/contenders/partition_queries.h"
+#include "bench/measure/query_race.h"
+#include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <vector>
 
 #if WINNOW_HAVE_PEERS
-#include "peers/peers.h"
+#include "bench/peers/peers.h"
 #endif
 
 namespace winnow::bench {

@@ -1,7 +1,8 @@
 // Recordings and built-in scenes: what is written is what is read, whatever is not a recording is
 // refused, and a scene is the same whenever it is made.
 
-#include "recordings/recording.h"
+#include "bench/recordings/recording.h"
+#include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +16,6 @@
 #include <memory>
 #include <string>
 #include <vector>
-
-#include "scenes/scene.h"
 
 namespace winnow::bench {
 namespace {

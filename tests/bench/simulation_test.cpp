@@ -1,12 +1,11 @@
 // The granular flow: the same bits however it is computed, no contact lost, no energy from nowhere,
 // no allocation once it is warm. And mesh files: what is written is what is read.
 
-#include "engine/counting_resource.h"
-#include "pipeline/scene_race.h"
-#include "simulation/flow_check.h"
-#include "simulation/flow_history.h"
-#include "simulation/flow_page.h"
-#include "simulation/mesh_files.h"
+#include "bench/common/counting_resource.h"
+#include "bench/measure/scene_race.h"
+#include "bench/simulation/flow_check.h"
+#include "bench/simulation/flow_history.h"
+#include "bench/simulation/mesh_files.h"
 
 #include <gtest/gtest.h>
 
@@ -129,19 +128,6 @@ TEST(GranularFlow, falls_into_a_mesh_of_the_callers) {
   }
   EXPECT_GT(contacts, 100U);
   EXPECT_LT(low, 0.0);
-}
-
-TEST(GranularFlow, its_page_needs_no_network) {
-  GranularFlow flow(small_flow());
-  FlowHistory history;
-  for (std::size_t i = 0; i < 5; ++i) {
-    flow.step(i == 0);
-    history.add(flow);
-  }
-  const std::string page = flow_page(history, {{"mesh", "<script>"}});
-  EXPECT_NE(page.find("<polyline"), std::string::npos);
-  EXPECT_EQ(page.find("<script>"), std::string::npos);
-  EXPECT_EQ(page.find("http"), std::string::npos);
 }
 
 TEST(GranularFlow, the_check_misses_what_was_not_reported) {

@@ -1,5 +1,7 @@
 // The figures of `winnow volumes` are consistent.
 
+#include "bench/measure/volume_race.h"
+
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -7,9 +9,6 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
-
-#include "volumes/quantised.h"
-#include "volumes/volume_race.h"
 
 namespace winnow::bench {
 namespace {
@@ -86,21 +85,6 @@ TEST(VolumeRace, follows_a_recording) {
 TEST(VolumeRace, refuses_a_partition_without_volumes) {
   EXPECT_THROW((void)race_volumes(Solids::rotated(4, 1), {.partition = "AutoPartition"}),
                std::invalid_argument);
-}
-
-TEST(QuantisedBoxes, miss_nothing_and_report_little_else) {
-  for (const bool rods : {false, true}) {
-    const Solids solids = rods ? Solids::rods(1500, 2) : Solids::rotated(1500, 2);
-    std::vector<Aabb> boxes;
-    for (const OrientedBox& box : solids.boxes()) boxes.push_back(box.bounds());
-    const std::vector<BoxWidth> widths = race_widths(boxes, 1);
-    ASSERT_EQ(widths.size(), 2U);
-    EXPECT_GT(widths[0].overlapping, 1000U);
-    EXPECT_EQ(widths[0].hits, widths[0].overlapping);
-    EXPECT_EQ(widths[1].overlapping, widths[0].overlapping);
-    EXPECT_GE(widths[1].hits, widths[1].overlapping);
-    EXPECT_LT(widths[1].false_positives(), 0.02);
-  }
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "oracle/oracle.h"
+#include "bench/oracle/oracle.h"
 #include "pair_answers.h"
 #include "pair_scenes.h"
 #include "reproduction.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "oracle/oracle.h"
+#include "bench/oracle/oracle.h"
 #include "pair_scenes.h"
 
 namespace winnow::test {

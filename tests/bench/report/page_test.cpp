@@ -1,8 +1,8 @@
 // What `winnow report` wrote, as make_reports left it: the page, the document and the CSVs say the
 // same, and what was ended half-way is a report of what had been measured.
 
-#include "report/page_reader.h"
-#include "report/trace.h"
+#include "bench/report/page_reader.h"
+#include "bench/report/trace.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,111 @@
+#include "bench/commands/arguments.h"
+#include "bench/commands/command.h"
+#include "bench/common/json.h"
+#include "bench/common/progress.h"
+#include "bench/common/table.h"
+#include "bench/goals/asks.h"
+#include "bench/goals/evaluate.h"
+
+#include <algorithm>
+#include <iostream>
+
+namespace winnow::bench {
+namespace {
+
+struct Goals {
+  std::string topic;
+  std::string json;
+
+  int run() const;
+
+ private:
+  [[nodiscard]] std::vector<Goal> measure_all(Lab& lab) const;
+};
+
+std::vector<Goal> Goals::measure_all(Lab& lab) const {
+  std::vector<Json> wanted;
+  for (Json& ask : parse_asks(kGoalsJson)) {
+    if (topic.empty() || ask["topic"] == topic) wanted.push_back(std::move(ask));
+  }
+  std::vector<Goal> goals;
+  Progress progress(wanted.size());
+  for (const Json& ask : wanted) {
+    progress.step(ask["topic"].get<std::string>() + ": " + ask["what"].get<std::string>());
+    for (Goal& goal : evaluate(ask, lab)) goals.push_back(std::move(goal));
+  }
+  return goals;
+}
+
+void print(const std::string& topic, const std::vector<Goal>& goals) {
+  Table table({"what", "asked", "measured", "unit", "holds", "by"});
+  table.flush_left(3);
+  table.flush_left(5);
+  std::size_t holding = 0;
+  for (const Goal& goal : goals) {
+    if (goal.topic != topic) continue;
+    const char* sense = goal.at_least ? ">= " : "<= ";
+    table.add({goal.what, sense + short_number(goal.asked), short_number(goal.measured), goal.unit,
+               goal.holds() ? "yes" : "NO", goal.detail});
+    holding += goal.holds() ? 1 : 0;
+  }
+  const auto count = static_cast<std::size_t>(
+      std::count_if(goals.begin(), goals.end(), [&](const Goal& g) { return g.topic == topic; }));
+  std::cout << topic << '\n';
+  if (count == 0) {
+    std::cout << "nothing is asked under this topic yet\n\n";
+    return;
+  }
+  std::cout << table << holding << " of " << count << " hold\n\n";
+}
+
+Json goal_json(const Goal& goal) {
+  return {{"topic", goal.topic},
+          {"what", goal.what},
+          {"unit", goal.unit},
+          {"asked", goal.asked},
+          {"measured", goal.measured},
+          {"holds", goal.holds()},
+          {"sense", goal.at_least ? "at_least" : "at_most"},
+          {"detail", goal.detail}};
+}
+
+int Goals::run() const {
+  Lab lab;
+  const std::vector<Goal> goals = measure_all(lab);
+  const Spread machine = lab.machine_ms();
+  if (machine.max > 0.0) {
+    std::cout << "reference sweep during the run: " << short_number(machine.min) << " to "
+              << short_number(machine.max) << " ms, median " << short_number(machine.median)
+              << " (23 ms where the other libraries were timed; far apart: a disturbed run)\n\n";
+  }
+  for (const std::string_view name : kTopics) {
+    if (topic.empty() || name == topic) print(std::string(name), goals);
+  }
+  Json rows = Json::array();
+  for (const Goal& goal : goals) rows.push_back(goal_json(goal));
+  write_json(json, rows);
+  std::size_t short_of = 0;
+  for (const Goal& goal : goals) {
+    if (goal.holds()) continue;
+    if (short_of++ == 0) std::cout << "falls short:\n";
+    std::cout << "  " << goal.topic << ": " << goal.what << ": " << short_number(goal.measured)
+              << " " << goal.unit << ", asked " << short_number(goal.asked) << '\n';
+  }
+  return short_of == 0 ? kDone : kFailed;
+}
+
+}  // namespace
+
+Command add_goals(CLI::App& app) {
+  auto goals = std::make_shared<Goals>();
+  CLI::App* sub = app.add_subcommand(
+      "goals",
+      "Every figure asked of winnow beside what it measures now. Times of other libraries are "
+      "scaled by a reference sweep timed in the same run.");
+  sub->add_option("--topic", goals->topic, "Only this topic")
+      ->check(CLI::IsMember(std::vector<std::string>(kTopics.begin(), kTopics.end())));
+  add_json_option(*sub, goals->json);
+  return {sub, [goals] { return goals->run(); }};
+}
+
+}  // namespace winnow::bench

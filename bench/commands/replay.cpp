@@ -1,0 +1,131 @@
+#include "bench/commands/arguments.h"
+#include "bench/commands/command.h"
+#include "bench/commands/target.h"
+#include "bench/common/json.h"
+#include "bench/common/progress.h"
+#include "bench/common/table.h"
+#include "bench/contenders/partitions.h"
+#include "bench/measure/race.h"
+
+#include <iostream>
+
+namespace winnow::bench {
+namespace {
+
+constexpr std::size_t kSceneFrames = 30;
+
+struct Replay {
+  Target target;
+  std::size_t frames = 0;  // 0: all of a recording, kSceneFrames of a scene
+  std::string json;
+  Choice choice;
+  int threads = 1;
+
+  int run();
+
+ private:
+  void print(const std::vector<Run>& runs, const std::string& scene, std::size_t count) const;
+};
+
+/// A member of what `replay` writes.
+Json replay_json(const Run& run, const std::string& scene, std::size_t objects) {
+  Json pairs = Json::array();
+  Json reported = Json::array();
+  Json fingerprints = Json::array();
+  for (const PairSummary& frame : run.pairs) {
+    pairs.push_back(frame.pairs);
+    reported.push_back(frame.reported);
+    fingerprints.push_back(to_hex(frame.fingerprint));
+  }
+  const Spread spread = run.frame_spread();
+  return {{"scene", scene},
+          {"objects", objects},
+          {"frames", run.frame_ms.size()},
+          {"partition", run.engine},
+          {"threads", run.threads},
+          {"isa", to_string(run.isa)},
+          {"build_ms", run.frame_ms.empty() ? 0.0 : run.frame_ms.front()},
+          {"min_ms", spread.min},
+          {"median_ms", spread.median},
+          {"max_ms", spread.max},
+          {"frame_ms", run.frame_ms},
+          {"update_ms", run.update_ms},
+          {"pairs", pairs},
+          {"reported", reported},
+          {"fingerprint", fingerprints},
+          {"bytes", run.bytes},
+          {"bytes_per_object", static_cast<double>(run.bytes) / static_cast<double>(objects)}};
+}
+
+int Replay::run() {
+  choose_isa(choice.isa);
+  const NamedScene scene = target.named();
+  const auto first = target.source(scene);
+  const std::size_t count = first->boxes().size();
+  const Partitions partitions = partitions_for(choice.partitions, count);
+  RaceOptions options;
+  options.frames = frames != 0            ? frames
+                   : scene.is_recording() ? scene.recording->frames.size()
+                                          : kSceneFrames;
+
+  std::vector<Run> runs;
+  {
+    Progress progress(partitions.taken.size());
+    for (const std::string& name : partitions.taken) {
+      progress.step(target.name + ": " + name);
+      // Every partition gets the frames anew, so that one run does not disturb another.
+      const auto source = target.source(scene);
+      std::vector<Contender> contenders = make_contenders({name}, threads);
+      runs.push_back(std::move(race(*source, contenders, options).front()));
+    }
+  }
+  print(runs, first->name(), count);
+  if (!partitions.skipped.empty()) std::cout << "skipped: " << listed(partitions.skipped) << '\n';
+  Json json_runs = Json::array();
+  for (const Run& run : runs) json_runs.push_back(replay_json(run, first->name(), count));
+  write_json(json, json_runs);
+  if (all_agree(runs)) return kDone;
+  std::cerr << "winnow: the partitions did not find the same pairs\n";
+  return kFailed;
+}
+
+void Replay::print(const std::vector<Run>& runs, const std::string& scene,
+                   std::size_t count) const {
+  if (runs.empty()) return;
+  std::cout << scene << ", " << grouped(count) << " objects, " << runs.front().frame_ms.size()
+            << " frames, " << threads_text(threads) << ", " << isa_name() << '\n';
+  Table table({"partition", "build ms", "frame ms", "max ms", "update ms", "pairs a frame",
+               "reported", "bytes/object", "same pairs"});
+  for (const Run& run : runs) {
+    const Spread spread = run.frame_spread();
+    table.add({run.engine, short_number(run.frame_ms.front()), short_number(spread.median),
+               short_number(spread.max), short_number(run.median_update_ms()),
+               grouped(static_cast<std::size_t>(run.pairs_a_frame())),
+               grouped(static_cast<std::size_t>(run.reported_a_frame())),
+               short_number(static_cast<double>(run.bytes) / static_cast<double>(count)),
+               run.same_pairs(runs.front()) ? "yes" : "NO"});
+  }
+  std::cout << table;
+}
+
+}  // namespace
+
+Command add_replay(CLI::App& app) {
+  auto replay = std::make_shared<Replay>();
+  CLI::App* sub = app.add_subcommand(
+      "replay",
+      "Finds all pairs in every frame of a recording or scene. The frame's time is one bulk update "
+      "of what changed (told to the partition, as a simulation knows it) and all pairs into one "
+      "buffer; medians leave out the first frame.");
+  replay->target.add_to(*sub);
+  add_partitions_option(*sub, replay->choice);
+  sub->add_option("--threads", replay->threads, "Threads")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  add_isa_option(*sub, replay->choice);
+  add_frames_option(*sub, replay->frames);
+  add_json_option(*sub, replay->json);
+  return {sub, [replay] { return replay->run(); }};
+}
+
+}  // namespace winnow::bench

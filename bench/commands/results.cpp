@@ -1,0 +1,92 @@
+#include "bench/commands/command.h"
+#include "bench/report/markdown.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <sstream>
+
+namespace winnow::bench {
+namespace {
+
+struct ResultsCommand {
+  std::string from = "bench/results/results.json";
+  std::string out = "bench/RESULTS.md";
+  std::string readme = "README.md";
+  bool check = false;
+
+  [[nodiscard]] int run() const;
+
+ private:
+  [[nodiscard]] bool keep(const std::string& path, const std::string& is,
+                          const std::string& should) const;
+};
+
+/// Nothing if there is no such file.
+std::string file_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The first line in which they differ.
+void print_difference(const std::string& path, const std::string& is, const std::string& should) {
+  std::istringstream is_lines(is);
+  std::istringstream should_lines(should);
+  std::string is_line;
+  std::string should_line;
+  for (std::size_t number = 1;; ++number) {
+    const bool more = static_cast<bool>(std::getline(is_lines, is_line));
+    const bool more_should = static_cast<bool>(std::getline(should_lines, should_line));
+    if (more && more_should && is_line == should_line) continue;
+    std::cout << path << ":" << number
+              << " is not what the results say\n  is:     " << (more ? is_line : "the end")
+              << "\n  should: " << (more_should ? should_line : "the end")
+              << "\nbench/run results writes it anew\n";
+    return;
+  }
+}
+
+/// Writes a text unless it is there; false if it is not, and may not be written.
+bool ResultsCommand::keep(const std::string& path, const std::string& is,
+                          const std::string& should) const {
+  if (is == should) return true;
+  if (check) {
+    print_difference(path, is, should);
+    return false;
+  }
+  std::ofstream file(path, std::ios::binary);
+  file << should;
+  file.close();
+  if (!file) throw ArgumentError("cannot write " + path + ": " + std::strerror(errno));
+  std::cout << path << ": written anew\n";
+  return true;
+}
+
+int ResultsCommand::run() const {
+  const Results results = read_results(from);
+  const bool same = keep(out, file_text(out), results_markdown(results));
+  const std::string text = file_text(readme);
+  if (text.empty()) throw ArgumentError(readme + " cannot be read");
+  return keep(readme, text, with_figures(text, results)) && same ? kDone : kFailed;
+}
+
+}  // namespace
+
+Command add_results(CLI::App& app) {
+  auto results = std::make_shared<ResultsCommand>();
+  CLI::App* sub = app.add_subcommand("results",
+                                     "Writes the tables of a report's results.json as Markdown, "
+                                     "and its main figures into a readme");
+  sub->add_option("results", results->from, "results.json of a report")->capture_default_str();
+  sub->add_option("--out", results->out, "The file of all tables")->capture_default_str();
+  sub->add_option("--readme", results->readme,
+                  "A text with \"<!-- figures -->\" and \"<!-- end -->\" about one table")
+      ->capture_default_str();
+  sub->add_flag("--check", results->check,
+                "Change nothing: end with 1 if a figure is not what the results say");
+  return {sub, [results] { return results->run(); }};
+}
+
+}  // namespace winnow::bench

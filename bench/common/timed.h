@@ -1,0 +1,25 @@
+#pragma once
+
+#include "bench/common/arena.h"
+#include "bench/common/sample.h"
+
+namespace winnow::bench {
+
+/// Milliseconds that some work takes: on one thread what the thread computed, on several those of
+/// the clock on the wall.
+double timed(int threads, Arenas& arenas, const auto& work) {
+  if (threads == 1) {
+    const ThreadStopwatch own_clock;
+    work();
+    return own_clock.ms();
+  }
+  double ms = 0.0;
+  arenas.run(threads, [&] {
+    const Stopwatch clock;
+    work();
+    ms = clock.ms();
+  });
+  return ms;
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,178 @@
+#include "bench/contenders/partition_queries.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <type_traits>
+
+namespace winnow::bench {
+namespace {
+
+/// Box tests that one round of questions may cost a partition that tests every box.
+constexpr double kMostTests = 2e8;
+
+void require(Status status) {
+  if (status != Status::ok) throw Refusal(to_string(status));
+}
+
+template <typename Variant>
+Cast to_cast(const Variant& cast) {
+  return std::visit([](const auto& one) { return Cast(one); }, cast);
+}
+
+template <typename Variant>
+Region to_region(const Variant& region) {
+  return std::visit([](const auto& one) { return Region(one); }, region);
+}
+
+Found to_found(const Hit& hit) noexcept {
+  return {hit.key.id, hit.t};
+}
+
+}  // namespace
+
+PartitionQueries::PartitionQueries(std::string_view name, int threads)
+    : partition_(make_named(name, {.memory = &memory_, .execution = execution_for(threads)})) {}
+
+bool PartitionQueries::takes(const QuestionSet& set, Asking asking) const {
+  return asking == Asking::single || !set.rays.empty() ||
+         (!set.boxes.empty() && set.want == Want::overlap);
+}
+
+std::size_t PartitionQueries::most_questions() const {
+  if (!partition_->name().ends_with("NSquared")) return QueryEngine::most_questions();
+  const double count = kMostTests / static_cast<double>(std::max<std::size_t>(1, keys_.size()));
+  return std::max<std::size_t>(16, static_cast<std::size_t>(count));
+}
+
+void PartitionQueries::start(std::span<const Aabb> boxes) {
+  keys_.resize(boxes.size());
+  // Ids of a fresh partition are 0, 1, 2, ...: the rows.
+  require(partition_->insert(boxes, {}, keys_));
+  require(partition_->refresh());
+}
+
+/// Calls `visit(results)` after each question, with a Hit, a HitBuffer or an OverlapBuffer.
+template <typename Visit>
+void PartitionQueries::ask_each(const QuestionSet& set, std::size_t begin, std::size_t end,
+                                Buffers& buffers, Visit&& visit) const {
+  const Partition& partition = *partition_;
+  const auto cast_one = [&](const Cast& cast) {
+    if (set.want == Want::all) {
+      require(partition.all(cast, buffers.hits));
+      visit(buffers.hits);
+      return;
+    }
+    require(set.want == Want::any ? partition.any(cast, buffers.hit)
+                                  : partition.closest(cast, buffers.hit));
+    visit(buffers.hit);
+  };
+  const auto overlap_one = [&](const Region& region) {
+    require(partition.overlap(region, buffers.overlaps));
+    visit(buffers.overlaps);
+  };
+  for (std::size_t i = begin; i < end; ++i) {
+    if (!set.rays.empty()) {
+      cast_one(set.rays[i]);
+    } else if (!set.casts.empty()) {
+      cast_one(to_cast(set.casts[i]));
+    } else if (!set.regions.empty()) {
+      overlap_one(to_region(set.regions[i]));
+    } else if (set.want == Want::overlap) {
+      overlap_one(set.boxes[i]);
+    } else {
+      constexpr float kAnyDistance = std::numeric_limits<float>::infinity();
+      require(partition.nearest(set.boxes[i], set.count, kAnyDistance, buffers.hits));
+      visit(buffers.hits);
+    }
+  }
+}
+
+/// The results stay in `buffers_`.
+void PartitionQueries::ask_batch(const QuestionSet& set, std::size_t count) {
+  const Partition& partition = *partition_;
+  if (set.rays.empty()) {
+    require(partition.overlap(std::span(set.boxes).first(count), buffers_.pairs));
+    return;
+  }
+  const RayBatch rays(std::span(set.rays).first(count));
+  if (set.want == Want::all) {
+    require(partition.all(rays, buffers_.hits));
+    return;
+  }
+  buffers_.keys.resize(count);
+  buffers_.t.resize(count);
+  const HitColumns columns{.key = buffers_.keys.data(), .t = buffers_.t.data()};
+  require(set.want == Want::any ? partition.any(rays, columns) : partition.closest(rays, columns));
+}
+
+std::uint64_t PartitionQueries::run(const QuestionSet& set, Asking asking, std::size_t count) {
+  if (asking == Asking::batch) {
+    ask_batch(set, count);
+    if (set.rays.empty()) return buffers_.pairs.size();
+    if (set.want == Want::all) return buffers_.hits.size();
+    return count - static_cast<std::uint64_t>(
+                       std::count(buffers_.keys.begin(), buffers_.keys.end(), Key{}));
+  }
+  const auto run_part = [&](std::size_t begin, std::size_t end, Buffers& buffers) {
+    std::uint64_t found = 0;
+    ask_each(set, begin, end, buffers, [&](const auto& results) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(results)>, Hit>) {
+        found += results ? 1U : 0U;
+      } else {
+        found += results.size();
+      }
+    });
+    return found;
+  };
+  if (tbb::this_task_arena::max_concurrency() == 1) return run_part(0, count, buffers_);
+  std::atomic<std::uint64_t> found{0};
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 64), [&](const auto& range) {
+    found += run_part(range.begin(), range.end(), thread_buffers_.local());
+  });
+  return found;
+}
+
+Answers PartitionQueries::answers(const QuestionSet& set, Asking asking, std::size_t count) {
+  Answers result;
+  if (asking == Asking::batch) {
+    ask_batch(set, count);
+    gather(set, count, result);
+    return result;
+  }
+  ask_each(set, 0, count, buffers_, [&](const auto& results) {
+    using Results = std::decay_t<decltype(results)>;
+    if constexpr (std::is_same_v<Results, Hit>) {
+      if (results) result.add(to_found(results));
+    } else if constexpr (std::is_same_v<Results, OverlapBuffer>) {
+      for (const ObjectId id : results.ids()) result.add({id, 0.0F});
+    } else {
+      for (const Hit& hit : results) result.add(to_found(hit));
+    }
+    result.next();
+  });
+  return result;
+}
+
+/// Of the last batch.
+void PartitionQueries::gather(const QuestionSet& set, std::size_t count, Answers& answers) {
+  std::vector<Pair> pairs;
+  if (set.rays.empty()) pairs.assign(buffers_.pairs.begin(), buffers_.pairs.end());
+  std::sort(pairs.begin(), pairs.end());
+  auto pair = pairs.begin();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (set.rays.empty()) {
+      for (; pair != pairs.end() && pair->first == i; ++pair) answers.add({pair->second, 0.0F});
+    } else if (set.want == Want::all) {
+      for (const Hit& hit : buffers_.hits.of(i)) answers.add(to_found(hit));
+    } else if (buffers_.keys[i].id != kNoObject) {
+      answers.add({buffers_.keys[i].id, buffers_.t[i]});
+    }
+    answers.next();
+  }
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "bench/common/counting_resource.h"
+#include "bench/contenders/partitions.h"
+#include "bench/contenders/query_engine.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+namespace winnow::bench {
+
+/// A partition that is asked as a simulation would ask it: buffers kept from question to question.
+/// Single questions are asked from all threads of the arena; a batch is one call.
+class PartitionQueries final : public QueryEngine {
+ public:
+  /// `name` is one of all_partitions().
+  PartitionQueries(std::string_view name, int threads);
+
+  [[nodiscard]] std::string name() const override { return std::string(partition_->name()); }
+  /// True unless the partition refuses such a question.
+  [[nodiscard]] bool takes(const QuestionSet& set, Asking asking) const override;
+  [[nodiscard]] std::size_t most_questions() const override;
+  void start(std::span<const Aabb> boxes) override;
+  /// Throws Refusal.
+  std::uint64_t run(const QuestionSet& set, Asking asking, std::size_t count) override;
+  [[nodiscard]] Answers answers(const QuestionSet& set, Asking asking, std::size_t count) override;
+
+  [[nodiscard]] Partition& partition() noexcept { return *partition_; }
+  /// Where the partition and the buffers of single-threaded questions allocate.
+  [[nodiscard]] const CountingResource& memory() const noexcept { return memory_; }
+
+ private:
+  struct Buffers {
+    explicit Buffers(std::pmr::memory_resource* memory)
+        : hits(memory), overlaps(memory), pairs(memory) {}
+
+    Hit hit;
+    HitBuffer hits;
+    OverlapBuffer overlaps;
+    PairBuffer pairs;
+    std::vector<float> t;
+    std::vector<Key> keys;
+  };
+
+  template <typename Visit>
+  void ask_each(const QuestionSet& set, std::size_t begin, std::size_t end, Buffers& buffers,
+                Visit&& visit) const;
+  void ask_batch(const QuestionSet& set, std::size_t count);
+  void gather(const QuestionSet& set, std::size_t count, Answers& answers);
+
+  CountingResource memory_;
+  std::unique_ptr<Partition> partition_;
+  Buffers buffers_{&memory_};
+  tbb::enumerable_thread_specific<Buffers> thread_buffers_{std::pmr::new_delete_resource()};
+  std::vector<Key> keys_;
+};
+
+}  // namespace winnow::bench

@@ -1,0 +1,46 @@
+#include "bench/contenders/winnow_narrow.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace winnow::bench {
+
+WinnowNarrow::WinnowNarrow(NarrowTier tier, int threads)
+    : options_{.tier = tier,
+               .execution = threads > 1 ? Execution::parallel() : Execution::serial()} {}
+
+void WinnowNarrow::run(ContactLevel level, std::span<const BodyPair> pairs) {
+  options_.level = level;
+  pairs_ = pairs;
+  const Status status = narrow_.collide(set_->pool, set_->bodies(), pairs, options_, result_);
+  if (status != Status::ok) {
+    throw std::runtime_error(std::string("pairs were refused: ") + to_string(status));
+  }
+}
+
+NarrowAnswer WinnowNarrow::answer(std::size_t i) const {
+  // All pairs of a set are of one kind, and stay in order.
+  if (result_.pair_of(i) != i) throw std::logic_error("pairs of one kind changed their order");
+  NarrowAnswer answer;
+  answer.overlap = result_.overlaps(i);
+  if (result_.level() == ContactLevel::boolean) return answer;
+  answer.distance = result_.distance()[i];
+  answer.error_bound = result_.error_bound()[i];
+  const Pose& a = set_->poses[pairs_[i].a];
+  for (int axis = 0; axis < 3; ++axis) {
+    answer.normal[axis] = result_.normal(axis)[i];
+    if (result_.level() == ContactLevel::distance) {
+      answer.point[axis] = a.position[axis] + result_.point(axis)[i];
+    }
+  }
+  if (result_.level() == ContactLevel::manifold) answer.contacts = result_.contact_count()[i];
+  return answer;
+}
+
+double WinnowNarrow::recomputed() const {
+  const NarrowStatistics& statistics = narrow_.statistics();
+  const auto alone = static_cast<double>(statistics.recomputed + statistics.without_lanes);
+  return alone / static_cast<double>(std::max<std::uint64_t>(statistics.pairs, 1));
+}
+
+}  // namespace winnow::bench

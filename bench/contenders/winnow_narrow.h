@@ -1,0 +1,33 @@
+#pragma once
+
+#include <winnow/pipeline/narrow_phase.h>
+#include "bench/contenders/narrow_engine.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+
+/// winnow's NarrowPhase in one tier, named after it.
+class WinnowNarrow final : public NarrowEngine {
+ public:
+  WinnowNarrow(NarrowTier tier, int threads);
+
+  [[nodiscard]] std::string name() const override { return std::string(to_text(options_.tier)); }
+  [[nodiscard]] bool takes(const PairKind&, ContactLevel) const override { return true; }
+  void start(const PairSet& set) override { set_ = &set; }
+  /// Throws std::runtime_error if the pairs are refused.
+  void run(ContactLevel level, std::span<const BodyPair> pairs) override;
+  [[nodiscard]] NarrowAnswer answer(std::size_t i) const override;
+  [[nodiscard]] double recomputed() const override;
+
+ private:
+  NarrowOptions options_;
+  const PairSet* set_ = nullptr;
+  std::span<const BodyPair> pairs_;
+  NarrowPhase narrow_;
+  NarrowResult result_;
+};
+
+}  // namespace winnow::bench

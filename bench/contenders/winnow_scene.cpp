@@ -1,0 +1,135 @@
+#include "bench/contenders/winnow_scene.h"
+
+#include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/scene.h>
+#include <winnow/pipeline/triangle_mesh.h>
+#include "bench/contenders/partitions.h"
+
+#include <optional>
+#include <stdexcept>
+
+namespace winnow::bench {
+namespace {
+
+void need(Status status, const char* what) {
+  if (status != Status::ok) {
+    throw std::runtime_error(std::string(what) + ": " + to_string(status));
+  }
+}
+
+std::span<const Eigen::Vector3d> vertices_of(const Triangles& mesh) {
+  return mesh.vertices;
+}
+std::span<const std::uint32_t> corners_of(const Triangles& mesh) {
+  return mesh.corners;
+}
+
+class WinnowScene final : public SceneEngine {
+ public:
+  WinnowScene(int threads, double carry_over, ContactLevel level)
+      : execution_(execution_for(threads)), carry_over_(carry_over), level_(level) {}
+
+  [[nodiscard]] std::string name() const override {
+    return carry_over_ > 0.0 ? "winnow, carrying over" : "winnow";
+  }
+  [[nodiscard]] bool carries_over() const override { return carry_over_ > 0.0; }
+
+  void start(const BodySet& set) override {
+    composites_.emplace(set.pool);
+    scene_.emplace(set.pool, SceneOptions{.execution = execution_,
+                                          .carry_over = carry_over_,
+                                          .composites = &*composites_});
+    std::vector<BodyDefinition> bodies(set.poses.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      bodies[i].shape = set.shapes[i];
+      bodies[i].pose = set.poses[i];
+    }
+    keys_.resize(bodies.size());
+    need(scene_->add(bodies, keys_), "the bodies");
+    if (set.mesh.size() == 0) return;
+    BodyDefinition terrain;
+    terrain.motion = Motion::fixed;
+    need(composites_->add_mesh(vertices_of(set.mesh), corners_of(set.mesh), terrain.shape),
+         "the mesh");
+    Key key;
+    need(scene_->add(terrain, key), "the mesh");
+  }
+
+  void frame(std::span<const Pose> poses) override {
+    need(scene_->move(keys_, poses), "poses");
+    need(scene_->collide(level_, contacts_), "contacts");
+  }
+
+  [[nodiscard]] SceneFinds finds() const override { return {contacts_.size(), contacts_.points()}; }
+
+ private:
+  Execution execution_;
+  double carry_over_;
+  ContactLevel level_;
+  std::optional<CompositePool> composites_;
+  std::optional<Scene> scene_;
+  std::vector<Key> keys_;
+  Contacts contacts_;
+};
+
+class WinnowMesh final : public MeshEngine {
+ public:
+  WinnowMesh()
+      : composites_(shapes_),
+        scene_(shapes_, {.execution = Execution::serial(), .composites = &composites_}) {}
+
+  [[nodiscard]] std::string name() const override { return "winnow"; }
+
+  void build(const Triangles& mesh) override {
+    need(mesh_.build(vertices_of(mesh), corners_of(mesh)), "the mesh");
+    triangles_ = &mesh;
+  }
+
+  [[nodiscard]] std::size_t bytes() const override { return mesh_.footprint().total().used; }
+
+  void collide(const Pose& a, const Pose& b) override {
+    if (keys_.empty()) add_bodies();
+    const Pose poses[] = {a, b};
+    need(scene_.move(keys_, poses), "poses");
+    need(scene_.collide(ContactLevel::manifold, contacts_), "contacts");
+  }
+
+  [[nodiscard]] TrianglePairs pairs() const override {
+    TrianglePairs pairs;
+    for (std::size_t m = 0; m < contacts_.manifolds(); ++m) {
+      pairs.emplace_back(contacts_.part_a()[m], contacts_.part_b()[m]);
+    }
+    return pairs;
+  }
+
+ private:
+  void add_bodies() {
+    std::vector<BodyDefinition> bodies(2);
+    need(composites_.add_mesh(vertices_of(*triangles_), corners_of(*triangles_), bodies[0].shape),
+         "the mesh");
+    bodies[1].shape = bodies[0].shape;
+    keys_.resize(2);
+    need(scene_.add(bodies, keys_), "two bodies");
+  }
+
+  ShapePool shapes_;
+  CompositePool composites_;
+  Scene scene_;
+  Contacts contacts_;
+  TriangleMesh mesh_;
+  const Triangles* triangles_ = nullptr;
+  std::vector<Key> keys_;
+};
+
+}  // namespace
+
+std::unique_ptr<SceneEngine> make_winnow_scene(int threads, double carry_over, ContactLevel level) {
+  return std::make_unique<WinnowScene>(threads, carry_over, level);
+}
+
+std::unique_ptr<MeshEngine> make_winnow_mesh() {
+  return std::make_unique<WinnowMesh>();
+}
+
+}  // namespace winnow::bench

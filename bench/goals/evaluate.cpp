@@ -1,0 +1,231 @@
+#include "bench/goals/evaluate.h"
+
+#include "bench/common/table.h"
+#include "bench/goals/asks.h"
+#include "bench/rows/machine.h"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+namespace winnow::bench {
+namespace {
+
+/// Measured where there is no answer, or a wrong one, and less is better.
+constexpr double kUnanswered = 1e6;
+/// The reference sweep, in ms, on the machine on which the other libraries were timed.
+constexpr double kReferenceMachineMs = 23.0;
+
+struct AskFigure {
+  double value = 0.0;
+  std::string from;  ///< of which rows
+};
+
+bool is_of_peer(const Json& row, const Json& keys) {
+  return std::any_of(keys.begin(), keys.end(), [&](const Json& key) {
+    const Json& text = row[key.get<std::string>()];
+    return text.is_string() && is_peer(text.get<std::string>());
+  });
+}
+
+bool is_any_of(const Json& value, const Json& wanted) {
+  if (wanted == "@isa") return value == isa_name();
+  if (!wanted.is_array()) return value == wanted;
+  return std::find(wanted.begin(), wanted.end(), value) != wanted.end();
+}
+
+bool is_meant(const Json& table, const Json& row, const Json& where) {
+  return std::all_of(where.items().begin(), where.items().end(), [&](const auto& member) {
+    if (member.key() == "peer") return is_of_peer(row, table["keys"]) == member.value();
+    return row.contains(member.key()) && is_any_of(row[member.key()], member.value());
+  });
+}
+
+/// Without the table's name, which is said by what is asked.
+std::string short_id(const Json& row) {
+  const std::string id = row["id"];
+  return id.substr(id.find('/') + 1);
+}
+
+/// The rows of one ask, narrowed to some values of keys.
+class Rows {
+ public:
+  explicit Rows(std::vector<const Measured*> from) : from_(std::move(from)) {}
+
+  /// Those of a figure; members that the table does not have as keys do not narrow it.
+  [[nodiscard]] std::vector<const Json*> of(const Json& figure, const Json& narrowed) const {
+    const std::string name = figure.at("of");
+    std::vector<const Json*> rows;
+    for (const Measured* one : from_) {
+      const Json* table = one->results.table(name);
+      if (table == nullptr) continue;
+      Json where = figure.value("where", Json::object());
+      for (const auto& [key, value] : narrowed.items()) {
+        const Json& keys = (*table)["keys"];
+        const bool has = std::find(keys.begin(), keys.end(), key) != keys.end();
+        if (has && !where.contains(key)) where[key] = value;
+      }
+      for (const Json& row : (*table)["rows"]) {
+        if (is_meant(*table, row, where)) rows.push_back(&row);
+      }
+    }
+    return rows;
+  }
+  /// How much slower this machine was.
+  [[nodiscard]] double scale() const {
+    for (const Measured* one : from_) {
+      if (one->machine_ms > 0.0) return one->machine_ms / kReferenceMachineMs;
+    }
+    return 1.0;
+  }
+
+ private:
+  std::vector<const Measured*> from_;
+};
+
+AskFigure sum_of(const std::vector<const Json*>& rows, const std::string& value) {
+  AskFigure sum;
+  for (const Json* row : rows) {
+    const double one = value_of(*row, value);
+    if (one == 0.0) continue;
+    sum.value += one;
+    sum.from += (sum.from.empty() ? "" : "; ") + short_id(*row) + " " + short_number(one);
+  }
+  sum.from += (sum.from.empty() ? "of " : "; of ") + std::to_string(rows.size()) + " rows";
+  return sum;
+}
+
+/// Of the rows by one of the rules; none if there are no such rows.
+std::optional<AskFigure> picked(const Json& figure, const Rows& rows, const Json& narrowed) {
+  for (const char* rule : {"least", "most", "sum", "the"}) {
+    if (!figure.contains(rule)) continue;
+    const std::string value = figure[rule];
+    std::vector<const Json*> found = rows.of(figure, narrowed);
+    std::erase_if(found, [&](const Json* row) { return !row->contains(value); });
+    if (found.empty()) return std::nullopt;
+    if (rule == std::string("sum")) return sum_of(found, value);
+    if (rule == std::string("the") && found.size() > 1) {
+      throw std::runtime_error("goals.json: more than one row for " + figure.dump());
+    }
+    const Json* best = *std::min_element(found.begin(), found.end(), [&](auto* a, auto* b) {
+      return rule == std::string("most") ? value_of(*a, value) > value_of(*b, value)
+                                         : value_of(*a, value) < value_of(*b, value);
+    });
+    const double number = value_of(*best, value);
+    return AskFigure{number, short_id(*best) + " " + short_number(number)};
+  }
+  throw std::runtime_error("goals.json: no figure: " + figure.dump());
+}
+
+std::optional<AskFigure> figure_of(const Json& figure, const Rows& rows, const Json& narrowed) {
+  if (figure.is_number()) return AskFigure{figure.get<double>(), ""};
+  const auto existing = [&](double ms) {
+    return AskFigure{ms * rows.scale(),
+                     "existing " + short_number(ms) + " x " + short_number(rows.scale())};
+  };
+  std::optional<AskFigure> found;
+  if (figure.contains("existing")) {
+    found = existing(figure["existing"]);
+  } else if (figure.contains("least_of")) {
+    for (const Json& one : figure["least_of"]) {
+      const auto other = figure_of(one, rows, narrowed);
+      if (other && (!found || other->value < found->value)) found = other;
+    }
+  } else {
+    found = picked(figure, rows, narrowed);
+    if (!found && figure.contains("else_existing")) found = existing(figure["else_existing"]);
+  }
+  if (found && figure.contains("divided_by")) {
+    const double by = figure["divided_by"];
+    found->value /= by;
+    found->from += " / " + short_number(by);
+  }
+  return found;
+}
+
+/// The combinations of these keys among the rows of the value.
+std::vector<Json> combinations_of(const Json& keys, const Json& value, const Rows& rows,
+                                  const Json& narrowed) {
+  std::vector<Json> all;
+  for (const Json* row : rows.of(value, narrowed)) {
+    Json one = narrowed;
+    for (const std::string key : keys) one[key] = row->at(key);
+    if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(std::move(one));
+  }
+  return all;
+}
+
+/// What is measured under these keys; none if a figure has no row.
+std::optional<AskFigure> measured_of(const Json& ask, const Rows& rows, const Json& narrowed) {
+  auto value = figure_of(ask["value"], rows, narrowed);
+  if (!value || !ask.contains("over")) return value;
+  const auto over = figure_of(ask["over"], rows, narrowed);
+  if (!over) return std::nullopt;
+  value->value /= over->value;
+  if (!over->from.empty()) value->from += " over " + over->from;
+  return value;
+}
+
+std::optional<AskFigure> worst_of(const Json& ask, const Rows& rows, const Json& narrowed,
+                                  bool at_least) {
+  if (!ask.contains("worst_by")) return measured_of(ask, rows, narrowed);
+  std::optional<AskFigure> worst;
+  for (const Json& one : combinations_of(ask["worst_by"], ask["value"], rows, narrowed)) {
+    const auto figure = measured_of(ask, rows, one);
+    if (!figure) continue;
+    const bool is_worse =
+        !worst || (at_least ? figure->value < worst->value : figure->value > worst->value);
+    if (is_worse) worst = figure;
+  }
+  return worst;
+}
+
+/// None if it is optional and cannot be answered.
+std::optional<Goal> goal_of(const Json& ask, const Rows& rows, const Json& narrowed) {
+  Goal goal{.topic = ask["topic"],
+            .what = filled(ask["what"], narrowed),
+            .unit = ask["unit"],
+            .at_least = ask.contains("at_least")};
+  const auto bound = figure_of(ask[goal.at_least ? "at_least" : "at_most"], rows, narrowed);
+  const auto value = worst_of(ask, rows, narrowed, goal.at_least);
+  if ((!bound || !value) && ask.value("optional", false)) return std::nullopt;
+  goal.asked = bound ? bound->value : 0.0;
+  goal.measured = value ? value->value : goal.at_least ? 0.0 : kUnanswered;
+  goal.detail = value ? value->from : "no such row";
+  if (bound && !bound->from.empty()) goal.detail += "; asked " + bound->from;
+  return goal;
+}
+
+}  // namespace
+
+std::vector<Goal> evaluate(const Json& ask, Lab& lab) {
+  const Json& measure = ask["measure"];
+  const Json requests = measure.is_array() ? measure : Json::array({measure});
+  std::vector<const Measured*> from;
+  std::string fault;
+  for (const Json& request : requests) {
+    const Measured& one = lab.measured(request);
+    if (one.absent) return {};
+    if (fault.empty()) fault = one.fault;
+    from.push_back(&one);
+  }
+  if (!fault.empty()) {
+    const bool at_least = ask.contains("at_least");
+    return {{.topic = ask["topic"],
+             .what = ask["what"],
+             .unit = ask["unit"],
+             .at_least = at_least,
+             .measured = at_least ? -kUnanswered : kUnanswered,
+             .detail = fault}};
+  }
+  const Rows rows(std::move(from));
+  std::vector<Json> groups{Json::object()};
+  if (ask.contains("by")) groups = combinations_of(ask["by"], ask["value"], rows, Json::object());
+  std::vector<Goal> goals;
+  for (const Json& narrowed : groups) {
+    if (auto goal = goal_of(ask, rows, narrowed)) goals.push_back(std::move(*goal));
+  }
+  return goals;
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,192 @@
+#include "bench/common/errors.h"
+#include "bench/common/sample.h"
+#include "bench/common/table.h"
+#include "bench/goals/measurements.h"
+#include "bench/report/trace.h"
+#include "bench/rows/results.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <stdexcept>
+#include <thread>
+
+namespace winnow::bench {
+namespace {
+
+/// A report that this tool makes in another process, in a folder that goes with it.
+class ReportProcess {
+ public:
+  explicit ReportProcess(std::vector<std::string> options) {
+    static int count = 0;
+    folder_ = std::filesystem::temp_directory_path() /
+              ("winnow_goals_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+    options.insert(options.begin(), {"winnow", "report", "--out", folder_.string()});
+    std::vector<char*> arguments;
+    for (std::string& option : options) arguments.push_back(option.data());
+    arguments.push_back(nullptr);
+    process_ = ::fork();
+    if (process_ != 0) return;
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    ::dup2(nowhere, STDOUT_FILENO);
+    ::dup2(nowhere, STDERR_FILENO);
+    ::execv("/proc/self/exe", arguments.data());
+    ::_exit(127);
+  }
+  ReportProcess(const ReportProcess&) = delete;
+  ReportProcess& operator=(const ReportProcess&) = delete;
+  ~ReportProcess() {
+    end_with(SIGKILL);
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+
+  /// Exit status once it has ended; -1 if a signal ended it.
+  int wait() {
+    int status = 0;
+    if (process_ <= 0 || ::waitpid(process_, &status, 0) != process_) return -1;
+    process_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  void end_with(int signal) {
+    if (process_ <= 0) return;
+    ::kill(process_, signal);
+    (void)wait();
+  }
+  [[nodiscard]] bool runs() {
+    if (process_ <= 0) return false;
+    if (::waitpid(process_, nullptr, WNOHANG) == process_) process_ = -1;
+    return process_ > 0;
+  }
+
+  /// Empty if there is none.
+  [[nodiscard]] std::string page() const {
+    std::ifstream file(folder_ / "index.html", std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  /// Throws ArgumentError if there is none, or it cannot be read.
+  [[nodiscard]] Results results() const {
+    return read_results((folder_ / "results.json").string());
+  }
+  [[nodiscard]] std::size_t rows() const {
+    std::size_t count = 0;
+    try {
+      const Results all = results();
+      for (const Json& table : all.document()["tables"]) count += table["rows"].size();
+    } catch (const ArgumentError&) {
+      return 0;
+    }
+    return count;
+  }
+
+ private:
+  std::filesystem::path folder_;
+  pid_t process_ = -1;
+};
+
+nlohmann::json plain_document(const ReportProcess& report) {
+  return nlohmann::json::parse(report.results().document().dump());
+}
+
+void declare_process(Results& results) {
+  results.declare(
+      {"report_process",
+       "report",
+       "a report that was made in another process",
+       {"what"},
+       {{"value", "value", ""}, {"detail", "detail", "", Better::neither, Format::text}}});
+}
+
+void add_of_process(Results& results, const std::string& what, double value,
+                    const std::string& detail) {
+  results.add("report_process", {{"what", what}, {"value", value}, {"detail", detail}});
+}
+
+/// Figures of the page that are not those of their rows.
+void add_trace(Results& results, const ReportProcess& report, std::size_t picked) {
+  const std::string page = report.page();
+  if (page.empty()) throw std::runtime_error("there is no page (Chart.js?)");
+  const std::uint64_t seed = std::random_device()();
+  const Trace trace = trace_page(page, plain_document(report), picked, seed);
+  if (trace.cells == 0 || trace.points == 0) throw std::runtime_error("the page shows nothing");
+  std::string detail = grouped(trace.cells) + " cells, " + grouped(trace.points) + " points, " +
+                       grouped(trace.derived) + " derived rows; seed " + std::to_string(seed);
+  if (!trace.wrong.empty()) detail = trace.wrong.front() + "; " + detail;
+  add_of_process(results, "wrong figures", static_cast<double>(trace.wrong.size()), detail);
+}
+
+/// Problems, and steps that were not measured.
+void add_faults(Results& results, const ReportProcess& report) {
+  if (report.rows() == 0) throw std::runtime_error("the report has no rows");
+  const Results made = report.results();
+  auto faults = static_cast<double>(made.document()["problems"].size());
+  for (const Json& section : made.document()["sections"]) {
+    faults += section["steps"].get<double>() - section["done"].get<double>();
+  }
+  add_of_process(results, "faults", faults, grouped(report.rows()) + " rows");
+}
+
+void require_done(int status) {
+  if (status != 0) throw std::runtime_error("the report ended with " + std::to_string(status));
+}
+
+}  // namespace
+
+void measure_default_report(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_process(measured.results);
+  const Stopwatch clock;
+  ReportProcess report({});
+  require_done(report.wait());
+  add_of_process(measured.results, "seconds", clock.ms() / 1000.0, "");
+  add_faults(measured.results, report);
+  add_trace(measured.results, report, options.at("picked"));
+}
+
+void measure_lone_report(const Json& /*options*/, Lab& /*lab*/, Measured& measured) {
+  declare_process(measured.results);
+  ReportProcess report({"--quick", "--no-peers"});
+  require_done(report.wait());
+  add_faults(measured.results, report);
+  const Json missing = report.results().document()["missing"];
+  add_of_process(measured.results, "notes", static_cast<double>(missing.size()),
+                 missing.empty() ? "" : missing[0].get<std::string>());
+}
+
+void measure_killed_report(const Json& /*options*/, Lab& /*lab*/, Measured& measured) {
+  declare_process(measured.results);
+  ReportProcess report({"--quick", "--no-peers"});
+  while (report.runs() && report.rows() == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  const bool half_way = report.runs();
+  report.end_with(SIGKILL);
+  const std::size_t rows = report.rows();
+  const std::string page = report.page();
+  const bool whole = rows > 0 && report.results().document()["complete"].get<bool>();
+  const Trace trace =
+      rows > 0 && !page.empty() ? trace_page(page, plain_document(report)) : Trace{};
+  const std::pair<bool, const char*> expected[] = {
+      {half_way, "it had ended before"},
+      {rows > 0, "no rows are left"},
+      {!whole, "it says that it is whole"},
+      {page.find("This report is not complete") != std::string::npos, "its page does not say so"},
+      {trace.points > 0 && trace.wrong.empty(), "its page is not that of its rows"}};
+  std::string faults;
+  double count = 0.0;
+  for (const auto& [holds, fault] : expected) {
+    if (holds) continue;
+    faults += (count > 0.0 ? "; " : "") + std::string(fault);
+    ++count;
+  }
+  add_of_process(measured.results, "faults", count,
+                 faults.empty() ? grouped(rows) + " rows were left" : faults);
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,185 @@
+#include "bench/measure/accuracy.h"
+
+#include <winnow/simd/isa.h>
+#include "bench/contenders/winnow_narrow.h"
+#include "bench/measure/installed_peers.h"
+#include "bench/measure/narrow_race.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <map>
+#include <memory>
+#include <numbers>
+
+namespace winnow::bench {
+
+namespace {
+
+constexpr double kMostDegrees = 0.01;
+
+double degrees_between(const double (&a)[3], const double (&b)[3]) {
+  const Eigen::Vector3d u(a[0], a[1], a[2]);
+  const Eigen::Vector3d v(b[0], b[1], b[2]);
+  return std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / std::numbers::pi;
+}
+
+/// False for the zero that stands where none is given.
+bool is_direction(const double (&v)[3]) {
+  const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  return std::isfinite(square) && square > 0.0;
+}
+
+PairError error_of(const NarrowAnswer& answer, const PairTruth& truth, ContactLevel level) {
+  const long double length = std::abs(truth.distance);
+  PairError result;
+  result.gap = static_cast<double>(length / static_cast<long double>(truth.size));
+  result.overlap = truth.overlap;
+  result.wrong = answer.overlap != truth.overlap;
+  // Manifolds are asked for without a margin: of other pairs nothing needs to be known.
+  if (level == ContactLevel::boolean) return result;
+  if (level == ContactLevel::manifold && truth.distance > 0.0L) return result;
+  const bool has_normal = is_direction(answer.normal);
+  const bool has_distance = std::isfinite(answer.distance);
+  result.missing = !has_distance || !has_normal;
+  if (has_distance) {
+    const long double off = std::abs(static_cast<long double>(answer.distance) - truth.distance);
+    result.error = static_cast<double>(off / (static_cast<long double>(truth.size) + length));
+    result.beyond_bound = off > static_cast<long double>(answer.error_bound);
+  }
+  if (has_normal && truth.normal_unique) {
+    result.degrees = degrees_between(answer.normal, truth.normal);
+  }
+  return result;
+}
+
+ErrorSpread spread_of_errors(std::vector<double>& errors) {
+  if (errors.empty()) return {};
+  const auto at = [&](std::size_t rank) {
+    const auto place = errors.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(errors.begin(), place, errors.end());
+    return *place;
+  };
+  const std::size_t count = errors.size();
+  return {count, at(count / 2), at((count * 99 + 99) / 100 - 1), at(count - 1)};
+}
+
+}  // namespace
+
+std::vector<PairError> errors_of(const NarrowEngine& engine, ContactLevel level, const PairSet& set,
+                                 std::span<const PairTruth> truths) {
+  std::vector<PairError> errors;
+  for (std::size_t i = 0; i < set.pairs.size(); ++i) {
+    if (truths[i].known) errors.push_back(error_of(engine.answer(i), truths[i], level));
+  }
+  return errors;
+}
+
+Accuracy summary_of(std::span<const PairError> errors) {
+  Accuracy sum;
+  sum.pairs = errors.size();
+  std::vector<double> all;
+  std::vector<double> apart;
+  std::vector<double> depth;
+  std::vector<double> degrees;
+  for (const PairError& one : errors) {
+    sum.wrong += one.wrong ? 1 : 0;
+    sum.missing += one.missing ? 1 : 0;
+    sum.beyond_bound += one.beyond_bound ? 1 : 0;
+    sum.normals_off += one.degrees > kMostDegrees ? 1 : 0;
+    if (!std::isnan(one.degrees)) degrees.push_back(one.degrees);
+    if (std::isnan(one.error)) continue;
+    all.push_back(one.error);
+    (one.overlap ? depth : apart).push_back(one.error);
+  }
+  sum.all = spread_of_errors(all);
+  sum.apart = spread_of_errors(apart);
+  sum.depth = spread_of_errors(depth);
+  sum.degrees = spread_of_errors(degrees);
+  return sum;
+}
+
+Accuracy judge_engine(NarrowEngine& engine, ContactLevel level, const PairSet& set,
+                      std::span<const PairTruth> truths, std::size_t runs) {
+  std::vector<double> ns;
+  for (std::size_t run = 0; run < runs; ++run) {
+    const ThreadStopwatch clock;
+    engine.run(level, set.pairs);
+    ns.push_back(clock.ms() * 1e6 / static_cast<double>(set.pairs.size()));
+  }
+  Accuracy accuracy = summary_of(errors_of(engine, level, set, truths));
+  accuracy.engine = engine.name();
+  accuracy.level = level;
+  accuracy.ns = std::move(ns);
+  accuracy.recomputed = engine.recomputed();
+  return accuracy;
+}
+
+namespace {
+
+/// Of an engine that gave up.
+Accuracy no_answers(const NarrowEngine& engine, ContactLevel level, std::size_t pairs) {
+  Accuracy accuracy;
+  accuracy.engine = engine.name();
+  accuracy.level = level;
+  accuracy.pairs = pairs;
+  accuracy.missing = pairs;
+  return accuracy;
+}
+
+std::vector<AccuracyAtGap> split_by_gap(const Accuracy& whole,
+                                        const std::vector<PairError>& errors) {
+  std::map<int, std::vector<PairError>> by_power;
+  for (const PairError& one : errors) {
+    if (one.gap > 0.0) by_power[static_cast<int>(std::floor(std::log10(one.gap)))].push_back(one);
+  }
+  std::vector<AccuracyAtGap> split;
+  for (const auto& [power, some] : by_power) {
+    Accuracy accuracy = summary_of(some);
+    accuracy.engine = whole.engine;
+    accuracy.level = whole.level;
+    split.push_back({std::pow(10.0, power), std::move(accuracy)});
+  }
+  return split;
+}
+
+}  // namespace
+
+AccuracyMeasurement measure_accuracy(const AccuracyOptions& options) {
+  const auto set = make_pair_set(options.kind, options.set);
+  const auto truths = truths_of(*set, options.judge);
+  std::vector<std::unique_ptr<NarrowEngine>> engines;
+  for (const NarrowTier tier : options.tiers) {
+    engines.push_back(std::make_unique<WinnowNarrow>(tier, 1));
+  }
+  if (options.peers) {
+    for (auto& peer : narrow_peers()) engines.push_back(std::move(peer));
+  }
+  AccuracyMeasurement measured;
+  for (const auto& engine : engines) engine->start(*set);
+  for (const ContactLevel level : options.levels) {
+    for (const auto& engine : engines) {
+      if (!engine->takes(options.kind, level)) continue;
+      try {
+        measured.engines.push_back(judge_engine(*engine, level, *set, truths, options.runs));
+      } catch (const std::exception&) {
+        measured.engines.push_back(no_answers(*engine, level, set->pairs.size()));
+        continue;
+      }
+      const auto errors = errors_of(*engine, level, *set, truths);
+      for (AccuracyAtGap& one : split_by_gap(measured.engines.back(), errors)) {
+        measured.by_gap.push_back(std::move(one));
+      }
+    }
+  }
+  return measured;
+}
+
+std::string judge_name(TruthSource judge) {
+  return judge == TruthSource::oracle && has_oracle() ? "100 digits" : "reference";
+}
+
+}  // namespace winnow::bench

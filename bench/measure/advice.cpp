@@ -1,0 +1,166 @@
+#include "bench/measure/advice.h"
+
+#include "bench/contenders/partition_engine.h"
+#include "partitions/choice/auto_partition.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+
+namespace winnow::bench {
+namespace {
+
+constexpr std::string_view kAuto = "AutoPartition";
+
+/// To two significant digits or so, as text has it.
+std::string about(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, value < 10.0 ? "%.1f" : "%.0f", value);
+  return text;
+}
+
+/// What a partition is, and what that has to do with its speed.
+struct Nature {
+  std::string_view partition;
+  std::string_view what;
+};
+
+constexpr Nature kNatures[] = {
+    {"NSquared", "reports all pairs without a look at the boxes"},
+    {"BoundsNSquared", "tests each object against every other, with no structure to keep"},
+    {"SweepAndPrune", "sweeps strips that are kept sorted"},
+    {"FlatGrid", "sorts objects into cells of one size"},
+    {"HierarchicalGrid", "has a grid for each class of sizes"},
+    {"LooseOctree", "has loose cells of each size in three dimensions"},
+    {"LooseQuadtree", "has loose cells of each size in two dimensions"},
+    {"LinearBvh", "refits a tree over objects in the order of median cuts"},
+    {"StaticBvh", "refits a tree over objects in an order that takes long to find"},
+};
+
+std::string why(const Partition& partition, const Run& run, double median_ms) {
+  if (const auto* chooser = dynamic_cast<const AutoPartition*>(&partition)) {
+    return "holds " + std::string(chooser->chosen()) + ", " + std::string(chooser->reason()) +
+           (chooser->switches() == 0
+                ? ""
+                : ", after " + std::to_string(chooser->switches()) + " changes of its mind");
+  }
+  const Statistics s = partition.statistics();
+  const auto n = static_cast<double>(std::max<std::size_t>(1, s.objects));
+  std::string text(partition.name());
+  for (const Nature& nature : kNatures) {
+    if (nature.partition == partition.name()) text = nature.what;
+  }
+  text += ": " + about(static_cast<double>(s.last_tests) / n) + " tests of 16 boxes an object";
+  const double apart = 100.0 * static_cast<double>(s.irregular) / n;
+  if (apart >= 1.0) text += ", " + about(apart) + " % of the objects do not suit its order";
+  if (s.builds > 1) {
+    text += ", built " + std::to_string(s.builds) + " times in " +
+            std::to_string(run.frame_ms.size()) + " frames";
+  }
+  if (run.frame_ms.front() > 8.0 * median_ms) {
+    text += ", and a build takes as long as " + about(run.frame_ms.front() / median_ms) + " frames";
+  }
+  return text;
+}
+
+/// Counts what moves while the race goes by.
+class Watched final : public FrameSource {
+ public:
+  explicit Watched(FrameSource& source) : source_(source) { remember(); }
+
+  [[nodiscard]] std::string name() const override { return source_.name(); }
+  [[nodiscard]] Aabb world() const override { return source_.world(); }
+  [[nodiscard]] std::span<const Aabb> boxes() const override { return source_.boxes(); }
+  bool advance() override {
+    if (!source_.advance()) return false;
+    const std::span<const Aabb> now = source_.boxes();
+    for (std::size_t i = 0; i < now.size(); ++i) moved_ += now[i] == last_[i] ? 0 : 1;
+    ++steps_;
+    remember();
+    return true;
+  }
+  [[nodiscard]] double moving() const {
+    const auto all = static_cast<double>(steps_ * std::max<std::size_t>(1, last_.size()));
+    return steps_ == 0 ? 0.0 : static_cast<double>(moved_) / all;
+  }
+
+ private:
+  void remember() { last_.assign(source_.boxes().begin(), source_.boxes().end()); }
+
+  FrameSource& source_;
+  std::vector<Aabb> last_;
+  std::size_t moved_ = 0;
+  std::size_t steps_ = 0;
+};
+
+}  // namespace
+
+std::vector<double> settled_frames(const Run& run) {
+  const std::size_t first =
+      run.frame_ms.size() < 9 ? std::min<std::size_t>(1, run.frame_ms.size() - 1) : 6;
+  return {run.frame_ms.begin() + static_cast<std::ptrdiff_t>(first), run.frame_ms.end()};
+}
+
+double settled_ms(const Run& run) {
+  return median_of(settled_frames(run));
+}
+
+const Advised& Advice::best() const {
+  const auto at = std::find_if(ranking.begin(), ranking.end(),
+                               [](const Advised& one) { return one.partition != kAuto; });
+  if (at == ranking.end()) throw std::invalid_argument("there is nothing to choose from");
+  return *at;
+}
+
+std::string Advice::code() const {
+  return "auto partition = winnow::make_partition(\"" + best().partition +
+         "\", {.execution = " + "winnow::Execution::" + (threads == 1 ? "serial" : "parallel") +
+         "()});";
+}
+
+Advice advise(FrameSource& source, const std::vector<std::string>& partitions, std::size_t frames,
+              int threads) {
+  Watched watched(source);
+  std::vector<Contender> contenders;
+  std::vector<const Partition*> raced;
+  for (const std::string& name : partitions) {
+    auto engine = std::make_unique<PartitionEngine>(name, threads);
+    raced.push_back(&engine->partition());
+    contenders.push_back({std::move(engine), threads, active_isa()});
+  }
+  RaceOptions options;
+  options.frames = frames;
+  const std::vector<Run> runs = race(watched, contenders, options);
+
+  Advice advice;
+  advice.scene = source.name();
+  advice.objects = source.boxes().size();
+  advice.threads = threads;
+  advice.moving = watched.moving();
+  advice.same_pairs = all_agree(runs);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const double ms = settled_ms(runs[i]);
+    advice.ranking.push_back({.partition = runs[i].engine,
+                              .first_ms = runs[i].frame_ms.front(),
+                              .settled = settled_frames(runs[i]),
+                              .median_ms = ms,
+                              .bytes = runs[i].bytes,
+                              .why = why(*raced[i], runs[i], ms)});
+    advice.frames = runs[i].frame_ms.size();
+    advice.pairs = runs[i].pairs_a_frame();
+    if (const auto* chooser = dynamic_cast<const AutoPartition*>(raced[i])) {
+      advice.chosen = chooser->chosen();
+      advice.reason = chooser->reason();
+      advice.features = chooser->features();
+    }
+  }
+  std::stable_sort(advice.ranking.begin(), advice.ranking.end(),
+                   [](const Advised& a, const Advised& b) { return a.median_ms < b.median_ms; });
+  const double least = advice.best().median_ms;
+  for (Advised& one : advice.ranking) one.times_best = one.median_ms / least;
+  return advice;
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,180 @@
+#include "bench/measure/narrow_race.h"
+
+#include "bench/common/timed.h"
+#include "bench/contenders/reference_sweep.h"
+#include "bench/contenders/winnow_narrow.h"
+#include "bench/measure/installed_peers.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow::bench {
+
+namespace {
+
+/// Pairs that are answered before a turn is timed.
+constexpr std::size_t kWarming = 512;
+
+/// One contender at the level that is being raced.
+class PairEntry {
+ public:
+  PairEntry(const PairSet& set, ContactLevel level, const NarrowContender& contender)
+      : set_(set), engine_(*contender.engine) {
+    timing_.engine = engine_.name();
+    timing_.level = level;
+    timing_.threads = contender.threads;
+  }
+
+  /// Answers a part of the pairs to compare its verdicts, and learns how long a turn may be.
+  void check(std::vector<NarrowAnswer>& expected, const NarrowRaceOptions& options,
+             Arenas& arenas) {
+    const std::span<const BodyPair> all = set_.pairs;
+    const std::span<const BodyPair> part = all.first(std::min(options.compared, all.size()));
+    const double ms = timed(timing_.threads, arenas, [&] { engine_.run(timing_.level, part); });
+    timing_.recomputed = engine_.recomputed();
+    compare(part, expected);
+    const double wanted = options.turn_ms * static_cast<double>(part.size()) / std::max(ms, 1e-3);
+    const std::size_t least = std::min(options.smallest_part, all.size());
+    part_ = std::clamp(static_cast<std::size_t>(wanted), least, all.size());
+    passes_ = std::max<std::size_t>(1, static_cast<std::size_t>(wanted) / part_);
+    timing_.pairs = part_;
+  }
+
+  void time(Arenas& arenas) {
+    const std::span<const BodyPair> part = next_part();
+    // Every turn begins with what the one before left in the caches.
+    engine_.run(timing_.level, part.last(std::min(kWarming, part.size())));
+    const double ms = timed(timing_.threads, arenas, [&] {
+      for (std::size_t pass = 0; pass < passes_; ++pass) engine_.run(timing_.level, part);
+    });
+    timing_.ns.push_back(ms * 1e6 / static_cast<double>(passes_ * part.size()));
+  }
+
+  [[nodiscard]] NarrowTiming& timing() noexcept { return timing_; }
+
+ private:
+  /// With what the first engine said, which this one is if nothing is expected yet.
+  void compare(std::span<const BodyPair> pairs, std::vector<NarrowAnswer>& expected) {
+    const bool is_first = expected.empty();
+    std::size_t overlapping = 0;
+    std::size_t other_depth = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const NarrowAnswer answer = engine_.answer(i);
+      if (is_first) expected.push_back(answer);
+      timing_.disagree += answer.overlap == expected[i].overlap ? 0 : 1;
+      if (!answer.overlap || !expected[i].overlap) continue;
+      const double sizes = set_.radius[pairs[i].a] + set_.radius[pairs[i].b];
+      const double off = std::abs(answer.distance - expected[i].distance);
+      other_depth += off > 0.01 * sizes ? 1 : 0;
+      timing_.contacts += answer.contacts;
+      ++overlapping;
+    }
+    timing_.compared = pairs.size();
+    const double all = std::max(1.0, static_cast<double>(overlapping));
+    timing_.other_depth = static_cast<double>(other_depth) / all;
+    timing_.contacts /= all;
+  }
+
+  std::span<const BodyPair> next_part() {
+    const std::span<const BodyPair> all = set_.pairs;
+    if (first_ + part_ > all.size()) first_ = 0;
+    const std::span<const BodyPair> part = all.subspan(first_, part_);
+    first_ += part_;
+    return part;
+  }
+
+  const PairSet& set_;
+  NarrowEngine& engine_;
+  NarrowTiming timing_;
+  std::size_t part_ = 0;
+  std::size_t passes_ = 1;
+  std::size_t first_ = 0;
+};
+
+}  // namespace
+
+std::vector<NarrowTiming> race_pairs(const PairSet& set, ContactLevel level,
+                                     std::span<NarrowContender> contenders,
+                                     const NarrowRaceOptions& options) {
+  int most_threads = 1;
+  std::vector<PairEntry> entries;
+  for (const NarrowContender& contender : contenders) {
+    if (!contender.engine->takes(set.kind, level)) continue;
+    most_threads = std::max(most_threads, contender.threads);
+    entries.emplace_back(set, level, contender);
+  }
+  Arenas arenas(most_threads);
+  std::vector<NarrowAnswer> expected;
+  for (PairEntry& entry : entries) entry.check(expected, options, arenas);
+  for (std::size_t round = 0; round < options.rounds; ++round) {
+    for (PairEntry& entry : entries) entry.time(arenas);
+  }
+  std::vector<NarrowTiming> timings;
+  for (PairEntry& entry : entries) timings.push_back(std::move(entry.timing()));
+  return timings;
+}
+
+bool NarrowMeasurement::is_peer(const NarrowTiming& timing) const noexcept {
+  return std::find(peers.begin(), peers.end(), timing.engine) != peers.end();
+}
+
+const NarrowTiming* NarrowMeasurement::find(NarrowTier tier, ContactLevel level,
+                                            int threads) const noexcept {
+  for (const NarrowTiming& timing : timings) {
+    if (timing.engine == to_text(tier) && timing.level == level && timing.threads == threads) {
+      return &timing;
+    }
+  }
+  return nullptr;
+}
+
+bool NarrowMeasurement::is_right(const NarrowTiming& timing) const noexcept {
+  if (100 * timing.disagree > timing.compared || timing.other_depth > 0.1) return false;
+  const auto first = std::find_if(timings.begin(), timings.end(), [&](const NarrowTiming& other) {
+    return other.level == timing.level;
+  });
+  return first == timings.end() || 2.0 * timing.contacts >= first->contacts;
+}
+
+const NarrowTiming* NarrowMeasurement::best_peer(ContactLevel level) const noexcept {
+  const NarrowTiming* best = nullptr;
+  for (const NarrowTiming& timing : timings) {
+    if (timing.level != level || !is_peer(timing) || !is_right(timing)) continue;
+    if (best == nullptr || timing.median_ns() < best->median_ns()) best = &timing;
+  }
+  return best;
+}
+
+NarrowMeasurement measure_narrow(const NarrowMeasureOptions& options) {
+  NarrowMeasurement measured;
+  measured.kind = options.kind;
+  measured.pairs = options.pairs;
+  const auto set = make_pair_set(options.kind, {.pairs = options.pairs,
+                                                .seed = options.seed,
+                                                .scattered = options.pairs > kMostPairsInCache});
+  std::vector<NarrowContender> contenders;
+  for (const NarrowTier tier : options.tiers) {
+    for (const int threads : options.threads) {
+      contenders.push_back({std::make_unique<WinnowNarrow>(tier, threads), threads});
+    }
+  }
+  if (options.peers) {
+    for (std::unique_ptr<NarrowEngine>& peer : narrow_peers()) {
+      measured.peers.push_back(peer->name());
+      contenders.push_back({std::move(peer), 1});
+    }
+  }
+  for (const NarrowContender& contender : contenders) contender.engine->start(*set);
+  MachineClock clock;
+  for (const ContactLevel level : options.levels) {
+    clock.tick();
+    for (NarrowTiming& timing : race_pairs(*set, level, contenders, options.race)) {
+      measured.timings.push_back(std::move(timing));
+    }
+  }
+  clock.tick();
+  measured.machine_ms = clock.median_ms();
+  return measured;
+}
+
+}  // namespace winnow::bench

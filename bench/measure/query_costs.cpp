@@ -1,0 +1,101 @@
+#include "bench/measure/query_costs.h"
+
+#include "bench/common/sample.h"
+#include "bench/contenders/partition_queries.h"
+#include "bench/measure/column_read.h"
+#include "bench/scenes/question_set.h"
+#include "bench/scenes/scene.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+namespace winnow::bench {
+namespace {
+
+constexpr std::size_t kReadings = 50;
+
+/// The columns of boxes, as a partition keeps them.
+class Columns {
+ public:
+  explicit Columns(std::span<const Aabb> boxes)
+      : count_((boxes.size() + 31) / 32 * 32), storage_(6 * count_ + 16) {
+    void* start = storage_.data();
+    std::size_t space = storage_.size() * sizeof(float);
+    auto* aligned = static_cast<float*>(std::align(64, 6 * count_ * sizeof(float), start, space));
+    for (std::size_t c = 0; c < 6; ++c) {
+      float* column = aligned + c * count_;
+      const auto axis = static_cast<Eigen::Index>(c % 3);
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        column[i] = c < 3 ? boxes[i].min[axis] : boxes[i].max[axis];
+      }
+      columns_[c] = column;
+    }
+  }
+
+  /// Milliseconds of one reading.
+  [[nodiscard]] double time() const {
+    volatile float result = read_columns(columns_.data(), count_);  // warms the caches
+    const ThreadStopwatch clock;
+    for (std::size_t i = 0; i < kReadings; ++i) result = read_columns(columns_.data(), count_);
+    (void)result;
+    return clock.ms() / static_cast<double>(kReadings);
+  }
+
+ private:
+  std::size_t count_;
+  std::vector<float> storage_;
+  std::array<const float*, 6> columns_{};
+};
+
+}  // namespace
+
+FrustumCosts measure_frustum_costs(const std::vector<std::string>& partitions,
+                                   const std::string& set, std::size_t objects,
+                                   std::size_t rounds) {
+  const auto scene = make_scene("uniform", objects, 1);
+  const std::span<const Aabb> boxes = scene->boxes();
+  const std::vector<std::string> names{set};
+  const QuestionSet questions = make_question_sets(boxes, 50'000, 1, names).front();
+  const Columns columns(boxes);
+  std::vector<std::unique_ptr<PartitionQueries>> engines;
+  for (const std::string& name : partitions) {
+    engines.push_back(std::make_unique<PartitionQueries>(name, 1));
+    engines.back()->start(boxes);
+  }
+  FrustumCosts costs;
+  costs.asked.resize(engines.size());
+  const auto number = static_cast<double>(questions.size());
+  for (std::size_t round = 0; round < rounds; ++round) {
+    costs.read.push_back(columns.time());
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      (void)engines[e]->run(questions, Asking::single, std::min<std::size_t>(4, questions.size()));
+      const ThreadStopwatch clock;
+      const auto found = engines[e]->run(questions, Asking::single, questions.size());
+      costs.asked[e].push_back(clock.ms() / number);
+      costs.found_a_question = static_cast<double>(found) / number;
+    }
+  }
+  return costs;
+}
+
+std::vector<SecondRound> measure_second_rounds(std::string_view partition, std::size_t objects) {
+  const auto scene = make_scene("uniform", objects, 1);
+  PartitionQueries engine(partition, 1);
+  engine.start(scene->boxes());
+  std::vector<SecondRound> rounds;
+  for (const QuestionSet& set : make_question_sets(scene->boxes(), 2000, 1)) {
+    for (const Asking asking : {Asking::single, Asking::batch}) {
+      if (!engine.takes(set, asking)) continue;
+      const std::size_t count = std::min(set.size(), engine.most_questions());
+      (void)engine.run(set, asking, count);
+      const std::size_t before = engine.memory().allocations();
+      (void)engine.run(set, asking, count);
+      rounds.push_back({set.name + (asking == Asking::single ? "" : ", as a batch"),
+                        engine.memory().allocations() - before});
+    }
+  }
+  return rounds;
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,255 @@
+#include "bench/measure/race.h"
+
+#include "bench/common/arena.h"
+#include "bench/common/table.h"
+#include "bench/contenders/partition_engine.h"
+#include "bench/contenders/reference_sweep.h"
+#include "bench/measure/installed_peers.h"
+#include "bench/scenes/scene.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+namespace winnow::bench {
+
+namespace {
+
+struct Frame {
+  std::vector<Aabb> boxes;
+  std::vector<std::uint32_t> changed;  // rows that differ from the frame before
+};
+
+/// Reads a source block by block.
+class FrameBlocks {
+ public:
+  explicit FrameBlocks(FrameSource& source) : source_(source) {}
+
+  /// At most `count` frames; empty at the end.
+  const std::vector<Frame>& next(std::size_t count) {
+    frames_.clear();
+    while (frames_.size() < count) {
+      if (started_ && !source_.advance()) break;
+      started_ = true;
+      const std::span<const Aabb> boxes = source_.boxes();
+      Frame& frame = frames_.emplace_back();
+      for (std::size_t i = 0; i < boxes.size() && !last_.empty(); ++i) {
+        if (std::memcmp(&boxes[i], &last_[i], sizeof(Aabb)) != 0) {
+          frame.changed.push_back(static_cast<std::uint32_t>(i));
+        }
+      }
+      frame.boxes.assign(boxes.begin(), boxes.end());
+      last_ = frame.boxes;
+    }
+    return frames_;
+  }
+
+ private:
+  FrameSource& source_;
+  std::vector<Frame> frames_;
+  std::vector<Aabb> last_;
+  bool started_ = false;
+};
+
+/// Puts back the instruction set that was active.
+class IsaGuard {
+ public:
+  IsaGuard() = default;
+  IsaGuard(const IsaGuard&) = delete;
+  IsaGuard& operator=(const IsaGuard&) = delete;
+  ~IsaGuard() { choose(before_); }
+
+  static void choose(Isa isa) noexcept {
+    // Only sets that this machine has get here; for them the choice cannot be refused.
+    if (isa != active_isa()) static_cast<void>(set_isa(isa));
+  }
+
+ private:
+  Isa before_ = active_isa();
+};
+
+void run_frame(Contender& contender, const Frame& frame, bool first, Run& run) {
+  const Stopwatch clock;
+  if (first) {
+    contender.engine->start(frame.boxes);
+  } else {
+    contender.engine->frame(frame.changed, frame.boxes);
+  }
+  run.frame_ms.push_back(clock.ms());
+  run.update_ms.push_back(contender.engine->update_ms());
+  run.pairs.push_back(summarize(contender.engine->pairs(), frame.boxes));
+}
+
+std::span<const double> after_first(const std::vector<double>& values) {
+  return std::span(values).subspan(values.size() > 1 ? 1 : 0);
+}
+
+double mean_after_first(const std::vector<PairSummary>& frames,
+                        std::uint64_t PairSummary::*member) {
+  const std::size_t first = frames.size() > 1 ? 1 : 0;
+  double sum = 0.0;
+  for (std::size_t f = first; f < frames.size(); ++f) {
+    sum += static_cast<double>(frames[f].*member);
+  }
+  return frames.empty() ? 0.0 : sum / static_cast<double>(frames.size() - first);
+}
+
+}  // namespace
+
+Spread Run::frame_spread() const {
+  return spread_of(after_first(frame_ms));
+}
+double Run::median_update_ms() const {
+  return median_of(after_first(update_ms));
+}
+double Run::pairs_a_frame() const {
+  return mean_after_first(pairs, &PairSummary::pairs);
+}
+double Run::reported_a_frame() const {
+  return mean_after_first(pairs, &PairSummary::reported);
+}
+
+bool Run::same_pairs(const Run& other) const noexcept {
+  return std::equal(pairs.begin(), pairs.end(), other.pairs.begin(), other.pairs.end(),
+                    [](const PairSummary& a, const PairSummary& b) { return a.same_pairs(b); });
+}
+
+std::vector<Run> race(FrameSource& source, std::vector<Contender>& contenders,
+                      const RaceOptions& options) {
+  const IsaGuard guard;
+  int most_threads = 1;
+  for (const Contender& c : contenders) most_threads = std::max(most_threads, c.threads);
+  Arenas arenas(most_threads);
+  std::vector<Run> runs(contenders.size());
+  for (std::size_t c = 0; c < contenders.size(); ++c) {
+    runs[c].engine = contenders[c].engine->name();
+    runs[c].threads = contenders[c].threads;
+    runs[c].isa = contenders[c].isa;
+  }
+  FrameBlocks blocks(source);
+  for (std::size_t done = 0; done < options.frames;) {
+    if (options.before_block) options.before_block(done);
+    const std::size_t wanted = done == 0 ? 1 : std::min(options.block, options.frames - done);
+    const std::vector<Frame>& frames = blocks.next(wanted);
+    for (std::size_t c = 0; c < contenders.size(); ++c) {
+      IsaGuard::choose(contenders[c].isa);
+      arenas.run(contenders[c].threads, [&] {
+        for (const Frame& frame : frames) run_frame(contenders[c], frame, done == 0, runs[c]);
+      });
+    }
+    done += frames.size();
+    if (frames.size() < wanted) break;
+  }
+  for (std::size_t c = 0; c < contenders.size(); ++c) runs[c].bytes = contenders[c].engine->bytes();
+  return runs;
+}
+
+std::vector<Contender> make_contenders(const std::vector<std::string>& partitions, int threads) {
+  std::vector<Contender> contenders;
+  for (const std::string& name : partitions) {
+    contenders.push_back({std::make_unique<PartitionEngine>(name, threads), threads, active_isa()});
+  }
+  return contenders;
+}
+
+bool all_agree(const std::vector<Run>& runs) noexcept {
+  return std::all_of(runs.begin(), runs.end(),
+                     [&](const Run& run) { return run.same_pairs(runs.front()); });
+}
+
+namespace {
+
+void add_peers(const MeasureOptions& options, std::vector<Contender>& contenders,
+               Measurement& result) {
+  std::vector<std::string>& skipped = result.skipped;
+  for (const int threads : options.threads) {
+    for (std::unique_ptr<Engine>& engine : frame_peers(threads)) {
+      if (result.objects > engine->largest()) {
+        const std::string text =
+            engine->name() + " (more than " + grouped(engine->largest()) + " objects)";
+        if (std::find(skipped.begin(), skipped.end(), text) == skipped.end()) {
+          skipped.push_back(text);
+        }
+      } else {
+        contenders.push_back({std::move(engine), threads, active_isa()});
+      }
+    }
+  }
+}
+
+const Run* fastest_of(std::span<const Run> runs, int threads) {
+  const Run* best = nullptr;
+  for (const Run& run : runs) {
+    if (run.threads != threads) continue;
+    if (best == nullptr || run.median_ms() < best->median_ms()) best = &run;
+  }
+  return best;
+}
+
+}  // namespace
+
+const Run* Measurement::find(const std::string& engine, int threads) const {
+  for (const Run& run : runs) {
+    if (run.engine == engine && run.threads == threads) return &run;
+  }
+  return nullptr;
+}
+
+const Run* Measurement::fastest(int threads) const {
+  return fastest_of(partitions(), threads);
+}
+const Run* Measurement::fastest_peer(int threads) const {
+  return fastest_of(peers(), threads);
+}
+
+Measurement measure(const MeasureOptions& options) {
+  const auto source = options.recording != nullptr
+                          ? play(*options.recording)
+                          : scene_or_error(options.scene, options.objects, options.seed);
+  Measurement result;
+  result.scene = source->name();
+  result.objects = source->boxes().size();
+  const Partitions partitions = partitions_for(options.partitions, result.objects);
+  result.skipped = partitions.skipped;
+
+  std::vector<Contender> contenders;
+  std::vector<Isa> isas = options.isas;
+  if (isas.empty()) isas.push_back(active_isa());
+  for (const Isa isa : isas) {
+    for (const int threads : options.threads) {
+      for (Contender& contender : make_contenders(partitions.taken, threads)) {
+        contender.isa = isa;
+        contenders.push_back(std::move(contender));
+      }
+    }
+  }
+  result.partition_runs = contenders.size();
+  if (options.peers) add_peers(options, contenders, result);
+  result.peer_runs = contenders.size() - result.partition_runs;
+  if (options.reference) {
+    contenders.push_back({std::make_unique<ReferenceSweep>(-1), 1, active_isa()});
+  }
+
+  RaceOptions race_options;
+  race_options.frames = options.frames != 0 ? options.frames : frames_for(result.objects);
+  std::optional<MachineClock> clock;
+  if (options.machine_clock) {
+    clock.emplace();
+    race_options.before_block = [&](std::size_t) { clock->tick(); };
+  }
+  result.runs = race(*source, contenders, race_options);
+  if (clock) {
+    clock->tick();
+    result.machine_ms = clock->median_ms();
+  }
+  return result;
+}
+
+std::size_t frames_for(std::size_t objects) {
+  if (objects <= 20'000) return 31;
+  return objects <= 300'000 ? 13 : 6;
+}
+
+}  // namespace winnow::bench

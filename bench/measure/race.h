@@ -1,0 +1,113 @@
+#pragma once
+
+#include <winnow/simd/isa.h>
+#include "bench/common/sample.h"
+#include "bench/contenders/engine.h"
+#include "bench/measure/fingerprint.h"
+#include "bench/recordings/recording.h"
+#include "bench/scenes/frame_source.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+
+/// Who takes part in a race, and how.
+struct Contender {
+  std::unique_ptr<Engine> engine;
+  int threads = 1;
+  Isa isa = active_isa();
+};
+
+/// What one contender did, one entry a frame; entry 0 is the first frame, in which it was built.
+struct Run {
+  std::string engine;
+  int threads = 1;
+  Isa isa{};
+  std::vector<double> frame_ms;
+  std::vector<double> update_ms;
+  std::vector<PairSummary> pairs;
+  std::size_t bytes = 0;
+
+  /// Of the frames after the first; of the first if there is no other.
+  [[nodiscard]] Spread frame_spread() const;
+  [[nodiscard]] double median_ms() const { return frame_spread().median; }
+  [[nodiscard]] double median_update_ms() const;
+  [[nodiscard]] double pairs_a_frame() const;
+  [[nodiscard]] double reported_a_frame() const;
+  [[nodiscard]] bool same_pairs(const Run& other) const noexcept;
+};
+
+struct RaceOptions {
+  std::size_t frames = 30;  ///< the first one included; fewer if the source ends
+  /// Frames that a contender runs in a row before the next one runs the same: long enough for its
+  /// data to be warm, short enough for all to meet the same disturbances.
+  std::size_t block = 5;
+  /// Called before each block with the number of frames done, outside all timers.
+  std::function<void(std::size_t frames_done)> before_block;
+};
+
+/// Runs all contenders over the same frames, interleaved. What changed between frames is found
+/// outside the timers, because a simulation knows what it moved; and so are the fingerprints. The
+/// instruction set is what it was when this returns.
+[[nodiscard]] std::vector<Run> race(FrameSource& source, std::vector<Contender>& contenders,
+                                    const RaceOptions& options);
+
+/// One contender for each partition.
+[[nodiscard]] std::vector<Contender> make_contenders(const std::vector<std::string>& partitions,
+                                                     int threads);
+
+/// True if all runs found the same pairs in every frame.
+[[nodiscard]] bool all_agree(const std::vector<Run>& runs) noexcept;
+
+/// One race on one scene: every partition at every thread count on every instruction set.
+struct MeasureOptions {
+  std::string scene{};
+  const Recording* recording = nullptr;  ///< instead of the scene
+  std::size_t objects = 10'000;
+  std::uint64_t seed = 1;
+  std::vector<std::string> partitions{"all"};
+  std::vector<int> threads{1};
+  std::vector<Isa> isas{};  ///< empty: the active one
+  bool peers = false;       ///< other libraries too, where the tool was built with them
+  bool reference = false;   ///< the reference sweep too, as the judge of what overlaps
+  bool machine_clock = false;
+  std::size_t frames = 0;  ///< the first one included; 0: what suits the size
+};
+
+struct Measurement {
+  std::string scene{};
+  std::size_t objects = 0;
+  std::vector<Run> runs;             ///< partitions, then peers, then the reference
+  std::size_t partition_runs = 0;    ///< how many of them, from the front, are partitions
+  std::size_t peer_runs = 0;         ///< how many after these are other libraries
+  std::vector<std::string> skipped;  ///< too slow for the size
+  double machine_ms = 0.0;           ///< of the MachineClock, interleaved with the race
+
+  [[nodiscard]] std::span<const Run> partitions() const {
+    return std::span(runs).first(partition_runs);
+  }
+  [[nodiscard]] std::span<const Run> peers() const {
+    return std::span(runs).subspan(partition_runs, peer_runs);
+  }
+  /// Null if it did not run.
+  [[nodiscard]] const Run* find(const std::string& engine, int threads) const;
+  /// The fastest partition at this thread count; null if none ran.
+  [[nodiscard]] const Run* fastest(int threads) const;
+  /// The fastest other library at this thread count; null if none ran.
+  [[nodiscard]] const Run* fastest_peer(int threads) const;
+  [[nodiscard]] double bytes_per_object(const Run& run) const {
+    return static_cast<double>(run.bytes) / static_cast<double>(objects);
+  }
+};
+
+[[nodiscard]] Measurement measure(const MeasureOptions& options);
+
+/// Frames that give a steady median in a second or so.
+[[nodiscard]] std::size_t frames_for(std::size_t objects);
+
+}  // namespace winnow::bench

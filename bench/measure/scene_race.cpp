@@ -1,0 +1,173 @@
+#include "bench/measure/scene_race.h"
+
+#include "bench/common/timed.h"
+#include "bench/contenders/reference_sweep.h"
+#include "bench/measure/installed_peers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+namespace winnow::bench {
+
+namespace {
+
+constexpr std::size_t kWarming = 2;
+
+/// Makes every pair of both lists single first.
+std::size_t count_differing(MeshEngine::TrianglePairs& a, MeshEngine::TrianglePairs& b) {
+  for (MeshEngine::TrianglePairs* pairs : {&a, &b}) {
+    std::sort(pairs->begin(), pairs->end());
+    pairs->erase(std::unique(pairs->begin(), pairs->end()), pairs->end());
+  }
+  MeshEngine::TrianglePairs differ;
+  std::set_symmetric_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(differ));
+  return differ.size();
+}
+
+}  // namespace
+
+std::vector<SceneTiming> race_scene(const BodySet& set, const Stray& by,
+                                    std::span<SceneContender> contenders, std::size_t frames) {
+  int most_threads = 1;
+  std::vector<SceneTiming> timings;
+  for (const SceneContender& contender : contenders) {
+    most_threads = std::max(most_threads, contender.threads);
+    timings.push_back({.engine = contender.engine->name(), .threads = contender.threads});
+  }
+  Arenas arenas(most_threads);
+  for (const SceneContender& contender : contenders) contender.engine->start(set);
+  std::vector<Pose> poses;
+  for (std::size_t f = 0; f < frames + kWarming; ++f) {
+    stray(set, by, f, poses);
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+      SceneEngine& engine = *contenders[i].engine;
+      const double ms = timed(contenders[i].threads, arenas, [&] { engine.frame(poses); });
+      if (f >= kWarming) timings[i].ms.push_back(ms);
+    }
+  }
+  for (std::size_t i = 0; i < contenders.size(); ++i) {
+    timings[i].finds = contenders[i].engine->finds();
+  }
+  return timings;
+}
+
+std::vector<MeshTiming> race_meshes(std::span<const std::unique_ptr<MeshEngine>> engines,
+                                    std::size_t rounds) {
+  const Triangles torus = make_race_torus();
+  Arenas arenas(1);
+  std::vector<MeshTiming> timings(engines.size());
+  for (std::size_t round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < engines.size(); ++i) {
+      timings[i].engine = engines[i]->name();
+      timings[i].build_ms.push_back(timed(1, arenas, [&] { engines[i]->build(torus); }));
+    }
+  }
+  for (std::size_t p = 0; p < torus_poses().size(); ++p) {
+    MeshEngine::TrianglePairs expected;
+    for (std::size_t round = 0; round < rounds + kWarming; ++round) {
+      for (std::size_t i = 0; i < engines.size(); ++i) {
+        const double ms =
+            timed(1, arenas, [&] { engines[i]->collide(Pose{}, torus_poses()[p].pose); });
+        if (round >= kWarming) timings[i].collide_ms[p].push_back(ms);
+      }
+    }
+    for (std::size_t i = 0; i < engines.size(); ++i) {
+      MeshEngine::TrianglePairs found = engines[i]->pairs();
+      if (i == 0) expected = found;
+      timings[i].differ[p] = count_differing(expected, found);
+      timings[i].pairs[p] = found.size();
+      timings[i].bytes_per_triangle =
+          static_cast<double>(engines[i]->bytes()) / static_cast<double>(torus.size());
+    }
+  }
+  return timings;
+}
+
+namespace {
+
+constexpr std::size_t kPileBodies = 20'000;
+constexpr std::size_t kTerrainBodies = 2'000;
+/// 200,978 triangles.
+constexpr std::uint32_t kTerrainCells = 317;
+constexpr int kTicks = 3;
+
+void tick(std::optional<MachineClock>& clock) {
+  for (int i = 0; clock && i < kTicks; ++i) clock->tick();
+}
+
+}  // namespace
+
+const SceneTiming* PipelineMeasurement::winnow(int threads) const noexcept {
+  for (const SceneTiming& timing : timings) {
+    const bool is_peer = std::find(peers.begin(), peers.end(), timing.engine) != peers.end();
+    if (!is_peer && timing.threads == threads) return &timing;
+  }
+  return nullptr;
+}
+
+const SceneTiming* PipelineMeasurement::peer(const std::string& name) const noexcept {
+  for (const SceneTiming& timing : timings) {
+    if (timing.engine == name) return &timing;
+  }
+  return nullptr;
+}
+
+std::unique_ptr<BodySet> make_pipeline_scene(const std::string& scene, std::size_t bodies,
+                                             std::uint64_t seed) {
+  if (scene == "pile") return make_heap(bodies != 0 ? bodies : kPileBodies, seed);
+  if (bodies == 0) return make_landscape(kTerrainBodies, kTerrainCells, seed);
+  const double share = static_cast<double>(bodies) / static_cast<double>(kTerrainBodies);
+  const auto cells = static_cast<std::uint32_t>(std::lround(kTerrainCells * std::sqrt(share)));
+  return make_landscape(bodies, std::max(1U, cells), seed);
+}
+
+PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options) {
+  std::unique_ptr<BodySet> made;
+  if (options.set == nullptr) {
+    made = make_pipeline_scene(options.scene, options.bodies, options.seed);
+  }
+  const BodySet* set = options.set != nullptr ? options.set : made.get();
+  PipelineMeasurement measured;
+  measured.bodies = set->poses.size();
+  measured.triangles = set->mesh.size();
+  std::vector<SceneContender> contenders;
+  for (const int threads : options.threads) {
+    contenders.push_back(
+        {make_winnow_scene(threads, options.resting ? kCarryOver : 0.0, options.level), threads});
+  }
+  if (options.peers) {
+    for (std::unique_ptr<SceneEngine>& peer : scene_peers()) {
+      if (options.resting && !peer->carries_over()) continue;
+      measured.peers.push_back(peer->name());
+      contenders.push_back({std::move(peer), 1});
+    }
+  }
+  std::optional<MachineClock> clock;
+  if (options.machine_clock) clock.emplace();
+  tick(clock);
+  measured.timings =
+      race_scene(*set, options.resting ? kResting : kMoving, contenders, options.frames);
+  tick(clock);
+  if (clock) measured.machine_ms = clock->median_ms();
+  return measured;
+}
+
+MeshMeasurement measure_meshes(std::size_t rounds, bool peers, bool machine_clock) {
+  std::vector<std::unique_ptr<MeshEngine>> engines;
+  engines.push_back(make_winnow_mesh());
+  if (peers) {
+    for (std::unique_ptr<MeshEngine>& peer : mesh_peers()) engines.push_back(std::move(peer));
+  }
+  MeshMeasurement measured;
+  std::optional<MachineClock> clock;
+  if (machine_clock) clock.emplace();
+  tick(clock);
+  measured.timings = race_meshes(engines, rounds);
+  tick(clock);
+  if (clock) measured.machine_ms = clock->median_ms();
+  return measured;
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "bench/common/sample.h"
+#include "bench/contenders/scene_engine.h"
+#include "bench/contenders/winnow_scene.h"
+#include "bench/scenes/body_scenes.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+
+struct SceneContender {
+  std::unique_ptr<SceneEngine> engine;
+  int threads = 1;
+};
+
+/// One engine on a scene.
+struct SceneTiming {
+  std::string engine;
+  int threads = 1;
+  std::vector<double> ms{};  ///< a frame
+  SceneFinds finds{};        ///< in the last frame
+
+  [[nodiscard]] double median_ms() const { return median_of(ms); }
+};
+
+/// All contenders on the same frames in turns; two frames more are not timed. Time on one thread
+/// is what the thread computed, on several that of the clock on the wall.
+[[nodiscard]] std::vector<SceneTiming> race_scene(const BodySet& set, const Stray& by,
+                                                  std::span<SceneContender> contenders,
+                                                  std::size_t frames);
+
+/// One engine on tori.
+struct MeshTiming {
+  std::string engine;
+  std::vector<double> build_ms{};
+  double bytes_per_triangle = 0.0;
+  /// By torus_poses().
+  std::vector<double> collide_ms[4]{};
+  std::size_t pairs[4]{};
+  /// Pairs that the first engine did not find, or that it alone found.
+  std::size_t differ[4]{};
+};
+
+[[nodiscard]] std::vector<MeshTiming> race_meshes(
+    std::span<const std::unique_ptr<MeshEngine>> engines, std::size_t rounds);
+
+/// A race on a scene of the whole pipeline.
+struct PipelineMeasureOptions {
+  std::string scene = "pile";  ///< pile or terrain
+  bool resting = false;        ///< and winnow carries contacts over
+  ContactLevel level = ContactLevel::manifold;
+  std::vector<int> threads{1, 2};
+  bool peers = true;
+  std::size_t frames = 9;
+  const BodySet* set = nullptr;  ///< the scene's, if it was made before
+  std::size_t bodies = 0;        ///< of the scene to make; 0: as many as suit it
+  std::uint64_t seed = 1;
+  bool machine_clock = true;
+};
+
+/// The bodies of a scene, which are the same in each race on it. Takes seconds for the pile.
+[[nodiscard]] std::unique_ptr<BodySet> make_pipeline_scene(const std::string& scene,
+                                                           std::size_t bodies, std::uint64_t seed);
+
+struct PipelineMeasurement {
+  std::vector<SceneTiming> timings;
+  std::vector<std::string> peers;  ///< names of the other libraries that took part
+  std::size_t bodies = 0;
+  std::size_t triangles = 0;
+  double machine_ms = 0.0;  ///< of the MachineClock, before and after the race, if asked for
+
+  /// Null if there is none.
+  [[nodiscard]] const SceneTiming* winnow(int threads) const noexcept;
+  [[nodiscard]] const SceneTiming* peer(const std::string& name) const noexcept;
+};
+
+[[nodiscard]] PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options);
+
+struct MeshMeasurement {
+  std::vector<MeshTiming> timings;  ///< winnow's is the first
+  double machine_ms = 0.0;
+
+  [[nodiscard]] const MeshTiming* peer() const noexcept {
+    return timings.size() > 1 ? &timings[1] : nullptr;
+  }
+};
+
+/// Two tori, one thread.
+[[nodiscard]] MeshMeasurement measure_meshes(std::size_t rounds, bool peers,
+                                             bool machine_clock = true);
+
+}  // namespace winnow::bench

@@ -1,0 +1,295 @@
+#include "bench/measure/volume_race.h"
+
+#include <winnow/core/kdop_around.h>
+#include "bench/common/random.h"
+#include "bench/contenders/partitions.h"
+#include "bench/scenes/scene.h"
+#include "partitions/rows/row_partition.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <memory_resource>
+#include <stdexcept>
+
+namespace winnow::bench {
+
+namespace {
+
+void expect_ok(Status status) {
+  if (status != Status::ok) throw std::runtime_error(std::string("refused: ") + to_string(status));
+}
+
+/// A volume on a partition of its own.
+class Contestant {
+ public:
+  virtual ~Contestant() = default;
+  virtual void make(const std::vector<OrientedBox>& boxes) = 0;
+  virtual void put() = 0;
+
+  /// Before the first frame.
+  void begin(const Solids& solids) {
+    make(solids.when_margins_were_left(margin_));
+    put();
+  }
+  /// One frame.
+  void run(const Solids& solids, NarrowPhase& narrow, NarrowResult& result, bool timed);
+  /// Against what overlaps by everyone's reports.
+  void judge(const std::vector<std::uint64_t>& truth, bool counted);
+
+  VolumeRow row;
+  std::vector<std::uint64_t> overlapping;  // of the last frame: first << 32 | second, sorted
+
+ protected:
+  Contestant(std::string name, const VolumeRaceOptions& race, const PartitionOptions& options)
+      : made_(make_named(race.partition, options)),
+        partition_(dynamic_cast<RowPartition*>(made_.get())),
+        margin_(options.margin.share) {
+    if (partition_ == nullptr) {
+      throw std::invalid_argument(race.partition + " takes no volumes from the caller");
+    }
+    row.volume = std::move(name);
+  }
+  RowPartition& partition() { return *partition_; }
+
+  std::vector<Key> keys_;
+
+ private:
+  std::unique_ptr<Partition> made_;
+  RowPartition* partition_;
+  float margin_;
+  PairBuffer pairs_;
+};
+
+template <typename V>
+class VolumeContestant final : public Contestant {
+ public:
+  using Make = V (*)(const OrientedBox&);
+  VolumeContestant(std::string name, const VolumeRaceOptions& race, const PartitionOptions& options,
+                   Make maker)
+      : Contestant(std::move(name), race, options), make_(maker) {}
+
+  void make(const std::vector<OrientedBox>& boxes) override {
+    volumes_.resize(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) volumes_[i] = make_(boxes[i]);
+  }
+  void put() override {
+    const std::span<const V> volumes(volumes_);
+    if (!keys_.empty()) return expect_ok(partition().update(keys_, volumes));
+    keys_.resize(volumes_.size());
+    expect_ok(partition().insert(volumes, {}, keys_));
+  }
+
+ private:
+  Make make_;
+  std::vector<V> volumes_;
+};
+
+void Contestant::run(const Solids& solids, NarrowPhase& narrow, NarrowResult& result, bool timed) {
+  const ThreadStopwatch make_clock;
+  make(solids.boxes());
+  const double make_ms = make_clock.ms();
+  const ThreadStopwatch broad_clock;
+  put();
+  expect_ok(partition_->self_pairs(pairs_));
+  const double broad_ms = broad_clock.ms();
+  // Keys are handed out in order: ids are the objects' numbers.
+  std::vector<BodyPair> asked;
+  asked.reserve(pairs_.size());
+  for (const Pair& pair : pairs_) asked.push_back({pair.first, pair.second});
+  const ThreadStopwatch narrow_clock;
+  expect_ok(narrow.collide(solids.shapes(), solids.bodies(), asked,
+                           {.level = ContactLevel::boolean}, result));
+  const double narrow_ms = narrow_clock.ms();
+  overlapping.clear();
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    if (!result.overlaps(i)) continue;
+    const BodyPair& pair = asked[result.pair_of(i)];
+    overlapping.push_back(std::uint64_t{std::min(pair.a, pair.b)} << 32U |
+                          std::max(pair.a, pair.b));
+  }
+  std::sort(overlapping.begin(), overlapping.end());
+  if (!timed) return;
+  row.make.push_back(make_ms);
+  row.broad.push_back(broad_ms);
+  row.narrow.push_back(narrow_ms);
+  row.reported += asked.size();
+  const Footprint bytes = partition_->footprint();
+  row.bytes_per_object =
+      static_cast<double>(bytes.total().reserved) / static_cast<double>(solids.size());
+}
+
+void Contestant::judge(const std::vector<std::uint64_t>& truth, bool counted) {
+  if (!counted) return;
+  row.overlapping += overlapping.size();
+  for (const std::uint64_t pair : overlapping) row.fingerprint += mix(pair);
+  row.missed += truth.size() - overlapping.size();
+}
+
+// As kdop_around makes its slabs, so that volumes are compared and not the ways of rounding.
+Aabb box_of(const OrientedBox& box) {
+  Aabb result;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const auto center = static_cast<double>(box.center[axis]);
+    double reach = 4e-15 * std::abs(center);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      reach += std::abs(static_cast<double>(box.axes(axis, i))) * static_cast<double>(box.half[i]) *
+               (1.0 + 4e-15);
+    }
+    const auto low = static_cast<float>(center - reach);
+    const auto high = static_cast<float>(center + reach);
+    result.min[axis] = low - std::abs(low) * 1.2e-7F;
+    result.max[axis] = high + std::abs(high) * 1.2e-7F;
+  }
+  return result;
+}
+
+Sphere sphere_of(const OrientedBox& box) {
+  return {box.center, round_up(box.half.cast<double>().norm() * (1.0 + 1e-6))};
+}
+
+std::vector<std::unique_ptr<Contestant>> all_contestants(const VolumeRaceOptions& race) {
+  const auto options = [](Volume volume, float share = 0.0F) {
+    return PartitionOptions{
+        .execution = Execution::serial(), .volume = volume, .margin = {.share = share}};
+  };
+  std::vector<std::unique_ptr<Contestant>> all;
+  all.push_back(
+      std::make_unique<VolumeContestant<Aabb>>("AABB", race, options(Volume::aabb), box_of));
+  all.push_back(std::make_unique<VolumeContestant<Sphere>>("sphere", race, options(Volume::sphere),
+                                                           sphere_of));
+  all.push_back(std::make_unique<VolumeContestant<Kdop<14>>>(
+      "14-DOP", race, options(Volume::kdop14), kdop_around<14>));
+  all.push_back(std::make_unique<VolumeContestant<Kdop<18>>>(
+      "18-DOP", race, options(Volume::kdop18), kdop_around<18>));
+  all.push_back(std::make_unique<VolumeContestant<Kdop<26>>>(
+      "26-DOP", race, options(Volume::kdop26), kdop_around<26>));
+  for (const int percent : {5, 10, 20, 50}) {
+    all.push_back(std::make_unique<VolumeContestant<Aabb>>(
+        "AABB + " + std::to_string(percent) + " %", race,
+        options(Volume::aabb, 0.01F * static_cast<float>(percent)), box_of));
+  }
+  return all;
+}
+
+}  // namespace
+
+double VolumeRow::false_positives() const noexcept {
+  if (reported == 0) return 0.0;
+  return 1.0 - static_cast<double>(overlapping) / static_cast<double>(reported);
+}
+
+std::vector<double> VolumeRow::found() const {
+  std::vector<double> ms = make;
+  for (std::size_t i = 0; i < ms.size(); ++i) ms[i] += broad[i];
+  return ms;
+}
+
+std::vector<double> VolumeRow::answered() const {
+  std::vector<double> ms = found();
+  for (std::size_t i = 0; i < ms.size(); ++i) ms[i] += narrow[i];
+  return ms;
+}
+
+std::vector<VolumeRow> race_volumes(Solids solids, const VolumeRaceOptions& options) {
+  const std::vector<std::unique_ptr<Contestant>> all = all_contestants(options);
+  for (const auto& one : all) one->begin(solids);
+  NarrowPhase narrow;
+  NarrowResult result;
+  for (std::size_t frame = 0; frame <= options.frames; ++frame) {
+    const bool timed = frame != 0;
+    std::vector<std::uint64_t> truth;
+    for (const auto& one : all) {
+      one->run(solids, narrow, result, timed);
+      std::vector<std::uint64_t> both;
+      std::set_union(truth.begin(), truth.end(), one->overlapping.begin(), one->overlapping.end(),
+                     std::back_inserter(both));
+      truth.swap(both);
+    }
+    for (const auto& one : all) one->judge(truth, timed);
+    if (options.recorded.empty()) {
+      solids.advance(options.step);
+    } else {
+      solids.follow(options.recorded[std::min(frame + 1, options.recorded.size() - 1)]);
+    }
+  }
+  std::vector<VolumeRow> rows;
+  for (const auto& one : all) rows.push_back(std::move(one->row));
+  return rows;
+}
+
+double pays_from_ns(const VolumeRow& row, const VolumeRow& boxes) {
+  if (row.reported >= boxes.reported) return 0.0;
+  const auto frames = static_cast<double>(boxes.make.size());
+  const double saved = static_cast<double>(boxes.reported - row.reported) / frames;
+  const double more = row.make_ms() + row.broad_ms() - boxes.make_ms() - boxes.broad_ms();
+  return std::max(0.0, 1e6 * more / saved);
+}
+
+const VolumeRow& best_of(const std::vector<VolumeRow>& rows) {
+  return *std::min_element(rows.begin(), rows.end(), [](const VolumeRow& a, const VolumeRow& b) {
+    return a.sum_ms() < b.sum_ms();
+  });
+}
+
+namespace {
+
+constexpr std::array<std::string_view, 4> kVolumeSettings{"scene", "cubes", "rods", "slow"};
+constexpr std::array<std::string_view, 8> kVolumePartitions{
+    "BoundsNSquared", "SweepAndPrune", "FlatGrid",  "HierarchicalGrid",
+    "LooseOctree",    "LooseQuadtree", "LinearBvh", "StaticBvh"};
+
+// A fast and a slow way to move: margins are for the latter.
+constexpr double kFast = 0.1;
+constexpr double kSlow = 0.002;
+
+constexpr std::size_t kWatchedFrames = 20;
+
+/// Mean way of the objects from one frame to the next, in mean edges; 0 if nothing can be told.
+double step_of(const Recording& recording) {
+  const auto& frames = recording.frames;
+  double way = 0.0;
+  double edges = 0.0;
+  for (std::size_t f = 0; f + 1 < std::min(frames.size(), kWatchedFrames); ++f) {
+    for (std::size_t i = 0; i < frames[f].size(); ++i) {
+      const Aabb& from = frames[f][i];
+      const Aabb& to = frames[f + 1][i];
+      const Eigen::Vector3f moved = 0.5F * (to.min - from.min + to.max - from.max);
+      const Eigen::Vector3f extent = from.max - from.min;
+      if (!moved.allFinite() || !extent.allFinite()) continue;
+      way += static_cast<double>(moved.norm());
+      edges += static_cast<double>(extent.mean());
+    }
+  }
+  return edges > 0.0 ? way / edges : 0.0;
+}
+
+}  // namespace
+
+std::span<const std::string_view> volume_setting_names() noexcept {
+  return kVolumeSettings;
+}
+
+std::span<const std::string_view> volume_partitions() noexcept {
+  return kVolumePartitions;
+}
+
+VolumeSetting make_volume_setting(std::string_view name, const VolumeSettingOptions& options) {
+  const auto& [scene, recording, objects, seed] = options;
+  if (name == "cubes") return {"rotated cubes", kFast, Solids::rotated(objects, seed)};
+  if (name == "rods") return {"rotated rods 1:1:20", kFast, Solids::rods(objects, seed)};
+  if (name == "slow") return {"rotated cubes, slow", kSlow, Solids::rotated(objects, seed)};
+  if (recording != nullptr) {
+    return {recording->scene, step_of(*recording), Solids::of_boxes(recording->frames.front()),
+            recording->frames};
+  }
+  return {scene, kFast, Solids::of_boxes(scene_or_error(scene, objects, seed)->boxes())};
+}
+
+std::size_t volume_frames(std::size_t objects) noexcept {
+  if (objects <= 20'000) return 15;
+  return objects <= 200'000 ? 7 : 3;
+}
+
+}  // namespace winnow::bench

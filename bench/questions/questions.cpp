@@ -1,0 +1,117 @@
+#include "bench/questions/questions.h"
+
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+Json list(double x, double y, double z) {
+  return Json::array({number_to_json(x), number_to_json(y), number_to_json(z)});
+}
+
+/// The bodies and pairs of all questions about pairs, and where their answers go.
+class Questionnaire {
+ public:
+  explicit Questionnaire(std::size_t count) : answers_(count) {}
+
+  void add(std::size_t row, const Json& question) {
+    Json& answer = answers_[row];
+    const bool is_object = question.is_object();
+    answer["id"] = is_object && question.contains("id") ? question["id"] : Json();
+    Status status = Status::invalid_argument;
+    if (is_object && question.contains("ray")) {
+      status = ask_ray(question, answer);
+    } else if (is_object && question.contains("a") && question.contains("b")) {
+      status = add_pair(row, question);
+    }
+    if (status != Status::ok) refuse(answer, status);
+  }
+
+  void ask_pairs(NarrowTier tier) {
+    NarrowPhase phase;
+    NarrowResult result;
+    const NarrowOptions options{.level = ContactLevel::distance, .tier = tier};
+    const Status status = phase.collide(pool_, {shapes_, poses_}, pairs_, options, result);
+    if (status != Status::ok) {
+      for (const std::size_t row : rows_) refuse(answers_[row], status);
+      return;
+    }
+    for (std::size_t i = 0; i < result.size(); ++i) write(result, i);
+  }
+
+  [[nodiscard]] Json take() const {
+    Json all = Json::array();
+    for (const Json& answer : answers_) all.push_back(answer);
+    return all;
+  }
+
+ private:
+  static void refuse(Json& answer, Status status) { answer["status"] = to_string(status); }
+
+  Status add_pair(std::size_t row, const Json& question) {
+    ShapeId shape[2];
+    Pose pose[2];
+    Status status = read_shape(question["a"], pool_, shape[0], pose[0]);
+    if (status == Status::ok) status = read_shape(question["b"], pool_, shape[1], pose[1]);
+    if (status != Status::ok) return status;
+    const auto first = static_cast<std::uint32_t>(shapes_.size());
+    shapes_.insert(shapes_.end(), {shape[0], shape[1]});
+    poses_.insert(poses_.end(), {pose[0], pose[1]});
+    pairs_.push_back({first, first + 1});
+    rows_.push_back(row);
+    return Status::ok;
+  }
+
+  Status ask_ray(const Json& question, Json& answer) {
+    ShapeRay ray;
+    ShapeId shape;
+    Pose pose;
+    if (!question.contains("target")) return Status::invalid_argument;
+    Status status = read_ray(question["ray"], ray);
+    if (status == Status::ok) status = read_shape(question["target"], pool_, shape, pose);
+    ShapeHit hit;
+    if (status == Status::ok) status = cast_ray(pool_.tables(), shape, pose, ray, hit);
+    if (status != Status::ok) return status;
+    answer["status"] = to_string(status);
+    answer["hit"] = hit.hit;
+    answer["t"] = hit.hit ? number_to_json(hit.t) : Json("inf");
+    answer["normal"] =
+        hit.hit ? list(hit.normal[0], hit.normal[1], hit.normal[2]) : list(0.0, 0.0, 0.0);
+    return Status::ok;
+  }
+
+  void write(const NarrowResult& result, std::size_t i) {
+    const BodyPair pair = pairs_[result.pair_of(i)];
+    Json& answer = answers_[rows_[result.pair_of(i)]];
+    double a[3];
+    double b[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      a[axis] = poses_[pair.a].position[axis] + result.point(axis)[i];
+      b[axis] = a[axis] + result.distance()[i] * result.normal(axis)[i];
+    }
+    answer["status"] = to_string(Status::ok);
+    answer["overlap"] = result.overlaps(i);
+    answer["distance"] = number_to_json(result.distance()[i]);
+    answer["normal"] = list(result.normal(0)[i], result.normal(1)[i], result.normal(2)[i]);
+    answer["points"] = Json::array({list(a[0], a[1], a[2]), list(b[0], b[1], b[2])});
+    answer["error_bound"] = number_to_json(result.error_bound()[i]);
+  }
+
+  std::vector<Json> answers_;
+  ShapePool pool_;
+  std::vector<ShapeId> shapes_;
+  std::vector<Pose> poses_;
+  std::vector<BodyPair> pairs_;
+  std::vector<std::size_t> rows_;
+};
+
+}  // namespace
+
+Json answer(const Json& questions, NarrowTier tier) {
+  Questionnaire questionnaire(questions.size());
+  for (std::size_t i = 0; i < questions.size(); ++i) questionnaire.add(i, questions[i]);
+  questionnaire.ask_pairs(tier);
+  return questionnaire.take();
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,172 @@
+#include "bench/questions/shape_json.h"
+
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool read_numbers(const Json& value, std::span<double> out) {
+  if (!value.is_array() || value.size() != out.size()) return false;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (!read_number(value[i], out[i])) return false;
+  }
+  return true;
+}
+
+/// Reads members of one object and remembers whether all were there and of the right type.
+class ShapeReader {
+ public:
+  explicit ShapeReader(const Json& object) : object_(object), good_(object.is_object()) {}
+
+  [[nodiscard]] bool good() const { return good_; }
+  [[nodiscard]] bool has(const char* name) const { return good_ && object_.contains(name); }
+
+  double number(const char* name) {
+    double value = 0.0;
+    good_ = has(name) && read_number(object_[name], value);
+    return value;
+  }
+  double number_or(const char* name, double value) { return has(name) ? number(name) : value; }
+
+  void numbers(const char* name, std::span<double> out) {
+    good_ = has(name) && read_numbers(object_[name], out);
+  }
+  void numbers_if_any(const char* name, std::span<double> out) {
+    if (has(name)) numbers(name, out);
+  }
+
+  std::vector<Eigen::Vector3d> points(const char* name) {
+    std::vector<Eigen::Vector3d> result;
+    good_ = has(name) && object_[name].is_array() && !object_[name].empty();
+    if (!good_) return result;
+    for (const Json& point : object_[name]) {
+      good_ = good_ && read_numbers(point, std::span<double>(result.emplace_back().data(), 3));
+    }
+    return result;
+  }
+
+  std::string text(const char* name) {
+    good_ = has(name) && object_[name].is_string();
+    return good_ ? object_[name].get<std::string>() : std::string();
+  }
+
+ private:
+  const Json& object_;
+  bool good_;
+};
+
+template <typename Shape>
+Status add(ShapePool& pool, const ShapeReader& reader, const Shape& shape, ShapeId& id) {
+  return reader.good() ? pool.add(shape, id) : Status::invalid_argument;
+}
+
+/// A length with a rounding on top; a negative rounding is no shape, whatever the length.
+double rounded(double length, double rounding) {
+  return rounding >= 0.0 ? length + rounding : kNan;
+}
+
+Status add_triangle(ShapePool& pool, ShapeReader& reader, double rounding, ShapeId& id) {
+  const std::vector<Eigen::Vector3d> v = reader.points("v");
+  if (!reader.good() || v.size() != 3) return Status::invalid_argument;
+  TriangleShape shape;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) shape.vertex[i][k] = v[i][k];
+  }
+  shape.rounding = rounding;
+  return pool.add(shape, id);
+}
+
+/// What has a radius.
+Status add_round(const std::string& type, ShapePool& pool, ShapeReader& reader, double rounding,
+                 ShapeId& id) {
+  const double radius = reader.number("radius");
+  if (type == "sphere") return add(pool, reader, SphereShape{rounded(radius, rounding)}, id);
+  const double half = reader.number("half_length");
+  if (type == "capsule")
+    return add(pool, reader, CapsuleShape{rounded(radius, rounding), half}, id);
+  if (type == "cylinder") return add(pool, reader, CylinderShape{radius, half, rounding}, id);
+  if (type == "cone") return add(pool, reader, ConeShape{radius, half, rounding}, id);
+  return Status::invalid_argument;
+}
+
+Status add_shape(const Json& value, ShapePool& pool, ShapeId& id) {
+  ShapeReader reader(value);
+  const std::string type = reader.text("type");
+  const double rounding = reader.number_or("rounding", 0.0);
+  if (!reader.good()) return Status::invalid_argument;
+  if (type == "hull") {
+    const std::vector<Eigen::Vector3d> v = reader.points("v");
+    return reader.good() ? pool.add_hull(v, rounding, id) : Status::invalid_argument;
+  }
+  if (type == "triangle") return add_triangle(pool, reader, rounding, id);
+  if (type == "half_space") {
+    HalfSpaceShape shape;
+    reader.numbers("normal", shape.normal);
+    shape.offset = rounded(reader.number("offset"), rounding);
+    return add(pool, reader, shape, id);
+  }
+  if (type == "box") {
+    BoxShape shape{{}, rounding};
+    reader.numbers("half", shape.half);
+    return add(pool, reader, shape, id);
+  }
+  return add_round(type, pool, reader, rounding, id);
+}
+
+Status read_pose(const Json& shape, Pose& pose) {
+  pose = {};
+  if (!shape.contains("pose")) return Status::ok;
+  ShapeReader reader(shape["pose"]);
+  reader.numbers_if_any("position", pose.position);
+  reader.numbers_if_any("orientation", pose.orientation);
+  if (!reader.good()) return Status::invalid_argument;
+  return pose.is_valid() ? Status::ok : Status::invalid_pose;
+}
+
+}  // namespace
+
+Status read_shape(const Json& value, ShapePool& pool, ShapeId& id, Pose& pose) {
+  if (!value.is_object()) return Status::invalid_argument;
+  const Status pose_status = read_pose(value, pose);
+  if (pose_status == Status::invalid_argument) return pose_status;
+  const Status status = add_shape(value, pool, id);
+  return status == Status::ok ? pose_status : status;
+}
+
+Status read_ray(const Json& value, ShapeRay& ray) {
+  ShapeReader reader(value);
+  reader.numbers("origin", ray.origin);
+  reader.numbers("direction", ray.direction);
+  ray.max_t = reader.number_or("max_t", kInfinity);
+  return reader.good() ? Status::ok : Status::invalid_argument;
+}
+
+bool read_number(const Json& value, double& out) {
+  if (value.is_number()) {
+    out = value.get<double>();
+  } else if (value == "nan") {
+    out = kNan;
+  } else if (value == "inf") {
+    out = kInfinity;
+  } else if (value == "-inf") {
+    out = -kInfinity;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+Json number_to_json(double value) {
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value > 0.0 ? "inf" : "-inf";
+  return value;
+}
+
+}  // namespace winnow::bench

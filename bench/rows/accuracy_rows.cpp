@@ -1,0 +1,261 @@
+#include "bench/rows/accuracy_rows.h"
+
+#include <winnow/simd/isa.h>
+#include "bench/rows/named_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string_view>
+
+namespace winnow::bench {
+namespace {
+
+void add_spread(Json& row, const std::string& of, const ErrorSpread& spread) {
+  if (spread.count == 0) return;
+  row["worst_" + of] = spread.worst;
+  if (spread.count >= 100) row["p99_" + of] = spread.p99;
+  row["median_" + of] = spread.median;
+}
+
+Json figures_of(const Accuracy& one) {
+  Json row{{"pairs", one.pairs}, {"wrong", one.wrong}, {"missing", one.missing}};
+  add_spread(row, "error", one.all);
+  add_spread(row, "distance", one.apart);
+  add_spread(row, "depth", one.depth);
+  add_spread(row, "degrees", one.degrees);
+  row["measured"] = one.all.count;
+  row["beyond_bound"] = one.beyond_bound;
+  row["normals"] = one.degrees.count;
+  row["normals_off"] = one.normals_off;
+  if (!std::isnan(one.recomputed)) row["recomputed"] = one.recomputed;
+  return row;
+}
+
+void add_shown(Json& row, const std::string& of) {
+  const auto at = row.find("worst_" + of);
+  if (at == row.end()) return;
+  row["worst_" + of + "_or_floor"] = std::max(at->get<double>(), kLeastErrorShown);
+}
+
+void add_columns(std::vector<ValueColumn>& columns, const std::string& of, const std::string& label,
+                 const std::string& unit) {
+  for (const char* which : {"median", "p99", "worst"}) {
+    const std::string rank = which == std::string("p99") ? "99 %" : which;
+    columns.push_back({which + ("_" + of), rank + " " + label, unit, Better::less, Format::tiny});
+  }
+  columns.push_back({"worst_" + of + "_or_floor", "worst " + label + ", at least 1e-17", unit,
+                     Better::less, Format::tiny});
+}
+
+std::string accuracy_command(const AccuracyOptions& options) {
+  const PairSetOptions& set = options.set;
+  std::string text = "bench/run accuracy --kind " + std::string(options.kind.name) + " --ratio " +
+                     key_text(set.ratio);
+  if (set.offset) text += " --offset " + key_text(*set.offset);
+  if (set.angle) text += " --angle " + key_text(*set.angle);
+  if (set.thinness < 1.0) text += " --thinness " + key_text(set.thinness);
+  for (std::size_t i = 0; i < options.levels.size(); ++i) {
+    text += (i == 0 ? " --level " : ",") + std::string(to_text(options.levels[i]));
+  }
+  text += " --pairs " + std::to_string(set.pairs) + " --isa " + isa_name();
+  if (set.seed != 1) text += " --seed " + std::to_string(set.seed);
+  if (options.judge == TruthSource::reference) text += " --judge reference";
+  return text;
+}
+
+std::vector<ValueColumn> accuracy_columns() {
+  std::vector<ValueColumn> columns{
+      {"pairs", "pairs judged", "", Better::neither, Format::count},
+      {"wrong", "wrong verdicts", "", Better::less, Format::count},
+      {"missing", "without distance or normal", "", Better::less, Format::count}};
+  add_columns(columns, "error", "error of the signed distance", "of the size");
+  add_columns(columns, "distance", "error of the distance", "of the size");
+  add_columns(columns, "depth", "error of the depth", "of the size");
+  add_columns(columns, "degrees", "error of the normal", "degrees");
+  const std::vector<ValueColumn> counts{
+      {"measured", "distances measured", "", Better::neither, Format::count},
+      {"beyond_bound", "beyond the bound given", "", Better::less, Format::count},
+      {"normals", "normals that are unique", "", Better::neither, Format::count},
+      {"normals_off", "of them off by 0.01 degrees", "", Better::less, Format::count},
+      {"recomputed", "recomputed", "", Better::neither, Format::percent},
+      {"judge", "judge", "", Better::neither, Format::text}};
+  columns.insert(columns.end(), counts.begin(), counts.end());
+  return columns;
+}
+
+std::vector<ValueColumn> accuracy_curve_columns() {
+  constexpr std::array<std::string_view, 11> kept{"pairs",
+                                                  "wrong",
+                                                  "missing",
+                                                  "median_error",
+                                                  "p99_error",
+                                                  "worst_error",
+                                                  "worst_error_or_floor",
+                                                  "worst_distance",
+                                                  "worst_depth",
+                                                  "worst_degrees",
+                                                  "judge"};
+  std::vector<ValueColumn> columns = accuracy_columns();
+  std::erase_if(columns, [&](const ValueColumn& column) {
+    return std::find(kept.begin(), kept.end(), column.name) == kept.end();
+  });
+  return columns;
+}
+
+void add_accuracy_row(Results& results, const std::string& table, Json row,
+                      const Accuracy& accuracy, const AccuracyOptions& options) {
+  Json figures = figures_of(accuracy);
+  for (const char* of : {"error", "distance", "depth", "degrees"}) add_shown(figures, of);
+  figures["judge"] = judge_name(options.judge);
+  for (const auto& [name, value] : figures.items()) {
+    if (results.column(table, name) != nullptr) row[name] = value;
+  }
+  if (!row.contains("command")) row["command"] = accuracy_command(options);
+  const bool is_tier =
+      std::find(kTierNames.begin(), kTierNames.end(), accuracy.engine) != kTierNames.end();
+  if (!is_tier) row["command"] = with_peers(row["command"]);
+  results.add(table, std::move(row));
+}
+
+std::string narrow_command(const NarrowMeasurement& measured, const NarrowMeasureOptions& options) {
+  return "bench/run narrow --kind " + std::string(measured.kind.name) + " --tier all --pairs " +
+         std::to_string(measured.pairs) + " --rounds " + std::to_string(options.race.rounds) +
+         " --isa " + isa_name() +
+         (options.seed == 1 ? "" : " --seed " + std::to_string(options.seed));
+}
+
+/// Adds the row of one engine; its id.
+std::string add_timing(Results& results, const NarrowMeasurement& measured,
+                       const NarrowTiming& timing, const std::string& command, PairKeys keys) {
+  const bool manifold = timing.level == ContactLevel::manifold;
+  Json row{{"kind", measured.kind.name},
+           {"level", to_text(timing.level)},
+           {"engine", timing.engine},
+           {"ns", to_value(timing.ns)},
+           {"right", measured.is_right(timing) ? "yes" : "no"},
+           {"pairs", measured.pairs},
+           {"compared", timing.compared},
+           {"disagree", timing.disagree},
+           {"recomputed", timing.recomputed},
+           {"command", measured.is_peer(timing) ? with_peers(command) : command}};
+  if (timing.level != ContactLevel::boolean) row["other_depth"] = timing.other_depth;
+  if (manifold) row["contacts"] = timing.contacts;
+  if (keys == PairKeys::settings) row["threads"] = timing.threads;
+  return results.add("narrow_speed", std::move(row));
+}
+
+}  // namespace
+
+void declare_pair_times(Results& results, PairKeys keys) {
+  TableSpec speed{"narrow_speed",
+                  "narrow",
+                  "random pairs of shapes, every second one overlaps; one thread",
+                  {"kind", "level", "engine"},
+                  {{"ns", "a pair", "ns", Better::less},
+                   {"right", "right by and large", "", Better::neither, Format::text},
+                   {"pairs", "pairs", "", Better::neither, Format::count},
+                   {"compared", "compared with robust", "", Better::neither, Format::count},
+                   {"disagree", "other verdicts", "", Better::less, Format::count},
+                   {"other_depth", "other depths", "", Better::less, Format::percent},
+                   {"contacts", "contacts an overlapping pair", "", Better::more},
+                   {"recomputed", "recomputed", "", Better::neither, Format::percent}}};
+  TableSpec best{"narrow_best",
+                 "narrow",
+                 "the tier robust against the fastest other library that is right",
+                 {"kind", "level"},
+                 {{"best_peer", "fastest that is right", "", Better::neither, Format::text},
+                  {"speedup", "its time over that of robust", "times", Better::more}}};
+  if (keys == PairKeys::settings) {
+    speed.title = "random pairs of shapes, every second one overlaps";
+    speed.keys = {"kind", "pairs", "level", "engine", "threads"};
+    std::erase_if(speed.values, [](const ValueColumn& one) { return one.name == "pairs"; });
+    best.keys = {"kind", "pairs", "level"};
+  }
+  results.declare(speed);
+  results.declare(best);
+}
+
+NarrowMeasurement add_pair_times(Results& results, const NarrowMeasureOptions& options,
+                                 PairKeys keys) {
+  NarrowMeasurement measured = measure_narrow(options);
+  const std::string command = narrow_command(measured, options);
+  std::map<const NarrowTiming*, std::string> ids;
+  for (const NarrowTiming& timing : measured.timings) {
+    ids[&timing] = add_timing(results, measured, timing, command, keys);
+  }
+  for (const ContactLevel level : options.levels) {
+    const NarrowTiming* peer = measured.best_peer(level);
+    const NarrowTiming* own = measured.find(NarrowTier::robust, level);
+    if (peer == nullptr || own == nullptr) continue;
+    Json row{{"kind", options.kind.name},
+             {"level", to_text(level)},
+             {"best_peer", peer->engine},
+             {"speedup", peer->median_ns() / own->median_ns()},
+             {"command", with_peers(command)},
+             {"from", derived("speedup", "ratio", "ns", {ids[peer], ids[own]})}};
+    if (keys == PairKeys::settings) row["pairs"] = measured.pairs;
+    results.add("narrow_best", std::move(row));
+  }
+  return measured;
+}
+
+void declare_pair_errors(Results& results, PairKeys keys) {
+  std::vector<ValueColumn> columns = accuracy_columns();
+  columns.insert(columns.begin(), {"ns", "a pair", "ns", Better::less});
+  TableSpec errors{"narrow_error",
+                   "narrow",
+                   "errors of pairs, half of which are nearly touching, sizes 1:1",
+                   {"kind", "level", "engine"},
+                   std::move(columns)};
+  if (keys == PairKeys::settings) {
+    errors.title = "errors of pairs, half of which are nearly touching";
+    errors.keys = {"kind", "ratio", "gap", "level", "engine"};
+  }
+  results.declare(errors);
+}
+
+void add_pair_errors(Results& results, const AccuracyOptions& options, bool by_gap, PairKeys keys) {
+  const AccuracyMeasurement measured = measure_accuracy(options);
+  const auto row_of = [&](const Accuracy& one, const Json& gap) {
+    Json row{{"kind", options.kind.name}, {"level", to_text(one.level)}, {"engine", one.engine}};
+    if (keys == PairKeys::settings) row.update({{"ratio", options.set.ratio}, {"gap", gap}});
+    return row;
+  };
+  for (const Accuracy& one : measured.engines) {
+    Json row = row_of(one, "all");
+    row["ns"] = to_value(one.ns);
+    add_accuracy_row(results, "narrow_error", std::move(row), one, options);
+  }
+  for (const AccuracyAtGap& one : measured.by_gap) {
+    if (!by_gap) break;
+    if (keys == PairKeys::settings) {
+      add_accuracy_row(results, "narrow_error", row_of(one.accuracy, one.gap), one.accuracy,
+                       options);
+    } else if (one.accuracy.level == ContactLevel::distance) {
+      add_accuracy_row(results, "narrow_gap",
+                       {{"kind", options.kind.name},
+                        {"engine", one.accuracy.engine},
+                        {"gap", one.gap},
+                        {"command", accuracy_command(options) + " --by-gap"}},
+                       one.accuracy, options);
+    }
+  }
+}
+
+void declare_error_curve(Results& results, const std::string& table, const std::string& section,
+                         const std::string& title, const std::vector<std::string>& keys) {
+  results.declare({table, section, title, keys, accuracy_curve_columns()});
+}
+
+void add_error_curve(Results& results, const std::string& table, const Json& keys,
+                     const AccuracyOptions& options) {
+  for (const Accuracy& one : measure_accuracy(options).engines) {
+    Json row = keys;
+    row["engine"] = one.engine;
+    add_accuracy_row(results, table, std::move(row), one, options);
+  }
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,143 @@
+#include "bench/rows/flow_rows.h"
+
+#include <winnow/simd/isa.h>
+#include "bench/measure/fingerprint.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+constexpr std::pair<const char*, FlowShape> kFlowShapes[] = {
+    {"spheres", FlowShape::spheres}, {"mixed", FlowShape::mixed}, {"boxes", FlowShape::boxes}};
+/// Steps of a flow that are kept.
+constexpr std::size_t kFlowRows = 200;
+
+Json with_keys(const FlowQuestion& asked, Json row) {
+  row["shape"] = asked.shape;
+  row["objects"] = asked.objects;
+  row["command"] = "bench/run simulate --shape " + asked.shape + " --objects " +
+                   std::to_string(asked.objects) + " --steps " + std::to_string(asked.steps) +
+                   " --threads " + std::to_string(asked.threads) + " --seed " +
+                   std::to_string(asked.seed) + " --isa " + isa_name();
+  return row;
+}
+
+/// Of the second half, when bodies lie upon each other.
+void add_phases(Results& results, const FlowQuestion& asked, const FlowHistory& history) {
+  std::vector<std::pair<Json, std::string>> added;
+  double sum = 0.0;
+  for (const FlowPhase& phase : kFlowPhases) {
+    Json row = with_keys(asked, {{"phase", phase.name},
+                                 {"ms", to_value(history.phase_ms(phase.ms, asked.steps / 2))}});
+    sum += value_of(row, "ms");
+    std::string id = results.add("phases", row);
+    added.emplace_back(std::move(row), std::move(id));
+  }
+  for (const auto& [row, id] : added) {
+    std::vector<std::string> from{id};
+    for (const auto& other : added) {
+      if (other.second != id) from.push_back(other.second);
+    }
+    Json with_share = row;
+    with_share["share"] = value_of(row, "ms") / sum;
+    with_share["from"] = derived("share", "share", "ms", from);
+    results.add("phases", std::move(with_share));
+  }
+}
+
+void add_samples(Results& results, const FlowQuestion& asked, const FlowHistory& history) {
+  const std::vector<FlowSample>& samples = history.samples();
+  const std::size_t every = std::max<std::size_t>(1, samples.size() / kFlowRows);
+  for (std::size_t i = 0; i < samples.size(); i += every) {
+    const FlowSample& sample = samples[i];
+    results.add("flow", with_keys(asked, {{"step", i + 1},
+                                          {"seconds", sample.time},
+                                          {"kinetic", sample.energy.kinetic},
+                                          {"potential", sample.energy.potential},
+                                          {"elastic", sample.energy.elastic},
+                                          {"balance", sample.balance()},
+                                          {"deepest", sample.deepest},
+                                          {"pairs", sample.contacts},
+                                          {"points", sample.points}}));
+  }
+}
+
+}  // namespace
+
+void declare_flows(Results& results) {
+  results.declare({"phases",
+                   "pipeline",
+                   "phases of a step of the granular flow",
+                   {"shape", "objects", "phase"},
+                   {{"ms", "time", "ms", Better::less},
+                    {"share", "share of a step", "", Better::neither, Format::percent}}});
+  results.declare({"flows",
+                   "pipeline",
+                   "a granular flow as a whole",
+                   {"shape", "objects", "steps"},
+                   {{"rise", "greatest rise of the energy", "of the greatest kinetic energy",
+                     Better::less, Format::tiny},
+                    {"deepest", "deepest penetration", "edges of a body", Better::less},
+                    {"pairs", "touching pairs at the end", "", Better::neither, Format::count},
+                    {"points", "contact points at the end", "", Better::neither, Format::count},
+                    {"fingerprint", "all bodies' bits", "", Better::neither, Format::text}}});
+  results.declare({"flow",
+                   "pipeline",
+                   "steps of the granular flow",
+                   {"shape", "objects", "step"},
+                   {{"seconds", "time", "s"},
+                    {"kinetic", "kinetic", "energy"},
+                    {"potential", "potential", "energy"},
+                    {"elastic", "in contacts", "energy"},
+                    {"balance", "all, without what refilling adds", "energy"},
+                    {"deepest", "deepest penetration", "edges of a body"},
+                    {"pairs", "touching pairs", "", Better::neither, Format::count},
+                    {"points", "contact points", "", Better::neither, Format::count}}});
+}
+
+void add_flow(Results& results, const FlowQuestion& asked, const GranularFlow& flow,
+              const FlowHistory& history) {
+  add_phases(results, asked, history);
+  add_samples(results, asked, history);
+  const FlowSample& last = history.samples().back();
+  results.add("flows", with_keys(asked, {{"steps", flow.steps()},
+                                         {"rise", history.greatest_rise()},
+                                         {"deepest", history.deepest()},
+                                         {"pairs", last.contacts},
+                                         {"points", last.points},
+                                         {"fingerprint", to_hex(flow.fingerprint())}}));
+}
+
+void add_flow(Results& results, const FlowQuestion& asked) {
+  FlowOptions options;
+  options.objects = asked.objects;
+  options.shape = flow_shape_named(asked.shape);
+  options.seed = asked.seed;
+  options.execution = Execution::serial();
+  GranularFlow flow(options);
+  FlowHistory history;
+  for (std::size_t i = 0; i < asked.steps; ++i) {
+    flow.step(i % kProfiledSteps == 0);
+    history.add(flow);
+  }
+  add_flow(results, asked, flow, history);
+}
+
+std::vector<std::string> flow_shape_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, shape] : kFlowShapes) names.emplace_back(name);
+  return names;
+}
+
+FlowShape flow_shape_named(const std::string& name) {
+  for (const auto& [shape_name, shape] : kFlowShapes) {
+    if (name == shape_name) return shape;
+  }
+  throw std::invalid_argument("no shape " + name);
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,257 @@
+#include "bench/rows/hard_case_rows.h"
+
+#include "bench/common/errors.h"
+#include "bench/measure/installed_peers.h"
+#include "bench/measure/narrow_race.h"
+#include "bench/questions/hard_cases.h"
+#include "bench/questions/questions.h"
+#include "bench/rows/named_scene.h"
+#include "bench/scenes/pair_set.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+/// How one engine did on some hard cases.
+struct HardCaseTally {
+  std::string engine;
+  bool is_peer = false;
+  std::size_t right = 0;
+  std::size_t wrong = 0;
+  std::size_t wrong_verdicts = 0;  ///< of them
+  std::size_t not_taken = 0;       ///< it has no such shapes, or no rays
+  /// Of distances: relative to sizes and distance, and over what is allowed. NaN: there is none.
+  double worst_error = std::numeric_limits<double>::quiet_NaN();
+  double worst_over_allowed = std::numeric_limits<double>::quiet_NaN();
+  std::map<std::string, std::size_t> faults{};  ///< how often what was wrong
+
+  void add(const CaseVerdict& verdict);
+  /// "contact lost 3, distance 2".
+  [[nodiscard]] std::string faults_text() const;
+};
+
+void HardCaseTally::add(const CaseVerdict& verdict) {
+  ++(verdict.fault.empty() ? right : wrong);
+  if (!verdict.fault.empty()) ++faults[verdict.fault];
+  if (verdict.fault == kContactLost || verdict.fault == kFalseContact) ++wrong_verdicts;
+  worst_error = std::fmax(worst_error, verdict.error);
+  worst_over_allowed = std::fmax(worst_over_allowed, verdict.over_allowed);
+}
+
+std::string HardCaseTally::faults_text() const {
+  std::string text;
+  for (const auto& [what, count] : faults) {
+    text += (text.empty() ? "" : ", ") + what + " " + std::to_string(count);
+  }
+  return text;
+}
+
+/// A case as other libraries can be asked it.
+struct PeerCase {
+  PairSet set;
+  double sign = 1.0;          ///< -1: a and b stand the other way round
+  bool around_origin = true;  ///< both shapes contain it
+};
+
+const PairKind* kind_of_shapes(ShapeKind a, ShapeKind b) {
+  for (const PairKind& kind : pair_kinds()) {
+    if (kind.a == a && kind.b == b) return &kind;
+  }
+  return nullptr;
+}
+
+/// Of shapes with corners: whether the origin lies within the bounds of these.
+bool is_around_origin(const Json& shape) {
+  if (!shape.contains("v")) return true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double low = 0.0;
+    double high = 0.0;
+    bool first = true;
+    for (const Json& v : shape["v"]) {
+      double x = 0.0;
+      if (!read_number(v[axis], x)) return false;
+      low = first ? x : std::min(low, x);
+      high = first ? x : std::max(high, x);
+      first = false;
+    }
+    if (low > 0.0 || high < 0.0) return false;
+  }
+  return true;
+}
+
+/// Throws unless the members are there that are read without asking.
+void check_case(const Json& question) {
+  const auto fail = [&](const std::string& what) {
+    throw ArgumentError("not a hard case, " + what + ": " + question.dump().substr(0, 200));
+  };
+  if (!question.is_object() || !question.contains("id")) fail("without an id");
+  const auto expect = question.find("expect");
+  if (expect == question.end() || !expect->is_object()) fail("without \"expect\"");
+  if (expect->contains("status")) return;
+  const bool is_ray = question.contains("ray");
+  if (!is_ray && !(question.contains("a") && question.contains("b"))) fail("without shapes");
+  const char* verdict = is_ray ? "hit" : "overlap";
+  if (!expect->contains(verdict) || !(*expect)[verdict].is_boolean()) fail("without a verdict");
+  const bool is_miss = is_ray && !(*expect)["hit"].get<bool>();
+  if (!is_miss && !expect->contains(is_ray ? "t" : "distance")) fail("without a number");
+}
+
+/// Nothing where other libraries have no such case.
+std::unique_ptr<PeerCase> peer_case(const Json& question) {
+  if (!question.contains("a") || !question.contains("b")) return nullptr;
+  if (question["expect"].contains("status")) return nullptr;
+  auto made = std::make_unique<PeerCase>();
+  PairSet& set = made->set;
+  set.shapes.resize(2);
+  set.poses.resize(2);
+  set.radius.resize(2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Json& shape = question[i == 0 ? "a" : "b"];
+    if (read_shape(shape, set.pool, set.shapes[i], set.poses[i]) != Status::ok) return nullptr;
+    // They would be asked about it without its rounding.
+    if (shape.contains("rounding")) return nullptr;
+    made->around_origin = made->around_origin && is_around_origin(shape);
+  }
+  const PairKind* straight = kind_of_shapes(set.shapes[0].kind(), set.shapes[1].kind());
+  const PairKind* turned = kind_of_shapes(set.shapes[1].kind(), set.shapes[0].kind());
+  if (straight == nullptr && turned == nullptr) return nullptr;
+  made->sign = straight != nullptr ? 1.0 : -1.0;
+  set.kind = straight != nullptr ? *straight : *turned;
+  set.pairs.push_back(straight != nullptr ? BodyPair{0, 1} : BodyPair{1, 0});
+  return made;
+}
+
+Json to_json(const Json& question, const NarrowAnswer& answer, double sign) {
+  Json normal = Json::array();
+  for (const double n : answer.normal) normal.push_back(number_to_json(sign * n));
+  return {{"id", question["id"]},        {"status", "ok"},
+          {"overlap", answer.overlap},   {"distance", number_to_json(answer.distance)},
+          {"normal", std::move(normal)}, {"error_bound", "inf"}};
+}
+
+CaseVerdict ask_peer(NarrowEngine& engine, const PeerCase& asked, const Json& question) {
+  const bool tells_distance = engine.takes(asked.set.kind, ContactLevel::distance);
+  try {
+    engine.start(asked.set);
+    engine.run(tells_distance ? ContactLevel::distance : ContactLevel::manifold, asked.set.pairs);
+  } catch (const std::exception&) {
+    return {.fault = "exception"};
+  }
+  const NarrowAnswer answer = engine.answer(0);
+  // Without distances it knows only of a pair that is apart that it is.
+  if (!tells_distance && !question["expect"]["overlap"].get<bool>()) {
+    return {.fault = answer.overlap ? kFalseContact : ""};
+  }
+  return judge_case(question, to_json(question, answer, asked.sign),
+                    promised_error(NarrowTier::fast));
+}
+
+void add_peers(const Json& questions, std::vector<HardCaseTally>& tallies) {
+  std::vector<HardCaseTally> peers;
+  for (const auto& peer : narrow_peers())
+    peers.push_back({.engine = peer->name(), .is_peer = true});
+  for (const Json& question : questions) {
+    const auto asked = peer_case(question);
+    // They are started once.
+    const auto fresh = narrow_peers();
+    for (std::size_t i = 0; i < peers.size(); ++i) {
+      const bool needs_origin = peers[i].engine.starts_with("libccd");
+      if (asked == nullptr || !fresh[i]->takes(asked->set.kind, ContactLevel::manifold) ||
+          (needs_origin && !asked->around_origin)) {
+        ++peers[i].not_taken;
+      } else {
+        peers[i].add(ask_peer(*fresh[i], *asked, question));
+      }
+    }
+  }
+  tallies.insert(tallies.end(), peers.begin(), peers.end());
+}
+
+std::vector<HardCaseTally> judge_hard_cases(const Json& questions, bool peers) {
+  for (const Json& question : questions) check_case(question);
+  std::vector<HardCaseTally> tallies;
+  for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
+    HardCaseTally tally{.engine = std::string(to_text(tier))};
+    const Json answers = answer(questions, tier);
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      tally.add(judge_case(questions[i], answers[i], promised_error(tier)));
+    }
+    tallies.push_back(std::move(tally));
+  }
+  if (peers) add_peers(questions, tallies);
+  return tallies;
+}
+
+}  // namespace
+
+void declare_hard_cases(Results& results) {
+  results.declare({"hard_cases",
+                   "stability",
+                   "cases whose answers are known by reasoning",
+                   {"family", "engine"},
+                   {{"right", "right", "cases", Better::more, Format::count},
+                    {"wrong", "wrong", "cases", Better::less, Format::count},
+                    {"wrong_verdicts", "of them verdicts", "cases", Better::less, Format::count},
+                    {"not_taken", "not taken", "cases", Better::neither, Format::count},
+                    {"worst_error", "worst error", "of the size", Better::less, Format::tiny},
+                    {"worst_over_allowed", "worst error over what is allowed", "times",
+                     Better::less, Format::tiny},
+                    {"faults", "what was wrong", "", Better::neither, Format::text}}});
+  results.declare({"hard_cases_all",
+                   "stability",
+                   "hard cases of all families",
+                   {"engine", "answer"},
+                   {{"cases", "cases", "", Better::neither, Format::count}}});
+}
+
+void add_hard_cases(Results& results, const std::string& family, const Json& questions,
+                    bool peers) {
+  const std::string command = "bench/run query tests/hard_cases/" + family + ".json --judge";
+  for (const HardCaseTally& one : judge_hard_cases(questions, peers)) {
+    results.add("hard_cases", {{"family", family},
+                               {"engine", one.engine},
+                               {"right", one.right},
+                               {"wrong", one.wrong},
+                               {"wrong_verdicts", one.wrong_verdicts},
+                               {"not_taken", one.not_taken},
+                               {"worst_error", one.worst_error},
+                               {"worst_over_allowed", one.worst_over_allowed},
+                               {"faults", one.wrong == 0 ? "-" : one.faults_text()},
+                               {"command", one.is_peer ? with_peers(command) : command}});
+  }
+}
+
+void add_hard_case_totals(Results& results) {
+  for (const Json& engine : distinct(results.rows("hard_cases"), "engine")) {
+    const std::array<std::pair<const char*, const char*>, 4> answers{
+        {{"right", "right"},
+         {"wrong", "wrong"},
+         {"wrong_verdicts", "of them verdicts"},
+         {"not_taken", "not taken"}}};
+    for (const auto& [value, name] : answers) {
+      double sum = 0.0;
+      std::vector<std::string> ids;
+      for (const Json* row : results.rows("hard_cases", {{"engine", engine}})) {
+        sum += value_of(*row, value);
+        ids.push_back((*row)["id"]);
+      }
+      results.add("hard_cases_all", {{"engine", engine},
+                                     {"answer", name},
+                                     {"cases", sum},
+                                     {"from", derived("cases", "sum", value, ids)}});
+    }
+  }
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,114 @@
+#include "bench/rows/machine.h"
+
+#include <winnow/simd/isa.h>
+#include "bench/contenders/reference_sweep.h"
+#include "bench/rows/build_facts.h"
+
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <fstream>
+#include <string>
+#include <thread>
+
+namespace winnow::bench {
+namespace {
+
+/// What stands behind `name` in a file of lines "name : value" or "name=value".
+std::string line_of(const char* path, const std::string& name) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with(name)) continue;
+    const std::size_t at = line.find_first_of(":=");
+    if (at == std::string::npos) continue;
+    const std::size_t from = line.find_first_not_of(" \t\"", at + 1);
+    if (from == std::string::npos) continue;
+    return line.substr(from, line.find_last_not_of(" \"") + 1 - from);
+  }
+  return "unknown";
+}
+
+std::string date_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &utc);
+  return text;
+}
+
+std::string system_name() {
+  utsname name{};
+  if (uname(&name) != 0) return "unknown";
+  return line_of("/etc/os-release", "PRETTY_NAME") + ", " + name.sysname + " " + name.release;
+}
+
+double reference_sweep_ms() {
+  MachineClock clock;
+  for (int i = 0; i < 5; ++i) clock.tick();
+  return clock.median_ms();
+}
+
+struct KnownPeer {
+  const char* name;
+  const char* package;
+};
+constexpr std::array<KnownPeer, 6> kKnownPeers{{{"Bullet", "libbullet-dev"},
+                                                {"FCL", "libfcl-dev"},
+                                                {"CGAL", "libcgal-dev"},
+                                                {"Embree", "libembree-dev"},
+                                                {"ODE", "libode-dev"},
+                                                {"libccd", "libccd-dev"}}};
+
+}  // namespace
+
+Json machine_facts() {
+  const long pages = sysconf(_SC_PHYS_PAGES);
+  const double gigabytes =
+      static_cast<double>(pages) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e9;
+  return {{"processor", line_of("/proc/cpuinfo", "model name")},
+          {"cores", std::thread::hardware_concurrency()},
+          {"memory_GB", static_cast<int>(gigabytes + 0.5)},
+          {"system", system_name()},
+          {"compiler",
+#ifdef __clang__
+           "clang " __clang_version__
+#else
+           "g++ " __VERSION__
+#endif
+          },
+          {"build", kBuildType},
+          {"libraries", kDependencies},
+          {"commit", kCommit},
+          {"isa", isa_name()},
+          {"isas", isa_names()},
+          {"date", date_now()},
+          {"reference_sweep_ms", reference_sweep_ms()}};
+}
+
+std::vector<std::string> isa_names() {
+  std::vector<std::string> names;
+  for (const Isa isa : available_isas()) names.emplace_back(to_string(isa));
+  return names;
+}
+
+std::vector<MissingPeer> missing_peers() {
+  const std::string found = std::string(" ") + kPeersFound + " ";
+  std::vector<MissingPeer> missing;
+  for (const KnownPeer& peer : kKnownPeers) {
+    if (found.find(std::string(" ") + peer.name + " ") == std::string::npos) {
+      missing.push_back({peer.name, peer.package});
+    }
+  }
+  return missing;
+}
+
+bool is_peer(std::string_view name) {
+  return std::any_of(kKnownPeers.begin(), kKnownPeers.end(),
+                     [&](const KnownPeer& peer) { return name.starts_with(peer.name); });
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,111 @@
+#include "bench/rows/query_rows.h"
+
+#include <winnow/simd/isa.h>
+#include "bench/measure/fingerprint.h"
+#include "bench/measure/query_costs.h"
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+constexpr const char* kReading = "reading all boxes once";
+
+/// Sets of one kind differ in how much they find.
+std::string query_kind_of(const std::string& set) {
+  if (set == "ray any") return set;
+  return set.substr(0, set.find(' '));
+}
+
+Json query_row_of(const QueryRun& run) {
+  const auto questions = static_cast<double>(run.questions);
+  std::vector<double> ns;
+  for (const double ms : run.ms) ns.push_back(1e6 * ms / questions);
+  return {{"set", run.set},
+          {"engine", run.engine},
+          {"asked", run.asking == Asking::single ? "single" : "batch"},
+          {"threads", run.threads},
+          {"ns", to_value(ns)},
+          {"found", run.found_a_question()},
+          {"kind", query_kind_of(run.set)},
+          {"questions", run.questions},
+          {"wrong", run.comparison.wrong},
+          {"undecided", run.comparison.undecided},
+          {"fingerprint", to_hex(run.fingerprint)}};
+}
+
+}  // namespace
+
+void declare_queries(Results& results) {
+  results.declare({"queries",
+                   "queries",
+                   "questions to objects of a scene",
+                   {"scene", "objects", "set", "engine", "asked", "threads"},
+                   {{"ns", "time", "ns/question", Better::less},
+                    {"found", "objects found", "a question", Better::neither},
+                    {"kind", "kind", "", Better::neither, Format::text},
+                    {"questions", "questions", "", Better::neither, Format::count},
+                    {"wrong", "wrong answers", "", Better::less, Format::count},
+                    {"undecided", "undecided in float", "", Better::neither, Format::count},
+                    {"fingerprint", "answers", "", Better::neither, Format::text}}});
+  results.declare({"frusta",
+                   "queries",
+                   "a frustum beside reading every box",
+                   {"objects", "set", "engine"},
+                   {{"ms", "a frustum", "ms", Better::less},
+                    {"found", "objects found", "a frustum", Better::neither}}});
+}
+
+QueryMeasurement add_queries(Results& results, const NamedScene& scene,
+                             QueryMeasureOptions options) {
+  options.scene = scene.argument;
+  options.recording = scene.recording.get();
+  QueryMeasurement measured = measure_queries(options);
+  std::string where = "bench/run queries" +
+                      std::string(scene.is_recording() ? " --recording " : " --scene ") +
+                      shell_word(scene.argument);
+  if (!scene.is_recording()) where += " --objects " + std::to_string(options.objects);
+  std::string problems;
+  for (const QueryRun& run : measured.runs) {
+    if (!run.answered()) {
+      problems += "; " + run.engine + " refused " + run.set + ": " + run.refusal;
+      continue;
+    }
+    if (!run.comparison.agree()) {
+      problems += "; " + run.engine + ", " + run.set + ": " + run.comparison.first;
+    }
+    Json row = query_row_of(run);
+    row.update({{"scene", scene.name},
+                {"objects", measured.objects},
+                {"command", where + " --set \"" + run.set + "\" --partition " +
+                                (measured.is_peer(run) ? "LinearBvh" : run.engine) + " --threads " +
+                                std::to_string(options.threads) + " --rays " +
+                                std::to_string(options.rays) + " --rounds " +
+                                std::to_string(options.rounds) + " --seed " +
+                                std::to_string(options.seed) + " --isa " + isa_name()}});
+    results.add("queries", std::move(row));
+  }
+  if (!problems.empty()) throw std::runtime_error(problems.substr(2));
+  return measured;
+}
+
+void add_frusta(Results& results, std::size_t objects, std::size_t rounds) {
+  const std::vector<std::string> partitions{"LinearBvh", "FlatGrid", "BoundsNSquared"};
+  for (const char* set : {"frustum 1%", "frustum 50%"}) {
+    const FrustumCosts costs = measure_frustum_costs(partitions, set, objects, rounds);
+    const auto add = [&](const std::string& engine, const std::vector<double>& ms) {
+      results.add("frusta", {{"objects", objects},
+                             {"set", set},
+                             {"engine", engine},
+                             {"ms", to_value(ms)},
+                             {"found", costs.found_a_question},
+                             {"command", "bench/run goals --topic queries"}});
+    };
+    for (std::size_t i = 0; i < partitions.size(); ++i) add(partitions[i], costs.asked[i]);
+    add(kReading, costs.read);
+  }
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,156 @@
+#include "bench/rows/scene_rows.h"
+
+#include <winnow/simd/isa.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+constexpr std::pair<const char*, ContactLevel> kSceneLevels[] = {{"pairs", ContactLevel::pairs},
+                                                               {"boolean", ContactLevel::boolean},
+                                                               {"distance", ContactLevel::distance},
+                                                               {"manifold", ContactLevel::manifold}};
+
+const char* motion_of(const PipelineMeasureOptions& options) {
+  return options.resting ? "at rest" : "moving a little";
+}
+
+std::string scene_command(const PipelineMeasureOptions& options, const std::string& level) {
+  std::string threads;
+  for (const int count : options.threads) {
+    threads += (threads.empty() ? "" : ",") + std::to_string(count);
+  }
+  std::string text = "bench/run pipeline --scene " + options.scene + " --level " + level +
+                     " --threads " + threads + " --frames " + std::to_string(options.frames) +
+                     " --seed " + std::to_string(options.seed) + " --isa " + isa_name();
+  if (options.bodies != 0) text += " --bodies " + std::to_string(options.bodies);
+  return text;
+}
+
+}  // namespace
+
+void declare_scenes(Results& results, bool levels_by_setting) {
+  results.declare({"whole_scenes",
+                   "pipeline",
+                   "a frame from new poses to contact points",
+                   {"scene", "motion", "engine", "threads"},
+                   {{"ms", "a frame", "ms", Better::less},
+                    {"touching", "touching pairs", "", Better::neither, Format::count},
+                    {"points", "contact points", "", Better::neither, Format::count},
+                    {"bodies", "bodies", "", Better::neither, Format::count},
+                    {"triangles", "triangles", "", Better::neither, Format::count}}});
+  results.declare({"scene_ratios",
+                   "pipeline",
+                   "times of winnow's frame on the first number of threads",
+                   {"scene", "motion", "engine", "threads"},
+                   {{"ratio", "times winnow's", ""}}});
+  const std::vector<std::string> level_keys{"scene", "level"};
+  const std::vector<std::string> setting_keys{"scene", "level", "motion", "threads"};
+  results.declare({"scene_levels",
+                   "pipeline",
+                   "a frame by how much is asked for",
+                   levels_by_setting ? setting_keys : level_keys,
+                   {{"ms", "a frame", "ms", Better::less},
+                    {"touching", "pairs reported", "", Better::neither, Format::count},
+                    {"points", "contact points", "", Better::neither, Format::count}}});
+  results.declare(
+      {"tori",
+       "pipeline",
+       "all contacts of two tori of 20,000 triangles",
+       {"pose", "engine"},
+       {{"ms", "time by pose", "ms", Better::less},
+        {"pairs", "touching triangles by pose", "", Better::neither, Format::count},
+        {"differ", "pairs that not both found, by pose", "", Better::neither, Format::count}}});
+  results.declare({"mesh_builds",
+                   "pipeline",
+                   "the tree of a torus",
+                   {"engine"},
+                   {{"ms", "build", "ms", Better::less},
+                    {"bytes_per_triangle", "memory", "bytes/triangle", Better::less}}});
+}
+
+PipelineMeasurement add_scene_race(Results& results, const PipelineMeasureOptions& options) {
+  PipelineMeasurement measured = measure_pipeline(options);
+  const char* motion = motion_of(options);
+  std::vector<Json> rows;
+  for (const SceneTiming& timing : measured.timings) {
+    const bool is_peer = std::find(measured.peers.begin(), measured.peers.end(), timing.engine) !=
+                         measured.peers.end();
+    rows.push_back({{"scene", options.scene},
+                    {"motion", motion},
+                    {"engine", is_peer ? timing.engine : "winnow"},
+                    {"threads", timing.threads},
+                    {"ms", to_value(timing.ms)},
+                    {"touching", timing.finds.touching},
+                    {"points", timing.finds.points},
+                    {"bodies", measured.bodies},
+                    {"triangles", measured.triangles},
+                    {"command", scene_command(options, "manifold")}});
+    rows.back()["id"] = results.add("whole_scenes", rows.back());
+  }
+  const Json& first = rows.front();
+  for (const Json& row : rows) {
+    if (&row == &first) continue;
+    results.add("scene_ratios",
+                {{"scene", options.scene},
+                 {"motion", motion},
+                 {"engine", row["engine"]},
+                 {"threads", row["threads"]},
+                 {"ratio", value_of(row, "ms") / value_of(first, "ms")},
+                 {"from", derived("ratio", "ratio", "ms", {row["id"], first["id"]})}});
+  }
+  return measured;
+}
+
+void add_scene_level(Results& results, PipelineMeasureOptions options, const std::string& level) {
+  const auto* named = std::find_if(std::begin(kSceneLevels), std::end(kSceneLevels),
+                                   [&](const auto& one) { return level == one.first; });
+  if (named == std::end(kSceneLevels)) throw std::invalid_argument("no level " + level);
+  options.level = named->second;
+  options.peers = false;
+  const Json& keys = (*results.table("scene_levels"))["keys"];
+  const bool by_setting = std::find(keys.begin(), keys.end(), "threads") != keys.end();
+  for (const SceneTiming& timing : measure_pipeline(options).timings) {
+    Json row{{"scene", options.scene},        {"level", level},
+             {"ms", to_value(timing.ms)},     {"touching", timing.finds.touching},
+             {"points", timing.finds.points}, {"command", scene_command(options, level)}};
+    if (by_setting) {
+      row["motion"] = motion_of(options);
+      row["threads"] = timing.threads;
+    }
+    results.add("scene_levels", std::move(row));
+  }
+}
+
+MeshMeasurement add_tori(Results& results, std::size_t rounds, bool peers, bool machine_clock) {
+  MeshMeasurement measured = measure_meshes(rounds, peers, machine_clock);
+  const std::string again =
+      "bench/run pipeline --scene tori --frames " + std::to_string(rounds) + " --isa " + isa_name();
+  for (const MeshTiming& timing : measured.timings) {
+    results.add("mesh_builds", {{"engine", timing.engine},
+                                {"ms", to_value(timing.build_ms)},
+                                {"bytes_per_triangle", timing.bytes_per_triangle},
+                                {"command", again}});
+    for (std::size_t p = 0; p < torus_poses().size(); ++p) {
+      results.add("tori", {{"pose", p + 1},
+                           {"engine", timing.engine},
+                           {"ms", to_value(timing.collide_ms[p])},
+                           {"pairs", timing.pairs[p]},
+                           {"differ", timing.differ[p]},
+                           {"command", again}});
+    }
+  }
+  return measured;
+}
+
+std::vector<std::string> scene_level_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, level] : kSceneLevels) names.emplace_back(name);
+  return names;
+}
+
+}  // namespace winnow::bench

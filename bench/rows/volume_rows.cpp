@@ -1,0 +1,103 @@
+#include "bench/rows/volume_rows.h"
+
+#include <winnow/simd/isa.h>
+#include "bench/measure/fingerprint.h"
+
+#include <stdexcept>
+
+namespace winnow::bench {
+namespace {
+
+std::vector<ValueColumn> volume_values() {
+  return {{"reported", "reported pairs", "a frame", Better::less, Format::count},
+          {"overlapping", "of them overlap", "a frame", Better::neither, Format::count},
+          {"missed", "missed pairs", "", Better::less, Format::count},
+          {"false_positives", "false positives", "", Better::less, Format::percent},
+          {"make_ms", "making the volumes", "ms", Better::less},
+          {"broad_ms", "broad phase", "ms", Better::less},
+          {"narrow_ms", "exact test", "ms", Better::less},
+          {"found_ms", "making and broad phase", "ms", Better::less},
+          {"sum_ms", "all three", "ms", Better::less},
+          {"pays_from_ns", "pays if a test costs", "ns", Better::less},
+          {"bytes_per_object", "memory", "bytes/object", Better::less},
+          {"frames", "frames", "", Better::neither, Format::count},
+          {"fingerprint", "overlapping pairs", "", Better::neither, Format::text}};
+}
+
+Json volume_row_of(const VolumeRow& row, const VolumeRow& boxes) {
+  const std::size_t frames = row.broad.size();
+  Json values{{"volume", row.volume},
+              {"reported", row.reported / frames},
+              {"overlapping", row.overlapping / frames},
+              {"missed", row.missed},
+              {"false_positives", row.false_positives()},
+              {"make_ms", to_value(row.make)},
+              {"broad_ms", to_value(row.broad)},
+              {"narrow_ms", to_value(row.narrow)},
+              {"found_ms", to_value(row.found())},
+              {"sum_ms", to_value(row.answered())},
+              {"bytes_per_object", row.bytes_per_object},
+              {"frames", frames},
+              {"fingerprint", to_hex(row.fingerprint)}};
+  if (row.reported < boxes.reported) values["pays_from_ns"] = pays_from_ns(row, boxes);
+  return values;
+}
+
+std::string volumes_command(const VolumeQuestion& asked, double step) {
+  std::string text = "bench/run volumes --setting " + asked.setting;
+  const bool recorded = asked.setting == "scene" && asked.scene.is_recording();
+  if (asked.setting == "scene") {
+    text += (recorded ? " --recording " : " --scene ") + shell_word(asked.scene.argument);
+  }
+  if (!recorded)
+    text += " --objects " + std::to_string(asked.objects) + " --step " + key_text(step);
+  return text + " --partition " + asked.partition + " --frames " + std::to_string(asked.frames) +
+         " --seed " + std::to_string(asked.seed) + " --isa " + isa_name();
+}
+
+}  // namespace
+
+void declare_volumes(Results& results) {
+  results.declare({"volumes",
+                   "volumes",
+                   "a frame with volumes of one kind",
+                   {"objects_are", "objects", "step", "partition", "volume"},
+                   volume_values()});
+  results.declare({"margins",
+                   "volumes",
+                   "a frame of rotated cubes with a margin about their boxes",
+                   {"objects", "step", "partition", "volume"},
+                   volume_values()});
+}
+
+void add_volumes(Results& results, const VolumeQuestion& asked, const std::string& table) {
+  VolumeSetting made = make_volume_setting(asked.setting, {.scene = asked.scene.argument,
+                                                           .recording = asked.scene.recording.get(),
+                                                           .objects = asked.objects,
+                                                           .seed = asked.seed});
+  const std::string what = asked.setting == "scene" ? asked.scene.name : made.what;
+  // As the command spells it.
+  const double step = std::stod(key_text(asked.step < 0.0 ? made.step : asked.step));
+  const std::size_t count = made.solids.size();
+  const std::string again = volumes_command(asked, step);
+  const bool follows = asked.step < 0.0;
+  const auto rows =
+      race_volumes(std::move(made.solids),
+                   {.partition = asked.partition,
+                    .frames = follows ? made.frames(asked.frames) : asked.frames,
+                    .step = step,
+                    .recorded = follows ? made.recorded : std::span<const std::vector<Aabb>>()});
+  bool missed = false;
+  for (const VolumeRow& one : rows) {
+    missed = missed || one.missed != 0;
+    if (table == "margins" && !one.volume.starts_with("AABB")) continue;
+    Json row = volume_row_of(one, rows.front());
+    if (table == "volumes") row["objects_are"] = what;
+    row.update(
+        {{"objects", count}, {"step", step}, {"partition", asked.partition}, {"command", again}});
+    results.add(table, std::move(row));
+  }
+  if (missed) throw std::runtime_error("a volume missed pairs that overlap");
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "bench/measure/volume_race.h"
+#include "bench/rows/named_scene.h"
+#include "bench/rows/results.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace winnow::bench {
+
+/// Where all volumes are compared.
+inline constexpr const char* kVolumesPartition = "LinearBvh";
+
+/// A race of volumes on one setting.
+struct VolumeQuestion {
+  std::string setting{};  ///< see volume_setting_names()
+  NamedScene scene{};     ///< of the setting "scene"
+  std::size_t objects = 10'000;
+  std::uint64_t seed = 1;
+  std::string partition = kVolumesPartition;
+  double step = -1.0;  ///< below 0: the setting's own
+  std::size_t frames = 9;
+};
+
+/// volumes, and margins.
+void declare_volumes(Results& results);
+
+/// Adds a row for each volume; to `margins` only those of boxes. Throws std::runtime_error after
+/// that if a volume missed pairs that overlap.
+void add_volumes(Results& results, const VolumeQuestion& asked,
+                 const std::string& table = "volumes");
+
+}  // namespace winnow::bench

@@ -1,0 +1,219 @@
+#include "bench/scenes/body_scenes.h"
+
+#include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/scene.h>
+#include "bench/common/exact_math.h"
+#include "bench/common/random.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace winnow::bench {
+namespace {
+
+/// Hulls that bodies share.
+constexpr std::size_t kHulls = 64;
+/// Side of the cube that a body of the heap has for itself.
+constexpr double kRoom = 0.812;
+constexpr int kPushes = 40;
+/// What is left between bodies that were pushed apart: neighbours overlap a little.
+constexpr double kSqueeze = 0.995;
+/// How deep bodies lie in the terrain.
+constexpr double kSunk = 0.01;
+
+void need(Status status, const char* what) {
+  if (status != Status::ok) {
+    throw std::runtime_error(std::string(what) + ": " + to_string(status));
+  }
+}
+
+Eigen::Vector3d direction(Random& random) {
+  for (;;) {
+    const Eigen::Vector3d v(random.in(-1, 1), random.in(-1, 1), random.in(-1, 1));
+    const double length = v.norm();
+    if (length > 0.1 && length <= 1.0) return v / length;
+  }
+}
+
+/// Points of a sphere are all vertices of their hull.
+ShapeId add_hull(ShapePool& pool, Random& random, std::size_t vertices, double radius) {
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < vertices; ++i) points.push_back(radius * direction(random));
+  ShapeId id;
+  need(pool.add_hull(points, 0.0, id), "a hull");
+  return id;
+}
+
+void turn_at_random(Random& random, Pose& pose) {
+  double length = 0.0;
+  do {
+    length = 0.0;
+    for (double& q : pose.orientation) {
+      q = random.in(-1, 1);
+      length += q * q;
+    }
+  } while (length < 0.01 || length > 1.0);
+  for (double& q : pose.orientation) q /= std::sqrt(length);
+}
+
+void add_heap_shapes(BodySet& set, std::size_t bodies, Random& random) {
+  std::vector<ShapeId> hulls;
+  for (std::size_t i = 0; i < kHulls; ++i) {
+    hulls.push_back(add_hull(set.pool, random, 16, random.in(0.4, 0.6)));
+  }
+  for (std::size_t i = 0; i < bodies; ++i) {
+    ShapeId id;
+    switch (i % 4) {
+      case 0:
+        need(set.pool.add(SphereShape{random.in(0.3, 0.5)}, id), "a sphere");
+        break;
+      case 1:
+        need(set.pool.add(CapsuleShape{random.in(0.15, 0.25), random.in(0.7, 1.2)}, id),
+             "a capsule");
+        break;
+      case 2:
+        need(set.pool.add(
+                 BoxShape{{random.in(0.08, 0.65), random.in(0.08, 0.65), random.in(0.08, 0.65)}},
+                 id),
+             "a box");
+        break;
+      default:
+        id = hulls[random.below(kHulls)];
+    }
+    set.shapes.push_back(id);
+  }
+}
+
+/// Moves bodies that overlap apart, all at once, and keeps them in the cube.
+void push_apart(BodySet& set, double side) {
+  Scene scene(set.pool);
+  std::vector<BodyDefinition> bodies(set.poses.size());
+  std::vector<Key> keys(set.poses.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    bodies[i].shape = set.shapes[i];
+    bodies[i].pose = set.poses[i];
+    bodies[i].data = i;
+  }
+  need(scene.add(bodies, keys), "the heap");
+  Contacts contacts;
+  for (int push = 0; push < kPushes; ++push) {
+    need(scene.collide(ContactLevel::distance, contacts), "the heap");
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const double share = -0.4 * contacts.distance()[i];
+      for (int axis = 0; axis < 3; ++axis) {
+        const double by = share * contacts.normal(axis)[i];
+        set.poses[contacts.data_a()[i]].position[axis] -= by;
+        set.poses[contacts.data_b()[i]].position[axis] += by;
+      }
+    }
+    for (Pose& pose : set.poses) {
+      for (double& p : pose.position) p = std::clamp(p, 0.0, side);
+    }
+    need(scene.move(keys, set.poses), "the heap");
+  }
+}
+
+/// Sinks a hull into the terrain until its lowest corner is as deep as it should be.
+void lay_down(const HullShape& hull, const Heights& heights, Pose& pose) {
+  const double* q = pose.orientation;
+  const Eigen::Quaterniond turn(q[0], q[1], q[2], q[3]);
+  double gap = 1e9;
+  for (std::uint32_t v = 0; v < hull.vertex_count; ++v) {
+    const Eigen::Vector3d at =
+        turn * Eigen::Vector3d(hull.vertex[0][v], hull.vertex[1][v], hull.vertex[2][v]);
+    gap = std::min(gap, at.z() - heights.at(pose.position[0] + at.x(), pose.position[1] + at.y()));
+  }
+  pose.position[2] = -gap - kSunk;
+}
+
+}  // namespace
+
+std::unique_ptr<BodySet> make_heap(std::size_t bodies, std::uint64_t seed) {
+  auto set = std::make_unique<BodySet>();
+  Random random(seed);
+  add_heap_shapes(*set, bodies, random);
+  const double side = kRoom * cube_root(static_cast<double>(bodies));
+  set->poses.resize(bodies);
+  // One body a cell of a lattice, somewhere in it: random places alone would leave holes.
+  const auto across = static_cast<std::size_t>(std::ceil(side / kRoom - 1e-9));
+  for (std::size_t i = 0; i < bodies; ++i) {
+    const std::size_t cell[3] = {i % across, i / across % across, i / across / across};
+    for (int axis = 0; axis < 3; ++axis) {
+      set->poses[i].position[axis] = kRoom * (static_cast<double>(cell[axis]) + random.unit());
+    }
+    turn_at_random(random, set->poses[i]);
+  }
+  // Kinds come in turns: without a shuffle they would lie in layers.
+  for (std::size_t i = bodies; i > 1; --i) {
+    std::swap(set->poses[i - 1], set->poses[random.below(static_cast<std::uint32_t>(i))]);
+  }
+  push_apart(*set, side);
+  for (Pose& pose : set->poses) {
+    for (double& p : pose.position) p *= kSqueeze;
+  }
+  return set;
+}
+
+std::unique_ptr<BodySet> make_landscape(std::size_t bodies, std::uint32_t cells,
+                                        std::uint64_t seed) {
+  constexpr double kEdge = 0.85;
+  auto set = std::make_unique<BodySet>();
+  Random random(seed);
+  const Heights heights = make_hills(cells, kEdge, 24.0, seed);
+  set->mesh = make_terrain(heights);
+  std::vector<ShapeId> hulls;
+  for (std::size_t i = 0; i < kHulls; ++i) {
+    hulls.push_back(add_hull(set->pool, random, 16 + random.below(17), random.in(0.8, 1.2)));
+  }
+  const auto across = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(bodies))));
+  const double room = kEdge * cells / static_cast<double>(across + 1);
+  for (std::size_t i = 0; i < bodies; ++i) {
+    const ShapeId hull = hulls[random.below(kHulls)];
+    Pose pose = Pose::at(room * (1.0 + static_cast<double>(i % across)),
+                         room * (1.0 + static_cast<double>(i / across)), 0.0);
+    if (i % 40 == 1) {
+      pose.position[0] = set->poses.back().position[0] + 1.5;
+      pose.position[1] = set->poses.back().position[1];
+    }
+    turn_at_random(random, pose);
+    lay_down(set->pool.tables().hulls[hull.index()], heights, pose);
+    set->shapes.push_back(hull);
+    set->poses.push_back(pose);
+  }
+  return set;
+}
+
+void stray(const BodySet& set, const Stray& by, std::uint64_t frame, std::vector<Pose>& poses) {
+  poses = set.poses;
+  Random random(mix(frame));
+  for (Pose& pose : poses) {
+    for (double& p : pose.position) p += random.in(-by.along, by.along);
+    double length = 0.0;
+    for (double& q : pose.orientation) {
+      q += random.in(-0.5 * by.about, 0.5 * by.about);
+      length += q * q;
+    }
+    for (double& q : pose.orientation) q /= std::sqrt(length);
+  }
+}
+
+Triangles make_race_torus() {
+  return make_torus(100, 100, 1.0, 0.4);
+}
+
+const std::array<TorusPose, 4>& torus_poses() {
+  // The copy stands upright and moves outward through the first one's hole and tube.
+  constexpr double kHalf = 0.70710678118654752;
+  static const std::array<TorusPose, 4> poses{{
+      {73, {{1.195, 0.05, 0.02}, {kHalf, kHalf, 0.0, 0.0}}},
+      {288, {{1.245, 0.05, 0.02}, {kHalf, kHalf, 0.0, 0.0}}},
+      {472, {{1.397, 0.05, 0.02}, {kHalf, kHalf, 0.0, 0.0}}},
+      {872, {{2.0, 0.05, 0.02}, {kHalf, kHalf, 0.0, 0.0}}},
+  }};
+  return poses;
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,197 @@
+#include "bench/scenes/pair_set.h"
+
+#include "bench/common/exact_math.h"
+#include "bench/scenes/random_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace winnow::bench {
+namespace {
+
+/// Different hulls of a set: small ones in cache, many where the bodies are scattered.
+constexpr std::uint32_t kHulls = 32;
+constexpr std::uint32_t kScatteredHulls = 256;
+/// Spheres as far apart as this times the sum of their radii overlap in half of all cases.
+constexpr double kReach = 1.25;
+/// After so many placements of one pair something is wrong: few are placed more than 200 times.
+constexpr int kAttempts = 10'000;
+/// In radii of the smaller body: half of the pairs of sets with a nearest length are no nearer.
+constexpr double kNearAtAll = 0.05;
+/// Bodies a stand in a cube of this side.
+constexpr double kWorld = 10.0;
+/// Where pairs touch is looked for to this part of the smaller body.
+constexpr double kTouching = 1e-12;
+/// Of positions that are to be moved far.
+constexpr double kGrid = 0x1p-12;
+
+/// Draws the pairs of a set.
+class PairDrawing {
+ public:
+  PairDrawing(PairSet& set, const PairSetOptions& options)
+      : set_(set), options_(options), random_(options.seed) {}
+
+  void draw() {
+    draw_bodies();
+    for (const BodyPair& pair : set_.pairs) place(pair);
+    if (options_.nearest > 0.0) {
+      bring_near();
+    } else {
+      draw_lots();
+    }
+    for (Pose& pose : set_.poses) {
+      for (double& x : pose.position) x += options_.offset.value_or(0.0);
+    }
+  }
+
+ private:
+  /// Places pairs anew until every second one overlaps.
+  void draw_lots() {
+    std::vector<std::uint32_t> open(set_.pairs.size());
+    std::iota(open.begin(), open.end(), 0U);
+    for (int attempt = 0;; ++attempt) {
+      const std::vector<std::uint8_t> overlap = overlaps(open);
+      std::size_t left = 0;
+      for (std::size_t k = 0; k < open.size(); ++k) {
+        if (overlap[k] != (open[k] & 1U)) open[left++] = open[k];
+      }
+      open.resize(left);
+      if (open.empty()) return;
+      if (attempt == kAttempts) throw std::runtime_error("no pairs are as they should be");
+      for (const std::uint32_t i : open) place(set_.pairs[i]);
+    }
+  }
+
+  void draw_bodies() {
+    const std::size_t bodies = 2 * options_.pairs;
+    std::vector<std::uint32_t> row(bodies);
+    std::iota(row.begin(), row.end(), 0U);
+    for (std::size_t i = bodies; options_.scattered && i > 1; --i) {
+      std::swap(row[i - 1], row[random_.below(static_cast<std::uint32_t>(i))]);
+    }
+    for (std::size_t i = 0; i < options_.pairs; ++i)
+      set_.pairs.push_back({row[2 * i], row[2 * i + 1]});
+    std::vector<std::uint8_t> is_b(bodies);
+    for (const BodyPair& pair : set_.pairs) is_b[pair.b] = 1;
+    const std::uint32_t hulls = options_.scattered ? kScatteredHulls : kHulls;
+    ShapeStyle style{set_.kind.a, set_.kind.hull_vertices, hulls, 1.0, options_.thinness};
+    ShapeSource a(set_.pool, style, random_);
+    style.kind = set_.kind.b;
+    style.scale = options_.ratio;
+    ShapeSource b(set_.pool, style, random_);
+    set_.poses.resize(bodies);
+    for (std::size_t i = 0; i < bodies; ++i) {
+      const DrawnShape drawn = is_b[i] != 0 ? b.draw() : a.draw();
+      set_.shapes.push_back(drawn.id);
+      set_.radius.push_back(drawn.radius);
+    }
+  }
+
+  void place(const BodyPair& pair) {
+    Pose& a = set_.poses[pair.a];
+    Pose& b = set_.poses[pair.b];
+    turn_at_random(random_, a);
+    if (options_.angle) {
+      turn_from(random_, a, *options_.angle, b);
+    } else {
+      turn_at_random(random_, b);
+    }
+    const double reach = kReach * (set_.radius[pair.a] + set_.radius[pair.b]);
+    const Eigen::Vector3d offset = random_in_ball(random_, reach);
+    for (int axis = 0; axis < 3; ++axis) {
+      a.position[axis] = on_grid(random_.in(-0.5 * kWorld, 0.5 * kWorld));
+      b.position[axis] = on_grid(a.position[axis] + offset[axis]);
+    }
+  }
+
+  [[nodiscard]] double on_grid(double x) const {
+    return options_.offset ? kGrid * std::nearbyint(x / kGrid) : x;
+  }
+
+  /// What winnow says of some of the pairs.
+  std::vector<std::uint8_t> overlaps(const std::vector<std::uint32_t>& which) {
+    std::vector<BodyPair> pairs;
+    for (const std::uint32_t i : which) pairs.push_back(set_.pairs[i]);
+    const NarrowOptions boolean{.level = ContactLevel::boolean};
+    const Status status = narrow_.collide(set_.pool, set_.bodies(), pairs, boolean, result_);
+    if (status != Status::ok) {
+      throw std::runtime_error(std::string("pairs were refused: ") + to_string(status));
+    }
+    std::vector<std::uint8_t> overlap(which.size());
+    for (std::size_t i = 0; i < result_.size(); ++i) {
+      overlap[result_.pair_of(i)] = result_.overlaps(i) ? 1 : 0;
+    }
+    return overlap;
+  }
+
+  /// b stands on a line through the position of a; they touch between `inside` and `outside`.
+  struct Line {
+    Eigen::Vector3d along;
+    double inside;
+    double outside;
+    [[nodiscard]] double middle() const { return 0.5 * (inside + outside); }
+  };
+
+  /// Finds by bisection, all pairs at once, where on the line bodies begin to overlap, and puts
+  /// them near that.
+  void bring_near() {
+    std::vector<std::uint32_t> which(set_.pairs.size());
+    std::iota(which.begin(), which.end(), 0U);
+    std::vector<Line> lines;
+    double ratio = 1.0;
+    for (const std::uint32_t i : which) {
+      const BodyPair& pair = set_.pairs[i];
+      const double reach = kReach * (set_.radius[pair.a] + set_.radius[pair.b]);
+      lines.push_back({random_unit(random_), 0.0, reach});
+      ratio = std::max(ratio, reach / small_radius(pair));
+    }
+    for (double width = ratio; width > kTouching; width *= 0.5) {
+      for (std::size_t k = 0; k < which.size(); ++k) stand(which[k], lines[k], lines[k].middle());
+      const std::vector<std::uint8_t> overlap = overlaps(which);
+      for (std::size_t k = 0; k < which.size(); ++k) {
+        Line& line = lines[k];
+        (overlap[k] != 0 ? line.inside : line.outside) = line.middle();
+      }
+    }
+    for (std::size_t k = 0; k < which.size(); ++k) {
+      const BodyPair& pair = set_.pairs[which[k]];
+      const double small = small_radius(pair);
+      const double least = 2 * k < which.size() ? kNearAtAll : options_.nearest;
+      const double by = small * least * power(1.0 / least, random_.unit());
+      stand(which[k], lines[k], lines[k].outside + ((k & 1U) != 0 ? -by : by));
+    }
+  }
+
+  [[nodiscard]] double small_radius(const BodyPair& pair) const {
+    return std::min(set_.radius[pair.a], set_.radius[pair.b]);
+  }
+
+  void stand(std::uint32_t i, const Line& line, double distance) {
+    const BodyPair& pair = set_.pairs[i];
+    for (int axis = 0; axis < 3; ++axis) {
+      set_.poses[pair.b].position[axis] =
+          on_grid(set_.poses[pair.a].position[axis] + distance * line.along[axis]);
+    }
+  }
+
+  PairSet& set_;
+  const PairSetOptions& options_;
+  Random random_;
+  NarrowPhase narrow_;
+  NarrowResult result_;
+};
+
+}  // namespace
+
+std::unique_ptr<PairSet> make_pair_set(const PairKind& kind, const PairSetOptions& options) {
+  auto set = std::make_unique<PairSet>();
+  set->kind = kind;
+  PairDrawing(*set, options).draw();
+  return set;
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,117 @@
+#include "bench/scenes/random_shapes.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace winnow::bench {
+
+Eigen::Vector3d random_unit(Random& random) {
+  for (;;) {
+    const Eigen::Vector3d v(random.in(-1.0, 1.0), random.in(-1.0, 1.0), random.in(-1.0, 1.0));
+    const double square = v.squaredNorm();
+    if (square > 1e-4 && square <= 1.0) return v / std::sqrt(square);
+  }
+}
+
+Eigen::Vector3d random_in_ball(Random& random, double radius) {
+  for (;;) {
+    const Eigen::Vector3d v(random.in(-1.0, 1.0), random.in(-1.0, 1.0), random.in(-1.0, 1.0));
+    if (v.squaredNorm() <= 1.0) return radius * v;
+  }
+}
+
+void turn_at_random(Random& random, Pose& pose) {
+  for (;;) {
+    double square = 0.0;
+    for (double& q : pose.orientation) {
+      q = random.in(-1.0, 1.0);
+      square += q * q;
+    }
+    if (square < 1e-2 || square > 1.0) continue;
+    for (double& q : pose.orientation) q /= std::sqrt(square);
+    return;
+  }
+}
+
+void turn_from(Random& random, const Pose& from, double angle, Pose& pose) {
+  const Eigen::Vector3d half = 0.5 * angle * random_unit(random);
+  const Eigen::Quaterniond turn(1.0, half.x(), half.y(), half.z());
+  const double* q = from.orientation;
+  const Eigen::Quaterniond turned = turn.normalized() * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  const double parts[4] = {turned.w(), turned.x(), turned.y(), turned.z()};
+  std::copy_n(parts, 4, pose.orientation);
+}
+
+ShapeSource::ShapeSource(ShapePool& pool, const ShapeStyle& style, Random& random)
+    : pool_(pool), style_(style), random_(random) {
+  if (style_.kind != ShapeKind::hull) return;
+  for (std::uint32_t i = 0; i < style_.hulls; ++i) hulls_.push_back(draw_hull());
+}
+
+template <typename Shape>
+DrawnShape ShapeSource::put(const Shape& shape, double radius) {
+  DrawnShape drawn{{}, radius};
+  const Status status = pool_.add(shape, drawn.id);
+  if (status != Status::ok) {
+    throw std::runtime_error(std::string("a shape was refused: ") + to_string(status));
+  }
+  return drawn;
+}
+
+DrawnShape ShapeSource::draw_triangle() {
+  Eigen::Matrix3d corners;
+  for (int i = 0; i < 3; ++i) corners.col(i) = random_unit(random_) * length(0.5, 1.0);
+  if (style_.thinness < 1.0) {
+    const Eigen::Vector3d foot = 0.5 * (corners.col(0) + corners.col(1));
+    corners.col(2) = foot + style_.thinness * (corners.col(2) - foot);
+  }
+  corners.colwise() -= Eigen::Vector3d(corners.rowwise().mean());
+  TriangleShape triangle;
+  for (int i = 0; i < 3; ++i) {
+    for (int axis = 0; axis < 3; ++axis) triangle.vertex[i][axis] = corners(axis, i);
+  }
+  return put(triangle, corners.colwise().norm().maxCoeff());
+}
+
+DrawnShape ShapeSource::draw_hull() {
+  const Eigen::Array3d axes(length(0.5, 1.0), length(0.5, 1.0), length(0.5, 1.0));
+  std::vector<Eigen::Vector3d> points;
+  DrawnShape drawn;
+  for (std::uint32_t i = 0; i < style_.hull_vertices; ++i) {
+    points.emplace_back(random_unit(random_).array() * axes);
+    drawn.radius = std::max(drawn.radius, points.back().norm());
+  }
+  const Status status = pool_.add_hull(points, 0.0, drawn.id);
+  if (status != Status::ok) {
+    throw std::runtime_error(std::string("a hull was refused: ") + to_string(status));
+  }
+  return drawn;
+}
+
+DrawnShape ShapeSource::draw() {
+  switch (style_.kind) {
+    case ShapeKind::sphere: {
+      const double radius = length(0.25, 1.0);
+      return put(SphereShape{radius}, radius);
+    }
+    case ShapeKind::capsule: {
+      const CapsuleShape capsule{length(0.125, 0.5), length(0.25, 1.0)};
+      return put(capsule, capsule.radius + capsule.half_length);
+    }
+    case ShapeKind::box: {
+      const Eigen::Vector3d half(length(0.25, 1.0), length(0.25, 1.0), length(0.25, 1.0));
+      return put(BoxShape{{half.x(), half.y(), half.z()}, 0.0}, half.norm());
+    }
+    case ShapeKind::triangle:
+      return draw_triangle();
+    case ShapeKind::hull:
+      return hulls_[random_.below(static_cast<std::uint32_t>(hulls_.size()))];
+    default:
+      throw std::runtime_error(std::string("no pairs are drawn of ") + to_string(style_.kind));
+  }
+}
+
+}  // namespace winnow::bench

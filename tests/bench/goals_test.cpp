@@ -1,0 +1,121 @@
+// `winnow goals`: what an ask says of rows, and that every ask of the file can be read.
+
+#include "bench/goals/asks.h"
+#include "bench/goals/evaluate.h"
+#include "bench/goals/measurements.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+/// Two kinds at two levels, and another library on one of them.
+void measure_example(const Json& options, Lab& /*lab*/, Measured& measured) {
+  if (options.contains("refuse")) throw std::runtime_error("refused");
+  measured.absent = options.contains("absent");
+  measured.machine_ms = 46.0;  // twice as slow as where other libraries were timed
+  measured.results.declare({"times", "s", "t", {"kind", "level", "engine"}, {{"ns", "time", "ns"}}});
+  const auto add = [&](const char* kind, const char* level, const char* engine, double ns) {
+    measured.results.add("times",
+                         {{"kind", kind}, {"level", level}, {"engine", engine}, {"ns", ns}});
+  };
+  add("box", "low", "own", 10.0);
+  add("box", "high", "own", 40.0);
+  add("ball", "low", "own", 2.0);
+  add("ball", "high", "own", 3.0);
+  add("box", "low", "Bullet", 50.0);
+}
+
+std::vector<Goal> goals_of(const std::string& ask) {
+  const auto asks = parse_asks(R"({"lists": {}, "asks": [{"topic": "engine", "what": "{kind}",)"
+                               R"( "unit": "ns", "measure": {"example": {}}, )" +
+                               ask + "}]}");
+  Lab lab;
+  return evaluate(asks.at(0), lab);
+}
+
+TEST(Goals, take_the_least_the_most_and_the_sum_of_rows) {
+  const std::string own = R"("of": "times", "where": {"peer": false}}, "at_most": 10)";
+  EXPECT_EQ(goals_of(R"("value": {"least": "ns", )" + own).at(0).measured, 2.0);
+  EXPECT_EQ(goals_of(R"("value": {"most": "ns", )" + own).at(0).measured, 40.0);
+  EXPECT_EQ(goals_of(R"("value": {"sum": "ns", )" + own).at(0).measured, 55.0);
+  EXPECT_TRUE(goals_of(R"("value": {"least": "ns", )" + own).at(0).holds());
+  EXPECT_FALSE(goals_of(R"("value": {"sum": "ns", )" + own).at(0).holds());
+}
+
+TEST(Goals, are_made_for_each_key_and_take_the_worst_of_others) {
+  const auto goals = goals_of(
+      R"("value": {"the": "ns", "of": "times", "where": {"engine": "own", "level": "high"}},
+         "over": {"the": "ns", "of": "times", "where": {"engine": "own", "level": "low"}},
+         "at_most": 3, "by": ["kind"])");
+  ASSERT_EQ(goals.size(), 2U);
+  EXPECT_EQ(goals[0].what, "box");
+  EXPECT_EQ(goals[0].measured, 4.0);
+  EXPECT_FALSE(goals[0].holds());
+  EXPECT_EQ(goals[1].measured, 1.5);
+  const auto worst = goals_of(
+      R"("value": {"most": "ns", "of": "times", "where": {"engine": "own"}},
+         "over": {"least": "ns", "of": "times", "where": {"engine": "own"}},
+         "at_least": 3, "worst_by": ["kind"])");
+  ASSERT_EQ(worst.size(), 1U);
+  EXPECT_EQ(worst[0].measured, 1.5);
+  EXPECT_FALSE(worst[0].holds());
+}
+
+TEST(Goals, scale_times_of_elsewhere_by_the_machine) {
+  const std::string value = R"("value": {"least": "ns", "of": "times"}, "at_most": )";
+  EXPECT_EQ(goals_of(value + R"({"existing": 6, "divided_by": 3})").at(0).asked, 4.0);
+  EXPECT_EQ(goals_of(value + R"({"least_of": [{"existing": 30},
+                              {"least": "ns", "of": "times", "where": {"peer": true}}]})")
+                .at(0)
+                .asked,
+            50.0);
+  EXPECT_EQ(goals_of(value + R"({"least": "ns", "of": "times", "where": {"engine": "FCL"},
+                              "else_existing": 7})")
+                .at(0)
+                .asked,
+            14.0);
+}
+
+TEST(Goals, that_cannot_be_answered_do_not_hold_unless_they_are_optional) {
+  const std::string nobody =
+      R"("value": {"the": "ns", "of": "times", "where": {"engine": "FCL"}}, "at_most": 1)";
+  ASSERT_EQ(goals_of(nobody).size(), 1U);
+  EXPECT_FALSE(goals_of(nobody).at(0).holds());
+  EXPECT_TRUE(goals_of(nobody + R"(, "optional": true)").empty());
+  Lab lab;
+  Json ask{{"topic", "engine"}, {"what", ""}, {"unit", ""}, {"value", 1}, {"at_least", 0}};
+  ask["measure"] = {{"example", {{"refuse", true}}}};
+  EXPECT_FALSE(evaluate(ask, lab).at(0).holds());
+  ask["measure"] = {{"example", {{"absent", true}}}};
+  EXPECT_TRUE(evaluate(ask, lab).empty());
+}
+
+TEST(Asks, stand_for_every_combination) {
+  const auto asks = parse_asks(R"({"lists": {"sizes": [{"objects": 1000}, {"objects": 20}]},
+    "asks": [{"topic": "engine", "each": ["sizes", [{"threads": 1}, {"threads": 2}]],
+              "only": {"objects": [1000]}, "what": "{objects} objects, {threads}", "unit": "",
+              "measure": {"example": {"objects": "{objects}"}}, "value": 1, "at_most": 1}]})");
+  ASSERT_EQ(asks.size(), 2U);
+  EXPECT_EQ(asks[1]["what"], "1,000 objects, 2 threads");
+  EXPECT_EQ(asks[1]["measure"]["example"]["objects"], 1000);
+}
+
+TEST(Asks, of_the_file_can_be_read) {
+  EXPECT_GT(parse_asks(kGoalsJson).size(), 300U);
+  EXPECT_THROW((void)parse_asks(R"({"lists": {}, "asks": [{"topic": "none"}]})"),
+               std::runtime_error);
+}
+
+}  // namespace
+
+const Measurer* find_measurer(const std::string& name) {
+  static const Measurer kExample = measure_example;
+  return name == "example" ? &kExample : nullptr;
+}
+
+}  // namespace winnow::bench
