@@ -20,7 +20,7 @@ PartitionEngine::PartitionEngine(std::string_view name, int threads)
 void PartitionEngine::start(std::span<const Aabb> boxes) {
   const Stopwatch clock;
   keys_.resize(boxes.size());
-  require(partition_->insert(boxes, {}, keys_), partition_->name(), "insert");
+  require(partition_.insert(boxes, {}, keys_), partition_.name(), "insert");
   update_ms_ = clock.ms();
   find_pairs();
 }
@@ -29,7 +29,7 @@ void PartitionEngine::frame(std::span<const std::uint32_t> changed_rows,
                             std::span<const Aabb> all_boxes) {
   const Stopwatch clock;
   if (changed_rows.size() == all_boxes.size()) {
-    require(partition_->update(keys_, all_boxes), partition_->name(), "update");
+    require(partition_.update(keys_, all_boxes), partition_.name(), "update");
   } else {
     moved_keys_.clear();
     moved_boxes_.clear();
@@ -37,18 +37,18 @@ void PartitionEngine::frame(std::span<const std::uint32_t> changed_rows,
       moved_keys_.push_back(keys_[row]);
       moved_boxes_.push_back(all_boxes[row]);
     }
-    require(partition_->update(moved_keys_, moved_boxes_), partition_->name(), "update");
+    require(partition_.update(moved_keys_, moved_boxes_), partition_.name(), "update");
   }
   update_ms_ = clock.ms();
   find_pairs();
 }
 
 void PartitionEngine::find_pairs() {
-  require(partition_->self_pairs(pairs_), partition_->name(), "self_pairs");
+  require(partition_.self_pairs(pairs_), partition_.name(), "self_pairs");
 }
 
 std::size_t PartitionEngine::bytes() const {
-  const Footprint footprint = partition_->footprint();
+  const Footprint footprint = partition_.footprint();
   return footprint.total().reserved - footprint.results.reserved;
 }
 

@@ -17,28 +17,28 @@ class PartitionEngine final : public Engine {
   /// `name` is one of all_partitions().
   PartitionEngine(std::string_view name, int threads);
 
-  [[nodiscard]] std::string name() const override { return std::string(partition_->name()); }
-  [[nodiscard]] std::size_t largest() const override { return largest_for(partition_->name()); }
+  [[nodiscard]] std::string name() const override { return std::string(partition_.name()); }
+  [[nodiscard]] std::size_t largest() const override { return largest_for(partition_.name()); }
   void start(std::span<const Aabb> boxes) override;
   void frame(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes) override;
   [[nodiscard]] std::span<const Pair> pairs() const override { return pairs_.pairs(); }
   [[nodiscard]] std::size_t bytes() const override;
   [[nodiscard]] double update_ms() const override { return update_ms_; }
 
-  [[nodiscard]] const Partition& partition() const noexcept { return *partition_; }
+  [[nodiscard]] const Partition& partition() const noexcept { return partition_; }
   /// Where the partition allocates; the pair buffer does not.
   [[nodiscard]] const CountingResource& memory() const noexcept { return memory_; }
   [[nodiscard]] const PairBuffer& buffer() const noexcept { return pairs_; }
 
   void forget_peak() noexcept { memory_.forget_peak(); }
   /// Gives the partition's memory back; after it there is nothing but the pair buffer.
-  void drop_partition() noexcept { partition_.reset(); }
+  void drop_partition() noexcept { partition_ = Partition(StructureKind{}); }
 
  private:
   void find_pairs();
 
   CountingResource memory_;
-  std::unique_ptr<Partition> partition_;
+  Partition partition_;
   PairBuffer pairs_;
   std::vector<Key> keys_;
   std::vector<Key> moved_keys_;

@@ -43,7 +43,7 @@ bool PartitionQueries::takes(const QuestionSet& set, Asking asking) const {
 }
 
 std::size_t PartitionQueries::most_questions() const {
-  if (!partition_->name().ends_with("NSquared")) return QueryEngine::most_questions();
+  if (!partition_.name().ends_with("NSquared")) return QueryEngine::most_questions();
   const double count = kMostTests / static_cast<double>(std::max<std::size_t>(1, keys_.size()));
   return std::max<std::size_t>(16, static_cast<std::size_t>(count));
 }
@@ -51,15 +51,15 @@ std::size_t PartitionQueries::most_questions() const {
 void PartitionQueries::start(std::span<const Aabb> boxes) {
   keys_.resize(boxes.size());
   // Ids of a fresh partition are 0, 1, 2, ...: the rows.
-  require(partition_->insert(boxes, {}, keys_));
-  require(partition_->refresh());
+  require(partition_.insert(boxes, {}, keys_));
+  require(partition_.refresh());
 }
 
 /// Calls `visit(results)` after each question, with a Hit, a HitBuffer or an OverlapBuffer.
 template <typename Visit>
 void PartitionQueries::ask_each(const QuestionSet& set, std::size_t begin, std::size_t end,
                                 Buffers& buffers, Visit&& visit) const {
-  const Partition& partition = *partition_;
+  const Partition& partition = partition_;
   const auto cast_one = [&](const Cast& cast) {
     if (set.want == Want::all) {
       require(partition.all(cast, buffers.hits));
@@ -93,7 +93,7 @@ void PartitionQueries::ask_each(const QuestionSet& set, std::size_t begin, std::
 
 /// The results stay in `buffers_`.
 void PartitionQueries::ask_batch(const QuestionSet& set, std::size_t count) {
-  const Partition& partition = *partition_;
+  const Partition& partition = partition_;
   if (set.rays.empty()) {
     require(partition.overlap(std::span(set.boxes).first(count), buffers_.pairs));
     return;

@@ -18,7 +18,7 @@ class PartitionQueries final : public QueryEngine {
   /// `name` is one of all_partitions().
   PartitionQueries(std::string_view name, int threads);
 
-  [[nodiscard]] std::string name() const override { return std::string(partition_->name()); }
+  [[nodiscard]] std::string name() const override { return std::string(partition_.name()); }
   /// True unless the partition refuses such a question.
   [[nodiscard]] bool takes(const QuestionSet& set, Asking asking) const override;
   [[nodiscard]] std::size_t most_questions() const override;
@@ -27,7 +27,7 @@ class PartitionQueries final : public QueryEngine {
   std::uint64_t run(const QuestionSet& set, Asking asking, std::size_t count) override;
   [[nodiscard]] Answers answers(const QuestionSet& set, Asking asking, std::size_t count) override;
 
-  [[nodiscard]] Partition& partition() noexcept { return *partition_; }
+  [[nodiscard]] Partition& partition() noexcept { return partition_; }
   /// Where the partition and the buffers of single-threaded questions allocate.
   [[nodiscard]] const CountingResource& memory() const noexcept { return memory_; }
 
@@ -51,7 +51,7 @@ class PartitionQueries final : public QueryEngine {
   void gather(const QuestionSet& set, std::size_t count, Answers& answers);
 
   CountingResource memory_;
-  std::unique_ptr<Partition> partition_;
+  Partition partition_;
   Buffers buffers_{&memory_};
   tbb::enumerable_thread_specific<Buffers> thread_buffers_{std::pmr::new_delete_resource()};
   std::vector<Key> keys_;

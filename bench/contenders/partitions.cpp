@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <stdexcept>
 
 namespace winnow::bench {
 
 std::vector<std::string> all_partitions() {
-  return {partition_names().begin(), partition_names().end()};
+  std::vector<std::string> names;
+  for (const StructureKind kind : all_structures()) names.emplace_back(kind.name());
+  return names;
 }
 
 std::vector<std::string> testing_partitions() {
@@ -18,9 +21,12 @@ std::vector<std::string> testing_partitions() {
   return names;
 }
 
-std::unique_ptr<Partition> make_named(std::string_view name, const PartitionOptions& options) {
-  auto partition = make_partition(name, options);
-  if (!partition) throw std::runtime_error("there is no partition " + std::string(name));
+Partition make_named(std::string_view name, const PartitionOptions& options) {
+  const StructureKind kind = structure_named(name);
+  if (kind == StructureKind{})
+    throw std::runtime_error("there is no partition " + std::string(name));
+  Partition partition(kind, options);
+  if (partition.status() != Status::ok) throw std::bad_alloc();
   return partition;
 }
 

@@ -3,7 +3,6 @@
 #include <winnow/partitions/partition.h>
 
 #include <cstddef>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,8 +17,7 @@ namespace winnow::bench {
 [[nodiscard]] std::vector<std::string> testing_partitions();
 
 /// Throws std::runtime_error if there is none of this name.
-[[nodiscard]] std::unique_ptr<Partition> make_named(std::string_view name,
-                                                    const PartitionOptions& options = {});
+[[nodiscard]] Partition make_named(std::string_view name, const PartitionOptions& options = {});
 
 /// How a program uses a partition on so many threads.
 [[nodiscard]] Execution execution_for(int threads) noexcept;

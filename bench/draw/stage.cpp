@@ -28,15 +28,15 @@ Stage::Stage(std::string_view partition, FrameSource& source, std::size_t frame)
       boxes_(source.boxes().begin(), source.boxes().end()) {
   std::vector<ClientData> data(boxes_.size());
   std::iota(data.begin(), data.end(), ClientData{0});
-  require_ok(partition_->insert(boxes_, data, keys_), "insert");
+  require_ok(partition_.insert(boxes_, data, keys_), "insert");
   PairBuffer buffer;
-  require_ok(partition_->self_pairs(buffer), "self_pairs");
+  require_ok(partition_.self_pairs(buffer), "self_pairs");
   for (std::size_t k = 1; k <= frame; ++k) {
     if (!source.advance()) {
       throw ArgumentError("--frame: the last frame is " + std::to_string(k - 1));
     }
     step(source.boxes());
-    require_ok(partition_->self_pairs(buffer), "self_pairs");
+    require_ok(partition_.self_pairs(buffer), "self_pairs");
   }
   reported_ = buffer.size();
   for (const Pair& pair : buffer) {
@@ -54,7 +54,7 @@ void Stage::step(std::span<const Aabb> boxes) {
     places.push_back(boxes[i]);
   }
   boxes_.assign(boxes.begin(), boxes.end());
-  require_ok(partition_->update(moved, places), "update");
+  require_ok(partition_.update(moved, places), "update");
 }
 
 }  // namespace winnow::bench

@@ -18,7 +18,7 @@ class Stage {
   /// Throws std::runtime_error if a call is refused, and ArgumentError if there is no such frame.
   Stage(std::string_view partition, FrameSource& source, std::size_t frame);
 
-  [[nodiscard]] const Partition& partition() const noexcept { return *partition_; }
+  [[nodiscard]] const Partition& partition() const noexcept { return partition_; }
   /// The frame's pairs that overlap, in canonical order; those of NSquared tested.
   [[nodiscard]] const std::vector<Pair>& pairs() const noexcept { return pairs_; }
   /// How many the partition reported.
@@ -27,7 +27,7 @@ class Stage {
  private:
   void step(std::span<const Aabb> boxes);
 
-  std::unique_ptr<Partition> partition_;
+  Partition partition_;
   std::vector<Key> keys_;
   std::vector<Aabb> boxes_;
   std::vector<Pair> pairs_;

@@ -39,12 +39,24 @@ constexpr Nature kNatures[] = {
     {"StaticBvh", "refits a tree over objects in an order that takes long to find"},
 };
 
+/// The function that makes a structure, by its name: "LinearBvh" is made by linear_bvh.
+std::string function_of(std::string_view name) {
+  std::string function;
+  for (const char c : name) {
+    const bool upper = c >= 'A' && c <= 'Z';
+    if (upper && !function.empty()) function += '_';
+    function += upper ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return function;
+}
+
 std::string why(const Partition& partition, const Run& run, double median_ms) {
-  if (const auto* chooser = dynamic_cast<const AutoPartition*>(&partition)) {
-    return "holds " + std::string(chooser->chosen()) + ", " + std::string(chooser->reason()) +
-           (chooser->switches() == 0
+  if (partition.name() == kAuto) {
+    const StructureChoice choice = partition.choice();
+    return "holds " + std::string(choice.structure.name()) + ", " + std::string(choice.reason) +
+           (choice.changes == 0
                 ? ""
-                : ", after " + std::to_string(chooser->switches()) + " changes of its mind");
+                : ", after " + std::to_string(choice.changes) + " changes of its mind");
   }
   const Statistics s = partition.statistics();
   const auto n = static_cast<double>(std::max<std::size_t>(1, s.objects));
@@ -115,9 +127,8 @@ const Advised& Advice::best() const {
 }
 
 std::string Advice::code() const {
-  return "auto partition = winnow::make_partition(\"" + best().partition +
-         "\", {.execution = " + "winnow::Execution::" + (threads == 1 ? "serial" : "parallel") +
-         "()});";
+  return "winnow::Partition partition(winnow::" + function_of(best().partition) +
+         "(), {.execution = winnow::Execution::" + (threads == 1 ? "serial" : "parallel") + "()});";
 }
 
 Advice advise(FrameSource& source, const std::vector<std::string>& partitions, std::size_t frames,
@@ -150,10 +161,11 @@ Advice advise(FrameSource& source, const std::vector<std::string>& partitions, s
                               .why = why(*raced[i], runs[i], ms)});
     advice.frames = runs[i].frame_ms.size();
     advice.pairs = runs[i].pairs_a_frame();
-    if (const auto* chooser = dynamic_cast<const AutoPartition*>(raced[i])) {
-      advice.chosen = chooser->chosen();
-      advice.reason = chooser->reason();
-      advice.features = chooser->features();
+    if (raced[i]->name() == kAuto) {
+      const StructureChoice choice = raced[i]->choice();
+      advice.chosen = choice.structure.name();
+      advice.reason = choice.reason;
+      advice.features = choice.features;
     }
   }
   std::stable_sort(advice.ranking.begin(), advice.ranking.end(),

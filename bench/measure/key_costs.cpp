@@ -22,7 +22,7 @@ class KeyRounds {
         keys_(objects),
         batch_(std::clamp<std::size_t>(objects / 10, 1, 100'000)),
         random_order_(random_order) {
-    require(partition_->insert(scene_->boxes(), {}, keys_));
+    require(partition_.insert(scene_->boxes(), {}, keys_));
   }
 
   /// The times of one round go to the end of `times`.
@@ -32,16 +32,16 @@ class KeyRounds {
     const std::span<const Aabb> boxes = scene_->boxes().subspan(first_, batch_);
     const bool bulk = mode == KeyMode::bulk;
     times[2].push_back(timed([&] {
-      if (bulk) return partition_->remove(keys);
-      return each([&](std::size_t i) { return partition_->remove(keys[i]); });
+      if (bulk) return partition_.remove(keys);
+      return each([&](std::size_t i) { return partition_.remove(keys[i]); });
     }));
     times[0].push_back(timed([&] {
-      if (bulk) return partition_->insert(boxes, {}, keys);
-      return each([&](std::size_t i) { return partition_->insert(boxes[i], 0, keys[i]); });
+      if (bulk) return partition_.insert(boxes, {}, keys);
+      return each([&](std::size_t i) { return partition_.insert(boxes[i], 0, keys[i]); });
     }));
     times[1].push_back(timed([&] {
-      if (bulk) return partition_->update(keys, boxes);
-      return each([&](std::size_t i) { return partition_->update(keys[i], boxes[i]); });
+      if (bulk) return partition_.update(keys, boxes);
+      return each([&](std::size_t i) { return partition_.update(keys[i], boxes[i]); });
     }));
   }
 
@@ -63,7 +63,7 @@ class KeyRounds {
 
   template <typename Operation>
   double timed(Operation&& operation) {
-    require(partition_->refresh());
+    require(partition_.refresh());
     const Stopwatch clock;
     const Status status = operation();
     const double ns = clock.ms() * 1e6 / static_cast<double>(batch_);
@@ -84,7 +84,7 @@ class KeyRounds {
     }
   }
 
-  std::unique_ptr<Partition> partition_;
+  Partition partition_;
   std::unique_ptr<FrameSource> scene_;
   std::vector<Key> keys_;
   std::size_t batch_;

@@ -126,17 +126,17 @@ class Worlds {
 
 /// A partition with the keys of its objects and its pairs.
 struct Inhabited {
-  std::unique_ptr<Partition> partition;
+  Partition partition;
   std::vector<Key> keys;
   PairBuffer pairs;
 
   Inhabited(std::string_view name, std::span<const Aabb> boxes)
       : partition(make_named(name, {.execution = Execution::serial()})), keys(boxes.size()) {
-    require(partition->insert(boxes, {}, keys));
+    require(partition.insert(boxes, {}, keys));
   }
   void frame(std::span<const Aabb> boxes) {
-    require(partition->update(keys, boxes));
-    require(partition->self_pairs(pairs));
+    require(partition.update(keys, boxes));
+    require(partition.self_pairs(pairs));
   }
 };
 
@@ -146,7 +146,7 @@ ChurnCosts measure_churn(std::string_view partition, std::size_t objects, std::s
   const auto scene = make_scene("uniform", objects, 1);
   std::vector<Aabb> boxes(scene->boxes().begin(), scene->boxes().end());
   Inhabited worn(partition, boxes);
-  churn(*worn.partition, worn.keys, boxes, operations / 2, worn.pairs);
+  churn(worn.partition, worn.keys, boxes, operations / 2, worn.pairs);
   Inhabited fresh(partition, boxes);
   const std::vector<std::string> names{"ray closest"};
   const std::vector<Ray> rays = make_question_sets(boxes, 20'000, 1, names).front().rays;
@@ -159,17 +159,17 @@ ChurnCosts measure_churn(std::string_view partition, std::size_t objects, std::s
     std::array<double, 2> ray_ms{};
     for (std::size_t which = 0; which < 2; ++which) {
       Inhabited& one = which == 0 ? worn : fresh;
-      require(one.partition->self_pairs(one.pairs, anew));  // warms it up
-      pair_ms[which] = timed([&] { require(one.partition->self_pairs(one.pairs, anew)); });
-      ray_ms[which] = time_rays(*one.partition, rays);
+      require(one.partition.self_pairs(one.pairs, anew));  // warms it up
+      pair_ms[which] = timed([&] { require(one.partition.self_pairs(one.pairs, anew)); });
+      ray_ms[which] = time_rays(one.partition, rays);
     }
     pair_ratios.push_back(pair_ms[0] / pair_ms[1]);
     ray_ratios.push_back(ray_ms[0] / ray_ms[1]);
   }
   return {.self_pairs = median_of(pair_ratios),
           .rays = median_of(ray_ratios),
-          .bytes = bytes_of(*worn.partition) / bytes_of(*fresh.partition),
-          .bytes_an_object = bytes_of(*worn.partition) / static_cast<double>(objects)};
+          .bytes = bytes_of(worn.partition) / bytes_of(fresh.partition),
+          .bytes_an_object = bytes_of(worn.partition) / static_cast<double>(objects)};
 }
 
 std::vector<double> measure_event_frames(std::string_view partition, std::size_t objects,
@@ -185,8 +185,8 @@ std::vector<double> measure_event_frames(std::string_view partition, std::size_t
     for (std::size_t s = 0; s < shares.size(); ++s) {
       moving.advance(shares[s], one.keys, moved, boxes);
       const double time = timed([&] {
-        if (!moved.empty()) require(one.partition->update(moved, boxes));
-        require(one.partition->self_pairs(one.pairs, events));
+        if (!moved.empty()) require(one.partition.update(moved, boxes));
+        require(one.partition.self_pairs(one.pairs, events));
       });
       if (round >= 0) ms[s].push_back(time);
     }
@@ -204,7 +204,7 @@ WorldCosts measure_worlds(std::string_view partition, std::size_t worlds,
   for (std::size_t i = 0; i < filters.size(); ++i) {
     filters[i].environment = static_cast<std::uint32_t>(i / objects_each);
   }
-  require(together.partition->set_filter(together.keys, filters));
+  require(together.partition.set_filter(together.keys, filters));
   const auto of_world = [&](std::size_t w) {
     return std::span(scene.boxes()).subspan(w * objects_each, objects_each);
   };

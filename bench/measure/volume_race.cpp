@@ -4,7 +4,6 @@
 #include "bench/common/random.h"
 #include "bench/contenders/partitions.h"
 #include "bench/scenes/scene.h"
-#include "partitions/rows/row_partition.h"
 
 #include <algorithm>
 #include <array>
@@ -43,21 +42,15 @@ class Contestant {
 
  protected:
   Contestant(std::string name, const VolumeRaceOptions& race, const PartitionOptions& options)
-      : made_(make_named(race.partition, options)),
-        partition_(dynamic_cast<RowPartition*>(made_.get())),
-        margin_(options.margin.share) {
-    if (partition_ == nullptr) {
-      throw std::invalid_argument(race.partition + " takes no volumes from the caller");
-    }
+      : partition_(make_named(race.partition, options)), margin_(options.margin.share) {
     row.volume = std::move(name);
   }
-  RowPartition& partition() { return *partition_; }
+  Partition& partition() { return partition_; }
 
   std::vector<Key> keys_;
 
  private:
-  std::unique_ptr<Partition> made_;
-  RowPartition* partition_;
+  Partition partition_;
   float margin_;
   PairBuffer pairs_;
 };
@@ -92,7 +85,7 @@ void Contestant::run(const Solids& solids, NarrowPhase& narrow, NarrowResult& re
   const double make_ms = make_clock.ms();
   const ThreadStopwatch broad_clock;
   put();
-  expect_ok(partition_->self_pairs(pairs_));
+  expect_ok(partition_.self_pairs(pairs_));
   const double broad_ms = broad_clock.ms();
   // Keys are handed out in order: ids are the objects' numbers.
   std::vector<BodyPair> asked;
@@ -115,7 +108,7 @@ void Contestant::run(const Solids& solids, NarrowPhase& narrow, NarrowResult& re
   row.broad.push_back(broad_ms);
   row.narrow.push_back(narrow_ms);
   row.reported += asked.size();
-  const Footprint bytes = partition_->footprint();
+  const Footprint bytes = partition_.footprint();
   row.bytes_per_object =
       static_cast<double>(bytes.total().reserved) / static_cast<double>(solids.size());
 }

@@ -1,4 +1,4 @@
-#include <winnow/partitions/partition.h>
+#include "bench/contenders/partitions.h"
 #include "bench/micro/scene.h"
 #include "bench/micro/suite.h"
 
@@ -16,8 +16,7 @@ constexpr std::size_t kObjects = 4096;
 class Bench {
  public:
   Bench(const std::string& name, std::size_t objects)
-      : partition_(make_partition(
-            name, {.memory = std::pmr::get_default_resource(), .execution = Execution::serial()})),
+      : partition_(make_named(name, {.execution = Execution::serial()})),
         boxes_{random_cubes(objects), {}},
         keys_(objects) {
     boxes_[1] = moved_cubes(boxes_[0], 0.1F);
@@ -26,19 +25,19 @@ class Bench {
   }
 
   void insert() {
-    note(partition_->insert(boxes_[0], {}, keys_));
+    note(partition_.insert(boxes_[0], {}, keys_));
     refresh();
   }
-  void clear() { partition_->clear(); }
+  void clear() { partition_.clear(); }
   /// Moves the first `count` objects between their two places.
   void move(std::size_t count) {
     place_ ^= 1U;
-    note(partition_->update(std::span(keys_).first(count),
-                            std::span<const Aabb>(boxes_[place_]).first(count)));
+    note(partition_.update(std::span(keys_).first(count),
+                           std::span<const Aabb>(boxes_[place_]).first(count)));
   }
-  void refresh() { note(partition_->refresh()); }
+  void refresh() { note(partition_.refresh()); }
   void pairs(bool incremental) {
-    note(partition_->self_pairs(found_, {.incremental = incremental}));
+    note(partition_.self_pairs(found_, {.incremental = incremental}));
   }
   void finish(benchmark::State& state) const {
     if (failed_) state.SkipWithError("a call was refused");
@@ -48,7 +47,7 @@ class Bench {
  private:
   void note(Status status) { failed_ |= status != Status::ok; }
 
-  std::unique_ptr<Partition> partition_;
+  Partition partition_;
   std::vector<Aabb> boxes_[2];
   std::vector<Key> keys_;
   PairBuffer found_;

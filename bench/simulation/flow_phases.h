@@ -25,8 +25,8 @@ class FlowPhases {
 
   const GranularFlow& flow_;
   Execution execution_;
-  std::unique_ptr<Partition> bodies_;
-  std::unique_ptr<Partition> mesh_;
+  Partition bodies_;
+  Partition mesh_;
   std::vector<Key> keys_;
   std::vector<Aabb> boxes_;
   PairBuffer own_;

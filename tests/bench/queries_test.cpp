@@ -1,6 +1,7 @@
 // What `winnow queries` rests on: everyone finds the same, and it is noticed if not.
 
 #include "bench/contenders/partition_queries.h"
+#include "bench/contenders/partitions.h"
 #include "bench/measure/query_race.h"
 #include "bench/scenes/scene.h"
 
@@ -20,7 +21,7 @@ namespace {
 std::vector<QueryRun> race_on(const std::string& scene, std::vector<QueryContender>& contenders,
                               int threads) {
   const auto source = make_scene(scene, 300, 5);
-  for (const std::string_view name : structure_names()) {
+  for (const std::string& name : all_partitions()) {
     contenders.push_back({std::make_unique<PartitionQueries>(name, threads), false});
   }
 #if WINNOW_HAVE_PEERS
@@ -43,7 +44,7 @@ TEST_P(Race, every_engine_finds_the_same) {
           << run.engine << ": " << run.set << ": " << run.comparison.first;
     }
     // Each set is put to everyone singly, and rays and boxes to the partitions also as a batch.
-    EXPECT_GE(runs.size(), structure_names().size() * (question_set_names().size() + 7));
+    EXPECT_GE(runs.size(), all_partitions().size() * (question_set_names().size() + 7));
   }
 }
 
