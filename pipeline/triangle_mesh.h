@@ -22,8 +22,8 @@ struct MeshOptions {
   double active_edge_angle = 0.02;
 };
 
-/// A triangle mesh with its tree: indexed float vertices in the caller's order, triangles in the
-/// order of Hilbert's curve, above every 16 of them a box of 16-bit bounds, above every 16 boxes
+/// A triangle mesh with its tree: indexed float vertices in the caller's order, triangles
+/// ordered by median cuts, above every 16 of them a box of 16-bit bounds, above every 16 boxes
 /// another. 16 bytes a triangle, 12 a vertex, and about 0.8 a triangle for the tree: under 24 bytes
 /// a triangle for a closed mesh. Triangles are two-sided and may be degenerate.
 class WINNOW_API TriangleMesh {
@@ -36,7 +36,7 @@ class WINNOW_API TriangleMesh {
   TriangleMesh(const TriangleMesh&) = delete;
   TriangleMesh& operator=(const TriangleMesh&) = delete;
 
-  /// Takes copies of vertices (rounded to float) and triangles and builds the tree. O(n).
+  /// Takes copies of vertices (rounded to float) and triangles and builds the tree. O(n log n).
   /// `invalid_shape` if there is no triangle, a vertex is not finite in float, or a corner is not a
   /// vertex; `too_many_objects` beyond 2^28 triangles or 2^31 - 1 vertices; `invalid_argument` for
   /// bad options or views without columns. A refused build, or one without memory, leaves the mesh

@@ -1,6 +1,6 @@
 #include "partitions/structures/octree/loose_octree_cells.h"
 
-#include "partitions/tree/hilbert_curve.h"
+#include "partitions/structures/octree/hilbert_curve.h"
 
 #include <algorithm>
 #include <cmath>
