@@ -1,5 +1,7 @@
 #pragma once
 
+#include <winnow/core/export.h>
+
 #include <Eigen/Core>
 #include <array>
 #include <cmath>

@@ -3,6 +3,8 @@
 // What is asked about pairs of bodies and what a contact is. Plain structs on purpose: kernel files
 // include this.
 
+#include <winnow/core/export.h>
+
 #include <cstdint>
 
 namespace winnow {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/execution.h>
+#include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
@@ -55,7 +56,7 @@ struct NarrowStatistics {
 /// Pairs of bodies to overlaps, distances or contacts. Sorts pairs by the kinds of their shapes and
 /// computes those of one kind many at a time. Keeps scratch memory from call to call: one object a
 /// thread of the caller. What was moved from is as if new.
-class NarrowPhase {
+class WINNOW_API NarrowPhase {
  public:
   /// Every allocation comes from `memory`, which must outlive the object; none before the first
   /// call.

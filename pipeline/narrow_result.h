@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/column.h>
+#include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/pipeline/contact_types.h>
 #include <winnow/pipeline/shapes.h>
@@ -39,7 +40,7 @@ struct ContactColumns {
 
 /// Answers as columns, grouped by pair kind; within a kind in the order of the input. The caller's,
 /// reused from frame to frame.
-class NarrowResult {
+class WINNOW_API NarrowResult {
  public:
   explicit NarrowResult(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
