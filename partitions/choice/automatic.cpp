@@ -140,11 +140,11 @@ std::size_t number_of(StructureKind kind) noexcept {
 FrameWork AutomaticChoice::take_frame(std::size_t live) noexcept {
   FrameWork frame;
   frame.changed = std::min(changed_, live);
-  frame.pair_queries = take(Question::pairs);
-  frame.full_queries = take(Question::all_pairs);
-  frame.casts = take(Question::casts);
-  frame.regions = take(Question::regions);
-  frame.nearest = take(Question::nearest);
+  frame.pair_queries = take(QueryKind::pairs);
+  frame.full_queries = take(QueryKind::all_pairs);
+  frame.casts = take(QueryKind::casts);
+  frame.regions = take(QueryKind::regions);
+  frame.nearest = take(QueryKind::nearest);
   return frame;
 }
 

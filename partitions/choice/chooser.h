@@ -12,7 +12,7 @@ namespace winnow {
 
 /// Counts questions since the last look. Up to a limit, past which the line is only read, so that
 /// threads which ask at once do not wait for each other.
-class QuestionCounter {
+class QueryCounter {
  public:
   void add(std::size_t count) noexcept {
     if (count_.load(std::memory_order_relaxed) < kMost) {
@@ -31,8 +31,8 @@ class QuestionCounter {
 };
 
 /// What was asked of a partition.
-enum class Question : std::uint8_t { pairs, all_pairs, casts, regions, nearest };
-inline constexpr std::size_t kQuestions = 5;
+enum class QueryKind : std::uint8_t { pairs, all_pairs, casts, regions, nearest };
+inline constexpr std::size_t kQueryKinds = 5;
 
 /// What goes on choosing a partition's structure, and what it is told of the partition's work.
 class Chooser {
@@ -60,8 +60,8 @@ class Chooser {
   virtual void end(std::pmr::memory_resource* memory) noexcept = 0;
 
   void note_changes(std::size_t count) noexcept { changed_ += count; }
-  void note(Question question, std::size_t count) noexcept {
-    asked_[static_cast<std::size_t>(question)].add(count);
+  void note(QueryKind kind, std::size_t count) noexcept {
+    asked_[static_cast<std::size_t>(kind)].add(count);
   }
   /// Of a query for all pairs that says something about the scene.
   void note_pairs(std::size_t pairs) noexcept { pairs_.store(pairs, std::memory_order_relaxed); }
@@ -69,15 +69,15 @@ class Chooser {
  protected:
   ~Chooser() = default;
 
-  [[nodiscard]] std::size_t take(Question question) noexcept {
-    return asked_[static_cast<std::size_t>(question)].take();
+  [[nodiscard]] std::size_t take(QueryKind kind) noexcept {
+    return asked_[static_cast<std::size_t>(kind)].take();
   }
 
   std::size_t changed_ = 0;            // objects since the last refresh
   std::atomic<std::size_t> pairs_{0};  // in the last frame that asked for all
 
  private:
-  QuestionCounter asked_[kQuestions];
+  QueryCounter asked_[kQueryKinds];
 };
 
 }  // namespace winnow

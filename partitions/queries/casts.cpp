@@ -144,7 +144,7 @@ Status find_hit(const PartitionState& state, FindHits find, const Cast& cast, Hi
   const PreparedCast prepared(cast);
   if (!prepared.valid()) return Status::invalid_argument;
   QueryView view;
-  if (const Status status = state.prepare(Question::casts, 1, view); status != Status::ok) {
+  if (const Status status = state.prepare(QueryKind::casts, 1, view); status != Status::ok) {
     return status;
   }
   const KernelFilter wanted(filter, view, state.rows.keys());
@@ -172,7 +172,7 @@ Status Partition::closest(const RayBatch& rays, const HitColumns& hits,
   if (state_ == nullptr) return status_;
   if (!all_valid(rays)) return Status::invalid_argument;
   QueryView view;
-  if (const Status status = state_->prepare(Question::casts, rays.count, view);
+  if (const Status status = state_->prepare(QueryKind::casts, rays.count, view);
       status != Status::ok) {
     return status;
   }
@@ -208,7 +208,7 @@ Status Partition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) c
   const PreparedCast prepared(cast);
   if (!prepared.valid()) return Status::invalid_argument;
   QueryView view;
-  if (const Status status = state_->prepare(Question::casts, 1, view); status != Status::ok) {
+  if (const Status status = state_->prepare(QueryKind::casts, 1, view); status != Status::ok) {
     return status;
   }
   const KeyTable& keys = state_->rows.keys();
@@ -231,7 +231,7 @@ Status Partition::all(const RayBatch& rays, HitBuffer& hits, const Filter& filte
   if (state_ == nullptr) return status_;
   if (rays.count > kMaxObjects || !all_valid(rays)) return Status::invalid_argument;
   QueryView view;
-  if (const Status status = state_->prepare(Question::casts, rays.count, view);
+  if (const Status status = state_->prepare(QueryKind::casts, rays.count, view);
       status != Status::ok) {
     return status;
   }

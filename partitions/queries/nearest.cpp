@@ -39,7 +39,7 @@ Status Partition::nearest(const Aabb& from, std::size_t count, float radius, Hit
   const bool finite = from.min.allFinite() && from.max.allFinite() && from.is_valid();
   if (!finite || !(radius >= 0.0F)) return Status::invalid_argument;
   QueryView view;
-  if (const Status status = state_->prepare(Question::nearest, 1, view); status != Status::ok) {
+  if (const Status status = state_->prepare(QueryKind::nearest, 1, view); status != Status::ok) {
     return status;
   }
   const KeyTable& keys = state_->rows.keys();

@@ -119,7 +119,7 @@ Status Partition::overlap(const Region& region, OverlapBuffer& objects, const Fi
   const PreparedRegion prepared(region);
   if (prepared.status() != Status::ok) return prepared.status();
   QueryView view;
-  if (const Status status = state_->prepare(Question::regions, 1, view); status != Status::ok) {
+  if (const Status status = state_->prepare(QueryKind::regions, 1, view); status != Status::ok) {
     return status;
   }
   const KernelFilter wanted(filter, view, state_->rows.keys());
@@ -142,7 +142,7 @@ Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& f
     return Status::invalid_argument;
   }
   QueryView view;
-  if (const Status status = state_->prepare(Question::regions, boxes.count, view);
+  if (const Status status = state_->prepare(QueryKind::regions, boxes.count, view);
       status != Status::ok) {
     return status;
   }

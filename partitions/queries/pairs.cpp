@@ -76,7 +76,7 @@ Status PartitionState::find_self_pairs(PairBuffer& out, const PairOptions& optio
     if (events != nullptr) events->clear();
     return status;
   }
-  note(Question::pairs, 1);
+  note(QueryKind::pairs, 1);
   Status status;
   if (events == nullptr) {
     status = track_self_pairs(out, options, nullptr);
@@ -86,7 +86,7 @@ Status PartitionState::find_self_pairs(PairBuffer& out, const PairOptions& optio
     if (status != Status::ok) writer.fail();
   }
   if (status != Status::ok || chooser_ == nullptr) return status;
-  if (all) note(Question::all_pairs, 1);
+  if (all) note(QueryKind::all_pairs, 1);
   // What a predicate leaves says nothing about the scene.
   if (options.predicate.accept == nullptr) chooser_->note_pairs(out.size());
   return Status::ok;

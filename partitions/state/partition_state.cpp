@@ -12,7 +12,7 @@ std::uint64_t next_identity() noexcept {
 
 }  // namespace
 
-PairRecord::PairRecord() noexcept : identity(next_identity()) {}
+PairTracking::PairTracking() noexcept : identity(next_identity()) {}
 
 PartitionState::PartitionState(std::pmr::memory_resource* resource,
                                const PartitionOptions& options) noexcept
@@ -84,13 +84,13 @@ Status PartitionState::refresh_now() {
   return Status::ok;
 }
 
-void PartitionState::note(Question question, std::size_t count) const noexcept {
-  if (chooser_ != nullptr) chooser_->note(question, count);
+void PartitionState::note(QueryKind kind, std::size_t count) const noexcept {
+  if (chooser_ != nullptr) chooser_->note(kind, count);
 }
 
-Status PartitionState::prepare(Question question, std::size_t count, QueryView& view) const {
+Status PartitionState::prepare(QueryKind kind, std::size_t count, QueryView& view) const {
   if (const Status status = refresh(); status != Status::ok) return status;
-  note(question, count);
+  note(kind, count);
   if (index.queries_stale()) {
     const std::lock_guard lock(refresh_mutex_);
     if (index.queries_stale()) {

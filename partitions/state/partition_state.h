@@ -14,8 +14,8 @@
 namespace winnow {
 
 /// Which pair buffer is kept up to date by what moved, and what pair queries have done.
-struct PairRecord {
-  PairRecord() noexcept;
+struct PairTracking {
+  PairTracking() noexcept;
 
   const std::uint64_t identity;      // of the partition
   std::uint64_t tracked_serial = 0;  // 0: no buffer is tracked
@@ -47,8 +47,8 @@ class PartitionState {
   /// Brings up to date what pair queries read.
   Status refresh() const;
   /// The same for other queries, of which there are `count`; tells them how to see the rows.
-  Status prepare(Question question, std::size_t count, QueryView& view) const;
-  void note(Question question, std::size_t count) const noexcept;
+  Status prepare(QueryKind kind, std::size_t count, QueryView& view) const;
+  void note(QueryKind kind, std::size_t count) const noexcept;
 
   /// Calls look() while no other thread can be exchanging what it looks at.
   template <typename Look>
@@ -93,7 +93,7 @@ class PartitionState {
                  SpatialIndex::Asked asked) const noexcept;
 
   Chooser* chooser_ = nullptr;
-  mutable PairRecord pairs_;
+  mutable PairTracking pairs_;
   mutable std::mutex refresh_mutex_;
   mutable std::mutex tracker_mutex_;
   // True from a change on until a refresh is through. Only in between are rows reordered and

@@ -148,19 +148,19 @@ template <typename T>
 }
 
 /// A contact's columns: position x, y, z, depth, feature of a, feature of b.
-struct ContactColumns {
+struct ContactRegisters {
   Floats column[6];
 };
 
 template <typename T>
-[[gnu::always_inline]] inline ContactColumns columns_of(const ContactLanes<T>& point) {
+[[gnu::always_inline]] inline ContactRegisters columns_of(const ContactLanes<T>& point) {
   return {{as_floats(point.position.x), as_floats(point.position.y), as_floats(point.position.z),
            as_floats(point.depth), as_floats(point.feature_a), as_floats(point.feature_b)}};
 }
 
 /// Appends the contacts in the lanes.
 [[gnu::always_inline]] inline void append_contacts(ContactWriter& out, Mask16 lanes,
-                                                   const ContactColumns& c) {
+                                                   const ContactRegisters& c) {
   for (int k = 0; k < 3; ++k) compress_store(lanes, c.column[k], out.position[k] + out.size);
   compress_store(lanes, c.column[3], out.depth + out.size);
   compress_words(lanes, c.column[5], c.column[4], out.feature + out.size);
@@ -171,8 +171,8 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline void append_zipped(ContactWriter& out, const PairBlock<T>&,
                                                  const Mask16 (&lanes)[2],
-                                                 const ContactColumns (&c)[2]) {
-  ContactColumns zipped;
+                                                 const ContactRegisters (&c)[2]) {
+  ContactRegisters zipped;
   for (int k = 0; k < 6; ++k) zipped.column[k] = interleave<0>(c[0].column[k], c[1].column[k]);
   append_contacts(out, interleave_bits(lanes[0], lanes[1]), zipped);
   if constexpr (Lanes<T>::kCount == kLanes) {
@@ -184,7 +184,7 @@ template <typename T>
 /// Any number of points per lane.
 template <int Points>
 inline void append_pair_by_pair(ContactWriter& out, const Mask16 (&lanes)[Points],
-                                const ContactColumns (&columns)[Points]) {
+                                const ContactRegisters (&columns)[Points]) {
   alignas(64) float stage[Points][6][kLanes];
   for (int p = 0; p < Points; ++p) {
     for (int c = 0; c < 6; ++c) columns[p].column[c].store_unaligned(stage[p][c]);
@@ -212,7 +212,7 @@ template <int Points, typename T>
   for (int p = 0; p < Points; ++p) lanes[p] = points[p].lanes;
   write_contact_runs(job, block, lanes);
   if (lanes[0] == 0) return;
-  ContactColumns columns[Points];
+  ContactRegisters columns[Points];
   for (int p = 0; p < Points; ++p) columns[p] = columns_of(points[p]);
   if constexpr (Points == 1) {
     append_contacts(job.contacts, lanes[0], columns[0]);

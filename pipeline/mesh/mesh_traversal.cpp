@@ -18,7 +18,7 @@ namespace {
 
 using mid::kInfinity;
 // Beyond this, sums of products of coordinates may leave the range of double.
-constexpr double kLargest = 1e150;
+constexpr double kLargestCoordinate = 1e150;
 // Slack beyond this, in the scale of a, would leave the range of float.
 constexpr double kLargestSlack = 1e30;
 
@@ -46,7 +46,7 @@ MeshPairJob pair_job(const MeshView& a, const MeshView& b, const MeshPlacement& 
     // Less than ten roundings of sums and products of what `reach` adds up.
     job.slack[k] = margin[k] + reach * 0x1p-48;
     const double scaled = job.slack[k] * static_cast<double>(job.scale);
-    if (!(reach < kLargest && scaled < kLargestSlack)) {
+    if (!(reach < kLargestCoordinate && scaled < kLargestSlack)) {
       job.slack[k] = kInfinity;
       job.scaled_slack[k] = std::numeric_limits<float>::infinity();
       continue;

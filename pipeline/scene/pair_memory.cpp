@@ -29,11 +29,11 @@ constexpr double kTurnError = 4.0e-7;
   return motion_bound(a, b, radius);
 }
 
-struct Turn {
+struct PoseChange {
   Eigen::Matrix3d m;
 
   // R(to) R(from)^T for unit quaternions.
-  Turn(const double (&to)[4], const double (&from)[4]) noexcept
+  PoseChange(const double (&to)[4], const double (&from)[4]) noexcept
       : m(rotation_of_unit(
             product({to[0], to[1], to[2], to[3]}, {from[0], -from[1], -from[2], -from[3]}))) {}
 
@@ -192,7 +192,7 @@ bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
 void Collision::turn(CarriedPair& carried, const PairRecord& record,
                      const double (&to)[4]) noexcept {
   ContactFrame& frame = contacts_.frame;
-  const Turn turn(to, carried.turn);
+  const PoseChange turn(to, carried.turn);
   const std::uint32_t first = frame.manifold_first[record.shown];
   const std::uint32_t end = frame.manifold_first[record.shown + 1];
   for (std::uint32_t m = first; m < end; ++m) {

@@ -131,12 +131,12 @@ HierarchicalGrid::HierarchicalGrid(const StructureInput& input) noexcept
       key_(input.memory),
       list_(input.memory) {}
 
-struct Place {
+struct LinePlace {
   std::uint32_t line;
   std::uint32_t step;
 };
 
-Place place_of(const GridLevel& g, const BoundsPool& pool, std::size_t row) noexcept {
+LinePlace place_of(const GridLevel& g, const BoundsPool& pool, std::size_t row) noexcept {
   const std::uint32_t mid = cell_at(g.mid, pool.column(g.mid.axis)[row]);
   const std::uint32_t slow = cell_at(g.slow, pool.column(g.slow.axis)[row]);
   const std::uint32_t step = cell_at(g.fast, pool.column(g.fast.axis)[row]);
@@ -174,7 +174,7 @@ struct HierarchicalGrid::Sorted {
     const auto line_bits = static_cast<unsigned>(std::bit_width(last_line));
     packed = line_bits + step_bits <= 32;
     for (std::size_t i = 0; i < count; ++i) {
-      const Place place = place_of(level, pool, rows[i]);
+      const LinePlace place = place_of(level, pool, rows[i]);
       const std::uint64_t key =
           packed ? std::uint64_t{place.line} << step_bits | place.step : place.step;
       room[i] = key << 32U | rows[i];
@@ -189,7 +189,7 @@ struct HierarchicalGrid::Sorted {
     if (!packed) {
       for (std::size_t i = 0; i < count; ++i) {
         const auto row_number = static_cast<std::uint32_t>(sorted[i]);
-        const Place place = place_of(level, pool, row_number);
+        const LinePlace place = place_of(level, pool, row_number);
         sorted[i] = std::uint64_t{place.line} << 32U | row_number;
       }
       sorted = radix_sort(sorted, sorted == room ? spare : room, count, line_bits, execution);
