@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "../support/counting_memory.h"
-#include "../support/hostile_scenes.h"
-#include "../support/motion.h"
-#include "../support/scenes.h"
-#include "../support/world.h"
+#include "tests/support/counting_memory.h"
+#include "tests/support/hostile_scenes.h"
+#include "tests/support/motion.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

@@ -5,9 +5,9 @@
 #include <optional>
 #include <utility>
 
-#include "../support/motion.h"
-#include "../support/scenes.h"
-#include "../support/world.h"
+#include "tests/support/motion.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

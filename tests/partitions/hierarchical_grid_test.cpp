@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <set>
 
-#include "../support/config.h"
-#include "../support/random.h"
-#include "../support/scenes.h"
-#include "../support/world.h"
+#include "tests/support/config.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

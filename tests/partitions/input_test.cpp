@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "../support/hostile_scenes.h"
-#include "../support/scenes.h"
-#include "snapshot.h"
+#include "tests/partitions/snapshot.h"
+#include "tests/support/hostile_scenes.h"
+#include "tests/support/scenes.h"
 
 namespace winnow::test {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <set>
 
-#include "../support/scenes.h"
-#include "snapshot.h"
+#include "tests/partitions/snapshot.h"
+#include "tests/support/scenes.h"
 
 namespace winnow::test {
 namespace {

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#include "../support/config.h"
-#include "../support/motion.h"
-#include "../support/random.h"
-#include "../support/scenes.h"
-#include "../support/world.h"
+#include "tests/support/config.h"
+#include "tests/support/motion.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

@@ -1,11 +1,11 @@
 // Memory: what the footprint says is what was asked for, to the byte, and a steady frame asks for
 // nothing.
 
-#include "../support/counting_memory.h"
-#include "../support/heap_count.h"
-#include "../support/motion.h"
-#include "../support/scenes.h"
-#include "../support/world.h"
+#include "tests/support/counting_memory.h"
+#include "tests/support/heap_count.h"
+#include "tests/support/motion.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

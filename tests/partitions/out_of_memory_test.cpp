@@ -3,10 +3,10 @@
 
 #include <functional>
 
-#include "../support/counting_memory.h"
-#include "../support/motion.h"
-#include "../support/scenes.h"
-#include "../support/world.h"
+#include "tests/support/counting_memory.h"
+#include "tests/support/motion.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

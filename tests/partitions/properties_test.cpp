@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../support/world.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

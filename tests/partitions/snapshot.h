@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "../support/world.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 

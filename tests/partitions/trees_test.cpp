@@ -8,10 +8,10 @@
 #include <limits>
 #include <string>
 
-#include "../support/motion.h"
-#include "../support/scenes.h"
-#include "../support/twin.h"
-#include "../support/world.h"
+#include "tests/support/motion.h"
+#include "tests/support/scenes.h"
+#include "tests/support/twin.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "hull_brute_force.h"
+#include "tests/pipeline/hull_brute_force.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
