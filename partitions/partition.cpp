@@ -30,7 +30,7 @@ Partition::~Partition() {
 }
 
 StructureKind Partition::structure() const noexcept {
-  return state_ == nullptr ? StructureKind{} : state_->kind;
+  return state_ == nullptr ? StructureKind{} : state_->structure;
 }
 
 Status Partition::set_structure(StructureKind structure) {

@@ -45,7 +45,7 @@ bool PartitionState::set_structure(StructureKind given) noexcept {
   }
   if (chooser_ != nullptr) chooser_->end(memory);
   chooser_ = chooser;
-  kind = given;
+  structure = given;
   stale_.store(true, std::memory_order_relaxed);
   return true;
 }

@@ -71,7 +71,7 @@ class PartitionState {
   void release_memory() noexcept;
 
   std::pmr::memory_resource* const memory;
-  StructureKind kind;  // as it was given
+  StructureKind structure;  // as it was given
   Rows rows;
   SpatialIndex index;
 
