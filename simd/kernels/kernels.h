@@ -3,8 +3,8 @@
 // How a kernel file reaches its callers. A `*.kernel.cpp` is compiled once per instruction set and
 // defines one constant table of function pointers, whose name ends in the instruction set. The
 // header beside it declares the table's type and, by WINNOW_KERNELS, the tables and the function
-// that picks the active one. Kernel files include only <cstdint>, <cstddef>, this file, simd/lanes/ and
-// headers of plain structs: an inline function of the standard library compiled for a wide
+// that picks the active one. Kernel files include only <cstdint>, <cstddef>, this file, simd/lanes/
+// and headers of plain structs: an inline function of the standard library compiled for a wide
 // instruction set would be merged by the linker into code that runs everywhere.
 
 #include <cstdint>
