@@ -23,7 +23,7 @@ struct ObjectPredicate {
 };
 
 /// What a query asks for: the filter that stands for the one who asks, and a predicate. Subtrees in
-/// which the filter can match nothing are not walked.
+/// which the filter can match nothing are not entered.
 struct Filter {
   std::uint32_t layers = ~0U;
   std::uint32_t mask = ~0U;

@@ -81,7 +81,7 @@ unsigned octant(const Ray& ray) noexcept {
   return result;
 }
 
-/// Some rays of a batch, in parties that go the same way and are walked together.
+/// Some rays of a batch, in parties that go the same way and are traversed together.
 class RayGroup {
  public:
   RayGroup(const RayBatch& rays, std::size_t begin, std::size_t end) noexcept : rays_(rays) {
@@ -198,7 +198,7 @@ Status Partition::closest(const RayBatch& rays, const HitColumns& hits,
 }
 
 Status Partition::any(const RayBatch& rays, const HitColumns& hits, const Filter& filter) const {
-  // Walked together, the closest hit comes as cheap as any.
+  // Traversed together, the closest hit comes as cheap as any.
   return closest(rays, hits, filter);
 }
 
