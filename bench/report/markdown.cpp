@@ -40,6 +40,7 @@ class Markdown {
   void heading(const std::string& text) { text_ += "## " + text + "\n\n"; }
   void paragraph(const std::string& text) { text_ += text + "\n\n"; }
 
+  void table(const std::string& text) { text_ += text; }
   /// The best of each column is bold.
   void add(const Pivot& of) {
     const PageTable table = pivot(results_, of);
@@ -306,7 +307,8 @@ std::string results_markdown(const Results& results) {
       "), written by `bench/run results` from `bench/results/results.json`, in which every "
       "figure is a row. Other libraries are Debian packages at their best settings and with "
       "`-O3 -march=native`. Times are medians; the best of a column is bold.");
-  to.paragraph("## Main figures\n\n" + figures_table(results));
+  to.heading("Main figures");
+  to.table(figures_table(results));
   add_throughput(to);
   add_limits(to);
   add_volumes_tables(to);
