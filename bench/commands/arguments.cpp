@@ -1,5 +1,6 @@
 #include "bench/commands/arguments.h"
 
+#include <winnow/simd/isa.h>
 #include "bench/commands/command.h"
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
@@ -9,12 +10,6 @@
 #include <thread>
 
 namespace winnow::bench {
-
-void add_scenes_option(CLI::App& app, Choice& choice) {
-  app.add_option("--scene", choice.scenes, "Scenes (default: the six main ones)")
-      ->delimiter(',')
-      ->check(CLI::IsMember(scene_names()));
-}
 
 void add_targets_option(CLI::App& app, Choice& choice) {
   app.add_option("--scene", choice.scenes,

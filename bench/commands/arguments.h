@@ -20,8 +20,6 @@ struct Choice {
 };
 
 // Each adds one option; lists are comma-separated or repeated.
-void add_scenes_option(CLI::App& app, Choice& choice);
-/// Of recordings, too.
 void add_targets_option(CLI::App& app, Choice& choice);
 void add_objects_option(CLI::App& app, Choice& choice);
 void add_threads_option(CLI::App& app, Choice& choice);

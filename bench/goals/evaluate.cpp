@@ -1,5 +1,6 @@
 #include "bench/goals/evaluate.h"
 
+#include <winnow/simd/isa.h>
 #include "bench/common/table.h"
 #include "bench/goals/asks.h"
 #include "bench/rows/machine.h"
@@ -211,8 +212,10 @@ std::vector<Goal> evaluate(const Json& ask, Lab& lab) {
   }
   if (!fault.empty()) {
     const bool at_least = ask.contains("at_least");
+    std::string what = ask["what"];
+    std::erase_if(what, [](char c) { return c == '{' || c == '}'; });
     return {{.topic = ask["topic"],
-             .what = ask["what"],
+             .what = std::move(what),
              .unit = ask["unit"],
              .at_least = at_least,
              .measured = at_least ? -kUnanswered : kUnanswered,

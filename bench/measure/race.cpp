@@ -179,30 +179,7 @@ void add_peers(const MeasureOptions& options, std::vector<Contender>& contenders
   }
 }
 
-const Run* fastest_of(std::span<const Run> runs, int threads) {
-  const Run* best = nullptr;
-  for (const Run& run : runs) {
-    if (run.threads != threads) continue;
-    if (best == nullptr || run.median_ms() < best->median_ms()) best = &run;
-  }
-  return best;
-}
-
 }  // namespace
-
-const Run* Measurement::find(const std::string& engine, int threads) const {
-  for (const Run& run : runs) {
-    if (run.engine == engine && run.threads == threads) return &run;
-  }
-  return nullptr;
-}
-
-const Run* Measurement::fastest(int threads) const {
-  return fastest_of(partitions(), threads);
-}
-const Run* Measurement::fastest_peer(int threads) const {
-  return fastest_of(peers(), threads);
-}
 
 Measurement measure(const MeasureOptions& options) {
   const auto source = options.recording != nullptr

@@ -94,15 +94,6 @@ struct Measurement {
   [[nodiscard]] std::span<const Run> peers() const {
     return std::span(runs).subspan(partition_runs, peer_runs);
   }
-  /// Null if it did not run.
-  [[nodiscard]] const Run* find(const std::string& engine, int threads) const;
-  /// The fastest partition at this thread count; null if none ran.
-  [[nodiscard]] const Run* fastest(int threads) const;
-  /// The fastest other library at this thread count; null if none ran.
-  [[nodiscard]] const Run* fastest_peer(int threads) const;
-  [[nodiscard]] double bytes_per_object(const Run& run) const {
-    return static_cast<double>(run.bytes) / static_cast<double>(objects);
-  }
 };
 
 [[nodiscard]] Measurement measure(const MeasureOptions& options);

@@ -220,11 +220,6 @@ double pays_from_ns(const VolumeRow& row, const VolumeRow& boxes) {
   return std::max(0.0, 1e6 * more / saved);
 }
 
-const VolumeRow& best_of(const std::vector<VolumeRow>& rows) {
-  return *std::min_element(rows.begin(), rows.end(), [](const VolumeRow& a, const VolumeRow& b) {
-    return a.sum_ms() < b.sum_ms();
-  });
-}
 
 namespace {
 

@@ -62,9 +62,6 @@ struct VolumeRaceOptions {
 /// saves none.
 [[nodiscard]] double pays_from_ns(const VolumeRow& row, const VolumeRow& boxes);
 
-/// The row with the least sum.
-[[nodiscard]] const VolumeRow& best_of(const std::vector<VolumeRow>& rows);
-
 /// What volumes are put around, and how fast it moves.
 struct VolumeSetting {
   std::string what;   ///< "rotated cubes"

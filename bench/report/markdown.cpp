@@ -40,6 +40,7 @@ class Markdown {
   void heading(const std::string& text) { text_ += "## " + text + "\n\n"; }
   void paragraph(const std::string& text) { text_ += text + "\n\n"; }
 
+  void table(const std::string& text) { text_ += text; }
   /// The best of each column is bold.
   void add(const Pivot& of) {
     const PageTable table = pivot(results_, of);
@@ -291,22 +292,58 @@ std::string figures_table(const Results& results) {
   return table_of({"what", "unit", "winnow", "best other library", "times"}, rows);
 }
 
+/// Every partition and library on every scene, at the largest size and on most threads.
+std::string frames_table(const Results& results) {
+  const auto all = results.rows("throughput", {{"isa", results.document()["machine"]["isa"]}});
+  if (all.empty()) throw ArgumentError("the results have no frames to show");
+  const auto most = [&](const char* key) {
+    const auto values = distinct(all, key);
+    return *std::max_element(values.begin(), values.end());
+  };
+  Json where{{"isa", results.document()["machine"]["isa"]},
+             {"objects", most("objects")},
+             {"threads", most("threads")}};
+  PageTable table = pivot(results, {"throughput", where, "partition", "scene", "frame_ms"});
+  table.header.front() = grouped(where["objects"].get<std::size_t>()) + " objects, " +
+                         threads_text(where["threads"].get<int>());
+  table.header.emplace_back("most bytes/object");
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& row : table.rows) {
+    const std::string name = row.front().text;
+    rows.push_back({is_peer(name) ? name : "`" + name + "`"});
+    for (std::size_t c = 1; c < row.size(); ++c) rows.back().push_back(row[c].text);
+    where["partition"] = name;
+    double bytes = 0.0;
+    for (const Json* one : results.rows("throughput", where)) {
+      bytes = std::fmax(bytes, value_of(*one, "bytes_per_object"));
+    }
+    rows.back().push_back(shown(bytes, "number"));
+  }
+  return table_of(table.header, rows);
+}
+
+std::string machine_text(const Results& results) {
+  const Json& machine = results.document()["machine"];
+  std::string text;
+  for (const char* fact : {"processor", "cores", "isa", "commit"}) {
+    text += (text.empty() ? "" : ", ") + key_text(machine.value(fact, Json("unknown"))) +
+            (fact == std::string("cores") ? " cores" : "");
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string results_markdown(const Results& results) {
-  const Json& machine = results.document()["machine"];
-  const auto fact = [&](const char* name) {
-    return key_text(machine.value(name, Json("unknown")));
-  };
   Markdown to(results);
   to.paragraph("# Results");
   to.paragraph(
-      "One run of `bench/run --with-peers report` (" + fact("processor") + ", " + fact("cores") +
-      " cores, " + fact("isa") + ", commit " + fact("commit") + ", " + fact("date") +
+      "One run of `bench/run --with-peers report` (" + machine_text(results) +
       "), written by `bench/run results` from `bench/results/results.json`, in which every "
       "figure is a row. Other libraries are Debian packages at their best settings and with "
       "`-O3 -march=native`. Times are medians; the best of a column is bold.");
-  to.paragraph("## Main figures\n\n" + figures_table(results));
+  to.heading("Main figures");
+  to.table(figures_table(results));
   add_throughput(to);
   add_limits(to);
   add_volumes_tables(to);
@@ -326,8 +363,13 @@ std::string with_figures(const std::string& text, const Results& results) {
   const std::size_t from = begin + kFiguresBegin.size();
   const std::size_t end = text.find(kFiguresEnd, from);
   if (end == std::string::npos) throw ArgumentError("figures without an end: " + kFiguresEnd);
-  // Markdown wants a blank line between a comment and a table.
-  return text.substr(0, from) + "\n" + figures_table(results) + text.substr(end);
+  const std::string figures = "One run of `bench/run --with-peers report` (" +
+                              machine_text(results) +
+                              ").\nOf other libraries, at their best settings, Embree uses all "
+                              "threads, and CGAL where that is "
+                              "faster:\n\n" +
+                              frames_table(results);
+  return text.substr(0, from) + figures + text.substr(end);
 }
 
 }  // namespace winnow::bench

@@ -18,7 +18,8 @@ void measure_example(const Json& options, Lab& /*lab*/, Measured& measured) {
   if (options.contains("refuse")) throw std::runtime_error("refused");
   measured.absent = options.contains("absent");
   measured.machine_ms = 46.0;  // twice as slow as where other libraries were timed
-  measured.results.declare({"times", "s", "t", {"kind", "level", "engine"}, {{"ns", "time", "ns"}}});
+  measured.results.declare(
+      {"times", "s", "t", {"kind", "level", "engine"}, {{"ns", "time", "ns"}}});
   const auto add = [&](const char* kind, const char* level, const char* engine, double ns) {
     measured.results.add("times",
                          {{"kind", kind}, {"level", level}, {"engine", engine}, {"ns", ns}});

@@ -4,6 +4,7 @@
 #include <winnow/simd/isa.h>
 #include "bench/questions/hard_case_files.h"
 #include "bench/questions/questions.h"
+#include "tests/support/config.h"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +15,6 @@
 #include <fstream>
 #include <string>
 #include <vector>
-
-#include "../support/config.h"
 
 #if WINNOW_HAVE_ORACLE
 #include "bench/oracle/oracle.h"

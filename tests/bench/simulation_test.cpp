@@ -6,6 +6,7 @@
 #include "bench/simulation/flow_check.h"
 #include "bench/simulation/flow_history.h"
 #include "bench/simulation/mesh_files.h"
+#include "tests/support/config.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +16,6 @@
 #include <fstream>
 #include <string>
 #include <vector>
-
-#include "../support/config.h"
 
 namespace winnow::bench {
 namespace {
