@@ -1,7 +1,6 @@
 #include "bench/measure/advice.h"
 
 #include "bench/contenders/partition_engine.h"
-#include "partitions/choice/auto_partition.h"
 
 #include <algorithm>
 #include <cstdio>

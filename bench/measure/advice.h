@@ -1,8 +1,8 @@
 #pragma once
 
+#include <winnow/partitions/scene_features.h>
 #include "bench/measure/race.h"
 #include "bench/scenes/frame_source.h"
-#include "partitions/choice/scene_features.h"
 
 #include <cstddef>
 #include <string>

@@ -66,7 +66,7 @@ struct NarrowMeasureOptions {
   PairKind kind;
   std::size_t pairs = 8192;
   std::vector<ContactLevel> levels{ContactLevel::boolean, ContactLevel::distance,
-                                  ContactLevel::manifold};
+                                   ContactLevel::manifold};
   std::vector<NarrowTier> tiers{NarrowTier::robust};
   std::vector<int> threads{1};  ///< winnow's; other libraries use one
   bool peers = false;           ///< other libraries too, where the tool was built with them

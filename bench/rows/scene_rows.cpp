@@ -10,10 +10,11 @@
 namespace winnow::bench {
 namespace {
 
-constexpr std::pair<const char*, ContactLevel> kSceneLevels[] = {{"pairs", ContactLevel::pairs},
-                                                               {"boolean", ContactLevel::boolean},
-                                                               {"distance", ContactLevel::distance},
-                                                               {"manifold", ContactLevel::manifold}};
+constexpr std::pair<const char*, ContactLevel> kSceneLevels[] = {
+    {"pairs", ContactLevel::pairs},
+    {"boolean", ContactLevel::boolean},
+    {"distance", ContactLevel::distance},
+    {"manifold", ContactLevel::manifold}};
 
 const char* motion_of(const PipelineMeasureOptions& options) {
   return options.resting ? "at rest" : "moving a little";

@@ -29,19 +29,19 @@ FlowPhases::FlowPhases(const GranularFlow& flow, const Execution& execution)
       keys_(flow.objects()),
       boxes_(flow.objects()) {
   for (std::size_t i = 0; i < boxes_.size(); ++i) boxes_[i] = flow.box(i);
-  need(bodies_->insert(boxes_, {}, keys_), "boxes");
+  need(bodies_.insert(boxes_, {}, keys_), "boxes");
   const ShapeId mesh = flow.mesh_shape();
   Key key;
-  need(mesh_->insert(flow.composites().bounds(mesh, Pose{}), 0, key), "the mesh's box");
+  need(mesh_.insert(flow.composites().bounds(mesh, Pose{}), 0, key), "the mesh's box");
   for (std::size_t i = 0; i < flow.objects(); ++i) shapes_.push_back(flow.shape(i));
   shapes_.push_back(mesh);
 }
 
 /// Objects of a new partition have the ids 0, 1, 2, ...: rows.
 void FlowPhases::find_pairs() {
-  need(bodies_->update(keys_, boxes_), "boxes");
-  need(bodies_->self_pairs(own_), "pairs");
-  need(bodies_->pairs_with(*mesh_, with_mesh_), "pairs");
+  need(bodies_.update(keys_, boxes_), "boxes");
+  need(bodies_.self_pairs(own_), "pairs");
+  need(bodies_.pairs_with(mesh_, with_mesh_), "pairs");
 }
 
 FlowTimes FlowPhases::run() {
