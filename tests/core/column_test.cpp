@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <numeric>
 
-#include "../support/counting_memory.h"
+#include "tests/support/counting_memory.h"
 
 namespace winnow::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "../support/config.h"
+#include "tests/support/config.h"
 
 namespace winnow::test {
 namespace {

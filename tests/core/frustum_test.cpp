@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "../support/random.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "../support/random.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <set>
 #include <vector>
 
-#include "../support/counting_memory.h"
+#include "tests/support/counting_memory.h"
 
 namespace winnow::test {
 namespace {

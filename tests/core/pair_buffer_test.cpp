@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <winnow/core/pair_buffer.h>
 
-#include "../support/counting_memory.h"
+#include "tests/support/counting_memory.h"
 
 namespace winnow::test {
 namespace {

@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-#include "../support/random.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

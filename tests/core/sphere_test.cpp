@@ -4,7 +4,7 @@
 #include <cfloat>
 #include <limits>
 
-#include "../support/random.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

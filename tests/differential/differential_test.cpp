@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "../support/hostile_scenes.h"
-#include "../support/motion.h"
-#include "../support/scenes.h"
-#include "../support/world.h"
+#include "tests/support/hostile_scenes.h"
+#include "tests/support/motion.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

@@ -1,12 +1,12 @@
-#include "composite_world.h"
+#include "tests/pipeline/composite_world.h"
 
 #include <algorithm>
 #include <limits>
 #include <memory>
 #include <set>
 
-#include "../support/config.h"
-#include "../support/counting_memory.h"
+#include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
 
 namespace winnow::test {
 namespace {

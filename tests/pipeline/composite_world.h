@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "../support/random.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "../support/random.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "../support/random.h"
+#include "tests/support/random.h"
 
 #if __has_include(<boost/multiprecision/cpp_int.hpp>)
 #define WINNOW_HAVE_BOOST_INTEGERS 1

@@ -5,8 +5,8 @@
 #include <iterator>
 #include <limits>
 
-#include "../support/random.h"
-#include "lattice_truth.h"
+#include "tests/pipeline/lattice_truth.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

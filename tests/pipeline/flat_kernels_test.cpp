@@ -11,9 +11,9 @@
 #include <limits>
 #include <vector>
 
-#include "../support/config.h"
-#include "../support/random.h"
-#include "flat_twin.h"
+#include "tests/pipeline/flat_twin.h"
+#include "tests/support/config.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

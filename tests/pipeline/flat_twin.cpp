@@ -1,4 +1,4 @@
-#include "flat_twin.h"
+#include "tests/pipeline/flat_twin.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "../support/config.h"
-#include "../support/counting_memory.h"
-#include "../support/meshes.h"
-#include "../support/random.h"
+#include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
+#include "tests/support/meshes.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

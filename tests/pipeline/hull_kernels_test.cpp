@@ -15,10 +15,10 @@
 #include <utility>
 #include <vector>
 
-#include "../support/config.h"
-#include "../support/random.h"
-#include "hull_brute_force.h"
-#include "pair_scenes.h"
+#include "tests/pipeline/hull_brute_force.h"
+#include "tests/pipeline/pair_scenes.h"
+#include "tests/support/config.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "lattice_truth.h"
+#include "tests/pipeline/lattice_truth.h"
 
 #include <algorithm>
 #include <cmath>

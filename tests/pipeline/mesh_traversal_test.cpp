@@ -8,9 +8,9 @@
 #include <limits>
 #include <set>
 
-#include "../support/config.h"
-#include "../support/meshes.h"
-#include "../support/random.h"
+#include "tests/support/config.h"
+#include "tests/support/meshes.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

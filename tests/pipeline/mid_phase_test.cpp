@@ -1,4 +1,4 @@
-#include "composite_world.h"
+#include "tests/pipeline/composite_world.h"
 
 #include "pipeline/solver/solver.h"
 
@@ -7,8 +7,8 @@
 #include <set>
 #include <tuple>
 
-#include "../support/config.h"
-#include "../support/counting_memory.h"
+#include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
 
 namespace winnow::test {
 namespace {

@@ -8,11 +8,11 @@
 #include <numeric>
 #include <vector>
 
-#include "../support/config.h"
-#include "../support/random.h"
-#include "pair_answers.h"
-#include "pair_scenes.h"
-#include "reproduction.h"
+#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_scenes.h"
+#include "tests/pipeline/reproduction.h"
+#include "tests/support/config.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

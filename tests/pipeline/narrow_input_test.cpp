@@ -6,12 +6,12 @@
 #include <limits>
 #include <vector>
 
-#include "../support/config.h"
-#include "../support/counting_memory.h"
-#include "../support/heap_count.h"
-#include "../support/random.h"
-#include "pair_answers.h"
-#include "pair_scenes.h"
+#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_scenes.h"
+#include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
+#include "tests/support/heap_count.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

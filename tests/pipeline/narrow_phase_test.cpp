@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "../support/random.h"
-#include "pair_answers.h"
-#include "pair_scenes.h"
-#include "reproduction.h"
+#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_scenes.h"
+#include "tests/pipeline/reproduction.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "bench/oracle/oracle.h"
-#include "pair_answers.h"
-#include "pair_scenes.h"
-#include "reproduction.h"
+#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_scenes.h"
+#include "tests/pipeline/reproduction.h"
 
 namespace winnow::test {
 namespace {

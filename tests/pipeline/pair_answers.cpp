@@ -1,4 +1,4 @@
-#include "pair_answers.h"
+#include "tests/pipeline/pair_answers.h"
 
 #include <gtest/gtest.h>
 

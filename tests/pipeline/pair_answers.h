@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "pair_scenes.h"
+#include "tests/pipeline/pair_scenes.h"
 
 namespace winnow::test {
 

@@ -1,4 +1,4 @@
-#include "pair_scenes.h"
+#include "tests/pipeline/pair_scenes.h"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@
 #include <memory>
 #include <vector>
 
-#include "pair_scenes.h"
+#include "tests/pipeline/pair_scenes.h"
 
 namespace winnow::test {
 

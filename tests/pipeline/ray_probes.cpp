@@ -1,4 +1,4 @@
-#include "ray_probes.h"
+#include "tests/pipeline/ray_probes.h"
 
 #include <gtest/gtest.h>
 

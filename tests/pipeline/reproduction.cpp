@@ -1,4 +1,4 @@
-#include "reproduction.h"
+#include "tests/pipeline/reproduction.h"
 
 #include <sstream>
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "pair_scenes.h"
+#include "tests/pipeline/pair_scenes.h"
 
 namespace winnow::test {
 

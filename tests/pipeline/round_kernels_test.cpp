@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "../support/config.h"
-#include "../support/random.h"
-#include "pair_scenes.h"
-#include "round_twin.h"
+#include "tests/pipeline/pair_scenes.h"
+#include "tests/pipeline/round_twin.h"
+#include "tests/support/config.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "round_twin.h"
+#include "tests/pipeline/round_twin.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,15 +1,15 @@
 // What a scene keeps from frame to frame: contacts that are carried over, bytes, and what it was
 // before a call that it refused.
 
-#include "scene_world.h"
+#include "tests/pipeline/scene_world.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "../support/config.h"
-#include "../support/counting_memory.h"
+#include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
 
 namespace winnow::test {
 namespace {

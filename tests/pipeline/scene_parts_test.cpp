@@ -10,10 +10,10 @@
 #include <cmath>
 #include <tuple>
 
-#include "../support/config.h"
-#include "../support/counting_memory.h"
-#include "../support/meshes.h"
-#include "scene_world.h"
+#include "tests/pipeline/scene_world.h"
+#include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
+#include "tests/support/meshes.h"
 
 namespace winnow::test {
 namespace {

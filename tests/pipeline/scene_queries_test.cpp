@@ -8,9 +8,9 @@
 #include <limits>
 #include <thread>
 
-#include "../support/config.h"
-#include "../support/counting_memory.h"
-#include "query_world.h"
+#include "tests/pipeline/query_world.h"
+#include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
 
 namespace winnow::test {
 namespace {

@@ -1,6 +1,6 @@
 // What a scene reports, against every pair asked one by one; events, sets, filters, and order.
 
-#include "scene_world.h"
+#include "tests/pipeline/scene_world.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "../support/config.h"
+#include "tests/support/config.h"
 
 namespace winnow::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "scene_world.h"
+#include "tests/pipeline/scene_world.h"
 
 #include "pipeline/solver/solver.h"
 

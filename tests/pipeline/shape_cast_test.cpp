@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pair_scenes.h"
+#include "tests/pipeline/pair_scenes.h"
 
 namespace winnow::test {
 namespace {

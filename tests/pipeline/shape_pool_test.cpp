@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "../support/counting_memory.h"
+#include "tests/support/counting_memory.h"
 
 namespace winnow::test {
 namespace {

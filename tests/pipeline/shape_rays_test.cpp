@@ -8,8 +8,8 @@
 #include <iterator>
 #include <limits>
 
-#include "../support/random.h"
-#include "ray_probes.h"
+#include "tests/pipeline/ray_probes.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

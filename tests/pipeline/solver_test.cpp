@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "pair_scenes.h"
-#include "reproduction.h"
+#include "tests/pipeline/pair_scenes.h"
+#include "tests/pipeline/reproduction.h"
 
 namespace winnow::test {
 namespace {

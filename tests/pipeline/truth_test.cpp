@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "bench/oracle/oracle.h"
-#include "pair_scenes.h"
+#include "tests/pipeline/pair_scenes.h"
 
 namespace winnow::test {
 namespace {

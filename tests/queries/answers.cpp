@@ -1,4 +1,4 @@
-#include "answers.h"
+#include "tests/queries/answers.h"
 
 #include <algorithm>
 #include <bit>

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "../support/cast_twin.h"
-#include "../support/region_twin.h"
-#include "../support/twin.h"
+#include "tests/support/cast_twin.h"
+#include "tests/support/region_twin.h"
+#include "tests/support/twin.h"
 
 namespace winnow::test {
 

@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "../support/hostile_casts.h"
-#include "../support/motion.h"
-#include "../support/scenes.h"
-#include "../support/world.h"
-#include "questions.h"
+#include "tests/queries/questions.h"
+#include "tests/support/hostile_casts.h"
+#include "tests/support/motion.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "../support/hostile_casts.h"
-#include "../support/hostile_scenes.h"
-#include "../support/scenes.h"
-#include "../support/world.h"
-#include "answers.h"
+#include "tests/queries/answers.h"
+#include "tests/support/hostile_casts.h"
+#include "tests/support/hostile_scenes.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

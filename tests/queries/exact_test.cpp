@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "../support/exact.h"
-#include "answers.h"
+#include "tests/queries/answers.h"
+#include "tests/support/exact.h"
 
 namespace winnow::test {
 namespace {

@@ -5,10 +5,10 @@
 #include <limits>
 #include <vector>
 
-#include "../support/motion.h"
-#include "../support/scenes.h"
-#include "../support/world.h"
-#include "questions.h"
+#include "tests/queries/questions.h"
+#include "tests/support/motion.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

@@ -5,9 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include "../partitions/snapshot.h"
-#include "../support/scenes.h"
-#include "../support/world.h"
+#include "tests/partitions/snapshot.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

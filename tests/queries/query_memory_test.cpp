@@ -6,13 +6,13 @@
 #include <optional>
 #include <vector>
 
-#include "../support/counting_memory.h"
-#include "../support/heap_count.h"
-#include "../support/hostile_casts.h"
-#include "../support/motion.h"
-#include "../support/scenes.h"
-#include "../support/world.h"
-#include "questions.h"
+#include "tests/queries/questions.h"
+#include "tests/support/counting_memory.h"
+#include "tests/support/heap_count.h"
+#include "tests/support/hostile_casts.h"
+#include "tests/support/motion.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

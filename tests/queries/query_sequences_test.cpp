@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "../support/hostile_casts.h"
-#include "../support/scenes.h"
-#include "../support/world.h"
-#include "questions.h"
+#include "tests/queries/questions.h"
+#include "tests/support/hostile_casts.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
 
 namespace winnow::test {
 namespace {

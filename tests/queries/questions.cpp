@@ -1,4 +1,4 @@
-#include "questions.h"
+#include "tests/queries/questions.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <sstream>
 
-#include "../support/hostile_casts.h"
+#include "tests/support/hostile_casts.h"
 
 namespace winnow::test {
 namespace {

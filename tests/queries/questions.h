@@ -3,9 +3,9 @@
 #include <deque>
 #include <vector>
 
-#include "../support/hostile_scenes.h"
-#include "../support/random.h"
-#include "answers.h"
+#include "tests/queries/answers.h"
+#include "tests/support/hostile_scenes.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 

@@ -8,8 +8,8 @@
 #include <bit>
 #include <vector>
 
-#include "../support/config.h"
-#include "wide_ops.h"
+#include "tests/simd/wide_ops.h"
+#include "tests/support/config.h"
 
 namespace winnow::test {
 namespace {

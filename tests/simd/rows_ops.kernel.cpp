@@ -1,4 +1,4 @@
-#include "rows_ops.h"
+#include "tests/simd/rows_ops.h"
 
 #include "simd/lanes/rows.h"
 

@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "../support/config.h"
-#include "../support/random.h"
-#include "rows_ops.h"
+#include "tests/simd/rows_ops.h"
+#include "tests/support/config.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 

@@ -3,7 +3,7 @@
 #include "simd/lanes/lanes.h"
 #include "simd/lanes/rows.h"
 
-#include "wide_ops.h"
+#include "tests/simd/wide_ops.h"
 
 #define WINNOW_TEXT_2(name) #name
 #define WINNOW_TEXT(name) WINNOW_TEXT_2(name)

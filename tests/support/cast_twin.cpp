@@ -1,4 +1,4 @@
-#include "cast_twin.h"
+#include "tests/support/cast_twin.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <numeric>
 
-#include "exact.h"
+#include "tests/support/exact.h"
 
 namespace winnow::test {
 namespace {

@@ -1,11 +1,11 @@
-#include "config.h"
+#include "tests/support/config.h"
 
 #include <tbb/global_control.h>
 
 #include <cstdlib>
 #include <memory>
 
-#include "random.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "counting_memory.h"
+#include "tests/support/counting_memory.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "exact.h"
+#include "tests/support/exact.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "heap_count.h"
+#include "tests/support/heap_count.h"
 
 #include <atomic>
 #include <cstdlib>

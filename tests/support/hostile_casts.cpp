@@ -1,11 +1,11 @@
-#include "hostile_casts.h"
+#include "tests/support/hostile_casts.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "cast_twin.h"
+#include "tests/support/cast_twin.h"
 
 namespace winnow::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "random.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 

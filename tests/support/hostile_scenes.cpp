@@ -1,4 +1,4 @@
-#include "hostile_scenes.h"
+#include "tests/support/hostile_scenes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
-#include "random.h"
-#include "scenes.h"
-#include "twin.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+#include "tests/support/twin.h"
 
 namespace winnow::test {
 namespace {

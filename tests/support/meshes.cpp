@@ -1,9 +1,9 @@
-#include "meshes.h"
+#include "tests/support/meshes.h"
 
 #include <cmath>
 #include <numbers>
 
-#include "random.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

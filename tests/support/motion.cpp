@@ -1,4 +1,4 @@
-#include "motion.h"
+#include "tests/support/motion.h"
 
 #include <utility>
 

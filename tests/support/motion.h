@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "random.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 

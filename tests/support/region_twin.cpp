@@ -1,4 +1,4 @@
-#include "region_twin.h"
+#include "tests/support/region_twin.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "cast_twin.h"
-#include "exact.h"
+#include "tests/support/cast_twin.h"
+#include "tests/support/exact.h"
 
 namespace winnow::test {
 namespace {

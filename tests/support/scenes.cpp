@@ -1,4 +1,4 @@
-#include "scenes.h"
+#include "tests/support/scenes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "random.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {

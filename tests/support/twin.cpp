@@ -1,4 +1,4 @@
-#include "twin.h"
+#include "tests/support/twin.h"
 
 #include <algorithm>
 #include <cstddef>

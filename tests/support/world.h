@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "config.h"
-#include "twin.h"
+#include "tests/support/config.h"
+#include "tests/support/twin.h"
 
 namespace winnow::test {
 
