@@ -82,9 +82,9 @@ TEST(VolumeRace, follows_a_recording) {
   for (const VolumeRow& row : rows) EXPECT_EQ(row.missed, 0U) << row.volume;
 }
 
-TEST(VolumeRace, refuses_a_partition_without_volumes) {
-  EXPECT_THROW((void)race_volumes(Solids::rotated(4, 1), {.partition = "AutoPartition"}),
-               std::invalid_argument);
+TEST(VolumeRace, refuses_what_is_no_partition) {
+  EXPECT_THROW((void)race_volumes(Solids::rotated(4, 1), {.partition = "NoPartition"}),
+               std::runtime_error);
 }
 
 }  // namespace
