@@ -79,8 +79,8 @@ inline constexpr int kBallRadius = 9;
 /// side of |distance|^2 <= (r1 + r2)^2 is enlarged by more than the rounding of both sides (a few
 /// ulp of each), so that touching balls are never missed; where a square would overflow or
 /// underflow the comparison still errs to the side of a hit.
-inline Mask16 balls_meet(const Floats* center, const Floats& radius, const float* low,
-                         const float* high, float reach) {
+[[gnu::always_inline]] inline Mask16 balls_meet(const Floats* center, const Floats& radius,
+                                                const float* low, const float* high, float reach) {
   constexpr float kSlack = 1.000002F;
   constexpr float kTiny = 1e-37F;
   Floats square = Floats(-kTiny);
@@ -260,10 +260,10 @@ class HitList {
   }
 
   /// Makes room for one more entry. False if the sink is full.
-  bool make_room() { return size_ < kRoom || flush(); }
+  bool make_room() { return __builtin_expect(size_ < kRoom, 1) != 0 || flush(); }
 
   /// Writes everything to the sink.
-  bool flush() {
+  [[gnu::noinline]] bool flush() {
     if (more_to_test_) size_ = keep_volume_hits(rows_, query_, row_, at_, mask_, size_);
     for (unsigned i = 0; i < size_; ++i) {
       Mask16 mask = mask_[i];

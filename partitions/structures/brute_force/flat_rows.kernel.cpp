@@ -105,8 +105,11 @@ struct SphereTest {
     q.radius = 0.0F;
     return q;
   }
-  static Mask16 test_box(const Block& b, const Query& q) { return test(b, q); }
-  static Mask16 test(const Block& b, const Query& q) {
+  // Called, these would have the block's registers written to memory and read again.
+  [[gnu::always_inline]] static Mask16 test_box(const Block& b, const Query& q) {
+    return test(b, q);
+  }
+  [[gnu::always_inline]] static Mask16 test(const Block& b, const Query& q) {
     return balls_meet(b.center, b.radius, q.low, q.high, q.radius);
   }
 
