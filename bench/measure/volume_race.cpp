@@ -220,7 +220,6 @@ double pays_from_ns(const VolumeRow& row, const VolumeRow& boxes) {
   return std::max(0.0, 1e6 * more / saved);
 }
 
-
 namespace {
 
 constexpr std::array<std::string_view, 4> kVolumeSettings{"scene", "cubes", "rods", "slow"};

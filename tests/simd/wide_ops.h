@@ -1,7 +1,8 @@
 #pragma once
 
-// Every operation of simd/lanes/lanes.h, boxes.h and compress.h behind plain pointers, so that an ordinary
-// test can compare each instruction set with a scalar loop. Arrays hold 16 elements unless said.
+// Every operation of simd/lanes/lanes.h, boxes.h and compress.h behind plain pointers, so that an
+// ordinary test can compare each instruction set with a scalar loop. Arrays hold 16 elements unless
+// said.
 
 #include "simd/kernels/kernels.h"
 
