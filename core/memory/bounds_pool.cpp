@@ -84,12 +84,6 @@ void BoundsPool::release() noexcept {
   rows_ = 0;
 }
 
-void BoundsPool::swap(BoundsPool& other) noexcept {
-  for (std::size_t c = 0; c < columns_.size(); ++c) columns_[c].swap(other.columns_[c]);
-  ids_.swap(other.ids_);
-  std::swap(rows_, other.rows_);
-}
-
 Bytes BoundsPool::bytes() const noexcept {
   Bytes sum;
   for (std::size_t c = 0; c < columns(); ++c) {

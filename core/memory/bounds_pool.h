@@ -71,8 +71,6 @@ class BoundsPool {
 
   void clear() noexcept { rows_ = 0; }
   void release() noexcept;
-  /// Exchanges the rows of two pools of one volume and one memory resource. O(1).
-  void swap(BoundsPool& other) noexcept;
   [[nodiscard]] Bytes bytes() const noexcept;
 
  private:

@@ -68,16 +68,6 @@ void KeyTable::release_if_unused() noexcept {
   }
 }
 
-void KeyTable::swap(KeyTable& other) noexcept {
-  stamps_.swap(other.stamps_);
-  rows_.swap(other.rows_);
-  data_.swap(other.data_);
-  std::swap(live_, other.live_);
-  std::swap(free_count_, other.free_count_);
-  std::swap(first_free_, other.first_free_);
-  std::swap(tag_, other.tag_);
-}
-
 Bytes KeyTable::key_bytes() const noexcept {
   Bytes sum = stamps_.bytes();
   sum += rows_.bytes();

@@ -32,10 +32,6 @@ class KeyTable {
   /// Gives unused memory back. The stamps of used slots stay: they are what tells a stale key.
   void release_if_unused() noexcept;
 
-  /// Exchanges the slots of two tables of one memory resource: each one's keys are the other's from
-  /// here on. O(1).
-  void swap(KeyTable& other) noexcept;
-
   [[nodiscard]] bool is_valid(Key key) const noexcept {
     return key.id < stamps_.size() && stamps_[key.id] == key.stamp && (key.stamp & 1U) != 0;
   }

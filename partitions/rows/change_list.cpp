@@ -29,13 +29,6 @@ void ChangeList::release() noexcept {
   all_ = false;
 }
 
-void ChangeList::swap(ChangeList& other) noexcept {
-  bits_.swap(other.bits_);
-  list_.swap(other.list_);
-  std::swap(limit_, other.limit_);
-  std::swap(all_, other.all_);
-}
-
 Bytes ChangeList::bytes() const noexcept {
   Bytes sum = bits_.bytes();
   sum += list_.bytes();

@@ -45,7 +45,6 @@ class ChangeList {
 
   void clear() noexcept;
   void release() noexcept;
-  void swap(ChangeList& other) noexcept;
   [[nodiscard]] Bytes bytes() const noexcept;
 
  private:

@@ -55,11 +55,4 @@ void FilterTable::release() noexcept {
   slots_ = apart_ = changed_ = 0;
 }
 
-void FilterTable::swap(FilterTable& other) noexcept {
-  filters_.swap(other.filters_);
-  std::swap(slots_, other.slots_);
-  std::swap(apart_, other.apart_);
-  std::swap(changed_, other.changed_);
-}
-
 }  // namespace winnow

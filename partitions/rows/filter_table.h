@@ -50,7 +50,6 @@ class FilterTable {
   /// Every filter is the default again; memory is kept.
   void clear() noexcept;
   void release() noexcept;
-  void swap(FilterTable& other) noexcept;
   [[nodiscard]] Bytes bytes() const noexcept { return filters_.bytes(); }
 
  private:
