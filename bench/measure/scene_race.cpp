@@ -99,21 +99,6 @@ void tick(std::optional<MachineClock>& clock) {
 
 }  // namespace
 
-const SceneTiming* PipelineMeasurement::winnow(int threads) const noexcept {
-  for (const SceneTiming& timing : timings) {
-    const bool is_peer = std::find(peers.begin(), peers.end(), timing.engine) != peers.end();
-    if (!is_peer && timing.threads == threads) return &timing;
-  }
-  return nullptr;
-}
-
-const SceneTiming* PipelineMeasurement::peer(const std::string& name) const noexcept {
-  for (const SceneTiming& timing : timings) {
-    if (timing.engine == name) return &timing;
-  }
-  return nullptr;
-}
-
 std::unique_ptr<BodySet> make_pipeline_scene(const std::string& scene, std::size_t bodies,
                                              std::uint64_t seed) {
   if (scene == "pile") return make_heap(bodies != 0 ? bodies : kPileBodies, seed);

@@ -74,10 +74,6 @@ struct PipelineMeasurement {
   std::size_t bodies = 0;
   std::size_t triangles = 0;
   double machine_ms = 0.0;  ///< of the MachineClock, before and after the race, if asked for
-
-  /// Null if there is none.
-  [[nodiscard]] const SceneTiming* winnow(int threads) const noexcept;
-  [[nodiscard]] const SceneTiming* peer(const std::string& name) const noexcept;
 };
 
 [[nodiscard]] PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options);

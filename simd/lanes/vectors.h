@@ -25,6 +25,12 @@ struct Vec3 {
   }
 };
 
+/// The sum of the magnitudes.
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> taxicab(const Vec3<T>& v) {
+  return abs(v.x) + abs(v.y) + abs(v.z);
+}
+
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> dot(const Vec3<T>& a, const Vec3<T>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;

@@ -16,12 +16,6 @@
 
 namespace winnow::WINNOW_ISA_NAME::flat {
 
-/// The sum of the magnitudes.
-template <typename T>
-[[gnu::always_inline]] inline Lanes<T> taxicab_of(const Vec3<T>& v) {
-  return abs(v.x) + abs(v.y) + abs(v.z);
-}
-
 /// Separations along an axis of length 1 at most are so often the unit roundoff of the pair's scale
 /// (all lengths in it) wrong, or less: 10 for an entry of a rotation, 38 for one of the product of
 /// two, 82 for the offset along a product of axes.
@@ -207,13 +201,13 @@ struct PlacedTriangle {
   [[gnu::always_inline]] void place(const TriangleLanes<T>& shape, const Rotation<T>& turn) {
     for (int i = 0; i < 3; ++i) {
       edge[i] = turn.to_world(shape.vertex[(i + 1) % 3] - shape.vertex[i]);
-      length[i] = taxicab_of(edge[i]);
+      length[i] = taxicab(edge[i]);
     }
     vertex[0] = turn.to_world(shape.vertex[0]);
     vertex[1] = turn.to_world(shape.vertex[1]);
     vertex[2] = turn.to_world(shape.vertex[2]);
     rounding = shape.rounding;
-    scale = taxicab_of(vertex[0]) + taxicab_of(vertex[1]) + taxicab_of(vertex[2]) + rounding;
+    scale = taxicab(vertex[0]) + taxicab(vertex[1]) + taxicab(vertex[2]) + rounding;
     const LaneMask<T> longest_0 = (length[0] >= length[1]) & (length[0] >= length[2]);
     const LaneMask<T> longest_1 = length[1] >= length[2];
     const Vec3<T> after[3] = {edge[1], edge[2], edge[0]};

@@ -34,12 +34,6 @@ struct WitnessLanes {
   Lanes<T> scale;
 };
 
-/// The sum of the magnitudes.
-template <typename T>
-[[gnu::always_inline]] inline Lanes<T> taxicab(const Vec3<T>& v) {
-  return abs(v.x) + abs(v.y) + abs(v.z);
-}
-
 /// Tier fast answers whatever is a number: its bound says how sure the sign is.
 template <typename T>
 [[gnu::always_inline]] inline Mask16 certified_lanes(const Lanes<T>& distance,
