@@ -40,7 +40,7 @@ struct BoxTrianglePair {
     const BoxLanes<T> box = load_box<SideA>(job, block);
     half = box.half;
     box_rounding = box.rounding;
-    scale = taxicab_of(offset) + b.scale + taxicab_of(half) + box_rounding;
+    scale = taxicab(offset) + b.scale + taxicab(half) + box_rounding;
     b.move(frame.to_local(offset));
   }
 
@@ -252,7 +252,7 @@ template <typename T>
   const Vec3<T> foot = vertex - step;
   const Vec3<T> corner{sign_or_one(n.x) * pair.half.x, sign_or_one(n.y) * pair.half.y,
                        sign_or_one(n.z) * pair.half.z};
-  const LaneMask<T> on_box = taxicab_of(foot - clamp_to(foot, pair.half)) <= near;
+  const LaneMask<T> on_box = taxicab(foot - clamp_to(foot, pair.half)) <= near;
   const LaneMask<T> on_triangle = pair.b.is_over(corner, select(apart, zero, near));
 
   // The edge of the box along its axis, through the corner.
@@ -267,7 +267,7 @@ template <typename T>
   const Lanes<T> s = clamp_to((dot(f, f) * re - ef * rf) / axis.length2, dot(pair.half, e));
   const Lanes<T> t = clamp_unit((ef * re - rf) / axis.length2);
   const PointPair<T> edges{middle + e * s, axis.start + f * t};
-  const LaneMask<T> crossing = apart | (taxicab_of(edges.b - edges.a - step) <= near);
+  const LaneMask<T> crossing = apart | (taxicab(edges.b - edges.a - step) <= near);
 
   AxisPoints<T> p;
   p.points.a = select(of_box, foot, select(of_face, corner, edges.a));

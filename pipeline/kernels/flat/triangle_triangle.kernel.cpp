@@ -22,7 +22,7 @@ struct TrianglePair {
     offset = load_offset(job, block);
     a.place(load_triangle<SideA>(job, block), rotation(load_turn<SideA>(job, block)));
     b.place(load_triangle<SideB>(job, block), rotation(load_turn<SideB>(job, block)));
-    scale = a.scale + b.scale + taxicab_of(offset);
+    scale = a.scale + b.scale + taxicab(offset);
     b.move(offset);
   }
 
@@ -237,7 +237,7 @@ template <typename T>
   const Lanes<T> s = clamp_unit((dot(f, f) * re - ef * rf) / axis.length2);
   const Lanes<T> t = clamp_unit((ef * re - dot(e, e) * rf) / axis.length2);
   const PointPair<T> edges{axis.start_a + e * s, axis.start_b + f * t};
-  const LaneMask<T> crossing = apart | (taxicab_of(edges.b - edges.a - step) <= near);
+  const LaneMask<T> crossing = apart | (taxicab(edges.b - edges.a - step) <= near);
 
   AxisPoints<T> p;
   p.points.a = select(of_face, select(of_a, vertex_b - step, vertex_a), edges.a);
