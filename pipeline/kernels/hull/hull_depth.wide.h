@@ -301,7 +301,8 @@ class HullDepth {
   };
 
   /// Of a point that is high along the normal of `here`: the highest, if that has been measured.
-  [[nodiscard]] Heights high_point(std::uint32_t here, std::uint32_t there, float cosine) const {
+  [[nodiscard, gnu::always_inline]] Heights high_point(std::uint32_t here, std::uint32_t there,
+                                                       float cosine) const {
     const float* const* plane = first_.hull->plane_float;
     const float n[3] = {plane[0][here], plane[1][here], plane[2][here]};
     const float m[3] = {plane[0][there], plane[1][there], plane[2][there]};
@@ -322,7 +323,7 @@ class HullDepth {
 
   /// Whether two known points say that all of an arc is deeper than the best, as in `cut`; for
   /// ends less than a right angle apart.
-  [[nodiscard]] bool is_deep(const HullEdge& edge) const {
+  [[nodiscard, gnu::always_inline]] bool is_deep(const HullEdge& edge) const {
     const float* const* plane = first_.hull->plane_float;
     const std::uint32_t f = edge.face[0];
     const std::uint32_t g = edge.face[1];

@@ -86,7 +86,7 @@ static inline void cross3(const double* a, const double* b, double* r) {
 }
 /// r = M x and r = M^T x, M by rows.
 template <typename T>
-static inline void turn3(const T* m, const T* x, T* r) {
+[[gnu::always_inline]] static inline void turn3(const T* m, const T* x, T* r) {
   for (int i = 0; i < 3; ++i) r[i] = m[3 * i] * x[0] + m[3 * i + 1] * x[1] + m[3 * i + 2] * x[2];
 }
 template <typename T>
@@ -237,7 +237,8 @@ inline constexpr std::uint32_t kLaneBits = 15;
 }
 
 /// The same for one direction.
-static inline std::uint32_t farthest_vertex(const HullShape& hull, const float* direction) {
+[[gnu::always_inline]] static inline std::uint32_t farthest_vertex(const HullShape& hull,
+                                                                   const float* direction) {
   alignas(64) float height[kLanes];
   alignas(64) float block[kLanes];
   heights(hull, direction, height, block);
