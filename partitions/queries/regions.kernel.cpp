@@ -73,7 +73,7 @@ class PlaneProbe {
 
   [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
 
-  [[nodiscard]] Met test(const float* const* column, std::size_t at) const {
+  [[nodiscard, gnu::always_inline]] Met test(const float* const* column, std::size_t at) const {
     const Box16 box = load_slabs<3>(column, at);
     Met result;
     result.met = overlap(box, region_.low, region_.high);
@@ -141,7 +141,7 @@ class BallProbe {
 
   [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
 
-  [[nodiscard]] Met test(const float* const* column, std::size_t at) const {
+  [[nodiscard, gnu::always_inline]] Met test(const float* const* column, std::size_t at) const {
     // More than the rounding of either side; squares may also be lost below the smallest float.
     constexpr float kMore = 1.000002F;
     constexpr float kTiny = 1e-36F;
@@ -182,7 +182,7 @@ class SweptProbe {
 
   [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
 
-  [[nodiscard]] Met test(const float* const* column, std::size_t at) const {
+  [[nodiscard, gnu::always_inline]] Met test(const float* const* column, std::size_t at) const {
     Floats enter;
     const Mask16 met = test_.test(column, at, limit_, enter);
     return {met, 0, met};
