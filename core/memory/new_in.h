@@ -1,20 +1,18 @@
 #pragma once
 
+#include <winnow/core/column.h>
+
 #include <memory_resource>
 #include <new>
 #include <utility>
 
 namespace winnow {
 
-/// Memory from a resource, or null if it refuses.
-[[nodiscard]] void* allocate_or_null(std::pmr::memory_resource* memory, std::size_t bytes,
-                                     std::size_t alignment) noexcept;
-
 /// An object whose memory comes from a resource; null if that refuses. Its constructor must not
 /// throw.
 template <typename T, typename... Arguments>
 [[nodiscard]] T* new_in(std::pmr::memory_resource* memory, Arguments&&... arguments) noexcept {
-  void* const place = allocate_or_null(memory, sizeof(T), alignof(T));
+  void* const place = try_allocate(*memory, sizeof(T), alignof(T));
   return place == nullptr ? nullptr : ::new (place) T(std::forward<Arguments>(arguments)...);
 }
 

@@ -117,8 +117,7 @@ Status SpatialIndex::build() {
   if (!order_rest()) return Status::out_of_memory;
   const std::size_t rows = order_.size();
   const bool prunes = structure_->prunes_rows();
-  const std::size_t spare = prunes ? 2 * tail_limit() : 0;
-  if (!rows_.reserve_rows(rows + spare) ||
+  if (!rows_.reserve_rows(rows + spare_rows()) ||
       !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows) ||
       !tree_.cover(first_block, blocks_of(rows) - first_block, node_content()) ||
       (prunes && !regular_tree_.cover(0, blocks_of(regular), node_content()))) {
@@ -142,8 +141,7 @@ Status SpatialIndex::build() {
 
 // Leaves the regular rows in order_ and all others in the selection.
 bool SpatialIndex::plan_order() {
-  const std::size_t spare = structure_->prunes_rows() ? 2 * tail_limit() : 0;
-  const std::size_t room = rows_.pool().rows() + spare + 4 * kBlockRows;
+  const std::size_t room = rows_.pool().rows() + spare_rows() + 4 * kBlockRows;
   RowSelection& rest = rows_.selection();
   order_.clear();
   if (!order_.grow(room) || !rest.start(room)) return false;

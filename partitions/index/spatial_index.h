@@ -94,6 +94,10 @@ class SpatialIndex {
   [[nodiscard]] bool needs_build() const noexcept;
   /// Rows that may stand behind the built ones before a build is due.
   [[nodiscard]] std::size_t tail_limit() const noexcept { return rows_.size() / 16 + 64; }
+  /// Room that a build leaves behind its rows for a tail.
+  [[nodiscard]] std::size_t spare_rows() const noexcept {
+    return structure_->prunes_rows() ? 2 * tail_limit() : 0;
+  }
   [[nodiscard]] std::size_t tail() const noexcept;
   [[nodiscard]] bool wants_grouping() const noexcept;
   Status build();

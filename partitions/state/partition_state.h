@@ -13,6 +13,8 @@
 
 namespace winnow {
 
+class EventWriter;
+
 /// Which pair buffer is kept up to date by what moved, and what pair queries have done.
 struct PairTracking {
   PairTracking() noexcept;
@@ -80,13 +82,11 @@ class PartitionState {
 
   Status refresh_now();
   Status full_self_pairs(PairBuffer& out, const PairPredicate& predicate,
-                         class EventWriter* events) const;
+                         EventWriter* events) const;
   Status incremental_self_pairs(PairBuffer& out, const PairPredicate& predicate,
-                                class EventWriter* events) const;
-  Status track_self_pairs(PairBuffer& out, const PairOptions& options,
-                          class EventWriter* events) const;
-  bool finish_pairs(PairBuffer& out, Order order, bool all,
-                    class EventWriter* events) const noexcept;
+                                EventWriter* events) const;
+  Status track_self_pairs(PairBuffer& out, const PairOptions& options, EventWriter* events) const;
+  bool finish_pairs(PairBuffer& out, Order order, bool all, EventWriter* events) const noexcept;
   [[nodiscard]] bool can_update(const PairBuffer& out) const noexcept;
   bool run_self_task(const SelfTasks& tasks, std::size_t task, PairSink& sink) const noexcept;
   void note_work(std::uint64_t tests, std::uint64_t queries,

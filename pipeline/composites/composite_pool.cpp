@@ -137,7 +137,7 @@ Status Composites::new_compound(std::span<const CompoundChild> children, Compoun
   const std::size_t boxes_at = children_at + count * sizeof(CompoundChild);
   const std::size_t bytes = boxes_at + count * sizeof(Aabb);
   auto* const block =
-      static_cast<std::byte*>(allocate_or_null(memory, bytes, alignof(std::max_align_t)));
+      static_cast<std::byte*>(try_allocate(*memory, bytes, alignof(std::max_align_t)));
   if (block == nullptr) return Status::out_of_memory;
   auto* const compound = new (block) Compound;
   compound->count = static_cast<std::uint32_t>(count);
