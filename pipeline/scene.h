@@ -16,6 +16,7 @@
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <memory_resource>
 #include <span>
@@ -134,8 +135,14 @@ class WINNOW_API Scene {
   /// wakes. `out_of_memory` leaves `contacts` cleared.
   Status collide(ContactLevel level, Contacts& contacts);
 
-  /// The partition of a set; null while it has had no body. Its client data are bodies' ids.
+  /// The partition of a set; null while it has had no body. Its client data are bodies' ids, its
+  /// boxes are measured from `origin()`.
   [[nodiscard]] const Partition* partition(Motion motion) const noexcept;
+  /// A point of the world from which boxes are measured, so that a scene far away, where floats are
+  /// coarse, costs as much as one that stands here. (0, 0, 0) while that is fine enough; chosen
+  /// anew by `refresh` where bodies have gone elsewhere. Nothing else is measured from it: poses,
+  /// contacts and queries are in the world.
+  [[nodiscard]] Eigen::Vector3d origin() const noexcept;
   /// Draws the partitions of all sets.
   Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const;
 

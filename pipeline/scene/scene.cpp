@@ -30,6 +30,30 @@ namespace {
   return motion <= Motion::sleeping;
 }
 
+/// Draws in the world what a partition measures from an origin.
+class InTheWorld final : public DebugDraw {
+ public:
+  InTheWorld(DebugDraw& draw, const Eigen::Vector3d& origin) noexcept
+      : draw_(draw), origin_(origin.cast<float>()) {}
+
+  void box(const Aabb& box, Colour colour) override {
+    draw_.box({box.min + origin_, box.max + origin_}, colour);
+  }
+  void line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) override {
+    draw_.line(from + origin_, to + origin_, colour);
+  }
+  void sphere(const Sphere& sphere, Colour colour) override {
+    draw_.sphere({sphere.center + origin_, sphere.radius}, colour);
+  }
+  void text(const Eigen::Vector3f& at, std::string_view text, Colour colour) override {
+    draw_.text(at + origin_, text, colour);
+  }
+
+ private:
+  DebugDraw& draw_;
+  Eigen::Vector3f origin_;
+};
+
 }  // namespace
 
 Bytes SceneFootprint::total() const noexcept {
@@ -98,7 +122,9 @@ Status Scene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
     if (const Status good = s.check(body.shape, body.pose); good != Status::ok) return good;
   }
   if (!s.reserve(bodies.size())) return Status::out_of_memory;
+  const bool is_first = s.keys.size() == 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) keys[i] = s.acquire(bodies[i]);
+  if (is_first) s.choose_origin();
   const Status status = s.settle(bodies, keys);
   if (status == Status::ok) return status;
   for (Key& key : keys) {
@@ -241,11 +267,17 @@ const Partition* Scene::partition(Motion motion) const noexcept {
   return set.partition.has_value() ? &*set.partition : nullptr;
 }
 
+Eigen::Vector3d Scene::origin() const noexcept {
+  if (state_ == nullptr) return Eigen::Vector3d::Zero();
+  return state_->origin;
+}
+
 Status Scene::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const {
   if (state_ == nullptr) return Status::out_of_memory;
   for (const SceneSet& set : state_->sets) {
     if (!set.partition.has_value()) continue;
-    const Status status = set.partition->debug_draw(draw, options);
+    InTheWorld drawn(draw, set.origin);
+    const Status status = set.partition->debug_draw(drawn, options);
     if (status != Status::ok) return status;
   }
   return Status::ok;

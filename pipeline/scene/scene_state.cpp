@@ -2,6 +2,7 @@
 
 #include "core/sort/stretches.h"
 #include "pipeline/scene/motion_bound.h"
+#include "pipeline/scene/scene_origin.h"
 #include "pipeline/shapes/extent.h"
 
 #include <algorithm>
@@ -11,6 +12,7 @@ namespace winnow {
 namespace {
 
 constexpr std::size_t kBodiesPerStretch = 256;
+constexpr std::size_t kFewBoxes = 128;
 
 }  // namespace
 
@@ -37,16 +39,44 @@ double SceneState::radius(std::uint32_t body) const noexcept {
   return id.is_composite() ? options.composites->radius(id) : mid::radius_of(shapes.tables(), id);
 }
 
-PlainBox SceneState::grown_bounds(std::uint32_t body) const noexcept {
-  const ShapeId id = shape[body];
-  const Aabb box = id.is_composite() ? options.composites->bounds(id, pose[body])
-                                     : shapes.bounds(id, pose[body]);
+PlainBox SceneState::bounds_from(const Eigen::Vector3d& from, ShapeId id, const Pose& at,
+                                 double grown_by) const noexcept {
+  Pose moved = at;
+  double growth_to[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    // By what the difference was rounded, the box is larger.
+    const double low = add_down(at.position[axis], -from[axis]);
+    const double high = add_up(at.position[axis], -from[axis]);
+    moved.position[axis] = low;
+    growth_to[axis] = grown_by + (high - low);
+  }
+  const Aabb box =
+      id.is_composite() ? options.composites->bounds(id, moved) : shapes.bounds(id, moved);
   PlainBox grown;
   for (int axis = 0; axis < 3; ++axis) {
-    grown.min[axis] = round_down(add_down(static_cast<double>(box.min[axis]), -growth));
-    grown.max[axis] = round_up(add_up(static_cast<double>(box.max[axis]), growth));
+    grown.min[axis] = round_down(add_down(static_cast<double>(box.min[axis]), -growth_to[axis]));
+    grown.max[axis] = round_up(add_up(static_cast<double>(box.max[axis]), growth_to[axis]));
   }
   return grown;
+}
+
+bool SceneState::has_one_origin() const noexcept {
+  return std::all_of(std::begin(sets), std::end(sets), [&](const SceneSet& set) {
+    return !set.partition.has_value() || set.partition->size() == 0 || set.origin == origin;
+  });
+}
+
+// Every so many slots one body is looked at.
+void SceneState::choose_origin() noexcept {
+  boxes_since_look = 0;
+  const std::size_t slots = keys.slot_count();
+  const std::size_t step = slots / ScenePlaces::kMost + 1;
+  ScenePlaces places;
+  for (std::size_t body = 0; body < slots; body += step) {
+    const auto id = static_cast<std::uint32_t>(body);
+    if (keys.is_live(id)) places.add(pose[id].position, radius(id));
+  }
+  origin = places.origin(origin);
 }
 
 // Of what lies in `boxes`.
@@ -62,12 +92,13 @@ Status SceneState::place_bodies(Motion which, std::span<const std::uint32_t> bod
   if (bodies.empty()) return Status::ok;
   SceneSet& target = set(which);
   if (const Status made = make_partition_of(which); made != Status::ok) return made;
+  if (target.partition->size() == 0) target.origin = origin;
   const std::size_t count = bodies.size();
   if (!boxes.resize(count) || !boxes_of.resize(count) || !boxes_body.resize(count)) {
     return Status::out_of_memory;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    boxes[i] = grown_bounds(bodies[i]);
+    boxes[i] = bounds_from(target.origin, shape[bodies[i]], pose[bodies[i]], growth);
     boxes_body[i] = bodies[i];
   }
   const std::span<Key> keys_given{boxes_of.data(), count};
@@ -87,6 +118,7 @@ Status SceneState::place_bodies(Motion which, std::span<const std::uint32_t> bod
     if (!anchor.empty()) anchor[body] = with_unit_turn(pose[body]);
   }
   ++target.changes;
+  boxes_since_look += count;
   return Status::ok;
 }
 
@@ -235,7 +267,9 @@ Status SceneState::refresh() {
       mark_stale(body);
     }
   }
-  if (stale.empty()) return Status::ok;
+  // Looked at as often as boxes are made, so that it costs little beside them.
+  if (boxes_since_look >= std::max(kFewBoxes, keys.size() / 2)) choose_origin();
+  if (is_fresh()) return Status::ok;
   for (std::size_t which = 0; which < kMotions; ++which) {
     const Status status = refresh_set(static_cast<Motion>(which));
     if (status != Status::ok) return status;
@@ -249,10 +283,18 @@ Status SceneState::refresh_set(Motion which) {
   SceneSet& target = set(which);
   if (!target.partition.has_value()) return Status::ok;
   chosen.clear();
-  for (const std::uint32_t body : stale) {
-    if (motion[body] != which || !needs_box(body)) continue;
+  const auto choose_one = [&](std::uint32_t body) {
     chosen[chosen.size()] = body;
     chosen.set_size(chosen.size() + 1);
+  };
+  if (target.origin != origin) {
+    for (std::uint32_t body = 0; body < keys.slot_count(); ++body) {
+      if (keys.is_live(body) && motion[body] == which) choose_one(body);
+    }
+  } else {
+    for (const std::uint32_t body : stale) {
+      if (motion[body] == which && needs_box(body)) choose_one(body);
+    }
   }
   const std::size_t count = chosen.size();
   if (count == 0) return Status::ok;
@@ -260,7 +302,8 @@ Status SceneState::refresh_set(Motion which) {
   for_stretches(options.execution, count, kBodiesPerStretch,
                 [&](std::size_t first, std::size_t end) {
                   for (std::size_t i = first; i < end; ++i) {
-                    boxes[i] = grown_bounds(chosen[i]);
+                    const std::uint32_t body = chosen[i];
+                    boxes[i] = bounds_from(origin, shape[body], pose[body], growth);
                     boxes_of[i] = place[chosen[i]];
                   }
                 });
@@ -269,6 +312,8 @@ Status SceneState::refresh_set(Motion which) {
   if (!anchor.empty()) {
     for (const std::uint32_t body : chosen) anchor[body] = with_unit_turn(pose[body]);
   }
+  target.origin = origin;
+  boxes_since_look += count;
   boxes_updated += count;
   ++target.changes;
   return Status::ok;

@@ -4,6 +4,7 @@
 #include "core/memory/key_table.h"
 #include "pipeline/scene/body_pairs.h"
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 
@@ -23,6 +24,9 @@ struct SceneSet {
       : body_of(memory), with_dynamic(memory) {}
 
   std::optional<Partition> partition;
+  /// What the partition's boxes are measured from: the scene's origin, or the one before while
+  /// memory for new boxes is refused.
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   /// By the partition's object id.
   Column<std::uint32_t> body_of;
   /// Pairs (dynamic body, body of this set); of the dynamic set its own.
@@ -65,6 +69,10 @@ struct SceneState {
   Column<Key> left;
 
   SceneSet sets[kMotions];
+  /// What boxes are measured from; see ScenePlaces.
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  /// Boxes made since bodies were last looked at for a better one.
+  std::size_t boxes_since_look = 0;
   /// Tells this scene from every other one.
   std::uint64_t serial;
   std::uint32_t clock = 1;
@@ -94,7 +102,10 @@ struct SceneState {
   [[nodiscard]] const SceneSet& set(Motion which) const noexcept {
     return sets[static_cast<std::size_t>(which)];
   }
-  [[nodiscard]] bool is_fresh() const noexcept { return stale.empty(); }
+  [[nodiscard]] bool is_fresh() const noexcept { return stale.empty() && has_one_origin(); }
+  /// True unless some set's boxes are still measured from another point.
+  [[nodiscard]] bool has_one_origin() const noexcept;
+  void choose_origin() noexcept;
   [[nodiscard]] Status check(ShapeId id, const Pose& at) const noexcept;
   [[nodiscard]] bool reserve(std::size_t fresh) noexcept;
   [[nodiscard]] Key acquire(const BodyDefinition& body) noexcept;
@@ -103,8 +114,9 @@ struct SceneState {
   void forget_stale() noexcept;
   /// No point of the body is farther than this from its position.
   [[nodiscard]] double radius(std::uint32_t body) const noexcept;
-  /// The box that a partition is given.
-  [[nodiscard]] PlainBox grown_bounds(std::uint32_t body) const noexcept;
+  /// The box around a shape, grown to every side, and measured from a point.
+  [[nodiscard]] PlainBox bounds_from(const Eigen::Vector3d& from, ShapeId id, const Pose& at,
+                                     double grown_by) const noexcept;
   [[nodiscard]] BoxView box_view() const noexcept;
   [[nodiscard]] Status make_partition_of(Motion which);
   /// Those of the given keys whose bodies are in a set, into `chosen`. Room was made.

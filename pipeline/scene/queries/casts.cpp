@@ -32,8 +32,10 @@ using mid::kInfinity;
 /// end, the rest of the path is asked about as a box that contains all of it.
 class SweptBox {
  public:
-  /// The direction is finite and not zero, max_t >= 0 may be infinite, the box is finite.
-  SweptBox(const PreciseBox& box, const double direction[3], double max_t) noexcept;
+  /// The direction is finite and not zero, max_t >= 0 may be infinite, the box is finite. What the
+  /// partitions are asked is measured from `origin`.
+  SweptBox(const PreciseBox& box, const Eigen::Vector3d& origin, const double direction[3],
+           double max_t) noexcept;
 
   /// Goes to the next piece, the first one to begin with. False if there is none.
   [[nodiscard]] bool next() noexcept;
@@ -55,6 +57,8 @@ class SweptBox {
   Eigen::Vector3d step_;
   int exponent_ = 0;
   double reach_ = 0.0;
+  /// The size of the coordinates that were rounded, in the world too.
+  double rounded_reach_ = 0.0;
   double from_ = 0.0;
   double to_ = 0.0;
   double last_ = 0.0;
@@ -68,13 +72,19 @@ constexpr int kMostPieces = 5;
 /// Floats end a little after this.
 constexpr double kFarthest = 0x1p120;
 
-SweptBox::SweptBox(const PreciseBox& box, const double direction[3], double max_t) noexcept
-    : box_(box) {
+double most_of(const PreciseBox& box) noexcept {
+  return std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+}
+
+SweptBox::SweptBox(const PreciseBox& box, const Vector3d& origin, const double direction[3],
+                   double max_t) noexcept
+    : box_{box.min - origin, box.max - origin} {
   const Vector3d given = Vector3d::Map(direction);
   std::frexp(given.cwiseAbs().maxCoeff(), &exponent_);
   for (int i = 0; i < 3; ++i) step_[i] = std::ldexp(given[i], -exponent_);
   last_ = std::ldexp(max_t, exponent_);
-  reach_ = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+  reach_ = most_of(box_);
+  rounded_reach_ = std::max(reach_, most_of(box));
 }
 
 bool SweptBox::next() noexcept {
@@ -94,7 +104,7 @@ double SweptBox::begin() const noexcept {
 /// Rounding of the direction to float, and of coordinates; cast_ray takes rays that pass by no
 /// farther than rounding.
 double SweptBox::slack(double end) const noexcept {
-  return 0x1p-23 * (end - from_) + 0x1p-47 * (reach_ + end);
+  return 0x1p-23 * (end - from_) + 0x1p-47 * (rounded_reach_ + end);
 }
 
 PreciseBox SweptBox::at(double path) const noexcept {
@@ -122,7 +132,7 @@ Aabb SweptBox::rest(double limit) const noexcept {
   }
   // What is lost of a finite path is as small beside its ends.
   for (int i = 0; i < 3; ++i) {
-    const double slack = 0x1p-47 * (reach_ + from_);
+    const double slack = 0x1p-47 * (rounded_reach_ + from_);
     sum.min[i] -= slack + 0x1p-47 * std::abs(sum.min[i]);
     sum.max[i] += slack + 0x1p-47 * std::abs(sum.max[i]);
   }
@@ -171,7 +181,7 @@ class CastQuestion {
   Status all();
 
  private:
-  [[nodiscard]] PreciseBox start_box() const noexcept;
+  [[nodiscard]] SweptBox swept_box() const noexcept;
   [[nodiscard]] double limit() const noexcept { return found() ? best_.t() : swept_.max_t(); }
   [[nodiscard]] bool found() const noexcept { return body_ != kNoObject; }
   [[nodiscard]] bool meets(std::uint32_t body, double limit, bool any,
@@ -193,10 +203,13 @@ class CastQuestion {
   Memo memo_;
 };
 
-PreciseBox CastQuestion::start_box() const noexcept {
+SweptBox CastQuestion::swept_box() const noexcept {
   // Rounding is covered by the slack of the path.
-  const Eigen::Vector3d start = Eigen::Vector3d::Map(swept_.start());
-  return {start + swept_.extent().min, start + swept_.extent().max};
+  const Vector3d start = Vector3d::Map(swept_.start());
+  return {{start + swept_.extent().min, start + swept_.extent().max},
+          state_.scene.origin,
+          swept_.direction(),
+          swept_.max_t()};
 }
 
 SceneHit CastQuestion::shown(std::uint32_t body, const BodyMeeting& meeting) const noexcept {
@@ -236,7 +249,7 @@ Status CastQuestion::look_at_rest(const Partition& partition, const SweptBox& pa
 /// boxes from there to where the exact shape was met: the second traversal. Both are short where
 /// boxes fit.
 Status CastQuestion::closest(SceneHit& hit) {
-  SweptBox path(start_box(), swept_.direction(), swept_.max_t());
+  SweptBox path = swept_box();
   auto look = [&](std::uint32_t body) { return improves(body); };
   auto look_only = [&](std::uint32_t body) {
     improves(body);
@@ -263,7 +276,7 @@ Status CastQuestion::closest(SceneHit& hit) {
 }
 
 Status CastQuestion::any(SceneHit& hit) {
-  SweptBox path(start_box(), swept_.direction(), swept_.max_t());
+  SweptBox path = swept_box();
   auto look = [&](std::uint32_t body) {
     if (found()) return true;
     if (const bool* const known = memo_.find(body)) return *known;
@@ -288,7 +301,7 @@ Status CastQuestion::any(SceneHit& hit) {
 Status CastQuestion::all() {
   Column<SceneHit>& hits = state_.hits;
   hits.clear();
-  SweptBox path(start_box(), swept_.direction(), swept_.max_t());
+  SweptBox path = swept_box();
   bool has_room = true;
   auto look = [&](std::uint32_t body) {
     if (memo_.find(body) != nullptr) return false;

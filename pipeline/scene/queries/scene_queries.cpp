@@ -147,8 +147,14 @@ class NearestQuestion {
     std::copy_n(point, 3, from_.pose.position);
     // To the nearest place in the range of float, which brings no box farther away.
     constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
-    const Vector3d place = Vector3d::Map(point).cwiseMin(kMost).cwiseMax(-kMost);
-    box_ = Aabb::outward(place, place);
+    const Vector3d& origin = state.scene.origin;
+    Vector3d low;
+    Vector3d high;
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::clamp(add_down(point[i], -origin[i]), -kMost, kMost);
+      high[i] = std::clamp(add_up(point[i], -origin[i]), -kMost, kMost);
+    }
+    box_ = Aabb::outward(low, high);
   }
 
   Status ask(std::size_t count, double radius);
@@ -286,8 +292,8 @@ Status SceneQueries::overlap(ShapeId shape, const Pose& pose, std::span<const Sc
     return false;
   };
   LookingFilter looking(state.scene, filter, look);
-  const Aabb box = shape.is_composite() ? state.scene.options.composites->bounds(shape, pose)
-                                        : state.scene.shapes.bounds(shape, pose);
+  const PlainBox around = state.scene.bounds_from(state.scene.origin, shape, pose, 0.0);
+  const Aabb box{Eigen::Vector3f::Map(around.min), Eigen::Vector3f::Map(around.max)};
   Status status = state.each_partition([&](const Partition& partition) {
     return partition.overlap(box, state.objects, looking.filter());
   });

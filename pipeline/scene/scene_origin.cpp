@@ -1,0 +1,53 @@
+#include "pipeline/scene/scene_origin.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow {
+namespace {
+
+/// A float's step beside its value, and the share of a radius that it may be.
+constexpr double kFloatStep = 0x1p-23;
+constexpr double kFineStep = 0x1p-10;
+/// How much nearer bodies must come for boxes to be made anew.
+constexpr double kWorthMoving = 8.0;
+/// Beyond this, differences to another point would not be finite floats.
+constexpr double kFarthestOrigin = 0x1p120;
+
+double median_of(std::array<double, ScenePlaces::kMost> values, std::size_t count) noexcept {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
+  return *middle;
+}
+
+}  // namespace
+
+void ScenePlaces::add(const double position[3], double radius) noexcept {
+  if (is_full() || !std::isfinite(radius)) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) position_[axis][count_] = position[axis];
+  radius_[count_++] = radius;
+}
+
+Eigen::Vector3d ScenePlaces::origin(const Eigen::Vector3d& current) const noexcept {
+  if (count_ == 0) return current;
+  const double radius = median_of(radius_, count_);
+  Eigen::Vector3d middle;
+  double spread = radius;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double at = median_of(position_[axis], count_);
+    std::array<double, kMost> apart;
+    for (std::size_t i = 0; i < count_; ++i) apart[i] = std::abs(position_[axis][i] - at);
+    spread = std::max(spread, median_of(apart, count_));
+    middle[static_cast<Eigen::Index>(axis)] = at;
+  }
+  const double away = (middle - current).cwiseAbs().maxCoeff();
+  const bool is_coarse = away * kFloatStep > radius * kFineStep;
+  if (!is_coarse || !(away > kWorthMoving * spread)) return current;
+  if (!(middle.cwiseAbs().maxCoeff() < kFarthestOrigin)) return current;
+  int exponent = 0;
+  std::frexp(spread, &exponent);
+  const double step = std::ldexp(1.0, exponent);
+  return (middle / step).array().round() * step;
+}
+
+}  // namespace winnow
