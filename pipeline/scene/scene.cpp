@@ -127,12 +127,10 @@ Status Scene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
   if (is_first) s.choose_origin();
   const Status status = s.settle(bodies, keys);
   if (status == Status::ok) return status;
-  for (Key& key : keys) {
-    if (s.place[key.id] != Key{}) {
-      (void)s.displace(s.motion[key.id], {&s.place[key.id], 1});
-    }
-    s.keys.release(key.id);
-    key = {};
+  // The last ones first: the next bodies get the ids that these had.
+  for (std::size_t i = keys.size(); i-- > 0;) {
+    s.keys.release(keys[i].id);
+    keys[i] = {};
   }
   return status;
 }
@@ -149,8 +147,7 @@ Status Scene::remove(std::span<const Key> keys) {
   for (const Motion which : kEveryMotion) {
     std::size_t count = 0;
     for (const std::uint32_t body : s.choose(keys, which)) s.left[count++] = s.place[body];
-    const Status status = s.displace(which, {s.left.data(), count});
-    if (status != Status::ok) return status;
+    s.displace(which, {s.left.data(), count});
     for (const std::uint32_t body : s.chosen) s.keys.release(body);
   }
   ++s.regroupings;
@@ -200,12 +197,7 @@ Status Scene::set_motion(std::span<const Key> keys, Motion motion) {
   SceneState& s = *state_;
   if (!is_motion(motion)) return Status::invalid_argument;
   if (!s.are_distinct(keys)) return Status::invalid_key;
-  for (const Motion from : kEveryMotion) {
-    if (from == motion) continue;
-    const Status status = s.move_to_set(from, motion, s.choose(keys, from));
-    if (status != Status::ok) return status;
-  }
-  return Status::ok;
+  return s.move_to_set(keys, motion);
 }
 
 Status Scene::set_shape(Key key, ShapeId shape) {

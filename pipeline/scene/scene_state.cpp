@@ -94,7 +94,9 @@ Status SceneState::place_bodies(Motion which, std::span<const std::uint32_t> bod
   if (const Status made = make_partition_of(which); made != Status::ok) return made;
   if (target.partition->size() == 0) target.origin = origin;
   const std::size_t count = bodies.size();
-  if (!boxes.resize(count) || !boxes_of.resize(count) || !boxes_body.resize(count)) {
+  // Ids that the partition gives lie below those that it gave before and as many more.
+  if (!boxes.resize(count) || !boxes_of.resize(count) || !boxes_body.resize(count) ||
+      !target.body_of.grow(target.body_of.size() + count)) {
     return Status::out_of_memory;
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -107,10 +109,7 @@ Status SceneState::place_bodies(Motion which, std::span<const std::uint32_t> bod
   if (status != Status::ok) return status;
   std::size_t objects = target.body_of.size();
   for (const Key& key : keys_given) objects = std::max(objects, key.id + std::size_t{1});
-  if (!target.body_of.resize(objects)) {
-    (void)target.partition->remove(keys_given);
-    return Status::out_of_memory;
-  }
+  target.body_of.set_size(objects);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t body = bodies[i];
     place[body] = boxes_of[i];
@@ -122,11 +121,16 @@ Status SceneState::place_bodies(Motion which, std::span<const std::uint32_t> bod
   return Status::ok;
 }
 
-Status SceneState::displace(Motion which, std::span<const Key> places) {
-  if (places.empty()) return Status::ok;
-  const Status status = set(which).partition->remove(places);
-  if (status == Status::ok) ++set(which).changes;
-  return status;
+void SceneState::displace(Motion which, std::span<const Key> places) {
+  if (places.empty()) return;
+  // It asks for no memory, and the keys are the scene's own.
+  (void)set(which).partition->remove(places);
+  ++set(which).changes;
+}
+
+// The last ones first, so that ids are given again in the same order.
+void SceneState::take_back(std::span<const std::uint32_t> bodies, Motion which) {
+  for (std::size_t i = bodies.size(); i-- > 0;) displace(which, {&place[bodies[i]], 1});
 }
 
 // Room in every column, so that what follows cannot fail.
@@ -170,19 +174,23 @@ std::span<const std::uint32_t> SceneState::choose(std::span<const Key> given,
   return {chosen.data(), chosen.size()};
 }
 
-// Places bodies that have just got their keys.
+// Places bodies that have just got their keys, or none of them.
 Status SceneState::settle(std::span<const BodyDefinition> bodies, std::span<const Key> given) {
-  for (const Motion which : kEveryMotion) {
-    const Status status = place_bodies(which, choose(given, which));
-    if (status != Status::ok) return status;
+  std::size_t settled = 0;
+  Status status = Status::ok;
+  for (; settled < kMotions && status == Status::ok; ++settled) {
+    const Motion which = kEveryMotion[settled];
+    status = place_bodies(which, choose(given, which));
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
+  if (status != Status::ok) --settled;
+  for (std::size_t i = 0; i < bodies.size() && status == Status::ok; ++i) {
     if (bodies[i].filter == ObjectFilter{}) continue;
     Partition& partition = *set(bodies[i].motion).partition;
-    const Status status = partition.set_filter(place[given[i].id], bodies[i].filter);
-    if (status != Status::ok) return status;
+    status = partition.set_filter(place[given[i].id], bodies[i].filter);
   }
-  return Status::ok;
+  if (status == Status::ok) return status;
+  while (settled-- > 0) take_back(choose(given, kEveryMotion[settled]), kEveryMotion[settled]);
+  return status;
 }
 
 // Marks by the second bit of the flags; keys.size() <= slots is implied by being distinct.
@@ -226,7 +234,14 @@ void SceneState::set_pose(std::uint32_t body, const Pose& to) noexcept {
   mark_stale(body);
 }
 
-Status SceneState::move_to_set(Motion from, Motion to, std::span<const std::uint32_t> bodies) {
+// All get their new places, with their filters, before the first one leaves its old place: until
+// then everything can be taken back.
+Status SceneState::move_to_set(std::span<const Key> given, Motion to) {
+  chosen.clear();
+  for (const Key& key : given) {
+    if (motion[key.id] != to) (void)chosen.push_back(key.id);
+  }
+  const std::span<const std::uint32_t> bodies{chosen.data(), chosen.size()};
   if (bodies.empty()) return Status::ok;
   if (!left.resize(bodies.size())) return Status::out_of_memory;
   for (std::size_t i = 0; i < bodies.size(); ++i) left[i] = place[bodies[i]];
@@ -234,18 +249,20 @@ Status SceneState::move_to_set(Motion from, Motion to, std::span<const std::uint
   if (status != Status::ok) return status;
   for (std::size_t i = 0; i < bodies.size() && status == Status::ok; ++i) {
     ObjectFilter filter;
-    status = set(from).partition->filter(left[i], filter);
+    status = set(motion[bodies[i]]).partition->filter(left[i], filter);
     if (status == Status::ok && filter != ObjectFilter{}) {
       status = set(to).partition->set_filter(place[bodies[i]], filter);
     }
   }
-  if (status == Status::ok) status = displace(from, {left.data(), bodies.size()});
   if (status != Status::ok) {
-    (void)displace(to, {boxes_of.data(), bodies.size()});
+    take_back(bodies, to);
     for (std::size_t i = 0; i < bodies.size(); ++i) place[bodies[i]] = left[i];
     return status;
   }
-  for (const std::uint32_t body : bodies) motion[body] = to;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    displace(motion[bodies[i]], {&left[i], 1});
+    motion[bodies[i]] = to;
+  }
   ++regroupings;
   return Status::ok;
 }

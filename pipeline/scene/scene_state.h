@@ -125,8 +125,11 @@ struct SceneState {
   /// Puts bodies, whose columns are set, into the partition of a set.
   [[nodiscard]] Status place_bodies(Motion which, std::span<const std::uint32_t> bodies);
   /// Takes out what lies at `places`.
-  [[nodiscard]] Status displace(Motion which, std::span<const Key> places);
-  [[nodiscard]] Status move_to_set(Motion from, Motion to, std::span<const std::uint32_t> bodies);
+  void displace(Motion which, std::span<const Key> places);
+  /// Takes out bodies that were just placed, as if they had never been.
+  void take_back(std::span<const std::uint32_t> bodies, Motion which);
+  /// Moves those of the given bodies that are elsewhere. A refusal changes nothing.
+  [[nodiscard]] Status move_to_set(std::span<const Key> given, Motion to);
   void mark_stale(std::uint32_t body) noexcept;
   void set_pose(std::uint32_t body, const Pose& to) noexcept;
   [[nodiscard]] Status refresh();

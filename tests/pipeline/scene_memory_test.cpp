@@ -184,6 +184,81 @@ TEST(SceneBytes, refused_memory_leaves_the_scene_as_it_was) {
   EXPECT_EQ(contacts.size(), world.touching().size());
 }
 
+/// A scene that lived through a refused call, and one in which the call was granted at once.
+struct Twins {
+  CountingMemory memory;
+  SceneWorld world{60, 23};
+  SceneWorld other_world{60, 23};
+  Scene scene{world.pool, {.memory = &memory, .execution = Execution::serial()}};
+  Scene other{other_world.pool, {.execution = Execution::serial()}};
+
+  /// Refuses requests from the given one on, or that one alone; then asks again.
+  template <typename Call>
+  bool was_refused(std::size_t granted, bool once, Call&& call) {
+    if (once) {
+      memory.refuse_one_after(granted);
+    } else {
+      memory.refuse_after(granted);
+    }
+    const Status status = call(scene, world);
+    memory.grant_all();
+    EXPECT_TRUE(status == Status::ok || status == Status::out_of_memory);
+    if (status != Status::ok) {
+      EXPECT_EQ(call(scene, world), Status::ok);
+    }
+    EXPECT_EQ(call(other, other_world), Status::ok);
+    return status != Status::ok;
+  }
+  void compare() {
+    Contacts contacts;
+    Contacts truth;
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(other.collide(ContactLevel::manifold, truth), Status::ok);
+    EXPECT_EQ(digest(contacts), digest(truth));
+  }
+};
+
+TEST(SceneBytes, bodies_that_were_refused_get_the_ids_they_would_have_got) {
+  for (const bool once : {false, true}) {
+    std::size_t refused = 0;
+    for (std::size_t granted = 0; granted < 100; ++granted) {
+      Twins twins;
+      refused += twins.was_refused(granted, once, add_all) ? 1 : 0;
+      EXPECT_EQ(twins.world.keys.size(), twins.other_world.keys.size());
+      for (std::size_t i = 0; i < twins.world.keys.size(); ++i) {
+        ASSERT_EQ(twins.world.keys[i].id, twins.other_world.keys[i].id) << granted;
+      }
+      twins.compare();
+    }
+    EXPECT_GT(refused, 0U);
+  }
+}
+
+TEST(SceneBytes, a_refused_change_of_sets_leaves_every_body_in_its_own) {
+  for (const Motion to : {Motion::fixed, Motion::dynamic, Motion::sleeping}) {
+    std::size_t refused = 0;
+    for (std::size_t granted = 0; granted < 60; ++granted) {
+      Twins twins;
+      ASSERT_EQ(add_all(twins.scene, twins.world), Status::ok);
+      ASSERT_EQ(add_all(twins.other, twins.other_world), Status::ok);
+      const auto change = [&](Scene& scene, SceneWorld& world) {
+        const Status status = scene.set_motion(world.keys, to);
+        if (status == Status::ok) return status;
+        for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+          BodyDefinition body;
+          EXPECT_EQ(scene.body(world.keys[i], body), Status::ok);
+          EXPECT_EQ(body.motion, world.bodies[i].motion) << granted;
+          EXPECT_EQ(body.filter, world.bodies[i].filter) << granted;
+        }
+        return status;
+      };
+      refused += twins.was_refused(granted, false, change) ? 1 : 0;
+      twins.compare();
+    }
+    EXPECT_GT(refused, 0U);
+  }
+}
+
 TEST(SceneBytes, a_scene_without_memory_for_itself_stays_empty_and_says_so) {
   CountingMemory memory;
   SceneWorld world(3, 23);
