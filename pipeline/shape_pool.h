@@ -45,7 +45,8 @@ class WINNOW_API ShapePool {
   Status add(const TriangleShape& shape, ShapeId& id);
   Status add(const HalfSpaceShape& shape, ShapeId& id);
 
-  /// The convex hull of points, by qhull: `unsupported` if the library was built without it.
+  /// The convex hull of points, by qhull: `unsupported` if the library was built without it. While
+  /// it runs, qhull takes memory from the C library; all else comes from the pool's resource.
   /// Coplanar faces are merged; points inside, on faces or on edges fall away; flat sets make a
   /// polygon, a segment or a point. `invalid_shape` if there is no point or one is not finite.
   Status add_hull(std::span<const Eigen::Vector3d> points, double rounding, ShapeId& id);

@@ -6,6 +6,7 @@
 #include <new>
 #include <numeric>
 #include <unordered_map>
+#include <utility>
 
 namespace winnow {
 namespace {
@@ -31,29 +32,48 @@ struct FacePlane {
     sum += (points[loop[i]] - origin).cross(points[loop[i + 1]] - origin);
   }
   FacePlane plane;
-  plane.area = sum.norm();
-  if (plane.area > 0.0) plane.normal = sum / plane.area;
+  const double area = sum.norm();
+  // Not for NaN, which has no place in an order.
+  if (area > 0.0) {
+    plane.area = area;
+    plane.normal = sum / area;
+  }
   plane.offset = plane.normal.dot(origin);
   return plane;
+}
+
+using Memory = std::pmr::memory_resource*;
+template <typename Key>
+using Numbers = std::pmr::unordered_map<Key, std::uint32_t>;
+
+[[nodiscard]] Memory memory_of(const HullSurface& surface) {
+  return surface.loops.get_allocator().resource();
 }
 
 class Merge {
  public:
   Merge(std::span<const Eigen::Vector3d> points, HullSurface& surface)
-      : points_(points), surface_(surface), group_(surface.faces(), kUnset) {}
+      : points_(points),
+        surface_(surface),
+        memory_(memory_of(surface)),
+        group_(surface.faces(), kUnset, memory_),
+        open_(memory_),
+        face_of_(memory_) {}
 
   Status run() {
     Status status = pair_edges();
     if (status != Status::ok) return status;
     const double size = extent();
-    std::vector<FacePlane> planes;
+    std::pmr::vector<FacePlane> planes(memory_);
+    planes.reserve(surface_.faces());
     for (std::size_t f = 0; f < surface_.faces(); ++f) {
       planes.push_back(plane_of(points_, surface_.loop(f)));
     }
-    std::vector<std::uint32_t> by_area(surface_.faces());
+    std::pmr::vector<std::uint32_t> by_area(surface_.faces(), memory_);
     std::iota(by_area.begin(), by_area.end(), 0U);
-    std::stable_sort(by_area.begin(), by_area.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return planes[a].area > planes[b].area;
+    // A stable sort would ask the global heap for a buffer.
+    std::ranges::sort(by_area, [&](std::uint32_t a, std::uint32_t b) {
+      return planes[a].area > planes[b].area || (planes[a].area == planes[b].area && a < b);
     });
     std::uint32_t groups = 0;
     for (const std::uint32_t seed : by_area) {
@@ -74,6 +94,7 @@ class Merge {
   }
 
   Status pair_edges() {
+    face_of_.reserve(surface_.loops.size());
     for (std::size_t f = 0; f < surface_.faces(); ++f) {
       const auto loop = surface_.loop(f);
       if (loop.size() < 3) return Status::invalid_shape;
@@ -84,7 +105,7 @@ class Merge {
         }
       }
     }
-    std::vector<std::uint32_t> used(surface_.loops);
+    std::pmr::vector<std::uint32_t> used(surface_.loops, memory_);
     std::sort(used.begin(), used.end());
     const auto vertices = std::unique(used.begin(), used.end()) - used.begin();
     for (const auto& [key, face] : face_of_) {
@@ -96,20 +117,20 @@ class Merge {
   }
 
   // Takes the neighbours that lie in the seed's plane, and theirs.
-  void absorb(std::uint32_t seed, std::uint32_t group, const std::vector<FacePlane>& planes,
+  void absorb(std::uint32_t seed, std::uint32_t group, std::span<const FacePlane> planes,
               double tolerance) {
     const FacePlane& plane = planes[seed];
-    std::vector<std::uint32_t> open{seed};
+    open_.assign(1, seed);
     group_[seed] = group;
-    while (!open.empty()) {
-      const std::uint32_t face = open.back();
-      open.pop_back();
+    while (!open_.empty()) {
+      const std::uint32_t face = open_.back();
+      open_.pop_back();
       const auto loop = surface_.loop(face);
       for (std::size_t i = 0; i < loop.size(); ++i) {
         const std::uint32_t next = face_of_.at(edge(loop[(i + 1) % loop.size()], loop[i]));
         if (group_[next] != kUnset || !lies_in(next, plane, planes[next], tolerance)) continue;
         group_[next] = group;
-        open.push_back(next);
+        open_.push_back(next);
       }
     }
   }
@@ -125,8 +146,8 @@ class Merge {
 
   // The outlines of the groups, without vertices between only two of them.
   Status rebuild(std::uint32_t groups) {
-    std::vector<std::unordered_map<std::uint32_t, std::uint32_t>> next(groups);
-    std::unordered_map<std::uint32_t, std::uint32_t> meets;
+    std::pmr::vector<Numbers<std::uint32_t>> next(groups, memory_);
+    Numbers<std::uint32_t> meets(memory_);
     for (std::size_t f = 0; f < surface_.faces(); ++f) {
       const auto loop = surface_.loop(f);
       for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -139,7 +160,7 @@ class Merge {
     }
     // A polygon has two sides alone: all of its vertices lie between only two faces.
     const bool flat = groups == 2;
-    HullSurface merged;
+    HullSurface merged(memory_);
     for (const auto& outline : next) {
       if (!follow(outline, meets, flat, merged)) return Status::invalid_shape;
     }
@@ -147,9 +168,8 @@ class Merge {
     return Status::ok;
   }
 
-  static bool follow(const std::unordered_map<std::uint32_t, std::uint32_t>& outline,
-                     const std::unordered_map<std::uint32_t, std::uint32_t>& meets, bool flat,
-                     HullSurface& merged) {
+  static bool follow(const Numbers<std::uint32_t>& outline, const Numbers<std::uint32_t>& meets,
+                     bool flat, HullSurface& merged) {
     if (outline.empty()) return false;
     // The smallest vertex begins, so that the result does not depend on the order of a hash.
     std::uint32_t start = kUnset;
@@ -170,8 +190,10 @@ class Merge {
 
   std::span<const Eigen::Vector3d> points_;
   HullSurface& surface_;
-  std::vector<std::uint32_t> group_;
-  std::unordered_map<std::uint64_t, std::uint32_t> face_of_;
+  Memory memory_;
+  std::pmr::vector<std::uint32_t> group_;
+  std::pmr::vector<std::uint32_t> open_;
+  Numbers<std::uint64_t> face_of_;
 };
 
 }  // namespace
@@ -234,12 +256,37 @@ HullColumns lay_out(Block& block, const HullShape& hull) {
   return c;
 }
 
+/// The block of a hull until it is finished.
+class OwnedBlock {
+ public:
+  OwnedBlock(Memory memory, std::size_t bytes)
+      : memory_(memory),
+        bytes_(bytes),
+        base_(static_cast<std::byte*>(memory->allocate(bytes, kLineBytes))) {}
+  ~OwnedBlock() {
+    if (base_ != nullptr) memory_->deallocate(base_, bytes_, kLineBytes);
+  }
+  OwnedBlock(const OwnedBlock&) = delete;
+  OwnedBlock& operator=(const OwnedBlock&) = delete;
+
+  [[nodiscard]] std::byte* base() const { return base_; }
+  void hand_over() { base_ = nullptr; }
+
+ private:
+  Memory memory_;
+  std::size_t bytes_;
+  std::byte* base_;
+};
+
 class Assembly {
  public:
   Assembly(std::span<const Eigen::Vector3d> points, const HullSurface& surface)
-      : points_(points), surface_(surface) {}
+      : points_(points),
+        surface_(surface),
+        scratch_(memory_of(surface)),
+        used_(surface.loops, scratch_) {}
 
-  Status run(std::pmr::memory_resource* memory, HullShape& hull) {
+  Status run(Memory memory, HullShape& hull) {
     number_vertices();
     hull_.vertex_count = static_cast<std::uint32_t>(used_.size());
     hull_.face_count = static_cast<std::uint32_t>(surface_.faces());
@@ -249,25 +296,21 @@ class Assembly {
     hull_.dimension = hull_.face_count == 0   ? hull_.vertex_count - 1
                       : hull_.face_count == 2 ? 2
                                               : 3;
-    const std::size_t bytes = hull_bytes(hull_);
-    auto* const base = static_cast<std::byte*>(memory->allocate(bytes, kLineBytes));
-    Block block(base);
+    OwnedBlock owned(memory, hull_bytes(hull_));
+    Block block(owned.base());
     c_ = lay_out(block, hull_);
     write_vertices();
     write_edges();
     write_neighbours();
-    if (!write_faces()) {
-      memory->deallocate(base, bytes, kLineBytes);
-      return Status::invalid_shape;
-    }
+    if (!write_faces()) return Status::invalid_shape;
     publish();
+    owned.hand_over();
     hull = hull_;
     return Status::ok;
   }
 
  private:
   void number_vertices() {
-    used_ = surface_.loops;
     if (surface_.faces() == 0) {
       for (std::uint32_t i = 0; i < points_.size(); ++i) used_.push_back(i);
     }
@@ -303,7 +346,8 @@ class Assembly {
       if (hull_.edge_count == 1) c_.edges[0] = {{0, 1}, {~0U, ~0U}};
       return;
     }
-    std::unordered_map<std::uint64_t, std::uint32_t> seen;
+    Numbers<std::uint64_t> seen(scratch_);
+    seen.reserve(hull_.edge_count);
     std::uint32_t edges = 0;
     std::uint32_t slot = 0;
     for (std::uint32_t f = 0; f < hull_.face_count; ++f) {
@@ -334,7 +378,8 @@ class Assembly {
     for (std::uint32_t v = 0; v < hull_.vertex_count; ++v) {
       c_.neighbour_first[v + 1] += c_.neighbour_first[v];
     }
-    std::vector<std::uint32_t> fill(c_.neighbour_first, c_.neighbour_first + hull_.vertex_count);
+    std::pmr::vector<std::uint32_t> fill(c_.neighbour_first,
+                                         c_.neighbour_first + hull_.vertex_count, scratch_);
     for (const HullEdge& e : edges) {
       c_.neighbour[fill[e.vertex[0]]++] = e.vertex[1];
       c_.neighbour[fill[e.vertex[1]]++] = e.vertex[0];
@@ -421,7 +466,8 @@ class Assembly {
 
   std::span<const Eigen::Vector3d> points_;
   const HullSurface& surface_;
-  std::vector<std::uint32_t> used_;
+  Memory scratch_;
+  std::pmr::vector<std::uint32_t> used_;
   HullShape hull_;
   HullColumns c_{};
 };
@@ -435,7 +481,8 @@ Status assemble_hull(std::span<const Eigen::Vector3d> points, const HullSurface&
 
 Status hull_of_faces(std::span<const Eigen::Vector3d> points, const HullFaces& faces,
                      std::pmr::memory_resource* memory, HullShape& hull) try {
-  HullSurface surface;
+  std::pmr::monotonic_buffer_resource scratch(memory);
+  HullSurface surface(&scratch);
   std::size_t at = 0;
   for (const std::uint32_t size : faces.sizes) {
     if (size > faces.indices.size() - at) return Status::invalid_shape;

@@ -13,7 +13,8 @@
 namespace winnow {
 
 /// Builds the hull of points; see ShapePool::add_hull. All of its columns lie in one block of
-/// `memory`, which release_hull gives back.
+/// `memory`, which release_hull gives back. What building needs comes from `memory` too, and is
+/// given back before they return; only qhull itself takes its memory from the C library.
 Status hull_of_points(std::span<const Eigen::Vector3d> points, std::pmr::memory_resource* memory,
                       HullShape& hull);
 Status hull_of_faces(std::span<const Eigen::Vector3d> points, const HullFaces& faces,
@@ -29,8 +30,11 @@ void release_hull(const HullShape& hull, std::pmr::memory_resource* memory) noex
 /// The surface of a hull while it is being built: face i is loops[first[i]] to loops[first[i + 1]],
 /// indices of points, counter-clockwise seen from outside.
 struct HullSurface {
-  std::vector<std::uint32_t> loops;
-  std::vector<std::uint32_t> first{0};
+  /// Throws what `memory` throws, as everything that grows a surface.
+  explicit HullSurface(std::pmr::memory_resource* memory) : loops(memory), first(1, 0U, memory) {}
+
+  std::pmr::vector<std::uint32_t> loops;
+  std::pmr::vector<std::uint32_t> first;
 
   [[nodiscard]] std::size_t faces() const noexcept { return first.size() - 1; }
   [[nodiscard]] std::span<const std::uint32_t> loop(std::size_t face) const noexcept {
@@ -41,11 +45,12 @@ struct HullSurface {
 
 /// Joins coplanar neighbours and drops vertices that lie within faces or edges. `invalid_shape`
 /// unless every edge has exactly two faces, which run along it in opposite directions, and the
-/// surface is of one piece without handles.
+/// surface is of one piece without handles. Scratch comes from the surface's memory.
 Status merge_coplanar(std::span<const Eigen::Vector3d> points, HullSurface& surface);
 
-/// Makes the block of columns: vertices are the points that the loops use (or, without faces, all
-/// points: one or two). Checks that the surface is convex.
+/// Makes the block of columns in `memory`: vertices are the points that the loops use (or, without
+/// faces, all points: one or two). Checks that the surface is convex. Scratch comes from the
+/// surface's memory.
 Status assemble_hull(std::span<const Eigen::Vector3d> points, const HullSurface& surface,
                      std::pmr::memory_resource* memory, HullShape& hull);
 

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
-#include <new>
+#include <numeric>
 
 #ifdef WINNOW_HAVE_QHULL
 extern "C" {
@@ -19,15 +18,17 @@ namespace {
 // Sets that are thinner than this, in units of their extent, are flat.
 constexpr double kFlat = 1e-13;
 
+using Points = std::pmr::vector<Eigen::Vector3d>;
+
 // Points around their middle, the largest coordinate in [1, 2): qhull's tolerances are relative to
 // the largest coordinate, and squares of very small or large numbers leave double.
-std::vector<Eigen::Vector3d> centred(std::span<const Eigen::Vector3d> points) {
+Points centred(std::span<const Eigen::Vector3d> points, std::pmr::memory_resource* memory) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& p : points) box.extend(p);
   const Eigen::Vector3d middle = 0.5 * box.min() + 0.5 * box.max();
   const double half = (0.5 * box.max() - 0.5 * box.min()).maxCoeff();
   const int exponent = half > 0.0 ? std::ilogb(half) : 0;
-  std::vector<Eigen::Vector3d> result;
+  Points result(memory);
   result.reserve(points.size());
   for (const Eigen::Vector3d& p : points) {
     Eigen::Vector3d q = p - middle;
@@ -38,7 +39,7 @@ std::vector<Eigen::Vector3d> centred(std::span<const Eigen::Vector3d> points) {
 }
 
 template <typename Measure>
-std::size_t farthest(const std::vector<Eigen::Vector3d>& points, Measure&& measure) {
+std::size_t farthest(const Points& points, Measure&& measure) {
   std::size_t best = 0;
   double most = -1.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -53,14 +54,14 @@ std::size_t farthest(const std::vector<Eigen::Vector3d>& points, Measure&& measu
 
 // Outline of points near a plane, by monotone chain (Andrew 1979) over the two axes on which the
 // plane is least steep: a projection along an axis moves no coordinate.
-HullSurface polygon(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& normal) {
+void add_polygon(const Points& points, const Eigen::Vector3d& normal, HullSurface& surface) {
   int drop = 0;
   normal.cwiseAbs().maxCoeff(&drop);
   int u = (drop + 1) % 3;
   int v = (drop + 2) % 3;
   if (normal[drop] < 0.0) std::swap(u, v);
-  std::vector<std::uint32_t> order(points.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::pmr::vector<std::uint32_t> order(points.size(), points.get_allocator());
+  std::iota(order.begin(), order.end(), 0U);
   std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(points[a][u], points[a][v]) < std::pair(points[b][u], points[b][v]);
   });
@@ -69,7 +70,7 @@ HullSurface polygon(const std::vector<Eigen::Vector3d>& points, const Eigen::Vec
     const Eigen::Vector3d ac = points[c] - points[a];
     return ab[u] * ac[v] - ab[v] * ac[u] > kFlat;
   };
-  std::vector<std::uint32_t> chain;
+  std::pmr::vector<std::uint32_t> chain(points.get_allocator());
   const auto extend = [&](std::uint32_t i, std::size_t keep) {
     while (chain.size() >= keep + 2 && !turns_left(chain[chain.size() - 2], chain.back(), i)) {
       chain.pop_back();
@@ -80,12 +81,10 @@ HullSurface polygon(const std::vector<Eigen::Vector3d>& points, const Eigen::Vec
   const std::size_t lower = chain.size() - 1;
   for (std::size_t i = order.size() - 1; i-- > 0;) extend(order[i], lower);
   chain.pop_back();
-  HullSurface surface;
   surface.loops.assign(chain.begin(), chain.end());
   surface.end_face();
   surface.loops.insert(surface.loops.end(), chain.rbegin(), chain.rend());
   surface.end_face();
-  return surface;
 }
 
 #ifdef WINNOW_HAVE_QHULL
@@ -103,12 +102,11 @@ class Qhull {
   Qhull(const Qhull&) = delete;
   Qhull& operator=(const Qhull&) = delete;
 
-  bool run(std::vector<Eigen::Vector3d>& points, HullSurface& surface) {
+  Status run(Points& points, HullSurface& surface) {
     char options[] = "qhull Pp";
-    if (qh_new_qhull(&state_, 3, static_cast<int>(points.size()), points[0].data(), False, options,
-                     nullptr, errors_) != 0) {
-      return false;
-    }
+    const int error = qh_new_qhull(&state_, 3, static_cast<int>(points.size()), points[0].data(),
+                                   False, options, nullptr, errors_);
+    if (error != 0) return error == qh_ERRmem ? Status::out_of_memory : Status::invalid_shape;
     qhT* const qh = &state_;
     facetT* facet = nullptr;
     FORALLfacets {
@@ -123,12 +121,12 @@ class Qhull {
       orient(points, Eigen::Vector3d(facet->normal), surface, begin);
       surface.end_face();
     }
-    return true;
+    return Status::ok;
   }
 
  private:
-  static void orient(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& normal,
-                     HullSurface& surface, std::size_t begin) {
+  static void orient(const Points& points, const Eigen::Vector3d& normal, HullSurface& surface,
+                     std::size_t begin) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     const Eigen::Vector3d origin = points[surface.loops[begin]];
     for (std::size_t i = begin + 1; i + 1 < surface.loops.size(); ++i) {
@@ -145,10 +143,9 @@ class Qhull {
 
 #endif
 
-Status surface_of(std::vector<Eigen::Vector3d>& points, HullSurface& surface) {
+Status surface_of(Points& points, HullSurface& surface) {
 #ifdef WINNOW_HAVE_QHULL
-  const auto state = std::make_unique<Qhull>();
-  return state->run(points, surface) ? Status::ok : Status::invalid_shape;
+  return Qhull().run(points, surface);
 #else
   static_cast<void>(points);
   static_cast<void>(surface);
@@ -162,8 +159,9 @@ Status hull_of_points(std::span<const Eigen::Vector3d> given, std::pmr::memory_r
                       HullShape& hull) try {
   const auto finite = [](const Eigen::Vector3d& p) { return p.allFinite(); };
   if (given.empty() || !std::ranges::all_of(given, finite)) return Status::invalid_shape;
-  std::vector<Eigen::Vector3d> points = centred(given);
-  HullSurface surface;
+  std::pmr::monotonic_buffer_resource scratch(memory);
+  Points points = centred(given, &scratch);
+  HullSurface surface(&scratch);
   const Eigen::Vector3d p0 = points[0];
   const std::size_t i1 = farthest(points, [&](const auto& p) { return (p - p0).squaredNorm(); });
   const Eigen::Vector3d p1 = points[i1];
@@ -182,7 +180,7 @@ Status hull_of_points(std::span<const Eigen::Vector3d> given, std::pmr::memory_r
   const std::size_t i3 =
       farthest(points, [&](const auto& p) { return std::abs(unit.dot(p - p0)); });
   if (std::abs(unit.dot(points[i3] - p0)) <= kFlat) {
-    surface = polygon(points, unit);
+    add_polygon(points, unit, surface);
     return assemble_hull(given, surface, memory, hull);
   }
   Status status = surface_of(points, surface);

@@ -3,11 +3,14 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <memory_resource>
 #include <random>
 #include <vector>
 
 #include "tests/support/counting_memory.h"
+#include "tests/support/heap_count.h"
 
 namespace winnow::test {
 namespace {
@@ -236,6 +239,66 @@ TEST(ShapePools, account_for_every_byte_and_survive_a_refusal) {
     EXPECT_EQ(pool.size(ShapeKind::hull), 1U);
   }
   EXPECT_EQ(memory.outstanding(), 0U);
+}
+
+// Ways to a hull: each takes scratch of its own.
+using AddHull = Status (*)(ShapePool& pool, ShapeId& id);
+
+Status add_ball(ShapePool& pool, ShapeId& id) {
+  return pool.add_hull(on_a_ball(64, 2), 0.0, id);
+}
+Status add_polygon(ShapePool& pool, ShapeId& id) {
+  return pool.add_hull(Points{{0, 0, 1}, {2, 0, 1}, {1, 1, 1}, {2, 2, 1}, {0, 2, 1}}, 0.0, id);
+}
+Status add_segment(ShapePool& pool, ShapeId& id) {
+  return pool.add_hull(Points{{0, 0, 0}, {1, 2, 3}, {2, 4, 6}}, 0.0, id);
+}
+Status add_tetrahedron(ShapePool& pool, ShapeId& id) {
+  static const Points corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  static const std::vector<std::uint32_t> indices{0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+  static const std::vector<std::uint32_t> sizes(4, 3);
+  return pool.add_hull(corners, HullFaces{indices, sizes}, 0.0, id);
+}
+
+TEST(ShapePools, that_are_refused_any_request_of_a_hull_are_unchanged) {
+  for (const AddHull add : {add_ball, add_polygon, add_segment, add_tetrahedron}) {
+    CountingMemory memory;
+    ShapePool pool(&memory);
+    ShapeId first;
+    ASSERT_EQ(pool.add_hull(Points{{1, 2, 3}}, 0.0, first), Status::ok);
+    ASSERT_EQ(pool.remove(first), Status::ok);  // the table has room: all requests are the hull's
+    const std::size_t before = memory.outstanding();
+    std::size_t granted = 0;
+    ShapeId id;
+    memory.refuse_one_after(granted);
+    Status status = add(pool, id);
+    while (status == Status::out_of_memory) {
+      EXPECT_EQ(memory.outstanding(), before);
+      EXPECT_EQ(pool.size(ShapeKind::hull), 0U);
+      EXPECT_EQ(id, ShapeId{});
+      memory.refuse_one_after(++granted);
+      status = add(pool, id);
+    }
+    EXPECT_EQ(status, Status::ok);
+    EXPECT_EQ(memory.refusals(), granted);
+    EXPECT_GT(granted, 1U);
+    memory.grant_all();
+    EXPECT_TRUE(pool.contains(id));
+    EXPECT_EQ(pool.footprint().total().reserved, memory.outstanding());
+  }
+}
+
+TEST(ShapePools, take_nothing_from_the_global_heap) {
+  alignas(64) static std::byte room[1U << 20U];
+  std::pmr::monotonic_buffer_resource memory(room, sizeof(room), std::pmr::null_memory_resource());
+  ShapePool pool(&memory);
+  ShapeId id;
+  const Points ball = on_a_ball(64, 2);
+  ASSERT_EQ(add_tetrahedron(pool, id), Status::ok);  // its corners are made once
+  const std::size_t before = heap_requests();
+  EXPECT_EQ(pool.add_hull(ball, 0.0, id), Status::ok);
+  EXPECT_EQ(add_tetrahedron(pool, id), Status::ok);
+  EXPECT_EQ(heap_requests(), before);
 }
 
 TEST(ShapeBounds, contain_the_shape_and_are_tight) {
