@@ -12,10 +12,6 @@
 
 namespace winnow {
 
-namespace mid {
-class Smoothing;
-}
-
 /// Pairs of one kind, next to each other in a NarrowResult.
 struct NarrowRun {
   ShapeKind a{};
@@ -36,6 +32,19 @@ struct ContactColumns {
   Column<float> position[3];
   Column<float> depth;
   Column<std::uint64_t> feature;
+};
+
+/// The columns of a NarrowResult to be written to: see the accessors of the same names. Those that
+/// its level has not are empty.
+struct NarrowColumns {
+  std::span<double> distance;
+  std::span<double> error_bound;
+  std::span<double> normal[3];
+  std::span<double> point[3];
+  std::span<std::uint32_t> contact_first;
+  std::span<std::uint32_t> contact_count;
+  /// May grow.
+  ContactColumns& contacts;
 };
 
 /// Answers as columns, grouped by pair kind; within a kind in the order of the input. The caller's,
@@ -90,11 +99,14 @@ class WINNOW_API NarrowResult {
   }
   [[nodiscard]] const ContactColumns& contact_columns() const noexcept { return contacts_; }
 
+  /// For who corrects answers where they stand (see MidPhase::smooth): what is written has to keep
+  /// what the accessors say.
+  [[nodiscard]] NarrowColumns columns() noexcept;
+
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
   friend class NarrowPhase;
-  friend class mid::Smoothing;
   /// Room for the columns that a level has, and no others. False if memory is refused.
   [[nodiscard]] bool resize(std::size_t count, ContactLevel level) noexcept;
   void clear() noexcept;

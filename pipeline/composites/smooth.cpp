@@ -12,6 +12,7 @@
 #include <limits>
 
 namespace winnow::mid {
+namespace {
 
 /// What a contact with a triangle is.
 enum class EdgeContact : std::uint8_t {
@@ -22,8 +23,6 @@ enum class EdgeContact : std::uint8_t {
   /// With an edge or corner that neighbours continue.
   internal,
 };
-
-namespace {
 
 // Of the size: corners whose heights differ by less are equally far along the normal. Narrow-phase
 // normals of tier `fast` are as exact as that.
@@ -156,14 +155,12 @@ constexpr std::size_t kTasksPerWave = 16;
 // since the shortest way out of each triangle is over the seam.
 constexpr double kMostDeeper = 4.0;
 
-}  // namespace
-
 /// Writes to a NarrowResult, in waves of chunks: room for the contacts of a wave is made before its
 /// tasks run, and what they do not need of it is taken back.
 class Smoothing {
  public:
   Smoothing(const ShapePool& shapes, const PrimitivePairs& pairs, NarrowResult& result) noexcept
-      : tables_(pairs.tables(shapes)), pairs_(pairs), result_(result) {}
+      : tables_(pairs.tables(shapes)), pairs_(pairs), result_(result), columns_(result.columns()) {}
 
   void run(const Execution& execution) noexcept;
 
@@ -215,15 +212,16 @@ class Smoothing {
            pairs_.active_edges[shape.index()] != PrimitivePairs::kAllActive;
   }
   [[nodiscard]] bool has_contacts() const noexcept {
-    return result_.level_ == ContactLevel::manifold;
+    return result_.level() == ContactLevel::manifold;
   }
   [[nodiscard]] const BodyPair& pair(std::size_t i) const noexcept {
-    return pairs_.pairs[result_.order_[i]];
+    return pairs_.pairs[result_.pair_of(i)];
   }
 
   ShapeTables tables_;
   const PrimitivePairs& pairs_;
-  NarrowResult& result_;
+  const NarrowResult& result_;
+  NarrowColumns columns_;
 };
 
 void Smoothing::run(const Execution& execution) noexcept {
@@ -248,7 +246,7 @@ void Smoothing::run_wave(const Execution& execution, std::span<Chunk> wave) noex
       room += chunk.used;
       chunk.used = 0;
     }
-    const bool has_room = room == from || result_.contacts_.grow(room);
+    const bool has_room = room == from || columns_.contacts.grow(room);
     for (Chunk& chunk : wave) chunk.has_room = has_room;
   }
   execution.for_each(wave.size(), [&](std::size_t k) { clip_all(wave[k]); });
@@ -263,7 +261,7 @@ void Smoothing::look(Chunk& chunk) noexcept {
     if (found.contact == EdgeContact::real) continue;
     set_normal(i, found.normal);
     if (found.contact == EdgeContact::nearly_face) {
-      result_.error_bound_[i] += found.off;
+      columns_.error_bound[i] += found.off;
     } else if (found.is_deep) {
       meet(i, bodies);
       chunk.is_deep.set(i - chunk.begin);
@@ -278,22 +276,22 @@ void Smoothing::look(Chunk& chunk) noexcept {
 // Finds the deepest of the answers about the same bodies and kinds, which are next to each other.
 // Smoothing makes none deeper, so that it does not matter which have been smoothed already.
 void Smoothing::meet(std::size_t i, Together& bodies) const noexcept {
-  const std::uint32_t at = result_.order_[i];
+  const std::uint32_t at = result_.pair_of(i);
   if (at >= bodies.first && at < bodies.end) return;
   const Column<std::uint32_t>& first = pairs_.first;
   const std::uint32_t* const next = std::upper_bound(first.begin(), first.end(), at);
-  bodies = {at, at + 1, -result_.distance_[i]};
+  bodies = {at, at + 1, -columns_.distance[i]};
   if (next == first.begin() || next == first.end()) return;
   bodies.first = next[-1];
   bodies.end = next[0];
   const auto is_of = [&](std::size_t k) {
-    return result_.order_[k] >= bodies.first && result_.order_[k] < bodies.end;
+    return result_.pair_of(k) >= bodies.first && result_.pair_of(k) < bodies.end;
   };
   for (std::size_t k = i; k < result_.size() && is_of(k); ++k) {
-    bodies.deepest = std::max(bodies.deepest, -result_.distance_[k]);
+    bodies.deepest = std::max(bodies.deepest, -columns_.distance[k]);
   }
   for (std::size_t k = i; k-- > 0 && is_of(k);) {
-    bodies.deepest = std::max(bodies.deepest, -result_.distance_[k]);
+    bodies.deepest = std::max(bodies.deepest, -columns_.distance[k]);
   }
 }
 
@@ -310,26 +308,26 @@ void Smoothing::close_gaps(std::span<Chunk> wave, std::size_t from) noexcept {
   for (const Chunk& chunk : wave) {
     const std::size_t gap = chunk.base - to;
     if (chunk.used != 0 && gap != 0) {
-      ContactColumns& all = result_.contacts_;
+      ContactColumns& all = columns_.contacts;
       for (Column<float>& x : all.position) {
         std::copy_n(x.data() + chunk.base, chunk.used, x.data() + to);
       }
       std::copy_n(all.depth.data() + chunk.base, chunk.used, all.depth.data() + to);
       std::copy_n(all.feature.data() + chunk.base, chunk.used, all.feature.data() + to);
       for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
-        std::uint32_t& first = result_.contact_first_[i];
+        std::uint32_t& first = columns_.contact_first[i];
         if (first >= from) first -= static_cast<std::uint32_t>(gap);
       }
     }
     to += chunk.used;
   }
-  result_.contacts_.set_size(to);
+  columns_.contacts.set_size(to);
 }
 
 Smoothing::Found Smoothing::find(std::size_t i) const noexcept {
   Found found;
-  if (!(result_.distance_[i] <= pairs_.margin)) return found;
-  if (has_contacts() && result_.contact_count_[i] == 0) return found;
+  if (!(columns_.distance[i] <= pairs_.margin)) return found;
+  if (has_contacts() && columns_.contact_count[i] == 0) return found;
   // Which of the two is the triangle of a mesh. Edges of other triangles are all active.
   const BodyPair& bodies = pair(i);
   const bool second = is_mesh_triangle(bodies.b);
@@ -338,7 +336,7 @@ Smoothing::Found Smoothing::find(std::size_t i) const noexcept {
   const ShapeId other = pairs_.shapes[second ? bodies.a : bodies.b];
   if (other.kind() == ShapeKind::half_space) return found;
 
-  Vec away(result_.normal_[0][i], result_.normal_[1][i], result_.normal_[2][i]);
+  Vec away(columns_.normal[0][i], columns_.normal[1][i], columns_.normal[2][i]);
   if (second) away = -away;
   Vec face;
   const TriangleShape& shape = tables_.triangles[triangle.index()];
@@ -346,11 +344,11 @@ Smoothing::Found Smoothing::find(std::size_t i) const noexcept {
   if (found.contact == EdgeContact::real) return found;
   if (found.contact == EdgeContact::internal) {
     choose_side(bodies, second, face);
-    const double distance = result_.distance_[i];
+    const double distance = columns_.distance[i];
     found.is_deep = other.kind() != ShapeKind::sphere && distance <= 0.0 &&
                     distance + rounding_of(tables_, other) <= 0.0;
   } else {
-    double size = std::abs(result_.distance_[i]);
+    double size = std::abs(columns_.distance[i]);
     for (const auto& corner : shape.vertex) size += Eigen::Map<const Vec>(corner).norm();
     found.off = (face - away).norm() * size;
   }
@@ -371,13 +369,13 @@ void Smoothing::choose_side(const BodyPair& bodies, bool second, Vec& face) cons
 }
 
 void Smoothing::set_normal(std::size_t i, const Vec& normal) noexcept {
-  for (int axis = 0; axis < 3; ++axis) result_.normal_[axis][i] = normal[axis];
+  for (int axis = 0; axis < 3; ++axis) columns_.normal[axis][i] = normal[axis];
 }
 
 // The point of a sphere that is its deepest along the normal, so that the contact does not turn it.
 void Smoothing::lower_sphere(std::size_t i, const Vec& normal) noexcept {
   const BodyPair& bodies = pair(i);
-  const double distance = result_.distance_[i];
+  const double distance = columns_.distance[i];
   Vec on_a;
   if (pairs_.shapes[bodies.a].kind() == ShapeKind::sphere) {
     on_a = tables_.spheres[pairs_.shapes[bodies.a].index()].radius * normal;
@@ -390,19 +388,19 @@ void Smoothing::lower_sphere(std::size_t i, const Vec& normal) noexcept {
     return;
   }
   if (!has_contacts()) {
-    for (int axis = 0; axis < 3; ++axis) result_.point_[axis][i] = on_a[axis];
+    for (int axis = 0; axis < 3; ++axis) columns_.point[axis][i] = on_a[axis];
     return;
   }
   const Vec middle = on_a + 0.5 * distance * normal;
-  const std::uint32_t point = result_.contact_first_[i];
+  const std::uint32_t point = columns_.contact_first[i];
   for (int axis = 0; axis < 3; ++axis) {
-    result_.contacts_.position[axis][point] = static_cast<float>(middle[axis]);
+    columns_.contacts.position[axis][point] = static_cast<float>(middle[axis]);
   }
 }
 
 void Smoothing::clip(Chunk& chunk, std::size_t i) noexcept {
   const BodyPair& bodies = pair(i);
-  const Vec normal(result_.normal_[0][i], result_.normal_[1][i], result_.normal_[2][i]);
+  const Vec normal(columns_.normal[0][i], columns_.normal[1][i], columns_.normal[2][i]);
   const FacePair faces{tables_,
                        pairs_.shapes[bodies.a],
                        pairs_.poses[bodies.a],
@@ -411,34 +409,36 @@ void Smoothing::clip(Chunk& chunk, std::size_t i) noexcept {
                        is_mesh_triangle(bodies.b)};
   const double most = kMostDeeper * static_cast<double>(chunk.most[i - chunk.begin]);
   FaceContacts found;
-  if (!clip_to_face(faces, normal, pairs_.margin, -result_.distance_[i], most, found)) return;
-  result_.distance_[i] = -found.depth;
-  result_.error_bound_[i] += found.noise;
+  if (!clip_to_face(faces, normal, pairs_.margin, -columns_.distance[i], most, found)) return;
+  columns_.distance[i] = -found.depth;
+  columns_.error_bound[i] += found.noise;
   if (has_contacts()) return take(chunk, i, {found.points, found.count});
   for (int axis = 0; axis < 3; ++axis) {
-    result_.point_[axis][i] =
+    columns_.point[axis][i] =
         static_cast<double>(found.points[0].position[axis]) + 0.5 * found.depth * normal[axis];
   }
 }
 
 void Smoothing::take(Chunk& chunk, std::size_t i, std::span<const ContactPoint> points) noexcept {
   // Where memory was refused, as many as there were.
-  std::size_t at = result_.contact_first_[i];
-  std::size_t count = std::min<std::size_t>(points.size(), result_.contact_count_[i]);
+  std::size_t at = columns_.contact_first[i];
+  std::size_t count = std::min<std::size_t>(points.size(), columns_.contact_count[i]);
   if (chunk.has_room) {
     at = chunk.base + chunk.used;
     count = points.size();
     chunk.used += count;
   }
-  ContactColumns& all = result_.contacts_;
+  ContactColumns& all = columns_.contacts;
   for (std::size_t k = 0; k < count; ++k) {
     for (int axis = 0; axis < 3; ++axis) all.position[axis][at + k] = points[k].position[axis];
     all.depth[at + k] = points[k].depth;
     all.feature[at + k] = points[k].feature;
   }
-  result_.contact_first_[i] = static_cast<std::uint32_t>(at);
-  result_.contact_count_[i] = static_cast<std::uint32_t>(count);
+  columns_.contact_first[i] = static_cast<std::uint32_t>(at);
+  columns_.contact_count[i] = static_cast<std::uint32_t>(count);
 }
+
+}  // namespace
 
 void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
             NarrowResult& result) noexcept {

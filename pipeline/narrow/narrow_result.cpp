@@ -61,6 +61,17 @@ void NarrowResult::clear() noexcept {
   static_cast<void>(resize(0, ContactLevel::boolean));
 }
 
+NarrowColumns NarrowResult::columns() noexcept {
+  const auto all = [](auto& column) { return std::span(column.data(), column.size()); };
+  return {all(distance_),
+          all(error_bound_),
+          {all(normal_[0]), all(normal_[1]), all(normal_[2])},
+          {all(point_[0]), all(point_[1]), all(point_[2])},
+          all(contact_first_),
+          all(contact_count_),
+          contacts_};
+}
+
 Footprint NarrowResult::footprint() const noexcept {
   Footprint footprint;
   Bytes& bytes = footprint.results;
