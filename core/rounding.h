@@ -3,6 +3,7 @@
 #include <winnow/core/export.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -27,6 +28,12 @@ namespace winnow {
 /// Largest float that is <= `value`. NaN stays NaN; below the float range gives -infinity.
 [[nodiscard]] constexpr float round_down(double value) noexcept {
   return -round_up(-value);
+}
+
+/// The float nearest to `value`, but at most the largest: what is finite stays so. NaN stays NaN.
+[[nodiscard]] constexpr float finite_float(double value) noexcept {
+  constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
+  return static_cast<float>(std::clamp(value, -kMost, kMost));
 }
 
 /// Largest double that is <= the exact a + b, for finite sums. The rounding error of the sum is

@@ -1,3 +1,4 @@
+#include <winnow/core/rounding.h>
 #include <winnow/pipeline/contact_types.h>
 #include "pipeline/composites/composites.h"
 #include "pipeline/shapes/extent.h"
@@ -9,7 +10,6 @@
 #include <bitset>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace winnow::mid {
 namespace {
@@ -117,8 +117,7 @@ constexpr double kFloatSlack = 1e-6;
 
 /// To the caller's units, at most the largest float.
 [[nodiscard]] float scaled(float x, double unit) noexcept {
-  constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
-  return static_cast<float>(std::clamp(static_cast<double>(x) * unit, -kMost, kMost));
+  return finite_float(static_cast<double>(x) * unit);
 }
 
 /// Clips the feature of the other shape that lies farthest along `normal` (the face's, from a to b)

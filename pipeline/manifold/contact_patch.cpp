@@ -8,9 +8,6 @@ namespace winnow {
 
 namespace {
 
-// Tolerances are shares of the patches' size.
-constexpr double kSame = 1e-9;
-
 // Twice the area of a triangle, positive if it is counter-clockwise.
 double area(const PatchMeeting& a, const PatchMeeting& b, const PatchMeeting& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -77,7 +74,7 @@ std::uint32_t contact_patch(const Patch& a, const Patch& b, const double normal[
   const PatchFrame frame(normal);
   const Outline outline[2] = {{a, frame, 1.0}, {b, frame, -1.0}};
   const double size = std::max(outline[0].size, outline[1].size);
-  PatchMeetings m(kSame * size);
+  PatchMeetings m(kSamePlace * size);
   find_meetings(outline[0], outline[1], m);
 
   const double rounding[2] = {a.rounding, b.rounding};

@@ -6,6 +6,11 @@
 
 namespace winnow {
 
+/// What lies across a contact normal, since bodies rock over it: a face whose normal is within 14
+/// degrees of it, else an edge within as many of perpendicular to it. The cosine and the sine.
+inline constexpr double kFaceCosine = 0.97;
+inline constexpr double kEdgeSine = 0.25;
+
 /// The feature of a core that lies farthest along (for a) or against (for b) the contact normal:
 /// one vertex, an edge, or a convex polygon in order around its boundary (either way). Vertices are
 /// relative to the position of body a, in the axes of the world.

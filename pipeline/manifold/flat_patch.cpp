@@ -72,7 +72,7 @@ void deepest_point(const FlatPatch& a, const FlatPatch& b, const double normal[3
                    double point[3]) noexcept {
   const PatchFrame frame(normal);
   const Outline outline[2] = {{view(a), frame, 1.0}, {view(b), frame, -1.0}};
-  PatchMeetings m(1e-9 * std::max(outline[0].size, outline[1].size));
+  PatchMeetings m(kSamePlace * std::max(outline[0].size, outline[1].size));
   find_meetings(outline[0], outline[1], m);
   const PatchMeeting* best = m.point;
   for (std::uint32_t i = 1; i < m.count; ++i) {

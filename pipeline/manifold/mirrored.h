@@ -2,9 +2,9 @@
 
 // What the contacts of a pair (a, b) are as those of (b, a).
 
-#include <algorithm>
+#include <winnow/core/rounding.h>
+
 #include <cstdint>
-#include <limits>
 
 namespace winnow {
 
@@ -16,8 +16,7 @@ namespace winnow {
 /// A coordinate of a point relative to body a, relative to body b, which is `apart` farther; at
 /// most the largest float.
 [[nodiscard]] inline float mirrored_position(float x, double apart) noexcept {
-  constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
-  return static_cast<float>(std::clamp(static_cast<double>(x) - apart, -kMost, kMost));
+  return finite_float(static_cast<double>(x) - apart);
 }
 
 }  // namespace winnow

@@ -11,6 +11,8 @@ namespace {
 // the normal, looks like a segment.
 constexpr double kThin = 1e-12;
 constexpr double kSteep = 1e-6;
+// Slopes that differ by less are the same.
+constexpr double kSameRise = 1e-9;
 
 }  // namespace
 
@@ -148,9 +150,9 @@ std::uint32_t Outline::least_rise_from(std::uint32_t vertex, double up) const no
   double farthest = 0.0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const double away = std::hypot(x[i] - x[vertex], y[i] - y[vertex]);
-    if (!(away > 1e-9 * size)) continue;
+    if (!(away > kSamePlace * size)) continue;
     const double rise = up * (h[vertex] - h[i]) / away;
-    if (rise < least - 1e-9 || (rise <= least + 1e-9 && away > farthest)) {
+    if (rise < least - kSameRise || (rise <= least + kSameRise && away > farthest)) {
       least = rise;
       farthest = away;
       best = i;
@@ -162,7 +164,7 @@ std::uint32_t Outline::least_rise_from(std::uint32_t vertex, double up) const no
 // Its ends if they are the deepest of it, else the deepest vertex and the one to which it rises
 // least: on that edge of the outline the other patch is met.
 void Outline::flatten(double up) noexcept {
-  const double same = 1e-9 * size;
+  const double same = kSamePlace * size;
   std::uint32_t ends[2] = {farthest_from(0), 0};
   ends[1] = farthest_from(ends[0]);
   std::uint32_t deepest = ends[0];

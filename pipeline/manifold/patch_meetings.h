@@ -9,6 +9,9 @@ namespace winnow {
 
 inline constexpr std::uint32_t kOutlineVertices = 16;
 
+/// As a share of the patches' size: places that are closer are one.
+inline constexpr double kSamePlace = 1e-9;
+
 [[nodiscard]] inline double dot(const double a[3], const double b[3]) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

@@ -73,19 +73,20 @@ struct RelativeRay {
                                    bool may_move) noexcept {
   constexpr double kFar = 8.0;
   const Vector3d direction = Vector3d::Map(ray.direction);
-  // A quarter of it, as the difference of two doubles may not be one.
-  const Vector3d from = 0.25 * Vector3d::Map(pose.position);
-  const Vector3d to = 0.25 * Vector3d::Map(ray.origin);
+  // Of all lengths, as the difference of two doubles may not be one.
+  constexpr double kQuarter = 0.25;
+  const Vector3d from = kQuarter * Vector3d::Map(pose.position);
+  const Vector3d to = kQuarter * Vector3d::Map(ray.origin);
   const Vector3d between = to - from;
   const double reach = between.cwiseAbs().maxCoeff();
   RelativeRay result;
-  const int distance = exponent_of(std::max(reach, 0.25 * size));
+  const int distance = exponent_of(std::max(reach, kQuarter * size));
   const int speed = exponent_of(direction.cwiseAbs().maxCoeff());
   result.direction = std::ldexp(1.0, -speed) * direction;
   const double unit = std::ldexp(1.0, -distance);
   result.origin = unit * between;
   result.exponent = distance + 2 - speed;
-  if (may_move && reach > kFar * 0.25 * size) {
+  if (may_move && reach > kFar * kQuarter * size) {
     const double nearest = -result.origin.dot(result.direction) / result.direction.squaredNorm();
     for (int k = 0; k < 3; ++k) {
       const double back = between[k] - to[k];
@@ -99,7 +100,7 @@ struct RelativeRay {
     }
     result.shift = nearest;
   }
-  const double scaled_size = unit * 0.25 * size;
+  const double scaled_size = unit * kQuarter * size;
   result.stretch = exponent_of(std::max(result.origin.cwiseAbs().maxCoeff(), scaled_size));
   result.origin *= std::ldexp(1.0, -result.stretch);
   result.lengths = distance + 2 + result.stretch;

@@ -207,6 +207,8 @@ namespace {
 constexpr std::size_t kLineBytes = 64;
 // How far beyond a face, in units of the hull's size, its neighbours may reach.
 constexpr double kConvex = 1e-9;
+// What the few roundings of a length may take from it or add to it.
+constexpr double kRoundings = 1e-15;
 
 [[nodiscard]] constexpr std::size_t padded(std::size_t count) {
   return (count + 15) / 16 * 16;
@@ -337,7 +339,7 @@ class Assembly {
     for (std::uint32_t v = 0; v < hull_.vertex_count; ++v) {
       hull_.radius = std::max(hull_.radius, (at(v) - sum).stableNorm());
     }
-    hull_.radius *= 1.0 + 1e-15;
+    hull_.radius *= 1.0 + kRoundings;
     for (int axis = 0; axis < 3; ++axis) hull_.center[axis] = sum[axis];
   }
 
@@ -408,7 +410,7 @@ class Assembly {
         hull_.inner_radius = std::min(hull_.inner_radius, face.offset - normal.dot(center));
       }
     }
-    hull_.inner_radius = std::max(0.0, hull_.inner_radius * (1.0 - 1e-15));
+    hull_.inner_radius = std::max(0.0, hull_.inner_radius * (1.0 - kRoundings));
     for (std::uint32_t f = 0; f < hull_.face_count; ++f) {
       if (!is_convex_around(f)) return false;
     }

@@ -195,7 +195,7 @@ void break_ties(const Problem& problem, double separated, Vec& axis) noexcept {
   for (int i = 0; i < 6; ++i) {
     const Vec candidate = problem.tie_axes.col(i / 2) * (i % 2 == 0 ? 1.0 : -1.0);
     const double along = separation(problem.a, problem.b, candidate);
-    if (along < separated - 0.25 * problem.noise()) continue;
+    if (along < separated - kHardly * problem.noise()) continue;
     axis = candidate;
     return;
   }
@@ -210,7 +210,7 @@ void refine_curved(const Core& a, const Core& b, const Vec& axis, double noise,
   for (const auto& [x, y] :
        {std::pair{&straight_a, &straight_b}, {&straight_a, &b}, {&a, &straight_b}}) {
     const GjkResult straight =
-        gjk(*x, *y, axis, 0.125 * noise, std::numeric_limits<double>::infinity());
+        gjk(*x, *y, axis, kEnough * noise, std::numeric_limits<double>::infinity());
     if (!straight.contact && !(straight.upper < found.upper)) continue;
     found.simplex = straight.simplex;
     found.between = straight.between;
@@ -226,14 +226,14 @@ Vec meeting_point(const Problem& problem, const Vec& axis, double depth) noexcep
   const double noise = problem.noise();
   Core moved = problem.b;
   moved.center += axis * depth;
-  GjkResult met = gjk(a, moved, axis, 0.125 * noise, std::numeric_limits<double>::infinity());
+  GjkResult met = gjk(a, moved, axis, kEnough * noise, std::numeric_limits<double>::infinity());
   Vec x = met.simplex.on_a();
   // A flat tetrahedron has the origin inside, but does not tell well where.
   met.upper = met.simplex.closest().norm();
-  if (met.upper > 0.25 * noise && a.is_polytope() && moved.is_polytope()) {
+  if (met.upper > kHardly * noise && a.is_polytope() && moved.is_polytope()) {
     ClosestPoints points;
     if (closest_features(a, moved, axis, 0.0, met.upper, noise, points)) x = points.on_a;
-  } else if (met.upper > 0.25 * noise) {
+  } else if (met.upper > kHardly * noise) {
     refine_curved(a, moved, axis, noise, met);
     x = met.simplex.on_a();
   }
@@ -249,7 +249,7 @@ CoreDistance closest(const Problem& problem, const GjkResult& start, const AxisS
   found.on_a = start.simplex.on_a();
   double gap = upper - search.separation();
   const bool polytopes = problem.a.is_polytope() && problem.b.is_polytope();
-  if (gap > 0.25 * noise && polytopes) {
+  if (gap > kHardly * noise && polytopes) {
     ++counts.bounded;
     ClosestPoints points;
     if (closest_features(problem.a, problem.b, search.axis(), search.separation(), upper, noise,
@@ -335,7 +335,7 @@ CoreDistance core_distance(const Problem& problem, ContactLevel level, double en
   const Core& b = problem.b;
   const double noise = problem.noise();
   const Vec start = b.center == Vec::Zero() ? Vec(problem.tie_axes.col(0)) : b.center;
-  GjkResult found = gjk(a, b, start, 0.125 * noise, enough);
+  GjkResult found = gjk(a, b, start, kEnough * noise, enough);
   if (found.bounded) ++counts.bounded;
   CoreDistance answer;
   if (found.far) {
@@ -354,9 +354,9 @@ CoreDistance core_distance(const Problem& problem, ContactLevel level, double en
   AxisSearch search(a, b);
   search.look(found.axis);
   search.look(unit(found.between));
-  if (found.upper - search.separation() > 0.125 * noise) look_at_simplex(found, search);
+  if (found.upper - search.separation() > kEnough * noise) look_at_simplex(found, search);
   const bool polytopes = a.is_polytope() && b.is_polytope();
-  if (found.upper - search.separation() > 0.125 * noise) {
+  if (found.upper - search.separation() > kEnough * noise) {
     const bool all = look_at_features(problem, search);
     if (!polytopes) refine_curved(a, b, search.axis(), noise, found);
     // No axis separates them: they overlap, whatever the simplices said.

@@ -136,7 +136,7 @@ bool InnerPolytope::add_face(std::uint16_t p, std::uint16_t q, std::uint16_t r,
       {face.normal.dot(points_[p]), face.normal.dot(points_[q]), face.normal.dot(points_[r])});
   // What rounding of the points makes of the distance of their plane. That of slivers is of little
   // worth; their own distance is not less than it.
-  const double doubt = 0.125 * noise_ / area * std::max({le, lf, lg});
+  const double doubt = kEnough * noise_ / area * std::max({le, lf, lg});
   face.low = offset - std::max(doubt, noise_);
   if (doubt > noise_) face.low = std::max(face.low, triangle_distance(p, q, r) - noise_);
   push(at);
@@ -211,8 +211,8 @@ bool InnerPolytope::attach(const Vec& w, std::uint16_t seen) noexcept {
 bool InnerPolytope::is_seen(const Vec& w, const Face& face, std::uint16_t from,
                             std::uint16_t to) const noexcept {
   const double above = height(face, w);
-  if (above > 0.125 * noise_) return true;
-  if (above < -0.125 * noise_) return false;
+  if (above > kEnough * noise_) return true;
+  if (above < -kEnough * noise_) return false;
   const Vec side = points_[to] - points_[from];
   const Vec out = w - points_[from];
   return side.cross(out).squaredNorm() <= 1e-16 * side.squaredNorm() * out.squaredNorm();
@@ -355,7 +355,7 @@ void Expansion::grow(double tolerance) noexcept {
       bounds_.axis = -face.normal;
     }
     if (bounds_.upper - bounds_.lower <= tolerance) break;
-    if (inner_.height(face, w) <= 0.125 * noise_) {
+    if (inner_.height(face, w) <= kEnough * noise_) {
       settled = std::min(settled, face.low);
       inner_.settle(nearest);
       continue;

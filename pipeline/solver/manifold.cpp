@@ -1,10 +1,10 @@
 #include "pipeline/solver/manifold.h"
 
+#include <winnow/core/rounding.h>
 #include "pipeline/manifold/contact_patch.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace winnow::solver {
 namespace {
@@ -13,11 +13,10 @@ constexpr std::uint32_t kCapCorners = 16;
 // Numbers on cylinders and cones: corners of the upper cap from 0, of the lower from 16, the ends
 // of the supporting line 32 and 33; faces and edges likewise.
 constexpr std::uint32_t kLine = 2 * kCapCorners;
-/// Faces up to 14 degrees off count as supporting, edges as well.
-constexpr double kFaceCosine = 0.97;
-constexpr double kEdgeSine = 0.25;
 /// Caps of cylinders and cones up to 45 degrees off, else a line of the side.
 constexpr double kCapCosine = 0.7071;
+/// The sine of a direction that is along an axis but for rounding.
+constexpr double kAlongAxis = 1e-9;
 
 bool face_has(const HullShape& hull, const HullFace& face, std::uint32_t corner) noexcept {
   for (std::uint32_t i = 0; i < face.count; ++i) {
@@ -144,7 +143,7 @@ void SupportingPatch::add_round(const Core& core, const Vec& outward) noexcept {
   const double h = core.half.z();
   const double radial = std::hypot(d.x(), d.y());
   // A direction along the axis has no side; the cap then begins at +x, always.
-  const Vec out = radial > 1e-9 ? Vec(d.x() / radial, d.y() / radial, 0.0) : Vec::UnitX();
+  const Vec out = radial > kAlongAxis ? Vec(d.x() / radial, d.y() / radial, 0.0) : Vec::UnitX();
   const bool cone = core.kind == CoreKind::cone;
   const bool on_tip = cone && h * d.z() >= r * radial - h * d.z();
   // A cone has but the lower cap.
@@ -153,7 +152,7 @@ void SupportingPatch::add_round(const Core& core, const Vec& outward) noexcept {
   const Vec top = cone ? Vec(0.0, 0.0, h) : Vec(out * r + Vec(0.0, 0.0, h));
   add(core.center + core.rotation * top, kLine, kLine);
   feature_ = kLine;
-  if (on_tip && radial <= 1e-9) return;
+  if (on_tip && radial <= kAlongAxis) return;
   add(core.center + core.rotation * (out * r - Vec(0.0, 0.0, h)), kLine + 1, kLine);
 }
 
@@ -173,8 +172,7 @@ std::uint32_t point_feature(const Core& core, const Vec& at) noexcept {
 
 /// In the caller's units, at most the largest float.
 float as_float(const Problem& problem, double length) noexcept {
-  constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
-  return static_cast<float>(std::clamp(unscaled(problem, length), -kMost, kMost));
+  return finite_float(unscaled(problem, length));
 }
 
 /// The one point that the answer itself tells.

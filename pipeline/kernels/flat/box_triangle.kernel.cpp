@@ -179,7 +179,7 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> nearest_vertex(const BoxTrianglePair<T>& pair) {
   const Lanes<T> two(T(2));
-  Lanes<T> square(sizeof(T) == sizeof(double) ? T(1e300) : T(1e38F));
+  Lanes<T> square(kBeyondSquares<T>);
   Lanes<T> index(T(0));
   const auto offer = [&](const Lanes<T>& d, int number) __attribute__((always_inline)) {
     const LaneMask<T> nearer = d < square;

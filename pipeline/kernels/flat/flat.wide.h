@@ -36,6 +36,10 @@ inline constexpr T kWidestGap = sizeof(T) == sizeof(double) ? T(1e-12) : T(1e-4F
 template <typename T>
 inline constexpr T kParallelSquare = sizeof(T) == sizeof(double) ? T(1e-26) : T(1e-6F);
 
+/// More than the square of any distance, for the search of the least.
+template <typename T>
+inline constexpr T kBeyondSquares = sizeof(T) == sizeof(double) ? T(1e300) : T(1e38F);
+
 /// The axis of the largest separation so far, compared without roots: by s|s| over the square of
 /// the axis' length.
 template <typename T>

@@ -154,7 +154,7 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> nearest_vertex_and_edge(const TrianglePair<T>& pair) {
   const Lanes<T> two(T(2));
-  Lanes<T> square(sizeof(T) == sizeof(double) ? T(1e300) : T(1e38F));
+  Lanes<T> square(kBeyondSquares<T>);
   Lanes<T> index(T(0));
   Lanes<T> ee[3];
   Lanes<T> ff[3];

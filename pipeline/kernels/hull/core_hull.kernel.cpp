@@ -66,6 +66,9 @@ constexpr BoxTopology make_box_topology() {
 inline constexpr BoxTopology kBoxTopology = make_box_topology();
 
 /// A triangle's two sides, and an edge that both have.
+/// What the few roundings of a length may take from it, as a factor.
+inline constexpr double kOverRoundings = 1.0 + 1e-15;
+
 inline constexpr std::uint32_t kTriangleLoop[6] = {0, 1, 2, 0, 2, 1};
 inline constexpr std::uint32_t kTriangleLoopEdge[6] = {0, 1, 2, 2, 1, 0};
 inline constexpr HullEdge kTriangleEdges[3] = {
@@ -115,7 +118,7 @@ class CoreHull {
       }
     }
     begin(corner, 8, 3, box.rounding);
-    hull_.radius = __builtin_sqrt(square) * (1.0 + 1e-15);
+    hull_.radius = __builtin_sqrt(square) * kOverRoundings;
     hull_.inner_radius = least;
     hull_.face_count = 6;
     hull_.edge_count = 12;
@@ -141,7 +144,7 @@ class CoreHull {
     }
     for (const auto& v : triangle.vertex) {
       const double d[3] = {v[0] - hull_.center[0], v[1] - hull_.center[1], v[2] - hull_.center[2]};
-      const double reach = __builtin_sqrt(dot3(d, d)) * (1.0 + 1e-15);
+      const double reach = __builtin_sqrt(dot3(d, d)) * kOverRoundings;
       hull_.radius = reach > hull_.radius ? reach : hull_.radius;
     }
     cross3(e, f, n);

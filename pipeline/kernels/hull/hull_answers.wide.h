@@ -181,8 +181,9 @@ class HullAnswers {
     const double length = __builtin_sqrt(dot3(gap, gap));
     const double scale = 1.0 / static_cast<double>(pair.scale);
     // HullSearch::kDoubt, of which a part is left for roundings here.
-    const double lower = (static_cast<double>(pair.lower) / length - 5.5e-6) * scale;
-    const double upper = (length + 5.5e-6) * scale;
+    constexpr double doubt = 5.5e-6;
+    const double lower = (static_cast<double>(pair.lower) / length - doubt) * scale;
+    const double upper = (length + doubt) * scale;
     T normal[3];
     for (int k = 0; k < 3; ++k) normal[k] = static_cast<T>(-gap[k] / length);
     double local[3];

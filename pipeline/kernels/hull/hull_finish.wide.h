@@ -369,9 +369,8 @@ class HullPatch {
  private:
   static constexpr std::uint32_t kRoom = 32;
   static constexpr std::uint32_t kNone = ~0U;
-  /// Cosine and sine of about 14 degrees, as in the solver.
-  static constexpr float kAligned = 0.97F;
-  static constexpr float kTilted = 0.25F;
+  static constexpr auto kAligned = static_cast<float>(kFaceCosine);
+  static constexpr auto kTilted = static_cast<float>(kEdgeSine);
 
   static bool joins(const HullEdge& e, std::uint32_t v, std::uint32_t w) {
     return (e.vertex[0] == v && e.vertex[1] == w) || (e.vertex[0] == w && e.vertex[1] == v);

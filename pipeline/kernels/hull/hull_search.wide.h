@@ -42,6 +42,7 @@ static inline SimplexNearest nearest_of(const Simplex& simplex, const Vec3<float
   Vec3<float> arm[kSlots];
   Floats length[kSlots];
   r.repeated = zero > one;
+  const Floats not_zero(1e-30F);  // instead of the squares of sides without a length
   Floats best = dot(w, w);
   r.point = w;
   for (int s = 0; s < kSlots; ++s) {
@@ -54,7 +55,7 @@ static inline SimplexNearest nearest_of(const Simplex& simplex, const Vec3<float
   }
   for (int s = 0; s < kSlots; ++s) {
     const Floats reach = -dot(edge[s], w);
-    const Floats t = min(reach / max(length[s], Floats(1e-30F)), one);
+    const Floats t = min(reach / max(length[s], not_zero), one);
     const Vec3<float> x = w + edge[s] * t;
     const Floats square = dot(x, x);
     const LaneMask<float> nearer = (reach > zero) & (square < best);
@@ -76,7 +77,7 @@ static inline SimplexNearest nearest_of(const Simplex& simplex, const Vec3<float
     // Barycentric coordinates of i and k, times the area.
     const Floats u = dot(normal[s], arm[k]);
     const Floats v = -dot(normal[s], arm[i]);
-    const Floats t = height[s] / max(area[s], Floats(1e-30F));
+    const Floats t = height[s] / max(area[s], not_zero);
     const Vec3<float> x = normal[s] * t;
     const Floats square = height[s] * t;
     const LaneMask<float> wide = area[s] > Floats(1e-12F) * length[i] * length[k];

@@ -218,7 +218,8 @@ template <typename T>
     low = select(slab, max(low, min(from, to)), low);
     high = select(slab, min(high, max(from, to)), high);
   }
-  lies = lies & (tilt * tilt < Lanes<T>(T(0.01))) & (high - low > p.half * Lanes<T>(T(1e-3)));
+  lies = lies & (tilt * tilt < Lanes<T>(kLyingSquare<T>)) &
+         (high - low > p.half * Lanes<T>(kLeastStretch<T>));
   const Lanes<T> distance[2] = {base - tilt * low, base - tilt * high};
   const LaneMask<T> near_low = lies & (distance[0] <= margin);
   const LaneMask<T> near_high = lies & (distance[1] <= margin);

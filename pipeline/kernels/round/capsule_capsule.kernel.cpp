@@ -94,7 +94,7 @@ template <typename T>
 
 template <typename T>
 [[gnu::always_inline]] inline LaneMask<T> are_parallel(const Couple<T>& p) {
-  return dot(p.across, p.across) < Lanes<T>(T(0.01));
+  return dot(p.across, p.across) < Lanes<T>(kLyingSquare<T>);
 }
 
 /// Capsules that are parallel to 0.1 touch at the two ends of the stretch along which they lie side
@@ -109,12 +109,13 @@ template <typename T>
   const Lanes<T> low = max(middle - reach, -p.half[0]);
   const Lanes<T> high = min(middle + reach, p.half[0]);
   Touch<T> ends[2] = {touch_at(p, low), touch_at(p, high)};
-  // The deeper end stands for the closest point if that is hardly deeper; capsules that cross have
-  // one point.
+  // The deeper end stands for the closest point if that is hardly deeper, as a share of the radii;
+  // capsules that cross have one point.
+  constexpr T hardly = T(1e-3);
   const Lanes<T> behind = min(ends[0].distance, ends[1].distance) - answer.distance;
-  const LaneMask<T> side_by_side = are_parallel(p) &
-                                   (high - low > (p.half[0] + p.half[1]) * Lanes<T>(T(1e-3))) &
-                                   (behind <= p.witness.radius * Lanes<T>(T(1e-3)));
+  const LaneMask<T> side_by_side =
+      are_parallel(p) & (high - low > (p.half[0] + p.half[1]) * Lanes<T>(kLeastStretch<T>)) &
+      (behind <= p.witness.radius * Lanes<T>(hardly));
   ends[0].distance -= behind;
   ends[1].distance -= behind;
   const LaneMask<T> near_low = side_by_side & (ends[0].distance <= margin);

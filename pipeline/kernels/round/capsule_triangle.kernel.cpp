@@ -58,8 +58,7 @@ template <typename T>
   try_axis(v, has_normal(b), flat, end, Lanes<T>(T(7)));
   v.sharp = b.normal_square > b.square[0] * b.square[1] * least;
   for (int i = 0; i < 3; ++i) {
-    const LaneMask<T> valid =
-        p.across_square[i] > b.square[i] * Lanes<T>(T(16) * kEpsilon<T> * kEpsilon<T>);
+    const LaneMask<T> valid = p.across_square[i] > b.square[i] * Lanes<T>(kNoSineSquare<T>);
     const Vec3<T> k = p.across[i] * p.across_over[i];
     try_axis(v, valid, gap_along(b, k, zero), feet[i].s, Lanes<T>(T(4 + i)));
     v.sharp = v.sharp & (p.across_square[i] > b.square[i] * least);
@@ -203,7 +202,8 @@ template <typename T>
   const Stretch<T> over = stretch_over(p);
   const LaneMask<T> lies =
       (rise * rise > p.triangle.normal_square * Lanes<T>(T(1) - T(64) * kEpsilon<T>)) &
-      (tilt * tilt < Lanes<T>(T(0.01))) & (over.high - over.low > p.half * Lanes<T>(T(1e-3)));
+      (tilt * tilt < Lanes<T>(kLyingSquare<T>)) &
+      (over.high - over.low > p.half * Lanes<T>(kLeastStretch<T>));
   const Lanes<T> base = dot(p.triangle.vertex[0], r.normal) - r.radius - r.radius_b;
   const Lanes<T> distance[2] = {base - tilt * over.low, base - tilt * over.high};
   const LaneMask<T> near_low = lies & (distance[0] <= margin);

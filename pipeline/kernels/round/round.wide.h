@@ -23,6 +23,22 @@ inline constexpr T kLeastSine = T(1) / T(128);
 template <typename T>
 inline constexpr T kRoundSlack = T(8) * kEpsilon<T> / kLeastSine<T>;
 
+/// Square of the sine of two directions below which their product is rounding alone.
+template <typename T>
+inline constexpr T kNoSineSquare = T(16) * kEpsilon<T>* kEpsilon<T>;
+
+/// Float lanes in range find no distance of this size: what is not below it is infinite or NaN.
+template <typename T>
+inline constexpr T kNoDistance = T(1e30F);
+
+/// A capsule lies on a face, or beside another capsule, if the square of the sine of the angle
+/// between them is less than the first, and the stretch over which it does is longer than the
+/// second, as a share of the half length: two contacts then say more than one.
+template <typename T>
+inline constexpr T kLyingSquare = T(0.01);
+template <typename T>
+inline constexpr T kLeastStretch = T(1e-3);
+
 /// Where the cores of a pair are closest.
 template <typename T>
 struct WitnessLanes {
@@ -41,7 +57,7 @@ template <typename T>
                                                      const LaneMask<T>& normal) {
   const LaneMask<T> valid = in_range(scale * scale) & normal;
   if constexpr (sizeof(T) == sizeof(double)) return bits(valid & (abs(distance) > bound));
-  return bits(valid & (abs(distance) < Lanes<T>(T(1e30F))));
+  return bits(valid & (abs(distance) < Lanes<T>(kNoDistance<T>)));
 }
 
 /// Level boolean, by squares; returns the uncertified lanes. With w wrong by e, its square is by
@@ -140,7 +156,7 @@ template <typename T>
   if constexpr (sizeof(T) == sizeof(double)) {
     return ~bits(valid & ((proof.high < -error) | (proof.low > error)));
   }
-  return ~bits(valid & (abs(proof.high) < Lanes<T>(T(1e30F))));
+  return ~bits(valid & (abs(proof.high) < Lanes<T>(kNoDistance<T>)));
 }
 
 /// Levels distance and manifold. Tier robust promises bounds of 1e-12 of sizes and distance, of
@@ -245,7 +261,7 @@ template <typename T>
 /// Where the normal is more than rounding.
 template <typename T>
 [[gnu::always_inline]] inline LaneMask<T> has_normal(const TriangleView<T>& b) {
-  const Lanes<T> least(T(16) * kEpsilon<T> * kEpsilon<T>);
+  const Lanes<T> least(kNoSineSquare<T>);
   return b.normal_square > b.square[0] * b.square[1] * least;
 }
 

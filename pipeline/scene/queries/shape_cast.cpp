@@ -180,7 +180,7 @@ PartedAt Advancement::sample(double t) noexcept {
   } else {
     const bool is_known = !normal_.isZero(0.0);
     const Vec start = is_known ? Vec(mirrored_ ? -normal_ : normal_) : problem.b.center;
-    const GjkResult found = gjk(problem.a, problem.b, start, 0.125 * noise, kInfinity);
+    const GjkResult found = gjk(problem.a, problem.b, start, solver::kEnough * noise, kInfinity);
     if (found.contact || found.upper + noise <= roundings) return result;
     gap = found.lower - roundings - noise;
     face(found.axis, result);
