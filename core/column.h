@@ -67,7 +67,7 @@ class Column {
     return true;
   }
 
-  /// As `reserve`, but grows by half at least, so that repeated growth costs O(1) an element.
+  /// As `reserve`, but grows by half at least, so that repeated growth costs O(1) per element.
   [[nodiscard]] bool grow(std::size_t count) noexcept {
     if (count <= capacity_) return true;
     return reserve(std::max(count, capacity_ + capacity_ / 2)) || reserve(count);

@@ -63,7 +63,7 @@ struct IndexView {
   std::size_t count = 0;
 
   IndexView() = default;
-  /// Three numbers a triangle, one triangle after another. A rest of one or two is not read.
+  /// Three numbers per triangle, one triangle after another. A rest of one or two is not read.
   IndexView(std::span<const std::uint32_t> corners) noexcept  // NOLINT(google-explicit-constructor)
       : wide(corners.data()), count(corners.size() / 3) {}
   IndexView(std::span<const std::uint16_t> corners) noexcept  // NOLINT(google-explicit-constructor)

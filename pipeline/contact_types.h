@@ -37,7 +37,7 @@ struct ContactPoint {
   std::uint64_t feature;
 };
 
-/// At most so many points a manifold.
+/// At most so many points per manifold.
 inline constexpr std::uint32_t kManifoldPoints = 4;
 
 }  // namespace winnow

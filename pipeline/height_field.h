@@ -28,9 +28,9 @@ struct HeightSamples {
 /// A surface over a regular grid, z up: each square is two triangles that share the diagonal from
 /// its lowest column and row to its highest. No tree of boxes: cells are found by division, and a
 /// pyramid of the least and greatest heights of 16 x 16 squares, and of 4 x 4 of what lies below,
-/// prunes: 4 bytes a sample, and a thirtieth of a byte for the pyramid. Triangle 2 * square is the
-/// one with the corner at (column + 1, row), 2 * square + 1 that at (column, row + 1); squares are
-/// numbered row by row.
+/// prunes: 4 bytes per sample, and a thirtieth of a byte for the pyramid. Triangle 2 * square is
+/// the one with the corner at (column + 1, row), 2 * square + 1 that at (column, row + 1); squares
+/// are numbered row by row.
 class WINNOW_API HeightField {
  public:
   explicit HeightField(

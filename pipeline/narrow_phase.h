@@ -54,8 +54,8 @@ struct NarrowStatistics {
 };
 
 /// Pairs of bodies to overlaps, distances or contacts. Sorts pairs by the kinds of their shapes and
-/// computes those of one kind many at a time. Keeps scratch memory from call to call: one object a
-/// thread of the caller. What was moved from is as if new.
+/// computes those of one kind many at a time. Keeps scratch memory from call to call: one object
+/// per thread of the caller. What was moved from is as if new.
 class WINNOW_API NarrowPhase {
  public:
   /// Every allocation comes from `memory`, which must outlive the object; none before the first

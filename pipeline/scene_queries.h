@@ -73,7 +73,7 @@ struct ShapeCast {
   double max_t = 1.0;
 };
 
-/// Questions to the exact shapes of a scene. One object a thread: it keeps scratch memory from
+/// Questions to the exact shapes of a scene. One object per thread: it keeps scratch memory from
 /// question to question, so that one that resembles an earlier one allocates nothing. Any number of
 /// them may ask a scene at the same time while nothing changes it; call `Scene::refresh` first, and
 /// after every change of bodies or of composite shapes in place, else questions are

@@ -11,8 +11,8 @@
 namespace winnow {
 
 /// Keys of one partition: slot -> (stamp, row, client data). A removed slot's row links the free
-/// list, so keys cost 8 bytes a slot and no search. Live stamps have an odd generation, which lets
-/// a forged key never reach a free slot.
+/// list, so keys cost 8 bytes per slot and no search. Live stamps have an odd generation, which
+/// lets a forged key never reach a free slot.
 class KeyTable {
  public:
   explicit KeyTable(std::pmr::memory_resource* memory) noexcept;

@@ -15,7 +15,7 @@ namespace winnow {
 }
 
 /// Stable sort of (key << first_bit | value) by the lowest `bits` bits of the key: a
-/// least-significant-digit radix sort of 11 bits a pass. `items` and `spare` hold `count` each;
+/// least-significant-digit radix sort of 11 bits per pass. `items` and `spare` hold `count` each;
 /// returns the one of the two that holds the result. O(count * bits / 11); the same result on any
 /// number of threads.
 [[nodiscard]] std::uint64_t* radix_sort(std::uint64_t* items, std::uint64_t* spare,

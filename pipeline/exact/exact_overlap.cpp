@@ -1,7 +1,7 @@
 #include "pipeline/exact/exact_overlap.h"
 
 #include "pipeline/exact/core_difference.h"
-#include "pipeline/exact/origin_walk.h"
+#include "pipeline/exact/exact_gjk.h"
 
 #include <algorithm>
 #include <cmath>

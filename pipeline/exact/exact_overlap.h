@@ -24,15 +24,15 @@ enum class ExactVerdict : unsigned char {
 /// which the shapes are closest or overlap least, as far as double can tell: tried first.
 ///
 /// Cores are hulls of points, and so is the set of their differences: the algorithm of Gilbert,
-/// Johnson and Keerthi (1988) without rounding walks to its point nearest to the origin, whatever
-/// the dimension and however the shape's faces were merged. Without rounding radii that is a yes or
-/// no, and where the origin is on the boundary of what was found, a supporting plane is sought;
-/// with them the square of the distance, a rational number, is compared. Coordinates are multiplied
-/// by the squares of both quaternions' lengths, so that there are only sums and products.
-/// Half-spaces by the lowest point of the other. Cylinders and cones are decided where `axis`
-/// proves that they are apart, where polygons inscribed in their discs overlap, or where both
-/// touch. For pairs whose sign double cannot tell: 5 to 100 microseconds, more for large hulls,
-/// whose vertices are first sifted in double.
+/// Johnson and Keerthi (1988) without rounding descends to its point nearest to the origin,
+/// whatever the dimension and however the shape's faces were merged. Without rounding radii that is
+/// a yes or no, and where the origin is on the boundary of what was found, a supporting plane is
+/// sought; with them the square of the distance, a rational number, is compared. Coordinates are
+/// multiplied by the squares of both quaternions' lengths, so that there are only sums and
+/// products. Half-spaces by the lowest point of the other. Cylinders and cones are decided where
+/// `axis` proves that they are apart, where polygons inscribed in their discs overlap, or where
+/// both touch. For pairs whose sign double cannot tell: 5 to 100 microseconds, more for large
+/// hulls, whose vertices are first sifted in double.
 [[nodiscard]] ExactVerdict exact_overlap(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
                                          ShapeId b, const Pose& pose_b,
                                          const double axis[3]) noexcept;

@@ -5,7 +5,7 @@
 
 namespace winnow {
 
-// One table a pair kind, defined in the file of its name.
+// One table per kind of pair, defined in the file of its name.
 WINNOW_KERNELS(NarrowKernels, sphere_sphere_kernels);
 WINNOW_KERNELS(NarrowKernels, sphere_capsule_kernels);
 WINNOW_KERNELS(NarrowKernels, sphere_box_kernels);

@@ -10,18 +10,18 @@
 
 namespace winnow {
 
-/// At most so many pairs a job.
+/// At most so many pairs per job.
 inline constexpr std::uint32_t kJobPairs = 512;
 
 /// Kernels write contact points by whole vectors: the last of them may reach this far beyond.
 inline constexpr std::uint32_t kContactSlack = 16;
 
-/// Contact points in the order in which they are written, one column a member.
+/// Contact points in the order in which they are written, one column per member.
 struct ContactWriter {
   float* position[3];
   float* depth;
   std::uint64_t* feature;
-  /// Points so far. There is room for kManifoldPoints a pair of the job, and for kContactSlack
+  /// Points so far. There is room for kManifoldPoints per pair of the job, and for kContactSlack
   /// more.
   std::uint32_t size;
 };

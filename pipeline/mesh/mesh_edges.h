@@ -19,8 +19,8 @@ inline constexpr std::uint32_t kCoveredEdge = ~0U - 1U;
 /// Finds for every edge the one other triangle that has it. Vertices at the same place count as
 /// one, since files split them where colours or normals differ; triangles whose corners are fewer
 /// than three places then are no one's neighbours, so that a sliver closed to a segment does not
-/// part the triangles on both its sides. `neighbours` holds three numbers a slot. False, and it is
-/// empty, if memory is refused. O(n log n), O(n) where few triangles share a vertex.
+/// part the triangles on both its sides. `neighbours` holds three numbers per slot. False, and it
+/// is empty, if memory is refused. O(n log n), O(n) where few triangles share a vertex.
 [[nodiscard]] bool find_neighbours(const MeshView& mesh, Column<std::uint32_t>& neighbours);
 
 /// Says in the top bits of `triangle` which edges are active: those without a neighbour, and those

@@ -69,7 +69,7 @@ int main() {
   shapes.add(winnow::SphereShape{0.25}, ball);
   // [scene queries]
   scene.refresh();                  // after changes; then any number of threads may ask
-  winnow::SceneQueries ask(scene);  // one a thread
+  winnow::SceneQueries ask(scene);  // one per thread
   winnow::SceneHit hit;             // body, triangle or child, t, normal, point
   ask.closest(winnow::ShapeRay{{20, 0, 9}, {0, 0, -1}, 100.0}, hit);
   ask.closest(winnow::ShapeCast{ball, winnow::Pose::at(0, 0, 9), {0, 0, -20}, 1.0}, hit);

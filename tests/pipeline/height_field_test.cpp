@@ -114,10 +114,11 @@ struct Shown {
 };
 
 /// All are shown that may be within the limit, and after the visitor says so only what is nearer.
-template <typename Walk, typename Measure>
-void expect_walk(const HeightField& field, double limit, Walk&& walk, Measure&& measure) {
+template <typename Traverse, typename Measure>
+void expect_traversal(const HeightField& field, double limit, Traverse&& traverse,
+                      Measure&& measure) {
   Shown all{{}, std::numeric_limits<double>::infinity()};
-  walk(limit, SlotVisitor{Shown::visit, &all});
+  traverse(limit, SlotVisitor{Shown::visit, &all});
   std::sort(all.numbers.begin(), all.numbers.end());
   double nearest = std::numeric_limits<double>::infinity();
   std::uint32_t first = 0;
@@ -137,7 +138,7 @@ void expect_walk(const HeightField& field, double limit, Walk&& walk, Measure&& 
   EXPECT_EQ(std::adjacent_find(all.numbers.begin(), all.numbers.end()), all.numbers.end());
   if (all.numbers.empty()) return;
   Shown some{{}, nearest};
-  walk(limit, SlotVisitor{Shown::visit, &some});
+  traverse(limit, SlotVisitor{Shown::visit, &some});
   EXPECT_EQ(std::count(some.numbers.begin(), some.numbers.end(), first), 1);
   EXPECT_LE(some.numbers.size(), all.numbers.size());
 }
@@ -154,7 +155,7 @@ TEST(HeightFields, show_what_a_sweep_meets_and_what_is_near) {
       d[axis] = random.chance(0.2) ? 0.0 : random.uniform(-10, 10);
     }
     const double limit = random.uniform(0, 4);
-    expect_walk(
+    expect_traversal(
         f.field, limit,
         [&](double t, const SlotVisitor& visitor) {
           height_sweep(grid_of(f.field), min, max, d, t, visitor);
@@ -174,7 +175,7 @@ TEST(HeightFields, show_what_a_sweep_meets_and_what_is_near) {
           }
           return entry <= exit ? entry : std::numeric_limits<double>::infinity();
         });
-    expect_walk(
+    expect_traversal(
         f.field, limit,
         [&](double t, const SlotVisitor& visitor) {
           height_near(grid_of(f.field), min, max, t, visitor);

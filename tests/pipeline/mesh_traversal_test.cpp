@@ -129,14 +129,14 @@ class Meshes : public testing::Test {
 using Slots = std::vector<std::uint32_t>;
 using SlotPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// Walks twice: first without room, then with what was counted.
-template <typename Walk>
-Slots collect(Walk&& walk) {
+/// Traverses twice: first without room, then with what was counted.
+template <typename Traverse>
+Slots collect(Traverse&& traverse) {
   SlotSink sink;
-  walk(sink);
+  traverse(sink);
   Slots slots(sink.size);
   sink = {slots.data(), slots.size(), 0};
-  walk(sink);
+  traverse(sink);
   EXPECT_EQ(sink.size, slots.size());
   return slots;
 }

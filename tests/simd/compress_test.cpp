@@ -8,7 +8,7 @@
 #include <bit>
 #include <vector>
 
-#include "tests/simd/wide_ops.h"
+#include "tests/simd/lanes_ops.h"
 #include "tests/support/config.h"
 
 namespace winnow::test {
@@ -28,7 +28,7 @@ std::vector<std::uint32_t> packed(std::uint32_t mask) {
 
 class Compress : public testing::TestWithParam<Isa> {
  protected:
-  const WideOps& ops() { return wide_ops(); }
+  const LanesOps& ops() { return lanes_ops(); }
 
  private:
   IsaScope isa_{GetParam()};

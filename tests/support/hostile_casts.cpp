@@ -113,7 +113,7 @@ Aabb bounded(const Aabb& box) {
   return finite(result);
 }
 
-// A place from which a walk along the direction comes to the point, up to rounding.
+// A place from which motion along the direction comes to the point, up to rounding.
 Vector3f before(const Vector3f& point, const Vector3f& direction, const Aabb& box, Random& random) {
   if (random.chance(0.2)) return point;
   float size = std::max((box.max - box.min).maxCoeff(), 1e-3F * point.cwiseAbs().maxCoeff());

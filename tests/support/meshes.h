@@ -10,7 +10,7 @@
 
 namespace winnow::test {
 
-/// A triangle mesh as a caller has it: three corners a triangle, one triangle after another.
+/// A triangle mesh as a caller has it: three corners per triangle, one triangle after another.
 struct MeshData {
   std::string name;
   std::vector<Eigen::Vector3f> vertices;

@@ -8,7 +8,7 @@
 
 namespace winnow::test {
 
-/// Unit cubes, positions uniform in a cube of side cbrt(2 n): about two pairs an object.
+/// Unit cubes, positions uniform in a cube of side cbrt(2 n): about two pairs per object.
 [[nodiscard]] std::vector<Aabb> uniform_boxes(std::size_t count, std::uint64_t stream = 1);
 
 /// A few dense Gaussian clusters.

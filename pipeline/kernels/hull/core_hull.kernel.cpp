@@ -65,10 +65,10 @@ constexpr BoxTopology make_box_topology() {
 
 inline constexpr BoxTopology kBoxTopology = make_box_topology();
 
-/// A triangle's two sides, and an edge that both have.
 /// What the few roundings of a length may take from it, as a factor.
 inline constexpr double kOverRoundings = 1.0 + 1e-15;
 
+/// A triangle's two sides, and an edge that both have.
 inline constexpr std::uint32_t kTriangleLoop[6] = {0, 1, 2, 0, 2, 1};
 inline constexpr std::uint32_t kTriangleLoopEdge[6] = {0, 1, 2, 2, 1, 0};
 inline constexpr HullEdge kTriangleEdges[3] = {

@@ -3,7 +3,7 @@
 #include "simd/lanes/lanes.h"
 #include "simd/lanes/rows.h"
 
-#include "tests/simd/wide_ops.h"
+#include "tests/simd/lanes_ops.h"
 
 #define WINNOW_TEXT_2(name) #name
 #define WINNOW_TEXT(name) WINNOW_TEXT_2(name)
@@ -97,8 +97,8 @@ namespace winnow::test {
 
 namespace isa = winnow::WINNOW_ISA_NAME;
 
-extern const WideOps WINNOW_KERNEL_TABLE(wide_ops);
-const WideOps WINNOW_KERNEL_TABLE(wide_ops){
+extern const LanesOps WINNOW_KERNEL_TABLE(lanes_ops);
+const LanesOps WINNOW_KERNEL_TABLE(lanes_ops){
     .load_store = isa::load_store_floats,
     .load_unaligned_store = isa::load_unaligned_store_floats,
     .load_store_uint = isa::load_store_uints,

@@ -11,7 +11,7 @@
 
 namespace winnow::test {
 
-struct WideOps {
+struct LanesOps {
   void (*load_store)(const float* aligned, float* out);
   void (*load_unaligned_store)(const float* in, float* out);
   void (*load_store_uint)(const std::uint32_t* in, std::uint32_t* out);
@@ -47,6 +47,6 @@ struct WideOps {
   const char* isa_name;
 };
 
-WINNOW_KERNELS(WideOps, wide_ops);
+WINNOW_KERNELS(LanesOps, lanes_ops);
 
 }  // namespace winnow::test

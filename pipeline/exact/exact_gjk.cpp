@@ -1,4 +1,4 @@
-#include "pipeline/exact/origin_walk.h"
+#include "pipeline/exact/exact_gjk.h"
 
 #include <cstdint>
 
@@ -131,13 +131,13 @@ void append(ExactSimplex& simplex, const DifferenceVertex& vertex) noexcept {
   ++simplex.size;
 }
 
-/// The algorithm of Gilbert, Johnson and Keerthi (1988), exactly: walks towards the origin until
+/// The algorithm of Gilbert, Johnson and Keerthi (1988), exactly: descends towards the origin until
 /// the simplex contains it (in_face) or `is_outside(direction, height)` says that it never will.
 /// `support` answers false if there are no points. Without rounding each step comes strictly
 /// nearer, so no simplex returns and it ends.
 template <typename Support, typename Outside>
-[[nodiscard]] Place walk(const Support& support, const Outside& is_outside, ExactVector direction,
-                         ExactSimplex& simplex) noexcept {
+[[nodiscard]] Place descend(const Support& support, const Outside& is_outside,
+                            ExactVector direction, ExactSimplex& simplex) noexcept {
   DifferenceVertex vertex;
   Dyadic height;
   simplex.size = 0;
@@ -209,7 +209,7 @@ template <typename Support, typename Outside>
     const auto is_outside = [](const ExactVector&, const Dyadic& height) {
       return height.sign() < 0;
     };
-    const Place place = walk(support, is_outside, hint, face);
+    const Place place = descend(support, is_outside, hint, face);
     if (place == Place::outside) return ExactVerdict::touching;
     if (place == Place::unknown) return ExactVerdict::undecided;
   }
@@ -241,7 +241,7 @@ template <typename Support, typename Outside>
     }
     return compare(height, dot(d, simplex.point[0])) <= 0;
   };
-  const Place place = walk(support, is_outside, direction, simplex);
+  const Place place = descend(support, is_outside, direction, simplex);
   if (apart) return ExactVerdict::separated;
   if (place == Place::in_face) return ExactVerdict::overlapping;
   if (place == Place::unknown) return ExactVerdict::undecided;
@@ -264,7 +264,7 @@ ExactVerdict locate_origin(const CoreDifference& difference, const Dyadic& round
   const auto is_outside = [](const ExactVector&, const Dyadic& height) {
     return height.sign() < 0;
   };
-  const Place place = walk(support, is_outside, direction, simplex);
+  const Place place = descend(support, is_outside, direction, simplex);
   if (place == Place::outside) return ExactVerdict::separated;
   if (place == Place::unknown) return ExactVerdict::undecided;
   return boundary_or_inside(difference, simplex, direction);

@@ -11,13 +11,13 @@
 #include <limits>
 #include <vector>
 
-#include "tests/simd/wide_ops.h"
+#include "tests/simd/lanes_ops.h"
 #include "tests/support/config.h"
 #include "tests/support/random.h"
 
 namespace winnow::test {
 
-WINNOW_DEFINE_KERNELS(WideOps, wide_ops)
+WINNOW_DEFINE_KERNELS(LanesOps, lanes_ops)
 
 namespace {
 
@@ -33,7 +33,7 @@ constexpr std::array kHostile{0.0F,       -0.0F,          1.0F,    -1.0F,    kIn
 
 class Wide : public testing::TestWithParam<Isa> {
  protected:
-  const WideOps& ops() { return wide_ops(); }
+  const LanesOps& ops() { return lanes_ops(); }
 
   // Sixteen floats: hostile ones, ordinary ones and, if asked for, NaNs.
   Floats lanes(bool with_nan = false) {
