@@ -147,53 +147,6 @@ TestPatch square(double half, double height, double turn = 0.0) {
   return patch;
 }
 
-TEST(ContactPatch, the_deepest_point_comes_first_and_all_lie_on_both_patches) {
-  Random random(1);
-  for (std::size_t round = 0; round < scaled(20'000); ++round) {
-    const Vector3d normal = random_direction(random);
-    const double lean = random.chance(0.5) ? 1.0 : 1e-3;
-    TestPatch a = random_patch(random, normal, lean, 3 + random.below(6));
-    TestPatch b = random_patch(random, normal, lean, 3 + random.below(6));
-    const double margin = random.uniform(0.0, 0.5);
-    const auto points = meet(a, b, normal, margin);
-    ASSERT_GE(points.size(), 1U);
-    const auto most = deepest(a, b, normal);
-    if (!most) continue;
-    ASSERT_NEAR(points[0].depth, *most, 2e-6) << round;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const auto top = height_at(a, normal, position(points[i]), 1e-5);
-      const auto bottom = height_at(b, normal, position(points[i]), 1e-5);
-      ASSERT_TRUE(top && bottom) << round;
-      // Heights of leaning patches change with the rounding of positions to float.
-      EXPECT_NEAR(points[i].depth, *top - *bottom + a.rounding + b.rounding, 1e-4) << round;
-      EXPECT_NEAR(normal.dot(position(points[i])), 0.5 * (*top + a.rounding + *bottom - b.rounding),
-                  1e-4);
-      if (i > 0) {
-        EXPECT_GE(points[i].depth, -margin - 1e-6);
-      }
-    }
-  }
-}
-
-TEST(ContactPatch, swapped_patches_give_the_same_points_with_swapped_features) {
-  Random random(2);
-  for (std::size_t round = 0; round < scaled(5'000); ++round) {
-    const Vector3d normal = random_direction(random);
-    TestPatch a = random_patch(random, normal, 1.0, 1 + random.below(7));
-    TestPatch b = random_patch(random, normal, 1.0, 1 + random.below(7));
-    const auto points = meet(a, b, normal);
-    const auto mirrored = meet(b, a, -normal);
-    ASSERT_EQ(points.size(), mirrored.size()) << round;
-    EXPECT_NEAR(points[0].depth, mirrored[0].depth, 1e-6);
-    for (const ContactPoint& p : points) {
-      EXPECT_TRUE(std::any_of(mirrored.begin(), mirrored.end(), [&](const ContactPoint& q) {
-        return p.feature == (q.feature << 32U | q.feature >> 32U) &&
-               (position(p) - position(q)).norm() < 1e-5;
-      })) << round;
-    }
-  }
-}
-
 TEST(ContactPatch, a_square_on_a_larger_one_meets_it_in_its_corners) {
   TestPatch a = square(2.0, 1.0);
   TestPatch b = square(1.0, 0.75);
@@ -326,6 +279,53 @@ TEST(ContactPatch, scale_does_not_matter) {
     const auto points = meet(a, b, Vector3d::UnitZ());
     ASSERT_EQ(points.size(), 4U);
     for (const ContactPoint& p : points) EXPECT_NEAR(p.depth / scale, 0.1, 1e-6);
+  }
+}
+
+TEST(ContactPatch, the_deepest_point_comes_first_and_all_lie_on_both_patches) {
+  Random random(1);
+  for (std::size_t round = 0; round < scaled(20'000); ++round) {
+    const Vector3d normal = random_direction(random);
+    const double lean = random.chance(0.5) ? 1.0 : 1e-3;
+    TestPatch a = random_patch(random, normal, lean, 3 + random.below(6));
+    TestPatch b = random_patch(random, normal, lean, 3 + random.below(6));
+    const double margin = random.uniform(0.0, 0.5);
+    const auto points = meet(a, b, normal, margin);
+    ASSERT_GE(points.size(), 1U);
+    const auto most = deepest(a, b, normal);
+    if (!most) continue;
+    ASSERT_NEAR(points[0].depth, *most, 2e-6) << round;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto top = height_at(a, normal, position(points[i]), 1e-5);
+      const auto bottom = height_at(b, normal, position(points[i]), 1e-5);
+      ASSERT_TRUE(top && bottom) << round;
+      // Heights of leaning patches change with the rounding of positions to float.
+      EXPECT_NEAR(points[i].depth, *top - *bottom + a.rounding + b.rounding, 1e-4) << round;
+      EXPECT_NEAR(normal.dot(position(points[i])), 0.5 * (*top + a.rounding + *bottom - b.rounding),
+                  1e-4);
+      if (i > 0) {
+        EXPECT_GE(points[i].depth, -margin - 1e-6);
+      }
+    }
+  }
+}
+
+TEST(ContactPatch, swapped_patches_give_the_same_points_with_swapped_features) {
+  Random random(2);
+  for (std::size_t round = 0; round < scaled(5'000); ++round) {
+    const Vector3d normal = random_direction(random);
+    TestPatch a = random_patch(random, normal, 1.0, 1 + random.below(7));
+    TestPatch b = random_patch(random, normal, 1.0, 1 + random.below(7));
+    const auto points = meet(a, b, normal);
+    const auto mirrored = meet(b, a, -normal);
+    ASSERT_EQ(points.size(), mirrored.size()) << round;
+    EXPECT_NEAR(points[0].depth, mirrored[0].depth, 1e-6);
+    for (const ContactPoint& p : points) {
+      EXPECT_TRUE(std::any_of(mirrored.begin(), mirrored.end(), [&](const ContactPoint& q) {
+        return p.feature == (q.feature << 32U | q.feature >> 32U) &&
+               (position(p) - position(q)).norm() < 1e-5;
+      })) << round;
+    }
   }
 }
 

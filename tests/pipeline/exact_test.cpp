@@ -109,37 +109,6 @@ void expect_lattice_truth(ShapeKind a, ShapeKind b, std::size_t count) {
 constexpr ShapeKind kCores[] = {ShapeKind::sphere, ShapeKind::capsule, ShapeKind::box,
                                 ShapeKind::triangle, ShapeKind::hull};
 
-TEST(ExactOverlap, agrees_with_integers_on_small_shapes) {
-  for (const ShapeKind a : kCores) {
-    for (const ShapeKind b : kCores) {
-      const bool large = (a == ShapeKind::box || a == ShapeKind::hull) &&
-                         (b == ShapeKind::box || b == ShapeKind::hull);
-      expect_lattice_truth(a, b, scaled(large ? 200 : 1500));
-    }
-  }
-}
-
-TEST(ExactOverlap, verdicts_turn_with_both_shapes) {
-  Random random(17);
-  for (const ShapeKind a : {ShapeKind::triangle, ShapeKind::hull}) {
-    for (const ShapeKind b : {ShapeKind::triangle, ShapeKind::hull}) {
-      for (std::size_t i = 0; i < scaled(300); ++i) {
-        Pair pair;
-        HullColumns columns[2];
-        set_lattice(random, pair, columns);
-        // Their places differ by their vertices only, so that any pose of both leaves them exact.
-        pair.poses[0] = pair.poses[1] = {};
-        const ExactVerdict truth = lattice_truth(pair.tables(), ShapeId::of(a, 0), pair.poses[0],
-                                                 ShapeId::of(b, 1), pair.poses[1]);
-        for (double& q : pair.poses[0].orientation) q = random.uniform(-1.0, 1.0);
-        for (double& x : pair.poses[0].position) x = random.uniform(-1e9, 1e9);
-        pair.poses[1] = pair.poses[0];
-        ASSERT_EQ(pair.verdict(a, b), truth) << i << ' ' << to_string(a) << ' ' << to_string(b);
-      }
-    }
-  }
-}
-
 TEST(ExactOverlap, sees_one_unit_in_the_last_place) {
   Pair pair;
   pair.boxes[0] = {{0.1, 0.3, 0.7}, 0.0};
@@ -158,25 +127,6 @@ TEST(ExactOverlap, sees_one_unit_in_the_last_place) {
   EXPECT_EQ(pair.verdict(ShapeKind::sphere, ShapeKind::sphere), ExactVerdict::overlapping);
   pair.poses[1] = Pose::at(0.0, 0.0, std::nextafter(0.3, 1.0));
   EXPECT_EQ(pair.verdict(ShapeKind::sphere, ShapeKind::sphere), ExactVerdict::separated);
-}
-
-TEST(ExactOverlap, answers_do_not_depend_on_size_or_on_where_both_stand) {
-  for (const int exponent : {-900, -60, 0, 60, 900}) {
-    const double unit = std::ldexp(1.0, exponent);
-    Pair pair;
-    pair.boxes[0] = {{unit, unit, unit}, 0.0};
-    pair.capsules[1] = {unit, 2.0 * unit};
-    for (const double at : {0.0, 1024.0, 0x1p40}) {
-      pair.poses[0] = Pose::at(at * unit, 0.0, -at * unit);
-      pair.poses[1] = Pose::at((at + 2.0) * unit, 0.0, -at * unit);
-      EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::capsule), ExactVerdict::touching);
-      pair.capsules[1].radius = std::nextafter(unit, 0.0);
-      EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::capsule), ExactVerdict::separated);
-      pair.capsules[1].radius = std::nextafter(unit, 4.0 * unit);
-      EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::capsule), ExactVerdict::overlapping);
-      pair.capsules[1].radius = unit;
-    }
-  }
 }
 
 TEST(ExactOverlap, half_turns_with_rounded_quaternions_are_decided) {
@@ -291,6 +241,64 @@ TEST(ExactOverlap, discs_without_radius_are_segments) {
   EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::triangle), ExactVerdict::separated);
 }
 
+TEST(ExactOverlap, numbers_too_far_apart_are_undecided) {
+  Pair pair;
+  pair.poses[1].orientation[1] = 1e-300;
+  pair.poses[1].position[0] = 1.0;
+  for (BoxShape& box : pair.boxes) box = {{1.0, 1.0, 1.0}, 0.0};
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::undecided);
+}
+
+TEST(ExactOverlap, agrees_with_integers_on_small_shapes) {
+  for (const ShapeKind a : kCores) {
+    for (const ShapeKind b : kCores) {
+      const bool large = (a == ShapeKind::box || a == ShapeKind::hull) &&
+                         (b == ShapeKind::box || b == ShapeKind::hull);
+      expect_lattice_truth(a, b, scaled(large ? 200 : 1500));
+    }
+  }
+}
+
+TEST(ExactOverlap, verdicts_turn_with_both_shapes) {
+  Random random(17);
+  for (const ShapeKind a : {ShapeKind::triangle, ShapeKind::hull}) {
+    for (const ShapeKind b : {ShapeKind::triangle, ShapeKind::hull}) {
+      for (std::size_t i = 0; i < scaled(300); ++i) {
+        Pair pair;
+        HullColumns columns[2];
+        set_lattice(random, pair, columns);
+        // Their places differ by their vertices only, so that any pose of both leaves them exact.
+        pair.poses[0] = pair.poses[1] = {};
+        const ExactVerdict truth = lattice_truth(pair.tables(), ShapeId::of(a, 0), pair.poses[0],
+                                                 ShapeId::of(b, 1), pair.poses[1]);
+        for (double& q : pair.poses[0].orientation) q = random.uniform(-1.0, 1.0);
+        for (double& x : pair.poses[0].position) x = random.uniform(-1e9, 1e9);
+        pair.poses[1] = pair.poses[0];
+        ASSERT_EQ(pair.verdict(a, b), truth) << i << ' ' << to_string(a) << ' ' << to_string(b);
+      }
+    }
+  }
+}
+
+TEST(ExactOverlap, answers_do_not_depend_on_size_or_on_where_both_stand) {
+  for (const int exponent : {-900, -60, 0, 60, 900}) {
+    const double unit = std::ldexp(1.0, exponent);
+    Pair pair;
+    pair.boxes[0] = {{unit, unit, unit}, 0.0};
+    pair.capsules[1] = {unit, 2.0 * unit};
+    for (const double at : {0.0, 1024.0, 0x1p40}) {
+      pair.poses[0] = Pose::at(at * unit, 0.0, -at * unit);
+      pair.poses[1] = Pose::at((at + 2.0) * unit, 0.0, -at * unit);
+      EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::capsule), ExactVerdict::touching);
+      pair.capsules[1].radius = std::nextafter(unit, 0.0);
+      EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::capsule), ExactVerdict::separated);
+      pair.capsules[1].radius = std::nextafter(unit, 4.0 * unit);
+      EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::capsule), ExactVerdict::overlapping);
+      pair.capsules[1].radius = unit;
+    }
+  }
+}
+
 TEST(ExactOverlap, any_axis_will_do) {
   const double inf = std::numeric_limits<double>::infinity();
   const double axes[][3] = {{0, 0, 0},     {NAN, 1, 0},       {inf, 0, 0}, {1e-320, 1e-310, 0},
@@ -303,14 +311,6 @@ TEST(ExactOverlap, any_axis_will_do) {
     pair.poses[1] = Pose::at(2.0, 2.5, 1.0);
     EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box, axis), ExactVerdict::separated);
   }
-}
-
-TEST(ExactOverlap, numbers_too_far_apart_are_undecided) {
-  Pair pair;
-  pair.poses[1].orientation[1] = 1e-300;
-  pair.poses[1].position[0] = 1.0;
-  for (BoxShape& box : pair.boxes) box = {{1.0, 1.0, 1.0}, 0.0};
-  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::undecided);
 }
 
 }  // namespace

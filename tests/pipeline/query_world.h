@@ -10,12 +10,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
 #include "tests/pipeline/pair_scenes.h"
 
 namespace winnow::test {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Where scenes stand, on each axis.
+inline constexpr double kCenters[] = {0.0, 1e6, -1e8};
 
 /// A convex part about the position of its body.
 struct FlatPart {
@@ -76,6 +81,18 @@ inline Pose random_pose(double spread, Random& random) {
   for (double& x : pose.position) x = random.uniform(-spread, spread);
   for (double& q : pose.orientation) q = random.uniform(-1.0, 1.0);
   return pose;
+}
+
+/// Any direction, some along an axis or in a plane of two.
+inline void draw_direction(double length, Random& random, double direction[3]) {
+  for (int i = 0; i < 3; ++i) direction[i] = length * random.uniform(-1.0, 1.0);
+  if (random.chance(0.3)) direction[random.below(3)] = 0.0;
+  if (random.chance(0.2)) direction[0] = direction[1] = 0.0;
+  if (direction[0] == 0.0 && direction[1] == 0.0 && direction[2] == 0.0) direction[0] = -length;
+}
+
+inline double length_of(const double v[3]) {
+  return std::hypot(v[0], v[1], v[2]);
 }
 
 /// A wavy sheet of 2 n^2 triangles, [-1, 1] on x and y.

@@ -203,46 +203,6 @@ class PartsWorld {
   return parts;
 }
 
-TEST(SceneParts, every_pair_of_parts_that_touches_is_reported_and_no_other) {
-  PartsWorld world;
-  Random random(47);
-  for (int round = 0; round < 3; ++round) {
-    const std::size_t count = scaled(40);
-    std::vector<BodyDefinition> bodies;
-    for (std::size_t i = 0; i < count; ++i) {
-      bodies.push_back(
-          world.body(i % world.kinds(), 1.0 * std::cbrt(8.0 * static_cast<double>(count)), random));
-      bodies.back().data = i;
-      if (i % 7 == 6) bodies.back().motion = Motion::fixed;
-    }
-    Parts truth;
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t j = i + 1; j < count; ++j) {
-        if (bodies[i].motion == Motion::fixed && bodies[j].motion == Motion::fixed) continue;
-        world.touching(bodies[i], bodies[j], truth);
-      }
-    }
-    EXPECT_GT(truth.size(), count / 2);
-    for (const int threads : {1, 2}) {
-      Threads arena(threads);
-      arena.run([&] {
-        Scene scene(world.convex(), {.composites = &world.pool()});
-        std::vector<Key> keys(count);
-        ASSERT_EQ(scene.add(bodies, keys), Status::ok);
-        for (const ContactLevel level :
-             {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
-          Contacts contacts;
-          ASSERT_EQ(scene.collide(level, contacts), Status::ok);
-          const Parts found = parts_of(contacts);
-          for (const auto& pair : truth) EXPECT_EQ(found.count(pair), 1U) << "missed";
-          // Inner edges may be given the depth of the face, which is the greater one.
-          EXPECT_TRUE(level != ContactLevel::boolean || found.size() == truth.size());
-        }
-      });
-    }
-  }
-}
-
 /// A floor of triangles at z = 0, over [-10, 10] x [-10, 10].
 [[nodiscard]] ShapeId flat_floor(CompositePool& pool) {
   std::vector<Eigen::Vector3f> points;
@@ -310,59 +270,6 @@ TEST(SceneParts, a_ball_that_rolls_over_a_flat_floor_of_triangles_feels_the_floo
   return solve_pair(tables, body.shape, body.pose, ShapeId::of(ShapeKind::triangle, 0), {},
                     ContactLevel::distance, 0.0, counts)
       .distance;
-}
-
-TEST(SceneParts, carried_contacts_with_a_mesh_miss_nothing_deeper_than_the_bound) {
-  ShapePool convex;
-  CompositePool pool(convex);
-  ShapeId box;
-  ASSERT_EQ(convex.add(BoxShape{{0.6, 0.4, 0.3}}, box), Status::ok);
-  const MeshData data = terrain(24);
-  ShapeId ground;
-  ASSERT_EQ(pool.add_mesh(data.points(), data.indices(), ground), Status::ok);
-  const double carry_over = 0.01;
-  Scene carried(convex, {.carry_over = carry_over, .composites = &pool});
-  Scene exact(convex, {.composites = &pool});
-  std::vector<BodyDefinition> bodies{{.shape = ground, .motion = Motion::fixed, .data = 1000}};
-  Random random(53);
-  for (ClientData i = 0; i < 60; ++i) {
-    const Eigen::Vector3f& v = data.vertices[random.below(data.vertices.size())];
-    BodyDefinition body{.shape = box,
-                        .pose = Pose::at(static_cast<double>(v.x()), static_cast<double>(v.y()),
-                                         static_cast<double>(v.z()) + random.uniform(-0.1, 0.5)),
-                        .data = i};
-    for (double& q : body.pose.orientation) q = random.uniform(-1.0, 1.0);
-    bodies.push_back(body);
-  }
-  std::vector<Key> keys(bodies.size());
-  std::vector<Key> exact_keys(bodies.size());
-  ASSERT_EQ(carried.add(bodies, keys), Status::ok);
-  ASSERT_EQ(exact.add(bodies, exact_keys), Status::ok);
-  Contacts contacts;
-  std::size_t kept = 0;
-  for (int frame = 0; frame < 15; ++frame) {
-    Contacts truth;
-    ASSERT_EQ(carried.collide(ContactLevel::manifold, contacts), Status::ok);
-    ASSERT_EQ(exact.collide(ContactLevel::manifold, truth), Status::ok);
-    kept += contacts.carried();
-    const Parts found = parts_of(contacts);
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-      if (truth.data_b()[i] != 1000) continue;
-      for (auto m = truth.manifold_first()[i]; m < truth.manifold_first()[i + 1]; ++m) {
-        const ClientData body = truth.data_a()[i];
-        const std::uint32_t triangle = truth.part_b()[m];
-        if (found.count({body, 1000, kWholeShape, triangle}) == 1) continue;
-        EXPECT_GT(distance_to(convex, bodies[body + 1], data, triangle), -carry_over);
-      }
-      EXPECT_EQ(shown(contacts).count({truth.data_a()[i], 1000}), 1U) << "a pair is missed";
-    }
-    for (std::size_t i = 1; i < bodies.size(); ++i) {
-      for (double& p : bodies[i].pose.position) p += random.uniform(-0.001, 0.001);
-      ASSERT_EQ(carried.move(keys[i], bodies[i].pose), Status::ok);
-      ASSERT_EQ(exact.move(exact_keys[i], bodies[i].pose), Status::ok);
-    }
-  }
-  EXPECT_GT(kept, bodies.size());
 }
 
 TEST(SceneParts, a_mesh_that_is_refitted_is_seen_at_its_new_place) {
@@ -458,6 +365,99 @@ TEST(SceneParts, a_scene_of_balls_takes_the_same_bytes_whether_or_not_there_coul
     EXPECT_EQ(scene.statistics().primitive_pairs, 0U);
   }
   EXPECT_EQ(bytes[0].total().reserved, bytes[1].total().reserved);
+}
+
+TEST(SceneParts, every_pair_of_parts_that_touches_is_reported_and_no_other) {
+  PartsWorld world;
+  Random random(47);
+  for (int round = 0; round < 3; ++round) {
+    const std::size_t count = scaled(40);
+    std::vector<BodyDefinition> bodies;
+    for (std::size_t i = 0; i < count; ++i) {
+      bodies.push_back(
+          world.body(i % world.kinds(), 1.0 * std::cbrt(8.0 * static_cast<double>(count)), random));
+      bodies.back().data = i;
+      if (i % 7 == 6) bodies.back().motion = Motion::fixed;
+    }
+    Parts truth;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = i + 1; j < count; ++j) {
+        if (bodies[i].motion == Motion::fixed && bodies[j].motion == Motion::fixed) continue;
+        world.touching(bodies[i], bodies[j], truth);
+      }
+    }
+    EXPECT_GT(truth.size(), count / 2);
+    for (const int threads : {1, 2}) {
+      Threads arena(threads);
+      arena.run([&] {
+        Scene scene(world.convex(), {.composites = &world.pool()});
+        std::vector<Key> keys(count);
+        ASSERT_EQ(scene.add(bodies, keys), Status::ok);
+        for (const ContactLevel level :
+             {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
+          Contacts contacts;
+          ASSERT_EQ(scene.collide(level, contacts), Status::ok);
+          const Parts found = parts_of(contacts);
+          for (const auto& pair : truth) EXPECT_EQ(found.count(pair), 1U) << "missed";
+          // Inner edges may be given the depth of the face, which is the greater one.
+          EXPECT_TRUE(level != ContactLevel::boolean || found.size() == truth.size());
+        }
+      });
+    }
+  }
+}
+
+TEST(SceneParts, carried_contacts_with_a_mesh_miss_nothing_deeper_than_the_bound) {
+  ShapePool convex;
+  CompositePool pool(convex);
+  ShapeId box;
+  ASSERT_EQ(convex.add(BoxShape{{0.6, 0.4, 0.3}}, box), Status::ok);
+  const MeshData data = terrain(24);
+  ShapeId ground;
+  ASSERT_EQ(pool.add_mesh(data.points(), data.indices(), ground), Status::ok);
+  const double carry_over = 0.01;
+  Scene carried(convex, {.carry_over = carry_over, .composites = &pool});
+  Scene exact(convex, {.composites = &pool});
+  std::vector<BodyDefinition> bodies{{.shape = ground, .motion = Motion::fixed, .data = 1000}};
+  Random random(53);
+  for (ClientData i = 0; i < 60; ++i) {
+    const Eigen::Vector3f& v = data.vertices[random.below(data.vertices.size())];
+    BodyDefinition body{.shape = box,
+                        .pose = Pose::at(static_cast<double>(v.x()), static_cast<double>(v.y()),
+                                         static_cast<double>(v.z()) + random.uniform(-0.1, 0.5)),
+                        .data = i};
+    for (double& q : body.pose.orientation) q = random.uniform(-1.0, 1.0);
+    bodies.push_back(body);
+  }
+  std::vector<Key> keys(bodies.size());
+  std::vector<Key> exact_keys(bodies.size());
+  ASSERT_EQ(carried.add(bodies, keys), Status::ok);
+  ASSERT_EQ(exact.add(bodies, exact_keys), Status::ok);
+  Contacts contacts;
+  std::size_t kept = 0;
+  for (int frame = 0; frame < 15; ++frame) {
+    Contacts truth;
+    ASSERT_EQ(carried.collide(ContactLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(exact.collide(ContactLevel::manifold, truth), Status::ok);
+    kept += contacts.carried();
+    const Parts found = parts_of(contacts);
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      if (truth.data_b()[i] != 1000) continue;
+      for (auto m = truth.manifold_first()[i]; m < truth.manifold_first()[i + 1]; ++m) {
+        const ClientData body = truth.data_a()[i];
+        const std::uint32_t triangle = truth.part_b()[m];
+        if (found.count({body, 1000, kWholeShape, triangle}) == 1) continue;
+        EXPECT_GT(distance_to(convex, bodies[body + 1], data, triangle), -carry_over);
+      }
+      EXPECT_EQ(shown(contacts).count({truth.data_a()[i], 1000}), 1U) << "a pair is missed";
+    }
+    for (std::size_t i = 1; i < bodies.size(); ++i) {
+      for (double& p : bodies[i].pose.position) p += random.uniform(-0.001, 0.001);
+      ASSERT_EQ(carried.move(keys[i], bodies[i].pose), Status::ok);
+      ASSERT_EQ(exact.move(exact_keys[i], bodies[i].pose), Status::ok);
+    }
+  }
+  EXPECT_GT(kept, bodies.size());
 }
 
 }  // namespace

@@ -4,19 +4,52 @@
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/scene/queries/shape_cast.h"
 
-#include <cstring>
-#include <limits>
-#include <thread>
-
 #include "tests/pipeline/query_world.h"
 #include "tests/support/config.h"
-#include "tests/support/counting_memory.h"
 
 namespace winnow::test {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kCenters[] = {0.0, 1e6, -1e8};
+TEST(SceneQueries, of_two_balls_in_a_row_are_answered_by_both_or_the_nearer) {
+  Random random(17);
+  QueryWorld world;
+  ShapeId ball;
+  ASSERT_EQ(world.shapes.pool.add(SphereShape{1.0}, ball), Status::ok);
+  world.add(ball, Pose::at(10, 0, 0), random);
+  world.add(ball, Pose::at(20, 0, 0), random);
+  world.add_to_scene();
+  SceneQueries ask(*world.scene);
+
+  SceneHit hit;
+  std::span<const SceneHit> hits;
+  const ShapeRay ray{{0, 0, 0}, {1, 0, 0}, kInfinity};
+  ASSERT_EQ(ask.closest(ray, hit), Status::ok);
+  EXPECT_EQ(hit.key, world.keys[0]);
+  EXPECT_DOUBLE_EQ(hit.t, 9.0);
+  EXPECT_DOUBLE_EQ(hit.normal[0], -1.0);
+  ASSERT_EQ(ask.all(ray, hits), Status::ok);
+  ASSERT_EQ(hits.size(), 2U);
+  EXPECT_DOUBLE_EQ(hits[1].t, 19.0);
+
+  ASSERT_EQ(ask.closest(ShapeCast{ball, {}, {1, 0, 0}, kInfinity}, hit, {}, 1e-9), Status::ok);
+  EXPECT_NEAR(hit.t, 8.0, 1e-8);
+
+  std::span<const SceneOverlap> overlaps;
+  ASSERT_EQ(ask.overlap(ball, Pose::at(18.5, 0, 0), overlaps), Status::ok);
+  ASSERT_EQ(overlaps.size(), 1U);
+  EXPECT_EQ(overlaps[0].key, world.keys[1]);
+
+  SceneDistance apart;
+  ASSERT_EQ(ask.distance(world.keys[0], world.keys[1], apart), Status::ok);
+  EXPECT_DOUBLE_EQ(apart.distance, 8.0);
+
+  const double origin[3] = {0, 0, 0};
+  std::span<const SceneDistance> near;
+  ASSERT_EQ(ask.nearest(origin, 1, kInfinity, near), Status::ok);
+  ASSERT_EQ(near.size(), 1U);
+  EXPECT_EQ(near[0].key, world.keys[0]);
+  EXPECT_DOUBLE_EQ(near[0].distance, 9.0);
+}
 
 struct BodyTime {
   bool hit = false;
@@ -101,18 +134,6 @@ void expect_hits(const QueryWorld& world, const std::vector<BodyTime>& truth,
   EXPECT_EQ(closest.t, hits[0].t);
   EXPECT_EQ(closest.part, hits[0].part);
   EXPECT_NEAR(closest.t, first, slack);
-}
-
-/// Any direction, some along an axis or in a plane of two.
-void draw_direction(double length, Random& random, double direction[3]) {
-  for (int i = 0; i < 3; ++i) direction[i] = length * random.uniform(-1.0, 1.0);
-  if (random.chance(0.3)) direction[random.below(3)] = 0.0;
-  if (random.chance(0.2)) direction[0] = direction[1] = 0.0;
-  if (direction[0] == 0.0 && direction[1] == 0.0 && direction[2] == 0.0) direction[0] = -length;
-}
-
-double length_of(const double v[3]) {
-  return std::hypot(v[0], v[1], v[2]);
 }
 
 TEST(SceneQueries, rays_meet_what_bodies_asked_one_by_one_say) {
@@ -354,380 +375,6 @@ TEST(SceneQueries, the_bodies_nearest_to_a_point_are_those_of_all_bodies) {
       }
     }
   }
-}
-
-TEST(SceneQueries, the_closest_hit_is_found_without_asking_all_bodies_on_the_way) {
-  QueryWorld world;
-  ShapeId ball;
-  ASSERT_EQ(world.shapes.pool.add(SphereShape{0.4}, ball), Status::ok);
-  Random random(6);
-  for (int i = 0; i < 16; ++i) {
-    for (int j = 0; j < 16; ++j) {
-      for (int k = 0; k < 16; ++k) world.add(ball, Pose::at(i, j, k), random);
-    }
-  }
-  world.add_to_scene();
-  SceneQueries queries(*world.scene);
-  std::size_t asked = 0;
-  Filter filter;
-  filter.predicate = {[](void* count, Key, ClientData) {
-                        ++*static_cast<std::size_t*>(count);
-                        return true;
-                      },
-                      &asked};
-  const std::size_t rays = 1000;
-  for (std::size_t n = 0; n < rays; ++n) {
-    ShapeRay ray;
-    ray.max_t = kInfinity;
-    for (int i = 0; i < 3; ++i) {
-      ray.origin[i] = random.uniform(-4.0, 20.0);
-      ray.direction[i] = random.uniform(0.0, 16.0) - ray.origin[i];
-    }
-    SceneHit hit;
-    ASSERT_EQ(queries.closest(ray, hit, filter), Status::ok);
-  }
-  EXPECT_LT(asked, 12 * rays);
-}
-
-TEST(SceneQueries, a_long_way_ends_at_a_body_smaller_than_the_rounding_of_its_direction) {
-  Random random(15);
-  QueryWorld world;
-  ShapeId grain;
-  ASSERT_EQ(world.shapes.pool.add(SphereShape{1e-4}, grain), Status::ok);
-  for (int i = 0; i < 100; ++i) world.add(grain, random_pose(100.0, random), random);
-  world.add_to_scene();
-  SceneQueries queries(*world.scene);
-  for (std::size_t n = scaled(500); n-- != 0;) {
-    const std::size_t target = random.below(world.bodies.size());
-    ShapeRay ray;
-    draw_direction(1.0, random, ray.direction);
-    const double way = random.log_uniform(1e3, 1e6) / length_of(ray.direction);
-    for (int i = 0; i < 3; ++i) {
-      ray.origin[i] = world.bodies[target].pose.position[i] - way * ray.direction[i];
-    }
-    ray.max_t = random.chance(0.5) ? kInfinity : 1.5 * way;
-    SceneHit hit;
-    ASSERT_EQ(queries.closest(ray, hit), Status::ok);
-    ASSERT_TRUE(hit) << n;
-    EXPECT_LE(hit.t, way);
-    ShapeCast cast{grain, {}, {}, ray.max_t};
-    std::copy_n(ray.origin, 3, cast.pose.position);
-    std::copy_n(ray.direction, 3, cast.direction);
-    ASSERT_EQ(queries.closest(cast, hit), Status::ok);
-    ASSERT_TRUE(hit) << n;
-    EXPECT_LE(hit.t, way);
-  }
-}
-
-TEST(SceneQueries, ways_without_end_reach_what_lies_at_the_end_of_the_world) {
-  for (const double far : {1e3, 1e9, 1e20, 1e30, 1e36, 1e200}) {
-    QueryWorld world;
-    ShapeId ball;
-    ShapeId wall;
-    ASSERT_EQ(world.shapes.pool.add(SphereShape{0.01 * far}, ball), Status::ok);
-    ASSERT_EQ(world.shapes.pool.add(HalfSpaceShape{{-1.0, 0.0, 0.0}, -3.0 * far}, wall),
-              Status::ok);
-    Random random(7);
-    world.add(wall, {}, random);
-    world.add(ball, Pose::at(far, 0.5 * far, 0.25 * far), random);
-    world.add_to_scene();
-    SceneQueries queries(*world.scene);
-    ShapeRay ray{{0.0, 0.0, 0.0}, {4.0, 2.0, 1.0}, kInfinity};
-    SceneHit hit;
-    std::span<const SceneHit> hits;
-    ASSERT_EQ(queries.closest(ray, hit), Status::ok);
-    EXPECT_EQ(hit.key, world.keys[1]) << far;
-    EXPECT_NEAR(hit.t / far, 0.25 - 0.01 / std::sqrt(21.0), 1e-12);
-    ASSERT_EQ(queries.all(ray, hits), Status::ok);
-    EXPECT_EQ(hits.size(), 2U) << far;
-    const ShapeCast cast{ball, {}, {4.0, 2.0, 1.0}, kInfinity};
-    ASSERT_EQ(queries.closest(cast, hit, {}, 1e-9 * far), Status::ok);
-    EXPECT_EQ(hit.key, world.keys[1]) << far;
-    EXPECT_NEAR(hit.t / far, 0.25 - 0.02 / std::sqrt(21.0), 1e-8);
-  }
-}
-
-TEST(SceneQueries, a_bullet_never_tunnels_a_sheet_of_triangles) {
-  Random random(8);
-  for (const double center : kCenters) {
-    QueryWorld world;
-    world.center = center;
-    ShapeId bullet;
-    ASSERT_EQ(world.shapes.pool.add(SphereShape{1e-3}, bullet), Status::ok);
-    world.add(add_sheet(world.composites, 40), {}, random);
-    world.add_to_scene();
-    SceneQueries queries(*world.scene);
-    for (std::size_t n = scaled(400); n-- != 0;) {
-      ShapeCast cast{bullet, {}, {}, kInfinity};
-      const double speed = random.log_uniform(1e-3, 1e9);
-      const double way = random.log_uniform(1.0, 1e4);
-      const double slope[3] = {random.uniform(-2, 2), random.uniform(-2, 2), -1.0};
-      for (int i = 0; i < 3; ++i) {
-        cast.pose.position[i] = center + (i < 2 ? random.uniform(-0.4, 0.4) : 0.0) - way * slope[i];
-        cast.direction[i] = speed * slope[i];
-      }
-      SceneHit hit;
-      ASSERT_EQ(queries.closest(cast, hit), Status::ok);
-      ASSERT_TRUE(hit) << n;
-      // The sheet is within 0.2 of its plane.
-      EXPECT_NEAR(hit.t * speed, way, 0.21);
-      EXPECT_GT(hit.normal[2], 0.0);
-    }
-  }
-}
-
-TEST(SceneQueries, a_turned_mesh_lets_no_ray_through_its_edges_and_corners) {
-  Random random(14);
-  QueryWorld world;
-  constexpr std::uint32_t kCells = 40;
-  const ShapeId sheet = add_sheet(world.composites, kCells);
-  ShapeId large;
-  ASSERT_EQ(world.composites.add_scaled(sheet, {100.0, 50.0, 30.0}, large), Status::ok);
-  world.add(large, random_pose(10.0, random), random);
-  ShapeId point;
-  ASSERT_EQ(world.shapes.pool.add(SphereShape{}, point), Status::ok);
-  world.add_to_scene();
-  SceneQueries queries(*world.scene);
-  const std::vector<FlatPart> parts = world.parts(0);
-  const double* const base = world.bodies[0].pose.position;
-  for (std::size_t n = scaled(2000); n-- != 0;) {
-    // Not those at the border.
-    const std::size_t i = 1 + random.below(kCells - 2);
-    const std::size_t cell = i * kCells + 1 + random.below(kCells - 2);
-    const auto inner = std::find_if(parts.begin(), parts.end(),
-                                    [&](const FlatPart& part) { return part.part == 2 * cell; });
-    ASSERT_NE(inner, parts.end());
-    const std::size_t corner = random.below(3);
-    const double along = random.chance(0.5) ? 0.0 : random.unit();
-    ShapeRay ray;
-    draw_direction(1.0, random, ray.direction);
-    for (int k = 0; k < 3; ++k) {
-      const double from = inner->triangle.vertex[corner][k];
-      const double to = inner->triangle.vertex[(corner + 1) % 3][k];
-      ray.origin[k] =
-          base[k] + inner->pose.position[k] + from + along * (to - from) - 4.0 * ray.direction[k];
-    }
-    ray.max_t = kInfinity;
-    SceneHit hit;
-    ASSERT_EQ(queries.closest(ray, hit), Status::ok);
-    ASSERT_TRUE(hit) << n;
-    EXPECT_LT(hit.t, 4.0 + 1e-6);
-    ShapeCast cast{point, {}, {}, kInfinity};
-    std::copy_n(ray.origin, 3, cast.pose.position);
-    std::copy_n(ray.direction, 3, cast.direction);
-    ASSERT_EQ(queries.closest(cast, hit), Status::ok);
-    ASSERT_TRUE(hit) << n;
-    EXPECT_LT(hit.t, 4.0 + 1e-6);
-  }
-}
-
-TEST(SceneQueries, filters_and_predicates_choose_among_bodies) {
-  Random random(9);
-  QueryWorld world;
-  fill(world, 120, 0.0, random);
-  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
-    world.bodies[i].filter.layers = 1U << (i % 3);
-  }
-  world.add_to_scene();
-  SceneQueries queries(*world.scene);
-  struct Context {
-    const QueryWorld& world;
-    bool right = true;
-  } context{world};
-  Filter filter;
-  filter.mask = 0b101;
-  filter.predicate = {[](void* given, Key key, ClientData data) {
-                        auto& c = *static_cast<Context*>(given);
-                        c.right = c.right && c.world.keys[data - 1000] == key;
-                        return data % 2 == 0;
-                      },
-                      &context};
-  const auto wanted = [](ClientData data) { return (data - 1000) % 3 != 1 && data % 2 == 0; };
-  const auto expect_chosen = [&](const auto& chosen, const auto& everything) {
-    std::size_t k = 0;
-    for (const auto& one : everything) {
-      if (!wanted(one.data)) continue;
-      ASSERT_LT(k, chosen.size());
-      EXPECT_EQ(chosen[k++].key, one.key);
-    }
-    EXPECT_EQ(k, chosen.size());
-  };
-  const auto copy = [](const auto& span) { return std::vector(span.begin(), span.end()); };
-  const double origin[3] = {0.0, 0.0, 0.0};
-  for (int n = 0; n < 10; ++n) {
-    ShapeRay ray;
-    draw_direction(1.0, random, ray.direction);
-    ray.max_t = kInfinity;
-    std::span<const SceneHit> hits;
-    ASSERT_EQ(queries.all(ray, hits), Status::ok);
-    const auto every_hit = copy(hits);
-    ASSERT_EQ(queries.all(ray, hits, filter), Status::ok);
-    expect_chosen(hits, every_hit);
-    std::span<const SceneOverlap> overlaps;
-    const ShapeId sheet = world.bodies[120].shape;
-    const Pose pose = random_pose(1.0, random);
-    ASSERT_EQ(queries.overlap(sheet, pose, overlaps), Status::ok);
-    const auto every_overlap = copy(overlaps);
-    ASSERT_EQ(queries.overlap(sheet, pose, overlaps, filter), Status::ok);
-    expect_chosen(overlaps, every_overlap);
-    std::span<const SceneDistance> near;
-    ASSERT_EQ(queries.nearest(origin, 1000, 4.0, near), Status::ok);
-    const auto every_near = copy(near);
-    ASSERT_EQ(queries.nearest(origin, 1000, 4.0, near, filter), Status::ok);
-    expect_chosen(near, every_near);
-  }
-  EXPECT_TRUE(context.right);
-}
-
-TEST(SceneQueries, bad_questions_get_a_status_and_change_nothing) {
-  Random random(10);
-  QueryWorld world;
-  fill(world, 30, 0.0, random);
-  world.add_to_scene();
-  SceneQueries queries(*world.scene);
-  SceneHit hit;
-  hit.t = -7.0;
-  const double nan = std::nan("");
-  for (const ShapeRay& ray :
-       {ShapeRay{{nan, 0, 0}, {1, 0, 0}, 1.0}, ShapeRay{{0, 0, 0}, {0, 0, 0}, 1.0},
-        ShapeRay{{0, 0, 0}, {1, kInfinity, 0}, 1.0}, ShapeRay{{0, 0, 0}, {1, 0, 0}, -1.0},
-        ShapeRay{{0, 0, 0}, {1, 0, 0}, nan}}) {
-    EXPECT_EQ(queries.closest(ray, hit), Status::invalid_argument);
-    EXPECT_EQ(queries.any(ray, hit), Status::invalid_argument);
-  }
-  const ShapeCast good{world.shapes.shapes[0], {}};
-  ShapeCast cast = good;
-  cast.shape = {};
-  EXPECT_EQ(queries.closest(cast, hit), Status::invalid_key);
-  cast.shape = world.bodies.back().shape;
-  EXPECT_EQ(queries.closest(cast, hit), Status::unsupported);
-  cast = good;
-  cast.pose.orientation[0] = 0.0;
-  EXPECT_EQ(queries.closest(cast, hit), Status::invalid_pose);
-  cast = good;
-  cast.direction[1] = nan;
-  EXPECT_EQ(queries.closest(cast, hit), Status::invalid_argument);
-  EXPECT_EQ(queries.closest(good, hit, {}, -1.0), Status::invalid_argument);
-  EXPECT_EQ(queries.closest(good, hit, {}, nan), Status::invalid_argument);
-  EXPECT_EQ(hit.t, -7.0);
-  std::span<const SceneOverlap> overlaps;
-  EXPECT_EQ(queries.overlap(ShapeId{}, {}, overlaps), Status::invalid_key);
-  EXPECT_EQ(queries.overlap(good.shape, Pose::at(nan, 0, 0), overlaps), Status::invalid_pose);
-  SceneDistance distance;
-  EXPECT_EQ(queries.distance(world.keys[0], {}, distance), Status::invalid_key);
-  std::span<const SceneDistance> near;
-  const double nowhere[3] = {0.0, nan, 0.0};
-  const double origin[3] = {0.0, 0.0, 0.0};
-  EXPECT_EQ(queries.nearest(nowhere, 1, 1.0, near), Status::invalid_argument);
-  EXPECT_EQ(queries.nearest(origin, 1, -1.0, near), Status::invalid_argument);
-  ASSERT_EQ(world.scene->move(world.keys[0], Pose::at(1, 2, 3)), Status::ok);
-  EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::invalid_argument);
-  ASSERT_EQ(world.scene->refresh(), Status::ok);
-  EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::ok);
-  // As after a change of poses, so after one of composite shapes.
-  ASSERT_EQ(world.composites.remove(add_sheet(world.composites, 2)), Status::ok);
-  EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::invalid_argument);
-  ASSERT_EQ(world.scene->refresh(), Status::ok);
-  EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::ok);
-}
-
-/// A number for all answers to many questions.
-std::uint64_t fingerprint(const QueryWorld& world, SceneQueries& queries) {
-  Random random(11);
-  std::uint64_t sum = 0;
-  const auto mix = [&](const auto& value) {
-    std::uint64_t bits[2] = {0, 0};
-    static_assert(sizeof(value) <= sizeof(bits));
-    std::memcpy(bits, &value, sizeof(value));
-    sum = (sum ^ bits[0]) * 0x9E3779B97F4A7C15ULL + bits[1];
-  };
-  const auto mix_hit = [&](const SceneHit& hit) {
-    mix(hit.key.id);
-    mix(hit.part);
-    mix(hit.t);
-    for (int i = 0; i < 3; ++i) mix(hit.normal[i]), mix(hit.point[i]);
-  };
-  for (int n = 0; n < 12; ++n) {
-    ShapeCast cast;
-    cast.shape = world.shapes.shapes[random.below(100)];
-    cast.pose = random_pose(world.size, random);
-    draw_direction(1.0, random, cast.direction);
-    cast.max_t = kInfinity;
-    ShapeRay ray;
-    ray.max_t = kInfinity;
-    std::copy_n(cast.pose.position, 3, ray.origin);
-    std::copy_n(cast.direction, 3, ray.direction);
-    SceneHit hit;
-    std::span<const SceneHit> hits;
-    EXPECT_EQ(queries.closest(ray, hit), Status::ok);
-    mix_hit(hit);
-    EXPECT_EQ(queries.closest(cast, hit), Status::ok);
-    mix_hit(hit);
-    EXPECT_EQ(queries.all(ray, hits), Status::ok);
-    for (const SceneHit& one : hits) mix_hit(one);
-    std::span<const SceneOverlap> overlaps;
-    EXPECT_EQ(queries.overlap(world.bodies[100].shape, cast.pose, overlaps), Status::ok);
-    for (const SceneOverlap& one : overlaps) mix(one.key.id), mix(one.part);
-    std::span<const SceneDistance> near;
-    EXPECT_EQ(queries.nearest(ray.origin, 7, 10.0, near), Status::ok);
-    for (const SceneDistance& one : near) mix(one.key.id), mix(one.part), mix(one.distance);
-  }
-  return sum;
-}
-
-TEST(SceneQueries, answer_the_same_on_every_instruction_set_and_from_many_threads) {
-  Random random(12);
-  QueryWorld world;
-  fill(world, 100, 0.0, random);
-  world.add_to_scene();
-  SceneQueries first(*world.scene);
-  const std::uint64_t truth = fingerprint(world, first);
-  for (const Isa isa : available_isas()) {
-    const IsaScope scope(isa);
-    SceneQueries queries(*world.scene);
-    EXPECT_EQ(fingerprint(world, queries), truth) << to_string(isa);
-  }
-  std::uint64_t sums[4] = {};
-  std::vector<std::thread> threads;
-  for (std::uint64_t& sum : sums) {
-    threads.emplace_back([&world, &sum] {
-      SceneQueries queries(*world.scene);
-      sum = fingerprint(world, queries);
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
-  for (const std::uint64_t sum : sums) EXPECT_EQ(sum, truth);
-}
-
-TEST(SceneQueries, know_their_memory_to_the_byte_and_ask_for_none_twice) {
-  Random random(13);
-  QueryWorld world;
-  fill(world, 100, 0.0, random);
-  world.add_to_scene();
-  CountingMemory memory;
-  {
-    SceneQueries queries(*world.scene, &memory);
-    EXPECT_EQ(queries.footprint().total().reserved, memory.outstanding());
-    const std::uint64_t truth = fingerprint(world, queries);
-    EXPECT_EQ(queries.footprint().total().reserved, memory.outstanding());
-    const std::size_t requests = memory.requests();
-    EXPECT_EQ(fingerprint(world, queries), truth);
-    EXPECT_EQ(memory.requests(), requests);
-  }
-  EXPECT_EQ(memory.outstanding(), 0U);
-  memory.refuse_after(0);
-  SceneQueries refused(*world.scene, &memory);
-  SceneHit hit;
-  EXPECT_EQ(refused.closest(ShapeRay{}, hit), Status::out_of_memory);
-  memory.grant_all();
-  SceneQueries poor(*world.scene, &memory);
-  memory.refuse_after(0);
-  const double origin[3] = {0.0, 0.0, 0.0};
-  std::span<const SceneDistance> near;
-  EXPECT_EQ(poor.nearest(origin, 7, kInfinity, near), Status::out_of_memory);
-  memory.grant_all();
-  EXPECT_EQ(poor.nearest(origin, 7, kInfinity, near), Status::ok);
-  EXPECT_EQ(near.size(), 7U);
 }
 
 }  // namespace

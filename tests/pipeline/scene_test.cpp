@@ -22,51 +22,6 @@ constexpr ContactLevel kLevels[] = {ContactLevel::boolean, ContactLevel::distanc
   return names;
 }
 
-TEST(Scene, every_pair_that_touches_is_reported_and_no_other) {
-  for (const double margin : {0.0, 0.15}) {
-    SceneWorld world(scaled(400));
-    Scene scene(world.pool, {.margin = margin});
-    ASSERT_EQ(add_all(scene, world), Status::ok);
-    Contacts contacts;
-    for (int frame = 0; frame < 4; ++frame) {
-      for (const ContactLevel level : kLevels) {
-        ASSERT_EQ(scene.collide(level, contacts), Status::ok);
-        const double reach = level == ContactLevel::boolean ? 0.0 : margin;
-        EXPECT_EQ(shown(contacts), keys_of(world.touching(reach)));
-        EXPECT_EQ(shown(contacts).size(), contacts.size()) << "a pair is doubled";
-      }
-      world.stir(0.2);
-      ASSERT_EQ(move_all(scene, world), Status::ok);
-    }
-  }
-}
-
-TEST(Scene, distances_are_those_of_the_pairs_and_points_lie_between_the_bodies) {
-  SceneWorld world(scaled(400));
-  Scene scene(world.pool, {.margin = 0.1});
-  ASSERT_EQ(add_all(scene, world), Status::ok);
-  Contacts contacts;
-  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
-  const auto truth = world.touching(0.1);
-  ASSERT_EQ(contacts.size(), truth.size());
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const std::uint32_t m = contacts.manifold_first()[i];
-    ASSERT_EQ(contacts.manifold_first()[i + 1], m + 1);
-    const double distance = truth.at(names(contacts.data_a()[i], contacts.data_b()[i]));
-    EXPECT_NEAR(contacts.distance()[m], distance, contacts.error_bound()[m] + 1e-9);
-    EXPECT_EQ(contacts.part_a()[m], kWholeShape);
-    EXPECT_GT(contacts.point_first()[m + 1], contacts.point_first()[m]);
-    const auto deepest = [&] {
-      float depth = -1e30F;
-      for (auto p = contacts.point_first()[m]; p < contacts.point_first()[m + 1]; ++p) {
-        depth = std::max(depth, contacts.contact(p).depth);
-      }
-      return static_cast<double>(depth);
-    }();
-    EXPECT_NEAR(deepest, -distance, contacts.error_bound()[m] + 1e-5);
-  }
-}
-
 TEST(Scene, the_five_bodies_of_the_drawing_make_three_pairs) {
   ShapePool pool;
   ShapeId box;
@@ -232,6 +187,51 @@ TEST(Scene, without_carry_over_every_frame_is_that_of_a_fresh_scene) {
     EXPECT_EQ(shown(contacts), shown(fresh_contacts));
     world.stir(0.05);
     ASSERT_EQ(move_all(scene, world), Status::ok);
+  }
+}
+
+TEST(Scene, every_pair_that_touches_is_reported_and_no_other) {
+  for (const double margin : {0.0, 0.15}) {
+    SceneWorld world(scaled(400));
+    Scene scene(world.pool, {.margin = margin});
+    ASSERT_EQ(add_all(scene, world), Status::ok);
+    Contacts contacts;
+    for (int frame = 0; frame < 4; ++frame) {
+      for (const ContactLevel level : kLevels) {
+        ASSERT_EQ(scene.collide(level, contacts), Status::ok);
+        const double reach = level == ContactLevel::boolean ? 0.0 : margin;
+        EXPECT_EQ(shown(contacts), keys_of(world.touching(reach)));
+        EXPECT_EQ(shown(contacts).size(), contacts.size()) << "a pair is doubled";
+      }
+      world.stir(0.2);
+      ASSERT_EQ(move_all(scene, world), Status::ok);
+    }
+  }
+}
+
+TEST(Scene, distances_are_those_of_the_pairs_and_points_lie_between_the_bodies) {
+  SceneWorld world(scaled(400));
+  Scene scene(world.pool, {.margin = 0.1});
+  ASSERT_EQ(add_all(scene, world), Status::ok);
+  Contacts contacts;
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+  const auto truth = world.touching(0.1);
+  ASSERT_EQ(contacts.size(), truth.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const std::uint32_t m = contacts.manifold_first()[i];
+    ASSERT_EQ(contacts.manifold_first()[i + 1], m + 1);
+    const double distance = truth.at(names(contacts.data_a()[i], contacts.data_b()[i]));
+    EXPECT_NEAR(contacts.distance()[m], distance, contacts.error_bound()[m] + 1e-9);
+    EXPECT_EQ(contacts.part_a()[m], kWholeShape);
+    EXPECT_GT(contacts.point_first()[m + 1], contacts.point_first()[m]);
+    const auto deepest = [&] {
+      float depth = -1e30F;
+      for (auto p = contacts.point_first()[m]; p < contacts.point_first()[m + 1]; ++p) {
+        depth = std::max(depth, contacts.contact(p).depth);
+      }
+      return static_cast<double>(depth);
+    }();
+    EXPECT_NEAR(deepest, -distance, contacts.error_bound()[m] + 1e-5);
   }
 }
 

@@ -67,106 +67,6 @@ struct Cast {
   return Vector3d::Map(c.hit.normal);
 }
 
-TEST(ShapeRays, enter_every_shape_where_its_distance_first_is_zero) {
-  const RayProbes shapes;
-  Random random(5);
-  for (const RayProbe& probe : shapes.probes()) {
-    int hits = 0;
-    for (std::size_t i = 0; i < scaled(400); ++i) {
-      const Pose pose = any_pose(random);
-      const Vector3d origin = Vector3d::Map(pose.position) + any_point(random, 4.0);
-      const Vector3d target = Vector3d::Map(pose.position) + any_point(random, 1.2);
-      const Vector3d direction = (target - origin) * random.log_uniform(0.1, 10.0);
-      const Eigen::Quaterniond turn = rotation_of(pose);
-      const auto distance = [&](double t) {
-        return probe.distance(turn.conjugate() *
-                              (origin + t * direction - Vector3d::Map(pose.position)));
-      };
-      const Cast c = cast(shapes.tables(), probe.id, origin, direction, kInf, pose);
-      ASSERT_EQ(c.status, Status::ok);
-      double at = 0.0;
-      const double nearest = least(distance, 0.0, 40.0 / direction.norm(), at);
-      if (!c.hit.hit) {
-        ASSERT_GT(nearest, -1e-12) << probe.name << i;
-        continue;
-      }
-      ++hits;
-      const double t = c.hit.t;
-      if (distance(0.0) < 0.0) {
-        ASSERT_EQ(t, 0.0) << probe.name << i;
-        ASSERT_LT((normal_of(c) + direction.normalized()).norm(), 1e-14);
-        continue;
-      }
-      ASSERT_NEAR(distance(t), 0.0, 1e-13 * (1.0 + t * direction.norm())) << probe.name << i;
-      ASSERT_NEAR(normal_of(c).norm(), 1.0, 1e-14);
-      ASSERT_LE(normal_of(c).dot(direction), 1e-12) << probe.name << i;
-      // Nothing of it comes before: just outside of the entry the distance grows with the normal.
-      if (nearest < -1e-3) {
-        ASSERT_GT(distance(t - 1e-6 / direction.norm()), 0.0) << probe.name << i;
-        ASSERT_LT(t, at);
-      }
-      // Stopped before it, the ray misses; ended right there, it hits.
-      ASSERT_TRUE(cast(shapes.tables(), probe.id, origin, direction, t, pose).hit.hit);
-      ASSERT_FALSE(
-          cast(shapes.tables(), probe.id, origin, direction, std::nextafter(t, 0.0), pose).hit.hit);
-    }
-    EXPECT_GT(hits, 0) << probe.name;
-  }
-}
-
-TEST(ShapeRays, do_not_change_with_size) {
-  const RayProbes shapes;
-  Random random(6);
-  ShapePool pool;
-  for (const double unit : {0x1p-70, 0x1p70, 0x1p-300, 0x1p300}) {
-    ShapeId small;
-    ShapeId box;
-    ASSERT_EQ(pool.add(BoxShape{{unit, 0.5 * unit, 2.0 * unit}, 0.3 * unit}, small), Status::ok);
-    ASSERT_EQ(pool.add(BoxShape{{1.0, 0.5, 2.0}, 0.3}, box), Status::ok);
-    for (int i = 0; i < 50; ++i) {
-      const Vector3d origin = any_point(random, 5.0);
-      const Vector3d direction = any_point(random, 1.0) - origin;
-      const Cast a = cast(pool.tables(), box, origin, direction);
-      const Cast b = cast(pool.tables(), small, unit * origin, direction);
-      ASSERT_EQ(a.hit.hit, b.hit.hit);
-      ASSERT_EQ(a.hit.t * unit, b.hit.t);
-      const Cast c = cast(pool.tables(), small, unit * origin, unit * direction);
-      ASSERT_EQ(a.hit.t, c.hit.t);
-    }
-  }
-}
-
-TEST(ShapeRays, from_far_away_hit_where_they_would_from_near) {
-  ShapePool pool;
-  ShapeId sphere;
-  ShapeId box;
-  ASSERT_EQ(pool.add(SphereShape{1.0}, sphere), Status::ok);
-  ASSERT_EQ(pool.add(BoxShape{{1.0, 1.0, 1.0}, 0.0}, box), Status::ok);
-  for (const double far : {1e3, 1e6, 1e9, 1e12}) {
-    Cast c = cast(pool.tables(), sphere, {far, 0.6, 0.0}, {-1.0, 0.0, 0.0});
-    ASSERT_TRUE(c.hit.hit);
-    EXPECT_EQ(c.hit.t, far - 0.8);
-    EXPECT_LT((normal_of(c) - Vector3d(0.8, 0.6, 0.0)).norm(), 1e-15);
-    // Grazing, and just past it.
-    EXPECT_TRUE(cast(pool.tables(), sphere, {far, 1.0, 0.0}, {-1.0, 0.0, 0.0}).hit.hit);
-    EXPECT_FALSE(cast(pool.tables(), sphere, {far, 1.0 + 1e-14, 0.0}, {-1.0, 0.0, 0.0}).hit.hit);
-    EXPECT_TRUE(cast(pool.tables(), box, {far, 1.0, 0.5}, {-1.0, 0.0, 0.0}).hit.hit);
-    EXPECT_FALSE(cast(pool.tables(), box, {far, 1.0 + 1e-14, 0.5}, {-1.0, 0.0, 0.0}).hit.hit);
-    // Away from it.
-    EXPECT_FALSE(cast(pool.tables(), sphere, {far, 0.0, 0.0}, {1.0, 0.0, 0.0}).hit.hit);
-    // Everything far from the origin.
-    const Pose pose = Pose::at(far, far, -far);
-    c = cast(pool.tables(), sphere, {far + 3.0, far, -far}, {-2.0, 0.0, 0.0}, kInf, pose);
-    EXPECT_EQ(c.hit.t, 1.0);
-  }
-  // Along a diagonal, not a number of which is round.
-  const Vector3d direction = Vector3d(0.3, -0.7, 0.1).normalized();
-  const Cast c = cast(pool.tables(), sphere, -1e9 * direction, direction);
-  ASSERT_TRUE(c.hit.hit);
-  EXPECT_NEAR(c.hit.t, 1e9 - 1.0, 1e-6);
-  EXPECT_LT((normal_of(c) + direction).norm(), 1e-6);
-}
-
 TEST(ShapeRays, in_a_face_along_an_edge_or_through_a_corner_hit) {
   ShapePool pool;
   ShapeId box;
@@ -328,6 +228,106 @@ TEST(ShapeRays, any_numbers_give_an_answer) {
       ASSERT_NEAR(normal_of(c).norm(), 1.0, 1e-14) << probe.name;
     }
   }
+}
+
+TEST(ShapeRays, enter_every_shape_where_its_distance_first_is_zero) {
+  const RayProbes shapes;
+  Random random(5);
+  for (const RayProbe& probe : shapes.probes()) {
+    int hits = 0;
+    for (std::size_t i = 0; i < scaled(400); ++i) {
+      const Pose pose = any_pose(random);
+      const Vector3d origin = Vector3d::Map(pose.position) + any_point(random, 4.0);
+      const Vector3d target = Vector3d::Map(pose.position) + any_point(random, 1.2);
+      const Vector3d direction = (target - origin) * random.log_uniform(0.1, 10.0);
+      const Eigen::Quaterniond turn = rotation_of(pose);
+      const auto distance = [&](double t) {
+        return probe.distance(turn.conjugate() *
+                              (origin + t * direction - Vector3d::Map(pose.position)));
+      };
+      const Cast c = cast(shapes.tables(), probe.id, origin, direction, kInf, pose);
+      ASSERT_EQ(c.status, Status::ok);
+      double at = 0.0;
+      const double nearest = least(distance, 0.0, 40.0 / direction.norm(), at);
+      if (!c.hit.hit) {
+        ASSERT_GT(nearest, -1e-12) << probe.name << i;
+        continue;
+      }
+      ++hits;
+      const double t = c.hit.t;
+      if (distance(0.0) < 0.0) {
+        ASSERT_EQ(t, 0.0) << probe.name << i;
+        ASSERT_LT((normal_of(c) + direction.normalized()).norm(), 1e-14);
+        continue;
+      }
+      ASSERT_NEAR(distance(t), 0.0, 1e-13 * (1.0 + t * direction.norm())) << probe.name << i;
+      ASSERT_NEAR(normal_of(c).norm(), 1.0, 1e-14);
+      ASSERT_LE(normal_of(c).dot(direction), 1e-12) << probe.name << i;
+      // Nothing of it comes before: just outside of the entry the distance grows with the normal.
+      if (nearest < -1e-3) {
+        ASSERT_GT(distance(t - 1e-6 / direction.norm()), 0.0) << probe.name << i;
+        ASSERT_LT(t, at);
+      }
+      // Stopped before it, the ray misses; ended right there, it hits.
+      ASSERT_TRUE(cast(shapes.tables(), probe.id, origin, direction, t, pose).hit.hit);
+      ASSERT_FALSE(
+          cast(shapes.tables(), probe.id, origin, direction, std::nextafter(t, 0.0), pose).hit.hit);
+    }
+    EXPECT_GT(hits, 0) << probe.name;
+  }
+}
+
+TEST(ShapeRays, do_not_change_with_size) {
+  const RayProbes shapes;
+  Random random(6);
+  ShapePool pool;
+  for (const double unit : {0x1p-70, 0x1p70, 0x1p-300, 0x1p300}) {
+    ShapeId small;
+    ShapeId box;
+    ASSERT_EQ(pool.add(BoxShape{{unit, 0.5 * unit, 2.0 * unit}, 0.3 * unit}, small), Status::ok);
+    ASSERT_EQ(pool.add(BoxShape{{1.0, 0.5, 2.0}, 0.3}, box), Status::ok);
+    for (int i = 0; i < 50; ++i) {
+      const Vector3d origin = any_point(random, 5.0);
+      const Vector3d direction = any_point(random, 1.0) - origin;
+      const Cast a = cast(pool.tables(), box, origin, direction);
+      const Cast b = cast(pool.tables(), small, unit * origin, direction);
+      ASSERT_EQ(a.hit.hit, b.hit.hit);
+      ASSERT_EQ(a.hit.t * unit, b.hit.t);
+      const Cast c = cast(pool.tables(), small, unit * origin, unit * direction);
+      ASSERT_EQ(a.hit.t, c.hit.t);
+    }
+  }
+}
+
+TEST(ShapeRays, from_far_away_hit_where_they_would_from_near) {
+  ShapePool pool;
+  ShapeId sphere;
+  ShapeId box;
+  ASSERT_EQ(pool.add(SphereShape{1.0}, sphere), Status::ok);
+  ASSERT_EQ(pool.add(BoxShape{{1.0, 1.0, 1.0}, 0.0}, box), Status::ok);
+  for (const double far : {1e3, 1e6, 1e9, 1e12}) {
+    Cast c = cast(pool.tables(), sphere, {far, 0.6, 0.0}, {-1.0, 0.0, 0.0});
+    ASSERT_TRUE(c.hit.hit);
+    EXPECT_EQ(c.hit.t, far - 0.8);
+    EXPECT_LT((normal_of(c) - Vector3d(0.8, 0.6, 0.0)).norm(), 1e-15);
+    // Grazing, and just past it.
+    EXPECT_TRUE(cast(pool.tables(), sphere, {far, 1.0, 0.0}, {-1.0, 0.0, 0.0}).hit.hit);
+    EXPECT_FALSE(cast(pool.tables(), sphere, {far, 1.0 + 1e-14, 0.0}, {-1.0, 0.0, 0.0}).hit.hit);
+    EXPECT_TRUE(cast(pool.tables(), box, {far, 1.0, 0.5}, {-1.0, 0.0, 0.0}).hit.hit);
+    EXPECT_FALSE(cast(pool.tables(), box, {far, 1.0 + 1e-14, 0.5}, {-1.0, 0.0, 0.0}).hit.hit);
+    // Away from it.
+    EXPECT_FALSE(cast(pool.tables(), sphere, {far, 0.0, 0.0}, {1.0, 0.0, 0.0}).hit.hit);
+    // Everything far from the origin.
+    const Pose pose = Pose::at(far, far, -far);
+    c = cast(pool.tables(), sphere, {far + 3.0, far, -far}, {-2.0, 0.0, 0.0}, kInf, pose);
+    EXPECT_EQ(c.hit.t, 1.0);
+  }
+  // Along a diagonal, not a number of which is round.
+  const Vector3d direction = Vector3d(0.3, -0.7, 0.1).normalized();
+  const Cast c = cast(pool.tables(), sphere, -1e9 * direction, direction);
+  ASSERT_TRUE(c.hit.hit);
+  EXPECT_NEAR(c.hit.t, 1e9 - 1.0, 1e-6);
+  EXPECT_LT((normal_of(c) + direction).norm(), 1e-6);
 }
 
 }  // namespace

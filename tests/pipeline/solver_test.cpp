@@ -84,139 +84,6 @@ double outside(const solver::Core& core, const Vec& x, const Vec& along, Random&
   return worst;
 }
 
-class Solver : public testing::TestWithParam<PairStyle> {};
-INSTANTIATE_TEST_SUITE_P(Styles, Solver, testing::ValuesIn(kPairStyles),
-                         [](const auto& style) { return to_string(style.param); });
-
-TEST_P(Solver, answers_are_finite_and_levels_agree) {
-  for_pairs(GetParam(), [](const Asked& asked) {
-    const PairAnswer answer = asked.solve(ContactLevel::distance);
-    EXPECT_TRUE(std::isfinite(answer.distance));
-    EXPECT_TRUE(std::isfinite(answer.error_bound));
-    EXPECT_NEAR(Vec::Map(answer.normal).norm(), 1.0, 1e-14);
-    EXPECT_TRUE(Vec::Map(answer.point).allFinite());
-    EXPECT_EQ(answer.overlap, answer.distance <= 0.0);
-    EXPECT_EQ(asked.solve(ContactLevel::boolean).overlap, answer.overlap);
-    const PairAnswer manifold = asked.solve(ContactLevel::manifold);
-    EXPECT_EQ(manifold.overlap, answer.overlap);
-    EXPECT_EQ(manifold.contact_count > 0, answer.overlap);
-  });
-}
-
-TEST_P(Solver, swapped_pairs_have_mirrored_answers) {
-  for_pairs(GetParam(), [](const Asked& asked) {
-    const PairAnswer answer = asked.solve(ContactLevel::distance);
-    const PairAnswer mirrored =
-        Asked{asked.scene, {asked.pair.b, asked.pair.a}}.solve(ContactLevel::distance);
-    EXPECT_EQ(answer.overlap, mirrored.overlap);
-    EXPECT_NEAR(answer.distance, mirrored.distance,
-                std::max(answer.error_bound, mirrored.error_bound));
-  });
-}
-
-TEST_P(Solver, a_common_motion_changes_answers_within_their_bounds) {
-  for_pairs(GetParam(), [](const Asked& asked) {
-    // A turn by a rational rotation, so that only rounding differs.
-    Pose moved[2] = {asked.pose_a(), asked.pose_b()};
-    const Eigen::Quaterniond turn = Eigen::Quaterniond(0.8, 0.0, 0.36, 0.48).normalized();
-    for (Pose& pose : moved) {
-      Vec::Map(pose.position) = turn * Vec::Map(pose.position);
-      const double* q = pose.orientation;
-      const Eigen::Quaterniond turned = turn * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-      pose.orientation[0] = turned.w();
-      Vec::Map(pose.orientation + 1) = turned.vec();
-    }
-    const PairAnswer answer = asked.solve(ContactLevel::distance);
-    const PairAnswer other = asked.solve_at(moved[0], moved[1]);
-    // Positions are rounded where they stand, orientations too.
-    const double rounding = 1e-15 * (asked.size() + Vec::Map(moved[0].position).norm() +
-                                     Vec::Map(moved[1].position).norm());
-    EXPECT_NEAR(answer.distance, other.distance, answer.error_bound + other.error_bound + rounding);
-  });
-}
-
-TEST_P(Solver, points_lie_on_both_shapes_and_differ_by_the_distance) {
-  Random random(7);
-  for_pairs(GetParam(), [&](const Asked& asked) {
-    const PairAnswer answer = asked.solve(ContactLevel::distance);
-    solver::Problem problem;
-    solver::prepare(asked.scene.pool.tables(), asked.scene.shapes[asked.pair.a], asked.pose_a(),
-                    asked.scene.shapes[asked.pair.b], asked.pose_b(), false, problem);
-    const double scale = std::ldexp(1.0, -problem.exponent);
-    const Vec n = Vec::Map(answer.normal);
-    const Vec on_a = Vec::Map(answer.point) * scale;
-    const Vec on_b = on_a + n * (answer.distance * scale);
-    // What is not proved of a distance moves its points by more.
-    const double gap = answer.error_bound * scale / problem.size;
-    const double unproved = gap > 1e-13 ? 4.0 * std::sqrt(gap) : 0.0;
-    const double tolerance = problem.size * (asked.looseness() + unproved);
-    EXPECT_LE(outside(problem.a, on_a, n, random), tolerance);
-    EXPECT_LE(outside(problem.b, on_b, n, random), tolerance);
-  });
-}
-
-TEST_P(Solver, moving_b_by_the_depth_separates) {
-  for_pairs(GetParam(), [](const Asked& asked) {
-    const PairAnswer answer = asked.solve(ContactLevel::distance);
-    if (answer.distance > 0.0) return;
-    Pose moved = asked.pose_b();
-    Vec::Map(moved.position) -= Vec::Map(answer.normal) * answer.distance;
-    const PairAnswer after = asked.solve_at(asked.pose_a(), moved);
-    const double rounding = asked.looseness() * asked.size() +
-                            1e-15 * Vec::Map(asked.pose_b().position).cwiseAbs().maxCoeff();
-    EXPECT_NEAR(after.distance, 0.0, answer.error_bound + after.error_bound + rounding);
-  });
-}
-
-TEST_P(Solver, manifolds_begin_with_the_depth_and_stay_within_the_margin) {
-  for_pairs(GetParam(), [](const Asked& asked) {
-    const double size = asked.size();
-    const double margin = 0.1 * size;
-    const PairAnswer answer = asked.solve(ContactLevel::manifold, margin);
-    if (answer.distance > margin) return;
-    ASSERT_GE(answer.contact_count, 1U);
-    ASSERT_LE(answer.contact_count, kManifoldPoints);
-    EXPECT_NEAR(answer.contacts[0].depth, -answer.distance, 1e-6 * size);
-    for (std::uint32_t i = 0; i < answer.contact_count; ++i) {
-      const ContactPoint& contact = answer.contacts[i];
-      EXPECT_GE(contact.depth, -margin - 1e-6 * size);
-      EXPECT_LE(contact.depth, -answer.distance + 1e-6 * size);
-      EXPECT_LE(Eigen::Vector3f::Map(contact.position).norm(), 1.001 * size);
-    }
-  });
-}
-
-TEST_P(Solver, powers_of_two_scale_answers_exactly) {
-  for (const int exponent : {-900, 900}) {
-    Random random(11);
-    PairScene scene;
-    const double scale = std::ldexp(1.0, exponent);
-    for (int i = 0; i < 200; ++i) {
-      BoxShape box{{random.unit(), random.unit(), random.unit()}, 0.1 * random.unit()};
-      ConeShape cone{random.unit(), random.unit(), 0.0};
-      const Pose at{{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)},
-                    {random.unit(), random.unit(), random.unit(), random.unit()}};
-      Pose far_at = at;
-      ShapeId ids[4];
-      ASSERT_EQ(scene.pool.add(box, ids[0]), Status::ok);
-      ASSERT_EQ(scene.pool.add(cone, ids[1]), Status::ok);
-      for (double* x :
-           {&box.half[0], &box.half[1], &box.half[2], &box.rounding, &cone.radius,
-            &cone.half_length, &far_at.position[0], &far_at.position[1], &far_at.position[2]}) {
-        *x *= scale;
-      }
-      ASSERT_EQ(scene.pool.add(box, ids[2]), Status::ok);
-      ASSERT_EQ(scene.pool.add(cone, ids[3]), Status::ok);
-      SolverCounts counts;
-      const auto solve = [&](int first, const Pose& pose) {
-        return solve_pair(scene.pool.tables(), ids[first], Pose{}, ids[first + 1], pose,
-                          ContactLevel::distance, 0.0, counts);
-      };
-      EXPECT_EQ(solve(0, at).distance * scale, solve(2, far_at).distance);
-    }
-  }
-}
-
 class SolverCases : public testing::Test {
  protected:
   template <typename Shape>
@@ -351,6 +218,139 @@ TEST_F(SolverCases, positions_at_the_ends_of_doubles_are_answered) {
   const PairAnswer tiny = solve(dust, Pose{}, dust, Pose::at(0, 1.5e-323, 0));
   EXPECT_EQ(tiny.distance, 5e-324);
   EXPECT_EQ(tiny.normal[1], 1.0);
+}
+
+class Solver : public testing::TestWithParam<PairStyle> {};
+INSTANTIATE_TEST_SUITE_P(Styles, Solver, testing::ValuesIn(kPairStyles),
+                         [](const auto& style) { return to_string(style.param); });
+
+TEST_P(Solver, answers_are_finite_and_levels_agree) {
+  for_pairs(GetParam(), [](const Asked& asked) {
+    const PairAnswer answer = asked.solve(ContactLevel::distance);
+    EXPECT_TRUE(std::isfinite(answer.distance));
+    EXPECT_TRUE(std::isfinite(answer.error_bound));
+    EXPECT_NEAR(Vec::Map(answer.normal).norm(), 1.0, 1e-14);
+    EXPECT_TRUE(Vec::Map(answer.point).allFinite());
+    EXPECT_EQ(answer.overlap, answer.distance <= 0.0);
+    EXPECT_EQ(asked.solve(ContactLevel::boolean).overlap, answer.overlap);
+    const PairAnswer manifold = asked.solve(ContactLevel::manifold);
+    EXPECT_EQ(manifold.overlap, answer.overlap);
+    EXPECT_EQ(manifold.contact_count > 0, answer.overlap);
+  });
+}
+
+TEST_P(Solver, swapped_pairs_have_mirrored_answers) {
+  for_pairs(GetParam(), [](const Asked& asked) {
+    const PairAnswer answer = asked.solve(ContactLevel::distance);
+    const PairAnswer mirrored =
+        Asked{asked.scene, {asked.pair.b, asked.pair.a}}.solve(ContactLevel::distance);
+    EXPECT_EQ(answer.overlap, mirrored.overlap);
+    EXPECT_NEAR(answer.distance, mirrored.distance,
+                std::max(answer.error_bound, mirrored.error_bound));
+  });
+}
+
+TEST_P(Solver, a_common_motion_changes_answers_within_their_bounds) {
+  for_pairs(GetParam(), [](const Asked& asked) {
+    // A turn by a rational rotation, so that only rounding differs.
+    Pose moved[2] = {asked.pose_a(), asked.pose_b()};
+    const Eigen::Quaterniond turn = Eigen::Quaterniond(0.8, 0.0, 0.36, 0.48).normalized();
+    for (Pose& pose : moved) {
+      Vec::Map(pose.position) = turn * Vec::Map(pose.position);
+      const double* q = pose.orientation;
+      const Eigen::Quaterniond turned = turn * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+      pose.orientation[0] = turned.w();
+      Vec::Map(pose.orientation + 1) = turned.vec();
+    }
+    const PairAnswer answer = asked.solve(ContactLevel::distance);
+    const PairAnswer other = asked.solve_at(moved[0], moved[1]);
+    // Positions are rounded where they stand, orientations too.
+    const double rounding = 1e-15 * (asked.size() + Vec::Map(moved[0].position).norm() +
+                                     Vec::Map(moved[1].position).norm());
+    EXPECT_NEAR(answer.distance, other.distance, answer.error_bound + other.error_bound + rounding);
+  });
+}
+
+TEST_P(Solver, points_lie_on_both_shapes_and_differ_by_the_distance) {
+  Random random(7);
+  for_pairs(GetParam(), [&](const Asked& asked) {
+    const PairAnswer answer = asked.solve(ContactLevel::distance);
+    solver::Problem problem;
+    solver::prepare(asked.scene.pool.tables(), asked.scene.shapes[asked.pair.a], asked.pose_a(),
+                    asked.scene.shapes[asked.pair.b], asked.pose_b(), false, problem);
+    const double scale = std::ldexp(1.0, -problem.exponent);
+    const Vec n = Vec::Map(answer.normal);
+    const Vec on_a = Vec::Map(answer.point) * scale;
+    const Vec on_b = on_a + n * (answer.distance * scale);
+    // What is not proved of a distance moves its points by more.
+    const double gap = answer.error_bound * scale / problem.size;
+    const double unproved = gap > 1e-13 ? 4.0 * std::sqrt(gap) : 0.0;
+    const double tolerance = problem.size * (asked.looseness() + unproved);
+    EXPECT_LE(outside(problem.a, on_a, n, random), tolerance);
+    EXPECT_LE(outside(problem.b, on_b, n, random), tolerance);
+  });
+}
+
+TEST_P(Solver, moving_b_by_the_depth_separates) {
+  for_pairs(GetParam(), [](const Asked& asked) {
+    const PairAnswer answer = asked.solve(ContactLevel::distance);
+    if (answer.distance > 0.0) return;
+    Pose moved = asked.pose_b();
+    Vec::Map(moved.position) -= Vec::Map(answer.normal) * answer.distance;
+    const PairAnswer after = asked.solve_at(asked.pose_a(), moved);
+    const double rounding = asked.looseness() * asked.size() +
+                            1e-15 * Vec::Map(asked.pose_b().position).cwiseAbs().maxCoeff();
+    EXPECT_NEAR(after.distance, 0.0, answer.error_bound + after.error_bound + rounding);
+  });
+}
+
+TEST_P(Solver, manifolds_begin_with_the_depth_and_stay_within_the_margin) {
+  for_pairs(GetParam(), [](const Asked& asked) {
+    const double size = asked.size();
+    const double margin = 0.1 * size;
+    const PairAnswer answer = asked.solve(ContactLevel::manifold, margin);
+    if (answer.distance > margin) return;
+    ASSERT_GE(answer.contact_count, 1U);
+    ASSERT_LE(answer.contact_count, kManifoldPoints);
+    EXPECT_NEAR(answer.contacts[0].depth, -answer.distance, 1e-6 * size);
+    for (std::uint32_t i = 0; i < answer.contact_count; ++i) {
+      const ContactPoint& contact = answer.contacts[i];
+      EXPECT_GE(contact.depth, -margin - 1e-6 * size);
+      EXPECT_LE(contact.depth, -answer.distance + 1e-6 * size);
+      EXPECT_LE(Eigen::Vector3f::Map(contact.position).norm(), 1.001 * size);
+    }
+  });
+}
+
+TEST_P(Solver, powers_of_two_scale_answers_exactly) {
+  for (const int exponent : {-900, 900}) {
+    Random random(11);
+    PairScene scene;
+    const double scale = std::ldexp(1.0, exponent);
+    for (int i = 0; i < 200; ++i) {
+      BoxShape box{{random.unit(), random.unit(), random.unit()}, 0.1 * random.unit()};
+      ConeShape cone{random.unit(), random.unit(), 0.0};
+      const Pose at{{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)},
+                    {random.unit(), random.unit(), random.unit(), random.unit()}};
+      Pose far_at = at;
+      ShapeId ids[4];
+      ASSERT_EQ(scene.pool.add(box, ids[0]), Status::ok);
+      ASSERT_EQ(scene.pool.add(cone, ids[1]), Status::ok);
+      for (double* x :
+           {&box.half[0], &box.half[1], &box.half[2], &box.rounding, &cone.radius,
+            &cone.half_length, &far_at.position[0], &far_at.position[1], &far_at.position[2]}) {
+        *x *= scale;
+      }
+      ASSERT_EQ(scene.pool.add(box, ids[2]), Status::ok);
+      ASSERT_EQ(scene.pool.add(cone, ids[3]), Status::ok);
+      SolverCounts counts;
+      const auto solve = [&](int first, const Pose& pose) {
+        return solve_pair(scene.pool.tables(), ids[first], Pose{}, ids[first + 1], pose,
+                          ContactLevel::distance, 0.0, counts);
+      };
+      EXPECT_EQ(solve(0, at).distance * scale, solve(2, far_at).distance);
+    }
+  }
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Every operation of the wide vocabulary against a scalar loop, on every instruction set of this
-// machine, with the floats that break such code.
+// Every operation on lanes against a scalar loop, on every instruction set of this machine, with
+// the floats that break such code.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ constexpr std::array kHostile{0.0F,       -0.0F,          1.0F,    -1.0F,    kIn
                               FLT_MAX,    -FLT_MAX,       FLT_MIN, -FLT_MIN, kDenormal, -kDenormal,
                               16777216.F, 0x1.fffffep-1F, 1e30F,   -1e-30F};
 
-class Wide : public testing::TestWithParam<Isa> {
+class LaneOps : public testing::TestWithParam<Isa> {
  protected:
   const LanesOps& ops() { return lanes_ops(); }
 
@@ -51,13 +51,13 @@ class Wide : public testing::TestWithParam<Isa> {
   }
 
   using Binary = void (*)(const float*, const float*, float*);
-  void expect_lane_wise(Binary wide, const std::function<float(float, float)>& scalar,
+  void expect_lane_wise(Binary by_lanes, const std::function<float(float, float)>& scalar,
                         bool with_nan) {
     for (int round = 0; round < 5000; ++round) {
       const Floats a = lanes(with_nan);
       const Floats b = lanes(with_nan);
       Floats out;
-      wide(a.data(), b.data(), out.data());
+      by_lanes(a.data(), b.data(), out.data());
       for (std::size_t i = 0; i < 16; ++i) {
         const float expected = scalar(a[i], b[i]);
         // Zeros of either sign are the same number, and so are all NaNs.
@@ -73,11 +73,11 @@ class Wide : public testing::TestWithParam<Isa> {
   IsaScope isa_{GetParam()};
 };
 
-TEST_P(Wide, table_is_the_one_of_the_active_instruction_set) {
+TEST_P(LaneOps, table_is_the_one_of_the_active_instruction_set) {
   EXPECT_STREQ(ops().isa_name, to_string(GetParam()));
 }
 
-TEST_P(Wide, loads_and_stores_keep_every_bit) {
+TEST_P(LaneOps, loads_and_stores_keep_every_bit) {
   for (int round = 0; round < 1000; ++round) {
     alignas(64) Floats in = lanes(true);
     std::array<float, 17> shifted;
@@ -95,7 +95,7 @@ TEST_P(Wide, loads_and_stores_keep_every_bit) {
   }
 }
 
-TEST_P(Wide, broadcasts_fill_every_lane) {
+TEST_P(LaneOps, broadcasts_fill_every_lane) {
   for (const float value : kHostile) {
     Floats out;
     ops().broadcast(value, out.data());
@@ -108,7 +108,7 @@ TEST_P(Wide, broadcasts_fill_every_lane) {
   }
 }
 
-TEST_P(Wide, counts_up_from_a_base) {
+TEST_P(LaneOps, counts_up_from_a_base) {
   for (const std::uint32_t base : {0U, 7U, 0x7FFFFFF8U, 0xFFFFFFF8U}) {
     Uints out;
     ops().count_from(base, out.data());
@@ -116,7 +116,7 @@ TEST_P(Wide, counts_up_from_a_base) {
   }
 }
 
-TEST_P(Wide, arithmetic_is_lane_wise) {
+TEST_P(LaneOps, arithmetic_is_lane_wise) {
   expect_lane_wise(
       ops().min, [](float a, float b) { return b < a ? b : a; }, false);
   expect_lane_wise(
@@ -127,7 +127,7 @@ TEST_P(Wide, arithmetic_is_lane_wise) {
       ops().multiply, [](float a, float b) { return a * b; }, true);
 }
 
-TEST_P(Wide, a_product_and_sum_are_rounded_once_or_twice) {
+TEST_P(LaneOps, a_product_and_sum_are_rounded_once_or_twice) {
   for (int round = 0; round < 5000; ++round) {
     const Floats a = lanes();
     const Floats b = lanes();
@@ -143,7 +143,7 @@ TEST_P(Wide, a_product_and_sum_are_rounded_once_or_twice) {
   }
 }
 
-TEST_P(Wide, lanes_that_do_not_compare_become_infinite) {
+TEST_P(LaneOps, lanes_that_do_not_compare_become_infinite) {
   for (int round = 0; round < 5000; ++round) {
     const Floats a = lanes(true);
     const Floats b = lanes(true);
@@ -154,7 +154,7 @@ TEST_P(Wide, lanes_that_do_not_compare_become_infinite) {
   }
 }
 
-TEST_P(Wide, compares_are_closed_and_false_for_nan) {
+TEST_P(LaneOps, compares_are_closed_and_false_for_nan) {
   for (int round = 0; round < 5000; ++round) {
     const Floats a = lanes(true);
     const Floats b = lanes(true);
@@ -164,7 +164,7 @@ TEST_P(Wide, compares_are_closed_and_false_for_nan) {
   }
 }
 
-TEST_P(Wide, reductions_find_the_extreme_lane_wherever_it_is) {
+TEST_P(LaneOps, reductions_find_the_extreme_lane_wherever_it_is) {
   for (std::size_t at = 0; at < 16; ++at) {
     Floats in;
     in.fill(2.0F);
@@ -180,7 +180,7 @@ TEST_P(Wide, reductions_find_the_extreme_lane_wherever_it_is) {
   }
 }
 
-TEST_P(Wide, masks_are_counted_and_searched) {
+TEST_P(LaneOps, masks_are_counted_and_searched) {
   for (std::uint32_t mask = 0; mask < 65536; ++mask) {
     unsigned bits = 0;
     unsigned lowest = 16;
@@ -249,7 +249,7 @@ class Volumes {
   std::array<float, Slabs> query_high_;
 };
 
-TEST_P(Wide, overlap_is_the_closed_test_of_every_slab) {
+TEST_P(LaneOps, overlap_is_the_closed_test_of_every_slab) {
   std::uint32_t hits3 = 0;
   std::uint32_t hits13 = 0;
   for (int round = 0; round < 5000; ++round) {
@@ -269,7 +269,7 @@ TEST_P(Wide, overlap_is_the_closed_test_of_every_slab) {
   EXPECT_EQ(hits13, 0xFFFFU) << "the test hits no pair in some lane";
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Wide,
+INSTANTIATE_TEST_SUITE_P(All, LaneOps,
                          testing::ValuesIn(available_isas().begin(), available_isas().end()),
                          [](const auto& isa) { return to_string(isa.param); });
 

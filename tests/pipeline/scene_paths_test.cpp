@@ -1,0 +1,179 @@
+// Rays and moving shapes in a scene: how little they ask, how far they reach, and what they may not
+// slip through.
+
+#include <gtest/gtest.h>
+#include <winnow/pipeline/scene_queries.h>
+
+#include "tests/pipeline/query_world.h"
+#include "tests/support/config.h"
+
+namespace winnow::test {
+namespace {
+
+TEST(ScenePaths, the_closest_hit_is_found_without_asking_all_bodies_on_the_way) {
+  QueryWorld world;
+  ShapeId ball;
+  ASSERT_EQ(world.shapes.pool.add(SphereShape{0.4}, ball), Status::ok);
+  Random random(6);
+  for (int i = 0; i < 16; ++i) {
+    for (int j = 0; j < 16; ++j) {
+      for (int k = 0; k < 16; ++k) world.add(ball, Pose::at(i, j, k), random);
+    }
+  }
+  world.add_to_scene();
+  SceneQueries queries(*world.scene);
+  std::size_t asked = 0;
+  Filter filter;
+  filter.predicate = {[](void* count, Key, ClientData) {
+                        ++*static_cast<std::size_t*>(count);
+                        return true;
+                      },
+                      &asked};
+  const std::size_t rays = 1000;
+  for (std::size_t n = 0; n < rays; ++n) {
+    ShapeRay ray;
+    ray.max_t = kInfinity;
+    for (int i = 0; i < 3; ++i) {
+      ray.origin[i] = random.uniform(-4.0, 20.0);
+      ray.direction[i] = random.uniform(0.0, 16.0) - ray.origin[i];
+    }
+    SceneHit hit;
+    ASSERT_EQ(queries.closest(ray, hit, filter), Status::ok);
+  }
+  EXPECT_LT(asked, 12 * rays);
+}
+
+TEST(ScenePaths, a_long_way_ends_at_a_body_smaller_than_the_rounding_of_its_direction) {
+  Random random(15);
+  QueryWorld world;
+  ShapeId grain;
+  ASSERT_EQ(world.shapes.pool.add(SphereShape{1e-4}, grain), Status::ok);
+  for (int i = 0; i < 100; ++i) world.add(grain, random_pose(100.0, random), random);
+  world.add_to_scene();
+  SceneQueries queries(*world.scene);
+  for (std::size_t n = scaled(500); n-- != 0;) {
+    const std::size_t target = random.below(world.bodies.size());
+    ShapeRay ray;
+    draw_direction(1.0, random, ray.direction);
+    const double way = random.log_uniform(1e3, 1e6) / length_of(ray.direction);
+    for (int i = 0; i < 3; ++i) {
+      ray.origin[i] = world.bodies[target].pose.position[i] - way * ray.direction[i];
+    }
+    ray.max_t = random.chance(0.5) ? kInfinity : 1.5 * way;
+    SceneHit hit;
+    ASSERT_EQ(queries.closest(ray, hit), Status::ok);
+    ASSERT_TRUE(hit) << n;
+    EXPECT_LE(hit.t, way);
+    ShapeCast cast{grain, {}, {}, ray.max_t};
+    std::copy_n(ray.origin, 3, cast.pose.position);
+    std::copy_n(ray.direction, 3, cast.direction);
+    ASSERT_EQ(queries.closest(cast, hit), Status::ok);
+    ASSERT_TRUE(hit) << n;
+    EXPECT_LE(hit.t, way);
+  }
+}
+
+TEST(ScenePaths, ways_without_end_reach_what_lies_at_the_end_of_the_world) {
+  for (const double far : {1e3, 1e9, 1e20, 1e30, 1e36, 1e200}) {
+    QueryWorld world;
+    ShapeId ball;
+    ShapeId wall;
+    ASSERT_EQ(world.shapes.pool.add(SphereShape{0.01 * far}, ball), Status::ok);
+    ASSERT_EQ(world.shapes.pool.add(HalfSpaceShape{{-1.0, 0.0, 0.0}, -3.0 * far}, wall),
+              Status::ok);
+    Random random(7);
+    world.add(wall, {}, random);
+    world.add(ball, Pose::at(far, 0.5 * far, 0.25 * far), random);
+    world.add_to_scene();
+    SceneQueries queries(*world.scene);
+    ShapeRay ray{{0.0, 0.0, 0.0}, {4.0, 2.0, 1.0}, kInfinity};
+    SceneHit hit;
+    std::span<const SceneHit> hits;
+    ASSERT_EQ(queries.closest(ray, hit), Status::ok);
+    EXPECT_EQ(hit.key, world.keys[1]) << far;
+    EXPECT_NEAR(hit.t / far, 0.25 - 0.01 / std::sqrt(21.0), 1e-12);
+    ASSERT_EQ(queries.all(ray, hits), Status::ok);
+    EXPECT_EQ(hits.size(), 2U) << far;
+    const ShapeCast cast{ball, {}, {4.0, 2.0, 1.0}, kInfinity};
+    ASSERT_EQ(queries.closest(cast, hit, {}, 1e-9 * far), Status::ok);
+    EXPECT_EQ(hit.key, world.keys[1]) << far;
+    EXPECT_NEAR(hit.t / far, 0.25 - 0.02 / std::sqrt(21.0), 1e-8);
+  }
+}
+
+TEST(ScenePaths, a_bullet_never_tunnels_a_sheet_of_triangles) {
+  Random random(8);
+  for (const double center : kCenters) {
+    QueryWorld world;
+    world.center = center;
+    ShapeId bullet;
+    ASSERT_EQ(world.shapes.pool.add(SphereShape{1e-3}, bullet), Status::ok);
+    world.add(add_sheet(world.composites, 40), {}, random);
+    world.add_to_scene();
+    SceneQueries queries(*world.scene);
+    for (std::size_t n = scaled(400); n-- != 0;) {
+      ShapeCast cast{bullet, {}, {}, kInfinity};
+      const double speed = random.log_uniform(1e-3, 1e9);
+      const double way = random.log_uniform(1.0, 1e4);
+      const double slope[3] = {random.uniform(-2, 2), random.uniform(-2, 2), -1.0};
+      for (int i = 0; i < 3; ++i) {
+        cast.pose.position[i] = center + (i < 2 ? random.uniform(-0.4, 0.4) : 0.0) - way * slope[i];
+        cast.direction[i] = speed * slope[i];
+      }
+      SceneHit hit;
+      ASSERT_EQ(queries.closest(cast, hit), Status::ok);
+      ASSERT_TRUE(hit) << n;
+      // The sheet is within 0.2 of its plane.
+      EXPECT_NEAR(hit.t * speed, way, 0.21);
+      EXPECT_GT(hit.normal[2], 0.0);
+    }
+  }
+}
+
+TEST(ScenePaths, a_turned_mesh_lets_no_ray_through_its_edges_and_corners) {
+  Random random(14);
+  QueryWorld world;
+  constexpr std::uint32_t kCells = 40;
+  const ShapeId sheet = add_sheet(world.composites, kCells);
+  ShapeId large;
+  ASSERT_EQ(world.composites.add_scaled(sheet, {100.0, 50.0, 30.0}, large), Status::ok);
+  world.add(large, random_pose(10.0, random), random);
+  ShapeId point;
+  ASSERT_EQ(world.shapes.pool.add(SphereShape{}, point), Status::ok);
+  world.add_to_scene();
+  SceneQueries queries(*world.scene);
+  const std::vector<FlatPart> parts = world.parts(0);
+  const double* const base = world.bodies[0].pose.position;
+  for (std::size_t n = scaled(2000); n-- != 0;) {
+    // Not those at the border.
+    const std::size_t i = 1 + random.below(kCells - 2);
+    const std::size_t cell = i * kCells + 1 + random.below(kCells - 2);
+    const auto inner = std::find_if(parts.begin(), parts.end(),
+                                    [&](const FlatPart& part) { return part.part == 2 * cell; });
+    ASSERT_NE(inner, parts.end());
+    const std::size_t corner = random.below(3);
+    const double along = random.chance(0.5) ? 0.0 : random.unit();
+    ShapeRay ray;
+    draw_direction(1.0, random, ray.direction);
+    for (int k = 0; k < 3; ++k) {
+      const double from = inner->triangle.vertex[corner][k];
+      const double to = inner->triangle.vertex[(corner + 1) % 3][k];
+      ray.origin[k] =
+          base[k] + inner->pose.position[k] + from + along * (to - from) - 4.0 * ray.direction[k];
+    }
+    ray.max_t = kInfinity;
+    SceneHit hit;
+    ASSERT_EQ(queries.closest(ray, hit), Status::ok);
+    ASSERT_TRUE(hit) << n;
+    EXPECT_LT(hit.t, 4.0 + 1e-6);
+    ShapeCast cast{point, {}, {}, kInfinity};
+    std::copy_n(ray.origin, 3, cast.pose.position);
+    std::copy_n(ray.direction, 3, cast.direction);
+    ASSERT_EQ(queries.closest(cast, hit), Status::ok);
+    ASSERT_TRUE(hit) << n;
+    EXPECT_LT(hit.t, 4.0 + 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test

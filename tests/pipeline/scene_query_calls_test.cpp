@@ -1,0 +1,227 @@
+// What all questions to a scene have in common: filters, refusals, the same answers everywhere,
+// memory.
+
+#include <gtest/gtest.h>
+#include <winnow/pipeline/scene_queries.h>
+
+#include <cstring>
+#include <thread>
+
+#include "tests/pipeline/query_world.h"
+#include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
+
+namespace winnow::test {
+namespace {
+
+TEST(SceneQueryCalls, filters_and_predicates_choose_among_bodies) {
+  Random random(9);
+  QueryWorld world;
+  fill(world, 120, 0.0, random);
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    world.bodies[i].filter.layers = 1U << (i % 3);
+  }
+  world.add_to_scene();
+  SceneQueries queries(*world.scene);
+  struct Context {
+    const QueryWorld& world;
+    bool right = true;
+  } context{world};
+  Filter filter;
+  filter.mask = 0b101;
+  filter.predicate = {[](void* given, Key key, ClientData data) {
+                        auto& c = *static_cast<Context*>(given);
+                        c.right = c.right && c.world.keys[data - 1000] == key;
+                        return data % 2 == 0;
+                      },
+                      &context};
+  const auto wanted = [](ClientData data) { return (data - 1000) % 3 != 1 && data % 2 == 0; };
+  const auto expect_chosen = [&](const auto& chosen, const auto& everything) {
+    std::size_t k = 0;
+    for (const auto& one : everything) {
+      if (!wanted(one.data)) continue;
+      ASSERT_LT(k, chosen.size());
+      EXPECT_EQ(chosen[k++].key, one.key);
+    }
+    EXPECT_EQ(k, chosen.size());
+  };
+  const auto copy = [](const auto& span) { return std::vector(span.begin(), span.end()); };
+  const double origin[3] = {0.0, 0.0, 0.0};
+  for (int n = 0; n < 10; ++n) {
+    ShapeRay ray;
+    draw_direction(1.0, random, ray.direction);
+    ray.max_t = kInfinity;
+    std::span<const SceneHit> hits;
+    ASSERT_EQ(queries.all(ray, hits), Status::ok);
+    const auto every_hit = copy(hits);
+    ASSERT_EQ(queries.all(ray, hits, filter), Status::ok);
+    expect_chosen(hits, every_hit);
+    std::span<const SceneOverlap> overlaps;
+    const ShapeId sheet = world.bodies[120].shape;
+    const Pose pose = random_pose(1.0, random);
+    ASSERT_EQ(queries.overlap(sheet, pose, overlaps), Status::ok);
+    const auto every_overlap = copy(overlaps);
+    ASSERT_EQ(queries.overlap(sheet, pose, overlaps, filter), Status::ok);
+    expect_chosen(overlaps, every_overlap);
+    std::span<const SceneDistance> near;
+    ASSERT_EQ(queries.nearest(origin, 1000, 4.0, near), Status::ok);
+    const auto every_near = copy(near);
+    ASSERT_EQ(queries.nearest(origin, 1000, 4.0, near, filter), Status::ok);
+    expect_chosen(near, every_near);
+  }
+  EXPECT_TRUE(context.right);
+}
+
+TEST(SceneQueryCalls, bad_questions_get_a_status_and_change_nothing) {
+  Random random(10);
+  QueryWorld world;
+  fill(world, 30, 0.0, random);
+  world.add_to_scene();
+  SceneQueries queries(*world.scene);
+  SceneHit hit;
+  hit.t = -7.0;
+  const double nan = std::nan("");
+  for (const ShapeRay& ray :
+       {ShapeRay{{nan, 0, 0}, {1, 0, 0}, 1.0}, ShapeRay{{0, 0, 0}, {0, 0, 0}, 1.0},
+        ShapeRay{{0, 0, 0}, {1, kInfinity, 0}, 1.0}, ShapeRay{{0, 0, 0}, {1, 0, 0}, -1.0},
+        ShapeRay{{0, 0, 0}, {1, 0, 0}, nan}}) {
+    EXPECT_EQ(queries.closest(ray, hit), Status::invalid_argument);
+    EXPECT_EQ(queries.any(ray, hit), Status::invalid_argument);
+  }
+  const ShapeCast good{world.shapes.shapes[0], {}};
+  ShapeCast cast = good;
+  cast.shape = {};
+  EXPECT_EQ(queries.closest(cast, hit), Status::invalid_key);
+  cast.shape = world.bodies.back().shape;
+  EXPECT_EQ(queries.closest(cast, hit), Status::unsupported);
+  cast = good;
+  cast.pose.orientation[0] = 0.0;
+  EXPECT_EQ(queries.closest(cast, hit), Status::invalid_pose);
+  cast = good;
+  cast.direction[1] = nan;
+  EXPECT_EQ(queries.closest(cast, hit), Status::invalid_argument);
+  EXPECT_EQ(queries.closest(good, hit, {}, -1.0), Status::invalid_argument);
+  EXPECT_EQ(queries.closest(good, hit, {}, nan), Status::invalid_argument);
+  EXPECT_EQ(hit.t, -7.0);
+  std::span<const SceneOverlap> overlaps;
+  EXPECT_EQ(queries.overlap(ShapeId{}, {}, overlaps), Status::invalid_key);
+  EXPECT_EQ(queries.overlap(good.shape, Pose::at(nan, 0, 0), overlaps), Status::invalid_pose);
+  SceneDistance distance;
+  EXPECT_EQ(queries.distance(world.keys[0], {}, distance), Status::invalid_key);
+  std::span<const SceneDistance> near;
+  const double nowhere[3] = {0.0, nan, 0.0};
+  const double origin[3] = {0.0, 0.0, 0.0};
+  EXPECT_EQ(queries.nearest(nowhere, 1, 1.0, near), Status::invalid_argument);
+  EXPECT_EQ(queries.nearest(origin, 1, -1.0, near), Status::invalid_argument);
+  ASSERT_EQ(world.scene->move(world.keys[0], Pose::at(1, 2, 3)), Status::ok);
+  EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::invalid_argument);
+  ASSERT_EQ(world.scene->refresh(), Status::ok);
+  EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::ok);
+  // As after a change of poses, so after one of composite shapes.
+  ASSERT_EQ(world.composites.remove(add_sheet(world.composites, 2)), Status::ok);
+  EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::invalid_argument);
+  ASSERT_EQ(world.scene->refresh(), Status::ok);
+  EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::ok);
+}
+
+/// A number for all answers to many questions.
+std::uint64_t fingerprint(const QueryWorld& world, SceneQueries& queries) {
+  Random random(11);
+  std::uint64_t sum = 0;
+  const auto mix = [&](const auto& value) {
+    std::uint64_t bits[2] = {0, 0};
+    static_assert(sizeof(value) <= sizeof(bits));
+    std::memcpy(bits, &value, sizeof(value));
+    sum = (sum ^ bits[0]) * 0x9E3779B97F4A7C15ULL + bits[1];
+  };
+  const auto mix_hit = [&](const SceneHit& hit) {
+    mix(hit.key.id);
+    mix(hit.part);
+    mix(hit.t);
+    for (int i = 0; i < 3; ++i) mix(hit.normal[i]), mix(hit.point[i]);
+  };
+  for (int n = 0; n < 12; ++n) {
+    ShapeCast cast;
+    cast.shape = world.shapes.shapes[random.below(100)];
+    cast.pose = random_pose(world.size, random);
+    draw_direction(1.0, random, cast.direction);
+    cast.max_t = kInfinity;
+    ShapeRay ray;
+    ray.max_t = kInfinity;
+    std::copy_n(cast.pose.position, 3, ray.origin);
+    std::copy_n(cast.direction, 3, ray.direction);
+    SceneHit hit;
+    std::span<const SceneHit> hits;
+    EXPECT_EQ(queries.closest(ray, hit), Status::ok);
+    mix_hit(hit);
+    EXPECT_EQ(queries.closest(cast, hit), Status::ok);
+    mix_hit(hit);
+    EXPECT_EQ(queries.all(ray, hits), Status::ok);
+    for (const SceneHit& one : hits) mix_hit(one);
+    std::span<const SceneOverlap> overlaps;
+    EXPECT_EQ(queries.overlap(world.bodies[100].shape, cast.pose, overlaps), Status::ok);
+    for (const SceneOverlap& one : overlaps) mix(one.key.id), mix(one.part);
+    std::span<const SceneDistance> near;
+    EXPECT_EQ(queries.nearest(ray.origin, 7, 10.0, near), Status::ok);
+    for (const SceneDistance& one : near) mix(one.key.id), mix(one.part), mix(one.distance);
+  }
+  return sum;
+}
+
+TEST(SceneQueryCalls, answer_the_same_on_every_instruction_set_and_from_many_threads) {
+  Random random(12);
+  QueryWorld world;
+  fill(world, 100, 0.0, random);
+  world.add_to_scene();
+  SceneQueries first(*world.scene);
+  const std::uint64_t truth = fingerprint(world, first);
+  for (const Isa isa : available_isas()) {
+    const IsaScope scope(isa);
+    SceneQueries queries(*world.scene);
+    EXPECT_EQ(fingerprint(world, queries), truth) << to_string(isa);
+  }
+  std::uint64_t sums[4] = {};
+  std::vector<std::thread> threads;
+  for (std::uint64_t& sum : sums) {
+    threads.emplace_back([&world, &sum] {
+      SceneQueries queries(*world.scene);
+      sum = fingerprint(world, queries);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::uint64_t sum : sums) EXPECT_EQ(sum, truth);
+}
+
+TEST(SceneQueryCalls, know_their_memory_to_the_byte_and_ask_for_none_twice) {
+  Random random(13);
+  QueryWorld world;
+  fill(world, 100, 0.0, random);
+  world.add_to_scene();
+  CountingMemory memory;
+  {
+    SceneQueries queries(*world.scene, &memory);
+    EXPECT_EQ(queries.footprint().total().reserved, memory.outstanding());
+    const std::uint64_t truth = fingerprint(world, queries);
+    EXPECT_EQ(queries.footprint().total().reserved, memory.outstanding());
+    const std::size_t requests = memory.requests();
+    EXPECT_EQ(fingerprint(world, queries), truth);
+    EXPECT_EQ(memory.requests(), requests);
+  }
+  EXPECT_EQ(memory.outstanding(), 0U);
+  memory.refuse_after(0);
+  SceneQueries refused(*world.scene, &memory);
+  SceneHit hit;
+  EXPECT_EQ(refused.closest(ShapeRay{}, hit), Status::out_of_memory);
+  memory.grant_all();
+  SceneQueries poor(*world.scene, &memory);
+  memory.refuse_after(0);
+  const double origin[3] = {0.0, 0.0, 0.0};
+  std::span<const SceneDistance> near;
+  EXPECT_EQ(poor.nearest(origin, 7, kInfinity, near), Status::out_of_memory);
+  memory.grant_all();
+  EXPECT_EQ(poor.nearest(origin, 7, kInfinity, near), Status::ok);
+  EXPECT_EQ(near.size(), 7U);
+}
+
+}  // namespace
+}  // namespace winnow::test
