@@ -1,9 +1,81 @@
 #pragma once
 
-#include "pipeline/kernels/narrow_job.h"
+// What the narrow phase hands to its kernels, and which kernels there are. Plain structs: kernel
+// files include this.
+
+#include <winnow/core/pose.h>
+#include <winnow/pipeline/contact_types.h>
+#include <winnow/pipeline/shapes.h>
 #include "simd/kernels/kernels.h"
 
+#include <cstdint>
+
 namespace winnow {
+
+/// At most so many pairs per job.
+inline constexpr std::uint32_t kJobPairs = 512;
+
+/// Kernels write contact points by whole vectors: the last of them may reach this far beyond.
+inline constexpr std::uint32_t kContactSlack = 16;
+
+/// Contact points in the order in which they are written, one column per member.
+struct ContactWriter {
+  float* position[3];
+  float* depth;
+  std::uint64_t* feature;
+  /// Points so far. There is room for kManifoldPoints per pair of the job, and for kContactSlack
+  /// more.
+  std::uint32_t size;
+};
+
+/// A run of pairs of one kind and where their answers go: element i of every column for pairs[i].
+/// All pairs are in the kinds' order: the shape of `a` is of the smaller kind.
+struct NarrowJob {
+  const BodyPair* pairs;
+  std::uint32_t count;
+  /// By body.
+  const ShapeId* shapes;
+  const Pose* poses;
+  ShapeTables tables;
+  /// Contacts are made of pairs that are no farther apart.
+  double margin;
+
+  /// Level boolean: 1 where the shapes share a point.
+  std::uint8_t* overlap;
+  /// Levels distance and manifold. Distance is negative by the penetration depth, and <= 0 exactly
+  /// where the shapes share a point. At level manifold a pair farther apart than the margin may
+  /// have any lower bound of its distance that is above the margin.
+  double* distance;
+  /// The true distance is within distance +- error_bound.
+  double* error_bound;
+  /// Unit vectors from a to b, in the axes of the world.
+  double* normal[3];
+  /// Level distance: the point of a, relative to the position of body a, in the axes of the world.
+  /// That of b is distance * normal farther.
+  double* point[3];
+  /// Level manifold: points of pair i are contacts[contact_first[i] .. + contact_count[i]).
+  std::uint32_t* contact_first;
+  std::uint32_t* contact_count;
+  ContactWriter contacts;
+
+  /// Room for `count` indices of pairs that the kernel could not certify. Nothing of theirs needs
+  /// to have been written.
+  std::uint32_t* uncertified;
+};
+
+/// Answers a job; returns the number of uncertified pairs.
+using NarrowKernel = std::uint32_t (*)(NarrowJob& job);
+
+/// The kernels of one pair kind. Null: there is none, and the solver answers.
+struct NarrowKernels {
+  /// By kernel_index of the level. Tier fast: all lanes in float; a pair goes to `uncertified` if
+  /// it left float's range, or if its lanes found no answer that is good to about 1e-4 of the
+  /// sizes.
+  NarrowKernel fast[3];
+  /// Tier robust: what is not in `uncertified` has the right sign and a bound of at most
+  /// 1e-12 x (sizes + |distance|).
+  NarrowKernel robust[3];
+};
 
 // One table per kind of pair, defined in the file of its name.
 WINNOW_KERNELS(NarrowKernels, sphere_sphere_kernels);

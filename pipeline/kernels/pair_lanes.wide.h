@@ -4,7 +4,7 @@
 // positions, orientations, and the numbers of the shapes in the order in which the structs hold
 // them.
 
-#include "pipeline/kernels/narrow_job.h"
+#include "pipeline/kernels/kernels.h"
 #include "simd/lanes/rows.h"
 #include "simd/lanes/vectors.h"
 

@@ -10,7 +10,7 @@
 
 #include "partitions/tree/traversal.wide.h"
 #include "pipeline/mesh/mesh_lanes.wide.h"
-#include "pipeline/mesh/mesh_traversal.kernel.h"
+#include "pipeline/mesh/mesh_traversal.h"
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 

@@ -9,7 +9,7 @@
 // rounding can have added; u is half an ulp of 1. A number that is not finite drops nothing.
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
-#include "pipeline/mesh/mesh_traversal.kernel.h"
+#include "pipeline/mesh/mesh_traversal.h"
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 

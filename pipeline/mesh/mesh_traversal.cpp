@@ -2,7 +2,6 @@
 
 #include <winnow/core/rounding.h>
 #include <winnow/simd/isa.h>
-#include "pipeline/mesh/mesh_traversal.kernel.h"
 #include "pipeline/mesh/mesh_tree.h"
 #include "pipeline/shapes/frame.h"
 

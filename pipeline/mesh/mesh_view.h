@@ -64,10 +64,9 @@ inline void put_slot(SlotSink& out, std::uint32_t slot) {
   ++out.size;
 }
 
-/// The same for pairs of slots; or, with `take`, for any number of them in one
-/// traversal: it is called
-/// where there is no room for 16 more, uses up what is there and sets size to 0. The capacity is 16
-/// at least then, and what is left when it ends is for the caller to use up.
+/// The same for pairs of slots; or, with `take`, for any number of them in one traversal: it is
+/// called where there is no room for 16 more, uses up what is there and sets size to 0. The
+/// capacity is 16 at least then, and what is left when it ends is for the caller to use up.
 struct SlotPairSink {
   std::uint32_t* first = nullptr;
   std::uint32_t* second = nullptr;

@@ -1,5 +1,5 @@
 #include <winnow/pipeline/narrow_result.h>
-#include "pipeline/kernels/narrow_job.h"
+#include "pipeline/kernels/kernels.h"
 
 namespace winnow {
 ContactColumns::ContactColumns(std::pmr::memory_resource* memory) noexcept

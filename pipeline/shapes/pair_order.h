@@ -1,7 +1,9 @@
 #pragma once
 
-// Which shape of a pair comes first, and how pairs of kinds are numbered.
+// Which shape of a pair comes first, how pairs of kinds are numbered, and what the answer about a
+// pair (a, b) is as one about (b, a).
 
+#include <winnow/core/rounding.h>
 #include <winnow/pipeline/shapes.h>
 
 #include <cstdint>
@@ -40,5 +42,16 @@ struct KindPairs {
 using ConvexKindPairs = KindPairs<kShapeKinds>;
 /// Of convex and composite ones.
 using BodyKindPairs = KindPairs<kAllShapeKinds>;
+
+/// The feature of a in the upper half and that of b in the lower one change places.
+[[nodiscard]] constexpr std::uint64_t mirrored_feature(std::uint64_t feature) noexcept {
+  return feature << 32U | feature >> 32U;
+}
+
+/// A coordinate of a point relative to body a, relative to body b, which is `apart` farther; at
+/// most the largest float.
+[[nodiscard]] inline float mirrored_position(float x, double apart) noexcept {
+  return finite_float(static_cast<double>(x) - apart);
+}
 
 }  // namespace winnow

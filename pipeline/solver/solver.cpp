@@ -1,7 +1,6 @@
 #include "pipeline/solver/solver.h"
 
 #include "pipeline/exact/exact_overlap.h"
-#include "pipeline/manifold/mirrored.h"
 #include "pipeline/shapes/pair_order.h"
 #include "pipeline/solver/core_distance.h"
 #include "pipeline/solver/manifold.h"

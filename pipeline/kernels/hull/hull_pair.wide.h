@@ -3,7 +3,7 @@
 // A pair of convex polytopes, possibly rounded, as the hull kernels pass it from stage to stage,
 // and which vertex of a hull lies farthest along a direction, sixteen vertices at a time.
 
-#include "pipeline/kernels/narrow_job.h"
+#include "pipeline/kernels/kernels.h"
 #include "simd/lanes/vectors.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {

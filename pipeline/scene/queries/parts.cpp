@@ -2,6 +2,7 @@
 
 #include <winnow/core/rotation.h>
 #include <winnow/core/rounding.h>
+#include "pipeline/shapes/frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,8 +45,8 @@ PreciseBox triangle_box(const TriangleShape& triangle, const Pose& pose) noexcep
   }
   // Of the rotation, and of the sums below.
   const Vector3d position = Vector3d::Map(pose.position);
-  const double slack =
-      triangle.rounding + 1e-14 * (scale + triangle.rounding + position.cwiseAbs().maxCoeff());
+  const double slack = triangle.rounding +
+                       mid::kSlack * (scale + triangle.rounding + position.cwiseAbs().maxCoeff());
   return PreciseBox{position + box.min, position + box.max}.grown(slack);
 }
 

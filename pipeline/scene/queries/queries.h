@@ -1,7 +1,6 @@
 #pragma once
 
-// What questions to a scene are made of; see queries_casts.cpp and queries_near.cpp for the
-// questions.
+// What questions to a scene are made of; see casts.cpp and scene_queries.cpp for the questions.
 
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/scene/queries/parts.h"

@@ -1,4 +1,4 @@
-#include "pipeline/rays/ray_parts.h"
+#include "pipeline/rays/shape_entries.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
