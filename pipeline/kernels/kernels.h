@@ -77,26 +77,32 @@ struct NarrowKernels {
   NarrowKernel robust[3];
 };
 
-// One table per kind of pair, defined in the file of its name.
-WINNOW_KERNELS(NarrowKernels, sphere_sphere_kernels);
-WINNOW_KERNELS(NarrowKernels, sphere_capsule_kernels);
-WINNOW_KERNELS(NarrowKernels, sphere_box_kernels);
-WINNOW_KERNELS(NarrowKernels, sphere_triangle_kernels);
-WINNOW_KERNELS(NarrowKernels, sphere_half_space_kernels);
-WINNOW_KERNELS(NarrowKernels, capsule_capsule_kernels);
-WINNOW_KERNELS(NarrowKernels, capsule_box_kernels);
-WINNOW_KERNELS(NarrowKernels, capsule_triangle_kernels);
-WINNOW_KERNELS(NarrowKernels, capsule_half_space_kernels);
-WINNOW_KERNELS(NarrowKernels, box_half_space_kernels);
-WINNOW_KERNELS(NarrowKernels, triangle_half_space_kernels);
-WINNOW_KERNELS(NarrowKernels, box_box_kernels);
-WINNOW_KERNELS(NarrowKernels, box_triangle_kernels);
-WINNOW_KERNELS(NarrowKernels, hull_hull_kernels);
-WINNOW_KERNELS(NarrowKernels, triangle_triangle_kernels);
-WINNOW_KERNELS(NarrowKernels, sphere_hull_kernels);
-WINNOW_KERNELS(NarrowKernels, capsule_hull_kernels);
-WINNOW_KERNELS(NarrowKernels, box_hull_kernels);
-WINNOW_KERNELS(NarrowKernels, hull_triangle_kernels);
+/// The kinds of pairs that have kernels, as WINNOW_X(a, b): their table is `a_b_kernels()`, which a
+/// kernel file defines as WINNOW_KERNEL_TABLE(a_b_kernels).
+#define WINNOW_NARROW_KERNELS(WINNOW_X) \
+  WINNOW_X(sphere, sphere)              \
+  WINNOW_X(sphere, capsule)             \
+  WINNOW_X(sphere, box)                 \
+  WINNOW_X(sphere, hull)                \
+  WINNOW_X(sphere, triangle)            \
+  WINNOW_X(sphere, half_space)          \
+  WINNOW_X(capsule, capsule)            \
+  WINNOW_X(capsule, box)                \
+  WINNOW_X(capsule, hull)               \
+  WINNOW_X(capsule, triangle)           \
+  WINNOW_X(capsule, half_space)         \
+  WINNOW_X(box, box)                    \
+  WINNOW_X(box, hull)                   \
+  WINNOW_X(box, triangle)               \
+  WINNOW_X(box, half_space)             \
+  WINNOW_X(hull, hull)                  \
+  WINNOW_X(hull, triangle)              \
+  WINNOW_X(triangle, triangle)          \
+  WINNOW_X(triangle, half_space)
+
+#define WINNOW_DECLARE_PAIR(a, b) WINNOW_KERNELS(NarrowKernels, a##_##b##_kernels);
+WINNOW_NARROW_KERNELS(WINNOW_DECLARE_PAIR)
+#undef WINNOW_DECLARE_PAIR
 
 /// Where the kernel of a level stands in NarrowKernels. Level pairs has none.
 [[nodiscard]] constexpr std::uint32_t kernel_index(ContactLevel level) noexcept {

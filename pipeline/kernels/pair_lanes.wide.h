@@ -181,17 +181,32 @@ struct HalfSpaceLanes {
   Lanes<T> offset;
 };
 
+/// The numbers of the pairs' shapes, `Count` of each, which `table` holds.
+template <typename Side, int Count, typename T, typename Shape>
+[[gnu::always_inline]] inline void load_shapes(const NarrowJob& job, const PairBlock<T>& block,
+                                               const Shape* table, Lanes<T> (&out)[Count]) {
+  static_assert(sizeof(Shape) == Count * sizeof(double));
+  in_precision<T>(
+      [&](int from, Doubles(&rows)[Count]) {
+        const auto row = [&](int lane) {
+          return numbers(table[shape_index<Side>(job, block, from + lane)]);
+        };
+        if constexpr (Count == 1) {
+          rows[0] = load_rows1(row);
+        } else if constexpr (Count == 2) {
+          load_rows2(row, rows);
+        } else {
+          load_rows4(row, rows);
+        }
+      },
+      out);
+}
+
 template <typename Side, typename T>
 [[gnu::always_inline]] inline Lanes<T> load_sphere(const NarrowJob& job,
                                                    const PairBlock<T>& block) {
   Lanes<T> r[1];
-  in_precision<T>(
-      [&](int from, Doubles(&out)[1]) {
-        out[0] = load_rows1([&](int lane) {
-          return &job.tables.spheres[shape_index<Side>(job, block, from + lane)].radius;
-        });
-      },
-      r);
+  load_shapes<Side>(job, block, job.tables.spheres, r);
   return r[0];
 }
 
@@ -199,15 +214,7 @@ template <typename Side, typename T>
 [[gnu::always_inline]] inline CapsuleLanes<T> load_capsule(const NarrowJob& job,
                                                            const PairBlock<T>& block) {
   Lanes<T> r[2];
-  in_precision<T>(
-      [&](int from, Doubles(&out)[2]) {
-        load_rows2(
-            [&](int lane) {
-              return numbers(job.tables.capsules[shape_index<Side>(job, block, from + lane)]);
-            },
-            out);
-      },
-      r);
+  load_shapes<Side>(job, block, job.tables.capsules, r);
   return {r[0], r[1]};
 }
 
@@ -215,15 +222,15 @@ template <typename Side, typename T>
 [[gnu::always_inline]] inline BoxLanes<T> load_box(const NarrowJob& job,
                                                    const PairBlock<T>& block) {
   Lanes<T> r[4];
-  in_precision<T>(
-      [&](int from, Doubles(&out)[4]) {
-        load_rows4(
-            [&](int lane) {
-              return numbers(job.tables.boxes[shape_index<Side>(job, block, from + lane)]);
-            },
-            out);
-      },
-      r);
+  load_shapes<Side>(job, block, job.tables.boxes, r);
+  return {{r[0], r[1], r[2]}, r[3]};
+}
+
+template <typename Side, typename T>
+[[gnu::always_inline]] inline HalfSpaceLanes<T> load_half_space(const NarrowJob& job,
+                                                                const PairBlock<T>& block) {
+  Lanes<T> r[4];
+  load_shapes<Side>(job, block, job.tables.half_spaces, r);
   return {{r[0], r[1], r[2]}, r[3]};
 }
 
@@ -248,22 +255,6 @@ template <typename Side, typename T>
       },
       r);
   return {{{r[0], r[1], r[2]}, {r[3], r[4], r[5]}, {r[6], r[7], r[8]}}, r[9]};
-}
-
-template <typename Side, typename T>
-[[gnu::always_inline]] inline HalfSpaceLanes<T> load_half_space(const NarrowJob& job,
-                                                                const PairBlock<T>& block) {
-  Lanes<T> r[4];
-  in_precision<T>(
-      [&](int from, Doubles(&out)[4]) {
-        load_rows4(
-            [&](int lane) {
-              return numbers(job.tables.half_spaces[shape_index<Side>(job, block, from + lane)]);
-            },
-            out);
-      },
-      r);
-  return {{r[0], r[1], r[2]}, r[3]};
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME

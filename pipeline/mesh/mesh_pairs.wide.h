@@ -4,9 +4,9 @@
 // its absolute value and tested against sixteen nodes of a; at pairs of leaves the triangles of b,
 // brought there in double, against sixteen triangles of a.
 //
-// Triangles meet in the scaled frame of a, sixteen against one: boxes,
-// then the planes of both as separating ones. A pair is dropped only where it is apart by more than
-// rounding can have added; u is half an ulp of 1. A number that is not finite drops nothing.
+// Triangles meet in the scaled frame of a, sixteen against one: boxes, then the planes of both as
+// separating ones. A pair is dropped only where it is apart by more than rounding can have added; u
+// is half an ulp of 1. A number that is not finite drops nothing.
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_traversal.h"
@@ -16,6 +16,16 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
 inline constexpr float kUlp = 0x1p-24F;
 // More than what underflows of any product here.
 inline constexpr float kTiny = 0x1p-110F;
+
+[[gnu::always_inline]] inline Box16 load_box(const float (&low)[3][kLanes],
+                                             const float (&high)[3][kLanes]) {
+  Box16 box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.low[axis] = Floats::load(low[axis]);
+    box.high[axis] = Floats::load(high[axis]);
+  }
+  return box;
+}
 
 /// Triangles of a leaf of a. What their planes take is found when first asked for.
 struct PairLeaf {
@@ -51,14 +61,7 @@ struct PlacedTriangles {
   /// How far the slack reaches along the normal, with the rounding of the corner it starts from.
   alignas(64) float thickness[kLanes];
 
-  [[nodiscard]] Box16 box() const {
-    Box16 r;
-    for (int axis = 0; axis < 3; ++axis) {
-      r.low[axis] = Floats::load(low[axis]);
-      r.high[axis] = Floats::load(high[axis]);
-    }
-    return r;
-  }
+  [[nodiscard]] Box16 box() const { return load_box(low, high); }
 };
 
 /// The two products of each component of the cross product of p and q, subtracted and, by absolute
@@ -225,14 +228,7 @@ struct PlacedNodes {
   alignas(64) float high[3][kLanes];
   Mask16 lanes;
 
-  [[nodiscard]] Box16 box() const {
-    Box16 r;
-    for (int axis = 0; axis < 3; ++axis) {
-      r.low[axis] = Floats::load(low[axis]);
-      r.high[axis] = Floats::load(high[axis]);
-    }
-    return r;
-  }
+  [[nodiscard]] Box16 box() const { return load_box(low, high); }
 };
 
 /// One half of the lanes. An eighth of a unit covers the rounding of units: doubles resolve them to

@@ -23,12 +23,8 @@ struct BoxStage {
   Stage<T, kCount> stage;
 
   [[gnu::always_inline]] BoxStage(const BoxPair<T>& pair, const Vec3<T>& normal) {
-    stage.put(kAxesA, pair.frame_a.x);
-    stage.put(kAxesA + 3, pair.frame_a.y);
-    stage.put(kAxesA + 6, pair.frame_a.z);
-    stage.put(kAxesB, pair.frame_b.x);
-    stage.put(kAxesB + 3, pair.frame_b.y);
-    stage.put(kAxesB + 6, pair.frame_b.z);
+    stage.put(kAxesA, pair.frame_a);
+    stage.put(kAxesB, pair.frame_b);
     stage.put(kHalfA, Vec3<T>{pair.half_a[0], pair.half_a[1], pair.half_a[2]});
     stage.put(kHalfB, Vec3<T>{pair.half_b[0], pair.half_b[1], pair.half_b[2]});
     stage.put(kOffset, pair.offset);

@@ -294,9 +294,7 @@ struct BoxTriangleStage {
   Stage<T, kCount> stage;
 
   [[gnu::always_inline]] BoxTriangleStage(const BoxTrianglePair<T>& pair, const Vec3<T>& normal) {
-    stage.put(kAxes, pair.frame.x);
-    stage.put(kAxes + 3, pair.frame.y);
-    stage.put(kAxes + 6, pair.frame.z);
+    stage.put(kAxes, pair.frame);
     stage.put(kHalf, pair.half);
     for (int i = 0; i < 3; ++i) stage.put(kVertices + 3 * i, pair.to_world(pair.b.vertex[i]));
     stage.put(kNormal, normal);

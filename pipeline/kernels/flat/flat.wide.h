@@ -257,6 +257,11 @@ struct Stage {
     v.y.store(value[at + 1]);
     v.z.store(value[at + 2]);
   }
+  [[gnu::always_inline]] void put(int at, const Rotation<T>& axes) {
+    put(at, axes.x);
+    put(at + 3, axes.y);
+    put(at + 6, axes.z);
+  }
   [[gnu::always_inline]] void put(int at, const Lanes<T>& v) { v.store(value[at]); }
   [[gnu::always_inline]] void get(int at, int count, unsigned lane, double* out) const {
     for (int i = 0; i < count; ++i) out[i] = static_cast<double>(value[at + i][lane]);

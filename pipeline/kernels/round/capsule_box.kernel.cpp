@@ -195,7 +195,6 @@ template <typename T>
 [[gnu::always_inline]] inline void write_touches(NarrowJob& job, const PairBlock<T>& block,
                                                  const CapsuleBoxSolution<T>& r,
                                                  const CertifiedLanes<T>& answer) {
-  const Lanes<T> margin(static_cast<T>(job.margin));
   const Lanes<T> zero(T(0));
   const Lanes<T> one(T(1));
   const CapsuleAndBox<T>& p = r.scene;
@@ -220,9 +219,6 @@ template <typename T>
   }
   lies = lies & (tilt * tilt < Lanes<T>(kLyingSquare<T>)) &
          (high - low > p.half * Lanes<T>(kLeastStretch<T>));
-  const Lanes<T> distance[2] = {base - tilt * low, base - tilt * high};
-  const LaneMask<T> near_low = lies & (distance[0] <= margin);
-  const LaneMask<T> near_high = lies & (distance[1] <= margin);
   const Lanes<T> name = box_feature(r.normal);
   const auto contact = [&](const Lanes<T>& s, const Lanes<T>& d, const Lanes<T>& feature) {
     return ContactLanes<T>{axis * s + answer.normal * (r.radius + d * Lanes<T>(T(0.5))), -d,
@@ -232,15 +228,12 @@ template <typename T>
   const auto end_name = [&](const Lanes<T>& s, const Lanes<T>& cut) {
     return select(abs(s) >= p.half, segment_feature(s, p.half), cut);
   };
-  const Lanes<T> s = select(near_low, low, select(near_high, high, r.s));
-  const Lanes<T> d = select(near_low, distance[0], select(near_high, distance[1], answer.distance));
-  const Lanes<T> high_name = end_name(high, Lanes<T>(T(4)));
-  const Lanes<T> feature = select(near_low, end_name(low, Lanes<T>(T(3))),
-                                  select(near_high, high_name, segment_feature(r.s, p.half)));
-  ContactLanes<T> contacts[2] = {contact(s, d, feature), contact(high, distance[1], high_name)};
-  contacts[0].lanes = bits(answer.distance <= margin) & answer.certified & block.lanes();
-  contacts[1].lanes = bits(near_low & near_high) & contacts[0].lanes;
-  write_contacts(job, block, contacts);
+  write_stretch(job, block, answer,
+                {{low, high},
+                 {base - tilt * low, base - tilt * high},
+                 {end_name(low, Lanes<T>(T(3))), end_name(high, Lanes<T>(T(4)))},
+                 lies},
+                r.s, segment_feature(r.s, p.half), contact);
 }
 
 struct CapsuleBox {

@@ -194,7 +194,6 @@ template <typename T>
 [[gnu::always_inline]] inline void write_touches(NarrowJob& job, const PairBlock<T>& block,
                                                  const CapsuleTriangleSolution<T>& r,
                                                  const CertifiedLanes<T>& answer) {
-  const Lanes<T> margin(static_cast<T>(job.margin));
   const CapsuleAndTriangle<T>& p = r.scene;
   const Vec3<T> axis = r.axes.to_world(p.axis);
   const Lanes<T> rise = dot(p.triangle.normal, r.normal);
@@ -205,22 +204,16 @@ template <typename T>
       (tilt * tilt < Lanes<T>(kLyingSquare<T>)) &
       (over.high - over.low > p.half * Lanes<T>(kLeastStretch<T>));
   const Lanes<T> base = dot(p.triangle.vertex[0], r.normal) - r.radius - r.radius_b;
-  const Lanes<T> distance[2] = {base - tilt * over.low, base - tilt * over.high};
-  const LaneMask<T> near_low = lies & (distance[0] <= margin);
-  const LaneMask<T> near_high = lies & (distance[1] <= margin);
   const auto contact = [&](const Lanes<T>& s, const Lanes<T>& d, const Lanes<T>& feature) {
     const Vec3<T> position = axis * s + answer.normal * (r.radius + d * Lanes<T>(T(0.5)));
     return ContactLanes<T>{position, -d, segment_feature(s, p.half), feature, 0};
   };
-  const Lanes<T> s = select(near_low, over.low, select(near_high, over.high, r.s));
-  const Lanes<T> d = select(near_low, distance[0], select(near_high, distance[1], answer.distance));
-  const Lanes<T> feature =
-      select(near_low, over.low_feature, select(near_high, over.high_feature, r.feature));
-  ContactLanes<T> contacts[2] = {contact(s, d, feature),
-                                 contact(over.high, distance[1], over.high_feature)};
-  contacts[0].lanes = bits(answer.distance <= margin) & answer.certified & block.lanes();
-  contacts[1].lanes = bits(near_low & near_high) & contacts[0].lanes;
-  write_contacts(job, block, contacts);
+  write_stretch(job, block, answer,
+                {{over.low, over.high},
+                 {base - tilt * over.low, base - tilt * over.high},
+                 {over.low_feature, over.high_feature},
+                 lies},
+                r.s, r.feature, contact);
 }
 
 struct CapsuleTriangle {

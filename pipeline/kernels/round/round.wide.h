@@ -370,4 +370,37 @@ template <typename T>
   return Lanes<T>(T(13)) - (sign(towards.x) + three * (sign(towards.y) + three * sign(towards.z)));
 }
 
+/// The stretch of a segment that lies on a face: where it begins and ends, how far the shapes are
+/// apart there, and what a contact there is called.
+template <typename T>
+struct LyingStretch {
+  Lanes<T> at[2];
+  Lanes<T> distance[2];
+  Lanes<T> feature[2];
+  LaneMask<T> lies;
+};
+
+/// Contacts at the ends of the stretch that are within the margin; one at `s`, called `feature`,
+/// where none is or the segment does not lie. `contact(s, distance, feature)` makes them.
+template <typename T, typename Contact>
+[[gnu::always_inline]] inline void write_stretch(NarrowJob& job, const PairBlock<T>& block,
+                                                 const CertifiedLanes<T>& answer,
+                                                 const LyingStretch<T>& stretch, const Lanes<T>& s,
+                                                 const Lanes<T>& feature, Contact&& contact) {
+  const Lanes<T> margin(static_cast<T>(job.margin));
+  const LaneMask<T> near_low = stretch.lies & (stretch.distance[0] <= margin);
+  const LaneMask<T> near_high = stretch.lies & (stretch.distance[1] <= margin);
+  const auto nearer_end = [&](const Lanes<T>(&ends)[2], const Lanes<T>& neither)
+      __attribute__((always_inline)) {
+    return select(near_low, ends[0], select(near_high, ends[1], neither));
+  };
+  ContactLanes<T> contacts[2] = {
+      contact(nearer_end(stretch.at, s), nearer_end(stretch.distance, answer.distance),
+              nearer_end(stretch.feature, feature)),
+      contact(stretch.at[1], stretch.distance[1], stretch.feature[1])};
+  contacts[0].lanes = bits(answer.distance <= margin) & answer.certified & block.lanes();
+  contacts[1].lanes = bits(near_low & near_high) & contacts[0].lanes;
+  write_contacts(job, block, contacts);
+}
+
 }  // namespace winnow::WINNOW_ISA_NAME::round
