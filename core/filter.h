@@ -15,7 +15,7 @@ namespace winnow {
 }
 
 /// A caller's last word on an object that a query would report. Plain pointers, so that it costs
-/// one call an object. It may be called from several threads at once, in any order, and not for
+/// one call per object. It may be called from several threads at once, in any order, and not for
 /// every object that is reported in the end; it must answer the same each time.
 struct ObjectPredicate {
   bool (*accept)(void* context, Key key, ClientData data) = nullptr;  ///< null: all

@@ -177,7 +177,7 @@ void Composites::release(Compound* compound) noexcept {
 
 namespace {
 
-// Products of scales stay where their inverses and squares of lengths are finite.
+// Of scales within these the products, their inverses, and squares of scaled lengths are finite.
 constexpr double kLeastScale = 1e-100;
 constexpr double kMostScale = 1e100;
 

@@ -8,14 +8,15 @@ namespace {
 
 constexpr std::size_t kPairsPerTask = 32;
 
-/// What a task leaves for the one that writes its part out. Words, as all of the scratch.
+/// What the search of a chunk tells the task that writes out what it found. Made of words, as all
+/// of the scratch is.
 struct ChunkRecord {
   std::uint32_t primitive_block;
   std::uint32_t pair_block;
   std::uint32_t primitives;
   std::uint32_t triangles;
   std::uint32_t pairs;
-  // Of the chunks before.
+  // How many the chunks before this one found.
   std::uint32_t first_primitive;
   std::uint32_t first_triangle;
   std::uint32_t first_pair;
@@ -47,7 +48,7 @@ class Expansion {
   void write_triangle(const PlacedBody& body, std::uint32_t number, std::size_t at,
                       std::uint32_t triangle) noexcept;
 
-  // Callers promise it; what has been removed touches nothing.
+  // A body whose shape has been removed touches nothing.
   [[nodiscard]] bool is_there(std::uint32_t body) const noexcept {
     if (body >= bodies_.shapes.size() || body >= bodies_.poses.size()) return false;
     const ShapeId shape = bodies_.shapes[body];
@@ -97,7 +98,7 @@ bool Expansion::search_all(const Execution& execution) noexcept {
   std::uint64_t blocks = 2 * chunks_;
   while (true) {
     if (!out_.scratch.resize((head_ + blocks) * WordArena::kBlock)) return false;
-    // All that there is, so that a call like the last one needs no second run.
+    // All that has been reserved, so that a call like the last one needs no second run.
     blocks = out_.scratch.capacity() / WordArena::kBlock - head_;
     WordArena arena(this->blocks(), blocks);
     execution.for_each(chunks_, [&](std::size_t chunk) { search(chunk, arena); });

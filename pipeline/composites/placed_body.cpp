@@ -79,7 +79,7 @@ Box PlacedBody::box_in(const PlacedBody& other, double margin) const noexcept {
   if (kind == Kind::convex) return box_of(part(0), other, margin);
   const Vec offset = other.to_local * finite(position - other.position);
   if (!bounds.is_finite()) {
-    // Endless in one direction, endless in all once it is turned.
+    // A box that is infinite along one axis is so along all of them once it is turned.
     return {Vec::Constant(-kInfinity), Vec::Constant(kInfinity)};
   }
   const Box box = box_under(bounds, other.to_local * to_world, offset, 0.0);

@@ -203,7 +203,7 @@ void Search::mesh_mesh(const PlacedBody& a, const PlacedBody& b) noexcept {
 
 void Search::take_slots(void* context, SlotPairSink& found) noexcept {
   const PairOfBodies& sides = *static_cast<const PairOfBodies*>(context);
-  // The traversal has seen to boxes and planes of both: a second look would drop nothing.
+  // The traversal has tested boxes and planes of both: no test made here would drop more.
   for (std::uint64_t i = 0; i < found.size; ++i) {
     sides.search.add(sides.a, found.first[i], sides.b, found.second[i]);
   }
@@ -254,7 +254,7 @@ std::span<const std::uint32_t> Search::children_near(const PlacedBody& body, con
   const MeshView& tree = view_of(*compound.tree);
   const std::span<const std::uint32_t> slots = collect(
       room, [&](SlotSink& out) { mesh_overlap(tree, box.min.data(), box.max.data(), out); });
-  // The room is this search's own.
+  // The slots lie in this search's own room, where they are replaced.
   auto* const children = const_cast<std::uint32_t*>(slots.data());
   for (std::size_t i = 0; i < slots.size(); ++i) {
     children[i] = tree.triangle[slots[i]] & kTriangleNumberMask;

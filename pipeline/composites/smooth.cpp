@@ -24,8 +24,8 @@ enum class EdgeContact : std::uint8_t {
   internal,
 };
 
-// Of the size: corners whose heights differ by less are equally far along the normal. Narrow-phase
-// normals of tier `fast` are as exact as that.
+// As a share of the longest edge: corners whose heights differ by less are equally far along the
+// normal. Narrow-phase normals of tier `fast` are as exact as that.
 constexpr double kLevel = 1e-6;
 constexpr double kSameNormal = 1e-13;
 
@@ -96,7 +96,8 @@ struct FaceContacts {
   double noise = 0.0;
 };
 
-// Of float positions and depths.
+// The relative error of a float depth, and how far outside of a triangle a float position in it may
+// lie, as a share of the size.
 constexpr double kFloatError = 1.2e-7;
 constexpr double kFloatSlack = 1e-6;
 

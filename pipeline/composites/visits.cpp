@@ -38,7 +38,7 @@ struct Guide {
     return visitor.visit(visitor.context, primitive, limit);
   }
 
-  // The children of a compound with a tree are the triangles of that.
+  // The triangles of a compound's tree are its children.
   static double show_slots(void* context, const std::uint32_t* slots, std::uint32_t count,
                            double limit) {
     const Guide& guide = *static_cast<const Guide*>(context);

@@ -160,8 +160,8 @@ Bytes PairBuckets::bytes() const noexcept {
 
 namespace {
 
-// Chunks between two moments at which parallel tasks' contacts are put in order: bounds what is
-// held twice.
+// Chunks that parallel tasks answer before their contacts are put in order: bounds how many of the
+// contacts are held twice.
 constexpr std::size_t kWave = 64;
 constexpr std::size_t kChunkContacts = std::size_t{kJobPairs} * kManifoldPoints;
 
@@ -448,7 +448,7 @@ bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
   return true;
 }
 
-// Of a chunk that wrote to where its contacts stay.
+// For a chunk that wrote its contacts to where they stay.
 void NarrowPhase::State::take_contacts(const Chunk& chunk, NarrowResult& result) noexcept {
   const auto base = static_cast<std::uint32_t>(result.contacts());
   for (std::uint32_t i = 0; i < chunk.job.count; ++i) chunk.job.contact_first[i] += base;

@@ -154,7 +154,8 @@ void meet_rounded(const LocalRay& ray, const Core& core, double rounding, double
     const double next = rate < 0.0 ? t - rest / rate : t;
     if (rest <= kGrazing || !(next > t)) {
       if (rest > 2.0 * kGrazing && !(rate < 0.0)) return;
-      // A grazing entry is found to half of the digits only: one into a flat part stands.
+      // A grazing entry is found to half of the digits only: an entry into a flat part, which is
+      // exact, takes precedence.
       if (entry.found && !(rate < -1e-6 * ray.speed)) return;
       const bool inside = begins && step == 0 && rest < 0.0;
       entry.meet(ray, {inside ? -kInfinity : t, kInfinity, clear.away});

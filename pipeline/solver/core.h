@@ -115,8 +115,8 @@ std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value
 
 inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Shares of a pair's noise (see Problem::noise). Iterations end where less than the first is to be
-/// gained; what differs by less than the second is as good.
+/// Shares of a pair's noise (see Problem::noise). Iterations end where no more than the first is to
+/// be gained; distances that differ by less than the second count as equal.
 inline constexpr double kEnough = 0.125;
 inline constexpr double kHardly = 0.25;
 

@@ -1,9 +1,8 @@
 #pragma once
 
 // Indices from masks, masks from bitmaps, and lanes of two interleaved. The set lanes are packed to
-// the front. Every store
-// writes whole registers, so the destination needs room for 16 elements from where it starts,
-// whatever the mask.
+// the front. Every store writes whole registers, so the destination needs room for 16 elements from
+// where it starts, whatever the mask.
 
 #include "simd/lanes/lanes.h"
 

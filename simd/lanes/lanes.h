@@ -79,7 +79,7 @@ struct Lanes {
 
   Lanes() = default;
   /// The same number in every lane.
-  [[gnu::always_inline]] Lanes(T value) {  // NOLINT(google-explicit-constructor): see formulas
+  [[gnu::always_inline]] Lanes(T value) {  // NOLINT(google-explicit-constructor)
     for (int i = 0; i < kParts; ++i) part[i] = Part(value);
   }
 

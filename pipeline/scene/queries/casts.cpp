@@ -147,8 +147,8 @@ bool is_before(const SceneHit& a, const SceneHit& b) noexcept {
   return a.t != b.t ? a.t < b.t : a.key.id < b.key.id;
 }
 
-/// Bodies that were looked at and may be shown again: a partition asks about a body once a stretch
-/// of the path. Forgets, when two want the same place.
+/// Bodies that were looked at and may be shown again, since a partition asks about a body once per
+/// stretch of the path. Of two bodies that want the same place the later one is remembered.
 class Memo {
  public:
   /// What was noted about the body; null if nothing is known.
