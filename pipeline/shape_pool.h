@@ -68,7 +68,8 @@ class WINNOW_API ShapePool {
   /// larger than the smallest; a half-space's reaches to infinity. `pose` is valid.
   [[nodiscard]] Aabb bounds(ShapeId id, const Pose& pose) const noexcept;
 
-  /// Where kernels and the solver read shapes. Valid until the next change.
+  /// The shapes themselves, to be read: sphere `id` is tables().spheres[id.index()]. Valid until
+  /// the next change.
   [[nodiscard]] const ShapeTables& tables() const noexcept { return tables_; }
 
   [[nodiscard]] Footprint footprint() const noexcept;
@@ -85,8 +86,6 @@ class WINNOW_API ShapePool {
 
   template <typename Shape>
   Status put(Table<Shape>& table, ShapeKind kind, const Shape& shape, ShapeId& id);
-  template <typename Shape>
-  Status take(Table<Shape>& table, ShapeId id);
   /// Calls `body` with the table of a kind.
   template <typename Pool, typename Body>
   static decltype(auto) with_table(Pool& pool, ShapeKind kind, Body&& body);

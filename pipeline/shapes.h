@@ -151,7 +151,8 @@ struct HullShape {
   const std::uint32_t* neighbour = nullptr;
 };
 
-/// Where a ShapePool keeps its shapes, by kind: shape `id` is table[id.index()].
+/// Where shapes lie, by kind: shape `id` is table[id.index()]. A ShapePool gives those of its own;
+/// who asks about shapes that lie elsewhere puts another pointer and count in their place.
 struct ShapeTables {
   const SphereShape* spheres = nullptr;
   const CapsuleShape* capsules = nullptr;

@@ -77,8 +77,8 @@ struct Bounds {
 [[nodiscard]] Bounds product_bounds(const CoreVertices& core, std::uint32_t i,
                                     const RoundedDirection& direction) noexcept {
   constexpr double kError = 0x1p-49;
-  constexpr double kUnderflow =
-      0x1p-1000;  // more than underflow loses, and far above it, where additions are fast
+  // More than underflow loses, and no subnormal, which would be slow to add.
+  constexpr double kUnderflow = 0x1p-1000;
   double value = 0.0;
   double size = 0.0;
   double length = 1.0;

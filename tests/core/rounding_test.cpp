@@ -84,6 +84,18 @@ TEST(Rounding, keeps_infinity_and_nan) {
   EXPECT_TRUE(std::isnan(round_up(std::numeric_limits<double>::quiet_NaN())));
 }
 
+TEST(Rounding, to_finite_floats_ends_at_the_largest) {
+  const auto most = static_cast<double>(FLT_MAX);
+  EXPECT_EQ(finite_float(0.1), 0.1F);
+  EXPECT_EQ(finite_float(-1.5), -1.5F);
+  EXPECT_EQ(finite_float(most), FLT_MAX);
+  for (const double beyond : {1.5 * most, 1e300, kInf}) {
+    EXPECT_EQ(finite_float(beyond), FLT_MAX);
+    EXPECT_EQ(finite_float(-beyond), -FLT_MAX);
+  }
+  EXPECT_TRUE(std::isnan(finite_float(std::nan(""))));
+}
+
 TEST(Rounding, of_vectors_is_component_wise) {
   const Eigen::Vector3d v(0.1, -0.1, 1e308);
   EXPECT_EQ(round_down(v), Eigen::Vector3f(round_down(0.1), round_down(-0.1), FLT_MAX));
