@@ -99,4 +99,83 @@ std::uint32_t contact_patch(const Patch& a, const Patch& b, const double normal[
   return count;
 }
 
+namespace {
+
+Patch view(const FlatPatch& p) {
+  return {p.vertex, p.vertex_feature, p.edge_feature, p.count, p.feature, p.rounding};
+}
+
+}  // namespace
+
+FlatPatch box_patch(const BoxFrame& box, const double normal[3]) noexcept {
+  double rise[3];
+  for (int i = 0; i < 3; ++i) rise[i] = dot(box.axis[i], normal);
+  std::uint32_t i = std::abs(rise[1]) > std::abs(rise[0]) ? 1 : 0;
+  if (std::abs(rise[2]) > std::abs(rise[i])) i = 2;
+  const std::uint32_t k = (i + 1) % 3;
+  const std::uint32_t l = (i + 2) % 3;
+  const bool up = rise[i] > 0.0;
+  FlatPatch patch;
+  patch.count = 4;
+  patch.feature = 2 * i + (up ? 1 : 0);
+  patch.rounding = box.rounding;
+  // Corners in the order (-, -), (+, -), (+, +), (-, +) of k and l.
+  constexpr bool kPlus[4][2] = {{false, false}, {true, false}, {true, true}, {false, true}};
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    const bool plus_k = kPlus[c][0];
+    const bool plus_l = kPlus[c][1];
+    const double arm_i = up ? box.half[i] : -box.half[i];
+    const double arm_k = plus_k ? box.half[k] : -box.half[k];
+    const double arm_l = plus_l ? box.half[l] : -box.half[l];
+    for (int r = 0; r < 3; ++r) {
+      patch.vertex[c][r] = box.center[r] + (arm_i * box.axis[i][r] +
+                                            (arm_k * box.axis[k][r] + arm_l * box.axis[l][r]));
+    }
+    patch.vertex_feature[c] =
+        (up ? 1U << i : 0U) | (plus_k ? 1U << k : 0U) | (plus_l ? 1U << l : 0U);
+    // Edges run along k, l, k, l.
+    const std::uint32_t along = c % 2 == 0 ? k : l;
+    const std::uint32_t other = c % 2 == 0 ? (plus_l ? 1U << l : 0U) : (plus_k ? 1U << k : 0U);
+    const std::uint32_t bits = (up ? 1U << i : 0U) | other;
+    const std::uint32_t low = bits & ((1U << along) - 1U);
+    patch.edge_feature[c] = 4 * along + (low | (bits >> (along + 1U)) << along);
+  }
+  return patch;
+}
+
+FlatPatch triangle_patch(const TriangleFrame& triangle) noexcept {
+  FlatPatch patch;
+  patch.count = 3;
+  patch.feature = 0;
+  patch.rounding = triangle.rounding;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    std::copy_n(triangle.vertex[i], 3, patch.vertex[i]);
+    patch.vertex_feature[i] = i;
+    patch.edge_feature[i] = i;
+  }
+  return patch;
+}
+
+std::uint32_t flat_contacts(const FlatPatch& a, const FlatPatch& b, const double normal[3],
+                            double margin, ContactPoint* out) noexcept {
+  return contact_patch(view(a), view(b), normal, margin, out);
+}
+
+void deepest_point(const FlatPatch& a, const FlatPatch& b, const double normal[3],
+                   double point[3]) noexcept {
+  const PatchFrame frame(normal);
+  const Outline outline[2] = {{view(a), frame, 1.0}, {view(b), frame, -1.0}};
+  PatchMeetings m(kSamePlace * std::max(outline[0].size, outline[1].size));
+  find_meetings(outline[0], outline[1], m);
+  const PatchMeeting* best = m.point;
+  for (std::uint32_t i = 1; i < m.count; ++i) {
+    const PatchMeeting& p = m.point[i];
+    if (p.height[0] - p.height[1] > best->height[0] - best->height[1]) best = &p;
+  }
+  for (int r = 0; r < 3; ++r) {
+    point[r] = best->x * frame.axis[0][r] + best->y * frame.axis[1][r] +
+               best->height[0] * frame.axis[2][r];
+  }
+}
+
 }  // namespace winnow

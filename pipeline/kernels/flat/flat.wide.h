@@ -12,7 +12,7 @@
 // axis_points and closest_by_vertices; a Staged holds its lanes in memory.
 
 #include "pipeline/kernels/answers.wide.h"
-#include "pipeline/manifold/flat_patch.h"
+#include "pipeline/manifold/contact_patch.h"
 
 namespace winnow::WINNOW_ISA_NAME::flat {
 

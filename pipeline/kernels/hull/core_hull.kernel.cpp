@@ -7,7 +7,7 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::hull {
 /// Faces, edges and neighbours of boxes. Vertex i is at the high end of axis k where bit k is set;
 /// face 2 k + 1 looks along axis k, face 2 k against it; edge 4 k + j is along axis k, at the ends
-/// of the others that the bits of j say. The numbers are those of flat_patch.h.
+/// of the others that the bits of j say. The numbers are those of box_patch.
 struct BoxTopology {
   std::uint32_t loop[24];
   std::uint32_t loop_edge[24];
