@@ -175,39 +175,6 @@ MeshPlacement random_placement(Random& random, double reach) {
   return placement;
 }
 
-TEST_F(Meshes, a_box_finds_the_triangles_whose_boxes_it_meets_and_no_others) {
-  Random random(1);
-  for (const TriangleMesh& mesh : meshes_) {
-    const auto triangles = twin(view_of(mesh));
-    const Eigen::Vector3f size = mesh.bounds().max - mesh.bounds().min;
-    for (std::size_t k = 0; k < scaled(60); ++k) {
-      double min[3];
-      double max[3];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<int>(axis);
-        min[axis] = static_cast<double>(mesh.bounds().min[a] +
-                                        size[a] * static_cast<float>(random.uniform(-0.1, 1.0)));
-        max[axis] = min[axis] + static_cast<double>(size[a]) * random.uniform(0.0, 0.3);
-        // Boxes that end at a corner touch it.
-        const auto& corner = triangles[random.below(triangles.size())].corner[0];
-        if (random.chance(0.2)) max[axis] = static_cast<double>(corner[axis]);
-        if (random.chance(0.1)) max[axis] = std::numeric_limits<double>::infinity();
-        min[axis] = std::min(min[axis], max[axis]);
-      }
-      Slots expected;
-      for (std::uint32_t slot = 0; slot < triangles.size(); ++slot) {
-        bool met = true;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          met = met && triangles[slot].low(axis) <= static_cast<Real>(max[axis]) &&
-                triangles[slot].high(axis) >= static_cast<Real>(min[axis]);
-        }
-        if (met) expected.push_back(slot);
-      }
-      EXPECT_EQ(on_all_isas([&] { return overlap(view_of(mesh), min, max); }), expected);
-    }
-  }
-}
-
 /// Every pair that meets is found, once, and none whose boxes are apart by more than 64 u of the
 /// coordinates.
 void expect_pairs(const TriangleMesh& a, const TriangleMesh& b, const MeshPlacement& placement,
@@ -233,18 +200,6 @@ void expect_pairs(const TriangleMesh& a, const TriangleMesh& b, const MeshPlacem
   EXPECT_EQ(apart, 0U);
 }
 
-TEST_F(Meshes, two_meshes_find_every_pair_of_triangles_that_meets_and_none_whose_boxes_are_apart) {
-  Random random(2);
-  for (const TriangleMesh& a : meshes_) {
-    const TriangleMesh& b = meshes_[random.below(meshes_.size())];
-    for (std::size_t k = 0; k < scaled(6); ++k) {
-      const double grow = random.chance(0.5) ? 0.0 : 0.05;
-      const double margin[3] = {grow, 2 * grow, grow};
-      expect_pairs(a, b, random_placement(random, 1.0), margin);
-    }
-  }
-}
-
 /// The distance of a point from a triangle: from its plane if the foot is inside, else from an
 /// edge.
 Real distance(const TwinTriangle& t, const Point& point) {
@@ -263,44 +218,6 @@ Real distance(const TwinTriangle& t, const Point& point) {
     inside = inside && dot(cross(normal, edge), from) >= 0;
   }
   return inside ? std::abs(dot(normal, minus(point, c[0]))) / length : nearest;
-}
-
-TEST_F(Meshes, a_ball_finds_the_triangles_that_come_near_its_middle) {
-  Random random(11);
-  std::size_t dropped = 0;
-  for (const TriangleMesh& mesh : meshes_) {
-    const auto triangles = twin(view_of(mesh));
-    for (std::size_t k = 0; k < scaled(60); ++k) {
-      const auto& corner = triangles[random.below(triangles.size())].corner[0];
-      const double radius = mesh.radius() * random.log_uniform(1e-5, 0.5);
-      double center[3];
-      double min[3];
-      double max[3];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        center[axis] = static_cast<double>(corner[axis]) + radius * random.uniform(-1.5, 1.5);
-        min[axis] = center[axis] - radius;
-        max[axis] = center[axis] + radius;
-      }
-      const Slots found = on_all_isas([&] {
-        return collect(
-            [&](SlotSink& sink) { mesh_overlap(view_of(mesh), min, max, center, radius, sink); });
-      });
-      Slots expected = overlap(view_of(mesh), min, max);
-      const std::size_t in_box = expected.size();
-      const Real slack = static_cast<Real>(2e-4 * mesh.radius());
-      std::erase_if(expected, [&](std::uint32_t slot) {
-        const Point middle = {center[0], center[1], center[2]};
-        const Real away = distance(triangles[slot], middle) - static_cast<Real>(radius);
-        const bool is_found = std::binary_search(found.begin(), found.end(), slot);
-        EXPECT_TRUE(away > 0 || is_found) << slot;
-        EXPECT_TRUE(away <= slack || !is_found) << slot;
-        return !is_found;
-      });
-      EXPECT_EQ(found, expected);
-      dropped += in_box - found.size();
-    }
-  }
-  EXPECT_GT(dropped, 0U);
 }
 
 TEST_F(Meshes, trees_of_different_depth_find_their_pairs) {
@@ -525,6 +442,89 @@ TEST_F(Meshes, decoded_nodes_contain_the_triangles_below_them) {
       }
     }
   }
+}
+
+TEST_F(Meshes, a_box_finds_the_triangles_whose_boxes_it_meets_and_no_others) {
+  Random random(1);
+  for (const TriangleMesh& mesh : meshes_) {
+    const auto triangles = twin(view_of(mesh));
+    const Eigen::Vector3f size = mesh.bounds().max - mesh.bounds().min;
+    for (std::size_t k = 0; k < scaled(60); ++k) {
+      double min[3];
+      double max[3];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<int>(axis);
+        min[axis] = static_cast<double>(mesh.bounds().min[a] +
+                                        size[a] * static_cast<float>(random.uniform(-0.1, 1.0)));
+        max[axis] = min[axis] + static_cast<double>(size[a]) * random.uniform(0.0, 0.3);
+        // Boxes that end at a corner touch it.
+        const auto& corner = triangles[random.below(triangles.size())].corner[0];
+        if (random.chance(0.2)) max[axis] = static_cast<double>(corner[axis]);
+        if (random.chance(0.1)) max[axis] = std::numeric_limits<double>::infinity();
+        min[axis] = std::min(min[axis], max[axis]);
+      }
+      Slots expected;
+      for (std::uint32_t slot = 0; slot < triangles.size(); ++slot) {
+        bool met = true;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          met = met && triangles[slot].low(axis) <= static_cast<Real>(max[axis]) &&
+                triangles[slot].high(axis) >= static_cast<Real>(min[axis]);
+        }
+        if (met) expected.push_back(slot);
+      }
+      EXPECT_EQ(on_all_isas([&] { return overlap(view_of(mesh), min, max); }), expected);
+    }
+  }
+}
+
+TEST_F(Meshes, two_meshes_find_every_pair_of_triangles_that_meets_and_none_whose_boxes_are_apart) {
+  Random random(2);
+  for (const TriangleMesh& a : meshes_) {
+    const TriangleMesh& b = meshes_[random.below(meshes_.size())];
+    for (std::size_t k = 0; k < scaled(6); ++k) {
+      const double grow = random.chance(0.5) ? 0.0 : 0.05;
+      const double margin[3] = {grow, 2 * grow, grow};
+      expect_pairs(a, b, random_placement(random, 1.0), margin);
+    }
+  }
+}
+
+TEST_F(Meshes, a_ball_finds_the_triangles_that_come_near_its_middle) {
+  Random random(11);
+  std::size_t dropped = 0;
+  for (const TriangleMesh& mesh : meshes_) {
+    const auto triangles = twin(view_of(mesh));
+    for (std::size_t k = 0; k < scaled(60); ++k) {
+      const auto& corner = triangles[random.below(triangles.size())].corner[0];
+      const double radius = mesh.radius() * random.log_uniform(1e-5, 0.5);
+      double center[3];
+      double min[3];
+      double max[3];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        center[axis] = static_cast<double>(corner[axis]) + radius * random.uniform(-1.5, 1.5);
+        min[axis] = center[axis] - radius;
+        max[axis] = center[axis] + radius;
+      }
+      const Slots found = on_all_isas([&] {
+        return collect(
+            [&](SlotSink& sink) { mesh_overlap(view_of(mesh), min, max, center, radius, sink); });
+      });
+      Slots expected = overlap(view_of(mesh), min, max);
+      const std::size_t in_box = expected.size();
+      const Real slack = static_cast<Real>(2e-4 * mesh.radius());
+      std::erase_if(expected, [&](std::uint32_t slot) {
+        const Point middle = {center[0], center[1], center[2]};
+        const Real away = distance(triangles[slot], middle) - static_cast<Real>(radius);
+        const bool is_found = std::binary_search(found.begin(), found.end(), slot);
+        EXPECT_TRUE(away > 0 || is_found) << slot;
+        EXPECT_TRUE(away <= slack || !is_found) << slot;
+        return !is_found;
+      });
+      EXPECT_EQ(found, expected);
+      dropped += in_box - found.size();
+    }
+  }
+  EXPECT_GT(dropped, 0U);
 }
 
 }  // namespace
