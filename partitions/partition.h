@@ -95,7 +95,7 @@ struct StructureChoice {
 ///     partition.insert(boxes, data, keys);
 ///     partition.self_pairs(pairs);
 ///
-/// Mutation costs O(1) an object; the structure follows at the next query (or `refresh`). Queries
+/// Mutation costs O(1) per object; the structure follows at the next query (or `refresh`). Queries
 /// that are const may run at the same time from several threads; everything else wants the
 /// partition to itself. A refused call (any Status but ok) changed nothing: of a span, either all
 /// entries are taken or none. Nothing throws.

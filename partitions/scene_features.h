@@ -20,7 +20,7 @@ struct SceneFeatures {
   /// log2 of how much likelier than in an even scene two objects lie in the same of 64 cells: 0 if
   /// even, up to 6. Simpson's index of the sample, its own pairs of one left out.
   double crowding = 0.0;
-  /// Pairs an object, if the scene were even but for its crowding; at most 16.
+  /// Pairs per object, if the scene were even but for its crowding; at most 16.
   double pairs = 0.0;
 };
 

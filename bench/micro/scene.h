@@ -3,7 +3,7 @@
 #include <winnow/core/aabb.h>
 #include "core/memory/bounds_pool.h"
 #include "partitions/rows/row_view.h"
-#include "partitions/structures/cells/cell_axis.h"
+#include "partitions/structures/cells/cells.kernel.h"
 
 #include <array>
 #include <cstddef>

@@ -1,5 +1,7 @@
 #include "core/memory/key_table.h"
 
+#include "core/memory/columns.h"
+
 #include <atomic>
 
 namespace winnow {
@@ -62,16 +64,12 @@ void KeyTable::clear() noexcept {
 
 void KeyTable::release_if_unused() noexcept {
   if (live_ == 0 && stamps_.empty()) {
-    stamps_.release();
-    rows_.release();
-    data_.release();
+    release_columns(stamps_, rows_, data_);
   }
 }
 
 Bytes KeyTable::key_bytes() const noexcept {
-  Bytes sum = stamps_.bytes();
-  sum += rows_.bytes();
-  return sum;
+  return bytes_of(stamps_, rows_);
 }
 
 }  // namespace winnow

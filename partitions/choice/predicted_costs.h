@@ -38,10 +38,10 @@ struct FrameWork {
 /// - for all pairs after little has moved: each object that moved is asked (`moved`, `level`,
 ///   `square`), its share of the pairs is redone (`pair`), and flags of the rest are read (`rest`);
 /// - for every other query (one for the nearest counts four times): `ask`, `ask_level` for each
-///   doubling of the number of objects, and where there is no tree, `scan` an object. A tree over
-///   the rows of cells and strips is refitted first (`rows`, an object that moved).
+///   doubling of the number of objects, and where there is no tree, `scan` per object. A tree over
+///   the rows of cells and strips is refitted first (`rows`, per object that moved).
 ///
-/// To begin with a structure takes a build: `build` an object, `build_level` for each doubling.
+/// To begin with a structure takes a build: `build` per object, `build_level` for each doubling.
 ///
 /// The constants were fitted, without negative ones, to the relative error of times measured on one
 /// thread with AVX-512 on the built-in scenes and on recordings of simulations: of 20 to 100,000

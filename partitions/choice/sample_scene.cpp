@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMost = 512;
 constexpr double kUnbounded = 1e30;
 constexpr std::size_t kCells = 64;
-constexpr double kMostPairs = 16.0;  // an object: past that the estimate is mostly wrong
+constexpr double kMostPairs = 16.0;  // per object: past that the estimate is mostly wrong
 
 // Exact at powers of two, straight between them: within 0.09 of log2, and unlike that the same on
 // every machine.

@@ -1,6 +1,7 @@
 #include "partitions/index/spatial_index.h"
 
 #include <winnow/partitions/partition.h>
+#include "core/memory/columns.h"
 #include "partitions/tree/environment_order.h"
 
 #include <algorithm>
@@ -381,18 +382,12 @@ void SpatialIndex::add_bytes(Footprint& footprint) const noexcept {
   footprint.structure += {own, own};
   footprint.structure += tree_.bytes();
   footprint.structure += regular_tree_.bytes();
-  footprint.scratch += spare_.bytes();
-  footprint.scratch += order_.bytes();
-  footprint.scratch += items_.bytes();
-  footprint.scratch += points_.bytes();
+  footprint.scratch += bytes_of(spare_, order_, items_, points_);
   structure_->add_bytes(footprint);
 }
 
 void SpatialIndex::release_scratch() noexcept {
-  spare_.release();
-  order_.release();
-  items_.release();
-  points_.release();
+  release_columns(spare_, order_, items_, points_);
 }
 
 void SpatialIndex::release_memory() noexcept {

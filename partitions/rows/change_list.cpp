@@ -1,5 +1,7 @@
 #include "partitions/rows/change_list.h"
 
+#include "core/memory/columns.h"
+
 #include <algorithm>
 
 namespace winnow {
@@ -23,16 +25,13 @@ void ChangeList::clear() noexcept {
 }
 
 void ChangeList::release() noexcept {
-  bits_.release();
-  list_.release();
+  release_columns(bits_, list_);
   limit_ = 0;
   all_ = false;
 }
 
 Bytes ChangeList::bytes() const noexcept {
-  Bytes sum = bits_.bytes();
-  sum += list_.bytes();
-  return sum;
+  return bytes_of(bits_, list_);
 }
 
 }  // namespace winnow

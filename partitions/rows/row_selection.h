@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/column.h>
+#include "core/memory/columns.h"
 #include "core/sort/bitmap_sort.h"
 
 #include <cstddef>
@@ -31,15 +31,8 @@ struct RowSelection {
 
   [[nodiscard]] std::span<std::uint32_t> entries() noexcept { return {list.data(), list.size()}; }
 
-  void release() noexcept {
-    list.release();
-    bits.release();
-  }
-  [[nodiscard]] Bytes bytes() const noexcept {
-    Bytes sum = list.bytes();
-    sum += bits.bytes();
-    return sum;
-  }
+  void release() noexcept { release_columns(list, bits); }
+  [[nodiscard]] Bytes bytes() const noexcept { return bytes_of(list, bits); }
 
   Column<std::uint32_t> list;
   Column<std::uint64_t> bits;

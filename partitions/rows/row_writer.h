@@ -14,7 +14,7 @@ namespace winnow {
 
 inline constexpr std::size_t kEntriesPerTask = 8192;
 
-// Rows whose entries are brought together before they are looked at: a few cache lines a column.
+// Rows whose entries are brought together before they are looked at: a few cache lines per column.
 inline constexpr std::size_t kRowsAtOnce = 256;
 
 // How many entries ahead of their turn rows are fetched into the cache: each lies in as many cache

@@ -74,7 +74,7 @@ bool Rows::make_room(std::size_t objects) noexcept {
   const std::size_t rows = pool_.rows();
   const std::size_t holes = rows - keys_.size();
   // Holes are closed rather than paid for in memory once they are a fifth of all rows: coming and
-  // going in turn then costs the moving of four rows an object.
+  // going in turn then costs the moving of four rows per object.
   const bool worn = rows >= 64 && 5 * holes >= rows;
   if ((rows + added > pool_.capacity() && worn) || rows + added > kNoObject) compact();
   const std::size_t needed = pool_.rows() + added;

@@ -7,21 +7,21 @@ namespace winnow {
 /// PredictedCosts, which adds them up.
 struct StructureCosts {
   bool has_cells = false;  ///< or strips, which objects that are fast leave in every frame
-  double frame = 0;        ///< itself
-  double keep = 0;         ///< an object that moved: written, and its place kept up
-  double object = 0;       ///< of all pairs after much has moved, an object that asks;
+  double frame = 0;        ///< per frame
+  double keep = 0;         ///< per object that moved: written, and its place kept up
+  double object = 0;       ///< of all pairs after much has moved, per object that asks;
   double level = 0;        ///< the same, for each doubling of the number of objects,
   double crowd = 0;        ///< for each doubling of how much they crowd together,
   double square = 0;       ///< and for each other object that it is tested against
-  double pair = 0;         ///< a pair that is written
-  double moved = 0;        ///< of all pairs after little has moved, an object that asks
-  double rest = 0;         ///< the same, an object that does not
-  double build = 0;        ///< a build, an object
+  double pair = 0;         ///< per pair that is written
+  double moved = 0;        ///< of all pairs after little has moved, per object that asks
+  double rest = 0;         ///< the same, per object that does not
+  double build = 0;        ///< of a build, per object
   double build_level = 0;  ///< the same, for each doubling of the number of objects
-  double ask = 0;          ///< a ray, a region; one for the nearest counts four times
+  double ask = 0;          ///< per ray or region; one for the nearest counts four times
   double ask_level = 0;    ///< the same, for each doubling of the number of objects
-  double scan = 0;         ///< the same, an object, where there is no tree
-  double rows = 0;         ///< an object that moved, before such a question is answered
+  double scan = 0;         ///< the same, per object, where there is no tree
+  double rows = 0;         ///< per object that moved, before such a question is answered
 };
 
 }  // namespace winnow

@@ -1,5 +1,7 @@
 #include "partitions/tree/block_tree.h"
 
+#include "core/memory/columns.h"
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -113,15 +115,12 @@ float BlockTree::typical_edge() const noexcept {
 }
 
 void BlockTree::release() noexcept {
-  nodes_.release();
-  filters_.release();
+  release_columns(nodes_, filters_);
   shape_ = {};
 }
 
 Bytes BlockTree::bytes() const noexcept {
-  Bytes sum = nodes_.bytes();
-  sum += filters_.bytes();
-  return sum;
+  return bytes_of(nodes_, filters_);
 }
 
 }  // namespace winnow

@@ -78,7 +78,7 @@ struct OpenList {
   }
 };
 
-/// Takes many questions down a tree together, a level at a time: what is open on a level waits in
+/// Takes many questions down a tree together, one level at a time: what is open on a level waits in
 /// that level's list, and a list is worked off, in one long loop, when the next nodes might not fit
 /// or nothing is left above. How many children a node passes on is as hard to foresee as a coin,
 /// and each test takes long from its first load to its last bit; here neither is waited for.

@@ -3,6 +3,7 @@
 #include "partitions/structures/brute_force/flat_rows.kernel.h"
 #include "partitions/structures/costs.h"
 #include "partitions/structures/structure.h"
+#include "partitions/structures/tasks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +13,6 @@ namespace winnow {
 WINNOW_DEFINE_KERNELS(FlatKernels, flat_kernels)
 
 namespace {
-
-constexpr std::size_t kMostTasks = 64;
 
 const FlatKernel& untested(Volume) noexcept {
   return flat_kernels().untested;

@@ -249,6 +249,15 @@ bool CellLayout::fits(const BoundsPool& pool, std::size_t row, std::uint32_t cel
   return true;
 }
 
+bool CellLayout::fits(const BoundsPool& pool, std::size_t row,
+                      const Column<std::uint32_t>& start) const noexcept {
+  // Mostly the box's own corner still lies in the cell that holds the row.
+  const std::uint32_t own = cell_of(pool, row);
+  if (own != kNoCell && row >= start[own] && row < start[own + 1]) return true;
+  const auto after = std::upper_bound(start.begin(), start.end(), row);
+  return fits(pool, row, static_cast<std::uint32_t>(after - start.begin() - 1));
+}
+
 void CellLayout::release() noexcept {
   edges_.release();
   usable_ = false;

@@ -2,7 +2,7 @@
 
 #include <winnow/core/column.h>
 #include "core/memory/bounds_pool.h"
-#include "partitions/structures/cells/cell_axis.h"
+#include "partitions/structures/cells/cells.kernel.h"
 
 #include <array>
 #include <cstddef>
@@ -67,6 +67,9 @@ class CellLayout {
   /// True if the row's box may stay in the cell.
   [[nodiscard]] bool fits(const BoundsPool& pool, std::size_t row,
                           std::uint32_t cell) const noexcept;
+  /// The same for the cell that holds the row: cell c holds rows [start[c], start[c + 1]).
+  [[nodiscard]] bool fits(const BoundsPool& pool, std::size_t row,
+                          const Column<std::uint32_t>& start) const noexcept;
 
   void release() noexcept;
   [[nodiscard]] Bytes bytes() const noexcept { return edges_.bytes(); }

@@ -1,10 +1,9 @@
 #include "core/sort/counting_sort.h"
 #include "partitions/structures/cells/cell_drawing.h"
 #include "partitions/structures/cells/cell_layout.h"
-#include "partitions/structures/cells/task_lists.h"
+#include "partitions/structures/cells/cell_structure.h"
 #include "partitions/structures/costs.h"
 #include "partitions/structures/grid/flat_grid.kernel.h"
-#include "partitions/structures/structure.h"
 
 #include <algorithm>
 
@@ -25,16 +24,18 @@ constexpr std::uint32_t kOverfull = 48;
 /// runs fastest, and which objects are too large for cells come from a sample of the scene at each
 /// build. Objects too large or in overfull cells go to a block tree and are asked against the grid.
 /// Self pairs: O(n + cells + pairs) where density is even. Exact.
-class FlatGrid final : public Structure {
+class FlatGrid final : public CellStructure {
  public:
   explicit FlatGrid(const StructureInput& input) noexcept;
 
  private:
   [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
   [[nodiscard]] bool fits(std::size_t row) const noexcept override;
-  void find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept override;
-  [[nodiscard]] std::size_t pair_tasks() const noexcept override;
-  bool run_pair_task(std::size_t task, PairSink& sink) const noexcept override;
+  [[nodiscard]] std::size_t places() const noexcept override;
+  [[nodiscard]] std::uint32_t first_row(std::uint32_t line) const noexcept override;
+  std::size_t write_misfits(std::uint32_t begin, std::uint32_t end,
+                            std::uint32_t* out) const noexcept override;
+  bool find_pairs(std::uint32_t begin, std::uint32_t end, PairSink& sink) const noexcept override;
   bool query(const QueryBatch& batch, PairSink& sink) const noexcept override;
   void draw(DebugDraw& draw) const override;
   void release_memory() noexcept override;
@@ -43,17 +44,14 @@ class FlatGrid final : public Structure {
 
   void count_cells() noexcept;
   void drop_overfull() noexcept;
-  [[nodiscard]] std::size_t lines() const noexcept;
-  [[nodiscard]] std::uint32_t first_line(std::size_t task) const noexcept;
   [[nodiscard]] GridView view() const noexcept;
 
+  // While building list_ holds the cell of each row.
   CellLayout layout_;
-  Column<std::uint32_t> start_;  // first row of each cell, and the end
-  Column<std::uint32_t> cell_;   // cell of each row, while building; then scratch
 };
 
 FlatGrid::FlatGrid(const StructureInput& input) noexcept
-    : Structure(input), layout_(input.memory), start_(input.memory), cell_(input.memory) {}
+    : CellStructure(input), layout_(input.memory) {}
 
 bool FlatGrid::plan(const RowPlan& plan) noexcept {
   const SceneSample sample(pool());
@@ -62,13 +60,14 @@ bool FlatGrid::plan(const RowPlan& plan) noexcept {
     leave_all(plan);
     return true;
   }
-  if (!cell_.resize(pool().rows()) || !start_.resize(layout_.cells() + 1)) return false;
+  if (!list_.resize(pool().rows()) || !start_.resize(layout_.cells() + 1)) return false;
   count_cells();
   drop_overfull();
   plan.regular.set_size(positions_from_counts(start_));
   for (std::size_t row = 0; row < pool().rows(); ++row) {
-    if (cell_[row] != CellLayout::kNoCell) {
-      plan.regular[start_[cell_[row]]++] = static_cast<std::uint32_t>(row);
+    const std::uint32_t own = list_[row];
+    if (own != CellLayout::kNoCell) {
+      plan.regular[start_[own]++] = static_cast<std::uint32_t>(row);
     } else if (pool().ids()[row] != kNoObject) {
       (void)plan.rest.push_back(static_cast<std::uint32_t>(row));
     }
@@ -81,54 +80,40 @@ void FlatGrid::count_cells() noexcept {
   std::fill(start_.begin(), start_.end(), 0);
   for (std::size_t row = 0; row < pool().rows(); ++row) {
     const bool live = pool().ids()[row] != kNoObject;
-    cell_[row] = live ? layout_.cell_of(pool(), row) : CellLayout::kNoCell;
-    if (cell_[row] != CellLayout::kNoCell) ++start_[cell_[row]];
+    const std::uint32_t own = live ? layout_.cell_of(pool(), row) : CellLayout::kNoCell;
+    list_[row] = own;
+    if (own != CellLayout::kNoCell) ++start_[own];
   }
 }
 
 void FlatGrid::drop_overfull() noexcept {
   if (std::none_of(start_.begin(), start_.end(), [](auto n) { return n > kOverfull; })) return;
-  for (std::uint32_t& cell : cell_) {
-    if (cell != CellLayout::kNoCell && start_[cell] > kOverfull) cell = CellLayout::kNoCell;
+  for (std::uint32_t& own : list_) {
+    if (own != CellLayout::kNoCell && start_[own] > kOverfull) own = CellLayout::kNoCell;
   }
   std::replace_if(
       start_.begin(), start_.end(), [](auto n) { return n > kOverfull; }, 0U);
 }
 
 bool FlatGrid::fits(std::size_t row) const noexcept {
-  // Mostly the box's own corner still lies in the cell that holds the row.
-  const std::uint32_t own = layout_.cell_of(pool(), row);
-  if (own != CellLayout::kNoCell && row >= start_[own] && row < start_[own + 1]) return true;
-  const auto after = std::upper_bound(start_.begin(), start_.end(), row);
-  return layout_.fits(pool(), row, static_cast<std::uint32_t>(after - start_.begin() - 1));
+  return layout_.fits(pool(), row, start_);
 }
 
-void FlatGrid::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept {
-  const GridView grid = view();
-  const std::size_t cells = layout_.axis(0).count;
-  append_in_order(
-      execution(), pair_tasks(), cell_.data(),
-      [&](std::size_t task) { return start_[first_line(task) * cells]; },
-      [&](std::size_t task, std::uint32_t* out) {
-        return flat_grid_kernels().find_misfits(grid, first_line(task), first_line(task + 1), out);
-      },
-      rows, limit);
-}
-
-std::uint32_t FlatGrid::first_line(std::size_t task) const noexcept {
-  return static_cast<std::uint32_t>(lines() * task / pair_tasks());
-}
-
-std::size_t FlatGrid::lines() const noexcept {
+std::size_t FlatGrid::places() const noexcept {
   return std::size_t{layout_.axis(1).count} * layout_.axis(2).count;
 }
 
-std::size_t FlatGrid::pair_tasks() const noexcept {
-  return regular_rows() == 0 ? 0 : std::min(kMostTasks, lines());
+std::uint32_t FlatGrid::first_row(std::uint32_t line) const noexcept {
+  return start_[std::size_t{line} * layout_.axis(0).count];
 }
 
-bool FlatGrid::run_pair_task(std::size_t task, PairSink& sink) const noexcept {
-  return flat_grid_kernels().self_pairs(view(), first_line(task), first_line(task + 1), sink);
+std::size_t FlatGrid::write_misfits(std::uint32_t begin, std::uint32_t end,
+                                    std::uint32_t* out) const noexcept {
+  return flat_grid_kernels().find_misfits(view(), begin, end, out);
+}
+
+bool FlatGrid::find_pairs(std::uint32_t begin, std::uint32_t end, PairSink& sink) const noexcept {
+  return flat_grid_kernels().self_pairs(view(), begin, end, sink);
 }
 
 bool FlatGrid::query(const QueryBatch& batch, PairSink& sink) const noexcept {
@@ -144,15 +129,13 @@ void FlatGrid::draw(DebugDraw& draw) const {
 }
 
 void FlatGrid::release_memory() noexcept {
+  CellStructure::release_memory();
   layout_.release();
-  start_.release();
-  cell_.release();
 }
 
 void FlatGrid::add_bytes(Footprint& footprint) const noexcept {
+  CellStructure::add_bytes(footprint);
   footprint.structure += layout_.bytes();
-  footprint.structure += start_.bytes();
-  footprint.scratch += cell_.bytes();
 }
 
 std::size_t FlatGrid::cells() const noexcept {

@@ -1,6 +1,5 @@
 #include "partitions/structures/grid/flat_grid.kernel.h"
-#include "partitions/structures/cells/misfits.wide.h"
-#include "partitions/tree/block_pairs.wide.h"
+#include "partitions/structures/cells/cells.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -39,63 +38,6 @@ bool add_neighbours(const GridView& grid, std::uint32_t own, BlockPairs<Filtered
   return true;
 }
 
-template <bool Filtered>
-bool find_self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-  const std::uint32_t cells = grid.axis[0].count;
-  BlockPairs<Filtered> pairs(grid.rows, sink);
-  for (std::uint32_t line = begin; line < end; ++line) {
-    const std::uint32_t last = grid.start[std::size_t{line + 1} * cells];
-    for (std::uint32_t r = grid.start[std::size_t{line} * cells]; r < last; r += kLanes) {
-      if (!pairs.start(r, last - r < kLanes ? last : r + kLanes)) continue;
-      if (!add_neighbours(grid, line, pairs) || !pairs.finish()) return false;
-    }
-  }
-  return true;
-}
-
-bool self_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-  return grid.rows.filter != nullptr ? find_self_pairs<true>(grid, begin, end, sink)
-                                     : find_self_pairs<false>(grid, begin, end, sink);
-}
-
-struct GridQuery {
-  template <HitMode Mode, bool Filtered>
-  static bool run(const GridView& grid, const QueryBatch& batch, PairSink& sink) {
-    HitList<Mode, Filtered> hits(grid.rows, batch, sink);
-    RunList list(grid.rows, batch.column, hits, ToTheEnd{}, sink);
-    for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
-      const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
-      const QueryBox q(batch.column, row);
-      if (!(q.low[0] <= q.high[0])) continue;
-      std::uint32_t first[3];
-      std::uint32_t last[3];
-      for (int a = 0; a < 3; ++a) {
-        const CellAxis& axis = grid.axis[a];
-        first[a] = first_cell(axis, q.low[axis.axis] - axis.reach);
-        last[a] = last_cell(axis, q.high[axis.axis]);
-      }
-      for (std::uint32_t slow = first[2]; slow <= last[2]; ++slow) {
-        const std::uint32_t lines = slow * grid.axis[1].count;
-        std::uint32_t mid = first[1];
-        while (mid <= last[1]) {
-          // Whole lines follow each other in memory: one run.
-          const bool whole = first[0] == 0 && last[0] + 1 == grid.axis[0].count;
-          const std::uint32_t until = whole ? last[1] : mid;
-          const Run run{run_of(grid, lines + mid, first[0], last[0]).begin,
-                        run_of(grid, lines + until, first[0], last[0]).end};
-          if (!list.add(row, run.begin, run.end)) return false;
-          mid = until + 1;
-        }
-      }
-    }
-    return list.finish() && hits.flush();
-  }
-};
-
-bool query(const GridView& grid, const QueryBatch& batch, PairSink& sink) {
-  return with_mode<GridQuery>(grid, batch, sink);
-}
-
 bool holds(const std::uint32_t* rows, std::uint32_t count, std::uint32_t row) {
   for (std::uint32_t i = 0; i < count; ++i) {
     if (rows[i] == row) return true;
@@ -123,32 +65,74 @@ std::uint32_t left_along_line(const GridView& grid, const std::uint32_t* start, 
   return found;
 }
 
-std::uint32_t find_misfits(const GridView& grid, std::uint32_t begin, std::uint32_t end,
-                           std::uint32_t* out) {
-  std::uint32_t found = 0;
-  const std::uint32_t cells = grid.axis[0].count;
-  const std::uint32_t mids = grid.axis[1].count;
-  for (std::uint32_t line = begin; line < end; ++line) {
-    const std::uint32_t* start = grid.start + std::size_t{line} * cells;
-    if (start[0] == start[cells]) continue;
-    const AxisBounds mid(grid.rows, grid.axis[1], line % mids);
-    const AxisBounds slow(grid.rows, grid.axis[2], line / mids);
-    const AxisBounds along(grid.rows, grid.axis[0], 0);
-    std::uint32_t* const line_out = out + found;
-    const std::uint32_t wide =
-        write_misfits(grid.rows, start[0], start[cells], line_out, [&](std::size_t row) {
-          return mid.kept(row) & slow.kept(row) &
-                 along.short_enough(Floats::load_unaligned(along.low + row), row);
-        });
-    found += left_along_line(grid, start, line_out, wide);
+struct GridCells {
+  template <bool Filtered>
+  static bool find_pairs(const GridView& grid, std::uint32_t begin, std::uint32_t end,
+                         PairSink& sink) {
+    const std::uint32_t cells = grid.axis[0].count;
+    BlockPairs<Filtered> pairs(grid.rows, sink);
+    for (std::uint32_t line = begin; line < end; ++line) {
+      const std::uint32_t last = grid.start[std::size_t{line + 1} * cells];
+      for (std::uint32_t r = grid.start[std::size_t{line} * cells]; r < last; r += kLanes) {
+        if (!pairs.start(r, last - r < kLanes ? last : r + kLanes)) continue;
+        if (!add_neighbours(grid, line, pairs) || !pairs.finish()) return false;
+      }
+    }
+    return true;
   }
-  return found;
-}
+
+  static ToTheEnd goes_on(const GridView&) { return {}; }
+  template <typename Visit>
+  static bool visit_runs(const GridView& grid, const QueryBox& q, Visit&& visit) {
+    std::uint32_t first[3];
+    std::uint32_t last[3];
+    for (int a = 0; a < 3; ++a) {
+      const CellAxis& axis = grid.axis[a];
+      first[a] = first_cell(axis, q.low[axis.axis] - axis.reach);
+      last[a] = last_cell(axis, q.high[axis.axis]);
+    }
+    for (std::uint32_t slow = first[2]; slow <= last[2]; ++slow) {
+      const std::uint32_t lines = slow * grid.axis[1].count;
+      std::uint32_t mid = first[1];
+      while (mid <= last[1]) {
+        // Whole lines follow each other in memory: one run.
+        const bool whole = first[0] == 0 && last[0] + 1 == grid.axis[0].count;
+        const std::uint32_t until = whole ? last[1] : mid;
+        const std::uint32_t begin = run_of(grid, lines + mid, first[0], last[0]).begin;
+        if (!visit(begin, run_of(grid, lines + until, first[0], last[0]).end)) return false;
+        mid = until + 1;
+      }
+    }
+    return true;
+  }
+
+  static std::uint32_t find_misfits(const GridView& grid, std::uint32_t begin, std::uint32_t end,
+                                    std::uint32_t* out) {
+    std::uint32_t found = 0;
+    const std::uint32_t cells = grid.axis[0].count;
+    const std::uint32_t mids = grid.axis[1].count;
+    for (std::uint32_t line = begin; line < end; ++line) {
+      const std::uint32_t* start = grid.start + std::size_t{line} * cells;
+      if (start[0] == start[cells]) continue;
+      const AxisBounds mid(grid.rows, grid.axis[1], line % mids);
+      const AxisBounds slow(grid.rows, grid.axis[2], line / mids);
+      const AxisBounds along(grid.rows, grid.axis[0], 0);
+      std::uint32_t* const line_out = out + found;
+      const std::uint32_t wide =
+          write_misfits(grid.rows, start[0], start[cells], line_out, [&](std::size_t row) {
+            return mid.kept(row) & slow.kept(row) &
+                   along.short_enough(Floats::load_unaligned(along.low + row), row);
+          });
+      found += left_along_line(grid, start, line_out, wide);
+    }
+    return found;
+  }
+};
 
 }  // namespace
 }  // namespace WINNOW_ISA_NAME
 
-extern const FlatGridKernels WINNOW_KERNEL_TABLE(flat_grid_kernels) = {
-    WINNOW_ISA_NAME::self_pairs, WINNOW_ISA_NAME::query, WINNOW_ISA_NAME::find_misfits};
+extern const FlatGridKernels WINNOW_KERNEL_TABLE(flat_grid_kernels) =
+    WINNOW_ISA_NAME::CellFunctions<WINNOW_ISA_NAME::GridCells, GridView>::table();
 
 }  // namespace winnow

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "partitions/rows/row_view.h"
-#include "partitions/structures/cells/cell_axis.h"
+#include "partitions/structures/cells/cells.kernel.h"
 #include "simd/kernels/kernels.h"
 
 #include <cstdint>
@@ -16,16 +15,8 @@ struct GridView {
   CellAxis axis[3];
 };
 
-struct FlatGridKernels {
-  /// All pairs whose earlier cell lies in lines [begin, end); a line is a row of cells on axis 0.
-  bool (*self_pairs)(const GridView&, std::uint32_t begin, std::uint32_t end, PairSink&);
-  /// All hits of the batch's boxes.
-  bool (*query)(const GridView&, const QueryBatch&, PairSink&);
-  /// Writes to `out` the rows of lines [begin, end) that left their cell, line by line; returns how
-  /// many.
-  std::uint32_t (*find_misfits)(const GridView&, std::uint32_t begin, std::uint32_t end,
-                                std::uint32_t* out);
-};
+/// Places and units are lines: rows of cells on axis 0.
+using FlatGridKernels = CellKernels<GridView>;
 
 WINNOW_KERNELS(FlatGridKernels, flat_grid_kernels);
 

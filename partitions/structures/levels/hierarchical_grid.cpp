@@ -1,11 +1,9 @@
 #include <winnow/partitions/debug_colours.h>
 #include "core/sort/radix_sort.h"
-#include "partitions/structures/cells/cell_drawing.h"
-#include "partitions/structures/cells/task_lists.h"
+#include "partitions/structures/cells/cell_structure.h"
 #include "partitions/structures/costs.h"
 #include "partitions/structures/levels/hierarchical_grid.kernel.h"
 #include "partitions/structures/levels/level_layout.h"
-#include "partitions/structures/structure.h"
 
 #include <algorithm>
 #include <array>
@@ -80,7 +78,7 @@ Aabb cell_box(const GridLevel& g, const GridLine& line, std::uint32_t number, st
 /// Unbounded objects, those of sizes beyond 1e12 : 1, and crowds that no cell tells apart go to a
 /// block tree and are asked against the levels. Self pairs: O(n log n + n * levels + pairs) where
 /// density is even. Exact. `statistics().cells` counts the cells of all levels.
-class HierarchicalGrid final : public Structure {
+class HierarchicalGrid final : public CellStructure {
  public:
   explicit HierarchicalGrid(const StructureInput& input) noexcept;
 
@@ -93,9 +91,16 @@ class HierarchicalGrid final : public Structure {
   [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
   void finish_build() noexcept override;
   [[nodiscard]] bool fits(std::size_t row) const noexcept override;
-  void find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept override;
-  [[nodiscard]] std::size_t pair_tasks() const noexcept override;
-  bool run_pair_task(std::size_t task, PairSink& sink) const noexcept override;
+  [[nodiscard]] std::size_t places() const noexcept override { return line_.size(); }
+  [[nodiscard]] std::uint32_t first_row(std::uint32_t line) const noexcept override {
+    return start_[line_[line].cell];
+  }
+  std::size_t write_misfits(std::uint32_t begin, std::uint32_t end,
+                            std::uint32_t* out) const noexcept override;
+  [[nodiscard]] std::size_t pair_units() const noexcept override {
+    return (regular_rows() + kBlockRows - 1) / kBlockRows;
+  }
+  bool find_pairs(std::uint32_t begin, std::uint32_t end, PairSink& sink) const noexcept override;
   bool query(const QueryBatch& batch, PairSink& sink) const noexcept override;
   void draw(DebugDraw& draw) const override;
   void release_memory() noexcept override;
@@ -109,7 +114,6 @@ class HierarchicalGrid final : public Structure {
   bool add_line(const Sorted& sorted, std::size_t begin, std::size_t end, const RowPlan& plan);
   bool rank_lines(GridLevel& level);
   [[nodiscard]] std::uint32_t line_of(const GridLevel& level, std::size_t row) const noexcept;
-  [[nodiscard]] std::uint32_t first_line(std::size_t task) const noexcept;
   [[nodiscard]] LevelsView view() const noexcept;
 
   std::array<GridLevel, kMostLevels> level_;
@@ -117,19 +121,15 @@ class HierarchicalGrid final : public Structure {
   Column<GridLine> line_;
   Column<std::uint32_t> number_;  // of each line
   Column<std::uint32_t> rank_;    // lines below each number, level by level
-  Column<std::uint32_t> start_;   // first row of each cell, and the end
   Column<float> key_;             // by row: lower end on the fast axis at the build
-  Column<std::uint32_t> list_;    // rows by level, while building; then scratch
 };
 
 HierarchicalGrid::HierarchicalGrid(const StructureInput& input) noexcept
-    : Structure(input),
+    : CellStructure(input),
       line_(input.memory),
       number_(input.memory),
       rank_(input.memory),
-      start_(input.memory),
-      key_(input.memory),
-      list_(input.memory) {}
+      key_(input.memory) {}
 
 struct LinePlace {
   std::uint32_t line;
@@ -369,35 +369,13 @@ bool HierarchicalGrid::fits(std::size_t row) const noexcept {
   return keeps(g.mid, cells.mid) && keeps(g.slow, cells.slow);
 }
 
-void HierarchicalGrid::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept {
-  const LevelsView grid = view();
-  const auto find = [&](std::size_t task, std::uint32_t* out) {
-    std::uint32_t found = 0;
-    for (std::size_t l = 0; l < level_count_; ++l) {
-      const std::uint32_t begin = std::max(first_line(task), level_[l].first_line);
-      const std::uint32_t end = std::min(first_line(task + 1), level_[l].end_line);
-      if (begin >= end) continue;
-      found += hierarchical_grid_kernels().find_misfits(grid, level_[l], begin, end, out + found);
-    }
-    return found;
-  };
-  append_in_order(
-      execution(), std::min(kMostTasks, line_.size()), list_.data(),
-      [&](std::size_t task) { return start_[line_[first_line(task)].cell]; }, find, rows, limit);
+std::size_t HierarchicalGrid::write_misfits(std::uint32_t begin, std::uint32_t end,
+                                            std::uint32_t* out) const noexcept {
+  return hierarchical_grid_kernels().find_misfits(view(), begin, end, out);
 }
 
-std::uint32_t HierarchicalGrid::first_line(std::size_t task) const noexcept {
-  return static_cast<std::uint32_t>(line_.size() * task / std::min(kMostTasks, line_.size()));
-}
-
-std::size_t HierarchicalGrid::pair_tasks() const noexcept {
-  return std::min(kMostTasks, (regular_rows() + kBlockRows - 1) / kBlockRows);
-}
-
-bool HierarchicalGrid::run_pair_task(std::size_t task, PairSink& sink) const noexcept {
-  const std::size_t blocks = (regular_rows() + kBlockRows - 1) / kBlockRows;
-  const auto begin = static_cast<std::uint32_t>(blocks * task / pair_tasks());
-  const auto end = static_cast<std::uint32_t>(blocks * (task + 1) / pair_tasks());
+bool HierarchicalGrid::find_pairs(std::uint32_t begin, std::uint32_t end,
+                                  PairSink& sink) const noexcept {
   return hierarchical_grid_kernels().self_pairs(view(), begin, end, sink);
 }
 
@@ -430,21 +408,13 @@ void HierarchicalGrid::draw(DebugDraw& draw) const {
 }
 
 void HierarchicalGrid::release_memory() noexcept {
-  line_.release();
-  number_.release();
-  rank_.release();
-  start_.release();
-  key_.release();
-  list_.release();
+  CellStructure::release_memory();
+  release_columns(line_, number_, rank_, key_);
 }
 
 void HierarchicalGrid::add_bytes(Footprint& footprint) const noexcept {
-  footprint.structure += line_.bytes();
-  footprint.structure += number_.bytes();
-  footprint.structure += rank_.bytes();
-  footprint.structure += start_.bytes();
-  footprint.structure += key_.bytes();
-  footprint.scratch += list_.bytes();
+  CellStructure::add_bytes(footprint);
+  footprint.structure += bytes_of(line_, number_, rank_, key_);
 }
 
 std::size_t HierarchicalGrid::cells() const noexcept {

@@ -1,6 +1,5 @@
 #include "partitions/structures/levels/hierarchical_grid.kernel.h"
-#include "partitions/structures/cells/misfits.wide.h"
-#include "partitions/tree/block_pairs.wide.h"
+#include "partitions/structures/cells/cells.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -21,8 +20,8 @@ std::uint32_t lines_below(const LevelsView& grid, const GridLevel& g, std::uint3
 /// Calls visit(begin, end) with runs of rows, ascending, among which are all whose boxes may
 /// overlap [low, high]. Stops when it says false.
 template <typename Visit>
-[[gnu::always_inline]] inline bool visit_runs(const LevelsView& grid, const GridLevel& g,
-                                              const float* low, const float* high, Visit&& visit) {
+[[gnu::always_inline]] inline bool visit_level(const LevelsView& grid, const GridLevel& g,
+                                               const float* low, const float* high, Visit&& visit) {
   const std::uint32_t from = first_cell(g.fast, low[g.fast.axis]);
   const std::uint32_t to = last_cell(g.fast, high[g.fast.axis]);
   const std::uint32_t first_mid = first_cell(g.mid, low[g.mid.axis]);
@@ -64,52 +63,6 @@ template <typename Visit>
   return true;
 }
 
-template <bool Filtered>
-bool find_self_pairs(const LevelsView& grid, std::uint32_t begin, std::uint32_t end,
-                     PairSink& sink) {
-  BlockPairs<Filtered> pairs(grid.rows, sink);
-  std::uint32_t level = 0;
-  for (std::uint32_t block = begin; block < end; ++block) {
-    while (block * kLanes >= grid.level[level].end_row) ++level;
-    if (!pairs.start(block * kLanes, block * kLanes + kLanes)) continue;
-    const auto add = [&](std::uint32_t from, std::uint32_t to) { return pairs.add_run(from, to); };
-    for (std::uint32_t l = level; l < grid.levels; ++l) {
-      if (!visit_runs(grid, grid.level[l], pairs.low(), pairs.high(), add)) return false;
-    }
-    if (!pairs.finish()) return false;
-  }
-  return true;
-}
-
-bool self_pairs(const LevelsView& grid, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-  return grid.rows.filter != nullptr ? find_self_pairs<true>(grid, begin, end, sink)
-                                     : find_self_pairs<false>(grid, begin, end, sink);
-}
-
-struct LevelsQuery {
-  template <HitMode Mode, bool Filtered>
-  static bool run(const LevelsView& grid, const QueryBatch& batch, PairSink& sink) {
-    HitList<Mode, Filtered> hits(grid.rows, batch, sink);
-    RunList list(grid.rows, batch.column, hits, ToTheEnd{}, sink);
-    for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
-      const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
-      const QueryBox q(batch.column, row);
-      if (!(q.low[0] <= q.high[0])) continue;
-      for (std::uint32_t l = 0; l < grid.levels; ++l) {
-        const auto add = [&](std::uint32_t begin, std::uint32_t end) {
-          return list.add(row, begin, end);
-        };
-        if (!visit_runs(grid, grid.level[l], q.low, q.high, add)) return false;
-      }
-    }
-    return list.finish() && hits.flush();
-  }
-};
-
-bool query(const LevelsView& grid, const QueryBatch& batch, PairSink& sink) {
-  return with_mode<LevelsQuery>(grid, batch, sink);
-}
-
 /// The rows that may stay in one cell of an axis.
 class Keeping {
  public:
@@ -147,28 +100,60 @@ class Keeping {
   float to_;
 };
 
-std::uint32_t find_misfits(const LevelsView& grid, const GridLevel& g, std::uint32_t begin,
-                           std::uint32_t end, std::uint32_t* out) {
-  std::uint32_t found = 0;
-  for (std::uint32_t l = begin; l < end; ++l) {
-    const LineCells cells = cells_of_line(g, grid.number[l]);
-    const Keeping mids(grid.rows, g.mid, cells.mid);
-    const Keeping slows(grid.rows, g.slow, cells.slow);
-    const Keeping fasts(grid.rows, g.fast, 0);
-    const GridLine& line = grid.line[l];
-    found +=
-        write_misfits(grid.rows, grid.start[line.cell], grid.start[line.cell + line.last_cell + 1],
-                      out + found, [&](std::size_t row) {
-                        return mids.kept(row) & slows.kept(row) & fasts.near_key(row, grid.key);
-                      });
+struct Levels {
+  template <bool Filtered>
+  static bool find_pairs(const LevelsView& grid, std::uint32_t begin, std::uint32_t end,
+                         PairSink& sink) {
+    BlockPairs<Filtered> pairs(grid.rows, sink);
+    std::uint32_t level = 0;
+    for (std::uint32_t block = begin; block < end; ++block) {
+      while (block * kLanes >= grid.level[level].end_row) ++level;
+      if (!pairs.start(block * kLanes, block * kLanes + kLanes)) continue;
+      const auto add = [&](std::uint32_t from, std::uint32_t to) {
+        return pairs.add_run(from, to);
+      };
+      for (std::uint32_t l = level; l < grid.levels; ++l) {
+        if (!visit_level(grid, grid.level[l], pairs.low(), pairs.high(), add)) return false;
+      }
+      if (!pairs.finish()) return false;
+    }
+    return true;
   }
-  return found;
-}
+
+  static ToTheEnd goes_on(const LevelsView&) { return {}; }
+  template <typename Visit>
+  static bool visit_runs(const LevelsView& grid, const QueryBox& q, Visit&& visit) {
+    for (std::uint32_t l = 0; l < grid.levels; ++l) {
+      if (!visit_level(grid, grid.level[l], q.low, q.high, visit)) return false;
+    }
+    return true;
+  }
+
+  static std::uint32_t find_misfits(const LevelsView& grid, std::uint32_t begin, std::uint32_t end,
+                                    std::uint32_t* out) {
+    std::uint32_t found = 0;
+    const GridLevel* level = grid.level;
+    for (std::uint32_t l = begin; l < end; ++l) {
+      while (l >= level->end_line) ++level;
+      const LineCells cells = cells_of_line(*level, grid.number[l]);
+      const Keeping mids(grid.rows, level->mid, cells.mid);
+      const Keeping slows(grid.rows, level->slow, cells.slow);
+      const Keeping fasts(grid.rows, level->fast, 0);
+      const GridLine& line = grid.line[l];
+      found += write_misfits(
+          grid.rows, grid.start[line.cell], grid.start[line.cell + line.last_cell + 1], out + found,
+          [&](std::size_t row) {
+            return mids.kept(row) & slows.kept(row) & fasts.near_key(row, grid.key);
+          });
+    }
+    return found;
+  }
+};
 
 }  // namespace
 }  // namespace WINNOW_ISA_NAME
 
-extern const HierarchicalGridKernels WINNOW_KERNEL_TABLE(hierarchical_grid_kernels) = {
-    WINNOW_ISA_NAME::self_pairs, WINNOW_ISA_NAME::query, WINNOW_ISA_NAME::find_misfits};
+extern const HierarchicalGridKernels WINNOW_KERNEL_TABLE(hierarchical_grid_kernels) =
+    WINNOW_ISA_NAME::CellFunctions<WINNOW_ISA_NAME::Levels, LevelsView>::table();
 
 }  // namespace winnow

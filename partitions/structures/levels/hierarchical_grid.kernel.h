@@ -1,6 +1,6 @@
 #pragma once
 
-#include "partitions/rows/row_view.h"
+#include "partitions/structures/cells/cells.kernel.h"
 #include "simd/kernels/kernels.h"
 
 #include <cstdint>
@@ -87,16 +87,8 @@ static inline LineCells cells_of_line(const GridLevel& g, std::uint32_t number) 
   return {(slow & 1U) != 0 ? g.mids - 1 - mid : mid, slow};
 }
 
-struct HierarchicalGridKernels {
-  /// All pairs of the rows in blocks [begin, end) of 16 with each other and with rows behind them.
-  bool (*self_pairs)(const LevelsView&, std::uint32_t begin, std::uint32_t end, PairSink&);
-  /// All hits of the batch's boxes.
-  bool (*query)(const LevelsView&, const QueryBatch&, PairSink&);
-  /// Writes to `out` the rows of a level's lines [begin, end) that left their cell; returns how
-  /// many.
-  std::uint32_t (*find_misfits)(const LevelsView&, const GridLevel&, std::uint32_t begin,
-                                std::uint32_t end, std::uint32_t* out);
-};
+/// Places are stored lines, of all levels one after another; units are blocks of 16 rows.
+using HierarchicalGridKernels = CellKernels<LevelsView>;
 
 WINNOW_KERNELS(HierarchicalGridKernels, hierarchical_grid_kernels);
 

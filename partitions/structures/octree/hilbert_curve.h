@@ -6,7 +6,7 @@
 
 namespace winnow {
 
-/// The Hilbert curve in N dimensions, one level a step: which of the 2^N cells of a cube comes as
+/// The Hilbert curve in N dimensions, one level per step: which of the 2^N cells of a cube comes as
 /// which, and how the curve lies within it. A state is where the curve enters a cube and along
 /// which axis it leaves (Hamilton, "Compact Hilbert Indices", Dalhousie University CS-2006-07,
 /// 2006, section 2).

@@ -1,9 +1,7 @@
 #include <winnow/partitions/debug_colours.h>
 #include "core/sort/radix_sort.h"
-#include "partitions/structures/cells/cell_drawing.h"
-#include "partitions/structures/cells/task_lists.h"
+#include "partitions/structures/cells/cell_structure.h"
 #include "partitions/structures/octree/loose_octree_cells.h"
-#include "partitions/structures/structure.h"
 
 #include <algorithm>
 #include <cfloat>
@@ -12,6 +10,7 @@ namespace winnow {
 namespace {
 
 constexpr std::size_t kRowsPerTask = 16384;
+constexpr std::size_t kRowsOfGroup = 16 * kBlockRows;  // of a node of the tree over the rows
 // Longer runs of objects whose places cannot be told apart are sorted better by the tree.
 constexpr std::size_t kLongRun = 48;
 
@@ -31,7 +30,7 @@ constexpr std::uint32_t key_in(std::uint64_t item) {
 /// their loose cells, are kept in a block tree beside it. In a world two cells thick it divides two
 /// axes only. Seldom the fastest and never far from it, whatever the sizes. Self pairs: O(n log n +
 /// pairs) for boxes of bounded overlap. Exact.
-class LooseTree : public Structure {
+class LooseTree : public CellStructure {
  public:
   LooseTree(const StructureInput& input, std::size_t axes) noexcept;
 
@@ -45,9 +44,16 @@ class LooseTree : public Structure {
   [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
   [[nodiscard]] bool prunes_rows() const noexcept override { return true; }
   [[nodiscard]] bool fits(std::size_t row) const noexcept override;
-  void find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept override;
-  [[nodiscard]] std::size_t pair_tasks() const noexcept override;
-  bool run_pair_task(std::size_t task, PairSink& sink) const noexcept override;
+  [[nodiscard]] std::size_t places() const noexcept override { return node_.size(); }
+  [[nodiscard]] std::uint32_t first_row(std::uint32_t node) const noexcept override {
+    return start_[node];
+  }
+  std::size_t write_misfits(std::uint32_t begin, std::uint32_t end,
+                            std::uint32_t* out) const noexcept override;
+  [[nodiscard]] std::size_t pair_units() const noexcept override {
+    return (regular_rows() + kRowsOfGroup - 1) / kRowsOfGroup;
+  }
+  bool find_pairs(std::uint32_t begin, std::uint32_t end, PairSink& sink) const noexcept override;
   bool query(const QueryBatch& batch, PairSink& sink) const noexcept override;
   void draw(DebugDraw& draw) const override;
   void release_memory() noexcept override;
@@ -61,20 +67,16 @@ class LooseTree : public Structure {
   const float loose_;
   LooseOctreeCells cells_;
   Column<std::uint32_t> node_;               // level and Morton code
-  Column<std::uint32_t> start_;              // first row of each node, and the end
   Column<LooseOctreeCells::Bounds> bounds_;  // of each node's loose cell
-  Column<std::uint32_t> left_;               // scratch: rows found to have left their node
 };
 
 LooseTree::LooseTree(const StructureInput& input, std::size_t axes) noexcept
-    : Structure(input),
+    : CellStructure(input),
       axes_(axes),
       // Written so that NaN becomes the least.
       loose_(std::min(8.0F, std::max(1.125F, input.parameter))),
       node_(input.memory),
-      start_(input.memory),
-      bounds_(input.memory),
-      left_(input.memory) {}
+      bounds_(input.memory) {}
 
 bool LooseTree::plan(const RowPlan& plan) noexcept {
   node_.clear();
@@ -89,10 +91,10 @@ bool LooseTree::plan(const RowPlan& plan) noexcept {
   // Of a scene in motion builds meet now more rows, now more nodes: this is enough for mostly all.
   const std::size_t most_rows = std::max(rows, objects() + objects() / 8 + 256);
   const std::size_t nodes = objects() / 8 + 64;
-  if (!plan.items.reserve(2 * most_rows) || !left_.reserve(most_rows)) return false;
+  if (!plan.items.reserve(2 * most_rows) || !list_.reserve(most_rows)) return false;
   if (!node_.reserve(nodes) || !start_.reserve(nodes) || !bounds_.reserve(nodes)) return false;
   plan.items.set_size(2 * rows);
-  left_.set_size(rows);
+  list_.set_size(rows);
   std::uint64_t* const items = plan.items.data();
   find_keys(items);
   const std::uint64_t* const sorted = radix_sort(items, items + rows, rows, 32, execution());
@@ -142,35 +144,21 @@ bool LooseTree::fits(std::size_t row) const noexcept {
   return cells_.hold(bounds_[node], pool(), row, row + 1);
 }
 
-void LooseTree::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept {
-  const std::size_t tasks = std::min(kMostTasks, node_.size());
-  const auto first_node = [&](std::size_t task) { return node_.size() * task / tasks; };
-  append_in_order(
-      execution(), tasks, left_.data(), [&](std::size_t task) { return start_[first_node(task)]; },
-      [&](std::size_t task, std::uint32_t* out) {
-        std::size_t found = 0;
-        for (std::size_t node = first_node(task); node < first_node(task + 1); ++node) {
-          const std::uint32_t end = start_[node + 1];
-          if (cells_.hold(bounds_[node], pool(), start_[node], end)) continue;
-          for (std::uint32_t row = start_[node]; row < end; ++row) {
-            out[found] = row;
-            found += cells_.hold(bounds_[node], pool(), row, row + 1) ? 0U : 1U;
-          }
-        }
-        return found;
-      },
-      rows, limit);
+std::size_t LooseTree::write_misfits(std::uint32_t begin, std::uint32_t end,
+                                     std::uint32_t* out) const noexcept {
+  std::size_t found = 0;
+  for (std::uint32_t node = begin; node < end; ++node) {
+    const std::uint32_t behind = start_[node + 1];
+    if (cells_.hold(bounds_[node], pool(), start_[node], behind)) continue;
+    for (std::uint32_t row = start_[node]; row < behind; ++row) {
+      out[found] = row;
+      found += cells_.hold(bounds_[node], pool(), row, row + 1) ? 0U : 1U;
+    }
+  }
+  return found;
 }
 
-std::size_t LooseTree::pair_tasks() const noexcept {
-  return std::min<std::size_t>(kMostTasks, (regular_rows() + 255) / 256);
-}
-
-bool LooseTree::run_pair_task(std::size_t task, PairSink& sink) const noexcept {
-  const std::size_t groups = (regular_rows() + 255) / 256;
-  const std::size_t tasks = pair_tasks();
-  const auto begin = static_cast<std::uint32_t>(groups * task / tasks);
-  const auto end = static_cast<std::uint32_t>(groups * (task + 1) / tasks);
+bool LooseTree::find_pairs(std::uint32_t begin, std::uint32_t end, PairSink& sink) const noexcept {
   return block_tree_kernels().self_pairs(regular_tree(), begin, end, sink);
 }
 
@@ -198,17 +186,13 @@ void LooseTree::draw(DebugDraw& draw) const {
 }
 
 void LooseTree::release_memory() noexcept {
-  node_.release();
-  start_.release();
-  bounds_.release();
-  left_.release();
+  CellStructure::release_memory();
+  release_columns(node_, bounds_);
 }
 
 void LooseTree::add_bytes(Footprint& footprint) const noexcept {
-  footprint.structure += node_.bytes();
-  footprint.structure += start_.bytes();
-  footprint.structure += bounds_.bytes();
-  footprint.scratch += left_.bytes();
+  CellStructure::add_bytes(footprint);
+  footprint.structure += bytes_of(node_, bounds_);
 }
 
 std::size_t LooseTree::cells() const noexcept {

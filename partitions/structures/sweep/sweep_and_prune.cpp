@@ -2,9 +2,8 @@
 #include "core/sort/radix_sort.h"
 #include "partitions/structures/cells/cell_drawing.h"
 #include "partitions/structures/cells/cell_layout.h"
-#include "partitions/structures/cells/task_lists.h"
+#include "partitions/structures/cells/cell_structure.h"
 #include "partitions/structures/costs.h"
-#include "partitions/structures/structure.h"
 #include "partitions/structures/sweep/sweep_and_prune.kernel.h"
 
 #include <algorithm>
@@ -33,7 +32,7 @@ constexpr double kMostApart = 0.1;
 /// motion, or rest, costs no sorting. Objects wider than strips go to a block tree, and where they
 /// are many it holds the whole scene. Self pairs: O(n log n + n * objects met in a sweep + pairs).
 /// Exact.
-class SweepAndPrune final : public Structure {
+class SweepAndPrune final : public CellStructure {
  public:
   explicit SweepAndPrune(const StructureInput& input) noexcept;
 
@@ -41,9 +40,13 @@ class SweepAndPrune final : public Structure {
   [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
   void finish_build() noexcept override;
   [[nodiscard]] bool fits(std::size_t row) const noexcept override;
-  void find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept override;
-  [[nodiscard]] std::size_t pair_tasks() const noexcept override;
-  bool run_pair_task(std::size_t task, PairSink& sink) const noexcept override;
+  [[nodiscard]] std::size_t places() const noexcept override { return layout_.cells(); }
+  [[nodiscard]] std::uint32_t first_row(std::uint32_t strip) const noexcept override {
+    return start_[strip];
+  }
+  std::size_t write_misfits(std::uint32_t begin, std::uint32_t end,
+                            std::uint32_t* out) const noexcept override;
+  bool find_pairs(std::uint32_t begin, std::uint32_t end, PairSink& sink) const noexcept override;
   bool query(const QueryBatch& batch, PairSink& sink) const noexcept override;
   void draw(DebugDraw& draw) const override;
   void release_memory() noexcept override;
@@ -53,23 +56,15 @@ class SweepAndPrune final : public Structure {
   [[nodiscard]] std::size_t list_rows(const RowPlan& plan) noexcept;
   void sort_rows(std::size_t count, const RowPlan& plan) noexcept;
   void drop_crowded(const RowPlan& plan) noexcept;
-  [[nodiscard]] bool near_key(std::size_t row) const noexcept;
-  [[nodiscard]] bool fits_strip(std::size_t row, std::uint32_t strip) const noexcept;
-  [[nodiscard]] std::uint32_t first_strip(std::size_t task) const noexcept;
   [[nodiscard]] StripView view() const noexcept;
 
+  // While building list_ holds the strip of each row.
   CellLayout layout_;
-  Column<std::uint32_t> start_;  // first row of each strip, and the end
-  Column<float> key_;            // by row: lower end on the sweep axis at the build
-  Column<std::uint32_t> strip_;  // of each row, while building; then scratch
+  Column<float> key_;  // by row: lower end on the sweep axis at the build
 };
 
 SweepAndPrune::SweepAndPrune(const StructureInput& input) noexcept
-    : Structure(input),
-      layout_(input.memory),
-      start_(input.memory),
-      key_(input.memory),
-      strip_(input.memory) {}
+    : CellStructure(input), layout_(input.memory), key_(input.memory) {}
 
 bool SweepAndPrune::plan(const RowPlan& plan) noexcept {
   const SceneSample sample(pool());
@@ -81,8 +76,8 @@ bool SweepAndPrune::plan(const RowPlan& plan) noexcept {
     return true;
   }
   const std::size_t rows = pool().rows();
-  if (!strip_.resize(rows) || !start_.resize(layout_.cells() + 1) ||
-      !key_.resize(rows + kPadding) || !plan.items.resize(2 * rows)) {
+  if (!list_.resize(rows) || !start_.resize(layout_.cells() + 1) || !key_.resize(rows + kPadding) ||
+      !plan.items.resize(2 * rows)) {
     return false;
   }
   const auto most = static_cast<std::size_t>(kMostApart * static_cast<double>(sample.objects));
@@ -107,12 +102,12 @@ std::size_t SweepAndPrune::list_rows(const RowPlan& plan) noexcept {
   std::size_t count = 0;
   for (std::size_t row = 0; row < rows; ++row) {
     if (pool().ids()[row] == kNoObject) continue;
-    strip_[row] = layout_.cell_of(pool(), row);
-    if (strip_[row] == CellLayout::kNoCell) {
+    list_[row] = layout_.cell_of(pool(), row);
+    if (list_[row] == CellLayout::kNoCell) {
       (void)plan.rest.push_back(static_cast<std::uint32_t>(row));
       continue;
     }
-    ++start_[strip_[row]];
+    ++start_[list_[row]];
     items[count++] = static_cast<std::uint64_t>(sortable(low[row])) << 32U | row;
   }
   return count;
@@ -126,7 +121,7 @@ void SweepAndPrune::sort_rows(std::size_t count, const RowPlan& plan) noexcept {
   plan.regular.set_size(count);
   for (std::size_t i = 0; i < count; ++i) {
     const auto row = static_cast<std::uint32_t>(by_key[i]);
-    plan.regular[start_[strip_[row]]++] = row;
+    plan.regular[start_[list_[row]]++] = row;
   }
   starts_from_positions(start_);
 }
@@ -145,16 +140,16 @@ void SweepAndPrune::drop_crowded(const RowPlan& plan) noexcept {
     std::uint32_t behind = begin;
     std::uint32_t ahead = begin;
     // Kept rows move to the front; the window is measured on the rows not yet passed and those
-    // noted in strip_, which is free from here on.
-    for (std::uint32_t i = begin; i < end; ++i) strip_[i] = plan.regular[i];
+    // noted in list_, which is free from here on.
+    for (std::uint32_t i = begin; i < end; ++i) list_[i] = plan.regular[i];
     for (std::uint32_t i = begin; i < end; ++i) {
-      const float x = low[strip_[i]];
-      while (low[strip_[behind]] < x - window) ++behind;
-      while (ahead < end && low[strip_[ahead]] <= x + window) ++ahead;
+      const float x = low[list_[i]];
+      while (low[list_[behind]] < x - window) ++behind;
+      while (ahead < end && low[list_[ahead]] <= x + window) ++ahead;
       if (ahead - behind > kCrowded) {
-        (void)plan.rest.push_back(strip_[i]);
+        (void)plan.rest.push_back(list_[i]);
       } else {
-        plan.regular[kept++] = strip_[i];
+        plan.regular[kept++] = list_[i];
       }
     }
   }
@@ -170,45 +165,20 @@ void SweepAndPrune::finish_build() noexcept {
   std::fill_n(key_.data() + regular_rows(), kPadding, kInfinity);
 }
 
-bool SweepAndPrune::near_key(std::size_t row) const noexcept {
-  const float low = pool().column(layout_.axis(0).axis)[row];
-  return low >= key_[row] - layout_.drift() && low <= key_[row] + layout_.drift();
-}
-
-bool SweepAndPrune::fits_strip(std::size_t row, std::uint32_t strip) const noexcept {
-  return near_key(row) && layout_.fits(pool(), row, strip);
-}
-
 bool SweepAndPrune::fits(std::size_t row) const noexcept {
-  // Mostly the box's own corner still lies in the cell that holds the row.
-  const std::uint32_t own = layout_.cell_of(pool(), row);
-  if (own != CellLayout::kNoCell && row >= start_[own] && row < start_[own + 1])
-    return near_key(row);
-  const auto after = std::upper_bound(start_.begin(), start_.end(), row);
-  return fits_strip(row, static_cast<std::uint32_t>(after - start_.begin() - 1));
+  const float low = pool().column(layout_.axis(0).axis)[row];
+  return low >= key_[row] - layout_.drift() && low <= key_[row] + layout_.drift() &&
+         layout_.fits(pool(), row, start_);
 }
 
-void SweepAndPrune::find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept {
-  const StripView strips = view();
-  append_in_order(
-      execution(), pair_tasks(), strip_.data(),
-      [&](std::size_t task) { return start_[first_strip(task)]; },
-      [&](std::size_t task, std::uint32_t* out) {
-        return sweep_kernels().find_misfits(strips, first_strip(task), first_strip(task + 1), out);
-      },
-      rows, limit);
+std::size_t SweepAndPrune::write_misfits(std::uint32_t begin, std::uint32_t end,
+                                         std::uint32_t* out) const noexcept {
+  return sweep_kernels().find_misfits(view(), begin, end, out);
 }
 
-std::size_t SweepAndPrune::pair_tasks() const noexcept {
-  return regular_rows() == 0 ? 0 : std::min(kMostTasks, layout_.cells());
-}
-
-std::uint32_t SweepAndPrune::first_strip(std::size_t task) const noexcept {
-  return static_cast<std::uint32_t>(layout_.cells() * task / pair_tasks());
-}
-
-bool SweepAndPrune::run_pair_task(std::size_t task, PairSink& sink) const noexcept {
-  return sweep_kernels().self_pairs(view(), first_strip(task), first_strip(task + 1), sink);
+bool SweepAndPrune::find_pairs(std::uint32_t begin, std::uint32_t end,
+                               PairSink& sink) const noexcept {
+  return sweep_kernels().self_pairs(view(), begin, end, sink);
 }
 
 bool SweepAndPrune::query(const QueryBatch& batch, PairSink& sink) const noexcept {
@@ -228,17 +198,15 @@ void SweepAndPrune::draw(DebugDraw& draw) const {
 }
 
 void SweepAndPrune::release_memory() noexcept {
-  layout_.release();
-  start_.release();
+  CellStructure::release_memory();
   key_.release();
-  strip_.release();
+  layout_.release();
 }
 
 void SweepAndPrune::add_bytes(Footprint& footprint) const noexcept {
+  CellStructure::add_bytes(footprint);
   footprint.structure += layout_.bytes();
-  footprint.structure += start_.bytes();
   footprint.structure += key_.bytes();
-  footprint.scratch += strip_.bytes();
 }
 
 std::size_t SweepAndPrune::cells() const noexcept {

@@ -1,6 +1,5 @@
 #include "partitions/structures/sweep/sweep_and_prune.kernel.h"
-#include "partitions/structures/cells/misfits.wide.h"
-#include "partitions/tree/block_pairs.wide.h"
+#include "partitions/structures/cells/cells.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -31,7 +30,7 @@ struct KeyStop {
   }
 };
 
-/// Moves `at` to the first row of [at, end) that may reach up to x; keys ascend. Sixteen keys a
+/// Moves `at` to the first row of [at, end) that may reach up to x; keys ascend. Sixteen keys per
 /// step: mostly one step is enough, and then it costs no branch.
 inline std::uint32_t skip_below(const StripView& strips, std::uint32_t at, std::uint32_t end,
                                 float x) {
@@ -99,85 +98,69 @@ struct Sweeps {
   }
 };
 
-template <bool Filtered>
-bool find_self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end,
-                     PairSink& sink) {
-  BlockPairs<Filtered> pairs(strips.rows, sink);
-  for (std::uint32_t strip = begin; strip < end; ++strip) {
-    const std::uint32_t last = strips.start[strip + 1];
-    if (strips.start[strip] == last) continue;
-    Sweeps sweeps(strips, strip);
-    for (std::uint32_t r = strips.start[strip]; r < last; r += kLanes) {
-      const std::uint32_t behind = last - r < kLanes ? last : r + kLanes;
-      if (!pairs.start(r, behind)) continue;
-      if (!sweeps.add_runs(r, behind, last, pairs) || !pairs.finish()) return false;
+struct Strips {
+  template <bool Filtered>
+  static bool find_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end,
+                         PairSink& sink) {
+    BlockPairs<Filtered> pairs(strips.rows, sink);
+    for (std::uint32_t strip = begin; strip < end; ++strip) {
+      const std::uint32_t last = strips.start[strip + 1];
+      if (strips.start[strip] == last) continue;
+      Sweeps sweeps(strips, strip);
+      for (std::uint32_t r = strips.start[strip]; r < last; r += kLanes) {
+        const std::uint32_t behind = last - r < kLanes ? last : r + kLanes;
+        if (!pairs.start(r, behind)) continue;
+        if (!sweeps.add_runs(r, behind, last, pairs) || !pairs.finish()) return false;
+      }
     }
+    return true;
   }
-  return true;
-}
 
-bool self_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-  return strips.rows.filter != nullptr ? find_self_pairs<true>(strips, begin, end, sink)
-                                       : find_self_pairs<false>(strips, begin, end, sink);
-}
-
-struct SweepQuery {
-  template <HitMode Mode, bool Filtered>
-  static bool run(const StripView& strips, const QueryBatch& batch, PairSink& sink) {
-    HitList<Mode, Filtered> hits(strips.rows, batch, sink);
-    RunList sweeps(strips.rows, batch.column, hits, KeyStop{strips}, sink);
-    for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
-      const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
-      const QueryBox q(batch.column, row);
-      if (!(q.low[0] <= q.high[0])) continue;
-      std::uint32_t first[3];
-      std::uint32_t last[3];
-      for (int a = 1; a < 3; ++a) {
-        const CellAxis& axis = strips.axis[a];
-        first[a] = first_cell(axis, q.low[axis.axis] - axis.reach);
-        last[a] = last_cell(axis, q.high[axis.axis]);
-      }
-      const float x = q.low[strips.axis[0].axis] - strips.axis[0].reach;
-      for (std::uint32_t slow = first[2]; slow <= last[2]; ++slow) {
-        for (std::uint32_t mid = first[1]; mid <= last[1]; ++mid) {
-          const std::uint32_t strip = slow * strips.axis[1].count + mid;
-          const std::uint32_t end = strips.start[strip + 1];
-          const std::uint32_t from = first_reaching(strips, strips.start[strip], end, x);
-          if (!sweeps.add(row, from, end)) return false;
-        }
+  static KeyStop goes_on(const StripView& strips) { return {strips}; }
+  template <typename Visit>
+  static bool visit_runs(const StripView& strips, const QueryBox& q, Visit&& visit) {
+    std::uint32_t first[3];
+    std::uint32_t last[3];
+    for (int a = 1; a < 3; ++a) {
+      const CellAxis& axis = strips.axis[a];
+      first[a] = first_cell(axis, q.low[axis.axis] - axis.reach);
+      last[a] = last_cell(axis, q.high[axis.axis]);
+    }
+    const float x = q.low[strips.axis[0].axis] - strips.axis[0].reach;
+    for (std::uint32_t slow = first[2]; slow <= last[2]; ++slow) {
+      for (std::uint32_t mid = first[1]; mid <= last[1]; ++mid) {
+        const std::uint32_t strip = slow * strips.axis[1].count + mid;
+        const std::uint32_t end = strips.start[strip + 1];
+        if (!visit(first_reaching(strips, strips.start[strip], end, x), end)) return false;
       }
     }
-    return sweeps.finish() && hits.flush();
+    return true;
+  }
+
+  static std::uint32_t find_misfits(const StripView& strips, std::uint32_t begin, std::uint32_t end,
+                                    std::uint32_t* out) {
+    const Floats drift = Floats(strips.drift);
+    const AxisBounds swept(strips.rows, strips.axis[0], 0);
+    std::uint32_t found = 0;
+    for (std::uint32_t strip = begin; strip < end; ++strip) {
+      const AxisBounds mid(strips.rows, strips.axis[1], strip % strips.axis[1].count);
+      const AxisBounds slow(strips.rows, strips.axis[2], strip / strips.axis[1].count);
+      found += write_misfits(strips.rows, strips.start[strip], strips.start[strip + 1], out + found,
+                             [&](std::size_t row) {
+                               const Floats key = Floats::load_unaligned(strips.key + row);
+                               const Floats x = Floats::load_unaligned(swept.low + row);
+                               return bits(key - drift <= x) & bits(x <= key + drift) &
+                                      swept.short_enough(x, row) & mid.kept(row) & slow.kept(row);
+                             });
+    }
+    return found;
   }
 };
-
-bool query(const StripView& strips, const QueryBatch& batch, PairSink& sink) {
-  return with_mode<SweepQuery>(strips, batch, sink);
-}
-
-std::uint32_t find_misfits(const StripView& strips, std::uint32_t begin, std::uint32_t end,
-                           std::uint32_t* out) {
-  const Floats drift = Floats(strips.drift);
-  const AxisBounds swept(strips.rows, strips.axis[0], 0);
-  std::uint32_t found = 0;
-  for (std::uint32_t strip = begin; strip < end; ++strip) {
-    const AxisBounds mid(strips.rows, strips.axis[1], strip % strips.axis[1].count);
-    const AxisBounds slow(strips.rows, strips.axis[2], strip / strips.axis[1].count);
-    found += write_misfits(strips.rows, strips.start[strip], strips.start[strip + 1], out + found,
-                           [&](std::size_t row) {
-                             const Floats key = Floats::load_unaligned(strips.key + row);
-                             const Floats x = Floats::load_unaligned(swept.low + row);
-                             return bits(key - drift <= x) & bits(x <= key + drift) &
-                                    swept.short_enough(x, row) & mid.kept(row) & slow.kept(row);
-                           });
-  }
-  return found;
-}
 
 }  // namespace
 }  // namespace WINNOW_ISA_NAME
 
-extern const SweepKernels WINNOW_KERNEL_TABLE(sweep_kernels) = {
-    WINNOW_ISA_NAME::self_pairs, WINNOW_ISA_NAME::query, WINNOW_ISA_NAME::find_misfits};
+extern const SweepKernels WINNOW_KERNEL_TABLE(sweep_kernels) =
+    WINNOW_ISA_NAME::CellFunctions<WINNOW_ISA_NAME::Strips, StripView>::table();
 
 }  // namespace winnow

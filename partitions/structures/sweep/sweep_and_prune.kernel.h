@@ -1,7 +1,6 @@
 #pragma once
 
-#include "partitions/rows/row_view.h"
-#include "partitions/structures/cells/cell_axis.h"
+#include "partitions/structures/cells/cells.kernel.h"
 #include "simd/kernels/kernels.h"
 
 #include <cstdint>
@@ -19,16 +18,8 @@ struct StripView {
   float drift = 0.0F;
 };
 
-struct SweepKernels {
-  /// All pairs whose earlier strip lies in [begin, end), or whose first row does within a strip.
-  bool (*self_pairs)(const StripView&, std::uint32_t begin, std::uint32_t end, PairSink&);
-  /// All hits of the batch's boxes.
-  bool (*query)(const StripView&, const QueryBatch&, PairSink&);
-  /// Writes to `out` the rows of strips [begin, end) that left their strip or drifted too far;
-  /// returns how many.
-  std::uint32_t (*find_misfits)(const StripView&, std::uint32_t begin, std::uint32_t end,
-                                std::uint32_t* out);
-};
+/// Places and units are strips.
+using SweepKernels = CellKernels<StripView>;
 
 WINNOW_KERNELS(SweepKernels, sweep_kernels);
 

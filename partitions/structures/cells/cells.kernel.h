@@ -1,8 +1,24 @@
 #pragma once
 
+#include "partitions/rows/row_view.h"
+
 #include <cstdint>
 
 namespace winnow {
+
+/// What kernels do with rows in cells. `View` holds the rows, as `rows`, and where cells begin;
+/// places are cells, or lines of them, and units those that `self_pairs` of a structure goes by.
+template <typename View>
+struct CellKernels {
+  /// All pairs of the rows of units [begin, end) with each other and with rows behind them.
+  bool (*self_pairs)(const View&, std::uint32_t begin, std::uint32_t end, PairSink&);
+  /// All hits of the batch's boxes.
+  bool (*query)(const View&, const QueryBatch&, PairSink&);
+  /// Writes to `out` the rows of places [begin, end) that left theirs, place by place; returns how
+  /// many.
+  std::uint32_t (*find_misfits)(const View&, std::uint32_t begin, std::uint32_t end,
+                                std::uint32_t* out);
+};
 
 /// One axis of a grid or of strips, for kernels. A regular object of cell c has the lower end of
 /// its box within [from[c], to[c]] (cells overlap by twice the slack that objects may drift by) and

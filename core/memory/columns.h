@@ -1,0 +1,21 @@
+#pragma once
+
+// What is done with all columns of an object.
+
+#include <winnow/core/column.h>
+
+namespace winnow {
+
+template <typename... T>
+void release_columns(Column<T>&... columns) noexcept {
+  (columns.release(), ...);
+}
+
+template <typename... T>
+[[nodiscard]] Bytes bytes_of(const Column<T>&... columns) noexcept {
+  Bytes sum;
+  ((sum += columns.bytes()), ...);
+  return sum;
+}
+
+}  // namespace winnow

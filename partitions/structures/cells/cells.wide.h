@@ -1,0 +1,83 @@
+#pragma once
+
+// What kernels of structures of cells have in common: a table of their functions, and which rows no
+// longer keep to the bounds of their cell.
+
+#include "partitions/structures/cells/cells.kernel.h"
+#include "partitions/tree/block_pairs.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// The functions of a structure: `Cells` finds the pairs of units, visits the runs of rows among
+/// which are all that may overlap a box, says how long a run goes on, and finds misfits.
+template <typename Cells, typename View>
+struct CellFunctions {
+  static bool self_pairs(const View& view, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+    return view.rows.filter != nullptr ? Cells::template find_pairs<true>(view, begin, end, sink)
+                                       : Cells::template find_pairs<false>(view, begin, end, sink);
+  }
+
+  template <HitMode Mode, bool Filtered>
+  static bool run(const View& view, const QueryBatch& batch, PairSink& sink) {
+    HitList<Mode, Filtered> hits(view.rows, batch, sink);
+    RunList list(view.rows, batch.column, hits, Cells::goes_on(view), sink);
+    for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
+      const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
+      const QueryBox q(batch.column, row);
+      if (!(q.low[0] <= q.high[0])) continue;
+      const auto add = [&](std::uint32_t begin, std::uint32_t end) {
+        return list.add(row, begin, end);
+      };
+      if (!Cells::visit_runs(view, q, add)) return false;
+    }
+    return list.finish() && hits.flush();
+  }
+  static bool query(const View& view, const QueryBatch& batch, PairSink& sink) {
+    return with_mode<CellFunctions>(view, batch, sink);
+  }
+
+  static constexpr CellKernels<View> table() { return {self_pairs, query, Cells::find_misfits}; }
+};
+
+/// Lower ends within [from, to] on one axis, edges within limit.
+struct AxisBounds {
+  const float* low;
+  const float* high;
+  float from;
+  float to;
+  float limit;
+
+  AxisBounds(const RowView& rows, const CellAxis& axis, std::uint32_t cell)
+      : low(rows.column[axis.axis]),
+        high(rows.column[3 + axis.axis]),
+        from(axis.from[cell]),
+        to(axis.to[cell]),
+        limit(axis.limit) {}
+
+  [[nodiscard]] Mask16 kept(std::size_t row) const {
+    const Floats x = Floats::load_unaligned(low + row);
+    return bits(from <= x) & bits(x <= to) & short_enough(x, row);
+  }
+  [[nodiscard]] Mask16 short_enough(const Floats& x, std::size_t row) const {
+    return bits(Floats::load_unaligned(high + row) - x <= limit);
+  }
+};
+
+/// Calls kept(row) for every 16 rows of [begin, end) and writes those that it leaves out, but for
+/// empty rows, which have nothing to lose; returns how many.
+template <typename Kept>
+std::uint32_t write_misfits(const RowView& rows, std::uint32_t begin, std::uint32_t end,
+                            std::uint32_t* out, Kept&& kept) {
+  std::uint32_t found = 0;
+  for (std::uint32_t row = begin; row < end; row += kLanes) {
+    const Mask16 lanes = end - row < kLanes ? lanes_below(end - row) : kAllRows;
+    for (Mask16 bad = ~kept(row) & lanes; bad != 0; bad &= bad - 1) {
+      const std::uint32_t r = row + first(bad);
+      out[found] = r;
+      found += rows.id[r] != ~0U ? 1U : 0U;
+    }
+  }
+  return found;
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME
