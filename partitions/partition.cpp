@@ -1,8 +1,6 @@
 #include <winnow/partitions/partition.h>
 
 #include "core/memory/new_in.h"
-#include "partitions/rows/row_writer.h"
-#include "partitions/rows/volume_source.h"
 #include "partitions/state/partition_state.h"
 
 namespace winnow {
@@ -70,19 +68,15 @@ Status Partition::insert(const Aabb& box, ClientData data, Key& key) {
 
 Status Partition::insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
                          std::span<Key> keys) {
-  if (volume() != Volume::sphere) return Status::unsupported_volume;
-  return mutate(state_, status_, keys.size(), [&](Rows& rows) {
-    return rows.insert_from(SphereSource{spheres}, spheres.size(), data, keys);
-  });
+  return mutate(state_, status_, keys.size(),
+                [&](Rows& rows) { return rows.insert(spheres, data, keys); });
 }
 
 template <int K>
 Status Partition::insert(std::span<const Kdop<K>> kdops, std::span<const ClientData> data,
                          std::span<Key> keys) {
-  if (volume() != kdop_volume<K>()) return Status::unsupported_volume;
-  return mutate(state_, status_, keys.size(), [&](Rows& rows) {
-    return rows.insert_from(KdopSource<K>{kdops}, kdops.size(), data, keys);
-  });
+  return mutate(state_, status_, keys.size(),
+                [&](Rows& rows) { return rows.insert(kdops, data, keys); });
 }
 
 Status Partition::update(std::span<const Key> keys, const BoxView& boxes) {
@@ -94,18 +88,13 @@ Status Partition::update(Key key, const Aabb& box) {
 }
 
 Status Partition::update(std::span<const Key> keys, std::span<const Sphere> spheres) {
-  if (volume() != Volume::sphere) return Status::unsupported_volume;
-  return mutate(state_, status_, keys.size(), [&](Rows& rows) {
-    return rows.update_from(SphereSource{spheres}, spheres.size(), keys);
-  });
+  return mutate(state_, status_, keys.size(),
+                [&](Rows& rows) { return rows.update(keys, spheres); });
 }
 
 template <int K>
 Status Partition::update(std::span<const Key> keys, std::span<const Kdop<K>> kdops) {
-  if (volume() != kdop_volume<K>()) return Status::unsupported_volume;
-  return mutate(state_, status_, keys.size(), [&](Rows& rows) {
-    return rows.update_from(KdopSource<K>{kdops}, kdops.size(), keys);
-  });
+  return mutate(state_, status_, keys.size(), [&](Rows& rows) { return rows.update(keys, kdops); });
 }
 
 template Status Partition::insert(std::span<const Kdop<14>>, std::span<const ClientData>,

@@ -5,7 +5,6 @@
 #include "partitions/pairs/pair_writer.h"
 #include "partitions/queries/query_filter.h"
 #include "partitions/queries/regions.h"
-#include "partitions/rows/row_writer.h"
 #include "partitions/rows/volume_source.h"
 #include "partitions/state/partition_state.h"
 

@@ -1,19 +1,24 @@
 #pragma once
 
-// Volumes that are stored larger by a margin. Included by the source files that offer a source, not
-// by headers.
+// Volumes that are stored larger by a margin. Included by source files, not by headers.
 
 #include <winnow/core/margin.h>
 #include <winnow/core/rounding.h>
 #include <winnow/core/volume.h>
+#include "core/memory/bounds_pool.h"
 #include "partitions/rows/volume_source.h"
 
 #include <algorithm>
+#include <bit>
 #include <cfloat>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace winnow {
+
+/// Rows whose boxes are brought together before they are looked at: a few cache lines per column.
+inline constexpr std::size_t kRowsAtOnce = 256;
 
 /// How slab volumes grow, and when a stored one still serves.
 template <Volume V>
@@ -110,17 +115,6 @@ struct FatSource {
   const Source& source;
   Margin margin;
 
-  [[nodiscard]] bool valid(std::size_t i) const noexcept { return source.valid(i); }
-  [[nodiscard]] bool valid_range(std::size_t begin, std::size_t end) const noexcept {
-    if constexpr (requires { source.valid_range(begin, end); }) {
-      return source.valid_range(begin, end);
-    } else {
-      bool ok = true;
-      for (std::size_t i = begin; i < end; ++i) ok = ok && valid(i);
-      return ok;
-    }
-  }
-
   void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
     Values given(source, i);
     Fat::grow(given.value, Fat::margin_of(given.value, margin));
@@ -152,5 +146,53 @@ struct FatSource {
     }
   };
 };
+
+/// Which rows belong to objects [first, first + count).
+struct ObjectRange {
+  const ObjectId* id;  ///< by row
+  ObjectId first;
+  std::size_t count;
+
+  /// At least `count` if it does not.
+  [[nodiscard]] std::size_t entry(std::size_t row) const noexcept {
+    return static_cast<ObjectId>(id[row] - first);
+  }
+};
+
+/// Of boxes that go by rows: writes those of up to 256 rows from `begin` on that left their stored
+/// ones, and sets their rows' bits in `left`. Most have not: that is found for 16 at a time.
+inline void write_left_boxes(const FatSource<BoxSource>& fat, const ObjectRange& objects,
+                             ColumnPointers columns, std::size_t begin, std::size_t end,
+                             std::uint64_t* left) noexcept {
+  const BoxSource& source = fat.source;
+  alignas(64) float given[6][kRowsAtOnce];
+  float* given_columns[6];
+  const float* stored[6];
+  for (std::size_t c = 0; c < 6; ++c) {
+    given_columns[c] = given[c];
+    stored[c] = columns[c] + begin;
+  }
+  std::size_t written = 0;
+  if (source.packed()) {
+    written = (end - begin) / kBlockRows * kBlockRows;
+    source.write_rows(objects.first, objects.id + begin, given_columns, 0, written);
+  }
+  std::uint64_t asked[kRowsAtOnce / 64] = {};
+  for (std::size_t k = 0; k < end - begin; ++k) {
+    const std::size_t i = objects.entry(begin + k);
+    asked[k / 64] |= std::uint64_t{i < objects.count} << (k % 64);
+    if (k >= written && i < objects.count) source.write(i, given_columns, k);
+  }
+  std::uint64_t within[kRowsAtOnce / 64] = {};
+  box_input_kernels().within(given_columns, stored, end - begin, fat.margin.distance,
+                             fat.margin.share, within);
+  for (std::size_t w = 0; w < kRowsAtOnce / 64; ++w) {
+    for (std::uint64_t out = asked[w] & ~within[w]; out != 0; out &= out - 1) {
+      const std::size_t k = 64 * w + static_cast<std::size_t>(std::countr_zero(out));
+      if (!fat.write_if_left(objects.entry(begin + k), columns, begin + k)) continue;
+      left[begin / 64 + w] |= std::uint64_t{1} << (k % 64);
+    }
+  }
+}
 
 }  // namespace winnow

@@ -1,9 +1,12 @@
 #include "partitions/rows/rows.h"
 
-#include "partitions/rows/row_writer.h"
+#include "core/memory/columns.h"
+#include "partitions/rows/fat_volumes.h"
 #include "partitions/rows/volume_source.h"
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cfloat>
 #include <limits>
 
@@ -12,6 +15,18 @@ namespace winnow {
 WINNOW_DEFINE_KERNELS(BoxInputKernels, box_input_kernels)
 
 namespace {
+
+// How many entries ahead of their turn rows are fetched into the cache: each lies in as many cache
+// lines as it has columns, anywhere in the pool.
+constexpr std::size_t kFetchAhead = 12;
+
+/// The columns of a pool as the sources want them.
+struct PoolColumns {
+  explicit PoolColumns(BoundsPool& pool) noexcept {
+    for (std::size_t c = 0; c < pool.columns(); ++c) pointers[c] = pool.column(c);
+  }
+  float* pointers[kMaxColumns] = {};
+};
 
 /// Calls use(source) with the source that turns boxes into the pool's volume.
 template <typename Use>
@@ -30,6 +45,21 @@ Status with_box_source(Volume volume, const BoxView& boxes, Use&& use) {
   }
   return Status::unsupported_volume;
 }
+
+/// The source of volumes that are stored as they are given.
+SphereSource source_of(std::span<const Sphere> spheres) noexcept {
+  return {spheres};
+}
+template <int K>
+KdopSource<K> source_of(std::span<const Kdop<K>> kdops) noexcept {
+  return {kdops};
+}
+
+/// True if a row's volume may stay as it is though the source offers another.
+template <typename Source>
+constexpr bool kMayStay = requires(const Source& source) {
+  source.write_if_left(0, ColumnPointers{}, 0);
+};
 
 }  // namespace
 
@@ -50,6 +80,8 @@ Execution Rows::execution_for(std::size_t objects) const noexcept {
   return objects < kWorthSharing ? Execution::serial() : execution_;
 }
 
+// Taking volumes in.
+
 Status Rows::insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys) {
   return with_box_source(pool_.volume(), boxes, [&](const auto& source) {
     return insert_from(source, boxes.count, data, keys);
@@ -68,6 +100,208 @@ Status Rows::update(Key key, const Aabb& box) {
   return with_box_source(pool_.volume(), boxes,
                          [&](const auto& source) { return update_one(source, key); });
 }
+
+template <typename V>
+Status Rows::insert(std::span<const V> volumes, std::span<const ClientData> data,
+                    std::span<Key> keys) {
+  const auto source = source_of(volumes);
+  if (source.kVolume != pool_.volume()) return Status::unsupported_volume;
+  return insert_from(source, volumes.size(), data, keys);
+}
+
+template <typename V>
+Status Rows::update(std::span<const Key> keys, std::span<const V> volumes) {
+  const auto source = source_of(volumes);
+  if (source.kVolume != pool_.volume()) return Status::unsupported_volume;
+  return update_from(source, volumes.size(), keys);
+}
+
+/// Calls use(source) with the source itself or, if volumes are stored larger, with one that makes
+/// them so.
+template <typename Source, typename Use>
+Status Rows::with_margin(const Source& source, Use&& use) {
+  if (margin_.is_none()) return use(source);
+  return use(FatSource<Source>{source, margin_});
+}
+
+template <typename Source>
+Status Rows::insert_from(const Source& source, std::size_t count, std::span<const ClientData> data,
+                         std::span<Key> keys) {
+  if (keys.size() != count || (!data.empty() && data.size() != count)) return Status::size_mismatch;
+  if (count > kMaxObjects - keys_.size()) return Status::too_many_objects;
+  if (!all_valid(source, count, execution_)) return Status::invalid_bounds;
+  if (!make_room(keys_.size() + count)) return Status::out_of_memory;
+  const std::size_t first = pool_.rows();
+  pool_.append(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto row = static_cast<std::uint32_t>(first + i);
+    keys[i] = keys_.acquire(row, data.empty() ? 0 : data[i]);
+    pool_.ids()[row] = keys[i].id;
+    stale_.add(keys[i].id);
+  }
+  const PoolColumns columns(pool_);
+  return with_margin(source, [&](const auto& volumes) {
+    for_ranges(execution_, count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) volumes.write(i, columns.pointers, first + i);
+    });
+    changed_ = changed_ || count != 0;
+    return Status::ok;
+  });
+}
+
+template <typename Source>
+Status Rows::update_from(const Source& source, std::size_t count, std::span<const Key> keys) {
+  if (keys.size() != count) return Status::size_mismatch;
+  std::atomic<bool> known{true};
+  std::atomic<bool> ascending{true};
+  for_ranges(execution_, count, [&](std::size_t begin, std::size_t end) {
+    bool ok = true;
+    bool up = true;
+    for (std::size_t i = begin; i < end; ++i) {
+      ok = ok && keys_.is_valid(keys[i]);
+      up = up && (i == 0 || keys[i - 1].id < keys[i].id);
+    }
+    if (!ok) known.store(false, std::memory_order_relaxed);
+    if (!up) ascending.store(false, std::memory_order_relaxed);
+  });
+  if (!known.load()) return Status::invalid_key;
+  if (!all_valid(source, count, execution_)) return Status::invalid_bounds;
+  if (count == 0) return Status::ok;
+  return with_margin(source,
+                     [&](const auto& volumes) { return write(volumes, keys, ascending.load()); });
+}
+
+template <typename Source>
+Status Rows::update_one(const Source& source, Key key) {
+  if (!source.valid(0)) return Status::invalid_bounds;
+  return with_margin(source, [&](const auto& volumes) {
+    const PoolColumns columns(pool_);
+    const std::size_t row = keys_.row_of(key.id);
+    if constexpr (requires { volumes.write_if_left(0, columns.pointers, row); }) {
+      if (!volumes.write_if_left(0, columns.pointers, row)) return Status::ok;
+    } else {
+      volumes.write(0, columns.pointers, row);
+    }
+    stale_.add(key.id);
+    changed_ = true;
+    return Status::ok;
+  });
+}
+
+void Rows::fetch_row(std::size_t row) const noexcept {
+  for (std::size_t c = 0; c < pool_.columns(); ++c) __builtin_prefetch(pool_.column(c) + row, 1);
+}
+
+template <typename Source>
+Status Rows::write(const Source& source, std::span<const Key> keys, bool ascending) {
+  const PoolColumns columns(pool_);
+  const std::size_t count = keys.size();
+  // Nearly every row changes and entry i is object first + i.
+  const bool by_rows = ascending && keys.back().id - keys.front().id + std::size_t{1} == count &&
+                       2 * count > pool_.rows();
+  if constexpr (kMayStay<Source>) {
+    const std::size_t slots = by_rows ? pool_.rows() : count;
+    if (!selection_.reserve_bits(slots)) return Status::out_of_memory;
+    std::uint64_t* const left = selection_.bits.data();
+    std::fill_n(left, bitmap_words(slots), 0);
+    const auto one = [&](std::size_t i, std::size_t row, std::size_t slot) {
+      const bool wrote = source.write_if_left(i, columns.pointers, row);
+      left[slot >> 6U] |= std::uint64_t{wrote} << (slot & 63U);
+    };
+    if (Source::kVolume == Volume::aabb && by_rows) {
+      const ObjectRange objects{pool_.ids(), keys.front().id, count};
+      for_ranges(execution_, slots, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; row += kRowsAtOnce) {
+          const std::size_t behind = std::min(end, row + kRowsAtOnce);
+          write_left_boxes(source, objects, columns.pointers, row, behind, left);
+        }
+      });
+    } else {
+      for_entries(source, keys, by_rows, ascending, one);
+    }
+    note_left(keys, by_rows, slots);
+    return Status::ok;
+  } else {
+    for_entries(source, keys, by_rows, ascending, [&](std::size_t i, std::size_t row, std::size_t) {
+      source.write(i, columns.pointers, row);
+    });
+    if (count > stale_.limit()) {
+      stale_.add_all();
+    } else {
+      for (const Key key : keys) stale_.add(key.id);
+    }
+    changed_ = true;
+    return Status::ok;
+  }
+}
+
+/// Notes the objects whose bits are set in the selection as changed: those of rows, or of entries.
+void Rows::note_left(std::span<const Key> keys, bool by_rows, std::size_t slots) noexcept {
+  bool any = false;
+  for (std::size_t w = 0; w < bitmap_words(slots); ++w) {
+    for (std::uint64_t bits = selection_.bits.data()[w]; bits != 0; bits &= bits - 1) {
+      const std::size_t slot = 64 * w + static_cast<std::size_t>(std::countr_zero(bits));
+      stale_.add(by_rows ? pool_.ids()[slot] : keys[slot].id);
+      any = true;
+    }
+  }
+  if (any) changed_ = true;
+}
+
+/// Calls visit(i, row, slot) for every entry i and its row. No two threads meet in 64 slots that
+/// follow each other: slots are rows, if it goes by rows, else entries.
+template <typename Source, typename Visit>
+void Rows::for_entries(const Source& source, std::span<const Key> keys, bool by_rows,
+                       bool ascending, const Visit& visit) {
+  const ObjectId first = keys.front().id;
+  const std::size_t count = keys.size();
+  if (by_rows) {
+    // Going by rows reads entries out of order but writes each column in order, which is a sixth of
+    // the cache lines.
+    for_ranges(execution_, pool_.rows(), [&](std::size_t begin, std::size_t end) {
+      const ObjectId* const ids = pool_.ids();
+      if constexpr (requires { source.packed(); }) {
+        // Not visited but written in registers.
+        const std::size_t whole = end - end % kBlockRows;
+        if (source.packed()) {
+          source.write_rows(first, ids, PoolColumns(pool_).pointers, begin, whole);
+          begin = whole;
+        }
+      }
+      for (std::size_t row = begin; row < end; ++row) {
+        const std::size_t i = static_cast<ObjectId>(ids[row] - first);
+        if (i < count) visit(i, row, row);
+      }
+    });
+    return;
+  }
+  const auto go = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i + kFetchAhead < end) fetch_row(keys_.row_of(keys[i + kFetchAhead].id));
+      visit(i, keys_.row_of(keys[i].id), i);
+    }
+  };
+  // Only ascending ids are known to be distinct; a repeated key must be written in order.
+  if (ascending) {
+    for_ranges(execution_, count, go);
+  } else {
+    go(0, count);
+  }
+}
+
+template Status Rows::insert(std::span<const Sphere>, std::span<const ClientData>, std::span<Key>);
+template Status Rows::insert(std::span<const Kdop<14>>, std::span<const ClientData>,
+                             std::span<Key>);
+template Status Rows::insert(std::span<const Kdop<18>>, std::span<const ClientData>,
+                             std::span<Key>);
+template Status Rows::insert(std::span<const Kdop<26>>, std::span<const ClientData>,
+                             std::span<Key>);
+template Status Rows::update(std::span<const Key>, std::span<const Sphere>);
+template Status Rows::update(std::span<const Key>, std::span<const Kdop<14>>);
+template Status Rows::update(std::span<const Key>, std::span<const Kdop<18>>);
+template Status Rows::update(std::span<const Key>, std::span<const Kdop<26>>);
+
+// Room, objects that leave, and what else is known of them.
 
 bool Rows::make_room(std::size_t objects) noexcept {
   const std::size_t added = objects - keys_.size();

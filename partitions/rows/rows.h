@@ -44,12 +44,11 @@ class Rows {
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
   Status update(std::span<const Key> keys, const BoxView& boxes);
   Status update(Key key, const Aabb& box);
-  /// The same from any source of volumes; see row_writer.h.
-  template <typename Source>
-  Status insert_from(const Source& source, std::size_t count, std::span<const ClientData> data,
-                     std::span<Key> keys);
-  template <typename Source>
-  Status update_from(const Source& source, std::size_t count, std::span<const Key> keys);
+  /// The same by spheres or k-DOPs; `unsupported_volume` where others are stored.
+  template <typename V>
+  Status insert(std::span<const V> volumes, std::span<const ClientData> data, std::span<Key> keys);
+  template <typename V>
+  Status update(std::span<const Key> keys, std::span<const V> volumes);
 
   Status remove(Key key);
   Status remove(std::span<const Key> keys);
@@ -112,6 +111,11 @@ class Rows {
   void remove_row(ObjectId id) noexcept;
   void fetch_row(std::size_t row) const noexcept;
 
+  template <typename Source>
+  Status insert_from(const Source& source, std::size_t count, std::span<const ClientData> data,
+                     std::span<Key> keys);
+  template <typename Source>
+  Status update_from(const Source& source, std::size_t count, std::span<const Key> keys);
   template <typename Source, typename Use>
   Status with_margin(const Source& source, Use&& use);
   template <typename Source>
@@ -121,11 +125,6 @@ class Rows {
   template <typename Source, typename Visit>
   void for_entries(const Source& source, std::span<const Key> keys, bool by_rows, bool ascending,
                    const Visit& visit);
-  template <typename Source>
-  void write_left_boxes(const Source& source, std::span<const Key> keys);
-  template <typename Source>
-  void write_left(const Source& source, std::span<const Key> keys, std::size_t begin,
-                  std::size_t end);
   void note_left(std::span<const Key> keys, bool by_rows, std::size_t slots) noexcept;
 
   Execution execution_;

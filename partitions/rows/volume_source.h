@@ -2,15 +2,19 @@
 
 // Where the rows of a bulk insert or update come from: each source says whether entry i is legal
 // and writes it into the columns of a row. Legal infinite ends become +-FLT_MAX (see BoundsPool).
+// Included by source files, not by headers.
 
 #include <winnow/core/box_view.h>
+#include <winnow/core/execution.h>
 #include <winnow/core/kdop.h>
 #include <winnow/core/key.h>
 #include <winnow/core/sphere.h>
 #include <winnow/core/volume.h>
+#include "core/sort/stretches.h"
 #include "partitions/rows/box_input.kernel.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cfloat>
 #include <cstddef>
 #include <limits>
@@ -25,6 +29,30 @@ inline void write_slab(ColumnPointers columns, std::size_t low, std::size_t high
                        float a, float b) noexcept {
   columns[low][row] = std::max(a, -FLT_MAX);
   columns[high][row] = std::min(b, FLT_MAX);
+}
+
+inline constexpr std::size_t kEntriesPerTask = 8192;
+
+/// Calls work(begin, end) over ranges of [0, count).
+template <typename Work>
+void for_ranges(const Execution& execution, std::size_t count, Work&& work) {
+  for_stretches(execution, count, kEntriesPerTask, work);
+}
+
+/// True if all of the first `count` entries are legal.
+template <typename Source>
+[[nodiscard]] bool all_valid(const Source& source, std::size_t count, const Execution& execution) {
+  std::atomic<bool> valid{true};
+  for_ranges(execution, count, [&](std::size_t begin, std::size_t end) {
+    bool ok = true;
+    if constexpr (requires { source.valid_range(begin, end); }) {
+      ok = source.valid_range(begin, end);
+    } else {
+      for (std::size_t i = begin; i < end; ++i) ok = ok && source.valid(i);
+    }
+    if (!ok) valid.store(false, std::memory_order_relaxed);
+  });
+  return valid.load();
 }
 
 /// Boxes into AABB columns.
