@@ -5,7 +5,6 @@
 #include <winnow/core/margin.h>
 #include <winnow/core/rounding.h>
 #include <winnow/core/volume.h>
-#include "core/memory/bounds_pool.h"
 #include "partitions/rows/volume_source.h"
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace winnow {
 
@@ -191,6 +191,25 @@ inline void write_left_boxes(const FatSource<BoxSource>& fat, const ObjectRange&
       const std::size_t k = 64 * w + static_cast<std::size_t>(std::countr_zero(out));
       if (!fat.write_if_left(objects.entry(begin + k), columns, begin + k)) continue;
       left[begin / 64 + w] |= std::uint64_t{1} << (k % 64);
+    }
+  }
+}
+
+/// The same for rows [begin, end), of which `begin` is a multiple of 256, and of any volume.
+template <typename Source>
+void write_left_rows(const FatSource<Source>& fat, const ObjectRange& objects,
+                     ColumnPointers columns, std::size_t begin, std::size_t end,
+                     std::uint64_t* left) noexcept {
+  for (std::size_t row = begin; row < end; row += kRowsAtOnce) {
+    const std::size_t behind = std::min(end, row + kRowsAtOnce);
+    if constexpr (std::is_same_v<Source, BoxSource>) {
+      write_left_boxes(fat, objects, columns, row, behind, left);
+    } else {
+      for (std::size_t r = row; r < behind; ++r) {
+        const std::size_t i = objects.entry(r);
+        if (i >= objects.count || !fat.write_if_left(i, columns, r)) continue;
+        left[r / 64] |= std::uint64_t{1} << (r % 64);
+      }
     }
   }
 }

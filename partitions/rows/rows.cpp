@@ -20,14 +20,6 @@ namespace {
 // lines as it has columns, anywhere in the pool.
 constexpr std::size_t kFetchAhead = 12;
 
-/// The columns of a pool as the sources want them.
-struct PoolColumns {
-  explicit PoolColumns(BoundsPool& pool) noexcept {
-    for (std::size_t c = 0; c < pool.columns(); ++c) pointers[c] = pool.column(c);
-  }
-  float* pointers[kMaxColumns] = {};
-};
-
 /// Calls use(source) with the source that turns boxes into the pool's volume.
 template <typename Use>
 Status with_box_source(Volume volume, const BoxView& boxes, Use&& use) {
@@ -208,13 +200,10 @@ Status Rows::write(const Source& source, std::span<const Key> keys, bool ascendi
       const bool wrote = source.write_if_left(i, columns.pointers, row);
       left[slot >> 6U] |= std::uint64_t{wrote} << (slot & 63U);
     };
-    if (Source::kVolume == Volume::aabb && by_rows) {
-      const ObjectRange objects{pool_.ids(), keys.front().id, count};
+    const ObjectRange objects{pool_.ids(), keys.front().id, count};
+    if (by_rows) {
       for_ranges(execution_, slots, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = begin; row < end; row += kRowsAtOnce) {
-          const std::size_t behind = std::min(end, row + kRowsAtOnce);
-          write_left_boxes(source, objects, columns.pointers, row, behind, left);
-        }
+        write_left_rows(source, objects, columns.pointers, begin, end, left);
       });
     } else {
       for_entries(source, keys, by_rows, ascending, one);

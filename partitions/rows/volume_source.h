@@ -10,6 +10,7 @@
 #include <winnow/core/key.h>
 #include <winnow/core/sphere.h>
 #include <winnow/core/volume.h>
+#include "core/memory/bounds_pool.h"
 #include "core/sort/stretches.h"
 #include "partitions/rows/box_input.kernel.h"
 
@@ -24,6 +25,14 @@ namespace winnow {
 
 /// Column pointers of a pool.
 using ColumnPointers = float* const*;
+
+/// The columns of a pool as sources want them.
+struct PoolColumns {
+  explicit PoolColumns(BoundsPool& pool) noexcept {
+    for (std::size_t c = 0; c < pool.columns(); ++c) pointers[c] = pool.column(c);
+  }
+  float* pointers[kMaxColumns] = {};
+};
 
 inline void write_slab(ColumnPointers columns, std::size_t low, std::size_t high, std::size_t row,
                        float a, float b) noexcept {
