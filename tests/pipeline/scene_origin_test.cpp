@@ -85,7 +85,7 @@ TEST(SceneOrigin, far_scenes_find_the_same_pairs_with_the_same_memory) {
 }
 
 TEST(SceneOrigin, follows_bodies_that_go_far_away_and_come_back) {
-  SceneWorld world(scaled(300));
+  SceneWorld world(300);
   make_exact(world);
   const double step[3] = {1e7, -3e6, 0};
   const double back[3] = {-4e7, 12e6, 0};
