@@ -4,8 +4,6 @@
 #include "bench/draw/page_parts.h"
 #include "bench/pages/html.h"
 
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 
@@ -25,19 +23,12 @@ std::string three_js_file(const std::string& name) {
 }  // namespace
 
 std::size_t write_page(const std::string& path, const Json& picture) {
-  std::string page = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
-  page += std::string("<title>winnow</title>\n<style>\n") + kPageStyle + "</style>\n</head>\n";
-  page += std::string("<body>\n") + kPageBody + kThreeJsNotice;
-  page += script_element(three_js_file("three.min.js"));
-  page += script_element(three_js_file("examples/js/controls/OrbitControls.js"));
-  page += data_element("picture", picture);
-  page += script_element(std::string("(() => {\n\"use strict\";\n") + kPageScript + "})();");
-  page += "</body>\n</html>\n";
-  std::ofstream file(path, std::ios::binary);
-  file << page;
-  file.close();
-  if (!file) throw ArgumentError("--out: cannot write " + path + ": " + std::strerror(errno));
-  return page.size();
+  const std::string script = std::string("(() => {\n\"use strict\";\n") + kPageScript + "})();";
+  return write_html(path, "winnow", kPageStyle,
+                    std::string(kPageBody) + kThreeJsNotice +
+                        script_element(three_js_file("three.min.js")) +
+                        script_element(three_js_file("examples/js/controls/OrbitControls.js")) +
+                        data_element("picture", picture) + script_element(script));
 }
 
 }  // namespace winnow::bench

@@ -1,5 +1,11 @@
 #include "bench/pages/html.h"
 
+#include "bench/common/errors.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
 namespace winnow::bench {
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
@@ -21,6 +27,20 @@ std::string data_element(const std::string& id, const Json& value) {
   const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
   return "<script type=\"application/json\" id=\"" + id + "\">\n" + replaced(text, "<", "\\u003c") +
          "\n</script>\n";
+}
+
+std::size_t write_html(const std::string& path, const std::string& title, const std::string& style,
+                       const std::string& body) {
+  const std::string page =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
+      "name=\"viewport\" content=\"width=device-width\">\n<title>" +
+      escaped(title) + "</title>\n<style>\n" + style + "</style>\n</head>\n<body>\n" + body +
+      "</body>\n</html>\n";
+  std::ofstream file(path, std::ios::binary);
+  file << page;
+  file.close();
+  if (!file) throw ArgumentError("cannot write " + path + ": " + std::strerror(errno));
+  return page.size();
 }
 
 }  // namespace winnow::bench

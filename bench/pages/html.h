@@ -2,6 +2,7 @@
 
 #include "bench/common/json.h"
 
+#include <cstddef>
 #include <string>
 
 namespace winnow::bench {
@@ -17,5 +18,9 @@ namespace winnow::bench {
 
 /// JSON within a page, for its scripts to read. Strings may be any bytes.
 [[nodiscard]] std::string data_element(const std::string& id, const Json& value);
+
+/// Writes a page; its size in bytes. Throws ArgumentError if it cannot be written.
+std::size_t write_html(const std::string& path, const std::string& title, const std::string& style,
+                       const std::string& body);
 
 }  // namespace winnow::bench

@@ -5,9 +5,7 @@
 #include "bench/pages/html.h"
 #include "bench/pages/plot_parts.h"
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 
@@ -71,18 +69,10 @@ void write_plot_page(const std::string& path, const std::string& title, const st
   Json data{{"names", Json::array()}, {"plots", Json::array()}};
   for (const std::string& name : all_partitions()) data["names"].push_back(name);
   for (const Plot& plot : plots) data["plots"].push_back(plot_json(plot));
-  std::string page = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
-  page += "<meta name=\"viewport\" content=\"width=device-width\">\n";
-  page += "<title>" + escaped(title) + "</title>\n<style>\n" + kPlotStyle + "</style>\n</head>\n";
-  page += "<body>\n" + body + kChartJsNotice;
-  page += script_element(chart_js());
-  page += data_element("plots", data);
-  page += script_element(std::string("(() => {\n\"use strict\";\n") + kPlotScript + "})();");
-  page += "</body>\n</html>\n";
-  std::ofstream file(path, std::ios::binary);
-  file << page;
-  file.close();
-  if (!file) throw ArgumentError("cannot write " + path + ": " + std::strerror(errno));
+  const std::string script = std::string("(() => {\n\"use strict\";\n") + kPlotScript + "})();";
+  write_html(path, title, kPlotStyle,
+             body + kChartJsNotice + script_element(chart_js()) + data_element("plots", data) +
+                 script_element(script));
 }
 
 }  // namespace winnow::bench
