@@ -27,8 +27,4 @@ extern const char* const kGoalsJson;
 /// std::runtime_error if the text is not what it should be.
 [[nodiscard]] std::vector<Json> parse_asks(std::string_view text);
 
-/// A text with "{member}" replaced where the object has it: numbers in groups of three digits, and
-/// "threads" as "2 threads".
-[[nodiscard]] std::string filled(const std::string& text, const Json& object);
-
 }  // namespace winnow::bench

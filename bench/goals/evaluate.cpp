@@ -3,6 +3,7 @@
 #include <winnow/simd/isa.h>
 #include "bench/common/table.h"
 #include "bench/goals/asks.h"
+#include "bench/rows/filled.h"
 #include "bench/rows/machine.h"
 
 #include <algorithm>
