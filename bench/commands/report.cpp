@@ -2,6 +2,7 @@
 #include "bench/commands/arguments.h"
 #include "bench/commands/command.h"
 #include "bench/measure/installed_peers.h"
+#include "bench/report/markdown.h"
 #include "bench/rows/machine.h"
 #include "bench/scenes/scene.h"
 

@@ -6,9 +6,8 @@
 #include "bench/common/progress.h"
 #include "bench/common/table.h"
 #include "bench/measure/fingerprint.h"
-#include "bench/pages/html.h"
 #include "bench/recordings/recording.h"
-#include "bench/report/section.h"
+#include "bench/report/page.h"
 #include "bench/rows/flow_rows.h"
 #include "bench/rows/print.h"
 #include "bench/simulation/flow_check.h"
@@ -210,13 +209,12 @@ Results Simulate::rows(const FlowRun& run) const {
 }
 
 void Simulate::write_flow_page(const Results& results, const FlowFacts& facts) const {
-  ReportPage page(results);
-  show_flows(results, page);
-  std::string body = "<h1>Granular flow</h1>\n<table class=\"facts\"><tbody>\n";
-  for (const auto& [what, much] : facts) {
-    body += "<tr><td>" + escaped(what) + "</td><td>" + escaped(much) + "</td></tr>\n";
-  }
-  write_plot_page(out, "winnow simulate", body + "</tbody></table>\n" + page.html(), page.plots());
+  const PageParts page = section_parts(results, section_of("pipeline"));
+  Json shown_facts = Json::object();
+  for (const auto& [what, much] : facts) shown_facts[what] = much;
+  write_plot_page(out, "winnow simulate",
+                  "<h1>Granular flow</h1>\n" + facts_table("run", shown_facts) + page.html,
+                  page.plots);
 }
 
 int Simulate::run() {

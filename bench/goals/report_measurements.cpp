@@ -14,7 +14,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <random>
 #include <stdexcept>
 #include <thread>
 
@@ -91,10 +90,6 @@ class ReportProcess {
   pid_t process_ = -1;
 };
 
-nlohmann::json plain_document(const ReportProcess& report) {
-  return nlohmann::json::parse(report.results().document().dump());
-}
-
 void declare_process(Results& results) {
   results.declare(
       {"report_process",
@@ -110,14 +105,13 @@ void add_of_process(Results& results, const std::string& what, double value,
 }
 
 /// Figures of the page that are not those of their rows.
-void add_trace(Results& results, const ReportProcess& report, std::size_t picked) {
+void add_trace(Results& results, const ReportProcess& report) {
   const std::string page = report.page();
   if (page.empty()) throw std::runtime_error("there is no page (Chart.js?)");
-  const std::uint64_t seed = std::random_device()();
-  const Trace trace = trace_page(page, plain_document(report), picked, seed);
+  const Trace trace = trace_page(page, report.results().document());
   if (trace.cells == 0 || trace.points == 0) throw std::runtime_error("the page shows nothing");
   std::string detail = grouped(trace.cells) + " cells, " + grouped(trace.points) + " points, " +
-                       grouped(trace.derived) + " derived rows; seed " + std::to_string(seed);
+                       grouped(trace.derived) + " derived rows";
   if (!trace.wrong.empty()) detail = trace.wrong.front() + "; " + detail;
   add_of_process(results, "wrong figures", static_cast<double>(trace.wrong.size()), detail);
 }
@@ -139,14 +133,14 @@ void require_done(int status) {
 
 }  // namespace
 
-void measure_default_report(const Json& options, Lab& /*lab*/, Measured& measured) {
+void measure_default_report(const Json& /*options*/, Lab& /*lab*/, Measured& measured) {
   declare_process(measured.results);
   const Stopwatch clock;
   ReportProcess report({});
   require_done(report.wait());
   add_of_process(measured.results, "seconds", clock.ms() / 1000.0, "");
   add_faults(measured.results, report);
-  add_trace(measured.results, report, options.at("picked"));
+  add_trace(measured.results, report);
 }
 
 void measure_lone_report(const Json& /*options*/, Lab& /*lab*/, Measured& measured) {
@@ -171,7 +165,7 @@ void measure_killed_report(const Json& /*options*/, Lab& /*lab*/, Measured& meas
   const std::string page = report.page();
   const bool whole = rows > 0 && report.results().document()["complete"].get<bool>();
   const Trace trace =
-      rows > 0 && !page.empty() ? trace_page(page, plain_document(report)) : Trace{};
+      rows > 0 && !page.empty() ? trace_page(page, report.results().document()) : Trace{};
   const std::pair<bool, const char*> expected[] = {
       {half_way, "it had ended before"},
       {rows > 0, "no rows are left"},

@@ -1,58 +1,48 @@
 #include "bench/report/csv.h"
 
 #include "bench/pages/html.h"
-#include "bench/rows/results.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace winnow::bench {
 namespace {
 
-std::string quoted(const std::string& text) {
+std::string field(const Json& object, const std::string& name) {
+  const auto at = object.find(name);
+  if (at == object.end()) return "";
+  const std::string text = at->is_string() ? at->get<std::string>() : at->dump();
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   return '"' + replaced(text, "\"", "\"\"") + '"';
 }
 
-std::string csv_field(const Json& row, const std::string& name) {
-  const auto at = row.find(name);
-  if (at == row.end()) return "";
-  return quoted(at->is_string() ? at->get<std::string>() : at->dump());
-}
-
-constexpr const char* kSpread[] = {"min", "median", "max"};
-
 }  // namespace
 
 std::string to_csv(const Json& table) {
-  const Json& rows = table["rows"];
-  std::string head;
-  std::vector<std::pair<std::string, bool>> columns;
-  const auto add_column = [&](const std::string& name) {
-    const bool spread = std::any_of(rows.begin(), rows.end(), [&](const Json& row) {
-      return row.contains(name) && row[name].is_object();
-    });
-    columns.emplace_back(name, spread);
-    if (!spread) head += (head.empty() ? "" : ",") + name;
-    for (const char* part : kSpread) {
-      if (spread) head += (head.empty() ? "" : ",") + name + "_" + part;
+  std::vector<std::string> lines(table["rows"].size() + 1);
+  const auto add_column = [&](const std::string& name, const char* part) {
+    lines[0] += name + (part == nullptr ? "" : std::string("_") + part) + ",";
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+      const Json& row = table["rows"][i - 1];
+      const bool is_spread = row.contains(name) && row[name].is_object();
+      if (part != nullptr && is_spread) lines[i] += field(row[name], part);
+      if (part == nullptr) lines[i] += field(row, name);
+      lines[i] += ",";
     }
   };
-  for (const Json& key : table["keys"]) add_column(key);
-  for (const Json& value : table["values"]) add_column(value["name"]);
-  std::string text = head + "\n";
-  for (const Json& row : rows) {
-    std::string line;
-    for (const auto& [name, spread] : columns) {
-      if (!spread) line += csv_field(row, name) + ",";
-      for (const char* part : kSpread) {
-        if (!spread) continue;
-        const bool has = row.contains(name) && row[name].is_object();
-        line += (has ? csv_field(row[name], part) : "") + std::string(",");
-      }
+  std::vector<std::string> names = table["keys"];
+  for (const Json& value : table["values"]) names.push_back(value["name"]);
+  for (const std::string& name : names) {
+    const bool is_spread =
+        std::any_of(table["rows"].begin(), table["rows"].end(),
+                    [&](const Json& row) { return row.contains(name) && row[name].is_object(); });
+    if (!is_spread) add_column(name, nullptr);
+    for (const char* part : {"min", "median", "max"}) {
+      if (is_spread) add_column(name, part);
     }
-    line.back() = '\n';
-    text += line;
   }
+  std::string text;
+  for (const std::string& line : lines) text += line.substr(0, line.size() - 1) + "\n";
   return text;
 }
 

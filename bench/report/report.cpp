@@ -3,6 +3,7 @@
 #include "bench/common/errors.h"
 #include "bench/common/progress.h"
 #include "bench/report/csv.h"
+#include "bench/report/page.h"
 
 #include <unistd.h>
 
@@ -151,7 +152,7 @@ std::vector<PlannedSection> planned(const ReportOptions& options,
     section->declare(results);
     all.push_back({std::string(section->id), section->plan(options)});
     results.document()["sections"].push_back({{"id", section->id},
-                                              {"title", section->title},
+                                              {"title", section_of(section->id)["title"]},
                                               {"steps", all.back().steps.size()},
                                               {"done", 0},
                                               {"seconds", 0.0}});

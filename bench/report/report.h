@@ -18,7 +18,4 @@ void write_report(const std::string& folder, Results& results);
 bool make_report(const std::string& folder, const ReportOptions& options,
                  const std::vector<const ReportSection*>& sections, Results& results);
 
-/// The main figures in some lines of text.
-void print_summary(const Results& results);
-
 }  // namespace winnow::bench

@@ -1,13 +1,11 @@
 #pragma once
 
 #include <winnow/simd/isa.h>
-#include "bench/report/page.h"
 #include "bench/rows/named_scene.h"
 #include "bench/rows/results.h"
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,9 +25,6 @@ struct ReportOptions {
   std::uint64_t seed = 1;
 };
 
-/// The greatest number of objects asked for that is not above `most`, or the least there is.
-[[nodiscard]] std::size_t objects_up_to(const ReportOptions& options, std::size_t most) noexcept;
-
 /// A piece of the work: it adds rows to the results. One that throws is noted as a problem, and the
 /// report goes on.
 struct ReportStep {
@@ -37,31 +32,27 @@ struct ReportStep {
   double seconds = 1.0;  ///< about how long it takes, for the time left
   std::function<void(Results&)> run;
 };
+using ReportSteps = std::vector<ReportStep>;
 
-/// A part of the report. What it shows depends on the results alone, and it can show any part of
-/// them: the rows of a run that was interrupted, or none.
+/// A part of the report: what is measured. What is shown of it stands in layout.json.
 struct ReportSection {
   std::string_view id;
-  std::string_view title;
   void (*declare)(Results&);
-  std::vector<ReportStep> (*plan)(const ReportOptions&);
-  void (*show)(const Results&, ReportPage&);
+  ReportSteps (*plan)(const ReportOptions&);
 };
 
 /// All of them, in the order of the page.
 [[nodiscard]] std::span<const ReportSection> report_sections() noexcept;
 
-/// What the section about the pipeline shows of granular flows: also the page of a single one.
-void show_flows(const Results& results, ReportPage& page);
-
-// One file each.
-extern const ReportSection kThroughputSection;
-extern const ReportSection kMemorySection;
-extern const ReportSection kVolumesSection;
-extern const ReportSection kNarrowSection;
-extern const ReportSection kStabilitySection;
-extern const ReportSection kQueriesSection;
-extern const ReportSection kPipelineSection;
-extern const ReportSection kAdviceSection;
+// Of partitions.
+[[nodiscard]] ReportSteps plan_throughput(const ReportOptions& options);
+[[nodiscard]] ReportSteps plan_memory(const ReportOptions& options);
+[[nodiscard]] ReportSteps plan_volumes(const ReportOptions& options);
+[[nodiscard]] ReportSteps plan_queries(const ReportOptions& options);
+[[nodiscard]] ReportSteps plan_advice(const ReportOptions& options);
+// Of the pipeline.
+[[nodiscard]] ReportSteps plan_narrow(const ReportOptions& options);
+[[nodiscard]] ReportSteps plan_stability(const ReportOptions& options);
+[[nodiscard]] ReportSteps plan_pipeline(const ReportOptions& options);
 
 }  // namespace winnow::bench

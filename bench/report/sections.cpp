@@ -1,22 +1,56 @@
 #include "bench/report/section.h"
-
-#include <array>
+#include "bench/rows/accuracy_rows.h"
+#include "bench/rows/advice_rows.h"
+#include "bench/rows/flow_rows.h"
+#include "bench/rows/frame_rows.h"
+#include "bench/rows/hard_case_rows.h"
+#include "bench/rows/memory_rows.h"
+#include "bench/rows/query_rows.h"
+#include "bench/rows/scene_rows.h"
+#include "bench/rows/volume_rows.h"
 
 namespace winnow::bench {
+namespace {
 
-std::size_t objects_up_to(const ReportOptions& options, std::size_t most) noexcept {
-  std::size_t chosen = options.objects.front();
-  for (const std::size_t objects : options.objects) {
-    if (objects <= most) chosen = objects;
-  }
-  return chosen;
+void declare_throughput(Results& results) {
+  declare_frames(results);
+  declare_keys(results);
+  declare_limits(results);
 }
 
+void declare_narrow(Results& results) {
+  declare_pair_times(results);
+  declare_pair_errors(results);
+  declare_error_curve(results, "narrow_gap", "narrow",
+                      "errors of such pairs by |distance| over their size",
+                      {"kind", "engine", "gap"});
+}
+
+void declare_stability(Results& results) {
+  declare_hard_cases(results);
+  declare_error_curve(
+      results, "stability_curves", "stability",
+      "errors of pairs, half of which are nearly touching, that get harder and harder",
+      {"curve", "kind", "engine", "parameter"});
+}
+
+void declare_pipeline(Results& results) {
+  declare_scenes(results);
+  declare_flows(results);
+}
+
+}  // namespace
+
 std::span<const ReportSection> report_sections() noexcept {
-  static const std::array<ReportSection, 8> all{
-      kThroughputSection, kMemorySection,  kVolumesSection,  kNarrowSection,
-      kStabilitySection,  kQueriesSection, kPipelineSection, kAdviceSection};
-  return all;
+  static constexpr ReportSection kAll[] = {{"throughput", declare_throughput, plan_throughput},
+                                           {"memory", declare_memory, plan_memory},
+                                           {"volumes", declare_volumes, plan_volumes},
+                                           {"narrow", declare_narrow, plan_narrow},
+                                           {"stability", declare_stability, plan_stability},
+                                           {"queries", declare_queries, plan_queries},
+                                           {"pipeline", declare_pipeline, plan_pipeline},
+                                           {"advice", declare_advice, plan_advice}};
+  return kAll;
 }
 
 }  // namespace winnow::bench

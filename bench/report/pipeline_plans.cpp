@@ -1,0 +1,199 @@
+#include "bench/questions/hard_case_files.h"
+#include "bench/report/section.h"
+#include "bench/rows/accuracy_rows.h"
+#include "bench/rows/flow_rows.h"
+#include "bench/rows/hard_case_rows.h"
+#include "bench/rows/scene_rows.h"
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+/// False where the library was built without qhull.
+bool has_hulls() {
+  ShapePool pool;
+  ShapeId id;
+  const Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  return pool.add_hull(std::span(&point, 1), 0.0, id) == Status::ok;
+}
+
+std::vector<PairKind> narrow_kinds(bool quick) {
+  const bool hulls = has_hulls();
+  std::vector<PairKind> kinds;
+  for (const PairKind& kind : pair_kinds()) {
+    const bool is_quick = kind.name == "sphere-box" || kind.name == "box-box";
+    if ((is_quick || !quick) && (hulls || kind.hull_vertices == 0)) kinds.push_back(kind);
+  }
+  return kinds;
+}
+
+void measure_narrow_times(Results& results, const ReportOptions& options, const PairKind& kind) {
+  NarrowMeasureOptions asked{.kind = kind,
+                             .pairs = options.quick ? 512U : 8192U,
+                             .tiers = {NarrowTier::robust, NarrowTier::fast, NarrowTier::reference},
+                             .peers = options.peers,
+                             .seed = options.seed};
+  asked.race.rounds = options.quick ? 3 : 5;
+  if (options.quick) asked.race.turn_ms = 0.5;
+  if (options.quick) asked.race.smallest_part = 128;
+  add_pair_times(results, asked);
+}
+
+/// The oracle takes milliseconds a pair of hulls.
+std::size_t judged_pairs(const PairKind& kind, bool quick) {
+  if (kind.hull_vertices > 16) return quick ? 4 : 60;
+  if (kind.hull_vertices > 0) return quick ? 10 : 500;
+  return quick ? 60 : 2000;
+}
+
+/// By gap: of something round, something flat, something large.
+void measure_narrow_errors(Results& results, const ReportOptions& options, const PairKind& kind) {
+  AccuracyOptions asked{.kind = kind, .peers = options.peers, .runs = 5};
+  asked.set.pairs = judged_pairs(kind, options.quick);
+  asked.set.seed = options.seed;
+  asked.levels = {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold};
+  const bool by_gap =
+      kind.name == "sphere-box" || kind.name == "box-box" || kind.name == "hull16-hull16";
+  add_pair_errors(results, asked, by_gap);
+}
+
+void measure_hard_cases(Results& results, bool peers) {
+  for (const HardCaseFile& file : hard_case_files()) {
+    add_hard_cases(results, file.family, Json::parse(file.json), peers);
+  }
+  add_hard_case_totals(results);
+}
+
+/// What gets harder from 1 to 10^last, on which kinds of pairs.
+struct StabilityCurve {
+  const char* name;
+  std::vector<const char*> kinds;
+  int last;
+  void (*set)(PairSetOptions&, double);
+};
+
+const std::vector<StabilityCurve>& stability_curves() {
+  static const std::vector<StabilityCurve> all{
+      {"angle",
+       {"capsule-capsule", "box-box"},
+       -15,
+       [](PairSetOptions& set, double value) { set.angle = value; }},
+      {"ratio",
+       {"sphere-box", "box-box", "hull16-hull16"},
+       12,
+       [](PairSetOptions& set, double value) { set.ratio = value; }},
+      {"offset",
+       {"sphere-box", "box-box", "hull16-hull16"},
+       12,
+       [](PairSetOptions& set, double value) { set.offset = value; }},
+      {"thinness",
+       {"sphere-triangle", "triangle-triangle"},
+       -12,
+       [](PairSetOptions& set, double value) { set.thinness = value; }}};
+  return all;
+}
+
+void measure_stability(Results& results, const ReportOptions& options, const StabilityCurve& curve,
+                       const PairKind& kind) {
+  const int sign = curve.last < 0 ? -1 : 1;
+  for (int power = 0; power <= std::abs(curve.last); power += options.quick ? 6 : 1) {
+    const double value = std::stod("1e" + std::to_string(sign * power));
+    AccuracyOptions asked{.kind = kind, .peers = options.peers, .runs = 1};
+    asked.set.pairs = options.quick ? 16 : kind.hull_vertices > 0 ? 60 : 200;
+    asked.set.seed = options.seed;
+    curve.set(asked.set, value);
+    add_error_curve(results, "stability_curves",
+                    {{"curve", curve.name}, {"kind", kind.name}, {"parameter", value}}, asked);
+  }
+}
+
+/// The races on one scene; `bodies` 0: as many as suit it.
+void measure_scene(Results& results, const ReportOptions& options, const std::string& scene,
+                   std::size_t bodies) {
+  const std::unique_ptr<BodySet> set = make_pipeline_scene(scene, bodies, options.seed);
+  PipelineMeasureOptions race{.scene = scene,
+                              .threads = options.threads,
+                              .peers = options.peers,
+                              .frames = options.quick ? 2U : 5U,
+                              .set = set.get(),
+                              .bodies = bodies,
+                              .seed = options.seed,
+                              .machine_clock = false};
+  for (const bool resting : {false, true}) {
+    race.resting = resting;
+    add_scene_race(results, race);
+  }
+  race.resting = false;
+  race.threads = {1};
+  for (const std::string& level : scene_level_names()) add_scene_level(results, race, level);
+}
+
+}  // namespace
+
+ReportSteps plan_narrow(const ReportOptions& options) {
+  ReportSteps steps;
+  const std::vector<PairKind> kinds = narrow_kinds(options.quick);
+  for (const PairKind& kind : kinds) {
+    steps.push_back({"time of " + std::string(kind.name),
+                     options.quick ? 0.1 : kind.hull_vertices * 0.07 + 0.8,
+                     [=](Results& results) { measure_narrow_times(results, options, kind); }});
+  }
+  for (const PairKind& kind : kinds) {
+    steps.push_back({"errors of " + std::string(kind.name),
+                     options.quick ? 0.05 : kind.hull_vertices * 0.02 + 0.5,
+                     [=](Results& results) { measure_narrow_errors(results, options, kind); }});
+  }
+  return steps;
+}
+
+ReportSteps plan_stability(const ReportOptions& options) {
+  ReportSteps steps;
+  steps.push_back({"hard cases", options.peers ? 1.0 : 0.1,
+                   [=](Results& results) { measure_hard_cases(results, options.peers); }});
+  const bool hulls = has_hulls() && !options.quick;
+  for (const StabilityCurve& curve : stability_curves()) {
+    for (const char* name : curve.kinds) {
+      const PairKind& kind = *find_pair_kind(name);
+      if (kind.hull_vertices > 0 && !hulls) continue;
+      steps.push_back({std::string(curve.name) + ", " + name,
+                       options.quick ? 0.05 : 1.0 + 0.2 * kind.hull_vertices,
+                       [&curve, &kind, options](Results& results) {
+                         measure_stability(results, options, curve, kind);
+                       }});
+    }
+  }
+  return steps;
+}
+
+ReportSteps plan_pipeline(const ReportOptions& options) {
+  ReportSteps steps;
+  const auto add_scene = [&](const std::string& scene, std::size_t quick_bodies, double seconds) {
+    const std::size_t bodies = options.quick ? quick_bodies : 0;
+    const double known = options.peers ? seconds : 0.4 * seconds;
+    steps.push_back({scene, options.quick ? 0.2 : known,
+                     [=](Results& results) { measure_scene(results, options, scene, bodies); }});
+  };
+  add_scene("pile", 200, 9.0);
+  add_scene("terrain", 40, 3.0);
+  const std::size_t rounds = options.quick ? 2 : 5;
+  steps.push_back({"tori", 0.6, [rounds, peers = options.peers](Results& results) {
+                     add_tori(results, rounds, peers, false);
+                   }});
+  for (const std::string& shape : flow_shape_names()) {
+    FlowQuestion asked{.shape = shape, .seed = options.seed};
+    if (options.quick) {
+      asked.objects = 60;
+      asked.steps = 200;
+    }
+    const double bodies = static_cast<double>(asked.objects) * static_cast<double>(asked.steps);
+    steps.push_back({"granular flow of " + shape, 1.5e-6 * bodies,
+                     [asked](Results& results) { add_flow(results, asked); }});
+  }
+  return steps;
+}
+
+}  // namespace winnow::bench
