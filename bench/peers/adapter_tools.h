@@ -1,17 +1,28 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/pair_buffer.h>
+#include "bench/contenders/engine.h"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 // What several adapters need. Adapters report pairs with the smaller row first and only pairs whose
 // boxes overlap, so that every peer pays for the same result.
 namespace winnow::bench {
+
+/// An adapter that collects its pairs, and times how long it takes to bring boxes in.
+class PairsAdapter : public Engine {
+ public:
+  [[nodiscard]] std::span<const Pair> pairs() const final { return pairs_; }
+  [[nodiscard]] double update_ms() const final { return update_ms_; }
+
+ protected:
+  std::vector<Pair> pairs_;
+  double update_ms_ = 0.0;
+};
 
 [[nodiscard]] inline Pair ordered(std::uint32_t a, std::uint32_t b) noexcept {
   return a < b ? Pair{a, b} : Pair{b, a};

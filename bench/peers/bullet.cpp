@@ -62,7 +62,7 @@ std::uint32_t row_of(const btBroadphaseProxy& proxy) {
 /// full clean-up of the pair cache each frame, or dynamic balancing, cost more than they save. The
 /// pair cache is a superset because of the margin and the gradual clean-up: filtered by the exact
 /// boxes that the proxies keep.
-class BulletEngine final : public Engine {
+class BulletEngine final : public PairsAdapter {
  public:
   // Bullet wants each proxy destroyed one by one, which searches the whole pair cache every time;
   // nothing looks at them any more, so giving back their memory does.
@@ -99,14 +99,10 @@ class BulletEngine final : public Engine {
     find_pairs();
   }
 
-  [[nodiscard]] std::span<const Pair> pairs() const override { return pairs_; }
-
   /// Trees, proxies and the pair cache, of all Bullet engines alive.
   [[nodiscard]] std::size_t bytes() const override {
     return allocated_bytes + proxies_.capacity() * sizeof(proxies_[0]);
   }
-
-  [[nodiscard]] double update_ms() const override { return update_ms_; }
 
  private:
   struct Trees : btDbvtBroadphase {
@@ -128,9 +124,7 @@ class BulletEngine final : public Engine {
 
   Trees trees_;
   std::vector<btBroadphaseProxy*> proxies_;
-  std::vector<Pair> pairs_;
   btScalar margin_ = 0;
-  double update_ms_ = 0.0;
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "bench/peers/adapters.h"
+#include "bench/peers/bullet_shapes.h"
 #include "bench/peers/narrow_adapter.h"
 
 #include <BulletCollision/CollisionDispatch/SphereTriangleDetector.h>
@@ -8,11 +9,6 @@
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/CollisionDispatch/btSphereBoxCollisionAlgorithm.h>
-#include <BulletCollision/CollisionShapes/btBoxShape.h>
-#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
-#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
-#include <BulletCollision/CollisionShapes/btSphereShape.h>
-#include <BulletCollision/CollisionShapes/btTriangleShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 
 #include <algorithm>
@@ -21,48 +17,19 @@
 namespace winnow::bench {
 namespace {
 
+using namespace in_bullet;
+
 /// So far apart nothing is: algorithms report the distance of every pair.
 constexpr btScalar kFar = 1e9F;
 
-btVector3 to_bullet(const double* v) {
-  return {static_cast<btScalar>(v[0]), static_cast<btScalar>(v[1]), static_cast<btScalar>(v[2])};
-}
-
 /// Margins are nothing where the shape would grow or lose its corners by them.
-std::unique_ptr<btConvexShape> make_shape(const ShapeTables& tables, ShapeId id) {
-  const std::uint32_t i = id.index();
-  switch (id.kind()) {
-    case ShapeKind::sphere:
-      return std::make_unique<btSphereShape>(static_cast<btScalar>(tables.spheres[i].radius));
-    case ShapeKind::capsule:
-      return std::make_unique<btCapsuleShapeZ>(
-          static_cast<btScalar>(tables.capsules[i].radius),
-          static_cast<btScalar>(2.0 * tables.capsules[i].half_length));
-    case ShapeKind::box: {
-      auto box = std::make_unique<btBoxShape>(to_bullet(tables.boxes[i].half));
-      box->setMargin(0);
-      return box;
-    }
-    case ShapeKind::triangle: {
-      const auto& v = tables.triangles[i].vertex;
-      auto triangle =
-          std::make_unique<btTriangleShape>(to_bullet(v[0]), to_bullet(v[1]), to_bullet(v[2]));
-      triangle->setMargin(0);
-      return triangle;
-    }
-    default: {
-      const HullShape& from = tables.hulls[i];
-      auto hull = std::make_unique<btConvexHullShape>();
-      for (std::uint32_t v = 0; v < from.vertex_count; ++v) {
-        const double point[3] = {from.vertex[0][v], from.vertex[1][v], from.vertex[2][v]};
-        hull->addPoint(to_bullet(point), false);
-      }
-      hull->recalcLocalAabb();
-      hull->setMargin(0);
-      hull->initializePolyhedralFeatures();
-      return hull;
-    }
+std::unique_ptr<btConvexShape> make_bare_shape(const ShapeTables& tables, ShapeId id) {
+  std::unique_ptr<btConvexShape> shape = make_shape(tables, id, 0.0);
+  if (id.kind() == ShapeKind::box || id.kind() == ShapeKind::triangle) shape->setMargin(0);
+  if (id.kind() == ShapeKind::hull) {
+    static_cast<btConvexHullShape&>(*shape).initializePolyhedralFeatures();
   }
+  return shape;
 }
 
 /// Takes the point that an algorithm or a detector reports and keeps the deepest.
@@ -139,14 +106,12 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
       const ShapeId id = set.shapes[i];
       btConvexShape* shape = id.kind() == ShapeKind::hull ? hulls[id.index()] : nullptr;
       if (shape == nullptr) {
-        shapes_.push_back(make_shape(set.pool.tables(), id));
+        shapes_.push_back(make_bare_shape(set.pool.tables(), id));
         shape = shapes_.back().get();
         if (id.kind() == ShapeKind::hull) hulls[id.index()] = shape;
       }
-      const Eigen::Quaternionf q = orientation_of(set.poses[i]).cast<float>();
       objects_[i].setCollisionShape(shape);
-      objects_[i].setWorldTransform(
-          btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), to_bullet(set.poses[i].position)));
+      objects_[i].setWorldTransform(transform_of(set.poses[i]));
     }
     if (!set.pairs.empty()) make_algorithm(set.kind, set.pairs.front());
   }
@@ -232,11 +197,8 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
     write_vector(answer.point, on_ball.x(), on_ball.y(), on_ball.z());
   }
 
-  template <ContactLevel level>
-  void ball_on_triangle(const BodyPair& pair, NarrowAnswer& answer) {
-    auto* ball = const_cast<btSphereShape*>(&shape_of<btSphereShape>(pair.a));
-    auto* triangle = const_cast<btTriangleShape*>(&shape_of<btTriangleShape>(pair.b));
-    SphereTriangleDetector detector(ball, triangle, level == ContactLevel::boolean ? 0 : kFar);
+  void detect(btDiscreteCollisionDetectorInterface& detector, const BodyPair& pair,
+              ContactLevel level, NarrowAnswer& answer) const {
     btDiscreteCollisionDetectorInterface::ClosestPointInput input;
     input.m_transformA = objects_[pair.a].getWorldTransform();
     input.m_transformB = objects_[pair.b].getWorldTransform();
@@ -245,14 +207,17 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
     report.write(level, answer);
   }
 
+  template <ContactLevel level>
+  void ball_on_triangle(const BodyPair& pair, NarrowAnswer& answer) {
+    auto* ball = const_cast<btSphereShape*>(&shape_of<btSphereShape>(pair.a));
+    auto* triangle = const_cast<btTriangleShape*>(&shape_of<btTriangleShape>(pair.b));
+    SphereTriangleDetector detector(ball, triangle, level == ContactLevel::boolean ? 0 : kFar);
+    detect(detector, pair, level, answer);
+  }
+
   void axes(const BodyPair& pair, NarrowAnswer& answer) {
     btBoxBoxDetector detector(&shape_of<btBoxShape>(pair.a), &shape_of<btBoxShape>(pair.b));
-    btDiscreteCollisionDetectorInterface::ClosestPointInput input;
-    input.m_transformA = objects_[pair.a].getWorldTransform();
-    input.m_transformB = objects_[pair.b].getWorldTransform();
-    Report report(nullptr, nullptr, 0);
-    detector.getClosestPoints(input, report, nullptr);
-    report.write(ContactLevel::boolean, answer);
+    detect(detector, pair, ContactLevel::boolean, answer);
   }
 
   /// What of a shape its core does not have: a capsule's radius.

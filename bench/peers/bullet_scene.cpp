@@ -1,16 +1,12 @@
 #include "bench/peers/adapters.h"
-#include "bench/peers/narrow_adapter.h"
+#include "bench/peers/bullet_shapes.h"
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
-#include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
-#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
-#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
-#include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 
 #include <string>
@@ -18,43 +14,11 @@
 namespace winnow::bench {
 namespace {
 
+using namespace in_bullet;
+
 /// Of hulls, which are made smaller by as much: with it GJK alone answers shallow contacts, and the
 /// expanding polytope only deep ones. Also by how much boxes in the trees are larger.
 constexpr btScalar kMargin = 0.005F;
-
-btVector3 to_bullet(double x, double y, double z) {
-  return {static_cast<btScalar>(x), static_cast<btScalar>(y), static_cast<btScalar>(z)};
-}
-
-std::unique_ptr<btCollisionShape> make_shape(const ShapeTables& tables, ShapeId id) {
-  const std::uint32_t i = id.index();
-  switch (id.kind()) {
-    case ShapeKind::sphere:
-      return std::make_unique<btSphereShape>(static_cast<btScalar>(tables.spheres[i].radius));
-    case ShapeKind::capsule:
-      return std::make_unique<btCapsuleShapeZ>(
-          static_cast<btScalar>(tables.capsules[i].radius),
-          static_cast<btScalar>(2.0 * tables.capsules[i].half_length));
-    case ShapeKind::box: {
-      const double* half = tables.boxes[i].half;
-      return std::make_unique<btBoxShape>(to_bullet(half[0], half[1], half[2]));
-    }
-    default: {
-      const HullShape& from = tables.hulls[i];
-      auto hull = std::make_unique<btConvexHullShape>();
-      const double scale = 1.0 - static_cast<double>(kMargin) / from.inner_radius;
-      for (std::uint32_t v = 0; v < from.vertex_count; ++v) {
-        const auto toward = [&](int axis) {
-          return from.center[axis] + scale * (from.vertex[axis][v] - from.center[axis]);
-        };
-        hull->addPoint(to_bullet(toward(0), toward(1), toward(2)), false);
-      }
-      hull->recalcLocalAabb();
-      hull->setMargin(kMargin);
-      return hull;
-    }
-  }
-}
 
 /// Bullet 3 in float: a btCollisionWorld over btDbvtBroadphase with the algorithms and margins that
 /// it uses by default, meshes as btBvhTriangleMeshShape with quantised nodes. It keeps pairs and
@@ -83,7 +47,7 @@ class BulletScene final : public SceneEngine {
     gDbvtMargin = kMargin;  // a global of Bullet; another engine may have changed it
     objects_.resize(set.poses.size());
     for (std::size_t i = 0; i < set.poses.size(); ++i) {
-      shapes_.push_back(make_shape(set.pool.tables(), set.shapes[i]));
+      shapes_.push_back(make_shape(set.pool.tables(), set.shapes[i], static_cast<double>(kMargin)));
       objects_[i].setCollisionShape(shapes_.back().get());
       objects_[i].setCollisionFlags(0);
       objects_[i].setWorldTransform(transform_of(set.poses[i]));
@@ -115,13 +79,6 @@ class BulletScene final : public SceneEngine {
   }
 
  private:
-  static btTransform transform_of(const Pose& pose) {
-    const double* q = pose.orientation;
-    const btQuaternion turn(static_cast<btScalar>(q[1]), static_cast<btScalar>(q[2]),
-                            static_cast<btScalar>(q[3]), static_cast<btScalar>(q[0]));
-    return btTransform(turn, to_bullet(pose.position[0], pose.position[1], pose.position[2]));
-  }
-
   void add_terrain(const Triangles& mesh) {
     for (const Eigen::Vector3d& v : mesh.vertices) {
       for (int axis = 0; axis < 3; ++axis) vertices_.push_back(static_cast<float>(v[axis]));

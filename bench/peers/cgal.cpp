@@ -46,7 +46,7 @@ struct BoxTraits {
 /// takes 2.5 times as long on 100k uniform boxes), and the axes in such an order that the one it
 /// sweeps, its first, prunes most and the one it divides, its last, prunes next (the other way
 /// round a wall takes 5 times as long).
-class CgalEngine final : public Engine {
+class CgalEngine final : public PairsAdapter {
  public:
   explicit CgalEngine(int threads) : decided_(threads < 2) {}
 
@@ -62,14 +62,10 @@ class CgalEngine final : public Engine {
     find_pairs(all_boxes);
   }
 
-  [[nodiscard]] std::span<const Pair> pairs() const override { return pairs_; }
-
   /// At the height of a search: the boxes, and the copies that CGAL makes of them.
   [[nodiscard]] std::size_t bytes() const override {
     return boxes_.capacity() * sizeof(Box) * (parallel_ ? 10 : 2);
   }
-
-  [[nodiscard]] double update_ms() const override { return update_ms_; }
 
  private:
   void find_pairs(std::span<const Aabb> boxes) {
@@ -129,13 +125,11 @@ class CgalEngine final : public Engine {
   }
 
   std::vector<Box> boxes_;
-  std::vector<Pair> pairs_;
   tbb::enumerable_thread_specific<std::vector<Pair>> found_;
   std::array<int, 3> axes_{0, 1, 2};
   bool decided_;
   bool parallel_ = false;
   double parallel_ms_ = 0.0;
-  double update_ms_ = 0.0;
 };
 
 }  // namespace

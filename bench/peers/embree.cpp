@@ -20,7 +20,7 @@ namespace {
 /// quality doubles the frame, refitting is 10 to 20 % slower and wears off as objects move.
 /// rtcCollide reports each pair in both orders and where primitives share a leaf also others:
 /// filtered.
-class EmbreeEngine final : public Engine {
+class EmbreeEngine final : public PairsAdapter {
  public:
   EmbreeEngine() : device_(rtcNewDevice(nullptr)) {
     if (device_ == nullptr) throw std::runtime_error("Embree: no device");
@@ -64,14 +64,10 @@ class EmbreeEngine final : public Engine {
     find_pairs();
   }
 
-  [[nodiscard]] std::span<const Pair> pairs() const override { return pairs_; }
-
   /// What the device says it holds.
   [[nodiscard]] std::size_t bytes() const override {
     return static_cast<std::size_t>(bytes_.load());
   }
-
-  [[nodiscard]] double update_ms() const override { return update_ms_; }
 
  private:
   static bool count_memory(void* bytes, std::ptrdiff_t change, bool) {
@@ -116,9 +112,7 @@ class EmbreeEngine final : public Engine {
   RTCScene scene_ = nullptr;
   RTCGeometry geometry_ = nullptr;
   std::span<const Aabb> boxes_;
-  std::vector<Pair> pairs_;
   tbb::enumerable_thread_specific<std::vector<Pair>> found_;
-  double update_ms_ = 0.0;
 };
 
 }  // namespace

@@ -44,7 +44,7 @@ bool collect(Object* a, Object* b, void* pairs) {
 /// Best of what was tried: refitting the whole tree, even where 5 % moved (update of the changed
 /// objects by re-insertion costs 1.1 to 2.3 times as much), and building it anew as soon as the
 /// time lost to its ageing since the last build has reached what a build takes.
-class FclEngine final : public Engine {
+class FclEngine final : public PairsAdapter {
  public:
   [[nodiscard]] std::string name() const override { return "FCL tree"; }
 
@@ -80,8 +80,6 @@ class FclEngine final : public Engine {
     find_pairs();
   }
 
-  [[nodiscard]] std::span<const Pair> pairs() const override { return pairs_; }
-
   /// At least: objects, shapes, nodes and the entries of the tree's hash table, without what the
   /// allocator adds.
   [[nodiscard]] std::size_t bytes() const override {
@@ -90,8 +88,6 @@ class FclEngine final : public Engine {
            (sizeof(BoxShape) + sizeof(Object) + 2 * sizeof(Tree::DynamicAABBNode) + table_entry +
             sizeof(shapes_[0]) + sizeof(objects_[0]) + sizeof(handles_[0]));
   }
-
-  [[nodiscard]] double update_ms() const override { return update_ms_; }
 
  private:
   void build() {
@@ -117,11 +113,9 @@ class FclEngine final : public Engine {
   std::vector<std::unique_ptr<Object>> objects_;
   std::vector<Object*> handles_;
   Tree tree_;
-  std::vector<Pair> pairs_;
   double build_ms_ = 0.0;
   double lost_ms_ = 0.0;
   double best_search_ms_ = 0.0;
-  double update_ms_ = 0.0;
 };
 
 }  // namespace

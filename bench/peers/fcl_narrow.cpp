@@ -1,10 +1,7 @@
 #include "bench/peers/adapters.h"
+#include "bench/peers/fcl_shapes.h"
 #include "bench/peers/narrow_adapter.h"
 
-#include <fcl/geometry/shape/box.h>
-#include <fcl/geometry/shape/capsule.h>
-#include <fcl/geometry/shape/convex.h>
-#include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/detail/gjk_solver_indep.h>
 #include <fcl/narrowphase/detail/gjk_solver_libccd.h>
 #include <fcl/narrowphase/detail/primitive_shape_algorithm/triangle_distance.h>
@@ -19,50 +16,12 @@
 namespace winnow::bench {
 namespace {
 
-using Vector = fcl::Vector3<double>;
-using Transform = fcl::Transform3<double>;
+using namespace in_fcl;
+
 using Contacts = std::vector<fcl::ContactPoint<double>>;
-using SphereGeometry = fcl::Sphere<double>;
-using CapsuleGeometry = fcl::Capsule<double>;
-using BoxGeometry = fcl::Box<double>;
-using HullGeometry = fcl::Convex<double>;
 using TriangleTests = fcl::detail::Intersect<double>;
 using TriangleDistances = fcl::detail::TriangleDistance<double>;
-using Geometry = fcl::CollisionGeometry<double>;
 using Corners = std::array<Vector, 3>;
-
-/// A capsule's z extent, a box's sides and so on, as FCL has them.
-std::unique_ptr<Geometry> make_geometry(const ShapeTables& tables, ShapeId id) {
-  const std::uint32_t i = id.index();
-  switch (id.kind()) {
-    case ShapeKind::sphere:
-      return std::make_unique<SphereGeometry>(tables.spheres[i].radius);
-    case ShapeKind::capsule:
-      return std::make_unique<CapsuleGeometry>(tables.capsules[i].radius,
-                                               2.0 * tables.capsules[i].half_length);
-    case ShapeKind::box: {
-      const double* half = tables.boxes[i].half;
-      return std::make_unique<BoxGeometry>(2.0 * half[0], 2.0 * half[1], 2.0 * half[2]);
-    }
-    case ShapeKind::hull: {
-      const HullShape& hull = tables.hulls[i];
-      auto vertices = std::make_shared<std::vector<Vector>>();
-      for (std::uint32_t v = 0; v < hull.vertex_count; ++v) {
-        vertices->emplace_back(hull.vertex[0][v], hull.vertex[1][v], hull.vertex[2][v]);
-      }
-      auto faces = std::make_shared<std::vector<int>>();
-      for (std::uint32_t f = 0; f < hull.face_count; ++f) {
-        faces->push_back(static_cast<int>(hull.faces[f].count));
-        for (std::uint32_t k = 0; k < hull.faces[f].count; ++k) {
-          faces->push_back(static_cast<int>(hull.loop[hull.faces[f].first + k]));
-        }
-      }
-      return std::make_unique<HullGeometry>(vertices, static_cast<int>(hull.face_count), faces);
-    }
-    default:
-      return nullptr;
-  }
-}
 
 /// FCL in double, the type its library is built for, by the functions of its solvers that its
 /// collide() and distance() end in: closed forms where it has them, else GJK and EPA of libccd or
@@ -83,11 +42,11 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     if (kind.b == triangle) {
       switch (kind.a) {
         case sphere:
-          return against_triangle<SphereGeometry>(level);
+          return of_shapes<SphereGeometry, Corners>(level);
         case capsule:
-          return against_triangle<CapsuleGeometry>(level);
+          return of_shapes<CapsuleGeometry, Corners>(level);
         default:
-          return against_triangle<BoxGeometry>(level);
+          return of_shapes<BoxGeometry, Corners>(level);
       }
     }
     if (kind.a == capsule) return of_shapes<CapsuleGeometry, CapsuleGeometry>(level);
@@ -107,11 +66,8 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     this->set_kind(set.kind);
     std::vector<Geometry*> hulls(set.pool.tables().count[static_cast<int>(ShapeKind::hull)]);
     for (std::size_t i = 0; i < set.poses.size(); ++i) {
-      const Pose& pose = set.poses[i];
       Body body;
-      body.at.setIdentity();
-      body.at.linear() = orientation_of(pose).toRotationMatrix();
-      body.at.translation() = Vector(pose.position[0], pose.position[1], pose.position[2]);
+      body.at = transform_of(set.poses[i]);
       const ShapeId id = set.shapes[i];
       const bool shared = id.kind() == ShapeKind::hull && hulls[id.index()] != nullptr;
       if (id.kind() == ShapeKind::triangle) {
@@ -152,12 +108,6 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
   static Answerer of_shapes(ContactLevel level) {
     return pick(level, &Self::template verdict<A, B>, &Self::template distance<A, B>,
                 &Self::template contacts<A, B>);
-  }
-
-  template <typename A>
-  static Answerer against_triangle(ContactLevel level) {
-    return pick(level, &Self::template triangle_verdict<A>, &Self::template triangle_distance<A>,
-                &Self::template triangle_contact<A>);
   }
 
   template <typename Shape>
@@ -206,82 +156,65 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     write_vector(answer.point, deepest->pos.x(), deepest->pos.y(), deepest->pos.z());
   }
 
+  // The solver's functions of two shapes, or of a shape and a triangle, of which B is the corners.
+
+  template <typename A, typename B>
+  bool intersect(const Body& a, const Body& b, Contacts* contacts) {
+    if constexpr (std::is_same_v<B, Corners>) {
+      const auto& [p, q, r] = b.corners;
+      fcl::ContactPoint<double> contact;
+      const bool wanted = contacts != nullptr;
+      const bool overlap = ask([&] {
+        return solver_.shapeTriangleIntersect(
+            shape_of<A>(a), a.at, p, q, r, b.at, wanted ? &contact.pos : nullptr,
+            wanted ? &contact.penetration_depth : nullptr, wanted ? &contact.normal : nullptr);
+      });
+      if (!wanted) return overlap;
+      // Of triangles EPA's normals go from b to a.
+      if (contact.penetration_depth < 0.0) contact.normal = -contact.normal;
+      if (overlap) contacts->push_back(contact);
+      return overlap;
+    } else {
+      return ask([&] {
+        return solver_.shapeIntersect(shape_of<A>(a), a.at, shape_of<B>(b), b.at, contacts);
+      });
+    }
+  }
+
+  template <typename A, typename B>
+  bool are_apart(const Body& a, const Body& b, double& distance, Vector& on_a, Vector& on_b) {
+    if constexpr (std::is_same_v<B, Corners>) {
+      const auto& [p, q, r] = b.corners;
+      return solver_.shapeTriangleDistance(shape_of<A>(a), a.at, p, q, r, b.at, &distance, &on_a,
+                                           &on_b);
+    } else {
+      return solver_.shapeDistance(shape_of<A>(a), a.at, shape_of<B>(b), b.at, &distance, &on_a,
+                                   &on_b);
+    }
+  }
+
   template <typename A, typename B>
   void verdict(const BodyPair& pair, NarrowAnswer& answer) {
-    const Body& a = bodies_[pair.a];
-    const Body& b = bodies_[pair.b];
-    answer.overlap =
-        ask([&] { return solver_.shapeIntersect(shape_of<A>(a), a.at, shape_of<B>(b), b.at); });
+    answer.overlap = intersect<A, B>(bodies_[pair.a], bodies_[pair.b], nullptr);
   }
 
   template <typename A, typename B>
   void contacts(const BodyPair& pair, NarrowAnswer& answer) {
-    const Body& a = bodies_[pair.a];
-    const Body& b = bodies_[pair.b];
     contacts_.clear();
-    const bool overlap = ask([&] {
-      return solver_.shapeIntersect(shape_of<A>(a), a.at, shape_of<B>(b), b.at, &contacts_);
-    });
-    write_contacts(overlap, a, answer);
+    const bool overlap = intersect<A, B>(bodies_[pair.a], bodies_[pair.b], &contacts_);
+    write_contacts(overlap, bodies_[pair.a], answer);
   }
 
   template <typename A, typename B>
   void distance(const BodyPair& pair, NarrowAnswer& answer) {
-    const Body& a = bodies_[pair.a];
-    const Body& b = bodies_[pair.b];
     double distance = 0.0;
     Vector on_a;
     Vector on_b;
-    const bool apart =
-        solver_.shapeDistance(shape_of<A>(a), a.at, shape_of<B>(b), b.at, &distance, &on_a, &on_b);
+    const bool apart = are_apart<A, B>(bodies_[pair.a], bodies_[pair.b], distance, on_a, on_b);
     if (apart && distance > 0.0) {
       write_points(on_a, on_b, distance, answer);
     } else {
       contacts<A, B>(pair, answer);
-      answer.overlap = true;
-    }
-  }
-
-  template <typename A>
-  void triangle_verdict(const BodyPair& pair, NarrowAnswer& answer) {
-    const Body& a = bodies_[pair.a];
-    const Body& b = bodies_[pair.b];
-    const auto& [p, q, r] = b.corners;
-    answer.overlap =
-        ask([&] { return solver_.shapeTriangleIntersect(shape_of<A>(a), a.at, p, q, r, b.at); });
-  }
-
-  template <typename A>
-  void triangle_contact(const BodyPair& pair, NarrowAnswer& answer) {
-    const Body& a = bodies_[pair.a];
-    const Body& b = bodies_[pair.b];
-    const auto& [p, q, r] = b.corners;
-    fcl::ContactPoint<double> contact;
-    contacts_.clear();
-    const bool overlap = ask([&] {
-      return solver_.shapeTriangleIntersect(shape_of<A>(a), a.at, p, q, r, b.at, &contact.pos,
-                                            &contact.penetration_depth, &contact.normal);
-    });
-    // Of triangles EPA's normals go from b to a.
-    if (contact.penetration_depth < 0.0) contact.normal = -contact.normal;
-    if (overlap) contacts_.push_back(contact);
-    write_contacts(overlap, a, answer);
-  }
-
-  template <typename A>
-  void triangle_distance(const BodyPair& pair, NarrowAnswer& answer) {
-    const Body& a = bodies_[pair.a];
-    const Body& b = bodies_[pair.b];
-    const auto& [p, q, r] = b.corners;
-    double distance = 0.0;
-    Vector on_a;
-    Vector on_b;
-    const bool apart =
-        solver_.shapeTriangleDistance(shape_of<A>(a), a.at, p, q, r, b.at, &distance, &on_a, &on_b);
-    if (apart && distance > 0.0) {
-      write_points(on_a, on_b, distance, answer);
-    } else {
-      triangle_contact<A>(pair, answer);
       answer.overlap = true;
     }
   }
@@ -329,7 +262,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
   }
 
   Solver solver_;
-  std::vector<std::unique_ptr<Geometry>> geometries_;
+  std::vector<std::shared_ptr<Geometry>> geometries_;
   std::vector<Body> bodies_;
   Contacts contacts_;
 };

@@ -1,12 +1,8 @@
 #include "bench/peers/adapters.h"
-#include "bench/peers/narrow_adapter.h"
+#include "bench/peers/fcl_shapes.h"
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/geometry/shape/box.h>
-#include <fcl/geometry/shape/capsule.h>
-#include <fcl/geometry/shape/convex.h>
-#include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
 
 #include <string>
@@ -14,52 +10,13 @@
 namespace winnow::bench {
 namespace {
 
-using Vector = fcl::Vector3<double>;
-using Transform = fcl::Transform3<double>;
-using Geometry = fcl::CollisionGeometry<double>;
+using namespace in_fcl;
+
 using Object = fcl::CollisionObject<double>;
 using Mesh = fcl::BVHModel<fcl::OBBRSS<double>>;
 
 /// No pair has more contacts.
 constexpr std::size_t kMostContacts = 100'000;
-
-std::shared_ptr<Geometry> make_geometry(const ShapeTables& tables, ShapeId id) {
-  const std::uint32_t i = id.index();
-  switch (id.kind()) {
-    case ShapeKind::sphere:
-      return std::make_shared<fcl::Sphere<double>>(tables.spheres[i].radius);
-    case ShapeKind::capsule:
-      return std::make_shared<fcl::Capsule<double>>(tables.capsules[i].radius,
-                                                    2.0 * tables.capsules[i].half_length);
-    case ShapeKind::box: {
-      const double* half = tables.boxes[i].half;
-      return std::make_shared<fcl::Box<double>>(2.0 * half[0], 2.0 * half[1], 2.0 * half[2]);
-    }
-    default: {
-      const HullShape& hull = tables.hulls[i];
-      auto vertices = std::make_shared<std::vector<Vector>>();
-      for (std::uint32_t v = 0; v < hull.vertex_count; ++v) {
-        vertices->emplace_back(hull.vertex[0][v], hull.vertex[1][v], hull.vertex[2][v]);
-      }
-      auto faces = std::make_shared<std::vector<int>>();
-      for (std::uint32_t f = 0; f < hull.face_count; ++f) {
-        faces->push_back(static_cast<int>(hull.faces[f].count));
-        for (std::uint32_t k = 0; k < hull.faces[f].count; ++k) {
-          faces->push_back(static_cast<int>(hull.loop[hull.faces[f].first + k]));
-        }
-      }
-      return std::make_shared<fcl::Convex<double>>(vertices, static_cast<int>(hull.face_count),
-                                                   faces);
-    }
-  }
-}
-
-Transform transform_of(const Pose& pose) {
-  Transform at = Transform::Identity();
-  at.linear() = orientation_of(pose).toRotationMatrix();
-  at.translation() = Vector(pose.position[0], pose.position[1], pose.position[2]);
-  return at;
-}
 
 std::shared_ptr<Mesh> make_model(const Triangles& triangles) {
   auto model = std::make_shared<Mesh>();

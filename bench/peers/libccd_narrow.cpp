@@ -14,10 +14,9 @@ namespace {
 struct CcdBody {
   double turn[9];  // rotation, by columns
   double position[3];
-  double size[3];  // half lengths of a box; radius and half length of the round ones
-  const double* vertex[3];
+  double size[3];           // half lengths of a box; radius and half length of the round ones
+  const double* vertex[3];  // columns of coordinates
   std::uint32_t vertices;
-  double corner[3][3];
 };
 
 void to_local(const CcdBody& body, const ccd_vec3_t& world, double (&local)[3]) {
@@ -69,24 +68,7 @@ void of_box(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) 
   to_world(body, local, *point);
 }
 
-void of_triangle(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const CcdBody& body = *static_cast<const CcdBody*>(object);
-  double local[3];
-  to_local(body, *direction, local);
-  int best = 0;
-  double most = -HUGE_VAL;
-  for (int i = 0; i < 3; ++i) {
-    const double* v = body.corner[i];
-    const double along = v[0] * local[0] + v[1] * local[1] + v[2] * local[2];
-    if (along > most) {
-      most = along;
-      best = i;
-    }
-  }
-  to_world(body, body.corner[best], *point);
-}
-
-void of_hull(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
+void of_points(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
   const CcdBody& body = *static_cast<const CcdBody*>(object);
   double local[3];
   to_local(body, *direction, local);
@@ -117,14 +99,14 @@ ccd_support_fn support_of(ShapeKind kind) {
       return of_capsule;
     case ShapeKind::box:
       return of_box;
-    case ShapeKind::triangle:
-      return of_triangle;
     default:
-      return of_hull;
+      return of_points;
   }
 }
 
-CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose) {
+/// `corners` of triangles have room for nine more.
+CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose,
+                  std::vector<double>& corners) {
   CcdBody body{};
   Eigen::Map<Eigen::Matrix3d>(body.turn) = orientation_of(pose).toRotationMatrix();
   std::copy_n(pose.position, 3, body.position);
@@ -140,9 +122,13 @@ CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose) {
       std::copy_n(tables.boxes[id.index()].half, 3, body.size);
       break;
     case ShapeKind::triangle:
-      for (int i = 0; i < 3; ++i) {
-        std::copy_n(tables.triangles[id.index()].vertex[i], 3, body.corner[i]);
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const auto& vertex : tables.triangles[id.index()].vertex) {
+          corners.push_back(vertex[axis]);
+        }
+        body.vertex[axis] = &corners.back() - 2;
       }
+      body.vertices = 3;
       break;
     default:
       std::copy_n(tables.hulls[id.index()].vertex, 3, body.vertex);
@@ -180,8 +166,9 @@ class LibccdNarrow final : public NarrowAdapter<LibccdNarrow> {
     set_kind(set.kind);
     ccd_.support1 = support_of(set.kind.a);
     ccd_.support2 = support_of(set.kind.b);
+    corners_.reserve(9 * set.poses.size());
     for (std::size_t i = 0; i < set.poses.size(); ++i) {
-      bodies_.push_back(make_body(set.pool.tables(), set.shapes[i], set.poses[i]));
+      bodies_.push_back(make_body(set.pool.tables(), set.shapes[i], set.poses[i], corners_));
     }
   }
 
@@ -209,6 +196,7 @@ class LibccdNarrow final : public NarrowAdapter<LibccdNarrow> {
   bool portals_;
   ccd_t ccd_;
   std::vector<CcdBody> bodies_;
+  std::vector<double> corners_;  // by triangles, columns of coordinates
 };
 
 }  // namespace

@@ -82,7 +82,7 @@ std::uint32_t row_of(dGeomID geom) {
 /// Best of what was tried: sweep and prune, its axes ordered by what they prune. The hash space
 /// takes 1.3 to 2.7 times as long (on unit boxes at 10k, on mixed sizes at 100k), the quadtree
 /// space 1.1 to 15 times at 10k.
-class OdeEngine final : public Engine {
+class OdeEngine final : public PairsAdapter {
  public:
   OdeEngine() { Library::get(); }
   ~OdeEngine() override {
@@ -122,14 +122,10 @@ class OdeEngine final : public Engine {
     find_pairs(all_boxes);
   }
 
-  [[nodiscard]] std::span<const Pair> pairs() const override { return pairs_; }
-
   /// What ODE allocated, of all ODE engines alive.
   [[nodiscard]] std::size_t bytes() const override {
     return allocated_bytes + geoms_.capacity() * sizeof(geoms_[0]);
   }
-
-  [[nodiscard]] double update_ms() const override { return update_ms_; }
 
  private:
   static void collect(void* self, dGeomID a, dGeomID b) {
@@ -148,8 +144,6 @@ class OdeEngine final : public Engine {
   dSpaceID space_ = nullptr;
   std::vector<dGeomID> geoms_;
   std::span<const Aabb> boxes_;
-  std::vector<Pair> pairs_;
-  double update_ms_ = 0.0;
 };
 
 }  // namespace

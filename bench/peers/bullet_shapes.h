@@ -1,0 +1,61 @@
+#pragma once
+
+#include "bench/peers/narrow_adapter.h"
+
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
+
+#include <memory>
+
+/// Shapes and poses as Bullet has them, in float.
+namespace winnow::bench::in_bullet {
+
+inline btVector3 to_bullet(const double* v) {
+  return {static_cast<btScalar>(v[0]), static_cast<btScalar>(v[1]), static_cast<btScalar>(v[2])};
+}
+
+inline btTransform transform_of(const Pose& pose) {
+  const Eigen::Quaternionf q = orientation_of(pose).cast<float>();
+  return btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), to_bullet(pose.position));
+}
+
+/// Hulls are made smaller by the margin that they then have.
+inline std::unique_ptr<btConvexShape> make_shape(const ShapeTables& tables, ShapeId id,
+                                                 double hull_margin) {
+  const std::uint32_t i = id.index();
+  switch (id.kind()) {
+    case ShapeKind::sphere:
+      return std::make_unique<btSphereShape>(static_cast<btScalar>(tables.spheres[i].radius));
+    case ShapeKind::capsule:
+      return std::make_unique<btCapsuleShapeZ>(
+          static_cast<btScalar>(tables.capsules[i].radius),
+          static_cast<btScalar>(2.0 * tables.capsules[i].half_length));
+    case ShapeKind::box:
+      return std::make_unique<btBoxShape>(to_bullet(tables.boxes[i].half));
+    case ShapeKind::triangle: {
+      const auto& v = tables.triangles[i].vertex;
+      return std::make_unique<btTriangleShape>(to_bullet(v[0]), to_bullet(v[1]), to_bullet(v[2]));
+    }
+    default: {
+      const HullShape& from = tables.hulls[i];
+      auto hull = std::make_unique<btConvexHullShape>();
+      const double inward = hull_margin == 0.0 ? 0.0 : hull_margin / from.inner_radius;
+      for (std::uint32_t v = 0; v < from.vertex_count; ++v) {
+        double point[3];
+        for (int axis = 0; axis < 3; ++axis) {
+          const double vertex = from.vertex[axis][v];
+          point[axis] = vertex + inward * (from.center[axis] - vertex);
+        }
+        hull->addPoint(to_bullet(point), false);
+      }
+      hull->recalcLocalAabb();
+      hull->setMargin(static_cast<btScalar>(hull_margin));
+      return hull;
+    }
+  }
+}
+
+}  // namespace winnow::bench::in_bullet
