@@ -1,5 +1,7 @@
 #include "bench/contenders/winnow_narrow.h"
 
+#include "bench/common/need.h"
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -12,10 +14,7 @@ WinnowNarrow::WinnowNarrow(NarrowTier tier, int threads)
 void WinnowNarrow::run(ContactLevel level, std::span<const BodyPair> pairs) {
   options_.level = level;
   pairs_ = pairs;
-  const Status status = narrow_.collide(set_->pool, set_->bodies(), pairs, options_, result_);
-  if (status != Status::ok) {
-    throw std::runtime_error(std::string("pairs were refused: ") + to_string(status));
-  }
+  need(narrow_.collide(set_->pool, set_->bodies(), pairs, options_, result_), "pairs");
 }
 
 NarrowAnswer WinnowNarrow::answer(std::size_t i) const {

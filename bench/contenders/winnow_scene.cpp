@@ -4,19 +4,13 @@
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/triangle_mesh.h>
+#include "bench/common/need.h"
 #include "bench/contenders/partitions.h"
 
 #include <optional>
-#include <stdexcept>
 
 namespace winnow::bench {
 namespace {
-
-void need(Status status, const char* what) {
-  if (status != Status::ok) {
-    throw std::runtime_error(std::string(what) + ": " + to_string(status));
-  }
-}
 
 std::span<const Eigen::Vector3d> vertices_of(const Triangles& mesh) {
   return mesh.vertices;

@@ -1,6 +1,7 @@
 #include "bench/measure/volume_race.h"
 
 #include <winnow/core/kdop_around.h>
+#include "bench/common/need.h"
 #include "bench/common/random.h"
 #include "bench/contenders/partitions.h"
 #include "bench/scenes/scene.h"
@@ -8,29 +9,41 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
-#include <memory_resource>
-#include <stdexcept>
 
 namespace winnow::bench {
 
 namespace {
 
-void expect_ok(Status status) {
-  if (status != Status::ok) throw std::runtime_error(std::string("refused: ") + to_string(status));
-}
-
 /// A volume on a partition of its own.
 class Contestant {
  public:
-  virtual ~Contestant() = default;
-  virtual void make(const std::vector<OrientedBox>& boxes) = 0;
-  virtual void put() = 0;
+  template <typename V>
+  Contestant(std::string name, const VolumeRaceOptions& race, V (*maker)(const OrientedBox&),
+             Volume volume, float margin = 0.0F)
+      : partition_(make_named(
+            race.partition,
+            {.execution = Execution::serial(), .volume = volume, .margin = {.share = margin}})),
+        margin_(margin) {
+    row.volume = std::move(name);
+    const auto volumes = std::make_shared<std::vector<V>>();
+    make_ = [=](const std::vector<OrientedBox>& boxes) {
+      volumes->resize(boxes.size());
+      for (std::size_t i = 0; i < boxes.size(); ++i) (*volumes)[i] = maker(boxes[i]);
+    };
+    put_ = [=](Partition& partition, std::vector<Key>& keys) {
+      const std::span<const V> all(*volumes);
+      if (!keys.empty()) return partition.update(keys, all);
+      keys.resize(all.size());
+      return partition.insert(all, {}, keys);
+    };
+  }
 
   /// Before the first frame.
   void begin(const Solids& solids) {
-    make(solids.when_margins_were_left(margin_));
-    put();
+    make_(solids.when_margins_were_left(margin_));
+    need(put_(partition_, keys_), "volumes");
   }
   /// One frame.
   void run(const Solids& solids, NarrowPhase& narrow, NarrowResult& result, bool timed);
@@ -40,60 +53,31 @@ class Contestant {
   VolumeRow row;
   std::vector<std::uint64_t> overlapping;  // of the last frame: first << 32 | second, sorted
 
- protected:
-  Contestant(std::string name, const VolumeRaceOptions& race, const PartitionOptions& options)
-      : partition_(make_named(race.partition, options)), margin_(options.margin.share) {
-    row.volume = std::move(name);
-  }
-  Partition& partition() { return partition_; }
-
-  std::vector<Key> keys_;
-
  private:
+  std::function<void(const std::vector<OrientedBox>&)> make_;
+  std::function<Status(Partition&, std::vector<Key>&)> put_;
   Partition partition_;
   float margin_;
+  std::vector<Key> keys_;
   PairBuffer pairs_;
-};
-
-template <typename V>
-class VolumeContestant final : public Contestant {
- public:
-  using Make = V (*)(const OrientedBox&);
-  VolumeContestant(std::string name, const VolumeRaceOptions& race, const PartitionOptions& options,
-                   Make maker)
-      : Contestant(std::move(name), race, options), make_(maker) {}
-
-  void make(const std::vector<OrientedBox>& boxes) override {
-    volumes_.resize(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) volumes_[i] = make_(boxes[i]);
-  }
-  void put() override {
-    const std::span<const V> volumes(volumes_);
-    if (!keys_.empty()) return expect_ok(partition().update(keys_, volumes));
-    keys_.resize(volumes_.size());
-    expect_ok(partition().insert(volumes, {}, keys_));
-  }
-
- private:
-  Make make_;
-  std::vector<V> volumes_;
 };
 
 void Contestant::run(const Solids& solids, NarrowPhase& narrow, NarrowResult& result, bool timed) {
   const ThreadStopwatch make_clock;
-  make(solids.boxes());
+  make_(solids.boxes());
   const double make_ms = make_clock.ms();
   const ThreadStopwatch broad_clock;
-  put();
-  expect_ok(partition_.self_pairs(pairs_));
+  need(put_(partition_, keys_), "volumes");
+  need(partition_.self_pairs(pairs_), "pairs");
   const double broad_ms = broad_clock.ms();
   // Keys are handed out in order: ids are the objects' numbers.
   std::vector<BodyPair> asked;
   asked.reserve(pairs_.size());
   for (const Pair& pair : pairs_) asked.push_back({pair.first, pair.second});
   const ThreadStopwatch narrow_clock;
-  expect_ok(narrow.collide(solids.shapes(), solids.bodies(), asked,
-                           {.level = ContactLevel::boolean}, result));
+  need(narrow.collide(solids.shapes(), solids.bodies(), asked, {.level = ContactLevel::boolean},
+                      result),
+       "pairs");
   const double narrow_ms = narrow_clock.ms();
   overlapping.clear();
   for (std::size_t i = 0; i < asked.size(); ++i) {
@@ -142,26 +126,16 @@ Sphere sphere_of(const OrientedBox& box) {
   return {box.center, round_up(box.half.cast<double>().norm() * (1.0 + 1e-6))};
 }
 
-std::vector<std::unique_ptr<Contestant>> all_contestants(const VolumeRaceOptions& race) {
-  const auto options = [](Volume volume, float share = 0.0F) {
-    return PartitionOptions{
-        .execution = Execution::serial(), .volume = volume, .margin = {.share = share}};
-  };
-  std::vector<std::unique_ptr<Contestant>> all;
-  all.push_back(
-      std::make_unique<VolumeContestant<Aabb>>("AABB", race, options(Volume::aabb), box_of));
-  all.push_back(std::make_unique<VolumeContestant<Sphere>>("sphere", race, options(Volume::sphere),
-                                                           sphere_of));
-  all.push_back(std::make_unique<VolumeContestant<Kdop<14>>>(
-      "14-DOP", race, options(Volume::kdop14), kdop_around<14>));
-  all.push_back(std::make_unique<VolumeContestant<Kdop<18>>>(
-      "18-DOP", race, options(Volume::kdop18), kdop_around<18>));
-  all.push_back(std::make_unique<VolumeContestant<Kdop<26>>>(
-      "26-DOP", race, options(Volume::kdop26), kdop_around<26>));
+std::vector<Contestant> all_contestants(const VolumeRaceOptions& race) {
+  std::vector<Contestant> all;
+  all.emplace_back("AABB", race, box_of, Volume::aabb);
+  all.emplace_back("sphere", race, sphere_of, Volume::sphere);
+  all.emplace_back("14-DOP", race, kdop_around<14>, Volume::kdop14);
+  all.emplace_back("18-DOP", race, kdop_around<18>, Volume::kdop18);
+  all.emplace_back("26-DOP", race, kdop_around<26>, Volume::kdop26);
   for (const int percent : {5, 10, 20, 50}) {
-    all.push_back(std::make_unique<VolumeContestant<Aabb>>(
-        "AABB + " + std::to_string(percent) + " %", race,
-        options(Volume::aabb, 0.01F * static_cast<float>(percent)), box_of));
+    all.emplace_back("AABB + " + std::to_string(percent) + " %", race, box_of, Volume::aabb,
+                     0.01F * static_cast<float>(percent));
   }
   return all;
 }
@@ -186,21 +160,21 @@ std::vector<double> VolumeRow::answered() const {
 }
 
 std::vector<VolumeRow> race_volumes(Solids solids, const VolumeRaceOptions& options) {
-  const std::vector<std::unique_ptr<Contestant>> all = all_contestants(options);
-  for (const auto& one : all) one->begin(solids);
+  std::vector<Contestant> all = all_contestants(options);
+  for (Contestant& one : all) one.begin(solids);
   NarrowPhase narrow;
   NarrowResult result;
   for (std::size_t frame = 0; frame <= options.frames; ++frame) {
     const bool timed = frame != 0;
     std::vector<std::uint64_t> truth;
-    for (const auto& one : all) {
-      one->run(solids, narrow, result, timed);
+    for (Contestant& one : all) {
+      one.run(solids, narrow, result, timed);
       std::vector<std::uint64_t> both;
-      std::set_union(truth.begin(), truth.end(), one->overlapping.begin(), one->overlapping.end(),
+      std::set_union(truth.begin(), truth.end(), one.overlapping.begin(), one.overlapping.end(),
                      std::back_inserter(both));
       truth.swap(both);
     }
-    for (const auto& one : all) one->judge(truth, timed);
+    for (Contestant& one : all) one.judge(truth, timed);
     if (options.recorded.empty()) {
       solids.advance(options.step);
     } else {
@@ -208,7 +182,7 @@ std::vector<VolumeRow> race_volumes(Solids solids, const VolumeRaceOptions& opti
     }
   }
   std::vector<VolumeRow> rows;
-  for (const auto& one : all) rows.push_back(std::move(one->row));
+  for (Contestant& one : all) rows.push_back(std::move(one.row));
   return rows;
 }
 

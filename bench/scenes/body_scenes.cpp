@@ -3,13 +3,12 @@
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/scene.h>
 #include "bench/common/exact_math.h"
+#include "bench/common/need.h"
 #include "bench/common/random.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 namespace winnow::bench {
 namespace {
@@ -23,12 +22,6 @@ constexpr int kPushes = 40;
 constexpr double kSqueeze = 0.995;
 /// How deep bodies lie in the terrain.
 constexpr double kSunk = 0.01;
-
-void need(Status status, const char* what) {
-  if (status != Status::ok) {
-    throw std::runtime_error(std::string(what) + ": " + to_string(status));
-  }
-}
 
 Eigen::Vector3d direction(Random& random) {
   for (;;) {

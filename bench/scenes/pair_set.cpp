@@ -1,6 +1,7 @@
 #include "bench/scenes/pair_set.h"
 
 #include "bench/common/exact_math.h"
+#include "bench/common/need.h"
 #include "bench/scenes/random_shapes.h"
 
 #include <algorithm>
@@ -117,10 +118,7 @@ class PairDrawing {
     std::vector<BodyPair> pairs;
     for (const std::uint32_t i : which) pairs.push_back(set_.pairs[i]);
     const NarrowOptions boolean{.level = ContactLevel::boolean};
-    const Status status = narrow_.collide(set_.pool, set_.bodies(), pairs, boolean, result_);
-    if (status != Status::ok) {
-      throw std::runtime_error(std::string("pairs were refused: ") + to_string(status));
-    }
+    need(narrow_.collide(set_.pool, set_.bodies(), pairs, boolean, result_), "pairs");
     std::vector<std::uint8_t> overlap(which.size());
     for (std::size_t i = 0; i < result_.size(); ++i) {
       overlap[result_.pair_of(i)] = result_.overlaps(i) ? 1 : 0;

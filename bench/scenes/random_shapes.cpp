@@ -1,5 +1,7 @@
 #include "bench/scenes/random_shapes.h"
 
+#include "bench/common/need.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -54,10 +56,7 @@ ShapeSource::ShapeSource(ShapePool& pool, const ShapeStyle& style, Random& rando
 template <typename Shape>
 DrawnShape ShapeSource::put(const Shape& shape, double radius) {
   DrawnShape drawn{{}, radius};
-  const Status status = pool_.add(shape, drawn.id);
-  if (status != Status::ok) {
-    throw std::runtime_error(std::string("a shape was refused: ") + to_string(status));
-  }
+  need(pool_.add(shape, drawn.id), "a shape");
   return drawn;
 }
 
@@ -84,10 +83,7 @@ DrawnShape ShapeSource::draw_hull() {
     points.emplace_back(random_unit(random_).array() * axes);
     drawn.radius = std::max(drawn.radius, points.back().norm());
   }
-  const Status status = pool_.add_hull(points, 0.0, drawn.id);
-  if (status != Status::ok) {
-    throw std::runtime_error(std::string("a hull was refused: ") + to_string(status));
-  }
+  need(pool_.add_hull(points, 0.0, drawn.id), "a hull");
   return drawn;
 }
 

@@ -1,19 +1,12 @@
 #include "bench/simulation/flow_phases.h"
 
+#include "bench/common/need.h"
 #include "bench/contenders/partitions.h"
 
 #include <span>
-#include <stdexcept>
-#include <string>
 
 namespace winnow::bench {
 namespace {
-
-void need(Status status, const char* what) {
-  if (status != Status::ok) {
-    throw std::runtime_error(std::string(what) + ": " + to_string(status));
-  }
-}
 
 BodyPair to_bodies(const Pair& pair) {
   return {pair.first, pair.second};

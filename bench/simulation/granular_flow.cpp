@@ -1,13 +1,12 @@
 #include "bench/simulation/granular_flow.h"
 
 #include "bench/common/exact_math.h"
+#include "bench/common/need.h"
 #include "bench/common/random.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 namespace winnow::bench {
 namespace {
@@ -21,12 +20,6 @@ constexpr double kDensity = 1.0;
 constexpr double kRoom = 1.03;
 /// Bodies fall on for so long after they left the funnel.
 constexpr double kFall = 4.0;
-
-void need(Status status, const char* what) {
-  if (status != Status::ok) {
-    throw std::invalid_argument(std::string(what) + ": " + to_string(status));
-  }
-}
 
 /// The mass of a shape and its moments of inertia about its own axes.
 struct Inertia {

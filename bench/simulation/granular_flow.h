@@ -53,7 +53,7 @@ struct FlowTimes {
 /// instruction set.
 class GranularFlow {
  public:
-  /// Throws std::invalid_argument for a mesh that winnow refuses.
+  /// Throws std::runtime_error for a mesh that winnow refuses.
   explicit GranularFlow(const FlowOptions& options);
 
   /// Pairs are asked for by themselves in a profiled step, to tell the phases apart.

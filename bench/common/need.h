@@ -1,0 +1,15 @@
+#pragma once
+
+#include <winnow/core/status.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace winnow::bench {
+
+/// Throws std::runtime_error unless winnow has done what it was asked for.
+inline void need(Status status, const char* what) {
+  if (status != Status::ok) throw std::runtime_error(std::string(what) + ": " + to_string(status));
+}
+
+}  // namespace winnow::bench
