@@ -5,8 +5,8 @@
 # do.
 WINNOW_BUILD_PACKAGES=(cmake ninja-build g++ pkg-config libeigen3-dev libxsimd-dev libtbb-dev
                        libqhull-dev)
-# What the winnow tool and the micro benchmarks need on top.
-WINNOW_BENCH_PACKAGES=(libbenchmark-dev libcli11-dev nlohmann-json3-dev liblzma-dev xz-utils
+# What the winnow tool needs on top.
+WINNOW_BENCH_PACKAGES=(libcli11-dev nlohmann-json3-dev liblzma-dev xz-utils
                        libjs-three libjs-chart.js)
 # Mesh files for `winnow simulate`.
 WINNOW_MESH_PACKAGES=(libassimp-dev)

@@ -1,6 +1,5 @@
-#include "bench/commands/arguments.h"
-#include "bench/commands/rows_run.h"
-#include "bench/commands/target.h"
+#include "bench/commands/options.h"
+#include "bench/commands/rows_command.h"
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
 #include "bench/rows/advice_rows.h"
@@ -15,14 +14,23 @@ namespace {
 constexpr std::size_t kAdviceFrames = 41;
 constexpr std::size_t kMostFrames = 201;
 
-struct Advise {
-  Target target;
-  std::size_t frames = 0;  // 0: as many as suit
-  int threads = 1;
-  Choice choice;
-  std::string json;
+class Advise final : public RowsCommand {
+ public:
+  void add_options(CLI::App& app) {
+    target_.add_to(app);
+    add_threads_option(app, threads_);
+    add_partitions_option(app, partitions_);
+    add_frames_option(app, frames_);
+    add_rows_options(app);
+  }
 
-  int run();
+ private:
+  void measure() override;
+
+  Target target_;
+  std::size_t frames_ = 0;  // 0: as many as suit
+  int threads_ = 1;
+  std::vector<std::string> partitions_{"all"};
 };
 
 void print_choice(const Advice& advice) {
@@ -42,45 +50,33 @@ void print_choice(const Advice& advice) {
   std::cout << "\n\n  #include <winnow/partitions/partition.h>\n  " << advice.code() << '\n';
 }
 
-int Advise::run() {
-  choose_isa(choice.isa);
-  const NamedScene scene = target.named();
-  const std::size_t count = scene.objects(target.objects.value_or(kSceneObjects));
-  const Partitions partitions = partitions_for(choice.partitions, count);
-  if (frames == 0) {
-    frames = scene.is_recording() ? std::min(scene.recording->frames.size(), kMostFrames)
-                                  : kAdviceFrames;
+void Advise::measure() {
+  const NamedScene scene = target_.named();
+  const std::size_t count = scene.objects(target_.objects.value_or(kSceneObjects));
+  const Partitions partitions = partitions_for(partitions_, count);
+  if (frames_ == 0) {
+    frames_ = scene.is_recording() ? std::min(scene.recording->frames.size(), kMostFrames)
+                                   : kAdviceFrames;
   }
-  RowsRun run(1);
-  declare_advice(run.results());
+  plan(1);
+  declare_advice(results);
   Advice advice;
-  run.step(scene.name, [&](Results& results) {
-    advice = add_advice(results, scene, count, target.seed.value_or(1), partitions.taken, frames,
-                        threads);
+  step(scene.name, [&] {
+    advice = add_advice(results, scene, count, target_.seed.value_or(1), partitions.taken, frames_,
+                        threads_);
   });
-  run.print("advice_ranking");
+  print("advice_ranking");
   if (!partitions.skipped.empty()) std::cout << "skipped: " << listed(partitions.skipped) << '\n';
   if (!advice.ranking.empty()) print_choice(advice);
-  return run.end(json);
 }
 
 }  // namespace
 
 Command add_advise(CLI::App& app) {
-  auto advise = std::make_shared<Advise>();
-  CLI::App* sub = app.add_subcommand(
-      "advise",
+  return command<Advise>(
+      app, "advise",
       "Races the partitions on a recording or scene, frame by frame interleaved, and says which to "
       "take, why, and how. Medians leave out the first six frames.");
-  advise->target.add_to(*sub);
-  sub->add_option("--threads", advise->threads, "Threads")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  add_partitions_option(*sub, advise->choice);
-  add_isa_option(*sub, advise->choice);
-  add_frames_option(*sub, advise->frames);
-  add_json_option(*sub, advise->json);
-  return {sub, [advise] { return advise->run(); }};
 }
 
 }  // namespace winnow::bench

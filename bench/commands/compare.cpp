@@ -1,6 +1,6 @@
 #include "bench/report/compare.h"
-#include "bench/commands/arguments.h"
 #include "bench/commands/command.h"
+#include "bench/commands/options.h"
 #include "bench/common/table.h"
 
 #include <algorithm>
@@ -19,7 +19,8 @@ struct Compare {
   std::string scale = "auto";
   std::string json;
 
-  int run() const;
+  void add_options(CLI::App& app);
+  [[nodiscard]] int run() const;
 
  private:
   [[nodiscard]] double scale_of(const Results& before, const Results& after,
@@ -212,6 +213,18 @@ double Compare::scale_of(const Results& before, const Results& after,
   return 1.0;
 }
 
+void Compare::add_options(CLI::App& app) {
+  app.add_option("old", old_path, "results.json of the older report")->required();
+  app.add_option("new", new_path, "results.json of the newer report")->required();
+  number(app, "--threshold", threshold, 1.0, 1e9,
+         "From how many times worse on it counts, if the samples bear it out");
+  app.add_flag("--all", all, "Every value, not only those beyond the threshold");
+  one_of(app, "--scale", scale, {"auto", "on", "off"},
+         "Whether times are scaled by the machines' reference sweeps; auto: if processor or cores "
+         "differ");
+  add_json_option(app, json);
+}
+
 int Compare::run() const {
   const Results old_report = read_results(old_path);
   const Results new_report = read_results(new_path);
@@ -234,25 +247,10 @@ int Compare::run() const {
 }  // namespace
 
 Command add_compare(CLI::App& app) {
-  auto compare = std::make_shared<Compare>();
-  CLI::App* sub = app.add_subcommand(
-      "compare",
+  return command<Compare>(
+      app, "compare",
       "Two reports (results.json): how many times better or worse each value of each row has got. "
       "Ends with 1 if one has got worse or other pairs were found, with 2 if a file is no report.");
-  sub->add_option("old", compare->old_path, "results.json of the older report")->required();
-  sub->add_option("new", compare->new_path, "results.json of the newer report")->required();
-  sub->add_option("--threshold", compare->threshold,
-                  "From how many times worse on it counts, if the samples bear it out")
-      ->check(CLI::Range(1.0, 1e9))
-      ->capture_default_str();
-  sub->add_flag("--all", compare->all, "Every value, not only those beyond the threshold");
-  sub->add_option("--scale", compare->scale,
-                  "Whether times are scaled by the machines' reference sweeps; auto: if processor "
-                  "or cores differ")
-      ->check(CLI::IsMember({"auto", "on", "off"}))
-      ->capture_default_str();
-  add_json_option(*sub, compare->json);
-  return {sub, [compare] { return compare->run(); }};
 }
 
 }  // namespace winnow::bench

@@ -1,6 +1,5 @@
-#include "bench/commands/arguments.h"
 #include "bench/commands/command.h"
-#include "bench/commands/target.h"
+#include "bench/commands/options.h"
 #include "bench/common/json.h"
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
@@ -22,8 +21,25 @@ struct Draw {
   std::string out;
   std::string json;
 
+  void add_options(CLI::App& app);
   int run();
 };
+
+void Draw::add_options(CLI::App& app) {
+  target.add_to(app);
+  number(app, "--frame", frame, 0, 1e6, "Which frame; the first one is 0");
+  one_of(app, "--partition", partition, all_partitions(), "Which partition");
+  app.add_option("--ray", rays, "ox,oy,oz,dx,dy,dz: its closest hit and all hits; repeatable")
+      ->allow_extra_args(false);
+  app.add_option("--box", boxes, "x0,y0,z0,x1,y1,z1: what overlaps it; repeatable")
+      ->allow_extra_args(false);
+  number(app, "--max-objects", options.most_objects, 1, 1e8,
+         "Objects drawn, evenly chosen; those hit by a ray or box besides");
+  number(app, "--max-depth", options.max_depth, 0, 64, "Levels of nodes drawn, from the root");
+  app.add_flag("--labels", options.labels, "Client data beside the first 500 objects");
+  app.add_option("--out", out, "The page to write")->required();
+  add_json_option(app, json);
+}
 
 int Draw::run() {
   for (const std::string& ray : rays) options.rays.push_back(parse_ray(ray));
@@ -54,34 +70,10 @@ int Draw::run() {
 }  // namespace
 
 Command add_draw(CLI::App& app) {
-  auto draw = std::make_shared<Draw>();
-  CLI::App* sub = app.add_subcommand(
-      "draw",
+  return command<Draw>(
+      app, "draw",
       "Writes one frame as an HTML page that can be turned, moved and zoomed: objects, the "
       "partition's structure, overlapping pairs, and what rays and boxes hit.");
-  draw->target.add_to(*sub);
-  sub->add_option("--frame", draw->frame, "Which frame; the first one is 0")
-      ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000}))
-      ->capture_default_str();
-  sub->add_option("--partition", draw->partition, "Which partition")
-      ->check(CLI::IsMember(all_partitions()))
-      ->capture_default_str();
-  sub->add_option("--ray", draw->rays,
-                  "ox,oy,oz,dx,dy,dz: its closest hit and all hits; repeatable")
-      ->allow_extra_args(false);
-  sub->add_option("--box", draw->boxes, "x0,y0,z0,x1,y1,z1: what overlaps it; repeatable")
-      ->allow_extra_args(false);
-  sub->add_option("--max-objects", draw->options.most_objects,
-                  "Objects drawn, evenly chosen; those hit by a ray or box besides")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}))
-      ->capture_default_str();
-  sub->add_option("--max-depth", draw->options.max_depth, "Levels of nodes drawn, from the root")
-      ->check(CLI::Range(0, 64))
-      ->capture_default_str();
-  sub->add_flag("--labels", draw->options.labels, "Client data beside the first 500 objects");
-  sub->add_option("--out", draw->out, "The page to write")->required();
-  add_json_option(*sub, draw->json);
-  return {sub, [draw] { return draw->run(); }};
 }
 
 }  // namespace winnow::bench

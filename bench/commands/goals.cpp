@@ -1,5 +1,5 @@
-#include "bench/commands/arguments.h"
 #include "bench/commands/command.h"
+#include "bench/commands/options.h"
 #include "bench/common/json.h"
 #include "bench/common/progress.h"
 #include "bench/common/table.h"
@@ -16,7 +16,11 @@ struct Goals {
   std::string topic;
   std::string json;
 
-  int run() const;
+  void add_options(CLI::App& app) {
+    one_of(app, "--topic", topic, {kTopics.begin(), kTopics.end()}, "Only this topic");
+    add_json_option(app, json);
+  }
+  [[nodiscard]] int run() const;
 
  private:
   [[nodiscard]] std::vector<Goal> measure_all(Lab& lab) const;
@@ -97,15 +101,10 @@ int Goals::run() const {
 }  // namespace
 
 Command add_goals(CLI::App& app) {
-  auto goals = std::make_shared<Goals>();
-  CLI::App* sub = app.add_subcommand(
-      "goals",
+  return command<Goals>(
+      app, "goals",
       "Every figure asked of winnow beside what it measures now. Times of other libraries are "
       "scaled by a reference sweep timed in the same run.");
-  sub->add_option("--topic", goals->topic, "Only this topic")
-      ->check(CLI::IsMember(std::vector<std::string>(kTopics.begin(), kTopics.end())));
-  add_json_option(*sub, goals->json);
-  return {sub, [goals] { return goals->run(); }};
 }
 
 }  // namespace winnow::bench

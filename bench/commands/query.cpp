@@ -1,7 +1,5 @@
-#include "bench/commands/arguments.h"
-#include "bench/commands/command.h"
-#include "bench/commands/rows_run.h"
-#include "bench/common/json.h"
+#include "bench/commands/options.h"
+#include "bench/commands/rows_command.h"
 #include "bench/questions/questions.h"
 #include "bench/rows/hard_case_rows.h"
 
@@ -17,63 +15,60 @@ const std::map<std::string, NarrowTier> kTiers{{"fast", NarrowTier::fast},
                                                {"robust", NarrowTier::robust},
                                                {"reference", NarrowTier::reference}};
 
-struct Query {
-  std::string file;
-  std::string tier = "robust";
-  Choice choice;
-  std::string json;
-  bool judge = false;
-
-  [[nodiscard]] int run() const {
-    choose_isa(choice.isa);
-    std::ifstream in(file);
-    if (!in) throw ArgumentError("cannot read " + file);
-    Json questions;
-    try {
-      questions = Json::parse(in);
-    } catch (const Json::exception& error) {
-      std::cerr << "winnow: " << file << ": " << error.what() << '\n';
-      return kFailed;
-    }
-    if (!questions.is_array()) {
-      std::cerr << "winnow: " << file << ": not an array of questions\n";
-      return kFailed;
-    }
-    if (judge) {
-      RowsRun run(1);
-      declare_hard_cases(run.results());
-      run.step(file, [&](Results& results) {
-        add_hard_cases(results, std::filesystem::path(file).stem().string(), questions, true);
-      });
-      run.print("hard_cases");
-      return run.end(json);
-    }
-    const Json answers = answer(questions, kTiers.at(tier));
-    if (json.empty()) {
-      std::cout << answers.dump(1) << '\n';
-    } else {
-      write_json(json, answers);
-    }
-    return kDone;
+Json read_questions(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw ArgumentError("cannot read " + path);
+  Json questions;
+  try {
+    questions = Json::parse(file);
+  } catch (const Json::exception& error) {
+    throw std::runtime_error(path + ": " + error.what());
   }
+  if (!questions.is_array()) throw std::runtime_error(path + ": not an array of questions");
+  return questions;
+}
+
+class Query final : public RowsCommand {
+ public:
+  void add_options(CLI::App& app) {
+    app.add_option("file", file_, "JSON: an array of questions")->required();
+    option(app, "--tier", tier_, "How exact: fast, robust or reference")
+        ->check(CLI::IsMember(kTiers));
+    app.add_flag("--judge", judge_,
+                 "Of hard cases, which say what they expect: counts what each tier and other "
+                 "libraries have right, instead of answering");
+    add_rows_options(app);
+  }
+
+ private:
+  void measure() override {
+    const Json questions = read_questions(file_);
+    if (!judge_) {
+      answers_ = answer(questions, kTiers.at(tier_));
+      if (!is_written()) std::cout << answers_.dump(1) << '\n';
+      return;
+    }
+    plan(1);
+    declare_hard_cases(results);
+    step(file_, [&] {
+      add_hard_cases(results, std::filesystem::path(file_).stem().string(), questions, true);
+    });
+    print("hard_cases");
+  }
+  [[nodiscard]] Json document() const override {
+    return judge_ ? RowsCommand::document() : answers_;
+  }
+
+  std::string file_;
+  std::string tier_ = "robust";
+  bool judge_ = false;
+  Json answers_;
 };
 
 }  // namespace
 
 Command add_query(CLI::App& app) {
-  auto query = std::make_shared<Query>();
-  CLI::App* sub =
-      app.add_subcommand("query", "Answers a file of questions about pairs of shapes and rays");
-  sub->add_option("file", query->file, "JSON: an array of questions")->required();
-  sub->add_option("--tier", query->tier, "How exact: fast, robust or reference")
-      ->check(CLI::IsMember(kTiers))
-      ->capture_default_str();
-  sub->add_flag("--judge", query->judge,
-                "Of hard cases, which say what they expect: counts what each tier and other "
-                "libraries have right, instead of answering");
-  add_isa_option(*sub, query->choice);
-  sub->add_option("--json", query->json, "Write the answers to this file instead of printing them");
-  return {sub, [query] { return query->run(); }};
+  return command<Query>(app, "query", "Answers a file of questions about pairs of shapes and rays");
 }
 
 }  // namespace winnow::bench

@@ -1,5 +1,5 @@
-#include "bench/commands/arguments.h"
 #include "bench/commands/command.h"
+#include "bench/commands/options.h"
 #include "bench/common/table.h"
 #include "bench/recordings/recording.h"
 
@@ -15,6 +15,13 @@ struct Record {
   std::size_t steps = 30;
   std::uint64_t seed = 1;
 
+  void add_options(CLI::App& app) {
+    app.add_option("scene", scene, "Its name")->required();
+    add_objects_option(app, objects);
+    add_frames_option(app, steps, "Frames after the first one");
+    add_seed_option(app, seed);
+    app.add_option("--out", out, "The file to write")->required();
+  }
   [[nodiscard]] int run() const {
     const auto source = scene_or_error(scene, objects, seed);
     write_recording(out, *source, "boxes", steps);
@@ -27,18 +34,7 @@ struct Record {
 }  // namespace
 
 Command add_record(CLI::App& app) {
-  auto record = std::make_shared<Record>();
-  CLI::App* sub = app.add_subcommand("record", "Writes a built-in scene to an .aabbs file");
-  sub->add_option("scene", record->scene, "Its name")->required();
-  sub->add_option("--objects", record->objects, "Number of objects")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}))
-      ->capture_default_str();
-  sub->add_option("--frames", record->steps, "Frames after the first one")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}))
-      ->capture_default_str();
-  sub->add_option("--seed", record->seed, "What the scene is drawn from")->capture_default_str();
-  sub->add_option("--out", record->out, "The file to write")->required();
-  return {sub, [record] { return record->run(); }};
+  return command<Record>(app, "record", "Writes a built-in scene to an .aabbs file");
 }
 
 }  // namespace winnow::bench

@@ -1,6 +1,5 @@
-#include "bench/commands/arguments.h"
 #include "bench/commands/command.h"
-#include "bench/commands/target.h"
+#include "bench/commands/options.h"
 #include "bench/common/json.h"
 #include "bench/common/progress.h"
 #include "bench/common/table.h"
@@ -18,9 +17,18 @@ struct Replay {
   Target target;
   std::size_t frames = 0;  // 0: all of a recording, kSceneFrames of a scene
   std::string json;
-  Choice choice;
+  std::vector<std::string> names{"all"};
+  std::string isa;
   int threads = 1;
 
+  void add_options(CLI::App& app) {
+    target.add_to(app);
+    add_partitions_option(app, names);
+    add_threads_option(app, threads);
+    add_isa_option(app, isa);
+    add_frames_option(app, frames);
+    add_json_option(app, json);
+  }
   int run();
 
  private:
@@ -58,11 +66,11 @@ Json replay_json(const Run& run, const std::string& scene, std::size_t objects) 
 }
 
 int Replay::run() {
-  choose_isa(choice.isa);
+  choose_isa(isa);
   const NamedScene scene = target.named();
   const auto first = target.source(scene);
   const std::size_t count = first->boxes().size();
-  const Partitions partitions = partitions_for(choice.partitions, count);
+  const Partitions partitions = partitions_for(names, count);
   RaceOptions options;
   options.frames = frames != 0            ? frames
                    : scene.is_recording() ? scene.recording->frames.size()
@@ -111,21 +119,11 @@ void Replay::print(const std::vector<Run>& runs, const std::string& scene,
 }  // namespace
 
 Command add_replay(CLI::App& app) {
-  auto replay = std::make_shared<Replay>();
-  CLI::App* sub = app.add_subcommand(
-      "replay",
+  return command<Replay>(
+      app, "replay",
       "Finds all pairs in every frame of a recording or scene. The frame's time is one bulk update "
       "of what changed (told to the partition, as a simulation knows it) and all pairs into one "
       "buffer; medians leave out the first frame.");
-  replay->target.add_to(*sub);
-  add_partitions_option(*sub, replay->choice);
-  sub->add_option("--threads", replay->threads, "Threads")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  add_isa_option(*sub, replay->choice);
-  add_frames_option(*sub, replay->frames);
-  add_json_option(*sub, replay->json);
-  return {sub, [replay] { return replay->run(); }};
 }
 
 }  // namespace winnow::bench

@@ -1,7 +1,6 @@
 #include "bench/report/report.h"
-#include "bench/commands/arguments.h"
 #include "bench/commands/command.h"
-#include "bench/measure/installed_peers.h"
+#include "bench/commands/options.h"
 #include "bench/report/markdown.h"
 #include "bench/rows/machine.h"
 #include "bench/scenes/scene.h"
@@ -16,7 +15,11 @@ namespace {
 constexpr int kInterrupted = 130;  // as shells say of SIGINT
 
 struct ReportCommand {
-  Choice choice;
+  std::vector<std::string> scenes = main_scenes();
+  std::vector<std::size_t> objects;
+  std::vector<int> threads = usual_threads();
+  std::uint64_t seed = 1;
+  std::string isa;
   std::vector<std::string> section_ids;
   bool million = false;
   bool quick = false;
@@ -24,6 +27,7 @@ struct ReportCommand {
   std::string from;
   std::string out = "winnow-report";
 
+  void add_options(CLI::App& app);
   int run();
 
  private:
@@ -38,25 +42,42 @@ void sort_once(std::vector<T>& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
+void ReportCommand::add_options(CLI::App& app) {
+  option(app, "--out", out,
+         "Folder for index.html, results.json and CSVs; it is made if it is not there");
+  option(app, "--scene", scenes, "Built-in scenes or recordings (.aabbs, .aabbs.xz)");
+  add_objects_option(app, objects, "Numbers of objects");
+  add_threads_option(app, threads, "Numbers of threads");
+  add_seed_option(app, seed);
+  add_isa_option(app, isa);
+  std::vector<std::string> ids;
+  for (const ReportSection& section : report_sections()) ids.emplace_back(section.id);
+  one_of(app, "--section", section_ids, ids, "Only these");
+  app.add_flag("--million", million, "1,000,000 objects, too");
+  app.add_flag("--quick", quick, "Small and unsteady, in seconds: to see what there is");
+  app.add_flag("--no-peers", no_peers, "Without other libraries");
+  option(app, "--from", from, "Measure nothing: write the page and the CSVs of this results.json");
+}
+
 ReportOptions ReportCommand::options() const {
   ReportOptions options;
-  options.scenes = named_scenes(choice.scenes.empty() ? main_scenes() : choice.scenes);
-  options.objects = choice.objects;
+  options.scenes = named_scenes(scenes);
+  options.objects = objects;
   if (options.objects.empty()) {
     options.objects = quick ? std::vector<std::size_t>{300, 1000}
                             : std::vector<std::size_t>{1000, 10'000, 100'000};
     if (million) options.objects.push_back(1'000'000);
   }
   sort_once(options.objects);
-  options.threads = choice.threads.empty() ? usual_threads() : choice.threads;
+  options.threads = threads;
   sort_once(options.threads);
-  for (const Isa isa : available_isas()) {
-    if (isa != active_isa()) options.isas.push_back(isa);
+  for (const Isa one : available_isas()) {
+    if (one != active_isa()) options.isas.push_back(one);
   }
   options.isas.push_back(active_isa());
   options.peers = has_peers() && !no_peers;
   options.quick = quick;
-  options.seed = choice.seed;
+  options.seed = seed;
   return options;
 }
 
@@ -71,9 +92,9 @@ std::vector<const ReportSection*> ReportCommand::sections() const {
 }
 
 void ReportCommand::note_settings(const ReportOptions& options, Results& results) const {
-  Json scenes = Json::array();
-  for (const NamedScene& scene : options.scenes) scenes.push_back(scene.name);
-  results.document()["settings"] = {{"scenes", scenes},
+  Json names = Json::array();
+  for (const NamedScene& scene : options.scenes) names.push_back(scene.name);
+  results.document()["settings"] = {{"scenes", names},
                                     {"objects", options.objects},
                                     {"threads", options.threads},
                                     {"seed", options.seed},
@@ -91,7 +112,7 @@ void ReportCommand::note_settings(const ReportOptions& options, Results& results
 }
 
 int ReportCommand::run() {
-  choose_isa(choice.isa);
+  choose_isa(isa);
   if (out.empty()) throw ArgumentError("--out: a folder, please");
   if (!from.empty()) {
     Results results = read_results(from);
@@ -118,32 +139,10 @@ int ReportCommand::run() {
 }  // namespace
 
 Command add_report(CLI::App& app) {
-  auto report = std::make_shared<ReportCommand>();
-  CLI::App* sub = app.add_subcommand(
-      "report",
+  return command<ReportCommand>(
+      app, "report",
       "Speed against error of everything, on one page: throughput, memory, volumes, pairs of "
       "shapes, hard cases, queries, the pipeline, and which partition to take");
-  std::vector<std::string> ids;
-  for (const ReportSection& section : report_sections()) ids.emplace_back(section.id);
-  sub->add_option("--out", report->out,
-                  "Folder for index.html, results.json and CSVs; it is made if it is not there")
-      ->capture_default_str();
-  sub->add_option("--scene", report->choice.scenes,
-                  "Built-in scenes or recordings (.aabbs, .aabbs.xz); default: the six main ones")
-      ->delimiter(',');
-  add_objects_option(*sub, report->choice);
-  add_threads_option(*sub, report->choice);
-  add_seed_option(*sub, report->choice);
-  add_isa_option(*sub, report->choice);
-  sub->add_option("--section", report->section_ids, "Only these")
-      ->delimiter(',')
-      ->check(CLI::IsMember(ids));
-  sub->add_flag("--million", report->million, "1,000,000 objects, too");
-  sub->add_flag("--quick", report->quick, "Small and unsteady, in seconds: to see what there is");
-  sub->add_flag("--no-peers", report->no_peers, "Without other libraries");
-  sub->add_option("--from", report->from,
-                  "Measure nothing: write the page and the CSVs of this results.json");
-  return {sub, [report] { return report->run(); }};
 }
 
 }  // namespace winnow::bench

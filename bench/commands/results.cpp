@@ -1,4 +1,5 @@
 #include "bench/commands/command.h"
+#include "bench/commands/options.h"
 #include "bench/report/markdown.h"
 
 #include <cerrno>
@@ -17,6 +18,14 @@ struct ResultsCommand {
   std::string readme = "README.md";
   bool check = false;
 
+  void add_options(CLI::App& app) {
+    option(app, "results", from, "results.json of a report");
+    option(app, "--out", out, "The file of all tables");
+    option(app, "--readme", readme,
+           "A text with \"<!-- figures -->\" and \"<!-- end -->\" about one table");
+    app.add_flag("--check", check,
+                 "Change nothing: end with 1 if a figure is not what the results say");
+  }
   [[nodiscard]] int run() const;
 
  private:
@@ -75,18 +84,9 @@ int ResultsCommand::run() const {
 }  // namespace
 
 Command add_results(CLI::App& app) {
-  auto results = std::make_shared<ResultsCommand>();
-  CLI::App* sub = app.add_subcommand("results",
-                                     "Writes the tables of a report's results.json as Markdown, "
-                                     "and its main figures into a readme");
-  sub->add_option("results", results->from, "results.json of a report")->capture_default_str();
-  sub->add_option("--out", results->out, "The file of all tables")->capture_default_str();
-  sub->add_option("--readme", results->readme,
-                  "A text with \"<!-- figures -->\" and \"<!-- end -->\" about one table")
-      ->capture_default_str();
-  sub->add_flag("--check", results->check,
-                "Change nothing: end with 1 if a figure is not what the results say");
-  return {sub, [results] { return results->run(); }};
+  return command<ResultsCommand>(app, "results",
+                                 "Writes the tables of a report's results.json as Markdown, and "
+                                 "its main figures into a readme");
 }
 
 }  // namespace winnow::bench

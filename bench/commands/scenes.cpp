@@ -1,4 +1,3 @@
-#include "bench/commands/arguments.h"
 #include "bench/commands/command.h"
 #include "bench/common/table.h"
 #include "bench/contenders/reference_sweep.h"

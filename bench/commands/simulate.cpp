@@ -1,17 +1,11 @@
-#include "bench/commands/arguments.h"
-#include "bench/commands/command.h"
+#include "bench/commands/options.h"
+#include "bench/commands/rows_command.h"
 #include "bench/common/arena.h"
-#include "bench/common/counting_resource.h"
-#include "bench/common/json.h"
-#include "bench/common/progress.h"
 #include "bench/common/table.h"
 #include "bench/measure/fingerprint.h"
 #include "bench/recordings/recording.h"
 #include "bench/report/page.h"
 #include "bench/rows/flow_rows.h"
-#include "bench/rows/print.h"
-#include "bench/simulation/flow_check.h"
-#include "bench/simulation/flow_history.h"
 #include "bench/simulation/mesh_files.h"
 
 #include <algorithm>
@@ -31,56 +25,24 @@ constexpr double kMostRise = 1e-3;
 /// Facts about a run, as they are printed: what and how much.
 using FlowFacts = std::vector<std::pair<std::string, std::string>>;
 
-/// A flow, step by step, with everything that is noted of it.
-class FlowRun {
+/// Steps of a run, of which some are announced.
+class AnnouncedSteps {
  public:
-  FlowRun(const FlowOptions& options, std::size_t steps, std::size_t check)
-      : flow_(with_memory(options)),
-        steps_(steps),
-        check_(check),
-        progress_(std::min(steps, kReports)) {
-    if (check_ != 0) flow_.keep_contact_poses();
-  }
+  AnnouncedSteps(FlowRun& run, std::size_t steps)
+      : run_(run),
+        every_(std::max<std::size_t>(1, steps / kReports)),
+        progress_(std::min(steps, kReports)) {}
 
   void step() {
-    const std::size_t i = flow_.steps();
-    const std::size_t every = std::max<std::size_t>(1, steps_ / kReports);
-    if (i % every == 0) announce();
-    if (i == warm_up()) {
-      allocations_before_ = memory_.allocations();
-      steady_before_ = steady_.count();
-    }
-    flow_.step(i % kProfiledSteps == 0);
-    history_.add(flow_);
-    steady_.note(flow_, memory_.allocations());
-    if (check_ != 0 && i % check_ == 0) {
-      faults_ += check_contacts(flow_);
-      ++checks_;
-    }
+    if (run_.flow().steps() % every_ == 0) announce();
+    run_.step();
   }
-
-  [[nodiscard]] std::size_t warm_up() const { return steps_ / 2; }
-  [[nodiscard]] std::size_t allocations() const {
-    return memory_.allocations() - allocations_before_;
-  }
-  /// In steps with no more contacts than before.
-  [[nodiscard]] std::size_t steady_allocations() const { return steady_.count() - steady_before_; }
-  [[nodiscard]] std::size_t bytes() const { return memory_.outstanding(); }
-  [[nodiscard]] const GranularFlow& flow() const { return flow_; }
-  [[nodiscard]] const FlowHistory& history() const { return history_; }
-  [[nodiscard]] const FlowFaults& faults() const { return faults_; }
-  [[nodiscard]] std::size_t checks() const { return checks_; }
-  void finish() { progress_.clear(); }
+  [[nodiscard]] const GranularFlow& flow() const { return run_.flow(); }
 
  private:
-  FlowOptions with_memory(FlowOptions options) {
-    options.memory = &memory_;
-    return options;
-  }
-
   void announce() {
-    const std::vector<FlowSample>& samples = history_.samples();
-    std::string text = "step " + grouped(flow_.steps());
+    const std::vector<FlowSample>& samples = run_.history().samples();
+    std::string text = "step " + grouped(run_.flow().steps());
     if (!samples.empty()) {
       text += ", " + grouped(samples.back().contacts) + " contacts, " +
               short_number(samples.back().times.total()) + " ms a step";
@@ -88,69 +50,73 @@ class FlowRun {
     progress_.step(text);
   }
 
-  CountingResource memory_;
-  GranularFlow flow_;
-  FlowHistory history_;
-  std::size_t steps_;
-  std::size_t check_;
-  FlowFaults faults_;
-  std::size_t checks_ = 0;
-  SteadyAllocations steady_;
-  std::size_t allocations_before_ = 0;
-  std::size_t steady_before_ = 0;
+  FlowRun& run_;
+  std::size_t every_;
   Progress progress_;
 };
 
 /// A flow as the writer of recordings wants it.
 class FlowFrames final : public FrameSource {
  public:
-  explicit FlowFrames(FlowRun& run) : run_(run), boxes_(run.flow().objects()) { look(); }
+  explicit FlowFrames(AnnouncedSteps& steps) : steps_(steps), boxes_(steps.flow().objects()) {
+    look();
+  }
 
   [[nodiscard]] std::string name() const override { return "granular flow"; }
-  [[nodiscard]] Aabb world() const override { return run_.flow().world(); }
+  [[nodiscard]] Aabb world() const override { return steps_.flow().world(); }
   [[nodiscard]] std::span<const Aabb> boxes() const override { return boxes_; }
   bool advance() override {
-    for (std::size_t i = 0; i < kRecorded; ++i) run_.step();
+    for (std::size_t i = 0; i < kRecorded; ++i) steps_.step();
     look();
     return true;
   }
 
  private:
   void look() {
-    for (std::size_t i = 0; i < boxes_.size(); ++i) boxes_[i] = run_.flow().box(i);
+    for (std::size_t i = 0; i < boxes_.size(); ++i) boxes_[i] = steps_.flow().box(i);
   }
 
-  FlowRun& run_;
+  AnnouncedSteps& steps_;
   std::vector<Aabb> boxes_;
 };
 
-struct Simulate {
-  Choice choice;
-  std::size_t objects = 10'000;
-  std::size_t steps = 2'000;
-  std::string shape = "mixed";
-  int threads = usual_threads().back();
-  std::size_t check = 0;
-  std::string mesh;
-  std::string out;
-  std::string record;
-  std::string json;
-
-  int run();
+class Simulate final : public RowsCommand {
+ public:
+  void add_options(CLI::App& app);
 
  private:
+  void measure() override;
   [[nodiscard]] FlowFacts facts(const FlowRun& run) const;
-  [[nodiscard]] Results rows(const FlowRun& run) const;
-  void write_flow_page(const Results& results, const FlowFacts& facts) const;
+  void write_flow_page(const FlowFacts& facts) const;
+
+  FlowQuestion asked_{.objects = 10'000, .steps = 2'000, .threads = usual_threads().back()};
+  std::string mesh_;
+  std::string out_;
+  std::string record_;
 };
+
+void Simulate::add_options(CLI::App& app) {
+  number(app, "--objects", asked_.objects, 1, 1e7, "Number of bodies");
+  number(app, "--steps", asked_.steps, 1, 1e8, "Steps of a thousandth of a second");
+  one_of(app, "--shape", asked_.shape, flow_shape_names(), "What falls");
+  option(app, "--mesh", mesh_,
+         "An OBJ, STL or PLY file to fall into, scaled to the funnel's width");
+  option(app, "--out", out_, "An HTML page to write, with plots over time");
+  option(app, "--record", record_, "An .aabbs file to write, one frame every 10 steps");
+  option(app, "--check", asked_.check,
+         "Every so many steps, compare the contacts with those of all pairs");
+  add_threads_option(app, asked_.threads);
+  add_seed_option(app, asked_.seed);
+  add_rows_options(app);
+}
 
 FlowFacts Simulate::facts(const FlowRun& run) const {
   const GranularFlow& flow = run.flow();
   const FlowSample& last = run.history().samples().back();
   FlowFacts facts{
-      {"objects", grouped(flow.objects()) + " " + shape},
+      {"objects", grouped(flow.objects()) + " " + asked_.shape},
       {"mesh",
-       (mesh.empty() ? "funnel" : mesh) + ", " + grouped(flow.mesh().size()) + " triangles"},
+       (mesh_.empty() ? "funnel" : mesh_) + ", " + grouped(flow.mesh().size()) + " triangles"},
       {"steps", grouped(flow.steps()) + ", " + short_number(flow.time()) + " s"},
       {"put back at the top", grouped(flow.returned())},
       {"contacts in the last step",
@@ -165,7 +131,7 @@ FlowFacts Simulate::facts(const FlowRun& run) const {
       {"allocations after " + grouped(run.warm_up()) + " steps",
        grouped(run.allocations()) + ", " + grouped(run.steady_allocations()) +
            " in steps with no more contacts than ever before"}};
-  if (check != 0) {
+  if (asked_.check != 0) {
     const FlowFaults& faults = run.faults();
     facts.emplace_back("checked by brute force",
                        grouped(run.checks()) + " steps, " + grouped(faults.compared) +
@@ -177,117 +143,58 @@ FlowFacts Simulate::facts(const FlowRun& run) const {
   return facts;
 }
 
-/// Rows of the report, and how the memory and the check went.
-Results Simulate::rows(const FlowRun& run) const {
-  Results results;
-  declare_flows(results);
-  results.declare({"flow_checks",
-                   "pipeline",
-                   "memory and contacts of a granular flow",
-                   {"shape", "objects", "steps"},
-                   {{"allocations", "allocations in the second half", ""},
-                    {"steady_allocations", "with no more contacts than ever before", ""},
-                    {"lost", "contacts lost", "", Better::less, Format::count},
-                    {"invented", "contacts invented", "", Better::less, Format::count},
-                    {"doubled", "contacts doubled", "", Better::less, Format::count}}});
-  add_flow(results,
-           {.shape = shape,
-            .objects = objects,
-            .steps = run.flow().steps(),
-            .seed = choice.seed,
-            .threads = threads},
-           run.flow(), run.history());
-  results.add("flow_checks", {{"shape", shape},
-                              {"objects", objects},
-                              {"steps", run.flow().steps()},
-                              {"allocations", run.allocations()},
-                              {"steady_allocations", run.steady_allocations()},
-                              {"lost", run.faults().lost},
-                              {"invented", run.faults().invented},
-                              {"doubled", run.faults().doubled}});
-  return results;
-}
-
-void Simulate::write_flow_page(const Results& results, const FlowFacts& facts) const {
+void Simulate::write_flow_page(const FlowFacts& facts) const {
   const PageParts page = section_parts(results, section_of("pipeline"));
   Json shown_facts = Json::object();
   for (const auto& [what, much] : facts) shown_facts[what] = much;
-  write_plot_page(out, "winnow simulate",
+  write_plot_page(out_, "winnow simulate",
                   "<h1>Granular flow</h1>\n" + facts_table("run", shown_facts) + page.html,
                   page.plots);
 }
 
-int Simulate::run() {
-  choose_isa(choice.isa);
-  FlowOptions options;
-  options.objects = objects;
-  options.shape = flow_shape_named(shape);
-  options.seed = choice.seed;
-  options.execution = threads == 1 ? Execution::serial() : Execution::parallel();
-  if (!mesh.empty()) {
+void Simulate::measure() {
+  declare_flows(results);
+  declare_flow_checks(results);
+  FlowOptions options = flow_options(asked_);
+  if (!mesh_.empty()) {
     try {
-      options.mesh = read_mesh(mesh);
+      options.mesh = read_mesh(mesh_);
     } catch (const MeshFileError& error) {
       throw ArgumentError(std::string("--mesh: ") + error.what());
     }
   }
-  Arenas arenas(threads);
-  int status = kDone;
-  arenas.run(threads, [&] {
-    FlowRun run(options, steps, check);
-    if (record.empty()) {
-      for (std::size_t i = 0; i < steps; ++i) run.step();
-    } else {
-      FlowFrames frames(run);
-      write_recording(record, frames, shape, std::max<std::size_t>(1, steps / kRecorded));
+  Arenas(asked_.threads).run(asked_.threads, [&] {
+    FlowRun run(options, asked_.steps, asked_.check);
+    {
+      AnnouncedSteps steps(run, asked_.steps);
+      if (record_.empty()) {
+        for (std::size_t i = 0; i < asked_.steps; ++i) steps.step();
+      } else {
+        FlowFrames frames(steps);
+        write_recording(record_, frames, asked_.shape,
+                        std::max<std::size_t>(1, asked_.steps / kRecorded));
+      }
     }
-    run.finish();
-    std::cout << isa_name() << ", " << threads_text(threads)
+    std::cout << isa_name() << ", " << threads_text(asked_.threads)
               << "; medians of the profiled steps in the second half\n";
-    const Results measured = rows(run);
-    print_rows(std::cout, measured, "phases");
+    asked_.steps = run.flow().steps();
+    add_flow(results, asked_, run);
+    print("phases");
     const FlowFacts all = facts(run);
     for (const auto& [what, much] : all) std::cout << what << ": " << much << '\n';
-    if (!out.empty()) write_flow_page(measured, all);
-    if (!json.empty()) write_json(json, all_rows_of(measured));
-    const bool is_right = run.faults().total() == 0 && run.history().greatest_rise() < kMostRise;
-    status = is_right ? kDone : kFailed;
+    if (!out_.empty()) write_flow_page(all);
+    if (run.faults().total() != 0 || run.history().greatest_rise() >= kMostRise) fail();
   });
-  return status;
 }
 
 }  // namespace
 
 Command add_simulate(CLI::App& app) {
-  auto simulate = std::make_shared<Simulate>();
-  CLI::App* sub = app.add_subcommand(
-      "simulate",
+  return command<Simulate>(
+      app, "simulate",
       "Granular flow through a funnel made of triangles: a simulation that embeds winnow, its soak "
       "test, and its benchmark from end to end. Fails if contacts create energy or a check finds a "
       "contact lost, invented or doubled.");
-  sub->add_option("--objects", simulate->objects, "Number of bodies")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{10'000'000}))
-      ->capture_default_str();
-  sub->add_option("--steps", simulate->steps, "Steps of a thousandth of a second")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}))
-      ->capture_default_str();
-  sub->add_option("--shape", simulate->shape, "What falls")
-      ->check(CLI::IsMember(flow_shape_names()))
-      ->capture_default_str();
-  sub->add_option("--mesh", simulate->mesh,
-                  "An OBJ, STL or PLY file to fall into, scaled to the funnel's width");
-  sub->add_option("--out", simulate->out, "An HTML page to write, with plots over time");
-  sub->add_option("--record", simulate->record,
-                  "An .aabbs file to write, one frame every 10 steps");
-  sub->add_option("--check", simulate->check,
-                  "Every so many steps, compare the contacts with those of all pairs");
-  sub->add_option("--threads", simulate->threads, "Number of threads")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  add_isa_option(*sub, simulate->choice);
-  add_seed_option(*sub, simulate->choice);
-  add_json_option(*sub, simulate->json);
-  return {sub, [simulate] { return simulate->run(); }};
 }
 
 }  // namespace winnow::bench

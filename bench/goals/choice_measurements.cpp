@@ -1,69 +1,22 @@
 #include "bench/contenders/partitions.h"
-#include "bench/goals/choice.h"
+#include "bench/goals/asked_scenes.h"
 #include "bench/goals/measurements.h"
-#include "bench/measure/advice.h"
-#include "bench/rows/frame_rows.h"
+#include "bench/measure/race.h"
 #include "bench/scenes/scene.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
-#include <stdexcept>
 
 namespace winnow::bench {
 namespace {
 
-constexpr std::string_view kAuto = "AutoPartition";
 constexpr std::size_t kFirst = 6;  // frames until a choice should have settled
-
-using RunSpan = std::span<const Run>;
-
-double sum_of_frames(const Run& run, std::size_t begin, std::size_t end) {
-  const auto at = run.frame_ms.begin();
-  return std::accumulate(at + static_cast<std::ptrdiff_t>(begin),
-                         at + static_cast<std::ptrdiff_t>(std::min(end, run.frame_ms.size())), 0.0);
-}
-
-std::vector<const Run*> on_threads(RunSpan runs, int threads) {
-  std::vector<const Run*> chosen;
-  for (const Run& run : runs) {
-    if (run.threads == threads) chosen.push_back(&run);
-  }
-  return chosen;
-}
-
-/// AutoPartition's, and of the others that `cost` is least of.
-struct OwnAndBest {
-  const Run* own = nullptr;
-  const Run* best = nullptr;
-};
-
-template <typename Cost>
-OwnAndBest own_and_best(const std::vector<const Run*>& runs, Cost&& cost) {
-  OwnAndBest found;
-  for (const Run* run : runs) {
-    const Run*& place = run->engine == kAuto ? found.own : found.best;
-    if (place == nullptr || cost(*run) < cost(*place)) place = run;
-  }
-  if (found.own == nullptr || found.best == nullptr) {
-    throw std::runtime_error("AutoPartition and others must run");
-  }
-  return found;
-}
-
-/// The median over the settled frames of one's time over the other's: neighbours in time, so that
-/// what disturbs the machine disturbs both.
-double settled_ratio(const Run& a, const Run& b) {
-  std::vector<double> ratios;
-  for (std::size_t f = std::min(kFirst, a.frame_ms.size() - 1); f < a.frame_ms.size(); ++f) {
-    ratios.push_back(a.frame_ms[f] / b.frame_ms[f]);
-  }
-  return median_of(ratios);
-}
 
 /// Races all partitions on the same frames a few times over and keeps each frame's least time: sums
 /// of few frames say nothing if one of them was disturbed.
-template <typename MakeSource>
-std::vector<Run> undisturbed(MakeSource&& make_source, std::size_t frames, int threads) {
+std::vector<Run> undisturbed(const std::function<std::unique_ptr<FrameSource>()>& make_source,
+                             std::size_t frames, int threads) {
   constexpr int kRounds = 3;
   std::vector<Run> runs;
   for (int round = 0; round < kRounds; ++round) {
@@ -84,23 +37,26 @@ std::vector<Run> undisturbed(MakeSource&& make_source, std::size_t frames, int t
   return runs;
 }
 
-void add_choice(Results& results, const Json& keys, const OwnAndBest& of, double own_ms,
-                double best_ms, double ratio) {
-  Json row = keys;
-  row.update({{"ratio", ratio}, {"ms", own_ms}, {"best", of.best->engine}, {"best_ms", best_ms}});
-  results.add("choice", std::move(row));
-}
+/// What AutoPartition and the best of the others took for some of the frames.
+struct OwnAndBest {
+  double own_ms = 0.0;
+  double best_ms = 0.0;
+  std::string best{};
 
-template <typename MakeSource>
-void add_first_choice(Results& results, const std::string& scene, std::size_t objects, int threads,
-                      MakeSource&& make_source) {
-  const std::vector<Run> runs = undisturbed(make_source, kFirst, threads);
-  const auto first = [](const Run& run) { return sum_of_frames(run, 0, kFirst); };
-  const OwnAndBest of = own_and_best(on_threads(runs, threads), first);
-  add_choice(results,
-             {{"scene", scene}, {"objects", objects}, {"threads", threads}, {"frames", "first"}},
-             of, first(*of.own), first(*of.best), first(*of.own) / first(*of.best));
-}
+  OwnAndBest(const std::vector<Run>& runs, std::size_t begin, std::size_t end) {
+    for (const Run& run : runs) {
+      const auto at = run.frame_ms.begin();
+      const auto stop = static_cast<std::ptrdiff_t>(std::min(end, run.frame_ms.size()));
+      const double ms = std::accumulate(at + static_cast<std::ptrdiff_t>(begin), at + stop, 0.0);
+      if (run.engine == "AutoPartition") {
+        own_ms = ms;
+      } else if (best.empty() || ms < best_ms) {
+        best_ms = ms;
+        best = run.engine;
+      }
+    }
+  }
+};
 
 /// One scene after another with the same objects: a scene that changes its nature at once.
 class TurningScene final : public FrameSource {
@@ -132,53 +88,27 @@ class TurningScene final : public FrameSource {
 
 }  // namespace
 
-void declare_choice(Results& results) {
-  results.declare({"choice",
-                   "choice",
-                   "AutoPartition over the best",
-                   {"scene", "objects", "threads", "frames"},
-                   {{"ratio", "ratio", "times", Better::less},
-                    {"ms", "AutoPartition", "ms"},
-                    {"best", "best", "", Better::neither, Format::text},
-                    {"best_ms", "its time", "ms"}}});
-}
-
-void add_settled_choice(Results& results, const std::string& scene, const Measurement& measured) {
-  for (const int threads : {1, 2}) {
-    const std::vector<const Run*> runs = on_threads(measured.partitions(), threads);
-    if (runs.empty()) continue;
-    const OwnAndBest of = own_and_best(runs, settled_ms);
-    add_choice(results,
-               {{"scene", scene},
-                {"objects", measured.objects},
-                {"threads", threads},
-                {"frames", "settled"}},
-               of, settled_ms(*of.own), settled_ms(*of.best), settled_ratio(*of.own, *of.best));
-  }
-}
-
 void measure_first_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
-  const std::string scene = options.at("scene");
-  const std::size_t objects = options.at("objects");
-  declare_choice(measured.results);
-  add_first_choice(measured.results, scene, objects, options.at("threads"),
-                   [&] { return scene_or_error(scene, objects, 1); });
-}
-
-void measure_recorded_choice(const Json& options, Lab& /*lab*/, Measured& measured) {
-  declare_choice(measured.results);
-  declare_frames(measured.results);
-  const std::vector<std::string> files = recordings_in(options.at("folder"));
-  measured.absent = files.empty();
+  measured.results.declare({"first_frames",
+                            "choice",
+                            "the first frames of AutoPartition over those of the best",
+                            {"scene", "objects", "threads"},
+                            {{"ratio", "ratio", "times", Better::less},
+                             {"ms", "AutoPartition", "ms"},
+                             {"best", "best", "", Better::neither, Format::text},
+                             {"best_ms", "its time", "ms"}}});
   const int threads = options.at("threads");
-  for (const NamedScene& scene : named_scenes(files)) {
-    const std::size_t frames =
-        std::min(scene.recording->frames.size(), options.at("frames").get<std::size_t>());
-    const Measurement raced =
-        add_frame_race(measured.results, scene, {.threads = {threads}, .frames = frames});
-    add_settled_choice(measured.results, scene.name, raced);
-    add_first_choice(measured.results, scene.name, raced.objects, threads,
-                     [&] { return play(*scene.recording); });
+  for (const NamedScene& scene : asked_scenes(options, measured)) {
+    const std::size_t objects = scene.objects(options.value("objects", std::size_t{0}));
+    const auto runs = undisturbed([&] { return scene.source(objects, 1); }, kFirst, threads);
+    const OwnAndBest of(runs, 0, kFirst);
+    measured.results.add("first_frames", {{"scene", scene.name},
+                                          {"objects", objects},
+                                          {"threads", threads},
+                                          {"ratio", of.own_ms / of.best_ms},
+                                          {"ms", of.own_ms},
+                                          {"best", of.best},
+                                          {"best_ms", of.best_ms}});
   }
 }
 
@@ -192,22 +122,17 @@ void measure_changes(const Json& options, Lab& /*lab*/, Measured& measured) {
   const auto scenes = options.at("scenes").get<std::vector<std::string>>();
   const std::size_t each = options.at("frames_each");
   const std::size_t objects = options.at("objects");
-  const int threads = options.at("threads");
-  const auto make_source = [&]() -> std::unique_ptr<FrameSource> {
-    return std::make_unique<TurningScene>(scenes, objects, each);
-  };
-  const std::vector<Run> runs = undisturbed(make_source, each * scenes.size(), threads);
+  const auto runs =
+      undisturbed([&] { return std::make_unique<TurningScene>(scenes, objects, each); },
+                  each * scenes.size(), options.at("threads"));
   for (std::size_t turn = 1; turn < scenes.size(); ++turn) {
-    const auto sum = [&](const Run& run) {
-      return sum_of_frames(run, turn * each, (turn + 1) * each);
-    };
-    const OwnAndBest of = own_and_best(on_threads(runs, threads), sum);
-    const double frame = sum(*of.best) / static_cast<double>(each);
+    const OwnAndBest of(runs, turn * each, (turn + 1) * each);
+    const double frame = of.best_ms / static_cast<double>(each);
     measured.results.add("changes", {{"from", scenes[turn - 1]},
                                      {"into", scenes[turn]},
                                      {"objects", objects},
-                                     {"frames_lost", (sum(*of.own) - sum(*of.best)) / frame},
-                                     {"best", of.best->engine}});
+                                     {"frames_lost", (of.own_ms - of.best_ms) / frame},
+                                     {"best", of.best}});
   }
 }
 

@@ -97,15 +97,23 @@ AskFigure sum_of(const std::vector<const Json*>& rows, const std::string& value)
   return sum;
 }
 
+/// Fitted to values that belong to numbers of objects.
+AskFigure exponent_of(const std::vector<const Json*>& rows, const std::string& value) {
+  std::vector<GrowthPoint> points;
+  for (const Json* row : rows) points.push_back({value_of(*row, "objects"), value_of(*row, value)});
+  return {fitted_exponent(points), "of " + std::to_string(rows.size()) + " rows"};
+}
+
 /// Of the rows by one of the rules; none if there are no such rows.
 std::optional<AskFigure> picked(const Json& figure, const Rows& rows, const Json& narrowed) {
-  for (const char* rule : {"least", "most", "sum", "the"}) {
+  for (const char* rule : {"least", "most", "sum", "exponent", "the"}) {
     if (!figure.contains(rule)) continue;
     const std::string value = figure[rule];
     std::vector<const Json*> found = rows.of(figure, narrowed);
     std::erase_if(found, [&](const Json* row) { return !row->contains(value); });
     if (found.empty()) return std::nullopt;
     if (rule == std::string("sum")) return sum_of(found, value);
+    if (rule == std::string("exponent")) return exponent_of(found, value);
     if (rule == std::string("the") && found.size() > 1) {
       throw std::runtime_error("goals.json: more than one row for " + figure.dump());
     }

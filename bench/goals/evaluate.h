@@ -33,9 +33,11 @@ struct Goal {
 ///
 /// A FIGURE is a number, or an object:
 ///
-///   {"least" | "most" | "sum" | "the": value, "of": table, "where": {members}}, of the rows with
+///   {"least" | "most" | "sum" | "exponent" | "the": value, "of": table, "where": {members}}, of
+///   the rows with
 ///     these members (of a list any; "peer": whether they are another library's; "@isa": the active
-///     instruction set); "else_existing": number, if there are none
+///     instruction set; the exponent is that of growth with "objects"); "else_existing": number, if
+///     there are none
 ///   {"existing": number}: a time of another library, elsewhere, scaled by how much slower the
 ///     reference sweep was while the rows were measured
 ///   {"least_of": [FIGURE, ...]}: the least of those that there are

@@ -1,35 +1,319 @@
 #include "bench/goals/measurements.h"
 
+#include "bench/contenders/partitions.h"
+#include "bench/goals/asked_scenes.h"
+#include "bench/measure/query_costs.h"
+#include "bench/measure/upkeep.h"
+#include "bench/questions/hard_cases.h"
+#include "bench/rows/accuracy_rows.h"
+#include "bench/rows/advice_rows.h"
+#include "bench/rows/flow_rows.h"
+#include "bench/rows/frame_rows.h"
+#include "bench/rows/hard_case_rows.h"
+#include "bench/rows/kernel_rows.h"
+#include "bench/rows/machine.h"
+#include "bench/rows/query_rows.h"
+#include "bench/rows/scene_rows.h"
+#include "bench/simulation/flow_phases.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <map>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
 
 namespace winnow::bench {
+namespace {
+
+/// Frames that a goal is measured on.
+std::size_t frames_of_goal(std::size_t objects) {
+  return objects <= 20'000 ? 81U : objects <= 300'000 ? 26U : 8U;
+}
+
+/// Throughput, interleaved: of every partition that suits the size on 1 and 2 threads on the active
+/// instruction set, unless the options say otherwise.
+void goal_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_frames(measured.results);
+  MeasureOptions how{.objects = options.at("objects"), .machine_clock = true};
+  how.partitions = options.value("partitions", how.partitions);
+  how.threads = options.value("threads", std::vector<int>{1, 2});
+  how.frames = options.value("frames", frames_of_goal(how.objects));
+  if (options.contains("isas")) how.isas.assign(available_isas().begin(), available_isas().end());
+  for (const NamedScene& scene : asked_scenes(options, measured)) {
+    measured.machine_ms = add_frame_race(measured.results, scene, how).machine_ms;
+  }
+}
+
+/// Every partition on every instruction set and numbers of threads against the reference.
+void goal_same_pairs(const Json& options, Lab& /*lab*/, Measured& measured) {
+  measured.results.declare({"same_pairs",
+                            "engine",
+                            "runs against the reference",
+                            {"scene", "objects", "partition", "threads", "isa"},
+                            {{"differs", "finds other pairs", "", Better::less}}});
+  for (const NamedScene& scene : asked_scenes(options, measured)) {
+    MeasureOptions how{.scene = scene.argument,
+                       .recording = scene.recording.get(),
+                       .objects = scene.objects(options.value("objects", std::size_t{1})),
+                       .threads = options.at("threads"),
+                       .reference = true,
+                       .frames = scene.is_recording() ? scene.recording->frames.size() : 6};
+    how.isas.assign(available_isas().begin(), available_isas().end());
+    const Measurement raced = measure(how);
+    for (const Run& run : raced.partitions()) {
+      measured.results.add("same_pairs", {{"scene", scene.name},
+                                          {"objects", raced.objects},
+                                          {"partition", run.engine},
+                                          {"threads", run.threads},
+                                          {"isa", to_string(run.isa)},
+                                          {"differs", run.same_pairs(raced.runs.back()) ? 0 : 1}});
+    }
+  }
+}
+
+void goal_keys(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_keys(measured.results);
+  for (const std::string& partition : testing_partitions()) {
+    for (const std::size_t objects : options.at("objects")) {
+      add_key_costs(measured.results, partition, objects, options.at("order") == "random");
+    }
+  }
+}
+
+void goal_limits(const Json& options, Lab& lab, Measured& measured) {
+  Json frames = Json::object();
+  frames["frames"] = options;
+  measured.results = lab.measured(frames).results;
+  declare_limits(measured.results);
+  add_limit(measured.results, options.at("scene"), options.at("objects"));
+}
+
+void goal_kernels(const Json& options, Lab& /*lab*/, Measured& measured) {
+  const auto isas = isa_names();
+  measured.absent = std::find(isas.begin(), isas.end(), options.at("isa")) == isas.end();
+  if (measured.absent) return;
+  declare_kernels(measured.results);
+  add_kernels(measured.results, 9);
+}
+
+void goal_advice(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_advice(measured.results);
+  for (const NamedScene& scene : asked_scenes(options, measured)) {
+    const std::size_t objects = scene.objects(options.value("objects", std::size_t{0}));
+    const std::size_t frames = scene.is_recording()
+                                   ? std::min<std::size_t>(scene.recording->frames.size(), 200)
+                                   : frames_of_goal(objects);
+    add_advice(measured.results, scene, objects, 1, partitions_for({"all"}, objects).taken, frames,
+               options.at("threads"));
+  }
+}
+
+/// One partition and the other libraries that answer questions, one thread.
+void goal_queries(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_queries(measured.results);
+  measured.machine_ms =
+      add_queries(measured.results, asked_scenes(options, measured).front(),
+                  {.objects = options.at("objects"),
+                   .partitions = {options.at("partition")},
+                   .rays = 50'000,
+                   .rounds = 7,
+                   .sets = {"ray closest", "ray all", "ray all near", "box 1", "box 5", "box 20"},
+                   .peers = true})
+          .machine_ms;
+}
+
+void goal_frusta(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_queries(measured.results);
+  add_frusta(measured.results, options.at("objects"), 15);
+}
+
+/// Allocations of every partition when the same questions are asked again.
+void goal_second_rounds(const Json& options, Lab& /*lab*/, Measured& measured) {
+  measured.results.declare({"second_rounds",
+                            "queries",
+                            "allocations when asked again",
+                            {"partition", "set"},
+                            {{"allocations", "allocations", "", Better::less}}});
+  for (const std::string& partition : testing_partitions()) {
+    for (const SecondRound& round : measure_second_rounds(partition, options.at("objects"))) {
+      measured.results.add(
+          "second_rounds",
+          {{"partition", partition}, {"set", round.set}, {"allocations", round.allocations}});
+    }
+  }
+}
+
+/// Partitions after many removals and insertions against fresh ones.
+void goal_churn(const Json& options, Lab& /*lab*/, Measured& measured) {
+  measured.results.declare({"churn",
+                            "queries",
+                            "a worn partition over a fresh one",
+                            {"partition", "of"},
+                            {{"ratio", "ratio", "times", Better::less}}});
+  for (const std::string partition : options.at("partitions")) {
+    for (const auto& [of, ratio] :
+         measure_churn(partition, options.at("objects"), options.at("operations"))) {
+      measured.results.add("churn", {{"partition", partition}, {"of", of}, {"ratio", ratio}});
+    }
+  }
+}
+
+/// Frames with pair events in which a share of the objects moves.
+void goal_pair_events(const Json& options, Lab& /*lab*/, Measured& measured) {
+  measured.results.declare({"pair_events",
+                            "queries",
+                            "frames with pair events",
+                            {"partition", "share"},
+                            {{"ms", "a frame", "ms", Better::less}}});
+  const auto shares = options.at("shares").get<std::vector<double>>();
+  const std::string partition = options.at("partition");
+  const auto ms = measure_event_frames(partition, options.at("objects"), shares);
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    measured.results.add("pair_events",
+                         {{"partition", partition}, {"share", shares[i]}, {"ms", to_value(ms[i])}});
+  }
+}
+
+/// One partition of many environments against a partition for each.
+void goal_worlds(const Json& options, Lab& /*lab*/, Measured& measured) {
+  measured.results.declare({"worlds",
+                            "queries",
+                            "many small worlds",
+                            {"partition", "how"},
+                            {{"ms", "a frame", "ms", Better::less}}});
+  const std::string partition = options.at("partition");
+  const auto ms = measure_worlds(partition, options.at("worlds"), options.at("objects"));
+  for (const auto& [how, times] : {std::pair{"together", ms[0]}, std::pair{"apart", ms[1]}}) {
+    measured.results.add("worlds",
+                         {{"partition", partition}, {"how", how}, {"ms", to_value(times)}});
+  }
+}
+
+/// Pairs of one kind: fast and robust on one thread, robust on two if there are too many pairs for
+/// the caches, and the other libraries.
+void goal_pairs(const Json& options, Lab& /*lab*/, Measured& measured) {
+  const std::string name = options.at("kind");
+  const PairKind* kind = find_pair_kind(name);
+  if (kind == nullptr) throw std::runtime_error("no kind of pairs " + name);
+  const std::size_t pairs = options.at("pairs");
+  declare_pair_times(measured.results, PairKeys::settings);
+  measured.machine_ms =
+      add_pair_times(
+          measured.results,
+          {.kind = *kind,
+           .pairs = pairs,
+           .tiers = {NarrowTier::fast, NarrowTier::robust},
+           .threads = pairs > kMostPairsInCache ? std::vector<int>{1, 2} : std::vector<int>{1},
+           .peers = true},
+          PairKeys::settings)
+          .machine_ms;
+}
+
+/// One tier on all kinds of pairs.
+void goal_errors(const Json& options, Lab& /*lab*/, Measured& measured) {
+  const auto pairs = options.at("pairs").get<std::map<std::string, std::size_t>>();
+  declare_pair_errors(measured.results);
+  for (const PairKind& kind : pair_kinds()) {
+    const auto own = pairs.find(std::string(kind.name));
+    AccuracyOptions asked{
+        .kind = kind,
+        .levels = {kLevels.begin(), kLevels.end()},
+        .tiers = {options.at("tier") == "robust" ? NarrowTier::robust : NarrowTier::reference},
+        .peers = false};
+    asked.set.pairs = own != pairs.end() ? own->second : pairs.at("others");
+    asked.set.ratio = options.at("ratio");
+    if (options.at("judge") == "reference") asked.judge = TruthSource::reference;
+    add_pair_errors(measured.results, asked, false);
+  }
+}
+
+/// Questions with reasoned answers in the files of a folder, either way round.
+void goal_hard_cases(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_hard_cases(measured.results);
+  const std::string folder = options.at("folder");
+  std::error_code absent;
+  for (const auto& file : std::filesystem::directory_iterator(folder, absent)) {
+    if (file.path().extension() != ".json") continue;
+    std::ifstream in(file.path());
+    const Json questions = Json::parse(in);
+    const std::string family = file.path().stem().string();
+    add_hard_cases(measured.results, family, questions, false);
+    add_hard_cases(measured.results, family + ", exchanged", exchanged(questions), false);
+  }
+  measured.absent = measured.results.rows("hard_cases").empty();
+}
+
+void goal_scenes(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_scenes(measured.results);
+  measured.machine_ms = add_scene_race(measured.results, {.scene = options.at("scene"),
+                                                          .resting = options.at("resting")})
+                            .machine_ms;
+}
+
+void goal_tori(const Json& /*options*/, Lab& /*lab*/, Measured& measured) {
+  declare_scenes(measured.results);
+  measured.machine_ms = add_tori(measured.results, 11, true, true).machine_ms;
+}
+
+/// A frame of the granular flow against its phases, each by itself.
+void goal_flow_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
+  measured.results.declare({"flow_frames",
+                            "pipeline",
+                            "a frame of a flow, and its phases alone",
+                            {"how"},
+                            {{"ms", "time", "ms", Better::less}}});
+  GranularFlow flow(flow_options({.shape = options.at("shape"), .objects = options.at("objects")}));
+  flow.keep_contact_poses();
+  for (std::size_t i = 0; i < options.at("steps").get<std::size_t>(); ++i) flow.step();
+  FlowPhases phases(flow, Execution::serial());
+  std::vector<double> frame;
+  std::vector<double> alone;
+  for (std::size_t i = 0; i < options.at("rounds").get<std::size_t>(); ++i) {
+    flow.step();
+    frame.push_back(flow.times().move + flow.times().narrow);
+    alone.push_back(phases.run().total());
+  }
+  measured.results.add("flow_frames", {{"how", "frame"}, {"ms", to_value(frame)}});
+  measured.results.add("flow_frames", {{"how", "phases"}, {"ms", to_value(alone)}});
+}
+
+/// A long granular flow: allocations, energy, and contacts against brute force.
+void goal_flow_soak(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_flows(measured.results);
+  declare_flow_checks(measured.results);
+  add_flow(measured.results, {.shape = options.at("shape"),
+                              .objects = options.at("objects"),
+                              .steps = options.at("steps"),
+                              .threads = 2,
+                              .check = options.at("check")});
+}
+
+}  // namespace
 
 const Measurer* find_measurer(const std::string& name) {
-  static const std::map<std::string, Measurer> all{{"frames", measure_frames},
-                                                   {"turns", measure_turns},
-                                                   {"isas", measure_isas},
-                                                   {"bytes", measure_bytes},
-                                                   {"keys", measure_key_costs_of},
-                                                   {"same_pairs", measure_same_pairs},
-                                                   {"limits", measure_limits},
-                                                   {"growth", measure_growth},
-                                                   {"kernels", measure_kernels},
+  static const std::map<std::string, Measurer> all{{"frames", goal_frames},
+                                                   {"same_pairs", goal_same_pairs},
+                                                   {"keys", goal_keys},
+                                                   {"limits", goal_limits},
+                                                   {"kernels", goal_kernels},
+                                                   {"advice", goal_advice},
                                                    {"first_frames", measure_first_frames},
-                                                   {"recorded_choice", measure_recorded_choice},
                                                    {"changes", measure_changes},
-                                                   {"queries", measure_queries_of},
-                                                   {"frusta", measure_frusta},
-                                                   {"second_rounds", measure_second_rounds_of},
-                                                   {"churn", measure_churn_of},
-                                                   {"pair_events", measure_pair_events},
-                                                   {"worlds", measure_worlds_of},
-                                                   {"pairs", measure_pairs},
-                                                   {"errors", measure_errors},
-                                                   {"turned_cases", measure_turned_cases},
-                                                   {"scenes", measure_scenes},
-                                                   {"tori", measure_tori},
-                                                   {"flow_frames", measure_flow_frames},
-                                                   {"flow_soak", measure_flow_soak},
+                                                   {"queries", goal_queries},
+                                                   {"frusta", goal_frusta},
+                                                   {"second_rounds", goal_second_rounds},
+                                                   {"churn", goal_churn},
+                                                   {"pair_events", goal_pair_events},
+                                                   {"worlds", goal_worlds},
+                                                   {"pairs", goal_pairs},
+                                                   {"errors", goal_errors},
+                                                   {"hard_cases", goal_hard_cases},
+                                                   {"scenes", goal_scenes},
+                                                   {"tori", goal_tori},
+                                                   {"flow_frames", goal_flow_frames},
+                                                   {"flow_soak", goal_flow_soak},
                                                    {"default_report", measure_default_report},
                                                    {"lone_report", measure_lone_report},
                                                    {"killed_report", measure_killed_report}};

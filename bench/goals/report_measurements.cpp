@@ -3,14 +3,10 @@
 #include "bench/common/table.h"
 #include "bench/goals/measurements.h"
 #include "bench/report/trace.h"
+#include "bench/rows/own_process.h"
 #include "bench/rows/results.h"
 
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -20,59 +16,21 @@
 namespace winnow::bench {
 namespace {
 
-/// A report that this tool makes in another process, in a folder that goes with it.
+/// A report that this tool makes in another process.
 class ReportProcess {
  public:
-  explicit ReportProcess(std::vector<std::string> options) {
-    static int count = 0;
-    folder_ = std::filesystem::temp_directory_path() /
-              ("winnow_goals_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
-    options.insert(options.begin(), {"winnow", "report", "--out", folder_.string()});
-    std::vector<char*> arguments;
-    for (std::string& option : options) arguments.push_back(option.data());
-    arguments.push_back(nullptr);
-    process_ = ::fork();
-    if (process_ != 0) return;
-    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-    ::dup2(nowhere, STDOUT_FILENO);
-    ::dup2(nowhere, STDERR_FILENO);
-    ::execv("/proc/self/exe", arguments.data());
-    ::_exit(127);
-  }
-  ReportProcess(const ReportProcess&) = delete;
-  ReportProcess& operator=(const ReportProcess&) = delete;
-  ~ReportProcess() {
-    end_with(SIGKILL);
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
+  explicit ReportProcess(const std::vector<std::string>& options)
+      : process_(with_folder(options, folder_.path()), true) {}
 
-  /// Exit status once it has ended; -1 if a signal ended it.
-  int wait() {
-    int status = 0;
-    if (process_ <= 0 || ::waitpid(process_, &status, 0) != process_) return -1;
-    process_ = -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  void end_with(int signal) {
-    if (process_ <= 0) return;
-    ::kill(process_, signal);
-    (void)wait();
-  }
-  [[nodiscard]] bool runs() {
-    if (process_ <= 0) return false;
-    if (::waitpid(process_, nullptr, WNOHANG) == process_) process_ = -1;
-    return process_ > 0;
-  }
-
+  [[nodiscard]] OwnProcess& process() noexcept { return process_; }
   /// Empty if there is none.
   [[nodiscard]] std::string page() const {
-    std::ifstream file(folder_ / "index.html", std::ios::binary);
+    std::ifstream file(folder_.path() / "index.html", std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
   }
   /// Throws ArgumentError if there is none, or it cannot be read.
   [[nodiscard]] Results results() const {
-    return read_results((folder_ / "results.json").string());
+    return read_results((folder_.path() / "results.json").string());
   }
   [[nodiscard]] std::size_t rows() const {
     std::size_t count = 0;
@@ -86,8 +44,14 @@ class ReportProcess {
   }
 
  private:
-  std::filesystem::path folder_;
-  pid_t process_ = -1;
+  static std::vector<std::string> with_folder(std::vector<std::string> options,
+                                              const std::filesystem::path& folder) {
+    options.insert(options.begin(), {"report", "--out", folder.string()});
+    return options;
+  }
+
+  TemporaryFolder folder_;
+  OwnProcess process_;
 };
 
 void declare_process(Results& results) {
@@ -137,7 +101,7 @@ void measure_default_report(const Json& /*options*/, Lab& /*lab*/, Measured& mea
   declare_process(measured.results);
   const Stopwatch clock;
   ReportProcess report({});
-  require_done(report.wait());
+  require_done(report.process().wait());
   add_of_process(measured.results, "seconds", clock.ms() / 1000.0, "");
   add_faults(measured.results, report);
   add_trace(measured.results, report);
@@ -146,7 +110,7 @@ void measure_default_report(const Json& /*options*/, Lab& /*lab*/, Measured& mea
 void measure_lone_report(const Json& /*options*/, Lab& /*lab*/, Measured& measured) {
   declare_process(measured.results);
   ReportProcess report({"--quick", "--no-peers"});
-  require_done(report.wait());
+  require_done(report.process().wait());
   add_faults(measured.results, report);
   const Json missing = report.results().document()["missing"];
   add_of_process(measured.results, "notes", static_cast<double>(missing.size()),
@@ -156,11 +120,11 @@ void measure_lone_report(const Json& /*options*/, Lab& /*lab*/, Measured& measur
 void measure_killed_report(const Json& /*options*/, Lab& /*lab*/, Measured& measured) {
   declare_process(measured.results);
   ReportProcess report({"--quick", "--no-peers"});
-  while (report.runs() && report.rows() == 0) {
+  while (report.process().runs() && report.rows() == 0) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  const bool half_way = report.runs();
-  report.end_with(SIGKILL);
+  const bool half_way = report.process().runs();
+  report.process().kill();
   const std::size_t rows = report.rows();
   const std::string page = report.page();
   const bool whole = rows > 0 && report.results().document()["complete"].get<bool>();

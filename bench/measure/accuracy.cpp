@@ -1,18 +1,14 @@
 #include "bench/measure/accuracy.h"
 
 #include <winnow/simd/isa.h>
-#include "bench/contenders/winnow_narrow.h"
-#include "bench/measure/installed_peers.h"
 #include "bench/measure/narrow_race.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 #include <map>
-#include <memory>
 #include <numbers>
 
 namespace winnow::bench {
@@ -151,17 +147,10 @@ std::vector<AccuracyAtGap> split_by_gap(const Accuracy& whole,
 AccuracyMeasurement measure_accuracy(const AccuracyOptions& options) {
   const auto set = make_pair_set(options.kind, options.set);
   const auto truths = truths_of(*set, options.judge);
-  std::vector<std::unique_ptr<NarrowEngine>> engines;
-  for (const NarrowTier tier : options.tiers) {
-    engines.push_back(std::make_unique<WinnowNarrow>(tier, 1));
-  }
-  if (options.peers) {
-    for (auto& peer : narrow_peers()) engines.push_back(std::move(peer));
-  }
+  const auto contenders = narrow_contenders(*set, options.tiers, {1}, options.peers);
   AccuracyMeasurement measured;
-  for (const auto& engine : engines) engine->start(*set);
   for (const ContactLevel level : options.levels) {
-    for (const auto& engine : engines) {
+    for (const auto& [engine, threads] : contenders) {
       if (!engine->takes(options.kind, level)) continue;
       try {
         measured.engines.push_back(judge_engine(*engine, level, *set, truths, options.runs));

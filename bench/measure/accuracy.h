@@ -51,8 +51,6 @@ struct Accuracy {
   std::size_t normals_off = 0;  ///< by more than 0.01 degrees
   std::vector<double> ns{};     ///< a pair, on one thread, one entry a run over the set
   double recomputed = std::numeric_limits<double>::quiet_NaN();
-
-  [[nodiscard]] double median_ns() const { return median_of(ns); }
 };
 
 /// What was wrong in the engine's last run, which was over all pairs of the set: an entry for each

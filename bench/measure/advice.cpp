@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <span>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 namespace winnow::bench {
 namespace {
@@ -76,47 +76,14 @@ std::string why(const Partition& partition, const Run& run, double median_ms) {
   return text;
 }
 
-/// Counts what moves while the race goes by.
-class Watched final : public FrameSource {
- public:
-  explicit Watched(FrameSource& source) : source_(source) { remember(); }
-
-  [[nodiscard]] std::string name() const override { return source_.name(); }
-  [[nodiscard]] Aabb world() const override { return source_.world(); }
-  [[nodiscard]] std::span<const Aabb> boxes() const override { return source_.boxes(); }
-  bool advance() override {
-    if (!source_.advance()) return false;
-    const std::span<const Aabb> now = source_.boxes();
-    for (std::size_t i = 0; i < now.size(); ++i) moved_ += now[i] == last_[i] ? 0 : 1;
-    ++steps_;
-    remember();
-    return true;
-  }
-  [[nodiscard]] double moving() const {
-    const auto all = static_cast<double>(steps_ * std::max<std::size_t>(1, last_.size()));
-    return steps_ == 0 ? 0.0 : static_cast<double>(moved_) / all;
-  }
-
- private:
-  void remember() { last_.assign(source_.boxes().begin(), source_.boxes().end()); }
-
-  FrameSource& source_;
-  std::vector<Aabb> last_;
-  std::size_t moved_ = 0;
-  std::size_t steps_ = 0;
-};
-
-}  // namespace
-
+/// Frames after the first six; of fewer than nine, after the first.
 std::vector<double> settled_frames(const Run& run) {
   const std::size_t first =
       run.frame_ms.size() < 9 ? std::min<std::size_t>(1, run.frame_ms.size() - 1) : 6;
   return {run.frame_ms.begin() + static_cast<std::ptrdiff_t>(first), run.frame_ms.end()};
 }
 
-double settled_ms(const Run& run) {
-  return median_of(settled_frames(run));
-}
+}  // namespace
 
 const Advised& Advice::best() const {
   const auto at = std::find_if(ranking.begin(), ranking.end(),
@@ -132,7 +99,6 @@ std::string Advice::code() const {
 
 Advice advise(FrameSource& source, const std::vector<std::string>& partitions, std::size_t frames,
               int threads) {
-  Watched watched(source);
   std::vector<Contender> contenders;
   std::vector<const Partition*> raced;
   for (const std::string& name : partitions) {
@@ -142,24 +108,27 @@ Advice advise(FrameSource& source, const std::vector<std::string>& partitions, s
   }
   RaceOptions options;
   options.frames = frames;
-  const std::vector<Run> runs = race(watched, contenders, options);
+  const std::vector<Run> runs = race(source, contenders, options);
 
   Advice advice;
   advice.scene = source.name();
   advice.objects = source.boxes().size();
   advice.threads = threads;
-  advice.moving = watched.moving();
   advice.same_pairs = all_agree(runs);
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const double ms = settled_ms(runs[i]);
+    std::vector<double> settled = settled_frames(runs[i]);
+    const double ms = median_of(settled);
     advice.ranking.push_back({.partition = runs[i].engine,
                               .first_ms = runs[i].frame_ms.front(),
-                              .settled = settled_frames(runs[i]),
+                              .settled = std::move(settled),
                               .median_ms = ms,
                               .bytes = runs[i].bytes,
                               .why = why(*raced[i], runs[i], ms)});
     advice.frames = runs[i].frame_ms.size();
     advice.pairs = runs[i].pairs_a_frame();
+    advice.moving =
+        static_cast<double>(runs[i].changed) /
+        static_cast<double>(std::max<std::size_t>(1, (advice.frames - 1) * advice.objects));
     if (raced[i]->name() == kAuto) {
       const StructureChoice choice = raced[i]->choice();
       advice.chosen = choice.structure.name();

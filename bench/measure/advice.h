@@ -46,9 +46,4 @@ struct Advice {
 [[nodiscard]] Advice advise(FrameSource& source, const std::vector<std::string>& partitions,
                             std::size_t frames, int threads);
 
-/// A run's frames after the first six; of fewer than nine, after the first.
-[[nodiscard]] std::vector<double> settled_frames(const Run& run);
-/// The median of those.
-[[nodiscard]] double settled_ms(const Run& run);
-
 }  // namespace winnow::bench

@@ -3,10 +3,10 @@
 #include <winnow/core/aabb.h>
 #include <winnow/core/pair_buffer.h>
 #include "bench/common/random.h"
+#include "bench/common/sample.h"
 #include "core/sort/radix_sort.h"
 
 #include <algorithm>
-#include <chrono>
 #include <numeric>
 #include <vector>
 
@@ -17,10 +17,9 @@ template <typename Work>
 double least_ms(int repeats, Work&& work) {
   double least = 1e300;
   for (int i = 0; i < repeats; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch clock;
     work();
-    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
-    least = std::min(least, took.count());
+    least = std::min(least, clock.ms());
   }
   return least;
 }

@@ -1,5 +1,6 @@
 #include "bench/measure/key_costs.h"
 
+#include "bench/common/need.h"
 #include "bench/common/random.h"
 #include "bench/common/sample.h"
 #include "bench/contenders/partitions.h"
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -22,7 +22,7 @@ class KeyRounds {
         keys_(objects),
         batch_(std::clamp<std::size_t>(objects / 10, 1, 100'000)),
         random_order_(random_order) {
-    require(partition_.insert(scene_->boxes(), {}, keys_));
+    need(partition_.insert(scene_->boxes(), {}, keys_), "keys");
   }
 
   /// The times of one round go to the end of `times`.
@@ -46,12 +46,6 @@ class KeyRounds {
   }
 
  private:
-  static void require(Status status) {
-    if (status != Status::ok) {
-      throw std::runtime_error(std::string("key operation: ") + to_string(status));
-    }
-  }
-
   template <typename Operation>
   Status each(Operation&& operation) const {
     for (std::size_t i = 0; i < batch_; ++i) {
@@ -63,11 +57,11 @@ class KeyRounds {
 
   template <typename Operation>
   double timed(Operation&& operation) {
-    require(partition_.refresh());
+    need(partition_.refresh(), "keys");
     const Stopwatch clock;
     const Status status = operation();
     const double ns = clock.ms() * 1e6 / static_cast<double>(batch_);
-    require(status);
+    need(status, "keys");
     return ns;
   }
 
@@ -98,11 +92,11 @@ class KeyRounds {
 KeyCosts measure_key_costs(std::string_view partition, std::size_t objects, bool random_order) {
   KeyRounds rounds(partition, objects, random_order);
   const int count = objects <= 20'000 ? 41 : objects <= 300'000 ? 15 : 5;
-  KeyCosts costs;
+  KeyCosts costs{};
   for (std::size_t mode = 0; mode < kKeyModes.size(); ++mode) {
     std::array<std::vector<double>, 3> times;
     for (int i = 0; i < count; ++i) rounds.run(static_cast<KeyMode>(mode), times);
-    for (std::size_t op = 0; op < times.size(); ++op) costs.ns[op][mode] = median_of(times[op]);
+    for (std::size_t op = 0; op < times.size(); ++op) costs[op][mode] = median_of(times[op]);
   }
   return costs;
 }

@@ -1,9 +1,10 @@
 #include "bench/measure/narrow_race.h"
 
 #include "bench/common/timed.h"
+#include "bench/common/turns.h"
 #include "bench/contenders/reference_sweep.h"
 #include "bench/contenders/winnow_narrow.h"
-#include "bench/measure/installed_peers.h"
+#include "bench/peers/peers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,17 +38,17 @@ class PairEntry {
     const std::size_t least = std::min(options.smallest_part, all.size());
     part_ = std::clamp(static_cast<std::size_t>(wanted), least, all.size());
     passes_ = std::max<std::size_t>(1, static_cast<std::size_t>(wanted) / part_);
-    timing_.pairs = part_;
   }
 
-  void time(Arenas& arenas) {
+  /// Nanoseconds a pair.
+  double time(Arenas& arenas) {
     const std::span<const BodyPair> part = next_part();
     // Every turn begins with what the one before left in the caches.
     engine_.run(timing_.level, part.last(std::min(kWarming, part.size())));
     const double ms = timed(timing_.threads, arenas, [&] {
       for (std::size_t pass = 0; pass < passes_; ++pass) engine_.run(timing_.level, part);
     });
-    timing_.ns.push_back(ms * 1e6 / static_cast<double>(passes_ * part.size()));
+    return ms * 1e6 / static_cast<double>(passes_ * part.size());
   }
 
   [[nodiscard]] NarrowTiming& timing() noexcept { return timing_; }
@@ -93,6 +94,22 @@ class PairEntry {
 
 }  // namespace
 
+std::vector<NarrowContender> narrow_contenders(const PairSet& set,
+                                               const std::vector<NarrowTier>& tiers,
+                                               const std::vector<int>& threads, bool peers) {
+  std::vector<NarrowContender> contenders;
+  for (const NarrowTier tier : tiers) {
+    for (const int count : threads) {
+      contenders.push_back({std::make_unique<WinnowNarrow>(tier, count), count});
+    }
+  }
+  if (peers) {
+    for (auto& peer : make_narrow_peers()) contenders.push_back({std::move(peer), 1});
+  }
+  for (const NarrowContender& contender : contenders) contender.engine->start(set);
+  return contenders;
+}
+
 std::vector<NarrowTiming> race_pairs(const PairSet& set, ContactLevel level,
                                      std::span<NarrowContender> contenders,
                                      const NarrowRaceOptions& options) {
@@ -106,16 +123,14 @@ std::vector<NarrowTiming> race_pairs(const PairSet& set, ContactLevel level,
   Arenas arenas(most_threads);
   std::vector<NarrowAnswer> expected;
   for (PairEntry& entry : entries) entry.check(expected, options, arenas);
-  for (std::size_t round = 0; round < options.rounds; ++round) {
-    for (PairEntry& entry : entries) entry.time(arenas);
-  }
+  auto ns = take_turns(entries.size(), options.rounds, 0,
+                       [&](std::size_t, std::size_t i) { return entries[i].time(arenas); });
   std::vector<NarrowTiming> timings;
-  for (PairEntry& entry : entries) timings.push_back(std::move(entry.timing()));
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    timings.push_back(std::move(entries[i].timing()));
+    timings.back().ns = std::move(ns[i]);
+  }
   return timings;
-}
-
-bool NarrowMeasurement::is_peer(const NarrowTiming& timing) const noexcept {
-  return std::find(peers.begin(), peers.end(), timing.engine) != peers.end();
 }
 
 const NarrowTiming* NarrowMeasurement::find(NarrowTier tier, ContactLevel level,
@@ -136,15 +151,6 @@ bool NarrowMeasurement::is_right(const NarrowTiming& timing) const noexcept {
   return first == timings.end() || 2.0 * timing.contacts >= first->contacts;
 }
 
-const NarrowTiming* NarrowMeasurement::best_peer(ContactLevel level) const noexcept {
-  const NarrowTiming* best = nullptr;
-  for (const NarrowTiming& timing : timings) {
-    if (timing.level != level || !is_peer(timing) || !is_right(timing)) continue;
-    if (best == nullptr || timing.median_ns() < best->median_ns()) best = &timing;
-  }
-  return best;
-}
-
 NarrowMeasurement measure_narrow(const NarrowMeasureOptions& options) {
   NarrowMeasurement measured;
   measured.kind = options.kind;
@@ -152,19 +158,8 @@ NarrowMeasurement measure_narrow(const NarrowMeasureOptions& options) {
   const auto set = make_pair_set(options.kind, {.pairs = options.pairs,
                                                 .seed = options.seed,
                                                 .scattered = options.pairs > kMostPairsInCache});
-  std::vector<NarrowContender> contenders;
-  for (const NarrowTier tier : options.tiers) {
-    for (const int threads : options.threads) {
-      contenders.push_back({std::make_unique<WinnowNarrow>(tier, threads), threads});
-    }
-  }
-  if (options.peers) {
-    for (std::unique_ptr<NarrowEngine>& peer : narrow_peers()) {
-      measured.peers.push_back(peer->name());
-      contenders.push_back({std::move(peer), 1});
-    }
-  }
-  for (const NarrowContender& contender : contenders) contender.engine->start(*set);
+  std::vector<NarrowContender> contenders =
+      narrow_contenders(*set, options.tiers, options.threads, options.peers);
   MachineClock clock;
   for (const ContactLevel level : options.levels) {
     clock.tick();

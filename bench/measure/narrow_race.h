@@ -17,8 +17,6 @@ struct NarrowTiming {
   std::string engine;
   ContactLevel level{};
   int threads = 1;
-  /// Pairs a turn; fewer than the set has where an engine is slow.
-  std::size_t pairs = 0;
   std::vector<double> ns{};  ///< a pair, one entry a round
   double recomputed = 0.0;   ///< share of the pairs; NaN: the engine cannot tell
   /// Verdicts that differ from those of the first engine, of `compared`.
@@ -38,6 +36,13 @@ struct NarrowContender {
   std::unique_ptr<NarrowEngine> engine;
   int threads = 1;
 };
+
+/// winnow's tiers, on each of these numbers of threads, and with `peers` the other libraries that
+/// the tool was built with, all started with the set.
+[[nodiscard]] std::vector<NarrowContender> narrow_contenders(const PairSet& set,
+                                                             const std::vector<NarrowTier>& tiers,
+                                                             const std::vector<int>& threads,
+                                                             bool peers);
 
 struct NarrowRaceOptions {
   std::size_t rounds = 7;
@@ -78,18 +83,14 @@ struct NarrowMeasurement {
   PairKind kind;
   std::size_t pairs = 0;
   std::vector<NarrowTiming> timings;
-  std::vector<std::string> peers;  ///< names of the other libraries that took part
-  double machine_ms = 0.0;         ///< of the MachineClock, interleaved with the race
+  double machine_ms = 0.0;  ///< of the MachineClock, interleaved with the race
 
-  [[nodiscard]] bool is_peer(const NarrowTiming& timing) const noexcept;
   /// Null if there is none.
   [[nodiscard]] const NarrowTiming* find(NarrowTier tier, ContactLevel level,
                                          int threads = 1) const noexcept;
   /// False for what is systematically wrong: verdicts in more than 1 of 100 pairs, other depths in
   /// more than 1 of 10, or less than half as many contacts as the first engine of the level finds.
   [[nodiscard]] bool is_right(const NarrowTiming& timing) const noexcept;
-  /// Of the other libraries that are right the fastest; null if there is none.
-  [[nodiscard]] const NarrowTiming* best_peer(ContactLevel level) const noexcept;
 };
 
 [[nodiscard]] NarrowMeasurement measure_narrow(const NarrowMeasureOptions& options);

@@ -1,6 +1,7 @@
 #include "bench/measure/query_costs.h"
 
 #include "bench/common/sample.h"
+#include "bench/common/turns.h"
 #include "bench/contenders/partition_queries.h"
 #include "bench/measure/column_read.h"
 #include "bench/scenes/question_set.h"
@@ -64,18 +65,15 @@ FrustumCosts measure_frustum_costs(const std::vector<std::string>& partitions,
     engines.back()->start(boxes);
   }
   FrustumCosts costs;
-  costs.asked.resize(engines.size());
   const auto number = static_cast<double>(questions.size());
-  for (std::size_t round = 0; round < rounds; ++round) {
-    costs.read.push_back(columns.time());
-    for (std::size_t e = 0; e < engines.size(); ++e) {
-      (void)engines[e]->run(questions, Asking::single, std::min<std::size_t>(4, questions.size()));
-      const ThreadStopwatch clock;
-      const auto found = engines[e]->run(questions, Asking::single, questions.size());
-      costs.asked[e].push_back(clock.ms() / number);
-      costs.found_a_question = static_cast<double>(found) / number;
-    }
-  }
+  costs.ms = take_turns(engines.size() + 1, rounds, 0, [&](std::size_t, std::size_t i) {
+    if (i == engines.size()) return columns.time();
+    (void)engines[i]->run(questions, Asking::single, std::min<std::size_t>(4, questions.size()));
+    const ThreadStopwatch clock;
+    const auto found = engines[i]->run(questions, Asking::single, questions.size());
+    costs.found_a_question = static_cast<double>(found) / number;
+    return clock.ms() / number;
+  });
   return costs;
 }
 

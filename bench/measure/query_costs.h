@@ -9,10 +9,10 @@ namespace winnow::bench {
 
 /// What a frustum costs beside reading every box.
 struct FrustumCosts {
-  // Milliseconds, by rounds in which the partitions and the reading take turns.
-  std::vector<double> read;                ///< the six columns of all boxes once
-  std::vector<std::vector<double>> asked;  ///< one frustum, by partition
-  double found_a_question = 0;             ///< objects
+  /// By partition of one frustum, and at last of reading the six columns of all boxes once: one
+  /// entry a round.
+  std::vector<std::vector<double>> ms;
+  double found_a_question = 0;  ///< objects
 };
 
 /// Questions of the set (see question_set_names) about the first frame of `uniform`, on one thread.

@@ -1,10 +1,9 @@
 #include "bench/measure/query_race.h"
 
-#include "bench/common/arena.h"
 #include "bench/common/random.h"
+#include "bench/common/timed.h"
 #include "bench/contenders/partition_queries.h"
-#include "bench/contenders/reference_sweep.h"
-#include "bench/measure/installed_peers.h"
+#include "bench/peers/peers.h"
 #include "bench/scenes/scene.h"
 
 #include <algorithm>
@@ -39,8 +38,8 @@ std::uint64_t fingerprint_of_answers(const QuestionSet& set, const Answers& answ
 class SetRace {
  public:
   SetRace(std::span<const Aabb> boxes, const QuestionSet& set,
-          std::vector<QueryContender>& contenders, const QueryRaceOptions& options)
-      : boxes_(boxes), set_(set), options_(options) {
+          std::vector<QueryContender>& contenders, const QueryRaceOptions& options, Arenas& arenas)
+      : boxes_(boxes), set_(set), options_(options), arenas_(arenas) {
     for (QueryContender& contender : contenders) {
       for (const Asking asking : {Asking::single, Asking::batch}) {
         if (!contender.engine->takes(set, asking)) continue;
@@ -82,10 +81,9 @@ class SetRace {
         // Every turn begins with what the one before left in the caches: a few questions first.
         const std::size_t few = (entry.run.questions + kWarming - 1) / kWarming;
         (void)entry.engine->run(set_, entry.run.asking, few);
-        const Stopwatch clock;
-        const ThreadStopwatch own_clock;
-        entry.run.found = entry.engine->run(set_, entry.run.asking, entry.run.questions);
-        entry.run.ms.push_back(options_.threads == 1 ? own_clock.ms() : clock.ms());
+        entry.run.ms.push_back(timed(options_.threads, arenas_, [&] {
+          entry.run.found = entry.engine->run(set_, entry.run.asking, entry.run.questions);
+        }));
       }
     }
   }
@@ -98,6 +96,7 @@ class SetRace {
   std::span<const Aabb> boxes_;
   const QuestionSet& set_;
   const QueryRaceOptions& options_;
+  Arenas& arenas_;
   std::vector<SetEntry> entries_;
 };
 
@@ -112,8 +111,8 @@ std::vector<QueryRun> race_queries(std::span<const Aabb> boxes,
   arenas.run(options.threads, [&] {
     for (QueryContender& contender : contenders) contender.engine->start(boxes);
     for (const QuestionSet& set : sets) {
-      if (options.before_set) options.before_set(set);
-      SetRace race(boxes, set, contenders, options);
+      if (options.clock != nullptr) options.clock->tick();
+      SetRace race(boxes, set, contenders, options, arenas);
       race.check();
       race.time();
       race.move_to(runs);
@@ -122,52 +121,29 @@ std::vector<QueryRun> race_queries(std::span<const Aabb> boxes,
   return runs;
 }
 
-const QueryRun* find_run(std::span<const QueryRun> runs, const std::string& engine,
-                         const std::string& set, Asking asking) noexcept {
-  const auto at = std::find_if(runs.begin(), runs.end(), [&](const QueryRun& run) {
-    return run.engine == engine && run.set == set && run.asking == asking;
-  });
-  return at != runs.end() && at->answered() ? &*at : nullptr;
-}
-
-bool QueryMeasurement::is_peer(const QueryRun& run) const noexcept {
-  return std::find(peers.begin(), peers.end(), run.engine) != peers.end();
-}
-
 QueryMeasurement measure_queries(const QueryMeasureOptions& options) {
   const auto source = options.recording != nullptr
                           ? play(*options.recording)
                           : scene_or_error(options.scene, options.objects, options.seed);
   const std::span<const Aabb> boxes = source->boxes();
   QueryMeasurement result;
-  result.scene = source->name();
   result.objects = boxes.size();
-  const Partitions partitions = partitions_for(options.partitions, result.objects);
-  result.skipped = partitions.skipped;
-
   std::vector<QueryContender> contenders;
-  for (const std::string& name : partitions.taken) {
+  for (const std::string& name : partitions_for(options.partitions, result.objects).taken) {
     contenders.push_back({std::make_unique<PartitionQueries>(name, options.threads), false});
   }
   if (options.peers) {
-    for (std::unique_ptr<QueryEngine>& peer : query_peers()) {
-      result.peers.push_back(peer->name());
+    for (std::unique_ptr<QueryEngine>& peer : make_query_peers()) {
       contenders.push_back({std::move(peer), true});
     }
   }
-  std::optional<MachineClock> clock;
-  if (options.machine_clock) clock.emplace();
-  QueryRaceOptions race{.rounds = options.rounds, .threads = options.threads};
-  race.before_set = [&](const QuestionSet& set) {
-    if (options.before_set) options.before_set(set);
-    if (clock) clock->tick();
-  };
+  MachineClock clock(options.machine_clock);
+  const QueryRaceOptions race{
+      .rounds = options.rounds, .threads = options.threads, .clock = &clock};
   const auto sets = make_question_sets(boxes, options.rays, options.seed, options.sets);
   result.runs = race_queries(boxes, sets, contenders, race);
-  if (clock) {
-    clock->tick();
-    result.machine_ms = clock->median_ms();
-  }
+  clock.tick();
+  result.machine_ms = clock.median_ms();
   return result;
 }
 

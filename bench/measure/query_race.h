@@ -2,12 +2,12 @@
 
 #include "bench/common/sample.h"
 #include "bench/contenders/query_engine.h"
+#include "bench/contenders/reference_sweep.h"
 #include "bench/measure/judge.h"
 #include "bench/recordings/recording.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,9 +34,6 @@ struct QueryRun {
   Comparison comparison{};   ///< with the first partition that answers the set
   std::string refusal{};     ///< why it did not answer; nothing was measured then
 
-  [[nodiscard]] double ns_a_question() const {
-    return questions == 0 ? 0.0 : median_of(ms) * 1e6 / static_cast<double>(questions);
-  }
   [[nodiscard]] double found_a_question() const {
     return questions == 0 ? 0.0 : static_cast<double>(found) / static_cast<double>(questions);
   }
@@ -48,8 +45,7 @@ struct QueryRaceOptions {
   int threads = 1;
   /// Questions of each set that every box is tested for, to check the first engine; 0: none.
   std::size_t judged = 4;
-  /// Called before each set of questions, outside all timers.
-  std::function<void(const QuestionSet&)> before_set{};
+  MachineClock* clock = nullptr;  ///< ticks before each set of questions
 };
 
 /// Puts all sets to all contenders, singly and as a batch: once to compare what they find, then in
@@ -60,10 +56,6 @@ struct QueryRaceOptions {
                                                  const std::vector<QuestionSet>& sets,
                                                  std::vector<QueryContender>& contenders,
                                                  const QueryRaceOptions& options);
-
-/// Null if it was not asked, or did not answer.
-[[nodiscard]] const QueryRun* find_run(std::span<const QueryRun> runs, const std::string& engine,
-                                       const std::string& set, Asking asking) noexcept;
 
 /// One race of questions on the first frame of a scene.
 struct QueryMeasureOptions {
@@ -78,18 +70,12 @@ struct QueryMeasureOptions {
   std::vector<std::string> sets{};  ///< empty: all
   bool machine_clock = true;
   bool peers = false;  ///< other libraries too, where the tool was built with them
-  std::function<void(const QuestionSet&)> before_set{};
 };
 
 struct QueryMeasurement {
-  std::string scene{};
   std::size_t objects = 0;
   std::vector<QueryRun> runs;
-  std::vector<std::string> peers;    ///< names of the other libraries that took part
-  std::vector<std::string> skipped;  ///< too slow for the size
   double machine_ms = 0.0;  ///< of the MachineClock, interleaved with the race, if asked for
-
-  [[nodiscard]] bool is_peer(const QueryRun& run) const noexcept;
 };
 
 [[nodiscard]] QueryMeasurement measure_queries(const QueryMeasureOptions& options);

@@ -3,14 +3,13 @@
 #include "bench/common/arena.h"
 #include "bench/common/table.h"
 #include "bench/contenders/partition_engine.h"
-#include "bench/contenders/reference_sweep.h"
-#include "bench/measure/installed_peers.h"
+#include "bench/measure/isa_guard.h"
+#include "bench/peers/peers.h"
 #include "bench/scenes/scene.h"
 
 #include <algorithm>
 #include <cstring>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 
 namespace winnow::bench {
@@ -53,23 +52,6 @@ class FrameBlocks {
   bool started_ = false;
 };
 
-/// Puts back the instruction set that was active.
-class IsaGuard {
- public:
-  IsaGuard() = default;
-  IsaGuard(const IsaGuard&) = delete;
-  IsaGuard& operator=(const IsaGuard&) = delete;
-  ~IsaGuard() { choose(before_); }
-
-  static void choose(Isa isa) noexcept {
-    // Only sets that this machine has get here; for them the choice cannot be refused.
-    if (isa != active_isa()) static_cast<void>(set_isa(isa));
-  }
-
- private:
-  Isa before_ = active_isa();
-};
-
 void run_frame(Contender& contender, const Frame& frame, bool first, Run& run) {
   const Stopwatch clock;
   if (first) {
@@ -78,6 +60,7 @@ void run_frame(Contender& contender, const Frame& frame, bool first, Run& run) {
     contender.engine->frame(frame.changed, frame.boxes);
   }
   run.frame_ms.push_back(clock.ms());
+  run.changed += frame.changed.size();
   run.update_ms.push_back(contender.engine->update_ms());
   run.pairs.push_back(summarize(contender.engine->pairs(), frame.boxes));
 }
@@ -130,7 +113,7 @@ std::vector<Run> race(FrameSource& source, std::vector<Contender>& contenders,
   }
   FrameBlocks blocks(source);
   for (std::size_t done = 0; done < options.frames;) {
-    if (options.before_block) options.before_block(done);
+    if (options.clock != nullptr) options.clock->tick();
     const std::size_t wanted = done == 0 ? 1 : std::min(options.block, options.frames - done);
     const std::vector<Frame>& frames = blocks.next(wanted);
     for (std::size_t c = 0; c < contenders.size(); ++c) {
@@ -165,7 +148,7 @@ void add_peers(const MeasureOptions& options, std::vector<Contender>& contenders
                Measurement& result) {
   std::vector<std::string>& skipped = result.skipped;
   for (const int threads : options.threads) {
-    for (std::unique_ptr<Engine>& engine : frame_peers(threads)) {
+    for (std::unique_ptr<Engine>& engine : make_peers(threads)) {
       if (result.objects > engine->largest()) {
         const std::string text =
             engine->name() + " (more than " + grouped(engine->largest()) + " objects)";
@@ -211,16 +194,11 @@ Measurement measure(const MeasureOptions& options) {
 
   RaceOptions race_options;
   race_options.frames = options.frames != 0 ? options.frames : frames_for(result.objects);
-  std::optional<MachineClock> clock;
-  if (options.machine_clock) {
-    clock.emplace();
-    race_options.before_block = [&](std::size_t) { clock->tick(); };
-  }
+  MachineClock clock(options.machine_clock);
+  race_options.clock = &clock;
   result.runs = race(*source, contenders, race_options);
-  if (clock) {
-    clock->tick();
-    result.machine_ms = clock->median_ms();
-  }
+  clock.tick();
+  result.machine_ms = clock.median_ms();
   return result;
 }
 

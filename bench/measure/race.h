@@ -3,13 +3,13 @@
 #include <winnow/simd/isa.h>
 #include "bench/common/sample.h"
 #include "bench/contenders/engine.h"
+#include "bench/contenders/reference_sweep.h"
 #include "bench/measure/fingerprint.h"
 #include "bench/recordings/recording.h"
 #include "bench/scenes/frame_source.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,11 +31,11 @@ struct Run {
   std::vector<double> frame_ms;
   std::vector<double> update_ms;
   std::vector<PairSummary> pairs;
+  std::size_t changed = 0;  ///< boxes, over all frames after the first
   std::size_t bytes = 0;
 
   /// Of the frames after the first; of the first if there is no other.
   [[nodiscard]] Spread frame_spread() const;
-  [[nodiscard]] double median_ms() const { return frame_spread().median; }
   [[nodiscard]] double median_update_ms() const;
   [[nodiscard]] double pairs_a_frame() const;
   [[nodiscard]] double reported_a_frame() const;
@@ -47,8 +47,7 @@ struct RaceOptions {
   /// Frames that a contender runs in a row before the next one runs the same: long enough for its
   /// data to be warm, short enough for all to meet the same disturbances.
   std::size_t block = 5;
-  /// Called before each block with the number of frames done, outside all timers.
-  std::function<void(std::size_t frames_done)> before_block;
+  MachineClock* clock = nullptr;  ///< ticks before each block
 };
 
 /// Runs all contenders over the same frames, interleaved. What changed between frames is found

@@ -1,13 +1,13 @@
 #include "bench/measure/scene_race.h"
 
 #include "bench/common/timed.h"
+#include "bench/common/turns.h"
 #include "bench/contenders/reference_sweep.h"
-#include "bench/measure/installed_peers.h"
+#include "bench/peers/peers.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <optional>
 
 namespace winnow::bench {
 
@@ -39,15 +39,12 @@ std::vector<SceneTiming> race_scene(const BodySet& set, const Stray& by,
   Arenas arenas(most_threads);
   for (const SceneContender& contender : contenders) contender.engine->start(set);
   std::vector<Pose> poses;
-  for (std::size_t f = 0; f < frames + kWarming; ++f) {
-    stray(set, by, f, poses);
-    for (std::size_t i = 0; i < contenders.size(); ++i) {
-      SceneEngine& engine = *contenders[i].engine;
-      const double ms = timed(contenders[i].threads, arenas, [&] { engine.frame(poses); });
-      if (f >= kWarming) timings[i].ms.push_back(ms);
-    }
-  }
+  auto ms = take_turns(contenders.size(), frames, kWarming, [&](std::size_t f, std::size_t i) {
+    if (i == 0) stray(set, by, f, poses);
+    return timed(contenders[i].threads, arenas, [&] { contenders[i].engine->frame(poses); });
+  });
   for (std::size_t i = 0; i < contenders.size(); ++i) {
+    timings[i].ms = std::move(ms[i]);
     timings[i].finds = contenders[i].engine->finds();
   }
   return timings;
@@ -57,25 +54,24 @@ std::vector<MeshTiming> race_meshes(std::span<const std::unique_ptr<MeshEngine>>
                                     std::size_t rounds) {
   const Triangles torus = make_race_torus();
   Arenas arenas(1);
+  const auto turns = [&](std::size_t warming, const auto& work) {
+    return take_turns(engines.size(), rounds, warming, [&](std::size_t, std::size_t i) {
+      return timed(1, arenas, [&] { work(*engines[i]); });
+    });
+  };
   std::vector<MeshTiming> timings(engines.size());
-  for (std::size_t round = 0; round < rounds; ++round) {
-    for (std::size_t i = 0; i < engines.size(); ++i) {
-      timings[i].engine = engines[i]->name();
-      timings[i].build_ms.push_back(timed(1, arenas, [&] { engines[i]->build(torus); }));
-    }
+  auto build_ms = turns(0, [&](MeshEngine& engine) { engine.build(torus); });
+  for (std::size_t i = 0; i < engines.size(); ++i) {
+    timings[i].engine = engines[i]->name();
+    timings[i].build_ms = std::move(build_ms[i]);
   }
   for (std::size_t p = 0; p < torus_poses().size(); ++p) {
-    MeshEngine::TrianglePairs expected;
-    for (std::size_t round = 0; round < rounds + kWarming; ++round) {
-      for (std::size_t i = 0; i < engines.size(); ++i) {
-        const double ms =
-            timed(1, arenas, [&] { engines[i]->collide(Pose{}, torus_poses()[p].pose); });
-        if (round >= kWarming) timings[i].collide_ms[p].push_back(ms);
-      }
-    }
+    const Pose& pose = torus_poses()[p].pose;
+    auto ms = turns(kWarming, [&](MeshEngine& engine) { engine.collide(Pose{}, pose); });
+    MeshEngine::TrianglePairs expected = engines.front()->pairs();
     for (std::size_t i = 0; i < engines.size(); ++i) {
       MeshEngine::TrianglePairs found = engines[i]->pairs();
-      if (i == 0) expected = found;
+      timings[i].collide_ms[p] = std::move(ms[i]);
       timings[i].differ[p] = count_differing(expected, found);
       timings[i].pairs[p] = found.size();
       timings[i].bytes_per_triangle =
@@ -93,8 +89,8 @@ constexpr std::size_t kTerrainBodies = 2'000;
 constexpr std::uint32_t kTerrainCells = 317;
 constexpr int kTicks = 3;
 
-void tick(std::optional<MachineClock>& clock) {
-  for (int i = 0; clock && i < kTicks; ++i) clock->tick();
+void tick(MachineClock& clock) {
+  for (int i = 0; i < kTicks; ++i) clock.tick();
 }
 
 }  // namespace
@@ -123,19 +119,17 @@ PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options) {
         {make_winnow_scene(threads, options.resting ? kCarryOver : 0.0, options.level), threads});
   }
   if (options.peers) {
-    for (std::unique_ptr<SceneEngine>& peer : scene_peers()) {
+    for (std::unique_ptr<SceneEngine>& peer : make_scene_peers()) {
       if (options.resting && !peer->carries_over()) continue;
-      measured.peers.push_back(peer->name());
       contenders.push_back({std::move(peer), 1});
     }
   }
-  std::optional<MachineClock> clock;
-  if (options.machine_clock) clock.emplace();
+  MachineClock clock(options.machine_clock);
   tick(clock);
   measured.timings =
       race_scene(*set, options.resting ? kResting : kMoving, contenders, options.frames);
   tick(clock);
-  if (clock) measured.machine_ms = clock->median_ms();
+  measured.machine_ms = clock.median_ms();
   return measured;
 }
 
@@ -143,15 +137,14 @@ MeshMeasurement measure_meshes(std::size_t rounds, bool peers, bool machine_cloc
   std::vector<std::unique_ptr<MeshEngine>> engines;
   engines.push_back(make_winnow_mesh());
   if (peers) {
-    for (std::unique_ptr<MeshEngine>& peer : mesh_peers()) engines.push_back(std::move(peer));
+    for (std::unique_ptr<MeshEngine>& peer : make_mesh_peers()) engines.push_back(std::move(peer));
   }
   MeshMeasurement measured;
-  std::optional<MachineClock> clock;
-  if (machine_clock) clock.emplace();
+  MachineClock clock(machine_clock);
   tick(clock);
   measured.timings = race_meshes(engines, rounds);
   tick(clock);
-  if (clock) measured.machine_ms = clock->median_ms();
+  measured.machine_ms = clock.median_ms();
   return measured;
 }
 

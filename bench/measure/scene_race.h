@@ -25,8 +25,6 @@ struct SceneTiming {
   int threads = 1;
   std::vector<double> ms{};  ///< a frame
   SceneFinds finds{};        ///< in the last frame
-
-  [[nodiscard]] double median_ms() const { return median_of(ms); }
 };
 
 /// All contenders on the same frames in turns; two frames more are not timed. Time on one thread
@@ -70,7 +68,6 @@ struct PipelineMeasureOptions {
 
 struct PipelineMeasurement {
   std::vector<SceneTiming> timings;
-  std::vector<std::string> peers;  ///< names of the other libraries that took part
   std::size_t bodies = 0;
   std::size_t triangles = 0;
   double machine_ms = 0.0;  ///< of the MachineClock, before and after the race, if asked for
@@ -81,10 +78,6 @@ struct PipelineMeasurement {
 struct MeshMeasurement {
   std::vector<MeshTiming> timings;  ///< winnow's is the first
   double machine_ms = 0.0;
-
-  [[nodiscard]] const MeshTiming* peer() const noexcept {
-    return timings.size() > 1 ? &timings[1] : nullptr;
-  }
 };
 
 /// Two tori, one thread.

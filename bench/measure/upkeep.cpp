@@ -1,39 +1,31 @@
 #include "bench/measure/upkeep.h"
 
+#include "bench/common/need.h"
 #include "bench/common/random.h"
 #include "bench/common/sample.h"
+#include "bench/common/turns.h"
 #include "bench/contenders/partitions.h"
-#include "bench/contenders/query_engine.h"
 #include "bench/scenes/cameras.h"
 #include "bench/scenes/question_set.h"
 #include "bench/scenes/scene.h"
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <numeric>
+#include <stdexcept>
 
 namespace winnow::bench {
 namespace {
 
-constexpr int kRounds = 9;
-
-void require(Status status) {
-  if (status != Status::ok) throw Refusal(to_string(status));
-}
+constexpr std::size_t kRounds = 9;
+/// Before them others find the sizes of all buffers.
+constexpr std::size_t kSizingRounds = 2;
 
 template <typename Work>
-double timed(Work&& work) {
+double thread_ms(Work&& work) {
   const ThreadStopwatch clock;
   work();
   return clock.ms();
-}
-
-double time_rays(const Partition& partition, const std::vector<Ray>& rays) {
-  return timed([&] {
-    Hit hit;
-    for (const Ray& ray : rays) require(partition.closest(ray, hit));
-  });
 }
 
 double bytes_of(const Partition& partition) {
@@ -57,9 +49,9 @@ void churn(Partition& partition, std::vector<Key>& keys, std::vector<Aabb>& boxe
                     static_cast<double>(world.max[axis]) - static_cast<double>(edges[axis])));
     }
     boxes[i].max = boxes[i].min + edges;
-    require(partition.remove(keys[i]));
-    require(partition.insert(boxes[i], i, keys[i]));
-    if ((done + 1) % frame == 0) require(partition.self_pairs(pairs));
+    need(partition.remove(keys[i]), "objects");
+    need(partition.insert(boxes[i], i, keys[i]), "objects");
+    if ((done + 1) % frame == 0) need(partition.self_pairs(pairs), "pairs");
   }
 }
 
@@ -132,17 +124,19 @@ struct Inhabited {
 
   Inhabited(std::string_view name, std::span<const Aabb> boxes)
       : partition(make_named(name, {.execution = Execution::serial()})), keys(boxes.size()) {
-    require(partition.insert(boxes, {}, keys));
+    need(partition.insert(boxes, {}, keys), "objects");
   }
   void frame(std::span<const Aabb> boxes) {
-    require(partition.update(keys, boxes));
-    require(partition.self_pairs(pairs));
+    need(partition.update(keys, boxes), "objects");
+    need(partition.self_pairs(pairs), "pairs");
   }
 };
 
 }  // namespace
 
-ChurnCosts measure_churn(std::string_view partition, std::size_t objects, std::size_t operations) {
+std::vector<std::pair<std::string_view, double>> measure_churn(std::string_view partition,
+                                                               std::size_t objects,
+                                                               std::size_t operations) {
   const auto scene = make_scene("uniform", objects, 1);
   std::vector<Aabb> boxes(scene->boxes().begin(), scene->boxes().end());
   Inhabited worn(partition, boxes);
@@ -151,85 +145,77 @@ ChurnCosts measure_churn(std::string_view partition, std::size_t objects, std::s
   const std::vector<std::string> names{"ray closest"};
   const std::vector<Ray> rays = make_question_sets(boxes, 20'000, 1, names).front().rays;
 
-  std::vector<double> pair_ratios;
-  std::vector<double> ray_ratios;
-  const PairOptions anew{.incremental = false};
-  for (int round = 0; round < kRounds; ++round) {
-    std::array<double, 2> pair_ms{};
-    std::array<double, 2> ray_ms{};
-    for (std::size_t which = 0; which < 2; ++which) {
-      Inhabited& one = which == 0 ? worn : fresh;
-      require(one.partition.self_pairs(one.pairs, anew));  // warms it up
-      pair_ms[which] = timed([&] { require(one.partition.self_pairs(one.pairs, anew)); });
-      ray_ms[which] = time_rays(one.partition, rays);
-    }
-    pair_ratios.push_back(pair_ms[0] / pair_ms[1]);
-    ray_ratios.push_back(ray_ms[0] / ray_ms[1]);
-  }
-  return {.self_pairs = median_of(pair_ratios),
-          .rays = median_of(ray_ratios),
-          .bytes = bytes_of(worn.partition) / bytes_of(fresh.partition),
-          .bytes_an_object = bytes_of(worn.partition) / static_cast<double>(objects)};
+  const auto pairs_of = [](Inhabited& one) {
+    return [&one] { need(one.partition.self_pairs(one.pairs, {.incremental = false}), "pairs"); };
+  };
+  const auto rays_of = [&](Inhabited& one) {
+    return [&] {
+      Hit hit;
+      for (const Ray& ray : rays) need(one.partition.closest(ray, hit), "rays");
+    };
+  };
+  // The median over the rounds, so that neighbours in time are compared.
+  const auto ratio = [&](const auto& work_of) {
+    const auto ms = take_turns(2, kRounds, 0, [&](std::size_t, std::size_t i) {
+      const auto work = work_of(i == 0 ? worn : fresh);
+      work();  // warms it up
+      return thread_ms(work);
+    });
+    std::vector<double> ratios;
+    for (std::size_t r = 0; r < kRounds; ++r) ratios.push_back(ms[0][r] / ms[1][r]);
+    return median_of(ratios);
+  };
+  return {{"self pairs", ratio(pairs_of)},
+          {"rays", ratio(rays_of)},
+          {"bytes", bytes_of(worn.partition) / bytes_of(fresh.partition)}};
 }
 
-std::vector<double> measure_event_frames(std::string_view partition, std::size_t objects,
-                                         const std::vector<double>& shares) {
+std::vector<std::vector<double>> measure_event_frames(std::string_view partition,
+                                                      std::size_t objects,
+                                                      const std::vector<double>& shares) {
   MovingObjects moving(objects);
   Inhabited one(partition, moving.boxes());
   PairEvents events;
   std::vector<Key> moved;
   std::vector<Aabb> boxes;
-  std::vector<std::vector<double>> ms(shares.size());
-  // The first rounds find the sizes of all buffers.
-  for (int round = -2; round < kRounds; ++round) {
-    for (std::size_t s = 0; s < shares.size(); ++s) {
-      moving.advance(shares[s], one.keys, moved, boxes);
-      const double time = timed([&] {
-        if (!moved.empty()) require(one.partition.update(moved, boxes));
-        require(one.partition.self_pairs(one.pairs, events));
-      });
-      if (round >= 0) ms[s].push_back(time);
-    }
-  }
-  std::vector<double> medians;
-  for (const std::vector<double>& times : ms) medians.push_back(median_of(times));
-  return medians;
+  return take_turns(shares.size(), kRounds, kSizingRounds, [&](std::size_t, std::size_t i) {
+    moving.advance(shares[i], one.keys, moved, boxes);
+    return thread_ms([&] {
+      if (!moved.empty()) need(one.partition.update(moved, boxes), "objects");
+      need(one.partition.self_pairs(one.pairs, events), "pairs");
+    });
+  });
 }
 
-WorldCosts measure_worlds(std::string_view partition, std::size_t worlds,
-                          std::size_t objects_each) {
+std::array<std::vector<double>, 2> measure_worlds(std::string_view partition, std::size_t worlds,
+                                                  std::size_t objects_each) {
   Worlds scene(worlds, objects_each);
   Inhabited together(partition, scene.boxes());
   std::vector<ObjectFilter> filters(together.keys.size());
   for (std::size_t i = 0; i < filters.size(); ++i) {
     filters[i].environment = static_cast<std::uint32_t>(i / objects_each);
   }
-  require(together.partition.set_filter(together.keys, filters));
+  need(together.partition.set_filter(together.keys, filters), "objects");
   const auto of_world = [&](std::size_t w) {
     return std::span(scene.boxes()).subspan(w * objects_each, objects_each);
   };
   std::vector<Inhabited> apart;
   for (std::size_t w = 0; w < worlds; ++w) apart.emplace_back(partition, of_world(w));
 
-  std::vector<double> together_ms;
-  std::vector<double> apart_ms;
-  WorldCosts costs{.same_pairs = true};
-  for (int round = -2; round < kRounds; ++round) {
-    scene.advance();
-    const double one = timed([&] { together.frame(scene.boxes()); });
-    const double many = timed([&] {
+  auto ms = take_turns(2, kRounds, kSizingRounds, [&](std::size_t, std::size_t i) {
+    if (i == 0) {
+      scene.advance();
+      return thread_ms([&] { together.frame(scene.boxes()); });
+    }
+    const double time = thread_ms([&] {
       for (std::size_t w = 0; w < worlds; ++w) apart[w].frame(of_world(w));
     });
     std::size_t pairs = 0;
     for (const Inhabited& world : apart) pairs += world.pairs.size();
-    costs.same_pairs = costs.same_pairs && pairs == together.pairs.size();
-    if (round < 0) continue;
-    together_ms.push_back(one);
-    apart_ms.push_back(many);
-  }
-  costs.together_ms = median_of(together_ms);
-  costs.apart_ms = median_of(apart_ms);
-  return costs;
+    if (pairs != together.pairs.size()) throw std::runtime_error("other pairs were found");
+    return time;
+  });
+  return {std::move(ms[0]), std::move(ms[1])};
 }
 
 }  // namespace winnow::bench

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace winnow::bench {
 namespace {
@@ -34,16 +35,16 @@ double size_of(const Json& shape) {
 /// Sine of 0.01 degrees.
 constexpr double kNormalError = 1.7453292430883947e-4;
 
-std::string fault_of_normal(const Json& expect, const Json& answer, double sign) {
+std::string fault_of_normal(const Json& expect, const Json& answer) {
   const Eigen::Vector3d n = vector(answer["normal"]);
   if (!(std::abs(n.norm() - 1.0) <= 1e-5)) return "normal not unit";
   if (!expect.contains("normal")) return {};
-  const Eigen::Vector3d expected = sign * vector(expect["normal"]);
+  const Eigen::Vector3d expected = vector(expect["normal"]);
   return n.cross(expected).norm() <= kNormalError && n.dot(expected) > 0.0 ? "" : "normal";
 }
 
 /// Numbers of the answer against what is true and allowed.
-std::string fault_of_numbers(const Json& question, const Json& answer, double promised, double sign,
+std::string fault_of_numbers(const Json& question, const Json& answer, double promised,
                              CaseVerdict& verdict) {
   const Json& expect = question["expect"];
   const double truth = number(expect["distance"]);
@@ -60,7 +61,7 @@ std::string fault_of_numbers(const Json& question, const Json& answer, double pr
   if (std::isnan(error)) return "no distance";
   if (!(error <= allowed)) return "distance";
   if (!(error <= number(answer["error_bound"]) + slack)) return "error above its bound";
-  return fault_of_normal(expect, answer, sign);
+  return fault_of_normal(expect, answer);
 }
 
 std::string fault_of_ray(const Json& question, const Json& answer) {
@@ -70,12 +71,12 @@ std::string fault_of_ray(const Json& question, const Json& answer) {
   const double truth = number(expect["t"]);
   const double error = std::abs(number(answer["t"]) - truth);
   if (!(error <= 1e-14 * std::abs(truth) + expect.value("tolerance", 0.0))) return "t";
-  return fault_of_normal(expect, answer, 1.0);
+  return fault_of_normal(expect, answer);
 }
 
 }  // namespace
 
-CaseVerdict judge_case(const Json& question, const Json& answer, double promised, double sign) {
+CaseVerdict judge_case(const Json& question, const Json& answer, double promised) {
   const Json& expect = question["expect"];
   const std::string status = expect.value("status", "ok");
   CaseVerdict verdict;
@@ -88,7 +89,7 @@ CaseVerdict judge_case(const Json& question, const Json& answer, double promised
   } else if (question.contains("ray")) {
     verdict.fault = fault_of_ray(question, answer);
   } else {
-    verdict.fault = fault_of_numbers(question, answer, promised, sign, verdict);
+    verdict.fault = fault_of_numbers(question, answer, promised, verdict);
   }
   return verdict;
 }
@@ -105,8 +106,15 @@ double promised_error(NarrowTier tier) {
   return 0.0;
 }
 
-std::string fault(const Json& question, const Json& answer, NarrowTier tier, double sign) {
-  return judge_case(question, answer, promised_error(tier), sign).fault;
+Json exchanged(const Json& questions) {
+  Json turned = questions;
+  for (Json& question : turned) {
+    if (!question.contains("a") || !question.contains("b")) continue;
+    std::swap(question["a"], question["b"]);
+    if (!question.contains("expect") || !question["expect"].contains("normal")) continue;
+    for (Json& n : question["expect"]["normal"]) n = number_to_json(-number(n));
+  }
+  return turned;
 }
 
 }  // namespace winnow::bench

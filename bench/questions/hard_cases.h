@@ -29,15 +29,12 @@ struct CaseVerdict {
 };
 
 /// `promised` is the largest error of a distance that is right, relative to sizes and distance.
-/// `sign` is -1 where a and b were exchanged, which turns the normal.
-[[nodiscard]] CaseVerdict judge_case(const Json& question, const Json& answer, double promised,
-                                     double sign = 1.0);
+[[nodiscard]] CaseVerdict judge_case(const Json& question, const Json& answer, double promised);
 
 /// What a tier promises.
 [[nodiscard]] double promised_error(NarrowTier tier);
 
-/// What is wrong with the answer of a tier; empty if nothing is.
-[[nodiscard]] std::string fault(const Json& question, const Json& answer, NarrowTier tier,
-                                double sign = 1.0);
+/// The same with a and b exchanged where there are both, which turns the normals expected.
+[[nodiscard]] Json exchanged(const Json& questions);
 
 }  // namespace winnow::bench

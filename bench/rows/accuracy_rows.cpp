@@ -1,6 +1,7 @@
 #include "bench/rows/accuracy_rows.h"
 
 #include <winnow/simd/isa.h>
+#include "bench/rows/machine.h"
 #include "bench/rows/named_scene.h"
 
 #include <algorithm>
@@ -113,9 +114,7 @@ void add_accuracy_row(Results& results, const std::string& table, Json row,
     if (results.column(table, name) != nullptr) row[name] = value;
   }
   if (!row.contains("command")) row["command"] = accuracy_command(options);
-  const bool is_tier =
-      std::find(kTierNames.begin(), kTierNames.end(), accuracy.engine) != kTierNames.end();
-  if (!is_tier) row["command"] = with_peers(row["command"]);
+  if (is_peer(accuracy.engine)) row["command"] = with_peers(row["command"]);
   results.add(table, std::move(row));
 }
 
@@ -124,6 +123,16 @@ std::string narrow_command(const NarrowMeasurement& measured, const NarrowMeasur
          std::to_string(measured.pairs) + " --rounds " + std::to_string(options.race.rounds) +
          " --isa " + isa_name() +
          (options.seed == 1 ? "" : " --seed " + std::to_string(options.seed));
+}
+
+/// Of the other libraries that are right the fastest; null if there is none.
+const NarrowTiming* best_peer(const NarrowMeasurement& measured, ContactLevel level) {
+  const NarrowTiming* best = nullptr;
+  for (const NarrowTiming& timing : measured.timings) {
+    if (timing.level != level || !is_peer(timing.engine) || !measured.is_right(timing)) continue;
+    if (best == nullptr || timing.median_ns() < best->median_ns()) best = &timing;
+  }
+  return best;
 }
 
 /// Adds the row of one engine; its id.
@@ -139,7 +148,7 @@ std::string add_timing(Results& results, const NarrowMeasurement& measured,
            {"compared", timing.compared},
            {"disagree", timing.disagree},
            {"recomputed", timing.recomputed},
-           {"command", measured.is_peer(timing) ? with_peers(command) : command}};
+           {"command", is_peer(timing.engine) ? with_peers(command) : command}};
   if (timing.level != ContactLevel::boolean) row["other_depth"] = timing.other_depth;
   if (manifold) row["contacts"] = timing.contacts;
   if (keys == PairKeys::settings) row["threads"] = timing.threads;
@@ -186,7 +195,7 @@ NarrowMeasurement add_pair_times(Results& results, const NarrowMeasureOptions& o
     ids[&timing] = add_timing(results, measured, timing, command, keys);
   }
   for (const ContactLevel level : options.levels) {
-    const NarrowTiming* peer = measured.best_peer(level);
+    const NarrowTiming* peer = best_peer(measured, level);
     const NarrowTiming* own = measured.find(NarrowTier::robust, level);
     if (peer == nullptr || own == nullptr) continue;
     Json row{{"kind", options.kind.name},

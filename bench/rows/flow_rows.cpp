@@ -99,32 +99,53 @@ void declare_flows(Results& results) {
                     {"points", "contact points", "", Better::neither, Format::count}}});
 }
 
-void add_flow(Results& results, const FlowQuestion& asked, const GranularFlow& flow,
-              const FlowHistory& history) {
-  add_phases(results, asked, history);
-  add_samples(results, asked, history);
-  const FlowSample& last = history.samples().back();
-  results.add("flows", with_keys(asked, {{"steps", flow.steps()},
-                                         {"rise", history.greatest_rise()},
-                                         {"deepest", history.deepest()},
-                                         {"pairs", last.contacts},
-                                         {"points", last.points},
-                                         {"fingerprint", to_hex(flow.fingerprint())}}));
+void declare_flow_checks(Results& results) {
+  results.declare({"flow_checks",
+                   "pipeline",
+                   "memory and contacts of a granular flow",
+                   {"shape", "objects", "steps"},
+                   {{"allocations", "allocations in the second half", ""},
+                    {"steady_allocations", "with no more contacts than ever before", ""},
+                    {"lost", "contacts lost", "", Better::less, Format::count},
+                    {"invented", "contacts invented", "", Better::less, Format::count},
+                    {"doubled", "contacts doubled", "", Better::less, Format::count}}});
 }
 
-void add_flow(Results& results, const FlowQuestion& asked) {
+FlowOptions flow_options(const FlowQuestion& asked) {
   FlowOptions options;
   options.objects = asked.objects;
   options.shape = flow_shape_named(asked.shape);
   options.seed = asked.seed;
-  options.execution = Execution::serial();
-  GranularFlow flow(options);
-  FlowHistory history;
-  for (std::size_t i = 0; i < asked.steps; ++i) {
-    flow.step(i % kProfiledSteps == 0);
-    history.add(flow);
-  }
-  add_flow(results, asked, flow, history);
+  options.execution = asked.threads == 1 ? Execution::serial() : Execution::parallel();
+  return options;
+}
+
+void add_flow(Results& results, const FlowQuestion& asked, const FlowRun& run) {
+  const FlowHistory& history = run.history();
+  add_phases(results, asked, history);
+  add_samples(results, asked, history);
+  const FlowSample& last = history.samples().back();
+  results.add("flows", with_keys(asked, {{"steps", run.flow().steps()},
+                                         {"rise", history.greatest_rise()},
+                                         {"deepest", history.deepest()},
+                                         {"pairs", last.contacts},
+                                         {"points", last.points},
+                                         {"fingerprint", to_hex(run.flow().fingerprint())}}));
+  if (results.table("flow_checks") == nullptr) return;
+  results.add("flow_checks", {{"shape", asked.shape},
+                              {"objects", asked.objects},
+                              {"steps", run.flow().steps()},
+                              {"allocations", run.allocations()},
+                              {"steady_allocations", run.steady_allocations()},
+                              {"lost", run.faults().lost},
+                              {"invented", run.faults().invented},
+                              {"doubled", run.faults().doubled}});
+}
+
+void add_flow(Results& results, const FlowQuestion& asked) {
+  FlowRun run(flow_options(asked), asked.steps, asked.check);
+  for (std::size_t i = 0; i < asked.steps; ++i) run.step();
+  add_flow(results, asked, run);
 }
 
 std::vector<std::string> flow_shape_names() {

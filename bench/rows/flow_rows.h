@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/rows/results.h"
-#include "bench/simulation/flow_history.h"
+#include "bench/simulation/flow_run.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -16,16 +16,19 @@ struct FlowQuestion {
   std::size_t steps = 3000;
   std::uint64_t seed = 1;
   int threads = 1;
+  std::size_t check = 0;  ///< see FlowRun
 };
 
 /// phases, flows and flow (one row in so many steps).
 void declare_flows(Results& results);
+/// flow_checks: memory, and contacts against those of all pairs.
+void declare_flow_checks(Results& results);
 
-/// Runs it on one thread.
+[[nodiscard]] FlowOptions flow_options(const FlowQuestion& asked);
+/// Of one that has run; its checks, if they are declared.
+void add_flow(Results& results, const FlowQuestion& asked, const FlowRun& run);
+/// Runs it.
 void add_flow(Results& results, const FlowQuestion& asked);
-/// Of one that has run.
-void add_flow(Results& results, const FlowQuestion& asked, const GranularFlow& flow,
-              const FlowHistory& history);
 
 [[nodiscard]] std::vector<std::string> flow_shape_names();
 /// Throws std::invalid_argument if there is none of the name.

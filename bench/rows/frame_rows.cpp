@@ -263,7 +263,7 @@ void add_key_costs(Results& results, const std::string& partition, std::size_t o
                            {"order", random_order ? "random" : "insertion"},
                            {"operation", kKeyOperations[operation]},
                            {"mode", kKeyModes[mode]},
-                           {"ns", costs.ns[operation][mode]},
+                           {"ns", costs[operation][mode]},
                            {"command", "bench/run report --section throughput"}});
     }
   }

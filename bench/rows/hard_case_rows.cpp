@@ -1,10 +1,11 @@
 #include "bench/rows/hard_case_rows.h"
 
 #include "bench/common/errors.h"
-#include "bench/measure/installed_peers.h"
 #include "bench/measure/narrow_race.h"
+#include "bench/peers/peers.h"
 #include "bench/questions/hard_cases.h"
 #include "bench/questions/questions.h"
+#include "bench/rows/machine.h"
 #include "bench/rows/named_scene.h"
 #include "bench/scenes/pair_set.h"
 
@@ -26,7 +27,6 @@ namespace {
 /// How one engine did on some hard cases.
 struct HardCaseTally {
   std::string engine;
-  bool is_peer = false;
   std::size_t right = 0;
   std::size_t wrong = 0;
   std::size_t wrong_verdicts = 0;  ///< of them
@@ -159,12 +159,11 @@ CaseVerdict ask_peer(NarrowEngine& engine, const PeerCase& asked, const Json& qu
 
 void add_peers(const Json& questions, std::vector<HardCaseTally>& tallies) {
   std::vector<HardCaseTally> peers;
-  for (const auto& peer : narrow_peers())
-    peers.push_back({.engine = peer->name(), .is_peer = true});
+  for (const auto& peer : make_narrow_peers()) peers.push_back({.engine = peer->name()});
   for (const Json& question : questions) {
     const auto asked = peer_case(question);
     // They are started once.
-    const auto fresh = narrow_peers();
+    const auto fresh = make_narrow_peers();
     for (std::size_t i = 0; i < peers.size(); ++i) {
       const bool needs_origin = peers[i].engine.starts_with("libccd");
       if (asked == nullptr || !fresh[i]->takes(asked->set.kind, ContactLevel::manifold) ||
@@ -228,7 +227,7 @@ void add_hard_cases(Results& results, const std::string& family, const Json& que
                                {"worst_error", one.worst_error},
                                {"worst_over_allowed", one.worst_over_allowed},
                                {"faults", one.wrong == 0 ? "-" : one.faults_text()},
-                               {"command", one.is_peer ? with_peers(command) : command}});
+                               {"command", is_peer(one.engine) ? with_peers(command) : command}});
   }
 }
 

@@ -106,6 +106,10 @@ std::vector<MissingPeer> missing_peers() {
   return missing;
 }
 
+bool has_peers() noexcept {
+  return *kPeersFound != '\0';
+}
+
 bool is_peer(std::string_view name) {
   return std::any_of(kKnownPeers.begin(), kKnownPeers.end(),
                      [&](const KnownPeer& peer) { return name.starts_with(peer.name); });

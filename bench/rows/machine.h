@@ -23,6 +23,9 @@ struct MissingPeer {
 };
 [[nodiscard]] std::vector<MissingPeer> missing_peers();
 
+/// Whether it was built with any of them.
+[[nodiscard]] bool has_peers() noexcept;
+
 /// Whether a key of a row names one of them, installed or not: "FCL", "Bullet dbvt".
 [[nodiscard]] bool is_peer(std::string_view name);
 

@@ -3,6 +3,7 @@
 #include <winnow/simd/isa.h>
 #include "bench/measure/fingerprint.h"
 #include "bench/measure/query_costs.h"
+#include "bench/rows/machine.h"
 
 #include <stdexcept>
 #include <string>
@@ -80,7 +81,7 @@ QueryMeasurement add_queries(Results& results, const NamedScene& scene,
     row.update({{"scene", scene.name},
                 {"objects", measured.objects},
                 {"command", where + " --set \"" + run.set + "\" --partition " +
-                                (measured.is_peer(run) ? "LinearBvh" : run.engine) + " --threads " +
+                                (is_peer(run.engine) ? "LinearBvh" : run.engine) + " --threads " +
                                 std::to_string(options.threads) + " --rays " +
                                 std::to_string(options.rays) + " --rounds " +
                                 std::to_string(options.rounds) + " --seed " +
@@ -95,16 +96,14 @@ void add_frusta(Results& results, std::size_t objects, std::size_t rounds) {
   const std::vector<std::string> partitions{"LinearBvh", "FlatGrid", "BoundsNSquared"};
   for (const char* set : {"frustum 1%", "frustum 50%"}) {
     const FrustumCosts costs = measure_frustum_costs(partitions, set, objects, rounds);
-    const auto add = [&](const std::string& engine, const std::vector<double>& ms) {
+    for (std::size_t i = 0; i < costs.ms.size(); ++i) {
       results.add("frusta", {{"objects", objects},
                              {"set", set},
-                             {"engine", engine},
-                             {"ms", to_value(ms)},
+                             {"engine", i < partitions.size() ? partitions[i] : kReading},
+                             {"ms", to_value(costs.ms[i])},
                              {"found", costs.found_a_question},
                              {"command", "bench/run goals --topic queries"}});
-    };
-    for (std::size_t i = 0; i < partitions.size(); ++i) add(partitions[i], costs.asked[i]);
-    add(kReading, costs.read);
+    }
   }
 }
 

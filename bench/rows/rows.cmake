@@ -18,10 +18,7 @@ foreach(package libxsimd-dev libbullet-dev libfcl-dev libcgal-dev libembree-dev 
   endif()
 endforeach()
 list(JOIN winnow_dependencies ", " winnow_dependencies)
-set(winnow_peers_text "")
-if(TARGET winnow_peers)
-  get_property(winnow_peers_text TARGET winnow_peers PROPERTY WINNOW_PEERS_FOUND)
-endif()
+get_property(winnow_peers_text TARGET winnow_peers PROPERTY WINNOW_PEERS_FOUND)
 string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
 string(STRIP "${CMAKE_BUILD_TYPE} ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}}" build)
 

@@ -1,20 +1,15 @@
 #include "bench/rows/scene_rows.h"
 
 #include <winnow/simd/isa.h>
+#include "bench/rows/machine.h"
+#include "bench/scenes/pair_kind.h"
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
 namespace winnow::bench {
 namespace {
-
-constexpr std::pair<const char*, ContactLevel> kSceneLevels[] = {
-    {"pairs", ContactLevel::pairs},
-    {"boolean", ContactLevel::boolean},
-    {"distance", ContactLevel::distance},
-    {"manifold", ContactLevel::manifold}};
 
 const char* motion_of(const PipelineMeasureOptions& options) {
   return options.resting ? "at rest" : "moving a little";
@@ -79,11 +74,9 @@ PipelineMeasurement add_scene_race(Results& results, const PipelineMeasureOption
   const char* motion = motion_of(options);
   std::vector<Json> rows;
   for (const SceneTiming& timing : measured.timings) {
-    const bool is_peer = std::find(measured.peers.begin(), measured.peers.end(), timing.engine) !=
-                         measured.peers.end();
     rows.push_back({{"scene", options.scene},
                     {"motion", motion},
-                    {"engine", is_peer ? timing.engine : "winnow"},
+                    {"engine", is_peer(timing.engine) ? timing.engine : "winnow"},
                     {"threads", timing.threads},
                     {"ms", to_value(timing.ms)},
                     {"touching", timing.finds.touching},
@@ -108,10 +101,10 @@ PipelineMeasurement add_scene_race(Results& results, const PipelineMeasureOption
 }
 
 void add_scene_level(Results& results, PipelineMeasureOptions options, const std::string& level) {
-  const auto* named = std::find_if(std::begin(kSceneLevels), std::end(kSceneLevels),
-                                   [&](const auto& one) { return level == one.first; });
-  if (named == std::end(kSceneLevels)) throw std::invalid_argument("no level " + level);
-  options.level = named->second;
+  options.level = ContactLevel::pairs;
+  for (const ContactLevel one : kLevels) {
+    if (level == to_text(one)) options.level = one;
+  }
   options.peers = false;
   const Json& keys = (*results.table("scene_levels"))["keys"];
   const bool by_setting = std::find(keys.begin(), keys.end(), "threads") != keys.end();
@@ -149,8 +142,8 @@ MeshMeasurement add_tori(Results& results, std::size_t rounds, bool peers, bool 
 }
 
 std::vector<std::string> scene_level_names() {
-  std::vector<std::string> names;
-  for (const auto& [name, level] : kSceneLevels) names.emplace_back(name);
+  std::vector<std::string> names{"pairs"};
+  names.insert(names.end(), kLevelNames.begin(), kLevelNames.end());
   return names;
 }
 

@@ -3,17 +3,15 @@
 #include "bench/contenders/partition_queries.h"
 #include "bench/contenders/partitions.h"
 #include "bench/measure/query_race.h"
+#include "bench/peers/peers.h"
 #include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
-
-#if WINNOW_HAVE_PEERS
-#include "bench/peers/peers.h"
-#endif
 
 namespace winnow::bench {
 namespace {
@@ -24,9 +22,7 @@ std::vector<QueryRun> race_on(const std::string& scene, std::vector<QueryContend
   for (const std::string& name : all_partitions()) {
     contenders.push_back({std::make_unique<PartitionQueries>(name, threads), false});
   }
-#if WINNOW_HAVE_PEERS
   for (auto& peer : make_query_peers()) contenders.push_back({std::move(peer), true});
-#endif
   const auto sets = make_question_sets(source->boxes(), 200, 9);
   return race_queries(source->boxes(), sets, contenders,
                       {.rounds = 1, .threads = threads, .judged = 200});
@@ -54,8 +50,10 @@ TEST(Race, finds_as_much_in_a_round_as_it_compared) {
   std::vector<QueryContender> contenders;
   const std::vector<QueryRun> runs = race_on("uniform", contenders, 1);
   for (const QueryRun& run : runs) {
-    const QueryRun* first = find_run(runs, "LinearBvh", run.set, Asking::single);
-    ASSERT_NE(first, nullptr);
+    const auto first = std::find_if(runs.begin(), runs.end(), [&](const QueryRun& other) {
+      return other.engine == "LinearBvh" && other.set == run.set;
+    });
+    ASSERT_NE(first, runs.end());
     if (run.comparison.undecided == 0) {
       EXPECT_EQ(run.found, first->found) << run.engine << ": " << run.set;
     }

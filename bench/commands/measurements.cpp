@@ -1,0 +1,484 @@
+// Commands that measure rows, print them and write them.
+
+#include "bench/commands/options.h"
+#include "bench/commands/rows_command.h"
+#include "bench/common/table.h"
+#include "bench/contenders/partitions.h"
+#include "bench/measure/resident_set.h"
+#include "bench/rows/accuracy_rows.h"
+#include "bench/rows/frame_rows.h"
+#include "bench/rows/kernel_rows.h"
+#include "bench/rows/machine.h"
+#include "bench/rows/memory_rows.h"
+#include "bench/rows/query_rows.h"
+#include "bench/rows/scene_rows.h"
+#include "bench/rows/volume_rows.h"
+#include "bench/scenes/scene.h"
+
+#include <algorithm>
+#include <memory>
+#include <span>
+
+namespace winnow::bench {
+namespace {
+
+/// One that measures partitions on several scenes of several sizes on several numbers of threads.
+class ScenesCommand : public RowsCommand {
+ public:
+  void add_options(CLI::App& app) {
+    option(app, "--scene", scenes_,
+           "Scenes, or recordings (.aabbs, .aabbs.xz), which have their own number of objects");
+    add_objects_option(app, objects_, "Numbers of objects");
+    add_threads_option(app, threads_, "Numbers of threads");
+    add_partitions_option(app, partitions_);
+    add_seed_option(app, seed_);
+    add_rows_options(app);
+  }
+
+ protected:
+  ScenesCommand(std::vector<std::string> scenes, std::vector<int> threads)
+      : scenes_(std::move(scenes)), threads_(std::move(threads)) {}
+
+  /// Steps of one scene and size, which begin so.
+  virtual void measure_scene(const std::string& what, const NamedScene& scene,
+                             std::size_t objects) = 0;
+
+  void measure_all() {
+    const std::vector<NamedScene> scenes = named_scenes(scenes_);
+    plan(objects_.size() * scenes.size() * threads_.size());
+    for (const NamedScene& scene : scenes) {
+      for (const std::size_t asked : objects_) {
+        if (scene.is_recording() && asked != objects_.front()) continue;
+        const std::size_t objects = scene.objects(asked);
+        measure_scene(scene.name + ", " + grouped(objects) + " objects", scene, objects);
+      }
+    }
+  }
+
+  std::vector<std::string> scenes_;
+  std::vector<std::size_t> objects_{10'000, 100'000};
+  std::vector<int> threads_;
+  std::vector<std::string> partitions_{"all"};
+  std::uint64_t seed_ = 1;
+};
+
+class Throughput final : public ScenesCommand {
+ public:
+  Throughput() : ScenesCommand(main_scenes(), usual_threads()) {}
+
+  void add_options(CLI::App& app) {
+    ScenesCommand::add_options(app);
+    app.add_flag("--peers", peers_, "Race other libraries too");
+    add_frames_option(app, frames_);
+  }
+
+ private:
+  void measure() override {
+    if (peers_ && !has_peers()) {
+      throw ArgumentError(
+          "--peers: this tool was built without other libraries; "
+          "bench/run --with-peers installs and builds them");
+    }
+    declare_frames(results);
+    measure_all();
+    print("throughput", {"frame_ms", "update_ms", "first_ms", "pairs", "pairs_per_s",
+                         "bytes_per_object", "frames", "fingerprint"});
+    for (const char* table : {"throughput_threads", "throughput_growth", "throughput_skipped"}) {
+      print(table);
+    }
+  }
+  void measure_scene(const std::string& what, const NamedScene& scene,
+                     std::size_t objects) override {
+    for (const int threads : threads_) {
+      step(what + ", " + threads_text(threads), [&] {
+        add_frame_race(results, scene,
+                       {.objects = objects,
+                        .seed = seed_,
+                        .partitions = partitions_,
+                        .threads = {threads},
+                        .peers = peers_,
+                        .frames = frames_});
+      });
+    }
+    derive_frames(results, scene.name, objects);
+  }
+
+  bool peers_ = false;
+  std::size_t frames_ = 0;
+};
+
+class FootprintCommand final : public ScenesCommand {
+ public:
+  FootprintCommand() : ScenesCommand({"uniform"}, {usual_threads().back()}) {}
+
+ private:
+  void measure() override {
+    declare_memory(results);
+    keep_resident_set_exact();
+    measure_all();
+    print("memory", {"bounds", "keys", "client_data", "structure", "scratch", "results", "reserved",
+                     "used", "pair_buffer", "exact", "peak_first", "peak_later"});
+    print("memory_ratio");
+  }
+  void measure_scene(const std::string& what, const NamedScene& scene,
+                     std::size_t objects) override {
+    const std::vector<std::string> partitions = partitions_for(partitions_, objects).taken;
+    for (const int threads : threads_) {
+      step(what, [&] { add_footprints(results, scene, objects, seed_, partitions, threads); });
+    }
+  }
+};
+
+/// A built-in scene, or a recording instead.
+struct SceneOrRecording {
+  std::string scene = "uniform";
+  std::string recording;
+
+  CLI::Option* add_to(CLI::App& app, const char* what) {
+    CLI::Option* added = option(app, "--scene", scene, what);
+    option(app, "--recording", recording, "A recording instead")->excludes(added);
+    return added;
+  }
+  [[nodiscard]] NamedScene named() const {
+    return named_scenes({recording.empty() ? scene : recording}).front();
+  }
+};
+
+class Queries final : public RowsCommand {
+ public:
+  void add_options(CLI::App& app) {
+    scene_.add_to(app, "A scene, in its first frame")->check(CLI::IsMember(scene_names()));
+    add_objects_option(app, asked_.objects);
+    add_partitions_option(app, asked_.partitions);
+    add_threads_option(app, asked_.threads);
+    number(app, "--rays", asked_.rays, 1, 1e8, "Rays of a set; dearer questions are fewer");
+    number(app, "--rounds", asked_.rounds, 1, 1000, "Rounds in which all take turns");
+    const auto names = question_set_names();
+    one_of(app, "--set", asked_.sets, {names.begin(), names.end()}, "Only these sets of questions");
+    add_seed_option(app, asked_.seed);
+    add_rows_options(app);
+  }
+
+ private:
+  void measure() override {
+    const NamedScene named = scene_.named();
+    plan(1);
+    declare_queries(results);
+    step(named.name + ", " + grouped(named.objects(asked_.objects)) + " objects, " +
+             threads_text(asked_.threads),
+         [&] { add_queries(results, named, asked_); });
+    print("queries", {"ns", "found", "questions", "wrong", "undecided"});
+  }
+
+  SceneOrRecording scene_;
+  QueryMeasureOptions asked_{.machine_clock = false, .peers = true};
+};
+
+class Volumes final : public RowsCommand {
+ public:
+  void add_options(CLI::App& app) {
+    const auto names = volume_setting_names();
+    const auto partitions = volume_partitions();
+    settings_.assign(names.begin(), names.end());
+    scene_.add_to(app, "Built-in scene for the first table");
+    one_of(app, "--setting", settings_, {names.begin(), names.end()},
+           "Only these: the scene, turned cubes, turned rods, slow turned cubes");
+    app.add_option("--step", asked_.step,
+                   "How far objects go in a frame, in their mean edges; default: as suits each, "
+                   "and as recorded")
+        ->check(CLI::NonNegativeNumber);
+    number(app, "--objects", asked_.objects, 1, 1e6, "How many");
+    one_of(app, "--partition", asked_.partition, {partitions.begin(), partitions.end()},
+           "Where the volumes are");
+    number(app, "--frames", asked_.frames, 1, 1000, "Frames that are timed");
+    add_seed_option(app, asked_.seed);
+    add_rows_options(app);
+  }
+
+ private:
+  void measure() override {
+    asked_.scene = scene_.named();
+    plan(settings_.size());
+    declare_volumes(results);
+    for (const std::string& setting : settings_) {
+      asked_.setting = setting;
+      step(setting, [&] { add_volumes(results, asked_); });
+    }
+    print("volumes", {"reported", "overlapping", "false_positives", "make_ms", "broad_ms",
+                      "narrow_ms", "sum_ms", "pays_from_ns", "bytes_per_object"});
+  }
+
+  SceneOrRecording scene_;
+  VolumeQuestion asked_;
+  std::vector<std::string> settings_;
+};
+
+/// What is chosen of the names of some things; "all" is all there are.
+class Chosen {
+ public:
+  explicit Chosen(std::vector<std::string> names) : names_(std::move(names)) {}
+
+  void add_to(CLI::App& app, const char* name, std::vector<std::string> all, const char* what) {
+    all.emplace_back("all");
+    one_of(app, name, names_, all, what);
+  }
+  template <typename Each, typename Name>
+  [[nodiscard]] std::vector<Each> of(std::span<const Each> all, Name&& name) const {
+    std::vector<Each> taken;
+    for (const Each& one : all) {
+      if (std::any_of(names_.begin(), names_.end(),
+                      [&](const std::string& n) { return n == "all" || n == name(one); })) {
+        taken.push_back(one);
+      }
+    }
+    return taken;
+  }
+
+ private:
+  std::vector<std::string> names_;
+};
+
+/// One about pairs of shapes: of some kinds, at some levels, by some tiers.
+class PairsCommand : public RowsCommand {
+ protected:
+  PairsCommand(std::vector<std::string> levels, std::vector<std::string> tiers)
+      : levels_(std::move(levels)), tiers_(std::move(tiers)) {}
+
+  void add_pair_options(CLI::App& app) {
+    std::vector<std::string> kinds;
+    for (const PairKind& kind : pair_kinds()) kinds.emplace_back(kind.name);
+    kinds_.add_to(app, "--kind", kinds, "Kinds of pairs");
+    levels_.add_to(app, "--level", {kLevelNames.begin(), kLevelNames.end()},
+                   "How much is asked of a pair");
+    tiers_.add_to(app, "--tier", {kTierNames.begin(), kTierNames.end()},
+                  "How exact answers must be");
+    app.add_flag("!--no-peers", peers_, "Without other libraries");
+    add_seed_option(app, seed_);
+    add_rows_options(app);
+  }
+  [[nodiscard]] std::vector<PairKind> kinds() const {
+    return kinds_.of(pair_kinds(), [](const PairKind& kind) { return kind.name; });
+  }
+  [[nodiscard]] std::vector<ContactLevel> levels() const {
+    return levels_.of(std::span<const ContactLevel>(kLevels), [](auto l) { return to_text(l); });
+  }
+  [[nodiscard]] std::vector<NarrowTier> tiers() const {
+    constexpr NarrowTier kAllTiers[] = {NarrowTier::fast, NarrowTier::robust,
+                                        NarrowTier::reference};
+    return tiers_.of(std::span<const NarrowTier>(kAllTiers), [](auto t) { return to_text(t); });
+  }
+
+  bool peers_ = true;
+  std::uint64_t seed_ = 1;
+
+ private:
+  Chosen kinds_{{"all"}};
+  Chosen levels_;
+  Chosen tiers_;
+};
+
+class Narrow final : public PairsCommand {
+ public:
+  Narrow() : PairsCommand({"all"}, {"fast", "robust"}) {}
+
+  void add_options(CLI::App& app) {
+    number(app, "--pairs", pairs_, 1, 1e7,
+           "Numbers of pairs; those of more than 16,384 lie scattered in memory");
+    add_threads_option(app, threads_, "Numbers of threads that winnow takes");
+    number(app, "--rounds", race_.rounds, 1, 1000, "Rounds in which all take turns");
+    add_pair_options(app);
+  }
+
+ private:
+  void measure() override {
+    plan(kinds().size() * pairs_.size());
+    declare_pair_times(results, PairKeys::settings);
+    for (const std::size_t count : pairs_) {
+      for (const PairKind& kind : kinds()) {
+        step(std::string(kind.name) + ", " + grouped(count) + " pairs", [&] {
+          add_pair_times(results,
+                         {.kind = kind,
+                          .pairs = count,
+                          .levels = levels(),
+                          .tiers = tiers(),
+                          .threads = threads_,
+                          .peers = peers_,
+                          .seed = seed_,
+                          .race = race_},
+                         PairKeys::settings);
+        });
+      }
+    }
+    print("narrow_speed");
+    print("narrow_best");
+  }
+
+  std::vector<std::size_t> pairs_{8192, 100'000};
+  std::vector<int> threads_{1};
+  NarrowRaceOptions race_;
+};
+
+class AccuracyCommand final : public PairsCommand {
+ public:
+  AccuracyCommand() : PairsCommand({"distance"}, {"all"}) {}
+
+  void add_options(CLI::App& app) {
+    option(app, "--ratio", ratios_, "Size of the second shape over that of the first")
+        ->check(CLI::PositiveNumber);
+    number(app, "--pairs", set_.pairs, 1, 1e7, "Pairs of each kind and ratio");
+    number(app, "--offset", set_.offset, 0.0, 1e12,
+           "Moves all pairs so far along each axis, at positions that are multiples of 2^-12");
+    option(app, "--angle", set_.angle,
+           "The second body stands as the first, turned by so many radians")
+        ->check(CLI::NonNegativeNumber);
+    number(app, "--thinness", set_.thinness, 0.0, 1.0, "Triangles keep so much of their height");
+    app.add_flag("--by-gap", by_gap_,
+                 "Also the errors of the pairs of each power of ten of |distance| over size");
+    one_of(app, "--judge", judge_, {"oracle", "reference"},
+           "Who knows the truth: 100 digits, or for many pairs winnow's slowest tier");
+    add_pair_options(app);
+  }
+
+ private:
+  void measure() override {
+    plan(kinds().size() * ratios_.size());
+    declare_pair_errors(results, PairKeys::settings);
+    for (const PairKind& kind : kinds()) {
+      for (const double ratio : ratios_) {
+        AccuracyOptions asked{
+            .kind = kind, .set = set_, .levels = levels(), .tiers = tiers(), .peers = peers_};
+        asked.set.seed = seed_;
+        asked.set.ratio = ratio;
+        if (judge_ == "reference") asked.judge = TruthSource::reference;
+        step(std::string(kind.name) + ", sizes 1:" + key_text(ratio),
+             [&] { add_pair_errors(results, asked, by_gap_, PairKeys::settings); });
+      }
+    }
+    print("narrow_error",
+          {"ns", "pairs", "wrong", "missing", "median_distance", "worst_distance", "median_depth",
+           "worst_depth", "worst_degrees", "normals_off", "beyond_bound", "recomputed", "judge"});
+  }
+
+  std::vector<double> ratios_{1.0, 1e2, 1e4};
+  PairSetOptions set_{.pairs = 400, .nearest = kNearestPairs};
+  bool by_gap_ = false;
+  std::string judge_ = "oracle";
+};
+
+class Pipeline final : public RowsCommand {
+ public:
+  void add_options(CLI::App& app) {
+    one_of(app, "--scene", scenes_, scenes_, "Which");
+    one_of(app, "--level", levels_, scene_level_names(), "How much winnow is asked for");
+    add_threads_option(app, asked_.threads, "Numbers of threads that winnow takes");
+    number(app, "--frames", asked_.frames, 1, 10'000, "Timed frames");
+    number(app, "--bodies", asked_.bodies, 1, 1e6, "Fewer or more of them in pile and terrain");
+    app.add_flag("!--no-peers", asked_.peers, "Without other libraries");
+    add_seed_option(app, asked_.seed);
+    add_rows_options(app);
+  }
+
+ private:
+  void measure() override {
+    plan(2 * scenes_.size() * levels_.size());
+    declare_scenes(results, true);
+    for (const std::string& scene : scenes_) {
+      if (scene == "tori") {
+        step(scene, [&] { add_tori(results, asked_.frames, asked_.peers, false); });
+      } else {
+        measure_scene(scene);
+      }
+    }
+    for (const char* table :
+         {"whole_scenes", "scene_ratios", "scene_levels", "tori", "mesh_builds"}) {
+      print(table);
+    }
+  }
+
+  /// All are asked for manifolds; winnow alone for less.
+  void measure_scene(const std::string& scene) {
+    const std::unique_ptr<BodySet> set = make_pipeline_scene(scene, asked_.bodies, asked_.seed);
+    asked_.scene = scene;
+    asked_.set = set.get();
+    for (const bool resting : {false, true}) {
+      asked_.resting = resting;
+      for (const std::string& level : levels_) {
+        step(scene + (resting ? ", at rest" : ", moving a little"), [&] {
+          if (level == "manifold") {
+            add_scene_race(results, asked_);
+          } else {
+            add_scene_level(results, asked_, level);
+          }
+        });
+      }
+    }
+  }
+
+  std::vector<std::string> scenes_{"pile", "terrain", "tori"};
+  std::vector<std::string> levels_{"manifold"};
+  PipelineMeasureOptions asked_{.machine_clock = false};
+};
+
+class Kernels final : public RowsCommand {
+ public:
+  void add_options(CLI::App& app) {
+    option(app, "--kernel", text_, "Only those whose names contain this");
+    number(app, "--rounds", rounds_, 1, 1000, "Rounds in which all take turns");
+    add_rows_options(app);
+  }
+
+ private:
+  void measure() override {
+    plan(1);
+    declare_kernels(results);
+    step("kernels", [&] { add_kernels(results, rounds_, text_); });
+    print("kernels");
+  }
+
+  std::string text_;
+  std::size_t rounds_ = 9;
+};
+
+}  // namespace
+
+std::vector<Command> add_measurements(CLI::App& app) {
+  return {
+      command<Throughput>(
+          app, "throughput",
+          "Races partitions, and other libraries, frame by frame interleaved: milliseconds and "
+          "bytes, and how time grows with objects and falls with threads; all must find the same "
+          "pairs"),
+      command<FootprintCommand>(
+          app, "footprint",
+          "Bytes an object by purpose, checked against what was really allocated and against the "
+          "process's resident set"),
+      command<Queries>(
+          app, "queries",
+          "Rays, boxes, frusta, balls, sweeps and nearest objects on one frame of a scene: "
+          "partitions and Embree in turns. What they find is compared hit by hit; \"undecided\" "
+          "counts questions on which Embree's float arithmetic may fall either way."),
+      command<Narrow>(
+          app, "narrow",
+          "Nanoseconds a pair of shapes: winnow's tiers and other libraries in turns on the same "
+          "random pairs. Other libraries start cold, without what they may remember of a pair."),
+      command<AccuracyCommand>(
+          app, "accuracy",
+          "Errors of answers about pairs of shapes against the time they take, by kind, tier and "
+          "size ratio, other libraries beside. Every second pair overlaps, and half of the pairs "
+          "are nearly touching."),
+      command<Pipeline>(
+          app, "pipeline",
+          "Milliseconds from poses to contacts: whole scenes, winnow and other libraries in turns. "
+          "A pile of 20,000 bodies, 2,000 hulls on a terrain of 200,978 triangles, each moving a "
+          "little (nothing is carried over) and at rest (contacts are); two tori of 20,000 "
+          "triangles."),
+      command<Volumes>(
+          app, "volumes",
+          "Bounding volumes and margins side by side: false positives against what they cost, the "
+          "exact test of the pairs included"),
+      command<Kernels>(app, "kernels",
+                       "Nanoseconds of the kernels of partitions on every instruction set, on "
+                       "cubes that stay in the cache")};
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,58 @@
+#include "bench/commands/options.h"
+
+#include <winnow/simd/isa.h>
+#include "bench/common/errors.h"
+#include "bench/common/table.h"
+#include "bench/contenders/partitions.h"
+#include "bench/rows/machine.h"
+
+#include <algorithm>
+#include <thread>
+
+namespace winnow::bench {
+
+void add_partitions_option(CLI::App& app, std::vector<std::string>& partitions) {
+  std::vector<std::string> names = all_partitions();
+  names.emplace_back("all");
+  one_of(app, "--partition", partitions, names, "Partitions, or all that suit the size");
+}
+
+void add_isa_option(CLI::App& app, std::string& isa) {
+  option(app, "--isa", isa, "Instruction set (default: the widest there is)");
+}
+
+void add_seed_option(CLI::App& app, std::uint64_t& seed) {
+  option(app, "--seed", seed, "What the scene is drawn from");
+}
+
+void add_json_option(CLI::App& app, std::string& path) {
+  option(app, "--json", path, "Also write the figures to this file");
+}
+
+std::vector<int> usual_threads() {
+  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  return cores > 1 ? std::vector<int>{1, cores} : std::vector<int>{1};
+}
+
+void choose_isa(const std::string& name) {
+  if (name.empty() || set_isa(name) == Status::ok) return;
+  throw ArgumentError("--isa: " + name +
+                      " is not among those this machine and build have: " + listed(isa_names()));
+}
+
+void Target::add_to(CLI::App& app) {
+  app.add_option("target", name, "A recording (.aabbs, .aabbs.xz) or a scene's name")->required();
+  add_objects_option(app, objects, "Number of objects of a scene (10000)");
+  app.add_option("--seed", seed, "What a scene is drawn from (1)");
+}
+
+NamedScene Target::named() const {
+  NamedScene scene = named_scenes({name}).front();
+  if (scene.is_recording() && (objects || seed)) {
+    throw ArgumentError("--objects and --seed go with the name of a scene, and " + name +
+                        " is not one (see: winnow scenes)");
+  }
+  return scene;
+}
+
+}  // namespace winnow::bench

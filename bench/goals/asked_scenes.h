@@ -1,0 +1,22 @@
+#pragma once
+
+#include "bench/goals/lab.h"
+#include "bench/rows/named_scene.h"
+
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+
+/// A "scene", several "scenes", or the recordings of a "folder", which is given from where the tool
+/// is started. Without any the measurement is absent.
+[[nodiscard]] inline std::vector<NamedScene> asked_scenes(const Json& options, Measured& measured) {
+  std::vector<std::string> names;
+  if (options.contains("scene")) names = {options["scene"].get<std::string>()};
+  if (options.contains("scenes")) names = options["scenes"].get<std::vector<std::string>>();
+  if (options.contains("folder")) names = recordings_in(options["folder"]);
+  measured.absent = names.empty();
+  return named_scenes(names);
+}
+
+}  // namespace winnow::bench

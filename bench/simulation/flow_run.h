@@ -1,0 +1,68 @@
+#pragma once
+
+#include "bench/common/counting_resource.h"
+#include "bench/simulation/flow_check.h"
+#include "bench/simulation/flow_history.h"
+
+#include <cstddef>
+
+namespace winnow::bench {
+
+/// A flow, step by step, with everything that is noted of it.
+class FlowRun {
+ public:
+  /// So many steps are meant to be made, after half of which the flow has warmed up. In one of
+  /// `check` steps its contacts are compared with those of all pairs; 0: never.
+  FlowRun(const FlowOptions& options, std::size_t steps, std::size_t check)
+      : flow_(with_memory(options)), warm_up_(steps / 2), check_(check) {
+    if (check_ != 0) flow_.keep_contact_poses();
+  }
+
+  void step() {
+    const std::size_t i = flow_.steps();
+    if (i == warm_up_) {
+      allocations_before_ = memory_.allocations();
+      steady_before_ = steady_.count();
+    }
+    flow_.step(i % kProfiledSteps == 0);
+    history_.add(flow_);
+    steady_.note(flow_, memory_.allocations());
+    if (check_ != 0 && i % check_ == 0) {
+      faults_ += check_contacts(flow_);
+      ++checks_;
+    }
+  }
+
+  [[nodiscard]] const GranularFlow& flow() const { return flow_; }
+  [[nodiscard]] const FlowHistory& history() const { return history_; }
+  [[nodiscard]] std::size_t bytes() const { return memory_.outstanding(); }
+  // After the flow has warmed up.
+  [[nodiscard]] std::size_t warm_up() const { return warm_up_; }
+  [[nodiscard]] std::size_t allocations() const {
+    return memory_.allocations() - allocations_before_;
+  }
+  /// In steps with no more contacts than before.
+  [[nodiscard]] std::size_t steady_allocations() const { return steady_.count() - steady_before_; }
+  // Of all checks.
+  [[nodiscard]] const FlowFaults& faults() const { return faults_; }
+  [[nodiscard]] std::size_t checks() const { return checks_; }
+
+ private:
+  FlowOptions with_memory(FlowOptions options) {
+    options.memory = &memory_;
+    return options;
+  }
+
+  CountingResource memory_;
+  GranularFlow flow_;
+  FlowHistory history_;
+  std::size_t warm_up_;
+  std::size_t check_;
+  FlowFaults faults_;
+  std::size_t checks_ = 0;
+  SteadyAllocations steady_;
+  std::size_t allocations_before_ = 0;
+  std::size_t steady_before_ = 0;
+};
+
+}  // namespace winnow::bench

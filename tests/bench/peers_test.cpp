@@ -1,0 +1,106 @@
+// Other libraries find the pairs that the reference sweep finds, and no others.
+
+#include "bench/peers/peers.h"
+#include "bench/common/random.h"
+#include "bench/contenders/reference_sweep.h"
+#include "bench/measure/race.h"
+#include "bench/scenes/scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+/// In a frame a share of the boxes moves by at most `step` along each axis; if it is 1, by whole
+/// numbers, so that what touches exactly goes on doing so.
+class MovingBoxes final : public FrameSource {
+ public:
+  MovingBoxes(std::vector<Aabb> boxes, double step, double share)
+      : boxes_(std::move(boxes)), step_(step), share_(share) {}
+
+  [[nodiscard]] std::string name() const override { return "moving boxes"; }
+  [[nodiscard]] Aabb world() const override { return {}; }
+  [[nodiscard]] std::span<const Aabb> boxes() const override { return boxes_; }
+  bool advance() override {
+    for (Aabb& box : boxes_) {
+      if (random_.unit() >= share_) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double by = random_.in(-step_, step_);
+        const auto moved = static_cast<float>(step_ == 1.0 ? std::round(by) : by);
+        box.min[axis] += moved;
+        box.max[axis] += moved;
+      }
+    }
+    return true;
+  }
+
+ private:
+  std::vector<Aabb> boxes_;
+  double step_;
+  double share_;
+  Random random_{7};
+};
+
+std::vector<Aabb> cubes(std::size_t count, float offset = 0.0F) {
+  const auto scene = make_scene("uniform", count, 20);
+  std::vector<Aabb> boxes(scene->boxes().begin(), scene->boxes().end());
+  for (Aabb& box : boxes) box = {box.min.array() + offset, box.max.array() + offset};
+  return boxes;
+}
+
+/// Boxes of this edge at the points of a lattice: with edge 1 they share faces, edges and corners
+/// and nothing else. Several times over if `copies` says so.
+std::vector<Aabb> lattice(int side, float edge, int copies) {
+  std::vector<Aabb> boxes;
+  for (int i = 0; i < copies * side * side * side; ++i) {
+    const Eigen::Vector3f min =
+        Eigen::Vector3i(i % side, i / side % side, i / side / side % side).cast<float>();
+    boxes.push_back({min, min.array() + edge});
+  }
+  return boxes;
+}
+
+std::unique_ptr<FrameSource> source_named(const std::string& name) {
+  const auto moving = [](std::vector<Aabb> boxes, double step, double share) {
+    return std::make_unique<MovingBoxes>(std::move(boxes), step, share);
+  };
+  if (name == "empty") return moving({}, 0.1, 1.0);
+  if (name == "single") return moving(cubes(1), 0.1, 1.0);
+  if (name == "still") return moving(cubes(300), 0.1, 0.0);
+  if (name == "jumping") return moving(cubes(700), 9.0, 0.5);
+  if (name == "far") return moving(cubes(500, 1e5F), 0.1, 1.0);
+  if (name == "lattice") return moving(lattice(9, 1.0F, 1), 1.0, 0.1);
+  if (name == "points") return moving(lattice(6, 0.0F, 2), 1.0, 0.3);
+  return make_scene(name, 700, 20);
+}
+
+class Peers : public testing::TestWithParam<const char*> {};
+
+TEST_P(Peers, find_every_pair_once_and_nothing_else) {
+  for (const int threads : {1, 2}) {
+    const auto source = source_named(GetParam());
+    std::vector<Contender> contenders;
+    contenders.push_back({std::make_unique<ReferenceSweep>(-1)});
+    for (auto& peer : make_peers(threads)) contenders.push_back({std::move(peer), threads});
+    RaceOptions options;
+    options.frames = 9;
+    const auto runs = race(*source, contenders, options);
+    for (const auto& run : runs) {
+      EXPECT_TRUE(run.same_pairs(runs.front())) << run.engine << ", threads: " << threads;
+      for (const PairSummary& frame : run.pairs) EXPECT_EQ(frame.reported, frame.pairs);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Peers,
+                         testing::Values("empty", "single", "uniform", "sleepy", "still", "jumping",
+                                         "mixed", "clustered", "pile", "wall", "far", "lattice",
+                                         "points"));
+
+}  // namespace
+}  // namespace winnow::bench
