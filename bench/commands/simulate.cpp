@@ -1,3 +1,4 @@
+#include <winnow/simd/isa.h>
 #include "bench/commands/options.h"
 #include "bench/commands/rows_command.h"
 #include "bench/common/arena.h"
