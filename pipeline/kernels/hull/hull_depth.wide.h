@@ -194,7 +194,7 @@ class HullDepth {
   }
 
   /// Finds the vertex of the second that a direction meets, and so the depth along it.
-  void meet(HullDirection& direction) const {
+  [[gnu::always_inline]] void meet(HullDirection& direction) const {
     float local[3];
     turn_back3(first_.turn, direction.normal, local);
     for (float& x : local) x = -x;

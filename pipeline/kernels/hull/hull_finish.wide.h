@@ -39,7 +39,7 @@ struct HullPlace {
     for (int i = 0; i < 9; ++i) turn[i] = static_cast<T>(pair.turn[i]);
     for (int i = 0; i < 3; ++i) shift[i] = static_cast<T>(pair.shift[i]);
   }
-  void of_second(const HullShape& hull, std::uint32_t vertex, T* x) const {
+  [[gnu::always_inline]] void of_second(const HullShape& hull, std::uint32_t vertex, T* x) const {
     T local[3];
     vertex_at(hull, vertex, local);
     turn3(turn, local, x);
