@@ -1,6 +1,7 @@
 #include "core/memory/key_table.h"
 
 #include "core/memory/columns.h"
+#include "core/sort/stretches.h"
 
 #include <atomic>
 
@@ -42,6 +43,56 @@ Key KeyTable::acquire(std::uint32_t row, ClientData data) noexcept {
   data_[id] = data;
   ++live_;
   return {id, stamps_[id]};
+}
+
+void KeyTable::acquire(std::uint32_t row, std::span<const ClientData> data, std::span<Key> keys,
+                       const Execution& execution) noexcept {
+  constexpr std::size_t kKeysPerTask = 8192;
+  const auto data_of = [&](std::size_t i) { return data.empty() ? 0 : data[i]; };
+  const auto row_at = [&](std::size_t i) { return row + static_cast<std::uint32_t>(i); };
+  std::size_t reused = 0;
+  for (; reused < keys.size() && first_free_ != kNoObject; ++reused) {
+    keys[reused] = acquire(row_at(reused), data_of(reused));
+  }
+  const std::size_t first = stamps_.size();
+  const std::size_t slots = first + keys.size() - reused;
+  stamps_.set_size(slots);
+  rows_.set_size(slots);
+  data_.set_size(slots);
+  for_stretches(execution, slots - first, kKeysPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slot = first + begin; slot < first + end; ++slot) {
+      const std::size_t i = reused + slot - first;
+      stamps_[slot] = tag_ | 1U;
+      rows_[slot] = row_at(i);
+      data_[slot] = data_of(i);
+      keys[i] = {static_cast<ObjectId>(slot), stamps_[slot]};
+    }
+  });
+  live_ += slots - first;
+}
+
+KeyTable::RunOfKeys KeyTable::look_at(std::span<const Key> keys) const noexcept {
+  if (keys.empty()) return {};
+  const ObjectId first = keys.front().id;
+  // Mostly they are all that there are, in order. Nothing in these loops waits for a branch.
+  std::uint32_t apart = first + keys.size() <= stamps_.size() ? 0U : 1U;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    apart |= keys[i].id ^ (first + static_cast<std::uint32_t>(i));
+  }
+  if (apart == 0) {
+    std::uint32_t wrong = 0;
+    const std::uint32_t* const stamps = stamps_.data() + first;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      wrong |= (keys[i].stamp ^ stamps[i]) | (~stamps[i] & 1U);
+    }
+    return {.valid = wrong == 0, .ascending = true};
+  }
+  RunOfKeys run;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    run.valid = run.valid && is_valid(keys[i]);
+    run.ascending = run.ascending && (i == 0 || keys[i - 1].id < keys[i].id);
+  }
+  return run;
 }
 
 void KeyTable::release(ObjectId id) noexcept {

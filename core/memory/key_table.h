@@ -1,12 +1,14 @@
 #pragma once
 
 #include <winnow/core/column.h>
+#include <winnow/core/execution.h>
 #include <winnow/core/key.h>
 #include <winnow/core/status.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
+#include <span>
 
 namespace winnow {
 
@@ -23,6 +25,10 @@ class KeyTable {
   /// Takes a free slot for an object at `row`; room must have been reserved.
   [[nodiscard]] Key acquire(std::uint32_t row, ClientData data) noexcept;
 
+  /// The same for objects in rows from `row` on, one for each of `keys`; no `data` are all zero.
+  void acquire(std::uint32_t row, std::span<const ClientData> data, std::span<Key> keys,
+               const Execution& execution) noexcept;
+
   /// Frees the slot of a valid key. A slot out of generations is retired.
   void release(ObjectId id) noexcept;
 
@@ -35,6 +41,12 @@ class KeyTable {
   [[nodiscard]] bool is_valid(Key key) const noexcept {
     return key.id < stamps_.size() && stamps_[key.id] == key.stamp && (key.stamp & 1U) != 0;
   }
+  /// What is_valid says of keys that follow each other.
+  struct RunOfKeys {
+    bool valid = true;      ///< all of them
+    bool ascending = true;  ///< by id
+  };
+  [[nodiscard]] RunOfKeys look_at(std::span<const Key> keys) const noexcept;
   [[nodiscard]] bool is_live(ObjectId id) const noexcept {
     return id < stamps_.size() && (stamps_[id] & 1U) != 0;
   }

@@ -79,6 +79,24 @@ void write_rows(const float* floats, std::uint32_t first, std::uint32_t count,
   }
 }
 
+void write_in_order(const float* floats, std::size_t count, float* const* column, std::size_t row) {
+  const Floats most = Floats(kLargest<float>);
+  const Floats least = Floats(-kLargest<float>);
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    const float* const first = floats + i * kFloats;
+    const Box16 boxes =
+        load_boxes([&](int lane) { return first + static_cast<std::size_t>(lane) * kFloats; });
+    for (int s = 0; s < 3; ++s) {
+      max(boxes.low[s], least).store_unaligned(column[s] + row + i);
+      min(boxes.high[s], most).store_unaligned(column[3 + s] + row + i);
+    }
+  }
+  for (; i < count; ++i) {
+    for (std::size_t c = 0; c < kFloats; ++c) column[c][row + i] = clamp(floats[i * kFloats + c]);
+  }
+}
+
 /// The longest edge of those that end on both sides, negated.
 Floats minus_longest_edge(const Box16& box) {
   // Infinite ends are stored as the largest float: all others are at most the one below it.
@@ -117,6 +135,7 @@ void within(const float* const* given, const float* const* stored, std::size_t c
 }  // namespace WINNOW_ISA_NAME
 
 extern const BoxInputKernels WINNOW_KERNEL_TABLE(box_input_kernels) = {
-    WINNOW_ISA_NAME::legal, WINNOW_ISA_NAME::write_rows, WINNOW_ISA_NAME::within};
+    WINNOW_ISA_NAME::legal, WINNOW_ISA_NAME::write_rows, WINNOW_ISA_NAME::write_in_order,
+    WINNOW_ISA_NAME::within};
 
 }  // namespace winnow

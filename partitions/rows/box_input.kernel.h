@@ -19,6 +19,10 @@ struct BoxInputKernels {
                      const std::uint32_t* id, float* const* column, std::size_t begin,
                      std::size_t end);
 
+  /// Gives rows from `row` on `count` boxes, one after another.
+  void (*write_in_order)(const float* floats, std::size_t count, float* const* column,
+                         std::size_t row);
+
   /// Sets the bits in `words` of those of `count` boxes that lie within the stored ones, where
   /// these are larger by at most twice the margin distance + share * longest finite edge. Columns
   /// of lower, then of upper ends, readable to the next multiple of 16; further bits are undefined.

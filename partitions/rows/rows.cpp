@@ -123,22 +123,29 @@ Status Rows::insert_from(const Source& source, std::size_t count, std::span<cons
   if (count > kMaxObjects - keys_.size()) return Status::too_many_objects;
   if (!all_valid(source, count, execution_)) return Status::invalid_bounds;
   if (!make_room(keys_.size() + count)) return Status::out_of_memory;
+  if (count == 0) return Status::ok;
   const std::size_t first = pool_.rows();
   pool_.append(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto row = static_cast<std::uint32_t>(first + i);
-    keys[i] = keys_.acquire(row, data.empty() ? 0 : data[i]);
-    pool_.ids()[row] = keys[i].id;
-    stale_.add(keys[i].id);
-  }
-  const PoolColumns columns(pool_);
+  keys_.acquire(static_cast<std::uint32_t>(first), data, keys, execution_);
+  note_stale(keys);
   return with_margin(source, [&](const auto& volumes) {
     for_ranges(execution_, count, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) volumes.write(i, columns.pointers, first + i);
+      write_new(volumes, keys, first, begin, end);
     });
-    changed_ = changed_ || count != 0;
     return Status::ok;
   });
+}
+
+/// Writes entries [begin, end) to the rows from `first` on that they have been given.
+template <typename Source>
+void Rows::write_new(const Source& source, std::span<const Key> keys, std::size_t first,
+                     std::size_t begin, std::size_t end) {
+  const PoolColumns columns(pool_);
+  for (std::size_t i = begin; i < end; ++i) pool_.ids()[first + i] = keys[i].id;
+  if constexpr (requires { source.write_in_order(begin, end, columns.pointers, first); }) {
+    if (source.packed()) return source.write_in_order(begin, end, columns.pointers, first + begin);
+  }
+  for (std::size_t i = begin; i < end; ++i) source.write(i, columns.pointers, first + i);
 }
 
 template <typename Source>
@@ -147,14 +154,10 @@ Status Rows::update_from(const Source& source, std::size_t count, std::span<cons
   std::atomic<bool> known{true};
   std::atomic<bool> ascending{true};
   for_ranges(execution_, count, [&](std::size_t begin, std::size_t end) {
-    bool ok = true;
-    bool up = true;
-    for (std::size_t i = begin; i < end; ++i) {
-      ok = ok && keys_.is_valid(keys[i]);
-      up = up && (i == 0 || keys[i - 1].id < keys[i].id);
-    }
-    if (!ok) known.store(false, std::memory_order_relaxed);
-    if (!up) ascending.store(false, std::memory_order_relaxed);
+    const std::size_t with_one_before = begin == 0 ? 0 : begin - 1;
+    const auto run = keys_.look_at(keys.subspan(with_one_before, end - with_one_before));
+    if (!run.valid) known.store(false, std::memory_order_relaxed);
+    if (!run.ascending) ascending.store(false, std::memory_order_relaxed);
   });
   if (!known.load()) return Status::invalid_key;
   if (!all_valid(source, count, execution_)) return Status::invalid_bounds;
@@ -211,17 +214,21 @@ Status Rows::write(const Source& source, std::span<const Key> keys, bool ascendi
     note_left(keys, by_rows, slots);
     return Status::ok;
   } else {
+    note_stale(keys);
     for_entries(source, keys, by_rows, ascending, [&](std::size_t i, std::size_t row, std::size_t) {
       source.write(i, columns.pointers, row);
     });
-    if (count > stale_.limit()) {
-      stale_.add_all();
-    } else {
-      for (const Key key : keys) stale_.add(key.id);
-    }
-    changed_ = true;
     return Status::ok;
   }
+}
+
+void Rows::note_stale(std::span<const Key> keys) noexcept {
+  if (keys.size() > stale_.limit()) {
+    stale_.add_all();
+  } else {
+    for (const Key key : keys) stale_.add(key.id);
+  }
+  changed_ = true;
 }
 
 /// Notes the objects whose bits are set in the selection as changed: those of rows, or of entries.

@@ -125,6 +125,10 @@ class Rows {
   template <typename Source, typename Visit>
   void for_entries(const Source& source, std::span<const Key> keys, bool by_rows, bool ascending,
                    const Visit& visit);
+  template <typename Source>
+  void write_new(const Source& source, std::span<const Key> keys, std::size_t first,
+                 std::size_t begin, std::size_t end);
+  void note_stale(std::span<const Key> keys) noexcept;
   void note_left(std::span<const Key> keys, bool by_rows, std::size_t slots) noexcept;
 
   Execution execution_;

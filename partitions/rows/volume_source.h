@@ -103,6 +103,11 @@ struct BoxSource {
     box_input_kernels().write_rows(boxes.min[0], first, static_cast<std::uint32_t>(boxes.count),
                                    ids, columns, begin, end);
   }
+  /// Writes entries [begin, end) into the rows from `row` on. The boxes are packed.
+  void write_in_order(std::size_t begin, std::size_t end, ColumnPointers columns,
+                      std::size_t row) const noexcept {
+    box_input_kernels().write_in_order(boxes.min[0] + 6 * begin, end - begin, columns, row);
+  }
   void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
     const Aabb box = boxes[i];
     for (int axis = 0; axis < 3; ++axis) {
