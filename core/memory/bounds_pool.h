@@ -84,6 +84,12 @@ class BoundsPool {
   Volume volume_;
 };
 
+/// The columns of boxes, for kernels.
+[[nodiscard]] inline std::array<const float*, 6> box_columns(const BoundsPool& pool) noexcept {
+  return {pool.column(0), pool.column(1), pool.column(2),
+          pool.column(3), pool.column(4), pool.column(5)};
+}
+
 /// What an empty row holds in column `c` of a volume: +infinity in a lower end, -infinity in an
 /// upper one; an empty sphere is infinitely far away and has radius 0.
 [[nodiscard]] constexpr float empty_value(Volume volume, std::size_t c) noexcept {

@@ -161,10 +161,11 @@ bool SpatialIndex::order_rest() {
     const Structure::Ordered ordered = structure_->order_rest(rest, order_);
     if (ordered != Structure::Ordered::none) return ordered == Structure::Ordered::done;
   }
-  if (!sort_by_place(rest, rows_.execution_for(rest.size()))) return false;
+  if (!order_.grow(order_.size() + rest.size())) return false;
+  if (!sort_by_place(rest, order_.end(), rows_.execution_for(rest.size()))) return false;
   if (environments) return append_environments(rows_.pool(), rows_.filters().data(), rest, order_);
-  if (!order_.resize(order_.size() + rest.size())) return false;
-  std::copy(rest.begin(), rest.end(), order_.end() - rest.size());
+  std::copy(rest.begin(), rest.end(), order_.end());
+  order_.set_size(order_.size() + rest.size());
   return true;
 }
 
@@ -195,11 +196,13 @@ Status SpatialIndex::build_flat() {
   return Status::ok;
 }
 
-bool SpatialIndex::sort_by_place(std::span<std::uint32_t> rows, const Execution& execution) {
+// `room` is for as many rows.
+bool SpatialIndex::sort_by_place(std::span<std::uint32_t> rows, std::uint32_t* room,
+                                 const Execution& execution) {
   return rows_.filters().has_environments()
              ? sort_by_environment_and_place(rows_.pool(), rows_.filters().data(), rows, items_,
-                                             points_, execution)
-             : sort_by_kd_cuts(rows_.pool(), rows, points_, execution);
+                                             room, points_, execution)
+             : sort_by_kd_cuts(rows_.pool(), rows, room, points_, execution);
 }
 
 Status SpatialIndex::absorb_changes() {
@@ -260,8 +263,8 @@ bool SpatialIndex::sort_tail() noexcept {
   for (std::size_t row = begin; row < pool.rows(); ++row) {
     if (pool.ids()[row] != kNoObject) live.add(row);
   }
-  if (!sort_by_place(live.entries(), Execution::serial()) ||
-      !spare_.grow(live.list.size() + 2 * kBlockRows)) {
+  if (!order_.grow(live.list.size()) || !spare_.grow(live.list.size() + 2 * kBlockRows) ||
+      !sort_by_place(live.entries(), order_.data(), Execution::serial())) {
     return false;
   }
   rows_.reorder_tail(begin, live.entries(), spare_);

@@ -104,7 +104,8 @@ class SpatialIndex {
   [[nodiscard]] bool plan_order();
   [[nodiscard]] bool order_rest();
   Status build_flat();
-  bool sort_by_place(std::span<std::uint32_t> rows, const Execution& execution);
+  bool sort_by_place(std::span<std::uint32_t> rows, std::uint32_t* room,
+                     const Execution& execution);
   Status absorb_changes();
   [[nodiscard]] bool is_torn() const noexcept;
   void collect_misfits(std::size_t limit) noexcept;
@@ -136,7 +137,7 @@ class SpatialIndex {
   Column<float> spare_;          // what columns are permuted through
   Column<std::uint32_t> order_;  // old row of each new row
   Column<std::uint64_t> items_;  // what is sorted by an integer
-  Column<KdPoint> points_;       // what is sorted by place
+  Column<float> points_;         // places of what is sorted by these
 
   // Wear, in tests of 16 volumes: what a query costs on a fresh structure, and what those since
   // have cost beyond that.

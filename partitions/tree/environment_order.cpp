@@ -45,12 +45,13 @@ bool for_environments(const BoundsPool& pool, const ObjectFilter* filters,
 
 bool sort_by_environment_and_place(const BoundsPool& pool, const ObjectFilter* filters,
                                    std::span<std::uint32_t> rows, Column<std::uint64_t>& scratch,
-                                   Column<KdPoint>& points, const Execution& execution) {
+                                   std::uint32_t* room, Column<float>& points,
+                                   const Execution& execution) {
   if (!sort_by_environment(pool, filters, rows, scratch, execution)) return false;
   return for_environments(pool, filters, rows, [&](std::size_t begin, std::size_t end) {
     // What fits in a block needs no order.
     return end - begin <= kBlockRows ||
-           sort_by_kd_cuts(pool, rows.subspan(begin, end - begin), points, execution);
+           sort_by_kd_cuts(pool, rows.subspan(begin, end - begin), room, points, execution);
   });
 }
 

@@ -19,10 +19,14 @@ namespace winnow {
                                        Column<std::uint64_t>& scratch, const Execution& execution);
 
 /// Sorts row numbers by environment and each environment by place (see sort_by_kd_cuts), so that
-/// worlds that lie on top of each other come one after another.
-[[nodiscard]] bool sort_by_environment_and_place(
-    const BoundsPool& pool, const ObjectFilter* filters, std::span<std::uint32_t> rows,
-    Column<std::uint64_t>& scratch, Column<KdPoint>& points, const Execution& execution);
+/// worlds that lie on top of each other come one after another; `room` and `points` are what that
+/// needs.
+[[nodiscard]] bool sort_by_environment_and_place(const BoundsPool& pool,
+                                                 const ObjectFilter* filters,
+                                                 std::span<std::uint32_t> rows,
+                                                 Column<std::uint64_t>& scratch,
+                                                 std::uint32_t* room, Column<float>& points,
+                                                 const Execution& execution);
 
 /// Appends rows sorted by environment to `order`. An environment of more than a block has blocks
 /// to itself, padded by kNoObject: a block with the end of one world and the start of another would

@@ -9,12 +9,6 @@
 
 namespace winnow {
 
-/// A box's centre and its row, moved as one while rows are put in order.
-struct KdPoint {
-  float at[3];
-  std::uint32_t row;
-};
-
 /// Puts rows in order for a block tree over them: sets of rows are cut in two from the top down, at
 /// the middle of the axis along which their centres reach farthest, and only where the first side
 /// fills its subtrees of 16^k blocks, so that every node of the implicit tree is one such set
@@ -22,9 +16,11 @@ struct KdPoint {
 /// loading algorithm for R-tree", CAiSE 2003). Boxes of all sizes mix well: a cut follows where
 /// they lie, and a large box widens no more than the one block that it is in.
 ///
-/// Rows are live, their boxes in the pool's first six columns. O(n log n); the same result on any
-/// number of threads. False, and `rows` unchanged, if memory is refused.
+/// Rows are live, their boxes in the pool's first six columns; `room` is for as many. O(n log n);
+/// the same result on any number of threads and any instruction set. False, and `rows` unchanged,
+/// if memory is refused.
 [[nodiscard]] bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows,
-                                   Column<KdPoint>& scratch, const Execution& execution);
+                                   std::uint32_t* room, Column<float>& scratch,
+                                   const Execution& execution);
 
 }  // namespace winnow

@@ -125,8 +125,9 @@ bool order_triangles(const float* const vertex[3], const std::uint32_t* const co
                      Column<std::uint32_t>& order, const Execution& execution) {
   const std::size_t count = order.size();
   BoundsPool pool(order.memory(), Volume::aabb);
-  Column<KdPoint> scratch(order.memory());
-  if (!pool.reserve_exact(count)) return false;
+  Column<std::uint32_t> room(order.memory());
+  Column<float> scratch(order.memory());
+  if (!pool.reserve_exact(count) || !room.reserve(count)) return false;
   pool.append(count);
   for_stretches(execution, count, kTrianglesPerStretch, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
@@ -134,7 +135,8 @@ bool order_triangles(const float* const vertex[3], const std::uint32_t* const co
       order[i] = static_cast<std::uint32_t>(i);
     }
   });
-  return sort_by_kd_cuts(pool, std::span<std::uint32_t>(order.data(), count), scratch, execution);
+  return sort_by_kd_cuts(pool, std::span<std::uint32_t>(order.data(), count), room.data(), scratch,
+                         execution);
 }
 
 std::size_t plan_mesh_levels(MeshView& view) noexcept {
