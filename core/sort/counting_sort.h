@@ -1,31 +1,48 @@
 #pragma once
 
-#include <winnow/core/column.h>
+#include <winnow/core/execution.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace winnow {
 
-// A counting sort in three steps: `starts` holds the count of each bucket (and one more element);
-// these become write positions, which move on as items are placed; at the end they are starts
-// again.
+/// Stable sort of rows by the bucket that each is in. Threads count and place a chunk of the rows
+/// each; where a row comes to lie does not depend on how many chunks there are.
+class CountingSort {
+ public:
+  static constexpr std::uint32_t kNone = ~0U;
 
-/// Turns counts into first positions; returns their sum.
-inline std::uint32_t positions_from_counts(Column<std::uint32_t>& starts) noexcept {
-  std::uint32_t sum = 0;
-  for (std::uint32_t& s : starts) {
-    const std::uint32_t count = s;
-    s = sum;
-    sum += count;
+  /// `bucket` holds the bucket of each row, or kNone for rows to be left out. `start` has one
+  /// element more than there are buckets. `spare` is what more chunks than one can count in.
+  CountingSort(std::span<const std::uint32_t> bucket, std::span<std::uint32_t> start,
+               std::span<std::uint32_t> spare, const Execution& execution) noexcept;
+
+  /// Counts the rows in each bucket. O(rows + chunks * buckets).
+  void count() noexcept;
+  /// How many `count` found.
+  [[nodiscard]] std::uint32_t size_of(std::size_t bucket) const noexcept;
+
+  /// Makes of the counts where buckets begin, in `start`; returns how many rows are in buckets.
+  std::uint32_t find_starts() noexcept;
+  /// Writes the rows in their order; room is what `find_starts` says. Once, after it.
+  void place(std::uint32_t* order) noexcept;
+
+ private:
+  [[nodiscard]] std::uint32_t* counts_of(std::size_t chunk) const noexcept {
+    return chunk == 0 ? start_.data() : spare_.data() + (chunk - 1) * buckets_;
   }
-  return sum;
-}
+  [[nodiscard]] std::size_t first_row(std::size_t chunk) const noexcept {
+    return bucket_.size() * chunk / chunks_;
+  }
 
-/// After placing, each position has moved on to its bucket's end, which is the next one's start.
-inline void starts_from_positions(Column<std::uint32_t>& starts) noexcept {
-  for (std::size_t c = starts.size() - 1; c > 0; --c) starts[c] = starts[c - 1];
-  starts[0] = 0;
-}
+  const std::span<const std::uint32_t> bucket_;
+  const std::span<std::uint32_t> start_;
+  const std::span<std::uint32_t> spare_;
+  const Execution& execution_;
+  const std::size_t buckets_;
+  std::size_t chunks_ = 1;
+};
 
 }  // namespace winnow

@@ -14,6 +14,11 @@ namespace winnow {
   return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
 }
 
+/// What `sortable` was made of.
+[[nodiscard]] inline float from_sortable(std::uint32_t bits) noexcept {
+  return std::bit_cast<float>((bits & 0x80000000U) != 0 ? bits & 0x7FFFFFFFU : ~bits);
+}
+
 /// Stable sort of (key << first_bit | value) by the lowest `bits` bits of the key: a
 /// least-significant-digit radix sort of 11 bits per pass. `items` and `spare` hold `count` each;
 /// returns the one of the two that holds the result. O(count * bits / 11); the same result on any

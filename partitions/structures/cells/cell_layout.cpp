@@ -1,16 +1,37 @@
 #include "partitions/structures/cells/cell_layout.h"
 
+#include "core/sort/stretches.h"
+#include "partitions/structures/cells/cell_layout.kernel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace winnow {
+
+WINNOW_DEFINE_KERNELS(CellLayoutKernels, cell_layout_kernels)
+
 namespace {
 
 constexpr float kUnbounded = 1e30F;
 constexpr std::size_t kFewest = 64;  // below this the tree alone does as well
 constexpr double kMostCells = 2048;  // on an axis
 constexpr double kTreeQuery = 14.0;  // tests of 16 that an object of the tree costs
+constexpr std::size_t kRowsPerStretch = 8192;
+constexpr std::size_t kRowsPerSample = 64;  // one row of so many is looked at, if they are enough
+
+}  // namespace
+
+namespace {
+
+// The value that comes at place `at` of all in ascending order. Reorders them, so that those before
+// this place are the lower ones.
+float value_at(std::span<float> values, std::size_t at) noexcept {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(at);
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
 
 }  // namespace
 
@@ -19,7 +40,11 @@ SceneSample::SceneSample(const BoundsPool& pool) noexcept {
   for (std::size_t row = 0; row < pool.rows(); ++row) live += pool.ids()[row] != kNoObject;
   objects = live;
   if (live == 0) return;
-  const std::size_t step = std::max<std::size_t>(1, pool.rows() / kMost);
+  // Of few rows all.
+  const std::size_t wanted =
+      pool.rows() <= kMost ? kMost
+                           : std::clamp<std::size_t>(pool.rows() / kRowsPerSample, kLeast, kMost);
+  const std::size_t step = std::max<std::size_t>(1, pool.rows() / wanted);
   std::array<std::array<float, kMost>, 3> ends;
   for (std::size_t row = step / 2; row < pool.rows() && count < kMost; row += step) {
     if (pool.ids()[row] == kNoObject) continue;
@@ -31,14 +56,14 @@ SceneSample::SceneSample(const BoundsPool& pool) noexcept {
   }
   if (count == 0) return;
   for (std::size_t a = 0; a < 3; ++a) {
-    const auto begin = ends[a].begin();
-    std::sort(begin, begin + static_cast<std::ptrdiff_t>(count));
+    const std::span<float> values(ends[a].data(), count);
+    const auto [least, most] = std::ranges::minmax(values);
     // Outliers must not stretch the cells: past the middle 96 % the range goes on by half of it.
-    const double q02 = static_cast<double>(ends[a][count / 50]);
-    const double q98 = static_cast<double>(ends[a][count - 1 - count / 50]);
+    const double q98 = static_cast<double>(value_at(values, count - 1 - count / 50));
+    const double q02 = static_cast<double>(value_at(values, count / 50));
     const double margin = 0.5 * (q98 - q02);
-    low[a] = std::max(ends[a][0], static_cast<float>(std::max(q02 - margin, -3e38)));
-    high[a] = std::min(ends[a][count - 1], static_cast<float>(std::min(q98 + margin, 3e38)));
+    low[a] = std::max(least, static_cast<float>(std::max(q02 - margin, -3e38)));
+    high[a] = std::min(most, static_cast<float>(std::min(q98 + margin, 3e38)));
     std::size_t bounded = 0;
     for (std::size_t i = 0; i < count; ++i) {
       if (!(edge[a][i] < kUnbounded)) continue;
@@ -59,7 +84,7 @@ struct CellLayout::Trial {
   double cost = std::numeric_limits<double>::infinity();
 
   // Axes along which objects are spread over several of their own size.
-  void divide(const SceneSample& s, float quantile_edge_of[3]) {
+  void divide(const SceneSample& s, const std::array<float, 3>& quantile_edge_of) {
     for (std::size_t a = 0; a < 3; ++a) {
       // A little more, for what the sample did not see and for edges that differ by rounding.
       reach[a] = 1.001 * static_cast<double>(quantile_edge_of[a]);
@@ -156,14 +181,16 @@ bool CellLayout::choose(const SceneSample& s, const CellDemand& d) noexcept {
   for (std::size_t a = 1; a < 3; ++a) {
     if (room(a) > room(fast)) fast = a;
   }
-  std::array<std::array<float, SceneSample::kMost>, 3> sorted = s.edge;
-  for (auto& edges : sorted) {
-    std::sort(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(s.count));
-  }
+  std::array<std::array<float, SceneSample::kMost>, 3> edges_of = s.edge;
+  std::array<float, 3> edges{-1.0F, -1.0F, -1.0F};
+  std::size_t behind = s.count;
   Trial best;
   for (const double quantile : {1.0, 0.99, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.35}) {
     const auto at = static_cast<std::size_t>(quantile * static_cast<double>(s.count - 1));
-    float edges[3] = {sorted[0][at], sorted[1][at], sorted[2][at]};
+    const std::array<float, 3> before = edges;
+    for (std::size_t a = 0; a < 3; ++a) edges[a] = value_at({edges_of[a].data(), behind}, at);
+    behind = at + 1;
+    if (edges == before) continue;
     Trial trial;
     trial.divide(s, edges);
     trial.size_cells(s, d, fast);
@@ -182,6 +209,22 @@ bool CellLayout::choose(const SceneSample& s, const CellDemand& d) noexcept {
                                        s.range(fast) / (4.0 * static_cast<double>(s.objects))));
   return lay_edges(best, s);
 }
+
+namespace {
+
+/// True if whatever guess_cell puts into a cell lies within it: the guess never falls as x grows,
+/// so this needs to be looked at beside the ends of the cells alone.
+bool agrees(const CellAxis& axis) noexcept {
+  for (std::uint32_t c = 0; c < axis.count; ++c) {
+    const float before = std::nextafter(axis.from[c], -kEndless);
+    const float behind = std::nextafter(axis.to[c], kEndless);
+    if (c > 0 && guess_cell(axis, before) >= c) return false;
+    if (c + 1 < axis.count && guess_cell(axis, behind) <= c) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 bool CellLayout::lay_edges(const Trial& trial, const SceneSample& s) noexcept {
   std::size_t total = 0;
@@ -220,9 +263,17 @@ bool CellLayout::lay_edges(const Trial& trial, const SceneSample& s) noexcept {
       usable_ =
           usable_ && static_cast<double>(from[c + 2]) > end * (end > 0 ? 1.0000001 : 0.9999999);
     }
-    usable_ = usable_ && std::isfinite(axis.inverse);
+    usable_ = usable_ && std::isfinite(axis.inverse) && agrees(axis);
   }
   return true;
+}
+
+void CellLayout::find_cells(const BoundsPool& pool, std::uint32_t* cell,
+                            const Execution& execution) const noexcept {
+  const std::array<const float*, 6> columns = box_columns(pool);
+  for_stretches(execution, pool.rows(), kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
+    cell_layout_kernels().cells(columns.data(), axes_.data(), begin, end, cell);
+  });
 }
 
 std::uint32_t CellLayout::cell_of(const BoundsPool& pool, std::size_t row) const noexcept {
@@ -230,10 +281,8 @@ std::uint32_t CellLayout::cell_of(const BoundsPool& pool, std::size_t row) const
   for (std::size_t k = 3; k-- > 0;) {
     const CellAxis& axis = axes_[k];
     const float low = pool.column(axis.axis)[row];
-    const std::uint32_t c = guess_cell(axis, low);
-    if (!(low >= axis.from[c] && low <= axis.to[c])) return kNoCell;
     if (!(pool.column(3 + axis.axis)[row] - low <= axis.limit)) return kNoCell;
-    cell = cell * axis.count + c;
+    cell = cell * axis.count + guess_cell(axis, low);
   }
   return cell;
 }

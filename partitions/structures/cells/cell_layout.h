@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/column.h>
+#include <winnow/core/execution.h>
 #include "core/memory/bounds_pool.h"
 #include "partitions/structures/cells/cells.kernel.h"
 
@@ -17,6 +18,7 @@ inline constexpr float kEndless = std::numeric_limits<float>::infinity();
 
 /// Where and how large the objects of a scene are, from a sample: enough to lay out cells.
 struct SceneSample {
+  static constexpr std::size_t kLeast = 512;
   static constexpr std::size_t kMost = 2048;
 
   explicit SceneSample(const BoundsPool& pool) noexcept;
@@ -62,6 +64,10 @@ class CellLayout {
   [[nodiscard]] float drift() const noexcept { return drift_; }
 
   static constexpr std::uint32_t kNoCell = 0xFFFFFFFFU;
+  /// Writes the cell of every row, as cell_of says; kNoCell for empty rows. There is room for whole
+  /// blocks.
+  void find_cells(const BoundsPool& pool, std::uint32_t* cell,
+                  const Execution& execution) const noexcept;
   /// The cell for a row's box, or kNoCell if it does not suit any.
   [[nodiscard]] std::uint32_t cell_of(const BoundsPool& pool, std::size_t row) const noexcept;
   /// True if the row's box may stay in the cell.

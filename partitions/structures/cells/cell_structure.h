@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/memory/columns.h"
+#include "core/sort/counting_sort.h"
 #include "partitions/structures/structure.h"
 #include "partitions/structures/tasks.h"
 
@@ -51,6 +52,15 @@ class CellStructure : public Structure {
   /// Writes to `out` the rows of places [begin, end) that left; returns how many.
   virtual std::size_t write_misfits(std::uint32_t begin, std::uint32_t end,
                                     std::uint32_t* out) const noexcept = 0;
+
+  /// Makes those live rows that have no cell in list_ part of the rest; `regular` others have one.
+  void list_rest(std::size_t regular, const RowPlan& plan) const noexcept {
+    const std::size_t most = objects() - regular;
+    for (std::size_t row = 0; row < pool().rows() && plan.rest.size() < most; ++row) {
+      if (list_[row] != CountingSort::kNone || pool().ids()[row] == kNoObject) continue;
+      (void)plan.rest.push_back(static_cast<std::uint32_t>(row));
+    }
+  }
 
   Column<std::uint32_t> start_;  ///< first row of each cell, and the end
   Column<std::uint32_t> list_;   ///< while building what it likes; then room for the rows that left

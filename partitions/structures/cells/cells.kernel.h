@@ -30,12 +30,14 @@ struct CellAxis {
   const float* to = nullptr;
   std::uint32_t count = 1;
   std::uint32_t axis = 0;  ///< 0, 1, 2 for x, y, z
-  float origin = 0.0F;     ///< start of cell 0, for a first guess
-  float inverse = 0.0F;    ///< cells per unit length, for a first guess
+  float origin = 0.0F;     ///< start of cell 0, for guess_cell
+  float inverse = 0.0F;    ///< cells per unit length, for guess_cell; 0 if there is but one
   float reach = 0.0F;
   float limit = 0.0F;
 };
 
+/// A cell that holds an object with its lower end at x, if its edge is no longer than the limit. It
+/// never falls as x grows.
 static inline std::uint32_t guess_cell(const CellAxis& a, float x) {
   const float t = (x - a.origin) * a.inverse;
   const float last = static_cast<float>(a.count - 1);

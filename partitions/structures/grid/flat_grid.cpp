@@ -42,8 +42,7 @@ class FlatGrid final : public CellStructure {
   void add_bytes(Footprint& footprint) const noexcept override;
   [[nodiscard]] std::size_t cells() const noexcept override;
 
-  void count_cells() noexcept;
-  void drop_overfull() noexcept;
+  [[nodiscard]] bool drop_overfull(const CountingSort& sort) noexcept;
   [[nodiscard]] GridView view() const noexcept;
 
   // While building list_ holds the cell of each row.
@@ -60,39 +59,29 @@ bool FlatGrid::plan(const RowPlan& plan) noexcept {
     leave_all(plan);
     return true;
   }
-  if (!list_.resize(pool().rows()) || !start_.resize(layout_.cells() + 1)) return false;
-  count_cells();
-  drop_overfull();
-  plan.regular.set_size(positions_from_counts(start_));
-  for (std::size_t row = 0; row < pool().rows(); ++row) {
-    const std::uint32_t own = list_[row];
-    if (own != CellLayout::kNoCell) {
-      plan.regular[start_[own]++] = static_cast<std::uint32_t>(row);
-    } else if (pool().ids()[row] != kNoObject) {
-      (void)plan.rest.push_back(static_cast<std::uint32_t>(row));
-    }
-  }
-  starts_from_positions(start_);
+  const std::size_t rows = pool().rows();
+  if (!list_.resize(rows) || !start_.resize(layout_.cells() + 1)) return false;
+  layout_.find_cells(pool(), list_.data(), execution());
+  CountingSort sort({list_.data(), rows}, {start_.data(), start_.size()},
+                    {plan.rest.data(), plan.rest.capacity()}, execution());
+  sort.count();
+  if (drop_overfull(sort)) sort.count();
+  plan.regular.set_size(sort.find_starts());
+  sort.place(plan.regular.data());
+  list_rest(plan.regular.size(), plan);
   return true;
 }
 
-void FlatGrid::count_cells() noexcept {
-  std::fill(start_.begin(), start_.end(), 0);
-  for (std::size_t row = 0; row < pool().rows(); ++row) {
-    const bool live = pool().ids()[row] != kNoObject;
-    const std::uint32_t own = live ? layout_.cell_of(pool(), row) : CellLayout::kNoCell;
-    list_[row] = own;
-    if (own != CellLayout::kNoCell) ++start_[own];
+bool FlatGrid::drop_overfull(const CountingSort& sort) noexcept {
+  bool any = false;
+  for (std::size_t cell = 0; cell < layout_.cells() && !any; ++cell) {
+    any = sort.size_of(cell) > kOverfull;
   }
-}
-
-void FlatGrid::drop_overfull() noexcept {
-  if (std::none_of(start_.begin(), start_.end(), [](auto n) { return n > kOverfull; })) return;
-  for (std::uint32_t& own : list_) {
-    if (own != CellLayout::kNoCell && start_[own] > kOverfull) own = CellLayout::kNoCell;
+  if (!any) return false;
+  for (std::uint32_t& cell : list_) {
+    if (cell != CellLayout::kNoCell && sort.size_of(cell) > kOverfull) cell = CellLayout::kNoCell;
   }
-  std::replace_if(
-      start_.begin(), start_.end(), [](auto n) { return n > kOverfull; }, 0U);
+  return true;
 }
 
 bool FlatGrid::fits(std::size_t row) const noexcept {

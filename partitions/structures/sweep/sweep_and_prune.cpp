@@ -7,7 +7,12 @@
 #include "partitions/structures/sweep/sweep_and_prune.kernel.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
 #include <limits>
+#include <span>
+#include <utility>
 
 namespace winnow {
 
@@ -22,6 +27,50 @@ constexpr std::uint32_t kCrowded = 384;
 // Rows that do not fit strips ask every strip that they cross. Where more than this share of a
 // scene does so, the tree serves all of it better.
 constexpr double kMostApart = 0.1;
+
+/// A key of a row on the sweep axis, in the order of keys, before the row.
+using SweepItem = std::uint64_t;
+
+SweepItem sweep_item(float key, std::uint32_t row) noexcept {
+  return SweepItem{sortable(key)} << 32U | row;
+}
+std::uint32_t row_of(SweepItem item) noexcept {
+  return static_cast<std::uint32_t>(item);
+}
+float key_of(SweepItem item) noexcept {
+  return from_sortable(static_cast<std::uint32_t>(item >> 32U));
+}
+
+// Sorts items by key and row: in bins of equal width, of which each mostly holds one.
+void sort_by_keys(std::span<SweepItem> items, SweepItem* room) noexcept {
+  constexpr std::size_t kMostKeyBins = 1024;
+  constexpr std::size_t kFewInBin = 12;
+  const std::size_t bins = std::min(kMostKeyBins, std::bit_ceil(items.size()));
+  float low = kInfinity;
+  float high = -kInfinity;
+  for (const SweepItem item : items) {
+    low = std::min(low, key_of(item));
+    high = std::max(high, key_of(item));
+  }
+  const float scale = high > low ? 0.999F * static_cast<float>(bins) / (high - low) : 0.0F;
+  const auto bin_of = [&](SweepItem item) {
+    return static_cast<std::size_t>((key_of(item) - low) * scale);
+  };
+  std::array<std::uint32_t, kMostKeyBins> next;
+  std::fill_n(next.begin(), bins, 0U);
+  for (const SweepItem item : items) ++next[bin_of(item)];
+  const std::uint32_t most = *std::max_element(next.begin(), next.begin() + bins);
+  if (most > kFewInBin || items.size() < 2) return std::sort(items.begin(), items.end());
+  std::uint32_t sum = 0;
+  for (std::uint32_t& n : std::span(next).first(bins)) sum += std::exchange(n, sum);
+  for (const SweepItem item : items) room[next[bin_of(item)]++] = item;
+  // What is left to do is within bins.
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    std::size_t to = i;
+    for (; to > 0 && items[to - 1] > room[i]; --to) items[to] = items[to - 1];
+    items[to] = room[i];
+  }
+}
 
 /// Sorted sweep-and-prune (Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", 1992) in
 /// strips: objects are bucketed on the two axes that are not swept and sorted on the third, the one
@@ -53,9 +102,9 @@ class SweepAndPrune final : public CellStructure {
   void add_bytes(Footprint& footprint) const noexcept override;
   [[nodiscard]] std::size_t cells() const noexcept override;
 
-  [[nodiscard]] std::size_t list_rows(const RowPlan& plan) noexcept;
-  void sort_rows(std::size_t count, const RowPlan& plan) noexcept;
+  [[nodiscard]] bool sort_strips(const RowPlan& plan) noexcept;
   void drop_crowded(const RowPlan& plan) noexcept;
+  [[nodiscard]] float crowd_window() const noexcept;
   [[nodiscard]] StripView view() const noexcept;
 
   // While building list_ holds the strip of each row.
@@ -80,58 +129,59 @@ bool SweepAndPrune::plan(const RowPlan& plan) noexcept {
       !plan.items.resize(2 * rows)) {
     return false;
   }
+  layout_.find_cells(pool(), list_.data(), execution());
+  CountingSort strips({list_.data(), rows}, {start_.data(), start_.size()},
+                      {plan.rest.data(), plan.rest.capacity()}, execution());
+  strips.count();
+  plan.regular.set_size(strips.find_starts());
   const auto most = static_cast<std::size_t>(kMostApart * static_cast<double>(sample.objects));
-  const std::size_t count = list_rows(plan);
-  if (plan.rest.size() <= most) {
-    sort_rows(count, plan);
-    drop_crowded(plan);
+  bool apart = objects() - plan.regular.size() > most;
+  if (!apart) {
+    strips.place(plan.regular.data());
+    list_rest(plan.regular.size(), plan);
+    if (sort_strips(plan)) drop_crowded(plan);
+    apart = plan.rest.size() > most;
   }
-  if (plan.rest.size() <= most) return true;
+  if (!apart) return true;
   plan.regular.clear();
   plan.rest.clear();
   leave_all(plan);
   return true;
 }
 
-// Lists the rows that fit strips, with their keys, and returns how many there are.
-std::size_t SweepAndPrune::list_rows(const RowPlan& plan) noexcept {
-  std::fill(start_.begin(), start_.end(), 0);
-  const std::size_t rows = pool().rows();
+// Sorts the rows of each strip by their keys, which it leaves in the items; true if some strip is
+// crowded.
+bool SweepAndPrune::sort_strips(const RowPlan& plan) noexcept {
   const float* const low = pool().column(layout_.axis(0).axis);
-  std::uint64_t* const items = plan.items.data();
-  std::size_t count = 0;
-  for (std::size_t row = 0; row < rows; ++row) {
-    if (pool().ids()[row] == kNoObject) continue;
-    list_[row] = layout_.cell_of(pool(), row);
-    if (list_[row] == CellLayout::kNoCell) {
-      (void)plan.rest.push_back(static_cast<std::uint32_t>(row));
-      continue;
+  const float window = crowd_window();
+  std::atomic<bool> crowded{false};
+  const TaskCut cut{places()};
+  execution().for_each(cut.tasks(), [&](std::size_t task) {
+    bool found = false;
+    for (std::uint32_t strip = cut.first(task); strip < cut.first(task + 1); ++strip) {
+      const std::uint32_t begin = start_[strip];
+      const std::size_t count = start_[strip + 1] - begin;
+      SweepItem* const items = plan.items.data() + begin;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t row = plan.regular[begin + i];
+        items[i] = sweep_item(low[row], row);
+      }
+      sort_by_keys({items, count}, items + pool().rows());
+      for (std::size_t i = 0; i < count; ++i) plan.regular[begin + i] = row_of(items[i]);
+      for (std::size_t i = 0; i + kCrowded < count && !found; ++i) {
+        found = key_of(items[i + kCrowded]) <= key_of(items[i]) + 2.0F * window;
+      }
     }
-    ++start_[list_[row]];
-    items[count++] = static_cast<std::uint64_t>(sortable(low[row])) << 32U | row;
-  }
-  return count;
-}
-
-void SweepAndPrune::sort_rows(std::size_t count, const RowPlan& plan) noexcept {
-  std::uint64_t* const items = plan.items.data();
-  std::uint64_t* const spare = items + pool().rows();
-  const std::uint64_t* const by_key = radix_sort(items, spare, count, 32, execution());
-  (void)positions_from_counts(start_);
-  plan.regular.set_size(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto row = static_cast<std::uint32_t>(by_key[i]);
-    plan.regular[start_[list_[row]]++] = row;
-  }
-  starts_from_positions(start_);
+    if (found) crowded.store(true, std::memory_order_relaxed);
+  });
+  return crowded.load();
 }
 
 // Where many objects begin within one reach of each other on the sweep axis, as when half of a
 // scene is tiny, a sweep would look at all of them: the tree prunes these better.
 void SweepAndPrune::drop_crowded(const RowPlan& plan) noexcept {
-  const CellAxis& axis = layout_.axis(0);
-  const float* const low = pool().column(axis.axis);
-  const float window = axis.reach + 2.0F * layout_.drift();
+  const float window = crowd_window();
+  const SweepItem* const items = plan.items.data();
   std::uint32_t kept = 0;
   for (std::size_t strip = 0; strip + 1 < start_.size(); ++strip) {
     const std::uint32_t begin = start_[strip];
@@ -139,22 +189,25 @@ void SweepAndPrune::drop_crowded(const RowPlan& plan) noexcept {
     start_[strip] = kept;
     std::uint32_t behind = begin;
     std::uint32_t ahead = begin;
-    // Kept rows move to the front; the window is measured on the rows not yet passed and those
-    // noted in list_, which is free from here on.
-    for (std::uint32_t i = begin; i < end; ++i) list_[i] = plan.regular[i];
+    // Kept rows move to the front.
     for (std::uint32_t i = begin; i < end; ++i) {
-      const float x = low[list_[i]];
-      while (low[list_[behind]] < x - window) ++behind;
-      while (ahead < end && low[list_[ahead]] <= x + window) ++ahead;
+      const float x = key_of(items[i]);
+      while (key_of(items[behind]) < x - window) ++behind;
+      while (ahead < end && key_of(items[ahead]) <= x + window) ++ahead;
       if (ahead - behind > kCrowded) {
-        (void)plan.rest.push_back(list_[i]);
+        (void)plan.rest.push_back(row_of(items[i]));
       } else {
-        plan.regular[kept++] = list_[i];
+        plan.regular[kept++] = row_of(items[i]);
       }
     }
   }
   start_[start_.size() - 1] = kept;
   plan.regular.set_size(kept);
+}
+
+// Objects are crowded with those that begin so near to them.
+float SweepAndPrune::crowd_window() const noexcept {
+  return layout_.axis(0).reach + 2.0F * layout_.drift();
 }
 
 void SweepAndPrune::finish_build() noexcept {
