@@ -20,9 +20,9 @@ namespace winnow {
 }
 
 /// Stable sort of (key << first_bit | value) by the lowest `bits` bits of the key: a
-/// least-significant-digit radix sort of 11 bits per pass. `items` and `spare` hold `count` each;
-/// returns the one of the two that holds the result. O(count * bits / 11); the same result on any
-/// number of threads.
+/// least-significant-digit radix sort of up to 11 bits per pass. `items` and `spare` hold `count`
+/// each; returns the one of the two that holds the result. O(count * bits / 11); the same result on
+/// any number of threads.
 [[nodiscard]] std::uint64_t* radix_sort(std::uint64_t* items, std::uint64_t* spare,
                                         std::size_t count, unsigned bits,
                                         const Execution& execution,

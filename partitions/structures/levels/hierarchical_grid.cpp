@@ -1,5 +1,6 @@
 #include <winnow/partitions/debug_colours.h>
 #include "core/sort/radix_sort.h"
+#include "core/sort/stretches.h"
 #include "partitions/structures/cells/cell_structure.h"
 #include "partitions/structures/costs.h"
 #include "partitions/structures/levels/hierarchical_grid.kernel.h"
@@ -12,6 +13,7 @@
 namespace winnow {
 
 WINNOW_DEFINE_KERNELS(HierarchicalGridKernels, hierarchical_grid_kernels)
+WINNOW_DEFINE_KERNELS(LevelRowsKernels, level_rows_kernels)
 
 namespace {
 
@@ -21,6 +23,7 @@ constexpr std::size_t kFewest = 64;  // below this the tree alone does as well
 constexpr std::size_t kCrowd = 512;
 // Objects for each cell of a line.
 constexpr std::size_t kInCell = 4;
+constexpr std::size_t kRowsPerStretch = 8192;
 
 // One colour for each level, beside those of other things: from Okabe and Ito, as these, and darker
 // from the sixth level on.
@@ -108,8 +111,9 @@ class HierarchicalGrid final : public CellStructure {
   [[nodiscard]] std::size_t cells() const noexcept override;
 
   struct Sorted;
-  void sort_by_level(const SizeClasses& classes, std::span<std::uint32_t> end,
-                     const RowPlan& plan) noexcept;
+  [[nodiscard]] std::span<const std::uint32_t> sort_by_level(const SizeClasses& classes,
+                                                             std::span<std::uint32_t> start,
+                                                             const RowPlan& plan) noexcept;
   bool build_level(std::span<const std::uint32_t> rows, const RowPlan& plan) noexcept;
   bool add_line(const Sorted& sorted, std::size_t begin, std::size_t end, const RowPlan& plan);
   bool rank_lines(GridLevel& level);
@@ -173,12 +177,10 @@ struct HierarchicalGrid::Sorted {
         level.mids * (static_cast<std::uint32_t>(level.slow.last) + 1) - 1;
     const auto line_bits = static_cast<unsigned>(std::bit_width(last_line));
     packed = line_bits + step_bits <= 32;
-    for (std::size_t i = 0; i < count; ++i) {
-      const LinePlace place = place_of(level, pool, rows[i]);
-      const std::uint64_t key =
-          packed ? std::uint64_t{place.line} << step_bits | place.step : place.step;
-      room[i] = key << 32U | rows[i];
-    }
+    for_stretches(execution, count, kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
+      level_rows_kernels().places(level, box_columns(pool).data(), rows.data(), begin, end,
+                                  step_bits, !packed, room);
+    });
     if (packed && count < 1024) {
       std::sort(room, room + count);
       items = room;
@@ -199,61 +201,68 @@ struct HierarchicalGrid::Sorted {
 };
 
 bool HierarchicalGrid::plan(const RowPlan& plan) noexcept {
-  const SizeClasses classes(pool());
+  const std::size_t rows = pool().rows();
   level_count_ = 0;
+  // Of a scene in motion builds meet now more rows, now fewer: this is enough for mostly all.
+  if (!list_.reserve(std::max(rows, objects() + objects() / 8 + 256))) return false;
+  list_.set_size(rows);
+  for_stretches(execution(), rows, kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
+    level_rows_kernels().octaves(box_columns(pool()).data(), begin, end, list_.data());
+  });
+  const SizeClasses classes(pool(), {list_.data(), rows});
   if (classes.objects() < kFewest) {
     leave_all(plan);
     return true;
   }
   // By objects, not rows, so that a later build of as many asks for no more.
-  const std::size_t objects = classes.objects();
-  const std::size_t room = objects + (kMostLevels + 1) * kBlockRows;
-  if (!list_.reserve(room) || !key_.reserve(room) || !plan.regular.reserve(room + kBlockRows) ||
-      !plan.items.resize(2 * objects)) {
+  const std::size_t count = classes.objects();
+  const std::size_t room = count + (kMostLevels + 1) * kBlockRows;
+  if (!key_.reserve(room) || !plan.regular.reserve(room + kBlockRows) ||
+      !plan.items.resize(2 * count)) {
     return false;
   }
-  list_.set_size(objects);
-  std::array<std::uint32_t, kMostLevels + 1> end{};
-  sort_by_level(classes, end, plan);
+  std::array<std::uint32_t, kMostLevels + 1> start{};
+  const std::span<const std::uint32_t> by_level = sort_by_level(classes, start, plan);
   line_.clear();
   number_.clear();
   rank_.clear();
   start_.clear();
-  std::uint32_t begin = 0;
   for (std::size_t l = 0; l < classes.levels(); ++l) {
-    const std::span<const std::uint32_t> own(list_.data() + begin, end[l] - begin);
-    begin = end[l];
-    if (!build_level(own, plan)) return false;
+    if (!build_level(by_level.subspan(start[l], start[l + 1] - start[l]), plan)) return false;
   }
   key_.set_size(plan.regular.size() + kBlockRows);
   return start_.push_back(static_cast<std::uint32_t>(plan.regular.size()));
 }
 
-// Puts the rows of each level together in list_, and where each ends into `end`.
-void HierarchicalGrid::sort_by_level(const SizeClasses& classes, std::span<std::uint32_t> end,
-                                     const RowPlan& plan) noexcept {
-  const std::size_t rows = pool().rows();
-  std::array<std::uint32_t, kMostLevels + 2> at{};
-  for (std::size_t row = 0; row < rows; ++row) {
-    if (pool().ids()[row] != kNoObject) ++at[classes.level_of(longest_edge(pool(), row)) + 1];
+// Puts the rows of each level together, and where each begins into `start`. They lie at the end of
+// the items, of which sorting a level needs two for each of its rows from the front, and for those
+// of further levels leaves half of one.
+std::span<const std::uint32_t> HierarchicalGrid::sort_by_level(const SizeClasses& classes,
+                                                               std::span<std::uint32_t> start,
+                                                               const RowPlan& plan) noexcept {
+  std::array<std::uint32_t, kOctaves> level;
+  for (std::uint32_t o = 0; o < kOctaves; ++o) {
+    const std::size_t own = classes.level_of(o);
+    level[o] = own < classes.levels() ? static_cast<std::uint32_t>(own) : CountingSort::kNone;
   }
-  for (std::size_t l = 0; l < classes.levels(); ++l) at[l + 1] += at[l];
-  for (std::size_t row = 0; row < rows; ++row) {
-    if (pool().ids()[row] == kNoObject) continue;
-    const std::size_t level = classes.level_of(longest_edge(pool(), row));
-    if (level == classes.levels()) {
-      (void)plan.rest.push_back(static_cast<std::uint32_t>(row));
-    } else {
-      list_[at[level]++] = static_cast<std::uint32_t>(row);
-    }
-  }
-  std::copy_n(at.begin(), classes.levels(), end.begin());
+  for_stretches(execution(), list_.size(), kRowsPerStretch,
+                [&](std::size_t begin, std::size_t end) {
+                  for (std::size_t row = begin; row < end; ++row) list_[row] = level[list_[row]];
+                });
+  CountingSort sort({list_.data(), list_.size()}, start.first(classes.levels() + 1),
+                    {plan.rest.data(), plan.rest.capacity()}, execution());
+  sort.count();
+  const std::size_t count = sort.find_starts();
+  auto* const by_level = reinterpret_cast<std::uint32_t*>(plan.items.end()) - count;
+  sort.place(by_level);
+  list_rest(count, plan);
+  return {by_level, count};
 }
 
 bool HierarchicalGrid::build_level(std::span<const std::uint32_t> rows,
                                    const RowPlan& plan) noexcept {
   GridLevel& level = level_[level_count_];
-  lay_level(pool(), rows, level);
+  lay_level(pool(), rows, execution(), level);
   Sorted sorted{pool(), level};
   std::uint64_t* const room = plan.items.data();
   sorted.sort(room, room + plan.items.size() / 2, rows, execution());

@@ -1,5 +1,7 @@
 #include "partitions/structures/levels/level_layout.h"
 
+#include "core/sort/stretches.h"
+
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -84,13 +86,29 @@ double company(const BoundsPool& pool, std::span<const std::uint32_t> rows,
   return 1.0 + 2.0 * pairs / n * static_cast<double>(rows.size()) / n;
 }
 
+std::array<float, 3> longest_edges(const BoundsPool& pool, std::span<const std::uint32_t> rows,
+                                   const Execution& execution) {
+  constexpr std::size_t kMostStretches = 64;
+  const std::size_t length = std::max<std::size_t>(8192, rows.size() / kMostStretches + 1);
+  std::array<std::array<float, 3>, kMostStretches> part{};
+  for_stretches(execution, rows.size(), length, [&](std::size_t begin, std::size_t end) {
+    float* const own = part[begin / length].data();
+    level_rows_kernels().longest(box_columns(pool).data(), rows.data(), begin, end, own);
+  });
+  std::array<float, 3> longest{};
+  for (const auto& own : part) {
+    for (std::size_t a = 0; a < 3; ++a) longest[a] = std::max(longest[a], own[a]);
+  }
+  return longest;
+}
+
 void lay_axis(LevelAxis& axis, const Range& range, double cells, double longest, double width) {
   const double inverse = cells / range.length();
   // What hardly differs needs no cells.
   if (!(cells > 1.0) || !(inverse < FLT_MAX)) {
     axis.origin = axis.inverse = axis.last = 0.0F;
     axis.limit = std::numeric_limits<float>::infinity();
-    axis.slack = axis.pad = SizeClasses::kUnbounded;
+    axis.slack = axis.pad = kUnboundedEdge;
     return;
   }
   axis.origin = static_cast<float>(range.low);
@@ -106,16 +124,13 @@ void lay_axis(LevelAxis& axis, const Range& range, double cells, double longest,
 }  // namespace
 
 void lay_level(const BoundsPool& pool, std::span<const std::uint32_t> rows,
-               GridLevel& level) noexcept {
+               const Execution& execution, GridLevel& level) noexcept {
   std::array<Range, 3> range;
   std::array<double, 3> length{};
-  std::array<float, 3> longest{};
+  const std::array<float, 3> longest = longest_edges(pool, rows, execution);
   for (std::size_t a = 0; a < 3; ++a) {
     range[a] = range_of(pool, a, rows.size(), [&](std::size_t i) { return rows[i]; });
     length[a] = range[a].length();
-    for (const std::uint32_t row : rows) {
-      longest[a] = std::max(longest[a], pool.column(3 + a)[row] - pool.column(a)[row]);
-    }
   }
   double width = edge_for(kRowsOfBlock, static_cast<double>(rows.size()), length);
   // Where objects crowd the cells they find there count, not those of an even spread.

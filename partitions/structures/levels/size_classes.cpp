@@ -1,7 +1,6 @@
 #include "partitions/structures/levels/size_classes.h"
 
 #include <algorithm>
-#include <bit>
 #include <cfloat>
 #include <cmath>
 #include <limits>
@@ -12,11 +11,8 @@ namespace {
 // What a line and a level cost, in tests of 16.
 constexpr double kPerLine = 0.7;
 constexpr double kPerLevel = 7.0;
-
-// Power of 2 of a length; 0 for one of nothing, or next to it.
-std::size_t octave_of(float x) noexcept {
-  return std::bit_cast<std::uint32_t>(x) >> 23U & 0xFFU;
-}
+// Objects that are enough to tell where those of a class lie.
+constexpr std::size_t kEnough = 4096;
 
 // How long the ranges are over which n objects with these sums of places and of their squares would
 // be spread evenly.
@@ -46,13 +42,6 @@ double edge_for(double wanted, double count, const std::array<double, 3>& range)
   return 0.0;
 }
 
-float longest_edge(const BoundsPool& pool, std::size_t row) noexcept {
-  const float x = pool.column(3)[row] - pool.column(0)[row];
-  const float y = pool.column(4)[row] - pool.column(1)[row];
-  const float z = pool.column(5)[row] - pool.column(2)[row];
-  return std::max(x, std::max(y, z));
-}
-
 /// Neighbouring classes that share a level.
 struct SizeClasses::Group {
   std::size_t first = 0;
@@ -64,15 +53,37 @@ struct SizeClasses::Group {
   std::array<double, 3> block{};  ///< extent of 16 rows
 };
 
-SizeClasses::SizeClasses(const BoundsPool& pool) noexcept {
-  choose_octaves(pool);
-  for (std::size_t row = 0; row < pool.rows(); ++row) {
-    if (pool.ids()[row] == kNoObject) continue;
-    const float edge = longest_edge(pool, row);
-    if (class_of(edge) == kClasses) continue;
-    Class& c = class_[class_of(edge)];
-    ++c.count;
-    ++objects_;
+SizeClasses::SizeClasses(const BoundsPool& pool, std::span<const std::uint32_t> octave) noexcept {
+  std::array<Counts, 2> half{};  // of every second row, which need not wait for each other
+  for (std::size_t row = 0; row < octave.size(); ++row) ++half[row & 1U][octave[row]];
+  Counts count;
+  for (std::size_t o = 0; o < kOctaves; ++o) count[o] = half[0][o] + half[1][o];
+  count[kNoOctave] = 0;
+  choose_octaves(count);
+  for (std::size_t o = 0; o < kOctaves; ++o) {
+    if (class_of(o) == kClasses) continue;
+    class_[class_of(o)].count += count[o];
+    objects_ += count[o];
+  }
+  measure(pool, octave);
+  join();
+}
+
+// Takes from every class about as many objects.
+void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t> octave) noexcept {
+  std::array<std::uint8_t, kOctaves> class_at{};
+  std::array<std::size_t, kClasses + 1> step{};
+  std::array<std::size_t, kClasses + 1> wait{};
+  for (std::size_t o = 0; o < kOctaves; ++o) class_at[o] = static_cast<std::uint8_t>(class_of(o));
+  for (std::size_t c = 0; c < kClasses; ++c) step[c] = 1 + class_[c].count / kEnough;
+  step[kClasses] = wait[kClasses] = octave.size() + 1;
+  std::array<std::size_t, kClasses> taken{};
+  for (std::size_t row = 0; row < octave.size(); ++row) {
+    const std::size_t own = class_at[octave[row]];
+    if (wait[own]-- != 0) continue;
+    wait[own] = step[own] - 1;
+    Class& c = class_[own];
+    ++taken[own];
     for (std::size_t a = 0; a < 3; ++a) {
       const double low = static_cast<double>(pool.column(a)[row]);
       c.edge[a] += static_cast<double>(pool.column(3 + a)[row]) - low;
@@ -80,21 +91,21 @@ SizeClasses::SizeClasses(const BoundsPool& pool) noexcept {
       c.square[a] += low * low;
     }
   }
-  for (Class& c : class_) {
-    const double count = static_cast<double>(std::max<std::size_t>(1, c.count));
-    for (std::size_t a = 0; a < 3; ++a) c.edge[a] /= count;
-    c.range = spread_of(c.place, c.square, count);
+  for (std::size_t own = 0; own < kClasses; ++own) {
+    Class& c = class_[own];
+    const double all = static_cast<double>(c.count);
+    const double each = static_cast<double>(std::max<std::size_t>(1, taken[own]));
+    for (std::size_t a = 0; a < 3; ++a) {
+      c.edge[a] /= each;
+      c.place[a] *= all / each;
+      c.square[a] *= all / each;
+    }
+    c.range = spread_of(c.place, c.square, std::max(1.0, all));
   }
-  join();
 }
 
 // Where sizes span more octaves than there are classes, those that hold the most objects count.
-void SizeClasses::choose_octaves(const BoundsPool& pool) noexcept {
-  std::array<std::size_t, 256> count{};
-  for (std::size_t row = 0; row < pool.rows(); ++row) {
-    const float edge = longest_edge(pool, row);
-    if (pool.ids()[row] != kNoObject && edge < kUnbounded) ++count[octave_of(edge)];
-  }
+void SizeClasses::choose_octaves(const Counts& count) noexcept {
   std::size_t inside = 0;
   std::size_t most = 0;
   for (std::size_t top = 1; top < count.size(); ++top) {
@@ -106,15 +117,14 @@ void SizeClasses::choose_octaves(const BoundsPool& pool) noexcept {
   }
 }
 
-std::size_t SizeClasses::class_of(float edge) const noexcept {
-  const std::size_t octave = octave_of(edge);
+std::size_t SizeClasses::class_of(std::size_t octave) const noexcept {
   if (octave == 0) return kClasses - 1;
-  if (!(edge < kUnbounded) || octave > top_octave_) return kClasses;
+  if (octave == kNoOctave || octave > top_octave_) return kClasses;
   return std::min(top_octave_ - octave, kClasses);
 }
 
-std::size_t SizeClasses::level_of(float edge) const noexcept {
-  const std::size_t size_class = class_of(edge);
+std::size_t SizeClasses::level_of(std::uint32_t octave) const noexcept {
+  const std::size_t size_class = class_of(octave);
   return size_class < kClasses ? level_[size_class] : levels_;
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "core/memory/bounds_pool.h"
+#include "partitions/structures/levels/level_rows.kernel.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace winnow {
 
@@ -14,27 +16,23 @@ inline constexpr double kSlackOfEdge = 0.2;
 
 inline constexpr std::size_t kMostLevels = 16;
 
-/// The longest edge of the box in a row.
-[[nodiscard]] float longest_edge(const BoundsPool& pool, std::size_t row) noexcept;
-
 /// Sizes of a scene's objects in octaves, counted down from the largest, and how these are joined
 /// into levels.
 class SizeClasses {
  public:
-  /// Edges from here on are unbounded: of no class.
-  static constexpr float kUnbounded = 1e30F;
   /// Sizes of 1 : 1e12. Where there are more, those that hold the most objects have classes. What
   /// has no size at all is in the last.
   static constexpr std::size_t kClasses = 41;
 
-  /// Counts the rows of a pool. O(n).
-  explicit SizeClasses(const BoundsPool& pool) noexcept;
+  /// Counts the rows of a pool, of which the octaves are known; where the objects of a class lie
+  /// it takes from a sample. O(n).
+  SizeClasses(const BoundsPool& pool, std::span<const std::uint32_t> octave) noexcept;
 
   /// Objects that have a class.
   [[nodiscard]] std::size_t objects() const noexcept { return objects_; }
   [[nodiscard]] std::size_t levels() const noexcept { return levels_; }
-  /// The level for an object; `levels()` if it has no class. Level 0 has the smallest.
-  [[nodiscard]] std::size_t level_of(float longest_edge) const noexcept;
+  /// The level for an object of an octave; `levels()` if it has no class. Level 0 has the smallest.
+  [[nodiscard]] std::size_t level_of(std::uint32_t octave) const noexcept;
 
  private:
   struct Class {
@@ -45,9 +43,10 @@ class SizeClasses {
     std::array<double, 3> range{};   // over which they are spread
   };
   struct Group;
-  struct Groups;
-  [[nodiscard]] std::size_t class_of(float edge) const noexcept;
-  void choose_octaves(const BoundsPool& pool) noexcept;
+  using Counts = std::array<std::size_t, kOctaves>;
+  [[nodiscard]] std::size_t class_of(std::size_t octave) const noexcept;
+  void choose_octaves(const Counts& count) noexcept;
+  void measure(const BoundsPool& pool, std::span<const std::uint32_t> octave) noexcept;
   [[nodiscard]] Group group_of(std::size_t first, std::size_t last) const noexcept;
   [[nodiscard]] double cost(const Group& fine, const Group& coarse) const noexcept;
   void join() noexcept;
