@@ -1,51 +1,99 @@
 #include "partitions/tree/sah_order.h"
 
-#include "core/sort/radix_sort.h"
 #include "core/sort/split_jobs.h"
+#include "core/sort/stretches.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cfloat>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 
 namespace winnow {
 namespace {
 
-constexpr std::size_t kAxes = 4;           // the fourth is size
-constexpr std::uint32_t kFewToSort = 256;  // to be sorted rather than binned
+constexpr std::size_t kAxes = 4;  // the fourth is size
 constexpr std::uint32_t kBins = 64;
 constexpr std::uint32_t kSahWorthSharing = 4096;
+constexpr std::size_t kBoxesPerStretch = 8192;
+constexpr std::size_t kFewToSample = 4096;  // of more boxes one in some says where they lie
+constexpr std::size_t kSampleStep = 8;
+constexpr float kLeastRange = 1e-30F;  // keys closer than this are at one place
 
-/// What a split compares boxes by: monotone in the centre on an axis, or in the logarithm of the
-/// longest edge.
-float key_of(const SahBox& box, std::size_t axis) {
-  if (axis < 3) return 0.5F * box.low[axis] + 0.5F * box.high[axis];
-  float edge = 0.0F;
-  for (std::size_t a = 0; a < 3; ++a) edge = std::max(edge, box.high[a] - box.low[a]);
-  return -static_cast<float>(std::bit_cast<std::int32_t>(std::min(edge, FLT_MAX)));
+/// Four floats in a register.
+using Quad [[gnu::vector_size(16)]] = float;
+using QuadInts [[gnu::vector_size(16)]] = std::int32_t;
+
+Quad load_quad(const float* p) noexcept {
+  Quad quad;
+  std::memcpy(&quad, p, sizeof quad);
+  return quad;
+}
+Quad least(Quad a, Quad b) noexcept {
+  return a < b ? a : b;
+}
+Quad most(Quad a, Quad b) noexcept {
+  return a > b ? a : b;
 }
 
-struct SahExtent {
-  std::array<float, 3> low;
-  std::array<float, 3> high;
+/// What a split compares boxes by: the centre on each axis, and of four axes a number that falls
+/// with the logarithm of the longest edge.
+template <std::size_t Axes>
+Quad keys_of(const SahBox& box) noexcept {
+  const Quad low = load_quad(box.low);
+  Quad high = load_quad(box.high);
+  high[3] = low[3];  // no number
+  Quad keys = 0.5F * low + 0.5F * high;
+  if constexpr (Axes == 3) return keys;
+  const Quad edge = high - low;
+  const float longest = std::max(edge[0], std::max(edge[1], edge[2]));
+  keys[3] = -static_cast<float>(std::bit_cast<std::int32_t>(std::min(longest, FLT_MAX)));
+  return keys;
+}
 
-  SahExtent() {
-    low.fill(std::numeric_limits<float>::infinity());
-    high.fill(-std::numeric_limits<float>::infinity());
+float key_on(const SahBox& box, std::size_t axis) noexcept {
+  return axis < 3 ? 0.5F * box.low[axis] + 0.5F * box.high[axis] : keys_of<4>(box)[3];
+}
+
+/// A box on its way from one place to another, in parts that do not overlap: what was just stored
+/// in one part is loaded without waiting for memory.
+class CarriedBox {
+ public:
+  explicit CarriedBox(const SahBox& box) noexcept {
+    const auto* const bytes = reinterpret_cast<const unsigned char*>(&box);
+    std::memcpy(&head_, bytes, 16);
+    std::memcpy(&middle_, bytes + 16, 8);
+    std::memcpy(&end_, bytes + 24, 4);
   }
-  void add(const SahBox& box) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], box.low[a]);
-      high[a] = std::max(high[a], box.high[a]);
-    }
+  void put(SahBox& box) const noexcept {
+    auto* const bytes = reinterpret_cast<unsigned char*>(&box);
+    std::memcpy(bytes, &head_, 16);
+    std::memcpy(bytes + 16, &middle_, 8);
+    std::memcpy(bytes + 24, &end_, 4);
   }
-  void merge(const SahExtent& other) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], other.low[a]);
-      high[a] = std::max(high[a], other.high[a]);
-    }
+
+ private:
+  static_assert(sizeof(SahBox) == 28);
+  Quad head_;
+  std::uint64_t middle_;
+  std::uint32_t end_;
+};
+
+/// The box around boxes. In the fourth floats is nothing.
+struct SahExtent {
+  Quad low;
+  Quad high;
+
+  static SahExtent none() noexcept {
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    return SahExtent{Quad{inf, inf, inf, inf}, Quad{-inf, -inf, -inf, -inf}};
+  }
+  void add(const SahExtent& other) noexcept {
+    low = least(low, other.low);
+    high = most(high, other.high);
   }
   [[nodiscard]] double edge(std::size_t a) const {
     constexpr double kMost = 1e38;
@@ -62,6 +110,51 @@ struct SahExtent {
   }
 };
 
+SahExtent extent_of(const SahBox& box) noexcept {
+  return {load_quad(box.low), load_quad(box.high)};
+}
+
+/// Equal bins along each axis over where the keys of a set lie; of a large set, those of a sample:
+/// what lies outside is in the first or the last bin.
+struct SahBins {
+  std::uint32_t count = 0;
+  std::size_t axes = 3;  ///< the fourth counts where sizes differ
+  Quad half_low{};
+  Quad scale{};
+
+  explicit SahBins(std::span<const SahBox> boxes) noexcept
+      : count(std::min(kBins, std::bit_ceil(static_cast<std::uint32_t>(boxes.size()) / 2))) {
+    Quad low = keys_of<kAxes>(boxes[0]);
+    Quad high = low;
+    const std::size_t step = boxes.size() <= kFewToSample ? 1 : kSampleStep;
+    for (std::size_t i = 0; i < boxes.size(); i += step) {
+      const Quad keys = keys_of<kAxes>(boxes[i]);
+      low = least(low, keys);
+      high = most(high, keys);
+    }
+    // Halves: the range of what is spread over all floats is finite.
+    half_low = 0.5F * low;
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+      const float range = 0.5F * high[axis] - half_low[axis];
+      scale[axis] = range > kLeastRange ? static_cast<float>(count) / range : 0.0F;
+    }
+    if (scale[3] != 0.0F) axes = kAxes;
+  }
+  /// On every axis.
+  template <std::size_t Axes>
+  [[nodiscard]] QuadInts of(const SahBox& box) const noexcept {
+    const Quad place = (0.5F * keys_of<Axes>(box) - half_low) * scale;
+    const auto last = static_cast<float>(count - 1);
+    const Quad within = least(most(place, Quad{}), Quad{last, last, last, last});
+    return __builtin_convertvector(within, QuadInts);
+  }
+  /// True if a box lies in the first `bins` on an axis.
+  [[nodiscard]] bool is_within(const SahBox& box, std::size_t axis, std::uint32_t bins) const {
+    const float place = (0.5F * key_on(box, axis) - half_low[axis]) * scale[axis];
+    return (bins == count) | ((bins != 0) & (place < static_cast<float>(bins)));
+  }
+};
+
 /// Boxes [begin, end), to be put into subtrees of 16^level blocks; all but the last one full.
 struct SahJob {
   std::uint32_t begin = 0;
@@ -74,12 +167,16 @@ struct SahJob {
     return static_cast<std::uint32_t>(kBlockRows) << (4 * level);
   }
   [[nodiscard]] std::uint32_t subtrees() const { return (size() + places() - 1) / places(); }
+  /// A cut at half of the subtrees.
+  [[nodiscard]] std::uint32_t middle() const { return (subtrees() + 1) / 2 * places(); }
 };
 
-/// The first `count` boxes by their keys on `axis` go to the first side.
+/// The first `count` boxes by their keys on `axis` go to the first side; the cut goes through
+/// `bin`, or before it.
 struct Cut {
   std::size_t axis = 0;
   std::uint32_t count = 0;
+  std::uint32_t bin = 0;
   double cost = std::numeric_limits<double>::infinity();
 };
 
@@ -90,8 +187,7 @@ class Builder {
     double sum = 0.0;
     double bounded = 0.0;
     for (const SahBox& box : boxes) {
-      SahExtent extent;
-      extent.add(box);
+      const SahExtent extent = extent_of(box);
       const double edges = extent.edge(0) + extent.edge(1) + extent.edge(2);
       if (!(edges < 1e30)) continue;
       sum += edges;
@@ -111,109 +207,118 @@ class Builder {
  private:
   void finish(SahJob job) const {
     while (job.size() > kBlockRows) finish(split(job));
-    std::sort(boxes_.begin() + job.begin, boxes_.begin() + job.end,
-              [](const SahBox& a, const SahBox& b) { return a.row < b.row; });
   }
 
   /// Leaves the first side to `job` and returns the other.
   SahJob split(SahJob& job) const {
     while (job.subtrees() == 1) --job.level;
-    const Cut cut = job.size() <= kFewToSort ? best_sorted_cut(job) : best_binned_cut(job);
-    const auto begin = boxes_.begin() + job.begin;
-    std::nth_element(begin, begin + cut.count, boxes_.begin() + job.end,
-                     [&](const SahBox& a, const SahBox& b) {
-                       const float x = key_of(a, cut.axis);
-                       const float y = key_of(b, cut.axis);
-                       return x != y ? x < y : a.row < b.row;
-                     });
+    const std::span<SahBox> boxes = boxes_.subspan(job.begin, job.size());
+    const SahBins bins(boxes);
+    const Cut cut = best_cut(job, boxes, bins);
+    move_to_front(boxes, bins, cut);
     SahJob second = job;
     second.begin = job.end = job.begin + cut.count;
     return second;
   }
 
-  /// Keeps in `best` the cut behind `count` boxes if it is better; `first` and `second` are the
-  /// costs of the boxes around its sides.
-  static void consider(const SahJob& job, std::size_t axis, std::uint32_t count, double first,
-                       double second, Cut& best) {
-    // A side is looked at itself, and then some of what it holds.
-    const auto weight = [&](std::uint32_t boxes) {
-      return 1.0 + static_cast<double>(boxes) / job.places();
+  /// Moves the boxes before the cut to the front. Only those of the bin that it goes through have
+  /// to be compared.
+  static void move_to_front(std::span<SahBox> boxes, const SahBins& bins, const Cut& cut) {
+    const auto first_of = [&](std::span<SahBox> some, std::uint32_t first_bins) {
+      return part(some,
+                  [&](const SahBox& box) { return bins.is_within(box, cut.axis, first_bins); });
     };
-    const double cost = first * weight(count) + second * weight(job.size() - count);
-    if (cost < best.cost) best = {axis, count, cost};
+    const std::size_t before = first_of(boxes, cut.bin);
+    if (before == cut.count) return;
+    const std::span<SahBox> rest = boxes.subspan(before);
+    const std::span<SahBox> within = rest.first(first_of(rest, cut.bin + 1));
+    const auto at = within.begin() + static_cast<std::ptrdiff_t>(cut.count - before);
+    std::nth_element(within.begin(), at, within.end(), [&](const SahBox& a, const SahBox& b) {
+      const float x = key_on(a, cut.axis);
+      const float y = key_on(b, cut.axis);
+      return x != y ? x < y : a.row < b.row;
+    });
   }
 
-  [[nodiscard]] Cut best_sorted_cut(const SahJob& job) const {
-    const std::uint32_t size = job.size();
-    const SahBox* const boxes = boxes_.data() + job.begin;
-    std::array<std::uint64_t, kFewToSort> sorted;
-    std::array<double, kFewToSort> behind;
-    Cut best;
-    for (std::size_t axis = 0; axis < kAxes; ++axis) {
-      for (std::uint32_t i = 0; i < size; ++i) {
-        // The sum, because there is one zero.
-        sorted[i] = std::uint64_t{sortable(key_of(boxes[i], axis) + 0.0F)} << 32U | i;
-      }
-      std::sort(sorted.begin(), sorted.begin() + size);
-      const auto box = [&](std::uint32_t i) -> const SahBox& {
-        return boxes[static_cast<std::uint32_t>(sorted[i])];
-      };
-      SahExtent last;
-      for (std::uint32_t i = size; i-- > job.places();) {
-        last.add(box(i));
-        if (i % job.places() == 0) behind[i] = last.cost(margin_);
-      }
-      SahExtent first;
-      for (std::uint32_t i = 0; i < size; ++i) {
-        if (i != 0 && i % job.places() == 0) {
-          consider(job, axis, i, first.cost(margin_), behind[i], best);
-        }
-        first.add(box(i));
+  /// Moves the boxes that belong first to the front; returns how many they are. Which do no branch
+  /// predictor can guess: each is exchanged with the first that does not, if only with itself.
+  template <typename First>
+  static std::size_t part(std::span<SahBox> boxes, First&& first) {
+    std::size_t found = 0;
+    for (SahBox& box : boxes) {
+      const bool is_first = first(box);
+      const CarriedBox own(box);
+      CarriedBox(boxes[found]).put(box);
+      own.put(boxes[found]);
+      found += is_first ? 1 : 0;
+    }
+    return found;
+  }
+
+  /// What bins hold.
+  struct BinContents {
+    std::array<std::array<SahExtent, kBins>, kAxes> extent;
+    std::array<std::array<std::uint32_t, kBins>, kAxes> count;
+  };
+
+  template <std::size_t Axes>
+  static void fill(std::span<const SahBox> boxes, const SahBins& bins, BinContents& in) {
+    for (const SahBox& box : boxes) {
+      const QuadInts bin = bins.of<Axes>(box);
+      const SahExtent extent = extent_of(box);
+      for (std::size_t axis = 0; axis < Axes; ++axis) {
+        const auto b = static_cast<std::size_t>(bin[axis]);
+        in.extent[axis][b].add(extent);
+        ++in.count[axis][b];
       }
     }
+  }
+
+  [[nodiscard]] Cut best_cut(const SahJob& job, std::span<const SahBox> boxes,
+                             const SahBins& bins) const {
+    BinContents in;
+    for (std::size_t axis = 0; axis < bins.axes; ++axis) {
+      std::fill_n(in.extent[axis].begin(), bins.count, SahExtent::none());
+      std::fill_n(in.count[axis].begin(), bins.count, 0U);
+    }
+    if (bins.axes == kAxes) {
+      fill<kAxes>(boxes, bins, in);
+    } else {
+      fill<3>(boxes, bins, in);
+    }
+    Cut best;
+    for (std::size_t axis = 0; axis < bins.axes; ++axis) {
+      if (in.count[axis][0] != job.size()) consider_axis(job, in, bins.count, axis, best);
+    }
+    if (best.count == 0) best = {.axis = 0, .count = job.middle(), .bin = 0, .cost = 0.0};
     return best;
   }
 
-  [[nodiscard]] Cut best_binned_cut(const SahJob& job) const {
-    Cut best;
-    for (std::size_t axis = 0; axis < kAxes; ++axis) consider_bins(job, axis, best);
-    return best;
-  }
-
-  void consider_bins(const SahJob& job, std::size_t axis, Cut& best) const {
-    const auto boxes = boxes_.subspan(job.begin, job.size());
-    float low = std::numeric_limits<float>::infinity();
-    float high = -low;
-    for (const SahBox& box : boxes) {
-      const float key = key_of(box, axis);
-      low = std::min(low, key);
-      high = std::max(high, key);
+  /// Keeps in `best` the best cut on an axis if it is better. Most cuts go through a bin: then both
+  /// sides are taken to reach through all of it.
+  void consider_axis(const SahJob& job, const BinContents& in, std::uint32_t bins, std::size_t axis,
+                     Cut& best) const {
+    std::array<SahExtent, kBins + 1> from;  // around the bins from each one on
+    from[bins] = SahExtent::none();
+    for (std::size_t b = bins; b-- > 0;) {
+      from[b] = from[b + 1];
+      from[b].add(in.extent[axis][b]);
     }
-    const double range = static_cast<double>(high) - static_cast<double>(low);
-    const double scale = range > 0.0 ? kBins / range : 0.0;
-    std::array<SahExtent, kBins> extent;
-    std::array<std::uint32_t, kBins> count{};
-    for (const SahBox& box : boxes) {
-      const double at = static_cast<double>(key_of(box, axis)) - static_cast<double>(low);
-      const auto bin = std::min(kBins - 1, static_cast<std::uint32_t>(at * scale));
-      extent[bin].add(box);
-      ++count[bin];
-    }
-    std::array<double, kBins + 1> from{};  // of the bins from each one on
-    SahExtent last;
-    for (std::size_t b = kBins; b-- > 0;) {
-      last.merge(extent[b]);
-      from[b] = last.cost(margin_);
-    }
-    // Most cuts go through a bin: then both sides are taken to reach through all of it.
-    SahExtent first;
+    SahExtent first = SahExtent::none();
     std::uint32_t before = 0;
     std::uint32_t cut = job.places();
-    for (std::size_t b = 0; b < kBins; ++b) {
-      first.merge(extent[b]);
-      before += count[b];
+    for (std::uint32_t b = 0; b < bins; ++b) {
+      first.add(in.extent[axis][b]);
+      before += in.count[axis][b];
       for (; cut <= before && cut < job.size(); cut += job.places()) {
-        consider(job, axis, cut, first.cost(margin_), from[cut == before ? b + 1 : b], best);
+        const std::uint32_t behind = cut == before ? b + 1 : b;
+        // A side is looked at itself, and then some of what it holds.
+        const auto weight = [&](std::uint32_t boxes) {
+          return 1.0 + static_cast<double>(boxes) / job.places();
+        };
+        const double cost = first.cost(margin_) * weight(cut) +
+                            from[behind].cost(margin_) * weight(job.size() - cut);
+        if (cost < best.cost) best = {axis, cut, behind, cost};
       }
     }
   }
@@ -229,19 +334,27 @@ bool append_in_sah_order(const BoundsPool& pool, std::span<const std::uint32_t> 
                          Column<SahBox>& scratch, Column<std::uint32_t>& order,
                          const Execution& execution) {
   const std::size_t count = rows.size();
-  const std::size_t begin = order.size();
-  if (!scratch.resize(count) || !order.resize(begin + count)) return false;
+  const std::size_t at = order.size();
+  if (!scratch.resize(count) || !order.resize(at + count)) return false;
   if (count == 0) return true;
-  for (std::size_t i = 0; i < count; ++i) {
-    SahBox& box = scratch[i];
-    for (std::size_t a = 0; a < 3; ++a) {
-      box.low[a] = pool.column(a)[rows[i]];
-      box.high[a] = pool.column(3 + a)[rows[i]];
+  for_stretches(execution, count, kBoxesPerStretch, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      SahBox& box = scratch[i];
+      for (std::size_t a = 0; a < 3; ++a) {
+        box.low[a] = pool.column(a)[rows[i]];
+        box.high[a] = pool.column(3 + a)[rows[i]];
+      }
+      box.row = rows[i];
     }
-    box.row = rows[i];
-  }
+  });
   Builder({scratch.data(), count}, execution).run();
-  for (std::size_t i = 0; i < count; ++i) order[begin + i] = scratch[i].row;
+  for_stretches(execution, count, kBoxesPerStretch, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) order[at + i] = scratch[i].row;
+    // Within a block in the order of rows, however they came there.
+    for (std::size_t i = begin; i < end; i += kBlockRows) {
+      std::sort(order.data() + at + i, order.data() + at + std::min(end, i + kBlockRows));
+    }
+  });
   return true;
 }
 
