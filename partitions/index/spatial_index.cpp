@@ -5,6 +5,7 @@
 #include "partitions/tree/environment_order.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace winnow {
@@ -12,6 +13,26 @@ namespace {
 
 constexpr std::size_t blocks_of(std::size_t rows) noexcept {
   return (rows + kBlockRows - 1) / kBlockRows;
+}
+
+// The mean edge of the box around 16 rows that follow each other: that in the middle of a sample.
+float edge_of_block(const BoundsPool& pool) noexcept {
+  constexpr std::size_t kSample = 31;
+  std::array<float, kSample> edge;
+  const std::size_t count = std::min(kSample, pool.blocks());
+  if (count == 0) return 0.0F;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t row = pool.blocks() * i / count * kBlockRows;
+    edge[i] = 0.0F;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const float* const low = pool.column(a) + row;
+      const float* const high = pool.column(3 + a) + row;
+      const float from = *std::min_element(low, low + kBlockRows);
+      edge[i] += (*std::max_element(high, high + kBlockRows) - from) / 3.0F;
+    }
+  }
+  std::nth_element(edge.begin(), edge.begin() + count / 2, edge.begin() + count);
+  return edge[count / 2];
 }
 
 }  // namespace
@@ -135,7 +156,7 @@ Status SpatialIndex::build() {
   if (prunes) regular_tree_.refit_all(rows_.view(), execution);
   regions.built = true;
   ++builds_;
-  rows_.note_build();
+  rows_.note_build(edge_of_block(rows_.pool()));
   full_base_ = moved_base_ = excess_ = 0;
   return Status::ok;
 }
@@ -192,7 +213,7 @@ Status SpatialIndex::build_flat() {
   if (!refit_trees()) return Status::out_of_memory;
   regions.built = true;
   ++builds_;
-  rows_.note_build();
+  rows_.note_build(0.0F);
   return Status::ok;
 }
 

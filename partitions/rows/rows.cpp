@@ -5,9 +5,11 @@
 #include "partitions/rows/volume_source.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cfloat>
+#include <cmath>
 #include <limits>
 
 namespace winnow {
@@ -215,11 +217,58 @@ Status Rows::write(const Source& source, std::span<const Key> keys, bool ascendi
     return Status::ok;
   } else {
     note_stale(keys);
+    if (by_rows && count == keys_.size() && scatters(source, keys)) {
+      write_all(source, keys);
+      return Status::ok;
+    }
     for_entries(source, keys, by_rows, ascending, [&](std::size_t i, std::size_t row, std::size_t) {
       source.write(i, columns.pointers, row);
     });
     return Status::ok;
   }
+}
+
+/// True if most of the objects go so far, each its own way, that the order of the rows is worth
+/// nothing: judged by a sample.
+template <typename Source>
+bool Rows::scatters(const Source& source, std::span<const Key> keys) const noexcept {
+  constexpr std::size_t kSample = 64;
+  // In few rows all orders are as good.
+  constexpr std::size_t kFewRows = 2048;
+  if (!regions_.built || !(far_ > 0.0F) || keys.size() < kFewRows) return false;
+  float volume[kMaxColumns];
+  float* columns[kMaxColumns];
+  for (std::size_t c = 0; c < pool_.columns(); ++c) columns[c] = volume + c;
+  std::array<float, 3> before{};
+  std::size_t apart = 0;
+  for (std::size_t k = 0; k < kSample; ++k) {
+    const std::size_t i = keys.size() * k / kSample;
+    const std::size_t row = keys_.row_of(keys[i].id);
+    source.write(i, columns, 0);
+    bool far = false;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const float step = volume[a] - pool_.column(a)[row];
+      // What all do alike keeps their order.
+      far |= std::abs(step - before[a]) > far_;
+      before[a] = step;
+    }
+    apart += far ? 1 : 0;
+  }
+  return 2 * apart > kSample;
+}
+
+/// Writes every object anew, in the order of the keys: rows become those of entries.
+template <typename Source>
+void Rows::write_all(const Source& source, std::span<const Key> keys) {
+  pool_.clear();
+  pool_.append(keys.size());
+  for_ranges(execution_, keys.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      keys_.set_row(keys[i].id, static_cast<std::uint32_t>(i));
+    }
+    write_new(source, keys, 0, begin, end);
+  });
+  disorder();
 }
 
 void Rows::note_stale(std::span<const Key> keys) noexcept {

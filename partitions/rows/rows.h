@@ -101,7 +101,12 @@ class Rows {
                     Column<float>& spare) noexcept;
   /// Puts rows behind the last one, and leaves holes. Room was made.
   void move_to_end(std::span<const std::uint32_t> rows) noexcept;
-  void note_build() noexcept { filters_.note_build(); }
+  /// The rows stand in an order that is good for as long as most objects are within `far` of where
+  /// they were; 0: for ever.
+  void note_build(float far) noexcept {
+    filters_.note_build();
+    far_ = far;
+  }
 
   /// Scratch for who selects some of the rows; what it holds lasts until the next one does.
   [[nodiscard]] RowSelection& selection() const noexcept { return selection_; }
@@ -122,6 +127,10 @@ class Rows {
   Status update_one(const Source& source, Key key);
   template <typename Source>
   Status write(const Source& source, std::span<const Key> keys, bool ascending);
+  template <typename Source>
+  [[nodiscard]] bool scatters(const Source& source, std::span<const Key> keys) const noexcept;
+  template <typename Source>
+  void write_all(const Source& source, std::span<const Key> keys);
   template <typename Source, typename Visit>
   void for_entries(const Source& source, std::span<const Key> keys, bool by_rows, bool ascending,
                    const Visit& visit);
@@ -137,6 +146,7 @@ class Rows {
   KeyTable keys_;
   FilterTable filters_;
   RowRegions regions_;
+  float far_ = 0.0F;
   ChangeList stale_;
   mutable ChangeList moved_;
   mutable RowSelection selection_;
