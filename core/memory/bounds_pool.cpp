@@ -1,5 +1,7 @@
 #include "core/memory/bounds_pool.h"
 
+#include "core/sort/stretches.h"
+
 #include <algorithm>
 
 namespace winnow {
@@ -10,10 +12,7 @@ constexpr std::size_t kRowsPerTask = 16384;
 template <typename T>
 void gather(const T* from, std::span<const std::uint32_t> order, T* to, T missing,
             const Execution& execution) {
-  const std::size_t tasks = (order.size() + kRowsPerTask - 1) / kRowsPerTask;
-  execution.for_each(tasks, [&](std::size_t task) {
-    const std::size_t begin = task * kRowsPerTask;
-    const std::size_t end = std::min(order.size(), begin + kRowsPerTask);
+  for_stretches(execution, order.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       to[i] = order[i] == kNoObject ? missing : from[order[i]];
     }
@@ -57,12 +56,38 @@ void BoundsPool::reorder(std::span<const std::uint32_t> order, Column<float>& sp
     gather(columns_[c].data(), order, spare.data(), empty_value(volume_, c), execution);
     columns_[c].swap(spare);
   }
-  // Ids and floats have one size: the spare column's bytes serve both.
-  static_assert(sizeof(float) == sizeof(ObjectId));
-  gather(ids_.data(), order, reinterpret_cast<ObjectId*>(spare.data()), kNoObject, execution);
-  std::copy_n(reinterpret_cast<const ObjectId*>(spare.data()), order.size(), ids_.data());
+  reorder_ids(order, spare, execution);
   rows_ = order.size();
   pad();
+}
+
+void BoundsPool::reorder_ids(std::span<const std::uint32_t> order, Column<float>& spare,
+                             const Execution& execution) noexcept {
+  // Ids and floats have one size: the spare column's bytes serve both.
+  static_assert(sizeof(float) == sizeof(ObjectId));
+  auto* const ids = reinterpret_cast<ObjectId*>(spare.data());
+  std::uint32_t apart = 0;
+  for (std::size_t row = 0; row < rows_; ++row) {
+    apart |= ids_[row] ^ (ids_[0] + static_cast<std::uint32_t>(row));
+  }
+  const bool ascend = apart == 0 && rows_ != 0;
+  const auto for_rows = [&](auto&& work) {
+    for_stretches(execution, order.size(), kRowsPerTask, work);
+  };
+  if (ascend) {
+    // Those of rows in the order of ids need no look.
+    const ObjectId first = ids_[0];
+    for_rows([&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        ids_[i] = order[i] == kNoObject ? kNoObject : first + order[i];
+      }
+    });
+    return;
+  }
+  gather(ids_.data(), order, ids, kNoObject, execution);
+  for_rows([&](std::size_t begin, std::size_t end) {
+    std::copy(ids + begin, ids + end, ids_.data() + begin);
+  });
 }
 
 void BoundsPool::reorder_tail(std::size_t begin, std::span<const std::uint32_t> order,

@@ -74,6 +74,9 @@ class BoundsPool {
   [[nodiscard]] Bytes bytes() const noexcept;
 
  private:
+  void reorder_ids(std::span<const std::uint32_t> order, Column<float>& spare,
+                   const Execution& execution) noexcept;
+
   template <std::size_t... I>
   BoundsPool(std::pmr::memory_resource* memory, Volume volume, std::index_sequence<I...>) noexcept
       : columns_{((void)I, Column<float>(memory))...}, ids_(memory), volume_(volume) {}
