@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "tests/support/counting_memory.h"
@@ -31,6 +32,49 @@ TEST(KeyTable, gives_a_fresh_tables_objects_consecutive_ids) {
     EXPECT_EQ(table.client_data(i), 100 + i);
   }
   EXPECT_EQ(table.size(), 50U);
+}
+
+TEST(KeyTable, gives_many_objects_the_keys_that_it_gives_one_after_another) {
+  CountingMemory memory;
+  KeyTable table(&memory);
+  const std::vector<Key> old = fill(table, 5);
+  table.release(old[1].id);
+  table.release(old[3].id);
+  ASSERT_TRUE(table.reserve(7));
+  std::vector<Key> keys(4);
+  const std::vector<ClientData> data{10, 11, 12, 13};
+  table.acquire(20, data, keys, Execution::parallel());
+  EXPECT_EQ(table.size(), 7U);
+  EXPECT_EQ(keys[0].id, 3U);  // freed ids first, the last one before the others
+  EXPECT_EQ(keys[1].id, 1U);
+  EXPECT_EQ(keys[2].id, 5U);
+  EXPECT_EQ(keys[3].id, 6U);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    EXPECT_TRUE(table.is_valid(keys[i]));
+    EXPECT_EQ(table.row_of(keys[i].id), 20 + i);
+    EXPECT_EQ(table.client_data(keys[i].id), data[i]);
+  }
+}
+
+TEST(KeyTable, tells_of_many_keys_whether_all_are_valid_and_ascend) {
+  CountingMemory memory;
+  KeyTable table(&memory);
+  const std::vector<Key> keys = fill(table, 40);
+  const auto look_at = [&](std::vector<Key> some) {
+    const KeyTable::RunOfKeys run = table.look_at(some);
+    return std::pair(run.valid, run.ascending);
+  };
+  EXPECT_EQ(look_at({}), std::pair(true, true));
+  EXPECT_EQ(look_at(keys), std::pair(true, true));
+  EXPECT_EQ(look_at({keys[3], keys[5]}), std::pair(true, true));
+  EXPECT_EQ(look_at({keys[5], keys[5]}), std::pair(true, false));
+  EXPECT_EQ(look_at({keys[5], keys[4]}), std::pair(true, false));
+  EXPECT_FALSE(look_at({keys[38], keys[39], Key{40, keys[0].stamp}}).first);
+  EXPECT_FALSE(look_at({Key{}, Key{}}).first);
+  EXPECT_FALSE(look_at({keys[0], Key{}}).first);
+  table.release(keys[20].id);
+  EXPECT_FALSE(look_at(keys).first);
+  EXPECT_TRUE(look_at({keys.begin(), keys.begin() + 20}).first);
 }
 
 TEST(KeyTable, does_not_know_stale_foreign_default_or_forged_keys) {

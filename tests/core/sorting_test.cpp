@@ -1,0 +1,117 @@
+#include <gtest/gtest.h>
+#include "core/sort/counting_sort.h"
+#include "core/sort/radix_sort.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "tests/support/config.h"
+#include "tests/support/random.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr std::uint32_t kNone = CountingSort::kNone;
+
+struct Sorted {
+  std::vector<std::uint32_t> start;
+  std::vector<std::uint32_t> order;
+};
+
+Sorted sort_by_counting(const std::vector<std::uint32_t>& bucket, std::size_t buckets,
+                        std::size_t spare_counts, int threads) {
+  Sorted sorted;
+  sorted.start.resize(buckets + 1);
+  std::vector<std::uint32_t> spare(spare_counts);
+  Threads arena(threads);
+  arena.run([&] {
+    const Execution execution = Execution::parallel();
+    CountingSort sort(bucket, sorted.start, spare, execution);
+    sort.count();
+    sorted.order.resize(sort.find_starts());
+    sort.place(sorted.order.data());
+  });
+  return sorted;
+}
+
+TEST(CountingSort, puts_rows_of_a_bucket_together_and_keeps_their_order) {
+  const Sorted sorted = sort_by_counting({2, 0, kNone, 2, 0}, 4, 0, 1);
+  EXPECT_EQ(sorted.order, (std::vector<std::uint32_t>{1, 4, 0, 3}));
+  EXPECT_EQ(sorted.start, (std::vector<std::uint32_t>{0, 2, 2, 4, 4}));
+}
+
+TEST(CountingSort, says_how_many_rows_a_bucket_has_before_they_are_placed) {
+  const std::vector<std::uint32_t> bucket{1, 1, kNone, 0, 1};
+  std::vector<std::uint32_t> start(3);
+  const Execution execution = Execution::serial();
+  CountingSort sort(bucket, start, {}, execution);
+  sort.count();
+  EXPECT_EQ(sort.size_of(0), 1U);
+  EXPECT_EQ(sort.size_of(1), 3U);
+}
+
+TEST(CountingSort, gives_the_same_on_any_number_of_threads_and_with_any_room) {
+  Random random(1);
+  constexpr std::size_t kBuckets = 300;
+  std::vector<std::uint32_t> bucket(40000);
+  for (std::uint32_t& b : bucket) {
+    b = random.chance(0.1) ? kNone : static_cast<std::uint32_t>(random.below(kBuckets));
+  }
+  std::vector<std::uint32_t> expected(bucket.size());
+  std::iota(expected.begin(), expected.end(), 0U);
+  std::erase_if(expected, [&](std::uint32_t row) { return bucket[row] == kNone; });
+  std::ranges::stable_sort(expected, {}, [&](std::uint32_t row) { return bucket[row]; });
+  for (const int threads : {1, 2, 3, 8}) {
+    for (const std::size_t spare : {std::size_t{0}, kBuckets, 10 * kBuckets}) {
+      const Sorted sorted = sort_by_counting(bucket, kBuckets, spare, threads);
+      ASSERT_EQ(sorted.order, expected);
+      for (std::size_t b = 0; b < kBuckets; ++b) {
+        for (std::uint32_t i = sorted.start[b]; i < sorted.start[b + 1]; ++i) {
+          ASSERT_EQ(bucket[sorted.order[i]], b);
+        }
+      }
+    }
+  }
+}
+
+TEST(RadixSort, sorts_keys_of_any_length_and_keeps_the_order_of_equal_ones) {
+  Random random(2);
+  for (const unsigned bits : {0U, 1U, 11U, 12U, 17U, 23U, 32U}) {
+    std::vector<std::uint64_t> items(30000);
+    for (std::uint32_t i = 0; i < items.size(); ++i) {
+      const std::uint64_t key = bits == 0 ? 0 : random.bits() >> (64U - bits);
+      items[i] = key << 32U | i;
+    }
+    std::vector<std::uint64_t> expected = items;
+    std::ranges::stable_sort(expected, {}, [](std::uint64_t item) { return item >> 32U; });
+    for (const int threads : {1, 3}) {
+      std::vector<std::uint64_t> from = items;
+      std::vector<std::uint64_t> spare(items.size());
+      Threads arena(threads);
+      arena.run([&] {
+        const std::uint64_t* const sorted =
+            radix_sort(from.data(), spare.data(), from.size(), bits, Execution::parallel());
+        EXPECT_TRUE(std::equal(expected.begin(), expected.end(), sorted)) << bits;
+      });
+    }
+  }
+}
+
+TEST(Sortable, orders_floats_and_gives_them_back) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const std::vector<float> ascending{-kInfinity, -3.5F,  -1e-40F, -0.0F,
+                                     0.0F,       1e-40F, 2.0F,    kInfinity};
+  for (std::size_t i = 0; i < ascending.size(); ++i) {
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(from_sortable(sortable(ascending[i]))),
+              std::bit_cast<std::uint32_t>(ascending[i]));
+    if (i > 0) {
+      EXPECT_LT(sortable(ascending[i - 1]), sortable(ascending[i]));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test
