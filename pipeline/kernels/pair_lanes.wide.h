@@ -167,6 +167,14 @@ struct BoxLanes {
   Lanes<T> rounding;
 };
 
+/// Of cylinders and cones, which hold the same numbers.
+template <typename T>
+struct SpunLanes {
+  Lanes<T> radius;
+  Lanes<T> half_length;
+  Lanes<T> rounding;
+};
+
 /// In the triangle's own frame.
 template <typename T>
 struct TriangleLanes {
@@ -232,6 +240,24 @@ template <typename Side, typename T>
   Lanes<T> r[4];
   load_shapes<Side>(job, block, job.tables.half_spaces, r);
   return {{r[0], r[1], r[2]}, r[3]};
+}
+
+template <typename Side, typename T, typename Shape>
+[[gnu::always_inline]] inline SpunLanes<T> load_spun(const NarrowJob& job,
+                                                     const PairBlock<T>& block,
+                                                     const Shape* table) {
+  const auto row = [&](int lane) { return numbers(table[shape_index<Side>(job, block, lane)]); };
+  Lanes<T> r[3];
+  in_precision<T>(
+      [&](int from, Doubles(&out)[3]) {
+        Doubles two[2];
+        load_rows2([&](int lane) { return row(from + lane); }, two);
+        out[0] = two[0];
+        out[1] = two[1];
+        out[2] = load_rows1([&](int lane) { return row(from + lane) + 2; });
+      },
+      r);
+  return {r[0], r[1], r[2]};
 }
 
 template <typename Side, typename T>

@@ -14,6 +14,16 @@ namespace winnow {
 inline constexpr double kFaceCosine = 0.97;
 inline constexpr double kEdgeSine = 0.25;
 
+/// Caps of cylinders and cones count up to 45 degrees off, else a line of the side does. A rim is a
+/// polygon that begins with the point farthest along the direction, at +x where the direction is
+/// along the axis. Corners of the upper cap are numbered from 0, of the lower from kRimCorners, the
+/// ends of a line of the side from kSideLine.
+inline constexpr double kCapCosine = 0.7071;
+inline constexpr std::uint32_t kRimCorners = 16;
+inline constexpr std::uint32_t kSideLine = 2 * kRimCorners;
+/// Directions whose sine with the axis is less are along it.
+inline constexpr double kAlongAxis = 1e-9;
+
 /// The feature of a core that lies farthest along (for a) or against (for b) the contact normal:
 /// one vertex, an edge, or a convex polygon in order around its boundary (either way). Vertices are
 /// relative to the position of body a, in the axes of the world.

@@ -9,15 +9,6 @@
 namespace winnow::solver {
 namespace {
 
-constexpr std::uint32_t kCapCorners = 16;
-// Numbers on cylinders and cones: corners of the upper cap from 0, of the lower from 16, the ends
-// of the supporting line 32 and 33; faces and edges likewise.
-constexpr std::uint32_t kLine = 2 * kCapCorners;
-/// Caps of cylinders and cones up to 45 degrees off, else a line of the side.
-constexpr double kCapCosine = 0.7071;
-/// The sine of a direction that is along an axis but for rounding.
-constexpr double kAlongAxis = 1e-9;
-
 bool face_has(const HullShape& hull, const HullFace& face, std::uint32_t corner) noexcept {
   for (std::uint32_t i = 0; i < face.count; ++i) {
     if (hull.loop[face.first + i] == corner) return true;
@@ -125,9 +116,9 @@ void SupportingPatch::add_hull(const Core& core, const Vec& outward) noexcept {
 }
 
 void SupportingPatch::add_cap(const Core& core, const Vec& out, double z) noexcept {
-  const std::uint32_t first = z > 0.0 ? 0 : kCapCorners;
-  for (std::uint32_t i = 0; i < kCapCorners; ++i) {
-    constexpr double kStep = 6.283185307179586 / kCapCorners;
+  const std::uint32_t first = z > 0.0 ? 0 : kRimCorners;
+  for (std::uint32_t i = 0; i < kRimCorners; ++i) {
+    constexpr double kStep = 6.283185307179586 / kRimCorners;
     const double c = std::cos(kStep * i);
     const double s = std::sin(kStep * i);
     const Vec at(core.half.x() * (c * out.x() - s * out.y()),
@@ -150,10 +141,10 @@ void SupportingPatch::add_round(const Core& core, const Vec& outward) noexcept {
   const double over_cap = cone ? -d.z() : std::abs(d.z());
   if (over_cap > kCapCosine) return add_cap(core, out, d.z() > 0.0 ? h : -h);
   const Vec top = cone ? Vec(0.0, 0.0, h) : Vec(out * r + Vec(0.0, 0.0, h));
-  add(core.center + core.rotation * top, kLine, kLine);
-  feature_ = kLine;
+  add(core.center + core.rotation * top, kSideLine, kSideLine);
+  feature_ = kSideLine;
   if (on_tip && radial <= kAlongAxis) return;
-  add(core.center + core.rotation * (out * r - Vec(0.0, 0.0, h)), kLine + 1, kLine);
+  add(core.center + core.rotation * (out * r - Vec(0.0, 0.0, h)), kSideLine + 1, kSideLine);
 }
 
 namespace {

@@ -7,6 +7,7 @@
 // The features of two hulls that meet along a normal, as patches for contact_patch.
 
 #include "pipeline/kernels/hull/hull_depth.wide.h"
+#include "pipeline/kernels/hull/hull_features.wide.h"
 #include "pipeline/manifold/contact_patch.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
@@ -353,10 +354,11 @@ class HullPatch {
     const std::uint32_t vertex = farthest_vertex(hull_, direction);
     float x[3];
     vertex_at(hull_, vertex, x);
-    const std::uint32_t face_index = face_across(direction, x);
-    if (face_index != kNone) return face(face_index);
-    const std::uint32_t other = neighbour_across(direction, vertex, x);
-    if (other != kNone) return edge(vertex, other);
+    const float slack = kFloatError * static_cast<float>(pair_.size);
+    const std::uint32_t face_index = face_across(hull_, direction, x, slack);
+    if (face_index != kNoFeature) return face(face_index);
+    const std::uint32_t other = neighbour_across(hull_, direction, vertex, x);
+    if (other != kNoFeature) return edge(vertex, other);
     count_ = 0;
     add(vertex, 0);
     feature_ = hull_.face_count + hull_.edge_count + vertex;
@@ -368,59 +370,9 @@ class HullPatch {
 
  private:
   static constexpr std::uint32_t kRoom = 32;
-  static constexpr std::uint32_t kNone = ~0U;
-  static constexpr auto kAligned = static_cast<float>(kFaceCosine);
-  static constexpr auto kTilted = static_cast<float>(kEdgeSine);
 
   static bool joins(const HullEdge& e, std::uint32_t v, std::uint32_t w) {
     return (e.vertex[0] == v && e.vertex[1] == w) || (e.vertex[0] == w && e.vertex[1] == v);
-  }
-
-  /// The face most along the direction of those at the vertex at x.
-  [[nodiscard]] std::uint32_t face_across(const float* direction, const float* x) const {
-    const float* const* plane = hull_.plane_float;
-    const Floats slack(kFloatError * static_cast<float>(pair_.size));
-    std::uint32_t best = kNone;
-    float most = kAligned;
-    for (std::uint32_t row = 0; row < hull_.face_count; row += kLanes) {
-      const Vec3<float> n{Floats::load(plane[0] + row), Floats::load(plane[1] + row),
-                          Floats::load(plane[2] + row)};
-      const Floats cosine = dot(n, Vec3<float>{direction[0], direction[1], direction[2]});
-      const Floats below = Floats::load(plane[3] + row) - dot(n, Vec3<float>{x[0], x[1], x[2]});
-      Mask16 hit = bits((cosine > Floats(most)) & (below <= slack));
-      const std::uint32_t left = hull_.face_count - row;
-      if (left < kLanes) hit &= lanes_below(left);
-      if (hit == 0) continue;
-      alignas(64) float value[kLanes];
-      cosine.store(value);
-      for (; hit != 0; hit &= hit - 1) {
-        const unsigned lane = winnow::WINNOW_ISA_NAME::first(hit);
-        if (!(value[lane] > most)) continue;
-        most = value[lane];
-        best = row + lane;
-      }
-    }
-    return best;
-  }
-
-  /// The neighbour of a vertex that lies least below it.
-  [[nodiscard]] std::uint32_t neighbour_across(const float* direction, std::uint32_t vertex,
-                                               const float* x) const {
-    std::uint32_t best = kNone;
-    float least = kTilted * kTilted;
-    if (hull_.dimension == 0) return best;
-    for (std::uint32_t i = hull_.neighbour_first[vertex]; i < hull_.neighbour_first[vertex + 1];
-         ++i) {
-      float y[3];
-      vertex_at(hull_, hull_.neighbour[i], y);
-      for (int k = 0; k < 3; ++k) y[k] -= x[k];
-      const float drop = dot3(direction, y);
-      const float slope = drop * drop / dot3(y, y);
-      if (!(slope < least)) continue;
-      least = slope;
-      best = hull_.neighbour[i];
-    }
-    return best;
   }
 
   void add(std::uint32_t vertex, std::uint32_t edge_feature) {

@@ -1,0 +1,202 @@
+#pragma once
+
+// Jobs of the curved kernels: pairs are placed, searched in lanes of double and finished one by
+// one. Both tiers take them.
+
+#include "pipeline/kernels/curved/curved_depth.wide.h"
+#include "pipeline/kernels/curved/curved_patch.wide.h"
+#include "pipeline/kernels/curved/curved_search.wide.h"
+#include "pipeline/kernels/hull/hull_finish.wide.h"
+#include "pipeline/kernels/kernels.h"
+
+namespace winnow::WINNOW_ISA_NAME::curved {
+
+/// Answers jobs of one level.
+template <int Level>
+class CurvedAnswers {
+ public:
+  static std::uint32_t run(NarrowJob& job) {
+    CurvedAnswers answers(job);
+    for (std::uint32_t i = 0; i < job.count; i += kChunk) {
+      const std::uint32_t left = job.count - i;
+      answers.chunk(i, left < kChunk ? left : kChunk);
+    }
+    return answers.uncertified_;
+  }
+
+ private:
+  static constexpr std::uint32_t kChunk = 32;
+  /// Beyond all distances that occur, scaled.
+  static constexpr double kFarthest = 1e10;
+  /// The widest bound of an answer, over the sizes.
+  static constexpr double kCertified = 1e-9;
+
+  explicit CurvedAnswers(NarrowJob& job) : job_(job) {}
+
+  void chunk(std::uint32_t begin, std::uint32_t count) {
+    std::uint32_t placed = 0;
+    for (std::uint32_t i = begin; i < begin + count; ++i) {
+      CurvedPair& pair = pair_[placed];
+      pair.index = i;
+      if (place_pair(job_, job_.pairs[i], pair)) {
+        ++placed;
+      } else {
+        give_up(i);
+      }
+    }
+    if (placed == 0) return;
+    CurvedLimits limits{0.0, Level == 0};
+    if (Level == 1) limits.far = __builtin_inf();
+    if (Level == 2) limits.far = job_.margin;
+    CurvedSearch(pair_, placed, limits).run();
+    for (std::uint32_t i = 0; i < placed; ++i) {
+      if (!answer(pair_[i])) give_up(pair_[i].index);
+    }
+  }
+
+  void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
+
+  bool answer(const CurvedPair& pair) {
+    switch (pair.state) {
+      case CurvedState::far:
+        return write_far(pair);
+      case CurvedState::apart:
+        return write_apart(pair);
+      case CurvedState::inside:
+        return write_inside(pair);
+      default:
+        return false;
+    }
+  }
+
+  bool write_far(const CurvedPair& pair) {
+    if constexpr (Level == 0) {
+      job_.overlap[pair.index] = 0;
+    } else {
+      double normal[3];
+      for (int k = 0; k < 3; ++k) normal[k] = -pair.gap[k] / pair.upper;
+      double world[3];
+      write_normal(pair, normal, world);
+      job_.distance[pair.index] = (pair.lower - pair.rounding) * pair.unit;
+      job_.error_bound[pair.index] =
+          (pair.upper - pair.lower + kRoundingError * (pair.size + pair.rounding)) * pair.unit;
+      job_.contact_first[pair.index] = job_.contacts.size;
+      job_.contact_count[pair.index] = 0;
+    }
+    return true;
+  }
+
+  bool write_apart(const CurvedPair& pair) {
+    const double doubt = pair.upper > pair.lower ? pair.upper - pair.lower : 0.0;
+    const double error = doubt + kRoundingError * (pair.size + pair.rounding);
+    // An error of the length is one of the direction: this keeps it below 0.01 degrees.
+    if (!(error <= 1e-8 * pair.upper)) return false;
+    double normal[3];
+    for (int k = 0; k < 3; ++k) normal[k] = -pair.gap[k] / pair.upper;
+    double weight[3] = {1.0, 0.0, 0.0};
+    double corner[3][3];
+    for (std::uint32_t i = 0; i < pair.count; ++i) {
+      for (int k = 0; k < 3; ++k) corner[i][k] = pair.difference[i][k];
+    }
+    if (pair.count == 2) hull::nearest_on_segment(corner, weight);
+    if (pair.count == 3) hull::nearest_on_triangle(corner, weight);
+    double point[3] = {0.0, 0.0, 0.0};
+    for (std::uint32_t i = 0; i < pair.count; ++i) {
+      for (int k = 0; k < 3; ++k) point[k] += weight[i] * pair.on_first[i][k];
+    }
+    return write(pair, pair.upper, error, normal, point);
+  }
+
+  bool write_inside(const CurvedPair& pair) {
+    if constexpr (Level == 0) {
+      job_.overlap[pair.index] = 1;
+      return true;
+    } else {
+      if (!depth_.find(pair)) return false;
+      double normal[3];
+      double point[3];
+      if (!depth_.answer(normal, point)) return false;
+      const double error =
+          depth_.upper() - depth_.lower() + 2.0 * kRoundingError * (pair.size + pair.rounding);
+      // The cores' sign is that of the polytope.
+      if (!(error < depth_.upper())) return false;
+      return write(pair, -depth_.upper(), error, normal, point);
+    }
+  }
+
+  /// From the distance of the cores, all scaled.
+  bool write(const CurvedPair& pair, double apart, double error, const double* normal,
+             const double* point) {
+    const double distance = apart - pair.rounding;
+    if (!(error < __builtin_fabs(distance))) return false;
+    if (!(error <= kCertified * (pair.size + pair.rounding))) return false;
+    if constexpr (Level == 0) {
+      job_.overlap[pair.index] = distance <= 0.0;
+      return true;
+    } else {
+      job_.distance[pair.index] = distance * pair.unit;
+      job_.error_bound[pair.index] = error * pair.unit;
+      double world[3];
+      double place[3];
+      write_normal(pair, normal, world);
+      place_point(pair, normal, point, distance, place);
+      if constexpr (Level == 1) {
+        for (int k = 0; k < 3; ++k) job_.point[k][pair.index] = place[k];
+      } else {
+        write_contacts(pair, normal, world, place, point, apart);
+      }
+      return true;
+    }
+  }
+
+  void write_normal(const CurvedPair& pair, const double* normal, double* world) {
+    turn3(pair.frame, normal, world);
+    for (int k = 0; k < 3; ++k) {
+      if (pair.swapped) world[k] = -world[k];
+      job_.normal[k][pair.index] = world[k];
+    }
+  }
+
+  /// The point on the surface of body a: on the first, or where swapped on the second, `distance`
+  /// farther.
+  static void place_point(const CurvedPair& pair, const double* normal, const double* core,
+                          double distance, double* place) {
+    const double reach = pair.first.rounding + (pair.swapped ? distance : 0.0);
+    double local[3];
+    for (int k = 0; k < 3; ++k) local[k] = (core[k] + reach * normal[k]) * pair.unit;
+    turn3(pair.frame, local, place);
+    if (!pair.swapped) return;
+    for (int k = 0; k < 3; ++k) place[k] -= pair.offset[k];
+  }
+
+  void write_contacts(const CurvedPair& pair, const double* normal, const double* world,
+                      const double* place, const double* core, double apart) {
+    const double distance = job_.distance[pair.index];
+    ContactWriter& writer = job_.contacts;
+    job_.contact_first[pair.index] = writer.size;
+    ContactPoint points[kManifoldPoints] = {};
+    std::uint32_t count = 0;
+    if (distance <= job_.margin) {
+      count =
+          curved_contacts(pair, normal, world, place, core, apart, distance, job_.margin, points);
+    }
+    job_.contact_count[pair.index] = count;
+    for (std::uint32_t i = 0; i < count; ++i, ++writer.size) {
+      for (int k = 0; k < 3; ++k) writer.position[k][writer.size] = points[i].position[k];
+      writer.depth[writer.size] = points[i].depth;
+      writer.feature[writer.size] = points[i].feature;
+    }
+  }
+
+  NarrowJob& job_;
+  std::uint32_t uncertified_ = 0;
+  CurvedPair pair_[kChunk];
+  CurvedDepth depth_;
+};
+
+/// Of every kind of pair alike, which a job tells.
+inline constexpr NarrowKernels kCurvedKernels = {
+    {nullptr, nullptr, nullptr},
+    {CurvedAnswers<0>::run, CurvedAnswers<1>::run, CurvedAnswers<2>::run}};
+
+}  // namespace winnow::WINNOW_ISA_NAME::curved

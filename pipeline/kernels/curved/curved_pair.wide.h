@@ -1,0 +1,267 @@
+#pragma once
+
+// A pair of convex shapes of which one has a curved side, as the curved kernels pass it from stage
+// to stage, and the points of its shapes that lie farthest along directions, one per lane. Lengths
+// are multiplied by a power of two that brings the largest into [1, 2).
+
+#include "pipeline/kernels/hull/hull_pair.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME::curved {
+
+using hull::cross3;
+using hull::dot3;
+using hull::turn3;
+using hull::turn_back3;
+
+/// The core of a shape in its own frame.
+struct Form {
+  static constexpr int kNumbers = 9;
+
+  ShapeKind kind;
+  /// Box: half extents. Capsule, cylinder, cone: radius of the core, 0, half length. Triangle:
+  /// three vertices.
+  double number[kNumbers];
+  const HullShape* hull;
+  double rounding;
+  /// A point of it.
+  double center[3];
+};
+
+/// What the search found out about the cores.
+enum class CurvedState : std::uint32_t {
+  /// Farther apart than anyone asks.
+  far,
+  /// Closest points found.
+  apart,
+  /// Overlap beyond doubt.
+  inside,
+  /// Touching, as far as double can tell.
+  close,
+};
+
+/// "First" is body a of the pair, or body b where `swapped`.
+struct CurvedPair {
+  Form first;
+  Form second;
+  /// From the second's frame to the first's: x -> turn x + shift; rows.
+  double turn[9];
+  double shift[3];
+  /// From the first's frame to the world's axes; rows.
+  double frame[9];
+  /// Position of the second less that of the first, in the world's axes and the caller's lengths.
+  double offset[3];
+  /// An upper bound of every length that occurs.
+  double size;
+  double rounding;
+  /// What lengths were multiplied by, and its inverse.
+  double scale;
+  double unit;
+  std::uint32_t index;
+  bool swapped;
+  // Outcome of the search.
+  CurvedState state;
+  /// Points of first - second, and the points of the first that are in them: those that span the
+  /// closest feature, or where the cores overlap the four around the origin.
+  std::uint32_t count;
+  double difference[4][3];
+  double on_first[4][3];
+  /// first - second where they are closest, its length, and a lower bound of the distance.
+  double gap[3];
+  double upper;
+  double lower;
+};
+
+/// A bound of the rounding errors of lengths, over size: some forty operations of half a unit each.
+inline constexpr double kRoundingError = 40.0 * 0x1p-53;
+
+/// Sizes within these have powers that neither overflow nor vanish.
+inline constexpr double kSmallest = 1e-60;
+inline constexpr double kLargestSize = 1e60;
+
+static inline double largest_of(double a, double b) {
+  return a > b ? a : b;
+}
+
+/// Fills the core, unscaled, and returns its reach from its origin.
+static inline double describe(const ShapeTables& tables, ShapeId id, Form& form) {
+  form.kind = id.kind();
+  form.hull = nullptr;
+  for (double& x : form.number) x = 0.0;
+  for (double& x : form.center) x = 0.0;
+  const std::uint32_t i = id.index();
+  switch (form.kind) {
+    case ShapeKind::capsule:
+      form.number[2] = tables.capsules[i].half_length;
+      form.rounding = tables.capsules[i].radius;
+      break;
+    case ShapeKind::box:
+      for (int k = 0; k < 3; ++k) form.number[k] = tables.boxes[i].half[k];
+      form.rounding = tables.boxes[i].rounding;
+      break;
+    case ShapeKind::cylinder:
+      form.number[0] = tables.cylinders[i].radius;
+      form.number[2] = tables.cylinders[i].half_length;
+      form.rounding = tables.cylinders[i].rounding;
+      break;
+    case ShapeKind::cone:
+      form.number[0] = tables.cones[i].radius;
+      form.number[2] = tables.cones[i].half_length;
+      form.rounding = tables.cones[i].rounding;
+      break;
+    case ShapeKind::triangle: {
+      double most = 0.0;
+      for (int v = 0; v < 3; ++v) {
+        double reach = 0.0;
+        for (int k = 0; k < 3; ++k) {
+          const double x = tables.triangles[i].vertex[v][k];
+          form.number[3 * v + k] = x;
+          form.center[k] += x / 3.0;
+          reach += __builtin_fabs(x);
+        }
+        most = largest_of(most, reach);
+      }
+      form.rounding = tables.triangles[i].rounding;
+      return most;
+    }
+    default:
+      form.hull = &tables.hulls[i];
+      form.rounding = form.hull->rounding;
+      for (int k = 0; k < 3; ++k) form.center[k] = form.hull->center[k];
+      return hull::reach_of(*form.hull);
+  }
+  return form.number[0] + form.number[1] + form.number[2];
+}
+
+/// Pairs of one kind are computed alike in either order: the sign of the difference of positions
+/// decides.
+static inline bool comes_second(const Pose& a, const Pose& b) {
+  for (int i = 0; i < 3; ++i) {
+    const double c = b.position[i] - a.position[i];
+    if (c != 0.0) return c < 0.0;
+  }
+  return false;
+}
+
+/// Fills what the search needs; false if poses or sizes are out of range.
+static inline bool place_pair(const NarrowJob& job, BodyPair bodies, CurvedPair& pair) {
+  const ShapeId ids[2] = {job.shapes[bodies.a], job.shapes[bodies.b]};
+  const Pose& pose_a = job.poses[bodies.a];
+  const Pose& pose_b = job.poses[bodies.b];
+  pair.swapped = ids[0].kind() == ids[1].kind() && comes_second(pose_a, pose_b);
+  const Pose& first = pair.swapped ? pose_b : pose_a;
+  const Pose& second = pair.swapped ? pose_a : pose_b;
+  pair.size = describe(job.tables, ids[pair.swapped ? 1 : 0], pair.first) +
+              describe(job.tables, ids[pair.swapped ? 0 : 1], pair.second);
+  double axes[9];
+  if (!hull::rotation_of(first.orientation, pair.frame) ||
+      !hull::rotation_of(second.orientation, axes)) {
+    return false;
+  }
+  for (int i = 0; i < 3; ++i) pair.offset[i] = second.position[i] - first.position[i];
+  turn_back3(pair.frame, pair.offset, pair.shift);
+  for (int i = 0; i < 3; ++i) {
+    pair.size += __builtin_fabs(pair.shift[i]);
+    for (int k = 0; k < 3; ++k) {
+      pair.turn[3 * i + k] = pair.frame[i] * axes[k] + pair.frame[3 + i] * axes[3 + k] +
+                             pair.frame[6 + i] * axes[6 + k];
+    }
+  }
+  pair.rounding = pair.first.rounding + pair.second.rounding;
+  if (!(pair.size > kSmallest && pair.size < kLargestSize)) return false;
+  if (!(pair.rounding < 1e6 * pair.size)) return false;
+  const std::uint64_t exponent = __builtin_bit_cast(std::uint64_t, pair.size) >> 52U;
+  pair.scale = __builtin_bit_cast(double, (2046U - exponent) << 52U);
+  pair.unit = 1.0 / pair.scale;
+  pair.size *= pair.scale;
+  pair.rounding *= pair.scale;
+  for (Form* form : {&pair.first, &pair.second}) {
+    for (double& x : form->number) x *= pair.scale;
+    for (double& x : form->center) x *= pair.scale;
+    form->rounding *= pair.scale;
+  }
+  for (double& x : pair.shift) x *= pair.scale;
+  return true;
+}
+
+/// Cores of one kind, one per lane.
+struct FormLanes {
+  Doubles number[Form::kNumbers];
+  ShapeKind kind;
+};
+
+/// The point of a rim in the direction of d, at z; where d is along the axis the rim's middle.
+[[gnu::always_inline]] static inline Vec3<double> rim_point(const Doubles& radius,
+                                                            const Vec3<double>& d,
+                                                            const Doubles& across,
+                                                            const Doubles& z) {
+  const Doubles over = radius / max(across, Doubles(1e-150));
+  return {d.x * over, d.y * over, z};
+}
+
+/// The farthest point of a core along d, in its frame; `of_hull` finds that of hulls.
+template <typename OfHull>
+[[gnu::always_inline]] static inline Vec3<double> support(const FormLanes& form,
+                                                          const Vec3<double>& d, OfHull&& of_hull) {
+  const Doubles zero(0.0);
+  const Doubles* n = form.number;
+  const auto towards = [&](const Doubles& x, const Doubles& h) { return select(x < zero, -h, h); };
+  switch (form.kind) {
+    case ShapeKind::capsule:
+      return {zero, zero, towards(d.z, n[2])};
+    case ShapeKind::box:
+      return {towards(d.x, n[0]), towards(d.y, n[1]), towards(d.z, n[2])};
+    case ShapeKind::triangle: {
+      const Vec3<double> v[3] = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}};
+      const Doubles h[3] = {dot(v[0], d), dot(v[1], d), dot(v[2], d)};
+      const LaneMask<double> second = h[1] > h[0];
+      const LaneMask<double> third = h[2] > max(h[0], h[1]);
+      return select(third, v[2], select(second, v[1], v[0]));
+    }
+    case ShapeKind::cylinder:
+      return rim_point(n[0], d, sqrt(d.x * d.x + d.y * d.y), towards(d.z, n[2]));
+    case ShapeKind::cone: {
+      const Doubles across = sqrt(d.x * d.x + d.y * d.y);
+      const Doubles tip = n[2] * d.z;
+      const LaneMask<double> on_tip = tip >= n[0] * across - tip;
+      const Vec3<double> rim = rim_point(n[0], d, across, -n[2]);
+      return select(on_tip, Vec3<double>{zero, zero, n[2]}, rim);
+    }
+    default:
+      return of_hull(d);
+  }
+}
+
+/// A rotation or its inverse, of one matrix per lane.
+[[gnu::always_inline]] static inline Vec3<double> turned(const Doubles* m, const Vec3<double>& v) {
+  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
+          m[6] * v.x + m[7] * v.y + m[8] * v.z};
+}
+[[gnu::always_inline]] static inline Vec3<double> turned_back(const Doubles* m,
+                                                              const Vec3<double>& v) {
+  return {m[0] * v.x + m[3] * v.y + m[6] * v.z, m[1] * v.x + m[4] * v.y + m[7] * v.z,
+          m[2] * v.x + m[5] * v.y + m[8] * v.z};
+}
+
+/// The vertex of a hull that is farthest along d, times `scale`.
+static inline void hull_support(const HullShape& shape, const double* d, double scale, double* x) {
+  constexpr std::uint32_t kWidth = Doubles::kCount;
+  const Vec3<double> direction{d[0], d[1], d[2]};
+  Doubles best = hull::along(shape.vertex, 0, direction);
+  Doubles where(0.0);
+  for (std::uint32_t row = kWidth; row < shape.vertex_count; row += kWidth) {
+    const Doubles value = hull::along(shape.vertex, row, direction);
+    const LaneMask<double> higher = value > best;
+    best = select(higher, value, best);
+    where = select(higher, Doubles(static_cast<double>(row)), where);
+  }
+  alignas(64) double height[kWidth];
+  alignas(64) double row[kWidth];
+  best.store(height);
+  where.store(row);
+  std::uint32_t lane = 0;
+  for (std::uint32_t i = 1; i < kWidth; ++i) lane = height[i] > height[lane] ? i : lane;
+  const std::uint32_t vertex = static_cast<std::uint32_t>(row[lane]) + lane;
+  for (int k = 0; k < 3; ++k) x[k] = shape.vertex[k][vertex] * scale;
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME::curved

@@ -1,0 +1,251 @@
+#pragma once
+
+// The features of two cores that meet along a normal, as patches for contact_patch; numbered as the
+// solver numbers them.
+
+#include "pipeline/kernels/curved/curved_pair.wide.h"
+#include "pipeline/kernels/hull/hull_features.wide.h"
+#include "pipeline/manifold/contact_patch.h"
+
+namespace winnow::WINNOW_ISA_NAME::curved {
+
+/// The cosines of the angles of a rim's corners; sines are those a quarter turn before.
+inline constexpr double kRimCosine[kRimCorners] = {
+    1.0,  0.92387953251128674,  0.70710678118654757,  0.38268343236508978,
+    0.0,  -0.38268343236508978, -0.70710678118654757, -0.92387953251128674,
+    -1.0, -0.92387953251128674, -0.70710678118654757, -0.38268343236508978,
+    0.0,  0.38268343236508978,  0.70710678118654757,  0.92387953251128674};
+/// The corners of a box's faces, counter-clockwise seen from outside; bit i of a corner's number is
+/// set on the positive side of axis i. Face 2 i + 1 is the positive one of axis i.
+inline constexpr std::uint32_t kBoxFace[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                                 {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+
+/// Edge 4 i + k of a box runs along axis i.
+constexpr std::uint32_t box_edge_between(std::uint32_t p, std::uint32_t q) {
+  const std::uint32_t along = p ^ q;
+  const std::uint32_t low = p & q;
+  if (along == 1) return low >> 1U;
+  if (along == 2) return 4 + (low & 1U) + (low >> 2U << 1U);
+  return 8 + low;
+}
+
+/// The supporting feature of one core, in the axes of the world, relative to body a.
+class CurvedPatch {
+ public:
+  /// `normal` is in the first's frame and points from the first to the second.
+  CurvedPatch(const CurvedPair& pair, bool of_first, const double* normal)
+      : pair_(pair), form_(of_first ? pair.first : pair.second), of_first_(of_first) {
+    double d[3];
+    if (of_first) {
+      for (int k = 0; k < 3; ++k) d[k] = normal[k];
+    } else {
+      turn_back3(pair.turn, normal, d);
+      for (double& x : d) x = -x;
+    }
+    switch (form_.kind) {
+      case ShapeKind::capsule:
+        add({0.0, 0.0, -form_.number[2]}, 0, 0);
+        if (form_.number[2] > 0.0) add({0.0, 0.0, form_.number[2]}, 1, 0);
+        break;
+      case ShapeKind::box:
+        add_box(d);
+        break;
+      case ShapeKind::triangle:
+        for (std::uint32_t i = 0; i < 3; ++i) {
+          const double* v = form_.number + 3 * i;
+          add({v[0], v[1], v[2]}, i, i);
+        }
+        break;
+      case ShapeKind::hull:
+        add_hull(d);
+        break;
+      default:
+        add_round(d);
+        break;
+    }
+  }
+
+  [[nodiscard]] Patch view() const {
+    return {vertex_, vertex_feature_, edge_feature_, count_, feature_, form_.rounding * pair_.unit};
+  }
+
+ private:
+  static constexpr std::uint32_t kRoom = 32;
+
+  struct Local {
+    double x;
+    double y;
+    double z;
+  };
+
+  void add(const Local& at, std::uint32_t vertex_feature, std::uint32_t edge_feature) {
+    const double local[3] = {at.x * pair_.unit, at.y * pair_.unit, at.z * pair_.unit};
+    double* r = vertex_[count_];
+    double x[3] = {local[0], local[1], local[2]};
+    if (!of_first_) {
+      turn3(pair_.turn, local, x);
+      for (int k = 0; k < 3; ++k) x[k] += pair_.shift[k] * pair_.unit;
+    }
+    turn3(pair_.frame, x, r);
+    if (pair_.swapped) {
+      for (int k = 0; k < 3; ++k) r[k] -= pair_.offset[k];
+    }
+    vertex_feature_[count_] = vertex_feature;
+    edge_feature_[count_++] = edge_feature;
+  }
+
+  void add_box(const double* d) {
+    std::uint32_t axis = 0;
+    for (std::uint32_t k = 1; k < 3; ++k) {
+      if (__builtin_fabs(d[k]) > __builtin_fabs(d[axis])) axis = k;
+    }
+    feature_ = 2 * axis + (d[axis] > 0.0 ? 1U : 0U);
+    const double* h = form_.number;
+    for (int i = 0; i < 4; ++i) {
+      const std::uint32_t corner = kBoxFace[feature_][i];
+      const std::uint32_t next = kBoxFace[feature_][(i + 1) % 4];
+      add({(corner & 1U) != 0 ? h[0] : -h[0], (corner & 2U) != 0 ? h[1] : -h[1],
+           (corner & 4U) != 0 ? h[2] : -h[2]},
+          corner, box_edge_between(corner, next));
+    }
+  }
+
+  void add_vertex(std::uint32_t vertex, std::uint32_t edge_feature) {
+    const double* const* v = form_.hull->vertex;
+    add({v[0][vertex] * pair_.scale, v[1][vertex] * pair_.scale, v[2][vertex] * pair_.scale},
+        vertex, edge_feature);
+  }
+
+  void add_hull(const double* d) {
+    const HullShape& shape = *form_.hull;
+    const float direction[3] = {static_cast<float>(d[0]), static_cast<float>(d[1]),
+                                static_cast<float>(d[2])};
+    const std::uint32_t vertex = hull::farthest_vertex(shape, direction);
+    float x[3];
+    hull::vertex_at(shape, vertex, x);
+    const float doubt = hull::kFloatError * static_cast<float>(pair_.size * pair_.unit);
+    const std::uint32_t face = hull::face_across(shape, direction, x, doubt);
+    if (face != hull::kNoFeature) {
+      const HullFace& f = shape.faces[face];
+      // Of polygons with more corners than there is room for, every second (third, ...) is taken.
+      const std::uint32_t stride = (f.count + kRoom - 1) / kRoom;
+      for (std::uint32_t i = 0; i < f.count; i += stride) {
+        add_vertex(shape.loop[f.first + i], shape.loop_edge[f.first + i]);
+      }
+      feature_ = face;
+      return;
+    }
+    const std::uint32_t other = hull::neighbour_across(shape, direction, vertex, x);
+    if (other == hull::kNoFeature) {
+      add_vertex(vertex, 0);
+      feature_ = shape.face_count + shape.edge_count + vertex;
+      return;
+    }
+    const std::uint32_t low = vertex < other ? vertex : other;
+    const std::uint32_t high = vertex < other ? other : vertex;
+    std::uint32_t edge = 0;
+    const auto joins = [&](const HullEdge& e) {
+      return (e.vertex[0] == low && e.vertex[1] == high) ||
+             (e.vertex[0] == high && e.vertex[1] == low);
+    };
+    while (edge + 1 < shape.edge_count && !joins(shape.edges[edge])) ++edge;
+    add_vertex(low, edge);
+    add_vertex(high, edge);
+    feature_ = shape.face_count + edge;
+  }
+
+  void add_cap(const double* out, double z) {
+    feature_ = z > 0.0 ? 0 : kRimCorners;
+    const double r = form_.number[0];
+    for (std::uint32_t i = 0; i < kRimCorners; ++i) {
+      const double c = kRimCosine[i];
+      const double s = kRimCosine[(i + 3 * kRimCorners / 4) % kRimCorners];
+      add({r * (c * out[0] - s * out[1]), r * (c * out[1] + s * out[0]), z}, feature_ + i,
+          feature_ + i);
+    }
+  }
+
+  void add_round(const double* d) {
+    const double r = form_.number[0];
+    const double h = form_.number[2];
+    const bool cone = form_.kind == ShapeKind::cone;
+    const double across = __builtin_sqrt(d[0] * d[0] + d[1] * d[1]);
+    const bool has_side = across > kAlongAxis;
+    const double out[2] = {has_side ? d[0] / across : 1.0, has_side ? d[1] / across : 0.0};
+    const bool on_tip = cone && h * d[2] >= r * across - h * d[2];
+    // A cone has but the lower cap.
+    const double over_cap = cone ? -d[2] : __builtin_fabs(d[2]);
+    if (over_cap > kCapCosine && r > 0.0) return add_cap(out, d[2] > 0.0 ? h : -h);
+    const double top = cone ? 0.0 : r;
+    add({out[0] * top, out[1] * top, h}, kSideLine, kSideLine);
+    feature_ = kSideLine;
+    if (on_tip && !has_side) return;
+    add({out[0] * r, out[1] * r, -h}, kSideLine + 1, kSideLine);
+  }
+
+  const CurvedPair& pair_;
+  const Form& form_;
+  bool of_first_;
+  std::uint32_t count_ = 0;
+  std::uint32_t feature_ = 0;
+  double vertex_[kRoom][3];
+  std::uint32_t vertex_feature_[kRoom];
+  std::uint32_t edge_feature_[kRoom];
+};
+
+/// What a single point of contact is called, at a point of the core in its frame: as in the kernels
+/// of round shapes.
+static inline std::uint32_t point_feature(const Form& form, const double* at, double size) {
+  const auto side = [&](int k) {
+    const double near = form.number[k] - 1e-9 * size;
+    return at[k] >= near ? 1 : (at[k] <= -near ? -1 : 0);
+  };
+  if (form.kind == ShapeKind::capsule) return side(2) == 0 ? 0 : (side(2) > 0 ? 1 : 2);
+  if (form.kind != ShapeKind::box) return 0;
+  return static_cast<std::uint32_t>(13 + side(0) + 3 * side(1) + 9 * side(2));
+}
+
+/// The points of contact of a pair no farther apart than the margin. `normal` is in the first's
+/// frame; `world`, from body a to body b, and `point`, on the surface of a relative to it, in the
+/// axes of the world; `core` is the point of the first's core, `apart` the distance of the cores,
+/// both scaled. The deepest point is as deep as the distance says: where the features miss that by
+/// a little, as polygons for rims do, or meet nowhere within the margin, it takes the place of
+/// their deepest; where they miss it by much, it is put in front of them.
+static inline std::uint32_t curved_contacts(const CurvedPair& pair, const double* normal,
+                                            const double* world, const double* point,
+                                            const double* core, double apart, double distance,
+                                            double margin, ContactPoint (&out)[kManifoldPoints]) {
+  const CurvedPatch first(pair, true, normal);
+  const CurvedPatch second(pair, false, normal);
+  std::uint32_t count =
+      contact_patch(pair.swapped ? second.view() : first.view(),
+                    pair.swapped ? first.view() : second.view(), world, margin, out);
+  ContactPoint own{};
+  for (int k = 0; k < 3; ++k) {
+    own.position[k] = static_cast<float>(point[k] + 0.5 * distance * world[k]);
+  }
+  own.depth = static_cast<float>(-distance);
+  double theirs[3];
+  double local[3];
+  for (int k = 0; k < 3; ++k) theirs[k] = core[k] + apart * normal[k] - pair.shift[k];
+  turn_back3(pair.turn, theirs, local);
+  const std::uint64_t mine = point_feature(pair.first, core, pair.size);
+  const std::uint64_t other = point_feature(pair.second, local, pair.size);
+  own.feature = pair.swapped ? other << 32U | mine : mine << 32U | other;
+  const double size = pair.size * pair.unit;
+  const double miss =
+      __builtin_fabs(static_cast<double>(out[0].depth) - static_cast<double>(own.depth));
+  const bool near = count > 0 && static_cast<double>(out[0].depth) >= -margin;
+  if (near && miss > 1e-2 * size) {
+    count = count < kManifoldPoints ? count + 1 : count;
+    for (std::uint32_t i = count - 1; i > 0; --i) out[i] = out[i - 1];
+    out[0] = own;
+  } else if (!near || miss > 4e-7 * size) {
+    if (near) own.feature = out[0].feature;
+    out[0] = own;
+    count = count == 0 ? 1 : count;
+  }
+  return count;
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME::curved

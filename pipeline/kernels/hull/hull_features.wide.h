@@ -1,0 +1,61 @@
+#pragma once
+
+// What of a hull lies across a direction at the vertex that is farthest along it: features within
+// some degrees of perpendicular count, since bodies rock over them.
+
+#include "pipeline/kernels/hull/hull_pair.wide.h"
+#include "pipeline/manifold/contact_patch.h"
+
+namespace winnow::WINNOW_ISA_NAME::hull {
+
+inline constexpr std::uint32_t kNoFeature = ~0U;
+
+/// The face most along the direction of those that pass within `doubt` of the vertex at x, if it
+/// lies across the direction.
+static inline std::uint32_t face_across(const HullShape& hull, const float* direction,
+                                        const float* x, float doubt) {
+  const float* const* plane = hull.plane_float;
+  const Floats slack(doubt);
+  std::uint32_t best = kNoFeature;
+  auto most = static_cast<float>(kFaceCosine);
+  for (std::uint32_t row = 0; row < hull.face_count; row += kLanes) {
+    const Vec3<float> n{Floats::load(plane[0] + row), Floats::load(plane[1] + row),
+                        Floats::load(plane[2] + row)};
+    const Floats cosine = dot(n, Vec3<float>{direction[0], direction[1], direction[2]});
+    const Floats below = Floats::load(plane[3] + row) - dot(n, Vec3<float>{x[0], x[1], x[2]});
+    Mask16 hit = bits((cosine > Floats(most)) & (below <= slack));
+    const std::uint32_t left = hull.face_count - row;
+    if (left < kLanes) hit &= lanes_below(left);
+    if (hit == 0) continue;
+    alignas(64) float value[kLanes];
+    cosine.store(value);
+    for (; hit != 0; hit &= hit - 1) {
+      const unsigned lane = winnow::WINNOW_ISA_NAME::first(hit);
+      if (!(value[lane] > most)) continue;
+      most = value[lane];
+      best = row + lane;
+    }
+  }
+  return best;
+}
+
+/// The neighbour of a vertex that lies least below it, if the edge to it lies across the direction.
+static inline std::uint32_t neighbour_across(const HullShape& hull, const float* direction,
+                                             std::uint32_t vertex, const float* x) {
+  std::uint32_t best = kNoFeature;
+  auto least = static_cast<float>(kEdgeSine * kEdgeSine);
+  if (hull.dimension == 0) return best;
+  for (std::uint32_t i = hull.neighbour_first[vertex]; i < hull.neighbour_first[vertex + 1]; ++i) {
+    float y[3];
+    vertex_at(hull, hull.neighbour[i], y);
+    for (int k = 0; k < 3; ++k) y[k] -= x[k];
+    const float drop = dot3(direction, y);
+    const float slope = drop * drop / dot3(y, y);
+    if (!(slope < least)) continue;
+    least = slope;
+    best = hull.neighbour[i];
+  }
+  return best;
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME::hull

@@ -1,0 +1,228 @@
+// Half-spaces against hulls: the lowest vertex over the plane and, for contacts, the face or edge
+// at it that faces the plane.
+
+#include "pipeline/kernels/hull/hull_features.wide.h"
+#include "pipeline/kernels/kernels.h"
+#include "pipeline/kernels/round/over_plane.wide.h"
+
+namespace winnow {
+namespace WINNOW_ISA_NAME::round {
+namespace {
+
+using hull::kNoFeature;
+
+/// The lowest vertex along `up`.
+template <typename T>
+std::uint32_t lowest_vertex(const HullShape& shape, const Vec3<T>& up) {
+  constexpr std::uint32_t kWidth = Lanes<T>::kCount;
+  const T* const* vertex = hull::columns_of(shape, T());
+  Lanes<T> best = hull::along(vertex, 0, up);
+  Lanes<T> where(T(0));
+  for (std::uint32_t row = kWidth; row < shape.vertex_count; row += kWidth) {
+    const Lanes<T> value = hull::along(vertex, row, up);
+    const LaneMask<T> lower = value < best;
+    best = select(lower, value, best);
+    where = select(lower, Lanes<T>(static_cast<T>(row)), where);
+  }
+  alignas(64) T height[kWidth];
+  alignas(64) T row[kWidth];
+  best.store(height);
+  where.store(row);
+  std::uint32_t lane = 0;
+  for (std::uint32_t i = 1; i < kWidth; ++i) lane = height[i] < height[lane] ? i : lane;
+  const std::uint32_t found = static_cast<std::uint32_t>(row[lane]) + lane;
+  // Padding repeats vertex 0.
+  return found < shape.vertex_count ? found : 0;
+}
+
+/// Vertices of a hull over a plane, thinned to the four that span most: the lowest, the one
+/// farthest from it, the one that makes the largest triangle with both, and the one that adds most
+/// to it.
+class StandingPoints {
+ public:
+  static constexpr std::uint32_t kMost = 4;
+
+  StandingPoints(const HullShape& shape, const double* up, std::uint32_t lowest, double reach)
+      : shape_(shape), up_(up) {
+    add(lowest);
+    limit_ = hull::dot3(up, point_[0]) + reach;
+    const float direction[3] = {static_cast<float>(-up[0]), static_cast<float>(-up[1]),
+                                static_cast<float>(-up[2])};
+    float x[3];
+    hull::vertex_at(shape, lowest, x);
+    const float doubt = hull::kFloatError * static_cast<float>(hull::reach_of(shape));
+    const std::uint32_t face = hull::face_across(shape, direction, x, doubt);
+    if (face != kNoFeature) {
+      take_face(shape.faces[face]);
+    } else {
+      const std::uint32_t other = hull::neighbour_across(shape, direction, lowest, x);
+      if (other != kNoFeature) add(other);
+    }
+  }
+
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+  [[nodiscard]] std::uint32_t vertex(std::uint32_t i) const { return vertex_[i]; }
+
+ private:
+  void add(std::uint32_t vertex) {
+    hull::vertex_at(shape_, vertex, point_[count_]);
+    vertex_[count_] = vertex;
+    if (count_ == 0 || hull::dot3(up_, point_[count_]) <= limit_) ++count_;
+  }
+
+  /// The vertex of a face within reach for which `value` is largest, if that is above zero.
+  template <typename Value>
+  void add_largest(const HullFace& face, Value&& value) {
+    double most = 0.0;
+    std::uint32_t best = kNoFeature;
+    for (std::uint32_t i = 0; i < face.count; ++i) {
+      double x[3];
+      hull::vertex_at(shape_, shape_.loop[face.first + i], x);
+      const double v = hull::dot3(up_, x) <= limit_ ? value(x) : 0.0;
+      if (!(v > most)) continue;
+      most = v;
+      best = shape_.loop[face.first + i];
+    }
+    if (best != kNoFeature) add(best);
+  }
+
+  void take_face(const HullFace& face) {
+    if (face.count <= kMost) {
+      for (std::uint32_t i = 0; i < face.count; ++i) {
+        const std::uint32_t vertex = shape_.loop[face.first + i];
+        if (vertex != vertex_[0]) add(vertex);
+      }
+      return;
+    }
+    add_largest(face, [&](const double* x) {
+      const double d[3] = {x[0] - point_[0][0], x[1] - point_[0][1], x[2] - point_[0][2]};
+      return hull::dot3(d, d);
+    });
+    if (count_ < 2) return;
+    add_largest(face, [&](const double* x) { return __builtin_fabs(area(0, 1, x)); });
+    if (count_ < 3) return;
+    const double turn = area(0, 1, point_[2]) < 0.0 ? -1.0 : 1.0;
+    add_largest(face, [&](const double* x) {
+      const double a = -turn * area(0, 1, x);
+      const double b = -turn * area(1, 2, x);
+      const double c = -turn * area(2, 0, x);
+      const double most = a > b ? a : b;
+      return most > c ? most : c;
+    });
+  }
+
+  /// Twice that of a triangle, seen along `up`.
+  [[nodiscard]] double area(std::uint32_t i, std::uint32_t k, const double* x) const {
+    double e[3];
+    double f[3];
+    double n[3];
+    for (int c = 0; c < 3; ++c) {
+      e[c] = point_[k][c] - point_[i][c];
+      f[c] = x[c] - point_[i][c];
+    }
+    hull::cross3(e, f, n);
+    return hull::dot3(up_, n);
+  }
+
+  const HullShape& shape_;
+  const double* up_;
+  double limit_ = 0.0;
+  std::uint32_t count_ = 0;
+  std::uint32_t vertex_[kMost + 1] = {};
+  double point_[kMost + 1][3];
+};
+
+struct HullOverPlane {
+  template <typename T, int L>
+  [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
+    if constexpr (L == kManifold) {
+      return FeetAnswers<4>::write<L>(job, block, feet<T, 4>(job, block));
+    } else {
+      return FeetAnswers<1>::write<L>(job, block, feet<T, 1>(job, block));
+    }
+  }
+
+  template <typename T, int Count>
+  [[gnu::noinline]] static Feet<T, Count> feet(const NarrowJob& job, const PairBlock<T>& block) {
+    constexpr std::uint32_t kWidth = Lanes<T>::kCount;
+    const Plane<T> plane = load_plane(job, block);
+    const Turn<T> turn = load_turn<SideA>(job, block);
+    const Rotation<T> axes = rotation(turn);
+    const Vec3<T> up = axes.to_local(plane.normal);
+    alignas(64) T normal[3][kWidth];
+    alignas(64) T height[kWidth];
+    up.x.store(normal[0]);
+    up.y.store(normal[1]);
+    up.z.store(normal[2]);
+    plane.height.store(height);
+    alignas(64) T vertex[Count][3][kWidth];
+    alignas(64) T name[Count][kWidth];
+    alignas(64) T missing[Count][kWidth] = {};
+    alignas(64) T rounding[kWidth];
+    alignas(64) T reach[kWidth];
+    for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
+      const HullShape& shape =
+          job.tables.hulls[shape_index<SideA>(job, block, static_cast<int>(lane))];
+      rounding[lane] = static_cast<T>(shape.rounding);
+      // Of what coordinates add up to.
+      reach[lane] = T(2) * static_cast<T>(hull::reach_of(shape));
+      const Vec3<T> direction{normal[0][lane], normal[1][lane], normal[2][lane]};
+      const std::uint32_t lowest = lowest_vertex(shape, direction);
+      if constexpr (Count == 1) {
+        hull_vertex(shape, lowest, 0, lane, vertex, name);
+      } else {
+        const double d[3] = {static_cast<double>(normal[0][lane]),
+                             static_cast<double>(normal[1][lane]),
+                             static_cast<double>(normal[2][lane])};
+        double x[3];
+        hull::vertex_at(shape, lowest, x);
+        const double room =
+            job.margin + shape.rounding - (hull::dot3(d, x) + static_cast<double>(height[lane]));
+        std::uint32_t found = 1;
+        hull_vertex(shape, lowest, 0, lane, vertex, name);
+        if (room >= 0.0) {
+          const StandingPoints print(shape, d, lowest, room);
+          found = print.count();
+          for (std::uint32_t i = 1; i < found; ++i) {
+            hull_vertex(shape, print.vertex(i), i, lane, vertex, name);
+          }
+        }
+        for (std::uint32_t i = found; i < Count; ++i) {
+          hull_vertex(shape, lowest, i, lane, vertex, name);
+          missing[i][lane] = kLargest<T>;
+        }
+      }
+    }
+    Feet<T, Count> r;
+    for (int i = 0; i < Count; ++i) {
+      const Vec3<T> local{Lanes<T>::load(vertex[i][0]), Lanes<T>::load(vertex[i][1]),
+                          Lanes<T>::load(vertex[i][2])};
+      const Lanes<T> gone = Lanes<T>::load(missing[i]);
+      r.foot[i] = axes.to_world(local);
+      r.height[i] = select(gone > Lanes<T>(T(0)), gone, plane.height + dot(up, local));
+      r.feature[i] = Lanes<T>::load(name[i]);
+    }
+    r.rounding = Lanes<T>::load(rounding);
+    r.normal = plane.normal;
+    r.scale = plane.scale + r.rounding + Lanes<T>::load(reach) + doubt(turn);
+    return r;
+  }
+
+  template <typename T, std::size_t Count, std::size_t Width>
+  [[gnu::always_inline]] static void hull_vertex(const HullShape& shape, std::uint32_t vertex,
+                                                 std::uint32_t i, std::uint32_t lane,
+                                                 T (&to)[Count][3][Width],
+                                                 T (&name)[Count][Width]) {
+    const T* const* column = hull::columns_of(shape, T());
+    for (int k = 0; k < 3; ++k) to[i][k][lane] = column[k][vertex];
+    name[i][lane] = static_cast<T>(vertex);
+  }
+};
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME::round
+
+extern const NarrowKernels WINNOW_KERNEL_TABLE(hull_half_space_kernels) =
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::HullOverPlane>();
+
+}  // namespace winnow

@@ -1,0 +1,128 @@
+#pragma once
+
+// Simplices of up to four points and their features nearest to the origin, one per lane: the step
+// of the algorithm of Gilbert, Johnson and Keerthi (1988).
+
+#include "simd/lanes/vectors.h"
+
+namespace winnow::WINNOW_ISA_NAME::hull {
+
+inline constexpr int kSlots = 3;
+
+/// Squares that are as good as zero, the smallest square of a sine of a triangle that has a normal,
+/// and squares of heights that rounding may have made; of lengths about 1.
+template <typename T>
+inline constexpr T kVanishing = sizeof(T) == sizeof(double) ? T(1e-200) : T(1e-30F);
+template <typename T>
+inline constexpr T kThin = sizeof(T) == sizeof(double) ? T(1e-26) : T(1e-12F);
+template <typename T>
+inline constexpr T kDoubtful = sizeof(T) == sizeof(double) ? T(1e-24) : T(1e-10F);
+
+/// Whether nearest points are to bound distances from above as they are, and the square of the
+/// least height of a triangle then.
+template <typename T>
+inline constexpr bool kExact = sizeof(T) == sizeof(double);
+template <typename T>
+inline constexpr T kNarrow = T(1e-18);
+
+/// Up to three points; with the support that comes next at most a tetrahedron.
+template <typename T>
+struct Simplex {
+  Vec3<T> point[kSlots];
+  LaneMask<T> present[kSlots];
+};
+
+template <typename T>
+struct SimplexNearest {
+  Vec3<T> point;
+  /// Which points of the simplex span the nearest feature together with the new one.
+  LaneMask<T> keep[kSlots];
+  /// The origin is in the tetrahedron; `deep` where that is beyond doubt.
+  LaneMask<T> inside;
+  LaneMask<T> deep;
+  /// The new point was there before.
+  LaneMask<T> repeated;
+};
+
+/// Of a simplex whose nearest point is known and `w`, which is nearer along the line to it: the
+/// nearest feature holds w, so of the tetrahedron's fifteen features eight are left. Lengths are
+/// about 1.
+template <typename T>
+static inline SimplexNearest<T> nearest_of(const Simplex<T>& simplex, const Vec3<T>& w) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
+  const Vec3<T> none{zero, zero, zero};
+  SimplexNearest<T> r;
+  Vec3<T> edge[kSlots];
+  Vec3<T> arm[kSlots];
+  Lanes<T> length[kSlots];
+  r.repeated = zero > one;
+  Lanes<T> best = dot(w, w);
+  r.point = w;
+  for (int s = 0; s < kSlots; ++s) {
+    r.keep[s] = zero > one;
+    edge[s] = select(simplex.present[s], simplex.point[s] - w, none);
+    length[s] = dot(edge[s], edge[s]);
+    r.repeated = r.repeated | (simplex.present[s] & (length[s] <= zero));
+    // From w to the origin, across the edge.
+    arm[s] = cross(edge[s], w);
+  }
+  for (int s = 0; s < kSlots; ++s) {
+    const Lanes<T> reach = -dot(edge[s], w);
+    const Lanes<T> t = min(reach / max(length[s], Lanes<T>(kVanishing<T>)), one);
+    const Vec3<T> x = w + edge[s] * t;
+    const Lanes<T> square = dot(x, x);
+    const LaneMask<T> nearer = (reach > zero) & (square < best);
+    best = select(nearer, square, best);
+    r.point = select(nearer, x, r.point);
+    for (int k = 0; k < s; ++k) r.keep[k] = r.keep[k] & !nearer;
+    r.keep[s] = nearer;
+  }
+  Vec3<T> normal[kSlots];
+  Lanes<T> area[kSlots];
+  Lanes<T> height[kSlots];
+  const Lanes<T> volume = dot(cross(edge[1], edge[2]), edge[0]);
+  for (int s = 0; s < kSlots; ++s) {
+    const int i = (s + 1) % kSlots;
+    const int k = (s + 2) % kSlots;
+    normal[s] = cross(edge[i], edge[k]);
+    area[s] = dot(normal[s], normal[s]);
+    height[s] = dot(normal[s], w);
+    // Barycentric coordinates of i and k, times the area.
+    const Lanes<T> u = dot(normal[s], arm[k]);
+    const Lanes<T> v = -dot(normal[s], arm[i]);
+    const Lanes<T> t = height[s] / max(area[s], Lanes<T>(kVanishing<T>));
+    Vec3<T> x = normal[s] * t;
+    Lanes<T> square = height[s] * t;
+    LaneMask<T> wide = area[s] > Lanes<T>(kThin<T>) * length[i] * length[k];
+    if constexpr (kExact<T>) {
+      // Between the points, whatever rounding has made of the normal.
+      const Lanes<T> over = one / max(area[s], Lanes<T>(kVanishing<T>));
+      x = w + edge[i] * (u * over) + edge[k] * (v * over);
+      square = dot(x, x);
+      wide = wide & (area[s] > Lanes<T>(kNarrow<T>) * (length[i] + length[k]));
+    }
+    const LaneMask<T> nearer = wide & (u > zero) & (v > zero) & (u + v < area[s]) & (square < best);
+    best = select(nearer, square, best);
+    r.point = select(nearer, x, r.point);
+    r.keep[s] = r.keep[s] & !nearer;
+    r.keep[i] = r.keep[i] | nearer;
+    r.keep[k] = r.keep[k] | nearer;
+  }
+  // Heights of the origin over the faces at w, and over the face across, have the volume's sign.
+  const Lanes<T> side = sign_or_one(volume);
+  const Vec3<T> across = normal[0] + normal[1] + normal[2];
+  const Lanes<T> opposite = (volume + height[0] + height[1] + height[2]) * side;
+  const Lanes<T> doubt(kDoubtful<T>);
+  r.inside = abs(volume) > zero;
+  r.inside = r.inside & (opposite > zero);
+  r.deep = opposite * opposite > doubt * dot(across, across);
+  for (int s = 0; s < kSlots; ++s) {
+    const Lanes<T> h = -height[s] * side;
+    r.inside = r.inside & (h > zero);
+    r.deep = r.deep & (h * h > doubt * area[s]);
+  }
+  return r;
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME::hull

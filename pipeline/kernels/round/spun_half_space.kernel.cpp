@@ -1,0 +1,144 @@
+// Half-spaces against cylinders and cones: the rim's lowest point, four points of a cap that faces
+// the plane, the ends of a side that does.
+
+#include "pipeline/kernels/kernels.h"
+#include "pipeline/kernels/round/over_plane.wide.h"
+#include "pipeline/manifold/contact_patch.h"
+
+namespace winnow {
+namespace WINNOW_ISA_NAME::round {
+namespace {
+
+/// Of a rim's corners those a quarter turn apart.
+constexpr int kQuarter = kRimCorners / 4;
+
+/// A cylinder or cone over a plane.
+template <typename T>
+struct SpunOverPlane {
+  Plane<T> plane;
+  Rotation<T> axes;
+  SpunLanes<T> shape;
+  Lanes<T> scale;
+  /// Of the plane's normal: along the axis, and across it.
+  Lanes<T> along;
+  Lanes<T> across;
+  /// Radii, in the axes of the world: the one that goes down most, and one level with the plane.
+  Vec3<T> down;
+  Vec3<T> level;
+  Vec3<T> half;
+};
+
+template <typename T, typename Shape>
+[[gnu::always_inline]] inline SpunOverPlane<T> place_spun(const NarrowJob& job,
+                                                          const PairBlock<T>& block,
+                                                          const Shape* table) {
+  const Lanes<T> zero(T(0));
+  SpunOverPlane<T> r;
+  r.plane = load_plane(job, block);
+  const Turn<T> turn = load_turn<SideA>(job, block);
+  r.shape = load_spun<SideA, T>(job, block, table);
+  r.axes = rotation(turn);
+  const Vec3<T> n = r.axes.to_local(r.plane.normal);
+  r.along = n.z;
+  r.across = sqrt(n.x * n.x + n.y * n.y);
+  const LaneMask<T> has_side = r.across > Lanes<T>(T(kAlongAxis));
+  const Lanes<T> over = r.shape.radius / r.across;
+  const Lanes<T> x = select(has_side, -n.x * over, r.shape.radius);
+  const Lanes<T> y = select(has_side, -n.y * over, zero);
+  r.down = r.axes.to_world(Vec3<T>{x, y, zero});
+  r.level = r.axes.to_world(Vec3<T>{-y, x, zero});
+  r.half = r.axes.z * r.shape.half_length;
+  r.scale = r.plane.scale + r.shape.radius + r.shape.half_length + r.shape.rounding + doubt(turn);
+  return r;
+}
+
+/// Four points of a cap, the lowest first, the one across last.
+template <typename T>
+[[gnu::always_inline]] inline void set_cap(Feet<T, 4>& feet, const SpunOverPlane<T>& s,
+                                           const Vec3<T>& middle, const Lanes<T>& rise,
+                                           const Lanes<T>& name) {
+  const Lanes<T> drop = s.shape.radius * s.across;
+  const Lanes<T> height = s.plane.height + rise;
+  feet.foot[0] = middle + s.down;
+  feet.foot[1] = middle + s.level;
+  feet.foot[2] = middle - s.level;
+  feet.foot[3] = middle - s.down;
+  feet.height[0] = height - drop;
+  feet.height[1] = height;
+  feet.height[2] = height;
+  feet.height[3] = height + drop;
+  constexpr int kTurns[4] = {0, 1, 3, 2};
+  for (int i = 0; i < 4; ++i) feet.feature[i] = name + Lanes<T>(T(kQuarter * kTurns[i]));
+  feet.rounding = s.shape.rounding;
+  feet.normal = s.plane.normal;
+  feet.scale = s.scale;
+}
+
+/// Where `side` holds, the feet become the two given, the second higher than the first, and no
+/// others.
+template <typename T>
+[[gnu::always_inline]] inline void set_side(Feet<T, 4>& feet, const LaneMask<T>& side,
+                                            const Vec3<T> (&foot)[2], const Lanes<T> (&height)[2],
+                                            const Lanes<T> (&name)[2]) {
+  for (int i = 0; i < 2; ++i) {
+    feet.foot[i] = select(side, foot[i], feet.foot[i]);
+    feet.height[i] = select(side, height[i], feet.height[i]);
+    feet.feature[i] = select(side, name[i], feet.feature[i]);
+    feet.height[2 + i] = select(side, Lanes<T>(kLargest<T>), feet.height[2 + i]);
+  }
+}
+
+struct CylinderFeet {
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 4> feet(const NarrowJob& job, const PairBlock<T>& block) {
+    const SpunOverPlane<T> s = place_spun(job, block, job.tables.cylinders);
+    const Lanes<T> zero(T(0));
+    const LaneMask<T> upper = s.along < zero;
+    const Vec3<T> low = select(upper, s.half, -s.half);
+    const Lanes<T> rise = s.shape.half_length * abs(s.along);
+    Feet<T, 4> feet;
+    set_cap(feet, s, low, -rise, select(upper, zero, Lanes<T>(T{kRimCorners})));
+    const Lanes<T> bottom = s.plane.height - s.shape.radius * s.across;
+    const LaneMask<T> side = abs(s.along) <= Lanes<T>(T(kCapCosine));
+    const Lanes<T> top(T{kSideLine});
+    const Lanes<T> end(T{kSideLine + 1});
+    set_side(feet, side, {s.down + low, s.down - low}, {bottom - rise, bottom + rise},
+             {select(upper, top, end), select(upper, end, top)});
+    return feet;
+  }
+};
+
+struct ConeFeet {
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 4> feet(const NarrowJob& job, const PairBlock<T>& block) {
+    const SpunOverPlane<T> s = place_spun(job, block, job.tables.cones);
+    const Lanes<T> rise = s.shape.half_length * s.along;
+    Feet<T, 4> feet;
+    set_cap(feet, s, -s.half, -rise, Lanes<T>(T{kRimCorners}));
+    const Lanes<T> tip = s.plane.height + rise;
+    const Lanes<T> rim = s.plane.height - rise - s.shape.radius * s.across;
+    const LaneMask<T> side = s.along <= Lanes<T>(T(kCapCosine));
+    const LaneMask<T> tip_first = tip <= rim;
+    const Vec3<T> foot = s.down - s.half;
+    const Lanes<T> top(T{kSideLine});
+    const Lanes<T> end(T{kSideLine + 1});
+    // A cone that stands on its tip has no side that is lower than others.
+    const LaneMask<T> stands = tip_first & (s.across <= Lanes<T>(T(kAlongAxis)));
+    const Lanes<T> second = select(stands, Lanes<T>(kLargest<T>), max(tip, rim));
+    set_side(feet, side, {select(tip_first, s.half, foot), select(tip_first, foot, s.half)},
+             {min(tip, rim), second}, {select(tip_first, top, end), select(tip_first, end, top)});
+    return feet;
+  }
+};
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME::round
+
+extern const NarrowKernels WINNOW_KERNEL_TABLE(cylinder_half_space_kernels) =
+    WINNOW_ISA_NAME::narrow_kernels_of<
+        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::CylinderFeet, 4>>();
+extern const NarrowKernels WINNOW_KERNEL_TABLE(cone_half_space_kernels) =
+    WINNOW_ISA_NAME::narrow_kernels_of<
+        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::ConeFeet, 4>>();
+
+}  // namespace winnow

@@ -1,0 +1,247 @@
+// Kernels of cylinders, cones and of hulls on half-spaces: small cases derived on paper, then
+// against the solver, on every instruction set, far from the origin and at other places of a batch.
+
+#include <gtest/gtest.h>
+#include <winnow/simd/isa.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_scenes.h"
+#include "tests/support/config.h"
+#include "tests/support/random.h"
+
+namespace winnow::test {
+namespace {
+
+using enum ShapeKind;
+
+/// One pair: a at the origin, b at a pose.
+template <typename A, typename B>
+PairScene pair_of(const A& a, const B& b, const Pose& pose_a, const Pose& pose_b) {
+  PairScene scene;
+  scene.shapes.resize(2);
+  EXPECT_EQ(scene.pool.add(a, scene.shapes[0]), Status::ok);
+  EXPECT_EQ(scene.pool.add(b, scene.shapes[1]), Status::ok);
+  scene.poses = {pose_a, pose_b};
+  scene.pairs = {{0, 1}};
+  return scene;
+}
+
+PairAnswers answer_to(const PairScene& scene, ContactLevel level, double margin = 0.0) {
+  return ask(scene, {.level = level, .margin = margin}).at(0);
+}
+
+/// Depths of the contacts, deepest first.
+std::vector<float> depths(const PairAnswers& answer) {
+  std::vector<float> depth;
+  for (const ContactPoint& contact : answer.contacts) depth.push_back(contact.depth);
+  std::sort(depth.begin(), depth.end(), std::greater<>());
+  return depth;
+}
+
+Pose turned_about_x(double angle, double z) {
+  Pose pose = Pose::at(0, 0, z);
+  pose.orientation[0] = std::cos(0.5 * angle);
+  pose.orientation[1] = std::sin(0.5 * angle);
+  return pose;
+}
+
+constexpr double kRightAngle = 1.5707963267948966;
+
+TEST(CurvedKernels, a_cylinder_stands_on_four_points_of_its_rim) {
+  const PairScene scene =
+      pair_of(CylinderShape{1.0, 2.0, 0.0}, HalfSpaceShape{}, Pose::at(0, 0, 1.5), Pose{});
+  const PairAnswers answer = answer_to(scene, ContactLevel::manifold);
+  EXPECT_EQ(answer.distance, -0.5);
+  ASSERT_EQ(answer.contacts.size(), 4U);
+  for (const ContactPoint& contact : answer.contacts) {
+    EXPECT_EQ(contact.depth, 0.5F);
+    EXPECT_NEAR(std::hypot(contact.position[0], contact.position[1]), 1.0, 1e-6);
+    EXPECT_NEAR(contact.position[2], -1.75, 1e-6);
+  }
+  const auto& p = answer.contacts;
+  EXPECT_NEAR(p[0].position[0] + p[3].position[0], 0.0, 1e-6);
+  EXPECT_NEAR(p[1].position[1] + p[2].position[1], 0.0, 1e-6);
+}
+
+TEST(CurvedKernels, a_cylinder_lies_on_the_ends_of_its_side) {
+  const PairScene scene = pair_of(CylinderShape{1.0, 2.0, 0.25}, HalfSpaceShape{},
+                                  turned_about_x(kRightAngle, 1.0), Pose{});
+  const PairAnswers answer = answer_to(scene, ContactLevel::manifold);
+  EXPECT_NEAR(answer.distance, -0.25, 1e-15);
+  ASSERT_EQ(answer.contacts.size(), 2U);
+  EXPECT_NEAR(std::abs(answer.contacts[0].position[1] - answer.contacts[1].position[1]), 4.0, 1e-6);
+}
+
+TEST(CurvedKernels, a_cone_stands_on_its_base_or_its_tip) {
+  const ConeShape cone{1.0, 1.0, 0.0};
+  const PairAnswers base = answer_to(pair_of(cone, HalfSpaceShape{}, Pose::at(0, 0, 1.25), Pose{}),
+                                     ContactLevel::manifold, 0.5);
+  EXPECT_EQ(base.distance, 0.25);
+  EXPECT_EQ(depths(base), std::vector<float>(4, -0.25F));
+  const PairAnswers tip =
+      answer_to(pair_of(cone, HalfSpaceShape{}, turned_about_x(2 * kRightAngle, 0.5), Pose{}),
+                ContactLevel::manifold);
+  EXPECT_NEAR(tip.distance, -0.5, 1e-15);
+  EXPECT_EQ(tip.contacts.size(), 1U);
+}
+
+TEST(CurvedKernels, a_ball_beside_a_cone_is_as_far_as_from_its_side) {
+  // A side of slope 45 degrees: (1, 0, 0) is sqrt(1/2) from it.
+  const PairScene scene =
+      pair_of(SphereShape{0.25}, ConeShape{1.0, 0.5, 0.0}, Pose::at(1, 0, 0.5), Pose{});
+  const PairAnswers answer = answer_to(scene, ContactLevel::distance);
+  EXPECT_NEAR(answer.distance, std::sqrt(0.5) - 0.25, 1e-15);
+  EXPECT_NEAR(answer.normal[0], -std::sqrt(0.5), 1e-15);
+  EXPECT_NEAR(answer.normal[2], -std::sqrt(0.5), 1e-15);
+}
+
+TEST(CurvedKernels, a_drum_on_a_box_sinks_in_by_the_lower_of_two_ways_out) {
+  const PairScene scene = pair_of(BoxShape{{4, 4, 1}, 0.0}, CylinderShape{1.0, 1.0, 0.0}, Pose{},
+                                  Pose::at(0.5, 0, 1.75));
+  const PairAnswers answer = answer_to(scene, ContactLevel::manifold);
+  EXPECT_NEAR(answer.distance, -0.25, 1e-9);
+  EXPECT_NEAR(answer.normal[2], 1.0, 1e-9);
+  ASSERT_EQ(answer.contacts.size(), 4U);
+  for (const float depth : depths(answer)) EXPECT_NEAR(depth, 0.25F, 1e-6F);
+}
+
+TEST(CurvedKernels, crossed_drums_are_as_far_as_their_sides) {
+  const CylinderShape drum{0.5, 2.0, 0.0};
+  const PairScene scene = pair_of(drum, drum, Pose{}, [] {
+    Pose pose = turned_about_x(kRightAngle, 0.25);
+    pose.position[0] = 1.75;
+    return pose;
+  }());
+  const PairAnswers answer = answer_to(scene, ContactLevel::distance);
+  EXPECT_NEAR(answer.distance, 0.75, 1e-12);
+  EXPECT_NEAR(answer.normal[0], 1.0, 1e-7);
+}
+
+struct CurvedKind {
+  ShapeKind a;
+  ShapeKind b;
+};
+void PrintTo(const CurvedKind& kind, std::ostream* out) {
+  *out << to_string(kind.a) << "_" << to_string(kind.b);
+}
+constexpr CurvedKind kCurvedKinds[] = {
+    {sphere, cylinder}, {sphere, cone},       {capsule, cylinder},    {capsule, cone},
+    {box, cylinder},    {box, cone},          {cylinder, cylinder},   {cylinder, cone},
+    {cone, cone},       {cylinder, triangle}, {cone, triangle},       {cylinder, hull},
+    {cone, hull},       {hull, half_space},   {cylinder, half_space}, {cone, half_space}};
+
+class CurvedPairs : public testing::TestWithParam<CurvedKind> {
+ protected:
+  void SetUp() override {
+    const std::vector<ShapeKind> kinds = all_kinds();
+    for (const ShapeKind kind : {GetParam().a, GetParam().b}) {
+      if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) GTEST_SKIP() << "no hulls";
+    }
+  }
+
+  static PairScene scene_of(PairStyle style, std::size_t count, std::uint64_t seed = 11) {
+    PairScene scene;
+    Random random(seed);
+    add_pairs(scene, GetParam().a, GetParam().b, style, count, random);
+    return scene;
+  }
+};
+
+constexpr double kReach = 0.05;
+
+NarrowOptions options(ContactLevel level, NarrowTier tier) {
+  return {.level = level, .tier = tier, .margin = kReach};
+}
+
+TEST_P(CurvedPairs, are_answered_as_by_the_solver) {
+  for (const PairStyle style : kPairStyles) {
+    SCOPED_TRACE(to_string(style));
+    const PairScene scene = scene_of(style, scaled(1000));
+    const auto solved = ask(scene, options(ContactLevel::distance, NarrowTier::reference));
+    const auto verdict = ask(scene, options(ContactLevel::boolean, NarrowTier::robust));
+    const auto found = ask(scene, options(ContactLevel::distance, NarrowTier::robust));
+    const auto touch = ask(scene, options(ContactLevel::manifold, NarrowTier::robust));
+    for (std::size_t i = 0; i < solved.size(); ++i) {
+      const double d = solved[i].distance;
+      const double doubt = solved[i].error_bound + found[i].error_bound;
+      ASSERT_EQ(verdict[i].overlap, solved[i].overlap) << i << " " << d;
+      ASSERT_EQ(found[i].overlap, solved[i].overlap) << i << " " << d;
+      ASSERT_LE(std::abs(found[i].distance - d), doubt) << i;
+      ASSERT_EQ(!touch[i].contacts.empty(), touch[i].distance <= kReach) << i;
+      if (touch[i].contacts.empty()) continue;
+      ASSERT_LE(std::abs(touch[i].distance - d), solved[i].error_bound + touch[i].error_bound) << i;
+      const double reach = extent(scene, scene.pairs[i]) + std::abs(d);
+      ASSERT_NEAR(depths(touch[i]).front(), -touch[i].distance, 2e-6 * reach) << i;
+      ASSERT_GE(depths(touch[i]).back(), -kReach - 2e-6 * reach) << i;
+    }
+  }
+}
+
+TEST_P(CurvedPairs, of_ordinary_sizes_hardly_need_the_solver) {
+  const PairScene scene = scene_of(PairStyle::ordinary, 2000);
+  for (const ContactLevel level :
+       {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
+    NarrowPhase narrow;
+    NarrowResult result;
+    ASSERT_EQ(narrow.collide(scene.pool, scene.bodies(), scene.pairs,
+                             options(level, NarrowTier::robust), result),
+              Status::ok);
+    EXPECT_EQ(narrow.statistics().without_lanes, 0U);
+    EXPECT_LE(narrow.statistics().recomputed, scene.pairs.size() / 50);
+  }
+}
+
+TEST_P(CurvedPairs, have_the_same_answers_on_every_instruction_set) {
+  for (const PairStyle style : kPairStyles) {
+    SCOPED_TRACE(to_string(style));
+    const PairScene scene = scene_of(style, scaled(200));
+    for (const ContactLevel level :
+         {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
+      std::vector<PairAnswers> expected;
+      for (const Isa isa : available_isas()) {
+        const IsaScope scope(isa);
+        const auto answers = ask(scene, options(level, NarrowTier::robust));
+        if (expected.empty()) expected = answers;
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+          ASSERT_TRUE(same(answers[i], expected[i])) << i << " " << to_string(isa);
+        }
+      }
+    }
+  }
+}
+
+TEST_P(CurvedPairs, have_the_same_answers_alone_as_in_a_batch) {
+  PairScene scene = scene_of(PairStyle::lattice, 60);
+  const auto all = ask(scene, options(ContactLevel::manifold, NarrowTier::robust));
+  const std::vector<BodyPair> pairs = scene.pairs;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    scene.pairs = {pairs[i]};
+    const auto one = ask(scene, options(ContactLevel::manifold, NarrowTier::robust));
+    ASSERT_TRUE(same(one.at(0), all[i])) << i;
+  }
+}
+
+TEST_P(CurvedPairs, have_the_same_answers_far_away) {
+  PairScene scene = scene_of(PairStyle::ordinary, scaled(300));
+  for (Pose& pose : scene.poses) {
+    for (double& x : pose.position) x = std::round(x * 0x1p10) * 0x1p-10;
+  }
+  const auto here = ask(scene, options(ContactLevel::manifold, NarrowTier::robust));
+  for (Pose& pose : scene.poses) pose.position[1] += 1e9;
+  const auto there = ask(scene, options(ContactLevel::manifold, NarrowTier::robust));
+  for (std::size_t i = 0; i < here.size(); ++i) ASSERT_TRUE(same(here[i], there[i])) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, CurvedPairs, testing::ValuesIn(kCurvedKinds),
+                         [](const testing::TestParamInfo<CurvedKind>& kind) {
+                           return std::string(to_string(kind.param.a)) + "_" +
+                                  to_string(kind.param.b);
+                         });
+
+}  // namespace
+}  // namespace winnow::test
