@@ -49,22 +49,22 @@ static inline void farthest(const Form& form, const double* d, double scale, dou
 class CurvedDepth {
  public:
   /// What the depth is proved to, relative to the sizes.
-  static constexpr double kTolerance = 1e-10;
+  static constexpr double kTolerance = 4e-10;
 
   /// From the four points around the origin that the search found; false if the polytope outgrows
   /// its room or is too flat.
   bool find(const CurvedPair& pair) {
     pair_ = &pair;
     points_ = 0;
-    faces_ = 0;
-    free_ = kNone;
+    for (std::uint32_t block = 0; block < blocks_; ++block) alive_[block] = 0;
+    blocks_ = 0;
     for (int i = 0; i < 4; ++i) add_point(pair.difference[i], pair.on_first[i]);
     if (!begin()) return false;
     while (points_ < kMostPoints) {
       face_ = nearest_face();
       double w[3];
       double mine[3];
-      difference_point(normal(face_), w, mine);
+      difference_point(face_, w, mine);
       upper_ = dot_normal(face_, w);
       lower_ = distance_[face_];
       if (upper_ - lower_ <= kTolerance) return true;
@@ -82,28 +82,9 @@ class CurvedDepth {
   /// that lie in one plane, takes the one that the foot of the origin is in.
   bool answer(double* direction, double* point) {
     double weight[3];
-    double most = foot_weights(face_, weight);
-    if (!(most >= kInside)) {
-      const double limit = upper_;
-      std::uint32_t best = face_;
-      for (std::uint32_t f = 0; f < faces_; ++f) {
-        if (!(distance_[f] <= limit)) continue;
-        const double inside = foot_weights(f, weight);
-        if (!(inside > most)) continue;
-        most = inside;
-        best = f;
-      }
-      if (!(most >= kInside)) return false;
-      const double lower = distance_[face_];
-      double w[3];
-      double mine[3];
-      difference_point(normal(best), w, mine);
-      upper_ = dot_normal(best, w);
-      if (!(upper_ - lower <= 2.0 * kTolerance)) return false;
-      lower_ = lower;
-      face_ = best;
-      foot_weights(best, weight);
-    }
+    const double inside = foot_weights(face_, weight);
+    if (!(inside >= kInside) && !turn_to_foot(inside)) return false;
+    foot_weights(face_, weight);
     for (int k = 0; k < 3; ++k) {
       direction[k] = normal_[k][face_];
       point[k] = 0.0;
@@ -113,22 +94,213 @@ class CurvedDepth {
   }
 
  private:
+  static constexpr std::uint32_t kWidth = Doubles::kCount;
   static constexpr std::uint32_t kMostPoints = 64;
-  /// A polytope of p points has 2 p - 4 faces; new ones are there before old ones go.
-  static constexpr std::uint32_t kMostFaces = 4 * kMostPoints;
-  static constexpr std::uint32_t kNone = ~0U;
+  /// A polytope of p points has 2 p - 4 faces.
+  static constexpr std::uint32_t kMostFaces = 2 * kMostPoints;
+  /// New faces at a time.
+  static constexpr std::uint32_t kMostSides = 32;
   /// Faces whose plane a point is above by less are not seen from it.
   static constexpr double kLevel = 1e-15;
   /// The foot of the origin is in a face if no weight of a corner is below this.
   static constexpr double kInside = -1e-9;
 
-  struct Direction {
-    double x[3];
+  std::uint32_t add_point(const double* w, const double* mine) {
+    for (int k = 0; k < 3; ++k) {
+      point_[points_][k] = w[k];
+      mine_[points_][k] = mine[k];
+    }
+    return points_++;
+  }
+
+  [[nodiscard]] double dot_normal(std::uint32_t face, const double* x) const {
+    return normal_[0][face] * x[0] + normal_[1][face] * x[1] + normal_[2][face] * x[2];
+  }
+
+  /// The point of first - second that is farthest along a face's normal, and that of the first in
+  /// it.
+  void difference_point(std::uint32_t face, double* w, double* mine) const {
+    const double n[3] = {normal_[0][face], normal_[1][face], normal_[2][face]};
+    double back[3];
+    double local[3];
+    double theirs[3];
+    farthest(pair_->first, n, pair_->scale, mine);
+    turn_back3(pair_->turn, n, back);
+    for (double& x : back) x = -x;
+    farthest(pair_->second, back, pair_->scale, local);
+    turn3(pair_->turn, local, theirs);
+    for (int k = 0; k < 3; ++k) w[k] = mine[k] - (theirs[k] + pair_->shift[k]);
+  }
+
+  /// An edge of a face: the face's number times four and the edge's.
+  static std::uint32_t edge_of(std::uint32_t face, std::uint32_t edge) { return 4 * face + edge; }
+
+  /// What a new face is made of: an edge from p to q, and the edge across it.
+  struct Side {
+    std::uint32_t p;
+    std::uint32_t q;
+    std::uint32_t across;
+    std::uint32_t face;
   };
+
+  /// The tetrahedron of the first four points: the three sides of its first face joined to the
+  /// fourth point, and that face.
+  bool begin() {
+    double e[3][3];
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) e[i][k] = point_[i + 1][k] - point_[0][k];
+    }
+    double n[3];
+    cross3(e[0], e[1], n);
+    // Counter-clockwise seen from outside if the fourth point is behind the first face.
+    const bool turned = dot3(n, e[2]) > 0.0;
+    const std::uint32_t corner[3] = {0, turned ? 2U : 1U, turned ? 1U : 2U};
+    Side base{corner[0], corner[1], 0, 0};
+    if (!add_faces(&base, 1, corner[2])) return false;
+    Side side[3];
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      side[i] = {corner[(i + 1) % 3], corner[i], edge_of(base.face, i), 0};
+    }
+    return add_faces(side, 3, 3) && join(side, 3);
+  }
+
+  /// A slot for a face.
+  std::uint32_t take_slot() {
+    std::uint32_t block = 0;
+    while (block < blocks_ && alive_[block] == kFull) ++block;
+    if (block == blocks_) {
+      if (blocks_ == kMostFaces / kWidth) return kMostFaces;
+      Doubles(__builtin_inf()).store(distance_ + block * kWidth);
+      ++blocks_;
+    }
+    const unsigned lane = first(static_cast<Mask16>(~alive_[block] & kFull));
+    alive_[block] |= 1U << lane;
+    return block * kWidth + lane;
+  }
+
+  /// Makes the faces of sides with a point; false if one has no normal, the origin is above it, or
+  /// there is no room.
+  bool add_faces(Side* side, std::uint32_t count, std::uint32_t to) {
+    alignas(64) double from[3][kWidth] = {};
+    alignas(64) double end[3][kWidth] = {};
+    const double* w = point_[to];
+    for (std::uint32_t begin = 0; begin < count; begin += kWidth) {
+      const std::uint32_t left = count - begin;
+      const std::uint32_t batch = left < kWidth ? left : kWidth;
+      for (std::uint32_t i = 0; i < batch; ++i) {
+        for (int k = 0; k < 3; ++k) {
+          from[k][i] = point_[side[begin + i].p][k];
+          end[k][i] = point_[side[begin + i].q][k];
+        }
+      }
+      const Vec3<double> p{Doubles::load(from[0]), Doubles::load(from[1]), Doubles::load(from[2])};
+      const Vec3<double> q{Doubles::load(end[0]), Doubles::load(end[1]), Doubles::load(end[2])};
+      const Vec3<double> e = q - p;
+      const Vec3<double> g = Vec3<double>{w[0], w[1], w[2]} - p;
+      const Vec3<double> n = cross(e, g);
+      const Doubles square = dot(n, n);
+      const Vec3<double> unit = n * (Doubles(1.0) / sqrt(square));
+      const Doubles distance = dot(unit, p);
+      const LaneMask<double> good =
+          (square > Doubles(1e-26) * dot(e, e) * dot(g, g)) & (distance > Doubles(-kLevel));
+      if ((~bits(good) & lanes_below(batch)) != 0) return false;
+      unit.x.store(from[0]);
+      unit.y.store(from[1]);
+      unit.z.store(from[2]);
+      distance.store(end[0]);
+      for (std::uint32_t i = 0; i < batch; ++i) {
+        Side& s = side[begin + i];
+        s.face = take_slot();
+        if (s.face == kMostFaces) return false;
+        for (int k = 0; k < 3; ++k) normal_[k][s.face] = from[k][i];
+        distance_[s.face] = end[0][i];
+        vertex_[s.face][0] = s.p;
+        vertex_[s.face][1] = s.q;
+        vertex_[s.face][2] = to;
+      }
+    }
+    return true;
+  }
+
+  /// Makes the new faces neighbours of each other and of those across; false unless the sides are
+  /// rings: at each corner one ends and one begins.
+  bool join(const Side* side, std::uint32_t count) {
+    std::uint64_t begins = 0;
+    std::uint64_t ends = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      begins |= std::uint64_t{1} << side[i].p;
+      ends |= std::uint64_t{1} << side[i].q;
+      from_[side[i].p] = side[i].face;
+      into_[side[i].q] = side[i].face;
+    }
+    if (begins != ends || static_cast<std::uint32_t>(__builtin_popcountll(begins)) != count) {
+      return false;
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Side& s = side[i];
+      across_[s.face][0] = s.across;
+      across_[s.across / 4][s.across % 4] = edge_of(s.face, 0);
+      across_[s.face][1] = edge_of(from_[s.q], 2);
+      across_[s.face][2] = edge_of(into_[s.p], 1);
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::uint32_t nearest_face() const {
+    Doubles least = Doubles::load(distance_);
+    for (std::uint32_t block = 1; block < blocks_; ++block) {
+      least = min(least, Doubles::load(distance_ + block * kWidth));
+    }
+    alignas(64) double value[kWidth];
+    least.store(value);
+    for (std::uint32_t half = kWidth / 2; half > 0; half /= 2) {
+      for (std::uint32_t i = 0; i < half; ++i) {
+        value[i] = value[i] < value[i + half] ? value[i] : value[i + half];
+      }
+    }
+    const Doubles smallest(value[0]);
+    for (std::uint32_t block = 0;; ++block) {
+      const Mask16 at = bits(Doubles::load(distance_ + block * kWidth) == smallest);
+      if (at != 0) return block * kWidth + first(at);
+    }
+  }
+
+  /// Takes away the faces that the new point sees, the nearest one among them, and joins it to
+  /// their outline.
+  bool grow(std::uint32_t to) {
+    const double* w = point_[to];
+    const Vec3<double> x{w[0], w[1], w[2]};
+    const Doubles level(kLevel);
+    Mask16 seen[kMostFaces / kWidth];
+    for (std::uint32_t block = 0; block < blocks_; ++block) {
+      const std::uint32_t row = block * kWidth;
+      const Vec3<double> n{Doubles::load(normal_[0] + row), Doubles::load(normal_[1] + row),
+                           Doubles::load(normal_[2] + row)};
+      seen[block] = bits(dot(n, x) > Doubles::load(distance_ + row) + level) & alive_[block];
+    }
+    seen[face_ / kWidth] |= 1U << face_ % kWidth;
+    Side side[kMostSides];
+    std::uint32_t sides = 0;
+    for (std::uint32_t block = 0; block < blocks_; ++block) {
+      for (Mask16 rest = seen[block]; rest != 0; rest &= rest - 1) {
+        const std::uint32_t f = block * kWidth + first(rest);
+        if (sides + 3 > kMostSides) return false;
+        for (std::uint32_t e = 0; e < 3; ++e) {
+          // Without a branch, which would be mispredicted.
+          const std::uint32_t g = across_[f][e] / 4;
+          side[sides] = {vertex_[f][e], vertex_[f][e == 2 ? 0 : e + 1], across_[f][e], 0};
+          sides += (seen[g / kWidth] >> g % kWidth & 1U) == 0 ? 1U : 0U;
+        }
+        distance_[f] = __builtin_inf();
+      }
+      alive_[block] &= ~seen[block];
+    }
+    return add_faces(side, sides, to) && join(side, sides);
+  }
 
   /// Of the corners of a face, for the foot of the origin, none below zero; returns the smallest,
   /// as it was before that.
-  [[gnu::noinline]] double foot_weights(std::uint32_t face, double* weight) const {
+  double foot_weights(std::uint32_t face, double* weight) const {
     double total = 0.0;
     double smallest = __builtin_inf();
     double sum = 0.0;
@@ -145,209 +317,45 @@ class CurvedDepth {
     return smallest / sum;
   }
 
-  std::uint32_t add_point(const double* w, const double* mine) {
-    for (int k = 0; k < 3; ++k) {
-      point_[points_][k] = w[k];
-      mine_[points_][k] = mine[k];
+  /// Goes on from the face to one as near, as far as the bounds tell, that the foot is in.
+  bool turn_to_foot(double inside) {
+    double most = inside;
+    std::uint32_t best = face_;
+    for (std::uint32_t f = 0; f < blocks_ * kWidth; ++f) {
+      if (!(distance_[f] <= upper_)) continue;
+      double weight[3];
+      const double here = foot_weights(f, weight);
+      if (!(here > most)) continue;
+      most = here;
+      best = f;
     }
-    return points_++;
+    if (!(most >= kInside)) return false;
+    double w[3];
+    double mine[3];
+    difference_point(best, w, mine);
+    face_ = best;
+    upper_ = dot_normal(best, w);
+    return upper_ - lower_ <= 2.0 * kTolerance;
   }
 
-  [[nodiscard]] Direction normal(std::uint32_t face) const {
-    return {{normal_[0][face], normal_[1][face], normal_[2][face]}};
-  }
-  [[nodiscard]] double dot_normal(std::uint32_t face, const double* x) const {
-    return normal_[0][face] * x[0] + normal_[1][face] * x[1] + normal_[2][face] * x[2];
-  }
-
-  /// The farthest point of first - second, and that of the first in it.
-  void difference_point(const Direction& n, double* w, double* mine) const {
-    double back[3];
-    double local[3];
-    double theirs[3];
-    farthest(pair_->first, n.x, pair_->scale, mine);
-    turn_back3(pair_->turn, n.x, back);
-    for (double& x : back) x = -x;
-    farthest(pair_->second, back, pair_->scale, local);
-    turn3(pair_->turn, local, theirs);
-    for (int k = 0; k < 3; ++k) w[k] = mine[k] - (theirs[k] + pair_->shift[k]);
-  }
-
-  /// The tetrahedron of the first four points.
-  bool begin() {
-    static constexpr std::uint32_t kCorners[4][3] = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
-    double e[3][3];
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) e[i][k] = point_[i + 1][k] - point_[0][k];
-    }
-    double n[3];
-    cross3(e[0], e[1], n);
-    // Counter-clockwise seen from outside if the fourth point is behind the first face.
-    const bool turned = dot3(n, e[2]) > 0.0;
-    for (const auto& c : kCorners) {
-      const std::uint32_t f = add_face(c[0], turned ? c[2] : c[1], turned ? c[1] : c[2]);
-      if (f == kNone) return false;
-    }
-    for (std::uint32_t f = 0; f < 4; ++f) {
-      for (int i = 0; i < 3; ++i) {
-        for (std::uint32_t g = 0; g < 4; ++g) {
-          if (has_edge(g, vertex_[f][(i + 1) % 3], vertex_[f][i]) != kNone) neighbour_[f][i] = g;
-        }
-      }
-    }
-    return true;
-  }
-
-  /// Which edge of a face runs from p to q.
-  [[nodiscard]] std::uint32_t has_edge(std::uint32_t face, std::uint32_t p, std::uint32_t q) const {
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      if (vertex_[face][i] == p && vertex_[face][(i + 1) % 3] == q) return i;
-    }
-    return kNone;
-  }
-
-  /// kNone if the face has no normal or the origin is above it.
-  std::uint32_t add_face(std::uint32_t p, std::uint32_t q, std::uint32_t r) {
-    std::uint32_t f = free_;
-    if (f != kNone) {
-      free_ = neighbour_[f][0];
-    } else if (faces_ < kMostFaces) {
-      f = faces_++;
-      // What a vector reads beyond the last face is no face.
-      if (f % Doubles::kCount == 0) {
-        for (std::uint32_t i = 0; i < Doubles::kCount; ++i) distance_[f + i] = __builtin_inf();
-      }
-    } else {
-      return kNone;
-    }
-    double e[3];
-    double g[3];
-    double n[3];
-    for (int k = 0; k < 3; ++k) {
-      e[k] = point_[q][k] - point_[p][k];
-      g[k] = point_[r][k] - point_[p][k];
-    }
-    cross3(e, g, n);
-    const double square = dot3(n, n);
-    if (!(square > 1e-26 * dot3(e, e) * dot3(g, g))) return kNone;
-    const double over = 1.0 / __builtin_sqrt(square);
-    for (int k = 0; k < 3; ++k) normal_[k][f] = n[k] * over;
-    distance_[f] = dot_normal(f, point_[p]);
-    vertex_[f][0] = p;
-    vertex_[f][1] = q;
-    vertex_[f][2] = r;
-    return distance_[f] > -kLevel ? f : kNone;
-  }
-
-  void remove_face(std::uint32_t f) {
-    distance_[f] = __builtin_inf();
-    neighbour_[f][0] = free_;
-    free_ = f;
-  }
-
-  [[nodiscard]] std::uint32_t nearest_face() const {
-    Doubles least = Doubles::load(distance_);
-    for (std::uint32_t f = Doubles::kCount; f < faces_; f += Doubles::kCount) {
-      least = min(least, Doubles::load(distance_ + f));
-    }
-    alignas(64) double value[Doubles::kCount];
-    least.store(value);
-    double smallest = value[0];
-    for (const double v : value) smallest = v < smallest ? v : smallest;
-    for (std::uint32_t f = 0;; f += Doubles::kCount) {
-      const Mask16 at = bits(Doubles::load(distance_ + f) == Doubles(smallest));
-      if (at != 0) return f + first(at);
-    }
-  }
-
-  [[nodiscard]] bool is_seen(std::uint32_t face, const double* w) const {
-    return dot_normal(face, w) > distance_[face] + kLevel;
-  }
-
-  /// Takes away the faces that the new point sees, the nearest one among them, and joins it to
-  /// their outline.
-  bool grow(std::uint32_t to) {
-    const double* w = point_[to];
-    std::uint32_t seen[kMostFaces];
-    std::uint32_t count = 1;
-    seen[0] = face_;
-    // Marked by where it is in the list.
-    const auto listed = [&](std::uint32_t f) {
-      for (std::uint32_t i = 0; i < count; ++i) {
-        if (seen[i] == f) return true;
-      }
-      return false;
-    };
-    struct Side {
-      std::uint32_t p;
-      std::uint32_t q;
-      std::uint32_t beyond;
-      std::uint32_t edge;
-    };
-    Side outline[kMostOutline];
-    std::uint32_t sides = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      for (int e = 0; e < 3; ++e) {
-        const std::uint32_t g = neighbour_[seen[i]][e];
-        if (listed(g)) continue;
-        if (is_seen(g, w)) {
-          if (count == kMostOutline) return false;
-          seen[count++] = g;
-        }
-      }
-    }
-    for (std::uint32_t i = 0; i < count; ++i) {
-      for (int e = 0; e < 3; ++e) {
-        const std::uint32_t f = seen[i];
-        const std::uint32_t g = neighbour_[f][e];
-        if (listed(g)) continue;
-        if (sides == kMostOutline) return false;
-        const std::uint32_t p = vertex_[f][e];
-        const std::uint32_t q = vertex_[f][(e + 1) % 3];
-        outline[sides++] = {p, q, g, has_edge(g, q, p)};
-      }
-    }
-    for (std::uint32_t i = 0; i < count; ++i) remove_face(seen[i]);
-    std::uint32_t begins[kMostPoints];
-    std::uint32_t ends[kMostPoints];
-    for (std::uint32_t i = 0; i < sides; ++i) {
-      begins[outline[i].p] = kNone;
-      begins[outline[i].q] = kNone;
-    }
-    for (std::uint32_t i = 0; i < sides; ++i) {
-      const Side& s = outline[i];
-      if (s.edge == kNone || begins[s.p] != kNone) return false;
-      const std::uint32_t f = add_face(s.p, s.q, to);
-      if (f == kNone) return false;
-      neighbour_[f][0] = s.beyond;
-      neighbour_[s.beyond][s.edge] = f;
-      begins[s.p] = f;
-      ends[s.q] = f;
-    }
-    // The outline is a ring: of each corner one side begins and one ends.
-    for (std::uint32_t i = 0; i < sides; ++i) {
-      const Side& s = outline[i];
-      if (begins[s.q] == kNone) return false;
-      neighbour_[begins[s.p]][1] = begins[s.q];
-      neighbour_[begins[s.p]][2] = ends[s.p];
-    }
-    return true;
-  }
-
-  static constexpr std::uint32_t kMostOutline = 32;
+  static constexpr Mask16 kFull = (1U << kWidth) - 1U;
 
   const CurvedPair* pair_ = nullptr;
   std::uint32_t points_ = 0;
-  std::uint32_t faces_ = 0;
-  std::uint32_t free_ = kNone;
   std::uint32_t face_ = 0;
   double upper_ = 0.0;
   double lower_ = 0.0;
-  double point_[kMostPoints + 1][3];
-  double mine_[kMostPoints + 1][3];
+  double point_[kMostPoints][3];
+  double mine_[kMostPoints][3];
+  /// By point: the new face whose first edge begins there, and ends there.
+  std::uint32_t from_[kMostPoints];
+  std::uint32_t into_[kMostPoints];
+  /// Faces lie in blocks of one per lane. Those that are not there are infinitely far.
+  std::uint32_t blocks_ = 0;
+  Mask16 alive_[kMostFaces / kWidth] = {};
   std::uint32_t vertex_[kMostFaces][3];
   /// Across the edge from vertex i to the next.
-  std::uint32_t neighbour_[kMostFaces][3];
+  std::uint32_t across_[kMostFaces][3];
   alignas(64) double normal_[3][kMostFaces];
   alignas(64) double distance_[kMostFaces];
 };
