@@ -11,6 +11,73 @@
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
+/// Weights of the point of a triangle's plane that is nearest to the origin, in terms of its
+/// shortest side, so that thin triangles lose no digits; twice, so that little is left of rounding.
+/// False if it is not between the corners.
+static inline bool weigh_thin_triangle(const double (*corner)[3], double* weight) {
+  int shortest = 0;
+  double least = __builtin_inf();
+  for (int i = 0; i < 3; ++i) {
+    double square = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const double d = corner[(i + 1) % 3][k] - corner[i][k];
+      square += d * d;
+    }
+    shortest = square < least ? i : shortest;
+    least = square < least ? square : least;
+  }
+  const int near = shortest;
+  const int beside = (shortest + 1) % 3;
+  const int across = (shortest + 2) % 3;
+  double side[3];
+  double arm[3];
+  double normal[3];
+  double x[3];
+  for (int k = 0; k < 3; ++k) {
+    side[k] = corner[beside][k] - corner[near][k];
+    arm[k] = corner[across][k] - corner[near][k];
+    x[k] = corner[near][k];
+  }
+  cross3(side, arm, normal);
+  const double over = 1.0 / dot3(normal, normal);
+  weight[beside] = 0.0;
+  weight[across] = 0.0;
+  for (int pass = 0; pass < 2; ++pass) {
+    const double along = dot3(x, side);
+    const double off = dot3(x, arm);
+    const double both = dot3(side, arm);
+    const double s = (off * both - along * dot3(arm, arm)) * over;
+    const double t = (along * both - off * dot3(side, side)) * over;
+    for (int k = 0; k < 3; ++k) x[k] += s * side[k] + t * arm[k];
+    weight[beside] += s;
+    weight[across] += t;
+  }
+  weight[near] = 1.0 - weight[beside] - weight[across];
+  return weight[0] >= 0.0 && weight[1] >= 0.0 && weight[2] >= 0.0;
+}
+
+/// Finds the closest points of a pair once more in the triangle that the search ended in, and what
+/// bounds their distance from below; for pairs that rounding has kept the search from ending with.
+static inline void end_in_triangle(CurvedPair& pair) {
+  double weight[3];
+  if (pair.count != 3 || !weigh_thin_triangle(pair.difference, weight)) return;
+  double gap[3];
+  double normal[3];
+  for (int k = 0; k < 3; ++k) {
+    gap[k] = 0.0;
+    for (int i = 0; i < 3; ++i) gap[k] += weight[i] * pair.difference[i][k];
+  }
+  const double length = __builtin_sqrt(dot3(gap, gap));
+  if (!(length > 0.0)) return;
+  for (int k = 0; k < 3; ++k) normal[k] = -gap[k] / length;
+  double w[3];
+  double mine[3];
+  difference_point(pair, normal, w, mine);
+  for (int k = 0; k < 3; ++k) pair.gap[k] = gap[k];
+  pair.upper = length;
+  pair.lower = -dot3(normal, w);
+}
+
 /// Answers jobs of one level.
 template <int Level>
 class CurvedAnswers {
@@ -28,6 +95,8 @@ class CurvedAnswers {
   static constexpr std::uint32_t kChunk = 32;
   /// Beyond all distances that occur, scaled.
   static constexpr double kFarthest = 1e10;
+  /// What bounds of a distance may differ by, over it, before they are looked at again.
+  static constexpr double kLoose = 1e-10;
   /// The widest bound of an answer, over the sizes.
   static constexpr double kCertified = 1e-9;
 
@@ -56,7 +125,7 @@ class CurvedAnswers {
 
   void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
 
-  bool answer(const CurvedPair& pair) {
+  bool answer(CurvedPair& pair) {
     switch (pair.state) {
       case CurvedState::far:
         return write_far(pair);
@@ -86,7 +155,8 @@ class CurvedAnswers {
     return true;
   }
 
-  bool write_apart(const CurvedPair& pair) {
+  bool write_apart(CurvedPair& pair) {
+    if (pair.upper - pair.lower > kLoose * pair.upper) end_in_triangle(pair);
     const double doubt = pair.upper > pair.lower ? pair.upper - pair.lower : 0.0;
     const double error = doubt + kRoundingError * (pair.size + pair.rounding);
     // An error of the length is one of the direction: this keeps it below 0.01 degrees.
@@ -99,7 +169,9 @@ class CurvedAnswers {
       for (int k = 0; k < 3; ++k) corner[i][k] = pair.difference[i][k];
     }
     if (pair.count == 2) hull::nearest_on_segment(corner, weight);
-    if (pair.count == 3) hull::nearest_on_triangle(corner, weight);
+    if (pair.count == 3 && !weigh_thin_triangle(corner, weight)) {
+      hull::nearest_on_triangle(corner, weight);
+    }
     double point[3] = {0.0, 0.0, 0.0};
     for (std::uint32_t i = 0; i < pair.count; ++i) {
       for (int k = 0; k < 3; ++k) point[k] += weight[i] * pair.on_first[i][k];

@@ -9,7 +9,7 @@
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
-/// The farthest point of a core along d, in its frame, and one for two cores' difference.
+/// The farthest point of a core along d, in its frame.
 static inline void farthest(const Form& form, const double* d, double scale, double* x) {
   const double* n = form.number;
   const auto towards = [](double along, double half) { return along < 0.0 ? -half : half; };
@@ -46,10 +46,26 @@ static inline void farthest(const Form& form, const double* d, double scale, dou
   }
 }
 
+/// The point of first - second that is farthest along n, and that of the first in it.
+static inline void difference_point(const CurvedPair& pair, const double* n, double* w,
+                                    double* mine) {
+  double back[3];
+  double local[3];
+  double theirs[3];
+  farthest(pair.first, n, pair.scale, mine);
+  turn_back3(pair.turn, n, back);
+  for (double& x : back) x = -x;
+  farthest(pair.second, back, pair.scale, local);
+  turn3(pair.turn, local, theirs);
+  for (int k = 0; k < 3; ++k) w[k] = mine[k] - (theirs[k] + pair.shift[k]);
+}
+
 class CurvedDepth {
  public:
-  /// What the depth is proved to, relative to the sizes.
+  /// What the depth is proved to, relative to the sizes, and how far the polytope may be from that
+  /// when its room is full.
   static constexpr double kTolerance = 4e-10;
+  static constexpr double kMostDoubt = 8e-10;
 
   /// From the four points around the origin that the search found; false if the polytope outgrows
   /// its room or is too flat.
@@ -60,17 +76,21 @@ class CurvedDepth {
     blocks_ = 0;
     for (int i = 0; i < 4; ++i) add_point(pair.difference[i], pair.on_first[i]);
     if (!begin()) return false;
-    while (points_ < kMostPoints) {
+    for (;;) {
       face_ = nearest_face();
+      lower_ = distance_[face_];
       double w[3];
       double mine[3];
-      difference_point(face_, w, mine);
-      upper_ = dot_normal(face_, w);
-      lower_ = distance_[face_];
-      if (upper_ - lower_ <= kTolerance) return true;
+      measure(w, mine);
+      // Of faces in one plane, the one that the foot of the origin is in tells the point.
+      if (upper_ - lower_ <= kTolerance) {
+        turn_to_foot();
+        measure(w, mine);
+        if (upper_ - lower_ <= kTolerance) return true;
+      }
+      if (points_ == kMostPoints) return upper_ - lower_ <= kMostDoubt;
       if (!grow(add_point(w, mine))) return false;
     }
-    return false;
   }
 
   /// Of the last call that was true.
@@ -78,13 +98,10 @@ class CurvedDepth {
   [[nodiscard]] double lower() const { return lower_; }
 
   /// The unit direction of least depth, from the first to the second, and a point of the first that
-  /// is on both once the second has been moved out; false if rounding hides where that is. Of faces
-  /// that lie in one plane, takes the one that the foot of the origin is in.
-  bool answer(double* direction, double* point) {
+  /// is on both once the second has been moved out; false if rounding hides where that is.
+  bool answer(double* direction, double* point) const {
     double weight[3];
-    const double inside = foot_weights(face_, weight);
-    if (!(inside >= kInside) && !turn_to_foot(inside)) return false;
-    foot_weights(face_, weight);
+    if (!(foot_weights(face_, weight) >= kInside)) return false;
     for (int k = 0; k < 3; ++k) {
       direction[k] = normal_[k][face_];
       point[k] = 0.0;
@@ -100,10 +117,10 @@ class CurvedDepth {
   static constexpr std::uint32_t kMostFaces = 2 * kMostPoints;
   /// New faces at a time.
   static constexpr std::uint32_t kMostSides = 32;
-  /// Faces whose plane a point is above by less are not seen from it.
+  /// A face is seen from points above its plane and from those that are not below it by more.
   static constexpr double kLevel = 1e-15;
   /// The foot of the origin is in a face if no weight of a corner is below this.
-  static constexpr double kInside = -1e-9;
+  static constexpr double kInside = -1e-7;
 
   std::uint32_t add_point(const double* w, const double* mine) {
     for (int k = 0; k < 3; ++k) {
@@ -117,19 +134,11 @@ class CurvedDepth {
     return normal_[0][face] * x[0] + normal_[1][face] * x[1] + normal_[2][face] * x[2];
   }
 
-  /// The point of first - second that is farthest along a face's normal, and that of the first in
-  /// it.
-  void difference_point(std::uint32_t face, double* w, double* mine) const {
-    const double n[3] = {normal_[0][face], normal_[1][face], normal_[2][face]};
-    double back[3];
-    double local[3];
-    double theirs[3];
-    farthest(pair_->first, n, pair_->scale, mine);
-    turn_back3(pair_->turn, n, back);
-    for (double& x : back) x = -x;
-    farthest(pair_->second, back, pair_->scale, local);
-    turn3(pair_->turn, local, theirs);
-    for (int k = 0; k < 3; ++k) w[k] = mine[k] - (theirs[k] + pair_->shift[k]);
+  /// Sets the upper bound to that of the face, and finds its point of the difference.
+  void measure(double* w, double* mine) {
+    const double n[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
+    difference_point(*pair_, n, w, mine);
+    upper_ = dot_normal(face_, w);
   }
 
   /// An edge of a face: the face's number times four and the edge's.
@@ -276,7 +285,7 @@ class CurvedDepth {
       const std::uint32_t row = block * kWidth;
       const Vec3<double> n{Doubles::load(normal_[0] + row), Doubles::load(normal_[1] + row),
                            Doubles::load(normal_[2] + row)};
-      seen[block] = bits(dot(n, x) > Doubles::load(distance_ + row) + level) & alive_[block];
+      seen[block] = bits(dot(n, x) + level > Doubles::load(distance_ + row)) & alive_[block];
     }
     seen[face_ / kWidth] |= 1U << face_ % kWidth;
     Side side[kMostSides];
@@ -318,24 +327,19 @@ class CurvedDepth {
   }
 
   /// Goes on from the face to one as near, as far as the bounds tell, that the foot is in.
-  bool turn_to_foot(double inside) {
-    double most = inside;
+  void turn_to_foot() {
+    double weight[3];
+    double most = foot_weights(face_, weight);
+    if (most >= kInside) return;
     std::uint32_t best = face_;
     for (std::uint32_t f = 0; f < blocks_ * kWidth; ++f) {
       if (!(distance_[f] <= upper_)) continue;
-      double weight[3];
       const double here = foot_weights(f, weight);
       if (!(here > most)) continue;
       most = here;
       best = f;
     }
-    if (!(most >= kInside)) return false;
-    double w[3];
-    double mine[3];
-    difference_point(best, w, mine);
     face_ = best;
-    upper_ = dot_normal(best, w);
-    return upper_ - lower_ <= 2.0 * kTolerance;
   }
 
   static constexpr Mask16 kFull = (1U << kWidth) - 1U;
