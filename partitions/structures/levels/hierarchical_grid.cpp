@@ -203,8 +203,11 @@ struct HierarchicalGrid::Sorted {
 bool HierarchicalGrid::plan(const RowPlan& plan) noexcept {
   const std::size_t rows = pool().rows();
   level_count_ = 0;
-  // Of a scene in motion builds meet now more rows, now fewer: this is enough for mostly all.
-  if (!list_.reserve(std::max(rows, objects() + objects() / 8 + 256))) return false;
+  // A first build meets no more rows than objects; of a scene in motion builds meet now more, now
+  // fewer, and this is enough for mostly all.
+  const std::size_t first = objects() + (kMostLevels + 1) * kBlockRows;
+  const std::size_t later = std::max(rows, objects() + objects() / 8 + 256);
+  if (!list_.reserve(rows <= first ? first : later)) return false;
   list_.set_size(rows);
   for_stretches(execution(), rows, kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
     level_rows_kernels().octaves(box_columns(pool()).data(), begin, end, list_.data());
