@@ -37,10 +37,11 @@ struct Statistics;
 /// build puts each one's rows together: worlds at the same place cost no more than their sum.
 ///
 /// A build permutes the rows themselves, so the pool is the sorted copy. It happens when the share
-/// of new rows, moved rows or holes passes a limit, or when the extra tests that a worn structure
-/// has cost since the last build exceed the price of a build: at most twice the cost of the best
-/// schedule known in hindsight (the ski-rental bound; Karlin et al., Algorithmica 3, 1988). The
-/// decision counts tests, never time, so every machine takes it at the same frame.
+/// of new rows, moved rows or holes passes a limit, when an update scatters the objects (see Rows),
+/// or when the extra tests that a worn structure has cost since the last build exceed the price of
+/// a build: at most twice the cost of the best schedule known in hindsight (the ski-rental bound;
+/// Karlin et al., Algorithmica 3, 1988). The decision counts tests, never time, so every machine
+/// takes it at the same frame.
 class SpatialIndex {
  public:
   SpatialIndex(std::pmr::memory_resource* memory, Rows& rows) noexcept;
