@@ -212,7 +212,7 @@ bool HierarchicalGrid::plan(const RowPlan& plan) noexcept {
   for_stretches(execution(), rows, kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
     level_rows_kernels().octaves(box_columns(pool()).data(), begin, end, list_.data());
   });
-  const SizeClasses classes(pool(), {list_.data(), rows});
+  const SizeClasses classes(pool(), {list_.data(), rows}, execution());
   if (classes.objects() < kFewest) {
     leave_all(plan);
     return true;

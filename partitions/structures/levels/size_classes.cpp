@@ -1,5 +1,7 @@
 #include "partitions/structures/levels/size_classes.h"
 
+#include "core/sort/stretches.h"
+
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -13,6 +15,13 @@ constexpr double kPerLine = 0.7;
 constexpr double kPerLevel = 7.0;
 // Objects that are enough to tell where those of a class lie.
 constexpr std::size_t kEnough = 4096;
+// Into how many stretches rows are cut at most, which threads go through.
+constexpr std::size_t kMostSizeStretches = 16;
+
+std::size_t stretch_of(std::size_t rows) noexcept {
+  constexpr std::size_t kLeastRows = 8192;
+  return std::max(kLeastRows, rows / kMostSizeStretches + 1);
+}
 
 // How long the ranges are over which n objects with these sums of places and of their squares would
 // be spread evenly.
@@ -53,48 +62,73 @@ struct SizeClasses::Group {
   std::array<double, 3> block{};  ///< extent of 16 rows
 };
 
-SizeClasses::SizeClasses(const BoundsPool& pool, std::span<const std::uint32_t> octave) noexcept {
-  std::array<Counts, 2> half{};  // of every second row, which need not wait for each other
-  for (std::size_t row = 0; row < octave.size(); ++row) ++half[row & 1U][octave[row]];
-  Counts count;
-  for (std::size_t o = 0; o < kOctaves; ++o) count[o] = half[0][o] + half[1][o];
-  count[kNoOctave] = 0;
+SizeClasses::SizeClasses(const BoundsPool& pool, std::span<const std::uint32_t> octave,
+                         const Execution& execution) noexcept {
+  // Of every second row, which need not wait for each other.
+  using Halves = std::array<std::array<std::uint32_t, kOctaves>, 2>;
+  std::array<Halves, kMostSizeStretches> part{};
+  const std::size_t length = stretch_of(octave.size());
+  for_stretches(execution, octave.size(), length, [&](std::size_t begin, std::size_t end) {
+    Halves& half = part[begin / length];
+    for (std::size_t row = begin; row < end; ++row) ++half[row & 1U][octave[row]];
+  });
+  Counts count{};
+  for (const Halves& half : part) {
+    for (std::size_t o = 0; o < kNoOctave; ++o) count[o] += half[0][o] + half[1][o];
+  }
   choose_octaves(count);
   for (std::size_t o = 0; o < kOctaves; ++o) {
     if (class_of(o) == kClasses) continue;
     class_[class_of(o)].count += count[o];
     objects_ += count[o];
   }
-  measure(pool, octave);
+  measure(pool, octave, execution);
   join();
 }
 
-// Takes from every class about as many objects.
-void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t> octave) noexcept {
+// Takes from every class about as many objects, the same on any number of threads.
+void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t> octave,
+                          const Execution& execution) noexcept {
   std::array<std::uint8_t, kOctaves> class_at{};
   std::array<std::size_t, kClasses + 1> step{};
-  std::array<std::size_t, kClasses + 1> wait{};
   for (std::size_t o = 0; o < kOctaves; ++o) class_at[o] = static_cast<std::uint8_t>(class_of(o));
   for (std::size_t c = 0; c < kClasses; ++c) step[c] = 1 + class_[c].count / kEnough;
-  step[kClasses] = wait[kClasses] = octave.size() + 1;
-  std::array<std::size_t, kClasses> taken{};
-  for (std::size_t row = 0; row < octave.size(); ++row) {
-    const std::size_t own = class_at[octave[row]];
-    if (wait[own]-- != 0) continue;
-    wait[own] = step[own] - 1;
-    Class& c = class_[own];
-    ++taken[own];
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double low = static_cast<double>(pool.column(a)[row]);
-      c.edge[a] += static_cast<double>(pool.column(3 + a)[row]) - low;
-      c.place[a] += low;
-      c.square[a] += low * low;
+  struct Taken {
+    std::size_t count = 0;
+    Class sum;
+  };
+  std::array<std::array<Taken, kClasses>, kMostSizeStretches> part;
+  const std::size_t length = stretch_of(octave.size());
+  for_stretches(execution, octave.size(), length, [&](std::size_t begin, std::size_t end) {
+    std::array<std::size_t, kClasses + 1> wait{};
+    wait[kClasses] = octave.size();
+    for (std::size_t row = begin; row < end; ++row) {
+      const std::size_t own = class_at[octave[row]];
+      if (wait[own]-- != 0) continue;
+      wait[own] = step[own] - 1;
+      Taken& taken = part[begin / length][own];
+      ++taken.count;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double low = static_cast<double>(pool.column(a)[row]);
+        taken.sum.edge[a] += static_cast<double>(pool.column(3 + a)[row]) - low;
+        taken.sum.place[a] += low;
+        taken.sum.square[a] += low * low;
+      }
     }
-  }
+  });
   for (std::size_t own = 0; own < kClasses; ++own) {
     Class& c = class_[own];
+    std::size_t taken = 0;
+    for (const auto& stretch : part) {
+      taken += stretch[own].count;
+      for (std::size_t a = 0; a < 3; ++a) {
+        c.edge[a] += stretch[own].sum.edge[a];
+        c.place[a] += stretch[own].sum.place[a];
+        c.square[a] += stretch[own].sum.square[a];
+      }
+    }
     const double all = static_cast<double>(c.count);
-    const double each = static_cast<double>(std::max<std::size_t>(1, taken[own]));
+    const double each = static_cast<double>(std::max<std::size_t>(1, taken));
     for (std::size_t a = 0; a < 3; ++a) {
       c.edge[a] /= each;
       c.place[a] *= all / each;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <winnow/core/execution.h>
 #include "core/memory/bounds_pool.h"
 #include "partitions/structures/levels/level_rows.kernel.h"
 
@@ -26,7 +27,8 @@ class SizeClasses {
 
   /// Counts the rows of a pool, of which the octaves are known; where the objects of a class lie
   /// it takes from a sample. O(n).
-  SizeClasses(const BoundsPool& pool, std::span<const std::uint32_t> octave) noexcept;
+  SizeClasses(const BoundsPool& pool, std::span<const std::uint32_t> octave,
+              const Execution& execution) noexcept;
 
   /// Objects that have a class.
   [[nodiscard]] std::size_t objects() const noexcept { return objects_; }
@@ -46,7 +48,8 @@ class SizeClasses {
   using Counts = std::array<std::size_t, kOctaves>;
   [[nodiscard]] std::size_t class_of(std::size_t octave) const noexcept;
   void choose_octaves(const Counts& count) noexcept;
-  void measure(const BoundsPool& pool, std::span<const std::uint32_t> octave) noexcept;
+  void measure(const BoundsPool& pool, std::span<const std::uint32_t> octave,
+               const Execution& execution) noexcept;
   [[nodiscard]] Group group_of(std::size_t first, std::size_t last) const noexcept;
   [[nodiscard]] double cost(const Group& fine, const Group& coarse) const noexcept;
   void join() noexcept;
