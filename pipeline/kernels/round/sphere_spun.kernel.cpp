@@ -84,10 +84,23 @@ struct ConeMeridian {
   }
 };
 
+template <typename T>
+struct SphereSpunSolution {
+  Lanes<T> distance;
+  Lanes<T> bound;
+  Lanes<T> scale;
+  /// In the axes of the world, where `unique` holds.
+  Vec3<T> normal;
+  LaneMask<T> unique;
+  Lanes<T> radius;
+};
+
 template <typename Meridian>
 struct SphereSpun {
-  template <typename T, int L>
-  [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
+  /// Not inlined: all levels share it.
+  template <typename T>
+  [[gnu::noinline]] static SphereSpunSolution<T> solve(const NarrowJob& job,
+                                                       const PairBlock<T>& block) {
     const Lanes<T> zero(T(0));
     const Vec3<T> c = load_offset(job, block);
     const Turn<T> turn = load_turn<SideB>(job, block);
@@ -99,21 +112,30 @@ struct SphereSpun {
     const MeridianView<T> view = Meridian::view(shape, away, p.z);
     const Lanes<T> radius = ra + shape.rounding;
     const Lanes<T> scale = taxicab(c) + shape.radius + shape.half_length + radius + doubt(turn);
-    const Lanes<T> distance = view.distance - radius;
-    const Lanes<T> bound = scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
+    // A point on the axis sees nothing aside of it, but for what `unique` leaves out.
+    const Lanes<T> over = select(away > zero, view.radial / away, zero);
+    return {view.distance - radius,
+            scale * Lanes<T>(T(kRoundings) * kEpsilon<T>),
+            scale,
+            axes.to_world(Vec3<T>{p.x * over, p.y * over, view.axial}),
+            view.lead > scale * Lanes<T>(kShortest<T>),
+            ra};
+  }
+
+  template <typename T, int L>
+  [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
+    const SphereSpunSolution<T> r = solve(job, block);
     if constexpr (L == kBoolean) {
-      return answer_sign(job, block, distance, bound, scale);
+      return answer_sign(job, block, r.distance, r.bound, r.scale);
     } else {
-      const LaneMask<T> unique = view.lead > scale * Lanes<T>(kShortest<T>);
-      // A point on the axis sees nothing aside of it, but for what `unique` leaves out.
-      const Lanes<T> over = select(away > zero, view.radial / away, zero);
-      const Vec3<T> towards{p.x * over, p.y * over, view.axial};
-      const CertifiedLanes<T> answer{distance, bound, axes.to_world(towards),
-                                     certified_lanes(distance, bound, scale, unique)};
+      const CertifiedLanes<T> answer{r.distance, r.bound, r.normal,
+                                     certified_lanes(r.distance, r.bound, r.scale, r.unique)};
+      const Lanes<T> zero(T(0));
       const Vec3<T> foot{zero, zero, zero};
-      write_certified<L>(job, block, answer, foot, ra);
+      write_certified<L>(job, block, answer, foot, r.radius);
       if constexpr (L == kManifold) {
-        write_contacts(job, block, {witness_contact(job, block, answer, foot, ra, zero, zero)});
+        write_contacts(job, block,
+                       {witness_contact(job, block, answer, foot, r.radius, zero, zero)});
       }
       return ~answer.certified;
     }
