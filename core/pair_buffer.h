@@ -24,9 +24,11 @@ struct Pair {
 };
 
 /// The caller's array of pairs, reused from frame to frame. Handed to the same partition again it
-/// carries last frame's pairs along: where few objects moved, only their pairs are redone. Any
-/// other use (another partition, `clear`, `edit`) makes the next query a full one; the result is
-/// the same set either way. Not for use from two threads at once.
+/// carries last frame's pairs along: where few objects moved, only their pairs are redone. Where
+/// very few did in two frames one after the other, the buffer is linked, for 16 bytes a pair and 4
+/// an object of its memory: an object then leads to its pairs, and a frame no longer looks at any
+/// others. Any other use (another partition, `clear`, `edit`) makes the next query a full one; the
+/// result is the same set either way. Not for use from two threads at once.
 class WINNOW_API PairBuffer {
  public:
   /// Which complete query the content came from; 0 is none.
@@ -37,12 +39,21 @@ class WINNOW_API PairBuffer {
   };
 
   explicit PairBuffer(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
-      : pairs_(memory), pages_(memory), page_table_(memory) {}
+      : pairs_(memory),
+        pages_(memory),
+        page_table_(memory),
+        links_(memory),
+        heads_(memory),
+        places_(memory) {}
   /// `other` is left empty: its next query is a full one.
   PairBuffer(PairBuffer&& other) noexcept
       : pairs_(std::move(other.pairs_)),
         pages_(std::move(other.pages_)),
         page_table_(std::move(other.page_table_)),
+        links_(std::move(other.links_)),
+        heads_(std::move(other.heads_)),
+        places_(std::move(other.places_)),
+        state_(std::exchange(other.state_, State::loose)),
         provenance_(std::exchange(other.provenance_, {})) {}
 
   [[nodiscard]] std::span<const Pair> pairs() const noexcept { return {pairs_.data(), size()}; }
@@ -57,26 +68,43 @@ class WINNOW_API PairBuffer {
 
   void clear() noexcept {
     pairs_.clear();
+    state_ = State::loose;
     provenance_ = {};
   }
 
+  /// Empties it and gives its memory back.
+  void release() noexcept;
+
   /// The pairs, to be changed at will.
   [[nodiscard]] Column<Pair>& edit() noexcept {
+    state_ = State::loose;
     provenance_ = {};
     return pairs_;
   }
 
-  /// Bytes under `results`; pages that parallel tasks wrote to under `scratch`.
+  /// Bytes of pairs under `results`; links and what tasks wrote to under `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
   friend class PairWriter;
   friend class PairTracker;
+  friend class LinkedPairs;
+
+  /// What leads from objects to pairs, and when that is made; see LinkedPairs.
+  enum class State : std::uint8_t { loose, few_moved, linked };
+  struct Link {
+    std::uint32_t next[2];
+    std::uint32_t before[2];
+  };
 
   Column<Pair> pairs_;
   // What tasks write before their output is put in order; see PairWriter.
   Column<Pair> pages_;
   Column<std::uint64_t> page_table_;
+  Column<Link> links_;
+  Column<std::uint32_t> heads_;
+  Column<std::uint32_t> places_;
+  State state_ = State::loose;
   Provenance provenance_;
 };
 

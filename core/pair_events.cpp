@@ -6,7 +6,9 @@ Footprint PairEvents::footprint() const noexcept {
   Footprint result;
   result.results = begun_.bytes();
   result.results += ended_.bytes();
-  result.scratch = before_.bytes();
+  const Bytes pairs = pairs_.footprint().total();
+  result.scratch = pairs;
+  result.scratch += before_.bytes();
   result.scratch += after_.bytes();
   result.scratch += dropped_.bytes();
   result.scratch += spare_.bytes();

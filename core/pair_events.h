@@ -26,7 +26,8 @@ struct KeyPair {
 
 /// What changed between two frames: handed to `Partition::self_pairs` with the PairBuffer that
 /// holds the earlier frame's pairs. With another buffer, or one that was used otherwise in between,
-/// it starts anew: every pair begins and none ends.
+/// it starts anew: every pair begins and none ends. A caller who wants changes alone hands over no
+/// buffer: the events then keep the pairs themselves.
 class WINNOW_API PairEvents {
  public:
   explicit PairEvents(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
@@ -36,7 +37,8 @@ class WINNOW_API PairEvents {
         before_(memory),
         after_(memory),
         spare_(memory),
-        stamps_(memory) {}
+        stamps_(memory),
+        pairs_(memory) {}
   /// `other` is left empty and starts anew.
   PairEvents(PairEvents&& other) noexcept
       : begun_(std::move(other.begun_)),
@@ -46,6 +48,7 @@ class WINNOW_API PairEvents {
         after_(std::move(other.after_)),
         spare_(std::move(other.spare_)),
         stamps_(std::move(other.stamps_)),
+        pairs_(std::move(other.pairs_)),
         persisting_(std::exchange(other.persisting_, 0)),
         after_is_all_(std::exchange(other.after_is_all_, false)),
         provenance_(std::exchange(other.provenance_, {})) {}
@@ -59,13 +62,15 @@ class WINNOW_API PairEvents {
   [[nodiscard]] std::span<const KeyPair> ended() const noexcept {
     return {ended_.data(), ended_.size()};
   }
-  /// How many pairs are in both: the first ones of the PairBuffer; those that began follow.
+  /// How many pairs are in both: the first ones of the PairBuffer; those that began follow, in the
+  /// order in which they are told.
   [[nodiscard]] std::size_t persisting() const noexcept { return persisting_; }
 
   void clear() noexcept {
     begun_.clear();
     ended_.clear();
     persisting_ = 0;
+    pairs_.clear();
     provenance_ = {};
   }
 
@@ -82,6 +87,7 @@ class WINNOW_API PairEvents {
   Column<std::uint64_t> after_;   // pairs that may have begun
   Column<std::uint64_t> spare_;   // what pairs are sorted through
   Column<std::uint32_t> stamps_;  // by id, as of the last frame
+  PairBuffer pairs_;              // of a caller who has no buffer
   std::size_t persisting_ = 0;
   bool after_is_all_ = false;  // after_ holds every pair of the last frame
   PairBuffer::Provenance provenance_;

@@ -42,9 +42,7 @@ StructureChoice Partition::choice() const noexcept {
 }
 
 bool Partition::is_exact() const noexcept {
-  return state_ == nullptr ||
-         (state_->rows.pool().volume() == Volume::aabb && state_->rows.margin().is_none() &&
-          state_->steadily([&] { return state_->index.structure().tests_volumes(); }));
+  return state_ == nullptr || state_->is_exact();
 }
 
 Volume Partition::volume() const noexcept {
@@ -57,8 +55,7 @@ Margin Partition::margin() const noexcept {
 
 Status Partition::insert(const BoxView& boxes, std::span<const ClientData> data,
                          std::span<Key> keys) {
-  return mutate(state_, status_, keys.size(),
-                [&](Rows& rows) { return rows.insert(boxes, data, keys); });
+  return state_ == nullptr ? status_ : state_->insert(boxes, data, keys);
 }
 
 Status Partition::insert(const Aabb& box, ClientData data, Key& key) {
@@ -80,11 +77,15 @@ Status Partition::insert(std::span<const Kdop<K>> kdops, std::span<const ClientD
 }
 
 Status Partition::update(std::span<const Key> keys, const BoxView& boxes) {
-  return mutate(state_, status_, keys.size(), [&](Rows& rows) { return rows.update(keys, boxes); });
+  return state_ == nullptr ? status_ : state_->update(keys, boxes);
+}
+
+Status Partition::update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries) {
+  return state_ == nullptr ? status_ : state_->update(keys, boxes, entries);
 }
 
 Status Partition::update(Key key, const Aabb& box) {
-  return mutate(state_, status_, 1, [&](Rows& rows) { return rows.update(key, box); });
+  return state_ == nullptr ? status_ : state_->update(key, box);
 }
 
 Status Partition::update(std::span<const Key> keys, std::span<const Sphere> spheres) {
@@ -108,7 +109,7 @@ template Status Partition::update(std::span<const Key>, std::span<const Kdop<18>
 template Status Partition::update(std::span<const Key>, std::span<const Kdop<26>>);
 
 Status Partition::remove(std::span<const Key> keys) {
-  return mutate(state_, status_, keys.size(), [&](Rows& rows) { return rows.remove(keys); });
+  return state_ == nullptr ? status_ : state_->remove(keys);
 }
 
 Status Partition::remove(Key key) {
@@ -136,8 +137,7 @@ bool Partition::contains(Key key) const noexcept {
 }
 
 Status Partition::bounds(Key key, Aabb& box) const noexcept {
-  if (state_ == nullptr) return status_;
-  return state_->steadily([&] { return state_->rows.bounds(key, box); });
+  return state_ == nullptr ? status_ : state_->bounds(key, box);
 }
 
 Status Partition::client_data(Key key, ClientData& data) const noexcept {
@@ -156,7 +156,7 @@ ClientData Partition::client_data_of(ObjectId id) const noexcept {
 }
 
 Status Partition::set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters) {
-  return mutate(state_, status_, 0, [&](Rows& rows) { return rows.set_filter(keys, filters); });
+  return state_ == nullptr ? status_ : state_->set_filter(keys, filters);
 }
 
 Status Partition::set_filter(Key key, const ObjectFilter& filter) {
@@ -176,7 +176,7 @@ Status Partition::refresh() const {
 Status Partition::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const {
   if (state_ == nullptr) return status_;
   if (options.max_depth < 0) return Status::invalid_argument;
-  if (const Status status = refresh(); status != Status::ok) return status;
+  if (const Status status = state_->settle(); status != Status::ok) return status;
   if (options.structure) state_->index.draw(draw, static_cast<std::size_t>(options.max_depth));
   state_->index.draw_objects(draw, options);
   return Status::ok;

@@ -4,6 +4,7 @@
 #include <winnow/core/box_view.h>
 #include <winnow/core/cast.h>
 #include <winnow/core/debug_draw.h>
+#include <winnow/core/entries.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
 #include <winnow/core/filter.h>
@@ -140,6 +141,10 @@ class WINNOW_API Partition final {
   /// the object then counts as not moved.
   Status update(std::span<const Key> keys, const BoxView& boxes);
   Status update(Key key, const Aabb& box);
+  /// The same for some entries of keys and boxes alone, of which a caller keeps all: those that a
+  /// list names, or of which a mask has the bits set, need not be copied together. A number that is
+  /// none of an entry is an `invalid_argument`, a mask of another length a `size_mismatch`.
+  Status update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries);
 
   /// Spheres, where `volume()` is Volume::sphere; else `unsupported_volume`. Given boxes, a
   /// partition of spheres or k-DOPs stores the tightest volume around each (a sphere wants finite
@@ -191,6 +196,9 @@ class WINNOW_API Partition final {
 
   /// The same, and what changed since the frame that `out` holds. The cost follows what moved.
   Status self_pairs(PairBuffer& out, PairEvents& events, const PairOptions& options = {}) const;
+  /// What changed alone. Where little moves it costs what moved and how many pairs that has; the
+  /// order is of no effect.
+  Status self_pairs(PairEvents& events, const PairOptions& options = {}) const;
 
   // Casts: rays and swept volumes against the objects' boxes (of spheres and k-DOPs: the box around
   // them). A start inside a box, or touching it, is a hit at min_t. Never a miss; a false hit only

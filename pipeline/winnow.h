@@ -7,6 +7,7 @@
 #include <winnow/core/capsule.h>
 #include <winnow/core/cast.h>
 #include <winnow/core/debug_draw.h>
+#include <winnow/core/entries.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>

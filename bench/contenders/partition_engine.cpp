@@ -31,13 +31,8 @@ void PartitionEngine::frame(std::span<const std::uint32_t> changed_rows,
   if (changed_rows.size() == all_boxes.size()) {
     require(partition_.update(keys_, all_boxes), partition_.name(), "update");
   } else {
-    moved_keys_.clear();
-    moved_boxes_.clear();
-    for (const std::uint32_t row : changed_rows) {
-      moved_keys_.push_back(keys_[row]);
-      moved_boxes_.push_back(all_boxes[row]);
-    }
-    require(partition_.update(moved_keys_, moved_boxes_), partition_.name(), "update");
+    require(partition_.update(keys_, all_boxes, Entries::listed(changed_rows)), partition_.name(),
+            "update");
   }
   update_ms_ = clock.ms();
   find_pairs();

@@ -41,8 +41,6 @@ class PartitionEngine final : public Engine {
   Partition partition_;
   PairBuffer pairs_;
   std::vector<Key> keys_;
-  std::vector<Key> moved_keys_;
-  std::vector<Aabb> moved_boxes_;
   double update_ms_ = 0.0;
 };
 

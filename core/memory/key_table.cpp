@@ -87,12 +87,16 @@ KeyTable::RunOfKeys KeyTable::look_at(std::span<const Key> keys) const noexcept 
     }
     return {.valid = wrong == 0, .ascending = true};
   }
-  RunOfKeys run;
+  if (stamps_.empty()) return {.valid = false};
+  std::uint32_t wrong = 0;
+  std::uint32_t falls = 0;
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    run.valid = run.valid && is_valid(keys[i]);
-    run.ascending = run.ascending && (i == 0 || keys[i - 1].id < keys[i].id);
+    const Key key = keys[i];
+    const std::uint32_t unknown = key.id < stamps_.size() ? 0U : 1U;
+    wrong |= (stamps_[unknown != 0 ? 0 : key.id] ^ key.stamp) | unknown | (~key.stamp & 1U);
+    falls |= i == 0 || keys[i - 1].id < key.id ? 0U : 1U;
   }
-  return run;
+  return {.valid = wrong == 0, .ascending = falls == 0};
 }
 
 void KeyTable::release(ObjectId id) noexcept {

@@ -16,11 +16,15 @@ namespace winnow {
 }
 
 /// Sorts values below `limit` and drops repeats; returns how many are left. `words` must hold
-/// `bitmap_words(limit)` and is left as the bitmap of the values. O(values + limit / 64).
+/// `bitmap_words(limit)` of nothing but zeros, and does so afterwards. O(values + limit / 64), or
+/// O(values log values) where they are few.
 inline std::size_t sort_unique(std::span<std::uint32_t> values, std::size_t limit,
                                Column<std::uint64_t>& words) noexcept {
   const std::size_t needed = bitmap_words(limit);
-  std::fill_n(words.data(), needed, 0);
+  if (16 * values.size() < needed) {
+    std::sort(values.begin(), values.end());
+    return static_cast<std::size_t>(std::unique(values.begin(), values.end()) - values.begin());
+  }
   for (const std::uint32_t v : values) words[v >> 6U] |= std::uint64_t{1} << (v & 63U);
   std::size_t count = 0;
   for (std::size_t w = 0; w < needed; ++w) {
@@ -28,6 +32,7 @@ inline std::size_t sort_unique(std::span<std::uint32_t> values, std::size_t limi
       values[count++] =
           static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(std::countr_zero(bits));
     }
+    words[w] = 0;
   }
   return count;
 }

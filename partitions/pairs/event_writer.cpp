@@ -98,6 +98,26 @@ bool EventWriter::compare(PairBuffer& out, std::span<const ObjectId> moved, bool
   return take_stamps(moved, all);
 }
 
+bool EventWriter::tell(const PairBuffer& out, std::span<const Pair> begun,
+                       std::span<const std::uint32_t> ended,
+                       std::span<const ObjectId> moved) noexcept {
+  PairEvents& e = events_;
+  e.begun_.clear();
+  e.ended_.clear();
+  e.after_is_all_ = false;
+  for (const std::uint32_t index : ended) {
+    if (!end(packed(out[index]))) return false;
+  }
+  std::ranges::sort(e.ended_, {}, [](const KeyPair& pair) {
+    return packed({pair.first.id, pair.second.id});
+  });
+  for (const Pair& pair : begun) {
+    if (!begin(packed(pair))) return false;
+  }
+  e.persisting_ = out.size() - begun.size() - ended.size();
+  return take_stamps(moved, false);
+}
+
 // Both lists ascend. Writes the pairs that persist to `to` on.
 bool EventWriter::merge(Pair*& to) noexcept {
   const std::uint64_t* before = events_.before_.begin();

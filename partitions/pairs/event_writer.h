@@ -39,6 +39,22 @@ class EventWriter {
   /// were dropped or found anew + moved).
   [[nodiscard]] bool compare(PairBuffer& out, std::span<const ObjectId> moved, bool all) noexcept;
 
+  /// The same for a linked buffer, whose changes are found otherwise: pairs that began, the last
+  /// ones of `out`, and the indices of those that ended. O(both + moved).
+  [[nodiscard]] bool tell(const PairBuffer& out, std::span<const Pair> begun,
+                          std::span<const std::uint32_t> ended,
+                          std::span<const ObjectId> moved) noexcept;
+  /// Looks for ids among `moved` that went to another object since the last frame.
+  void find_renewed(std::span<const ObjectId> moved) noexcept {
+    other_keys_ = any_other_key(moved, false);
+  }
+  /// True if the id, which was a live object's in the last frame, is one of those.
+  [[nodiscard]] bool is_renewed(ObjectId id) const noexcept { return other_keys_ && is_other(id); }
+
+  /// True if the events tell of the frame that the buffer holds.
+  [[nodiscard]] bool follows() const noexcept { return follows_; }
+  /// Where events keep their pairs for a caller who has no buffer.
+  [[nodiscard]] static PairBuffer& own_buffer(PairEvents& events) noexcept { return events.pairs_; }
   [[nodiscard]] std::size_t persisting() const noexcept { return events_.persisting_; }
   void set_provenance(PairBuffer::Provenance provenance) noexcept {
     events_.provenance_ = provenance;

@@ -14,6 +14,8 @@ namespace {
 
 constexpr unsigned kDigitBits = 11;
 constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+// Pairs that are sorted by comparing them sooner than digits are counted.
+constexpr std::size_t kFew = 256;
 
 // One stable pass of a radix sort by `kDigitBits` of member `Key` from `shift` on.
 template <ObjectId Pair::*Key>
@@ -59,10 +61,16 @@ bool PairTracker::drop(PairBuffer& out, const std::uint64_t* moved,
   return true;
 }
 
-bool PairTracker::sort(PairBuffer& out, std::size_t slots, std::size_t count) noexcept {
+bool PairTracker::sort(PairBuffer& out, std::size_t slots, std::size_t begin,
+                       std::size_t end) noexcept {
+  const std::size_t count = end - begin;
+  if (count < kFew) {
+    std::sort(out.pairs_.begin() + begin, out.pairs_.begin() + end);
+    return true;
+  }
   if (!out.pages_.reserve(count)) return false;
   const auto bits = static_cast<unsigned>(std::bit_width(slots));
-  Pair* from = out.pairs_.data();
+  Pair* from = out.pairs_.data() + begin;
   Pair* to = out.pages_.data();
   for (unsigned shift = 0; shift < bits; shift += kDigitBits) {
     pass<&Pair::second>(from, to, count, shift);

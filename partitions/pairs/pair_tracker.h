@@ -27,10 +27,14 @@ class PairTracker {
 
   /// Sorts by (first, second), all ids below `slots`. O(pairs); false if memory is refused.
   [[nodiscard]] static bool sort(PairBuffer& out, std::size_t slots) noexcept {
-    return sort(out, slots, out.size());
+    return sort(out, slots, 0, out.size());
   }
-  /// The same for the first `count` pairs alone.
-  [[nodiscard]] static bool sort(PairBuffer& out, std::size_t slots, std::size_t count) noexcept;
+  /// The same for pairs [begin, end) alone.
+  [[nodiscard]] static bool sort(PairBuffer& out, std::size_t slots, std::size_t begin,
+                                 std::size_t end) noexcept;
+
+  /// Drops the pairs from `size` on.
+  static void shorten(PairBuffer& out, std::size_t size) noexcept { out.pairs_.set_size(size); }
 
   /// The pairs, which keep their provenance.
   [[nodiscard]] static Pair* data(PairBuffer& out) noexcept { return out.pairs_.data(); }

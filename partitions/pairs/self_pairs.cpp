@@ -1,9 +1,11 @@
 // All pairs of a partition, anew or by what moved, and those between two.
 
 #include "partitions/pairs/event_writer.h"
+#include "partitions/pairs/linked_pairs.h"
 #include "partitions/pairs/pair_tracker.h"
 #include "partitions/pairs/pair_writer.h"
 #include "partitions/state/partition_state.h"
+#include "partitions/structures/costs.h"
 
 #include <algorithm>
 
@@ -68,56 +70,127 @@ Status Partition::self_pairs(PairBuffer& out, PairEvents& events,
   return status_;
 }
 
-Status PartitionState::find_self_pairs(PairBuffer& out, const PairOptions& options,
-                                       PairEvents* events) const {
-  const bool all = !options.incremental || out.empty();
-  if (const Status status = refresh(); status != Status::ok) {
-    out.clear();
-    if (events != nullptr) events->clear();
-    return status;
-  }
-  note(QueryKind::pairs, 1);
-  Status status;
-  if (events == nullptr) {
-    status = track_self_pairs(out, options, nullptr);
-  } else {
-    EventWriter writer(*events, rows.keys(), out, pairs_.identity, rows.execution());
-    status = track_self_pairs(out, options, &writer);
-    if (status != Status::ok) writer.fail();
-  }
-  if (status != Status::ok || chooser_ == nullptr) return status;
-  if (all) note(QueryKind::all_pairs, 1);
-  // What a predicate leaves says nothing about the scene.
-  if (options.predicate.accept == nullptr) chooser_->note_pairs(out.size());
-  return Status::ok;
+Status Partition::self_pairs(PairEvents& events, const PairOptions& options) const {
+  // In no order: the events are sorted, and nobody sees the pairs.
+  return self_pairs(EventWriter::own_buffer(events), events,
+                    {Order::fast, options.incremental, options.predicate});
 }
 
-Status PartitionState::track_self_pairs(PairBuffer& out, const PairOptions& options,
-                                        EventWriter* events) const {
+Status PartitionState::find_self_pairs(PairBuffer& out, const PairOptions& options,
+                                       PairEvents* events) const {
+  if (events == nullptr) return answer_self_pairs(out, options, nullptr);
+  EventWriter writer(*events, rows.keys(), out, pairs_.identity, rows.execution());
+  const Status status = answer_self_pairs(out, options, &writer);
+  if (status != Status::ok) writer.fail();
+  return status;
+}
+
+Status PartitionState::answer_self_pairs(PairBuffer& out, const PairOptions& options,
+                                         EventWriter* events) const {
   // One buffer at a time is tracked; a query that runs beside a tracked one does without.
-  const std::unique_lock lock(tracker_mutex_, std::try_to_lock);
+  std::unique_lock lock(tracker_mutex_, std::try_to_lock);
+  const bool all = !options.incremental || out.empty();
   const bool tracked = lock.owns_lock() && options.incremental;
-  const bool update = tracked && can_update(out);
-  Status status = update ? incremental_self_pairs(out, options.predicate, events)
-                         : full_self_pairs(out, options.predicate, events);
-  if (status == Status::ok && !finish_pairs(out, options.order, !update, events)) {
-    status = Status::out_of_memory;
+  Status status = refresh();
+  const bool calm = status == Status::ok && tracked && stays_calm(out, options, events);
+  if (status == Status::ok && deferred_.active() && !calm) {
+    if (!lock.owns_lock()) lock.lock();
+    end_deferring();
+    status = refresh();
+  }
+  const bool all_anew = tracked && !can_update(out);
+  if (status == Status::ok) {
+    note(QueryKind::pairs, 1);
+    status = calm ? calm_self_pairs(out, events) : track_self_pairs(out, options, tracked, events);
   }
   if (status != Status::ok) {
     out.clear();
     return status;
   }
   pairs_.last_pairs.store(out.size(), std::memory_order_relaxed);
-  if (!tracked && events == nullptr) return Status::ok;
+  if (tracked || events != nullptr) take_frame(out, tracked, events);
+  if (all_anew) begin_calm(out, options);
+  if (chooser_ == nullptr) return Status::ok;
+  if (all) note(QueryKind::all_pairs, 1);
+  // What a predicate leaves says nothing about the scene.
+  if (options.predicate.accept == nullptr) chooser_->note_pairs(out.size());
+  return Status::ok;
+}
+
+// The buffer holds this frame from here on, and the events tell of it.
+void PartitionState::take_frame(PairBuffer& out, bool tracked, EventWriter* events) const noexcept {
   // Untracked, the serial still tells the events whose frame the buffer holds.
   const PairBuffer::Provenance provenance{pairs_.identity, ++pairs_.last_serial};
   PairTracker::set_provenance(out, provenance);
   if (events != nullptr) events->set_provenance(provenance);
-  if (tracked) {
-    rows.forget_moves();
-    pairs_.tracked_serial = provenance.serial;
+  if (!tracked) return;
+  rows.forget_moves();
+  pairs_.tracked_serial = provenance.serial;
+}
+
+bool PartitionState::can_update_in_place(const PairBuffer& out, const PairOptions& options,
+                                         const EventWriter* events) const noexcept {
+  // Pairs that stay where they are are in no order, and events must know them.
+  return can_update(out) && options.order == Order::fast &&
+         (events == nullptr || events->follows());
+}
+
+Status PartitionState::track_self_pairs(PairBuffer& out, const PairOptions& options, bool tracked,
+                                        EventWriter* events) const {
+  if (tracked && can_update_in_place(out, options, events) && update_in_place(out)) {
+    return linked_self_pairs(out, options.predicate, events);
   }
-  return Status::ok;
+  const bool update = tracked && can_update(out) && (events != nullptr || asks_few());
+  return redo_self_pairs(out, options, update, events);
+}
+
+// True if those that moved asking one by one cost less than all asking together: runs of cells are
+// walked faster than cells are found.
+bool PartitionState::asks_few() const noexcept {
+  const StructureCosts* const costs = index.kind().info()->costs;
+  const std::size_t share = costs != nullptr && costs->has_cells ? 7 : 4;
+  return share * rows.moved().ids().size() <= rows.size() + 64;
+}
+
+// True if nothing moved, or if the buffer is linked. Without the memory for that it is not.
+bool PartitionState::update_in_place(PairBuffer& out) const noexcept {
+  const std::size_t moved = rows.moved().ids().size();
+  LinkedPairs linked(out);
+  return moved == 0 || (linked.is_due(moved) && linked.link(rows.keys().slot_count()));
+}
+
+Status PartitionState::linked_self_pairs(PairBuffer& out, const PairPredicate& predicate,
+                                         EventWriter* events) const {
+  pairs_.incremental_queries.fetch_add(1, std::memory_order_relaxed);
+  const std::span<const ObjectId> moved = rows.moved().ids();
+  if (moved.empty()) {
+    pairs_.last_tests.store(0, std::memory_order_relaxed);
+    return events == nullptr || events->tell(out, {}, {}, {}) ? Status::ok : Status::out_of_memory;
+  }
+  const std::size_t kept = out.size();
+  if (const Status status = ask_moved(out, predicate); status != Status::ok) return status;
+  if (events != nullptr) events->find_renewed(moved);
+  const auto renewed = [&](ObjectId id) { return events != nullptr && events->is_renewed(id); };
+  LinkedPairs linked(out);
+  if (!linked.compare(kept, moved, rows.moved().bits(), renewed) || !linked.sort() ||
+      (events != nullptr && !events->tell(out, linked.begun(), linked.ended(), moved))) {
+    return Status::out_of_memory;
+  }
+  return linked.apply() ? Status::ok : Status::out_of_memory;
+}
+
+Status PartitionState::redo_self_pairs(PairBuffer& out, const PairOptions& options, bool update,
+                                       EventWriter* events) const {
+  LinkedPairs linked(out);
+  if (update) {
+    linked.loosen(rows.moved().ids().size());
+  } else {
+    linked.loosen();
+  }
+  const Status status = update ? incremental_self_pairs(out, options.predicate, events)
+                               : full_self_pairs(out, options.predicate, events);
+  if (status != Status::ok) return status;
+  return finish_pairs(out, options.order, !update, events) ? Status::ok : Status::out_of_memory;
 }
 
 bool PartitionState::finish_pairs(PairBuffer& out, Order order, bool all,
@@ -128,7 +201,7 @@ bool PartitionState::finish_pairs(PairBuffer& out, Order order, bool all,
     if (!events->compare(out, moved, all)) return false;
     unsorted = events->persisting();
   }
-  return order == Order::fast || PairTracker::sort(out, rows.keys().slot_count(), unsorted);
+  return order == Order::fast || PairTracker::sort(out, rows.keys().slot_count(), 0, unsorted);
 }
 
 bool PartitionState::can_update(const PairBuffer& out) const noexcept {
@@ -174,29 +247,41 @@ bool PartitionState::run_self_task(const SelfTasks& tasks, std::size_t task,
 Status PartitionState::incremental_self_pairs(PairBuffer& out, const PairPredicate& predicate,
                                               EventWriter* events) const {
   pairs_.incremental_queries.fetch_add(1, std::memory_order_relaxed);
-  const std::span<const ObjectId> moved = rows.moved().ids();
-  if (moved.empty()) {
+  if (rows.moved().empty()) {
     if (events != nullptr) events->hold_none(out);
     pairs_.last_tests.store(0, std::memory_order_relaxed);
     return Status::ok;
   }
-  RowSelection& asking = rows.selection();
-  if (!asking.start(moved.size()) || !asking.reserve_bits(rows.pool().rows())) {
-    return Status::out_of_memory;
-  }
-  for (const ObjectId id : moved) {
-    if (rows.keys().is_live(id)) asking.add(rows.keys().row_of(id));
-  }
-  // Neighbours in the pool are neighbours in space: in row order queries share cache lines.
-  asking.sort(rows.pool().rows());
   if (events == nullptr) {
     PairTracker::drop(out, rows.moved().bits());
   } else if (!events->hold_moved(out, rows.moved().bits())) {
     return Status::out_of_memory;
   }
+  return ask_moved(out, predicate);
+}
+
+// Leaves the rows of the live objects that moved in the selection. False if memory is refused.
+bool PartitionState::list_moved() const noexcept {
+  const std::span<const ObjectId> moved = rows.moved().ids();
+  const std::size_t limit = rows.pool().rows();
+  RowSelection& asking = rows.selection();
+  if (!asking.start(moved.size()) || !asking.reserve_bits(limit)) return false;
+  for (const ObjectId id : moved) {
+    if (rows.keys().is_live(id)) asking.add(rows.keys().row_of(id));
+  }
+  // Neighbours in the pool are neighbours in space: in row order queries share cache lines.
+  asking.sort(limit);
+  return true;
+}
+
+// Appends all pairs of the objects that moved.
+Status PartitionState::ask_moved(PairBuffer& out, const PairPredicate& predicate) const {
+  if (!list_moved()) return Status::out_of_memory;
+  RowSelection& asking = rows.selection();
   const std::size_t count = asking.list.size();
   const Execution execution = rows.execution_for(count);
   PairWriter writer(out, execution, predicate);
+  asking.mark();
   const std::size_t tasks = ceil_divide(count, kQueriesPerTask);
   const Status status = writer.append(tasks, [&](std::size_t task, PairSink& sink) {
     const std::size_t begin = task * kQueriesPerTask;
@@ -206,6 +291,7 @@ Status PartitionState::incremental_self_pairs(PairBuffer& out, const PairPredica
     batch.moved = asking.bits.data();
     return index.query(batch, sink);
   });
+  asking.unmark();
   if (status != Status::ok) return status;
   note_work(writer.tests(), std::max<std::size_t>(1, count), SpatialIndex::Asked::moved);
   return Status::ok;
@@ -220,10 +306,13 @@ void PartitionState::note_work(std::uint64_t tests, std::uint64_t queries,
 Status Partition::pairs_with(const Partition& other, PairBuffer& out,
                              const PairOptions& options) const {
   out.clear();
-  if (const Status status = refresh(); status != Status::ok) return status;
-  if (const Status status = other.refresh(); status != Status::ok) return status;
+  if (state_ == nullptr || other.state_ == nullptr) {
+    return state_ == nullptr ? status_ : other.status_;
+  }
   const PartitionState& mine = *state_;
   const PartitionState& theirs = *other.state_;
+  if (const Status status = mine.settle(); status != Status::ok) return status;
+  if (const Status status = theirs.settle(); status != Status::ok) return status;
   // The smaller side asks: each question costs about the logarithm of the side that is asked.
   const Status status = size() <= other.size()
                             ? mine.ask(theirs, HitMode::query_first, options.predicate, out)

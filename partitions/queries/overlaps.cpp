@@ -137,7 +137,7 @@ Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& f
   if (state_ == nullptr) return status_;
   const Execution& execution = state_->rows.execution();
   const BoxSource source{boxes};
-  if (boxes.count > kMaxObjects || !all_valid(source, boxes.count, execution)) {
+  if (boxes.count > kMaxObjects || !all_valid(source, EntryList(boxes.count), execution)) {
     return Status::invalid_argument;
   }
   QueryView view;

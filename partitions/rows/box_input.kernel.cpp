@@ -48,20 +48,33 @@ float clamp(float value) {
   return least > kLargest<float> ? kLargest<float> : least;
 }
 
-void write_rows(const float* floats, std::uint32_t first, std::uint32_t count,
-                const std::uint32_t* id, float* const* column, std::size_t begin, std::size_t end) {
+constexpr std::uint32_t kNoBox = ~0U;
+
+/// The number of an id's box; none of `ids` or more.
+template <bool Listed>
+[[gnu::always_inline]] inline std::uint32_t number_of(const BoxOfId& box_of, std::uint32_t id) {
+  const std::uint32_t k = id - box_of.first;
+  if constexpr (!Listed) return k < box_of.ids ? k : kNoBox;
+  return k < box_of.ids ? box_of.table[k] : kNoBox;
+}
+
+template <bool Listed>
+void write_boxes(const float* floats, const BoxOfId& box_of, const std::uint32_t* id,
+                 float* const* column, std::size_t begin, std::size_t end) {
   const Floats most = Floats(kLargest<float>);
   const Floats least = Floats(-kLargest<float>);
   for (std::size_t row = begin; row < end; row += kLanes) {
     // Boxes are met in any order: those of the next but one block are on their way meanwhile.
     std::uint32_t inside = 0;
     for (int lane = 0; lane < kLanes; ++lane) {
-      const std::uint32_t ahead = id[row + 2 * kLanes + static_cast<std::size_t>(lane)] - first;
-      if (ahead < count) __builtin_prefetch(floats + ahead * kFloats);
-      inside += id[row + static_cast<std::size_t>(lane)] - first < count ? 1U : 0U;
+      const std::uint32_t* const at = id + row + static_cast<std::size_t>(lane);
+      const std::uint32_t ahead = number_of<Listed>(box_of, at[2 * kLanes]);
+      if (ahead != kNoBox) __builtin_prefetch(floats + ahead * kFloats);
+      inside += number_of<Listed>(box_of, at[0]) != kNoBox ? 1U : 0U;
     }
     const auto box = [&](int lane) {
-      return floats + std::size_t{id[row + static_cast<std::size_t>(lane)] - first} * kFloats;
+      const std::uint32_t k = id[row + static_cast<std::size_t>(lane)] - box_of.first;
+      return floats + std::size_t{Listed ? box_of.table[k] : k} * kFloats;
     };
     if (inside == kLanes) {
       const Box16 boxes = load_boxes(box);
@@ -73,9 +86,18 @@ void write_rows(const float* floats, std::uint32_t first, std::uint32_t count,
     }
     for (int lane = 0; lane < kLanes && inside != 0; ++lane) {
       const std::size_t r = row + static_cast<std::size_t>(lane);
-      if (!(id[r] - first < count)) continue;
+      if (number_of<Listed>(box_of, id[r]) == kNoBox) continue;
       for (std::size_t c = 0; c < kFloats; ++c) column[c][r] = clamp(box(lane)[c]);
     }
+  }
+}
+
+void write_rows(const float* floats, const BoxOfId& box_of, const std::uint32_t* id,
+                float* const* column, std::size_t begin, std::size_t end) {
+  if (box_of.table == nullptr) {
+    write_boxes<false>(floats, box_of, id, column, begin, end);
+  } else {
+    write_boxes<true>(floats, box_of, id, column, begin, end);
   }
 }
 
@@ -131,11 +153,47 @@ void within(const float* const* given, const float* const* stored, std::size_t c
   }
 }
 
+/// An infinite end is near itself alone.
+bool is_near(const float* box, const float* near, float margin) {
+  for (std::size_t c = 0; c < kFloats; ++c) {
+    const float d = box[c] - near[c];
+    if (!((d <= margin && -margin <= d) || box[c] == near[c])) return false;
+  }
+  return true;
+}
+
+std::uint32_t copy_near(const float* boxes, const float* near, float* to, std::size_t count,
+                        float margin, std::uint32_t* left, std::uint32_t most) {
+  const Floats limit = Floats(margin);
+  std::uint32_t found = 0;
+  const auto look = [&](std::size_t i) {
+    left[found] = static_cast<std::uint32_t>(i);
+    found += is_near(boxes + i * kFloats, near + i * kFloats, margin) ? 0U : 1U;
+  };
+  std::size_t i = 0;
+  for (; i + kLanes <= count && found <= most; i += kLanes) {
+    Mask16 all = kAllRows;
+    for (std::size_t part = 0; part < kFloats; ++part) {
+      const std::size_t at = i * kFloats + part * kLanes;
+      const Floats box = Floats::load_unaligned(boxes + at);
+      const Floats old = Floats::load_unaligned(near + at);
+      all &= bits((box - old <= limit) & (old - box <= limit)) | bits(box == old);
+      box.store_unaligned(to + at);
+    }
+    for (std::size_t k = i; k < i + kLanes && all != kAllRows; ++k) look(k);
+  }
+  for (; i < count && found <= most; ++i) {
+    for (std::size_t c = 0; c < kFloats; ++c) to[i * kFloats + c] = boxes[i * kFloats + c];
+    look(i);
+  }
+  return found;
+}
+
 }  // namespace
 }  // namespace WINNOW_ISA_NAME
 
 extern const BoxInputKernels WINNOW_KERNEL_TABLE(box_input_kernels) = {
     WINNOW_ISA_NAME::legal, WINNOW_ISA_NAME::write_rows, WINNOW_ISA_NAME::write_in_order,
-    WINNOW_ISA_NAME::within};
+    WINNOW_ISA_NAME::within, WINNOW_ISA_NAME::copy_near};
 
 }  // namespace winnow

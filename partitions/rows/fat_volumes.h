@@ -147,21 +147,9 @@ struct FatSource {
   };
 };
 
-/// Which rows belong to objects [first, first + count).
-struct ObjectRange {
-  const ObjectId* id;  ///< by row
-  ObjectId first;
-  std::size_t count;
-
-  /// At least `count` if it does not.
-  [[nodiscard]] std::size_t entry(std::size_t row) const noexcept {
-    return static_cast<ObjectId>(id[row] - first);
-  }
-};
-
 /// Of boxes that go by rows: writes those of up to 256 rows from `begin` on that left their stored
 /// ones, and sets their rows' bits in `left`. Most have not: that is found for 16 at a time.
-inline void write_left_boxes(const FatSource<BoxSource>& fat, const ObjectRange& objects,
+inline void write_left_boxes(const FatSource<BoxSource>& fat, const EntryOfRow& entries,
                              ColumnPointers columns, std::size_t begin, std::size_t end,
                              std::uint64_t* left) noexcept {
   const BoxSource& source = fat.source;
@@ -175,13 +163,13 @@ inline void write_left_boxes(const FatSource<BoxSource>& fat, const ObjectRange&
   std::size_t written = 0;
   if (source.packed()) {
     written = (end - begin) / kBlockRows * kBlockRows;
-    source.write_rows(objects.first, objects.id + begin, given_columns, 0, written);
+    source.write_rows(entries.of_id, entries.id + begin, given_columns, 0, written);
   }
   std::uint64_t asked[kRowsAtOnce / 64] = {};
   for (std::size_t k = 0; k < end - begin; ++k) {
-    const std::size_t i = objects.entry(begin + k);
-    asked[k / 64] |= std::uint64_t{i < objects.count} << (k % 64);
-    if (k >= written && i < objects.count) source.write(i, given_columns, k);
+    const std::size_t i = entries[begin + k];
+    asked[k / 64] |= std::uint64_t{i != kNoObject} << (k % 64);
+    if (k >= written && i != kNoObject) source.write(i, given_columns, k);
   }
   std::uint64_t within[kRowsAtOnce / 64] = {};
   box_input_kernels().within(given_columns, stored, end - begin, fat.margin.distance,
@@ -189,7 +177,7 @@ inline void write_left_boxes(const FatSource<BoxSource>& fat, const ObjectRange&
   for (std::size_t w = 0; w < kRowsAtOnce / 64; ++w) {
     for (std::uint64_t out = asked[w] & ~within[w]; out != 0; out &= out - 1) {
       const std::size_t k = 64 * w + static_cast<std::size_t>(std::countr_zero(out));
-      if (!fat.write_if_left(objects.entry(begin + k), columns, begin + k)) continue;
+      if (!fat.write_if_left(entries[begin + k], columns, begin + k)) continue;
       left[begin / 64 + w] |= std::uint64_t{1} << (k % 64);
     }
   }
@@ -197,17 +185,17 @@ inline void write_left_boxes(const FatSource<BoxSource>& fat, const ObjectRange&
 
 /// The same for rows [begin, end), of which `begin` is a multiple of 256, and of any volume.
 template <typename Source>
-void write_left_rows(const FatSource<Source>& fat, const ObjectRange& objects,
+void write_left_rows(const FatSource<Source>& fat, const EntryOfRow& entries,
                      ColumnPointers columns, std::size_t begin, std::size_t end,
                      std::uint64_t* left) noexcept {
   for (std::size_t row = begin; row < end; row += kRowsAtOnce) {
     const std::size_t behind = std::min(end, row + kRowsAtOnce);
     if constexpr (std::is_same_v<Source, BoxSource>) {
-      write_left_boxes(fat, objects, columns, row, behind, left);
+      write_left_boxes(fat, entries, columns, row, behind, left);
     } else {
       for (std::size_t r = row; r < behind; ++r) {
-        const std::size_t i = objects.entry(r);
-        if (i >= objects.count || !fat.write_if_left(i, columns, r)) continue;
+        const std::size_t i = entries[r];
+        if (i == kNoObject || !fat.write_if_left(i, columns, r)) continue;
         left[r / 64] |= std::uint64_t{1} << (r % 64);
       }
     }

@@ -3,6 +3,7 @@
 #include "core/memory/columns.h"
 #include "core/sort/bitmap_sort.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
@@ -10,7 +11,8 @@
 
 namespace winnow {
 
-/// Some of the rows, or blocks, of a partition: a list, and a bitmap of the same.
+/// Some of the rows, or blocks, of a partition: a list, and a bitmap whose bits are all zero but
+/// while somebody has them set.
 struct RowSelection {
   explicit RowSelection(std::pmr::memory_resource* memory) noexcept : list(memory), bits(memory) {}
 
@@ -23,11 +25,24 @@ struct RowSelection {
   void add(std::size_t entry) noexcept { (void)list.push_back(static_cast<std::uint32_t>(entry)); }
   /// Room for a bitmap of entries below `limit`. False if memory is refused.
   [[nodiscard]] bool reserve_bits(std::size_t limit) noexcept {
-    return bits.grow(bitmap_words(limit));
+    const std::size_t words = bitmap_words(limit);
+    if (!bits.grow(words)) return false;
+    if (words <= bits.size()) return true;
+    std::fill(bits.end(), bits.data() + words, 0);
+    bits.set_size(words);
+    return true;
   }
-  /// Sorts the list, whose entries are below `limit`, drops repeats, and makes the bitmap of it,
-  /// for which room was made. O(entries + limit / 64).
+  /// Sorts the list, whose entries are below a limit for which room for a bitmap was made, and
+  /// drops repeats. O(entries + limit / 64), or O(entries log entries) where they are few.
   void sort(std::size_t limit) noexcept { list.set_size(sort_unique(entries(), limit, bits)); }
+  /// Sets the bits of the list's entries, for which room was made.
+  void mark() noexcept {
+    for (const std::uint32_t entry : list) bits[entry >> 6U] |= std::uint64_t{1} << (entry & 63U);
+  }
+  /// Clears what `mark` set. O(entries).
+  void unmark() noexcept {
+    for (const std::uint32_t entry : list) bits[entry >> 6U] = 0;
+  }
 
   [[nodiscard]] std::span<std::uint32_t> entries() noexcept { return {list.data(), list.size()}; }
 

@@ -11,6 +11,7 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace winnow {
 
@@ -82,9 +83,9 @@ Status Rows::insert(const BoxView& boxes, std::span<const ClientData> data, std:
   });
 }
 
-Status Rows::update(std::span<const Key> keys, const BoxView& boxes) {
+Status Rows::update(const EntryList& entries, const BoxView& boxes) {
   return with_box_source(pool_.volume(), boxes, [&](const auto& source) {
-    return update_from(source, boxes.count, keys);
+    return update_from(source, boxes.count, entries);
   });
 }
 
@@ -123,13 +124,13 @@ Status Rows::insert_from(const Source& source, std::size_t count, std::span<cons
                          std::span<Key> keys) {
   if (keys.size() != count || (!data.empty() && data.size() != count)) return Status::size_mismatch;
   if (count > kMaxObjects - keys_.size()) return Status::too_many_objects;
-  if (!all_valid(source, count, execution_)) return Status::invalid_bounds;
+  if (!all_valid(source, EntryList(count), execution_)) return Status::invalid_bounds;
   if (!make_room(keys_.size() + count)) return Status::out_of_memory;
   if (count == 0) return Status::ok;
   const std::size_t first = pool_.rows();
   pool_.append(count);
   keys_.acquire(static_cast<std::uint32_t>(first), data, keys, execution_);
-  note_stale(keys);
+  note_stale(std::span<const Key>(keys));
   return with_margin(source, [&](const auto& volumes) {
     for_ranges(execution_, count, [&](std::size_t begin, std::size_t end) {
       write_new(volumes, keys, first, begin, end);
@@ -150,22 +151,36 @@ void Rows::write_new(const Source& source, std::span<const Key> keys, std::size_
   for (std::size_t i = begin; i < end; ++i) source.write(i, columns.pointers, first + i);
 }
 
+/// Refuses an update that must be, and tells whether ids ascend, each once.
 template <typename Source>
-Status Rows::update_from(const Source& source, std::size_t count, std::span<const Key> keys) {
-  if (keys.size() != count) return Status::size_mismatch;
+Status Rows::check_update(const Source& source, std::size_t volumes, const EntryList& entries,
+                          bool& ascending) const {
+  if (entries.keys.size() != volumes) return Status::size_mismatch;
   std::atomic<bool> known{true};
-  std::atomic<bool> ascending{true};
-  for_ranges(execution_, count, [&](std::size_t begin, std::size_t end) {
-    const std::size_t with_one_before = begin == 0 ? 0 : begin - 1;
-    const auto run = keys_.look_at(keys.subspan(with_one_before, end - with_one_before));
-    if (!run.valid) known.store(false, std::memory_order_relaxed);
-    if (!run.ascending) ascending.store(false, std::memory_order_relaxed);
+  std::atomic<bool> rising{true};
+  for_ranges(execution_, entries.count, [&](std::size_t begin, std::size_t end) {
+    bool ok = true;
+    bool up = true;
+    for (std::size_t next = begin; begin < end; begin = next) {
+      next = entries.run_end(begin, end);
+      const auto run = keys_.look_at(entries.keys.subspan(entries[begin], next - begin));
+      ok &= run.valid;
+      up &= run.ascending && (begin == 0 || entries.key(begin - 1).id < entries.key(begin).id);
+    }
+    if (!ok) known.store(false, std::memory_order_relaxed);
+    if (!up) rising.store(false, std::memory_order_relaxed);
   });
+  ascending = rising.load();
   if (!known.load()) return Status::invalid_key;
-  if (!all_valid(source, count, execution_)) return Status::invalid_bounds;
-  if (count == 0) return Status::ok;
-  return with_margin(source,
-                     [&](const auto& volumes) { return write(volumes, keys, ascending.load()); });
+  return all_valid(source, entries, execution_) ? Status::ok : Status::invalid_bounds;
+}
+
+template <typename Source>
+Status Rows::update_from(const Source& source, std::size_t volumes, const EntryList& entries) {
+  bool ascending = false;
+  const Status status = check_update(source, volumes, entries, ascending);
+  if (status != Status::ok || entries.count == 0) return status;
+  return with_margin(source, [&](const auto& fat) { return write(fat, entries, ascending); });
 }
 
 template <typename Source>
@@ -189,41 +204,63 @@ void Rows::fetch_row(std::size_t row) const noexcept {
   for (std::size_t c = 0; c < pool_.columns(); ++c) __builtin_prefetch(pool_.column(c) + row, 1);
 }
 
+/// Nearly every row changes: rows are written one after another then, which reads entries out of
+/// order but writes each column in order, and that is a sixth of the cache lines. Ids ascend; where
+/// they and their entries leave gaps a table leads from one to the other.
+bool Rows::goes_by_rows(const EntryList& entries, bool ascending, BoxOfId& entry_of) {
+  const std::size_t count = entries.count;
+  const ObjectId first = entries.key(0).id;
+  const std::size_t ids = entries.key(count - 1).id - first + std::size_t{1};
+  if (!ascending || 2 * count <= pool_.rows() || ids > count + count / 2) return false;
+  entry_of = {first, static_cast<std::uint32_t>(ids)};
+  if (ids == count && entries.number == nullptr) return true;
+  if (!selection_.list.resize(ids)) return false;
+  std::fill(selection_.list.begin(), selection_.list.end(), kNoObject);
+  for (std::size_t j = 0; j < count; ++j) {
+    selection_.list[entries.key(j).id - first] = static_cast<std::uint32_t>(entries[j]);
+  }
+  entry_of.table = selection_.list.data();
+  return true;
+}
+
 template <typename Source>
-Status Rows::write(const Source& source, std::span<const Key> keys, bool ascending) {
+Status Rows::write(const Source& source, const EntryList& entries, bool ascending) {
   const PoolColumns columns(pool_);
-  const std::size_t count = keys.size();
-  // Nearly every row changes and entry i is object first + i.
-  const bool by_rows = ascending && keys.back().id - keys.front().id + std::size_t{1} == count &&
-                       2 * count > pool_.rows();
+  BoxOfId entry_of_id{};
+  const bool by_rows = goes_by_rows(entries, ascending, entry_of_id);
+  const EntryOfRow entry_of{entry_of_id, pool_.ids()};
   if constexpr (kMayStay<Source>) {
-    const std::size_t slots = by_rows ? pool_.rows() : count;
+    const std::size_t slots = by_rows ? pool_.rows() : entries.count;
     if (!selection_.reserve_bits(slots)) return Status::out_of_memory;
     std::uint64_t* const left = selection_.bits.data();
-    std::fill_n(left, bitmap_words(slots), 0);
-    const auto one = [&](std::size_t i, std::size_t row, std::size_t slot) {
-      const bool wrote = source.write_if_left(i, columns.pointers, row);
-      left[slot >> 6U] |= std::uint64_t{wrote} << (slot & 63U);
-    };
-    const ObjectRange objects{pool_.ids(), keys.front().id, count};
     if (by_rows) {
       for_ranges(execution_, slots, [&](std::size_t begin, std::size_t end) {
-        write_left_rows(source, objects, columns.pointers, begin, end, left);
+        write_left_rows(source, entry_of, columns.pointers, begin, end, left);
       });
     } else {
-      for_entries(source, keys, by_rows, ascending, one);
+      for_entries(entries, ascending, [&](std::size_t i, std::size_t row, std::size_t j) {
+        const bool wrote = source.write_if_left(i, columns.pointers, row);
+        left[j >> 6U] |= std::uint64_t{wrote} << (j & 63U);
+      });
     }
-    note_left(keys, by_rows, slots);
+    note_left(entries, by_rows, slots);
     return Status::ok;
   } else {
-    note_stale(keys);
-    if (by_rows && count == keys_.size() && scatters(source, keys)) {
-      write_all(source, keys);
+    note_stale(entries);
+    const bool all = by_rows && entries.number == nullptr && entries.count == keys_.size();
+    if (all && scatters(source, entries.keys)) {
+      write_all(source, entries.keys);
       return Status::ok;
     }
-    for_entries(source, keys, by_rows, ascending, [&](std::size_t i, std::size_t row, std::size_t) {
+    const auto one = [&](std::size_t i, std::size_t row) {
       source.write(i, columns.pointers, row);
-    });
+    };
+    if (by_rows) {
+      for_rows(source, entry_of, one);
+    } else {
+      for_entries(entries, ascending,
+                  [&](std::size_t i, std::size_t row, std::size_t) { one(i, row); });
+    }
     return Status::ok;
   }
 }
@@ -271,59 +308,57 @@ void Rows::write_all(const Source& source, std::span<const Key> keys) {
   disorder();
 }
 
-void Rows::note_stale(std::span<const Key> keys) noexcept {
-  if (keys.size() > stale_.limit()) {
+void Rows::note_stale(const EntryList& entries) noexcept {
+  if (entries.count > stale_.limit()) {
     stale_.add_all();
   } else {
-    for (const Key key : keys) stale_.add(key.id);
+    for (std::size_t j = 0; j < entries.count; ++j) stale_.add(entries.key(j).id);
   }
   changed_ = true;
 }
 
-/// Notes the objects whose bits are set in the selection as changed: those of rows, or of entries.
-void Rows::note_left(std::span<const Key> keys, bool by_rows, std::size_t slots) noexcept {
+/// Notes the objects whose bits are set in the selection as changed, and clears these: bits of
+/// rows, or of entries.
+void Rows::note_left(const EntryList& entries, bool by_rows, std::size_t slots) noexcept {
   bool any = false;
   for (std::size_t w = 0; w < bitmap_words(slots); ++w) {
-    for (std::uint64_t bits = selection_.bits.data()[w]; bits != 0; bits &= bits - 1) {
+    for (std::uint64_t bits = std::exchange(selection_.bits[w], 0); bits != 0; bits &= bits - 1) {
       const std::size_t slot = 64 * w + static_cast<std::size_t>(std::countr_zero(bits));
-      stale_.add(by_rows ? pool_.ids()[slot] : keys[slot].id);
+      stale_.add(by_rows ? pool_.ids()[slot] : entries.key(slot).id);
       any = true;
     }
   }
   if (any) changed_ = true;
 }
 
-/// Calls visit(i, row, slot) for every entry i and its row. No two threads meet in 64 slots that
-/// follow each other: slots are rows, if it goes by rows, else entries.
+/// Calls visit(entry, row) for every row whose object has an entry.
 template <typename Source, typename Visit>
-void Rows::for_entries(const Source& source, std::span<const Key> keys, bool by_rows,
-                       bool ascending, const Visit& visit) {
-  const ObjectId first = keys.front().id;
-  const std::size_t count = keys.size();
-  if (by_rows) {
-    // Going by rows reads entries out of order but writes each column in order, which is a sixth of
-    // the cache lines.
-    for_ranges(execution_, pool_.rows(), [&](std::size_t begin, std::size_t end) {
-      const ObjectId* const ids = pool_.ids();
-      if constexpr (requires { source.packed(); }) {
-        // Not visited but written in registers.
-        const std::size_t whole = end - end % kBlockRows;
-        if (source.packed()) {
-          source.write_rows(first, ids, PoolColumns(pool_).pointers, begin, whole);
-          begin = whole;
-        }
+void Rows::for_rows(const Source& source, const EntryOfRow& entry_of, const Visit& visit) {
+  for_ranges(execution_, pool_.rows(), [&](std::size_t begin, std::size_t end) {
+    if constexpr (requires { source.packed(); }) {
+      // Not visited but written in registers.
+      const std::size_t whole = end - end % kBlockRows;
+      if (source.packed()) {
+        source.write_rows(entry_of.of_id, entry_of.id, PoolColumns(pool_).pointers, begin, whole);
+        begin = whole;
       }
-      for (std::size_t row = begin; row < end; ++row) {
-        const std::size_t i = static_cast<ObjectId>(ids[row] - first);
-        if (i < count) visit(i, row, row);
-      }
-    });
-    return;
-  }
+    }
+    for (std::size_t row = begin; row < end; ++row) {
+      const std::size_t i = entry_of[row];
+      if (i != kNoObject) visit(i, row);
+    }
+  });
+}
+
+/// Calls visit(entry, its row, j) for every j-th entry. No two threads meet in 64 of them that
+/// follow each other.
+template <typename Visit>
+void Rows::for_entries(const EntryList& entries, bool ascending, const Visit& visit) {
+  const std::size_t count = entries.count;
   const auto go = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (i + kFetchAhead < end) fetch_row(keys_.row_of(keys[i + kFetchAhead].id));
-      visit(i, keys_.row_of(keys[i].id), i);
+    for (std::size_t j = begin; j < end; ++j) {
+      if (j + kFetchAhead < end) fetch_row(keys_.row_of(entries.key(j + kFetchAhead).id));
+      visit(entries[j], keys_.row_of(entries.key(j).id), j);
     }
   };
   // Only ascending ids are known to be distinct; a repeated key must be written in order.
@@ -332,6 +367,21 @@ void Rows::for_entries(const Source& source, std::span<const Key> keys, bool by_
   } else {
     go(0, count);
   }
+}
+
+Status Rows::check(const EntryList& entries, const BoxView& boxes) const {
+  bool ascending = false;
+  return check_update(BoxSource{boxes}, boxes.count, entries, ascending);
+}
+
+void Rows::write_by_id(const BoxView& boxes) noexcept {
+  const BoxSource source{boxes};
+  const PoolColumns columns(pool_);
+  const BoxOfId all{.first = 0, .ids = static_cast<std::uint32_t>(boxes.count)};
+  for_rows(source, {all, pool_.ids()},
+           [&](std::size_t id, std::size_t row) { source.write(id, columns.pointers, row); });
+  stale_.add_all();
+  changed_ = true;
 }
 
 template Status Rows::insert(std::span<const Sphere>, std::span<const ClientData>, std::span<Key>);

@@ -8,6 +8,7 @@
 #include "core/memory/bounds_pool.h"
 #include "core/memory/key_table.h"
 #include "partitions/rows/change_list.h"
+#include "partitions/rows/entry_list.h"
 #include "partitions/rows/filter_table.h"
 #include "partitions/rows/row_selection.h"
 #include "partitions/rows/row_view.h"
@@ -18,6 +19,9 @@
 #include <span>
 
 namespace winnow {
+
+struct BoxOfId;
+struct EntryOfRow;
 
 /// The box of one row, with what is stored for an infinite end given back as infinite. A hole gives
 /// an empty box.
@@ -42,13 +46,18 @@ class Rows {
        const Margin& margin) noexcept;
 
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
-  Status update(std::span<const Key> keys, const BoxView& boxes);
+  Status update(const EntryList& entries, const BoxView& boxes);
   Status update(Key key, const Aabb& box);
   /// The same by spheres or k-DOPs; `unsupported_volume` where others are stored.
   template <typename V>
   Status insert(std::span<const V> volumes, std::span<const ClientData> data, std::span<Key> keys);
   template <typename V>
   Status update(std::span<const Key> keys, std::span<const V> volumes);
+
+  /// What an update with these boxes would answer.
+  [[nodiscard]] Status check(const EntryList& entries, const BoxView& boxes) const;
+  /// Gives every row of boxes the one that stands at its object's id, if there is one.
+  void write_by_id(const BoxView& boxes) noexcept;
 
   Status remove(Key key);
   Status remove(std::span<const Key> keys);
@@ -120,25 +129,30 @@ class Rows {
   Status insert_from(const Source& source, std::size_t count, std::span<const ClientData> data,
                      std::span<Key> keys);
   template <typename Source>
-  Status update_from(const Source& source, std::size_t count, std::span<const Key> keys);
+  Status check_update(const Source& source, std::size_t volumes, const EntryList& entries,
+                      bool& ascending) const;
+  template <typename Source>
+  Status update_from(const Source& source, std::size_t volumes, const EntryList& entries);
   template <typename Source, typename Use>
   Status with_margin(const Source& source, Use&& use);
   template <typename Source>
   Status update_one(const Source& source, Key key);
   template <typename Source>
-  Status write(const Source& source, std::span<const Key> keys, bool ascending);
+  Status write(const Source& source, const EntryList& entries, bool ascending);
+  bool goes_by_rows(const EntryList& entries, bool ascending, BoxOfId& entry_of);
   template <typename Source>
   [[nodiscard]] bool scatters(const Source& source, std::span<const Key> keys) const noexcept;
   template <typename Source>
   void write_all(const Source& source, std::span<const Key> keys);
   template <typename Source, typename Visit>
-  void for_entries(const Source& source, std::span<const Key> keys, bool by_rows, bool ascending,
-                   const Visit& visit);
+  void for_rows(const Source& source, const EntryOfRow& entry_of, const Visit& visit);
+  template <typename Visit>
+  void for_entries(const EntryList& entries, bool ascending, const Visit& visit);
   template <typename Source>
   void write_new(const Source& source, std::span<const Key> keys, std::size_t first,
                  std::size_t begin, std::size_t end);
-  void note_stale(std::span<const Key> keys) noexcept;
-  void note_left(std::span<const Key> keys, bool by_rows, std::size_t slots) noexcept;
+  void note_stale(const EntryList& entries) noexcept;
+  void note_left(const EntryList& entries, bool by_rows, std::size_t slots) noexcept;
 
   Execution execution_;
   Margin margin_;

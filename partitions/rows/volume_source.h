@@ -13,6 +13,7 @@
 #include "core/memory/bounds_pool.h"
 #include "core/sort/stretches.h"
 #include "partitions/rows/box_input.kernel.h"
+#include "partitions/rows/entry_list.h"
 
 #include <algorithm>
 #include <atomic>
@@ -48,21 +49,38 @@ void for_ranges(const Execution& execution, std::size_t count, Work&& work) {
   for_stretches(execution, count, kEntriesPerTask, work);
 }
 
-/// True if all of the first `count` entries are legal.
+/// True if all of these entries are legal.
 template <typename Source>
-[[nodiscard]] bool all_valid(const Source& source, std::size_t count, const Execution& execution) {
+[[nodiscard]] bool all_valid(const Source& source, const EntryList& entries,
+                             const Execution& execution) {
   std::atomic<bool> valid{true};
-  for_ranges(execution, count, [&](std::size_t begin, std::size_t end) {
+  for_ranges(execution, entries.count, [&](std::size_t begin, std::size_t end) {
     bool ok = true;
-    if constexpr (requires { source.valid_range(begin, end); }) {
-      ok = source.valid_range(begin, end);
-    } else {
-      for (std::size_t i = begin; i < end; ++i) ok = ok && source.valid(i);
+    for (std::size_t next = begin; begin < end; begin = next) {
+      next = entries.run_end(begin, end);
+      const std::size_t first = entries[begin];
+      if constexpr (requires { source.valid_range(begin, end); }) {
+        ok = ok && source.valid_range(first, first + (next - begin));
+      } else {
+        for (std::size_t i = first; i < first + (next - begin); ++i) ok = ok && source.valid(i);
+      }
     }
     if (!ok) valid.store(false, std::memory_order_relaxed);
   });
   return valid.load();
 }
+
+/// Which entry of an update the object in a row has; kNoObject if none.
+struct EntryOfRow {
+  BoxOfId of_id;
+  const ObjectId* id;  ///< by row
+
+  [[nodiscard]] std::size_t operator[](std::size_t row) const noexcept {
+    const ObjectId k = id[row] - of_id.first;
+    if (k >= of_id.ids) return kNoObject;
+    return of_id.table == nullptr ? k : of_id.table[k];
+  }
+};
 
 /// Boxes into AABB columns.
 struct BoxSource {
@@ -96,12 +114,11 @@ struct BoxSource {
     }
     return true;
   }
-  /// Writes the rows of [begin, end), both multiples of 16, whose objects are among boxes.count
-  /// ones from `first` on. The boxes are packed.
-  void write_rows(ObjectId first, const ObjectId* ids, ColumnPointers columns, std::size_t begin,
-                  std::size_t end) const noexcept {
-    box_input_kernels().write_rows(boxes.min[0], first, static_cast<std::uint32_t>(boxes.count),
-                                   ids, columns, begin, end);
+  /// Writes the rows of [begin, end), both multiples of 16, whose objects have a box. The boxes are
+  /// packed.
+  void write_rows(const BoxOfId& box_of, const ObjectId* ids, ColumnPointers columns,
+                  std::size_t begin, std::size_t end) const noexcept {
+    box_input_kernels().write_rows(boxes.min[0], box_of, ids, columns, begin, end);
   }
   /// Writes entries [begin, end) into the rows from `row` on. The boxes are packed.
   void write_in_order(std::size_t begin, std::size_t end, ColumnPointers columns,

@@ -2,6 +2,9 @@
 
 #include "core/memory/new_in.h"
 
+#include <algorithm>
+#include <bit>
+
 namespace winnow {
 namespace {
 
@@ -12,13 +15,18 @@ std::uint64_t next_identity() noexcept {
 
 }  // namespace
 
-PairTracking::PairTracking() noexcept : identity(next_identity()) {}
+PairTracking::PairTracking(std::pmr::memory_resource* memory) noexcept
+    : identity(next_identity()), calm(memory) {}
 
 PartitionState::PartitionState(std::pmr::memory_resource* resource,
                                const PartitionOptions& options) noexcept
     : memory(resource),
       rows(resource, options.execution, options.volume, options.margin),
-      index(resource, rows) {}
+      index(resource, rows),
+      pairs_(resource),
+      deferred_(resource),
+      near_(resource),
+      listed_(resource) {}
 
 PartitionState::~PartitionState() {
   if (chooser_ != nullptr) chooser_->end(memory);
@@ -32,6 +40,7 @@ PartitionState* PartitionState::make(StructureKind kind, const PartitionOptions&
 }
 
 bool PartitionState::set_structure(StructureKind given) noexcept {
+  end_deferring();
   Chooser* chooser = nullptr;
   StructureKind held = given;
   if (given.info()->make_chooser != nullptr) {
@@ -50,9 +59,106 @@ bool PartitionState::set_structure(StructureKind given) noexcept {
   return true;
 }
 
+Status PartitionState::insert(const BoxView& boxes, std::span<const ClientData> data,
+                              std::span<Key> keys) {
+  const Status status = rows.insert(boxes, data, keys);
+  if (status == Status::ok && deferred_.active() && !deferred_.insert(keys, boxes)) {
+    end_deferring();
+  }
+  pairs_.calm.disturb(keys.size(), rows.size());
+  note_changes(keys.size());
+  return status;
+}
+
+Status PartitionState::remove(std::span<const Key> keys) {
+  const Status status = rows.remove(keys);
+  pairs_.calm.disturb(keys.size(), rows.size());
+  note_changes(keys.size());
+  return status;
+}
+
+Status PartitionState::set_filter(std::span<const Key> keys,
+                                  std::span<const ObjectFilter> filters) {
+  const Status status = rows.set_filter(keys, filters);
+  pairs_.calm.disturb(keys.size(), rows.size());
+  note_changes(0);
+  return status;
+}
+
+Status PartitionState::update(const EntryList& entries, const BoxView& boxes) {
+  if (!deferred_.active()) {
+    const Status status = rows.update(entries, boxes);
+    note_changes(entries.count);
+    return status;
+  }
+  const Status status = deferred_.update(rows, entries, boxes);
+  if (deferred_.active()) {
+    note_changes(0);
+  } else {
+    pairs_.calm.end();
+    note_changes(entries.count);
+  }
+  return status;
+}
+
+Status PartitionState::update(std::span<const Key> keys, const BoxView& boxes,
+                              const Entries& entries) {
+  if (!entries.is_mask()) {
+    const auto is_one = [&](std::uint32_t number) { return number < keys.size(); };
+    if (!std::ranges::all_of(entries.numbers(), is_one)) return Status::invalid_argument;
+    return update({keys, entries.numbers()}, boxes);
+  }
+  if (entries.words().size() != (keys.size() + 63) / 64) return Status::size_mismatch;
+  listed_.clear();
+  if (!listed_.reserve(keys.size())) return Status::out_of_memory;
+  for (std::size_t w = 0; w < entries.words().size(); ++w) {
+    for (std::uint64_t bits = entries.words()[w]; bits != 0; bits &= bits - 1) {
+      const std::size_t i = 64 * w + static_cast<std::size_t>(std::countr_zero(bits));
+      if (i < keys.size()) (void)listed_.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  return update({keys, {listed_.data(), listed_.size()}}, boxes);
+}
+
+Status PartitionState::update(Key key, const Aabb& box) {
+  const bool deferring = deferred_.active();
+  const Status status = deferring ? deferred_.update(rows, key, box) : rows.update(key, box);
+  note_changes(deferring ? 0 : 1);
+  return status;
+}
+
+Status PartitionState::bounds(Key key, Aabb& box) const noexcept {
+  std::unique_lock lock(refresh_mutex_, std::defer_lock);
+  if (stale_.load(std::memory_order_acquire) || deferred_.active()) lock.lock();
+  const Status status = rows.bounds(key, box);
+  if (status != Status::ok || !deferred_.active()) return status;
+  const DeferredBoxes::Box& given = deferred_.given()[key.id];
+  box = {Eigen::Vector3f(given.min), Eigen::Vector3f(given.max)};
+  return status;
+}
+
+// Nobody reads rows that are about to change: whoever does has come here first, or tracks pairs and
+// holds the mutex that the caller does.
+void PartitionState::end_deferring() const noexcept {
+  if (!deferred_.active()) return;
+  const std::lock_guard lock(refresh_mutex_);
+  auto& self = const_cast<PartitionState&>(*this);
+  if (deferred_.write(self.rows)) self.note_changes(rows.size());
+  pairs_.calm.end();
+  deferred_.drop();
+}
+
 void PartitionState::note_changes(std::size_t count) noexcept {
   if (chooser_ != nullptr) chooser_->note_changes(count);
   if (chooser_ != nullptr || rows.changed()) stale_.store(true, std::memory_order_relaxed);
+}
+
+Status PartitionState::settle() const {
+  if (deferred_.active()) {
+    const std::lock_guard lock(tracker_mutex_);
+    end_deferring();
+  }
+  return refresh();
 }
 
 Status PartitionState::refresh() const {
@@ -89,7 +195,7 @@ void PartitionState::note(QueryKind kind, std::size_t count) const noexcept {
 }
 
 Status PartitionState::prepare(QueryKind kind, std::size_t count, QueryView& view) const {
-  if (const Status status = refresh(); status != Status::ok) return status;
+  if (const Status status = settle(); status != Status::ok) return status;
   note(kind, count);
   if (index.queries_stale()) {
     const std::lock_guard lock(refresh_mutex_);
@@ -102,6 +208,8 @@ Status PartitionState::prepare(QueryKind kind, std::size_t count, QueryView& vie
 }
 
 void PartitionState::clear() noexcept {
+  deferred_.drop();
+  pairs_.calm.end();
   rows.clear();
   pairs_.tracked_serial = 0;
   if (chooser_ != nullptr) chooser_->clear();
@@ -109,6 +217,11 @@ void PartitionState::clear() noexcept {
 }
 
 void PartitionState::release_memory() noexcept {
+  end_deferring();
+  deferred_.release();
+  pairs_.calm.release();
+  near_.release();
+  listed_.release();
   index.release_memory();
   rows.release_memory();
   if (rows.size() == 0) pairs_.tracked_serial = 0;
@@ -123,7 +236,16 @@ Footprint PartitionState::footprint() const noexcept {
   result.structure = {own, own};
   rows.add_bytes(result);
   index.add_bytes(result);
+  result.bounds += deferred_.bytes();
+  result.scratch += listed_.bytes();
+  result.scratch += near_.footprint().total();
+  result.structure += pairs_.calm.bytes();
   return result;
+}
+
+bool PartitionState::is_exact() const noexcept {
+  return rows.pool().volume() == Volume::aabb && rows.margin().is_none() &&
+         steadily([&] { return index.structure().tests_volumes(); });
 }
 
 Statistics PartitionState::statistics() const noexcept {

@@ -4,7 +4,9 @@
 #include "partitions/choice/chooser.h"
 #include "partitions/index/query_view.h"
 #include "partitions/index/spatial_index.h"
+#include "partitions/rows/deferred_boxes.h"
 #include "partitions/rows/rows.h"
+#include "partitions/state/calm.h"
 
 #include <atomic>
 #include <cstddef>
@@ -14,10 +16,11 @@
 namespace winnow {
 
 class EventWriter;
+class LinkedPairs;
 
 /// Which pair buffer is kept up to date by what moved, and what pair queries have done.
 struct PairTracking {
-  PairTracking() noexcept;
+  explicit PairTracking(std::pmr::memory_resource* memory) noexcept;
 
   const std::uint64_t identity;      // of the partition
   std::uint64_t tracked_serial = 0;  // 0: no buffer is tracked
@@ -27,6 +30,7 @@ struct PairTracking {
   std::atomic<std::uint64_t> incremental_queries{0};
   std::atomic<std::uint64_t> last_tests{0};
   std::atomic<std::uint64_t> last_pairs{0};
+  Calm calm;
 };
 
 /// All that a partition consists of: objects, how they are found, which pairs are tracked, and what
@@ -44,10 +48,21 @@ class PartitionState {
   /// False, and nothing changed, if memory is refused.
   [[nodiscard]] bool set_structure(StructureKind kind) noexcept;
 
+  Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
+  Status remove(std::span<const Key> keys);
+  Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
+  Status update(const EntryList& entries, const BoxView& boxes);
+  Status update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries);
+  Status update(Key key, const Aabb& box);
+  Status bounds(Key key, Aabb& box) const noexcept;
+
   /// Ends a mutation of so many objects.
   void note_changes(std::size_t count) noexcept;
-  /// Brings up to date what pair queries read.
+  /// Brings up to date what pair queries of a tracked buffer read.
   Status refresh() const;
+  /// Has the rows hold all boxes as they were given, for who reads them, and brings up to date what
+  /// pair queries read.
+  Status settle() const;
   /// The same for other queries, of which there are `count`; tells them how to see the rows.
   Status prepare(QueryKind kind, std::size_t count, QueryView& view) const;
   void note(QueryKind kind, std::size_t count) const noexcept;
@@ -66,6 +81,7 @@ class PartitionState {
   Status ask(const PartitionState& other, HitMode mode, const PairPredicate& predicate,
              PairBuffer& out) const;
 
+  [[nodiscard]] bool is_exact() const noexcept;
   [[nodiscard]] Footprint footprint() const noexcept;
   [[nodiscard]] Statistics statistics() const noexcept;
   [[nodiscard]] StructureChoice choice() const noexcept;
@@ -81,19 +97,47 @@ class PartitionState {
   struct SelfTasks;
 
   Status refresh_now();
+  void end_deferring() const noexcept;
   Status full_self_pairs(PairBuffer& out, const PairPredicate& predicate,
                          EventWriter* events) const;
   Status incremental_self_pairs(PairBuffer& out, const PairPredicate& predicate,
                                 EventWriter* events) const;
-  Status track_self_pairs(PairBuffer& out, const PairOptions& options, EventWriter* events) const;
+  Status linked_self_pairs(PairBuffer& out, const PairPredicate& predicate,
+                           EventWriter* events) const;
+  Status ask_moved(PairBuffer& out, const PairPredicate& predicate) const;
+  [[nodiscard]] bool list_moved() const noexcept;
+  void begin_calm(PairBuffer& out, const PairOptions& options) const noexcept;
+  [[nodiscard]] bool watch_all() const noexcept;
+  [[nodiscard]] bool stays_calm(const PairBuffer& out, const PairOptions& options,
+                                const EventWriter* events) const noexcept;
+  Status calm_self_pairs(PairBuffer& out, EventWriter* events) const;
+  [[nodiscard]] bool keep_near(PairBuffer& out, std::size_t kept) const noexcept;
+  Status ask_near(std::span<const std::uint32_t> asking, PairBuffer& out,
+                  std::uint64_t& tests) const;
+  [[nodiscard]] bool watch_rows(std::size_t begin, std::size_t end) const noexcept;
+  [[nodiscard]] bool is_watched(const Pair& pair) const noexcept;
+  [[nodiscard]] bool note_watched(LinkedPairs& linked) const noexcept;
+  [[nodiscard]] bool update_in_place(PairBuffer& out) const noexcept;
+  Status redo_self_pairs(PairBuffer& out, const PairOptions& options, bool update,
+                         EventWriter* events) const;
+  Status answer_self_pairs(PairBuffer& out, const PairOptions& options, EventWriter* events) const;
+  Status track_self_pairs(PairBuffer& out, const PairOptions& options, bool tracked,
+                          EventWriter* events) const;
+  void take_frame(PairBuffer& out, bool tracked, EventWriter* events) const noexcept;
+  [[nodiscard]] bool can_update_in_place(const PairBuffer& out, const PairOptions& options,
+                                         const EventWriter* events) const noexcept;
   bool finish_pairs(PairBuffer& out, Order order, bool all, EventWriter* events) const noexcept;
   [[nodiscard]] bool can_update(const PairBuffer& out) const noexcept;
+  [[nodiscard]] bool asks_few() const noexcept;
   bool run_self_task(const SelfTasks& tasks, std::size_t task, PairSink& sink) const noexcept;
   void note_work(std::uint64_t tests, std::uint64_t queries,
                  SpatialIndex::Asked asked) const noexcept;
 
   Chooser* chooser_ = nullptr;
   mutable PairTracking pairs_;
+  mutable DeferredBoxes deferred_;
+  mutable PairBuffer near_;       // while it is found out which pairs to watch
+  Column<std::uint32_t> listed_;  // entries of a mask
   mutable std::mutex refresh_mutex_;
   mutable std::mutex tracker_mutex_;
   // True from a change on until a refresh is through. Only in between are rows reordered and

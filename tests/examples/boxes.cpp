@@ -35,12 +35,12 @@ int main() {
   // [end]
   check(pairs.empty(), "boxes that stand apart make no pairs");
 
-  const std::vector<winnow::Key> moved_keys{keys[3]};
-  const std::vector<winnow::Aabb> moved_boxes{{{4, 0, 0}, {5, 1, 1}}};
+  const std::vector<std::uint32_t> moved{3};
+  boxes[3] = {{4, 0, 0}, {5, 1, 1}};
   // [frames]
   winnow::PairEvents events;
   partition.self_pairs(pairs, events);
-  partition.update(moved_keys, moved_boxes);
+  partition.update(keys, boxes, winnow::Entries::listed(moved));  // or masked, or copied together
   partition.self_pairs(pairs, events);  // where little moved, only its pairs are redone
   for (const winnow::KeyPair& pair : events.begun()) meet(pair);
   for (const winnow::KeyPair& pair : events.ended()) part(pair);

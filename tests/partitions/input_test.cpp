@@ -144,6 +144,79 @@ TEST_P(Input, may_be_columns_or_members_of_a_struct) {
   }
 }
 
+// Of columns that hold all objects an update may be about some, by list or by mask, in any share
+// and with any gaps.
+TEST_P(Input, may_be_some_entries_of_columns_that_hold_all) {
+  std::vector<Aabb> boxes = uniform_boxes(700);
+  for (const bool fat : {false, true}) {
+    Partition listed(structure_named(config().partition),
+                     {.execution = config().execution(), .margin = {fat ? 0.01F : 0.0F, 0.0F}});
+    Partition masked(structure_named(config().partition),
+                     {.execution = config().execution(), .margin = {fat ? 0.01F : 0.0F, 0.0F}});
+    Partition plain(structure_named(config().partition),
+                    {.execution = config().execution(), .margin = {fat ? 0.01F : 0.0F, 0.0F}});
+    std::vector<Key> keys[3];
+    Partition* const all[] = {&listed, &masked, &plain};
+    for (std::size_t p = 0; p < 3; ++p) {
+      keys[p].resize(boxes.size());
+      ASSERT_EQ(all[p]->insert(boxes, {}, keys[p]), Status::ok);
+    }
+    Random random(6);
+    for (const double share : {0.0, 0.01, 0.3, 0.6, 0.99, 1.0}) {
+      std::vector<std::uint32_t> numbers;
+      std::vector<std::uint64_t> words((boxes.size() + 63) / 64);
+      words.back() = ~std::uint64_t{0} << boxes.size() % 64;  // behind the last entry
+      std::vector<Key> some_keys;
+      std::vector<Aabb> some_boxes;
+      const std::vector<Aabb> next = uniform_boxes(boxes.size(), random.bits());
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (!random.chance(share)) continue;
+        numbers.push_back(static_cast<std::uint32_t>(i));
+        words[i / 64] |= std::uint64_t{1} << i % 64;
+        some_keys.push_back(keys[2][i]);
+        some_boxes.push_back(next[i]);
+      }
+      ASSERT_EQ(listed.update(keys[0], next, Entries::listed(numbers)), Status::ok);
+      ASSERT_EQ(masked.update(keys[1], next, Entries::masked(words)), Status::ok);
+      ASSERT_EQ(plain.update(some_keys, some_boxes), Status::ok);
+      PairBuffer pairs[3];
+      for (std::size_t p = 0; p < 3; ++p) {
+        ASSERT_EQ(all[p]->self_pairs(pairs[p], {.order = Order::canonical}), Status::ok);
+        EXPECT_TRUE(std::ranges::equal(pairs[p], pairs[0])) << "share " << share;
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+          Aabb box;
+          Aabb same;
+          ASSERT_EQ(all[p]->bounds(keys[p][i], box), Status::ok);
+          ASSERT_EQ(listed.bounds(keys[0][i], same), Status::ok);
+          ASSERT_EQ(box, same);
+        }
+      }
+    }
+    // In any order; of a repeated entry the last, which is the same, counts.
+    const std::vector<std::uint32_t> back{9, 3, 9, 1};
+    EXPECT_EQ(listed.update(keys[0], boxes, Entries::listed(back)), Status::ok);
+  }
+}
+
+TEST_P(Input, of_entries_that_are_none_changes_nothing) {
+  World world(config());
+  const std::vector<Key> keys = world.insert(boxes_);
+  std::vector<Aabb> next(boxes_.rbegin(), boxes_.rend());
+  const std::vector<std::uint32_t> beyond{0, static_cast<std::uint32_t>(boxes_.size())};
+  const std::vector<std::uint32_t> first_two{0, 1};
+  const std::vector<std::uint64_t> few;
+  Partition& partition = world.partition();
+  EXPECT_EQ(partition.update(keys, next, Entries::listed(beyond)), Status::invalid_argument);
+  EXPECT_EQ(partition.update(keys, next, Entries::masked(few)), Status::size_mismatch);
+  next.pop_back();
+  EXPECT_EQ(partition.update(keys, next, Entries::listed(first_two)), Status::size_mismatch);
+  next.push_back({{1, 0, 0}, {0, 1, 1}});
+  next[1] = next.back();
+  EXPECT_EQ(partition.update(keys, next, Entries::listed(first_two)), Status::invalid_bounds);
+  EXPECT_TRUE(world.holds_its_objects());
+  EXPECT_TRUE(world.agrees());
+}
+
 TEST_P(Input, of_duplicate_client_data_makes_two_objects) {
   World world(config());
   const std::vector<ClientData> data(boxes_.size(), 42);

@@ -169,6 +169,127 @@ TEST_P(Events, follow_any_sequence_of_calls) {
   EXPECT_TRUE(held);
 }
 
+// So few that the buffer is linked, whatever they do: the pairs of all others stay where they are.
+TEST_P(Events, follow_few_objects_among_many) {
+  for (const std::uint64_t stream : {1U, 2U, 3U}) {
+    World world(config());
+    Frames frames(world);
+    PairEvents alone;
+    Random random(stream);
+    std::vector<Aabb> boxes = stream == 1   ? uniform_boxes(scene_size(500))
+                              : stream == 2 ? mixed_boxes(scene_size(200))
+                                            : pile_boxes(scene_size(400));
+    std::vector<Key> keys = world.insert(boxes);
+    const auto some = [&] { return random.below(keys.size()); };
+    std::uint64_t full = 0;
+    for (int frame = 0; frame < 40; ++frame) {
+      for (std::size_t change = random.below(4); change != 0; --change) {
+        const std::size_t at = some();
+        const Aabb box = world.entries().at(keys[at].id).box;
+        const Eigen::Vector3f edge =
+            random.chance(0.2) ? Eigen::Vector3f(0, 0, 0) : Eigen::Vector3f(box.max - box.min);
+        const Aabb moved{box.min + edge * 0.5F, box.max + edge * 0.5F};
+        switch (random.below(6)) {
+          case 0:
+            world.set_filter(keys[at], {1, 1, random.chance(0.5) ? 0U : 1U});
+            break;
+          case 1:  // its id goes to another object
+            world.remove(keys[at]);
+            keys[at] = world.insert(random.chance(0.5) ? box : moved);
+            break;
+          case 2:
+            world.remove(keys[at]);
+            keys.erase(keys.begin() + static_cast<std::ptrdiff_t>(at));
+            break;
+          case 3:
+            keys.push_back(world.insert(moved));
+            break;
+          case 4:  // onto another object
+            world.update(keys[at], world.entries().at(keys[some()].id).box);
+            break;
+          default:
+            world.update(keys[at], moved);
+        }
+      }
+      ASSERT_TRUE(frames.next()) << "scene " << stream << ", frame " << frame;
+      if (frame == 3) full = world.partition().statistics().full_queries;
+      EXPECT_EQ(frames.buffer.footprint().total().reserved > 0, !frames.buffer.empty());
+    }
+    EXPECT_EQ(world.partition().statistics().full_queries, full);
+  }
+}
+
+// Without a buffer the same changes are told.
+TEST_P(Events, need_no_buffer) {
+  World with(config());
+  World without(config());
+  std::vector<Aabb> boxes = uniform_boxes(scene_size(500));
+  const std::vector<Key> keys = with.insert(boxes);
+  const std::vector<Key> same_keys = without.insert(boxes);
+  PairBuffer buffer;
+  PairEvents events;
+  PairEvents alone;
+  Random random(4);
+  for (int frame = 0; frame < 20; ++frame) {
+    if (frame % 7 == 6) {
+      move(Motion::much, boxes, random);
+      with.update(keys, boxes);
+      without.update(same_keys, boxes);
+    } else {
+      const std::size_t at = random.below(keys.size());
+      const Aabb box = uniform_boxes(1, random.bits())[0];
+      boxes[at] = box;
+      with.update(keys[at], box);
+      without.update(same_keys[at], box);
+    }
+    ASSERT_EQ(with.threads().run([&] { return with.partition().self_pairs(buffer, events); }),
+              Status::ok);
+    ASSERT_EQ(without.threads().run([&] { return without.partition().self_pairs(alone); }),
+              Status::ok);
+    const auto ids = [](const KeyPair& pair) { return Ids{pair.first.id, pair.second.id}; };
+    EXPECT_TRUE(std::ranges::equal(events.begun(), alone.begun(), {}, ids, ids)) << frame;
+    EXPECT_TRUE(std::ranges::equal(events.ended(), alone.ended(), {}, ids, ids)) << frame;
+    EXPECT_EQ(events.persisting(), alone.persisting());
+  }
+}
+
+TEST_P(Events, start_anew_after_a_linked_frame_that_memory_was_refused_for) {
+  int failures = 0;
+  for (std::size_t granted = 0; granted < 14; ++granted) {
+    CountingMemory results;
+    World world(config());
+    Frames frames(world, &results);
+    std::vector<Aabb> boxes = uniform_boxes(scene_size(400));
+    const std::vector<Key> keys = world.insert(boxes);
+    const auto few = [&](std::size_t frame) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t at = (17 * frame + 5 * i) % keys.size();
+        world.update(keys[at], boxes[(at + 7 * frame) % boxes.size()]);
+      }
+    };
+    for (std::size_t frame = 0; frame < 1 + granted % 4; ++frame) {
+      few(frame);
+      ASSERT_TRUE(frames.next());
+    }
+    few(9);
+    world.insert(uniform_boxes(3));
+    results.refuse_after(granted / 4);
+    const Status status = world.threads().run(
+        [&] { return world.partition().self_pairs(frames.buffer, frames.events, {}); });
+    results.grant_all();
+    if (status == Status::ok) continue;
+    ++failures;
+    ASSERT_EQ(status, Status::out_of_memory);
+    EXPECT_TRUE(frames.buffer.empty());
+    frames.forget();
+    for (std::size_t frame = 10; frame < 14; ++frame) {
+      ASSERT_TRUE(frames.next());
+      few(frame);
+    }
+  }
+  EXPECT_GT(failures, 0);
+}
+
 TEST_P(Events, of_an_id_that_went_to_another_object_end_and_begin) {
   World world(config());
   Frames frames(world);
@@ -323,9 +444,16 @@ TEST(EventsOfAnyConfig, are_the_same) {
       std::vector<Aabb> boxes = uniform_boxes(world.partition().is_exact() ? 3000 : 100);
       const std::vector<Key> keys = world.insert(boxes);
       Random random(9);
-      for (std::size_t frame = 0; frame < 5; ++frame) {
-        move(frame % 2 == 0 ? Motion::few : Motion::little, boxes, random);
-        world.update(keys, boxes);
+      for (std::size_t frame = 0; frame < 12; ++frame) {
+        if (frame < 5) {
+          move(frame % 2 == 0 ? Motion::few : Motion::little, boxes, random);
+          world.update(keys, boxes);
+        } else {
+          // So few that the buffer is linked.
+          const std::size_t at = random.below(keys.size());
+          boxes[at] = boxes[random.below(keys.size())];
+          world.update(keys[at], boxes[at]);
+        }
         ASSERT_EQ(
             world.threads().run([&] { return world.partition().self_pairs(buffer, events, {}); }),
             Status::ok);

@@ -1,0 +1,217 @@
+// Pairs of objects of which most stay within a margin of where their rows have them; see Calm.
+
+#include <winnow/core/rounding.h>
+#include "partitions/pairs/event_writer.h"
+#include "partitions/pairs/linked_pairs.h"
+#include "partitions/pairs/pair_tracker.h"
+#include "partitions/pairs/pair_writer.h"
+#include "partitions/state/partition_state.h"
+
+#include <algorithm>
+#include <cfloat>
+
+namespace winnow {
+namespace {
+
+constexpr std::size_t kNearQueriesPerTask = 64;
+constexpr std::size_t kFewestObjects = 256;
+
+bool given_overlap(const DeferredBoxes::Box& a, const DeferredBoxes::Box& b) noexcept {
+  // Without branches: of watched pairs each answer is a coin toss.
+  unsigned ok = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    ok &= static_cast<unsigned>(a.min[axis] <= b.max[axis]) &
+          static_cast<unsigned>(b.min[axis] <= a.max[axis]);
+  }
+  return ok != 0;
+}
+
+/// How much nearer to each other two ends can come than they are stored: two margins, each of which
+/// was compared with a rounded difference.
+double reach_of(float margin) noexcept {
+  return 2.0 * static_cast<double>(margin) * (1.0 + 0x1p-20);
+}
+
+double finite(float end) noexcept {
+  return static_cast<double>(std::clamp(end, -FLT_MAX, FLT_MAX));
+}
+
+/// The boxes of some rows, larger by `reach`, as those of a batch that asks for pairs (it, other).
+struct NearBatch {
+  alignas(64) float ends[6][kNearQueriesPerTask + kBlockRows];
+  std::uint32_t ids[kNearQueriesPerTask + kBlockRows];
+  std::uint32_t size = 0;
+
+  void add(const RowView& view, std::size_t row, double reach) noexcept {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto low = static_cast<double>(view.column[c][row]);
+      const auto high = static_cast<double>(view.column[3 + c][row]);
+      ends[c][size] = std::max(round_down(add_down(low, -reach)), -FLT_MAX);
+      ends[3 + c][size] = std::min(round_up(add_up(high, reach)), FLT_MAX);
+    }
+    ids[size++] = view.id[row];
+  }
+  [[nodiscard]] QueryBatch batch(const RowView& view) const noexcept {
+    QueryBatch batch;
+    for (std::size_t c = 0; c < 6; ++c) batch.column[c] = ends[c];
+    batch.id = ids;
+    batch.end = size;
+    batch.mode = HitMode::query_first;
+    batch.filter = view.filter;
+    return batch;
+  }
+};
+
+}  // namespace
+
+bool PartitionState::stays_calm(const PairBuffer& out, const PairOptions& options,
+                                const EventWriter* events) const noexcept {
+  // More than some in a hundred that came, went, or got another filter are better asked together.
+  const std::size_t disturbed = rows.moved().ids().size();
+  return deferred_.active() && 16 * disturbed <= rows.size() &&
+         options.predicate.accept == nullptr && can_update_in_place(out, options, events) &&
+         LinkedPairs::is_linked(out);
+}
+
+// After a frame in which all pairs were asked for. Without the memory it needs nothing begins.
+void PartitionState::begin_calm(PairBuffer& out, const PairOptions& options) const noexcept {
+  Calm& calm = pairs_.calm;
+  const bool can = options.order == Order::fast && options.predicate.accept == nullptr &&
+                   rows.size() >= kFewestObjects && is_exact();
+  if (!can || !calm.seems_at_rest(rows)) return;
+  LinkedPairs linked(out);
+  const float margin = calm.margin();
+  if (linked.can_link() && linked.link(rows.keys().slot_count()) && deferred_.begin(rows, margin) &&
+      watch_all()) {
+    return;
+  }
+  calm.end();
+  deferred_.drop();
+}
+
+bool PartitionState::watch_all() const noexcept {
+  // Some rows at a time, so that what they find takes little memory.
+  constexpr std::size_t kAtOnce = 1024;
+  for (std::size_t begin = 0; begin < rows.pool().rows(); begin += kAtOnce) {
+    if (!watch_rows(begin, std::min(rows.pool().rows(), begin + kAtOnce))) return false;
+  }
+  return true;
+}
+
+bool PartitionState::watch_rows(std::size_t begin, std::size_t end) const noexcept {
+  RowSelection& asking = rows.selection();
+  near_.clear();
+  if (!asking.start(end - begin)) return false;
+  for (std::size_t row = begin; row < end; ++row) {
+    if (rows.pool().ids()[row] != kNoObject) asking.add(row);
+  }
+  std::uint64_t tests = 0;
+  if (ask_near(asking.entries(), near_, tests) != Status::ok) return false;
+  for (const Pair& pair : near_) {
+    // Of two that find each other the one with the lesser id counts.
+    if (pair.first >= pair.second || !is_watched(pair)) continue;
+    const bool met = given_overlap(deferred_.given()[pair.first], deferred_.given()[pair.second]);
+    if (!pairs_.calm.watched.push_back({pair.first, pair.second, met})) return false;
+  }
+  return true;
+}
+
+// True unless boxes so near to the stored ones overlap for sure.
+bool PartitionState::is_watched(const Pair& pair) const noexcept {
+  const DeferredBoxes::Box& a = deferred_.stored()[pair.first];
+  const DeferredBoxes::Box& b = deferred_.stored()[pair.second];
+  const double reach = reach_of(deferred_.margin());
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(add_up(finite(a.min[axis]), reach) <= finite(b.max[axis])) ||
+        !(add_up(finite(b.min[axis]), reach) <= finite(a.max[axis]))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Appends (object, other) for all whose stored boxes come within reach of each other, for the rows
+// that ask.
+Status PartitionState::ask_near(std::span<const std::uint32_t> asking, PairBuffer& out,
+                                std::uint64_t& tests) const {
+  const std::size_t count = asking.size();
+  const double reach = reach_of(deferred_.margin());
+  const Execution execution = rows.execution_for(count);
+  PairWriter writer(out, execution);
+  const std::size_t tasks = (count + kNearQueriesPerTask - 1) / kNearQueriesPerTask;
+  const Status status = writer.append(tasks, [&](std::size_t task, PairSink& sink) {
+    const RowView view = rows.view();
+    NearBatch near;
+    const std::size_t end = std::min(count, (task + 1) * kNearQueriesPerTask);
+    for (std::size_t i = task * kNearQueriesPerTask; i < end; ++i) {
+      near.add(view, asking[i], reach);
+    }
+    return index.query(near.batch(view), sink);
+  });
+  tests += writer.tests();
+  return status;
+}
+
+Status PartitionState::calm_self_pairs(PairBuffer& out, EventWriter* events) const {
+  pairs_.incremental_queries.fetch_add(1, std::memory_order_relaxed);
+  pairs_.calm.note_frame();
+  std::uint64_t tests = 0;
+  const std::span<const ObjectId> moved = rows.moved().ids();
+  LinkedPairs linked(out);
+  const std::size_t kept = out.size();
+  if (!moved.empty()) {
+    if (!linked.link(rows.keys().slot_count()) || !list_moved()) return Status::out_of_memory;
+    const std::span<const std::uint32_t> asking = rows.selection().entries();
+    if (const Status status = ask_near(asking, out, tests); status != Status::ok) return status;
+    if (!keep_near(out, kept)) return Status::out_of_memory;
+  }
+  pairs_.last_tests.store(tests, std::memory_order_relaxed);
+  if (events != nullptr) events->find_renewed(moved);
+  const auto renewed = [&](ObjectId id) { return events != nullptr && events->is_renewed(id); };
+  if (!linked.compare(kept, moved, rows.moved().bits(), renewed) || !note_watched(linked) ||
+      !linked.sort() ||
+      (events != nullptr && !events->tell(out, linked.begun(), linked.ended(), moved))) {
+    return Status::out_of_memory;
+  }
+  return linked.apply() ? Status::ok : Status::out_of_memory;
+}
+
+// Of what the objects that moved have found keeps the pairs that overlap, in the order of ids, and
+// watches those that may begin or end.
+bool PartitionState::keep_near(PairBuffer& out, std::size_t kept) const noexcept {
+  Column<Calm::Watched>& watched = pairs_.calm.watched;
+  const std::uint64_t* const bits = rows.moved().bits();
+  const auto has_moved = [&](ObjectId id) { return (bits[id >> 6U] >> (id & 63U) & 1U) != 0; };
+  Calm::Watched* const left = std::remove_if(
+      watched.begin(), watched.end(),
+      [&](const Calm::Watched& pair) { return has_moved(pair.first) || has_moved(pair.second); });
+  watched.set_size(static_cast<std::size_t>(left - watched.begin()));
+  std::size_t size = kept;
+  Pair* const pairs = PairTracker::data(out);
+  for (std::size_t i = kept; i < out.size(); ++i) {
+    const auto [asked, other] = pairs[i];
+    if (asked == other || (other < asked && has_moved(other))) continue;
+    const Pair pair{std::min(asked, other), std::max(asked, other)};
+    const bool met = given_overlap(deferred_.given()[pair.first], deferred_.given()[pair.second]);
+    if (is_watched(pair) && !watched.push_back({pair.first, pair.second, met})) return false;
+    if (met) pairs[size++] = pair;
+  }
+  PairTracker::shorten(out, size);
+  return true;
+}
+
+// Watched pairs that begin or end.
+bool PartitionState::note_watched(LinkedPairs& linked) const noexcept {
+  const DeferredBoxes::Box* const given = deferred_.given();
+  for (Calm::Watched& pair : pairs_.calm.watched) {
+    const bool meet = given_overlap(given[pair.first], given[pair.second]);
+    if (meet == pair.met) continue;
+    pair.met = meet;
+    if (!(meet ? linked.begin({pair.first, pair.second}) : linked.end({pair.first, pair.second}))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace winnow

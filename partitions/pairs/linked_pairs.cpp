@@ -1,0 +1,171 @@
+#include "partitions/pairs/linked_pairs.h"
+
+#include "partitions/pairs/pair_tracker.h"
+
+#include <algorithm>
+#include <bit>
+#include <functional>
+
+namespace winnow {
+namespace {
+
+// An object that moved costs about as much as a pass over this many pairs.
+constexpr std::size_t kPairsPassed = 64;
+// No pair: both of its ids are kNoObject.
+constexpr std::uint64_t kTaken = ~std::uint64_t{0};
+
+// Found pairs by hash: a table of a power of two, at most half full, in which a pair stands at the
+// first free entry from its own on.
+struct FoundTable {
+  std::uint64_t* entry;
+  std::size_t mask;
+  unsigned shift;
+
+  explicit FoundTable(Column<std::uint64_t>& entries) noexcept
+      : entry(entries.data()),
+        mask(entries.size() - 1),
+        shift(64U - static_cast<unsigned>(std::bit_width(mask))) {}
+
+  // Where the pair stands, or else would: an entry that is 0, which is no pair either.
+  [[nodiscard]] std::uint64_t& find(std::uint64_t pair) const noexcept {
+    std::size_t at = pair * 0x9E3779B97F4A7C15U >> shift;
+    while (entry[at] != 0 && entry[at] != pair) at = (at + 1) & mask;
+    return entry[at];
+  }
+};
+
+// Never 0: first < second.
+constexpr std::uint64_t as_number(const Pair& pair) noexcept {
+  return static_cast<std::uint64_t>(pair.first) << 32U | pair.second;
+}
+
+}  // namespace
+
+bool LinkedPairs::pays(std::size_t moved) const noexcept {
+  return kPairsPassed * moved <= out_.size() && can_link();
+}
+
+bool LinkedPairs::is_due(std::size_t moved) const noexcept {
+  return out_.state_ != PairBuffer::State::loose && pays(moved);
+}
+
+void LinkedPairs::loosen(std::size_t moved) noexcept {
+  out_.state_ = pays(moved) ? PairBuffer::State::few_moved : PairBuffer::State::loose;
+}
+
+bool LinkedPairs::cover_objects(std::size_t slots) noexcept {
+  Column<std::uint32_t>& heads = out_.heads_;
+  const std::size_t known = heads.size();
+  if (slots <= known) return true;
+  if (!heads.resize(slots)) return false;
+  std::fill(heads.begin() + known, heads.end(), kNoPlace);
+  return true;
+}
+
+bool LinkedPairs::link(std::size_t slots) noexcept {
+  if (out_.state_ == PairBuffer::State::linked) return cover_objects(slots);
+  out_.heads_.clear();
+  if (!cover_objects(slots) || !out_.links_.resize(out_.size())) return false;
+  for (std::uint32_t i = 0; i < out_.size(); ++i) enter(i);
+  out_.state_ = PairBuffer::State::linked;
+  return true;
+}
+
+void LinkedPairs::enter(std::uint32_t index) noexcept {
+  for (std::uint32_t side = 0; side < 2; ++side) {
+    std::uint32_t& head = out_.heads_[object_at(out_.pairs_[index], side)];
+    const std::uint32_t place = 2 * index + side;
+    out_.links_[index].next[side] = head;
+    out_.links_[index].before[side] = kNoPlace;
+    if (head != kNoPlace) out_.links_[head >> 1U].before[head & 1U] = place;
+    head = place;
+  }
+}
+
+void LinkedPairs::leave(std::uint32_t index) noexcept {
+  for (std::uint32_t side = 0; side < 2; ++side) {
+    const std::uint32_t next = out_.links_[index].next[side];
+    const std::uint32_t before = out_.links_[index].before[side];
+    std::uint32_t& from = before == kNoPlace ? out_.heads_[object_at(out_.pairs_[index], side)]
+                                             : out_.links_[before >> 1U].next[before & 1U];
+    from = next;
+    if (next != kNoPlace) out_.links_[next >> 1U].before[next & 1U] = before;
+  }
+}
+
+void LinkedPairs::move(std::uint32_t from, std::uint32_t to) noexcept {
+  out_.pairs_[to] = out_.pairs_[from];
+  out_.links_[to] = out_.links_[from];
+  for (std::uint32_t side = 0; side < 2; ++side) {
+    const std::uint32_t place = 2 * to + side;
+    const std::uint32_t next = out_.links_[to].next[side];
+    const std::uint32_t before = out_.links_[to].before[side];
+    if (before == kNoPlace) {
+      out_.heads_[object_at(out_.pairs_[to], side)] = place;
+    } else {
+      out_.links_[before >> 1U].next[before & 1U] = place;
+    }
+    if (next != kNoPlace) out_.links_[next >> 1U].before[next & 1U] = place;
+  }
+}
+
+bool LinkedPairs::table_found() noexcept {
+  Column<std::uint64_t>& table = out_.page_table_;
+  const std::span<const Pair> found = begun();
+  if (!table.resize(std::bit_ceil(2 * found.size() + 2))) return false;
+  std::fill(table.begin(), table.end(), 0);
+  const FoundTable entries(table);
+  for (const Pair& pair : found) entries.find(as_number(pair)) = as_number(pair);
+  return true;
+}
+
+// True if the pair was found, and then only once.
+bool LinkedPairs::take_found(const Pair& pair) noexcept {
+  std::uint64_t& entry = FoundTable(out_.page_table_).find(as_number(pair));
+  if (entry == 0) return false;
+  entry = kTaken;
+  return true;
+}
+
+// What nobody has taken began.
+void LinkedPairs::keep_begun() noexcept {
+  std::size_t size = kept_;
+  for (const std::uint64_t entry : out_.page_table_) {
+    if (entry == 0 || entry == kTaken) continue;
+    out_.pairs_[size++] = {static_cast<ObjectId>(entry >> 32U), static_cast<ObjectId>(entry)};
+  }
+  out_.pairs_.set_size(size);
+}
+
+// Of the lists of both objects, which are walked side by side, the shorter one decides the cost.
+bool LinkedPairs::end(const Pair& pair) noexcept {
+  std::uint32_t place[2] = {out_.heads_[pair.first], out_.heads_[pair.second]};
+  for (std::uint32_t side = 0;; side ^= 1U) {
+    const std::uint32_t index = place[side] >> 1U;
+    if (out_.pairs_[index] == pair) return out_.places_.push_back(index);
+    place[side] = out_.links_[index].next[place[side] & 1U];
+  }
+}
+
+bool LinkedPairs::sort() noexcept {
+  std::ranges::sort(out_.places_, std::greater<>());
+  return PairTracker::sort(out_, out_.heads_.size(), kept_, out_.size());
+}
+
+bool LinkedPairs::apply() noexcept {
+  const std::size_t begun_count = out_.size() - kept_;
+  const std::size_t persisting = kept_ - out_.places_.size();
+  if (!out_.links_.resize(std::max(kept_, persisting + begun_count))) return false;
+  auto last = static_cast<std::uint32_t>(kept_);
+  for (const std::uint32_t index : out_.places_) {
+    leave(index);
+    if (index != --last) move(last, index);
+  }
+  std::copy_n(out_.pairs_.begin() + kept_, begun_count, out_.pairs_.begin() + last);
+  out_.pairs_.set_size(persisting + begun_count);
+  for (std::size_t i = persisting; i < out_.size(); ++i) enter(static_cast<std::uint32_t>(i));
+  out_.links_.set_size(out_.size());
+  return true;
+}
+
+}  // namespace winnow

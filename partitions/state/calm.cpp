@@ -1,0 +1,89 @@
+#include "partitions/state/calm.h"
+
+#include "core/memory/columns.h"
+
+#include <array>
+#include <cfloat>
+#include <cmath>
+
+namespace winnow {
+
+bool Calm::seems_at_rest(const Rows& rows) noexcept {
+  if (waiting_ != 0) {
+    --waiting_;
+    return false;
+  }
+  if (looks_ == 0 || sample_.empty()) {
+    looks_ = take_sample(rows) ? 1 : 0;
+    return false;
+  }
+  // Who drifts gets three times as far in three frames, who wanders at random the root of that.
+  constexpr float kNoFurther = 1.4F;
+  const float step = step_of_sample(rows);
+  if (looks_ == 1) first_ = step;
+  furthest_ = looks_ == 1 ? step : std::max(furthest_, step);
+  const bool rests = step <= kNoFurther * first_ + kLeast * edge_ && margin() <= kMost * edge_;
+  looks_ = rests ? looks_ + 1 : 0;
+  return looks_ > kLooks;
+}
+
+bool Calm::take_sample(const Rows& rows) noexcept {
+  sample_.clear();
+  if (!sample_.reserve(kSample)) return false;
+  std::array<float, kSample> edges;
+  const std::size_t count = rows.pool().rows();
+  for (std::size_t s = 0; s < kSample; ++s) {
+    const ObjectId id = rows.pool().ids()[count * s / kSample];
+    Aabb box;
+    const Key key = rows.keys().key_of(id);
+    if (rows.bounds(key, box) != Status::ok) continue;
+    edges[sample_.size()] = (box.max - box.min).maxCoeff();
+    (void)sample_.push_back(
+        {key, {box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}});
+  }
+  if (sample_.empty()) return false;
+  const auto middle = edges.begin() + sample_.size() / 2;
+  std::nth_element(edges.begin(), middle, edges.begin() + sample_.size());
+  edge_ = *middle;
+  return edge_ < FLT_MAX;
+}
+
+// How far all but some in a hundred are from where they were. Those that are gone, or reach to
+// infinity, say nothing.
+float Calm::step_of_sample(const Rows& rows) const noexcept {
+  std::array<float, kSample> steps;
+  std::size_t size = 0;
+  for (const Sampled& old : sample_) {
+    Aabb box;
+    if (rows.bounds(old.key, box) != Status::ok) continue;
+    float step = 0.0F;
+    for (int axis = 0; axis < 3; ++axis) {
+      step = std::max(step, std::abs(box.min[axis] - old.min[axis]));
+      step = std::max(step, std::abs(box.max[axis] - old.max[axis]));
+    }
+    if (step < FLT_MAX) steps[size++] = step;
+  }
+  if (size == 0) return FLT_MAX;
+  const auto most = steps.begin() + (size - 1 - size / 32);
+  std::nth_element(steps.begin(), most, steps.begin() + size);
+  return *most;
+}
+
+void Calm::end() noexcept {
+  wait_ = frames_ < kWorthwhile ? std::min(2 * wait_ + 4, kLongest) : 0;
+  waiting_ = wait_;
+  frames_ = 0;
+  looks_ = 0;
+  watched.clear();
+}
+
+void Calm::release() noexcept {
+  release_columns(watched, sample_);
+  looks_ = 0;
+}
+
+Bytes Calm::bytes() const noexcept {
+  return bytes_of(watched, sample_);
+}
+
+}  // namespace winnow
