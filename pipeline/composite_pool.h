@@ -73,6 +73,8 @@ class WINNOW_API CompositePool final : public MidPhase {
               NarrowResult& result) const override;
   void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
              const PrimitiveVisitor& visitor) const override;
+  void visit_ray(ShapeId id, const Pose& pose, const ShapeRay& ray,
+                 const RayVisitor& visitor) const override;
   void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
                   const PrimitiveVisitor& visitor) const override;
   [[nodiscard]] Footprint footprint() const noexcept override;

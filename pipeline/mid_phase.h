@@ -9,6 +9,7 @@
 #include <winnow/core/status.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
+#include <winnow/pipeline/shape_rays.h>
 
 #include <cstdint>
 #include <memory_resource>
@@ -72,6 +73,15 @@ struct PrimitiveVisitor {
   void* context = nullptr;
 };
 
+/// Is told what a ray meets by `limit`, and gives back the limit to go on with, as above.
+struct RayVisitor {
+  /// Of a triangle that the ray meets for certain.
+  double (*meet)(void* context, std::uint32_t part, const ShapeHit& hit, double limit) = nullptr;
+  /// Of a primitive that it may meet.
+  double (*look)(void* context, const Primitive& primitive, double limit) = nullptr;
+  void* context = nullptr;
+};
+
 /// A box that moves by t * direction for t in [0, max_t]; max_t = 0 for one that stands. In double,
 /// in the axes of the world.
 struct BoxSweep {
@@ -115,6 +125,10 @@ class WINNOW_API MidPhase {
   /// does. O(log n + met).
   virtual void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
                      const PrimitiveVisitor& visitor) const = 0;
+  /// Tells it of every primitive that the ray, which is valid, meets or may meet, roughly in the
+  /// order in which it does.
+  virtual void visit_ray(ShapeId id, const Pose& pose, const ShapeRay& ray,
+                         const RayVisitor& visitor) const = 0;
   /// Shows it every primitive whose box may be no farther than `limit` from that of `from`, which
   /// stands, roughly the nearest first.
   virtual void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,

@@ -152,9 +152,11 @@ Status expand(const Composites* all, const ShapeTables& tables, const Bodies& bo
 void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
             NarrowResult& result) noexcept;
 
-/// See MidPhase::visit and visit_near. `id` is there, `pose` is valid.
+/// See MidPhase::visit, visit_ray and visit_near. `id` is there, `pose` is valid.
 void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,
            const PrimitiveVisitor& visitor);
+void visit_ray(const Composites& all, ShapeId id, const Pose& pose, const ShapeRay& ray,
+               const RayVisitor& visitor);
 void visit_near(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& from,
                 double limit, const PrimitiveVisitor& visitor);
 

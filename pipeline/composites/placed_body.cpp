@@ -75,6 +75,10 @@ PlacedBody::PlacedBody(const Composites& all, const ShapeTables& pool, ShapeId s
   }
 }
 
+PlacedBody PlacedBody::at(const Composites& all, ShapeId shape, const Pose& pose) noexcept {
+  return {all, all.shapes.tables(), shape, pose, Eigen::Map<const Vec>(pose.position)};
+}
+
 Box PlacedBody::box_in(const PlacedBody& other, double margin) const noexcept {
   if (kind == Kind::convex) return box_of(part(0), other, margin);
   const Vec offset = other.to_local * finite(position - other.position);
@@ -100,23 +104,46 @@ Quaternion PlacedBody::part_turn(std::uint32_t number) const noexcept {
   return product(turn, tame(compound->children[number].pose.orientation));
 }
 
-bool PlacedBody::corners(std::uint32_t number, Corners& out) const noexcept {
-  Vec local[3];
-  if (kind == Kind::mesh) {
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t corner = mesh->corner[k][number];
-      for (int axis = 0; axis < 3; ++axis) {
-        local[k][axis] = static_cast<double>(mesh->vertex[axis][corner]);
-      }
-    }
-  } else {
+bool PlacedBody::own_corners(std::uint32_t number, double (&corner)[3][3]) const noexcept {
+  if (kind == Kind::field) {
     TriangleShape triangle;
     if (!field->triangle(number, triangle)) return false;
-    for (int k = 0; k < 3; ++k) local[k] = Eigen::Map<const Vec>(triangle.vertex[k]);
+    std::copy_n(&triangle.vertex[0][0], 9, &corner[0][0]);
+    return true;
   }
-  out.first = to_world * local[0] + position;
-  out.edge[0] = to_world * (local[1] - local[0]);
-  out.edge[1] = to_world * (local[2] - local[0]);
+  for (int k = 0; k < 3; ++k) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      corner[k][axis] = static_cast<double>(coordinate(*mesh, mesh->corner[k][number], axis));
+    }
+  }
+  return true;
+}
+
+bool PlacedBody::corners(std::uint32_t number, Corners& out) const noexcept {
+  double corner[3][3];
+  if (!own_corners(number, corner)) return false;
+  const Vec first = Vec::Map(corner[0]);
+  out.first = to_world * first + position;
+  for (int k = 0; k < 2; ++k) out.edge[k] = to_world * (Vec::Map(corner[k + 1]) - first);
+  return true;
+}
+
+bool PlacedBody::primitive(std::uint32_t number, Primitive& out) const noexcept {
+  out.part = shown_number(number);
+  if (is_surface()) {
+    Corners placed;
+    if (!corners(number, placed)) return false;
+    out.shape = ShapeId::of(ShapeKind::triangle, 0);
+    out.pose = pose_of(placed.first, {1.0, 0.0, 0.0, 0.0});
+    out.triangle = placed.triangle();
+    return true;
+  }
+  const PlacedPart child = part(number);
+  out.shape = child.shape;
+  out.pose = pose_of(child.position, part_turn(number));
+  if (child.shape.kind() == ShapeKind::triangle) {
+    out.triangle = tables.triangles[child.shape.index()];
+  }
   return true;
 }
 

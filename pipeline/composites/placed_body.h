@@ -45,6 +45,10 @@ struct PlacedBody {
   PlacedBody(const Composites& all, const ShapeTables& tables, ShapeId shape, const Pose& pose,
              const Vec& at) noexcept;
 
+  /// Where its pose says.
+  [[nodiscard]] static PlacedBody at(const Composites& all, ShapeId shape,
+                                     const Pose& pose) noexcept;
+
   [[nodiscard]] bool is_surface() const noexcept { return kind >= Kind::mesh; }
   /// Of all of this, grown by `margin` in the world, in the frame of `other`.
   [[nodiscard]] Box box_in(const PlacedBody& other, double margin) const noexcept;
@@ -52,6 +56,10 @@ struct PlacedBody {
   [[nodiscard]] Quaternion part_turn(std::uint32_t number) const noexcept;
   /// False for a triangle of a hole.
   [[nodiscard]] bool corners(std::uint32_t number, Corners& out) const noexcept;
+  /// The same by itself, with its own position; false for a triangle of a hole.
+  [[nodiscard]] bool primitive(std::uint32_t number, Primitive& out) const noexcept;
+  /// The corners of a triangle in the body's own frame; false for one of a hole.
+  [[nodiscard]] bool own_corners(std::uint32_t number, double (&corner)[3][3]) const noexcept;
   /// As callers know it: see Primitive::part.
   [[nodiscard]] std::uint32_t shown_number(std::uint32_t number) const noexcept;
   /// Active edges and corners of a triangle: see PrimitivePairs::active_edges.

@@ -13,28 +13,12 @@ namespace {
 
 /// Makes primitives, in the world, of the numbers that a traversal finds.
 struct Guide {
-  const Composites& all;
   const PlacedBody& body;
   const PrimitiveVisitor& visitor;
 
   [[nodiscard]] double show(std::uint32_t number, double limit) const {
     Primitive primitive;
-    if (body.is_surface()) {
-      Corners corners;
-      if (!body.corners(number, corners)) return limit;
-      primitive.shape = ShapeId::of(ShapeKind::triangle, 0);
-      primitive.part = body.shown_number(number);
-      primitive.pose = pose_of(corners.first, {1.0, 0.0, 0.0, 0.0});
-      primitive.triangle = corners.triangle();
-    } else {
-      const PlacedPart part = body.part(number);
-      primitive.shape = part.shape;
-      primitive.part = body.shown_number(number);
-      primitive.pose = pose_of(part.position, body.part_turn(number));
-      if (part.shape.kind() == ShapeKind::triangle) {
-        primitive.triangle = all.shapes.tables().triangles[part.shape.index()];
-      }
-    }
+    if (!body.primitive(number, primitive)) return limit;
     return visitor.visit(visitor.context, primitive, limit);
   }
 
@@ -79,10 +63,6 @@ void show_in_order(const Guide& guide, double limit, Measure&& measure) {
   }
 }
 
-[[nodiscard]] PlacedBody placed_at(const Composites& all, ShapeId id, const Pose& pose) noexcept {
-  return PlacedBody(all, all.shapes.tables(), id, pose, Eigen::Map<const Vec>(pose.position));
-}
-
 /// A box of the world in a frame at the body's position: grown by what rounding of either may take.
 [[nodiscard]] Box box_in(const PlacedBody& body, const BoxSweep& sweep,
                          const Mat& to_local) noexcept {
@@ -96,8 +76,8 @@ void show_in_order(const Guide& guide, double limit, Measure&& measure) {
 
 void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,
            const PrimitiveVisitor& visitor) {
-  const PlacedBody body = placed_at(all, id, pose);
-  const Guide guide{all, body, visitor};
+  const PlacedBody body = PlacedBody::at(all, id, pose);
+  const Guide guide{body, visitor};
   // What is never met is met at infinity: not before any limit.
   const double max_t = std::min(sweep.max_t, std::numeric_limits<double>::max());
   Box box = box_in(body, sweep, body.to_local);
@@ -128,8 +108,8 @@ void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& 
 
 void visit_near(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& from,
                 double limit, const PrimitiveVisitor& visitor) {
-  const PlacedBody body = placed_at(all, id, pose);
-  const Guide guide{all, body, visitor};
+  const PlacedBody body = PlacedBody::at(all, id, pose);
+  const Guide guide{body, visitor};
   // Turned, but in the lengths of the world.
   const Box box = box_in(body, from, body.rotation.transpose());
   if (body.kind == PlacedBody::Kind::mesh) {

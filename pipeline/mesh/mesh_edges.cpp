@@ -18,16 +18,17 @@ std::uint32_t bits_of(float x) {
 
 std::size_t hash(const MeshView& mesh, std::uint32_t vertex) {
   std::uint64_t h = 0;
-  for (const float* column : mesh.vertex) {
-    h = (h ^ bits_of(column[vertex])) * 0x9E3779B97F4A7C15ULL;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    h = (h ^ bits_of(coordinate(mesh, vertex, axis))) * 0x9E3779B97F4A7C15ULL;
     h ^= h >> 32U;
   }
   return static_cast<std::size_t>(h);
 }
 
 bool same_place(const MeshView& mesh, std::uint32_t u, std::uint32_t v) {
-  return mesh.vertex[0][u] == mesh.vertex[0][v] && mesh.vertex[1][u] == mesh.vertex[1][v] &&
-         mesh.vertex[2][u] == mesh.vertex[2][v];
+  return coordinate(mesh, u, 0) == coordinate(mesh, v, 0) &&
+         coordinate(mesh, u, 1) == coordinate(mesh, v, 1) &&
+         coordinate(mesh, u, 2) == coordinate(mesh, v, 2);
 }
 
 /// place[v]: the lowest number of a vertex at the place of v. `table` is a power of two in size.
@@ -153,7 +154,7 @@ constexpr std::uint32_t kEdgeBits = 7U << kActiveEdgeShift;
 void read(const MeshView& mesh, std::size_t slot, std::size_t corner, double (&point)[3]) {
   const std::uint32_t vertex = mesh.corner[corner][slot];
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    point[axis] = static_cast<double>(mesh.vertex[axis][vertex]);
+    point[axis] = static_cast<double>(coordinate(mesh, vertex, axis));
   }
 }
 

@@ -27,6 +27,26 @@ inline Mask16 present(std::uint32_t count, std::uint32_t first_lane) {
   return box;
 }
 
+/// Lane l is the point of three floats at base + 3 * index[l]. One float behind a point is read.
+[[gnu::always_inline]] inline void load_points(const float* base, const std::uint32_t* index,
+                                               Floats (&point)[3]) {
+#if defined(WINNOW_ISA_IS_neon64)
+  alignas(64) float stage[3][kLanes];
+  for (int lane = 0; lane < kLanes; ++lane) {
+    for (int k = 0; k < 3; ++k) stage[k][lane] = base[std::size_t{3} * index[lane] + k];
+  }
+  for (int k = 0; k < 3; ++k) point[k] = Floats::load(stage[k]);
+#else
+  const auto at = [&](int lane) { return base + std::size_t{3} * index[lane]; };
+  for (int part = 0; part < Floats::kParts; ++part) {
+    const BoxQuads quads(at, part * Floats::kPartLanes, 0);
+    point[0].part[part] = BoxQuads::even(quads.low01, quads.low23);
+    point[1].part[part] = BoxQuads::odd(quads.low01, quads.low23);
+    point[2].part[part] = BoxQuads::even(quads.high01, quads.high23);
+  }
+#endif
+}
+
 /// The corners of the triangles of a leaf, by corner and axis.
 struct Corners16 {
   Floats at[3][3];
@@ -35,8 +55,7 @@ struct Corners16 {
 [[gnu::always_inline]] inline Corners16 load_corners(const MeshView& mesh, std::uint32_t leaf) {
   Corners16 corners;
   for (int k = 0; k < 3; ++k) {
-    const std::uint32_t* index = mesh.corner[k] + std::size_t{leaf} * kMeshFanout;
-    for (int axis = 0; axis < 3; ++axis) corners.at[k][axis] = gather(mesh.vertex[axis], index);
+    load_points(mesh.vertex, mesh.corner[k] + std::size_t{leaf} * kMeshFanout, corners.at[k]);
   }
   return corners;
 }

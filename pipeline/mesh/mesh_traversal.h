@@ -96,11 +96,36 @@ struct MeshNearJob {
   double scale[3];
 };
 
+/// A ray on its way through the nodes. `tau` is time from where it comes to the mesh, in another
+/// unit: it leaves the mesh's box before tau = 2.
+struct MeshRayJob {
+  /// Where the ray is at tau = 0, and by how much it moves, in the mesh's lengths.
+  double origin[3];
+  double direction[3];
+  /// tau = (t - entry) * pace.
+  double entry;
+  double pace;
+  /// A bound of q units is passed at q * inverse + near, or + far, where the ray enters or leaves:
+  /// not later, or earlier, than it is.
+  float inverse[3];
+  float near[3];
+  float far[3];
+  bool is_backward[3];
+  /// The axis along which it moves the fastest, and by how much it moves along the next two for
+  /// each unit there.
+  std::uint32_t fastest;
+  float shear[2];
+  /// The true ray may be so far from this one.
+  float slack;
+};
+
 struct MeshKernels {
   void (*overlap)(const MeshView& mesh, const MeshBoxJob& job, SlotSink& out);
   void (*pairs)(const MeshView& a, const MeshView& b, const MeshPairJob& job, SlotPairSink& out);
   void (*sweep)(const MeshView& mesh, const MeshSweepJob& job, double limit,
                 const SlotVisitor& visitor);
+  void (*rays)(const MeshView& mesh, const MeshRayJob& job, double limit,
+               const SlotVisitor& visitor);
   void (*near)(const MeshView& mesh, const MeshNearJob& job, double limit,
                const SlotVisitor& visitor);
 };

@@ -1,6 +1,7 @@
 #include "pipeline/mesh/mesh_descent.wide.h"
 #include "pipeline/mesh/mesh_overlaps.wide.h"
 #include "pipeline/mesh/mesh_pairs.wide.h"
+#include "pipeline/mesh/mesh_rays.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::mesh {
@@ -26,9 +27,8 @@ void show_near(const MeshView& mesh, const MeshNearJob& job, double limit,
 }  // namespace WINNOW_ISA_NAME::mesh
 
 extern const MeshKernels WINNOW_KERNEL_TABLE(mesh_kernels) = {
-    WINNOW_ISA_NAME::mesh::find_overlaps,
-    WINNOW_ISA_NAME::mesh::find_pairs,
-    WINNOW_ISA_NAME::mesh::show_swept,
+    WINNOW_ISA_NAME::mesh::find_overlaps, WINNOW_ISA_NAME::mesh::find_pairs,
+    WINNOW_ISA_NAME::mesh::show_swept,    WINNOW_ISA_NAME::mesh::show_on_ray,
     WINNOW_ISA_NAME::mesh::show_near,
 };
 

@@ -34,8 +34,7 @@ void fit_mesh_levels(MeshView& view, std::uint16_t* words, float low[3], float h
 
 /// The order of triangles by which near ones share leaves: slot i is triangle order[i]. False if
 /// memory is refused. Corners are those of the caller's triangles.
-[[nodiscard]] bool order_triangles(const float* const vertex[3],
-                                   const std::uint32_t* const corner[3],
+[[nodiscard]] bool order_triangles(const float* vertex, const std::uint32_t* const corner[3],
                                    Column<std::uint32_t>& order, const Execution& execution);
 
 }  // namespace winnow

@@ -2,6 +2,7 @@
 
 // Plain structs: kernel files include this.
 
+#include <cstddef>
 #include <cstdint>
 
 namespace winnow {
@@ -24,7 +25,9 @@ inline constexpr std::uint32_t kMaxNodeBound = 65535;
 /// holds slots [16 i, 16 i + 16). Columns of slots are padded to a multiple of 16 by copies of the
 /// last one, levels by empty boxes.
 struct MeshView {
-  const float* vertex[3] = {};
+  /// x, y and z of every vertex, one vertex after another, and one number more: vertices may be
+  /// read four numbers at a time.
+  const float* vertex = nullptr;
   std::uint32_t vertex_count = 0;
   /// Numbers of the corners, by slot.
   const std::uint32_t* corner[3] = {};
@@ -41,6 +44,11 @@ struct MeshView {
   std::uint32_t count[kMaxMeshLevels] = {};
   const std::uint16_t* node[kMaxMeshLevels][6] = {};
 };
+
+[[nodiscard]] inline float coordinate(const MeshView& mesh, std::uint32_t vertex,
+                                      std::size_t axis) {
+  return mesh.vertex[std::size_t{3} * vertex + axis];
+}
 
 /// That of a mesh with nothing built has no triangles.
 [[nodiscard]] const MeshView& view_of(const TriangleMesh& mesh) noexcept;

@@ -13,7 +13,6 @@
 namespace winnow {
 namespace {
 
-// Instructions that gather take signed numbers.
 constexpr std::size_t kMaxVertices = std::numeric_limits<std::int32_t>::max();
 
 bool has_columns(const PointView& points) {
@@ -65,7 +64,7 @@ struct TriangleMesh::State {
   void link() noexcept;
   void fit(const Execution& execution) noexcept;
 
-  Column<float> vertex[3];
+  Column<float> vertex;
   Column<std::uint32_t> corner[3];
   Column<std::uint32_t> triangle;
   Column<std::uint16_t> nodes;
@@ -78,7 +77,7 @@ struct TriangleMesh::State {
 };
 
 TriangleMesh::State::State(std::pmr::memory_resource* memory) noexcept
-    : vertex{Column<float>(memory), Column<float>(memory), Column<float>(memory)},
+    : vertex(memory),
       corner{Column<std::uint32_t>(memory), Column<std::uint32_t>(memory),
              Column<std::uint32_t>(memory)},
       triangle(memory),
@@ -116,9 +115,9 @@ Status TriangleMesh::State::take(const PointView& vertices, const IndexView& tri
                                        Column<std::uint32_t>(memory)};
   bool room = order.resize(count) && triangle.resize(whole_leaves(count)) &&
               nodes.resize(plan_mesh_levels(view));
+  room = room && vertex.resize(3 * vertices.count + 1);
   for (std::size_t k = 0; k < 3; ++k) {
-    room = room && vertex[k].resize(vertices.count) && corner[k].resize(whole_leaves(count)) &&
-           unsorted[k].resize(count);
+    room = room && corner[k].resize(whole_leaves(count)) && unsorted[k].resize(count);
   }
   if (!room) return Status::out_of_memory;
   place_vertices(vertices);
@@ -162,18 +161,19 @@ void TriangleMesh::State::place_vertices(const PointView& vertices) noexcept {
     double square = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto x = static_cast<float>(vertices.coordinate(i, axis));
-      vertex[axis][i] = x;
+      vertex[3 * i + axis] = x;
       square += static_cast<double>(x) * static_cast<double>(x);
     }
     farthest = std::max(farthest, square);
   }
+  vertex[3 * vertices.count] = 0.0F;
   // Three roundings of the sum and one of the root, each of half an ulp.
   radius = std::sqrt(farthest) * (1.0 + 4.0 * std::numeric_limits<double>::epsilon());
 }
 
 void TriangleMesh::State::link() noexcept {
+  view.vertex = vertex.data();
   for (std::size_t k = 0; k < 3; ++k) {
-    view.vertex[k] = vertex[k].data();
     view.corner[k] = corner[k].data();
   }
   view.triangle = triangle.data();
@@ -210,9 +210,9 @@ Footprint TriangleMesh::footprint() const noexcept {
   Footprint result;
   if (state_ == nullptr) return result;
   for (std::size_t k = 0; k < 3; ++k) {
-    result.bounds += state_->vertex[k].bytes();
     result.keys += state_->corner[k].bytes();
   }
+  result.bounds += state_->vertex.bytes();
   result.keys += state_->triangle.bytes();
   result.structure += {sizeof(State), sizeof(State)};
   result.structure += state_->nodes.bytes();

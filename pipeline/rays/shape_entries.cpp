@@ -1,4 +1,5 @@
 #include "pipeline/rays/shape_entries.h"
+#include "pipeline/shapes/accurate_cross.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -262,20 +263,6 @@ void meet_box_edges(const LocalRay& ray, const Vector3d& half, double radius,
       entry.meet(ray, capsule_span(ray, a, b, radius));
     }
   }
-}
-
-/// x * y - z * w to an ulp or two of the result (Kahan; Jeannerod, Louvet and Muller, 2013).
-[[nodiscard]] double difference_of_products(double x, double y, double z, double w) noexcept {
-  const double product = z * w;
-  const double error = std::fma(-z, w, product);
-  return std::fma(x, y, -product) + error;
-}
-
-/// The product of two edges: of a sliver, too, a direction at right angles to both.
-[[nodiscard]] Vector3d accurate_cross(const Vector3d& a, const Vector3d& b) noexcept {
-  return {difference_of_products(a.y(), b.z(), a.z(), b.y()),
-          difference_of_products(a.z(), b.x(), a.x(), b.z()),
-          difference_of_products(a.x(), b.y(), a.y(), b.x())};
 }
 
 class ScaledHull {

@@ -38,7 +38,7 @@ std::vector<TwinTriangle> twin(const MeshView& mesh, const MeshPlacement& placem
         Real x = static_cast<Real>(placement.offset[row]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
           x += static_cast<Real>(placement.matrix[row][axis]) *
-               static_cast<Real>(mesh.vertex[axis][mesh.corner[k][slot]]);
+               static_cast<Real>(coordinate(mesh, mesh.corner[k][slot], axis));
         }
         result[slot].corner[k][row] = x;
       }

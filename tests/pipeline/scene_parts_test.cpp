@@ -288,7 +288,7 @@ TEST(SceneParts, a_mesh_that_is_refitted_is_seen_at_its_new_place) {
   std::vector<Eigen::Vector3f> raised;
   for (std::uint32_t i = 0; i < pool.mesh(floor)->vertices(); ++i) {
     const MeshView& view = view_of(*pool.mesh(floor));
-    raised.emplace_back(view.vertex[0][i], view.vertex[1][i], 2.6F);
+    raised.emplace_back(coordinate(view, i, 0), coordinate(view, i, 1), 2.6F);
   }
   ASSERT_EQ(pool.refit_mesh(floor, std::span<const Eigen::Vector3f>(raised)), Status::ok);
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -311,6 +311,9 @@ class IdleMidPhase final : public MidPhase {
     ++calls;
   }
   void visit(ShapeId, const Pose&, const BoxSweep&, const PrimitiveVisitor&) const override {
+    ++calls;
+  }
+  void visit_ray(ShapeId, const Pose&, const ShapeRay&, const RayVisitor&) const override {
     ++calls;
   }
   void visit_near(ShapeId, const Pose&, const BoxSweep&, double,

@@ -120,14 +120,11 @@ void PartTraversal::traverse(const PlacedShape& placed, BoxSweep sweep, double l
     if (std::isinf(sweep.min[i])) sweep.min[i] = std::min(own.min[i], sweep.max[i]);
     if (std::isinf(sweep.max[i])) sweep.max[i] = std::max(own.max[i], sweep.min[i]);
   }
-  const PrimitiveVisitor primitives{
-      [](void* context, const Primitive& primitive, double most) {
-        const auto& to = *static_cast<const PartVisitor*>(context);
-        ConvexPart part{primitive.shape, primitive.pose, primitive.part};
-        if (primitive.shape.kind() == ShapeKind::triangle) part.triangle = &primitive.triangle;
-        return to.visit(to.context, part, most);
-      },
-      &visitor};
+  const PrimitiveVisitor primitives{[](void* context, const Primitive& primitive, double most) {
+                                      const auto& to = *static_cast<const PartVisitor*>(context);
+                                      return to.visit(to.context, part_of(primitive), most);
+                                    },
+                                    &visitor};
   if (near) {
     composites_->visit_near(placed.shape, placed.pose, sweep, limit, primitives);
   } else {

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 namespace winnow {
 
@@ -74,6 +75,15 @@ class PartTraversal {
   void met(const PlacedShape& placed, const BoxSweep& sweep, Visit&& visit) const {
     traverse(placed, sweep, sweep.max_t, false, visitor(visit));
   }
+  /// Calls meet(part, hit, limit) for triangles that the ray meets for certain, and
+  /// look(part, limit) for all other parts that it may meet, of a composite shape.
+  template <typename Meet, typename Look>
+  void met_by_ray(const PlacedShape& placed, const ShapeRay& ray, Meet&& meet, Look&& look) const {
+    using Meeting = RayMeeting<std::remove_reference_t<Meet>, std::remove_reference_t<Look>>;
+    Meeting meeting{meet, look};
+    composites_->visit_ray(placed.shape, placed.pose, ray,
+                           {&Meeting::call_meet, &Meeting::call_look, &meeting});
+  }
   /// The same for every part that may be within `limit` of a box.
   template <typename Visit>
   void near(const PlacedShape& placed, const PreciseBox& from, double limit, Visit&& visit) const {
@@ -81,6 +91,23 @@ class PartTraversal {
   }
 
  private:
+  [[nodiscard]] static ConvexPart part_of(const Primitive& primitive) noexcept {
+    ConvexPart part{primitive.shape, primitive.pose, primitive.part};
+    if (primitive.shape.kind() == ShapeKind::triangle) part.triangle = &primitive.triangle;
+    return part;
+  }
+  template <typename Meet, typename Look>
+  struct RayMeeting {
+    Meet& meet;
+    Look& look;
+
+    static double call_meet(void* context, std::uint32_t part, const ShapeHit& hit, double limit) {
+      return static_cast<RayMeeting*>(context)->meet(part, hit, limit);
+    }
+    static double call_look(void* context, const Primitive& primitive, double limit) {
+      return static_cast<RayMeeting*>(context)->look(part_of(primitive), limit);
+    }
+  };
   struct PartVisitor {
     double (*visit)(void* context, const ConvexPart& part, double limit);
     void* context;

@@ -31,6 +31,16 @@ BoxSweep sweep_from(const SweptShape& swept, const double from[3], double limit)
   return sweep;
 }
 
+SweepMeeting meeting_at(const ShapeRay& ray, const ShapeHit& hit) noexcept {
+  SweepMeeting meeting;
+  meeting.t = hit.t;
+  for (int i = 0; i < 3; ++i) {
+    meeting.normal[i] = hit.normal[i];
+    meeting.point[i] = ray.origin[i] + hit.t * ray.direction[i];
+  }
+  return meeting;
+}
+
 /// Neighbours in a mesh have their common corners a few roundings apart, once each is at its place:
 /// by less than this. As thick as this they leave nothing through between them.
 double doubt(const ConvexPart& part) noexcept {
@@ -94,11 +104,7 @@ bool RaySweep::enters(const ShapeRay& ray, const ConvexPart& part,
   ShapeHit hit;
   const Status status = cast_ray(tables.tables(), shape, part.pose, ray, hit);
   if (status != Status::ok || !hit.hit) return false;
-  meeting.t = hit.t;
-  for (int i = 0; i < 3; ++i) {
-    meeting.normal[i] = hit.normal[i];
-    meeting.point[i] = ray.origin[i] + hit.t * ray.direction[i];
-  }
+  meeting = meeting_at(ray, hit);
   return true;
 }
 
@@ -175,15 +181,29 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
   PlacedShape placed = body;
   for (int i = 0; i < 3; ++i) placed.pose.position[i] = -start.rest[i];
   bool found = false;
-  parts.met(placed, sweep_from(swept, from_, limit), [&](const ConvexPart& part, double most) {
-    most = std::min(most, limit);
-    if (!swept.meets(from_, part, most, meeting)) return most;
-    if (found && meeting.t == meeting_.t && part_.part < part.part) return most;
+  const auto improve = [&](const ConvexPart& part) {
+    if (found && meeting.t == meeting_.t && part_.part < part.part) return limit;
     found = true;
     limit = meeting.t;
     take(part, meeting);
     return any ? -1.0 : limit;
-  });
+  };
+  auto look = [&](const ConvexPart& part, double most) {
+    most = std::min(most, limit);
+    return swept.meets(from_, part, most, meeting) ? improve(part) : most;
+  };
+  if (swept.ray() == nullptr) {
+    parts.met(placed, sweep_from(swept, from_, limit), look);
+    return found;
+  }
+  ShapeRay ray = *swept.ray();
+  std::copy_n(from_, 3, ray.origin);
+  ray.max_t = limit;
+  auto meet = [&](std::uint32_t part, const ShapeHit& hit, double) {
+    meeting = meeting_at(ray, hit);
+    return improve({body.shape, placed.pose, part});
+  };
+  parts.met_by_ray(placed, ray, meet, look);
   return found;
 }
 

@@ -28,6 +28,8 @@ class SweptShape {
   [[nodiscard]] const PreciseBox& extent() const noexcept { return extent_; }
   [[nodiscard]] const double* direction() const noexcept { return direction_; }
   [[nodiscard]] double max_t() const noexcept { return max_t_; }
+  /// Null for a shape.
+  [[nodiscard]] virtual const ShapeRay* ray() const noexcept { return nullptr; }
 
   /// True if it meets the part by t = limit, starting at `from`.
   [[nodiscard]] virtual bool meets(const double from[3], const ConvexPart& part, double limit,
@@ -53,6 +55,7 @@ class SweptShape {
 class RaySweep final : public SweptShape {
  public:
   RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept;
+  [[nodiscard]] const ShapeRay* ray() const noexcept override { return &ray_; }
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
                            SweepMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
