@@ -19,10 +19,11 @@ inline Mask16 present(std::uint32_t count, std::uint32_t first_lane) {
 /// level's count are to be masked.
 [[gnu::always_inline]] inline Box16 load_nodes(const MeshView& mesh, std::uint32_t level,
                                                std::uint32_t first_node) {
+  const std::uint16_t* const bounds = mesh.node[level] + std::size_t{6} * first_node;
   Box16 box;
   for (int axis = 0; axis < 3; ++axis) {
-    box.low[axis] = load_short(mesh.node[level][axis] + first_node);
-    box.high[axis] = load_short(mesh.node[level][3 + axis] + first_node);
+    box.low[axis] = load_short(bounds + axis * kLanes);
+    box.high[axis] = load_short(bounds + (3 + axis) * kLanes);
   }
   return box;
 }

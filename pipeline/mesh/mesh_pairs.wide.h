@@ -319,8 +319,10 @@ class PairTraversal {
     float low[3];
     float high[3];
     for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = static_cast<float>(a_.node[pair.level_a][axis][pair.a]);
-      high[axis] = static_cast<float>(a_.node[pair.level_a][3 + axis][pair.a]);
+      low[axis] =
+          static_cast<float>(bound_of(a_, pair.level_a, pair.a, static_cast<std::size_t>(axis)));
+      high[axis] = static_cast<float>(
+          bound_of(a_, pair.level_a, pair.a, static_cast<std::size_t>(3 + axis)));
     }
     return overlap(nodes.box(), low, high) & nodes.lanes;
   }
@@ -406,8 +408,10 @@ class PairTraversal {
       const double origin = static_cast<double>(a_.origin[axis]);
       const double step = static_cast<double>(a_.step[axis]);
       const double scale = static_cast<double>(job_.scale);
-      low[axis] = static_cast<float>((origin + a_.node[0][axis][leaf_a] * step) * scale);
-      high[axis] = static_cast<float>((origin + a_.node[0][3 + axis][leaf_a] * step) * scale);
+      low[axis] = static_cast<float>(
+          (origin + bound_of(a_, 0, leaf_a, static_cast<std::size_t>(axis)) * step) * scale);
+      high[axis] = static_cast<float>(
+          (origin + bound_of(a_, 0, leaf_a, static_cast<std::size_t>(3 + axis)) * step) * scale);
     }
     return overlap(placed_.box(), low, high) & placed_.lanes;
   }

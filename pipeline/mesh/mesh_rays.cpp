@@ -50,12 +50,17 @@ struct BoxPassage {
 void set_axis(MeshRayJob& job, int axis, double from, double rate, double grow) noexcept {
   const double inverse =
       std::abs(rate) < kStandingRate ? std::copysign(kStandingInverse, rate) : 1.0 / rate;
-  job.is_backward[axis] = inverse < 0.0;
+  const bool is_backward = inverse < 0.0;
+  const auto lower = static_cast<std::uint32_t>(place_of_bound(0, static_cast<std::size_t>(axis)));
+  const auto upper =
+      static_cast<std::uint32_t>(place_of_bound(0, static_cast<std::size_t>(axis) + 3));
+  job.near_bound[axis] = is_backward ? upper : lower;
+  job.far_bound[axis] = is_backward ? lower : upper;
   const double low = (-from - grow) * inverse;
   const double high = (-from + grow) * inverse;
   job.inverse[axis] = static_cast<float>(inverse);
-  job.near[axis] = static_cast<float>(job.is_backward[axis] ? high : low);
-  job.far[axis] = static_cast<float>(job.is_backward[axis] ? low : high);
+  job.near[axis] = static_cast<float>(is_backward ? high : low);
+  job.far[axis] = static_cast<float>(is_backward ? low : high);
 }
 
 /// False if the ray passes the mesh by.

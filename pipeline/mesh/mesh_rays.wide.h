@@ -31,14 +31,13 @@ class OpenRayNodes {
   [[nodiscard]] float entry() const { return entry_; }
 
   bool open(std::uint32_t level, std::uint32_t first_node, std::uint32_t& node) {
+    const std::uint16_t* const bounds = mesh_.node[level] + std::size_t{6} * first_node;
     Floats in(0.0F);
     Floats out(last_);
     for (int axis = 0; axis < 3; ++axis) {
-      const int lower = job_.is_backward[axis] ? 3 + axis : axis;
-      const int upper = job_.is_backward[axis] ? axis : 3 + axis;
       const Floats inverse(job_.inverse[axis]);
-      const Floats near = load_short(mesh_.node[level][lower] + first_node);
-      const Floats far = load_short(mesh_.node[level][upper] + first_node);
+      const Floats near = load_short(bounds + job_.near_bound[axis]);
+      const Floats far = load_short(bounds + job_.far_bound[axis]);
       in = max(in, multiply_add(near, inverse, Floats(job_.near[axis])));
       out = min(out, multiply_add(far, inverse, Floats(job_.far[axis])));
     }

@@ -93,9 +93,9 @@ struct HalfSpaceTest {
   /// By the least of normal . x over a node's box.
   [[nodiscard]] bool reaches(std::uint32_t level, std::uint32_t node) const noexcept {
     double least = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int bound = normal[axis] < 0.0 ? axis + 3 : axis;
-      const double q = mesh.node[level][bound][node];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t bound = normal[axis] < 0.0 ? axis + 3 : axis;
+      const double q = bound_of(mesh, level, node, bound);
       least += normal[axis] *
                (static_cast<double>(mesh.origin[axis]) + q * static_cast<double>(mesh.step[axis]));
     }

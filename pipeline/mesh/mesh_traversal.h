@@ -110,7 +110,9 @@ struct MeshRayJob {
   float inverse[3];
   float near[3];
   float far[3];
-  bool is_backward[3];
+  /// Where these bounds of sixteen nodes lie.
+  std::uint32_t near_bound[3];
+  std::uint32_t far_bound[3];
   /// The axis along which it moves the fastest, and by how much it moves along the next two for
   /// each unit there.
   std::uint32_t fastest;

@@ -30,10 +30,10 @@ void box_triangle(BoundsPool& pool, const float* vertex, const std::uint32_t* co
   }
 }
 
-/// The column of a level, to be written: `words` is what the view points into.
-std::uint16_t* column_of(const MeshView& view, std::uint16_t* words, std::uint32_t level,
-                         std::size_t c) {
-  return words + (view.node[level][c] - words);
+/// A bound of a node, to be written: `words` is what the view points into.
+std::uint16_t& written_bound(const MeshView& view, std::uint16_t* words, std::uint32_t level,
+                             std::uint32_t node, std::size_t bound) {
+  return words[view.node[level] - words + static_cast<std::ptrdiff_t>(place_of_bound(node, bound))];
 }
 
 /// The float box of slots [first, first + 16).
@@ -92,27 +92,28 @@ std::uint16_t quantised_high(const MeshView& view, std::size_t axis, double x) {
 /// Level `level` from the one below.
 void fit_upper_level(const MeshView& view, std::uint32_t level, std::uint16_t* words) {
   const std::uint32_t below = view.count[level - 1];
-  for (std::size_t axis = 0; axis < 6; ++axis) {
-    const std::uint16_t* source = view.node[level - 1][axis];
-    std::uint16_t* target = column_of(view, words, level, axis);
-    for (std::uint32_t i = 0; i < view.count[level]; ++i) {
-      const std::uint32_t first = i * kMeshFanout;
-      const std::uint32_t end = std::min(below, first + kMeshFanout);
-      std::uint16_t bound = source[first];
+  for (std::uint32_t i = 0; i < view.count[level]; ++i) {
+    const std::uint32_t first = i * kMeshFanout;
+    const std::uint32_t end = std::min(below, first + kMeshFanout);
+    for (std::size_t k = 0; k < 6; ++k) {
+      std::uint16_t bound = bound_of(view, level - 1, first, k);
       for (std::uint32_t child = first + 1; child < end; ++child) {
-        bound = axis < 3 ? std::min(bound, source[child]) : std::max(bound, source[child]);
+        const std::uint16_t other = bound_of(view, level - 1, child, k);
+        bound = k < 3 ? std::min(bound, other) : std::max(bound, other);
       }
-      target[i] = bound;
+      written_bound(view, words, level, i, k) = bound;
     }
   }
 }
 
 void pad_levels(const MeshView& view, std::uint16_t* words) {
   for (std::uint32_t level = 0; level < view.levels; ++level) {
-    for (std::size_t axis = 0; axis < 6; ++axis) {
-      std::uint16_t* column = column_of(view, words, level, axis);
-      std::fill(column + view.count[level], column + whole_leaves(view.count[level]),
-                axis < 3 ? static_cast<std::uint16_t>(kMaxNodeBound) : std::uint16_t{0});
+    const auto whole = static_cast<std::uint32_t>(whole_leaves(view.count[level]));
+    for (std::uint32_t i = view.count[level]; i < whole; ++i) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        written_bound(view, words, level, i, k) =
+            k < 3 ? static_cast<std::uint16_t>(kMaxNodeBound) : std::uint16_t{0};
+      }
     }
   }
 }
@@ -155,10 +156,8 @@ std::size_t plan_mesh_levels(MeshView& view) noexcept {
 
 void link_mesh_levels(MeshView& view, const std::uint16_t* words) noexcept {
   for (std::uint32_t level = 0; level < view.levels; ++level) {
-    for (auto& column : view.node[level]) {
-      column = words;
-      words += whole_leaves(view.count[level]);
-    }
+    view.node[level] = words;
+    words += 6 * whole_leaves(view.count[level]);
   }
 }
 
@@ -180,10 +179,11 @@ void fit_mesh_levels(MeshView& view, std::uint16_t* words, float low[3], float h
   for_stretches(execution, leaves, kLeavesPerStretch, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
       const LeafBox box(view, i * kMeshFanout);
+      const auto leaf = static_cast<std::uint32_t>(i);
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        column_of(view, words, 0, axis)[i] =
+        written_bound(view, words, 0, leaf, axis) =
             quantised_low(view, axis, static_cast<double>(box.low[axis]));
-        column_of(view, words, 0, 3 + axis)[i] =
+        written_bound(view, words, 0, leaf, 3 + axis) =
             quantised_high(view, axis, static_cast<double>(box.high[axis]));
       }
     }

@@ -39,11 +39,24 @@ struct MeshView {
   float origin[3] = {};
   float step[3] = {};
   /// Node i of level 0 bounds leaf i, node i of level l + 1 nodes [16 i, 16 i + 16) of level l. The
-  /// top level has at most 16 nodes.
+  /// top level has at most 16 nodes. Six columns of sixteen nodes, lower bounds before upper ones,
+  /// lie behind each other, then those of the next sixteen.
   std::uint32_t levels = 0;
   std::uint32_t count[kMaxMeshLevels] = {};
-  const std::uint16_t* node[kMaxMeshLevels][6] = {};
+  const std::uint16_t* node[kMaxMeshLevels] = {};
 };
+
+/// Where column `bound` of a node lies in its level; of the first of sixteen those of the others
+/// follow.
+[[nodiscard]] constexpr std::size_t place_of_bound(std::uint32_t node, std::size_t bound) {
+  return std::size_t{6} * (node / kMeshFanout * kMeshFanout) + bound * kMeshFanout +
+         node % kMeshFanout;
+}
+
+[[nodiscard]] inline std::uint16_t bound_of(const MeshView& mesh, std::uint32_t level,
+                                            std::uint32_t node, std::size_t bound) {
+  return mesh.node[level][place_of_bound(node, bound)];
+}
 
 [[nodiscard]] inline float coordinate(const MeshView& mesh, std::uint32_t vertex,
                                       std::size_t axis) {

@@ -436,8 +436,9 @@ TEST_F(Meshes, decoded_nodes_contain_the_triangles_below_them) {
             return static_cast<Real>(static_cast<double>(view.origin[axis]) +
                                      q * static_cast<double>(view.step[axis]));
           };
-          EXPECT_LE(decode(view.node[level][axis][slot / below]), triangles[slot].low(axis));
-          EXPECT_GE(decode(view.node[level][3 + axis][slot / below]), triangles[slot].high(axis));
+          EXPECT_LE(decode(bound_of(view, level, slot / below, axis)), triangles[slot].low(axis));
+          EXPECT_GE(decode(bound_of(view, level, slot / below, 3 + axis)),
+                    triangles[slot].high(axis));
         }
       }
     }

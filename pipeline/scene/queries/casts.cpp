@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace winnow {
@@ -153,20 +154,23 @@ class Memo {
  public:
   /// What was noted about the body; null if nothing is known.
   [[nodiscard]] const bool* find(std::uint32_t body) const noexcept {
-    const Entry& entry = entries_[body % kEntries];
-    return entry.body == body ? &entry.met : nullptr;
+    const std::size_t at = body % kEntries;
+    return (used_ >> at & 1U) != 0 && entries_[at].body == body ? &entries_[at].met : nullptr;
   }
   bool note(std::uint32_t body, bool met) noexcept {
-    entries_[body % kEntries] = {body, met};
+    const std::size_t at = body % kEntries;
+    used_ |= std::uint64_t{1} << at;
+    entries_[at] = {body, met};
     return met;
   }
 
  private:
   static constexpr std::size_t kEntries = 64;
   struct Entry {
-    std::uint32_t body = kNoObject;
-    bool met = false;
+    std::uint32_t body;
+    bool met;
   };
+  std::uint64_t used_ = 0;
   Entry entries_[kEntries];
 };
 
@@ -189,8 +193,18 @@ class CastQuestion {
     return meeting.find(state_.parts, swept_, state_.placed(body), limit, any);
   }
   [[nodiscard]] SceneHit shown(std::uint32_t body, const BodyMeeting& meeting) const noexcept;
+  /// Among bodies whose partitions are asked.
+  Status closest_in_crowds();
   /// True if the body is now the first one met.
   bool improves(std::uint32_t body) noexcept;
+  /// Sets of a few composite bodies are not worth a traversal: they have trees of their own.
+  [[nodiscard]] bool is_few(const SceneSet& set) const noexcept;
+  template <typename Look>
+  void look_at_few(Look& look) const;
+  /// Calls ask(partition) for the others, until it does not answer ok.
+  template <typename Ask>
+  [[nodiscard]] Status each_crowd(Ask&& ask) const;
+  [[nodiscard]] bool has_crowd() const noexcept;
   template <typename Look>
   [[nodiscard]] Status look_at_rest(const Partition& partition, const SweptBox& path, Look& look);
 
@@ -232,6 +246,41 @@ bool CastQuestion::improves(std::uint32_t body) noexcept {
   return memo_.note(body, better);
 }
 
+bool CastQuestion::is_few(const SceneSet& set) const noexcept {
+  constexpr std::size_t kFew = 4;
+  return set.partition.has_value() && set.body_of.size() <= kFew &&
+         std::all_of(set.body_of.begin(), set.body_of.end(),
+                     [&](std::uint32_t body) { return state_.scene.shape[body].is_composite(); });
+}
+
+template <typename Look>
+void CastQuestion::look_at_few(Look& look) const {
+  const LookingFilter looking(state_.scene, filter_, look);
+  for (const SceneSet& set : state_.scene.sets) {
+    if (!is_few(set)) continue;
+    for (std::size_t id = 0; id < set.body_of.size(); ++id) {
+      // Places of bodies that have gone keep their names.
+      const std::uint32_t body = set.body_of[id];
+      if (state_.scene.place[body].id == id) looking.show(*set.partition, body);
+    }
+  }
+}
+
+bool CastQuestion::has_crowd() const noexcept {
+  return std::any_of(
+      std::begin(state_.scene.sets), std::end(state_.scene.sets),
+      [&](const SceneSet& set) { return set.partition.has_value() && !is_few(set); });
+}
+
+template <typename Ask>
+Status CastQuestion::each_crowd(Ask&& ask) const {
+  for (const SceneSet& set : state_.scene.sets) {
+    if (!set.partition.has_value() || is_few(set)) continue;
+    if (const Status status = ask(*set.partition); status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
 /// What lies on a path that is too long to be swept.
 template <typename Look>
 Status CastQuestion::look_at_rest(const Partition& partition, const SweptBox& path, Look& look) {
@@ -248,7 +297,7 @@ Status CastQuestion::look_at_rest(const Partition& partition, const SweptBox& pa
 /// was met first of all that count, and every box before it has been looked at. What is left are
 /// boxes from there to where the exact shape was met: the second traversal. Both are short where
 /// boxes fit.
-Status CastQuestion::closest(SceneHit& hit) {
+Status CastQuestion::closest_in_crowds() {
   SweptBox path = swept_box();
   auto look = [&](std::uint32_t body) { return improves(body); };
   auto look_only = [&](std::uint32_t body) {
@@ -258,7 +307,7 @@ Status CastQuestion::closest(SceneHit& hit) {
   LookingFilter first(state_.scene, filter_, look);
   LookingFilter second(state_.scene, filter_, look_only);
   while (path.next() && !(found() && best_.t() < path.begin())) {
-    const Status status = state_.each_partition([&](const Partition& partition) {
+    const Status status = each_crowd([&](const Partition& partition) {
       if (path.is_rest()) return look_at_rest(partition, path, look);
       Hit box;
       BoxCast cast = path.cast(limit());
@@ -271,12 +320,18 @@ Status CastQuestion::closest(SceneHit& hit) {
     });
     if (status != Status::ok) return status;
   }
-  hit = found() ? shown(body_, best_) : SceneHit{};
   return Status::ok;
 }
 
+Status CastQuestion::closest(SceneHit& hit) {
+  auto look = [&](std::uint32_t body) { return improves(body); };
+  look_at_few(look);
+  const Status status = has_crowd() ? closest_in_crowds() : Status::ok;
+  if (status == Status::ok) hit = found() ? shown(body_, best_) : SceneHit{};
+  return status;
+}
+
 Status CastQuestion::any(SceneHit& hit) {
-  SweptBox path = swept_box();
   auto look = [&](std::uint32_t body) {
     if (found()) return true;
     if (const bool* const known = memo_.find(body)) return *known;
@@ -284,9 +339,11 @@ Status CastQuestion::any(SceneHit& hit) {
     body_ = body;
     return true;
   };
+  look_at_few(look);
+  SweptBox path = swept_box();
   LookingFilter looking(state_.scene, filter_, look);
-  while (!found() && path.next()) {
-    const Status status = state_.each_partition([&](const Partition& partition) {
+  while (!found() && has_crowd() && path.next()) {
+    const Status status = each_crowd([&](const Partition& partition) {
       if (found()) return Status::ok;
       if (path.is_rest()) return look_at_rest(partition, path, look);
       Hit box;
@@ -301,7 +358,6 @@ Status CastQuestion::any(SceneHit& hit) {
 Status CastQuestion::all() {
   Column<SceneHit>& hits = state_.hits;
   hits.clear();
-  SweptBox path = swept_box();
   bool has_room = true;
   auto look = [&](std::uint32_t body) {
     if (memo_.find(body) != nullptr) return false;
@@ -312,10 +368,12 @@ Status CastQuestion::all() {
     }
     return false;
   };
+  look_at_few(look);
+  SweptBox path = swept_box();
   LookingFilter looking(state_.scene, filter_, look);
   Status status = Status::ok;
-  while (status == Status::ok && path.next()) {
-    status = state_.each_partition([&](const Partition& partition) {
+  while (status == Status::ok && has_crowd() && path.next()) {
+    status = each_crowd([&](const Partition& partition) {
       if (path.is_rest()) return look_at_rest(partition, path, look);
       return partition.all(path.cast(swept_.max_t()), state_.boxes, looking.filter());
     });

@@ -71,6 +71,13 @@ class LookingFilter {
     return result;
   }
 
+  /// What the partition would do with a body of one whose box is met.
+  void show(const Partition& partition, std::uint32_t body) const {
+    ObjectFilter own;
+    const Status status = partition.filter(scene_.place[body], own);
+    if (status == Status::ok && may_meet(filter_.object(), own)) (void)accept(body);
+  }
+
  private:
   [[nodiscard]] bool accept(std::uint32_t body) const {
     const ObjectPredicate& predicate = filter_.predicate;
