@@ -77,6 +77,8 @@ class WINNOW_API CompositePool final : public MidPhase {
                  const RayVisitor& visitor) const override;
   void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
                   const PrimitiveVisitor& visitor) const override;
+  bool visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
+                   const PrimitivePairVisitor& visitor) const override;
   [[nodiscard]] Footprint footprint() const noexcept override;
 
  private:

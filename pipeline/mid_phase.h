@@ -82,6 +82,12 @@ struct RayVisitor {
   void* context = nullptr;
 };
 
+/// Is shown pairs of primitives that may share a point, and gives back whether to go on.
+struct PrimitivePairVisitor {
+  bool (*visit)(void* context, const Primitive& a, const Primitive& b) = nullptr;
+  void* context = nullptr;
+};
+
 /// A box that moves by t * direction for t in [0, max_t]; max_t = 0 for one that stands. In double,
 /// in the axes of the world.
 struct BoxSweep {
@@ -133,6 +139,11 @@ class WINNOW_API MidPhase {
   /// stands, roughly the nearest first.
   virtual void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
                           const PrimitiveVisitor& visitor) const = 0;
+
+  /// Shows it every pair of primitives of two meshes that may share a point. False, and nothing is
+  /// shown, if these are no two meshes.
+  virtual bool visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
+                           const PrimitivePairVisitor& visitor) const = 0;
 
   [[nodiscard]] virtual Footprint footprint() const noexcept = 0;
 };

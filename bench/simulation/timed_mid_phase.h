@@ -48,6 +48,10 @@ class TimedMidPhase final : public MidPhase {
                   const PrimitiveVisitor& visitor) const override {
     inner_.visit_near(id, pose, from, limit, visitor);
   }
+  bool visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
+                   const PrimitivePairVisitor& visitor) const override {
+    return inner_.visit_pairs(a, pose_a, b, pose_b, visitor);
+  }
   [[nodiscard]] Footprint footprint() const noexcept override { return inner_.footprint(); }
 
  private:

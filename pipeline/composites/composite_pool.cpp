@@ -390,6 +390,11 @@ void CompositePool::visit_near(ShapeId id, const Pose& pose, const BoxSweep& fro
   if (contains(id)) mid::visit_near(*state_, id, pose, from, limit, visitor);
 }
 
+bool CompositePool::visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
+                                const PrimitivePairVisitor& visitor) const {
+  return contains(a) && contains(b) && mid::visit_pairs(*state_, a, pose_a, b, pose_b, visitor);
+}
+
 Footprint CompositePool::footprint() const noexcept {
   Footprint footprint;
   if (state_ == nullptr) return footprint;

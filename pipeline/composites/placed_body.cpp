@@ -1,6 +1,5 @@
 #include "pipeline/composites/placed_body.h"
 
-#include "pipeline/mesh/mesh_view.h"
 #include "pipeline/shapes/extent.h"
 
 #include <algorithm>
@@ -184,6 +183,17 @@ std::uint8_t PlacedBody::active(std::uint32_t number) const noexcept {
     }
   }
   return static_cast<std::uint8_t>(bits);
+}
+
+PlacedMesh::PlacedMesh(const PlacedBody& a, const PlacedBody& b, double world_margin) noexcept {
+  const Mat linear = a.to_local * b.to_world;
+  const Vec offset = a.to_local * finite(b.position - a.position);
+  const Vec noise = kSlack * (a.to_local.cwiseAbs() * b.position.cwiseAbs() + offset.cwiseAbs());
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) b_in_a.matrix[i][k] = linear(i, k);
+    b_in_a.offset[i] = offset[i];
+    margin[i] = world_margin * a.to_local.row(i).norm() + noise[i];
+  }
 }
 
 Box box_of(const PlacedPart& part, const PlacedBody& other, double margin) noexcept {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pipeline/composites/composites.h"
+#include "pipeline/mesh/mesh_view.h"
 #include "pipeline/shapes/frame.h"
 
 #include <cstdint>
@@ -82,6 +83,15 @@ struct PlacedBody {
   const Compound* compound = nullptr;
   /// Of a composite in its own frame.
   Box bounds;
+};
+
+/// Mesh b in the frame of mesh a, and how far in that is a margin of the world and the rounding of
+/// where b is.
+struct PlacedMesh {
+  PlacedMesh(const PlacedBody& a, const PlacedBody& b, double margin) noexcept;
+
+  MeshPlacement b_in_a;
+  double margin[3];
 };
 
 /// The box of a part, grown by `margin` in the world, in the frame of `other`.

@@ -185,19 +185,10 @@ void Search::parts_surface(const PlacedBody& parts, const PlacedBody& surface,
 }
 
 void Search::mesh_mesh(const PlacedBody& a, const PlacedBody& b) noexcept {
-  MeshPlacement placement;
-  const Mat linear = a.to_local * b.to_world;
-  const Vec offset = a.to_local * finite(b.position - a.position);
-  const Vec noise = kSlack * (a.to_local.cwiseAbs() * b.position.cwiseAbs() + offset.cwiseAbs());
-  double margin[3];
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) placement.matrix[i][k] = linear(i, k);
-    placement.offset[i] = offset[i];
-    margin[i] = margin_ * a.to_local.row(i).norm() + noise[i];
-  }
+  const PlacedMesh placed(a, b, margin_);
   PairOfBodies sides{*this, a, b};
   SlotPairSink found{outer_.data(), inner_.data(), kRoom, 0, &take_slots, &sides};
-  mesh_overlap_pairs(*a.mesh, *b.mesh, placement, margin, found);
+  mesh_overlap_pairs(*a.mesh, *b.mesh, placed.b_in_a, placed.margin, found);
   take_slots(found.context, found);
 }
 

@@ -40,6 +40,25 @@ struct Guide {
   }
 };
 
+/// The same of pairs.
+struct PairGuide {
+  const PlacedBody& a;
+  const PlacedBody& b;
+  const PrimitivePairVisitor& visitor;
+
+  static void show_slots(void* context, SlotPairSink& found) {
+    const PairGuide& guide = *static_cast<const PairGuide*>(context);
+    for (std::uint64_t i = 0; i < found.size && !found.is_done; ++i) {
+      Primitive first;
+      Primitive second;
+      const bool are_there =
+          guide.a.primitive(found.first[i], first) && guide.b.primitive(found.second[i], second);
+      found.is_done = are_there && !guide.visitor.visit(guide.visitor.context, first, second);
+    }
+    found.size = 0;
+  }
+};
+
 /// Shows children in ascending order of a measure, which is infinite for those not to be shown.
 template <typename Measure>
 void show_in_order(const Guide& guide, double limit, Measure&& measure) {
@@ -104,6 +123,23 @@ void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& 
                           child.max.data());
     });
   }
+}
+
+bool visit_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
+                 const Pose& pose_b, const PrimitivePairVisitor& visitor) {
+  const PlacedBody first = PlacedBody::at(all, a, pose_a);
+  const PlacedBody second = PlacedBody::at(all, b, pose_b);
+  if (first.kind != PlacedBody::Kind::mesh || second.kind != PlacedBody::Kind::mesh) return false;
+  PairGuide guide{first, second, visitor};
+  const PlacedMesh placed(first, second, 0.0);
+  // Few, so that it ends soon after a visitor has seen enough.
+  constexpr std::uint32_t kRoom = 2 * kMeshFanout;
+  std::uint32_t slots[2][kRoom];
+  SlotPairSink found{
+      slots[0], slots[1], kRoom, 0, &PairGuide::show_slots, &guide};
+  mesh_overlap_pairs(*first.mesh, *second.mesh, placed.b_in_a, placed.margin, found);
+  if (!found.is_done) PairGuide::show_slots(found.context, found);
+  return true;
 }
 
 void visit_near(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& from,

@@ -296,7 +296,7 @@ class PairTraversal {
 
   void run() {
     push({0, 0, a_.levels, b_.levels});
-    while (size_ != 0) {
+    while (size_ != 0 && !out_.is_done) {
       const NodePair pair = stack_[--size_];
       if (pair.level_a > pair.level_b) {
         open_a(pair);

@@ -87,7 +87,8 @@ inline void put_slot(SlotSink& out, std::uint32_t slot) {
 
 /// The same for pairs of slots; or, with `take`, for any number of them in one traversal: it is
 /// called where there is no room for 16 more, uses up what is there and sets size to 0. The
-/// capacity is 16 at least then, and what is left when it ends is for the caller to use up.
+/// capacity is 16 at least then, and what is left when it ends is for the caller to use up. Once
+/// `is_done` is set the traversal ends soon.
 struct SlotPairSink {
   std::uint32_t* first = nullptr;
   std::uint32_t* second = nullptr;
@@ -95,6 +96,7 @@ struct SlotPairSink {
   std::uint64_t size = 0;
   void (*take)(void* context, SlotPairSink& sink) = nullptr;
   void* context = nullptr;
+  bool is_done = false;
 };
 
 /// Is shown the slots that a traversal in order finds, 16 or fewer at a time; gives back the new

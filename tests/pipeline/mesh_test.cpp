@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <winnow/pipeline/triangle_mesh.h>
 #include "pipeline/mesh/mesh_traversal.h"
+#include "pipeline/mesh/mesh_tree.h"
 
 #include <algorithm>
 #include <cmath>

@@ -320,6 +320,10 @@ class IdleMidPhase final : public MidPhase {
                   const PrimitiveVisitor&) const override {
     ++calls;
   }
+  bool visit_pairs(ShapeId, const Pose&, ShapeId, const Pose&,
+                   const PrimitivePairVisitor&) const override {
+    return worked(false);
+  }
   [[nodiscard]] Footprint footprint() const noexcept override { return {}; }
 
   mutable int calls = 0;

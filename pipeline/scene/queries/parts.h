@@ -84,7 +84,20 @@ class PartTraversal {
     composites_->visit_ray(placed.shape, placed.pose, ray,
                            {&Meeting::call_meet, &Meeting::call_look, &meeting});
   }
-  /// The same for every part that may be within `limit` of a box.
+  /// Calls visit(a, b) for pairs of parts of two meshes that may share a point, until it says
+  /// false. False, and nothing is shown, if these are no two meshes.
+  template <typename Visit>
+  bool pairs(const PlacedShape& a, const PlacedShape& b, Visit&& visit) const {
+    using Visitor = std::remove_reference_t<Visit>;
+    if (!a.shape.is_composite() || !b.shape.is_composite()) return false;
+    return composites_->visit_pairs(
+        a.shape, a.pose, b.shape, b.pose,
+        {[](void* context, const Primitive& first, const Primitive& second) {
+           return (*static_cast<Visitor*>(context))(part_of(first), part_of(second));
+         },
+         &visit});
+  }
+  /// Calls visit(part, limit) for every part that may be within `limit` of a box, as `met` does.
   template <typename Visit>
   void near(const PlacedShape& placed, const PreciseBox& from, double limit, Visit&& visit) const {
     traverse(placed, from.standing(), limit, true, visitor(visit));

@@ -47,12 +47,15 @@ bool do_overlap(const PartTraversal& parts, const PlacedShape& first, const Plac
                 std::uint32_t& part) noexcept {
   const Pairing pair(first, second);
   bool found = false;
+  auto look = [&](const ConvexPart& a, const ConvexPart& b) {
+    found = solve(parts, a, b, ContactLevel::boolean).overlap;
+    if (found) part = b.part;
+    return !found;
+  };
+  if (parts.pairs(pair.a, pair.b, look)) return found;
   parts.met(pair.a, parts.box(pair.b).standing(), [&](const ConvexPart& a, double) {
-    parts.met(pair.b, parts.box(a).standing(), [&](const ConvexPart& b, double) {
-      found = solve(parts, a, b, ContactLevel::boolean).overlap;
-      if (found) part = b.part;
-      return found ? -1.0 : 0.0;
-    });
+    parts.met(pair.b, parts.box(a).standing(),
+              [&](const ConvexPart& b, double) { return look(a, b) ? 0.0 : -1.0; });
     return found ? -1.0 : 0.0;
   });
   return found;
