@@ -10,6 +10,7 @@
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/shape_rays.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
@@ -35,6 +36,23 @@ struct SceneHit {
   double point[3] = {0.0, 0.0, 0.0};
 
   [[nodiscard]] explicit operator bool() const noexcept { return key.id != kNoObject; }
+};
+
+/// Where a batch of rays that have one answer each writes them: columns of the caller, each null if
+/// not wanted. A ray without an answer gets the null key, 0, kWholeShape, infinity and zeros.
+struct SceneHitColumns {
+  Key* key = nullptr;
+  ClientData* data = nullptr;
+  std::uint32_t* part = nullptr;
+  double* t = nullptr;
+  std::array<double*, 3> normal{};
+  std::array<double*, 3> point{};
+};
+
+/// The hits of ray i of a batch are hits[first[i]] to hits[first[i + 1]], that excluded.
+struct SceneHitLists {
+  std::span<const SceneHit> hits;
+  std::span<const std::size_t> first;
 };
 
 /// A body that a shape overlaps.
@@ -95,6 +113,10 @@ class WINNOW_API SceneQueries {
   Status any(const ShapeRay& ray, SceneHit& hit, const Filter& filter = {});
   /// The first hit of every body that the ray meets, sorted by t. Valid until the next question.
   Status all(const ShapeRay& ray, std::span<const SceneHit>& hits, const Filter& filter = {});
+  // The same for many rays, each answered as if it were alone. One bad ray refuses the batch.
+  Status closest(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
+  Status any(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
+  Status all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter = {});
 
   /// Every body that the shape at the pose shares a point with, sorted by id. The shape may be
   /// composite. Exact, as tier robust.

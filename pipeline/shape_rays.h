@@ -5,6 +5,11 @@
 #include <winnow/core/status.h>
 #include <winnow/pipeline/shapes.h>
 
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+
 namespace winnow {
 
 /// origin + t * direction, 0 <= t <= max_t, in double and in the axes of the world. The direction
@@ -13,6 +18,49 @@ struct ShapeRay {
   double origin[3] = {0.0, 0.0, 0.0};
   double direction[3] = {1.0, 0.0, 0.0};
   double max_t = 1.0;
+};
+
+/// Rays where the caller keeps them: column pointers and one stride in bytes. Nothing is copied to
+/// make one, and it must not outlive the memory it looks at.
+struct ShapeRayBatch {
+  std::array<const double*, 3> origin{};
+  std::array<const double*, 3> direction{};
+  const double* max_t = nullptr;  ///< null: infinity for all
+  std::size_t count = 0;
+  std::size_t stride = sizeof(double);  ///< bytes from one ray to the next
+
+  ShapeRayBatch() = default;
+  /// An array of rays.
+  ShapeRayBatch(std::span<const ShapeRay> rays) noexcept  // NOLINT(google-explicit-constructor)
+      : count(rays.size()), stride(sizeof(ShapeRay)) {
+    if (rays.empty()) return;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      origin[axis] = rays.data()->origin + axis;
+      direction[axis] = rays.data()->direction + axis;
+    }
+    max_t = &rays.data()->max_t;
+  }
+  /// Columns of `rays` numbers each.
+  ShapeRayBatch(std::array<const double*, 3> origins, std::array<const double*, 3> directions,
+                std::size_t rays, const double* max_ts = nullptr,
+                std::size_t stride_bytes = sizeof(double)) noexcept
+      : origin(origins), direction(directions), max_t(max_ts), count(rays), stride(stride_bytes) {}
+
+  [[nodiscard]] ShapeRay operator[](std::size_t i) const noexcept {
+    ShapeRay ray;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ray.origin[axis] = at(origin[axis], i);
+      ray.direction[axis] = at(direction[axis], i);
+    }
+    ray.max_t = max_t != nullptr ? at(max_t, i) : std::numeric_limits<double>::infinity();
+    return ray;
+  }
+
+ private:
+  [[nodiscard]] double at(const double* column, std::size_t i) const noexcept {
+    return *reinterpret_cast<const double*>(reinterpret_cast<const std::byte*>(column) +
+                                            i * stride);
+  }
 };
 
 struct ShapeHit {

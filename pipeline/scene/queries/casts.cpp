@@ -355,9 +355,10 @@ Status CastQuestion::any(SceneHit& hit) {
   return Status::ok;
 }
 
+/// Adds the hits to those of rays before.
 Status CastQuestion::all() {
   Column<SceneHit>& hits = state_.hits;
-  hits.clear();
+  const std::size_t before = hits.size();
   bool has_room = true;
   auto look = [&](std::uint32_t body) {
     if (memo_.find(body) != nullptr) return false;
@@ -383,11 +384,11 @@ Status CastQuestion::all() {
     hits.clear();
     return status;
   }
-  std::sort(hits.begin(), hits.end(), is_before);
+  SceneHit* const own = hits.begin() + before;
+  std::sort(own, hits.end(), is_before);
   // A body whose box reaches from one piece of the path into the next was met in both.
-  const SceneHit* const end =
-      std::unique(hits.begin(), hits.end(),
-                  [](const SceneHit& a, const SceneHit& b) { return a.key == b.key; });
+  const SceneHit* const end = std::unique(
+      own, hits.end(), [](const SceneHit& a, const SceneHit& b) { return a.key == b.key; });
   hits.set_size(static_cast<std::size_t>(end - hits.begin()));
   return Status::ok;
 }
@@ -397,12 +398,41 @@ bool is_valid(const double (&direction)[3], double max_t) noexcept {
   return is_finite(direction) && moves && max_t >= 0.0;
 }
 
+bool is_valid(const ShapeRay& ray) noexcept {
+  return is_finite(ray.origin) && is_valid(ray.direction, ray.max_t);
+}
+
 Status check(const QueryState* state, const ShapeRay& ray) noexcept {
   if (const Status status = QueryState::may_ask(state); status != Status::ok) {
     return status;
   }
-  const bool valid = is_finite(ray.origin) && is_valid(ray.direction, ray.max_t);
-  return valid ? Status::ok : Status::invalid_argument;
+  return is_valid(ray) ? Status::ok : Status::invalid_argument;
+}
+
+Status check(const QueryState* state, const ShapeRayBatch& rays) noexcept {
+  if (const Status status = QueryState::may_ask(state); status != Status::ok) {
+    return status;
+  }
+  for (std::size_t i = 0; i < rays.count; ++i) {
+    if (!is_valid(rays[i])) return Status::invalid_argument;
+  }
+  return Status::ok;
+}
+
+template <typename T>
+void put(T* column, std::size_t row, const T& value) noexcept {
+  if (column != nullptr) column[row] = value;
+}
+
+void put(const SceneHitColumns& columns, std::size_t row, const SceneHit& hit) noexcept {
+  put(columns.key, row, hit.key);
+  put(columns.data, row, hit.data);
+  put(columns.part, row, hit.part);
+  put(columns.t, row, hit ? hit.t : kInfinity);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    put(columns.normal[axis], row, hit.normal[axis]);
+    put(columns.point[axis], row, hit.point[axis]);
+  }
 }
 
 Status check(const QueryState* state, const ShapeCast& cast, double tolerance) noexcept {
@@ -435,9 +465,51 @@ Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
                          const Filter& filter) {
   if (const Status status = check(state_, ray); status != Status::ok) return status;
   const RaySweep swept(state_->scene.shapes, ray);
+  state_->hits.clear();
   const Status status = CastQuestion(*state_, swept, filter).all();
   if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
   return status;
+}
+
+Status SceneQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns& hits,
+                             const Filter& filter) {
+  Status status = check(state_, rays);
+  for (std::size_t i = 0; i < rays.count && status == Status::ok; ++i) {
+    const ShapeRay ray = rays[i];
+    SceneHit hit;
+    status = CastQuestion(*state_, RaySweep(state_->scene.shapes, ray), filter).closest(hit);
+    if (status == Status::ok) put(hits, i, hit);
+  }
+  return status;
+}
+
+Status SceneQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
+                         const Filter& filter) {
+  Status status = check(state_, rays);
+  for (std::size_t i = 0; i < rays.count && status == Status::ok; ++i) {
+    const ShapeRay ray = rays[i];
+    SceneHit hit;
+    status = CastQuestion(*state_, RaySweep(state_->scene.shapes, ray), filter).any(hit);
+    if (status == Status::ok) put(hits, i, hit);
+  }
+  return status;
+}
+
+Status SceneQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter) {
+  Status status = check(state_, rays);
+  if (status != Status::ok) return status;
+  Column<std::size_t>& first = state_->hits_first;
+  state_->hits.clear();
+  if (!first.resize(rays.count + 1)) return Status::out_of_memory;
+  first[0] = 0;
+  for (std::size_t i = 0; i < rays.count && status == Status::ok; ++i) {
+    const ShapeRay ray = rays[i];
+    status = CastQuestion(*state_, RaySweep(state_->scene.shapes, ray), filter).all();
+    first[i + 1] = state_->hits.size();
+  }
+  if (status != Status::ok) return status;
+  hits = {{state_->hits.data(), state_->hits.size()}, {first.data(), first.size()}};
+  return Status::ok;
 }
 
 Status SceneQueries::closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter,
@@ -450,6 +522,7 @@ Status SceneQueries::all(const ShapeCast& cast, std::span<const SceneHit>& hits,
                          const Filter& filter, double tolerance) {
   if (const Status status = check(state_, cast, tolerance); status != Status::ok) return status;
   const ShapeSweep swept(state_->parts, cast, tolerance);
+  state_->hits.clear();
   const Status status = CastQuestion(*state_, swept, filter).all();
   if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
   return status;

@@ -15,6 +15,7 @@ struct QueryState {
         boxes(memory),
         objects(memory),
         hits(memory),
+        hits_first(memory),
         overlaps(memory),
         distances(memory) {}
 
@@ -25,6 +26,8 @@ struct QueryState {
   OverlapBuffer objects;
   /// Answers of the last question.
   Column<SceneHit> hits;
+  /// Of a batch: where the hits of each ray begin, and the end.
+  Column<std::size_t> hits_first;
   Column<SceneOverlap> overlaps;
   Column<SceneDistance> distances;
 

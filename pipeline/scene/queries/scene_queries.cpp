@@ -268,8 +268,8 @@ Footprint SceneQueries::footprint() const noexcept {
        {state_->boxes.footprint().total(), state_->objects.footprint().total()}) {
     sum.scratch += bytes;
   }
-  for (const Bytes& bytes :
-       {state_->hits.bytes(), state_->overlaps.bytes(), state_->distances.bytes()}) {
+  for (const Bytes& bytes : {state_->hits.bytes(), state_->hits_first.bytes(),
+                             state_->overlaps.bytes(), state_->distances.bytes()}) {
     sum.results += bytes;
   }
   return sum;
