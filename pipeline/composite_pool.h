@@ -79,6 +79,8 @@ class WINNOW_API CompositePool final : public MidPhase {
                   const PrimitiveVisitor& visitor) const override;
   bool visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
                    const PrimitivePairVisitor& visitor) const override;
+  bool visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b, double limit,
+                        const NearPairVisitor& visitor) const override;
   [[nodiscard]] Footprint footprint() const noexcept override;
 
  private:

@@ -88,6 +88,16 @@ struct PrimitivePairVisitor {
   void* context = nullptr;
 };
 
+/// Is shown pairs of primitives that may lie within `limit` of each other and gives back the limit
+/// to go on with, below zero to end.
+struct NearPairVisitor {
+  double (*visit)(void* context, const Primitive& a, const Primitive& b, double limit) = nullptr;
+  void* context = nullptr;
+  /// Unit, from a to b, along which the nearest pair so far is apart, or zero. Read again after
+  /// each visit.
+  const double* normal = nullptr;
+};
+
 /// A box that moves by t * direction for t in [0, max_t]; max_t = 0 for one that stands. In double,
 /// in the axes of the world.
 struct BoxSweep {
@@ -144,6 +154,11 @@ class WINNOW_API MidPhase {
   /// shown, if these are no two meshes.
   virtual bool visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
                            const PrimitivePairVisitor& visitor) const = 0;
+
+  /// Shows it pairs of primitives of two meshes, roughly the nearest first. False, and nothing is
+  /// shown, if these are no two meshes, or the first has not one scale along all axes.
+  virtual bool visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
+                                double limit, const NearPairVisitor& visitor) const = 0;
 
   [[nodiscard]] virtual Footprint footprint() const noexcept = 0;
 };

@@ -52,6 +52,10 @@ class TimedMidPhase final : public MidPhase {
                    const PrimitivePairVisitor& visitor) const override {
     return inner_.visit_pairs(a, pose_a, b, pose_b, visitor);
   }
+  bool visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b, double limit,
+                        const NearPairVisitor& visitor) const override {
+    return inner_.visit_near_pairs(a, pose_a, b, pose_b, limit, visitor);
+  }
   [[nodiscard]] Footprint footprint() const noexcept override { return inner_.footprint(); }
 
  private:

@@ -395,6 +395,12 @@ bool CompositePool::visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const 
   return contains(a) && contains(b) && mid::visit_pairs(*state_, a, pose_a, b, pose_b, visitor);
 }
 
+bool CompositePool::visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
+                                     double limit, const NearPairVisitor& visitor) const {
+  return contains(a) && contains(b) &&
+         mid::visit_near_pairs(*state_, a, pose_a, b, pose_b, limit, visitor);
+}
+
 Footprint CompositePool::footprint() const noexcept {
   Footprint footprint;
   if (state_ == nullptr) return footprint;

@@ -152,13 +152,16 @@ Status expand(const Composites* all, const ShapeTables& tables, const Bodies& bo
 void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
             NarrowResult& result) noexcept;
 
-/// See MidPhase::visit, visit_ray, visit_pairs and visit_near. `id` is there, `pose` is valid.
+/// See MidPhase::visit, visit_ray, visit_pairs, visit_near_pairs and visit_near. `id` is there,
+/// `pose` is valid.
 void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,
            const PrimitiveVisitor& visitor);
 void visit_ray(const Composites& all, ShapeId id, const Pose& pose, const ShapeRay& ray,
                const RayVisitor& visitor);
 bool visit_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
                  const Pose& pose_b, const PrimitivePairVisitor& visitor);
+bool visit_near_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
+                      const Pose& pose_b, double limit, const NearPairVisitor& visitor);
 void visit_near(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& from,
                 double limit, const PrimitiveVisitor& visitor);
 

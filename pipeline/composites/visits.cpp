@@ -59,6 +59,31 @@ struct PairGuide {
   }
 };
 
+/// The same of pairs the nearest first; limits are lengths of mesh a.
+struct NearPairGuide {
+  const PlacedBody& a;
+  const PlacedBody& b;
+  const NearPairVisitor& visitor;
+  /// In the world.
+  double limit;
+  float direction[3] = {0.0F, 0.0F, 0.0F};
+
+  [[nodiscard]] double own_limit() const noexcept { return limit * a.most_shrunk; }
+
+  static double show(void* context, std::uint32_t slot_a, std::uint32_t slot_b, double) {
+    NearPairGuide& guide = *static_cast<NearPairGuide*>(context);
+    Primitive first;
+    Primitive second;
+    if (!guide.a.primitive(slot_a, first) || !guide.b.primitive(slot_b, second)) {
+      return guide.own_limit();
+    }
+    guide.limit = guide.visitor.visit(guide.visitor.context, first, second, guide.limit);
+    const Vec normal = guide.a.to_local * Eigen::Map<const Vec>(guide.visitor.normal);
+    Eigen::Vector3f::Map(guide.direction) = normal.stableNormalized().cast<float>();
+    return guide.own_limit();
+  }
+};
+
 /// Shows children in ascending order of a measure, which is infinite for those not to be shown.
 template <typename Measure>
 void show_in_order(const Guide& guide, double limit, Measure&& measure) {
@@ -135,10 +160,25 @@ bool visit_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b
   // Few, so that it ends soon after a visitor has seen enough.
   constexpr std::uint32_t kRoom = 2 * kMeshFanout;
   std::uint32_t slots[2][kRoom];
-  SlotPairSink found{
-      slots[0], slots[1], kRoom, 0, &PairGuide::show_slots, &guide};
+  SlotPairSink found{slots[0], slots[1], kRoom, 0, &PairGuide::show_slots, &guide};
   mesh_overlap_pairs(*first.mesh, *second.mesh, placed.b_in_a, placed.margin, found);
   if (!found.is_done) PairGuide::show_slots(found.context, found);
+  return true;
+}
+
+bool visit_near_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
+                      const Pose& pose_b, double limit, const NearPairVisitor& visitor) {
+  const PlacedBody first = PlacedBody::at(all, a, pose_a);
+  const PlacedBody second = PlacedBody::at(all, b, pose_b);
+  if (first.kind != PlacedBody::Kind::mesh || second.kind != PlacedBody::Kind::mesh) return false;
+  const double(&scale)[3] = all.mesh(a)->scale;
+  if (std::abs(scale[0]) != std::abs(scale[1]) || std::abs(scale[0]) != std::abs(scale[2])) {
+    return false;
+  }
+  NearPairGuide guide{first, second, visitor, limit};
+  const PlacedMesh placed(first, second, 0.0);
+  mesh_near_pairs(*first.mesh, *second.mesh, placed.b_in_a, placed.margin, guide.own_limit(),
+                  {&NearPairGuide::show, &guide, guide.direction});
   return true;
 }
 

@@ -228,6 +228,19 @@ struct PlacedNodes {
   alignas(64) float high[3][kLanes];
   Mask16 lanes;
 
+  /// The box around them.
+  void merge(float (&least)[3], float (&greatest)[3]) const {
+    const std::uint32_t last = 31U - static_cast<std::uint32_t>(__builtin_clz(lanes));
+    for (int axis = 0; axis < 3; ++axis) {
+      least[axis] = low[axis][0];
+      greatest[axis] = high[axis][0];
+      for (std::uint32_t j = 1; j <= last; ++j) {
+        if (low[axis][j] < least[axis]) least[axis] = low[axis][j];
+        if (high[axis][j] > greatest[axis]) greatest[axis] = high[axis][j];
+      }
+    }
+  }
+
   [[nodiscard]] Box16 box() const { return load_box(low, high); }
 };
 
@@ -333,15 +346,7 @@ class PairTraversal {
     // The box of b's node is that of its children.
     float low[3];
     float high[3];
-    const std::uint32_t last = 31U - static_cast<std::uint32_t>(__builtin_clz(nodes_.lanes));
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = nodes_.low[axis][0];
-      high[axis] = nodes_.high[axis][0];
-      for (std::uint32_t j = 1; j <= last; ++j) {
-        if (nodes_.low[axis][j] < low[axis]) low[axis] = nodes_.low[axis][j];
-        if (nodes_.high[axis][j] > high[axis]) high[axis] = nodes_.high[axis][j];
-      }
-    }
+    nodes_.merge(low, high);
     const std::uint32_t first_a = pair.a * kMeshFanout;
     Mask16 hits = overlap(load_nodes(a_, pair.level_a - 1, first_a), low, high) &
                   present(a_.count[pair.level_a - 1], first_a);

@@ -134,7 +134,7 @@ Crossing cross_triangle(const SurfaceRay& ray, const double (&corner)[3][3], dou
 
 void mesh_ray(const MeshView& mesh, const SurfaceRay& ray, double limit,
               const SlotVisitor& visitor) noexcept {
-  MeshRayJob job{};
+  MeshRayJob job;
   if (mesh.triangle_count == 0 || !(limit >= 0.0) || !set_job(mesh, ray, limit, job)) return;
   mesh_kernels().rays(mesh, job, limit, visitor);
 }

@@ -150,6 +150,7 @@ inline void show_on_ray_along(const MeshView& mesh, const MeshRayJob& job, doubl
     Mask16 hits = on_line<Z>(load_corners(mesh, leaf), job, open.entry()) &
                   present(mesh.triangle_count, first_slot);
     if (hits == 0) return true;
+    __builtin_prefetch(mesh.triangle + first_slot);
     std::uint32_t slots[kLanes];
     std::uint32_t count = 0;
     for (; hits != 0; hits &= hits - 1) slots[count++] = first_slot + first(hits);

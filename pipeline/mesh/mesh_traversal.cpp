@@ -161,6 +161,12 @@ void mesh_overlap_pairs(const MeshView& a, const MeshView& b, const MeshPlacemen
   mesh_kernels().pairs(a, b, pair_job(a, b, b_in_a, margin), out);
 }
 
+void mesh_near_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& b_in_a,
+                     const double doubt[3], double limit, const SlotPairVisitor& visitor) noexcept {
+  if (a.triangle_count == 0 || b.triangle_count == 0 || !(limit >= 0.0)) return;
+  mesh_kernels().near_pairs(a, b, pair_job(a, b, b_in_a, doubt), limit, visitor);
+}
+
 void mesh_sweep(const MeshView& mesh, const double min[3], const double max[3],
                 const double direction[3], double limit, const SlotVisitor& visitor) noexcept {
   if (mesh.triangle_count == 0 || !(limit >= 0.0)) return;

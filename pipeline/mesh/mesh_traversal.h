@@ -8,7 +8,7 @@
 namespace winnow {
 
 // Traversals of a mesh's tree, in the mesh's own frame, unscaled. None of them misses a triangle;
-// all may show some more than asked for. Scratch of fixed size lies on the stack, 60 KB for pairs
+// all may show some more than asked for. Scratch of fixed size lies on the stack, 90 KB for pairs
 // and 3 KB for the others. Serial, and the same output on any instruction set.
 
 /// Slots of all triangles whose boxes meet [min, max], ascending. Bounds may be infinite.
@@ -30,6 +30,12 @@ void mesh_below(const MeshView& mesh, const double normal[3], double offset,
 /// the plane of one of them parts, each once.
 void mesh_overlap_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& b_in_a,
                         const double margin[3], SlotPairSink& out) noexcept;
+
+/// Shows pairs of triangles that may be no farther apart than `limit`, in the lengths of a, once b
+/// is placed in the frame of a; where b is may be wrong by `doubt[k]` on axis k. A limit below zero
+/// ends it.
+void mesh_near_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& b_in_a,
+                     const double doubt[3], double limit, const SlotPairVisitor& visitor) noexcept;
 
 // A visitor is shown the slots of one leaf at a time, nearest first, and the limit it gives back
 // holds from the next leaf on; one below zero ends the traversal.
@@ -126,6 +132,8 @@ struct MeshKernels {
   void (*pairs)(const MeshView& a, const MeshView& b, const MeshPairJob& job, SlotPairSink& out);
   void (*sweep)(const MeshView& mesh, const MeshSweepJob& job, double limit,
                 const SlotVisitor& visitor);
+  void (*near_pairs)(const MeshView& a, const MeshView& b, const MeshPairJob& job, double limit,
+                     const SlotPairVisitor& visitor);
   void (*rays)(const MeshView& mesh, const MeshRayJob& job, double limit,
                const SlotVisitor& visitor);
   void (*near)(const MeshView& mesh, const MeshNearJob& job, double limit,

@@ -1,4 +1,5 @@
 #include "pipeline/mesh/mesh_descent.wide.h"
+#include "pipeline/mesh/mesh_near_pairs.wide.h"
 #include "pipeline/mesh/mesh_overlaps.wide.h"
 #include "pipeline/mesh/mesh_pairs.wide.h"
 #include "pipeline/mesh/mesh_rays.wide.h"
@@ -17,6 +18,11 @@ void show_swept(const MeshView& mesh, const MeshSweepJob& job, double limit,
   show_in_order(mesh, measure, visitor);
 }
 
+void show_near_pairs(const MeshView& a, const MeshView& b, const MeshPairJob& job, double limit,
+                     const SlotPairVisitor& visitor) {
+  NearPairTraversal(a, b, job, limit, visitor).run();
+}
+
 void show_near(const MeshView& mesh, const MeshNearJob& job, double limit,
                const SlotVisitor& visitor) {
   NearMeasure measure(job, limit);
@@ -28,8 +34,8 @@ void show_near(const MeshView& mesh, const MeshNearJob& job, double limit,
 
 extern const MeshKernels WINNOW_KERNEL_TABLE(mesh_kernels) = {
     WINNOW_ISA_NAME::mesh::find_overlaps, WINNOW_ISA_NAME::mesh::find_pairs,
-    WINNOW_ISA_NAME::mesh::show_swept,    WINNOW_ISA_NAME::mesh::show_on_ray,
-    WINNOW_ISA_NAME::mesh::show_near,
+    WINNOW_ISA_NAME::mesh::show_swept,    WINNOW_ISA_NAME::mesh::show_near_pairs,
+    WINNOW_ISA_NAME::mesh::show_on_ray,   WINNOW_ISA_NAME::mesh::show_near,
 };
 
 }  // namespace winnow

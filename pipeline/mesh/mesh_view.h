@@ -99,6 +99,15 @@ struct SlotPairSink {
   bool is_done = false;
 };
 
+/// Is shown pairs of slots, roughly the nearest first; gives back the new limit.
+struct SlotPairVisitor {
+  double (*visit)(void* context, std::uint32_t a, std::uint32_t b, double limit) = nullptr;
+  void* context = nullptr;
+  /// The direction, a unit vector in the frame of a, from a to b along which the nearest pair so
+  /// far is apart; zero if there is none. Read again after each visit.
+  const float* direction = nullptr;
+};
+
 /// Is shown the slots that a traversal in order finds, 16 or fewer at a time; gives back the new
 /// limit.
 struct SlotVisitor {

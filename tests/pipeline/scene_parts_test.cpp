@@ -324,6 +324,10 @@ class IdleMidPhase final : public MidPhase {
                    const PrimitivePairVisitor&) const override {
     return worked(false);
   }
+  bool visit_near_pairs(ShapeId, const Pose&, ShapeId, const Pose&, double,
+                        const NearPairVisitor&) const override {
+    return worked(false);
+  }
   [[nodiscard]] Footprint footprint() const noexcept override { return {}; }
 
   mutable int calls = 0;

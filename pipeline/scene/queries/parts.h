@@ -97,6 +97,21 @@ class PartTraversal {
          },
          &visit});
   }
+  /// Calls visit(a, b, limit) for pairs of parts of two meshes that may be within `limit` of each
+  /// other, as `met` does; `normal` is that of a NearPairVisitor. False, and nothing is shown, if
+  /// they cannot be taken so.
+  template <typename Visit>
+  bool near_pairs(const PlacedShape& a, const PlacedShape& b, double limit, const double* normal,
+                  Visit&& visit) const {
+    using Visitor = std::remove_reference_t<Visit>;
+    if (!a.shape.is_composite() || !b.shape.is_composite()) return false;
+    return composites_->visit_near_pairs(
+        a.shape, a.pose, b.shape, b.pose, limit,
+        {[](void* context, const Primitive& first, const Primitive& second, double most) {
+           return (*static_cast<Visitor*>(context))(part_of(first), part_of(second), most);
+         },
+         &visit, normal});
+  }
   /// Calls visit(part, limit) for every part that may be within `limit` of a box, as `met` does.
   template <typename Visit>
   void near(const PlacedShape& placed, const PreciseBox& from, double limit, Visit&& visit) const {

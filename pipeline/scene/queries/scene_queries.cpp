@@ -71,6 +71,12 @@ class ClosestParts {
             SceneDistance& answer) noexcept {
     const Pairing pair(first, second);
     begin(pair.base, limit, answer);
+    std::fill_n(answer.normal, 3, 0.0);
+    auto look_at = [&](const ConvexPart& a, const ConvexPart& b, double) {
+      look(a, b);
+      return reach();
+    };
+    if (parts_.near_pairs(pair.a, pair.b, limit, answer.normal, look_at)) return found_;
     parts_.near(pair.a, parts_.box(pair.b), limit,
                 [&](const ConvexPart& a, double) { return look_about(a, pair.b); });
     return found_;
