@@ -90,7 +90,10 @@ class NearPairTraversal {
   void set_limit(double limit) {
     limit_ = limit;
     const double scaled = limit * static_cast<double>(job_.scale) * (1.0 + 0x1p-20);
-    most_ = scaled < 1e18 ? static_cast<float>(scaled) : __builtin_inff();
+    if (scaled < static_cast<double>(most_)) set_most(static_cast<float>(scaled));
+  }
+  void set_most(float most) {
+    most_ = most;
     square_ = most_ * most_ * (1.0F + kSquareError) + 1e-36F;
   }
 
@@ -152,12 +155,30 @@ class NearPairTraversal {
     const Box16 children = load_nodes(a_, level, first_a);
     const Mask16 lanes = present(a_.count[level], first_a);
     found_.size = 0;
+    // The direction in units: along it boxes reach as far as their corners do.
+    float along[3];
+    float doubt = slack_;
+    Floats own_reach(0.0F);
+    for (int axis = 0; axis < 3; ++axis) {
+      along[axis] = visitor_.direction[axis] * a_.step[axis] * job_.scale;
+      const float size = along[axis] < 0.0F ? -along[axis] : along[axis];
+      doubt += size;
+      own_reach +=
+          Floats(along[axis]) * (along[axis] < 0.0F ? children.low[axis] : children.high[axis]);
+    }
     for (Mask16 rest = nodes_.lanes; rest != 0; rest &= rest - 1) {
       const unsigned j = first(rest);
+      float reach = 0.0F;
+      for (int axis = 0; axis < 3; ++axis) {
+        reach += along[axis] * (along[axis] < 0.0F ? nodes_.high[axis][j] : nodes_.low[axis][j]);
+      }
+      const Mask16 parted =
+          bits(Floats(reach) - own_reach > Floats((most_ + doubt) * (1.0F + 0x1p-14F)));
+      if ((lanes & ~parted) == 0) continue;
       const float low[3] = {nodes_.low[0][j], nodes_.low[1][j], nodes_.low[2][j]};
       const float high[3] = {nodes_.high[0][j], nodes_.high[1][j], nodes_.high[2][j]};
       const Floats apart = squares(children, low, high, length_);
-      found_.add(apart, bits(apart <= Floats(square_)) & lanes, first_a, first_b + j);
+      found_.add(apart, bits(apart <= Floats(square_)) & lanes & ~parted, first_a, first_b + j);
     }
     if (level != 0) {
       push_found(level, level);
@@ -196,70 +217,91 @@ class NearPairTraversal {
   void find_triangles(const PairLeaf& leaf, const Corners16& others, std::uint32_t first_a,
                       std::uint32_t first_b) {
     alignas(64) float corner[3][3][kLanes];
-    for (int k = 0; k < 3; ++k) {
-      for (int axis = 0; axis < 3; ++axis) others.at[k][axis].store(corner[k][axis]);
-    }
+    alignas(64) float lows[3][kLanes];
+    alignas(64) float highs[3][kLanes];
+    alignas(64) float other_size[kLanes];
+    const Box16 other_box = box_of(others);
     Floats size(0.0F);
+    Floats sum(0.0F);
     Floats middle[3];
     for (int axis = 0; axis < 3; ++axis) {
+      for (int k = 0; k < 3; ++k) others.at[k][axis].store(corner[k][axis]);
+      other_box.low[axis].store(lows[axis]);
+      other_box.high[axis].store(highs[axis]);
+      sum += max(abs(other_box.low[axis]), abs(other_box.high[axis]));
       size += max(abs(leaf.box.low[axis]), abs(leaf.box.high[axis]));
       middle[axis] = leaf.corners.at[0][axis] + leaf.corners.at[1][axis] + leaf.corners.at[2][axis];
     }
+    sum.store(other_size);
+    if (!has_direction()) cut_by_corners(leaf, corner, reduce_max(size) + reduce_max(sum));
     triangles_.size = 0;
+    const Floats known[3] = {visitor_.direction[0], visitor_.direction[1], visitor_.direction[2]};
+    const Floats own_reach = farthest(known, leaf.corners);
+    alignas(64) float other_reach[kLanes];
+    const Floats backward[3] = {-known[0], -known[1], -known[2]};
+    (-farthest(backward, others)).store(other_reach);
     for (Mask16 rest = present(b_.triangle_count, first_b); rest != 0; rest &= rest - 1) {
       const unsigned j = first(rest);
-      float other[3][3];
-      float low[3];
-      float high[3];
-      float other_size = 0.0F;
-      for (int axis = 0; axis < 3; ++axis) {
-        for (int k = 0; k < 3; ++k) other[k][axis] = corner[k][axis][j];
-        low[axis] = least(other[0][axis], other[1][axis], other[2][axis]);
-        high[axis] = -least(-other[0][axis], -other[1][axis], -other[2][axis]);
-        other_size += high[axis] > -low[axis] ? high[axis] : -low[axis];
-      }
       // Sums of three products of coordinates, and the corners of b, are rounded by less.
-      const Floats doubt = (size + Floats(other_size)) * Floats(0x1p-19F) + Floats(slack_);
-      for (int axis = 0; axis < 3; ++axis) {
-        low[axis] -= slack_ + other_size * 0x1p-20F;
-        high[axis] += slack_ + other_size * 0x1p-20F;
-      }
+      const Floats doubt = (size + Floats(other_size[j])) * Floats(0x1p-19F) + Floats(slack_);
+      const Floats reach = (Floats(most_) + doubt) * Floats(1.0F + 0x1p-14F);
+      Mask16 hits = ~bits(Floats(other_reach[j]) - own_reach > reach) & leaf.lanes;
+      if (hits == 0) continue;
+      const float grow = slack_ + other_size[j] * 0x1p-20F;
+      const float low[3] = {lows[0][j] - grow, lows[1][j] - grow, lows[2][j] - grow};
+      const float high[3] = {highs[0][j] + grow, highs[1][j] + grow, highs[2][j] + grow};
       static constexpr float kUnits[3] = {1.0F, 1.0F, 1.0F};
       const Floats apart = squares(leaf.box, low, high, kUnits);
-      Mask16 hits = bits(apart <= Floats(square_)) & leaf.lanes;
+      hits &= bits(apart <= Floats(square_));
       if (hits == 0) continue;
-      const Floats reach = (Floats(most_) + doubt) * Floats(1.0F + 0x1p-14F);
-      const Floats known[3] = {visitor_.direction[0], visitor_.direction[1], visitor_.direction[2]};
-      hits &= ~bits(parted_by(known, leaf, other) > reach);
-      if (hits == 0) continue;
+      Corners16 other;
       Floats between[3];
       Floats length(0.0F);
       for (int axis = 0; axis < 3; ++axis) {
-        between[axis] = Floats(other[0][axis] + other[1][axis] + other[2][axis]) - middle[axis];
+        for (int k = 0; k < 3; ++k) other.at[k][axis] = Floats(corner[k][axis][j]);
+        between[axis] = other.at[0][axis] + other.at[1][axis] + other.at[2][axis] - middle[axis];
         length += between[axis] * between[axis];
       }
-      hits &= ~bits(parted_by(between, leaf, other) > reach * sqrt(length));
+      const Floats back[3] = {-between[0], -between[1], -between[2]};
+      const Floats parted = -farthest(back, other) - farthest(between, leaf.corners);
+      hits &= ~bits(parted > reach * sqrt(length));
       triangles_.add(apart, hits, first_a, first_b + j);
     }
   }
 
-  static float least(float a, float b, float c) {
-    const float ab = a < b ? a : b;
-    return ab < c ? ab : c;
+  [[nodiscard]] bool has_direction() const {
+    const float* const d = visitor_.direction;
+    return d[0] != 0.0F || d[1] != 0.0F || d[2] != 0.0F;
   }
 
-  /// How far a triangle lies beyond those of a leaf along a direction, in units of its length.
-  [[gnu::always_inline]] static Floats parted_by(const Floats (&direction)[3], const PairLeaf& leaf,
-                                                 const float (&other)[3][3]) {
-    Floats own[3];
-    Floats others[3];
-    for (int k = 0; k < 3; ++k) {
-      const auto& corner = leaf.corners.at[k];
-      own[k] = direction[0] * corner[0] + direction[1] * corner[1] + direction[2] * corner[2];
-      others[k] = direction[0] * Floats(other[k][0]) + direction[1] * Floats(other[k][1]) +
-                  direction[2] * Floats(other[k][2]);
+  /// The meshes are no farther apart than any two corners. Before there is a nearest pair this
+  /// saves most of the looks at pairs that are not it.
+  void cut_by_corners(const PairLeaf& leaf, const float (&corner)[3][3][kLanes], float size) {
+    Floats nearest(__builtin_inff());
+    for (int j = 0; j < kLanes; ++j) {
+      for (const auto& own : leaf.corners.at) {
+        Floats square(0.0F);
+        for (int axis = 0; axis < 3; ++axis) {
+          const Floats between = own[axis] - Floats(corner[0][axis][j]);
+          square += between * between;
+        }
+        nearest = min(nearest, square);
+      }
     }
-    return min(min(others[0], others[1]), others[2]) - max(max(own[0], own[1]), own[2]);
+    const float apart =
+        reduce_min(sqrt(nearest)) * (1.0F + kSquareError) + slack_ + size * 0x1p-19F;
+    if (apart < most_) set_most(apart);
+  }
+
+  /// How far triangles reach along a direction, in units of its length.
+  [[gnu::always_inline]] static Floats farthest(const Floats (&direction)[3],
+                                                const Corners16& corners) {
+    Floats at[3];
+    for (int k = 0; k < 3; ++k) {
+      at[k] = direction[0] * corners.at[k][0] + direction[1] * corners.at[k][1] +
+              direction[2] * corners.at[k][2];
+    }
+    return max(max(at[0], at[1]), at[2]);
   }
 
   void show_triangles() {
@@ -278,9 +320,9 @@ class NearPairTraversal {
   float length_[3];
   float slack_ = 0.0F;
   double limit_ = 0.0;
-  /// The limit in the scaled frame, and its square.
-  float most_ = 0.0F;
-  float square_ = 0.0F;
+  /// The limit in the scaled frame, or the distance of two corners if that is less, and its square.
+  float most_ = __builtin_inff();
+  float square_ = __builtin_inff();
   PlacedNodes nodes_;
   PairLeaf leaves_[kMeshFanout];
   Corners16 placed_[kMeshFanout];
