@@ -1,5 +1,8 @@
 #include "pipeline/scene/queries/swept_shapes.h"
 
+#include <winnow/core/rotation.h>
+#include "pipeline/shapes/extent.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 
@@ -113,7 +116,50 @@ ShapeSweep::ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double
                  cast.direction, cast.max_t),
       shapes_(parts.shapes()),
       cast_(cast),
-      tolerance_(tolerance) {}
+      tolerance_(tolerance),
+      to_shape_(rotation_of(tame(cast.pose.orientation)).transpose()) {}
+
+// The plane of the triangle, and planes along the motion through its sides: those in which most
+// triangles beside the way, or beyond what is met first, are parted from the shape.
+bool ShapeSweep::passes_by(const double from[3], const ConvexPart& part,
+                           double limit) const noexcept {
+  const Eigen::Vector4d q = Eigen::Vector4d::Map(part.pose.orientation);
+  if (part.triangle->rounding != 0.0 || q[1] != 0.0 || q[2] != 0.0 || q[3] != 0.0) return false;
+  Vector3d corner[3];
+  Vector3d side[3];
+  for (int k = 0; k < 3; ++k) corner[k] = Vector3d::Map(part.triangle->vertex[k]);
+  for (int k = 0; k < 3; ++k) side[k] = corner[(k + 1) % 3] - corner[k];
+  const Vector3d start = Vector3d::Map(from) - Vector3d::Map(part.pose.position);
+  const Vector3d way = Vector3d::Map(direction());
+  const double size = start.cwiseAbs().sum() + extent().min.cwiseAbs().sum() +
+                      extent().max.cwiseAbs().sum() + corner[0].cwiseAbs().sum() +
+                      corner[1].cwiseAbs().sum() + corner[2].cwiseAbs().sum();
+  const double doubt_of_all = mid::kSlack * size + 4.0 * doubt(part);
+  // How far the shape lies above or below all of the triangle along an axis, at the start.
+  const auto gap = [&](const Vector3d& axis, double& side_of) {
+    const mid::Extent own = mid::extent(shapes_.tables(), cast_.shape, to_shape_ * axis);
+    const double at = axis.dot(start);
+    const double heights[3] = {axis.dot(corner[0]), axis.dot(corner[1]), axis.dot(corner[2])};
+    const double above = at + own.low - *std::max_element(heights, heights + 3);
+    const double below = *std::min_element(heights, heights + 3) - at - own.high;
+    side_of = above >= below ? 1.0 : -1.0;
+    return std::max(above, below) - doubt_of_all * axis.cwiseAbs().sum();
+  };
+  double side_of = 1.0;
+  const Vector3d normal = side[0].cross(side[1]);
+  const double rest = gap(normal, side_of);
+  if (rest > 0.0) {
+    const double closing = -side_of * normal.dot(way);
+    const double noise = mid::kSlack * normal.cwiseAbs().sum() * way.cwiseAbs().sum();
+    // A way without end that does not close, as far as can be told, is left to others.
+    const double most = limit + tolerance_ / way.norm();
+    if (rest > (std::max(closing, 0.0) + noise) * most) return true;
+  }
+  for (const Vector3d& along : side) {
+    if (gap(way.cross(along), side_of) > 0.0) return true;
+  }
+  return false;
+}
 
 CastPair ShapeSweep::pair(PartTables& tables, const double from[3],
                           const ConvexPart& part) const noexcept {
@@ -131,6 +177,7 @@ CastPair ShapeSweep::pair(PartTables& tables, const double from[3],
 
 bool ShapeSweep::meets(const double from[3], const ConvexPart& part, double limit,
                        SweepMeeting& meeting) const noexcept {
+  if (part.triangle != nullptr && passes_by(from, part, limit)) return false;
   PartTables tables(shapes_);
   CastPair asked = pair(tables, from, part);
   asked.max_t = limit;

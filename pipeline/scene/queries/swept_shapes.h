@@ -79,12 +79,17 @@ class ShapeSweep final : public SweptShape {
                 SweepMeeting& meeting) const noexcept override;
 
  private:
+  /// True if a plane shows that the shape does not come to the triangle by t = limit.
+  [[nodiscard]] bool passes_by(const double from[3], const ConvexPart& part,
+                               double limit) const noexcept;
   [[nodiscard]] CastPair pair(PartTables& tables, const double from[3],
                               const ConvexPart& part) const noexcept;
 
   const ShapePool& shapes_;
   const ShapeCast& cast_;
   const double tolerance_;
+  /// From the axes of the world to those of the shape.
+  Eigen::Matrix3d to_shape_;
 };
 
 /// A meeting with a body, and all that it takes to describe it.
