@@ -1,5 +1,6 @@
 #include "pipeline/mesh/mesh_traversal.h"
 #include <gtest/gtest.h>
+#include "pipeline/mesh/mesh_rays.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -377,6 +378,117 @@ TEST_F(Meshes, a_sweep_shows_the_triangles_it_may_meet_and_ends_where_it_is_told
       seen = {{}, -1.0, false};
       mesh_sweep(view_of(mesh), min, max, direction, limit, {Seen::visit, &seen});
       EXPECT_LE(seen.slots.size(), 16U);
+    }
+  }
+}
+
+/// A point of a triangle, on an edge or a corner now and then.
+Eigen::Vector3d point_of(const TwinTriangle& triangle, Random& random) {
+  double weight[3];
+  for (double& w : weight) w = random.chance(0.3) ? 0.0 : random.uniform(0, 1);
+  const double sum = weight[0] + weight[1] + weight[2];
+  if (sum == 0.0) weight[0] = 1.0;
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  for (int k = 0; k < 3; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      point[axis] += weight[k] / (sum == 0.0 ? 1.0 : sum) *
+                     static_cast<double>(triangle.corner[k][static_cast<std::size_t>(axis)]);
+    }
+  }
+  return point;
+}
+
+TEST_F(Meshes, a_ray_is_shown_every_triangle_that_it_is_aimed_at) {
+  Random random(11);
+  for (const TriangleMesh& mesh : meshes_) {
+    const auto triangles = twin(view_of(mesh));
+    for (std::size_t k = 0; k < scaled(200); ++k) {
+      const auto aim = static_cast<std::uint32_t>(random.below(triangles.size()));
+      const Eigen::Vector3d at = point_of(triangles[aim], random);
+      const double far = mesh.radius() * random.log_uniform(1e-3, 1e6);
+      Eigen::Vector3d way(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      if (random.chance(0.3)) way[static_cast<int>(random.below(3))] = 0.0;
+      way *= 0.75 / std::max(way.cwiseAbs().maxCoeff(), 1e-9);
+      const Eigen::Vector3d from = at - far * way;
+      SurfaceRay ray{};
+      Eigen::Vector3d::Map(ray.origin) = from;
+      Eigen::Vector3d::Map(ray.direction) = way;
+      ray.slack = 0x1p-48 * (from.cwiseAbs().maxCoeff() + at.cwiseAbs().maxCoeff() + far);
+      const double limit =
+          random.chance(0.3) ? std::numeric_limits<double>::infinity() : far * (1.0 + 1e-9);
+      const Slots shown = on_all_isas([&] {
+        Seen seen{{}, 0.0, true};
+        mesh_ray(view_of(mesh), ray, limit, {Seen::visit, &seen});
+        std::sort(seen.slots.begin(), seen.slots.end());
+        return std::binary_search(seen.slots.begin(), seen.slots.end(), aim) ? Slots{aim} : Slots{};
+      });
+      EXPECT_FALSE(shown.empty()) << "triangle " << aim << " from " << far;
+      double corner[3][3];
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          corner[c][axis] = static_cast<double>(triangles[aim].corner[c][axis]);
+        }
+      }
+      SurfaceHit hit{};
+      const Crossing crossing = cross_triangle(ray, corner, 0.0, limit, hit);
+      EXPECT_NE(crossing, Crossing::none);
+      if (crossing != Crossing::found) continue;
+      const Point normal = cross(minus(triangles[aim].corner[1], triangles[aim].corner[0]),
+                                 minus(triangles[aim].corner[2], triangles[aim].corner[0]));
+      const Point step{static_cast<Real>(way[0]), static_cast<Real>(way[1]),
+                       static_cast<Real>(way[2])};
+      const Point start{static_cast<Real>(from[0]), static_cast<Real>(from[1]),
+                        static_cast<Real>(from[2])};
+      const Real t = dot(normal, minus(triangles[aim].corner[0], start)) / dot(normal, step);
+      const Real sine = std::abs(dot(normal, step)) / std::sqrt(dot(normal, normal));
+      EXPECT_NEAR(static_cast<double>(t), hit.t,
+                  1e-14 * (far + mesh.radius()) / static_cast<double>(sine));
+    }
+  }
+}
+
+/// Notes pairs, and leaves the limit as it is.
+struct SeenPairs {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+
+  static double visit(void* context, std::uint32_t a, std::uint32_t b, double limit) {
+    EXPECT_TRUE(static_cast<SeenPairs*>(context)->pairs.emplace(a, b).second) << "shown twice";
+    return limit;
+  }
+};
+
+TEST_F(Meshes, pairs_with_corners_within_the_limit_are_shown_whatever_the_direction) {
+  Random random(12);
+  for (std::size_t k = 0; k < scaled(30); ++k) {
+    const TriangleMesh& a = meshes_[random.below(meshes_.size())];
+    const TriangleMesh& b = meshes_[random.below(meshes_.size())];
+    if (a.triangles() * b.triangles() > 2'000'000) continue;
+    const MeshPlacement placement = random_placement(random, a.radius() + b.radius());
+    const auto own = twin(view_of(a));
+    const auto others = twin(view_of(b), placement);
+    const double limit = random.chance(0.2) ? 0.0 : a.radius() * random.uniform(0, 1);
+    Eigen::Vector3f direction(static_cast<float>(random.uniform(-1, 1)),
+                              static_cast<float>(random.uniform(-1, 1)),
+                              static_cast<float>(random.uniform(-1, 1)));
+    direction.normalize();
+    const double doubt[3] = {0.0, 0.0, 0.0};
+    const auto shown = on_all_isas([&] {
+      SeenPairs seen;
+      mesh_near_pairs(view_of(a), view_of(b), placement, doubt, limit,
+                      {SeenPairs::visit, &seen, direction.data()});
+      return seen.pairs;
+    });
+    for (std::uint32_t i = 0; i < own.size(); ++i) {
+      for (std::uint32_t j = 0; j < others.size(); ++j) {
+        Real least = std::numeric_limits<Real>::infinity();
+        for (const Point& p : own[i].corner) {
+          for (const Point& q : others[j].corner) {
+            least = std::min(least, dot(minus(p, q), minus(p, q)));
+          }
+        }
+        if (least > static_cast<Real>(limit) * static_cast<Real>(limit)) continue;
+        EXPECT_TRUE(shown.count({i, j}) != 0) << i << " and " << j;
+      }
     }
   }
 }

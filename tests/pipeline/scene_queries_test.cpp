@@ -174,6 +174,62 @@ TEST(SceneQueries, rays_meet_what_bodies_asked_one_by_one_say) {
   }
 }
 
+TEST(SceneQueries, a_batch_answers_each_ray_as_if_it_were_alone) {
+  Random random(7);
+  QueryWorld world;
+  fill(world, 100, 0.0, random);
+  world.add_to_scene();
+  SceneQueries queries(*world.scene);
+  std::vector<ShapeRay> rays(scaled(100));
+  for (ShapeRay& ray : rays) {
+    draw_direction(1.0, random, ray.direction);
+    for (double& x : ray.origin) x = random.uniform(-world.size, world.size);
+    ray.max_t = world.size;
+  }
+  std::vector<Key> keys(rays.size());
+  std::vector<ClientData> data(rays.size());
+  std::vector<std::uint32_t> parts(rays.size());
+  std::vector<double> times(rays.size());
+  std::vector<double> heights(rays.size());
+  const SceneHitColumns columns{.key = keys.data(),
+                                .data = data.data(),
+                                .part = parts.data(),
+                                .t = times.data(),
+                                .normal = {},
+                                .point = {nullptr, nullptr, heights.data()}};
+  ASSERT_EQ(queries.closest(std::span<const ShapeRay>(rays), columns), Status::ok);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    SceneHit hit;
+    ASSERT_EQ(queries.closest(rays[i], hit), Status::ok);
+    EXPECT_EQ(keys[i], hit.key);
+    EXPECT_EQ(data[i], hit.data);
+    EXPECT_EQ(parts[i], hit.part);
+    EXPECT_EQ(times[i], hit ? hit.t : kInfinity);
+    EXPECT_EQ(heights[i], hit.point[2]);
+  }
+  ASSERT_EQ(queries.any(std::span<const ShapeRay>(rays), {.key = keys.data()}), Status::ok);
+  SceneHitLists lists;
+  ASSERT_EQ(queries.all(std::span<const ShapeRay>(rays), lists), Status::ok);
+  ASSERT_EQ(lists.first.size(), rays.size() + 1);
+  const std::vector<SceneHit> hits(lists.hits.begin(), lists.hits.end());
+  const std::vector<std::size_t> first(lists.first.begin(), lists.first.end());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_EQ(keys[i].id != kNoObject, times[i] < kInfinity);
+    std::span<const SceneHit> alone;
+    ASSERT_EQ(queries.all(rays[i], alone), Status::ok);
+    ASSERT_EQ(alone.size(), first[i + 1] - first[i]);
+    for (std::size_t k = 0; k < alone.size(); ++k) {
+      EXPECT_EQ(hits[first[i] + k].key, alone[k].key);
+      EXPECT_EQ(hits[first[i] + k].t, alone[k].t);
+    }
+  }
+  rays.back().direction[0] = std::nan("");
+  keys[0] = Key{};
+  EXPECT_EQ(queries.closest(std::span<const ShapeRay>(rays), {.key = keys.data()}),
+            Status::invalid_argument);
+  EXPECT_EQ(keys[0], Key{}) << "a refused batch writes nothing";
+}
+
 /// The signed distance of two bodies: of all pairs of their parts the least.
 PairAnswer brute_distance(const QueryWorld& world, ShapeId a, const Pose& pose_a, std::size_t b) {
   double offset[3];
