@@ -26,30 +26,31 @@ struct BoxPassage {
   double in = 0.0;
   double out;
 
-  BoxPassage(const SurfaceRay& ray, const Vector3d& low, const Vector3d& high,
-             double limit) noexcept
+  BoxPassage(const SurfaceRay& ray, const Vector3d& inverse, const Vector3d& low,
+             const Vector3d& high, double limit) noexcept
       : out(limit) {
     for (int axis = 0; axis < 3; ++axis) {
-      const double d = ray.direction[axis];
       const double near = low[axis] - ray.slack - ray.origin[axis];
       const double far = high[axis] + ray.slack - ray.origin[axis];
-      if (d == 0.0) {
+      if (ray.direction[axis] == 0.0) {
         if (near > 0.0 || far < 0.0) out = -1.0;
         continue;
       }
-      const double a = near / d;
-      const double b = far / d;
+      // Zero times infinity, as the second operand of a comparison, narrows nothing.
+      const double a = near * inverse[axis];
+      const double b = far * inverse[axis];
       in = std::max(in, std::min(a, b) * (1.0 - 0x1p-48));
       out = std::min(out, std::max(a, b) * (1.0 + 0x1p-48));
     }
   }
 };
 
-/// How the ray passes bounds on an axis. `from` and `rate` are where it is, and by how much it
-/// moves for each tau, in units of the nodes; `grow` by how much boxes are grown.
-void set_axis(MeshRayJob& job, int axis, double from, double rate, double grow) noexcept {
-  const double inverse =
-      std::abs(rate) < kStandingRate ? std::copysign(kStandingInverse, rate) : 1.0 / rate;
+/// How the ray passes bounds on an axis. `from` is where it is, and `grow` by how much boxes are
+/// grown, in units of the nodes; `inverse` is how long, in tau, it takes for one.
+void set_axis(MeshRayJob& job, int axis, double from, double inverse, double grow) noexcept {
+  if (!(std::abs(inverse) <= 1.0 / kStandingRate)) {
+    inverse = std::copysign(kStandingInverse, inverse);
+  }
   const bool is_backward = inverse < 0.0;
   const auto lower = static_cast<std::uint32_t>(place_of_bound(0, static_cast<std::size_t>(axis)));
   const auto upper =
@@ -73,7 +74,8 @@ bool set_job(const MeshView& mesh, const SurfaceRay& ray, double limit, MeshRayJ
   const Vector3d step = Eigen::Map<const Eigen::Vector3f>(mesh.step).cast<double>();
   const Vector3d origin = Vector3d::Map(ray.origin);
   const Vector3d direction = Vector3d::Map(ray.direction);
-  const BoxPassage passage(ray, low - step, low + (kMaxNodeBound + 1.0) * step, limit);
+  const Vector3d inverse = direction.cwiseInverse();
+  const BoxPassage passage(ray, inverse, low - step, low + (kMaxNodeBound + 1.0) * step, limit);
   if (!(passage.in <= passage.out)) return false;
   job.entry = passage.in;
   const Vector3d moved = passage.in * direction;
@@ -82,21 +84,20 @@ bool set_job(const MeshView& mesh, const SurfaceRay& ray, double limit, MeshRayJ
       std::min(kMostSlack, ray.slack + 0x1p-51 * (origin.cwiseAbs() + moved.cwiseAbs()).maxCoeff());
   // The ray is not in the box, grown by the slack, for longer.
   const Vector3d extent = (kMaxNodeBound + 1.0) * step + Vector3d::Constant(2.0 * slack);
-  const double longest = extent.cwiseQuotient(direction.cwiseAbs()).minCoeff();
-  const double stretch = std::ldexp(1.0, std::ilogb(longest));
-  job.pace = 1.0 / stretch;
+  const double longest = extent.cwiseProduct(inverse.cwiseAbs()).minCoeff();
+  job.pace = 1.0 / longest;
+  const Vector3d units = step.cwiseInverse();
   for (int axis = 0; axis < 3; ++axis) {
     job.origin[axis] = from[axis];
-    job.direction[axis] = direction[axis] * stretch;
-    const double grow = kUnitDoubt + 1.001 * slack / step[axis];
-    set_axis(job, axis, (from[axis] - low[axis]) / step[axis], job.direction[axis] / step[axis],
-             grow);
+    job.direction[axis] = direction[axis] * longest;
+    set_axis(job, axis, (from[axis] - low[axis]) * units[axis],
+             step[axis] * inverse[axis] * job.pace, kUnitDoubt + 1.001 * slack * units[axis]);
   }
   Eigen::Index fastest = 0;
   direction.cwiseAbs().maxCoeff(&fastest);
   job.fastest = static_cast<std::uint32_t>(fastest);
   for (int k = 0; k < 2; ++k) {
-    job.shear[k] = static_cast<float>(direction[(fastest + 1 + k) % 3] / direction[fastest]);
+    job.shear[k] = static_cast<float>(direction[(fastest + 1 + k) % 3] * inverse[fastest]);
   }
   job.slack = static_cast<float>(std::min(slack, 1e38));
   return true;
