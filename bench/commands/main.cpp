@@ -12,10 +12,10 @@ int run_tool(int argc, char** argv) {
                "winnow"};
   app.require_subcommand(0, 1);
   const Command report = add_report(app);
-  std::vector<Command> commands{
-      report,          add_compare(app),  add_results(app), add_scenes(app),
-      add_record(app), add_replay(app),   add_query(app),   add_goals(app),
-      add_draw(app),   add_simulate(app), add_advise(app)};
+  std::vector<Command> commands{report,          add_compare(app),  add_results(app),
+                                add_fit(app),    add_scenes(app),   add_record(app),
+                                add_replay(app), add_query(app),    add_goals(app),
+                                add_draw(app),   add_simulate(app), add_advise(app)};
   for (Command& one : add_measurements(app)) commands.push_back(std::move(one));
   try {
     app.parse(argc, argv);

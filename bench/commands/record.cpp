@@ -2,6 +2,7 @@
 #include "bench/commands/options.h"
 #include "bench/common/table.h"
 #include "bench/recordings/recording.h"
+#include "bench/scenes/scene.h"
 
 #include <iostream>
 

@@ -1,6 +1,5 @@
 #include "partitions/choice/predicted_costs.h"
 
-#include "partitions/structures/costs.h"
 #include "partitions/structures/structure.h"
 
 #include <algorithm>
@@ -22,6 +21,14 @@ struct Candidates {
   }
 };
 
+double level_of(const SceneFeatures& scene) noexcept {
+  return static_cast<double>(std::bit_width(scene.objects));
+}
+
+double changed_of(const SceneFeatures& scene, const FrameWork& frame) noexcept {
+  return static_cast<double>(std::min(frame.changed, scene.objects));
+}
+
 }  // namespace
 
 std::span<const StructureKind> candidates() noexcept {
@@ -29,29 +36,53 @@ std::span<const StructureKind> candidates() noexcept {
   return {all.kinds.data(), all.count};
 }
 
-PredictedCosts::PredictedCosts(const SceneFeatures& scene, const FrameWork& frame,
-                               double pairs) noexcept {
+std::array<CostTerm, kFrameTerms> frame_terms(const SceneFeatures& scene, const FrameWork& frame,
+                                              double pairs) noexcept {
+  using Costs = StructureCosts;
   const auto n = static_cast<double>(scene.objects);
-  const auto changed = static_cast<double>(std::min(frame.changed, scene.objects));
-  const auto level = static_cast<double>(std::bit_width(scene.objects));
+  const double changed = changed_of(scene, frame);
   // Past a quarter of the objects no single changes are followed.
   const bool much = 4.0 * changed > n;
   const auto queries = static_cast<double>(frame.pair_queries);
   const double full = much ? queries : static_cast<double>(frame.full_queries);
   const double partial = queries - full;
+  const double asking = full * n + partial * changed;
   const double redone = full * pairs + partial * pairs * changed / std::max(n, 1.0);
+  return {{{&Costs::frame, 1.0},
+           {&Costs::keep, changed},
+           {&Costs::object, full * n},
+           {&Costs::level, asking * level_of(scene)},
+           {&Costs::crowd, full * n * scene.crowding},
+           {&Costs::square, asking * n},
+           {&Costs::pair, redone},
+           {&Costs::moved, partial * changed},
+           {&Costs::rest, partial * n}}};
+}
+
+std::array<CostTerm, kBuildTerms> build_terms(const SceneFeatures& scene) noexcept {
+  const auto n = static_cast<double>(scene.objects);
+  return {{{&StructureCosts::build, n}, {&StructureCosts::build_level, n * level_of(scene)}}};
+}
+
+double sum_of(std::span<const CostTerm> terms, const StructureCosts& costs) noexcept {
+  double sum = 0.0;
+  for (const CostTerm& term : terms) sum += costs.*term.constant * term.times;
+  return sum;
+}
+
+PredictedCosts::PredictedCosts(const SceneFeatures& scene, const FrameWork& frame,
+                               double pairs) noexcept {
+  const auto frame_costs = frame_terms(scene, frame, pairs);
+  const auto build_costs = build_terms(scene);
+  const auto n = static_cast<double>(scene.objects);
   const auto others = static_cast<double>(frame.casts + frame.regions) +
                       kNearest * static_cast<double>(frame.nearest);
   for (std::size_t k = 0; k < candidates().size(); ++k) {
     const StructureCosts& c = *candidates()[k].info()->costs;
-    const double meets = c.level * level + c.square * n;
-    const double all = c.object + meets + c.crowd * scene.crowding;
-    total_[k] = full * n * all + partial * (changed * (c.moved + meets) + c.rest * n);
-    total_[k] += c.frame + c.keep * changed + c.pair * redone;
-    queries_[k] = others * (c.ask + c.ask_level * level + c.scan * n);
-    if (others > 0.0) queries_[k] += c.rows * changed;
-    total_[k] += queries_[k];
-    build_[k] = n * (c.build + c.build_level * level);
+    queries_[k] = others * (c.ask + c.ask_level * level_of(scene) + c.scan * n);
+    if (others > 0.0) queries_[k] += c.rows * changed_of(scene, frame);
+    total_[k] = sum_of(frame_costs, c) + queries_[k];
+    build_[k] = sum_of(build_costs, c);
   }
 }
 

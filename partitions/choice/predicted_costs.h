@@ -2,6 +2,7 @@
 
 #include <winnow/partitions/scene_features.h>
 #include <winnow/partitions/structures.h>
+#include "partitions/structures/costs.h"
 
 #include <array>
 #include <cstddef>
@@ -23,6 +24,24 @@ struct FrameWork {
   std::size_t regions = 0;       ///< boxes, spheres, frusta
   std::size_t nearest = 0;
 };
+
+/// One constant of a structure, and what a prediction multiplies it by.
+struct CostTerm {
+  double StructureCosts::*constant;
+  double times;
+};
+inline constexpr std::size_t kFrameTerms = 9;
+inline constexpr std::size_t kBuildTerms = 2;
+
+/// What a frame costs but for its other queries, as PredictedCosts says. `pairs` is the number of
+/// pairs of the scene.
+[[nodiscard]] std::array<CostTerm, kFrameTerms> frame_terms(const SceneFeatures& scene,
+                                                            const FrameWork& frame,
+                                                            double pairs) noexcept;
+/// What a build costs.
+[[nodiscard]] std::array<CostTerm, kBuildTerms> build_terms(const SceneFeatures& scene) noexcept;
+/// Nanoseconds.
+[[nodiscard]] double sum_of(std::span<const CostTerm> terms, const StructureCosts& costs) noexcept;
 
 /// What one frame is expected to cost each candidate, and what it costs to begin with that
 /// structure, in nanoseconds of one thread.

@@ -1,0 +1,122 @@
+#include "bench/commands/command.h"
+#include "bench/commands/options.h"
+#include "bench/common/table.h"
+#include "bench/measure/cost_fit.h"
+#include "bench/measure/race.h"
+#include "bench/scenes/scene.h"
+
+#include <winnow/simd/isa.h>
+
+#include <algorithm>
+#include <iostream>
+#include <map>
+
+namespace winnow::bench {
+namespace {
+
+struct Fit {
+  std::vector<std::string> scenes = scene_names();
+  std::vector<std::size_t> objects{50, 100, 200, 500, 1'000, 2'000, 5'000, 20'000, 100'000};
+  std::vector<double> moving{1.0, 0.05, 0.01};
+  std::size_t frames = 0;
+  std::string isa;
+  bool checks_alone = false;
+
+  int run();
+  [[nodiscard]] std::vector<CostSample> measured() const;
+};
+
+std::vector<CostSample> Fit::measured() const {
+  std::vector<CostSample> samples;
+  for (const std::size_t count : objects) {
+    for (const std::string& name : scenes) {
+      for (const double share : moving) {
+        const auto scene = some_moving(scene_or_error(name, count, 1), share);
+        const std::size_t taken = frames != 0 ? frames : frames_for(count);
+        samples.push_back(measure_costs(*scene, share, taken));
+      }
+      std::cerr << grouped(count) << ' ' << name << '\n';
+    }
+  }
+  return samples;
+}
+
+void print_constant(const char* name, double value) {
+  if (value != 0.0) std::cout << " ." << name << " = " << short_number(value) << ',';
+}
+
+void print_costs(const FittedCosts& fitted) {
+  for (std::size_t k = 0; k < fitted.costs.size(); ++k) {
+    const StructureCosts& c = fitted.costs[k];
+    std::cout << candidates()[k].name() << ", median error "
+              << short_number(100.0 * fitted.error[k]) << " %:\n ";
+    print_constant("frame", c.frame);
+    print_constant("keep", c.keep);
+    print_constant("object", c.object);
+    print_constant("level", c.level);
+    print_constant("crowd", c.crowd);
+    print_constant("square", c.square);
+    print_constant("pair", c.pair);
+    print_constant("moved", c.moved);
+    print_constant("rest", c.rest);
+    print_constant("build", c.build);
+    print_constant("build_level", c.build_level);
+    std::cout << '\n';
+  }
+}
+
+/// Median and worst of what the choice takes over the best, by number of objects.
+void print_regret(const std::vector<CostSample>& samples, const std::vector<StructureCosts>& costs,
+                  const std::string& title) {
+  std::map<std::size_t, std::vector<double>> by_size;
+  std::map<std::size_t, std::string> worst;
+  for (const CostSample& sample : samples) {
+    std::size_t chosen = 0;
+    std::size_t best = 0;
+    const double regret = regret_of(sample, costs, chosen, best);
+    std::vector<double>& all = by_size[sample.features.objects];
+    if (all.empty() || regret > *std::max_element(all.begin(), all.end())) {
+      worst[sample.features.objects] = sample.scene + ", " + short_number(100.0 * sample.moving) +
+                                       " % move: " + std::string(candidates()[chosen].name()) +
+                                       " for " + std::string(candidates()[best].name());
+    }
+    all.push_back(regret);
+  }
+  Table table({"objects", "median", "worst", "where"});
+  table.flush_left(3);
+  for (auto& [size, all] : by_size) {
+    table.add({grouped(size), short_number(median_of(all)),
+               short_number(*std::max_element(all.begin(), all.end())), worst[size]});
+  }
+  std::cout << title << '\n' << table << '\n';
+}
+
+int Fit::run() {
+  choose_isa(isa);
+  const std::vector<CostSample> samples = measured();
+  print_regret(samples, present_costs(), "what is chosen over the best, constants as they are");
+  if (checks_alone) return kDone;
+  const FittedCosts fitted = fit_costs(samples);
+  print_regret(samples, fitted.costs, "what is chosen over the best, constants fitted anew");
+  print_costs(fitted);
+  return kDone;
+}
+
+}  // namespace
+
+Command add_fit(CLI::App& app) {
+  auto fit = std::make_shared<Fit>();
+  CLI::App* sub = app.add_subcommand(
+      "fit",
+      "Fits the constants by which the automatic choice predicts what structures cost to times "
+      "measured here, and tells how much slower than the best one is what it takes");
+  one_of(*sub, "--scene", fit->scenes, scene_names(), "Scenes");
+  add_objects_option(*sub, fit->objects, "Numbers of objects");
+  number(*sub, "--moving", fit->moving, 1e-6, 1.0, "Shares of the objects that move in a frame");
+  number(*sub, "--frames", fit->frames, 0, 1e6, "Frames of each; 0: what suits the size");
+  add_isa_option(*sub, fit->isa);
+  sub->add_flag("--check", fit->checks_alone, "Judge the constants that there are, and fit none");
+  return {sub, [fit] { return fit->run(); }};
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,171 @@
+#include "bench/measure/cost_fit.h"
+
+#include "bench/common/sample.h"
+#include "bench/measure/advice.h"
+#include "partitions/structures/structure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <utility>
+
+namespace winnow::bench {
+namespace {
+
+/// Objects move in turns: in each frame the next ones catch up with the scene.
+class SomeMoving final : public FrameSource {
+ public:
+  SomeMoving(std::unique_ptr<FrameSource> scene, double share)
+      : scene_(std::move(scene)), boxes_(scene_->boxes().begin(), scene_->boxes().end()) {
+    const auto all = static_cast<double>(boxes_.size());
+    movers_ = std::max<std::size_t>(1, static_cast<std::size_t>(share * all));
+  }
+
+  [[nodiscard]] std::string name() const override { return scene_->name(); }
+  [[nodiscard]] Aabb world() const override { return scene_->world(); }
+  [[nodiscard]] std::span<const Aabb> boxes() const override { return boxes_; }
+  bool advance() override {
+    if (!scene_->advance()) return false;
+    // Far apart from each other, as things that wake by themselves are.
+    constexpr std::size_t kStride = 7919;
+    for (std::size_t k = 0; k < movers_; ++k) {
+      next_ = (next_ + kStride) % boxes_.size();
+      boxes_[next_] = scene_->boxes()[next_];
+    }
+    return true;
+  }
+
+ private:
+  std::unique_ptr<FrameSource> scene_;
+  std::vector<Aabb> boxes_;
+  std::size_t movers_;
+  std::size_t next_ = 0;
+};
+
+std::vector<std::string> candidate_names() {
+  std::vector<std::string> names;
+  for (const StructureKind kind : candidates()) names.emplace_back(kind.name());
+  return names;
+}
+
+/// One equation: terms times constants shall be a time.
+template <std::size_t N>
+struct Equation {
+  std::array<CostTerm, N> terms;
+  double time;
+  double weight;
+};
+
+/// Constants that are not negative, with the least sum of squares of weighted errors.
+template <std::size_t N>
+void solve(const std::vector<Equation<N>>& equations, StructureCosts& costs) {
+  constexpr int kSweeps = 20'000;
+  if (equations.empty()) return;
+  std::array<std::array<double, N>, N> square{};
+  std::array<double, N> right{};
+  for (const Equation<N>& one : equations) {
+    const double w = one.weight * one.weight;
+    for (std::size_t i = 0; i < N; ++i) {
+      right[i] += w * one.terms[i].times * one.time;
+      for (std::size_t j = 0; j < N; ++j) {
+        square[i][j] += w * one.terms[i].times * one.terms[j].times;
+      }
+    }
+  }
+  std::array<double, N> x{};
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (std::size_t i = 0; i < N; ++i) {
+      if (!(square[i][i] > 0.0)) continue;
+      const double sum = std::inner_product(x.begin(), x.end(), square[i].begin(), 0.0);
+      x[i] = std::max(0.0, x[i] + (right[i] - sum) / square[i][i]);
+    }
+  }
+  for (std::size_t i = 0; i < N; ++i) costs.*equations.front().terms[i].constant = x[i];
+}
+
+double least_of(const std::vector<double>& times) {
+  return *std::min_element(times.begin(), times.end());
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> some_moving(std::unique_ptr<FrameSource> scene, double share) {
+  if (share >= 1.0) return scene;
+  return std::make_unique<SomeMoving>(std::move(scene), share);
+}
+
+CostSample measure_costs(FrameSource& scene, double moving, std::size_t frames) {
+  std::vector<std::string> names = candidate_names();
+  names.emplace_back(automatic().name());
+  const Advice advice = advise(scene, names, frames, 1);
+  CostSample sample;
+  sample.scene = advice.scene;
+  sample.moving = moving;
+  sample.features = advice.features;
+  sample.features.objects = advice.objects;
+  sample.pairs = advice.pairs;
+  sample.work.changed =
+      static_cast<std::size_t>(std::lround(advice.moving * static_cast<double>(advice.objects)));
+  sample.work.pair_queries = 1;
+  names.pop_back();
+  for (const std::string& name : names) {
+    for (const Advised& one : advice.ranking) {
+      if (one.partition != name) continue;
+      const double sum = std::accumulate(one.settled.begin(), one.settled.end(), 0.0);
+      const double mean = sum / static_cast<double>(one.settled.size());
+      sample.frame.push_back(1e6 * 0.5 * (one.median_ms + mean));
+      sample.first.push_back(1e6 * one.first_ms);
+    }
+  }
+  return sample;
+}
+
+std::vector<StructureCosts> present_costs() {
+  std::vector<StructureCosts> costs;
+  for (const StructureKind kind : candidates()) costs.push_back(*kind.info()->costs);
+  return costs;
+}
+
+FittedCosts fit_costs(const std::vector<CostSample>& samples) {
+  FittedCosts fitted;
+  fitted.costs = present_costs();
+  for (std::size_t k = 0; k < fitted.costs.size(); ++k) {
+    StructureCosts& costs = fitted.costs[k];
+    std::vector<Equation<kFrameTerms>> frames;
+    std::vector<Equation<kBuildTerms>> builds;
+    for (const CostSample& sample : samples) {
+      const double time = sample.frame[k];
+      const auto terms = frame_terms(sample.features, sample.work, sample.pairs);
+      frames.push_back({terms, time, least_of(sample.frame) / (time * time)});
+    }
+    solve(frames, costs);
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const double time = samples[i].frame[k];
+      errors.push_back(std::abs(sum_of(frames[i].terms, costs) / time - 1.0));
+      // The first frame is a build and a frame in which everything is asked.
+      FrameWork all = samples[i].work;
+      all.changed = samples[i].features.objects;
+      const auto asked = frame_terms(samples[i].features, all, samples[i].pairs);
+      const double build = std::max(0.0, samples[i].first[k] - sum_of(asked, costs));
+      builds.push_back({build_terms(samples[i].features), build, 1.0 / samples[i].first[k]});
+    }
+    solve(builds, costs);
+    fitted.error.push_back(median_of(errors));
+  }
+  return fitted;
+}
+
+double regret_of(const CostSample& sample, const std::vector<StructureCosts>& costs,
+                 std::size_t& chosen, std::size_t& best) {
+  const auto terms = frame_terms(sample.features, sample.work, sample.pairs);
+  chosen = best = 0;
+  for (std::size_t k = 1; k < costs.size(); ++k) {
+    if (sum_of(terms, costs[k]) < sum_of(terms, costs[chosen])) chosen = k;
+    if (sample.frame[k] < sample.frame[best]) best = k;
+  }
+  return sample.frame[chosen] / sample.frame[best];
+}
+
+}  // namespace winnow::bench
