@@ -51,6 +51,32 @@ double edge_for(double wanted, double count, const std::array<double, 3>& range)
   return 0.0;
 }
 
+/// Some objects of a class: sums of what a class has.
+struct SizeClasses::Sample {
+  std::size_t count = 0;
+  std::array<double, 3> edge{};
+  std::array<double, 3> place{};
+  std::array<double, 3> square{};
+
+  void add(const BoundsPool& pool, std::size_t row) noexcept {
+    ++count;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double low = static_cast<double>(pool.column(a)[row]);
+      edge[a] += static_cast<double>(pool.column(3 + a)[row]) - low;
+      place[a] += low;
+      square[a] += low * low;
+    }
+  }
+  void add(const Sample& other) noexcept {
+    count += other.count;
+    for (std::size_t a = 0; a < 3; ++a) {
+      edge[a] += other.edge[a];
+      place[a] += other.place[a];
+      square[a] += other.square[a];
+    }
+  }
+};
+
 /// Neighbouring classes that share a level.
 struct SizeClasses::Group {
   std::size_t first = 0;
@@ -93,11 +119,7 @@ void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t>
   std::array<std::size_t, kClasses + 1> step{};
   for (std::size_t o = 0; o < kOctaves; ++o) class_at[o] = static_cast<std::uint8_t>(class_of(o));
   for (std::size_t c = 0; c < kClasses; ++c) step[c] = 1 + class_[c].count / kEnough;
-  struct Taken {
-    std::size_t count = 0;
-    Class sum;
-  };
-  std::array<std::array<Taken, kClasses>, kMostSizeStretches> part;
+  std::array<std::array<Sample, kClasses>, kMostSizeStretches> part;
   const std::size_t length = stretch_of(octave.size());
   for_stretches(execution, octave.size(), length, [&](std::size_t begin, std::size_t end) {
     std::array<std::size_t, kClasses + 1> wait{};
@@ -106,33 +128,19 @@ void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t>
       const std::size_t own = class_at[octave[row]];
       if (wait[own]-- != 0) continue;
       wait[own] = step[own] - 1;
-      Taken& taken = part[begin / length][own];
-      ++taken.count;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const double low = static_cast<double>(pool.column(a)[row]);
-        taken.sum.edge[a] += static_cast<double>(pool.column(3 + a)[row]) - low;
-        taken.sum.place[a] += low;
-        taken.sum.square[a] += low * low;
-      }
+      part[begin / length][own].add(pool, row);
     }
   });
   for (std::size_t own = 0; own < kClasses; ++own) {
     Class& c = class_[own];
-    std::size_t taken = 0;
-    for (const auto& stretch : part) {
-      taken += stretch[own].count;
-      for (std::size_t a = 0; a < 3; ++a) {
-        c.edge[a] += stretch[own].sum.edge[a];
-        c.place[a] += stretch[own].sum.place[a];
-        c.square[a] += stretch[own].sum.square[a];
-      }
-    }
+    Sample taken;
+    for (const auto& stretch : part) taken.add(stretch[own]);
     const double all = static_cast<double>(c.count);
-    const double each = static_cast<double>(std::max<std::size_t>(1, taken));
+    const double each = static_cast<double>(std::max<std::size_t>(1, taken.count));
     for (std::size_t a = 0; a < 3; ++a) {
-      c.edge[a] /= each;
-      c.place[a] *= all / each;
-      c.square[a] *= all / each;
+      c.edge[a] = taken.edge[a] / each;
+      c.place[a] = taken.place[a] * all / each;
+      c.square[a] = taken.square[a] * all / each;
     }
     c.range = spread_of(c.place, c.square, std::max(1.0, all));
   }

@@ -44,6 +44,7 @@ class SizeClasses {
     std::array<double, 3> square{};  // sum of their squares
     std::array<double, 3> range{};   // over which they are spread
   };
+  struct Sample;
   struct Group;
   using Counts = std::array<std::size_t, kOctaves>;
   [[nodiscard]] std::size_t class_of(std::size_t octave) const noexcept;
