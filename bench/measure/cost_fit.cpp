@@ -43,6 +43,13 @@ class SomeMoving final : public FrameSource {
   std::size_t next_ = 0;
 };
 
+/// Of all but the slowest fiftieth, in which the machine did something else.
+double mean_without_strays(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  values.resize(values.size() - values.size() / 50);
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
 std::vector<std::string> candidate_names() {
   std::vector<std::string> names;
   for (const StructureKind kind : candidates()) names.emplace_back(kind.name());
@@ -112,8 +119,7 @@ CostSample measure_costs(FrameSource& scene, double moving, std::size_t frames) 
   for (const std::string& name : names) {
     for (const Advised& one : advice.ranking) {
       if (one.partition != name) continue;
-      const double sum = std::accumulate(one.settled.begin(), one.settled.end(), 0.0);
-      const double mean = sum / static_cast<double>(one.settled.size());
+      const double mean = mean_without_strays(one.settled);
       sample.frame.push_back(1e6 * 0.5 * (one.median_ms + mean));
       sample.first.push_back(1e6 * one.first_ms);
     }
