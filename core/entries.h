@@ -1,5 +1,7 @@
 #pragma once
 
+#include <winnow/core/export.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
