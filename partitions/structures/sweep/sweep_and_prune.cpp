@@ -45,6 +45,7 @@ float key_of(SweepItem item) noexcept {
 void sort_by_keys(std::span<SweepItem> items, SweepItem* room) noexcept {
   constexpr std::size_t kMostKeyBins = 1024;
   constexpr std::size_t kFewInBin = 12;
+  constexpr float kLeastReach = 1e-30F;  // what is closer is at one place
   const std::size_t bins = std::min(kMostKeyBins, std::bit_ceil(items.size()));
   float low = kInfinity;
   float high = -kInfinity;
@@ -52,9 +53,11 @@ void sort_by_keys(std::span<SweepItem> items, SweepItem* room) noexcept {
     low = std::min(low, key_of(item));
     high = std::max(high, key_of(item));
   }
-  const float scale = high > low ? 0.999F * static_cast<float>(bins) / (high - low) : 0.0F;
+  // Halves: the reach of what is spread over all floats is finite.
+  const float reach = 0.5F * high - 0.5F * low;
+  const float scale = reach > kLeastReach ? 0.999F * static_cast<float>(bins) / reach : 0.0F;
   const auto bin_of = [&](SweepItem item) {
-    return static_cast<std::size_t>((key_of(item) - low) * scale);
+    return static_cast<std::size_t>((0.5F * key_of(item) - 0.5F * low) * scale);
   };
   std::array<std::uint32_t, kMostKeyBins> next;
   std::fill_n(next.begin(), bins, 0U);
