@@ -5,27 +5,20 @@
 
 namespace winnow {
 
-extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_cylinder_kernels) =
-    WINNOW_ISA_NAME::curved::kCurvedKernels;
-extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_cone_kernels) =
-    WINNOW_ISA_NAME::curved::kCurvedKernels;
-extern const NarrowKernels WINNOW_KERNEL_TABLE(box_cylinder_kernels) =
-    WINNOW_ISA_NAME::curved::kCurvedKernels;
-extern const NarrowKernels WINNOW_KERNEL_TABLE(box_cone_kernels) =
-    WINNOW_ISA_NAME::curved::kCurvedKernels;
-extern const NarrowKernels WINNOW_KERNEL_TABLE(cylinder_cylinder_kernels) =
-    WINNOW_ISA_NAME::curved::kCurvedKernels;
-extern const NarrowKernels WINNOW_KERNEL_TABLE(cylinder_cone_kernels) =
-    WINNOW_ISA_NAME::curved::kCurvedKernels;
-extern const NarrowKernels WINNOW_KERNEL_TABLE(cylinder_hull_kernels) =
-    WINNOW_ISA_NAME::curved::kCurvedKernels;
-extern const NarrowKernels WINNOW_KERNEL_TABLE(cylinder_triangle_kernels) =
-    WINNOW_ISA_NAME::curved::kCurvedKernels;
-extern const NarrowKernels WINNOW_KERNEL_TABLE(cone_cone_kernels) =
-    WINNOW_ISA_NAME::curved::kCurvedKernels;
-extern const NarrowKernels WINNOW_KERNEL_TABLE(cone_hull_kernels) =
-    WINNOW_ISA_NAME::curved::kCurvedKernels;
-extern const NarrowKernels WINNOW_KERNEL_TABLE(cone_triangle_kernels) =
-    WINNOW_ISA_NAME::curved::kCurvedKernels;
+#define WINNOW_CURVED(pair)                                        \
+  extern const NarrowKernels WINNOW_KERNEL_TABLE(pair##_kernels) = \
+      WINNOW_ISA_NAME::curved::kCurvedKernels;
+WINNOW_CURVED(capsule_cylinder)
+WINNOW_CURVED(capsule_cone)
+WINNOW_CURVED(box_cylinder)
+WINNOW_CURVED(box_cone)
+WINNOW_CURVED(cylinder_cylinder)
+WINNOW_CURVED(cylinder_cone)
+WINNOW_CURVED(cylinder_hull)
+WINNOW_CURVED(cylinder_triangle)
+WINNOW_CURVED(cone_cone)
+WINNOW_CURVED(cone_hull)
+WINNOW_CURVED(cone_triangle)
+#undef WINNOW_CURVED
 
 }  // namespace winnow

@@ -435,6 +435,20 @@ void put(const SceneHitColumns& columns, std::size_t row, const SceneHit& hit) n
   }
 }
 
+/// Asks for one hit of each ray.
+Status ask_each(QueryState* state, const ShapeRayBatch& rays, const Filter& filter,
+                const SceneHitColumns& hits, Status (CastQuestion::*ask)(SceneHit&)) {
+  Status status = check(state, rays);
+  for (std::size_t i = 0; i < rays.count && status == Status::ok; ++i) {
+    const ShapeRay ray = rays[i];
+    SceneHit hit;
+    const RaySweep swept(state->scene.shapes, ray);
+    status = (CastQuestion(*state, swept, filter).*ask)(hit);
+    if (status == Status::ok) put(hits, i, hit);
+  }
+  return status;
+}
+
 Status check(const QueryState* state, const ShapeCast& cast, double tolerance) noexcept {
   if (const Status status = QueryState::may_ask(state); status != Status::ok) {
     return status;
@@ -473,26 +487,12 @@ Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
 
 Status SceneQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns& hits,
                              const Filter& filter) {
-  Status status = check(state_, rays);
-  for (std::size_t i = 0; i < rays.count && status == Status::ok; ++i) {
-    const ShapeRay ray = rays[i];
-    SceneHit hit;
-    status = CastQuestion(*state_, RaySweep(state_->scene.shapes, ray), filter).closest(hit);
-    if (status == Status::ok) put(hits, i, hit);
-  }
-  return status;
+  return ask_each(state_, rays, filter, hits, &CastQuestion::closest);
 }
 
 Status SceneQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
                          const Filter& filter) {
-  Status status = check(state_, rays);
-  for (std::size_t i = 0; i < rays.count && status == Status::ok; ++i) {
-    const ShapeRay ray = rays[i];
-    SceneHit hit;
-    status = CastQuestion(*state_, RaySweep(state_->scene.shapes, ray), filter).any(hit);
-    if (status == Status::ok) put(hits, i, hit);
-  }
-  return status;
+  return ask_each(state_, rays, filter, hits, &CastQuestion::any);
 }
 
 Status SceneQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter) {
