@@ -1,9 +1,9 @@
 #pragma once
 
-// Lanes from elsewhere than from neighbours of their type in memory: by index, from 16 bits, from
-// rows of doubles that each lie at an address of their own, and sixteen reductions at once. Rows
-// are loaded whole and transposed in registers: gather instructions take several times as long, and
-// loads of what scalars have just staged wait for the stores.
+// Lanes from elsewhere than from neighbours of their type in memory: from 16 bits, from rows of
+// doubles that each lie at an address of their own, and sixteen reductions at once. Rows are loaded
+// whole and transposed in registers: gather instructions take several times as long, and loads of
+// what scalars have just staged wait for the stores.
 
 #include "simd/lanes/lanes.h"
 
@@ -27,26 +27,6 @@ namespace winnow::WINNOW_ISA_NAME {
   }
 #else
   for (int i = 0; i < 4; ++i) r.part[i] = vcvtq_f32_u32(vmovl_u16(vld1_u16(p + 4 * i)));
-#endif
-  return r;
-}
-
-/// Lane l is base[index[l]]; indices are below 2^31.
-[[gnu::always_inline]] inline Floats gather(const float* base, const std::uint32_t* index) {
-  Floats r;
-#if defined(WINNOW_ISA_IS_avx512)
-  r.part[0] = _mm512_i32gather_ps(_mm512_loadu_si512(index), base, 4);
-#elif defined(WINNOW_ISA_IS_avx2)
-  for (int i = 0; i < 2; ++i) {
-    const __m256i at = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(index + 8 * i));
-    r.part[i] = _mm256_i32gather_ps(base, at, 4);
-  }
-#else
-  for (int i = 0; i < 4; ++i) {
-    const std::uint32_t* at = index + 4 * i;
-    alignas(16) const float lane[4] = {base[at[0]], base[at[1]], base[at[2]], base[at[3]]};
-    r.part[i] = Floats::Part::load_aligned(lane);
-  }
 #endif
   return r;
 }
