@@ -43,6 +43,29 @@ bool legal(const float* floats, std::size_t count) {
   return true;
 }
 
+bool legal_listed(const float* floats, const std::uint32_t* number, std::size_t count) {
+  const Floats most = Floats(kLargest<float>);
+  const Floats least = Floats(-kLargest<float>);
+  const auto at = [&](std::size_t i) { return floats + std::size_t{number[i]} * kFloats; };
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    // Boxes are met in any order: the next 16 are on their way meanwhile.
+    const std::size_t ahead = i + 2 * kLanes <= count ? i + 2 * kLanes : count;
+    for (std::size_t k = i + kLanes; k < ahead; ++k) __builtin_prefetch(at(k));
+    const Box16 box = load_boxes([&](int lane) { return at(i + static_cast<std::size_t>(lane)); });
+    Mask16 good = kAllRows;
+    for (int s = 0; s < 3; ++s) {
+      good &=
+          bits(box.low[s] <= box.high[s]) & bits(box.low[s] <= most) & bits(least <= box.high[s]);
+    }
+    if (good != kAllRows) return false;
+  }
+  for (; i < count; ++i) {
+    if (!box_is_legal(at(i), __builtin_inff())) return false;
+  }
+  return true;
+}
+
 float clamp(float value) {
   const float least = value < -kLargest<float> ? -kLargest<float> : value;
   return least > kLargest<float> ? kLargest<float> : least;
@@ -193,7 +216,7 @@ std::uint32_t copy_near(const float* boxes, const float* near, float* to, std::s
 }  // namespace WINNOW_ISA_NAME
 
 extern const BoxInputKernels WINNOW_KERNEL_TABLE(box_input_kernels) = {
-    WINNOW_ISA_NAME::legal, WINNOW_ISA_NAME::write_rows, WINNOW_ISA_NAME::write_in_order,
-    WINNOW_ISA_NAME::within, WINNOW_ISA_NAME::copy_near};
+    WINNOW_ISA_NAME::legal,          WINNOW_ISA_NAME::legal_listed, WINNOW_ISA_NAME::write_rows,
+    WINNOW_ISA_NAME::write_in_order, WINNOW_ISA_NAME::within,       WINNOW_ISA_NAME::copy_near};
 
 }  // namespace winnow

@@ -19,6 +19,9 @@ struct BoxInputKernels {
   /// max on every axis, no NaN, not wholly at infinity.
   bool (*legal)(const float* floats, std::size_t count);
 
+  /// The same of the boxes that `count` numbers name.
+  bool (*legal_listed)(const float* floats, const std::uint32_t* number, std::size_t count);
+
   /// Gives each row of [begin, end) the box that its object has, of six floats each, ends at
   /// infinity as +-FLT_MAX; rows of objects without one stay as they are. Both ends are multiples
   /// of 16; ids are readable for 32 rows more.

@@ -26,6 +26,9 @@ struct EntryList {
   }
   [[nodiscard]] Key key(std::size_t j) const noexcept { return keys[(*this)[j]]; }
 
+  /// Runs shorter than this are looked at entry by entry: a call per run costs more.
+  static constexpr std::size_t kLongRun = 16;
+
   /// The end of the longest run from the j-th entry on, up to the `end`-th, of entries that follow
   /// each other.
   [[nodiscard]] std::size_t run_end(std::size_t j, std::size_t end) const noexcept {

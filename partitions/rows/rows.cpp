@@ -19,10 +19,6 @@ WINNOW_DEFINE_KERNELS(BoxInputKernels, box_input_kernels)
 
 namespace {
 
-// How many entries ahead of their turn rows are fetched into the cache: each lies in as many cache
-// lines as it has columns, anywhere in the pool.
-constexpr std::size_t kFetchAhead = 12;
-
 /// Calls use(source) with the source that turns boxes into the pool's volume.
 template <typename Use>
 Status with_box_source(Volume volume, const BoxView& boxes, Use&& use) {
@@ -151,6 +147,20 @@ void Rows::write_new(const Source& source, std::span<const Key> keys, std::size_
   for (std::size_t i = begin; i < end; ++i) source.write(i, columns.pointers, first + i);
 }
 
+/// What is known of the keys of entries [begin, end), which follow each other.
+KeyTable::RunOfKeys Rows::look_at(const EntryList& entries, std::size_t begin,
+                                  std::size_t end) const noexcept {
+  if (end - begin >= EntryList::kLongRun) {
+    return keys_.look_at(entries.keys.subspan(entries[begin], end - begin));
+  }
+  KeyTable::RunOfKeys run;
+  for (std::size_t j = begin; j < end; ++j) {
+    run.valid &= keys_.is_valid(entries.key(j));
+    run.ascending &= j == begin || entries.key(j - 1).id < entries.key(j).id;
+  }
+  return run;
+}
+
 /// Refuses an update that must be, and tells whether ids ascend, each once.
 template <typename Source>
 Status Rows::check_update(const Source& source, std::size_t volumes, const EntryList& entries,
@@ -163,7 +173,8 @@ Status Rows::check_update(const Source& source, std::size_t volumes, const Entry
     bool up = true;
     for (std::size_t next = begin; begin < end; begin = next) {
       next = entries.run_end(begin, end);
-      const auto run = keys_.look_at(entries.keys.subspan(entries[begin], next - begin));
+      if (next + kFetchAhead < end) __builtin_prefetch(&entries.keys[entries[next + kFetchAhead]]);
+      const KeyTable::RunOfKeys run = look_at(entries, begin, next);
       ok &= run.valid;
       up &= run.ascending && (begin == 0 || entries.key(begin - 1).id < entries.key(begin).id);
     }

@@ -128,6 +128,8 @@ class Rows {
   template <typename Source>
   Status insert_from(const Source& source, std::size_t count, std::span<const ClientData> data,
                      std::span<Key> keys);
+  [[nodiscard]] KeyTable::RunOfKeys look_at(const EntryList& entries, std::size_t begin,
+                                            std::size_t end) const noexcept;
   template <typename Source>
   Status check_update(const Source& source, std::size_t volumes, const EntryList& entries,
                       bool& ascending) const;

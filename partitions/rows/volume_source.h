@@ -43,6 +43,10 @@ inline void write_slab(ColumnPointers columns, std::size_t low, std::size_t high
 
 inline constexpr std::size_t kEntriesPerTask = 8192;
 
+// How many entries ahead of their turn what they lead to is fetched into the cache: boxes and rows
+// that are met in any order.
+inline constexpr std::size_t kFetchAhead = 12;
+
 /// Calls work(begin, end) over ranges of [0, count).
 template <typename Work>
 void for_ranges(const Execution& execution, std::size_t count, Work&& work) {
@@ -56,14 +60,10 @@ template <typename Source>
   std::atomic<bool> valid{true};
   for_ranges(execution, entries.count, [&](std::size_t begin, std::size_t end) {
     bool ok = true;
-    for (std::size_t next = begin; begin < end; begin = next) {
-      next = entries.run_end(begin, end);
-      const std::size_t first = entries[begin];
-      if constexpr (requires { source.valid_range(begin, end); }) {
-        ok = ok && source.valid_range(first, first + (next - begin));
-      } else {
-        for (std::size_t i = first; i < first + (next - begin); ++i) ok = ok && source.valid(i);
-      }
+    if constexpr (requires { source.valid_entries(entries, begin, end); }) {
+      ok = source.valid_entries(entries, begin, end);
+    } else {
+      for (std::size_t j = begin; j < end; ++j) ok = ok && source.valid(entries[j]);
     }
     if (!ok) valid.store(false, std::memory_order_relaxed);
   });
@@ -106,11 +106,17 @@ struct BoxSource {
     return boxes.stride == sizeof(Aabb) && boxes.min[1] == first + 1 && boxes.min[2] == first + 2 &&
            boxes.max[0] == first + 3 && boxes.max[1] == first + 4 && boxes.max[2] == first + 5;
   }
-  /// All of [begin, end), many at a time where the boxes lie one after another.
-  [[nodiscard]] bool valid_range(std::size_t begin, std::size_t end) const noexcept {
-    if (packed()) return box_input_kernels().legal(boxes.min[0] + 6 * begin, end - begin);
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!valid(i)) return false;
+  /// True if entries [begin, end) are, 16 at a time where the boxes lie one after another.
+  [[nodiscard]] bool valid_entries(const EntryList& entries, std::size_t begin,
+                                   std::size_t end) const noexcept {
+    if (packed()) {
+      const float* const floats = boxes.min[0];
+      return entries.number == nullptr
+                 ? box_input_kernels().legal(floats + 6 * begin, end - begin)
+                 : box_input_kernels().legal_listed(floats, entries.number + begin, end - begin);
+    }
+    for (std::size_t j = begin; j < end; ++j) {
+      if (!valid(entries[j])) return false;
     }
     return true;
   }

@@ -217,6 +217,35 @@ TEST_P(Input, of_entries_that_are_none_changes_nothing) {
   EXPECT_TRUE(world.agrees());
 }
 
+TEST_P(Input, of_an_illegal_box_anywhere_in_a_list_changes_nothing) {
+  World world(config());
+  const std::vector<Aabb> boxes = uniform_boxes(3 * 37, 7);
+  const std::vector<Key> keys = world.insert(boxes);
+  // Every third entry, whose neighbours in the list are no neighbours in memory.
+  std::vector<std::uint32_t> every_third;
+  for (std::uint32_t i = 0; i < 37; ++i) every_third.push_back(3 * i);
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  const Aabb illegal[] = {{{1, 0, 0}, {0, 1, 1}},
+                          {{0, 0, 0}, {1, nan, 1}},
+                          {{0, 0, inf}, {1, 1, inf}},
+                          {{-inf, 0, 0}, {-inf, 1, 1}}};
+  for (const Aabb& wrong : illegal) {
+    for (const std::uint32_t at : every_third) {
+      std::vector<Aabb> next = boxes;
+      next[at] = wrong;
+      ASSERT_EQ(world.partition().update(keys, next, Entries::listed(every_third)),
+                Status::invalid_bounds);
+    }
+    // Nobody asks for the box that no entry names.
+    std::vector<Aabb> next = boxes;
+    next[1] = wrong;
+    EXPECT_EQ(world.partition().update(keys, next, Entries::listed(every_third)), Status::ok);
+  }
+  EXPECT_TRUE(world.holds_its_objects());
+  EXPECT_TRUE(world.agrees());
+}
+
 TEST_P(Input, of_duplicate_client_data_makes_two_objects) {
   World world(config());
   const std::vector<ClientData> data(boxes_.size(), 42);
