@@ -277,7 +277,7 @@ class RegionTraversal {
     return true;
   }
 
-  bool test_rows(std::uint32_t first_row) {
+  [[gnu::always_inline]] bool test_rows(std::uint32_t first_row) {
     return take_met(probe_.test(view_.column, first_row), first_row, view_.column, first_row);
   }
 
