@@ -5,6 +5,7 @@
 #include "partitions/structures/structure.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <span>
@@ -95,6 +96,109 @@ double least_of(const std::vector<double>& times) {
   return *std::min_element(times.begin(), times.end());
 }
 
+/// What the frames of all samples are predicted to take, and how bad it would be to choose by that.
+class Judgement {
+ public:
+  Judgement(const std::vector<CostSample>& samples, const std::vector<StructureCosts>& costs)
+      : samples_(samples) {
+    for (const CostSample& sample : samples) {
+      terms_.push_back(frame_terms(sample.features, sample.work, sample.pairs));
+      std::vector<double>& predicted = predicted_.emplace_back();
+      for (const StructureCosts& c : costs) predicted.push_back(sum_of(terms_.back(), c));
+    }
+  }
+
+  /// Predicts anew what candidate k takes.
+  void update(std::size_t k, const StructureCosts& costs) {
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      predicted_[i][k] = sum_of(terms_[i], costs);
+    }
+  }
+
+  /// The sum of what choosing costs beyond the best, where candidates of about the same prediction
+  /// are as likely to be chosen: a tie that is broken by luck is no success. Predictions that are
+  /// off count as well, a little, so that constants stay what they mean.
+  [[nodiscard]] double loss() const {
+    constexpr double kErrors = 0.05;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const std::vector<double>& times = samples_[i].frame;
+      const double least = least_of(times);
+      sum += regret(predicted_[i], times) - 1.0;
+      for (std::size_t k = 0; k < times.size(); ++k) {
+        const double error = std::log(std::max(predicted_[i][k], 1.0) / times[k]);
+        sum += kErrors * least / times[k] * error * error;
+      }
+    }
+    return sum;
+  }
+
+ private:
+  static double regret(const std::vector<double>& predicted, const std::vector<double>& times) {
+    constexpr double kTie = 0.05;  // predictions within this are about the same
+    const double least = least_of(predicted);
+    double weights = 0.0;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const double weight = std::exp((1.0 - predicted[k] / least) / kTie);
+      weights += weight;
+      sum += weight * times[k];
+    }
+    return sum / (weights * least_of(times));
+  }
+
+  const std::vector<CostSample>& samples_;
+  std::vector<std::array<CostTerm, kFrameTerms>> terms_;
+  std::vector<std::vector<double>> predicted_;
+};
+
+/// Constants from which the choice is better: each is made larger and smaller in turn, by less and
+/// less, and stays what does best.
+void choose_better(const std::vector<CostSample>& samples, std::vector<StructureCosts>& costs) {
+  constexpr double kAtFirst = 0.5;
+  constexpr double kAtLast = 0.01;
+  constexpr int kRounds = 12;
+  // What a constant that is zero begins with: a hundredth of a typical object's nanoseconds.
+  constexpr double kLeast = 0.01;
+  if (samples.empty()) return;
+  Judgement judgement(samples, costs);
+  const auto terms = frame_terms(samples[0].features, samples[0].work, samples[0].pairs);
+  double loss = judgement.loss();
+  for (double step = kAtFirst; step > kAtLast; step /= 1.5) {
+    for (int round = 0; round < kRounds; ++round) {
+      const double before = loss;
+      for (std::size_t k = 0; k < costs.size(); ++k) {
+        for (const CostTerm& term : terms) {
+          for (const double factor : {1.0 + step, 1.0 / (1.0 + step)}) {
+            const double held = costs[k].*term.constant;
+            costs[k].*term.constant = std::max(held, factor > 1.0 ? kLeast : 0.0) * factor;
+            judgement.update(k, costs[k]);
+            const double now = judgement.loss();
+            if (now < loss) {
+              loss = now;
+            } else {
+              costs[k].*term.constant = held;
+              judgement.update(k, costs[k]);
+            }
+          }
+        }
+      }
+      if (loss > 0.999 * before) break;
+    }
+  }
+}
+
+/// Of what candidate k is predicted to take for a frame, relative.
+double median_error(const std::vector<CostSample>& samples, const StructureCosts& costs,
+                    std::size_t k) {
+  std::vector<double> errors;
+  for (const CostSample& sample : samples) {
+    const auto terms = frame_terms(sample.features, sample.work, sample.pairs);
+    errors.push_back(std::abs(sum_of(terms, costs) / sample.frame[k] - 1.0));
+  }
+  return median_of(std::move(errors));
+}
+
 }  // namespace
 
 std::unique_ptr<FrameSource> some_moving(std::unique_ptr<FrameSource> scene, double share) {
@@ -143,13 +247,10 @@ FittedCosts fit_costs(const std::vector<CostSample>& samples) {
     for (const CostSample& sample : samples) {
       const double time = sample.frame[k];
       const auto terms = frame_terms(sample.features, sample.work, sample.pairs);
-      frames.push_back({terms, time, least_of(sample.frame) / (time * time)});
+      frames.push_back({terms, time, std::sqrt(least_of(sample.frame) / time) / time});
     }
     solve(frames, costs);
-    std::vector<double> errors;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      const double time = samples[i].frame[k];
-      errors.push_back(std::abs(sum_of(frames[i].terms, costs) / time - 1.0));
       // The first frame is a build and a frame in which everything is asked.
       FrameWork all = samples[i].work;
       all.changed = samples[i].features.objects;
@@ -158,7 +259,10 @@ FittedCosts fit_costs(const std::vector<CostSample>& samples) {
       builds.push_back({build_terms(samples[i].features), build, 1.0 / samples[i].first[k]});
     }
     solve(builds, costs);
-    fitted.error.push_back(median_of(errors));
+  }
+  choose_better(samples, fitted.costs);
+  for (std::size_t k = 0; k < fitted.costs.size(); ++k) {
+    fitted.error.push_back(median_error(samples, fitted.costs[k], k));
   }
   return fitted;
 }

@@ -36,8 +36,10 @@ struct FittedCosts {
 };
 
 /// Least squares of the relative errors, without negative constants (Lawson and Hanson, "Solving
-/// Least Squares Problems", 1974, chapter 23, here by coordinate descent). Where a candidate is far
-/// from the best its error matters less: it need only be known not to be chosen.
+/// Least Squares Problems", 1974, chapter 23, here by coordinate descent), from which constants are
+/// sought that choose better: what a wrong choice costs decides, not how far a prediction is off.
+/// Where a candidate is far from the best its error matters less: it need only be known not to be
+/// chosen.
 [[nodiscard]] FittedCosts fit_costs(const std::vector<CostSample>& samples);
 
 /// The constants that the library has.

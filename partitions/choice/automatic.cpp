@@ -15,7 +15,7 @@ namespace {
 
 // A structure that is only this much cheaper, or less, is no better: the prediction is not that
 // good.
-constexpr double kWorthwhile = 0.95;
+constexpr double kWorthwhile = 0.85;
 // Frames like the first that the first choice is made for.
 constexpr double kFramesAhead = 16.0;
 // A sample is taken anew once each object has moved this often.

@@ -62,15 +62,14 @@ inline constexpr std::size_t kBuildTerms = 2;
 ///
 /// To begin with a structure takes a build: `build` per object, `build_level` for each doubling.
 ///
-/// The constants were fitted, without negative ones, to the relative error of times measured on one
-/// thread with AVX-512 on the built-in scenes and on recordings of simulations: of 20 to 100,000
-/// objects all moving, midway between the median and the mean frame, so that builds weigh in
-/// without ruling; and of 1 and 5 % of the objects moving. Those of other queries were fitted to
-/// single rays, boxes and nearest objects there. They are right to a sixth or so where all moves
-/// and to a third elsewhere. What they say is that where most objects move, HierarchicalGrid is the
-/// best choice from one or two thousand objects on and LinearBvh below; LinearBvh where few move,
-/// and StaticBvh where much is asked, too; brute force below some 50 objects. A spread of sizes
-/// tells nothing that the number of pairs does not.
+/// The constants were fitted to times measured on one thread with AVX-512 on the built-in scenes,
+/// of 40 to 40,000 objects, all or 5 % of them moving, midway between the median and the mean
+/// frame, so that builds weigh in without ruling: first to the relative errors, without negative
+/// ones, then to what choosing by them costs (`winnow fit` of the tool prints them and judges
+/// them). Those of other queries were fitted to single rays, boxes and nearest objects there. What
+/// they say is that where most objects move, HierarchicalGrid is the best choice from some 200
+/// objects on and brute force below; LinearBvh where few move, and StaticBvh where much is asked,
+/// too. A spread of sizes tells nothing that the number of pairs does not.
 class PredictedCosts {
  public:
   using List = std::array<double, kMostCandidates>;

@@ -150,7 +150,8 @@ void PartitionState::end_deferring() const noexcept {
 
 void PartitionState::note_changes(std::size_t count) noexcept {
   if (chooser_ != nullptr) chooser_->note_changes(count);
-  if (chooser_ != nullptr || rows.changed()) stale_.store(true, std::memory_order_relaxed);
+  const bool counts = chooser_ != nullptr && count != 0;
+  if (counts || rows.changed()) stale_.store(true, std::memory_order_relaxed);
 }
 
 Status PartitionState::settle() const {
@@ -224,7 +225,11 @@ void PartitionState::release_memory() noexcept {
   listed_.release();
   index.release_memory();
   rows.release_memory();
-  if (rows.size() == 0) pairs_.tracked_serial = 0;
+  if (rows.size() == 0) {
+    pairs_.tracked_serial = 0;
+    // Of an empty partition nothing is known: the choice begins where it began.
+    if (chooser_ != nullptr) (void)index.set_structure(chooser_->first());
+  }
   note_changes(0);
 }
 

@@ -59,6 +59,9 @@ class BlockPairs {
  private:
   static constexpr unsigned kBlockRoom = 512;
   static constexpr unsigned kRowRoom = 1024;
+  // Blocks of neighbouring lines lie in six columns each, anywhere: they are fetched so many tests
+  // before their turn.
+  static constexpr unsigned kAhead = 6;
 
   /// Of two rows of the block the one in front asks.
   void test_self() {
@@ -90,6 +93,8 @@ class BlockPairs {
         listed = 0;
       }
       const std::uint32_t at = block_[k] * kLanes;
+      const std::uint32_t ahead = block_[k + kAhead] * kLanes;
+      for (int c = 0; c < 6; ++c) __builtin_prefetch(rows_.column[c] + ahead);
       // The block's own rows may end within this one.
       const std::uint32_t own = behind_ > at ? behind_ - at : 0;
       const Mask16 met = overlap(load_slabs<3>(rows_.column, at), low, high);
@@ -157,7 +162,7 @@ class BlockPairs {
   unsigned blocks_ = 0;
   unsigned listed_ = 0;
   unsigned hits_ = 0;
-  std::uint32_t block_[kBlockRoom + kLanes];
+  std::uint32_t block_[kBlockRoom + kLanes] = {};
   std::uint32_t row_[kRowRoom + kLanes];
   std::uint32_t hit_row_[kRowRoom + 2 * kLanes];
   std::uint32_t hit_at_[kRowRoom + 2 * kLanes];  // of volumes other than boxes

@@ -152,10 +152,13 @@ inline unsigned emit_pairs(Mask16 mask, const Uints& v, std::uint32_t q, std::ui
   const __m512i a = Sorted ? _mm512_min_epu32(query, packed) : query;
   const __m512i b = Sorted ? _mm512_max_epu32(query, packed) : packed;
   const __m512i low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
-  const __m512i high =
-      _mm512_setr_epi32(8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
   _mm512_storeu_si512(out, _mm512_permutex2var_epi32(a, low, b));
-  _mm512_storeu_si512(out + 16, _mm512_permutex2var_epi32(a, high, b));
+  // Hits are mostly few: a store that is left out is worth the rare wrong guess.
+  if (__builtin_expect(count(mask) > 8, 0) != 0) {
+    const __m512i high =
+        _mm512_setr_epi32(8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+    _mm512_storeu_si512(out + 16, _mm512_permutex2var_epi32(a, high, b));
+  }
 #elif defined(WINNOW_ISA_IS_avx2)
   const __m256i query = _mm256_set1_epi32(static_cast<int>(q));
   std::uint32_t* at = out;

@@ -91,14 +91,15 @@ class BoundsNSquared final : public BruteForce {
   explicit BoundsNSquared(const StructureInput& input) noexcept : BruteForce(input, testing) {}
 };
 
-constexpr StructureCosts kCosts{.frame = 480,
-                                .keep = 7,
-                                .object = 11,
-                                .square = 0.103,
-                                .pair = 4.1,
-                                .moved = 130,
-                                .rest = 2.0,
-                                .build = 5,
+constexpr StructureCosts kCosts{.frame = 79,
+                                .keep = 1,
+                                .level = 0.063,
+                                .crowd = 1.2,
+                                .square = 0.137,
+                                .pair = 4.25,
+                                .moved = 171,
+                                .rest = 4.6,
+                                .build = 42,
                                 .ask = 120,
                                 .scan = 0.75};
 constexpr StructureInfo kNSquared = structure_info<NSquared>("NSquared");

@@ -4,6 +4,7 @@
 #include "partitions/structures/cells/cell_layout.kernel.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -19,11 +20,7 @@ constexpr std::size_t kFewest = 64;  // below this the tree alone does as well
 constexpr double kMostCells = 2048;  // on an axis
 constexpr double kTreeQuery = 14.0;  // tests of 16 that an object of the tree costs
 constexpr std::size_t kRowsPerStretch = 8192;
-constexpr std::size_t kRowsPerSample = 64;  // one row of so many is looked at, if they are enough
-
-}  // namespace
-
-namespace {
+constexpr std::size_t kRowsPerSample = 64;  // one object in so many is looked at, if that is enough
 
 // The value that comes at place `at` of all in ascending order. Reorders them, so that those before
 // this place are the lower ones.
@@ -33,6 +30,26 @@ float value_at(std::span<float> values, std::size_t at) noexcept {
   return *place;
 }
 
+// The least and the largest lower end on an axis.
+std::ranges::minmax_result<float> ends_of(const BoundsPool& pool, std::size_t axis) noexcept {
+  std::ranges::minmax_result<float> ends{kEndless, -kEndless};
+  for (std::size_t row = 0; row < pool.rows(); ++row) {
+    if (pool.ids()[row] == kNoObject) continue;
+    ends.min = std::min(ends.min, pool.column(axis)[row]);
+    ends.max = std::max(ends.max, pool.column(axis)[row]);
+  }
+  return ends;
+}
+
+// True where cells for edges like these would be about the same.
+bool is_about(const std::array<float, 3>& edges, const std::array<float, 3>& others) noexcept {
+  constexpr float kAbout = 1.0F / 32.0F;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (!(std::abs(edges[a] - others[a]) <= kAbout * others[a])) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 SceneSample::SceneSample(const BoundsPool& pool) noexcept {
@@ -40,14 +57,15 @@ SceneSample::SceneSample(const BoundsPool& pool) noexcept {
   for (std::size_t row = 0; row < pool.rows(); ++row) live += pool.ids()[row] != kNoObject;
   objects = live;
   if (live == 0) return;
-  // Of few rows all.
-  const std::size_t wanted =
-      pool.rows() <= kMost ? kMost
-                           : std::clamp<std::size_t>(pool.rows() / kRowsPerSample, kLeast, kMost);
-  const std::size_t step = std::max<std::size_t>(1, pool.rows() / wanted);
+  // About one object in 2^k, by its id: objects that come back to where they were get the same
+  // cells again, whatever order the rows are in.
+  const std::size_t wanted = std::clamp(live / kRowsPerSample, kLeast, kMost / 2);
+  const auto k = static_cast<unsigned>(std::bit_width(std::max<std::size_t>(1, live / wanted))) - 1;
+  const auto is_taken = [k](ObjectId id) { return k == 0 || id * 0x9E3779B1U >> (32 - k) == 0; };
   std::array<std::array<float, kMost>, 3> ends;
-  for (std::size_t row = step / 2; row < pool.rows() && count < kMost; row += step) {
-    if (pool.ids()[row] == kNoObject) continue;
+  for (std::size_t row = 0; row < pool.rows() && count < kMost; ++row) {
+    const ObjectId id = pool.ids()[row];
+    if (id == kNoObject || !is_taken(id)) continue;
     for (std::size_t a = 0; a < 3; ++a) {
       ends[a][count] = pool.column(a)[row];
       edge[a][count] = pool.column(3 + a)[row] - pool.column(a)[row];
@@ -57,7 +75,8 @@ SceneSample::SceneSample(const BoundsPool& pool) noexcept {
   if (count == 0) return;
   for (std::size_t a = 0; a < 3; ++a) {
     const std::span<float> values(ends[a].data(), count);
-    const auto [least, most] = std::ranges::minmax(values);
+    const auto [least, most] =
+        pool.rows() <= kMost ? ends_of(pool, a) : std::ranges::minmax(values);
     // Outliers must not stretch the cells: past the middle 96 % the range goes on by half of it.
     const double q98 = static_cast<double>(value_at(values, count - 1 - count / 50));
     const double q02 = static_cast<double>(value_at(values, count / 50));
@@ -182,21 +201,27 @@ bool CellLayout::choose(const SceneSample& s, const CellDemand& d) noexcept {
     if (room(a) > room(fast)) fast = a;
   }
   std::array<std::array<float, SceneSample::kMost>, 3> edges_of = s.edge;
-  std::array<float, 3> edges{-1.0F, -1.0F, -1.0F};
+  std::array<float, 3> least{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    least[a] = *std::min_element(s.edge[a].begin(), s.edge[a].begin() + s.count);
+  }
+  std::array<float, 3> edges{};
+  std::array<float, 3> tried{-1.0F, -1.0F, -1.0F};
   std::size_t behind = s.count;
   Trial best;
   for (const double quantile : {1.0, 0.99, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.35}) {
     const auto at = static_cast<std::size_t>(quantile * static_cast<double>(s.count - 1));
-    const std::array<float, 3> before = edges;
     for (std::size_t a = 0; a < 3; ++a) edges[a] = value_at({edges_of[a].data(), behind}, at);
     behind = at + 1;
-    if (edges == before) continue;
+    if (is_about(edges, tried)) continue;
+    tried = edges;
     Trial trial;
     trial.divide(s, edges);
     trial.size_cells(s, d, fast);
     trial.estimate(s, d, fast);
     const bool divides = trial.divided[0] || trial.divided[1] || trial.divided[2];
     if (divides && trial.cost < best.cost) best = trial;
+    if (is_about(least, edges)) break;
   }
   if (!(best.cost < kTreeQuery * 8.0 * static_cast<double>(s.objects))) return true;
 

@@ -18,7 +18,7 @@ inline constexpr float kEndless = std::numeric_limits<float>::infinity();
 
 /// Where and how large the objects of a scene are, from a sample: enough to lay out cells.
 struct SceneSample {
-  static constexpr std::size_t kLeast = 512;
+  static constexpr std::size_t kLeast = 256;
   static constexpr std::size_t kMost = 2048;
 
   explicit SceneSample(const BoundsPool& pool) noexcept;

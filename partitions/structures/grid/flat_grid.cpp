@@ -132,14 +132,13 @@ std::size_t FlatGrid::cells() const noexcept {
 }
 
 constexpr StructureCosts kCosts{.has_cells = true,
-                                .frame = 640,
-                                .keep = 15,
-                                .object = 7.5,
-                                .crowd = 6.3,
-                                .pair = 7.4,
-                                .moved = 190,
-                                .rest = 1.3,
-                                .build = 60,
+                                .keep = 20.8,
+                                .level = 0.023,
+                                .crowd = 3.6,
+                                .pair = 8.5,
+                                .moved = 342,
+                                .rest = 0.75,
+                                .build = 27,
                                 .ask_level = 36,
                                 .rows = 1.5};
 constexpr StructureInfo kInfo = structure_info<FlatGrid>("FlatGrid", &kCosts);

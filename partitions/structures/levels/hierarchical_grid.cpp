@@ -148,6 +148,9 @@ LinePlace place_of(const GridLevel& g, const BoundsPool& pool, std::size_t row) 
   return {line, (line & 1U) != 0 ? g.steps - step : step};
 }
 
+// Fewer are compared with each other sooner than a digit's values are counted.
+constexpr std::size_t kFewToSort = 128;
+
 /// Rows of a level in the order of their cells.
 struct HierarchicalGrid::Sorted {
   const BoundsPool& pool;
@@ -181,7 +184,7 @@ struct HierarchicalGrid::Sorted {
       level_rows_kernels().places(level, box_columns(pool).data(), rows.data(), begin, end,
                                   step_bits, !packed, room);
     });
-    if (packed && count < 1024) {
+    if (packed && count < kFewToSort) {
       std::sort(room, room + count);
       items = room;
       return;
@@ -434,14 +437,14 @@ std::size_t HierarchicalGrid::cells() const noexcept {
 }
 
 constexpr StructureCosts kCosts{.has_cells = true,
-                                .frame = 2160,
-                                .keep = 15,
-                                .level = 0.14,
-                                .crowd = 2.4,
-                                .pair = 4.9,
-                                .moved = 190,
-                                .rest = 1.0,
-                                .build = 150,
+                                .frame = 22,
+                                .keep = 13.2,
+                                .object = 3.8,
+                                .crowd = 2.2,
+                                .pair = 5.5,
+                                .moved = 340,
+                                .rest = 0.82,
+                                .build = 56,
                                 .ask = 40,
                                 .ask_level = 24,
                                 .rows = 1.0};

@@ -36,11 +36,13 @@ struct Range {
 // the middle 96 % the range goes on by half of it.
 template <typename RowOf>
 Range range_of(const BoundsPool& pool, std::size_t axis, std::size_t count, RowOf&& row_of) {
-  constexpr std::size_t kSample = 512;
-  std::array<float, kSample> low;
-  const std::size_t step = std::max<std::size_t>(1, count / kSample);
+  constexpr std::size_t kLeast = 64;
+  constexpr std::size_t kMost = 512;
+  std::array<float, kMost> low;
+  const std::size_t wanted = std::clamp(count / 8, kLeast, kMost);
+  const std::size_t step = std::max<std::size_t>(1, count / wanted);
   std::size_t n = 0;
-  for (std::size_t i = 0; i < count / step && n < kSample; ++i) {
+  for (std::size_t i = 0; i < count / step && n < kMost; ++i) {
     const std::size_t row = row_of(sampled(i, step));
     if (pool.ids()[row] != kNoObject) low[n++] = pool.column(axis)[row];
   }

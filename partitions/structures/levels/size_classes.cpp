@@ -13,8 +13,10 @@ namespace {
 // What a line and a level cost, in tests of 16.
 constexpr double kPerLine = 0.7;
 constexpr double kPerLevel = 7.0;
-// Objects that are enough to tell where those of a class lie.
-constexpr std::size_t kEnough = 4096;
+// One object in so many, but so many at least and at most, tells where those of a class lie.
+constexpr std::size_t kSampled = 8;
+constexpr std::size_t kLeastSampled = 256;
+constexpr std::size_t kMostSampled = 4096;
 // Into how many stretches rows are cut at most, which threads go through.
 constexpr std::size_t kMostSizeStretches = 16;
 
@@ -53,10 +55,10 @@ double edge_for(double wanted, double count, const std::array<double, 3>& range)
 
 /// Some objects of a class: sums of what a class has.
 struct SizeClasses::Sample {
-  std::size_t count = 0;
-  std::array<double, 3> edge{};
-  std::array<double, 3> place{};
-  std::array<double, 3> square{};
+  std::size_t count;
+  std::array<double, 3> edge;
+  std::array<double, 3> place;
+  std::array<double, 3> square;
 
   void add(const BoundsPool& pool, std::size_t row) noexcept {
     ++count;
@@ -92,14 +94,17 @@ SizeClasses::SizeClasses(const BoundsPool& pool, std::span<const std::uint32_t> 
                          const Execution& execution) noexcept {
   // Of every second row, which need not wait for each other.
   using Halves = std::array<std::array<std::uint32_t, kOctaves>, 2>;
-  std::array<Halves, kMostSizeStretches> part{};
+  // Only those of stretches that there are get values.
+  std::array<Halves, kMostSizeStretches> part;
   const std::size_t length = stretch_of(octave.size());
   for_stretches(execution, octave.size(), length, [&](std::size_t begin, std::size_t end) {
     Halves& half = part[begin / length];
+    half = {};
     for (std::size_t row = begin; row < end; ++row) ++half[row & 1U][octave[row]];
   });
   Counts count{};
-  for (const Halves& half : part) {
+  for (std::size_t p = 0; p * length < octave.size(); ++p) {
+    const Halves& half = part[p];
     for (std::size_t o = 0; o < kNoOctave; ++o) count[o] += half[0][o] + half[1][o];
   }
   choose_octaves(count);
@@ -118,12 +123,16 @@ void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t>
   std::array<std::uint8_t, kOctaves> class_at{};
   std::array<std::size_t, kClasses + 1> step{};
   for (std::size_t o = 0; o < kOctaves; ++o) class_at[o] = static_cast<std::uint8_t>(class_of(o));
-  for (std::size_t c = 0; c < kClasses; ++c) step[c] = 1 + class_[c].count / kEnough;
+  for (std::size_t c = 0; c < kClasses; ++c) {
+    const std::size_t count = class_[c].count;
+    step[c] = 1 + count / std::clamp(count / kSampled, kLeastSampled, kMostSampled);
+  }
   std::array<std::array<Sample, kClasses>, kMostSizeStretches> part;
   const std::size_t length = stretch_of(octave.size());
   for_stretches(execution, octave.size(), length, [&](std::size_t begin, std::size_t end) {
     std::array<std::size_t, kClasses + 1> wait{};
     wait[kClasses] = octave.size();
+    part[begin / length] = {};
     for (std::size_t row = begin; row < end; ++row) {
       const std::size_t own = class_at[octave[row]];
       if (wait[own]-- != 0) continue;
@@ -133,8 +142,8 @@ void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t>
   });
   for (std::size_t own = 0; own < kClasses; ++own) {
     Class& c = class_[own];
-    Sample taken;
-    for (const auto& stretch : part) taken.add(stretch[own]);
+    Sample taken{};
+    for (std::size_t p = 0; p * length < octave.size(); ++p) taken.add(part[p][own]);
     const double all = static_cast<double>(c.count);
     const double each = static_cast<double>(std::max<std::size_t>(1, taken.count));
     for (std::size_t a = 0; a < 3; ++a) {

@@ -270,15 +270,13 @@ std::size_t SweepAndPrune::cells() const noexcept {
 }
 
 constexpr StructureCosts kCosts{.has_cells = true,
-                                .frame = 640,
-                                .keep = 11,
-                                .object = 10.1,
-                                .level = 0.05,
-                                .crowd = 5.5,
-                                .pair = 5.0,
-                                .moved = 200,
-                                .rest = 1.4,
-                                .build = 110,
+                                .keep = 20.5,
+                                .level = 0.012,
+                                .crowd = 1.4,
+                                .pair = 7.5,
+                                .moved = 385,
+                                .rest = 0.24,
+                                .build = 53,
                                 .ask_level = 32,
                                 .rows = 1.5};
 constexpr StructureInfo kInfo = structure_info<SweepAndPrune>("SweepAndPrune", &kCosts);
