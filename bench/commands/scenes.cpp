@@ -25,8 +25,9 @@ int run_scenes() {
         {std::string(info.name), short_number(pairs_an_object(info.name)), std::string(info.what)});
   }
   std::cout << table << "pairs measured in the first frame of " << grouped(kObjects)
-            << " objects (N). Speeds are up to 5 % of the edge a frame and axis;\n"
-            << "objects are reflected at the walls.\n";
+            << " objects (N). Unless something else is said,\n"
+            << "speeds are up to 5 % of the edge a frame and axis; objects are reflected at the "
+               "walls.\n";
   return kDone;
 }
 

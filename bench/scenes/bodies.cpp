@@ -1,5 +1,7 @@
 #include "bench/scenes/bodies.h"
 
+#include "bench/common/exact_math.h"
+
 #include <algorithm>
 
 namespace winnow::bench {
@@ -40,6 +42,37 @@ Aabb box_of(const Body& body) noexcept {
     box.max[a] = static_cast<float>(body.centre[axis] + body.half);
   }
   return box;
+}
+
+Walls uniform_walls(std::size_t objects) noexcept {
+  return Walls::cube(cube_root(2.0 * static_cast<double>(objects)));
+}
+
+std::vector<Body> uniform_bodies(std::size_t objects, std::uint64_t seed, const Walls& walls) {
+  Random random(seed);
+  std::vector<Body> bodies(objects);
+  for (Body& body : bodies) {
+    body.centre = draw_point(random, walls);
+    body.velocity = draw_velocity(random, 1.0);
+  }
+  return bodies;
+}
+
+Walls walls_for(const Sizes& sizes, std::size_t objects) noexcept {
+  return Walls::cube(cube_root(sizes.volume * static_cast<double>(objects)));
+}
+
+std::vector<Body> log_uniform_bodies(const Sizes& sizes, std::size_t objects, std::uint64_t seed,
+                                     const Walls& walls) {
+  Random random(seed);
+  std::vector<Body> bodies(objects);
+  for (Body& body : bodies) {
+    const double edge = sizes.smallest * power(sizes.ratio, random.unit());
+    body.half = 0.5 * edge;
+    body.centre = draw_point(random, walls);
+    body.velocity = draw_velocity(random, edge);
+  }
+  return bodies;
 }
 
 BodyScene::BodyScene(std::string name, const Walls& walls, std::vector<Body> bodies,

@@ -39,6 +39,27 @@ struct Walls {
 void drift(Body& body, const Walls& walls) noexcept;
 [[nodiscard]] Aabb box_of(const Body& body) noexcept;
 
+/// Of unit cubes with two of their volumes each.
+[[nodiscard]] Walls uniform_walls(std::size_t objects) noexcept;
+/// Unit cubes spread evenly between the walls, each with a velocity.
+[[nodiscard]] std::vector<Body> uniform_bodies(std::size_t objects, std::uint64_t seed,
+                                               const Walls& walls);
+
+/// Of cubes with log-uniform edges.
+struct Sizes {
+  double smallest;
+  double ratio;   ///< of the largest edge to the smallest
+  double volume;  ///< of the world, an object
+};
+// Two cubes with edges a and b overlap with probability (a + b)^3 / volume: the volume an object
+// that gives ten pairs an object is a twentieth of the mean of (a + b)^3.
+inline constexpr Sizes kMixedSizes{0.1, 100.0, 14.2};
+
+[[nodiscard]] Walls walls_for(const Sizes& sizes, std::size_t objects) noexcept;
+/// Cubes of such edges spread evenly between the walls, each with a velocity.
+[[nodiscard]] std::vector<Body> log_uniform_bodies(const Sizes& sizes, std::size_t objects,
+                                                   std::uint64_t seed, const Walls& walls);
+
 /// A scene made of bodies; what they do in a frame is up to the derived one.
 class BodyScene : public FrameSource {
  public:

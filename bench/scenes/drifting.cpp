@@ -62,39 +62,11 @@ class Brownian final : public BodyScene {
   }
 };
 
-Walls uniform_walls(std::size_t objects) {
-  return Walls::cube(cube_root(2.0 * static_cast<double>(objects)));
-}
-
-std::vector<Body> uniform_bodies(std::size_t objects, std::uint64_t seed, const Walls& walls) {
-  Random random(seed);
-  std::vector<Body> bodies(objects);
-  for (Body& body : bodies) {
-    body.centre = draw_point(random, walls);
-    body.velocity = draw_velocity(random, 1.0);
-  }
-  return bodies;
-}
-
-struct Sizes {
-  double smallest;
-  double ratio;   ///< of the largest edge to the smallest
-  double volume;  ///< of the world, an object
-};
-
-/// Cubes with log-uniform edges.
-std::unique_ptr<FrameSource> log_uniform(const char* name, const Sizes& sizes, std::size_t objects,
-                                         std::uint64_t seed) {
-  const Walls walls = Walls::cube(cube_root(sizes.volume * static_cast<double>(objects)));
-  Random random(seed);
-  std::vector<Body> bodies(objects);
-  for (Body& body : bodies) {
-    const double edge = sizes.smallest * power(sizes.ratio, random.unit());
-    body.half = 0.5 * edge;
-    body.centre = draw_point(random, walls);
-    body.velocity = draw_velocity(random, edge);
-  }
-  return std::make_unique<Drifting>(name, walls, std::move(bodies), seed);
+std::unique_ptr<FrameSource> drifting_sizes(const char* name, const Sizes& sizes,
+                                            std::size_t objects, std::uint64_t seed) {
+  const Walls walls = walls_for(sizes, objects);
+  return std::make_unique<Drifting>(name, walls, log_uniform_bodies(sizes, objects, seed, walls),
+                                    seed);
 }
 
 }  // namespace
@@ -114,14 +86,12 @@ std::unique_ptr<FrameSource> make_brownian(std::size_t objects, std::uint64_t se
   return std::make_unique<Brownian>("brownian", walls, uniform_bodies(objects, seed, walls), seed);
 }
 
-// Two cubes with edges a and b overlap with probability (a + b)^3 / volume: the volume an object
-// that gives ten pairs an object is a twentieth of the mean of (a + b)^3.
 std::unique_ptr<FrameSource> make_mixed(std::size_t objects, std::uint64_t seed) {
-  return log_uniform("mixed", {0.1, 100.0, 14.2}, objects, seed);
+  return drifting_sizes("mixed", kMixedSizes, objects, seed);
 }
 
 std::unique_ptr<FrameSource> make_mixed_1000(std::size_t objects, std::uint64_t seed) {
-  return log_uniform("mixed_1000", {0.01, 1000.0, 8.0}, objects, seed);
+  return drifting_sizes("mixed_1000", {0.01, 1000.0, 8.0}, objects, seed);
 }
 
 std::unique_ptr<FrameSource> make_clustered(std::size_t objects, std::uint64_t seed) {

@@ -3,6 +3,8 @@
 #include "bench/common/errors.h"
 #include "bench/common/table.h"
 #include "bench/scenes/drifting.h"
+#include "bench/scenes/incoherent.h"
+#include "bench/scenes/nearly_still.h"
 #include "bench/scenes/resting.h"
 
 #include <algorithm>
@@ -13,7 +15,7 @@ namespace {
 
 using Maker = std::unique_ptr<FrameSource> (*)(std::size_t objects, std::uint64_t seed);
 
-constexpr std::array<SceneInfo, 10> kInfos{{
+constexpr std::array<SceneInfo, 17> kInfos{{
     {"uniform", "unit cubes spread evenly over a cube of side cbrt(2N), all in straight flight"},
     {"sleepy", "as uniform, but in each frame only another random 5 % of the objects move"},
     {"mixed", "cubes with edges log-uniform from 0.1 to 10 in a cube of volume 14.2 N"},
@@ -24,11 +26,20 @@ constexpr std::array<SceneInfo, 10> kInfos{{
     {"free_fall", "unit cubes fall, bounce and come to rest in a heap a quarter as high"},
     {"gravity", "unit cubes fall to the centre of the world, bounce and come to rest there"},
     {"mixed_1000", "cubes with edges log-uniform from 0.01 to 10 in a cube of volume 8 N"},
+    {"teleport", "as uniform, but in each frame every object is somewhere else"},
+    {"teleport_mixed", "as mixed, but in each frame every object is somewhere else"},
+    {"respawn", "as uniform, but in each frame another tenth of the objects is somewhere else"},
+    {"shear", "as uniform, but objects go along x, by a fifth of their y, and round the world"},
+    {"jumps", "as uniform, but in each frame every object jumps by two edges, anywhere"},
+    {"few_movers", "as uniform, but only seven objects move, however many there are"},
+    {"jitter", "as uniform, but 99 of 100 tremble by 1e-5 where they are, and no pair changes"},
 }};
 
 constexpr std::array<Maker, kInfos.size()> kMakers{
-    make_uniform, make_sleepy,   make_mixed,     make_clustered, make_pile,
-    make_wall,    make_brownian, make_free_fall, make_gravity,   make_mixed_1000};
+    make_uniform,    make_sleepy,         make_mixed,     make_clustered, make_pile,
+    make_wall,       make_brownian,       make_free_fall, make_gravity,   make_mixed_1000,
+    make_teleport,   make_teleport_mixed, make_respawn,   make_shear,     make_jumps,
+    make_few_movers, make_jitter};
 
 }  // namespace
 

@@ -1,19 +1,16 @@
-// Recordings and built-in scenes: what is written is what is read, whatever is not a recording is
-// refused, and a scene is the same whenever it is made.
+// Recordings: what is written is what is read, and whatever is not a recording is refused.
 
 #include "bench/recordings/recording.h"
 #include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -126,59 +123,6 @@ TEST_F(Recordings, with_a_bad_box_are_refused) {
 
 TEST_F(Recordings, that_are_not_there_are_refused) {
   EXPECT_THROW((void)read_recording((folder_ / "none.aabbs").string()), RecordingError);
-}
-
-TEST(Scenes, are_the_same_whenever_they_are_made) {
-  for (const SceneInfo& info : scene_infos()) {
-    const auto a = make_scene(info.name, 300, 1);
-    const auto b = make_scene(info.name, 300, 1);
-    const auto other = make_scene(info.name, 300, 2);
-    for (int frame = 0; frame < 5; ++frame) {
-      ASSERT_TRUE(std::ranges::equal(a->boxes(), b->boxes())) << info.name << ", frame " << frame;
-      EXPECT_FALSE(std::ranges::equal(a->boxes(), other->boxes())) << info.name;
-      a->advance();
-      b->advance();
-      other->advance();
-    }
-  }
-}
-
-TEST(Scenes, stay_valid_and_inside_their_world) {
-  for (const SceneInfo& info : scene_infos()) {
-    for (const std::size_t objects : {1U, 2U, 500U}) {
-      const auto scene = make_scene(info.name, objects, 3);
-      const Aabb world = scene->world();
-      for (int frame = 0; frame < 20; ++frame) {
-        ASSERT_EQ(scene->boxes().size(), objects) << info.name;
-        for (const Aabb& box : scene->boxes()) {
-          ASSERT_TRUE(box.is_valid()) << info.name;
-          Aabb merged = world;
-          merged.merge(box);
-          ASSERT_EQ(merged, world) << info.name << ", frame " << frame;
-        }
-        scene->advance();
-      }
-    }
-  }
-}
-
-TEST(Scenes, move_as_their_names_say) {
-  const auto moved_share = [](const char* name) {
-    const auto scene = make_scene(name, 4000, 5);
-    const std::vector<Aabb> before(scene->boxes().begin(), scene->boxes().end());
-    scene->advance();
-    std::size_t moved = 0;
-    for (std::size_t i = 0; i < before.size(); ++i) {
-      if (!(before[i] == scene->boxes()[i])) ++moved;
-    }
-    return static_cast<double>(moved) / static_cast<double>(before.size());
-  };
-  EXPECT_GT(moved_share("uniform"), 0.99);
-  EXPECT_NEAR(moved_share("sleepy"), 0.05, 0.02);
-}
-
-TEST(Scenes, of_an_unknown_name_are_none) {
-  EXPECT_EQ(make_scene("no_such", 10, 1), nullptr);
 }
 
 }  // namespace

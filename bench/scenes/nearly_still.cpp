@@ -1,0 +1,83 @@
+#include "bench/scenes/nearly_still.h"
+
+#include "bench/scenes/bodies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace winnow::bench {
+namespace {
+
+/// Seven bodies fly on, the same in every frame; of fewer, all.
+class FewMovers final : public BodyScene {
+ public:
+  FewMovers(const Walls& walls, std::vector<Body> bodies, std::uint64_t seed)
+      : BodyScene("few_movers", walls, std::move(bodies), seed) {
+    const std::size_t wanted = std::min<std::size_t>(7, bodies_.size());
+    while (movers_.size() < wanted) {
+      const std::uint32_t one = random_.below(static_cast<std::uint32_t>(bodies_.size()));
+      if (std::find(movers_.begin(), movers_.end(), one) == movers_.end()) movers_.push_back(one);
+    }
+  }
+
+  bool advance() override {
+    for (const std::uint32_t i : movers_) {
+      drift(bodies_[i], walls_);
+      place(i);
+    }
+    return true;
+  }
+
+ private:
+  std::vector<std::uint32_t> movers_;
+};
+
+/// Bodies that tremble about where they are at home, but for every hundredth, which rests.
+class Trembling final : public BodyScene {
+ public:
+  Trembling(const Walls& walls, std::vector<Body> bodies, std::uint64_t seed)
+      : BodyScene("jitter", walls, std::move(bodies), seed) {
+    for (const Body& body : bodies_) homes_.push_back(body.centre);
+  }
+
+  bool advance() override {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (i % 100 == 99) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        bodies_[i].centre[axis] = homes_[i][axis] + random_.in(-kTremor, kTremor);
+      }
+      place(i);
+    }
+    return true;
+  }
+
+ private:
+  static constexpr double kTremor = 1e-5;  // edges
+
+  std::vector<Vector> homes_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> make_few_movers(std::size_t objects, std::uint64_t seed) {
+  const Walls walls = uniform_walls(objects);
+  return std::make_unique<FewMovers>(walls, uniform_bodies(objects, seed, walls), seed);
+}
+
+// Homes lie on a lattice of which no whole number of steps is an edge: on each axis two cubes
+// overlap or lie apart by half a step at least, which is fifty times as much as they tremble, so
+// that no pair ever begins or ends.
+std::unique_ptr<FrameSource> make_jitter(std::size_t objects, std::uint64_t seed) {
+  constexpr double kStep = 2.0 / 2001.0;
+  const Walls walls = uniform_walls(objects);
+  std::vector<Body> bodies = uniform_bodies(objects, seed, walls);
+  for (Body& body : bodies) {
+    for (double& c : body.centre) c = kStep * std::floor(c / kStep);
+  }
+  Walls around = walls;  // with room to tremble
+  for (double& low : around.low) low -= kStep;
+  return std::make_unique<Trembling>(around, std::move(bodies), seed);
+}
+
+}  // namespace winnow::bench
