@@ -68,7 +68,8 @@ class Throughput final : public ScenesCommand {
 
   void add_options(CLI::App& app) {
     ScenesCommand::add_options(app);
-    app.add_flag("--peers", peers_, "Race other libraries too");
+    app.add_flag("--peers", peers_, "Race other libraries too, and the yardstick if there is one");
+    app.add_flag("--yardstick", yardstick_, "Race the yardstick too");
     add_frames_option(app, frames_);
   }
 
@@ -79,9 +80,14 @@ class Throughput final : public ScenesCommand {
           "--peers: this tool was built without other libraries; "
           "bench/run --with-peers installs and builds them");
     }
+    if (yardstick_ && !has_yardstick()) {
+      throw ArgumentError(
+          "--yardstick: this tool was built without it; the CMake variable WINNOW_YARDSTICK names "
+          "the folder with the prototype");
+    }
     declare_frames(results);
     measure_all();
-    print("throughput", {"frame_ms", "update_ms", "first_ms", "pairs", "pairs_per_s",
+    print("throughput", {"frame_ms", "update_ms", "worst_ms", "first_ms", "pairs", "pairs_per_s",
                          "bytes_per_object", "frames", "fingerprint"});
     for (const char* table : {"throughput_threads", "throughput_growth", "throughput_skipped"}) {
       print(table);
@@ -97,6 +103,7 @@ class Throughput final : public ScenesCommand {
                         .partitions = partitions_,
                         .threads = {threads},
                         .peers = peers_,
+                        .yardstick = peers_ || yardstick_,
                         .frames = frames_});
       });
     }
@@ -104,6 +111,7 @@ class Throughput final : public ScenesCommand {
   }
 
   bool peers_ = false;
+  bool yardstick_ = false;
   std::size_t frames_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include "bench/contenders/partition_engine.h"
 #include "bench/measure/isa_guard.h"
 #include "bench/peers/peers.h"
+#include "bench/peers/yardstick.h"
 #include "bench/scenes/scene.h"
 
 #include <algorithm>
@@ -162,6 +163,13 @@ void add_peers(const MeasureOptions& options, std::vector<Contender>& contenders
   }
 }
 
+void add_yardstick(const MeasureOptions& options, std::vector<Contender>& contenders) {
+  for (const int threads : options.threads) {
+    std::unique_ptr<Engine> engine = make_yardstick(threads);
+    if (engine != nullptr) contenders.push_back({std::move(engine), threads, active_isa()});
+  }
+}
+
 }  // namespace
 
 Measurement measure(const MeasureOptions& options) {
@@ -187,6 +195,7 @@ Measurement measure(const MeasureOptions& options) {
   }
   result.partition_runs = contenders.size();
   if (options.peers) add_peers(options, contenders, result);
+  if (options.yardstick) add_yardstick(options, contenders);
   result.peer_runs = contenders.size() - result.partition_runs;
   if (options.reference) {
     contenders.push_back({std::make_unique<ReferenceSweep>(-1), 1, active_isa()});

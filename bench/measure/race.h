@@ -73,6 +73,7 @@ struct MeasureOptions {
   std::vector<int> threads{1};
   std::vector<Isa> isas{};  ///< empty: the active one
   bool peers = false;       ///< other libraries too, where the tool was built with them
+  bool yardstick = false;   ///< the yardstick too, where the tool was built with it
   bool reference = false;   ///< the reference sweep too, as the judge of what overlaps
   bool machine_clock = false;
   std::size_t frames = 0;  ///< the first one included; 0: what suits the size
@@ -81,9 +82,9 @@ struct MeasureOptions {
 struct Measurement {
   std::string scene{};
   std::size_t objects = 0;
-  std::vector<Run> runs;             ///< partitions, then peers, then the reference
-  std::size_t partition_runs = 0;    ///< how many of them, from the front, are partitions
-  std::size_t peer_runs = 0;         ///< how many after these are other libraries
+  std::vector<Run> runs;           ///< partitions, then peers, then the reference
+  std::size_t partition_runs = 0;  ///< how many of them, from the front, are partitions
+  std::size_t peer_runs = 0;       ///< how many after these are other libraries, the yardstick last
   std::vector<std::string> skipped;  ///< too slow for the size
   double machine_ms = 0.0;           ///< of the MachineClock, interleaved with the race
 

@@ -1,6 +1,7 @@
 #include "bench/report/layout.h"
 
 #include "bench/common/table.h"
+#include "bench/peers/yardstick.h"
 #include "bench/rows/filled.h"
 #include "bench/rows/machine.h"
 
@@ -315,6 +316,7 @@ class Evaluation {
         const Json* peer = nullptr;
         for (const Json* row : rows_of(words[0], bound, entry)) {
           const std::string name = (*row)[words[1]];
+          if (name == kYardstickName) continue;  // which is no library
           const Json*& least = is_peer(name) ? peer : own;
           if (row->value("right", "yes") != "yes" || !row->contains(words[2])) continue;
           if (!is_peer(name) && entry.value("own", name) != name) continue;

@@ -3,6 +3,7 @@
 #include "bench/common/sample.h"
 #include "bench/measure/frame_limit.h"
 #include "bench/measure/key_costs.h"
+#include "bench/peers/yardstick.h"
 #include "bench/rows/machine.h"
 
 #include <algorithm>
@@ -51,6 +52,10 @@ void add_run(Results& results, const NamedScene& scene, const Measurement& measu
   if (run.median_update_ms() > 0.0) {  // not every library can tell
     row["update_ms"] = to_value(update_ms);
     row["update_share"] = run.median_update_ms() / median_of(ms);
+  }
+  if (run.frame_ms.size() > kSettlingFrames) {
+    row["worst_ms"] = *std::max_element(
+        run.frame_ms.begin() + static_cast<std::ptrdiff_t>(kSettlingFrames), run.frame_ms.end());
   }
   if (run.bytes != 0) row["bytes_per_object"] = static_cast<double>(run.bytes) / n;
   results.add("throughput", std::move(row));
@@ -172,6 +177,7 @@ void declare_frames(Results& results) {
         {"us_per_object", "frame", "us/object"},
         {"update_ms", "of it update", "ms"},
         {"update_share", "share of the update", "", Better::neither, Format::percent},
+        {"worst_ms", "worst frame", "ms"},
         {"first_ms", "first frame", "ms", Better::less},
         {"pairs", "pairs", "", Better::neither, Format::count},
         {"pairs_per_s", "pairs", "million/s", Better::more},
@@ -219,7 +225,9 @@ Measurement add_frame_race(Results& results, const NamedScene& scene, MeasureOpt
     const std::string beside =
         measured.partition_runs > 0 ? measured.runs.front().engine : std::string("LinearBvh");
     add_run(results, scene, measured, run,
-            "bench/run --with-peers throughput --peers" + command(run, beside));
+            (run.engine == kYardstickName ? "bench/run throughput --yardstick"
+                                          : "bench/run --with-peers throughput --peers") +
+                command(run, beside));
   }
   note_skipped(results, measured.objects, measured.skipped, options.peers);
   if (!all_agree(measured.runs)) throw std::runtime_error("not all found the same pairs");

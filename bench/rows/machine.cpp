@@ -2,6 +2,7 @@
 
 #include <winnow/simd/isa.h>
 #include "bench/contenders/reference_sweep.h"
+#include "bench/peers/yardstick.h"
 #include "bench/rows/build_facts.h"
 
 #include <sys/utsname.h>
@@ -110,8 +111,13 @@ bool has_peers() noexcept {
   return *kPeersFound != '\0';
 }
 
+bool has_yardstick() {
+  return make_yardstick(1) != nullptr;
+}
+
 bool is_peer(std::string_view name) {
-  return std::any_of(kKnownPeers.begin(), kKnownPeers.end(),
+  return name == kYardstickName ||
+         std::any_of(kKnownPeers.begin(), kKnownPeers.end(),
                      [&](const KnownPeer& peer) { return name.starts_with(peer.name); });
 }
 

@@ -26,7 +26,11 @@ struct MissingPeer {
 /// Whether it was built with any of them.
 [[nodiscard]] bool has_peers() noexcept;
 
-/// Whether a key of a row names one of them, installed or not: "FCL", "Bullet dbvt".
+/// Whether it was built with the yardstick.
+[[nodiscard]] bool has_yardstick();
+
+/// Whether a key of a row names one of them, installed or not: "FCL", "Bullet dbvt"; or the
+/// yardstick.
 [[nodiscard]] bool is_peer(std::string_view name);
 
 }  // namespace winnow::bench

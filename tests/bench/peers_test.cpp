@@ -1,9 +1,10 @@
-// Other libraries find the pairs that the reference sweep finds, and no others.
+// Other libraries and the yardstick find the pairs that the reference sweep finds, and no others.
 
 #include "bench/peers/peers.h"
 #include "bench/common/random.h"
 #include "bench/contenders/reference_sweep.h"
 #include "bench/measure/race.h"
+#include "bench/peers/yardstick.h"
 #include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>
@@ -79,21 +80,34 @@ std::unique_ptr<FrameSource> source_named(const std::string& name) {
   return make_scene(name, 700, 20);
 }
 
+void expect_same_pairs(const std::string& source_name, std::vector<Contender> contenders) {
+  contenders.insert(contenders.begin(), Contender{std::make_unique<ReferenceSweep>(-1)});
+  RaceOptions options;
+  options.frames = 9;
+  const auto runs = race(*source_named(source_name), contenders, options);
+  for (const auto& run : runs) {
+    EXPECT_TRUE(run.same_pairs(runs.front())) << run.engine << ", threads: " << run.threads;
+    for (const PairSummary& frame : run.pairs) EXPECT_EQ(frame.reported, frame.pairs);
+  }
+}
+
 class Peers : public testing::TestWithParam<const char*> {};
 
 TEST_P(Peers, find_every_pair_once_and_nothing_else) {
   for (const int threads : {1, 2}) {
-    const auto source = source_named(GetParam());
     std::vector<Contender> contenders;
-    contenders.push_back({std::make_unique<ReferenceSweep>(-1)});
     for (auto& peer : make_peers(threads)) contenders.push_back({std::move(peer), threads});
-    RaceOptions options;
-    options.frames = 9;
-    const auto runs = race(*source, contenders, options);
-    for (const auto& run : runs) {
-      EXPECT_TRUE(run.same_pairs(runs.front())) << run.engine << ", threads: " << threads;
-      for (const PairSummary& frame : run.pairs) EXPECT_EQ(frame.reported, frame.pairs);
-    }
+    expect_same_pairs(GetParam(), std::move(contenders));
+  }
+}
+
+TEST_P(Peers, and_the_yardstick_where_it_is_there) {
+  for (const int threads : {1, 2, 3}) {
+    auto yardstick = make_yardstick(threads);
+    if (yardstick == nullptr) GTEST_SKIP() << "built without it";
+    std::vector<Contender> contenders;
+    contenders.push_back({std::move(yardstick), threads});
+    expect_same_pairs(GetParam(), std::move(contenders));
   }
 }
 

@@ -1,0 +1,129 @@
+#include "bench/peers/yardstick.h"
+
+#ifdef WINNOW_HAVE_YARDSTICK
+
+#include <sg3.h>
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <array>
+#include <new>
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+static_assert(sizeof(::Box) == sizeof(Aabb) && sizeof(Pair) == sizeof(u64));
+
+/// Addresses for every pair that there may be: the prototype writes without looking whether there
+/// is room. The system gives memory to those that were written to.
+class PairRoom {
+ public:
+  explicit PairRoom(std::size_t objects) {
+    constexpr std::size_t kSlack = 64;  // vectors are stored whole
+    constexpr std::size_t kMost = std::size_t{1} << 40U;
+    const std::size_t pairs = std::min(objects * (objects + 1) / 2, kMost);
+    bytes_ = (pairs + kSlack) * sizeof(u64);
+    void* const room = ::mmap(nullptr, bytes_, PROT_READ | PROT_WRITE,
+                              MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (room == MAP_FAILED) throw std::bad_alloc();
+    pairs_ = static_cast<u64*>(room);
+  }
+  PairRoom(const PairRoom&) = delete;
+  PairRoom& operator=(const PairRoom&) = delete;
+  ~PairRoom() { ::munmap(pairs_, bytes_); }
+
+  [[nodiscard]] u64* begin() const noexcept { return pairs_; }
+
+ private:
+  u64* pairs_ = nullptr;
+  std::size_t bytes_ = 0;
+};
+
+class YardstickEngine final : public Engine {
+ public:
+  explicit YardstickEngine(int threads) : threads_(std::min(threads, kMostThreads)) {
+    sweep_.k = 5;  // strips of five mean extents
+    if (threads > kMostThreads) arena_ = std::make_unique<tbb::task_arena>(kMostThreads);
+  }
+
+  [[nodiscard]] std::string name() const override { return std::string(kYardstickName); }
+  [[nodiscard]] std::size_t largest() const override { return (std::size_t{1} << 30U) - 1; }
+
+  void start(std::span<const Aabb> boxes) override { frame({}, boxes); }
+
+  void frame(std::span<const std::uint32_t> /*changed_rows*/,
+             std::span<const Aabb> boxes) override {
+    make_room(boxes.size());
+    for (int t = 0; t < threads_; ++t) found_.o[t].w = room_[t]->begin();
+    if (boxes.size() < 2) return;
+    NT = threads_;
+    const auto step = [&] {
+      sweep_.step(reinterpret_cast<const ::Box*>(boxes.data()), boxes.size(), found_);
+    };
+    if (arena_ != nullptr) {
+      arena_->execute(step);
+    } else {
+      step();
+    }
+  }
+
+  [[nodiscard]] std::span<const Pair> pairs() const override {
+    const auto of = [&](int t) {
+      const u64* const first = room_[t]->begin();
+      return std::span(reinterpret_cast<const Pair*>(first),
+                       static_cast<std::size_t>(found_.o[t].w - first));
+    };
+    if (threads_ == 1) return of(0);
+    joined_.assign(of(0).begin(), of(0).end());
+    joined_.insert(joined_.end(), of(1).begin(), of(1).end());
+    return joined_;
+  }
+
+  [[nodiscard]] std::size_t bytes() const override {
+    const auto held = [](const auto& buffer) { return buffer.cap * sizeof(*buffer.p); };
+    std::size_t sum = held(sweep_.R) + held(sweep_.q8) + held(sweep_.st);
+    for (int t = 0; t < threads_; ++t) {
+      sum += held(sweep_.cnt[t]) + held(sweep_.kk[t]) + held(sweep_.sc[t].id);
+      for (int a = 0; a < 3; ++a) sum += held(sweep_.sc[t].lo[a]) + held(sweep_.sc[t].hi[a]);
+    }
+    return sum;
+  }
+
+ private:
+  static constexpr int kMostThreads = 2;  // the prototype has arrays of two
+
+  void make_room(std::size_t objects) {
+    if (objects <= objects_ && room_[0] != nullptr) return;
+    objects_ = objects;
+    for (int t = 0; t < threads_; ++t) room_[t] = std::make_unique<PairRoom>(objects);
+  }
+
+  int threads_;
+  std::unique_ptr<tbb::task_arena> arena_;  // where there are more threads than it can use
+  SG4<true> sweep_;
+  Outs found_;  // of which only the ends of the pairs are used
+  std::array<std::unique_ptr<PairRoom>, kMostThreads> room_;
+  std::size_t objects_ = 0;
+  mutable std::vector<Pair> joined_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_yardstick(int threads) {
+  return std::make_unique<YardstickEngine>(threads);
+}
+
+}  // namespace winnow::bench
+
+#else
+
+namespace winnow::bench {
+
+std::unique_ptr<Engine> make_yardstick(int /*threads*/) {
+  return nullptr;
+}
+
+}  // namespace winnow::bench
+
+#endif
