@@ -6,6 +6,7 @@
 #include "bench/contenders/partitions.h"
 #include "bench/measure/resident_set.h"
 #include "bench/rows/accuracy_rows.h"
+#include "bench/rows/cold_rows.h"
 #include "bench/rows/frame_rows.h"
 #include "bench/rows/kernel_rows.h"
 #include "bench/rows/machine.h"
@@ -135,6 +136,33 @@ class FootprintCommand final : public ScenesCommand {
       step(what, [&] { add_footprints(results, scene, objects, seed_, partitions, threads); });
     }
   }
+};
+
+class Cold final : public ScenesCommand {
+ public:
+  Cold() : ScenesCommand(kColdScenes, usual_threads()) { objects_ = {1000, 10'000, 100'000}; }
+
+  void add_options(CLI::App& app) {
+    ScenesCommand::add_options(app);
+    number(app, "--rounds", rounds_, 1, 1000, "Fresh partitions of each");
+  }
+
+ private:
+  void measure() override {
+    declare_cold(results);
+    measure_all();
+    print("cold", {"insert_ms", "build_ms", "pairs_ms", "total_ms", "over_yardstick"});
+  }
+  void measure_scene(const std::string& what, const NamedScene& scene,
+                     std::size_t objects) override {
+    const std::vector<std::string> partitions = partitions_for(partitions_, objects).taken;
+    for (const int threads : threads_) {
+      step(what + ", " + threads_text(threads),
+           [&] { add_cold(results, scene, objects, seed_, partitions, threads, rounds_); });
+    }
+  }
+
+  std::size_t rounds_ = 7;
 };
 
 /// A built-in scene, or a recording instead.
@@ -456,6 +484,10 @@ std::vector<Command> add_measurements(CLI::App& app) {
           "Races partitions, and other libraries, frame by frame interleaved: milliseconds and "
           "bytes, and how time grows with objects and falls with threads; all must find the same "
           "pairs"),
+      command<Cold>(app, "cold",
+                    "First frames of fresh partitions, on memory that was written to before and on "
+                    "memory that was not: inserting, building, finding all pairs, and the "
+                    "yardstick's frame beside"),
       command<FootprintCommand>(
           app, "footprint",
           "Bytes an object by purpose, checked against what was really allocated and against the "

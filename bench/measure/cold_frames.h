@@ -1,0 +1,39 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace winnow::bench {
+
+/// Where a partition gets its memory: from pages that were written to before, or that were not.
+inline constexpr std::array<std::string_view, 2> kColdMemories{"touched", "untouched"};
+
+/// Milliseconds of the parts of first frames, one entry a frame.
+struct ColdFrames {
+  std::string partition{};
+  std::string_view memory{};
+  std::vector<double> insert_ms{};
+  std::vector<double> build_ms{};
+  std::vector<double> pairs_ms{};
+  std::vector<double> total_ms{};
+};
+
+struct ColdRace {
+  std::vector<ColdFrames> frames;    ///< of each partition, in each of the memories
+  std::vector<double> yardstick_ms;  ///< of frames of the same boxes; none without it
+};
+
+/// First frames of so many fresh partitions of these boxes: all boxes are inserted, the structure
+/// is built and all pairs are found. All take turns, and frames of the yardstick, which always
+/// starts anew, among them. Throws std::runtime_error if not all find the same pairs.
+[[nodiscard]] ColdRace race_cold_frames(std::span<const Aabb> boxes,
+                                        const std::vector<std::string>& partitions, int threads,
+                                        std::size_t rounds = 7);
+
+}  // namespace winnow::bench

@@ -1,0 +1,48 @@
+#include "bench/rows/cold_rows.h"
+
+#include <winnow/simd/isa.h>
+#include "bench/common/sample.h"
+#include "bench/measure/cold_frames.h"
+
+namespace winnow::bench {
+
+void declare_cold(Results& results) {
+  results.declare({"cold",
+                   "throughput",
+                   "the first frame of a fresh partition",
+                   {"scene", "objects", "partition", "memory", "threads"},
+                   {{"insert_ms", "insert", "ms"},
+                    {"build_ms", "build", "ms"},
+                    {"pairs_ms", "pairs", "ms"},
+                    {"total_ms", "first frame", "ms", Better::less},
+                    {"yardstick_ms", "the yardstick's frame", "ms"},
+                    {"over_yardstick", "over the yardstick", "times"}}});
+}
+
+void add_cold(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
+              const std::vector<std::string>& partitions, int threads, std::size_t rounds) {
+  const auto source = scene.source(objects, seed);
+  const std::size_t count = source->boxes().size();
+  const ColdRace race = race_cold_frames(source->boxes(), partitions, threads, rounds);
+  for (const ColdFrames& one : race.frames) {
+    Json row{{"scene", scene.name},
+             {"objects", count},
+             {"partition", one.partition},
+             {"memory", one.memory},
+             {"threads", threads},
+             {"insert_ms", to_value(one.insert_ms)},
+             {"build_ms", to_value(one.build_ms)},
+             {"pairs_ms", to_value(one.pairs_ms)},
+             {"total_ms", to_value(one.total_ms)},
+             {"command", "bench/run cold" + scene.words(count, seed) + " --threads " +
+                             std::to_string(threads) + " --isa " + isa_name() + " --partition " +
+                             one.partition}};
+    if (!race.yardstick_ms.empty()) {
+      row["yardstick_ms"] = to_value(race.yardstick_ms);
+      row["over_yardstick"] = median_of(one.total_ms) / median_of(race.yardstick_ms);
+    }
+    results.add("cold", std::move(row));
+  }
+}
+
+}  // namespace winnow::bench
