@@ -15,9 +15,11 @@ namespace {
 struct Goals {
   std::string topic;
   std::string json;
+  std::size_t worst_of = Lab::kWorstOf;
 
   void add_options(CLI::App& app) {
     one_of(app, "--topic", topic, {kTopics.begin(), kTopics.end()}, "Only this topic");
+    number(app, "--worst-of", worst_of, 1, 1e6, "Frames of which the worst is asked about");
     add_json_option(app, json);
   }
   [[nodiscard]] int run() const;
@@ -74,7 +76,7 @@ Json goal_json(const Goal& goal) {
 }
 
 int Goals::run() const {
-  Lab lab;
+  Lab lab(worst_of);
   const std::vector<Goal> goals = measure_all(lab);
   const Spread machine = lab.machine_ms();
   if (machine.max > 0.0) {

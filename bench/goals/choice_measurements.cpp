@@ -1,41 +1,16 @@
-#include "bench/contenders/partitions.h"
 #include "bench/goals/asked_scenes.h"
 #include "bench/goals/measurements.h"
-#include "bench/measure/race.h"
+#include "bench/goals/undisturbed.h"
+#include "bench/rows/frame_rows.h"
 #include "bench/scenes/scene.h"
 
 #include <algorithm>
-#include <functional>
 #include <numeric>
 
 namespace winnow::bench {
 namespace {
 
-constexpr std::size_t kFirst = 6;  // frames until a choice should have settled
-
-/// Races all partitions on the same frames a few times over and keeps each frame's least time: sums
-/// of few frames say nothing if one of them was disturbed.
-std::vector<Run> undisturbed(const std::function<std::unique_ptr<FrameSource>()>& make_source,
-                             std::size_t frames, int threads) {
-  constexpr int kRounds = 3;
-  std::vector<Run> runs;
-  for (int round = 0; round < kRounds; ++round) {
-    const std::unique_ptr<FrameSource> source = make_source();
-    std::vector<Contender> contenders =
-        make_contenders(partitions_for({"all"}, source->boxes().size()).taken, threads);
-    RaceOptions options;
-    options.frames = frames;
-    options.block = 1;
-    std::vector<Run> again = race(*source, contenders, options);
-    if (runs.empty()) runs = again;
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      for (std::size_t f = 0; f < runs[i].frame_ms.size(); ++f) {
-        runs[i].frame_ms[f] = std::min(runs[i].frame_ms[f], again[i].frame_ms[f]);
-      }
-    }
-  }
-  return runs;
-}
+constexpr std::size_t kFirst = kSettlingFrames;
 
 /// What AutoPartition and the best of the others took for some of the frames.
 struct OwnAndBest {
@@ -100,7 +75,8 @@ void measure_first_frames(const Json& options, Lab& /*lab*/, Measured& measured)
   const int threads = options.at("threads");
   for (const NamedScene& scene : asked_scenes(options, measured)) {
     const std::size_t objects = scene.objects(options.value("objects", std::size_t{0}));
-    const auto runs = undisturbed([&] { return scene.source(objects, 1); }, kFirst, threads);
+    const auto runs =
+        undisturbed([&] { return scene.source(objects, 1); }, {"all"}, kFirst, threads);
     const OwnAndBest of(runs, 0, kFirst);
     measured.results.add("first_frames", {{"scene", scene.name},
                                           {"objects", objects},
@@ -123,7 +99,7 @@ void measure_changes(const Json& options, Lab& /*lab*/, Measured& measured) {
   const std::size_t each = options.at("frames_each");
   const std::size_t objects = options.at("objects");
   const auto runs =
-      undisturbed([&] { return std::make_unique<TurningScene>(scenes, objects, each); },
+      undisturbed([&] { return std::make_unique<TurningScene>(scenes, objects, each); }, {"all"},
                   each * scenes.size(), options.at("threads"));
   for (std::size_t turn = 1; turn < scenes.size(); ++turn) {
     const OwnAndBest of(runs, turn * each, (turn + 1) * each);
@@ -133,6 +109,34 @@ void measure_changes(const Json& options, Lab& /*lab*/, Measured& measured) {
                                      {"objects", objects},
                                      {"frames_lost", (of.own_ms - of.best_ms) / frame},
                                      {"best", of.best}});
+  }
+}
+
+void measure_worst_frames(const Json& options, Lab& lab, Measured& measured) {
+  measured.results.declare({"worst_frames",
+                            "scenes",
+                            "the worst of many frames over the median one, once settled",
+                            {"scene", "objects", "partition", "threads"},
+                            {{"ratio", "worst / median", "times", Better::less},
+                             {"worst_ms", "worst", "ms"},
+                             {"median_ms", "median", "ms"},
+                             {"frames", "frames", ""}}});
+  const int threads = options.at("threads");
+  for (const NamedScene& scene : asked_scenes(options, measured)) {
+    const std::size_t objects = scene.objects(options.value("objects", std::size_t{0}));
+    const auto runs = undisturbed([&] { return scene.source(objects, 1); },
+                                  options.at("partitions"), kFirst + lab.worst_of(), threads);
+    for (const Run& run : runs) {
+      const Spread settled = spread_of(std::span(run.frame_ms).subspan(kFirst));
+      measured.results.add("worst_frames", {{"scene", scene.name},
+                                            {"objects", objects},
+                                            {"partition", run.engine},
+                                            {"threads", threads},
+                                            {"ratio", settled.max / settled.median},
+                                            {"worst_ms", settled.max},
+                                            {"median_ms", settled.median},
+                                            {"frames", lab.worst_of()}});
+    }
   }
 }
 

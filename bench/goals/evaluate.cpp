@@ -176,18 +176,31 @@ std::optional<AskFigure> measured_of(const Json& ask, const Rows& rows, const Js
   return value;
 }
 
-std::optional<AskFigure> worst_of(const Json& ask, const Rows& rows, const Json& narrowed,
-                                  bool at_least) {
-  if (!ask.contains("worst_by")) return measured_of(ask, rows, narrowed);
-  std::optional<AskFigure> worst;
-  for (const Json& one : combinations_of(ask["worst_by"], ask["value"], rows, narrowed)) {
-    const auto figure = measured_of(ask, rows, one);
-    if (!figure) continue;
-    const bool is_worse =
-        !worst || (at_least ? figure->value < worst->value : figure->value > worst->value);
-    if (is_worse) worst = figure;
+/// Measured under each combination of these keys that has an answer.
+std::vector<AskFigure> measured_by(const Json& keys, const Json& ask, const Rows& rows,
+                                   const Json& narrowed) {
+  std::vector<AskFigure> figures;
+  for (const Json& one : combinations_of(keys, ask["value"], rows, narrowed)) {
+    if (auto figure = measured_of(ask, rows, one)) figures.push_back(std::move(*figure));
   }
-  return worst;
+  return figures;
+}
+
+std::optional<AskFigure> condensed_of(const Json& ask, const Rows& rows, const Json& narrowed,
+                                      bool at_least) {
+  const bool worst = ask.contains("worst_by");
+  if (!worst && !ask.contains("median_by")) return measured_of(ask, rows, narrowed);
+  auto figures = measured_by(ask[worst ? "worst_by" : "median_by"], ask, rows, narrowed);
+  if (figures.empty()) return std::nullopt;
+  const auto better = [&](const AskFigure& a, const AskFigure& b) {
+    return at_least ? a.value > b.value : a.value < b.value;
+  };
+  if (worst) return *std::max_element(figures.begin(), figures.end(), better);
+  std::vector<double> values;
+  for (const AskFigure& figure : figures) values.push_back(figure.value);
+  const AskFigure& last = *std::max_element(figures.begin(), figures.end(), better);
+  return AskFigure{median_of(values), "of " + std::to_string(values.size()) + ", the worst " +
+                                          short_number(last.value) + " of " + last.from};
 }
 
 /// None if it is optional and cannot be answered.
@@ -197,7 +210,7 @@ std::optional<Goal> goal_of(const Json& ask, const Rows& rows, const Json& narro
             .unit = ask["unit"],
             .at_least = ask.contains("at_least")};
   const auto bound = figure_of(ask[goal.at_least ? "at_least" : "at_most"], rows, narrowed);
-  const auto value = worst_of(ask, rows, narrowed, goal.at_least);
+  const auto value = condensed_of(ask, rows, narrowed, goal.at_least);
   if ((!bound || !value) && ask.value("optional", false)) return std::nullopt;
   goal.asked = bound ? bound->value : 0.0;
   goal.measured = value ? value->value : goal.at_least ? 0.0 : kUnanswered;

@@ -29,6 +29,7 @@ struct Goal {
 ///   "at_most" or "at_least": FIGURE: the bound
 ///   "by": [keys]: a goal for each combination of keys among the rows of the value
 ///   "worst_by": [keys]: of these the worst counts
+///   "median_by": [keys]: of these the median
 ///   "optional": true: no goal where a figure has no row
 ///
 /// A FIGURE is a number, or an object:

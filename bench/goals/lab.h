@@ -3,6 +3,7 @@
 #include "bench/common/sample.h"
 #include "bench/rows/results.h"
 
+#include <cstddef>
 #include <map>
 #include <string>
 
@@ -19,6 +20,9 @@ struct Measured {
 /// Measures what goals ask about, each thing once.
 class Lab {
  public:
+  /// `worst_of`: among how many frames the worst is looked for.
+  explicit Lab(std::size_t worst_of = kWorstOf) : worst_of_(worst_of) {}
+
   /// By {NAME: options}, see measurements.h. Throws std::runtime_error if there is none of the
   /// name.
   const Measured& measured(const Json& request);
@@ -26,7 +30,12 @@ class Lab {
   /// The reference sweep in every measurement so far. Far apart, the run was disturbed.
   [[nodiscard]] Spread machine_ms() const;
 
+  [[nodiscard]] std::size_t worst_of() const noexcept { return worst_of_; }
+
+  static constexpr std::size_t kWorstOf = 300;
+
  private:
+  std::size_t worst_of_;
   std::map<std::string, Measured> measured_;  // by the text of the request
 };
 

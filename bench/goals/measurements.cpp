@@ -7,6 +7,7 @@
 #include "bench/questions/hard_cases.h"
 #include "bench/rows/accuracy_rows.h"
 #include "bench/rows/advice_rows.h"
+#include "bench/rows/cold_rows.h"
 #include "bench/rows/flow_rows.h"
 #include "bench/rows/frame_rows.h"
 #include "bench/rows/hard_case_rows.h"
@@ -33,16 +34,29 @@ std::size_t frames_of_goal(std::size_t objects) {
 }
 
 /// Throughput, interleaved: of every partition that suits the size on 1 and 2 threads on the active
-/// instruction set, unless the options say otherwise.
+/// instruction set, unless the options say otherwise; and of the "yardstick".
 void goal_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
   declare_frames(measured.results);
   MeasureOptions how{.objects = options.at("objects"), .machine_clock = true};
   how.partitions = options.value("partitions", how.partitions);
   how.threads = options.value("threads", std::vector<int>{1, 2});
   how.frames = options.value("frames", frames_of_goal(how.objects));
+  how.yardstick = options.value("yardstick", false);
   if (options.contains("isas")) how.isas.assign(available_isas().begin(), available_isas().end());
   for (const NamedScene& scene : asked_scenes(options, measured)) {
     measured.machine_ms = add_frame_race(measured.results, scene, how).machine_ms;
+  }
+}
+
+/// First frames of every partition that suits the size.
+void goal_cold(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_cold(measured.results);
+  for (const NamedScene& scene : asked_scenes(options, measured)) {
+    const std::size_t objects = scene.objects(options.value("objects", std::size_t{0}));
+    for (const int threads : options.at("threads")) {
+      add_cold(measured.results, scene, objects, 1, partitions_for({"all"}, objects).taken,
+               threads);
+    }
   }
 }
 
@@ -294,6 +308,7 @@ void goal_flow_soak(const Json& options, Lab& /*lab*/, Measured& measured) {
 
 const Measurer* find_measurer(const std::string& name) {
   static const std::map<std::string, Measurer> all{{"frames", goal_frames},
+                                                   {"cold", goal_cold},
                                                    {"same_pairs", goal_same_pairs},
                                                    {"keys", goal_keys},
                                                    {"limits", goal_limits},
@@ -301,6 +316,7 @@ const Measurer* find_measurer(const std::string& name) {
                                                    {"advice", goal_advice},
                                                    {"first_frames", measure_first_frames},
                                                    {"changes", measure_changes},
+                                                   {"worst_frames", measure_worst_frames},
                                                    {"queries", goal_queries},
                                                    {"frusta", goal_frusta},
                                                    {"second_rounds", goal_second_rounds},

@@ -13,9 +13,10 @@ using Measurer = void (*)(const Json& options, Lab& lab, Measured& measured);
 /// Null if there is none of the name.
 [[nodiscard]] const Measurer* find_measurer(const std::string& name);
 
-// choice_measurements.cpp: what AutoPartition loses to the best.
+// choice_measurements.cpp: what AutoPartition loses to the best, and frames to the median one.
 void measure_first_frames(const Json& options, Lab& lab, Measured& measured);
 void measure_changes(const Json& options, Lab& lab, Measured& measured);
+void measure_worst_frames(const Json& options, Lab& lab, Measured& measured);
 
 // report_measurements.cpp: reports that this tool makes in other processes.
 void measure_default_report(const Json& options, Lab& lab, Measured& measured);
