@@ -76,6 +76,7 @@ ReportOptions ReportCommand::options() const {
   }
   options.isas.push_back(active_isa());
   options.peers = has_peers() && !no_peers;
+  options.yardstick = has_yardstick() && !no_peers;
   options.quick = quick;
   options.seed = seed;
   return options;

@@ -40,6 +40,14 @@ std::size_t largest_for(std::string_view partition) noexcept {
   return std::numeric_limits<std::size_t>::max();
 }
 
+std::vector<std::string> unlimited_partitions() {
+  std::vector<std::string> names = all_partitions();
+  std::erase_if(names, [](const std::string& name) {
+    return largest_for(name) != std::numeric_limits<std::size_t>::max();
+  });
+  return names;
+}
+
 Partitions partitions_for(const std::vector<std::string>& names, std::size_t objects) {
   if (std::find(names.begin(), names.end(), "all") == names.end()) return {names, {}};
   Partitions result;

@@ -26,6 +26,9 @@ namespace winnow::bench {
 /// BoundsNSquared. The number of objects up to which a partition is run on whole scenes.
 [[nodiscard]] std::size_t largest_for(std::string_view partition) noexcept;
 
+/// Those that have no such limit.
+[[nodiscard]] std::vector<std::string> unlimited_partitions();
+
 /// Partitions to run, and those left out: "NSquared (more than 2,000 objects)".
 struct Partitions {
   std::vector<std::string> taken;

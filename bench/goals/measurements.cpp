@@ -190,6 +190,25 @@ void goal_pair_events(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
+/// Frames in a row in which few objects move, or little.
+void goal_quiet_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
+  measured.results.declare({"quiet_frames",
+                            "scenes",
+                            "frames in a row in which the same objects move",
+                            {"scene", "objects", "partition"},
+                            {{"us", "a frame", "us", Better::less}}});
+  const std::string scene = options.at("scene");
+  const std::size_t objects = options.at("objects");
+  for (const std::string partition : options.at("partitions")) {
+    std::vector<double> times = measure_quiet_frames(partition, scene, objects, 1000);
+    for (double& time : times) time *= 1000.0;
+    measured.results.add("quiet_frames", {{"scene", scene},
+                                          {"objects", objects},
+                                          {"partition", partition},
+                                          {"us", to_value(times)}});
+  }
+}
+
 /// One partition of many environments against a partition for each.
 void goal_worlds(const Json& options, Lab& /*lab*/, Measured& measured) {
   measured.results.declare({"worlds",
@@ -323,6 +342,7 @@ const Measurer* find_measurer(const std::string& name) {
                                                    {"churn", goal_churn},
                                                    {"pair_events", goal_pair_events},
                                                    {"worlds", goal_worlds},
+                                                   {"quiet_frames", goal_quiet_frames},
                                                    {"pairs", goal_pairs},
                                                    {"errors", goal_errors},
                                                    {"hard_cases", goal_hard_cases},

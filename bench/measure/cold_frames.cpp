@@ -51,7 +51,7 @@ void forget_frames(ColdRace& race) {
 }  // namespace
 
 ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::string>& partitions,
-                          int threads, std::size_t rounds) {
+                          int threads, std::size_t rounds, bool with_yardstick) {
   ColdRace race;
   for (const std::string& partition : partitions) {
     for (const std::string_view memory : kColdMemories) {
@@ -60,7 +60,7 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
   }
   ReusedMemory memory(room_for(boxes.size()));
   std::vector<Key> keys(boxes.size());
-  const std::unique_ptr<Engine> yardstick = make_yardstick(threads);
+  const std::unique_ptr<Engine> yardstick = with_yardstick ? make_yardstick(threads) : nullptr;
   std::vector<PairSummary> found;
   const auto run_all = [&] {
     if (yardstick != nullptr) {

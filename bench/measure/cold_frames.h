@@ -31,9 +31,10 @@ struct ColdRace {
 
 /// First frames of so many fresh partitions of these boxes: all boxes are inserted, the structure
 /// is built and all pairs are found. All take turns, and frames of the yardstick, which always
-/// starts anew, among them. Throws std::runtime_error if not all find the same pairs.
+/// starts anew, among them if it is wanted. Throws std::runtime_error if not all find the same
+/// pairs.
 [[nodiscard]] ColdRace race_cold_frames(std::span<const Aabb> boxes,
                                         const std::vector<std::string>& partitions, int threads,
-                                        std::size_t rounds = 7);
+                                        std::size_t rounds = 7, bool yardstick = true);
 
 }  // namespace winnow::bench

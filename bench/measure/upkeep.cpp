@@ -4,7 +4,7 @@
 #include "bench/common/random.h"
 #include "bench/common/sample.h"
 #include "bench/common/turns.h"
-#include "bench/contenders/partitions.h"
+#include "bench/contenders/partition_engine.h"
 #include "bench/scenes/cameras.h"
 #include "bench/scenes/question_set.h"
 #include "bench/scenes/scene.h"
@@ -185,6 +185,28 @@ std::vector<std::vector<double>> measure_event_frames(std::string_view partition
       need(one.partition.self_pairs(one.pairs, events), "pairs");
     });
   });
+}
+
+std::vector<double> measure_quiet_frames(std::string_view partition, std::string_view scene,
+                                         std::size_t objects, std::size_t frames) {
+  const auto source = scene_or_error(std::string(scene), objects, 1);
+  const std::vector<Aabb> before(source->boxes().begin(), source->boxes().end());
+  PartitionEngine engine(partition, 1);
+  engine.start(before);
+  source->advance();
+  std::vector<std::uint32_t> moving;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (!(before[i] == source->boxes()[i])) moving.push_back(static_cast<std::uint32_t>(i));
+  }
+  std::vector<double> ms;
+  while (ms.size() < kSizingRounds + frames) {
+    const Stopwatch clock;
+    engine.frame(moving, source->boxes());
+    ms.push_back(clock.ms());
+    source->advance();
+  }
+  ms.erase(ms.begin(), ms.begin() + kSizingRounds);
+  return ms;
 }
 
 std::array<std::vector<double>, 2> measure_worlds(std::string_view partition, std::size_t worlds,

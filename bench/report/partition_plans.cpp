@@ -2,6 +2,8 @@
 #include "bench/contenders/partitions.h"
 #include "bench/report/section.h"
 #include "bench/rows/advice_rows.h"
+#include "bench/rows/cold_rows.h"
+#include "bench/rows/every_scene_rows.h"
 #include "bench/rows/frame_rows.h"
 #include "bench/rows/memory_rows.h"
 #include "bench/rows/query_rows.h"
@@ -74,13 +76,14 @@ std::size_t frames_of_slow(const ReportOptions& options, std::size_t objects) {
 /// One race, or one for each instruction set where all would be too much.
 void race_partitions(Results& results, const ReportOptions& options, const NamedScene& scene,
                      std::size_t objects, const std::vector<std::string>& partitions,
-                     std::size_t frames) {
+                     std::size_t frames, bool yardstick) {
   if (partitions.empty()) return;
   MeasureOptions race{.objects = objects,
                       .seed = options.seed,
                       .partitions = partitions,
                       .threads = options.threads,
                       .isas = options.isas,
+                      .yardstick = yardstick,
                       .frames = frames};
   if (objects <= kLargestForOneRace) {
     add_frame_race(results, scene, race);
@@ -103,8 +106,9 @@ void measure_throughput(Results& results, const ReportOptions& options, const Na
     const bool limited = largest_for(name) != std::numeric_limits<std::size_t>::max();
     (limited ? slow : fast).push_back(name);
   }
-  race_partitions(results, options, scene, objects, fast, throughput_frames(options, objects));
-  race_partitions(results, options, scene, objects, slow, frames_of_slow(options, objects));
+  race_partitions(results, options, scene, objects, fast, throughput_frames(options, objects),
+                  options.yardstick);
+  race_partitions(results, options, scene, objects, slow, frames_of_slow(options, objects), false);
   derive_frames(results, scene.name, objects);
   const Json where{{"scene", scene.name}, {"objects", objects}};
   if (distinct(results.rows("throughput", where), "fingerprint").size() > 1) {
@@ -164,6 +168,37 @@ void add_volume_step(ReportSteps& steps, const VolumeQuestion& asked, const std:
        [=](Results& results) { add_volumes(results, asked, table); }});
 }
 
+/// Where nothing was asked for, all scenes.
+void plan_every_scene(const ReportOptions& options, ReportSteps& steps) {
+  std::vector<std::string> names;
+  for (const NamedScene& scene : options.scenes) names.push_back(scene.name);
+  const auto scenes = names == main_scenes() ? named_scenes(scene_names()) : options.scenes;
+  for (const NamedScene& scene : scenes) {
+    EverySceneQuestion asked{.scene = scene,
+                             .objects = scene.objects(objects_up_to(options, 10'000)),
+                             .seed = options.seed,
+                             .threads = options.threads.front(),
+                             .yardstick = options.yardstick};
+    if (options.quick) asked.frames = kSettlingFrames + 3;
+    steps.push_back({named(scene, asked.objects) + ", worst frames",
+                     0.05 + 1e-8 * static_cast<double>(asked.frames * asked.objects * 60),
+                     [=](Results& results) { add_every_scene(results, asked); }});
+  }
+}
+
+void plan_cold(const ReportOptions& options, ReportSteps& steps) {
+  const auto scenes = few_scenes(options, {"uniform", "mixed", "clustered"});
+  each_size(options, scenes, [&](const NamedScene& scene, std::size_t objects) {
+    if (objects > kLargestForPeers) return;
+    const std::size_t rounds = options.quick ? 1 : 7;
+    steps.push_back({named(scene, objects) + ", first frames",
+                     4e-6 * static_cast<double>((rounds + 1) * objects), [=](Results& results) {
+                       add_cold(results, scene, objects, options.seed, unlimited_partitions(),
+                                options.threads.front(), rounds, options.yardstick);
+                     }});
+  });
+}
+
 }  // namespace
 
 ReportSteps plan_throughput(const ReportOptions& options) {
@@ -177,6 +212,8 @@ ReportSteps plan_throughput(const ReportOptions& options) {
     steps.push_back({named(scene, objects) + ", other libraries", n * 6e-5,
                      [=](Results& results) { measure_peers(results, options, scene, objects); }});
   });
+  plan_every_scene(options, steps);
+  plan_cold(options, steps);
   const std::size_t keyed = objects_up_to(options, 10'000);
   steps.push_back({"keys", options.quick ? 0.1 : 1.5, [=, quick = options.quick](Results& results) {
                      measure_keys(results, keyed, quick);

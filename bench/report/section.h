@@ -20,6 +20,7 @@ struct ReportOptions {
   std::vector<int> threads;          ///< ascending; the first is 1 unless asked otherwise
   std::vector<Isa> isas;             ///< narrowest first; the last one is the active one
   bool peers = true;                 ///< other libraries too, where the tool has them
+  bool yardstick = true;             ///< the yardstick too, where the tool has it
   /// Few and small measurements: every part of the report in some seconds, none of it steady.
   bool quick = false;
   std::uint64_t seed = 1;

@@ -1,6 +1,8 @@
 #include "bench/report/section.h"
 #include "bench/rows/accuracy_rows.h"
 #include "bench/rows/advice_rows.h"
+#include "bench/rows/cold_rows.h"
+#include "bench/rows/every_scene_rows.h"
 #include "bench/rows/flow_rows.h"
 #include "bench/rows/frame_rows.h"
 #include "bench/rows/hard_case_rows.h"
@@ -14,6 +16,8 @@ namespace {
 
 void declare_throughput(Results& results) {
   declare_frames(results);
+  declare_every_scene(results);
+  declare_cold(results);
   declare_keys(results);
   declare_limits(results);
 }

@@ -20,10 +20,11 @@ void declare_cold(Results& results) {
 }
 
 void add_cold(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
-              const std::vector<std::string>& partitions, int threads, std::size_t rounds) {
+              const std::vector<std::string>& partitions, int threads, std::size_t rounds,
+              bool yardstick) {
   const auto source = scene.source(objects, seed);
   const std::size_t count = source->boxes().size();
-  const ColdRace race = race_cold_frames(source->boxes(), partitions, threads, rounds);
+  const ColdRace race = race_cold_frames(source->boxes(), partitions, threads, rounds, yardstick);
   for (const ColdFrames& one : race.frames) {
     Json row{{"scene", scene.name},
              {"objects", count},

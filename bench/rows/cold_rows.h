@@ -17,6 +17,7 @@ inline const std::vector<std::string> kColdScenes{"uniform", "mixed", "clustered
 void declare_cold(Results& results);
 /// Of the first frame of a scene.
 void add_cold(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
-              const std::vector<std::string>& partitions, int threads, std::size_t rounds = 7);
+              const std::vector<std::string>& partitions, int threads, std::size_t rounds = 7,
+              bool yardstick = true);
 
 }  // namespace winnow::bench

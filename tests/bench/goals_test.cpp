@@ -67,6 +67,15 @@ TEST(Goals, are_made_for_each_key_and_take_the_worst_of_others) {
   EXPECT_FALSE(worst[0].holds());
 }
 
+TEST(Goals, take_the_median_of_what_each_key_measures) {
+  const auto goals = goals_of(
+      R"("value": {"the": "ns", "of": "times", "where": {"engine": "own", "kind": "box"}},
+         "at_most": 30, "median_by": ["level"])");
+  ASSERT_EQ(goals.size(), 1U);
+  EXPECT_EQ(goals[0].measured, 25.0);
+  EXPECT_TRUE(goals[0].holds());
+}
+
 TEST(Goals, scale_times_of_elsewhere_by_the_machine) {
   const std::string value = R"("value": {"least": "ns", "of": "times"}, "at_most": )";
   EXPECT_EQ(goals_of(value + R"({"existing": 6, "divided_by": 3})").at(0).asked, 4.0);

@@ -1,0 +1,68 @@
+#include "bench/rows/every_scene_rows.h"
+
+#include "bench/contenders/partitions.h"
+#include "bench/peers/yardstick.h"
+#include "bench/rows/frame_rows.h"
+
+#include <span>
+#include <stdexcept>
+
+namespace winnow::bench {
+namespace {
+
+/// Of the frames after which a partition has settled; of fewer, of those after the first.
+Spread settled_spread(const Run& run) {
+  if (run.frame_ms.size() <= kSettlingFrames) return run.frame_spread();
+  return spread_of(std::span(run.frame_ms).subspan(kSettlingFrames));
+}
+
+}  // namespace
+
+void declare_every_scene(Results& results) {
+  results.declare({"every_scene",
+                   "throughput",
+                   "the median, the worst and the first frame, once settled",
+                   {"scene", "objects", "partition", "threads"},
+                   {{"median_ms", "median frame", "ms", Better::less},
+                    {"worst_ms", "worst frame", "ms"},
+                    {"first_ms", "first frame", "ms"},
+                    {"worst_ratio", "worst / median", "times"},
+                    {"over_yardstick", "median over the yardstick", "times"},
+                    {"pairs", "pairs", "", Better::neither, Format::count}}});
+}
+
+void add_every_scene(Results& results, const EverySceneQuestion& asked) {
+  const Measurement raced = measure({.scene = asked.scene.argument,
+                                     .recording = asked.scene.recording.get(),
+                                     .objects = asked.objects,
+                                     .seed = asked.seed,
+                                     .partitions = unlimited_partitions(),
+                                     .threads = {asked.threads},
+                                     .yardstick = asked.yardstick,
+                                     .frames = asked.frames});
+  const Run& last = raced.runs.back();
+  const double yardstick_ms = last.engine == kYardstickName ? settled_spread(last).median : 0.0;
+  for (const Run& run : raced.runs) {
+    const Spread settled = settled_spread(run);
+    Json row{
+        {"scene", asked.scene.name},
+        {"objects", raced.objects},
+        {"partition", run.engine},
+        {"threads", run.threads},
+        {"median_ms", settled.median},
+        {"worst_ms", settled.max},
+        {"first_ms", run.frame_ms.front()},
+        {"worst_ratio", settled.max / settled.median},
+        {"pairs", run.pairs_a_frame()},
+        {"command", "bench/run throughput" + asked.scene.words(raced.objects, asked.seed) +
+                        " --threads " + std::to_string(run.threads) + " --isa " +
+                        to_string(run.isa) + " --frames " + std::to_string(run.frame_ms.size()) +
+                        (run.engine == kYardstickName ? " --partition LinearBvh --yardstick"
+                                                      : " --partition " + run.engine)}};
+    if (yardstick_ms > 0.0) row["over_yardstick"] = settled.median / yardstick_ms;
+    results.add("every_scene", std::move(row));
+  }
+  if (!all_agree(raced.runs)) throw std::runtime_error("not all found the same pairs");
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,104 @@
+// Rows of median, worst and first frames, and of first frames on touched and untouched memory.
+
+#include "bench/rows/frame_rows.h"
+#include "bench/common/reused_memory.h"
+#include "bench/measure/cold_frames.h"
+#include "bench/rows/cold_rows.h"
+#include "bench/rows/every_scene_rows.h"
+#include "bench/rows/machine.h"
+#include "bench/scenes/scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+NamedScene scene_named(const char* name) {
+  return named_scenes({name}).front();
+}
+
+TEST(FrameRows, have_a_worst_frame_once_there_are_frames_after_settling) {
+  for (const std::size_t frames : {6U, 12U}) {
+    Results results;
+    declare_frames(results);
+    const Measurement raced =
+        add_frame_race(results, scene_named("teleport"),
+                       {.objects = 200, .partitions = {"FlatGrid"}, .frames = frames});
+    const Json& row = *results.rows("throughput").front();
+    EXPECT_EQ(row.contains("worst_ms"), frames > kSettlingFrames);
+    if (!row.contains("worst_ms")) continue;
+    const std::vector<double>& ms = raced.runs.front().frame_ms;
+    EXPECT_EQ(row["worst_ms"], *std::max_element(ms.begin() + 6, ms.end()));
+    EXPECT_EQ(row["first_ms"], ms.front());
+  }
+}
+
+TEST(FrameRows, stand_beside_the_yardstick_where_it_is_there) {
+  Results results;
+  declare_every_scene(results);
+  add_every_scene(results, {.scene = scene_named("jumps"), .objects = 300, .frames = 12});
+  const auto rows = results.rows("every_scene");
+  ASSERT_GT(rows.size(), 5U);
+  for (const Json* row : rows) {
+    EXPECT_GE(value_of(*row, "worst_ms"), value_of(*row, "median_ms")) << row->dump();
+    EXPECT_GE(value_of(*row, "worst_ratio"), 1.0);
+    EXPECT_GT(value_of(*row, "first_ms"), 0.0);
+    EXPECT_EQ(row->contains("over_yardstick"), has_yardstick());
+  }
+  const Json* yardstick = results.row("every_scene", {{"partition", "yardstick"}});
+  ASSERT_EQ(yardstick != nullptr, has_yardstick());
+  if (yardstick == nullptr) return;
+  EXPECT_EQ(value_of(*yardstick, "over_yardstick"), 1.0);
+}
+
+TEST(FrameRows, leave_the_yardstick_out_if_they_shall) {
+  Results results;
+  declare_every_scene(results);
+  declare_cold(results);
+  add_every_scene(results,
+                  {.scene = scene_named("shear"), .objects = 100, .yardstick = false, .frames = 3});
+  add_cold(results, scene_named("shear"), 100, 1, {"LinearBvh"}, 1, 1, false);
+  EXPECT_TRUE(results.rows("every_scene", {{"partition", "yardstick"}}).empty());
+  EXPECT_FALSE(results.rows("cold").front()->contains("over_yardstick"));
+}
+
+TEST(ColdFrames, are_measured_as_often_as_asked_in_both_memories) {
+  const auto scene = make_scene("mixed", 500, 1);
+  for (const int threads : {1, 2}) {
+    const ColdRace race =
+        race_cold_frames(scene->boxes(), {"FlatGrid", "LinearBvh", "AutoPartition"}, threads, 3);
+    ASSERT_EQ(race.frames.size(), 6U);
+    EXPECT_EQ(race.yardstick_ms.size(), has_yardstick() ? 3U : 0U);
+    for (const ColdFrames& one : race.frames) {
+      ASSERT_EQ(one.total_ms.size(), 3U) << one.partition;
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(one.insert_ms[i] + one.build_ms[i] + one.pairs_ms[i], one.total_ms[i], 1e-9);
+        EXPECT_GT(one.pairs_ms[i], 0.0);
+      }
+    }
+  }
+}
+
+TEST(ReusedMemory, hands_out_what_was_written_to_until_it_is_given_back) {
+  ReusedMemory memory(1U << 16U);
+  const auto first = static_cast<char*>(memory.allocate(100, 64));
+  const auto second = static_cast<char*>(memory.allocate(5000, 64));
+  EXPECT_GE(second, first + 100);
+  std::memset(second, 7, 5000);
+  memory.rewind();
+  EXPECT_EQ(memory.allocate(100, 64), first);
+  EXPECT_EQ(second[4999], 7);
+  memory.rewind_untouched();
+  EXPECT_EQ(memory.allocate(1U << 16U, 64), first);
+  EXPECT_EQ(second[4999], 0);
+  EXPECT_THROW((void)memory.allocate(1, 1), std::bad_alloc);
+}
+
+}  // namespace
+}  // namespace winnow::bench
