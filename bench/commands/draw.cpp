@@ -45,7 +45,7 @@ int Draw::run() {
   for (const std::string& ray : rays) options.rays.push_back(parse_ray(ray));
   for (const std::string& box : boxes) options.boxes.push_back(parse_box(box));
   const auto source = target.source(target.named());
-  if (const std::size_t most = largest_for(partition); source->boxes().size() > most) {
+  if (const std::size_t most = largest_for(partition); source->objects() > most) {
     throw ArgumentError("--partition: " + partition + " takes too long on more than " +
                         grouped(most) + " objects");
   }

@@ -69,7 +69,7 @@ int Replay::run() {
   choose_isa(isa);
   const NamedScene scene = target.named();
   const auto first = target.source(scene);
-  const std::size_t count = first->boxes().size();
+  const std::size_t count = first->objects();
   const Partitions partitions = partitions_for(names, count);
   RaceOptions options;
   options.frames = frames != 0            ? frames

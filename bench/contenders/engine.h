@@ -16,8 +16,8 @@ namespace winnow::bench {
 /// user would have to pay for a frame (update, rebuild, sorting out duplicates, copying pairs out
 /// of a callback) belongs inside those two.
 ///
-/// An object is its row, 0..N-1, and keeps it for the whole run. Calls come from one thread, inside
-/// a `tbb::task_arena` of the thread count the engine was made for.
+/// An object is its row, 0..N-1, and keeps it for the whole run; there may come more. Calls come
+/// from one thread, inside a `tbb::task_arena` of the thread count the engine was made for.
 class Engine {
  public:
   Engine(const Engine&) = delete;
@@ -32,13 +32,18 @@ class Engine {
     return std::numeric_limits<std::size_t>::max();
   }
 
+  /// Whether a frame may have more boxes than the last one; scenes that grow are skipped by name if
+  /// not.
+  [[nodiscard]] virtual bool can_grow() const { return false; }
+
   /// Frame 0: takes the boxes (row = index) and finds their pairs. Called once, before anything
-  /// but `name` and `largest`.
+  /// but `name`, `largest` and `can_grow`.
   virtual void start(std::span<const Aabb> boxes) = 0;
 
   /// A later frame. `changed_rows` (ascending, each once, maybe empty) are the objects whose boxes
-  /// differ from the last frame; `all_boxes` holds every object's box, changed or not. Brings them
-  /// in and finds all pairs. `all_boxes` is not kept alive after the call.
+  /// differ from the last frame; `all_boxes` holds every object's box, changed or not; rows that
+  /// the last frame did not have are new objects. Brings them in and finds all pairs. `all_boxes`
+  /// is not kept alive after the call.
   virtual void frame(std::span<const std::uint32_t> changed_rows,
                      std::span<const Aabb> all_boxes) = 0;
 

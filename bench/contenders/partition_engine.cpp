@@ -28,11 +28,18 @@ void PartitionEngine::start(std::span<const Aabb> boxes) {
 void PartitionEngine::frame(std::span<const std::uint32_t> changed_rows,
                             std::span<const Aabb> all_boxes) {
   const Stopwatch clock;
-  if (changed_rows.size() == all_boxes.size()) {
-    require(partition_.update(keys_, all_boxes), partition_.name(), "update");
+  const std::size_t known = keys_.size();
+  const std::span<const Aabb> old_boxes = all_boxes.first(known);
+  if (changed_rows.size() == known) {
+    require(partition_.update(keys_, old_boxes), partition_.name(), "update");
   } else {
-    require(partition_.update(keys_, all_boxes, Entries::listed(changed_rows)), partition_.name(),
+    require(partition_.update(keys_, old_boxes, Entries::listed(changed_rows)), partition_.name(),
             "update");
+  }
+  if (all_boxes.size() > known) {
+    keys_.resize(all_boxes.size());
+    require(partition_.insert(all_boxes.subspan(known), {}, std::span(keys_).subspan(known)),
+            partition_.name(), "insert");
   }
   update_ms_ = clock.ms();
   find_pairs();

@@ -48,13 +48,20 @@ Stage::Stage(std::string_view partition, FrameSource& source, std::size_t frame)
 void Stage::step(std::span<const Aabb> boxes) {
   std::vector<Key> moved;
   std::vector<Aabb> places;
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
+  const std::size_t known = boxes_.size();
+  for (std::size_t i = 0; i < known; ++i) {
     if (same_floats(boxes[i], boxes_[i])) continue;
     moved.push_back(keys_[i]);
     places.push_back(boxes[i]);
   }
   boxes_.assign(boxes.begin(), boxes.end());
   require_ok(partition_.update(moved, places), "update");
+  if (boxes_.size() == known) return;
+  keys_.resize(boxes_.size());
+  std::vector<ClientData> data(boxes_.size() - known);
+  std::iota(data.begin(), data.end(), ClientData{known});
+  const auto fresh = [&](auto& all) { return std::span(all).subspan(known); };
+  require_ok(partition_.insert(fresh(boxes_), data, fresh(keys_)), "insert");
 }
 
 }  // namespace winnow::bench

@@ -14,7 +14,7 @@ std::vector<Run> undisturbed(const std::function<std::unique_ptr<FrameSource>()>
   for (int round = 0; round < kRounds; ++round) {
     const std::unique_ptr<FrameSource> source = make_source();
     std::vector<Contender> contenders =
-        make_contenders(partitions_for(partitions, source->boxes().size()).taken, threads);
+        make_contenders(partitions_for(partitions, source->objects()).taken, threads);
     RaceOptions options;
     options.frames = frames;
     options.block = 1;

@@ -112,7 +112,7 @@ Advice advise(FrameSource& source, const std::vector<std::string>& partitions, s
 
   Advice advice;
   advice.scene = source.name();
-  advice.objects = source.boxes().size();
+  advice.objects = source.objects();
   advice.threads = threads;
   advice.same_pairs = all_agree(runs);
   for (std::size_t i = 0; i < runs.size(); ++i) {

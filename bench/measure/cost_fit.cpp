@@ -202,7 +202,7 @@ double median_error(const std::vector<CostSample>& samples, const StructureCosts
 }  // namespace
 
 std::unique_ptr<FrameSource> some_moving(std::unique_ptr<FrameSource> scene, double share) {
-  if (share >= 1.0) return scene;
+  if (share >= 1.0 || scene->objects() != scene->boxes().size()) return scene;
   return std::make_unique<SomeMoving>(std::move(scene), share);
 }
 

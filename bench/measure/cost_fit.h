@@ -22,7 +22,8 @@ struct CostSample {
   std::vector<double> first;  ///< ns, by candidate: of the frame in which it was built
 };
 
-/// A scene of which only a share of the objects moves in each frame, the others in turn.
+/// A scene of which only a share of the objects moves in each frame, the others in turn; one that
+/// grows stays as it is.
 [[nodiscard]] std::unique_ptr<FrameSource> some_moving(std::unique_ptr<FrameSource> scene,
                                                        double share);
 

@@ -11,17 +11,19 @@ namespace winnow::bench {
 Held measure_held(const std::string& partition, FrameSource& source, int threads) {
   Held held;
   held.partition = partition;
-  held.objects = source.boxes().size();
   PartitionEngine engine(partition, threads);
-  std::vector<std::uint32_t> rows(held.objects);
+  std::vector<std::uint32_t> rows(source.objects());
   std::iota(rows.begin(), rows.end(), 0U);
   Arenas(threads).run(threads, [&] {
     engine.start(source.boxes());
     held.peak_first = engine.memory().peak();
     engine.forget_peak();
-    for (std::size_t f = 1; f < kFootprintFrames && source.advance(); ++f) {
-      engine.frame(rows, source.boxes());
+    for (std::size_t f = 1; f < kFootprintFrames; ++f) {
+      const std::size_t known = source.boxes().size();
+      if (!source.advance()) break;
+      engine.frame(std::span(rows).first(known), source.boxes());
     }
+    held.objects = source.boxes().size();
     held.peak_later = engine.memory().peak();
   });
   held.footprint = engine.partition().footprint();

@@ -19,7 +19,7 @@ namespace {
 
 struct Frame {
   std::vector<Aabb> boxes;
-  std::vector<std::uint32_t> changed;  // rows that differ from the frame before
+  std::vector<std::uint32_t> changed;  // rows of the frame before that differ
 };
 
 /// Reads a source block by block.
@@ -35,7 +35,7 @@ class FrameBlocks {
       started_ = true;
       const std::span<const Aabb> boxes = source_.boxes();
       Frame& frame = frames_.emplace_back();
-      for (std::size_t i = 0; i < boxes.size() && !last_.empty(); ++i) {
+      for (std::size_t i = 0; i < last_.size(); ++i) {
         if (std::memcmp(&boxes[i], &last_[i], sizeof(Aabb)) != 0) {
           frame.changed.push_back(static_cast<std::uint32_t>(i));
         }
@@ -145,14 +145,15 @@ bool all_agree(const std::vector<Run>& runs) noexcept {
 
 namespace {
 
-void add_peers(const MeasureOptions& options, std::vector<Contender>& contenders,
+void add_peers(const MeasureOptions& options, bool grows, std::vector<Contender>& contenders,
                Measurement& result) {
   std::vector<std::string>& skipped = result.skipped;
   for (const int threads : options.threads) {
     for (std::unique_ptr<Engine>& engine : make_peers(threads)) {
-      if (result.objects > engine->largest()) {
+      if (result.objects > engine->largest() || (grows && !engine->can_grow())) {
         const std::string text =
-            engine->name() + " (more than " + grouped(engine->largest()) + " objects)";
+            engine->name() + (grows ? " (a scene that grows)"
+                                    : " (more than " + grouped(engine->largest()) + " objects)");
         if (std::find(skipped.begin(), skipped.end(), text) == skipped.end()) {
           skipped.push_back(text);
         }
@@ -178,7 +179,7 @@ Measurement measure(const MeasureOptions& options) {
                           : scene_or_error(options.scene, options.objects, options.seed);
   Measurement result;
   result.scene = source->name();
-  result.objects = source->boxes().size();
+  result.objects = source->objects();
   const Partitions partitions = partitions_for(options.partitions, result.objects);
   result.skipped = partitions.skipped;
 
@@ -194,7 +195,9 @@ Measurement measure(const MeasureOptions& options) {
     }
   }
   result.partition_runs = contenders.size();
-  if (options.peers) add_peers(options, contenders, result);
+  if (options.peers) {
+    add_peers(options, source->objects() > source->boxes().size(), contenders, result);
+  }
   if (options.yardstick) add_yardstick(options, contenders);
   result.peer_runs = contenders.size() - result.partition_runs;
   if (options.reference) {

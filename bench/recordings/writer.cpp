@@ -24,6 +24,9 @@ void put_count(std::span<std::byte> header, std::size_t at, std::size_t count) {
 void write_recording(const std::string& path, FrameSource& source, const std::string& object_type,
                      std::size_t steps) {
   const std::size_t objects = source.boxes().size();
+  if (objects != source.objects()) {
+    throw RecordingError(path + ": the format takes the same objects in every frame");
+  }
   if (objects > kMost || steps > kMost) {
     throw RecordingError(path + ": the format takes at most 2^31-1 objects and frames");
   }

@@ -23,7 +23,7 @@ void add_cold(Results& results, const NamedScene& scene, std::size_t objects, st
               const std::vector<std::string>& partitions, int threads, std::size_t rounds,
               bool yardstick) {
   const auto source = scene.source(objects, seed);
-  const std::size_t count = source->boxes().size();
+  const std::size_t count = source->objects();
   const ColdRace race = race_cold_frames(source->boxes(), partitions, threads, rounds, yardstick);
   for (const ColdFrames& one : race.frames) {
     Json row{{"scene", scene.name},

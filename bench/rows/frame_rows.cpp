@@ -201,7 +201,7 @@ void declare_frames(Results& results) {
                    {{"speedup", "speedup", "times", Better::more}}});
   results.declare({"throughput_skipped",
                    "throughput",
-                   "what was not run, because it would take too long",
+                   "what was not run, and why",
                    {"objects", "skipped"},
                    {}});
 }

@@ -2,13 +2,14 @@
 
 #include <winnow/core/aabb.h>
 
+#include <cstddef>
 #include <span>
 #include <string>
 
 namespace winnow::bench {
 
 /// Something that shows the boxes of the same objects frame after frame: a built-in scene, or a
-/// recording.
+/// recording. A scene that grows appends rows.
 class FrameSource {
  public:
   FrameSource(const FrameSource&) = delete;
@@ -20,6 +21,8 @@ class FrameSource {
   [[nodiscard]] virtual Aabb world() const = 0;
   /// The boxes of the current frame, row = object; valid until `advance`.
   [[nodiscard]] virtual std::span<const Aabb> boxes() const = 0;
+  /// How many there will be.
+  [[nodiscard]] virtual std::size_t objects() const { return boxes().size(); }
   /// Goes to the next frame; false, and no change, if there is none.
   virtual bool advance() = 0;
 

@@ -3,6 +3,7 @@
 #include "bench/common/errors.h"
 #include "bench/common/table.h"
 #include "bench/scenes/drifting.h"
+#include "bench/scenes/growing.h"
 #include "bench/scenes/incoherent.h"
 #include "bench/scenes/nearly_still.h"
 #include "bench/scenes/resting.h"
@@ -15,7 +16,7 @@ namespace {
 
 using Maker = std::unique_ptr<FrameSource> (*)(std::size_t objects, std::uint64_t seed);
 
-constexpr std::array<SceneInfo, 17> kInfos{{
+constexpr std::array<SceneInfo, 18> kInfos{{
     {"uniform", "unit cubes spread evenly over a cube of side cbrt(2N), all in straight flight"},
     {"sleepy", "as uniform, but in each frame only another random 5 % of the objects move"},
     {"mixed", "cubes with edges log-uniform from 0.1 to 10 in a cube of volume 14.2 N"},
@@ -33,13 +34,14 @@ constexpr std::array<SceneInfo, 17> kInfos{{
     {"jumps", "as uniform, but in each frame every object jumps by two edges, anywhere"},
     {"few_movers", "as uniform, but only seven objects move, however many there are"},
     {"jitter", "as uniform, but 99 of 100 tremble by 1e-5 where they are, and no pair changes"},
+    {"growth", "as uniform, but it begins with N/1000 objects, and has all after 60 frames"},
 }};
 
 constexpr std::array<Maker, kInfos.size()> kMakers{
     make_uniform,    make_sleepy,         make_mixed,     make_clustered, make_pile,
     make_wall,       make_brownian,       make_free_fall, make_gravity,   make_mixed_1000,
     make_teleport,   make_teleport_mixed, make_respawn,   make_shear,     make_jumps,
-    make_few_movers, make_jitter};
+    make_few_movers, make_jitter,         make_growth};
 
 }  // namespace
 

@@ -28,8 +28,9 @@ inline constexpr std::size_t kMainScenes = 6;
 [[nodiscard]] std::vector<std::string> main_scenes();
 [[nodiscard]] bool is_built_in(const std::string& name);
 
-/// A built-in scene in its first frame; it goes on for ever. The same name, number and seed give
-/// the same bits on every machine. Null if there is no such name. `objects` >= 1.
+/// A built-in scene of so many objects in the end, in its first frame; it goes on for ever. The
+/// same name, number and seed give the same bits on every machine. Null if there is no such name.
+/// `objects` >= 1.
 [[nodiscard]] std::unique_ptr<FrameSource> make_scene(std::string_view name, std::size_t objects,
                                                       std::uint64_t seed);
 /// The same, or ArgumentError with the names there are.

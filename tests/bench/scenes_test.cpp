@@ -2,6 +2,7 @@
 
 #include "bench/contenders/reference_sweep.h"
 #include "bench/measure/fingerprint.h"
+#include "bench/measure/race.h"
 #include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>
@@ -82,7 +83,8 @@ TEST(Scenes, stay_valid_and_inside_their_world) {
       const auto scene = make_scene(info.name, objects, 3);
       const Aabb world = scene->world();
       for (int frame = 0; frame < 20; ++frame) {
-        ASSERT_EQ(scene->boxes().size(), objects) << info.name;
+        ASSERT_EQ(scene->objects(), objects) << info.name;
+        ASSERT_TRUE(info.name == "growth" || scene->boxes().size() == objects) << info.name;
         for (const Aabb& box : scene->boxes()) {
           ASSERT_TRUE(box.is_valid()) << info.name;
           Aabb merged = world;
@@ -194,6 +196,33 @@ TEST(Scenes, that_jitter_change_no_pair) {
       EXPECT_TRUE(pairs_of(watched.scene()).same_pairs(first)) << frame;
     }
   }
+}
+
+TEST(Scenes, that_grow_have_all_objects_after_sixty_frames) {
+  const auto scene = make_scene("growth", 20'000, 1);
+  EXPECT_EQ(scene->boxes().size(), 20U);
+  for (int frame = 0; frame < 60; ++frame) {
+    const std::vector<Aabb> before(scene->boxes().begin(), scene->boxes().end());
+    ASSERT_TRUE(scene->advance());
+    ASSERT_GE(scene->boxes().size(), before.size());
+    EXPECT_LE(scene->boxes().size(), 1 + before.size() * 5 / 4);
+    const auto way = scene->boxes()[0].min - before[0].min;
+    EXPECT_LT(way.norm(), 0.1F);
+    EXPECT_LT(before.size(), 20'000U);
+  }
+  EXPECT_EQ(scene->boxes().size(), 20'000U);
+  EXPECT_TRUE(scene->advance());
+  EXPECT_EQ(scene->boxes().size(), 20'000U);
+}
+
+TEST(Scenes, that_grow_are_raced_and_all_find_the_same_pairs) {
+  const auto scene = make_scene("growth", 1500, 1);
+  std::vector<Contender> contenders =
+      make_contenders({"LinearBvh", "FlatGrid", "AutoPartition"}, 1);
+  contenders.push_back(Contender{std::make_unique<ReferenceSweep>(-1)});
+  const auto runs = race(*scene, contenders, {.frames = 70});
+  EXPECT_TRUE(all_agree(runs));
+  EXPECT_GT(runs.front().pairs.back().pairs, 1500U);
 }
 
 TEST(Scenes, of_an_unknown_name_are_none) {
