@@ -2,7 +2,6 @@
 
 #include <winnow/core/aabb.h>
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -11,8 +10,10 @@
 
 namespace winnow::bench {
 
-/// Where a partition gets its memory: from pages that were written to before, or that were not.
-inline constexpr std::array<std::string_view, 2> kColdMemories{"touched", "untouched"};
+/// Where a partition gets its memory: from pages that nobody has written to, or from those that its
+/// frame before has.
+inline constexpr std::string_view kUntouched = "untouched";
+inline constexpr std::string_view kTouched = "touched";
 
 /// Milliseconds of the parts of first frames, one entry a frame.
 struct ColdFrames {

@@ -190,9 +190,9 @@ void plan_cold(const ReportOptions& options, ReportSteps& steps) {
   const auto scenes = few_scenes(options, {"uniform", "mixed", "clustered"});
   each_size(options, scenes, [&](const NamedScene& scene, std::size_t objects) {
     if (objects > kLargestForPeers) return;
-    const std::size_t rounds = options.quick ? 1 : 7;
+    const std::size_t rounds = options.quick ? 1 : objects > 20'000 ? 3 : 7;
     steps.push_back({named(scene, objects) + ", first frames",
-                     4e-6 * static_cast<double>((rounds + 1) * objects), [=](Results& results) {
+                     6e-6 * static_cast<double>((rounds + 1) * objects), [=](Results& results) {
                        add_cold(results, scene, objects, options.seed, unlimited_partitions(),
                                 options.threads.front(), rounds, options.yardstick);
                      }});
