@@ -20,6 +20,10 @@ constexpr double kWorthwhile = 0.85;
 constexpr double kFramesAhead = 16.0;
 // A sample is taken anew once each object has moved this often.
 constexpr std::size_t kMovesToLook = 32;
+// A frame is quiet where fewer than one object in so many moved: then it is thought about in one
+// frame of so many.
+constexpr std::size_t kQuiet = 256;
+constexpr std::size_t kQuietFrames = 16;
 // Refreshes that pass before memory that was refused is asked for again.
 constexpr std::size_t kPatience = 64;
 // Objects up to which brute force cannot lose by more than thinking about it costs.
@@ -31,11 +35,14 @@ constexpr std::uint8_t kMostOften = 32;
 // further one needs twice as much.
 constexpr std::uint64_t kTrust = 3;
 constexpr double kClearly = 0.75;
-// The share of refreshes in which cells are built that the constants of the costs hold for, and
-// about how many refreshes it is known from. It is forgotten more slowly once trees are used.
-constexpr double kUsualBuilds = 0.25;
+// The share of refreshes in which trees, and cells, are built that the constants of the costs hold
+// for, and about how many refreshes it is known from. That of the others is forgotten more slowly.
+constexpr std::array<double, 2> kUsualBuilds{0.1, 0.25};
 constexpr double kRecent = 1.0 / 16.0;
 constexpr double kForgotten = 1.0 / 128.0;
+// The same for wear: the share of a frame's cost, and the nanoseconds of a test of 16 volumes.
+constexpr double kUsualWear = 0.15;
+constexpr double kTest = 8.0;
 
 bool has_cells(StructureKind kind) noexcept {
   return kind.info()->costs->has_cells;
@@ -59,8 +66,9 @@ bool far_apart(std::size_t a, std::size_t b) noexcept {
 /// choice is the cheapest prediction. Later ones are a ski rental: another structure is taken once
 /// what it would have saved exceeds what its build costs (an eighth, a quarter and a half of that
 /// for the first three changes, where it is clearly cheaper), and each structure that was left
-/// before must save twice as much to come back, so that a scene that alternates does not. Cells
-/// that were seen to be built often, because objects are fast, count as that much dearer. All
+/// before must save twice as much to come back, so that a scene that alternates does not. Cells, or
+/// trees, that were seen to be built often, because objects are fast, count as that much dearer;
+/// where an update scatters all objects every structure has to be built, and changing is free. All
 /// decisions follow counts and samples, never time: they are the same on every machine, instruction
 /// set and number of threads.
 ///
@@ -72,12 +80,14 @@ class AutomaticChoice final : public Chooser {
   [[nodiscard]] StructureKind first() const noexcept override { return linear_bvh(); }
 
   [[nodiscard]] StructureKind choose(const Rows& rows, StructureKind now,
-                                     std::uint64_t builds) noexcept override {
+                                     const Wear& wear) noexcept override {
     before_ = wanted_ = now;
+    ++frames_;
     if (waiting_ != 0) {
       --waiting_;
-    } else if (rows.size() != 0 && rows.pool().volume() == Volume::aabb) {
-      look(rows, builds);
+    } else if (rows.size() != 0 && rows.pool().volume() == Volume::aabb && !is_quiet(rows)) {
+      look(rows, wear);
+      frames_ = 0;
     }
     return wanted_;
   }
@@ -104,13 +114,19 @@ class AutomaticChoice final : public Chooser {
   void end(std::pmr::memory_resource* memory) noexcept override { delete_in(memory, this); }
 
  private:
+  /// True where hardly anything moved and it was thought about not long ago: thinking would cost
+  /// more than the frame.
+  [[nodiscard]] bool is_quiet(const Rows& rows) const noexcept {
+    return chosen_ && frames_ < kQuietFrames && kQuiet * changed_ < rows.size() &&
+           rows.size() == objects_before_;
+  }
   [[nodiscard]] FrameWork take_frame(std::size_t live) noexcept;
-  void look(const Rows& rows, std::uint64_t builds) noexcept;
+  void look(const Rows& rows, const Wear& wear) noexcept;
   void guess(FrameWork frame) noexcept;
-  void consider(const FrameWork& frame, std::uint64_t builds) noexcept;
-  void note_builds(std::uint64_t builds) noexcept;
+  void consider(const FrameWork& frame, const Wear& wear, bool scattered) noexcept;
+  void note_wear(const Wear& wear, bool scattered) noexcept;
   void note_change() noexcept;
-  /// With the builds of cells beyond the usual.
+  /// With builds and wear beyond the usual.
   [[nodiscard]] double cost_of(const PredictedCosts& costs, std::size_t candidate) const noexcept;
 
   StructureKind before_;  // of this refresh: what was there, and what is chosen
@@ -119,15 +135,21 @@ class AutomaticChoice final : public Chooser {
   // By candidate: what it would have saved, not yet spent, and how often it was left.
   PredictedCosts::List saved_{};
   std::array<std::uint8_t, kMostCandidates> left_{};
-  double build_share_ = 0.1;       // of refreshes with cells: about how many built them
+  // Of refreshes with trees, and with cells: about how many built them, and what queries took
+  // longer than on fresh ones, in nanoseconds per object.
+  std::array<double, 2> build_share_{0.0, 0.1};
+  std::array<double, 2> worn_{};
   std::uint64_t builds_seen_ = 0;  // by the structure that is there
-  std::size_t held_ = 0;           // refreshes by it, up to a limit
+  std::uint64_t excess_seen_ = 0;
+  std::size_t held_ = 0;  // refreshes by it, up to a limit
   std::string_view reason_ = "nothing to choose by yet";
   std::uint64_t changes_ = 0;
-  std::size_t objects_seen_ = 0;  // when the sample was taken
-  std::size_t unseen_ = 0;        // changes since the last sample
-  std::size_t pairs_seen_ = 0;    // pairs when the sample was taken
-  std::size_t waiting_ = 0;       // refreshes to wait after memory was refused
+  std::size_t objects_seen_ = 0;    // when the sample was taken
+  std::size_t unseen_ = 0;          // changes since the last sample
+  std::size_t pairs_seen_ = 0;      // pairs when the sample was taken
+  std::size_t objects_before_ = 0;  // at the last look
+  std::size_t frames_ = 0;          // refreshes since then, this one included
+  std::size_t waiting_ = 0;         // refreshes to wait after memory was refused
   bool chosen_ = false;
   bool build_due_ = false;  // in the last refresh, whatever was chosen
 };
@@ -138,18 +160,19 @@ std::size_t number_of(StructureKind kind) noexcept {
 }
 
 FrameWork AutomaticChoice::take_frame(std::size_t live) noexcept {
+  const auto each = [this](std::size_t count) { return (count + frames_ - 1) / frames_; };
   FrameWork frame;
   frame.changed = std::min(changed_, live);
-  frame.pair_queries = take(QueryKind::pairs);
-  frame.full_queries = take(QueryKind::all_pairs);
-  frame.casts = take(QueryKind::casts);
-  frame.regions = take(QueryKind::regions);
-  frame.nearest = take(QueryKind::nearest);
+  frame.pair_queries = each(take(QueryKind::pairs));
+  frame.full_queries = each(take(QueryKind::all_pairs));
+  frame.casts = each(take(QueryKind::casts));
+  frame.regions = each(take(QueryKind::regions));
+  frame.nearest = each(take(QueryKind::nearest));
   return frame;
 }
 
-void AutomaticChoice::look(const Rows& rows, std::uint64_t builds) noexcept {
-  const std::size_t live = rows.size();
+void AutomaticChoice::look(const Rows& rows, const Wear& wear) noexcept {
+  const std::size_t live = objects_before_ = rows.size();
   const FrameWork frame = take_frame(live);
   unseen_ += frame.changed;
   const std::size_t before = features_.objects;
@@ -169,9 +192,10 @@ void AutomaticChoice::look(const Rows& rows, std::uint64_t builds) noexcept {
     pairs_seen_ = 0;
   }
   features_.objects = live;
-  build_due_ = other_scene;
+  const bool scattered = chosen_ && !other_scene && !rows.regions().built;
+  build_due_ = other_scene || scattered;
   if (other_scene) guess(frame);
-  if (chosen_ && wanted_ == before_) consider(frame, builds);
+  if (chosen_ && wanted_ == before_) consider(frame, wear, scattered);
 }
 
 // As if everything moved and all pairs were wanted, unless something else was asked for.
@@ -187,31 +211,45 @@ void AutomaticChoice::guess(FrameWork frame) noexcept {
                                     : "the least cost expected from a sample of the scene";
 }
 
-// Where objects are too fast for cells and strips these are built in every frame, which nothing
-// that is known of the scene tells beforehand. Trees wear slowly.
-void AutomaticChoice::note_builds(std::uint64_t builds) noexcept {
-  if (has_cells(before_)) {
-    // The first frames of a structure tell more than later ones, but one build is no habit.
-    const double weight = std::max(kRecent, 1.0 / (3.0 + static_cast<double>(held_)));
-    build_share_ += weight * ((builds != builds_seen_ ? 1.0 : 0.0) - build_share_);
-  } else {
-    build_share_ -= kForgotten * build_share_;
+// Where objects are fast, cells and strips are built in every frame, and trees wear and are built,
+// which nothing that is known of the scene tells beforehand.
+void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
+  const std::size_t own = has_cells(before_) ? 1 : 0;
+  const bool built = wear.builds != builds_seen_;
+  const std::uint64_t excess = wear.excess - (built ? 0 : std::min(excess_seen_, wear.excess));
+  const double worn = kTest * static_cast<double>(excess) / static_cast<double>(features_.objects);
+  // The first frames of a structure tell more than later ones, but one build is no habit.
+  const double weight = std::max(kRecent, 1.0 / (3.0 + static_cast<double>(held_)));
+  for (std::size_t kind = 0; kind < build_share_.size(); ++kind) {
+    double& share = build_share_[kind];
+    if (scattered) {
+      share += weight * (1.0 - share);
+    } else if (kind == own) {
+      share += weight * ((built ? 1.0 : 0.0) - share);
+    } else {
+      share -= kForgotten * share;
+    }
+    worn_[kind] += kind == own ? weight * (worn - worn_[kind]) : -kForgotten * worn_[kind];
   }
   held_ += held_ < kPatience ? 1 : 0;
-  builds_seen_ = builds;
+  builds_seen_ = wear.builds;
+  excess_seen_ = wear.excess;
 }
 
 double AutomaticChoice::cost_of(const PredictedCosts& costs, std::size_t candidate) const noexcept {
-  const bool cells = has_cells(candidates()[candidate]);
-  const double unusual = cells ? std::max(0.0, build_share_ - kUsualBuilds) : 0.0;
-  return costs.of(candidate) + unusual * costs.build_of(candidate);
+  const std::size_t kind = has_cells(candidates()[candidate]) ? 1 : 0;
+  const double fresh = costs.of(candidate);
+  const double worn = worn_[kind] * static_cast<double>(features_.objects);
+  return fresh +
+         std::max(0.0, build_share_[kind] - kUsualBuilds[kind]) * costs.build_of(candidate) +
+         std::max(0.0, worn - kUsualWear * fresh);
 }
 
 // What each structure would have saved is summed up until it pays for a part of the build.
-void AutomaticChoice::consider(const FrameWork& frame, std::uint64_t builds) noexcept {
+void AutomaticChoice::consider(const FrameWork& frame, const Wear& wear, bool scattered) noexcept {
   const std::size_t pairs = pairs_.load(std::memory_order_relaxed);
   const PredictedCosts costs(features_, frame, static_cast<double>(pairs));
-  note_builds(builds);
+  note_wear(wear, scattered);
   const int trust = static_cast<int>(kTrust - std::min(kTrust, changes_));
   const std::size_t now = number_of(before_);
   const double held = cost_of(costs, now);
@@ -219,10 +257,10 @@ void AutomaticChoice::consider(const FrameWork& frame, std::uint64_t builds) noe
   double most = 0.0;
   for (std::size_t k = 0; k < candidates().size(); ++k) {
     const double cost = cost_of(costs, k);
-    const double gain = kWorthwhile * held - cost;
+    const double gain = static_cast<double>(frames_) * (kWorthwhile * held - cost);
     saved_[k] = k == now ? 0.0 : std::max(0.0, saved_[k] + gain);
-    const double price =
-        std::ldexp(costs.build_of(k), left_[k] - (cost < kClearly * held ? trust : 0));
+    const int doubled = left_[k] - (cost < kClearly * held ? trust : 0);
+    const double price = scattered ? 0.0 : std::ldexp(costs.build_of(k), doubled);
     if (saved_[k] - price <= most) continue;
     most = saved_[k] - price;
     best = k;

@@ -43,9 +43,15 @@ class Chooser {
 
   /// A structure to begin with.
   [[nodiscard]] virtual StructureKind first() const noexcept = 0;
-  /// The structure to refresh with; it holds `now`, which has been built so often.
+  /// What a structure that is in use has been through.
+  struct Wear {
+    std::uint64_t builds = 0;
+    /// Tests of 16 volumes that queries took since the last one, beyond those on a fresh structure.
+    std::uint64_t excess = 0;
+  };
+  /// The structure to refresh with; it holds `now`.
   [[nodiscard]] virtual StructureKind choose(const Rows& rows, StructureKind now,
-                                             std::uint64_t builds) noexcept = 0;
+                                             const Wear& wear) noexcept = 0;
   /// Ends a refresh that succeeded, with what was chosen or, if that did not get its memory, with
   /// what was there before.
   virtual void refreshed(const Rows& rows, StructureKind now, std::uint64_t builds) noexcept = 0;

@@ -79,6 +79,10 @@ class SpatialIndex {
   /// for all their pairs, or of those that asked because they moved.
   enum class Asked : std::uint8_t { all, moved };
   void note_work(std::uint64_t tests, std::uint64_t queries, Asked asked) const noexcept;
+  /// What pair queries since the last build have cost beyond what they do on a fresh structure.
+  [[nodiscard]] std::uint64_t excess_tests() const noexcept {
+    return excess_.load(std::memory_order_relaxed);
+  }
 
   /// The structure and, as far as levels from the root down, the tree.
   void draw(DebugDraw& draw, std::size_t max_depth) const;

@@ -176,7 +176,8 @@ Status PartitionState::refresh() const {
 Status PartitionState::refresh_now() {
   const StructureKind now = index.kind();
   const StructureKind wanted =
-      chooser_ == nullptr ? now : chooser_->choose(rows, now, index.builds());
+      chooser_ == nullptr ? now
+                          : chooser_->choose(rows, now, {index.builds(), index.excess_tests()});
   bool taken = true;
   Status status = Status::ok;
   if (wanted != now) {
