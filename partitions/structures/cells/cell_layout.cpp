@@ -20,7 +20,7 @@ constexpr std::size_t kFewest = 64;  // below this the tree alone does as well
 constexpr double kMostCells = 2048;  // on an axis
 constexpr double kTreeQuery = 14.0;  // tests of 16 that an object of the tree costs
 constexpr std::size_t kRowsPerStretch = 8192;
-constexpr std::size_t kRowsPerSample = 64;  // one object in so many is looked at, if that is enough
+constexpr std::size_t kRowsPerSample = 64;  // one row of so many is looked at, if they are enough
 
 // The value that comes at place `at` of all in ascending order. Reorders them, so that those before
 // this place are the lower ones.
@@ -57,20 +57,28 @@ SceneSample::SceneSample(const BoundsPool& pool) noexcept {
   for (std::size_t row = 0; row < pool.rows(); ++row) live += pool.ids()[row] != kNoObject;
   objects = live;
   if (live == 0) return;
-  // About one object in 2^k, by its id: objects that come back to where they were get the same
-  // cells again, whatever order the rows are in.
-  const std::size_t wanted = std::clamp(live / kRowsPerSample, kLeast, kMost / 2);
-  const auto k = static_cast<unsigned>(std::bit_width(std::max<std::size_t>(1, live / wanted))) - 1;
-  const auto is_taken = [k](ObjectId id) { return k == 0 || id * 0x9E3779B1U >> (32 - k) == 0; };
   std::array<std::array<float, kMost>, 3> ends;
-  for (std::size_t row = 0; row < pool.rows() && count < kMost; ++row) {
-    const ObjectId id = pool.ids()[row];
-    if (id == kNoObject || !is_taken(id)) continue;
+  const auto take = [&](std::size_t row) {
     for (std::size_t a = 0; a < 3; ++a) {
       ends[a][count] = pool.column(a)[row];
       edge[a][count] = pool.column(3 + a)[row] - pool.column(a)[row];
     }
     ++count;
+  };
+  const std::size_t wanted = std::clamp(pool.rows() / kRowsPerSample, kLeast, kMost);
+  const std::size_t step = std::max<std::size_t>(1, pool.rows() / wanted);
+  if (pool.rows() <= kMost) {
+    // By their ids: few objects that come back to where they were get the same cells again,
+    // whatever order the rows are in.
+    const auto k = static_cast<unsigned>(std::bit_width(step)) - 1;
+    for (std::size_t row = 0; row < pool.rows(); ++row) {
+      const ObjectId id = pool.ids()[row];
+      if (id != kNoObject && (k == 0 || id * 0x9E3779B1U >> (32 - k) == 0)) take(row);
+    }
+  } else {
+    for (std::size_t row = step / 2; row < pool.rows() && count < kMost; row += step) {
+      if (pool.ids()[row] != kNoObject) take(row);
+    }
   }
   if (count == 0) return;
   for (std::size_t a = 0; a < 3; ++a) {

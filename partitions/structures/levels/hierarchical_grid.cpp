@@ -116,6 +116,8 @@ class HierarchicalGrid final : public CellStructure {
                                                              const RowPlan& plan) noexcept;
   bool build_level(std::span<const std::uint32_t> rows, const RowPlan& plan) noexcept;
   bool add_line(const Sorted& sorted, std::size_t begin, std::size_t end, const RowPlan& plan);
+  static std::uint32_t leave_crowd(const RowPlan& plan, std::uint32_t begin,
+                                   std::uint32_t end) noexcept;
   bool rank_lines(GridLevel& level);
   [[nodiscard]] std::uint32_t line_of(const GridLevel& level, std::size_t row) const noexcept;
   [[nodiscard]] LevelsView view() const noexcept;
@@ -291,6 +293,17 @@ bool HierarchicalGrid::build_level(std::span<const std::uint32_t> rows,
   return rank_lines(level);
 }
 
+// Rows [begin, end) are those of a cell: where they are too many the tree takes them. Returns where
+// the next cell begins.
+std::uint32_t HierarchicalGrid::leave_crowd(const RowPlan& plan, std::uint32_t begin,
+                                            std::uint32_t end) noexcept {
+  if (end - begin <= kCrowd) return end;
+  for (std::uint32_t row = begin; row < end; ++row) {
+    (void)plan.rest.push_back(plan.regular.data()[row]);
+  }
+  return begin;
+}
+
 // Cuts a line into cells of a few objects each, were they spread evenly.
 bool HierarchicalGrid::add_line(const Sorted& sorted, std::size_t begin, std::size_t end,
                                 const RowPlan& plan) {
@@ -301,20 +314,23 @@ bool HierarchicalGrid::add_line(const Sorted& sorted, std::size_t begin, std::si
   const std::uint32_t length = sorted.step(end - 1) - line.first;
   while ((length >> line.shift) >= most) ++line.shift;
   line.last_cell = length >> line.shift;
-  if (!start_.grow(start_.size() + line.last_cell + 1)) return false;
+  const std::size_t cells = std::size_t{line.last_cell} + 1;
+  if (!start_.grow(start_.size() + cells)) return false;
+  start_.set_size(start_.size() + cells);
   const std::size_t before = plan.regular.size();
-  std::uint32_t cells = 0;
-  std::size_t next = 0;
-  for (std::size_t i = begin; i < end; i = next) {
+  std::uint32_t* const start = start_.data() + line.cell;
+  // Room for all was made.
+  std::uint32_t* const rows = plan.regular.data();
+  auto to = static_cast<std::uint32_t>(before);
+  std::size_t next_cell = 0;
+  for (std::size_t i = begin; i < end; ++i) {
     const std::uint32_t cell = (sorted.step(i) - line.first) >> line.shift;
-    next = i + 1;
-    while (next < end && (sorted.step(next) - line.first) >> line.shift == cell) ++next;
-    for (; cells <= cell; ++cells) {
-      (void)start_.push_back(static_cast<std::uint32_t>(plan.regular.size()));
-    }
-    Column<std::uint32_t>& to = next - i > kCrowd ? plan.rest : plan.regular;
-    for (std::size_t k = i; k < next; ++k) (void)to.push_back(sorted.row(k));
+    if (cell >= next_cell && next_cell != 0) to = leave_crowd(plan, start[next_cell - 1], to);
+    while (next_cell <= cell) start[next_cell++] = to;
+    rows[to++] = sorted.row(i);
   }
+  to = leave_crowd(plan, start[next_cell - 1], to);
+  plan.regular.set_size(to);
   if (plan.regular.size() == before) {
     start_.set_size(line.cell);
     return true;
