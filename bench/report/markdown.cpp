@@ -61,7 +61,9 @@ std::string results_markdown(const Results& results) {
       "# Results\n\n" + run_text(results) +
       ", written by `bench/run results` from `bench/results/results.json`, in which every figure "
       "is a row. Other libraries are Debian packages at their best settings and with `-O3 "
-      "-march=native`. Times are medians; the best of a column is bold.\n\n";
+      "-march=native`; the yardstick is a blocked sweep that keeps nothing from frame to frame. "
+      "Times "
+      "are medians; the best of a column is bold.\n\n";
   for (const Json& section : layout()["sections"]) {
     const std::string shown_parts = markdown_of(parts_of(results, section, section["id"]));
     if (shown_parts.empty()) continue;
@@ -81,7 +83,8 @@ std::string with_figures(const std::string& text, const Results& results) {
   if (table.empty()) throw ArgumentError("the results have no frames to show");
   return text.substr(0, from) + run_text(results) +
          ".\nOf other libraries, at their best settings, Embree uses all threads, and CGAL where "
-         "that is faster:\n\n" +
+         "that is faster; the\nyardstick is a blocked sweep that keeps nothing from frame to "
+         "frame:\n\n" +
          table + text.substr(end);
 }
 
