@@ -1,7 +1,7 @@
 #include "bench/goals/asked_scenes.h"
 #include "bench/goals/measurements.h"
 #include "bench/goals/undisturbed.h"
-#include "bench/rows/frame_rows.h"
+#include "bench/measure/race.h"
 #include "bench/scenes/scene.h"
 
 #include <algorithm>
@@ -9,8 +9,6 @@
 
 namespace winnow::bench {
 namespace {
-
-constexpr std::size_t kFirst = kSettlingFrames;
 
 /// What AutoPartition and the best of the others took for some of the frames.
 struct OwnAndBest {
@@ -76,8 +74,8 @@ void measure_first_frames(const Json& options, Lab& /*lab*/, Measured& measured)
   for (const NamedScene& scene : asked_scenes(options, measured)) {
     const std::size_t objects = scene.objects(options.value("objects", std::size_t{0}));
     const auto runs =
-        undisturbed([&] { return scene.source(objects, 1); }, {"all"}, kFirst, threads);
-    const OwnAndBest of(runs, 0, kFirst);
+        undisturbed([&] { return scene.source(objects, 1); }, {"all"}, kSettlingFrames, threads);
+    const OwnAndBest of(runs, 0, kSettlingFrames);
     measured.results.add("first_frames", {{"scene", scene.name},
                                           {"objects", objects},
                                           {"threads", threads},
@@ -124,10 +122,11 @@ void measure_worst_frames(const Json& options, Lab& lab, Measured& measured) {
   const int threads = options.at("threads");
   for (const NamedScene& scene : asked_scenes(options, measured)) {
     const std::size_t objects = scene.objects(options.value("objects", std::size_t{0}));
-    const auto runs = undisturbed([&] { return scene.source(objects, 1); },
-                                  options.at("partitions"), kFirst + lab.worst_of(), threads);
+    const auto runs =
+        undisturbed([&] { return scene.source(objects, 1); }, options.at("partitions"),
+                    kSettlingFrames + lab.worst_of(), threads);
     for (const Run& run : runs) {
-      const Spread settled = spread_of(std::span(run.frame_ms).subspan(kFirst));
+      const Spread settled = spread_of(run.settled_ms());
       measured.results.add("worst_frames", {{"scene", scene.name},
                                             {"objects", objects},
                                             {"partition", run.engine},

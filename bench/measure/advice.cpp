@@ -76,10 +76,11 @@ std::string why(const Partition& partition, const Run& run, double median_ms) {
   return text;
 }
 
-/// Frames after the first six; of fewer than nine, after the first.
+/// Frames after it has settled; if these are fewer than three, after the first.
 std::vector<double> settled_frames(const Run& run) {
-  const std::size_t first =
-      run.frame_ms.size() < 9 ? std::min<std::size_t>(1, run.frame_ms.size() - 1) : 6;
+  const auto settled = run.settled_ms();
+  if (settled.size() >= 3) return {settled.begin(), settled.end()};
+  const std::size_t first = std::min<std::size_t>(1, run.frame_ms.size() - 1);
   return {run.frame_ms.begin() + static_cast<std::ptrdiff_t>(first), run.frame_ms.end()};
 }
 

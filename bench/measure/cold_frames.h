@@ -15,7 +15,7 @@ namespace winnow::bench {
 inline constexpr std::string_view kUntouched = "untouched";
 inline constexpr std::string_view kTouched = "touched";
 
-/// Milliseconds of the parts of first frames, one entry a frame.
+/// Milliseconds of the parts of first frames, one entry per frame.
 struct ColdFrames {
   std::string partition{};
   std::string_view memory{};

@@ -82,6 +82,9 @@ double mean_after_first(const std::vector<PairSummary>& frames,
 
 }  // namespace
 
+std::span<const double> Run::settled_ms() const noexcept {
+  return std::span(frame_ms).subspan(std::min(kSettlingFrames, frame_ms.size()));
+}
 Spread Run::frame_spread() const {
   return spread_of(after_first(frame_ms));
 }

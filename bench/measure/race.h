@@ -23,7 +23,10 @@ struct Contender {
   Isa isa = active_isa();
 };
 
-/// What one contender did, one entry a frame; entry 0 is the first frame, in which it was built.
+/// Frames until which a contender has settled.
+inline constexpr std::size_t kSettlingFrames = 6;
+
+/// What one contender did, one entry per frame; entry 0 is the first frame, in which it was built.
 struct Run {
   std::string engine;
   int threads = 1;
@@ -34,6 +37,8 @@ struct Run {
   std::size_t changed = 0;  ///< boxes, over all frames after the first
   std::size_t bytes = 0;
 
+  /// The frames after which it had settled; none if there were fewer.
+  [[nodiscard]] std::span<const double> settled_ms() const noexcept;
   /// Of the frames after the first; of the first if there is no other.
   [[nodiscard]] Spread frame_spread() const;
   [[nodiscard]] double median_update_ms() const;

@@ -1,6 +1,6 @@
-#The yardstick : a folder with the prototype of a blocked sweep(sg3.h) to measure partitions
-#against, which needs AVX - 512. Without the folder there is none, and nothing else changes.Like the
-#other libraries it is built for this machine, in a shared library that shows one function.
+# The yardstick: a folder with the prototype of a blocked sweep (sg3.h) to measure partitions
+# against, which needs AVX-512. Without the folder there is none, and nothing else changes. Like the
+# other libraries it is built for this machine, in a shared library that shows one function.
 set(WINNOW_YARDSTICK "${PROJECT_SOURCE_DIR}/../shared/yardstick" CACHE PATH
     "A folder with the prototype to measure partitions against, if there is one")
 

@@ -3,11 +3,11 @@
 #ifdef WINNOW_HAVE_YARDSTICK
 
 #include <sg3.h>
-#include <sys/mman.h>
+#include "bench/common/address_range.h"
 
 #include <algorithm>
 #include <array>
-#include <new>
+#include <memory>
 #include <vector>
 
 namespace winnow::bench {
@@ -16,29 +16,13 @@ namespace {
 static_assert(sizeof(::Box) == sizeof(Aabb) && sizeof(Pair) == sizeof(u64));
 
 /// Addresses for every pair that there may be: the prototype writes without looking whether there
-/// is room. The system gives memory to those that were written to.
-class PairRoom {
- public:
-  explicit PairRoom(std::size_t objects) {
-    constexpr std::size_t kSlack = 64;  // vectors are stored whole
-    constexpr std::size_t kMost = std::size_t{1} << 40U;
-    const std::size_t pairs = std::min(objects * (objects + 1) / 2, kMost);
-    bytes_ = (pairs + kSlack) * sizeof(u64);
-    void* const room = ::mmap(nullptr, bytes_, PROT_READ | PROT_WRITE,
-                              MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (room == MAP_FAILED) throw std::bad_alloc();
-    pairs_ = static_cast<u64*>(room);
-  }
-  PairRoom(const PairRoom&) = delete;
-  PairRoom& operator=(const PairRoom&) = delete;
-  ~PairRoom() { ::munmap(pairs_, bytes_); }
-
-  [[nodiscard]] u64* begin() const noexcept { return pairs_; }
-
- private:
-  u64* pairs_ = nullptr;
-  std::size_t bytes_ = 0;
-};
+/// is room.
+std::unique_ptr<AddressRange> room_for_pairs(std::size_t objects) {
+  constexpr std::size_t kSlack = 64;  // vectors are stored whole
+  constexpr std::size_t kMost = std::size_t{1} << 40U;
+  const std::size_t pairs = std::min(objects * (objects + 1) / 2, kMost);
+  return std::make_unique<AddressRange>((pairs + kSlack) * sizeof(u64));
+}
 
 class YardstickEngine final : public Engine {
  public:
@@ -57,7 +41,7 @@ class YardstickEngine final : public Engine {
   void frame(std::span<const std::uint32_t> /*changed_rows*/,
              std::span<const Aabb> boxes) override {
     make_room(boxes.size());
-    for (int t = 0; t < threads_; ++t) found_.o[t].w = room_[t]->begin();
+    for (int t = 0; t < threads_; ++t) found_.o[t].w = room_of(t);
     if (boxes.size() < 2) return;
     NT = threads_;
     const auto step = [&] {
@@ -72,7 +56,7 @@ class YardstickEngine final : public Engine {
 
   [[nodiscard]] std::span<const Pair> pairs() const override {
     const auto of = [&](int t) {
-      const u64* const first = room_[t]->begin();
+      const u64* const first = room_of(t);
       return std::span(reinterpret_cast<const Pair*>(first),
                        static_cast<std::size_t>(found_.o[t].w - first));
     };
@@ -95,17 +79,18 @@ class YardstickEngine final : public Engine {
  private:
   static constexpr int kMostThreads = 2;  // the prototype has arrays of two
 
+  [[nodiscard]] u64* room_of(int t) const { return reinterpret_cast<u64*>(room_[t]->begin()); }
   void make_room(std::size_t objects) {
     if (objects <= objects_ && room_[0] != nullptr) return;
     objects_ = objects;
-    for (int t = 0; t < threads_; ++t) room_[t] = std::make_unique<PairRoom>(objects);
+    for (int t = 0; t < threads_; ++t) room_[t] = room_for_pairs(objects);
   }
 
   int threads_;
   std::unique_ptr<tbb::task_arena> arena_;  // where there are more threads than it can use
   SG4<true> sweep_;
   Outs found_;  // of which only the ends of the pairs are used
-  std::array<std::unique_ptr<PairRoom>, kMostThreads> room_;
+  std::array<std::unique_ptr<AddressRange>, kMostThreads> room_;
   std::size_t objects_ = 0;
   mutable std::vector<Pair> joined_;
 };

@@ -12,8 +12,8 @@ namespace {
 
 /// Of the frames after which a partition has settled; of fewer, of those after the first.
 Spread settled_spread(const Run& run) {
-  if (run.frame_ms.size() <= kSettlingFrames) return run.frame_spread();
-  return spread_of(std::span(run.frame_ms).subspan(kSettlingFrames));
+  const auto settled = run.settled_ms();
+  return settled.empty() ? run.frame_spread() : spread_of(settled);
 }
 
 }  // namespace

@@ -53,9 +53,8 @@ void add_run(Results& results, const NamedScene& scene, const Measurement& measu
     row["update_ms"] = to_value(update_ms);
     row["update_share"] = run.median_update_ms() / median_of(ms);
   }
-  if (run.frame_ms.size() > kSettlingFrames) {
-    row["worst_ms"] = *std::max_element(
-        run.frame_ms.begin() + static_cast<std::ptrdiff_t>(kSettlingFrames), run.frame_ms.end());
+  if (const auto settled = run.settled_ms(); !settled.empty()) {
+    row["worst_ms"] = *std::max_element(settled.begin(), settled.end());
   }
   if (run.bytes != 0) row["bytes_per_object"] = static_cast<double>(run.bytes) / n;
   results.add("throughput", std::move(row));

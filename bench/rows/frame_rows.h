@@ -14,9 +14,6 @@ namespace winnow::bench {
 /// others still show that they found the same.
 inline constexpr std::size_t kFingerprintFrames = 3;
 
-/// The worst frame of a row is one after so many, until which a partition settles.
-inline constexpr std::size_t kSettlingFrames = 6;
-
 /// throughput, and what is derived of it: throughput_growth, throughput_simd, throughput_threads,
 /// throughput_skipped.
 void declare_frames(Results& results);

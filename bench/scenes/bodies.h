@@ -49,10 +49,10 @@ void drift(Body& body, const Walls& walls) noexcept;
 struct Sizes {
   double smallest;
   double ratio;   ///< of the largest edge to the smallest
-  double volume;  ///< of the world, an object
+  double volume;  ///< of the world, per object
 };
-// Two cubes with edges a and b overlap with probability (a + b)^3 / volume: the volume an object
-// that gives ten pairs an object is a twentieth of the mean of (a + b)^3.
+// Two cubes with edges a and b overlap with probability (a + b)^3 / volume: the volume per
+// object that gives ten pairs per object is a twentieth of the mean of (a + b)^3.
 inline constexpr Sizes kMixedSizes{0.1, 100.0, 14.2};
 
 [[nodiscard]] Walls walls_for(const Sizes& sizes, std::size_t objects) noexcept;

@@ -68,8 +68,8 @@ class Shearing final : public BodyScene {
   }
 
  private:
-  /// Edges a frame that bodies one edge apart on y move against each other: twice what the fastest
-  /// of `uniform` do.
+  /// Edges per frame that bodies one edge apart on y move against each other: twice what the
+  /// fastest of `uniform` do.
   static constexpr double kRate = 0.2;
 };
 

@@ -40,7 +40,7 @@ constexpr double kClearly = 0.75;
 constexpr std::array<double, 2> kUsualBuilds{0.1, 0.25};
 constexpr double kRecent = 1.0 / 16.0;
 constexpr double kForgotten = 1.0 / 128.0;
-// The same for wear: the share of a frame's cost, and the nanoseconds of a test of 16 volumes.
+// Wear up to this share of a frame's cost is usual. A test of 16 volumes takes so many nanoseconds.
 constexpr double kUsualWear = 0.15;
 constexpr double kTest = 8.0;
 
