@@ -42,6 +42,14 @@ struct PartitionOptions {
   Volume volume = Volume::aabb;
   /// Makes what rests or moves little cost nothing; every query sees the larger volumes.
   Margin margin{};
+  /// A build that can be seen coming, because objects near the edges of their cells or queries cost
+  /// ever more, is planned over the refreshes before it, and so is the exchange of a structure by
+  /// the automatic choice. This is how many rows' worth of that work a refresh does: a build takes
+  /// two to six of each row. 0: one or more of each, so that a plan is done within a third of the
+  /// refreshes that the last order has been good for. The largest number: builds are done at once
+  /// when they are due. Counts, never time: results are the
+  /// same on every machine.
+  std::size_t build_budget = 0;
 };
 
 /// The order in which a query writes its results. Both are the same on any thread count and any
@@ -70,7 +78,8 @@ struct Statistics {
   std::size_t depth = 0;      ///< levels of the node tree; 0 if there is none
   std::size_t levels = 0;     ///< of sizes: grids laid over each other, or depths of an octree
   std::uint64_t builds = 0;   ///< since construction
-  std::uint64_t refits = 0;   ///< refreshes that did not need a build
+  std::uint64_t planned_builds = 0;  ///< of these, how many were planned before they were due
+  std::uint64_t refits = 0;          ///< refreshes that did not need a build
   std::uint64_t full_queries = 0;
   std::uint64_t incremental_queries = 0;
   std::uint64_t last_tests = 0;  ///< tests of 16 volumes at once, in the last pair query

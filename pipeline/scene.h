@@ -46,6 +46,8 @@ struct SceneOptions {
   /// much. Boxes in the partitions are larger by it, so that bodies that move less need no update
   /// there. 0: off, and every answer is that of a fresh scene, bit by bit. Finite, >= 0.
   double carry_over = 0.0;
+  /// That of the partitions (see PartitionOptions).
+  std::size_t build_budget = 0;
   /// What holds triangle meshes, compounds and height fields; null for a scene without. Must
   /// outlive the scene.
   const MidPhase* composites = nullptr;

@@ -17,6 +17,9 @@ namespace winnow {
 
 /// Rows in a block: one 512-bit register of floats, and the unit in which rows are tested.
 inline constexpr std::size_t kBlockRows = 16;
+[[nodiscard]] constexpr std::size_t blocks_of(std::size_t rows) noexcept {
+  return (rows + kBlockRows - 1) / kBlockRows;
+}
 
 /// Bounding volumes in a structure of arrays: one float column per slab end (see `column_count`)
 /// and a column of object ids, all 64-byte aligned. Rows are dense but for holes that a removal
@@ -31,9 +34,7 @@ class BoundsPool {
   [[nodiscard]] Volume volume() const noexcept { return volume_; }
   [[nodiscard]] std::size_t columns() const noexcept { return column_count(volume_); }
   [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
-  [[nodiscard]] std::size_t blocks() const noexcept {
-    return (rows_ + kBlockRows - 1) / kBlockRows;
-  }
+  [[nodiscard]] std::size_t blocks() const noexcept { return blocks_of(rows_); }
   [[nodiscard]] std::size_t capacity() const noexcept {
     return ids_.capacity() < 2 * kBlockRows ? 0 : ids_.capacity() - 2 * kBlockRows;
   }

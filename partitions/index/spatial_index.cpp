@@ -6,96 +6,48 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 namespace winnow {
 namespace {
 
-constexpr std::size_t blocks_of(std::size_t rows) noexcept {
-  return (rows + kBlockRows - 1) / kBlockRows;
-}
-
-// The mean edge of the box around 16 rows that follow each other: that in the middle of a sample.
-float edge_of_block(const BoundsPool& pool) noexcept {
-  constexpr std::size_t kSample = 31;
-  std::array<float, kSample> edge;
-  const std::size_t count = std::min(kSample, pool.blocks());
-  if (count == 0) return 0.0F;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t row = pool.blocks() * i / count * kBlockRows;
-    edge[i] = 0.0F;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const float* const low = pool.column(a) + row;
-      const float* const high = pool.column(3 + a) + row;
-      const float from = *std::min_element(low, low + kBlockRows);
-      edge[i] += (*std::max_element(high, high + kBlockRows) - from) / 3.0F;
-    }
-  }
-  std::nth_element(edge.begin(), edge.begin() + count / 2, edge.begin() + count);
-  return edge[count / 2];
-}
+// Where an order was worn before it was taken, so many builds come as they come.
+constexpr std::size_t kWaitAfterMistake = 16;
 
 }  // namespace
 
-SpatialIndex::SpatialIndex(std::pmr::memory_resource* memory, Rows& rows) noexcept
+SpatialIndex::SpatialIndex(std::pmr::memory_resource* memory, Rows& rows,
+                           std::size_t build_budget) noexcept
     : memory_(memory),
       rows_(rows),
       tree_(memory),
       regular_tree_(memory),
       spare_(memory),
-      order_(memory),
-      items_(memory),
-      points_(memory) {}
+      tail_order_(memory),
+      build_budget_(build_budget),
+      plan_(memory) {}
 
 SpatialIndex::~SpatialIndex() {
+  give_up_plan();
   if (structure_ != nullptr) kind_.info()->end(structure_, memory_);
-}
-
-Structure* SpatialIndex::make(StructureKind kind) noexcept {
-  return kind.info()->make({memory_, rows_, regular_tree_, kind.parameter()});
-}
-
-void SpatialIndex::install(Structure* structure, StructureKind kind) noexcept {
-  structure_ = structure;
-  kind_ = kind;
-  tree_.release();
-  regular_tree_.release();
-  release_scratch();
-  rows_.selection().release();
-  built_edge_ = 0.0F;
-  built_holes_ = 0;
-  full_base_ = moved_base_ = excess_ = 0;
-  rows_.disorder();
-}
-
-bool SpatialIndex::set_structure(StructureKind kind) noexcept {
-  Structure* const made = make(kind);
-  if (made == nullptr) return false;
-  if (structure_ != nullptr) kind_.info()->end(structure_, memory_);
-  install(made, kind);
-  return true;
-}
-
-Status SpatialIndex::refresh_as(StructureKind kind, bool& taken) {
-  taken = false;
-  Structure* const made = make(kind);
-  if (made == nullptr) return refresh();
-  Structure* const structure_before = structure_;
-  const StructureKind kind_before = kind_;
-  install(made, kind);
-  taken = refresh() == Status::ok;
-  if (taken) {
-    kind_before.info()->end(structure_before, memory_);
-    return Status::ok;
-  }
-  kind.info()->end(made, memory_);
-  install(structure_before, kind_before);
-  return refresh();
 }
 
 Status SpatialIndex::refresh() {
   rows_.pad();
-  const Status status = needs_build() ? build() : absorb_changes();
+  exchange_refused_ = false;
+  // Of rows that were put elsewhere nothing is planned any more.
+  if (rows_.regions().planned == 0 || rows_.filters().has_environments()) give_up_plan();
+  Status status = Status::ok;
+  if (needs_build()) {
+    status = build();
+  } else if (plan_.ready()) {
+    status = take_order(true);
+    if (status == Status::ok) status = absorb_changes(true);
+  } else {
+    status = absorb_changes(false);
+  }
   queries_stale_.store(true, std::memory_order_relaxed);
   return status;
 }
@@ -106,127 +58,8 @@ std::size_t SpatialIndex::tail() const noexcept {
   return rows > ordered ? rows - ordered : 0;
 }
 
-bool SpatialIndex::needs_build() const noexcept {
-  if (!rows_.regions().built) return true;
-  const std::size_t live = rows_.size();
-  const std::size_t holes = rows_.pool().rows() - live;
-  if (holes > live / 4 + built_holes_ + 64) return true;
-  if (rows_.filters().has_environments() && wants_grouping()) return true;
-  if (structure_->is_flat()) return false;
-  return tail() > tail_limit() ||
-         excess_.load(std::memory_order_relaxed) > structure_->build_price() * (live + 64);
-}
-
-// Rows of many environments are in no order that keeps them apart: in cells, new, or moved from one
-// environment to another.
-bool SpatialIndex::wants_grouping() const noexcept {
-  const RowRegions& regions = rows_.regions();
-  const std::size_t changed = rows_.filters().changed_environments();
-  if (!structure_->is_flat()) return regions.regular != 0 || changed > tail_limit();
-  return rows_.pool().rows() - regions.sorted + changed > tail_limit();
-}
-
-// The rows are untouched until everything that can fail is done; the structure may be half planned.
-Status SpatialIndex::build() {
-  if (structure_->is_flat()) return build_flat();
-  RowRegions& regions = rows_.regions();
-  regions.built = false;
-  if (!plan_order()) return Status::out_of_memory;
-  const std::size_t regular = order_.size();
-  // The tree's blocks begin behind the regular ones: no block belongs to both.
-  while (order_.size() % kBlockRows != 0) (void)order_.push_back(kNoObject);
-  const std::size_t first_block = order_.size() / kBlockRows;
-  if (!order_rest()) return Status::out_of_memory;
-  const std::size_t rows = order_.size();
-  const bool prunes = structure_->prunes_rows();
-  if (!rows_.reserve_rows(rows + spare_rows()) ||
-      !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows) ||
-      !tree_.cover(first_block, blocks_of(rows) - first_block, node_content()) ||
-      (prunes && !regular_tree_.cover(0, blocks_of(regular), node_content()))) {
-    return Status::out_of_memory;
-  }
-
-  rows_.reorder({order_.data(), rows}, spare_);
-  regions = {.built = false, .regular = regular, .ordered = rows, .sorted = rows};
-  built_holes_ = rows - rows_.size();
-  structure_->finish_build();
-  const Execution execution = rows_.execution_for(rows);
-  tree_.refit_all(rows_.view(), execution);
-  built_edge_ = tree_.typical_edge();
-  if (prunes) regular_tree_.refit_all(rows_.view(), execution);
-  regions.built = true;
-  ++builds_;
-  rows_.note_build(edge_of_block(rows_.pool()));
-  full_base_ = moved_base_ = excess_ = 0;
-  return Status::ok;
-}
-
-// Leaves the regular rows in order_ and all others in the selection.
-bool SpatialIndex::plan_order() {
-  const std::size_t room = rows_.pool().rows() + spare_rows() + 4 * kBlockRows;
-  RowSelection& rest = rows_.selection();
-  order_.clear();
-  if (!order_.grow(room) || !rest.start(room)) return false;
-  const RowPlan plan{order_, rest.list, items_};
-  // Cells of many worlds would lie on top of each other, and a cell's objects be tested against
-  // those of all of them: the tree, whose nodes know their environments, keeps them apart.
-  if (!rows_.filters().has_environments()) return structure_->plan(plan);
-  structure_->leave_all(plan);
-  return true;
-}
-
-bool SpatialIndex::order_rest() {
-  const std::span<std::uint32_t> rest = rows_.selection().entries();
-  const bool environments = rows_.filters().has_environments();
-  if (!environments) {
-    const Structure::Ordered ordered = structure_->order_rest(rest, order_);
-    if (ordered != Structure::Ordered::none) return ordered == Structure::Ordered::done;
-  }
-  if (!order_.grow(order_.size() + rest.size())) return false;
-  if (!sort_by_place(rest, order_.end(), rows_.execution_for(rest.size()))) return false;
-  if (environments) return append_environments(rows_.pool(), rows_.filters().data(), rest, order_);
-  std::copy(rest.begin(), rest.end(), order_.end());
-  order_.set_size(order_.size() + rest.size());
-  return true;
-}
-
-Status SpatialIndex::build_flat() {
-  rows_.compact();
-  rows_.pad();
-  RowRegions& regions = rows_.regions();
-  const std::size_t rows = rows_.pool().rows();
-  regions.regular = rows;
-  regions.sorted = 0;
-  if (rows_.filters().has_environments()) {
-    if (!order_.resize(rows) || !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows)) {
-      return Status::out_of_memory;
-    }
-    std::iota(order_.begin(), order_.end(), 0U);
-    if (!sort_by_environment(rows_.pool(), rows_.filters().data(), {order_.data(), rows}, items_,
-                             rows_.execution_for(rows))) {
-      return Status::out_of_memory;
-    }
-    rows_.reorder({order_.data(), rows}, spare_);
-    regions.sorted = rows;
-  }
-  tail_changed_ = true;
-  if (!refit_trees()) return Status::out_of_memory;
-  regions.built = true;
-  ++builds_;
-  rows_.note_build(0.0F);
-  return Status::ok;
-}
-
-// `room` is for as many rows.
-bool SpatialIndex::sort_by_place(std::span<std::uint32_t> rows, std::uint32_t* room,
-                                 const Execution& execution) {
-  return rows_.filters().has_environments()
-             ? sort_by_environment_and_place(rows_.pool(), rows_.filters().data(), rows, items_,
-                                             room, points_, execution)
-             : sort_by_kd_cuts(rows_.pool(), rows, room, points_, execution);
-}
-
-Status SpatialIndex::absorb_changes() {
+// `all` says that any row may have left where the order wants it, whatever changed last.
+Status SpatialIndex::absorb_changes(bool all) {
   ++refits_;
   if (structure_->is_flat()) {
     rows_.regions().regular = rows_.pool().rows();
@@ -234,13 +67,23 @@ Status SpatialIndex::absorb_changes() {
   }
   const std::size_t limit = tail_limit();
   RowSelection& misfits = rows_.selection();
-  if (!misfits.start(limit + 1)) return Status::out_of_memory;
-  collect_misfits(limit + 1);
-  if (tail() + misfits.list.size() > limit) return build();
+  if (!misfits.start(limit + 1) || !collect_misfits(all || rows_.stale().all(), limit + 1)) {
+    return Status::out_of_memory;
+  }
+  const std::size_t behind = tail() + misfits.list.size();
+  if (behind > limit) {
+    if (all) unforeseen_ = kWaitAfterMistake;
+    return build();
+  }
   if (!move_to_tail(misfits.entries()) || !sort_tail() || !refit_trees()) {
     return Status::out_of_memory;
   }
-  return is_torn() ? build() : Status::ok;
+  if (is_torn()) return build();
+  tail_growth_.note(behind);
+  wear_growth_.note(excess_tests());
+  departures_.note_refresh();
+  go_on_planning();
+  return Status::ok;
 }
 
 // Where everything jumped, one query of a tree in the old order would cost many builds: leaves tell
@@ -252,24 +95,31 @@ bool SpatialIndex::is_torn() const noexcept {
   return built_edge_ > 0.0F && tree_.typical_edge() > kTorn * built_edge_;
 }
 
-void SpatialIndex::collect_misfits(std::size_t limit) noexcept {
+// False if memory is refused.
+bool SpatialIndex::collect_misfits(bool all, std::size_t limit) noexcept {
   const std::size_t regular = rows_.regions().regular;
-  if (regular == 0) return;
+  if (regular == 0) return true;
   Column<std::uint32_t>& misfits = rows_.selection().list;
-  if (rows_.stale().all()) {
-    structure_->find_misfits(misfits, limit);
-    return;
+  if (all) {
+    if (!spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows)) return false;
+    structure_->find_misfits(reinterpret_cast<std::uint32_t*>(spare_.data()), misfits, limit);
+    return true;
   }
   for (const ObjectId id : rows_.stale().ids()) {
     if (!rows_.keys().is_live(id) || misfits.size() == limit) continue;
     const std::uint32_t row = rows_.keys().row_of(id);
-    if (row < regular && !structure_->fits(row)) (void)misfits.push_back(row);
+    if (row < regular && !structure_->fits(row, structure_->place_of(row))) {
+      (void)misfits.push_back(row);
+    }
   }
+  return true;
 }
 
 bool SpatialIndex::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
   if (rows.empty()) return true;
-  if (!rows_.reserve_rows(rows_.pool().rows() + rows.size() + tail_limit())) return false;
+  // The same room until the next build: growing copies every column.
+  const std::size_t most = std::max(rows_.regions().ordered + tail_limit(), rows_.pool().rows());
+  if (!rows_.reserve_rows(most + rows.size())) return false;
   rows_.move_to_end(rows);
   return true;
 }
@@ -277,21 +127,32 @@ bool SpatialIndex::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
 bool SpatialIndex::sort_tail() noexcept {
   RowRegions& regions = rows_.regions();
   const BoundsPool& pool = rows_.pool();
-  if (pool.rows() < regions.sorted + kBlockRows) return true;
+  // Rows that an order is planned for stay where they are, and those behind them wait for it.
+  if (plan_.underway() || pool.rows() < regions.sorted + kBlockRows) return true;
   const std::size_t begin = regions.ordered;
   RowSelection& live = rows_.selection();
   if (!live.start(pool.rows() - begin)) return false;
   for (std::size_t row = begin; row < pool.rows(); ++row) {
     if (pool.ids()[row] != kNoObject) live.add(row);
   }
-  if (!order_.grow(live.list.size()) || !spare_.grow(live.list.size() + 2 * kBlockRows) ||
-      !sort_by_place(live.entries(), order_.data(), Execution::serial())) {
+  if (!tail_order_.grow(live.list.size()) || !spare_.grow(live.list.size() + 2 * kBlockRows) ||
+      !sort_by_place(live.entries(), tail_order_.data())) {
     return false;
   }
   rows_.reorder_tail(begin, live.entries(), spare_);
   regions.sorted = pool.rows();
   tail_changed_ = true;
   return true;
+}
+
+// `room` is for as many rows.
+bool SpatialIndex::sort_by_place(std::span<std::uint32_t> rows, std::uint32_t* room) noexcept {
+  const Execution execution = Execution::serial();
+  return rows_.filters().has_environments()
+             ? sort_by_environment_and_place(rows_.pool(), rows_.filters().data(), rows,
+                                             plan_.row_plan().items, room, plan_.points(),
+                                             execution)
+             : sort_by_kd_cuts(rows_.pool(), rows, room, plan_.points(), execution);
 }
 
 BlockTree::Nodes SpatialIndex::node_content() const noexcept {
@@ -398,6 +259,7 @@ void SpatialIndex::add_statistics(Statistics& s) const noexcept {
   s.depth = tree_.levels();
   s.levels = structure_->levels();
   s.builds = builds_;
+  s.planned_builds = planned_builds_;
   s.refits = refits_;
 }
 
@@ -406,12 +268,19 @@ void SpatialIndex::add_bytes(Footprint& footprint) const noexcept {
   footprint.structure += {own, own};
   footprint.structure += tree_.bytes();
   footprint.structure += regular_tree_.bytes();
-  footprint.scratch += bytes_of(spare_, order_, items_, points_);
+  footprint.scratch += bytes_of(spare_, tail_order_);
+  footprint.scratch += plan_.bytes();
   structure_->add_bytes(footprint);
+  if (next_ == nullptr) return;
+  const std::size_t of_next = next_kind_.info()->bytes;
+  footprint.structure += {of_next, of_next};
+  next_->add_bytes(footprint);
 }
 
 void SpatialIndex::release_scratch() noexcept {
-  release_columns(spare_, order_, items_, points_);
+  give_up_plan();
+  release_columns(spare_, tail_order_);
+  plan_.release();
 }
 
 void SpatialIndex::release_memory() noexcept {

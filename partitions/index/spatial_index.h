@@ -2,11 +2,12 @@
 
 #include <winnow/core/debug_draw.h>
 #include <winnow/partitions/structures.h>
+#include "partitions/index/departures.h"
+#include "partitions/index/order_plan.h"
 #include "partitions/index/query_view.h"
 #include "partitions/rows/rows.h"
 #include "partitions/structures/structure.h"
 #include "partitions/tree/block_tree.h"
-#include "partitions/tree/kd_order.h"
 
 #include <atomic>
 #include <cstddef>
@@ -42,9 +43,16 @@ struct Statistics;
 /// a build: at most twice the cost of the best schedule known in hindsight (the ski-rental bound;
 /// Karlin et al., Algorithmica 3, 1988). The decision counts tests, never time, so every machine
 /// takes it at the same frame.
+///
+/// Most of a build is finding the order. Where a build can be seen coming, because objects near the
+/// edge of their cells, the tail grows or wear does, the order is planned in stages over the
+/// refreshes before it, while the old one serves (see OrderPlan): no frame pays for all of it. What
+/// moved since a row was planned is found when the rows stand in the new order, as what leaves its
+/// cell in any frame is. A build that comes unforeseen does what is left of the plan at once.
 class SpatialIndex {
  public:
-  SpatialIndex(std::pmr::memory_resource* memory, Rows& rows) noexcept;
+  /// `build_budget` is that of PartitionOptions.
+  SpatialIndex(std::pmr::memory_resource* memory, Rows& rows, std::size_t build_budget) noexcept;
   ~SpatialIndex();
   SpatialIndex(const SpatialIndex&) = delete;
   SpatialIndex& operator=(const SpatialIndex&) = delete;
@@ -58,9 +66,15 @@ class SpatialIndex {
   /// Brings everything up to date that pair queries read. What fails is tried again by the next
   /// refresh.
   Status refresh();
-  /// The same with another structure; where that does not get the memory it needs, with the one
-  /// that is there. `taken` says which.
-  Status refresh_as(StructureKind kind, bool& taken);
+  /// The same with another structure: at once where a build is due, else when further refreshes
+  /// have planned its order. Where it does not get the memory it needs, with the one that is there;
+  /// `refused` says so.
+  Status refresh_as(StructureKind kind, bool& refused);
+  /// True while another structure is planned. It is given up where the rows are put elsewhere in
+  /// the meantime.
+  [[nodiscard]] bool exchanging() const noexcept { return next_ != nullptr; }
+  /// True if the last refresh gave it up because memory was refused.
+  [[nodiscard]] bool exchange_refused() const noexcept { return exchange_refused_; }
 
   /// True if `refresh_queries` has to be called, by one thread, before queries other than pairs.
   [[nodiscard]] bool queries_stale() const noexcept {
@@ -100,27 +114,36 @@ class SpatialIndex {
   /// Rows that may stand behind the built ones before a build is due.
   [[nodiscard]] std::size_t tail_limit() const noexcept { return rows_.size() / 16 + 64; }
   /// Room that a build leaves behind its rows for a tail.
-  [[nodiscard]] std::size_t spare_rows() const noexcept {
-    return structure_->prunes_rows() ? 2 * tail_limit() : 0;
+  [[nodiscard]] std::size_t spare_rows(const Structure& structure) const noexcept {
+    return structure.prunes_rows() ? 2 * tail_limit() : tail_limit();
   }
   [[nodiscard]] std::size_t tail() const noexcept;
   [[nodiscard]] bool wants_grouping() const noexcept;
   Status build();
-  [[nodiscard]] bool plan_order();
-  [[nodiscard]] bool order_rest();
+  /// `moved` says that objects may have since the plan was begun.
+  Status take_order(bool moved);
+  [[nodiscard]] bool complete_order();
+  void take_next_structure() noexcept;
   Status build_flat();
-  bool sort_by_place(std::span<std::uint32_t> rows, std::uint32_t* room,
-                     const Execution& execution);
-  Status absorb_changes();
+  Status absorb_changes(bool all);
   [[nodiscard]] bool is_torn() const noexcept;
-  void collect_misfits(std::size_t limit) noexcept;
+  [[nodiscard]] bool collect_misfits(bool all, std::size_t limit) noexcept;
   bool move_to_tail(std::span<const std::uint32_t> rows) noexcept;
   bool sort_tail() noexcept;
+  bool sort_by_place(std::span<std::uint32_t> rows, std::uint32_t* room) noexcept;
   bool refit_trees() noexcept;
   bool refit(BlockTree& tree, std::size_t first, std::size_t blocks,
              BlockTree::Nodes nodes) noexcept;
   [[nodiscard]] BlockTree::Nodes node_content() const noexcept;
   void release_scratch() noexcept;
+
+  // Planning ahead.
+  [[nodiscard]] bool plans_ahead() const noexcept;
+  [[nodiscard]] std::size_t planning_work(const Structure& structure) const noexcept;
+  void go_on_planning() noexcept;
+  [[nodiscard]] bool build_is_near() const noexcept;
+  [[nodiscard]] std::uint64_t most_wear() const noexcept;
+  void give_up_plan() noexcept;
 
   std::pmr::memory_resource* memory_;
   Rows& rows_;
@@ -138,11 +161,19 @@ class SpatialIndex {
   std::size_t built_holes_ = 0;  // padding that the build left between the regions
   bool tail_changed_ = false;
 
-  // While building.
-  Column<float> spare_;          // what columns are permuted through
-  Column<std::uint32_t> order_;  // old row of each new row
-  Column<std::uint64_t> items_;  // what is sorted by an integer
-  Column<float> points_;         // places of what is sorted by these
+  Column<float> spare_;               // what columns are permuted through
+  Column<std::uint32_t> tail_order_;  // while the tail is sorted
+
+  // Planning ahead.
+  const std::size_t build_budget_;
+  OrderPlan plan_;
+  Structure* next_ = nullptr;  // is taken with the plan, if the structure is to be exchanged
+  StructureKind next_kind_;
+  bool exchange_refused_ = false;
+  Departures departures_;
+  Growth tail_growth_;
+  Growth wear_growth_;
+  std::size_t unforeseen_ = 0;  // builds to wait for until one is foreseen again
 
   // Wear, in tests of 16 volumes: what a query costs on a fresh structure, and what those since
   // have cost beyond that.
@@ -151,6 +182,7 @@ class SpatialIndex {
   mutable std::atomic<std::uint64_t> excess_{0};
 
   std::uint64_t builds_ = 0;
+  std::uint64_t planned_builds_ = 0;
   std::uint64_t refits_ = 0;
 };
 

@@ -443,6 +443,7 @@ void Rows::compact() noexcept {
   pool_.append(to);
   regions_.built = false;
   regions_.regular = 0;
+  regions_.planned = 0;
   changed_ = true;
 }
 
@@ -450,9 +451,8 @@ void Rows::remove_row(ObjectId id) noexcept {
   const std::size_t row = keys_.row_of(id);
   pool_.blank(row);
   // The last row of the tail is simply dropped, so that churn at the end leaves no holes.
-  if (row + 1 == pool_.rows() && row >= regions_.ordered && row >= regions_.sorted) {
-    pool_.drop_last();
-  }
+  const std::size_t fixed = std::max({regions_.ordered, regions_.sorted, regions_.planned});
+  if (row + 1 == pool_.rows() && row >= fixed) pool_.drop_last();
   stale_.add(id);
   filters_.reset(id);
   keys_.release(id);

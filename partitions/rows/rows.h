@@ -36,6 +36,8 @@ struct RowRegions {
   std::size_t regular = 0;  ///< rows [0, regular) are the structure's
   std::size_t ordered = 0;  ///< rows from here on are the tail
   std::size_t sorted = 0;   ///< tail rows below this are in spatial order
+  /// An order is being planned for rows below this: none of them becomes another object's.
+  std::size_t planned = 0;
 };
 
 /// The objects of a partition: keys, client data, filters, and bounding volumes in rows; and what

@@ -22,7 +22,7 @@ PartitionState::PartitionState(std::pmr::memory_resource* resource,
                                const PartitionOptions& options) noexcept
     : memory(resource),
       rows(resource, options.execution, options.volume, options.margin),
-      index(resource, rows),
+      index(resource, rows, options.build_budget),
       pairs_(resource),
       deferred_(resource),
       near_(resource),
@@ -175,17 +175,18 @@ Status PartitionState::refresh() const {
 
 Status PartitionState::refresh_now() {
   const StructureKind now = index.kind();
+  // While a structure is being planned the choice stands.
+  const bool choosing = chooser_ != nullptr && !index.exchanging();
   const StructureKind wanted =
-      chooser_ == nullptr ? now
-                          : chooser_->choose(rows, now, {index.builds(), index.excess_tests()});
-  bool taken = true;
+      choosing ? chooser_->choose(rows, now, {index.builds(), index.excess_tests()}) : now;
+  bool refused = false;
   Status status = Status::ok;
   if (wanted != now) {
-    status = index.refresh_as(wanted, taken);
+    status = index.refresh_as(wanted, refused);
   } else if (rows.changed()) {
     status = index.refresh();
   }
-  if (!taken) chooser_->refused();
+  if (refused || (chooser_ != nullptr && index.exchange_refused())) chooser_->refused();
   if (status != Status::ok) return status;
   rows.settle(pairs_.tracked_serial != 0);
   if (chooser_ != nullptr) chooser_->refreshed(rows, index.kind(), index.builds());

@@ -12,6 +12,7 @@
 #include "partitions/rows/rows.h"
 #include "partitions/tree/block_tree.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
@@ -64,16 +65,25 @@ template <typename T>
           .costs = costs};
 }
 
-/// Where a plan writes which rows go where.
+/// Which rows a plan is about, and where it writes which go where.
 struct RowPlan {
+  /// Rows below this, of which so many held objects when the plan was begun. Further ones may come
+  /// while it is made.
+  std::size_t rows;
+  std::size_t objects;
   /// The regular rows in their order; has room for every row. Entries of kNoObject leave places
   /// empty.
   Column<std::uint32_t>& regular;
-  /// All other live rows.
+  /// All other live rows; has room for every row.
   Column<std::uint32_t>& rest;
-  /// Scratch for sorting.
+  /// Scratch for sorting, and by row. They keep what a stage leaves in them until the rows stand in
+  /// the planned order.
   Column<std::uint64_t>& items;
+  Column<std::uint32_t>& list;
 };
+
+/// How a stage of a plan ended.
+enum class Planned : std::uint8_t { out_of_memory, goes_on, done };
 
 class Structure {
  public:
@@ -92,11 +102,17 @@ class Structure {
 
   // Ordering rows.
 
-  /// Chooses the rows of the regular region and their order. False if memory is refused: another
-  /// build follows then. By default every live row is part of the rest.
-  [[nodiscard]] virtual bool plan(const RowPlan& plan) noexcept {
+  /// Chooses the rows of the regular region and their order, a stage with each call: the first has
+  /// number 0, and each takes about as long as going over all rows once. By default every live row
+  /// is part of the rest.
+  ///
+  /// Between two stages objects may move, and rows become empty, but no row becomes another
+  /// object's. What a plan decides may be out of date when it is done: rows that no longer fit are
+  /// found then. Until `finish_build` the structure answers for the rows as the last build left
+  /// them. A plan that is left unfinished, or that memory is refused for, is forgotten.
+  [[nodiscard]] virtual Planned plan(const RowPlan& plan, unsigned) noexcept {
     leave_all(plan);
-    return true;
+    return Planned::done;
   }
   /// Makes every live row part of the rest.
   void leave_all(const RowPlan& plan) const noexcept;
@@ -111,16 +127,34 @@ class Structure {
   /// What a build costs in tests of 16 volumes per object. The default was measured on both sides
   /// of the decision to build anew.
   [[nodiscard]] virtual std::uint64_t build_price() const noexcept { return 12; }
-  /// Called when the rows stand in the planned order.
-  virtual void finish_build() noexcept {}
+  /// About how many passes over all rows a plan takes, the order of the rest included.
+  [[nodiscard]] virtual std::size_t plan_passes() const noexcept { return 6; }
+  /// Called when the rows stand in the planned order. `moved` says that objects may have moved
+  /// since the plan was begun.
+  virtual void finish_build(const RowPlan&, bool /*moved*/) noexcept {}
 
   // What no longer fits.
 
-  /// True if the object in this regular row still fits where the build put it.
-  [[nodiscard]] virtual bool fits(std::size_t) const noexcept { return true; }
+  /// A box, or where one is expected to be.
+  struct Place {
+    std::array<float, 3> low;
+    std::array<float, 3> high;
+  };
+  [[nodiscard]] Place place_of(std::size_t row) const noexcept {
+    Place place;
+    for (std::size_t a = 0; a < 3; ++a) {
+      place.low[a] = pool().column(a)[row];
+      place.high[a] = pool().column(3 + a)[row];
+    }
+    return place;
+  }
+  /// True if the object in this regular row would still fit where the build put it if it were at a
+  /// place.
+  [[nodiscard]] virtual bool fits(std::size_t, const Place&) const noexcept { return true; }
   /// Appends the regular rows that no longer fit, until the list holds `limit`; any may have
-  /// changed.
-  virtual void find_misfits(Column<std::uint32_t>&, std::size_t) noexcept {}
+  /// changed. `room` is for as many as there are regular rows.
+  virtual void find_misfits(std::uint32_t* /*room*/, Column<std::uint32_t>&,
+                            std::size_t /*limit*/) noexcept {}
 
   // Pairs.
 

@@ -1,10 +1,12 @@
 #include "partitions/tree/kd_order.h"
 
-#include "core/sort/split_jobs.h"
 #include "core/sort/stretches.h"
 #include "partitions/tree/kd_order.kernel.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <limits>
 
 namespace winnow {
 
@@ -12,30 +14,93 @@ WINNOW_DEFINE_KERNELS(KdOrderKernels, kd_order_kernels)
 
 namespace {
 
+// Larger sets are cut one by one, so that all threads have some to finish.
 constexpr std::size_t kKdWorthSharing = 2048;
 constexpr std::size_t kPointsPerTask = 16384;
 
+/// Rows and their points, of which KdSets are parts.
+KdSet part_of(std::span<std::uint32_t> rows, std::uint32_t* room, float* points, std::size_t begin,
+              std::size_t count) noexcept {
+  KdSet set;
+  set.row = rows.data() + begin;
+  set.row_room = room + begin;
+  set.count = count;
+  for (std::size_t a = 0; a < 3; ++a) {
+    set.at[a] = points + a * rows.size() + begin;
+    set.at_room[a] = points + (3 + a) * rows.size() + begin;
+  }
+  return set;
+}
+
+/// How often each row of a set is cut from others until 16 are left.
+std::size_t cuts_of(std::size_t count) noexcept {
+  return static_cast<std::size_t>(std::bit_width(count / kBlockRows));
+}
+
 }  // namespace
+
+bool KdCuts::start(const BoundsPool& pool, std::span<std::uint32_t> rows, std::uint32_t* room,
+                   Column<float>& scratch, const Execution& execution) {
+  const std::size_t count = rows.size();
+  if (!scratch.resize(6 * count)) return false;
+  rows_ = rows;
+  room_ = room;
+  points_ = scratch.data();
+  open_ = 0;
+  if (count <= kBlockRows) return true;
+  sets_[open_++] = {0, static_cast<std::uint32_t>(count)};
+  const KdSet all = part_of(rows_, room_, points_, 0, count);
+  const std::array<const float*, 6> boxes = box_columns(pool);
+  for_stretches(execution, count, kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+    kd_order_kernels().centres(boxes.data(), rows.data(), begin, end, all.at);
+  });
+  return true;
+}
+
+// Cuts every set that is worth sharing in two; false if there is none, or no room for more.
+bool KdCuts::cut_widest(std::size_t& work, const Execution& execution) {
+  const std::size_t before = open_;
+  if (2 * before > kMostSets) return false;
+  execution.for_each(before, [&](std::size_t i) {
+    Set& first = sets_[i];
+    Set& second = sets_[before + i];
+    second = {first.begin, 0};
+    if (first.count <= kKdWorthSharing) return;
+    KdSet set = part_of(rows_, room_, points_, first.begin, first.count);
+    second.count = static_cast<std::uint32_t>(kd_order_kernels().split(set).count);
+    first.count -= second.count;
+    second.begin += first.count;
+  });
+  for (std::size_t i = before; i < 2 * before; ++i) {
+    if (sets_[i].count == 0) continue;
+    work -= std::min<std::size_t>(work, sets_[i].count + sets_[i - before].count);
+    sets_[open_++] = sets_[i];
+  }
+  return open_ > before;
+}
+
+bool KdCuts::advance(std::size_t work, const Execution& execution) {
+  while (work != 0 && open_ != 0 && cut_widest(work, execution)) {
+  }
+  // What is left are sets that a thread each finishes.
+  std::size_t taken = 0;
+  for (; taken < open_ && work != 0; ++taken) {
+    const std::size_t count = sets_[open_ - 1 - taken].count;
+    work -= std::min(work, count * cuts_of(count));
+  }
+  execution.for_each(taken, [&](std::size_t i) {
+    const Set& set = sets_[open_ - 1 - i];
+    kd_order_kernels().finish(part_of(rows_, room_, points_, set.begin, set.count));
+  });
+  open_ -= taken;
+  return open_ == 0;
+}
 
 bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows, std::uint32_t* room,
                      Column<float>& scratch, const Execution& execution) {
-  const std::size_t count = rows.size();
-  if (!scratch.resize(6 * count)) return false;
-  if (count <= kBlockRows) return true;
-  KdSet all;
-  all.row = rows.data();
-  all.row_room = room;
-  all.count = count;
-  const std::array<const float*, 6> boxes = box_columns(pool);
-  for (std::size_t a = 0; a < 3; ++a) {
-    all.at[a] = scratch.data() + a * count;
-    all.at_room[a] = scratch.data() + (3 + a) * count;
-  }
-  const KdOrderKernels& kernels = kd_order_kernels();
-  for_stretches(execution, count, kPointsPerTask, [&](std::size_t begin, std::size_t end) {
-    kernels.centres(boxes.data(), rows.data(), begin, end, all.at);
-  });
-  run_split_jobs(all, kKdWorthSharing, execution, kernels.split, kernels.finish);
+  KdCuts cuts;
+  if (!cuts.start(pool, rows, room, scratch, execution)) return false;
+  (void)cuts.advance(std::numeric_limits<std::size_t>::max(), execution);
   return true;
 }
 

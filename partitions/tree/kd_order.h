@@ -4,6 +4,8 @@
 #include <winnow/core/execution.h>
 #include "core/memory/bounds_pool.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -22,5 +24,32 @@ namespace winnow {
 [[nodiscard]] bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows,
                                    std::uint32_t* room, Column<float>& scratch,
                                    const Execution& execution);
+
+/// The same in parts, between which the boxes may change: it goes by where they were at the start.
+class KdCuts {
+ public:
+  /// Begins. Rows and scratch stay where they are until the end, and are nobody else's. False if
+  /// memory is refused.
+  [[nodiscard]] bool start(const BoundsPool& pool, std::span<std::uint32_t> rows,
+                           std::uint32_t* room, Column<float>& scratch, const Execution& execution);
+  /// Goes on with about `work` cuts of a row each; true when the rows are sorted.
+  bool advance(std::size_t work, const Execution& execution);
+
+ private:
+  static constexpr std::size_t kMostSets = 64;
+
+  /// A part of the rows that is still to be cut.
+  struct Set {
+    std::uint32_t begin;
+    std::uint32_t count;
+  };
+  [[nodiscard]] bool cut_widest(std::size_t& work, const Execution& execution);
+
+  std::span<std::uint32_t> rows_;
+  std::uint32_t* room_ = nullptr;
+  float* points_ = nullptr;
+  std::array<Set, kMostSets> sets_;
+  std::size_t open_ = 0;
+};
 
 }  // namespace winnow

@@ -28,7 +28,9 @@ Status SceneState::make_partition_of(Motion which) {
   SceneSet& target = set(which);
   if (target.partition.has_value()) return Status::ok;
   Partition made(options.structures[static_cast<std::size_t>(which)],
-                 {.memory = options.memory, .execution = options.execution});
+                 {.memory = options.memory,
+                  .execution = options.execution,
+                  .build_budget = options.build_budget});
   const Status status = made.status();
   if (status == Status::ok) target.partition.emplace(std::move(made));
   return status;

@@ -18,18 +18,21 @@ namespace winnow::test {
 /// Names of all structures, in the order of `all_structures()`.
 [[nodiscard]] std::vector<std::string_view> structure_names();
 
-/// A structure, an instruction set and a number of threads (1 means Execution::serial()).
+/// A structure, an instruction set, a number of threads (1 means Execution::serial()), and how much
+/// of a build a refresh may plan.
 struct Config {
   std::string partition;
   Isa isa{};
   int threads = 1;
+  std::size_t build_budget = 0;
 
   [[nodiscard]] Execution execution() const {
     return threads == 1 ? Execution::serial() : Execution::parallel();
   }
   [[nodiscard]] Partition make(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) const {
-    return Partition(structure_named(partition), {.memory = memory, .execution = execution()});
+    return Partition(structure_named(partition),
+                     {.memory = memory, .execution = execution(), .build_budget = build_budget});
   }
 };
 

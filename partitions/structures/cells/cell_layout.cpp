@@ -309,35 +309,42 @@ void CellLayout::find_cells(const BoundsPool& pool, std::uint32_t* cell,
   });
 }
 
-std::uint32_t CellLayout::cell_of(const BoundsPool& pool, std::size_t row) const noexcept {
+std::uint32_t CellLayout::cell_of(const Structure::Place& box) const noexcept {
   std::uint32_t cell = 0;
   for (std::size_t k = 3; k-- > 0;) {
     const CellAxis& axis = axes_[k];
-    const float low = pool.column(axis.axis)[row];
-    if (!(pool.column(3 + axis.axis)[row] - low <= axis.limit)) return kNoCell;
+    const float low = box.low[axis.axis];
+    if (!(box.high[axis.axis] - low <= axis.limit)) return kNoCell;
     cell = cell * axis.count + guess_cell(axis, low);
   }
   return cell;
 }
 
-bool CellLayout::fits(const BoundsPool& pool, std::size_t row, std::uint32_t cell) const noexcept {
+bool CellLayout::fits(const Structure::Place& box, std::uint32_t cell) const noexcept {
   for (const CellAxis& axis : axes_) {
-    const float low = pool.column(axis.axis)[row];
+    const float low = box.low[axis.axis];
     const std::uint32_t c = cell % axis.count;
     cell /= axis.count;
     if (!(low >= axis.from[c] && low <= axis.to[c])) return false;
-    if (!(pool.column(3 + axis.axis)[row] - low <= axis.limit)) return false;
+    if (!(box.high[axis.axis] - low <= axis.limit)) return false;
   }
   return true;
 }
 
-bool CellLayout::fits(const BoundsPool& pool, std::size_t row,
+bool CellLayout::fits(const Structure::Place& box, std::size_t row,
                       const Column<std::uint32_t>& start) const noexcept {
   // Mostly the box's own corner still lies in the cell that holds the row.
-  const std::uint32_t own = cell_of(pool, row);
+  const std::uint32_t own = cell_of(box);
   if (own != kNoCell && row >= start[own] && row < start[own + 1]) return true;
   const auto after = std::upper_bound(start.begin(), start.end(), row);
-  return fits(pool, row, static_cast<std::uint32_t>(after - start.begin() - 1));
+  return fits(box, static_cast<std::uint32_t>(after - start.begin() - 1));
+}
+
+void CellLayout::swap(CellLayout& other) noexcept {
+  std::swap(axes_, other.axes_);
+  edges_.swap(other.edges_);
+  std::swap(drift_, other.drift_);
+  std::swap(usable_, other.usable_);
 }
 
 void CellLayout::release() noexcept {

@@ -4,6 +4,7 @@
 #include <winnow/core/execution.h>
 #include "core/memory/bounds_pool.h"
 #include "partitions/structures/cells/cells.kernel.h"
+#include "partitions/structures/structure.h"
 
 #include <array>
 #include <cstddef>
@@ -68,14 +69,16 @@ class CellLayout {
   /// blocks.
   void find_cells(const BoundsPool& pool, std::uint32_t* cell,
                   const Execution& execution) const noexcept;
-  /// The cell for a row's box, or kNoCell if it does not suit any.
-  [[nodiscard]] std::uint32_t cell_of(const BoundsPool& pool, std::size_t row) const noexcept;
-  /// True if the row's box may stay in the cell.
-  [[nodiscard]] bool fits(const BoundsPool& pool, std::size_t row,
-                          std::uint32_t cell) const noexcept;
-  /// The same for the cell that holds the row: cell c holds rows [start[c], start[c + 1]).
-  [[nodiscard]] bool fits(const BoundsPool& pool, std::size_t row,
+  /// The cell for a box, or kNoCell if it does not suit any.
+  [[nodiscard]] std::uint32_t cell_of(const Structure::Place& box) const noexcept;
+  /// True if the box may stay in the cell.
+  [[nodiscard]] bool fits(const Structure::Place& box, std::uint32_t cell) const noexcept;
+  /// The same for the cell that holds the box's row: cell c holds rows [start[c], start[c + 1]).
+  [[nodiscard]] bool fits(const Structure::Place& box, std::size_t row,
                           const Column<std::uint32_t>& start) const noexcept;
+
+  /// Exchanges two layouts of the same memory resource.
+  void swap(CellLayout& other) noexcept;
 
   void release() noexcept;
   [[nodiscard]] Bytes bytes() const noexcept { return edges_.bytes(); }

@@ -12,15 +12,16 @@ namespace winnow {
 
 /// What structures have in common whose regular rows lie in cells, one after another: how pair
 /// finding and the search for what left its cell are cut into tasks, and whose memory is whose.
+/// Each holds its cells twice: as they are in use, and as the next build plans them.
 class CellStructure : public Structure {
  public:
   explicit CellStructure(const StructureInput& input) noexcept
-      : Structure(input), start_(input.memory), list_(input.memory) {}
+      : Structure(input), start_(input.memory), planned_start_(input.memory) {}
 
-  void find_misfits(Column<std::uint32_t>& rows, std::size_t limit) noexcept final {
+  void find_misfits(std::uint32_t* room, Column<std::uint32_t>& rows,
+                    std::size_t limit) noexcept final {
     append_in_order(
-        execution(), {places()}, list_.data(),
-        [this](std::uint32_t place) { return first_row(place); },
+        execution(), {places()}, room, [this](std::uint32_t place) { return first_row(place); },
         [this](std::uint32_t begin, std::uint32_t end, std::uint32_t* out) {
           return write_misfits(begin, end, out);
         },
@@ -31,10 +32,9 @@ class CellStructure : public Structure {
     const TaskCut cut = pair_cut();
     return find_pairs(cut.first(task), cut.first(task + 1), sink);
   }
-  void release_memory() noexcept override { release_columns(start_, list_); }
+  void release_memory() noexcept override { release_columns(start_, planned_start_); }
   void add_bytes(Footprint& footprint) const noexcept override {
-    footprint.structure += start_.bytes();
-    footprint.scratch += list_.bytes();
+    footprint.structure += bytes_of(start_, planned_start_);
   }
 
  protected:
@@ -53,17 +53,18 @@ class CellStructure : public Structure {
   virtual std::size_t write_misfits(std::uint32_t begin, std::uint32_t end,
                                     std::uint32_t* out) const noexcept = 0;
 
-  /// Makes those live rows that have no cell in list_ part of the rest; `regular` others have one.
+  /// Makes those live rows that have no cell in the plan's list part of the rest; `regular` others
+  /// have one.
   void list_rest(std::size_t regular, const RowPlan& plan) const noexcept {
-    const std::size_t most = objects() - regular;
-    for (std::size_t row = 0; row < pool().rows() && plan.rest.size() < most; ++row) {
-      if (list_[row] != CountingSort::kNone || pool().ids()[row] == kNoObject) continue;
+    const std::size_t most = plan.objects - regular;
+    for (std::size_t row = 0; row < plan.rows && plan.rest.size() < most; ++row) {
+      if (plan.list[row] != CountingSort::kNone || pool().ids()[row] == kNoObject) continue;
       (void)plan.rest.push_back(static_cast<std::uint32_t>(row));
     }
   }
 
   Column<std::uint32_t> start_;  ///< first row of each cell, and the end
-  Column<std::uint32_t> list_;   ///< while building what it likes; then room for the rows that left
+  Column<std::uint32_t> planned_start_;
 
  private:
   [[nodiscard]] TaskCut pair_cut() const noexcept {

@@ -29,8 +29,10 @@ class FlatGrid final : public CellStructure {
   explicit FlatGrid(const StructureInput& input) noexcept;
 
  private:
-  [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
-  [[nodiscard]] bool fits(std::size_t row) const noexcept override;
+  [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
+  [[nodiscard]] std::size_t plan_passes() const noexcept override { return 2; }
+  void finish_build(const RowPlan& plan, bool moved) noexcept override;
+  [[nodiscard]] bool fits(std::size_t row, const Place& place) const noexcept override;
   [[nodiscard]] std::size_t places() const noexcept override;
   [[nodiscard]] std::uint32_t first_row(std::uint32_t line) const noexcept override;
   std::size_t write_misfits(std::uint32_t begin, std::uint32_t end,
@@ -42,50 +44,68 @@ class FlatGrid final : public CellStructure {
   void add_bytes(Footprint& footprint) const noexcept override;
   [[nodiscard]] std::size_t cells() const noexcept override;
 
-  [[nodiscard]] bool drop_overfull(const CountingSort& sort) noexcept;
+  [[nodiscard]] Planned choose_cells(const RowPlan& plan) noexcept;
+  void sort_by_cell(const RowPlan& plan) noexcept;
+  [[nodiscard]] bool drop_overfull(const CountingSort& sort, const RowPlan& plan) const noexcept;
   [[nodiscard]] GridView view() const noexcept;
 
-  // While building list_ holds the cell of each row.
   CellLayout layout_;
+  CellLayout planned_;
 };
 
 FlatGrid::FlatGrid(const StructureInput& input) noexcept
-    : CellStructure(input), layout_(input.memory) {}
+    : CellStructure(input), layout_(input.memory), planned_(input.memory) {}
 
-bool FlatGrid::plan(const RowPlan& plan) noexcept {
+Planned FlatGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
+  if (stage == 0) return choose_cells(plan);
+  sort_by_cell(plan);
+  return Planned::done;
+}
+
+// Leaves the cell of each row in the list.
+Planned FlatGrid::choose_cells(const RowPlan& plan) noexcept {
   const SceneSample sample(pool());
-  if (!layout_.choose(sample, {.rows_per_block = 10})) return false;
-  if (!layout_.usable()) {
+  if (!planned_.choose(sample, {.rows_per_block = 10})) return Planned::out_of_memory;
+  if (!planned_.usable()) {
     leave_all(plan);
-    return true;
+    return Planned::done;
   }
-  const std::size_t rows = pool().rows();
-  if (!list_.resize(rows) || !start_.resize(layout_.cells() + 1)) return false;
-  layout_.find_cells(pool(), list_.data(), execution());
-  CountingSort sort({list_.data(), rows}, {start_.data(), start_.size()},
+  if (!plan.list.resize(plan.rows) || !planned_start_.resize(planned_.cells() + 1)) {
+    return Planned::out_of_memory;
+  }
+  planned_.find_cells(pool(), plan.list.data(), execution());
+  return Planned::goes_on;
+}
+
+void FlatGrid::sort_by_cell(const RowPlan& plan) noexcept {
+  CountingSort sort({plan.list.data(), plan.rows}, {planned_start_.data(), planned_start_.size()},
                     {plan.rest.data(), plan.rest.capacity()}, execution());
   sort.count();
-  if (drop_overfull(sort)) sort.count();
+  if (drop_overfull(sort, plan)) sort.count();
   plan.regular.set_size(sort.find_starts());
   sort.place(plan.regular.data());
   list_rest(plan.regular.size(), plan);
-  return true;
 }
 
-bool FlatGrid::drop_overfull(const CountingSort& sort) noexcept {
+bool FlatGrid::drop_overfull(const CountingSort& sort, const RowPlan& plan) const noexcept {
   bool any = false;
-  for (std::size_t cell = 0; cell < layout_.cells() && !any; ++cell) {
+  for (std::size_t cell = 0; cell < planned_.cells() && !any; ++cell) {
     any = sort.size_of(cell) > kOverfull;
   }
   if (!any) return false;
-  for (std::uint32_t& cell : list_) {
+  for (std::uint32_t& cell : plan.list) {
     if (cell != CellLayout::kNoCell && sort.size_of(cell) > kOverfull) cell = CellLayout::kNoCell;
   }
   return true;
 }
 
-bool FlatGrid::fits(std::size_t row) const noexcept {
-  return layout_.fits(pool(), row, start_);
+void FlatGrid::finish_build(const RowPlan&, bool) noexcept {
+  layout_.swap(planned_);
+  start_.swap(planned_start_);
+}
+
+bool FlatGrid::fits(std::size_t row, const Place& place) const noexcept {
+  return layout_.fits(place, row, start_);
 }
 
 std::size_t FlatGrid::places() const noexcept {
@@ -120,11 +140,13 @@ void FlatGrid::draw(DebugDraw& draw) const {
 void FlatGrid::release_memory() noexcept {
   CellStructure::release_memory();
   layout_.release();
+  planned_.release();
 }
 
 void FlatGrid::add_bytes(Footprint& footprint) const noexcept {
   CellStructure::add_bytes(footprint);
   footprint.structure += layout_.bytes();
+  footprint.structure += planned_.bytes();
 }
 
 std::size_t FlatGrid::cells() const noexcept {

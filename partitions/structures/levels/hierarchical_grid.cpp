@@ -9,6 +9,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cfloat>
+#include <cmath>
+#include <limits>
 
 namespace winnow {
 
@@ -24,6 +27,7 @@ constexpr std::size_t kCrowd = 512;
 // Objects for each cell of a line.
 constexpr std::size_t kInCell = 4;
 constexpr std::size_t kRowsPerStretch = 8192;
+constexpr std::size_t kLinesPerStretch = 512;
 
 // One colour for each level, beside those of other things: from Okabe and Ito, as these, and darker
 // from the sixth level on.
@@ -37,6 +41,20 @@ Colour level_colour(std::size_t level) noexcept {
   const std::size_t left = 5 - level / kHues.size();
   const auto darker = [&](std::uint8_t c) { return static_cast<std::uint8_t>(c * left / 5); };
   return {darker(hue.r), darker(hue.g), darker(hue.b), hue.a};
+}
+
+/// Steps of the fast axis, both ends included.
+struct StepRange {
+  std::uint32_t first;
+  std::uint32_t last;
+};
+
+// Those of a cell; of a line that runs backwards they are counted from the other end.
+StepRange steps_of_cell(const GridLevel& g, const GridLine& line, bool back,
+                        std::uint32_t cell) noexcept {
+  const std::uint32_t first = line.first + (cell << line.shift);
+  const std::uint32_t last = std::min(g.steps, first + ((1U << line.shift) - 1));
+  return back ? StepRange{g.steps - last, g.steps - first} : StepRange{first, last};
 }
 
 // Where a cell is. On an axis that is not divided it is drawn as long as what it holds.
@@ -56,12 +74,28 @@ Aabb cell_box(const GridLevel& g, const GridLine& line, std::uint32_t number, st
   const LineCells at = cells_of_line(g, number);
   set(g.mid, at.mid, at.mid + 1);
   set(g.slow, at.slow, at.slow + 1);
-  const std::uint32_t from = line.first + (cell << line.shift);
-  const std::uint32_t to = from + (1U << line.shift);
-  const bool back = (number & 1U) != 0;
-  set(g.fast, back ? g.steps + 1 - std::min(to, g.steps + 1) : from,
-      back ? g.steps + 1 - from : to);
+  const StepRange steps = steps_of_cell(g, line, (number & 1U) != 0, cell);
+  set(g.fast, steps.first, steps.last + 1);
   return box;
+}
+
+/// The place nearest to x whose step lies within a range. NaN, which is near to nothing, if floats
+/// are too coarse there to say.
+float nearest_within(const LevelAxis& axis, const StepRange& steps, float x) noexcept {
+  constexpr int kMostTries = 4;
+  const std::uint32_t step = cell_at(axis, x);
+  const bool below = step < steps.first;
+  if (!below && step <= steps.last) return x;
+  const std::uint32_t edge = below ? steps.first : steps.last + 1;
+  x = static_cast<float>(static_cast<double>(axis.origin) +
+                         static_cast<double>(edge) / static_cast<double>(axis.inverse));
+  const float inwards = below ? FLT_MAX : -FLT_MAX;
+  for (int i = 0; i < kMostTries; ++i) {
+    const std::uint32_t own = cell_at(axis, x);
+    if (own >= steps.first && own <= steps.last) return x;
+    x = std::nextafter(x, inwards);
+  }
+  return std::numeric_limits<float>::quiet_NaN();
 }
 
 /// Uniform grids laid over each other, one for each range of sizes (Overmars, "Point location in
@@ -87,21 +121,22 @@ class HierarchicalGrid final : public CellStructure {
 
   /// Levels made by the last build, 0 if it made none.
   [[nodiscard]] std::size_t levels() const noexcept override {
-    return regular_rows() == 0 ? 0 : level_count_;
+    return regular_rows() == 0 ? 0 : used_.levels;
   }
 
  private:
-  [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
-  void finish_build() noexcept override;
-  [[nodiscard]] bool fits(std::size_t row) const noexcept override;
-  [[nodiscard]] std::size_t places() const noexcept override { return line_.size(); }
+  [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
+  [[nodiscard]] std::size_t plan_passes() const noexcept override { return 4; }
+  void finish_build(const RowPlan& plan, bool moved) noexcept override;
+  [[nodiscard]] bool fits(std::size_t row, const Place& place) const noexcept override;
+  [[nodiscard]] std::size_t places() const noexcept override { return used_.line.size(); }
   [[nodiscard]] std::uint32_t first_row(std::uint32_t line) const noexcept override {
-    return start_[line_[line].cell];
+    return start_[used_.line[line].cell];
   }
   std::size_t write_misfits(std::uint32_t begin, std::uint32_t end,
                             std::uint32_t* out) const noexcept override;
   [[nodiscard]] std::size_t pair_units() const noexcept override {
-    return (regular_rows() + kBlockRows - 1) / kBlockRows;
+    return blocks_of(regular_rows());
   }
   bool find_pairs(std::uint32_t begin, std::uint32_t end, PairSink& sink) const noexcept override;
   bool query(const QueryBatch& batch, PairSink& sink) const noexcept override;
@@ -110,42 +145,96 @@ class HierarchicalGrid final : public CellStructure {
   void add_bytes(Footprint& footprint) const noexcept override;
   [[nodiscard]] std::size_t cells() const noexcept override;
 
-  struct Sorted;
-  [[nodiscard]] std::span<const std::uint32_t> sort_by_level(const SizeClasses& classes,
-                                                             std::span<std::uint32_t> start,
-                                                             const RowPlan& plan) noexcept;
-  bool build_level(std::span<const std::uint32_t> rows, const RowPlan& plan) noexcept;
-  bool add_line(const Sorted& sorted, std::size_t begin, std::size_t end, const RowPlan& plan);
+  /// Levels and their lines.
+  struct Lines {
+    explicit Lines(std::pmr::memory_resource* memory) noexcept
+        : level(memory), line(memory), number(memory), rank(memory) {}
+
+    void clear() noexcept {
+      levels = 0;
+      level.clear();
+      line.clear();
+      number.clear();
+      rank.clear();
+    }
+    void swap(Lines& other) noexcept {
+      level.swap(other.level);
+      std::swap(levels, other.levels);
+      line.swap(other.line);
+      number.swap(other.number);
+      rank.swap(other.rank);
+    }
+    void release() noexcept { release_columns(level, line, number, rank); }
+    [[nodiscard]] Bytes bytes() const noexcept { return bytes_of(level, line, number, rank); }
+
+    Column<GridLevel> level;
+    std::size_t levels = 0;  // of these that hold rows; while they are planned, so far
+    Column<GridLine> line;
+    Column<std::uint32_t> number;  // of each line
+    Column<std::uint32_t> rank;    // lines below each number, level by level
+  };
+
+  /// Rows of a level in the order of their cells: line << step_bits | step, before the row. Where
+  /// that does not fit the upper half, only the line stands there.
+  struct Sorted {
+    const std::uint64_t* items = nullptr;
+    std::size_t count = 0;
+    unsigned line_bits = 0;
+    unsigned step_bits = 0;
+    bool packed = false;
+
+    [[nodiscard]] std::uint32_t row(std::size_t i) const {
+      return static_cast<std::uint32_t>(items[i]);
+    }
+    [[nodiscard]] std::uint32_t line(std::size_t i) const {
+      const std::uint64_t key = items[i] >> 32U;
+      return static_cast<std::uint32_t>(packed ? key >> step_bits : key);
+    }
+  };
+
+  [[nodiscard]] Planned begin_plan(const RowPlan& plan) noexcept;
+  void sort_by_level(const SizeClasses& classes, const RowPlan& plan) noexcept;
+  /// What is done to a level, one after the other.
+  enum class Step : std::uint8_t { places, sort, lines };
+  [[nodiscard]] bool run_step(const RowPlan& plan) noexcept;
+  [[nodiscard]] std::span<const std::uint32_t> rows_of_level(const RowPlan& plan) const noexcept;
+  void find_places(const RowPlan& plan) noexcept;
+  void sort_places(const RowPlan& plan) noexcept;
+  [[nodiscard]] std::uint32_t step_of(std::size_t i) const noexcept;
+  [[nodiscard]] bool lay_lines(const RowPlan& plan) noexcept;
+  bool add_line(std::size_t begin, std::size_t end, const RowPlan& plan);
   static std::uint32_t leave_crowd(const RowPlan& plan, std::uint32_t begin,
                                    std::uint32_t end) noexcept;
   bool rank_lines(GridLevel& level);
-  [[nodiscard]] std::uint32_t line_of(const GridLevel& level, std::size_t row) const noexcept;
+  void bring_keys_home(std::uint32_t begin, std::uint32_t end) noexcept;
+  [[nodiscard]] std::uint32_t line_of(const GridLevel& level, const Place& place,
+                                      std::size_t row) const noexcept;
   [[nodiscard]] LevelsView view() const noexcept;
 
-  std::array<GridLevel, kMostLevels> level_;
-  std::size_t level_count_ = 0;
-  Column<GridLine> line_;
-  Column<std::uint32_t> number_;  // of each line
-  Column<std::uint32_t> rank_;    // lines below each number, level by level
-  Column<float> key_;             // by row: lower end on the fast axis at the build
+  Lines used_;
+  Lines planned_;
+  Column<float> key_;  // by row: lower end on the fast axis, or nearest to it in the row's cell
+
+  // While planning: where the rows of each level begin, and how far the plan is.
+  std::array<std::uint32_t, kMostLevels + 1> first_of_level_{};
+  std::size_t all_levels_ = 0;
+  std::size_t level_ = 0;
+  Step step_ = Step::places;
+  Sorted sorted_;
 };
 
 HierarchicalGrid::HierarchicalGrid(const StructureInput& input) noexcept
-    : CellStructure(input),
-      line_(input.memory),
-      number_(input.memory),
-      rank_(input.memory),
-      key_(input.memory) {}
+    : CellStructure(input), used_(input.memory), planned_(input.memory), key_(input.memory) {}
 
 struct LinePlace {
   std::uint32_t line;
   std::uint32_t step;
 };
 
-LinePlace place_of(const GridLevel& g, const BoundsPool& pool, std::size_t row) noexcept {
-  const std::uint32_t mid = cell_at(g.mid, pool.column(g.mid.axis)[row]);
-  const std::uint32_t slow = cell_at(g.slow, pool.column(g.slow.axis)[row]);
-  const std::uint32_t step = cell_at(g.fast, pool.column(g.fast.axis)[row]);
+LinePlace place_on(const GridLevel& g, const Structure::Place& box) noexcept {
+  const std::uint32_t mid = cell_at(g.mid, box.low[g.mid.axis]);
+  const std::uint32_t slow = cell_at(g.slow, box.low[g.slow.axis]);
+  const std::uint32_t step = cell_at(g.fast, box.low[g.fast.axis]);
   const std::uint32_t line = line_number(g, mid, slow);
   return {line, (line & 1U) != 0 ? g.steps - step : step};
 }
@@ -153,143 +242,166 @@ LinePlace place_of(const GridLevel& g, const BoundsPool& pool, std::size_t row) 
 // Fewer are compared with each other sooner than a digit's values are counted.
 constexpr std::size_t kFewToSort = 128;
 
-/// Rows of a level in the order of their cells.
-struct HierarchicalGrid::Sorted {
-  const BoundsPool& pool;
-  const GridLevel& level;
-  const std::uint64_t* items = nullptr;
-  std::size_t count = 0;
-  unsigned step_bits = 0;
-  bool packed = false;  ///< line and step fit in an item's upper half, else only the line does
+Planned HierarchicalGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
+  if (stage == 0) return begin_plan(plan);
+  // As many steps of levels as go over all rows once.
+  for (std::size_t rows = 0; level_ < all_levels_ && 2 * rows < plan.objects;) {
+    rows += rows_of_level(plan).size();
+    if (!run_step(plan)) return Planned::out_of_memory;
+  }
+  if (level_ < all_levels_) return Planned::goes_on;
+  key_.set_size(plan.regular.size() + kBlockRows);
+  return planned_start_.push_back(static_cast<std::uint32_t>(plan.regular.size()))
+             ? Planned::done
+             : Planned::out_of_memory;
+}
 
-  [[nodiscard]] std::uint32_t row(std::size_t i) const {
-    return static_cast<std::uint32_t>(items[i]);
-  }
-  [[nodiscard]] std::uint32_t line(std::size_t i) const {
-    const std::uint64_t key = items[i] >> 32U;
-    return static_cast<std::uint32_t>(packed ? key >> step_bits : key);
-  }
-  [[nodiscard]] std::uint32_t step(std::size_t i) const {
-    if (packed) return static_cast<std::uint32_t>(items[i] >> 32U) & level.steps;
-    return place_of(level, pool, row(i)).step;
-  }
-
-  void sort(std::uint64_t* room, std::uint64_t* spare, std::span<const std::uint32_t> rows,
-            const Execution& execution) {
-    count = rows.size();
-    step_bits = static_cast<unsigned>(std::bit_width(level.steps));
-    const std::uint32_t last_line =
-        level.mids * (static_cast<std::uint32_t>(level.slow.last) + 1) - 1;
-    const auto line_bits = static_cast<unsigned>(std::bit_width(last_line));
-    packed = line_bits + step_bits <= 32;
-    for_stretches(execution, count, kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
-      level_rows_kernels().places(level, box_columns(pool).data(), rows.data(), begin, end,
-                                  step_bits, !packed, room);
-    });
-    if (packed && count < kFewToSort) {
-      std::sort(room, room + count);
-      items = room;
-      return;
-    }
-    const unsigned bits = packed ? line_bits + step_bits : step_bits;
-    std::uint64_t* sorted = radix_sort(room, spare, count, bits, execution);
-    if (!packed) {
-      for (std::size_t i = 0; i < count; ++i) {
-        const auto row_number = static_cast<std::uint32_t>(sorted[i]);
-        const LinePlace place = place_of(level, pool, row_number);
-        sorted[i] = std::uint64_t{place.line} << 32U | row_number;
-      }
-      sorted = radix_sort(sorted, sorted == room ? spare : room, count, line_bits, execution);
-    }
-    items = sorted;
-  }
-};
-
-bool HierarchicalGrid::plan(const RowPlan& plan) noexcept {
-  const std::size_t rows = pool().rows();
-  level_count_ = 0;
+Planned HierarchicalGrid::begin_plan(const RowPlan& plan) noexcept {
+  const std::size_t rows = plan.rows;
+  planned_.clear();
+  planned_start_.clear();
   // A first build meets no more rows than objects; of a scene in motion builds meet now more, now
   // fewer, and this is enough for mostly all.
-  const std::size_t first = objects() + (kMostLevels + 1) * kBlockRows;
-  const std::size_t later = std::max(rows, objects() + objects() / 8 + 256);
-  if (!list_.reserve(rows <= first ? first : later)) return false;
-  list_.set_size(rows);
+  const std::size_t first = plan.objects + (kMostLevels + 1) * kBlockRows;
+  const std::size_t later = std::max(rows, plan.objects + plan.objects / 8 + 256);
+  if (!plan.list.reserve(rows <= first ? first : later)) return Planned::out_of_memory;
+  plan.list.set_size(rows);
   for_stretches(execution(), rows, kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
-    level_rows_kernels().octaves(box_columns(pool()).data(), begin, end, list_.data());
+    level_rows_kernels().octaves(box_columns(pool()).data(), begin, end, plan.list.data());
   });
-  const SizeClasses classes(pool(), {list_.data(), rows}, execution());
+  const SizeClasses classes(pool(), {plan.list.data(), rows}, execution());
   if (classes.objects() < kFewest) {
     leave_all(plan);
-    return true;
+    return Planned::done;
   }
   // By objects, not rows, so that a later build of as many asks for no more.
   const std::size_t count = classes.objects();
   const std::size_t room = count + (kMostLevels + 1) * kBlockRows;
   if (!key_.reserve(room) || !plan.regular.reserve(room + kBlockRows) ||
-      !plan.items.resize(2 * count)) {
-    return false;
+      !plan.items.resize(2 * count) || !planned_.level.reserve(kMostLevels)) {
+    return Planned::out_of_memory;
   }
-  std::array<std::uint32_t, kMostLevels + 1> start{};
-  const std::span<const std::uint32_t> by_level = sort_by_level(classes, start, plan);
-  line_.clear();
-  number_.clear();
-  rank_.clear();
-  start_.clear();
-  for (std::size_t l = 0; l < classes.levels(); ++l) {
-    if (!build_level(by_level.subspan(start[l], start[l + 1] - start[l]), plan)) return false;
-  }
-  key_.set_size(plan.regular.size() + kBlockRows);
-  return start_.push_back(static_cast<std::uint32_t>(plan.regular.size()));
+  sort_by_level(classes, plan);
+  level_ = 0;
+  step_ = Step::places;
+  return Planned::goes_on;
 }
 
-// Puts the rows of each level together, and where each begins into `start`. They lie at the end of
-// the items, of which sorting a level needs two for each of its rows from the front, and for those
-// of further levels leaves half of one.
-std::span<const std::uint32_t> HierarchicalGrid::sort_by_level(const SizeClasses& classes,
-                                                               std::span<std::uint32_t> start,
-                                                               const RowPlan& plan) noexcept {
+// Puts the rows of each level together. They lie at the end of the items, of which sorting a level
+// needs two for each of its rows from the front, and for those of further levels leaves half of
+// one.
+void HierarchicalGrid::sort_by_level(const SizeClasses& classes, const RowPlan& plan) noexcept {
+  all_levels_ = classes.levels();
+  planned_.level.set_size(all_levels_);
   std::array<std::uint32_t, kOctaves> level;
   for (std::uint32_t o = 0; o < kOctaves; ++o) {
     const std::size_t own = classes.level_of(o);
-    level[o] = own < classes.levels() ? static_cast<std::uint32_t>(own) : CountingSort::kNone;
+    level[o] = own < all_levels_ ? static_cast<std::uint32_t>(own) : CountingSort::kNone;
   }
-  for_stretches(execution(), list_.size(), kRowsPerStretch,
-                [&](std::size_t begin, std::size_t end) {
-                  for (std::size_t row = begin; row < end; ++row) list_[row] = level[list_[row]];
-                });
-  CountingSort sort({list_.data(), list_.size()}, start.first(classes.levels() + 1),
+  Column<std::uint32_t>& list = plan.list;
+  for_stretches(execution(), list.size(), kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) list[row] = level[list[row]];
+  });
+  CountingSort sort({list.data(), list.size()}, std::span(first_of_level_).first(all_levels_ + 1),
                     {plan.rest.data(), plan.rest.capacity()}, execution());
   sort.count();
   const std::size_t count = sort.find_starts();
-  auto* const by_level = reinterpret_cast<std::uint32_t*>(plan.items.end()) - count;
-  sort.place(by_level);
+  sort.place(reinterpret_cast<std::uint32_t*>(plan.items.end()) - count);
   list_rest(count, plan);
-  return {by_level, count};
 }
 
-bool HierarchicalGrid::build_level(std::span<const std::uint32_t> rows,
-                                   const RowPlan& plan) noexcept {
-  GridLevel& level = level_[level_count_];
+std::span<const std::uint32_t> HierarchicalGrid::rows_of_level(const RowPlan& plan) const noexcept {
+  const std::uint32_t begin = first_of_level_[level_];
+  const std::uint32_t all = first_of_level_[all_levels_];
+  const auto* const by_level = reinterpret_cast<const std::uint32_t*>(plan.items.end()) - all;
+  return {by_level + begin, first_of_level_[level_ + 1] - begin};
+}
+
+// False if memory is refused.
+bool HierarchicalGrid::run_step(const RowPlan& plan) noexcept {
+  switch (step_) {
+    case Step::places:
+      find_places(plan);
+      step_ = Step::sort;
+      // What sorting has to look up again must not have moved.
+      if (!sorted_.packed) sort_places(plan);
+      return sorted_.packed || lay_lines(plan);
+    case Step::sort:
+      sort_places(plan);
+      step_ = Step::lines;
+      return true;
+    case Step::lines:
+      return lay_lines(plan);
+  }
+  return false;
+}
+
+void HierarchicalGrid::find_places(const RowPlan& plan) noexcept {
+  const std::span<const std::uint32_t> rows = rows_of_level(plan);
+  GridLevel& level = planned_.level[planned_.levels];
+  level = {};
   lay_level(pool(), rows, execution(), level);
-  Sorted sorted{pool(), level};
+  const std::uint32_t last_line =
+      level.mids * (static_cast<std::uint32_t>(level.slow.last) + 1) - 1;
+  sorted_ = {.count = rows.size(),
+             .line_bits = static_cast<unsigned>(std::bit_width(last_line)),
+             .step_bits = static_cast<unsigned>(std::bit_width(level.steps))};
+  sorted_.packed = sorted_.line_bits + sorted_.step_bits <= 32;
+  for_stretches(execution(), rows.size(), kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
+    level_rows_kernels().places(level, box_columns(pool()).data(), rows.data(), begin, end,
+                                sorted_.step_bits, !sorted_.packed, plan.items.data());
+  });
+}
+
+void HierarchicalGrid::sort_places(const RowPlan& plan) noexcept {
   std::uint64_t* const room = plan.items.data();
-  sorted.sort(room, room + plan.items.size() / 2, rows, execution());
+  std::uint64_t* const spare = room + plan.items.size() / 2;
+  Sorted& own = sorted_;
+  if (own.packed && own.count < kFewToSort) {
+    std::sort(room, room + own.count);
+    own.items = room;
+    return;
+  }
+  const unsigned bits = own.packed ? own.line_bits + own.step_bits : own.step_bits;
+  std::uint64_t* sorted = radix_sort(room, spare, own.count, bits, execution());
+  if (!own.packed) {
+    for (std::size_t i = 0; i < own.count; ++i) {
+      const auto row = static_cast<std::uint32_t>(sorted[i]);
+      const std::uint32_t line = place_on(planned_.level[planned_.levels], place_of(row)).line;
+      sorted[i] = std::uint64_t{line} << 32U | row;
+    }
+    sorted =
+        radix_sort(sorted, sorted == room ? spare : room, own.count, own.line_bits, execution());
+  }
+  own.items = sorted;
+}
+
+std::uint32_t HierarchicalGrid::step_of(std::size_t i) const noexcept {
+  const GridLevel& level = planned_.level[planned_.levels];
+  if (sorted_.packed) return static_cast<std::uint32_t>(sorted_.items[i] >> 32U) & level.steps;
+  return place_on(level, place_of(sorted_.row(i))).step;
+}
+
+bool HierarchicalGrid::lay_lines(const RowPlan& plan) noexcept {
+  GridLevel& level = planned_.level[planned_.levels];
   level.first_row = static_cast<std::uint32_t>(plan.regular.size());
-  level.first_line = static_cast<std::uint32_t>(line_.size());
+  level.first_line = static_cast<std::uint32_t>(planned_.line.size());
   std::size_t next = 0;
-  for (std::size_t begin = 0; begin < sorted.count; begin = next) {
+  for (std::size_t begin = 0; begin < sorted_.count; begin = next) {
     next = begin + 1;
-    while (next < sorted.count && sorted.line(next) == sorted.line(begin)) ++next;
-    if (!add_line(sorted, begin, next, plan)) return false;
+    while (next < sorted_.count && sorted_.line(next) == sorted_.line(begin)) ++next;
+    if (!add_line(begin, next, plan)) return false;
   }
   level.end_row = static_cast<std::uint32_t>(plan.regular.size());
-  level.end_line = static_cast<std::uint32_t>(line_.size());
+  level.end_line = static_cast<std::uint32_t>(planned_.line.size());
+  ++level_;
+  step_ = Step::places;
   if (level.end_row == level.first_row) return true;
   // No block of rows belongs to two levels.
   while (plan.regular.size() % kBlockRows != 0) {
     if (!plan.regular.push_back(kNoObject)) return false;
   }
-  ++level_count_;
+  ++planned_.levels;
   return rank_lines(level);
 }
 
@@ -305,96 +417,121 @@ std::uint32_t HierarchicalGrid::leave_crowd(const RowPlan& plan, std::uint32_t b
 }
 
 // Cuts a line into cells of a few objects each, were they spread evenly.
-bool HierarchicalGrid::add_line(const Sorted& sorted, std::size_t begin, std::size_t end,
-                                const RowPlan& plan) {
+bool HierarchicalGrid::add_line(std::size_t begin, std::size_t end, const RowPlan& plan) {
   const std::size_t most = (end - begin + kInCell - 1) / kInCell;
+  Column<std::uint32_t>& starts = planned_start_;
   GridLine line;
-  line.first = sorted.step(begin);
-  line.cell = static_cast<std::uint32_t>(start_.size());
-  const std::uint32_t length = sorted.step(end - 1) - line.first;
+  line.first = step_of(begin);
+  line.cell = static_cast<std::uint32_t>(starts.size());
+  const std::uint32_t length = step_of(end - 1) - line.first;
   while ((length >> line.shift) >= most) ++line.shift;
   line.last_cell = length >> line.shift;
   const std::size_t cells = std::size_t{line.last_cell} + 1;
-  if (!start_.grow(start_.size() + cells)) return false;
-  start_.set_size(start_.size() + cells);
+  if (!starts.grow(starts.size() + cells)) return false;
+  starts.set_size(starts.size() + cells);
   const std::size_t before = plan.regular.size();
-  std::uint32_t* const start = start_.data() + line.cell;
+  std::uint32_t* const start = starts.data() + line.cell;
   // Room for all was made.
   std::uint32_t* const rows = plan.regular.data();
   auto to = static_cast<std::uint32_t>(before);
   std::size_t next_cell = 0;
   for (std::size_t i = begin; i < end; ++i) {
-    const std::uint32_t cell = (sorted.step(i) - line.first) >> line.shift;
+    const std::uint32_t cell = (step_of(i) - line.first) >> line.shift;
     if (cell >= next_cell && next_cell != 0) to = leave_crowd(plan, start[next_cell - 1], to);
     while (next_cell <= cell) start[next_cell++] = to;
-    rows[to++] = sorted.row(i);
+    rows[to++] = sorted_.row(i);
   }
   to = leave_crowd(plan, start[next_cell - 1], to);
   plan.regular.set_size(to);
   if (plan.regular.size() == before) {
-    start_.set_size(line.cell);
+    starts.set_size(line.cell);
     return true;
   }
-  return line_.push_back(line) && number_.push_back(sorted.line(begin));
+  return planned_.line.push_back(line) && planned_.number.push_back(sorted_.line(begin));
 }
 
 // A table of all lines where they are not many more than the objects.
 bool HierarchicalGrid::rank_lines(GridLevel& level) {
   const std::size_t lines =
       std::size_t{level.mids} * (static_cast<std::size_t>(level.slow.last) + 1);
-  level.first_rank = static_cast<std::uint32_t>(rank_.size());
+  Column<std::uint32_t>& ranks = planned_.rank;
+  level.first_rank = static_cast<std::uint32_t>(ranks.size());
   level.ranked = lines <= (level.end_row - level.first_row) / 2 + 16;
   if (!level.ranked) return true;
-  if (!rank_.resize(rank_.size() + lines + 1)) return false;
-  std::uint32_t* const rank = rank_.data() + level.first_rank;
+  if (!ranks.resize(ranks.size() + lines + 1)) return false;
+  std::uint32_t* const rank = ranks.data() + level.first_rank;
   std::size_t number = 0;
   for (std::uint32_t line = level.first_line; line < level.end_line; ++line) {
-    while (number <= number_[line]) rank[number++] = line;
+    while (number <= planned_.number[line]) rank[number++] = line;
   }
   while (number <= lines) rank[number++] = level.end_line;
   return true;
 }
 
-void HierarchicalGrid::finish_build() noexcept {
-  for (std::size_t l = 0; l < level_count_ && regular_rows() != 0; ++l) {
-    const GridLevel& level = level_[l];
+void HierarchicalGrid::finish_build(const RowPlan&, bool moved) noexcept {
+  used_.swap(planned_);
+  start_.swap(planned_start_);
+  for (std::size_t l = 0; l < used_.levels && regular_rows() != 0; ++l) {
+    const GridLevel& level = used_.level[l];
     const float* const low = pool().column(level.fast.axis);
     std::copy(low + level.first_row, low + level.end_row, key_.data() + level.first_row);
   }
+  if (!moved || regular_rows() == 0) return;
+  for_stretches(
+      execution(), used_.line.size(), kLinesPerStretch, [&](std::size_t begin, std::size_t end) {
+        bring_keys_home(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
+      });
 }
 
-// The stored line that holds a row of the level.
-std::uint32_t HierarchicalGrid::line_of(const GridLevel& g, std::size_t row) const noexcept {
+// Objects have moved since they were given their cells: a key that has left its cell becomes the
+// nearest one within it, so that who is near to its key is near to its cell.
+void HierarchicalGrid::bring_keys_home(std::uint32_t begin, std::uint32_t end) noexcept {
+  const GridLevel* level = used_.level.data();
+  for (std::uint32_t l = begin; l < end; ++l) {
+    while (l >= level->end_line) ++level;
+    const GridLine& line = used_.line[l];
+    const bool back = (used_.number[l] & 1U) != 0;
+    for (std::uint32_t cell = 0; cell <= line.last_cell; ++cell) {
+      const StepRange own = steps_of_cell(*level, line, back, cell);
+      const std::uint32_t last_row = start_[line.cell + cell + 1];
+      for (std::uint32_t row = start_[line.cell + cell]; row < last_row; ++row) {
+        key_[row] = nearest_within(level->fast, own, key_[row]);
+      }
+    }
+  }
+}
+
+// The stored line that holds a row of the level, whose object is at a place.
+std::uint32_t HierarchicalGrid::line_of(const GridLevel& g, const Place& place,
+                                        std::size_t row) const noexcept {
+  const Column<GridLine>& lines = used_.line;
   const auto holds = [&](std::uint32_t line) {
-    return row >= start_[line_[line].cell] &&
-           row < start_[line_[line].cell + line_[line].last_cell + 1];
+    return row >= start_[lines[line].cell] &&
+           row < start_[lines[line].cell + lines[line].last_cell + 1];
   };
   if (g.ranked) {
     // Mostly the box's own corner still lies in the line that holds the row.
-    const std::uint32_t mid = cell_at(g.mid, pool().column(g.mid.axis)[row]);
-    const std::uint32_t slow = cell_at(g.slow, pool().column(g.slow.axis)[row]);
-    const std::uint32_t line = rank_[g.first_rank + line_number(g, mid, slow)];
+    const std::uint32_t line = used_.rank[g.first_rank + place_on(g, place).line];
     if (line < g.end_line && holds(line)) return line;
   }
   const auto after =
-      std::partition_point(line_.begin() + g.first_line, line_.begin() + g.end_line,
+      std::partition_point(lines.begin() + g.first_line, lines.begin() + g.end_line,
                            [&](const GridLine& line) { return start_[line.cell] <= row; });
-  return static_cast<std::uint32_t>(after - line_.begin()) - 1;
+  return static_cast<std::uint32_t>(after - lines.begin()) - 1;
 }
 
-bool HierarchicalGrid::fits(std::size_t row) const noexcept {
+bool HierarchicalGrid::fits(std::size_t row, const Place& place) const noexcept {
   std::size_t l = 0;
-  while (row >= level_[l].end_row) ++l;
-  const GridLevel& g = level_[l];
+  while (row >= used_.level[l].end_row) ++l;
+  const GridLevel& g = used_.level[l];
   for (const LevelAxis* const axis : {&g.fast, &g.mid, &g.slow}) {
-    const float edge = pool().column(3 + axis->axis)[row] - pool().column(axis->axis)[row];
-    if (!(edge <= axis->limit)) return false;
+    if (!(place.high[axis->axis] - place.low[axis->axis] <= axis->limit)) return false;
   }
-  const float low = pool().column(g.fast.axis)[row];
+  const float low = place.low[g.fast.axis];
   if (!(low - g.fast.slack <= key_[row] && key_[row] <= low + g.fast.slack)) return false;
-  const LineCells cells = cells_of_line(g, number_[line_of(g, row)]);
+  const LineCells cells = cells_of_line(g, used_.number[line_of(g, place, row)]);
   const auto keeps = [&](const LevelAxis& axis, std::uint32_t cell) {
-    const float x = pool().column(axis.axis)[row];
+    const float x = place.low[axis.axis];
     return cell_at(axis, x - axis.slack) <= cell && cell <= cell_at(axis, x + axis.slack);
   };
   return keeps(g.mid, cells.mid) && keeps(g.slow, cells.slow);
@@ -415,23 +552,24 @@ bool HierarchicalGrid::query(const QueryBatch& batch, PairSink& sink) const noex
 }
 
 LevelsView HierarchicalGrid::view() const noexcept {
-  return {row_view(),    level_.data(),  static_cast<std::uint32_t>(level_count_),
-          line_.data(),  number_.data(), rank_.data(),
-          start_.data(), key_.data()};
+  return {row_view(),        used_.level.data(),  static_cast<std::uint32_t>(used_.levels),
+          used_.line.data(), used_.number.data(), used_.rank.data(),
+          start_.data(),     key_.data()};
 }
 
 void HierarchicalGrid::draw(DebugDraw& draw) const {
-  for (std::size_t l = 0; l < level_count_; ++l) {
-    const GridLevel& g = level_[l];
+  const Column<GridLine>& lines = used_.line;
+  for (std::size_t l = 0; l < used_.levels; ++l) {
+    const GridLevel& g = used_.level[l];
     for (std::uint32_t i = g.first_line; i < g.end_line; ++i) {
-      for (std::uint32_t cell = 0; cell <= line_[i].last_cell; ++cell) {
+      for (std::uint32_t cell = 0; cell <= lines[i].last_cell; ++cell) {
         Aabb contents;
-        const std::uint32_t end = std::min(start_[line_[i].cell + cell + 1], g.end_row);
-        for (std::uint32_t row = start_[line_[i].cell + cell]; row < end; ++row) {
+        const std::uint32_t end = std::min(start_[lines[i].cell + cell + 1], g.end_row);
+        for (std::uint32_t row = start_[lines[i].cell + cell]; row < end; ++row) {
           contents.merge(stored_box(row_view().column, row));
         }
         if (!contents.is_valid()) continue;  // nothing, or holes only
-        draw.box(cell_box(g, line_[i], number_[i], cell, contents), level_colour(l));
+        draw.box(cell_box(g, lines[i], used_.number[i], cell, contents), level_colour(l));
         draw.box(contents, kContentsColour);
       }
     }
@@ -440,12 +578,16 @@ void HierarchicalGrid::draw(DebugDraw& draw) const {
 
 void HierarchicalGrid::release_memory() noexcept {
   CellStructure::release_memory();
-  release_columns(line_, number_, rank_, key_);
+  used_.release();
+  planned_.release();
+  key_.release();
 }
 
 void HierarchicalGrid::add_bytes(Footprint& footprint) const noexcept {
   CellStructure::add_bytes(footprint);
-  footprint.structure += bytes_of(line_, number_, rank_, key_);
+  footprint.structure += used_.bytes();
+  footprint.structure += planned_.bytes();
+  footprint.structure += key_.bytes();
 }
 
 std::size_t HierarchicalGrid::cells() const noexcept {

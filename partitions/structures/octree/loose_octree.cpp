@@ -1,5 +1,6 @@
 #include <winnow/partitions/debug_colours.h>
 #include "core/sort/radix_sort.h"
+#include "core/sort/stretches.h"
 #include "partitions/structures/cells/cell_structure.h"
 #include "partitions/structures/octree/loose_octree_cells.h"
 
@@ -37,14 +38,16 @@ class LooseTree : public CellStructure {
   /// From the root to the finest nodes; 0 if there are none. Statistics counts the nodes that hold
   /// objects as cells.
   [[nodiscard]] std::size_t levels() const noexcept override {
-    return regular_rows() == 0 ? 0 : cells_.levels();
+    return regular_rows() == 0 ? 0 : used_.cells.levels();
   }
 
  private:
-  [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
+  [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
+  [[nodiscard]] std::size_t plan_passes() const noexcept override { return 5; }
+  void finish_build(const RowPlan& plan, bool moved) noexcept override;
   [[nodiscard]] bool prunes_rows() const noexcept override { return true; }
-  [[nodiscard]] bool fits(std::size_t row) const noexcept override;
-  [[nodiscard]] std::size_t places() const noexcept override { return node_.size(); }
+  [[nodiscard]] bool fits(std::size_t row, const Place& place) const noexcept override;
+  [[nodiscard]] std::size_t places() const noexcept override { return used_.node.size(); }
   [[nodiscard]] std::uint32_t first_row(std::uint32_t node) const noexcept override {
     return start_[node];
   }
@@ -60,14 +63,33 @@ class LooseTree : public CellStructure {
   void add_bytes(Footprint& footprint) const noexcept override;
   [[nodiscard]] std::size_t cells() const noexcept override;
 
-  void find_keys(std::uint64_t* items) const noexcept;
-  [[nodiscard]] bool add_node(std::size_t row, std::uint32_t key, std::size_t start) noexcept;
+  struct Nodes {
+    explicit Nodes(std::pmr::memory_resource* memory) noexcept : node(memory), bounds(memory) {}
+
+    void swap(Nodes& other) noexcept {
+      std::swap(cells, other.cells);
+      node.swap(other.node);
+      bounds.swap(other.bounds);
+    }
+    void release() noexcept { release_columns(node, bounds); }
+    [[nodiscard]] Bytes bytes() const noexcept { return bytes_of(node, bounds); }
+
+    LooseOctreeCells cells;
+    Column<std::uint32_t> node;               // level and Morton code
+    Column<LooseOctreeCells::Bounds> bounds;  // of each node's loose cell
+  };
+
+  [[nodiscard]] Planned choose_cells(const RowPlan& plan) noexcept;
+  void find_keys(const RowPlan& plan, std::size_t begin, std::size_t end) const noexcept;
+  [[nodiscard]] bool lay_nodes(const RowPlan& plan) noexcept;
+  [[nodiscard]] bool add_node(const std::uint64_t* run, std::size_t count,
+                              const RowPlan& plan) noexcept;
 
   const std::size_t axes_;
   const float loose_;
-  LooseOctreeCells cells_;
-  Column<std::uint32_t> node_;               // level and Morton code
-  Column<LooseOctreeCells::Bounds> bounds_;  // of each node's loose cell
+  Nodes used_;
+  Nodes planned_;
+  const std::uint64_t* sorted_ = nullptr;  // while planning: the items by their keys
 };
 
 LooseTree::LooseTree(const StructureInput& input, std::size_t axes) noexcept
@@ -75,73 +97,108 @@ LooseTree::LooseTree(const StructureInput& input, std::size_t axes) noexcept
       axes_(axes),
       // Written so that NaN becomes the least.
       loose_(std::min(8.0F, std::max(1.125F, input.parameter))),
-      node_(input.memory),
-      bounds_(input.memory) {}
+      used_(input.memory),
+      planned_(input.memory) {}
 
-bool LooseTree::plan(const RowPlan& plan) noexcept {
-  node_.clear();
-  start_.clear();
-  bounds_.clear();
-  const SceneSample sample(pool());
-  if (!cells_.choose(sample, axes_, loose_)) {
-    leave_all(plan);
-    return true;
-  }
-  const std::size_t rows = pool().rows();
-  // Of a scene in motion builds meet now more rows, now more nodes: this is enough for mostly all.
-  const std::size_t most_rows = std::max(rows, objects() + objects() / 8 + 256);
-  const std::size_t nodes = objects() / 8 + 64;
-  if (!plan.items.reserve(2 * most_rows) || !list_.reserve(most_rows)) return false;
-  if (!node_.reserve(nodes) || !start_.reserve(nodes) || !bounds_.reserve(nodes)) return false;
-  plan.items.set_size(2 * rows);
-  list_.set_size(rows);
+Planned LooseTree::plan(const RowPlan& plan, unsigned stage) noexcept {
+  const std::size_t half = plan.rows / 2;
   std::uint64_t* const items = plan.items.data();
-  find_keys(items);
-  const std::uint64_t* const sorted = radix_sort(items, items + rows, rows, 32, execution());
-  std::uint32_t cell = LooseOctreeCells::kNone;
-  std::size_t run = 0;
-  while (run < rows && key_in(sorted[run]) != LooseOctreeCells::kNone) {
-    const std::uint32_t key = key_in(sorted[run]);
-    std::size_t end = run + 1;
-    while (end < rows && key_in(sorted[end]) == key) ++end;
-    const bool apart = end - run <= kLongRun;
-    if (apart && cells_.cell_of_key(key) != cell) {
-      cell = cells_.cell_of_key(key);
-      if (!add_node(static_cast<std::uint32_t>(sorted[run]), key, plan.regular.size()))
-        return false;
-    }
-    Column<std::uint32_t>& rows_of_run = apart ? plan.regular : plan.rest;
-    for (; run < end; ++run) (void)rows_of_run.push_back(static_cast<std::uint32_t>(sorted[run]));
+  switch (stage) {
+    case 0:
+      return choose_cells(plan);
+    case 1:
+      find_keys(plan, 0, half);
+      return Planned::goes_on;
+    case 2:
+      find_keys(plan, half, plan.rows);
+      return Planned::goes_on;
+    case 3:
+      sorted_ = radix_sort(items, items + plan.rows, plan.rows, 32, execution());
+      return Planned::goes_on;
+    default:
+      return lay_nodes(plan) ? Planned::done : Planned::out_of_memory;
   }
-  for (; run < rows; ++run) {
-    const auto row = static_cast<std::uint32_t>(sorted[run]);
-    if (pool().ids()[row] != kNoObject) (void)plan.rest.push_back(row);
-  }
-  return start_.push_back(static_cast<std::uint32_t>(plan.regular.size()));
 }
 
-bool LooseTree::add_node(std::size_t row, std::uint32_t key, std::size_t start) noexcept {
-  const std::uint32_t code = cells_.code_of(pool(), row, key);
-  return node_.push_back(code) && start_.push_back(static_cast<std::uint32_t>(start)) &&
-         bounds_.push_back(cells_.loose_bounds(code));
+Planned LooseTree::choose_cells(const RowPlan& plan) noexcept {
+  planned_.node.clear();
+  planned_.bounds.clear();
+  planned_start_.clear();
+  const SceneSample sample(pool());
+  if (!planned_.cells.choose(sample, axes_, loose_)) {
+    leave_all(plan);
+    return Planned::done;
+  }
+  // Of a scene in motion builds meet now more rows, now more nodes: this is enough for mostly all.
+  const std::size_t most_rows = std::max(plan.rows, plan.objects + plan.objects / 8 + 256);
+  const std::size_t nodes = plan.objects / 8 + 64;
+  if (!plan.items.reserve(2 * most_rows) || !planned_.node.reserve(nodes) ||
+      !planned_start_.reserve(nodes) || !planned_.bounds.reserve(nodes)) {
+    return Planned::out_of_memory;
+  }
+  plan.items.set_size(2 * plan.rows);
+  return Planned::goes_on;
 }
 
-void LooseTree::find_keys(std::uint64_t* items) const noexcept {
-  const std::size_t rows = pool().rows();
-  execution().for_each((rows + kRowsPerTask - 1) / kRowsPerTask, [&](std::size_t task) {
-    const std::size_t end = std::min(rows, (task + 1) * kRowsPerTask);
-    for (std::size_t row = task * kRowsPerTask; row < end; ++row) {
+void LooseTree::find_keys(const RowPlan& plan, std::size_t first, std::size_t last) const noexcept {
+  std::uint64_t* const items = plan.items.data();
+  for_stretches(execution(), last - first, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = first + begin; row < first + end; ++row) {
       const bool live = pool().ids()[row] != kNoObject;
-      const std::uint32_t key = live ? cells_.key_of(pool(), row) : LooseOctreeCells::kNone;
+      const std::uint32_t key = live ? planned_.cells.key_of(pool(), row) : LooseOctreeCells::kNone;
       items[row] = std::uint64_t{key} << 32U | row;
     }
   });
 }
 
-bool LooseTree::fits(std::size_t row) const noexcept {
+bool LooseTree::lay_nodes(const RowPlan& plan) noexcept {
+  const std::size_t rows = plan.rows;
+  std::uint32_t cell = LooseOctreeCells::kNone;
+  std::size_t run = 0;
+  while (run < rows && key_in(sorted_[run]) != LooseOctreeCells::kNone) {
+    const std::uint32_t key = key_in(sorted_[run]);
+    std::size_t end = run + 1;
+    while (end < rows && key_in(sorted_[end]) == key) ++end;
+    const bool apart = end - run <= kLongRun;
+    if (apart && planned_.cells.cell_of_key(key) != cell) {
+      cell = planned_.cells.cell_of_key(key);
+      if (!add_node(sorted_ + run, end - run, plan)) return false;
+    }
+    Column<std::uint32_t>& rows_of_run = apart ? plan.regular : plan.rest;
+    for (; run < end; ++run) (void)rows_of_run.push_back(static_cast<std::uint32_t>(sorted_[run]));
+  }
+  for (; run < rows; ++run) {
+    const auto row = static_cast<std::uint32_t>(sorted_[run]);
+    if (pool().ids()[row] != kNoObject) (void)plan.rest.push_back(row);
+  }
+  return planned_start_.push_back(static_cast<std::uint32_t>(plan.regular.size()));
+}
+
+// The node of a run of rows that had one key. An object that has not left its cell since says which
+// that is; where none has stayed, any cell is as good.
+bool LooseTree::add_node(const std::uint64_t* run, std::size_t count,
+                         const RowPlan& plan) noexcept {
+  const LooseOctreeCells& cells = planned_.cells;
+  const std::uint32_t key = key_in(run[0]);
+  auto row = static_cast<std::uint32_t>(run[0]);
+  for (std::size_t i = 1; i < count && !cells.has_key(pool(), row, key); ++i) {
+    row = static_cast<std::uint32_t>(run[i]);
+  }
+  const std::uint32_t code = cells.code_of(pool(), row, key);
+  return planned_.node.push_back(code) &&
+         planned_start_.push_back(static_cast<std::uint32_t>(plan.regular.size())) &&
+         planned_.bounds.push_back(cells.loose_bounds(code));
+}
+
+void LooseTree::finish_build(const RowPlan&, bool) noexcept {
+  used_.swap(planned_);
+  start_.swap(planned_start_);
+}
+
+bool LooseTree::fits(std::size_t row, const Place& place) const noexcept {
   const auto after = std::upper_bound(start_.begin(), start_.end(), row);
   const auto node = static_cast<std::size_t>(after - start_.begin() - 1);
-  return cells_.hold(bounds_[node], pool(), row, row + 1);
+  return used_.cells.holds(used_.bounds[node], place);
 }
 
 std::size_t LooseTree::write_misfits(std::uint32_t begin, std::uint32_t end,
@@ -149,10 +206,10 @@ std::size_t LooseTree::write_misfits(std::uint32_t begin, std::uint32_t end,
   std::size_t found = 0;
   for (std::uint32_t node = begin; node < end; ++node) {
     const std::uint32_t behind = start_[node + 1];
-    if (cells_.hold(bounds_[node], pool(), start_[node], behind)) continue;
+    if (used_.cells.hold(used_.bounds[node], pool(), start_[node], behind)) continue;
     for (std::uint32_t row = start_[node]; row < behind; ++row) {
       out[found] = row;
-      found += cells_.hold(bounds_[node], pool(), row, row + 1) ? 0U : 1U;
+      found += used_.cells.hold(used_.bounds[node], pool(), row, row + 1) ? 0U : 1U;
     }
   }
   return found;
@@ -168,17 +225,17 @@ bool LooseTree::query(const QueryBatch& batch, PairSink& sink) const noexcept {
 
 void LooseTree::draw(DebugDraw& draw) const {
   const RowView rows = row_view();
-  for (std::size_t node = 0; node < node_.size(); ++node) {
+  for (std::size_t node = 0; node < used_.node.size(); ++node) {
     Aabb contents;
     for (std::uint32_t row = start_[node]; row < start_[node + 1]; ++row) {
       contents.merge(stored_box(rows.column, row));
     }
     if (!contents.is_valid()) continue;  // holes only
-    const LooseOctreeCells::Bounds bounds = cells_.cell_bounds(node_[node]);
+    const LooseOctreeCells::Bounds bounds = used_.cells.cell_bounds(used_.node[node]);
     Aabb cell = contents;
-    for (std::size_t k = 0; k < cells_.axes(); ++k) {
-      cell.min[static_cast<Eigen::Index>(cells_.axis(k))] = bounds.low[k];
-      cell.max[static_cast<Eigen::Index>(cells_.axis(k))] = bounds.high[k];
+    for (std::size_t k = 0; k < used_.cells.axes(); ++k) {
+      cell.min[static_cast<Eigen::Index>(used_.cells.axis(k))] = bounds.low[k];
+      cell.max[static_cast<Eigen::Index>(used_.cells.axis(k))] = bounds.high[k];
     }
     draw.box(cell, kCellColour);
     draw.box(contents, kContentsColour);
@@ -187,16 +244,18 @@ void LooseTree::draw(DebugDraw& draw) const {
 
 void LooseTree::release_memory() noexcept {
   CellStructure::release_memory();
-  release_columns(node_, bounds_);
+  used_.release();
+  planned_.release();
 }
 
 void LooseTree::add_bytes(Footprint& footprint) const noexcept {
   CellStructure::add_bytes(footprint);
-  footprint.structure += bytes_of(node_, bounds_);
+  footprint.structure += used_.bytes();
+  footprint.structure += planned_.bytes();
 }
 
 std::size_t LooseTree::cells() const noexcept {
-  return node_.size();
+  return used_.node.size();
 }
 
 class LooseOctree final : public LooseTree {

@@ -170,4 +170,12 @@ bool LooseOctreeCells::hold(const Bounds& bounds, const BoundsPool& pool, std::s
   return outside == 0;
 }
 
+bool LooseOctreeCells::holds(const Bounds& bounds, const Structure::Place& box) const noexcept {
+  for (std::size_t k = 0; k < axes_; ++k) {
+    const std::size_t a = axis_[k];
+    if (box.low[a] < bounds.low[k] || box.high[a] > bounds.high[k]) return false;
+  }
+  return true;
+}
+
 }  // namespace winnow

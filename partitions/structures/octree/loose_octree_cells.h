@@ -29,6 +29,12 @@ class LooseOctreeCells {
   /// Hilbert's curve through cells much finer than its own. kNone if it is too large, or lies
   /// outside of the root.
   [[nodiscard]] std::uint32_t key_of(const BoundsPool& pool, std::size_t row) const noexcept;
+  /// True if it stands there within its cell.
+  [[nodiscard]] bool has_key(const BoundsPool& pool, std::size_t row,
+                             std::uint32_t key) const noexcept {
+    const std::uint32_t own = key_of(pool, row);
+    return own != kNone && cell_of_key(own) == cell_of_key(key);
+  }
   /// The part of a key that rows of one cell have in common.
   [[nodiscard]] std::uint32_t cell_of_key(std::uint32_t key) const noexcept;
 
@@ -53,6 +59,9 @@ class LooseOctreeCells {
   /// True if the boxes of rows [begin, end) lie within the bounds; empty rows do everywhere.
   [[nodiscard]] bool hold(const Bounds& bounds, const BoundsPool& pool, std::size_t begin,
                           std::size_t end) const noexcept;
+
+  /// The same for one box.
+  [[nodiscard]] bool holds(const Bounds& bounds, const Structure::Place& box) const noexcept;
 
   /// Number of divided axes, and the one that bounds have at k.
   [[nodiscard]] std::size_t axes() const noexcept { return axes_; }

@@ -10,6 +10,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <cfloat>
 #include <limits>
 #include <span>
 #include <utility>
@@ -37,8 +38,15 @@ SweepItem sweep_item(float key, std::uint32_t row) noexcept {
 std::uint32_t row_of(SweepItem item) noexcept {
   return static_cast<std::uint32_t>(item);
 }
+std::uint32_t sortable_of(SweepItem item) noexcept {
+  return static_cast<std::uint32_t>(item >> 32U);
+}
 float key_of(SweepItem item) noexcept {
-  return from_sortable(static_cast<std::uint32_t>(item >> 32U));
+  return from_sortable(sortable_of(item));
+}
+// Objects that may be in the tree beside strips.
+std::size_t most_apart(const RowPlan& plan) noexcept {
+  return static_cast<std::size_t>(kMostApart * static_cast<double>(plan.objects));
 }
 
 // Sorts items by key and row: in bins of equal width, of which each mostly holds one.
@@ -89,9 +97,10 @@ class SweepAndPrune final : public CellStructure {
   explicit SweepAndPrune(const StructureInput& input) noexcept;
 
  private:
-  [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
-  void finish_build() noexcept override;
-  [[nodiscard]] bool fits(std::size_t row) const noexcept override;
+  [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
+  [[nodiscard]] std::size_t plan_passes() const noexcept override { return 4; }
+  void finish_build(const RowPlan& plan, bool moved) noexcept override;
+  [[nodiscard]] bool fits(std::size_t row, const Place& place) const noexcept override;
   [[nodiscard]] std::size_t places() const noexcept override { return layout_.cells(); }
   [[nodiscard]] std::uint32_t first_row(std::uint32_t strip) const noexcept override {
     return start_[strip];
@@ -105,72 +114,104 @@ class SweepAndPrune final : public CellStructure {
   void add_bytes(Footprint& footprint) const noexcept override;
   [[nodiscard]] std::size_t cells() const noexcept override;
 
-  [[nodiscard]] bool sort_strips(const RowPlan& plan) noexcept;
+  [[nodiscard]] Planned choose_strips(const RowPlan& plan) noexcept;
+  [[nodiscard]] Planned fill_strips(const RowPlan& plan) noexcept;
+  [[nodiscard]] bool sort_strips(const RowPlan& plan, std::size_t begin, std::size_t end) noexcept;
   void drop_crowded(const RowPlan& plan) noexcept;
+  void leave_strips(const RowPlan& plan) const noexcept;
   [[nodiscard]] float crowd_window() const noexcept;
   [[nodiscard]] StripView view() const noexcept;
 
-  // While building list_ holds the strip of each row.
   CellLayout layout_;
-  Column<float> key_;  // by row: lower end on the sweep axis at the build
+  CellLayout planned_;
+  Column<float> key_;     // by row: lower end on the sweep axis when it was sorted
+  bool crowded_ = false;  // while planning: whether some strip is
 };
 
 SweepAndPrune::SweepAndPrune(const StructureInput& input) noexcept
-    : CellStructure(input), layout_(input.memory), key_(input.memory) {}
+    : CellStructure(input), layout_(input.memory), planned_(input.memory), key_(input.memory) {}
 
-bool SweepAndPrune::plan(const RowPlan& plan) noexcept {
+Planned SweepAndPrune::plan(const RowPlan& plan, unsigned stage) noexcept {
+  const std::size_t half = planned_.cells() / 2;
+  switch (stage) {
+    case 0:
+      return choose_strips(plan);
+    case 1:
+      return fill_strips(plan);
+    case 2:
+      crowded_ = sort_strips(plan, 0, half);
+      return Planned::goes_on;
+    default:
+      crowded_ |= sort_strips(plan, half, planned_.cells());
+      if (crowded_) drop_crowded(plan);
+      if (plan.rest.size() > most_apart(plan)) leave_strips(plan);
+      return Planned::done;
+  }
+}
+
+// Leaves the strip of each row in the list.
+Planned SweepAndPrune::choose_strips(const RowPlan& plan) noexcept {
   const SceneSample sample(pool());
   const CellDemand demand{
       .slack_share = 0.5, .cells_per_object = 0.25, .sweep_fast_axis = true, .rows_per_block = 10};
-  if (!layout_.choose(sample, demand)) return false;
-  if (!layout_.usable()) {
+  if (!planned_.choose(sample, demand)) return Planned::out_of_memory;
+  if (!planned_.usable()) {
     leave_all(plan);
-    return true;
+    return Planned::done;
   }
-  const std::size_t rows = pool().rows();
-  if (!list_.resize(rows) || !start_.resize(layout_.cells() + 1) || !key_.resize(rows + kPadding) ||
-      !plan.items.resize(2 * rows)) {
-    return false;
+  const std::size_t rows = plan.rows;
+  if (!plan.list.resize(rows) || !planned_start_.resize(planned_.cells() + 1) ||
+      !key_.grow(rows + kPadding) || !plan.items.resize(2 * rows)) {
+    return Planned::out_of_memory;
   }
-  layout_.find_cells(pool(), list_.data(), execution());
-  CountingSort strips({list_.data(), rows}, {start_.data(), start_.size()},
+  planned_.find_cells(pool(), plan.list.data(), execution());
+  return Planned::goes_on;
+}
+
+Planned SweepAndPrune::fill_strips(const RowPlan& plan) noexcept {
+  CountingSort strips({plan.list.data(), plan.rows}, {planned_start_.data(), planned_start_.size()},
                       {plan.rest.data(), plan.rest.capacity()}, execution());
   strips.count();
   plan.regular.set_size(strips.find_starts());
-  const auto most = static_cast<std::size_t>(kMostApart * static_cast<double>(sample.objects));
-  bool apart = objects() - plan.regular.size() > most;
-  if (!apart) {
-    strips.place(plan.regular.data());
-    list_rest(plan.regular.size(), plan);
-    if (sort_strips(plan)) drop_crowded(plan);
-    apart = plan.rest.size() > most;
+  if (plan.objects - plan.regular.size() > most_apart(plan)) {
+    leave_strips(plan);
+    return Planned::done;
   }
-  if (!apart) return true;
+  strips.place(plan.regular.data());
+  list_rest(plan.regular.size(), plan);
+  return Planned::goes_on;
+}
+
+void SweepAndPrune::leave_strips(const RowPlan& plan) const noexcept {
   plan.regular.clear();
   plan.rest.clear();
   leave_all(plan);
-  return true;
 }
 
-// Sorts the rows of each strip by their keys, which it leaves in the items; true if some strip is
-// crowded.
-bool SweepAndPrune::sort_strips(const RowPlan& plan) noexcept {
-  const float* const low = pool().column(layout_.axis(0).axis);
+// Sorts the rows of each strip of [first, last) by their keys, which it leaves in the items and, as
+// they sort, in the list; true if some strip is crowded.
+bool SweepAndPrune::sort_strips(const RowPlan& plan, std::size_t first, std::size_t last) noexcept {
+  const float* const low = pool().column(planned_.axis(0).axis);
   const float window = crowd_window();
   std::atomic<bool> crowded{false};
-  const TaskCut cut{places()};
+  const TaskCut cut{last - first};
   execution().for_each(cut.tasks(), [&](std::size_t task) {
     bool found = false;
-    for (std::uint32_t strip = cut.first(task); strip < cut.first(task + 1); ++strip) {
-      const std::uint32_t begin = start_[strip];
-      const std::size_t count = start_[strip + 1] - begin;
+    const std::size_t end = first + cut.first(task + 1);
+    for (std::size_t strip = first + cut.first(task); strip < end; ++strip) {
+      const std::uint32_t begin = planned_start_[strip];
+      const std::size_t count = planned_start_[strip + 1] - begin;
       SweepItem* const items = plan.items.data() + begin;
       for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t row = plan.regular[begin + i];
-        items[i] = sweep_item(low[row], row);
+        // A row that became empty in the meantime has no key.
+        items[i] = sweep_item(std::min(low[row], FLT_MAX), row);
       }
-      sort_by_keys({items, count}, items + pool().rows());
-      for (std::size_t i = 0; i < count; ++i) plan.regular[begin + i] = row_of(items[i]);
+      sort_by_keys({items, count}, items + plan.rows);
+      for (std::size_t i = 0; i < count; ++i) {
+        plan.regular[begin + i] = row_of(items[i]);
+        plan.list[begin + i] = sortable_of(items[i]);
+      }
       for (std::size_t i = 0; i + kCrowded < count && !found; ++i) {
         found = key_of(items[i + kCrowded]) <= key_of(items[i]) + 2.0F * window;
       }
@@ -186,10 +227,10 @@ void SweepAndPrune::drop_crowded(const RowPlan& plan) noexcept {
   const float window = crowd_window();
   const SweepItem* const items = plan.items.data();
   std::uint32_t kept = 0;
-  for (std::size_t strip = 0; strip + 1 < start_.size(); ++strip) {
-    const std::uint32_t begin = start_[strip];
-    const std::uint32_t end = start_[strip + 1];
-    start_[strip] = kept;
+  for (std::size_t strip = 0; strip + 1 < planned_start_.size(); ++strip) {
+    const std::uint32_t begin = planned_start_[strip];
+    const std::uint32_t end = planned_start_[strip + 1];
+    planned_start_[strip] = kept;
     std::uint32_t behind = begin;
     std::uint32_t ahead = begin;
     // Kept rows move to the front.
@@ -200,31 +241,34 @@ void SweepAndPrune::drop_crowded(const RowPlan& plan) noexcept {
       if (ahead - behind > kCrowded) {
         (void)plan.rest.push_back(row_of(items[i]));
       } else {
+        plan.list[kept] = sortable_of(items[i]);
         plan.regular[kept++] = row_of(items[i]);
       }
     }
   }
-  start_[start_.size() - 1] = kept;
+  planned_start_[planned_start_.size() - 1] = kept;
   plan.regular.set_size(kept);
 }
 
 // Objects are crowded with those that begin so near to them.
 float SweepAndPrune::crowd_window() const noexcept {
-  return layout_.axis(0).reach + 2.0F * layout_.drift();
+  return planned_.axis(0).reach + 2.0F * planned_.drift();
 }
 
-void SweepAndPrune::finish_build() noexcept {
+void SweepAndPrune::finish_build(const RowPlan& plan, bool) noexcept {
+  layout_.swap(planned_);
+  start_.swap(planned_start_);
   if (regular_rows() == 0) return;
-  const float* const low = pool().column(layout_.axis(0).axis);
-  std::copy_n(low, regular_rows(), key_.data());
+  key_.set_size(regular_rows() + kPadding);
+  for (std::size_t row = 0; row < regular_rows(); ++row) key_[row] = from_sortable(plan.list[row]);
   // Kernels load sixteen keys at once from any row.
   std::fill_n(key_.data() + regular_rows(), kPadding, kInfinity);
 }
 
-bool SweepAndPrune::fits(std::size_t row) const noexcept {
-  const float low = pool().column(layout_.axis(0).axis)[row];
+bool SweepAndPrune::fits(std::size_t row, const Place& place) const noexcept {
+  const float low = place.low[layout_.axis(0).axis];
   return low >= key_[row] - layout_.drift() && low <= key_[row] + layout_.drift() &&
-         layout_.fits(pool(), row, start_);
+         layout_.fits(place, row, start_);
 }
 
 std::size_t SweepAndPrune::write_misfits(std::uint32_t begin, std::uint32_t end,
@@ -257,11 +301,13 @@ void SweepAndPrune::release_memory() noexcept {
   CellStructure::release_memory();
   key_.release();
   layout_.release();
+  planned_.release();
 }
 
 void SweepAndPrune::add_bytes(Footprint& footprint) const noexcept {
   CellStructure::add_bytes(footprint);
   footprint.structure += layout_.bytes();
+  footprint.structure += planned_.bytes();
   footprint.structure += key_.bytes();
 }
 

@@ -1,0 +1,274 @@
+// When rows are put in order anew, and how: at once, or as it was planned ahead.
+
+#include "core/memory/columns.h"
+#include "partitions/index/spatial_index.h"
+#include "partitions/tree/environment_order.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace winnow {
+namespace {
+
+// A build at once, however much there is to do.
+constexpr std::size_t kWholeBuild = std::numeric_limits<std::size_t>::max();
+// Of fewer rows a build is short enough.
+constexpr std::size_t kWorthPlanning = 1024;
+// A plan begins so many refreshes earlier than it takes: the last one takes the order, and what is
+// foreseen comes sooner where objects fall.
+constexpr std::size_t kSpareRefreshes = 2;
+// The share of a sample whose leaving makes a build be expected: half of that at which it is due.
+constexpr float kTailShare = 1.0F / 32.0F;
+
+// The mean edge of the box around 16 rows that follow each other: that in the middle of a sample.
+float edge_of_block(const BoundsPool& pool) noexcept {
+  constexpr std::size_t kSample = 31;
+  std::array<float, kSample> edge;
+  const std::size_t count = std::min(kSample, pool.blocks());
+  if (count == 0) return 0.0F;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t row = pool.blocks() * i / count * kBlockRows;
+    edge[i] = 0.0F;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const float* const low = pool.column(a) + row;
+      const float* const high = pool.column(3 + a) + row;
+      const float from = *std::min_element(low, low + kBlockRows);
+      edge[i] += (*std::max_element(high, high + kBlockRows) - from) / 3.0F;
+    }
+  }
+  std::nth_element(edge.begin(), edge.begin() + count / 2, edge.begin() + count);
+  return edge[count / 2];
+}
+
+}  // namespace
+
+Structure* SpatialIndex::make(StructureKind kind) noexcept {
+  return kind.info()->make({memory_, rows_, regular_tree_, kind.parameter()});
+}
+
+void SpatialIndex::install(Structure* structure, StructureKind kind) noexcept {
+  give_up_plan();
+  structure_ = structure;
+  kind_ = kind;
+  tree_.release();
+  regular_tree_.release();
+  release_scratch();
+  rows_.selection().release();
+  built_edge_ = 0.0F;
+  built_holes_ = 0;
+  full_base_ = moved_base_ = excess_ = 0;
+  rows_.disorder();
+}
+
+bool SpatialIndex::set_structure(StructureKind kind) noexcept {
+  Structure* const made = make(kind);
+  if (made == nullptr) return false;
+  if (structure_ != nullptr) kind_.info()->end(structure_, memory_);
+  install(made, kind);
+  return true;
+}
+
+Status SpatialIndex::refresh_as(StructureKind kind, bool& refused) {
+  Structure* const made = make(kind);
+  refused = made == nullptr;
+  if (refused) return refresh();
+  if (plans_ahead() && !structure_->is_flat() && !made->is_flat() && !needs_build()) {
+    // What the present structure had planned with is of no use to the next.
+    give_up_plan();
+    plan_.release();
+    if (plan_.start(rows_, *made, spare_rows(*made))) {
+      next_ = made;
+      next_kind_ = kind;
+      return refresh();
+    }
+  }
+  Structure* const structure_before = structure_;
+  const StructureKind kind_before = kind_;
+  install(made, kind);
+  if (refresh() == Status::ok) {
+    kind_before.info()->end(structure_before, memory_);
+    return Status::ok;
+  }
+  refused = true;
+  kind.info()->end(made, memory_);
+  install(structure_before, kind_before);
+  return refresh();
+}
+
+bool SpatialIndex::needs_build() const noexcept {
+  if (!rows_.regions().built) return true;
+  const std::size_t live = rows_.size();
+  const std::size_t holes = rows_.pool().rows() - live;
+  if (holes > live / 4 + built_holes_ + 64) return true;
+  if (rows_.filters().has_environments() && wants_grouping()) return true;
+  if (structure_->is_flat()) return false;
+  return tail() > tail_limit() || excess_tests() > most_wear();
+}
+
+std::uint64_t SpatialIndex::most_wear() const noexcept {
+  return structure_->build_price() * (rows_.size() + 64);
+}
+
+// Rows of many environments are in no order that keeps them apart: in cells, new, or moved from one
+// environment to another.
+bool SpatialIndex::wants_grouping() const noexcept {
+  const RowRegions& regions = rows_.regions();
+  const std::size_t changed = rows_.filters().changed_environments();
+  if (!structure_->is_flat()) return regions.regular != 0 || changed > tail_limit();
+  return rows_.pool().rows() - regions.sorted + changed > tail_limit();
+}
+
+// Plans an order, or does what is left of a plan, and takes it.
+Status SpatialIndex::build() {
+  if (structure_->is_flat()) return build_flat();
+  rows_.regions().built = false;
+  const bool foreseen = plan_.underway();
+  if ((!foreseen && !plan_.start(rows_, *structure_, spare_rows(*structure_))) ||
+      !plan_.advance(kWholeBuild)) {
+    give_up_plan();
+    return Status::out_of_memory;
+  }
+  const Status status = take_order(foreseen);
+  return foreseen && status == Status::ok ? absorb_changes(true) : status;
+}
+
+// The rows are untouched until everything that can fail is done.
+Status SpatialIndex::take_order(bool moved) {
+  RowRegions& regions = rows_.regions();
+  regions.built = false;
+  const Structure& next = *plan_.structure();
+  Column<std::uint32_t>& order = plan_.order();
+  const std::size_t ordered = order.size();
+  const std::size_t regular = plan_.regular();
+  const std::size_t first_block = blocks_of(regular);
+  const bool complete = !moved || complete_order();
+  const std::size_t rows = order.size();
+  const bool prunes = next.prunes_rows();
+  if (!complete || !rows_.reserve_rows(rows + spare_rows(next)) ||
+      !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows) ||
+      !tree_.cover(first_block, blocks_of(rows) - first_block, node_content()) ||
+      (prunes && !regular_tree_.cover(0, blocks_of(regular), node_content()))) {
+    give_up_plan();
+    return Status::out_of_memory;
+  }
+  rows_.reorder({order.data(), rows}, spare_);
+  take_next_structure();
+  regions = {.built = false, .regular = regular, .ordered = ordered, .sorted = ordered};
+  built_holes_ = rows - rows_.size();
+  structure_->finish_build(plan_.row_plan(), moved);
+  plan_.drop();
+  const Execution execution = rows_.execution_for(rows);
+  tree_.refit_all(rows_.view(), execution);
+  built_edge_ = tree_.typical_edge();
+  if (prunes) regular_tree_.refit_all(rows_.view(), execution);
+  regions.built = true;
+  ++builds_;
+  planned_builds_ += moved ? 1 : 0;
+  if (unforeseen_ != 0) --unforeseen_;
+  rows_.note_build(edge_of_block(rows_.pool()));
+  full_base_ = moved_base_ = excess_ = 0;
+  departures_.begin(rows_);
+  tail_growth_.begin();
+  wear_growth_.begin();
+  return Status::ok;
+}
+
+// Rows that came since the order was planned follow behind it; those that have become empty leave
+// their places empty. False if memory is refused.
+bool SpatialIndex::complete_order() {
+  Column<std::uint32_t>& order = plan_.order();
+  const ObjectId* const ids = rows_.pool().ids();
+  const std::size_t rows = rows_.pool().rows();
+  if (!order.grow(order.size() + rows - plan_.rows())) return false;
+  for (std::size_t row = plan_.rows(); row < rows; ++row) {
+    if (ids[row] != kNoObject) (void)order.push_back(static_cast<std::uint32_t>(row));
+  }
+  return true;
+}
+
+void SpatialIndex::take_next_structure() noexcept {
+  if (next_ == nullptr) return;
+  kind_.info()->end(structure_, memory_);
+  structure_ = std::exchange(next_, nullptr);
+  kind_ = next_kind_;
+  if (!structure_->prunes_rows()) regular_tree_.release();
+}
+
+Status SpatialIndex::build_flat() {
+  give_up_plan();
+  rows_.compact();
+  rows_.pad();
+  RowRegions& regions = rows_.regions();
+  const std::size_t rows = rows_.pool().rows();
+  regions.regular = rows;
+  regions.sorted = 0;
+  if (rows_.filters().has_environments()) {
+    Column<std::uint32_t>& order = plan_.order();
+    if (!order.resize(rows) || !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows)) {
+      return Status::out_of_memory;
+    }
+    std::iota(order.begin(), order.end(), 0U);
+    if (!sort_by_environment(rows_.pool(), rows_.filters().data(), {order.data(), rows},
+                             plan_.row_plan().items, rows_.execution_for(rows))) {
+      return Status::out_of_memory;
+    }
+    rows_.reorder({order.data(), rows}, spare_);
+    regions.sorted = rows;
+  }
+  tail_changed_ = true;
+  if (!refit_trees()) return Status::out_of_memory;
+  regions.built = true;
+  ++builds_;
+  rows_.note_build(0.0F);
+  return Status::ok;
+}
+
+// Planning ahead.
+
+bool SpatialIndex::plans_ahead() const noexcept {
+  const std::size_t fewest = build_budget_ == 0 ? kWorthPlanning : 1;
+  return build_budget_ != kWholeBuild && rows_.size() >= fewest &&
+         !rows_.filters().has_environments();
+}
+
+// Rows that a refresh may plan for. The longer orders last, the more refreshes share a plan: its
+// order is to be fresh when it is taken.
+std::size_t SpatialIndex::planning_work(const Structure& structure) const noexcept {
+  if (build_budget_ != 0) return build_budget_;
+  const std::size_t refreshes = std::max<std::size_t>(1, 2 * departures_.refreshes() / 5);
+  const std::size_t passes = (structure.plan_passes() + refreshes - 1) / refreshes;
+  return passes * rows_.pool().rows();
+}
+
+void SpatialIndex::go_on_planning() noexcept {
+  if (!plan_.underway() &&
+      (!build_is_near() || !plan_.start(rows_, *structure_, spare_rows(*structure_)))) {
+    return;
+  }
+  if (plan_.advance(planning_work(*plan_.structure()))) return;
+  exchange_refused_ = exchanging();
+  give_up_plan();
+}
+
+// True if a build is to be expected in as many refreshes as planning it takes.
+bool SpatialIndex::build_is_near() const noexcept {
+  if (!plans_ahead() || unforeseen_ != 0) return false;
+  const std::size_t whole = structure_->plan_passes() * rows_.pool().rows();
+  const std::size_t ahead = 1 + (whole - 1) / planning_work(*structure_) + kSpareRefreshes;
+  // What builds so often is not saved anything: each order would be worn when it is taken.
+  if (departures_.refreshes() <= ahead) return false;
+  if (tail_growth_.in(ahead) > tail_limit() || wear_growth_.in(ahead) > most_wear()) return true;
+  return rows_.stale().all() && rows_.regions().regular != 0 &&
+         departures_.share(rows_, *structure_, ahead) >= kTailShare;
+}
+
+void SpatialIndex::give_up_plan() noexcept {
+  plan_.drop();
+  if (next_ != nullptr) next_kind_.info()->end(next_, memory_);
+  next_ = nullptr;
+}
+
+}  // namespace winnow

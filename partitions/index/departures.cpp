@@ -1,0 +1,42 @@
+#include "partitions/index/departures.h"
+
+namespace winnow {
+
+void Departures::begin(const Rows& rows) noexcept {
+  count_ = refreshes_ = 0;
+  const std::size_t regular = rows.regions().regular;
+  for (std::size_t i = 0; i < kSample && regular >= kSample; ++i) {
+    const std::size_t row = (2 * i + 1) * regular / (2 * kSample);
+    const ObjectId id = rows.pool().ids()[row];
+    if (id == kNoObject) continue;
+    Seen& seen = seen_[count_++];
+    seen.id = id;
+    for (std::size_t a = 0; a < 3; ++a) seen.low[a] = rows.pool().column(a)[row];
+  }
+}
+
+float Departures::share(const Rows& rows, const Structure& structure,
+                        std::size_t ahead) const noexcept {
+  if (count_ == 0 || refreshes_ == 0) return 0.0F;
+  const float steps = static_cast<float>(ahead) / static_cast<float>(refreshes_);
+  std::size_t leaving = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Seen& seen = seen_[i];
+    if (!rows.keys().is_live(seen.id)) continue;
+    const std::size_t row = rows.keys().row_of(seen.id);
+    if (row >= rows.regions().regular) {
+      ++leaving;
+      continue;
+    }
+    Structure::Place place = structure.place_of(row);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const float way = steps * (place.low[a] - seen.low[a]);
+      place.low[a] += way;
+      place.high[a] += way;
+    }
+    leaving += structure.fits(row, place) ? 0 : 1;
+  }
+  return static_cast<float>(leaving) / static_cast<float>(count_);
+}
+
+}  // namespace winnow

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "partitions/rows/rows.h"
+#include "partitions/structures/structure.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace winnow {
+
+/// Tells, from a sample of the objects in regular rows, how many will have left the places where a
+/// build put them some refreshes from now, if all go on as they did since then.
+class Departures {
+ public:
+  /// Notes where a sample of the regular rows' objects is. O(1).
+  void begin(const Rows& rows) noexcept;
+  /// Objects have moved once more.
+  void note_refresh() noexcept { ++refreshes_; }
+  [[nodiscard]] std::size_t refreshes() const noexcept { return refreshes_; }
+  /// The expected share of objects that will have left in so many refreshes. O(1).
+  [[nodiscard]] float share(const Rows& rows, const Structure& structure,
+                            std::size_t ahead) const noexcept;
+
+ private:
+  static constexpr std::size_t kSample = 32;
+
+  struct Seen {
+    ObjectId id;
+    std::array<float, 3> low;
+  };
+  std::array<Seen, kSample> seen_;
+  std::size_t count_ = 0;
+  std::size_t refreshes_ = 0;
+};
+
+/// A count that grows from refresh to refresh.
+class Growth {
+ public:
+  /// The next count is the first of its kind.
+  void begin() noexcept { known_ = false; }
+  void note(std::uint64_t count) noexcept {
+    step_ = known_ && count > last_ ? count - last_ : 0;
+    last_ = count;
+    known_ = true;
+  }
+  /// What it is expected to be in so many refreshes.
+  [[nodiscard]] std::uint64_t in(std::size_t refreshes) const noexcept {
+    return last_ + step_ * refreshes;
+  }
+
+ private:
+  std::uint64_t last_ = 0;
+  std::uint64_t step_ = 0;
+  bool known_ = false;
+};
+
+}  // namespace winnow

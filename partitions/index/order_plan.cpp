@@ -1,0 +1,126 @@
+#include "partitions/index/order_plan.h"
+
+#include "partitions/tree/environment_order.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+// So many cuts of a row take as long as looking at it once.
+constexpr std::size_t kCutsPerRow = 2;
+constexpr std::size_t kMostWork = std::numeric_limits<std::size_t>::max() / kCutsPerRow;
+
+}  // namespace
+
+bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room) noexcept {
+  drop();
+  const std::size_t most = rows.pool().rows() + room;
+  order_.clear();
+  rest_.clear();
+  if (!order_.grow(most) || !rest_.grow(most)) return false;
+  rows_ = &rows;
+  structure_ = &structure;
+  planned_rows_ = rows.pool().rows();
+  planned_objects_ = rows.size();
+  part_ = Part::structure;
+  stage_ = 0;
+  rows.regions().planned = planned_rows_;
+  // Cells of many worlds would lie on top of each other, and a cell's objects be tested against
+  // those of all of them: the tree, whose nodes know their environments, keeps them apart.
+  if (rows.filters().has_environments()) {
+    structure.leave_all(row_plan());
+    part_ = Part::rest;
+  }
+  return true;
+}
+
+bool OrderPlan::advance(std::size_t work) noexcept {
+  // Where nothing is left to the tree there is nothing more to do.
+  const auto is_as_good_as_ready = [&] { return part_ == Part::rest && rest_.empty(); };
+  while ((work != 0 && !ready()) || is_as_good_as_ready()) {
+    if (run_stage(work)) continue;
+    drop();
+    return false;
+  }
+  return true;
+}
+
+// False if memory is refused.
+bool OrderPlan::run_stage(std::size_t& work) noexcept {
+  switch (part_) {
+    case Part::structure: {
+      const Planned planned = structure_->plan(row_plan(), stage_++);
+      if (planned == Planned::done) part_ = Part::rest;
+      // A structure that leaves all rows to the tree has nothing to do.
+      if (planned == Planned::goes_on || !order_.empty()) work -= std::min(work, planned_rows_);
+      return planned != Planned::out_of_memory;
+    }
+    case Part::rest:
+      return begin_rest(work);
+    case Part::cuts: {
+      const bool done = cuts_.advance(work > kMostWork ? work : kCutsPerRow * work,
+                                      rows_->execution_for(rest_.size()));
+      work = 0;
+      if (done) append_rest();
+      return true;
+    }
+    case Part::ready:
+      return true;
+  }
+  return false;
+}
+
+bool OrderPlan::begin_rest(std::size_t& work) noexcept {
+  work -= std::min(work, rest_.size());
+  const BoundsPool& pool = rows_->pool();
+  const auto is_hole = [&](std::uint32_t row) { return pool.ids()[row] == kNoObject; };
+  rest_.set_size(static_cast<std::size_t>(std::remove_if(rest_.begin(), rest_.end(), is_hole) -
+                                          rest_.begin()));
+  const std::span<std::uint32_t> rest(rest_.data(), rest_.size());
+  regular_ = order_.size();
+  // The tree's blocks begin behind the regular rows: no block belongs to both.
+  while (order_.size() % kBlockRows != 0) (void)order_.push_back(kNoObject);
+  const Execution execution = rows_->execution_for(rest.size());
+  if (rows_->filters().has_environments()) {
+    part_ = Part::ready;
+    const ObjectFilter* const filters = rows_->filters().data();
+    return order_.grow(order_.size() + rest.size()) &&
+           sort_by_environment_and_place(pool, filters, rest, items_, order_.end(), points_,
+                                         execution) &&
+           append_environments(pool, filters, rest, order_);
+  }
+  const Structure::Ordered ordered = structure_->order_rest(rest, order_);
+  if (ordered != Structure::Ordered::none) {
+    part_ = Part::ready;
+    return ordered == Structure::Ordered::done;
+  }
+  if (!order_.grow(order_.size() + rest.size()) ||
+      !cuts_.start(pool, rest, order_.end(), points_, execution)) {
+    return false;
+  }
+  part_ = Part::cuts;
+  if (rest.size() <= kBlockRows) append_rest();
+  return true;
+}
+
+void OrderPlan::append_rest() noexcept {
+  std::copy(rest_.begin(), rest_.end(), order_.end());
+  order_.set_size(order_.size() + rest_.size());
+  part_ = Part::ready;
+}
+
+void OrderPlan::drop() noexcept {
+  if (rows_ != nullptr) rows_->regions().planned = 0;
+  rows_ = nullptr;
+  structure_ = nullptr;
+  part_ = Part::structure;
+}
+
+void OrderPlan::release() noexcept {
+  drop();
+  release_columns(order_, rest_, items_, list_, points_);
+}
+
+}  // namespace winnow

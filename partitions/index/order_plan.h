@@ -1,0 +1,79 @@
+#pragma once
+
+#include "core/memory/columns.h"
+#include "partitions/rows/rows.h"
+#include "partitions/structures/structure.h"
+#include "partitions/tree/kd_order.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+/// The order in which rows are to stand next, as a structure and the tree beside it want them. It
+/// is found in stages, which may be spread over refreshes: between these, objects move, come and
+/// go. What is out of date at the end does no harm: who puts the rows in this order looks for those
+/// that no longer fit.
+class OrderPlan {
+ public:
+  explicit OrderPlan(std::pmr::memory_resource* memory) noexcept
+      : order_(memory), rest_(memory), items_(memory), list_(memory), points_(memory) {}
+
+  /// Begins with the rows as they are; `room` more than these may come behind the order. False if
+  /// memory is refused.
+  [[nodiscard]] bool start(Rows& rows, Structure& structure, std::size_t room) noexcept;
+  /// Runs stages that go over about so many rows, one at least. False, and the plan is dropped, if
+  /// memory is refused.
+  [[nodiscard]] bool advance(std::size_t work) noexcept;
+  void drop() noexcept;
+
+  /// From `start` until `drop`.
+  [[nodiscard]] bool underway() const noexcept { return structure_ != nullptr; }
+  [[nodiscard]] bool ready() const noexcept { return part_ == Part::ready; }
+  /// The structure that it is for.
+  [[nodiscard]] Structure* structure() const noexcept { return structure_; }
+  /// The rows that it began with are those below this.
+  [[nodiscard]] std::size_t rows() const noexcept { return planned_rows_; }
+
+  // When it is ready.
+
+  /// The old row of each new one: first the regular ones.
+  [[nodiscard]] Column<std::uint32_t>& order() noexcept { return order_; }
+  [[nodiscard]] std::size_t regular() const noexcept { return regular_; }
+  /// What the structure is told when the rows stand in the order.
+  [[nodiscard]] RowPlan row_plan() noexcept {
+    return {planned_rows_, planned_objects_, order_, rest_, items_, list_};
+  }
+
+  /// Scratch for sorting other rows by place, while no plan is underway.
+  [[nodiscard]] Column<float>& points() noexcept { return points_; }
+  void release() noexcept;
+  [[nodiscard]] Bytes bytes() const noexcept {
+    return bytes_of(order_, rest_, items_, list_, points_);
+  }
+
+ private:
+  enum class Part : std::uint8_t { structure, rest, cuts, ready };
+  [[nodiscard]] bool run_stage(std::size_t& work) noexcept;
+  [[nodiscard]] bool begin_rest(std::size_t& work) noexcept;
+  void append_rest() noexcept;
+
+  Rows* rows_ = nullptr;
+  Structure* structure_ = nullptr;
+  std::size_t planned_rows_ = 0;
+  std::size_t planned_objects_ = 0;
+  std::size_t regular_ = 0;
+  Part part_ = Part::structure;
+  unsigned stage_ = 0;
+  KdCuts cuts_;
+
+  Column<std::uint32_t> order_;
+  Column<std::uint32_t> rest_;
+  Column<std::uint64_t> items_;
+  Column<std::uint32_t> list_;
+  Column<float> points_;  // places of what is sorted by these
+};
+
+}  // namespace winnow

@@ -1,0 +1,230 @@
+// Builds that are planned over several refreshes, while objects move, come and go: no pair may be
+// missed, before, while or after an order is taken.
+
+#include <winnow/partitions/partition.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "tests/support/counting_memory.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr std::size_t kWholeBuilds = std::numeric_limits<std::size_t>::max();
+constexpr int kFrames = 80;
+
+// Boxes that go straight on, each its own way, and turn back where the scene ends.
+class Drift {
+ public:
+  Drift(std::vector<Aabb> start, float longest_step) : boxes(std::move(start)) {
+    Aabb all = boxes.front();
+    for (const Aabb& box : boxes) all.merge(box);
+    low_ = all.min;
+    high_ = all.max;
+    Random random(5);
+    const auto step = [&] { return static_cast<float>(random.uniform(-1.0, 1.0)) * longest_step; };
+    for (std::size_t i = 0; i < boxes.size(); ++i) steps_.emplace_back(step(), step(), step());
+  }
+
+  void go_on() {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      for (Eigen::Index a = 0; a < 3; ++a) {
+        float& step = steps_[i][a];
+        if (boxes[i].min[a] + step < low_[a] || boxes[i].max[a] + step > high_[a]) step = -step;
+        boxes[i].min[a] += step;
+        boxes[i].max[a] += step;
+      }
+    }
+  }
+
+  std::vector<Aabb> boxes;
+
+ private:
+  Eigen::Vector3f low_;
+  Eigen::Vector3f high_;
+  std::vector<Eigen::Vector3f> steps_;
+};
+
+class PlannedBuilds : public Conformance {
+ protected:
+  // So that each stage of a plan has a refresh of its own.
+  [[nodiscard]] Config config_with(std::size_t budget) const {
+    Config config = GetParam();
+    config.build_budget = budget;
+    return config;
+  }
+  [[nodiscard]] static std::size_t count() { return scaled(1400); }
+};
+
+TEST(PlannedBuild, is_taken_before_it_is_due) {
+  for (const char* const name : {"FlatGrid", "HierarchicalGrid", "SweepAndPrune"}) {
+    Drift drift(uniform_boxes(2000), 0.03F);
+    Partition partition(structure_named(name));
+    std::vector<Key> keys(drift.boxes.size());
+    ASSERT_EQ(partition.insert(drift.boxes, {}, keys), Status::ok);
+    std::size_t most_irregular = 0;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      drift.go_on();
+      ASSERT_EQ(partition.update(keys, drift.boxes), Status::ok);
+      ASSERT_EQ(partition.refresh(), Status::ok);
+      most_irregular = std::max(most_irregular, partition.statistics().irregular);
+    }
+    const Statistics statistics = partition.statistics();
+    EXPECT_GE(statistics.planned_builds, 2U) << name;
+    // All but the first one.
+    EXPECT_GE(statistics.planned_builds + 2, statistics.builds) << name;
+    EXPECT_LT(most_irregular, drift.boxes.size() / 16 + 64) << name;
+  }
+}
+
+TEST(PlannedBuild, is_not_made_where_builds_are_to_be_whole) {
+  Drift drift(uniform_boxes(2000), 0.03F);
+  Partition partition(hierarchical_grid(), {.build_budget = kWholeBuilds});
+  std::vector<Key> keys(drift.boxes.size());
+  ASSERT_EQ(partition.insert(drift.boxes, {}, keys), Status::ok);
+  for (int frame = 0; frame < kFrames; ++frame) {
+    drift.go_on();
+    ASSERT_EQ(partition.update(keys, drift.boxes), Status::ok);
+    ASSERT_EQ(partition.refresh(), Status::ok);
+  }
+  EXPECT_GE(partition.statistics().builds, 3U);
+  EXPECT_EQ(partition.statistics().planned_builds, 0U);
+}
+
+TEST_P(PlannedBuilds, miss_no_pair_while_all_objects_drift) {
+  for (const auto& start : {uniform_boxes(count()), mixed_boxes(count())}) {
+    for (const std::size_t budget : {std::size_t{0}, count(), kWholeBuilds}) {
+      Drift drift(start, 0.02F);
+      World world(config_with(budget));
+      const std::vector<Key> keys = world.insert(drift.boxes);
+      PairBuffer buffer;
+      for (int frame = 0; frame < kFrames; ++frame) {
+        drift.go_on();
+        world.update(keys, drift.boxes);
+        ASSERT_TRUE(world.agrees(buffer)) << "budget " << budget << ", frame " << frame;
+      }
+    }
+  }
+}
+
+// A refresh after which an order is taken need not be told of all that moved while it was planned.
+TEST_P(PlannedBuilds, miss_no_pair_where_others_move_in_every_frame) {
+  Drift drift(uniform_boxes(count()), 0.1F);
+  World world(config_with(count()));
+  std::vector<Aabb> told = drift.boxes;
+  const std::vector<Key> keys = world.insert(told);
+  constexpr std::size_t kTurns = 6;
+  PairBuffer buffer;
+  for (std::size_t frame = 0; frame < 2 * kFrames; ++frame) {
+    drift.go_on();
+    for (std::size_t i = frame % kTurns; i < keys.size(); i += kTurns) {
+      told[i] = drift.boxes[i];
+      world.update(keys[i], told[i]);
+    }
+    ASSERT_TRUE(world.agrees(buffer)) << "frame " << frame;
+  }
+}
+
+TEST_P(PlannedBuilds, miss_no_pair_while_objects_come_and_go_and_jump) {
+  for (const std::size_t budget : {std::size_t{1}, 2 * count()}) {
+    Drift drift(uniform_boxes(count()), 0.02F);
+    World world(config_with(budget));
+    std::vector<Key> keys = world.insert(drift.boxes);
+    Key last = world.insert(drift.boxes[0]);
+    Random random(11);
+    PairBuffer buffer;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      drift.go_on();
+      world.update(keys, drift.boxes);
+      for (int n = 0; n < 3; ++n) {
+        const std::size_t gone = random.below(keys.size());
+        world.remove(keys[gone]);
+        keys[gone] = world.insert(drift.boxes[gone]);
+        const std::size_t jumper = random.below(keys.size());
+        drift.boxes[jumper] = drift.boxes[random.below(keys.size())];
+        world.update(keys[jumper], drift.boxes[jumper]);
+        const std::size_t filtered = random.below(keys.size());
+        world.set_filter(keys[filtered], {.layers = 1U << random.below(4)});
+      }
+      // The last one that came goes in one frame and another comes in the next.
+      if (frame % 2 == 0) {
+        world.remove(last);
+      } else {
+        last = world.insert(drift.boxes[random.below(keys.size())]);
+      }
+      ASSERT_TRUE(world.agrees(buffer)) << "budget " << budget << ", frame " << frame;
+      ASSERT_TRUE(world.holds_its_objects()) << "budget " << budget << ", frame " << frame;
+    }
+  }
+}
+
+// Rows that are planned may be put elsewhere altogether.
+TEST_P(PlannedBuilds, are_given_up_where_the_rows_change_altogether) {
+  Drift drift(uniform_boxes(count()), 0.02F);
+  World world(config_with(1));
+  std::vector<Key> keys = world.insert(drift.boxes);
+  PairBuffer buffer;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    drift.go_on();
+    world.update(keys, drift.boxes);
+    if (frame % 23 == 11) {
+      world.remove(std::span<const Key>(keys).first(keys.size() / 2));
+      const std::vector<Key> fresh =
+          world.insert(std::span<const Aabb>(drift.boxes).first(keys.size() / 2));
+      std::copy(fresh.begin(), fresh.end(), keys.begin());
+    }
+    if (frame % 23 == 17) world.partition().release_memory();
+    if (frame == 60) world.set_filter(keys[0], {.environment = 3});
+    ASSERT_TRUE(world.agrees(buffer)) << "frame " << frame;
+  }
+}
+
+TEST_P(PlannedBuilds, find_the_same_pairs_in_the_same_order_on_one_thread) {
+  Drift drift(clustered_boxes(count()), 0.02F);
+  World world(config_with(0));
+  Config alone = config_with(0);
+  alone.threads = 1;
+  World twin(alone);
+  const std::vector<Key> keys = world.insert(drift.boxes);
+  const std::vector<Key> twin_keys = twin.insert(drift.boxes);
+  PairBuffer buffer;
+  PairBuffer twin_buffer;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    drift.go_on();
+    world.update(keys, drift.boxes);
+    twin.update(twin_keys, drift.boxes);
+    ASSERT_EQ(world.self_pairs(buffer), Status::ok);
+    ASSERT_EQ(twin.self_pairs(twin_buffer), Status::ok);
+    ASSERT_TRUE(std::ranges::equal(buffer.pairs(), twin_buffer.pairs())) << "frame " << frame;
+  }
+}
+
+TEST_P(PlannedBuilds, go_on_where_memory_is_refused) {
+  CountingMemory memory;
+  Drift drift(mixed_boxes(count()), 0.05F);
+  World world(config_with(1), &memory);
+  const std::vector<Key> keys = world.insert(drift.boxes);
+  PairBuffer buffer;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    drift.go_on();
+    world.update(keys, drift.boxes);
+    memory.refuse_after(static_cast<std::size_t>(frame % 3));
+    const Status status = world.threads().run([&] { return world.partition().refresh(); });
+    memory.grant_all();
+    ASSERT_TRUE(status == Status::ok || status == Status::out_of_memory);
+    EXPECT_EQ(world.partition().footprint().total().reserved, memory.outstanding());
+    ASSERT_TRUE(world.agrees(buffer)) << "frame " << frame;
+    if (frame % 10 == 9) world.partition().release_memory();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PlannedBuilds, testing::ValuesIn(exact_configs()),
+                         testing::PrintToStringParamName());
+
+}  // namespace
+}  // namespace winnow::test
