@@ -1,4 +1,5 @@
 #include "partitions/tree/block_tree.kernel.h"
+#include "partitions/tree/block_pairs.wide.h"
 #include "partitions/tree/hits.wide.h"
 #include "partitions/tree/traversal.wide.h"
 #include "simd/lanes/boxes.h"
@@ -203,9 +204,33 @@ bool find_self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t en
   return pairs.finish();
 }
 
+/// The same for rows without filters, leaf by leaf.
+bool find_block_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end,
+                      PairSink& sink) {
+  BlockPairs<false> pairs(tree.rows, sink);
+  const std::uint32_t last = tree.count[0] < end * kLanes ? tree.count[0] : end * kLanes;
+  for (std::uint32_t leaf = begin * kLanes; leaf < last; ++leaf) {
+    const std::uint32_t row = (tree.first_block + leaf) * kLanes;
+    if (!pairs.start(row, row + kLanes)) continue;
+    const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
+      ++sink.tests;
+      return overlap(load_slabs<3>(tree.node[level], first_node), pairs.low(), pairs.high());
+    };
+    const auto visit = [&](std::uint32_t group) {
+      Mask16 leaves = test(0, group * kLanes);
+      if (group == leaf / kLanes) leaves &= ~lanes_below(leaf % kLanes + 1);
+      return pairs.add_blocks(tree.first_block + group * kLanes, leaves);
+    };
+    const bool done =
+        tree.levels == 1 ? visit(0) : traverse_from(tree, 1, leaf / kLanes, test, visit);
+    if (!done || !pairs.finish()) return false;
+  }
+  return true;
+}
+
 bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
   return tree.rows.filter != nullptr ? find_self_pairs<true>(tree, begin, end, sink)
-                                     : find_self_pairs<false>(tree, begin, end, sink);
+                                     : find_block_pairs(tree, begin, end, sink);
 }
 
 /// The boxes of a batch on their way down the tree together.
