@@ -3,12 +3,15 @@
 #include "core/sort/split_jobs.h"
 #include "core/sort/stretches.h"
 #include "partitions/tree/kd_order.kernel.h"
+#include "partitions/tree/tile_order.kernel.h"
 
+#include <algorithm>
 #include <array>
 
 namespace winnow {
 
 WINNOW_DEFINE_KERNELS(KdOrderKernels, kd_order_kernels)
+WINNOW_DEFINE_KERNELS(TileOrderKernels, tile_order_kernels)
 
 namespace {
 
@@ -35,6 +38,15 @@ bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows, std:
   for_stretches(execution, count, kPointsPerTask, [&](std::size_t begin, std::size_t end) {
     kernels.centres(boxes.data(), rows.data(), begin, end, all.at);
   });
+  if (count >= kFewestInTiles && count <= kMostInTiles) {
+    TileSet set;
+    std::copy_n(all.at, 3, set.at);
+    set.row = all.row;
+    set.row_room = room;
+    set.room = all.at_room[0];
+    set.count = count;
+    if (tile_order_kernels().sort(set)) return true;
+  }
   run_split_jobs(all, kKdWorthSharing, execution, kernels.split, kernels.finish);
   return true;
 }
