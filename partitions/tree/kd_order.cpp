@@ -15,8 +15,30 @@ WINNOW_DEFINE_KERNELS(TileOrderKernels, tile_order_kernels)
 
 namespace {
 
-constexpr std::size_t kKdWorthSharing = 2048;
+// Parts up to this size are put in tiles.
+constexpr std::size_t kTiledPart = 4096;
 constexpr std::size_t kPointsPerTask = 16384;
+
+// The tiles of a set, which is large enough for them. False if they would not tell its points
+// apart.
+bool sort_in_tiles(const KdSet& set) {
+  TileSet tiles;
+  std::copy_n(set.at, 3, tiles.at);
+  tiles.row = set.row;
+  tiles.row_room = set.row_room;
+  std::copy_n(set.at_room, 3, tiles.room);
+  tiles.count = set.count;
+  return tile_order_kernels().sort(tiles);
+}
+
+// Cuts a set until tiles, or blocks, are left.
+void finish(KdSet set) {
+  while (set.count >= kFewestInTiles) {
+    if (set.count <= kTiledPart && sort_in_tiles(set)) return;
+    finish(kd_order_kernels().split(set));
+  }
+  kd_order_kernels().finish(set);
+}
 
 }  // namespace
 
@@ -38,16 +60,11 @@ bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows, std:
   for_stretches(execution, count, kPointsPerTask, [&](std::size_t begin, std::size_t end) {
     kernels.centres(boxes.data(), rows.data(), begin, end, all.at);
   });
-  if (count >= kFewestInTiles && count <= kMostInTiles) {
-    TileSet set;
-    std::copy_n(all.at, 3, set.at);
-    set.row = all.row;
-    set.row_room = room;
-    set.room = all.at_room[0];
-    set.count = count;
-    if (tile_order_kernels().sort(set)) return true;
+  if (count <= kTiledPart) {
+    finish(all);
+  } else if (count > kMostInTiles || !sort_in_tiles(all)) {
+    run_split_jobs(all, kTiledPart, execution, kernels.split, finish);
   }
-  run_split_jobs(all, kKdWorthSharing, execution, kernels.split, kernels.finish);
   return true;
 }
 

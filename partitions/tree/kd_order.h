@@ -14,7 +14,9 @@ namespace winnow {
 /// fills its subtrees of 16^k blocks, so that every node of the implicit tree is one such set
 /// (overlap minimizing top-down bulk loading: Lee and Lee, "OMT: overlap minimizing top-down bulk
 /// loading algorithm for R-tree", CAiSE 2003). Boxes of all sizes mix well: a cut follows where
-/// they lie, and a large box widens no more than the one block that it is in.
+/// they lie, and a large box widens no more than the one block that it is in. Parts of some
+/// thousand rows, and sets that are no larger, are put in tiles (see tile_order.kernel.h) unless
+/// they lie in heaps.
 ///
 /// Rows are live, their boxes in the pool's first six columns; `room` is for as many. O(n log n);
 /// the same result on any number of threads and any instruction set. False, and `rows` unchanged,

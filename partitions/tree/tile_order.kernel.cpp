@@ -39,7 +39,8 @@ struct TileAxis {
     const Floats half_low = Floats(0.5F * low);
     const Floats last = Floats(static_cast<float>(kPlaces - 1));
     alignas(64) std::uint32_t whole[kLanes];
-    for (std::size_t i = 0; i < count; i += kStep) {
+    for (std::size_t next = 0; next < count; next += kStep) {
+      const std::size_t i = next + kStep <= count ? next : count - kStep;
       const Floats at = (0.5F * Floats::load_unaligned(x + i) - half_low) * scale;
       truncated(min(max(at, Floats(0.0F)), last)).store(whole);
       for (std::size_t k = 0; k < kStep; ++k) place[i + k] = static_cast<std::uint8_t>(whole[k]);
@@ -90,11 +91,10 @@ void cut(const std::uint32_t* points, std::uint32_t all, std::uint32_t parts, st
 class Tiles {
  public:
   explicit Tiles(const TileSet& set) : set_(set), count_(set.count) {
-    // Places are written in whole registers.
-    const std::size_t padded = (count_ + kStep - 1) / kStep * kStep;
-    auto* const bytes = reinterpret_cast<std::uint8_t*>(set.room);
-    for (std::size_t k = 0; k < 3; ++k) place_[k] = bytes + k * padded;
-    key_ = reinterpret_cast<std::uint16_t*>(bytes + 4 * padded);
+    for (std::size_t k = 0; k < 3; ++k) {
+      place_[k] = reinterpret_cast<std::uint8_t*>(set.room[0]) + k * count_;
+    }
+    key_ = reinterpret_cast<std::uint16_t*>(set.room[1]);
   }
 
   bool sort() {
@@ -131,7 +131,7 @@ class Tiles {
     for (std::size_t i = 0; i < count_; i += stride()) ++points[place[i]];
     std::uint32_t most = 0;
     for (std::uint32_t p = 0; p < kPlaces; ++p) most = points[p] > most ? points[p] : most;
-    return most * stride() > count_ / 8 + kStep;
+    return most * stride() > count_ / 32 + kStep;
   }
 
   /// Lines are numbered like a snake.
