@@ -24,7 +24,7 @@ class LinearBvh final : public Structure {
 
 /// Bounding-volume hierarchy for objects that hardly ever move: the tree of LinearBvh, its rows in
 /// an order that a search by the surface-area heuristic finds (see append_in_sah_order). A build
-/// takes five times as long, so it waits for much more wear. From then on rays and boxes meet 1 %
+/// takes many times as long, so it waits for much more wear. From then on rays and boxes meet 1 %
 /// fewer nodes in even scenes, 5 to 8 % fewer in clusters and where sizes are spread 100:1, and a
 /// third fewer where large and small objects, 1000:1, lie within each other. Where environments are
 /// in use the order is that of LinearBvh, which keeps them apart. Exact.
