@@ -45,7 +45,7 @@ struct PartitionOptions {
   /// A build that can be seen coming, because objects near the edges of their cells or queries cost
   /// ever more, is planned over the refreshes before it, and so is the exchange of a structure by
   /// the automatic choice. This is how many rows' worth of that work a refresh does: a build takes
-  /// two to six of each row. 0: one or more of each, so that a plan is done within a third of the
+  /// two to five of each row. 0: one or more of each, so that a plan is done within a third of the
   /// refreshes that the last order has been good for. The largest number: builds are done at once
   /// when they are due. Counts, never time: results are the
   /// same on every machine.

@@ -55,7 +55,7 @@ class WINNOW_API StructureKind {
   X(loose_quadtree, float loose = 2.0F)                                                       \
   /* A tree of boxes that is refitted: take it when you do not know. */                       \
   X(linear_bvh, )                                                                             \
-  /* The same in an order that takes several times as long to find: for what hardly moves and \
+  /* The same in an order that takes many times as long to find: for what hardly moves and    \
      is asked much. */                                                                        \
   X(static_bvh, )                                                                             \
   /* Holds one of the others, goes on picking, and links all that it picks from. */           \

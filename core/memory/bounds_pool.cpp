@@ -9,13 +9,30 @@ namespace {
 
 constexpr std::size_t kRowsPerTask = 16384;
 
+// Eight at a time, which mostly are all there.
+template <typename T>
+void gather(const T* from, const std::uint32_t* order, std::size_t begin, std::size_t end, T* to,
+            T missing) {
+  constexpr std::size_t kTogether = 8;
+  std::size_t i = begin;
+  const auto one = [&](std::size_t k) { to[k] = order[k] == kNoObject ? missing : from[order[k]]; };
+  for (; i + kTogether <= end; i += kTogether) {
+    std::uint32_t most = 0;
+    for (std::size_t k = i; k < i + kTogether; ++k) most = std::max(most, order[k]);
+    if (most == kNoObject) {
+      for (std::size_t k = i; k < i + kTogether; ++k) one(k);
+    } else {
+      for (std::size_t k = i; k < i + kTogether; ++k) to[k] = from[order[k]];
+    }
+  }
+  for (; i < end; ++i) one(i);
+}
+
 template <typename T>
 void gather(const T* from, std::span<const std::uint32_t> order, T* to, T missing,
             const Execution& execution) {
   for_stretches(execution, order.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      to[i] = order[i] == kNoObject ? missing : from[order[i]];
-    }
+    gather(from, order.data(), begin, end, to, missing);
   });
 }
 

@@ -67,9 +67,9 @@ inline constexpr std::size_t kBuildTerms = 2;
 /// frame, so that builds weigh in without ruling: first to the relative errors, without negative
 /// ones, then to what choosing by them costs (`winnow fit` of the tool prints them and judges
 /// them). Those of other queries were fitted to single rays, boxes and nearest objects there. What
-/// they say is that where most objects move, HierarchicalGrid is the best choice from some 200
-/// objects on and brute force below; LinearBvh where few move, and StaticBvh where much is asked,
-/// too. A spread of sizes tells nothing that the number of pairs does not.
+/// they say is that brute force is the best choice for few objects, LinearBvh for more, and
+/// StaticBvh where much is asked, too. A spread of sizes tells nothing that the number of pairs
+/// does not.
 class PredictedCosts {
  public:
   using List = std::array<double, kMostCandidates>;

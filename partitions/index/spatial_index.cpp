@@ -90,9 +90,12 @@ Status SpatialIndex::absorb_changes(bool all) {
 // before it is asked. Slow wear is left to the count of tests.
 bool SpatialIndex::is_torn() const noexcept {
   constexpr float kTorn = 2.0F;
+  constexpr float kTornOfPrice = 0.1F;  // what costs little to build is torn sooner
+  const float price = static_cast<float>(structure_->build_price());
   // Cells and strips find what left them; beside them the tree holds what is of many kinds.
   if (rows_.regions().regular != 0 || !rows_.stale().all()) return false;
-  return built_edge_ > 0.0F && tree_.typical_edge() > kTorn * built_edge_;
+  const float torn = std::min(kTorn, 1.0F + kTornOfPrice * price);
+  return built_edge_ > 0.0F && tree_.typical_edge() > torn * built_edge_;
 }
 
 // False if memory is refused.

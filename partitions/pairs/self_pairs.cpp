@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::size_t kQueriesPerTask = 64;
 constexpr std::size_t kTreeTasks = 64;
+// Finding all pairs takes so many times as long as other work on as many objects.
+constexpr std::size_t kPairWork = 2;
 
 constexpr std::size_t ceil_divide(std::size_t a, std::size_t b) {
   return (a + b - 1) / b;
@@ -215,7 +217,7 @@ Status PartitionState::full_self_pairs(PairBuffer& out, const PairPredicate& pre
   if (events != nullptr && !events->hold_all(out)) return Status::out_of_memory;
   out.clear();
   const SelfTasks tasks(*this);
-  const Execution execution = rows.execution_for(rows.pool().rows());
+  const Execution execution = rows.execution_for(kPairWork * rows.pool().rows());
   PairWriter writer(out, execution, predicate);
   const Status status = writer.append(tasks.count(), [&](std::size_t task, PairSink& sink) {
     return run_self_task(tasks, task, sink);

@@ -282,7 +282,7 @@ template <typename Source>
 bool Rows::scatters(const Source& source, std::span<const Key> keys) const noexcept {
   constexpr std::size_t kSample = 64;
   // In few rows all orders are as good.
-  constexpr std::size_t kFewRows = 2048;
+  constexpr std::size_t kFewRows = 256;
   if (!regions_.built || !(far_ > 0.0F) || keys.size() < kFewRows) return false;
   float volume[kMaxColumns];
   float* columns[kMaxColumns];

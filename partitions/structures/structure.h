@@ -128,7 +128,7 @@ class Structure {
   /// of the decision to build anew.
   [[nodiscard]] virtual std::uint64_t build_price() const noexcept { return 12; }
   /// About how many passes over all rows a plan takes, the order of the rest included.
-  [[nodiscard]] virtual std::size_t plan_passes() const noexcept { return 6; }
+  [[nodiscard]] virtual std::size_t plan_passes() const noexcept { return 4; }
   /// Called when the rows stand in the planned order. `moved` says that objects may have moved
   /// since the plan was begun.
   virtual void finish_build(const RowPlan&, bool /*moved*/) noexcept {}

@@ -15,8 +15,9 @@ inline constexpr std::size_t kMostTasks = 64;
 /// Units of work, cut into tasks that take about as many each.
 struct TaskCut {
   std::size_t units = 0;
+  std::size_t most = kMostTasks;
 
-  [[nodiscard]] std::size_t tasks() const noexcept { return std::min(kMostTasks, units); }
+  [[nodiscard]] std::size_t tasks() const noexcept { return std::min(most, units); }
   /// The first unit of a task; of the one behind the last, the end.
   [[nodiscard]] std::uint32_t first(std::size_t task) const noexcept {
     return static_cast<std::uint32_t>(units * task / tasks());

@@ -53,6 +53,14 @@ class BlockPairs {
     return true;
   }
 
+  /// Adds those of the 16 blocks of rows from `first` on that the mask names. They lie behind the
+  /// block, and are not added otherwise.
+  bool add_blocks(std::uint32_t first, Mask16 mask) {
+    if (blocks_ > kBlockRoom - kLanes && !test_blocks()) return false;
+    blocks_ += compress_store(mask, count_from(first), block_ + blocks_);
+    return true;
+  }
+
   /// Tests the block. False if the sink is full.
   bool finish() { return test_blocks() && test_rows(); }
 
@@ -124,13 +132,21 @@ class BlockPairs {
   bool report_hits() {
     if (has_more_to_test(rows_)) drop_boxes();
     const Uints ids = Uints::load_unaligned(rows_.id + at_);
+    const std::uint32_t* const row_id = rows_.id;
+    // Not the sink's own, which each pair that is written might be.
+    std::uint32_t* cursor = sink_.cursor;
     for (unsigned k = 0; k < hits_; ++k) {
-      if (!has_room(sink_)) return false;
-      const std::uint32_t id = rows_.id[hit_row_[k]];
+      if (__builtin_expect(cursor > sink_.limit, 0) != 0) {
+        sink_.cursor = cursor;
+        if (!sink_.grow(sink_)) return false;
+        cursor = sink_.cursor;
+      }
+      const std::uint32_t id = row_id[hit_row_[k]];
       Mask16 mask = hit_mask_[k];
       if constexpr (Filtered) mask = passing_rows(rows_, at_, mask, filters_.of(id));
-      sink_.cursor += 2 * emit_pairs<true>(mask, ids, id, sink_.cursor);
+      cursor += 2 * emit_pairs<true>(mask, ids, id, cursor);
     }
+    sink_.cursor = cursor;
     hits_ = 0;
     return true;
   }

@@ -1,4 +1,5 @@
 #include "partitions/tree/block_tree.kernel.h"
+#include "partitions/tree/block_pairs.wide.h"
 #include "partitions/tree/hits.wide.h"
 #include "partitions/tree/traversal.wide.h"
 #include "simd/lanes/boxes.h"
@@ -41,24 +42,15 @@ void refit_nodes(const TreeView& tree, std::uint32_t level, std::uint32_t begin,
 
 /// Of the boxes `nodes`, which are nodes from `first_node` on, those that box q overlaps and whose
 /// filters `range` may meet.
-template <bool Filtered>
 Mask16 open_nodes(const TreeView& tree, std::uint32_t level, std::uint32_t first_node,
                   const Box16& nodes, const QueryBox& q, const FilterRange& range) {
-  const Mask16 hits = overlap(nodes, q.low, q.high);
-  return Filtered ? passing_nodes(tree.filters[level], first_node, hits, range) : hits;
-}
-
-/// The filters below node i; nothing is read where nothing is filtered.
-template <bool Filtered>
-FilterRange node_range(const TreeView& tree, std::uint32_t level, std::uint32_t i) {
-  return Filtered ? range_of(tree.filters[level], i) : FilterRange{};
+  return passing_nodes(tree.filters[level], first_node, overlap(nodes, q.low, q.high), range);
 }
 
 /// Finds pairs between leaves in three long loops instead of many short nested ones, whose lengths
 /// no branch predictor can guess: pairs of leaves whose boxes overlap; of each, the rows of the
 /// first leaf that reach into the second's box; of each such row, its hits among the second leaf's
-/// rows. Filtered, each loop passes on what the filters let meet.
-template <bool Filtered>
+/// rows. Each loop passes on what the filters let meet.
 class LeafPairs {
  public:
   LeafPairs(const TreeView& tree, PairSink& sink)
@@ -74,8 +66,8 @@ class LeafPairs {
 
   /// Adds all pairs within a leaf.
   bool add_self(std::uint32_t leaf) {
-    const FilterRange range = node_range<Filtered>(tree_, 0, leaf);
-    if (Filtered && !may_meet(range, range)) return true;
+    const FilterRange range = range_of(tree_.filters[0], leaf);
+    if (!may_meet(range, range)) return true;
     return add_rows(leaf * kLanes, leaf, 0x7FFFU);
   }
 
@@ -101,13 +93,11 @@ class LeafPairs {
       const QueryBox b(tree_.node[0], second_[k]);
       const Box16 a = load_slabs<3>(tree_.rows.column, row_of(first_[k]));
       Mask16 rows = overlap(a, b.low, b.high);
-      if constexpr (Filtered) {
-        // Rows of one environment are told apart by their hits: looking at each costs more.
-        const FilterRange own = node_range<true>(tree_, 0, first_[k]);
-        if (own.first_environment != own.last_environment) {
-          const auto first_row = static_cast<std::uint32_t>(row_of(first_[k]));
-          rows = passing_rows(tree_.rows, first_row, rows, node_range<true>(tree_, 0, second_[k]));
-        }
+      // Rows of one environment are told apart by their hits: looking at each costs more.
+      const FilterRange own = range_of(tree_.filters[0], first_[k]);
+      if (own.first_environment != own.last_environment) {
+        const auto first_row = static_cast<std::uint32_t>(row_of(first_[k]));
+        rows = passing_rows(tree_.rows, first_row, rows, range_of(tree_.filters[0], second_[k]));
       }
       if (!add_rows(first_[k] * kLanes, second_[k], rows)) return false;
     }
@@ -129,10 +119,10 @@ class LeafPairs {
       if (!hits_.make_room() || !sure_.make_room()) return false;
       const Mask16 met = overlap(b, q.low, q.high) & lanes;
       // Leaves that may meet and whose rows are alike leave nothing to be looked up.
-      const bool sure = !Filtered || (is_alike(row_[k] / kLanes) && is_alike(leaf_[k]));
+      const bool sure = is_alike(row_[k] / kLanes) && is_alike(leaf_[k]);
       const auto at_row = static_cast<std::uint32_t>(at);
       sure_.add(static_cast<std::uint32_t>(r), at_row, sure ? met : 0);
-      if (Filtered) hits_.add(static_cast<std::uint32_t>(r), at_row, sure ? 0 : met);
+      hits_.add(static_cast<std::uint32_t>(r), at_row, sure ? 0 : met);
     }
     sink_.tests += rows_;
     rows_ = 0;
@@ -145,7 +135,7 @@ class LeafPairs {
 
   const TreeView& tree_;
   PairSink& sink_;
-  HitList<HitMode::unordered, Filtered> hits_;
+  HitList<HitMode::unordered, true> hits_;
   HitList<HitMode::unordered, false> sure_;
   unsigned leaves_ = 0;
   unsigned rows_ = 0;
@@ -156,25 +146,24 @@ class LeafPairs {
 };
 
 /// All pairs of the leaves `is` of group g with those of group h >= g.
-template <bool Filtered>
-bool group_pair(const TreeView& tree, std::uint32_t g, std::uint32_t h, Mask16 is,
-                LeafPairs<Filtered>& pairs, PairSink& sink) {
+bool group_pair(const TreeView& tree, std::uint32_t g, std::uint32_t h, Mask16 is, LeafPairs& pairs,
+                PairSink& sink) {
   const Box16 h_leaves = load_slabs<3>(tree.node[0], std::size_t{h} * kLanes);
   sink.tests += count(is);
   for (; is != 0; is &= is - 1) {
     const std::uint32_t i = g * kLanes + first(is);
     const QueryBox a(tree.node[0], i);
-    Mask16 js =
-        open_nodes<Filtered>(tree, 0, h * kLanes, h_leaves, a, node_range<Filtered>(tree, 0, i));
+    Mask16 js = open_nodes(tree, 0, h * kLanes, h_leaves, a, range_of(tree.filters[0], i));
     if (g == h) js &= ~lanes_below(first(is) + 1);
     if (!pairs.add(i, h * kLanes, js)) return false;
   }
   return true;
 }
 
-template <bool Filtered>
-bool find_self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-  LeafPairs<Filtered> pairs(tree, sink);
+/// Pairs of rows with filters, group by group: what filters keep apart is not entered.
+bool find_filtered_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end,
+                         PairSink& sink) {
+  LeafPairs pairs(tree, sink);
   for (std::uint32_t g = begin; g < end; ++g) {
     const std::uint32_t last =
         tree.count[0] - g * kLanes < kLanes ? tree.count[0] - g * kLanes : kLanes;
@@ -185,17 +174,17 @@ bool find_self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t en
     if (tree.levels == 1) continue;
     const Box16 g_leaves = load_slabs<3>(tree.node[0], std::size_t{g} * kLanes);
     const QueryBox g_box(tree.node[1], g);
-    const FilterRange g_range = node_range<Filtered>(tree, 1, g);
+    const FilterRange g_range = range_of(tree.filters[1], g);
     const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
       ++sink.tests;
       const Box16 nodes = load_slabs<3>(tree.node[level], first_node);
-      return open_nodes<Filtered>(tree, level, first_node, nodes, g_box, g_range);
+      return open_nodes(tree, level, first_node, nodes, g_box, g_range);
     };
     const auto visit = [&](std::uint32_t h) {
       ++sink.tests;
       const QueryBox h_box(tree.node[1], h);
-      const Mask16 is = open_nodes<Filtered>(tree, 0, g * kLanes, g_leaves, h_box,
-                                             node_range<Filtered>(tree, 1, h));
+      const Mask16 is =
+          open_nodes(tree, 0, g * kLanes, g_leaves, h_box, range_of(tree.filters[1], h));
       return group_pair(tree, g, h, is, pairs, sink);
     };
     if (!traverse_from(tree, 1, g + 1, test, visit)) return false;
@@ -203,9 +192,33 @@ bool find_self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t en
   return pairs.finish();
 }
 
+/// Pairs of rows without filters, leaf by leaf.
+bool find_plain_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end,
+                      PairSink& sink) {
+  BlockPairs<false> pairs(tree.rows, sink);
+  const std::uint32_t last = tree.count[0] < end * kLanes ? tree.count[0] : end * kLanes;
+  for (std::uint32_t leaf = begin * kLanes; leaf < last; ++leaf) {
+    const std::uint32_t row = (tree.first_block + leaf) * kLanes;
+    if (!pairs.start(row, row + kLanes)) continue;
+    const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
+      ++sink.tests;
+      return overlap(load_slabs<3>(tree.node[level], first_node), pairs.low(), pairs.high());
+    };
+    const auto visit = [&](std::uint32_t group) {
+      Mask16 leaves = test(0, group * kLanes);
+      if (group == leaf / kLanes) leaves &= ~lanes_below(leaf % kLanes + 1);
+      return pairs.add_blocks(tree.first_block + group * kLanes, leaves);
+    };
+    const bool done =
+        tree.levels == 1 ? visit(0) : traverse_from(tree, 1, leaf / kLanes, test, visit);
+    if (!done || !pairs.finish()) return false;
+  }
+  return true;
+}
+
 bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-  return tree.rows.filter != nullptr ? find_self_pairs<true>(tree, begin, end, sink)
-                                     : find_self_pairs<false>(tree, begin, end, sink);
+  return tree.rows.filter != nullptr ? find_filtered_pairs(tree, begin, end, sink)
+                                     : find_plain_pairs(tree, begin, end, sink);
 }
 
 /// The boxes of a batch on their way down the tree together.

@@ -2,20 +2,25 @@
 
 #include "core/sort/stretches.h"
 #include "partitions/tree/kd_order.kernel.h"
+#include "partitions/tree/tile_order.kernel.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <limits>
+#include <utility>
 
 namespace winnow {
 
 WINNOW_DEFINE_KERNELS(KdOrderKernels, kd_order_kernels)
+WINNOW_DEFINE_KERNELS(TileOrderKernels, tile_order_kernels)
 
 namespace {
 
-// Larger sets are cut one by one, so that all threads have some to finish.
-constexpr std::size_t kKdWorthSharing = 2048;
+// Parts up to this size are put in tiles.
+constexpr std::size_t kTiledPart = 4096;
+// Tiles take about as long as so many cuts of each row.
+constexpr std::size_t kCutsOfTiles = 2;
 constexpr std::size_t kPointsPerTask = 16384;
 
 /// Rows and their points, of which KdSets are parts.
@@ -32,21 +37,46 @@ KdSet part_of(std::span<std::uint32_t> rows, std::uint32_t* room, float* points,
   return set;
 }
 
-/// How often each row of a set is cut from others until 16 are left.
-std::size_t cuts_of(std::size_t count) noexcept {
-  return static_cast<std::size_t>(std::bit_width(count / kBlockRows));
+// The tiles of a set, which is large enough for them. False if they would not tell its points
+// apart.
+bool sort_in_tiles(const KdSet& set) {
+  TileSet tiles;
+  std::copy_n(set.at, 3, tiles.at);
+  tiles.row = set.row;
+  tiles.row_room = set.row_room;
+  std::copy_n(set.at_room, 3, tiles.room);
+  tiles.count = set.count;
+  return tile_order_kernels().sort(tiles);
+}
+
+// Cuts a set until tiles, or blocks, are left.
+void finish_part(KdSet set, KdParts parts) {
+  while (parts == KdParts::tiles && set.count >= kFewestInTiles) {
+    if (set.count <= kTiledPart && sort_in_tiles(set)) return;
+    finish_part(kd_order_kernels().split(set), parts);
+  }
+  kd_order_kernels().finish(set);
+}
+
+// How many cuts of each row that takes.
+std::size_t cuts_of(std::size_t count, KdParts parts) noexcept {
+  return parts == KdParts::tiles ? kCutsOfTiles
+                                 : static_cast<std::size_t>(std::bit_width(count / kBlockRows));
 }
 
 }  // namespace
 
 bool KdCuts::start(const BoundsPool& pool, std::span<std::uint32_t> rows, std::uint32_t* room,
-                   Column<float>& scratch, const Execution& execution) {
+                   Column<float>& scratch, const Execution& execution, KdParts parts) {
   const std::size_t count = rows.size();
   if (!scratch.resize(6 * count)) return false;
   rows_ = rows;
   room_ = room;
   points_ = scratch.data();
   open_ = 0;
+  parts_ = parts;
+  // Smaller sets are parts.
+  whole_ = parts == KdParts::tiles && count > kTiledPart && count <= kMostInTiles;
   if (count <= kBlockRows) return true;
   sets_[open_++] = {0, static_cast<std::uint32_t>(count)};
   const KdSet all = part_of(rows_, room_, points_, 0, count);
@@ -57,7 +87,16 @@ bool KdCuts::start(const BoundsPool& pool, std::span<std::uint32_t> rows, std::u
   return true;
 }
 
-// Cuts every set that is worth sharing in two; false if there is none, or no room for more.
+// True if all rows could be put in tiles at once.
+bool KdCuts::tile_whole(std::size_t& work) {
+  if (!std::exchange(whole_, false)) return false;
+  work -= std::min(work, kCutsOfTiles * rows_.size());
+  if (!sort_in_tiles(part_of(rows_, room_, points_, 0, rows_.size()))) return false;
+  open_ = 0;
+  return true;
+}
+
+// Cuts every set that is too large for tiles in two; false if there is none, or no room for more.
 bool KdCuts::cut_widest(std::size_t& work, const Execution& execution) {
   const std::size_t before = open_;
   if (2 * before > kMostSets) return false;
@@ -65,7 +104,7 @@ bool KdCuts::cut_widest(std::size_t& work, const Execution& execution) {
     Set& first = sets_[i];
     Set& second = sets_[before + i];
     second = {first.begin, 0};
-    if (first.count <= kKdWorthSharing) return;
+    if (first.count <= kTiledPart) return;
     KdSet set = part_of(rows_, room_, points_, first.begin, first.count);
     second.count = static_cast<std::uint32_t>(kd_order_kernels().split(set).count);
     first.count -= second.count;
@@ -80,26 +119,27 @@ bool KdCuts::cut_widest(std::size_t& work, const Execution& execution) {
 }
 
 bool KdCuts::advance(std::size_t work, const Execution& execution) {
+  if (tile_whole(work)) return true;
   while (work != 0 && open_ != 0 && cut_widest(work, execution)) {
   }
   // What is left are sets that a thread each finishes.
   std::size_t taken = 0;
   for (; taken < open_ && work != 0; ++taken) {
     const std::size_t count = sets_[open_ - 1 - taken].count;
-    work -= std::min(work, count * cuts_of(count));
+    work -= std::min(work, count * cuts_of(count, parts_));
   }
   execution.for_each(taken, [&](std::size_t i) {
     const Set& set = sets_[open_ - 1 - i];
-    kd_order_kernels().finish(part_of(rows_, room_, points_, set.begin, set.count));
+    finish_part(part_of(rows_, room_, points_, set.begin, set.count), parts_);
   });
   open_ -= taken;
   return open_ == 0;
 }
 
 bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows, std::uint32_t* room,
-                     Column<float>& scratch, const Execution& execution) {
+                     Column<float>& scratch, const Execution& execution, KdParts parts) {
   KdCuts cuts;
-  if (!cuts.start(pool, rows, room, scratch, execution)) return false;
+  if (!cuts.start(pool, rows, room, scratch, execution, parts)) return false;
   (void)cuts.advance(std::numeric_limits<std::size_t>::max(), execution);
   return true;
 }

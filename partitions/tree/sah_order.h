@@ -26,8 +26,8 @@ struct SahBox {
 /// algorithm for bulk loading R-trees", 1998). Places left empty, so that cuts are freer, were not
 /// worth it: 8 % more places save 0 to 3 % of the tests, and 25 % save no more.
 ///
-/// Rows must be live; their boxes are those of the pool's first three slabs. O(n log n), five times
-/// as long as `sort_by_kd_cuts`; the same result on any number of threads. False if memory is
+/// Rows must be live; their boxes are those of the pool's first three slabs. O(n log n), some ten
+/// times as long as `sort_by_kd_cuts`; the same result on any number of threads. False if memory is
 /// refused.
 [[nodiscard]] bool append_in_sah_order(const BoundsPool& pool, std::span<const std::uint32_t> rows,
                                        Column<SahBox>& scratch, Column<std::uint32_t>& order,

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kFew = 20;     // brute force is the best choice whatever the scene
 constexpr std::size_t kMany = 1200;  // and the worst
+constexpr std::size_t kFramesOfEach = 24;
 
 // A world whose number of objects changes so much that its structure must.
 class TurningWorld {
@@ -60,7 +61,7 @@ class TurningWorld {
 std::vector<std::size_t> turning_counts() {
   std::vector<std::size_t> counts;
   for (const std::size_t count : {kFew, kMany, kFew, kMany, kFew})
-    counts.insert(counts.end(), 4, count);
+    counts.insert(counts.end(), kFramesOfEach, count);
   return counts;
 }
 

@@ -58,6 +58,16 @@ std::vector<Aabb> flat_boxes(std::size_t count) {
   return boxes;
 }
 
+TEST(LinearBvhOrder, costs_hardly_more_tests_than_a_search_finds_wherever_objects_lie) {
+  for (const std::size_t objects : {1000U, 5000U, 20000U}) {
+    for (const auto& boxes : {uniform_boxes(objects), clustered_boxes(objects),
+                              mixed_boxes(objects), pile_boxes(objects), flat_boxes(objects),
+                              outlier_boxes(objects), two_scale_boxes(objects)}) {
+      EXPECT_LE(4 * tests_of_pairs("LinearBvh", boxes), 5 * tests_of_pairs("StaticBvh", boxes));
+    }
+  }
+}
+
 TEST(StaticBvhOrder, costs_no_more_tests_than_that_of_linear_bvh) {
   constexpr std::size_t kObjects = 20000;
   for (const auto& boxes : {uniform_boxes(kObjects), clustered_boxes(kObjects),

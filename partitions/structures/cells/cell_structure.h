@@ -5,6 +5,7 @@
 #include "partitions/structures/structure.h"
 #include "partitions/structures/tasks.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -68,7 +69,10 @@ class CellStructure : public Structure {
 
  private:
   [[nodiscard]] TaskCut pair_cut() const noexcept {
-    return {regular_rows() == 0 ? 0 : pair_units()};
+    // Of fewer rows the pairs are sooner found than a task is begun.
+    constexpr std::size_t kRowsOfTask = 128;
+    if (regular_rows() == 0) return {};
+    return {pair_units(), std::min(kMostTasks, regular_rows() / kRowsOfTask + 1)};
   }
 };
 

@@ -1,0 +1,202 @@
+#include "partitions/tree/tile_order.kernel.h"
+#include "simd/lanes/lanes.h"
+#include "simd/lanes/truncated.h"
+
+namespace winnow {
+namespace WINNOW_ISA_NAME {
+namespace {
+
+constexpr std::size_t kStep = static_cast<std::size_t>(kLanes);
+constexpr std::uint32_t kPlaceBits = 7;
+constexpr std::uint32_t kPlaces = 1U << kPlaceBits;  // of an axis
+constexpr std::uint32_t kMostParts = 12;
+constexpr std::uint32_t kMostLines = kMostParts * kMostParts;
+constexpr float kLeastLength = 1e-30F;  // what is closer is at one place
+
+/// One axis of the points.
+struct TileAxis {
+  const float* x;
+  float low;
+  float length;  // half of it: that of what is spread over all floats is finite
+
+  /// Of at least 16 points.
+  TileAxis(const float* points, std::size_t count) : x(points) {
+    Floats least = Floats::load_unaligned(x);
+    Floats most = least;
+    for (std::size_t i = kStep; i < count; i += kStep) {
+      // The last step looks at some points again.
+      const Floats v = Floats::load_unaligned(x + (i + kStep <= count ? i : count - kStep));
+      least = min(least, v);
+      most = max(most, v);
+    }
+    low = reduce_min(least);
+    length = 0.5F * reduce_max(most) - 0.5F * low;
+  }
+
+  /// Writes the place of each point.
+  void find_places(std::size_t count, std::uint8_t* place) const {
+    const float scale = length > kLeastLength ? static_cast<float>(kPlaces) / length : 0.0F;
+    const Floats half_low = Floats(0.5F * low);
+    const Floats last = Floats(static_cast<float>(kPlaces - 1));
+    alignas(64) std::uint32_t whole[kLanes];
+    for (std::size_t next = 0; next < count; next += kStep) {
+      const std::size_t i = next + kStep <= count ? next : count - kStep;
+      const Floats at = (0.5F * Floats::load_unaligned(x + i) - half_low) * scale;
+      truncated(min(max(at, Floats(0.0F)), last)).store(whole);
+      for (std::size_t k = 0; k < kStep; ++k) place[i + k] = static_cast<std::uint8_t>(whole[k]);
+    }
+  }
+};
+
+/// How many parts each of the axes but the longest is cut into, so that the lines that this leaves
+/// are about as wide as cubes of 16 points are, were all spread evenly.
+struct TileCuts {
+  std::uint32_t slow = 0;
+  std::uint32_t mid = 0;
+
+  TileCuts(const TileAxis& fast_axis, const TileAxis& mid_axis, const TileAxis& slow_axis,
+           std::size_t count) {
+    if (fast_axis.length > kLeastLength) {
+      const float m = mid_axis.length / fast_axis.length;
+      const float s = slow_axis.length / fast_axis.length;
+      const float tiles = static_cast<float>(count) / static_cast<float>(kLanes);
+      // Rounded roots of tiles s^2 / m, and of what a slab has times m.
+      const auto half = [](std::uint32_t n) { return static_cast<float>(n) + 0.5F; };
+      while (slow < kMostParts && half(slow) * half(slow) * half(slow) * m < tiles * s * s) ++slow;
+      const float slabs = slow == 0 ? 1.0F : static_cast<float>(slow);
+      while (mid < kMostParts && half(mid) * half(mid) * slabs < tiles * m) ++mid;
+    }
+    slow = slow == 0 ? 1 : slow;
+    mid = mid == 0 ? 1 : mid;
+  }
+};
+
+/// Gives every place a part of [0, parts), of about as many points each.
+void cut(const std::uint32_t* points, std::uint32_t all, std::uint32_t parts, std::uint32_t* part) {
+  std::uint32_t own = 0;
+  std::uint32_t end = 2 * all;  // of the part, as many times as there are parts
+  std::uint32_t twice = 0;      // the points before the place, as many times
+  for (std::uint32_t p = 0; p < kPlaces; ++p) {
+    const std::uint32_t here = points[p] * parts;
+    // No branch: it would be a coin toss.
+    const std::uint32_t next = static_cast<std::uint32_t>(twice + here >= end) &
+                               static_cast<std::uint32_t>(own + 1 < parts);
+    own += next;
+    end += (0U - next) & (2 * all);
+    part[p] = own;
+    twice += 2 * here;
+  }
+}
+
+class Tiles {
+ public:
+  explicit Tiles(const TileSet& set) : set_(set), count_(set.count) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      place_[k] = reinterpret_cast<std::uint8_t*>(set.room[0]) + k * count_;
+    }
+    key_ = reinterpret_cast<std::uint16_t*>(set.room[1]);
+  }
+
+  bool sort() {
+    const TileAxis axis[3] = {{set_.at[0], count_}, {set_.at[1], count_}, {set_.at[2], count_}};
+    // The longest axis is the fast one.
+    int order[3] = {0, 1, 2};
+    const auto swap_if_longer = [&](int a, int b) {
+      if (!(axis[order[b]].length > axis[order[a]].length)) return;
+      const int kept = order[a];
+      order[a] = order[b];
+      order[b] = kept;
+    };
+    swap_if_longer(0, 1);
+    swap_if_longer(1, 2);
+    swap_if_longer(0, 1);
+    const TileCuts cuts(axis[order[0]], axis[order[1]], axis[order[2]], count_);
+    const std::uint32_t parts[3] = {0, cuts.mid, cuts.slow};
+    for (int k = 0; k < 3; ++k) {
+      axis[order[k]].find_places(count_, place_[k]);
+      if (parts[k] != 1 && is_heaped(place_[k])) return false;
+    }
+    find_lines(cuts);
+    place_rows(cuts.slow * cuts.mid);
+    return true;
+  }
+
+ private:
+  /// Of many points one in four tells where cuts lie.
+  [[nodiscard]] std::size_t stride() const { return count_ < 512 ? 1 : 4; }
+
+  /// True if so many points are at one place that they have to be told apart by other means.
+  [[nodiscard]] bool is_heaped(const std::uint8_t* place) const {
+    std::uint32_t points[kPlaces] = {};
+    for (std::size_t i = 0; i < count_; i += stride()) ++points[place[i]];
+    std::uint32_t most = 0;
+    for (std::uint32_t p = 0; p < kPlaces; ++p) most = points[p] > most ? points[p] : most;
+    return most * stride() > count_ / 32 + kStep;
+  }
+
+  /// Lines are numbered like a snake.
+  void find_lines(const TileCuts& cuts) {
+    std::uint32_t points[kMostParts + 1][kPlaces];
+    std::uint32_t* const slow_points = points[kMostParts];
+    for (std::uint32_t p = 0; p < kPlaces; ++p) slow_points[p] = 0;
+    std::uint32_t all = 0;
+    for (std::size_t i = 0; i < count_; i += stride(), ++all) ++slow_points[place_[2][i]];
+    std::uint32_t slab[kPlaces];
+    cut(slow_points, all, cuts.slow, slab);
+    std::uint32_t in_slab[kMostParts] = {};
+    for (std::uint32_t p = 0; p < kPlaces; ++p) in_slab[slab[p]] += slow_points[p];
+    __builtin_memset(points, 0, cuts.slow * sizeof points[0]);
+    for (std::size_t i = 0; i < count_; i += stride()) {
+      ++points[slab[place_[2][i]]][place_[1][i]];
+    }
+    std::uint32_t part[kPlaces];
+    std::uint32_t line[kMostParts][kPlaces];
+    for (std::uint32_t s = 0; s < cuts.slow; ++s) {
+      cut(points[s], in_slab[s], cuts.mid, part);
+      for (std::uint32_t p = 0; p < kPlaces; ++p) {
+        line[s][p] = s * cuts.mid + ((s & 1U) != 0 ? cuts.mid - 1 - part[p] : part[p]);
+      }
+    }
+    // Eight steps of a line for each of its tiles.
+    while (step_bits_ > 2 && cuts.slow * cuts.mid << step_bits_ > count_) --step_bits_;
+    const std::uint32_t last_step = (1U << step_bits_) - 1;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const std::uint32_t own = line[slab[place_[2][i]]][place_[1][i]];
+      const std::uint32_t step = place_[0][i] >> (kPlaceBits - step_bits_);
+      const std::uint32_t back = (0U - (own & 1U)) & last_step;
+      key_[i] = static_cast<std::uint16_t>(own << step_bits_ | (step ^ back));
+    }
+  }
+
+  void place_rows(std::uint32_t lines) {
+    std::uint16_t next[kMostLines * kPlaces];
+    const std::uint32_t keys = lines << step_bits_;
+    __builtin_memset(next, 0, keys * sizeof next[0]);
+    for (std::size_t i = 0; i < count_; ++i) ++next[key_[i]];
+    std::uint32_t sum = 0;
+    for (std::uint32_t k = 0; k < keys; ++k) {
+      const std::uint32_t own = next[k];
+      next[k] = static_cast<std::uint16_t>(sum);
+      sum += own;
+    }
+    for (std::size_t i = 0; i < count_; ++i) set_.row_room[next[key_[i]]++] = set_.row[i];
+    __builtin_memcpy(set_.row, set_.row_room, count_ * sizeof *set_.row);
+  }
+
+  const TileSet& set_;
+  const std::size_t count_;
+  std::uint8_t* place_[3];
+  std::uint16_t* key_;
+  std::uint32_t step_bits_ = kPlaceBits;
+};
+
+bool sort(const TileSet& set) {
+  return Tiles(set).sort();
+}
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME
+
+extern const TileOrderKernels WINNOW_KERNEL_TABLE(tile_order_kernels) = {WINNOW_ISA_NAME::sort};
+
+}  // namespace winnow
