@@ -7,9 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <utility>
 
 namespace winnow {
 namespace {
+
+// Entries that a plan may have beyond the rows.
+constexpr std::size_t kPlanSlack = 4 * kBlockRows;
 
 constexpr std::size_t blocks_of(std::size_t rows) noexcept {
   return (rows + kBlockRows - 1) / kBlockRows;
@@ -48,30 +52,106 @@ SpatialIndex::SpatialIndex(std::pmr::memory_resource* memory, Rows& rows) noexce
       points_(memory) {}
 
 SpatialIndex::~SpatialIndex() {
-  if (structure_ != nullptr) kind_.info()->end(structure_, memory_);
+  end_waiting();
+  end({kind_, structure_});
 }
 
 Structure* SpatialIndex::make(StructureKind kind) noexcept {
+  const auto waiting = std::ranges::find(waiting_, kind, &Waiting::kind);
+  if (waiting != waiting_.end()) return std::exchange(*waiting, {}).structure;
   return kind.info()->make({memory_, rows_, regular_tree_, kind.parameter()});
+}
+
+void SpatialIndex::end(const Waiting& one) noexcept {
+  if (one.structure != nullptr) one.kind.info()->end(one.structure, memory_);
+}
+
+// With what was reserved for it, it may be taken again.
+void SpatialIndex::put_by(const Waiting& one) noexcept {
+  const auto place = std::ranges::find(waiting_, nullptr, &Waiting::structure);
+  if (reserved_ && place != waiting_.end()) {
+    *place = one;
+  } else {
+    end(one);
+  }
 }
 
 void SpatialIndex::install(Structure* structure, StructureKind kind) noexcept {
   structure_ = structure;
   kind_ = kind;
-  tree_.release();
-  regular_tree_.release();
-  release_scratch();
-  rows_.selection().release();
+  if (reserved_) {
+    (void)tree_.cover(0, 0);
+    (void)regular_tree_.cover(0, 0);
+  } else {
+    tree_.release();
+    regular_tree_.release();
+    release_scratch();
+    rows_.selection().release();
+  }
   built_edge_ = 0.0F;
   built_holes_ = 0;
   full_base_ = moved_base_ = excess_ = 0;
   rows_.disorder();
 }
 
+bool SpatialIndex::reserve(std::size_t objects, Pages pages,
+                           std::span<const StructureKind> later) noexcept {
+  if (!have_wait(later)) return false;
+  std::size_t holes = 0;
+  std::size_t behind = 0;
+  bool flat = true;
+  const auto count_in = [&](const Structure& structure) {
+    flat = flat && structure.is_flat();
+    holes = std::max(holes, structure.most_holes());
+    if (structure.prunes_rows()) behind = 2 * tail_limit(objects);
+  };
+  count_in(*structure_);
+  for (const Waiting& one : waiting_) {
+    if (one.structure != nullptr) count_in(*one.structure);
+  }
+  reserved_ = flat || reserve_order(objects + holes + kBlockRows, behind, pages);
+  const BuildRoom room{objects, pages, items_, points_};
+  reserved_ = reserved_ && structure_->reserve(room);
+  for (const Waiting& one : waiting_) {
+    if (one.structure != nullptr) reserved_ = reserved_ && one.structure->reserve(room);
+  }
+  return reserved_;
+}
+
+// Room for so many rows in order, and for those that are to be left behind them.
+bool SpatialIndex::reserve_order(std::size_t rows, std::size_t behind, Pages pages) noexcept {
+  const std::size_t planned = rows + behind + kPlanSlack;
+  const std::size_t blocks = blocks_of(rows);
+  return rows_.reserve_rows(rows + behind) &&
+         spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows, pages) &&
+         order_.reserve(planned, pages) && rows_.selection().list.reserve(planned, pages) &&
+         tree_.reserve(blocks, pages) && (behind == 0 || regular_tree_.reserve(blocks, pages));
+}
+
+bool SpatialIndex::have_wait(std::span<const StructureKind> kinds) noexcept {
+  auto place = waiting_.begin();
+  for (const StructureKind kind : kinds) {
+    if (kind == kind_ || std::ranges::find(waiting_, kind, &Waiting::kind) != waiting_.end()) {
+      continue;
+    }
+    place = std::find_if(place, waiting_.end(), [](const Waiting& w) { return !w.structure; });
+    if (place == waiting_.end()) return true;
+    Structure* const made = make(kind);
+    if (made == nullptr) return false;
+    *place = {kind, made};
+  }
+  return true;
+}
+
+void SpatialIndex::end_waiting() noexcept {
+  for (Waiting& one : waiting_) end(std::exchange(one, {}));
+}
+
 bool SpatialIndex::set_structure(StructureKind kind) noexcept {
   Structure* const made = make(kind);
   if (made == nullptr) return false;
-  if (structure_ != nullptr) kind_.info()->end(structure_, memory_);
+  end_waiting();
+  end({kind_, structure_});
   install(made, kind);
   return true;
 }
@@ -85,10 +165,10 @@ Status SpatialIndex::refresh_as(StructureKind kind, bool& taken) {
   install(made, kind);
   taken = refresh() == Status::ok;
   if (taken) {
-    kind_before.info()->end(structure_before, memory_);
+    put_by({kind_before, structure_before});
     return Status::ok;
   }
-  kind.info()->end(made, memory_);
+  put_by({kind, made});
   install(structure_before, kind_before);
   return refresh();
 }
@@ -163,7 +243,7 @@ Status SpatialIndex::build() {
 
 // Leaves the regular rows in order_ and all others in the selection.
 bool SpatialIndex::plan_order() {
-  const std::size_t room = rows_.pool().rows() + spare_rows() + 4 * kBlockRows;
+  const std::size_t room = rows_.pool().rows() + spare_rows() + kPlanSlack;
   RowSelection& rest = rows_.selection();
   order_.clear();
   if (!order_.grow(room) || !rest.start(room)) return false;
@@ -408,6 +488,11 @@ void SpatialIndex::add_bytes(Footprint& footprint) const noexcept {
   footprint.structure += regular_tree_.bytes();
   footprint.scratch += bytes_of(spare_, order_, items_, points_);
   structure_->add_bytes(footprint);
+  for (const Waiting& one : waiting_) {
+    if (one.structure == nullptr) continue;
+    footprint.structure += {one.kind.info()->bytes, one.kind.info()->bytes};
+    one.structure->add_bytes(footprint);
+  }
 }
 
 void SpatialIndex::release_scratch() noexcept {
@@ -415,6 +500,8 @@ void SpatialIndex::release_scratch() noexcept {
 }
 
 void SpatialIndex::release_memory() noexcept {
+  reserved_ = false;
+  end_waiting();
   release_scratch();
   structure_->release_scratch();
   if (rows_.size() != 0) return;

@@ -8,6 +8,7 @@
 #include "partitions/tree/block_tree.h"
 #include "partitions/tree/kd_order.h"
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -55,6 +56,12 @@ class SpatialIndex {
   [[nodiscard]] StructureKind kind() const noexcept { return kind_; }
   [[nodiscard]] const Structure& structure() const noexcept { return *structure_; }
 
+  /// Makes room for a build of so many objects, wherever they lie, and for what pair queries then
+  /// read, with the structure that is there and with each of those that may be taken `later`. It
+  /// lasts until `release_memory`. What objects have in filters is not counted in. False if memory
+  /// is refused.
+  [[nodiscard]] bool reserve(std::size_t objects, Pages pages,
+                             std::span<const StructureKind> later) noexcept;
   /// Brings everything up to date that pair queries read. What fails is tried again by the next
   /// refresh.
   Status refresh();
@@ -94,11 +101,24 @@ class SpatialIndex {
   void release_memory() noexcept;
 
  private:
+  /// A structure that waits to be taken, or none.
+  struct Waiting {
+    StructureKind kind{};
+    Structure* structure = nullptr;
+  };
   [[nodiscard]] Structure* make(StructureKind kind) noexcept;
+  void end(const Waiting& one) noexcept;
+  void put_by(const Waiting& one) noexcept;
+  [[nodiscard]] bool reserve_order(std::size_t rows, std::size_t behind, Pages pages) noexcept;
+  [[nodiscard]] bool have_wait(std::span<const StructureKind> kinds) noexcept;
+  void end_waiting() noexcept;
   void install(Structure* structure, StructureKind kind) noexcept;
   [[nodiscard]] bool needs_build() const noexcept;
   /// Rows that may stand behind the built ones before a build is due.
-  [[nodiscard]] std::size_t tail_limit() const noexcept { return rows_.size() / 16 + 64; }
+  [[nodiscard]] std::size_t tail_limit() const noexcept { return tail_limit(rows_.size()); }
+  [[nodiscard]] static std::size_t tail_limit(std::size_t objects) noexcept {
+    return objects / 16 + 64;
+  }
   /// Room that a build leaves behind its rows for a tail.
   [[nodiscard]] std::size_t spare_rows() const noexcept {
     return structure_->prunes_rows() ? 2 * tail_limit() : 0;
@@ -126,6 +146,7 @@ class SpatialIndex {
   Rows& rows_;
   StructureKind kind_;
   Structure* structure_ = nullptr;
+  std::array<Waiting, 16> waiting_{};  // with what was reserved for them
   BlockTree tree_;
 
   // Unless the structure prunes rows or is flat it serves all queries but pairs, and is made when
@@ -137,6 +158,7 @@ class SpatialIndex {
   float built_edge_ = 0.0F;      // of a typical leaf of the tree, as the build left it
   std::size_t built_holes_ = 0;  // padding that the build left between the regions
   bool tail_changed_ = false;
+  bool reserved_ = false;  // memory is there to stay, whatever the structure
 
   // While building.
   Column<float> spare_;          // what columns are permuted through

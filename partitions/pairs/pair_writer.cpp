@@ -48,6 +48,21 @@ Status PairWriter::append(std::size_t tasks, void* context, Task run) {
                                                      : append_parallel(tasks, context, run);
 }
 
+// Pages for the pairs of so many tasks: all but one of a task's are full.
+std::size_t PairWriter::pages_for(const PairBuffer& out, std::size_t tasks) noexcept {
+  const std::size_t pages = out.pairs_.capacity() / kPageContent + tasks + 16;
+  return std::max(pages, out.pages_.capacity() / kPage);
+}
+
+bool PairWriter::reserve(PairBuffer& out, std::size_t pairs, std::size_t tasks,
+                         const Execution& execution, Pages pages) noexcept {
+  if (!out.pairs_.reserve(pairs + 2 * kSinkSlack, pages)) return false;
+  if (execution == Execution::serial() || tasks <= 1) return true;
+  const std::size_t count = pages_for(out, tasks);
+  return out.pages_.reserve(count * kPage, pages) &&
+         out.page_table_.reserve(count + tasks + 1, pages);
+}
+
 struct PairWriter::SerialOutput {
   const PairWriter& writer;
   Column<Pair>& pairs;
@@ -104,8 +119,7 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
 
 Status PairWriter::append_parallel(std::size_t tasks, void* context, Task run) {
   // A guess from what the buffer held last; too small a guess is found out and doubled.
-  std::size_t pages = out_.pairs_.capacity() / kPageContent + tasks + 16;
-  pages = std::max(pages, out_.pages_.capacity() / kPage);
+  std::size_t pages = pages_for(out_, tasks);
   for (;;) {
     if (!out_.pages_.reserve(pages * kPage) || !out_.page_table_.reserve(pages + tasks + 1)) {
       return Status::out_of_memory;

@@ -32,6 +32,11 @@ class PairWriter {
     });
   }
 
+  /// Makes room in a buffer for so many pairs of so many tasks, at most. False if memory is
+  /// refused.
+  [[nodiscard]] static bool reserve(PairBuffer& out, std::size_t pairs, std::size_t tasks,
+                                    const Execution& execution, Pages pages) noexcept;
+
   /// Tests of 16 volumes that the tasks counted.
   [[nodiscard]] std::uint64_t tests() const noexcept { return tests_; }
 
@@ -40,6 +45,7 @@ class PairWriter {
   struct PageClaims;
   struct SerialOutput;
 
+  [[nodiscard]] static std::size_t pages_for(const PairBuffer& out, std::size_t tasks) noexcept;
   Status append(std::size_t tasks, void* context, Task run);
   Status append_serial(std::size_t tasks, void* context, Task run);
   Status append_parallel(std::size_t tasks, void* context, Task run);

@@ -20,7 +20,7 @@ constexpr std::size_t kPointsPerTask = 16384;
 bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows, std::uint32_t* room,
                      Column<float>& scratch, const Execution& execution) {
   const std::size_t count = rows.size();
-  if (!scratch.resize(6 * count)) return false;
+  if (!scratch.resize(kd_scratch(count))) return false;
   if (count <= kBlockRows) return true;
   KdSet all;
   all.row = rows.data();

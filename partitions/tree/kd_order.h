@@ -4,10 +4,16 @@
 #include <winnow/core/execution.h>
 #include "core/memory/bounds_pool.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
 namespace winnow {
+
+/// Floats of scratch that it takes to cut so many rows.
+[[nodiscard]] constexpr std::size_t kd_scratch(std::size_t rows) noexcept {
+  return 6 * rows;
+}
 
 /// Puts rows in order for a block tree over them: sets of rows are cut in two from the top down, at
 /// the middle of the axis along which their centres reach farthest, and only where the first side

@@ -15,6 +15,7 @@ namespace {
 
 // More objects than this in a cell are pruned better by the tree.
 constexpr std::uint32_t kOverfull = 48;
+constexpr CellDemand kDemand{.rows_per_block = 10};
 
 /// Uniform grid: each object belongs to the one cell of its box's lower corner, and rows are sorted
 /// by cell (counting sort), so that the cells of a line are one run of rows. 16 rows of a line look
@@ -29,6 +30,7 @@ class FlatGrid final : public CellStructure {
   explicit FlatGrid(const StructureInput& input) noexcept;
 
  private:
+  [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
   [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
   [[nodiscard]] bool fits(std::size_t row) const noexcept override;
   [[nodiscard]] std::size_t places() const noexcept override;
@@ -52,9 +54,15 @@ class FlatGrid final : public CellStructure {
 FlatGrid::FlatGrid(const StructureInput& input) noexcept
     : CellStructure(input), layout_(input.memory) {}
 
+bool FlatGrid::reserve(const BuildRoom& room) noexcept {
+  const auto cells =
+      static_cast<std::size_t>(kDemand.most_cells(static_cast<double>(room.objects)));
+  return reserve_cells(room, cells, room.objects) && layout_.reserve(cells, room.pages);
+}
+
 bool FlatGrid::plan(const RowPlan& plan) noexcept {
   const SceneSample sample(pool());
-  if (!layout_.choose(sample, {.rows_per_block = 10})) return false;
+  if (!layout_.choose(sample, kDemand)) return false;
   if (!layout_.usable()) {
     leave_all(plan);
     return true;

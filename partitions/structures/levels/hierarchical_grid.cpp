@@ -24,6 +24,10 @@ constexpr std::size_t kCrowd = 512;
 // Objects for each cell of a line.
 constexpr std::size_t kInCell = 4;
 constexpr std::size_t kRowsPerStretch = 8192;
+// Lines of a level that are looked up in a table: one for two objects, and so many.
+constexpr std::size_t kMoreLines = 16;
+// Rows behind those of the last level, and of each, up to the next whole block.
+constexpr std::size_t kMostHoles = (kMostLevels + 1) * kBlockRows;
 
 // One colour for each level, beside those of other things: from Okabe and Ito, as these, and darker
 // from the sixth level on.
@@ -91,6 +95,8 @@ class HierarchicalGrid final : public CellStructure {
   }
 
  private:
+  [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
+  [[nodiscard]] std::size_t most_holes() const noexcept override { return kMostHoles; }
   [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
   void finish_build() noexcept override;
   [[nodiscard]] bool fits(std::size_t row) const noexcept override;
@@ -205,12 +211,23 @@ struct HierarchicalGrid::Sorted {
   }
 };
 
+// Every object may have a line and a cell to itself; a level's table of lines has at most half as
+// many entries as objects, and some more.
+bool HierarchicalGrid::reserve(const BuildRoom& room) noexcept {
+  const std::size_t objects = room.objects;
+  return reserve_cells(room, objects, objects + kMostHoles) &&
+         room.items.reserve(2 * objects, room.pages) &&
+         key_.reserve(objects + kMostHoles, room.pages) && line_.reserve(objects, room.pages) &&
+         number_.reserve(objects, room.pages) &&
+         rank_.reserve(objects / 2 + kMostLevels * (kMoreLines + 1), room.pages);
+}
+
 bool HierarchicalGrid::plan(const RowPlan& plan) noexcept {
   const std::size_t rows = pool().rows();
   level_count_ = 0;
   // A first build meets no more rows than objects; of a scene in motion builds meet now more, now
   // fewer, and this is enough for mostly all.
-  const std::size_t first = objects() + (kMostLevels + 1) * kBlockRows;
+  const std::size_t first = objects() + kMostHoles;
   const std::size_t later = std::max(rows, objects() + objects() / 8 + 256);
   if (!list_.reserve(rows <= first ? first : later)) return false;
   list_.set_size(rows);
@@ -224,7 +241,7 @@ bool HierarchicalGrid::plan(const RowPlan& plan) noexcept {
   }
   // By objects, not rows, so that a later build of as many asks for no more.
   const std::size_t count = classes.objects();
-  const std::size_t room = count + (kMostLevels + 1) * kBlockRows;
+  const std::size_t room = count + kMostHoles;
   if (!key_.reserve(room) || !plan.regular.reserve(room + kBlockRows) ||
       !plan.items.resize(2 * count)) {
     return false;
@@ -343,7 +360,7 @@ bool HierarchicalGrid::rank_lines(GridLevel& level) {
   const std::size_t lines =
       std::size_t{level.mids} * (static_cast<std::size_t>(level.slow.last) + 1);
   level.first_rank = static_cast<std::uint32_t>(rank_.size());
-  level.ranked = lines <= (level.end_row - level.first_row) / 2 + 16;
+  level.ranked = lines <= (level.end_row - level.first_row) / 2 + kMoreLines;
   if (!level.ranked) return true;
   if (!rank_.resize(rank_.size() + lines + 1)) return false;
   std::uint32_t* const rank = rank_.data() + level.first_rank;

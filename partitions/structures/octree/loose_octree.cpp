@@ -10,9 +10,15 @@ namespace winnow {
 namespace {
 
 constexpr std::size_t kRowsPerTask = 16384;
+constexpr std::size_t kFewestNodes = 64;
 constexpr std::size_t kRowsOfGroup = 16 * kBlockRows;  // of a node of the tree over the rows
 // Longer runs of objects whose places cannot be told apart are sorted better by the tree.
 constexpr std::size_t kLongRun = 48;
+
+// Rows of a scene in motion that mostly all of its builds meet at most.
+constexpr std::size_t mostly_all(std::size_t objects) {
+  return objects + objects / 8 + 256;
+}
 
 constexpr std::uint32_t key_in(std::uint64_t item) {
   return static_cast<std::uint32_t>(item >> 32U);
@@ -41,6 +47,7 @@ class LooseTree : public CellStructure {
   }
 
  private:
+  [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
   [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
   [[nodiscard]] bool prunes_rows() const noexcept override { return true; }
   [[nodiscard]] bool fits(std::size_t row) const noexcept override;
@@ -78,6 +85,14 @@ LooseTree::LooseTree(const StructureInput& input, std::size_t axes) noexcept
       node_(input.memory),
       bounds_(input.memory) {}
 
+// Every object may have a node to itself.
+bool LooseTree::reserve(const BuildRoom& room) noexcept {
+  const std::size_t nodes = room.objects + kFewestNodes;
+  const std::size_t rows = mostly_all(room.objects);
+  return reserve_cells(room, nodes, rows) && room.items.reserve(2 * rows, room.pages) &&
+         node_.reserve(nodes, room.pages) && bounds_.reserve(nodes, room.pages);
+}
+
 bool LooseTree::plan(const RowPlan& plan) noexcept {
   node_.clear();
   start_.clear();
@@ -89,8 +104,8 @@ bool LooseTree::plan(const RowPlan& plan) noexcept {
   }
   const std::size_t rows = pool().rows();
   // Of a scene in motion builds meet now more rows, now more nodes: this is enough for mostly all.
-  const std::size_t most_rows = std::max(rows, objects() + objects() / 8 + 256);
-  const std::size_t nodes = objects() / 8 + 64;
+  const std::size_t most_rows = std::max(rows, mostly_all(objects()));
+  const std::size_t nodes = objects() / 8 + kFewestNodes;
   if (!plan.items.reserve(2 * most_rows) || !list_.reserve(most_rows)) return false;
   if (!node_.reserve(nodes) || !start_.reserve(nodes) || !bounds_.reserve(nodes)) return false;
   plan.items.set_size(2 * rows);

@@ -27,6 +27,8 @@ constexpr std::uint32_t kCrowded = 384;
 // Rows that do not fit strips ask every strip that they cross. Where more than this share of a
 // scene does so, the tree serves all of it better.
 constexpr double kMostApart = 0.1;
+constexpr CellDemand kDemand{
+    .slack_share = 0.5, .cells_per_object = 0.25, .sweep_fast_axis = true, .rows_per_block = 10};
 
 /// A key of a row on the sweep axis, in the order of keys, before the row.
 using SweepItem = std::uint64_t;
@@ -89,6 +91,7 @@ class SweepAndPrune final : public CellStructure {
   explicit SweepAndPrune(const StructureInput& input) noexcept;
 
  private:
+  [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
   [[nodiscard]] bool plan(const RowPlan& plan) noexcept override;
   void finish_build() noexcept override;
   [[nodiscard]] bool fits(std::size_t row) const noexcept override;
@@ -118,11 +121,17 @@ class SweepAndPrune final : public CellStructure {
 SweepAndPrune::SweepAndPrune(const StructureInput& input) noexcept
     : CellStructure(input), layout_(input.memory), key_(input.memory) {}
 
+bool SweepAndPrune::reserve(const BuildRoom& room) noexcept {
+  const auto strips =
+      static_cast<std::size_t>(kDemand.most_cells(static_cast<double>(room.objects)));
+  return reserve_cells(room, strips, room.objects) && layout_.reserve(strips, room.pages) &&
+         key_.reserve(room.objects + kPadding, room.pages) &&
+         room.items.reserve(2 * room.objects, room.pages);
+}
+
 bool SweepAndPrune::plan(const RowPlan& plan) noexcept {
   const SceneSample sample(pool());
-  const CellDemand demand{
-      .slack_share = 0.5, .cells_per_object = 0.25, .sweep_fast_axis = true, .rows_per_block = 10};
-  if (!layout_.choose(sample, demand)) return false;
+  if (!layout_.choose(sample, kDemand)) return false;
   if (!layout_.usable()) {
     leave_all(plan);
     return true;
