@@ -59,7 +59,7 @@ class SpatialIndex {
   /// Makes room for a build of so many objects, wherever they lie, and for what pair queries then
   /// read, with the structure that is there and with each of those that may be taken `later`. It
   /// lasts until `release_memory`. What objects have in filters is not counted in. False if memory
-  /// is refused.
+  /// is refused. O(pages) if they are touched.
   [[nodiscard]] bool reserve(std::size_t objects, Pages pages,
                              std::span<const StructureKind> later) noexcept;
   /// Brings everything up to date that pair queries read. What fails is tried again by the next

@@ -4,6 +4,7 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <atomic>
 #include <new>
 
 #include "tests/support/counting_memory.h"
@@ -269,6 +270,26 @@ TEST_P(Memory, that_was_touched_has_all_pages_that_a_first_frame_writes_to) {
   ASSERT_EQ(world.self_pairs(buffer), Status::ok);
   EXPECT_FALSE(buffer.empty());
   EXPECT_EQ(pages.written(), before);
+}
+
+// Boxes that many others overlap, more than a fresh buffer has room for.
+TEST_P(Memory, of_many_pairs_is_asked_for_seldom_and_no_pair_is_found_often) {
+  std::vector<Aabb> boxes = uniform_boxes(2000);
+  for (Aabb& box : boxes) box.max.array() += 4.0F;
+  World world(config(), &memory_);
+  world.insert(boxes);
+  std::atomic<std::size_t> asked{0};
+  const auto count = [](void* context, ObjectId, ObjectId) {
+    ++*static_cast<std::atomic<std::size_t>*>(context);
+    return true;
+  };
+  CountingMemory results;
+  PairBuffer buffer(&results);
+  ASSERT_EQ(world.self_pairs(buffer, {.predicate = {count, &asked}}), Status::ok);
+  ASSERT_GT(buffer.size(), 150'000U);
+  EXPECT_TRUE(world.has_pairs(buffer));
+  EXPECT_LE(results.requests(), 20U);
+  EXPECT_LE(asked, 2 * buffer.size());
 }
 
 TEST_P(Memory, is_asked_for_only_by_the_calling_thread) {
