@@ -93,7 +93,7 @@ Status Partition::self_pairs(PairEvents& events, const PairOptions& options) con
 
 Status PartitionState::reserve_pairs(PairBuffer& out, std::size_t pairs,
                                      Pages pages) const noexcept {
-  const std::size_t tasks = SelfTasks::most(rows.pool().capacity());
+  const std::size_t tasks = SelfTasks::most(steadily([this] { return rows.pool().capacity(); }));
   return PairWriter::reserve(out, pairs, tasks, rows.execution(), pages) ? Status::ok
                                                                          : Status::out_of_memory;
 }
