@@ -18,6 +18,13 @@ namespace winnow {
 [[nodiscard]] WINNOW_API void* try_allocate(std::pmr::memory_resource& memory, std::size_t bytes,
                                             std::size_t alignment) noexcept;
 
+/// Whether memory that is made ready is written to as well, once on each page: who uses it first
+/// then waits for no page of the system.
+enum class Pages : std::uint8_t { untouched, touched };
+
+/// Writes to every page of memory that holds nothing yet.
+WINNOW_API void touch_pages(void* begin, std::size_t bytes) noexcept;
+
 /// One column of a structure of arrays: 64-byte aligned, its memory a whole number of 64-byte
 /// lines, growth reported instead of thrown. `std::pmr::vector` asks its resource only for
 /// alignof(T), hence this type. Elements past `size()` up to `capacity()` are uninitialised.
@@ -66,6 +73,16 @@ class Column {
     capacity_ = bytes / sizeof(T);
     return true;
   }
+
+  /// The same; touched, if it shall be, is all room behind the last element.
+  [[nodiscard]] bool reserve(std::size_t count, Pages pages) noexcept {
+    if (!reserve(count)) return false;
+    if (pages == Pages::touched) touch();
+    return true;
+  }
+
+  /// Writes to the pages behind the last element.
+  void touch() noexcept { touch_pages(data_ + size_, capacity_bytes() - size_ * sizeof(T)); }
 
   /// As `reserve`, but grows by half at least, so that repeated growth costs O(1) per element.
   [[nodiscard]] bool grow(std::size_t count) noexcept {

@@ -63,8 +63,11 @@ class WINNOW_API PairBuffer {
   [[nodiscard]] const Pair* begin() const noexcept { return pairs_.begin(); }
   [[nodiscard]] const Pair* end() const noexcept { return pairs_.end(); }
 
-  /// Room for `count` pairs. False if memory is refused.
-  [[nodiscard]] bool reserve(std::size_t count) noexcept { return pairs_.reserve(count); }
+  /// Room for `count` pairs. False if memory is refused. What it takes besides to find them is made
+  /// ready by `Partition::reserve_pairs`.
+  [[nodiscard]] bool reserve(std::size_t count, Pages pages = Pages::untouched) noexcept {
+    return pairs_.reserve(count, pages);
+  }
 
   void clear() noexcept {
     pairs_.clear();

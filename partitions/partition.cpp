@@ -124,8 +124,8 @@ void Partition::release_memory() noexcept {
   if (state_ != nullptr) state_->release_memory();
 }
 
-Status Partition::reserve(std::size_t objects) {
-  return mutate(state_, status_, 0, [&](Rows& rows) { return rows.reserve(objects); });
+Status Partition::reserve(std::size_t objects, Pages pages) {
+  return state_ == nullptr ? status_ : state_->reserve(objects, pages);
 }
 
 std::size_t Partition::size() const noexcept {

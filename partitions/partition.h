@@ -175,8 +175,18 @@ class WINNOW_API Partition final {
   void clear() noexcept;
   /// Gives back all memory that an empty partition, or scratch, holds.
   void release_memory() noexcept;
-  /// Room for `objects` in all, so that inserting up to there allocates no columns.
-  Status reserve(std::size_t objects);
+  /// Makes ready all that the first frame of up to `objects` objects needs, wherever these lie: to
+  /// insert them, to `refresh`, and to ask for all pairs asks the memory resource for nothing then
+  /// (for the array of pairs itself see `reserve_pairs`). Cells and nodes are reserved for as many
+  /// as the structure may make of so many objects, which is more than most scenes have; for
+  /// `automatic()` each of those that it may choose gets its own. Filters are not counted in. What
+  /// was reserved stays until `release_memory`. `too_many_objects` or `out_of_memory` change
+  /// nothing. O(objects) if pages are touched, else O(size()).
+  Status reserve(std::size_t objects, Pages pages = Pages::untouched);
+  /// Makes room in a buffer for up to `pairs` pairs of `self_pairs`, as long as there are no more
+  /// objects than was reserved for: on several threads twice that, since they write side by side
+  /// first. `out_of_memory` changes nothing.
+  Status reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages = Pages::untouched) const;
 
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] bool contains(Key key) const noexcept;

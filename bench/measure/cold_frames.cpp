@@ -20,30 +20,69 @@ std::size_t room_for(std::size_t objects) {
   return (std::size_t{1} << 28U) + kEach * objects;
 }
 
-/// The first frame of a fresh partition; what it finds.
-PairSummary run_cold_frame(std::span<const Aabb> boxes, int threads, ReusedMemory& memory,
-                           std::vector<Key>& keys, ColdFrames& frames) {
-  const Stopwatch clock;
-  Partition partition =
-      make_named(frames.partition, {.memory = &memory, .execution = execution_for(threads)});
-  PairBuffer pairs(&memory);
+/// Milliseconds from the beginning of a first frame to the end of each part.
+struct Parts {
+  double inserted = 0.0;
+  double built = 0.0;
+  double found = 0.0;
+};
+
+Parts run_frame(std::span<const Aabb> boxes, Partition& partition, std::vector<Key>& keys,
+                PairBuffer& pairs, const Stopwatch& clock) {
+  Parts parts;
   need(partition.insert(boxes, {}, keys), "objects");
-  const double inserted = clock.ms();
+  parts.inserted = clock.ms();
   need(partition.refresh(), "a structure");
-  const double built = clock.ms();
+  parts.built = clock.ms();
   need(partition.self_pairs(pairs), "pairs");
-  const double found = clock.ms();
-  frames.insert_ms.push_back(inserted);
-  frames.build_ms.push_back(built - inserted);
-  frames.pairs_ms.push_back(found - built);
-  frames.total_ms.push_back(found);
-  return summarize(pairs.pairs(), boxes);
+  parts.found = clock.ms();
+  return parts;
 }
+
+/// Runs first frames of one fresh partition after the other.
+struct FirstFrames {
+  std::span<const Aabb> boxes;
+  int threads;
+  ReusedMemory memory{room_for(boxes.size())};
+  std::vector<Key> keys = std::vector<Key>(boxes.size());
+
+  [[nodiscard]] Partition make(const ColdFrames& frames) {
+    return make_named(frames.partition, {.memory = &memory, .execution = execution_for(threads)});
+  }
+  /// What it finds.
+  PairSummary run(ColdFrames& frames) {
+    const Stopwatch clock;
+    Partition partition = make(frames);
+    PairBuffer pairs(&memory);
+    const Parts parts = run_frame(boxes, partition, keys, pairs, clock);
+    frames.insert_ms.push_back(parts.inserted);
+    frames.build_ms.push_back(parts.built - parts.inserted);
+    frames.pairs_ms.push_back(parts.found - parts.built);
+    frames.total_ms.push_back(parts.found);
+    return summarize(pairs.pairs(), boxes);
+  }
+  /// The same after room for the objects and so many pairs was made.
+  PairSummary run_reserved(ColdFrames& frames, std::size_t count, Pages pages) {
+    Partition partition = make(frames);
+    PairBuffer pairs(&memory);
+    const Stopwatch before;
+    need(partition.reserve(boxes.size(), pages), "room for objects");
+    need(partition.reserve_pairs(pairs, count, pages), "room for pairs");
+    const double reserved = before.ms();
+    const Stopwatch clock;
+    const Parts parts = run_frame(boxes, partition, keys, pairs, clock);
+    if (pages == Pages::touched) frames.reserve_ms.push_back(reserved);
+    (pages == Pages::touched ? frames.ready_ms : frames.reserved_ms).push_back(parts.found);
+    return summarize(pairs.pairs(), boxes);
+  }
+};
 
 void forget_frames(ColdRace& race) {
   for (ColdFrames& one : race.frames) {
-    for (auto* times : {&one.insert_ms, &one.build_ms, &one.pairs_ms, &one.total_ms})
+    for (auto* times : {&one.insert_ms, &one.build_ms, &one.pairs_ms, &one.total_ms,
+                        &one.reserved_ms, &one.ready_ms, &one.reserve_ms}) {
       times->clear();
+    }
   }
   race.yardstick_ms.clear();
 }
@@ -58,8 +97,7 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
       race.frames.push_back({.partition = partition, .memory = memory});
     }
   }
-  ReusedMemory memory(room_for(boxes.size()));
-  std::vector<Key> keys(boxes.size());
+  FirstFrames first{boxes, threads};
   const std::unique_ptr<Engine> yardstick = with_yardstick ? make_yardstick(threads) : nullptr;
   std::vector<PairSummary> found;
   const auto run_all = [&] {
@@ -71,11 +109,17 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
     }
     for (ColdFrames& one : race.frames) {
       if (one.memory == kTouched) {
-        memory.rewind();
-      } else {
-        memory.rewind_untouched();
+        first.memory.rewind();
+        found.push_back(first.run(one));
+        continue;
       }
-      found.push_back(run_cold_frame(boxes, threads, memory, keys, one));
+      first.memory.rewind_untouched();
+      found.push_back(first.run(one));
+      const std::size_t pairs = found.back().reported;
+      for (const Pages pages : {Pages::untouched, Pages::touched}) {
+        first.memory.rewind_untouched();
+        found.push_back(first.run_reserved(one, pairs, pages));
+      }
     }
   };
   Arenas arenas(threads);

@@ -23,6 +23,11 @@ struct ColdFrames {
   std::vector<double> build_ms{};
   std::vector<double> pairs_ms{};
   std::vector<double> total_ms{};
+  // On pages that nobody has written to alone: a frame for which all memory was reserved, one for
+  // which it was touched as well, and what the latter took before the frame.
+  std::vector<double> reserved_ms{};
+  std::vector<double> ready_ms{};
+  std::vector<double> reserve_ms{};
 };
 
 struct ColdRace {
@@ -31,7 +36,8 @@ struct ColdRace {
 };
 
 /// First frames of so many fresh partitions of these boxes: all boxes are inserted, the structure
-/// is built and all pairs are found. All take turns, and frames of the yardstick, which always
+/// is built and all pairs are found. Reserved is room for them and for as many pairs as they have.
+/// All take turns, and frames of the yardstick, which always
 /// starts anew, among them if it is wanted. Throws std::runtime_error if not all find the same
 /// pairs.
 [[nodiscard]] ColdRace race_cold_frames(std::span<const Aabb> boxes,

@@ -192,7 +192,7 @@ void plan_cold(const ReportOptions& options, ReportSteps& steps) {
     if (objects > kLargestForPeers) return;
     const std::size_t rounds = options.quick ? 1 : objects > 20'000 ? 3 : 7;
     steps.push_back({named(scene, objects) + ", first frames",
-                     6e-6 * static_cast<double>((rounds + 1) * objects), [=](Results& results) {
+                     1.1e-5 * static_cast<double>((rounds + 1) * objects), [=](Results& results) {
                        add_cold(results, scene, objects, options.seed, unlimited_partitions(),
                                 options.threads.front(), rounds, options.yardstick);
                      }});

@@ -15,6 +15,9 @@ void declare_cold(Results& results) {
                     {"build_ms", "build", "ms"},
                     {"pairs_ms", "pairs", "ms"},
                     {"total_ms", "first frame", "ms", Better::less},
+                    {"reserved_ms", "after reserve", "ms", Better::less},
+                    {"ready_ms", "after reserve that touches", "ms", Better::less},
+                    {"reserve_ms", "that reserve", "ms"},
                     {"yardstick_ms", "the yardstick's frame", "ms"},
                     {"over_yardstick", "over the yardstick", "times"}}});
 }
@@ -38,6 +41,11 @@ void add_cold(Results& results, const NamedScene& scene, std::size_t objects, st
              {"command", "bench/run cold" + scene.words(count, seed) + " --threads " +
                              std::to_string(threads) + " --isa " + isa_name() + " --partition " +
                              one.partition}};
+    if (!one.ready_ms.empty()) {
+      row["reserved_ms"] = to_value(one.reserved_ms);
+      row["ready_ms"] = to_value(one.ready_ms);
+      row["reserve_ms"] = to_value(one.reserve_ms);
+    }
     if (!race.yardstick_ms.empty()) {
       row["yardstick_ms"] = to_value(race.yardstick_ms);
       row["over_yardstick"] = median_of(one.total_ms) / median_of(race.yardstick_ms);

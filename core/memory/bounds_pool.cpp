@@ -44,13 +44,28 @@ bool BoundsPool::reserve(std::size_t rows) noexcept {
 }
 
 bool BoundsPool::reserve_exact(std::size_t rows) noexcept {
+  if (ids_.data() != nullptr && rows <= capacity()) return true;
   const std::size_t padded = (rows + kBlockRows - 1) / kBlockRows * kBlockRows + 2 * kBlockRows;
-  for (std::size_t c = 0; c < columns(); ++c) {
+  bool grown = true;
+  for (std::size_t c = 0; c < columns() && grown; ++c) {
     columns_[c].set_size(rows_);
-    if (!columns_[c].reserve(padded)) return false;
+    grown = columns_[c].reserve(padded);
   }
   ids_.set_size(rows_);
-  return ids_.reserve(padded);
+  grown = grown && ids_.reserve(padded);
+  // Columns that moved have left their padding behind.
+  pad();
+  return grown;
+}
+
+void BoundsPool::touch() noexcept {
+  for (std::size_t c = 0; c < columns(); ++c) {
+    columns_[c].set_size(rows_);
+    columns_[c].touch();
+  }
+  ids_.set_size(rows_);
+  ids_.touch();
+  pad();
 }
 
 void BoundsPool::blank(std::size_t row) noexcept {

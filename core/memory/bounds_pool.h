@@ -48,6 +48,8 @@ class BoundsPool {
   [[nodiscard]] bool reserve(std::size_t rows) noexcept;
   /// Room for `rows` rows and their padding, no more.
   [[nodiscard]] bool reserve_exact(std::size_t rows) noexcept;
+  /// Writes to the pages behind the rows.
+  void touch() noexcept;
 
   /// Adds rows with their contents uninitialised; room must have been reserved.
   void append(std::size_t count) noexcept { rows_ += count; }

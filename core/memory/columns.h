@@ -12,6 +12,11 @@ void release_columns(Column<T>&... columns) noexcept {
 }
 
 template <typename... T>
+void touch_columns(Column<T>&... columns) noexcept {
+  (columns.touch(), ...);
+}
+
+template <typename... T>
 [[nodiscard]] Bytes bytes_of(const Column<T>&... columns) noexcept {
   Bytes sum;
   ((sum += columns.bytes()), ...);

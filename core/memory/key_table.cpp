@@ -26,6 +26,10 @@ bool KeyTable::reserve(std::size_t count) noexcept {
   return stamps_.grow(slots) && rows_.grow(slots) && data_.grow(slots);
 }
 
+void KeyTable::touch() noexcept {
+  touch_columns(stamps_, rows_, data_);
+}
+
 Key KeyTable::acquire(std::uint32_t row, ClientData data) noexcept {
   ObjectId id = first_free_;
   if (id != kNoObject) {

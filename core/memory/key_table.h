@@ -22,6 +22,9 @@ class KeyTable {
   /// Room for `count` live objects in all. False, and unchanged, if memory is refused.
   [[nodiscard]] bool reserve(std::size_t count) noexcept;
 
+  /// Writes to the pages behind the slots.
+  void touch() noexcept;
+
   /// Takes a free slot for an object at `row`; room must have been reserved.
   [[nodiscard]] Key acquire(std::uint32_t row, ClientData data) noexcept;
 

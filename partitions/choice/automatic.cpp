@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace winnow {
 namespace {
@@ -79,6 +80,9 @@ class AutomaticChoice final : public Chooser {
  public:
   [[nodiscard]] StructureKind first() const noexcept override { return linear_bvh(); }
 
+  [[nodiscard]] std::span<const StructureKind> range() const noexcept override {
+    return candidates();
+  }
   [[nodiscard]] StructureKind choose(const Rows& rows, StructureKind now,
                                      const Wear& wear) noexcept override {
     before_ = wanted_ = now;

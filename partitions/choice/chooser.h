@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace winnow {
 
@@ -43,6 +44,8 @@ class Chooser {
 
   /// A structure to begin with.
   [[nodiscard]] virtual StructureKind first() const noexcept = 0;
+  /// Those that it may choose.
+  [[nodiscard]] virtual std::span<const StructureKind> range() const noexcept = 0;
   /// What a structure that is in use has been through.
   struct Wear {
     std::uint64_t builds = 0;

@@ -45,59 +45,6 @@ float edge_of_block(const BoundsPool& pool) noexcept {
 
 }  // namespace
 
-Structure* SpatialIndex::make(StructureKind kind) noexcept {
-  return kind.info()->make({memory_, rows_, regular_tree_, kind.parameter()});
-}
-
-void SpatialIndex::install(Structure* structure, StructureKind kind) noexcept {
-  give_up_plan();
-  structure_ = structure;
-  kind_ = kind;
-  tree_.release();
-  regular_tree_.release();
-  release_scratch();
-  rows_.selection().release();
-  built_edge_ = 0.0F;
-  built_holes_ = 0;
-  full_base_ = moved_base_ = excess_ = 0;
-  rows_.disorder();
-}
-
-bool SpatialIndex::set_structure(StructureKind kind) noexcept {
-  Structure* const made = make(kind);
-  if (made == nullptr) return false;
-  if (structure_ != nullptr) kind_.info()->end(structure_, memory_);
-  install(made, kind);
-  return true;
-}
-
-Status SpatialIndex::refresh_as(StructureKind kind, bool& refused) {
-  Structure* const made = make(kind);
-  refused = made == nullptr;
-  if (refused) return refresh();
-  if (plans_ahead() && !structure_->is_flat() && !made->is_flat() && !needs_build()) {
-    // What the present structure had planned with is of no use to the next.
-    give_up_plan();
-    plan_.release();
-    if (plan_.start(rows_, *made, spare_rows(*made))) {
-      next_ = made;
-      next_kind_ = kind;
-      return refresh();
-    }
-  }
-  Structure* const structure_before = structure_;
-  const StructureKind kind_before = kind_;
-  install(made, kind);
-  if (refresh() == Status::ok) {
-    kind_before.info()->end(structure_before, memory_);
-    return Status::ok;
-  }
-  refused = true;
-  kind.info()->end(made, memory_);
-  install(structure_before, kind_before);
-  return refresh();
-}
-
 bool SpatialIndex::needs_build() const noexcept {
   if (!rows_.regions().built) return true;
   const std::size_t live = rows_.size();
@@ -189,14 +136,6 @@ bool SpatialIndex::complete_order() {
   return true;
 }
 
-void SpatialIndex::take_next_structure() noexcept {
-  if (next_ == nullptr) return;
-  kind_.info()->end(structure_, memory_);
-  structure_ = std::exchange(next_, nullptr);
-  kind_ = next_kind_;
-  if (!structure_->prunes_rows()) regular_tree_.release();
-}
-
 Status SpatialIndex::build_flat() {
   give_up_plan();
   rows_.compact();
@@ -267,8 +206,7 @@ bool SpatialIndex::build_is_near() const noexcept {
 
 void SpatialIndex::give_up_plan() noexcept {
   plan_.drop();
-  if (next_ != nullptr) next_kind_.info()->end(next_, memory_);
-  next_ = nullptr;
+  put_by(std::exchange(next_, {}));
 }
 
 }  // namespace winnow

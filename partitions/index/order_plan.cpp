@@ -8,15 +8,21 @@
 namespace winnow {
 namespace {
 
+// Entries that an order may have beyond the rows.
+constexpr std::size_t kSlack = 4 * kBlockRows;
 // So many cuts of a row take as long as looking at it once.
 constexpr std::size_t kCutsPerRow = 2;
 constexpr std::size_t kMostWork = std::numeric_limits<std::size_t>::max() / kCutsPerRow;
 
 }  // namespace
 
+bool OrderPlan::reserve(std::size_t rows, Pages pages) noexcept {
+  return order_.reserve(rows + kSlack, pages) && rest_.reserve(rows + kSlack, pages);
+}
+
 bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room) noexcept {
   drop();
-  const std::size_t most = rows.pool().rows() + room;
+  const std::size_t most = rows.pool().rows() + room + kSlack;
   order_.clear();
   rest_.clear();
   if (!order_.grow(most) || !rest_.grow(most)) return false;

@@ -21,6 +21,14 @@ class OrderPlan {
   explicit OrderPlan(std::pmr::memory_resource* memory) noexcept
       : order_(memory), rest_(memory), items_(memory), list_(memory), points_(memory) {}
 
+  /// Room for an order of so many rows, so that no plan asks for more, but for what structures sort
+  /// with. False if memory is refused.
+  [[nodiscard]] bool reserve(std::size_t rows, Pages pages) noexcept;
+  /// What a structure is to make room in.
+  [[nodiscard]] BuildRoom room_for(std::size_t objects, Pages pages) noexcept {
+    return {objects, pages, items_, list_, points_};
+  }
+
   /// Begins with the rows as they are; `room` more than these may come behind the order. False if
   /// memory is refused.
   [[nodiscard]] bool start(Rows& rows, Structure& structure, std::size_t room) noexcept;

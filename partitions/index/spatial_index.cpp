@@ -31,7 +31,8 @@ SpatialIndex::SpatialIndex(std::pmr::memory_resource* memory, Rows& rows,
 
 SpatialIndex::~SpatialIndex() {
   give_up_plan();
-  if (structure_ != nullptr) kind_.info()->end(structure_, memory_);
+  end_waiting();
+  end({kind_, structure_});
 }
 
 Status SpatialIndex::refresh() {
@@ -274,10 +275,13 @@ void SpatialIndex::add_bytes(Footprint& footprint) const noexcept {
   footprint.scratch += bytes_of(spare_, tail_order_);
   footprint.scratch += plan_.bytes();
   structure_->add_bytes(footprint);
-  if (next_ == nullptr) return;
-  const std::size_t of_next = next_kind_.info()->bytes;
-  footprint.structure += {of_next, of_next};
-  next_->add_bytes(footprint);
+  const auto add = [&](const Held& one) {
+    if (one.structure == nullptr) return;
+    footprint.structure += {one.kind.info()->bytes, one.kind.info()->bytes};
+    one.structure->add_bytes(footprint);
+  };
+  add(next_);
+  for (const Held& one : waiting_) add(one);
 }
 
 void SpatialIndex::release_scratch() noexcept {
@@ -287,6 +291,8 @@ void SpatialIndex::release_scratch() noexcept {
 }
 
 void SpatialIndex::release_memory() noexcept {
+  reserved_ = false;
+  end_waiting();
   release_scratch();
   structure_->release_scratch();
   if (rows_.size() != 0) return;

@@ -9,6 +9,7 @@
 #include "partitions/structures/structure.h"
 #include "partitions/tree/block_tree.h"
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -63,6 +64,12 @@ class SpatialIndex {
   [[nodiscard]] StructureKind kind() const noexcept { return kind_; }
   [[nodiscard]] const Structure& structure() const noexcept { return *structure_; }
 
+  /// Makes room for a build of so many objects, wherever they lie, and for what pair queries then
+  /// read, with the structure that is there and with each of those that may be taken `later`. It
+  /// lasts until `release_memory`. What objects have in filters is not counted in. False if memory
+  /// is refused. O(pages) if they are touched.
+  [[nodiscard]] bool reserve(std::size_t objects, Pages pages,
+                             std::span<const StructureKind> later) noexcept;
   /// Brings everything up to date that pair queries read. What fails is tried again by the next
   /// refresh.
   Status refresh();
@@ -72,7 +79,7 @@ class SpatialIndex {
   Status refresh_as(StructureKind kind, bool& refused);
   /// True while another structure is planned. It is given up where the rows are put elsewhere in
   /// the meantime.
-  [[nodiscard]] bool exchanging() const noexcept { return next_ != nullptr; }
+  [[nodiscard]] bool exchanging() const noexcept { return next_.structure != nullptr; }
   /// True if the last refresh gave it up because memory was refused.
   [[nodiscard]] bool exchange_refused() const noexcept { return exchange_refused_; }
 
@@ -108,14 +115,31 @@ class SpatialIndex {
   void release_memory() noexcept;
 
  private:
+  /// A structure, or none.
+  struct Held {
+    StructureKind kind{};
+    Structure* structure = nullptr;
+  };
   [[nodiscard]] Structure* make(StructureKind kind) noexcept;
+  void end(const Held& one) noexcept;
+  void put_by(const Held& one) noexcept;
+  [[nodiscard]] bool reserve_order(std::size_t rows, std::size_t behind, Pages pages) noexcept;
+  [[nodiscard]] bool have_wait(std::span<const StructureKind> kinds) noexcept;
+  void end_waiting() noexcept;
   void install(Structure* structure, StructureKind kind) noexcept;
   [[nodiscard]] bool needs_build() const noexcept;
   /// Rows that may stand behind the built ones before a build is due.
-  [[nodiscard]] std::size_t tail_limit() const noexcept { return rows_.size() / 16 + 64; }
+  [[nodiscard]] std::size_t tail_limit() const noexcept { return tail_limit(rows_.size()); }
+  [[nodiscard]] static std::size_t tail_limit(std::size_t objects) noexcept {
+    return objects / 16 + 64;
+  }
   /// Room that a build leaves behind its rows for a tail.
+  [[nodiscard]] static std::size_t spare_rows(const Structure& structure,
+                                              std::size_t objects) noexcept {
+    return (structure.prunes_rows() ? 2 : 1) * tail_limit(objects);
+  }
   [[nodiscard]] std::size_t spare_rows(const Structure& structure) const noexcept {
-    return structure.prunes_rows() ? 2 * tail_limit() : tail_limit();
+    return spare_rows(structure, rows_.size());
   }
   [[nodiscard]] std::size_t tail() const noexcept;
   [[nodiscard]] bool wants_grouping() const noexcept;
@@ -149,6 +173,7 @@ class SpatialIndex {
   Rows& rows_;
   StructureKind kind_;
   Structure* structure_ = nullptr;
+  std::array<Held, 16> waiting_{};  // to be taken, with what was reserved for them
   BlockTree tree_;
 
   // Unless the structure prunes rows or is flat it serves all queries but pairs, and is made when
@@ -160,6 +185,7 @@ class SpatialIndex {
   float built_edge_ = 0.0F;      // of a typical leaf of the tree, as the build left it
   std::size_t built_holes_ = 0;  // padding that the build left between the regions
   bool tail_changed_ = false;
+  bool reserved_ = false;  // memory is there to stay, whatever the structure
 
   Column<float> spare_;               // what columns are permuted through
   Column<std::uint32_t> tail_order_;  // while the tail is sorted
@@ -167,8 +193,7 @@ class SpatialIndex {
   // Planning ahead.
   const std::size_t build_budget_;
   OrderPlan plan_;
-  Structure* next_ = nullptr;  // is taken with the plan, if the structure is to be exchanged
-  StructureKind next_kind_;
+  Held next_;  // is taken with the plan, if the structure is to be exchanged
   bool exchange_refused_ = false;
   Departures departures_;
   Growth tail_growth_;

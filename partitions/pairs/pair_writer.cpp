@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 
 namespace winnow {
 namespace {
@@ -34,10 +35,12 @@ constexpr std::size_t count_of(std::uint64_t e) {
 
 }  // namespace
 
+/// The pages, of which tasks take the next one; what is in each, and which tasks are done.
 struct PairWriter::PageClaims {
-  Pair* pages;
-  std::uint64_t* table;
-  std::size_t limit;
+  Pair* pages = nullptr;
+  std::uint64_t* entries = nullptr;
+  std::uint64_t* done = nullptr;
+  std::size_t limit = 0;
   std::atomic<std::size_t> next{0};
   std::atomic<std::uint64_t> tests{0};
   std::atomic<bool> full{false};
@@ -48,10 +51,40 @@ Status PairWriter::append(std::size_t tasks, void* context, Task run) {
                                                      : append_parallel(tasks, context, run);
 }
 
+// Pages for the pairs of so many tasks: all but one of a task's are full.
+std::size_t PairWriter::pages_for(const PairBuffer& out, std::size_t tasks) noexcept {
+  const std::size_t pages = out.pairs_.capacity() / kPageContent + tasks + 16;
+  return std::max(pages, out.pages_.capacity() / kPage);
+}
+
+bool PairWriter::reserve(PairBuffer& out, std::size_t pairs, std::size_t tasks,
+                         const Execution& execution, Pages pages) noexcept {
+  if (!out.pairs_.reserve(pairs + 2 * kSinkSlack, pages)) return false;
+  if (execution == Execution::serial() || tasks <= 1) return true;
+  const std::size_t count = pages_for(out, tasks);
+  return out.pages_.reserve(count * kPage, pages) &&
+         out.page_table_.reserve(count + tasks + 1, pages);
+}
+
 struct PairWriter::SerialOutput {
   const PairWriter& writer;
   Column<Pair>& pairs;
-  std::size_t checked;  // pairs that the predicate has been asked about
+  const std::size_t before;  // pairs that were there
+  const std::size_t tasks;
+  std::size_t task = 0;          // that is running
+  std::size_t checked = before;  // pairs that the predicate has been asked about
+
+  // Pairs to have room for: every growth writes all to fresh pages, which costs more than to find
+  // them. Tasks are about alike, so that some of them tell of the rest.
+  [[nodiscard]] std::size_t room() const {
+    constexpr std::size_t kEnoughTasks = 3;
+    const std::size_t least = pairs.capacity() + pairs.capacity() / 2;
+    if (task < kEnoughTasks) return least;
+    const std::size_t found = checked - before;
+    const std::size_t expected = found * tasks / task;
+    return std::clamp(before + expected + expected / 16 + 2 * kSinkSlack, least,
+                      4 * pairs.capacity());
+  }
 
   // Takes in what the sink got since.
   void take(const PairSink& sink) {
@@ -75,7 +108,7 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
   Column<Pair>& pairs = out_.pairs_;
   const std::size_t before = pairs.size();
   if (!pairs.grow(before + 2 * kSinkSlack)) return Status::out_of_memory;
-  SerialOutput output{*this, pairs, before};
+  SerialOutput output{*this, pairs, before, tasks};
   PairSink sink;
   aim(sink, pairs.data() + before, pairs.data() + pairs.capacity());
   sink.owner = &output;
@@ -86,14 +119,14 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
     const std::size_t used = column.size();
     // A quarter that the predicate left free is room enough.
     const bool enough = used + 2 * kSinkSlack + column.capacity() / 4 < column.capacity();
-    if (!enough && !column.grow(std::max(used + 2 * kSinkSlack, column.capacity() + 1))) {
+    if (!enough && !column.reserve(o.room()) && !column.reserve(used + 2 * kSinkSlack)) {
       return false;
     }
     aim(full, column.data() + used, column.data() + column.capacity());
     return true;
   };
-  for (std::size_t task = 0; task < tasks; ++task) {
-    if (run(context, task, sink)) continue;
+  for (; output.task < tasks; ++output.task) {
+    if (run(context, output.task, sink)) continue;
     pairs.set_size(before);
     return Status::out_of_memory;
   }
@@ -103,20 +136,53 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
 }
 
 Status PairWriter::append_parallel(std::size_t tasks, void* context, Task run) {
-  // A guess from what the buffer held last; too small a guess is found out and doubled.
-  std::size_t pages = out_.pairs_.capacity() / kPageContent + tasks + 16;
-  pages = std::max(pages, out_.pages_.capacity() / kPage);
-  for (;;) {
-    if (!out_.pages_.reserve(pages * kPage) || !out_.page_table_.reserve(pages + tasks + 1)) {
-      return Status::out_of_memory;
+  PageClaims claims;
+  // A guess from what the buffer held last.
+  std::size_t pages = pages_for(out_, tasks);
+  while (make_pages(claims, pages, tasks)) {
+    run_on_pages(tasks, claims, context, run);
+    if (!claims.full.load()) {
+      tests_ += claims.tests.load();
+      return gather_pages(tasks, claims);
     }
-    if (run_on_pages(tasks, pages, context, run)) return gather_pages(tasks, claimed_);
-    pages *= 2;
+    pages = more_pages(claims, tasks);
   }
+  return Status::out_of_memory;
 }
 
-bool PairWriter::run_on_pages(std::size_t tasks, std::size_t pages, void* context, Task run) {
-  PageClaims claims{out_.pages_.data(), out_.page_table_.data(), pages};
+// Makes room for so many pages; those that have been written move along.
+bool PairWriter::make_pages(PageClaims& claims, std::size_t pages, std::size_t tasks) {
+  Column<Pair>& content = out_.pages_;
+  Column<std::uint64_t>& table = out_.page_table_;
+  const bool first = claims.limit == 0;
+  content.set_size(claims.limit * kPage);
+  table.set_size(first ? 0 : tasks + 1 + claims.limit);
+  const bool made = content.reserve(pages * kPage) && table.reserve(tasks + 1 + pages);
+  content.clear();
+  table.clear();
+  if (!made) return false;
+  claims.pages = content.data();
+  claims.done = table.data();
+  claims.entries = table.data() + tasks + 1;
+  claims.limit = pages;
+  claims.full.store(false);
+  if (first) std::fill_n(claims.done, tasks, 0U);
+  return true;
+}
+
+// Pages to go on with where there were too few: tasks are about alike, so that those which are done
+// tell of the rest. What the others have written counts for nothing.
+std::size_t PairWriter::more_pages(PageClaims& claims, std::size_t tasks) {
+  claims.next.store(claims.limit);
+  std::size_t done = 1;
+  for (std::size_t task = 0; task < tasks; ++task) done += claims.done[task];
+  for (std::uint64_t& e : std::span(claims.entries, claims.limit)) {
+    if (claims.done[task_of(e)] == 0) e = entry(task_of(e), 0);
+  }
+  return std::clamp(claims.limit * tasks / done, 2 * claims.limit, 4 * claims.limit);
+}
+
+void PairWriter::run_on_pages(std::size_t tasks, PageClaims& claims, void* context, Task run) {
   execution_.for_each(tasks, [&](std::size_t task) {
     struct Writer {
       const PairWriter& writer;
@@ -129,10 +195,10 @@ bool PairWriter::run_on_pages(std::size_t tasks, std::size_t pages, void* contex
         if (!open) return;
         Pair* const start = claims.pages + page * kPage;
         const auto used = static_cast<std::size_t>(sink.cursor - words(start)) / 2;
-        claims.table[page] = entry(task, writer.keep_accepted(start, used));
+        claims.entries[page] = entry(task, writer.keep_accepted(start, used));
       }
     } writer{*this, claims, task};
-    if (claims.full.load(std::memory_order_relaxed)) return;
+    if (claims.done[task] != 0 || claims.full.load(std::memory_order_relaxed)) return;
     PairSink sink;
     // Starts without a page: a task that finds nothing takes none.
     std::uint32_t none = 0;
@@ -151,22 +217,21 @@ bool PairWriter::run_on_pages(std::size_t tasks, std::size_t pages, void* contex
       aim(full, start, start + kPage);
       return true;
     };
-    if (!run(context, task, sink)) claims.full.store(true, std::memory_order_relaxed);
+    const bool done = run(context, task, sink);
     writer.close(sink);
+    if (!done) return claims.full.store(true, std::memory_order_relaxed);
+    claims.done[task] = 1;
     claims.tests.fetch_add(sink.tests, std::memory_order_relaxed);
   });
-  if (claims.full.load()) return false;
-  claimed_ = claims.next.load();
-  tests_ += claims.tests.load();
-  return true;
 }
 
-Status PairWriter::gather_pages(std::size_t tasks, std::size_t pages) {
+Status PairWriter::gather_pages(std::size_t tasks, const PageClaims& claims) {
   // Counting sort of pages by task; within a task pages were claimed in ascending order.
-  std::uint64_t* offset = out_.page_table_.data() + pages;
-  std::fill(offset, offset + tasks + 1, 0);
+  const std::size_t pages = claims.next.load();
+  std::uint64_t* const offset = claims.done;
+  std::fill_n(offset, tasks + 1, 0U);
   for (std::size_t p = 0; p < pages; ++p) {
-    offset[task_of(out_.page_table_[p]) + 1] += count_of(out_.page_table_[p]);
+    offset[task_of(claims.entries[p]) + 1] += count_of(claims.entries[p]);
   }
   for (std::size_t t = 0; t < tasks; ++t) offset[t + 1] += offset[t];
   Column<Pair>& pairs = out_.pairs_;
@@ -175,19 +240,19 @@ Status PairWriter::gather_pages(std::size_t tasks, std::size_t pages) {
   pairs.set_size(before + offset[tasks]);
   // From here the entry holds where its page goes instead of whose it is.
   for (std::size_t p = 0; p < pages; ++p) {
-    const std::uint64_t e = out_.page_table_[p];
+    const std::uint64_t e = claims.entries[p];
     const std::uint64_t to = offset[task_of(e)];
     offset[task_of(e)] += count_of(e);
-    out_.page_table_[p] = to << 12U | count_of(e);
+    claims.entries[p] = to << 12U | count_of(e);
   }
   static_assert(kPage < (1U << 12U));
   constexpr std::size_t kPagesPerTask = 16;
   execution_.for_each((pages + kPagesPerTask - 1) / kPagesPerTask, [&](std::size_t task) {
     for (std::size_t p = task * kPagesPerTask; p < std::min(pages, (task + 1) * kPagesPerTask);
          ++p) {
-      const std::uint64_t e = out_.page_table_[p];
-      std::memcpy(static_cast<void*>(pairs.data() + before + (e >> 12U)),
-                  out_.pages_.data() + p * kPage, (e & 0xFFFU) * sizeof(Pair));
+      const std::uint64_t e = claims.entries[p];
+      std::memcpy(static_cast<void*>(pairs.data() + before + (e >> 12U)), claims.pages + p * kPage,
+                  (e & 0xFFFU) * sizeof(Pair));
     }
   });
   return Status::ok;

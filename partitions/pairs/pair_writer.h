@@ -32,6 +32,11 @@ class PairWriter {
     });
   }
 
+  /// Makes room in a buffer for so many pairs of so many tasks, at most. False if memory is
+  /// refused.
+  [[nodiscard]] static bool reserve(PairBuffer& out, std::size_t pairs, std::size_t tasks,
+                                    const Execution& execution, Pages pages) noexcept;
+
   /// Tests of 16 volumes that the tasks counted.
   [[nodiscard]] std::uint64_t tests() const noexcept { return tests_; }
 
@@ -40,18 +45,20 @@ class PairWriter {
   struct PageClaims;
   struct SerialOutput;
 
+  [[nodiscard]] static std::size_t pages_for(const PairBuffer& out, std::size_t tasks) noexcept;
   Status append(std::size_t tasks, void* context, Task run);
   Status append_serial(std::size_t tasks, void* context, Task run);
   Status append_parallel(std::size_t tasks, void* context, Task run);
-  bool run_on_pages(std::size_t tasks, std::size_t pages, void* context, Task run);
-  Status gather_pages(std::size_t tasks, std::size_t pages);
+  bool make_pages(PageClaims& claims, std::size_t pages, std::size_t tasks);
+  static std::size_t more_pages(PageClaims& claims, std::size_t tasks);
+  void run_on_pages(std::size_t tasks, PageClaims& claims, void* context, Task run);
+  Status gather_pages(std::size_t tasks, const PageClaims& claims);
   std::size_t keep_accepted(Pair* pairs, std::size_t count) const;
 
   PairBuffer& out_;
   const Execution& execution_;
   const PairPredicate predicate_;
   std::uint64_t tests_ = 0;
-  std::size_t claimed_ = 0;
 };
 
 }  // namespace winnow

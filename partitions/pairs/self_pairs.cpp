@@ -6,6 +6,7 @@
 #include "partitions/pairs/pair_writer.h"
 #include "partitions/state/partition_state.h"
 #include "partitions/structures/costs.h"
+#include "partitions/structures/tasks.h"
 
 #include <algorithm>
 
@@ -43,6 +44,7 @@ struct PartitionState::SelfTasks {
   std::size_t tree = 0;
   std::size_t cross = 0;
   std::size_t groups_per_task = 1;
+  std::size_t queries_per_task = kQueriesPerTask;
   std::size_t first_tree_row = 0;
 
   explicit SelfTasks(const PartitionState& p) noexcept
@@ -52,8 +54,17 @@ struct PartitionState::SelfTasks {
     if (p.index.structure().is_flat() || p.index.tree().blocks() == 0) return;
     tree = ceil_divide(p.index.tree().groups(), groups_per_task);
     if (p.rows.regions().regular != 0) {
-      cross = ceil_divide(p.rows.pool().rows() - first_tree_row, kQueriesPerTask);
+      const std::size_t asking = p.rows.pool().rows() - first_tree_row;
+      // Whole blocks each.
+      queries_per_task *= ceil_divide(asking, kTreeTasks * kQueriesPerTask);
+      cross = ceil_divide(asking, queries_per_task);
     }
+  }
+  /// Tasks that there may be over so many rows.
+  [[nodiscard]] static std::size_t most(std::size_t rows) noexcept {
+    const std::size_t groups = rows / (16 * kBlockRows) + 2;
+    return std::min(kMostTasks, rows) + std::min(2 * kTreeTasks, groups) +
+           std::min(kTreeTasks, rows / kQueriesPerTask + 1);
   }
   [[nodiscard]] std::size_t count() const noexcept { return regular + tree + cross; }
 };
@@ -72,10 +83,21 @@ Status Partition::self_pairs(PairBuffer& out, PairEvents& events,
   return status_;
 }
 
+Status Partition::reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages) const {
+  return state_ == nullptr ? status_ : state_->reserve_pairs(out, pairs, pages);
+}
+
 Status Partition::self_pairs(PairEvents& events, const PairOptions& options) const {
   // In no order: the events are sorted, and nobody sees the pairs.
   return self_pairs(EventWriter::own_buffer(events), events,
                     {Order::fast, options.incremental, options.predicate});
+}
+
+Status PartitionState::reserve_pairs(PairBuffer& out, std::size_t pairs,
+                                     Pages pages) const noexcept {
+  const std::size_t tasks = SelfTasks::most(steadily([this] { return rows.pool().capacity(); }));
+  return PairWriter::reserve(out, pairs, tasks, rows.execution(), pages) ? Status::ok
+                                                                         : Status::out_of_memory;
 }
 
 Status PartitionState::find_self_pairs(PairBuffer& out, const PairOptions& options,
@@ -241,8 +263,8 @@ bool PartitionState::run_self_task(const SelfTasks& tasks, std::size_t task,
                                            static_cast<std::uint32_t>(end), sink);
   }
   task -= tasks.tree;
-  const std::size_t begin = tasks.first_tree_row + task * kQueriesPerTask;
-  const std::size_t end = std::min(rows.pool().rows(), begin + kQueriesPerTask);
+  const std::size_t begin = tasks.first_tree_row + task * tasks.queries_per_task;
+  const std::size_t end = std::min(rows.pool().rows(), begin + tasks.queries_per_task);
   return index.structure().query(volume_batch(rows, begin, end), sink);
 }
 

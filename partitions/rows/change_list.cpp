@@ -18,6 +18,10 @@ bool ChangeList::reserve(std::size_t slots) noexcept {
   return true;
 }
 
+void ChangeList::touch() noexcept {
+  touch_columns(bits_, list_);
+}
+
 void ChangeList::clear() noexcept {
   for (const ObjectId id : list_) bits_[id >> 6U] = 0;
   list_.clear();

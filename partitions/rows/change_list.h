@@ -19,6 +19,9 @@ class ChangeList {
   /// Room for ids below `slots`, so that `add` cannot fail.
   [[nodiscard]] bool reserve(std::size_t slots) noexcept;
 
+  /// Writes to the pages that hold nothing yet.
+  void touch() noexcept;
+
   void add(ObjectId id) noexcept {
     std::uint64_t& word = bits_[id >> 6U];
     const std::uint64_t bit = std::uint64_t{1} << (id & 63U);

@@ -22,6 +22,9 @@ class FilterTable {
   /// and unchanged, if memory is refused.
   [[nodiscard]] bool reserve(std::size_t slots) noexcept;
 
+  /// Writes to the pages that hold nothing yet.
+  void touch() noexcept { filters_.touch(); }
+
   /// Comes into use. False, and unchanged, if memory is refused.
   [[nodiscard]] bool begin_use() noexcept;
 

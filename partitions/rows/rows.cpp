@@ -506,6 +506,14 @@ Status Rows::reserve(std::size_t objects) {
   return make_room(objects) ? Status::ok : Status::out_of_memory;
 }
 
+void Rows::touch() noexcept {
+  pool_.touch();
+  keys_.touch();
+  filters_.touch();
+  stale_.touch();
+  moved_.touch();
+}
+
 void Rows::release_memory() noexcept {
   selection_.release();
   if (keys_.size() != 0) return;

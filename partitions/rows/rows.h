@@ -64,7 +64,10 @@ class Rows {
   Status remove(Key key);
   Status remove(std::span<const Key> keys);
   void clear() noexcept;
+  /// Room for so many objects in all, in as many rows.
   Status reserve(std::size_t objects);
+  /// Writes to the pages that hold nothing yet.
+  void touch() noexcept;
   /// Gives back what nobody's objects need; everything if there are none.
   void release_memory() noexcept;
 

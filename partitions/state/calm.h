@@ -50,6 +50,8 @@ class Calm {
     if (kFewDisturbed * count > objects) looks_ = 0;
   }
   void note_frame() noexcept { ++frames_; }
+  /// Room for the sample. False if memory is refused.
+  [[nodiscard]] bool reserve(Pages pages) noexcept { return sample_.reserve(kSample, pages); }
   /// Boxes are deferred no longer, or memory for that was refused.
   void end() noexcept;
   void release() noexcept;

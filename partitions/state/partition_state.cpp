@@ -77,6 +77,18 @@ Status PartitionState::remove(std::span<const Key> keys) {
   return status;
 }
 
+Status PartitionState::reserve(std::size_t objects, Pages pages) {
+  const Status status = rows.reserve(objects);
+  const std::size_t most = std::max(objects, rows.size());
+  const std::span<const StructureKind> later =
+      chooser_ == nullptr ? std::span<const StructureKind>() : chooser_->range();
+  const bool reserved =
+      status == Status::ok && index.reserve(most, pages, later) && pairs_.calm.reserve(pages);
+  if (reserved && pages == Pages::touched) rows.touch();
+  note_changes(0);
+  return status == Status::ok && !reserved ? Status::out_of_memory : status;
+}
+
 Status PartitionState::set_filter(std::span<const Key> keys,
                                   std::span<const ObjectFilter> filters) {
   const Status status = rows.set_filter(keys, filters);

@@ -50,6 +50,8 @@ class PartitionState {
 
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
   Status remove(std::span<const Key> keys);
+  Status reserve(std::size_t objects, Pages pages);
+  Status reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages) const noexcept;
   Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
   Status update(const EntryList& entries, const BoxView& boxes);
   Status update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries);

@@ -11,6 +11,7 @@
 #include "partitions/rows/row_view.h"
 #include "partitions/rows/rows.h"
 #include "partitions/tree/block_tree.h"
+#include "partitions/tree/kd_order.h"
 
 #include <array>
 #include <cstddef>
@@ -82,6 +83,16 @@ struct RowPlan {
   Column<std::uint32_t>& list;
 };
 
+/// What has to be made ready for a build, at most.
+struct BuildRoom {
+  std::size_t objects;  ///< all of them live, in as many rows
+  Pages pages;
+  /// Scratch for sorting: by integers, by row, and by places.
+  Column<std::uint64_t>& items;
+  Column<std::uint32_t>& list;
+  Column<float>& points;
+};
+
 /// How a stage of a plan ended.
 enum class Planned : std::uint8_t { out_of_memory, goes_on, done };
 
@@ -101,6 +112,14 @@ class Structure {
   [[nodiscard]] virtual bool tests_volumes() const noexcept { return true; }
 
   // Ordering rows.
+
+  /// Makes room for a build of so many objects, wherever they lie, so that it asks for no memory.
+  /// False if memory is refused. By default all are cut at medians.
+  [[nodiscard]] virtual bool reserve(const BuildRoom& room) noexcept {
+    return room.points.reserve(kd_scratch(room.objects), room.pages);
+  }
+  /// Places at most that a plan leaves empty.
+  [[nodiscard]] virtual std::size_t most_holes() const noexcept { return 0; }
 
   /// Chooses the rows of the regular region and their order, a stage with each call: the first has
   /// number 0, and each takes about as long as going over all rows once. By default every live row

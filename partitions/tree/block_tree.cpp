@@ -14,19 +14,32 @@ namespace {
 
 constexpr std::size_t kLeavesPerTask = 1024;
 
+// Levels of nodes over so many blocks.
+TreeView levels_over(std::size_t blocks) noexcept {
+  TreeView shape;
+  if (blocks == 0) return shape;
+  std::size_t count = blocks;
+  for (;;) {
+    shape.count[shape.levels++] = static_cast<std::uint32_t>(count);
+    if (count <= 16) return shape;
+    count = (count + 15) / 16;
+  }
+}
+
+// Floats of the boxes of all nodes.
+std::size_t floats_of(const TreeView& shape) noexcept {
+  std::size_t total = 0;
+  for (std::uint32_t level = 0; level < shape.levels; ++level) {
+    total += 6 * padded_nodes(shape.count[level]);
+  }
+  return total;
+}
+
 }  // namespace
 
 bool BlockTree::cover(std::size_t first_block, std::size_t blocks, Nodes nodes) noexcept {
-  TreeView shape;
+  TreeView shape = levels_over(blocks);
   shape.first_block = static_cast<std::uint32_t>(first_block);
-  if (blocks != 0) {
-    std::size_t count = blocks;
-    for (;;) {
-      shape.count[shape.levels++] = static_cast<std::uint32_t>(count);
-      if (count <= 16) break;
-      count = (count + 15) / 16;
-    }
-  }
   // Node values are recomputed: nothing to carry over into larger memory.
   nodes_.clear();
   filters_.clear();
@@ -36,13 +49,23 @@ bool BlockTree::cover(std::size_t first_block, std::size_t blocks, Nodes nodes) 
   return done;
 }
 
+bool BlockTree::reserve(std::size_t blocks, Pages pages) noexcept {
+  if (!nodes_.reserve(floats_of(levels_over(blocks)), pages)) return false;
+  // Nodes that there are may have moved.
+  if (!nodes_.empty()) aim_boxes(shape_);
+  return true;
+}
+
 bool BlockTree::lay_boxes(TreeView& shape) noexcept {
-  std::size_t total = 0;
-  for (std::uint32_t level = 0; level < shape.levels; ++level) {
-    total += 6 * padded_nodes(shape.count[level]);
-  }
+  const std::size_t total = floats_of(shape);
   if (!nodes_.grow(total)) return false;
   nodes_.set_size(total);
+  aim_boxes(shape);
+  return true;
+}
+
+// Tells the shape where its nodes are, and empties the padding behind them.
+void BlockTree::aim_boxes(TreeView& shape) noexcept {
   float* at = nodes_.data();
   for (std::uint32_t level = 0; level < shape.levels; ++level) {
     const std::size_t stride = padded_nodes(shape.count[level]);
@@ -53,7 +76,6 @@ bool BlockTree::lay_boxes(TreeView& shape) noexcept {
       at += stride;
     }
   }
-  return true;
 }
 
 TreeView BlockTree::view(const RowView& rows) const noexcept {

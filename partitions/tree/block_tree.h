@@ -32,6 +32,10 @@ class BlockTree {
   [[nodiscard]] bool cover(std::size_t first_block, std::size_t blocks,
                            Nodes nodes = Nodes::boxes) noexcept;
 
+  /// Makes room for the boxes of a tree over so many blocks. False, and unchanged, if memory is
+  /// refused.
+  [[nodiscard]] bool reserve(std::size_t blocks, Pages pages) noexcept;
+
   /// Recomputes every node. O(blocks).
   void refit_all(const RowView& rows, const Execution& execution) noexcept;
 
@@ -56,6 +60,7 @@ class BlockTree {
 
  private:
   [[nodiscard]] bool lay_boxes(TreeView& shape) noexcept;
+  void aim_boxes(TreeView& shape) noexcept;
 
   Column<float> nodes_;
   Column<std::uint32_t> filters_;

@@ -69,7 +69,7 @@ std::size_t cuts_of(std::size_t count, KdParts parts) noexcept {
 bool KdCuts::start(const BoundsPool& pool, std::span<std::uint32_t> rows, std::uint32_t* room,
                    Column<float>& scratch, const Execution& execution, KdParts parts) {
   const std::size_t count = rows.size();
-  if (!scratch.resize(6 * count)) return false;
+  if (!scratch.resize(kd_scratch(count))) return false;
   rows_ = rows;
   room_ = room;
   points_ = scratch.data();

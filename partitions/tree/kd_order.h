@@ -11,6 +11,11 @@
 
 namespace winnow {
 
+/// Floats of scratch that it takes to cut so many rows.
+[[nodiscard]] constexpr std::size_t kd_scratch(std::size_t rows) noexcept {
+  return 6 * rows;
+}
+
 /// How cutting ends: with blocks of 16 rows, or with parts of some thousand rows in tiles (see
 /// tile_order.kernel.h), which takes a quarter of the time and leaves some percent more tests.
 enum class KdParts : std::uint8_t { blocks, tiles };

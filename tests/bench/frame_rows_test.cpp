@@ -81,6 +81,10 @@ TEST(ColdFrames, are_measured_as_often_as_asked_in_both_memories) {
         EXPECT_NEAR(one.insert_ms[i] + one.build_ms[i] + one.pairs_ms[i], one.total_ms[i], 1e-9);
         EXPECT_GT(one.pairs_ms[i], 0.0);
       }
+      const std::size_t reserved = one.memory == kUntouched ? 3 : 0;
+      EXPECT_EQ(one.reserved_ms.size(), reserved);
+      EXPECT_EQ(one.ready_ms.size(), reserved);
+      EXPECT_EQ(one.reserve_ms.size(), reserved);
     }
   }
 }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <winnow/core/column.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <numeric>
@@ -44,6 +45,37 @@ TEST(Column, keeps_its_content_when_it_grows) {
   for (std::uint32_t i = 0; i < 5000; ++i) ASSERT_EQ(column[i], i);
   EXPECT_EQ(column.bytes().used, 5000 * sizeof(std::uint32_t));
   EXPECT_EQ(column.bytes().reserved, memory.outstanding());
+}
+
+TEST(Column, keeps_its_content_when_its_room_is_touched) {
+  CountingMemory memory;
+  Column<Odd> column(&memory);
+  ASSERT_TRUE(column.reserve(0, Pages::touched));
+  for (std::size_t i = 0; i < 1000; ++i) {
+    ASSERT_TRUE(column.push_back({{static_cast<std::uint8_t>(i)}}));
+    if (i % 100 == 0) {
+      ASSERT_TRUE(column.reserve(2 * i, Pages::touched));
+    }
+  }
+  for (std::size_t i = 0; i < 1000; ++i) {
+    ASSERT_EQ(column[i].bytes[0], static_cast<std::uint8_t>(i));
+  }
+  EXPECT_EQ(column.bytes().reserved, memory.outstanding());
+}
+
+TEST(Column, has_every_page_behind_its_content_written_to) {
+  constexpr std::size_t kPage = 4096;
+  CountingMemory memory;
+  Column<std::uint8_t> column(&memory);
+  ASSERT_TRUE(column.reserve(10 * kPage));
+  std::fill_n(column.data(), 10 * kPage, std::uint8_t{1});
+  column.set_size(kPage + 100);
+  column.touch();
+  EXPECT_EQ(std::count(column.begin(), column.end(), 0), 0);
+  for (std::size_t page = 1; page < 9; ++page) {
+    const auto* const begin = column.data() + 100 + page * kPage;
+    EXPECT_NE(std::count(begin, begin + kPage, 0), 0) << page;
+  }
 }
 
 TEST(Column, grows_in_few_steps) {

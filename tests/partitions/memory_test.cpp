@@ -1,6 +1,12 @@
 // Memory: what the footprint says is what was asked for, to the byte, and a steady frame asks for
 // nothing.
 
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <atomic>
+#include <new>
+
 #include "tests/support/counting_memory.h"
 #include "tests/support/heap_count.h"
 #include "tests/support/motion.h"
@@ -120,6 +126,170 @@ TEST_P(Memory, that_was_reserved_lasts_for_that_many_inserts) {
   world.insert(std::span<const Aabb>(boxes).first(300));
   for (std::size_t i = 300; i < 500; ++i) world.insert(boxes[i]);
   EXPECT_EQ(memory_.requests(), requests);
+}
+
+TEST_P(Memory, that_was_reserved_lasts_for_a_first_frame) {
+  World world(config(), &memory_);
+  CountingMemory results;
+  PairBuffer buffer(&results);
+  const std::vector<Aabb> boxes = uniform_boxes(400);
+  ASSERT_EQ(world.partition().reserve(400), Status::ok);
+  ASSERT_EQ(world.partition().reserve_pairs(buffer, 400 * 399 / 2), Status::ok);
+  const std::size_t before = memory_.requests() + results.requests();
+  world.insert(boxes);
+  ASSERT_TRUE(world.agrees(buffer));
+  EXPECT_EQ(memory_.requests() + results.requests(), before);
+  EXPECT_TRUE(footprint_is_exact(world));
+}
+
+// As many cells as there may be, lines and nodes of one object each, crowds, all in the tree.
+std::vector<std::vector<Aabb>> scenes_to_reserve_for(std::size_t count) {
+  std::vector<std::vector<Aabb>> scenes{
+      uniform_boxes(count),   clustered_boxes(count), mixed_boxes(count),
+      wall_boxes(count, 1),   two_scale_boxes(count), outlier_boxes(count),
+      exponential_boxes(200), rod_boxes(count),       pile_boxes(count)};
+  for (const Eigen::Vector3f& spread :
+       {Eigen::Vector3f(1e4F, 1e4F, 1e4F), Eigen::Vector3f(1e5F, 1e5F, 1.0F),
+        Eigen::Vector3f(1e5F, 0.1F, 0.1F)}) {
+    scenes.push_back(uniform_boxes(count));
+    for (Aabb& box : scenes.back()) {
+      const Eigen::Vector3f edge = box.max - box.min;
+      box.min = box.min.cwiseProduct(spread).eval();
+      box.max = box.min + edge;
+    }
+  }
+  scenes.emplace_back(count, Aabb{Eigen::Vector3f::Zero(), Eigen::Vector3f::Ones()});
+  return scenes;
+}
+
+TEST_P(Memory, that_was_reserved_is_enough_wherever_objects_lie_and_for_fewer) {
+  const std::size_t count = config().make().is_exact() ? 2500 : 300;
+  for (const std::vector<Aabb>& boxes : scenes_to_reserve_for(count)) {
+    SCOPED_TRACE(testing::Message()
+                 << "from " << boxes[0].min.transpose() << " to " << boxes[0].max.transpose());
+    PairBuffer found;
+    for (const std::size_t inserted : {boxes.size(), boxes.size() * 2 / 3}) {
+      World fresh(config());
+      (void)fresh.insert(std::span(boxes).first(inserted));
+      ASSERT_EQ(fresh.self_pairs(found), Status::ok);
+      CountingMemory results;
+      PairBuffer buffer(&results);
+      World world(config(), &memory_);
+      ASSERT_EQ(world.partition().reserve(boxes.size()), Status::ok);
+      ASSERT_EQ(world.partition().reserve_pairs(buffer, found.size()), Status::ok);
+      const std::size_t before = memory_.requests() + results.requests();
+      (void)world.insert(std::span(boxes).first(inserted));
+      ASSERT_EQ(world.self_pairs(buffer), Status::ok);
+      EXPECT_EQ(memory_.requests() + results.requests(), before);
+      EXPECT_EQ(buffer.size(), found.size());
+    }
+  }
+}
+
+// With others than the usual boxes in the padding, or nodes and cells left behind where they were,
+// a query that has nothing to refresh would tell.
+TEST_P(Memory, that_is_reserved_moves_what_there_is_as_it_was) {
+  for (const Pages pages : {Pages::untouched, Pages::touched}) {
+    World world(config(), &memory_);
+    PairBuffer buffer;
+    std::vector<Aabb> boxes = mixed_boxes(333);
+    const std::vector<Key> keys = world.insert(boxes);
+    ASSERT_TRUE(world.agrees());
+    for (const std::size_t objects : {0, 100, 400, 5000, 5000}) {
+      ASSERT_EQ(world.partition().reserve(objects, pages), Status::ok);
+      EXPECT_TRUE(footprint_is_exact(world));
+      EXPECT_TRUE(world.holds_its_objects());
+      ASSERT_TRUE(world.agrees()) << objects;
+    }
+    Random random(3);
+    for (const Motion motion : kMotions) {
+      move(motion, boxes, random);
+      world.update(keys, boxes);
+      ASSERT_TRUE(world.agrees(buffer));
+    }
+  }
+}
+
+TEST_P(Memory, that_was_reserved_is_given_back) {
+  World world(config(), &memory_);
+  const std::size_t empty = memory_.outstanding();
+  ASSERT_EQ(world.partition().reserve(3000, Pages::touched), Status::ok);
+  EXPECT_TRUE(footprint_is_exact(world));
+  world.partition().release_memory();
+  EXPECT_EQ(memory_.outstanding(), empty);
+  EXPECT_EQ(world.partition().reserve(std::size_t{1} << 40U), Status::too_many_objects);
+  EXPECT_EQ(memory_.outstanding(), empty);
+}
+
+// Hands out fresh pages, one request after another, and knows which have been written to.
+class FreshPages final : public std::pmr::memory_resource {
+ public:
+  FreshPages()
+      : begin_(static_cast<unsigned char*>(::mmap(nullptr, kBytes, PROT_READ | PROT_WRITE,
+                                                  MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1,
+                                                  0))) {}
+  FreshPages(const FreshPages&) = delete;
+  FreshPages& operator=(const FreshPages&) = delete;
+  ~FreshPages() override { ::munmap(begin_, kBytes); }
+
+  [[nodiscard]] std::ptrdiff_t written() const {
+    std::vector<unsigned char> pages(kBytes / kPage);
+    EXPECT_EQ(::mincore(begin_, kBytes, pages.data()), 0);
+    return std::ranges::count_if(pages, [](unsigned char page) { return (page & 1U) != 0; });
+  }
+
+ private:
+  static constexpr std::size_t kBytes = std::size_t{1} << 28U;
+  static constexpr std::size_t kPage = 4096;
+
+  void* do_allocate(std::size_t bytes, std::size_t alignment) override {
+    used_ = (used_ + alignment - 1) / alignment * alignment + bytes;
+    if (used_ > kBytes) throw std::bad_alloc();
+    return begin_ + used_ - bytes;
+  }
+  void do_deallocate(void* /*block*/, std::size_t /*bytes*/, std::size_t /*alignment*/) override {}
+  [[nodiscard]] bool do_is_equal(const memory_resource& other) const noexcept override {
+    return this == &other;
+  }
+
+  unsigned char* begin_;
+  std::size_t used_ = 0;
+};
+
+TEST_P(Memory, that_was_touched_has_all_pages_that_a_first_frame_writes_to) {
+  FreshPages pages;
+  World world(config(), &pages);
+  PairBuffer buffer(&pages);
+  const std::vector<Aabb> boxes = mixed_boxes(world.partition().is_exact() ? 4000 : 400);
+  ASSERT_EQ(world.partition().reserve(boxes.size(), Pages::touched), Status::ok);
+  const std::size_t pairs = world.partition().is_exact() ? 200'000 : boxes.size() * boxes.size();
+  ASSERT_EQ(world.partition().reserve_pairs(buffer, pairs, Pages::touched), Status::ok);
+  const std::ptrdiff_t before = pages.written();
+  EXPECT_GT(before, 20);
+  world.insert(boxes);
+  ASSERT_EQ(world.self_pairs(buffer), Status::ok);
+  EXPECT_FALSE(buffer.empty());
+  EXPECT_EQ(pages.written(), before);
+}
+
+// Boxes that many others overlap, more than a fresh buffer has room for.
+TEST_P(Memory, of_many_pairs_is_asked_for_seldom_and_no_pair_is_found_often) {
+  std::vector<Aabb> boxes = uniform_boxes(2000);
+  for (Aabb& box : boxes) box.max.array() += 4.0F;
+  World world(config(), &memory_);
+  world.insert(boxes);
+  std::atomic<std::size_t> asked{0};
+  const auto count = [](void* context, ObjectId, ObjectId) {
+    ++*static_cast<std::atomic<std::size_t>*>(context);
+    return true;
+  };
+  CountingMemory results;
+  PairBuffer buffer(&results);
+  ASSERT_EQ(world.self_pairs(buffer, {.predicate = {count, &asked}}), Status::ok);
+  ASSERT_GT(buffer.size(), 150'000U);
+  EXPECT_TRUE(world.has_pairs(buffer));
+  EXPECT_LE(results.requests(), 20U);
+  EXPECT_LE(asked, 2 * buffer.size());
 }
 
 TEST_P(Memory, is_asked_for_only_by_the_calling_thread) {

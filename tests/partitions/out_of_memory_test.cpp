@@ -102,11 +102,54 @@ TEST_P(OutOfMemory, during_single_inserts_leaves_everything_as_it_was) {
 }
 
 TEST_P(OutOfMemory, during_reserve_leaves_everything_as_it_was) {
-  world_.insert(uniform_boxes(50));
-  std::size_t room = 1000;
-  refuse_each_request([&] { room += room / 2; }, [&] { return world_.partition().reserve(room); },
-                      [&] { expect_intact(); });
+  const std::vector<Aabb> boxes = uniform_boxes(90);
+  refuse_each_request(
+      [&] {
+        world_.clear();
+        world_.partition().release_memory();
+        world_.insert(boxes);
+        ASSERT_TRUE(world_.agrees());
+      },
+      [&] { return world_.partition().reserve(1000, Pages::touched); },
+      [&] {
+        expect_intact();
+        // There is nothing to be refreshed.
+        ASSERT_TRUE(world_.agrees());
+      });
   EXPECT_TRUE(world_.agrees());
+}
+
+TEST_P(OutOfMemory, during_an_insert_leaves_what_is_up_to_date_as_it_was) {
+  const std::vector<Aabb> boxes = uniform_boxes(90);
+  std::vector<Key> keys(300);
+  refuse_each_request(
+      [&] {
+        world_.clear();
+        world_.partition().release_memory();
+        world_.insert(boxes);
+        ASSERT_TRUE(world_.agrees());
+      },
+      [&] {
+        const Status status = world_.partition().insert(uniform_boxes(300), {}, keys);
+        return status == Status::ok ? world_.partition().remove(keys) : status;
+      },
+      [&] {
+        expect_intact();
+        ASSERT_TRUE(world_.agrees());
+      });
+}
+
+TEST_P(OutOfMemory, during_reserve_of_pairs_leaves_everything_as_it_was) {
+  world_.insert(mixed_boxes(500));
+  auto buffer = std::make_unique<PairBuffer>(&memory_);
+  refuse_each_request(
+      [&] {
+        buffer = std::make_unique<PairBuffer>(&memory_);
+        ASSERT_EQ(world_.self_pairs(*buffer), Status::ok);
+      },
+      [&] { return world_.partition().reserve_pairs(*buffer, 300'000); },
+      [&] { ASSERT_TRUE(world_.has_pairs(*buffer)); });
+  EXPECT_TRUE(world_.agrees(*buffer));
 }
 
 TEST_P(OutOfMemory, during_bulk_update_and_removal_leaves_everything_as_it_was) {

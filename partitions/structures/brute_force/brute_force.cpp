@@ -44,6 +44,7 @@ class BruteForce : public Structure {
       : Structure(input), kernel_for_(kernel_for) {}
 
   [[nodiscard]] bool is_flat() const noexcept override { return true; }
+  [[nodiscard]] bool reserve(const BuildRoom&) noexcept override { return true; }
 
   [[nodiscard]] std::size_t pair_tasks() const noexcept override {
     return std::min(kMostTasks, pool().blocks());

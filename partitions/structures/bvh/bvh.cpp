@@ -33,6 +33,9 @@ class StaticBvh final : public Structure {
   explicit StaticBvh(const StructureInput& input) noexcept
       : Structure(input), boxes_(input.memory) {}
 
+  [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override {
+    return boxes_.reserve(room.objects, room.pages);
+  }
   [[nodiscard]] Ordered order_rest(std::span<std::uint32_t> rest,
                                    Column<std::uint32_t>& order) noexcept override {
     return append_in_sah_order(pool(), rest, boxes_, order, execution()) ? Ordered::done

@@ -18,6 +18,7 @@ namespace {
 constexpr float kUnbounded = 1e30F;
 constexpr std::size_t kFewest = 64;  // below this the tree alone does as well
 constexpr double kMostCells = 2048;  // on an axis
+constexpr double kLeastWidening = 1.02;
 constexpr double kTreeQuery = 14.0;  // tests of 16 that an object of the tree costs
 constexpr std::size_t kRowsPerStretch = 8192;
 constexpr std::size_t kRowsPerSample = 64;  // one row of so many is looked at, if they are enough
@@ -144,12 +145,17 @@ struct CellLayout::Trial {
       ++free_axes;
     }
     if (free_axes == 0) return;
-    const double most = std::max(8.0, d.cells_per_object * n);
-    const double widen = total > most ? std::pow(total / most, 1.0 / free_axes) : 1.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (width[a] == 0.0) continue;
-      width[a] *= widen;
-      cells[a] = std::max(1.0, std::ceil(s.range(a) / width[a]));
+    const double most = d.most_cells(n);
+    // Of cells that are widened some axes soon have one alone, and others have to do more.
+    for (double least = 1.0; total > most || least == 1.0; least = kLeastWidening) {
+      const double widen = total > most ? std::pow(total / most, 1.0 / free_axes) : 1.0;
+      total = 1.0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        if (width[a] == 0.0) continue;
+        width[a] *= std::max(widen, least);
+        cells[a] = std::max(1.0, std::ceil(s.range(a) / width[a]));
+        total *= cells[a];
+      }
     }
   }
 
@@ -268,6 +274,7 @@ bool CellLayout::lay_edges(const Trial& trial, const SceneSample& s) noexcept {
   edges_.clear();
   if (!edges_.resize(total)) return false;
   usable_ = true;
+  aim_axes();
   float* at = edges_.data();
   for (CellAxis& axis : axes_) {
     float* const from = at;
@@ -286,8 +293,6 @@ bool CellLayout::lay_edges(const Trial& trial, const SceneSample& s) noexcept {
     }
     from[0] = -kEndless;
     to[axis.count - 1] = kEndless;
-    axis.from = from;
-    axis.to = to;
     axis.origin = s.low[axis.axis];
     axis.inverse = axis.count > 1 ? static_cast<float>(1.0 / width) : 0.0F;
     // Far from the origin floats may be too coarse to keep cells two apart from touching.
@@ -298,6 +303,24 @@ bool CellLayout::lay_edges(const Trial& trial, const SceneSample& s) noexcept {
     }
     usable_ = usable_ && std::isfinite(axis.inverse) && agrees(axis);
   }
+  return true;
+}
+
+// Tells the axes where the ends of their cells are.
+void CellLayout::aim_axes() noexcept {
+  const float* at = edges_.data();
+  for (CellAxis& axis : axes_) {
+    axis.from = at;
+    axis.to = at + axis.count;
+    at += 2 * axis.count;
+  }
+}
+
+bool CellLayout::reserve(std::size_t cells, Pages pages) noexcept {
+  // All of them on one axis, or as many as there may be on each.
+  const std::size_t ends = std::min(cells + 2, 3 * (static_cast<std::size_t>(kMostCells) + 1));
+  if (!edges_.reserve(2 * ends, pages)) return false;
+  if (!edges_.empty()) aim_axes();
   return true;
 }
 

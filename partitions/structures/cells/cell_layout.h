@@ -6,6 +6,7 @@
 #include "partitions/structures/cells/cells.kernel.h"
 #include "partitions/structures/structure.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -39,10 +40,15 @@ struct SceneSample {
 /// What a layout is asked to weigh up.
 struct CellDemand {
   double slack_share = 0.3;      ///< of the reach, that objects may drift by on either side
-  double cells_per_object = 2;   ///< at most
+  double cells_per_object = 2;   ///< at most, but for the fewest objects
   bool sweep_fast_axis = false;  ///< the fast axis is sorted, not divided
   /// Objects that ask together: beside the fast axis cells are at least as wide as a cube of them.
   double rows_per_block = 0;
+
+  /// Cells of a layout for so many objects, at most.
+  [[nodiscard]] double most_cells(double objects) const noexcept {
+    return std::max(8.0, cells_per_object * objects);
+  }
 };
 
 /// Cells over three axes: which objects are small enough, how large the cells are, which axis runs
@@ -54,6 +60,9 @@ class CellLayout {
   /// Lays out cells for the objects of a pool. False if memory is refused; `usable()` is false
   /// afterwards if no layout beats keeping every object in the tree.
   [[nodiscard]] bool choose(const SceneSample& sample, const CellDemand& demand) noexcept;
+
+  /// Makes room for a layout of so many cells. False if memory is refused.
+  [[nodiscard]] bool reserve(std::size_t cells, Pages pages) noexcept;
 
   [[nodiscard]] bool usable() const noexcept { return usable_; }
   /// Axes by how fast they run: 0 is the one along which cells of a run follow each other.
@@ -86,6 +95,7 @@ class CellLayout {
  private:
   struct Trial;
   [[nodiscard]] bool lay_edges(const Trial& trial, const SceneSample& sample) noexcept;
+  void aim_axes() noexcept;
 
   std::array<CellAxis, 3> axes_;
   Column<float> edges_;

@@ -41,6 +41,13 @@ class CellStructure : public Structure {
  protected:
   ~CellStructure() = default;
 
+  /// Room for a build of so many cells and listed rows, or of none but the tree's.
+  [[nodiscard]] bool reserve_cells(const BuildRoom& room, std::size_t cells,
+                                   std::size_t listed) noexcept {
+    return Structure::reserve(room) && planned_start_.reserve(cells + 1, room.pages) &&
+           room.list.reserve(listed, room.pages);
+  }
+
   /// Into how many units pair finding can be cut, where there are regular rows.
   [[nodiscard]] virtual std::size_t pair_units() const noexcept { return places(); }
   /// Pairs of the regular rows of units [begin, end) with each other and with rows behind them.

@@ -15,6 +15,7 @@ namespace {
 
 // More objects than this in a cell are pruned better by the tree.
 constexpr std::uint32_t kOverfull = 48;
+constexpr CellDemand kDemand{.rows_per_block = 10};
 
 /// Uniform grid: each object belongs to the one cell of its box's lower corner, and rows are sorted
 /// by cell (counting sort), so that the cells of a line are one run of rows. 16 rows of a line look
@@ -29,6 +30,7 @@ class FlatGrid final : public CellStructure {
   explicit FlatGrid(const StructureInput& input) noexcept;
 
  private:
+  [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
   [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return 2; }
   void finish_build(const RowPlan& plan, bool moved) noexcept override;
@@ -56,6 +58,12 @@ class FlatGrid final : public CellStructure {
 FlatGrid::FlatGrid(const StructureInput& input) noexcept
     : CellStructure(input), layout_(input.memory), planned_(input.memory) {}
 
+bool FlatGrid::reserve(const BuildRoom& room) noexcept {
+  const auto cells =
+      static_cast<std::size_t>(kDemand.most_cells(static_cast<double>(room.objects)));
+  return reserve_cells(room, cells, room.objects) && planned_.reserve(cells, room.pages);
+}
+
 Planned FlatGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
   if (stage == 0) return choose_cells(plan);
   sort_by_cell(plan);
@@ -65,7 +73,7 @@ Planned FlatGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
 // Leaves the cell of each row in the list.
 Planned FlatGrid::choose_cells(const RowPlan& plan) noexcept {
   const SceneSample sample(pool());
-  if (!planned_.choose(sample, {.rows_per_block = 10})) return Planned::out_of_memory;
+  if (!planned_.choose(sample, kDemand)) return Planned::out_of_memory;
   if (!planned_.usable()) {
     leave_all(plan);
     return Planned::done;

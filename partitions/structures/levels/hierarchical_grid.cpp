@@ -28,6 +28,10 @@ constexpr std::size_t kCrowd = 512;
 constexpr std::size_t kInCell = 4;
 constexpr std::size_t kRowsPerStretch = 8192;
 constexpr std::size_t kLinesPerStretch = 512;
+// Lines of a level that are looked up in a table: one for two objects, and so many.
+constexpr std::size_t kMoreLines = 16;
+// Rows behind those of the last level, and of each, up to the next whole block.
+constexpr std::size_t kMostHoles = (kMostLevels + 1) * kBlockRows;
 
 // One colour for each level, beside those of other things: from Okabe and Ito, as these, and darker
 // from the sixth level on.
@@ -125,6 +129,8 @@ class HierarchicalGrid final : public CellStructure {
   }
 
  private:
+  [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
+  [[nodiscard]] std::size_t most_holes() const noexcept override { return kMostHoles; }
   [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return 4; }
   void finish_build(const RowPlan& plan, bool moved) noexcept override;
@@ -242,6 +248,19 @@ LinePlace place_on(const GridLevel& g, const Structure::Place& box) noexcept {
 // Fewer are compared with each other sooner than a digit's values are counted.
 constexpr std::size_t kFewToSort = 128;
 
+// Every object may have a line and a cell to itself; a level's table of lines has at most half as
+// many entries as objects, and some more.
+bool HierarchicalGrid::reserve(const BuildRoom& room) noexcept {
+  const std::size_t objects = room.objects;
+  return reserve_cells(room, objects, objects + kMostHoles) &&
+         room.items.reserve(2 * objects, room.pages) &&
+         key_.reserve(objects + kMostHoles, room.pages) &&
+         planned_.level.reserve(kMostLevels, room.pages) &&
+         planned_.line.reserve(objects, room.pages) &&
+         planned_.number.reserve(objects, room.pages) &&
+         planned_.rank.reserve(objects / 2 + kMostLevels * (kMoreLines + 1), room.pages);
+}
+
 Planned HierarchicalGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
   if (stage == 0) return begin_plan(plan);
   // As many steps of levels as go over all rows once.
@@ -262,7 +281,7 @@ Planned HierarchicalGrid::begin_plan(const RowPlan& plan) noexcept {
   planned_start_.clear();
   // A first build meets no more rows than objects; of a scene in motion builds meet now more, now
   // fewer, and this is enough for mostly all.
-  const std::size_t first = plan.objects + (kMostLevels + 1) * kBlockRows;
+  const std::size_t first = plan.objects + kMostHoles;
   const std::size_t later = std::max(rows, plan.objects + plan.objects / 8 + 256);
   if (!plan.list.reserve(rows <= first ? first : later)) return Planned::out_of_memory;
   plan.list.set_size(rows);
@@ -276,7 +295,7 @@ Planned HierarchicalGrid::begin_plan(const RowPlan& plan) noexcept {
   }
   // By objects, not rows, so that a later build of as many asks for no more.
   const std::size_t count = classes.objects();
-  const std::size_t room = count + (kMostLevels + 1) * kBlockRows;
+  const std::size_t room = count + kMostHoles;
   if (!key_.reserve(room) || !plan.regular.reserve(room + kBlockRows) ||
       !plan.items.resize(2 * count) || !planned_.level.reserve(kMostLevels)) {
     return Planned::out_of_memory;
@@ -456,7 +475,7 @@ bool HierarchicalGrid::rank_lines(GridLevel& level) {
       std::size_t{level.mids} * (static_cast<std::size_t>(level.slow.last) + 1);
   Column<std::uint32_t>& ranks = planned_.rank;
   level.first_rank = static_cast<std::uint32_t>(ranks.size());
-  level.ranked = lines <= (level.end_row - level.first_row) / 2 + 16;
+  level.ranked = lines <= (level.end_row - level.first_row) / 2 + kMoreLines;
   if (!level.ranked) return true;
   if (!ranks.resize(ranks.size() + lines + 1)) return false;
   std::uint32_t* const rank = ranks.data() + level.first_rank;

@@ -11,9 +11,15 @@ namespace winnow {
 namespace {
 
 constexpr std::size_t kRowsPerTask = 16384;
+constexpr std::size_t kFewestNodes = 64;
 constexpr std::size_t kRowsOfGroup = 16 * kBlockRows;  // of a node of the tree over the rows
 // Longer runs of objects whose places cannot be told apart are sorted better by the tree.
 constexpr std::size_t kLongRun = 48;
+
+// Rows of a scene in motion that mostly all of its builds meet at most.
+constexpr std::size_t mostly_all(std::size_t objects) {
+  return objects + objects / 8 + 256;
+}
 
 constexpr std::uint32_t key_in(std::uint64_t item) {
   return static_cast<std::uint32_t>(item >> 32U);
@@ -42,6 +48,7 @@ class LooseTree : public CellStructure {
   }
 
  private:
+  [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
   [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return 5; }
   void finish_build(const RowPlan& plan, bool moved) noexcept override;
@@ -100,6 +107,14 @@ LooseTree::LooseTree(const StructureInput& input, std::size_t axes) noexcept
       used_(input.memory),
       planned_(input.memory) {}
 
+// Every object may have a node to itself.
+bool LooseTree::reserve(const BuildRoom& room) noexcept {
+  const std::size_t nodes = room.objects + kFewestNodes;
+  const std::size_t rows = mostly_all(room.objects);
+  return reserve_cells(room, nodes, 0) && room.items.reserve(2 * rows, room.pages) &&
+         planned_.node.reserve(nodes, room.pages) && planned_.bounds.reserve(nodes, room.pages);
+}
+
 Planned LooseTree::plan(const RowPlan& plan, unsigned stage) noexcept {
   const std::size_t half = plan.rows / 2;
   std::uint64_t* const items = plan.items.data();
@@ -129,9 +144,8 @@ Planned LooseTree::choose_cells(const RowPlan& plan) noexcept {
     leave_all(plan);
     return Planned::done;
   }
-  // Of a scene in motion builds meet now more rows, now more nodes: this is enough for mostly all.
-  const std::size_t most_rows = std::max(plan.rows, plan.objects + plan.objects / 8 + 256);
-  const std::size_t nodes = plan.objects / 8 + 64;
+  const std::size_t most_rows = std::max(plan.rows, mostly_all(plan.objects));
+  const std::size_t nodes = plan.objects / 8 + kFewestNodes;
   if (!plan.items.reserve(2 * most_rows) || !planned_.node.reserve(nodes) ||
       !planned_start_.reserve(nodes) || !planned_.bounds.reserve(nodes)) {
     return Planned::out_of_memory;

@@ -28,6 +28,8 @@ constexpr std::uint32_t kCrowded = 384;
 // Rows that do not fit strips ask every strip that they cross. Where more than this share of a
 // scene does so, the tree serves all of it better.
 constexpr double kMostApart = 0.1;
+constexpr CellDemand kDemand{
+    .slack_share = 0.5, .cells_per_object = 0.25, .sweep_fast_axis = true, .rows_per_block = 10};
 
 /// A key of a row on the sweep axis, in the order of keys, before the row.
 using SweepItem = std::uint64_t;
@@ -97,6 +99,7 @@ class SweepAndPrune final : public CellStructure {
   explicit SweepAndPrune(const StructureInput& input) noexcept;
 
  private:
+  [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
   [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return 4; }
   void finish_build(const RowPlan& plan, bool moved) noexcept override;
@@ -131,6 +134,14 @@ class SweepAndPrune final : public CellStructure {
 SweepAndPrune::SweepAndPrune(const StructureInput& input) noexcept
     : CellStructure(input), layout_(input.memory), planned_(input.memory), key_(input.memory) {}
 
+bool SweepAndPrune::reserve(const BuildRoom& room) noexcept {
+  const auto strips =
+      static_cast<std::size_t>(kDemand.most_cells(static_cast<double>(room.objects)));
+  return reserve_cells(room, strips, room.objects) && planned_.reserve(strips, room.pages) &&
+         key_.reserve(room.objects + kPadding, room.pages) &&
+         room.items.reserve(2 * room.objects, room.pages);
+}
+
 Planned SweepAndPrune::plan(const RowPlan& plan, unsigned stage) noexcept {
   const std::size_t half = planned_.cells() / 2;
   switch (stage) {
@@ -152,9 +163,7 @@ Planned SweepAndPrune::plan(const RowPlan& plan, unsigned stage) noexcept {
 // Leaves the strip of each row in the list.
 Planned SweepAndPrune::choose_strips(const RowPlan& plan) noexcept {
   const SceneSample sample(pool());
-  const CellDemand demand{
-      .slack_share = 0.5, .cells_per_object = 0.25, .sweep_fast_axis = true, .rows_per_block = 10};
-  if (!planned_.choose(sample, demand)) return Planned::out_of_memory;
+  if (!planned_.choose(sample, kDemand)) return Planned::out_of_memory;
   if (!planned_.usable()) {
     leave_all(plan);
     return Planned::done;

@@ -1,0 +1,150 @@
+// Which structure finds the rows, which one is to be next, and those that wait with memory of their
+// own.
+
+#include "core/memory/columns.h"
+#include "partitions/index/spatial_index.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace winnow {
+
+Structure* SpatialIndex::make(StructureKind kind) noexcept {
+  const auto waiting = std::ranges::find(waiting_, kind, &Held::kind);
+  if (waiting != waiting_.end()) return std::exchange(*waiting, {}).structure;
+  return kind.info()->make({memory_, rows_, regular_tree_, kind.parameter()});
+}
+
+void SpatialIndex::end(const Held& one) noexcept {
+  if (one.structure != nullptr) one.kind.info()->end(one.structure, memory_);
+}
+
+// With what was reserved for it, it may be taken again.
+void SpatialIndex::put_by(const Held& one) noexcept {
+  const auto place = std::ranges::find(waiting_, nullptr, &Held::structure);
+  if (reserved_ && place != waiting_.end()) {
+    *place = one;
+  } else {
+    end(one);
+  }
+}
+
+void SpatialIndex::install(Structure* structure, StructureKind kind) noexcept {
+  give_up_plan();
+  structure_ = structure;
+  kind_ = kind;
+  if (reserved_) {
+    (void)tree_.cover(0, 0);
+    (void)regular_tree_.cover(0, 0);
+  } else {
+    tree_.release();
+    regular_tree_.release();
+    release_scratch();
+    rows_.selection().release();
+  }
+  built_edge_ = 0.0F;
+  built_holes_ = 0;
+  full_base_ = moved_base_ = excess_ = 0;
+  rows_.disorder();
+}
+
+bool SpatialIndex::set_structure(StructureKind kind) noexcept {
+  Structure* const made = make(kind);
+  if (made == nullptr) return false;
+  end_waiting();
+  end({kind_, structure_});
+  install(made, kind);
+  return true;
+}
+
+Status SpatialIndex::refresh_as(StructureKind kind, bool& refused) {
+  Structure* const made = make(kind);
+  refused = made == nullptr;
+  if (refused) return refresh();
+  if (plans_ahead() && !structure_->is_flat() && !made->is_flat() && !needs_build()) {
+    give_up_plan();
+    // What the present structure had planned with is of no use to the next.
+    if (!reserved_) plan_.release();
+    if (plan_.start(rows_, *made, spare_rows(*made))) {
+      next_ = {kind, made};
+      return refresh();
+    }
+  }
+  const Held before{kind_, structure_};
+  install(made, kind);
+  if (refresh() == Status::ok) {
+    put_by(before);
+    return Status::ok;
+  }
+  refused = true;
+  put_by({kind, made});
+  install(before.structure, before.kind);
+  return refresh();
+}
+
+void SpatialIndex::take_next_structure() noexcept {
+  if (!exchanging()) return;
+  put_by({kind_, structure_});
+  kind_ = next_.kind;
+  structure_ = std::exchange(next_, {}).structure;
+  if (!structure_->prunes_rows() && !reserved_) regular_tree_.release();
+}
+
+// Memory that is there before it is needed.
+
+bool SpatialIndex::reserve(std::size_t objects, Pages pages,
+                           std::span<const StructureKind> later) noexcept {
+  give_up_plan();
+  if (!have_wait(later)) return false;
+  std::size_t holes = 0;
+  std::size_t behind = 0;
+  bool flat = true;
+  bool prunes = false;
+  const auto count_in = [&](const Structure& structure) {
+    flat = flat && structure.is_flat();
+    prunes = prunes || structure.prunes_rows();
+    holes = std::max(holes, structure.most_holes());
+    behind = std::max(behind, spare_rows(structure, objects));
+  };
+  count_in(*structure_);
+  for (const Held& one : waiting_) {
+    if (one.structure != nullptr) count_in(*one.structure);
+  }
+  const std::size_t ordered = objects + holes + kBlockRows;
+  reserved_ = flat || (reserve_order(ordered, behind, pages) &&
+                       (!prunes || regular_tree_.reserve(blocks_of(ordered), pages)));
+  const BuildRoom room = plan_.room_for(objects, pages);
+  reserved_ = reserved_ && structure_->reserve(room);
+  for (const Held& one : waiting_) {
+    if (one.structure != nullptr) reserved_ = reserved_ && one.structure->reserve(room);
+  }
+  return reserved_;
+}
+
+// Room for so many rows in order, and for those that are to be left behind them.
+bool SpatialIndex::reserve_order(std::size_t rows, std::size_t behind, Pages pages) noexcept {
+  return rows_.reserve_rows(rows + behind) &&
+         spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows, pages) &&
+         plan_.reserve(rows + behind, pages) && tree_.reserve(blocks_of(rows), pages);
+}
+
+bool SpatialIndex::have_wait(std::span<const StructureKind> kinds) noexcept {
+  auto place = waiting_.begin();
+  for (const StructureKind kind : kinds) {
+    if (kind == kind_ || std::ranges::find(waiting_, kind, &Held::kind) != waiting_.end()) {
+      continue;
+    }
+    place = std::find_if(place, waiting_.end(), [](const Held& held) { return !held.structure; });
+    if (place == waiting_.end()) return true;
+    Structure* const made = make(kind);
+    if (made == nullptr) return false;
+    *place = {kind, made};
+  }
+  return true;
+}
+
+void SpatialIndex::end_waiting() noexcept {
+  for (Held& one : waiting_) end(std::exchange(one, {}));
+}
+
+}  // namespace winnow
