@@ -48,8 +48,10 @@ bool collect(Object* a, Object* b, void* pairs) {
 /// objects by re-insertion costs 1.1 to 2.3 times as much), and building it anew as soon as the
 /// time lost to its ageing since the last build has reached what a build takes. Where few moved
 /// they are inserted again, and so are objects that left the place they had: refitted they would
-/// take a tree's upper nodes along (a search takes 600 times as long). Where those are many it is
-/// built anew.
+/// take the upper nodes along (then a search takes up to 600 times as long). Where those are many
+/// the tree is built anew. Of its other managers, at 1,000 and 3,000 objects, the array of nodes
+/// takes 1.1 to 6 times as long, the interval tree 10 times, and the two sweeps 0.3 to 0.9 times
+/// where hardly anything moves and 5 to 1,000 times where all does.
 class FclEngine final : public PairsAdapter {
  public:
   [[nodiscard]] std::string name() const override { return "FCL tree"; }
