@@ -57,7 +57,8 @@ class FrameBlocks {
 /// Whether a contender begins another frame.
 bool goes_on(const Run& run, const TimeBounds& bounds) {
   if (run.gave_up_ms > 0.0) return false;
-  if (bounds.run == 0.0 || run.frame_ms.empty()) return true;
+  constexpr std::size_t kFewest = 3;  // after the first
+  if (bounds.run == 0.0 || run.frame_ms.size() <= kFewest) return true;
   return std::accumulate(run.frame_ms.begin() + 1, run.frame_ms.end(), 0.0) < 1e3 * bounds.run;
 }
 

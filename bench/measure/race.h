@@ -52,7 +52,9 @@ struct Run {
 
 /// How long a contender may take, in seconds; 0: as long as it takes.
 struct TimeBounds {
-  double run = 0.0;    ///< once its frames after the first have taken so long, it begins no more
+  /// Once its frames after the first have taken so long it begins no more; but it has three, so
+  /// that one that was disturbed is not the median.
+  double run = 0.0;
   double frame = 0.0;  ///< a frame that takes longer is given up by engines that can
 
   [[nodiscard]] bool any() const noexcept { return run > 0.0 || frame > 0.0; }
