@@ -2,6 +2,7 @@
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/pair_buffer.h>
+#include "bench/common/sample.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +11,9 @@
 #include <string>
 
 namespace winnow::bench {
+
+/// Thrown by an engine that gives up a frame, see Engine::give_up_after.
+struct GaveUp {};
 
 /// Anything that can be raced on a scene: a partition of winnow or another library. The harness
 /// times `start` and `frame` from outside and calls the rest outside its timers, so whatever a
@@ -27,17 +31,21 @@ class Engine {
   /// Short and stable, e.g. "FlatGrid" or "Bullet dbvt". The same on every call.
   [[nodiscard]] virtual std::string name() const = 0;
 
-  /// Objects above which a run would take unreasonably long; such scenes are skipped by name.
+  /// Objects above which a run would take unreasonably long; such scenes are skipped by name where
+  /// its time is not bounded.
   [[nodiscard]] virtual std::size_t largest() const {
     return std::numeric_limits<std::size_t>::max();
   }
 
-  /// Whether a frame may have more boxes than the last one; scenes that grow are skipped by name if
-  /// not.
-  [[nodiscard]] virtual bool can_grow() const { return false; }
+  /// Whether it uses one thread, whatever number it was made for.
+  [[nodiscard]] virtual bool is_serial() const { return false; }
+
+  /// From now on a `start` or `frame` that takes longer ends with GaveUp, and nothing but `bytes`
+  /// is asked of it any more. Only engines whose frames may take minutes look at the time.
+  void give_up_after(double ms) noexcept { most_ms_ = ms; }
 
   /// Frame 0: takes the boxes (row = index) and finds their pairs. Called once, before anything
-  /// but `name`, `largest` and `can_grow`.
+  /// but what is above.
   virtual void start(std::span<const Aabb> boxes) = 0;
 
   /// A later frame. `changed_rows` (ascending, each once, maybe empty) are the objects whose boxes
@@ -62,6 +70,14 @@ class Engine {
 
  protected:
   Engine() = default;
+
+  /// Throws GaveUp if more than the bound has gone by.
+  void check_time(const Stopwatch& since_start) const {
+    if (since_start.ms() > most_ms_) throw GaveUp{};
+  }
+
+ private:
+  double most_ms_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace winnow::bench

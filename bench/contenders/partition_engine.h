@@ -19,7 +19,6 @@ class PartitionEngine final : public Engine {
 
   [[nodiscard]] std::string name() const override { return std::string(partition_.name()); }
   [[nodiscard]] std::size_t largest() const override { return largest_for(partition_.name()); }
-  [[nodiscard]] bool can_grow() const override { return true; }
   void start(std::span<const Aabb> boxes) override;
   void frame(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes) override;
   [[nodiscard]] std::span<const Pair> pairs() const override { return pairs_.pairs(); }

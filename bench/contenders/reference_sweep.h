@@ -16,7 +16,6 @@ class ReferenceSweep final : public Engine {
   explicit ReferenceSweep(int axis = 0) : axis_(axis) {}
 
   [[nodiscard]] std::string name() const override { return "reference sweep"; }
-  [[nodiscard]] bool can_grow() const override { return true; }
   void start(std::span<const Aabb> boxes) override;
   void frame(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes) override;
   [[nodiscard]] std::span<const Pair> pairs() const override { return pairs_; }

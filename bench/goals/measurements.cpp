@@ -13,6 +13,7 @@
 #include "bench/rows/hard_case_rows.h"
 #include "bench/rows/kernel_rows.h"
 #include "bench/rows/machine.h"
+#include "bench/rows/peer_rows.h"
 #include "bench/rows/query_rows.h"
 #include "bench/rows/scene_rows.h"
 #include "bench/simulation/flow_phases.h"
@@ -45,6 +46,26 @@ void goal_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
   if (options.contains("isas")) how.isas.assign(available_isas().begin(), available_isas().end());
   for (const NamedScene& scene : asked_scenes(options, measured)) {
     measured.machine_ms = add_frame_race(measured.results, scene, how).machine_ms;
+  }
+}
+
+/// Other libraries beside partitions, on 1 and 2 threads, each for at most "seconds", and a frame
+/// for at most "frame_seconds".
+void goal_beside_peers(const Json& options, Lab& /*lab*/, Measured& measured) {
+  measured.absent = !has_peers();
+  if (measured.absent) return;
+  declare_beside_peers(measured.results);
+  for (const NamedScene& scene : asked_scenes(options, measured)) {
+    measured.machine_ms =
+        add_beside_peers(
+            measured.results, scene,
+            {.objects = options.at("objects"),
+             .partitions = options.at("partitions"),
+             .threads = {1, 2},
+             .machine_clock = true,
+             .frames = options.at("frames"),
+             .bounds = {.run = options.at("seconds"), .frame = options.at("frame_seconds")}})
+            .machine_ms;
   }
 }
 
@@ -327,6 +348,7 @@ void goal_flow_soak(const Json& options, Lab& /*lab*/, Measured& measured) {
 
 const Measurer* find_measurer(const std::string& name) {
   static const std::map<std::string, Measurer> all{{"frames", goal_frames},
+                                                   {"beside_peers", goal_beside_peers},
                                                    {"cold", goal_cold},
                                                    {"same_pairs", goal_same_pairs},
                                                    {"keys", goal_keys},

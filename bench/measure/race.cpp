@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 namespace winnow::bench {
@@ -53,12 +54,25 @@ class FrameBlocks {
   bool started_ = false;
 };
 
+/// Whether a contender begins another frame.
+bool goes_on(const Run& run, const TimeBounds& bounds) {
+  if (run.gave_up_ms > 0.0) return false;
+  constexpr std::size_t kFewest = 3;  // after the first
+  if (bounds.run == 0.0 || run.frame_ms.size() <= kFewest) return true;
+  return std::accumulate(run.frame_ms.begin() + 1, run.frame_ms.end(), 0.0) < 1e3 * bounds.run;
+}
+
 void run_frame(Contender& contender, const Frame& frame, bool first, Run& run) {
   const Stopwatch clock;
-  if (first) {
-    contender.engine->start(frame.boxes);
-  } else {
-    contender.engine->frame(frame.changed, frame.boxes);
+  try {
+    if (first) {
+      contender.engine->start(frame.boxes);
+    } else {
+      contender.engine->frame(frame.changed, frame.boxes);
+    }
+  } catch (const GaveUp&) {
+    run.gave_up_ms = clock.ms();
+    return;
   }
   run.frame_ms.push_back(clock.ms());
   run.changed += frame.changed.size();
@@ -99,7 +113,8 @@ double Run::reported_a_frame() const {
 }
 
 bool Run::same_pairs(const Run& other) const noexcept {
-  return std::equal(pairs.begin(), pairs.end(), other.pairs.begin(), other.pairs.end(),
+  const auto frames = static_cast<std::ptrdiff_t>(std::min(pairs.size(), other.pairs.size()));
+  return std::equal(pairs.begin(), pairs.begin() + frames, other.pairs.begin(),
                     [](const PairSummary& a, const PairSummary& b) { return a.same_pairs(b); });
 }
 
@@ -114,6 +129,7 @@ std::vector<Run> race(FrameSource& source, std::vector<Contender>& contenders,
     runs[c].engine = contenders[c].engine->name();
     runs[c].threads = contenders[c].threads;
     runs[c].isa = contenders[c].isa;
+    if (options.bounds.frame > 0.0) contenders[c].engine->give_up_after(1e3 * options.bounds.frame);
   }
   FrameBlocks blocks(source);
   for (std::size_t done = 0; done < options.frames;) {
@@ -123,7 +139,11 @@ std::vector<Run> race(FrameSource& source, std::vector<Contender>& contenders,
     for (std::size_t c = 0; c < contenders.size(); ++c) {
       IsaGuard::choose(contenders[c].isa);
       arenas.run(contenders[c].threads, [&] {
-        for (const Frame& frame : frames) run_frame(contenders[c], frame, done == 0, runs[c]);
+        for (const Frame& frame : frames) {
+          if (goes_on(runs[c], options.bounds)) {
+            run_frame(contenders[c], frame, done == 0, runs[c]);
+          }
+        }
       });
     }
     done += frames.size();
@@ -148,20 +168,25 @@ bool all_agree(const std::vector<Run>& runs) noexcept {
 
 namespace {
 
-void add_peers(const MeasureOptions& options, bool grows, std::vector<Contender>& contenders,
+/// Why a library is left out of a race; empty if it is not.
+std::string why_skipped(const Engine& engine, const MeasureOptions& options,
+                        const Measurement& result) {
+  if (result.objects <= engine.largest() || options.bounds.any()) return {};
+  return engine.name() + " (more than " + grouped(engine.largest()) + " objects)";
+}
+
+/// Those that use one thread only once.
+void add_peers(const MeasureOptions& options, std::vector<Contender>& contenders,
                Measurement& result) {
-  std::vector<std::string>& skipped = result.skipped;
   for (const int threads : options.threads) {
     for (std::unique_ptr<Engine>& engine : make_peers(threads)) {
-      if (result.objects > engine->largest() || (grows && !engine->can_grow())) {
-        const std::string text =
-            engine->name() + (grows ? " (a scene that grows)"
-                                    : " (more than " + grouped(engine->largest()) + " objects)");
-        if (std::find(skipped.begin(), skipped.end(), text) == skipped.end()) {
-          skipped.push_back(text);
-        }
-      } else {
+      if (engine->is_serial() && threads != options.threads.front()) continue;
+      const std::string text = why_skipped(*engine, options, result);
+      if (text.empty()) {
         contenders.push_back({std::move(engine), threads, active_isa()});
+      } else if (std::find(result.skipped.begin(), result.skipped.end(), text) ==
+                 result.skipped.end()) {
+        result.skipped.push_back(text);
       }
     }
   }
@@ -183,6 +208,7 @@ Measurement measure(const MeasureOptions& options) {
   Measurement result;
   result.scene = source->name();
   result.objects = source->objects();
+  result.grows = source->objects() > source->boxes().size();
   const Partitions partitions = partitions_for(options.partitions, result.objects);
   result.skipped = partitions.skipped;
 
@@ -198,9 +224,7 @@ Measurement measure(const MeasureOptions& options) {
     }
   }
   result.partition_runs = contenders.size();
-  if (options.peers) {
-    add_peers(options, source->objects() > source->boxes().size(), contenders, result);
-  }
+  if (options.peers) add_peers(options, contenders, result);
   if (options.yardstick) add_yardstick(options, contenders);
   result.peer_runs = contenders.size() - result.partition_runs;
   if (options.reference) {
@@ -211,6 +235,7 @@ Measurement measure(const MeasureOptions& options) {
   race_options.frames = options.frames != 0 ? options.frames : frames_for(result.objects);
   MachineClock clock(options.machine_clock);
   race_options.clock = &clock;
+  race_options.bounds = options.bounds;
   result.runs = race(*source, contenders, race_options);
   clock.tick();
   result.machine_ms = clock.median_ms();

@@ -35,6 +35,8 @@ struct Run {
   std::vector<double> update_ms;
   std::vector<PairSummary> pairs;
   std::size_t changed = 0;  ///< boxes, over all frames after the first
+  /// When it gave up the frame after these; 0: it gave up none.
+  double gave_up_ms = 0.0;
   std::size_t bytes = 0;
 
   /// The frames after which it had settled; none if there were fewer.
@@ -44,7 +46,18 @@ struct Run {
   [[nodiscard]] double median_update_ms() const;
   [[nodiscard]] double pairs_a_frame() const;
   [[nodiscard]] double reported_a_frame() const;
+  /// In the frames that both have finished.
   [[nodiscard]] bool same_pairs(const Run& other) const noexcept;
+};
+
+/// How long a contender may take, in seconds; 0: as long as it takes.
+struct TimeBounds {
+  /// Once its frames after the first have taken so long it begins no more; but it has three, so
+  /// that one that was disturbed is not the median.
+  double run = 0.0;
+  double frame = 0.0;  ///< a frame that takes longer is given up by engines that can
+
+  [[nodiscard]] bool any() const noexcept { return run > 0.0 || frame > 0.0; }
 };
 
 struct RaceOptions {
@@ -53,6 +66,7 @@ struct RaceOptions {
   /// data to be warm, short enough for all to meet the same disturbances.
   std::size_t block = 5;
   MachineClock* clock = nullptr;  ///< ticks before each block
+  TimeBounds bounds{};
 };
 
 /// Runs all contenders over the same frames, interleaved. What changed between frames is found
@@ -65,7 +79,7 @@ struct RaceOptions {
 [[nodiscard]] std::vector<Contender> make_contenders(const std::vector<std::string>& partitions,
                                                      int threads);
 
-/// True if all runs found the same pairs in every frame.
+/// True if all runs found the same pairs in every frame that they have finished.
 [[nodiscard]] bool all_agree(const std::vector<Run>& runs) noexcept;
 
 /// One race on one scene: every partition at every thread count on every instruction set.
@@ -82,11 +96,13 @@ struct MeasureOptions {
   bool reference = false;   ///< the reference sweep too, as the judge of what overlaps
   bool machine_clock = false;
   std::size_t frames = 0;  ///< the first one included; 0: what suits the size
+  TimeBounds bounds{};     ///< with any, libraries take part that would be too slow for the size
 };
 
 struct Measurement {
   std::string scene{};
   std::size_t objects = 0;
+  bool grows = false;              ///< from frame to frame there may be more of them
   std::vector<Run> runs;           ///< partitions, then peers, then the reference
   std::size_t partition_runs = 0;  ///< how many of them, from the front, are partitions
   std::size_t peer_runs = 0;       ///< how many after these are other libraries, the yardstick last

@@ -11,6 +11,7 @@
 namespace winnow::bench {
 
 [[nodiscard]] std::unique_ptr<Engine> make_bullet();
+[[nodiscard]] std::unique_ptr<Engine> make_bullet_sweep();
 [[nodiscard]] std::unique_ptr<Engine> make_fcl();
 [[nodiscard]] std::unique_ptr<Engine> make_cgal(int threads);
 [[nodiscard]] std::unique_ptr<Engine> make_embree();

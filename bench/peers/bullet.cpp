@@ -4,28 +4,34 @@
 
 #include <malloc.h>
 
+#include <BulletCollision/BroadphaseCollision/btAxisSweep3.h>
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <LinearMath/btAlignedAllocator.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace winnow::bench {
 namespace {
 
-std::atomic<std::size_t> allocated_bytes{0};
+using Bytes = std::atomic<std::size_t>;
+
+Bytes nobodys_bytes{0};
+/// Of the engine at work: Bullet's allocator is one for all.
+std::atomic<Bytes*> allocated_bytes{&nobodys_bytes};
 
 void* counted_allocate(std::size_t size) {
   void* memory = std::malloc(size);
-  allocated_bytes += malloc_usable_size(memory);
+  *allocated_bytes.load() += malloc_usable_size(memory);
   return memory;
 }
 
 void counted_free(void* memory) {
-  allocated_bytes -= malloc_usable_size(memory);
+  *allocated_bytes.load() -= malloc_usable_size(memory);
   std::free(memory);
 }
 
@@ -55,18 +61,44 @@ std::uint32_t row_of(const btBroadphaseProxy& proxy) {
   return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(proxy.m_clientObject));
 }
 
+btBroadphaseProxy* make_proxy(btBroadphaseInterface& broad_phase, std::size_t row,
+                              const Aabb& box) {
+  return broad_phase.createProxy(to_bullet(box.min), to_bullet(box.max), 0,
+                                 reinterpret_cast<void*>(static_cast<std::uintptr_t>(row)), 1, -1,
+                                 nullptr);
+}
+
+/// What both broad phases have in common: one thread, proxies by row, and bytes.
+class BulletAdapter : public PairsAdapter {
+ public:
+  BulletAdapter() { allocated_bytes = &bytes_; }
+  ~BulletAdapter() override { allocated_bytes = &nobodys_bytes; }
+
+  [[nodiscard]] bool is_serial() const final { return true; }
+  /// The broad phase, proxies and the pair cache.
+  [[nodiscard]] std::size_t bytes() const final {
+    return bytes_ + proxies_.capacity() * sizeof(proxies_[0]);
+  }
+
+ protected:
+  std::vector<btBroadphaseProxy*> proxies_;
+  Bytes bytes_{0};
+};
+
 /// Bullet 3 in float: btDbvtBroadphase, two dynamic trees (moving and resting) with a hashed cache
 /// of overlapping pairs; only changed boxes are set. One thread: it has no more.
 /// Best of what was tried: deferred collision (1.3 to 2.5 times faster than one tree query per
-/// moved box), a margin of 10 % of the mean edge (twice the usual step), otherwise its defaults; a
-/// full clean-up of the pair cache each frame, or dynamic balancing, cost more than they save. The
-/// pair cache is a superset because of the margin and the gradual clean-up: filtered by the exact
-/// boxes that the proxies keep.
-class BulletEngine final : public PairsAdapter {
+/// moved box), but where the last frame inserted few boxes again (then up to 10 times slower), a
+/// margin of 10 % of the mean edge (twice the usual step), otherwise its defaults; a full clean-up
+/// of the pair cache each frame, or dynamic balancing, cost more than they save. The pair cache is
+/// a superset because of the margin and the gradual clean-up: filtered by the exact boxes that the
+/// proxies keep.
+class BulletTrees final : public BulletAdapter {
  public:
   // Bullet wants each proxy destroyed one by one, which searches the whole pair cache every time;
   // nothing looks at them any more, so giving back their memory does.
-  ~BulletEngine() override {
+  ~BulletTrees() override {
+    allocated_bytes = &bytes_;
     for (btBroadphaseProxy* proxy : proxies_) btAlignedFree(proxy);
   }
 
@@ -74,14 +106,10 @@ class BulletEngine final : public PairsAdapter {
 
   void start(std::span<const Aabb> boxes) override {
     const Stopwatch watch;
+    allocated_bytes = &bytes_;
     gDbvtMargin = static_cast<btScalar>(0.1 * mean_edge(boxes));
-    proxies_.reserve(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      void* row = reinterpret_cast<void*>(static_cast<std::uintptr_t>(i));
-      proxies_.push_back(trees_.createProxy(to_bullet(boxes[i].min), to_bullet(boxes[i].max), 0,
-                                            row, 1, -1, nullptr));
-    }
     margin_ = gDbvtMargin;
+    add_proxies(boxes);
     trees_.optimize();
     update_ms_ = watch.ms();
     find_pairs();
@@ -90,24 +118,32 @@ class BulletEngine final : public PairsAdapter {
   void frame(std::span<const std::uint32_t> changed_rows,
              std::span<const Aabb> all_boxes) override {
     const Stopwatch watch;
+    allocated_bytes = &bytes_;
     gDbvtMargin = margin_;  // a global of Bullet; another engine may have changed it
+    const unsigned known = trees_.m_updates_done;
     for (const std::uint32_t row : changed_rows) {
       trees_.setAabb(proxies_[row], to_bullet(all_boxes[row].min), to_bullet(all_boxes[row].max),
                      nullptr);
     }
+    add_proxies(all_boxes);
+    const std::size_t inserted = trees_.m_updates_done - known;
     update_ms_ = watch.ms();
     find_pairs();
-  }
-
-  /// Trees, proxies and the pair cache, of all Bullet engines alive.
-  [[nodiscard]] std::size_t bytes() const override {
-    return allocated_bytes + proxies_.capacity() * sizeof(proxies_[0]);
+    trees_.m_deferedcollide = inserted > proxies_.size() / 16;
   }
 
  private:
   struct Trees : btDbvtBroadphase {
     Trees() { m_deferedcollide = true; }
   };
+
+  /// Of the rows that have none.
+  void add_proxies(std::span<const Aabb> boxes) {
+    proxies_.reserve(boxes.size());
+    for (std::size_t i = proxies_.size(); i < boxes.size(); ++i) {
+      proxies_.push_back(make_proxy(trees_, i, boxes[i]));
+    }
+  }
 
   void find_pairs() {
     trees_.calculateOverlappingPairs(nullptr);
@@ -123,15 +159,134 @@ class BulletEngine final : public PairsAdapter {
   }
 
   Trees trees_;
-  std::vector<btBroadphaseProxy*> proxies_;
   btScalar margin_ = 0;
+};
+
+/// A pair cache that keeps its pairs as rows too, so that nobody has to copy them out.
+class RowPairs final : public btHashedOverlappingPairCache {
+ public:
+  explicit RowPairs(std::vector<Pair>& rows) : rows_(rows) {}
+
+  btBroadphasePair* addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) override {
+    const int known = GetCount();
+    btBroadphasePair* const pair = btHashedOverlappingPairCache::addOverlappingPair(a, b);
+    if (GetCount() > known) rows_.push_back(ordered(row_of(*a), row_of(*b)));
+    return pair;
+  }
+
+  void* removeOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b,
+                              btDispatcher* dispatcher) override {
+    const btBroadphasePair* const pair = findPair(a, b);
+    if (pair == nullptr) return nullptr;
+    rows_[static_cast<std::size_t>(pair - getOverlappingPairArrayPtr())] = rows_.back();
+    rows_.pop_back();  // the base too fills the gap with the last one
+    return btHashedOverlappingPairCache::removeOverlappingPair(a, b, dispatcher);
+  }
+
+ private:
+  std::vector<Pair>& rows_;
+};
+
+/// Bullet 3 in float: bt32BitAxisSweep3, which sorts what moved on three axes and adds and removes
+/// the pairs that change, so that a frame costs what happens in it and nothing looks at the other
+/// pairs. One thread. Its coordinates are 31 bits of a world: boxes that are nearer to each other
+/// than those tell are reported. It places objects one by one, each past half of those on each
+/// axis. Best of what was tried: a world four times as wide as the first boxes, and no tree for
+/// rays.
+class BulletSweep final : public BulletAdapter {
+ public:
+  ~BulletSweep() override { allocated_bytes = &bytes_; }
+
+  [[nodiscard]] std::string name() const override { return "Bullet sweep"; }
+  /// The first frame takes seconds above, and minutes at 100,000.
+  [[nodiscard]] std::size_t largest() const override { return 5'000; }
+
+  void start(std::span<const Aabb> boxes) override {
+    const Stopwatch watch;
+    build(boxes, boxes.size(), watch);
+    update_ms_ = watch.ms();
+  }
+
+  void frame(std::span<const std::uint32_t> changed_rows,
+             std::span<const Aabb> all_boxes) override {
+    const Stopwatch watch;
+    allocated_bytes = &bytes_;
+    if (!has_room_for(changed_rows, all_boxes)) {
+      build(all_boxes, 2 * all_boxes.size(), watch);
+    } else {
+      for (std::size_t i = 0; i < changed_rows.size(); ++i) {
+        if (i % kRowsOfCheck == 0) check_time(watch);
+        const std::uint32_t row = changed_rows[i];
+        sweep_->setAabb(proxies_[row], to_bullet(all_boxes[row].min), to_bullet(all_boxes[row].max),
+                        nullptr);
+      }
+      add_proxies(all_boxes, watch);
+    }
+    update_ms_ = watch.ms();
+  }
+
+ private:
+  static constexpr std::size_t kRowsOfCheck = 64;
+
+  [[nodiscard]] bool is_inside(const Aabb& box) const {
+    return (box.min.array() > world_.min.array()).all() &&
+           (box.max.array() < world_.max.array()).all();
+  }
+
+  /// What leaves the world is still found, but compared with all that left it.
+  [[nodiscard]] bool has_room_for(std::span<const std::uint32_t> changed_rows,
+                                  std::span<const Aabb> all_boxes) const {
+    if (all_boxes.size() > handles_) return false;
+    const auto new_boxes = all_boxes.subspan(proxies_.size());
+    return std::all_of(changed_rows.begin(), changed_rows.end(),
+                       [&](std::uint32_t row) { return is_inside(all_boxes[row]); }) &&
+           std::all_of(new_boxes.begin(), new_boxes.end(),
+                       [&](const Aabb& box) { return is_inside(box); });
+  }
+
+  void build(std::span<const Aabb> boxes, std::size_t handles, const Stopwatch& watch) {
+    allocated_bytes = &bytes_;
+    world_ = {};
+    for (const Aabb& box : boxes) world_.merge(box);
+    if (boxes.empty()) world_ = {Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
+    const float around = 1.5F * (world_.max - world_.min).maxCoeff() + 1.0F;
+    world_ = {world_.min.array() - around, world_.max.array() + around};
+    handles_ = std::max<std::size_t>(handles, 1);
+    proxies_.clear();
+    sweep_.reset();
+    pairs_.clear();
+    cache_ = std::make_unique<RowPairs>(pairs_);
+    sweep_ =
+        std::make_unique<bt32BitAxisSweep3>(to_bullet(world_.min), to_bullet(world_.max),
+                                            static_cast<unsigned>(handles_), cache_.get(), true);
+    add_proxies(boxes, watch);
+  }
+
+  /// Of the rows that have none.
+  void add_proxies(std::span<const Aabb> boxes, const Stopwatch& watch) {
+    proxies_.reserve(boxes.size());
+    for (std::size_t i = proxies_.size(); i < boxes.size(); ++i) {
+      if (i % kRowsOfCheck == 0) check_time(watch);
+      proxies_.push_back(make_proxy(*sweep_, i, boxes[i]));
+    }
+  }
+
+  std::unique_ptr<RowPairs> cache_;
+  std::unique_ptr<bt32BitAxisSweep3> sweep_;
+  Aabb world_;
+  std::size_t handles_ = 0;
 };
 
 }  // namespace
 
 std::unique_ptr<Engine> make_bullet() {
   count_memory();
-  return std::make_unique<BulletEngine>();
+  return std::make_unique<BulletTrees>();
+}
+
+std::unique_ptr<Engine> make_bullet_sweep() {
+  count_memory();
+  return std::make_unique<BulletSweep>();
 }
 
 }  // namespace winnow::bench

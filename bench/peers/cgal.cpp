@@ -41,14 +41,14 @@ struct BoxTraits {
 /// CGAL: box_self_intersection_d, closed, on float boxes by value (15 % faster than by pointer). It
 /// keeps nothing between frames. With more than one thread its parallel version is tried too, which
 /// does twice the work in more tasks: the first three frames run sequential, parallel, sequential,
-/// and the faster one goes on.
+/// and the faster one goes on, until there are twice as many boxes.
 /// Best of what was tried: a cutoff of 4 sqrt(n) (400 at 10k, 1,265 at 100k; its default of 10
 /// takes 2.5 times as long on 100k uniform boxes), and the axes in such an order that the one it
 /// sweeps, its first, prunes most and the one it divides, its last, prunes next (the other way
 /// round a wall takes 5 times as long).
 class CgalEngine final : public PairsAdapter {
  public:
-  explicit CgalEngine(int threads) : decided_(threads < 2) {}
+  explicit CgalEngine(int threads) : serial_(threads < 2), decided_(serial_) {}
 
   [[nodiscard]] std::string name() const override { return "CGAL boxes"; }
 
@@ -59,6 +59,10 @@ class CgalEngine final : public PairsAdapter {
   }
 
   void frame(std::span<const std::uint32_t>, std::span<const Aabb> all_boxes) override {
+    if (!serial_ && decided_ && all_boxes.size() > 2 * decided_for_) {
+      decided_ = parallel_ = false;
+      parallel_ms_ = 0.0;
+    }
     find_pairs(all_boxes);
   }
 
@@ -121,13 +125,16 @@ class CgalEngine final : public PairsAdapter {
     } else {
       parallel_ = parallel_ms_ < milliseconds;
       decided_ = true;
+      decided_for_ = boxes_.size();
     }
   }
 
   std::vector<Box> boxes_;
   tbb::enumerable_thread_specific<std::vector<Pair>> found_;
   std::array<int, 3> axes_{0, 1, 2};
+  bool serial_;
   bool decided_;
+  std::size_t decided_for_ = 0;  // boxes
   bool parallel_ = false;
   double parallel_ms_ = 0.0;
 };

@@ -81,7 +81,7 @@ std::uint32_t row_of(dGeomID geom) {
 /// spaces have no more.
 /// Best of what was tried: sweep and prune, its axes ordered by what they prune. The hash space
 /// takes 1.3 to 2.7 times as long (on unit boxes at 10k, on mixed sizes at 100k), the quadtree
-/// space 1.1 to 15 times at 10k.
+/// space 1.1 to 15 times at 10k. What few objects do costs little, but each search is a whole one.
 class OdeEngine final : public PairsAdapter {
  public:
   OdeEngine() { Library::get(); }
@@ -90,6 +90,7 @@ class OdeEngine final : public PairsAdapter {
   }
 
   [[nodiscard]] std::string name() const override { return "ODE SAP"; }
+  [[nodiscard]] bool is_serial() const override { return true; }
   /// A sweep along one axis: over a second a frame above.
   [[nodiscard]] std::size_t largest() const override { return 100'000; }
 
@@ -97,14 +98,7 @@ class OdeEngine final : public PairsAdapter {
     const Stopwatch watch;
     dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
     space_ = dSweepAndPruneSpaceCreate(nullptr, sap_order(axes_by_pruning(boxes)));
-    geoms_.reserve(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      const dGeomID geom = dCreateGeom(Library::get().box_class());
-      *static_cast<Aabb*>(dGeomGetClassData(geom)) = boxes[i];
-      dGeomSetData(geom, reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)));
-      dSpaceAdd(space_, geom);
-      geoms_.push_back(geom);
-    }
+    add_geoms(boxes);
     dSpaceClean(space_);
     update_ms_ = watch.ms();
     find_pairs(boxes);
@@ -117,6 +111,7 @@ class OdeEngine final : public PairsAdapter {
       *static_cast<Aabb*>(dGeomGetClassData(geoms_[row])) = all_boxes[row];
       dGeomMoved(geoms_[row]);
     }
+    add_geoms(all_boxes);
     dSpaceClean(space_);
     update_ms_ = watch.ms();
     find_pairs(all_boxes);
@@ -128,6 +123,18 @@ class OdeEngine final : public PairsAdapter {
   }
 
  private:
+  /// Of the rows that have none.
+  void add_geoms(std::span<const Aabb> boxes) {
+    geoms_.reserve(boxes.size());
+    for (std::size_t i = geoms_.size(); i < boxes.size(); ++i) {
+      const dGeomID geom = dCreateGeom(Library::get().box_class());
+      *static_cast<Aabb*>(dGeomGetClassData(geom)) = boxes[i];
+      dGeomSetData(geom, reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)));
+      dSpaceAdd(space_, geom);
+      geoms_.push_back(geom);
+    }
+  }
+
   static void collect(void* self, dGeomID a, dGeomID b) {
     auto& engine = *static_cast<OdeEngine*>(self);
     const std::uint32_t i = row_of(a);

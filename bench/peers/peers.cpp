@@ -8,6 +8,7 @@ std::vector<std::unique_ptr<Engine>> make_peers([[maybe_unused]] int threads) {
   std::vector<std::unique_ptr<Engine>> peers;
 #ifdef WINNOW_PEER_BULLET
   peers.push_back(make_bullet());
+  peers.push_back(make_bullet_sweep());
 #endif
 #ifdef WINNOW_PEER_FCL
   peers.push_back(make_fcl());

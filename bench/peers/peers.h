@@ -12,7 +12,7 @@ namespace winnow::bench {
 
 // The other libraries that the tool was built with; none if without.
 
-/// One engine per other library found when this was built, in the order in which reports list
+/// The engines of other libraries found when this was built, in the order in which reports list
 /// them, each with its best settings for at most `threads` threads.
 [[nodiscard]] std::vector<std::unique_ptr<Engine>> make_peers(int threads);
 

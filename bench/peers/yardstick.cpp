@@ -34,8 +34,6 @@ class YardstickEngine final : public Engine {
   [[nodiscard]] std::string name() const override { return std::string(kYardstickName); }
   [[nodiscard]] std::size_t largest() const override { return (std::size_t{1} << 30U) - 1; }
 
-  [[nodiscard]] bool can_grow() const override { return true; }
-
   void start(std::span<const Aabb> boxes) override { frame({}, boxes); }
 
   void frame(std::span<const std::uint32_t> /*changed_rows*/,

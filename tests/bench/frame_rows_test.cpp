@@ -6,6 +6,7 @@
 #include "bench/rows/cold_rows.h"
 #include "bench/rows/every_scene_rows.h"
 #include "bench/rows/machine.h"
+#include "bench/rows/peer_rows.h"
 #include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>
@@ -66,6 +67,54 @@ TEST(FrameRows, leave_the_yardstick_out_if_they_shall) {
   add_cold(results, scene_named("shear"), 100, 1, {"LinearBvh"}, 1, 1, false);
   EXPECT_TRUE(results.rows("every_scene", {{"partition", "yardstick"}}).empty());
   EXPECT_FALSE(results.rows("cold").front()->contains("over_yardstick"));
+}
+
+std::vector<Json> rows_beside_peers(const char* scene, const TimeBounds& bounds) {
+  Results results;
+  declare_beside_peers(results);
+  add_beside_peers(results, scene_named(scene),
+                   {.objects = 400,
+                    .partitions = {"FlatGrid", "LinearBvh"},
+                    .threads = {1, 2},
+                    .frames = 12,
+                    .bounds = bounds});
+  std::vector<Json> rows;
+  for (const Json* row : results.rows("beside_peers")) rows.push_back(*row);
+  return rows;
+}
+
+TEST(BesidePeers, stands_what_each_library_takes_over_the_best_partition) {
+  if (!has_peers()) GTEST_SKIP() << "built without them";
+  for (const char* scene : {"jumps", "growth"}) {
+    const auto rows = rows_beside_peers(scene, {});
+    EXPECT_FALSE(rows.empty());
+    for (const Json& row : rows) {
+      EXPECT_DOUBLE_EQ(value_of(row, "times"), value_of(row, "ms") / value_of(row, "best_ms"));
+      EXPECT_EQ(row["of"], scene == std::string("growth") ? "mean frame" : "median frame");
+      EXPECT_EQ(row["frames"], 11);
+      EXPECT_TRUE(row["best"] == "FlatGrid" || row["best"] == "LinearBvh");
+    }
+  }
+}
+
+TEST(BesidePeers, a_library_of_one_thread_stands_once) {
+  for (const Json& row : rows_beside_peers("uniform", {})) {
+    const std::string name = row["partition"];
+    const bool is_parallel = name == "Embree" || name == "CGAL boxes";
+    EXPECT_TRUE(is_parallel || row["threads"] == 1) << name;
+  }
+}
+
+TEST(BesidePeers, who_takes_too_long_is_judged_by_what_it_finished) {
+  for (const Json& row : rows_beside_peers("uniform", {.run = 1e-12})) {
+    EXPECT_EQ(row["of"], "median frame");
+    EXPECT_EQ(row["frames"], 3);
+  }
+  for (const Json& row : rows_beside_peers("uniform", {.frame = 1e-12})) {
+    if (row["partition"] != "Bullet sweep") continue;  // the one that gives up
+    EXPECT_EQ(row["of"], "first frame, given up");
+    EXPECT_GT(value_of(row, "ms"), 0.0);
+  }
 }
 
 TEST(ColdFrames, are_measured_as_often_as_asked_in_both_memories) {

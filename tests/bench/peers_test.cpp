@@ -9,9 +9,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace winnow::bench {
@@ -47,6 +49,25 @@ class MovingBoxes final : public FrameSource {
   Random random_{7};
 };
 
+/// There are half as many boxes again in each frame, until all are there.
+class GrowingBoxes final : public FrameSource {
+ public:
+  explicit GrowingBoxes(std::vector<Aabb> boxes) : all_(std::move(boxes), 0.1, 1.0) {}
+
+  [[nodiscard]] std::string name() const override { return "growing boxes"; }
+  [[nodiscard]] Aabb world() const override { return {}; }
+  [[nodiscard]] std::span<const Aabb> boxes() const override { return all_.boxes().first(count_); }
+  [[nodiscard]] std::size_t objects() const override { return all_.objects(); }
+  bool advance() override {
+    count_ = std::min(all_.objects(), count_ + count_ / 2);
+    return all_.advance();
+  }
+
+ private:
+  MovingBoxes all_;
+  std::size_t count_ = 40;
+};
+
 std::vector<Aabb> cubes(std::size_t count, float offset = 0.0F) {
   const auto scene = make_scene("uniform", count, 20);
   std::vector<Aabb> boxes(scene->boxes().begin(), scene->boxes().end());
@@ -73,7 +94,10 @@ std::unique_ptr<FrameSource> source_named(const std::string& name) {
   if (name == "empty") return moving({}, 0.1, 1.0);
   if (name == "single") return moving(cubes(1), 0.1, 1.0);
   if (name == "still") return moving(cubes(300), 0.1, 0.0);
+  if (name == "few") return moving(cubes(700), 0.3, 0.005);
   if (name == "jumping") return moving(cubes(700), 9.0, 0.5);
+  if (name == "leaving") return moving(cubes(700), 90.0, 0.1);
+  if (name == "growing") return std::make_unique<GrowingBoxes>(cubes(700));
   if (name == "far") return moving(cubes(500, 1e5F), 0.1, 1.0);
   if (name == "lattice") return moving(lattice(9, 1.0F, 1), 1.0, 0.1);
   if (name == "points") return moving(lattice(6, 0.0F, 2), 1.0, 0.3);
@@ -112,9 +136,9 @@ TEST_P(Peers, and_the_yardstick_where_it_is_there) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Peers,
-                         testing::Values("empty", "single", "uniform", "sleepy", "still", "jumping",
-                                         "mixed", "clustered", "pile", "wall", "far", "lattice",
-                                         "points"));
+                         testing::Values("empty", "single", "uniform", "sleepy", "still", "few",
+                                         "jumping", "leaving", "growing", "mixed", "clustered",
+                                         "pile", "wall", "far", "lattice", "points"));
 
 }  // namespace
 }  // namespace winnow::bench
