@@ -97,7 +97,8 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
       race.frames.push_back({.partition = partition, .memory = memory});
     }
   }
-  FirstFrames first{boxes, threads};
+  FirstFrames untouched{boxes, threads};
+  FirstFrames touched{boxes, threads};
   const std::unique_ptr<Engine> yardstick = with_yardstick ? make_yardstick(threads) : nullptr;
   std::vector<PairSummary> found;
   const auto run_all = [&] {
@@ -109,16 +110,16 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
     }
     for (ColdFrames& one : race.frames) {
       if (one.memory == kTouched) {
-        first.memory.rewind();
-        found.push_back(first.run(one));
+        touched.memory.rewind();
+        found.push_back(touched.run(one));
         continue;
       }
-      first.memory.rewind_untouched();
-      found.push_back(first.run(one));
+      untouched.memory.rewind_untouched();
+      found.push_back(untouched.run(one));
       const std::size_t pairs = found.back().reported;
       for (const Pages pages : {Pages::untouched, Pages::touched}) {
-        first.memory.rewind_untouched();
-        found.push_back(first.run_reserved(one, pairs, pages));
+        untouched.memory.rewind_untouched();
+        found.push_back(untouched.run_reserved(one, pairs, pages));
       }
     }
   };
