@@ -92,14 +92,14 @@ class BoundsNSquared final : public BruteForce {
   explicit BoundsNSquared(const StructureInput& input) noexcept : BruteForce(input, testing) {}
 };
 
-constexpr StructureCosts kCosts{.frame = 79,
-                                .keep = 1,
+constexpr StructureCosts kCosts{.frame = 60,
+                                .keep = 6,
                                 .level = 0.063,
-                                .crowd = 1.2,
-                                .square = 0.137,
-                                .pair = 4.25,
-                                .moved = 171,
-                                .rest = 4.6,
+                                .crowd = 0.6,
+                                .square = 0.25,
+                                .pair = 3.2,
+                                .moved = 150,
+                                .rest = 1.5,
                                 .build = 42,
                                 .ask = 120,
                                 .scan = 0.75};
