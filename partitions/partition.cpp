@@ -170,7 +170,7 @@ Status Partition::filter(Key key, ObjectFilter& filter) const noexcept {
 }
 
 Status Partition::refresh() const {
-  return state_ == nullptr ? status_ : state_->refresh();
+  return state_ == nullptr ? status_ : state_->make_ready();
 }
 
 Status Partition::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const {

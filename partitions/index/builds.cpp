@@ -73,13 +73,22 @@ Status SpatialIndex::build() {
   if (structure_->is_flat()) return build_flat();
   rows_.regions().built = false;
   const bool foreseen = plan_.underway();
-  if ((!foreseen && !plan_.start(rows_, *structure_, spare_rows(*structure_))) ||
-      !plan_.advance(kWholeBuild)) {
+  if ((!foreseen && !start_plan(*structure_)) || !plan_.advance(kWholeBuild)) {
     give_up_plan();
     return Status::out_of_memory;
   }
   const Status status = take_order(foreseen);
   return foreseen && status == Status::ok ? absorb_changes(true) : status;
+}
+
+// Where rays and regions are asked for, in many refreshes or before anything else, they are worth
+// an order that takes longer to find.
+bool SpatialIndex::start_plan(Structure& structure) noexcept {
+  constexpr std::size_t kOften = 4;
+  const std::size_t asked = asked_.load(std::memory_order_relaxed);
+  const bool often = asked > (builds_ == 0 ? 0 : kOften);
+  return plan_.start(rows_, structure, spare_rows(structure),
+                     often ? KdParts::blocks : KdParts::tiles);
 }
 
 // The rows are untouched until everything that can fail is done.
@@ -117,6 +126,7 @@ Status SpatialIndex::take_order(bool moved) {
   if (unforeseen_ != 0) --unforeseen_;
   rows_.note_build(edge_of_block(rows_.pool()));
   full_base_ = moved_base_ = excess_ = 0;
+  asked_ = 0;
   departures_.begin(rows_);
   tail_growth_.begin();
   wear_growth_.begin();
@@ -183,10 +193,7 @@ std::size_t SpatialIndex::planning_work(const Structure& structure) const noexce
 }
 
 void SpatialIndex::go_on_planning() noexcept {
-  if (!plan_.underway() &&
-      (!build_is_near() || !plan_.start(rows_, *structure_, spare_rows(*structure_)))) {
-    return;
-  }
+  if (!plan_.underway() && (!build_is_near() || !start_plan(*structure_))) return;
   if (plan_.advance(planning_work(*plan_.structure()))) return;
   exchange_refused_ = exchanging();
   give_up_plan();

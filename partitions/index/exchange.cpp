@@ -65,7 +65,7 @@ Status SpatialIndex::refresh_as(StructureKind kind, bool& refused) {
     give_up_plan();
     // What the present structure had planned with is of no use to the next.
     if (!reserved_) plan_.release();
-    if (plan_.start(rows_, *made, spare_rows(*made))) {
+    if (start_plan(*made)) {
       next_ = {kind, made};
       return refresh();
     }

@@ -20,7 +20,7 @@ bool OrderPlan::reserve(std::size_t rows, Pages pages) noexcept {
   return order_.reserve(rows + kSlack, pages) && rest_.reserve(rows + kSlack, pages);
 }
 
-bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room) noexcept {
+bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdParts parts) noexcept {
   drop();
   const std::size_t most = rows.pool().rows() + room + kSlack;
   order_.clear();
@@ -32,6 +32,7 @@ bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room) noexce
   planned_objects_ = rows.size();
   part_ = Part::structure;
   stage_ = 0;
+  parts_ = parts;
   rows.regions().planned = planned_rows_;
   // Cells of many worlds would lie on top of each other, and a cell's objects be tested against
   // those of all of them: the tree, whose nodes know their environments, keeps them apart.
@@ -103,7 +104,7 @@ bool OrderPlan::begin_rest(std::size_t& work) noexcept {
     return ordered == Structure::Ordered::done;
   }
   if (!order_.grow(order_.size() + rest.size()) ||
-      !cuts_.start(pool, rest, order_.end(), points_, execution)) {
+      !cuts_.start(pool, rest, order_.end(), points_, execution, parts_)) {
     return false;
   }
   part_ = Part::cuts;

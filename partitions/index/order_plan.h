@@ -31,7 +31,8 @@ class OrderPlan {
 
   /// Begins with the rows as they are; `room` more than these may come behind the order. False if
   /// memory is refused.
-  [[nodiscard]] bool start(Rows& rows, Structure& structure, std::size_t room) noexcept;
+  [[nodiscard]] bool start(Rows& rows, Structure& structure, std::size_t room,
+                           KdParts parts) noexcept;
   /// Runs stages that go over about so many rows, one at least. False, and the plan is dropped, if
   /// memory is refused.
   [[nodiscard]] bool advance(std::size_t work) noexcept;
@@ -75,6 +76,7 @@ class OrderPlan {
   std::size_t regular_ = 0;
   Part part_ = Part::structure;
   unsigned stage_ = 0;
+  KdParts parts_ = KdParts::tiles;
   KdCuts cuts_;
 
   Column<std::uint32_t> order_;

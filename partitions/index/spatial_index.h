@@ -83,6 +83,8 @@ class SpatialIndex {
   /// True if the last refresh gave it up because memory was refused.
   [[nodiscard]] bool exchange_refused() const noexcept { return exchange_refused_; }
 
+  /// Queries other than pairs are about to come, after changes.
+  void note_asked() const noexcept { asked_.fetch_add(1, std::memory_order_relaxed); }
   /// True if `refresh_queries` has to be called, by one thread, before queries other than pairs.
   [[nodiscard]] bool queries_stale() const noexcept {
     return queries_stale_.load(std::memory_order_acquire) && !structure_->is_flat();
@@ -146,6 +148,7 @@ class SpatialIndex {
   Status build();
   /// `moved` says that objects may have since the plan was begun.
   Status take_order(bool moved);
+  [[nodiscard]] bool start_plan(Structure& structure) noexcept;
   [[nodiscard]] bool complete_order();
   void take_next_structure() noexcept;
   Status build_flat();
@@ -181,6 +184,7 @@ class SpatialIndex {
   mutable BlockTree regular_tree_;
   mutable float leaf_edge_ = 0.0F;  // of a typical block
   mutable std::atomic<bool> queries_stale_{true};
+  mutable std::atomic<std::size_t> asked_{0};  // refreshes for such queries since the last build
 
   float built_edge_ = 0.0F;      // of a typical leaf of the tree, as the build left it
   std::size_t built_holes_ = 0;  // padding that the build left between the regions

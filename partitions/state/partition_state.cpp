@@ -185,6 +185,15 @@ Status PartitionState::refresh() const {
   return status;
 }
 
+// Who gets ready before the first question may ask any.
+Status PartitionState::make_ready() const {
+  if (stale_.load(std::memory_order_acquire)) {
+    const std::lock_guard lock(refresh_mutex_);
+    if (index.builds() == 0) index.note_asked();
+  }
+  return refresh();
+}
+
 Status PartitionState::refresh_now() {
   const StructureKind now = index.kind();
   // While a structure is being planned the choice stands.
@@ -210,6 +219,7 @@ void PartitionState::note(QueryKind kind, std::size_t count) const noexcept {
 }
 
 Status PartitionState::prepare(QueryKind kind, std::size_t count, QueryView& view) const {
+  if (stale_.load(std::memory_order_acquire)) index.note_asked();
   if (const Status status = settle(); status != Status::ok) return status;
   note(kind, count);
   if (index.queries_stale()) {

@@ -62,6 +62,8 @@ class PartitionState {
   void note_changes(std::size_t count) noexcept;
   /// Brings up to date what pair queries of a tracked buffer read.
   Status refresh() const;
+  /// The same for a caller who does not say what will be asked.
+  Status make_ready() const;
   /// Has the rows hold all boxes as they were given, for who reads them, and brings up to date what
   /// pair queries read.
   Status settle() const;

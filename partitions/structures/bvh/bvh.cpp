@@ -51,7 +51,7 @@ class StaticBvh final : public Structure {
   Column<SahBox> boxes_;  // while building
 };
 
-constexpr StructureCosts kLinearCosts{.frame = 25,
+constexpr StructureCosts kLinearCosts{.frame = 100,
                                       .keep = 6,
                                       .object = 8,
                                       .level = 0.05,
@@ -62,7 +62,7 @@ constexpr StructureCosts kLinearCosts{.frame = 25,
                                       .build_level = 1.4,
                                       .ask = 50,
                                       .ask_level = 20};
-constexpr StructureCosts kStaticCosts{.frame = 60,
+constexpr StructureCosts kStaticCosts{.frame = 110,
                                       .keep = 6,
                                       .object = 8,
                                       .level = 0.2,
