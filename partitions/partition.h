@@ -45,10 +45,9 @@ struct PartitionOptions {
   /// A build that can be seen coming, because objects near the edges of their cells or queries cost
   /// ever more, is planned over the refreshes before it, and so is the exchange of a structure by
   /// the automatic choice. This is how many rows' worth of that work a refresh does: a build takes
-  /// two to five of each row. 0: one or more of each, so that a plan is done within a third of the
-  /// refreshes that the last order has been good for. The largest number: builds are done at once
-  /// when they are due. Counts, never time: results are the
-  /// same on every machine.
+  /// two to five of each row. 0: one or more of each, so that a plan is done within two fifths of
+  /// the refreshes that the last order was good for. The largest number: builds are done at once
+  /// when they are due. Counts, never time: results are the same on every machine.
   std::size_t build_budget = 0;
 };
 
@@ -205,7 +204,8 @@ class WINNOW_API Partition final {
   Status set_filter(Key key, const ObjectFilter& filter);
   Status filter(Key key, ObjectFilter& filter) const noexcept;
 
-  /// Brings the structure up to date now rather than in the next query.
+  /// Brings the structure up to date now rather than in the next query. A tree that is made here,
+  /// or for a ray or a region, at first, is cut with more care than one that is made for pairs.
   Status refresh() const;
 
   /// All pairs of objects whose volumes overlap, each once, first < second.
