@@ -236,6 +236,8 @@ Status PairWriter::gather_pages(std::size_t tasks, const PageClaims& claims) {
   for (std::size_t t = 0; t < tasks; ++t) offset[t + 1] += offset[t];
   Column<Pair>& pairs = out_.pairs_;
   const std::size_t before = pairs.size();
+  // Pages may have been taken for nothing, and the array may be none yet.
+  if (offset[tasks] == 0) return Status::ok;
   if (!pairs.grow(before + offset[tasks])) return Status::out_of_memory;
   pairs.set_size(before + offset[tasks]);
   // From here the entry holds where its page goes instead of whose it is.
