@@ -45,7 +45,7 @@ bool BoundsPool::reserve(std::size_t rows) noexcept {
 
 bool BoundsPool::reserve_exact(std::size_t rows) noexcept {
   if (ids_.data() != nullptr && rows <= capacity()) return true;
-  const std::size_t padded = (rows + kBlockRows - 1) / kBlockRows * kBlockRows + 2 * kBlockRows;
+  const std::size_t padded = (blocks_of(rows) + 2) * kBlockRows;
   bool grown = true;
   for (std::size_t c = 0; c < columns() && grown; ++c) {
     columns_[c].set_size(rows_);
@@ -75,7 +75,7 @@ void BoundsPool::blank(std::size_t row) noexcept {
 
 void BoundsPool::pad() noexcept {
   if (ids_.data() == nullptr) return;
-  const std::size_t end = (rows_ + kBlockRows - 1) / kBlockRows * kBlockRows + kBlockRows;
+  const std::size_t end = (blocks() + 1) * kBlockRows;
   for (std::size_t c = 0; c < columns(); ++c) {
     std::fill(columns_[c].data() + rows_, columns_[c].data() + end, empty_value(volume_, c));
   }

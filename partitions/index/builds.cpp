@@ -1,6 +1,5 @@
 // When rows are put in order anew, and how: at once, or as it was planned ahead.
 
-#include "core/memory/columns.h"
 #include "partitions/index/spatial_index.h"
 #include "partitions/tree/environment_order.h"
 

@@ -1,7 +1,6 @@
 // Which structure finds the rows, which one is to be next, and those that wait with memory of their
 // own.
 
-#include "core/memory/columns.h"
 #include "partitions/index/spatial_index.h"
 
 #include <algorithm>

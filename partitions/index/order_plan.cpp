@@ -32,6 +32,7 @@ bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdPart
   planned_objects_ = rows.size();
   part_ = Part::structure;
   stage_ = 0;
+  resumed_ = false;
   parts_ = parts;
   rows.regions().planned = planned_rows_;
   // Cells of many worlds would lie on top of each other, and a cell's objects be tested against
@@ -51,6 +52,7 @@ bool OrderPlan::advance(std::size_t work) noexcept {
     drop();
     return false;
   }
+  resumed_ = true;
   return true;
 }
 
@@ -82,9 +84,11 @@ bool OrderPlan::run_stage(std::size_t& work) noexcept {
 bool OrderPlan::begin_rest(std::size_t& work) noexcept {
   work -= std::min(work, rest_.size());
   const BoundsPool& pool = rows_->pool();
-  const auto is_hole = [&](std::uint32_t row) { return pool.ids()[row] == kNoObject; };
-  rest_.set_size(static_cast<std::size_t>(std::remove_if(rest_.begin(), rest_.end(), is_hole) -
-                                          rest_.begin()));
+  if (resumed_) {
+    const auto is_hole = [&](std::uint32_t row) { return pool.ids()[row] == kNoObject; };
+    rest_.set_size(static_cast<std::size_t>(std::remove_if(rest_.begin(), rest_.end(), is_hole) -
+                                            rest_.begin()));
+  }
   const std::span<std::uint32_t> rest(rest_.data(), rest_.size());
   regular_ = order_.size();
   // The tree's blocks begin behind the regular rows: no block belongs to both.

@@ -76,6 +76,7 @@ class OrderPlan {
   std::size_t regular_ = 0;
   Part part_ = Part::structure;
   unsigned stage_ = 0;
+  bool resumed_ = false;  // rows may have become empty since it began
   KdParts parts_ = KdParts::tiles;
   KdCuts cuts_;
 

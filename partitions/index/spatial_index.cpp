@@ -5,10 +5,6 @@
 #include "partitions/tree/environment_order.h"
 
 #include <algorithm>
-#include <array>
-#include <limits>
-#include <numeric>
-#include <utility>
 
 namespace winnow {
 namespace {

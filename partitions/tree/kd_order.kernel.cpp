@@ -1,4 +1,5 @@
 #include "partitions/tree/kd_order.kernel.h"
+#include "partitions/tree/reach.wide.h"
 #include "simd/lanes/compress.h"
 #include "simd/lanes/truncated.h"
 
@@ -9,7 +10,6 @@ namespace {
 constexpr std::size_t kStep = static_cast<std::size_t>(kLanes);
 constexpr std::uint32_t kMostBins = 256;
 constexpr std::size_t kFewToRank = 2 * kStep;
-constexpr float kLeastReach = 1e-30F;  // what is closer is at one place
 
 Mask16 lanes_of(std::size_t left) {
   return left < kStep ? lanes_below(static_cast<unsigned>(left)) : kAllRows;
@@ -23,35 +23,6 @@ Lanes<T> load_some(const T* p, std::size_t left) {
   for (std::size_t i = 0; i < left; ++i) some[i] = p[i];
   return Lanes<T>::load(some);
 }
-
-/// Where numbers lie.
-struct Reach {
-  float low;
-  float high;
-
-  /// Of `count` numbers, at least one.
-  static Reach of(const float* x, std::size_t count) {
-    if (count < kStep) {
-      Reach reach{x[0], x[0]};
-      for (std::size_t i = 1; i < count; ++i) {
-        reach.low = x[i] < reach.low ? x[i] : reach.low;
-        reach.high = x[i] > reach.high ? x[i] : reach.high;
-      }
-      return reach;
-    }
-    Floats low = Floats::load_unaligned(x);
-    Floats high = low;
-    for (std::size_t i = kStep; i < count; i += kStep) {
-      // The last step looks at some numbers again.
-      const Floats v = Floats::load_unaligned(x + (i + kStep <= count ? i : count - kStep));
-      low = min(low, v);
-      high = max(high, v);
-    }
-    return {reduce_min(low), reduce_max(high)};
-  }
-  // Half of it: that of what is spread over all floats is finite.
-  [[nodiscard]] float half() const { return 0.5F * high - 0.5F * low; }
-};
 
 /// A set of points on one axis, in equal bins.
 struct Bins {

@@ -1,4 +1,5 @@
 #include "partitions/tree/tile_order.kernel.h"
+#include "partitions/tree/reach.wide.h"
 #include "simd/lanes/lanes.h"
 #include "simd/lanes/truncated.h"
 
@@ -11,32 +12,19 @@ constexpr std::uint32_t kPlaceBits = 7;
 constexpr std::uint32_t kPlaces = 1U << kPlaceBits;  // of an axis
 constexpr std::uint32_t kMostParts = 12;
 constexpr std::uint32_t kMostLines = kMostParts * kMostParts;
-constexpr float kLeastLength = 1e-30F;  // what is closer is at one place
 
 /// One axis of the points.
 struct TileAxis {
   const float* x;
-  float low;
-  float length;  // half of it: that of what is spread over all floats is finite
+  Reach reach;
 
-  /// Of at least 16 points.
-  TileAxis(const float* points, std::size_t count) : x(points) {
-    Floats least = Floats::load_unaligned(x);
-    Floats most = least;
-    for (std::size_t i = kStep; i < count; i += kStep) {
-      // The last step looks at some points again.
-      const Floats v = Floats::load_unaligned(x + (i + kStep <= count ? i : count - kStep));
-      least = min(least, v);
-      most = max(most, v);
-    }
-    low = reduce_min(least);
-    length = 0.5F * reduce_max(most) - 0.5F * low;
-  }
+  TileAxis(const float* points, std::size_t count) : x(points), reach(Reach::of(points, count)) {}
 
   /// Writes the place of each point.
   void find_places(std::size_t count, std::uint8_t* place) const {
-    const float scale = length > kLeastLength ? static_cast<float>(kPlaces) / length : 0.0F;
-    const Floats half_low = Floats(0.5F * low);
+    const float half = reach.half();
+    const float scale = half > kLeastReach ? static_cast<float>(kPlaces) / half : 0.0F;
+    const Floats half_low = Floats(0.5F * reach.low);
     const Floats last = Floats(static_cast<float>(kPlaces - 1));
     alignas(64) std::uint32_t whole[kLanes];
     for (std::size_t next = 0; next < count; next += kStep) {
@@ -56,9 +44,10 @@ struct TileCuts {
 
   TileCuts(const TileAxis& fast_axis, const TileAxis& mid_axis, const TileAxis& slow_axis,
            std::size_t count) {
-    if (fast_axis.length > kLeastLength) {
-      const float m = mid_axis.length / fast_axis.length;
-      const float s = slow_axis.length / fast_axis.length;
+    const float longest = fast_axis.reach.half();
+    if (longest > kLeastReach) {
+      const float m = mid_axis.reach.half() / longest;
+      const float s = slow_axis.reach.half() / longest;
       const float tiles = static_cast<float>(count) / static_cast<float>(kLanes);
       // Rounded roots of tiles s^2 / m, and of what a slab has times m.
       const auto half = [](std::uint32_t n) { return static_cast<float>(n) + 0.5F; };
@@ -102,7 +91,7 @@ class Tiles {
     // The longest axis is the fast one.
     int order[3] = {0, 1, 2};
     const auto swap_if_longer = [&](int a, int b) {
-      if (!(axis[order[b]].length > axis[order[a]].length)) return;
+      if (!(axis[order[b]].reach.half() > axis[order[a]].reach.half())) return;
       const int kept = order[a];
       order[a] = order[b];
       order[b] = kept;

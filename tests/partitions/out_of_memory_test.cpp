@@ -51,6 +51,14 @@ class OutOfMemory : public Conformance {
     EXPECT_EQ(world_.partition().footprint().total().reserved, memory_.outstanding());
   }
 
+  // Boxes that are up to date, in no more memory than they take.
+  void fill_anew(std::span<const Aabb> boxes) {
+    world_.clear();
+    world_.partition().release_memory();
+    world_.insert(boxes);
+    ASSERT_TRUE(world_.agrees());
+  }
+
   CountingMemory memory_;
   World world_;
 };
@@ -103,40 +111,29 @@ TEST_P(OutOfMemory, during_single_inserts_leaves_everything_as_it_was) {
 
 TEST_P(OutOfMemory, during_reserve_leaves_everything_as_it_was) {
   const std::vector<Aabb> boxes = uniform_boxes(90);
-  refuse_each_request(
-      [&] {
-        world_.clear();
-        world_.partition().release_memory();
-        world_.insert(boxes);
-        ASSERT_TRUE(world_.agrees());
-      },
-      [&] { return world_.partition().reserve(1000, Pages::touched); },
-      [&] {
-        expect_intact();
-        // There is nothing to be refreshed.
-        ASSERT_TRUE(world_.agrees());
-      });
+  refuse_each_request([&] { fill_anew(boxes); },
+                      [&] { return world_.partition().reserve(1000, Pages::touched); },
+                      [&] {
+                        expect_intact();
+                        // There is nothing to be refreshed.
+                        ASSERT_TRUE(world_.agrees());
+                      });
   EXPECT_TRUE(world_.agrees());
 }
 
 TEST_P(OutOfMemory, during_an_insert_leaves_what_is_up_to_date_as_it_was) {
   const std::vector<Aabb> boxes = uniform_boxes(90);
   std::vector<Key> keys(300);
-  refuse_each_request(
-      [&] {
-        world_.clear();
-        world_.partition().release_memory();
-        world_.insert(boxes);
-        ASSERT_TRUE(world_.agrees());
-      },
-      [&] {
-        const Status status = world_.partition().insert(uniform_boxes(300), {}, keys);
-        return status == Status::ok ? world_.partition().remove(keys) : status;
-      },
-      [&] {
-        expect_intact();
-        ASSERT_TRUE(world_.agrees());
-      });
+  refuse_each_request([&] { fill_anew(boxes); },
+                      [&] {
+                        const Status status =
+                            world_.partition().insert(uniform_boxes(300), {}, keys);
+                        return status == Status::ok ? world_.partition().remove(keys) : status;
+                      },
+                      [&] {
+                        expect_intact();
+                        ASSERT_TRUE(world_.agrees());
+                      });
 }
 
 TEST_P(OutOfMemory, during_reserve_of_pairs_leaves_everything_as_it_was) {

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "simd/lanes/lanes.h"
+
+#include <cstddef>
+
+namespace winnow::WINNOW_ISA_NAME {
+
+inline constexpr float kLeastReach = 1e-30F;  // what is closer is at one place
+
+/// Where numbers lie.
+struct Reach {
+  float low;
+  float high;
+
+  /// Of `count` numbers, at least one.
+  static Reach of(const float* x, std::size_t count) {
+    constexpr std::size_t kStep = static_cast<std::size_t>(kLanes);
+    if (count < kStep) {
+      Reach reach{x[0], x[0]};
+      for (std::size_t i = 1; i < count; ++i) {
+        reach.low = x[i] < reach.low ? x[i] : reach.low;
+        reach.high = x[i] > reach.high ? x[i] : reach.high;
+      }
+      return reach;
+    }
+    Floats low = Floats::load_unaligned(x);
+    Floats high = low;
+    for (std::size_t i = kStep; i < count; i += kStep) {
+      // The last step looks at some numbers again.
+      const Floats v = Floats::load_unaligned(x + (i + kStep <= count ? i : count - kStep));
+      low = min(low, v);
+      high = max(high, v);
+    }
+    return {reduce_min(low), reduce_max(high)};
+  }
+  // Half of it: that of what is spread over all floats is finite.
+  [[nodiscard]] float half() const { return 0.5F * high - 0.5F * low; }
+};
+
+}  // namespace winnow::WINNOW_ISA_NAME
