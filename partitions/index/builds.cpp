@@ -19,8 +19,8 @@ constexpr std::size_t kWorthPlanning = 1024;
 // A plan begins so many refreshes earlier than it takes: the last one takes the order, and what is
 // foreseen comes sooner where objects fall.
 constexpr std::size_t kSpareRefreshes = 2;
-// The share of a sample whose leaving makes a build be expected: half of that at which it is due.
-constexpr float kTailShare = 1.0F / 32.0F;
+// A build is expected where the tail will have grown to this share of what makes it due.
+constexpr float kNearlyDue = 0.5F;
 
 // The mean edge of the box around 16 rows that follow each other: that in the middle of a sample.
 float edge_of_block(const BoundsPool& pool) noexcept {
@@ -188,7 +188,7 @@ std::size_t SpatialIndex::planning_work(const Structure& structure) const noexce
   if (build_budget_ != 0) return build_budget_;
   const std::size_t refreshes = std::max<std::size_t>(1, 2 * departures_.refreshes() / 5);
   const std::size_t passes = (structure.plan_passes() + refreshes - 1) / refreshes;
-  return passes * rows_.pool().rows();
+  return passes * (plan_.underway() ? plan_.rows() : rows_.pool().rows());
 }
 
 void SpatialIndex::go_on_planning() noexcept {
@@ -206,8 +206,10 @@ bool SpatialIndex::build_is_near() const noexcept {
   // What builds so often is not saved anything: each order would be worn when it is taken.
   if (departures_.refreshes() <= ahead) return false;
   if (tail_growth_.in(ahead) > tail_limit() || wear_growth_.in(ahead) > most_wear()) return true;
-  return rows_.stale().all() && rows_.regions().regular != 0 &&
-         departures_.share(rows_, *structure_, ahead) >= kTailShare;
+  if (!rows_.stale().all() || rows_.regions().regular == 0) return false;
+  const float leaving = departures_.share(rows_, *structure_, ahead);
+  const float behind = static_cast<float>(tail()) + leaving * static_cast<float>(rows_.size());
+  return leaving > 0.0F && behind > kNearlyDue * static_cast<float>(tail_limit());
 }
 
 void SpatialIndex::give_up_plan() noexcept {

@@ -19,24 +19,23 @@ float Departures::share(const Rows& rows, const Structure& structure,
                         std::size_t ahead) const noexcept {
   if (count_ == 0 || refreshes_ == 0) return 0.0F;
   const float steps = static_cast<float>(ahead) / static_cast<float>(refreshes_);
+  std::size_t staying = 0;
   std::size_t leaving = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     const Seen& seen = seen_[i];
     if (!rows.keys().is_live(seen.id)) continue;
     const std::size_t row = rows.keys().row_of(seen.id);
-    if (row >= rows.regions().regular) {
-      ++leaving;
-      continue;
-    }
+    if (row >= rows.regions().regular) continue;
     Structure::Place place = structure.place_of(row);
     for (std::size_t a = 0; a < 3; ++a) {
       const float way = steps * (place.low[a] - seen.low[a]);
       place.low[a] += way;
       place.high[a] += way;
     }
-    leaving += structure.fits(row, place) ? 0 : 1;
+    ++(structure.fits(row, place) ? staying : leaving);
   }
-  return static_cast<float>(leaving) / static_cast<float>(count_);
+  return leaving == 0 ? 0.0F
+                      : static_cast<float>(leaving) / static_cast<float>(leaving + staying);
 }
 
 }  // namespace winnow

@@ -9,8 +9,8 @@
 
 namespace winnow {
 
-/// Tells, from a sample of the objects in regular rows, how many will have left the places where a
-/// build put them some refreshes from now, if all go on as they did since then.
+/// Tells, from a sample of the objects in regular rows, how many will leave the places where a build
+/// put them within the next refreshes, if all go on as they did since then.
 class Departures {
  public:
   /// Notes where a sample of the regular rows' objects is. O(1).
@@ -18,12 +18,12 @@ class Departures {
   /// Objects have moved once more.
   void note_refresh() noexcept { ++refreshes_; }
   [[nodiscard]] std::size_t refreshes() const noexcept { return refreshes_; }
-  /// The expected share of objects that will have left in so many refreshes. O(1).
+  /// The expected share of those still there that will have left in so many refreshes. O(1).
   [[nodiscard]] float share(const Rows& rows, const Structure& structure,
                             std::size_t ahead) const noexcept;
 
  private:
-  static constexpr std::size_t kSample = 32;
+  static constexpr std::size_t kSample = 64;
 
   struct Seen {
     ObjectId id;
