@@ -34,25 +34,26 @@ class Departures {
   std::size_t refreshes_ = 0;
 };
 
-/// A count that grows from refresh to refresh.
+/// A count that grows from refresh to refresh, ever faster it may be.
 class Growth {
  public:
   /// The next count is the first of its kind.
-  void begin() noexcept { known_ = false; }
+  void begin() noexcept { last_ = step_ = faster_ = 0; }
   void note(std::uint64_t count) noexcept {
-    step_ = known_ && count > last_ ? count - last_ : 0;
+    const std::uint64_t step = count > last_ ? count - last_ : 0;
+    faster_ = last_ != 0 && step > step_ ? step - step_ : 0;
+    step_ = last_ != 0 ? step : 0;
     last_ = count;
-    known_ = true;
   }
   /// What it is expected to be in so many refreshes.
   [[nodiscard]] std::uint64_t in(std::size_t refreshes) const noexcept {
-    return last_ + step_ * refreshes;
+    return last_ + step_ * refreshes + faster_ * refreshes * (refreshes + 1) / 2;
   }
 
  private:
   std::uint64_t last_ = 0;
   std::uint64_t step_ = 0;
-  bool known_ = false;
+  std::uint64_t faster_ = 0;  // than the step before
 };
 
 }  // namespace winnow

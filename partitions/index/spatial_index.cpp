@@ -10,7 +10,7 @@ namespace winnow {
 namespace {
 
 // Where an order was worn before it was taken, so many builds come as they come.
-constexpr std::size_t kWaitAfterMistake = 16;
+constexpr std::size_t kWaitAfterMistake = 4;
 
 }  // namespace
 
