@@ -20,7 +20,7 @@ constexpr std::size_t kWorthPlanning = 1024;
 // foreseen comes sooner where objects fall.
 constexpr std::size_t kSpareRefreshes = 2;
 // A build is expected where the tail will have grown to this share of what makes it due.
-constexpr float kNearlyDue = 0.5F;
+constexpr float kNearlyDue = 0.35F;
 
 // The mean edge of the box around 16 rows that follow each other: that in the middle of a sample.
 float edge_of_block(const BoundsPool& pool) noexcept {
@@ -99,7 +99,7 @@ Status SpatialIndex::take_order(bool moved) {
   const std::size_t ordered = order.size();
   const std::size_t regular = plan_.regular();
   const std::size_t first_block = blocks_of(regular);
-  const bool complete = !moved || complete_order();
+  const bool complete = !moved || plan_.complete();
   const std::size_t rows = order.size();
   const bool prunes = next.prunes_rows();
   if (!complete || !rows_.reserve_rows(rows + spare_rows(next)) ||
@@ -130,19 +130,6 @@ Status SpatialIndex::take_order(bool moved) {
   tail_growth_.begin();
   wear_growth_.begin();
   return Status::ok;
-}
-
-// Rows that came since the order was planned follow behind it; those that have become empty leave
-// their places empty. False if memory is refused.
-bool SpatialIndex::complete_order() {
-  Column<std::uint32_t>& order = plan_.order();
-  const ObjectId* const ids = rows_.pool().ids();
-  const std::size_t rows = rows_.pool().rows();
-  if (!order.grow(order.size() + rows - plan_.rows())) return false;
-  for (std::size_t row = plan_.rows(); row < rows; ++row) {
-    if (ids[row] != kNoObject) (void)order.push_back(static_cast<std::uint32_t>(row));
-  }
-  return true;
 }
 
 Status SpatialIndex::build_flat() {
@@ -204,7 +191,8 @@ bool SpatialIndex::build_is_near() const noexcept {
   const std::size_t whole = structure_->plan_passes() * rows_.pool().rows();
   const std::size_t ahead = 1 + (whole - 1) / planning_work(*structure_) + kSpareRefreshes;
   // What builds so often is not saved anything: each order would be worn when it is taken.
-  if (departures_.refreshes() <= ahead) return false;
+  const bool at_once = planning_work(*structure_) >= whole;
+  if (departures_.refreshes() <= ahead || (at_once && build_budget_ == 0)) return false;
   if (tail_growth_.in(ahead) > tail_limit() || wear_growth_.in(ahead) > most_wear()) return true;
   if (!rows_.stale().all() || rows_.regions().regular == 0) return false;
   const float leaving = departures_.share(rows_, *structure_, ahead);

@@ -124,7 +124,7 @@ bool SpatialIndex::reserve(std::size_t objects, Pages pages,
 bool SpatialIndex::reserve_order(std::size_t rows, std::size_t behind, Pages pages) noexcept {
   return rows_.reserve_rows(rows + behind) &&
          spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows, pages) &&
-         plan_.reserve(rows + behind, pages) && tree_.reserve(blocks_of(rows), pages);
+         plan_.reserve(rows + behind, behind, pages) && tree_.reserve(blocks_of(rows), pages);
 }
 
 bool SpatialIndex::have_wait(std::span<const StructureKind> kinds) noexcept {

@@ -16,8 +16,9 @@ constexpr std::size_t kMostWork = std::numeric_limits<std::size_t>::max() / kCut
 
 }  // namespace
 
-bool OrderPlan::reserve(std::size_t rows, Pages pages) noexcept {
-  return order_.reserve(rows + kSlack, pages) && rest_.reserve(rows + kSlack, pages);
+bool OrderPlan::reserve(std::size_t rows, std::size_t moved, Pages pages) noexcept {
+  return order_.reserve(rows + kSlack, pages) && rest_.reserve(rows + kSlack, pages) &&
+         moved_.reserve(moved, pages) && placed_.reserve(moved, pages);
 }
 
 bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdParts parts) noexcept {
@@ -25,6 +26,8 @@ bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdPart
   const std::size_t most = rows.pool().rows() + room + kSlack;
   order_.clear();
   rest_.clear();
+  moved_.clear();
+  placed_.clear();
   if (!order_.grow(most) || !rest_.grow(most)) return false;
   rows_ = &rows;
   structure_ = &structure;
@@ -122,6 +125,37 @@ void OrderPlan::append_rest() noexcept {
   part_ = Part::ready;
 }
 
+bool OrderPlan::complete() noexcept {
+  const ObjectId* const ids = rows_->pool().ids();
+  const std::size_t rows = rows_->pool().rows();
+  const std::size_t came = rows - planned_rows_;
+  if (!order_.grow(order_.size() + came) || !placed_.grow(moved_.size())) return false;
+  if (!moved_.empty()) place_moved();
+  const std::uint32_t* placed = placed_.begin();
+  for (std::size_t row = planned_rows_; row < rows; ++row) {
+    if (placed != placed_.end() && *placed == row) {
+      ++placed;
+    } else if (ids[row] != kNoObject) {
+      (void)order_.push_back(static_cast<std::uint32_t>(row));
+    }
+  }
+  return true;
+}
+
+void OrderPlan::place_moved() noexcept {
+  std::ranges::sort(moved_, {}, &Moved::row);
+  const ObjectId* const ids = rows_->pool().ids();
+  const KeyTable& keys = rows_->keys();
+  for (std::uint32_t& row : order_) {
+    if (row == kNoObject || ids[row] != kNoObject) continue;
+    const Moved* const moved = std::ranges::lower_bound(moved_, row, {}, &Moved::row);
+    if (moved == moved_.end() || moved->row != row || !keys.is_live(moved->id)) continue;
+    row = keys.row_of(moved->id);
+    (void)placed_.push_back(row);
+  }
+  std::sort(placed_.begin(), placed_.end());
+}
+
 void OrderPlan::drop() noexcept {
   if (rows_ != nullptr) rows_->regions().planned = 0;
   rows_ = nullptr;
@@ -131,7 +165,7 @@ void OrderPlan::drop() noexcept {
 
 void OrderPlan::release() noexcept {
   drop();
-  release_columns(order_, rest_, items_, list_, points_);
+  release_columns(order_, rest_, moved_, placed_, items_, list_, points_);
 }
 
 }  // namespace winnow

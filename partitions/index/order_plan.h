@@ -19,11 +19,17 @@ namespace winnow {
 class OrderPlan {
  public:
   explicit OrderPlan(std::pmr::memory_resource* memory) noexcept
-      : order_(memory), rest_(memory), items_(memory), list_(memory), points_(memory) {}
+      : order_(memory),
+        rest_(memory),
+        moved_(memory),
+        placed_(memory),
+        items_(memory),
+        list_(memory),
+        points_(memory) {}
 
-  /// Room for an order of so many rows, so that no plan asks for more, but for what structures sort
-  /// with. False if memory is refused.
-  [[nodiscard]] bool reserve(std::size_t rows, Pages pages) noexcept;
+  /// Room for an order of so many rows, of which so many may be moved elsewhere meanwhile, so that
+  /// no plan asks for more, but for what structures sort with. False if memory is refused.
+  [[nodiscard]] bool reserve(std::size_t rows, std::size_t moved, Pages pages) noexcept;
   /// What a structure is to make room in.
   [[nodiscard]] BuildRoom room_for(std::size_t objects, Pages pages) noexcept {
     return {objects, pages, items_, list_, points_};
@@ -46,8 +52,19 @@ class OrderPlan {
   /// The rows that it began with are those below this.
   [[nodiscard]] std::size_t rows() const noexcept { return planned_rows_; }
 
+  /// The object in a row is about to be moved behind all others. Where memory is refused, that is
+  /// where it stays.
+  void note_move(std::uint32_t row, ObjectId id) noexcept {
+    if (row < planned_rows_) (void)moved_.push_back({row, id});
+  }
+
   // When it is ready.
 
+  /// Makes the order one of all live rows as they are now. Objects that were moved behind the
+  /// others have the places that were planned for them where they stood, rows that came since
+  /// follow at the end, and those that have become empty leave their places empty. False if memory
+  /// is refused.
+  [[nodiscard]] bool complete() noexcept;
   /// The old row of each new one: first the regular ones.
   [[nodiscard]] Column<std::uint32_t>& order() noexcept { return order_; }
   [[nodiscard]] std::size_t regular() const noexcept { return regular_; }
@@ -60,14 +77,19 @@ class OrderPlan {
   [[nodiscard]] Column<float>& points() noexcept { return points_; }
   void release() noexcept;
   [[nodiscard]] Bytes bytes() const noexcept {
-    return bytes_of(order_, rest_, items_, list_, points_);
+    return bytes_of(order_, rest_, moved_, placed_, items_, list_, points_);
   }
 
  private:
+  struct Moved {
+    std::uint32_t row;  // where it was planned
+    ObjectId id;
+  };
   enum class Part : std::uint8_t { structure, rest, cuts, ready };
   [[nodiscard]] bool run_stage(std::size_t& work) noexcept;
   [[nodiscard]] bool begin_rest(std::size_t& work) noexcept;
   void append_rest() noexcept;
+  void place_moved() noexcept;
 
   Rows* rows_ = nullptr;
   Structure* structure_ = nullptr;
@@ -82,6 +104,8 @@ class OrderPlan {
 
   Column<std::uint32_t> order_;
   Column<std::uint32_t> rest_;
+  Column<Moved> moved_;
+  Column<std::uint32_t> placed_;  // rows behind all that the plan began with which have a place
   Column<std::uint64_t> items_;
   Column<std::uint32_t> list_;
   Column<float> points_;  // places of what is sorted by these

@@ -120,6 +120,9 @@ bool SpatialIndex::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
   // The same room until the next build: growing copies every column.
   const std::size_t most = std::max(rows_.regions().ordered + tail_limit(), rows_.pool().rows());
   if (!rows_.reserve_rows(most + rows.size())) return false;
+  if (plan_.underway()) {
+    for (const std::uint32_t row : rows) plan_.note_move(row, rows_.pool().ids()[row]);
+  }
   rows_.move_to_end(rows);
   return true;
 }
