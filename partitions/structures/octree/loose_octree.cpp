@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <span>
 
 namespace winnow {
 namespace {
@@ -91,8 +92,8 @@ class LooseTree : public CellStructure {
   [[nodiscard]] Planned choose_cells(const RowPlan& plan) noexcept;
   void find_keys(const RowPlan& plan, std::size_t begin, std::size_t end) const noexcept;
   [[nodiscard]] bool lay_nodes(const RowPlan& plan) noexcept;
-  [[nodiscard]] bool add_node(const std::uint64_t* run, std::size_t count,
-                              const RowPlan& plan) noexcept;
+  [[nodiscard]] bool lay_node(std::span<const std::uint64_t> cell, const RowPlan& plan) noexcept;
+  [[nodiscard]] std::uint32_t code_of(std::span<const std::uint64_t> cell) const noexcept;
 
   const std::size_t axes_;
   const float loose_;
@@ -162,42 +163,50 @@ void LooseTree::find_keys(const RowPlan& plan, std::size_t first, std::size_t la
 }
 
 bool LooseTree::lay_nodes(const RowPlan& plan) noexcept {
-  const std::size_t rows = plan.rows;
-  std::uint32_t cell = LooseOctreeCells::kNone;
-  std::size_t run = 0;
-  while (run < rows && key_in(sorted_[run]) != LooseOctreeCells::kNone) {
-    const std::uint32_t key = key_in(sorted_[run]);
-    std::size_t end = run + 1;
-    while (end < rows && key_in(sorted_[end]) == key) ++end;
-    const bool apart = end - run <= kLongRun;
-    if (apart && planned_.cells.cell_of_key(key) != cell) {
-      cell = planned_.cells.cell_of_key(key);
-      if (!add_node(sorted_ + run, end - run, plan)) return false;
+  std::size_t first = 0;
+  while (first < plan.rows && key_in(sorted_[first]) != LooseOctreeCells::kNone) {
+    const std::uint32_t cell = planned_.cells.cell_of_key(key_in(sorted_[first]));
+    std::size_t last = first + 1;
+    while (last < plan.rows && key_in(sorted_[last]) != LooseOctreeCells::kNone &&
+           planned_.cells.cell_of_key(key_in(sorted_[last])) == cell) {
+      ++last;
     }
-    Column<std::uint32_t>& rows_of_run = apart ? plan.regular : plan.rest;
-    for (; run < end; ++run) (void)rows_of_run.push_back(static_cast<std::uint32_t>(sorted_[run]));
+    if (!lay_node({sorted_ + first, last - first}, plan)) return false;
+    first = last;
   }
-  for (; run < rows; ++run) {
-    const auto row = static_cast<std::uint32_t>(sorted_[run]);
+  for (; first < plan.rows; ++first) {
+    const auto row = static_cast<std::uint32_t>(sorted_[first]);
     if (pool().ids()[row] != kNoObject) (void)plan.rest.push_back(row);
   }
   return planned_start_.push_back(static_cast<std::uint32_t>(plan.regular.size()));
 }
 
-// The node of a run of rows that had one key. An object that has not left its cell since says which
-// that is; where none has stayed, any cell is as good.
-bool LooseTree::add_node(const std::uint64_t* run, std::size_t count,
-                         const RowPlan& plan) noexcept {
-  const LooseOctreeCells& cells = planned_.cells;
-  const std::uint32_t key = key_in(run[0]);
-  auto row = static_cast<std::uint32_t>(run[0]);
-  for (std::size_t i = 1; i < count && !cells.has_key(pool(), row, key); ++i) {
-    row = static_cast<std::uint32_t>(run[i]);
+// The node of the rows that had keys of one cell, but for those that too many have the same key of.
+bool LooseTree::lay_node(std::span<const std::uint64_t> cell, const RowPlan& plan) noexcept {
+  const auto begin = static_cast<std::uint32_t>(plan.regular.size());
+  std::size_t run = 0;
+  while (run < cell.size()) {
+    std::size_t end = run + 1;
+    while (end < cell.size() && key_in(cell[end]) == key_in(cell[run])) ++end;
+    Column<std::uint32_t>& rows = end - run <= kLongRun ? plan.regular : plan.rest;
+    for (; run < end; ++run) (void)rows.push_back(static_cast<std::uint32_t>(cell[run]));
   }
-  const std::uint32_t code = cells.code_of(pool(), row, key);
-  return planned_.node.push_back(code) &&
-         planned_start_.push_back(static_cast<std::uint32_t>(plan.regular.size())) &&
-         planned_.bounds.push_back(cells.loose_bounds(code));
+  if (plan.regular.size() == begin) return true;
+  const std::uint32_t code = code_of(cell);
+  return planned_.node.push_back(code) && planned_start_.push_back(begin) &&
+         planned_.bounds.push_back(planned_.cells.loose_bounds(code));
+}
+
+// An object that has not left the cell since its key was found says which cell that is; where none
+// has stayed, any cell is as good.
+std::uint32_t LooseTree::code_of(std::span<const std::uint64_t> cell) const noexcept {
+  const LooseOctreeCells& cells = planned_.cells;
+  const std::uint32_t key = key_in(cell[0]);
+  const auto stayed = std::ranges::find_if(cell, [&](std::uint64_t item) {
+    return cells.has_key(pool(), static_cast<std::uint32_t>(item), key);
+  });
+  const auto row = static_cast<std::uint32_t>(stayed == cell.end() ? cell.back() : *stayed);
+  return cells.code_of(pool(), row, key);
 }
 
 void LooseTree::finish_build(const RowPlan&, bool) noexcept {
