@@ -72,6 +72,8 @@ Status SpatialIndex::absorb_changes(bool all) {
     if (all) unforeseen_ = kWaitAfterMistake;
     return build();
   }
+  // What no longer fits a planned order may have moved long ago: its block is no stale one.
+  tail_changed_ = tail_changed_ || (all && !misfits.list.empty());
   if (!move_to_tail(misfits.entries()) || !sort_tail() || !refit_trees()) {
     return Status::out_of_memory;
   }
