@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 namespace winnow {
 namespace {
@@ -41,6 +42,9 @@ constexpr double kClearly = 0.75;
 constexpr std::array<double, 2> kUsualBuilds{0.1, 0.25};
 constexpr double kRecent = 1.0 / 16.0;
 constexpr double kForgotten = 1.0 / 128.0;
+constexpr double kNewest = 1.0 / 4.0;
+// What the first memory of another structure costs, in nanoseconds.
+constexpr double kExchange = 10'000.0;
 // Wear up to this share of a frame's cost is usual. A test of 16 volumes takes so many nanoseconds.
 constexpr double kUsualWear = 0.15;
 constexpr double kTest = 8.0;
@@ -68,10 +72,10 @@ bool far_apart(std::size_t a, std::size_t b) noexcept {
 /// what it would have saved exceeds what its build costs (an eighth, a quarter and a half of that
 /// for the first three changes, where it is clearly cheaper), and each structure that was left
 /// before must save twice as much to come back, so that a scene that alternates does not. Cells, or
-/// trees, that were seen to be built often, because objects are fast, count as that much dearer;
-/// where an update scatters all objects every structure has to be built, and changing is free. All
-/// decisions follow counts and samples, never time: they are the same on every machine, instruction
-/// set and number of threads.
+/// trees, that were seen to be built often, because objects are fast or many come, count as that
+/// much dearer; where an update scatters all objects every structure has to be built, and changing
+/// is free. All decisions follow counts and samples, never time: they are the same on every
+/// machine, instruction set and number of threads.
 ///
 /// It changes only where something changed since the last refresh. A world that is built once and
 /// only asked from then on keeps its first choice; volumes other than boxes stay with the structure
@@ -128,6 +132,7 @@ class AutomaticChoice final : public Chooser {
   void look(const Rows& rows, const Wear& wear) noexcept;
   void guess(FrameWork frame) noexcept;
   void consider(const FrameWork& frame, const Wear& wear, bool scattered) noexcept;
+  void note_new_objects(const Wear& wear) noexcept;
   void note_wear(const Wear& wear, bool scattered) noexcept;
   void note_change() noexcept;
   /// With builds and wear beyond the usual.
@@ -139,11 +144,14 @@ class AutomaticChoice final : public Chooser {
   // By candidate: what it would have saved, not yet spent, and how often it was left.
   PredictedCosts::List saved_{};
   std::array<std::uint8_t, kMostCandidates> left_{};
-  // Of refreshes with trees, and with cells: about how many built them, and what queries took
+  // About how many refreshes there are in which an update scattered all.
+  double scattered_share_ = 0.0;
+  // Of the others, with trees and with cells: about how many built them, and what queries took
   // longer than on fresh ones, in nanoseconds per object.
   std::array<double, 2> build_share_{0.0, 0.1};
   std::array<double, 2> worn_{};
-  std::uint64_t builds_seen_ = 0;  // by the structure that is there
+  double build_share_of_new_ = 0.0;  // about how many build because so many are new
+  std::uint64_t builds_seen_ = 0;    // by the structure that is there
   std::uint64_t excess_seen_ = 0;
   std::size_t held_ = 0;  // refreshes by it, up to a limit
   std::string_view reason_ = "nothing to choose by yet";
@@ -178,6 +186,7 @@ FrameWork AutomaticChoice::take_frame(std::size_t live) noexcept {
 void AutomaticChoice::look(const Rows& rows, const Wear& wear) noexcept {
   const std::size_t live = objects_before_ = rows.size();
   const FrameWork frame = take_frame(live);
+  note_new_objects(wear);
   unseen_ += frame.changed;
   const std::size_t before = features_.objects;
   if (chosen_ && live <= kTooFew && is_brute_force(before_)) {
@@ -215,6 +224,13 @@ void AutomaticChoice::guess(FrameWork frame) noexcept {
                                     : "the least cost expected from a sample of the scene";
 }
 
+// What comes stands behind the rows in order until there are so many that a build is due.
+void AutomaticChoice::note_new_objects(const Wear& wear) noexcept {
+  const auto each = static_cast<double>(std::exchange(new_, 0)) / static_cast<double>(frames_);
+  const double share = std::min(1.0, each / static_cast<double>(wear.most_new));
+  build_share_of_new_ += kNewest * (share - build_share_of_new_);
+}
+
 // Where objects are fast, cells and strips are built in every frame, and trees wear and are built,
 // which nothing that is known of the scene tells beforehand.
 void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
@@ -224,11 +240,10 @@ void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
   const double worn = kTest * static_cast<double>(excess) / static_cast<double>(features_.objects);
   // The first frames of a structure tell more than later ones, but one build is no habit.
   const double weight = std::max(kRecent, 1.0 / (3.0 + static_cast<double>(held_)));
-  for (std::size_t kind = 0; kind < build_share_.size(); ++kind) {
+  scattered_share_ += weight * ((scattered ? 1.0 : 0.0) - scattered_share_);
+  for (std::size_t kind = 0; kind < build_share_.size() && !scattered; ++kind) {
     double& share = build_share_[kind];
-    if (scattered) {
-      share += weight * (1.0 - share);
-    } else if (kind == own) {
+    if (kind == own) {
       share += weight * ((built ? 1.0 : 0.0) - share);
     } else {
       share -= kForgotten * share;
@@ -244,9 +259,12 @@ double AutomaticChoice::cost_of(const PredictedCosts& costs, std::size_t candida
   const std::size_t kind = has_cells(candidates()[candidate]) ? 1 : 0;
   const double fresh = costs.of(candidate);
   const double worn = worn_[kind] * static_cast<double>(features_.objects);
-  return fresh +
-         std::max(0.0, build_share_[kind] - kUsualBuilds[kind]) * costs.build_of(candidate) +
-         std::max(0.0, worn - kUsualWear * fresh);
+  // What makes trees be built makes objects leave cells.
+  const double builds = std::max({build_share_[kind], build_share_[0], build_share_of_new_});
+  const double coherent = fresh +
+                          std::max(0.0, builds - kUsualBuilds[kind]) * costs.build_of(candidate) +
+                          std::max(0.0, worn - kUsualWear * fresh);
+  return coherent + scattered_share_ * (costs.scattered_of(candidate) - coherent);
 }
 
 // What each structure would have saved is summed up until it pays for a part of the build.
@@ -264,7 +282,7 @@ void AutomaticChoice::consider(const FrameWork& frame, const Wear& wear, bool sc
     const double gain = static_cast<double>(frames_) * (kWorthwhile * held - cost);
     saved_[k] = k == now ? 0.0 : std::max(0.0, saved_[k] + gain);
     const int doubled = left_[k] - (cost < kClearly * held ? trust : 0);
-    const double price = scattered ? 0.0 : std::ldexp(costs.build_of(k), doubled);
+    const double price = scattered ? 0.0 : std::ldexp(kExchange + costs.build_of(k), doubled);
     if (saved_[k] - price <= most) continue;
     most = saved_[k] - price;
     best = k;

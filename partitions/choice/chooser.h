@@ -51,6 +51,8 @@ class Chooser {
     std::uint64_t builds = 0;
     /// Tests of 16 volumes that queries took since the last one, beyond those on a fresh structure.
     std::uint64_t excess = 0;
+    /// New objects that a build is due at.
+    std::size_t most_new = 1;
   };
   /// The structure to refresh with; it holds `now`.
   [[nodiscard]] virtual StructureKind choose(const Rows& rows, StructureKind now,
@@ -69,6 +71,8 @@ class Chooser {
   virtual void end(std::pmr::memory_resource* memory) noexcept = 0;
 
   void note_changes(std::size_t count) noexcept { changed_ += count; }
+  /// Of the changes, objects that were inserted.
+  void note_new(std::size_t count) noexcept { new_ += count; }
   void note(QueryKind kind, std::size_t count) noexcept {
     asked_[static_cast<std::size_t>(kind)].add(count);
   }
@@ -83,6 +87,7 @@ class Chooser {
   }
 
   std::size_t changed_ = 0;            // objects since the last refresh
+  std::size_t new_ = 0;                // objects since it was last read
   std::atomic<std::size_t> pairs_{0};  // in the last frame that asked for all
 
  private:

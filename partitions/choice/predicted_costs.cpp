@@ -83,6 +83,8 @@ PredictedCosts::PredictedCosts(const SceneFeatures& scene, const FrameWork& fram
     if (others > 0.0) queries_[k] += c.rows * changed_of(scene, frame);
     total_[k] = sum_of(frame_costs, c) + queries_[k];
     build_[k] = sum_of(build_costs, c);
+    const double kept = c.keep * changed_of(scene, frame);
+    scattered_[k] = total_[k] + (c.anew == 0.0 ? build_[k] : c.anew * n - kept);
   }
 }
 

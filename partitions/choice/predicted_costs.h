@@ -61,15 +61,16 @@ inline constexpr std::size_t kBuildTerms = 2;
 ///   the rows of cells and strips is refitted first (`rows`, per object that moved).
 ///
 /// To begin with a structure takes a build: `build` per object, `build_level` for each doubling.
+/// Where an update scatters all objects, the rows are made `anew` rather than kept and then built.
 ///
 /// The constants were fitted to times measured on one thread with AVX-512 on the built-in scenes,
 /// of 40 to 40,000 objects, all or 5 % of them moving, midway between the median and the mean
 /// frame, so that builds weigh in without ruling: first to the relative errors, without negative
 /// ones, then to what choosing by them costs (`winnow fit` of the tool prints them and judges
-/// them). Those of other queries were fitted to single rays, boxes and nearest objects there. What
-/// they say is that brute force is the best choice for few objects, LinearBvh for more, and
-/// StaticBvh where much is asked, too. A spread of sizes tells nothing that the number of pairs
-/// does not.
+/// them). Those of other queries were fitted to single rays, boxes and nearest objects there, and
+/// those of making all anew to teleporting scenes of 1,000 to 100,000 objects. What they say is
+/// that brute force is the best choice for few objects, LinearBvh for more, and StaticBvh where
+/// much is asked, too. A spread of sizes tells nothing that the number of pairs does not.
 class PredictedCosts {
  public:
   using List = std::array<double, kMostCandidates>;
@@ -83,6 +84,10 @@ class PredictedCosts {
   [[nodiscard]] double queries_of(std::size_t candidate) const noexcept {
     return queries_[candidate];
   }
+  /// Of one in which all objects are scattered.
+  [[nodiscard]] double scattered_of(std::size_t candidate) const noexcept {
+    return scattered_[candidate];
+  }
   /// Of a build.
   [[nodiscard]] double build_of(std::size_t candidate) const noexcept { return build_[candidate]; }
   /// The cheapest for so many frames like this one, the first build included.
@@ -92,6 +97,7 @@ class PredictedCosts {
   List total_{};
   List queries_{};
   List build_{};
+  List scattered_{};
 };
 
 }  // namespace winnow

@@ -9,8 +9,8 @@
 
 namespace winnow {
 
-/// Tells, from a sample of the objects in regular rows, how many will leave the places where a build
-/// put them within the next refreshes, if all go on as they did since then.
+/// Tells, from a sample of the objects in regular rows, how many will leave the places where a
+/// build put them within the next refreshes, if all go on as they did since then.
 class Departures {
  public:
   /// Notes where a sample of the regular rows' objects is. O(1).

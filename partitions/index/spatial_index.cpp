@@ -91,6 +91,9 @@ bool SpatialIndex::is_torn() const noexcept {
   constexpr float kTorn = 2.0F;
   constexpr float kTornOfPrice = 0.1F;  // what costs little to build is torn sooner
   const float price = static_cast<float>(structure_->build_price());
+  // Of so few blocks a query tests nearly all, in whatever order their rows are.
+  constexpr std::size_t kFewBlocks = 12;
+  if (tree_.blocks() <= kFewBlocks) return false;
   // Cells and strips find what left them; beside them the tree holds what is of many kinds.
   if (rows_.regions().regular != 0 || !rows_.stale().all()) return false;
   const float torn = std::min(kTorn, 1.0F + kTornOfPrice * price);

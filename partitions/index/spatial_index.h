@@ -107,6 +107,9 @@ class SpatialIndex {
     return excess_.load(std::memory_order_relaxed);
   }
 
+  /// Rows that may stand behind the built ones before a build is due.
+  [[nodiscard]] std::size_t tail_limit() const noexcept { return tail_limit(rows_.size()); }
+
   /// The structure and, as far as levels from the root down, the tree.
   void draw(DebugDraw& draw, std::size_t max_depth) const;
   void draw_objects(DebugDraw& draw, const DebugDrawOptions& options) const;
@@ -130,8 +133,6 @@ class SpatialIndex {
   void end_waiting() noexcept;
   void install(Structure* structure, StructureKind kind) noexcept;
   [[nodiscard]] bool needs_build() const noexcept;
-  /// Rows that may stand behind the built ones before a build is due.
-  [[nodiscard]] std::size_t tail_limit() const noexcept { return tail_limit(rows_.size()); }
   [[nodiscard]] static std::size_t tail_limit(std::size_t objects) noexcept {
     return objects / 16 + 64;
   }

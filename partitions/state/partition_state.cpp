@@ -67,6 +67,7 @@ Status PartitionState::insert(const BoxView& boxes, std::span<const ClientData> 
   }
   pairs_.calm.disturb(keys.size(), rows.size());
   note_changes(keys.size());
+  if (chooser_ != nullptr) chooser_->note_new(keys.size());
   return status;
 }
 
@@ -199,7 +200,9 @@ Status PartitionState::refresh_now() {
   // While a structure is being planned the choice stands.
   const bool choosing = chooser_ != nullptr && !index.exchanging();
   const StructureKind wanted =
-      choosing ? chooser_->choose(rows, now, {index.builds(), index.excess_tests()}) : now;
+      choosing
+          ? chooser_->choose(rows, now, {index.builds(), index.excess_tests(), index.tail_limit()})
+          : now;
   bool refused = false;
   Status status = Status::ok;
   if (wanted != now) {

@@ -18,6 +18,9 @@ struct StructureCosts {
   double rest = 0;         ///< the same, per object that does not
   double build = 0;        ///< of a build, per object
   double build_level = 0;  ///< the same, for each doubling of the number of objects
+  /// Of a refresh in which all objects are scattered, per object, in place of keeping their places
+  /// and of the build; 0: as much as both.
+  double anew = 0;
   double ask = 0;          ///< per ray or region; one for the nearest counts four times
   double ask_level = 0;    ///< the same, for each doubling of the number of objects
   double scan = 0;         ///< the same, per object, where there is no tree

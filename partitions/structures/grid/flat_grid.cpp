@@ -169,6 +169,7 @@ constexpr StructureCosts kCosts{.has_cells = true,
                                 .moved = 430,
                                 .rest = 0.4,
                                 .build = 27,
+                                .anew = 17,
                                 .ask_level = 36,
                                 .rows = 1.5};
 constexpr StructureInfo kInfo = structure_info<FlatGrid>("FlatGrid", &kCosts);

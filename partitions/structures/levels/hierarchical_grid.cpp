@@ -622,6 +622,7 @@ constexpr StructureCosts kCosts{.has_cells = true,
                                 .moved = 430,
                                 .rest = 0.4,
                                 .build = 56,
+                                .anew = 37,
                                 .ask = 40,
                                 .ask_level = 24,
                                 .rows = 1.0};

@@ -332,6 +332,7 @@ constexpr StructureCosts kCosts{.has_cells = true,
                                 .moved = 450,
                                 .rest = 0.24,
                                 .build = 53,
+                                .anew = 37,
                                 .ask_level = 32,
                                 .rows = 1.5};
 constexpr StructureInfo kInfo = structure_info<SweepAndPrune>("SweepAndPrune", &kCosts);
