@@ -2,6 +2,7 @@
 #include "bench/commands/options.h"
 #include "bench/common/table.h"
 #include "bench/measure/cost_fit.h"
+#include "bench/measure/figures_check.h"
 #include "bench/measure/race.h"
 #include "bench/scenes/scene.h"
 
@@ -21,6 +22,7 @@ struct Fit {
   std::size_t frames = 0;
   std::string isa;
   bool checks_alone = false;
+  std::string figures;
 
   int run();
   [[nodiscard]] std::vector<CostSample> measured() const;
@@ -66,33 +68,59 @@ void print_costs(const FittedCosts& fitted) {
 }
 
 /// Median and worst of what the choice takes over the best, by number of objects.
+class Regrets {
+ public:
+  void add(std::size_t objects, double regret, const std::string& where) {
+    std::vector<double>& all = by_size_[objects];
+    if (all.empty() || regret > *std::max_element(all.begin(), all.end())) worst_[objects] = where;
+    all.push_back(regret);
+  }
+
+  void print(const std::string& title) {
+    Table table({"objects", "median", "worst", "where"});
+    table.flush_left(3);
+    for (auto& [size, all] : by_size_) {
+      table.add({grouped(size), short_number(median_of(all)),
+                 short_number(*std::max_element(all.begin(), all.end())), worst_[size]});
+    }
+    std::cout << title << '\n' << table << '\n';
+  }
+
+ private:
+  std::map<std::size_t, std::vector<double>> by_size_;
+  std::map<std::size_t, std::string> worst_;
+};
+
 void print_regret(const std::vector<CostSample>& samples, const std::vector<StructureCosts>& costs,
                   const std::string& title) {
-  std::map<std::size_t, std::vector<double>> by_size;
-  std::map<std::size_t, std::string> worst;
+  Regrets regrets;
   for (const CostSample& sample : samples) {
     std::size_t chosen = 0;
     std::size_t best = 0;
     const double regret = regret_of(sample, costs, chosen, best);
-    std::vector<double>& all = by_size[sample.features.objects];
-    if (all.empty() || regret > *std::max_element(all.begin(), all.end())) {
-      worst[sample.features.objects] = sample.scene + ", " + short_number(100.0 * sample.moving) +
-                                       " % move: " + std::string(candidates()[chosen].name()) +
-                                       " for " + std::string(candidates()[best].name());
-    }
-    all.push_back(regret);
+    regrets.add(sample.features.objects, regret,
+                sample.scene + ", " + short_number(100.0 * sample.moving) +
+                    " % move: " + std::string(candidates()[chosen].name()) + " for " +
+                    std::string(candidates()[best].name()));
   }
-  Table table({"objects", "median", "worst", "where"});
-  table.flush_left(3);
-  for (auto& [size, all] : by_size) {
-    table.add({grouped(size), short_number(median_of(all)),
-               short_number(*std::max_element(all.begin(), all.end())), worst[size]});
+  regrets.print(title);
+}
+
+void print_check(const std::string& figures, std::size_t frames) {
+  constexpr std::size_t kFrames = 16;
+  Regrets regrets;
+  for (const FigureCheck& one : check_figures(figures, frames != 0 ? frames : kFrames)) {
+    regrets.add(one.objects, one.times_best, one.scene + ": " + one.chosen + " for " + one.best);
   }
-  std::cout << title << '\n' << table << '\n';
+  regrets.print("what is chosen over the best, by " + figures);
 }
 
 int Fit::run() {
   choose_isa(isa);
+  if (!figures.empty()) {
+    print_check(figures, frames);
+    return kDone;
+  }
   const std::vector<CostSample> samples = measured();
   print_regret(samples, present_costs(), "what is chosen over the best, constants as they are");
   if (checks_alone) return kDone;
@@ -116,6 +144,10 @@ Command add_fit(CLI::App& app) {
   number(*sub, "--frames", fit->frames, 0, 1e6, "Frames of each; 0: what suits the size");
   add_isa_option(*sub, fit->isa);
   sub->add_flag("--check", fit->checks_alone, "Judge the constants that there are, and fit none");
+  sub->add_option("--figures", fit->figures,
+                  "Judge what is chosen by times taken elsewhere: a table of comma-separated "
+                  "values with columns scene, objects, threads, kind, median_ms")
+      ->check(CLI::ExistingFile);
   return {sub, [fit] { return fit->run(); }};
 }
 
