@@ -18,6 +18,20 @@ struct Aabb {
     return {round_down(min), round_up(max)};
   }
 
+  /// The smallest float box that contains the double box [min, max], measured from `origin`. Far
+  /// from 0 floats are coarse (8 apart at 1e8): boxes that are measured from a point among the
+  /// objects are as tight there, and as cheap to prune by, as those of objects around 0. The
+  /// difference of two doubles is rounded outward, too, so nothing sticks out.
+  [[nodiscard]] static Aabb outward(const Eigen::Vector3d& min, const Eigen::Vector3d& max,
+                                    const Eigen::Vector3d& origin) {
+    Aabb box;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.min[axis] = round_down(add_down(min[axis], -origin[axis]));
+      box.max[axis] = round_up(add_up(max[axis], -origin[axis]));
+    }
+    return box;
+  }
+
   /// True if a partition takes this box: no NaN, min <= max, and not wholly at infinity.
   [[nodiscard]] bool is_valid() const noexcept {
     constexpr float inf = std::numeric_limits<float>::infinity();

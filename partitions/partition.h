@@ -104,6 +104,10 @@ struct StructureChoice {
 ///     partition.insert(boxes, data, keys);
 ///     partition.self_pairs(pairs);
 ///
+/// Boxes are of floats, which are coarse far from 0: in a world far away measure them, and whatever
+/// is asked with, from a point among the objects (`Aabb::outward` with an origin). A Scene, which
+/// has doubles, does so by itself.
+///
 /// Mutation costs O(1) per object; the structure follows at the next query (or `refresh`). Queries
 /// that are const may run at the same time from several threads; everything else wants the
 /// partition to itself. A refused call (any Status but ok) changed nothing: of a span, either all

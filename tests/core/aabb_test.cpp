@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <random>
 #include <vector>
 
 namespace winnow::test {
@@ -119,6 +121,48 @@ TEST(BoxView, reads_arrays_columns_and_strided_members_alike) {
   }
   EXPECT_EQ(BoxView(std::vector<Aabb>{}).count, 0U);
   EXPECT_EQ(BoxView().count, 0U);
+}
+
+TEST(Aabb, measured_from_an_origin_far_away_is_as_tight_as_around_zero) {
+  const Eigen::Vector3d low(0.25, -1.5, 3.0);
+  const Eigen::Vector3d high(0.75, 1.5, 3.0);
+  const Eigen::Vector3d origin(1e8, -1e9, 1e12);
+  EXPECT_EQ(Aabb::outward(origin + low, origin + high, origin), Aabb::outward(low, high));
+  EXPECT_EQ(Aabb::outward(low, high, Eigen::Vector3d::Zero()), Aabb::outward(low, high));
+}
+
+// Whole numbers of 2^-16 below 2^36 are doubles, and their differences are exact in integers.
+TEST(Aabb, measured_from_an_origin_contains_the_exact_difference) {
+  std::mt19937_64 random(7);
+  const auto draw = [&](int bits) {
+    std::uniform_int_distribution<std::int64_t> all(-(std::int64_t{1} << bits),
+                                                    std::int64_t{1} << bits);
+    return all(random);
+  };
+  for (int round = 0; round < 20'000; ++round) {
+    Eigen::Vector3d low;
+    Eigen::Vector3d high;
+    Eigen::Vector3d origin;
+    std::array<std::array<std::int64_t, 2>, 3> exact{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t from = draw(51);
+      const std::int64_t at = from + draw(round % 40);
+      const std::int64_t to = at + std::abs(draw(round % 30));
+      origin[axis] = std::ldexp(static_cast<double>(from), -16);
+      low[axis] = std::ldexp(static_cast<double>(at), -16);
+      high[axis] = std::ldexp(static_cast<double>(to), -16);
+      exact[static_cast<std::size_t>(axis)] = {at - from, to - from};
+    }
+    const Aabb box = Aabb::outward(low, high, origin);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [least, most] = exact[static_cast<std::size_t>(axis)];
+      const auto units = [](float value) { return std::ldexp(static_cast<double>(value), 16); };
+      EXPECT_LE(units(box.min[axis]), static_cast<double>(least));
+      EXPECT_GE(units(box.max[axis]), static_cast<double>(most));
+      EXPECT_GT(units(next_up(box.min[axis])), static_cast<double>(least));
+      EXPECT_LT(units(-next_up(-box.max[axis])), static_cast<double>(most));
+    }
+  }
 }
 
 }  // namespace
