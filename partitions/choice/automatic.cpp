@@ -44,7 +44,7 @@ constexpr double kRecent = 1.0 / 16.0;
 constexpr double kForgotten = 1.0 / 128.0;
 constexpr double kNewest = 1.0 / 4.0;
 // What the first memory of another structure costs, in nanoseconds.
-constexpr double kExchange = 10'000.0;
+constexpr double kExchange = 3'000.0;
 // Wear up to this share of a frame's cost is usual. A test of 16 volumes takes so many nanoseconds.
 constexpr double kUsualWear = 0.15;
 constexpr double kTest = 8.0;

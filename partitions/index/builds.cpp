@@ -118,6 +118,7 @@ Status SpatialIndex::take_order(bool moved) {
   const Execution execution = rows_.execution_for(rows);
   tree_.refit_all(rows_.view(), execution);
   built_edge_ = tree_.typical_edge();
+  known_wide_ = wide_blocks();
   if (prunes) regular_tree_.refit_all(rows_.view(), execution);
   regions.built = true;
   ++builds_;

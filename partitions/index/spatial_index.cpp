@@ -78,7 +78,12 @@ Status SpatialIndex::absorb_changes(bool all) {
     return Status::out_of_memory;
   }
   if (is_torn()) return build();
-  tail_growth_.note(behind);
+  if (may_have_strays()) {
+    const std::uint64_t before = builds_;
+    const Status status = take_out_strays();
+    if (status != Status::ok || builds_ != before) return status;
+  }
+  tail_growth_.note(tail());
   wear_growth_.note(excess_tests());
   departures_.note_refresh();
   go_on_planning();

@@ -155,6 +155,11 @@ class SpatialIndex {
   Status absorb_changes(bool all);
   [[nodiscard]] bool is_torn() const noexcept;
   [[nodiscard]] bool collect_misfits(bool all, std::size_t limit) noexcept;
+  [[nodiscard]] std::size_t ordered_blocks() const noexcept;
+  [[nodiscard]] std::size_t wide_blocks() const noexcept;
+  [[nodiscard]] bool may_have_strays() noexcept;
+  [[nodiscard]] bool collect_strays(std::size_t limit) noexcept;
+  Status take_out_strays();
   bool move_to_tail(std::span<const std::uint32_t> rows) noexcept;
   bool sort_tail() noexcept;
   bool sort_by_place(std::span<std::uint32_t> rows, std::uint32_t* room) noexcept;
@@ -187,6 +192,7 @@ class SpatialIndex {
   mutable std::atomic<std::size_t> asked_{0};  // refreshes for such queries since the last build
 
   float built_edge_ = 0.0F;      // of a typical leaf of the tree, as the build left it
+  std::size_t known_wide_ = 0;   // blocks that are wide, but not by objects that have jumped
   std::size_t built_holes_ = 0;  // padding that the build left between the regions
   bool tail_changed_ = false;
   bool reserved_ = false;  // memory is there to stay, whatever the structure

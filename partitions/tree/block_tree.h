@@ -55,6 +55,21 @@ class BlockTree {
   /// The mean edge of a block in the middle of a sample; 0 if there are none.
   [[nodiscard]] float typical_edge() const noexcept;
 
+  /// True if the mean edge of a block is longer than `edge`.
+  [[nodiscard]] bool is_wide(std::size_t block, float edge) const noexcept {
+    float sum = 0.0F;
+    for (std::size_t c = 0; c < 3; ++c) {
+      sum += shape_.node[0][3 + c][block] - shape_.node[0][c][block];
+    }
+    return sum > 3.0F * edge;
+  }
+  /// How many of the first blocks are. O(count).
+  [[nodiscard]] std::size_t count_wide(std::size_t count, float edge) const noexcept {
+    std::size_t wide = 0;
+    for (std::size_t block = 0; block < count; ++block) wide += is_wide(block, edge) ? 1U : 0U;
+    return wide;
+  }
+
   void release() noexcept;
   [[nodiscard]] Bytes bytes() const noexcept;
 

@@ -1,0 +1,76 @@
+// Objects that jump away from the others of their block of a tree.
+
+#include <winnow/partitions/partition.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
+
+namespace winnow::test {
+namespace {
+
+// A share of the boxes goes to where others were.
+std::vector<std::size_t> jump(std::vector<Aabb>& boxes, double share, Random& random) {
+  std::vector<std::size_t> jumped;
+  const std::vector<Aabb> before = boxes;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (random.uniform(0.0, 1.0) >= share) continue;
+    const Eigen::Vector3f extent = boxes[i].max - boxes[i].min;
+    boxes[i].min = before[random.below(boxes.size())].min;
+    boxes[i].max = boxes[i].min + extent;
+    jumped.push_back(i);
+  }
+  return jumped;
+}
+
+TEST(Strays, cost_the_others_of_their_block_nothing) {
+  std::vector<Aabb> boxes = uniform_boxes(8000);
+  Partition partition(linear_bvh());
+  std::vector<Key> keys(boxes.size());
+  ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
+  PairBuffer buffer;
+  const PairOptions anew{.incremental = false};
+  ASSERT_EQ(partition.self_pairs(buffer, anew), Status::ok);
+  const std::uint64_t fresh = partition.statistics().last_tests;
+  Random random(3);
+  for (int frame = 0; frame < 12; ++frame) {
+    (void)jump(boxes, 0.01, random);
+    ASSERT_EQ(partition.update(keys, boxes), Status::ok);
+    ASSERT_EQ(partition.self_pairs(buffer, anew), Status::ok);
+    EXPECT_LT(partition.statistics().last_tests, 3 * fresh) << frame;
+  }
+  EXPECT_LT(partition.statistics().builds, 6U);
+}
+
+class StrayObjects : public Conformance {};
+
+TEST_P(StrayObjects, are_in_no_missing_pair) {
+  for (const double share : {0.002, 0.02, 0.2}) {
+    std::vector<Aabb> boxes = mixed_boxes(scaled(900));
+    boxes[3].max = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity());
+    World world(config());
+    const std::vector<Key> keys = world.insert(boxes);
+    PairBuffer buffer;
+    Random random(9);
+    for (int frame = 0; frame < 12; ++frame) {
+      const std::vector<std::size_t> jumped = jump(boxes, share, random);
+      if (frame % 2 == 0) {
+        world.update(keys, boxes);
+      } else {
+        for (const std::size_t i : jumped) world.update(keys[i], boxes[i]);
+      }
+      ASSERT_TRUE(world.agrees(buffer)) << "share " << share << ", frame " << frame;
+      ASSERT_TRUE(world.holds_its_objects()) << "share " << share << ", frame " << frame;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, StrayObjects, testing::ValuesIn(all_configs()));
+
+}  // namespace
+}  // namespace winnow::test
