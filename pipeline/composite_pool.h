@@ -73,8 +73,8 @@ class WINNOW_API CompositePool final : public MidPhase {
               NarrowResult& result) const override;
   void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
              const PrimitiveVisitor& visitor) const override;
-  void visit_ray(ShapeId id, const Pose& pose, const ShapeRay& ray,
-                 const RayVisitor& visitor) const override;
+  void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
+                  const RayVisitor& visitor) const override;
   void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
                   const PrimitiveVisitor& visitor) const override;
   bool visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,

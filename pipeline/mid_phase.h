@@ -73,12 +73,16 @@ struct PrimitiveVisitor {
   void* context = nullptr;
 };
 
-/// Is told what a ray meets by `limit`, and gives back the limit to go on with, as above.
+/// Is told what each of several rays meets by `limit`, and gives back the limit for that ray to go
+/// on with, as above.
 struct RayVisitor {
   /// Of a triangle that the ray meets for certain.
-  double (*meet)(void* context, std::uint32_t part, const ShapeHit& hit, double limit) = nullptr;
-  /// Of a primitive that it may meet.
-  double (*look)(void* context, const Primitive& primitive, double limit) = nullptr;
+  double (*meet)(void* context, std::size_t ray, std::uint32_t part, const ShapeHit& hit,
+                 double limit) = nullptr;
+  /// Of a primitive that it may meet: where that is once the position of the pose is subtracted
+  /// from the ray's origin, rounded to double.
+  double (*look)(void* context, std::size_t ray, const Primitive& primitive,
+                 double limit) = nullptr;
   void* context = nullptr;
 };
 
@@ -141,10 +145,11 @@ class WINNOW_API MidPhase {
   /// does. O(log n + met).
   virtual void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
                      const PrimitiveVisitor& visitor) const = 0;
-  /// Tells it of every primitive that the ray, which is valid, meets or may meet, roughly in the
-  /// order in which it does.
-  virtual void visit_ray(ShapeId id, const Pose& pose, const ShapeRay& ray,
-                         const RayVisitor& visitor) const = 0;
+  /// Tells it of every primitive that each of the rays, which are valid, meets or may meet, roughly
+  /// in the order in which it does. Of different rays in any order; one with a max_t below zero
+  /// meets nothing.
+  virtual void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
+                          const RayVisitor& visitor) const = 0;
   /// Shows it every primitive whose box may be no farther than `limit` from that of `from`, which
   /// stands, roughly the nearest first.
   virtual void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,

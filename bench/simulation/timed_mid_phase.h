@@ -40,9 +40,9 @@ class TimedMidPhase final : public MidPhase {
              const PrimitiveVisitor& visitor) const override {
     inner_.visit(id, pose, sweep, visitor);
   }
-  void visit_ray(ShapeId id, const Pose& pose, const ShapeRay& ray,
-                 const RayVisitor& visitor) const override {
-    inner_.visit_ray(id, pose, ray, visitor);
+  void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
+                  const RayVisitor& visitor) const override {
+    inner_.visit_rays(id, pose, rays, visitor);
   }
   void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
                   const PrimitiveVisitor& visitor) const override {

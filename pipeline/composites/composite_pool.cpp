@@ -380,9 +380,9 @@ void CompositePool::visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
   if (contains(id)) mid::visit(*state_, id, pose, sweep, visitor);
 }
 
-void CompositePool::visit_ray(ShapeId id, const Pose& pose, const ShapeRay& ray,
-                              const RayVisitor& visitor) const {
-  if (contains(id)) mid::visit_ray(*state_, id, pose, ray, visitor);
+void CompositePool::visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
+                               const RayVisitor& visitor) const {
+  if (contains(id)) mid::visit_rays(*state_, id, pose, rays, visitor);
 }
 
 void CompositePool::visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,

@@ -152,12 +152,12 @@ Status expand(const Composites* all, const ShapeTables& tables, const Bodies& bo
 void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
             NarrowResult& result) noexcept;
 
-/// See MidPhase::visit, visit_ray, visit_pairs, visit_near_pairs and visit_near. `id` is there,
+/// See MidPhase::visit, visit_rays, visit_pairs, visit_near_pairs and visit_near. `id` is there,
 /// `pose` is valid.
 void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,
            const PrimitiveVisitor& visitor);
-void visit_ray(const Composites& all, ShapeId id, const Pose& pose, const ShapeRay& ray,
-               const RayVisitor& visitor);
+void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
+                const RayVisitor& visitor);
 bool visit_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
                  const Pose& pose_b, const PrimitivePairVisitor& visitor);
 bool visit_near_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,

@@ -7,6 +7,7 @@
 #include "pipeline/mesh/mesh_rays.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace winnow::mid {
@@ -17,6 +18,18 @@ constexpr double kMostLength = 1e150;
 /// Of coordinates: some roundings of a ray on its way into a surface's frame, and of triangles on
 /// theirs into the world.
 constexpr double kRaySlack = 0x1p-46;
+
+/// What rounding loses of origin - position; zero if that overflows.
+[[nodiscard]] Vec rest_of_difference(const double* origin, const double* position) noexcept {
+  Vec rest;
+  for (int i = 0; i < 3; ++i) {
+    const double between = origin[i] - position[i];
+    const double back = between - origin[i];
+    rest[i] = (origin[i] - (between - back)) + (-position[i] - back);
+    if (!std::isfinite(rest[i])) rest[i] = 0.0;
+  }
+  return rest;
+}
 
 /// A ray in the frame of a surface: the caller's t is shift + own t * stretch.
 struct OwnRay {
@@ -31,6 +44,27 @@ struct OwnRay {
   }
 };
 
+/// A vector, transformed, of length 1.
+[[nodiscard]] Vec unit_under(const Mat& matrix, const Vec& v) noexcept {
+  const Vec plain = matrix * v;
+  const double square = plain.squaredNorm();
+  constexpr double kSafe = 1e200;
+  if (square > 1.0 / kSafe && square < kSafe) return plain * (1.0 / std::sqrt(square));
+  return (matrix * v.stableNormalized()).stableNormalized();
+}
+
+/// The power of two that brings x, which is positive, into [1/2, 1).
+[[nodiscard]] double scale_to_one(double x) noexcept {
+  constexpr std::uint64_t kMostExponent = 2045;
+  const std::uint64_t exponent = std::bit_cast<std::uint64_t>(x) >> 52;
+  if (exponent != 0 && exponent < kMostExponent) {
+    return std::bit_cast<double>((kMostExponent - exponent) << 52);
+  }
+  int power = 0;
+  std::frexp(x, &power);
+  return std::ldexp(1.0, -power);
+}
+
 /// a - b + t * d, whose rounding is that of the result and not of the terms.
 [[nodiscard]] double moved(double a, double b, double t, double d) noexcept {
   const double between = a - b;
@@ -44,52 +78,87 @@ struct OwnRay {
   return sum + (sum_error + step_error + lost);
 }
 
+/// A surface that rays come to, all about its position: its own is zero.
+struct RayTarget {
+  RayTarget(const Composites& all, ShapeId id, const Pose& pose) noexcept
+      : body(all, all.shapes.tables(), id, pose, Vec::Zero()),
+        position(Vec::Map(pose.position)),
+        reach(body.bounds.min.cwiseAbs().cwiseMax(body.bounds.max.cwiseAbs()).maxCoeff()),
+        size((body.to_world.cwiseAbs() *
+              body.bounds.min.cwiseAbs().cwiseMax(body.bounds.max.cwiseAbs()))
+                 .sum()) {}
+
+  PlacedBody body;
+  /// Where it is in the world.
+  Vec position;
+  /// Of its coordinates, in its own lengths and in the world's.
+  double reach;
+  double size;
+};
+
 /// A ray that begins far away is moved to where it comes near the surface. False for one whose
 /// numbers are too large or too small for that.
-[[nodiscard]] bool to_own(const PlacedBody& body, const ShapeRay& ray, OwnRay& out) noexcept {
+[[nodiscard]] bool to_own(const RayTarget& target, const ShapeRay& ray, OwnRay& out) noexcept {
+  const PlacedBody& body = target.body;
   const Eigen::Map<const Vec> origin(ray.origin);
   const Eigen::Map<const Vec> direction(ray.direction);
-  const Vec between = origin - body.position;
-  const Vec reach = body.bounds.min.cwiseAbs().cwiseMax(body.bounds.max.cwiseAbs());
-  const double size = (body.to_world.cwiseAbs() * reach).sum();
+  Vec start = origin - target.position;
   const double fastest = direction.cwiseAbs().maxCoeff();
-  if (!(between.cwiseAbs().maxCoeff() < kMostLength && size < kMostLength &&
+  if (!(start.cwiseAbs().maxCoeff() < kMostLength && target.size < kMostLength &&
         fastest < kMostLength && fastest > 1.0 / kMostLength)) {
     return false;
   }
-  const double nearest = -between.dot(direction) / direction.squaredNorm();
-  out.shift = std::max(0.0, nearest - 4.0 * size / fastest);
-  Vec start = between;
-  if (out.shift > 0.0) {
+  // Where it is nearest comes after this much of the way.
+  const double towards = -start.dot(direction);
+  const double square = direction.squaredNorm();
+  out.shift = 0.0;
+  if (towards > 4.0 * target.size * (square / fastest)) {
+    out.shift = std::max(0.0, towards / square - 4.0 * target.size / fastest);
     for (int i = 0; i < 3; ++i) {
-      start[i] = moved(origin[i], body.position[i], out.shift, direction[i]);
+      start[i] = moved(origin[i], target.position[i], out.shift, direction[i]);
     }
   }
   const Vec own_direction = body.to_local * direction;
-  int exponent = 0;
-  std::frexp(own_direction.cwiseAbs().maxCoeff(), &exponent);
-  out.stretch = std::ldexp(1.0, -exponent);
+  out.stretch = scale_to_one(own_direction.cwiseAbs().maxCoeff());
   Vec::Map(out.ray.direction) = own_direction * out.stretch;
   Vec::Map(out.ray.origin) = body.to_local * start;
-  const Vec coordinates = body.to_local.cwiseAbs() * (start.cwiseAbs() + body.position.cwiseAbs());
-  out.ray.slack = kRaySlack * (coordinates.maxCoeff() + reach.maxCoeff());
+  const Vec coordinates = body.to_local.cwiseAbs() * start.cwiseAbs();
+  out.ray.slack = kRaySlack * (coordinates.maxCoeff() + target.reach);
   return true;
 }
 
-/// Tells of the numbers that a traversal finds.
+/// Takes a ray through a surface, and tells of the triangles that it meets.
 struct RayGuide {
-  const PlacedBody& body;
-  const OwnRay& own;
-  const RayVisitor& visitor;
+  const RayTarget* target;
+  const ShapeRay* ray;
+  /// As the visitor knows it.
+  std::size_t number;
+  const RayVisitor* visitor;
+  OwnRay own;
   /// In the caller's t.
   double limit;
   /// Between which the ray is there, in own t.
-  double first = own.own(0.0);
-  double last = own.own(limit);
+  double first;
+  double last;
 
-  [[nodiscard]] double show(std::uint32_t number) const {
+  /// False if that takes other ways.
+  [[nodiscard]] bool start(const RayTarget& to, const ShapeRay& asked, std::size_t as,
+                           const RayVisitor& tells) noexcept {
+    target = &to;
+    ray = &asked;
+    number = as;
+    visitor = &tells;
+    if (!to_own(to, asked, own)) return false;
+    limit = asked.max_t;
+    first = own.own(0.0);
+    last = own.own(limit);
+    return true;
+  }
+
+  [[nodiscard]] double show(std::uint32_t slot) const {
+    const PlacedBody& body = target->body;
     double corner[3][3];
-    if (!body.own_corners(number, corner)) return limit;
+    if (!body.own_corners(slot, corner)) return limit;
     SurfaceHit found;
     switch (cross_triangle(own.ray, corner, first, last, found)) {
       case Crossing::none:
@@ -99,67 +168,110 @@ struct RayGuide {
         hit.hit = true;
         hit.t = own.shift + found.t * own.stretch;
         if (!(hit.t <= limit)) return limit;
-        Vec::Map(hit.normal) =
-            (body.to_local.transpose() * Vec::Map(found.normal).stableNormalized()).normalized();
-        return visitor.meet(visitor.context, body.shown_number(number), hit, limit);
+        Vec::Map(hit.normal) = unit_under(body.to_local.transpose(), Vec::Map(found.normal));
+        return visitor->meet(visitor->context, number, body.shown_number(slot), hit, limit);
       }
       case Crossing::doubtful:
-        break;
+        return look(slot);
     }
-    Primitive primitive;
-    if (!body.primitive(number, primitive)) return limit;
-    return visitor.look(visitor.context, primitive, limit);
+    return limit;
   }
 
-  static double show_slots(void* context, const std::uint32_t* slots, std::uint32_t count,
-                           double own_limit) {
-    RayGuide& guide = *static_cast<RayGuide*>(context);
-    const double before = guide.limit;
-    for (std::uint32_t i = 0; i < count && guide.limit >= 0.0; ++i) {
-      guide.limit = guide.show(slots[i]);
-    }
-    if (guide.limit < 0.0) return -1.0;
-    return guide.limit < before ? guide.own.own_limit(guide.limit) : own_limit;
+  /// What is lost of where the ray begins by being made relative to the body is put into where the
+  /// body is, where it is small.
+  [[nodiscard]] double look(std::uint32_t slot) const {
+    PlacedBody body = target->body;
+    body.position = -rest_of_difference(ray->origin, target->position.data());
+    Primitive primitive;
+    if (!body.primitive(slot, primitive)) return limit;
+    return visitor->look(visitor->context, number, primitive, limit);
+  }
+
+  double show_slots(const std::uint32_t* slots, std::uint32_t count, double own_limit) {
+    const double before = limit;
+    for (std::uint32_t i = 0; i < count && limit >= 0.0; ++i) limit = show(slots[i]);
+    if (limit < 0.0) return -1.0;
+    return limit < before ? own.own_limit(limit) : own_limit;
   }
 };
 
+void take_through_mesh(const MeshView& mesh, RayGuide* guides, std::uint32_t count) {
+  SurfaceRay rays[kRaysAtOnce];
+  double limits[kRaysAtOnce];
+  for (std::uint32_t i = 0; i < count; ++i) {
+    rays[i] = guides[i].own.ray;
+    limits[i] = guides[i].own.own_limit(guides[i].limit);
+  }
+  mesh_rays(mesh, {rays, count}, limits,
+            {[](void* context, std::uint32_t ray, const std::uint32_t* slots, std::uint32_t found,
+                double limit) {
+               return static_cast<RayGuide*>(context)[ray].show_slots(slots, found, limit);
+             },
+             guides});
+}
+
+void take_through_field(const HeightField& field, RayGuide& guide) {
+  const OwnRay& own = guide.own;
+  const Vec start = Vec::Map(own.ray.origin);
+  const Vec low = start.array() - own.ray.slack;
+  const Vec high = start.array() + own.ray.slack;
+  height_sweep(grid_of(field), low.data(), high.data(), own.ray.direction,
+               own.own_limit(guide.limit),
+               {[](void* context, const std::uint32_t* slots, std::uint32_t count, double limit) {
+                  return static_cast<RayGuide*>(context)->show_slots(slots, count, limit);
+                },
+                &guide});
+}
+
 /// Shows all that the ray's box meets.
-void look_at_all(const Composites& all, ShapeId id, const Pose& pose, const ShapeRay& ray,
-                 const RayVisitor& visitor) {
+void look_at_all(const Composites& all, ShapeId id, const Pose& pose, const RayGuide& guide) {
   // By this much of its coordinates a box is grown before the tests of boxes, which round them.
   constexpr double kGrowth = 0x1p-47;
+  const ShapeRay& ray = *guide.ray;
+  Pose near = pose;
+  Vec::Map(near.position) = -rest_of_difference(ray.origin, pose.position);
+  const Vec from = finite(Vec::Map(ray.origin) - Vec::Map(pose.position));
+  const double grow = kGrowth * from.cwiseAbs().maxCoeff();
   BoxSweep sweep;
-  const double grow = kGrowth * Eigen::Map<const Vec>(ray.origin).cwiseAbs().maxCoeff();
   for (int i = 0; i < 3; ++i) {
-    sweep.min[i] = ray.origin[i] - grow;
-    sweep.max[i] = ray.origin[i] + grow;
+    sweep.min[i] = from[i] - grow;
+    sweep.max[i] = from[i] + grow;
     sweep.direction[i] = ray.direction[i];
   }
   sweep.max_t = ray.max_t;
-  visit(all, id, pose, sweep, {visitor.look, visitor.context});
+  visit(all, id, near, sweep,
+        {[](void* context, const Primitive& primitive, double limit) {
+           const RayGuide& to = *static_cast<const RayGuide*>(context);
+           return to.visitor->look(to.visitor->context, to.number, primitive, limit);
+         },
+         const_cast<RayGuide*>(&guide)});
 }
 
 }  // namespace
 
-void visit_ray(const Composites& all, ShapeId id, const Pose& pose, const ShapeRay& ray,
-               const RayVisitor& visitor) {
-  const PlacedBody body = PlacedBody::at(all, id, pose);
-  OwnRay own;
-  if (!body.is_surface() || !to_own(body, ray, own)) {
-    look_at_all(all, id, pose, ray, visitor);
-    return;
+void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
+                const RayVisitor& visitor) {
+  const RayTarget target(all, id, pose);
+  const PlacedBody& body = target.body;
+  RayGuide guides[kRaysAtOnce];
+  std::uint32_t count = 0;
+  const auto go = [&] {
+    if (count != 0) take_through_mesh(*body.mesh, guides, count);
+    count = 0;
+  };
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (!(rays[i].max_t >= 0.0)) continue;
+    RayGuide& guide = guides[count];
+    const bool starts = guide.start(target, rays[i], i, visitor);
+    if (!body.is_surface() || !starts) {
+      look_at_all(all, id, pose, guide);
+    } else if (body.kind == PlacedBody::Kind::field) {
+      take_through_field(*body.field, guide);
+    } else if (++count == kRaysAtOnce) {
+      go();
+    }
   }
-  RayGuide guide{body, own, visitor, ray.max_t};
-  const SlotVisitor slots{&RayGuide::show_slots, &guide};
-  const double limit = own.own_limit(ray.max_t);
-  if (body.kind == PlacedBody::Kind::mesh) {
-    mesh_ray(*body.mesh, own.ray, limit, slots);
-    return;
-  }
-  const Vec start = Vec::Map(own.ray.origin);
-  const Vec low = start.array() - own.ray.slack;
-  const Vec high = start.array() + own.ray.slack;
-  height_sweep(grid_of(*body.field), low.data(), high.data(), own.ray.direction, limit, slots);
+  go();
 }
 
 }  // namespace winnow::mid

@@ -46,61 +46,86 @@ struct BoxPassage {
 };
 
 /// How the ray passes bounds on an axis. `from` is where it is, and `grow` by how much boxes are
-/// grown, in units of the nodes; `inverse` is how long, in tau, it takes for one.
-void set_axis(MeshRayJob& job, int axis, double from, double inverse, double grow) noexcept {
+/// grown, in units of the nodes; `inverse` is how long, in tau, it takes for one. Which way it goes
+/// is as hard to foresee as a coin: nothing branches on it.
+void set_axis(MeshRayJob& job, std::uint32_t axis, double from, double inverse,
+              double grow) noexcept {
   if (!(std::abs(inverse) <= 1.0 / kStandingRate)) {
     inverse = std::copysign(kStandingInverse, inverse);
   }
-  const bool is_backward = inverse < 0.0;
-  const auto lower = static_cast<std::uint32_t>(place_of_bound(0, static_cast<std::size_t>(axis)));
-  const auto upper =
-      static_cast<std::uint32_t>(place_of_bound(0, static_cast<std::size_t>(axis) + 3));
-  job.near_bound[axis] = is_backward ? upper : lower;
-  job.far_bound[axis] = is_backward ? lower : upper;
-  const double low = (-from - grow) * inverse;
-  const double high = (-from + grow) * inverse;
+  const std::size_t upper = std::signbit(inverse) ? 3 : 0;
+  job.near_bound[axis] = static_cast<std::uint32_t>(place_of_bound(0, axis + upper));
+  job.far_bound[axis] = static_cast<std::uint32_t>(place_of_bound(0, axis + 3 - upper));
+  const double forward_grow = std::copysign(grow, inverse);
   job.inverse[axis] = static_cast<float>(inverse);
-  job.near[axis] = static_cast<float>(is_backward ? high : low);
-  job.far[axis] = static_cast<float>(is_backward ? low : high);
+  job.near[axis] = static_cast<float>((-from - forward_grow) * inverse);
+  job.far[axis] = static_cast<float>((-from + forward_grow) * inverse);
 }
+
+/// What every ray needs of a mesh.
+struct MeshSpan {
+  Vector3d low;
+  Vector3d step;
+  Vector3d units;
+  /// Of the box of all nodes, with a step to spare on each side.
+  Vector3d least;
+  Vector3d most;
+
+  explicit MeshSpan(const MeshView& mesh) noexcept
+      : low(Eigen::Map<const Eigen::Vector3f>(mesh.origin).cast<double>()),
+        step(Eigen::Map<const Eigen::Vector3f>(mesh.step).cast<double>()),
+        units(step.cwiseInverse()),
+        least(low - step),
+        most(low + (kMaxNodeBound + 1.0) * step) {}
+};
 
 /// False if the ray passes the mesh by.
 ///
 /// A bound q becomes q * inverse + near in float: three or four roundings, each of half an ulp of
 /// at most (65536 + |from| + grow) * |inverse|. Where the ray is in the mesh's box, grown by its
 /// slack, that is less than kUnitDoubt and 2^-20 of the slack.
-bool set_job(const MeshView& mesh, const SurfaceRay& ray, double limit, MeshRayJob& job) noexcept {
-  const Vector3d low = Eigen::Map<const Eigen::Vector3f>(mesh.origin).cast<double>();
-  const Vector3d step = Eigen::Map<const Eigen::Vector3f>(mesh.step).cast<double>();
+bool set_job(const MeshSpan& mesh, const SurfaceRay& ray, double limit, MeshRayJob& job) noexcept {
   const Vector3d origin = Vector3d::Map(ray.origin);
   const Vector3d direction = Vector3d::Map(ray.direction);
   const Vector3d inverse = direction.cwiseInverse();
-  const BoxPassage passage(ray, inverse, low - step, low + (kMaxNodeBound + 1.0) * step, limit);
+  const BoxPassage passage(ray, inverse, mesh.least, mesh.most, limit);
   if (!(passage.in <= passage.out)) return false;
+  job.limit = limit;
   job.entry = passage.in;
   const Vector3d moved = passage.in * direction;
   const Vector3d from = origin + moved;
   const double slack =
       std::min(kMostSlack, ray.slack + 0x1p-51 * (origin.cwiseAbs() + moved.cwiseAbs()).maxCoeff());
   // The ray is not in the box, grown by the slack, for longer.
-  const Vector3d extent = (kMaxNodeBound + 1.0) * step + Vector3d::Constant(2.0 * slack);
+  const Vector3d extent = (kMaxNodeBound + 1.0) * mesh.step + Vector3d::Constant(2.0 * slack);
   const double longest = extent.cwiseProduct(inverse.cwiseAbs()).minCoeff();
   job.pace = 1.0 / longest;
-  const Vector3d units = step.cwiseInverse();
-  for (int axis = 0; axis < 3; ++axis) {
+  std::uint32_t fastest = 0;
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
     job.origin[axis] = from[axis];
     job.direction[axis] = direction[axis] * longest;
-    set_axis(job, axis, (from[axis] - low[axis]) * units[axis],
-             step[axis] * inverse[axis] * job.pace, kUnitDoubt + 1.001 * slack * units[axis]);
+    set_axis(job, axis, (from[axis] - mesh.low[axis]) * mesh.units[axis],
+             mesh.step[axis] * inverse[axis] * job.pace,
+             kUnitDoubt + 1.001 * slack * mesh.units[axis]);
+    if (std::abs(direction[axis]) > std::abs(direction[fastest])) fastest = axis;
   }
-  Eigen::Index fastest = 0;
-  direction.cwiseAbs().maxCoeff(&fastest);
-  job.fastest = static_cast<std::uint32_t>(fastest);
-  for (int k = 0; k < 2; ++k) {
+  job.fastest = fastest;
+  for (std::uint32_t k = 0; k < 2; ++k) {
     job.shear[k] = static_cast<float>(direction[(fastest + 1 + k) % 3] * inverse[fastest]);
   }
   job.slack = static_cast<float>(std::min(slack, 1e38));
   return true;
+}
+
+/// The product of two edges of a triangle, at right angles to both. Where no more than three bits
+/// of the products cancel, they need no more care.
+Vector3d normal_of(const Vector3d& a, const Vector3d& b) noexcept {
+  const Vector3d plus(a.y() * b.z(), a.z() * b.x(), a.x() * b.y());
+  const Vector3d minus(a.z() * b.y(), a.x() * b.z(), a.y() * b.x());
+  const Vector3d normal = plus - minus;
+  constexpr double kLeastLeft = 0.125;
+  const double size = plus.cwiseAbs().sum() + minus.cwiseAbs().sum();
+  return normal.cwiseAbs().sum() > kLeastLeft * size ? normal : accurate_cross(a, b);
 }
 
 }  // namespace
@@ -120,8 +145,8 @@ Crossing cross_triangle(const SurfaceRay& ray, const double (&corner)[3][3], dou
   const double greatest = std::max({volume[0], volume[1], volume[2]});
   if (least < -doubt && greatest > doubt) return Crossing::none;
   if (!(least > doubt || greatest < -doubt)) return Crossing::doubtful;
-  Vector3d normal = accurate_cross(Vector3d::Map(corner[1]) - Vector3d::Map(corner[0]),
-                                   Vector3d::Map(corner[2]) - Vector3d::Map(corner[0]));
+  Vector3d normal = normal_of(Vector3d::Map(corner[1]) - Vector3d::Map(corner[0]),
+                              Vector3d::Map(corner[2]) - Vector3d::Map(corner[0]));
   const double rate = normal.dot(direction);
   const double t = normal.dot(a) / rate;
   const double error = normal.cwiseAbs().sum() * (2.0 * ray.slack + 0x1p-48 * far) / std::abs(rate);
@@ -133,11 +158,17 @@ Crossing cross_triangle(const SurfaceRay& ray, const double (&corner)[3][3], dou
   return Crossing::found;
 }
 
-void mesh_ray(const MeshView& mesh, const SurfaceRay& ray, double limit,
-              const SlotVisitor& visitor) noexcept {
-  MeshRayJob job;
-  if (mesh.triangle_count == 0 || !(limit >= 0.0) || !set_job(mesh, ray, limit, job)) return;
-  mesh_kernels().rays(mesh, job, limit, visitor);
+void mesh_rays(const MeshView& mesh, std::span<const SurfaceRay> rays, const double* limits,
+               const RaySlotVisitor& visitor) noexcept {
+  if (mesh.triangle_count == 0) return;
+  const MeshSpan span(mesh);
+  MeshRayJob jobs[kRaysAtOnce];
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < rays.size(); ++i) {
+    if (!(limits[i] >= 0.0) || !set_job(span, rays[i], limits[i], jobs[count])) continue;
+    jobs[count++].ray = i;
+  }
+  mesh_kernels().rays(mesh, jobs, count, visitor);
 }
 
 }  // namespace winnow

@@ -1,8 +1,9 @@
 #pragma once
 
-#include "pipeline/mesh/mesh_view.h"
+#include "pipeline/mesh/mesh_traversal.h"
 
 #include <cstdint>
+#include <span>
 
 namespace winnow {
 
@@ -29,9 +30,10 @@ struct SurfaceHit {
 [[nodiscard]] Crossing cross_triangle(const SurfaceRay& ray, const double (&corner)[3][3],
                                       double low, double high, SurfaceHit& hit) noexcept;
 
-/// Slots of all triangles that the ray may meet at some t in [0, limit], and few others, roughly in
-/// the order in which it does. The visitor is as those of mesh_traversal.h.
-void mesh_ray(const MeshView& mesh, const SurfaceRay& ray, double limit,
-              const SlotVisitor& visitor) noexcept;
+/// Slots of all triangles that each ray may meet at some t in [0, its limit], and few others,
+/// roughly in the order in which it does. At most kRaysAtOnce rays, each with a limit; the visitor
+/// knows them by their index, and is otherwise as those of mesh_traversal.h.
+void mesh_rays(const MeshView& mesh, std::span<const SurfaceRay> rays, const double* limits,
+               const RaySlotVisitor& visitor) noexcept;
 
 }  // namespace winnow

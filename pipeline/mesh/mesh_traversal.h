@@ -8,8 +8,8 @@
 namespace winnow {
 
 // Traversals of a mesh's tree, in the mesh's own frame, unscaled. None of them misses a triangle;
-// all may show some more than asked for. Scratch of fixed size lies on the stack, 90 KB for pairs
-// and 3 KB for the others. Serial, and the same output on any instruction set.
+// all may show some more than asked for. Scratch of fixed size lies on the stack, 90 KB for pairs,
+// 25 KB for rays and 3 KB for the others. Serial, and the same output on any instruction set.
 
 /// Slots of all triangles whose boxes meet [min, max], ascending. Bounds may be infinite.
 void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
@@ -102,9 +102,22 @@ struct MeshNearJob {
   double scale[3];
 };
 
+/// Rays that are taken through a mesh together, in turns.
+inline constexpr std::uint32_t kRaysAtOnce = 16;
+
+/// Is shown the slots of a leaf that one of several rays may meet; gives back that ray's new limit.
+struct RaySlotVisitor {
+  double (*visit)(void* context, std::uint32_t ray, const std::uint32_t* slots, std::uint32_t count,
+                  double limit) = nullptr;
+  void* context = nullptr;
+};
+
 /// A ray on its way through the nodes. `tau` is time from where it comes to the mesh, in another
 /// unit: it leaves the mesh's box before tau = 2.
 struct MeshRayJob {
+  /// As its visitor knows it, and the limit of t.
+  std::uint32_t ray;
+  double limit;
   /// Where the ray is at tau = 0, and by how much it moves, in the mesh's lengths.
   double origin[3];
   double direction[3];
@@ -134,8 +147,9 @@ struct MeshKernels {
                 const SlotVisitor& visitor);
   void (*near_pairs)(const MeshView& a, const MeshView& b, const MeshPairJob& job, double limit,
                      const SlotPairVisitor& visitor);
-  void (*rays)(const MeshView& mesh, const MeshRayJob& job, double limit,
-               const SlotVisitor& visitor);
+  /// Of kRaysAtOnce or fewer.
+  void (*rays)(const MeshView& mesh, const MeshRayJob* jobs, std::uint32_t count,
+               const RaySlotVisitor& visitor);
   void (*near)(const MeshView& mesh, const MeshNearJob& job, double limit,
                const SlotVisitor& visitor);
 };

@@ -36,18 +36,24 @@ std::uint16_t& written_bound(const MeshView& view, std::uint16_t* words, std::ui
   return words[view.node[level] - words + static_cast<std::ptrdiff_t>(place_of_bound(node, bound))];
 }
 
-/// The float box of slots [first, first + 16).
-struct LeafBox {
+/// Triangles of which few share a vertex lie where their vertices do, each somewhere else: a look
+/// at the boxes of sixteen costs a fraction of one at their corners.
+bool has_boxes(const MeshView& view) {
+  return view.vertex_count > view.triangle_count;
+}
+
+/// The float box of slots [first, first + count).
+struct SlotBox {
   float low[3];
   float high[3];
 
-  LeafBox(const MeshView& view, std::size_t first) {
+  SlotBox(const MeshView& view, std::size_t first, std::size_t count) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low[axis] = coordinate(view, view.corner[0][first], axis);
       high[axis] = low[axis];
     }
     for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t i = first; i < first + kMeshFanout; ++i) {
+      for (std::size_t i = first; i < first + count; ++i) {
         const float* const vertex = view.vertex + std::size_t{3} * view.corner[k][i];
         for (std::size_t axis = 0; axis < 3; ++axis) {
           low[axis] = std::min(low[axis], vertex[axis]);
@@ -89,20 +95,54 @@ std::uint16_t quantised_high(const MeshView& view, std::size_t axis, double x) {
   return static_cast<std::uint16_t>(q);
 }
 
+/// Writes the bounds of a box to where those of number `i` lie in a level.
+void write_box(const MeshView& view, const SlotBox& box, std::uint16_t* level, std::size_t i) {
+  const auto place = static_cast<std::uint32_t>(i);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    level[place_of_bound(place, axis)] =
+        quantised_low(view, axis, static_cast<double>(box.low[axis]));
+    level[place_of_bound(place, 3 + axis)] =
+        quantised_high(view, axis, static_cast<double>(box.high[axis]));
+  }
+}
+
+/// The bounds of number i of a level, which are those of its `children` in the level below.
+void join_boxes(const std::uint16_t* below, std::uint32_t children, std::uint16_t* level,
+                std::uint32_t i) {
+  const std::uint32_t first = i * kMeshFanout;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const std::uint16_t* const bounds = below + place_of_bound(first, k);
+    std::uint16_t bound = bounds[0];
+    for (std::uint32_t child = 1; child < children; ++child) {
+      bound = k < 3 ? std::min(bound, bounds[child]) : std::max(bound, bounds[child]);
+    }
+    level[place_of_bound(i, k)] = bound;
+  }
+}
+
+/// Leaves [first, end), and their triangles where these have boxes.
+void fit_leaves(const MeshView& view, std::uint16_t* words, std::size_t first, std::size_t end) {
+  std::uint16_t* const leaves = words + (view.node[0] - words);
+  std::uint16_t* const boxes = view.box != nullptr ? words + (view.box - words) : nullptr;
+  for (std::size_t i = first; i < end; ++i) {
+    const std::size_t slot = i * kMeshFanout;
+    if (boxes == nullptr) {
+      write_box(view, SlotBox(view, slot, kMeshFanout), leaves, i);
+      continue;
+    }
+    for (std::size_t k = slot; k < slot + kMeshFanout; ++k) {
+      write_box(view, SlotBox(view, k, 1), boxes, k);
+    }
+    join_boxes(boxes, kMeshFanout, leaves, static_cast<std::uint32_t>(i));
+  }
+}
+
 /// Level `level` from the one below.
 void fit_upper_level(const MeshView& view, std::uint32_t level, std::uint16_t* words) {
   const std::uint32_t below = view.count[level - 1];
   for (std::uint32_t i = 0; i < view.count[level]; ++i) {
-    const std::uint32_t first = i * kMeshFanout;
-    const std::uint32_t end = std::min(below, first + kMeshFanout);
-    for (std::size_t k = 0; k < 6; ++k) {
-      std::uint16_t bound = bound_of(view, level - 1, first, k);
-      for (std::uint32_t child = first + 1; child < end; ++child) {
-        const std::uint16_t other = bound_of(view, level - 1, child, k);
-        bound = k < 3 ? std::min(bound, other) : std::max(bound, other);
-      }
-      written_bound(view, words, level, i, k) = bound;
-    }
+    const std::uint32_t children = std::min(below - i * kMeshFanout, kMeshFanout);
+    join_boxes(view.node[level - 1], children, words + (view.node[level] - words), i);
   }
 }
 
@@ -151,7 +191,7 @@ std::size_t plan_mesh_levels(MeshView& view) noexcept {
     view.count[view.levels++] = nodes;
     words += 6 * whole_leaves(nodes);
   } while (nodes > kMeshFanout);
-  return words;
+  return words + (has_boxes(view) ? 6 * whole_leaves(view.triangle_count) : 0);
 }
 
 void link_mesh_levels(MeshView& view, const std::uint16_t* words) noexcept {
@@ -159,6 +199,7 @@ void link_mesh_levels(MeshView& view, const std::uint16_t* words) noexcept {
     view.node[level] = words;
     words += 6 * whole_leaves(view.count[level]);
   }
+  view.box = has_boxes(view) ? words : nullptr;
 }
 
 void fit_mesh_levels(MeshView& view, std::uint16_t* words, float low[3], float high[3],
@@ -176,18 +217,8 @@ void fit_mesh_levels(MeshView& view, std::uint16_t* words, float low[3], float h
   }
   choose_scale(view, low, high);
   const std::size_t leaves = view.count[0];
-  for_stretches(execution, leaves, kLeavesPerStretch, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) {
-      const LeafBox box(view, i * kMeshFanout);
-      const auto leaf = static_cast<std::uint32_t>(i);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        written_bound(view, words, 0, leaf, axis) =
-            quantised_low(view, axis, static_cast<double>(box.low[axis]));
-        written_bound(view, words, 0, leaf, 3 + axis) =
-            quantised_high(view, axis, static_cast<double>(box.high[axis]));
-      }
-    }
-  });
+  for_stretches(execution, leaves, kLeavesPerStretch,
+                [&](std::size_t first, std::size_t end) { fit_leaves(view, words, first, end); });
   pad_levels(view, words);
   for (std::uint32_t level = 1; level < view.levels; ++level) fit_upper_level(view, level, words);
 }

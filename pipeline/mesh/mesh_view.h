@@ -44,6 +44,8 @@ struct MeshView {
   std::uint32_t levels = 0;
   std::uint32_t count[kMaxMeshLevels] = {};
   const std::uint16_t* node[kMaxMeshLevels] = {};
+  /// The same of every slot, in the place of nodes; null where triangles have no boxes.
+  const std::uint16_t* box = nullptr;
 };
 
 /// Where column `bound` of a node lies in its level; of the first of sixteen those of the others

@@ -100,6 +100,39 @@ TEST(TriangleMeshes, read_strided_columns_of_either_precision_and_short_indices_
   }
 }
 
+/// What a bound of a slot's box stands for.
+double box_bound(const MeshView& view, std::uint32_t slot, std::size_t bound) {
+  const std::size_t axis = bound % 3;
+  return static_cast<double>(view.origin[axis]) +
+         static_cast<double>(view.box[place_of_bound(slot, bound)]) *
+             static_cast<double>(view.step[axis]);
+}
+
+TEST(TriangleMeshes, triangles_of_more_vertices_than_triangles_are_in_boxes_of_their_own) {
+  TriangleMesh closed;
+  ASSERT_EQ(torus(24, 12).build(closed), Status::ok);
+  EXPECT_EQ(view_of(closed).box, nullptr);
+  const MeshData data = degenerate_soup(300, 5);
+  CountingMemory memory;
+  TriangleMesh soup(&memory);
+  ASSERT_EQ(data.build(soup), Status::ok);
+  ASSERT_EQ(soup.refit(data.points()), Status::ok);
+  EXPECT_EQ(soup.footprint().total().reserved, memory.outstanding());
+  const MeshView& view = view_of(soup);
+  ASSERT_NE(view.box, nullptr);
+  for (std::uint32_t slot = 0; slot < view.triangle_count; ++slot) {
+    for (const std::uint32_t* const corner : view.corner) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto x = static_cast<double>(coordinate(view, corner[slot], axis));
+        EXPECT_LE(box_bound(view, slot, axis), x);
+        EXPECT_GE(box_bound(view, slot, 3 + axis), x);
+        EXPECT_LE(bound_of(view, 0, slot / kMeshFanout, axis),
+                  view.box[place_of_bound(slot, axis)]);
+      }
+    }
+  }
+}
+
 TEST(TriangleMeshes, take_at_most_24_bytes_a_triangle_and_account_for_each) {
   for (const MeshData& data : {torus(100, 50), terrain(70)}) {
     CountingMemory memory;

@@ -418,7 +418,10 @@ TEST_F(Meshes, a_ray_is_shown_every_triangle_that_it_is_aimed_at) {
           random.chance(0.3) ? std::numeric_limits<double>::infinity() : far * (1.0 + 1e-9);
       const Slots shown = on_all_isas([&] {
         Seen seen{{}, 0.0, true};
-        mesh_ray(view_of(mesh), ray, limit, {Seen::visit, &seen});
+        mesh_rays(view_of(mesh), {&ray, 1}, &limit,
+                  {[](void* context, std::uint32_t, const std::uint32_t* slots, std::uint32_t count,
+                      double most) { return Seen::visit(context, slots, count, most); },
+                   &seen});
         std::sort(seen.slots.begin(), seen.slots.end());
         return std::binary_search(seen.slots.begin(), seen.slots.end(), aim) ? Slots{aim} : Slots{};
       });

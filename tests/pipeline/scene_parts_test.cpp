@@ -313,7 +313,8 @@ class IdleMidPhase final : public MidPhase {
   void visit(ShapeId, const Pose&, const BoxSweep&, const PrimitiveVisitor&) const override {
     ++calls;
   }
-  void visit_ray(ShapeId, const Pose&, const ShapeRay&, const RayVisitor&) const override {
+  void visit_rays(ShapeId, const Pose&, std::span<const ShapeRay>,
+                  const RayVisitor&) const override {
     ++calls;
   }
   void visit_near(ShapeId, const Pose&, const BoxSweep&, double,

@@ -174,19 +174,49 @@ class Memo {
   Entry entries_[kEntries];
 };
 
+/// Sets of a few composite bodies are not worth a traversal: they have trees of their own.
+bool is_few(const SceneState& scene, const SceneSet& set) noexcept {
+  constexpr std::size_t kFew = 4;
+  return set.partition.has_value() && set.body_of.size() <= kFew &&
+         std::all_of(set.body_of.begin(), set.body_of.end(),
+                     [&](std::uint32_t body) { return scene.shape[body].is_composite(); });
+}
+
+bool has_crowd(const SceneState& scene) noexcept {
+  return std::any_of(std::begin(scene.sets), std::end(scene.sets), [&](const SceneSet& set) {
+    return set.partition.has_value() && !is_few(scene, set);
+  });
+}
+
+/// Calls look(body) for all bodies of such sets that the filter lets pass.
+template <typename Look>
+void look_at_few(const SceneState& scene, const Filter& filter, Look& look) {
+  const LookingFilter looking(scene, filter, look);
+  for (const SceneSet& set : scene.sets) {
+    if (!is_few(scene, set)) continue;
+    for (std::size_t id = 0; id < set.body_of.size(); ++id) {
+      // Places of bodies that have gone keep their names.
+      const std::uint32_t body = set.body_of[id];
+      if (scene.place[body].id == id) looking.show(*set.partition, body);
+    }
+  }
+}
+
 /// One question: something moves through the scene.
 class CastQuestion {
  public:
   CastQuestion(QueryState& state, const SweptShape& swept, const Filter& filter) noexcept
-      : state_(state), swept_(swept), filter_(filter) {}
+      : state_(state), swept_(swept), filter_(filter), limit_(swept.max_t()) {}
 
   Status closest(SceneHit& hit);
-  Status any(SceneHit& hit);
   Status all();
+  /// The same without what `look_at_few` shows, which found that it meets `body` at t first, or
+  /// kNoObject. The hit is left alone if nothing is better.
+  Status closest_in_crowds(std::uint32_t body, double t, SceneHit& hit);
+  Status any_in_crowds(SceneHit& hit);
 
  private:
   [[nodiscard]] SweptBox swept_box() const noexcept;
-  [[nodiscard]] double limit() const noexcept { return found() ? best_.t() : swept_.max_t(); }
   [[nodiscard]] bool found() const noexcept { return body_ != kNoObject; }
   [[nodiscard]] bool meets(std::uint32_t body, double limit, bool any,
                            BodyMeeting& meeting) const noexcept {
@@ -197,22 +227,18 @@ class CastQuestion {
   Status closest_in_crowds();
   /// True if the body is now the first one met.
   bool improves(std::uint32_t body) noexcept;
-  /// Sets of a few composite bodies are not worth a traversal: they have trees of their own.
-  [[nodiscard]] bool is_few(const SceneSet& set) const noexcept;
-  template <typename Look>
-  void look_at_few(Look& look) const;
   /// Calls ask(partition) for the others, until it does not answer ok.
   template <typename Ask>
   [[nodiscard]] Status each_crowd(Ask&& ask) const;
-  [[nodiscard]] bool has_crowd() const noexcept;
   template <typename Look>
   [[nodiscard]] Status look_at_rest(const Partition& partition, const SweptBox& path, Look& look);
 
   QueryState& state_;
   const SweptShape& swept_;
   const Filter& filter_;
-  /// The body that is the first one met, as far as is known.
+  /// The body that is the first one met, as far as is known, and when; or else the last t.
   std::uint32_t body_ = kNoObject;
+  double limit_;
   BodyMeeting best_;
   Memo memo_;
 };
@@ -236,46 +262,21 @@ SceneHit CastQuestion::shown(std::uint32_t body, const BodyMeeting& meeting) con
 bool CastQuestion::improves(std::uint32_t body) noexcept {
   if (const bool* const known = memo_.find(body)) return *known;
   BodyMeeting meeting;
-  bool better = meets(body, limit(), false, meeting);
+  bool better = meets(body, limit_, false, meeting);
   // Equal t are ordered by the bodies' ids.
-  if (better && found() && meeting.t() == best_.t()) better = body < body_;
+  if (better && found() && meeting.t() == limit_) better = body < body_;
   if (better) {
     body_ = body;
     best_ = meeting;
+    limit_ = meeting.t();
   }
   return memo_.note(body, better);
-}
-
-bool CastQuestion::is_few(const SceneSet& set) const noexcept {
-  constexpr std::size_t kFew = 4;
-  return set.partition.has_value() && set.body_of.size() <= kFew &&
-         std::all_of(set.body_of.begin(), set.body_of.end(),
-                     [&](std::uint32_t body) { return state_.scene.shape[body].is_composite(); });
-}
-
-template <typename Look>
-void CastQuestion::look_at_few(Look& look) const {
-  const LookingFilter looking(state_.scene, filter_, look);
-  for (const SceneSet& set : state_.scene.sets) {
-    if (!is_few(set)) continue;
-    for (std::size_t id = 0; id < set.body_of.size(); ++id) {
-      // Places of bodies that have gone keep their names.
-      const std::uint32_t body = set.body_of[id];
-      if (state_.scene.place[body].id == id) looking.show(*set.partition, body);
-    }
-  }
-}
-
-bool CastQuestion::has_crowd() const noexcept {
-  return std::any_of(
-      std::begin(state_.scene.sets), std::end(state_.scene.sets),
-      [&](const SceneSet& set) { return set.partition.has_value() && !is_few(set); });
 }
 
 template <typename Ask>
 Status CastQuestion::each_crowd(Ask&& ask) const {
   for (const SceneSet& set : state_.scene.sets) {
-    if (!set.partition.has_value() || is_few(set)) continue;
+    if (!set.partition.has_value() || is_few(state_.scene, set)) continue;
     if (const Status status = ask(*set.partition); status != Status::ok) return status;
   }
   return Status::ok;
@@ -289,7 +290,7 @@ Status CastQuestion::look_at_rest(const Partition& partition, const SweptBox& pa
     return false;
   };
   LookingFilter looking(state_.scene, filter_, look_only);
-  return partition.overlap(path.rest(limit()), state_.objects, looking.filter());
+  return partition.overlap(path.rest(limit_), state_.objects, looking.filter());
 }
 
 /// In two traversals per partition and piece of the path. In the first one bodies that improve the
@@ -306,14 +307,14 @@ Status CastQuestion::closest_in_crowds() {
   };
   LookingFilter first(state_.scene, filter_, look);
   LookingFilter second(state_.scene, filter_, look_only);
-  while (path.next() && !(found() && best_.t() < path.begin())) {
+  while (path.next() && !(found() && limit_ < path.begin())) {
     const Status status = each_crowd([&](const Partition& partition) {
       if (path.is_rest()) return look_at_rest(partition, path, look);
       Hit box;
-      BoxCast cast = path.cast(limit());
+      BoxCast cast = path.cast(limit_);
       Status asked = partition.closest(cast, box, first.filter());
       if (asked != Status::ok || !box) return asked;
-      cast = path.cast(limit());
+      cast = path.cast(limit_);
       cast.min_t = box.t;
       if (cast.max_t >= cast.min_t) asked = partition.closest(cast, box, second.filter());
       return asked;
@@ -325,33 +326,40 @@ Status CastQuestion::closest_in_crowds() {
 
 Status CastQuestion::closest(SceneHit& hit) {
   auto look = [&](std::uint32_t body) { return improves(body); };
-  look_at_few(look);
-  const Status status = has_crowd() ? closest_in_crowds() : Status::ok;
+  look_at_few(state_.scene, filter_, look);
+  const Status status = has_crowd(state_.scene) ? closest_in_crowds() : Status::ok;
   if (status == Status::ok) hit = found() ? shown(body_, best_) : SceneHit{};
   return status;
 }
 
-Status CastQuestion::any(SceneHit& hit) {
+Status CastQuestion::closest_in_crowds(std::uint32_t body, double t, SceneHit& hit) {
+  body_ = body;
+  if (found()) limit_ = t;
+  const Status status = closest_in_crowds();
+  if (status == Status::ok && body_ != body) hit = shown(body_, best_);
+  return status;
+}
+
+Status CastQuestion::any_in_crowds(SceneHit& hit) {
   auto look = [&](std::uint32_t body) {
     if (found()) return true;
     if (const bool* const known = memo_.find(body)) return *known;
-    if (!meets(body, swept_.max_t(), true, best_)) return memo_.note(body, false);
+    if (!meets(body, limit_, true, best_)) return memo_.note(body, false);
     body_ = body;
     return true;
   };
-  look_at_few(look);
   SweptBox path = swept_box();
   LookingFilter looking(state_.scene, filter_, look);
-  while (!found() && has_crowd() && path.next()) {
+  while (!found() && path.next()) {
     const Status status = each_crowd([&](const Partition& partition) {
       if (found()) return Status::ok;
       if (path.is_rest()) return look_at_rest(partition, path, look);
       Hit box;
-      return partition.any(path.cast(swept_.max_t()), box, looking.filter());
+      return partition.any(path.cast(limit_), box, looking.filter());
     });
     if (status != Status::ok) return status;
   }
-  hit = found() ? shown(body_, best_) : SceneHit{};
+  if (found()) hit = shown(body_, best_);
   return Status::ok;
 }
 
@@ -369,11 +377,11 @@ Status CastQuestion::all() {
     }
     return false;
   };
-  look_at_few(look);
+  look_at_few(state_.scene, filter_, look);
   SweptBox path = swept_box();
   LookingFilter looking(state_.scene, filter_, look);
   Status status = Status::ok;
-  while (status == Status::ok && has_crowd() && path.next()) {
+  while (status == Status::ok && has_crowd(state_.scene) && path.next()) {
     status = each_crowd([&](const Partition& partition) {
       if (path.is_rest()) return look_at_rest(partition, path, look);
       return partition.all(path.cast(swept_.max_t()), state_.boxes, looking.filter());
@@ -390,6 +398,120 @@ Status CastQuestion::all() {
   const SceneHit* const end = std::unique(
       own, hits.end(), [](const SceneHit& a, const SceneHit& b) { return a.key == b.key; });
   hits.set_size(static_cast<std::size_t>(end - hits.begin()));
+  return Status::ok;
+}
+
+/// Up to `Room` rays that are asked together, which costs less than to ask one after the other
+/// wherever they come to the same surfaces, and what each of them meets first.
+template <std::size_t Room>
+class RaysTogether {
+ public:
+  RaysTogether(QueryState& state, const Filter& filter) noexcept : state_(state), filter_(filter) {}
+
+  /// Of rays [first, first + count) of a batch, the first hits, or `any`. They must be valid.
+  Status ask(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool any);
+  [[nodiscard]] const SceneHit& hit(std::size_t i) const noexcept { return hit_[i]; }
+
+ private:
+  struct Meeting {
+    std::uint32_t body;
+    std::uint32_t part;
+    double t;
+    double normal[3];
+  };
+  void meet_few(std::uint32_t body);
+  [[nodiscard]] Status ask_crowds(std::size_t i);
+  /// The limit for the ray to go on with.
+  double take(std::size_t i, const Meeting& meeting) noexcept;
+  [[nodiscard]] SceneHit shown(std::size_t i) const noexcept;
+
+  QueryState& state_;
+  const Filter& filter_;
+  std::size_t count_ = 0;
+  bool any_ = false;
+  /// Each up to what it has met so far; with `any`, below zero once it has met something.
+  ShapeRay ray_[Room];
+  Meeting best_[Room];
+  SceneHit hit_[Room];
+};
+
+template <std::size_t Room>
+double RaysTogether<Room>::take(std::size_t i, const Meeting& meeting) noexcept {
+  Meeting& best = best_[i];
+  // Equal t are ordered by the bodies' ids, then by part.
+  if (best.body != kNoObject && meeting.t == best.t &&
+      (best.body != meeting.body ? best.body < meeting.body : best.part < meeting.part)) {
+    return best.t;
+  }
+  best = meeting;
+  ray_[i].max_t = any_ ? -1.0 : meeting.t;
+  return ray_[i].max_t;
+}
+
+template <std::size_t Room>
+void RaysTogether<Room>::meet_few(std::uint32_t body) {
+  const PlacedShape placed = state_.placed(body);
+  const auto meet = [&](std::size_t i, std::uint32_t part, const ShapeHit& hit, double) {
+    return take(i, {body, part, hit.t, {hit.normal[0], hit.normal[1], hit.normal[2]}});
+  };
+  const auto look = [&](std::size_t i, const ConvexPart& part, double limit) {
+    const RaySweep swept(state_.scene.shapes, ray_[i]);
+    const Difference from = difference(ray_[i].origin, placed.pose.position);
+    SweepMeeting found;
+    if (!swept.meets(from.difference, part, limit, found)) return limit;
+    return take(i, {body, part.part, found.t, {found.normal[0], found.normal[1], found.normal[2]}});
+  };
+  state_.parts.met_by_rays(placed, {ray_, count_}, meet, look);
+}
+
+template <std::size_t Room>
+SceneHit RaysTogether<Room>::shown(std::size_t i) const noexcept {
+  SceneHit hit;
+  const Meeting& best = best_[i];
+  if (best.body == kNoObject) return hit;
+  hit.key = state_.scene.keys.key_of(best.body);
+  hit.data = state_.scene.keys.client_data(best.body);
+  hit.part = best.part;
+  hit.t = best.t;
+  // Summed so that a body that is far away loses nothing by it.
+  const double* const base = state_.scene.pose[best.body].position;
+  const Difference from = difference(ray_[i].origin, base);
+  for (int k = 0; k < 3; ++k) {
+    hit.normal[k] = best.normal[k];
+    hit.point[k] = base[k] + (from.difference[k] + best.t * ray_[i].direction[k]);
+  }
+  return hit;
+}
+
+template <std::size_t Room>
+Status RaysTogether<Room>::ask_crowds(std::size_t i) {
+  const std::uint32_t body = best_[i].body;
+  if (any_ && body != kNoObject) return Status::ok;
+  const RaySweep swept(state_.scene.shapes, ray_[i]);
+  CastQuestion question(state_, swept, filter_);
+  return any_ ? question.any_in_crowds(hit_[i])
+              : question.closest_in_crowds(body, best_[i].t, hit_[i]);
+}
+
+template <std::size_t Room>
+Status RaysTogether<Room>::ask(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
+                               bool any) {
+  count_ = count;
+  any_ = any;
+  for (std::size_t i = 0; i < count; ++i) {
+    ray_[i] = rays[first + i];
+    best_[i].body = kNoObject;
+  }
+  auto look = [&](std::uint32_t body) {
+    meet_few(body);
+    return false;
+  };
+  look_at_few(state_.scene, filter_, look);
+  for (std::size_t i = 0; i < count; ++i) hit_[i] = shown(i);
+  if (!has_crowd(state_.scene)) return Status::ok;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (const Status status = ask_crowds(i); status != Status::ok) return status;
+  }
   return Status::ok;
 }
 
@@ -437,15 +559,27 @@ void put(const SceneHitColumns& columns, std::size_t row, const SceneHit& hit) n
 
 /// Asks for one hit of each ray.
 Status ask_each(QueryState* state, const ShapeRayBatch& rays, const Filter& filter,
-                const SceneHitColumns& hits, Status (CastQuestion::*ask)(SceneHit&)) {
+                const SceneHitColumns& hits, bool any) {
   Status status = check(state, rays);
-  for (std::size_t i = 0; i < rays.count && status == Status::ok; ++i) {
-    const ShapeRay ray = rays[i];
-    SceneHit hit;
-    const RaySweep swept(state->scene.shapes, ray);
-    status = (CastQuestion(*state, swept, filter).*ask)(hit);
-    if (status == Status::ok) put(hits, i, hit);
+  if (status != Status::ok) return status;
+  constexpr std::size_t kRaysTogether = 16;
+  RaysTogether<kRaysTogether> group(*state, filter);
+  for (std::size_t first = 0; first < rays.count; first += kRaysTogether) {
+    const std::size_t count = std::min(kRaysTogether, rays.count - first);
+    status = group.ask(rays, first, count, any);
+    if (status != Status::ok) return status;
+    for (std::size_t i = 0; i < count; ++i) put(hits, first + i, group.hit(i));
   }
+  return Status::ok;
+}
+
+Status ask_one(QueryState* state, const ShapeRay& ray, const Filter& filter, SceneHit& hit,
+               bool any) {
+  Status status = check(state, ray);
+  if (status != Status::ok) return status;
+  RaysTogether<1> group(*state, filter);
+  status = group.ask(std::span<const ShapeRay>(&ray, 1), 0, 1, any);
+  if (status == Status::ok) hit = group.hit(0);
   return status;
 }
 
@@ -466,13 +600,11 @@ Status check(const QueryState* state, const ShapeCast& cast, double tolerance) n
 }  // namespace
 
 Status SceneQueries::closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
-  if (const Status status = check(state_, ray); status != Status::ok) return status;
-  return CastQuestion(*state_, RaySweep(state_->scene.shapes, ray), filter).closest(hit);
+  return ask_one(state_, ray, filter, hit, false);
 }
 
 Status SceneQueries::any(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
-  if (const Status status = check(state_, ray); status != Status::ok) return status;
-  return CastQuestion(*state_, RaySweep(state_->scene.shapes, ray), filter).any(hit);
+  return ask_one(state_, ray, filter, hit, true);
 }
 
 Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
@@ -487,12 +619,12 @@ Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
 
 Status SceneQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns& hits,
                              const Filter& filter) {
-  return ask_each(state_, rays, filter, hits, &CastQuestion::closest);
+  return ask_each(state_, rays, filter, hits, false);
 }
 
 Status SceneQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
                          const Filter& filter) {
-  return ask_each(state_, rays, filter, hits, &CastQuestion::any);
+  return ask_each(state_, rays, filter, hits, true);
 }
 
 Status SceneQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter) {

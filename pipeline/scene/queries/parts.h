@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <type_traits>
 
 namespace winnow {
@@ -75,14 +76,16 @@ class PartTraversal {
   void met(const PlacedShape& placed, const BoxSweep& sweep, Visit&& visit) const {
     traverse(placed, sweep, sweep.max_t, false, visitor(visit));
   }
-  /// Calls meet(part, hit, limit) for triangles that the ray meets for certain, and
-  /// look(part, limit) for all other parts that it may meet, of a composite shape.
+  /// Calls meet(ray, part, hit, limit) for triangles that a ray meets for certain, and
+  /// look(ray, part, limit) for all other parts that it may meet, of a composite shape. See
+  /// RayVisitor.
   template <typename Meet, typename Look>
-  void met_by_ray(const PlacedShape& placed, const ShapeRay& ray, Meet&& meet, Look&& look) const {
+  void met_by_rays(const PlacedShape& placed, std::span<const ShapeRay> rays, Meet&& meet,
+                   Look&& look) const {
     using Meeting = RayMeeting<std::remove_reference_t<Meet>, std::remove_reference_t<Look>>;
     Meeting meeting{meet, look};
-    composites_->visit_ray(placed.shape, placed.pose, ray,
-                           {&Meeting::call_meet, &Meeting::call_look, &meeting});
+    composites_->visit_rays(placed.shape, placed.pose, rays,
+                            {&Meeting::call_meet, &Meeting::call_look, &meeting});
   }
   /// Calls visit(a, b) for pairs of parts of two meshes that may share a point, until it says
   /// false. False, and nothing is shown, if these are no two meshes.
@@ -129,11 +132,13 @@ class PartTraversal {
     Meet& meet;
     Look& look;
 
-    static double call_meet(void* context, std::uint32_t part, const ShapeHit& hit, double limit) {
-      return static_cast<RayMeeting*>(context)->meet(part, hit, limit);
+    static double call_meet(void* context, std::size_t ray, std::uint32_t part, const ShapeHit& hit,
+                            double limit) {
+      return static_cast<RayMeeting*>(context)->meet(ray, part, hit, limit);
     }
-    static double call_look(void* context, const Primitive& primitive, double limit) {
-      return static_cast<RayMeeting*>(context)->look(part_of(primitive), limit);
+    static double call_look(void* context, std::size_t ray, const Primitive& primitive,
+                            double limit) {
+      return static_cast<RayMeeting*>(context)->look(ray, part_of(primitive), limit);
     }
   };
   struct PartVisitor {

@@ -244,13 +244,17 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
     return found;
   }
   ShapeRay ray = *swept.ray();
-  std::copy_n(from_, 3, ray.origin);
   ray.max_t = limit;
-  auto meet = [&](std::uint32_t part, const ShapeHit& hit, double) {
-    meeting = meeting_at(ray, hit);
+  const auto meet_by_ray = [&](std::size_t, std::uint32_t part, const ShapeHit& hit, double) {
+    ShapeRay own = ray;
+    std::copy_n(from_, 3, own.origin);
+    meeting = meeting_at(own, hit);
     return improve({body.shape, placed.pose, part});
   };
-  parts.met_by_ray(placed, ray, meet, look);
+  const auto look_by_ray = [&](std::size_t, const ConvexPart& part, double most) {
+    return look(part, most);
+  };
+  parts.met_by_rays(body, {&ray, 1}, meet_by_ray, look_by_ray);
   return found;
 }
 
