@@ -6,6 +6,7 @@
 #include "partitions/tree/traversal.wide.h"
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_traversal.h"
+#include "simd/lanes/vectors.h"
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
@@ -38,6 +39,31 @@ class SweepMeasure {
       exit = min(exit, max(a, b) * Doubles(1.0 + kMeasureError));
     }
     return select(met & (entry <= exit), entry, Doubles(__builtin_inf()));
+  }
+  /// When to look at triangles whose boxes are met at these times: not before the box comes to
+  /// their planes. What is met first comes first so, and others need not be looked at closely.
+  template <int Half>
+  [[gnu::always_inline]] Doubles order(const Corners16& corners, const Doubles& met) const {
+    Vec3<double> corner[3];
+    for (int k = 0; k < 3; ++k) {
+      corner[k] = {to_double<Half>(corners.at[k][0]), to_double<Half>(corners.at[k][1]),
+                   to_double<Half>(corners.at[k][2])};
+    }
+    const double* const low = job_.min;
+    const double* const high = job_.max;
+    const Vec3<double> normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const Vec3<double> middle{0.5 * low[0] + 0.5 * high[0], 0.5 * low[1] + 0.5 * high[1],
+                              0.5 * low[2] + 0.5 * high[2]};
+    const Vec3<double> half{0.5 * high[0] - 0.5 * low[0], 0.5 * high[1] - 0.5 * low[1],
+                            0.5 * high[2] - 0.5 * low[2]};
+    const Vec3<double> way{job_.direction[0], job_.direction[1], job_.direction[2]};
+    const Doubles above = dot(normal, middle - corner[0]);
+    const Doubles gap =
+        abs(above) - (abs(normal.x) * half.x + abs(normal.y) * half.y + abs(normal.z) * half.z);
+    const Doubles closing = -(sign_or_one(above) * dot(normal, way));
+    const Doubles late(1e300);
+    const Doubles time = select(closing > Doubles(0.0), gap / closing, late);
+    return max(met, select(gap > Doubles(0.0), min(time, late), met));
   }
   /// No time is infinite, whatever the limit.
   [[nodiscard]] bool within(double measure) const {
@@ -75,6 +101,10 @@ class NearMeasure {
     }
     return square * Doubles(1.0 - kMeasureError);
   }
+  template <int Half>
+  [[gnu::always_inline]] Doubles order(const Corners16& /*corners*/, const Doubles& square) const {
+    return square;
+  }
   [[nodiscard]] bool within(double measure) const { return measure <= square_; }
 
  private:
@@ -83,29 +113,27 @@ class NearMeasure {
   double square_ = 0.0;
 };
 
-/// Lanes of a block that are within the limit, the nearest first.
+/// Lanes of a block that are within the limit, the first to be looked at first.
 struct OrderedLanes {
   double measure[kLanes];
   std::uint32_t lane[kLanes];
   std::uint32_t count = 0;
 };
 
+/// By `order`, of `lanes` of which a measure of `value` is within the limit.
 template <typename Measure>
-inline void order_lanes(const Measure& measure, const Box8& low, const Box8& high, Mask16 lanes,
-                        OrderedLanes& out) {
-  alignas(64) double value[kLanes];
-  measure(low).store(value);
-  measure(high).store(value + 8);
+inline void order_lanes(const Measure& measure, const double* value, const double* order,
+                        Mask16 lanes, OrderedLanes& out) {
   out.count = 0;
   for (; lanes != 0; lanes &= lanes - 1) {
     const unsigned lane = first(lanes);
     if (!measure.within(value[lane])) continue;
     std::uint32_t at = out.count++;
-    for (; at != 0 && out.measure[at - 1] > value[lane]; --at) {
+    for (; at != 0 && out.measure[at - 1] > order[lane]; --at) {
       out.measure[at] = out.measure[at - 1];
       out.lane[at] = out.lane[at - 1];
     }
-    out.measure[at] = value[lane];
+    out.measure[at] = order[lane];
     out.lane[at] = lane;
   }
 }
@@ -123,8 +151,11 @@ class OpenMeshNodes {
     Box8 high = in_double<1>(nodes);
     decode(mesh_, low);
     decode(mesh_, high);
+    alignas(64) double value[kLanes];
+    measure_(low).store(value);
+    measure_(high).store(value + 8);
     OrderedLanes found;
-    order_lanes(measure_, low, high, present(mesh_.count[level], first_node), found);
+    order_lanes(measure_, value, value, present(mesh_.count[level], first_node), found);
     if (found.count == 0) return false;
     for (std::uint32_t i = found.count; i-- > 1;) {
       waiting_[size_++] = {found.measure[i], first_node + found.lane[i], level};
@@ -162,11 +193,19 @@ class OpenMeshNodes {
 template <typename Measure>
 inline void show_leaf(const MeshView& mesh, std::uint32_t leaf, Measure& measure,
                       const SlotVisitor& visitor) {
-  const Box16 box = box_of(load_corners(mesh, leaf));
+  const Corners16 corners = load_corners(mesh, leaf);
+  const Box16 box = box_of(corners);
   const std::uint32_t first_slot = leaf * kMeshFanout;
+  const Doubles low = measure(in_double<0>(box));
+  const Doubles high = measure(in_double<1>(box));
+  alignas(64) double value[kLanes];
+  alignas(64) double order[kLanes];
+  low.store(value);
+  high.store(value + 8);
+  measure.template order<0>(corners, low).store(order);
+  measure.template order<1>(corners, high).store(order + 8);
   OrderedLanes found;
-  order_lanes(measure, in_double<0>(box), in_double<1>(box),
-              present(mesh.triangle_count, first_slot), found);
+  order_lanes(measure, value, order, present(mesh.triangle_count, first_slot), found);
   if (found.count == 0) return;
   for (std::uint32_t i = 0; i < found.count; ++i) found.lane[i] += first_slot;
   measure.set_limit(visitor.visit(visitor.context, found.lane, found.count, measure.limit()));

@@ -175,6 +175,7 @@ void mesh_sweep(const MeshView& mesh, const double min[3], const double max[3],
     job.min[axis] = min[axis];
     job.max[axis] = max[axis];
     job.inverse[axis] = 1.0 / direction[axis];
+    job.direction[axis] = direction[axis];
     job.is_static[axis] = !std::isfinite(job.inverse[axis]);
     if (direction[axis] == 0.0 || !job.is_static[axis]) continue;
     const double shift = direction[axis] * limit;

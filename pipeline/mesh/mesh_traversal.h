@@ -92,6 +92,7 @@ struct MeshSweepJob {
   double min[3];
   double max[3];
   double inverse[3];
+  double direction[3];
   bool is_static[3];
 };
 

@@ -22,6 +22,9 @@ double radial(const Core& core, const Vec& local) noexcept {
 Vec unit(const Vec& v) noexcept {
   const double largest = v.cwiseAbs().maxCoeff();
   if (!(largest > 0.0)) return Vec::Zero();
+  // A power of two would change nothing: squares are far from the ends of double.
+  constexpr double kSafe = 1e140;
+  if (largest > 1.0 / kSafe && largest < kSafe) return v / v.norm();
   int exponent = 0;
   std::frexp(largest, &exponent);
   const int half = exponent / 2;

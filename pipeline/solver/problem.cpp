@@ -15,6 +15,19 @@ struct Lengths {
   double largest = 0.0;
 };
 
+/// Multiplies by 2^-exponent, in two steps where that is no double.
+struct Scale {
+  double factor[2];
+
+  explicit Scale(int exponent) noexcept {
+    constexpr int kLargest = 1000;
+    const int second = std::min(exponent + kLargest, 0);
+    factor[0] = std::ldexp(1.0, second - exponent);
+    factor[1] = std::ldexp(1.0, -second);
+  }
+  [[nodiscard]] double operator()(double x) const noexcept { return x * factor[0] * factor[1]; }
+};
+
 Lengths triangle_lengths(const TriangleShape& triangle) noexcept {
   Lengths lengths{CoreKind::triangle, Vec::Zero(), triangle.rounding, triangle.rounding};
   for (const auto& corner : triangle.vertex) {
@@ -72,10 +85,10 @@ Lengths lengths_of(const ShapeTables& tables, ShapeId id) noexcept {
   return {CoreKind::half_space, Vec::Zero(), 0.0, std::abs(offset)};
 }
 
-void place_triangle(const TriangleShape& triangle, int exponent, Core& core) noexcept {
+void place_triangle(const TriangleShape& triangle, const Scale& scale, Core& core) noexcept {
   Vec local[3];
   for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) local[i][k] = std::ldexp(triangle.vertex[i][k], -exponent);
+    for (int k = 0; k < 3; ++k) local[i][k] = scale(triangle.vertex[i][k]);
   }
   for (std::size_t i = 0; i < 3; ++i) {
     core.corner[i] = core.rotation * local[i];
@@ -85,14 +98,14 @@ void place_triangle(const TriangleShape& triangle, int exponent, Core& core) noe
 }
 
 void place(const ShapeTables& tables, ShapeId id, const Pose& pose, const Lengths& lengths,
-           int exponent, Core& core) noexcept {
+           int exponent, const Scale& scale, Core& core) noexcept {
   core.kind = lengths.kind;
   core.rotation = rotation_of(tame(pose.orientation));
-  for (int i = 0; i < 3; ++i) core.half[i] = std::ldexp(lengths.half[i], -exponent);
-  core.rounding = std::ldexp(lengths.rounding, -exponent);
+  for (int i = 0; i < 3; ++i) core.half[i] = scale(lengths.half[i]);
+  core.rounding = scale(lengths.rounding);
   core.size = core.half.norm() + core.rounding;
   if (id.kind() == ShapeKind::triangle) {
-    place_triangle(tables.triangles[id.index()], exponent, core);
+    place_triangle(tables.triangles[id.index()], scale, core);
   } else if (id.kind() == ShapeKind::hull) {
     core.hull = &tables.hulls[id.index()];
     core.unit[0] = std::ldexp(1.0, -exponent / 2);
@@ -101,7 +114,7 @@ void place(const ShapeTables& tables, ShapeId id, const Pose& pose, const Length
   } else if (id.kind() == ShapeKind::half_space) {
     const HalfSpaceShape& shape = tables.half_spaces[id.index()];
     core.normal = unit(core.rotation * Eigen::Map<const Vec>(shape.normal));
-    core.offset = std::ldexp(shape.offset, -exponent);
+    core.offset = scale(shape.offset);
     core.size = std::abs(core.offset);
   }
 }
@@ -121,11 +134,26 @@ void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b
   std::frexp(std::max({lengths_a.largest, lengths_b.largest, c.cwiseAbs().maxCoeff()}),
              &problem.exponent);
   problem.exponent += halved;
+  const Scale scale(problem.exponent);
   for (int i = 0; i < 3; ++i) problem.b.center[i] = std::ldexp(c[i], halved - problem.exponent);
-  place(tables, a, pose_a, lengths_a, problem.exponent, problem.a);
-  place(tables, b, pose_b, lengths_b, problem.exponent, problem.b);
+  place(tables, a, pose_a, lengths_a, problem.exponent, scale, problem.a);
+  place(tables, b, pose_b, lengths_b, problem.exponent, scale, problem.b);
   problem.size = problem.b.center.norm() + problem.a.size + problem.b.size;
   problem.tie_axes = mirrored ? Mat(-problem.b.rotation) : problem.a.rotation;
+}
+
+bool move(const Vec& between, double largest, Problem& problem) noexcept {
+  int exponent = 0;
+  std::frexp(std::max(largest, between.cwiseAbs().maxCoeff()), &exponent);
+  if (exponent != problem.exponent) return false;
+  const Scale scale(exponent);
+  for (int i = 0; i < 3; ++i) problem.b.center[i] = scale(between[i]);
+  problem.size = problem.b.center.norm() + problem.a.size + problem.b.size;
+  return true;
+}
+
+double largest_length(const ShapeTables& tables, ShapeId a, ShapeId b) noexcept {
+  return std::max(lengths_of(tables, a).largest, lengths_of(tables, b).largest);
 }
 
 double unscaled(const Problem& problem, double length) noexcept {

@@ -26,6 +26,14 @@ struct Problem {
 void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
              const Pose& pose_b, bool mirrored, Problem& problem) noexcept;
 
+/// What of two shapes a problem's exponent depends on, beside how far they are apart.
+[[nodiscard]] double largest_length(const ShapeTables& tables, ShapeId a, ShapeId b) noexcept;
+
+/// Makes of a problem the one that `prepare` would make with b at `between`, finite, from a, and
+/// all else as it was. False, and unchanged, if it would have another exponent. `largest` is the
+/// `largest_length` of the two.
+[[nodiscard]] bool move(const Vec& between, double largest, Problem& problem) noexcept;
+
 /// x 2^exponent, at most the largest double if it is finite.
 [[nodiscard]] double unscaled(const Problem& problem, double length) noexcept;
 

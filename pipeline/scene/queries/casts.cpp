@@ -458,7 +458,7 @@ void RaysTogether<Room>::meet_few(std::uint32_t body) {
     const RaySweep swept(state_.scene.shapes, ray_[i]);
     const Difference from = difference(ray_[i].origin, placed.pose.position);
     SweepMeeting found;
-    if (!swept.meets(from.difference, part, limit, found)) return limit;
+    if (!swept.meets(from.difference, part, limit, nullptr, found)) return limit;
     return take(i, {body, part.part, found.t, {found.normal[0], found.normal[1], found.normal[2]}});
   };
   state_.parts.met_by_rays(placed, {ray_, count_}, meet, look);

@@ -49,12 +49,14 @@ class Path {
     lost_ = Vec::Map(apart.rest);
     speed_ = step_.norm();
     end_ = std::ldexp(pair.max_t, exponent_);
+    begin_ = std::ldexp(pair.free_until, exponent_);
   }
 
   // t counts in steps here: the direction times a power of two, of a length near 1.
 
   [[nodiscard]] const Vec& step() const noexcept { return step_; }
   [[nodiscard]] double speed() const noexcept { return speed_; }
+  [[nodiscard]] double begin() const noexcept { return begin_; }
   [[nodiscard]] double end() const noexcept { return end_; }
 
   [[nodiscard]] Vec offset(double t) const noexcept {
@@ -83,6 +85,7 @@ class Path {
   Vec between_;
   Vec lost_;
   double speed_ = 1.0;
+  double begin_ = 0.0;
   double end_ = 0.0;
   int exponent_ = 0;
 };
@@ -104,7 +107,8 @@ class Advancement {
         pair_(pair),
         path_(pair),
         tolerance_(tolerance / path_.speed()),
-        mirrored_(pair.moving.kind() > pair.standing.kind()) {}
+        mirrored_(pair.moving.kind() > pair.standing.kind()),
+        largest_(solver::largest_length(tables, pair.moving, pair.standing)) {}
 
   bool run(CastTouch& touch) noexcept {
     const bool hit = search();
@@ -122,10 +126,11 @@ class Advancement {
   [[nodiscard]] bool search() noexcept;
   [[nodiscard]] bool touches_at_start() noexcept;
   [[nodiscard]] double next(std::uint32_t step) const noexcept;
-  [[nodiscard]] PartedAt sample(double t) noexcept;
+  [[nodiscard]] PartedAt sample(double t, bool any_plane) noexcept;
+  [[nodiscard]] bool is_free_to_end() noexcept;
   void face(const Vec& axis, PartedAt& sample) const noexcept;
   [[nodiscard]] double surely_apart(const Problem& problem, PartedAt& sample) noexcept;
-  void prepare_at(double t, Problem& problem) const noexcept;
+  void prepare_at(double t) noexcept;
 
   const ShapeTables& tables_;
   const CastPair& pair_;
@@ -133,6 +138,10 @@ class Advancement {
   const double tolerance_;
   /// The solver takes the lesser kind first.
   const bool mirrored_;
+  const double largest_;
+  /// Of the last sample.
+  Problem problem_;
+  bool is_prepared_ = false;
   SolverCounts counts_;
   std::uint32_t steps_ = 0;
 
@@ -149,26 +158,29 @@ class Advancement {
   bool overlap_at_start_ = false;
 };
 
-void Advancement::prepare_at(double t, Problem& problem) const noexcept {
+void Advancement::prepare_at(double t) noexcept {
+  const Vec offset = path_.offset(t);
+  if (is_prepared_ && solver::move(mirrored_ ? Vec(-offset) : offset, largest_, problem_)) return;
+  is_prepared_ = true;
   Pose moving;
   Pose standing;
   std::copy_n(pair_.from.orientation, 4, moving.orientation);
   std::copy_n(pair_.pose.orientation, 4, standing.orientation);
-  Vec::Map(standing.position) = path_.offset(t);
+  Vec::Map(standing.position) = offset;
   if (mirrored_) {
-    prepare(tables_, pair_.standing, standing, pair_.moving, moving, true, problem);
+    prepare(tables_, pair_.standing, standing, pair_.moving, moving, true, problem_);
   } else {
-    prepare(tables_, pair_.moving, moving, pair_.standing, standing, false, problem);
+    prepare(tables_, pair_.moving, moving, pair_.standing, standing, false, problem_);
   }
 }
 
 /// The gap along a plane that parts the pair, less all rounding; none of shapes that touch as far
 /// as double can tell. What counts is what the plane itself parts, not what a solver says about
-/// distances.
-PartedAt Advancement::sample(double t) noexcept {
+/// distances. Of all planes about the one with the widest gap, unless `any_plane` will do.
+PartedAt Advancement::sample(double t, bool any_plane) noexcept {
   ++steps_;
-  Problem problem;
-  prepare_at(t, problem);
+  prepare_at(t);
+  const Problem& problem = problem_;
   const double roundings = problem.a.rounding + problem.b.rounding;
   const double noise = problem.noise();
   PartedAt result;
@@ -180,7 +192,8 @@ PartedAt Advancement::sample(double t) noexcept {
   } else {
     const bool is_known = !normal_.isZero(0.0);
     const Vec start = is_known ? Vec(mirrored_ ? -normal_ : normal_) : problem.b.center;
-    const GjkResult found = gjk(problem.a, problem.b, start, solver::kEnough * noise, kInfinity);
+    const GjkResult found = gjk(problem.a, problem.b, start, solver::kEnough * noise,
+                                any_plane ? roundings + 2.0 * noise : kInfinity);
     if (found.contact || found.upper + noise <= roundings) return result;
     gap = found.lower - roundings - noise;
     face(found.axis, result);
@@ -236,10 +249,22 @@ double Advancement::next(std::uint32_t step) const noexcept {
   return std::min(std::max(t, std::nextafter(free_until_, kInfinity)), path_.end());
 }
 
+/// True if a plane that they are nearing parts them where something else is touched.
+bool Advancement::is_free_to_end() noexcept {
+  const Vec parting = Vec::Map(pair_.parting);
+  if (parting.isZero(0.0) || !(path_.end() < kInfinity)) return false;
+  normal_ = -parting;
+  const PartedAt found = sample(path_.end(), true);
+  normal_.setZero();
+  return found.parted && found.closing > 8.0 * kEpsilon * path_.speed();
+}
+
 bool Advancement::search() noexcept {
-  double t = 0.0;
+  if (is_free_to_end()) return false;
+  double t = path_.begin();
+  free_until_ = t;
   for (std::uint32_t step = 0; step < kMostSamples; ++step) {
-    const PartedAt found = sample(t);
+    const PartedAt found = sample(t, false);
     if (!found.parted) {
       if (t == 0.0) return touches_at_start();
       touching_ = std::min(touching_, t);
@@ -267,8 +292,8 @@ bool Advancement::search() noexcept {
 }
 
 void Advancement::describe(CastTouch& touch) noexcept {
-  Problem problem;
-  prepare_at(path_.steps(touch.t), problem);
+  prepare_at(path_.steps(touch.t));
+  const Problem& problem = problem_;
   const CoreDistance found = core_distance(problem, ContactLevel::distance, kInfinity, counts_);
   const double apart = found.distance - problem.a.rounding - problem.b.rounding;
   const Vec on_a = found.on_a + found.axis * problem.a.rounding;

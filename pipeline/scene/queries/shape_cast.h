@@ -17,6 +17,12 @@ struct CastPair {
   double max_t = 1.0;
   ShapeId standing;
   Pose pose;
+  /// They surely do not touch before.
+  double free_until = 0.0;
+  /// At max_t the moving shape touches something else that stands, and a plane at right angles to
+  /// this parts the two; zero if nothing is known. Whoever is parted there by any plane that they
+  /// are nearing is not touched before.
+  double parting[3] = {0.0, 0.0, 0.0};
 };
 
 struct CastTouch {

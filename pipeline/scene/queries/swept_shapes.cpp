@@ -55,13 +55,43 @@ double doubt(const ConvexPart& part) noexcept {
   return 0x1p-48 * size;
 }
 
+/// True of a triangle that lies as it is given, about the part's position.
+bool stands_unturned(const ConvexPart& part) noexcept {
+  const double* const q = part.pose.orientation;
+  return part.triangle->rounding == 0.0 && q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0;
+}
+
+/// The point of a triangle that is closest to p, about (Ericson, "Real-Time Collision Detection",
+/// 2005, 5.1.5).
+Vector3d closest_point(const Vector3d (&corner)[3], const Vector3d& p) noexcept {
+  const Vector3d ab = corner[1] - corner[0];
+  const Vector3d ac = corner[2] - corner[0];
+  const double d1 = ab.dot(p - corner[0]);
+  const double d2 = ac.dot(p - corner[0]);
+  if (d1 <= 0.0 && d2 <= 0.0) return corner[0];
+  const double d3 = ab.dot(p - corner[1]);
+  const double d4 = ac.dot(p - corner[1]);
+  if (d3 >= 0.0 && d4 <= d3) return corner[1];
+  const double d5 = ab.dot(p - corner[2]);
+  const double d6 = ac.dot(p - corner[2]);
+  if (d6 >= 0.0 && d5 <= d6) return corner[2];
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return corner[0] + d1 / (d1 - d3) * ab;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return corner[0] + d2 / (d2 - d6) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
+    return corner[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (corner[2] - corner[1]);
+  }
+  return corner[0] + (vb * ab + vc * ac) / (va + vb + vc);
+}
+
 /// True if the ray surely passes by the triangle, grown by `doubt`, of a body at no angle: the
 /// signed volumes of the ray and each side have different signs (Platis, Theoharis, "Fast
 /// ray-tetrahedron intersection using Pluecker coordinates", 2003), beyond their rounding.
 bool passes_by(const double from[3], const double direction[3], const ConvexPart& part,
                double doubt) noexcept {
-  const Eigen::Vector4d q = Eigen::Vector4d::Map(part.pose.orientation);
-  if (part.triangle->rounding != 0.0 || q[1] != 0.0 || q[2] != 0.0 || q[3] != 0.0) return false;
+  if (!stands_unturned(part)) return false;
   const Vector3d d = Vector3d::Map(direction);
   const Vector3d first = Vector3d::Map(part.pose.position) - Vector3d::Map(from);
   const Vector3d a = first + Vector3d::Map(part.triangle->vertex[0]);
@@ -83,7 +113,7 @@ RaySweep::RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept
       ray_(ray) {}
 
 bool RaySweep::meets(const double from[3], const ConvexPart& part, double limit,
-                     SweepMeeting& meeting) const noexcept {
+                     const SweepMeeting* /*before*/, SweepMeeting& meeting) const noexcept {
   const double thickness = doubt(part);
   if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
   ShapeRay ray = ray_;
@@ -117,14 +147,14 @@ ShapeSweep::ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double
       shapes_(parts.shapes()),
       cast_(cast),
       tolerance_(tolerance),
-      to_shape_(rotation_of(tame(cast.pose.orientation)).transpose()) {}
+      to_shape_(rotation_of(tame(cast.pose.orientation)).transpose()),
+      middle_(0.5 * (extent().min + extent().max)) {}
 
 // The plane of the triangle, and planes along the motion through its sides: those in which most
 // triangles beside the way, or beyond what is met first, are parted from the shape.
-bool ShapeSweep::passes_by(const double from[3], const ConvexPart& part,
-                           double limit) const noexcept {
-  const Eigen::Vector4d q = Eigen::Vector4d::Map(part.pose.orientation);
-  if (part.triangle->rounding != 0.0 || q[1] != 0.0 || q[2] != 0.0 || q[3] != 0.0) return false;
+bool ShapeSweep::passes_by(const double from[3], const ConvexPart& part, double limit,
+                           double& free_until) const noexcept {
+  if (!stands_unturned(part)) return false;
   Vector3d corner[3];
   Vector3d side[3];
   for (int k = 0; k < 3; ++k) corner[k] = Vector3d::Map(part.triangle->vertex[k]);
@@ -153,7 +183,9 @@ bool ShapeSweep::passes_by(const double from[3], const ConvexPart& part,
     const double noise = mid::kSlack * normal.cwiseAbs().sum() * way.cwiseAbs().sum();
     // A way without end that does not close, as far as can be told, is left to others.
     const double most = limit + tolerance_ / way.norm();
-    if (rest > (std::max(closing, 0.0) + noise) * most) return true;
+    const double closing_at_most = std::max(closing, 0.0) + noise;
+    if (rest > closing_at_most * most) return true;
+    free_until = std::min(rest / closing_at_most * (1.0 - mid::kSlack), limit);
   }
   for (const Vector3d& along : side) {
     if (gap(way.cross(along), side_of) > 0.0) return true;
@@ -175,17 +207,74 @@ CastPair ShapeSweep::pair(PartTables& tables, const double from[3],
   return pair;
 }
 
+// What lies behind a plane that the shape nears lies behind it at all times before.
+bool ShapeSweep::is_beyond(const ConvexPart& part, const SweepMeeting& before) const noexcept {
+  const Vector3d normal = Vector3d::Map(before.normal);
+  if (!stands_unturned(part)) return false;
+  const Vector3d position = Vector3d::Map(part.pose.position);
+  double top = -mid::kInfinity;
+  double size = 0.0;
+  for (const auto& corner : part.triangle->vertex) {
+    const Vector3d at = position + Vector3d::Map(corner);
+    top = std::max(top, normal.dot(at));
+    size = std::max(size, at.cwiseAbs().sum());
+  }
+  return top + mid::kSlack * size + 4.0 * doubt(part) < before.height;
+}
+
+bool ShapeSweep::is_beside(const double from[3], const ConvexPart& part,
+                           double limit) const noexcept {
+  if (!stands_unturned(part)) return false;
+  const Vector3d way = Vector3d::Map(direction());
+  // All as seen from where the shape is then.
+  const Vector3d to_part = Vector3d::Map(part.pose.position) - Vector3d::Map(from) - limit * way;
+  Vector3d corner[3];
+  double size = extent().min.cwiseAbs().sum() + extent().max.cwiseAbs().sum() +
+                Vector3d::Map(from).cwiseAbs().sum() + limit * way.cwiseAbs().sum();
+  for (int k = 0; k < 3; ++k) {
+    corner[k] = to_part + Vector3d::Map(part.triangle->vertex[k]);
+    size = std::max(size, corner[k].cwiseAbs().sum());
+  }
+  const Vector3d axis = middle_ - closest_point(corner, middle_);
+  if (!(axis.dot(way) < -mid::kSlack * axis.cwiseAbs().sum() * way.cwiseAbs().sum())) return false;
+  const double low = mid::extent(shapes_.tables(), cast_.shape, to_shape_ * axis).low;
+  const double top = std::max({axis.dot(corner[0]), axis.dot(corner[1]), axis.dot(corner[2])});
+  return low - top > (4.0 * mid::kSlack * size + 4.0 * doubt(part)) * axis.cwiseAbs().sum();
+}
+
+void ShapeSweep::set_height(const double from[3], SweepMeeting& meeting) const noexcept {
+  const Vector3d normal = Vector3d::Map(meeting.normal);
+  const Vector3d way = Vector3d::Map(direction());
+  const Vector3d start = Vector3d::Map(from);
+  const double closing = -normal.dot(way);
+  meeting.height = -mid::kInfinity;
+  if (!(closing > mid::kSlack * way.cwiseAbs().sum()) || meeting.overlaps_at_start) return;
+  const double low = mid::extent(shapes_.tables(), cast_.shape, to_shape_ * normal).low;
+  const double sizes = start.cwiseAbs().sum() + meeting.t * way.cwiseAbs().sum() +
+                       extent().min.cwiseAbs().sum() + extent().max.cwiseAbs().sum();
+  meeting.height = normal.dot(start) - meeting.t * closing + low - mid::kSlack * sizes;
+}
+
 bool ShapeSweep::meets(const double from[3], const ConvexPart& part, double limit,
-                       SweepMeeting& meeting) const noexcept {
-  if (part.triangle != nullptr && passes_by(from, part, limit)) return false;
+                       const SweepMeeting* before, SweepMeeting& meeting) const noexcept {
+  double free_until = 0.0;
+  if (part.triangle != nullptr) {
+    if (before != nullptr && is_beyond(part, *before)) return false;
+    if (passes_by(from, part, limit, free_until)) return false;
+    if (before != nullptr && is_beside(from, part, limit)) return false;
+  }
   PartTables tables(shapes_);
   CastPair asked = pair(tables, from, part);
   asked.max_t = limit;
+  asked.free_until = free_until;
+  if (before != nullptr && !before->overlaps_at_start)
+    std::copy_n(before->normal, 3, asked.parting);
   CastTouch touch;
   if (!cast_shape(tables.tables(), asked, tolerance_, touch)) return false;
   meeting.t = touch.t;
   std::copy_n(touch.normal, 3, meeting.normal);
   meeting.overlaps_at_start = touch.overlaps_at_start;
+  set_height(from, meeting);
   return true;
 }
 
@@ -216,7 +305,7 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
     std::copy_n(swept.start(), 3, from_);
     std::fill_n(base_, 3, 0.0);
     const ConvexPart whole{body.shape, body.pose};
-    if (!swept.meets(from_, whole, limit, meeting)) return false;
+    if (!swept.meets(from_, whole, limit, nullptr, meeting)) return false;
     take(whole, meeting);
     return true;
   }
@@ -237,7 +326,8 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
   };
   auto look = [&](const ConvexPart& part, double most) {
     most = std::min(most, limit);
-    return swept.meets(from_, part, most, meeting) ? improve(part) : most;
+    return swept.meets(from_, part, most, found ? &meeting_ : nullptr, meeting) ? improve(part)
+                                                                                : most;
   };
   if (swept.ray() == nullptr) {
     parts.met(placed, sweep_from(swept, from_, limit), look);

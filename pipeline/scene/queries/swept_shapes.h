@@ -14,6 +14,9 @@ struct SweepMeeting {
   double normal[3] = {0.0, 0.0, 0.0};
   double point[3] = {0.0, 0.0, 0.0};
   bool overlaps_at_start = false;
+  /// Of shapes: how high above the part's origin, along the normal, the shape is all of then, and a
+  /// little less.
+  double height = 0.0;
 };
 
 /// A ray or a convex shape that moves along a line without turning.
@@ -31,8 +34,10 @@ class SweptShape {
   /// Null for a shape.
   [[nodiscard]] virtual const ShapeRay* ray() const noexcept { return nullptr; }
 
-  /// True if it meets the part by t = limit, starting at `from`.
+  /// True if it meets the part by t = limit, starting at `from`. `before` is a meeting with another
+  /// part at that t, if there is one.
   [[nodiscard]] virtual bool meets(const double from[3], const ConvexPart& part, double limit,
+                                   const SweepMeeting* before,
                                    SweepMeeting& meeting) const noexcept = 0;
   /// Fills in normal and point of a meeting, which costs more than finding its time: done once, for
   /// the meeting that is shown.
@@ -57,6 +62,7 @@ class RaySweep final : public SweptShape {
   RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept;
   [[nodiscard]] const ShapeRay* ray() const noexcept override { return &ray_; }
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
+                           const SweepMeeting* before,
                            SweepMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
                 SweepMeeting& meeting) const noexcept override;
@@ -74,14 +80,22 @@ class ShapeSweep final : public SweptShape {
  public:
   ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
+                           const SweepMeeting* before,
                            SweepMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
                 SweepMeeting& meeting) const noexcept override;
 
  private:
-  /// True if a plane shows that the shape does not come to the triangle by t = limit.
-  [[nodiscard]] bool passes_by(const double from[3], const ConvexPart& part,
+  /// True if a plane shows that the shape does not come to the triangle by t = limit; or else
+  /// perhaps that it does not before `free_until`.
+  [[nodiscard]] bool passes_by(const double from[3], const ConvexPart& part, double limit,
+                               double& free_until) const noexcept;
+  /// The same, of a meeting with another part at t = limit, by its plane.
+  [[nodiscard]] bool is_beyond(const ConvexPart& part, const SweepMeeting& before) const noexcept;
+  /// And by the plane between the shape's middle and the triangle.
+  [[nodiscard]] bool is_beside(const double from[3], const ConvexPart& part,
                                double limit) const noexcept;
+  void set_height(const double from[3], SweepMeeting& meeting) const noexcept;
   [[nodiscard]] CastPair pair(PartTables& tables, const double from[3],
                               const ConvexPart& part) const noexcept;
 
@@ -90,6 +104,8 @@ class ShapeSweep final : public SweptShape {
   const double tolerance_;
   /// From the axes of the world to those of the shape.
   Eigen::Matrix3d to_shape_;
+  /// Of its box, about where it starts.
+  Eigen::Vector3d middle_;
 };
 
 /// A meeting with a body, and all that it takes to describe it.
