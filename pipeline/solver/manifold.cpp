@@ -2,6 +2,7 @@
 
 #include <winnow/core/rounding.h>
 #include "pipeline/manifold/contact_patch.h"
+#include "pipeline/manifold/patch_meetings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +10,23 @@
 namespace winnow::solver {
 namespace {
 
-bool face_has(const HullShape& hull, const HullFace& face, std::uint32_t corner) noexcept {
+bool is_on_top(const HullShape& hull, std::uint32_t i, const Vec& d, double least) noexcept {
+  return d.dot(Vec(hull.vertex[0][i], hull.vertex[1][i], hull.vertex[2][i])) >= least;
+}
+
+/// How many of a hull's vertices lie at `least` or higher along d; those of a face.
+std::uint32_t count_on_top(const HullShape& hull, const Vec& d, double least) noexcept {
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < hull.vertex_count; ++i) count += is_on_top(hull, i, d, least);
+  return count;
+}
+std::uint32_t count_on_top(const HullShape& hull, const HullFace& face, const Vec& d,
+                           double least) noexcept {
+  std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < face.count; ++i) {
-    if (hull.loop[face.first + i] == corner) return true;
+    count += is_on_top(hull, hull.loop[face.first + i], d, least);
   }
-  return false;
+  return count;
 }
 
 }  // namespace
@@ -90,13 +103,20 @@ void SupportingPatch::add_edge(const Core& core, std::uint32_t number,
 
 void SupportingPatch::add_hull(const Core& core, const Vec& outward) noexcept {
   const HullShape& hull = *core.hull;
+  const Vec d = core.rotation.transpose() * outward;
   double height = 0.0;
-  const std::uint32_t corner = farthest_vertex(hull, core.rotation.transpose() * outward, height);
+  const std::uint32_t corner = farthest_vertex(hull, d, height);
+  // Of a supporting edge only the faces beside it count, not those that have but one of its ends.
+  const double least = height - kSamePlace * hull.radius;
   double best = kFaceCosine;
+  std::uint32_t most = std::min(count_on_top(hull, d, least), 2U);
   std::uint32_t best_face = hull.face_count;
   for (std::uint32_t f = 0; f < hull.face_count; ++f) {
     const double cosine = face_normal(core, f).dot(outward);
-    if (cosine <= best || !face_has(hull, hull.faces[f], corner)) continue;
+    if (cosine <= kFaceCosine) continue;
+    const std::uint32_t corners = count_on_top(hull, hull.faces[f], d, least);
+    if (corners < most || (corners == most && cosine <= best)) continue;
+    most = corners;
     best = cosine;
     best_face = f;
   }

@@ -222,6 +222,7 @@ template <typename Shape, bool Before>
 class CoreAndHull {
  public:
   static constexpr std::uint32_t kRoom = 32;
+  static constexpr bool kSimpleSecond = true;
 
   bool place(const NarrowJob& job, BodyPair bodies, std::uint32_t slot, HullPair& pair) {
     const std::uint32_t simple = Before ? bodies.a : bodies.b;

@@ -9,7 +9,8 @@
 namespace winnow::WINNOW_ISA_NAME::hull {
 
 /// Answers jobs of one level in one precision. Shapes says which hulls the pairs of a job are:
-/// `kRoom` at a time, by place(job, bodies, slot, pair), which is false for what is out of range.
+/// `kRoom` at a time, by place(job, bodies, slot, pair), which is false for what is out of range,
+/// and by `kSimpleSecond` whether their second is a simple shape.
 template <typename Shapes, typename T, int Level>
 class HullAnswers {
  public:
@@ -128,16 +129,19 @@ class HullAnswers {
       double normal[3];
       double world[3];
       write_normal(pair, core.normal, normal, world);
-      if constexpr (Level == 1) {
-        write_point(pair, core.point, normal, distance);
+      if constexpr (Level == 2) {
+        const double doubt = error + kContactDoubt * (pair.size + pair.rounding);
+        return contacts(pair, {normal, world, job_.margin, distance, doubt}, core.winner);
       } else {
-        contacts(pair, normal, world, core.winner, distance);
+        write_point(pair, core.point, normal, distance);
+        return true;
       }
-      return true;
     }
   }
 
   static constexpr double kCertified = 1e-12;
+  /// Contacts are of floats: a few units in their last place.
+  static constexpr double kContactDoubt = 4e-7;
 
   void write_normal(const HullPair& pair, const T* local, double* normal, double* world) {
     for (int k = 0; k < 3; ++k) normal[k] = static_cast<double>(local[k]);
@@ -165,13 +169,15 @@ class HullAnswers {
     }
   }
 
-  void contacts(const HullPair& pair, const double* normal, const double* world,
-                const HullCandidate* winner, double distance) {
+  /// False if no contact would be as deep as the pair: this takes the solver.
+  bool contacts(const HullPair& pair, const HullContacts& ask, const HullCandidate* winner) {
     job_.contact_first[pair.index] = job_.contacts.size;
-    job_.contact_count[pair.index] =
-        distance <= job_.margin
-            ? write_contacts(pair, normal, world, winner, job_.margin, job_.contacts)
-            : 0;
+    job_.contact_count[pair.index] = 0;
+    if (!(ask.distance <= ask.margin)) return true;
+    const std::uint32_t count =
+        write_contacts<Shapes::kSimpleSecond>(pair, ask, winner, job_.contacts);
+    job_.contact_count[pair.index] = count;
+    return count > 0;
   }
 
   /// Farther apart than the margin: a lower bound of the distance.

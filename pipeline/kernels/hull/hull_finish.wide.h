@@ -315,9 +315,17 @@ static inline bool touching_point(const HullPair& pair, const HullPlace<T>& plac
 /// The supporting feature of one hull, in the axes of the world.
 class HullPatch {
  public:
-  /// `first`: of the first hull, else of the second. `normal` points from the first to the second.
-  HullPatch(const HullPair& pair, bool first)
-      : pair_(pair), hull_(first ? *pair.first : *pair.second), first_(first) {}
+  /// `first`: of the first hull, else of the second. `normal`: from the first to the second, in the
+  /// first's frame.
+  HullPatch(const HullPair& pair, const double* normal, bool first)
+      : pair_(pair), hull_(first ? *pair.first : *pair.second), first_(first) {
+    if (first_) {
+      for (int k = 0; k < 3; ++k) outward_[k] = normal[k];
+    } else {
+      turn_back3(pair_.turn, normal, outward_);
+      for (double& x : outward_) x = -x;
+    }
+  }
 
   void face(std::uint32_t index) {
     const HullFace& f = hull_.faces[index];
@@ -330,38 +338,77 @@ class HullPatch {
     feature_ = index;
   }
 
-  void edge(std::uint32_t v, std::uint32_t w) {
-    std::uint32_t index = 0;
-    while (index + 1 < hull_.edge_count && !joins(hull_.edges[index], v, w)) ++index;
-    count_ = 0;
-    add(v < w ? v : w, index);
-    add(v < w ? w : v, index);
-    feature_ = hull_.face_count + index;
+  /// An edge, or a face beside it that lies across the normal as well: what touches along the edge
+  /// is about to touch there.
+  void edge(std::uint32_t index) {
+    std::uint32_t best = kNoFeature;
+    double most = kFaceCosine;
+    for (const std::uint32_t side : hull_.edges[index].face) {
+      if (side >= hull_.face_count) continue;
+      const double cosine = dot3(hull_.faces[side].normal, outward_);
+      if (!(cosine > most)) continue;
+      most = cosine;
+      best = side;
+    }
+    if (best != kNoFeature) return face(best);
+    edge_alone(index);
+  }
+
+  /// The same by its ends; what `across` finds if there is no such edge.
+  void edge_between(std::uint32_t v, std::uint32_t w) {
+    const std::uint32_t index = edge_of(v, w);
+    if (index == kNoFeature) return across();
+    edge(index);
+  }
+
+  /// The same by the supporting vertices of a simplex: the features that are closest.
+  void closest(const std::uint32_t* vertices, std::uint32_t count, std::uint32_t shift) {
+    const std::uint32_t v = vertices[0] >> shift & 0xFFFFU;
+    std::uint32_t w = v;
+    for (std::uint32_t i = 1; i < count; ++i) {
+      const std::uint32_t x = vertices[i] >> shift & 0xFFFFU;
+      if (x == v || x == w) continue;
+      if (w != v) return across();
+      w = x;
+    }
+    if (w != v) return edge_between(v, w);
+    across_at(v);
   }
 
   /// The face, edge or vertex that lies farthest along the normal: features within some degrees
   /// of perpendicular to it count as lying across it, since bodies rock over them.
-  void across(const double* normal) {
-    double d[3];
-    if (first_) {
-      for (int k = 0; k < 3; ++k) d[k] = normal[k];
-    } else {
-      turn_back3(pair_.turn, normal, d);
-      for (double& x : d) x = -x;
-    }
-    const float direction[3] = {static_cast<float>(d[0]), static_cast<float>(d[1]),
-                                static_cast<float>(d[2])};
-    const std::uint32_t vertex = farthest_vertex(hull_, direction);
+  void across() {
+    const float direction[3] = {static_cast<float>(outward_[0]), static_cast<float>(outward_[1]),
+                                static_cast<float>(outward_[2])};
+    across_at(farthest_vertex(hull_, direction));
+  }
+
+  /// The same for a vertex that lies farthest.
+  void across_at(std::uint32_t vertex) {
+    const float direction[3] = {static_cast<float>(outward_[0]), static_cast<float>(outward_[1]),
+                                static_cast<float>(outward_[2])};
     float x[3];
     vertex_at(hull_, vertex, x);
     const float slack = kFloatError * static_cast<float>(pair_.size);
     const std::uint32_t face_index = face_across(hull_, direction, x, slack);
     if (face_index != kNoFeature) return face(face_index);
     const std::uint32_t other = neighbour_across(hull_, direction, vertex, x);
-    if (other != kNoFeature) return edge(vertex, other);
-    count_ = 0;
-    add(vertex, 0);
-    feature_ = hull_.face_count + hull_.edge_count + vertex;
+    if (other != kNoFeature) return edge_alone(edge_of(vertex, other));
+    vertex_alone(vertex);
+  }
+
+  /// Of a simple shape all that there is: the face that looks along the normal however steeply, a
+  /// segment, a point.
+  void whole() {
+    if (hull_.dimension == 0) return vertex_alone(0);
+    if (hull_.dimension == 1) return edge_alone(0);
+    std::uint32_t best = 0;
+    for (std::uint32_t i = 1; i < hull_.face_count; ++i) {
+      const bool better =
+          dot3(hull_.faces[i].normal, outward_) > dot3(hull_.faces[best].normal, outward_);
+      best = better ? i : best;
+    }
+    face(best);
   }
 
   [[nodiscard]] Patch patch() const {
@@ -371,8 +418,26 @@ class HullPatch {
  private:
   static constexpr std::uint32_t kRoom = 32;
 
-  static bool joins(const HullEdge& e, std::uint32_t v, std::uint32_t w) {
-    return (e.vertex[0] == v && e.vertex[1] == w) || (e.vertex[0] == w && e.vertex[1] == v);
+  [[nodiscard]] std::uint32_t edge_of(std::uint32_t v, std::uint32_t w) const {
+    for (std::uint32_t i = 0; i < hull_.edge_count; ++i) {
+      const std::uint32_t* ends = hull_.edges[i].vertex;
+      if ((ends[0] == v && ends[1] == w) || (ends[0] == w && ends[1] == v)) return i;
+    }
+    return kNoFeature;
+  }
+
+  void edge_alone(std::uint32_t index) {
+    const std::uint32_t* ends = hull_.edges[index].vertex;
+    count_ = 0;
+    add(ends[0] < ends[1] ? ends[0] : ends[1], index);
+    add(ends[0] < ends[1] ? ends[1] : ends[0], index);
+    feature_ = hull_.face_count + index;
+  }
+
+  void vertex_alone(std::uint32_t vertex) {
+    count_ = 0;
+    add(vertex, 0);
+    feature_ = hull_.face_count + hull_.edge_count + vertex;
   }
 
   void add(std::uint32_t vertex, std::uint32_t edge_feature) {
@@ -395,6 +460,8 @@ class HullPatch {
   const HullPair& pair_;
   const HullShape& hull_;
   bool first_;
+  /// In the hull's own frame.
+  double outward_[3];
   std::uint32_t count_ = 0;
   std::uint32_t feature_ = 0;
   double vertex_[kRoom][3];
@@ -402,34 +469,51 @@ class HullPatch {
   std::uint32_t edge_feature_[kRoom];
 };
 
-/// Writes the contacts of a pair: `normal` in the first's frame and, `world`, from body a to body b
-/// in the axes of the world. Returns their number.
-static inline std::uint32_t write_contacts(const HullPair& pair, const double* normal,
-                                           const double* world, const HullCandidate* winner,
-                                           double margin, ContactWriter& writer) {
+/// The feature of one of the hulls in which they touch: that of the depth's winner, or, without
+/// one, of the closest vertices.
+static inline void find_feature(const HullPair& pair, const HullCandidate* winner, bool first,
+                                HullPatch& patch) {
   using Kind = HullCandidate::Kind;
-  HullPatch first(pair, true);
-  HullPatch second(pair, false);
-  if (winner != nullptr && winner->kind == Kind::arc) {
-    const HullEdge& edge = pair.first->edges[winner->arc.edge];
-    first.edge(edge.vertex[0], edge.vertex[1]);
-    second.edge(winner->arc.vertex[0], winner->arc.vertex[1]);
+  if (winner == nullptr) return patch.closest(pair.vertices, pair.count, first ? 0 : 16);
+  if (winner->kind == (first ? Kind::first_face : Kind::second_face)) {
+    return patch.face(winner->face);
+  }
+  if (winner->kind != Kind::arc) return patch.across();
+  if (first) return patch.edge(winner->arc.edge);
+  patch.edge_between(winner->arc.vertex[0], winner->arc.vertex[1]);
+}
+
+/// What is asked of the contacts of a pair.
+struct HullContacts {
+  /// In the first's frame, and from body a to body b in the axes of the world.
+  const double* normal;
+  const double* world;
+  double margin;
+  /// The pair's, and how far the deepest contact may be from it.
+  double distance;
+  double doubt;
+};
+
+/// Writes the contacts of a pair and returns their number; 0 if the features do not meet where the
+/// pair is deepest. `Simple`: the second is no hull but stands for a sphere, capsule, box or
+/// triangle.
+template <bool Simple>
+static inline std::uint32_t write_contacts(const HullPair& pair, const HullContacts& ask,
+                                           const HullCandidate* winner, ContactWriter& writer) {
+  HullPatch first(pair, ask.normal, true);
+  HullPatch second(pair, ask.normal, false);
+  find_feature(pair, winner, true, first);
+  if constexpr (Simple) {
+    second.whole();
   } else {
-    if (winner != nullptr && winner->kind == Kind::first_face) {
-      first.face(winner->face);
-    } else {
-      first.across(normal);
-    }
-    if (winner != nullptr && winner->kind == Kind::second_face) {
-      second.face(winner->face);
-    } else {
-      second.across(normal);
-    }
+    find_feature(pair, winner, false, second);
   }
   ContactPoint points[kManifoldPoints];
   const std::uint32_t count =
       contact_patch(pair.swapped ? second.patch() : first.patch(),
-                    pair.swapped ? first.patch() : second.patch(), world, margin, points);
+                    pair.swapped ? first.patch() : second.patch(), ask.world, ask.margin, points);
+  const double miss = __builtin_fabs(static_cast<double>(points[0].depth) + ask.distance);
+  if (count == 0 || !(miss <= ask.doubt)) return 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t to = writer.size + i;
     for (int k = 0; k < 3; ++k) writer.position[k][to] = points[i].position[k];

@@ -191,49 +191,89 @@ template <typename T>
   return r;
 }
 
+/// The face that looks against the normal most.
+template <typename T>
+struct FacingBox {
+  LaneMask<T> is_axis[3];
+  /// Of a vector the coordinate across the face, and those along it: the first and the second.
+  [[gnu::always_inline]] Lanes<T> across(const Lanes<T> (&v)[3]) const {
+    return select(is_axis[2], v[2], select(is_axis[1], v[1], v[0]));
+  }
+  [[gnu::always_inline]] Lanes<T> along(int i, const Lanes<T> (&v)[3]) const {
+    return i == 0 ? select(is_axis[0], v[1], v[0]) : select(is_axis[2], v[1], v[2]);
+  }
+
+  [[gnu::always_inline]] explicit FacingBox(const Lanes<T> (&normal)[3]) {
+    const Lanes<T> size[3] = {abs(normal[0]), abs(normal[1]), abs(normal[2])};
+    const LaneMask<T> second = size[1] > size[0];
+    is_axis[2] = size[2] > max(size[0], size[1]);
+    is_axis[1] = second & !is_axis[2];
+    is_axis[0] = !(second | is_axis[2]);
+  }
+};
+
+/// The stretch of the segment over the box's face, seen along the normal: contacts at its ends are
+/// those that the segment and the face have as patches.
+template <typename T>
+[[gnu::always_inline]] inline LyingStretch<T> stretch_over(const CapsuleBoxSolution<T>& r,
+                                                           const FacingBox<T>& face) {
+  const CapsuleAndBox<T>& p = r.scene;
+  const Lanes<T> zero(T(0));
+  const Lanes<T> one(T(1));
+  const Lanes<T> normal[3] = {r.normal.x, r.normal.y, r.normal.z};
+  const Lanes<T> facing = face.across(normal);
+  const Lanes<T> over = one / facing;
+  // The way along the normal to the face's plane, at s: base + rise s.
+  const Lanes<T> base = -(sign_or_one(facing) * face.across(p.size) + face.across(p.middle)) * over;
+  const Lanes<T> rise = -face.across(p.axis) * over;
+  const Lanes<T> slack = r.proof.scale * Lanes<T>(kOnePlace<T>);
+  Lanes<T> low = -p.half;
+  Lanes<T> high = p.half;
+  for (int i = 0; i < 2; ++i) {
+    const Lanes<T> n = face.along(i, normal);
+    const Lanes<T> size = face.along(i, p.size);
+    const Lanes<T> place = face.along(i, p.middle) + base * n;
+    const Lanes<T> slope = face.along(i, p.axis) + rise * n;
+    const Lanes<T> one_over = one / slope;
+    const Lanes<T> from = (-size - place) * one_over;
+    const Lanes<T> to = (size - place) * one_over;
+    // Not where all of the segment is inside but for rounding.
+    const LaneMask<T> cuts = abs(place) + p.half * abs(slope) > size + slack;
+    low = select(cuts, max(low, min(from, to)), low);
+    high = select(cuts, min(high, max(from, to)), high);
+    high = select(cuts & (slope == zero), -p.half - p.half, high);
+  }
+  // Ends of the stretch that are not ends of the capsule: 3 and 4.
+  const auto name = [&](const Lanes<T>& s, const Lanes<T>& cut) {
+    return select(abs(s) >= p.half, segment_feature(s, p.half), cut);
+  };
+  const Lanes<T> both = r.radius + r.radius_b;
+  LyingStretch<T> stretch{{low, high},
+                          {base + rise * low - both, base + rise * high - both},
+                          {name(low, Lanes<T>(T(3))), name(high, Lanes<T>(T(4)))},
+                          zero > one};
+  stretch.lies = two_ends(stretch, r.proof, Vec3<T>{p.axis[0], p.axis[1], p.axis[2]}, r.normal);
+  return stretch;
+}
+
 template <typename T>
 [[gnu::always_inline]] inline void write_touches(NarrowJob& job, const PairBlock<T>& block,
                                                  const CapsuleBoxSolution<T>& r,
                                                  const CertifiedLanes<T>& answer) {
   const Lanes<T> zero(T(0));
-  const Lanes<T> one(T(1));
   const CapsuleAndBox<T>& p = r.scene;
   const Vec3<T> axis = r.axes.to_world(Vec3<T>{p.axis[0], p.axis[1], p.axis[2]});
-  const Lanes<T> normal[3] = {r.normal.x, r.normal.y, r.normal.z};
-  Lanes<T> low = -p.half;
-  Lanes<T> high = p.half;
-  Lanes<T> base = -(r.radius + r.radius_b);
-  Lanes<T> tilt = zero;
-  LaneMask<T> lies = zero > one;
-  for (int i = 0; i < 3; ++i) {
-    const LaneMask<T> face = abs(normal[i]) > Lanes<T>(T(1) - T(16) * kEpsilon<T>);
-    lies = lies | face;
-    base -= normal[i] * p.middle[i] + abs(normal[i]) * p.size[i];
-    tilt += normal[i] * p.axis[i];
-    const Lanes<T> over = one / p.axis[i];
-    const Lanes<T> from = (-p.size[i] - p.middle[i]) * over;
-    const Lanes<T> to = (p.size[i] - p.middle[i]) * over;
-    const LaneMask<T> slab = (!face) & !(p.axis[i] == zero);
-    low = select(slab, max(low, min(from, to)), low);
-    high = select(slab, min(high, max(from, to)), high);
-  }
-  lies = lies & (tilt * tilt < Lanes<T>(kLyingSquare<T>)) &
-         (high - low > p.half * Lanes<T>(kLeastStretch<T>));
-  const Lanes<T> name = box_feature(r.normal);
+  const FacingBox<T> face({r.normal.x, r.normal.y, r.normal.z});
+  const LyingStretch<T> stretch = stretch_over(r, face);
+  const Vec3<T> towards{select(face.is_axis[0], r.normal.x, zero),
+                        select(face.is_axis[1], r.normal.y, zero),
+                        select(face.is_axis[2], r.normal.z, zero)};
+  const Lanes<T> name = select(stretch.lies, box_feature(towards), box_feature(r.normal));
   const auto contact = [&](const Lanes<T>& s, const Lanes<T>& d, const Lanes<T>& feature) {
     return ContactLanes<T>{axis * s + answer.normal * (r.radius + d * Lanes<T>(T(0.5))), -d,
                            feature, name, 0};
   };
-  // Ends of the stretch over the face that are not ends of the capsule: 3 and 4.
-  const auto end_name = [&](const Lanes<T>& s, const Lanes<T>& cut) {
-    return select(abs(s) >= p.half, segment_feature(s, p.half), cut);
-  };
-  write_stretch(job, block, answer,
-                {{low, high},
-                 {base - tilt * low, base - tilt * high},
-                 {end_name(low, Lanes<T>(T(3))), end_name(high, Lanes<T>(T(4)))},
-                 lies},
-                r.s, segment_feature(r.s, p.half), contact);
+  write_stretch(job, block, answer, stretch, r.s, segment_feature(r.s, p.half), contact);
 }
 
 struct CapsuleBox {

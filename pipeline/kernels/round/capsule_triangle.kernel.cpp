@@ -154,66 +154,62 @@ template <typename T>
   return r;
 }
 
-/// The stretch of the segment over the triangle, low > high if there is none.
+/// The stretch of the segment over the triangle, seen along the normal: contacts at its ends are
+/// those that both have as patches.
 template <typename T>
-struct Stretch {
-  Lanes<T> low;
-  Lanes<T> high;
-  /// What of the triangle ends it: an edge, or the face where the segment ends first.
-  Lanes<T> low_feature;
-  Lanes<T> high_feature;
-};
-
-template <typename T>
-[[gnu::always_inline]] inline Stretch<T> stretch_over(const CapsuleAndTriangle<T>& p) {
+[[gnu::always_inline]] inline LyingStretch<T> stretch_over(const CapsuleTriangleSolution<T>& r) {
   const Lanes<T> zero(T(0));
-  const Lanes<T> face(T(7));
-  Stretch<T> r{-p.half, p.half, face, face};
+  const Lanes<T> one(T(1));
+  const CapsuleAndTriangle<T>& p = r.scene;
+  const TriangleView<T>& b = p.triangle;
+  const Lanes<T> facing = dot(b.normal, r.normal);
+  const Lanes<T> side = sign_or_one(facing);
+  const Lanes<T> slack = r.proof.scale * Lanes<T>(kOnePlace<T>);
+  Lanes<T> low = -p.half;
+  Lanes<T> high = p.half;
+  // What of the triangle ends it: an edge, or the face where the segment ends first.
+  Lanes<T> feature[2] = {Lanes<T>(T(7)), Lanes<T>(T(7))};
   for (int i = 0; i < 3; ++i) {
-    const Vec3<T> inward = cross(p.triangle.normal, p.triangle.edge[i]);
+    const Vec3<T> inward = cross(r.normal, b.edge[i]) * side;
     // inward . (s axis - vertex) >= 0
     const Lanes<T> slope = dot(inward, p.axis);
-    const Lanes<T> offset = dot(inward, p.triangle.vertex[i]);
+    const Lanes<T> offset = dot(inward, b.vertex[i]);
     const Lanes<T> at = offset / slope;
     const Lanes<T> edge(T(4 + i));
-    const LaneMask<T> begins = (slope > zero) & (at > r.low);
-    const LaneMask<T> ends = (slope < zero) & (at < r.high);
-    r.low = select(begins, at, r.low);
-    r.low_feature = select(begins, edge, r.low_feature);
-    r.high = select(ends, at, r.high);
-    r.high_feature = select(ends, edge, r.high_feature);
-    const LaneMask<T> never = (slope == zero) & (offset > zero);
-    r.high = select(never, -p.half - p.half, r.high);
+    // Not where all of the segment is inside but for rounding.
+    const LaneMask<T> cuts = offset + p.half * abs(slope) > slack * sqrt(b.square[i]);
+    const LaneMask<T> begins = cuts & (slope > zero) & (at > low);
+    const LaneMask<T> ends = cuts & (slope < zero) & (at < high);
+    low = select(begins, at, low);
+    feature[0] = select(begins, edge, feature[0]);
+    high = select(ends, at, high);
+    feature[1] = select(ends, edge, feature[1]);
+    const LaneMask<T> never = cuts & (slope == zero);
+    high = select(never, -p.half - p.half, high);
   }
-  return r;
+  // The way along the normal to the triangle's plane, at s: base + rise s.
+  const Lanes<T> over = one / facing;
+  const Lanes<T> base = dot(b.normal, b.vertex[0]) * over - r.radius - r.radius_b;
+  const Lanes<T> rise = -dot(b.normal, p.axis) * over;
+  LyingStretch<T> stretch{{low, high},
+                          {base + rise * low, base + rise * high},
+                          {feature[0], feature[1]},
+                          facing * facing > b.normal_square * Lanes<T>(kSteepSquare<T>)};
+  stretch.lies = stretch.lies & two_ends(stretch, r.proof, p.axis, r.normal);
+  return stretch;
 }
 
-/// A capsule that lies on the face touches it at both ends of the stretch over it, others where
-/// they are closest.
 template <typename T>
 [[gnu::always_inline]] inline void write_touches(NarrowJob& job, const PairBlock<T>& block,
                                                  const CapsuleTriangleSolution<T>& r,
                                                  const CertifiedLanes<T>& answer) {
   const CapsuleAndTriangle<T>& p = r.scene;
   const Vec3<T> axis = r.axes.to_world(p.axis);
-  const Lanes<T> rise = dot(p.triangle.normal, r.normal);
-  const Lanes<T> tilt = dot(p.axis, r.normal);
-  const Stretch<T> over = stretch_over(p);
-  const LaneMask<T> lies =
-      (rise * rise > p.triangle.normal_square * Lanes<T>(T(1) - T(64) * kEpsilon<T>)) &
-      (tilt * tilt < Lanes<T>(kLyingSquare<T>)) &
-      (over.high - over.low > p.half * Lanes<T>(kLeastStretch<T>));
-  const Lanes<T> base = dot(p.triangle.vertex[0], r.normal) - r.radius - r.radius_b;
   const auto contact = [&](const Lanes<T>& s, const Lanes<T>& d, const Lanes<T>& feature) {
     const Vec3<T> position = axis * s + answer.normal * (r.radius + d * Lanes<T>(T(0.5)));
     return ContactLanes<T>{position, -d, segment_feature(s, p.half), feature, 0};
   };
-  write_stretch(job, block, answer,
-                {{over.low, over.high},
-                 {base - tilt * over.low, base - tilt * over.high},
-                 {over.low_feature, over.high_feature},
-                 lies},
-                r.s, r.feature, contact);
+  write_stretch(job, block, answer, stretch_over(r), r.s, r.feature, contact);
 }
 
 struct CapsuleTriangle {

@@ -31,9 +31,9 @@ inline constexpr T kNoSineSquare = T(16) * kEpsilon<T>* kEpsilon<T>;
 template <typename T>
 inline constexpr T kNoDistance = T(1e30F);
 
-/// A capsule lies on a face, or beside another capsule, if the square of the sine of the angle
-/// between them is less than the first, and the stretch over which it does is longer than the
-/// second, as a share of the half length: two contacts then say more than one.
+/// A capsule lies beside another if the square of the sine of the angle between them is less than
+/// the first, and the stretch over which it does is longer than the second, as a share of the half
+/// length: two contacts then say more than one.
 template <typename T>
 inline constexpr T kLyingSquare = T(0.01);
 template <typename T>
@@ -370,8 +370,18 @@ template <typename T>
   return Lanes<T>(T(13)) - (sign(towards.x) + three * (sign(towards.y) + three * sign(towards.z)));
 }
 
-/// The stretch of a segment that lies on a face: where it begins and ends, how far the shapes are
-/// apart there, and what a contact there is called.
+/// As a share of the pair's scale: places that are closer are one. What is as near to a stretch's
+/// end as the second is deepest there.
+template <typename T>
+inline constexpr T kOnePlace = sizeof(T) == sizeof(double) ? T(1e-9) : T(1e-6F);
+template <typename T>
+inline constexpr T kSameDepth = sizeof(T) == sizeof(double) ? T(4e-7) : T(1e-6F);
+/// The least square of the sine between a segment and the direction along which it is seen.
+template <typename T>
+inline constexpr T kSteepSquare = sizeof(T) == sizeof(double) ? T(1e-12) : T(1e-6F);
+
+/// The stretch of a segment that is over a face, seen along the normal: where it begins and ends,
+/// how far the shapes are apart there, and what a contact there is called.
 template <typename T>
 struct LyingStretch {
   Lanes<T> at[2];
@@ -380,8 +390,24 @@ struct LyingStretch {
   LaneMask<T> lies;
 };
 
+/// Whether both ends say more than one point: they are two places, and one of them is where the
+/// pair is deepest. `u` is the segment's direction, `normal` that along which it is seen.
+template <typename T>
+[[gnu::always_inline]] inline LaneMask<T> two_ends(const LyingStretch<T>& stretch,
+                                                   const ProofLanes<T>& proof, const Vec3<T>& u,
+                                                   const Vec3<T>& normal) {
+  const Vec3<T> across = u - normal * dot(u, normal);
+  const Lanes<T> square = dot(across, across);
+  const Lanes<T> length = stretch.at[1] - stretch.at[0];
+  const Lanes<T> place = proof.scale * Lanes<T>(kOnePlace<T>);
+  const Lanes<T> deepest = min(stretch.distance[0], stretch.distance[1]);
+  return (square > Lanes<T>(kSteepSquare<T>)) & (length > Lanes<T>(T(0))) &
+         (length * length * square > place * place) &
+         (abs(deepest - proof.high) <= proof.scale * Lanes<T>(kSameDepth<T>));
+}
+
 /// Contacts at the ends of the stretch that are within the margin; one at `s`, called `feature`,
-/// where none is or the segment does not lie. `contact(s, distance, feature)` makes them.
+/// where none is or there is no stretch. `contact(s, distance, feature)` makes them.
 template <typename T, typename Contact>
 [[gnu::always_inline]] inline void write_stretch(NarrowJob& job, const PairBlock<T>& block,
                                                  const CertifiedLanes<T>& answer,

@@ -1,0 +1,199 @@
+// Contacts that a body can stand on: as many as there are, true to the pair's depth, and the same
+// whatever the shape is called.
+
+#include <gtest/gtest.h>
+#include <winnow/simd/isa.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_scenes.h"
+#include "tests/support/config.h"
+#include "tests/support/random.h"
+
+namespace winnow::test {
+namespace {
+
+using enum ShapeKind;
+
+constexpr NarrowTier kTiers[] = {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference};
+constexpr double kMargin = 0.05;
+
+bool has_hulls() {
+  const std::vector<ShapeKind> kinds = all_kinds();
+  return std::find(kinds.begin(), kinds.end(), hull) != kinds.end();
+}
+
+Pose pose_of(const Eigen::Quaterniond& turn, const Eigen::Vector3d& place) {
+  Pose pose = Pose::at(place.x(), place.y(), place.z());
+  pose.orientation[0] = turn.w();
+  for (int i = 0; i < 3; ++i) pose.orientation[i + 1] = turn.vec()[i];
+  return pose;
+}
+
+ShapeId box_shape(ShapePool& pool, const Eigen::Vector3d& half, bool as_hull) {
+  ShapeId id;
+  if (!as_hull) {
+    EXPECT_EQ(pool.add(BoxShape{{half.x(), half.y(), half.z()}, 0.0}, id), Status::ok);
+    return id;
+  }
+  std::vector<Eigen::Vector3d> corners;
+  for (int i = 0; i < 8; ++i) {
+    corners.emplace_back((i & 1) != 0 ? half.x() : -half.x(), (i & 2) != 0 ? half.y() : -half.y(),
+                         (i & 4) != 0 ? half.z() : -half.z());
+  }
+  EXPECT_EQ(pool.add_hull(corners, 0.0, id), Status::ok);
+  return id;
+}
+
+/// Boxes that rest on boxes, tilted a little, sunk in a little: first given as boxes, then box on
+/// hull, hull on box and hull on hull, in the same places.
+PairScene resting_boxes(std::size_t count, double least_tilt, double most_tilt, Random& random) {
+  PairScene scene;
+  for (std::size_t i = 0; i < count; ++i) {
+    Eigen::Vector3d half[2];
+    for (Eigen::Vector3d& h : half) {
+      for (double& x : h) x = random.uniform(0.5, 1.5);
+    }
+    const double tilt = random.log_uniform(least_tilt, most_tilt);
+    const double side = random.uniform(0.0, 6.28);
+    const Eigen::Quaterniond tilted(
+        Eigen::AngleAxisd(tilt, Eigen::Vector3d(std::cos(side), std::sin(side), 0.0)));
+    const Eigen::Quaterniond spun(Eigen::AngleAxisd(
+        random.chance(0.3) ? 0.0 : random.uniform(-3.1, 3.1), Eigen::Vector3d::UnitZ()));
+    const Eigen::Vector3d place(random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4),
+                                half[0].z() + half[1].z() - random.uniform(0.0, 0.01));
+    const Eigen::Quaterniond world =
+        Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), 0.5)
+            .normalized();
+    for (int given = 0; given < 4; ++given) {
+      const auto first = static_cast<std::uint32_t>(scene.shapes.size());
+      scene.shapes.push_back(box_shape(scene.pool, half[0], (given & 1) != 0));
+      scene.shapes.push_back(box_shape(scene.pool, half[1], (given & 2) != 0));
+      scene.poses.push_back(pose_of(world, Eigen::Vector3d::Zero()));
+      scene.poses.push_back(pose_of(world * tilted * spun, world * place));
+      scene.pairs.push_back({first, first + 1});
+    }
+  }
+  return scene;
+}
+
+double depth_of(const PairAnswers& answer) {
+  double deepest = -INFINITY;
+  for (const ContactPoint& c : answer.contacts) deepest = std::max<double>(deepest, c.depth);
+  return deepest;
+}
+
+/// How many points of one are no point of the other.
+std::size_t strangers(const PairAnswers& of, const PairAnswers& in, double tolerance) {
+  const auto near = [&](const ContactPoint& c, const ContactPoint& d) {
+    double apart = std::abs(double{c.depth} - double{d.depth});
+    for (int i = 0; i < 3; ++i) {
+      apart = std::max(apart, std::abs(double{c.position[i]} - double{d.position[i]}));
+    }
+    return apart <= tolerance;
+  };
+  return static_cast<std::size_t>(
+      std::count_if(of.contacts.begin(), of.contacts.end(), [&](const ContactPoint& c) {
+        return std::none_of(in.contacts.begin(), in.contacts.end(),
+                            [&](const ContactPoint& d) { return near(c, d); });
+      }));
+}
+
+TEST(Manifolds, of_cubes_tilted_by_a_ten_thousandth_have_four_points) {
+  if (!has_hulls()) GTEST_SKIP() << "no hulls";
+  PairScene scene;
+  const Eigen::Vector3d half(1, 1, 1);
+  scene.shapes = {box_shape(scene.pool, half, true), box_shape(scene.pool, half, true)};
+  const Eigen::Quaterniond turn(1.0, 3e-5, 4e-5, 2e-5);
+  scene.poses = {Pose{}, pose_of(turn.normalized(), {0.1, 0.1, 1.99})};
+  scene.pairs = {{0, 1}};
+  for (const NarrowTier tier : kTiers) {
+    const PairAnswers answer = ask(scene, {.tier = tier}).at(0);
+    EXPECT_EQ(answer.contacts.size(), 4U);
+    for (const ContactPoint& contact : answer.contacts) EXPECT_NEAR(contact.depth, 0.01, 5e-4);
+  }
+}
+
+TEST(Manifolds, of_a_box_are_the_same_if_it_is_given_as_a_hull) {
+  if (!has_hulls()) GTEST_SKIP() << "no hulls";
+  Random random(5);
+  const double tilts[][2] = {{1e-12, 1e-6}, {1e-6, 1e-4}, {1e-4, 1e-2}, {1e-2, 0.1}};
+  for (const auto& tilt : tilts) {
+    const PairScene scene = resting_boxes(scaled(4000), tilt[0], tilt[1], random);
+    for (const Isa isa : available_isas()) {
+      const IsaScope scope(isa);
+      for (const NarrowTier tier : kTiers) {
+        SCOPED_TRACE(std::string(to_string(isa)) + " tilted by " + std::to_string(tilt[1]));
+        const auto answers = ask(scene, {.tier = tier, .margin = kMargin});
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+          const PairAnswers& as_boxes = answers[i / 4 * 4];
+          ASSERT_GE(as_boxes.contacts.size(), 2U) << i;
+          ASSERT_EQ(answers[i].contacts.size(), as_boxes.contacts.size()) << i;
+          // Where two axes are as good, and where two corners are, either may be taken.
+          const double same = 2e-5 + answers[i].error_bound + as_boxes.error_bound;
+          ASSERT_NEAR(depth_of(answers[i]), depth_of(as_boxes), same) << i;
+        }
+      }
+    }
+  }
+}
+
+struct Kinds {
+  ShapeKind a;
+  ShapeKind b;
+};
+void PrintTo(const Kinds& kinds, std::ostream* out) {
+  *out << to_string(kinds.a) << "_" << to_string(kinds.b);
+}
+constexpr Kinds kKinds[] = {{sphere, box},  {sphere, hull},   {sphere, triangle},
+                            {capsule, box}, {capsule, hull},  {capsule, triangle},
+                            {box, box},     {box, hull},      {box, triangle},
+                            {hull, hull},   {hull, triangle}, {triangle, triangle}};
+
+class ManifoldsOf : public testing::TestWithParam<Kinds> {
+ protected:
+  void SetUp() override {
+    const bool needs = GetParam().a == hull || GetParam().b == hull;
+    if (needs && !has_hulls()) GTEST_SKIP() << "no hulls";
+  }
+};
+
+TEST_P(ManifoldsOf, lanes_are_those_of_the_solver) {
+  constexpr std::size_t kBatch = 10000;
+  std::size_t touching = 0;
+  std::size_t fewer = 0;
+  std::size_t others = 0;
+  for (std::size_t done = 0; done < scaled(200000); done += kBatch) {
+    PairScene scene;
+    Random random(100 + done);
+    add_pairs(scene, GetParam().a, GetParam().b, PairStyle::ordinary, kBatch, random);
+    const auto found = ask(scene, {.margin = kMargin});
+    const auto solved = ask(scene, {.tier = NarrowTier::reference, .margin = kMargin});
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (solved[i].contacts.empty()) continue;
+      ++touching;
+      const double reach = extent(scene, scene.pairs[i]) + std::abs(solved[i].distance);
+      ASSERT_NEAR(depth_of(found[i]), -found[i].distance, 2e-6 * reach) << done + i;
+      if (found[i].contacts.size() != solved[i].contacts.size()) ++fewer;
+      if (strangers(found[i], solved[i], 2e-5 * reach) > 0) ++others;
+    }
+  }
+  // Points that a rounding decides about: two places that are nearly one, corners that add as much.
+  EXPECT_LE(fewer, touching / 20000);
+  EXPECT_LE(others, touching / 200);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ManifoldsOf, testing::ValuesIn(kKinds),
+                         [](const testing::TestParamInfo<Kinds>& kinds) {
+                           return std::string(to_string(kinds.param.a)) + "_" +
+                                  to_string(kinds.param.b);
+                         });
+
+}  // namespace
+}  // namespace winnow::test
