@@ -34,6 +34,8 @@ struct HullArc {
   std::uint32_t vertex[2];
   float s[2];
   float t[2];
+
+  [[nodiscard]] bool is_whole() const { return t[0] == 0.0F && s[1] == 0.0F; }
 };
 
 /// What can be the smallest depth, as far as float can tell.
@@ -216,6 +218,16 @@ class HullDepth {
     propose(c);
   }
 
+  void propose_arc(const HullArc& arc, float depth) {
+    if (!(depth <= best_ + slack_)) return;
+    HullCandidate c;
+    c.kind = HullCandidate::Kind::arc;
+    c.face = arc.face[0];
+    c.depth = depth;
+    c.arc = arc;
+    propose(c);
+  }
+
   /// Adds a candidate, dropping those that have become too deep when the room runs out.
   void propose(const HullCandidate& candidate) {
     if (count_ >= kMostCandidates) drop_deep();
@@ -384,18 +396,17 @@ class HullDepth {
     float weight[2];
     float lowest = 0.0F;
     const Verdict verdict = cut(from, to, middle, weight, lowest);
-    if (verdict != Verdict::near) return verdict == Verdict::deep;
+    if (verdict == Verdict::lost) return false;
     arc.vertex[0] = from.vertex;
     arc.vertex[1] = to.vertex;
+    if (verdict == Verdict::deep) {
+      // The ends of a whole arc are candidates, and HullTies looks around them.
+      if (!arc.is_whole()) propose_arc(arc, from.depth < to.depth ? from.depth : to.depth);
+      return true;
+    }
     if (middle.vertex == arc.vertex[0] || middle.vertex == arc.vertex[1] ||
         middle.depth <= lowest + 0.25F * slack_) {
-      if (!(lowest <= best_ + slack_)) return true;
-      HullCandidate c;
-      c.kind = HullCandidate::Kind::arc;
-      c.face = arc.face[0];
-      c.depth = lowest;
-      c.arc = arc;
-      propose(c);
+      propose_arc(arc, lowest);
       return true;
     }
     const float s = weight[0] * arc.s[0] + weight[1] * arc.s[1];

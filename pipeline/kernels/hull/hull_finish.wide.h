@@ -23,6 +23,8 @@ struct HullDistance {
   /// Features that touch, for contacts: vertices of the closest simplex are used where this is not
   /// set.
   const HullCandidate* winner;
+  /// Room for one that the float search has not found.
+  HullCandidate found;
 };
 
 template <typename T>
@@ -206,23 +208,43 @@ class HullMeasure {
         w[i][k] = mine[k] - theirs[k];
       }
     }
-    const T here = dot(end[0], w[0]);
-    const T there = dot(end[1], w[1]);
-    T p = there - dot(end[1], w[0]);
-    T q = here - dot(end[0], w[1]);
-    p = p > T(0) ? p : T(0);
-    q = q > T(0) ? q : T(0);
-    for (int k = 0; k < 3; ++k) normal[k] = p * end[0][k] + q * end[1][k];
+    crossing(end, w);
+    // The ends of a whole arc are candidates themselves.
+    if (!arc.is_whole()) bound_ends(end, w);
+  }
+
+  /// Of the arc between two directions and two points of the difference: the direction in which
+  /// they are as high, or, if one of them is the higher at both ends, the end where that is lower.
+  void crossing(const T (*end)[3], const T (*w)[3]) {
+    const T here[2] = {dot(end[0], w[0]), dot(end[0], w[1])};
+    const T there[2] = {dot(end[1], w[0]), dot(end[1], w[1])};
+    const T q = here[0] - here[1];
+    const T p = there[1] - there[0];
+    const bool crosses = (p > T(0) && q > T(0)) || (p < T(0) && q < T(0));
+    const int top = q > T(0) || p < T(0) ? 0 : 1;
+    T weight[2] = {p < T(0) ? -p : p, q < T(0) ? -q : q};
+    if (!crosses) {
+      const bool at_start = here[top] < there[top];
+      weight[0] = at_start ? T(1) : T(0);
+      weight[1] = at_start ? T(0) : T(1);
+    }
+    for (int k = 0; k < 3; ++k) normal[k] = weight[0] * end[0][k] + weight[1] * end[1][k];
     const T scale = T(1) / root(dot(normal, normal));
     for (T& x : normal) x *= scale;
     depth = depth_along(pair_, place_, normal);
-    lower = dot(normal, w[0]);
-    const T other = dot(normal, w[1]);
-    lower = other < lower ? other : lower;
-    if (p + q > T(0)) return;
-    // Both points are as high at either end: the ends are candidates themselves.
-    depth = static_cast<T>(__builtin_inf());
-    lower = depth;
+    const T heights[2] = {dot(normal, w[0]), dot(normal, w[1])};
+    const int low = heights[0] < heights[1] ? 0 : 1;
+    lower = heights[crosses ? low : top];
+  }
+
+  /// Where both points rise along an arc it is an end that bounds the higher of them.
+  void bound_ends(const T (*end)[3], const T (*w)[3]) {
+    for (int i = 0; i < 2; ++i) {
+      const T heights[2] = {dot(end[i], w[0]), dot(end[i], w[1])};
+      const T height =
+          (heights[0] > heights[1] ? heights[0] : heights[1]) / root(dot(end[i], end[i]));
+      lower = height < lower ? height : lower;
+    }
   }
 
  private:
@@ -230,6 +252,183 @@ class HullMeasure {
   const HullPair& pair_;
   const HullPlace<T>& place_;
 };
+
+/// Arcs that float cannot follow: where hulls are nearly parallel, several vertices of the second
+/// are as far along a face's normal of the first as float can tell, and the search may have taken
+/// the same for both ends of an arc along which they change. Here the vertices that tie are told
+/// apart in double, on all arcs around the face.
+class HullTies {
+ public:
+  /// `best` and `lower`: the least depth known and the least that it can be.
+  HullTies(const HullPair& pair, const HullPlace<double>& place, double best, double lower)
+      : pair_(pair), measure_(pair, place), place_(place), best_(best), lower_(lower) {}
+
+  /// Looks around a face of the first, along whose normal the depth is known; false if there is
+  /// more to look at than there is room for.
+  bool around(std::uint32_t face, double depth) {
+    const HullFace& f = pair_.first->faces[face];
+    if (!find_ties(f.normal, f.offset - depth)) return false;
+    return count_ < 2 || follow_all(face);
+  }
+
+  [[nodiscard]] double best() const { return best_; }
+  [[nodiscard]] double lower() const { return lower_; }
+  [[nodiscard]] bool found() const { return found_; }
+  [[nodiscard]] const HullCandidate& winner() const { return winner_; }
+  [[nodiscard]] const double* normal() const { return normal_; }
+
+ private:
+  static constexpr std::uint32_t kMostTies = 32;
+  static constexpr int kMostParts = 16;
+
+  /// Between two directions along which two vertices of the second are the nearest.
+  struct Part {
+    double end[2][3];
+    std::uint32_t vertex[2];
+  };
+
+  [[gnu::noinline]] bool follow_all(std::uint32_t face) {
+    const HullShape& hull = *pair_.first;
+    for (std::uint32_t i = 0; i < hull.faces[face].count; ++i) {
+      const std::uint32_t edge = hull.loop_edge[hull.faces[face].first + i];
+      const std::uint32_t* sides = hull.edges[edge].face;
+      if (!follow(edge, face, sides[0] == face ? sides[1] : sides[0])) return false;
+    }
+    return true;
+  }
+
+  /// Those of which float could not tell which is the lowest, `least` or a little higher.
+  bool find_ties(const double* normal, double least) {
+    constexpr std::uint32_t kWidth = Lanes<double>::kCount;
+    const HullShape& second = *pair_.second;
+    double local[3];
+    turn_back3(place_.turn, normal, local);
+    for (double& x : local) x = -x;
+    const double doubt = 4.0 * static_cast<double>(kFloatError) * pair_.size;
+    const Lanes<double> limit(dot3(normal, place_.shift) - least - doubt);
+    const Vec3<double> d{local[0], local[1], local[2]};
+    count_ = 0;
+    for (std::uint32_t row = 0; row < second.vertex_count; row += kWidth) {
+      Mask16 high = bits(along(second.vertex, row, d) >= limit);
+      const std::uint32_t left = second.vertex_count - row;
+      if (left < kWidth) high &= lanes_below(left);
+      for (; high != 0; high &= high - 1) {
+        if (count_ == kMostTies) return false;
+        tied_[count_++] = row + winnow::WINNOW_ISA_NAME::first(high);
+      }
+    }
+    return true;
+  }
+
+  /// Of the vertices that tie the one farthest against a direction.
+  [[nodiscard]] std::uint32_t nearest(const double* direction) const {
+    std::uint32_t best = tied_[0];
+    double least = __builtin_inf();
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      double x[3];
+      place_.of_second(*pair_.second, tied_[i], x);
+      const double height = dot3(direction, x);
+      best = height < least ? tied_[i] : best;
+      least = height < least ? height : least;
+    }
+    return best;
+  }
+
+  bool follow(std::uint32_t edge, std::uint32_t from, std::uint32_t to) {
+    const HullShape& hull = *pair_.first;
+    const double* ends[2] = {hull.faces[from].normal, hull.faces[to].normal};
+    Part stack[kMostParts];
+    for (int i = 0; i < 2; ++i) {
+      for (int k = 0; k < 3; ++k) stack[0].end[i][k] = ends[i][k];
+      stack[0].vertex[i] = nearest(ends[i]);
+    }
+    vertex_at(hull, hull.edges[edge].vertex[0], mine_);
+    int height = 1;
+    for (int looked = 0; height > 0; ++looked) {
+      if (looked == kMostParts || height + 1 >= kMostParts) return false;
+      const Part part = stack[--height];
+      look(edge, part, stack, height);
+    }
+    return true;
+  }
+
+  /// Bounds a part of an arc, or puts its halves on the stack where a third vertex is nearer.
+  void look(std::uint32_t edge, const Part& part, Part* stack, int& height) {
+    double w[2][3];
+    for (int i = 0; i < 2; ++i) {
+      double theirs[3];
+      place_.of_second(*pair_.second, part.vertex[i], theirs);
+      for (int k = 0; k < 3; ++k) w[i][k] = mine_[k] - theirs[k];
+    }
+    const double rounding = kDoubleError * pair_.size;
+    // One vertex, whose height is least at an end.
+    if (part.vertex[0] == part.vertex[1]) {
+      for (const double(&end)[3] : part.end) bound(dot3(end, w[0]) + rounding);
+      return;
+    }
+    measure_.crossing(part.end, w);
+    measure_.bound_ends(part.end, w);
+    if (measure_.lower + rounding >= best_) return;
+    const double* normal = measure_.normal;
+    std::uint32_t third = nearest(normal);
+    if (measure_.depth < best_) keep(edge, part);
+    if (measure_.depth - measure_.lower <= rounding || third == part.vertex[0] ||
+        third == part.vertex[1]) {
+      return bound(measure_.lower);
+    }
+    Part halves[2] = {part, part};
+    for (int k = 0; k < 3; ++k) halves[0].end[1][k] = halves[1].end[0][k] = normal[k];
+    halves[0].vertex[1] = third;
+    halves[1].vertex[0] = third;
+    stack[height++] = halves[0];
+    stack[height++] = halves[1];
+  }
+
+  void bound(double depth) { lower_ = depth < lower_ ? depth : lower_; }
+
+  void keep(std::uint32_t edge, const Part& part) {
+    found_ = true;
+    best_ = measure_.depth;
+    for (int k = 0; k < 3; ++k) normal_[k] = measure_.normal[k];
+    winner_.kind = HullCandidate::Kind::arc;
+    winner_.arc.edge = edge;
+    winner_.arc.vertex[0] = part.vertex[0];
+    winner_.arc.vertex[1] = part.vertex[1];
+  }
+
+  const HullPair& pair_;
+  HullMeasure<double> measure_;
+  const HullPlace<double>& place_;
+  double best_;
+  double lower_;
+  bool found_ = false;
+  double normal_[3];
+  HullCandidate winner_ = {};
+  /// The vertex of the first at whose edge an arc lies.
+  double mine_[3];
+  std::uint32_t count_ = 0;
+  std::uint32_t tied_[kMostTies];
+};
+
+/// What candidates of the float search may have missed. False if that cannot be told.
+static inline bool finish_ties(const HullPair& pair, const HullPlace<double>& place,
+                               const HullDepth& found, const double* depth, double& best,
+                               double& lower, HullDistance<double>& answer) {
+  HullTies ties(pair, place, best, lower);
+  const double reach = best + 4.0 * static_cast<double>(kFloatError) * pair.size;
+  for (std::uint32_t i = 0; i < found.count(); ++i) {
+    const HullCandidate& c = found.candidate(i);
+    if (c.kind != HullCandidate::Kind::first_face || depth[i] > reach) continue;
+    if (!ties.around(c.face, depth[i])) return false;
+  }
+  best = ties.best();
+  lower = ties.lower();
+  if (!ties.found()) return true;
+  answer.found = ties.winner();
+  answer.winner = &answer.found;
+  for (int k = 0; k < 3; ++k) answer.normal[k] = ties.normal()[k];
+  return true;
+}
 
 /// Cores that overlap: measures the candidates. The error is not small where a candidate that is
 /// left out in double is not surely deeper.
@@ -239,6 +438,7 @@ static inline void finish_depth(const HullPair& pair, const HullPlace<T>& place,
   HullMeasure<T> measure(pair, place);
   T best = static_cast<T>(__builtin_inf());
   T lower = best;
+  T depth[HullDepth::kMostCandidates];
   answer.winner = nullptr;
   for (std::uint32_t i = 0; i < found.count(); ++i) {
     const HullCandidate& c = found.candidate(i);
@@ -247,16 +447,21 @@ static inline void finish_depth(const HullPair& pair, const HullPlace<T>& place,
     } else {
       measure.face(c);
     }
+    depth[i] = measure.depth;
     lower = measure.lower < lower ? measure.lower : lower;
     if (!(measure.depth < best)) continue;
     best = measure.depth;
     answer.winner = &c;
     for (int k = 0; k < 3; ++k) answer.normal[k] = measure.normal[k];
   }
+  bool sure = answer.winner != nullptr;
+  if constexpr (sizeof(T) == sizeof(double)) {
+    sure = sure && finish_ties(pair, place, found, depth, best, lower, answer);
+  }
   const T doubt = best - lower;
   answer.distance = -best;
   answer.error = (doubt > T(0) ? doubt : T(0)) + kRounding<T> * static_cast<T>(pair.size);
-  if (answer.winner == nullptr) answer.error = static_cast<T>(__builtin_inf());
+  if (!sure) answer.error = static_cast<T>(__builtin_inf());
 }
 
 /// Where the second's vertex nearest to the first's inside touches, or the first's; false if the
