@@ -144,6 +144,72 @@ TEST(Manifolds, of_a_box_are_the_same_if_it_is_given_as_a_hull) {
   }
 }
 
+TEST(Manifolds, of_a_capsule_deep_in_a_hull_have_a_point_as_deep) {
+  if (!has_hulls()) GTEST_SKIP() << "no hulls";
+  PairScene scene;
+  scene.shapes.resize(2);
+  ASSERT_EQ(scene.pool.add(CapsuleShape{0.2222824254022642, 0.026282565200887533}, scene.shapes[0]),
+            Status::ok);
+  const std::vector<Eigen::Vector3d> points{
+      {-0.19631014625979862, 0.12218800340009678, -0.81374006265294041},
+      {0.28154849142473987, 0.038549749736952646, 0.80102849761636152},
+      {0.062003479886133361, -0.15152285426041126, -0.83766352001487832},
+      {-0.086893110304325144, 0.14606993770425319, -0.83808389624948587},
+      {0.19643134900823414, 0.016241340883103736, 0.86974381062733142},
+      {-0.098299979927226236, 0.30210454347201721, -0.4966735780099592},
+      {-0.066486376412280987, -0.23867647143189979, 0.69372883531562657},
+      {-0.24831994428858464, 0.194020962072501, -0.67466690563330489},
+      {-0.063708071679541955, 0.29053466662447802, -0.55276815185466421},
+      {0.4153574480228624, 0.10429567270739504, -0.57972170774647402}};
+  ASSERT_EQ(scene.pool.add_hull(points, 0.0, scene.shapes[1]), Status::ok);
+  const double turn[4] = {-0.085698602130273152, -0.51986299515095569, -0.030135590498817796,
+                          0.84940571110093332};
+  const double other[4] = {0.36052780060193618, 0.65003809976047455, 0.26109453534335325,
+                           0.61587321541593332};
+  scene.poses = {Pose::at(9.3572710803516728, 3.9158354702756637, 8.8810190294935509),
+                 Pose::at(10.102228529405721, 3.4847428763075854, 8.9397608177362375)};
+  std::copy_n(turn, 4, scene.poses[0].orientation);
+  std::copy_n(other, 4, scene.poses[1].orientation);
+  scene.pairs = {{0, 1}};
+  for (const NarrowTier tier : kTiers) {
+    const PairAnswers answer = ask(scene, {.tier = tier}).at(0);
+    EXPECT_EQ(answer.contacts.size(), 2U);
+    EXPECT_NEAR(depth_of(answer), 0.0708781, 1e-6);
+  }
+}
+
+/// Any two kinds but two half-spaces.
+TEST(Manifolds, have_a_point_as_deep_as_the_pair_and_none_beyond_the_margin) {
+  const std::vector<ShapeKind> kinds = all_kinds();
+  Random random(23);
+  for (const PairStyle style : kPairStyles) {
+    PairScene scene;
+    for (const ShapeKind a : kinds) {
+      for (const ShapeKind b : kinds) {
+        if (b < a || (a == half_space && b == half_space)) continue;
+        add_pairs(scene, a, b, style, scaled(600), random);
+      }
+    }
+    for (const NarrowTier tier : kTiers) {
+      for (const double margin : {0.0, kMargin}) {
+        SCOPED_TRACE(std::string(to_string(style)) + " margin " + std::to_string(margin));
+        const auto answers = ask(scene, {.tier = tier, .margin = margin});
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+          const PairAnswers& answer = answers[i];
+          ASSERT_EQ(answer.contacts.empty(), answer.distance > margin) << i;
+          if (answer.contacts.empty()) continue;
+          const double reach = extent(scene, scene.pairs[i]) + std::abs(answer.distance);
+          const double doubt = answer.error_bound + 1e-6 * reach;
+          ASSERT_NEAR(depth_of(answer), -answer.distance, doubt) << i;
+          for (const ContactPoint& contact : answer.contacts) {
+            ASSERT_GE(contact.depth, -margin - doubt) << i;
+          }
+        }
+      }
+    }
+  }
+}
+
 struct Kinds {
   ShapeKind a;
   ShapeKind b;
