@@ -24,6 +24,14 @@ inline constexpr std::uint32_t kSideLine = 2 * kRimCorners;
 /// Directions whose sine with the axis is less are along it.
 inline constexpr double kAlongAxis = 1e-9;
 
+/// A capsule lies beside another if the square of the sine of the angle between them is less than
+/// the first, the stretch over which it does is longer than the second, as a share of both half
+/// lengths, and an end of it is hardly less deep than the pair, by the third, as a share of the
+/// radii: two contacts then say more than one.
+inline constexpr double kBesideSquare = 0.01;
+inline constexpr double kLeastBeside = 1e-3;
+inline constexpr double kHardlyLess = 1e-3;
+
 /// The feature of a core that lies farthest along (for a) or against (for b) the contact normal:
 /// one vertex, an edge, or a convex polygon in order around its boundary (either way). Vertices are
 /// relative to the position of body a, in the axes of the world.

@@ -200,8 +200,52 @@ ContactPoint own_point(const Problem& problem, const Vec& point, const Vec& norm
   return contact;
 }
 
-std::uint32_t meet(const Problem& problem, const Vec& normal, double margin,
+/// Contacts of two segments at both ends of the stretch along which they lie side by side, the
+/// deeper one first, as far as they are within the margin: as the lanes have it. None if they do
+/// not.
+std::uint32_t side_by_side(const Problem& problem, const Vec& normal, double distance,
+                           double margin, ContactPoint* out) noexcept {
+  const Core& a = problem.a;
+  const Core& b = problem.b;
+  const Vec u = a.rotation.col(2);
+  const Vec w = b.rotation.col(2);
+  const Vec c = b.center - a.center;
+  const double half_a = a.half.z();
+  const double half_b = b.half.z();
+  const double reach = half_b * std::abs(u.dot(w));
+  const double ends[2] = {std::max(u.dot(c) - reach, -half_a), std::min(u.dot(c) + reach, half_a)};
+  const bool beside = u.cross(w).squaredNorm() < kBesideSquare &&
+                      ends[1] - ends[0] > (half_a + half_b) * kLeastBeside;
+  if (!beside) return 0;
+  Vec foot[2][2];
+  double apart[2];
+  for (int i = 0; i < 2; ++i) {
+    const double t = std::clamp(u.dot(w) * ends[i] - w.dot(c), -half_b, half_b);
+    foot[i][0] = a.center + u * ends[i];
+    foot[i][1] = b.center + w * t;
+    apart[i] = (foot[i][1] - foot[i][0]).norm() - a.rounding - b.rounding;
+  }
+  const double behind = std::min(apart[0], apart[1]) - distance;
+  if (!(behind <= (a.rounding + b.rounding) * kHardlyLess)) return 0;
+  const int first = apart[1] < apart[0] ? 1 : 0;
+  std::uint32_t count = 0;
+  for (const int i : {first, 1 - first}) {
+    if (!(apart[i] - behind <= margin)) continue;
+    const Vec middle = (foot[i][0] + normal * a.rounding + foot[i][1] - normal * b.rounding) * 0.5;
+    for (int k = 0; k < 3; ++k) out[count].position[k] = static_cast<float>(middle[k]);
+    out[count].depth = static_cast<float>(behind - apart[i]);
+    out[count].feature =
+        std::uint64_t{point_feature(a, foot[i][0])} << 32U | point_feature(b, foot[i][1]);
+    ++count;
+  }
+  return count;
+}
+
+std::uint32_t meet(const Problem& problem, const Vec& normal, double distance, double margin,
                    ContactPoint* out) noexcept {
+  if (problem.a.kind == CoreKind::segment && problem.b.kind == CoreKind::segment) {
+    return side_by_side(problem, normal, distance, margin, out);
+  }
   const SupportingPatch a(problem.a, normal);
   const double direction[3] = {normal.x(), normal.y(), normal.z()};
   if (problem.b.kind != CoreKind::half_space) {
@@ -223,7 +267,7 @@ void make_manifold(const Problem& problem, const Vec& point, double distance, do
   const bool alone = problem.a.kind == CoreKind::point || problem.b.kind == CoreKind::point ||
                      problem.a.kind == CoreKind::half_space;
   ContactPoint* contacts = answer.contacts;
-  std::uint32_t count = alone ? 0 : meet(problem, normal, margin, contacts);
+  std::uint32_t count = alone ? 0 : meet(problem, normal, distance, margin, contacts);
   // Where the features miss the point of least distance, as caps with 16 corners do by a little, or
   // meet nowhere within the margin, it takes the place of their deepest; where they miss it by
   // much, it is put in front of them.

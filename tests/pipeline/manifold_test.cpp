@@ -217,10 +217,11 @@ struct Kinds {
 void PrintTo(const Kinds& kinds, std::ostream* out) {
   *out << to_string(kinds.a) << "_" << to_string(kinds.b);
 }
-constexpr Kinds kKinds[] = {{sphere, box},  {sphere, hull},   {sphere, triangle},
-                            {capsule, box}, {capsule, hull},  {capsule, triangle},
-                            {box, box},     {box, hull},      {box, triangle},
-                            {hull, hull},   {hull, triangle}, {triangle, triangle}};
+constexpr Kinds kKinds[] = {{capsule, capsule},  {sphere, box},  {sphere, hull},
+                            {sphere, triangle},  {capsule, box}, {capsule, hull},
+                            {capsule, triangle}, {box, box},     {box, hull},
+                            {box, triangle},     {hull, hull},   {hull, triangle},
+                            {triangle, triangle}};
 
 class ManifoldsOf : public testing::TestWithParam<Kinds> {
  protected:

@@ -1,5 +1,6 @@
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/round.wide.h"
+#include "pipeline/manifold/contact_patch.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::round {
@@ -94,7 +95,7 @@ template <typename T>
 
 template <typename T>
 [[gnu::always_inline]] inline LaneMask<T> are_parallel(const Couple<T>& p) {
-  return dot(p.across, p.across) < Lanes<T>(kLyingSquare<T>);
+  return dot(p.across, p.across) < Lanes<T>(static_cast<T>(kBesideSquare));
 }
 
 /// Capsules that are parallel to 0.1 touch at the two ends of the stretch along which they lie side
@@ -111,10 +112,11 @@ template <typename T>
   Touch<T> ends[2] = {touch_at(p, low), touch_at(p, high)};
   // The deeper end stands for the closest point if that is hardly deeper, as a share of the radii;
   // capsules that cross have one point.
-  constexpr T hardly = T(1e-3);
+  constexpr T hardly = static_cast<T>(kHardlyLess);
   const Lanes<T> behind = min(ends[0].distance, ends[1].distance) - answer.distance;
   const LaneMask<T> side_by_side =
-      are_parallel(p) & (high - low > (p.half[0] + p.half[1]) * Lanes<T>(kLeastStretch<T>)) &
+      are_parallel(p) &
+      (high - low > (p.half[0] + p.half[1]) * Lanes<T>(static_cast<T>(kLeastBeside))) &
       (behind <= p.witness.radius * Lanes<T>(hardly));
   ends[0].distance -= behind;
   ends[1].distance -= behind;

@@ -31,14 +31,6 @@ inline constexpr T kNoSineSquare = T(16) * kEpsilon<T>* kEpsilon<T>;
 template <typename T>
 inline constexpr T kNoDistance = T(1e30F);
 
-/// A capsule lies beside another if the square of the sine of the angle between them is less than
-/// the first, and the stretch over which it does is longer than the second, as a share of the half
-/// length: two contacts then say more than one.
-template <typename T>
-inline constexpr T kLyingSquare = T(0.01);
-template <typename T>
-inline constexpr T kLeastStretch = T(1e-3);
-
 /// Where the cores of a pair are closest.
 template <typename T>
 struct WitnessLanes {
