@@ -144,6 +144,18 @@ TEST(Manifolds, of_a_box_are_the_same_if_it_is_given_as_a_hull) {
   }
 }
 
+TEST(Manifolds, of_resting_hulls_hardly_need_the_solver) {
+  if (!has_hulls()) GTEST_SKIP() << "no hulls";
+  Random random(6);
+  for (const double tilt : {1e-14, 1e-10, 1e-7, 1e-5, 1e-3}) {
+    const PairScene scene = resting_boxes(500, tilt, 3.0 * tilt, random);
+    NarrowPhase narrow;
+    NarrowResult result;
+    ASSERT_EQ(narrow.collide(scene.pool, scene.bodies(), scene.pairs, {}, result), Status::ok);
+    EXPECT_LE(narrow.statistics().recomputed, scene.pairs.size() / 20) << tilt;
+  }
+}
+
 TEST(Manifolds, of_a_capsule_deep_in_a_hull_have_a_point_as_deep) {
   if (!has_hulls()) GTEST_SKIP() << "no hulls";
   PairScene scene;

@@ -271,6 +271,24 @@ class HullTies {
     return count_ < 2 || follow_all(face);
   }
 
+  /// Looks again at an arc on which a third vertex is nearer than the two that were found.
+  bool along_arc(const HullArc& arc) {
+    measure_.arc(arc);
+    const double high = height_of(*pair_.first, measure_.normal);
+    if (!find_ties(measure_.normal, high - measure_.depth) || count_ < 2) return false;
+    const HullFace* faces = pair_.first->faces;
+    double ends[2][3];
+    for (int i = 0; i < 2; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        ends[i][k] = static_cast<double>(arc.s[i]) * faces[arc.face[0]].normal[k] +
+                     static_cast<double>(arc.t[i]) * faces[arc.face[1]].normal[k];
+      }
+    }
+    return follow(arc.edge, ends[0], ends[1]);
+  }
+
+  void bound(double depth) { lower_ = depth < lower_ ? depth : lower_; }
+
   [[nodiscard]] double best() const { return best_; }
   [[nodiscard]] double lower() const { return lower_; }
   [[nodiscard]] bool found() const { return found_; }
@@ -292,7 +310,8 @@ class HullTies {
     for (std::uint32_t i = 0; i < hull.faces[face].count; ++i) {
       const std::uint32_t edge = hull.loop_edge[hull.faces[face].first + i];
       const std::uint32_t* sides = hull.edges[edge].face;
-      if (!follow(edge, face, sides[0] == face ? sides[1] : sides[0])) return false;
+      const std::uint32_t other = sides[0] == face ? sides[1] : sides[0];
+      if (!follow(edge, hull.faces[face].normal, hull.faces[other].normal)) return false;
     }
     return true;
   }
@@ -334,15 +353,14 @@ class HullTies {
     return best;
   }
 
-  bool follow(std::uint32_t edge, std::uint32_t from, std::uint32_t to) {
-    const HullShape& hull = *pair_.first;
-    const double* ends[2] = {hull.faces[from].normal, hull.faces[to].normal};
+  bool follow(std::uint32_t edge, const double* from, const double* to) {
+    const double* ends[2] = {from, to};
     Part stack[kMostParts];
     for (int i = 0; i < 2; ++i) {
       for (int k = 0; k < 3; ++k) stack[0].end[i][k] = ends[i][k];
       stack[0].vertex[i] = nearest(ends[i]);
     }
-    vertex_at(hull, hull.edges[edge].vertex[0], mine_);
+    vertex_at(*pair_.first, pair_.first->edges[edge].vertex[0], mine_);
     int height = 1;
     for (int looked = 0; height > 0; ++looked) {
       if (looked == kMostParts || height + 1 >= kMostParts) return false;
@@ -363,7 +381,9 @@ class HullTies {
     const double rounding = kDoubleError * pair_.size;
     // One vertex, whose height is least at an end.
     if (part.vertex[0] == part.vertex[1]) {
-      for (const double(&end)[3] : part.end) bound(dot3(end, w[0]) + rounding);
+      for (const double(&end)[3] : part.end) {
+        bound(dot3(end, w[0]) / __builtin_sqrt(dot3(end, end)) + rounding);
+      }
       return;
     }
     measure_.crossing(part.end, w);
@@ -383,8 +403,6 @@ class HullTies {
     stack[height++] = halves[0];
     stack[height++] = halves[1];
   }
-
-  void bound(double depth) { lower_ = depth < lower_ ? depth : lower_; }
 
   void keep(std::uint32_t edge, const Part& part) {
     found_ = true;
@@ -412,12 +430,18 @@ class HullTies {
 
 /// What candidates of the float search may have missed. False if that cannot be told.
 static inline bool finish_ties(const HullPair& pair, const HullPlace<double>& place,
-                               const HullDepth& found, const double* depth, double& best,
-                               double& lower, HullDistance<double>& answer) {
-  HullTies ties(pair, place, best, lower);
+                               const HullDepth& found, const double* depth, const double* least,
+                               double& best, double& lower, HullDistance<double>& answer) {
+  HullTies ties(pair, place, best, __builtin_inf());
   const double reach = best + 4.0 * static_cast<double>(kFloatError) * pair.size;
+  const double enough = best - kDoubleError * pair.size;
   for (std::uint32_t i = 0; i < found.count(); ++i) {
     const HullCandidate& c = found.candidate(i);
+    if (c.kind == HullCandidate::Kind::arc && least[i] < enough) {
+      if (!ties.along_arc(c.arc)) return false;
+      continue;
+    }
+    ties.bound(least[i]);
     if (c.kind != HullCandidate::Kind::first_face || depth[i] > reach) continue;
     if (!ties.around(c.face, depth[i])) return false;
   }
@@ -439,6 +463,7 @@ static inline void finish_depth(const HullPair& pair, const HullPlace<T>& place,
   T best = static_cast<T>(__builtin_inf());
   T lower = best;
   T depth[HullDepth::kMostCandidates];
+  T least[HullDepth::kMostCandidates];
   answer.winner = nullptr;
   for (std::uint32_t i = 0; i < found.count(); ++i) {
     const HullCandidate& c = found.candidate(i);
@@ -448,6 +473,7 @@ static inline void finish_depth(const HullPair& pair, const HullPlace<T>& place,
       measure.face(c);
     }
     depth[i] = measure.depth;
+    least[i] = measure.lower;
     lower = measure.lower < lower ? measure.lower : lower;
     if (!(measure.depth < best)) continue;
     best = measure.depth;
@@ -456,7 +482,7 @@ static inline void finish_depth(const HullPair& pair, const HullPlace<T>& place,
   }
   bool sure = answer.winner != nullptr;
   if constexpr (sizeof(T) == sizeof(double)) {
-    sure = sure && finish_ties(pair, place, found, depth, best, lower, answer);
+    sure = sure && finish_ties(pair, place, found, depth, least, best, lower, answer);
   }
   const T doubt = best - lower;
   answer.distance = -best;
