@@ -117,8 +117,8 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
     o.take(full);
     Column<Pair>& column = o.pairs;
     const std::size_t used = column.size();
-    // A quarter that the predicate left free is room enough.
-    const bool enough = used + 2 * kSinkSlack + column.capacity() / 4 < column.capacity();
+    // The predicate may have left some free.
+    const bool enough = used + 2 * kSinkSlack <= column.capacity();
     if (!enough && !column.reserve(o.room()) && !column.reserve(used + 2 * kSinkSlack)) {
       return false;
     }
@@ -189,13 +189,15 @@ void PairWriter::run_on_pages(std::size_t tasks, PageClaims& claims, void* conte
       PageClaims& claims;
       std::size_t task;
       std::size_t page = 0;
+      std::size_t checked = 0;  // pairs on the page that the predicate has been asked about
       bool open = false;
 
-      void close(const PairSink& sink) const {
+      [[nodiscard]] Pair* start() const { return claims.pages + page * kPage; }
+      void take(const PairSink& sink) {
         if (!open) return;
-        Pair* const start = claims.pages + page * kPage;
-        const auto used = static_cast<std::size_t>(sink.cursor - words(start)) / 2;
-        claims.entries[page] = entry(task, writer.keep_accepted(start, used));
+        const auto used = static_cast<std::size_t>(sink.cursor - words(start())) / 2;
+        checked += writer.keep_accepted(start() + checked, used - checked);
+        claims.entries[page] = entry(task, checked);
       }
     } writer{*this, claims, task};
     if (claims.done[task] != 0 || claims.full.load(std::memory_order_relaxed)) return;
@@ -207,18 +209,21 @@ void PairWriter::run_on_pages(std::size_t tasks, PageClaims& claims, void* conte
     sink.owner = &writer;
     sink.grow = [](PairSink& full) {
       auto& w = *static_cast<Writer*>(full.owner);
-      w.close(full);
-      w.open = false;
-      const std::size_t page = w.claims.next.fetch_add(1, std::memory_order_relaxed);
-      if (page >= w.claims.limit) return false;
-      w.page = page;
-      w.open = true;
-      Pair* start = w.claims.pages + page * kPage;
-      aim(full, start, start + kPage);
+      w.take(full);
+      // What the predicate leaves free is written on, so that pages follow what it accepts.
+      if (!w.open || w.checked > kPageContent) {
+        w.open = false;
+        w.checked = 0;
+        const std::size_t page = w.claims.next.fetch_add(1, std::memory_order_relaxed);
+        if (page >= w.claims.limit) return false;
+        w.page = page;
+        w.open = true;
+      }
+      aim(full, w.start() + w.checked, w.start() + kPage);
       return true;
     };
     const bool done = run(context, task, sink);
-    writer.close(sink);
+    writer.take(sink);
     if (!done) return claims.full.store(true, std::memory_order_relaxed);
     claims.done[task] = 1;
     claims.tests.fetch_add(sink.tests, std::memory_order_relaxed);

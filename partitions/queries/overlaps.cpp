@@ -99,14 +99,14 @@ class BoxColumns {
   QueryBatch batch_;
 };
 
-/// Takes out the pairs whose object the caller does not want.
-void keep_accepted(PairBuffer& out, const QueryFilter& filter) noexcept {
-  if (filter.accept == nullptr) return;
-  Column<Pair>& pairs = out.edit();
-  const Pair* const end = std::remove_if(pairs.begin(), pairs.end(), [&](const Pair& pair) {
-    return !filter.accept(filter.context, pair.second);
-  });
-  pairs.set_size(static_cast<std::size_t>(end - pairs.begin()));
+/// Asks about the object of a pair of a box and an object.
+PairPredicate accepting_second(const QueryFilter*& filter) noexcept {
+  if (filter->accept == nullptr) return {};
+  return {[](void* context, ObjectId, ObjectId second) {
+            const QueryFilter& asked = **static_cast<const QueryFilter**>(context);
+            return asked.accept(asked.context, second);
+          },
+          &filter};
 }
 
 }  // namespace
@@ -149,7 +149,8 @@ Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& f
   const KernelFilter wanted(filter, view, state_->rows.keys());
   if (wanted.meets_nothing()) return Status::ok;
   const ObjectFilter asking = filter.object();
-  PairWriter writer(out, execution);
+  const QueryFilter* accepted = &wanted.wanted();
+  PairWriter writer(out, execution, accepting_second(accepted));
   const std::size_t tasks = (boxes.count + kBoxesPerTask - 1) / kBoxesPerTask;
   const Status status = writer.append(tasks, [&](std::size_t task, PairSink& sink) {
     const std::size_t begin = task * kBoxesPerTask;
@@ -163,7 +164,6 @@ Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& f
     }
     return index.query(batch, sink);
   });
-  keep_accepted(out, wanted.wanted());
   const std::size_t slots = std::max(state_->rows.keys().slot_count(), boxes.count);
   if (status == Status::ok && (order == Order::fast || PairTracker::sort(out, slots))) {
     return Status::ok;

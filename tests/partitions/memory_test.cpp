@@ -292,6 +292,62 @@ TEST_P(Memory, of_many_pairs_is_asked_for_seldom_and_no_pair_is_found_often) {
   EXPECT_LE(asked, 2 * buffer.size());
 }
 
+// All boxes overlap each other: what a predicate rejects takes up no room, however much it is.
+TEST_P(Memory, of_pairs_follows_those_that_the_predicate_accepts) {
+  constexpr std::size_t kObjects = 1500;
+  World world(config());
+  const std::vector<Aabb> boxes(kObjects, Aabb{{0, 0, 0}, {1, 1, 1}});
+  world.insert(boxes);
+  constexpr std::size_t kAll = kObjects * (kObjects - 1) / 2;
+  for (const ObjectId wanted : {ObjectId{kObjects}, ObjectId{7}}) {
+    std::atomic<std::size_t> asked{0};
+    struct Context {
+      ObjectId wanted;
+      std::atomic<std::size_t>& asked;
+    } context{wanted, asked};
+    const auto accept = [](void* c, ObjectId first, ObjectId second) {
+      const auto& it = *static_cast<Context*>(c);
+      it.asked.fetch_add(1, std::memory_order_relaxed);
+      return first == it.wanted || second == it.wanted;
+    };
+    CountingMemory results;
+    results.refuse_beyond(kAll * sizeof(Pair) / 3);
+    PairBuffer buffer(&results);
+    ASSERT_EQ(
+        world.self_pairs(buffer, {.order = Order::canonical, .predicate = {accept, &context}}),
+        Status::ok);
+    EXPECT_EQ(asked, kAll);
+    std::vector<Pair> truth;
+    for (ObjectId other = 0; wanted < kObjects && other < kObjects; ++other) {
+      if (other != wanted) truth.push_back({std::min(wanted, other), std::max(wanted, other)});
+    }
+    EXPECT_EQ(std::vector<Pair>(buffer.begin(), buffer.end()), truth);
+  }
+}
+
+// The same for pairs of boxes that are asked about and objects.
+TEST_P(Memory, of_overlaps_follows_those_that_the_predicate_accepts) {
+  constexpr std::size_t kObjects = 1000;
+  World world(config());
+  const std::vector<Aabb> boxes(kObjects, Aabb{{0, 0, 0}, {1, 1, 1}});
+  const std::vector<Key> keys = world.insert(boxes);
+  Key wanted = keys[11];
+  const auto accept = [](void* context, Key key, ClientData) {
+    return key == *static_cast<const Key*>(context);
+  };
+  CountingMemory results;
+  results.refuse_beyond(kObjects * kObjects * sizeof(Pair) / 3);
+  PairBuffer buffer(&results);
+  const Status status = world.threads().run([&] {
+    return world.partition().overlap(BoxView(boxes), buffer, {.predicate = {accept, &wanted}});
+  });
+  ASSERT_EQ(status, Status::ok);
+  ASSERT_EQ(buffer.size(), kObjects);
+  for (std::size_t i = 0; i < kObjects; ++i) {
+    EXPECT_EQ(buffer[i], (Pair{static_cast<ObjectId>(i), wanted.id}));
+  }
+}
+
 TEST_P(Memory, is_asked_for_only_by_the_calling_thread) {
   CountingMemory results;
   PairBuffer buffer(&results);

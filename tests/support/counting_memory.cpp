@@ -48,16 +48,22 @@ void CountingMemory::refuse_one_after(std::size_t count) {
   refuse_to_ = refuse_from_ + 1;
 }
 
+void CountingMemory::refuse_beyond(std::size_t bytes) {
+  const std::lock_guard lock(mutex_);
+  limit_ = bytes;
+}
+
 void CountingMemory::grant_all() {
   const std::lock_guard lock(mutex_);
-  refuse_from_ = refuse_to_ = kNever;
+  refuse_from_ = refuse_to_ = limit_ = kNever;
 }
 
 void* CountingMemory::do_allocate(std::size_t bytes, std::size_t alignment) {
   const std::lock_guard lock(mutex_);
   const std::size_t request = requests_++;
   if (std::this_thread::get_id() != owner_) ++requests_from_elsewhere_;
-  if (bytes > kMost || (request >= refuse_from_ && request < refuse_to_)) {
+  const bool too_many = bytes > kMost || outstanding_ + bytes > limit_;
+  if (too_many || (request >= refuse_from_ && request < refuse_to_)) {
     ++refusals_;
     throw std::bad_alloc();
   }

@@ -31,6 +31,8 @@ class CountingMemory final : public std::pmr::memory_resource {
   void refuse_after(std::size_t count);
   /// Grants `count` more requests, refuses one, grants the rest.
   void refuse_one_after(std::size_t count);
+  /// Refuses what would bring more than so many bytes into use at once.
+  void refuse_beyond(std::size_t bytes);
   void grant_all();
 
  private:
@@ -52,6 +54,7 @@ class CountingMemory final : public std::pmr::memory_resource {
   std::size_t requests_from_elsewhere_ = 0;
   std::size_t refuse_from_ = kNever;
   std::size_t refuse_to_ = kNever;
+  std::size_t limit_ = kNever;
   std::thread::id owner_ = std::this_thread::get_id();
 };
 
