@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -222,6 +223,85 @@ TEST_P(Properties, points_lie_on_the_shapes) {
       const double allowed = share * size + bounds;
       if (!(std::abs(found[i].distance) <= allowed)) {
         complain("point off its shape", pair, found[i].distance, 0.0);
+      }
+    }
+  }
+}
+
+/// All shapes and positions times 2^exponent, without rounding. No hulls, of which others are made
+/// of other points.
+PairScene scaled_scene(PairStyle style, int exponent) {
+  Random random(11);
+  PairScene scene;
+  PairScene result;
+  for (const ShapeKind a : all_kinds()) {
+    for (const ShapeKind b : all_kinds()) {
+      if (a == ShapeKind::hull || b == ShapeKind::hull) continue;
+      if (a == ShapeKind::half_space && b == ShapeKind::half_space) continue;
+      add_pairs(scene, a, b, style, scaled(30), random);
+    }
+  }
+  const auto times = [exponent](double& x) { x = std::ldexp(x, exponent); };
+  const auto add = [&](auto shape, auto... members) {
+    (times(shape.*members), ...);
+    EXPECT_EQ(result.pool.add(shape, result.shapes.emplace_back()), Status::ok);
+  };
+  const ShapeTables tables = scene.pool.tables();
+  for (const ShapeId id : scene.shapes) {
+    const std::uint32_t i = id.index();
+    if (id.kind() == ShapeKind::sphere) add(tables.spheres[i], &SphereShape::radius);
+    if (id.kind() == ShapeKind::capsule) {
+      add(tables.capsules[i], &CapsuleShape::radius, &CapsuleShape::half_length);
+    }
+    if (id.kind() == ShapeKind::box) {
+      BoxShape box = tables.boxes[i];
+      std::ranges::for_each(box.half, times);
+      add(box, &BoxShape::rounding);
+    }
+    if (id.kind() == ShapeKind::cylinder) {
+      add(tables.cylinders[i], &CylinderShape::radius, &CylinderShape::half_length,
+          &CylinderShape::rounding);
+    }
+    if (id.kind() == ShapeKind::cone) {
+      add(tables.cones[i], &ConeShape::radius, &ConeShape::half_length, &ConeShape::rounding);
+    }
+    if (id.kind() == ShapeKind::triangle) {
+      TriangleShape triangle = tables.triangles[i];
+      for (auto& vertex : triangle.vertex) std::ranges::for_each(vertex, times);
+      add(triangle, &TriangleShape::rounding);
+    }
+    if (id.kind() == ShapeKind::half_space) add(tables.half_spaces[i], &HalfSpaceShape::offset);
+  }
+  result.poses = scene.poses;
+  for (Pose& pose : result.poses) std::ranges::for_each(pose.position, times);
+  result.pairs = scene.pairs;
+  return result;
+}
+
+// Products of many lengths leave the range of numbers long before the lengths do.
+TEST(Sizes, change_no_verdict_and_no_distance_beyond_its_bound) {
+  for (const PairStyle style : {PairStyle::ordinary, PairStyle::degenerate}) {
+    const PairScene plain = scaled_scene(style, 0);
+    for (const ContactLevel level :
+         {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
+      const NarrowOptions options{.level = level};
+      const auto truth = ask(plain, options);
+      for (const int exponent : {-300, -166, -140, -125, -106, -60, -36, 36, 93, 121, 133, 300}) {
+        const PairScene scene = scaled_scene(style, exponent);
+        const auto answers = ask(scene, options);
+        int complaints = 0;
+        for (std::size_t i = 0; i < truth.size(); ++i) {
+          const PairAnswers& p = truth[i];
+          const PairAnswers& q = answers[i];
+          const double apart = std::abs(std::ldexp(q.distance, -exponent) - p.distance);
+          const bool near = apart <= 1.001 * (std::ldexp(q.error_bound, -exponent) + p.error_bound);
+          if (q.overlap == p.overlap && (level != ContactLevel::distance || near)) continue;
+          if (++complaints > 3) break;
+          ADD_FAILURE() << to_string(style) << ", times 2^" << exponent << ": " << q.distance
+                        << " +- " << q.error_bound << " instead of " << p.distance << " +- "
+                        << p.error_bound << '\n'
+                        << reproduction(scene, scene.pairs[i]);
+        }
       }
     }
   }

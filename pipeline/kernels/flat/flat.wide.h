@@ -138,6 +138,16 @@ struct OrderedBlock {
   OrderedBlock(const OrderedBlock&) = delete;
 };
 
+/// Lanes whose axes are compared without loss: BestAxis multiplies up to ten lengths, and where the
+/// answer depends on it none is less than 1e-14 of the scale, nor a sine less than
+/// kParallelSquare says. In float one shape may be 1e5 times smaller than the other.
+template <typename T>
+[[gnu::always_inline]] inline LaneMask<T> in_axis_range(const Lanes<T>& scale) {
+  constexpr bool is_double = sizeof(T) == sizeof(double);
+  return (scale > Lanes<T>(is_double ? T(1e-11) : T(4e-3F))) &
+         (scale < Lanes<T>(is_double ? T(1e28) : T(1e4F)));
+}
+
 /// What a kernel has found out about the cores, in the axes of the world.
 template <typename T>
 struct CoreAnswer {
@@ -157,15 +167,13 @@ template <typename T>
   answer.distance -= rounding_a + rounding_b;
   answer.point = answer.point + answer.normal * rounding_a;
   const LaneMask<T> narrow = answer.error_bound <= scale * Lanes<T>(kWidestBound<T>);
-  const LaneMask<T> valid = in_range(scale * scale) & narrow;
+  const LaneMask<T> valid = in_axis_range(scale) & narrow;
   if constexpr (sizeof(T) == sizeof(double)) {
     return bits(valid & (abs(answer.distance) > answer.error_bound));
   }
-  // Squares of products of edges must stay in range, also where one shape is 1e5 times smaller than
-  // the other, and a normal that is not unit says nothing.
-  const LaneMask<T> moderate = (scale > Lanes<T>(T(4e-3F))) & (scale < Lanes<T>(T(1e4F)));
+  // A normal that is not unit says nothing.
   const Lanes<T> length2 = dot(answer.normal, answer.normal);
-  return bits(valid & moderate & (length2 > Lanes<T>(T(0.99F))) &
+  return bits(valid & (length2 > Lanes<T>(T(0.99F))) &
               (abs(answer.distance) <= scale * Lanes<T>(T(4))));
 }
 
