@@ -135,10 +135,11 @@ bool InnerPolytope::add_face(std::uint16_t p, std::uint16_t q, std::uint16_t r,
   const double offset = std::max(
       {face.normal.dot(points_[p]), face.normal.dot(points_[q]), face.normal.dot(points_[r])});
   // What rounding of the points makes of the distance of their plane. That of slivers is of little
-  // worth; their own distance is not less than it.
+  // worth; their own distance is not less than it, unless they are on the wrong side of the origin.
   const double doubt = kEnough * noise_ / area * std::max({le, lf, lg});
   face.low = offset - std::max(doubt, noise_);
-  if (doubt > noise_) face.low = std::max(face.low, triangle_distance(p, q, r) - noise_);
+  if (doubt > noise_ && offset >= -doubt)
+    face.low = std::max(face.low, triangle_distance(p, q, r) - noise_);
   push(at);
   return true;
 }

@@ -2,6 +2,7 @@
 
 #include "pipeline/solver/solver.h"
 #include <gtest/gtest.h>
+#include "pipeline/exact/exact_overlap.h"
 #include "pipeline/solver/problem.h"
 
 #include <algorithm>
@@ -192,6 +193,35 @@ TEST_F(SolverCases, half_spaces_are_apart_only_back_to_back) {
   EXPECT_TRUE(endless.overlap);
   EXPECT_LT(endless.distance, -1e300);
   EXPECT_TRUE(std::isfinite(endless.distance));
+}
+
+// What double knows of the large hull is coarse beside the rod: a polytope between their points may
+// have the origin on its wrong side by more than rounding.
+TEST_F(SolverCases, a_rod_beside_a_hull_as_large_as_a_world_is_apart) {
+  const std::vector<Vec> rod_ends{{0.7578125, -0.25, -0.03125},
+                                  {0.863372802734375, -0.125, 0.1630859375}};
+  constexpr double kUnit = 0x1p33;
+  std::vector<Vec> corners{{-32, 16, 64}, {32, -16, 64}, {16, 32, 96},   {64, -32, 32},
+                           {-8, 64, 64},  {32, 32, 96},  {-32, -32, 64}, {-32, -16, -64},
+                           {32, 64, 64},  {26, 2, -92},  {-32, -64, 49}, {16, 64, -64},
+                           {-64, 1, -16}};
+  for (Vec& corner : corners) corner *= kUnit;
+  corners.insert(corners.end(), {{287540023407.08252, 440519093884.23438, -536225659384.42578},
+                                 {329539548069.05029, 358437933230.01367, -556772389866.53418},
+                                 {283094055835.81445, 66267112995.037109, -742520916180.31445}});
+  ShapeId rod;
+  ShapeId world;
+  if (pool_.add_hull(rod_ends, 0.0, rod) == Status::unsupported) GTEST_SKIP() << "no hulls";
+  ASSERT_EQ(pool_.add_hull(corners, 0.0, world), Status::ok);
+  const Pose at_rod{{-1.125, 1.0330810546875, 3.60107421875},
+                    {-0.6171875, -0.35546875, -0.3203125, 0.625}};
+  const Pose at_world{
+      {33828603836.1875, -421841837546.11523, -615947021952.91602},
+      {-0.45780498874663866, -0.84916710831400266, 0.10720536226435229, -0.24049287876795233}};
+  const PairAnswer answer = solve(rod, at_rod, world, at_world, ContactLevel::distance);
+  ASSERT_EQ(exact_overlap(pool_.tables(), rod, at_rod, world, at_world, answer.normal),
+            ExactVerdict::separated);
+  EXPECT_FALSE(answer.overlap) << answer.distance << " +- " << answer.error_bound;
 }
 
 TEST_F(SolverCases, curved_shapes_of_extreme_lengths_have_finite_answers) {
