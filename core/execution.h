@@ -9,7 +9,9 @@ namespace winnow {
 
 /// How a partition uses the machine. Parallel work runs as oneTBB tasks inside the arena of the
 /// thread that calls, so the caller decides on the number of threads
-/// (`tbb::task_arena(n).execute(...)`). Results and their order are the same on any number.
+/// (`tbb::task_arena(n).execute(...)`). Tasks run in the floating-point environment of the caller
+/// (rounding, flushing of denormal numbers), and to the end also where the caller's own group of
+/// tasks is cancelled. Results and their order are the same on any number.
 class Execution {
  public:
   [[nodiscard]] static constexpr Execution serial() noexcept { return Execution(false); }

@@ -1,9 +1,17 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 #include <winnow/core/execution.h>
 
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+#include <array>
 #include <atomic>
+#include <cfenv>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "tests/support/config.h"
@@ -65,6 +73,75 @@ TEST(Execution, uses_the_threads_of_the_arena) {
     });
   });
   EXPECT_EQ(met, 2);
+}
+
+/// The caller's floating-point environment, restored at the end of a scope.
+class EnvironmentScope {
+ public:
+  EnvironmentScope() { std::fegetenv(&before_); }
+  ~EnvironmentScope() { std::fesetenv(&before_); }
+  EnvironmentScope(const EnvironmentScope&) = delete;
+  EnvironmentScope& operator=(const EnvironmentScope&) = delete;
+
+  /// Rounds upward and, where this knows how to ask for that, flushes denormal numbers to zero.
+  static void change() {
+    std::fesetround(FE_UPWARD);
+#if defined(__SSE__)
+    _mm_setcsr(_mm_getcsr() | 0x8040U);
+#endif
+  }
+
+ private:
+  std::fenv_t before_{};
+};
+
+/// What a denormal number and a rounded sum are here.
+std::pair<float, float> arithmetic_here() {
+  const volatile float tiny = 1e-40F;
+  const volatile float one = 1.0F;
+  const volatile float less = 1e-9F;
+  return {tiny * one, one + less};
+}
+
+// The host may set it after the workers were started.
+TEST(Execution, runs_tasks_in_the_floating_point_environment_of_the_caller) {
+  tbb::task_arena arena(2);
+  const auto is_everywhere_as_here = [] {
+    std::array<std::pair<float, float>, 2> seen;
+    std::atomic<int> met{0};
+    Execution::parallel().for_each(2, [&](std::size_t i) {
+      ++met;
+      while (met.load() < 2) std::this_thread::yield();
+      seen[i] = arithmetic_here();
+    });
+    return seen[0] == arithmetic_here() && seen[1] == arithmetic_here();
+  };
+  arena.execute([&] {
+    EXPECT_TRUE(is_everywhere_as_here());
+    const auto before = arithmetic_here();
+    {
+      const EnvironmentScope scope;
+      EnvironmentScope::change();
+      EXPECT_TRUE(is_everywhere_as_here());
+      EXPECT_FALSE(arithmetic_here() == before);
+    }
+    EXPECT_TRUE(is_everywhere_as_here());
+    EXPECT_TRUE(arithmetic_here() == before);
+  });
+}
+
+// Else a call would return with part of its work done, and say that all is well.
+TEST(Execution, runs_every_task_though_the_group_of_the_caller_is_cancelled) {
+  tbb::task_arena arena(2);
+  std::atomic<int> runs{0};
+  arena.execute([&] {
+    tbb::task_group group;
+    group.run_and_wait([&] {
+      group.cancel();
+      Execution::parallel().for_each(100, [&](std::size_t) { ++runs; });
+    });
+  });
+  EXPECT_EQ(runs, 100);
 }
 
 // A task that waits must not pick up other work of the arena, or a caller that holds a lock could
