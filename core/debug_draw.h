@@ -21,8 +21,9 @@ struct Colour {
 
 /// What a caller implements to see inside: winnow calls it, from the calling thread, while
 /// `Partition::debug_draw` runs. Boxes and spheres are outlines. Ends at infinity come as they are.
-/// The structure comes first, then the objects in ascending order of their ids. The colours are
-/// those of partitions/debug_colours.h: one per kind of thing.
+/// An exception that leaves it ends the process. The structure comes first, then the objects in
+/// ascending order of their ids. The colours are those of partitions/debug_colours.h: one per kind
+/// of thing.
 class DebugDraw {
  public:
   virtual ~DebugDraw() = default;

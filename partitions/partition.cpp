@@ -173,7 +173,7 @@ Status Partition::refresh() const {
   return state_ == nullptr ? status_ : state_->make_ready();
 }
 
-Status Partition::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const {
+Status Partition::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const noexcept {
   if (state_ == nullptr) return status_;
   if (options.max_depth < 0) return Status::invalid_argument;
   if (const Status status = state_->settle(); status != Status::ok) return status;

@@ -257,7 +257,7 @@ class WINNOW_API Partition final {
                  const Filter& filter = {}) const;
 
   /// Draws the objects and the partition's own structure. A picture, not a query: O(n).
-  Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const;
+  Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const noexcept;
 
   /// Every byte that the memory resource was asked for and has not got back.
   [[nodiscard]] Footprint footprint() const noexcept;

@@ -146,7 +146,7 @@ class WINNOW_API Scene {
   /// contacts and queries are in the world.
   [[nodiscard]] Eigen::Vector3d origin() const noexcept;
   /// Draws the partitions of all sets.
-  Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const;
+  Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const noexcept;
 
   [[nodiscard]] SceneFootprint footprint() const noexcept;
   [[nodiscard]] const SceneStatistics& statistics() const noexcept;

@@ -94,7 +94,7 @@ struct PairWriter::SerialOutput {
   }
 };
 
-std::size_t PairWriter::keep_accepted(Pair* pairs, std::size_t count) const {
+std::size_t PairWriter::keep_accepted(Pair* pairs, std::size_t count) const noexcept {
   if (predicate_.accept == nullptr) return count;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {

@@ -53,7 +53,7 @@ class PairWriter {
   static std::size_t more_pages(PageClaims& claims, std::size_t tasks);
   void run_on_pages(std::size_t tasks, PageClaims& claims, void* context, Task run);
   Status gather_pages(std::size_t tasks, const PageClaims& claims);
-  std::size_t keep_accepted(Pair* pairs, std::size_t count) const;
+  std::size_t keep_accepted(Pair* pairs, std::size_t count) const noexcept;
 
   PairBuffer& out_;
   const Execution& execution_;

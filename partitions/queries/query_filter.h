@@ -17,7 +17,7 @@ class KernelFilter {
     meets_nothing_ = !wanted_.by_object && !may_meet(ObjectFilter{}, wanted_.object);
     if (predicate_.accept == nullptr) return;
     wanted_.context = this;
-    wanted_.accept = [](const void* context, std::uint32_t id) {
+    wanted_.accept = [](const void* context, std::uint32_t id) noexcept {
       const auto& self = *static_cast<const KernelFilter*>(context);
       return self.predicate_.accept(self.predicate_.context, self.keys_.key_of(id),
                                     self.keys_.client_data(id));

@@ -264,7 +264,7 @@ Eigen::Vector3d Scene::origin() const noexcept {
   return state_->origin;
 }
 
-Status Scene::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const {
+Status Scene::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const noexcept {
   if (state_ == nullptr) return Status::out_of_memory;
   for (const SceneSet& set : state_->sets) {
     if (!set.partition.has_value()) continue;

@@ -82,7 +82,7 @@ class LookingFilter {
   }
 
  private:
-  [[nodiscard]] bool accept(std::uint32_t body) const {
+  [[nodiscard]] bool accept(std::uint32_t body) const noexcept {
     const ObjectPredicate& predicate = filter_.predicate;
     if (predicate.accept != nullptr &&
         !predicate.accept(predicate.context, scene_.keys.key_of(body),

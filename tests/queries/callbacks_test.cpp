@@ -1,0 +1,78 @@
+// An exception of a callback ends the process the same way wherever it was called from: some
+// kernels that ask a predicate are compiled without exceptions, and half of a parallel answer is
+// none.
+
+#include <winnow/core/debug_draw.h>
+
+#include <csignal>
+#include <stdexcept>
+
+#include "tests/support/scenes.h"
+#include "tests/support/world.h"
+
+namespace winnow::test {
+namespace {
+
+class ThrowingCallbacks : public testing::TestWithParam<int> {
+ protected:
+  ThrowingCallbacks() {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    world_.insert(boxes_);
+    filter_.predicate.accept = [](void*, Key, ClientData) -> bool {
+      throw std::runtime_error("x");
+    };
+    options_.predicate.accept = [](void*, ObjectId, ObjectId) -> bool {
+      throw std::runtime_error("x");
+    };
+  }
+  /// Runs a query on the threads of the test.
+  template <typename Query>
+  void expect_end(Query&& query) {
+    const auto run = [&] {
+      try {
+        (void)world_.threads().run(query);
+      } catch (...) {
+        // Passed on: the process ends, but not as it should.
+      }
+    };
+    EXPECT_EXIT(run(), testing::KilledBySignal(SIGABRT), "");
+  }
+
+  std::vector<Aabb> boxes_ = std::vector<Aabb>(500, Aabb{{0, 0, 0}, {1, 1, 1}});
+  World world_{Config{"LinearBvh", active_isa(), GetParam()}};
+  const Partition& partition_ = world_.partition();
+  Filter filter_;
+  PairOptions options_;
+};
+
+TEST_P(ThrowingCallbacks, end_a_query_of_pairs) {
+  PairBuffer pairs;
+  expect_end([&] { return partition_.self_pairs(pairs, options_); });
+  expect_end([&] { return partition_.pairs_with(partition_, pairs, options_); });
+  expect_end([&] { return partition_.overlap(BoxView(boxes_), pairs, filter_); });
+}
+
+TEST_P(ThrowingCallbacks, end_a_query_of_objects) {
+  HitBuffer hits;
+  OverlapBuffer seen;
+  const std::vector<Ray> rays(500, Ray{{-5, 0.5F, 0.5F}, {1, 0, 0}});
+  expect_end([&] { return partition_.all(rays, hits, filter_); });
+  expect_end([&] { return partition_.overlap(Sphere{{0, 0, 0}, 3.0F}, seen, filter_); });
+}
+
+struct ThrowingDraw final : DebugDraw {
+  void box(const Aabb&, Colour) override { throw std::runtime_error("x"); }
+  void line(const Eigen::Vector3f&, const Eigen::Vector3f&, Colour) override {}
+  void sphere(const Sphere&, Colour) override {}
+  void text(const Eigen::Vector3f&, std::string_view, Colour) override {}
+};
+
+TEST_P(ThrowingCallbacks, end_a_drawing) {
+  ThrowingDraw draw;
+  expect_end([&] { return partition_.debug_draw(draw); });
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, ThrowingCallbacks, testing::Values(1, 2));
+
+}  // namespace
+}  // namespace winnow::test
