@@ -4,7 +4,6 @@
 #include "bench/rows/hard_case_rows.h"
 
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
 
@@ -16,15 +15,8 @@ const std::map<std::string, NarrowTier> kTiers{{"fast", NarrowTier::fast},
                                                {"reference", NarrowTier::reference}};
 
 Json read_questions(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw ArgumentError("cannot read " + path);
-  Json questions;
-  try {
-    questions = Json::parse(file);
-  } catch (const Json::exception& error) {
-    throw std::runtime_error(path + ": " + error.what());
-  }
-  if (!questions.is_array()) throw std::runtime_error(path + ": not an array of questions");
+  Json questions = read_json(path);
+  if (!questions.is_array()) throw ArgumentError(path + ": not an array of questions");
   return questions;
 }
 

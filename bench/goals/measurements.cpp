@@ -290,8 +290,7 @@ void goal_hard_cases(const Json& options, Lab& /*lab*/, Measured& measured) {
   std::error_code absent;
   for (const auto& file : std::filesystem::directory_iterator(folder, absent)) {
     if (file.path().extension() != ".json") continue;
-    std::ifstream in(file.path());
-    const Json questions = Json::parse(in);
+    const Json questions = read_json(file.path().string());
     const std::string family = file.path().stem().string();
     add_hard_cases(measured.results, family, questions, false);
     add_hard_cases(measured.results, family + ", exchanged", exchanged(questions), false);

@@ -15,74 +15,82 @@ double number(const Json& value) {
   return result;
 }
 
+bool is_true(const Json& value) {
+  return value.is_boolean() && value.get<bool>();
+}
+
 Eigen::Vector3d vector(const Json& value) {
-  return {number(value[0]), number(value[1]), number(value[2])};
+  return {number(element(value, 0)), number(element(value, 1)), number(element(value, 2))};
 }
 
 /// The largest length that a shape is made of.
 double size_of(const Json& shape) {
-  double size = shape.value("rounding", 0.0);
-  for (const char* name : {"radius", "half_length"}) {
+  double size = 0.0;
+  for (const char* name : {"rounding", "radius", "half_length"}) {
     if (shape.contains(name)) size += number(shape[name]);
   }
   if (shape.contains("half")) size += vector(shape["half"]).norm();
-  if (shape.contains("v")) {
-    for (const Json& v : shape["v"]) size = std::max(size, vector(v).norm());
-  }
+  for (const Json& v : member(shape, "v")) size = std::max(size, vector(v).norm());
   return size;
+}
+
+double tolerance(const Json& expect) {
+  return expect.contains("tolerance") ? number(member(expect, "tolerance")) : 0.0;
 }
 
 /// Sine of 0.01 degrees.
 constexpr double kNormalError = 1.7453292430883947e-4;
 
 std::string fault_of_normal(const Json& expect, const Json& answer) {
-  const Eigen::Vector3d n = vector(answer["normal"]);
+  const Eigen::Vector3d n = vector(member(answer, "normal"));
   if (!(std::abs(n.norm() - 1.0) <= 1e-5)) return "normal not unit";
   if (!expect.contains("normal")) return {};
-  const Eigen::Vector3d expected = vector(expect["normal"]);
+  const Eigen::Vector3d expected = vector(member(expect, "normal"));
   return n.cross(expected).norm() <= kNormalError && n.dot(expected) > 0.0 ? "" : "normal";
 }
 
 /// Numbers of the answer against what is true and allowed.
 std::string fault_of_numbers(const Json& question, const Json& answer, double promised,
                              CaseVerdict& verdict) {
-  const Json& expect = question["expect"];
-  const double truth = number(expect["distance"]);
+  const Json& expect = member(question, "expect");
+  const double truth = number(member(expect, "distance"));
   // The truth in the file is rounded to the nearest double, at least.
-  const double slack = expect.value("tolerance", 0.0) + 0x1p-52 * std::abs(truth);
-  const double scale = size_of(question["a"]) + size_of(question["b"]) + std::abs(truth);
-  const double error = std::abs(number(answer["distance"]) - truth);
+  const double slack = tolerance(expect) + 0x1p-52 * std::abs(truth);
+  const double scale =
+      size_of(member(question, "a")) + size_of(member(question, "b")) + std::abs(truth);
+  const double error = std::abs(number(member(answer, "distance")) - truth);
   const double allowed = promised * scale + slack;
   if (scale > 0.0) verdict.error = error / scale;
   if (allowed > 0.0) verdict.over_allowed = error / allowed;
-  if (answer["overlap"] != expect["overlap"]) {
-    return expect["overlap"] ? kContactLost : kFalseContact;
+  if (member(answer, "overlap") != member(expect, "overlap")) {
+    return is_true(member(expect, "overlap")) ? kContactLost : kFalseContact;
   }
   if (std::isnan(error)) return "no distance";
   if (!(error <= allowed)) return "distance";
-  if (!(error <= number(answer["error_bound"]) + slack)) return "error above its bound";
+  if (!(error <= number(member(answer, "error_bound")) + slack)) return "error above its bound";
   return fault_of_normal(expect, answer);
 }
 
 std::string fault_of_ray(const Json& question, const Json& answer) {
-  const Json& expect = question["expect"];
-  if (answer["hit"] != expect["hit"]) return expect["hit"] ? "hit lost" : "false hit";
-  if (!expect["hit"]) return {};
-  const double truth = number(expect["t"]);
-  const double error = std::abs(number(answer["t"]) - truth);
-  if (!(error <= 1e-14 * std::abs(truth) + expect.value("tolerance", 0.0))) return "t";
+  const Json& expect = member(question, "expect");
+  if (member(answer, "hit") != member(expect, "hit"))
+    return is_true(member(expect, "hit")) ? "hit lost" : "false hit";
+  if (!is_true(member(expect, "hit"))) return {};
+  const double truth = number(member(expect, "t"));
+  const double error = std::abs(number(member(answer, "t")) - truth);
+  if (!(error <= 1e-14 * std::abs(truth) + tolerance(expect))) return "t";
   return fault_of_normal(expect, answer);
 }
 
 }  // namespace
 
 CaseVerdict judge_case(const Json& question, const Json& answer, double promised) {
-  const Json& expect = question["expect"];
-  const std::string status = expect.value("status", "ok");
+  const Json& expect = member(question, "expect");
+  const Json status = expect.contains("status") ? expect["status"] : Json("ok");
   CaseVerdict verdict;
-  if (answer["id"] != question["id"]) {
+  if (member(answer, "id") != member(question, "id")) {
     verdict.fault = "id";
-  } else if (answer["status"] != status) {
+  } else if (member(answer, "status") != status) {
     verdict.fault = "status";
   } else if (status != "ok") {
     verdict.fault = answer.size() == 2 ? "" : "says more than the status";

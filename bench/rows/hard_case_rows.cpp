@@ -78,9 +78,9 @@ bool is_around_origin(const Json& shape) {
     double low = 0.0;
     double high = 0.0;
     bool first = true;
-    for (const Json& v : shape["v"]) {
+    for (const Json& v : member(shape, "v")) {
       double x = 0.0;
-      if (!read_number(v[axis], x)) return false;
+      if (!read_number(element(v, axis), x)) return false;
       low = first ? x : std::min(low, x);
       high = first ? x : std::max(high, x);
       first = false;

@@ -10,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <limits>
 #include <stdexcept>
 
@@ -129,13 +128,9 @@ const Json* Results::column(const std::string& name, const std::string& value) c
 }
 
 Results read_results(const std::string& path) {
+  Json document = read_json(path);
   try {
-    std::ifstream file(path);
-    Json document = Json::parse(file, nullptr, false);
-    if (document.is_discarded()) throw ArgumentError("it cannot be read");
     return Results(std::move(document));
-  } catch (const std::ios_base::failure&) {  // as of folders
-    throw ArgumentError(path + ": it cannot be read");
   } catch (const ArgumentError& error) {
     throw ArgumentError(path + ": " + error.what());
   }
