@@ -34,6 +34,8 @@ class Column {
 
  public:
   static constexpr std::size_t kAlignment = 64;
+  /// Elements whose bytes, in whole lines, can be counted.
+  static constexpr std::size_t kMost = (~std::size_t{0} - kAlignment + 1) / sizeof(T);
 
   explicit Column(std::pmr::memory_resource* memory) noexcept : memory_(memory) {}
   Column(Column&& other) noexcept
@@ -62,6 +64,7 @@ class Column {
   /// the resource refuses.
   [[nodiscard]] bool reserve(std::size_t count) noexcept {
     if (count <= capacity_) return true;
+    if (count > kMost) return false;
     const std::size_t bytes = (count * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
     T* fresh = static_cast<T*>(try_allocate(*memory_, bytes, kAlignment));
     if (fresh == nullptr) return false;

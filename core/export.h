@@ -7,6 +7,12 @@
 #error "winnow needs C++20: compile with -std=c++20 or later"
 #endif
 
+// Inline functions of the headers round outward and refuse NaN, which compilers leave out if they
+// may take numbers for what they are not.
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "winnow needs strict floating point: compile what includes it without -ffast-math"
+#endif
+
 /// Marks what a shared winnow exports. Its users get the definition of WINNOW_SHARED from CMake or
 /// pkg-config; with archives it is not defined, and nothing of winnow is exported from what they
 /// are linked into.

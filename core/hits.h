@@ -11,6 +11,7 @@
 #include <limits>
 #include <memory_resource>
 #include <span>
+#include <utility>
 
 namespace winnow {
 
@@ -84,6 +85,11 @@ class WINNOW_API OverlapBuffer {
   explicit OverlapBuffer(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
       : ids_(memory), crossing_(memory) {}
+  /// `other` is left empty.
+  OverlapBuffer(OverlapBuffer&& other) noexcept
+      : ids_(std::move(other.ids_)),
+        crossing_(std::move(other.crossing_)),
+        inside_(std::exchange(other.inside_, 0)) {}
 
   /// Every object whose box meets the region: first those inside, then those crossing.
   [[nodiscard]] std::span<const ObjectId> ids() const noexcept { return {ids_.data(), size()}; }

@@ -54,7 +54,9 @@ class WINNOW_API NarrowResult {
   explicit NarrowResult(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
 
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] std::size_t size() const noexcept {
+    return level_ == ContactLevel::boolean ? overlap_.size() : distance_.size();
+  }
   [[nodiscard]] ContactLevel level() const noexcept { return level_; }
   /// Which pair of the input answer i is about. Points, normals and features are in its order, not
   /// that of the kinds.
@@ -114,7 +116,6 @@ class WINNOW_API NarrowResult {
     return {c.data(), c.size()};
   }
 
-  std::size_t size_ = 0;
   ContactLevel level_ = ContactLevel::boolean;
   Column<std::uint32_t> order_;
   Column<NarrowRun> runs_;

@@ -50,7 +50,6 @@ bool NarrowResult::resize(std::size_t count, ContactLevel level) noexcept {
   const bool manifolds = level == ContactLevel::manifold;
   ok = ok && contact_first_.resize(size_of(manifolds)) && contact_count_.resize(size_of(manifolds));
   contacts_.set_size(0);
-  size_ = count;
   level_ = level;
   return ok;
 }

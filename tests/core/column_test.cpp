@@ -119,6 +119,24 @@ TEST(Column, that_asks_for_more_bytes_than_there_are_is_refused) {
   EXPECT_EQ(column.capacity(), 0U);
 }
 
+// Numbers of bytes that no longer can be counted must not begin again at zero.
+TEST(Column, that_asks_for_more_than_can_be_counted_is_refused) {
+  CountingMemory memory;
+  Column<std::uint64_t> column(&memory);
+  ASSERT_TRUE(column.push_back(7));
+  const std::size_t before = memory.outstanding();
+  for (const std::size_t count :
+       {std::size_t{1} << 61U, (std::size_t{1} << 61U) + 1, std::size_t{1} << 63U, ~std::size_t{0},
+        Column<std::uint64_t>::kMost, Column<std::uint64_t>::kMost + 1}) {
+    EXPECT_FALSE(column.reserve(count));
+    EXPECT_FALSE(column.grow(count));
+    EXPECT_FALSE(column.resize(count));
+  }
+  EXPECT_EQ(memory.outstanding(), before);
+  EXPECT_EQ(column.size(), 1U);
+  EXPECT_EQ(column[0], 7U);
+}
+
 TEST(Column, moves_and_swaps_without_copying) {
   CountingMemory memory;
   Column<float> a(&memory);

@@ -53,6 +53,20 @@ TEST_F(NarrowInput, no_pairs_are_no_answers) {
   EXPECT_EQ(phase_.collide(scene_.pool, {}, {}, {}, result_), Status::ok);
 }
 
+TEST_F(NarrowInput, a_result_that_was_moved_from_is_empty) {
+  for (const ContactLevel level :
+       {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
+    NarrowResult from;
+    ASSERT_EQ(phase_.collide(scene_.pool, scene_.bodies(), scene_.pairs, {.level = level}, from),
+              Status::ok);
+    const NarrowResult to(std::move(from));
+    EXPECT_EQ(to.size(), scene_.pairs.size());
+    EXPECT_EQ(from.size(), 0U);
+    EXPECT_TRUE(from.runs().empty());
+    EXPECT_EQ(from.contacts(), 0U);
+  }
+}
+
 TEST_F(NarrowInput, a_bad_margin_is_refused) {
   for (const double margin : {-1.0, -1e-300, kNan, kInfinity, -kInfinity}) {
     ASSERT_EQ(collide(), Status::ok);

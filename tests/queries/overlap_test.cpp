@@ -76,6 +76,20 @@ TEST_P(Overlaps, are_right_while_objects_come_go_and_move) {
   }
 }
 
+TEST(OverlapBuffers, that_were_moved_from_are_empty) {
+  Partition partition(linear_bvh());
+  std::vector<Key> keys(50);
+  ASSERT_EQ(partition.insert(uniform_boxes(50), {}, keys), Status::ok);
+  OverlapBuffer from;
+  ASSERT_EQ(partition.overlap(Sphere{{0, 0, 0}, 1e6F}, from), Status::ok);
+  ASSERT_EQ(from.inside().size(), 50U);
+  const OverlapBuffer to(std::move(from));
+  EXPECT_EQ(to.inside().size(), 50U);
+  EXPECT_TRUE(from.ids().empty());
+  EXPECT_TRUE(from.inside().empty());
+  EXPECT_TRUE(from.crossing().empty());
+}
+
 TEST_P(Overlaps, of_boxes_are_exact_pairs) {
   PairBuffer buffer;
   for (const QuestionSet& set : question_sets()) {
