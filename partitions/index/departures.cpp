@@ -34,8 +34,7 @@ float Departures::share(const Rows& rows, const Structure& structure,
     }
     ++(structure.fits(row, place) ? staying : leaving);
   }
-  return leaving == 0 ? 0.0F
-                      : static_cast<float>(leaving) / static_cast<float>(leaving + staying);
+  return leaving == 0 ? 0.0F : static_cast<float>(leaving) / static_cast<float>(leaving + staying);
 }
 
 }  // namespace winnow

@@ -21,10 +21,10 @@ struct StructureCosts {
   /// Of a refresh in which all objects are scattered, per object, in place of keeping their places
   /// and of the build; 0: as much as both.
   double anew = 0;
-  double ask = 0;          ///< per ray or region; one for the nearest counts four times
-  double ask_level = 0;    ///< the same, for each doubling of the number of objects
-  double scan = 0;         ///< the same, per object, where there is no tree
-  double rows = 0;         ///< per object that moved, before such a question is answered
+  double ask = 0;        ///< per ray or region; one for the nearest counts four times
+  double ask_level = 0;  ///< the same, for each doubling of the number of objects
+  double scan = 0;       ///< the same, per object, where there is no tree
+  double rows = 0;       ///< per object that moved, before such a question is answered
 };
 
 }  // namespace winnow
