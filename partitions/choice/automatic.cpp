@@ -224,11 +224,15 @@ void AutomaticChoice::guess(FrameWork frame) noexcept {
                                     : "the least cost expected from a sample of the scene";
 }
 
-// What comes stands behind the rows in order until there are so many that a build is due.
+// What comes stands behind the rows in order until there are so many that a build is due. The first
+// objects of a scene are part of its first build.
 void AutomaticChoice::note_new_objects(const Wear& wear) noexcept {
-  const auto each = static_cast<double>(std::exchange(new_, 0)) / static_cast<double>(frames_);
+  const std::size_t came = std::exchange(new_, 0);
+  if (!chosen_) return;
+  const auto frames = static_cast<double>(frames_);
+  const double each = static_cast<double>(came) / frames;
   const double share = std::min(1.0, each / static_cast<double>(wear.most_new));
-  build_share_of_new_ += kNewest * (share - build_share_of_new_);
+  build_share_of_new_ += std::min(1.0, kNewest * frames) * (share - build_share_of_new_);
 }
 
 // Where objects are fast, cells and strips are built in every frame, and trees wear and are built,
