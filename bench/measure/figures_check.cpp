@@ -1,5 +1,7 @@
 #include "bench/measure/figures_check.h"
 
+#include <winnow/partitions/structures.h>
+
 #include "bench/common/errors.h"
 #include "bench/measure/advice.h"
 #include "bench/scenes/scene.h"
@@ -72,7 +74,7 @@ std::vector<FigureCheck> check_figures(const std::string& path, std::size_t fram
   for (const auto& [where, times] : read_figures(path)) {
     const auto& [name, objects] = where;
     const auto scene = scene_or_error(name, objects, 1);
-    const std::string other{candidates().front().name()};
+    const std::string other{linear_bvh().name()};
     const std::string chosen = advise(*scene, {other, "AutoPartition"}, frames, 1).chosen;
     const auto best = std::ranges::min_element(times, {}, [](const auto& t) { return t.second; });
     const auto own = times.find(chosen);
