@@ -18,8 +18,7 @@ namespace winnow {
 /// one call per object. It may be called from several threads at once, in any order, and not for
 /// every object that is reported in the end; it must answer the same each time. It must not call
 /// what asks it, which may hold locks, and it must not throw: an exception that leaves it ends the
-/// process
-/// (`std::terminate`), whatever thread asks.
+/// process (`std::terminate`), whatever thread asks.
 struct ObjectPredicate {
   bool (*accept)(void* context, Key key, ClientData data) = nullptr;  ///< null: all
   void* context = nullptr;

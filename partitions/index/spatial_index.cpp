@@ -78,11 +78,9 @@ Status SpatialIndex::absorb_changes(bool all) {
     return Status::out_of_memory;
   }
   if (is_torn()) return build();
-  if (may_have_strays()) {
-    const std::uint64_t before = builds_;
-    const Status status = take_out_strays();
-    if (status != Status::ok || builds_ != before) return status;
-  }
+  const std::uint64_t builds = builds_;
+  const Status status = look_for_strays();
+  if (status != Status::ok || builds_ != builds) return status;
   tail_growth_.note(tail());
   wear_growth_.note(excess_tests());
   departures_.note_refresh();

@@ -157,7 +157,7 @@ class SpatialIndex {
   [[nodiscard]] bool collect_misfits(bool all, std::size_t limit) noexcept;
   [[nodiscard]] std::size_t ordered_blocks() const noexcept;
   [[nodiscard]] std::size_t wide_blocks() const noexcept;
-  [[nodiscard]] bool may_have_strays() noexcept;
+  Status look_for_strays();
   [[nodiscard]] bool collect_strays(std::size_t limit) noexcept;
   Status take_out_strays();
   bool move_to_tail(std::span<const std::uint32_t> rows) noexcept;

@@ -73,12 +73,15 @@ std::size_t SpatialIndex::wide_blocks() const noexcept {
 
 // An object that jumps makes its block meet all others. Blocks that have become wide since the last
 // look tell that there may be some.
-bool SpatialIndex::may_have_strays() noexcept {
+Status SpatialIndex::look_for_strays() {
   const bool few = !rows_.stale().all() && rows_.stale().ids().size() * kFewChanges < rows_.size();
-  if (few || rows_.regions().regular != 0 || !(built_edge_ > 0.0F)) return false;
+  if (few || rows_.regions().regular != 0 || !(built_edge_ > 0.0F)) return Status::ok;
   const std::size_t wide = wide_blocks();
   known_wide_ = std::min(known_wide_, wide);
-  return wide > known_wide_ + ordered_blocks() * structure_->build_price() / kWearOfPrice;
+  const std::uint64_t price = structure_->build_price() * ordered_blocks();
+  if (wide <= known_wide_ + price / kWearOfPrice) return Status::ok;
+  // Where looking into them costs more than a build, that is done.
+  return wide * kLook > price ? build() : take_out_strays();
 }
 
 // Lists them, up to a limit. False if memory is refused.
@@ -102,8 +105,6 @@ bool SpatialIndex::collect_strays(std::size_t limit) noexcept {
 // Puts them behind the rows in order, where they are sorted by place. More than may stand there
 // want a build.
 Status SpatialIndex::take_out_strays() {
-  // Where looking into them costs more than a build, that is done.
-  if (wide_blocks() * kLook > structure_->build_price() * ordered_blocks()) return build();
   const std::size_t limit = tail_limit();
   const std::size_t room = limit + 1 - std::min(limit, tail());
   if (!collect_strays(room)) return Status::out_of_memory;

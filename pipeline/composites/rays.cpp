@@ -5,6 +5,7 @@
 #include "pipeline/composites/placed_body.h"
 #include "pipeline/mesh/height_grid.h"
 #include "pipeline/mesh/mesh_rays.h"
+#include "pipeline/shapes/difference.h"
 
 #include <algorithm>
 #include <bit>
@@ -18,18 +19,6 @@ constexpr double kMostLength = 1e150;
 /// Of coordinates: some roundings of a ray on its way into a surface's frame, and of triangles on
 /// theirs into the world.
 constexpr double kRaySlack = 0x1p-46;
-
-/// What rounding loses of origin - position; zero if that overflows.
-[[nodiscard]] Vec rest_of_difference(const double* origin, const double* position) noexcept {
-  Vec rest;
-  for (int i = 0; i < 3; ++i) {
-    const double between = origin[i] - position[i];
-    const double back = between - origin[i];
-    rest[i] = (origin[i] - (between - back)) + (-position[i] - back);
-    if (!std::isfinite(rest[i])) rest[i] = 0.0;
-  }
-  return rest;
-}
 
 /// A ray in the frame of a surface: the caller's t is shift + own t * stretch.
 struct OwnRay {
@@ -81,12 +70,11 @@ struct OwnRay {
 /// A surface that rays come to, all about its position: its own is zero.
 struct RayTarget {
   RayTarget(const Composites& all, ShapeId id, const Pose& pose) noexcept
-      : body(all, all.shapes.tables(), id, pose, Vec::Zero()),
-        position(Vec::Map(pose.position)),
-        reach(body.bounds.min.cwiseAbs().cwiseMax(body.bounds.max.cwiseAbs()).maxCoeff()),
-        size((body.to_world.cwiseAbs() *
-              body.bounds.min.cwiseAbs().cwiseMax(body.bounds.max.cwiseAbs()))
-                 .sum()) {}
+      : body(all, all.shapes.tables(), id, pose, Vec::Zero()), position(Vec::Map(pose.position)) {
+    const Vec corner = body.bounds.min.cwiseAbs().cwiseMax(body.bounds.max.cwiseAbs());
+    reach = corner.maxCoeff();
+    size = (body.to_world.cwiseAbs() * corner).sum();
+  }
 
   PlacedBody body;
   /// Where it is in the world.
@@ -181,7 +169,7 @@ struct RayGuide {
   /// body is, where it is small.
   [[nodiscard]] double look(std::uint32_t slot) const {
     PlacedBody body = target->body;
-    body.position = -rest_of_difference(ray->origin, target->position.data());
+    body.position = -Vec::Map(difference(ray->origin, target->position.data()).rest);
     Primitive primitive;
     if (!body.primitive(slot, primitive)) return limit;
     return visitor->look(visitor->context, number, primitive, limit);
@@ -229,8 +217,9 @@ void look_at_all(const Composites& all, ShapeId id, const Pose& pose, const RayG
   constexpr double kGrowth = 0x1p-47;
   const ShapeRay& ray = *guide.ray;
   Pose near = pose;
-  Vec::Map(near.position) = -rest_of_difference(ray.origin, pose.position);
-  const Vec from = finite(Vec::Map(ray.origin) - Vec::Map(pose.position));
+  const Difference between = difference(ray.origin, pose.position);
+  Vec::Map(near.position) = -Vec::Map(between.rest);
+  const Eigen::Map<const Vec> from(between.difference);
   const double grow = kGrowth * from.cwiseAbs().maxCoeff();
   BoxSweep sweep;
   for (int i = 0; i < 3; ++i) {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace winnow {
 namespace {
@@ -130,20 +129,6 @@ void PartTraversal::traverse(const PlacedShape& placed, BoxSweep sweep, double l
   } else {
     composites_->visit(placed.shape, placed.pose, sweep, primitives);
   }
-}
-
-Difference difference(const double to[3], const double from[3]) noexcept {
-  Difference result{};
-  constexpr double kMost = std::numeric_limits<double>::max();
-  for (int i = 0; i < 3; ++i) {
-    // The error of a difference is a double (Knuth, TAOCP vol. 2, 4.2.2, theorem B).
-    const double d = to[i] - from[i];
-    const double back = d - to[i];
-    const double rest = (to[i] - (d - back)) + (-from[i] - back);
-    result.difference[i] = std::clamp(d, -kMost, kMost);
-    result.rest[i] = std::isfinite(rest) ? rest : 0.0;
-  }
-  return result;
 }
 
 Pose relative(const Pose& pose, const double position[3]) noexcept {

@@ -3,6 +3,7 @@
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/shape_pool.h>
+#include "pipeline/shapes/difference.h"
 
 #include <Eigen/Core>
 #include <cmath>
@@ -162,13 +163,6 @@ class PartTraversal {
 [[nodiscard]] inline bool is_finite(const double point[3]) noexcept {
   return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
 }
-
-/// to - from, rounded, and what was lost: to - from = difference + rest, unless that overflows.
-struct Difference {
-  double difference[3];
-  double rest[3];
-};
-[[nodiscard]] Difference difference(const double to[3], const double from[3]) noexcept;
 
 /// A shape's pose as seen from a position.
 [[nodiscard]] Pose relative(const Pose& pose, const double position[3]) noexcept;

@@ -1,0 +1,228 @@
+#pragma once
+
+// The features of two hulls that meet along a normal, as patches for contact_patch.
+
+#include "pipeline/kernels/hull/hull_depth.wide.h"
+#include "pipeline/kernels/hull/hull_features.wide.h"
+#include "pipeline/manifold/contact_patch.h"
+
+namespace winnow::WINNOW_ISA_NAME::hull {
+
+/// The supporting feature of one hull, in the axes of the world.
+class HullPatch {
+ public:
+  /// `first`: of the first hull, else of the second. `normal`: from the first to the second, in the
+  /// first's frame.
+  HullPatch(const HullPair& pair, const double* normal, bool first)
+      : pair_(pair), hull_(first ? *pair.first : *pair.second), first_(first) {
+    if (first_) {
+      for (int k = 0; k < 3; ++k) outward_[k] = normal[k];
+    } else {
+      turn_back3(pair_.turn, normal, outward_);
+      for (double& x : outward_) x = -x;
+    }
+  }
+
+  void face(std::uint32_t index) {
+    const HullFace& f = hull_.faces[index];
+    // Of polygons with more corners than there is room for, every second (third, ...) is taken.
+    const std::uint32_t stride = (f.count + kRoom - 1) / kRoom;
+    count_ = 0;
+    for (std::uint32_t i = 0; i < f.count; i += stride) {
+      add(hull_.loop[f.first + i], hull_.loop_edge[f.first + i]);
+    }
+    feature_ = index;
+  }
+
+  /// An edge, or a face beside it that lies across the normal as well: what touches along the edge
+  /// is about to touch there.
+  void edge(std::uint32_t index) {
+    std::uint32_t best = kNoFeature;
+    double most = kFaceCosine;
+    for (const std::uint32_t side : hull_.edges[index].face) {
+      if (side >= hull_.face_count) continue;
+      const double cosine = dot3(hull_.faces[side].normal, outward_);
+      if (!(cosine > most)) continue;
+      most = cosine;
+      best = side;
+    }
+    if (best != kNoFeature) return face(best);
+    edge_alone(index);
+  }
+
+  /// The same by its ends; what `across` finds if there is no such edge.
+  void edge_between(std::uint32_t v, std::uint32_t w) {
+    const std::uint32_t index = edge_of(v, w);
+    if (index == kNoFeature) return across();
+    edge(index);
+  }
+
+  /// The same by the supporting vertices of a simplex: the features that are closest.
+  void closest(const std::uint32_t* vertices, std::uint32_t count, std::uint32_t shift) {
+    const std::uint32_t v = vertices[0] >> shift & 0xFFFFU;
+    std::uint32_t w = v;
+    for (std::uint32_t i = 1; i < count; ++i) {
+      const std::uint32_t x = vertices[i] >> shift & 0xFFFFU;
+      if (x == v || x == w) continue;
+      if (w != v) return across();
+      w = x;
+    }
+    if (w != v) return edge_between(v, w);
+    across_at(v);
+  }
+
+  /// The face, edge or vertex that lies farthest along the normal: features within some degrees
+  /// of perpendicular to it count as lying across it, since bodies rock over them.
+  void across() {
+    float direction[3];
+    write_direction(direction);
+    across_at(farthest_vertex(hull_, direction));
+  }
+
+  /// The same for a vertex that lies farthest.
+  void across_at(std::uint32_t vertex) {
+    float direction[3];
+    write_direction(direction);
+    float x[3];
+    vertex_at(hull_, vertex, x);
+    const float slack = kFloatError * static_cast<float>(pair_.size);
+    const std::uint32_t face_index = face_across(hull_, direction, x, slack);
+    if (face_index != kNoFeature) return face(face_index);
+    const std::uint32_t other = neighbour_across(hull_, direction, vertex, x);
+    if (other != kNoFeature) return edge_alone(edge_of(vertex, other));
+    vertex_alone(vertex);
+  }
+
+  /// Of a simple shape all that there is: the face that looks along the normal however steeply, a
+  /// segment, a point.
+  void whole() {
+    if (hull_.dimension == 0) return vertex_alone(0);
+    if (hull_.dimension == 1) return edge_alone(0);
+    std::uint32_t best = 0;
+    for (std::uint32_t i = 1; i < hull_.face_count; ++i) {
+      const bool better =
+          dot3(hull_.faces[i].normal, outward_) > dot3(hull_.faces[best].normal, outward_);
+      best = better ? i : best;
+    }
+    face(best);
+  }
+
+  [[nodiscard]] Patch patch() const {
+    return {vertex_, vertex_feature_, edge_feature_, count_, feature_, hull_.rounding};
+  }
+
+ private:
+  static constexpr std::uint32_t kRoom = 32;
+
+  void write_direction(float* direction) const {
+    for (int k = 0; k < 3; ++k) direction[k] = static_cast<float>(outward_[k]);
+  }
+
+  [[nodiscard]] std::uint32_t edge_of(std::uint32_t v, std::uint32_t w) const {
+    for (std::uint32_t i = 0; i < hull_.edge_count; ++i) {
+      const std::uint32_t* ends = hull_.edges[i].vertex;
+      if ((ends[0] == v && ends[1] == w) || (ends[0] == w && ends[1] == v)) return i;
+    }
+    return kNoFeature;
+  }
+
+  void edge_alone(std::uint32_t index) {
+    const std::uint32_t* ends = hull_.edges[index].vertex;
+    count_ = 0;
+    add(ends[0] < ends[1] ? ends[0] : ends[1], index);
+    add(ends[0] < ends[1] ? ends[1] : ends[0], index);
+    feature_ = hull_.face_count + index;
+  }
+
+  void vertex_alone(std::uint32_t vertex) {
+    count_ = 0;
+    add(vertex, 0);
+    feature_ = hull_.face_count + hull_.edge_count + vertex;
+  }
+
+  void add(std::uint32_t vertex, std::uint32_t edge_feature) {
+    double x[3];
+    vertex_at(hull_, vertex, x);
+    if (!first_) {
+      double y[3];
+      turn3(pair_.turn, x, y);
+      for (int k = 0; k < 3; ++k) x[k] = y[k] + pair_.shift[k];
+    }
+    double* r = vertex_[count_];
+    turn3(pair_.frame, x, r);
+    if (pair_.swapped) {
+      for (int k = 0; k < 3; ++k) r[k] -= pair_.offset[k];
+    }
+    vertex_feature_[count_] = vertex;
+    edge_feature_[count_++] = edge_feature;
+  }
+
+  const HullPair& pair_;
+  const HullShape& hull_;
+  bool first_;
+  /// In the hull's own frame.
+  double outward_[3];
+  std::uint32_t count_ = 0;
+  std::uint32_t feature_ = 0;
+  double vertex_[kRoom][3];
+  std::uint32_t vertex_feature_[kRoom];
+  std::uint32_t edge_feature_[kRoom];
+};
+
+/// The feature of one of the hulls in which they touch: that of the depth's winner, or, without
+/// one, of the closest vertices.
+static inline void find_feature(const HullPair& pair, const HullCandidate* winner, bool first,
+                                HullPatch& patch) {
+  using Kind = HullCandidate::Kind;
+  if (winner == nullptr) return patch.closest(pair.vertices, pair.count, first ? 0 : 16);
+  if (winner->kind == (first ? Kind::first_face : Kind::second_face)) {
+    return patch.face(winner->face);
+  }
+  if (winner->kind != Kind::arc) return patch.across();
+  if (first) return patch.edge(winner->arc.edge);
+  patch.edge_between(winner->arc.vertex[0], winner->arc.vertex[1]);
+}
+
+/// What is asked of the contacts of a pair.
+struct HullContacts {
+  /// In the first's frame, and from body a to body b in the axes of the world.
+  const double* normal;
+  const double* world;
+  double margin;
+  /// The pair's, and how far the deepest contact may be from it.
+  double distance;
+  double doubt;
+};
+
+/// Writes the contacts of a pair and returns their number; 0 if the features do not meet where the
+/// pair is deepest. `Simple`: the second is no hull but stands for a sphere, capsule, box or
+/// triangle.
+template <bool Simple>
+static inline std::uint32_t write_contacts(const HullPair& pair, const HullContacts& ask,
+                                           const HullCandidate* winner, ContactWriter& writer) {
+  HullPatch first(pair, ask.normal, true);
+  HullPatch second(pair, ask.normal, false);
+  find_feature(pair, winner, true, first);
+  if constexpr (Simple) {
+    second.whole();
+  } else {
+    find_feature(pair, winner, false, second);
+  }
+  ContactPoint points[kManifoldPoints];
+  const std::uint32_t count =
+      contact_patch(pair.swapped ? second.patch() : first.patch(),
+                    pair.swapped ? first.patch() : second.patch(), ask.world, ask.margin, points);
+  if (count == 0) return 0;
+  const double miss = __builtin_fabs(static_cast<double>(points[0].depth) + ask.distance);
+  if (!(miss <= ask.doubt)) return 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t to = writer.size + i;
+    for (int k = 0; k < 3; ++k) writer.position[k][to] = points[i].position[k];
+    writer.depth[to] = points[i].depth;
+    writer.feature[to] = points[i].feature;
+  }
+  writer.size += count;
+  return count;
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME::hull

@@ -1,0 +1,176 @@
+#pragma once
+
+#include "pipeline/kernels/hull/hull_measure.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME::hull {
+
+/// Arcs that float cannot follow: where hulls are nearly parallel, several vertices of the second
+/// are as far along a face's normal of the first as float can tell, and the search may have taken
+/// the same for both ends of an arc along which they change. Here the vertices that tie are told
+/// apart in double, on all arcs around the face.
+class HullTies {
+ public:
+  /// `best` and `lower`: the least depth known and the least that it can be.
+  HullTies(const HullPair& pair, const HullPlace<double>& place, double best, double lower)
+      : pair_(pair), measure_(pair, place), place_(place), best_(best), lower_(lower) {}
+
+  /// Looks around a face of the first, along whose normal the depth is known; false if there is
+  /// more to look at than there is room for.
+  bool around(std::uint32_t face, double depth) {
+    const HullFace& f = pair_.first->faces[face];
+    if (!find_ties(f.normal, f.offset - depth)) return false;
+    return count_ < 2 || follow_all(face);
+  }
+
+  /// Looks again at an arc on which a third vertex is nearer than the two that were found.
+  bool along_arc(const HullArc& arc) {
+    measure_.arc(arc);
+    const double high = height_of(*pair_.first, measure_.normal);
+    if (!find_ties(measure_.normal, high - measure_.depth) || count_ < 2) return false;
+    double ends[2][3];
+    arc_ends(pair_, arc, ends);
+    return follow(arc.edge, ends[0], ends[1]);
+  }
+
+  void bound(double depth) { lower_ = depth < lower_ ? depth : lower_; }
+
+  [[nodiscard]] double best() const { return best_; }
+  [[nodiscard]] double lower() const { return lower_; }
+  [[nodiscard]] bool found() const { return found_; }
+  [[nodiscard]] const HullCandidate& winner() const { return winner_; }
+  [[nodiscard]] const double* normal() const { return normal_; }
+
+ private:
+  static constexpr std::uint32_t kMostTies = 32;
+  static constexpr int kMostParts = 16;
+
+  /// Between two directions along which two vertices of the second are the nearest.
+  struct Part {
+    double end[2][3];
+    std::uint32_t vertex[2];
+  };
+
+  [[gnu::noinline]] bool follow_all(std::uint32_t face) {
+    const HullShape& hull = *pair_.first;
+    for (std::uint32_t i = 0; i < hull.faces[face].count; ++i) {
+      const std::uint32_t edge = hull.loop_edge[hull.faces[face].first + i];
+      const std::uint32_t* sides = hull.edges[edge].face;
+      const std::uint32_t other = sides[0] == face ? sides[1] : sides[0];
+      if (!follow(edge, hull.faces[face].normal, hull.faces[other].normal)) return false;
+    }
+    return true;
+  }
+
+  /// Those of which float could not tell which is the lowest, `least` or a little higher.
+  bool find_ties(const double* normal, double least) {
+    constexpr std::uint32_t kWidth = Lanes<double>::kCount;
+    const HullShape& second = *pair_.second;
+    double local[3];
+    turn_back3(place_.turn, normal, local);
+    for (double& x : local) x = -x;
+    const double doubt = 4.0 * static_cast<double>(kFloatError) * pair_.size;
+    const Lanes<double> limit(dot3(normal, place_.shift) - least - doubt);
+    const Vec3<double> d{local[0], local[1], local[2]};
+    count_ = 0;
+    for (std::uint32_t row = 0; row < second.vertex_count; row += kWidth) {
+      Mask16 high = bits(along(second.vertex, row, d) >= limit);
+      const std::uint32_t left = second.vertex_count - row;
+      if (left < kWidth) high &= lanes_below(left);
+      for (; high != 0; high &= high - 1) {
+        if (count_ == kMostTies) return false;
+        tied_[count_++] = row + winnow::WINNOW_ISA_NAME::first(high);
+      }
+    }
+    return true;
+  }
+
+  /// Of the vertices that tie the one farthest against a direction.
+  [[nodiscard]] std::uint32_t nearest(const double* direction) const {
+    std::uint32_t best = tied_[0];
+    double least = __builtin_inf();
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      double x[3];
+      place_.of_second(*pair_.second, tied_[i], x);
+      const double height = dot3(direction, x);
+      best = height < least ? tied_[i] : best;
+      least = height < least ? height : least;
+    }
+    return best;
+  }
+
+  bool follow(std::uint32_t edge, const double* from, const double* to) {
+    const double* ends[2] = {from, to};
+    Part stack[kMostParts];
+    for (int i = 0; i < 2; ++i) {
+      for (int k = 0; k < 3; ++k) stack[0].end[i][k] = ends[i][k];
+      stack[0].vertex[i] = nearest(ends[i]);
+    }
+    vertex_at(*pair_.first, pair_.first->edges[edge].vertex[0], mine_);
+    int height = 1;
+    for (int looked = 0; height > 0; ++looked) {
+      if (looked == kMostParts || height + 1 >= kMostParts) return false;
+      const Part part = stack[--height];
+      look(edge, part, stack, height);
+    }
+    return true;
+  }
+
+  /// Bounds a part of an arc, or puts its halves on the stack where a third vertex is nearer.
+  void look(std::uint32_t edge, const Part& part, Part* stack, int& height) {
+    double w[2][3];
+    for (int i = 0; i < 2; ++i) {
+      double theirs[3];
+      place_.of_second(*pair_.second, part.vertex[i], theirs);
+      for (int k = 0; k < 3; ++k) w[i][k] = mine_[k] - theirs[k];
+    }
+    const double rounding = kDoubleError * pair_.size;
+    // One vertex, whose height is least at an end.
+    if (part.vertex[0] == part.vertex[1]) {
+      for (const double(&end)[3] : part.end) {
+        bound(dot3(end, w[0]) / __builtin_sqrt(dot3(end, end)) + rounding);
+      }
+      return;
+    }
+    measure_.crossing(part.end, w);
+    measure_.bound_ends(part.end, w);
+    if (measure_.lower + rounding >= best_) return;
+    const double* normal = measure_.normal;
+    std::uint32_t third = nearest(normal);
+    if (measure_.depth < best_) keep(edge, part);
+    if (measure_.depth - measure_.lower <= rounding || third == part.vertex[0] ||
+        third == part.vertex[1]) {
+      return bound(measure_.lower);
+    }
+    Part halves[2] = {part, part};
+    for (int k = 0; k < 3; ++k) halves[0].end[1][k] = halves[1].end[0][k] = normal[k];
+    halves[0].vertex[1] = third;
+    halves[1].vertex[0] = third;
+    stack[height++] = halves[0];
+    stack[height++] = halves[1];
+  }
+
+  void keep(std::uint32_t edge, const Part& part) {
+    found_ = true;
+    best_ = measure_.depth;
+    for (int k = 0; k < 3; ++k) normal_[k] = measure_.normal[k];
+    winner_.kind = HullCandidate::Kind::arc;
+    winner_.arc.edge = edge;
+    winner_.arc.vertex[0] = part.vertex[0];
+    winner_.arc.vertex[1] = part.vertex[1];
+  }
+
+  const HullPair& pair_;
+  HullMeasure<double> measure_;
+  const HullPlace<double>& place_;
+  double best_;
+  double lower_;
+  bool found_ = false;
+  double normal_[3];
+  HullCandidate winner_ = {};
+  /// The vertex of the first at whose edge an arc lies.
+  double mine_[3];
+  std::uint32_t count_ = 0;
+  std::uint32_t tied_[kMostTies];
+};
+
+}  // namespace winnow::WINNOW_ISA_NAME::hull
