@@ -32,6 +32,7 @@ struct BoxStage {
     stage.put(kRoundingA, pair.rounding_a);
     stage.put(kRoundingB, pair.rounding_b);
   }
+  [[nodiscard]] auto offset() const { return stage.value + kOffset; }
   void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
     BoxFrame box_a;
     BoxFrame box_b;
@@ -156,20 +157,13 @@ struct BoxBox {
     CoreAnswer<T> core = measure<L>(pair, axis, wanted);
     const Mask16 certified = with_rounding(core, pair.rounding_a, pair.rounding_b, pair.scale);
     const Lanes<T> sign = Lanes<T>::load(ordered.sign);
-    const AnswerLanes<T> answer = turned_back(core, pair.offset, sign);
-    write_answer<L>(job, given, answer);
+    write_answer<L>(job, given, turned_back(core, pair.offset, sign));
     if constexpr (L == kManifold) {
       const Lanes<T> margin(static_cast<T>(job.margin));
-      const Mask16 touching = certified & bits(answer.distance <= margin);
+      const Mask16 touching = certified & bits(core.distance <= margin);
       const BoxStage<T> stage(pair, core.normal);
-      write_patch_contacts<T>(job, given, touching, stage.stage.value + 24, ordered.sign,
-                              [&](unsigned lane, ContactPoint* points) {
-                                FlatPatch a;
-                                FlatPatch b;
-                                double normal[3];
-                                stage.patches(lane, a, b, normal);
-                                return flat_contacts(a, b, normal, job.margin, points);
-                              });
+      return ~certified |
+             write_true_contacts<T>(job, given, core, pair.scale, touching, stage, ordered.sign);
     }
     return ~certified;
   }

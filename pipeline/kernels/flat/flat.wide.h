@@ -415,6 +415,36 @@ template <int L, typename Staged, typename Pair, typename Axis, typename T>
   return answer;
 }
 
+/// Contacts of the lanes of `touching` between the patches of `stage`. Returns the lanes in which
+/// they leave out where the shapes are closest: no manifolds.
+template <typename T, typename Staged>
+[[gnu::always_inline]] inline Mask16 write_true_contacts(NarrowJob& job, const PairBlock<T>& given,
+                                                         const CoreAnswer<T>& core,
+                                                         const Lanes<T>& scale, Mask16 touching,
+                                                         const Staged& stage, const T* sign) {
+  Stage<T, 2> expected;
+  expected.put(0, core.distance);
+  expected.put(1, core.error_bound + scale * Lanes<T>(kDeepest<T>));
+  Mask16 missed = 0;
+  write_patch_contacts<T>(
+      job, given, touching, stage.offset(), sign,
+      [&](unsigned lane, ContactPoint* points) -> std::uint32_t {
+        FlatPatch a;
+        FlatPatch b;
+        double normal[3];
+        stage.patches(lane, a, b, normal);
+        const auto count = flat_contacts(a, b, normal, job.margin, points);
+        if (count > 0) {
+          const T off = static_cast<T>(points[0].depth) + expected.value[0][lane];
+          const T most = expected.value[1][lane];
+          if (off <= most && off >= -most) return count;
+        }
+        missed |= 1U << lane;
+        return 0;
+      });
+  return missed;
+}
+
 /// Levels distance and manifold of a block; `sign` as OrderedBlock has it. Returns the uncertified
 /// lanes.
 template <int L, typename Staged, typename T, typename Pair>
@@ -433,26 +463,7 @@ template <int L, typename Staged, typename T, typename Pair>
   if constexpr (L == kManifold) {
     const Mask16 touching = certified & bits(core.distance <= margin);
     const Staged stage(pair, core.normal);
-    // A patch that leaves out where the shapes are closest is no manifold.
-    Stage<T, 2> expected;
-    expected.put(0, core.distance);
-    expected.put(1, core.error_bound + pair.scale * Lanes<T>(kDeepest<T>));
-    Mask16 missed = 0;
-    write_patch_contacts<T>(job, given, touching, stage.offset(), sign,
-                            [&](unsigned lane, ContactPoint* points) -> std::uint32_t {
-                              FlatPatch a;
-                              FlatPatch b;
-                              double normal[3];
-                              stage.patches(lane, a, b, normal);
-                              const auto count = flat_contacts(a, b, normal, job.margin, points);
-                              const T off =
-                                  static_cast<T>(points[0].depth) + expected.value[0][lane];
-                              const T most = expected.value[1][lane];
-                              if (count > 0 && off <= most && off >= -most) return count;
-                              missed |= 1U << lane;
-                              return 0;
-                            });
-    return ~certified | missed;
+    return ~certified | write_true_contacts<T>(job, given, core, pair.scale, touching, stage, sign);
   }
   return ~certified;
 }
