@@ -26,6 +26,12 @@ struct ContactColumns {
 
   [[nodiscard]] bool grow(std::size_t count) noexcept;
   void set_size(std::size_t count) noexcept;
+  /// Writes to the pages behind the last point.
+  void touch() noexcept {
+    for (Column<float>& column : position) column.touch();
+    depth.touch();
+    feature.touch();
+  }
   [[nodiscard]] std::size_t size() const noexcept { return depth.size(); }
   [[nodiscard]] Bytes bytes() const noexcept;
 

@@ -35,7 +35,8 @@ struct SceneOptions {
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
   Execution execution = Execution::parallel();
   /// The structure of each set's partition, by Motion. A partition is made when its first body
-  /// comes. Fixed bodies that are asked about often may be worth the slow build of static_bvh().
+  /// comes, or is reserved for. Fixed bodies that are asked about often may be worth the slow build
+  /// of static_bvh().
   StructureKind structures[kMotions] = {linear_bvh(), linear_bvh(), linear_bvh()};
   /// Speculative: pairs no farther apart than this are contacts too. Finite, >= 0.
   double margin = 0.0;
@@ -60,6 +61,22 @@ struct BodyDefinition {
   Motion motion = Motion::dynamic;
   ObjectFilter filter{};
   ClientData data = 0;
+};
+
+/// How much a scene is to have room for; see Scene::reserve. Each at most 2^32 - 2, and fewer than
+/// 2^28 bodies in all.
+struct SceneRoom {
+  std::size_t bodies[kMotions] = {};  ///< by Motion
+  /// Pairs of bodies that the broad phase finds; see SceneStatistics::body_pairs.
+  std::size_t pairs = 0;
+  /// That `collide` is asked for.
+  ContactLevel level = ContactLevel::manifold;
+  /// What Contacts hold: pairs that touch, those that sleep counted in; at level pairs it is all
+  /// pairs. Manifolds (as many as pairs that touch, where no shape is composite) from level boolean
+  /// on, points at level manifold.
+  std::size_t touching = 0;
+  std::size_t manifolds = 0;
+  std::size_t points = 0;
 };
 
 /// Bytes of a scene by part. The sum equals, to the byte, what is outstanding at its resource.
@@ -112,6 +129,26 @@ class WINNOW_API Scene {
   Status remove(std::span<const Key> keys);
   void clear() noexcept;
 
+  /// A steady frame allocates nothing, that is, one that has no more of anything than one before:
+  /// a new maximum of bodies, pairs or contacts does. This moves that point: to add up to so many
+  /// bodies of convex shapes, and each `collide` at this level of up to so many pairs that find so
+  /// many points, then asks the memory resource for nothing; of the caller's Contacts the same is
+  /// said by `reserve_contacts`. `too_many_objects` or `out_of_memory` change nothing. O(room): the
+  /// narrow phase is asked about as many pairs, of the kinds of shapes that are in the pool by
+  /// then, so that these should be in it.
+  ///
+  /// Not counted in, and asked for when they are met first: filters; what the mid and narrow phase
+  /// need for parts of composite shapes; pairs between two sets of more than about 10,000 bodies
+  /// each on several threads, which are written in more pieces; and what partitions keep once they
+  /// see that few boxes move or most rest: see PairBuffer, at most about 16 bytes a pair and 150 a
+  /// body.
+  Status reserve(const SceneRoom& room, Pages pages = Pages::untouched);
+  /// Makes room in Contacts for what `room` says, for `collide` by this scene: nothing in it is
+  /// left out. `too_many_objects` or `out_of_memory` change nothing. O(1) but for pages that are
+  /// touched and contents that are moved.
+  Status reserve_contacts(Contacts& out, const SceneRoom& room,
+                          Pages pages = Pages::untouched) const;
+
   /// Gives bodies new poses. O(1) each; the partitions follow at the next question.
   Status move(Key key, const Pose& pose);
   Status move(std::span<const Key> keys, const PoseView& poses);
@@ -137,8 +174,8 @@ class WINNOW_API Scene {
   /// wakes. `out_of_memory` leaves `contacts` cleared.
   Status collide(ContactLevel level, Contacts& contacts);
 
-  /// The partition of a set; null while it has had no body. Its client data are bodies' ids, its
-  /// boxes are measured from `origin()`.
+  /// The partition of a set; null while it has had no body, nor was reserved for one. Its client
+  /// data are bodies' ids, its boxes are measured from `origin()`.
   [[nodiscard]] const Partition* partition(Motion motion) const noexcept;
   /// A point of the world from which boxes are measured, so that a scene far away, where floats are
   /// coarse, costs as much as one that stands here. (0, 0, 0) while that is fine enough; chosen

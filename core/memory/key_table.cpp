@@ -21,8 +21,7 @@ KeyTable::KeyTable(std::pmr::memory_resource* memory) noexcept
 
 bool KeyTable::reserve(std::size_t count) noexcept {
   const std::size_t fresh = count > live_ ? count - live_ : 0;
-  if (fresh <= free_count_) return true;
-  const std::size_t slots = stamps_.size() + fresh - free_count_;
+  const std::size_t slots = slots_with(fresh);
   return stamps_.grow(slots) && rows_.grow(slots) && data_.grow(slots);
 }
 

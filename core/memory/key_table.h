@@ -22,6 +22,11 @@ class KeyTable {
   /// Room for `count` live objects in all. False, and unchanged, if memory is refused.
   [[nodiscard]] bool reserve(std::size_t count) noexcept;
 
+  /// Slots that there are once so many more objects have got theirs.
+  [[nodiscard]] std::size_t slots_with(std::size_t fresh) const noexcept {
+    return stamps_.size() + (fresh > free_count_ ? fresh - free_count_ : 0);
+  }
+
   /// Writes to the pages behind the slots.
   void touch() noexcept;
 

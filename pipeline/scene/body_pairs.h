@@ -37,6 +37,12 @@ class BodyPairs {
   Status assign(std::span<const Source> sources, const ShapeId* shapes, std::size_t bodies,
                 const Execution& execution);
 
+  /// Room for so many pairs. False if memory is refused.
+  [[nodiscard]] bool reserve(std::size_t count, Pages pages) noexcept {
+    return pairs_.reserve(count, pages) && items_.reserve(count, pages) &&
+           spare_.reserve(count, pages);
+  }
+
   [[nodiscard]] std::span<const BodyPair> pairs() const noexcept {
     return {pairs_.data(), pairs_.size()};
   }

@@ -13,6 +13,8 @@ namespace winnow {
 /// both put into a new frame.
 class Collision {
  public:
+  static constexpr std::size_t kPairsPerTask = 512;
+
   Collision(SceneState& scene, ContactsState& contacts, ContactLevel level) noexcept;
 
   [[nodiscard]] Status run();
@@ -21,7 +23,6 @@ class Collision {
   /// Where a pair's contacts come from.
   enum class Origin : std::uint8_t { carried, convex, composite };
   using Place = ContactFrame::Place;
-  static constexpr std::size_t kPairsPerTask = 512;
 
   // What is known of the pairs (pair_memory.cpp).
   [[nodiscard]] bool wake_dormant();

@@ -11,6 +11,8 @@
 
 namespace winnow {
 
+struct SceneRoom;
+
 /// No entry.
 inline constexpr std::uint32_t kNoEntry = ~0U;
 
@@ -37,6 +39,9 @@ struct ContactFrame {
   /// Room for what a level has, and no more. False if memory is refused.
   [[nodiscard]] bool resize(ContactLevel level, std::size_t pairs, std::size_t manifolds,
                             std::size_t contact_points) noexcept;
+  /// Room for so much at a level, and for every run there may be. False if memory is refused.
+  [[nodiscard]] bool reserve(ContactLevel level, std::size_t pairs, std::size_t manifolds,
+                             std::size_t contact_points, Pages pages) noexcept;
   /// As much room as another frame has, so that the two can change places.
   [[nodiscard]] bool reserve_as(const ContactFrame& other) noexcept;
   void clear() noexcept;
@@ -66,6 +71,10 @@ struct ContactFrame {
   void close(ContactLevel level, const Place& end) noexcept;
 
  private:
+  /// Calls make(column, count) for every column but those of runs and of points, until it is false.
+  template <typename Make>
+  [[nodiscard]] bool make_columns(ContactLevel level, std::size_t pairs, std::size_t manifolds,
+                                  Make&& make) noexcept;
   void copy_points(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
                    const Place& to) noexcept;
 };
@@ -132,6 +141,8 @@ struct ContactsState {
   bool is_settled = false;
 
   void clear() noexcept;
+  /// See Scene::reserve_contacts (reserve.cpp).
+  [[nodiscard]] bool reserve(const SceneRoom& room, bool carries, Pages pages) noexcept;
 };
 
 }  // namespace winnow

@@ -35,25 +35,46 @@ ContactFrame::ContactFrame(std::pmr::memory_resource* memory) noexcept
       point_first(memory),
       points(memory) {}
 
+template <typename Make>
+bool ContactFrame::make_columns(ContactLevel level, std::size_t pairs, std::size_t manifolds,
+                                Make&& make) noexcept {
+  const bool with_parts = level != ContactLevel::pairs;
+  const bool with_points = level == ContactLevel::manifold;
+  bool good = make(event, pairs) && make(manifold_first, with_parts ? pairs + 1 : 0);
+  for (int side = 0; side < 2; ++side) {
+    good = good && make(key[side], pairs) && make(data[side], pairs) && make(part[side], manifolds);
+  }
+  const std::size_t distances = level >= ContactLevel::distance ? manifolds : 0;
+  good = good && make(distance, distances) && make(error_bound, distances) &&
+         make(point_first, with_points ? manifolds + 1 : 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    good = good && make(normal[axis], distances) &&
+           make(point[axis], level == ContactLevel::distance ? manifolds : 0);
+  }
+  return good;
+}
+
 bool ContactFrame::resize(ContactLevel level, std::size_t pairs, std::size_t manifolds,
                           std::size_t contact_points) noexcept {
-  const bool with_parts = level != ContactLevel::pairs;
-  const bool with_distance = level >= ContactLevel::distance;
-  const bool with_points = level == ContactLevel::manifold;
-  bool good = event.resize(pairs) && manifold_first.resize(with_parts ? pairs + 1 : 0);
-  for (int side = 0; side < 2; ++side) {
-    good =
-        good && key[side].resize(pairs) && data[side].resize(pairs) && part[side].resize(manifolds);
+  const auto resize_one = [](auto& column, std::size_t count) { return column.resize(count); };
+  if (!make_columns(level, pairs, manifolds, resize_one) || !points.grow(contact_points)) {
+    return false;
   }
-  const std::size_t distances = with_distance ? manifolds : 0;
-  good = good && distance.resize(distances) && error_bound.resize(distances) &&
-         point_first.resize(with_points ? manifolds + 1 : 0);
-  for (int axis = 0; axis < 3; ++axis) {
-    good = good && normal[axis].resize(distances) &&
-           point[axis].resize(level == ContactLevel::distance ? manifolds : 0);
-  }
-  if (!good || !points.grow(contact_points)) return false;
   points.set_size(contact_points);
+  return true;
+}
+
+bool ContactFrame::reserve(ContactLevel level, std::size_t pairs, std::size_t manifolds,
+                           std::size_t contact_points, Pages pages) noexcept {
+  const auto reserve_one = [pages](auto& column, std::size_t count) {
+    return column.reserve(count, pages);
+  };
+  const std::size_t most_runs = std::min<std::size_t>(pairs, BodyKindPairs::kCount);
+  if (!runs.reserve(most_runs) || !make_columns(level, pairs, manifolds, reserve_one) ||
+      !points.grow(contact_points)) {
+    return false;
+  }
+  if (pages == Pages::touched) points.touch();
   return true;
 }
 

@@ -138,7 +138,7 @@ void SceneState::take_back(std::span<const std::uint32_t> bodies, Motion which) 
 // Room in every column, so that what follows cannot fail.
 bool SceneState::reserve(std::size_t fresh) noexcept {
   if (!keys.reserve(keys.size() + fresh)) return false;
-  const std::size_t slots = keys.slot_count() + fresh;
+  const std::size_t slots = keys.slots_with(fresh);
   const bool with_anchors = options.carry_over == 0.0 || anchor.grow(slots);
   return with_anchors && shape.grow(slots) && pose.grow(slots) && motion.grow(slots) &&
          place.grow(slots) && moved_at.grow(slots) && shaped_at.grow(slots) && stale.grow(slots) &&

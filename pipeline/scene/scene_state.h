@@ -108,6 +108,12 @@ struct SceneState {
   void choose_origin() noexcept;
   [[nodiscard]] Status check(ShapeId id, const Pose& at) const noexcept;
   [[nodiscard]] bool reserve(std::size_t fresh) noexcept;
+  /// See Scene::reserve (reserve.cpp).
+  [[nodiscard]] Status reserve(const SceneRoom& room, Pages pages);
+  [[nodiscard]] bool reserve_bodies(const SceneRoom& room, Pages pages) noexcept;
+  [[nodiscard]] Status reserve_sets(const SceneRoom& room, Pages pages);
+  [[nodiscard]] Status reserve_answers(const SceneRoom& room, Pages pages);
+  [[nodiscard]] bool list_rehearsal(std::size_t kinds, std::size_t count) noexcept;
   [[nodiscard]] Key acquire(const BodyDefinition& body) noexcept;
   [[nodiscard]] Status settle(std::span<const BodyDefinition> bodies, std::span<const Key> given);
   [[nodiscard]] bool are_distinct(std::span<const Key> given) noexcept;

@@ -1,0 +1,179 @@
+// Room made before it is needed: columns and partitions are told what they are going to hold, and
+// the narrow phase, which keeps to itself what it works with, is asked about as many pairs as there
+// are going to be.
+
+#include "core/memory/columns.h"
+#include "pipeline/kernels/kernels.h"
+#include "pipeline/scene/collision.h"
+#include "pipeline/scene/contact_frame.h"
+#include "pipeline/scene/scene_state.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace winnow {
+namespace {
+
+// What comes and goes leaves holes in the rows of a partition, which closes them once they are a
+// fifth of all rows, and of more rows than this.
+constexpr std::size_t kFewRows = 64;
+
+[[nodiscard]] std::size_t rows_for(std::size_t bodies) noexcept {
+  return bodies + std::max(kFewRows, bodies / 4);
+}
+
+[[nodiscard]] std::size_t bodies_of(const SceneRoom& room) noexcept {
+  return std::accumulate(std::begin(room.bodies), std::end(room.bodies), std::size_t{0});
+}
+
+// Pairs that are shown.
+[[nodiscard]] std::size_t shown_pairs(const SceneRoom& room) noexcept {
+  return room.level == ContactLevel::pairs ? room.pairs : room.touching;
+}
+
+[[nodiscard]] Status check(const SceneRoom& room) noexcept {
+  if (room.level > ContactLevel::manifold) return Status::invalid_argument;
+  const bool too_many =
+      std::ranges::any_of(room.bodies, [](auto n) { return n >= kMaxBodies; }) ||
+      bodies_of(room) >= kMaxBodies ||
+      std::max({room.pairs, room.touching, room.manifolds, room.points}) >= kNoEntry;
+  return too_many ? Status::too_many_objects : Status::ok;
+}
+
+template <typename... T>
+[[nodiscard]] bool reserve_all(std::size_t count, Pages pages, Column<T>&... columns) noexcept {
+  return (columns.reserve(count, pages) && ...);
+}
+
+}  // namespace
+
+Status Scene::reserve(const SceneRoom& room, Pages pages) {
+  if (state_ == nullptr) return Status::out_of_memory;
+  if (!state_->options_are_good) return Status::invalid_argument;
+  const Status good = check(room);
+  return good == Status::ok ? state_->reserve(room, pages) : good;
+}
+
+Status Scene::reserve_contacts(Contacts& out, const SceneRoom& room, Pages pages) const {
+  if (state_ == nullptr || out.state_ == nullptr) return Status::out_of_memory;
+  if (const Status good = check(room); good != Status::ok) return good;
+  const bool carries = state_->options.carry_over > 0.0 && room.level >= ContactLevel::distance;
+  return out.state_->reserve(room, carries, pages) ? Status::ok : Status::out_of_memory;
+}
+
+// The partitions come last: one that was made is seen.
+Status SceneState::reserve(const SceneRoom& room, Pages pages) {
+  if (!reserve_bodies(room, pages)) return Status::out_of_memory;
+  const Status status = reserve_answers(room, pages);
+  return status == Status::ok ? reserve_sets(room, pages) : status;
+}
+
+bool SceneState::reserve_bodies(const SceneRoom& room, Pages pages) noexcept {
+  const std::size_t bodies = bodies_of(room);
+  if (!reserve(bodies > keys.size() ? bodies - keys.size() : 0)) return false;
+  // One call is about the bodies of one set at a time.
+  const std::size_t largest = *std::ranges::max_element(room.bodies);
+  if (!reserve_all(largest, pages, boxes, boxes_of, boxes_body)) return false;
+  if (pages == Pages::touched) {
+    keys.touch();
+    touch_columns(shape, pose, motion, place, moved_at, shaped_at, stale, is_stale, chosen, left);
+    anchor.touch();
+  }
+  return true;
+}
+
+Status SceneState::reserve_sets(const SceneRoom& room, Pages pages) {
+  bool is_new[kMotions] = {};
+  Status status = Status::ok;
+  for (std::size_t i = 0; i < kMotions && status == Status::ok; ++i) {
+    const std::size_t bodies = room.bodies[i];
+    if (bodies == 0) continue;
+    SceneSet& target = sets[i];
+    is_new[i] = !target.partition.has_value();
+    status = make_partition_of(static_cast<Motion>(i));
+    if (status == Status::ok) status = target.partition->reserve(rows_for(bodies), pages);
+    if (status == Status::ok) {
+      status = target.partition->reserve_pairs(target.with_dynamic, room.pairs, pages);
+    }
+    // As many may be added in one call as there are: see place_bodies.
+    if (status == Status::ok && !target.body_of.reserve(2 * bodies, pages)) {
+      status = Status::out_of_memory;
+    }
+  }
+  for (std::size_t i = 0; i < kMotions && status != Status::ok; ++i) {
+    if (is_new[i]) sets[i].partition.reset();
+  }
+  return status;
+}
+
+Status SceneState::reserve_answers(const SceneRoom& room, Pages pages) {
+  if (!pairs.reserve(room.pairs, pages)) return Status::out_of_memory;
+  if (room.level == ContactLevel::pairs) return Status::ok;
+  if (options.composites != nullptr && !composite.reserve(room.pairs, pages)) {
+    return Status::out_of_memory;
+  }
+  ShapeId ids[2 * kShapeKinds];
+  Pose poses[2 * kShapeKinds];
+  std::size_t bodies = 0;
+  for (std::uint32_t kind = 0; kind < kShapeKinds; ++kind) {
+    if (shapes.tables().count[kind] == 0) continue;
+    for (int twin = 0; twin < 2; ++twin) {
+      ids[bodies] = ShapeId::of(static_cast<ShapeKind>(kind), 0);
+      poses[bodies] = Pose::at(1e6 * static_cast<double>(bodies), 0.0, 0.0);
+      ++bodies;
+    }
+  }
+  if (!slot.reserve(room.pairs, pages) || !list_rehearsal(bodies / 2, room.pairs)) {
+    return Status::out_of_memory;
+  }
+  const Status status =
+      narrow.collide(shapes, {{ids, bodies}, {poses, bodies}}, {convex.data(), convex.size()},
+                     {room.level, NarrowTier::robust, options.margin, options.execution}, answers);
+  convex.clear();
+  if (status != Status::ok || room.level != ContactLevel::manifold) return status;
+  // On one thread a job writes where there is room for all that it may find.
+  ContactColumns& points = answers.columns().contacts;
+  if (!points.grow(room.points + std::size_t{kJobPairs} * kManifoldPoints)) {
+    return Status::out_of_memory;
+  }
+  if (pages == Pages::touched) points.touch();
+  return Status::ok;
+}
+
+// Pairs of bodies 2 k and 2 k + 1 of kind k: one of each two kinds, turned round so that it has to
+// be mirrored, since each run of pairs ends with a job that is not full; all others of the first.
+bool SceneState::list_rehearsal(std::size_t kinds, std::size_t count) noexcept {
+  if (!convex.reserve(count)) return false;
+  convex.clear();
+  for (std::uint32_t a = 0; a < kinds; ++a) {
+    for (std::uint32_t b = a; b < kinds; ++b) {
+      if (convex.size() < count) (void)convex.push_back({2 * b + 1, 2 * a});
+    }
+  }
+  const std::size_t listed = convex.size();
+  convex.set_size(kinds == 0 ? 0 : count);
+  std::fill(convex.begin() + listed, convex.end(), BodyPair{0, 1});
+  return true;
+}
+
+bool ContactsState::reserve(const SceneRoom& room, bool carries, Pages pages) noexcept {
+  const std::size_t shown = shown_pairs(room);
+  const bool may_sleep = room.bodies[static_cast<std::size_t>(Motion::fixed)] != 0 ||
+                         room.bodies[static_cast<std::size_t>(Motion::sleeping)] != 0;
+  for (ContactFrame* const one : {&frame, &before, &dormant}) {
+    if (one == &dormant && !may_sleep) continue;
+    if (!one->reserve(room.level, shown, room.manifolds, room.points, pages)) return false;
+  }
+  // Pairs that wake are put beside all that are remembered.
+  const std::size_t remembered = carries ? room.pairs + shown : shown;
+  const std::size_t carried_over = carries ? remembered : 0;
+  const std::size_t asked = room.level == ContactLevel::pairs ? 0 : room.pairs;
+  return reserve_all(shown, pages, ended, shown_again, dormant_records) &&
+         reserve_all(remembered, pages, records, records_before) &&
+         reserve_all(carried_over, pages, carried, carried_before) &&
+         dormant_carried.reserve(carries ? shown : 0, pages) &&
+         reserve_all(asked, pages, source, origin) && old_record.reserve(room.pairs, pages) &&
+         sums.reserve(room.pairs / Collision::kPairsPerTask + 2, pages);
+}
+
+}  // namespace winnow
