@@ -131,17 +131,15 @@ class WINNOW_API Scene {
 
   /// A steady frame allocates nothing, that is, one that has no more of anything than one before:
   /// a new maximum of bodies, pairs or contacts does. This moves that point: to add up to so many
-  /// bodies of convex shapes, and each `collide` at this level of up to so many pairs that find so
-  /// many points, then asks the memory resource for nothing; of the caller's Contacts the same is
-  /// said by `reserve_contacts`. `too_many_objects` or `out_of_memory` change nothing. O(room): the
-  /// narrow phase is asked about as many pairs, of the kinds of shapes that are in the pool by
-  /// then, so that these should be in it.
+  /// bodies of convex shapes, and a first `collide` at this level of up to so many pairs that find
+  /// so many points, then asks the memory resource for nothing. `too_many_objects` or
+  /// `out_of_memory` change nothing. O(room): the narrow phase is asked about as many pairs, of the
+  /// kinds of shapes that are in the pool by then, so that these should be in it.
   ///
-  /// Not counted in, and asked for when they are met first: filters; what the mid and narrow phase
-  /// need for parts of composite shapes; pairs between two sets of more than about 10,000 bodies
-  /// each on several threads, which are written in more pieces; and what partitions keep once they
-  /// see that few boxes move or most rest: see PairBuffer, at most about 16 bytes a pair and 150 a
-  /// body.
+  /// Not counted in, and asked for when it is met first: what partitions need besides in later
+  /// frames (to follow what moves, comes and goes, see Partition::reserve); filters; what the mid
+  /// and narrow phase need for parts of composite shapes; and pairs between two sets of more than
+  /// about 10,000 bodies each on several threads.
   Status reserve(const SceneRoom& room, Pages pages = Pages::untouched);
   /// Makes room in Contacts for what `room` says, for `collide` by this scene: nothing in it is
   /// left out. `too_many_objects` or `out_of_memory` change nothing. O(1) but for pages that are
