@@ -236,9 +236,10 @@ void AutomaticChoice::note_new_objects(const Wear& wear) noexcept {
 }
 
 // Where objects are fast, cells and strips are built in every frame, and trees wear and are built,
-// which nothing that is known of the scene tells beforehand.
+// which nothing that is known of the scene tells beforehand. Brute force tells nothing of either.
 void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
   const std::size_t own = has_cells(before_) ? 1 : 0;
+  const bool tells = !is_brute_force(before_);
   const bool built = wear.builds != builds_seen_;
   const std::uint64_t excess = wear.excess - (built ? 0 : std::min(excess_seen_, wear.excess));
   const double worn = kTest * static_cast<double>(excess) / static_cast<double>(features_.objects);
@@ -247,12 +248,13 @@ void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
   scattered_share_ += weight * ((scattered ? 1.0 : 0.0) - scattered_share_);
   for (std::size_t kind = 0; kind < build_share_.size() && !scattered; ++kind) {
     double& share = build_share_[kind];
-    if (kind == own) {
+    const bool is_own = tells && kind == own;
+    if (is_own) {
       share += weight * ((built ? 1.0 : 0.0) - share);
     } else {
       share -= kForgotten * share;
     }
-    worn_[kind] += kind == own ? weight * (worn - worn_[kind]) : -kForgotten * worn_[kind];
+    worn_[kind] += is_own ? weight * (worn - worn_[kind]) : -kForgotten * worn_[kind];
   }
   held_ += held_ < kPatience ? 1 : 0;
   builds_seen_ = wear.builds;
