@@ -1,18 +1,33 @@
 #include "bench/commands/command.h"
+#include "bench/common/table.h"
 #include "bench/recordings/recording.h"
+#include "bench/rows/build_facts.h"
+#include "bench/rows/machine.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <iostream>
+#include <string>
 #include <vector>
 
 namespace winnow::bench {
 namespace {
 
+/// The library takes the widest instruction set where the variable names none that there is; who
+/// sets it for this tool is told.
+void check_isa_of_environment() {
+  const char* name = std::getenv("WINNOW_ISA");
+  const auto names = isa_names();
+  if (name == nullptr || *name == '\0' || std::ranges::find(names, name) != names.end()) return;
+  throw ArgumentError(std::string("WINNOW_ISA=") + name +
+                      " is not among those this machine and build have: " + listed(names));
+}
+
 int run_tool(int argc, char** argv) {
-  CLI::App app{"winnow: collision detection, measured. Without a subcommand: the report.",
-               "winnow"};
+  CLI::App app{"winnow: collision detection, measured.", "winnow"};
   app.require_subcommand(0, 1);
-  const Command report = add_report(app);
-  std::vector<Command> commands{report,          add_compare(app),  add_results(app),
+  app.set_version_flag("--version", std::string("winnow ") + kVersion + " (" + kCommit + ")");
+  std::vector<Command> commands{add_report(app), add_compare(app),  add_results(app),
                                 add_fit(app),    add_scenes(app),   add_record(app),
                                 add_replay(app), add_query(app),    add_goals(app),
                                 add_draw(app),   add_simulate(app), add_advise(app)};
@@ -24,10 +39,12 @@ int run_tool(int argc, char** argv) {
     app.exit(error);
     return asked_for_help ? kDone : kBadArgument;
   }
+  check_isa_of_environment();
   for (const Command& command : commands) {
     if (command.app->parsed()) return command.run();
   }
-  return report.run();
+  std::cout << app.help();
+  return kDone;
 }
 
 }  // namespace

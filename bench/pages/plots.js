@@ -28,10 +28,13 @@ function dataset(series, plot) {
   const {colour, mark, other} = look(series.name);
   const mixed = plot.series.some((one) => first.includes(one.name));
   if (plot.categories.length > 0) {
+    // Bars of one series are told apart by what they stand for.
+    const known = plot.categories.some((name) => first.includes(name));
+    const of_category = (point) => palette[first.includes(plot.categories[point.x]) ? 0 : 1];
     return {
       label: series.name,
       data: series.points.map((point) => ({...point, x: plot.categories[point.x]})),
-      backgroundColor: colour,
+      backgroundColor: known ? series.points.map(of_category) : colour,
       borderColor: "#ffffff",
       borderWidth: 0.5,
     };
@@ -203,10 +206,10 @@ function drawn_of(chart, i) {
     mark.x <= area.right + 1 && mark.y >= area.top - 1 && mark.y <= area.bottom + 1).length;
 }
 
-let drawn = 0;
-let wanted = 0;
+const counts = {drawn: 0, wanted: 0, plots: 0};
 const blank = [];
-for (const plot of data.plots) {
+
+function draw(plot) {
   const chart = new Chart(document.getElementById(plot.id), {
     type: plot.categories.length > 0 ? "bar" : "scatter",
     data: {datasets: plot.series.map((series) => dataset(series, plot))},
@@ -218,7 +221,8 @@ for (const plot of data.plots) {
       scales: {x: scale(plot.x, plot), y: scale(plot.y, plot)},
       plugins: {
         title: {display: true, text: plot.title, font: {size: 15}},
-        legend: {position: "bottom", labels: {usePointStyle: true, boxHeight: 7}},
+        legend: {display: plot.series.length > 1, position: "bottom",
+                 labels: {usePointStyle: true, boxHeight: 7}},
         tooltip: {callbacks: {label: described}},
       },
     },
@@ -231,11 +235,46 @@ for (const plot of data.plots) {
     points += series.points.length;
   });
   if (here < points) blank.push(plot.id);
-  drawn += here;
-  wanted += points;
+  counts.drawn += here;
+  counts.wanted += points;
+  counts.plots += 1;
 }
-// What a test of the page looks at.
-document.body.dataset.drawn = String(drawn);
-document.body.dataset.wanted = String(wanted);
-document.body.dataset.plots = String(data.plots.length);
-document.body.dataset.blank = blank.join(" ");
+
+// A plot has no size while its section is folded away.
+const waiting = new Set(data.plots);
+function draw_open() {
+  for (const plot of waiting) {
+    if (document.getElementById(plot.id).closest("details:not([open])") !== null) continue;
+    waiting.delete(plot);
+    draw(plot);
+  }
+  // What a test of the page looks at.
+  for (const [name, count] of Object.entries(counts)) document.body.dataset[name] = String(count);
+  document.body.dataset.blank = blank.join(" ");
+  const card = document.getElementById("recommendation");
+  if (card !== null) document.body.dataset.answered = String(card.getBoundingClientRect().bottom);
+  document.body.dataset.height = String(document.documentElement.scrollHeight);
+  document.body.dataset.beyond = String(document.documentElement.scrollWidth - window.innerWidth);
+}
+
+// A link to a section opens it, and "#all" all of them, as printing does.
+function open_all() {
+  for (const folded of document.querySelectorAll("details")) folded.open = true;
+  draw_open();
+}
+function open_target() {
+  const name = decodeURIComponent(location.hash.slice(1));
+  if (name === "all") return open_all();
+  const section = name === "" ? null : document.getElementById(name);
+  if (section === null) return;
+  for (const folded of section.querySelectorAll("details.section")) folded.open = true;
+  draw_open();
+  section.scrollIntoView();
+}
+for (const folded of document.querySelectorAll("details")) {
+  folded.addEventListener("toggle", draw_open);
+}
+window.addEventListener("hashchange", open_target);
+window.addEventListener("beforeprint", open_all);
+draw_open();
+open_target();

@@ -52,6 +52,39 @@ void mark_best(CellTable& table, bool less) {
   }
 }
 
+/// More series than this cannot be told apart in one plot.
+constexpr std::size_t kMostSeries = 12;
+
+/// What a series is about: the middle one of its heights.
+double middle_of(const PlotSeries& series) {
+  std::vector<double> heights;
+  for (const PlotPoint& point : series.points) heights.push_back(point.y);
+  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  return *middle;
+}
+
+/// Keeps the series that do best, in their order, and says so.
+void thin_out(Plot& plot, bool more_is_better) {
+  const std::size_t all = plot.series.size();
+  if (all <= kMostSeries) return;
+  std::vector<double> middles;
+  for (const PlotSeries& one : plot.series) {
+    middles.push_back(more_is_better ? -middle_of(one) : middle_of(one));
+  }
+  std::vector<double> ranked = middles;
+  std::sort(ranked.begin(), ranked.end());
+  const double last = ranked[kMostSeries - 1];
+  std::size_t at = 0;
+  std::size_t kept = 0;
+  std::erase_if(plot.series, [&](const PlotSeries&) {
+    const bool keep = middles[at++] <= last && kept < kMostSeries;
+    kept += keep ? 1 : 0;
+    return !keep;
+  });
+  plot.title += ": the best " + grouped(kMostSeries) + " of " + grouped(all);
+}
+
 /// The series of the points of which no other has both less x and less y.
 PlotSeries pareto_front(const std::vector<PlotSeries>& series) {
   std::vector<PlotPoint> points;
@@ -85,42 +118,6 @@ class Evaluation {
     }
   }
 
-  [[nodiscard]] CellTable row_table(const Json& block, const Json& scope, bool spreads) const {
-    const std::string name = block["rows"];
-    const Json* table = results_.table(name);
-    CellTable shown_rows{block.value("caption", "")};
-    if (table == nullptr) return shown_rows;
-    Json columns = block.value("columns", (*table)["keys"]);
-    if (!block.contains("columns")) {
-      for (const Json& column : (*table)["values"]) columns.push_back(column["name"]);
-    }
-    for (const Json& column : columns) shown_rows.header.push_back(header_of(name, column));
-    const RowList rows = rows_of(name, scope, block);
-    const Json once = block.value("once", Json::array());
-    std::vector<RowList> groups;
-    for (const Json* row : rows) {
-      const auto is_same = [&](const RowList& group) {
-        return std::all_of(once.begin(), once.end(), [&](const std::string key) {
-          return group.front()->value(key, Json()) == row->value(key, Json());
-        });
-      };
-      const auto same =
-          once.empty() ? groups.end() : std::find_if(groups.begin(), groups.end(), is_same);
-      if (same == groups.end()) {
-        groups.push_back({row});
-      } else {
-        same->push_back(row);
-      }
-    }
-    for (const RowList& group : groups) {
-      shown_rows.rows.emplace_back();
-      for (const Json& column : columns) {
-        shown_rows.rows.back().push_back(cell_in(name, group, column, spreads));
-      }
-    }
-    return shown_rows;
-  }
-
  private:
   const Results& results_;
   std::string id_;
@@ -130,7 +127,7 @@ class Evaluation {
     Parts parts;
     for (const Json& child : children) add(child, scope, parts);
     if (block.contains("pivot")) add_pivots(block, scope, parts);
-    if (block.contains("rows")) add_table(row_table(block, scope, false), block, parts);
+    if (block.contains("rows")) add_table(row_table(block, scope), block, parts);
     if (block.contains("least")) add_table(least_table(block, scope), block, parts);
     if (block.contains("plot") || block.contains("bars")) add_plot(block, scope, parts);
     unsigned targets = 0;
@@ -215,6 +212,42 @@ class Evaluation {
             .words = (*row)[value].is_string()};
   }
 
+  [[nodiscard]] CellTable row_table(const Json& block, const Json& scope) const {
+    const std::string name = block["rows"];
+    const Json* table = results_.table(name);
+    CellTable shown_rows{block.value("caption", "")};
+    if (table == nullptr) return shown_rows;
+    Json columns = block.value("columns", (*table)["keys"]);
+    if (!block.contains("columns")) {
+      for (const Json& column : (*table)["values"]) columns.push_back(column["name"]);
+    }
+    for (const Json& column : columns) shown_rows.header.push_back(header_of(name, column));
+    const RowList rows = rows_of(name, scope, block);
+    const Json once = block.value("once", Json::array());
+    std::vector<RowList> groups;
+    for (const Json* row : rows) {
+      const auto is_same = [&](const RowList& group) {
+        return std::all_of(once.begin(), once.end(), [&](const std::string key) {
+          return group.front()->value(key, Json()) == row->value(key, Json());
+        });
+      };
+      const auto same =
+          once.empty() ? groups.end() : std::find_if(groups.begin(), groups.end(), is_same);
+      if (same == groups.end()) {
+        groups.push_back({row});
+      } else {
+        same->push_back(row);
+      }
+    }
+    for (const RowList& group : groups) {
+      shown_rows.rows.emplace_back();
+      for (const Json& column : columns) {
+        shown_rows.rows.back().push_back(cell_in(name, group, column));
+      }
+    }
+    return shown_rows;
+  }
+
   static void add_table(CellTable table, const Json& block, Parts& to) {
     if (table.rows.empty()) return;
     to.push_back({Part::Kind::table, targets_of(block), "", std::move(table)});
@@ -277,16 +310,10 @@ class Evaluation {
     return facts == nullptr ? name : heading_of(*facts);
   }
 
-  [[nodiscard]] Cell cell_in(const std::string& table, const RowList& group, const Json& column,
-                             bool spreads) const {
+  [[nodiscard]] Cell cell_in(const std::string& table, const RowList& group,
+                             const Json& column) const {
     const Json& row = *group.front();
-    if (column.is_string()) {
-      Cell shown_cell = cell(table, &row, column);
-      const Json* facts = results_.column(table, column);
-      if (spreads && facts != nullptr)
-        shown_cell.text += spread_text(row, column, (*facts)["format"]);
-      return shown_cell;
-    }
+    if (column.is_string()) return cell(table, &row, column);
     if (column.contains("all")) {
       std::vector<std::string> names;
       for (const Json& name : distinct(group, column["all"])) names.push_back(key_text(name));
@@ -373,9 +400,10 @@ class Evaluation {
         add_points(plot, words[0], of_name, words[2], words[3]);
       }
     }
-    if (block.value("front", false)) plot.series.push_back(pareto_front(plot.series));
     std::erase_if(plot.series, [](const PlotSeries& one) { return one.points.empty(); });
     if (plot.series.empty()) return;
+    if (plot.categories.empty()) thin_out(plot, (*column)["better"] == "more");
+    if (block.value("front", false)) plot.series.push_back(pareto_front(plot.series));
     ++plots_;
     to.push_back({Part::Kind::plot, targets_of(block), "", {}, std::move(plot)});
   }
@@ -432,10 +460,6 @@ std::vector<Part> parts_of(const Results& results, const Json& block, const std:
   Parts parts;
   Evaluation(results, id).add(block, {{"isa", results.document()["machine"]["isa"]}}, parts);
   return parts;
-}
-
-CellTable all_rows(const Results& results, const std::string& table) {
-  return Evaluation(results, "").row_table({{"rows", table}}, Json::object(), true);
 }
 
 }  // namespace winnow::bench

@@ -40,7 +40,7 @@ struct Part {
 };
 
 /// What is shown of the results is described in layout.json: sections, each with "id" and "title",
-/// and a block "readme". A block is an object with any of
+/// and "open" if it is not folded away, and a block "readme". A block is an object with any of
 ///
 ///   "heading", "text"   left out if the block has other contents, and these show nothing
 ///   "show": [blocks]
@@ -76,8 +76,5 @@ extern const char* const kLayoutJson;
 /// begin with.
 [[nodiscard]] std::vector<Part> parts_of(const Results& results, const Json& block,
                                          const std::string& id);
-
-/// Every row of a table of the results with the spreads of its values.
-[[nodiscard]] CellTable all_rows(const Results& results, const std::string& table);
 
 }  // namespace winnow::bench

@@ -103,8 +103,10 @@ void print_summary(const Results& results) {
     }
   }
   std::cout << '\n';
-  for (const Json& missing : results.document()["missing"]) {
-    std::cout << missing.get<std::string>() << '\n';
+  for (const char* kind : {"missing", "warnings"}) {
+    for (const Json& one : results.document().value(kind, Json::array())) {
+      std::cout << one.get<std::string>() << '\n';
+    }
   }
   for (const Json& problem : results.document()["problems"]) {
     std::cout << "problem: " << problem.get<std::string>() << '\n';

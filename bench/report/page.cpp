@@ -2,8 +2,10 @@
 
 #include "bench/common/table.h"
 #include "bench/pages/html.h"
+#include "bench/report/recommendation.h"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -81,23 +83,16 @@ std::string note(const std::string& text) {
   return element("p class=\"note\"", text);
 }
 
-std::string notes_of(const Json& document) {
-  std::string html;
-  if (!document["complete"].get<bool>()) {
-    std::size_t steps = 0;
-    std::size_t done = 0;
-    for (const Json& section : document["sections"]) {
-      steps += section["steps"].get<std::size_t>();
-      done += section["done"].get<std::size_t>();
-    }
-    html += note("This report is not complete: " + grouped(done) + " of " + grouped(steps) +
-                 " steps were measured when this page was written.");
+std::string not_complete(const Json& document) {
+  if (document["complete"].get<bool>()) return "";
+  std::size_t steps = 0;
+  std::size_t done = 0;
+  for (const Json& section : document["sections"]) {
+    steps += section["steps"].get<std::size_t>();
+    done += section["done"].get<std::size_t>();
   }
-  for (const Json& missing : document["missing"]) html += note(missing.get<std::string>());
-  for (const Json& problem : document["problems"]) {
-    html += note("Problem: " + problem.get<std::string>());
-  }
-  return html;
+  return note("This report is not complete: " + grouped(done) + " of " + grouped(steps) +
+              " steps were measured when this page was written.");
 }
 
 std::string steps_left(const Json& document, const std::string& id) {
@@ -109,17 +104,84 @@ std::string steps_left(const Json& document, const std::string& id) {
   return "";
 }
 
+/// The files that have every row of a section's tables.
+std::string files_of(const Json& document, const std::string& id) {
+  std::string files;
+  for (const Json& table : document["tables"]) {
+    if (table["section"] != id || table["rows"].empty()) continue;
+    const std::string file = table["name"].get<std::string>() + ".csv";
+    files += "<li><a" + attribute("href", file) + ">" + escaped(file) +
+             "</a>: " + escaped(table["title"].get<std::string>()) + " (" +
+             grouped(table["rows"].size()) + (table["rows"].size() == 1 ? " row" : " rows") +
+             ")</li>\n";
+  }
+  if (files.empty()) return "";
+  return element("h3", "Every row") + "<ul class=\"files\">\n" + files + "</ul>\n";
+}
+
+/// The answer, before everything else.
+std::string card_of(const Recommendation& recommendation) {
+  const std::pair<const char*, const std::string&> lines[] = {
+      {"because", recommendation.because},
+      {"it costs", recommendation.price},
+      {"next best", recommendation.next},
+      {"where scenes change", recommendation.varying},
+      {"other libraries", recommendation.others}};
+  std::string html = "<div id=\"recommendation\">\n<p class=\"take\">Take <strong>" +
+                     escaped(recommendation.take) + "</strong></p>\n<dl>\n";
+  for (const auto& [head, text] : lines) {
+    if (!text.empty()) html += element("dt", head) + element("dd", text);
+  }
+  html += "</dl>\n";
+  if (!recommendation.code.empty()) html += element("pre", recommendation.code);
+  return html + "</div>\n";
+}
+
+std::string counted(std::size_t count, const std::string& what) {
+  return count == 0 ? "" : "; " + grouped(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 constexpr const char* kTitle = "winnow: speed against error";
 constexpr const char* kHowToRead =
     "Every number is a row of results.json beside this page: point at it to read which. Times are "
-    "medians; brackets and upright whiskers go from the least to the greatest. What is folded away "
-    "is in the CSVs, too.";
+    "medians; brackets and upright whiskers go from the least to the greatest.";
 constexpr const char* kWords =
     "The reference sweep is a plain sort and sweep over 10,000 boxes, by which machines are "
     "compared; a + behind the commit says that the source was changed since. Scenes are described "
     "by bench/run scenes; the tiers of the narrow phase are fast (float lanes), robust (each "
     "answer certified in double, or solved again, the default) and reference (each pair solved by "
     "itself).";
+
+/// A line that says where and when, and how much is amiss; behind it, all of that.
+std::string circumstances(const Json& document) {
+  const Json& machine = document["machine"];
+  std::string line;
+  for (const char* name : {"processor", "cores", "isa", "compiler", "commit", "date"}) {
+    if (!machine.contains(name) || machine[name].is_structured()) continue;
+    line += (line.empty() ? "" : ", ") + key_text(machine[name]) +
+            (std::string_view(name) == "cores" ? " cores" : "");
+  }
+  std::string notes;
+  for (const Json& problem : document["problems"]) {
+    notes += note("Problem: " + problem.get<std::string>());
+  }
+  const Json warnings = document.value("warnings", Json::array());
+  for (const Json& warning : warnings) notes += note(warning.get<std::string>());
+  for (const Json& missing : document["missing"]) notes += note(missing.get<std::string>());
+  const std::size_t problems = document["problems"].size();
+  line += counted(problems, "problem") +
+          counted(warnings.size() + document["missing"].size(), "warning");
+  return "<details id=\"circumstances\"" + std::string(problems == 0 ? "" : " class=\"note\"") +
+         ">" + element("summary", line) + notes + element("p", kHowToRead) + element("p", kWords) +
+         facts_table("measured on", machine) + facts_table("settings", document["settings"]) +
+         "</details>\n";
+}
+
+/// Folded away, unless it is what the page begins with.
+std::string folded(const Json& section, const std::string& html) {
+  return std::string("<details class=\"section\"") + (section.value("open", false) ? " open" : "") +
+         "><summary>" + element("h2", section["title"]) + "</summary>\n" + html + "</details>\n";
+}
 
 }  // namespace
 
@@ -131,16 +193,7 @@ const Json& section_of(std::string_view id) {
 }
 
 PageParts section_parts(const Results& results, const Json& section) {
-  const std::string id = section["id"];
-  PageParts page = page_of(parts_of(results, section, id));
-  for (const Json& table : results.document()["tables"]) {
-    if (table["section"] != id || table["rows"].empty()) continue;
-    const std::string title = table["title"];
-    page.html += "<details>" +
-                 element("summary", "All " + grouped(table["rows"].size()) + " rows: " + title) +
-                 html_of(all_rows(results, table["name"])) + "</details>\n";
-  }
-  return page;
+  return page_of(parts_of(results, section, section["id"]));
 }
 
 std::string facts_table(const std::string& head, const Json& facts) {
@@ -170,15 +223,17 @@ void write_report_page(const std::string& path, const Results& results) {
     if (page.html.empty()) continue;
     const std::string id = section["id"];
     const std::string title = section["title"];
-    contents += "<a href=\"#" + id + "\">" + escaped(title) + "</a> ";
-    sections += "<section id=\"" + id + "\">\n" + element("h2", title) + steps_left(document, id) +
-                page.html + "</section>\n";
+    contents += "<a" + attribute("href", "#" + id) + ">" + escaped(title) + "</a> ";
+    sections += "<section" + attribute("id", id) + ">\n" +
+                folded(section, steps_left(document, id) + page.html + files_of(document, id)) +
+                "</section>\n";
     std::move(page.plots.begin(), page.plots.end(), std::back_inserter(plots));
   }
-  const std::string body = element("h1", kTitle) + notes_of(document) + "<nav>" + contents +
-                           "</nav>\n" + element("p", kHowToRead) + element("p", kWords) +
-                           facts_table("measured on", document["machine"]) +
-                           facts_table("settings", document["settings"]) + sections;
+  const std::optional<Recommendation> recommendation = recommend(results);
+  const std::string body = element("h1", kTitle) + not_complete(document) +
+                           (recommendation ? card_of(*recommendation) : "") +
+                           circumstances(document) + "<nav>" + contents +
+                           "<a href=\"#all\">open all</a></nav>\n" + sections;
   write_plot_page(path, kTitle, body, plots);
 }
 

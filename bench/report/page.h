@@ -14,8 +14,7 @@ struct PageParts {
   std::vector<Plot> plots{};
 };
 
-/// A section of the layout, and every row of its tables: those are folded away on the screen, and
-/// left out in print, for which they are too wide. Empty if there is nothing to show.
+/// A section of the layout, empty if there is nothing to show.
 [[nodiscard]] PageParts section_parts(const Results& results, const Json& section);
 
 /// Facts about a run as a table.
@@ -24,8 +23,9 @@ struct PageParts {
 /// The section of the layout of this id. Throws std::out_of_range if there is none.
 [[nodiscard]] const Json& section_of(std::string_view id);
 
-/// The whole page: what was measured where, how far it got, what is missing, and every section.
-/// Throws ArgumentError if it cannot be written.
+/// The whole page: the recommendation, a line of what was measured where and what is missing, and
+/// every section, folded but for the first. Plots are drawn when their section is opened; "#all"
+/// behind the address opens all of them. Throws ArgumentError if it cannot be written.
 void write_report_page(const std::string& path, const Results& results);
 
 }  // namespace winnow::bench

@@ -1,9 +1,11 @@
 #include "bench/report/report.h"
 
 #include "bench/common/errors.h"
+#include "bench/common/other_work.h"
 #include "bench/common/progress.h"
 #include "bench/report/csv.h"
 #include "bench/report/page.h"
+#include "bench/rows/machine.h"
 
 #include <unistd.h>
 
@@ -160,6 +162,27 @@ std::vector<PlannedSection> planned(const ReportOptions& options,
   return all;
 }
 
+/// Says so if times of this run are worth little: others used the machine, or its speed changed.
+void note_disturbances(const OtherWork& others, Results& results) {
+  constexpr double kBusy = 0.1;
+  constexpr double kOtherSpeed = 1.2;
+  Json& warnings = results.document()["warnings"];
+  if (const double cores = others.cores().value_or(0.0); cores > kBusy) {
+    warnings.push_back("The machine was busy: others kept " + shown(cores, "number") +
+                       " cores at work on average while this was measured. Times are too long; "
+                       "ratios of what took turns suffer less.");
+  }
+  const double before = results.document()["machine"]["reference_sweep_ms"];
+  const double after = reference_sweep_ms();
+  if (std::max(before, after) > kOtherSpeed * std::min(before, after)) {
+    warnings.push_back(
+        "The machine's speed changed while this was measured: the reference sweep "
+        "took " +
+        shown(before, "number") + " ms at the beginning and " + shown(after, "number") +
+        " at the end. Compare what stands in one table, not one table with another.");
+  }
+}
+
 void run_step(const std::string& section, const ReportStep& step, Results& results) {
   try {
     step.run(results);
@@ -208,6 +231,7 @@ bool make_report(const std::string& folder, const ReportOptions& options,
     for (const ReportStep& step : section.steps) seconds += step.seconds;
   }
   write_report(folder, results);
+  const OtherWork others;
   const StopSignals signals;
   Progress progress(steps, seconds);
   const double between = options.quick ? kQuickSecondsBetweenWrites : kSecondsBetweenWrites;
@@ -230,6 +254,7 @@ bool make_report(const std::string& folder, const ReportOptions& options,
   }
   const bool complete = done == steps;
   results.document()["complete"] = complete;
+  note_disturbances(others, results);
   write_report(folder, results);
   return complete;
 }

@@ -98,6 +98,7 @@ void check_report(const Json& document) {
   if (settings.contains("quick")) (void)demand_member(settings, "quick", kIsBool, "\"settings\"");
   (void)demand_member(document, "missing", kIsTexts, "it");
   (void)demand_member(document, "problems", kIsTexts, "it");
+  if (document.contains("warnings")) (void)demand_member(document, "warnings", kIsTexts, "it");
   for (const Json& section : demand_member(document, "sections", kIsArray, "it")) {
     demand_texts(section, {"id", "title"}, "a section");
     (void)demand_member(section, "steps", kIsCount, "a section");

@@ -47,12 +47,6 @@ std::string system_name() {
   return line_of("/etc/os-release", "PRETTY_NAME") + ", " + name.sysname + " " + name.release;
 }
 
-double reference_sweep_ms() {
-  MachineClock clock;
-  for (int i = 0; i < 5; ++i) clock.tick();
-  return clock.median_ms();
-}
-
 struct KnownPeer {
   const char* name;
   const char* package;
@@ -88,6 +82,12 @@ Json machine_facts() {
           {"isas", isa_names()},
           {"date", date_now()},
           {"reference_sweep_ms", reference_sweep_ms()}};
+}
+
+double reference_sweep_ms() {
+  MachineClock clock;
+  for (int i = 0; i < 5; ++i) clock.tick();
+  return clock.median_ms();
 }
 
 std::vector<std::string> isa_names() {

@@ -13,6 +13,9 @@ namespace winnow::bench {
 /// in ms, by which machines are compared.
 [[nodiscard]] Json machine_facts();
 
+/// The median of the reference sweep in ms.
+[[nodiscard]] double reference_sweep_ms();
+
 /// All that the machine and the build have, narrowest first.
 [[nodiscard]] std::vector<std::string> isa_names();
 

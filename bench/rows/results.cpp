@@ -42,6 +42,7 @@ Results::Results()
                  {"machine", {{"isa", isa_name()}, {"isas", isa_names()}}},
                  {"settings", Json::object()},
                  {"missing", Json::array()},
+                 {"warnings", Json::array()},
                  {"problems", Json::array()},
                  {"sections", Json::array()},
                  {"tables", Json::array()}}) {}

@@ -38,10 +38,9 @@ struct TableSpec {
 /// Everything that a report has measured. It is one JSON document, from which alone the page, the
 /// CSVs, comparisons and the tables of the readme are made:
 ///
-///   { "format", "complete", "machine": {...}, "settings": {...}, "missing": [...], "problems":
-///   [...],
-///     "sections": [{"id", "title", "steps", "done", "seconds"}],
-///     "tables": [{"name", "section", "title", "keys": [...],
+///   { "format", "complete", "machine": {...}, "settings": {...}, "missing": [...],
+///     "warnings": [...], "problems": [...], "sections": [{"id", "title", "steps", "done",
+///     "seconds"}], "tables": [{"name", "section", "title", "keys": [...],
 ///                 "values": [{"name", "label", "unit", "better", "format"}],
 ///                 "rows": [{"id", keys..., values..., "command", "from"}]}] }
 ///

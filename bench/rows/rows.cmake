@@ -25,7 +25,7 @@ string(STRIP "${CMAKE_BUILD_TYPE} ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_t
 add_custom_target(winnow_build_facts
   COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR}
           -DOUT=${CMAKE_CURRENT_BINARY_DIR}/build_facts.cpp
-          "-DWINNOW_BUILD_TYPE=${build}" "-DWINNOW_DEPENDENCIES=${winnow_dependencies}"
+          -DWINNOW_VERSION=${PROJECT_VERSION} "-DWINNOW_BUILD_TYPE=${build}" "-DWINNOW_DEPENDENCIES=${winnow_dependencies}"
           "-DWINNOW_PEERS=${winnow_peers_text}"
           -P ${CMAKE_CURRENT_LIST_DIR}/build_facts.cmake
   BYPRODUCTS ${CMAKE_CURRENT_BINARY_DIR}/build_facts.cpp VERBATIM)

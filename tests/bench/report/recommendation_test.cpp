@@ -1,0 +1,114 @@
+// What a report recommends, from rows whose answer is plain to see.
+
+#include "bench/report/recommendation.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace {
+
+using winnow::bench::Format;
+using winnow::bench::Json;
+using winnow::bench::recommend;
+using winnow::bench::Results;
+
+Results empty_results() {
+  Results results;
+  for (const char* table : {"advice_ranking", "throughput"}) {
+    std::vector<std::string> keys{"scene", "objects", "threads", "partition"};
+    if (std::string(table) == "throughput") keys.emplace_back("isa");
+    results.declare({table,
+                     "advice",
+                     "rows",
+                     keys,
+                     {{"frame_ms", "frame", "ms"},
+                      {"first_ms", "first frame", "ms"},
+                      {"bytes_per_object", "memory", "bytes/object"}}});
+  }
+  return results;
+}
+
+void add_race(Results& results, const std::string& scene,
+              const std::vector<std::pair<std::string, double>>& frames) {
+  for (const auto& [partition, ms] : frames) {
+    results.add("advice_ranking", {{"scene", scene},
+                                   {"objects", 1000},
+                                   {"threads", 1},
+                                   {"partition", partition},
+                                   {"frame_ms", ms},
+                                   {"first_ms", 3.0 * ms},
+                                   {"bytes_per_object", 80.0}});
+  }
+}
+
+bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(ARecommendation, is_none_without_a_race) {
+  EXPECT_FALSE(recommend(empty_results()).has_value());
+  EXPECT_FALSE(recommend(Results()).has_value());
+}
+
+TEST(ARecommendation, is_the_fastest_of_one_race) {
+  Results results = empty_results();
+  add_race(results, "pile", {{"FlatGrid", 2.0}, {"LinearBvh", 1.0}, {"AutoPartition", 0.5}});
+  const auto answer = recommend(results);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_EQ(answer->take, "LinearBvh");
+  EXPECT_TRUE(says(answer->because, "no partition takes less time")) << answer->because;
+  EXPECT_TRUE(says(answer->price, "1.00 ms a frame and 3.00 ms")) << answer->price;
+  EXPECT_TRUE(says(answer->next, "FlatGrid, 2.00 times")) << answer->next;
+  EXPECT_TRUE(says(answer->varying, "0.500 times")) << answer->varying;
+  EXPECT_EQ(answer->others, "");
+}
+
+TEST(ARecommendation, loses_little_everywhere_rather_than_winning_often) {
+  Results results = empty_results();
+  add_race(results, "pile", {{"FlatGrid", 1.0}, {"LinearBvh", 1.1}});
+  add_race(results, "wall", {{"FlatGrid", 1.0}, {"LinearBvh", 1.1}});
+  add_race(results, "mixed", {{"FlatGrid", 9.0}, {"LinearBvh", 1.0}});
+  const auto answer = recommend(results);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_EQ(answer->take, "LinearBvh");
+  EXPECT_TRUE(says(answer->because, "in 1 of 3 races and at most 1.10 times")) << answer->because;
+}
+
+TEST(ARecommendation, leaves_out_what_did_not_run_everywhere) {
+  Results results = empty_results();
+  add_race(results, "pile", {{"FlatGrid", 2.0}, {"NSquared", 1.0}});
+  add_race(results, "wall", {{"FlatGrid", 2.0}});
+  EXPECT_EQ(recommend(results)->take, "FlatGrid");
+}
+
+TEST(ARecommendation, says_what_is_too_close_to_tell) {
+  Results results = empty_results();
+  add_race(results, "pile", {{"FlatGrid", 1.0}, {"LinearBvh", 1.01}});
+  EXPECT_TRUE(says(recommend(results)->next, "too close")) << recommend(results)->next;
+}
+
+TEST(ARecommendation, stands_beside_the_fastest_library_of_each_scene) {
+  Results results = empty_results();
+  const std::string isa = results.document()["machine"]["isa"];
+  for (const char* scene : {"pile", "wall"}) {
+    add_race(results, scene, {{"FlatGrid", 1.0}});
+    const double embree = std::string(scene) == "pile" ? 4.0 : 20.0;
+    for (const auto& [name, ms] : std::vector<std::pair<std::string, double>>{
+             {"FlatGrid", 1.0}, {"Embree", embree}, {"FCL tree", 12.0}, {"yardstick", 2.0}}) {
+      results.add("throughput", {{"scene", scene},
+                                 {"objects", 1000},
+                                 {"threads", 2},
+                                 {"partition", name},
+                                 {"isa", isa},
+                                 {"frame_ms", ms}});
+    }
+  }
+  const std::string others = recommend(results)->others;
+  EXPECT_TRUE(says(others, "4.00 to 12.0 times")) << others;
+  EXPECT_TRUE(says(others, "Embree") && says(others, "FCL tree")) << others;
+  EXPECT_FALSE(says(others, "yardstick")) << others;
+}
+
+}  // namespace
