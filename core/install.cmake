@@ -2,6 +2,7 @@
 # pkg-config read.
 
 include(CMakePackageConfigHelpers)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME library)
 
 # Archives leave TBB and qhull to whoever links them; a shared library finds its own.
 if(WINNOW_SHARED)
@@ -41,13 +42,17 @@ install(FILES ${PROJECT_BINARY_DIR}/winnow-config.cmake
               ${PROJECT_BINARY_DIR}/winnow-config-version.cmake
         DESTINATION ${winnow_package_dir})
 
-# Warnings about our headers are not their user's. /usr/include must not be named as a system folder
-# again: the standard library's own #include_next would lose its way.
-set(winnow_pc_include "-isystem \${includedir}")
-if(CMAKE_INSTALL_FULL_INCLUDEDIR STREQUAL "/usr/include")
-  set(winnow_pc_include "-I\${includedir}")
-endif()
 file(RELATIVE_PATH winnow_pc_to_prefix
      ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
-configure_file(${CMAKE_CURRENT_LIST_DIR}/winnow.pc.in ${PROJECT_BINARY_DIR}/winnow.pc @ONLY)
+# Warnings about our headers are not their user's. /usr/include must not be named as a system folder
+# again: the standard library's own #include_next would lose its way. Where they go is known only
+# when they are installed.
+set(winnow_pc_include "@winnow_pc_include@")
+configure_file(${CMAKE_CURRENT_LIST_DIR}/winnow.pc.in ${PROJECT_BINARY_DIR}/winnow.pc.in @ONLY)
+install(CODE "
+  set(winnow_pc_include \"-isystem \\\${includedir}\")
+  if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr\")
+    set(winnow_pc_include \"-I\\\${includedir}\")
+  endif()
+  configure_file([[${PROJECT_BINARY_DIR}/winnow.pc.in]] [[${PROJECT_BINARY_DIR}/winnow.pc]] @ONLY)")
 install(FILES ${PROJECT_BINARY_DIR}/winnow.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,0 +1,42 @@
+# Packages of what is installed: `cpack --config BUILD/CPackConfig.cmake` writes a .deb, for Debian
+# 12 and what descends from it, and a .tar.gz that may be unpacked anywhere.
+
+set(CPACK_GENERATOR DEB TGZ)
+set(CPACK_PACKAGE_VENDOR "The winnow authors")
+set(CPACK_PACKAGE_CONTACT "The winnow authors")
+set(CPACK_PACKAGE_DESCRIPTION
+    "A C++20 collision-detection engine: bounding volumes in partitions that prune with SIMD,
+exact contacts of convex shapes, meshes, height fields and compounds, and scenes that
+carry them over from frame to frame. With headers, CMake and pkg-config files.")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_VERBATIM_VARIABLES ON)
+
+# The tool, where it was built, is a package of its own: it needs more than the library.
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libwinnow-dev)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
+set(winnow_deb_depends "libeigen3-dev (>= 3.4)")
+if(NOT WINNOW_SHARED)
+  string(APPEND winnow_deb_depends ", libtbb-dev (>= 2021)")
+  if(WINNOW_WITH_QHULL)
+    string(APPEND winnow_deb_depends ", libqhull-dev")
+  endif()
+endif()
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS ${winnow_deb_depends})
+set(CPACK_COMPONENT_LIBRARY_DESCRIPTION ${CPACK_PACKAGE_DESCRIPTION})
+set(CPACK_DEBIAN_TOOL_PACKAGE_NAME winnow)
+set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_TOOL_PACKAGE_RECOMMENDS "libjs-chart.js, libjs-three")
+set(CPACK_COMPONENT_TOOL_DESCRIPTION
+    "The winnow tool: which partition to take for a recording of yours, and how fast and how
+exact all of them are on this machine.")
+# What the tool and a shared library are linked to.
+find_program(WINNOW_DPKG_SHLIBDEPS dpkg-shlibdeps)
+if(WINNOW_DPKG_SHLIBDEPS)
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+endif()
+
+include(CPack)
