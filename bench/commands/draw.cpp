@@ -7,6 +7,7 @@
 #include "bench/draw/picture.h"
 
 #include <iostream>
+#include <limits>
 
 namespace winnow::bench {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 struct Draw {
   Target target;
   std::size_t frame = 0;
+  std::size_t frames = 1;
   std::string partition = "LinearBvh";
   std::vector<std::string> rays;
   std::vector<std::string> boxes;
@@ -23,11 +25,17 @@ struct Draw {
 
   void add_options(CLI::App& app);
   int run();
+
+ private:
+  [[nodiscard]] Json draw_frames(FrameSource& source) const;
 };
 
 void Draw::add_options(CLI::App& app) {
   target.add_to(app);
   number(app, "--frame", frame, 0, 1e6, "Which frame; the first one is 0");
+  number(app, "--frames", frames, 0, 1e6,
+         "How many frames from that one on, with a slider to play them; 0: all of a recording, "
+         "1,000 of a scene");
   one_of(app, "--partition", partition, all_partitions(), "Which partition");
   app.add_option("--ray", rays, "ox,oy,oz,dx,dy,dz: its closest hit and all hits; repeatable")
       ->allow_extra_args(false);
@@ -41,6 +49,23 @@ void Draw::add_options(CLI::App& app) {
   add_json_option(app, json);
 }
 
+Json Draw::draw_frames(FrameSource& source) const {
+  constexpr std::size_t kOfEndless = 1000;  // built-in scenes go on for ever
+  Stage stage(partition, source);
+  while (stage.frame() < frame) {
+    if (stage.advance()) continue;
+    throw ArgumentError("--frame: the last frame is " + std::to_string(stage.frame()));
+  }
+  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  const std::size_t there_are = target.named().is_recording() ? kAll : kOfEndless;
+  const std::size_t most = frames == 0 ? there_are : frames;
+  Json pictures = Json::array();
+  do {
+    pictures.push_back(Picture(source.name(), stage, options).data());
+  } while (pictures.size() < most && stage.advance());
+  return pictures;
+}
+
 int Draw::run() {
   for (const std::string& ray : rays) options.rays.push_back(parse_ray(ray));
   for (const std::string& box : boxes) options.boxes.push_back(parse_box(box));
@@ -49,10 +74,10 @@ int Draw::run() {
     throw ArgumentError("--partition: " + partition + " takes too long on more than " +
                         grouped(most) + " objects");
   }
-  const Stage stage(partition, *source, frame);
-  const Picture picture(source->name(), frame, stage, options);
-  const std::size_t bytes = write_page(out, picture.data());
-  const Json counts = picture.counts();
+  const Json pictures = draw_frames(*source);
+  const std::size_t bytes = write_page(out, pictures);
+  Json counts = pictures.front()["counts"];
+  if (pictures.size() > 1) counts["frames"] = pictures.size();
   Table table({"in the picture", "number"});
   for (const auto& [name, value] : counts.items()) {
     if (value.is_number_unsigned()) table.add({name, grouped(value.get<std::size_t>())});
@@ -72,7 +97,7 @@ int Draw::run() {
 Command add_draw(CLI::App& app) {
   return command<Draw>(
       app, "draw",
-      "Writes one frame as an HTML page that can be turned, moved and zoomed: objects, the "
+      "Writes frames as an HTML page that can be turned, moved and zoomed: objects, the "
       "partition's structure, overlapping pairs, and what rays and boxes hit.");
 }
 

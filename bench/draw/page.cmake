@@ -8,7 +8,8 @@ if(NOT WINNOW_THREE_JS_FOLDER)
 endif()
 
 set(winnow_page ${CMAKE_CURRENT_LIST_DIR}/page)
-set(winnow_page_scripts data.js meshes.js layers.js view.js picking.js legend.js main.js)
+set(winnow_page_scripts data.js meshes.js layers.js view.js picking.js legend.js player.js
+    main.js)
 file(READ ${winnow_page}/style.css WINNOW_PAGE_STYLE)
 file(READ ${winnow_page}/body.html WINNOW_PAGE_BODY)
 file(READ ${winnow_page}/three_js_notice.html WINNOW_PAGE_NOTICE)

@@ -22,13 +22,13 @@ std::string three_js_file(const std::string& name) {
 
 }  // namespace
 
-std::size_t write_page(const std::string& path, const Json& picture) {
+std::size_t write_page(const std::string& path, const Json& pictures) {
   const std::string script = std::string("(() => {\n\"use strict\";\n") + kPageScript + "})();";
   return write_html(path, "winnow", kPageStyle,
                     std::string(kPageBody) + kThreeJsNotice +
                         script_element(three_js_file("three.min.js")) +
                         script_element(three_js_file("examples/js/controls/OrbitControls.js")) +
-                        data_element("picture", picture) + script_element(script));
+                        data_element("pictures", pictures) + script_element(script));
 }
 
 }  // namespace winnow::bench

@@ -24,10 +24,9 @@ std::string column(const std::vector<T>& values) {
 
 }  // namespace
 
-Picture::Picture(std::string scene, std::size_t frame, const Stage& stage,
-                 const PictureOptions& options)
+Picture::Picture(std::string scene, const Stage& stage, const PictureOptions& options)
     : scene_(std::move(scene)),
-      frame_(frame),
+      frame_(stage.frame()),
       partition_(stage.partition().name()),
       all_pairs_(stage.pairs().size()),
       reported_(stage.reported()),

@@ -23,7 +23,7 @@ struct PictureOptions {
 /// One frame of a scene in one partition, with everything that the page shows of it.
 class Picture {
  public:
-  Picture(std::string scene, std::size_t frame, const Stage& stage, const PictureOptions& options);
+  Picture(std::string scene, const Stage& stage, const PictureOptions& options);
 
   /// What is in the picture, in numbers: what the tool prints and what the page must show.
   [[nodiscard]] Json counts() const;

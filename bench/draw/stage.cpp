@@ -1,6 +1,5 @@
 #include "bench/draw/stage.h"
 
-#include "bench/common/errors.h"
 #include "bench/contenders/partitions.h"
 
 #include <algorithm>
@@ -22,24 +21,30 @@ void require_ok(Status status, const char* call) {
   if (status != Status::ok) throw std::runtime_error(std::string(call) + ": " + to_string(status));
 }
 
-Stage::Stage(std::string_view partition, FrameSource& source, std::size_t frame)
-    : partition_(make_named(partition)),
+Stage::Stage(std::string_view partition, FrameSource& source)
+    : source_(source),
+      partition_(make_named(partition)),
       keys_(source.boxes().size()),
       boxes_(source.boxes().begin(), source.boxes().end()) {
   std::vector<ClientData> data(boxes_.size());
   std::iota(data.begin(), data.end(), ClientData{0});
   require_ok(partition_.insert(boxes_, data, keys_), "insert");
-  PairBuffer buffer;
-  require_ok(partition_.self_pairs(buffer), "self_pairs");
-  for (std::size_t k = 1; k <= frame; ++k) {
-    if (!source.advance()) {
-      throw ArgumentError("--frame: the last frame is " + std::to_string(k - 1));
-    }
-    step(source.boxes());
-    require_ok(partition_.self_pairs(buffer), "self_pairs");
-  }
-  reported_ = buffer.size();
-  for (const Pair& pair : buffer) {
+  find_pairs();
+}
+
+bool Stage::advance() {
+  if (!source_.advance()) return false;
+  ++frame_;
+  step(source_.boxes());
+  find_pairs();
+  return true;
+}
+
+void Stage::find_pairs() {
+  require_ok(partition_.self_pairs(buffer_), "self_pairs");
+  reported_ = buffer_.size();
+  pairs_.clear();
+  for (const Pair& pair : buffer_) {
     if (boxes_[pair.first].overlaps(boxes_[pair.second])) pairs_.push_back(pair);
   }
   std::sort(pairs_.begin(), pairs_.end());

@@ -1,6 +1,6 @@
-// The picture as the tool wrote it: columns are base64 of little-endian values.
+// The pictures as the tool wrote them, one a frame: columns are base64 of little-endian values.
 
-const kPicture = JSON.parse(document.getElementById("picture").textContent);
+const kPictures = JSON.parse(document.getElementById("pictures").textContent);
 
 function bytesOf(text) {
   const binary = atob(text);
@@ -13,30 +13,48 @@ const floatsOf = (text) => new Float32Array(bytesOf(text));
 const indicesOf = (text) => new Uint32Array(bytesOf(text));
 const wideOf = (text) => new BigUint64Array(bytesOf(text));
 
-// Boxes are six floats: lower ends, then upper ends.
-const kObjects = {
-  boxes: floatsOf(kPicture.objects.boxes),
-  rows: indicesOf(kPicture.objects.rows),
-  data: wideOf(kPicture.objects.data),
-};
-kObjects.count = kObjects.rows.length;
-const kPairs = indicesOf(kPicture.pairs);
-const kRays = kPicture.rays.map((r) => {
-  const ray = floatsOf(r.ray);
-  return {
-    origin: ray.slice(0, 3),
-    direction: ray.slice(3, 6),
-    closest: r.closest,
-    closestT: r.closest_t,
-    hits: indicesOf(r.hits),
-    t: floatsOf(r.t),
+// What one picture tells. Boxes are six floats: lower ends, then upper ends.
+function read(picture) {
+  const objects = {
+    boxes: floatsOf(picture.objects.boxes),
+    rows: indicesOf(picture.objects.rows),
+    data: wideOf(picture.objects.data),
   };
-});
-const kQuestionBoxes = kPicture.boxes.map((b) => ({
-  box: floatsOf(b.box),
-  inside: indicesOf(b.inside),
-  crossing: indicesOf(b.crossing),
-}));
+  objects.count = objects.rows.length;
+  const rays = picture.rays.map((r) => {
+    const ray = floatsOf(r.ray);
+    return {
+      origin: ray.slice(0, 3),
+      direction: ray.slice(3, 6),
+      closest: r.closest,
+      closestT: r.closest_t,
+      hits: indicesOf(r.hits),
+      t: floatsOf(r.t),
+    };
+  });
+  const questionBoxes = picture.boxes.map((b) => ({
+    box: floatsOf(b.box),
+    inside: indicesOf(b.inside),
+    crossing: indicesOf(b.crossing),
+  }));
+  const pairs = indicesOf(picture.pairs);
+  return {picture, objects, pairs, rays, questionBoxes, partners: partnersOf(pairs)};
+}
+
+// By place, only of objects in a pair.
+function partnersOf(pairs) {
+  const partners = new Map();
+  for (let i = 0; i < pairs.length; i += 2) {
+    for (const [a, b] of [[pairs[i], pairs[i + 1]], [pairs[i + 1], pairs[i]]]) {
+      if (!partners.has(a)) partners.set(a, []);
+      partners.get(a).push(b);
+    }
+  }
+  return partners;
+}
+
+// The frame that is shown.
+let now = read(kPictures[0]);
 
 // Where most of the scene is. Past the middle 96 % of the ends it goes on by half of their range at
 // most, so that one box far away does not shrink all others to a dot.
@@ -44,10 +62,10 @@ function findFrame() {
   const low = [0, 0, 0];
   const high = [0, 0, 0];
   for (let axis = 0; axis < 3; ++axis) {
-    let ends = [new Float32Array(kObjects.count), new Float32Array(kObjects.count)];
-    for (let i = 0; i < kObjects.count; ++i) {
-      ends[0][i] = kObjects.boxes[6 * i + axis];
-      ends[1][i] = kObjects.boxes[6 * i + 3 + axis];
+    let ends = [new Float32Array(now.objects.count), new Float32Array(now.objects.count)];
+    for (let i = 0; i < now.objects.count; ++i) {
+      ends[0][i] = now.objects.boxes[6 * i + axis];
+      ends[1][i] = now.objects.boxes[6 * i + 3 + axis];
     }
     ends = ends.map((column) => column.filter(Number.isFinite).sort());
     const at = (column, share) => column[Math.round(share * (column.length - 1))];
@@ -69,8 +87,9 @@ function findFrame() {
 }
 
 // The graphics card gets coordinates in units of the frame's radius from the frame's centre: floats
-// far from the origin, or very large or small ones, lose nothing on the way.
-const kFrame = kObjects.count ? findFrame() : {low: [-1, -1, -1], high: [1, 1, 1],
+// far from the origin, or very large or small ones, lose nothing on the way. The frame is that of the
+// first picture, so that motion is seen as it is.
+const kFrame = now.objects.count ? findFrame() : {low: [-1, -1, -1], high: [1, 1, 1],
                                                centre: [0, 0, 0], radius: Math.sqrt(3)};
 const kFarthest = 40;
 
@@ -89,8 +108,12 @@ function placedColumn(values) {
   return result;
 }
 
-const kPlacedObjects = placedColumn(kObjects.boxes);
+function show(picture) {
+  now = read(picture);
+  now.placed = placedColumn(now.objects.boxes);
+}
+now.placed = placedColumn(now.objects.boxes);
 
 function centreOfObject(i, axis) {
-  return 0.5 * (kPlacedObjects[6 * i + axis] + kPlacedObjects[6 * i + 3 + axis]);
+  return 0.5 * (now.placed[6 * i + axis] + now.placed[6 * i + 3 + axis]);
 }

@@ -15,6 +15,7 @@ const kColours = {
 const kScene = new THREE.Scene();
 const kLayers = [];
 const kLabels = [];
+const kSwitched = new Map();  // by name, what has been switched on or off
 
 // A layer of no things is left out. `count` is what the legend shows; `counted` is the mesh that
 // draws as many, `id` the name of that number in the tool's counts.
@@ -26,14 +27,14 @@ function addLayer({meshes, counted = meshes[0], mark = "box", shown = true, ...f
     layer.shown = on;
     for (const mesh of meshes) mesh.visible = on;
   };
-  layer.show(shown);
+  layer.show(kSwitched.has(layer.name) ? kSwitched.get(layer.name) : shown);
   kLayers.push(layer);
 }
 
 function boxesAt(places) {
   const boxes = new Float32Array(6 * places.length);
   places.forEach((place, i) => {
-    boxes.set(kPlacedObjects.subarray(6 * place, 6 * place + 6), 6 * i);
+    boxes.set(now.placed.subarray(6 * place, 6 * place + 6), 6 * i);
   });
   return boxes;
 }
@@ -42,10 +43,10 @@ function boxesAt(places) {
 const thinned = (opacity, count) => Math.max(0.05, opacity * Math.min(1, Math.sqrt(500 / count)));
 
 function addObjects() {
-  const paired = new Uint8Array(kObjects.count);
-  for (const place of kPairs) paired[place] = 1;
+  const paired = new Uint8Array(now.objects.count);
+  for (const place of now.pairs) paired[place] = 1;
   const places = [[], []];
-  for (let i = 0; i < kObjects.count; ++i) places[paired[i]].push(i);
+  for (let i = 0; i < now.objects.count; ++i) places[paired[i]].push(i);
   const names = ["touch nothing", "in a pair"];
   [kColours.object, kColours.paired].forEach((colour, which) => {
     const boxes = boxesAt(places[which]);
@@ -67,11 +68,11 @@ function addObjects() {
 const withGhost = (mesh, kind, opacity) => [mesh, ghost(mesh, kind, opacity)];
 
 function addPairs() {
-  const ends = new Float32Array(3 * kPairs.length);
-  for (let i = 0; i < kPairs.length; ++i) {
-    for (let axis = 0; axis < 3; ++axis) ends[3 * i + axis] = centreOfObject(kPairs[i], axis);
+  const ends = new Float32Array(3 * now.pairs.length);
+  for (let i = 0; i < now.pairs.length; ++i) {
+    for (let axis = 0; axis < 3; ++axis) ends[3 * i + axis] = centreOfObject(now.pairs[i], axis);
   }
-  const count = kPairs.length / 2;
+  const count = now.pairs.length / 2;
   addLayer({
     id: "pairs_drawn", group: "Objects", name: "pairs", colour: kColours.pair, count,
     mark: "line", shown: count <= 100000,
@@ -80,11 +81,11 @@ function addPairs() {
 }
 
 // What a partition calls its cells.
-const kCell = kPicture.counts.partition === "SweepAndPrune" ? "strip" : "cell";
+const kCell = kPictures[0].counts.partition === "SweepAndPrune" ? "strip" : "cell";
 
 function addStructure() {
   let budget = 4000;  // boxes that can be told apart on a screen
-  for (const layer of kPicture.structure.layers) {
+  for (const layer of now.picture.structure.layers) {
     const boxes = placedColumn(floatsOf(layer.boxes));
     const lines = placedColumn(floatsOf(layer.lines));
     const count = boxes.length / 6;
@@ -126,16 +127,16 @@ const pointOn = (ray, t) => [0, 1, 2].map(
 
 function addRays() {
   const colour = kColours.hit;
-  const ends = kRays.flatMap((ray) => [...pointOn(ray, 0), ...pointOn(ray, endOfRay(ray))]);
+  const ends = now.rays.flatMap((ray) => [...pointOn(ray, 0), ...pointOn(ray, endOfRay(ray))]);
   const lines = new Float32Array(ends);
-  const starts = new Float32Array(kRays.flatMap((ray) => pointOn(ray, 0)));
+  const starts = new Float32Array(now.rays.flatMap((ray) => pointOn(ray, 0)));
   addLayer({
-    id: "rays", group: "Questions", name: "rays", colour: kColours.ray, count: kRays.length,
+    id: "rays", group: "Questions", name: "rays", colour: kColours.ray, count: now.rays.length,
     mark: "line",
     meshes: [...withGhost(wideLines(lines, kColours.ray, 1, 2.2, 7), "lines", 0.6),
              dots(starts, kColours.ray, 7, 8)],
   });
-  const closest = kRays.filter((ray) => ray.closest !== undefined);
+  const closest = now.rays.filter((ray) => ray.closest !== undefined);
   const points = closest.flatMap((ray) => pointOn(ray, ray.closestT));
   const closestDots = dots(new Float32Array(points), colour, 13, 9);
   const first = boxesAt(unique(closest.map((ray) => ray.closest)));
@@ -147,9 +148,9 @@ function addRays() {
              closestDots],
     counted: closestDots,
   });
-  const all = kRays.flatMap((ray) => Array.from(ray.t, (t) => pointOn(ray, t))).flat();
+  const all = now.rays.flatMap((ray) => Array.from(ray.t, (t) => pointOn(ray, t))).flat();
   const allDots = dots(new Float32Array(all), colour, 8, 8);
-  const hits = boxesAt(unique(kRays.flatMap((ray) => Array.from(ray.hits))));
+  const hits = boxesAt(unique(now.rays.flatMap((ray) => Array.from(ray.hits))));
   addLayer({
     id: "ray_hits", group: "Questions", name: "all hits", colour, count: all.length / 3,
     meshes: [boxFaces(hits, colour, 0.4, 4),
@@ -161,16 +162,16 @@ function addRays() {
 
 function addQuestionBoxes() {
   const colour = kColours.box;
-  const boxes = placedColumn(kQuestionBoxes.flatMap((question) => Array.from(question.box)));
+  const boxes = placedColumn(now.questionBoxes.flatMap((question) => Array.from(question.box)));
   addLayer({
     id: "boxes", group: "Questions", name: "boxes asked about", colour,
-    count: kQuestionBoxes.length,
+    count: now.questionBoxes.length,
     meshes: [boxFaces(boxes, colour, 0.12, 5),
              ...withGhost(boxEdges(boxes, colour, 1, 7), "edges", 0.7)],
   });
   for (const [id, name, opacity] of [["inside", "inside of a box", 0.6],
                                      ["crossing", "crossing its border", 0.25]]) {
-    const places = kQuestionBoxes.flatMap((question) => Array.from(question[id]));
+    const places = now.questionBoxes.flatMap((question) => Array.from(question[id]));
     const found = boxesAt(unique(places));
     addLayer({
       id, group: "Questions", name, colour, count: places.length, mark: "fill",
@@ -182,7 +183,7 @@ function addQuestionBoxes() {
 
 // Names of objects are a layer of text; what the structure says stays with its lines.
 function addLabels() {
-  const labels = kPicture.structure.texts.slice(0, 500).map((text) => {
+  const labels = now.picture.structure.texts.slice(0, 500).map((text) => {
     const element = document.createElement("span");
     element.textContent = text.text;
     element.style.color = `rgb(${text.colour.join(",")})`;
@@ -196,6 +197,19 @@ function addLabels() {
     id: "labels", group: "Objects", name: "client data", colour: [232, 232, 232],
     count: names.length, meshes: names, mark: "line", shown: names.length <= 100,
   });
+}
+
+function removeLayers() {
+  for (const layer of kLayers.splice(0)) {
+    for (const mesh of layer.meshes) {
+      if (!mesh.isObject3D) continue;
+      kScene.remove(mesh);
+      mesh.geometry.dispose();
+      mesh.material.dispose();
+    }
+  }
+  kLabels.length = 0;
+  document.getElementById("labels").replaceChildren();
 }
 
 function addLayers() {

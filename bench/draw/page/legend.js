@@ -4,7 +4,7 @@ const grouped = (n) => n.toString().replace(/\B(?=(\d{3})+$)/g, ",");
 const plural = (n, one, many) => `${grouped(n)} ${n === 1 ? one : many || one + "s"}`;
 
 function writeCaption() {
-  const c = kPicture.counts;
+  const c = now.picture.counts;
   const caption = document.getElementById("caption");
   caption.querySelector("h1").textContent = `${c.partition} on ${c.scene}, frame ${c.frame}`;
   const lines = [];
@@ -22,6 +22,7 @@ function writeCaption() {
                `${grouped(c.crossing)} crossing`);
   }
   const paragraph = caption.querySelector("p");
+  paragraph.replaceChildren();
   lines.forEach((line) => {
     paragraph.append(line, document.createElement("br"));
   });
@@ -53,6 +54,7 @@ function entryFor(layer) {
   box.type = "checkbox";
   box.checked = layer.shown;
   box.addEventListener("change", () => {
+    kSwitched.set(layer.name, box.checked);
     layer.show(box.checked);
     drawSoon();
   });
@@ -66,19 +68,25 @@ function entryFor(layer) {
   return label;
 }
 
-// How solid objects look.
+// How solid objects look, once that has been chosen.
+let chosenFill = null;
 function solidity() {
   const label = document.createElement("label");
   const range = document.createElement("input");
   Object.assign(range, {type: "range", min: 0, max: 1, step: 0.01});
   const faces = kLayers.filter((l) => l.group === "Objects" && l.mark === "fill")
                     .map((l) => l.meshes[0]);
+  const fill = (value) => {
+    for (const mesh of faces) {
+      mesh.material.uniforms.opacity.value = value;
+      mesh.material.depthWrite = value === 1;
+    }
+  };
+  if (chosenFill !== null) fill(chosenFill);
   range.value = faces.length ? faces[0].material.uniforms.opacity.value : 0;
   range.addEventListener("input", () => {
-    for (const mesh of faces) {
-      mesh.material.uniforms.opacity.value = Number(range.value);
-      mesh.material.depthWrite = Number(range.value) === 1;
-    }
+    chosenFill = Number(range.value);
+    fill(chosenFill);
     drawSoon();
   });
   label.append("fill", range);
@@ -87,6 +95,7 @@ function solidity() {
 
 function writeLegend() {
   const legend = document.getElementById("legend");
+  legend.replaceChildren();
   for (const group of ["Objects", "Structure", "Questions"]) {
     const layers = kLayers.filter((layer) => layer.group === group);
     if (layers.length === 0) continue;

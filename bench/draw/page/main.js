@@ -1,6 +1,6 @@
 // Puts the page together, and says in #report what was drawn, as counted on the way to the graphics
 // card. If the address ends in #check it also reads back pixels, switches every layer off and on
-// again, and points at the middle of the frame.
+// again, points at the middle of the frame, and goes through all frames.
 
 const kErrors = [];
 window.addEventListener("error", (e) => kErrors.push(String(e.message)));
@@ -33,7 +33,7 @@ function check() {
   return {pixels, withoutLayers, pointedAt};
 }
 
-function report() {
+function drawnNow() {
   const drawn = {structure: {}};
   for (const layer of kLayers) {
     if (layer.id === "labels") continue;
@@ -41,8 +41,29 @@ function report() {
     const name = layer.part || layer.id;
     into[name] = (into[name] || 0) + drawnBy(layer.counted);
   }
-  const result = {drawn, labels: kLabels.length, three: THREE.REVISION, errors: kErrors};
-  if (location.hash === "#check") Object.assign(result, check());
+  return drawn;
+}
+
+// How many frames show other numbers of objects and pairs than their pictures say.
+function wrongFrames() {
+  let wrong = 0;
+  kPictures.forEach((picture, index) => {
+    showFrame(index);
+    const drawn = drawnNow();
+    const same = (name) => (drawn[name] || 0) === picture.counts[name];
+    wrong += same("objects_drawn") && same("pairs_drawn") ? 0 : 1;
+  });
+  showFrame(0);
+  return wrong;
+}
+
+function report() {
+  const result = {drawn: drawnNow(), frames: kPictures.length, labels: kLabels.length,
+                  three: THREE.REVISION, errors: kErrors};
+  if (location.hash === "#check") {
+    Object.assign(result, check());
+    if (kPictures.length > 1) result.wrongFrames = wrongFrames();
+  }
   document.getElementById("report").textContent = JSON.stringify(result);
 }
 
@@ -62,6 +83,7 @@ try {
   startView();
   writeLegend();
   startPicking();
+  startPlayer();
   report();
 } catch (error) {
   fail(error);

@@ -8,14 +8,6 @@ function pickable() {
   return [shown(false), shown(true)];
 }
 
-const kPartners = new Map();  // by place, only of objects in a pair
-for (let i = 0; i < kPairs.length; i += 2) {
-  for (const [a, b] of [[kPairs[i], kPairs[i + 1]], [kPairs[i + 1], kPairs[i]]]) {
-    if (!kPartners.has(a)) kPartners.set(a, []);
-    kPartners.get(a).push(b);
-  }
-}
-
 function entry(boxes, place, eye, direction) {
   let from = 0;
   let to = Infinity;
@@ -36,10 +28,10 @@ function objectAt(x, y) {
   let best = -1;
   let nearest = Infinity;
   const shown = pickable();
-  for (let place = 0; place < kObjects.count; ++place) {
-    const t = entry(kPlacedObjects, place, eye, direction);
+  for (let place = 0; place < now.objects.count; ++place) {
+    const t = entry(now.placed, place, eye, direction);
     // A box around the eye hides everything and is seldom meant.
-    if (t > 0 && t < nearest && shown[Number(kPartners.has(place))]) {
+    if (t > 0 && t < nearest && shown[Number(now.partners.has(place))]) {
       nearest = t;
       best = place;
     }
@@ -61,27 +53,27 @@ function choose(place) {
 }
 
 function rowsText(places) {
-  const rows = places.slice(0, 8).map((p) => kObjects.rows[p]).join(", ");
+  const rows = places.slice(0, 8).map((p) => now.objects.rows[p]).join(", ");
   return places.length > 8 ? `${rows} and ${places.length - 8} more` : rows;
 }
 
 function factsOf(place) {
-  const box = Array.from(kObjects.boxes.subarray(6 * place, 6 * place + 6),
+  const box = Array.from(now.objects.boxes.subarray(6 * place, 6 * place + 6),
                          (x) => Number(x.toPrecision(7)).toString());
   const facts = [
-    ["row", kObjects.rows[place]],
-    ["client data", kObjects.data[place].toString()],
+    ["row", now.objects.rows[place]],
+    ["client data", now.objects.data[place].toString()],
     ["from", box.slice(0, 3).join(", ")],
     ["to", box.slice(3).join(", ")],
-    ["overlaps rows", rowsText(kPartners.get(place) || []) || "none"],
+    ["overlaps rows", rowsText(now.partners.get(place) || []) || "none"],
   ];
-  kRays.forEach((ray, i) => {
+  now.rays.forEach((ray, i) => {
     const at = ray.hits.indexOf(place);
     if (at < 0) return;
     facts.push([`ray ${i + 1}`, `t = ${Number(ray.t[at].toPrecision(7))}` +
                                 (ray.closest === place ? ", the closest" : "")]);
   });
-  kQuestionBoxes.forEach((question, i) => {
+  now.questionBoxes.forEach((question, i) => {
     if (question.inside.includes(place)) facts.push([`box ${i + 1}`, "inside"]);
     if (question.crossing.includes(place)) facts.push([`box ${i + 1}`, "crossing"]);
   });

@@ -93,6 +93,15 @@ check(strips pile --objects 600 --frame 2 --partition SweepAndPrune ${questions}
 check(tree mixed --objects 1000 --partition LinearBvh --max-depth 1 --max-objects 300 ${questions})
 check(plain wall --objects 200 --partition NSquared)
 
+# Frames that are played.
+check(played respawn --objects 300 --frame 2 --frames 12 --partition HierarchicalGrid ${questions})
+open(played report)
+string(JSON frames GET "${report}" frames)
+string(JSON wrong GET "${report}" wrongFrames)
+if(NOT frames EQUAL 12 OR NOT wrong EQUAL 0)
+  message(FATAL_ERROR "played: ${frames} frames of 12, ${wrong} of them are not what was drawn")
+endif()
+
 check(one uniform --objects 1 --partition BoundsNSquared)
 if(NOT pointed_at MATCHES "^row0client data0from.*overlaps rowsnone$")
   message(FATAL_ERROR "one: pointing at the object says '${pointed_at}'")
