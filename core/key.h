@@ -22,9 +22,10 @@ inline constexpr ObjectId kNoObject = 0xFFFFFFFFU;
 inline constexpr std::uint64_t kMaxObjects = 0xFFFFFFFEULL;
 
 /// Opaque handle of an inserted object. The default key is null and is never handed out. A key
-/// whose object was removed, or that another partition gave out, is answered with
-/// `Status::invalid_key`: the stamp holds 12 bits that tell 4,095 partitions of one process apart
-/// and a 20-bit generation; a slot whose generations are used up is retired.
+/// whose object was removed, or that another partition or scene gave out, is answered with
+/// `Status::invalid_key`: the stamp holds 17 bits that tell 131,071 of them apart, as many as may
+/// live in one process at a time, and a 15-bit generation. One whose generations are used up, after
+/// 16,384 objects in one place, tells its keys by a further number.
 struct Key {
   ObjectId id = kNoObject;
   std::uint32_t stamp = 0;

@@ -3,21 +3,10 @@
 #include "core/memory/columns.h"
 #include "core/sort/stretches.h"
 
-#include <atomic>
-
 namespace winnow {
-namespace {
-
-// Partitions of one process get different tags until 4,095 of them have been made.
-std::uint32_t next_tag() noexcept {
-  static std::atomic<std::uint32_t> counter{0};
-  return 1U + counter.fetch_add(1, std::memory_order_relaxed) % 0xFFFU;
-}
-
-}  // namespace
 
 KeyTable::KeyTable(std::pmr::memory_resource* memory) noexcept
-    : stamps_(memory), rows_(memory), data_(memory), tag_(next_tag() << 20U) {}
+    : stamps_(memory), rows_(memory), data_(memory), stamp_(tags_.latest() << kGenerationBits) {}
 
 bool KeyTable::reserve(std::size_t count) noexcept {
   const std::size_t fresh = count > live_ ? count - live_ : 0;
@@ -40,7 +29,7 @@ Key KeyTable::acquire(std::uint32_t row, ClientData data) noexcept {
     stamps_.set_size(id + std::size_t{1});
     rows_.set_size(id + std::size_t{1});
     data_.set_size(id + std::size_t{1});
-    stamps_[id] = tag_ | 1U;
+    stamps_[id] = stamp_ | 1U;
   }
   rows_[id] = row;
   data_[id] = data;
@@ -65,7 +54,7 @@ void KeyTable::acquire(std::uint32_t row, std::span<const ClientData> data, std:
   for_stretches(execution, slots - first, kKeysPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t slot = first + begin; slot < first + end; ++slot) {
       const std::size_t i = reused + slot - first;
-      stamps_[slot] = tag_ | 1U;
+      stamps_[slot] = stamp_ | 1U;
       rows_[slot] = row_at(i);
       data_[slot] = data_of(i);
       keys[i] = {static_cast<ObjectId>(slot), stamps_[slot]};
@@ -104,11 +93,15 @@ KeyTable::RunOfKeys KeyTable::look_at(std::span<const Key> keys) const noexcept 
 
 void KeyTable::release(ObjectId id) noexcept {
   --live_;
-  if ((stamps_[id] & kGenerationMask) == kGenerationMask) {
-    stamps_[id] = tag_;  // generation 0 is even: dead for good
-    return;
+  if ((stamps_[id] & kGenerationMask) != kGenerationMask) {
+    ++stamps_[id];
+  } else {
+    const bool used_up = (stamps_[id] & ~kGenerationMask) == stamp_;
+    const bool retired = used_up && !tags_.renew();
+    stamp_ = tags_.latest() << kGenerationBits;
+    stamps_[id] = stamp_;  // generation 0 is even: dead
+    if (retired) return;
   }
-  ++stamps_[id];
   rows_[id] = first_free_;
   first_free_ = id;
   ++free_count_;

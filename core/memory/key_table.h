@@ -4,6 +4,7 @@
 #include <winnow/core/execution.h>
 #include <winnow/core/key.h>
 #include <winnow/core/status.h>
+#include "core/memory/key_tags.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -37,7 +38,8 @@ class KeyTable {
   void acquire(std::uint32_t row, std::span<const ClientData> data, std::span<Key> keys,
                const Execution& execution) noexcept;
 
-  /// Frees the slot of a valid key. A slot out of generations is retired.
+  /// Frees the slot of a valid key. A slot out of generations begins anew with another tag, or is
+  /// retired if the process has none left.
   void release(ObjectId id) noexcept;
 
   /// Frees every slot; all keys become stale.
@@ -82,7 +84,8 @@ class KeyTable {
   [[nodiscard]] Bytes client_data_bytes() const noexcept { return data_.bytes(); }
 
  private:
-  static constexpr std::uint32_t kGenerationMask = 0xFFFFFU;
+  static constexpr unsigned kGenerationBits = 32 - KeyTags::kBits;
+  static constexpr std::uint32_t kGenerationMask = (1U << kGenerationBits) - 1;
 
   Column<std::uint32_t> stamps_;
   Column<std::uint32_t> rows_;
@@ -90,7 +93,8 @@ class KeyTable {
   std::size_t live_ = 0;
   std::size_t free_count_ = 0;
   ObjectId first_free_ = kNoObject;
-  std::uint32_t tag_;
+  KeyTags tags_;
+  std::uint32_t stamp_;  // the latest tag with generation 0
 };
 
 }  // namespace winnow

@@ -1,7 +1,10 @@
 #include "core/memory/key_table.h"
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <random>
 #include <set>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -10,7 +13,7 @@
 namespace winnow::test {
 namespace {
 
-constexpr std::uint32_t kGenerations = 1U << 20U;
+constexpr std::uint32_t kGenerations = 1U << (32U - KeyTags::kBits);
 
 std::vector<Key> fill(KeyTable& table, std::uint32_t count) {
   EXPECT_TRUE(table.reserve(table.size() + count));
@@ -115,8 +118,43 @@ TEST(KeyTable, uses_freed_ids_again_before_new_ones) {
   EXPECT_EQ(fill(table, 1)[0].id, 20U);
 }
 
-TEST(KeyTable, retires_a_slot_whose_generations_are_used_up) {
+TEST(KeyTable, gives_no_key_twice_however_often_a_slot_is_used) {
   CountingMemory memory;
+  KeyTable table(&memory);
+  std::set<std::uint32_t> stamps;
+  for (std::uint32_t use = 0; use < 2 * kGenerations; ++use) {
+    const Key key = fill(table, 1)[0];
+    ASSERT_EQ(key.id, 0U);
+    ASSERT_TRUE(table.is_valid(key));
+    ASSERT_TRUE(stamps.insert(key.stamp).second) << "a key was handed out twice";
+    table.release(0);
+    ASSERT_FALSE(table.is_valid(key));
+  }
+  EXPECT_EQ(table.slot_count(), 1U);
+}
+
+TEST(KeyTable, gives_no_key_twice_where_slots_wear_unevenly) {
+  CountingMemory memory;
+  KeyTable table(&memory);
+  std::set<std::pair<ObjectId, std::uint32_t>> seen;
+  std::vector<Key> keys = fill(table, 3);
+  std::uint32_t uses[3] = {};
+  for (std::uint32_t i = 0; i < 6 * kGenerations; ++i) {
+    // Slot 0 is used most, slot 2 least.
+    const ObjectId id = i % 7 == 0 ? 2 : i % 3 == 0 ? 1 : 0;
+    ASSERT_TRUE(seen.emplace(id, keys[id].stamp).second) << id << " after " << uses[id];
+    table.release(id);
+    keys[id] = fill(table, 1)[0];
+    ASSERT_EQ(keys[id].id, id);
+    ++uses[id];
+  }
+  EXPECT_EQ(table.slot_count(), 3U);
+}
+
+TEST(KeyTable, retires_a_slot_whose_generations_are_used_up_when_no_tag_is_left) {
+  CountingMemory memory;
+  std::vector<std::unique_ptr<KeyTags>> all;
+  for (std::uint32_t i = 0; i < KeyTags::kMost; ++i) all.push_back(std::make_unique<KeyTags>());
   KeyTable table(&memory);
   const Key first = fill(table, 1)[0];
   Key last = first;
@@ -126,7 +164,6 @@ TEST(KeyTable, retires_a_slot_whose_generations_are_used_up) {
     const Key next = fill(table, 1)[0];
     if (next.id != 0) break;
     ASSERT_NE(next, first) << "a key was handed out twice";
-    ASSERT_NE(next.stamp, last.stamp);
     last = next;
     ASSERT_LE(++uses, kGenerations);
   }
@@ -134,7 +171,9 @@ TEST(KeyTable, retires_a_slot_whose_generations_are_used_up) {
   EXPECT_FALSE(table.is_valid(first));
   EXPECT_FALSE(table.is_valid(last));
   EXPECT_FALSE(table.is_live(0));
-  // The retired slot never returns, not even after a clear.
+  // The retired slot never returns, not even after a clear, and room is made for another.
+  EXPECT_EQ(table.size(), 1U);
+  EXPECT_EQ(table.slot_count(), 2U);
   table.clear();
   for (const Key& key : fill(table, 10)) EXPECT_NE(key.id, 0U);
   for (std::uint32_t stamp = 0; stamp < kGenerations; ++stamp) {
@@ -142,17 +181,55 @@ TEST(KeyTable, retires_a_slot_whose_generations_are_used_up) {
   }
 }
 
-TEST(KeyTable, makes_room_again_for_retired_slots) {
-  CountingMemory memory;
-  KeyTable table(&memory);
-  Key key = fill(table, 1)[0];
-  while (key.id == 0) {
-    table.release(key.id);
-    ASSERT_TRUE(table.reserve(1));
-    key = table.acquire(0, 0);
+TEST(KeyTags, are_those_of_one_table_as_long_as_it_lives) {
+  std::vector<std::unique_ptr<KeyTags>> alive;
+  std::set<std::uint32_t> taken;
+  std::mt19937 random(5);
+  for (int step = 0; step < 300'000; ++step) {
+    if (alive.size() < 100'000 && random() % 3 != 0) {
+      alive.push_back(std::make_unique<KeyTags>());
+      ASSERT_TRUE(taken.insert(alive.back()->latest()).second);
+    } else if (!alive.empty()) {
+      std::swap(alive[random() % alive.size()], alive.back());
+      taken.erase(alive.back()->latest());
+      alive.pop_back();
+    }
   }
-  EXPECT_EQ(table.size(), 1U);
-  EXPECT_EQ(table.slot_count(), 2U);
+  EXPECT_GT(alive.size(), 90'000U);
+}
+
+TEST(KeyTags, come_back_late) {
+  std::uint32_t gone = 0;
+  {
+    const KeyTags tags;
+    gone = tags.latest();
+  }
+  for (std::uint32_t i = 0; i + 1 < KeyTags::kMost / 2; ++i) {
+    const KeyTags tags;
+    ASSERT_NE(tags.latest(), gone) << "after " << i;
+  }
+}
+
+TEST(KeyTags, are_given_to_one_of_several_threads) {
+  constexpr std::size_t kThreads = 4;
+  std::vector<std::vector<std::unique_ptr<KeyTags>>> made(kThreads);
+  std::vector<std::thread> threads;
+  for (auto& mine : made) {
+    threads.emplace_back([&mine] {
+      for (int i = 0; i < 5000; ++i) {
+        mine.push_back(std::make_unique<KeyTags>());
+        if (i % 3 == 0) mine.erase(mine.begin());
+        if (i % 5 == 1) {
+          EXPECT_TRUE(mine.front()->renew());
+        }
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  std::set<std::uint32_t> taken;
+  for (const auto& mine : made) {
+    for (const auto& tags : mine) EXPECT_TRUE(taken.insert(tags->latest()).second);
+  }
 }
 
 TEST(KeyTable, makes_every_key_stale_on_clear) {
@@ -168,15 +245,15 @@ TEST(KeyTable, makes_every_key_stale_on_clear) {
   EXPECT_EQ(table.slot_count(), 100U);
 }
 
-TEST(KeyTable, tells_4095_tables_apart) {
+TEST(KeyTable, takes_no_key_of_a_hundred_thousand_others) {
   CountingMemory memory;
-  std::set<std::uint32_t> tags;
-  for (int i = 0; i < 4095; ++i) {
-    KeyTable table(&memory);
-    tags.insert(fill(table, 1)[0].stamp >> 20U);
+  std::vector<std::unique_ptr<KeyTable>> tables;
+  std::set<std::pair<ObjectId, std::uint32_t>> keys;
+  for (int i = 0; i < 100'000; ++i) {
+    tables.push_back(std::make_unique<KeyTable>(&memory));
+    const Key key = fill(*tables.back(), 1)[0];
+    ASSERT_TRUE(keys.emplace(key.id, key.stamp).second) << "tables " << i << " and an earlier one";
   }
-  EXPECT_EQ(tags.size(), 4095U);
-  EXPECT_FALSE(tags.contains(0)) << "a stamp could equal the null key's";
 }
 
 TEST(KeyTable, is_unchanged_when_memory_is_refused) {

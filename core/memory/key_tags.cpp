@@ -1,0 +1,83 @@
+#include "core/memory/key_tags.h"
+
+#include <atomic>
+#include <bit>
+
+namespace winnow {
+namespace {
+
+constexpr std::uint32_t kWordBits = 64;
+constexpr std::uint32_t kWords = (KeyTags::kMost + 1) / kWordBits;
+
+// A bit for each number, set while it is taken.
+std::atomic<std::uint64_t> g_taken[kWords];
+// What its table had before, 0: nothing. Only who has a number reads and writes its place.
+std::uint32_t g_earlier[KeyTags::kMost + 1];
+// Where the search goes on, so that what has become free comes again last.
+std::atomic<std::uint32_t> g_next{1};
+
+// Takes the first free number of a word from a bit on; 0 if there is none.
+std::uint32_t take_from(std::uint32_t word, std::uint32_t bit) noexcept {
+  // No table has the number 0.
+  const std::uint64_t unfit = ((std::uint64_t{1} << bit) - 1) | (word == 0 ? 1U : 0U);
+  std::uint64_t taken = g_taken[word].load(std::memory_order_relaxed);
+  for (;;) {
+    const std::uint64_t free = ~(taken | unfit);
+    if (free == 0) return 0;
+    const auto at = static_cast<std::uint32_t>(std::countr_zero(free));
+    if (g_taken[word].compare_exchange_weak(taken, taken | std::uint64_t{1} << at,
+                                            std::memory_order_acquire, std::memory_order_relaxed)) {
+      return word * kWordBits + at;
+    }
+  }
+}
+
+// 0 if none is free.
+std::uint32_t take() noexcept {
+  const std::uint32_t from = g_next.load(std::memory_order_relaxed);
+  // The first word is looked at again in the end, from its beginning.
+  for (std::uint32_t i = 0; i <= kWords; ++i) {
+    const std::uint32_t word = (from / kWordBits + i) % kWords;
+    const std::uint32_t tag = take_from(word, i == 0 ? from % kWordBits : 0);
+    if (tag == 0) continue;
+    g_next.store((tag + 1) % (KeyTags::kMost + 1), std::memory_order_relaxed);
+    return tag;
+  }
+  return 0;
+}
+
+void give_back(std::uint32_t tag) noexcept {
+  const std::uint64_t bit = std::uint64_t{1} << tag % kWordBits;
+  g_taken[tag / kWordBits].fetch_and(~bit, std::memory_order_release);
+}
+
+}  // namespace
+
+KeyTags::KeyTags() noexcept : latest_(take()) {
+  if (latest_ != 0) {
+    g_earlier[latest_] = 0;
+    return;
+  }
+  is_own_ = false;
+  latest_ = 1 + g_next.fetch_add(1, std::memory_order_relaxed) % kMost;
+}
+
+KeyTags::~KeyTags() {
+  if (!is_own_) return;
+  for (std::uint32_t tag = latest_; tag != 0;) {
+    const std::uint32_t earlier = g_earlier[tag];
+    give_back(tag);
+    tag = earlier;
+  }
+}
+
+bool KeyTags::renew() noexcept {
+  const std::uint32_t tag = take();
+  if (tag == 0) return false;
+  g_earlier[tag] = is_own_ ? latest_ : 0;
+  latest_ = tag;
+  is_own_ = true;
+  return true;
+}
+
+}  // namespace winnow
