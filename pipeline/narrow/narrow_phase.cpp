@@ -163,7 +163,12 @@ namespace {
 // Chunks that parallel tasks answer before their contacts are put in order: bounds how many of the
 // contacts are held twice.
 constexpr std::size_t kWave = 64;
-constexpr std::size_t kChunkContacts = std::size_t{kJobPairs} * kManifoldPoints;
+
+// Room for the contacts that one chunk may find where there are so many pairs in all, and for what
+// kernels write behind the last one: another chunk's may begin there.
+[[nodiscard]] std::size_t room_of_chunk(std::size_t pairs) noexcept {
+  return std::min<std::size_t>(kJobPairs, pairs) * kManifoldPoints + kContactSlack;
+}
 
 template <typename T>
 [[nodiscard]] T* offset(T* column, std::size_t first) noexcept {
@@ -389,7 +394,7 @@ Status NarrowPhase::State::run(const Call& call, NarrowResult& result) {
   // Chunks write where there is room for all that they may find: with this much, a call that finds
   // no more than this one needs no more room, wherever in it its contacts are.
   if (call.options.level == ContactLevel::manifold && call.options.execution.concurrency() == 1 &&
-      !result.contacts_.grow(result.contacts() + kChunkContacts)) {
+      !result.contacts_.grow(result.contacts() + room_of_chunk(call.pairs.size()))) {
     return Status::out_of_memory;
   }
   statistics.pairs = call.pairs.size();
@@ -421,20 +426,21 @@ bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
                                      NarrowResult& result) {
   const bool manifold = call.options.level == ContactLevel::manifold;
   const bool any_mirrored = buckets.any_mirrored();
+  const std::size_t room = room_of_chunk(call.pairs.size());
   if (!manifold) {
     call.options.execution.for_each(
         wave.size(), [&](std::size_t i) { call.answer(wave[i], result, any_mirrored); });
   } else if (call.options.execution.concurrency() == 1) {
     for (Chunk& chunk : wave) {
-      if (!result.contacts_.grow(result.contacts() + kChunkContacts)) return false;
+      if (!result.contacts_.grow(result.contacts() + room)) return false;
       chunk.job.contacts = writer_to(result.contacts_, result.contacts());
       call.answer(chunk, result, any_mirrored);
       take_contacts(chunk, result);
     }
   } else {
-    if (!scratch.grow(wave.size() * kChunkContacts)) return false;
+    if (!scratch.grow(wave.size() * room)) return false;
     call.options.execution.for_each(wave.size(), [&](std::size_t i) {
-      wave[i].job.contacts = writer_to(scratch, i * kChunkContacts);
+      wave[i].job.contacts = writer_to(scratch, i * room);
       call.answer(wave[i], result, any_mirrored);
     });
     if (!gather_contacts(call, wave, result)) return false;
@@ -461,7 +467,7 @@ bool NarrowPhase::State::gather_contacts(const Call& call, std::span<const Chunk
   for (std::size_t i = 0; i < wave.size(); ++i) base[i + 1] = base[i] + wave[i].outcome.contacts;
   if (!result.contacts_.grow(base[wave.size()])) return false;
   call.options.execution.for_each(wave.size(), [&](std::size_t i) {
-    const ContactWriter from = writer_to(scratch, i * kChunkContacts);
+    const ContactWriter from = writer_to(scratch, i * room_of_chunk(call.pairs.size()));
     const ContactWriter to = writer_to(result.contacts_, base[i]);
     const std::size_t count = wave[i].outcome.contacts;
     for (int axis = 0; axis < 3; ++axis) {
