@@ -26,6 +26,10 @@ constexpr std::size_t kMovesToLook = 32;
 // frame of so many.
 constexpr std::size_t kQuiet = 256;
 constexpr std::size_t kQuietFrames = 16;
+// Of so few objects a frame takes little longer than thinking about it: that is done in one of so
+// many.
+constexpr std::size_t kFew = 192;
+constexpr std::size_t kFewFrames = 4;
 // Refreshes that pass before memory that was refused is asked for again.
 constexpr std::size_t kPatience = 64;
 // Objects up to which brute force cannot lose by more than thinking about it costs.
@@ -90,6 +94,7 @@ class AutomaticChoice final : public Chooser {
   [[nodiscard]] StructureKind choose(const Rows& rows, StructureKind now,
                                      const Wear& wear) noexcept override {
     before_ = wanted_ = now;
+    build_due_ = false;
     ++frames_;
     if (waiting_ != 0) {
       --waiting_;
@@ -122,11 +127,12 @@ class AutomaticChoice final : public Chooser {
   void end(std::pmr::memory_resource* memory) noexcept override { delete_in(memory, this); }
 
  private:
-  /// True where hardly anything moved and it was thought about not long ago: thinking would cost
-  /// more than the frame.
+  /// True where hardly anything moved, or hardly anything is there, and it was thought about not
+  /// long ago: thinking would cost more than the frame.
   [[nodiscard]] bool is_quiet(const Rows& rows) const noexcept {
-    return chosen_ && frames_ < kQuietFrames && kQuiet * changed_ < rows.size() &&
-           rows.size() == objects_before_;
+    if (!chosen_ || rows.size() != objects_before_) return false;
+    return (frames_ < kQuietFrames && kQuiet * changed_ < rows.size()) ||
+           (frames_ < kFewFrames && rows.size() <= kFew);
   }
   [[nodiscard]] FrameWork take_frame(std::size_t live) noexcept;
   void look(const Rows& rows, const Wear& wear) noexcept;
@@ -240,9 +246,12 @@ void AutomaticChoice::note_new_objects(const Wear& wear) noexcept {
 void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
   const std::size_t own = has_cells(before_) ? 1 : 0;
   const bool tells = !is_brute_force(before_);
-  const bool built = wear.builds != builds_seen_;
-  const std::uint64_t excess = wear.excess - (built ? 0 : std::min(excess_seen_, wear.excess));
-  const double worn = kTest * static_cast<double>(excess) / static_cast<double>(features_.objects);
+  const auto frames = static_cast<double>(frames_);
+  const std::uint64_t built = wear.builds - builds_seen_;
+  const double builds = std::min(1.0, static_cast<double>(built) / frames);
+  const std::uint64_t excess = wear.excess - (built != 0 ? 0 : std::min(excess_seen_, wear.excess));
+  const double worn =
+      kTest * static_cast<double>(excess) / (frames * static_cast<double>(features_.objects));
   // The first frames of a structure tell more than later ones, but one build is no habit.
   const double weight = std::max(kRecent, 1.0 / (3.0 + static_cast<double>(held_)));
   scattered_share_ += weight * ((scattered ? 1.0 : 0.0) - scattered_share_);
@@ -250,7 +259,7 @@ void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
     double& share = build_share_[kind];
     const bool is_own = tells && kind == own;
     if (is_own) {
-      share += weight * ((built ? 1.0 : 0.0) - share);
+      share += weight * (builds - share);
     } else {
       share -= kForgotten * share;
     }
