@@ -5,6 +5,15 @@
 #include <algorithm>
 
 namespace winnow::mid {
+namespace {
+
+/// Most surfaces stand as they were made, and a ray through one costs little more than its
+/// rotation.
+bool is_identity(const Quaternion& turn) noexcept {
+  return turn[0] == 1.0 && turn[1] == 0.0 && turn[2] == 0.0 && turn[3] == 0.0;
+}
+
+}  // namespace
 
 TriangleShape Corners::triangle() const noexcept {
   TriangleShape shape{};
@@ -49,7 +58,7 @@ PlacedBody::PlacedBody(const Composites& all, const ShapeTables& pool, ShapeId s
     : tables(pool),
       id(shape),
       turn(tame(pose.orientation)),
-      rotation(rotation_of(turn)),
+      rotation(is_identity(turn) ? Mat::Identity() : rotation_of(turn)),
       position(at) {
   to_world = rotation;
   to_local = rotation.transpose();
@@ -60,9 +69,11 @@ PlacedBody::PlacedBody(const Composites& all, const ShapeTables& pool, ShapeId s
     mesh = &view_of(shared->mesh);
     bounds = Box::of(entry->shared->mesh.bounds());
     const Eigen::Map<const Vec> scale(entry->scale);
+    most_shrunk = 1.0 + kSlack;
+    if (scale == Vec::Ones()) return;
     to_world = rotation * scale.asDiagonal();
     to_local = scale.cwiseInverse().asDiagonal() * rotation.transpose();
-    most_shrunk = scale.cwiseInverse().cwiseAbs().maxCoeff() * (1.0 + kSlack);
+    most_shrunk *= scale.cwiseInverse().cwiseAbs().maxCoeff();
   } else if (const HeightField* const heights = all.field(shape)) {
     kind = Kind::field;
     field = heights;

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace winnow {
 namespace {
@@ -20,13 +21,14 @@ constexpr double kStandingRate = 0.01;
 constexpr double kStandingInverse = 1e30;
 /// More slack than this leaves all in doubt as well.
 constexpr double kMostSlack = 1e200;
+constexpr double kMostWrong = 1e38;
 
 /// The part of [0, limit] in which the ray is in a box. Empty if in > out.
 struct BoxPassage {
   double in = 0.0;
   double out;
 
-  BoxPassage(const SurfaceRay& ray, const Vector3d& inverse, const Vector3d& low,
+  BoxPassage(const SurfaceRay& ray, const double (&inverse)[3], const Vector3d& low,
              const Vector3d& high, double limit) noexcept
       : out(limit) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -70,13 +72,29 @@ struct MeshSpan {
   /// Of the box of all nodes, with a step to spare on each side.
   Vector3d least;
   Vector3d most;
+  /// The longest side of that box, and tau for each t.
+  double extent;
+  double pace;
+  /// What rounding the coordinates of rays to float makes of corners. Everything is in doubt where
+  /// differences of coordinates may leave the range of float.
+  double rounding;
 
   explicit MeshSpan(const MeshView& mesh) noexcept
       : low(Eigen::Map<const Eigen::Vector3f>(mesh.origin).cast<double>()),
         step(Eigen::Map<const Eigen::Vector3f>(mesh.step).cast<double>()),
         units(step.cwiseInverse()),
         least(low - step),
-        most(low + (kMaxNodeBound + 1.0) * step) {}
+        most(low + (kMaxNodeBound + 1.0) * step),
+        extent((most - least).maxCoeff()),
+        pace(1.0 / extent),
+        rounding(rounding_of(least.cwiseAbs().cwiseMax(most.cwiseAbs()).maxCoeff())) {}
+
+ private:
+  static double rounding_of(double farthest) noexcept {
+    constexpr double kFarthest = 1e37;
+    return farthest < kFarthest ? 0x1p-21 * farthest + 1e-36
+                                : std::numeric_limits<double>::infinity();
+  }
 };
 
 /// False if the ray passes the mesh by.
@@ -85,21 +103,27 @@ struct MeshSpan {
 /// at most (65536 + |from| + grow) * |inverse|. Where the ray is in the mesh's box, grown by its
 /// slack, that is less than kUnitDoubt and 2^-20 of the slack.
 bool set_job(const MeshSpan& mesh, const SurfaceRay& ray, double limit, MeshRayJob& job) noexcept {
-  const Vector3d origin = Vector3d::Map(ray.origin);
-  const Vector3d direction = Vector3d::Map(ray.direction);
-  const Vector3d inverse = direction.cwiseInverse();
+  const double* const direction = ray.direction;
+  const double inverse[3] = {1.0 / direction[0], 1.0 / direction[1], 1.0 / direction[2]};
   const BoxPassage passage(ray, inverse, mesh.least, mesh.most, limit);
   if (!(passage.in <= passage.out)) return false;
   job.limit = limit;
   job.entry = passage.in;
-  const Vector3d moved = passage.in * direction;
-  const Vector3d from = origin + moved;
-  const double slack =
-      std::min(kMostSlack, ray.slack + 0x1p-51 * (origin.cwiseAbs() + moved.cwiseAbs()).maxCoeff());
-  // The ray is not in the box, grown by the slack, for longer.
-  const Vector3d extent = (kMaxNodeBound + 1.0) * mesh.step + Vector3d::Constant(2.0 * slack);
-  const double longest = extent.cwiseProduct(inverse.cwiseAbs()).minCoeff();
-  job.pace = 1.0 / longest;
+  double farthest = 0.0;
+  double from[3];
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    const double moved = passage.in * direction[axis];
+    farthest = std::max(farthest, std::abs(ray.origin[axis]) + std::abs(moved));
+    from[axis] = ray.origin[axis] + moved;
+  }
+  const double slack = std::min(kMostSlack, ray.slack + 0x1p-51 * farthest);
+  // The ray is not in the box, grown by the slack, for longer than twice this.
+  double longest = mesh.extent;
+  job.pace = mesh.pace;
+  if (slack > 0x1p-10 * mesh.extent) {
+    longest = mesh.extent + 2.0 * slack;
+    job.pace = 1.0 / longest;
+  }
   std::uint32_t fastest = 0;
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     job.origin[axis] = from[axis];
@@ -109,11 +133,13 @@ bool set_job(const MeshSpan& mesh, const SurfaceRay& ray, double limit, MeshRayJ
              kUnitDoubt + 1.001 * slack * mesh.units[axis]);
     if (std::abs(direction[axis]) > std::abs(direction[fastest])) fastest = axis;
   }
-  job.fastest = fastest;
   for (std::uint32_t k = 0; k < 2; ++k) {
-    job.shear[k] = static_cast<float>(direction[(fastest + 1 + k) % 3] * inverse[fastest]);
+    const std::uint32_t axis = (fastest + 1 + k) % 3;
+    std::fill_n(job.across[k], 3, 0.0F);
+    job.across[k][axis] = 1.0F;
+    job.across[k][fastest] = static_cast<float>(-direction[axis] * inverse[fastest]);
   }
-  job.slack = static_cast<float>(std::min(slack, 1e38));
+  job.wrong = static_cast<float>(std::min(4.0 * slack, kMostWrong) + mesh.rounding);
   return true;
 }
 

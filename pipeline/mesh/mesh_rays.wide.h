@@ -14,57 +14,45 @@
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
-/// Which triangles of a leaf the line of the ray may meet.
+/// Which triangles of a leaf the line of the ray may meet, which enters the leaf at `entry`.
 ///
-/// In the sheared frame a corner (x, y) is wrong by less than `ex` in x: by 4 u of the coordinates
-/// along the ray and 2 u of x, as differences, the shear and its product are rounded, and by what
-/// the ray itself is. The area of two such corners is wrong by less than `doubt`.
-template <int Z>
-[[gnu::always_inline]] inline Mask16 on_line_along(const Corners16& corners, const MeshRayJob& job,
-                                                   float entry) {
+/// Coordinates of corners from there, no longer than `size`, are wrong by u of themselves, and in
+/// the sheared frame, where they are at most twice as long, by less than `wrong`: by 6 u of `size`
+/// and by what the ray is. The area of two such corners is wrong by less than `doubt`.
+[[gnu::always_inline]] inline Mask16 on_line(const MeshView& mesh, std::uint32_t leaf,
+                                             const MeshRayJob& job, float entry) {
   constexpr float kUnit = 0x1p-24F;
-  constexpr int X = (Z + 1) % 3;
-  constexpr int Y = (Z + 2) % 3;
-  float from[3];
-  float farthest = 0.0F;
+  Floats from[3];
   for (int axis = 0; axis < 3; ++axis) {
-    const double at = job.origin[axis] + static_cast<double>(entry) * job.direction[axis];
-    from[axis] = static_cast<float>(at);
-    const float size = from[axis] < 0.0F ? -from[axis] : from[axis];
-    farthest = size > farthest ? size : farthest;
+    from[axis] = Floats(
+        static_cast<float>(job.origin[axis] + static_cast<double>(entry) * job.direction[axis]));
   }
   Floats x[3];
   Floats y[3];
-  Floats depth(0.0F);
-  Floats most_x(0.0F);
-  Floats most_y(0.0F);
+  Floats size(0.0F);
   for (int k = 0; k < 3; ++k) {
-    const auto& corner = corners.at[k];
-    const Floats z = corner[Z] - Floats(from[Z]);
-    x[k] = (corner[X] - Floats(from[X])) - z * Floats(job.shear[0]);
-    y[k] = (corner[Y] - Floats(from[Y])) - z * Floats(job.shear[1]);
-    depth = max(depth, abs(z));
-    most_x = max(most_x, abs(x[k]));
-    most_y = max(most_y, abs(y[k]));
+    Floats at[3];
+    load_points(mesh.vertex, mesh.corner[k] + std::size_t{leaf} * kMeshFanout, at);
+    for (int axis = 0; axis < 3; ++axis) {
+      at[axis] = at[axis] - from[axis];
+      size = max(size, abs(at[axis]));
+    }
+    const auto across = [&](const float(&row)[3]) {
+      return multiply_add(at[2], Floats(row[2]),
+                          multiply_add(at[1], Floats(row[1]), at[0] * Floats(row[0])));
+    };
+    x[k] = across(job.across[0]);
+    y[k] = across(job.across[1]);
   }
-  const Floats moved = Floats(4.0F * (job.slack + farthest * 2.0F * kUnit)) +
-                       depth * Floats(8.0F * kUnit) + Floats(1e-36F);
-  const Floats ex = moved + most_x * Floats(4.0F * kUnit);
-  const Floats ey = moved + most_y * Floats(4.0F * kUnit);
-  const Floats doubt = Floats(2.5F) * (ex * (most_y + ey) + ey * most_x) +
-                       Floats(8.0F * kUnit) * most_x * most_y + Floats(1e-36F);
+  const Floats wrong = multiply_add(size, Floats(8.0F * kUnit), Floats(job.wrong));
+  const Floats rounded = multiply_add(size, Floats(20.0F * kUnit), wrong * Floats(8.5F));
+  const Floats doubt =
+      multiply_add(size, rounded, multiply_add(wrong * Floats(2.5F), wrong, Floats(1e-36F)));
   const Floats a = x[2] * y[1] - y[2] * x[1];
   const Floats b = x[0] * y[2] - y[0] * x[2];
   const Floats c = x[1] * y[0] - y[1] * x[0];
   const LaneMask<float> misses = (max(max(a, b), c) > doubt) & (min(min(a, b), c) < -doubt);
   return ~bits(misses) & 0xFFFFU;
-}
-
-[[gnu::always_inline]] inline Mask16 on_line(const Corners16& corners, const MeshRayJob& job,
-                                             float entry) {
-  if (job.fastest == 0) return on_line_along<0>(corners, job, entry);
-  return job.fastest == 1 ? on_line_along<1>(corners, job, entry)
-                          : on_line_along<2>(corners, job, entry);
 }
 
 /// A ray on its way: the nodes that wait for it, of which the nearest is the last of those that
@@ -74,6 +62,7 @@ class RayWalk {
   void start(const MeshView& mesh, const MeshRayJob& job) {
     job_ = &job;
     size_ = 0;
+    asked_.triangles = 0;
     set_limit(job.limit);
     // What is below a top level of few nodes is nearly as soon asked.
     constexpr std::uint32_t kFewNodes = 2;
@@ -84,32 +73,32 @@ class RayWalk {
     }
   }
 
-  /// Goes on with the nearest node that waits; false if the ray has come to its end.
-  bool step(const MeshView& mesh, const RaySlotVisitor& visitor) {
-    while (size_ != 0) {
-      const std::uint64_t next = waiting_[--size_];
-      const float entry = entry_of(next);
-      if (!(entry <= last_)) continue;
-      const auto place = static_cast<std::uint32_t>(next);
-      const std::uint32_t level = place >> kLevelShift;
-      const std::uint32_t node = place & ((1U << kLevelShift) - 1U);
-      if (level == kSlots) return show(&node, 1, visitor);
-      if (level == 0 && mesh.box == nullptr) return show_leaf(mesh, node, entry, visitor);
-      meet(mesh, level == 0 ? kSlots : level - 1, node * kLanes, size_);
-      return true;
-    }
-    return false;
+  /// Goes on with the nearest node that waits; false if the ray has come to its end. The corners of
+  /// a leaf are asked for in one step and looked at in the next: after the other rays have had
+  /// their turns or, if there are none, after the next node.
+  template <bool Alone>
+  [[gnu::always_inline]] bool step(const MeshView& mesh, const RaySlotVisitor& visitor) {
+    const Asked asked = asked_;
+    asked_.triangles = 0;
+    if (!Alone && asked.triangles != 0) return look(mesh, asked, visitor);
+    const bool goes_on = descend(mesh);
+    return Alone && asked.triangles != 0 ? look(mesh, asked, visitor) : goes_on;
   }
 
  private:
   /// A node that waits: when it is entered, as the bits of a float that is not negative, its level
   /// and its number.
   static constexpr std::uint32_t kLevelShift = 28;
-  /// In the place of the level where the number is that of a triangle's slot.
-  static constexpr std::uint32_t kSlots = kMaxMeshLevels;
   static float entry_of(std::uint64_t waiting) {
     return __builtin_bit_cast(float, static_cast<std::uint32_t>(waiting >> 32));
   }
+  /// A leaf whose corners were asked for: when it is entered, and which of its triangles may be
+  /// met.
+  struct Asked {
+    std::uint32_t leaf;
+    float entry;
+    Mask16 triangles;
+  };
 
   void set_limit(double limit) {
     limit_ = limit;
@@ -117,14 +106,28 @@ class RayWalk {
     last_ = rest < 1e38 ? static_cast<float>(rest) : 1e38F;
   }
 
-  /// Lets those of sixteen nodes, or triangles, wait that the ray meets, together with those from
-  /// `together` on.
-  [[gnu::always_inline]] void meet(const MeshView& mesh, std::uint32_t level,
-                                   std::uint32_t first_node, std::uint32_t together) {
-    const bool are_slots = level == kSlots;
-    const std::uint16_t* const bounds =
-        (are_slots ? mesh.box : mesh.node[level]) + std::size_t{6} * first_node;
-    Floats in(0.0F);
+  /// False if no node waits.
+  [[gnu::always_inline]] bool descend(const MeshView& mesh) {
+    while (size_ != 0) {
+      const std::uint64_t next = waiting_[--size_];
+      const float entry = entry_of(next);
+      if (!(entry <= last_)) continue;
+      const auto place = static_cast<std::uint32_t>(next);
+      const std::uint32_t level = place >> kLevelShift;
+      const std::uint32_t node = place & ((1U << kLevelShift) - 1U);
+      if (level != 0) {
+        meet(mesh, level - 1, node * kLanes, size_);
+      } else {
+        ask(mesh, node, entry);
+      }
+      return true;
+    }
+    return false;
+  }
+
+  /// Which of sixteen boxes, in columns from `bounds` on, the ray meets, and when it enters them.
+  [[gnu::always_inline]] Mask16 enter(const std::uint16_t* bounds, Floats& in) const {
+    in = Floats(0.0F);
     Floats out(last_);
     for (int axis = 0; axis < 3; ++axis) {
       const Floats inverse(job_->inverse[axis]);
@@ -133,15 +136,22 @@ class RayWalk {
       in = max(in, multiply_add(near, inverse, Floats(job_->near[axis])));
       out = min(out, multiply_add(far, inverse, Floats(job_->far[axis])));
     }
-    Mask16 hits =
-        bits(in <= out) & present(are_slots ? mesh.triangle_count : mesh.count[level], first_node);
+    return bits(in <= out);
+  }
+
+  /// Lets those of sixteen nodes wait that the ray meets, together with those from `together` on.
+  [[gnu::always_inline]] void meet(const MeshView& mesh, std::uint32_t level,
+                                   std::uint32_t first_node, std::uint32_t together) {
+    Floats in;
+    Mask16 hits = enter(mesh.node[level] + std::size_t{6} * first_node, in) &
+                  present(mesh.count[level], first_node);
     // Zero may have a sign, which is no order of its bits.
     alignas(64) float entry[kLanes];
     abs(in).store(entry);
     for (; hits != 0; hits &= hits - 1) {
       const unsigned lane = first(hits);
       const std::uint32_t node = first_node + lane;
-      fetch(mesh, level, node);
+      if (level == 0) fetch(mesh, node);
       const std::uint64_t fresh = std::uint64_t{__builtin_bit_cast(std::uint32_t, entry[lane])}
                                       << 32 |
                                   (level << kLevelShift | node);
@@ -151,33 +161,49 @@ class RayWalk {
     }
   }
 
-  /// Asks for what leaves and triangles are made of, before it is waited for. Of nodes there are
-  /// few enough to be at hand.
-  static void fetch(const MeshView& mesh, std::uint32_t level, std::uint32_t node) {
-    if (level != 0 && level != kSlots) return;
-    const std::size_t slot = level == kSlots ? node : std::size_t{node} * kMeshFanout;
-    const bool has_boxes = level == 0 && mesh.box != nullptr;
-    for (std::size_t k = 0; k < 3; ++k) {
-      __builtin_prefetch(has_boxes ? static_cast<const void*>(mesh.box + 6 * slot + 32 * k)
-                                   : mesh.corner[k] + slot);
+  /// Asks for what tells where the triangles of a leaf are, before it is waited for. Of nodes there
+  /// are few enough to be at hand.
+  static void fetch(const MeshView& mesh, std::uint32_t leaf) {
+    const std::size_t slot = std::size_t{leaf} * kMeshFanout;
+    for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(mesh.corner[k] + slot);
+    if (mesh.box == nullptr) return;
+    for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(mesh.box + 6 * slot + 32 * k);
+  }
+
+  /// Asks for the corners of a leaf's triangles; of those alone whose boxes the ray meets where
+  /// they have some.
+  [[gnu::always_inline]] void ask(const MeshView& mesh, std::uint32_t leaf, float entry) {
+    const std::uint32_t first_slot = leaf * kMeshFanout;
+    Mask16 triangles = present(mesh.triangle_count, first_slot);
+    if (mesh.box != nullptr) {
+      Floats in;
+      triangles &= enter(mesh.box + std::size_t{6} * first_slot, in);
+      for (Mask16 rest = triangles; rest != 0; rest &= rest - 1) {
+        for (const std::uint32_t* const corner : mesh.corner) {
+          __builtin_prefetch(mesh.vertex + std::size_t{3} * corner[first_slot + first(rest)]);
+        }
+      }
+    } else {
+      for (const std::uint32_t* const corner : mesh.corner) {
+        __builtin_prefetch(mesh.vertex + std::size_t{3} * corner[first_slot]);
+      }
     }
+    __builtin_prefetch(mesh.triangle + first_slot);
+    asked_ = {leaf, entry, triangles};
   }
 
   /// False if the visitor has seen enough.
-  bool show_leaf(const MeshView& mesh, std::uint32_t leaf, float entry,
-                 const RaySlotVisitor& visitor) {
-    const std::uint32_t first_slot = leaf * kMeshFanout;
-    Mask16 hits =
-        on_line(load_corners(mesh, leaf), *job_, entry) & present(mesh.triangle_count, first_slot);
-    if (hits == 0) return true;
-    __builtin_prefetch(mesh.triangle + first_slot);
+  bool look(const MeshView& mesh, const Asked& asked, const RaySlotVisitor& visitor) {
+    if (!(asked.entry <= last_)) return true;
+    Mask16 triangles = asked.triangles;
+    if (mesh.box == nullptr) triangles &= on_line(mesh, asked.leaf, *job_, asked.entry);
+    if (triangles == 0) return true;
+    const std::uint32_t first_slot = asked.leaf * kMeshFanout;
     std::uint32_t slots[kLanes];
     std::uint32_t count = 0;
-    for (; hits != 0; hits &= hits - 1) slots[count++] = first_slot + first(hits);
-    return show(slots, count, visitor);
-  }
-
-  bool show(const std::uint32_t* slots, std::uint32_t count, const RaySlotVisitor& visitor) {
+    for (; triangles != 0; triangles &= triangles - 1) {
+      slots[count++] = first_slot + first(triangles);
+    }
     const double limit = visitor.visit(visitor.context, job_->ray, slots, count, limit_);
     if (limit != limit_) set_limit(limit);
     return limit >= 0.0;
@@ -187,26 +213,38 @@ class RayWalk {
   double limit_;
   float last_;
   std::uint32_t size_;
+  Asked asked_;
   /// One more than waits, as the nearest is among them for a moment.
-  std::uint64_t waiting_[(kMaxMeshLevels + 1) * kMeshFanout + 1];
+  std::uint64_t waiting_[kMaxMeshLevels * kMeshFanout + 1];
 };
 
 /// Shows the triangles that each ray may meet, its nearest leaf first. The rays take turns, so that
 /// none waits for memory, nor for what the processor finds out last, while others could go on.
 inline void show_on_rays(const MeshView& mesh, const MeshRayJob* jobs, std::uint32_t count,
                          const RaySlotVisitor& visitor) {
-  RayWalk walk[kRaysAtOnce];
-  std::uint32_t turn[kRaysAtOnce];
-  for (std::uint32_t i = 0; i < count; ++i) {
-    walk[i].start(mesh, jobs[i]);
-    turn[i] = i;
+  if (count == 1) {
+    RayWalk walk;
+    walk.start(mesh, jobs[0]);
+    while (walk.step<true>(mesh, visitor)) {
+    }
+    return;
   }
-  while (count != 0) {
-    for (std::uint32_t i = 0; i < count;) {
-      if (walk[turn[i]].step(mesh, visitor)) {
+  constexpr std::uint32_t kWalks = 8;
+  RayWalk walk[kWalks];
+  std::uint32_t started = 0;
+  std::uint32_t walks = 0;
+  while (walks < kWalks && started < count) walk[walks++].start(mesh, jobs[started++]);
+  std::uint32_t turn[kWalks];
+  for (std::uint32_t i = 0; i < walks; ++i) turn[i] = i;
+  while (walks != 0) {
+    for (std::uint32_t i = 0; i < walks;) {
+      if (walk[turn[i]].step<false>(mesh, visitor)) {
+        ++i;
+      } else if (started != count) {
+        walk[turn[i]].start(mesh, jobs[started++]);
         ++i;
       } else {
-        turn[i] = turn[--count];
+        turn[i] = turn[--walks];
       }
     }
   }

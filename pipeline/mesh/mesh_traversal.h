@@ -9,7 +9,7 @@ namespace winnow {
 
 // Traversals of a mesh's tree, in the mesh's own frame, unscaled. None of them misses a triangle;
 // all may show some more than asked for. Scratch of fixed size lies on the stack, 90 KB for pairs,
-// 25 KB for rays and 3 KB for the others. Serial, and the same output on any instruction set.
+// 20 KB for rays and 3 KB for the others. Serial, and the same output on any instruction set.
 
 /// Slots of all triangles whose boxes meet [min, max], ascending. Bounds may be infinite.
 void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
@@ -104,7 +104,7 @@ struct MeshNearJob {
 };
 
 /// Rays that are taken through a mesh together, in turns.
-inline constexpr std::uint32_t kRaysAtOnce = 16;
+inline constexpr std::uint32_t kRaysAtOnce = 64;
 
 /// Is shown the slots of a leaf that one of several rays may meet; gives back that ray's new limit.
 struct RaySlotVisitor {
@@ -114,7 +114,7 @@ struct RaySlotVisitor {
 };
 
 /// A ray on its way through the nodes. `tau` is time from where it comes to the mesh, in another
-/// unit: it leaves the mesh's box before tau = 2.
+/// unit: it leaves the mesh's box before tau = 3.
 struct MeshRayJob {
   /// As its visitor knows it, and the limit of t.
   std::uint32_t ray;
@@ -133,12 +133,11 @@ struct MeshRayJob {
   /// Where these bounds of sixteen nodes lie.
   std::uint32_t near_bound[3];
   std::uint32_t far_bound[3];
-  /// The axis along which it moves the fastest, and by how much it moves along the next two for
-  /// each unit there.
-  std::uint32_t fastest;
-  float shear[2];
-  /// The true ray may be so far from this one.
-  float slack;
+  /// Rows that take a vector to where it is across the ray: along two axes, less what the ray moves
+  /// along each while it does so along the third, the fastest one.
+  float across[2][3];
+  /// By how much corners of triangles may be wrong there before they are rounded.
+  float wrong;
 };
 
 struct MeshKernels {

@@ -562,7 +562,7 @@ Status ask_each(QueryState* state, const ShapeRayBatch& rays, const Filter& filt
                 const SceneHitColumns& hits, bool any) {
   Status status = check(state, rays);
   if (status != Status::ok) return status;
-  constexpr std::size_t kRaysTogether = 16;
+  constexpr std::size_t kRaysTogether = 64;
   RaysTogether<kRaysTogether> group(*state, filter);
   for (std::size_t first = 0; first < rays.count; first += kRaysTogether) {
     const std::size_t count = std::min(kRaysTogether, rays.count - first);
