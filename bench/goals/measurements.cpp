@@ -15,6 +15,7 @@
 #include "bench/rows/machine.h"
 #include "bench/rows/peer_rows.h"
 #include "bench/rows/query_rows.h"
+#include "bench/rows/ray_rows.h"
 #include "bench/rows/scene_rows.h"
 #include "bench/simulation/flow_phases.h"
 
@@ -310,6 +311,14 @@ void goal_tori(const Json& /*options*/, Lab& /*lab*/, Measured& measured) {
   measured.machine_ms = add_tori(measured.results, 11, true, true).machine_ms;
 }
 
+/// Rays through a mesh of some kind and size.
+void goal_mesh_rays(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_mesh_rays(measured.results);
+  measured.machine_ms = add_mesh_rays(measured.results, {.mesh = options.at("mesh"),
+                                                         .triangles = options.at("triangles")})
+                            .machine_ms;
+}
+
 /// A frame of the granular flow against its phases, each by itself.
 void goal_flow_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
   measured.results.declare({"flow_frames",
@@ -369,6 +378,7 @@ const Measurer* find_measurer(const std::string& name) {
                                                    {"hard_cases", goal_hard_cases},
                                                    {"scenes", goal_scenes},
                                                    {"tori", goal_tori},
+                                                   {"mesh_rays", goal_mesh_rays},
                                                    {"flow_frames", goal_flow_frames},
                                                    {"flow_soak", goal_flow_soak},
                                                    {"default_report", measure_default_report},

@@ -3,6 +3,7 @@
 #include "bench/contenders/engine.h"
 #include "bench/contenders/narrow_engine.h"
 #include "bench/contenders/query_engine.h"
+#include "bench/contenders/ray_engine.h"
 #include "bench/contenders/scene_engine.h"
 
 #include <memory>
@@ -18,6 +19,7 @@ namespace winnow::bench {
 [[nodiscard]] std::unique_ptr<Engine> make_ode();
 
 [[nodiscard]] std::unique_ptr<QueryEngine> make_embree_queries();
+[[nodiscard]] std::unique_ptr<RayEngine> make_embree_rays(bool robust);
 
 [[nodiscard]] std::unique_ptr<NarrowEngine> make_bullet_narrow();
 [[nodiscard]] std::unique_ptr<NarrowEngine> make_fcl_libccd();

@@ -60,6 +60,15 @@ std::vector<std::unique_ptr<SceneEngine>> make_scene_peers() {
   return peers;
 }
 
+std::vector<std::unique_ptr<RayEngine>> make_ray_peers() {
+  std::vector<std::unique_ptr<RayEngine>> peers;
+#ifdef WINNOW_PEER_EMBREE
+  peers.push_back(make_embree_rays(false));
+  peers.push_back(make_embree_rays(true));
+#endif
+  return peers;
+}
+
 std::vector<std::unique_ptr<MeshEngine>> make_mesh_peers() {
   std::vector<std::unique_ptr<MeshEngine>> peers;
 #ifdef WINNOW_PEER_FCL

@@ -3,6 +3,7 @@
 #include "bench/contenders/engine.h"
 #include "bench/contenders/narrow_engine.h"
 #include "bench/contenders/query_engine.h"
+#include "bench/contenders/ray_engine.h"
 #include "bench/contenders/scene_engine.h"
 
 #include <memory>
@@ -24,6 +25,9 @@ namespace winnow::bench {
 
 /// The same of those that find the contacts of whole scenes. They use one thread.
 [[nodiscard]] std::vector<std::unique_ptr<SceneEngine>> make_scene_peers();
+
+/// The same of those that take rays through a triangle mesh. They use one thread.
+[[nodiscard]] std::vector<std::unique_ptr<RayEngine>> make_ray_peers();
 
 /// The same of those that collide triangle meshes. They use one thread.
 [[nodiscard]] std::vector<std::unique_ptr<MeshEngine>> make_mesh_peers();

@@ -126,6 +126,22 @@ Heights make_hills(std::uint32_t cells, double edge, double relief, std::uint64_
   return hills;
 }
 
+Triangles make_soup(std::size_t triangles, std::uint64_t seed) {
+  Random random(seed);
+  const double size = 4.6 / std::cbrt(static_cast<double>(triangles));
+  Triangles mesh;
+  for (std::size_t i = 0; i < triangles; ++i) {
+    const Eigen::Vector3d middle(random.in(-5, 5), random.in(-5, 5), random.in(-5, 5));
+    for (int k = 0; k < 3; ++k) {
+      Eigen::Vector3d corner = middle;
+      for (double& x : corner) x = as_float(x + random.in(-size, size));
+      mesh.corners.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
+      mesh.vertices.push_back(corner);
+    }
+  }
+  return mesh;
+}
+
 Triangles make_terrain(const Heights& heights) {
   Triangles mesh;
   const std::uint32_t row = heights.cells + 1;

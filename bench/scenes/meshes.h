@@ -45,6 +45,9 @@ struct Heights {
 /// values, smoothly blended, in octaves).
 [[nodiscard]] Heights make_hills(std::uint32_t cells, double edge, double relief,
                                  std::uint64_t seed);
+/// Triangles that share no vertices, of all directions and of alike sizes, anywhere in a cube of
+/// side 10: as many as there are, they cover as much of a look through it.
+[[nodiscard]] Triangles make_soup(std::size_t triangles, std::uint64_t seed);
 /// Two triangles a cell, seen from above counter-clockwise.
 [[nodiscard]] Triangles make_terrain(const Heights& heights);
 

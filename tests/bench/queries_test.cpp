@@ -3,6 +3,7 @@
 #include "bench/contenders/partition_queries.h"
 #include "bench/contenders/partitions.h"
 #include "bench/measure/query_race.h"
+#include "bench/measure/ray_race.h"
 #include "bench/peers/peers.h"
 #include "bench/scenes/scene.h"
 
@@ -128,6 +129,23 @@ TEST_F(Comparisons, allow_float_its_rounding_and_partitions_none) {
   const Comparison grazing = in_float({{0, 1.0F}}, {});
   EXPECT_TRUE(grazing.agree());
   EXPECT_EQ(grazing.undecided, 1U);
+}
+
+TEST(RayRace, every_engine_answers_alike_singly_and_in_batches) {
+  for (const char* const mesh : {"terrain", "soup"}) {
+    SCOPED_TRACE(mesh);
+    const RayMeasurement measured = measure_rays(
+        {.mesh = mesh, .triangles = 800, .rays = 300, .rounds = 1, .machine_clock = false});
+    ASSERT_FALSE(measured.timings.empty());
+    const std::size_t hits = measured.timings.front().hits;
+    EXPECT_GT(hits, 0U);
+    for (const RayTiming& timing : measured.timings) {
+      SCOPED_TRACE(timing.engine);
+      if (timing.engine == "Embree fast") continue;  // which misses edges
+      EXPECT_EQ(timing.hits, hits);
+      EXPECT_EQ(timing.differ, 0U);
+    }
+  }
 }
 
 }  // namespace

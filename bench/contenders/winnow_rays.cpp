@@ -1,0 +1,105 @@
+#include "bench/contenders/winnow_rays.h"
+
+#include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/scene.h>
+#include <winnow/pipeline/scene_queries.h>
+#include "bench/common/need.h"
+
+#include <limits>
+
+namespace winnow::bench {
+namespace {
+
+class WinnowRays final : public RayEngine {
+ public:
+  [[nodiscard]] std::string name() const override { return "winnow"; }
+
+  void start(const Triangles& mesh) override {
+    ShapeId shape;
+    const std::span<const Eigen::Vector3d> vertices = mesh.vertices;
+    const std::span<const std::uint32_t> corners = mesh.corners;
+    need(composites_.add_mesh(vertices, corners, shape), "the mesh");
+    Key key;
+    need(scene_.add({.shape = shape, .motion = Motion::fixed}, key), "the body");
+    need(scene_.refresh(), "the scene");
+  }
+
+  [[nodiscard]] std::size_t bytes() const override { return composites_.footprint().total().used; }
+
+  void take(std::span<const ShapeRay> rays) override {
+    rays_ = rays;
+    key_.assign(rays.size(), Key{});
+    t_.assign(rays.size(), 0.0);
+  }
+
+  void run(RayWant want, Asking asking) override {
+    want_ = want;
+    if (asking == Asking::batch) {
+      run_batch();
+    } else {
+      for (std::size_t i = 0; i < rays_.size(); ++i) run_one(i);
+    }
+  }
+
+  [[nodiscard]] std::vector<double> hits() const override {
+    std::vector<double> result(rays_.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      if (key_[i] != Key{}) result[i] = want_ == RayWant::any ? 0.0 : t_[i];
+    }
+    return result;
+  }
+
+ private:
+  void put(std::size_t i, const SceneHit& hit) {
+    key_[i] = hit.key;
+    t_[i] = hit.t;
+  }
+
+  void run_one(std::size_t i) {
+    SceneHit hit;
+    std::span<const SceneHit> hits;
+    Status status = Status::ok;
+    if (want_ == RayWant::all) {
+      status = ask_.all(rays_[i], hits);
+      if (!hits.empty()) hit = hits.front();
+    } else {
+      status = want_ == RayWant::any ? ask_.any(rays_[i], hit) : ask_.closest(rays_[i], hit);
+    }
+    need(status, "a ray");
+    put(i, hit);
+  }
+
+  void run_batch() {
+    const SceneHitColumns columns{.key = key_.data(), .t = t_.data()};
+    SceneHitLists lists;
+    switch (want_) {
+      case RayWant::closest:
+        return need(ask_.closest(rays_, columns), "rays");
+      case RayWant::any:
+        return need(ask_.any(rays_, columns), "rays");
+      case RayWant::all:
+        break;
+    }
+    need(ask_.all(rays_, lists), "rays");
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      put(i, lists.first[i] == lists.first[i + 1] ? SceneHit{} : lists.hits[lists.first[i]]);
+    }
+  }
+
+  ShapePool shapes_;
+  CompositePool composites_{shapes_};
+  Scene scene_{shapes_, {.composites = &composites_}};
+  SceneQueries ask_{scene_};
+  std::span<const ShapeRay> rays_;
+  RayWant want_ = RayWant::closest;
+  std::vector<Key> key_;
+  std::vector<double> t_;
+};
+
+}  // namespace
+
+std::unique_ptr<RayEngine> make_winnow_rays() {
+  return std::make_unique<WinnowRays>();
+}
+
+}  // namespace winnow::bench

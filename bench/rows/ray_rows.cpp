@@ -1,0 +1,48 @@
+#include "bench/rows/ray_rows.h"
+
+namespace winnow::bench {
+namespace {
+
+const char* name_of(RayWant want) {
+  constexpr const char* kNames[] = {"closest", "any", "all"};
+  return kNames[static_cast<int>(want)];
+}
+
+}  // namespace
+
+void declare_mesh_rays(Results& results) {
+  results.declare(
+      {"mesh_rays",
+       "pipeline",
+       "rays through a mesh",
+       {"mesh", "triangles", "want", "asking", "engine"},
+       {{"ns", "a ray", "ns", Better::less},
+        {"hits", "rays that meet it", "", Better::neither, Format::count},
+        {"differ", "rays answered otherwise than by winnow", "", Better::neither, Format::count}}});
+  results.declare({"ray_meshes",
+                   "pipeline",
+                   "meshes that rays are taken through",
+                   {"mesh", "triangles"},
+                   {{"bytes_per_triangle", "memory", "bytes/triangle", Better::less}}});
+}
+
+RayMeasurement add_mesh_rays(Results& results, const RayRaceOptions& options) {
+  RayMeasurement measured = measure_rays(options);
+  const Json mesh{{"mesh", options.mesh}, {"triangles", options.triangles}};
+  Json memory = mesh;
+  memory["bytes_per_triangle"] = measured.bytes_per_triangle;
+  results.add("ray_meshes", std::move(memory));
+  for (const RayTiming& timing : measured.timings) {
+    Json row = mesh;
+    row["want"] = name_of(timing.want);
+    row["asking"] = timing.asking == Asking::single ? "single" : "batch";
+    row["engine"] = timing.engine;
+    row["ns"] = to_value(timing.ns);
+    row["hits"] = timing.hits;
+    row["differ"] = timing.differ;
+    results.add("mesh_rays", std::move(row));
+  }
+  return measured;
+}
+
+}  // namespace winnow::bench
