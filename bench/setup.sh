@@ -73,3 +73,14 @@ winnow_build() {
     return 1
   fi
 }
+
+# winnow_quietly LOG COMMAND...: shows the command's output only if it fails.
+winnow_quietly() {
+  local log=$1
+  shift
+  "$@" >"$log" 2>&1 || {
+    cat "$log" >&2
+    echo "failed: $*" >&2
+    return 1
+  }
+}

@@ -68,10 +68,13 @@ target_link_options(winnow_flags INTERFACE $<$<BOOL:${WINNOW_COVERAGE}>:--covera
 if(WINNOW_SANITIZER STREQUAL "address")
   set(winnow_sanitize -fsanitize=address,undefined -fno-sanitize-recover=all
       -fno-omit-frame-pointer)
+elseif(WINNOW_SANITIZER STREQUAL "fuzzer")
+  set(winnow_sanitize -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
+      -fno-omit-frame-pointer)
 elseif(WINNOW_SANITIZER STREQUAL "thread")
   set(winnow_sanitize -fsanitize=thread)
 elseif(NOT WINNOW_SANITIZER STREQUAL "")
-  message(FATAL_ERROR "WINNOW_SANITIZER is empty, address or thread")
+  message(FATAL_ERROR "WINNOW_SANITIZER is empty, address, fuzzer or thread")
 endif()
 target_compile_options(winnow_flags INTERFACE ${winnow_sanitize})
 target_link_options(winnow_flags INTERFACE ${winnow_sanitize})

@@ -37,15 +37,27 @@ set(WINNOW_KERNEL_OPTIMIZATION -O3 CACHE STRING "Optimization of kernels in ever
 # A wide type is two or four registers there, which takes the compiler long.
 set(WINNOW_NARROWER_OPTIMIZATION "" CACHE STRING
     "Optimization of kernels for all instruction sets but the widest; empty: that of all kernels")
-mark_as_advanced(WINNOW_KERNEL_OPTIMIZATION WINNOW_NARROWER_OPTIMIZATION)
+set(WINNOW_KERNELS_FROM "" CACHE PATH
+    "Folder of another build, with the same instruction sets, whose kernels are linked; empty: none")
+mark_as_advanced(WINNOW_KERNEL_OPTIMIZATION WINNOW_NARROWER_OPTIMIZATION WINNOW_KERNELS_FROM)
 list(GET WINNOW_ISAS -1 winnow_widest_isa)
 
 # winnow_add_kernels(target file.kernel.cpp ...): each file into an object library per instruction
 # set, linked into the target. The macro xsimd=xsimd_<isa> gives every build its own xsimd
-# namespace, so no inline function is shared between them.
+# namespace, so no inline function is shared between them. Nothing in a kernel depends on how what
+# calls it is built: a build that looks at the rest may link those of another.
 function(winnow_add_kernels target)
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   foreach(isa ${WINNOW_ISAS})
     set(objects ${target}_kernels_${isa})
+    if(WINNOW_KERNELS_FROM)
+      foreach(source ${ARGN})
+        set(object ${WINNOW_KERNELS_FROM}/${folder}/CMakeFiles/${objects}.dir/${source}.o)
+        set_source_files_properties(${object} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
+        target_sources(${target} PRIVATE ${object})
+      endforeach()
+      continue()
+    endif()
     add_library(${objects} OBJECT ${ARGN})
     set(optimization ${WINNOW_KERNEL_OPTIMIZATION})
     if(WINNOW_NARROWER_OPTIMIZATION AND NOT isa STREQUAL winnow_widest_isa)

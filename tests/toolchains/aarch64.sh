@@ -26,14 +26,3 @@ winnow_aarch64_root() {
   rm -rf "$apt"
   touch "$root/complete"
 }
-
-# winnow_quietly LOG COMMAND...: shows the command's output only if it fails.
-winnow_quietly() {
-  local log=$1
-  shift
-  "$@" >"$log" 2>&1 || {
-    cat "$log" >&2
-    echo "failed: $*" >&2
-    return 1
-  }
-}

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/pose.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <string>
+
+namespace winnow::test {
+
+/// Bytes of a fuzzer read as the choices of a test: any bytes make sense, and behind their end all
+/// are zero.
+class Bytes {
+ public:
+  explicit Bytes(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+  [[nodiscard]] bool empty() const { return bytes_.empty(); }
+
+  std::uint8_t byte() {
+    if (bytes_.empty()) return 0;
+    const std::uint8_t first = bytes_.front();
+    bytes_ = bytes_.subspan(1);
+    return first;
+  }
+  /// In [0, count), count at most 256.
+  std::size_t below(std::size_t count) { return byte() % count; }
+  bool chance(std::size_t one_in) { return below(one_in) == one_in - 1; }
+
+  /// Any value of a plain type: NaN and infinities among those of floats.
+  template <typename T>
+  T any() {
+    std::array<std::uint8_t, sizeof(T)> raw{};
+    for (std::uint8_t& one : raw) one = byte();
+    T value;
+    std::memcpy(&value, raw.data(), sizeof value);
+    return value;
+  }
+
+  /// Mostly a quarter of a small integer, so that things touch exactly.
+  double tame() { return 0.25 * (byte() - 128); }
+  /// The same, now and then an end of the range of float, or what lies between.
+  float wild() {
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    constexpr std::array kEnds{inf,    -inf,    -0.0F,   1e30F,      -3e38F,
+                               1e-40F, -1e-30F, 3.4e38F, 16777216.0F};
+    const std::uint8_t choice = byte();
+    if (choice < 240) return 0.25F * static_cast<float>(choice - 120);
+    if (choice < 240 + kEnds.size()) return kEnds[choice - 240U];
+    return any<float>();
+  }
+  /// An extent: zero, small, large.
+  double extent() {
+    constexpr std::array kExtents{0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 4.0, 100.0};
+    return kExtents[below(kExtents.size())];
+  }
+
+  /// Of tame numbers; always valid.
+  Aabb tame_box() {
+    Aabb box;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.min[axis] = static_cast<float>(tame());
+      box.max[axis] = box.min[axis] + static_cast<float>(extent());
+    }
+    return box;
+  }
+  /// Seldom of wild numbers; may then be invalid.
+  Aabb box() {
+    if (!chance(8)) return tame_box();
+    Aabb box;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float a = wild();
+      const float b = wild();
+      box.min[axis] = a < b ? a : b;
+      box.max[axis] = a < b ? b : a;
+    }
+    return box;
+  }
+
+  /// A valid pose of tame numbers, often without a turn.
+  Pose pose() {
+    Pose pose;
+    for (double& x : pose.position) x = 0.25 * tame();
+    if (chance(2)) {
+      for (double& q : pose.orientation) q = tame();
+    }
+    if (!pose.is_valid()) pose.orientation[0] = 1.0;
+    return pose;
+  }
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+};
+
+}  // namespace winnow::test

@@ -1,0 +1,108 @@
+// Files of questions, of hard cases and of reports that anybody may have written: answered, or
+// refused with an error that says what is wrong with which file.
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "bench/common/errors.h"
+#include "bench/common/json.h"
+#include "bench/questions/hard_cases.h"
+#include "bench/questions/questions.h"
+#include "bench/report/compare.h"
+#include "bench/report/markdown.h"
+#include "bench/report/report.h"
+#include "tests/fuzz/target.h"
+
+namespace winnow::test {
+namespace {
+
+using bench::Json;
+
+/// As `winnow query` and `winnow query --judge` do.
+void ask(const Json& questions) {
+  for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
+    const Json answers = bench::answer(questions, tier);
+    WINNOW_HOLDS(answers.size() == questions.size());
+    const std::string text = answers.dump();
+    WINNOW_HOLDS(text.find("null,null") == std::string::npos);
+    const Json turned = bench::answer(bench::exchanged(questions), tier);
+    WINNOW_HOLDS(turned.size() == questions.size());
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      // Of two bad shapes the first one is named.
+      WINNOW_HOLDS((answers[i]["status"] == "ok") == (turned[i]["status"] == "ok"));
+      if (bench::member(questions[i], "expect").is_null()) continue;
+      (void)bench::judge_case(questions[i], answers[i], bench::promised_error(tier));
+    }
+  }
+}
+
+/// As `winnow compare`, `winnow results` and `winnow report --from` do.
+void report(const std::string& path) {
+  bench::Results results = bench::read_results(path);
+  (void)bench::compare(results, results, {}).passes();
+  (void)bench::machine_ratio(results, results);
+  (void)bench::other_machine(results, results);
+  (void)bench::results_markdown(results);
+  bench::write_report(path + "_report", results);
+}
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace
+
+void fuzz(std::span<const std::uint8_t> input) {
+  const ScratchFile file(input, ".json");
+  Json document;
+  try {
+    document = bench::read_json(file.path());
+  } catch (const bench::ArgumentError& error) {
+    WINNOW_HOLDS(std::string(error.what()).find(file.path()) == 0);
+    return;
+  }
+  if (document.is_array()) ask(document);
+  try {
+    report(file.path());
+  } catch (const bench::ArgumentError& error) {
+    WINNOW_HOLDS(std::string(error.what()).find(file.path()) == 0);
+  }
+  std::filesystem::remove_all(file.path() + "_report");
+}
+
+std::vector<std::string> fuzz_seeds() {
+  std::vector<std::string> seeds{
+      "",
+      "[]",
+      "{}",
+      "[[[[[[1]]]]]]",
+      "[1e999, -1e999, \"nan\"]",
+      R"({"format": "winnow report 1", "complete": true, "machine": {}, "settings": {},
+          "missing": [], "problems": [], "sections": [],
+          "tables": [{"name": "t", "section": "s", "title": "x", "keys": ["k"],
+            "values": [{"name": "v", "label": "v", "unit": "ms", "better": "less",
+                        "format": "number"}],
+            "rows": [{"id": "t/1", "k": "1", "v": {"min": 1, "median": 2, "max": 3,
+                      "samples": [1, 2, 3]}, "command": "c"}]}]})"};
+  // Short enough for a fuzzer: one question of each file, then the file.
+  for (const auto& entry : std::filesystem::directory_iterator(WINNOW_HARD_CASES)) {
+    const std::string text = text_of(entry.path());
+    const Json questions = Json::parse(text);
+    for (std::size_t i = 0; i < questions.size() && i < 6; ++i) {
+      seeds.push_back(Json::array({questions[i]}).dump());
+      // Each member in turn is missing, or something else.
+      for (const auto& [name, value] : questions[i].items()) {
+        Json less = questions[i];
+        less.erase(name);
+        Json other = questions[i];
+        other[name] = Json::array({1});
+        seeds.push_back(Json::array({less, other}).dump());
+      }
+    }
+  }
+  return seeds;
+}
+
+}  // namespace winnow::test

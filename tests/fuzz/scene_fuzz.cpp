@@ -1,0 +1,499 @@
+// Everything that can be told to a scene, against a scene that is built from scratch each time; and
+// its questions, rays and moving shapes among them, against each body on its own.
+
+#include <winnow/winnow.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "tests/fuzz/bytes.h"
+#include "tests/fuzz/target.h"
+#include "tests/support/counting_memory.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Shapes of every kind.
+struct Shapes {
+  explicit Shapes(Bytes& bytes);
+
+  ShapePool pool;
+  CompositePool composites{pool};
+  std::vector<ShapeId> ids;
+  std::size_t convex = 0;
+};
+
+Shapes::Shapes(Bytes& bytes) {
+  const double r = 0.25 + bytes.extent() * 0.25;
+  bool good = true;
+  const auto take = [&](Status status, ShapeId id) {
+    good = good && status == Status::ok;
+    ids.push_back(id);
+  };
+  const auto add = [&](const auto& shape) {
+    ShapeId id;
+    const Status status = pool.add(shape, id);
+    take(status, id);
+  };
+  add(SphereShape{r});
+  add(CapsuleShape{0.25, r});
+  add(BoxShape{{0.5, 0.25, r}, 0.0});
+  add(CylinderShape{0.5, 0.25, 0.0});
+  add(ConeShape{0.5, r, 0.125});
+  add(TriangleShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.25}}, 0.0});
+  const std::vector<Eigen::Vector3d> corners{{1, 0, 0},  {-1, 0, 0}, {0, r, 0},
+                                             {0, -r, 0}, {0, 0, 1},  {0, 0, -1}};
+  const std::vector<std::uint32_t> loops{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
+                                         2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+  const std::vector<std::uint32_t> sizes(8, 3);
+  ShapeId id;
+  take(pool.add_hull(corners, {loops, sizes}, 0.0, id), id);
+  convex = ids.size();
+  add(HalfSpaceShape{{0, 0, 1}, 0.0});
+  const CompoundChild children[] = {{ids[2], Pose::at(0.5, 0, 0)}, {ids[0], Pose::at(-0.5, 0, 0)}};
+  take(composites.add_compound(children, id), id);
+  const std::vector<Eigen::Vector3f> points{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0.5F}};
+  const std::vector<std::uint32_t> triangles{0, 1, 2, 0, 2, 3};
+  take(composites.add_mesh(std::span(points), std::span(triangles), id), id);
+  take(composites.add_scaled(ids.back(), {1.0, -0.5, 2.0}, id), id);
+  std::vector<float> heights(9);
+  for (float& height : heights) height = static_cast<float>(0.25 * bytes.extent());
+  take(composites.add_height_field({heights, 3, 3, 0, {1.0, 1.0}}, id), id);
+  WINNOW_HOLDS(good);
+}
+
+using KeyOrder = decltype([](const Key& a, const Key& b) {
+  return std::pair(a.id, a.stamp) < std::pair(b.id, b.stamp);
+});
+
+/// A pair of bodies, the smaller id first, and the kinds of their shapes in that order: a body that
+/// gets a shape of another kind begins anew.
+struct Meeting {
+  Key a;
+  Key b;
+  std::uint32_t kinds[2];
+
+  friend auto operator<=>(const Meeting& x, const Meeting& y) {
+    const auto all = [](const Meeting& m) {
+      return std::tuple(m.a.id, m.b.id, m.a.stamp, m.b.stamp, m.kinds[0], m.kinds[1]);
+    };
+    return all(x) <=> all(y);
+  }
+  friend bool operator==(const Meeting& x, const Meeting& y) { return (x <=> y) == 0; }
+};
+using Meetings = std::set<Meeting>;
+
+class Play {
+ public:
+  Play(Bytes& bytes, CountingMemory& memory);
+  void step(Bytes& bytes);
+  void check_memory(const CountingMemory& memory) const {
+    WINNOW_HOLDS(scene_->footprint().total().reserved + contacts_.footprint().total().reserved ==
+                 memory.outstanding());
+  }
+
+ private:
+  static SceneOptions some_options(Bytes& bytes, const Shapes& shapes, CountingMemory& memory);
+
+  void add(Bytes& bytes);
+  void change(Bytes& bytes);
+  void remove(Bytes& bytes);
+  void misuse(Bytes& bytes);
+  void collide(Bytes& bytes);
+  void check_events();
+  void check_fresh(ContactLevel level);
+  void check_carried(const Contacts& fresh) const;
+  void ask(Bytes& bytes);
+  void ask_ray(Bytes& bytes, SceneQueries& queries);
+  void ask_cast(Bytes& bytes, SceneQueries& queries);
+  void ask_overlap(Bytes& bytes, SceneQueries& queries);
+  void ask_distance(SceneQueries& queries);
+
+  [[nodiscard]] Pose some_pose(Bytes& bytes) const {
+    Pose pose = bytes.pose();
+    for (double& x : pose.position) x += far_;
+    return pose;
+  }
+  [[nodiscard]] BodyDefinition* some_body(Bytes& bytes, Key& key);
+  [[nodiscard]] Meeting meeting(Key a, Key b) const;
+  [[nodiscard]] double distance(ShapeId a, const Pose& at_a, ShapeId b, const Pose& at_b) const;
+
+  Shapes shapes_;
+  double far_ = 0.0;
+  SceneOptions options_;
+  std::unique_ptr<Scene> scene_;
+  Contacts contacts_;
+  std::map<Key, BodyDefinition, KeyOrder> bodies_;
+  Meetings shown_;    // by the last frame
+  Meetings dormant_;  // of two that rest since they were shown
+  ContactLevel level_ = ContactLevel::pairs;
+  std::uint64_t named_ = 0;
+};
+
+Play::Play(Bytes& bytes, CountingMemory& memory) : shapes_(bytes), contacts_(&memory) {
+  constexpr double kFar[] = {0.0, 0.0, 1e4, 1e9};
+  far_ = kFar[bytes.below(4)];
+  options_ = some_options(bytes, shapes_, memory);
+  scene_ = std::make_unique<Scene>(shapes_.pool, options_);
+}
+
+SceneOptions Play::some_options(Bytes& bytes, const Shapes& shapes, CountingMemory& memory) {
+  SceneOptions options{.memory = &memory, .composites = &shapes.composites};
+  options.execution = bytes.chance(4) ? Execution::parallel() : Execution::serial();
+  const auto all = all_structures();
+  for (StructureKind& kind : options.structures) kind = all[bytes.below(all.size())];
+  if (bytes.chance(2)) options.margin = 0.25;
+  if (bytes.chance(3)) options.carry_over = 0.0625;
+  return options;
+}
+
+BodyDefinition* Play::some_body(Bytes& bytes, Key& key) {
+  if (bodies_.empty()) return nullptr;
+  auto at = bodies_.lower_bound(Key{bytes.byte(), 0});
+  if (at == bodies_.end()) at = bodies_.begin();
+  key = at->first;
+  return &at->second;
+}
+
+void Play::add(Bytes& bytes) {
+  if (bodies_.size() > 40) return;
+  std::vector<BodyDefinition> bodies(1 + bytes.below(6));
+  for (BodyDefinition& body : bodies) {
+    body.shape = shapes_.ids[bytes.below(shapes_.ids.size())];
+    body.pose = some_pose(bytes);
+    body.motion = static_cast<Motion>(bytes.below(3));
+    body.data = named_++;
+  }
+  std::vector<Key> keys(bodies.size());
+  WINNOW_HOLDS(scene_->add(bodies, keys) == Status::ok);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    WINNOW_HOLDS(bodies_.emplace(keys[i], bodies[i]).second);
+  }
+}
+
+void Play::change(Bytes& bytes) {
+  Key key;
+  BodyDefinition* body = some_body(bytes, key);
+  if (body == nullptr) return;
+  switch (bytes.below(6)) {
+    case 0:
+      body->motion = static_cast<Motion>(bytes.below(3));
+      WINNOW_HOLDS(scene_->set_motion(key, body->motion) == Status::ok);
+      break;
+    case 1:
+      body->shape = shapes_.ids[bytes.below(shapes_.ids.size())];
+      WINNOW_HOLDS(scene_->set_shape(key, body->shape) == Status::ok);
+      break;
+    case 2:
+      body->filter = {1U << bytes.below(2), static_cast<unsigned>(1 + bytes.below(3)), 0};
+      WINNOW_HOLDS(scene_->set_filter(key, body->filter) == Status::ok);
+      break;
+    case 3: {
+      const double step = 0.015625 * static_cast<double>(bytes.below(4));
+      for (double& x : body->pose.position) x += step;
+      WINNOW_HOLDS(scene_->move(key, body->pose) == Status::ok);
+      break;
+    }
+    default:
+      body->pose = some_pose(bytes);
+      WINNOW_HOLDS(scene_->move(key, body->pose) == Status::ok);
+  }
+}
+
+void Play::remove(Bytes& bytes) {
+  Key key;
+  if (some_body(bytes, key) == nullptr) return;
+  const Key twice[] = {key, key};
+  WINNOW_HOLDS(scene_->remove(twice) == Status::invalid_key);
+  WINNOW_HOLDS(scene_->remove(key) == Status::ok);
+  WINNOW_HOLDS(scene_->remove(key) == Status::invalid_key);
+  bodies_.erase(key);
+}
+
+/// What has to be refused; that nothing has changed is seen by what follows.
+void Play::misuse(Bytes& bytes) {
+  const ShapeId bad{bytes.any<std::uint32_t>()};
+  const bool there = shapes_.pool.contains(bad) || shapes_.composites.contains(bad);
+  Key live;
+  if (some_body(bytes, live) == nullptr) return;
+  if (!there) {
+    WINNOW_HOLDS(scene_->set_shape(live, bad) == Status::invalid_key);
+    const BodyDefinition bodies[] = {bodies_.at(live), {.shape = bad}};
+    Key keys[2];
+    WINNOW_HOLDS(scene_->add(bodies, keys) == Status::invalid_key);
+  }
+  Pose pose;
+  for (double& x : pose.position) x = bytes.any<double>();
+  for (double& q : pose.orientation) q = bytes.any<double>();
+  if (!pose.is_valid()) WINNOW_HOLDS(scene_->move(live, pose) == Status::invalid_pose);
+  const auto stale = bytes.any<Key>();
+  if (!bodies_.contains(stale)) {
+    const Key keys[] = {live, stale};
+    WINNOW_HOLDS(scene_->set_motion(keys, Motion::fixed) == Status::invalid_key);
+    WINNOW_HOLDS(scene_->remove(keys) == Status::invalid_key);
+    WINNOW_HOLDS(!scene_->contains(stale));
+  }
+}
+
+void Play::collide(Bytes& bytes) {
+  const auto level = static_cast<ContactLevel>(bytes.below(4));
+  WINNOW_HOLDS(scene_->collide(level, contacts_) == Status::ok);
+  WINNOW_HOLDS(scene_->size() == bodies_.size());
+  check_events();
+  if (level != ContactLevel::pairs) check_fresh(level);
+}
+
+Meeting Play::meeting(Key a, Key b) const {
+  if (b.id < a.id) std::swap(a, b);
+  return {a, b, {bodies_.at(a).shape.kind_index(), bodies_.at(b).shape.kind_index()}};
+}
+
+void Play::check_events() {
+  Meetings before = shown_;
+  // Contacts of another level are not those that sleep.
+  if (level_ == contacts_.level()) before.insert(dormant_.begin(), dormant_.end());
+  level_ = contacts_.level();
+  shown_.clear();
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const Meeting pair = meeting(contacts_.a()[i], contacts_.b()[i]);
+    WINNOW_HOLDS(shown_.insert(pair).second);
+    const bool persists = before.erase(pair) == 1;
+    WINNOW_HOLDS(persists == (contacts_.event()[i] == ContactEvent::persisted));
+    const BodyDefinition& a = bodies_.at(contacts_.a()[i]);
+    const BodyDefinition& b = bodies_.at(contacts_.b()[i]);
+    WINNOW_HOLDS(a.data == contacts_.data_a()[i] && b.data == contacts_.data_b()[i]);
+    WINNOW_HOLDS(a.motion == Motion::dynamic || b.motion == Motion::dynamic);
+    WINNOW_HOLDS(may_meet(a.filter, b.filter));
+  }
+  for (const EndedContact& pair : contacts_.ended()) {
+    const auto [a, b] =
+        pair.a.id < pair.b.id ? std::pair(pair.a, pair.b) : std::pair(pair.b, pair.a);
+    const auto same = [a = a, b = b](const Meeting& m) { return m.a == a && m.b == b; };
+    const auto at = std::find_if(before.begin(), before.end(), same);
+    WINNOW_HOLDS(at != before.end());
+    before.erase(at);
+  }
+  // What was neither shown nor ended is of two that rest.
+  dormant_ = before;
+  for (const Meeting& pair : dormant_) {
+    WINNOW_HOLDS(bodies_.at(pair.a).motion != Motion::dynamic);
+    WINNOW_HOLDS(bodies_.at(pair.b).motion != Motion::dynamic);
+  }
+}
+
+/// Everything about contact m of two that were found alike.
+bool same_manifold(const Contacts& a, const Contacts& b, std::size_t m) {
+  if (a.part_a()[m] != b.part_a()[m] || a.part_b()[m] != b.part_b()[m]) return false;
+  if (a.level() < ContactLevel::distance) return true;
+  bool same = a.distance()[m] == b.distance()[m] && a.error_bound()[m] == b.error_bound()[m];
+  for (int k = 0; k < 3; ++k) same = same && a.normal(k)[m] == b.normal(k)[m];
+  if (a.level() != ContactLevel::manifold) return same;
+  same = same && a.point_first()[m + 1] == b.point_first()[m + 1];
+  for (std::size_t p = a.point_first()[m]; same && p < a.point_first()[m + 1]; ++p) {
+    const ContactPoint x = a.contact(p);
+    const ContactPoint y = b.contact(p);
+    same = std::equal(x.position, x.position + 3, y.position) && x.depth == y.depth &&
+           x.feature == y.feature;
+  }
+  return same;
+}
+
+void Play::check_fresh(ContactLevel level) {
+  const bool carries = options_.carry_over > 0.0;
+  Scene fresh(shapes_.pool, {.margin = options_.margin + (carries ? 0.25 : 0.0),
+                             .composites = &shapes_.composites});
+  for (const auto& [key, body] : bodies_) {
+    Key ignored;
+    WINNOW_HOLDS(fresh.add(body, ignored) == Status::ok);
+  }
+  Contacts contacts;
+  WINNOW_HOLDS(fresh.collide(carries ? ContactLevel::distance : level, contacts) == Status::ok);
+  if (carries) return check_carried(contacts);
+  WINNOW_HOLDS(std::ranges::equal(contacts.data_a(), contacts_.data_a()));
+  WINNOW_HOLDS(std::ranges::equal(contacts.data_b(), contacts_.data_b()));
+  WINNOW_HOLDS(std::ranges::equal(contacts.manifold_first(), contacts_.manifold_first()));
+  for (std::size_t m = 0; m < contacts.manifolds(); ++m) {
+    WINNOW_HOLDS(same_manifold(contacts_, contacts, m));
+  }
+}
+
+/// Every pair that touches is shown, and none that is farther than margin and carry-over allow.
+void Play::check_carried(const Contacts& fresh) const {
+  std::map<std::pair<ClientData, ClientData>, double> least;
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
+    double& distance =
+        least.emplace(std::pair(fresh.data_a()[i], fresh.data_b()[i]), kInfinity).first->second;
+    for (std::size_t m = fresh.manifold_first()[i]; m < fresh.manifold_first()[i + 1]; ++m) {
+      distance = std::min(distance, fresh.distance()[m]);
+    }
+  }
+  std::set<std::pair<ClientData, ClientData>> shown;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const std::pair pair(contacts_.data_a()[i], contacts_.data_b()[i]);
+    shown.insert(pair);
+    WINNOW_HOLDS(least.contains(pair));
+    WINNOW_HOLDS(least[pair] <= options_.margin + options_.carry_over + 1e-6);
+  }
+  for (const auto& [pair, distance] : least) {
+    if (distance <= 0.0) WINNOW_HOLDS(shown.contains(pair));
+  }
+}
+
+double Play::distance(ShapeId a, const Pose& at_a, ShapeId b, const Pose& at_b) const {
+  const ShapeId ids[] = {a, b};
+  const Pose poses[] = {at_a, at_b};
+  const BodyPair pair[] = {{0, 1}};
+  NarrowPhase narrow;
+  NarrowResult result;
+  WINNOW_HOLDS(narrow.collide(shapes_.pool, {ids, poses}, pair,
+                              {.level = ContactLevel::distance, .tier = NarrowTier::reference},
+                              result) == Status::ok);
+  return result.distance()[0];
+}
+
+void Play::ask_ray(Bytes& bytes, SceneQueries& queries) {
+  ShapeRay ray;
+  for (double& x : ray.origin) x = 0.25 * bytes.tame() + far_;
+  for (double& x : ray.direction) x = bytes.tame();
+  ray.max_t = bytes.chance(2) ? kInfinity : bytes.extent();
+  SceneHit first;
+  std::span<const SceneHit> all;
+  const Status status = queries.closest(ray, first);
+  if (ray.direction[0] == 0.0 && ray.direction[1] == 0.0 && ray.direction[2] == 0.0) {
+    WINNOW_HOLDS(status == Status::invalid_argument);
+    return;
+  }
+  WINNOW_HOLDS(status == Status::ok && queries.all(ray, all) == Status::ok);
+  WINNOW_HOLDS(all.empty() ? !first : first.key == all[0].key && first.t == all[0].t);
+  std::map<Key, double, KeyOrder> hits;
+  double before = 0.0;
+  for (const SceneHit& hit : all) {
+    WINNOW_HOLDS(hit.t >= before && hits.emplace(hit.key, hit.t).second);
+    before = hit.t;
+  }
+  for (const auto& [key, body] : bodies_) {
+    if (body.shape.is_composite()) continue;
+    ShapeHit hit;
+    WINNOW_HOLDS(cast_ray(shapes_.pool.tables(), body.shape, body.pose, ray, hit) == Status::ok);
+    const auto at = hits.find(key);
+    WINNOW_HOLDS(hit.hit == (at != hits.end()));
+    WINNOW_HOLDS(!hit.hit || hit.t == at->second);
+  }
+}
+
+void Play::ask_cast(Bytes& bytes, SceneQueries& queries) {
+  ShapeCast cast{.shape = shapes_.ids[bytes.below(shapes_.convex)], .pose = some_pose(bytes)};
+  double square = 0.0;
+  for (double& x : cast.direction) {
+    x = 0.25 * bytes.tame();
+    square += x * x;
+  }
+  if (square == 0.0) return;
+  constexpr double kTolerance = 1e-6;
+  SceneHit hit;
+  WINNOW_HOLDS(queries.closest(cast, hit, {}, kTolerance) == Status::ok);
+  // Nothing is met before, and the one that is met is close then.
+  for (const auto& [key, body] : bodies_) {
+    if (body.shape.is_composite()) continue;
+    const double end = hit ? hit.t : cast.max_t;
+    for (const double share : {0.3, 0.9, 1.0}) {
+      Pose pose = cast.pose;
+      for (int k = 0; k < 3; ++k) pose.position[k] += share * end * cast.direction[k];
+      const double gap = distance(cast.shape, pose, body.shape, body.pose);
+      const double noise = 1e-8 + 1e-15 * (std::sqrt(square) + far_);
+      if (hit && hit.t == 0.0) break;
+      WINNOW_HOLDS(gap >= -noise);
+      if (share == 1.0 && hit && key == hit.key) {
+        WINNOW_HOLDS(gap <= kTolerance * 4 + noise);
+      }
+    }
+  }
+}
+
+void Play::ask_overlap(Bytes& bytes, SceneQueries& queries) {
+  const ShapeId shape = shapes_.ids[bytes.below(shapes_.ids.size())];
+  const Pose pose = some_pose(bytes);
+  std::span<const SceneOverlap> found;
+  WINNOW_HOLDS(queries.overlap(shape, pose, found) == Status::ok);
+  WINNOW_HOLDS(std::is_sorted(found.begin(), found.end(),
+                              [](const auto& a, const auto& b) { return a.key.id < b.key.id; }));
+  if (shape.is_composite()) return;
+  for (const auto& [key, body] : bodies_) {
+    if (body.shape.is_composite()) continue;
+    const bool is_found = std::any_of(found.begin(), found.end(),
+                                      [&](const SceneOverlap& one) { return one.key == key; });
+    WINNOW_HOLDS(is_found == (distance(shape, pose, body.shape, body.pose) <= 0.0));
+  }
+}
+
+void Play::ask_distance(SceneQueries& queries) {
+  if (bodies_.size() < 2) return;
+  const auto& [a, body_a] = *bodies_.begin();
+  const auto& [b, body_b] = *bodies_.rbegin();
+  SceneDistance answer;
+  WINNOW_HOLDS(queries.distance(a, b, answer) == Status::ok);
+  if (body_a.shape.is_composite() || body_b.shape.is_composite()) return;
+  const double truth = distance(body_a.shape, body_a.pose, body_b.shape, body_b.pose);
+  WINNOW_HOLDS(answer.distance == truth ||
+               std::abs(answer.distance - truth) <= 2.0 * answer.error_bound + 1e-12);
+}
+
+void Play::ask(Bytes& bytes) {
+  WINNOW_HOLDS(scene_->refresh() == Status::ok);
+  SceneQueries queries(*scene_);
+  switch (bytes.below(4)) {
+    case 0:
+      return ask_ray(bytes, queries);
+    case 1:
+      return ask_cast(bytes, queries);
+    case 2:
+      return ask_overlap(bytes, queries);
+    default:
+      return ask_distance(queries);
+  }
+}
+
+void Play::step(Bytes& bytes) {
+  switch (bytes.below(10)) {
+    case 0:
+    case 1:
+      return add(bytes);
+    case 2:
+    case 3:
+    case 4:
+      return change(bytes);
+    case 5:
+      return remove(bytes);
+    case 6:
+      return misuse(bytes);
+    case 7:
+      return ask(bytes);
+    default:
+      return collide(bytes);
+  }
+}
+
+}  // namespace
+
+void fuzz(std::span<const std::uint8_t> input) {
+  Bytes bytes(input);
+  CountingMemory memory;
+  Play play(bytes, memory);
+  for (int steps = 0; !bytes.empty() && steps < 100; ++steps) {
+    play.step(bytes);
+    play.check_memory(memory);
+  }
+}
+
+std::vector<std::string> fuzz_seeds() {
+  return random_seeds(200, 800);
+}
+
+}  // namespace winnow::test

@@ -1,0 +1,267 @@
+// Convex shapes, hulls of hostile points and faces among them: bad ones are refused and change
+// nothing, and of good ones every tier says the same within its bounds, either way round.
+
+#include <winnow/winnow.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tests/fuzz/bytes.h"
+#include "tests/fuzz/target.h"
+#include "tests/support/config.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+class Workshop {
+ public:
+  explicit Workshop(Bytes& bytes) {
+    constexpr double kSizes[] = {1.0, 1.0, 1.0, 1e-3, 1e3, 1e-8, 1e8};
+    size_ = kSizes[bytes.below(std::size(kSizes))];
+  }
+  void add(Bytes& bytes);
+  void check_pairs(Bytes& bytes);
+  void check_rays(Bytes& bytes) const;
+
+ private:
+  /// Mostly good.
+  double length(Bytes& bytes) const {
+    return bytes.chance(32) ? bytes.any<double>() : size_ * bytes.extent();
+  }
+  double coordinate(Bytes& bytes) const {
+    return bytes.chance(64) ? bytes.any<double>() : size_ * 0.25 * bytes.tame();
+  }
+  std::vector<Eigen::Vector3d> points(Bytes& bytes) const;
+  Status add_kind(Bytes& bytes, ShapeId& id, bool& good);
+  Status add_faces(Bytes& bytes, ShapeId& id);
+
+  ShapePool pool_;
+  std::vector<ShapeId> ids_;
+  double size_ = 1.0;
+};
+
+bool is_length(double x) {
+  return x >= 0.0 && x < kInfinity;
+}
+
+std::vector<Eigen::Vector3d> Workshop::points(Bytes& bytes) const {
+  std::vector<Eigen::Vector3d> points(bytes.below(24));
+  for (Eigen::Vector3d& point : points) {
+    for (int k = 0; k < 3; ++k) point[k] = coordinate(bytes);
+  }
+  return points;
+}
+
+Status Workshop::add_faces(Bytes& bytes, ShapeId& id) {
+  // An octahedron, with some of it changed.
+  std::vector<Eigen::Vector3d> points;
+  for (int axis = 0; axis < 3; ++axis) {
+    points.push_back(size_ * Eigen::Vector3d::Unit(axis));
+    points.push_back(-size_ * Eigen::Vector3d::Unit(axis));
+  }
+  std::vector<std::uint32_t> loops{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
+                                   2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+  std::vector<std::uint32_t> sizes(8, 3);
+  for (std::size_t changes = bytes.below(4); changes-- != 0;) {
+    switch (bytes.below(5)) {
+      case 0:
+        points[bytes.below(points.size())][static_cast<int>(bytes.below(3))] = coordinate(bytes);
+        break;
+      case 1:
+        loops[bytes.below(loops.size())] = bytes.byte();
+        break;
+      case 2:
+        sizes[bytes.below(sizes.size())] = bytes.byte();
+        break;
+      case 3:
+        if (loops.size() > 1) loops.pop_back();
+        break;
+      default:
+        if (sizes.size() > 1) sizes.pop_back();
+    }
+  }
+  return pool_.add_hull(points, {loops, sizes}, size_ * bytes.extent(), id);
+}
+
+/// Says whether it has to be taken, where that is plain.
+Status Workshop::add_kind(Bytes& bytes, ShapeId& id, bool& good) {
+  const double a = length(bytes);
+  const double b = length(bytes);
+  const double c = length(bytes);
+  const double r = bytes.chance(4) ? length(bytes) : 0.0;
+  const bool finite = std::isfinite(a) && std::isfinite(b) && std::isfinite(c);
+  switch (bytes.below(9)) {
+    case 0:
+      good = is_length(a);
+      return pool_.add(SphereShape{a}, id);
+    case 1:
+      good = is_length(a) && is_length(b);
+      return pool_.add(CapsuleShape{a, b}, id);
+    case 2:
+      good = is_length(a) && is_length(b) && is_length(c) && is_length(r);
+      return pool_.add(BoxShape{{a, b, c}, r}, id);
+    case 3:
+      good = is_length(a) && is_length(b) && is_length(r);
+      return pool_.add(CylinderShape{a, b, r}, id);
+    case 4:
+      good = is_length(a) && is_length(b) && is_length(r);
+      return pool_.add(ConeShape{a, b, r}, id);
+    case 5:
+      good = finite && is_length(r);
+      return pool_.add(TriangleShape{{{a, b, c}, {b, -c, a}, {-c, a, 0.0}}, r}, id);
+    case 6:
+      good = finite && (a != 0.0 || b != 0.0 || c != 0.0);
+      return pool_.add(HalfSpaceShape{{a, b, c}, 0.0}, id);
+    case 7: {
+      const auto given = points(bytes);
+      good = !given.empty() && is_length(r) &&
+             std::all_of(given.begin(), given.end(), [](auto& p) { return p.allFinite(); });
+      return pool_.add_hull(given, r, id);
+    }
+    default:
+      const Status status = add_faces(bytes, id);
+      good = status == Status::ok;
+      return status;
+  }
+}
+
+void Workshop::add(Bytes& bytes) {
+  const ShapeTables before = pool_.tables();
+  const std::size_t reserved = pool_.footprint().total().used;
+  ShapeId id;
+  bool good = false;
+  const Status status = add_kind(bytes, id, good);
+  if (status == Status::ok) {
+    WINNOW_HOLDS(good && pool_.contains(id));
+    const Aabb box = pool_.bounds(id, Pose{});
+    WINNOW_HOLDS(!box.min.hasNaN() && !box.max.hasNaN());
+    // Pairs are asked about where sizes have something to do with each other.
+    const float largest = (box.max - box.min).maxCoeff();
+    const bool is_small = static_cast<double>(largest) < 1e12 * size_;
+    if (is_small || id.kind() == ShapeKind::half_space) ids_.push_back(id);
+    return;
+  }
+  // Numbers near the ends of double may make what is no hull any more.
+  WINNOW_HOLDS(status == Status::invalid_shape || status == Status::unsupported);
+  WINNOW_HOLDS(id == ShapeId{} && pool_.footprint().total().used == reserved);
+  WINNOW_HOLDS(std::equal(before.count, before.count + kShapeKinds, pool_.tables().count));
+}
+
+struct Answer {
+  bool overlap = false;
+  double distance = 0.0;
+  double bound = 0.0;
+};
+
+bool agree(const Answer& x, const Answer& y) {
+  return x.distance == y.distance ||
+         std::abs(x.distance - y.distance) <= (x.bound + y.bound) * (1.0 + 1e-12);
+}
+
+void Workshop::check_pairs(Bytes& bytes) {
+  if (ids_.empty()) return;
+  std::vector<ShapeId> shapes;
+  std::vector<Pose> poses;
+  std::vector<BodyPair> pairs;
+  std::vector<BodyPair> turned;
+  for (std::size_t i = 1 + bytes.below(12); i-- != 0;) {
+    for (int k = 0; k < 2; ++k) {
+      shapes.push_back(ids_[bytes.below(ids_.size())]);
+      poses.push_back(bytes.pose());
+      for (double& x : poses.back().position) x *= size_;
+    }
+    const auto n = static_cast<std::uint32_t>(shapes.size());
+    pairs.push_back({n - 2, n - 1});
+    turned.push_back({n - 1, n - 2});
+  }
+  const auto ask = [&](std::span<const BodyPair> asked, ContactLevel level, NarrowTier tier) {
+    NarrowPhase narrow;
+    NarrowResult result;
+    WINNOW_HOLDS(narrow.collide(pool_, {shapes, poses}, asked,
+                                {.level = level, .tier = tier, .margin = 0.25 * size_},
+                                result) == Status::ok);
+    std::vector<Answer> answers(asked.size());
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      Answer& answer = answers[result.pair_of(i)];
+      answer.overlap = result.overlaps(i);
+      if (level == ContactLevel::boolean) continue;
+      answer.distance = result.distance()[i];
+      answer.bound = result.error_bound()[i];
+      WINNOW_HOLDS(!std::isnan(answer.distance) && answer.bound >= 0.0);
+      double square = 0.0;
+      for (int k = 0; k < 3; ++k) square += result.normal(k)[i] * result.normal(k)[i];
+      WINNOW_HOLDS(std::abs(square - 1.0) < 1e-5);
+      if (level == ContactLevel::manifold) {
+        WINNOW_HOLDS(result.contact_count()[i] <= kManifoldPoints);
+      }
+    }
+    return answers;
+  };
+  const auto truth = ask(pairs, ContactLevel::distance, NarrowTier::reference);
+  const auto robust = ask(pairs, ContactLevel::distance, NarrowTier::robust);
+  const auto fast = ask(pairs, ContactLevel::distance, NarrowTier::fast);
+  const auto mirrored = ask(turned, ContactLevel::distance, NarrowTier::robust);
+  const auto verdicts = ask(pairs, ContactLevel::boolean, NarrowTier::robust);
+  const auto manifolds = ask(pairs, ContactLevel::manifold, NarrowTier::robust);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    WINNOW_HOLDS(robust[i].overlap == truth[i].overlap);
+    WINNOW_HOLDS(mirrored[i].overlap == truth[i].overlap);
+    WINNOW_HOLDS(verdicts[i].overlap == truth[i].overlap);
+    WINNOW_HOLDS(manifolds[i].overlap == truth[i].overlap);
+    WINNOW_HOLDS(agree(robust[i], truth[i]));
+    WINNOW_HOLDS(agree(mirrored[i], truth[i]));
+    WINNOW_HOLDS(agree(fast[i], truth[i]));
+    if (truth[i].distance <= 0.0) WINNOW_HOLDS(agree(manifolds[i], truth[i]));
+  }
+}
+
+/// Where a ray meets a shape, the shape is.
+void Workshop::check_rays(Bytes& bytes) const {
+  if (ids_.empty()) return;
+  const ShapeId id = ids_[bytes.below(ids_.size())];
+  const Pose pose = bytes.pose();
+  ShapeRay ray;
+  for (double& x : ray.origin) x = size_ * 0.25 * bytes.tame();
+  for (double& x : ray.direction) x = bytes.tame();
+  ray.max_t = bytes.chance(2) ? kInfinity : size_ * bytes.extent();
+  ShapeHit hit;
+  const Status status = cast_ray(pool_.tables(), id, pose, ray, hit);
+  const bool moves = ray.direction[0] != 0.0 || ray.direction[1] != 0.0 || ray.direction[2] != 0.0;
+  WINNOW_HOLDS((status == Status::ok) == moves);
+  if (status != Status::ok || !hit.hit) return;
+  WINNOW_HOLDS(hit.t >= 0.0 && hit.t <= ray.max_t);
+  double square = 0.0;
+  for (const double x : hit.normal) square += x * x;
+  WINNOW_HOLDS(std::abs(square - 1.0) < 1e-9);
+}
+
+}  // namespace
+
+void fuzz(std::span<const std::uint8_t> input) {
+  Bytes bytes(input);
+  const auto isas = available_isas();
+  const IsaScope isa(isas[bytes.below(isas.size())]);
+  Workshop workshop(bytes);
+  for (int steps = 0; !bytes.empty() && steps < 60; ++steps) {
+    switch (bytes.below(5)) {
+      case 0:
+      case 1:
+        workshop.add(bytes);
+        break;
+      case 2:
+        workshop.check_rays(bytes);
+        break;
+      default:
+        workshop.check_pairs(bytes);
+    }
+  }
+}
+
+std::vector<std::string> fuzz_seeds() {
+  return random_seeds(150, 900);
+}
+
+}  // namespace winnow::test
