@@ -425,8 +425,9 @@ void Play::ask_overlap(Bytes& bytes, SceneQueries& queries) {
   WINNOW_HOLDS(std::is_sorted(found.begin(), found.end(),
                               [](const auto& a, const auto& b) { return a.key.id < b.key.id; }));
   if (shape.is_composite()) return;
-  for (const auto& [key, body] : bodies_) {
+  for (const auto& [of_body, body] : bodies_) {
     if (body.shape.is_composite()) continue;
+    const Key key = of_body;
     const bool is_found = std::any_of(found.begin(), found.end(),
                                       [&](const SceneOverlap& one) { return one.key == key; });
     WINNOW_HOLDS(is_found == (distance(shape, pose, body.shape, body.pose) <= 0.0));

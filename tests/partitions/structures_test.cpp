@@ -42,6 +42,27 @@ TEST(Structures, can_be_exchanged_while_objects_stay) {
   EXPECT_EQ(partition.name(), "FlatGrid");
 }
 
+// A buffer that a structure without tests has filled is not updated, but filled anew.
+TEST(Structures, report_what_they_are_exact_about_when_exchanged) {
+  Partition partition(n_squared());
+  const std::vector<Aabb> boxes = uniform_boxes(100);
+  std::vector<Key> keys(boxes.size());
+  ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
+  const std::vector<Pair> truth = brute_force_pairs(numbered(boxes));
+  PairBuffer pairs;
+  PairEvents events;
+  for (int round = 0; round < 2; ++round) {
+    ASSERT_EQ(partition.set_structure(n_squared()), Status::ok);
+    ASSERT_EQ(partition.self_pairs(pairs, events), Status::ok);
+    EXPECT_EQ(pairs.size(), boxes.size() * (boxes.size() - 1) / 2);
+    ASSERT_EQ(partition.set_structure(flat_grid()), Status::ok);
+    ASSERT_EQ(partition.self_pairs(pairs, events), Status::ok);
+    EXPECT_TRUE(partition.is_exact());
+    EXPECT_TRUE(right_pairs(pairs.pairs(), truth, true));
+    EXPECT_EQ(events.persisting(), truth.size());
+  }
+}
+
 // Every structure after every other one, in a scene that moves, with filters, a tracked buffer and
 // events.
 TEST(Structures, keep_keys_filters_pairs_and_events_when_exchanged) {
