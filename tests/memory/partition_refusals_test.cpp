@@ -1,0 +1,270 @@
+// Every request for memory of every call of a partition is refused in turn.
+
+#include <algorithm>
+#include <deque>
+
+#include "tests/memory/refusals.h"
+#include "tests/support/hostile_casts.h"
+#include "tests/support/scenes.h"
+
+namespace winnow::test {
+namespace {
+
+/// A partition, another one, buffers of results, and what was answered.
+struct PartitionWorld {
+  PartitionWorld(std::pmr::memory_resource* memory, StructureKind structure, Volume volume,
+                 Margin margin, Execution execution)
+      : partition(structure,
+                  {.memory = memory, .execution = execution, .volume = volume, .margin = margin}),
+        other(linear_bvh(), {.memory = memory, .execution = execution}),
+        pairs(memory),
+        cross(memory),
+        events(memory),
+        alone(memory),
+        hits(memory),
+        batch(memory),
+        objects(memory) {}
+
+  void describe(Digest& digest) const {
+    describe(partition, digest);
+    describe(other, digest);
+    digest.insert(digest.end(), answers.begin(), answers.end());
+  }
+  static void describe(const Partition& p, Digest& digest) {
+    digest.push_back(p.size());
+    for (ObjectId id = 0; id < 400; ++id) {
+      const Key key = p.key_of(id);
+      digest.push_back(key.id);
+      Aabb box;
+      if (p.bounds(key, box) != Status::ok) continue;
+      for (int k = 0; k < 3; ++k) {
+        put(digest, static_cast<double>(box.min[k]));
+        put(digest, static_cast<double>(box.max[k]));
+      }
+      ObjectFilter filter;
+      EXPECT_EQ(p.filter(key, filter), Status::ok);
+      digest.insert(digest.end(), {p.client_data_of(id), filter.layers, filter.mask});
+    }
+  }
+
+  /// Pairs in an order that does not depend on what was refused before.
+  void answer(const PairBuffer& found) {
+    std::vector<Pair> sorted(found.begin(), found.end());
+    std::sort(sorted.begin(), sorted.end());
+    for (const Pair& pair : sorted)
+      answers.push_back(std::uint64_t{pair.first} << 32U | pair.second);
+  }
+  void answer(std::span<const Hit> found) {
+    for (const Hit& hit : found) {
+      answers.push_back(hit.key.id);
+      put(answers, static_cast<double>(hit.t));
+    }
+  }
+
+  Partition partition;
+  Partition other;
+  PairBuffer pairs;
+  PairBuffer cross;
+  PairEvents events;
+  PairEvents alone;
+  HitBuffer hits;
+  HitBuffer batch;
+  OverlapBuffer objects;
+  std::vector<Key> keys;
+  Digest answers;
+};
+
+/// What the calls are told: the same for every world.
+struct Script {
+  Script() {
+    Random random(61);
+    rays = plain_rays(boxes, 40, random);
+  }
+  std::vector<Aabb> boxes = mixed_boxes(150, 3);
+  std::vector<Aabb> later = mixed_boxes(150, 4);
+  std::vector<Ray> rays;
+};
+
+const Script& script() {
+  static const Script one;
+  return one;
+}
+
+Status insert(PartitionWorld& w, Partition& partition, std::span<const Aabb> boxes) {
+  std::vector<ClientData> data(boxes.size());
+  for (std::size_t i = 0; i < data.size(); ++i) data[i] = 7 * i;
+  std::vector<Key> keys(boxes.size());
+  const Status status = partition.insert(boxes, data, keys);
+  if (status != Status::ok) {
+    EXPECT_EQ(keys, std::vector<Key>(keys.size()));
+    return status;
+  }
+  for (const Key& key : keys) w.answers.push_back(key.id);
+  if (&partition == &w.partition) w.keys.insert(w.keys.end(), keys.begin(), keys.end());
+  return status;
+}
+
+Status self_pairs(PartitionWorld& w, Order order) {
+  const Status status = w.partition.self_pairs(w.pairs, w.events, {.order = order});
+  if (status == Status::ok) w.answer(w.pairs);
+  return status;
+}
+
+Status changes_alone(PartitionWorld& w) {
+  return w.partition.self_pairs(w.alone);
+}
+
+using Calls = std::vector<Call<PartitionWorld>>;
+
+/// Objects come, move, get filters, go, and come again.
+void add_changes(Calls& calls) {
+  calls.push_back({"insert", [](auto& w) {
+                     return insert(w, w.partition, std::span(script().boxes).first(100));
+                   }});
+  calls.push_back({"pairs", [](auto& w) { return self_pairs(w, Order::fast); }});
+  calls.push_back({"changes alone", changes_alone});
+  calls.push_back({"update some", [](auto& w) {
+                     const std::vector<std::uint32_t> listed{1, 5, 9, 60};
+                     return w.partition.update(w.keys, std::span(script().later).first(100),
+                                               Entries::listed(listed));
+                   }});
+  calls.push_back({"pairs of what moved", [](auto& w) { return self_pairs(w, Order::fast); }});
+  calls.push_back({"changes alone, of what moved", changes_alone});
+  calls.push_back({"filter", [](auto& w) {
+                     const ObjectFilter filters[] = {{2, 2, 0}, {1, 3, 1}};
+                     return w.partition.set_filter(std::span(w.keys).first(2), filters);
+                   }});
+  calls.push_back({"remove", [](auto& w) {
+                     const std::vector<Key> gone(w.keys.begin() + 20, w.keys.begin() + 40);
+                     const Status status = w.partition.remove(gone);
+                     if (status == Status::ok)
+                       w.keys.erase(w.keys.begin() + 20, w.keys.begin() + 40);
+                     return status;
+                   }});
+  calls.push_back({"insert again", [](auto& w) {
+                     return insert(w, w.partition, std::span(script().boxes).last(50));
+                   }});
+  calls.push_back({"insert one", [](auto& w) {
+                     Key key;
+                     const Status status = w.partition.insert(script().later[7], 9, key);
+                     if (status == Status::ok) w.keys.push_back(key);
+                     return status;
+                   }});
+  calls.push_back({"update all", [](auto& w) {
+                     return w.partition.update(w.keys,
+                                               std::span(script().later).first(w.keys.size()));
+                   }});
+  calls.push_back({"canonical pairs", [](auto& w) { return self_pairs(w, Order::canonical); }});
+}
+
+/// The questions, each of fresh buffers' memory the first time.
+void add_questions(Calls& calls) {
+  calls.push_back({"insert into the other one", [](auto& w) {
+                     return insert(w, w.other, std::span(script().later).first(60));
+                   }});
+  calls.push_back({"pairs with the other one", [](auto& w) {
+                     const Status status = w.partition.pairs_with(w.other, w.cross);
+                     if (status == Status::ok) w.answer(w.cross);
+                     return status;
+                   }});
+  calls.push_back({"refresh", [](auto& w) { return w.partition.refresh(); }});
+  calls.push_back({"all hits of a ray", [](auto& w) {
+                     const Status status = w.partition.all(script().rays[0], w.hits);
+                     if (status == Status::ok) w.answer(w.hits.hits());
+                     return status;
+                   }});
+  calls.push_back({"all hits of many rays", [](auto& w) {
+                     const Status status = w.partition.all(RayBatch(script().rays), w.batch);
+                     if (status == Status::ok) w.answer(w.batch.hits());
+                     return status;
+                   }});
+  calls.push_back({"closest hits", [](auto& w) {
+                     std::vector<Key> keys(script().rays.size());
+                     const Status status = w.partition.closest(RayBatch(script().rays),
+                                                               {keys.data(), nullptr, nullptr});
+                     if (status != Status::ok) return status;
+                     for (const Key& key : keys) w.answers.push_back(key.id);
+                     Hit hit;
+                     return w.partition.any(script().rays[1], hit);
+                   }});
+  calls.push_back({"overlap with a sphere", [](auto& w) {
+                     const Sphere sphere{script().boxes[3].min, 20.0F};
+                     const Status status =
+                         w.partition.overlap(sphere, w.objects, {}, Order::canonical);
+                     if (status != Status::ok) return status;
+                     for (const ObjectId id : w.objects.ids()) w.answers.push_back(id);
+                     return status;
+                   }});
+  calls.push_back({"overlap with boxes", [](auto& w) {
+                     const Status status = w.partition.overlap(BoxView(script().boxes), w.cross);
+                     if (status == Status::ok) w.answer(w.cross);
+                     return status;
+                   }});
+  calls.push_back({"nearest", [](auto& w) {
+                     const Status status = w.partition.nearest(script().boxes[8], 30, 1e9F, w.hits);
+                     if (status == Status::ok) w.answer(w.hits.hits());
+                     return status;
+                   }});
+}
+
+/// Structures are exchanged, room is made, and all is given back.
+void add_upkeep(Calls& calls) {
+  calls.push_back({"other structure", [](auto& w) {
+                     return w.partition.set_structure(
+                         w.partition.structure() == flat_grid() ? linear_bvh() : flat_grid());
+                   }});
+  calls.push_back(
+      {"refresh of the other structure", [](auto& w) { return w.partition.refresh(); }});
+  calls.push_back(
+      {"pairs of the other structure", [](auto& w) { return self_pairs(w, Order::canonical); }});
+  calls.push_back({"reserve", [](auto& w) { return w.partition.reserve(600, Pages::touched); }});
+  calls.push_back(
+      {"reserve of pairs", [](auto& w) { return w.partition.reserve_pairs(w.pairs, 20'000); }});
+  calls.push_back({"clear", [](auto& w) {
+                     w.partition.clear();
+                     w.partition.release_memory();
+                     w.keys.clear();
+                     return Status::ok;
+                   }});
+  calls.push_back({"insert after all was given back",
+                   [](auto& w) { return insert(w, w.partition, script().later); }});
+  calls.push_back({"pairs at last", [](auto& w) { return self_pairs(w, Order::fast); }});
+}
+
+class PartitionRefusals : public Conformance {
+ protected:
+  std::size_t check(Volume volume, Margin margin) const {
+    Calls calls;
+    add_changes(calls);
+    add_questions(calls);
+    add_upkeep(calls);
+    return RefusedPlay<PartitionWorld, StructureKind, Volume, Margin, Execution>(
+               calls, config().threads, structure_named(config().partition), volume, margin,
+               config().execution())
+        .check();
+  }
+};
+
+TEST_P(PartitionRefusals, change_nothing_and_leave_no_trace) {
+  EXPECT_GT(check(Volume::aabb, {}), 100U);
+}
+
+TEST_P(PartitionRefusals, change_nothing_where_volumes_have_margins) {
+  // As many more columns as there are, in the narrowest and the widest of them.
+  for (const Volume volume : {Volume::sphere, Volume::kdop26}) check(volume, {0.1F, 0.05F});
+}
+
+std::vector<Config> refusal_configs() {
+  std::vector<Config> configs;
+  for (const std::string_view name : structure_names()) {
+    for (const int threads : {1, 2})
+      configs.push_back({std::string(name), available_isas().back(), threads});
+  }
+  return configs;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PartitionRefusals, testing::ValuesIn(refusal_configs()),
+                         testing::PrintToStringParamName());
+
+}  // namespace
+}  // namespace winnow::test

@@ -1,0 +1,130 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <winnow/core/status.h>
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <memory_resource>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
+#include "tests/support/random.h"
+
+namespace winnow::test {
+
+/// Numbers to be compared bit by bit.
+using Digest = std::vector<std::uint64_t>;
+
+inline void put(Digest& digest, double value) {
+  digest.push_back(std::bit_cast<std::uint64_t>(value));
+}
+
+/// One call of a play: its name for messages, and what it does to the world.
+template <typename World>
+struct Call {
+  const char* name;
+  std::function<Status(World&)> run;
+};
+
+/// Plays a list of calls on a world whose memory resource refuses the k-th request of one call,
+/// that one alone or all from it on: for every call, and every k until the call makes fewer
+/// requests. A call that answers `out_of_memory` has changed nothing that a digest shows, succeeds
+/// once memory is there again, and the rest of the play ends as if nothing had ever been refused:
+/// with the same keys, ids and answers.
+///
+/// A World is made with a memory resource, and has `void describe(Digest&) const`: all that can be
+/// seen of it without changing it, and what calls have answered.
+template <typename World, typename... Arguments>
+class RefusedPlay {
+ public:
+  RefusedPlay(std::vector<Call<World>> calls, int threads, Arguments... arguments)
+      : calls_(std::move(calls)), threads_(threads), arguments_(arguments...) {}
+
+  /// How many requests were refused in all.
+  std::size_t check() {
+    play_twin();
+    for (std::size_t call = 0; call < calls_.size() && !testing::Test::HasFailure(); ++call) {
+      SCOPED_TRACE(std::string("call ") + std::to_string(call) + ", " + calls_[call].name);
+      for (const bool once : {true, false}) {
+        std::size_t k = 0;
+        // In smaller runs not each of very many.
+        while (refuse(call, k, once)) k += k < 20 || !is_reduced() ? 1 : 7;
+        EXPECT_LT(k, kMost) << "the call never stops asking for memory";
+      }
+    }
+    return refused_;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 2000;
+
+  std::unique_ptr<World> make(CountingMemory& memory) const {
+    return std::apply(
+        [&](auto... arguments) { return std::make_unique<World>(&memory, arguments...); },
+        arguments_);
+  }
+  Status run(World& world, std::size_t call) {
+    return threads_.run([&] { return calls_[call].run(world); });
+  }
+  static Digest digest(const World& world) {
+    Digest digest;
+    world.describe(digest);
+    return digest;
+  }
+
+  void play_twin() {
+    CountingMemory memory;
+    const auto world = make(memory);
+    truths_.push_back(digest(*world));
+    for (std::size_t call = 0; call < calls_.size(); ++call) {
+      ASSERT_EQ(run(*world, call), Status::ok) << calls_[call].name;
+      truths_.push_back(digest(*world));
+    }
+  }
+
+  /// False if the call got all that it asked for, or something is wrong.
+  bool refuse(std::size_t call, std::size_t k, bool once) {
+    CountingMemory memory;
+    const auto world = make(memory);
+    for (std::size_t i = 0; i < call; ++i) {
+      if (run(*world, i) != Status::ok) return false;
+    }
+    const std::size_t refusals = memory.refusals();
+    once ? memory.refuse_one_after(k) : memory.refuse_after(k);
+    const Status status = run(*world, call);
+    memory.grant_all();
+    if (memory.refusals() == refusals) {
+      EXPECT_EQ(status, Status::ok);
+      return false;
+    }
+    ++refused_;
+    if (status != Status::ok) {
+      EXPECT_EQ(status, Status::out_of_memory);
+      EXPECT_TRUE(digest(*world) == truths_[call]) << "changed by what was refused";
+      EXPECT_EQ(run(*world, call), Status::ok) << "once there is memory";
+    }
+    for (std::size_t i = call + 1; i < calls_.size(); ++i) {
+      EXPECT_EQ(run(*world, i), Status::ok) << "later, " << calls_[i].name;
+    }
+    EXPECT_TRUE(digest(*world) == truths_.back()) << "not as the twin that was never refused";
+    if (!testing::Test::HasFailure() && k < kMost) return true;
+    ADD_FAILURE() << "request " << k << (once ? " alone" : " and all after it");
+    return false;
+  }
+
+  std::vector<Call<World>> calls_;
+  Threads threads_;
+  std::tuple<Arguments...> arguments_;
+  std::vector<Digest> truths_;  // before each call, and at the end
+  std::size_t refused_ = 0;
+};
+
+}  // namespace winnow::test
