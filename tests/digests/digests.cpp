@@ -1,0 +1,378 @@
+// Usage: winnow_digests [--check FILE]
+//
+// Prints a digest of every kind of answer, one a line, in each floating-point mode that a host may
+// have set: each is computed on every instruction set of the machine and on 1 to 32 threads, and if
+// these do not agree, says which of them differ. With --check prints the lines alone that the file
+// has otherwise, and ends with 1 if there are any. The numbers that go in are made without the
+// mathematical library, whose last digits depend on its version.
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <winnow/winnow.h>
+
+#include <algorithm>
+#include <bit>
+#include <cfenv>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
+
+namespace winnow::test {
+namespace {
+
+/// FNV-1a over 64-bit numbers.
+class Digest {
+ public:
+  void add(std::uint64_t value) { hash_ = (hash_ ^ value) * 0x100000001B3ULL + (value >> 32U); }
+  void add(double value) { add(std::bit_cast<std::uint64_t>(value + 0.0)); }
+  [[nodiscard]] std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xCBF29CE484222325ULL;
+};
+
+/// Numbers that are exact in every mode.
+class Numbers {
+ public:
+  explicit Numbers(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t bits() {
+    std::uint64_t z = state_ += 0x9E3779B97F4A7C15ULL;
+    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
+    return z ^ (z >> 31U);
+  }
+  std::size_t below(std::size_t count) { return static_cast<std::size_t>(bits() % count); }
+  /// A multiple of 2^-16 in [-range, range), of a power of two.
+  double coordinate(int range) {
+    const auto steps = static_cast<std::int64_t>(bits() % (std::uint64_t{1} << 20U)) - (1 << 19);
+    return static_cast<double>(steps) * range * 0x1p-19;
+  }
+  Pose pose(int range) {
+    Pose pose;
+    for (double& x : pose.position) x = coordinate(range);
+    for (double& q : pose.orientation) q = coordinate(1);
+    return pose;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+std::vector<Aabb> boxes(std::size_t count, std::uint64_t seed) {
+  Numbers numbers(seed);
+  std::vector<Aabb> boxes(count);
+  for (Aabb& box : boxes) {
+    const auto size = static_cast<float>(1U << numbers.below(4)) * 0.5F;
+    for (int k = 0; k < 3; ++k) {
+      box.min[k] = static_cast<float>(numbers.coordinate(16));
+      box.max[k] = box.min[k] + size;
+    }
+  }
+  return boxes;
+}
+
+void add(Digest& digest, const PairBuffer& pairs) {
+  for (const Pair& pair : pairs) digest.add(std::uint64_t{pair.first} << 32U | pair.second);
+}
+void add(Digest& digest, std::span<const Hit> hits) {
+  for (const Hit& hit : hits) {
+    digest.add(std::uint64_t{hit.key.id});
+    digest.add(static_cast<double>(hit.t));
+  }
+}
+
+/// Pairs in the order found, of all objects and of what moved.
+void pairs(StructureKind structure, Digest& digest) {
+  Partition partition(structure);
+  std::vector<Aabb> given = boxes(structure == n_squared() ? 60 : 1500, 1);
+  std::vector<Key> keys(given.size());
+  bool good = partition.insert(given, {}, keys) == Status::ok;
+  PairBuffer found;
+  Numbers numbers(2);
+  for (int frame = 0; frame < 4; ++frame) {
+    good = good && partition.self_pairs(found) == Status::ok;
+    add(digest, found);
+    for (std::size_t i = numbers.below(7); i < given.size(); i += frame == 2 ? 1 : 19) {
+      for (int k = 0; k < 3; ++k) {
+        const auto step = static_cast<float>(numbers.coordinate(1));
+        given[i].min[k] += step;
+        given[i].max[k] += step;
+      }
+      good = good && partition.update(keys[i], given[i]) == Status::ok;
+    }
+  }
+  digest.add(good ? 1.0 : 0.0);
+}
+
+void queries(StructureKind structure, Digest& digest) {
+  Partition partition(structure);
+  const std::vector<Aabb> given = boxes(1000, 3);
+  std::vector<Key> keys(given.size());
+  bool good = partition.insert(given, {}, keys) == Status::ok;
+  Numbers numbers(4);
+  std::vector<Ray> rays(60);
+  for (Ray& ray : rays) {
+    for (int k = 0; k < 3; ++k) {
+      ray.origin[k] = static_cast<float>(numbers.coordinate(32));
+      ray.direction[k] = static_cast<float>(numbers.coordinate(1));
+    }
+  }
+  HitBuffer hits;
+  good = good && partition.all(RayBatch(rays), hits) == Status::ok;
+  add(digest, hits.hits());
+  for (const Ray& ray : rays) {
+    good =
+        good && partition.all(SphereCast{{ray.origin, 0.75F}, ray.direction}, hits) == Status::ok;
+    add(digest, hits.hits());
+    OverlapBuffer objects;
+    good = good && partition.overlap(Sphere{ray.origin, 4.0F}, objects) == Status::ok;
+    for (const ObjectId id : objects.ids()) digest.add(std::uint64_t{id});
+    good = good && partition.nearest({ray.origin, ray.origin}, 9, 50.0F, hits) == Status::ok;
+    add(digest, hits.hits());
+  }
+  digest.add(good ? 1.0 : 0.0);
+}
+
+std::vector<ShapeId> shapes(ShapePool& pool, Digest& digest) {
+  std::vector<ShapeId> ids(8);
+  const std::vector<Eigen::Vector3d> corners{{1, 0, 0},  {-1, 0, 0}, {0, 0.75, 0},
+                                             {0, -1, 0}, {0, 0, 1},  {0, 0, -0.5}};
+  const std::vector<std::uint32_t> loops{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
+                                         2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+  const std::vector<std::uint32_t> sizes(8, 3);
+  const Status answers[] = {
+      pool.add(SphereShape{0.5}, ids[0]),
+      pool.add(CapsuleShape{0.25, 0.75}, ids[1]),
+      pool.add(BoxShape{{0.5, 0.75, 1.0}}, ids[2]),
+      pool.add(CylinderShape{0.5, 0.5}, ids[3]),
+      pool.add(ConeShape{0.5, 0.75, 0.125}, ids[4]),
+      pool.add_hull(corners, {loops, sizes}, 0.0, ids[5]),
+      pool.add(TriangleShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.25}}}, ids[6]),
+      pool.add(HalfSpaceShape{{0.25, 0.5, 1}, -1.0}, ids[7]),
+  };
+  for (const Status status : answers) digest.add(static_cast<std::uint64_t>(status));
+  return ids;
+}
+
+void narrow(NarrowTier tier, Digest& digest) {
+  ShapePool pool;
+  const std::vector<ShapeId> ids = shapes(pool, digest);
+  Numbers numbers(5);
+  std::vector<ShapeId> bodies;
+  std::vector<Pose> poses;
+  std::vector<BodyPair> asked;
+  for (std::size_t i = 0; i < 64 * 20; ++i) {
+    bodies.insert(bodies.end(), {ids[i % 8], ids[i / 8 % 8]});
+    for (int k = 0; k < 2; ++k) poses.push_back(numbers.pose(1));
+    const auto n = static_cast<std::uint32_t>(bodies.size());
+    asked.push_back({n - 2, n - 1});
+  }
+  NarrowPhase phase;
+  NarrowResult result;
+  for (const ContactLevel level :
+       {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
+    const Status status = phase.collide(
+        pool, {bodies, poses}, asked,
+        {.level = level, .tier = tier, .margin = 0.125, .execution = Execution::parallel()},
+        result);
+    digest.add(static_cast<std::uint64_t>(status));
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      digest.add(std::uint64_t{result.pair_of(i)} * 2U + (result.overlaps(i) ? 1U : 0U));
+      if (level == ContactLevel::boolean) continue;
+      digest.add(result.distance()[i]);
+      digest.add(result.error_bound()[i]);
+      for (int k = 0; k < 3; ++k) digest.add(result.normal(k)[i]);
+    }
+    for (std::size_t i = 0; i < result.contacts(); ++i) {
+      const ContactPoint point = result.contact(i);
+      for (const float x : point.position) digest.add(static_cast<double>(x));
+      digest.add(static_cast<double>(point.depth));
+      digest.add(point.feature);
+    }
+  }
+}
+
+void ask(const Scene& scene, Numbers& numbers, Digest& digest) {
+  SceneQueries questions(scene);
+  for (int i = 0; i < 40; ++i) {
+    ShapeRay ray;
+    ray.max_t = 100.0;
+    for (double& x : ray.origin) x = numbers.coordinate(8);
+    for (double& x : ray.direction) x = numbers.coordinate(1);
+    std::span<const SceneHit> hits;
+    digest.add(static_cast<std::uint64_t>(questions.all(ray, hits)));
+    for (const SceneHit& hit : hits) {
+      digest.add(hit.data);
+      digest.add(hit.t);
+    }
+    std::span<const SceneDistance> near;
+    digest.add(static_cast<std::uint64_t>(questions.nearest(ray.origin, 5, 10.0, near)));
+    for (const SceneDistance& one : near) {
+      digest.add(one.data);
+      digest.add(one.distance);
+    }
+  }
+}
+
+void scene(Digest& digest) {
+  ShapePool pool;
+  CompositePool composites(pool);
+  std::vector<ShapeId> ids = shapes(pool, digest);
+  ids.pop_back();
+  Numbers numbers(6);
+  std::vector<Eigen::Vector3f> points;
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      points.emplace_back(static_cast<float>(numbers.coordinate(2)),
+                          static_cast<float>(numbers.coordinate(2)),
+                          static_cast<float>(numbers.coordinate(2)));
+      corners.push_back(3 * i + k);
+    }
+  }
+  ids.emplace_back();
+  digest.add(static_cast<std::uint64_t>(composites.add_mesh(
+      std::span(std::as_const(points)), std::span(std::as_const(corners)), ids.back())));
+  Scene world(pool, {.margin = 0.0625, .composites = &composites});
+  std::vector<Key> keys(160);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const BodyDefinition body{.shape = ids[i % ids.size()],
+                              .pose = numbers.pose(4),
+                              .motion = static_cast<Motion>(i % 11 == 0 ? 0 : 1),
+                              .data = i};
+    digest.add(static_cast<std::uint64_t>(world.add(body, keys[i])));
+  }
+  Contacts contacts;
+  for (int frame = 0; frame < 3; ++frame) {
+    digest.add(static_cast<std::uint64_t>(world.collide(ContactLevel::manifold, contacts)));
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      digest.add(contacts.data_a()[i] << 32U | contacts.data_b()[i]);
+      digest.add(static_cast<std::uint64_t>(contacts.event()[i]));
+    }
+    for (std::size_t m = 0; m < contacts.manifolds(); ++m) {
+      digest.add(std::uint64_t{contacts.part_a()[m]} << 32U | contacts.part_b()[m]);
+      digest.add(contacts.distance()[m]);
+    }
+    for (std::size_t p = 0; p < contacts.points(); ++p) digest.add(contacts.contact(p).feature);
+    for (std::size_t i = 0; i < keys.size(); i += 3) {
+      digest.add(static_cast<std::uint64_t>(world.move(keys[i], numbers.pose(4))));
+    }
+  }
+  digest.add(static_cast<std::uint64_t>(world.refresh()));
+  ask(world, numbers, digest);
+}
+
+struct Work {
+  std::string name;
+  std::function<void(Digest&)> run;
+};
+
+std::vector<Work> all_work() {
+  std::vector<Work> work;
+  for (const StructureKind kind : all_structures()) {
+    work.push_back({"pairs/" + std::string(kind.name()), [kind](Digest& d) { pairs(kind, d); }});
+    work.push_back(
+        {"queries/" + std::string(kind.name()), [kind](Digest& d) { queries(kind, d); }});
+  }
+  work.push_back({"narrow/fast", [](Digest& d) { narrow(NarrowTier::fast, d); }});
+  work.push_back({"narrow/robust", [](Digest& d) { narrow(NarrowTier::robust, d); }});
+  work.push_back({"narrow/reference", [](Digest& d) { narrow(NarrowTier::reference, d); }});
+  work.push_back({"scene", scene});
+  return work;
+}
+
+/// How a host may have set its processor.
+struct Mode {
+  const char* name;
+  int rounding;
+  bool flushes = false;  ///< denormal numbers to zero
+};
+constexpr Mode kModes[] = {{"nearest", FE_TONEAREST},
+                           {"flushed", FE_TONEAREST, true},
+                           {"down", FE_DOWNWARD},
+                           {"up", FE_UPWARD},
+                           {"zero", FE_TOWARDZERO}};
+
+/// Sets a mode for one scope. False where the machine has none such.
+class ModeScope {
+ public:
+  explicit ModeScope(const Mode& mode) {
+    std::fegetenv(&before_);
+    std::fesetround(mode.rounding);
+#if defined(__x86_64__)
+    // The bits FZ and DAZ.
+    if (mode.flushes) _mm_setcsr(_mm_getcsr() | 0x8040U);
+#endif
+  }
+  ~ModeScope() {
+    std::fesetenv(&before_);
+  }
+  ModeScope(const ModeScope&) = delete;
+  ModeScope& operator=(const ModeScope&) = delete;
+
+ private:
+  std::fenv_t before_{};
+};
+
+std::string line_of(const Mode& mode, const Work& work) {
+  std::ostringstream line;
+  line << mode.name << ' ' << work.name << ' ';
+  std::uint64_t first = 0;
+  bool any = false;
+  for (const Isa isa : available_isas()) {
+    if (set_isa(isa) != Status::ok) continue;
+    for (const int threads : {1, 2, 8, 32}) {
+      Digest digest;
+      tbb::task_arena(threads).execute([&] {
+        const ModeScope scope(mode);
+        work.run(digest);
+      });
+      if (!any) line << std::hex << (first = digest.value()) << std::dec;
+      any = true;
+      if (digest.value() != first) line << ", not on " << to_string(isa) << ' ' << threads;
+    }
+  }
+  return line.str();
+}
+
+/// Lines of the file by what stands before the digest.
+std::map<std::string, std::string> lines_of(const std::string& path) {
+  std::map<std::string, std::string> lines;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    lines[line.substr(0, line.find(' ', line.find(' ') + 1))] = line;
+  }
+  return lines;
+}
+
+}  // namespace
+}  // namespace winnow::test
+
+int main(int argc, char** argv) {
+  using namespace winnow::test;
+  const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, 33U);
+  const bool checks = argc == 3 && std::string(argv[1]) == "--check";
+  const auto wanted = checks ? lines_of(argv[2]) : std::map<std::string, std::string>();
+  bool same = true;
+  for (const Mode& mode : kModes) {
+    for (const Work& work : all_work()) {
+      const auto known = wanted.find(std::string(mode.name) + ' ' + work.name);
+      if (checks && known == wanted.end()) continue;
+      const std::string line = line_of(mode, work);
+      if (checks && line == known->second) continue;
+      std::cout << line << std::endl;
+      same = same && !checks;
+    }
+  }
+  return same ? 0 : 1;
+}
