@@ -32,12 +32,16 @@ if(NOT TARGET Eigen3::Eigen)
   FetchContent_MakeAvailable(Eigen3)
 endif()
 
-find_package(TBB 2021 QUIET CONFIG)
-if(NOT TARGET TBB::tbb)
-  set(TBB_TEST OFF)
-  FetchContent_Declare(TBB GIT_REPOSITORY https://github.com/oneapi-src/oneTBB.git
-                       GIT_TAG v2021.8.0)
-  FetchContent_MakeAvailable(TBB)
+set(winnow_tbb "")
+if(WINNOW_TBB)
+  find_package(TBB 2021 QUIET CONFIG)
+  if(NOT TARGET TBB::tbb)
+    set(TBB_TEST OFF)
+    FetchContent_Declare(TBB GIT_REPOSITORY https://github.com/oneapi-src/oneTBB.git
+                         GIT_TAG v2021.8.0)
+    FetchContent_MakeAvailable(TBB)
+  endif()
+  set(winnow_tbb TBB::tbb)
 endif()
 
 # Hulls from points, where it is installed.
@@ -143,7 +147,7 @@ function(winnow_whole_library)
     target_include_directories(winnow INTERFACE $<BUILD_INTERFACE:${WINNOW_INCLUDE_DIR}>
                                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     target_link_libraries(winnow INTERFACE Eigen3::Eigen
-                          PRIVATE winnow_flags TBB::tbb $<TARGET_NAME_IF_EXISTS:Qhull::qhull_r>)
+                          PRIVATE winnow_flags ${winnow_tbb} $<TARGET_NAME_IF_EXISTS:Qhull::qhull_r>)
   endif()
   add_library(winnow::winnow ALIAS winnow)
 endfunction()

@@ -7,15 +7,41 @@
 
 namespace winnow {
 
-/// How a partition uses the machine. Parallel work runs as oneTBB tasks inside the arena of the
-/// thread that calls, so the caller decides on the number of threads
-/// (`tbb::task_arena(n).execute(...)`). Tasks run in the floating-point environment of the caller
-/// (rounding, flushing of denormal numbers), and to the end also where the caller's own group of
-/// tasks is cancelled. Results and their order are the same on any number.
+/// A host's own way to run tasks side by side: its job system, its pool of threads.
+struct JobSystem {
+  /// Does one task of `tasks`. It does not throw.
+  using Task = void (*)(void* tasks, std::size_t i);
+
+  /// Calls `task(tasks, i)` once for every i < count, on any threads and in any order, and returns
+  /// when all of these calls have. What came before it happens before the tasks, and these before
+  /// it returns. While it waits it does nothing else that may call winnow, since its caller may
+  /// hold a lock. It is called from any thread, several at once, also from tasks of its own if the
+  /// host calls winnow there; it must not throw.
+  void (*parallel_for)(void* context, std::size_t count, Task task, void* tasks) = nullptr;
+  /// Handed to parallel_for; it outlives everything that the job system was given to.
+  void* context = nullptr;
+  /// How many tasks may run at the same time: work is cut into pieces that suit as many. More or
+  /// fewer cost time alone.
+  std::size_t threads = 1;
+
+  friend constexpr bool operator==(const JobSystem&, const JobSystem&) noexcept = default;
+};
+
+/// How a partition uses the machine. Tasks run in the floating-point environment of the caller
+/// (rounding, flushing of denormal numbers). Results and their order are the same on any number of
+/// threads, whoever runs them.
 class Execution {
  public:
-  [[nodiscard]] static constexpr Execution serial() noexcept { return Execution(false); }
-  [[nodiscard]] static constexpr Execution parallel() noexcept { return Execution(true); }
+  [[nodiscard]] static constexpr Execution serial() noexcept { return Execution({}, false); }
+  /// As oneTBB tasks inside the arena of the thread that calls, so the caller decides on the number
+  /// of threads (`tbb::task_arena(n).execute(...)`). They run to the end also where the caller's
+  /// own group of tasks is cancelled. A winnow that was built without oneTBB runs them one after
+  /// the other.
+  [[nodiscard]] static constexpr Execution parallel() noexcept { return Execution({}, true); }
+  /// By the host's own means.
+  [[nodiscard]] static constexpr Execution on(const JobSystem& jobs) noexcept {
+    return jobs.parallel_for != nullptr && jobs.threads > 1 ? Execution(jobs, false) : serial();
+  }
 
   /// Threads that can work on a call made from here.
   [[nodiscard]] WINNOW_API std::size_t concurrency() const noexcept;
@@ -33,10 +59,11 @@ class Execution {
   friend constexpr bool operator==(const Execution&, const Execution&) noexcept = default;
 
  private:
-  explicit constexpr Execution(bool parallel) noexcept : parallel_(parallel) {}
+  constexpr Execution(const JobSystem& jobs, bool arena) noexcept : jobs_(jobs), arena_(arena) {}
   WINNOW_API void run(std::size_t count, void* context, void (*task)(void*, std::size_t)) const;
 
-  bool parallel_;
+  JobSystem jobs_;
+  bool arena_;
 };
 
 }  // namespace winnow

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
-#include <tbb/task_group.h>
 #include <winnow/core/execution.h>
 
+#if WINNOW_HAVE_TBB
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+#endif
 #if defined(__SSE__)
 #include <xmmintrin.h>
 #endif
@@ -10,6 +12,7 @@
 #include <array>
 #include <atomic>
 #include <cfenv>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -20,15 +23,13 @@ namespace winnow::test {
 namespace {
 
 TEST(Execution, runs_every_index_exactly_once) {
-  for (const int threads : thread_counts()) {
-    Threads arena(threads);
-    for (const Execution execution : {Execution::serial(), Execution::parallel()}) {
-      for (const std::size_t count : {0U, 1U, 2U, 7U, 1000U}) {
-        std::vector<std::atomic<int>> runs(count + 1);
-        arena.run([&] { execution.for_each(count, [&](std::size_t i) { ++runs[i]; }); });
-        for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(runs[i], 1) << i << " of " << count;
-        ASSERT_EQ(runs[count], 0);
-      }
+  for (const Workers& workers : all_workers()) {
+    Threads arena(workers.threads);
+    for (const std::size_t count : {0U, 1U, 2U, 7U, 1000U}) {
+      std::vector<std::atomic<int>> runs(count + 1);
+      arena.run([&] { workers.execution().for_each(count, [&](std::size_t i) { ++runs[i]; }); });
+      for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(runs[i], 1) << i << " of " << count;
+      ASSERT_EQ(runs[count], 0);
     }
   }
 }
@@ -47,33 +48,39 @@ TEST(Execution, that_is_serial_stays_on_the_calling_thread_in_order) {
   for (std::size_t i = 0; i < 100; ++i) ASSERT_EQ(order[i], i);
 }
 
-TEST(Execution, stays_inside_the_arena_of_the_caller) {
-  for (const int threads : {1, 2, 8}) {
-    tbb::task_arena arena(threads);
-    arena.execute([&] {
-      EXPECT_EQ(Execution::parallel().concurrency(), static_cast<std::size_t>(threads));
-      Execution::parallel().for_each(500, [&](std::size_t) {
-        const int slot = tbb::this_task_arena::current_thread_index();
-        EXPECT_EQ(tbb::this_task_arena::max_concurrency(), threads);
-        EXPECT_GE(slot, 0);
-        EXPECT_LT(slot, threads);
+TEST(Execution, on_a_host_says_how_many_threads_that_has) {
+  JobSystem jobs = jobs_of("reversed", 5);
+  EXPECT_EQ(Execution::on(jobs).concurrency(), 5U);
+  EXPECT_FALSE(Execution::on(jobs) == Execution::parallel());
+  EXPECT_TRUE(Execution::on(jobs) == Execution::on(jobs));
+  jobs.threads = 1;
+  EXPECT_TRUE(Execution::on(jobs) == Execution::serial());
+  jobs.threads = 0;
+  EXPECT_TRUE(Execution::on(jobs) == Execution::serial());
+  EXPECT_TRUE(Execution::on({}) == Execution::serial());
+}
+
+TEST(Execution, on_a_host_runs_in_tasks_of_that_host) {
+  for (const std::string_view host : kHosts) {
+    const Execution execution = Execution::on(jobs_of(host, 4));
+    std::vector<std::atomic<int>> runs(20 * 30 * 5);
+    execution.for_each(20, [&](std::size_t i) {
+      execution.for_each(30, [&](std::size_t j) {
+        execution.for_each(5, [&](std::size_t k) { ++runs[(i * 30 + j) * 5 + k]; });
       });
     });
+    for (const std::atomic<int>& count : runs) ASSERT_EQ(count, 1) << host;
   }
 }
 
-// Two tasks that wait for each other can only both end if two threads run them.
-TEST(Execution, uses_the_threads_of_the_arena) {
-  tbb::task_arena arena(2);
-  std::atomic<int> met{0};
-  arena.execute([&] {
-    Execution::parallel().for_each(2, [&](std::size_t) {
-      ++met;
-      while (met.load() < 2) std::this_thread::yield();
-    });
-  });
-  EXPECT_EQ(met, 2);
+#if !WINNOW_HAVE_TBB
+TEST(Execution, without_arenas_is_serial_unless_a_host_has_threads) {
+  EXPECT_EQ(Execution::parallel().concurrency(), 1U);
+  std::vector<std::size_t> order;
+  Execution::parallel().for_each(100, [&](std::size_t i) { order.push_back(i); });
+  for (std::size_t i = 0; i < 100; ++i) ASSERT_EQ(order[i], i);
 }
+#endif
 
 /// The caller's floating-point environment, restored at the end of a scope.
 class EnvironmentScope {
@@ -105,29 +112,76 @@ std::pair<float, float> arithmetic_here() {
 
 // The host may set it after the workers were started.
 TEST(Execution, runs_tasks_in_the_floating_point_environment_of_the_caller) {
-  tbb::task_arena arena(2);
-  const auto is_everywhere_as_here = [] {
+  const auto is_everywhere_as_here = [](const Execution& execution) {
     std::array<std::pair<float, float>, 2> seen;
     std::atomic<int> met{0};
-    Execution::parallel().for_each(2, [&](std::size_t i) {
+    execution.for_each(2, [&](std::size_t i) {
       ++met;
       while (met.load() < 2) std::this_thread::yield();
       seen[i] = arithmetic_here();
     });
     return seen[0] == arithmetic_here() && seen[1] == arithmetic_here();
   };
-  arena.execute([&] {
-    EXPECT_TRUE(is_everywhere_as_here());
+  const auto check = [&](const Execution& execution) {
+    EXPECT_TRUE(is_everywhere_as_here(execution));
     const auto before = arithmetic_here();
     {
       const EnvironmentScope scope;
       EnvironmentScope::change();
-      EXPECT_TRUE(is_everywhere_as_here());
+      EXPECT_TRUE(is_everywhere_as_here(execution));
       EXPECT_FALSE(arithmetic_here() == before);
     }
-    EXPECT_TRUE(is_everywhere_as_here());
+    EXPECT_TRUE(is_everywhere_as_here(execution));
     EXPECT_TRUE(arithmetic_here() == before);
+  };
+  check(Execution::on(jobs_of("pool", 2)));
+#if WINNOW_HAVE_TBB
+  tbb::task_arena(2).execute([&] { check(Execution::parallel()); });
+#endif
+}
+
+// A host's threads may have been left in any environment.
+TEST(Execution, leaves_a_thread_of_the_host_in_the_environment_that_it_had) {
+  const auto backwards = jobs_of("reversed", 2);
+  const auto in_another = [](void* context, std::size_t count, JobSystem::Task task, void* tasks) {
+    const EnvironmentScope scope;
+    EnvironmentScope::change();
+    const auto before = arithmetic_here();
+    static_cast<const JobSystem*>(context)->parallel_for(nullptr, count, task, tasks);
+    EXPECT_TRUE(arithmetic_here() == before);
+  };
+  const auto here = arithmetic_here();
+  JobSystem jobs{in_another, const_cast<JobSystem*>(&backwards), 2};
+  Execution::on(jobs).for_each(2, [&](std::size_t) { EXPECT_TRUE(arithmetic_here() == here); });
+}
+
+#if WINNOW_HAVE_TBB
+TEST(Execution, stays_inside_the_arena_of_the_caller) {
+  for (const int threads : {1, 2, 8}) {
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+      EXPECT_EQ(Execution::parallel().concurrency(), static_cast<std::size_t>(threads));
+      Execution::parallel().for_each(500, [&](std::size_t) {
+        const int slot = tbb::this_task_arena::current_thread_index();
+        EXPECT_EQ(tbb::this_task_arena::max_concurrency(), threads);
+        EXPECT_GE(slot, 0);
+        EXPECT_LT(slot, threads);
+      });
+    });
+  }
+}
+
+// Two tasks that wait for each other can only both end if two threads run them.
+TEST(Execution, uses_the_threads_of_the_arena) {
+  tbb::task_arena arena(2);
+  std::atomic<int> met{0};
+  arena.execute([&] {
+    Execution::parallel().for_each(2, [&](std::size_t) {
+      ++met;
+      while (met.load() < 2) std::this_thread::yield();
+    });
   });
+  EXPECT_EQ(met, 2);
 }
 
 // Else a call would return with part of its work done, and say that all is well.
@@ -160,6 +214,7 @@ TEST(Execution, runs_nothing_else_while_a_task_waits) {
   });
   EXPECT_EQ(mixed, 0);
 }
+#endif
 
 }  // namespace
 }  // namespace winnow::test

@@ -301,18 +301,21 @@ TEST(InnerEdges, smoothing_is_the_same_on_any_number_of_threads_and_survives_ref
     return result;
   };
   const auto one = answer(std::pmr::get_default_resource(), Execution::serial(), nullptr);
-  const auto two = Threads(2).run(
-      [&] { return answer(std::pmr::get_default_resource(), Execution::parallel(), nullptr); });
-  ASSERT_EQ(one->size(), two->size());
-  ASSERT_EQ(one->contacts(), two->contacts());
-  for (std::size_t i = 0; i < one->size(); ++i) {
-    EXPECT_EQ(one->distance()[i], two->distance()[i]);
-    EXPECT_EQ(one->contact_first()[i], two->contact_first()[i]);
-    EXPECT_EQ(one->contact_count()[i], two->contact_count()[i]);
-  }
-  for (std::size_t i = 0; i < one->contacts(); ++i) {
-    EXPECT_EQ(one->contact(i).position[0], two->contact(i).position[0]);
-    EXPECT_EQ(one->contact(i).depth, two->contact(i).depth);
+  for (const Workers& workers : all_workers()) {
+    const auto other = Threads(workers.threads).run([&] {
+      return answer(std::pmr::get_default_resource(), workers.execution(), nullptr);
+    });
+    ASSERT_EQ(one->size(), other->size());
+    ASSERT_EQ(one->contacts(), other->contacts());
+    for (std::size_t i = 0; i < one->size(); ++i) {
+      EXPECT_EQ(one->distance()[i], other->distance()[i]);
+      EXPECT_EQ(one->contact_first()[i], other->contact_first()[i]);
+      EXPECT_EQ(one->contact_count()[i], other->contact_count()[i]);
+    }
+    for (std::size_t i = 0; i < one->contacts(); ++i) {
+      EXPECT_EQ(one->contact(i).position[0], other->contact(i).position[0]);
+      EXPECT_EQ(one->contact(i).depth, other->contact(i).depth);
+    }
   }
   CountingMemory memory;
   const auto refused = answer(&memory, Execution::serial(), &memory);

@@ -157,11 +157,11 @@ TEST(TriangleMeshes, are_the_same_built_by_any_number_of_threads) {
   const MeshData data = torus(200, 60);
   TriangleMesh serial;
   ASSERT_EQ(data.build(serial), Status::ok);
-  for (const int count : thread_counts()) {
-    Threads threads(count);
+  for (const Workers& workers : all_workers()) {
+    Threads threads(workers.threads);
     TriangleMesh mesh;
     ASSERT_EQ(threads.run([&] {
-      return mesh.build(data.points(), data.indices(), {}, Execution::parallel());
+      return mesh.build(data.points(), data.indices(), {}, workers.execution());
     }),
               Status::ok);
     EXPECT_TRUE(std::equal(view_of(mesh).triangle, view_of(mesh).triangle + mesh.triangles(),

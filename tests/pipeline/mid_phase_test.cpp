@@ -119,11 +119,11 @@ TEST(MidPhase, is_the_same_on_any_number_of_threads_and_any_instruction_set) {
             Status::ok);
   for (const Isa isa : available_isas()) {
     const IsaScope scope(isa);
-    for (const int count : {1, 2, 8}) {
+    for (const Workers& workers : all_workers()) {
       PrimitivePairs many;
-      ASSERT_EQ(Threads(count).run([&] {
+      ASSERT_EQ(Threads(workers.threads).run([&] {
         return world.composites.expand(world.shapes, world.bodies(), world.pairs, 0.1,
-                                       Execution::parallel(), many);
+                                       workers.execution(), many);
       }),
                 Status::ok);
       EXPECT_TRUE(same(one.shapes, many.shapes) && same(one.poses, many.poses) &&

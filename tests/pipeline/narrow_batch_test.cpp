@@ -40,7 +40,7 @@ PairScene shuffled_scene(std::size_t count) {
 class Batches : public testing::Test {
  protected:
   void expect_same(const std::vector<PairAnswers>& there, const std::vector<PairAnswers>& again,
-                   const char* what) const {
+                   const std::string& what) const {
     ASSERT_EQ(there.size(), again.size());
     int faults = 0;
     for (std::size_t i = 0; i < there.size(); ++i) {
@@ -70,11 +70,11 @@ TEST_F(Batches, answers_are_the_same_on_every_instruction_set_and_thread_count) 
         if (is_quick() && isa != widest) continue;
         const IsaScope scope(isa);
         expect_same(first, ask(scene_, options), to_string(isa));
-        options.execution = Execution::parallel();
-        for (const int threads : thread_counts()) {
+        for (const Workers& workers : all_workers()) {
           if (isa != widest) continue;
-          expect_same(first, Threads(threads).run([&] { return ask(scene_, options); }),
-                      "on several threads");
+          options.execution = workers.execution();
+          expect_same(first, Threads(workers.threads).run([&] { return ask(scene_, options); }),
+                      to_string(workers));
         }
         options.execution = Execution::serial();
       }

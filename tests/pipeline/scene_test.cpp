@@ -137,13 +137,11 @@ TEST(Scene, answers_and_their_order_are_the_same_on_any_threads_and_instruction_
     first.clear();
     for (const Isa isa : isas) {
       const IsaScope scope(isa);
-      for (const int threads : {1, 2, 8}) {
+      for (const Workers& workers : all_workers()) {
         SceneWorld world(scaled(1500), 5);
-        Threads arena(threads);
+        Threads arena(workers.threads);
         const std::vector<std::uint64_t> all = arena.run([&] {
-          Scene scene(world.pool,
-                      {.execution = threads == 1 ? Execution::serial() : Execution::parallel(),
-                       .carry_over = carry_over});
+          Scene scene(world.pool, {.execution = workers.execution(), .carry_over = carry_over});
           EXPECT_EQ(add_all(scene, world), Status::ok);
           Contacts contacts;
           std::vector<std::uint64_t> bits;
@@ -157,7 +155,7 @@ TEST(Scene, answers_and_their_order_are_the_same_on_any_threads_and_instruction_
           return bits;
         });
         if (first.empty()) first = all;
-        EXPECT_TRUE(all == first) << isa_name() << ", " << threads << " threads";
+        EXPECT_TRUE(all == first) << isa_name() << ", " << to_string(workers);
       }
     }
   }

@@ -1,6 +1,8 @@
 #include "tests/support/config.h"
 
+#if WINNOW_HAVE_TBB
 #include <tbb/global_control.h>
+#endif
 
 #include <cstdlib>
 #include <memory>
@@ -10,35 +12,59 @@
 namespace winnow::test {
 namespace {
 
+constexpr int kHostThreads = 3;
+
 // TBB starts no more workers than the machine has cores unless told to, and a test on 8 threads
 // means 8. rapidcheck reads its seed from the environment.
 class Process : public testing::Environment {
  public:
   void SetUp() override {
+#if WINNOW_HAVE_TBB
     workers_ =
         std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, 9U);
+#endif
     const std::string parameters =
         "seed=" + std::to_string(base_seed()) + " max_success=" + std::to_string(scaled(60));
     ::setenv("RC_PARAMS", parameters.c_str(), 0);
   }
-  void TearDown() override { workers_.reset(); }
+
+#if WINNOW_HAVE_TBB
+  void TearDown() override {
+    workers_.reset();
+  }
 
  private:
   std::unique_ptr<tbb::global_control> workers_;
+#endif
 };
 
 const testing::Environment* const kProcess = testing::AddGlobalTestEnvironment(new Process);
 
 }  // namespace
 
+std::string to_string(const Workers& workers) {
+  return std::to_string(workers.threads) + (workers.threads == 1 ? "_thread" : "_threads") +
+         (workers.host.empty() ? "" : "_of_" + std::string(workers.host));
+}
+
 std::string to_string(const Config& config) {
   return config.partition + "_" + winnow::to_string(config.isa) + "_" +
-         std::to_string(config.threads) + (config.threads == 1 ? "_thread" : "_threads");
+         to_string(Workers{config.threads, config.host});
 }
 
 std::vector<int> thread_counts() {
+#if !WINNOW_HAVE_TBB
+  return {1};
+#endif
   if (is_quick()) return {1, 2};
   return {1, 2, 8};
+}
+
+std::vector<Workers> all_workers() {
+  std::vector<Workers> all;
+  for (const int threads : thread_counts()) all.push_back({threads});
+  for (const std::string_view host : kHosts) all.push_back({kHostThreads, host});
+  return all;
 }
 
 std::vector<std::string_view> structure_names() {
@@ -56,12 +82,20 @@ std::vector<Isa> tested_isas() {
   return {isas.begin(), isas.end()};
 }
 
+/// Hosts that a partition is tested on: in smaller runs each on another.
+std::vector<std::string_view> tested_hosts(std::size_t partition) {
+  if (is_reduced()) return {kHosts[partition % kHosts.size()]};
+  return {kHosts.begin(), kHosts.end()};
+}
+
 }  // namespace
 
 std::vector<Config> all_configs() {
   std::vector<Config> configs;
   const std::vector<Isa> isas = tested_isas();
-  for (const std::string_view partition : structure_names()) {
+  const std::vector<std::string_view> names = structure_names();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string_view partition = names[i];
     for (const Isa isa : isas) {
       for (const int threads : thread_counts()) {
         // In smaller runs every instruction set and every number of threads, but not each with
@@ -69,6 +103,12 @@ std::vector<Config> all_configs() {
         if (is_reduced() && threads > 1 && isa != isas.back()) continue;
         configs.push_back({std::string(partition), isa, threads});
       }
+    }
+    for (const std::string_view host : tested_hosts(i)) {
+      configs.push_back({.partition = std::string(partition),
+                         .isa = isas.back(),
+                         .threads = kHostThreads,
+                         .host = host});
     }
   }
   return configs;

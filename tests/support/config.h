@@ -1,9 +1,12 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/simd/isa.h>
+
+#if WINNOW_HAVE_TBB
+#include <tbb/task_arena.h>
+#endif
 
 #include <memory_resource>
 #include <ostream>
@@ -13,22 +16,40 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/hosts.h"
+
 namespace winnow::test {
 
 /// Names of all structures, in the order of `all_structures()`.
 [[nodiscard]] std::vector<std::string_view> structure_names();
 
-/// A structure, an instruction set, a number of threads (1 means Execution::serial()), and how much
-/// of a build a refresh may plan.
+/// Who runs tasks: nobody else for one thread, threads of an arena, or those of a host.
+struct Workers {
+  int threads = 1;
+  std::string_view host{};
+
+  [[nodiscard]] Execution execution() const {
+    if (threads == 1) return Execution::serial();
+    if (host.empty()) return Execution::parallel();
+    return Execution::on(jobs_of(host, static_cast<std::size_t>(threads)));
+  }
+};
+
+[[nodiscard]] std::string to_string(const Workers& workers);
+
+/// Each number of threads of an arena, and every host.
+[[nodiscard]] std::vector<Workers> all_workers();
+
+/// A structure, an instruction set, a number of threads (1 means Execution::serial()), how much
+/// of a build a refresh may plan, and which host's threads these are, if not those of an arena.
 struct Config {
   std::string partition;
   Isa isa{};
   int threads = 1;
   std::size_t build_budget = 0;
+  std::string_view host{};
 
-  [[nodiscard]] Execution execution() const {
-    return threads == 1 ? Execution::serial() : Execution::parallel();
-  }
+  [[nodiscard]] Execution execution() const { return Workers{threads, host}.execution(); }
   [[nodiscard]] Partition make(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) const {
     return Partition(structure_named(partition),
@@ -41,8 +62,8 @@ inline void PrintTo(const Config& config, std::ostream* out) {
   *out << to_string(config);
 }
 
-/// Every partition on every instruction set of this machine on 1, 2 and 8 threads; in a quick run
-/// on the narrowest and the widest on 1 and 2 threads.
+/// Every partition on every instruction set of this machine on 1, 2 and 8 threads, and on those of
+/// every host; in a quick run on the narrowest and the widest on 1 and 2 threads, and of one host.
 [[nodiscard]] std::vector<Config> all_configs();
 
 /// Those of partitions that report only true pairs. The others report so many that large scenes
@@ -64,8 +85,10 @@ class IsaScope {
   Isa before_;
 };
 
-/// Runs functions on a number of threads: directly, or inside an arena of that size.
+/// Runs functions on a number of threads: directly, or inside an arena of that size. Without oneTBB
+/// there are no arenas, and work that would run in them is serial.
 class Threads {
+#if WINNOW_HAVE_TBB
  public:
   explicit Threads(int count) : count_(count), arena_(count) {}
 
@@ -78,6 +101,15 @@ class Threads {
  private:
   int count_;
   tbb::task_arena arena_;
+#else
+ public:
+  explicit Threads(int) {}
+
+  template <typename Body>
+  auto run(Body&& body) {
+    return body();
+  }
+#endif
 };
 
 /// Base of all conformance tests: the config's instruction set is active while a test runs.

@@ -1,0 +1,81 @@
+// Partitions on a program's own threads: what a host may do to them, and what they must not notice.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/support/config.h"
+#include "tests/support/motion.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+
+namespace winnow::test {
+namespace {
+
+using Frames = std::vector<std::vector<Pair>>;
+
+// Enough objects that builds, updates and pairs are shared among threads.
+Frames play(std::string_view name, const Execution& execution) {
+  Random random(3);
+  Partition partition(structure_named(name), {.execution = execution});
+  std::vector<Aabb> boxes = mixed_boxes(partition.is_exact() ? scaled(20'000) : 500);
+  std::vector<Key> keys(boxes.size());
+  EXPECT_EQ(partition.insert(boxes, {}, keys), Status::ok);
+  PairBuffer pairs;
+  Frames frames;
+  for (const Motion motion : {Motion::little, Motion::few, Motion::little}) {
+    EXPECT_EQ(partition.self_pairs(pairs), Status::ok);
+    frames.emplace_back(pairs.pairs().begin(), pairs.pairs().end());
+    move(motion, boxes, random);
+    EXPECT_EQ(partition.update(keys, boxes), Status::ok);
+  }
+  return frames;
+}
+
+class Hosts : public testing::TestWithParam<std::string_view> {};
+
+TEST_P(Hosts, get_the_pairs_and_the_order_of_one_thread) {
+  const Frames serial = play(GetParam(), Execution::serial());
+  for (const std::string_view host : kHosts) {
+    EXPECT_TRUE(play(GetParam(), Execution::on(jobs_of(host, 3))) == serial) << host;
+  }
+}
+
+// As where every world of many is a task.
+TEST_P(Hosts, may_call_from_tasks_of_their_own) {
+  const Frames serial = play(GetParam(), Execution::serial());
+  for (const std::string_view host : kHosts) {
+    const Execution execution = Execution::on(jobs_of(host, 3));
+    std::vector<Frames> worlds(4);
+    execution.for_each(worlds.size(),
+                       [&](std::size_t i) { worlds[i] = play(GetParam(), execution); });
+    for (const Frames& world : worlds) EXPECT_TRUE(world == serial) << host;
+  }
+}
+
+// Readers that all find the partition stale wait for the one that brings it up to date.
+TEST_P(Hosts, may_ask_from_many_tasks_at_once) {
+  for (const std::string_view host : kHosts) {
+    const Execution execution = Execution::on(jobs_of(host, 3));
+    Partition partition(structure_named(GetParam()), {.execution = execution});
+    const std::vector<Aabb> boxes = mixed_boxes(1000);
+    std::vector<Key> keys(boxes.size());
+    ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
+    std::vector<PairBuffer> buffers(6);
+    execution.for_each(buffers.size(), [&](std::size_t i) {
+      EXPECT_EQ(partition.self_pairs(buffers[i]), Status::ok);
+    });
+    for (const PairBuffer& buffer : buffers) {
+      EXPECT_TRUE(std::ranges::equal(buffer.pairs(), buffers[0].pairs())) << host;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Hosts, testing::ValuesIn(structure_names()),
+                         [](const auto& name) { return std::string(name.param); });
+
+}  // namespace
+}  // namespace winnow::test
