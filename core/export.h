@@ -9,7 +9,7 @@
 
 // Inline functions of the headers round outward and refuse NaN, which compilers leave out if they
 // may take numbers for what they are not.
-#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#if defined(__FAST_MATH__) || __FINITE_MATH_ONLY__ || defined(__ASSOCIATIVE_MATH__)
 #error "winnow needs strict floating point: compile what includes it without -ffast-math"
 #endif
 

@@ -8,6 +8,7 @@
 #include "bench/rows/accuracy_rows.h"
 #include "bench/rows/cold_rows.h"
 #include "bench/rows/frame_rows.h"
+#include "bench/rows/host_rows.h"
 #include "bench/rows/kernel_rows.h"
 #include "bench/rows/machine.h"
 #include "bench/rows/memory_rows.h"
@@ -164,6 +165,35 @@ class Cold final : public ScenesCommand {
   }
 
   std::size_t rounds_ = 7;
+};
+
+class HostsCommand final : public ScenesCommand {
+ public:
+  HostsCommand() : ScenesCommand({"uniform", "mixed"}, {2}) {
+    partitions_ = {"LinearBvh", "SweepAndPrune", "HierarchicalGrid"};
+  }
+
+  void add_options(CLI::App& app) {
+    ScenesCommand::add_options(app);
+    number(app, "--frames", frames_, 1, 1e6, "Frames that are timed");
+  }
+
+ private:
+  void measure() override {
+    declare_hosts(results);
+    measure_all();
+    print("hosts");
+  }
+  void measure_scene(const std::string& what, const NamedScene& scene,
+                     std::size_t objects) override {
+    const std::vector<std::string> partitions = partitions_for(partitions_, objects).taken;
+    for (const int threads : threads_) {
+      step(what + ", " + threads_text(threads),
+           [&] { add_hosts(results, scene, objects, seed_, partitions, threads, frames_); });
+    }
+  }
+
+  std::size_t frames_ = 101;
 };
 
 /// A built-in scene, or a recording instead.
@@ -489,6 +519,10 @@ std::vector<Command> add_measurements(CLI::App& app) {
                     "First frames of fresh partitions, on memory that was written to before and on "
                     "memory that was not: inserting, building, finding all pairs, and the "
                     "yardstick's frame beside"),
+      command<HostsCommand>(
+          app, "hosts",
+          "Frames of partitions whose tasks run on a plain pool of threads, which "
+          "a program hands in, and on those of oneTBB, in turns"),
       command<FootprintCommand>(
           app, "footprint",
           "Bytes an object by purpose, checked against what was really allocated and against the "

@@ -11,6 +11,7 @@
 #include "bench/rows/flow_rows.h"
 #include "bench/rows/frame_rows.h"
 #include "bench/rows/hard_case_rows.h"
+#include "bench/rows/host_rows.h"
 #include "bench/rows/kernel_rows.h"
 #include "bench/rows/machine.h"
 #include "bench/rows/peer_rows.h"
@@ -79,6 +80,14 @@ void goal_cold(const Json& options, Lab& /*lab*/, Measured& measured) {
       add_cold(measured.results, scene, objects, 1, partitions_for({"all"}, objects).taken,
                threads);
     }
+  }
+}
+
+/// Frames on a plain pool of threads against those of oneTBB.
+void goal_hosts(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_hosts(measured.results);
+  for (const NamedScene& scene : asked_scenes(options, measured)) {
+    add_hosts(measured.results, scene, options.at("objects"), 1, options.at("partitions"), 2);
   }
 }
 
@@ -358,6 +367,7 @@ const Measurer* find_measurer(const std::string& name) {
   static const std::map<std::string, Measurer> all{{"frames", goal_frames},
                                                    {"beside_peers", goal_beside_peers},
                                                    {"cold", goal_cold},
+                                                   {"hosts", goal_hosts},
                                                    {"same_pairs", goal_same_pairs},
                                                    {"keys", goal_keys},
                                                    {"limits", goal_limits},

@@ -5,6 +5,7 @@
 #include "bench/measure/cold_frames.h"
 #include "bench/rows/cold_rows.h"
 #include "bench/rows/every_scene_rows.h"
+#include "bench/rows/host_rows.h"
 #include "bench/rows/machine.h"
 #include "bench/rows/peer_rows.h"
 #include "bench/scenes/scene.h"
@@ -114,6 +115,18 @@ TEST(BesidePeers, who_takes_too_long_is_judged_by_what_it_finished) {
     if (row["partition"] != "Bullet sweep") continue;  // the one that gives up
     EXPECT_EQ(row["of"], "first frame, given up");
     EXPECT_GT(value_of(row, "ms"), 0.0);
+  }
+}
+
+TEST(HostRows, stand_for_each_partition_on_both_kinds_of_threads) {
+  Results results;
+  declare_hosts(results);
+  add_hosts(results, scene_named("uniform"), 300, 1, {"LinearBvh", "FlatGrid"}, 2, 4);
+  const auto rows = results.rows("hosts");
+  ASSERT_EQ(rows.size(), 2U);
+  for (const Json* row : rows) {
+    EXPECT_GT(value_of(*row, "arena_ms"), 0.0);
+    EXPECT_GT(value_of(*row, "over_arena"), 0.0);
   }
 }
 
