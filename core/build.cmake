@@ -109,6 +109,8 @@ function(winnow_library room)
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
     endif()
   endforeach()
+  # For programs that are linked with --gc-sections.
+  target_compile_options(${target} PRIVATE -ffunction-sections -fdata-sections)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${WINNOW_INCLUDE_DIR}>
                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

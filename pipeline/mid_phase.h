@@ -115,7 +115,7 @@ struct BoxSweep {
 /// who has no composite shapes links and allocates nothing of it. A CompositePool is one.
 class WINNOW_API MidPhase {
  public:
-  MidPhase() = default;
+  MidPhase() noexcept;
   MidPhase(const MidPhase&) = delete;
   MidPhase& operator=(const MidPhase&) = delete;
   virtual ~MidPhase() = default;

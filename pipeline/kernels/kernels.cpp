@@ -1,23 +1,23 @@
 #include "pipeline/kernels/kernels.h"
-#include <winnow/simd/isa.h>
+#include "pipeline/kernels/link.h"
 #include "pipeline/shapes/pair_order.h"
 
-namespace winnow {
+#include <atomic>
 
-#define WINNOW_DEFINE_PAIR(a, b) WINNOW_DEFINE_KERNELS(NarrowKernels, a##_##b##_kernels)
-WINNOW_NARROW_KERNELS(WINNOW_DEFINE_PAIR)
-#undef WINNOW_DEFINE_PAIR
+namespace winnow {
+namespace {
+
+constinit std::atomic<const NarrowKernels& (*)() noexcept> linked[ConvexKindPairs::kCount]{};
+
+}  // namespace
+
+void link_kernels(ShapeKind a, ShapeKind b, const NarrowKernels& (*kernels)() noexcept) noexcept {
+  linked[ConvexKindPairs::index(a, b)].store(kernels, std::memory_order_relaxed);
+}
 
 const NarrowKernels* narrow_kernels(ShapeKind a, ShapeKind b) noexcept {
-  switch (ConvexKindPairs::index(a, b)) {
-#define WINNOW_CASE(a, b)                                  \
-  case ConvexKindPairs::index(ShapeKind::a, ShapeKind::b): \
-    return &a##_##b##_kernels();
-    WINNOW_NARROW_KERNELS(WINNOW_CASE)
-#undef WINNOW_CASE
-    default:
-      return nullptr;
-  }
+  const auto kernels = linked[ConvexKindPairs::index(a, b)].load(std::memory_order_relaxed);
+  return kernels == nullptr ? nullptr : &kernels();
 }
 
 }  // namespace winnow

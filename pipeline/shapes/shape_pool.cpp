@@ -2,8 +2,6 @@
 
 #include "pipeline/shapes/hull_builder.h"
 
-#include <cmath>
-#include <initializer_list>
 #include <type_traits>
 #include <utility>
 
@@ -15,17 +13,6 @@ const char* to_string(ShapeKind kind) noexcept {
   const auto index = static_cast<std::uint32_t>(kind);
   return index < kShapeKinds ? kNames[index] : "none";
 }
-
-namespace {
-
-[[nodiscard]] bool are_lengths(std::initializer_list<double> values) noexcept {
-  for (const double v : values) {
-    if (!std::isfinite(v) || v < 0.0) return false;
-  }
-  return true;
-}
-
-}  // namespace
 
 ShapePool::ShapePool(std::pmr::memory_resource* memory) noexcept
     : memory_(memory),
@@ -52,98 +39,6 @@ ShapePool::ShapePool(ShapePool&& other) noexcept
 
 ShapePool::~ShapePool() {
   for (const HullShape& hull : hulls_.shapes) release_hull(hull, memory_);
-}
-
-template <typename Shape>
-Status ShapePool::put(Table<Shape>& table, ShapeKind kind, const Shape& shape, ShapeId& id) {
-  std::uint32_t index = 0;
-  if (!table.free.empty()) {
-    index = table.free[table.free.size() - 1];
-    table.free.set_size(table.free.size() - 1);
-    table.shapes[index] = shape;
-    table.live[index] = 1;
-  } else {
-    if (table.shapes.size() >> ShapeId::kIndexBits != 0) return Status::too_many_objects;
-    index = static_cast<std::uint32_t>(table.shapes.size());
-    // Room to remember the place, so that removal needs no memory.
-    if (!table.free.grow(index + 1U) || !table.live.grow(index + 1U) ||
-        !table.shapes.push_back(shape)) {
-      return Status::out_of_memory;
-    }
-    table.live.set_size(index + 1U);
-    table.live[index] = 1;
-  }
-  id = ShapeId::of(kind, index);
-  refresh_tables();
-  return Status::ok;
-}
-
-Status ShapePool::add(const SphereShape& shape, ShapeId& id) {
-  if (!are_lengths({shape.radius})) return Status::invalid_shape;
-  return put(spheres_, ShapeKind::sphere, shape, id);
-}
-Status ShapePool::add(const CapsuleShape& shape, ShapeId& id) {
-  if (!are_lengths({shape.radius, shape.half_length})) return Status::invalid_shape;
-  return put(capsules_, ShapeKind::capsule, shape, id);
-}
-Status ShapePool::add(const BoxShape& shape, ShapeId& id) {
-  if (!are_lengths({shape.half[0], shape.half[1], shape.half[2], shape.rounding})) {
-    return Status::invalid_shape;
-  }
-  return put(boxes_, ShapeKind::box, shape, id);
-}
-Status ShapePool::add(const CylinderShape& shape, ShapeId& id) {
-  if (!are_lengths({shape.radius, shape.half_length, shape.rounding})) return Status::invalid_shape;
-  return put(cylinders_, ShapeKind::cylinder, shape, id);
-}
-Status ShapePool::add(const ConeShape& shape, ShapeId& id) {
-  if (!are_lengths({shape.radius, shape.half_length, shape.rounding})) return Status::invalid_shape;
-  return put(cones_, ShapeKind::cone, shape, id);
-}
-Status ShapePool::add(const TriangleShape& shape, ShapeId& id) {
-  if (!are_lengths({shape.rounding})) return Status::invalid_shape;
-  for (const auto& vertex : shape.vertex) {
-    for (const double v : vertex) {
-      if (!std::isfinite(v)) return Status::invalid_shape;
-    }
-  }
-  return put(triangles_, ShapeKind::triangle, shape, id);
-}
-Status ShapePool::add(const HalfSpaceShape& shape, ShapeId& id) {
-  const Eigen::Map<const Eigen::Vector3d> normal(shape.normal);
-  if (!std::isfinite(shape.offset) || !normal.allFinite()) return Status::invalid_shape;
-  // Scaled by its largest component first: squares of small normals would vanish.
-  const double largest = normal.cwiseAbs().maxCoeff();
-  if (largest == 0.0) return Status::invalid_shape;
-  const Eigen::Vector3d scaled = normal / largest;
-  const Eigen::Vector3d unit = scaled.normalized();
-  const double offset = shape.offset / largest / scaled.norm();
-  if (!std::isfinite(offset)) return Status::invalid_shape;
-  return put(half_spaces_, ShapeKind::half_space,
-             HalfSpaceShape{{unit.x(), unit.y(), unit.z()}, offset}, id);
-}
-
-Status ShapePool::add_hull(std::span<const Eigen::Vector3d> points, double rounding, ShapeId& id) {
-  HullShape hull;
-  if (!are_lengths({rounding})) return Status::invalid_shape;
-  Status status = hull_of_points(points, memory_, hull);
-  if (status != Status::ok) return status;
-  hull.rounding = rounding;
-  status = put(hulls_, ShapeKind::hull, hull, id);
-  if (status != Status::ok) release_hull(hull, memory_);
-  return status;
-}
-
-Status ShapePool::add_hull(std::span<const Eigen::Vector3d> points, const HullFaces& faces,
-                           double rounding, ShapeId& id) {
-  HullShape hull;
-  if (!are_lengths({rounding})) return Status::invalid_shape;
-  Status status = hull_of_faces(points, faces, memory_, hull);
-  if (status != Status::ok) return status;
-  hull.rounding = rounding;
-  status = put(hulls_, ShapeKind::hull, hull, id);
-  if (status != Status::ok) release_hull(hull, memory_);
-  return status;
 }
 
 template <typename Pool, typename Body>

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "pipeline/kernels/kernels.h"
 #include "tests/support/counting_memory.h"
 #include "tests/support/heap_count.h"
 
@@ -312,6 +313,32 @@ TEST(ShapeBounds, contain_the_shape_and_are_tight) {
   EXPECT_NEAR(bounds.min.y(), -1.5F, 1e-5F);
   EXPECT_LE(bounds.min.y(), -1.5F);
   EXPECT_GE(static_cast<double>(bounds.max.z()), 1e9 + 3.5);
+}
+
+// Kernels come with what makes a shape of their kinds.
+TEST(NarrowKernels, are_there_for_every_pair_of_kinds_of_shapes_that_were_made) {
+  ShapePool pool;
+  ShapeId id;
+  ASSERT_EQ(pool.add(SphereShape{1.0}, id), Status::ok);
+  ASSERT_EQ(pool.add(CapsuleShape{1.0, 1.0}, id), Status::ok);
+  ASSERT_EQ(pool.add(BoxShape{{1.0, 1.0, 1.0}}, id), Status::ok);
+  ASSERT_EQ(pool.add(CylinderShape{1.0, 1.0}, id), Status::ok);
+  ASSERT_EQ(pool.add(ConeShape{1.0, 1.0}, id), Status::ok);
+  ASSERT_EQ(pool.add(TriangleShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, id), Status::ok);
+  ASSERT_EQ(pool.add(HalfSpaceShape{}, id), Status::ok);
+  const Points tetrahedron{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const std::vector<std::uint32_t> corners{0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+  const std::vector<std::uint32_t> sizes{3, 3, 3, 3};
+  ASSERT_EQ(pool.add_hull(tetrahedron, HullFaces{corners, sizes}, 0.0, id), Status::ok);
+  for (std::uint32_t a = 0; a < kShapeKinds; ++a) {
+    for (std::uint32_t b = a; b < kShapeKinds; ++b) {
+      const auto kind_a = static_cast<ShapeKind>(a);
+      const auto kind_b = static_cast<ShapeKind>(b);
+      const bool half_spaces = kind_a == ShapeKind::half_space && kind_b == ShapeKind::half_space;
+      EXPECT_EQ(narrow_kernels(kind_a, kind_b) == nullptr, half_spaces)
+          << to_string(kind_a) << " and " << to_string(kind_b);
+    }
+  }
 }
 
 TEST(ShapeBounds, of_half_spaces_end_only_at_their_plane) {

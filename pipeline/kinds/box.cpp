@@ -1,0 +1,20 @@
+#include "pipeline/kernels/link.h"
+#include "pipeline/shapes/put_shape.h"
+
+namespace winnow {
+
+#define WINNOW_PAIRS(WINNOW_X) \
+  WINNOW_X(sphere, box)        \
+  WINNOW_X(box, box)
+WINNOW_DEFINE_LINK(box, WINNOW_PAIRS)
+#undef WINNOW_PAIRS
+
+Status ShapePool::add(const BoxShape& shape, ShapeId& id) {
+  if (!are_lengths({shape.half[0], shape.half[1], shape.half[2], shape.rounding})) {
+    return Status::invalid_shape;
+  }
+  link_kernels_of_box();
+  return put(boxes_, ShapeKind::box, shape, id);
+}
+
+}  // namespace winnow

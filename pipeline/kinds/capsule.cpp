@@ -1,0 +1,20 @@
+#include "pipeline/kernels/link.h"
+#include "pipeline/shapes/put_shape.h"
+
+namespace winnow {
+
+#define WINNOW_PAIRS(WINNOW_X)  \
+  WINNOW_X(sphere, capsule)     \
+  WINNOW_X(capsule, box)        \
+  WINNOW_X(capsule, half_space) \
+  WINNOW_X(capsule, capsule)
+WINNOW_DEFINE_LINK(capsule, WINNOW_PAIRS)
+#undef WINNOW_PAIRS
+
+Status ShapePool::add(const CapsuleShape& shape, ShapeId& id) {
+  if (!are_lengths({shape.radius, shape.half_length})) return Status::invalid_shape;
+  link_kernels_of_capsule();
+  return put(capsules_, ShapeKind::capsule, shape, id);
+}
+
+}  // namespace winnow

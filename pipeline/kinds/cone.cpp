@@ -1,0 +1,24 @@
+#include "pipeline/kernels/link.h"
+#include "pipeline/shapes/put_shape.h"
+
+namespace winnow {
+
+#define WINNOW_PAIRS(WINNOW_X) \
+  WINNOW_X(sphere, cone)       \
+  WINNOW_X(box, cone)          \
+  WINNOW_X(cone, half_space)   \
+  WINNOW_X(capsule, cone)      \
+  WINNOW_X(cone, triangle)     \
+  WINNOW_X(cone, hull)         \
+  WINNOW_X(cylinder, cone)     \
+  WINNOW_X(cone, cone)
+WINNOW_DEFINE_LINK(cone, WINNOW_PAIRS)
+#undef WINNOW_PAIRS
+
+Status ShapePool::add(const ConeShape& shape, ShapeId& id) {
+  if (!are_lengths({shape.radius, shape.half_length, shape.rounding})) return Status::invalid_shape;
+  link_kernels_of_cone();
+  return put(cones_, ShapeKind::cone, shape, id);
+}
+
+}  // namespace winnow

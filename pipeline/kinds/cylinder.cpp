@@ -1,0 +1,23 @@
+#include "pipeline/kernels/link.h"
+#include "pipeline/shapes/put_shape.h"
+
+namespace winnow {
+
+#define WINNOW_PAIRS(WINNOW_X)   \
+  WINNOW_X(sphere, cylinder)     \
+  WINNOW_X(box, cylinder)        \
+  WINNOW_X(cylinder, half_space) \
+  WINNOW_X(capsule, cylinder)    \
+  WINNOW_X(cylinder, triangle)   \
+  WINNOW_X(cylinder, hull)       \
+  WINNOW_X(cylinder, cylinder)
+WINNOW_DEFINE_LINK(cylinder, WINNOW_PAIRS)
+#undef WINNOW_PAIRS
+
+Status ShapePool::add(const CylinderShape& shape, ShapeId& id) {
+  if (!are_lengths({shape.radius, shape.half_length, shape.rounding})) return Status::invalid_shape;
+  link_kernels_of_cylinder();
+  return put(cylinders_, ShapeKind::cylinder, shape, id);
+}
+
+}  // namespace winnow

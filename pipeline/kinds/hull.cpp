@@ -1,0 +1,42 @@
+#include "pipeline/kernels/link.h"
+#include "pipeline/shapes/hull_builder.h"
+#include "pipeline/shapes/put_shape.h"
+
+namespace winnow {
+
+#define WINNOW_PAIRS(WINNOW_X) \
+  WINNOW_X(sphere, hull)       \
+  WINNOW_X(box, hull)          \
+  WINNOW_X(hull, half_space)   \
+  WINNOW_X(capsule, hull)      \
+  WINNOW_X(hull, triangle)     \
+  WINNOW_X(hull, hull)
+WINNOW_DEFINE_LINK(hull, WINNOW_PAIRS)
+#undef WINNOW_PAIRS
+
+Status ShapePool::add_hull(std::span<const Eigen::Vector3d> points, double rounding, ShapeId& id) {
+  HullShape hull;
+  if (!are_lengths({rounding})) return Status::invalid_shape;
+  Status status = hull_of_points(points, memory_, hull);
+  if (status != Status::ok) return status;
+  hull.rounding = rounding;
+  link_kernels_of_hull();
+  status = put(hulls_, ShapeKind::hull, hull, id);
+  if (status != Status::ok) release_hull(hull, memory_);
+  return status;
+}
+
+Status ShapePool::add_hull(std::span<const Eigen::Vector3d> points, const HullFaces& faces,
+                           double rounding, ShapeId& id) {
+  HullShape hull;
+  if (!are_lengths({rounding})) return Status::invalid_shape;
+  Status status = hull_of_faces(points, faces, memory_, hull);
+  if (status != Status::ok) return status;
+  hull.rounding = rounding;
+  link_kernels_of_hull();
+  status = put(hulls_, ShapeKind::hull, hull, id);
+  if (status != Status::ok) release_hull(hull, memory_);
+  return status;
+}
+
+}  // namespace winnow

@@ -1,0 +1,16 @@
+#include "pipeline/kernels/link.h"
+#include "pipeline/shapes/put_shape.h"
+
+namespace winnow {
+
+#define WINNOW_PAIRS(WINNOW_X) WINNOW_X(sphere, sphere)
+WINNOW_DEFINE_LINK(sphere, WINNOW_PAIRS)
+#undef WINNOW_PAIRS
+
+Status ShapePool::add(const SphereShape& shape, ShapeId& id) {
+  if (!are_lengths({shape.radius})) return Status::invalid_shape;
+  link_kernels_of_sphere();
+  return put(spheres_, ShapeKind::sphere, shape, id);
+}
+
+}  // namespace winnow

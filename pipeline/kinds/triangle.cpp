@@ -1,0 +1,34 @@
+#include <winnow/pipeline/mid_phase.h>
+#include "pipeline/kernels/link.h"
+#include "pipeline/shapes/put_shape.h"
+
+#include <cmath>
+
+namespace winnow {
+
+#define WINNOW_PAIRS(WINNOW_X)   \
+  WINNOW_X(sphere, triangle)     \
+  WINNOW_X(box, triangle)        \
+  WINNOW_X(triangle, half_space) \
+  WINNOW_X(capsule, triangle)    \
+  WINNOW_X(triangle, triangle)
+WINNOW_DEFINE_LINK(triangle, WINNOW_PAIRS)
+#undef WINNOW_PAIRS
+
+Status ShapePool::add(const TriangleShape& shape, ShapeId& id) {
+  if (!are_lengths({shape.rounding})) return Status::invalid_shape;
+  for (const auto& vertex : shape.vertex) {
+    for (const double v : vertex) {
+      if (!std::isfinite(v)) return Status::invalid_shape;
+    }
+  }
+  link_kernels_of_triangle();
+  return put(triangles_, ShapeKind::triangle, shape, id);
+}
+
+// The primitives of composite shapes are triangles that no pool holds.
+MidPhase::MidPhase() noexcept {
+  link_kernels_of_triangle();
+}
+
+}  // namespace winnow

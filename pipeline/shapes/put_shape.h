@@ -1,0 +1,43 @@
+#pragma once
+
+// How a shape gets into its table in the pool.
+
+#include <winnow/pipeline/shape_pool.h>
+
+#include <cmath>
+#include <initializer_list>
+
+namespace winnow {
+
+[[nodiscard]] inline bool are_lengths(std::initializer_list<double> values) noexcept {
+  for (const double v : values) {
+    if (!std::isfinite(v) || v < 0.0) return false;
+  }
+  return true;
+}
+
+template <typename Shape>
+Status ShapePool::put(Table<Shape>& table, ShapeKind kind, const Shape& shape, ShapeId& id) {
+  std::uint32_t index = 0;
+  if (!table.free.empty()) {
+    index = table.free[table.free.size() - 1];
+    table.free.set_size(table.free.size() - 1);
+    table.shapes[index] = shape;
+    table.live[index] = 1;
+  } else {
+    if (table.shapes.size() >> ShapeId::kIndexBits != 0) return Status::too_many_objects;
+    index = static_cast<std::uint32_t>(table.shapes.size());
+    // Room to remember the place, so that removal needs no memory.
+    if (!table.free.grow(index + 1U) || !table.live.grow(index + 1U) ||
+        !table.shapes.push_back(shape)) {
+      return Status::out_of_memory;
+    }
+    table.live.set_size(index + 1U);
+    table.live[index] = 1;
+  }
+  id = ShapeId::of(kind, index);
+  refresh_tables();
+  return Status::ok;
+}
+
+}  // namespace winnow
