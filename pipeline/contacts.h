@@ -36,9 +36,10 @@ struct EndedContact {
 };
 
 /// What `Scene::collide` found, as columns: pairs of bodies, sorted by the kinds of their shapes
-/// and then by body; for each pair its manifolds, one for each pair of parts that touch (one alone
-/// if both shapes are convex); for each manifold its points. In a pair, a is the body with the
-/// smaller kind of shape, or the smaller id if they are of one kind.
+/// and then by body; for each pair its manifolds, one for each region of contact, or for each pair
+/// of parts that touch (see SceneOptions::contact_reduction; one alone if both shapes are convex);
+/// for each manifold its points. In a pair, a is the body with the smaller kind of shape, or the
+/// smaller id if they are of one kind.
 ///
 /// The caller's, reused from frame to frame: it remembers what was found, so that events can be
 /// told and manifolds of what rests carried over. Fresh ones, or cleared ones, remember nothing.
@@ -65,7 +66,8 @@ class WINNOW_API Contacts {
   /// Manifolds of pair i: [manifold_first()[i], manifold_first()[i + 1]). None at level pairs.
   [[nodiscard]] std::span<const std::uint32_t> manifold_first() const noexcept;
   [[nodiscard]] std::size_t manifolds() const noexcept;
-  /// The parts that touch: numbers of triangles or children, kWholeShape of convex shapes.
+  /// The parts that touch, of a region those of its deepest manifold: numbers of triangles or
+  /// children, kWholeShape of convex shapes.
   [[nodiscard]] std::span<const std::uint32_t> part_a() const noexcept;
   [[nodiscard]] std::span<const std::uint32_t> part_b() const noexcept;
   /// Levels distance and manifold: negative by the depth of penetration; the true one is within

@@ -7,6 +7,7 @@
 #include <winnow/core/footprint.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
+#include <winnow/pipeline/contact_regions.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
@@ -140,6 +141,17 @@ class WINNOW_API MidPhase {
   /// has answered `pairs` at level distance or manifold.
   virtual void smooth(const ShapePool& shapes, const PrimitivePairs& pairs,
                       const Execution& execution, NarrowResult& result) const = 0;
+  /// Merges the manifolds of each pair of bodies no farther apart than `margin` into regions of
+  /// contact: the deepest manifold (of equally deep ones the first in the order of `pairs`) and all
+  /// whose normals are within 5 degrees of its own (kRegionCosine) are the first region, the
+  /// deepest of what is left leads the next, and so on. Of a region at most kManifoldPoints points
+  /// stay: the deepest, and those that span the widest area; corners that manifolds of single parts
+  /// had no room for come into question as well. `answers` are those about `pairs` at level
+  /// manifold, else `invalid_argument`. O(manifolds x regions of a pair of bodies). The same on any
+  /// number of threads and any instruction set.
+  virtual Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs,
+                        const NarrowResult& answers, double margin, const Execution& execution,
+                        ContactRegions& out) const = 0;
 
   /// Shows `visitor` every primitive whose box the sweep may meet, roughly in the order in which it
   /// does. O(log n + met).

@@ -47,6 +47,11 @@ struct SceneOptions {
   /// much. Boxes in the partitions are larger by it, so that bodies that move less need no update
   /// there. 0: off, and every answer is that of a fresh scene, bit by bit. Finite, >= 0.
   double carry_over = 0.0;
+  /// At level manifold, of pairs with a mesh, a height field or a compound: one manifold for each
+  /// region of contact, with at most kManifoldPoints points, in place of one for each pair of parts
+  /// that touch (see MidPhase::reduce and ContactRegion), as Jolt has it by default and as Bullet
+  /// has one for a pair of bodies at all. Off: all manifolds of all parts, raw.
+  bool contact_reduction = true;
   /// That of the partitions (see PartitionOptions).
   std::size_t build_budget = 0;
   /// What holds triangle meshes, compounds and height fields; null for a scene without. Must

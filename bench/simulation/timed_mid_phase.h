@@ -36,6 +36,13 @@ class TimedMidPhase final : public MidPhase {
     inner_.smooth(shapes, pairs, execution, result);
     ms_ += clock.ms();
   }
+  Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
+                double margin, const Execution& execution, ContactRegions& out) const override {
+    const Stopwatch clock;
+    const Status status = inner_.reduce(shapes, pairs, answers, margin, execution, out);
+    ms_ += clock.ms();
+    return status;
+  }
   void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
              const PrimitiveVisitor& visitor) const override {
     inner_.visit(id, pose, sweep, visitor);

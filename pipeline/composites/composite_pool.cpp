@@ -375,6 +375,12 @@ void CompositePool::smooth(const ShapePool& shapes, const PrimitivePairs& pairs,
   mid::smooth(shapes, pairs, execution, result);
 }
 
+Status CompositePool::reduce(const ShapePool& shapes, const PrimitivePairs& pairs,
+                             const NarrowResult& answers, double margin, const Execution& execution,
+                             ContactRegions& out) const {
+  return mid::reduce(shapes, pairs, answers, margin, execution, out);
+}
+
 void CompositePool::visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
                           const PrimitiveVisitor& visitor) const {
   if (contains(id)) mid::visit(*state_, id, pose, sweep, visitor);

@@ -152,6 +152,10 @@ Status expand(const Composites* all, const ShapeTables& tables, const Bodies& bo
 void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
             NarrowResult& result) noexcept;
 
+/// See MidPhase::reduce.
+Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
+              double margin, const Execution& execution, ContactRegions& out);
+
 /// See MidPhase::visit, visit_rays, visit_pairs, visit_near_pairs and visit_near. `id` is there,
 /// `pose` is valid.
 void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,

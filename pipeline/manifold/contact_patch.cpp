@@ -66,37 +66,69 @@ ContactPoint write(const PatchMeeting& m, const PatchFrame& frame, const double 
   return point;
 }
 
+/// The corners of what two patches share that are within the margin, the deepest first.
+struct SharedPatch {
+  PatchFrame frame;
+  PatchMeetings corners;
+  double rounding[2];
+
+  SharedPatch(const Patch& a, const Patch& b, const double normal[3], double margin) noexcept
+      : frame(normal), corners(0.0), rounding{a.rounding, b.rounding} {
+    const Outline outline[2] = {{a, frame, 1.0}, {b, frame, -1.0}};
+    corners.same = kSamePlace * std::max(outline[0].size, outline[1].size);
+    find_meetings(outline[0], outline[1], corners);
+    put_deepest_first();
+    drop_beyond(margin);
+  }
+
+  [[nodiscard]] ContactPoint contact(std::uint32_t i) const noexcept {
+    return write(corners.point[i], frame, rounding);
+  }
+
+ private:
+  [[nodiscard]] static double rise(const PatchMeeting& m) noexcept {
+    return m.height[0] - m.height[1];
+  }
+
+  void put_deepest_first() noexcept {
+    const double highest = rise(corners.point[largest(corners, rise)]);
+    // Of equally deep points always the same is first.
+    std::uint32_t deepest = 0;
+    while (rise(corners.point[deepest]) < highest - corners.same) ++deepest;
+    std::swap(corners.point[0], corners.point[deepest]);
+  }
+
+  void drop_beyond(double margin) noexcept {
+    const double least = -margin - rounding[0] - rounding[1] - corners.same;
+    std::uint32_t kept = 1;
+    for (std::uint32_t i = 1; i < corners.count; ++i) {
+      if (rise(corners.point[i]) >= least) corners.point[kept++] = corners.point[i];
+    }
+    corners.count = kept;
+  }
+};
+
+static_assert(kSharedCorners == 2 * kOutlineVertices);
+
 }  // namespace
 
 std::uint32_t contact_patch(const Patch& a, const Patch& b, const double normal[3], double margin,
                             ContactPoint* out) noexcept {
   if (a.count == 0 || b.count == 0) return 0;
-  const PatchFrame frame(normal);
-  const Outline outline[2] = {{a, frame, 1.0}, {b, frame, -1.0}};
-  const double size = std::max(outline[0].size, outline[1].size);
-  PatchMeetings m(kSamePlace * size);
-  find_meetings(outline[0], outline[1], m);
-
-  const double rounding[2] = {a.rounding, b.rounding};
-  const auto rise = [](const PatchMeeting& x) { return x.height[0] - x.height[1]; };
-  const double highest = rise(m.point[largest(m, rise)]);
-  // Of equally deep points always the same is first.
-  std::uint32_t deepest = 0;
-  while (rise(m.point[deepest]) < highest - m.same) ++deepest;
-  std::swap(m.point[0], m.point[deepest]);
-  const double least = -margin - rounding[0] - rounding[1] - m.same;
-  std::uint32_t kept = 1;
-  for (std::uint32_t i = 1; i < m.count; ++i) {
-    if (rise(m.point[i]) >= least) m.point[kept++] = m.point[i];
-  }
-  m.count = kept;
-
+  const SharedPatch shared(a, b, normal, margin);
   std::uint32_t chosen[kManifoldPoints] = {0, 1, 2, 3};
-  const std::uint32_t count = m.count > kManifoldPoints ? spread(m, chosen) : m.count;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    out[i] = write(m.point[chosen[i]], frame, rounding);
-  }
+  const std::uint32_t found = shared.corners.count;
+  const std::uint32_t count = found > kManifoldPoints ? spread(shared.corners, chosen) : found;
+  for (std::uint32_t i = 0; i < count; ++i) out[i] = shared.contact(chosen[i]);
   return count;
+}
+
+std::uint32_t shared_corners(const Patch& a, const Patch& b, const double normal[3], double margin,
+                             ContactPoint* out) noexcept {
+  if (a.count == 0 || b.count == 0) return 0;
+  const SharedPatch shared(a, b, normal, margin);
+  for (std::uint32_t i = 0; i < shared.corners.count; ++i) out[i] = shared.contact(i);
+  return shared.corners.count;
 }
 
 namespace {

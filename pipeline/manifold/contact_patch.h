@@ -59,6 +59,13 @@ struct Patch {
 std::uint32_t contact_patch(const Patch& a, const Patch& b, const double normal[3], double margin,
                             ContactPoint* out) noexcept;
 
+/// At most so many corners has what two patches share.
+inline constexpr std::uint32_t kSharedCorners = 32;
+/// The same before the points are thinned: all corners of what the patches share that are no
+/// farther apart than `margin`, the deepest first. Room for kSharedCorners.
+std::uint32_t shared_corners(const Patch& a, const Patch& b, const double normal[3], double margin,
+                             ContactPoint* out) noexcept;
+
 // From boxes and triangles in the axes of the world to patches: one pair at a time, in double.
 
 /// A box where it stands, relative to the position of body a.

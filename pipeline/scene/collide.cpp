@@ -36,6 +36,7 @@ Collision::Collision(SceneState& scene, ContactsState& contacts, ContactLevel le
       contacts_(contacts),
       level_(level),
       carries_(scene.options.carry_over > 0.0 && level >= ContactLevel::distance),
+      reduces_(scene.options.contact_reduction && level == ContactLevel::manifold),
       same_scene_(contacts.scene == scene.serial),
       same_level_(same_scene_ && contacts.level == level) {}
 
@@ -47,7 +48,7 @@ Status Collision::run() {
   if (!wake_dormant() || !match()) return Status::out_of_memory;
   if (decide()) {
     if (!list_pairs()) return Status::out_of_memory;
-    for (const Status status : {answer_convex(), answer_composite()}) {
+    for (const Status status : {answer_convex(), answer_composite(), reduce_composite()}) {
       if (status != Status::ok) return status;
     }
     contacts_.frame.swap(contacts_.before);
@@ -144,6 +145,13 @@ Status Collision::answer_composite() {
                                                                             : Status::out_of_memory;
 }
 
+Status Collision::reduce_composite() {
+  if (!reduces_ || scene_.composite.empty()) return Status::ok;
+  const SceneOptions& options = scene_.options;
+  return options.composites->reduce(scene_.shapes, scene_.parts, scene_.parts_answers,
+                                    options.margin, options.execution, scene_.regions);
+}
+
 bool Collision::touches(const NarrowResult& answers, std::size_t at) const noexcept {
   return level_ == ContactLevel::boolean ? answers.overlaps(at)
                                          : answers.distance()[at] <= scene_.options.margin;
@@ -181,6 +189,12 @@ ContactFrame::Place Collision::extent(std::uint32_t pair) const noexcept {
     return touches(scene_.answers, at) ? Place{1, 1, points(scene_.answers, at)} : Place{};
   }
   Place sum;
+  if (reduces_) {
+    const auto regions = scene_.regions.of(contacts_.source[pair]);
+    for (const ContactRegion& region : regions) sum += {0, 1, region.count};
+    sum.pair = regions.empty() ? 0 : 1;
+    return sum;
+  }
   const std::uint32_t* const first = scene_.parts.first.data() + contacts_.source[pair];
   for (std::uint32_t i = first[0]; i < first[1]; ++i) {
     const std::uint32_t at = scene_.parts_slot[i];
@@ -317,6 +331,10 @@ void Collision::write(std::uint32_t pair, const Place& to) noexcept {
     write_manifold(scene_.answers, scene_.slot[c.source[pair]], nullptr, at);
     return;
   }
+  if (reduces_) {
+    for (const ContactRegion& region : scene_.regions.of(c.source[pair])) write_region(region, at);
+    return;
+  }
   const PrimitivePairs& parts = scene_.parts;
   const std::uint32_t* const first = parts.first.data() + c.source[pair];
   for (std::uint32_t i = first[0]; i < first[1]; ++i) {
@@ -358,6 +376,22 @@ void Collision::write_manifold(const NarrowResult& answers, std::size_t at, cons
       frame.points.feature[to.point + i] = from.feature[first + i];
     }
     to.point += count;
+  }
+  ++to.manifold;
+}
+
+void Collision::write_region(const ContactRegion& region, Place& to) noexcept {
+  ContactFrame& frame = contacts_.frame;
+  for (int side = 0; side < 2; ++side) frame.part[side][to.manifold] = region.part[side];
+  frame.distance[to.manifold] = region.distance;
+  frame.error_bound[to.manifold] = region.error_bound;
+  for (int k = 0; k < 3; ++k) frame.normal[k][to.manifold] = region.normal[k];
+  frame.point_first[to.manifold] = to.point;
+  for (const ContactPoint& point : std::span(region.point, region.count)) {
+    for (int k = 0; k < 3; ++k) frame.points.position[k][to.point] = point.position[k];
+    frame.points.depth[to.point] = point.depth;
+    frame.points.feature[to.point] = point.feature;
+    ++to.point;
   }
   ++to.manifold;
 }

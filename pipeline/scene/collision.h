@@ -38,6 +38,7 @@ class Collision {
   [[nodiscard]] bool list_pairs();
   [[nodiscard]] Status answer_convex();
   [[nodiscard]] Status answer_composite();
+  [[nodiscard]] Status reduce_composite();
 
   // The frame (collide.cpp).
   [[nodiscard]] bool show();
@@ -52,6 +53,7 @@ class Collision {
   void write(std::uint32_t pair, const Place& to) noexcept;
   void write_manifold(const NarrowResult& answers, std::size_t at, const double* offset,
                       Place& to) noexcept;
+  void write_region(const ContactRegion& region, Place& to) noexcept;
   [[nodiscard]] bool write_runs();
   [[nodiscard]] double clearance(std::uint32_t pair) const noexcept;
 
@@ -75,6 +77,8 @@ class Collision {
   ContactLevel level_;
   /// Levels at which pairs are carried over, in a scene that does.
   bool carries_;
+  /// Manifolds of composite shapes are those of regions.
+  bool reduces_;
   /// What the contacts remember is of this scene; and of this level.
   bool same_scene_;
   bool same_level_;

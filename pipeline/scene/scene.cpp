@@ -96,7 +96,8 @@ SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcep
       parts(given.memory),
       parts_narrow(given.memory),
       parts_answers(given.memory),
-      parts_slot(given.memory) {
+      parts_slot(given.memory),
+      regions(given.memory) {
   if (given.composites != nullptr) composites_seen = given.composites->revision();
 }
 
@@ -305,6 +306,7 @@ SceneFootprint Scene::footprint() const noexcept {
   footprint.mid_phase += s.parts_narrow.footprint().total();
   footprint.mid_phase += s.parts_answers.footprint().total();
   footprint.mid_phase += s.parts_slot.bytes();
+  footprint.mid_phase += s.regions.footprint().total();
   footprint.narrow_phase += s.convex.bytes();
   footprint.narrow_phase += s.slot.bytes();
   footprint.narrow_phase += s.narrow.footprint().total();

@@ -92,6 +92,7 @@ struct SceneState {
   NarrowPhase parts_narrow;
   NarrowResult parts_answers;
   Column<std::uint32_t> parts_slot;
+  ContactRegions regions;
   SceneStatistics statistics;
   /// Boxes updated since the last `collide`.
   std::uint64_t boxes_updated = 0;

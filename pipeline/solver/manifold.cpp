@@ -241,20 +241,26 @@ std::uint32_t side_by_side(const Problem& problem, const Vec& normal, double dis
   return count;
 }
 
+/// What `contacts` (of two patches, as contact_patch) finds of the supporting features.
+template <typename Contacts>
+std::uint32_t meet_features(const Problem& problem, const Vec& normal, Contacts&& contacts) {
+  const SupportingPatch a(problem.a, normal);
+  if (problem.b.kind != CoreKind::half_space) {
+    return contacts(a.view(), SupportingPatch(problem.b, -normal).view());
+  }
+  const double reach = 2.0 * problem.a.size + problem.noise();
+  return contacts(a.view(),
+                  SupportingPatch::of_half_space(problem.b, problem.a.center, reach).view());
+}
+
 std::uint32_t meet(const Problem& problem, const Vec& normal, double distance, double margin,
                    ContactPoint* out) noexcept {
   if (problem.a.kind == CoreKind::segment && problem.b.kind == CoreKind::segment) {
     return side_by_side(problem, normal, distance, margin, out);
   }
-  const SupportingPatch a(problem.a, normal);
-  const double direction[3] = {normal.x(), normal.y(), normal.z()};
-  if (problem.b.kind != CoreKind::half_space) {
-    return contact_patch(a.view(), SupportingPatch(problem.b, -normal).view(), direction, margin,
-                         out);
-  }
-  const double reach = 2.0 * problem.a.size + problem.noise();
-  const SupportingPatch b = SupportingPatch::of_half_space(problem.b, problem.a.center, reach);
-  return contact_patch(a.view(), b.view(), direction, margin, out);
+  return meet_features(problem, normal, [&](const Patch& a, const Patch& b) {
+    return contact_patch(a, b, normal.data(), margin, out);
+  });
 }
 
 }  // namespace
@@ -290,6 +296,13 @@ void make_manifold(const Problem& problem, const Vec& point, double distance, do
     }
     contacts[i].depth = as_float(problem, static_cast<double>(contacts[i].depth));
   }
+}
+
+std::uint32_t shared_corners(const Problem& problem, const Vec& normal, double margin,
+                             ContactPoint* out) noexcept {
+  return meet_features(problem, normal, [&](const Patch& a, const Patch& b) {
+    return winnow::shared_corners(a, b, normal.data(), margin, out);
+  });
 }
 
 }  // namespace winnow::solver

@@ -13,6 +13,9 @@ namespace winnow::solver {
 /// A feature of a core with its numbers, in units of the problem: what contact_patch takes.
 class SupportingPatch {
  public:
+  /// No patch has more vertices.
+  static constexpr std::uint32_t kRoom = 64;
+
   /// The feature that lies farthest along `outward`: a box's face, a triangle, a segment, a hull's
   /// face, edge or vertex, a cylinder's or cone's cap as a polygon of 16 or a line of its side.
   /// Features some degrees off count as well, since bodies rock over them; all of them hold the
@@ -29,8 +32,6 @@ class SupportingPatch {
   }
 
  private:
-  static constexpr std::uint32_t kRoom = 64;
-
   SupportingPatch() noexcept = default;
   void add(const Vec& v, std::uint32_t vertex_feature, std::uint32_t edge_feature) noexcept;
   void add_face(const Core& core, std::uint32_t face) noexcept;
@@ -52,5 +53,10 @@ class SupportingPatch {
 /// problem. At least one point, and the deepest one is as deep as the distance says.
 void make_manifold(const Problem& problem, const Vec& point, double distance, double margin,
                    PairAnswer& answer) noexcept;
+
+/// All corners of what the supporting features along `normal` share, of which a manifold has four
+/// at most; in units of the problem. Room for kSharedCorners.
+std::uint32_t shared_corners(const Problem& problem, const Vec& normal, double margin,
+                             ContactPoint* out) noexcept;
 
 }  // namespace winnow::solver

@@ -1,0 +1,209 @@
+#include "pipeline/manifold/region_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+/// The finalizer of SplitMix64 (Steele, Lea, Flood 2014), one to one.
+[[nodiscard]] std::uint64_t scrambled(std::uint64_t x) noexcept {
+  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
+  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
+  return x ^ (x >> 31U);
+}
+
+}  // namespace
+
+std::uint64_t feature_among_parts(std::uint64_t feature, const std::uint32_t (&part)[2]) noexcept {
+  const auto is_vertex = [](std::uint64_t half) {
+    return half >> 30U == static_cast<std::uint64_t>(FeatureKind::vertex);
+  };
+  const auto is_face = [](std::uint64_t half) {
+    return half >> 30U == static_cast<std::uint64_t>(FeatureKind::face);
+  };
+  constexpr std::uint64_t kHalf = 0xFFFFFFFFU;
+  const std::uint64_t a = feature >> 32U;
+  const std::uint64_t b = feature & kHalf;
+  std::uint64_t parts = std::uint64_t{part[0]} << 32U | part[1];
+  if (is_vertex(a) && is_face(b)) {
+    feature = a << 32U | kHalf;
+    parts |= kHalf;
+  } else if (is_vertex(b) && is_face(a)) {
+    feature = kHalf << 32U | b;
+    parts |= kHalf << 32U;
+  }
+  return scrambled(feature ^ scrambled(parts));
+}
+
+void RegionPoints::add(const ContactPoint& contact, const double* offset,
+                       const std::uint32_t (&part)[2]) noexcept {
+  if (count_ == kRoom) thin();
+  point_[count_++] = point_of(contact, offset, part);
+}
+
+void RegionPoints::add_beside(const ContactPoint& contact, const double* offset,
+                              const std::uint32_t (&part)[2]) noexcept {
+  if (has_beside_ && contact.depth <= beside_.contact.depth) return;
+  has_beside_ = true;
+  beside_ = point_of(contact, offset, part);
+}
+
+RegionPoints::Point RegionPoints::point_of(const ContactPoint& contact, const double* offset,
+                                           const std::uint32_t (&part)[2]) const noexcept {
+  Point point;
+  double p[3];
+  for (int k = 0; k < 3; ++k) p[k] = static_cast<double>(contact.position[k]) + offset[k];
+  point.x = dot(p, frame_.axis[0]);
+  point.y = dot(p, frame_.axis[1]);
+  for (int k = 0; k < 3; ++k) point.contact.position[k] = static_cast<float>(p[k]);
+  point.contact.depth = contact.depth;
+  point.contact.feature = contact.feature;
+  std::copy_n(part, 2, point.part);
+  return point;
+}
+
+float RegionPoints::deepest() const noexcept {
+  float depth = -std::numeric_limits<float>::infinity();
+  for (std::uint32_t i = 0; i < count_; ++i) depth = std::max(depth, point_[i].contact.depth);
+  return depth;
+}
+
+// Of points whose values differ by no more than the tie, the first that was added.
+template <typename Value>
+std::uint32_t RegionPoints::first_of_largest(Value&& value, double& most) const noexcept {
+  double values[kRoom];
+  most = -std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    values[i] = value(point_[i]);
+    most = std::max(most, values[i]);
+  }
+  std::uint32_t first = 0;
+  while (first + 1 < count_ && !(values[first] >= most - tie_)) ++first;
+  return first;
+}
+
+double RegionPoints::distance_from_hull(const Point& p, const Chosen& hull,
+                                        std::uint32_t count) const noexcept {
+  double nearest = std::numeric_limits<double>::infinity();
+  bool is_left = count == 3;
+  bool is_right = count == 3;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Point& a = point_[hull[i]];
+    const Point& b = point_[hull[i + 1 == count ? 0 : i + 1]];
+    const double along[2] = {b.x - a.x, b.y - a.y};
+    const double to[2] = {p.x - a.x, p.y - a.y};
+    const double turn = along[0] * to[1] - along[1] * to[0];
+    is_left = is_left && turn >= 0.0;
+    is_right = is_right && turn <= 0.0;
+    const double square = along[0] * along[0] + along[1] * along[1];
+    const double run = to[0] * along[0] + to[1] * along[1];
+    const double share = square > 0.0 ? std::clamp(run / square, 0.0, 1.0) : 0.0;
+    const double off[2] = {to[0] - share * along[0], to[1] - share * along[1]};
+    nearest = std::min(nearest, off[0] * off[0] + off[1] * off[1]);
+  }
+  return is_left || is_right ? 0.0 : std::sqrt(nearest);
+}
+
+// Returns how many.
+std::uint32_t RegionPoints::spread(Chosen& chosen) const noexcept {
+  chosen[0] = outermost();
+  std::uint32_t count = 1;
+  for (; count < kManifoldPoints; ++count) {
+    double most = 0.0;
+    const std::uint32_t next = first_of_largest(
+        [&](const Point& p) { return distance_from_hull(p, chosen, count); }, most);
+    if (most <= tie_) break;
+    chosen[count] = next;
+  }
+  return count;
+}
+
+// The largest x, and of these the largest y: a corner of what they span.
+std::uint32_t RegionPoints::outermost() const noexcept {
+  double most = point_[0].x;
+  for (std::uint32_t i = 1; i < count_; ++i) most = std::max(most, point_[i].x);
+  double unused = 0.0;
+  return first_of_largest(
+      [&](const Point& p) {
+        return p.x >= most - tie_ ? p.y : -std::numeric_limits<double>::infinity();
+      },
+      unused);
+}
+
+// Parts that share a side may tell of one place more than once, and one that is beside it, of
+// almost the same place.
+const RegionPoints::Point& RegionPoints::deepest_at(const Point& place) const noexcept {
+  constexpr double kPlace = 16.0;
+  const Point* best = &place;
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    const Point& p = point_[i];
+    const bool is_there =
+        std::abs(p.x - place.x) <= kPlace * tie_ && std::abs(p.y - place.y) <= kPlace * tie_;
+    if (is_there && p.contact.depth - best->contact.depth > static_cast<float>(tie_)) best = &p;
+  }
+  return *best;
+}
+
+// Leaves the points that are farthest in directions all around, of equals the one that is farther
+// counter-clockwise, and the deepest, in the order in which they were added.
+void RegionPoints::thin() noexcept {
+  bool stays[kRoom] = {};
+  double unused = 0.0;
+  for (std::uint32_t k = 0; k < kDirections; ++k) {
+    constexpr double kStep = 6.283185307179586 / kDirections;
+    const double c = std::cos(kStep * k);
+    const double s = std::sin(kStep * k);
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      most = std::max(most, c * point_[i].x + s * point_[i].y);
+    }
+    stays[first_of_largest(
+        [&](const Point& p) {
+          return c * p.x + s * p.y >= most - tie_ ? c * p.y - s * p.x
+                                                  : -std::numeric_limits<double>::infinity();
+        },
+        unused)] = true;
+  }
+  std::uint32_t deepest = 0;
+  for (std::uint32_t i = 1; i < count_; ++i) {
+    if (point_[i].contact.depth > point_[deepest].contact.depth) deepest = i;
+  }
+  stays[deepest] = true;
+  std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    if (stays[i]) point_[kept++] = point_[i];
+  }
+  count_ = kept;
+}
+
+std::uint32_t RegionPoints::choose(ContactPoint* out) noexcept {
+  if (has_beside_ && beside_.contact.depth > deepest()) {
+    if (count_ == kRoom) thin();
+    point_[count_++] = beside_;
+  }
+  if (count_ == 0) return 0;
+  double depth = 0.0;
+  const auto depth_of = [](const Point& p) { return static_cast<double>(p.contact.depth); };
+  const std::uint32_t deepest = first_of_largest(depth_of, depth);
+  Chosen chosen;
+  std::uint32_t count = spread(chosen);
+  const auto is_deepest = [&](std::uint32_t i) { return depth_of(point_[i]) >= depth - tie_; };
+  std::uint32_t* first = std::find_if(chosen, chosen + count, is_deepest);
+  if (first == chosen + count) {
+    count = std::min(count + 1, kManifoldPoints);
+    first = chosen + count - 1;
+    *first = deepest;
+  }
+  std::swap(chosen[0], *first);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Point& point = deepest_at(point_[chosen[i]]);
+    out[i] = point.contact;
+    out[i].feature = feature_among_parts(point.contact.feature, point.part);
+  }
+  out[0].depth = static_cast<float>(depth);
+  return count;
+}
+
+}  // namespace winnow
