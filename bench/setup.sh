@@ -8,6 +8,9 @@ WINNOW_BUILD_PACKAGES=(cmake ninja-build g++ pkg-config libeigen3-dev libxsimd-d
 # What the winnow tool needs on top.
 WINNOW_BENCH_PACKAGES=(libcli11-dev nlohmann-json3-dev liblzma-dev xz-utils
                        libjs-three libjs-chart.js)
+# What the Python package is built with and runs on, and what its tests take besides.
+WINNOW_PYTHON_PACKAGES=(pybind11-dev python3-dev python3-numpy)
+WINNOW_PYTHON_TEST_PACKAGES=(python3-pytest python3-hypothesis python3-venv mypy)
 # Mesh files for `winnow simulate`.
 WINNOW_MESH_PACKAGES=(libassimp-dev)
 # What opens the pages of `winnow draw` in a test: Chromium without its windows.

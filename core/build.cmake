@@ -91,6 +91,8 @@ target_link_options(winnow_flags INTERFACE ${winnow_sanitize})
 function(winnow_library room)
   cmake_parse_arguments(arg "" "" "LINKS;PRIVATE_LINKS;PRECOMPILED;APART" ${ARGN})
   file(GLOB_RECURSE sources RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.cpp)
+  # A module of its own, of its folder's CMakeLists.txt.
+  list(FILTER sources EXCLUDE REGEX "^python/")
   set(kernels ${sources})
   list(FILTER kernels INCLUDE REGEX "\\.kernel\\.cpp$")
   list(FILTER sources EXCLUDE REGEX "\\.kernel\\.cpp$")

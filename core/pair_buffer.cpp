@@ -1,6 +1,18 @@
 #include <winnow/core/pair_buffer.h>
 
+#include <cstring>
+
 namespace winnow {
+
+bool PairBuffer::assign(const PairBuffer& other) noexcept {
+  if (&other == this) return true;
+  if (!pairs_.reserve(other.size())) return false;
+  if (!other.empty()) std::memcpy(pairs_.data(), other.pairs_.data(), other.size() * sizeof(Pair));
+  pairs_.set_size(other.size());
+  state_ = State::loose;
+  provenance_ = other.provenance_;
+  return true;
+}
 
 void PairBuffer::release() noexcept {
   clear();

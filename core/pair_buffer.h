@@ -69,6 +69,10 @@ class WINNOW_API PairBuffer {
     return pairs_.reserve(count, pages);
   }
 
+  /// Takes the pairs of another buffer over as they are, so that the next query may go on from
+  /// either. False, and unchanged, if memory is refused. O(pairs).
+  [[nodiscard]] bool assign(const PairBuffer& other) noexcept;
+
   void clear() noexcept {
     pairs_.clear();
     state_ = State::loose;

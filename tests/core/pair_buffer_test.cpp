@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <winnow/core/pair_buffer.h>
 
+#include <algorithm>
+
 #include "tests/support/counting_memory.h"
 
 namespace winnow::test {
@@ -27,6 +29,27 @@ TEST(PairBuffer, keeps_its_memory_when_cleared) {
   EXPECT_EQ(memory.outstanding(), buffer.footprint().total().reserved);
   EXPECT_GE(buffer.footprint().results.reserved, 100 * sizeof(Pair));
   EXPECT_EQ(buffer.footprint().results.used, 0U);
+}
+
+TEST(PairBuffer, takes_over_the_pairs_of_another) {
+  CountingMemory memory;
+  PairBuffer one(&memory);
+  PairBuffer other(&memory);
+  for (ObjectId i = 0; i < 100; ++i) ASSERT_TRUE(one.edit().push_back({i, i + 1}));
+  ASSERT_TRUE(other.assign(one));
+  EXPECT_TRUE(std::ranges::equal(other.pairs(), one.pairs()));
+  ASSERT_TRUE(other.assign(other));
+  EXPECT_EQ(other.size(), 100U);
+  ASSERT_TRUE(one.assign(PairBuffer(&memory)));
+  EXPECT_TRUE(one.empty());
+  other.release();
+  ASSERT_TRUE(other.edit().push_back({1, 2}));
+  ASSERT_TRUE(one.edit().push_back({3, 4}));
+  while (one.size() < 50) ASSERT_TRUE(one.edit().push_back({5, 6}));
+  memory.refuse_after(0);
+  EXPECT_FALSE(other.assign(one));
+  ASSERT_EQ(other.size(), 1U);
+  EXPECT_EQ(other[0], (Pair{1, 2}));
 }
 
 TEST(PairBuffer, is_unchanged_when_memory_is_refused) {

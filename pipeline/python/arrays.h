@@ -1,0 +1,200 @@
+#pragma once
+
+// Numpy arrays as winnow reads and writes them.
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/box_view.h>
+#include <winnow/core/key.h>
+#include <winnow/core/pair_buffer.h>
+#include <winnow/core/pose_view.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace winnow::python {
+
+namespace py = pybind11;
+
+/// An array of numbers in float or double, as it lies in memory: any strides, each entry aligned
+/// and of this machine's byte order. Whatever else converts to double without loss is converted.
+class Numbers {
+ public:
+  /// `count` entries of `shape` each: an array of one dimension more than `shape`. `name` is for
+  /// messages. With `one` a single entry, of the dimensions of `shape`, stands for all: it has no
+  /// strides of its own then, and takes the count that `repeat` gives.
+  Numbers(py::handle object, const char* name, const std::vector<std::size_t>& shape,
+          bool one = false);
+
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  [[nodiscard]] bool is_single() const noexcept { return single_; }
+  /// One entry stands for all.
+  [[nodiscard]] bool is_one() const noexcept { return one_; }
+  void repeat(std::size_t count) noexcept { count_ = count; }
+  /// Throws a size_mismatch unless there are so many entries; repeats the one that stands for all.
+  void expect(std::size_t count);
+
+  [[nodiscard]] std::ptrdiff_t stride() const noexcept { return stride_; }
+  [[nodiscard]] std::ptrdiff_t inner_stride() const noexcept { return inner_[0]; }
+  /// Component (j, k) of the first entry. T is float where `is_single`, else double.
+  template <typename T>
+  [[nodiscard]] const T* column(std::size_t j, std::size_t k = 0) const noexcept {
+    return reinterpret_cast<const T*>(data_ + static_cast<std::ptrdiff_t>(j) * inner_[0] +
+                                      static_cast<std::ptrdiff_t>(k) * inner_[1]);
+  }
+  /// Component (j, k) of entry i.
+  [[nodiscard]] double at(std::size_t i, std::size_t j = 0, std::size_t k = 0) const noexcept {
+    const std::byte* const p = data_ + static_cast<std::ptrdiff_t>(i) * stride_ +
+                               static_cast<std::ptrdiff_t>(j) * inner_[0] +
+                               static_cast<std::ptrdiff_t>(k) * inner_[1];
+    if (single_) return static_cast<double>(*reinterpret_cast<const float*>(p));
+    return *reinterpret_cast<const double*>(p);
+  }
+  /// True if entries lie one after another without gaps, components too.
+  [[nodiscard]] bool is_dense(std::size_t components) const noexcept;
+
+ private:
+  py::array array_;
+  const char* name_;
+  const std::byte* data_ = nullptr;
+  std::ptrdiff_t stride_ = 0;
+  std::ptrdiff_t inner_[2] = {0, 0};
+  std::size_t count_ = 0;
+  bool single_ = false;
+  bool one_ = false;
+};
+
+/// Boxes given as lower and upper corners, (n, 3) each.
+class BoxInput {
+ public:
+  BoxInput(py::handle lower, py::handle upper);
+
+  [[nodiscard]] std::size_t count() const noexcept { return lower_.count(); }
+  /// True where boxes are read from the arrays themselves: of floats, with one stride.
+  [[nodiscard]] bool is_in_place() const noexcept;
+  /// Everything else is rounded outward to `room`. Needs no GIL.
+  [[nodiscard]] BoxView view(std::vector<Aabb>& room) const;
+
+ private:
+  Numbers lower_;
+  Numbers upper_;
+};
+
+/// Whole numbers of one dimension, or of two with `columns` in each row, of exactly the type T in
+/// one piece: the array itself where it is so already. Others are copied, if they are in the range
+/// of T.
+template <typename T>
+class Integers {
+ public:
+  Integers(py::handle object, const char* name, std::size_t columns = 1);
+
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  /// Count times columns numbers.
+  [[nodiscard]] std::span<const T> values() const noexcept { return values_; }
+  [[nodiscard]] T operator[](std::size_t i) const noexcept { return values_[i]; }
+
+ private:
+  py::array array_;
+  std::size_t count_ = 0;
+  std::span<const T> values_;
+};
+extern template class Integers<std::uint8_t>;
+extern template class Integers<std::uint32_t>;
+extern template class Integers<std::uint64_t>;
+
+/// Keys as uint64: the id in the lower half, the stamp in the upper one.
+class KeyInput {
+ public:
+  explicit KeyInput(py::handle object, const char* name = "keys") : words_(object, name) {}
+  [[nodiscard]] std::size_t count() const noexcept { return words_.count(); }
+  [[nodiscard]] std::span<const Key> keys() const noexcept {
+    return {reinterpret_cast<const Key*>(words_.values().data()), words_.count()};
+  }
+
+ private:
+  Integers<std::uint64_t> words_;
+};
+
+/// A whole number for each of n entries: an array, or one number for all.
+class EachInteger {
+ public:
+  EachInteger(py::handle object, const char* name, std::uint64_t most);
+  /// Throws a size_mismatch unless it is one for all or there are so many.
+  void expect(std::size_t count) const;
+  [[nodiscard]] std::uint64_t operator[](std::size_t i) const noexcept {
+    return words_.empty() ? all_ : words_[i];
+  }
+
+ private:
+  const char* name_;
+  std::vector<std::uint64_t> words_;
+  bool one_ = false;
+  std::uint64_t all_ = 0;
+};
+
+/// Client data: none, or a number for each object.
+[[nodiscard]] std::vector<ClientData> data_of(py::handle object, std::size_t count);
+
+// Arrays that are handed out own what they show: directly, or through `owner`, which lives as long
+// as any of them. Those with an owner can only be read.
+
+template <typename T>
+[[nodiscard]] py::array shown_strided(const std::shared_ptr<const void>& owner, const T* data,
+                                      std::vector<py::ssize_t> shape,
+                                      std::vector<py::ssize_t> strides) {
+  auto holder = std::make_unique<std::shared_ptr<const void>>(owner);
+  py::capsule capsule(holder.get(),
+                      [](void* p) { delete static_cast<std::shared_ptr<const void>*>(p); });
+  static_cast<void>(holder.release());
+  py::array array(py::dtype::of<T>(), std::move(shape), std::move(strides), data, capsule);
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+/// A column of `count` numbers, `stride` bytes apart.
+template <typename T>
+[[nodiscard]] py::array shown(const std::shared_ptr<const void>& owner, const T* data,
+                              std::size_t count, std::size_t stride = sizeof(T)) {
+  return shown_strided(owner, data, {static_cast<py::ssize_t>(count)},
+                       {static_cast<py::ssize_t>(stride)});
+}
+/// `count` rows of `columns` numbers.
+template <typename T>
+[[nodiscard]] py::array shown_rows(const std::shared_ptr<const void>& owner, const T* data,
+                                   std::size_t count, std::size_t columns, std::size_t stride) {
+  return shown_strided(owner, data,
+                       {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(columns)},
+                       {static_cast<py::ssize_t>(stride), static_cast<py::ssize_t>(sizeof(T))});
+}
+
+/// A vector that an array takes over.
+template <typename T>
+[[nodiscard]] py::array given(std::vector<T>&& values, std::size_t columns = 0) {
+  auto owner = std::make_shared<std::vector<T>>(std::move(values));
+  const T* const data = owner->data();
+  const std::size_t count = owner->size();
+  if (columns == 0) return shown(owner, data, count);
+  return shown_rows(owner, data, count / columns, columns, columns * sizeof(T));
+}
+
+/// A fresh array of the caller's, not yet written.
+template <typename T>
+[[nodiscard]] py::array_t<T> fresh(std::size_t count) {
+  return py::array_t<T>(static_cast<py::ssize_t>(count));
+}
+template <typename T>
+[[nodiscard]] py::array_t<T> fresh(std::size_t count, std::size_t columns) {
+  return py::array_t<T>({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(columns)});
+}
+[[nodiscard]] inline Key* keys_in(py::array_t<std::uint64_t>& array) {
+  return reinterpret_cast<Key*>(array.mutable_data());
+}
+
+}  // namespace winnow::python

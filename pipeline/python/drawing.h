@@ -1,0 +1,36 @@
+#pragma once
+
+#include "pipeline/python/arrays.h"
+#include "pipeline/python/made.h"
+
+#include <winnow/core/debug_draw.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace winnow::python {
+
+/// What a debug drawing consists of, as columns.
+class Drawing final : public DebugDraw, public EmptyIfZero {
+ public:
+  void box(const Aabb& box, Colour colour) override;
+  void line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) override;
+  void sphere(const Sphere& sphere, Colour colour) override;
+  void text(const Eigen::Vector3f& at, std::string_view text, Colour colour) override;
+
+  struct Table {
+    std::vector<float> numbers;
+    std::vector<std::uint8_t> colours;
+  };
+  Table boxes;
+  Table lines;
+  Table spheres;
+  Table labels;
+  std::vector<std::string> texts;
+};
+
+void add_drawing(py::module_& module);
+
+}  // namespace winnow::python

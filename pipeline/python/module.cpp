@@ -1,0 +1,140 @@
+// The module: what a status becomes, names, and everything else in the order of its sources.
+
+#include <pybind11/pybind11.h>
+
+#include "pipeline/python/drawing.h"
+#include "pipeline/python/partition.h"
+#include "pipeline/python/refusal.h"
+
+#include <winnow/core/rounding.h>
+#include <winnow/simd/isa.h>
+
+namespace winnow::python {
+
+const char* meaning(Status status) noexcept {
+  switch (status) {
+    case Status::ok:
+      return "done";
+    case Status::invalid_bounds:
+      return "a bound is NaN, lower is above upper, or it lies wholly at infinity";
+    case Status::invalid_key:
+      return "a key is null, stale or from elsewhere, or it is there twice";
+    case Status::invalid_argument:
+      return "an argument is outside its range";
+    case Status::size_mismatch:
+      return "arrays that belong together differ in length";
+    case Status::out_of_memory:
+      return "there is not enough memory";
+    case Status::too_many_objects:
+      return "there are more objects than ids";
+    case Status::unsupported_volume:
+      return "the partition does not hold this kind of volume";
+    case Status::invalid_shape:
+      return "a length is negative or not finite, or no shape can be made of the points";
+    case Status::invalid_pose:
+      return "a pose is not finite, or its quaternion is zero";
+    case Status::unsupported:
+      return "this cannot be asked, or the library was built without it";
+  }
+  return "";
+}
+
+void accept(Status status, const std::string& what) {
+  if (status != Status::ok) throw Refusal(status, what + ": " + meaning(status));
+}
+
+namespace {
+
+// Kept by the module, and needed for as long as exceptions may be thrown: to the very end.
+PyObject* status_error = nullptr;
+
+void raise(const Refusal& refusal) {
+  if (refusal.status() == Status::out_of_memory) {
+    PyErr_SetString(PyExc_MemoryError, refusal.what());
+    return;
+  }
+  const auto type = py::reinterpret_borrow<py::object>(status_error);
+  const py::object error = type(refusal.what());
+  error.attr("status") = to_string(refusal.status());
+  PyErr_SetObject(type.ptr(), error.ptr());
+}
+
+void add_errors(py::module_& module) {
+  py::dict members;
+  members["status"] = "";
+  status_error = PyErr_NewExceptionWithDoc(
+      "winnow.StatusError",
+      "A call was refused and has changed nothing. `status` names why: invalid_bounds, "
+      "invalid_key, invalid_argument, size_mismatch, too_many_objects, unsupported_volume, "
+      "invalid_shape, invalid_pose or unsupported. out_of_memory is a MemoryError.",
+      PyExc_ValueError, members.ptr());
+  if (status_error == nullptr) throw py::error_already_set();
+  module.add_object("StatusError", py::reinterpret_borrow<py::object>(status_error));
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const Refusal& refusal) {
+      raise(refusal);
+    }
+  });
+}
+
+[[nodiscard]] py::tuple outward(py::handle lower, py::handle upper, py::handle origin) {
+  const Numbers low(lower, "lower", {3});
+  Numbers high(upper, "upper", {3});
+  high.expect(low.count());
+  Numbers from(origin, "origin", {3}, true);
+  from.expect(low.count());
+  auto down = fresh<float>(low.count(), 3);
+  auto up = fresh<float>(low.count(), 3);
+  float* const to[2] = {down.mutable_data(), up.mutable_data()};
+  for (std::size_t i = 0; i < low.count(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      to[0][3 * i + axis] = round_down(add_down(low.at(i, axis), -from.at(i, axis)));
+      to[1][3 * i + axis] = round_up(add_up(high.at(i, axis), -from.at(i, axis)));
+    }
+  }
+  return py::make_tuple(down, up);
+}
+
+void add_instruction_sets(py::module_& module) {
+  module.def(
+      "isa_name", [] { return std::string(isa_name()); },
+      "The instruction set in use: sse42, avx2, avx512 or neon64.");
+  module.def(
+      "available_isas",
+      [] {
+        std::vector<std::string> names;
+        for (const Isa isa : available_isas()) names.emplace_back(to_string(isa));
+        return names;
+      },
+      "Instruction sets of this build that the machine has, narrowest first.");
+  module.def(
+      "set_isa",
+      [](const std::string& name) { accept(set_isa(std::string_view(name)), "set_isa"); },
+      py::arg("name"), "Chooses an instruction set for the whole process.");
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_core, module) {
+  module.doc() = "winnow in C++; everything is to be had from `winnow`.";
+  add_errors(module);
+  module.attr("NULL_KEY") = ~std::uint64_t{0} >> 32U;
+  module.attr("NO_OBJECT") = kNoObject;
+  module.attr("EVERY_ENVIRONMENT") = kEveryEnvironment;
+  module.def("outward", &outward, py::arg("lower"), py::arg("upper"), py::arg("origin"),
+             "The smallest float boxes, (n, 3) float32 each, that contain boxes in double, "
+             "measured from `origin`, (n, 3) or (3,): for worlds far from 0.");
+  add_instruction_sets(module);
+  add_drawing(module);
+  PartitionClass partition(
+      module, "Partition",
+      "Takes boxes, hands out keys, and says which may touch; it never misses a pair. Any number "
+      "of threads may call it. A call that raises has changed nothing. Arrays must not be written "
+      "to by other threads while a call reads them.");
+  add_queries(module, partition);
+  add_partition(module, partition);
+}
+
+}  // namespace winnow::python

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "pipeline/python/arrays.h"
+#include "pipeline/python/choices.h"
+#include "pipeline/python/made.h"
+#include "pipeline/python/pool.h"
+
+#include <winnow/core/filter.h>
+#include <winnow/core/hits.h>
+#include <winnow/core/pair_buffer.h>
+#include <winnow/core/pair_events.h>
+#include <winnow/partitions/partition.h>
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <string>
+#include <vector>
+
+namespace winnow::python {
+
+inline constexpr Choices<Volume, 5> kVolumes{{{"aabb", Volume::aabb},
+                                              {"sphere", Volume::sphere},
+                                              {"kdop14", Volume::kdop14},
+                                              {"kdop18", Volume::kdop18},
+                                              {"kdop26", Volume::kdop26}}};
+inline constexpr Choices<Order, 2> kOrders{
+    {{"fast", Order::fast}, {"canonical", Order::canonical}}};
+
+/// The structure of this name, or an invalid_argument that names all.
+[[nodiscard]] StructureKind structure_of(const std::string& name);
+
+/// What holds the results of a frame while arrays show them, and cannot be filled again till then.
+template <typename Result>
+class Exported : public NeedsInit {
+ public:
+  [[nodiscard]] const std::shared_ptr<Result>& value() const noexcept { return value_; }
+  /// To be filled: a BufferError while an array shows it.
+  [[nodiscard]] Result& to_fill(const char* what) const {
+    if (value_.use_count() > 1) {
+      PyErr_Format(PyExc_BufferError,
+                   "arrays of these %s are alive: delete them, or keep copies of them", what);
+      throw py::error_already_set();
+    }
+    return *value_;
+  }
+  /// Nobody else fills it or makes arrays of it meanwhile. Waits without the GIL.
+  [[nodiscard]] std::unique_lock<std::mutex> hold() const {
+    const py::gil_scoped_release release;
+    return std::unique_lock(mutex_);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::shared_ptr<Result> value_ = std::make_shared<Result>();
+};
+using Events = Exported<PairEvents>;
+
+/// A partition as several threads of Python may use it.
+class SharedPartition : public NeedsInit {
+ public:
+  SharedPartition(StructureKind structure, const PartitionOptions& options);
+
+  /// A buffer for all pairs, which carries over those of the last frame: where that helps, if it
+  /// is `incremental`, and in any case if it is told what changed.
+  [[nodiscard]] std::shared_ptr<PairBuffer> take_pairs(bool incremental, bool with_events = false);
+  void keep_pairs(std::shared_ptr<PairBuffer> pairs);
+  /// So many objects have changed since.
+  void count_changes(std::size_t objects) noexcept { changes_ += objects; }
+
+  mutable std::shared_mutex mutex;
+  Partition partition;
+  Execution execution;
+  /// Boxes that are not read in place.
+  std::vector<Aabb> room;
+  std::shared_ptr<Pool<PairBuffer>> pair_pool = std::make_shared<Pool<PairBuffer>>();
+  std::shared_ptr<Pool<HitBuffer>> hit_pool = std::make_shared<Pool<HitBuffer>>();
+
+ private:
+  std::mutex pairs_mutex_;
+  std::shared_ptr<PairBuffer> last_pairs_;
+  std::atomic<std::size_t> changes_{0};
+};
+
+/// Pairs as an (m, 2) array.
+[[nodiscard]] py::array shown_pairs(const std::shared_ptr<PairBuffer>& pairs);
+/// Bytes by purpose.
+[[nodiscard]] py::dict footprint_dict(const Footprint& footprint);
+
+using PartitionClass = py::class_<SharedPartition, std::shared_ptr<SharedPartition>>;
+
+// Each adds what its source is named after.
+void add_partition(py::module_& module, PartitionClass& partition);
+void add_queries(py::module_& module, PartitionClass& partition);
+
+}  // namespace winnow::python

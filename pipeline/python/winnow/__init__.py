@@ -1,0 +1,72 @@
+"""Collision detection: who may touch, who does, where and how deep.
+
+Everything takes numpy arrays of many at once and gives arrays back; the GIL is free meanwhile.
+
+    import winnow
+    partition = winnow.Partition("LinearBvh")
+    keys = partition.insert(lower, upper)      # (n, 3) each, float or double, any strides
+    pairs = partition.self_pairs()             # (m, 2) uint32 of ids
+    ids = winnow.ids_of(keys)
+
+What a call refuses is a `StatusError` that names the status, and has changed nothing. Arrays that
+are handed out never dangle: they keep what they show alive, and it does not change.
+"""
+
+from typing import Any
+
+import numpy
+import numpy.typing
+
+from winnow._core import (
+    EVERY_ENVIRONMENT,
+    NO_OBJECT,
+    NULL_KEY,
+    Drawing,
+    Filter,
+    HitLists,
+    Hits,
+    Overlaps,
+    PairEvents,
+    Partition,
+    StatusError,
+    available_isas,
+    boxes_address,
+    frusta_of,
+    isa_name,
+    kdop_directions,
+    outward,
+    perspective,
+    set_isa,
+    structures,
+)
+
+__all__ = [
+    "EVERY_ENVIRONMENT",
+    "NO_OBJECT",
+    "NULL_KEY",
+    "Drawing",
+    "Filter",
+    "HitLists",
+    "Hits",
+    "Overlaps",
+    "PairEvents",
+    "Partition",
+    "StatusError",
+    "available_isas",
+    "boxes_address",
+    "frusta_of",
+    "ids_of",
+    "isa_name",
+    "kdop_directions",
+    "outward",
+    "perspective",
+    "set_isa",
+    "structures",
+]
+
+
+def ids_of(keys: "numpy.typing.NDArray[numpy.uint64]") -> "numpy.typing.NDArray[Any]":
+    """Ids of objects, uint32 in the shape of `keys`: a view of their lower halves."""
+    if keys.dtype != numpy.uint64:
+        raise TypeError("keys: uint64 is wanted, not " + str(keys.dtype))
+    return keys.view(numpy.dtype({"names": ["id"], "formats": ["<u4"], "itemsize": 8}))["id"]

@@ -1,0 +1,40 @@
+"""Scenes of random boxes, and slow obvious twins of what is asked of them."""
+
+import numpy as np
+
+
+def random_boxes(seed, count, side=None):
+    """Lower and upper corners of boxes with about two partners each, (n, 3) float32."""
+    random = np.random.default_rng(seed)
+    side = side or max(1.0, count ** (1 / 3))
+    lower = random.uniform(0, side, (count, 3)).astype(np.float32)
+    return lower, (lower + random.uniform(0.1, 1.0, (count, 3))).astype(np.float32)
+
+
+def overlapping(lower, upper, other_lower, other_upper):
+    """(n, m) bool: closed overlap of each with each."""
+    meets = (lower[:, None] <= other_upper[None]) & (other_lower[None] <= upper[:, None])
+    return meets.all(axis=2)
+
+
+def pair_set(pairs):
+    return {(int(a), int(b)) for a, b in pairs}
+
+
+def twin_pairs(lower, upper):
+    first, second = np.nonzero(np.triu(overlapping(lower, upper, lower, upper), 1))
+    return set(zip(first.tolist(), second.tolist()))
+
+
+def ray_entry(lower, upper, origin, direction):
+    """Where a ray enters a box, in double; infinity if it does not."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        a = (lower.astype(float) - origin) / direction
+        b = (upper.astype(float) - origin) / direction
+    near, far = np.minimum(a, b), np.maximum(a, b)
+    parallel = direction == 0
+    inside = (lower <= origin) & (origin <= upper)
+    near = np.where(parallel, np.where(inside, -np.inf, np.inf), near)
+    far = np.where(parallel, np.where(inside, np.inf, -np.inf), far)
+    enter = max(0.0, near.max())
+    return enter if enter <= far.min() else np.inf
