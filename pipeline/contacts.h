@@ -12,6 +12,7 @@
 
 namespace winnow {
 
+struct ContactColumns;
 struct ContactsState;
 
 /// What became of a pair of bodies since these Contacts were last filled.
@@ -85,6 +86,8 @@ class WINNOW_API Contacts {
   [[nodiscard]] std::span<const std::uint32_t> point_first() const noexcept;
   [[nodiscard]] std::size_t points() const noexcept;
   [[nodiscard]] ContactPoint contact(std::size_t point) const noexcept;
+  /// The same as columns.
+  [[nodiscard]] const ContactColumns& contact_columns() const noexcept;
 
   /// How many pairs kept the manifolds they had.
   [[nodiscard]] std::size_t carried() const noexcept;

@@ -211,6 +211,70 @@ void EachInteger::expect(std::size_t count) const {
                                            std::to_string(count));
 }
 
+namespace {
+
+/// What holds the positions.
+[[nodiscard]] py::object positions_in(py::handle object) {
+  if (py::isinstance<py::tuple>(object) && py::len(object) == 2) {
+    return py::reinterpret_borrow<py::tuple>(object)[0];
+  }
+  return array_of(object, "poses");
+}
+
+[[nodiscard]] bool has_seven(py::handle array) {
+  return py::isinstance<py::array>(array) && py::reinterpret_borrow<py::array>(array).ndim() == 2 &&
+         py::reinterpret_borrow<py::array>(array).shape(1) == 7;
+}
+
+}  // namespace
+
+PoseInput::PoseInput(py::handle object)
+    : position_(positions_in(object), "poses",
+                {!py::isinstance<py::tuple>(object) && has_seven(positions_in(object)) ? 7U : 3U}) {
+  if (py::isinstance<py::tuple>(object) && py::len(object) == 2) {
+    turn_.emplace(py::reinterpret_borrow<py::tuple>(object)[1], "orientations",
+                  std::vector<std::size_t>{4});
+    turn_->expect(position_.count());
+  } else {
+    is_joined_ = has_seven(positions_in(object));
+  }
+}
+
+Pose PoseInput::operator[](std::size_t i) const noexcept {
+  Pose pose;
+  for (std::size_t k = 0; k < 3; ++k) pose.position[k] = position_.at(i, k);
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (is_joined_) pose.orientation[k] = position_.at(i, 3 + k);
+    if (turn_) pose.orientation[k] = turn_->at(i, k);
+  }
+  return pose;
+}
+
+PoseView PoseInput::view(std::vector<Pose>& room) const {
+  if (position_.is_single()) return PoseView(packed(room));
+  PoseView view;
+  view.count = count();
+  view.position = {position_.column<double>(0), position_.column<double>(1),
+                   position_.column<double>(2)};
+  view.position_stride = static_cast<std::size_t>(position_.stride());
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (is_joined_) view.orientation[k] = position_.column<double>(3 + k);
+    if (turn_ && turn_->is_single()) view.orientation_float[k] = turn_->column<float>(k);
+    if (turn_ && !turn_->is_single()) view.orientation[k] = turn_->column<double>(k);
+  }
+  view.orientation_stride = static_cast<std::size_t>(turn_ ? turn_->stride() : position_.stride());
+  return view;
+}
+
+std::span<const Pose> PoseInput::packed(std::vector<Pose>& room) const {
+  if (is_joined_ && !position_.is_single() && position_.is_dense(7)) {
+    return {reinterpret_cast<const Pose*>(position_.column<double>(0)), count()};
+  }
+  room.resize(count());
+  for (std::size_t i = 0; i < room.size(); ++i) room[i] = (*this)[i];
+  return room;
+}
+
 std::vector<ClientData> data_of(py::handle object, std::size_t count) {
   if (object.is_none()) return {};
   const Integers<std::uint64_t> words(object, "data");

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -138,6 +139,26 @@ class EachInteger {
   std::vector<std::uint64_t> words_;
   bool one_ = false;
   std::uint64_t all_ = 0;
+};
+
+/// Poses: (n, 7) of x, y, z and a quaternion w, x, y, z; (n, 3) of positions alone; or a tuple of
+/// positions (n, 3) and quaternions (n, 4).
+class PoseInput {
+ public:
+  explicit PoseInput(py::handle object);
+
+  [[nodiscard]] std::size_t count() const noexcept { return position_.count(); }
+  [[nodiscard]] Pose operator[](std::size_t i) const noexcept;
+  /// Where they lie, if positions are of double; else packed.
+  [[nodiscard]] PoseView view(std::vector<Pose>& room) const;
+  /// Where they lie, if they are (n, 7) of double in one piece; else packed.
+  [[nodiscard]] std::span<const Pose> packed(std::vector<Pose>& room) const;
+
+ private:
+  Numbers position_;
+  /// Columns 3 to 6 of `position_`, or those of `turn_`, or none.
+  bool is_joined_ = false;
+  std::optional<Numbers> turn_;
 };
 
 /// Client data: none, or a number for each object.

@@ -5,6 +5,7 @@
 #include "pipeline/python/drawing.h"
 #include "pipeline/python/partition.h"
 #include "pipeline/python/refusal.h"
+#include "pipeline/python/shared_shapes.h"
 
 #include <winnow/core/rounding.h>
 #include <winnow/simd/isa.h>
@@ -122,6 +123,7 @@ PYBIND11_MODULE(_core, module) {
   add_errors(module);
   module.attr("NULL_KEY") = ~std::uint64_t{0} >> 32U;
   module.attr("NO_OBJECT") = kNoObject;
+  module.attr("WHOLE_SHAPE") = kWholeShape;
   module.attr("EVERY_ENVIRONMENT") = kEveryEnvironment;
   module.def("outward", &outward, py::arg("lower"), py::arg("upper"), py::arg("origin"),
              "The smallest float boxes, (n, 3) float32 each, that contain boxes in double, "
@@ -135,6 +137,9 @@ PYBIND11_MODULE(_core, module) {
       "to by other threads while a call reads them.");
   add_queries(module, partition);
   add_partition(module, partition);
+  add_shapes(module);
+  add_narrow(module);
+  add_scene(module);
 }
 
 }  // namespace winnow::python

@@ -329,6 +329,10 @@ std::size_t Contacts::points() const noexcept {
   return state().frame.points.size();
 }
 
+const ContactColumns& Contacts::contact_columns() const noexcept {
+  return state().frame.points;
+}
+
 ContactPoint Contacts::contact(std::size_t point) const noexcept {
   const ContactColumns& points = state().frame.points;
   return {{points.position[0][point], points.position[1][point], points.position[2][point]},

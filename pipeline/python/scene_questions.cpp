@@ -1,0 +1,407 @@
+// Questions to the exact shapes of a scene, many at a time.
+
+#include "pipeline/python/questions.h"
+#include "pipeline/python/refusal.h"
+#include "pipeline/python/shared_scene.h"
+
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+namespace winnow::python {
+namespace {
+
+enum class Wanted { closest, any, all };
+constexpr Choices<Wanted, 3> kWanted{
+    {{"closest", Wanted::closest}, {"any", Wanted::any}, {"all", Wanted::all}}};
+
+/// Asks while nothing changes the scene, which is brought up to date before.
+template <typename Body>
+[[nodiscard]] Outcome asking(SharedScene& s, Body&& body) {
+  const py::gil_scoped_release release;
+  for (;;) {
+    {
+      const std::shared_lock lock(s.mutex);
+      const std::shared_lock shapes_lock(s.shapes->mutex);
+      if (!s.is_stale && s.shapes_seen == s.shapes->revision) return body();
+    }
+    const std::unique_lock lock(s.mutex);
+    const std::shared_lock shapes_lock(s.shapes->mutex);
+    const Status status = s.scene.refresh();
+    if (status != Status::ok) return {status, 0};
+    s.is_stale = false;
+    s.shapes_seen = s.shapes->revision.load();
+  }
+}
+
+/// What one thread asks with, for the time of a question.
+class Asker {
+ public:
+  explicit Asker(SharedScene& s) : scene_(s), queries_(s.take_queries()) {}
+  ~Asker() { scene_.put_queries(queries_); }
+  Asker(const Asker&) = delete;
+  Asker& operator=(const Asker&) = delete;
+  SceneQueries* operator->() const noexcept { return queries_; }
+
+ private:
+  SharedScene& scene_;
+  SceneQueries* queries_;
+};
+
+/// Answers each question in lists of entries.
+template <typename Entry, typename Ask>
+[[nodiscard]] std::shared_ptr<Lists<Entry>> list_all(SharedScene& s, std::size_t count,
+                                                     const char* call, Ask&& ask) {
+  auto lists = std::make_shared<Lists<Entry>>(count);
+  const Outcome outcome = asking(s, [&] {
+    const Outcome done = answer_all(s.execution, count, [&](std::size_t task, std::size_t i) {
+      const Asker asker(s);
+      std::span<const Entry> found;
+      const Status status = ask(asker, i, found);
+      if (status == Status::ok) lists->put(task, i, found.data(), found.data() + found.size());
+      return status;
+    });
+    if (done.status == Status::ok) lists->join();
+    return done;
+  });
+  accept(outcome.status, outcome.text(call));
+  return lists;
+}
+
+/// A member of all entries.
+template <typename Entry, typename T>
+[[nodiscard]] py::array member(const std::shared_ptr<Lists<Entry>>& lists, std::size_t offset) {
+  const auto* const first = reinterpret_cast<const std::byte*>(lists->entries.data());
+  return shown(std::shared_ptr<const void>(lists),
+               reinterpret_cast<const T*>(first == nullptr ? nullptr : first + offset),
+               lists->entries.size(), sizeof(Entry));
+}
+template <typename Entry>
+[[nodiscard]] py::array vector_member(const std::shared_ptr<Lists<Entry>>& lists,
+                                      std::size_t offset) {
+  const auto* const first = reinterpret_cast<const std::byte*>(lists->entries.data());
+  return shown_rows(std::shared_ptr<const void>(lists),
+                    reinterpret_cast<const double*>(first == nullptr ? nullptr : first + offset),
+                    lists->entries.size(), 3, sizeof(Entry));
+}
+
+struct SceneHitTable : EmptyIfZero {
+  py::array key;
+  py::array data;
+  py::array part;
+  py::array t;
+  py::array normal;
+  py::array point;
+};
+struct SceneHitTables : SceneHitTable {
+  py::array first;
+};
+struct SceneOverlapTables : EmptyIfZero {
+  py::array first;
+  py::array key;
+  py::array data;
+  py::array part;
+};
+struct SceneDistanceTables : EmptyIfZero {
+  py::array first;
+  py::array key;
+  py::array data;
+  py::array part_a;
+  py::array part;
+  py::array distance;
+  py::array error_bound;
+  py::array normal;
+  py::array point_a;
+  py::array point_b;
+};
+
+void show_hits(const std::shared_ptr<Lists<SceneHit>>& lists, SceneHitTable& table) {
+  table.key = member<SceneHit, std::uint64_t>(lists, offsetof(SceneHit, key));
+  table.data = member<SceneHit, std::uint64_t>(lists, offsetof(SceneHit, data));
+  table.part = member<SceneHit, std::uint32_t>(lists, offsetof(SceneHit, part));
+  table.t = member<SceneHit, double>(lists, offsetof(SceneHit, t));
+  table.normal = vector_member(lists, offsetof(SceneHit, normal));
+  table.point = vector_member(lists, offsetof(SceneHit, point));
+}
+
+[[nodiscard]] py::object shown_lists(const std::shared_ptr<Lists<SceneHit>>& lists, Wanted wanted) {
+  if (wanted != Wanted::all) {
+    SceneHitTable table;
+    show_hits(lists, table);
+    return py::cast(std::move(table));
+  }
+  SceneHitTables table;
+  show_hits(lists, table);
+  table.first = given(std::vector(lists->first));
+  return py::cast(std::move(table));
+}
+
+[[nodiscard]] SceneDistanceTables shown_distances(
+    const std::shared_ptr<Lists<SceneDistance>>& lists) {
+  using D = SceneDistance;
+  SceneDistanceTables table;
+  table.first = given(std::vector(lists->first));
+  table.key = member<D, std::uint64_t>(lists, offsetof(D, key));
+  table.data = member<D, std::uint64_t>(lists, offsetof(D, data));
+  table.part_a = member<D, std::uint32_t>(lists, offsetof(D, part_a));
+  table.part = member<D, std::uint32_t>(lists, offsetof(D, part));
+  table.distance = member<D, double>(lists, offsetof(D, distance));
+  table.error_bound = member<D, double>(lists, offsetof(D, error_bound));
+  table.normal = vector_member(lists, offsetof(D, normal));
+  table.point_a = vector_member(lists, offsetof(D, point_a));
+  table.point_b = vector_member(lists, offsetof(D, point_b));
+  return table;
+}
+
+/// No hit, as a question without an answer has it.
+[[nodiscard]] SceneHit nothing() {
+  SceneHit hit;
+  hit.t = std::numeric_limits<double>::infinity();
+  return hit;
+}
+
+// --- rays --------------------------------------------------------------------------------------
+
+/// Rays of a batch where they lie, if they are of double, of one stride and without end; packed
+/// otherwise.
+class ShapeRayInput {
+ public:
+  ShapeRayInput(py::handle origins, py::handle directions, py::handle max_ts)
+      : origin_(origins, "origins", {3}),
+        direction_(directions, "directions", {3}),
+        max_t_(max_ts, "max_t", {}, true) {
+    direction_.expect(origin_.count());
+    max_t_.expect(origin_.count());
+  }
+  [[nodiscard]] std::size_t count() const noexcept { return origin_.count(); }
+  [[nodiscard]] ShapeRayBatch view(std::vector<ShapeRay>& room) const {
+    const bool endless = max_t_.is_one() && max_t_.at(0) == std::numeric_limits<double>::infinity();
+    if (endless && !origin_.is_single() && !direction_.is_single() &&
+        origin_.stride() == direction_.stride()) {
+      return {{origin_.column<double>(0), origin_.column<double>(1), origin_.column<double>(2)},
+              {direction_.column<double>(0), direction_.column<double>(1),
+               direction_.column<double>(2)},
+              count(),
+              nullptr,
+              static_cast<std::size_t>(origin_.stride())};
+    }
+    room.resize(count());
+    for (std::size_t i = 0; i < room.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        room[i].origin[k] = origin_.at(i, k);
+        room[i].direction[k] = direction_.at(i, k);
+      }
+      room[i].max_t = max_t_.at(i);
+    }
+    return ShapeRayBatch(std::span<const ShapeRay>(room));
+  }
+
+ private:
+  Numbers origin_;
+  Numbers direction_;
+  Numbers max_t_;
+};
+
+/// Three columns in one array, and the array of rows that shows them.
+[[nodiscard]] std::pair<std::array<double*, 3>, py::array> vectors(std::size_t count) {
+  auto columns = fresh<double>(3, count);
+  double* const first = columns.mutable_data();
+  return {{first, first + count, first + 2 * count}, py::array(columns.attr("T"))};
+}
+
+[[nodiscard]] py::object cast_rays(SharedScene& s, py::handle origins, py::handle directions,
+                                   const std::string& find, py::handle max_ts,
+                                   const Filter& filter) {
+  const Wanted wanted = chosen(kWanted, find, "find");
+  const ShapeRayInput rays(origins, directions, max_ts);
+  std::vector<ShapeRay> room;
+  if (wanted == Wanted::all) {
+    auto lists = std::make_shared<Lists<SceneHit>>(rays.count());
+    const Outcome outcome = asking(s, [&] {
+      const Asker asker(s);
+      SceneHitLists found;
+      const Status status = asker->all(rays.view(room), found, filter);
+      if (status != Status::ok) return Outcome{status, 0};
+      lists->entries.assign(found.hits.begin(), found.hits.end());
+      if (rays.count() != 0) lists->first.assign(found.first.begin(), found.first.end());
+      return Outcome{};
+    });
+    accept(outcome.status, "cast_rays");
+    return shown_lists(lists, wanted);
+  }
+  SceneHitTable table;
+  auto key = fresh<std::uint64_t>(rays.count());
+  auto data = fresh<std::uint64_t>(rays.count());
+  auto part = fresh<std::uint32_t>(rays.count());
+  auto t = fresh<double>(rays.count());
+  const auto [normal, normals] = vectors(rays.count());
+  const auto [point, points] = vectors(rays.count());
+  const SceneHitColumns out{
+      keys_in(key), data.mutable_data(), part.mutable_data(), t.mutable_data(), normal, point};
+  const Outcome outcome = asking(s, [&] {
+    const Asker asker(s);
+    const ShapeRayBatch batch = rays.view(room);
+    return Outcome{
+        wanted == Wanted::any ? asker->any(batch, out, filter) : asker->closest(batch, out, filter),
+        0};
+  });
+  accept(outcome.status, "cast_rays");
+  return py::cast(SceneHitTable{{}, key, data, part, t, normals, points});
+}
+
+// --- other questions ---------------------------------------------------------------------------
+
+[[nodiscard]] py::object cast_shapes(SharedScene& s, py::handle shape_array, py::handle poses,
+                                     py::handle directions, const std::string& find,
+                                     py::handle max_ts, double tolerance, const Filter& filter) {
+  const Wanted wanted = chosen(kWanted, find, "find");
+  if (wanted == Wanted::any) {
+    throw Refusal(Status::invalid_argument, "find: of moving shapes 'closest' or 'all'");
+  }
+  const PoseInput pose(poses);
+  const ShapeInput shape(shape_array);
+  Numbers direction(directions, "directions", {3}, true);
+  Numbers max_t(max_ts, "max_t", {}, true);
+  shape.expect(pose.count());
+  direction.expect(pose.count());
+  max_t.expect(pose.count());
+  const auto cast_at = [&](std::size_t i) {
+    return ShapeCast{shape[i],
+                     pose[i],
+                     {direction.at(i, 0), direction.at(i, 1), direction.at(i, 2)},
+                     max_t.at(i)};
+  };
+  std::vector<SceneHit> one(tasks_for(pose.count()));
+  const auto lists =
+      list_all<SceneHit>(s, pose.count(), "cast_shapes",
+                         [&](const Asker& ask, std::size_t i, std::span<const SceneHit>& found) {
+                           if (wanted == Wanted::all)
+                             return ask->all(cast_at(i), found, filter, tolerance);
+                           SceneHit& hit = one[i / kQuestionsPerTask] = nothing();
+                           const Status status = ask->closest(cast_at(i), hit, filter, tolerance);
+                           if (!hit) hit = nothing();
+                           found = {&hit, 1};
+                           return status;
+                         });
+  return shown_lists(lists, wanted);
+}
+
+[[nodiscard]] SceneOverlapTables overlap(SharedScene& s, py::handle shape_array, py::handle poses,
+                                         const Filter& filter) {
+  const PoseInput pose(poses);
+  const ShapeInput shape(shape_array);
+  shape.expect(pose.count());
+  const auto lists = list_all<SceneOverlap>(
+      s, pose.count(), "overlap",
+      [&](const Asker& ask, std::size_t i, std::span<const SceneOverlap>& found) {
+        return ask->overlap(shape[i], pose[i], found, filter);
+      });
+  return {{},
+          given(std::vector(lists->first)),
+          member<SceneOverlap, std::uint64_t>(lists, offsetof(SceneOverlap, key)),
+          member<SceneOverlap, std::uint64_t>(lists, offsetof(SceneOverlap, data)),
+          member<SceneOverlap, std::uint32_t>(lists, offsetof(SceneOverlap, part))};
+}
+
+[[nodiscard]] SceneDistanceTables distance(SharedScene& s, py::handle a, py::handle b) {
+  const KeyInput first(a, "a");
+  const KeyInput second(b, "b");
+  if (first.count() != second.count()) {
+    throw Refusal(Status::size_mismatch, "distance: a and b differ in length");
+  }
+  std::vector<SceneDistance> one(tasks_for(first.count()));
+  return shown_distances(list_all<SceneDistance>(
+      s, first.count(), "distance",
+      [&](const Asker& ask, std::size_t i, std::span<const SceneDistance>& found) {
+        SceneDistance& answer = one[i / kQuestionsPerTask];
+        const Status status = ask->distance(first.keys()[i], second.keys()[i], answer);
+        found = {&answer, 1};
+        return status;
+      }));
+}
+
+[[nodiscard]] SceneDistanceTables nearest(SharedScene& s, py::handle points, std::size_t count,
+                                          py::handle radii, const Filter& filter) {
+  const Numbers point(points, "points", {3});
+  Numbers radius(radii, "radius", {}, true);
+  radius.expect(point.count());
+  return shown_distances(list_all<SceneDistance>(
+      s, point.count(), "nearest",
+      [&](const Asker& ask, std::size_t i, std::span<const SceneDistance>& found) {
+        const double at[3] = {point.at(i, 0), point.at(i, 1), point.at(i, 2)};
+        return ask->nearest(at, count, radius.at(i), found, filter);
+      }));
+}
+
+template <typename Table, typename Class>
+void add_hit_columns(Class& type) {
+  type.def_readonly("key", &Table::key, "Keys of bodies, uint64.")
+      .def_readonly("data", &Table::data, "Client data, uint64.")
+      .def_readonly("part", &Table::part, "Triangle or child, WHOLE_SHAPE of convex bodies.")
+      .def_readonly("t", &Table::t, "In units of the direction, float64.")
+      .def_readonly("normal", &Table::normal, "Unit, of the surface, (n, 3) float64.")
+      .def_readonly("point", &Table::point, "Where they meet, in the world, (n, 3) float64.");
+}
+
+void add_answers(py::module_& module) {
+  py::class_<SceneHitTable> hits(
+      module, "SceneHits",
+      "One hit for each question; NULL_KEY, 0, WHOLE_SHAPE, infinity and zeros without one.");
+  add_hit_columns<SceneHitTable>(hits);
+  py::class_<SceneHitTables> lists(module, "SceneHitLists",
+                                   "Hits of question i are first[i] to first[i + 1].");
+  add_hit_columns<SceneHitTables>(lists);
+  lists.def_readonly("first", &SceneHitTables::first, "(n + 1,) uint64.");
+  using Overlap = SceneOverlapTables;
+  py::class_<Overlap>(module, "SceneOverlaps",
+                      "Bodies that shape i overlaps are first[i] to first[i + 1].")
+      .def_readonly("first", &Overlap::first, "(n + 1,) uint64.")
+      .def_readonly("key", &Overlap::key, "Keys of bodies, (m,) uint64.")
+      .def_readonly("data", &Overlap::data, "Client data, (m,) uint64.")
+      .def_readonly("part", &Overlap::part, "A part that it overlaps, (m,) uint32.");
+  using Distance = SceneDistanceTables;
+  py::class_<Distance>(module, "SceneDistances",
+                       "Answers to question i are first[i] to first[i + 1].")
+      .def_readonly("first", &Distance::first, "(n + 1,) uint64.")
+      .def_readonly("key", &Distance::key, "Keys of the second bodies, (m,) uint64.")
+      .def_readonly("data", &Distance::data, "Their client data, (m,) uint64.")
+      .def_readonly("part_a", &Distance::part_a, "Closest part of the first, (m,) uint32.")
+      .def_readonly("part", &Distance::part, "Closest part of the second, (m,) uint32.")
+      .def_readonly("distance", &Distance::distance, "Negative by the depth, (m,) float64.")
+      .def_readonly("error_bound", &Distance::error_bound, "Of the distance, (m,) float64.")
+      .def_readonly("normal", &Distance::normal, "Unit, from first to second, (m, 3) float64.")
+      .def_readonly("point_a", &Distance::point_a, "On the first, in the world, (m, 3) float64.")
+      .def_readonly("point_b", &Distance::point_b, "On the second, in the world, (m, 3) float64.");
+}
+
+}  // namespace
+
+void add_scene_queries(py::module_& module, SceneClass& scene) {
+  using py::arg;
+  constexpr double forever = std::numeric_limits<double>::infinity();
+  add_answers(module);
+  scene
+      .def("cast_rays", &cast_rays, arg("origins"), arg("directions"), arg("find") = "closest",
+           py::kw_only(), arg("max_t") = forever, arg("filter") = Filter{},
+           "What the rays origins + t * directions, (n, 3) each, 0 <= t <= max_t, (n,) or one for "
+           "all, meet of the bodies' shapes. `find`: 'closest' or 'any', giving SceneHits, or "
+           "'all', giving SceneHitLists. Doubles of one stride are read where they lie.")
+      .def("cast_shapes", &cast_shapes, arg("shapes"), arg("poses"), arg("directions"),
+           arg("find") = "closest", py::kw_only(), arg("max_t") = 1.0, arg("tolerance") = 1e-6,
+           arg("filter") = Filter{},
+           "Where convex shapes (n,), or one, at poses (n, 7) that move by t * directions, (n, 3) "
+           "or (3,), without turning, first touch a body: never later than they do, and at most "
+           "`tolerance` (a length) earlier. `find`: 'closest' or 'all'.")
+      .def("overlap", &overlap, arg("shapes"), arg("poses"), py::kw_only(),
+           arg("filter") = Filter{},
+           "Bodies that shapes (n,), or one, at poses (n, 7) share a point with, by id.")
+      .def("distance", &distance, arg("a"), arg("b"),
+           "Closest or deepest points of bodies a (n,) and b (n,), whatever their filters: one "
+           "answer to each question.")
+      .def("nearest", &nearest, arg("points"), arg("count") = 1, py::kw_only(),
+           arg("radius") = forever, arg("filter") = Filter{},
+           "The at most `count` bodies nearest to each point (n, 3), no farther than `radius`, "
+           "(n,) or one for all, sorted by distance.");
+}
+
+}  // namespace winnow::python

@@ -1,0 +1,442 @@
+// Bodies of a scene, and what touches what.
+
+#include "pipeline/python/shared_scene.h"
+
+#include "pipeline/python/contact_choices.h"
+#include "pipeline/python/drawing.h"
+#include "pipeline/python/locks.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace winnow::python {
+
+void SharedScene::use(std::span<const ShapeId> ids, int change) {
+  for (const ShapeId id : ids) uses[id.bits] += static_cast<std::uint32_t>(change);
+  shapes->use(ids, change);
+}
+
+SceneQueries* SharedScene::take_queries() {
+  const std::lock_guard lock(queries_mutex_);
+  if (queries_.empty()) return new SceneQueries(scene);
+  SceneQueries* const taken = queries_.back().release();
+  queries_.pop_back();
+  return taken;
+}
+
+void SharedScene::put_queries(SceneQueries* queries) {
+  std::unique_ptr<SceneQueries> back(queries);
+  const std::lock_guard lock(queries_mutex_);
+  queries_.push_back(std::move(back));
+}
+
+namespace {
+
+/// Changes the scene, for which shapes stay as they are.
+template <typename Body>
+auto changing_scene(SharedScene& s, Body&& body) {
+  return changing(s.mutex, [&] {
+    const std::shared_lock lock(s.shapes->mutex);
+    s.is_stale = true;
+    return body();
+  });
+}
+
+[[nodiscard]] std::shared_ptr<SharedScene> make_scene(const std::shared_ptr<SharedShapes>& shapes,
+                                                      double margin, const std::string& tier,
+                                                      double carry_over,
+                                                      const std::vector<std::string>& structures,
+                                                      bool parallel, std::size_t build_budget) {
+  SceneOptions options;
+  options.execution = parallel ? Execution::parallel() : Execution::serial();
+  if (structures.size() != kMotions) {
+    throw Refusal(Status::invalid_argument, "structures: of fixed, dynamic and sleeping bodies");
+  }
+  for (std::size_t i = 0; i < kMotions; ++i) options.structures[i] = structure_of(structures[i]);
+  // A scene would say so with the first body.
+  for (const double length : {margin, carry_over}) {
+    if (!(length >= 0.0 && length < std::numeric_limits<double>::infinity())) {
+      throw Refusal(Status::invalid_argument, "margin and carry_over are finite and >= 0");
+    }
+  }
+  options.margin = margin;
+  options.tier = chosen(kTiers, tier, "tier");
+  options.carry_over = carry_over;
+  options.build_budget = build_budget;
+  options.composites = &shapes->composites;
+  return std::make_shared<SharedScene>(shapes, options);
+}
+
+// --- bodies ------------------------------------------------------------------------------------
+
+/// A motion by name for all, or numbers as in FIXED, DYNAMIC, SLEEPING.
+class MotionInput {
+ public:
+  explicit MotionInput(py::handle object)
+      : numbers_(py::isinstance<py::str>(object)
+                     ? EachInteger(py::int_(static_cast<int>(chosen(
+                                       kMotionNames, py::cast<std::string>(object), "motion"))),
+                                   "motion", kMotions - 1)
+                     : EachInteger(object, "motion", kMotions - 1)) {}
+  void expect(std::size_t count) const { numbers_.expect(count); }
+  [[nodiscard]] Motion operator[](std::size_t i) const noexcept {
+    return static_cast<Motion>(numbers_[i]);
+  }
+
+ private:
+  EachInteger numbers_;
+};
+
+/// Filters of bodies as three columns.
+class FilterInput {
+ public:
+  FilterInput(py::handle layers, py::handle mask, py::handle environment)
+      : layers_(layers, "layers", kMost),
+        mask_(mask, "mask", kMost),
+        environment_(environment, "environment", kMost) {}
+  void expect(std::size_t count) const {
+    for (const EachInteger* each : {&layers_, &mask_, &environment_}) each->expect(count);
+  }
+  [[nodiscard]] ObjectFilter operator[](std::size_t i) const noexcept {
+    return {static_cast<std::uint32_t>(layers_[i]), static_cast<std::uint32_t>(mask_[i]),
+            static_cast<std::uint32_t>(environment_[i])};
+  }
+
+ private:
+  static constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  EachInteger layers_;
+  EachInteger mask_;
+  EachInteger environment_;
+};
+
+[[nodiscard]] py::array add_bodies(SharedScene& s, py::handle shape_array, py::handle poses,
+                                   py::handle motions, py::handle layers, py::handle mask,
+                                   py::handle environment, py::handle data) {
+  const PoseInput pose(poses);
+  const ShapeInput shape(shape_array);
+  const MotionInput motion(motions);
+  const FilterInput filter(layers, mask, environment);
+  const std::size_t count = pose.count();
+  shape.expect(count);
+  motion.expect(count);
+  filter.expect(count);
+  const std::vector<ClientData> values = data_of(data, count);
+  std::vector<BodyDefinition> bodies(count);
+  std::vector<ShapeId> used(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    bodies[i] = {shape[i], pose[i], motion[i], filter[i], values.empty() ? 0 : values[i]};
+    used[i] = shape[i];
+  }
+  auto keys = fresh<std::uint64_t>(count);
+  const std::span<Key> out(keys_in(keys), count);
+  accept(changing_scene(s,
+                        [&] {
+                          const Status status = s.scene.add(bodies, out);
+                          if (status == Status::ok) s.use(used, 1);
+                          return status;
+                        }),
+         "add");
+  return keys;
+}
+
+/// Bodies of keys, in order; the status of the first that is not there.
+[[nodiscard]] Status bodies_of(const Scene& scene, std::span<const Key> keys,
+                               std::vector<BodyDefinition>& bodies) {
+  bodies.resize(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Status status = scene.body(keys[i], bodies[i]);
+    if (status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
+[[nodiscard]] std::vector<ShapeId> shapes_of(const std::vector<BodyDefinition>& bodies) {
+  std::vector<ShapeId> ids(bodies.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = bodies[i].shape;
+  return ids;
+}
+
+void remove_bodies(SharedScene& s, py::handle key_array) {
+  const KeyInput keys(key_array);
+  accept(changing_scene(s,
+                        [&] {
+                          std::vector<BodyDefinition> bodies;
+                          Status status = bodies_of(s.scene, keys.keys(), bodies);
+                          if (status == Status::ok) status = s.scene.remove(keys.keys());
+                          if (status == Status::ok) s.use(shapes_of(bodies), -1);
+                          return status;
+                        }),
+         "remove");
+}
+
+void clear(SharedScene& s) {
+  changing_scene(s, [&] {
+    s.scene.clear();
+    s.shapes->use(s.uses, -1);
+    s.uses.clear();
+  });
+}
+
+void move_bodies(SharedScene& s, py::handle key_array, py::handle poses) {
+  const KeyInput keys(key_array);
+  const PoseInput pose(poses);
+  std::vector<Pose> room;
+  accept(changing_scene(s, [&] { return s.scene.move(keys.keys(), pose.view(room)); }), "move");
+}
+
+void set_motion(SharedScene& s, py::handle key_array, const std::string& name) {
+  const KeyInput keys(key_array);
+  const Motion motion = chosen(kMotionNames, name, "motion");
+  accept(changing_scene(s, [&] { return s.scene.set_motion(keys.keys(), motion); }), "set_motion");
+}
+
+/// Calls set(i) for each body; where one is refused, undo(i) for those before it.
+template <typename Set, typename Undo>
+[[nodiscard]] Status set_all(std::size_t count, Set&& set, Undo&& undo) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Status status = set(i);
+    if (status == Status::ok) continue;
+    while (i > 0) static_cast<void>(undo(--i));
+    return status;
+  }
+  return Status::ok;
+}
+
+[[nodiscard]] bool has_twice(std::span<const Key> keys) {
+  std::vector<ObjectId> ids(keys.size());
+  std::transform(keys.begin(), keys.end(), ids.begin(), [](Key key) { return key.id; });
+  std::sort(ids.begin(), ids.end());
+  return std::adjacent_find(ids.begin(), ids.end()) != ids.end();
+}
+
+void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
+  const KeyInput keys(key_array);
+  const ShapeInput shape(shape_array);
+  shape.expect(keys.count());
+  const std::span<const Key> list = keys.keys();
+  std::vector<ShapeId> after(list.size());
+  for (std::size_t i = 0; i < after.size(); ++i) after[i] = shape[i];
+  accept(changing_scene(
+             s,
+             [&] {
+               std::vector<BodyDefinition> before;
+               Status status = bodies_of(s.scene, list, before);
+               if (status == Status::ok && has_twice(list)) status = Status::invalid_key;
+               if (status != Status::ok) return status;
+               status = set_all(
+                   list.size(), [&](std::size_t i) { return s.scene.set_shape(list[i], after[i]); },
+                   [&](std::size_t i) { return s.scene.set_shape(list[i], before[i].shape); });
+               if (status != Status::ok) return status;
+               s.use(after, 1);
+               s.use(shapes_of(before), -1);
+               return Status::ok;
+             }),
+         "set_shape");
+}
+
+void set_filter(SharedScene& s, py::handle key_array, py::handle layers, py::handle mask,
+                py::handle environment) {
+  const KeyInput keys(key_array);
+  const FilterInput filter(layers, mask, environment);
+  filter.expect(keys.count());
+  const std::span<const Key> list = keys.keys();
+  accept(changing_scene(s,
+                        [&] {
+                          std::vector<BodyDefinition> before;
+                          const Status status = bodies_of(s.scene, list, before);
+                          if (status != Status::ok) return status;
+                          return set_all(
+                              list.size(),
+                              [&](std::size_t i) { return s.scene.set_filter(list[i], filter[i]); },
+                              [&](std::size_t i) {
+                                return s.scene.set_filter(list[i], before[i].filter);
+                              });
+                        }),
+         "set_filter");
+}
+
+// --- what is known -----------------------------------------------------------------------------
+
+[[nodiscard]] py::array contains(const SharedScene& s, py::handle key_array) {
+  const KeyInput keys(key_array);
+  auto result = fresh<bool>(keys.count());
+  bool* const to = result.mutable_data();
+  reading(s.mutex, [&] {
+    for (std::size_t i = 0; i < keys.count(); ++i) to[i] = s.scene.contains(keys.keys()[i]);
+  });
+  return result;
+}
+
+[[nodiscard]] py::array keys_of(const SharedScene& s, py::handle id_array) {
+  const Integers<std::uint32_t> ids(id_array, "ids");
+  auto result = fresh<std::uint64_t>(ids.count());
+  Key* const to = keys_in(result);
+  reading(s.mutex, [&] {
+    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = s.scene.key_of(ids[i]);
+  });
+  return result;
+}
+
+[[nodiscard]] py::dict body_columns(const SharedScene& s, py::handle key_array) {
+  const KeyInput keys(key_array);
+  auto bodies = std::make_shared<std::vector<BodyDefinition>>();
+  accept(reading(s.mutex, [&] { return bodies_of(s.scene, keys.keys(), *bodies); }), "bodies");
+  const BodyDefinition* const first = bodies->data();
+  const auto column = [&](const auto* member) {
+    return shown(std::shared_ptr<const void>(bodies), member, bodies->size(),
+                 sizeof(BodyDefinition));
+  };
+  static const BodyDefinition none{};
+  const BodyDefinition& b = bodies->empty() ? none : *first;
+  py::dict result;
+  result["shape"] = column(&b.shape.bits);
+  result["pose"] = shown_rows(std::shared_ptr<const void>(bodies), b.pose.position, bodies->size(),
+                              7, sizeof(BodyDefinition));
+  result["motion"] = column(reinterpret_cast<const std::uint8_t*>(&b.motion));
+  result["layers"] = column(&b.filter.layers);
+  result["mask"] = column(&b.filter.mask);
+  result["environment"] = column(&b.filter.environment);
+  result["data"] = column(&b.data);
+  return result;
+}
+
+void collide(SharedScene& s, HeldContacts& contacts, const std::string& level_name) {
+  const ContactLevel level = chosen(kLevels, level_name, "level");
+  const std::unique_lock<std::mutex> filling = contacts.hold();
+  Contacts& out = contacts.to_fill("contacts");
+  accept(changing(s.mutex,
+                  [&] {
+                    const std::shared_lock lock(s.shapes->mutex);
+                    return s.scene.collide(level, out);
+                  }),
+         "collide");
+}
+
+[[nodiscard]] py::dict statistics_dict(const SharedScene& s) {
+  const SceneStatistics stats = reading(s.mutex, [&] { return s.scene.statistics(); });
+  py::dict result;
+  result["boxes_updated"] = stats.boxes_updated;
+  result["body_pairs"] = stats.body_pairs;
+  result["carried"] = stats.carried;
+  result["primitive_pairs"] = stats.primitive_pairs;
+  result["convex"] = narrow_statistics(stats.convex);
+  result["parts"] = narrow_statistics(stats.parts);
+  return result;
+}
+
+[[nodiscard]] py::dict scene_footprint(const SharedScene& s) {
+  const SceneFootprint f = reading(s.mutex, [&] { return s.scene.footprint(); });
+  py::dict result;
+  const auto add = [&](const char* name, const Bytes& bytes) {
+    result[name] = py::make_tuple(bytes.used, bytes.reserved);
+  };
+  add("bodies", f.bodies);
+  for (std::size_t i = 0; i < kMotions; ++i) {
+    add(std::string(kMotionNames[i].first).c_str(), f.partitions[i]);
+  }
+  add("pairs", f.pairs);
+  add("mid_phase", f.mid_phase);
+  add("narrow_phase", f.narrow_phase);
+  add("total", f.total());
+  return result;
+}
+
+[[nodiscard]] Drawing draw(const SharedScene& s, bool objects, bool structure, bool labels,
+                           int max_depth) {
+  Drawing drawing;
+  accept(reading(s.mutex,
+                 [&] {
+                   return s.scene.debug_draw(drawing, {objects, structure, labels, max_depth});
+                 }),
+         "debug_draw");
+  return drawing;
+}
+
+void add_bodies_to(SceneClass& scene) {
+  using py::arg;
+  constexpr std::uint32_t every = ~0U;
+  scene
+      .def(py::init(&make_scene), arg("shapes"), py::kw_only(), arg("margin") = 0.0,
+           arg("tier") = "robust", arg("carry_over") = 0.0,
+           arg("structures") = std::vector<std::string>(kMotions, "LinearBvh"),
+           arg("parallel") = true, arg("build_budget") = 0,
+           "An empty scene. Pairs no farther apart than `margin` are contacts too; a pair that has "
+           "moved less than `carry_over` keeps its contacts; both are lengths. `tier` as in "
+           "NarrowPhase; `structures` of fixed, dynamic and sleeping bodies.")
+      .def("add", &add_bodies, arg("shapes"), arg("poses"), arg("motion") = "dynamic",
+           arg("layers") = 1, arg("mask") = every, arg("environment") = 0, arg("data") = py::none(),
+           "Adds n bodies and gives their keys, (n,) uint64: shapes (n,), or one for all, at poses "
+           "(n, 7) of x, y, z and a quaternion w, x, y, z, (n, 3), or a tuple of both. `motion`: "
+           "'fixed', 'dynamic' or 'sleeping', or (n,) of FIXED, DYNAMIC, SLEEPING. Filters (n,) or "
+           "one for all, as in Partition.set_filter. `data`: (n,) uint64.")
+      .def("remove", &remove_bodies, arg("keys"), "Removes the bodies of `keys` (n,), all or none.")
+      .def("clear", &clear, "Removes every body.")
+      .def("move", &move_bodies, arg("keys"), arg("poses"),
+           "Gives the bodies of `keys` (n,) new poses, as in `add`. Positions of double are read "
+           "where they lie, of any strides, orientations of float too.")
+      .def("set_motion", &set_motion, arg("keys"), arg("motion"),
+           "Moves bodies to the set of 'fixed', 'dynamic' or 'sleeping' ones.")
+      .def("set_shape", &set_shape, arg("keys"), arg("shapes"),
+           "Gives the bodies of `keys` (n,) other shapes, (n,) or one for all.")
+      .def("set_filter", &set_filter, arg("keys"), arg("layers") = 1, arg("mask") = every,
+           arg("environment") = 0, "As Partition.set_filter.")
+      .def("__len__",
+           [](const SharedScene& s) { return reading(s.mutex, [&] { return s.scene.size(); }); })
+      .def(
+          "size",
+          [](const SharedScene& s, const std::string& name) {
+            const Motion motion = chosen(kMotionNames, name, "motion");
+            return reading(s.mutex, [&] { return s.scene.size(motion); });
+          },
+          arg("motion"), "How many bodies are 'fixed', 'dynamic' or 'sleeping'.")
+      .def("contains", &contains, arg("keys"), "Which of `keys` (n,) are alive: (n,) bool.")
+      .def("keys_of", &keys_of, arg("ids"),
+           "Keys (n,) uint64 of bodies by id (n,); NULL_KEY for those that are not alive.")
+      .def("bodies", &body_columns, arg("keys"),
+           "The bodies of `keys` (n,) as they stand: columns shape, pose (n, 7), motion, layers, "
+           "mask, environment, data.");
+}
+
+}  // namespace
+
+void add_scene(py::module_& module) {
+  using py::arg;
+  module.attr("FIXED") = static_cast<int>(Motion::fixed);
+  module.attr("DYNAMIC") = static_cast<int>(Motion::dynamic);
+  module.attr("SLEEPING") = static_cast<int>(Motion::sleeping);
+  add_contacts(module);
+  SceneClass scene(module, "Scene",
+                   "Bodies with shapes and poses, and what touches what. Any number of threads may "
+                   "call it; a call that raises has changed nothing.");
+  add_bodies_to(scene);
+  scene
+      .def("collide", &collide, arg("contacts"), arg("level") = "manifold",
+           "Fills `contacts` with everything that touches. `level`: 'pairs', 'boolean', 'distance' "
+           "or 'manifold'.")
+      .def(
+          "refresh",
+          [](SharedScene& s) {
+            accept(changing(s.mutex,
+                            [&] {
+                              const std::shared_lock lock(s.shapes->mutex);
+                              return s.scene.refresh();
+                            }),
+                   "refresh");
+          },
+          "Brings boxes and partitions up to date now rather than in the next question.")
+      .def_property_readonly(
+          "origin",
+          [](const SharedScene& s) {
+            const Eigen::Vector3d o = reading(s.mutex, [&] { return s.scene.origin(); });
+            return py::make_tuple(o.x(), o.y(), o.z());
+          },
+          "The point that boxes are measured from.")
+      .def("statistics", &statistics_dict, "Counters of the last `collide`.")
+      .def("footprint", &scene_footprint, "Bytes (used, reserved) by part.")
+      .def("debug_draw", &draw, py::kw_only(), arg("objects") = true, arg("structure") = true,
+           arg("labels") = false, arg("max_depth") = 64, "As Partition.debug_draw, of all sets.");
+  add_scene_queries(module, scene);
+}
+
+}  // namespace winnow::python

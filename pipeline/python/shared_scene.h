@@ -1,0 +1,59 @@
+#pragma once
+
+#include "pipeline/python/choices.h"
+#include "pipeline/python/partition.h"
+#include "pipeline/python/shared_shapes.h"
+
+#include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/scene.h>
+#include <winnow/pipeline/scene_queries.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <vector>
+
+namespace winnow::python {
+
+inline constexpr Choices<Motion, kMotions> kMotionNames{
+    {{"fixed", Motion::fixed}, {"dynamic", Motion::dynamic}, {"sleeping", Motion::sleeping}}};
+
+using HeldContacts = Exported<Contacts>;
+
+/// A scene as several threads of Python may use it. Its lock is taken before that of the shapes.
+class SharedScene : public NeedsInit {
+ public:
+  SharedScene(std::shared_ptr<SharedShapes> shapes_in, const SceneOptions& options)
+      : shapes(std::move(shapes_in)), execution(options.execution), scene(shapes->pool, options) {}
+  ~SharedScene() { shapes->use(uses, -1); }
+
+  /// One use of each of these shapes by a body more or less.
+  void use(std::span<const ShapeId> ids, int change);
+
+  [[nodiscard]] SceneQueries* take_queries();
+  void put_queries(SceneQueries* queries);
+
+  const std::shared_ptr<SharedShapes> shapes;
+  Execution execution;
+  mutable std::shared_mutex mutex;
+  Scene scene;
+  /// Something has changed since boxes and partitions were brought up to date.
+  std::atomic<bool> is_stale{true};
+  std::atomic<std::uint64_t> shapes_seen{0};
+  ShapeUses uses;
+
+ private:
+  std::mutex queries_mutex_;
+  std::vector<std::unique_ptr<SceneQueries>> queries_;
+};
+
+using SceneClass = py::class_<SharedScene, std::shared_ptr<SharedScene>>;
+
+/// Columns of contacts.
+void add_contacts(py::module_& module);
+/// Questions to the exact shapes.
+void add_scene_queries(py::module_& module, SceneClass& scene);
+
+}  // namespace winnow::python

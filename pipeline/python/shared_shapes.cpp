@@ -1,0 +1,510 @@
+// Convex shapes, meshes, height fields and compounds.
+
+#include "pipeline/python/shared_shapes.h"
+
+#include "pipeline/python/locks.h"
+#include "pipeline/python/questions.h"
+#include "pipeline/python/refusal.h"
+
+#include <winnow/pipeline/shape_rays.h>
+
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace winnow::python {
+
+void SharedShapes::use(std::span<const ShapeId> shapes, int change) {
+  const std::lock_guard lock(uses_mutex_);
+  for (const ShapeId id : shapes) uses_[id.bits] += static_cast<std::uint32_t>(change);
+}
+
+void SharedShapes::use(const ShapeUses& shapes, int change) {
+  const std::lock_guard lock(uses_mutex_);
+  for (const auto& [bits, count] : shapes) {
+    uses_[bits] += count * static_cast<std::uint32_t>(change);
+  }
+}
+
+bool SharedShapes::is_used(ShapeId id) const {
+  const std::lock_guard lock(uses_mutex_);
+  const auto found = uses_.find(id.bits);
+  return found != uses_.end() && found->second != 0;
+}
+
+namespace {
+
+[[nodiscard]] bool is_scalar(py::handle object) {
+  const py::array array = py::array::ensure(object);
+  PyErr_Clear();
+  return array && array.ndim() == 0;
+}
+
+[[nodiscard]] py::object as_list(py::handle object, bool is_one) {
+  if (!is_one) return py::reinterpret_borrow<py::object>(object);
+  return py::array::ensure(object).attr("reshape")(1);
+}
+
+}  // namespace
+
+ShapeInput::ShapeInput(py::handle object, const char* name)
+    : name_(name), is_one_(is_scalar(object)), ids_(as_list(object, is_one_), name) {
+  is_one_ = ids_.count() == 1;
+}
+
+void ShapeInput::expect(std::size_t count) const {
+  if (is_one_ || ids_.count() == count) return;
+  throw Refusal(Status::size_mismatch, std::string(name_) + " has " + std::to_string(ids_.count()) +
+                                           " entries, not " + std::to_string(count));
+}
+
+std::span<const ShapeId> ShapeInput::list(std::size_t count, std::vector<ShapeId>& room) const {
+  if (!is_one_) return {reinterpret_cast<const ShapeId*>(ids_.values().data()), ids_.count()};
+  room.assign(count, ShapeId{ids_[0]});
+  return room;
+}
+
+namespace {
+
+using Shapes = SharedShapes;
+
+// --- convex shapes -----------------------------------------------------------------------------
+
+/// Adds `count` shapes, the i-th of which `make` gives: all or none.
+template <typename Make>
+[[nodiscard]] py::array add_all(Shapes& shapes, std::size_t count, const char* call, Make&& make) {
+  auto ids = fresh<std::uint32_t>(count);
+  auto* const to = reinterpret_cast<ShapeId*>(ids.mutable_data());
+  const Outcome outcome = changing(shapes.mutex, [&] {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Status status = shapes.pool.add(make(i), to[i]);
+      if (status == Status::ok) continue;
+      for (std::size_t k = i; k > 0; --k) static_cast<void>(shapes.pool.remove(to[k - 1]));
+      return Outcome{status, i};
+    }
+    return Outcome{};
+  });
+  accept(outcome.status, outcome.text(call));
+  return ids;
+}
+
+/// Numbers that belong together, of which one may stand for all: those that do not say how many.
+[[nodiscard]] std::size_t agree(std::initializer_list<Numbers*> columns) {
+  std::size_t count = 1;
+  for (const Numbers* column : columns) {
+    if (!column->is_one()) count = column->count();
+  }
+  for (Numbers* column : columns) column->expect(count);
+  return count;
+}
+
+[[nodiscard]] py::array add_spheres(Shapes& shapes, py::handle radii) {
+  Numbers radius(radii, "radius", {}, true);
+  return add_all(shapes, agree({&radius}), "add_spheres",
+                 [&](std::size_t i) { return SphereShape{radius.at(i)}; });
+}
+
+[[nodiscard]] py::array add_capsules(Shapes& shapes, py::handle radii, py::handle halves) {
+  Numbers radius(radii, "radius", {}, true);
+  Numbers half(halves, "half_length", {}, true);
+  return add_all(shapes, agree({&radius, &half}), "add_capsules", [&](std::size_t i) {
+    return CapsuleShape{radius.at(i), half.at(i)};
+  });
+}
+
+[[nodiscard]] py::array add_boxes(Shapes& shapes, py::handle halves, py::handle roundings) {
+  Numbers half(halves, "half", {3}, true);
+  Numbers rounding(roundings, "rounding", {}, true);
+  return add_all(shapes, agree({&half, &rounding}), "add_boxes", [&](std::size_t i) {
+    return BoxShape{{half.at(i, 0), half.at(i, 1), half.at(i, 2)}, rounding.at(i)};
+  });
+}
+
+/// Cylinders and cones have the same measures.
+template <typename Shape>
+[[nodiscard]] py::array add_turned(Shapes& shapes, py::handle radii, py::handle halves,
+                                   py::handle roundings) {
+  Numbers radius(radii, "radius", {}, true);
+  Numbers half(halves, "half_length", {}, true);
+  Numbers rounding(roundings, "rounding", {}, true);
+  return add_all(shapes, agree({&radius, &half, &rounding}), "shapes", [&](std::size_t i) {
+    return Shape{radius.at(i), half.at(i), rounding.at(i)};
+  });
+}
+
+[[nodiscard]] py::array add_triangles(Shapes& shapes, py::handle corners, py::handle roundings) {
+  Numbers vertex(corners, "vertices", {3, 3}, true);
+  Numbers rounding(roundings, "rounding", {}, true);
+  return add_all(shapes, agree({&vertex, &rounding}), "add_triangles", [&](std::size_t i) {
+    TriangleShape shape;
+    for (std::size_t j = 0; j < 3; ++j) {
+      for (std::size_t k = 0; k < 3; ++k) shape.vertex[j][k] = vertex.at(i, j, k);
+    }
+    shape.rounding = rounding.at(i);
+    return shape;
+  });
+}
+
+[[nodiscard]] py::array add_half_spaces(Shapes& shapes, py::handle normals, py::handle offsets) {
+  Numbers normal(normals, "normal", {3}, true);
+  Numbers offset(offsets, "offset", {}, true);
+  return add_all(shapes, agree({&normal, &offset}), "add_half_spaces", [&](std::size_t i) {
+    return HalfSpaceShape{{normal.at(i, 0), normal.at(i, 1), normal.at(i, 2)}, offset.at(i)};
+  });
+}
+
+[[nodiscard]] std::uint32_t add_hull(Shapes& shapes, py::handle point_array, double rounding,
+                                     py::handle indices, py::handle sizes) {
+  const Numbers numbers(point_array, "points", {3});
+  std::vector<Eigen::Vector3d> points(numbers.count());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] = {numbers.at(i, 0), numbers.at(i, 1), numbers.at(i, 2)};
+  }
+  ShapeId id;
+  if (indices.is_none() != sizes.is_none()) {
+    throw Refusal(Status::invalid_argument, "add_hull: indices and sizes belong together");
+  }
+  if (indices.is_none()) {
+    accept(changing(shapes.mutex, [&] { return shapes.pool.add_hull(points, rounding, id); }),
+           "add_hull");
+    return id.bits;
+  }
+  const Integers<std::uint32_t> index(indices, "indices");
+  const Integers<std::uint32_t> size(sizes, "sizes");
+  const HullFaces faces{index.values(), size.values()};
+  accept(changing(shapes.mutex, [&] { return shapes.pool.add_hull(points, faces, rounding, id); }),
+         "add_hull");
+  return id.bits;
+}
+
+// --- composite shapes --------------------------------------------------------------------------
+
+/// Points where they lie.
+[[nodiscard]] PointView view_of(const Numbers& points) {
+  const auto stride = static_cast<std::size_t>(points.stride());
+  if (points.is_single()) {
+    return {{points.column<float>(0), points.column<float>(1), points.column<float>(2)},
+            points.count(),
+            stride};
+  }
+  return {{points.column<double>(0), points.column<double>(1), points.column<double>(2)},
+          points.count(),
+          stride};
+}
+
+[[nodiscard]] std::uint32_t add_mesh(Shapes& shapes, py::handle vertex_array,
+                                     py::handle triangle_array, double active_edge_angle) {
+  const Numbers vertices(vertex_array, "vertices", {3});
+  const Integers<std::uint32_t> triangles(triangle_array, "triangles", 3);
+  ShapeId id;
+  accept(changing(shapes.mutex,
+                  [&] {
+                    return shapes.composites.add_mesh(
+                        view_of(vertices), IndexView(triangles.values()), id, {active_edge_angle});
+                  }),
+         "add_mesh");
+  return id.bits;
+}
+
+[[nodiscard]] std::uint32_t add_scaled(Shapes& shapes, std::uint32_t mesh,
+                                       const std::array<double, 3>& scale) {
+  ShapeId id;
+  accept(changing(shapes.mutex,
+                  [&] { return shapes.composites.add_scaled(ShapeId{mesh}, scale, id); }),
+         "add_scaled");
+  return id.bits;
+}
+
+void refit_mesh(Shapes& shapes, std::uint32_t mesh, py::handle vertex_array) {
+  const Numbers vertices(vertex_array, "vertices", {3});
+  accept(changing(shapes.mutex,
+                  [&] {
+                    ++shapes.revision;
+                    return shapes.composites.refit_mesh(ShapeId{mesh}, view_of(vertices));
+                  }),
+         "refit_mesh");
+}
+
+/// Heights (rows, columns), packed unless each row is.
+class HeightInput {
+ public:
+  HeightInput(const py::array& heights, const std::array<double, 2>& spacing)
+      : heights_(numbers_of(heights)), spacing_(spacing) {
+    if (heights_.ndim() != 2) {
+      throw Refusal(Status::size_mismatch, "heights: expected shape (rows, columns)");
+    }
+    const auto most = std::numeric_limits<std::uint32_t>::max();
+    for (const py::ssize_t axis : {0, 1}) {
+      if (static_cast<std::uint64_t>(heights_.shape(axis)) > most) {
+        throw Refusal(Status::too_many_objects, "heights");
+      }
+    }
+  }
+  [[nodiscard]] HeightSamples samples() const {
+    return {{heights_.data(), static_cast<std::size_t>(heights_.size())},
+            static_cast<std::uint32_t>(heights_.shape(1)),
+            static_cast<std::uint32_t>(heights_.shape(0)),
+            0,
+            {spacing_[0], spacing_[1]}};
+  }
+
+ private:
+  [[nodiscard]] static const py::array& numbers_of(const py::array& array) {
+    const char kind = array.dtype().kind();
+    if (kind == 'f' || kind == 'i' || kind == 'u') return array;
+    throw py::type_error("heights: numbers are wanted");
+  }
+
+  py::array_t<float, py::array::c_style | py::array::forcecast> heights_;
+  std::array<double, 2> spacing_;
+};
+
+[[nodiscard]] std::uint32_t add_height_field(Shapes& shapes, const py::array& heights,
+                                             const std::array<double, 2>& spacing) {
+  const HeightInput input(heights, spacing);
+  ShapeId id;
+  accept(changing(shapes.mutex,
+                  [&] { return shapes.composites.add_height_field(input.samples(), id); }),
+         "add_height_field");
+  return id.bits;
+}
+
+void update_height_field(Shapes& shapes, std::uint32_t field, std::uint32_t column,
+                         std::uint32_t row, const py::array& heights) {
+  const HeightInput input(heights, {1.0, 1.0});
+  accept(changing(shapes.mutex,
+                  [&] {
+                    ++shapes.revision;
+                    return shapes.composites.update_height_field(ShapeId{field}, column, row,
+                                                                 input.samples());
+                  }),
+         "update_height_field");
+}
+
+[[nodiscard]] std::uint32_t add_compound(Shapes& shapes, py::handle children, py::handle poses) {
+  const PoseInput pose(poses);
+  const ShapeInput shape(children, "children");
+  shape.expect(pose.count());
+  std::vector<CompoundChild> list(pose.count());
+  std::vector<ShapeId> used(pose.count());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    list[i] = {shape[i], pose[i]};
+    used[i] = shape[i];
+  }
+  ShapeId id;
+  accept(changing(shapes.mutex,
+                  [&] {
+                    const Status status = shapes.composites.add_compound(list, id);
+                    if (status == Status::ok) shapes.use(used, 1);
+                    return status;
+                  }),
+         "add_compound");
+  return id.bits;
+}
+
+// --- all shapes --------------------------------------------------------------------------------
+
+[[nodiscard]] Status remove_one(Shapes& shapes, ShapeId id) {
+  if (!id.is_composite()) return shapes.pool.remove(id);
+  std::vector<ShapeId> children;
+  if (id.composite_kind() == CompositeKind::compound) {
+    for (const CompoundChild& child : shapes.composites.children(id)) {
+      children.push_back(child.shape);
+    }
+  }
+  const Status status = shapes.composites.remove(id);
+  if (status == Status::ok) shapes.use(children, -1);
+  return status;
+}
+
+void remove_shapes(Shapes& shapes, py::handle id_array) {
+  const Integers<std::uint32_t> ids(id_array, "shapes");
+  ++shapes.revision;
+  const Outcome outcome = changing(shapes.mutex, [&] {
+    std::vector<std::uint32_t> sorted(ids.values().begin(), ids.values().end());
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
+      return Outcome{Status::invalid_key, 0};
+    }
+    for (std::size_t i = 0; i < ids.count(); ++i) {
+      const ShapeId id{ids[i]};
+      if (!shapes.contains(id) || shapes.is_used(id)) return Outcome{Status::invalid_key, i};
+    }
+    for (std::size_t i = 0; i < ids.count(); ++i) {
+      const Status status = remove_one(shapes, ShapeId{ids[i]});
+      if (status != Status::ok) return Outcome{status, i};
+    }
+    return Outcome{};
+  });
+  accept(outcome.status, outcome.text("remove (shapes may be in use)"));
+}
+
+[[nodiscard]] py::array contains(const Shapes& shapes, py::handle id_array) {
+  const Integers<std::uint32_t> ids(id_array, "shapes");
+  auto result = fresh<bool>(ids.count());
+  bool* const to = result.mutable_data();
+  reading(shapes.mutex, [&] {
+    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = shapes.contains(ShapeId{ids[i]});
+  });
+  return result;
+}
+
+[[nodiscard]] py::tuple bounds(const Shapes& shapes, py::handle id_array, py::handle poses) {
+  const PoseInput pose(poses);
+  const ShapeInput ids(id_array);
+  ids.expect(pose.count());
+  auto lower = fresh<float>(pose.count(), 3);
+  auto upper = fresh<float>(pose.count(), 3);
+  float* const low = lower.mutable_data();
+  float* const high = upper.mutable_data();
+  const Outcome outcome = reading(shapes.mutex, [&] {
+    for (std::size_t i = 0; i < pose.count(); ++i) {
+      if (!shapes.contains(ids[i])) return Outcome{Status::invalid_key, i};
+      if (!pose[i].is_valid()) return Outcome{Status::invalid_pose, i};
+      const Aabb box = shapes.bounds(ids[i], pose[i]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[3 * i + axis] = box.min[static_cast<Eigen::Index>(axis)];
+        high[3 * i + axis] = box.max[static_cast<Eigen::Index>(axis)];
+      }
+    }
+    return Outcome{};
+  });
+  accept(outcome.status, outcome.text("bounds"));
+  return py::make_tuple(lower, upper);
+}
+
+/// Where each ray enters its shape.
+struct RayHits : EmptyIfZero {
+  py::array hit;
+  py::array t;
+  py::array normal;
+};
+
+[[nodiscard]] RayHits cast_rays(const Shapes& shapes, py::handle id_array, py::handle poses,
+                                py::handle origins, py::handle directions, py::handle max_ts) {
+  const PoseInput pose(poses);
+  const ShapeInput ids(id_array);
+  Numbers origin(origins, "origins", {3}, true);
+  Numbers direction(directions, "directions", {3}, true);
+  Numbers max_t(max_ts, "max_t", {}, true);
+  ids.expect(pose.count());
+  for (Numbers* each : {&origin, &direction, &max_t}) each->expect(pose.count());
+  auto hit = fresh<bool>(pose.count());
+  auto t = fresh<double>(pose.count());
+  auto normal = fresh<double>(pose.count(), 3);
+  bool* const to_hit = hit.mutable_data();
+  double* const to_t = t.mutable_data();
+  double* const to_normal = normal.mutable_data();
+  const Outcome outcome = reading(shapes.mutex, [&] {
+    return answer_all(Execution::parallel(), pose.count(), [&](std::size_t, std::size_t i) {
+      ShapeRay ray;
+      for (std::size_t k = 0; k < 3; ++k) {
+        ray.origin[k] = origin.at(i, k);
+        ray.direction[k] = direction.at(i, k);
+      }
+      ray.max_t = max_t.at(i);
+      ShapeHit found;
+      if (!shapes.pool.contains(ids[i])) return Status::invalid_key;
+      const Status status = cast_ray(shapes.pool.tables(), ids[i], pose[i], ray, found);
+      to_hit[i] = found.hit;
+      to_t[i] = found.hit ? found.t : std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < 3; ++k) to_normal[3 * i + k] = found.normal[k];
+      return status;
+    });
+  });
+  accept(outcome.status, outcome.text("cast_rays"));
+  return {{}, hit, t, normal};
+}
+
+using ShapesClass = py::class_<Shapes, std::shared_ptr<Shapes>>;
+
+void add_convex(ShapesClass& type) {
+  using py::arg;
+  type.def("add_spheres", &add_spheres, arg("radius"),
+           "Adds n spheres: radii (n,), or one. Gives their ids, (n,) uint32, as all of these do. "
+           "Lengths are finite and >= 0.")
+      .def("add_capsules", &add_capsules, arg("radius"), arg("half_length"),
+           "Adds n capsules about segments |z| <= half_length: (n,) each, or one for all.")
+      .def("add_boxes", &add_boxes, arg("half"), arg("rounding") = 0.0,
+           "Adds n boxes |x_i| <= half_i: half extents (n, 3), or (3,) for all, and the radius of "
+           "their rounding, (n,) or one for all.")
+      .def("add_cylinders", &add_turned<CylinderShape>, arg("radius"), arg("half_length"),
+           arg("rounding") = 0.0,
+           "Adds n cylinders about z, |z| <= half_length: (n,) each, or one for all.")
+      .def("add_cones", &add_turned<ConeShape>, arg("radius"), arg("half_length"),
+           arg("rounding") = 0.0,
+           "Adds n cones with the apex at z = half_length and the disc at -half_length: (n,) "
+           "each, or one for all.")
+      .def("add_triangles", &add_triangles, arg("vertices"), arg("rounding") = 0.0,
+           "Adds n two-sided triangles: corners (n, 3, 3), rounding (n,) or one for all.")
+      .def("add_half_spaces", &add_half_spaces, arg("normal"), arg("offset") = 0.0,
+           "Adds n half-spaces normal . x <= offset: (n, 3) and (n,), or one for all.")
+      .def("add_hull", &add_hull, arg("points"), arg("rounding") = 0.0, arg("indices") = py::none(),
+           arg("sizes") = py::none(),
+           "Adds the convex hull of points (n, 3) and gives its id. With `indices` (m,) and "
+           "`sizes` (f,), face i is the next sizes[i] of the indices, counter-clockwise seen from "
+           "outside; without, the hull is found.");
+}
+
+void add_composite(ShapesClass& type) {
+  using py::arg;
+  type.def("add_mesh", &add_mesh, arg("vertices"), arg("triangles"),
+           arg("active_edge_angle") = 0.02,
+           "Adds a triangle mesh, vertices (n, 3) and corners (m, 3), and gives its id. Edges that "
+           "bend by more than the angle, in radians, have normals of their own.")
+      .def("add_scaled", &add_scaled, arg("mesh"), arg("scale"),
+           "The triangles of a mesh multiplied by three factors, shared: a new id.")
+      .def("refit_mesh", &refit_mesh, arg("mesh"), arg("vertices"),
+           "New places (n, 3) for the vertices of a mesh.")
+      .def("add_height_field", &add_height_field, arg("heights"),
+           arg("spacing") = std::array<double, 2>{1.0, 1.0},
+           "Adds a surface of heights (rows, columns), NaN for holes, sample (row, column) at "
+           "(column * spacing[0], row * spacing[1], height), and gives its id.")
+      .def("update_height_field", &update_height_field, arg("field"), arg("column"), arg("row"),
+           arg("heights"), "New heights (rows, columns) from (column, row) on.")
+      .def("add_compound", &add_compound, arg("children"), arg("poses"),
+           "Adds a shape of n convex children, ids (n,), at poses (n, 7), and gives its id.");
+}
+
+}  // namespace
+
+void add_shapes(py::module_& module) {
+  using py::arg;
+  py::class_<RayHits>(module, "RayHits", "Where each ray enters its shape.")
+      .def_readonly("hit", &RayHits::hit, "Whether it does, (n,) bool.")
+      .def_readonly("t", &RayHits::t,
+                    "In units of the direction, 0 inside, infinity without a hit: (n,) float64.")
+      .def_readonly("normal", &RayHits::normal, "Unit, outward, against the ray: (n, 3) float64.");
+  ShapesClass type(module, "Shapes",
+                   "Shapes by id, for scenes and the narrow phase: convex ones, added many at a "
+                   "time, and meshes, height fields and compounds. Any number of threads and "
+                   "scenes may use it.");
+  type.def(py::init([] { return std::make_shared<Shapes>(); }), "No shapes.");
+  add_convex(type);
+  add_composite(type);
+  type.def("remove", &remove_shapes, arg("shapes"),
+           "Takes shapes (n,) out, all or none: invalid_key for those that bodies of a scene or "
+           "compounds are made of.")
+      .def("contains", &contains, arg("shapes"), "Which ids (n,) are there: (n,) bool.")
+      .def("bounds", &bounds, arg("shapes"), arg("poses"),
+           "Boxes (lower, upper), (n, 3) float32 each, of shapes (n,), or one for all, at poses: "
+           "(n, 7) of x, y, z and a quaternion w, x, y, z; (n, 3); or a tuple of both.")
+      .def("cast_rays", &cast_rays, arg("shapes"), arg("poses"), arg("origins"), arg("directions"),
+           arg("max_t") = std::numeric_limits<double>::infinity(),
+           "Where n rays enter n convex shapes (n,) at poses (n, 7): origins and directions (n, 3) "
+           "or (3,), max_t (n,) or one for all.")
+      .def(
+          "footprint",
+          [](const Shapes& shapes) {
+            const Footprint sum[2] = {shapes.pool.footprint(), shapes.composites.footprint()};
+            const Bytes convex = sum[0].total();
+            const Bytes composite = sum[1].total();
+            py::dict result;
+            result["convex"] = py::make_tuple(convex.used, convex.reserved);
+            result["composite"] = py::make_tuple(composite.used, composite.reserved);
+            return result;
+          },
+          "Bytes (used, reserved) of convex and composite shapes.");
+}
+
+}  // namespace winnow::python

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "pipeline/python/arrays.h"
+#include "pipeline/python/made.h"
+
+#include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/shape_pool.h>
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <shared_mutex>
+#include <unordered_map>
+
+namespace winnow::python {
+
+/// How often each shape is used, by the bits of its id.
+using ShapeUses = std::unordered_map<std::uint32_t, std::uint32_t>;
+
+/// Convex and composite shapes as several threads and scenes may use them. None is removed while a
+/// compound or a body is made of it.
+class SharedShapes : public NeedsInit {
+ public:
+  [[nodiscard]] bool contains(ShapeId id) const noexcept {
+    return id.is_composite() ? composites.contains(id) : pool.contains(id);
+  }
+  [[nodiscard]] Aabb bounds(ShapeId id, const Pose& pose) const noexcept {
+    return id.is_composite() ? composites.bounds(id, pose) : pool.bounds(id, pose);
+  }
+
+  /// One use more or less of each. Under the mutex, shared or not.
+  void use(std::span<const ShapeId> shapes, int change);
+  void use(const ShapeUses& shapes, int change);
+  [[nodiscard]] bool is_used(ShapeId id) const;
+
+  mutable std::shared_mutex mutex;
+  ShapePool pool;
+  CompositePool composites{pool};
+  /// Grows with each change in place: scenes look at their bodies anew.
+  std::atomic<std::uint64_t> revision{0};
+
+ private:
+  mutable std::mutex uses_mutex_;
+  ShapeUses uses_;
+};
+
+/// Ids of shapes: an array, read where it lies if it is of uint32 in one piece, or one for all.
+class ShapeInput {
+ public:
+  explicit ShapeInput(py::handle object, const char* name = "shapes");
+  /// Throws a size_mismatch unless it is one for all or there are so many.
+  void expect(std::size_t count) const;
+  [[nodiscard]] ShapeId operator[](std::size_t i) const noexcept { return {ids_[is_one_ ? 0 : i]}; }
+  /// So many, in `room` if it is one for all.
+  [[nodiscard]] std::span<const ShapeId> list(std::size_t count, std::vector<ShapeId>& room) const;
+
+ private:
+  const char* name_;
+  bool is_one_;
+  Integers<std::uint32_t> ids_;
+};
+
+void add_shapes(py::module_& module);
+void add_narrow(py::module_& module);
+void add_scene(py::module_& module);
+
+}  // namespace winnow::python

@@ -1,0 +1,42 @@
+"""The examples do what they are examples of."""
+
+import os
+import sys
+
+import numpy as np
+
+sys.path.insert(
+    0, os.path.join(os.path.dirname(__file__), "..", "..", "pipeline", "python", "examples")
+)
+
+import boids  # noqa: E402
+import culling  # noqa: E402
+import granular_flow  # noqa: E402
+import lidar  # noqa: E402
+import robot_self_collision  # noqa: E402
+
+
+def test_boids_align():
+    alignment = boids.flock(500, 30)
+    assert alignment[-1] > 3 * alignment[0]
+
+
+def test_a_camera_sees_part_of_the_world():
+    for seen, inside in culling.walk(5000):
+        assert 0 < inside < seen < 5000
+
+
+def test_a_lidar_sees_ground_and_boxes():
+    points, kinds = lidar.scan()
+    assert len(points) > 500 and 0 < kinds.sum() < len(kinds)
+    assert np.abs(points).max() < 70
+
+
+def test_grains_leave_the_funnel():
+    left, depth = granular_flow.flow(steps=600)
+    assert left > 0 and depth < 0.1
+
+
+def test_arms_collide_where_they_fold():
+    straight, folded = np.zeros(5), np.array([0, 0, 3.0, 0.1, 0])
+    assert robot_self_collision.collides(np.array([straight, folded])).tolist() == [False, True]
