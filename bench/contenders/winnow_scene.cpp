@@ -71,9 +71,7 @@ class WinnowMesh final : public MeshEngine {
  public:
   WinnowMesh()
       : composites_(shapes_),
-        scene_(shapes_, {.execution = Execution::serial(),
-                         .contact_reduction = false,
-                         .composites = &composites_}) {}
+        scene_(shapes_, {.execution = Execution::serial(), .composites = &composites_}) {}
 
   [[nodiscard]] std::string name() const override { return "winnow"; }
 

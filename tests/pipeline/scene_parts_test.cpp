@@ -406,7 +406,7 @@ TEST(SceneParts, every_pair_of_parts_that_touches_is_reported_and_no_other) {
     for (const int threads : {1, 2}) {
       Threads arena(threads);
       arena.run([&] {
-        Scene scene(world.convex(), {.contact_reduction = false, .composites = &world.pool()});
+        Scene scene(world.convex(), {.composites = &world.pool()});
         std::vector<Key> keys(count);
         ASSERT_EQ(scene.add(bodies, keys), Status::ok);
         for (const ContactLevel level :
@@ -432,9 +432,8 @@ TEST(SceneParts, carried_contacts_with_a_mesh_miss_nothing_deeper_than_the_bound
   ShapeId ground;
   ASSERT_EQ(pool.add_mesh(data.points(), data.indices(), ground), Status::ok);
   const double carry_over = 0.01;
-  Scene carried(convex,
-                {.carry_over = carry_over, .contact_reduction = false, .composites = &pool});
-  Scene exact(convex, {.contact_reduction = false, .composites = &pool});
+  Scene carried(convex, {.carry_over = carry_over, .composites = &pool});
+  Scene exact(convex, {.composites = &pool});
   std::vector<BodyDefinition> bodies{{.shape = ground, .motion = Motion::fixed, .data = 1000}};
   Random random(53);
   for (ClientData i = 0; i < 60; ++i) {
