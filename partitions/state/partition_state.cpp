@@ -48,12 +48,13 @@ bool PartitionState::set_structure(StructureKind given) noexcept {
     if (chooser == nullptr) return false;
     held = chooser->first();
   }
-  const bool tested = structure.info() != nullptr && index.structure().tests_volumes();
+  const bool is_first = structure.info() == nullptr;
+  const bool tested = !is_first && index.structure().tests_volumes();
   if (!index.set_structure(held)) {
     if (chooser != nullptr) chooser->end(memory);
     return false;
   }
-  if (index.structure().tests_volumes() != tested) {
+  if (!is_first && index.structure().tests_volumes() != tested) {
     // Pairs that one structure reports and the other does not are in the buffer that is tracked.
     pairs_.calm.end();
     pairs_.tracked_serial = 0;

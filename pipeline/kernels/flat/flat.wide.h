@@ -426,22 +426,22 @@ template <typename T, typename Staged>
   expected.put(0, core.distance);
   expected.put(1, core.error_bound + scale * Lanes<T>(kDeepest<T>));
   Mask16 missed = 0;
-  write_patch_contacts<T>(
-      job, given, touching, stage.offset(), sign,
-      [&](unsigned lane, ContactPoint* points) -> std::uint32_t {
-        FlatPatch a;
-        FlatPatch b;
-        double normal[3];
-        stage.patches(lane, a, b, normal);
-        const auto count = flat_contacts(a, b, normal, job.margin, points);
-        if (count > 0) {
-          const T off = static_cast<T>(points[0].depth) + expected.value[0][lane];
-          const T most = expected.value[1][lane];
-          if (off <= most && off >= -most) return count;
-        }
-        missed |= 1U << lane;
-        return 0;
-      });
+  write_patch_contacts<T>(job, given, touching, stage.offset(), sign,
+                          [&](unsigned lane, ContactPoint* points) -> std::uint32_t {
+                            FlatPatch a;
+                            FlatPatch b;
+                            double normal[3];
+                            stage.patches(lane, a, b, normal);
+                            const auto count = flat_contacts(a, b, normal, job.margin, points);
+                            if (count > 0) {
+                              const T off =
+                                  static_cast<T>(points[0].depth) + expected.value[0][lane];
+                              const T most = expected.value[1][lane];
+                              if (off <= most && off >= -most) return count;
+                            }
+                            missed |= 1U << lane;
+                            return 0;
+                          });
   return missed;
 }
 
