@@ -55,8 +55,7 @@ class RefusedPlay {
       SCOPED_TRACE(std::string("call ") + std::to_string(call) + ", " + calls_[call].name);
       for (const bool once : {true, false}) {
         std::size_t k = 0;
-        // In smaller runs not each of very many.
-        while (refuse(call, k, once)) k += k < 20 || !is_reduced() ? 1 : 7;
+        while (refuse(call, k, once)) k += step_after(k);
         EXPECT_LT(k, kMost) << "the call never stops asking for memory";
       }
     }
@@ -65,6 +64,13 @@ class RefusedPlay {
 
  private:
   static constexpr std::size_t kMost = 2000;
+
+  /// In smaller runs not each of very many is refused.
+  static std::size_t step_after(std::size_t k) {
+    if (!is_reduced()) return 1;
+    if (is_quick()) return k < 5 ? 1 : 31;
+    return k < 20 ? 1 : 7;
+  }
 
   std::unique_ptr<World> make(CountingMemory& memory) const {
     return std::apply(
