@@ -86,6 +86,8 @@ class WINNOW_API ShapePool {
 
   template <typename Shape>
   Status put(Table<Shape>& table, ShapeKind kind, const Shape& shape, ShapeId& id);
+  template <typename Make>
+  Status put_hull(double rounding, ShapeId& id, Make&& make);
   /// Calls `body` with the table of a kind.
   template <typename Pool, typename Body>
   static decltype(auto) with_table(Pool& pool, ShapeKind kind, Body&& body);

@@ -7,9 +7,10 @@
 // how many pairs or contacts the last one had.
 
 #include <winnow/winnow.h>
+#include "bench/common/need.h"
+#include "bench/common/sample.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -21,12 +22,7 @@
 namespace {
 
 using namespace winnow;
-
-void must(Status status) {
-  if (status == Status::ok) return;
-  std::fprintf(stderr, "%s\n", to_string(status));
-  std::exit(1);
-}
+using bench::need;
 
 template <typename T>
 std::vector<T> read(const char* path) {
@@ -42,15 +38,11 @@ template <typename Frame>
 double median_ms(std::size_t frames, Frame&& frame) {
   std::vector<double> times;
   for (std::size_t f = 1; f < frames; ++f) {
-    const auto start = std::chrono::steady_clock::now();
+    const bench::Stopwatch clock;
     frame(f);
-    const std::chrono::duration<double, std::milli> taken =
-        std::chrono::steady_clock::now() - start;
-    times.push_back(taken.count());
+    times.push_back(clock.ms());
   }
-  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2),
-                   times.end());
-  return times[times.size() / 2];
+  return bench::median_of(times);
 }
 
 void time_boxes(const char* path, std::size_t objects) {
@@ -61,12 +53,12 @@ void time_boxes(const char* path, std::size_t objects) {
   };
   Partition partition(linear_bvh());
   std::vector<Key> keys(objects);
-  must(partition.insert(boxes(0), {}, keys));
+  need(partition.insert(boxes(0), {}, keys), "insert");
   PairBuffer pairs;
-  must(partition.self_pairs(pairs));
+  need(partition.self_pairs(pairs), "self_pairs");
   const double ms = median_ms(values.size() / objects / 6, [&](std::size_t frame) {
-    must(partition.update(keys, boxes(frame)));
-    must(partition.self_pairs(pairs));
+    need(partition.update(keys, boxes(frame)), "update");
+    need(partition.self_pairs(pairs), "self_pairs");
   });
   std::printf("%.6f %zu\n", ms, pairs.size());
 }
@@ -79,7 +71,7 @@ void time_worlds(const char* path, std::size_t objects) {
   };
   ShapePool shapes;
   ShapeId ball;
-  must(shapes.add(SphereShape{0.5}, ball));
+  need(shapes.add(SphereShape{0.5}, ball), "a ball");
   Scene scene(shapes);
   std::vector<BodyDefinition> bodies(objects);
   for (std::size_t i = 0; i < objects; ++i) {
@@ -88,12 +80,12 @@ void time_worlds(const char* path, std::size_t objects) {
     bodies[i].filter.environment = static_cast<std::uint32_t>(i / 10);
   }
   std::vector<Key> keys(objects);
-  must(scene.add(bodies, keys));
+  need(scene.add(bodies, keys), "add");
   Contacts contacts;
-  must(scene.collide(ContactLevel::distance, contacts));
+  need(scene.collide(ContactLevel::distance, contacts), "collide");
   const double ms = median_ms(values.size() / objects / 3, [&](std::size_t frame) {
-    must(scene.move(keys, poses(frame)));
-    must(scene.collide(ContactLevel::distance, contacts));
+    need(scene.move(keys, poses(frame)), "move");
+    need(scene.collide(ContactLevel::distance, contacts), "collide");
   });
   std::printf("%.6f %zu\n", ms, contacts.size());
 }

@@ -1,5 +1,6 @@
 #include "bench/report/layout.h"
 
+#include "bench/common/sample.h"
 #include "bench/common/table.h"
 #include "bench/peers/yardstick.h"
 #include "bench/rows/filled.h"
@@ -55,30 +56,27 @@ void mark_best(CellTable& table, bool less) {
 /// More series than this cannot be told apart in one plot.
 constexpr std::size_t kMostSeries = 12;
 
-/// What a series is about: the middle one of its heights.
-double middle_of(const PlotSeries& series) {
+double median_height(const PlotSeries& series) {
   std::vector<double> heights;
   for (const PlotPoint& point : series.points) heights.push_back(point.y);
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  return *middle;
+  return median_of(heights);
 }
 
 /// Keeps the series that do best, in their order, and says so.
 void thin_out(Plot& plot, bool more_is_better) {
   const std::size_t all = plot.series.size();
   if (all <= kMostSeries) return;
-  std::vector<double> middles;
+  std::vector<double> medians;
   for (const PlotSeries& one : plot.series) {
-    middles.push_back(more_is_better ? -middle_of(one) : middle_of(one));
+    medians.push_back(more_is_better ? -median_height(one) : median_height(one));
   }
-  std::vector<double> ranked = middles;
+  std::vector<double> ranked = medians;
   std::sort(ranked.begin(), ranked.end());
   const double last = ranked[kMostSeries - 1];
   std::size_t at = 0;
   std::size_t kept = 0;
   std::erase_if(plot.series, [&](const PlotSeries&) {
-    const bool keep = middles[at++] <= last && kept < kMostSeries;
+    const bool keep = medians[at++] <= last && kept < kMostSeries;
     kept += keep ? 1 : 0;
     return !keep;
   });

@@ -256,14 +256,13 @@ void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
   const double weight = std::max(kRecent, 1.0 / (3.0 + static_cast<double>(held_)));
   scattered_share_ += weight * ((scattered ? 1.0 : 0.0) - scattered_share_);
   for (std::size_t kind = 0; kind < build_share_.size() && !scattered; ++kind) {
-    double& share = build_share_[kind];
-    const bool is_own = tells && kind == own;
-    if (is_own) {
-      share += weight * (builds - share);
+    if (tells && kind == own) {
+      build_share_[kind] += weight * (builds - build_share_[kind]);
+      worn_[kind] += weight * (worn - worn_[kind]);
     } else {
-      share -= kForgotten * share;
+      build_share_[kind] -= kForgotten * build_share_[kind];
+      worn_[kind] -= kForgotten * worn_[kind];
     }
-    worn_[kind] += is_own ? weight * (worn - worn_[kind]) : -kForgotten * worn_[kind];
   }
   held_ += held_ < kPatience ? 1 : 0;
   builds_seen_ = wear.builds;

@@ -2,6 +2,7 @@
 #include "core/sort/stretches.h"
 #include "pipeline/composites/composites.h"
 #include "pipeline/manifold/region_points.h"
+#include "pipeline/narrow/answer_slots.h"
 #include "pipeline/solver/manifold.h"
 #include "pipeline/solver/problem.h"
 
@@ -13,7 +14,6 @@
 namespace winnow::mid {
 namespace {
 
-constexpr std::size_t kAnswersPerStretch = 8192;
 constexpr std::size_t kBodiesPerStretch = 64;
 constexpr std::uint32_t kNoRegion = ~0U;
 
@@ -116,7 +116,6 @@ class Reduction {
     std::span<std::uint32_t> region;
   };
 
-  void find_slots(const Execution& execution) noexcept;
   void find_members(std::size_t bodies) noexcept;
   void reduce_bodies(std::size_t bodies) noexcept;
   [[nodiscard]] double tie_of(const Members& members) const noexcept;
@@ -134,6 +133,7 @@ class Reduction {
   void add_corners(std::uint32_t answer, const FaceOfMesh& face,
                    RegionPoints& points) const noexcept;
   [[nodiscard]] FaceOfMesh face_of(std::uint32_t answer) const noexcept;
+  [[nodiscard]] solver::Problem problem_of(std::uint32_t answer) const noexcept;
 
   [[nodiscard]] bool touches(std::uint32_t answer) const noexcept {
     return answers_.distance()[answer] <= margin_;
@@ -172,7 +172,7 @@ Status Reduction::run(const Execution& execution) noexcept {
       !out_.count.resize(bodies)) {
     return Status::out_of_memory;
   }
-  find_slots(execution);
+  find_slots(answers_, execution, column(0));
   for_stretches(execution, bodies, kBodiesPerStretch, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) find_members(i);
   });
@@ -183,16 +183,6 @@ Status Reduction::run(const Execution& execution) noexcept {
     for (std::size_t i = first; i < end; ++i) reduce_bodies(i);
   });
   return Status::ok;
-}
-
-void Reduction::find_slots(const Execution& execution) noexcept {
-  std::uint32_t* const slot = column(0);
-  for_stretches(execution, answers_.size(), kAnswersPerStretch,
-                [&](std::size_t first, std::size_t end) {
-                  for (std::size_t i = first; i < end; ++i) {
-                    slot[answers_.pair_of(i)] = static_cast<std::uint32_t>(i);
-                  }
-                });
 }
 
 void Reduction::find_members(std::size_t bodies) noexcept {
@@ -319,6 +309,14 @@ FaceOfMesh Reduction::face_of(std::uint32_t answer) const noexcept {
   return {};
 }
 
+solver::Problem Reduction::problem_of(std::uint32_t answer) const noexcept {
+  const BodyPair& of = primitives(answer);
+  solver::Problem problem;
+  prepare(tables_, pairs_.shapes[of.a], pairs_.poses[of.a], pairs_.shapes[of.b], pairs_.poses[of.b],
+          false, problem);
+  return problem;
+}
+
 // Of a manifold that is full, corners may have been left out that span the widest area with other
 // manifolds; of one apart, those that are farther than the edge that is nearest. What lies beside a
 // triangle whose neighbours continue the surface is nearer to these: it stays only if it is deeper
@@ -347,9 +345,7 @@ bool Reduction::holds_corner(std::uint32_t answer, const FaceOfMesh& face,
   const bool second = pairs_.shapes[of.b].kind() == ShapeKind::triangle;
   const std::uint32_t other = second ? of.a : of.b;
   if (!corners.is_of(other)) {
-    solver::Problem problem;
-    prepare(tables_, pairs_.shapes[of.a], pairs_.poses[of.a], pairs_.shapes[of.b],
-            pairs_.poses[of.b], false, problem);
+    const solver::Problem problem = problem_of(answer);
     const Vec along = Eigen::Map<const Vec>(region.normal);
     const solver::SupportingPatch patch = second ? solver::SupportingPatch(problem.a, along)
                                                  : solver::SupportingPatch(problem.b, Vec(-along));
@@ -363,9 +359,7 @@ bool Reduction::holds_corner(std::uint32_t answer, const FaceOfMesh& face,
 void Reduction::add_corners(std::uint32_t answer, const FaceOfMesh& face,
                             RegionPoints& points) const noexcept {
   const BodyPair& of = primitives(answer);
-  solver::Problem problem;
-  prepare(tables_, pairs_.shapes[of.a], pairs_.poses[of.a], pairs_.shapes[of.b], pairs_.poses[of.b],
-          false, problem);
+  const solver::Problem problem = problem_of(answer);
   ContactPoint corners[kSharedCorners];
   const double margin = std::min(std::ldexp(margin_, -problem.exponent), 8.0);
   const std::uint32_t count = shared_corners(problem, normal(answer), margin, corners);

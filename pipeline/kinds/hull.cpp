@@ -14,10 +14,12 @@ namespace winnow {
 WINNOW_DEFINE_LINK(hull, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
-Status ShapePool::add_hull(std::span<const Eigen::Vector3d> points, double rounding, ShapeId& id) {
+/// Of a hull that `make` makes, if its rounding is one.
+template <typename Make>
+Status ShapePool::put_hull(double rounding, ShapeId& id, Make&& make) {
   HullShape hull;
   if (!are_lengths({rounding})) return Status::invalid_shape;
-  Status status = hull_of_points(points, memory_, hull);
+  Status status = make(hull);
   if (status != Status::ok) return status;
   hull.rounding = rounding;
   link_kernels_of_hull();
@@ -26,17 +28,15 @@ Status ShapePool::add_hull(std::span<const Eigen::Vector3d> points, double round
   return status;
 }
 
+Status ShapePool::add_hull(std::span<const Eigen::Vector3d> points, double rounding, ShapeId& id) {
+  return put_hull(rounding, id,
+                  [&](HullShape& hull) { return hull_of_points(points, memory_, hull); });
+}
+
 Status ShapePool::add_hull(std::span<const Eigen::Vector3d> points, const HullFaces& faces,
                            double rounding, ShapeId& id) {
-  HullShape hull;
-  if (!are_lengths({rounding})) return Status::invalid_shape;
-  Status status = hull_of_faces(points, faces, memory_, hull);
-  if (status != Status::ok) return status;
-  hull.rounding = rounding;
-  link_kernels_of_hull();
-  status = put(hulls_, ShapeKind::hull, hull, id);
-  if (status != Status::ok) release_hull(hull, memory_);
-  return status;
+  return put_hull(rounding, id,
+                  [&](HullShape& hull) { return hull_of_faces(points, faces, memory_, hull); });
 }
 
 }  // namespace winnow

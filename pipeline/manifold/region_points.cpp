@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace winnow {
 namespace {
@@ -39,8 +40,7 @@ std::uint64_t feature_among_parts(std::uint64_t feature, const std::uint32_t (&p
 
 void RegionPoints::add(const ContactPoint& contact, const double* offset,
                        const std::uint32_t (&part)[2]) noexcept {
-  if (count_ == kRoom) thin();
-  point_[count_++] = point_of(contact, offset, part);
+  keep(point_of(contact, offset, part));
 }
 
 void RegionPoints::add_beside(const ContactPoint& contact, const double* offset,
@@ -64,10 +64,18 @@ RegionPoints::Point RegionPoints::point_of(const ContactPoint& contact, const do
   return point;
 }
 
-float RegionPoints::deepest() const noexcept {
-  float depth = -std::numeric_limits<float>::infinity();
-  for (std::uint32_t i = 0; i < count_; ++i) depth = std::max(depth, point_[i].contact.depth);
-  return depth;
+void RegionPoints::keep(const Point& point) noexcept {
+  if (count_ == kRoom) thin();
+  point_[count_++] = point;
+}
+
+// The first of the deepest of one or more.
+std::uint32_t RegionPoints::deepest() const noexcept {
+  std::uint32_t deepest = 0;
+  for (std::uint32_t i = 1; i < count_; ++i) {
+    if (point_[i].contact.depth > point_[deepest].contact.depth) deepest = i;
+  }
+  return deepest;
 }
 
 // Of points whose values differ by no more than the tie, the first that was added.
@@ -152,7 +160,7 @@ void RegionPoints::thin() noexcept {
   bool stays[kRoom] = {};
   double unused = 0.0;
   for (std::uint32_t k = 0; k < kDirections; ++k) {
-    constexpr double kStep = 6.283185307179586 / kDirections;
+    constexpr double kStep = 2.0 * std::numbers::pi / kDirections;
     const double c = std::cos(kStep * k);
     const double s = std::sin(kStep * k);
     double most = -std::numeric_limits<double>::infinity();
@@ -166,11 +174,7 @@ void RegionPoints::thin() noexcept {
         },
         unused)] = true;
   }
-  std::uint32_t deepest = 0;
-  for (std::uint32_t i = 1; i < count_; ++i) {
-    if (point_[i].contact.depth > point_[deepest].contact.depth) deepest = i;
-  }
-  stays[deepest] = true;
+  stays[deepest()] = true;
   std::uint32_t kept = 0;
   for (std::uint32_t i = 0; i < count_; ++i) {
     if (stays[i]) point_[kept++] = point_[i];
@@ -179,9 +183,8 @@ void RegionPoints::thin() noexcept {
 }
 
 std::uint32_t RegionPoints::choose(ContactPoint* out) noexcept {
-  if (has_beside_ && beside_.contact.depth > deepest()) {
-    if (count_ == kRoom) thin();
-    point_[count_++] = beside_;
+  if (has_beside_ && (count_ == 0 || beside_.contact.depth > point_[deepest()].contact.depth)) {
+    keep(beside_);
   }
   if (count_ == 0) return 0;
   double depth = 0.0;

@@ -68,7 +68,8 @@ class RegionPoints {
   void thin() noexcept;
   [[nodiscard]] Point point_of(const ContactPoint& contact, const double* offset,
                                const std::uint32_t (&part)[2]) const noexcept;
-  [[nodiscard]] float deepest() const noexcept;
+  void keep(const Point& point) noexcept;
+  [[nodiscard]] std::uint32_t deepest() const noexcept;
   [[nodiscard]] const Point& deepest_at(const Point& place) const noexcept;
 
   PatchFrame frame_;

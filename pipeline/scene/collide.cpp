@@ -2,6 +2,7 @@
 // whose size is counted by tasks before each writes its own stretch.
 
 #include "core/sort/stretches.h"
+#include "pipeline/narrow/answer_slots.h"
 #include "pipeline/scene/collision.h"
 
 #include <limits>
@@ -93,14 +94,8 @@ namespace {
 // Where the answer about each pair of the input lies.
 [[nodiscard]] bool invert(const NarrowResult& answers, const Execution& execution,
                           Column<std::uint32_t>& slots) noexcept {
-  constexpr std::size_t kAnswersPerStretch = 8192;
   if (!slots.resize(answers.size())) return false;
-  for_stretches(execution, answers.size(), kAnswersPerStretch,
-                [&](std::size_t first, std::size_t end) {
-                  for (std::size_t i = first; i < end; ++i) {
-                    slots[answers.pair_of(i)] = static_cast<std::uint32_t>(i);
-                  }
-                });
+  find_slots(answers, execution, slots.data());
   return true;
 }
 

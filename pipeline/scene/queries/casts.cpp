@@ -5,6 +5,7 @@
 #include <winnow/core/aabb.h>
 #include <winnow/core/cast.h>
 #include <winnow/core/rounding.h>
+#include "pipeline/mesh/mesh_traversal.h"
 #include "pipeline/scene/queries/queries.h"
 #include "pipeline/scene/queries/swept_shapes.h"
 #include "pipeline/shapes/frame.h"
@@ -562,10 +563,9 @@ Status ask_each(QueryState* state, const ShapeRayBatch& rays, const Filter& filt
                 const SceneHitColumns& hits, bool any) {
   Status status = check(state, rays);
   if (status != Status::ok) return status;
-  constexpr std::size_t kRaysTogether = 64;
-  RaysTogether<kRaysTogether> group(*state, filter);
-  for (std::size_t first = 0; first < rays.count; first += kRaysTogether) {
-    const std::size_t count = std::min(kRaysTogether, rays.count - first);
+  RaysTogether<kRaysAtOnce> group(*state, filter);
+  for (std::size_t first = 0; first < rays.count; first += kRaysAtOnce) {
+    const std::size_t count = std::min<std::size_t>(kRaysAtOnce, rays.count - first);
     status = group.ask(rays, first, count, any);
     if (status != Status::ok) return status;
     for (std::size_t i = 0; i < count; ++i) put(hits, first + i, group.hit(i));

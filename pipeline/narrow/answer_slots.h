@@ -1,0 +1,24 @@
+#pragma once
+
+#include <winnow/core/execution.h>
+#include <winnow/pipeline/narrow_result.h>
+#include "core/sort/stretches.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace winnow {
+
+/// Writes to slots[i] which answer is about pair i of the input. Room for all answers.
+inline void find_slots(const NarrowResult& answers, const Execution& execution,
+                       std::uint32_t* slots) noexcept {
+  constexpr std::size_t kAnswersPerStretch = 8192;
+  for_stretches(execution, answers.size(), kAnswersPerStretch,
+                [&](std::size_t first, std::size_t end) {
+                  for (std::size_t i = first; i < end; ++i) {
+                    slots[answers.pair_of(i)] = static_cast<std::uint32_t>(i);
+                  }
+                });
+}
+
+}  // namespace winnow
