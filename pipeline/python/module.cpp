@@ -136,7 +136,9 @@ PYBIND11_MODULE(_core, module) {
       "of threads may call it. A call that raises has changed nothing. Arrays must not be written "
       "to by other threads while a call reads them.");
   add_queries(module, partition);
+  add_pairs(module, partition);
   add_partition(module, partition);
+  add_objects(module, partition);
   add_shapes(module);
   add_narrow(module);
   add_scene(module);

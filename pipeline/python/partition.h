@@ -93,6 +93,8 @@ using PartitionClass = py::class_<SharedPartition, std::shared_ptr<SharedPartiti
 
 // Each adds what its source is named after.
 void add_partition(py::module_& module, PartitionClass& partition);
+void add_objects(py::module_& module, PartitionClass& partition);
+void add_pairs(py::module_& module, PartitionClass& partition);
 void add_queries(py::module_& module, PartitionClass& partition);
 
 }  // namespace winnow::python

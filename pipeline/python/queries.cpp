@@ -39,6 +39,33 @@ struct OverlapTables : EmptyIfZero {
   py::array ids;
 };
 
+/// A HitTable whose columns are still to be written. Without the GIL, too.
+class FreshHits {
+ public:
+  template <typename... Shape>
+  explicit FreshHits(Shape... shape)
+      : key_(fresh<std::uint64_t>(shape...)),
+        data_(fresh<std::uint64_t>(shape...)),
+        t_(fresh<float>(shape...)),
+        columns_{keys_in(key_), data_.mutable_data(), t_.mutable_data()} {}
+
+  [[nodiscard]] const HitColumns& columns() const noexcept { return columns_; }
+  void put(std::size_t i, const Hit& hit) const noexcept {
+    columns_.key[i] = hit.key;
+    columns_.data[i] = hit.data;
+    columns_.t[i] = hit.t;
+  }
+  [[nodiscard]] HitTable table() && {
+    return {{}, std::move(key_), std::move(data_), std::move(t_)};
+  }
+
+ private:
+  py::array_t<std::uint64_t> key_;
+  py::array_t<std::uint64_t> data_;
+  py::array_t<float> t_;
+  HitColumns columns_;
+};
+
 [[nodiscard]] Eigen::Vector3f point_at(const Numbers& numbers, std::size_t i) {
   Eigen::Vector3f point;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -114,23 +141,18 @@ template <typename CastAt>
     accept(outcome.status, outcome.text(call));
     return py::cast(shown_hits(lists, lists->entries, std::vector(lists->first)));
   }
-  auto key = fresh<std::uint64_t>(count);
-  auto data = fresh<std::uint64_t>(count);
-  auto t = fresh<float>(count);
-  const HitColumns out{keys_in(key), data.mutable_data(), t.mutable_data()};
+  FreshHits found(count);
   const Outcome outcome = reading(p.mutex, [&] {
     return answer_all(p.execution, count, [&](std::size_t, std::size_t i) {
       Hit hit;
       const Status status = find == Find::any ? p.partition.any(cast_at(i), hit, filter)
                                               : p.partition.closest(cast_at(i), hit, filter);
-      out.key[i] = hit.key;
-      out.data[i] = hit.data;
-      out.t[i] = hit.t;
+      found.put(i, hit);
       return status;
     });
   });
   accept(outcome.status, outcome.text(call));
-  return py::cast(HitTable{{}, std::move(key), std::move(data), std::move(t)});
+  return py::cast(std::move(found).table());
 }
 
 // --- rays --------------------------------------------------------------------------------------
@@ -187,18 +209,15 @@ class RayInput {
     }
     return py::cast(shown_hits(hits, hits->hits(), std::move(first)));
   }
-  auto key = fresh<std::uint64_t>(rays.count());
-  auto data = fresh<std::uint64_t>(rays.count());
-  auto t = fresh<float>(rays.count());
-  const HitColumns out{keys_in(key), data.mutable_data(), t.mutable_data()};
+  FreshHits found(rays.count());
   accept(reading(p.mutex,
                  [&] {
                    const RayBatch batch = rays.view(room);
-                   return find == Find::any ? p.partition.any(batch, out, filter)
-                                            : p.partition.closest(batch, out, filter);
+                   return find == Find::any ? p.partition.any(batch, found.columns(), filter)
+                                            : p.partition.closest(batch, found.columns(), filter);
                  }),
          "cast_rays");
-  return py::cast(HitTable{{}, std::move(key), std::move(data), std::move(t)});
+  return py::cast(std::move(found).table());
 }
 
 // --- swept volumes -----------------------------------------------------------------------------
@@ -444,10 +463,7 @@ constexpr Choices<Frustum::NearDepth, 2> kNearDepths{
   if (count != 0 && questions > (std::size_t{1} << 40U) / count) {
     throw Refusal(Status::out_of_memory, "nearest");
   }
-  auto key = fresh<std::uint64_t>(questions, count);
-  auto data = fresh<std::uint64_t>(questions, count);
-  auto t = fresh<float>(questions, count);
-  const HitColumns out{keys_in(key), data.mutable_data(), t.mutable_data()};
+  FreshHits found(questions, count);
   const Outcome outcome = reading(p.mutex, [&] {
     std::vector<HitBuffer> buffers(tasks_for(questions));
     return answer_all(p.execution, questions, [&](std::size_t task, std::size_t i) {
@@ -456,16 +472,13 @@ constexpr Choices<Frustum::NearDepth, 2> kNearDepths{
                                                 static_cast<float>(radius.at(i)), hits, filter);
       if (status != Status::ok) return status;
       for (std::size_t k = 0; k < count; ++k) {
-        const Hit hit = k < hits.size() ? hits[k] : Hit{};
-        out.key[i * count + k] = hit.key;
-        out.data[i * count + k] = hit.data;
-        out.t[i * count + k] = hit.t;
+        found.put(i * count + k, k < hits.size() ? hits[k] : Hit{});
       }
       return status;
     });
   });
   accept(outcome.status, outcome.text("nearest"));
-  return {{}, std::move(key), std::move(data), std::move(t)};
+  return std::move(found).table();
 }
 
 constexpr float kForever = std::numeric_limits<float>::infinity();

@@ -1,0 +1,358 @@
+// Objects of a partition: how they come, move and go, and what is known of them.
+
+#include "pipeline/python/locks.h"
+#include "pipeline/python/partition.h"
+
+#include <winnow/core/kdop.h>
+#include <winnow/core/rounding.h>
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace winnow::python {
+namespace {
+
+// --- coming, moving, going -----------------------------------------------------------------------
+
+/// Adds `count` volumes by `insert(data, keys)` and gives their keys.
+template <typename Insert>
+[[nodiscard]] py::array inserted(SharedPartition& p, std::size_t count, py::handle data,
+                                 const char* call, Insert&& insert) {
+  const std::vector<ClientData> values = data_of(data, count);
+  auto keys = fresh<std::uint64_t>(count);
+  const std::span<Key> out(keys_in(keys), count);
+  accept(changing(p.mutex, [&] { return insert(values, out); }), call);
+  p.count_changes(count);
+  return keys;
+}
+
+/// Changes `count` objects by `change()`.
+template <typename Change>
+void change_objects(SharedPartition& p, std::size_t count, const char* call, Change&& change) {
+  accept(changing(p.mutex, change), call);
+  p.count_changes(count);
+}
+
+[[nodiscard]] py::array insert_boxes(SharedPartition& p, py::handle lower, py::handle upper,
+                                     py::handle data) {
+  const BoxInput boxes(lower, upper);
+  return inserted(p, boxes.count(), data, "insert", [&](const auto& values, std::span<Key> keys) {
+    return p.partition.insert(boxes.view(p.room), values, keys);
+  });
+}
+
+/// Numbers of the entries that are meant: those that are listed, or where a mask of bool is set.
+[[nodiscard]] py::object entry_numbers(py::handle entries) {
+  const py::array array = py::array::ensure(entries);
+  if (array && array.dtype().kind() == 'b') return array.attr("nonzero")().attr("__getitem__")(0);
+  return py::reinterpret_borrow<py::object>(entries);
+}
+
+void update_boxes(SharedPartition& p, py::handle key_array, py::handle lower, py::handle upper,
+                  py::handle entries) {
+  const KeyInput keys(key_array);
+  const BoxInput boxes(lower, upper);
+  if (entries.is_none()) {
+    return change_objects(p, keys.count(), "update",
+                          [&] { return p.partition.update(keys.keys(), boxes.view(p.room)); });
+  }
+  const Integers<std::uint32_t> numbers(entry_numbers(entries), "entries");
+  change_objects(p, numbers.count(), "update", [&] {
+    return p.partition.update(keys.keys(), boxes.view(p.room), Entries::listed(numbers.values()));
+  });
+}
+
+/// Balls that contain those given.
+[[nodiscard]] std::vector<Sphere> spheres_of(py::handle centers, py::handle radii) {
+  const Numbers center(centers, "centers", {3});
+  Numbers radius(radii, "radii", {}, true);
+  radius.expect(center.count());
+  std::vector<Sphere> spheres(center.count());
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    double square = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double given = center.at(i, axis);
+      const auto rounded = static_cast<float>(given);
+      spheres[i].center[static_cast<Eigen::Index>(axis)] = rounded;
+      const double off = given - static_cast<double>(rounded);
+      square += off * off;
+    }
+    const double r = radius.at(i);
+    spheres[i].radius =
+        square > 0.0 ? round_up(add_up(r, std::sqrt(square) * (1.0 + 1e-15))) : round_up(r);
+  }
+  return spheres;
+}
+
+[[nodiscard]] py::array insert_spheres(SharedPartition& p, py::handle centers, py::handle radii,
+                                       py::handle data) {
+  const std::vector<Sphere> spheres = spheres_of(centers, radii);
+  return inserted(p, spheres.size(), data, "insert_spheres",
+                  [&](const auto& values, std::span<Key> keys) {
+                    return p.partition.insert(spheres, values, keys);
+                  });
+}
+
+void update_spheres(SharedPartition& p, py::handle key_array, py::handle centers,
+                    py::handle radii) {
+  const KeyInput keys(key_array);
+  const std::vector<Sphere> spheres = spheres_of(centers, radii);
+  change_objects(p, keys.count(), "update_spheres",
+                 [&] { return p.partition.update(keys.keys(), spheres); });
+}
+
+template <int K>
+[[nodiscard]] std::vector<Kdop<K>> kdops_of(py::handle lower, py::handle upper) {
+  constexpr std::size_t kSlabs = Kdop<K>::kSlabs;
+  const Numbers low(lower, "lower", {kSlabs});
+  Numbers high(upper, "upper", {kSlabs});
+  high.expect(low.count());
+  std::vector<Kdop<K>> kdops(low.count());
+  for (std::size_t i = 0; i < kdops.size(); ++i) {
+    for (std::size_t s = 0; s < kSlabs; ++s) {
+      kdops[i].min[s] = round_down(low.at(i, s));
+      kdops[i].max[s] = round_up(high.at(i, s));
+    }
+  }
+  return kdops;
+}
+
+/// Calls `body` with the k-DOPs of the partition's volume.
+template <typename Body>
+auto with_kdops(const SharedPartition& p, py::handle lower, py::handle upper, Body&& body) {
+  switch (p.partition.volume()) {
+    case Volume::kdop14:
+      return body(kdops_of<14>(lower, upper));
+    case Volume::kdop18:
+      return body(kdops_of<18>(lower, upper));
+    case Volume::kdop26:
+      return body(kdops_of<26>(lower, upper));
+    default:
+      throw Refusal(Status::unsupported_volume, "the partition is none of k-DOPs");
+  }
+}
+
+[[nodiscard]] py::array insert_kdops(SharedPartition& p, py::handle lower, py::handle upper,
+                                     py::handle data) {
+  return with_kdops(p, lower, upper, [&](const auto& kdops) -> py::array {
+    using Kind = typename std::decay_t<decltype(kdops)>::value_type;
+    return inserted(p, kdops.size(), data, "insert_kdops",
+                    [&](const auto& values, std::span<Key> keys) {
+                      return p.partition.insert(std::span<const Kind>(kdops), values, keys);
+                    });
+  });
+}
+
+void update_kdops(SharedPartition& p, py::handle key_array, py::handle lower, py::handle upper) {
+  const KeyInput keys(key_array);
+  with_kdops(p, lower, upper, [&](const auto& kdops) {
+    using Kind = typename std::decay_t<decltype(kdops)>::value_type;
+    change_objects(p, keys.count(), "update_kdops",
+                   [&] { return p.partition.update(keys.keys(), std::span<const Kind>(kdops)); });
+  });
+}
+
+[[nodiscard]] py::array kdop_slabs(int faces) {
+  const auto listed = [](const auto& directions) -> py::array {
+    auto result = fresh<float>(directions.size(), 3);
+    for (std::size_t s = 0; s < directions.size(); ++s) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        result.mutable_at(s, k) = static_cast<float>(directions[s][k]);
+      }
+    }
+    return result;
+  };
+  if (faces == 14) return listed(kdop_directions<14>());
+  if (faces == 18) return listed(kdop_directions<18>());
+  if (faces == 26) return listed(kdop_directions<26>());
+  throw Refusal(Status::invalid_argument, "a k-DOP has 14, 18 or 26 faces");
+}
+
+void remove_objects(SharedPartition& p, py::handle key_array) {
+  const KeyInput keys(key_array);
+  change_objects(p, keys.count(), "remove", [&] { return p.partition.remove(keys.keys()); });
+}
+
+// --- what is known of objects ------------------------------------------------------------------
+
+/// Calls `ask(i)` for each of `count` objects until one is refused.
+template <typename Ask>
+void ask_each(const SharedPartition& p, std::size_t count, const char* call, Ask&& ask) {
+  accept(reading(p.mutex,
+                 [&] {
+                   Status status = Status::ok;
+                   for (std::size_t i = 0; i < count && status == Status::ok; ++i) status = ask(i);
+                   return status;
+                 }),
+         call);
+}
+
+[[nodiscard]] py::array contains(const SharedPartition& p, py::handle key_array) {
+  const KeyInput keys(key_array);
+  auto result = fresh<bool>(keys.count());
+  bool* const to = result.mutable_data();
+  reading(p.mutex, [&] {
+    for (std::size_t i = 0; i < keys.count(); ++i) to[i] = p.partition.contains(keys.keys()[i]);
+  });
+  return result;
+}
+
+[[nodiscard]] py::tuple bounds(const SharedPartition& p, py::handle key_array) {
+  const KeyInput keys(key_array);
+  auto lower = fresh<float>(keys.count(), 3);
+  auto upper = fresh<float>(keys.count(), 3);
+  float* const low = lower.mutable_data();
+  float* const high = upper.mutable_data();
+  ask_each(p, keys.count(), "bounds", [&](std::size_t i) {
+    Aabb box;
+    const Status status = p.partition.bounds(keys.keys()[i], box);
+    if (status != Status::ok) return status;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[3 * i + axis] = box.min[static_cast<Eigen::Index>(axis)];
+      high[3 * i + axis] = box.max[static_cast<Eigen::Index>(axis)];
+    }
+    return status;
+  });
+  return py::make_tuple(lower, upper);
+}
+
+[[nodiscard]] py::array client_data(const SharedPartition& p, py::handle key_array) {
+  const KeyInput keys(key_array);
+  auto result = fresh<std::uint64_t>(keys.count());
+  std::uint64_t* const to = result.mutable_data();
+  ask_each(p, keys.count(), "client_data",
+           [&](std::size_t i) { return p.partition.client_data(keys.keys()[i], to[i]); });
+  return result;
+}
+
+[[nodiscard]] py::array keys_of(const SharedPartition& p, py::handle id_array) {
+  const Integers<std::uint32_t> ids(id_array, "ids");
+  auto result = fresh<std::uint64_t>(ids.count());
+  Key* const to = keys_in(result);
+  reading(p.mutex, [&] {
+    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = p.partition.key_of(ids[i]);
+  });
+  return result;
+}
+
+[[nodiscard]] py::array client_data_of(const SharedPartition& p, py::handle id_array) {
+  const Integers<std::uint32_t> ids(id_array, "ids");
+  auto result = fresh<std::uint64_t>(ids.count());
+  std::uint64_t* const to = result.mutable_data();
+  reading(p.mutex, [&] {
+    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = p.partition.client_data_of(ids[i]);
+  });
+  return result;
+}
+
+void set_filter(SharedPartition& p, py::handle key_array, py::handle layers, py::handle mask,
+                py::handle environment) {
+  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+  const KeyInput keys(key_array);
+  const EachInteger layer(layers, "layers", most);
+  const EachInteger wanted(mask, "mask", most);
+  const EachInteger world(environment, "environment", most);
+  for (const EachInteger* each : {&layer, &wanted, &world}) each->expect(keys.count());
+  std::vector<ObjectFilter> filters(keys.count());
+  for (std::size_t i = 0; i < filters.size(); ++i) {
+    filters[i] = {static_cast<std::uint32_t>(layer[i]), static_cast<std::uint32_t>(wanted[i]),
+                  static_cast<std::uint32_t>(world[i])};
+  }
+  accept(changing(p.mutex, [&] { return p.partition.set_filter(keys.keys(), filters); }),
+         "set_filter");
+}
+
+[[nodiscard]] py::tuple filters_of(const SharedPartition& p, py::handle key_array) {
+  const KeyInput keys(key_array);
+  std::vector<ObjectFilter> filters(keys.count());
+  ask_each(p, keys.count(), "filters",
+           [&](std::size_t i) { return p.partition.filter(keys.keys()[i], filters[i]); });
+  std::vector<std::uint32_t> columns[3];
+  for (const ObjectFilter& filter : filters) {
+    columns[0].push_back(filter.layers);
+    columns[1].push_back(filter.mask);
+    columns[2].push_back(filter.environment);
+  }
+  return py::make_tuple(given(std::move(columns[0])), given(std::move(columns[1])),
+                        given(std::move(columns[2])));
+}
+
+void add_changes(PartitionClass& partition) {
+  using py::arg;
+  partition
+      .def("insert", &insert_boxes, arg("lower"), arg("upper"), arg("data") = py::none(),
+           "Adds n boxes and gives their keys, (n,) uint64. `lower`, `upper`: (n, 3), in units of "
+           "the scene; lower <= upper, ends may be infinite. Floats of any strides are read where "
+           "they lie, if both arrays have the same stride from box to box; all else is rounded "
+           "outward to float. `data`: (n,) uint64, given back by queries.")
+      .def("update", &update_boxes, arg("keys"), arg("lower"), arg("upper"),
+           arg("entries") = py::none(),
+           "Gives the n objects of `keys` (n,) new boxes, (n, 3) each. With `entries`, numbers "
+           "(m,) or a mask (n,) of bool, only those entries of the arrays.")
+      .def("insert_spheres", &insert_spheres, arg("centers"), arg("radii"),
+           arg("data") = py::none(),
+           "Adds n balls, where volume is 'sphere', and gives their keys, (n,) uint64. `centers`: "
+           "(n, 3), `radii`: (n,) or one for all, finite and >= 0.")
+      .def("update_spheres", &update_spheres, arg("keys"), arg("centers"), arg("radii"),
+           "Gives the n objects of `keys` (n,) new balls: `centers` (n, 3), `radii` (n,) or one "
+           "for all.")
+      .def("insert_kdops", &insert_kdops, arg("lower"), arg("upper"), arg("data") = py::none(),
+           "Adds n k-DOPs, where volume is one: lower and upper ends (n, k/2) of the slabs along "
+           "`kdop_directions(k)`. Gives their keys, (n,) uint64.")
+      .def("update_kdops", &update_kdops, arg("keys"), arg("lower"), arg("upper"),
+           "Gives the n objects of `keys` (n,) new k-DOPs, lower and upper ends (n, k/2).")
+      .def("remove", &remove_objects, arg("keys"),
+           "Removes the objects of `keys` (n,). A key that is stale, of another partition or there "
+           "twice refuses all.");
+}
+
+void add_knowledge(PartitionClass& partition) {
+  using py::arg;
+  partition
+      .def("__len__",
+           [](const SharedPartition& p) {
+             return reading(p.mutex, [&] { return p.partition.size(); });
+           })
+      .def("contains", &contains, arg("keys"), "Which of `keys` (n,) are alive: (n,) bool.")
+      .def("bounds", &bounds, arg("keys"),
+           "Boxes (lower, upper) of the objects of `keys` (n,), (n, 3) float32 each, as they are "
+           "tested: larger than given by the margin, around other volumes.")
+      .def("client_data", &client_data, arg("keys"),
+           "What `insert` was given as data for the objects of `keys` (n,): (n,) uint64.")
+      .def("keys_of", &keys_of, arg("ids"),
+           "Keys (n,) uint64 of objects by id (n,); NULL_KEY for those that are not alive.")
+      .def("client_data_of", &client_data_of, arg("ids"),
+           "Client data (n,) uint64 of objects by id (n,); 0 for those that are not alive.")
+      .def("set_filter", &set_filter, arg("keys"), arg("layers") = 1,
+           arg("mask") = ~std::uint32_t{0}, arg("environment") = 0,
+           "Sets what the objects of `keys` (n,) let themselves be paired with: `layers` they are "
+           "in and `mask` of layers they meet, a bit each, and `environment`, which must be equal "
+           "or EVERY_ENVIRONMENT. (n,) uint32 each, or one for all.")
+      .def("filters", &filters_of, arg("keys"),
+           "(layers, mask, environment) of the objects of `keys` (n,), (n,) uint32 each.");
+}
+
+}  // namespace
+
+void add_objects(py::module_& module, PartitionClass& partition) {
+  using py::arg;
+  add_changes(partition);
+  add_knowledge(partition);
+  module.def("kdop_directions", &kdop_slabs, arg("faces"),
+             "Directions of the slabs of a k-DOP of 14, 18 or 26 faces, not normalised: (k/2, 3) "
+             "float32.");
+  module.def(
+      "boxes_address",
+      [](py::handle lower, py::handle upper) {
+        const BoxInput boxes(lower, upper);
+        std::vector<Aabb> room;
+        const BoxView view = boxes.view(room);
+        return reinterpret_cast<std::uintptr_t>(view.min[0]);
+      },
+      arg("lower"), arg("upper"),
+      "Where a call reads the lower corner of the first of these boxes: in `lower` itself, "
+      "unless they have to be copied.");
+}
+
+}  // namespace winnow::python

@@ -1,0 +1,149 @@
+// Pairs of a partition's objects, and what changed of them.
+
+#include "pipeline/python/locks.h"
+#include "pipeline/python/partition.h"
+
+#include <utility>
+
+namespace winnow::python {
+
+std::shared_ptr<PairBuffer> SharedPartition::take_pairs(bool incremental, bool with_events) {
+  std::shared_ptr<PairBuffer> last;
+  {
+    const std::lock_guard lock(pairs_mutex_);
+    last = std::exchange(last_pairs_, nullptr);
+  }
+  const std::size_t changes = changes_.exchange(0);
+  if (last && last.use_count() == 1) {
+    std::atomic_thread_fence(std::memory_order_acquire);
+    return last;
+  }
+  std::shared_ptr<PairBuffer> out = pair_pool->take();
+  // Where much has moved, all pairs are asked for anew, wherever they are written.
+  const bool few = changes < partition.size() / 4;
+  const bool carries = with_events || (incremental && few);
+  if (last && carries && !out->assign(*last)) out->clear();
+  return out;
+}
+
+void SharedPartition::keep_pairs(std::shared_ptr<PairBuffer> pairs) {
+  const std::lock_guard lock(pairs_mutex_);
+  last_pairs_ = std::move(pairs);
+}
+
+py::array shown_pairs(const std::shared_ptr<PairBuffer>& pairs) {
+  const auto* const ids = reinterpret_cast<const ObjectId*>(pairs->pairs().data());
+  return shown_rows(pairs, ids, pairs->size(), 2, sizeof(Pair));
+}
+
+namespace {
+
+[[nodiscard]] py::array self_pairs(SharedPartition& p, Events* events, const std::string& order,
+                                   bool incremental) {
+  const PairOptions options{chosen(kOrders, order, "order"), incremental, {}};
+  std::unique_lock<std::mutex> filling;
+  PairEvents* changes = nullptr;
+  if (events != nullptr) {
+    filling = events->hold();
+    changes = &events->to_fill("events");
+  }
+  std::shared_ptr<PairBuffer> out;
+  accept(reading(p.mutex,
+                 [&] {
+                   out = p.take_pairs(incremental, changes != nullptr);
+                   const Status status = changes == nullptr
+                                             ? p.partition.self_pairs(*out, options)
+                                             : p.partition.self_pairs(*out, *changes, options);
+                   if (status == Status::ok) p.keep_pairs(out);
+                   return status;
+                 }),
+         "self_pairs");
+  return shown_pairs(out);
+}
+
+void pair_changes(SharedPartition& p, Events& events) {
+  const std::unique_lock<std::mutex> filling = events.hold();
+  PairEvents& changes = events.to_fill("events");
+  accept(reading(p.mutex, [&] { return p.partition.self_pairs(changes); }), "pair_changes");
+}
+
+[[nodiscard]] py::array pairs_with(const SharedPartition& p, const SharedPartition& other,
+                                   const std::string& order) {
+  const PairOptions options{chosen(kOrders, order, "order"), true, {}};
+  const std::shared_ptr<PairBuffer> out = p.pair_pool->take();
+  const auto ask = [&] { return p.partition.pairs_with(other.partition, *out, options); };
+  // One lock is not taken twice, and two always in the order of their addresses.
+  const SharedPartition* const first = &p < &other ? &p : &other;
+  const SharedPartition* const second = &p < &other ? &other : &p;
+  accept(reading(first->mutex,
+                 [&] {
+                   if (first == second) return ask();
+                   const std::shared_lock lock(second->mutex);
+                   return ask();
+                 }),
+         "pairs_with");
+  return shown_pairs(out);
+}
+
+[[nodiscard]] py::array shown_keys(const std::shared_ptr<PairEvents>& events,
+                                   std::span<const KeyPair> pairs) {
+  const auto* const keys = reinterpret_cast<const std::uint64_t*>(pairs.data());
+  return shown_rows(std::shared_ptr<const void>(events), keys, pairs.size(), 2, sizeof(KeyPair));
+}
+
+}  // namespace
+
+void add_pairs(py::module_& module, PartitionClass& partition) {
+  using py::arg;
+  py::class_<Events, std::shared_ptr<Events>>(
+      module, "PairEvents",
+      "What changed between two frames. Its arrays show what winnow wrote; while "
+      "one of them is alive, filling the events again is a BufferError.")
+      .def(py::init([] { return std::make_shared<Events>(); }), "Events that remember nothing.")
+      .def_property_readonly(
+          "begun",
+          [](const Events& e) {
+            const auto held = e.hold();
+            return shown_keys(e.value(), e.value()->begun());
+          },
+          "Pairs of this frame that the last one had not: (m, 2) uint64 of "
+          "keys, sorted by id.")
+      .def_property_readonly(
+          "ended",
+          [](const Events& e) {
+            const auto held = e.hold();
+            return shown_keys(e.value(), e.value()->ended());
+          },
+          "Pairs of the last frame that this one has not: (m, 2) uint64 of "
+          "keys, sorted by id; those of removed objects are stale.")
+      .def_property_readonly(
+          "persisting",
+          [](const Events& e) {
+            const auto held = e.hold();
+            return e.value()->persisting();
+          },
+          "How many pairs are in both frames.")
+      .def(
+          "clear",
+          [](const Events& e) {
+            const auto held = e.hold();
+            e.to_fill("events").clear();
+          },
+          "Forgets everything.");
+  partition
+      .def("self_pairs", &self_pairs, arg("events") = py::none(), py::kw_only(),
+           arg("order") = "fast", arg("incremental") = true,
+           "All pairs of objects whose volumes overlap: (m, 2) uint32 of ids, first < second. An "
+           "array that shows what winnow wrote, to be read; it never changes. Drop it before the "
+           "next call, and that updates it in place where little moved; else pairs go to another "
+           "buffer. `order`: 'fast' or 'canonical' (sorted). With `events`, what changed since the "
+           "last call is written there.")
+      .def("pair_changes", &pair_changes, arg("events"),
+           "What changed of all pairs since the last call with these events, alone: costs what "
+           "moved.")
+      .def("pairs_with", &pairs_with, arg("other"), py::kw_only(), arg("order") = "fast",
+           "All pairs (object of this, object of `other`) whose boxes overlap: (m, 2) uint32 of "
+           "ids.");
+}
+
+}  // namespace winnow::python
