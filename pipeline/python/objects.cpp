@@ -2,11 +2,11 @@
 
 #include "pipeline/python/locks.h"
 #include "pipeline/python/partition.h"
+#include "pipeline/python/volumes.h"
 
 #include <winnow/core/kdop.h>
 #include <winnow/core/rounding.h>
 
-#include <cmath>
 #include <limits>
 #include <type_traits>
 
@@ -69,19 +69,7 @@ void update_boxes(SharedPartition& p, py::handle key_array, py::handle lower, py
   Numbers radius(radii, "radii", {}, true);
   radius.expect(center.count());
   std::vector<Sphere> spheres(center.count());
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    double square = 0.0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double given = center.at(i, axis);
-      const auto rounded = static_cast<float>(given);
-      spheres[i].center[static_cast<Eigen::Index>(axis)] = rounded;
-      const double off = given - static_cast<double>(rounded);
-      square += off * off;
-    }
-    const double r = radius.at(i);
-    spheres[i].radius =
-        square > 0.0 ? round_up(add_up(r, std::sqrt(square) * (1.0 + 1e-15))) : round_up(r);
-  }
+  for (std::size_t i = 0; i < spheres.size(); ++i) spheres[i] = sphere_at(center, radius, i);
   return spheres;
 }
 

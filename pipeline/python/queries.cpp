@@ -3,11 +3,11 @@
 #include "pipeline/python/locks.h"
 #include "pipeline/python/partition.h"
 #include "pipeline/python/questions.h"
+#include "pipeline/python/volumes.h"
 
 #include <winnow/core/cast.h>
 #include <winnow/core/frustum.h>
 #include <winnow/core/region.h>
-#include <winnow/core/rounding.h>
 
 #include <cstring>
 #include <limits>
@@ -65,24 +65,6 @@ class FreshHits {
   py::array_t<float> t_;
   HitColumns columns_;
 };
-
-[[nodiscard]] Eigen::Vector3f point_at(const Numbers& numbers, std::size_t i) {
-  Eigen::Vector3f point;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    point[static_cast<Eigen::Index>(axis)] = static_cast<float>(numbers.at(i, axis));
-  }
-  return point;
-}
-
-/// Boxes and balls that hold what is given in double.
-[[nodiscard]] Aabb box_at(const Numbers& lower, const Numbers& upper, std::size_t i) {
-  Aabb box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.min[static_cast<Eigen::Index>(axis)] = round_down(lower.at(i, axis));
-    box.max[static_cast<Eigen::Index>(axis)] = round_up(upper.at(i, axis));
-  }
-  return box;
-}
 
 [[nodiscard]] HitTables shown_hits(const std::shared_ptr<const void>& owner,
                                    std::span<const Hit> hits, std::vector<std::uint64_t>&& first) {
@@ -244,9 +226,8 @@ class RayInput {
   center.expect(sweeps.count());
   radius.expect(sweeps.count());
   return cast_many(
-      p, sweeps.count(), chosen(kFinds, find, "find"), filter, "cast_spheres", [&](std::size_t i) {
-        return sweeps.cast(SphereCast{{point_at(center, i), round_up(radius.at(i))}}, i);
-      });
+      p, sweeps.count(), chosen(kFinds, find, "find"), filter, "cast_spheres",
+      [&](std::size_t i) { return sweeps.cast(SphereCast{sphere_at(center, radius, i)}, i); });
 }
 
 [[nodiscard]] py::object cast_capsules(const SharedPartition& p, py::handle a, py::handle b,
@@ -259,10 +240,8 @@ class RayInput {
   Numbers radius(radii, "radii", {}, true);
   for (Numbers* each : {&from, &to, &radius}) each->expect(sweeps.count());
   return cast_many(
-      p, sweeps.count(), chosen(kFinds, find, "find"), filter, "cast_capsules", [&](std::size_t i) {
-        return sweeps.cast(
-            CapsuleCast{{point_at(from, i), point_at(to, i), round_up(radius.at(i))}}, i);
-      });
+      p, sweeps.count(), chosen(kFinds, find, "find"), filter, "cast_capsules",
+      [&](std::size_t i) { return sweeps.cast(CapsuleCast{capsule_at(from, to, radius, i)}, i); });
 }
 
 // --- regions -----------------------------------------------------------------------------------
@@ -312,9 +291,8 @@ template <typename RegionAt>
   const Numbers center(centers, "centers", {3});
   Numbers radius(radii, "radii", {}, true);
   radius.expect(center.count());
-  return overlap_many(p, center.count(), order, filter, "overlap_spheres", [&](std::size_t i) {
-    return Region(Sphere{point_at(center, i), round_up(radius.at(i))});
-  });
+  return overlap_many(p, center.count(), order, filter, "overlap_spheres",
+                      [&](std::size_t i) { return Region(sphere_at(center, radius, i)); });
 }
 
 [[nodiscard]] OverlapTables overlap_capsules(const SharedPartition& p, py::handle a, py::handle b,
@@ -325,9 +303,8 @@ template <typename RegionAt>
   Numbers radius(radii, "radii", {}, true);
   to.expect(from.count());
   radius.expect(from.count());
-  return overlap_many(p, from.count(), order, filter, "overlap_capsules", [&](std::size_t i) {
-    return Region(Capsule{point_at(from, i), point_at(to, i), round_up(radius.at(i))});
-  });
+  return overlap_many(p, from.count(), order, filter, "overlap_capsules",
+                      [&](std::size_t i) { return Region(capsule_at(from, to, radius, i)); });
 }
 
 [[nodiscard]] OverlapTables overlap_oriented_boxes(const SharedPartition& p, py::handle centers,
@@ -340,8 +317,14 @@ template <typename RegionAt>
   turn.expect(center.count());
   return overlap_many(
       p, center.count(), order, filter, "overlap_oriented_boxes", [&](std::size_t i) {
-        OrientedBox box{point_at(center, i), point_at(half, i), Eigen::Matrix3f::Identity()};
+        OrientedBox box{point_at(center, i), {}, Eigen::Matrix3f::Identity()};
+        // What rounding the axes moves corners by, at most.
+        double reach = 0.0;
+        for (std::size_t axis = 0; axis < 3; ++axis) reach += half.at(i, axis);
+        const double off =
+            off_point_at(center, i) + (turn.is_single() ? 0.0 : 0x1p-23 * std::abs(reach));
         for (std::size_t row = 0; row < 3; ++row) {
+          box.half[static_cast<Eigen::Index>(row)] = grown(half.at(i, row), off);
           for (std::size_t column = 0; column < 3; ++column) {
             box.axes(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
                 static_cast<float>(turn.at(i, row, column));

@@ -124,6 +124,36 @@ def test_regions_meet_what_a_twin_meets(world):
     assert lists(partition.overlap_oriented_boxes(centers, [half] * 3, np.eye(3))) == boxes
 
 
+def test_what_touches_in_double_is_met():
+    random = np.random.default_rng(27)
+    count, radius = 4000, 0.0625
+    centers = random.uniform(0, 1, (count, 3))
+    # A box for each ball in a world of its own, whose upper side is the lowest float not below it.
+    side = (centers[:, 0] - radius).astype(np.float32)
+    beyond = np.nextafter(side, np.float32(np.inf))
+    side = np.where(side.astype(float) < centers[:, 0] - radius, beyond, side)
+    upper = np.stack([side, *(centers[:, 1:] + 0.01).astype(np.float32).T], axis=1)
+    lower = np.stack([side - 1, *(centers[:, 1:] - 0.01).astype(np.float32).T], axis=1)
+    partition = winnow.Partition()
+    keys = partition.insert(lower, upper)
+    half = [radius] * 3
+    found = [
+        partition.overlap_spheres(centers, radius),
+        partition.overlap_capsules(centers, centers, radius),
+        partition.overlap_oriented_boxes(centers, half, np.eye(3)),
+    ]
+    ids = np.arange(count)
+    for overlaps in found:
+        assert all(i in ids for i, ids in zip(ids, lists(overlaps)))
+    away = np.tile([0.0, 2.0, 0.0], (count, 1))
+    for hits in (
+        partition.cast_spheres(centers, radius, away, "all", max_t=0.0),
+        partition.cast_capsules(centers, centers, radius, away, "all", max_t=0.0),
+    ):
+        first = hits.first.astype(int)
+        assert all(key in hits.key[a:b] for key, a, b in zip(keys, first[:-1], first[1:]))
+
+
 def test_inside_is_told_from_crossing():
     partition = winnow.Partition()
     partition.insert([[0, 0, 0], [3, 0, 0], [9, 9, 9]], [[1, 1, 1], [4, 1, 1], [10, 10, 10]])

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "pipeline/python/arrays.h"
+
+#include <winnow/core/aabb.h>
+#include <winnow/core/capsule.h>
+#include <winnow/core/rounding.h>
+#include <winnow/core/sphere.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow::python {
+
+// Volumes of float that hold what is given in double.
+
+[[nodiscard]] inline Eigen::Vector3f point_at(const Numbers& numbers, std::size_t i) {
+  Eigen::Vector3f point;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    point[static_cast<Eigen::Index>(axis)] = static_cast<float>(numbers.at(i, axis));
+  }
+  return point;
+}
+
+/// How far the point in float is from the one given, or a little more.
+[[nodiscard]] inline double off_point_at(const Numbers& numbers, std::size_t i) {
+  const Eigen::Vector3f point = point_at(numbers, i);
+  double square = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double off =
+        numbers.at(i, axis) - static_cast<double>(point[static_cast<Eigen::Index>(axis)]);
+    square += off * off;
+  }
+  return std::sqrt(square) * (1.0 + 1e-15);
+}
+
+/// A length that is not smaller than the sum; what is no length stays none.
+[[nodiscard]] inline float grown(double length, double by) {
+  return round_up(length >= 0.0 && by > 0.0 ? add_up(length, by) : length);
+}
+
+[[nodiscard]] inline Aabb box_at(const Numbers& lower, const Numbers& upper, std::size_t i) {
+  Aabb box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.min[static_cast<Eigen::Index>(axis)] = round_down(lower.at(i, axis));
+    box.max[static_cast<Eigen::Index>(axis)] = round_up(upper.at(i, axis));
+  }
+  return box;
+}
+
+[[nodiscard]] inline Sphere sphere_at(const Numbers& center, const Numbers& radius, std::size_t i) {
+  return {point_at(center, i), grown(radius.at(i), off_point_at(center, i))};
+}
+
+[[nodiscard]] inline Capsule capsule_at(const Numbers& a, const Numbers& b, const Numbers& radius,
+                                        std::size_t i) {
+  return {point_at(a, i), point_at(b, i),
+          grown(radius.at(i), std::max(off_point_at(a, i), off_point_at(b, i)))};
+}
+
+}  // namespace winnow::python
