@@ -37,6 +37,8 @@ constexpr std::size_t count_of(std::uint64_t e) {
 
 /// The pages, of which tasks take the next one; what is in each, and which tasks are done.
 struct PairWriter::PageClaims {
+  static constexpr std::size_t kNone = ~std::size_t{0};
+
   Pair* pages = nullptr;
   std::uint64_t* entries = nullptr;
   std::uint64_t* done = nullptr;
@@ -44,6 +46,10 @@ struct PairWriter::PageClaims {
   std::atomic<std::size_t> next{0};
   std::atomic<std::uint64_t> tests{0};
   std::atomic<bool> full{false};
+  // The task before which all have written to the buffer's array, up to `led`. It alone changes
+  // the two; none leads any more once one has needed a page.
+  std::atomic<std::size_t> leading{0};
+  std::size_t led = 0;
 };
 
 Status PairWriter::append(std::size_t tasks, void* context, Task run) {
@@ -137,6 +143,7 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
 
 Status PairWriter::append_parallel(std::size_t tasks, void* context, Task run) {
   PageClaims claims;
+  claims.led = out_.pairs_.size();
   // A guess from what the buffer held last.
   std::size_t pages = pages_for(out_, tasks);
   while (make_pages(claims, pages, tasks)) {
@@ -182,55 +189,91 @@ std::size_t PairWriter::more_pages(PageClaims& claims, std::size_t tasks) {
   return std::clamp(claims.limit * tasks / done, 2 * claims.limit, 4 * claims.limit);
 }
 
+/// What a task writes to: the buffer's array while it leads and that has room, then pages.
+struct PairWriter::TaskOutput {
+  const PairWriter& writer;
+  PageClaims& claims;
+  const std::size_t task;
+  Pair* begin = nullptr;  // what it writes to now, if anything
+  Pair* end = nullptr;
+  std::size_t checked = 0;  // pairs from there that the predicate has been asked about
+  std::size_t page = PageClaims::kNone;
+  std::size_t in_array = 0;  // pairs that it has written there
+
+  bool write(void* context, Task run) {
+    const bool leads = claims.leading.load(std::memory_order_acquire) == task;
+    std::uint32_t none = 0;
+    PairSink sink;
+    sink.owner = this;
+    sink.grow = [](PairSink& full) { return static_cast<TaskOutput*>(full.owner)->go_on(full); };
+    if (leads) {
+      begin = writer.out_.pairs_.data() + claims.led;
+      end = writer.out_.pairs_.data() + writer.out_.pairs_.capacity();
+    }
+    if (has_room()) {
+      aim(sink, begin, end);
+    } else {
+      // Starts with nothing: a task that finds no pair takes no page.
+      begin = nullptr;
+      sink.cursor = &none + 1;
+      sink.limit = &none;
+    }
+    const bool done = run(context, task, sink);
+    take(sink);
+    claims.tests.fetch_add(done ? sink.tests : 0, std::memory_order_relaxed);
+    if (done && leads) {
+      claims.led += in_array;
+      claims.leading.store(page == PageClaims::kNone ? task + 1 : PageClaims::kNone,
+                           std::memory_order_release);
+    }
+    return done;
+  }
+
+  [[nodiscard]] bool has_room() const {
+    return end - begin >= static_cast<std::ptrdiff_t>(checked + kSinkSlack);
+  }
+
+  void take(const PairSink& sink) {
+    if (begin == nullptr) return;
+    const auto used = static_cast<std::size_t>(sink.cursor - words(begin)) / 2;
+    checked += writer.keep_accepted(begin + checked, used - checked);
+    if (page == PageClaims::kNone) {
+      in_array = checked;
+    } else {
+      claims.entries[page] = entry(task, checked);
+    }
+  }
+
+  bool go_on(PairSink& sink) {
+    take(sink);
+    // What the predicate leaves free is written on, so that pages follow what it accepts.
+    if (begin == nullptr || !has_room()) {
+      begin = nullptr;
+      page = claims.next.fetch_add(1, std::memory_order_relaxed);
+      if (page >= claims.limit) return false;
+      begin = claims.pages + page * kPage;
+      end = begin + kPage;
+      checked = 0;
+    }
+    aim(sink, begin + checked, end);
+    return true;
+  }
+};
+
 void PairWriter::run_on_pages(std::size_t tasks, PageClaims& claims, void* context, Task run) {
   execution_.for_each(tasks, [&](std::size_t task) {
-    struct Writer {
-      const PairWriter& writer;
-      PageClaims& claims;
-      std::size_t task;
-      std::size_t page = 0;
-      std::size_t checked = 0;  // pairs on the page that the predicate has been asked about
-      bool open = false;
-
-      [[nodiscard]] Pair* start() const { return claims.pages + page * kPage; }
-      void take(const PairSink& sink) {
-        if (!open) return;
-        const auto used = static_cast<std::size_t>(sink.cursor - words(start())) / 2;
-        checked += writer.keep_accepted(start() + checked, used - checked);
-        claims.entries[page] = entry(task, checked);
-      }
-    } writer{*this, claims, task};
     if (claims.done[task] != 0 || claims.full.load(std::memory_order_relaxed)) return;
-    PairSink sink;
-    // Starts without a page: a task that finds nothing takes none.
-    std::uint32_t none = 0;
-    sink.cursor = &none + 1;
-    sink.limit = &none;
-    sink.owner = &writer;
-    sink.grow = [](PairSink& full) {
-      auto& w = *static_cast<Writer*>(full.owner);
-      w.take(full);
-      // What the predicate leaves free is written on, so that pages follow what it accepts.
-      if (!w.open || w.checked > kPageContent) {
-        w.open = false;
-        w.checked = 0;
-        const std::size_t page = w.claims.next.fetch_add(1, std::memory_order_relaxed);
-        if (page >= w.claims.limit) return false;
-        w.page = page;
-        w.open = true;
-      }
-      aim(full, w.start() + w.checked, w.start() + kPage);
-      return true;
-    };
-    const bool done = run(context, task, sink);
-    writer.take(sink);
-    if (!done) return claims.full.store(true, std::memory_order_relaxed);
-    claims.done[task] = 1;
-    claims.tests.fetch_add(sink.tests, std::memory_order_relaxed);
+    TaskOutput output{*this, claims, task};
+    if (output.write(context, run)) {
+      claims.done[task] = 1;
+    } else {
+      claims.full.store(true, std::memory_order_relaxed);
+    }
   });
 }
 
-Status PairWriter::gather_pages(std::size_t tasks, const PageClaims& claims) {
+// Puts what stands on pages behind what stands in the array.
+Status PairWriter::gather_pages(std::size_t tasks, PageClaims& claims) {
   // Counting sort of pages by task; within a task pages were claimed in ascending order.
   const std::size_t pages = claims.next.load();
   std::uint64_t* const offset = claims.done;
@@ -241,10 +284,14 @@ Status PairWriter::gather_pages(std::size_t tasks, const PageClaims& claims) {
   for (std::size_t t = 0; t < tasks; ++t) offset[t + 1] += offset[t];
   Column<Pair>& pairs = out_.pairs_;
   const std::size_t before = pairs.size();
+  pairs.set_size(claims.led);
   // Pages may have been taken for nothing, and the array may be none yet.
   if (offset[tasks] == 0) return Status::ok;
-  if (!pairs.grow(before + offset[tasks])) return Status::out_of_memory;
-  pairs.set_size(before + offset[tasks]);
+  if (!pairs.grow(claims.led + offset[tasks])) {
+    pairs.set_size(before);
+    return Status::out_of_memory;
+  }
+  pairs.set_size(claims.led + offset[tasks]);
   // From here the entry holds where its page goes instead of whose it is.
   for (std::size_t p = 0; p < pages; ++p) {
     const std::uint64_t e = claims.entries[p];
@@ -258,8 +305,8 @@ Status PairWriter::gather_pages(std::size_t tasks, const PageClaims& claims) {
     for (std::size_t p = task * kPagesPerTask; p < std::min(pages, (task + 1) * kPagesPerTask);
          ++p) {
       const std::uint64_t e = claims.entries[p];
-      std::memcpy(static_cast<void*>(pairs.data() + before + (e >> 12U)), claims.pages + p * kPage,
-                  (e & 0xFFFU) * sizeof(Pair));
+      std::memcpy(static_cast<void*>(pairs.data() + claims.led + (e >> 12U)),
+                  claims.pages + p * kPage, (e & 0xFFFU) * sizeof(Pair));
     }
   });
   return Status::ok;

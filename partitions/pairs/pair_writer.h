@@ -14,9 +14,11 @@
 namespace winnow {
 
 /// Appends the output of many tasks to a PairBuffer, in the order of the tasks whatever thread runs
-/// which. On one thread tasks write straight into the buffer. On several, a task claims pages of
-/// the buffer's scratch one at a time, and pages are copied into order at the end: the pages needed
-/// depend on the results alone, so frames with the same results allocate nothing.
+/// which. On one thread tasks write straight into the buffer. On several, so does the task before
+/// which all are done, while the buffer has room: schedulers deal out runs of tasks that follow
+/// each other, so that the output of one thread needs no copy. Any other task claims pages of the
+/// buffer's scratch one at a time, which are copied into order at the end. There are pages for all
+/// that the buffer can hold, so frames with the same results allocate nothing.
 class PairWriter {
  public:
   /// Only pairs that `predicate` accepts are appended; it is asked by whichever thread found them.
@@ -43,6 +45,7 @@ class PairWriter {
  private:
   using Task = bool (*)(void*, std::size_t, PairSink&);
   struct PageClaims;
+  struct TaskOutput;
   struct SerialOutput;
 
   [[nodiscard]] static std::size_t pages_for(const PairBuffer& out, std::size_t tasks) noexcept;
@@ -52,7 +55,7 @@ class PairWriter {
   bool make_pages(PageClaims& claims, std::size_t pages, std::size_t tasks);
   static std::size_t more_pages(PageClaims& claims, std::size_t tasks);
   void run_on_pages(std::size_t tasks, PageClaims& claims, void* context, Task run);
-  Status gather_pages(std::size_t tasks, const PageClaims& claims);
+  Status gather_pages(std::size_t tasks, PageClaims& claims);
   std::size_t keep_accepted(Pair* pairs, std::size_t count) const noexcept;
 
   PairBuffer& out_;
