@@ -83,7 +83,7 @@ void PartitionState::begin_calm(PairBuffer& out, const PairOptions& options) con
   const float margin = calm.margin();
   if (linked.can_link() && linked.link(rows.keys().slot_count()) && deferred_.begin(rows, margin) &&
       watch_all()) {
-    return;
+    return linked.link_rest();
   }
   calm.end();
   deferred_.drop();

@@ -11,6 +11,8 @@ namespace {
 
 // An object that moved costs about as much as a pass over this many pairs.
 constexpr std::size_t kPairsPassed = 64;
+// Frames in which all pairs of a buffer get their links.
+constexpr std::size_t kLinkFrames = 4;
 // No pair: both of its ids are kNoObject.
 constexpr std::uint64_t kTaken = ~std::uint64_t{0};
 
@@ -65,10 +67,17 @@ bool LinkedPairs::cover_objects(std::size_t slots) noexcept {
 bool LinkedPairs::link(std::size_t slots) noexcept {
   if (out_.state_ == PairBuffer::State::linked) return cover_objects(slots);
   out_.heads_.clear();
-  if (!cover_objects(slots) || !out_.links_.resize(out_.size())) return false;
-  for (std::uint32_t i = 0; i < out_.size(); ++i) enter(i);
+  out_.links_.clear();
+  if (!cover_objects(slots) || !out_.links_.reserve(out_.size())) return false;
   out_.state_ = PairBuffer::State::linked;
   return true;
+}
+
+void LinkedPairs::link_next(std::size_t count) noexcept {
+  const std::size_t linked = out_.links_.size();
+  const std::size_t end = linked + std::min(count, out_.size() - linked);
+  for (std::size_t i = linked; i < end; ++i) enter(static_cast<std::uint32_t>(i));
+  out_.links_.set_size(end);
 }
 
 void LinkedPairs::enter(std::uint32_t index) noexcept {
@@ -152,19 +161,27 @@ bool LinkedPairs::sort() noexcept {
   return PairTracker::sort(out_, out_.heads_.size(), kept_, out_.size());
 }
 
+// The last pair takes the place of another, or is that other.
+void LinkedPairs::replace(std::uint32_t index, std::uint32_t last) noexcept {
+  const std::size_t linked = out_.links_.size();
+  if (index < linked) leave(index);
+  if (last < linked) {
+    if (index != last) move(last, index);
+    return out_.links_.set_size(last);
+  }
+  out_.pairs_[index] = out_.pairs_[last];
+  if (index < linked) enter(index);
+}
+
 bool LinkedPairs::apply() noexcept {
   const std::size_t begun_count = out_.size() - kept_;
   const std::size_t persisting = kept_ - out_.places_.size();
-  if (!out_.links_.resize(std::max(kept_, persisting + begun_count))) return false;
+  if (!out_.links_.grow(std::max(kept_, persisting + begun_count))) return false;
   auto last = static_cast<std::uint32_t>(kept_);
-  for (const std::uint32_t index : out_.places_) {
-    leave(index);
-    if (index != --last) move(last, index);
-  }
+  for (const std::uint32_t index : out_.places_) replace(index, --last);
   std::copy_n(out_.pairs_.begin() + kept_, begun_count, out_.pairs_.begin() + last);
   out_.pairs_.set_size(persisting + begun_count);
-  for (std::size_t i = persisting; i < out_.size(); ++i) enter(static_cast<std::uint32_t>(i));
-  out_.links_.set_size(out_.size());
+  link_next(begun_count + out_.size() / kLinkFrames + 1);
   return true;
 }
 
