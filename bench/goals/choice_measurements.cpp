@@ -110,12 +110,41 @@ void measure_changes(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
+namespace {
+
+// Times of frames in which something moved, once the run has settled: one in which nothing does
+// says nothing of what others should take.
+std::vector<double> working_frames(const Run& run) {
+  std::vector<double> working;
+  for (std::size_t f = kSettlingFrames; f < run.frame_ms.size(); ++f) {
+    if (run.changed[f] != 0) working.push_back(run.frame_ms[f]);
+  }
+  return working;
+}
+
+// The most by which a frame exceeds the median of those around it: what a scene asks for may grow
+// manyfold while it runs, so that a frame that is dear by the median of all need not be a hitch.
+double worst_hitch(std::span<const double> frames) {
+  constexpr std::size_t kAround = 30;  // on each side
+  double worst = 0.0;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    const std::size_t begin = f - std::min(f, kAround);
+    const std::size_t end = std::min(frames.size(), f + kAround + 1);
+    worst = std::max(worst, frames[f] / median_of(frames.subspan(begin, end - begin)));
+  }
+  return worst;
+}
+
+}  // namespace
+
 void measure_worst_frames(const Json& options, Lab& lab, Measured& measured) {
   measured.results.declare({"worst_frames",
                             "scenes",
-                            "the worst of many frames over the median one, once settled",
+                            "the worst of many frames over the median one, and over the median of "
+                            "those around it; of frames in which something moves, once settled",
                             {"scene", "objects", "partition", "threads"},
                             {{"ratio", "worst / median", "times", Better::less},
+                             {"hitch", "worst / median around it", "times", Better::less},
                              {"worst_ms", "worst", "ms"},
                              {"median_ms", "median", "ms"},
                              {"frames", "frames", ""}}});
@@ -126,15 +155,18 @@ void measure_worst_frames(const Json& options, Lab& lab, Measured& measured) {
         undisturbed([&] { return scene.source(objects, 1); }, options.at("partitions"),
                     kSettlingFrames + lab.worst_of(), threads);
     for (const Run& run : runs) {
-      const Spread settled = spread_of(run.settled_ms());
+      const std::vector<double> working = working_frames(run);
+      if (working.empty()) continue;
+      const Spread settled = spread_of(working);
       measured.results.add("worst_frames", {{"scene", scene.name},
                                             {"objects", objects},
                                             {"partition", run.engine},
                                             {"threads", threads},
                                             {"ratio", settled.max / settled.median},
+                                            {"hitch", worst_hitch(working)},
                                             {"worst_ms", settled.max},
                                             {"median_ms", settled.median},
-                                            {"frames", lab.worst_of()}});
+                                            {"frames", working.size()}});
     }
   }
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <numeric>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -128,7 +129,7 @@ Advice advise(FrameSource& source, const std::vector<std::string>& partitions, s
     advice.frames = runs[i].frame_ms.size();
     advice.pairs = runs[i].pairs_a_frame();
     advice.moving =
-        static_cast<double>(runs[i].changed) /
+        std::reduce(runs[i].changed.begin(), runs[i].changed.end(), 0.0) /
         static_cast<double>(std::max<std::size_t>(1, (advice.frames - 1) * advice.objects));
     if (raced[i]->name() == kAuto) {
       const StructureChoice choice = raced[i]->choice();

@@ -75,7 +75,7 @@ void run_frame(Contender& contender, const Frame& frame, bool first, Run& run) {
     return;
   }
   run.frame_ms.push_back(clock.ms());
-  run.changed += frame.changed.size();
+  run.changed.push_back(frame.changed.size());
   run.update_ms.push_back(contender.engine->update_ms());
   run.pairs.push_back(summarize(contender.engine->pairs(), frame.boxes));
 }

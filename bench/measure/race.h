@@ -34,7 +34,7 @@ struct Run {
   std::vector<double> frame_ms;
   std::vector<double> update_ms;
   std::vector<PairSummary> pairs;
-  std::size_t changed = 0;  ///< boxes, over all frames after the first
+  std::vector<std::size_t> changed;  ///< boxes; of the first frame none
   /// When it gave up the frame after these; 0: it gave up none.
   double gave_up_ms = 0.0;
   std::size_t bytes = 0;
