@@ -243,7 +243,8 @@ Measurement measure(const MeasureOptions& options) {
 }
 
 std::size_t frames_for(std::size_t objects) {
-  if (objects <= 20'000) return 31;
+  if (objects <= 2'000) return 121;
+  if (objects <= 20'000) return 61;
   return objects <= 300'000 ? 13 : 6;
 }
 
