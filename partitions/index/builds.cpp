@@ -80,14 +80,18 @@ Status SpatialIndex::build() {
   return foreseen && status == Status::ok ? absorb_changes(true) : status;
 }
 
-// Where rays and regions are asked for, in many refreshes or before anything else, they are worth
-// an order that takes longer to find.
 bool SpatialIndex::start_plan(Structure& structure) noexcept {
+  return plan_.start(rows_, structure, spare_rows(structure), wanted_parts());
+}
+
+// Where rays and regions are asked for, in many refreshes or before anything else, they are worth
+// an order that takes longer to find. One that is torn at once is not worth much.
+KdParts SpatialIndex::wanted_parts() const noexcept {
   constexpr std::size_t kOften = 4;
+  constexpr std::size_t kTorn = 2;
   const std::size_t asked = asked_.load(std::memory_order_relaxed);
-  const bool often = asked > (builds_ == 0 ? 0 : kOften);
-  return plan_.start(rows_, structure, spare_rows(structure),
-                     often ? KdParts::blocks : KdParts::tiles);
+  if (asked > (builds_ == 0 ? 0 : kOften)) return KdParts::blocks;
+  return builds_ != 0 && departures_.refreshes() <= kTorn ? KdParts::cells : KdParts::tiles;
 }
 
 // The rows are untouched until everything that can fail is done.

@@ -1,6 +1,7 @@
 #include "partitions/tree/kd_order.h"
 
 #include "core/sort/stretches.h"
+#include "partitions/tree/coarse_cut.h"
 #include "partitions/tree/kd_order.kernel.h"
 #include "partitions/tree/tile_order.kernel.h"
 
@@ -23,19 +24,8 @@ constexpr std::size_t kTiledPart = 4096;
 constexpr std::size_t kCutsOfTiles = 2;
 constexpr std::size_t kPointsPerTask = 16384;
 
-/// Rows and their points, of which KdSets are parts.
-KdSet part_of(std::span<std::uint32_t> rows, std::uint32_t* room, float* points, std::size_t begin,
-              std::size_t count) noexcept {
-  KdSet set;
-  set.row = rows.data() + begin;
-  set.row_room = room + begin;
-  set.count = count;
-  for (std::size_t a = 0; a < 3; ++a) {
-    set.at[a] = points + a * rows.size() + begin;
-    set.at_room[a] = points + (3 + a) * rows.size() + begin;
-  }
-  return set;
-}
+// Points of a coarse cell: its parts fill tiles, also where some cells get more than others.
+constexpr std::size_t kCoarsePart = 3072;
 
 // The tiles of a set, which is large enough for them. False if they would not tell its points
 // apart.
@@ -51,7 +41,7 @@ bool sort_in_tiles(const KdSet& set) {
 
 // Cuts a set until tiles, or blocks, are left.
 void finish_part(KdSet set, KdParts parts) {
-  while (parts == KdParts::tiles && set.count >= kFewestInTiles) {
+  while (parts != KdParts::blocks && set.count >= kFewestInTiles) {
     if (set.count <= kTiledPart && sort_in_tiles(set)) return;
     finish_part(kd_order_kernels().split(set), parts);
   }
@@ -60,11 +50,23 @@ void finish_part(KdSet set, KdParts parts) {
 
 // How many cuts of each row that takes.
 std::size_t cuts_of(std::size_t count, KdParts parts) noexcept {
-  return parts == KdParts::tiles ? kCutsOfTiles
+  return parts != KdParts::blocks ? kCutsOfTiles
                                  : static_cast<std::size_t>(std::bit_width(count / kBlockRows));
 }
 
 }  // namespace
+
+KdSet KdCuts::part_of(const Set& part) const noexcept {
+  KdSet set;
+  set.row = rows_.data() + part.begin;
+  set.row_room = room_ + part.begin;
+  set.count = part.count;
+  for (std::size_t a = 0; a < 3; ++a) {
+    set.at[a] = at_[a] + part.begin;
+    set.at_room[a] = at_room_[a] + part.begin;
+  }
+  return set;
+}
 
 bool KdCuts::start(const BoundsPool& pool, std::span<std::uint32_t> rows, std::uint32_t* room,
                    Column<float>& scratch, const Execution& execution, KdParts parts) {
@@ -72,17 +74,20 @@ bool KdCuts::start(const BoundsPool& pool, std::span<std::uint32_t> rows, std::u
   if (!scratch.resize(kd_scratch(count))) return false;
   rows_ = rows;
   room_ = room;
-  points_ = scratch.data();
+  for (std::size_t a = 0; a < 3; ++a) {
+    at_[a] = scratch.data() + a * count;
+    at_room_[a] = scratch.data() + (3 + a) * count;
+  }
   open_ = 0;
   parts_ = parts;
   // Smaller sets are parts.
-  whole_ = parts == KdParts::tiles && count > kTiledPart && count <= kMostInTiles;
+  whole_ = parts != KdParts::blocks && count > kTiledPart && count <= kMostInTiles;
+  coarse_ = parts == KdParts::cells && count > kMostInTiles;
   if (count <= kBlockRows) return true;
   sets_[open_++] = {0, static_cast<std::uint32_t>(count)};
-  const KdSet all = part_of(rows_, room_, points_, 0, count);
   const std::array<const float*, 6> boxes = box_columns(pool);
   for_stretches(execution, count, kPointsPerTask, [&](std::size_t begin, std::size_t end) {
-    kd_order_kernels().centres(boxes.data(), rows.data(), begin, end, all.at);
+    kd_order_kernels().centres(boxes.data(), rows.data(), begin, end, at_);
   });
   return true;
 }
@@ -91,9 +96,26 @@ bool KdCuts::start(const BoundsPool& pool, std::span<std::uint32_t> rows, std::u
 bool KdCuts::tile_whole(std::size_t& work) {
   if (!std::exchange(whole_, false)) return false;
   work -= std::min(work, kCutsOfTiles * rows_.size());
-  if (!sort_in_tiles(part_of(rows_, room_, points_, 0, rows_.size()))) return false;
+  if (!sort_in_tiles(part_of(sets_[0]))) return false;
   open_ = 0;
   return true;
+}
+
+// Leaves the cells of all rows as sets, unless they have to be told apart by other means.
+void KdCuts::cut_coarsely(std::size_t& work, const Execution& execution) {
+  if (!std::exchange(coarse_, false)) return;
+  work -= std::min(work, kCutsOfTiles * rows_.size());
+  KdSet all = part_of(sets_[0]);
+  CoarseSizes sizes;
+  if (!cut_in_cells(all, rows_.size() / kCoarsePart, execution, sizes)) return;
+  std::copy_n(all.at, 3, at_);
+  std::copy_n(all.at_room, 3, at_room_);
+  open_ = 0;
+  std::uint32_t begin = 0;
+  for (const std::uint32_t count : sizes) {
+    if (count != 0) sets_[open_++] = {begin, count};
+    begin += count;
+  }
 }
 
 // Cuts every set that is too large for tiles in two; false if there is none, or no room for more.
@@ -105,7 +127,7 @@ bool KdCuts::cut_widest(std::size_t& work, const Execution& execution) {
     Set& second = sets_[before + i];
     second = {first.begin, 0};
     if (first.count <= kTiledPart) return;
-    KdSet set = part_of(rows_, room_, points_, first.begin, first.count);
+    KdSet set = part_of(first);
     second.count = static_cast<std::uint32_t>(kd_order_kernels().split(set).count);
     first.count -= second.count;
     second.begin += first.count;
@@ -120,6 +142,7 @@ bool KdCuts::cut_widest(std::size_t& work, const Execution& execution) {
 
 bool KdCuts::advance(std::size_t work, const Execution& execution) {
   if (tile_whole(work)) return true;
+  cut_coarsely(work, execution);
   while (work != 0 && open_ != 0 && cut_widest(work, execution)) {
   }
   // What is left are sets that a thread each finishes.
@@ -128,10 +151,8 @@ bool KdCuts::advance(std::size_t work, const Execution& execution) {
     const std::size_t count = sets_[open_ - 1 - taken].count;
     work -= std::min(work, count * cuts_of(count, parts_));
   }
-  execution.for_each(taken, [&](std::size_t i) {
-    const Set& set = sets_[open_ - 1 - i];
-    finish_part(part_of(rows_, room_, points_, set.begin, set.count), parts_);
-  });
+  execution.for_each(taken,
+                     [&](std::size_t i) { finish_part(part_of(sets_[open_ - 1 - i]), parts_); });
   open_ -= taken;
   return open_ == 0;
 }

@@ -3,6 +3,7 @@
 #include <winnow/core/column.h>
 #include <winnow/core/execution.h>
 #include "core/memory/bounds_pool.h"
+#include "partitions/tree/kd_order.kernel.h"
 
 #include <array>
 #include <cstddef>
@@ -16,9 +17,11 @@ namespace winnow {
   return 6 * rows;
 }
 
-/// How cutting ends: with blocks of 16 rows, or with parts of some thousand rows in tiles (see
-/// tile_order.kernel.h), which takes a quarter of the time and leaves some percent more tests.
-enum class KdParts : std::uint8_t { blocks, tiles };
+/// How rows are cut. To blocks of 16; or to parts of some thousand, which are put in tiles (see
+/// tile_order.kernel.h): a quarter of the time, and some percent more tests. Or first to cells by
+/// counting, where rows lie about evenly (see coarse_cut.h), which suits many threads: some percent
+/// less time again, and as many more tests.
+enum class KdParts : std::uint8_t { blocks, tiles, cells };
 
 /// Puts rows in order for a block tree over them: sets of rows are cut in two from the top down, at
 /// the middle of the axis along which their centres reach farthest, and only where the first side
@@ -54,16 +57,21 @@ class KdCuts {
     std::uint32_t begin;
     std::uint32_t count;
   };
+  [[nodiscard]] KdSet part_of(const Set& part) const noexcept;
   [[nodiscard]] bool tile_whole(std::size_t& work);
+  void cut_coarsely(std::size_t& work, const Execution& execution);
   [[nodiscard]] bool cut_widest(std::size_t& work, const Execution& execution);
 
   std::span<std::uint32_t> rows_;
   std::uint32_t* room_ = nullptr;
-  float* points_ = nullptr;
+  float* at_[3] = {};
+  float* at_room_[3] = {};
   std::array<Set, kMostSets> sets_;
   std::size_t open_ = 0;
   KdParts parts_ = KdParts::tiles;
-  bool whole_ = false;  // all rows are few enough to be put in tiles at once
+  // All rows may be put in tiles at once; or, of more, in cells that are then cut further.
+  bool whole_ = false;
+  bool coarse_ = false;
 };
 
 }  // namespace winnow

@@ -1,4 +1,5 @@
 #include "partitions/tree/tile_order.kernel.h"
+#include "partitions/tree/equal_parts.wide.h"
 #include "partitions/tree/reach.wide.h"
 #include "simd/lanes/lanes.h"
 #include "simd/lanes/truncated.h"
@@ -8,8 +9,6 @@ namespace WINNOW_ISA_NAME {
 namespace {
 
 constexpr std::size_t kStep = static_cast<std::size_t>(kLanes);
-constexpr std::uint32_t kPlaceBits = 7;
-constexpr std::uint32_t kPlaces = 1U << kPlaceBits;  // of an axis
 constexpr std::uint32_t kMostParts = 12;
 constexpr std::uint32_t kMostLines = kMostParts * kMostParts;
 
@@ -60,23 +59,6 @@ struct TileCuts {
   }
 };
 
-/// Gives every place a part of [0, parts), of about as many points each.
-void cut(const std::uint32_t* points, std::uint32_t all, std::uint32_t parts, std::uint32_t* part) {
-  std::uint32_t own = 0;
-  std::uint32_t end = 2 * all;  // of the part, as many times as there are parts
-  std::uint32_t twice = 0;      // the points before the place, as many times
-  for (std::uint32_t p = 0; p < kPlaces; ++p) {
-    const std::uint32_t here = points[p] * parts;
-    // No branch: it would be a coin toss.
-    const std::uint32_t next = static_cast<std::uint32_t>(twice + here >= end) &
-                               static_cast<std::uint32_t>(own + 1 < parts);
-    own += next;
-    end += (0U - next) & (2 * all);
-    part[p] = own;
-    twice += 2 * here;
-  }
-}
-
 class Tiles {
  public:
   explicit Tiles(const TileSet& set) : set_(set), count_(set.count) {
@@ -89,16 +71,9 @@ class Tiles {
   bool sort() {
     const TileAxis axis[3] = {{set_.at[0], count_}, {set_.at[1], count_}, {set_.at[2], count_}};
     // The longest axis is the fast one.
-    int order[3] = {0, 1, 2};
-    const auto swap_if_longer = [&](int a, int b) {
-      if (!(axis[order[b]].reach.half() > axis[order[a]].reach.half())) return;
-      const int kept = order[a];
-      order[a] = order[b];
-      order[b] = kept;
-    };
-    swap_if_longer(0, 1);
-    swap_if_longer(1, 2);
-    swap_if_longer(0, 1);
+    const float length[3] = {axis[0].reach.half(), axis[1].reach.half(), axis[2].reach.half()};
+    int order[3];
+    order_by_length(length, order);
     const TileCuts cuts(axis[order[0]], axis[order[1]], axis[order[2]], count_);
     const std::uint32_t parts[3] = {0, cuts.mid, cuts.slow};
     for (int k = 0; k < 3; ++k) {
@@ -118,9 +93,7 @@ class Tiles {
   [[nodiscard]] bool is_heaped(const std::uint8_t* place) const {
     std::uint32_t points[kPlaces] = {};
     for (std::size_t i = 0; i < count_; i += stride()) ++points[place[i]];
-    std::uint32_t most = 0;
-    for (std::uint32_t p = 0; p < kPlaces; ++p) most = points[p] > most ? points[p] : most;
-    return most * stride() > count_ / 32 + kStep;
+    return most_at_a_place(points) * stride() > count_ / 32 + kStep;
   }
 
   /// Lines are numbered like a snake.
@@ -131,7 +104,7 @@ class Tiles {
     std::uint32_t all = 0;
     for (std::size_t i = 0; i < count_; i += stride(), ++all) ++slow_points[place_[2][i]];
     std::uint32_t slab[kPlaces];
-    cut(slow_points, all, cuts.slow, slab);
+    cut_equally(slow_points, all, cuts.slow, slab);
     std::uint32_t in_slab[kMostParts] = {};
     for (std::uint32_t p = 0; p < kPlaces; ++p) in_slab[slab[p]] += slow_points[p];
     __builtin_memset(points, 0, cuts.slow * sizeof points[0]);
@@ -141,7 +114,7 @@ class Tiles {
     std::uint32_t part[kPlaces];
     std::uint32_t line[kMostParts][kPlaces];
     for (std::uint32_t s = 0; s < cuts.slow; ++s) {
-      cut(points[s], in_slab[s], cuts.mid, part);
+      cut_equally(points[s], in_slab[s], cuts.mid, part);
       for (std::uint32_t p = 0; p < kPlaces; ++p) {
         line[s][p] = s * cuts.mid + ((s & 1U) != 0 ? cuts.mid - 1 - part[p] : part[p]);
       }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "tests/support/hosts.h"
 #include "tests/support/motion.h"
 #include "tests/support/scenes.h"
 #include "tests/support/twin.h"
@@ -65,6 +66,42 @@ TEST(LinearBvhOrder, costs_hardly_more_tests_than_a_search_finds_wherever_object
                               outlier_boxes(objects), two_scale_boxes(objects)}) {
       EXPECT_LE(4 * tests_of_pairs("LinearBvh", boxes), 5 * tests_of_pairs("StaticBvh", boxes));
     }
+  }
+}
+
+// Moves every object to where another one was, `by` further on.
+std::vector<Aabb> passed_on(const std::vector<Aabb>& boxes, std::size_t by) {
+  std::vector<Aabb> next = boxes;
+  std::ranges::rotate(next, next.begin() + static_cast<std::ptrdiff_t>(by));
+  return next;
+}
+
+// Then orders are cut in cells, where cells tell the objects apart.
+TEST(LinearBvhOrder, that_is_torn_in_each_frame_misses_no_pair_and_is_the_same_on_any_threads) {
+  constexpr std::size_t kObjects = 40000;
+  const std::vector<Aabb> one_place(kObjects / 40, Aabb{{1, 2, 3}, {2, 3, 4}});
+  std::vector<Aabb> line = uniform_boxes(kObjects);
+  for (Aabb& box : line) box = {{box.min.x() * 30.0F, 0, 0}, {box.min.x() * 30.0F + 1.0F, 1, 1}};
+  std::vector<Aabb> heap = uniform_boxes(kObjects - one_place.size());
+  heap.insert(heap.end(), one_place.begin(), one_place.end());
+  for (const auto& boxes : {uniform_boxes(kObjects), clustered_boxes(kObjects),
+                            flat_boxes(kObjects), outlier_boxes(kObjects), line, heap}) {
+    Partition serial(linear_bvh(), {.execution = Execution::serial()});
+    Partition parallel(linear_bvh(), {.execution = Execution::on(jobs_of("pool", 4))});
+    const std::vector<Key> serial_keys = fill(serial, boxes);
+    const std::vector<Key> parallel_keys = fill(parallel, boxes);
+    PairBuffer of_serial;
+    PairBuffer of_parallel;
+    std::vector<Aabb> now = boxes;
+    for (int frame = 0; frame < 5; ++frame) {
+      ASSERT_EQ(serial.self_pairs(of_serial), Status::ok);
+      ASSERT_EQ(parallel.self_pairs(of_parallel), Status::ok);
+      EXPECT_TRUE(std::ranges::equal(of_serial.pairs(), of_parallel.pairs()));
+      now = passed_on(now, 7777);
+      ASSERT_EQ(serial.update(serial_keys, BoxView(std::span(now))), Status::ok);
+      ASSERT_EQ(parallel.update(parallel_keys, BoxView(std::span(now))), Status::ok);
+    }
+    expect_right_pairs(serial, now);
   }
 }
 
