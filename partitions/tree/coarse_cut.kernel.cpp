@@ -47,11 +47,11 @@ struct CoarseParts {
 };
 
 /// Places of a sample of the points.
-struct Sample {
+struct CoarseSample {
   std::uint8_t place[3][kSample];
   std::size_t count = 0;
 
-  Sample(const CoarseCells& plan, const float* const* at, std::size_t points) {
+  CoarseSample(const CoarseCells& plan, const float* const* at, std::size_t points) {
     const std::size_t stride = (points + kSample - 1) / kSample;
     for (std::size_t i = 0; i < points; i += stride, ++count) {
       for (int k = 0; k < 3; ++k) {
@@ -65,7 +65,7 @@ struct Sample {
 
 /// Cuts `rows` sets of the sample along an axis, into `parts` each.
 template <typename RowOf>
-void cut_rows(const Sample& sample, int k, std::uint32_t rows, std::uint32_t parts,
+void cut_rows(const CoarseSample& sample, int k, std::uint32_t rows, std::uint32_t parts,
               const RowOf& row_of, std::uint8_t (*part)[kPlaces]) {
   std::uint32_t points[kMostCoarseCells][kPlaces];
   std::uint32_t all[kMostCoarseCells] = {};
@@ -85,7 +85,7 @@ void cut_rows(const Sample& sample, int k, std::uint32_t rows, std::uint32_t par
   }
 }
 
-bool is_heaped(const Sample& sample, int k) {
+bool is_heaped(const CoarseSample& sample, int k) {
   std::uint32_t points[kPlaces] = {};
   for (std::size_t i = 0; i < sample.count; ++i) ++points[sample.place[k][i]];
   return most_at_a_place(points) > sample.count / 32 + kStep;
@@ -106,7 +106,7 @@ bool plan(const float* const* at, std::size_t count, const float* least, const f
     plan.scale[k] = length[axis] > kLeastReach ? static_cast<float>(kPlaces) / length[axis] : 0.0F;
   }
   plan.cells = parts.slabs * parts.lines * parts.cells;
-  const Sample sample(plan, at, count);
+  const CoarseSample sample(plan, at, count);
   const std::uint32_t cuts[3] = {parts.slabs, parts.lines, parts.cells};
   for (int k = 0; k < 3; ++k) {
     if (cuts[k] != 1 && is_heaped(sample, k)) return false;
