@@ -8,18 +8,28 @@ if(BUILD_SHARED_LIBS)
   set(WINNOW_SHARED ON)
 endif()
 
+# winnow_public_name(OUT header): how <winnow/...> spells a public header.
+function(winnow_public_name out header)
+  string(REGEX REPLACE "^pipeline/(winnow\\.h|c/)" "\\1" public ${header})
+  set(${out} ${public} PARENT_SCOPE)
+endfunction()
+
 # <winnow/core/aabb.h> is spelled in the tree as it is after installation: one line in the build
 # tree leads to each public header, the headers that lie at a room's root. Everything else is
 # spelled by its path from the root of the tree.
 set(WINNOW_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
 set(WINNOW_PUBLIC_HEADERS "")
-foreach(room core simd partitions pipeline)
+set(winnow_public_folders core simd partitions pipeline)
+if(WINNOW_C)
+  list(APPEND winnow_public_folders pipeline/c)
+endif()
+foreach(room ${winnow_public_folders})
   file(GLOB headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
        ${PROJECT_SOURCE_DIR}/${room}/*.h)
   list(APPEND WINNOW_PUBLIC_HEADERS ${headers})
 endforeach()
 foreach(header ${WINNOW_PUBLIC_HEADERS})
-  string(REPLACE "pipeline/winnow.h" "winnow.h" public ${header})
+  winnow_public_name(public ${header})
   file(CONFIGURE OUTPUT ${WINNOW_INCLUDE_DIR}/winnow/${public}
        CONTENT "#include \"${PROJECT_SOURCE_DIR}/${header}\"\n" @ONLY)
 endforeach()
@@ -91,8 +101,8 @@ target_link_options(winnow_flags INTERFACE ${winnow_sanitize})
 function(winnow_library room)
   cmake_parse_arguments(arg "" "" "LINKS;PRIVATE_LINKS;PRECOMPILED;APART" ${ARGN})
   file(GLOB_RECURSE sources RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.cpp)
-  # A module of its own, of its folder's CMakeLists.txt.
-  list(FILTER sources EXCLUDE REGEX "^python/")
+  # Libraries of their own, of their folders' CMakeLists.txt.
+  list(FILTER sources EXCLUDE REGEX "^(c|python)/")
   set(kernels ${sources})
   list(FILTER kernels INCLUDE REGEX "\\.kernel\\.cpp$")
   list(FILTER sources EXCLUDE REGEX "\\.kernel\\.cpp$")

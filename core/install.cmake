@@ -28,7 +28,7 @@ install(TARGETS ${winnow_targets} EXPORT winnow-targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
 foreach(header ${WINNOW_PUBLIC_HEADERS})
-  string(REPLACE "pipeline/winnow.h" "winnow.h" public ${header})
+  winnow_public_name(public ${header})
   get_filename_component(room winnow/${public} DIRECTORY)
   install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${room})
 endforeach()

@@ -67,6 +67,10 @@ class WINNOW_API NarrowResult {
   /// Which pair of the input answer i is about. Points, normals and features are in its order, not
   /// that of the kinds.
   [[nodiscard]] std::uint32_t pair_of(std::size_t i) const noexcept { return order_[i]; }
+  /// The same of all answers.
+  [[nodiscard]] std::span<const std::uint32_t> order() const noexcept {
+    return {order_.data(), order_.size()};
+  }
   [[nodiscard]] std::span<const NarrowRun> runs() const noexcept {
     return {runs_.data(), runs_.size()};
   }
@@ -74,6 +78,10 @@ class WINNOW_API NarrowResult {
   /// At every level.
   [[nodiscard]] bool overlaps(std::size_t i) const noexcept {
     return level_ == ContactLevel::boolean ? overlap_[i] != 0 : distance_[i] <= 0.0;
+  }
+  /// Level boolean: the same of all answers, not 0 where they do.
+  [[nodiscard]] std::span<const std::uint8_t> overlap() const noexcept {
+    return {overlap_.data(), overlap_.size()};
   }
   /// Levels distance and manifold. Negative by the penetration depth, and <= 0 exactly where the
   /// shapes share a point. At level manifold a pair farther apart than the margin may have any

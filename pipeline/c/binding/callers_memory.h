@@ -1,0 +1,63 @@
+#pragma once
+
+#include "core/memory/new_in.h"
+
+#include <winnow/c/core.h>
+
+#include <memory_resource>
+#include <utility>
+
+namespace winnow::c {
+
+/// A caller's functions as a memory resource; without any, the default resource.
+class CallersMemory final : public std::pmr::memory_resource {
+ public:
+  explicit CallersMemory(const winnow_memory* given) noexcept {
+    if (given != nullptr) functions_ = *given;
+  }
+  /// Null, or both functions.
+  [[nodiscard]] static bool is_good(const winnow_memory* given) noexcept {
+    return given == nullptr || (given->allocate != nullptr && given->deallocate != nullptr);
+  }
+
+ private:
+  void* do_allocate(std::size_t bytes, std::size_t alignment) override;
+  void do_deallocate(void* block, std::size_t bytes, std::size_t alignment) override;
+  [[nodiscard]] bool do_is_equal(const memory_resource& other) const noexcept override {
+    return this == &other;
+  }
+
+  winnow_memory functions_{};
+  std::pmr::memory_resource* otherwise_ = std::pmr::get_default_resource();
+};
+
+/// What every pointer of the C interface leads to begins with: its own copy of the memory that it
+/// lies in and that all it holds comes from.
+struct Handle {
+  explicit Handle(const CallersMemory& given) noexcept : memory(given) {}
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+
+  CallersMemory memory;
+};
+
+/// Makes what `out` is to lead to.
+template <typename Made, typename... Arguments>
+[[nodiscard]] winnow_status create(const winnow_memory* memory, Made** out,
+                                   Arguments&&... arguments) noexcept {
+  if (out == nullptr || !CallersMemory::is_good(memory)) return WINNOW_INVALID_ARGUMENT;
+  CallersMemory source(memory);
+  Made* const made = new_in<Made>(&source, source, std::forward<Arguments>(arguments)...);
+  if (made == nullptr) return WINNOW_OUT_OF_MEMORY;
+  *out = made;
+  return WINNOW_OK;
+}
+
+template <typename Made>
+void destroy(Made* made) noexcept {
+  if (made == nullptr) return;
+  CallersMemory memory = made->memory;
+  delete_in(&memory, made);
+}
+
+}  // namespace winnow::c

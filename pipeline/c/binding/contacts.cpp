@@ -1,0 +1,120 @@
+// What a scene finds, as columns, and the room for it.
+
+#include <winnow/c/scene.h>
+
+#include "pipeline/c/binding/arguments.h"
+#include "pipeline/c/binding/columns.h"
+#include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/twins.h"
+
+#include <algorithm>
+
+namespace winnow::c {
+namespace {
+
+[[nodiscard]] winnow_contact_columns columns_of(const Contacts& contacts) noexcept {
+  static_assert(sizeof(ContactEvent) == 1 &&
+                static_cast<int>(ContactEvent::persisted) == WINNOW_EVENT_PERSISTED);
+  winnow_contact_columns shown{};
+  shown.level = static_cast<winnow_contact_level>(contacts.level());
+  std::size_t same = 0;
+  show(contacts.a(), &shown.a, &shown.pairs);
+  show(contacts.b(), &shown.b, &same);
+  shown.data_a = contacts.data_a().data();
+  shown.data_b = contacts.data_b().data();
+  shown.event = reinterpret_cast<const std::uint8_t*>(contacts.event().data());
+  show(contacts.runs(), &shown.runs, &shown.run_count);
+  show(contacts.ended(), &shown.ended, &shown.ended_count);
+  shown.carried = contacts.carried();
+  shown.manifold_first = column(contacts.manifold_first());
+  shown.manifolds = contacts.manifolds();
+  shown.part_a = column(contacts.part_a());
+  shown.part_b = column(contacts.part_b());
+  shown.distance = column(contacts.distance());
+  shown.error_bound = column(contacts.error_bound());
+  for (int axis = 0; axis < 3; ++axis) {
+    shown.normal[axis] = column(contacts.normal(axis));
+    shown.point[axis] = column(contacts.point(axis));
+  }
+  shown.point_first = column(contacts.point_first());
+  shown.points = contacts.points();
+  show_points(contacts.contact_columns(), shown);
+  return shown;
+}
+
+[[nodiscard]] bool read_room(const winnow_scene_room* given, SceneRoom& room) noexcept {
+  winnow_scene_room own{};
+  if (given == nullptr || !read_sized(given, own) ||
+      !read_choice(own.level, ContactLevel::manifold, room.level)) {
+    return false;
+  }
+  std::copy(std::begin(own.bodies), std::end(own.bodies), room.bodies);
+  room.pairs = own.pairs;
+  room.touching = own.touching;
+  room.manifolds = own.manifolds;
+  room.points = own.points;
+  return true;
+}
+
+}  // namespace
+}  // namespace winnow::c
+
+using namespace winnow::c;
+
+winnow_status winnow_contacts_create(const winnow_memory* memory, winnow_contacts** contacts) {
+  return create(memory, contacts);
+}
+
+void winnow_contacts_destroy(winnow_contacts* contacts) {
+  destroy(contacts);
+}
+
+winnow_status winnow_contacts_clear(winnow_contacts* contacts) {
+  if (contacts == nullptr) return WINNOW_INVALID_ARGUMENT;
+  contacts->value.clear();
+  return WINNOW_OK;
+}
+
+winnow_status winnow_contacts_footprint(const winnow_contacts* contacts,
+                                        winnow_footprint* footprint) {
+  if (contacts == nullptr) return WINNOW_INVALID_ARGUMENT;
+  return write_footprint(contacts, contacts->value.footprint(), {}, footprint);
+}
+
+winnow_status winnow_contacts_columns(const winnow_contacts* contacts,
+                                      winnow_contact_columns* columns) {
+  if (contacts == nullptr || !is_sized(columns)) return WINNOW_INVALID_ARGUMENT;
+  write_sized(columns_of(contacts->value), *columns);
+  return WINNOW_OK;
+}
+
+winnow_status winnow_scene_collide(winnow_scene* scene, winnow_contact_level level,
+                                   winnow_contacts* contacts) {
+  winnow::ContactLevel asked{};
+  if (!are_given(scene, contacts) || !read_choice(level, winnow::ContactLevel::manifold, asked)) {
+    return WINNOW_INVALID_ARGUMENT;
+  }
+  return answer(scene->value.collide(asked, contacts->value));
+}
+
+winnow_status winnow_scene_reserve(winnow_scene* scene, const winnow_scene_room* room,
+                                   winnow_pages pages) {
+  winnow::SceneRoom read;
+  winnow::Pages touch{};
+  if (scene == nullptr || !read_room(room, read) ||
+      !read_choice(pages, winnow::Pages::touched, touch)) {
+    return WINNOW_INVALID_ARGUMENT;
+  }
+  return answer(scene->value.reserve(read, touch));
+}
+
+winnow_status winnow_scene_reserve_contacts(const winnow_scene* scene, winnow_contacts* contacts,
+                                            const winnow_scene_room* room, winnow_pages pages) {
+  winnow::SceneRoom read;
+  winnow::Pages touch{};
+  if (!are_given(scene, contacts) || !read_room(room, read) ||
+      !read_choice(pages, winnow::Pages::touched, touch)) {
+    return WINNOW_INVALID_ARGUMENT;
+  }
+  return answer(scene->value.reserve_contacts(contacts->value, read, touch));
+}

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <winnow/c/volumes.h>
+#include <winnow/core/debug_draw.h>
+#include <winnow/core/oriented_box.h>
+
+#include <string_view>
+
+namespace winnow::c {
+
+[[nodiscard]] OrientedBox oriented_box_of(const winnow_oriented_box& given) noexcept;
+
+/// Draws with a caller's functions.
+class Drawing final : public DebugDraw {
+ public:
+  explicit Drawing(const winnow_debug_draw& draw) noexcept;
+
+  void box(const Aabb& box, Colour colour) override;
+  void line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) override;
+  void sphere(const Sphere& sphere, Colour colour) override;
+  void text(const Eigen::Vector3f& at, std::string_view text, Colour colour) override;
+
+ private:
+  [[nodiscard]] static winnow_colour of(Colour colour) noexcept {
+    return {colour.r, colour.g, colour.b, colour.a};
+  }
+
+  const winnow_debug_draw& draw_;
+};
+
+[[nodiscard]] bool read_drawing(const winnow_debug_draw_options* given,
+                                DebugDrawOptions& options) noexcept;
+
+}  // namespace winnow::c

@@ -1,0 +1,121 @@
+#pragma once
+
+// What the pointers of the C interface lead to.
+
+#include "pipeline/c/binding/callers_memory.h"
+
+#include <winnow/c/partition.h>
+#include <winnow/c/scene.h>
+#include <winnow/c/scene_queries.h>
+#include <winnow/c/shapes.h>
+#include <winnow/core/column.h>
+#include <winnow/core/hits.h>
+#include <winnow/core/pair_buffer.h>
+#include <winnow/core/pair_events.h>
+#include <winnow/core/pose.h>
+#include <winnow/partitions/partition.h>
+#include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/narrow_phase.h>
+#include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/scene.h>
+#include <winnow/pipeline/scene_queries.h>
+#include <winnow/pipeline/shape_pool.h>
+
+struct winnow_pair_buffer : winnow::c::Handle {
+  using Handle::Handle;
+  winnow::PairBuffer value{&memory};
+  winnow::Column<float> room{&memory};  ///< boxes of double that it was asked about
+};
+
+struct winnow_pair_events : winnow::c::Handle {
+  using Handle::Handle;
+  winnow::PairEvents value{&memory};
+};
+
+struct winnow_hit_buffer : winnow::c::Handle {
+  using Handle::Handle;
+  winnow::HitBuffer value{&memory};
+};
+
+struct winnow_overlap_buffer : winnow::c::Handle {
+  using Handle::Handle;
+  winnow::OverlapBuffer value{&memory};
+};
+
+/// A partition of its own, or a view of one of a scene, whose own names no structure and refuses
+/// every change.
+struct winnow_partition : winnow::c::Handle {
+  explicit winnow_partition(const winnow::c::CallersMemory& given) noexcept : Handle(given) {}
+  winnow_partition(const winnow::c::CallersMemory& given, winnow::StructureKind structure,
+                   winnow::PartitionOptions options) noexcept
+      : Handle(given), value(structure, in(options, &memory)) {}
+
+  winnow::Partition value{winnow::StructureKind{}};
+  const winnow::Partition* asked = &value;
+  winnow::Column<float> room{&memory};  ///< boxes of double that come or move
+
+ private:
+  [[nodiscard]] static winnow::PartitionOptions in(winnow::PartitionOptions options,
+                                                   winnow::c::CallersMemory* memory) noexcept {
+    options.memory = memory;
+    return options;
+  }
+};
+
+struct winnow_shape_pool : winnow::c::Handle {
+  using Handle::Handle;
+  winnow::ShapePool value{&memory};
+  winnow::Column<double> room{&memory};  ///< points of hulls
+};
+
+struct winnow_composite_pool : winnow::c::Handle {
+  winnow_composite_pool(const winnow::c::CallersMemory& given,
+                        const winnow::ShapePool& shapes) noexcept
+      : Handle(given), value(shapes, &memory) {}
+
+  winnow::CompositePool value;
+};
+
+struct winnow_narrow_result : winnow::c::Handle {
+  using Handle::Handle;
+  winnow::NarrowResult value{&memory};
+};
+
+struct winnow_narrow_phase : winnow::c::Handle {
+  using Handle::Handle;
+  winnow::NarrowPhase value{&memory};
+  winnow::Column<winnow::Pose> room{&memory};
+};
+
+struct winnow_contacts : winnow::c::Handle {
+  using Handle::Handle;
+  winnow::Contacts value{&memory};
+};
+
+struct winnow_scene : winnow::c::Handle {
+  winnow_scene(const winnow::c::CallersMemory& given, const winnow::ShapePool& shapes,
+               winnow::SceneOptions options) noexcept
+      : Handle(given),
+        value(shapes, in(options, &memory)),
+        sets{winnow_partition(given), winnow_partition(given), winnow_partition(given)} {}
+
+  winnow::Scene value;
+  winnow::Column<winnow::Pose> room{&memory};
+  winnow_partition sets[winnow::kMotions];  ///< views
+
+ private:
+  [[nodiscard]] static winnow::SceneOptions in(winnow::SceneOptions options,
+                                               winnow::c::CallersMemory* memory) noexcept {
+    options.memory = memory;
+    return options;
+  }
+};
+
+struct winnow_scene_queries : winnow::c::Handle {
+  winnow_scene_queries(const winnow::c::CallersMemory& given, const winnow::Scene& scene) noexcept
+      : Handle(given), value(scene, &memory) {}
+
+  winnow::SceneQueries value;
+  winnow::Column<winnow::ShapeRay> room{&memory};  ///< rays of float
+};

@@ -1,0 +1,162 @@
+// Questions to the exact shapes of a scene.
+
+#include <winnow/c/scene_queries.h>
+
+#include "pipeline/c/binding/arguments.h"
+#include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/twins.h"
+#include "pipeline/c/binding/views.h"
+
+namespace winnow::c {
+namespace {
+
+[[nodiscard]] SceneHitColumns columns_of(const winnow_scene_hit_columns& given) noexcept {
+  return {twin(given.key),
+          given.data,
+          given.part,
+          given.t,
+          {given.normal[0], given.normal[1], given.normal[2]},
+          {given.point[0], given.point[1], given.point[2]}};
+}
+
+/// Asks with a span, which is shown if there is an answer.
+template <typename OfCpp, typename OfC, typename Ask>
+[[nodiscard]] winnow_status answer_list(const OfC** first, std::size_t* count, Ask&& ask) noexcept {
+  std::span<const OfCpp> found;
+  const Status status = ask(found);
+  if (status == Status::ok) show(found, first, count);
+  return answer(status);
+}
+
+}  // namespace
+}  // namespace winnow::c
+
+using namespace winnow::c;
+
+winnow_status winnow_scene_queries_create(const winnow_scene* scene, const winnow_memory* memory,
+                                          winnow_scene_queries** queries) {
+  if (!are_given(scene, queries)) return WINNOW_INVALID_ARGUMENT;
+  winnow_scene_queries* made = nullptr;
+  const winnow_status status = create(memory, &made, scene->value);
+  if (status != WINNOW_OK) return status;
+  if (made->value.footprint().structure.used == 0) {
+    destroy(made);
+    return WINNOW_OUT_OF_MEMORY;
+  }
+  *queries = made;
+  return WINNOW_OK;
+}
+
+void winnow_scene_queries_destroy(winnow_scene_queries* queries) {
+  destroy(queries);
+}
+
+winnow_status winnow_scene_queries_closest(winnow_scene_queries* queries,
+                                           const winnow_shape_ray* ray, const winnow_filter* filter,
+                                           winnow_scene_hit* hit) {
+  if (!are_given(queries, ray, hit)) return WINNOW_INVALID_ARGUMENT;
+  return answer(queries->value.closest(*twin(ray), *twin(hit), filter_of(filter)));
+}
+
+winnow_status winnow_scene_queries_any(winnow_scene_queries* queries, const winnow_shape_ray* ray,
+                                       const winnow_filter* filter, winnow_scene_hit* hit) {
+  if (!are_given(queries, ray, hit)) return WINNOW_INVALID_ARGUMENT;
+  return answer(queries->value.any(*twin(ray), *twin(hit), filter_of(filter)));
+}
+
+winnow_status winnow_scene_queries_all(winnow_scene_queries* queries, const winnow_shape_ray* ray,
+                                       const winnow_filter* filter, const winnow_scene_hit** hits,
+                                       size_t* count) {
+  if (!are_given(queries, ray, hits, count)) return WINNOW_INVALID_ARGUMENT;
+  return answer_list<winnow::SceneHit>(hits, count, [&](auto& found) {
+    return queries->value.all(*twin(ray), found, filter_of(filter));
+  });
+}
+
+winnow_status winnow_scene_queries_closest_rays(winnow_scene_queries* queries,
+                                                const winnow_shape_ray_batch* rays,
+                                                const winnow_filter* filter,
+                                                const winnow_scene_hit_columns* hits) {
+  if (!are_given(queries, hits)) return WINNOW_INVALID_ARGUMENT;
+  winnow::ShapeRayBatch batch;
+  const winnow::Status status = read_rays(rays, queries->room, batch);
+  if (status != winnow::Status::ok) return answer(status);
+  return answer(queries->value.closest(batch, columns_of(*hits), filter_of(filter)));
+}
+
+winnow_status winnow_scene_queries_any_rays(winnow_scene_queries* queries,
+                                            const winnow_shape_ray_batch* rays,
+                                            const winnow_filter* filter,
+                                            const winnow_scene_hit_columns* hits) {
+  if (!are_given(queries, hits)) return WINNOW_INVALID_ARGUMENT;
+  winnow::ShapeRayBatch batch;
+  const winnow::Status status = read_rays(rays, queries->room, batch);
+  if (status != winnow::Status::ok) return answer(status);
+  return answer(queries->value.any(batch, columns_of(*hits), filter_of(filter)));
+}
+
+winnow_status winnow_scene_queries_all_rays(winnow_scene_queries* queries,
+                                            const winnow_shape_ray_batch* rays,
+                                            const winnow_filter* filter,
+                                            const winnow_scene_hit** hits, const size_t** first) {
+  if (!are_given(queries, hits, first)) return WINNOW_INVALID_ARGUMENT;
+  winnow::ShapeRayBatch batch;
+  winnow::Status status = read_rays(rays, queries->room, batch);
+  winnow::SceneHitLists lists;
+  if (status == winnow::Status::ok) {
+    status = queries->value.all(batch, lists, filter_of(filter));
+  }
+  if (status != winnow::Status::ok) return answer(status);
+  std::size_t count = 0;
+  show(lists.hits, hits, &count);
+  show(lists.first, first, &count);
+  return WINNOW_OK;
+}
+
+winnow_status winnow_scene_queries_closest_cast(winnow_scene_queries* queries,
+                                                const winnow_shape_cast* cast,
+                                                const winnow_filter* filter, double tolerance,
+                                                winnow_scene_hit* hit) {
+  if (!are_given(queries, cast, hit)) return WINNOW_INVALID_ARGUMENT;
+  return answer(queries->value.closest(*twin(cast), *twin(hit), filter_of(filter), tolerance));
+}
+
+winnow_status winnow_scene_queries_all_cast(winnow_scene_queries* queries,
+                                            const winnow_shape_cast* cast,
+                                            const winnow_filter* filter, double tolerance,
+                                            const winnow_scene_hit** hits, size_t* count) {
+  if (!are_given(queries, cast, hits, count)) return WINNOW_INVALID_ARGUMENT;
+  return answer_list<winnow::SceneHit>(hits, count, [&](auto& found) {
+    return queries->value.all(*twin(cast), found, filter_of(filter), tolerance);
+  });
+}
+
+winnow_status winnow_scene_queries_overlap(winnow_scene_queries* queries, winnow_shape_id shape,
+                                           const winnow_pose* pose, const winnow_filter* filter,
+                                           const winnow_scene_overlap** bodies, size_t* count) {
+  if (!are_given(queries, pose, bodies, count)) return WINNOW_INVALID_ARGUMENT;
+  return answer_list<winnow::SceneOverlap>(bodies, count, [&](auto& found) {
+    return queries->value.overlap({shape}, *twin(pose), found, filter_of(filter));
+  });
+}
+
+winnow_status winnow_scene_queries_distance(winnow_scene_queries* queries, winnow_key a,
+                                            winnow_key b, winnow_scene_distance* answer) {
+  if (!are_given(queries, answer)) return WINNOW_INVALID_ARGUMENT;
+  return winnow::c::answer(queries->value.distance(*twin(&a), *twin(&b), *twin(answer)));
+}
+
+winnow_status winnow_scene_queries_nearest(winnow_scene_queries* queries, const double point[3],
+                                           size_t count, double radius, const winnow_filter* filter,
+                                           const winnow_scene_distance** bodies, size_t* found) {
+  if (!are_given(queries, point, bodies, found)) return WINNOW_INVALID_ARGUMENT;
+  return answer_list<winnow::SceneDistance>(bodies, found, [&](auto& near) {
+    return queries->value.nearest(point, count, radius, near, filter_of(filter));
+  });
+}
+
+winnow_status winnow_scene_queries_footprint(const winnow_scene_queries* queries,
+                                             winnow_footprint* footprint) {
+  if (queries == nullptr) return WINNOW_INVALID_ARGUMENT;
+  return write_footprint(queries, queries->value.footprint(), queries->room.bytes(), footprint);
+}

@@ -1,0 +1,128 @@
+#pragma once
+
+// Structs of C that have the bytes of those of C++, so that arrays pass without a copy.
+
+#include <winnow/c/narrow_phase.h>
+#include <winnow/c/partition.h>
+#include <winnow/c/scene.h>
+#include <winnow/c/scene_queries.h>
+#include <winnow/c/shapes.h>
+#include <winnow/c/volumes.h>
+#include <winnow/core/aabb.h>
+#include <winnow/core/capsule.h>
+#include <winnow/core/frustum.h>
+#include <winnow/core/hits.h>
+#include <winnow/core/key.h>
+#include <winnow/core/object_filter.h>
+#include <winnow/core/pair_buffer.h>
+#include <winnow/core/pair_events.h>
+#include <winnow/core/plane.h>
+#include <winnow/core/pose.h>
+#include <winnow/core/sphere.h>
+#include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/scene.h>
+#include <winnow/pipeline/scene_queries.h>
+#include <winnow/pipeline/shapes.h>
+
+#include <cstddef>
+#include <span>
+#include <type_traits>
+
+namespace winnow::c {
+
+/// Whether a struct of C and one of C++ have the same bytes.
+template <typename OfC, typename OfCpp>
+inline constexpr bool kAreTwins = std::is_same_v<OfC, OfCpp>;
+
+#define WINNOW_ARE_TWINS(OfC, OfCpp)                                             \
+  static_assert(sizeof(OfC) == sizeof(OfCpp) && alignof(OfC) == alignof(OfCpp)); \
+  template <>                                                                    \
+  inline constexpr bool kAreTwins<OfC, OfCpp> = true;
+#define WINNOW_TWINS(OfC, OfCpp)                                  \
+  WINNOW_ARE_TWINS(OfC, OfCpp)                                    \
+  [[nodiscard]] inline OfCpp* twin(OfC* p) noexcept {             \
+    return reinterpret_cast<OfCpp*>(p);                           \
+  }                                                               \
+  [[nodiscard]] inline const OfCpp* twin(const OfC* p) noexcept { \
+    return reinterpret_cast<const OfCpp*>(p);                     \
+  }
+#define WINNOW_TWIN_MEMBERS(OfC, OfCpp, member) \
+  static_assert(offsetof(OfC, member) == offsetof(OfCpp, member))
+
+WINNOW_TWINS(winnow_key, Key)
+WINNOW_TWINS(winnow_object_filter, ObjectFilter)
+WINNOW_TWINS(winnow_aabb, Aabb)
+WINNOW_TWINS(winnow_sphere, Sphere)
+WINNOW_TWINS(winnow_capsule, Capsule)
+WINNOW_TWINS(winnow_plane, Plane)
+WINNOW_TWINS(winnow_frustum, Frustum)
+WINNOW_TWINS(winnow_pose, Pose)
+WINNOW_ARE_TWINS(winnow_pair, Pair)
+WINNOW_ARE_TWINS(winnow_key_pair, KeyPair)
+WINNOW_TWINS(winnow_body_pair, BodyPair)
+WINNOW_ARE_TWINS(winnow_hull_face, HullFace)
+WINNOW_TWIN_MEMBERS(winnow_hull_face, HullFace, first);
+
+WINNOW_TWINS(winnow_hit, Hit)
+WINNOW_TWIN_MEMBERS(winnow_hit, Hit, data);
+WINNOW_TWIN_MEMBERS(winnow_hit, Hit, t);
+
+WINNOW_TWINS(winnow_compound_child, CompoundChild)
+WINNOW_TWIN_MEMBERS(winnow_compound_child, CompoundChild, pose);
+
+WINNOW_TWINS(winnow_body_definition, BodyDefinition)
+WINNOW_TWIN_MEMBERS(winnow_body_definition, BodyDefinition, pose);
+WINNOW_TWIN_MEMBERS(winnow_body_definition, BodyDefinition, motion);
+WINNOW_TWIN_MEMBERS(winnow_body_definition, BodyDefinition, filter);
+WINNOW_TWIN_MEMBERS(winnow_body_definition, BodyDefinition, data);
+
+WINNOW_ARE_TWINS(winnow_run, ContactRun)
+WINNOW_TWIN_MEMBERS(winnow_run, ContactRun, first);
+WINNOW_ARE_TWINS(winnow_run, NarrowRun)
+WINNOW_ARE_TWINS(winnow_ended_contact, EndedContact)
+WINNOW_TWIN_MEMBERS(winnow_ended_contact, EndedContact, data_a);
+
+WINNOW_TWINS(winnow_shape_ray, ShapeRay)
+WINNOW_TWINS(winnow_shape_cast, ShapeCast)
+WINNOW_TWIN_MEMBERS(winnow_shape_cast, ShapeCast, direction);
+
+WINNOW_TWINS(winnow_scene_hit, SceneHit)
+WINNOW_TWIN_MEMBERS(winnow_scene_hit, SceneHit, part);
+WINNOW_TWIN_MEMBERS(winnow_scene_hit, SceneHit, t);
+WINNOW_TWIN_MEMBERS(winnow_scene_hit, SceneHit, point);
+
+WINNOW_ARE_TWINS(winnow_scene_overlap, SceneOverlap)
+WINNOW_TWIN_MEMBERS(winnow_scene_overlap, SceneOverlap, part);
+
+WINNOW_TWINS(winnow_scene_distance, SceneDistance)
+WINNOW_TWIN_MEMBERS(winnow_scene_distance, SceneDistance, part);
+WINNOW_TWIN_MEMBERS(winnow_scene_distance, SceneDistance, distance);
+WINNOW_TWIN_MEMBERS(winnow_scene_distance, SceneDistance, point_b);
+
+#undef WINNOW_TWINS
+#undef WINNOW_ARE_TWINS
+#undef WINNOW_TWIN_MEMBERS
+
+/// In C an id is its number.
+static_assert(sizeof(winnow_shape_id) == sizeof(ShapeId));
+[[nodiscard]] inline const ShapeId* shape_ids(const winnow_shape_id* ids) noexcept {
+  return reinterpret_cast<const ShapeId*>(ids);
+}
+
+/// An array of C as C++ takes it.
+template <typename T>
+[[nodiscard]] auto twins(T* first, std::size_t count) noexcept {
+  return std::span(twin(first), count);
+}
+
+/// An array of C++ as C is shown it.
+template <typename T, typename OfC>
+void show(std::span<const T> values, const OfC** first, std::size_t* count) noexcept {
+  static_assert(kAreTwins<OfC, T>);
+  *first = reinterpret_cast<const OfC*>(values.data());
+  *count = values.size();
+}
+
+}  // namespace winnow::c

@@ -1,0 +1,129 @@
+#pragma once
+
+/// Pairs of convex shapes to overlaps, distances and contacts. What is asked and answered stands at
+/// the same names of <winnow/pipeline/narrow_phase.h> and narrow_result.h.
+
+#include <winnow/c/core.h>
+#include <winnow/c/shapes.h>
+#include <winnow/c/volumes.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// How much is asked about pairs.
+typedef int32_t winnow_contact_level;
+enum {
+  WINNOW_LEVEL_PAIRS = 0,  ///< of scenes alone
+  WINNOW_LEVEL_BOOLEAN = 1,
+  WINNOW_LEVEL_DISTANCE = 2,
+  WINNOW_LEVEL_MANIFOLD = 3
+};
+
+/// How exact an answer must be.
+typedef int32_t winnow_narrow_tier;
+enum { WINNOW_TIER_FAST = 0, WINNOW_TIER_ROBUST = 1, WINNOW_TIER_REFERENCE = 2 };
+
+/// Two bodies that may touch.
+typedef struct winnow_body_pair {
+  uint32_t a;
+  uint32_t b;
+} winnow_body_pair;
+
+/// Pairs of the same two kinds of shapes, next to each other in an answer.
+typedef struct winnow_run {
+  uint8_t kind_a;  ///< a winnow_shape_kind
+  uint8_t kind_b;
+  uint32_t first;
+  uint32_t count;
+} winnow_run;
+
+typedef struct winnow_narrow_result winnow_narrow_result;
+WINNOW_C_API winnow_status winnow_narrow_result_create(const winnow_memory* memory,
+                                                       winnow_narrow_result** result);
+WINNOW_C_API void winnow_narrow_result_destroy(winnow_narrow_result* result);
+
+/// Answers where they lie, valid until the result is used again or destroyed. Columns that the
+/// level has not are null, and so may be those that are empty.
+typedef struct winnow_narrow_columns {
+  size_t size;  ///< sizeof(winnow_narrow_columns), of the caller
+  winnow_contact_level level;
+  size_t answers;
+  const uint32_t* pair_of;  ///< which pair of the input answer i is about
+  const winnow_run* runs;
+  size_t run_count;
+  /// Level boolean: not 0 where they share a point; at higher levels that is distance <= 0.
+  const uint8_t* overlap;
+  const double* distance;
+  const double* error_bound;
+  const double* normal[3];
+  const double* point[3];  ///< level distance
+  /// Level manifold: points of answer i are [contact_first[i], + contact_count[i]).
+  const uint32_t* contact_first;
+  const uint32_t* contact_count;
+  size_t contacts;
+  const float* position[3];
+  const float* depth;
+  const uint64_t* feature;
+} winnow_narrow_columns;
+WINNOW_C_API winnow_status winnow_narrow_result_columns(const winnow_narrow_result* result,
+                                                        winnow_narrow_columns* columns);
+WINNOW_C_API winnow_status winnow_narrow_result_footprint(const winnow_narrow_result* result,
+                                                          winnow_footprint* footprint);
+
+/// Body i has shape shapes[i] at pose i.
+typedef struct winnow_bodies {
+  const winnow_shape_id* shapes;
+  size_t count;
+  winnow_pose_view poses;
+} winnow_bodies;
+
+typedef struct winnow_narrow_options {
+  size_t size;  ///< sizeof(winnow_narrow_options), of the caller
+  winnow_contact_level level;
+  winnow_narrow_tier tier;
+  double margin;
+  winnow_execution execution;
+} winnow_narrow_options;
+#define WINNOW_NARROW_OPTIONS                                                        \
+  {                                                                                  \
+    sizeof(winnow_narrow_options), WINNOW_LEVEL_MANIFOLD, WINNOW_TIER_ROBUST, 0.0, { \
+      WINNOW_EXECUTION_SERIAL, {                                                     \
+        NULL, NULL, 0                                                                \
+      }                                                                              \
+    }                                                                                \
+  }
+
+/// Keeps scratch memory from call to call: one for each thread of the caller.
+typedef struct winnow_narrow_phase winnow_narrow_phase;
+WINNOW_C_API winnow_status winnow_narrow_phase_create(const winnow_memory* memory,
+                                                      winnow_narrow_phase** narrow);
+WINNOW_C_API void winnow_narrow_phase_destroy(winnow_narrow_phase* narrow);
+/// `options` may be null. A call that is refused for what bodies or pairs are leaves `result`
+/// empty.
+WINNOW_C_API winnow_status winnow_narrow_phase_collide(winnow_narrow_phase* narrow,
+                                                       const winnow_shape_pool* shapes,
+                                                       const winnow_bodies* bodies,
+                                                       const winnow_body_pair* pairs, size_t count,
+                                                       const winnow_narrow_options* options,
+                                                       winnow_narrow_result* result);
+/// The body that the last call was refused for.
+WINNOW_C_API winnow_status winnow_narrow_phase_bad_body(const winnow_narrow_phase* narrow,
+                                                        uint32_t* body);
+
+typedef struct winnow_narrow_statistics {
+  size_t size;  ///< sizeof(winnow_narrow_statistics), of the caller
+  uint64_t pairs;
+  uint64_t recomputed;
+  uint64_t without_lanes;
+  uint64_t exact;
+  uint64_t bounded;
+} winnow_narrow_statistics;
+WINNOW_C_API winnow_status winnow_narrow_phase_statistics(const winnow_narrow_phase* narrow,
+                                                          winnow_narrow_statistics* statistics);
+WINNOW_C_API winnow_status winnow_narrow_phase_footprint(const winnow_narrow_phase* narrow,
+                                                         winnow_footprint* footprint);
+
+#ifdef __cplusplus
+}
+#endif

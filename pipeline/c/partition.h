@@ -1,0 +1,397 @@
+#pragma once
+
+/// Partitions of bounding volumes, and the buffers that they answer in. What each call does, what
+/// it refuses and what it costs stands at the same name of <winnow/partitions/partition.h>.
+
+#include <winnow/c/core.h>
+#include <winnow/c/volumes.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct winnow_partition winnow_partition;
+
+// --- buffers of results ---------------------------------------------------------------------
+// The caller's, reused from frame to frame, each for one thread at a time. What they lead to is
+// read where it lies and valid until the buffer is used again or destroyed.
+
+/// Two objects that may touch, by id.
+typedef struct winnow_pair {
+  uint32_t first;
+  uint32_t second;
+} winnow_pair;
+
+typedef struct winnow_pair_buffer winnow_pair_buffer;
+WINNOW_C_API winnow_status winnow_pair_buffer_create(const winnow_memory* memory,
+                                                     winnow_pair_buffer** buffer);
+WINNOW_C_API void winnow_pair_buffer_destroy(winnow_pair_buffer* buffer);
+WINNOW_C_API winnow_status winnow_pair_buffer_pairs(const winnow_pair_buffer* buffer,
+                                                    const winnow_pair** pairs, size_t* count);
+WINNOW_C_API winnow_status winnow_pair_buffer_reserve(winnow_pair_buffer* buffer, size_t count,
+                                                      winnow_pages pages);
+WINNOW_C_API winnow_status winnow_pair_buffer_assign(winnow_pair_buffer* buffer,
+                                                     const winnow_pair_buffer* other);
+WINNOW_C_API winnow_status winnow_pair_buffer_clear(winnow_pair_buffer* buffer);
+WINNOW_C_API winnow_status winnow_pair_buffer_release(winnow_pair_buffer* buffer);
+WINNOW_C_API winnow_status winnow_pair_buffer_footprint(const winnow_pair_buffer* buffer,
+                                                        winnow_footprint* footprint);
+
+/// Two objects by key.
+typedef struct winnow_key_pair {
+  winnow_key first;
+  winnow_key second;
+} winnow_key_pair;
+
+typedef struct winnow_pair_events winnow_pair_events;
+WINNOW_C_API winnow_status winnow_pair_events_create(const winnow_memory* memory,
+                                                     winnow_pair_events** events);
+WINNOW_C_API void winnow_pair_events_destroy(winnow_pair_events* events);
+WINNOW_C_API winnow_status winnow_pair_events_begun(const winnow_pair_events* events,
+                                                    const winnow_key_pair** pairs, size_t* count);
+WINNOW_C_API winnow_status winnow_pair_events_ended(const winnow_pair_events* events,
+                                                    const winnow_key_pair** pairs, size_t* count);
+WINNOW_C_API winnow_status winnow_pair_events_persisting(const winnow_pair_events* events,
+                                                         size_t* count);
+WINNOW_C_API winnow_status winnow_pair_events_clear(winnow_pair_events* events);
+WINNOW_C_API winnow_status winnow_pair_events_footprint(const winnow_pair_events* events,
+                                                        winnow_footprint* footprint);
+
+/// An object that a ray, a cast or a nearest query found; where none was, the null key, 0 and
+/// infinity.
+typedef struct winnow_hit {
+  winnow_key key;
+  uint64_t data;
+  float t;
+} winnow_hit;
+
+typedef struct winnow_hit_buffer winnow_hit_buffer;
+WINNOW_C_API winnow_status winnow_hit_buffer_create(const winnow_memory* memory,
+                                                    winnow_hit_buffer** buffer);
+WINNOW_C_API void winnow_hit_buffer_destroy(winnow_hit_buffer* buffer);
+WINNOW_C_API winnow_status winnow_hit_buffer_hits(const winnow_hit_buffer* buffer,
+                                                  const winnow_hit** hits, size_t* count);
+WINNOW_C_API winnow_status winnow_hit_buffer_questions(const winnow_hit_buffer* buffer,
+                                                       size_t* count);
+/// The hits of one question of a batch.
+WINNOW_C_API winnow_status winnow_hit_buffer_of(const winnow_hit_buffer* buffer, size_t question,
+                                                const winnow_hit** hits, size_t* count);
+WINNOW_C_API winnow_status winnow_hit_buffer_reserve(winnow_hit_buffer* buffer, size_t count);
+WINNOW_C_API winnow_status winnow_hit_buffer_clear(winnow_hit_buffer* buffer);
+WINNOW_C_API winnow_status winnow_hit_buffer_footprint(const winnow_hit_buffer* buffer,
+                                                       winnow_footprint* footprint);
+
+typedef struct winnow_overlap_buffer winnow_overlap_buffer;
+WINNOW_C_API winnow_status winnow_overlap_buffer_create(const winnow_memory* memory,
+                                                        winnow_overlap_buffer** buffer);
+WINNOW_C_API void winnow_overlap_buffer_destroy(winnow_overlap_buffer* buffer);
+/// The first `inside` of them lie wholly in the region, the others cross its border.
+WINNOW_C_API winnow_status winnow_overlap_buffer_ids(const winnow_overlap_buffer* buffer,
+                                                     const uint32_t** ids, size_t* count,
+                                                     size_t* inside);
+WINNOW_C_API winnow_status winnow_overlap_buffer_reserve(winnow_overlap_buffer* buffer,
+                                                         size_t count);
+WINNOW_C_API winnow_status winnow_overlap_buffer_clear(winnow_overlap_buffer* buffer);
+WINNOW_C_API winnow_status winnow_overlap_buffer_footprint(const winnow_overlap_buffer* buffer,
+                                                           winnow_footprint* footprint);
+
+// --- a partition ----------------------------------------------------------------------------
+
+/// What prunes the objects: zeros are linear_bvh.
+typedef struct winnow_structure_kind {
+  int32_t structure;
+  float parameter;  ///< 0: as the structure has it by default; `loose` of the loose trees
+} winnow_structure_kind;
+enum {
+  WINNOW_LINEAR_BVH = 0,
+  WINNOW_AUTOMATIC = 1,
+  WINNOW_SWEEP_AND_PRUNE = 2,
+  WINNOW_HIERARCHICAL_GRID = 3,
+  WINNOW_FLAT_GRID = 4,
+  WINNOW_STATIC_BVH = 5,
+  WINNOW_LOOSE_OCTREE = 6,
+  WINNOW_LOOSE_QUADTREE = 7,
+  WINNOW_BOUNDS_N_SQUARED = 8,
+  WINNOW_N_SQUARED = 9
+};
+/// "LinearBvh", ...; empty if it is none.
+WINNOW_C_API const char* winnow_structure_name(winnow_structure_kind structure);
+WINNOW_C_API winnow_status winnow_structure_named(const char* name,
+                                                  winnow_structure_kind* structure);
+
+typedef int32_t winnow_volume;
+enum {
+  WINNOW_VOLUME_AABB = 0,
+  WINNOW_VOLUME_SPHERE = 1,
+  WINNOW_VOLUME_KDOP14 = 2,
+  WINNOW_VOLUME_KDOP18 = 3,
+  WINNOW_VOLUME_KDOP26 = 4
+};
+
+/// By how much stored volumes are larger than given, on every side.
+typedef struct winnow_margin {
+  float distance;
+  float share;
+} winnow_margin;
+
+/// Null, and zeros behind `size`, stand for what C++ has by default.
+typedef struct winnow_partition_options {
+  size_t size;  ///< sizeof(winnow_partition_options), of the caller
+  const winnow_memory* memory;
+  winnow_execution execution;
+  winnow_volume volume;
+  winnow_margin margin;
+  size_t build_budget;
+} winnow_partition_options;
+#define WINNOW_PARTITION_OPTIONS                                                          \
+  {                                                                                       \
+    sizeof(winnow_partition_options), NULL, {WINNOW_EXECUTION_PARALLEL, {NULL, NULL, 0}}, \
+        WINNOW_VOLUME_AABB, {0.0F, 0.0F}, 0                                               \
+  }
+
+WINNOW_C_API winnow_status winnow_partition_create(winnow_structure_kind structure,
+                                                   const winnow_partition_options* options,
+                                                   winnow_partition** partition);
+WINNOW_C_API void winnow_partition_destroy(winnow_partition* partition);
+
+WINNOW_C_API winnow_status winnow_partition_structure(const winnow_partition* partition,
+                                                      winnow_structure_kind* structure);
+WINNOW_C_API winnow_status winnow_partition_set_structure(winnow_partition* partition,
+                                                          winnow_structure_kind structure);
+
+/// What the automatic choice holds, why, and what it knows of the scene.
+typedef struct winnow_structure_choice {
+  size_t size;  ///< sizeof(winnow_structure_choice), of the caller
+  winnow_structure_kind structure;
+  const char* reason;  ///< in a few words; a constant
+  uint64_t changes;
+  size_t objects;
+  double room[3];
+  double size_spread;
+  double crowding;
+  double pairs;
+} winnow_structure_choice;
+WINNOW_C_API winnow_status winnow_partition_choice(const winnow_partition* partition,
+                                                   winnow_structure_choice* choice);
+
+WINNOW_C_API winnow_status winnow_partition_is_exact(const winnow_partition* partition,
+                                                     bool* is_exact);
+WINNOW_C_API winnow_status winnow_partition_volume(const winnow_partition* partition,
+                                                   winnow_volume* volume);
+WINNOW_C_API winnow_status winnow_partition_margin(const winnow_partition* partition,
+                                                   winnow_margin* margin);
+
+/// One object for each box. `data` is null (all zero) or a value for each, `keys` has room for a
+/// key of each.
+WINNOW_C_API winnow_status winnow_partition_insert(winnow_partition* partition,
+                                                   const winnow_box_view* boxes,
+                                                   const uint64_t* data, winnow_key* keys);
+
+/// Some entries of keys and boxes of which a caller keeps all: by number, or, where `words` is not
+/// null, by the bits of one word for each 64 entries.
+typedef struct winnow_entries {
+  const uint32_t* numbers;
+  const uint64_t* words;
+  size_t count;  ///< of numbers or of words
+} winnow_entries;
+
+/// New boxes, of those entries, or of all if `entries` is null.
+WINNOW_C_API winnow_status winnow_partition_update(winnow_partition* partition,
+                                                   const winnow_key* keys, size_t count,
+                                                   const winnow_box_view* boxes,
+                                                   const winnow_entries* entries);
+WINNOW_C_API winnow_status winnow_partition_insert_spheres(winnow_partition* partition,
+                                                           const winnow_sphere* spheres,
+                                                           size_t count, const uint64_t* data,
+                                                           winnow_key* keys);
+WINNOW_C_API winnow_status winnow_partition_update_spheres(winnow_partition* partition,
+                                                           const winnow_key* keys,
+                                                           const winnow_sphere* spheres,
+                                                           size_t count);
+/// Each k-DOP is k floats: the lower ends of its slabs, then the upper ones.
+WINNOW_C_API winnow_status winnow_partition_insert_kdops(winnow_partition* partition, uint32_t k,
+                                                         const float* kdops, size_t count,
+                                                         const uint64_t* data, winnow_key* keys);
+WINNOW_C_API winnow_status winnow_partition_update_kdops(winnow_partition* partition, uint32_t k,
+                                                         const winnow_key* keys, const float* kdops,
+                                                         size_t count);
+WINNOW_C_API winnow_status winnow_partition_remove(winnow_partition* partition,
+                                                   const winnow_key* keys, size_t count);
+WINNOW_C_API winnow_status winnow_partition_clear(winnow_partition* partition);
+WINNOW_C_API winnow_status winnow_partition_release_memory(winnow_partition* partition);
+WINNOW_C_API winnow_status winnow_partition_reserve(winnow_partition* partition, size_t objects,
+                                                    winnow_pages pages);
+WINNOW_C_API winnow_status winnow_partition_reserve_pairs(const winnow_partition* partition,
+                                                          winnow_pair_buffer* out, size_t pairs,
+                                                          winnow_pages pages);
+
+WINNOW_C_API winnow_status winnow_partition_size(const winnow_partition* partition, size_t* size);
+WINNOW_C_API winnow_status winnow_partition_contains(const winnow_partition* partition,
+                                                     winnow_key key, bool* contains);
+WINNOW_C_API winnow_status winnow_partition_bounds(const winnow_partition* partition,
+                                                   winnow_key key, winnow_aabb* box);
+WINNOW_C_API winnow_status winnow_partition_client_data(const winnow_partition* partition,
+                                                        winnow_key key, uint64_t* data);
+/// The null key for an id that no object has.
+WINNOW_C_API winnow_status winnow_partition_key_of(const winnow_partition* partition, uint32_t id,
+                                                   winnow_key* key);
+WINNOW_C_API winnow_status winnow_partition_set_filter(winnow_partition* partition,
+                                                       const winnow_key* keys,
+                                                       const winnow_object_filter* filters,
+                                                       size_t count);
+WINNOW_C_API winnow_status winnow_partition_filter(const winnow_partition* partition,
+                                                   winnow_key key, winnow_object_filter* filter);
+
+WINNOW_C_API winnow_status winnow_partition_refresh(const winnow_partition* partition);
+
+/// Null in its place asks for {fast, incremental, all pairs}.
+typedef struct winnow_pair_options {
+  size_t size;  ///< sizeof(winnow_pair_options), of the caller
+  winnow_order order;
+  uint8_t incremental;  ///< 0 or 1
+  /// A last word on each pair, or null; see winnow_filter.
+  bool (*accept)(void* context, uint32_t first, uint32_t second);
+  void* context;
+} winnow_pair_options;
+#define WINNOW_PAIR_OPTIONS \
+  { sizeof(winnow_pair_options), WINNOW_ORDER_FAST, 1, NULL, NULL }
+
+/// All pairs in `out`, what has changed in `events`: one of them may be null.
+WINNOW_C_API winnow_status winnow_partition_self_pairs(const winnow_partition* partition,
+                                                       winnow_pair_buffer* out,
+                                                       winnow_pair_events* events,
+                                                       const winnow_pair_options* options);
+WINNOW_C_API winnow_status winnow_partition_pairs_with(const winnow_partition* partition,
+                                                       const winnow_partition* other,
+                                                       winnow_pair_buffer* out,
+                                                       const winnow_pair_options* options);
+
+/// What moves by t * direction for t in [min_t, max_t].
+typedef struct winnow_cast {
+  int32_t kind;
+  union {
+    float origin[3];  ///< of a ray
+    winnow_aabb box;
+    winnow_sphere sphere;
+    winnow_capsule capsule;
+  } from;
+  float direction[3];
+  float min_t;
+  float max_t;
+} winnow_cast;
+enum { WINNOW_CAST_RAY = 0, WINNOW_CAST_BOX = 1, WINNOW_CAST_SPHERE = 2, WINNOW_CAST_CAPSULE = 3 };
+
+/// The null key where there is none.
+WINNOW_C_API winnow_status winnow_partition_closest(const winnow_partition* partition,
+                                                    const winnow_cast* cast,
+                                                    const winnow_filter* filter, winnow_hit* hit);
+WINNOW_C_API winnow_status winnow_partition_any(const winnow_partition* partition,
+                                                const winnow_cast* cast,
+                                                const winnow_filter* filter, winnow_hit* hit);
+WINNOW_C_API winnow_status winnow_partition_all(const winnow_partition* partition,
+                                                const winnow_cast* cast,
+                                                const winnow_filter* filter,
+                                                winnow_hit_buffer* hits);
+
+/// Columns of rays; `min_t` and `max_t` are null for 0 and infinity.
+typedef struct winnow_ray_batch {
+  const float* origin[3];
+  const float* direction[3];
+  const float* min_t;
+  const float* max_t;
+  size_t count;
+  size_t stride;
+} winnow_ray_batch;
+
+/// Columns to be written to, each null if not wanted.
+typedef struct winnow_hit_columns {
+  winnow_key* key;
+  uint64_t* data;
+  float* t;
+} winnow_hit_columns;
+
+WINNOW_C_API winnow_status winnow_partition_closest_rays(const winnow_partition* partition,
+                                                         const winnow_ray_batch* rays,
+                                                         const winnow_filter* filter,
+                                                         const winnow_hit_columns* hits);
+WINNOW_C_API winnow_status winnow_partition_any_rays(const winnow_partition* partition,
+                                                     const winnow_ray_batch* rays,
+                                                     const winnow_filter* filter,
+                                                     const winnow_hit_columns* hits);
+WINNOW_C_API winnow_status winnow_partition_all_rays(const winnow_partition* partition,
+                                                     const winnow_ray_batch* rays,
+                                                     const winnow_filter* filter,
+                                                     winnow_hit_buffer* hits);
+
+/// A closed part of space.
+typedef struct winnow_region {
+  int32_t kind;
+  union {
+    float point[3];
+    winnow_aabb box;
+    winnow_oriented_box oriented_box;
+    winnow_sphere sphere;
+    winnow_capsule capsule;
+    winnow_frustum frustum;
+    struct {
+      const winnow_plane* planes;
+      size_t count;
+    } planes;  ///< the points inside all of them
+  } of;
+} winnow_region;
+enum {
+  WINNOW_REGION_POINT = 0,
+  WINNOW_REGION_BOX = 1,
+  WINNOW_REGION_ORIENTED_BOX = 2,
+  WINNOW_REGION_SPHERE = 3,
+  WINNOW_REGION_CAPSULE = 4,
+  WINNOW_REGION_FRUSTUM = 5,
+  WINNOW_REGION_PLANES = 6
+};
+
+WINNOW_C_API winnow_status winnow_partition_overlap(const winnow_partition* partition,
+                                                    const winnow_region* region,
+                                                    const winnow_filter* filter, winnow_order order,
+                                                    winnow_overlap_buffer* objects);
+/// All pairs (number of the box, object).
+WINNOW_C_API winnow_status winnow_partition_overlap_boxes(const winnow_partition* partition,
+                                                          const winnow_box_view* boxes,
+                                                          const winnow_filter* filter,
+                                                          winnow_order order,
+                                                          winnow_pair_buffer* out);
+WINNOW_C_API winnow_status winnow_partition_nearest(const winnow_partition* partition,
+                                                    const winnow_aabb* from, size_t count,
+                                                    float radius, const winnow_filter* filter,
+                                                    winnow_hit_buffer* hits);
+
+/// `options` may be null.
+WINNOW_C_API winnow_status winnow_partition_debug_draw(const winnow_partition* partition,
+                                                       const winnow_debug_draw* draw,
+                                                       const winnow_debug_draw_options* options);
+
+WINNOW_C_API winnow_status winnow_partition_footprint(const winnow_partition* partition,
+                                                      winnow_footprint* footprint);
+
+/// Counters, never timings.
+typedef struct winnow_statistics {
+  size_t size;  ///< sizeof(winnow_statistics), of the caller
+  size_t objects;
+  size_t regular;
+  size_t irregular;
+  size_t cells;
+  size_t depth;
+  size_t levels;
+  uint64_t builds;
+  uint64_t planned_builds;
+  uint64_t refits;
+  uint64_t full_queries;
+  uint64_t incremental_queries;
+  uint64_t last_tests;
+  uint64_t last_pairs;
+} winnow_statistics;
+WINNOW_C_API winnow_status winnow_partition_statistics(const winnow_partition* partition,
+                                                       winnow_statistics* statistics);
+
+#ifdef __cplusplus
+}
+#endif

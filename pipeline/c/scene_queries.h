@@ -1,0 +1,134 @@
+#pragma once
+
+/// Questions to the exact shapes of a scene. What each does, and when the scene wants a refresh
+/// before it, stands at the same name of <winnow/pipeline/scene_queries.h>.
+
+#include <winnow/c/core.h>
+#include <winnow/c/scene.h>
+#include <winnow/c/shapes.h>
+#include <winnow/c/volumes.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// One for each thread: it keeps scratch memory, and what it answers by pointer is valid until its
+/// next question. The scene must outlive it.
+typedef struct winnow_scene_queries winnow_scene_queries;
+WINNOW_C_API winnow_status winnow_scene_queries_create(const winnow_scene* scene,
+                                                       const winnow_memory* memory,
+                                                       winnow_scene_queries** queries);
+WINNOW_C_API void winnow_scene_queries_destroy(winnow_scene_queries* queries);
+
+/// Where a ray or a moving shape meets a body; the null key if it meets none.
+typedef struct winnow_scene_hit {
+  winnow_key key;
+  uint64_t data;
+  uint32_t part;
+  double t;
+  double normal[3];
+  double point[3];
+} winnow_scene_hit;
+
+WINNOW_C_API winnow_status winnow_scene_queries_closest(winnow_scene_queries* queries,
+                                                        const winnow_shape_ray* ray,
+                                                        const winnow_filter* filter,
+                                                        winnow_scene_hit* hit);
+WINNOW_C_API winnow_status winnow_scene_queries_any(winnow_scene_queries* queries,
+                                                    const winnow_shape_ray* ray,
+                                                    const winnow_filter* filter,
+                                                    winnow_scene_hit* hit);
+WINNOW_C_API winnow_status winnow_scene_queries_all(winnow_scene_queries* queries,
+                                                    const winnow_shape_ray* ray,
+                                                    const winnow_filter* filter,
+                                                    const winnow_scene_hit** hits, size_t* count);
+
+/// Columns of rays; `max_t` is null for infinity.
+typedef struct winnow_shape_ray_batch {
+  const void* origin[3];
+  const void* direction[3];
+  const void* max_t;
+  size_t count;
+  size_t stride;
+  winnow_number number;
+} winnow_shape_ray_batch;
+
+/// Columns to be written to, each null if not wanted.
+typedef struct winnow_scene_hit_columns {
+  winnow_key* key;
+  uint64_t* data;
+  uint32_t* part;
+  double* t;
+  double* normal[3];
+  double* point[3];
+} winnow_scene_hit_columns;
+
+WINNOW_C_API winnow_status winnow_scene_queries_closest_rays(winnow_scene_queries* queries,
+                                                             const winnow_shape_ray_batch* rays,
+                                                             const winnow_filter* filter,
+                                                             const winnow_scene_hit_columns* hits);
+WINNOW_C_API winnow_status winnow_scene_queries_any_rays(winnow_scene_queries* queries,
+                                                         const winnow_shape_ray_batch* rays,
+                                                         const winnow_filter* filter,
+                                                         const winnow_scene_hit_columns* hits);
+/// The hits of ray i are hits[first[i]] to hits[first[i + 1]], that excluded.
+WINNOW_C_API winnow_status winnow_scene_queries_all_rays(winnow_scene_queries* queries,
+                                                         const winnow_shape_ray_batch* rays,
+                                                         const winnow_filter* filter,
+                                                         const winnow_scene_hit** hits,
+                                                         const size_t** first);
+
+/// A convex shape that moves along a line without turning.
+typedef struct winnow_shape_cast {
+  winnow_shape_id shape;
+  winnow_pose pose;
+  double direction[3];
+  double max_t;
+} winnow_shape_cast;
+#define WINNOW_CAST_TOLERANCE 1e-6
+
+WINNOW_C_API winnow_status winnow_scene_queries_closest_cast(winnow_scene_queries* queries,
+                                                             const winnow_shape_cast* cast,
+                                                             const winnow_filter* filter,
+                                                             double tolerance,
+                                                             winnow_scene_hit* hit);
+WINNOW_C_API winnow_status winnow_scene_queries_all_cast(
+    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
+    double tolerance, const winnow_scene_hit** hits, size_t* count);
+
+/// A body that a shape overlaps.
+typedef struct winnow_scene_overlap {
+  winnow_key key;
+  uint64_t data;
+  uint32_t part;
+} winnow_scene_overlap;
+WINNOW_C_API winnow_status winnow_scene_queries_overlap(
+    winnow_scene_queries* queries, winnow_shape_id shape, const winnow_pose* pose,
+    const winnow_filter* filter, const winnow_scene_overlap** bodies, size_t* count);
+
+/// Two points, and how far they are apart.
+typedef struct winnow_scene_distance {
+  winnow_key key;
+  uint64_t data;
+  uint32_t part_a;
+  uint32_t part;
+  double distance;
+  double error_bound;
+  double normal[3];
+  double point_a[3];
+  double point_b[3];
+} winnow_scene_distance;
+WINNOW_C_API winnow_status winnow_scene_queries_distance(winnow_scene_queries* queries,
+                                                         winnow_key a, winnow_key b,
+                                                         winnow_scene_distance* answer);
+WINNOW_C_API winnow_status winnow_scene_queries_nearest(winnow_scene_queries* queries,
+                                                        const double point[3], size_t count,
+                                                        double radius, const winnow_filter* filter,
+                                                        const winnow_scene_distance** bodies,
+                                                        size_t* found);
+WINNOW_C_API winnow_status winnow_scene_queries_footprint(const winnow_scene_queries* queries,
+                                                          winnow_footprint* footprint);
+
+#ifdef __cplusplus
+}
+#endif

@@ -1,0 +1,225 @@
+#pragma once
+
+/// Convex shapes and shapes made of many. What each call does stands at the same name of
+/// <winnow/pipeline/shapes.h>, shape_pool.h, composite_pool.h, triangle_mesh.h, height_field.h and
+/// shape_rays.h.
+
+#include <winnow/c/core.h>
+#include <winnow/c/volumes.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// A shape of either pool: its kind (the upper four bits) and its place among those of the kind.
+typedef uint32_t winnow_shape_id;
+#define WINNOW_NO_SHAPE 0xFFFFFFFFU
+
+typedef int32_t winnow_shape_kind;
+enum {
+  WINNOW_SHAPE_SPHERE = 0,
+  WINNOW_SHAPE_CAPSULE = 1,
+  WINNOW_SHAPE_BOX = 2,
+  WINNOW_SHAPE_CYLINDER = 3,
+  WINNOW_SHAPE_CONE = 4,
+  WINNOW_SHAPE_HULL = 5,
+  WINNOW_SHAPE_TRIANGLE = 6,
+  WINNOW_SHAPE_HALF_SPACE = 7,
+  WINNOW_SHAPE_MESH = 8,
+  WINNOW_SHAPE_COMPOUND = 9,
+  WINNOW_SHAPE_HEIGHT_FIELD = 10
+};
+/// "sphere", ...; "none" if it is none.
+WINNOW_C_API const char* winnow_shape_kind_name(winnow_shape_kind kind);
+
+/// A convex shape but a hull.
+typedef struct winnow_shape {
+  winnow_shape_kind kind;
+  union {
+    struct {
+      double radius;
+    } sphere;
+    struct {
+      double radius;
+      double half_length;
+    } capsule;
+    struct {
+      double half[3];
+      double rounding;
+    } box;
+    struct {
+      double radius;
+      double half_length;
+      double rounding;
+    } cylinder;
+    struct {
+      double radius;
+      double half_length;
+      double rounding;
+    } cone;
+    struct {
+      double vertex[3][3];
+      double rounding;
+    } triangle;
+    struct {
+      double normal[3];
+      double offset;
+    } half_space;
+    double reserved[16];
+  } as;
+} winnow_shape;
+
+typedef struct winnow_shape_pool winnow_shape_pool;
+WINNOW_C_API winnow_status winnow_shape_pool_create(const winnow_memory* memory,
+                                                    winnow_shape_pool** pool);
+WINNOW_C_API void winnow_shape_pool_destroy(winnow_shape_pool* pool);
+WINNOW_C_API winnow_status winnow_shape_pool_add(winnow_shape_pool* pool, const winnow_shape* shape,
+                                                 winnow_shape_id* id);
+WINNOW_C_API winnow_status winnow_shape_pool_add_hull(winnow_shape_pool* pool,
+                                                      const winnow_point_view* points,
+                                                      double rounding, winnow_shape_id* id);
+
+/// Face i is the next `sizes[i]` of `indices` into the points, counter-clockwise from outside.
+typedef struct winnow_hull_faces {
+  const uint32_t* indices;
+  size_t index_count;
+  const uint32_t* sizes;
+  size_t face_count;
+} winnow_hull_faces;
+WINNOW_C_API winnow_status winnow_shape_pool_add_hull_faces(winnow_shape_pool* pool,
+                                                            const winnow_point_view* points,
+                                                            const winnow_hull_faces* faces,
+                                                            double rounding, winnow_shape_id* id);
+WINNOW_C_API winnow_status winnow_shape_pool_remove(winnow_shape_pool* pool, winnow_shape_id id);
+WINNOW_C_API winnow_status winnow_shape_pool_contains(const winnow_shape_pool* pool,
+                                                      winnow_shape_id id, bool* contains);
+WINNOW_C_API winnow_status winnow_shape_pool_size(const winnow_shape_pool* pool,
+                                                  winnow_shape_kind kind, size_t* size);
+/// WINNOW_INVALID_KEY or WINNOW_INVALID_POSE where C++ asks for good ones.
+WINNOW_C_API winnow_status winnow_shape_pool_bounds(const winnow_shape_pool* pool,
+                                                    winnow_shape_id id, const winnow_pose* pose,
+                                                    winnow_aabb* box);
+/// The shape as it was added (a half-space normalised). WINNOW_INVALID_KEY for a hull.
+WINNOW_C_API winnow_status winnow_shape_pool_shape(const winnow_shape_pool* pool,
+                                                   winnow_shape_id id, winnow_shape* shape);
+
+typedef struct winnow_hull_face {
+  double normal[3];
+  double offset;
+  uint32_t first;  ///< its vertices are loop[first] to loop[first + count - 1]
+  uint32_t count;
+} winnow_hull_face;
+
+/// A hull as the pool holds it; valid until the pool is changed.
+typedef struct winnow_hull {
+  size_t size;  ///< sizeof(winnow_hull), of the caller
+  size_t vertices;
+  size_t faces;
+  uint32_t dimension;
+  double rounding;
+  double center[3];
+  double radius;
+  const double* vertex[3];
+  const winnow_hull_face* face;
+  const uint32_t* loop;
+} winnow_hull;
+WINNOW_C_API winnow_status winnow_shape_pool_hull(const winnow_shape_pool* pool, winnow_shape_id id,
+                                                  winnow_hull* hull);
+WINNOW_C_API winnow_status winnow_shape_pool_footprint(const winnow_shape_pool* pool,
+                                                       winnow_footprint* footprint);
+
+/// origin + t * direction, 0 <= t <= max_t.
+typedef struct winnow_shape_ray {
+  double origin[3];
+  double direction[3];
+  double max_t;
+} winnow_shape_ray;
+
+typedef struct winnow_shape_hit {
+  bool hit;
+  double t;
+  double normal[3];
+} winnow_shape_hit;
+WINNOW_C_API winnow_status winnow_cast_ray(const winnow_shape_pool* pool, winnow_shape_id shape,
+                                           const winnow_pose* pose, const winnow_shape_ray* ray,
+                                           winnow_shape_hit* hit);
+
+// --- shapes made of many --------------------------------------------------------------------
+
+typedef struct winnow_composite_pool winnow_composite_pool;
+/// `shapes` must outlive it.
+WINNOW_C_API winnow_status winnow_composite_pool_create(const winnow_shape_pool* shapes,
+                                                        const winnow_memory* memory,
+                                                        winnow_composite_pool** pool);
+WINNOW_C_API void winnow_composite_pool_destroy(winnow_composite_pool* pool);
+
+typedef struct winnow_mesh_options {
+  size_t size;  ///< sizeof(winnow_mesh_options), of the caller
+  double active_edge_angle;
+} winnow_mesh_options;
+#define WINNOW_MESH_OPTIONS \
+  { sizeof(winnow_mesh_options), 0.02 }
+
+/// `options` and `execution` may be null.
+WINNOW_C_API winnow_status winnow_composite_pool_add_mesh(winnow_composite_pool* pool,
+                                                          const winnow_point_view* vertices,
+                                                          const winnow_index_view* triangles,
+                                                          const winnow_mesh_options* options,
+                                                          const winnow_execution* execution,
+                                                          winnow_shape_id* id);
+WINNOW_C_API winnow_status winnow_composite_pool_add_scaled(winnow_composite_pool* pool,
+                                                            winnow_shape_id mesh,
+                                                            const double scale[3],
+                                                            winnow_shape_id* id);
+WINNOW_C_API winnow_status winnow_composite_pool_refit_mesh(winnow_composite_pool* pool,
+                                                            winnow_shape_id mesh,
+                                                            const winnow_point_view* vertices,
+                                                            const winnow_execution* execution);
+
+/// Sample (column, row) is heights[row * row_stride + column]; NaN is a hole.
+typedef struct winnow_height_samples {
+  const float* heights;
+  size_t count;  ///< of heights
+  uint32_t columns;
+  uint32_t rows;
+  uint32_t row_stride;  ///< 0: columns
+  double spacing[2];
+} winnow_height_samples;
+WINNOW_C_API winnow_status winnow_composite_pool_add_height_field(
+    winnow_composite_pool* pool, const winnow_height_samples* samples, winnow_shape_id* id);
+WINNOW_C_API winnow_status winnow_composite_pool_update_height_field(
+    winnow_composite_pool* pool, winnow_shape_id field, uint32_t column, uint32_t row,
+    const winnow_height_samples* samples);
+
+typedef struct winnow_compound_child {
+  winnow_shape_id shape;
+  winnow_pose pose;
+} winnow_compound_child;
+WINNOW_C_API winnow_status winnow_composite_pool_add_compound(winnow_composite_pool* pool,
+                                                              const winnow_compound_child* children,
+                                                              size_t count, winnow_shape_id* id);
+WINNOW_C_API winnow_status winnow_composite_pool_remove(winnow_composite_pool* pool,
+                                                        winnow_shape_id id);
+WINNOW_C_API winnow_status winnow_composite_pool_contains(const winnow_composite_pool* pool,
+                                                          winnow_shape_id id, bool* contains);
+WINNOW_C_API winnow_status winnow_composite_pool_size(const winnow_composite_pool* pool,
+                                                      winnow_shape_kind kind, size_t* size);
+WINNOW_C_API winnow_status winnow_composite_pool_bounds(const winnow_composite_pool* pool,
+                                                        winnow_shape_id id, const winnow_pose* pose,
+                                                        winnow_aabb* box);
+WINNOW_C_API winnow_status winnow_composite_pool_radius(const winnow_composite_pool* pool,
+                                                        winnow_shape_id id, double* radius);
+/// Triangles of a mesh or a height field, children of a compound: what parts are numbered by.
+WINNOW_C_API winnow_status winnow_composite_pool_parts(const winnow_composite_pool* pool,
+                                                       winnow_shape_id id, size_t* parts);
+/// Of a compound; valid until the pool is changed.
+WINNOW_C_API winnow_status winnow_composite_pool_children(const winnow_composite_pool* pool,
+                                                          winnow_shape_id id,
+                                                          const winnow_compound_child** children,
+                                                          size_t* count);
+WINNOW_C_API winnow_status winnow_composite_pool_footprint(const winnow_composite_pool* pool,
+                                                           winnow_footprint* footprint);
+
+#ifdef __cplusplus
+}
+#endif
