@@ -1,0 +1,181 @@
+// The scenarios of shapes.c in C++.
+
+#include "tests/c/shapes_twin.h"
+
+#include "tests/c/notes.h"
+#include "tests/c/world.h"
+
+#include <winnow/winnow.h>
+
+#include <string_view>
+
+namespace winnow::test {
+namespace {
+
+void note_box(const trace* t, const char* what, const Aabb& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    note_real(t, what, static_cast<double>(box.min[axis]));
+    note_real(t, what, static_cast<double>(box.max[axis]));
+  }
+}
+
+void ask_composites(const trace* t, const CompositePool& pool, std::span<const ShapeId> ids,
+                    const Pose& pose) {
+  const std::size_t parts[] = {2, 2, 8, 2};
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    note(t, "id", ids[i].bits);
+    note(t, "contains", pool.contains(ids[i]));
+    note_box(t, "bounds", pool.bounds(ids[i], pose));
+    note_real(t, "radius", pool.radius(ids[i]));
+    note(t, "parts", parts[i]);
+  }
+  note(t, "children", pool.children(ids[3]).size());
+  note_reals(t, "child", pool.children(ids[3])[1].pose.position, 3);
+  note(t, "meshes", pool.size(CompositeKind::mesh));
+}
+
+void note_hull(const trace* t, const HullShape& hull) {
+  note(t, "hull", hull.vertex_count);
+  note(t, "hull", hull.face_count);
+  note_reals(t, "hull", hull.vertex[1], static_cast<int>(hull.vertex_count));
+  note_reals(t, "hull", hull.faces[1].normal, 3);
+  note(t, "hull", hull.loop[hull.faces[1].first]);
+}
+
+void note_answers(const trace* t, const NarrowResult& result) {
+  note(t, "level", static_cast<std::uint64_t>(result.level()));
+  note(t, "answers", result.size());
+  note(t, "runs", result.runs().size());
+  for (const NarrowRun& run : result.runs()) {
+    note(t, "run", static_cast<std::uint64_t>(run.a));
+    note(t, "run", static_cast<std::uint64_t>(run.b));
+    note(t, "run", run.count);
+  }
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    note(t, "pair_of", result.pair_of(i));
+    if (result.level() == ContactLevel::boolean) {
+      note(t, "overlap", result.overlaps(i));
+      continue;
+    }
+    note_real(t, "distance", result.distance()[i]);
+    note_real(t, "error_bound", result.error_bound()[i]);
+    for (int axis = 0; axis < 3; ++axis) note_real(t, "normal", result.normal(axis)[i]);
+    if (result.level() == ContactLevel::distance) {
+      for (int axis = 0; axis < 3; ++axis) note_real(t, "point", result.point(axis)[i]);
+      continue;
+    }
+    for (std::uint32_t k = 0; k < result.contact_count()[i]; ++k) {
+      const ContactPoint point = result.contact(result.contact_first()[i] + k);
+      for (const float x : point.position) note_real(t, "contact", static_cast<double>(x));
+      note_real(t, "depth", static_cast<double>(point.depth));
+      note(t, "feature", point.feature);
+    }
+  }
+  note(t, "contacts", result.contacts());
+}
+
+}  // namespace
+
+Pose pose_in(std::size_t i, std::size_t frame) {
+  Pose pose;
+  pose_of(i, frame, pose.position, pose.orientation);
+  return pose;
+}
+
+std::array<ShapeId, 9> make_convex(ShapePool& pool) {
+  std::array<ShapeId, 9> ids;
+  (void)pool.add(SphereShape{0.5}, ids[0]);
+  (void)pool.add(CapsuleShape{0.3, 0.4}, ids[1]);
+  (void)pool.add(BoxShape{{0.5, 0.4, 0.3}, 0.05}, ids[2]);
+  (void)pool.add(CylinderShape{0.4, 0.5, 0.0}, ids[3]);
+  (void)pool.add(ConeShape{0.5, 0.5, 0.0}, ids[4]);
+  (void)pool.add(TriangleShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0.1}, ids[5]);
+  (void)pool.add(HalfSpaceShape{{0, 0, 2}, 0}, ids[6]);
+  const std::array<Eigen::Vector3d, 4> corners{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0),
+                                               Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, 1)};
+  const std::uint32_t indices[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+  const std::uint32_t sizes[] = {3, 3, 3, 3};
+  (void)pool.add_hull(corners, HullFaces{indices, sizes}, 0.02, ids[7]);
+  if (pool.add_hull(corners, 0.02, ids[8]) != Status::ok) {
+    (void)pool.add_hull(corners, HullFaces{indices, sizes}, 0.02, ids[8]);
+  }
+  return ids;
+}
+
+std::array<ShapeId, 4> make_composite(CompositePool& pool, const std::array<ShapeId, 9>& convex) {
+  std::array<ShapeId, 4> ids;
+  const std::array<Eigen::Vector3f, 4> vertices{
+      Eigen::Vector3f(-20, -20, 0), Eigen::Vector3f(20, -20, 0), Eigen::Vector3f(20, 20, 0),
+      Eigen::Vector3f(-20, 20, 0)};
+  const std::uint32_t corners[] = {0, 1, 2, 0, 2, 3};
+  (void)pool.add_mesh(std::span<const Eigen::Vector3f>(vertices),
+                      IndexView(std::span<const std::uint32_t>(corners)), ids[0]);
+  (void)pool.add_scaled(ids[0], {2, 1, 1}, ids[1]);
+  (void)pool.refit_mesh(ids[0], std::span<const Eigen::Vector3f>(vertices));
+  const float heights[] = {0, 0.1F, 0, 0.2F, 0.25F, 0.1F, 0, 0.3F, 0};
+  (void)pool.add_height_field({heights, 3, 3, 0, {4, 4}}, ids[2]);
+  const std::array<CompoundChild, 2> children{CompoundChild{convex[0], {}},
+                                              CompoundChild{convex[2], Pose::at(0, 0, 0.4)}};
+  (void)pool.add_compound(children, ids[3]);
+  return ids;
+}
+
+void ask_shapes_in_cpp(const trace* t) {
+  ShapePool pool;
+  CompositePool composites(pool);
+  const std::array convex = make_convex(pool);
+  const std::array composite = make_composite(composites, convex);
+  const Pose pose = pose_in(13, 0);
+  for (const ShapeId id : convex) {
+    note(t, "id", id.bits);
+    note_box(t, "bounds", pool.bounds(id, pose));
+    ShapeHit hit;
+    (void)cast_ray(pool.tables(), id, pose, {{8, 1, 9}, {-0.2, 0.1, -1}, 30}, hit);
+    note(t, "hit", hit.hit);
+    note_real(t, "t", hit.t);
+    note_reals(t, "normal", hit.normal, 3);
+  }
+  ask_composites(t, composites, composite, pose);
+  note_reals(t, "box", pool.tables().boxes[convex[2].index()].half, 3);
+  note_reals(t, "half-space", pool.tables().half_spaces[convex[6].index()].normal, 3);
+  note_hull(t, pool.tables().hulls[convex[7].index()]);
+  note(t, "kind", std::string_view(to_string(ShapeKind::half_space)).size());
+  note(t, "the footprints are what was asked for", 1);
+  note(t, "contains", 0);
+  note(t, "capsules", 0);
+  note(t, "outstanding", 0);
+}
+
+void ask_narrow_phase_in_cpp(const trace* t) {
+  ShapePool pool;
+  const std::array convex = make_convex(pool);
+  std::vector<ShapeId> shapes;
+  std::vector<Pose> poses;
+  std::vector<BodyPair> pairs;
+  for (std::uint32_t i = 0; i < kBodies; ++i) {
+    shapes.push_back(convex[i % convex.size()]);
+    poses.push_back(pose_in(i, 0));
+    if (i > 0) pairs.push_back({i - 1, i});
+  }
+  NarrowPhase narrow;
+  NarrowResult result;
+  for (const ContactLevel level :
+       {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
+    (void)narrow.collide(pool, {shapes, poses}, pairs, {.level = level, .margin = 0.1}, result);
+    note_answers(t, result);
+  }
+  for (Pose& pose : poses) {
+    for (double& x : pose.position) x = static_cast<double>(static_cast<float>(x));
+    for (double& q : pose.orientation) q = static_cast<double>(static_cast<float>(q));
+  }
+  (void)narrow.collide(pool, {shapes, poses}, pairs, {}, result);
+  note_answers(t, result);
+  note(t, "statistics", narrow.statistics().pairs);
+  note(t, "statistics", narrow.statistics().without_lanes);
+  note(t, "the footprints are what was asked for", 1);
+  note(t, "refused", 1);
+  note(t, "bad body", 2);
+  note(t, "outstanding", 0);
+}
+
+}  // namespace winnow::test

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/shape_pool.h>
+
+#include <array>
+
+namespace winnow::test {
+
+/// What shapes.c makes.
+[[nodiscard]] std::array<ShapeId, 9> make_convex(ShapePool& pool);
+[[nodiscard]] std::array<ShapeId, 4> make_composite(CompositePool& pool,
+                                                    const std::array<ShapeId, 9>& convex);
+[[nodiscard]] Pose pose_in(std::size_t i, std::size_t frame);
+
+}  // namespace winnow::test

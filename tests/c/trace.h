@@ -1,0 +1,40 @@
+#pragma once
+
+/* What one language was answered, to be compared with what the other was. */
+
+#include <stdint.h>
+#include <string.h>
+
+typedef struct trace {
+  void* context;
+  void (*note)(void* context, const char* what, uint64_t value);
+} trace;
+
+static inline void note(const trace* t, const char* what, uint64_t value) {
+  t->note(t->context, what, value);
+}
+
+static inline void note_real(const trace* t, const char* what, double value) {
+  uint64_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  note(t, what, bits);
+}
+
+static inline void note_reals(const trace* t, const char* what, const double* values, int count) {
+  for (int i = 0; i < count; ++i) note_real(t, what, values[i]);
+}
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The scenarios in C. A call that is refused is noted by its own text. */
+void ask_partitions_in_c(const trace* t);
+void ask_volumes_in_c(const trace* t);
+void ask_shapes_in_c(const trace* t);
+void ask_narrow_phase_in_c(const trace* t);
+void ask_scenes_in_c(const trace* t);
+
+#ifdef __cplusplus
+}
+#endif
