@@ -21,6 +21,9 @@ else()
   set(winnow_targets winnow_core winnow_simd winnow_partitions winnow_pipeline winnow)
   set(winnow_pc_libs "-lwinnow_pipeline -lwinnow_partitions -lwinnow_simd -lwinnow_core")
   set(winnow_pc_flags "")
+  if(WINNOW_C)
+    list(APPEND winnow_targets winnow_c_static)
+  endif()
 endif()
 install(TARGETS ${winnow_targets} EXPORT winnow-targets
         RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
@@ -36,6 +39,13 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(winnow_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/winnow)
 install(EXPORT winnow-targets NAMESPACE winnow:: DESTINATION ${winnow_package_dir})
+if(WINNOW_C)
+  # By itself: programs in C look for none of what the others need.
+  install(TARGETS winnow_c EXPORT winnow-c-targets
+          RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT winnow-c-targets NAMESPACE winnow:: DESTINATION ${winnow_package_dir})
+endif()
 configure_package_config_file(
   ${CMAKE_CURRENT_LIST_DIR}/winnow-config.cmake.in ${PROJECT_BINARY_DIR}/winnow-config.cmake
   INSTALL_DESTINATION ${winnow_package_dir})
@@ -51,11 +61,17 @@ file(RELATIVE_PATH winnow_pc_to_prefix
 # again: the standard library's own #include_next would lose its way. Where they go is known only
 # when they are installed.
 set(winnow_pc_include "@winnow_pc_include@")
-configure_file(${CMAKE_CURRENT_LIST_DIR}/winnow.pc.in ${PROJECT_BINARY_DIR}/winnow.pc.in @ONLY)
-install(CODE "
-  set(winnow_pc_include \"-isystem \\\${includedir}\")
-  if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr\")
-    set(winnow_pc_include \"-I\\\${includedir}\")
-  endif()
-  configure_file([[${PROJECT_BINARY_DIR}/winnow.pc.in]] [[${PROJECT_BINARY_DIR}/winnow.pc]] @ONLY)")
-install(FILES ${PROJECT_BINARY_DIR}/winnow.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+set(winnow_pcs winnow)
+if(WINNOW_C)
+  list(APPEND winnow_pcs winnow-c)
+endif()
+foreach(pc ${winnow_pcs})
+  configure_file(${CMAKE_CURRENT_LIST_DIR}/${pc}.pc.in ${PROJECT_BINARY_DIR}/${pc}.pc.in @ONLY)
+  install(CODE "
+    set(winnow_pc_include \"-isystem \\\${includedir}\")
+    if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr\")
+      set(winnow_pc_include \"-I\\\${includedir}\")
+    endif()
+    configure_file([[${PROJECT_BINARY_DIR}/${pc}.pc.in]] [[${PROJECT_BINARY_DIR}/${pc}.pc]] @ONLY)")
+  install(FILES ${PROJECT_BINARY_DIR}/${pc}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()

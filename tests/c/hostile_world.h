@@ -1,0 +1,154 @@
+#pragma once
+
+#include <winnow/c/winnow.h>
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+namespace winnow::test {
+
+/// A thing of every kind, and arguments of any type to ask about it: pointers to things lead to
+/// those here, others to zeros that are long enough for an array of one, numbers are 1.
+class HostileWorld {
+ public:
+  HostileWorld() {
+    const winnow_shape ball = {WINNOW_SHAPE_SPHERE, {.sphere = {0.5}}};
+    winnow_body_definition body = WINNOW_BODY_DEFINITION;
+    winnow_key key = WINNOW_NULL_KEY;
+    EXPECT_EQ(winnow_threads_create(1, &threads), WINNOW_OK);
+    EXPECT_EQ(winnow_partition_create({}, nullptr, &partition), WINNOW_OK);
+    EXPECT_EQ(winnow_pair_buffer_create(nullptr, &pairs), WINNOW_OK);
+    EXPECT_EQ(winnow_pair_events_create(nullptr, &events), WINNOW_OK);
+    EXPECT_EQ(winnow_hit_buffer_create(nullptr, &hits), WINNOW_OK);
+    EXPECT_EQ(winnow_overlap_buffer_create(nullptr, &overlaps), WINNOW_OK);
+    EXPECT_EQ(winnow_shape_pool_create(nullptr, &shapes), WINNOW_OK);
+    EXPECT_EQ(winnow_shape_pool_add(shapes, &ball, &body.shape), WINNOW_OK);
+    EXPECT_EQ(winnow_composite_pool_create(shapes, nullptr, &composites), WINNOW_OK);
+    EXPECT_EQ(winnow_narrow_phase_create(nullptr, &narrow), WINNOW_OK);
+    EXPECT_EQ(winnow_narrow_result_create(nullptr, &result), WINNOW_OK);
+    EXPECT_EQ(winnow_contacts_create(nullptr, &contacts), WINNOW_OK);
+    EXPECT_EQ(winnow_scene_create(shapes, nullptr, &scene), WINNOW_OK);
+    EXPECT_EQ(winnow_scene_add(scene, &body, 1, &key), WINNOW_OK);
+    EXPECT_EQ(winnow_scene_refresh(scene), WINNOW_OK);
+    EXPECT_EQ(winnow_scene_queries_create(scene, nullptr, &queries), WINNOW_OK);
+  }
+  HostileWorld(const HostileWorld&) = delete;
+  HostileWorld& operator=(const HostileWorld&) = delete;
+  ~HostileWorld() {
+    destroy(queries);
+    destroy(scene);
+    destroy(contacts);
+    destroy(result);
+    destroy(narrow);
+    destroy(composites);
+    destroy(shapes);
+    destroy(overlaps);
+    destroy(hits);
+    destroy(events);
+    destroy(pairs);
+    destroy(partition);
+    destroy(threads);
+  }
+
+  /// The argument of a call at `index`.
+  template <typename T>
+  [[nodiscard]] T get(std::size_t index) {
+    if constexpr (std::is_pointer_v<T>) {
+      using To = std::remove_const_t<std::remove_pointer_t<T>>;
+      if constexpr (requires { of(static_cast<To*>(nullptr)); }) {
+        return of(static_cast<To*>(nullptr));
+      } else {
+        return zeros<To>(index);
+      }
+    } else if constexpr (std::is_arithmetic_v<T>) {
+      return T{1};
+    } else {
+      return T{};
+    }
+  }
+
+  /// Ends what a call has made.
+  void end_made() {
+    if (end_ != nullptr) end_(made_);
+    end_ = nullptr;
+  }
+
+  /// 0: that of this version.
+  std::size_t size_of_structs = 1;
+
+  winnow_threads* threads = nullptr;
+  winnow_partition* partition = nullptr;
+  winnow_pair_buffer* pairs = nullptr;
+  winnow_pair_events* events = nullptr;
+  winnow_hit_buffer* hits = nullptr;
+  winnow_overlap_buffer* overlaps = nullptr;
+  winnow_shape_pool* shapes = nullptr;
+  winnow_composite_pool* composites = nullptr;
+  winnow_narrow_phase* narrow = nullptr;
+  winnow_narrow_result* result = nullptr;
+  winnow_contacts* contacts = nullptr;
+  winnow_scene* scene = nullptr;
+  winnow_scene_queries* queries = nullptr;
+
+ private:
+#define WINNOW_THING(type, member)         \
+  [[nodiscard]] type* of(type*) noexcept { \
+    return member;                         \
+  }                                        \
+  static void destroy(type* thing) {       \
+    type##_destroy(thing);                 \
+  }
+  WINNOW_THING(winnow_threads, threads)
+  WINNOW_THING(winnow_partition, partition)
+  WINNOW_THING(winnow_pair_buffer, pairs)
+  WINNOW_THING(winnow_pair_events, events)
+  WINNOW_THING(winnow_hit_buffer, hits)
+  WINNOW_THING(winnow_overlap_buffer, overlaps)
+  WINNOW_THING(winnow_shape_pool, shapes)
+  WINNOW_THING(winnow_composite_pool, composites)
+  WINNOW_THING(winnow_narrow_phase, narrow)
+  WINNOW_THING(winnow_narrow_result, result)
+  WINNOW_THING(winnow_contacts, contacts)
+  WINNOW_THING(winnow_scene, scene)
+  WINNOW_THING(winnow_scene_queries, queries)
+#undef WINNOW_THING
+
+  template <typename To>
+  [[nodiscard]] To* zeros(std::size_t index) {
+    std::memset(storage_[index], 0, kRoom);
+    To* const first = reinterpret_cast<To*>(storage_[index]);
+    if constexpr (requires { first->size; }) {
+      first->size = size_of_structs == 1 ? sizeof(To) : size_of_structs;
+    }
+    if constexpr (std::is_pointer_v<To>) {
+      if constexpr (requires { destroy(*first); }) {
+        made_ = first;
+        end_ = [](void* made) { destroy(*static_cast<To*>(made)); };
+      }
+    }
+    return first;
+  }
+
+  static constexpr std::size_t kRoom = 8192;
+  alignas(64) std::byte storage_[16][kRoom];
+  void* made_ = nullptr;
+  void (*end_)(void*) = nullptr;
+};
+
+/// Whether one of the arguments is a struct that may grow.
+template <typename... Arguments>
+[[nodiscard]] constexpr bool takes_sized(winnow_status (*)(Arguments...)) noexcept {
+  return ([] {
+    using To = std::remove_pointer_t<Arguments>;
+    if constexpr (std::is_pointer_v<Arguments> && std::is_class_v<To>) {
+      if constexpr (requires(To to) { to.size; }) return true;
+    }
+    return false;
+  }() || ...);
+}
+
+}  // namespace winnow::test
