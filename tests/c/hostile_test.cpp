@@ -52,7 +52,7 @@ constexpr std::size_t count_of(winnow_status (*)(Arguments...)) {
 TEST(CInterface, refuses_calls_with_nothing) {
 #define WINNOW_CALL(function) \
   EXPECT_EQ(call_with_zeros(&(function)), WINNOW_INVALID_ARGUMENT) << #function;
-#include "winnow_calls.inc"
+#include <winnow_calls.inc>
 #undef WINNOW_CALL
 }
 
@@ -63,7 +63,7 @@ TEST(CInterface, answers_a_status_whichever_pointer_is_null) {
     const winnow_status status = call_without(missing, world, &(function));      \
     EXPECT_STRNE(winnow_status_name(status), "unknown") << #function << missing; \
   }
-#include "winnow_calls.inc"
+#include <winnow_calls.inc>
 #undef WINNOW_CALL
 }
 
@@ -75,7 +75,7 @@ TEST(CInterface, refuses_structs_of_another_size) {
   if (takes_sized(&(function))) {                                                             \
     EXPECT_EQ(call_without(kNone, world, &(function)), WINNOW_INVALID_ARGUMENT) << #function; \
   }
-#include "winnow_calls.inc"
+#include <winnow_calls.inc>
 #undef WINNOW_CALL
   }
 }

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 namespace winnow::c {
@@ -41,10 +42,14 @@ template <typename Choice>
 /// No struct of the interface is larger than this, in whatever version.
 inline constexpr std::size_t kLargestStruct = 4096;
 
-/// Whether a struct that may grow is one that this version understands: of its own size, or larger.
+/// The size that a struct had in the first version of the interface: one that grows keeps it here.
+template <typename T>
+inline constexpr std::size_t kFirstSize = sizeof(T);
+
+/// Whether a struct that may grow is of any version, earlier or later.
 template <typename T>
 [[nodiscard]] bool is_sized(const T* given) noexcept {
-  return given != nullptr && given->size >= sizeof(T) && given->size <= kLargestStruct;
+  return given != nullptr && given->size >= kFirstSize<T> && given->size <= kLargestStruct;
 }
 
 /// Reads a struct that may grow; null leaves `own`, which holds what is so by default. What a later
@@ -54,20 +59,21 @@ template <typename T>
   if (given == nullptr) return true;
   if (!is_sized(given)) return false;
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(given);
-  if (std::any_of(bytes + sizeof(T), bytes + given->size, [](std::uint8_t b) { return b != 0; })) {
+  const std::size_t known = std::min(given->size, sizeof(T));
+  if (std::any_of(bytes + known, bytes + given->size, [](std::uint8_t b) { return b != 0; })) {
     return false;
   }
-  own = *given;
+  std::memcpy(&own, given, known);
   return true;
 }
 
-/// Writes to one that `is_sized`; what a later version has behind the end is zero.
+/// Writes to one that `is_sized` as much as it has; what a later version has behind it is zero.
 template <typename T>
 void write_sized(T own, T& out) noexcept {
   own.size = out.size;
-  auto* bytes = reinterpret_cast<std::uint8_t*>(&out);
-  std::fill(bytes + sizeof(T), bytes + own.size, std::uint8_t{0});
-  out = own;
+  const std::size_t known = std::min(own.size, sizeof(T));
+  std::memcpy(&out, &own, known);
+  std::memset(reinterpret_cast<std::uint8_t*>(&out) + known, 0, own.size - known);
 }
 
 [[nodiscard]] inline winnow_bytes bytes_of(const Bytes& bytes) noexcept {
