@@ -2,13 +2,10 @@
 
 #include <winnow/c/volumes.h>
 #include <winnow/core/debug_draw.h>
-#include <winnow/core/oriented_box.h>
 
 #include <string_view>
 
 namespace winnow::c {
-
-[[nodiscard]] OrientedBox oriented_box_of(const winnow_oriented_box& given) noexcept;
 
 /// Draws with a caller's functions.
 class Drawing final : public DebugDraw {

@@ -14,6 +14,7 @@
 #include <winnow/core/hits.h>
 #include <winnow/core/key.h>
 #include <winnow/core/object_filter.h>
+#include <winnow/core/oriented_box.h>
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/pair_events.h>
 #include <winnow/core/plane.h>
@@ -109,6 +110,15 @@ WINNOW_TWIN_MEMBERS(winnow_scene_distance, SceneDistance, point_b);
 static_assert(sizeof(winnow_shape_id) == sizeof(ShapeId));
 [[nodiscard]] inline const ShapeId* shape_ids(const winnow_shape_id* ids) noexcept {
   return reinterpret_cast<const ShapeId*>(ids);
+}
+
+/// In C the axes are one after another, in C++ the columns of a matrix.
+[[nodiscard]] inline OrientedBox oriented_box_of(const winnow_oriented_box& given) noexcept {
+  OrientedBox box;
+  box.center = Eigen::Vector3f(given.center);
+  box.half = Eigen::Vector3f(given.half);
+  for (Eigen::Index i = 0; i < 3; ++i) box.axes.col(i) = Eigen::Vector3f(given.axes[i]);
+  return box;
 }
 
 /// An array of C as C++ takes it.

@@ -22,14 +22,6 @@ void write_kdop(const OrientedBox& box, float* slabs) noexcept {
 
 }  // namespace
 
-OrientedBox oriented_box_of(const winnow_oriented_box& given) noexcept {
-  OrientedBox box;
-  box.center = Eigen::Vector3f(given.center);
-  box.half = Eigen::Vector3f(given.half);
-  for (Eigen::Index i = 0; i < 3; ++i) box.axes.col(i) = Eigen::Vector3f(given.axes[i]);
-  return box;
-}
-
 Drawing::Drawing(const winnow_debug_draw& draw) noexcept : draw_(draw) {}
 
 void Drawing::box(const Aabb& box, Colour colour) {
