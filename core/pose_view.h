@@ -2,6 +2,7 @@
 
 #include <winnow/core/pose.h>
 
+#include <Eigen/Core>
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -12,7 +13,8 @@ namespace winnow {
 /// Poses where the caller keeps them: pointers to the three coordinates of position (double) and
 /// the four of orientation (w, x, y, z; double or float), and the distance in bytes from one pose
 /// to the next. Nothing is copied to make one, and it must not outlive the memory it looks at.
-/// Without orientations bodies do not turn.
+/// Without orientations bodies that are moved do not turn, and poses that are read have the
+/// identity.
 struct PoseView {
   std::array<const double*, 3> position{};
   std::size_t position_stride = sizeof(double);
@@ -41,6 +43,16 @@ struct PoseView {
   noexcept  // NOLINT(google-explicit-constructor)
       : PoseView(std::span<const Pose>(poses)) {}
 
+  /// Positions alone.
+  PoseView(std::array<const double*, 3> positions, std::size_t poses,
+           std::size_t position_bytes = sizeof(double)) noexcept
+      : position(positions), position_stride(position_bytes), count(poses) {}
+  [[nodiscard]] static PoseView of_positions(std::span<const Eigen::Vector3d> positions) noexcept {
+    if (positions.empty()) return {};
+    const double* const first = positions.data()->data();
+    return {{first, first + 1, first + 2}, positions.size(), sizeof(Eigen::Vector3d)};
+  }
+
   /// Columns, or members of any struct.
   PoseView(std::array<const double*, 3> positions, std::array<const float*, 4> orientations,
            std::size_t poses, std::size_t position_bytes = sizeof(double),
@@ -59,6 +71,9 @@ struct PoseView {
         orientation_stride(orientation_bytes),
         count(poses) {}
 
+  [[nodiscard]] bool has_orientations() const noexcept {
+    return orientation[0] != nullptr || orientation_float[0] != nullptr;
+  }
   [[nodiscard]] Pose operator[](std::size_t i) const noexcept {
     Pose pose;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -37,6 +37,9 @@ struct ContactPoint {
   std::uint64_t feature;
 };
 
+/// No pair or point: of contacts that were not there in the last frame.
+inline constexpr std::uint32_t kNoContact = ~0U;
+
 /// At most so many points per manifold.
 inline constexpr std::uint32_t kManifoldPoints = 4;
 

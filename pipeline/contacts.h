@@ -89,6 +89,20 @@ class WINNOW_API Contacts {
   /// The same as columns.
   [[nodiscard]] const ContactColumns& contact_columns() const noexcept;
 
+  /// Where a scene with SceneOptions::warm_start was asked, else empty: the index that each pair,
+  /// and at level manifold each point, had when these Contacts were last filled, or kNoContact, so
+  /// that a solver starts from what it found then by one gather:
+  ///
+  ///     impulse[i] = before[i] == kNoContact ? 0 : last_impulse[before[i]]
+  ///
+  /// No two have the same. Pairs that begin have none, nor do those that slept. Points of a pair
+  /// that persists are, in this order: that of the same feature, between the same parts; with
+  /// contact reduction that of the same feature; the nearest one left, where it moved by no more
+  /// than 1/50 of the smaller body's radius in the frame of body a or in that of body b (unless
+  /// more than 256 are left of one pair).
+  [[nodiscard]] std::span<const std::uint32_t> previous_pair() const noexcept;
+  [[nodiscard]] std::span<const std::uint32_t> previous_point() const noexcept;
+
   /// How many pairs kept the manifolds they had.
   [[nodiscard]] std::size_t carried() const noexcept;
 

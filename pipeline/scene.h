@@ -7,10 +7,12 @@
 #include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
+#include <winnow/core/pair_events.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/pose_view.h>
 #include <winnow/core/status.h>
 #include <winnow/partitions/partition.h>
+#include <winnow/pipeline/contact_groups.h>
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/narrow_phase.h>
@@ -53,6 +55,10 @@ struct SceneOptions {
   /// has one for a pair of bodies at all; a frame takes a tenth longer without a margin, and up to
   /// half where the margin is wide. Off: all manifolds of all parts, raw.
   bool contact_reduction = false;
+  /// Contacts tell where each pair and each point was in the last frame (Contacts::previous_pair
+  /// and previous_point), so that a solver starts from the impulses that it found then. Takes 4
+  /// bytes for each pair, 5 for each point and 56 for each body.
+  bool warm_start = false;
   /// That of the partitions (see PartitionOptions).
   std::size_t build_budget = 0;
   /// What holds triangle meshes, compounds and height fields; null for a scene without. Must
@@ -155,12 +161,26 @@ class WINNOW_API Scene {
 
   /// Gives bodies new poses. O(1) each; the partitions follow at the next question.
   Status move(Key key, const Pose& pose);
+  /// Of a view without orientations: new positions, each body as it is turned.
   Status move(std::span<const Key> keys, const PoseView& poses);
   /// Moves bodies from one set to another: sleeping bodies to dynamic when they wake.
   Status set_motion(Key key, Motion motion);
   Status set_motion(std::span<const Key> keys, Motion motion);
   Status set_shape(Key key, ShapeId shape);
   Status set_filter(Key key, const ObjectFilter& filter);
+
+  /// Bodies that never meet, whatever their filters say: neighbouring links of a robot, bones of a
+  /// ragdoll. `ignored` false lets them meet again; the order of the two is of no effect, and what
+  /// is told twice stands once. Removing a body ends what was said of it. A body that is told to
+  /// ignore itself is `invalid_argument`. O(pairs log pairs + all that are ignored); a scene with
+  /// none pays nothing.
+  Status set_ignored(Key a, Key b, bool ignored = true);
+  Status set_ignored(std::span<const KeyPair> pairs, bool ignored = true);
+  [[nodiscard]] bool is_ignored(Key a, Key b) const noexcept;
+  /// Asked about every pair of bodies, by the ids of their keys, whose boxes meet, whose filters
+  /// let them and that are not ignored. A pair is not asked about in every frame: to have other
+  /// answers given, set it again. See ObjectPredicate for what it may do.
+  void set_predicate(const PairPredicate& predicate) noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] std::size_t size(Motion motion) const noexcept;
@@ -177,6 +197,19 @@ class WINNOW_API Scene {
   /// contacts of two bodies that fell asleep are remembered, neither shown nor ended, until one
   /// wakes. `out_of_memory` leaves `contacts` cleared.
   Status collide(ContactLevel level, Contacts& contacts);
+
+  /// Groups of the pairs in contacts that this scene filled and whose bodies it still has
+  /// (`invalid_key`). Fixed bodies join nothing; sleeping ones count as dynamic, since what touches
+  /// them may wake them. The same on any number of threads. `out_of_memory` leaves `out` cleared.
+  ///
+  /// Islands: pairs that bodies connect, numbered in the order of their first pairs. About O(pairs
+  /// + bodies).
+  Status islands(const Contacts& contacts, ContactGroups& out) const;
+  /// Colours: no two pairs of one group share a body, so that they can be solved side by side, but
+  /// for those of kRestColour. Each pair, in their order, gets the first colour that neither body
+  /// has, so that there are fewer than twice as many as one body has contacts, and at most
+  /// kContactColours. O(pairs + bodies), on the thread that calls.
+  Status colours(const Contacts& contacts, ContactGroups& out) const;
 
   /// The partition of a set; null while it has had no body, nor was reserved for one. Its client
   /// data are bodies' ids, its boxes are measured from `origin()`.

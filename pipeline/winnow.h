@@ -36,6 +36,7 @@
 #include <winnow/partitions/scene_features.h>
 #include <winnow/partitions/structures.h>
 #include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/contact_groups.h>
 #include <winnow/pipeline/contact_regions.h>
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/height_field.h>

@@ -38,6 +38,7 @@ Collision::Collision(SceneState& scene, ContactsState& contacts, ContactLevel le
       level_(level),
       carries_(scene.options.carry_over > 0.0 && level >= ContactLevel::distance),
       reduces_(scene.options.contact_reduction && level == ContactLevel::manifold),
+      remembers_places_(scene.options.warm_start),
       same_scene_(contacts.scene == scene.serial),
       same_level_(same_scene_ && contacts.level == level) {}
 
@@ -46,6 +47,7 @@ Status Collision::run() {
   contacts_.scene = scene_.serial;
   contacts_.level = level_;
   contacts_.carried_count = 0;
+  shown_last_ = static_cast<std::uint32_t>(contacts_.frame.pairs());
   if (!wake_dormant() || !match()) return Status::out_of_memory;
   if (decide()) {
     if (!list_pairs()) return Status::out_of_memory;
@@ -59,6 +61,9 @@ Status Collision::run() {
       contacts_.carried.swap(contacts_.carried_before);
     }
     if (!show() || !close_frame()) return Status::out_of_memory;
+    match_points();
+  } else if (!keep_places()) {
+    return Status::out_of_memory;
   }
   contacts_.clock = scene_.clock;
   contacts_.pairs_serial = scene_.pairs.serial();
@@ -263,6 +268,9 @@ void Collision::write_task(std::uint32_t first, std::uint32_t end, Place at) noe
     c.frame.copy(c.before, touching.first, touching.count, at);
     std::fill_n(c.frame.event.data() + at.pair, touching.count, ContactEvent::persisted);
     std::fill_n(c.shown_again.data() + touching.first, touching.count, std::uint8_t{1});
+    for (std::uint32_t k = 0; remembers_places_ && k < touching.count; ++k) {
+      c.history.pair[at.pair + k] = place_before(touching.first + k);
+    }
     at += c.before.extent(touching.first, touching.count);
   }
 }
@@ -288,7 +296,7 @@ bool Collision::show() {
   }
   const std::size_t records = carries_ ? pair_count() : end.pair;
   if (!c.frame.resize(level_, end.pair, end.manifold, end.point) || !c.records.resize(records) ||
-      !c.carried.resize(carries_ ? records : 0)) {
+      !c.carried.resize(carries_ ? records : 0) || !make_history()) {
     return false;
   }
   // The frames change places at the next call, which may find as much as this one.
@@ -318,6 +326,9 @@ void Collision::write(std::uint32_t pair, const Place& to) noexcept {
   }
   frame.event[to.pair] = persists ? ContactEvent::persisted : ContactEvent::begun;
   if (persists) c.shown_again[shown] = 1;
+  if (remembers_places_) {
+    c.history.pair[to.pair] = persists ? place_before(shown) : kNoContact;
+  }
   if (level_ == ContactLevel::pairs) return;
   frame.manifold_first[to.pair] = to.manifold;
   Place at = to;

@@ -34,6 +34,13 @@ class Collision {
   [[nodiscard]] bool close_frame();
   [[nodiscard]] bool put_to_sleep(std::uint32_t old_shown) const noexcept;
 
+  // Where contacts were (contact_history.cpp).
+  [[nodiscard]] bool make_history() noexcept;
+  void match_points() noexcept;
+  void match_points(std::uint32_t shown) noexcept;
+  [[nodiscard]] bool keep_places() noexcept;
+  void note_poses() noexcept;
+
   // Answers (collide.cpp).
   [[nodiscard]] bool list_pairs();
   [[nodiscard]] Status answer_convex();
@@ -51,6 +58,10 @@ class Collision {
   void write_task(std::uint32_t first, std::uint32_t end, Place at) noexcept;
   [[nodiscard]] bool touches(const NarrowResult& answers, std::size_t at) const noexcept;
   void write(std::uint32_t pair, const Place& to) noexcept;
+  /// What is told of a pair's place in the last frame: none that slept was shown in it.
+  [[nodiscard]] std::uint32_t place_before(std::uint32_t shown) const noexcept {
+    return shown < shown_last_ ? shown : kNoContact;
+  }
   void write_manifold(const NarrowResult& answers, std::size_t at, const double* offset,
                       Place& to) noexcept;
   void write_region(const ContactRegion& region, Place& to) noexcept;
@@ -79,6 +90,10 @@ class Collision {
   bool carries_;
   /// Manifolds of composite shapes are those of regions.
   bool reduces_;
+  /// It is told where contacts were.
+  bool remembers_places_;
+  /// Pairs that the contacts showed before this call.
+  std::uint32_t shown_last_ = 0;
   /// What the contacts remember is of this scene; and of this level.
   bool same_scene_;
   bool same_level_;

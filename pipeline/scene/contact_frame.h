@@ -5,6 +5,7 @@
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/narrow_result.h>
 #include "pipeline/scene/body_pairs.h"
+#include "pipeline/scene/contact_history.h"
 
 #include <cstdint>
 #include <memory_resource>
@@ -122,6 +123,8 @@ struct ContactsState {
   ContactFrame dormant;
   Column<PairRecord> dormant_records;
   Column<CarriedPair> dormant_carried;
+  /// Of what is shown.
+  ContactHistory history;
   /// Which scene filled these, and how it stood then.
   std::uint64_t scene = 0;
   std::uint32_t clock = 0;
@@ -142,7 +145,8 @@ struct ContactsState {
 
   void clear() noexcept;
   /// See Scene::reserve_contacts (reserve.cpp).
-  [[nodiscard]] bool reserve(const SceneRoom& room, bool carries, Pages pages) noexcept;
+  [[nodiscard]] bool reserve(const SceneRoom& room, bool carries, bool remembers_places,
+                             Pages pages) noexcept;
 };
 
 }  // namespace winnow

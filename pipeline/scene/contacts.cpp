@@ -1,5 +1,6 @@
 #include <winnow/pipeline/contacts.h>
 
+#include "core/memory/columns.h"
 #include "core/memory/new_in.h"
 #include "pipeline/scene/contact_frame.h"
 
@@ -222,6 +223,7 @@ ContactsState::ContactsState(std::pmr::memory_resource* memory) noexcept
       dormant(memory),
       dormant_records(memory),
       dormant_carried(memory),
+      history(memory),
       old_record(memory),
       source(memory),
       origin(memory),
@@ -237,6 +239,7 @@ void ContactsState::clear() noexcept {
   carried.clear();
   dormant_records.clear();
   dormant_carried.clear();
+  history.clear();
   scene = 0;
   carried_count = 0;
 }
@@ -340,6 +343,14 @@ ContactPoint Contacts::contact(std::size_t point) const noexcept {
           points.feature[point]};
 }
 
+std::span<const std::uint32_t> Contacts::previous_pair() const noexcept {
+  return span_of(state().history.pair);
+}
+
+std::span<const std::uint32_t> Contacts::previous_point() const noexcept {
+  return span_of(state().history.point);
+}
+
 std::size_t Contacts::carried() const noexcept {
   return state().carried_count;
 }
@@ -355,11 +366,12 @@ Footprint Contacts::footprint() const noexcept {
   footprint.structure = {sizeof(ContactsState), sizeof(ContactsState)};
   footprint.results += s.frame.bytes();
   footprint.results += s.ended.bytes();
+  footprint.results += bytes_of(s.history.pair, s.history.point);
   for (const Bytes& bytes :
        {s.before.bytes(), s.dormant.bytes(), s.records.bytes(), s.records_before.bytes(),
         s.carried.bytes(), s.carried_before.bytes(), s.dormant_records.bytes(),
         s.dormant_carried.bytes(), s.old_record.bytes(), s.source.bytes(), s.origin.bytes(),
-        s.shown_again.bytes(), s.sums.bytes()}) {
+        s.shown_again.bytes(), s.sums.bytes(), s.history.taken.bytes(), s.history.pose.bytes()}) {
     footprint.scratch += bytes;
   }
   return footprint;

@@ -58,7 +58,9 @@ Status Scene::reserve_contacts(Contacts& out, const SceneRoom& room, Pages pages
   if (state_ == nullptr || out.state_ == nullptr) return Status::out_of_memory;
   if (const Status good = check(room); good != Status::ok) return good;
   const bool carries = state_->options.carry_over > 0.0 && room.level >= ContactLevel::distance;
-  return out.state_->reserve(room, carries, pages) ? Status::ok : Status::out_of_memory;
+  return out.state_->reserve(room, carries, state_->options.warm_start, pages)
+             ? Status::ok
+             : Status::out_of_memory;
 }
 
 // The partitions come last: one that was made is seen.
@@ -156,7 +158,8 @@ bool SceneState::list_rehearsal(std::size_t kinds, std::size_t count) noexcept {
   return true;
 }
 
-bool ContactsState::reserve(const SceneRoom& room, bool carries, Pages pages) noexcept {
+bool ContactsState::reserve(const SceneRoom& room, bool carries, bool remembers_places,
+                            Pages pages) noexcept {
   const std::size_t shown = shown_pairs(room);
   const bool may_sleep = room.bodies[static_cast<std::size_t>(Motion::fixed)] != 0 ||
                          room.bodies[static_cast<std::size_t>(Motion::sleeping)] != 0;
@@ -164,6 +167,8 @@ bool ContactsState::reserve(const SceneRoom& room, bool carries, Pages pages) no
     if (one == &dormant && !may_sleep) continue;
     if (!one->reserve(room.level, shown, room.manifolds, room.points, pages)) return false;
   }
+  const std::size_t points = room.level == ContactLevel::manifold ? room.points : 0;
+  if (remembers_places && !history.reserve(shown, points, bodies_of(room), pages)) return false;
   // Pairs that wake are put beside all that are remembered.
   const std::size_t remembered = carries ? room.pairs + shown : shown;
   const std::size_t carried_over = carries ? remembered : 0;

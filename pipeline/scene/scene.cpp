@@ -97,7 +97,9 @@ SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcep
       parts_narrow(given.memory),
       parts_answers(given.memory),
       parts_slot(given.memory),
-      regions(given.memory) {
+      regions(given.memory),
+      ignored(given.memory),
+      ignores(given.memory) {
   if (given.composites != nullptr) composites_seen = given.composites->revision();
 }
 
@@ -153,6 +155,7 @@ Status Scene::remove(std::span<const Key> keys) {
   }
   ++s.regroupings;
   s.forget_stale();
+  s.forget_ignored();
   return Status::ok;
 }
 
@@ -166,6 +169,7 @@ void Scene::clear() noexcept {
   }
   s.keys.clear();
   s.forget_stale();
+  s.forget_ignored();
   ++s.regroupings;
 }
 
@@ -185,7 +189,13 @@ Status Scene::move(std::span<const Key> keys, const PoseView& poses) {
     if (!s.keys.is_valid(keys[i])) return Status::invalid_key;
     if (!poses[i].is_valid()) return Status::invalid_pose;
   }
-  for (std::size_t i = 0; i < keys.size(); ++i) s.set_pose(keys[i].id, poses[i]);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    Pose to = poses[i];
+    if (!poses.has_orientations()) {
+      std::copy_n(s.pose[keys[i].id].orientation, 4, to.orientation);
+    }
+    s.set_pose(keys[i].id, to);
+  }
   return Status::ok;
 }
 
@@ -291,7 +301,8 @@ SceneFootprint Scene::footprint() const noexcept {
   for (const Bytes& bytes :
        {s.shape.bytes(), s.pose.bytes(), s.motion.bytes(), s.place.bytes(), s.moved_at.bytes(),
         s.shaped_at.bytes(), s.anchor.bytes(), s.stale.bytes(), s.is_stale.bytes(), s.boxes.bytes(),
-        s.boxes_of.bytes(), s.boxes_body.bytes(), s.chosen.bytes(), s.left.bytes()}) {
+        s.boxes_of.bytes(), s.boxes_body.bytes(), s.chosen.bytes(), s.left.bytes(),
+        s.ignored.bytes(), s.ignores.bytes()}) {
     footprint.bodies += bytes;
   }
   for (std::size_t i = 0; i < kMotions; ++i) {

@@ -1,6 +1,7 @@
 #include "pipeline/scene/scene_state.h"
 
 #include "core/sort/stretches.h"
+#include "pipeline/scene/body_predicate.h"
 #include "pipeline/scene/motion_bound.h"
 #include "pipeline/scene/scene_origin.h"
 #include "pipeline/shapes/extent.h"
@@ -351,9 +352,12 @@ Status SceneState::find_pairs() {
   std::size_t count = 0;
   for (SceneSet& other : sets) {
     if (!dynamic.partition.has_value() || !other.partition.has_value()) continue;
-    const Status status = &other == &dynamic
-                              ? dynamic.partition->self_pairs(other.with_dynamic)
-                              : dynamic.partition->pairs_with(*other.partition, other.with_dynamic);
+    const BodyPredicate judge{*this, dynamic.body_of.data(), other.body_of.data()};
+    const PairOptions asked = judge.options();
+    const Status status =
+        &other == &dynamic
+            ? dynamic.partition->self_pairs(other.with_dynamic, asked)
+            : dynamic.partition->pairs_with(*other.partition, other.with_dynamic, asked);
     if (status != Status::ok) return status;
     sources[count++] = {other.with_dynamic.pairs(), dynamic.body_of.data(), other.body_of.data()};
   }

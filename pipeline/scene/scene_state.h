@@ -5,6 +5,7 @@
 #include "pipeline/scene/body_pairs.h"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -94,6 +95,11 @@ struct SceneState {
   Column<std::uint32_t> parts_slot;
   ContactRegions regions;
   SceneStatistics statistics;
+  /// Bodies that never meet, as (smaller id << 32 | larger id), sorted; and by id whether a body
+  /// is among them, where there were that many when it was told.
+  Column<std::uint64_t> ignored;
+  Column<std::uint8_t> ignores;
+  PairPredicate predicate;
   /// Boxes updated since the last `collide`.
   std::uint64_t boxes_updated = 0;
 
@@ -143,6 +149,17 @@ struct SceneState {
   [[nodiscard]] Status refresh_set(Motion which);
   [[nodiscard]] bool needs_box(std::uint32_t body) const noexcept;
   [[nodiscard]] Status find_pairs();
+  /// Which pairs may meet (meetings.cpp).
+  [[nodiscard]] bool may_pair(ObjectId a, ObjectId b) const noexcept;
+  [[nodiscard]] bool is_ignored(ObjectId a, ObjectId b) const noexcept;
+  void forget_ignored() noexcept;
+  template <typename Unwanted>
+  void drop_ignored(Unwanted&& is_unwanted) noexcept {
+    std::uint64_t* const end = std::remove_if(ignored.begin(), ignored.end(), is_unwanted);
+    ignored.set_size(static_cast<std::size_t>(end - ignored.begin()));
+  }
+  /// All pairs are found anew by the next `collide`.
+  void ask_again() noexcept;
 };
 
 }  // namespace winnow

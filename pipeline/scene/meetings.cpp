@@ -1,0 +1,98 @@
+// Which pairs of bodies may meet, beyond their filters: those that are not ignored and that the
+// caller's predicate accepts.
+
+#include "pipeline/scene/scene_state.h"
+
+#include <algorithm>
+
+namespace winnow {
+namespace {
+
+/// Of a pair that is to be dropped. Ids are below kMaxBodies.
+constexpr std::uint64_t kMark = std::uint64_t{1} << 63U;
+
+[[nodiscard]] std::uint64_t pair_number(ObjectId a, ObjectId b) noexcept {
+  return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+}
+
+}  // namespace
+
+Status Scene::set_ignored(Key a, Key b, bool ignored) {
+  const KeyPair pair{a, b};
+  return set_ignored({&pair, 1}, ignored);
+}
+
+Status Scene::set_ignored(std::span<const KeyPair> pairs, bool ignored) {
+  if (state_ == nullptr) return Status::out_of_memory;
+  SceneState& s = *state_;
+  for (const KeyPair& pair : pairs) {
+    if (!s.keys.is_valid(pair.first) || !s.keys.is_valid(pair.second)) return Status::invalid_key;
+    if (pair.first == pair.second) return Status::invalid_argument;
+  }
+  if (pairs.empty()) return Status::ok;
+  if (ignored) {
+    const std::size_t known = s.ignores.size();
+    if (!s.ignored.grow(s.ignored.size() + pairs.size()) || !s.ignores.grow(s.shape.size())) {
+      return Status::out_of_memory;
+    }
+    s.ignores.set_size(s.shape.size());
+    std::fill(s.ignores.begin() + known, s.ignores.end(), std::uint8_t{0});
+    for (const KeyPair& pair : pairs) {
+      (void)s.ignored.push_back(pair_number(pair.first.id, pair.second.id));
+      s.ignores[pair.first.id] = s.ignores[pair.second.id] = 1;
+    }
+    std::sort(s.ignored.begin(), s.ignored.end());
+    std::uint64_t* const end = std::unique(s.ignored.begin(), s.ignored.end());
+    s.ignored.set_size(static_cast<std::size_t>(end - s.ignored.begin()));
+  } else {
+    const auto number_of = [](std::uint64_t pair) { return pair & ~kMark; };
+    for (const KeyPair& pair : pairs) {
+      const std::uint64_t number = pair_number(pair.first.id, pair.second.id);
+      std::uint64_t* const at =
+          std::ranges::lower_bound(s.ignored.begin(), s.ignored.end(), number, {}, number_of);
+      if (at != s.ignored.end() && number_of(*at) == number) *at |= kMark;
+    }
+    s.drop_ignored([](std::uint64_t pair) { return (pair & kMark) != 0; });
+  }
+  s.ask_again();
+  return Status::ok;
+}
+
+bool Scene::is_ignored(Key a, Key b) const noexcept {
+  return contains(a) && contains(b) && state_->is_ignored(a.id, b.id);
+}
+
+void Scene::set_predicate(const PairPredicate& predicate) noexcept {
+  if (state_ == nullptr) return;
+  state_->predicate = predicate;
+  state_->ask_again();
+}
+
+bool SceneState::is_ignored(ObjectId a, ObjectId b) const noexcept {
+  const auto may_be = [&](ObjectId body) { return body < ignores.size() && ignores[body] != 0; };
+  return may_be(a) && may_be(b) &&
+         std::binary_search(ignored.begin(), ignored.end(), pair_number(a, b));
+}
+
+bool SceneState::may_pair(ObjectId a, ObjectId b) const noexcept {
+  if (is_ignored(a, b)) return false;
+  return predicate.accept == nullptr || predicate.accept(predicate.context, a, b);
+}
+
+// Whatever was said of bodies that were removed: their ids are going to be others'.
+void SceneState::forget_ignored() noexcept {
+  if (ignored.empty()) return;
+  drop_ignored([&](std::uint64_t pair) {
+    return !keys.is_live(static_cast<ObjectId>(pair >> 32U)) ||
+           !keys.is_live(static_cast<ObjectId>(pair));
+  });
+}
+
+void SceneState::ask_again() noexcept {
+  for (SceneSet& set : sets) {
+    set.with_dynamic.clear();
+    ++set.changes;
+  }
+}
+
+}  // namespace winnow

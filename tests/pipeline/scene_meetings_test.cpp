@@ -1,0 +1,160 @@
+// Pairs that a scene is told not to report, and positions without orientations.
+
+#include "tests/pipeline/scene_world.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
+
+namespace winnow::test {
+namespace {
+
+/// Four balls in a row, each of which touches the next.
+struct Row {
+  Row() {
+    ShapeId ball;
+    EXPECT_EQ(pool.add(SphereShape{1.0}, ball), Status::ok);
+    for (int i = 0; i < 4; ++i) {
+      const BodyDefinition body{
+          .shape = ball, .pose = Pose::at(1.9 * i, 0, 0), .data = static_cast<ClientData>(i)};
+      EXPECT_EQ(scene.add(body, keys[i]), Status::ok);
+    }
+  }
+  [[nodiscard]] std::set<Names> pairs() {
+    EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    return shown(contacts);
+  }
+
+  ShapePool pool;
+  Scene scene{pool, {.carry_over = 0.01}};
+  Key keys[4];
+  Contacts contacts;
+};
+
+using Pairs = std::set<Names>;
+
+TEST(SceneMeetings, bodies_that_ignore_each_other_end_their_contact_until_they_do_not) {
+  Row row;
+  EXPECT_EQ(row.pairs(), (Pairs{{0, 1}, {1, 2}, {2, 3}}));
+  ASSERT_EQ(row.scene.set_ignored(row.keys[2], row.keys[1]), Status::ok);
+  EXPECT_TRUE(row.scene.is_ignored(row.keys[1], row.keys[2]));
+  EXPECT_EQ(row.pairs(), (Pairs{{0, 1}, {2, 3}}));
+  EXPECT_EQ(row.contacts.ended().size(), 1U);
+  ASSERT_EQ(row.scene.set_motion(row.keys[1], Motion::sleeping), Status::ok);
+  EXPECT_EQ(row.pairs(), (Pairs{{0, 1}, {2, 3}}));
+  ASSERT_EQ(row.scene.set_ignored(row.keys[1], row.keys[2], false), Status::ok);
+  EXPECT_FALSE(row.scene.is_ignored(row.keys[1], row.keys[2]));
+  EXPECT_EQ(row.pairs(), (Pairs{{0, 1}, {1, 2}, {2, 3}}));
+}
+
+TEST(SceneMeetings, what_was_said_of_a_body_goes_with_it) {
+  Row row;
+  ASSERT_EQ(row.scene.set_ignored(row.keys[0], row.keys[1]), Status::ok);
+  BodyDefinition body;
+  ASSERT_EQ(row.scene.body(row.keys[0], body), Status::ok);
+  ASSERT_EQ(row.scene.remove(row.keys[0]), Status::ok);
+  EXPECT_EQ(row.scene.set_ignored(row.keys[0], row.keys[2]), Status::invalid_key);
+  Key fresh;
+  ASSERT_EQ(row.scene.add(body, fresh), Status::ok);
+  ASSERT_EQ(fresh.id, row.keys[0].id);
+  EXPECT_EQ(row.pairs(), (Pairs{{0, 1}, {1, 2}, {2, 3}}));
+  EXPECT_EQ(row.scene.set_ignored(fresh, fresh), Status::invalid_argument);
+}
+
+TEST(SceneMeetings, a_predicate_is_asked_by_the_bodies_own_ids) {
+  Row row;
+  ObjectId lone = row.keys[2].id;
+  row.scene.set_predicate({[](void* context, ObjectId a, ObjectId b) {
+                             const ObjectId never = *static_cast<ObjectId*>(context);
+                             return a != never && b != never;
+                           },
+                           &lone});
+  EXPECT_EQ(row.pairs(), (Pairs{{0, 1}}));
+  lone = row.keys[0].id;
+  row.scene.set_predicate({[](void* context, ObjectId a, ObjectId b) {
+                             const ObjectId never = *static_cast<ObjectId*>(context);
+                             return a != never && b != never;
+                           },
+                           &lone});
+  EXPECT_EQ(row.pairs(), (Pairs{{1, 2}, {2, 3}}));
+  row.scene.set_predicate({});
+  EXPECT_EQ(row.pairs(), (Pairs{{0, 1}, {1, 2}, {2, 3}}));
+}
+
+/// Pairs are ignored and heeded at random while bodies move, sleep, come and go.
+TEST(SceneMeetings, the_pairs_shown_are_those_that_are_not_ignored) {
+  SceneWorld world(scaled(300), 31);
+  Scene scene(world.pool);
+  ASSERT_EQ(add_all(scene, world), Status::ok);
+  Contacts contacts;
+  std::set<Names> ignored;
+  for (int frame = 0; frame < 10; ++frame) {
+    std::vector<KeyPair> told;
+    const bool heed = frame % 3 == 2;
+    const auto truth = world.touching();
+    for (const auto& [pair, distance] : truth) {
+      if (world.random.chance(0.7)) continue;
+      told.push_back({world.keys[pair.first], world.keys[pair.second]});
+      if (heed) {
+        ignored.erase(pair);
+      } else {
+        ignored.insert(pair);
+      }
+    }
+    ASSERT_EQ(scene.set_ignored(told, !heed), Status::ok);
+    ASSERT_EQ(scene.collide(ContactLevel::boolean, contacts), Status::ok);
+    std::set<Names> expected;
+    for (const auto& [pair, distance] : truth) {
+      if (ignored.count(pair) == 0) expected.insert(pair);
+    }
+    EXPECT_EQ(shown(contacts), expected);
+    world.stir(0.02);
+    ASSERT_EQ(move_all(scene, world), Status::ok);
+  }
+}
+
+TEST(SceneMeetings, memory_that_is_refused_changes_nothing_and_all_bytes_are_counted) {
+  CountingMemory memory;
+  SceneWorld world(40, 32);
+  Scene scene(world.pool, {.memory = &memory});
+  ASSERT_EQ(add_all(scene, world), Status::ok);
+  for (std::size_t granted = 0; granted < 2; ++granted) {
+    memory.refuse_after(granted);
+    EXPECT_EQ(scene.set_ignored(world.keys[0], world.keys[1]), Status::out_of_memory);
+    memory.grant_all();
+    EXPECT_FALSE(scene.is_ignored(world.keys[0], world.keys[1]));
+    EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
+  }
+  ASSERT_EQ(scene.set_ignored(world.keys[0], world.keys[1]), Status::ok);
+  EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
+}
+
+TEST(SceneMeetings, positions_alone_move_bodies_and_do_not_turn_them) {
+  ShapePool pool;
+  ShapeId box;
+  ASSERT_EQ(pool.add(BoxShape{{1, 2, 3}}, box), Status::ok);
+  Scene scene(pool);
+  Key keys[2];
+  Pose turned = Pose::at(0, 0, 0);
+  for (double& q : turned.orientation) q = 0.5;
+  ASSERT_EQ(scene.add({.shape = box, .pose = turned}, keys[0]), Status::ok);
+  ASSERT_EQ(scene.add({.shape = box}, keys[1]), Status::ok);
+  const std::vector<Eigen::Vector3d> places{{4, 5, 6}, {7, 8, 9}};
+  const double x[2] = {1, 2};
+  const double y[2] = {3, 4};
+  const double z[2] = {5, 6};
+  for (const PoseView& view : {PoseView::of_positions(places), PoseView({x, y, z}, 2)}) {
+    ASSERT_EQ(scene.move(keys, view), Status::ok);
+    BodyDefinition body;
+    ASSERT_EQ(scene.body(keys[0], body), Status::ok);
+    for (const double q : body.pose.orientation) EXPECT_EQ(q, 0.5);
+    EXPECT_EQ(body.pose.position[0], view[0].position[0]);
+    EXPECT_EQ(body.pose.position[2], view[0].position[2]);
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test

@@ -1,0 +1,401 @@
+// Where contacts were in the last frame, against a twin that keeps that frame whole and looks for
+// each point in all of it.
+
+#include "tests/pipeline/composite_world.h"
+#include "tests/pipeline/scene_world.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
+
+namespace winnow::test {
+namespace {
+
+/// Keys of a pair, and the kinds of its shapes: with other kinds it is another pair.
+using PairName = std::array<std::uint32_t, 6>;
+
+/// A point as the twin keeps it.
+struct KeptPoint {
+  std::uint32_t index;
+  std::uint32_t part[2];
+  std::uint64_t feature;
+  /// In the frames of both bodies.
+  Eigen::Vector3d local[2];
+  bool taken;
+};
+
+struct KeptPair {
+  std::uint32_t index;
+  std::vector<KeptPoint> points;
+};
+
+[[nodiscard]] Eigen::Vector3d in_frame_of(const Pose& pose, const Eigen::Vector3d& world) {
+  const Eigen::Quaterniond q(pose.orientation[0], pose.orientation[1], pose.orientation[2],
+                             pose.orientation[3]);
+  return q.normalized().inverse() *
+         (world - Eigen::Map<const Eigen::Vector3d>(static_cast<const double*>(pose.position)));
+}
+
+/// Follows what Contacts::previous_point promises, word by word.
+class HistoryTwin {
+ public:
+  /// What a frame has to tell, and what it told.
+  void compare(const Scene& scene, const Contacts& contacts, bool reduced, double smallest) {
+    ASSERT_EQ(contacts.previous_pair().size(), contacts.size());
+    ASSERT_EQ(contacts.previous_point().size(), contacts.points());
+    std::map<PairName, KeptPair> now;
+    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
+      const PairName name = name_of(scene, contacts.a()[i], contacts.b()[i]);
+      KeptPair kept = keep(scene, contacts, i);
+      const auto before = kept_.find(name);
+      ASSERT_EQ(contacts.previous_pair()[i],
+                before == kept_.end() ? kNoContact : before->second.index);
+      std::vector<std::uint32_t> expected(kept.points.size(), kNoContact);
+      if (before != kept_.end()) {
+        ++persisted;
+        expected = match(kept.points, before->second.points, reduced, smallest);
+      }
+      for (std::size_t k = 0; k < expected.size(); ++k) {
+        ASSERT_EQ(contacts.previous_point()[kept.points[k].index], expected[k]) << "pair " << i;
+      }
+      now[name] = std::move(kept);
+    }
+    kept_ = std::move(now);
+  }
+  void forget() { kept_.clear(); }
+
+  std::size_t persisted = 0;
+  std::size_t by_feature = 0;
+  std::size_t by_place = 0;
+
+ private:
+  [[nodiscard]] static PairName name_of(const Scene& scene, Key a, Key b) {
+    BodyDefinition body[2];
+    EXPECT_EQ(scene.body(a, body[0]), Status::ok);
+    EXPECT_EQ(scene.body(b, body[1]), Status::ok);
+    return {a.id, a.stamp, b.id, b.stamp, body[0].shape.kind_index(), body[1].shape.kind_index()};
+  }
+
+  [[nodiscard]] static KeptPair keep(const Scene& scene, const Contacts& contacts,
+                                     std::uint32_t i) {
+    BodyDefinition body[2];
+    EXPECT_EQ(scene.body(contacts.a()[i], body[0]), Status::ok);
+    EXPECT_EQ(scene.body(contacts.b()[i], body[1]), Status::ok);
+    KeptPair kept{i, {}};
+    if (contacts.point_first().empty()) return kept;
+    for (auto m = contacts.manifold_first()[i]; m < contacts.manifold_first()[i + 1]; ++m) {
+      for (auto p = contacts.point_first()[m]; p < contacts.point_first()[m + 1]; ++p) {
+        const ContactPoint point = contacts.contact(p);
+        Eigen::Vector3d world;
+        for (int k = 0; k < 3; ++k) {
+          world[k] = static_cast<double>(point.position[k]) + body[0].pose.position[k];
+        }
+        kept.points.push_back({p,
+                               {contacts.part_a()[m], contacts.part_b()[m]},
+                               point.feature,
+                               {in_frame_of(body[0].pose, world), in_frame_of(body[1].pose, world)},
+                               false});
+      }
+    }
+    return kept;
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> match(const std::vector<KeptPoint>& points,
+                                                 std::vector<KeptPoint>& before, bool reduced,
+                                                 double smallest) {
+    std::vector<std::uint32_t> found(points.size(), kNoContact);
+    const auto look = [&](auto&& is_it, std::size_t& count) {
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        for (KeptPoint& old : before) {
+          if (found[k] != kNoContact || old.taken || !is_it(points[k], old)) continue;
+          found[k] = old.index;
+          old.taken = true;
+          ++count;
+        }
+      }
+    };
+    look(
+        [](const KeptPoint& now, const KeptPoint& old) {
+          return now.feature == old.feature && now.part[0] == old.part[0] &&
+                 now.part[1] == old.part[1];
+        },
+        by_feature);
+    if (reduced) {
+      look([](const KeptPoint& now, const KeptPoint& old) { return now.feature == old.feature; },
+           by_feature);
+    }
+    const auto apart = [](const KeptPoint& now, const KeptPoint& old) {
+      return std::min((now.local[0] - old.local[0]).norm(), (now.local[1] - old.local[1]).norm());
+    };
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (found[k] != kNoContact) continue;
+      KeptPoint* nearest = nullptr;
+      for (KeptPoint& old : before) {
+        if (!old.taken &&
+            (nearest == nullptr || apart(points[k], old) < apart(points[k], *nearest)))
+          nearest = &old;
+      }
+      if (nearest == nullptr || apart(points[k], *nearest) > 0.02 * smallest) continue;
+      found[k] = nearest->index;
+      nearest->taken = true;
+      ++by_place;
+    }
+    return found;
+  }
+
+  std::map<PairName, KeptPair> kept_;
+};
+
+/// Equal bodies of several kinds on a terrain of triangles, which shuffle about, come, go, sleep
+/// and wake. All have the radius kRadius.
+class Shuffle {
+ public:
+  static constexpr double kRadius = 0.75;
+
+  Shuffle(std::size_t count, std::uint64_t seed) : composites_(shapes_), random_(seed) {
+    ground_ = add(composites_, grid(8, 0.8F, Cut::random, [](float x, float y) {
+                    return 0.2F * std::sin(1.7F * x) * std::cos(1.3F * y);
+                  }));
+    kinds_.push_back(add(shapes_, BoxShape{{0.5, 0.5, 0.25}, 0.0}));
+    kinds_.push_back(add_octahedron(shapes_, kRadius));
+    kinds_.push_back(add(shapes_, SphereShape{kRadius}));
+    kinds_.push_back(add(shapes_, CapsuleShape{0.25, 0.5}));
+    const CompoundChild children[] = {
+        {add(shapes_, BoxShape{{0.3, 0.2, 0.1}, 0.0}), Pose::at(kRadius - std::sqrt(0.14), 0, 0)},
+        {add(shapes_, SphereShape{0.25}), Pose::at(-0.5, 0, 0)}};
+    kinds_.emplace_back();
+    EXPECT_EQ(composites_.add_compound(children, kinds_.back()), Status::ok);
+    for (std::size_t i = 0; i < count; ++i) starts_.push_back(fresh());
+  }
+
+  [[nodiscard]] SceneOptions options() const {
+    return {.margin = 0.02, .composites = &composites_};
+  }
+  [[nodiscard]] const ShapePool& shapes() const { return shapes_; }
+
+  void fill(Scene& scene) {
+    Key key;
+    EXPECT_EQ(scene.add({.shape = ground_, .motion = Motion::fixed}, key), Status::ok);
+    keys_.resize(starts_.size());
+    bodies_ = starts_;
+    EXPECT_EQ(scene.add(bodies_, keys_), Status::ok);
+  }
+
+  /// One frame's changes. Few bodies rest, so that contacts may be carried over.
+  void stir(Scene& scene, int frame) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (random_.chance(0.3)) continue;
+      for (double& p : bodies_[i].pose.position) p += random_.uniform(-0.01, 0.01);
+      for (double& q : bodies_[i].pose.orientation) q += random_.uniform(-0.01, 0.01);
+      EXPECT_EQ(scene.move(keys_[i], bodies_[i].pose), Status::ok);
+    }
+    const std::size_t one = random_.below(bodies_.size());
+    switch (frame % 4) {
+      case 0:
+        EXPECT_EQ(scene.remove(keys_[one]), Status::ok);
+        bodies_[one] = fresh();
+        EXPECT_EQ(scene.add(bodies_[one], keys_[one]), Status::ok);
+        break;
+      case 1:
+        EXPECT_EQ(scene.set_motion(keys_[one], Motion::sleeping), Status::ok);
+        break;
+      case 2:
+        EXPECT_EQ(scene.set_motion(keys_, Motion::dynamic), Status::ok);
+        break;
+      default:
+        EXPECT_EQ(scene.set_shape(keys_[one], kinds_[random_.below(kinds_.size())]), Status::ok);
+    }
+  }
+
+ private:
+  [[nodiscard]] BodyDefinition fresh() {
+    BodyDefinition body{.shape = kinds_[random_.below(kinds_.size())]};
+    for (int k = 0; k < 2; ++k) body.pose.position[k] = random_.uniform(-2.5, 2.5);
+    body.pose.position[2] = random_.uniform(0.1, 0.6);
+    for (double& q : body.pose.orientation) q = random_.uniform(-1.0, 1.0);
+    return body;
+  }
+
+  ShapePool shapes_;
+  CompositePool composites_;
+  Random random_;
+  ShapeId ground_;
+  std::vector<ShapeId> kinds_;
+  std::vector<BodyDefinition> starts_;
+  std::vector<BodyDefinition> bodies_;
+  std::vector<Key> keys_;
+};
+
+/// Two balls that part and meet again.
+TEST(WarmStart, a_contact_knows_its_place_while_it_lasts) {
+  ShapePool pool;
+  const ShapeId ball = add(pool, SphereShape{1.0});
+  Scene scene(pool, {.warm_start = true});
+  Key keys[4];
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(1.9 * i, 0, 0)}, keys[i]), Status::ok);
+  }
+  Contacts contacts;
+  const auto pairs_before = [&] {
+    EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    const auto pair = contacts.previous_pair();
+    const auto point = contacts.previous_point();
+    EXPECT_TRUE(std::equal(pair.begin(), pair.end(), point.begin(), point.end()));
+    return std::vector<std::uint32_t>(pair.begin(), pair.end());
+  };
+  const std::uint32_t none = kNoContact;
+  EXPECT_EQ(pairs_before(), (std::vector<std::uint32_t>{none, none, none}));
+  EXPECT_EQ(pairs_before(), (std::vector<std::uint32_t>{0, 1, 2}));
+  ASSERT_EQ(scene.move(keys[0], Pose::at(-1, 0, 0)), Status::ok);
+  EXPECT_EQ(pairs_before(), (std::vector<std::uint32_t>{1, 2}));
+  ASSERT_EQ(scene.move(keys[0], Pose::at(0, 0, 0)), Status::ok);
+  EXPECT_EQ(pairs_before(), (std::vector<std::uint32_t>{none, 0, 1}));
+  contacts.clear();
+  EXPECT_EQ(pairs_before(), (std::vector<std::uint32_t>{none, none, none}));
+}
+
+TEST(WarmStart, a_box_that_slides_over_triangles_keeps_its_four_corners) {
+  ShapePool shapes;
+  CompositePool composites(shapes);
+  const ShapeId floor =
+      add(composites, grid(16, 0.5F, Cut::alternating, [](float, float) { return 0.0F; }));
+  const ShapeId box = add(shapes, BoxShape{{0.1, 0.1, 0.1}, 0.0});
+  Scene scene(shapes, {.contact_reduction = true, .warm_start = true, .composites = &composites});
+  Key ground;
+  Key key;
+  ASSERT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, ground), Status::ok);
+  ASSERT_EQ(scene.add({.shape = box}, key), Status::ok);
+  Contacts contacts;
+  for (int frame = 0; frame < 200; ++frame) {
+    ASSERT_EQ(scene.move(key, Pose::at(-2.0 + 0.02 * frame, 0.003 * frame, 0.099)), Status::ok);
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(contacts.points(), 4U);
+    if (frame == 0) continue;
+    for (const std::uint32_t before : contacts.previous_point()) EXPECT_NE(before, kNoContact);
+  }
+}
+
+TEST(WarmStart, places_are_those_of_a_twin_that_keeps_the_whole_last_frame) {
+  for (const bool reduced : {false, true}) {
+    for (const double carry_over : {0.0, 0.005}) {
+      Shuffle world(scaled(60), 3);
+      SceneOptions options = world.options();
+      options.contact_reduction = reduced;
+      options.carry_over = carry_over;
+      options.warm_start = true;
+      Scene scene(world.shapes(), options);
+      world.fill(scene);
+      Contacts contacts;
+      HistoryTwin twin;
+      for (int frame = 0; frame < 40; ++frame) {
+        const ContactLevel level =
+            frame % 13 == 12 ? ContactLevel::distance : ContactLevel::manifold;
+        ASSERT_EQ(scene.collide(level, contacts), Status::ok);
+        // Radii are of what the pool knows: the capsule reaches as far as the others.
+        ASSERT_NO_FATAL_FAILURE(twin.compare(scene, contacts, reduced, Shuffle::kRadius));
+        world.stir(scene, frame);
+      }
+      EXPECT_GT(twin.by_feature, 100U);
+      EXPECT_GT(twin.by_place, 5U);
+      EXPECT_GT(twin.persisted, 100U);
+    }
+  }
+}
+
+TEST(WarmStart, is_the_same_on_any_threads_and_with_any_structure) {
+  std::vector<std::uint64_t> first;
+  for (const StructureKind structure : {linear_bvh(), sweep_and_prune(), automatic()}) {
+    for (const int threads : {1, 2, 8}) {
+      Shuffle world(scaled(300), 5);
+      Threads arena(threads);
+      const auto told = arena.run([&] {
+        SceneOptions options = world.options();
+        options.execution = threads == 1 ? Execution::serial() : Execution::parallel();
+        options.warm_start = true;
+        for (StructureKind& kind : options.structures) kind = structure;
+        Scene scene(world.shapes(), options);
+        world.fill(scene);
+        Contacts contacts;
+        std::vector<std::uint64_t> bits;
+        for (int frame = 0; frame < 12; ++frame) {
+          EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+          for (const auto before : contacts.previous_pair()) bits.push_back(before);
+          for (const auto before : contacts.previous_point()) bits.push_back(before);
+          world.stir(scene, frame);
+        }
+        return bits;
+      });
+      if (first.empty()) first = told;
+      EXPECT_TRUE(told == first) << threads << " threads";
+    }
+  }
+}
+
+TEST(WarmStart, changes_nothing_else_and_costs_no_byte_unless_it_is_asked_for) {
+  std::vector<std::uint64_t> shown_without;
+  std::size_t bytes_without = 0;
+  for (const bool asked : {false, true}) {
+    CountingMemory memory;
+    Shuffle world(scaled(60), 7);
+    SceneOptions options = world.options();
+    options.carry_over = 0.005;
+    options.warm_start = asked;
+    Scene scene(world.shapes(), options);
+    world.fill(scene);
+    Contacts contacts(&memory);
+    std::vector<std::uint64_t> bits;
+    for (int frame = 0; frame < 12; ++frame) {
+      ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+      EXPECT_EQ(contacts.footprint().total().reserved, memory.outstanding());
+      const auto more = digest(contacts);
+      bits.insert(bits.end(), more.begin(), more.end());
+      world.stir(scene, frame);
+    }
+    if (asked) {
+      EXPECT_TRUE(bits == shown_without);
+      EXPECT_GT(memory.outstanding(), bytes_without);
+    } else {
+      EXPECT_TRUE(contacts.previous_pair().empty());
+      EXPECT_TRUE(contacts.previous_point().empty());
+      shown_without = std::move(bits);
+      bytes_without = memory.outstanding();
+    }
+  }
+}
+
+TEST(WarmStart, of_what_did_not_move_everything_is_where_it_was_and_nothing_is_allocated) {
+  Shuffle world(scaled(60), 9);
+  for (const double carry_over : {0.0, 0.01}) {
+    CountingMemory memory;
+    SceneOptions options = world.options();
+    options.memory = &memory;
+    options.carry_over = carry_over;
+    options.warm_start = true;
+    Scene scene(world.shapes(), options);
+    world.fill(scene);
+    Contacts contacts(&memory);
+    for (int frame = 0; frame < 3; ++frame) {
+      ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    }
+    const std::size_t before = memory.requests();
+    for (int frame = 0; frame < 3; ++frame) {
+      ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+      for (std::uint32_t i = 0; i < contacts.size(); ++i) {
+        ASSERT_EQ(contacts.previous_pair()[i], i);
+      }
+      for (std::uint32_t p = 0; p < contacts.points(); ++p) {
+        ASSERT_EQ(contacts.previous_point()[p], p);
+      }
+    }
+    EXPECT_EQ(memory.requests(), before);
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test
