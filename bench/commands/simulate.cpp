@@ -7,6 +7,7 @@
 #include "bench/recordings/recording.h"
 #include "bench/report/page.h"
 #include "bench/rows/flow_rows.h"
+#include "bench/rows/standing_rows.h"
 #include "bench/simulation/mesh_files.h"
 
 #include <algorithm>
@@ -22,6 +23,9 @@ constexpr std::size_t kRecorded = 10;
 constexpr std::size_t kReports = 20;
 /// Rises of the energy that are taken for errors of the integration.
 constexpr double kMostRise = 1e-3;
+
+/// Every structure.
+constexpr const char* kAll = "all";
 
 /// Facts about a run, as they are printed: what and how much.
 using FlowFacts = std::vector<std::pair<std::string, std::string>>;
@@ -87,6 +91,7 @@ class Simulate final : public RowsCommand {
 
  private:
   void measure() override;
+  void measure_standing();
   [[nodiscard]] FlowFacts facts(const FlowRun& run) const;
   void write_flow_page(const FlowFacts& facts) const;
 
@@ -94,6 +99,8 @@ class Simulate final : public RowsCommand {
   std::string mesh_;
   std::string out_;
   std::string record_;
+  std::string standing_;
+  double seconds_ = StandingQuestion{}.seconds;
 };
 
 void Simulate::add_options(CLI::App& app) {
@@ -106,6 +113,11 @@ void Simulate::add_options(CLI::App& app) {
   option(app, "--record", record_, "An .aabbs file to write, one frame every 10 steps");
   option(app, "--check", asked_.check,
          "Every so many steps, compare the contacts with those of all pairs");
+  std::vector<std::string> structures = standing_names();
+  structures.emplace_back(kAll);
+  one_of(app, "--standing", standing_, structures,
+         "Instead of the flow, a structure that is to stand on a solver with warm start");
+  number(app, "--seconds", seconds_, 1, 1e6, "How long it is to stand, simulated");
   add_threads_option(app, asked_.threads);
   add_seed_option(app, asked_.seed);
   add_rows_options(app);
@@ -153,7 +165,31 @@ void Simulate::write_flow_page(const FlowFacts& facts) const {
                   page.plots);
 }
 
+// With the manifolds of all parts, and with one for each region.
+void Simulate::measure_standing() {
+  declare_standing(results);
+  std::vector<std::string> names{standing_};
+  if (standing_ == kAll) names = standing_names();
+  plan(2 * names.size());
+  Arenas(asked_.threads).run(asked_.threads, [&] {
+    for (const std::string& name : names) {
+      for (const bool reduced : {false, true}) {
+        step(name, [&] {
+          if (!add_standing(results, {standing_named(name), reduced, seconds_, asked_.threads})) {
+            fail();
+          }
+        });
+      }
+    }
+  });
+  print("standing");
+}
+
 void Simulate::measure() {
+  if (!standing_.empty()) {
+    measure_standing();
+    return;
+  }
   declare_flows(results);
   declare_flow_checks(results);
   FlowOptions options = flow_options(asked_);
@@ -195,7 +231,7 @@ Command add_simulate(CLI::App& app) {
       app, "simulate",
       "Granular flow through a funnel made of triangles: a simulation that embeds winnow, its soak "
       "test, and its benchmark from end to end. Fails if contacts create energy or a check finds a "
-      "contact lost, invented or doubled.");
+      "contact lost, invented or doubled. Or structures that are to stand; fails if one drifts.");
 }
 
 }  // namespace winnow::bench

@@ -4,9 +4,11 @@
 #include "bench/rows/flow_rows.h"
 #include "bench/rows/hard_case_rows.h"
 #include "bench/rows/scene_rows.h"
+#include "bench/rows/standing_rows.h"
 
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -192,6 +194,16 @@ ReportSteps plan_pipeline(const ReportOptions& options) {
     const double bodies = static_cast<double>(asked.objects) * static_cast<double>(asked.steps);
     steps.push_back({"granular flow of " + shape, 1.5e-6 * bodies,
                      [asked](Results& results) { add_flow(results, asked); }});
+  }
+  for (const StandingScene scene : kStandingScenes) {
+    for (const bool reduced : {false, true}) {
+      const StandingQuestion asked{scene, reduced, options.quick ? 2.0 : 60.0};
+      steps.push_back({name_of(scene), 0.03 * asked.seconds, [asked](Results& results) {
+                         if (!add_standing(results, asked)) {
+                           throw std::runtime_error(name_of(asked.scene) + " does not stand");
+                         }
+                       }});
+    }
   }
   return steps;
 }

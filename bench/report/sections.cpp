@@ -9,6 +9,7 @@
 #include "bench/rows/memory_rows.h"
 #include "bench/rows/query_rows.h"
 #include "bench/rows/scene_rows.h"
+#include "bench/rows/standing_rows.h"
 #include "bench/rows/volume_rows.h"
 
 namespace winnow::bench {
@@ -41,6 +42,7 @@ void declare_stability(Results& results) {
 void declare_pipeline(Results& results) {
   declare_scenes(results);
   declare_flows(results);
+  declare_standing(results);
 }
 
 }  // namespace

@@ -151,6 +151,7 @@ SceneOptions Play::some_options(Bytes& bytes, const Shapes& shapes, CountingMemo
   for (StructureKind& kind : options.structures) kind = all[bytes.below(all.size())];
   if (bytes.chance(2)) options.margin = 0.25;
   if (bytes.chance(3)) options.carry_over = 0.0625;
+  options.warm_start = bytes.chance(2);
   return options;
 }
 

@@ -307,6 +307,7 @@ struct WholeWorld {
                              .execution = execution,
                              .margin = 0.05,
                              .carry_over = carry_over,
+                             .warm_start = true,
                              .composites = &world.composites}),
         contacts(memory),
         queries(scene, memory),
@@ -395,6 +396,7 @@ void add_scene_changes(SceneCalls& calls) {
                    }});
   calls.push_back({"contacts of those awake", [](auto& w) { return w.collide(manifold); }});
   calls.push_back({"shape", [](auto& w) { return w.scene.set_shape(w.keys[3], w.world.ids[9]); }});
+  calls.push_back({"ignored", [](auto& w) { return w.scene.set_ignored(w.keys[5], w.keys[2]); }});
   calls.push_back({"filter", [](auto& w) { return w.scene.set_filter(w.keys[4], {2, 2, 0}); }});
   calls.push_back({"remove", [](auto& w) {
                      const std::vector<Key> gone(w.keys.begin() + 9, w.keys.begin() + 14);

@@ -55,9 +55,10 @@ TEST(SceneReserve, a_first_frame_asks_for_nothing) {
         const SceneRoom room = room_of_first_frame(world, level);
         CountingMemory memory;
         CountingMemory results;
-        Scene scene(
-            world.pool,
-            {.memory = &memory, .execution = execution_of(parallel), .carry_over = carry_over});
+        Scene scene(world.pool, {.memory = &memory,
+                                 .execution = execution_of(parallel),
+                                 .carry_over = carry_over,
+                                 .warm_start = true});
         SceneRoom wide = room;
         // Boxes are larger by the carry-over.
         wide.pairs += room.pairs / 2;
@@ -119,7 +120,8 @@ TEST(SceneReserve, contacts_that_were_reserved_for_ask_for_nothing_though_bodies
       for (const bool measuring : {true, false}) {
         SceneWorld world = plain_world(300, 43);
         CountingMemory memory;
-        Scene scene(world.pool, {.memory = &memory, .execution = execution_of(parallel)});
+        Scene scene(world.pool,
+                    {.memory = &memory, .execution = execution_of(parallel), .warm_start = true});
         CountingMemory results;
         Contacts contacts(&results);
         if (!measuring) {

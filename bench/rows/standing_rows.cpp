@@ -1,0 +1,86 @@
+#include "bench/rows/standing_rows.h"
+
+#include <winnow/simd/isa.h>
+#include "bench/common/table.h"
+#include "bench/measure/fingerprint.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace winnow::bench {
+namespace {
+
+/// Simulated time in which springs take up the weight.
+constexpr double kSettling = 1.0;
+
+std::string command_of(const StandingQuestion& asked) {
+  return "bench/run simulate --standing " + name_of(asked.scene) + " --seconds " +
+         short_number(asked.seconds) + " --threads " + std::to_string(asked.threads) + " --isa " +
+         isa_name();
+}
+
+}  // namespace
+
+void declare_standing(Results& results) {
+  results.declare(
+      {"standing",
+       "pipeline",
+       "structures that stand",
+       {"structure", "manifolds", "seconds"},
+       {{"bodies", "bodies", "", Better::neither, Format::count},
+        {"points", "contact points at the end", "", Better::neither, Format::count},
+        {"settled", "moved in the first second", "edges", Better::less, Format::tiny},
+        {"drift", "moved after it", "edges", Better::less, Format::tiny},
+        {"tilt", "turned after it", "radians", Better::less, Format::tiny},
+        {"deepest", "deepest penetration at the end", "edges", Better::less, Format::tiny},
+        {"kept", "points that were there before, least share of a frame", "", Better::neither,
+         Format::percent},
+        {"islands", "islands", "", Better::neither, Format::count},
+        {"colours", "colours", "", Better::neither, Format::count},
+        {"fingerprint", "all bodies' bits", "", Better::neither, Format::text}}});
+}
+
+bool add_standing(Results& results, const StandingQuestion& asked) {
+  StandingOptions options;
+  options.contact_reduction = asked.reduced;
+  options.execution = asked.threads == 1 ? Execution::serial() : Execution::parallel();
+  Standing standing(asked.scene, options);
+  while (standing.time() < std::min(kSettling, asked.seconds)) standing.step();
+  const double settled = standing.drift();
+  standing.mark();
+  double kept = 1.0;
+  while (standing.time() < asked.seconds) {
+    standing.step();
+    kept = std::min(kept, standing.kept_points());
+  }
+  results.add("standing", {{"structure", name_of(asked.scene)},
+                           {"manifolds", asked.reduced ? "one a region" : "of all parts"},
+                           {"seconds", asked.seconds},
+                           {"bodies", standing.bodies()},
+                           {"points", standing.contacts().points()},
+                           {"settled", settled},
+                           {"drift", standing.drift()},
+                           {"tilt", standing.tilt()},
+                           {"deepest", standing.deepest()},
+                           {"kept", kept},
+                           {"islands", standing.islands()},
+                           {"colours", standing.colours()},
+                           {"fingerprint", to_hex(standing.fingerprint())},
+                           {"command", command_of(asked)}});
+  return standing.drift() < kStandingDrift;
+}
+
+std::vector<std::string> standing_names() {
+  std::vector<std::string> names;
+  for (const StandingScene scene : kStandingScenes) names.push_back(name_of(scene));
+  return names;
+}
+
+StandingScene standing_named(const std::string& name) {
+  for (const StandingScene scene : kStandingScenes) {
+    if (name == name_of(scene)) return scene;
+  }
+  throw std::invalid_argument("no structure " + name);
+}
+
+}  // namespace winnow::bench

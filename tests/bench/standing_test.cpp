@@ -1,0 +1,58 @@
+// Structures on a solver that starts from the impulses of the last frame: they stand, on raw
+// manifolds and on regions, and are the same however they are computed.
+
+#include "bench/simulation/standing.h"
+#include "tests/support/config.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace winnow::bench {
+namespace {
+
+TEST(Standing, structures_settle_and_then_stay_where_they_are) {
+  for (const StandingScene scene : kStandingScenes) {
+    for (const bool reduced : {false, true}) {
+      SCOPED_TRACE(name_of(scene) + (reduced ? ", regions" : ", raw"));
+      StandingOptions options;
+      options.contact_reduction = reduced;
+      Standing standing(scene, options);
+      for (int frame = 0; frame < 60; ++frame) standing.step();
+      EXPECT_LT(standing.drift(), 0.05);
+      standing.mark();
+      double kept = 1.0;
+      for (int frame = 0; frame < 120; ++frame) {
+        standing.step();
+        kept = std::min(kept, standing.kept_points());
+      }
+      EXPECT_LT(standing.drift(), 0.01);
+      EXPECT_LT(standing.tilt(), 0.001);
+      EXPECT_LT(standing.deepest(), 0.005);
+      EXPECT_GT(kept, 0.7);
+      EXPECT_EQ(standing.islands(), 1U);
+    }
+  }
+}
+
+TEST(Standing, is_the_same_on_any_instruction_set_and_number_of_threads) {
+  for (const StandingScene scene : kStandingScenes) {
+    const auto fingerprint = [&](Execution execution) {
+      StandingOptions options;
+      options.execution = execution;
+      Standing standing(scene, options);
+      for (int frame = 0; frame < 40; ++frame) standing.step();
+      return standing.fingerprint();
+    };
+    const std::uint64_t expected = fingerprint(Execution::serial());
+    test::Threads threads(2);
+    EXPECT_EQ(threads.run([&] { return fingerprint(Execution::parallel()); }), expected);
+    for (const Isa isa : available_isas()) {
+      const test::IsaScope scope(isa);
+      EXPECT_EQ(fingerprint(Execution::serial()), expected) << to_string(isa);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace winnow::bench
