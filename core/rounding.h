@@ -15,14 +15,20 @@ namespace winnow {
 /// std::nextafter.
 [[nodiscard]] constexpr float next_up(float value) noexcept {
   const auto bits = std::bit_cast<std::uint32_t>(value);
-  if ((bits & 0x7FFFFFFFU) == 0) return std::numeric_limits<float>::denorm_min();
-  return std::bit_cast<float>((bits >> 31U) != 0 ? bits - 1U : bits + 1U);
+  // One more in its bits, or one less of a negative one; 0 of either sign comes before the
+  // smallest.
+  const std::uint32_t next = bits + 1U - 2U * (bits >> 31U);
+  return std::bit_cast<float>((bits & 0x7FFFFFFFU) == 0 ? 1U : next);
 }
 
 /// Smallest float that is >= `value`. NaN stays NaN; above the float range gives +infinity.
 [[nodiscard]] constexpr float round_up(double value) noexcept {
   const float nearest = static_cast<float>(value);
-  return static_cast<double>(nearest) < value ? next_up(nearest) : nearest;
+  // Of a mask: which of the two it is cannot be foreseen, and a branch would cost more.
+  const std::uint32_t up = static_cast<double>(nearest) < value ? ~0U : 0U;
+  const auto bits = std::bit_cast<std::uint32_t>(nearest);
+  const auto above = std::bit_cast<std::uint32_t>(next_up(nearest));
+  return std::bit_cast<float>(bits ^ ((bits ^ above) & up));
 }
 
 /// Largest float that is <= `value`. NaN stays NaN; below the float range gives -infinity.
@@ -42,7 +48,11 @@ namespace winnow {
   const double sum = a + b;
   const double shadow = sum - a;
   const double error = (a - (sum - shadow)) + (b - shadow);
-  return error < 0.0 ? std::nextafter(sum, -std::numeric_limits<double>::infinity()) : sum;
+  // One less in its bits, or one more of a negative sum; without a branch, as above. A sum of 0 has
+  // no error.
+  const std::int64_t below = error < 0.0 ? 1 : 0;
+  const auto bits = std::bit_cast<std::int64_t>(sum);
+  return std::bit_cast<double>(bits - below * (2 * (bits >> 63) + 1));
 }
 
 /// Smallest double that is >= the exact a + b, for finite sums.

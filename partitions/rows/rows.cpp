@@ -355,6 +355,10 @@ void Rows::for_rows(const Source& source, const EntryOfRow& entry_of, const Visi
       }
     }
     for (std::size_t row = begin; row < end; ++row) {
+      if constexpr (requires { source.fetch(begin); }) {
+        const std::size_t ahead = row + kFetchAhead < end ? entry_of[row + kFetchAhead] : kNoObject;
+        if (ahead != kNoObject) source.fetch(ahead);
+      }
       const std::size_t i = entry_of[row];
       if (i != kNoObject) visit(i, row);
     }

@@ -156,6 +156,7 @@ struct SphereSource {
 
   std::span<const Sphere> spheres;
 
+  void fetch(std::size_t i) const noexcept { __builtin_prefetch(&spheres[i]); }
   [[nodiscard]] bool valid(std::size_t i) const noexcept { return spheres[i].is_valid(); }
   void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
     write_sphere(columns, row, spheres[i]);

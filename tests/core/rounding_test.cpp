@@ -57,6 +57,26 @@ TEST(Rounding, is_outward_and_tight_for_random_doubles) {
   }
 }
 
+TEST(Rounding, of_sums_is_to_the_double_beside_the_nearest_one_where_that_is_on_the_wrong_side) {
+  Random random(2);
+  std::size_t inexact = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const double a = random.log_uniform(1e-9, 1e9) * (random.chance(0.5) ? 1.0 : -1.0);
+    const double b = random.log_uniform(1e-9, 1e9) * (random.chance(0.5) ? 1.0 : -1.0);
+    const double sum = a + b;
+    // Exact: the greater one first.
+    const double first = std::abs(a) > std::abs(b) ? a : b;
+    const double second = std::abs(a) > std::abs(b) ? b : a;
+    const double rest = (first - sum) + second;
+    EXPECT_EQ(add_down(a, b), rest < 0 ? std::nextafter(sum, -kInf) : sum);
+    EXPECT_EQ(add_up(a, b), rest > 0 ? std::nextafter(sum, kInf) : sum);
+    inexact += rest != 0 ? 1 : 0;
+  }
+  EXPECT_GT(inexact, 100000U);
+  EXPECT_EQ(add_down(1.0, -1.0), 0.0);
+  EXPECT_EQ(add_up(-0.5, 0.5), 0.0);
+}
+
 TEST(Rounding, of_less_than_the_smallest_denormal_is_zero_or_that_denormal) {
   EXPECT_EQ(round_down(1e-300), 0.0F);
   EXPECT_EQ(round_up(1e-300), kDenormal);
