@@ -1,0 +1,208 @@
+// winnow on a program's own allocator and job system. All memory comes from the one, all parallel
+// work runs on the other; frames that have no more of anything than earlier ones ask for no memory.
+// Beside it the same on the threads of oneTBB, and on one thread.
+
+#include <winnow/partitions/partition.h>
+
+#include <atomic>
+#include <cmath>
+#include <condition_variable>
+#include <cstddef>
+#include <memory_resource>
+#include <mutex>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "tests/examples/check.h"
+#include "tests/examples/programs/race.h"
+
+namespace {
+
+/// A program's own allocator: here it counts, and hands out what the heap gives.
+class CountingMemory final : public std::pmr::memory_resource {
+ public:
+  std::size_t requests = 0;
+  std::size_t bytes = 0;
+
+ private:
+  void* do_allocate(std::size_t size, std::size_t alignment) override {
+    ++requests;
+    bytes += size;
+    return std::pmr::new_delete_resource()->allocate(size, alignment);
+  }
+  void do_deallocate(void* block, std::size_t size, std::size_t alignment) override {
+    bytes -= size;
+    std::pmr::new_delete_resource()->deallocate(block, size, alignment);
+  }
+  [[nodiscard]] bool do_is_equal(const memory_resource& other) const noexcept override {
+    return this == &other;
+  }
+};
+
+/// A program's own job system: threads that wait for work, and the one that calls, which takes
+/// part.
+class Jobs {
+ public:
+  explicit Jobs(std::size_t threads) {
+    for (std::size_t i = 1; i < threads; ++i) workers_.emplace_back([this] { work(); });
+  }
+  ~Jobs() {
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+    }
+    wake_.notify_all();
+  }
+  Jobs(const Jobs&) = delete;
+  Jobs& operator=(const Jobs&) = delete;
+
+  [[nodiscard]] winnow::JobSystem system() {
+    return {[](void* self, std::size_t count, winnow::JobSystem::Task task, void* tasks) {
+              static_cast<Jobs*>(self)->run({task, tasks, count});
+            },
+            this, workers_.size() + 1};
+  }
+
+ private:
+  struct Batch {
+    winnow::JobSystem::Task task = nullptr;
+    void* tasks = nullptr;
+    std::size_t count = 0;
+  };
+
+  void run(const Batch& batch) {
+    const std::lock_guard one_at_a_time(callers_);
+    {
+      const std::lock_guard lock(mutex_);
+      batch_ = batch;
+      next_ = 0;
+      ++number_;
+    }
+    wake_.notify_all();
+    take_tasks(batch);
+    // Who has not come yet has nothing left to do; who is at work is waited for.
+    std::unique_lock lock(mutex_);
+    batch_ = {};
+    done_.wait(lock, [&] { return working_ == 0; });
+  }
+  void take_tasks(const Batch& batch) {
+    for (std::size_t i = next_++; i < batch.count; i = next_++) batch.task(batch.tasks, i);
+  }
+  void work() {
+    std::size_t seen = 0;
+    for (;;) {
+      // Work often follows work: it is looked for a moment before sleep.
+      for (int look = 0; look < kLooks && number_ == seen; ++look) std::this_thread::yield();
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, [&] { return stopping_ || number_ != seen; });
+      if (stopping_) return;
+      seen = number_;
+      const Batch batch = batch_;
+      ++working_;
+      lock.unlock();
+      take_tasks(batch);
+      lock.lock();
+      if (--working_ == 0) done_.notify_one();
+    }
+  }
+
+  static constexpr int kLooks = 200;
+
+  std::mutex callers_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::condition_variable done_;
+  Batch batch_;
+  std::size_t working_ = 0;
+  bool stopping_ = false;
+  std::atomic<std::size_t> number_{0};
+  std::atomic<std::size_t> next_{0};
+  std::vector<std::jthread> workers_;
+};
+
+/// Boxes that fly through a world and come back at its other side.
+struct Boxes {
+  explicit Boxes(std::size_t count) : side(std::cbrt(4.0F * static_cast<float>(count))) {
+    std::uniform_real_distribution<float> place(0.0F, side);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Eigen::Vector3f at(place(random), place(random), place(random));
+      all.push_back({at, at + Eigen::Vector3f::Ones()});
+    }
+  }
+  void step() {
+    for (winnow::Aabb& box : all) {
+      const float by = box.min.x() > side ? -side : 0.02F;
+      box.min.x() += by;
+      box.max.x() += by;
+    }
+  }
+
+  std::mt19937 random{1};
+  float side;
+  std::vector<winnow::Aabb> all;
+};
+
+/// A partition and what it answers, on some memory and some threads.
+class Finder {
+ public:
+  Finder(const Boxes& boxes, const winnow::Execution& execution, std::pmr::memory_resource* memory)
+      : partition_(winnow::linear_bvh(), {.memory = memory, .execution = execution}),
+        pairs(memory),
+        keys_(boxes.all.size()) {
+    check(partition_.reserve(boxes.all.size()) == winnow::Status::ok, "room is reserved");
+    check(partition_.reserve_pairs(pairs, 4 * boxes.all.size()) == winnow::Status::ok,
+          "room for pairs is reserved");
+    check(partition_.insert(boxes.all, {}, keys_) == winnow::Status::ok, "boxes are inserted");
+  }
+  void find(const Boxes& boxes) {
+    check(partition_.update(keys_, boxes.all) == winnow::Status::ok, "boxes move");
+    check(partition_.self_pairs(pairs, {.order = winnow::Order::canonical}) == winnow::Status::ok,
+          "pairs are found");
+  }
+  [[nodiscard]] std::size_t bytes() const {
+    return partition_.footprint().total().reserved + pairs.footprint().total().reserved;
+  }
+
+ private:
+  winnow::Partition partition_;
+
+ public:
+  winnow::PairBuffer pairs;
+
+ private:
+  std::vector<winnow::Key> keys_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Race race(argc, argv);
+  const std::size_t threads = std::max(2U, std::thread::hardware_concurrency());
+  Jobs jobs(threads);
+  CountingMemory memory;
+  Boxes boxes(race.size(5'000, 100'000));
+  Finder own(boxes, winnow::Execution::on(jobs.system()), &memory);
+  Finder on_tbb(boxes, winnow::Execution::parallel(), std::pmr::get_default_resource());
+  Finder alone(boxes, winnow::Execution::serial(), std::pmr::get_default_resource());
+
+  const std::size_t frames = race.size(20, 60);
+  std::size_t before = 0;
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    boxes.step();
+    if (frame == frames / 2) before = memory.requests;
+    race.time("winnow on own threads", [&] { own.find(boxes); });
+    race.time("on oneTBB", [&] { on_tbb.find(boxes); });
+    race.time("on one thread", [&] { alone.find(boxes); });
+    check(std::ranges::equal(own.pairs.pairs(), on_tbb.pairs.pairs()) &&
+              std::ranges::equal(own.pairs.pairs(), alone.pairs.pairs()),
+          "all find the same pairs in the same order");
+  }
+  check(own.bytes() == memory.bytes, "the footprint is what the allocator gave, to the byte");
+  const std::size_t later = memory.requests - before;
+  return race.finish("own allocator and job system: " + std::to_string(boxes.all.size()) +
+                     " boxes, " + std::to_string(memory.bytes / boxes.all.size()) +
+                     " bytes each with pairs, " + std::to_string(later) +
+                     " requests for memory in " + std::to_string(frames - frames / 2) +
+                     " later frames, " + std::to_string(threads) + " threads");
+}

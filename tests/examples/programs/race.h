@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// What a program and another way to do the same take, side by side in one run. Without arguments
+/// a program does little, for a test; with `--race` as much as its figure is about.
+class Race {
+ public:
+  Race(int argc, char** argv) : full_(argc > 1 && std::strcmp(argv[1], "--race") == 0) {}
+
+  /// How much of something: in a test, and in a race.
+  [[nodiscard]] std::size_t size(std::size_t test, std::size_t race) const {
+    return full_ ? race : test;
+  }
+
+  /// Does the work of one frame and notes what it took. Winnow's comes first in a program.
+  template <typename Work>
+  void time(const std::string& who, Work&& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    const std::chrono::duration<double, std::milli> taken =
+        std::chrono::steady_clock::now() - begin;
+    of(who).milliseconds.push_back(taken.count());
+  }
+
+  /// Prints the median frame of each. For `return` of main.
+  [[nodiscard]] int finish(const std::string& what) {
+    std::printf("%s\n", what.c_str());
+    for (Contender& one : contenders_) {
+      std::printf("  %-34s %9.3f ms a frame", one.who.c_str(), median(one));
+      if (&one != &contenders_.front()) {
+        const double times = median(one) / median(contenders_.front());
+        std::printf("  winnow is %.2f times as fast", times);
+      }
+      std::printf("\n");
+    }
+    return EXIT_SUCCESS;
+  }
+
+ private:
+  struct Contender {
+    std::string who;
+    std::vector<double> milliseconds;
+  };
+
+  Contender& of(const std::string& who) {
+    for (Contender& one : contenders_) {
+      if (one.who == who) return one;
+    }
+    return contenders_.emplace_back(Contender{who, {}});
+  }
+  [[nodiscard]] static double median(Contender& one) {
+    const auto middle =
+        one.milliseconds.begin() + static_cast<std::ptrdiff_t>(one.milliseconds.size() / 2);
+    std::nth_element(one.milliseconds.begin(), middle, one.milliseconds.end());
+    return *middle;
+  }
+
+  bool full_;
+  std::deque<Contender> contenders_;
+};
