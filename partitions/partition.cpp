@@ -1,18 +1,21 @@
 #include <winnow/partitions/partition.h>
 
+#include "core/hooks/log.h"
 #include "core/memory/new_in.h"
 #include "partitions/state/partition_state.h"
 
 namespace winnow {
 namespace {
 
-/// Calls change(rows) for a mutation of so many objects, and has the structure follow.
+/// Calls change(rows) for a mutation of so many objects by a call of this name, and has the
+/// structure follow.
 template <typename Change>
-Status mutate(PartitionState* state, Status otherwise, std::size_t count, Change&& change) {
-  if (state == nullptr) return otherwise;
+Status mutate(const char* call, PartitionState* state, Status otherwise, std::size_t count,
+              Change&& change) {
+  if (state == nullptr) return logged(otherwise, call);
   const Status status = change(state->rows);
   state->note_changes(count);
-  return status;
+  return logged(status, call);
 }
 
 }  // namespace
@@ -32,9 +35,13 @@ StructureKind Partition::structure() const noexcept {
 }
 
 Status Partition::set_structure(StructureKind structure) {
-  if (structure.info() == nullptr) return Status::invalid_argument;
-  if (state_ == nullptr) return status_;
-  return state_->set_structure(structure) ? Status::ok : Status::out_of_memory;
+  Status status = status_;
+  if (structure.info() == nullptr) {
+    status = Status::invalid_argument;
+  } else if (state_ != nullptr) {
+    status = state_->set_structure(structure) ? Status::ok : Status::out_of_memory;
+  }
+  return logged(status, "Partition::set_structure");
 }
 
 StructureChoice Partition::choice() const noexcept {
@@ -55,7 +62,8 @@ Margin Partition::margin() const noexcept {
 
 Status Partition::insert(const BoxView& boxes, std::span<const ClientData> data,
                          std::span<Key> keys) {
-  return state_ == nullptr ? status_ : state_->insert(boxes, data, keys);
+  return logged(state_ == nullptr ? status_ : state_->insert(boxes, data, keys),
+                "Partition::insert");
 }
 
 Status Partition::insert(const Aabb& box, ClientData data, Key& key) {
@@ -65,37 +73,39 @@ Status Partition::insert(const Aabb& box, ClientData data, Key& key) {
 
 Status Partition::insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
                          std::span<Key> keys) {
-  return mutate(state_, status_, keys.size(),
+  return mutate("Partition::insert", state_, status_, keys.size(),
                 [&](Rows& rows) { return rows.insert(spheres, data, keys); });
 }
 
 template <int K>
 Status Partition::insert(std::span<const Kdop<K>> kdops, std::span<const ClientData> data,
                          std::span<Key> keys) {
-  return mutate(state_, status_, keys.size(),
+  return mutate("Partition::insert", state_, status_, keys.size(),
                 [&](Rows& rows) { return rows.insert(kdops, data, keys); });
 }
 
 Status Partition::update(std::span<const Key> keys, const BoxView& boxes) {
-  return state_ == nullptr ? status_ : state_->update(keys, boxes);
+  return logged(state_ == nullptr ? status_ : state_->update(keys, boxes), "Partition::update");
 }
 
 Status Partition::update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries) {
-  return state_ == nullptr ? status_ : state_->update(keys, boxes, entries);
+  return logged(state_ == nullptr ? status_ : state_->update(keys, boxes, entries),
+                "Partition::update");
 }
 
 Status Partition::update(Key key, const Aabb& box) {
-  return state_ == nullptr ? status_ : state_->update(key, box);
+  return logged(state_ == nullptr ? status_ : state_->update(key, box), "Partition::update");
 }
 
 Status Partition::update(std::span<const Key> keys, std::span<const Sphere> spheres) {
-  return mutate(state_, status_, keys.size(),
+  return mutate("Partition::update", state_, status_, keys.size(),
                 [&](Rows& rows) { return rows.update(keys, spheres); });
 }
 
 template <int K>
 Status Partition::update(std::span<const Key> keys, std::span<const Kdop<K>> kdops) {
-  return mutate(state_, status_, keys.size(), [&](Rows& rows) { return rows.update(keys, kdops); });
+  return mutate("Partition::update", state_, status_, keys.size(),
+                [&](Rows& rows) { return rows.update(keys, kdops); });
 }
 
 template Status Partition::insert(std::span<const Kdop<14>>, std::span<const ClientData>,
@@ -109,11 +119,12 @@ template Status Partition::update(std::span<const Key>, std::span<const Kdop<18>
 template Status Partition::update(std::span<const Key>, std::span<const Kdop<26>>);
 
 Status Partition::remove(std::span<const Key> keys) {
-  return state_ == nullptr ? status_ : state_->remove(keys);
+  return logged(state_ == nullptr ? status_ : state_->remove(keys), "Partition::remove");
 }
 
 Status Partition::remove(Key key) {
-  return mutate(state_, status_, 1, [&](Rows& rows) { return rows.remove(key); });
+  return mutate("Partition::remove", state_, status_, 1,
+                [&](Rows& rows) { return rows.remove(key); });
 }
 
 void Partition::clear() noexcept {
@@ -125,7 +136,8 @@ void Partition::release_memory() noexcept {
 }
 
 Status Partition::reserve(std::size_t objects, Pages pages) {
-  return state_ == nullptr ? status_ : state_->reserve(objects, pages);
+  return logged(state_ == nullptr ? status_ : state_->reserve(objects, pages),
+                "Partition::reserve");
 }
 
 std::size_t Partition::size() const noexcept {
@@ -156,7 +168,8 @@ ClientData Partition::client_data_of(ObjectId id) const noexcept {
 }
 
 Status Partition::set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters) {
-  return state_ == nullptr ? status_ : state_->set_filter(keys, filters);
+  return logged(state_ == nullptr ? status_ : state_->set_filter(keys, filters),
+                "Partition::set_filter");
 }
 
 Status Partition::set_filter(Key key, const ObjectFilter& filter) {
@@ -170,7 +183,7 @@ Status Partition::filter(Key key, ObjectFilter& filter) const noexcept {
 }
 
 Status Partition::refresh() const {
-  return state_ == nullptr ? status_ : state_->make_ready();
+  return logged(state_ == nullptr ? status_ : state_->make_ready(), "Partition::refresh");
 }
 
 Status Partition::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const noexcept {

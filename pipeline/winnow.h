@@ -13,6 +13,7 @@
 #include <winnow/core/footprint.h>
 #include <winnow/core/frustum.h>
 #include <winnow/core/hits.h>
+#include <winnow/core/hooks.h>
 #include <winnow/core/kdop.h>
 #include <winnow/core/kdop_around.h>
 #include <winnow/core/key.h>

@@ -1,6 +1,8 @@
 // When rows are put in order anew, and how: at once, or as it was planned ahead.
 
 #include "partitions/index/spatial_index.h"
+
+#include "core/hooks/stage_scope.h"
 #include "partitions/tree/environment_order.h"
 
 #include <algorithm>
@@ -69,6 +71,7 @@ bool SpatialIndex::wants_grouping() const noexcept {
 
 // Plans an order, or does what is left of a plan, and takes it.
 Status SpatialIndex::build() {
+  const StageScope stage(WorkStage::build);
   if (structure_->is_flat()) return build_flat();
   rows_.regions().built = false;
   const bool foreseen = plan_.underway();

@@ -1,5 +1,7 @@
 // All pairs of a partition, anew or by what moved, and those between two.
 
+#include "core/hooks/log.h"
+#include "core/hooks/stage_scope.h"
 #include "partitions/pairs/event_writer.h"
 #include "partitions/pairs/linked_pairs.h"
 #include "partitions/pairs/pair_tracker.h"
@@ -13,6 +15,7 @@
 namespace winnow {
 namespace {
 
+constexpr const char* kSelfPairs = "Partition::self_pairs";
 constexpr std::size_t kQueriesPerTask = 64;
 constexpr std::size_t kTreeTasks = 64;
 // Finding all pairs takes so many times as long as other work on as many objects.
@@ -102,11 +105,12 @@ Status PartitionState::reserve_pairs(PairBuffer& out, std::size_t pairs,
 
 Status PartitionState::find_self_pairs(PairBuffer& out, const PairOptions& options,
                                        PairEvents* events) const {
-  if (events == nullptr) return answer_self_pairs(out, options, nullptr);
+  const StageScope stage(WorkStage::pairs);
+  if (events == nullptr) return logged(answer_self_pairs(out, options, nullptr), kSelfPairs);
   EventWriter writer(*events, rows.keys(), out, pairs_.identity, rows.execution());
   const Status status = answer_self_pairs(out, options, &writer);
   if (status != Status::ok) writer.fail();
-  return status;
+  return logged(status, kSelfPairs);
 }
 
 Status PartitionState::answer_self_pairs(PairBuffer& out, const PairOptions& options,
@@ -333,6 +337,7 @@ Status Partition::pairs_with(const Partition& other, PairBuffer& out,
   if (state_ == nullptr || other.state_ == nullptr) {
     return state_ == nullptr ? status_ : other.status_;
   }
+  const StageScope stage(WorkStage::pairs);
   const PartitionState& mine = *state_;
   const PartitionState& theirs = *other.state_;
   if (const Status status = mine.settle(); status != Status::ok) return status;

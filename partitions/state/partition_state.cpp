@@ -1,5 +1,7 @@
 #include "partitions/state/partition_state.h"
 
+#include "core/hooks/log.h"
+#include "core/hooks/stage_scope.h"
 #include "core/memory/new_in.h"
 
 #include <algorithm>
@@ -186,6 +188,7 @@ Status PartitionState::refresh() const {
   if (!stale_.load(std::memory_order_acquire)) return Status::ok;
   const std::lock_guard lock(refresh_mutex_);
   if (!stale_.load(std::memory_order_relaxed)) return Status::ok;
+  const StageScope stage(WorkStage::refresh);
   // The structure is a cache of the rows: bringing it up to date is no change that a caller of a
   // const query can see.
   const Status status = const_cast<PartitionState*>(this)->refresh_now();
@@ -220,7 +223,13 @@ Status PartitionState::refresh_now() {
   if (refused || (chooser_ != nullptr && index.exchange_refused())) chooser_->refused();
   if (status != Status::ok) return status;
   rows.settle(pairs_.tracked_serial != 0);
-  if (chooser_ != nullptr) chooser_->refreshed(rows, index.kind(), index.builds());
+  if (chooser_ == nullptr) return Status::ok;
+  chooser_->refreshed(rows, index.kind(), index.builds());
+  if (index.kind() != now) {
+    StructureChoice choice;
+    chooser_->report(choice);
+    tell_choice(now.name(), index.kind().name(), choice.reason, rows.size());
+  }
   return Status::ok;
 }
 

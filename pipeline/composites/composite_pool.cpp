@@ -1,5 +1,6 @@
 #include <winnow/pipeline/composite_pool.h>
 
+#include "core/hooks/stage_scope.h"
 #include "core/memory/new_in.h"
 #include "pipeline/composites/composites.h"
 #include "pipeline/mesh/mesh_view.h"
@@ -367,6 +368,7 @@ std::uint64_t CompositePool::revision() const noexcept {
 Status CompositePool::expand(const ShapePool& shapes, const Bodies& bodies,
                              std::span<const BodyPair> pairs, double margin,
                              const Execution& execution, PrimitivePairs& out) const {
+  const StageScope stage(WorkStage::mid_phase);
   return mid::expand(state_, shapes.tables(), bodies, pairs, margin, execution, out);
 }
 

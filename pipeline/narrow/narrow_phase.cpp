@@ -1,4 +1,5 @@
 #include <winnow/pipeline/narrow_phase.h>
+#include "core/hooks/stage_scope.h"
 #include "core/memory/new_in.h"
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/shapes/pair_order.h"
@@ -346,6 +347,7 @@ Status NarrowPhase::collide(const ShapePool& shapes, const Bodies& bodies,
 Status NarrowPhase::collide(const ShapeTables& tables, const Bodies& bodies,
                             std::span<const BodyPair> pairs, const NarrowOptions& options,
                             NarrowResult& result) {
+  const StageScope stage(WorkStage::narrow_phase);
   statistics_ = {};
   bad_body_ = ~0U;
   if (state_ == nullptr) state_ = new_in<State>(memory_, memory_);

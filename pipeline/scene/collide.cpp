@@ -1,6 +1,8 @@
 // One call of Scene::collide: pairs are listed, answered by the narrow phase, and put into a frame,
 // whose size is counted by tasks before each writes its own stretch.
 
+#include "core/hooks/log.h"
+#include "core/hooks/stage_scope.h"
 #include "core/sort/stretches.h"
 #include "pipeline/narrow/answer_slots.h"
 #include "pipeline/scene/collision.h"
@@ -13,9 +15,11 @@ namespace winnow {
 Status Scene::collide(ContactLevel level, Contacts& contacts) {
   if (state_ == nullptr || contacts.state_ == nullptr) {
     contacts.clear();
-    return Status::out_of_memory;
+    return logged(Status::out_of_memory, "Scene::collide");
   }
-  if (!state_->options_are_good || level > ContactLevel::manifold) return Status::invalid_argument;
+  if (!state_->options_are_good || level > ContactLevel::manifold) {
+    return logged(Status::invalid_argument, "Scene::collide");
+  }
   state_->statistics = {};
   Status status = state_->find_pairs();
   if (status == Status::ok) {
@@ -29,7 +33,7 @@ Status Scene::collide(ContactLevel level, Contacts& contacts) {
   } else {
     contacts.clear();
   }
-  return status;
+  return logged(status, "Scene::collide");
 }
 
 Collision::Collision(SceneState& scene, ContactsState& contacts, ContactLevel level) noexcept
@@ -60,6 +64,7 @@ Status Collision::run() {
       contacts_.records.swap(contacts_.records_before);
       contacts_.carried.swap(contacts_.carried_before);
     }
+    const StageScope stage(WorkStage::contacts);
     if (!show() || !close_frame()) return Status::out_of_memory;
     match_points();
   } else if (!keep_places()) {

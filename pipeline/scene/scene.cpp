@@ -1,5 +1,6 @@
 #include <winnow/pipeline/scene.h>
 
+#include "core/hooks/log.h"
 #include "core/memory/new_in.h"
 #include "pipeline/scene/scene_state.h"
 
@@ -115,27 +116,29 @@ Status Scene::add(const BodyDefinition& body, Key& key) {
 }
 
 Status Scene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
-  if (state_ == nullptr) return Status::out_of_memory;
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::add");
   SceneState& s = *state_;
-  if (!s.options_are_good) return Status::invalid_argument;
-  if (bodies.size() != keys.size()) return Status::size_mismatch;
-  if (bodies.size() + s.keys.slot_count() >= kMaxBodies) return Status::too_many_objects;
+  if (!s.options_are_good) return logged(Status::invalid_argument, "Scene::add");
+  if (bodies.size() != keys.size()) return logged(Status::size_mismatch, "Scene::add");
+  if (bodies.size() + s.keys.slot_count() >= kMaxBodies)
+    return logged(Status::too_many_objects, "Scene::add");
   for (const BodyDefinition& body : bodies) {
-    if (!is_motion(body.motion)) return Status::invalid_argument;
-    if (const Status good = s.check(body.shape, body.pose); good != Status::ok) return good;
+    if (!is_motion(body.motion)) return logged(Status::invalid_argument, "Scene::add");
+    if (const Status good = s.check(body.shape, body.pose); good != Status::ok)
+      return logged(good, "Scene::add");
   }
-  if (!s.reserve(bodies.size())) return Status::out_of_memory;
+  if (!s.reserve(bodies.size())) return logged(Status::out_of_memory, "Scene::add");
   const bool is_first = s.keys.size() == 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) keys[i] = s.acquire(bodies[i]);
   if (is_first) s.choose_origin();
   const Status status = s.settle(bodies, keys);
-  if (status == Status::ok) return status;
+  if (status == Status::ok) return logged(status, "Scene::add");
   // The last ones first: the next bodies get the ids that these had.
   for (std::size_t i = keys.size(); i-- > 0;) {
     s.keys.release(keys[i].id);
     keys[i] = {};
   }
-  return status;
+  return logged(status, "Scene::add");
 }
 
 Status Scene::remove(Key key) {
@@ -143,10 +146,10 @@ Status Scene::remove(Key key) {
 }
 
 Status Scene::remove(std::span<const Key> keys) {
-  if (state_ == nullptr) return Status::out_of_memory;
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::remove");
   SceneState& s = *state_;
-  if (!s.are_distinct(keys)) return Status::invalid_key;
-  if (!s.left.resize(keys.size())) return Status::out_of_memory;
+  if (!s.are_distinct(keys)) return logged(Status::invalid_key, "Scene::remove");
+  if (!s.left.resize(keys.size())) return logged(Status::out_of_memory, "Scene::remove");
   for (const Motion which : kEveryMotion) {
     std::size_t count = 0;
     for (const std::uint32_t body : s.choose(keys, which)) s.left[count++] = s.place[body];
@@ -174,20 +177,20 @@ void Scene::clear() noexcept {
 }
 
 Status Scene::move(Key key, const Pose& pose) {
-  if (state_ == nullptr) return Status::out_of_memory;
-  if (!state_->keys.is_valid(key)) return Status::invalid_key;
-  if (!pose.is_valid()) return Status::invalid_pose;
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::move");
+  if (!state_->keys.is_valid(key)) return logged(Status::invalid_key, "Scene::move");
+  if (!pose.is_valid()) return logged(Status::invalid_pose, "Scene::move");
   state_->set_pose(key.id, pose);
   return Status::ok;
 }
 
 Status Scene::move(std::span<const Key> keys, const PoseView& poses) {
-  if (state_ == nullptr) return Status::out_of_memory;
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::move");
   SceneState& s = *state_;
-  if (keys.size() != poses.count) return Status::size_mismatch;
+  if (keys.size() != poses.count) return logged(Status::size_mismatch, "Scene::move");
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (!s.keys.is_valid(keys[i])) return Status::invalid_key;
-    if (!poses[i].is_valid()) return Status::invalid_pose;
+    if (!s.keys.is_valid(keys[i])) return logged(Status::invalid_key, "Scene::move");
+    if (!poses[i].is_valid()) return logged(Status::invalid_pose, "Scene::move");
   }
   for (std::size_t i = 0; i < keys.size(); ++i) {
     Pose to = poses[i];
@@ -204,18 +207,19 @@ Status Scene::set_motion(Key key, Motion motion) {
 }
 
 Status Scene::set_motion(std::span<const Key> keys, Motion motion) {
-  if (state_ == nullptr) return Status::out_of_memory;
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_motion");
   SceneState& s = *state_;
-  if (!is_motion(motion)) return Status::invalid_argument;
-  if (!s.are_distinct(keys)) return Status::invalid_key;
-  return s.move_to_set(keys, motion);
+  if (!is_motion(motion)) return logged(Status::invalid_argument, "Scene::set_motion");
+  if (!s.are_distinct(keys)) return logged(Status::invalid_key, "Scene::set_motion");
+  return logged(s.move_to_set(keys, motion), "Scene::set_motion");
 }
 
 Status Scene::set_shape(Key key, ShapeId shape) {
-  if (state_ == nullptr) return Status::out_of_memory;
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_shape");
   SceneState& s = *state_;
-  if (!s.keys.is_valid(key)) return Status::invalid_key;
-  if (const Status good = s.check(shape, s.pose[key.id]); good != Status::ok) return good;
+  if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_shape");
+  if (const Status good = s.check(shape, s.pose[key.id]); good != Status::ok)
+    return logged(good, "Scene::set_shape");
   s.shape[key.id] = shape;
   s.shaped_at[key.id] = s.clock;
   s.mark_stale(key.id);
@@ -223,13 +227,13 @@ Status Scene::set_shape(Key key, ShapeId shape) {
 }
 
 Status Scene::set_filter(Key key, const ObjectFilter& filter) {
-  if (state_ == nullptr) return Status::out_of_memory;
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_filter");
   SceneState& s = *state_;
-  if (!s.keys.is_valid(key)) return Status::invalid_key;
+  if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_filter");
   SceneSet& set = s.set(s.motion[key.id]);
   const Status status = set.partition->set_filter(s.place[key.id], filter);
   if (status == Status::ok) ++set.changes;
-  return status;
+  return logged(status, "Scene::set_filter");
 }
 
 std::size_t Scene::size() const noexcept {
@@ -261,7 +265,7 @@ Key Scene::key_of(ObjectId id) const noexcept {
 }
 
 Status Scene::refresh() {
-  return state_ != nullptr ? state_->refresh() : Status::out_of_memory;
+  return logged(state_ != nullptr ? state_->refresh() : Status::out_of_memory, "Scene::refresh");
 }
 
 const Partition* Scene::partition(Motion motion) const noexcept {

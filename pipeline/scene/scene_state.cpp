@@ -1,5 +1,6 @@
 #include "pipeline/scene/scene_state.h"
 
+#include "core/hooks/stage_scope.h"
 #include "core/sort/stretches.h"
 #include "pipeline/scene/body_predicate.h"
 #include "pipeline/scene/motion_bound.h"
@@ -290,6 +291,7 @@ Status SceneState::refresh() {
   // Looked at as often as boxes are made, so that it costs little beside them.
   if (boxes_since_look >= std::max(kFewBoxes, keys.size() / 2)) choose_origin();
   if (is_fresh()) return Status::ok;
+  const StageScope stage(WorkStage::refresh);
   for (std::size_t which = 0; which < kMotions; ++which) {
     const Status status = refresh_set(static_cast<Motion>(which));
     if (status != Status::ok) return status;

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <winnow/core/hooks.h>
+
+#include <atomic>
+
+namespace winnow {
+
+extern std::atomic<StageHook> stage_hook;
+
+/// Tells of a stage as long as it lives.
+class StageScope {
+ public:
+  explicit StageScope(WorkStage stage) noexcept
+      : hook_(stage_hook.load(std::memory_order_acquire)), stage_(stage) {
+    if (hook_ != nullptr) hook_(stage_, true);
+  }
+  ~StageScope() {
+    if (hook_ != nullptr) hook_(stage_, false);
+  }
+  StageScope(const StageScope&) = delete;
+  StageScope& operator=(const StageScope&) = delete;
+
+ private:
+  StageHook hook_;
+  WorkStage stage_;
+};
+
+}  // namespace winnow
