@@ -36,6 +36,10 @@ foreach(header ${WINNOW_PUBLIC_HEADERS})
   install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${room})
 endforeach()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# What debuggers show of public types.
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/debuggers/winnow_gdb.py
+              ${CMAKE_CURRENT_LIST_DIR}/debuggers/winnow.natvis
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/winnow)
 
 set(winnow_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/winnow)
 install(EXPORT winnow-targets NAMESPACE winnow:: DESTINATION ${winnow_package_dir})
