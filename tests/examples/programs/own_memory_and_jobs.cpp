@@ -4,6 +4,7 @@
 
 #include <winnow/partitions/partition.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <condition_variable>
@@ -11,6 +12,7 @@
 #include <memory_resource>
 #include <mutex>
 #include <random>
+#include <string>
 #include <thread>
 #include <vector>
 

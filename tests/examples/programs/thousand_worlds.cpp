@@ -5,10 +5,12 @@
 #include <winnow/winnow.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <random>
 #include <span>
+#include <string>
 #include <vector>
 
 #if WINNOW_BESIDE_BULLET
