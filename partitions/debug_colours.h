@@ -13,8 +13,8 @@ namespace winnow {
 // single colours are from Okabe and Ito, "Color Universal Design", 2008; the depth of a node goes
 // through the viridis map (van der Walt and Smith, 2015), whose lightness falls steadily.
 
-inline constexpr Colour kObjectColour{160, 168, 178, 255};
-inline constexpr Colour kLabelColour{232, 232, 232, 255};
+inline constexpr Colour kObjectColour{160, 168, 178, 255};  ///< the volume of an object
+inline constexpr Colour kLabelColour{232, 232, 232, 255};   ///< text
 inline constexpr Colour kCellColour{86, 180, 233, 255};     ///< a cell or strip that holds objects
 inline constexpr Colour kContentsColour{0, 114, 178, 255};  ///< the box around what it holds
 inline constexpr Colour kAxisColour{240, 228, 66, 255};  ///< the axis that is swept or runs fastest

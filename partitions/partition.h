@@ -36,6 +36,7 @@ struct PartitionOptions {
   /// Every allocation comes from here. It must outlive the partition. Where a parallel partition
   /// runs, only the calling thread allocates.
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  /// On whose threads builds, refits and queries run; results are the same on all.
   Execution execution = Execution::parallel();
   /// What bounds an object. Every partition prunes by boxes; of spheres and k-DOPs it drops the
   /// pairs whose boxes overlap though they themselves do not.
@@ -58,8 +59,9 @@ enum class Order : std::uint8_t {
   canonical,  ///< sorted by (first, second): every exact partition gives identical bytes
 };
 
+/// How pairs are asked for.
 struct PairOptions {
-  Order order = Order::fast;
+  Order order = Order::fast;  ///< in which order they are written
   /// Update the caller's buffer by what moved since it was last filled, where that is cheaper.
   /// False asks for every pair anew.
   bool incremental = true;
@@ -70,19 +72,19 @@ struct PairOptions {
 
 /// How a partition stands and what it did; counters, never timings, so they repeat exactly.
 struct Statistics {
-  std::size_t objects = 0;
+  std::size_t objects = 0;    ///< live ones
   std::size_t regular = 0;    ///< objects in the cells, strips or leaves made by the last build
   std::size_t irregular = 0;  ///< objects kept apart: oversize, new, or moved away
   std::size_t cells = 0;      ///< cells, strips or leaf blocks
   std::size_t depth = 0;      ///< levels of the node tree; 0 if there is none
   std::size_t levels = 0;     ///< of sizes: grids laid over each other, or depths of an octree
   std::uint64_t builds = 0;   ///< since construction
-  std::uint64_t planned_builds = 0;  ///< of these, how many were planned before they were due
-  std::uint64_t refits = 0;          ///< refreshes that did not need a build
-  std::uint64_t full_queries = 0;
-  std::uint64_t incremental_queries = 0;
-  std::uint64_t last_tests = 0;  ///< tests of 16 volumes at once, in the last pair query
-  std::uint64_t last_pairs = 0;  ///< pairs reported by the last pair query
+  std::uint64_t planned_builds = 0;       ///< of these, how many were planned before they were due
+  std::uint64_t refits = 0;               ///< refreshes that did not need a build
+  std::uint64_t full_queries = 0;         ///< pair queries that asked about every object
+  std::uint64_t incremental_queries = 0;  ///< pair queries that redid only the pairs of what moved
+  std::uint64_t last_tests = 0;           ///< tests of 16 volumes at once, in the last pair query
+  std::uint64_t last_pairs = 0;           ///< pairs reported by the last pair query
 };
 
 class PartitionState;
@@ -114,10 +116,13 @@ struct StructureChoice {
 /// entries are taken or none. Nothing throws.
 class WINNOW_API Partition final {
  public:
+  /// An empty partition. It takes memory for its state at once; see `status`.
   explicit Partition(StructureKind structure, const PartitionOptions& options = {}) noexcept;
+  /// Takes over the objects; `other` answers every call with `invalid_argument` from then on.
   Partition(Partition&& other) noexcept
       : state_(std::exchange(other.state_, nullptr)),
         status_(std::exchange(other.status_, Status::invalid_argument)) {}
+  /// Exchanges the two partitions, objects, keys and all.
   Partition& operator=(Partition&& other) noexcept {
     std::swap(state_, other.state_);
     std::swap(status_, other.status_);
@@ -141,7 +146,9 @@ class WINNOW_API Partition final {
   /// True if `self_pairs` reports exactly the pairs whose given boxes overlap: where the structure
   /// tests bounds, and these are boxes without a margin.
   [[nodiscard]] bool is_exact() const noexcept;
+  /// What objects are bounded by: that of the options it was made with.
   [[nodiscard]] Volume volume() const noexcept;
+  /// By how much stored boxes are larger than given ones: that of the options it was made with.
   [[nodiscard]] Margin margin() const noexcept;
 
   /// Adds one object per box. `keys` receives a key for each; `data` may be empty (all zero).
@@ -152,6 +159,7 @@ class WINNOW_API Partition final {
   /// within the stored one leaves that as it is, unless it is larger by more than twice the margin;
   /// the object then counts as not moved.
   Status update(std::span<const Key> keys, const BoxView& boxes);
+  /// The same for one object.
   Status update(Key key, const Aabb& box);
   /// The same for some entries of keys and boxes alone, of which a caller keeps all: those that a
   /// list names, or of which a mask has the bits set, need not be copied together. A number that is
@@ -163,16 +171,19 @@ class WINNOW_API Partition final {
   /// boxes). Spheres that miss each other by less than 1e-6 of their distance may be reported.
   Status insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
                 std::span<Key> keys);
+  /// The same for spheres. Values that are not finite or a negative radius are `invalid_bounds`.
   Status update(std::span<const Key> keys, std::span<const Sphere> spheres);
   /// k-DOPs, where `volume()` is that of the same K (14, 18 or 26); else `unsupported_volume`.
   template <int K>
   Status insert(std::span<const Kdop<K>> kdops, std::span<const ClientData> data,
                 std::span<Key> keys);
   template <int K>
+  /// The same for k-DOPs.
   Status update(std::span<const Key> keys, std::span<const Kdop<K>> kdops);
 
   /// Removes the objects. A key that occurs twice makes the whole call `invalid_key`.
   Status remove(std::span<const Key> keys);
+  /// Removes one object; `invalid_key` if there is none of this key.
   Status remove(Key key);
   /// Removes every object. Memory is kept; `release_memory` gives it back.
   void clear() noexcept;
@@ -191,11 +202,14 @@ class WINNOW_API Partition final {
   /// first. `out_of_memory` changes nothing.
   Status reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages = Pages::untouched) const;
 
+  /// Live objects.
   [[nodiscard]] std::size_t size() const noexcept;
+  /// True for keys of live objects of this partition. O(1).
   [[nodiscard]] bool contains(Key key) const noexcept;
   /// The box as it is tested: float, larger than given by the margin, the box around other volumes;
   /// an infinite extent is given back as infinite.
   Status bounds(Key key, Aabb& box) const noexcept;
+  /// What the object was inserted with; `invalid_key` leaves `data` alone.
   Status client_data(Key key, ClientData& data) const noexcept;
   /// Key of a live object; the null key for any other id.
   [[nodiscard]] Key key_of(ObjectId id) const noexcept;
@@ -205,7 +219,9 @@ class WINNOW_API Partition final {
   /// Sets what the objects let themselves be paired with. Every object starts with ObjectFilter{};
   /// a partition in which no other was ever set stores none.
   Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
+  /// The same for one object.
   Status set_filter(Key key, const ObjectFilter& filter);
+  /// What was set last, or ObjectFilter{}; `invalid_key` leaves `filter` alone.
   Status filter(Key key, ObjectFilter& filter) const noexcept;
 
   /// Brings the structure up to date now rather than in the next query. A tree that is made here,
@@ -237,7 +253,9 @@ class WINNOW_API Partition final {
   /// The same for many rays at once, which share the work where they are alike. One bad ray makes
   /// the whole batch `invalid_argument`.
   Status closest(const RayBatch& rays, const HitColumns& hits, const Filter& filter = {}) const;
+  /// Any one hit of each ray; the same bad rays are refused. What is found is the closest one.
   Status any(const RayBatch& rays, const HitColumns& hits, const Filter& filter = {}) const;
+  /// All hits of each ray, sorted by t: `hits.of(i)` are those of ray i.
   Status all(const RayBatch& rays, HitBuffer& hits, const Filter& filter = {}) const;
 
   /// Every object whose box meets the region, those that lie wholly inside told from those that
@@ -261,6 +279,7 @@ class WINNOW_API Partition final {
 
   /// Every byte that the memory resource was asked for and has not got back.
   [[nodiscard]] Footprint footprint() const noexcept;
+  /// Counters as they stand.
   [[nodiscard]] Statistics statistics() const noexcept;
 
  private:

@@ -10,7 +10,7 @@ namespace winnow {
 /// What a sample of the boxes tells of a scene: enough to predict what a structure would cost. The
 /// same on every machine.
 struct SceneFeatures {
-  std::size_t objects = 0;
+  std::size_t objects = 0;  ///< that the sample stands for
   /// By axis: where the middle 96 % of the objects lie, in units of their mean edge on this axis.
   /// An axis with little room prunes nothing.
   std::array<double, 3> room{};

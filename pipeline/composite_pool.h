@@ -20,8 +20,8 @@ struct Composites;
 
 /// A convex shape of a ShapePool and where it stands in its compound.
 struct CompoundChild {
-  ShapeId shape;
-  Pose pose;
+  ShapeId shape;  ///< convex, of the ShapePool
+  Pose pose;      ///< in the frame of the compound
 };
 
 /// Shapes made of many: triangle meshes, compounds of convex shapes, height fields. Bodies refer to
@@ -48,6 +48,8 @@ class WINNOW_API CompositePool final : public MidPhase {
                     const Execution& execution = Execution::parallel());
   /// See HeightField::build.
   Status add_height_field(const HeightSamples& samples, ShapeId& id);
+  /// New heights for some samples of a field; see HeightField::update. `invalid_key` for an id that
+  /// is none of a field.
   Status update_height_field(ShapeId field, std::uint32_t column, std::uint32_t row,
                              const HeightSamples& samples);
   /// A tree of children. `invalid_shape` if there are none, `invalid_key` for a child that the
@@ -57,10 +59,13 @@ class WINNOW_API CompositePool final : public MidPhase {
 
   /// Bodies must not use the id any more.
   Status remove(ShapeId id);
+  /// Shapes of a kind; of meshes the scaled ids count as well.
   [[nodiscard]] std::size_t size(CompositeKind kind) const noexcept;
   /// Null for ids of other kinds, or that are not there.
   [[nodiscard]] const TriangleMesh* mesh(ShapeId id) const noexcept;
+  /// Null for ids of other kinds, or that are not there. Valid until the field is removed.
   [[nodiscard]] const HeightField* height_field(ShapeId id) const noexcept;
+  /// In the order in which they were given, which numbers the parts; empty for ids of other kinds.
   [[nodiscard]] std::span<const CompoundChild> children(ShapeId compound) const noexcept;
 
   [[nodiscard]] bool contains(ShapeId id) const noexcept override;
@@ -83,6 +88,7 @@ class WINNOW_API CompositePool final : public MidPhase {
                    const PrimitivePairVisitor& visitor) const override;
   bool visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b, double limit,
                         const NearPairVisitor& visitor) const override;
+  /// Meshes, fields, compounds and what the pool itself holds, all under the resource it was given.
   [[nodiscard]] Footprint footprint() const noexcept override;
 
  private:

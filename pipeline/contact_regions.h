@@ -19,9 +19,8 @@ inline constexpr double kRegionCosine = 0.99619469809174555;
 struct ContactRegion {
   /// Of the deepest manifold: unit, from a to b, in the axes of the world.
   double normal[3];
-  /// The smallest of the region; and the largest bound.
-  double distance;
-  double error_bound;
+  double distance;     ///< the smallest of the region
+  double error_bound;  ///< the largest of the region
   /// The parts of the deepest manifold.
   std::uint32_t part[2];
   /// The deepest point of all, which comes first, and those that span the widest area: each of
@@ -30,13 +29,15 @@ struct ContactRegion {
   /// and are the same from frame to frame, but name nothing; a vertex keeps its own while it slides
   /// over faces of other parts.
   std::uint32_t count;
-  ContactPoint point[kManifoldPoints];
+  ContactPoint point[kManifoldPoints];  ///< of which the first `count` are set
 };
 
 /// Regions of contact of pairs of bodies: what MidPhase::reduce makes of the manifolds of their
 /// parts. The caller's, reused from frame to frame.
 class WINNOW_API ContactRegions {
  public:
+  /// Every allocation comes from `memory`, which must outlive the object; none before the first
+  /// use.
   explicit ContactRegions(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
 
@@ -47,14 +48,17 @@ class WINNOW_API ContactRegions {
     return {regions.data() + first[pair], count[pair]};
   }
 
+  /// Forgets all regions; memory is kept.
   void clear() noexcept;
+  /// Regions under `results`, the rest under `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
   /// Places for as many regions as manifolds touch: those of pair i are [first[i], first[i + 1]),
   /// of which the first count[i] are taken.
   Column<ContactRegion> regions;
+  /// Where the places of each pair begin, and where the last ones end.
   Column<std::uint32_t> first;
-  Column<std::uint32_t> count;
+  Column<std::uint32_t> count;  ///< regions of each pair
   /// Of each pair of parts: where its answer is, which answers touch, and their regions.
   Column<std::uint32_t> scratch;
 };

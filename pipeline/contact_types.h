@@ -23,8 +23,8 @@ enum class ContactLevel : std::uint8_t {
 
 /// Two bodies that may touch.
 struct BodyPair {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
+  std::uint32_t a = 0;  ///< index of the first body
+  std::uint32_t b = 0;  ///< index of the second
 };
 
 /// One point of a manifold: halfway between the two surfaces, in the axes of the world, relative to
@@ -32,9 +32,9 @@ struct BodyPair {
 /// vertex, edge or face of a (upper half) and of b (lower half) made the point, and is the same
 /// from frame to frame as long as they do.
 struct ContactPoint {
-  float position[3];
-  float depth;
-  std::uint64_t feature;
+  float position[3];      ///< x, y, z
+  float depth;            ///< negative where the bodies are apart, within the margin
+  std::uint64_t feature;  ///< equal features of two frames are the same point
 };
 
 /// No pair or point: of contacts that were not there in the last frame.

@@ -16,24 +16,27 @@ struct ContactColumns;
 struct ContactsState;
 
 /// What became of a pair of bodies since these Contacts were last filled.
-enum class ContactEvent : std::uint8_t { begun, persisted };
+enum class ContactEvent : std::uint8_t {
+  begun,      ///< it was not there
+  persisted,  ///< it was
+};
 
 /// Pairs of bodies whose shapes are of the same two kinds, next to each other. Kinds as in
 /// ShapeId::kind_index.
 struct ContactRun {
-  std::uint8_t kind_a = 0;
-  std::uint8_t kind_b = 0;
-  std::uint32_t first = 0;
-  std::uint32_t count = 0;
+  std::uint8_t kind_a = 0;  ///< of the shapes of a
+  std::uint8_t kind_b = 0;  ///< of the shapes of b, not below kind_a
+  std::uint32_t first = 0;  ///< pair that the run begins with
+  std::uint32_t count = 0;  ///< pairs in it
 };
 
 /// A pair that was there when these Contacts were last filled and is not now. A removed body's key
 /// is stale.
 struct EndedContact {
-  Key a;
-  Key b;
-  ClientData data_a = 0;
-  ClientData data_b = 0;
+  Key a;                  ///< the body that was a
+  Key b;                  ///< the body that was b
+  ClientData data_a = 0;  ///< that a was added with
+  ClientData data_b = 0;  ///< that b was added with
 };
 
 /// What `Scene::collide` found, as columns: pairs of bodies, sorted by the kinds of their shapes
@@ -48,32 +51,44 @@ struct EndedContact {
 /// answers `out_of_memory` and they stay empty.
 class WINNOW_API Contacts {
  public:
+  /// Every allocation comes from `memory`, which must outlive the object.
   explicit Contacts(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
   ~Contacts();
   Contacts(const Contacts&) = delete;
   Contacts& operator=(const Contacts&) = delete;
 
+  /// What the last `collide` was asked for: columns of higher levels are empty.
   [[nodiscard]] ContactLevel level() const noexcept;
   /// Pairs of bodies.
   [[nodiscard]] std::size_t size() const noexcept;
+  /// Where pairs of each two kinds of shapes lie; together they are all pairs.
   [[nodiscard]] std::span<const ContactRun> runs() const noexcept;
+  /// First body of each pair.
   [[nodiscard]] std::span<const Key> a() const noexcept;
+  /// Second body of each pair.
   [[nodiscard]] std::span<const Key> b() const noexcept;
+  /// Client data of the first bodies.
   [[nodiscard]] std::span<const ClientData> data_a() const noexcept;
+  /// Client data of the second bodies.
   [[nodiscard]] std::span<const ClientData> data_b() const noexcept;
+  /// Whether each pair is new since the frame before.
   [[nodiscard]] std::span<const ContactEvent> event() const noexcept;
+  /// Pairs that came to an end, in the same order on any number of threads.
   [[nodiscard]] std::span<const EndedContact> ended() const noexcept;
 
   /// Manifolds of pair i: [manifold_first()[i], manifold_first()[i + 1]). None at level pairs.
   [[nodiscard]] std::span<const std::uint32_t> manifold_first() const noexcept;
+  /// All manifolds of all pairs.
   [[nodiscard]] std::size_t manifolds() const noexcept;
   /// The parts that touch, of a region those of its deepest manifold: numbers of triangles or
   /// children, kWholeShape of convex shapes.
   [[nodiscard]] std::span<const std::uint32_t> part_a() const noexcept;
+  /// The same of body b.
   [[nodiscard]] std::span<const std::uint32_t> part_b() const noexcept;
   /// Levels distance and manifold: negative by the depth of penetration; the true one is within
   /// distance +- error_bound.
   [[nodiscard]] std::span<const double> distance() const noexcept;
+  /// By how much `distance` may be wrong, either way; a length.
   [[nodiscard]] std::span<const double> error_bound() const noexcept;
   /// Unit, from a to b, in the axes of the world.
   [[nodiscard]] std::span<const double> normal(int axis) const noexcept;
@@ -84,7 +99,9 @@ class WINNOW_API Contacts {
   /// Level manifold: points of manifold m are [point_first()[m], point_first()[m + 1]). Positions
   /// are relative to that of body a, in the axes of the world, halfway between the surfaces.
   [[nodiscard]] std::span<const std::uint32_t> point_first() const noexcept;
+  /// All points of all manifolds.
   [[nodiscard]] std::size_t points() const noexcept;
+  /// One point, below points(). O(1).
   [[nodiscard]] ContactPoint contact(std::size_t point) const noexcept;
   /// The same as columns.
   [[nodiscard]] const ContactColumns& contact_columns() const noexcept;

@@ -18,11 +18,11 @@ struct HeightGrid;
 /// column]` and stands at (column * spacing[0], row * spacing[1], height) in the shape's frame. NaN
 /// is a hole: squares with one have no triangles.
 struct HeightSamples {
-  std::span<const float> heights;
-  std::uint32_t columns = 0;
-  std::uint32_t rows = 0;
-  std::uint32_t row_stride = 0;  ///< 0: columns
-  double spacing[2] = {1.0, 1.0};
+  std::span<const float> heights;  ///< at least (rows - 1) * row_stride + columns of them
+  std::uint32_t columns = 0;       ///< samples along x, 2 or more
+  std::uint32_t rows = 0;          ///< samples along y, 2 or more
+  std::uint32_t row_stride = 0;    ///< 0: columns
+  double spacing[2] = {1.0, 1.0};  ///< along x and y; positive and finite
 };
 
 /// A surface over a regular grid, z up: each square is two triangles that share the diagonal from
@@ -33,9 +33,11 @@ struct HeightSamples {
 /// are numbered row by row.
 class WINNOW_API HeightField {
  public:
+  /// A field without samples. Every allocation comes from `memory`, which must outlive the field.
   explicit HeightField(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
       : memory_(memory) {}
+  /// Takes over the samples and the resource; `other` is left without samples.
   HeightField(HeightField&& other) noexcept;
   ~HeightField();
   HeightField(const HeightField&) = delete;
@@ -56,7 +58,9 @@ class WINNOW_API HeightField {
   [[nodiscard]] Aabb bounds() const noexcept;
   /// No point of a triangle is farther than this from the origin. 0 without triangles.
   [[nodiscard]] double radius() const noexcept;
+  /// Samples along x; 0 before the first build.
   [[nodiscard]] std::uint32_t columns() const noexcept;
+  /// Samples along y; 0 before the first build.
   [[nodiscard]] std::uint32_t rows() const noexcept;
   /// Triangles, those of holes included.
   [[nodiscard]] std::uint32_t triangles() const noexcept;
@@ -66,6 +70,7 @@ class WINNOW_API HeightField {
   /// MeshOptions have by default, or have no other triangle. All for a triangle of a hole.
   [[nodiscard]] std::uint8_t active_edges(std::uint32_t number) const noexcept;
 
+  /// Heights and pyramid, to the byte what the resource gave.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:

@@ -26,24 +26,29 @@ inline constexpr std::uint32_t kWholeShape = ~0U;
 /// of bodies, in the axes of the world, so that answers do not depend on where the bodies stand.
 class WINNOW_API PrimitivePairs {
  public:
+  /// Every allocation comes from `memory`, which must outlive the object; none before the first
+  /// use.
   explicit PrimitivePairs(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
 
+  /// Forgets all pairs; memory is kept.
   void clear() noexcept;
+  /// Everything that can be read under `results`, the rest under `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
   /// The primitives, one entry each time one is used: its shape (triangles in `triangles`, all
   /// others in the ShapePool) and its pose.
   Column<ShapeId> shapes;
-  Column<Pose> poses;
+  Column<Pose> poses;  ///< where each primitive stands
   /// Which part of its body it is: the number of the triangle or child; kWholeShape.
   Column<std::uint32_t> part;
+  /// Triangles of meshes and height fields, at the pose of their body; `shapes` leads to them.
   Column<TriangleShape> triangles;
   /// Of `triangles`, one for each: bit k is set where edge k (from corner k to the next) is not one
   /// that a neighbour continues, bit 3 + k where corner k is on such an edge of any triangle: a
   /// contact there may have a normal of its own. kAllActive for triangles that are no mesh's.
   Column<std::uint8_t> active_edges;
-  static constexpr std::uint8_t kAllActive = 63;
+  static constexpr std::uint8_t kAllActive = 63;  ///< all three edges and all three corners
   /// Pairs of primitives, those of one pair of bodies next to each other in the order of the
   /// bodies' pairs; a is of body a.
   Column<BodyPair> pairs;
@@ -62,16 +67,17 @@ class WINNOW_API PrimitivePairs {
 struct Primitive {
   /// Of kind triangle: see `triangle`. All others are in the ShapePool.
   ShapeId shape;
-  std::uint32_t part = kWholeShape;
-  Pose pose;
-  TriangleShape triangle;
+  std::uint32_t part = kWholeShape;  ///< which of its body; kWholeShape of a convex one
+  Pose pose;                         ///< in the world
+  TriangleShape triangle;            ///< corners in the frame of `pose`
 };
 
 /// Is shown primitives that may lie within `limit` (a value of t, or a distance) and gives back the
 /// limit to go on with: a smaller one to hear only of what comes before, below zero to end.
 struct PrimitiveVisitor {
+  /// Gives back the limit to go on with. Must not throw.
   double (*visit)(void* context, const Primitive& primitive, double limit) = nullptr;
-  void* context = nullptr;
+  void* context = nullptr;  ///< handed to `visit`
 };
 
 /// Is told what each of several rays meets by `limit`, and gives back the limit for that ray to go
@@ -84,20 +90,22 @@ struct RayVisitor {
   /// from the ray's origin, rounded to double.
   double (*look)(void* context, std::size_t ray, const Primitive& primitive,
                  double limit) = nullptr;
-  void* context = nullptr;
+  void* context = nullptr;  ///< handed to both
 };
 
 /// Is shown pairs of primitives that may share a point, and gives back whether to go on.
 struct PrimitivePairVisitor {
+  /// False ends the visit. Must not throw.
   bool (*visit)(void* context, const Primitive& a, const Primitive& b) = nullptr;
-  void* context = nullptr;
+  void* context = nullptr;  ///< handed to `visit`
 };
 
 /// Is shown pairs of primitives that may lie within `limit` of each other and gives back the limit
 /// to go on with, below zero to end.
 struct NearPairVisitor {
+  /// Gives back the limit to go on with. Must not throw.
   double (*visit)(void* context, const Primitive& a, const Primitive& b, double limit) = nullptr;
-  void* context = nullptr;
+  void* context = nullptr;  ///< handed to `visit`
   /// Unit, from a to b, along which the nearest pair so far is apart, or zero. Read again after
   /// each visit.
   const double* normal = nullptr;
@@ -106,16 +114,17 @@ struct NearPairVisitor {
 /// A box that moves by t * direction for t in [0, max_t]; max_t = 0 for one that stands. In double,
 /// in the axes of the world.
 struct BoxSweep {
-  double min[3];
-  double max[3];
-  double direction[3] = {0.0, 0.0, 0.0};
-  double max_t = 0.0;
+  double min[3];                          ///< at t = 0
+  double max[3];                          ///< at t = 0, not below `min`
+  double direction[3] = {0.0, 0.0, 0.0};  ///< finite; zero for a box that stands
+  double max_t = 0.0;                     ///< finite, >= 0
 };
 
 /// What composite shapes are made of, as the Scene and its queries see it. An interface, so that
 /// who has no composite shapes links and allocates nothing of it. A CompositePool is one.
 class WINNOW_API MidPhase {
  public:
+  /// Links the kernels of triangles, which composite shapes are made of.
   MidPhase() noexcept;
   MidPhase(const MidPhase&) = delete;
   MidPhase& operator=(const MidPhase&) = delete;
@@ -177,6 +186,7 @@ class WINNOW_API MidPhase {
   virtual bool visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
                                 double limit, const NearPairVisitor& visitor) const = 0;
 
+  /// Everything it holds, to the byte what its resource gave.
   [[nodiscard]] virtual Footprint footprint() const noexcept = 0;
 };
 

@@ -27,23 +27,26 @@ enum class NarrowTier : std::uint8_t {
   reference,
 };
 
+/// What is asked about pairs of bodies, and how exactly.
 struct NarrowOptions {
   /// Any but `pairs`, which asks nothing of shapes.
   ContactLevel level = ContactLevel::manifold;
-  NarrowTier tier = NarrowTier::robust;
+  NarrowTier tier = NarrowTier::robust;  ///< how exact answers have to be
   /// Speculative: pairs no farther apart than this get contacts, with depth <= 0. Finite, >= 0.
   double margin = 0.0;
+  /// On whose threads; answers are the same on all.
   Execution execution = Execution::serial();
 };
 
 /// What moves: body i has shape shapes[i] at poses[i].
 struct Bodies {
-  std::span<const ShapeId> shapes;
-  std::span<const Pose> poses;
+  std::span<const ShapeId> shapes;  ///< by body
+  std::span<const Pose> poses;      ///< by body; as many
 };
 
+/// What a call did; counters, never timings, so that they repeat exactly.
 struct NarrowStatistics {
-  std::uint64_t pairs = 0;
+  std::uint64_t pairs = 0;  ///< answered
   /// Pairs that lanes could not certify and the solver answered.
   std::uint64_t recomputed = 0;
   /// Pairs that no lanes were tried on: of a kind without them, or of tier `reference`.
@@ -65,6 +68,7 @@ class WINNOW_API NarrowPhase {
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
       : memory_(memory) {}
   ~NarrowPhase();
+  /// `other` is as if new.
   NarrowPhase(NarrowPhase&& other) noexcept;
   NarrowPhase(const NarrowPhase&) = delete;
   NarrowPhase& operator=(const NarrowPhase&) = delete;
@@ -82,8 +86,11 @@ class WINNOW_API NarrowPhase {
 
   /// Of the last call.
   [[nodiscard]] const NarrowStatistics& statistics() const noexcept { return statistics_; }
+  /// Index of the body that made the last call be refused; ~0U if it was for another reason or went
+  /// well.
   [[nodiscard]] std::uint32_t bad_body() const noexcept { return bad_body_; }
 
+  /// Scratch kept from call to call, to the byte what the resource gave.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:

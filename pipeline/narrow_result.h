@@ -14,17 +14,20 @@ namespace winnow {
 
 /// Pairs of one kind, next to each other in a NarrowResult.
 struct NarrowRun {
-  ShapeKind a{};
-  ShapeKind b{};
-  std::uint32_t first = 0;
-  std::uint32_t count = 0;
+  ShapeKind a{};            ///< kind of the first shapes
+  ShapeKind b{};            ///< kind of the second shapes, not below a
+  std::uint32_t first = 0;  ///< answer that the run begins with
+  std::uint32_t count = 0;  ///< answers in it
 };
 
 /// Contact points as columns.
 struct ContactColumns {
+  /// Every allocation comes from `memory`, which must outlive the columns.
   explicit ContactColumns(std::pmr::memory_resource* memory) noexcept;
 
+  /// Room for `count` points. False if memory is refused.
   [[nodiscard]] bool grow(std::size_t count) noexcept;
+  /// `count` points, of which new ones are not set; there must be room for them (see `grow`).
   void set_size(std::size_t count) noexcept;
   /// Writes to the pages behind the last point.
   void touch() noexcept {
@@ -32,23 +35,25 @@ struct ContactColumns {
     depth.touch();
     feature.touch();
   }
+  /// Points.
   [[nodiscard]] std::size_t size() const noexcept { return depth.size(); }
+  /// Of all columns.
   [[nodiscard]] Bytes bytes() const noexcept;
 
-  Column<float> position[3];
-  Column<float> depth;
-  Column<std::uint64_t> feature;
+  Column<float> position[3];      ///< x, y and z; as in ContactPoint
+  Column<float> depth;            ///< positive where the bodies overlap
+  Column<std::uint64_t> feature;  ///< as in ContactPoint
 };
 
 /// The columns of a NarrowResult to be written to: see the accessors of the same names. Those that
 /// its level has not are empty.
 struct NarrowColumns {
-  std::span<double> distance;
-  std::span<double> error_bound;
-  std::span<double> normal[3];
-  std::span<double> point[3];
-  std::span<std::uint32_t> contact_first;
-  std::span<std::uint32_t> contact_count;
+  std::span<double> distance;              ///< one of each answer
+  std::span<double> error_bound;           ///< one of each answer
+  std::span<double> normal[3];             ///< x, y, z
+  std::span<double> point[3];              ///< x, y, z
+  std::span<std::uint32_t> contact_first;  ///< into `contacts`
+  std::span<std::uint32_t> contact_count;  ///< at most kManifoldPoints
   /// May grow.
   ContactColumns& contacts;
 };
@@ -57,12 +62,16 @@ struct NarrowColumns {
 /// reused from frame to frame.
 class WINNOW_API NarrowResult {
  public:
+  /// Every allocation comes from `memory`, which must outlive the object; none before the first
+  /// use.
   explicit NarrowResult(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
 
+  /// Answers, one for each pair that was asked about.
   [[nodiscard]] std::size_t size() const noexcept {
     return level_ == ContactLevel::boolean ? overlap_.size() : distance_.size();
   }
+  /// What the last call was asked for: columns of higher levels are empty.
   [[nodiscard]] ContactLevel level() const noexcept { return level_; }
   /// Which pair of the input answer i is about. Points, normals and features are in its order, not
   /// that of the kinds.
@@ -71,6 +80,7 @@ class WINNOW_API NarrowResult {
   [[nodiscard]] std::span<const std::uint32_t> order() const noexcept {
     return {order_.data(), order_.size()};
   }
+  /// Where answers of each two kinds of shapes lie; together they are all answers.
   [[nodiscard]] std::span<const NarrowRun> runs() const noexcept {
     return {runs_.data(), runs_.size()};
   }
@@ -103,22 +113,27 @@ class WINNOW_API NarrowResult {
   [[nodiscard]] std::span<const std::uint32_t> contact_first() const noexcept {
     return {contact_first_.data(), contact_first_.size()};
   }
+  /// Points of each pair, 0 to kManifoldPoints.
   [[nodiscard]] std::span<const std::uint32_t> contact_count() const noexcept {
     return {contact_count_.data(), contact_count_.size()};
   }
+  /// All points of all pairs.
   [[nodiscard]] std::size_t contacts() const noexcept { return contacts_.size(); }
+  /// One point, below contacts(). O(1).
   [[nodiscard]] ContactPoint contact(std::size_t point) const noexcept {
     return {
         {contacts_.position[0][point], contacts_.position[1][point], contacts_.position[2][point]},
         contacts_.depth[point],
         contacts_.feature[point]};
   }
+  /// The points as columns.
   [[nodiscard]] const ContactColumns& contact_columns() const noexcept { return contacts_; }
 
   /// For who corrects answers where they stand (see MidPhase::smooth): what is written has to keep
   /// what the accessors say.
   [[nodiscard]] NarrowColumns columns() noexcept;
 
+  /// All columns under `results`, to the byte what the resource gave.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:

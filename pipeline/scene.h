@@ -29,12 +29,19 @@ struct SceneState;
 
 /// Which set of a scene a body is in. Dynamic bodies meet all others; fixed ones and sleeping ones
 /// meet dynamic ones alone, and cost nothing until one of these comes near.
-enum class Motion : std::uint8_t { fixed, dynamic, sleeping };
+enum class Motion : std::uint8_t {
+  fixed,     ///< never moves by itself: ground, walls
+  dynamic,   ///< meets everything
+  sleeping,  ///< came to rest; wakes by `Scene::set_motion`
+};
+/// How many there are.
 inline constexpr std::size_t kMotions = 3;
 
+/// What a scene is made with.
 struct SceneOptions {
   /// Every allocation comes from here. It must outlive the scene.
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  /// On whose threads work runs; results are the same on all.
   Execution execution = Execution::parallel();
   /// The structure of each set's partition, by Motion. A partition is made when its first body
   /// comes, or is reserved for. Fixed bodies that are asked about often may be worth the slow build
@@ -42,7 +49,7 @@ struct SceneOptions {
   StructureKind structures[kMotions] = {linear_bvh(), linear_bvh(), linear_bvh()};
   /// Speculative: pairs no farther apart than this are contacts too. Finite, >= 0.
   double margin = 0.0;
-  NarrowTier tier = NarrowTier::robust;
+  NarrowTier tier = NarrowTier::robust;  ///< how exact contacts have to be
   /// What rests keeps its contacts: manifolds of a pair are carried over, turned with body a, as
   /// long as neither body has moved, against the other, by more than this (a length: translation
   /// and turning of its farthest point together) since they were made; error_bound grows by as
@@ -68,11 +75,12 @@ struct SceneOptions {
 
 /// A body as it is added.
 struct BodyDefinition {
-  ShapeId shape{};
+  ShapeId shape{};  ///< of the ShapePool, or of what `SceneOptions::composites` holds
+  /// Where the shape's own frame stands in the world; finite, its quaternion not zero.
   Pose pose{};
-  Motion motion = Motion::dynamic;
-  ObjectFilter filter{};
-  ClientData data = 0;
+  Motion motion = Motion::dynamic;  ///< which set it is in
+  ObjectFilter filter{};            ///< which other bodies it may meet
+  ClientData data = 0;              ///< yours, given back with contacts and hits; never read
 };
 
 /// How much a scene is to have room for; see Scene::reserve. Each at most 2^32 - 2, and fewer than
@@ -84,11 +92,11 @@ struct SceneRoom {
   /// That `collide` is asked for.
   ContactLevel level = ContactLevel::manifold;
   /// What Contacts hold: pairs that touch, those that sleep counted in; at level pairs it is all
-  /// pairs. Manifolds (as many as pairs that touch, where no shape is composite) from level boolean
-  /// on, points at level manifold.
+  /// pairs.
   std::size_t touching = 0;
+  /// From level boolean on: as many as pairs that touch, where no shape is composite.
   std::size_t manifolds = 0;
-  std::size_t points = 0;
+  std::size_t points = 0;  ///< at level manifold
 };
 
 /// Bytes of a scene by part. The sum equals, to the byte, what is outstanding at its resource.
@@ -99,6 +107,7 @@ struct WINNOW_API SceneFootprint {
   Bytes mid_phase;             ///< pairs of primitives; nothing without composite shapes
   Bytes narrow_phase;          ///< answers and scratch
 
+  /// Sum of all parts.
   [[nodiscard]] Bytes total() const noexcept;
 };
 
@@ -135,10 +144,13 @@ class WINNOW_API Scene {
   /// Adds a body. `invalid_key` for a shape that neither pool has, `invalid_pose`;
   /// `too_many_objects` beyond 2^28.
   Status add(const BodyDefinition& body, Key& key);
+  /// Adds many at once, all or none. `size_mismatch` if there are not as many keys as bodies.
   Status add(std::span<const BodyDefinition> bodies, std::span<Key> keys);
   /// A key that occurs twice makes the whole call `invalid_key`.
   Status remove(Key key);
+  /// Removes many at once, all or none.
   Status remove(std::span<const Key> keys);
+  /// Removes every body. Their keys are stale from then on; memory is kept.
   void clear() noexcept;
 
   /// A steady frame allocates nothing, that is, one that has no more of anything than one before:
@@ -161,12 +173,18 @@ class WINNOW_API Scene {
 
   /// Gives bodies new poses. O(1) each; the partitions follow at the next question.
   Status move(Key key, const Pose& pose);
-  /// Of a view without orientations: new positions, each body as it is turned.
+  /// Gives each of the bodies its pose, all or none: `size_mismatch`, `invalid_key`,
+  /// `invalid_pose`. Of a key that occurs twice the last pose counts. Of a view without
+  /// orientations: new positions, each body as it is turned.
   Status move(std::span<const Key> keys, const PoseView& poses);
   /// Moves bodies from one set to another: sleeping bodies to dynamic when they wake.
   Status set_motion(Key key, Motion motion);
+  /// The same for many bodies, all or none.
   Status set_motion(std::span<const Key> keys, Motion motion);
+  /// Gives a body another shape, at the pose that it has. `invalid_key` for a key or a shape that
+  /// is not there.
   Status set_shape(Key key, ShapeId shape);
+  /// Says anew which others a body may meet; counts from the next question on.
   Status set_filter(Key key, const ObjectFilter& filter);
 
   /// Bodies that never meet, whatever their filters say: neighbouring links of a robot, bones of a
@@ -182,8 +200,11 @@ class WINNOW_API Scene {
   /// answers given, set it again. See ObjectPredicate for what it may do.
   void set_predicate(const PairPredicate& predicate) noexcept;
 
+  /// Live bodies of all sets.
   [[nodiscard]] std::size_t size() const noexcept;
+  /// Live bodies of one set.
   [[nodiscard]] std::size_t size(Motion motion) const noexcept;
+  /// True for keys of live bodies of this scene. O(1).
   [[nodiscard]] bool contains(Key key) const noexcept;
   /// The body as it stands now.
   Status body(Key key, BodyDefinition& body) const noexcept;
@@ -222,7 +243,9 @@ class WINNOW_API Scene {
   /// Draws the partitions of all sets.
   Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const noexcept;
 
+  /// Bytes by part, to the byte what the resource gave.
   [[nodiscard]] SceneFootprint footprint() const noexcept;
+  /// Of the last `collide`.
   [[nodiscard]] const SceneStatistics& statistics() const noexcept;
 
  private:

@@ -22,8 +22,8 @@ struct QueryState;
 
 /// Where a ray or a moving shape meets a body.
 struct SceneHit {
-  Key key;
-  ClientData data = 0;
+  Key key;              ///< the body; null if nothing was hit
+  ClientData data = 0;  ///< that the body was added with
   /// Triangle or child; kWholeShape of a convex body.
   std::uint32_t part = kWholeShape;
   /// In units of the direction: of a ray, where it enters the body's shape; of a moving shape, the
@@ -35,30 +35,31 @@ struct SceneHit {
   /// Where they meet, in the world.
   double point[3] = {0.0, 0.0, 0.0};
 
+  /// True if something was hit.
   [[nodiscard]] explicit operator bool() const noexcept { return key.id != kNoObject; }
 };
 
 /// Where a batch of rays that have one answer each writes them: columns of the caller, each null if
 /// not wanted. A ray without an answer gets the null key, 0, kWholeShape, infinity and zeros.
 struct SceneHitColumns {
-  Key* key = nullptr;
-  ClientData* data = nullptr;
-  std::uint32_t* part = nullptr;
-  double* t = nullptr;
-  std::array<double*, 3> normal{};
-  std::array<double*, 3> point{};
+  Key* key = nullptr;               ///< bodies
+  ClientData* data = nullptr;       ///< what they were added with
+  std::uint32_t* part = nullptr;    ///< triangles or children
+  double* t = nullptr;              ///< infinity where nothing was hit
+  std::array<double*, 3> normal{};  ///< x, y, z
+  std::array<double*, 3> point{};   ///< x, y, z, in the world
 };
 
 /// The hits of ray i of a batch are hits[first[i]] to hits[first[i + 1]], that excluded.
 struct SceneHitLists {
-  std::span<const SceneHit> hits;
-  std::span<const std::size_t> first;
+  std::span<const SceneHit> hits;      ///< of all rays, one after the other
+  std::span<const std::size_t> first;  ///< one more than there are rays
 };
 
 /// A body that a shape overlaps.
 struct SceneOverlap {
-  Key key;
-  ClientData data = 0;
+  Key key;              ///< the body
+  ClientData data = 0;  ///< that the body was added with
   /// A part of it that does, the same each time.
   std::uint32_t part = kWholeShape;
 };
@@ -67,28 +68,29 @@ struct SceneOverlap {
 struct SceneDistance {
   /// The second body.
   Key key;
-  ClientData data = 0;
-  /// The parts of the two that are closest; kWholeShape of a point or a convex body.
+  ClientData data = 0;  ///< that the second body was added with
+  /// The part of the first that is closest; kWholeShape of a point or a convex body.
   std::uint32_t part_a = kWholeShape;
-  std::uint32_t part = kWholeShape;
+  std::uint32_t part = kWholeShape;  ///< that of the second
   /// Negative by the depth of penetration; of composite shapes that of the deepest pair of parts.
   double distance = 0.0;
-  double error_bound = 0.0;
+  double error_bound = 0.0;  ///< the true distance is within distance +- it
   /// Unit, from the first (or the point) to the second.
   double normal[3] = {0.0, 0.0, 0.0};
-  /// In the world.
-  double point_a[3] = {0.0, 0.0, 0.0};
-  double point_b[3] = {0.0, 0.0, 0.0};
+  double point_a[3] = {0.0, 0.0, 0.0};  ///< of the first, in the world
+  double point_b[3] = {0.0, 0.0, 0.0};  ///< of the second, in the world
 
+  /// True if there is a second body.
   [[nodiscard]] explicit operator bool() const noexcept { return key.id != kNoObject; }
 };
 
 /// A convex shape of the scene's ShapePool that moves along a line without turning.
 struct ShapeCast {
-  ShapeId shape;
-  Pose pose;
+  ShapeId shape;  ///< convex
+  Pose pose;      ///< at t = 0
+  /// By which it moves while t grows by 1; finite, not zero.
   double direction[3] = {1.0, 0.0, 0.0};
-  double max_t = 1.0;
+  double max_t = 1.0;  ///< finite, >= 0
 };
 
 /// Questions to the exact shapes of a scene. One object per thread: it keeps scratch memory from
@@ -99,6 +101,8 @@ struct ShapeCast {
 /// void.
 class WINNOW_API SceneQueries {
  public:
+  /// Asks `scene`, which must outlive this. Every allocation comes from `memory`, which must too;
+  /// where its state is refused, questions are `out_of_memory`.
   explicit SceneQueries(const Scene& scene, std::pmr::memory_resource* memory =
                                                 std::pmr::get_default_resource()) noexcept;
   ~SceneQueries();
@@ -113,9 +117,12 @@ class WINNOW_API SceneQueries {
   Status any(const ShapeRay& ray, SceneHit& hit, const Filter& filter = {});
   /// The first hit of every body that the ray meets, sorted by t. Valid until the next question.
   Status all(const ShapeRay& ray, std::span<const SceneHit>& hits, const Filter& filter = {});
-  // The same for many rays, each answered as if it were alone. One bad ray refuses the batch.
+  /// The closest hit of each ray of a batch, answered as if it were alone. One bad ray refuses the
+  /// batch.
   Status closest(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
+  /// Any one hit of each ray of a batch; bad rays as above.
   Status any(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
+  /// All hits of each ray of a batch, as lists; bad rays as above. Valid until the next question.
   Status all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter = {});
 
   /// Every body that the shape at the pose shares a point with, sorted by id. The shape may be

@@ -19,8 +19,8 @@ namespace winnow {
 /// A hull given by its surface: face i is the next `sizes[i]` of `indices` into `points`,
 /// counter-clockwise seen from outside. Faces may be triangles of what is coplanar.
 struct HullFaces {
-  std::span<const std::uint32_t> indices;
-  std::span<const std::uint32_t> sizes;
+  std::span<const std::uint32_t> indices;  ///< numbers of points, face after face
+  std::span<const std::uint32_t> sizes;    ///< corners of each face, 3 or more
 };
 
 /// The convex shapes of a simulation, each kind in its own table; bodies refer to them by id and
@@ -28,8 +28,10 @@ struct HullFaces {
 /// of them changes it.
 class WINNOW_API ShapePool {
  public:
+  /// An empty pool. Every allocation comes from `memory`, which must outlive it.
   explicit ShapePool(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
   ~ShapePool();
+  /// Takes over all shapes, whose ids stay, and the resource; what was moved from is empty.
   ShapePool(ShapePool&&) noexcept;
   ShapePool(const ShapePool&) = delete;
   ShapePool& operator=(const ShapePool&) = delete;
@@ -37,6 +39,7 @@ class WINNOW_API ShapePool {
 
   /// Adds a shape. `invalid_shape` for a length that is negative, NaN or infinite, or a half-space
   /// without a normal; `too_many_objects` beyond 2^28 of a kind. O(1).
+  /// @{
   Status add(const SphereShape& shape, ShapeId& id);
   Status add(const CapsuleShape& shape, ShapeId& id);
   Status add(const BoxShape& shape, ShapeId& id);
@@ -44,6 +47,7 @@ class WINNOW_API ShapePool {
   Status add(const ConeShape& shape, ShapeId& id);
   Status add(const TriangleShape& shape, ShapeId& id);
   Status add(const HalfSpaceShape& shape, ShapeId& id);
+  /// @}
 
   /// The convex hull of points, by qhull: `unsupported` if the library was built without it. While
   /// it runs, qhull takes memory from the C library; all else comes from the pool's resource.
@@ -72,6 +76,7 @@ class WINNOW_API ShapePool {
   /// the next change.
   [[nodiscard]] const ShapeTables& tables() const noexcept { return tables_; }
 
+  /// Shapes and what is made of them, to the byte what the resource gave.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:

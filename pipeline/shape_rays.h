@@ -15,19 +15,19 @@ namespace winnow {
 /// origin + t * direction, 0 <= t <= max_t, in double and in the axes of the world. The direction
 /// is finite and not zero, of any length (t is in its units); max_t may be infinite.
 struct ShapeRay {
-  double origin[3] = {0.0, 0.0, 0.0};
-  double direction[3] = {1.0, 0.0, 0.0};
-  double max_t = 1.0;
+  double origin[3] = {0.0, 0.0, 0.0};     ///< finite
+  double direction[3] = {1.0, 0.0, 0.0};  ///< finite, not zero
+  double max_t = 1.0;                     ///< >= 0, may be infinite
 };
 
 /// Rays where the caller keeps them: column pointers and one stride in bytes. Nothing is copied to
 /// make one, and it must not outlive the memory it looks at.
 struct ShapeRayBatch {
-  std::array<const double*, 3> origin{};
-  std::array<const double*, 3> direction{};
-  const double* max_t = nullptr;  ///< null: infinity for all
-  std::size_t count = 0;
-  std::size_t stride = sizeof(double);  ///< bytes from one ray to the next
+  std::array<const double*, 3> origin{};     ///< of the first ray; x, y, z
+  std::array<const double*, 3> direction{};  ///< of the first ray; x, y, z
+  const double* max_t = nullptr;             ///< null: infinity for all
+  std::size_t count = 0;                     ///< rays
+  std::size_t stride = sizeof(double);       ///< bytes from one ray to the next
 
   ShapeRayBatch() = default;
   /// An array of rays.
@@ -46,6 +46,7 @@ struct ShapeRayBatch {
                 std::size_t stride_bytes = sizeof(double)) noexcept
       : origin(origins), direction(directions), max_t(max_ts), count(rays), stride(stride_bytes) {}
 
+  /// Ray i, copied out; i is below `count`.
   [[nodiscard]] ShapeRay operator[](std::size_t i) const noexcept {
     ShapeRay ray;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -63,8 +64,9 @@ struct ShapeRayBatch {
   }
 };
 
+/// Where a ray enters a shape, if it does.
 struct ShapeHit {
-  bool hit = false;
+  bool hit = false;  ///< false: the rest is as it was made
   /// The smallest t at which the ray is in the shape: 0 if it begins inside.
   double t = 0.0;
   /// Unit, outward, against the ray. Where the ray begins inside: minus its direction, normalised.

@@ -14,6 +14,7 @@ namespace winnow {
 
 struct MeshView;
 
+/// How a mesh is built.
 struct MeshOptions {
   /// An edge that two triangles share is active if the mesh is convex there and bends by more than
   /// this, in radians. Edges with one triangle or more than two are active; where two triangles are
@@ -29,9 +30,11 @@ struct MeshOptions {
 /// triangle has a box of its own, of 12 bytes more. Triangles are two-sided and may be degenerate.
 class WINNOW_API TriangleMesh {
  public:
+  /// A mesh without triangles. Every allocation comes from `memory`, which must outlive the mesh.
   explicit TriangleMesh(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
       : memory_(memory) {}
+  /// Takes over triangles, tree and resource; `other` is left without triangles.
   TriangleMesh(TriangleMesh&& other) noexcept;
   ~TriangleMesh();
   TriangleMesh(const TriangleMesh&) = delete;
@@ -52,13 +55,16 @@ class WINNOW_API TriangleMesh {
   /// part.
   Status refit(const PointView& vertices, const Execution& execution = Execution::serial());
 
+  /// Triangles that it was built of; 0 before.
   [[nodiscard]] std::size_t triangles() const noexcept;
+  /// Vertices that it was built of, shared ones once; 0 before.
   [[nodiscard]] std::size_t vertices() const noexcept;
   /// Of all triangles; empty if there are none.
   [[nodiscard]] Aabb bounds() const noexcept;
   /// No vertex is farther than this from the origin.
   [[nodiscard]] double radius() const noexcept;
 
+  /// Vertices, triangles and tree, to the byte what the resource gave.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:

@@ -1,6 +1,11 @@
 #pragma once
 
+/// @file
 /// The whole public API of winnow.
+
+/// @namespace winnow
+/// Collision detection: partitions, which find overlapping bounding volumes, a narrow phase, which
+/// computes pairs of shapes, and scenes, which do both.
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/box_view.h>

@@ -17,6 +17,7 @@ enum class Isa : std::uint8_t {
   neon64,  ///< AArch64
 };
 
+/// The enumerator's name. Never null.
 [[nodiscard]] WINNOW_API const char* to_string(Isa isa) noexcept;
 
 /// The instruction sets in this build that this machine and operating system can run, narrowest
