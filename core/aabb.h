@@ -10,7 +10,9 @@ namespace winnow {
 /// Axis-aligned box [min, max], closed: boxes that touch overlap, a box of zero extent is legal,
 /// and an axis may reach to infinity. Default-constructed it is empty and overlaps nothing.
 struct Aabb {
+  /// Least corner; +infinity if empty.
   Eigen::Vector3f min = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity());
+  /// Greatest corner; -infinity if empty.
   Eigen::Vector3f max = Eigen::Vector3f::Constant(-std::numeric_limits<float>::infinity());
 
   /// The smallest float box that contains the double box [min, max].
@@ -53,6 +55,7 @@ struct Aabb {
     max = max.cwiseMax(other.max);
   }
 
+  /// The same corners, float by float.
   friend bool operator==(const Aabb& a, const Aabb& b) noexcept {
     return a.min == b.min && a.max == b.max;
   }

@@ -12,10 +12,10 @@ namespace winnow {
 /// Boxes where the caller keeps them: six float pointers, one stride in bytes, a count. Nothing is
 /// copied to make one, and it must not outlive the memory it looks at.
 struct BoxView {
-  std::array<const float*, 3> min{};
-  std::array<const float*, 3> max{};
+  std::array<const float*, 3> min{};   ///< least corner of the first box: x, y, z
+  std::array<const float*, 3> max{};   ///< greatest corner of the first box: x, y, z
   std::size_t stride = sizeof(float);  ///< bytes from one box to the next
-  std::size_t count = 0;
+  std::size_t count = 0;               ///< boxes
 
   BoxView() = default;
 
@@ -43,6 +43,7 @@ struct BoxView {
           std::size_t stride_bytes = sizeof(float)) noexcept
       : min(mins), max(maxs), stride(stride_bytes), count(boxes) {}
 
+  /// Box i, copied out; i is below `count`.
   [[nodiscard]] Aabb operator[](std::size_t i) const noexcept {
     return {{at(min[0], i), at(min[1], i), at(min[2], i)},
             {at(max[0], i), at(max[1], i), at(max[2], i)}};

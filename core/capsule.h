@@ -11,10 +11,13 @@ namespace winnow {
 /// All points within `radius` of the segment from `a` to `b`; closed. Equal ends make a ball, a
 /// radius of zero a segment.
 struct Capsule {
+  /// One end of the segment.
   Eigen::Vector3f a = Eigen::Vector3f::Zero();
+  /// Its other end, which may be the same.
   Eigen::Vector3f b = Eigen::Vector3f::Zero();
-  float radius = 0.0F;
+  float radius = 0.0F;  ///< distance from the segment up to which points belong to it; finite, >= 0
 
+  /// True if a query takes this capsule: finite ends, finite radius >= 0.
   [[nodiscard]] bool is_valid() const noexcept {
     return a.allFinite() && b.allFinite() && std::isfinite(radius) && radius >= 0.0F;
   }

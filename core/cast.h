@@ -13,9 +13,11 @@ namespace winnow {
 
 /// A box moved by t * direction for t in [min_t, max_t], without turning.
 struct BoxCast {
-  Aabb box;
+  Aabb box;  ///< where it stands at t = 0
+  /// By which it moves while t grows by 1; finite, not zero.
   Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
-  float min_t = 0.0F;
+  float min_t = 0.0F;  ///< begin of the sweep; finite, >= 0
+  /// End of the sweep; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();
 
   /// True if a query takes it: finite box with min <= max, and a valid direction and range.
@@ -27,11 +29,14 @@ struct BoxCast {
 
 /// A ball moved by t * direction for t in [min_t, max_t].
 struct SphereCast {
-  Sphere sphere;
+  Sphere sphere;  ///< where it stands at t = 0
+  /// By which it moves while t grows by 1; finite, not zero.
   Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
-  float min_t = 0.0F;
+  float min_t = 0.0F;  ///< begin of the sweep; finite, >= 0
+  /// End of the sweep; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();
 
+  /// True if a query takes it: a valid sphere and a valid sweep.
   [[nodiscard]] bool is_valid() const noexcept {
     return sphere.is_valid() && is_valid_sweep(direction, min_t, max_t);
   }
@@ -39,11 +44,14 @@ struct SphereCast {
 
 /// A capsule moved by t * direction for t in [min_t, max_t], without turning.
 struct CapsuleCast {
-  Capsule capsule;
+  Capsule capsule;  ///< where it stands at t = 0
+  /// By which it moves while t grows by 1; finite, not zero.
   Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
-  float min_t = 0.0F;
+  float min_t = 0.0F;  ///< begin of the sweep; finite, >= 0
+  /// End of the sweep; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();
 
+  /// True if a query takes it: a valid capsule and a valid sweep.
   [[nodiscard]] bool is_valid() const noexcept {
     return capsule.is_valid() && is_valid_sweep(direction, min_t, max_t);
   }

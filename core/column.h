@@ -20,7 +20,10 @@ namespace winnow {
 
 /// Whether memory that is made ready is written to as well, once on each page: who uses it first
 /// then waits for no page of the system.
-enum class Pages : std::uint8_t { untouched, touched };
+enum class Pages : std::uint8_t {
+  untouched,  ///< asked for alone
+  touched,    ///< and written to
+};
 
 /// Writes to every page of memory that holds nothing yet.
 WINNOW_API void touch_pages(void* begin, std::size_t bytes) noexcept;
@@ -33,11 +36,14 @@ class Column {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
+  /// Bytes; a cache line, and a register of the widest instruction set.
   static constexpr std::size_t kAlignment = 64;
   /// Elements whose bytes, in whole lines, can be counted.
   static constexpr std::size_t kMost = (~std::size_t{0} - kAlignment + 1) / sizeof(T);
 
+  /// An empty column. Every allocation comes from `memory`, which must outlive it.
   explicit Column(std::pmr::memory_resource* memory) noexcept : memory_(memory) {}
+  /// Takes over the elements and the resource; `other` is left empty.
   Column(Column&& other) noexcept
       : memory_(other.memory_),
         data_(std::exchange(other.data_, nullptr)),
@@ -48,16 +54,27 @@ class Column {
   Column& operator=(Column&&) = delete;
   ~Column() { release(); }
 
+  /// The first element; null while nothing was allocated.
   [[nodiscard]] T* data() noexcept { return data_; }
+  /// The first element; null while nothing was allocated.
   [[nodiscard]] const T* data() const noexcept { return data_; }
+  /// Elements in use.
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  /// Elements that there is room for.
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
+  /// True without elements in use, whatever the capacity.
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+  /// Element i, below `capacity()`; nothing is checked.
   [[nodiscard]] T& operator[](std::size_t i) noexcept { return data_[i]; }
+  /// Element i, below `capacity()`; nothing is checked.
   [[nodiscard]] const T& operator[](std::size_t i) const noexcept { return data_[i]; }
+  /// The first element in use.
   [[nodiscard]] T* begin() noexcept { return data_; }
+  /// Behind the last element in use.
   [[nodiscard]] T* end() noexcept { return data_ + size_; }
+  /// The first element in use.
   [[nodiscard]] const T* begin() const noexcept { return data_; }
+  /// Behind the last element in use.
   [[nodiscard]] const T* end() const noexcept { return data_ + size_; }
 
   /// Room for at least `count` elements, no more than the next full line. False, and unchanged, if
@@ -103,12 +120,14 @@ class Column {
     return true;
   }
 
+  /// Adds an element. False, and unchanged, if memory is refused. O(1) but for growth.
   [[nodiscard]] bool push_back(const T& value) noexcept {
     if (size_ == capacity_ && !grow(size_ + 1)) return false;
     data_[size_++] = value;
     return true;
   }
 
+  /// No elements are in use any more; memory is kept.
   void clear() noexcept { size_ = 0; }
 
   /// Gives the memory back.
@@ -125,7 +144,9 @@ class Column {
     std::swap(capacity_, other.capacity_);
   }
 
+  /// Where its memory comes from.
   [[nodiscard]] std::pmr::memory_resource* memory() const noexcept { return memory_; }
+  /// Bytes of elements in use, and of all that it holds.
   [[nodiscard]] Bytes bytes() const noexcept { return {size_ * sizeof(T), capacity_bytes()}; }
 
  private:

@@ -11,11 +11,12 @@ namespace winnow {
 
 /// Red, green, blue and opacity, 0..255.
 struct Colour {
-  std::uint8_t r = 255;
-  std::uint8_t g = 255;
-  std::uint8_t b = 255;
-  std::uint8_t a = 255;
+  std::uint8_t r = 255;  ///< red
+  std::uint8_t g = 255;  ///< green
+  std::uint8_t b = 255;  ///< blue
+  std::uint8_t a = 255;  ///< opacity: 255 hides what lies behind
 
+  /// All four are equal.
   friend constexpr bool operator==(const Colour&, const Colour&) noexcept = default;
 };
 
@@ -28,8 +29,11 @@ class DebugDraw {
  public:
   virtual ~DebugDraw() = default;
 
+  /// Draws the edges of a box, which may reach to infinity.
   virtual void box(const Aabb& box, Colour colour) = 0;
+  /// Draws the segment between two points.
   virtual void line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) = 0;
+  /// Draws a ball, or its outline.
   virtual void sphere(const Sphere& sphere, Colour colour) = 0;
   /// `text` is valid during the call only.
   virtual void text(const Eigen::Vector3f& at, std::string_view text, Colour colour) = 0;

@@ -23,8 +23,11 @@ class Entries {
     return {{}, words, true};
   }
 
+  /// Whether `words` says which entries are meant, or else `numbers`.
   [[nodiscard]] bool is_mask() const noexcept { return is_mask_; }
+  /// Entries by number; empty for a mask.
   [[nodiscard]] std::span<const std::uint32_t> numbers() const noexcept { return numbers_; }
+  /// A bit for each entry; empty for a list.
   [[nodiscard]] std::span<const std::uint64_t> words() const noexcept { return words_; }
 
  private:

@@ -24,6 +24,7 @@ struct JobSystem {
   /// fewer cost time alone.
   std::size_t threads = 1;
 
+  /// The same function, context and number of threads.
   friend constexpr bool operator==(const JobSystem&, const JobSystem&) noexcept = default;
 };
 
@@ -32,6 +33,7 @@ struct JobSystem {
 /// threads, whoever runs them.
 class Execution {
  public:
+  /// All work is done by the thread that calls.
   [[nodiscard]] static constexpr Execution serial() noexcept { return Execution({}, false); }
   /// As oneTBB tasks inside the arena of the thread that calls, so the caller decides on the number
   /// of threads (`tbb::task_arena(n).execute(...)`). They run to the end also where the caller's
@@ -56,6 +58,7 @@ class Execution {
     });
   }
 
+  /// Work is done by the same means.
   friend constexpr bool operator==(const Execution&, const Execution&) noexcept = default;
 
  private:

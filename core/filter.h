@@ -21,17 +21,18 @@ namespace winnow {
 /// process (`std::terminate`), whatever thread asks.
 struct ObjectPredicate {
   bool (*accept)(void* context, Key key, ClientData data) = nullptr;  ///< null: all
-  void* context = nullptr;
+  void* context = nullptr;                                            ///< handed to `accept`
 };
 
 /// What a query asks for: the filter that stands for the one who asks, and a predicate. Subtrees in
 /// which the filter can match nothing are not entered.
 struct Filter {
-  std::uint32_t layers = ~0U;
-  std::uint32_t mask = ~0U;
-  std::uint32_t environment = kEveryEnvironment;
-  ObjectPredicate predicate{};
+  std::uint32_t layers = ~0U;  ///< layers that the one who asks is in, a bit each; all by default
+  std::uint32_t mask = ~0U;    ///< layers that it wants to meet
+  std::uint32_t environment = kEveryEnvironment;  ///< objects of another one are not met
+  ObjectPredicate predicate{};  ///< asked last, about objects that the filter lets pass
 
+  /// The filter alone, as an object would have it.
   [[nodiscard]] constexpr ObjectFilter object() const noexcept {
     return {layers, mask, environment};
   }
@@ -40,7 +41,7 @@ struct Filter {
 /// A caller's last word on a pair; see ObjectPredicate.
 struct PairPredicate {
   bool (*accept)(void* context, ObjectId first, ObjectId second) = nullptr;  ///< null: all
-  void* context = nullptr;
+  void* context = nullptr;                                                   ///< handed to `accept`
 };
 
 }  // namespace winnow

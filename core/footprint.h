@@ -9,14 +9,16 @@ namespace winnow {
 
 /// Bytes of one purpose: `used` holds live content, `reserved` is what the memory resource gave.
 struct Bytes {
-  std::size_t used = 0;
-  std::size_t reserved = 0;
+  std::size_t used = 0;      ///< bytes with content
+  std::size_t reserved = 0;  ///< bytes held, content or not
 
+  /// Adds both.
   Bytes& operator+=(const Bytes& other) noexcept {
     used += other.used;
     reserved += other.reserved;
     return *this;
   }
+  /// Both are equal.
   friend bool operator==(const Bytes&, const Bytes&) noexcept = default;
 };
 
@@ -30,6 +32,7 @@ struct Footprint {
   Bytes scratch;      ///< buffers kept from frame to frame
   Bytes results;      ///< pairs and hits on their way to the caller's buffer
 
+  /// Sum of all purposes.
   [[nodiscard]] Bytes total() const noexcept {
     Bytes sum;
     for (const Bytes* part : {&bounds, &keys, &client_data, &structure, &scratch, &results}) {

@@ -12,7 +12,10 @@ namespace winnow {
 /// What a camera sees: six planes that face inward, and a box around what lies within them.
 struct WINNOW_API Frustum {
   /// Depth that the near plane has in clip space.
-  enum class NearDepth { zero, minus_one };
+  enum class NearDepth {
+    zero,       ///< as Vulkan, Direct3D and Metal have it
+    minus_one,  ///< as OpenGL has it
+  };
 
   std::array<Plane, 6> planes;  ///< left, right, bottom, top, near, far
   /// Contains the frustum; whatever lies outside of it is not seen. Infinite where not known.
@@ -34,6 +37,7 @@ struct WINNOW_API Frustum {
   [[nodiscard]] static Frustum from_matrix(const Eigen::Ref<const Eigen::Matrix4d>& clip_from_world,
                                            NearDepth near_depth = NearDepth::zero) noexcept;
 
+  /// True if a query takes it: six valid planes and a valid box.
   [[nodiscard]] bool is_valid() const noexcept;
 };
 

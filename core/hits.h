@@ -17,36 +17,45 @@ namespace winnow {
 
 /// An object that a ray, a cast or a nearest query found.
 struct Hit {
-  Key key;
-  ClientData data = 0;
+  Key key;              ///< the object; null if nothing was found
+  ClientData data = 0;  ///< that the object was inserted with
   /// Where the sweep first touches the object's box, in units of the sweep's direction; of a
   /// nearest query the distance. The exact value, rounded down to a float.
   float t = std::numeric_limits<float>::infinity();
 
+  /// True if something was found.
   [[nodiscard]] explicit operator bool() const noexcept { return key.id != kNoObject; }
+  /// The same object, data and t.
   friend bool operator==(const Hit&, const Hit&) noexcept = default;
 };
 
 /// Where a batch of questions that have one answer each writes them: columns of the caller, each
 /// null if not wanted. A question without an answer gets the null key, 0 and infinity.
 struct HitColumns {
-  Key* key = nullptr;
-  ClientData* data = nullptr;
-  float* t = nullptr;
+  Key* key = nullptr;          ///< objects
+  ClientData* data = nullptr;  ///< what they were inserted with
+  float* t = nullptr;          ///< infinity where nothing was found
 };
 
 /// The caller's array of hits, reused from query to query; a query with as many hits as an earlier
 /// one allocates nothing. Not for use from two threads at once.
 class WINNOW_API HitBuffer {
  public:
+  /// An empty buffer. Every allocation comes from `memory`, which must outlive it.
   explicit HitBuffer(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
       : hits_(memory), start_(memory), found_(memory), keys_(memory) {}
 
+  /// All hits; of a batch those of its questions one after the other.
   [[nodiscard]] std::span<const Hit> hits() const noexcept { return {hits_.data(), size()}; }
+  /// Hits of all questions.
   [[nodiscard]] std::size_t size() const noexcept { return hits_.size(); }
+  /// True if nothing was hit.
   [[nodiscard]] bool empty() const noexcept { return hits_.empty(); }
+  /// Hit i, below `size()`.
   [[nodiscard]] const Hit& operator[](std::size_t i) const noexcept { return hits_[i]; }
+  /// The first hit.
   [[nodiscard]] const Hit* begin() const noexcept { return hits_.begin(); }
+  /// Behind the last hit.
   [[nodiscard]] const Hit* end() const noexcept { return hits_.end(); }
 
   /// How many questions the last query had: 1, or the size of the batch.
@@ -58,6 +67,7 @@ class WINNOW_API HitBuffer {
     return {hits_.data() + start_[i], start_[i + 1] - start_[i]};
   }
 
+  /// Forgets all hits; memory is kept.
   void clear() noexcept {
     hits_.clear();
     start_.clear();
@@ -82,6 +92,7 @@ class WINNOW_API HitBuffer {
 /// two threads at once.
 class WINNOW_API OverlapBuffer {
  public:
+  /// An empty buffer. Every allocation comes from `memory`, which must outlive it.
   explicit OverlapBuffer(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
       : ids_(memory), crossing_(memory) {}
@@ -100,9 +111,12 @@ class WINNOW_API OverlapBuffer {
   [[nodiscard]] std::span<const ObjectId> crossing() const noexcept {
     return ids().subspan(inside_);
   }
+  /// Objects that meet the region, inside or crossing.
   [[nodiscard]] std::size_t size() const noexcept { return ids_.size(); }
+  /// True if the region meets nothing.
   [[nodiscard]] bool empty() const noexcept { return ids_.empty(); }
 
+  /// Forgets all objects; memory is kept.
   void clear() noexcept {
     ids_.clear();
     inside_ = 0;

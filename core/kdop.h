@@ -41,9 +41,11 @@ template <int K>
 /// polytopes to meet.
 template <int K>
 struct Kdop {
-  static constexpr std::size_t kSlabs = K / 2;
+  static constexpr std::size_t kSlabs = K / 2;  ///< Pairs of opposite faces.
 
+  /// Lower ends of the slabs; +infinity if empty.
   std::array<float, kSlabs> min = filled(std::numeric_limits<float>::infinity());
+  /// Upper ends of the slabs; -infinity if empty.
   std::array<float, kSlabs> max = filled(-std::numeric_limits<float>::infinity());
 
   /// The tightest k-DOP of a box, rounded outward.

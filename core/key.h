@@ -25,11 +25,14 @@ inline constexpr std::uint64_t kMaxObjects = 0xFFFFFFFEULL;
 /// whose object was removed, or that another partition or scene gave out, is answered with
 /// `Status::invalid_key`: the stamp holds 17 bits that tell 131,071 of them apart, as many as may
 /// live in one process at a time, and a 15-bit generation. One whose generations are used up, after
-/// 16,384 objects in one place, tells its keys by a further number.
+/// 16,384 objects in one place, tells its keys by a further number. `std::hash`
+/// takes keys.
 struct Key {
-  ObjectId id = kNoObject;
+  ObjectId id = kNoObject;  ///< index of the object in its partition
+  /// Tells it from others that had the index, and from those of other partitions.
   std::uint32_t stamp = 0;
 
+  /// The same object of the same partition.
   friend constexpr bool operator==(const Key&, const Key&) noexcept = default;
 };
 
@@ -37,9 +40,12 @@ static_assert(sizeof(Key) == 8);
 
 }  // namespace winnow
 
+// Doxygen knows no namespace that it could be part of.
+/// @cond
 template <>
 struct std::hash<winnow::Key> {
   std::size_t operator()(const winnow::Key& key) const noexcept {
     return std::hash<std::uint64_t>{}((static_cast<std::uint64_t>(key.stamp) << 32U) | key.id);
   }
 };
+/// @endcond

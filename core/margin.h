@@ -16,6 +16,7 @@ struct Margin {
   float distance = 0.0F;  ///< in units of the scene
   float share = 0.0F;     ///< 0.05: a twentieth of the longest edge
 
+  /// True if volumes are stored as they are given.
   [[nodiscard]] bool is_none() const noexcept { return !(distance > 0.0F) && !(share > 0.0F); }
 
   /// The same with members that are finite and not negative.

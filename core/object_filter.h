@@ -16,6 +16,7 @@ struct ObjectFilter {
   std::uint32_t mask = ~0U;       ///< layers that it wants to meet
   std::uint32_t environment = 0;  ///< objects of different environments never meet
 
+  /// The same layers, mask and environment.
   friend constexpr bool operator==(const ObjectFilter&, const ObjectFilter&) noexcept = default;
 };
 

@@ -11,8 +11,11 @@ namespace winnow {
 /// The points center + axes * s with |s_i| <= half_i; closed. The columns of `axes` are meant to be
 /// orthogonal unit vectors; any finite ones are taken, and then make a parallelepiped.
 struct OrientedBox {
+  /// The middle.
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
+  /// Extent from the middle along each column of `axes`.
   Eigen::Vector3f half = Eigen::Vector3f::Zero();
+  /// Directions as columns.
   Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();
 
   /// True if a query takes this box: all finite, half >= 0.

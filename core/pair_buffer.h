@@ -17,9 +17,10 @@ namespace winnow {
 /// Two objects that may touch. From `self_pairs`: first < second. From `pairs_with`: first belongs
 /// to the partition that was asked, second to the other one.
 struct Pair {
-  ObjectId first = kNoObject;
-  ObjectId second = kNoObject;
+  ObjectId first = kNoObject;   ///< an id of the partition that was asked
+  ObjectId second = kNoObject;  ///< an id of it, or of the other one
 
+  /// By the first object, then by the second.
   friend constexpr auto operator<=>(const Pair&, const Pair&) noexcept = default;
 };
 
@@ -33,11 +34,13 @@ class WINNOW_API PairBuffer {
  public:
   /// Which complete query the content came from; 0 is none.
   struct Provenance {
-    std::uint64_t partition = 0;
-    std::uint64_t serial = 0;
+    std::uint64_t partition = 0;  ///< a number that no other partition of the process has
+    std::uint64_t serial = 0;     ///< grows with each query
+    /// The same query.
     friend constexpr bool operator==(const Provenance&, const Provenance&) noexcept = default;
   };
 
+  /// An empty buffer. Every allocation comes from `memory`, which must outlive it.
   explicit PairBuffer(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
       : pairs_(memory),
         pages_(memory),
@@ -56,11 +59,17 @@ class WINNOW_API PairBuffer {
         state_(std::exchange(other.state_, State::loose)),
         provenance_(std::exchange(other.provenance_, {})) {}
 
+  /// All pairs, in the order that was asked for.
   [[nodiscard]] std::span<const Pair> pairs() const noexcept { return {pairs_.data(), size()}; }
+  /// Pairs in it.
   [[nodiscard]] std::size_t size() const noexcept { return pairs_.size(); }
+  /// True without pairs.
   [[nodiscard]] bool empty() const noexcept { return pairs_.empty(); }
+  /// Pair i, below `size()`.
   [[nodiscard]] const Pair& operator[](std::size_t i) const noexcept { return pairs_[i]; }
+  /// The first pair.
   [[nodiscard]] const Pair* begin() const noexcept { return pairs_.begin(); }
+  /// Behind the last pair.
   [[nodiscard]] const Pair* end() const noexcept { return pairs_.end(); }
 
   /// Room for `count` pairs. False if memory is refused. What it takes besides to find them is made
@@ -73,6 +82,7 @@ class WINNOW_API PairBuffer {
   /// either. False, and unchanged, if memory is refused. O(pairs).
   [[nodiscard]] bool assign(const PairBuffer& other) noexcept;
 
+  /// Forgets all pairs, so that the next query is a full one; memory is kept.
   void clear() noexcept {
     pairs_.clear();
     state_ = State::loose;

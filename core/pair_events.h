@@ -18,9 +18,10 @@ namespace winnow {
 /// Two objects by key, first.id < second.id. Keys, because an object that ended its pair may be
 /// gone, and its id another object's.
 struct KeyPair {
-  Key first;
-  Key second;
+  Key first;   ///< with the smaller id
+  Key second;  ///< with the larger id
 
+  /// The same two objects.
   friend constexpr bool operator==(const KeyPair&, const KeyPair&) noexcept = default;
 };
 
@@ -30,6 +31,7 @@ struct KeyPair {
 /// buffer: the events then keep the pairs themselves.
 class WINNOW_API PairEvents {
  public:
+  /// Nothing has happened yet. Every allocation comes from `memory`, which must outlive it.
   explicit PairEvents(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
       : begun_(memory),
         ended_(memory),
@@ -66,6 +68,7 @@ class WINNOW_API PairEvents {
   /// order in which they are told.
   [[nodiscard]] std::size_t persisting() const noexcept { return persisting_; }
 
+  /// Forgets what there was: the next query starts anew, and every pair begins. Memory is kept.
   void clear() noexcept {
     begun_.clear();
     ended_.clear();

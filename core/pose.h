@@ -10,10 +10,11 @@ namespace winnow {
 /// that poses read from a file or a solver are taken as they are; answers are computed from the
 /// difference of positions and do not depend on where in the world they are asked.
 struct Pose {
-  double position[3] = {0.0, 0.0, 0.0};
+  double position[3] = {0.0, 0.0, 0.0};  ///< of the shape's own origin, in the world
   /// Quaternion w, x, y, z of any finite length but zero; R is that of the normalised quaternion.
   double orientation[4] = {1.0, 0.0, 0.0, 0.0};
 
+  /// At a place, not turned.
   [[nodiscard]] static constexpr Pose at(double x, double y, double z) noexcept {
     return {{x, y, z}, {1.0, 0.0, 0.0, 0.0}};
   }

@@ -16,13 +16,15 @@ namespace winnow {
 /// Without orientations bodies that are moved do not turn, and poses that are read have the
 /// identity.
 struct PoseView {
-  std::array<const double*, 3> position{};
+  std::array<const double*, 3> position{};  ///< of the first pose: x, y, z
+  /// Bytes from one position to the next.
   std::size_t position_stride = sizeof(double);
-  std::array<const double*, 4> orientation{};
+  std::array<const double*, 4> orientation{};  ///< of the first pose: w, x, y, z
   /// Read where `orientation` is null.
   std::array<const float*, 4> orientation_float{};
+  /// Bytes from one orientation to the next.
   std::size_t orientation_stride = sizeof(double);
-  std::size_t count = 0;
+  std::size_t count = 0;  ///< poses
 
   PoseView() = default;
 
@@ -62,6 +64,7 @@ struct PoseView {
         orientation_float(orientations),
         orientation_stride(orientation_bytes),
         count(poses) {}
+  /// The same with orientations in double.
   PoseView(std::array<const double*, 3> positions, std::array<const double*, 4> orientations,
            std::size_t poses, std::size_t position_bytes = sizeof(double),
            std::size_t orientation_bytes = sizeof(double)) noexcept
@@ -74,6 +77,7 @@ struct PoseView {
   [[nodiscard]] bool has_orientations() const noexcept {
     return orientation[0] != nullptr || orientation_float[0] != nullptr;
   }
+  /// Pose i, copied out; i is below `count`.
   [[nodiscard]] Pose operator[](std::size_t i) const noexcept {
     Pose pose;
     for (std::size_t axis = 0; axis < 3; ++axis) {

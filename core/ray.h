@@ -22,9 +22,12 @@ namespace winnow {
 /// The points origin + t * direction for t in [min_t, max_t]. The direction has any finite length
 /// but zero, and t counts in it: for a unit direction t is a distance.
 struct Ray {
+  /// The point at t = 0.
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();
+  /// By which the point moves while t grows by 1.
   Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
-  float min_t = 0.0F;
+  float min_t = 0.0F;  ///< begin; finite, >= 0
+  /// End; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();
 
   /// True if a query takes this ray: finite origin, finite direction that is not zero,
@@ -39,12 +42,12 @@ static_assert(sizeof(Ray) == 32 && alignof(Ray) == 4, "layout must not depend on
 /// Rays where the caller keeps them: column pointers and one stride in bytes. Nothing is copied to
 /// make one, and it must not outlive the memory it looks at.
 struct RayBatch {
-  std::array<const float*, 3> origin{};
-  std::array<const float*, 3> direction{};
-  const float* min_t = nullptr;  ///< null: 0 for all
-  const float* max_t = nullptr;  ///< null: infinity for all
-  std::size_t count = 0;
-  std::size_t stride = sizeof(float);  ///< bytes from one ray to the next
+  std::array<const float*, 3> origin{};     ///< of the first ray: x, y, z
+  std::array<const float*, 3> direction{};  ///< of the first ray: x, y, z
+  const float* min_t = nullptr;             ///< null: 0 for all
+  const float* max_t = nullptr;             ///< null: infinity for all
+  std::size_t count = 0;                    ///< rays
+  std::size_t stride = sizeof(float);       ///< bytes from one ray to the next
 
   RayBatch() = default;
 
@@ -80,6 +83,7 @@ struct RayBatch {
         count(rays),
         stride(stride_bytes) {}
 
+  /// Ray i, copied out; i is below `count`.
   [[nodiscard]] Ray operator[](std::size_t i) const noexcept {
     Ray ray;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -10,8 +10,9 @@ namespace winnow {
 
 /// Closed ball. A radius of zero is a point.
 struct Sphere {
+  /// Finite.
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
-  float radius = 0.0F;
+  float radius = 0.0F;  ///< finite, >= 0
 
   /// True if a partition takes this sphere: finite centre, finite radius >= 0.
   [[nodiscard]] bool is_valid() const noexcept {

@@ -9,6 +9,7 @@ namespace winnow {
 /// What became of a call. Every call that can be refused returns one; a refused call changed
 /// nothing. No winnow function throws on what a caller can pass.
 enum class [[nodiscard]] Status : std::uint8_t{
+    /// It did what it says.
     ok,
     /// A bound is NaN, has min > max on an axis, or lies wholly at infinity.
     invalid_bounds,
