@@ -13,6 +13,8 @@ WINNOW_PYTHON_PACKAGES=(pybind11-dev python3-dev python3-numpy)
 WINNOW_PYTHON_TEST_PACKAGES=(python3-pytest python3-hypothesis python3-venv mypy)
 # Mesh files for `winnow simulate`.
 WINNOW_MESH_PACKAGES=(libassimp-dev)
+# What bench/site/build makes pages of: mkdocs with Pygments, and Doxygen for the reference.
+WINNOW_SITE_PACKAGES=(mkdocs python3-pygments doxygen)
 # What opens the pages of `winnow draw` in a test: Chromium without its windows.
 WINNOW_BROWSER_PACKAGES=(chromium-headless-shell)
 # Other libraries that winnow can be measured against.

@@ -10,11 +10,13 @@ def flock(count=2000, frames=20, sight=1.0, seed=1):
     side = count ** (1 / 3)
     place = random.uniform(0, side, (count, 3))
     speed = random.normal(size=(count, 3))
+    # [neighbours]
     boids = winnow.Partition("HierarchicalGrid", volume="sphere")
     keys = boids.insert_spheres(place, sight / 2)
     alignment = []
     for _ in range(frames):
         first, second = boids.self_pairs().T
+        # [end]
         others = np.zeros_like(speed)
         np.add.at(others, first, speed[second])
         np.add.at(others, second, speed[first])

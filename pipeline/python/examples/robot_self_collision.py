@@ -23,6 +23,7 @@ def arm_poses(angles):
 def collides(angles):
     """Which poses (n, links), in radians, bring an arm's link against another: (n,) bool."""
     count, links = angles.shape
+    # [scene]
     shapes = winnow.Shapes()
     link = shapes.add_capsules(RADIUS, LENGTH / 2)
     arm = winnow.Scene(shapes)
@@ -33,6 +34,7 @@ def collides(angles):
     a, b = contacts.data_a.astype(int), contacts.data_b.astype(int)
     hit = np.zeros(count, bool)
     hit[a[np.abs(a - b) > 1] // links] = True
+    # [end]
     return hit
 
 

@@ -1,0 +1,66 @@
+// A bullet, layers, triggers.
+
+#include <winnow/winnow.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tests/examples/check.h"
+
+int main() {
+  winnow::ShapePool shapes;
+  winnow::ShapeId wall, bullet, soldier, zone;
+  shapes.add(winnow::BoxShape{{0.001, 5, 5}}, wall);  // thin
+  shapes.add(winnow::SphereShape{0.01}, bullet);
+  shapes.add(winnow::CapsuleShape{0.3, 0.6}, soldier);
+  shapes.add(winnow::BoxShape{{1, 1, 1}}, zone);
+
+  // [layers]
+  enum Layer : std::uint32_t { level = 1, players = 2, triggers = 4 };
+  winnow::Scene scene(shapes);
+  winnow::Key door, hero, trap;
+  scene.add({wall, winnow::Pose::at(10, 0, 0), winnow::Motion::fixed, {.layers = level}}, door);
+  scene.add({.shape = soldier,
+             .pose = winnow::Pose::at(20, 0, 0),
+             .filter = {.layers = players, .mask = level | players | triggers}},
+            hero);
+  scene.add({.shape = zone,
+             .pose = winnow::Pose::at(25, 0, 0),
+             .motion = winnow::Motion::fixed,
+             .filter = {.layers = triggers, .mask = players}},  // meets nothing else
+            trap);
+  // [end]
+
+  scene.refresh();
+  winnow::SceneQueries ask(scene);
+  // [projectile]
+  const double step = 1.0 / 60.0;
+  winnow::SceneHit hit;  // 900 m/s: 15 m in a frame, and the wall has 2 mm
+  ask.closest(winnow::ShapeCast{bullet, winnow::Pose::at(0, 0, 0), {900, 0, 0}, step}, hit,
+              {.mask = level | players});
+  if (hit) check(hit.t < step, "hit.t is the time, hit.point the place, hit.normal the side");
+  // [end]
+  check(hit.key == door, "nothing is too thin to be hit");
+
+  winnow::Contacts contacts;
+  std::size_t entered = 0, left = 0;
+  const auto frame = [&](double x) {
+    scene.move(hero, winnow::Pose::at(x, 0, 0));
+    // [triggers]
+    scene.collide(winnow::ContactLevel::boolean, contacts);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      if (contacts.event()[i] == winnow::ContactEvent::begun) ++entered;
+    }
+    for (const winnow::EndedContact& pair : contacts.ended()) {
+      if (pair.a == trap || pair.b == trap) ++left;  // keys of removed bodies are stale here
+    }
+    // [end]
+  };
+  frame(20);
+  frame(24.5);
+  frame(25);
+  frame(30);
+  check(entered == 1 && left == 1, "the hero walked through the trap");
+}

@@ -1,0 +1,56 @@
+// Grains: neighbours within a distance, kept from step to step.
+
+#include <winnow/winnow.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "tests/examples/check.h"
+
+int main() {
+  std::vector<winnow::Sphere> grains;
+  for (int i = 0; i < 4000; ++i) {
+    const auto at = [](int k) { return 1.05F * static_cast<float>(k); };
+    grains.push_back({{at(i % 20), at(i / 20 % 20), at(i / 400)}, 0.5F});
+  }
+  std::vector<winnow::Key> keys(grains.size());
+
+  // [neighbours]
+  winnow::Partition partition(winnow::hierarchical_grid(),
+                              {.volume = winnow::Volume::sphere,  // not the box around it
+                               .margin = {.distance = 0.05F}});   // the skin of a Verlet list
+  partition.insert(grains, {}, keys);
+  winnow::PairBuffer neighbours;
+  partition.self_pairs(neighbours);
+  // [end]
+  check(neighbours.size() > 3 * 3500, "each grain has three neighbours after it, but at the rim");
+
+  const std::size_t before = neighbours.size();
+  for (winnow::Sphere& grain : grains) grain.center.x() += 0.02F;
+  // [a step]
+  partition.update(keys, grains);    // within the skin: nothing is stored, nothing is searched
+  partition.self_pairs(neighbours);  // brought up to date where a grain left its skin
+  // [end]
+  check(neighbours.size() == before, "nobody has left");
+
+  winnow::ShapePool shapes;
+  winnow::ShapeId grain;
+  shapes.add(winnow::SphereShape{0.5}, grain);
+  winnow::Contacts contacts;
+  // [contacts of grains]
+  winnow::Scene scene(shapes, {.margin = 0.06,         // contacts before they touch
+                               .carry_over = 0.002});  // what rests is not computed again
+  std::vector<winnow::BodyDefinition> bodies;
+  for (const winnow::Sphere& s : grains) {
+    bodies.push_back({grain, winnow::Pose::at(s.center.x(), s.center.y(), s.center.z())});
+  }
+  scene.add(bodies, keys);
+  scene.collide(winnow::ContactLevel::distance, contacts);  // a distance and a normal suffice
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const double overlap = -contacts.distance()[i];
+    check(overlap < 0.0, "they stand a twentieth apart");
+  }
+  // [end]
+  check(contacts.size() > 3 * 3500, "neighbours are contacts within the margin");
+}

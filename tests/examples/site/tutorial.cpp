@@ -1,0 +1,97 @@
+// Ten minutes: boxes, what changes, bodies, contacts, questions.
+
+#include <winnow/winnow.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "tests/examples/check.h"
+
+namespace {
+
+std::size_t pushed = 0;
+
+void boxes_and_pairs() {
+  // [boxes]
+  std::vector<winnow::Aabb> boxes;  // any number of boxes: least and greatest corner
+  for (int i = 0; i < 1000; ++i) {
+    const float x = 0.9F * static_cast<float>(i);
+    boxes.push_back({{x, 0, 0}, {x + 1, 1, 1}});
+  }
+  std::vector<winnow::Key> keys(boxes.size());  // names them from now on
+  winnow::Partition partition(winnow::linear_bvh());
+  if (partition.insert(boxes, {}, keys) != winnow::Status::ok) return;
+
+  winnow::PairBuffer pairs;
+  partition.self_pairs(pairs);  // each box overlaps the next one
+  for (const winnow::Pair& pair : pairs) check(pair.first + 1 == pair.second, "neighbours");
+  // [end]
+  check(pairs.size() == 999, "there are as many pairs as gaps");
+
+  // [changes]
+  winnow::PairEvents events;
+  partition.self_pairs(pairs, events);      // from here on it tells what changed
+  boxes[500] = {{450, 5, 0}, {451, 6, 1}};  // up and away
+  partition.update(keys[500], boxes[500]);
+  partition.self_pairs(pairs, events);  // costs what moved, not what is there
+  for (const winnow::KeyPair& pair : events.ended()) {
+    check(pair.first == keys[500] || pair.second == keys[500], "its two pairs ended");
+  }
+  // [end]
+  check(events.ended().size() == 2 && pairs.size() == 997, "two pairs ended");
+}
+
+void push(winnow::Key, winnow::Key, double, double) {
+  ++pushed;
+}
+
+void bodies_and_contacts() {
+  // [bodies]
+  winnow::ShapePool shapes;  // shapes once, however many bodies have them
+  winnow::ShapeId crate, ball, floor;
+  shapes.add(winnow::BoxShape{{0.5, 0.5, 0.5}}, crate);  // half extents
+  shapes.add(winnow::SphereShape{0.25}, ball);
+  shapes.add(winnow::HalfSpaceShape{}, floor);  // all below z = 0
+
+  winnow::Scene scene(shapes, {.margin = 0.01});  // closer than a centimetre is a contact
+  winnow::Key ground, lower, upper, rolling;
+  scene.add({.shape = floor, .motion = winnow::Motion::fixed}, ground);
+  scene.add({.shape = crate, .pose = winnow::Pose::at(0, 0, 0.5), .data = 1}, lower);
+  scene.add({.shape = crate, .pose = winnow::Pose::at(0, 0, 1.495), .data = 2}, upper);
+  scene.add({.shape = ball, .pose = winnow::Pose::at(3, 0, 0.25), .data = 3}, rolling);
+  // [end]
+
+  // [contacts]
+  winnow::Contacts contacts;  // yours, filled again in every frame
+  scene.collide(winnow::ContactLevel::manifold, contacts);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {  // pairs of bodies that touch
+    for (auto m = contacts.manifold_first()[i]; m < contacts.manifold_first()[i + 1]; ++m) {
+      for (auto p = contacts.point_first()[m]; p < contacts.point_first()[m + 1]; ++p) {
+        push(contacts.a()[i], contacts.b()[i], contacts.normal(2)[m], contacts.contact(p).depth);
+      }
+    }
+  }
+  // [end]
+  check(contacts.size() == 3, "crate and floor, crate and crate, ball and floor");
+  check(pushed == 9, "four corners, four corners, one point");
+
+  // [questions]
+  scene.move(rolling, winnow::Pose::at(6, 0, 0.25));
+  scene.refresh();  // brings the partitions up to date
+  winnow::SceneQueries ask(scene);
+  winnow::SceneHit hit;
+  ask.closest(winnow::ShapeRay{{-5, 0, 0.5}, {1, 0, 0}, 100.0}, hit);  // hits the lower crate
+  winnow::SceneDistance gap;
+  ask.distance(upper, rolling, gap);  // closest points, distance, bound of its error
+  // [end]
+  check(hit.key == lower && hit.t == 4.5, "the ray meets the lower crate");
+  check(gap.distance > 4.9 && gap.error_bound < 1e-6, "they are apart");
+}
+
+}  // namespace
+
+int main() {
+  boxes_and_pairs();
+  bodies_and_contacts();
+}
