@@ -80,6 +80,7 @@ class WINNOW_API ShapePool {
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
+  /// @cond Doxygen lists private classes, too.
   template <typename Shape>
   struct Table {
     explicit Table(std::pmr::memory_resource* memory) noexcept
@@ -88,6 +89,7 @@ class WINNOW_API ShapePool {
     Column<std::uint8_t> live;
     Column<std::uint32_t> free;
   };
+  /// @endcond
 
   template <typename Shape>
   Status put(Table<Shape>& table, ShapeKind kind, const Shape& shape, ShapeId& id);

@@ -204,6 +204,12 @@ def read(path):
         return list(csv.DictReader(file))
 
 
+def three_digits(value):
+    """2217.3 as 2,220."""
+    digits = max(0, 2 - math.floor(math.log10(value)))
+    return f"{round(value, 2 - math.floor(math.log10(value))):,.{digits}f}"
+
+
 def bars(path, title, groups, unit):
     """Groups of bars [(name, [(label, value, is winnow)])] on a logarithmic axis."""
     height = 46 + sum(34 + 22 * len(rows) for _, rows in groups)
@@ -218,7 +224,7 @@ def bars(path, title, groups, unit):
     for power in range(low, high + 1):
         x = at(10.0**power)
         picture.line(x, 30, x, height - 8, "#dde3ea", 1)
-        picture.text(x, 22, f"{10.0**power:g} {unit}", 13, "#5b6675", "middle")
+        picture.text(x, 22, f"{10**power:,} {unit}", 13, "#5b6675", "middle")
     y = 44
     for name, rows in groups:
         picture.text(10, y + 14, name, 16, weight=600)
@@ -226,7 +232,7 @@ def bars(path, title, groups, unit):
         for label, value, ours in rows:
             picture.text(left - 8, y + 13, label, 14, INK if ours else "#5b6675", "end", 600 if ours else 400)
             picture.box(left, y + 2, max(at(value) - left, 2), 15, BLUE if ours else "#b6bec8")
-            picture.text(at(value) + 6, y + 14, f"{value:.3g}", 13, INK)
+            picture.text(at(value) + 6, y + 14, three_digits(value), 13, INK)
             y += 22
         y += 10
     picture.write(path)

@@ -47,6 +47,17 @@ void bounce(winnow::Aabb& box, Eigen::Vector3f& speed, int axis, float end) {
 
 extern "C" {
 
+#ifdef __wasm__
+// The library for WASI cannot throw: what would ends the scene, as an exception in a callback ends
+// a program. Nothing here does.
+[[noreturn]] __attribute__((weak)) void __cxa_throw(void*, void*, void (*)(void*)) {
+  __builtin_trap();
+}
+__attribute__((weak)) void* __cxa_allocate_exception(std::size_t) {
+  __builtin_trap();
+}
+#endif
+
 /// So many boxes at random; false if there was no memory for them.
 EXPORTED("live_start") bool live_start(std::uint32_t count) {
   Live& scene = live();
@@ -59,7 +70,7 @@ EXPORTED("live_start") bool live_start(std::uint32_t count) {
   scene.speeds.resize(count);
   scene.keys.resize(count);
   // As much of the plane is covered, however many there are.
-  const float edge = 60.0F / std::sqrt(static_cast<float>(count));
+  const float edge = 45.0F / std::sqrt(static_cast<float>(count));
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3f size(edge * draw(0.4F, 1.6F), edge * draw(0.4F, 1.6F), 1.0F);
     const Eigen::Vector3f low(draw(0.0F, kWidth - size.x()), draw(0.0F, kHeight - size.y()), 0.0F);
