@@ -169,13 +169,13 @@ def tiers(folder):
 
 
 def bounds(folder):
-    picture = Picture(760, 190, "Intervals around distances")
+    picture = Picture(860, 190, "Intervals around distances")
     for y, at, bound, verdict, colour in ((50, 480, 90, "apart, for certain", GREEN),
                                           (100, 330, 90, "not certain: the next step decides", ORANGE),
                                           (150, 130, 70, "overlapping, for certain", BLUE)):
         picture.line(at - bound, y, at + bound, y, colour, 8, 'stroke-linecap="round"')
         picture.circle(at, y, 7, INK)
-        picture.text(at + bound + 18, y + 5, verdict, 15)
+        picture.text(596, y + 5, verdict, 15)
     picture.line(300, 20, 300, 172, INK, 1.5, 'stroke-dasharray="4 4"')
     picture.text(300, 14, "distance 0", 14, "#5b6675", "middle")
     picture.write(folder / "bounds.svg")

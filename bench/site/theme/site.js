@@ -4,6 +4,7 @@ if (matchMedia('(max-width: 899px)').matches) menu.open = false;
 
 // For tests: how far the page reaches beyond the right edge.
 if (location.hash === '#check') {
-  document.body.dataset.beyond = document.documentElement.scrollWidth - innerWidth;
+  document.body.dataset.beyond =
+    document.documentElement.scrollWidth - document.documentElement.clientWidth;
   document.body.dataset.height = document.documentElement.scrollHeight;
 }
