@@ -42,7 +42,8 @@ class WINNOW_API PrimitivePairs {
   Column<Pose> poses;  ///< where each primitive stands
   /// Which part of its body it is: the number of the triangle or child; kWholeShape.
   Column<std::uint32_t> part;
-  /// Triangles of meshes and height fields, at the pose of their body; `shapes` leads to them.
+  /// All triangles, of meshes, height fields and the ShapePool, each in the frame of its pose; ids
+  /// of that kind in `shapes` lead here.
   Column<TriangleShape> triangles;
   /// Of `triangles`, one for each: bit k is set where edge k (from corner k to the next) is not one
   /// that a neighbour continues, bit 3 + k where corner k is on such an edge of any triangle: a
