@@ -40,7 +40,7 @@ def shown_passage(match):
     language = LANGUAGES[pathlib.Path(path).suffix]
     return (
         f"```{language}\n{passage(path, name)}\n```\n"
-        f'<p class="source" markdown="1">`{path}`, built and run as a test</p>\n'
+        f'<p class="source" markdown="1">`{path}`, part of a test</p>\n'
     )
 
 
