@@ -19,6 +19,7 @@ enum class WorkStage : std::uint8_t {
   narrow_phase,  ///< pairs of shapes are answered
   contacts,      ///< answers are put into Contacts
 };
+/// How many there are.
 inline constexpr std::size_t kWorkStages = 6;
 
 /// The enumerator's name. Never null.
@@ -36,18 +37,19 @@ WINNOW_API StageHook set_stage_hook(StageHook hook) noexcept;
 
 /// What a log is told.
 struct LogEntry {
+  /// What happened.
   enum class Kind : std::uint8_t {
     choice,   ///< the structure of a partition changed by `automatic()`
     refusal,  ///< a call of a Partition or Scene was refused
   };
-  Kind kind = Kind::refusal;
+  Kind kind = Kind::refusal;  ///< says which of the rest are set
   /// The structure from here on, or the call: "Scene::add".
   std::string_view what{};
   /// The structure before.
   std::string_view before{};
   /// Why, in a few words; the status by name.
   std::string_view reason{};
-  Status status = Status::ok;
+  Status status = Status::ok;  ///< of a refusal
   /// In the partition. 0 of a refusal.
   std::size_t objects = 0;
 };

@@ -49,6 +49,7 @@ struct PoseView {
   PoseView(std::array<const double*, 3> positions, std::size_t poses,
            std::size_t position_bytes = sizeof(double)) noexcept
       : position(positions), position_stride(position_bytes), count(poses) {}
+  /// An array of positions alone.
   [[nodiscard]] static PoseView of_positions(std::span<const Eigen::Vector3d> positions) noexcept {
     if (positions.empty()) return {};
     const double* const first = positions.data()->data();
@@ -74,6 +75,7 @@ struct PoseView {
         orientation_stride(orientation_bytes),
         count(poses) {}
 
+  /// False where bodies do not turn.
   [[nodiscard]] bool has_orientations() const noexcept {
     return orientation[0] != nullptr || orientation_float[0] != nullptr;
   }

@@ -22,6 +22,8 @@ inline constexpr std::uint32_t kRestColour = kContactColours - 1;
 /// anew.
 class WINNOW_API ContactGroups {
  public:
+  /// Every allocation comes from `memory`, which must outlive the object; none before the first
+  /// use.
   explicit ContactGroups(
       std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
       : group_(memory), first_(memory), order_(memory), of_body_(memory), colours_(memory) {}

@@ -118,6 +118,7 @@ class WINNOW_API Contacts {
   /// than 1/50 of the smaller body's radius in the frame of body a or in that of body b (unless
   /// more than 256 are left of one pair).
   [[nodiscard]] std::span<const std::uint32_t> previous_pair() const noexcept;
+  /// The same of each point, into the points of the frame before.
   [[nodiscard]] std::span<const std::uint32_t> previous_point() const noexcept;
 
   /// How many pairs kept the manifolds they had.

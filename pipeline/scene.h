@@ -193,7 +193,9 @@ class WINNOW_API Scene {
   /// ignore itself is `invalid_argument`. O(pairs log pairs + all that are ignored); a scene with
   /// none pays nothing.
   Status set_ignored(Key a, Key b, bool ignored = true);
+  /// The same for many pairs, all or none.
   Status set_ignored(std::span<const KeyPair> pairs, bool ignored = true);
+  /// True if the two were told to ignore each other, in either order; false for stale keys.
   [[nodiscard]] bool is_ignored(Key a, Key b) const noexcept;
   /// Asked about every pair of bodies, by the ids of their keys, whose boxes meet, whose filters
   /// let them and that are not ignored. A pair is not asked about in every frame: to have other
