@@ -2,9 +2,14 @@
 
 #include "tests/c/notes.h"
 
+#include <winnow/c/winnow.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace winnow::test {
 namespace {
@@ -43,6 +48,50 @@ TEST(CInterface, gives_the_answers_of_cpp_about_pairs_of_shapes) {
 
 TEST(CInterface, gives_the_answers_of_cpp_about_scenes) {
   expect_same(ask_scenes_in_c, ask_scenes_in_cpp);
+}
+
+/// All pairs of a dense row of boxes.
+[[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_on(
+    const winnow_execution& execution) {
+  std::vector<winnow_aabb> boxes(20000);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const float x = 0.25F * static_cast<float>(i);
+    boxes[i] = {{x, 0, 0}, {x + 1.0F, 1, 1}};
+  }
+  const winnow_box_view view = winnow_boxes(boxes.data(), boxes.size());
+  std::vector<winnow_key> keys(boxes.size());
+  winnow_partition_options options = WINNOW_PARTITION_OPTIONS;
+  options.execution = execution;
+  winnow_partition* partition = nullptr;
+  winnow_pair_buffer* buffer = nullptr;
+  const winnow_pair* first = nullptr;
+  std::size_t count = 0;
+  EXPECT_EQ(winnow_partition_create({}, &options, &partition), WINNOW_OK);
+  EXPECT_EQ(winnow_pair_buffer_create(nullptr, &buffer), WINNOW_OK);
+  EXPECT_EQ(winnow_partition_insert(partition, &view, nullptr, keys.data()), WINNOW_OK);
+  EXPECT_EQ(winnow_partition_self_pairs(partition, buffer, nullptr, nullptr), WINNOW_OK);
+  EXPECT_EQ(winnow_pair_buffer_pairs(buffer, &first, &count), WINNOW_OK);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::size_t i = 0; i < count; ++i) pairs.emplace_back(first[i].first, first[i].second);
+  winnow_pair_buffer_destroy(buffer);
+  winnow_partition_destroy(partition);
+  return pairs;
+}
+
+TEST(CInterface, has_the_pairs_of_one_thread_in_their_order_on_any_number) {
+  const auto serial = pairs_on({WINNOW_EXECUTION_SERIAL, {}});
+  EXPECT_EQ(serial.size(), 20000U * 4 - 10);
+  EXPECT_TRUE(pairs_on({WINNOW_EXECUTION_PARALLEL, {}}) == serial);
+  for (const std::size_t count : {1, 2, 5}) {
+    winnow_threads* threads = nullptr;
+    const winnow_status status = winnow_threads_create(count, &threads);
+    if (status == WINNOW_UNSUPPORTED) continue;
+    ASSERT_EQ(status, WINNOW_OK);
+    winnow_execution execution;
+    ASSERT_EQ(winnow_threads_execution(threads, &execution), WINNOW_OK);
+    EXPECT_TRUE(pairs_on(execution) == serial) << count;
+    winnow_threads_destroy(threads);
+  }
 }
 
 }  // namespace
