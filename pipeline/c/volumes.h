@@ -112,7 +112,8 @@ typedef struct winnow_index_view {
   int32_t index;  ///< WINNOW_UINT32, WINNOW_UINT16
 } winnow_index_view;
 
-/// Without orientations (all four null) bodies do not turn.
+/// Without orientations (all four null) bodies that are moved do not turn, and poses that are read
+/// have the identity.
 typedef struct winnow_pose_view {
   const void* position[3];
   const void* orientation[4];

@@ -277,6 +277,19 @@ void ask_scenes_in_c(const trace* t) {
   for (size_t i = 0; i < kBodies; ++i) pose_of(i, 1, poses[i].position, poses[i].orientation);
   winnow_pose_view view = winnow_poses(poses + 4, 20);
   OK(winnow_scene_move(scene, keys + 4, 20, &view));
+  /* Positions alone, of float and of double: no body turns. */
+  float place[3][20];
+  for (size_t i = 0; i < 20; ++i) {
+    for (size_t k = 0; k < 3; ++k) place[k][i] = (float)poses[4 + i].position[k];
+  }
+  const winnow_pose_view rounded = {{place[0], place[1], place[2]},
+                                    {NULL, NULL, NULL, NULL},
+                                    0,
+                                    0,
+                                    20,
+                                    WINNOW_FLOAT,
+                                    WINNOW_FLOAT};
+  OK(winnow_scene_move(scene, keys + 4, 20, &rounded));
   for (size_t k = 0; k < 4; ++k) view.orientation[k] = NULL;
   OK(winnow_scene_move(scene, keys + 4, 20, &view));
   OK(winnow_scene_set_motion(scene, keys + 10, 2, WINNOW_MOTION_SLEEPING));

@@ -220,10 +220,7 @@ void ask_scenes_in_cpp(const trace* t) {
 
   const std::span<const Key> all(keys);
   std::vector<Pose> poses;
-  for (std::size_t i = 4; i < 24; ++i) {
-    Pose pose = pose_in(i, 1);
-    poses.push_back(Pose::at(pose.position[0], pose.position[1], pose.position[2]));
-  }
+  for (std::size_t i = 4; i < 24; ++i) poses.push_back(pose_in(i, 1));
   (void)scene.move(all.subspan(4, 20), poses);
   (void)scene.set_motion(all.subspan(10, 2), Motion::sleeping);
   (void)scene.set_shape(keys[12], convex[0]);

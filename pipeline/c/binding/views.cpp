@@ -140,7 +140,12 @@ Status read_poses(const winnow_pose_view* given, Column<Pose>& room, PoseView& p
   if (given->position_number == WINNOW_FLOAT) {
     std::span<const Pose> packed;
     const Status status = pack_poses(*given, room, packed);
-    poses = PoseView(packed);
+    if (status != Status::ok || packed.empty() || turn(*given)) {
+      poses = PoseView(packed);
+    } else {
+      const double* const first = packed.data()->position;
+      poses = PoseView({first, first + 1, first + 2}, packed.size(), sizeof(Pose));
+    }
     return status;
   }
   const std::array position = columns_of<double>(given->position);
