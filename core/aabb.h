@@ -1,8 +1,8 @@
 #pragma once
 
 #include <winnow/core/rounding.h>
+#include <winnow/core/vec3.h>
 
-#include <Eigen/Core>
 #include <limits>
 
 namespace winnow {
@@ -11,12 +11,12 @@ namespace winnow {
 /// and an axis may reach to infinity. Default-constructed it is empty and overlaps nothing.
 struct Aabb {
   /// Least corner; +infinity if empty.
-  Eigen::Vector3f min = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity());
+  Vec3f min = Vec3f::constant(std::numeric_limits<float>::infinity());
   /// Greatest corner; -infinity if empty.
-  Eigen::Vector3f max = Eigen::Vector3f::Constant(-std::numeric_limits<float>::infinity());
+  Vec3f max = Vec3f::constant(-std::numeric_limits<float>::infinity());
 
   /// The smallest float box that contains the double box [min, max].
-  [[nodiscard]] static Aabb outward(const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
+  [[nodiscard]] static Aabb outward(const Vec3d& min, const Vec3d& max) {
     return {round_down(min), round_up(max)};
   }
 
@@ -24,8 +24,7 @@ struct Aabb {
   /// from 0 floats are coarse (8 apart at 1e8): boxes that are measured from a point among the
   /// objects are as tight there, and as cheap to prune by, as those of objects around 0. The
   /// difference of two doubles is rounded outward, too, so nothing sticks out.
-  [[nodiscard]] static Aabb outward(const Eigen::Vector3d& min, const Eigen::Vector3d& max,
-                                    const Eigen::Vector3d& origin) {
+  [[nodiscard]] static Aabb outward(const Vec3d& min, const Vec3d& max, const Vec3d& origin) {
     Aabb box;
     for (int axis = 0; axis < 3; ++axis) {
       box.min[axis] = round_down(add_down(min[axis], -origin[axis]));
@@ -51,8 +50,8 @@ struct Aabb {
 
   /// Grows to contain `other`.
   void merge(const Aabb& other) noexcept {
-    min = min.cwiseMin(other.min);
-    max = max.cwiseMax(other.max);
+    min = min.min(other.min);
+    max = max.max(other.max);
   }
 
   /// The same corners, float by float.

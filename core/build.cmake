@@ -73,6 +73,8 @@ endif()
 add_library(winnow_flags INTERFACE)
 target_include_directories(winnow_flags INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_features(winnow_flags INTERFACE cxx_std_20)
+# Sources compute with Eigen; public headers do not need it.
+target_link_libraries(winnow_flags INTERFACE Eigen3::Eigen)
 # Contraction to fused multiply-add would make results depend on the instruction set.
 target_compile_options(winnow_flags INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off
@@ -160,8 +162,7 @@ function(winnow_whole_library)
     target_compile_definitions(winnow INTERFACE WINNOW_SHARED=1)
     target_include_directories(winnow INTERFACE $<BUILD_INTERFACE:${WINNOW_INCLUDE_DIR}>
                                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-    target_link_libraries(winnow INTERFACE Eigen3::Eigen
-                          PRIVATE winnow_flags ${winnow_tbb} $<TARGET_NAME_IF_EXISTS:Qhull::qhull_r>)
+    target_link_libraries(winnow PRIVATE winnow_flags ${winnow_tbb} $<TARGET_NAME_IF_EXISTS:Qhull::qhull_r>)
   endif()
   add_library(winnow::winnow ALIAS winnow)
 endfunction()

@@ -2,8 +2,8 @@
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/sphere.h>
+#include <winnow/core/vec3.h>
 
-#include <Eigen/Core>
 #include <cmath>
 
 namespace winnow {
@@ -12,14 +12,14 @@ namespace winnow {
 /// radius of zero a segment.
 struct Capsule {
   /// One end of the segment.
-  Eigen::Vector3f a = Eigen::Vector3f::Zero();
+  Vec3f a;
   /// Its other end, which may be the same.
-  Eigen::Vector3f b = Eigen::Vector3f::Zero();
+  Vec3f b;
   float radius = 0.0F;  ///< distance from the segment up to which points belong to it; finite, >= 0
 
   /// True if a query takes this capsule: finite ends, finite radius >= 0.
   [[nodiscard]] bool is_valid() const noexcept {
-    return a.allFinite() && b.allFinite() && std::isfinite(radius) && radius >= 0.0F;
+    return a.all_finite() && b.all_finite() && std::isfinite(radius) && radius >= 0.0F;
   }
 
   /// The smallest float box that contains the capsule.

@@ -4,8 +4,8 @@
 #include <winnow/core/capsule.h>
 #include <winnow/core/ray.h>
 #include <winnow/core/sphere.h>
+#include <winnow/core/vec3.h>
 
-#include <Eigen/Core>
 #include <limits>
 #include <variant>
 
@@ -15,14 +15,14 @@ namespace winnow {
 struct BoxCast {
   Aabb box;  ///< where it stands at t = 0
   /// By which it moves while t grows by 1; finite, not zero.
-  Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
+  Vec3f direction = {1.0F, 0.0F, 0.0F};
   float min_t = 0.0F;  ///< begin of the sweep; finite, >= 0
   /// End of the sweep; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();
 
   /// True if a query takes it: finite box with min <= max, and a valid direction and range.
   [[nodiscard]] bool is_valid() const noexcept {
-    return box.min.allFinite() && box.max.allFinite() && box.is_valid() &&
+    return box.min.all_finite() && box.max.all_finite() && box.is_valid() &&
            is_valid_sweep(direction, min_t, max_t);
   }
 };
@@ -31,7 +31,7 @@ struct BoxCast {
 struct SphereCast {
   Sphere sphere;  ///< where it stands at t = 0
   /// By which it moves while t grows by 1; finite, not zero.
-  Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
+  Vec3f direction = {1.0F, 0.0F, 0.0F};
   float min_t = 0.0F;  ///< begin of the sweep; finite, >= 0
   /// End of the sweep; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();
@@ -46,7 +46,7 @@ struct SphereCast {
 struct CapsuleCast {
   Capsule capsule;  ///< where it stands at t = 0
   /// By which it moves while t grows by 1; finite, not zero.
-  Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
+  Vec3f direction = {1.0F, 0.0F, 0.0F};
   float min_t = 0.0F;  ///< begin of the sweep; finite, >= 0
   /// End of the sweep; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();

@@ -3,7 +3,6 @@
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -107,7 +106,8 @@ class Column {
   /// As `reserve`, but grows by half at least, so that repeated growth costs O(1) per element.
   [[nodiscard]] bool grow(std::size_t count) noexcept {
     if (count <= capacity_) return true;
-    return reserve(std::max(count, capacity_ + capacity_ / 2)) || reserve(count);
+    const std::size_t half_more = capacity_ + capacity_ / 2;
+    return (count < half_more && reserve(half_more)) || reserve(count);
   }
 
   /// Sets the size; the room must have been reserved. New elements are uninitialised.

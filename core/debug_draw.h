@@ -2,8 +2,8 @@
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/sphere.h>
+#include <winnow/core/vec3.h>
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <string_view>
 
@@ -32,11 +32,11 @@ class DebugDraw {
   /// Draws the edges of a box, which may reach to infinity.
   virtual void box(const Aabb& box, Colour colour) = 0;
   /// Draws the segment between two points.
-  virtual void line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) = 0;
+  virtual void line(const Vec3f& from, const Vec3f& to, Colour colour) = 0;
   /// Draws a ball, or its outline.
   virtual void sphere(const Sphere& sphere, Colour colour) = 0;
   /// `text` is valid during the call only.
-  virtual void text(const Eigen::Vector3f& at, std::string_view text, Colour colour) = 0;
+  virtual void text(const Vec3f& at, std::string_view text, Colour colour) = 0;
 };
 
 /// What a partition draws.

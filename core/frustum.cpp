@@ -1,3 +1,4 @@
+#include <winnow/core/eigen.h>
 #include <winnow/core/frustum.h>
 
 #include <Eigen/Geometry>
@@ -14,7 +15,7 @@ using Corners = std::array<Eigen::Vector3d, 8>;
 /// A frustum without a meaning: `is_valid` says no.
 Frustum invalid() noexcept {
   Frustum frustum;
-  for (Plane& plane : frustum.planes) plane = {Eigen::Vector3f::Zero(), 0.0F};
+  for (Plane& plane : frustum.planes) plane = {{0.0F, 0.0F, 0.0F}, 0.0F};
   return frustum;
 }
 
@@ -40,13 +41,12 @@ Aabb around(const Corners& corners) noexcept {
 
 }  // namespace
 
-Frustum Frustum::perspective(const Eigen::Vector3f& eye, const Eigen::Vector3f& forward,
-                             const Eigen::Vector3f& up, float vertical_fov, float aspect,
-                             float near_t, float far_t) noexcept {
-  const Eigen::Vector3d f = forward.cast<double>().normalized();
-  const Eigen::Vector3d r = f.cross(up.cast<double>()).normalized();
+Frustum Frustum::perspective(const Vec3f& eye, const Vec3f& forward, const Vec3f& up,
+                             float vertical_fov, float aspect, float near_t, float far_t) noexcept {
+  const Eigen::Vector3d f = as_eigen(forward).cast<double>().normalized();
+  const Eigen::Vector3d r = f.cross(as_eigen(up).cast<double>()).normalized();
   const Eigen::Vector3d u = r.cross(f);
-  const bool sound = eye.allFinite() && f.allFinite() && r.allFinite() && r.norm() > 0.5 &&
+  const bool sound = eye.all_finite() && f.allFinite() && r.allFinite() && r.norm() > 0.5 &&
                      vertical_fov > 0.0F && vertical_fov < std::numbers::pi_v<float> &&
                      aspect > 0.0F && std::isfinite(aspect) && near_t >= 0.0F && near_t < far_t &&
                      std::isfinite(far_t);
@@ -73,8 +73,7 @@ Frustum Frustum::perspective(const Eigen::Vector3f& eye, const Eigen::Vector3f& 
   return frustum;
 }
 
-Frustum Frustum::from_matrix(const Eigen::Ref<const Eigen::Matrix4d>& clip_from_world,
-                             NearDepth near_depth) noexcept {
+Frustum Frustum::from_matrix(const Mat4d& clip_from_world, NearDepth near_depth) noexcept {
   const Eigen::Matrix4d m = clip_from_world;
   if (!m.allFinite()) return invalid();
   const bool from_zero = near_depth == NearDepth::zero;

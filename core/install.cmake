@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME library)
 
 # Archives leave TBB and qhull to whoever links them; a shared library finds its own.
-set(winnow_requires eigen3)
+set(winnow_requires "")
 if(NOT WINNOW_SHARED AND WINNOW_TBB)
   list(APPEND winnow_requires tbb)
 endif()

@@ -1,13 +1,12 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
+#include <winnow/core/point_view.h>
 #include <winnow/core/rounding.h>
 
-#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <limits>
-#include <span>
 
 namespace winnow {
 
@@ -58,8 +57,8 @@ struct Kdop {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const int weight = directions[s][axis];
         if (weight == 0) continue;
-        const auto a = static_cast<double>(box.min[static_cast<Eigen::Index>(axis)]);
-        const auto b = static_cast<double>(box.max[static_cast<Eigen::Index>(axis)]);
+        const auto a = static_cast<double>(box.min[axis]);
+        const auto b = static_cast<double>(box.max[axis]);
         lo = add_down(lo, weight > 0 ? a : -b);
         hi = add_up(hi, weight > 0 ? b : -a);
       }
@@ -70,10 +69,11 @@ struct Kdop {
   }
 
   /// The tightest k-DOP of a point set, rounded outward; empty for an empty set. O(points * K).
-  [[nodiscard]] static Kdop around(std::span<const Eigen::Vector3f> points) noexcept {
+  [[nodiscard]] static Kdop around(const PointView& points) noexcept {
     Kdop result;
-    for (const Eigen::Vector3f& p : points) {
-      const Kdop one = around(Aabb{p, p});
+    for (std::size_t i = 0; i < points.count; ++i) {
+      const Vec3d p = points[i];
+      const Kdop one = around(Aabb::outward(p, p));
       for (std::size_t s = 0; s < kSlabs; ++s) {
         result.min[s] = one.min[s] < result.min[s] ? one.min[s] : result.min[s];
         result.max[s] = one.max[s] > result.max[s] ? one.max[s] : result.max[s];

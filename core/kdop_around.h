@@ -2,8 +2,8 @@
 
 #include <winnow/core/kdop.h>
 #include <winnow/core/oriented_box.h>
+#include <winnow/core/rounding.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -18,14 +18,13 @@ template <int K>
   constexpr auto directions = kdop_directions<K>();
   constexpr float kUlp = 1.2e-7F;  // a little more than 2^-23
   constexpr float kLeast = std::numeric_limits<float>::denorm_min();
-  constexpr double kMost = std::numeric_limits<float>::max();
   double center[3];
   double edge[3][3];  // half edges as vectors
   double size = 0.0;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < 3; ++axis) {
     center[axis] = static_cast<double>(box.center[axis]);
     size += std::abs(center[axis]);
-    for (Eigen::Index i = 0; i < 3; ++i) {
+    for (int i = 0; i < 3; ++i) {
       edge[i][axis] = static_cast<double>(box.axes(axis, i)) * static_cast<double>(box.half[i]);
       size += std::abs(edge[i][axis]);
     }
@@ -45,8 +44,8 @@ template <int K>
     // One ulp and a little further than the nearest float, whichever way that was rounded: to ask
     // costs more than all the rest.
     // What lies beyond all floats ends there: to a partition that is infinity.
-    const auto low = static_cast<float>(std::clamp(middle - reach, -kMost, kMost));
-    const auto high = static_cast<float>(std::clamp(middle + reach, -kMost, kMost));
+    const float low = finite_float(middle - reach);
+    const float high = finite_float(middle + reach);
     result.min[s] = low - (std::abs(low) * kUlp + kLeast);
     result.max[s] = high + (std::abs(high) * kUlp + kLeast);
   }

@@ -3,7 +3,7 @@
 #include <winnow/core/export.h>
 
 #include <cstdint>
-#include <functional>
+#include <string_view>  // declares std::hash
 
 namespace winnow {
 

@@ -2,7 +2,6 @@
 
 #include <winnow/core/export.h>
 
-#include <algorithm>
 #include <limits>
 
 namespace winnow {
@@ -22,8 +21,8 @@ struct Margin {
   /// The same with members that are finite and not negative.
   [[nodiscard]] Margin legal() const noexcept {
     constexpr float most = std::numeric_limits<float>::max();
-    return {distance > 0.0F ? std::min(distance, most) : 0.0F,
-            share > 0.0F ? std::min(share, most) : 0.0F};
+    const auto at_most = [](float value) { return value < most ? value : most; };
+    return {distance > 0.0F ? at_most(distance) : 0.0F, share > 0.0F ? at_most(share) : 0.0F};
   }
 
   /// Of a legal margin: for an object whose longest finite edge is `edge`; may be infinite.

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
+#include <winnow/core/matrix.h>
 #include <winnow/core/rounding.h>
+#include <winnow/core/vec3.h>
 
-#include <Eigen/Core>
 #include <cmath>
 
 namespace winnow {
@@ -12,16 +13,16 @@ namespace winnow {
 /// orthogonal unit vectors; any finite ones are taken, and then make a parallelepiped.
 struct OrientedBox {
   /// The middle.
-  Eigen::Vector3f center = Eigen::Vector3f::Zero();
+  Vec3f center;
   /// Extent from the middle along each column of `axes`.
-  Eigen::Vector3f half = Eigen::Vector3f::Zero();
+  Vec3f half;
   /// Directions as columns.
-  Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();
+  Mat3f axes = Mat3f::identity();
 
   /// True if a query takes this box: all finite, half >= 0.
   [[nodiscard]] bool is_valid() const noexcept {
-    return center.allFinite() && half.allFinite() && axes.allFinite() &&
-           (half.array() >= 0.0F).all();
+    return center.all_finite() && half.all_finite() && axes.all_finite() && half.x() >= 0.0F &&
+           half.y() >= 0.0F && half.z() >= 0.0F;
   }
 
   /// A float box around it, at most two ulp larger than the smallest.

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <winnow/core/export.h>
+#include <winnow/core/vec3.h>
 
-#include <Eigen/Core>
 #include <cmath>
 
 namespace winnow {
@@ -11,12 +11,12 @@ namespace winnow {
 /// has any finite length but zero.
 struct Plane {
   /// Inward; finite, not zero.
-  Eigen::Vector3f normal = Eigen::Vector3f::UnitX();
+  Vec3f normal = {1.0F, 0.0F, 0.0F};
   float offset = 0.0F;  ///< finite; of the origin, along the normal, times its length
 
   /// True if a query takes this plane: finite, and its normal not zero.
   [[nodiscard]] bool is_valid() const noexcept {
-    return normal.allFinite() && std::isfinite(offset) && (normal.array() != 0.0F).any();
+    return normal.all_finite() && std::isfinite(offset) && !normal.is_zero();
   }
 };
 

@@ -1,14 +1,27 @@
 #pragma once
 
-#include <winnow/core/export.h>
+#include <winnow/core/vec3.h>
 
-#include <Eigen/Core>
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 namespace winnow {
+
+namespace detail {
+
+/// Whose elements have coordinates that lie one after another.
+template <typename Points>
+concept ArrayOfPoints = requires(const Points& points) {
+  { std::size(points) } -> std::convertible_to<std::size_t>;
+  std::data(points)->x() + std::data(points)->y() + std::data(points)->z();
+  requires std::same_as<decltype(std::data(points)->data()), const float*> ||
+      std::same_as<decltype(std::data(points)->data()), const double*>;
+};
+
+}  // namespace detail
 
 /// Points where the caller keeps them: three pointers to float or to double, and the distance in
 /// bytes from one point to the next. Nothing is copied to make one, and it must not outlive the
@@ -22,19 +35,13 @@ struct PointView {
   std::size_t count = 0;  ///< points
 
   PointView() = default;
-  /// An array of points in float.
-  PointView(
-      std::span<const Eigen::Vector3f> points) noexcept  // NOLINT(google-explicit-constructor)
-      : stride(sizeof(Eigen::Vector3f)), count(points.size()) {
-    if (points.empty()) return;
-    for (std::size_t axis = 0; axis < 3; ++axis) single[axis] = points.data()->data() + axis;
-  }
-  /// An array of points in double.
-  PointView(
-      std::span<const Eigen::Vector3d> points) noexcept  // NOLINT(google-explicit-constructor)
-      : stride(sizeof(Eigen::Vector3d)), count(points.size()) {
-    if (points.empty()) return;
-    for (std::size_t axis = 0; axis < 3; ++axis) precise[axis] = points.data()->data() + axis;
+  /// An array, or any contiguous container, of vectors: winnow's, those of Eigen, and others whose
+  /// data() leads to their coordinates, in float or in double.
+  template <detail::ArrayOfPoints Points>
+  PointView(const Points& points) noexcept  // NOLINT(google-explicit-constructor)
+      : stride(sizeof(*std::data(points))), count(std::size(points)) {
+    if (count == 0) return;
+    for (std::size_t axis = 0; axis < 3; ++axis) set_column(axis, std::data(points)->data() + axis);
   }
   /// Columns, or members of any struct.
   PointView(std::array<const float*, 3> columns, std::size_t points,
@@ -45,13 +52,20 @@ struct PointView {
             std::size_t stride_bytes = sizeof(double)) noexcept
       : precise(columns), stride(stride_bytes), count(points) {}
 
-  /// Coordinate `axis` of point i, below `count`, as a double.
+  /// Point `i`.
+  [[nodiscard]] Vec3d operator[](std::size_t i) const noexcept {
+    return {coordinate(i, 0), coordinate(i, 1), coordinate(i, 2)};
+  }
+  /// Coordinate `axis` of point `i`.
   [[nodiscard]] double coordinate(std::size_t i, std::size_t axis) const noexcept {
     if (single[axis] != nullptr) return static_cast<double>(at(single[axis], i));
     return at(precise[axis], i);
   }
 
  private:
+  void set_column(std::size_t axis, const float* column) noexcept { single[axis] = column; }
+  void set_column(std::size_t axis, const double* column) noexcept { precise[axis] = column; }
+
   template <typename T>
   [[nodiscard]] T at(const T* column, std::size_t i) const noexcept {
     return *reinterpret_cast<const T*>(reinterpret_cast<const std::byte*>(column) + i * stride);

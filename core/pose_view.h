@@ -1,8 +1,8 @@
 #pragma once
 
+#include <winnow/core/point_view.h>
 #include <winnow/core/pose.h>
 
-#include <Eigen/Core>
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -49,11 +49,12 @@ struct PoseView {
   PoseView(std::array<const double*, 3> positions, std::size_t poses,
            std::size_t position_bytes = sizeof(double)) noexcept
       : position(positions), position_stride(position_bytes), count(poses) {}
-  /// An array of positions alone.
-  [[nodiscard]] static PoseView of_positions(std::span<const Eigen::Vector3d> positions) noexcept {
-    if (positions.empty()) return {};
-    const double* const first = positions.data()->data();
-    return {{first, first + 1, first + 2}, positions.size(), sizeof(Eigen::Vector3d)};
+  /// An array of positions alone, of vectors in double; see PointView.
+  template <detail::ArrayOfPoints Points>
+  [[nodiscard]] static PoseView of_positions(const Points& positions) noexcept {
+    static_assert(std::same_as<decltype(std::data(positions)->data()), const double*>);
+    const PointView points(positions);
+    return {points.precise, points.count, points.stride};
   }
 
   /// Columns, or members of any struct.

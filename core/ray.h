@@ -1,8 +1,8 @@
 #pragma once
 
 #include <winnow/core/export.h>
+#include <winnow/core/vec3.h>
 
-#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -13,9 +13,9 @@
 namespace winnow {
 
 /// True if `direction` is finite and not zero, and 0 <= min_t <= max_t with min_t finite.
-[[nodiscard]] inline bool is_valid_sweep(const Eigen::Vector3f& direction, float min_t,
+[[nodiscard]] inline bool is_valid_sweep(const Vec3f& direction, float min_t,
                                          float max_t) noexcept {
-  const bool moves = direction.allFinite() && (direction.array() != 0.0F).any();
+  const bool moves = direction.all_finite() && !direction.is_zero();
   return moves && min_t >= 0.0F && std::isfinite(min_t) && min_t <= max_t;
 }
 
@@ -23,9 +23,9 @@ namespace winnow {
 /// but zero, and t counts in it: for a unit direction t is a distance.
 struct Ray {
   /// The point at t = 0.
-  Eigen::Vector3f origin = Eigen::Vector3f::Zero();
+  Vec3f origin;
   /// By which the point moves while t grows by 1.
-  Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
+  Vec3f direction = {1.0F, 0.0F, 0.0F};
   float min_t = 0.0F;  ///< begin; finite, >= 0
   /// End; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();
@@ -33,7 +33,7 @@ struct Ray {
   /// True if a query takes this ray: finite origin, finite direction that is not zero,
   /// 0 <= min_t <= max_t, min_t finite.
   [[nodiscard]] bool is_valid() const noexcept {
-    return origin.allFinite() && is_valid_sweep(direction, min_t, max_t);
+    return origin.all_finite() && is_valid_sweep(direction, min_t, max_t);
   }
 };
 
@@ -87,8 +87,8 @@ struct RayBatch {
   [[nodiscard]] Ray operator[](std::size_t i) const noexcept {
     Ray ray;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      ray.origin[static_cast<Eigen::Index>(axis)] = at(origin[axis], i);
-      ray.direction[static_cast<Eigen::Index>(axis)] = at(direction[axis], i);
+      ray.origin[axis] = at(origin[axis], i);
+      ray.direction[axis] = at(direction[axis], i);
     }
     if (min_t != nullptr) ray.min_t = at(min_t, i);
     if (max_t != nullptr) ray.max_t = at(max_t, i);

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <winnow/core/export.h>
+#include <winnow/core/matrix.h>
 
-#include <Eigen/Core>
 #include <array>
 #include <cmath>
 
@@ -14,13 +14,12 @@ using Quaternion = std::array<double, 4>;
 namespace detail {
 
 /// With `scale` 2 / |q|^2.
-[[nodiscard]] inline Eigen::Matrix3d scaled_rotation(const Quaternion& q, double scale) noexcept {
+[[nodiscard]] inline Mat3d scaled_rotation(const Quaternion& q, double scale) noexcept {
   const auto [w, x, y, z] = q;
-  Eigen::Matrix3d r;
-  r << 1.0 - scale * (y * y + z * z), scale * (x * y - w * z), scale * (x * z + w * y),  //
-      scale * (x * y + w * z), 1.0 - scale * (x * x + z * z), scale * (y * z - w * x),   //
-      scale * (x * z - w * y), scale * (y * z + w * x), 1.0 - scale * (x * x + y * y);
-  return r;
+  return {
+      1.0 - scale * (y * y + z * z), scale * (x * y - w * z),       scale * (x * z + w * y),  //
+      scale * (x * y + w * z),       1.0 - scale * (x * x + z * z), scale * (y * z - w * x),  //
+      scale * (x * z - w * y),       scale * (y * z + w * x),       1.0 - scale * (x * x + y * y)};
 }
 
 [[nodiscard]] inline double squared_length(const Quaternion& q) noexcept {
@@ -46,12 +45,12 @@ namespace detail {
 
 /// The rotation of a tame quaternion. Exact for the identity and for half and quarter turns about
 /// the axes.
-[[nodiscard]] inline Eigen::Matrix3d rotation_of(const Quaternion& q) noexcept {
+[[nodiscard]] inline Mat3d rotation_of(const Quaternion& q) noexcept {
   return detail::scaled_rotation(q, 2.0 / detail::squared_length(q));
 }
 
 /// That of a quaternion of length 1.
-[[nodiscard]] inline Eigen::Matrix3d rotation_of_unit(const Quaternion& q) noexcept {
+[[nodiscard]] inline Mat3d rotation_of_unit(const Quaternion& q) noexcept {
   return detail::scaled_rotation(q, 2.0);
 }
 

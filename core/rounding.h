@@ -1,9 +1,8 @@
 #pragma once
 
 #include <winnow/core/export.h>
+#include <winnow/core/vec3.h>
 
-#include <Eigen/Core>
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -39,7 +38,7 @@ namespace winnow {
 /// The float nearest to `value`, but at most the largest: what is finite stays so. NaN stays NaN.
 [[nodiscard]] constexpr float finite_float(double value) noexcept {
   constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
-  return static_cast<float>(std::clamp(value, -kMost, kMost));
+  return static_cast<float>(value < -kMost ? -kMost : (kMost < value ? kMost : value));
 }
 
 /// Largest double that is <= the exact a + b, for finite sums. The rounding error of the sum is
@@ -61,12 +60,12 @@ namespace winnow {
 }
 
 /// Component-wise `round_down`.
-[[nodiscard]] inline Eigen::Vector3f round_down(const Eigen::Vector3d& v) noexcept {
+[[nodiscard]] inline Vec3f round_down(const Vec3d& v) noexcept {
   return {round_down(v.x()), round_down(v.y()), round_down(v.z())};
 }
 
 /// Component-wise `round_up`.
-[[nodiscard]] inline Eigen::Vector3f round_up(const Eigen::Vector3d& v) noexcept {
+[[nodiscard]] inline Vec3f round_up(const Vec3d& v) noexcept {
   return {round_up(v.x()), round_up(v.y()), round_up(v.z())};
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
+#include <winnow/core/rounding.h>
+#include <winnow/core/vec3.h>
 
-#include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
 
 namespace winnow {
@@ -11,18 +11,18 @@ namespace winnow {
 /// Closed ball. A radius of zero is a point.
 struct Sphere {
   /// Finite.
-  Eigen::Vector3f center = Eigen::Vector3f::Zero();
+  Vec3f center;
   float radius = 0.0F;  ///< finite, >= 0
 
   /// True if a partition takes this sphere: finite centre, finite radius >= 0.
   [[nodiscard]] bool is_valid() const noexcept {
-    return center.allFinite() && std::isfinite(radius) && radius >= 0.0F;
+    return center.all_finite() && std::isfinite(radius) && radius >= 0.0F;
   }
 
   /// Closed overlap test, computed in double; exact for centres and radii of similar size.
   [[nodiscard]] bool overlaps(const Sphere& other) const noexcept {
     const double reach = static_cast<double>(radius) + static_cast<double>(other.radius);
-    return (center.cast<double>() - other.center.cast<double>()).squaredNorm() <= reach * reach;
+    return (center.cast<double>() - other.center.cast<double>()).squared_norm() <= reach * reach;
   }
 
   /// The smallest float box that contains the ball.
@@ -40,7 +40,7 @@ struct Sphere {
   /// A ball that contains a box of finite extents, rounded outward: at most 2 ulp larger than the
   /// smallest one about the box's rounded centre.
   [[nodiscard]] static Sphere around(const Aabb& box) noexcept {
-    // Scalars on purpose: g++ 12 at -O2 vectorises the same in Eigen's types together with the
+    // Scalars on purpose: g++ 12 at -O2 vectorises the same on whole vectors together with the
     // radius beside the centre, and loses the rounding of the radius.
     Sphere sphere;
     double square = 0.0;
@@ -48,7 +48,9 @@ struct Sphere {
       const auto lo = static_cast<double>(box.min[axis]);
       const auto hi = static_cast<double>(box.max[axis]);
       const auto c = static_cast<float>(0.5 * (lo + hi));
-      const double reach = std::max(hi - static_cast<double>(c), static_cast<double>(c) - lo);
+      const double up = hi - static_cast<double>(c);
+      const double down = static_cast<double>(c) - lo;
+      const double reach = up < down ? down : up;
       sphere.center[axis] = c;
       square += reach * reach;
     }

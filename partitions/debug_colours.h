@@ -2,7 +2,6 @@
 
 #include <winnow/core/debug_draw.h>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -32,7 +31,7 @@ inline constexpr std::array<Colour, 8> kNodeColours{{{253, 231, 37, 255},
 
 /// The colour of nodes at a depth, 0 or more; the last one serves all below it.
 [[nodiscard]] constexpr Colour node_colour(std::size_t depth) noexcept {
-  return kNodeColours[std::min(depth, kNodeColours.size() - 1)];
+  return kNodeColours[depth < kNodeColours.size() ? depth : kNodeColours.size() - 1];
 }
 
 }  // namespace winnow

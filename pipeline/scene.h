@@ -11,6 +11,7 @@
 #include <winnow/core/pose.h>
 #include <winnow/core/pose_view.h>
 #include <winnow/core/status.h>
+#include <winnow/core/vec3.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/contact_groups.h>
 #include <winnow/pipeline/contacts.h>
@@ -18,7 +19,6 @@
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <memory_resource>
 #include <span>
@@ -241,7 +241,7 @@ class WINNOW_API Scene {
   /// coarse, costs as much as one that stands here. (0, 0, 0) while that is fine enough; chosen
   /// anew by `refresh` where bodies have gone elsewhere. Nothing else is measured from it: poses,
   /// contacts and queries are in the world.
-  [[nodiscard]] Eigen::Vector3d origin() const noexcept;
+  [[nodiscard]] Vec3d origin() const noexcept;
   /// Draws the partitions of all sets.
   Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const noexcept;
 

@@ -4,11 +4,11 @@
 #include <winnow/core/column.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
+#include <winnow/core/point_view.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/shapes.h>
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
@@ -53,11 +53,10 @@ class WINNOW_API ShapePool {
   /// it runs, qhull takes memory from the C library; all else comes from the pool's resource.
   /// Coplanar faces are merged; points inside, on faces or on edges fall away; flat sets make a
   /// polygon, a segment or a point. `invalid_shape` if there is no point or one is not finite.
-  Status add_hull(std::span<const Eigen::Vector3d> points, double rounding, ShapeId& id);
+  Status add_hull(const PointView& points, double rounding, ShapeId& id);
   /// The hull that `faces` bound. `invalid_shape` unless they are closed, consistently oriented and
   /// convex to 1e-9 of the hull's size. Coplanar neighbours are merged.
-  Status add_hull(std::span<const Eigen::Vector3d> points, const HullFaces& faces, double rounding,
-                  ShapeId& id);
+  Status add_hull(const PointView& points, const HullFaces& faces, double rounding, ShapeId& id);
 
   /// Takes a shape out; its place is given to the next one of its kind. Bodies must not use the id
   /// any more: until then its place holds a point.

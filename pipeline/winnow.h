@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// The whole public API of winnow.
+/// The whole public API of winnow, but for <winnow/core/eigen.h>.
 
 /// @namespace winnow
 /// Collision detection: partitions, which find overlapping bounding volumes, a narrow phase, which
@@ -23,6 +23,7 @@
 #include <winnow/core/kdop_around.h>
 #include <winnow/core/key.h>
 #include <winnow/core/margin.h>
+#include <winnow/core/matrix.h>
 #include <winnow/core/oriented_box.h>
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/pair_events.h>
@@ -36,6 +37,7 @@
 #include <winnow/core/rounding.h>
 #include <winnow/core/sphere.h>
 #include <winnow/core/status.h>
+#include <winnow/core/vec3.h>
 #include <winnow/core/volume.h>
 #include <winnow/partitions/debug_colours.h>
 #include <winnow/partitions/partition.h>

@@ -3,6 +3,7 @@
 #include "bench/common/sample.h"
 #include "bench/scenes/scene.h"
 
+#include <winnow/core/eigen.h>
 #include <algorithm>
 
 namespace winnow::bench {
@@ -14,10 +15,10 @@ int widest_axis(std::span<const Aabb> boxes) {
   Eigen::Vector3d extent = Eigen::Vector3d::Zero();
   for (const Aabb& box : boxes) {
     all.merge(box);
-    extent += (box.max - box.min).cast<double>();
+    extent += as_eigen(box.max - box.min).cast<double>();
   }
   int best = 0;
-  (extent.array() / (all.max - all.min).cast<double>().array()).minCoeff(&best);
+  (extent.array() / as_eigen(all.max - all.min).cast<double>().array()).minCoeff(&best);
   return best;
 }
 

@@ -30,7 +30,7 @@ void Sketch::box(const Aabb& box, Colour colour) {
   }
 }
 
-void Sketch::line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) {
+void Sketch::line(const Vec3f& from, const Vec3f& to, Colour colour) {
   SketchLayer& layer = layer_of(colour);
   layer.line_ends.push_back(from);
   layer.line_ends.push_back(to);
@@ -40,7 +40,7 @@ void Sketch::sphere(const Sphere& sphere, Colour colour) {
   box(sphere.bounds(), colour);
 }
 
-void Sketch::text(const Eigen::Vector3f& at, std::string_view text, Colour colour) {
+void Sketch::text(const Vec3f& at, std::string_view text, Colour colour) {
   texts_.push_back({at, std::string(text), colour});
 }
 

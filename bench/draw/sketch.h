@@ -14,11 +14,11 @@ struct SketchLayer {
   std::string name;
   Colour colour;
   std::vector<Aabb> boxes;
-  std::vector<Eigen::Vector3f> line_ends;  ///< two a line
+  std::vector<Vec3f> line_ends;  ///< two a line
 };
 
 struct SketchText {
-  Eigen::Vector3f at;
+  Vec3f at;
   std::string text;
   Colour colour;
 };
@@ -29,10 +29,10 @@ class Sketch final : public DebugDraw {
   Sketch();
 
   void box(const Aabb& box, Colour colour) override;
-  void line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) override;
+  void line(const Vec3f& from, const Vec3f& to, Colour colour) override;
   /// As the box around it.
   void sphere(const Sphere& sphere, Colour colour) override;
-  void text(const Eigen::Vector3f& at, std::string_view text, Colour colour) override;
+  void text(const Vec3f& at, std::string_view text, Colour colour) override;
 
   /// In the order in which they were drawn.
   [[nodiscard]] std::span<const Aabb> objects() const noexcept { return objects_; }

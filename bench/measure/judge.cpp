@@ -1,5 +1,6 @@
 #include "bench/measure/judge.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -26,7 +26,7 @@ class Columns {
     auto* aligned = static_cast<float*>(std::align(64, 6 * count_ * sizeof(float), start, space));
     for (std::size_t c = 0; c < 6; ++c) {
       float* column = aligned + c * count_;
-      const auto axis = static_cast<Eigen::Index>(c % 3);
+      const auto axis = c % 3;
       for (std::size_t i = 0; i < boxes.size(); ++i) {
         column[i] = c < 3 ? boxes[i].min[axis] : boxes[i].max[axis];
       }

@@ -42,8 +42,8 @@ class ShapeReader {
     if (has(name)) numbers(name, out);
   }
 
-  std::vector<Eigen::Vector3d> points(const char* name) {
-    std::vector<Eigen::Vector3d> result;
+  std::vector<Vec3d> points(const char* name) {
+    std::vector<Vec3d> result;
     good_ = has(name) && object_[name].is_array() && !object_[name].empty();
     if (!good_) return result;
     for (const Json& point : object_[name]) {
@@ -73,7 +73,7 @@ double rounded(double length, double rounding) {
 }
 
 Status add_triangle(ShapePool& pool, ShapeReader& reader, double rounding, ShapeId& id) {
-  const std::vector<Eigen::Vector3d> v = reader.points("v");
+  const std::vector<Vec3d> v = reader.points("v");
   if (!reader.good() || v.size() != 3) return Status::invalid_argument;
   TriangleShape shape;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -102,7 +102,7 @@ Status add_shape(const Json& value, ShapePool& pool, ShapeId& id) {
   const double rounding = reader.number_or("rounding", 0.0);
   if (!reader.good()) return Status::invalid_argument;
   if (type == "hull") {
-    const std::vector<Eigen::Vector3d> v = reader.points("v");
+    const std::vector<Vec3d> v = reader.points("v");
     return reader.good() ? pool.add_hull(v, rounding, id) : Status::invalid_argument;
   }
   if (type == "triangle") return add_triangle(pool, reader, rounding, id);

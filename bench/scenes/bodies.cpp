@@ -2,6 +2,7 @@
 
 #include "bench/common/exact_math.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 
 namespace winnow::bench {

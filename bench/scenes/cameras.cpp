@@ -1,4 +1,5 @@
 #include "bench/scenes/cameras.h"
+#include <winnow/core/eigen.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,8 @@ constexpr float kAspect = 1.6F;
 bool sees(const Frustum& camera, const Aabb& box) noexcept {
   if (!camera.bounds.overlaps(box)) return false;
   for (const Plane& plane : camera.planes) {
-    const Eigen::Vector3f corner = (plane.normal.array() > 0.0F).select(box.max, box.min);
+    const Eigen::Vector3f corner =
+        (as_eigen(plane.normal).array() > 0.0F).select(as_eigen(box.max), as_eigen(box.min));
     if (plane.normal.dot(corner) + plane.offset < 0.0F) return false;
   }
   return true;
@@ -34,7 +36,7 @@ double share_seen(const Frustum& camera, std::span<const Aabb> boxes) noexcept {
 Aabb world_of(std::span<const Aabb> boxes) noexcept {
   Aabb world;
   for (const Aabb& box : boxes) {
-    if (box.min.allFinite() && box.max.allFinite()) world.merge(box);
+    if (box.min.all_finite() && box.max.all_finite()) world.merge(box);
   }
   if (!world.is_valid()) world = {Eigen::Vector3f::Zero(), Eigen::Vector3f::Ones()};
   return world;

@@ -30,7 +30,7 @@ class Asker {
     }
     // Objects that are all points still need questions of some size.
     edge_ = sum > 0.0 ? sum / (3.0 * static_cast<double>(finite))
-                      : 0.01 * (world_.max - world_.min).cast<double>().maxCoeff();
+                      : 0.01 * as_eigen(world_.max - world_.min).cast<double>().maxCoeff();
   }
 
   QuestionSet make(std::string_view name) {

@@ -1,5 +1,6 @@
 #include "bench/scenes/solids.h"
 
+#include <winnow/core/eigen.h>
 #include <winnow/core/rotation.h>
 #include "bench/common/random.h"
 
@@ -35,7 +36,7 @@ void Solids::add(const OrientedBox& box, const double* quaternion) {
   Pose pose = Pose::at(static_cast<double>(box.center.x()), static_cast<double>(box.center.y()),
                        static_cast<double>(box.center.z()));
   for (int i = 0; i < 4; ++i) pose.orientation[i] = quaternion[i];
-  const double edge = 2.0 * static_cast<double>(box.half.mean());
+  const double edge = 2.0 * static_cast<double>(as_eigen(box.half).mean());
   Eigen::Vector3d way(random.normal(), random.normal(), random.normal());
   way *= edge / way.norm();
   boxes_.push_back(box);
@@ -107,7 +108,7 @@ std::vector<OrientedBox> Solids::when_margins_were_left(float share) const {
     const float fastest = way_[i].cwiseAbs().maxCoeff();
     const auto since = static_cast<float>(random.in(0.0, 1.0));
     if (!(fastest > 0.0F)) continue;
-    then[i].center -= since * share * (box.max - box.min).maxCoeff() / fastest * way_[i];
+    then[i].center -= since * share * as_eigen(box.max - box.min).maxCoeff() / fastest * way_[i];
   }
   return then;
 }

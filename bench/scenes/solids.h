@@ -6,6 +6,7 @@
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <span>

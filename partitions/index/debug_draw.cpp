@@ -24,9 +24,9 @@ void draw_tree(DebugDraw& draw, const TreeView& tree, std::size_t max_depth) {
 }
 
 // The middle of what is bounded: on an axis without ends zero, with one the end.
-Eigen::Vector3f label_place(const Aabb& box) noexcept {
-  Eigen::Vector3f place;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+Vec3f label_place(const Aabb& box) noexcept {
+  Vec3f place;
+  for (int axis = 0; axis < 3; ++axis) {
     const float low = box.min[axis];
     const float high = box.max[axis];
     const bool from = std::isfinite(low);

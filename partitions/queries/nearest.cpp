@@ -36,7 +36,7 @@ Status Partition::nearest(const Aabb& from, std::size_t count, float radius, Hit
                           const Filter& filter) const {
   hits.clear();
   if (state_ == nullptr) return status_;
-  const bool finite = from.min.allFinite() && from.max.allFinite() && from.is_valid();
+  const bool finite = from.min.all_finite() && from.max.all_finite() && from.is_valid();
   if (!finite || !(radius >= 0.0F)) return Status::invalid_argument;
   QueryView view;
   if (const Status status = state_->prepare(QueryKind::nearest, 1, view); status != Status::ok) {

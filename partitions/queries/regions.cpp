@@ -42,7 +42,7 @@ WidePlane widen(const Eigen::Vector3d& normal, double offset, double size, float
 }  // namespace
 
 PreparedRegion::PreparedRegion(const Region& region) noexcept {
-  within({Eigen::Vector3f::Constant(-FLT_MAX), Eigen::Vector3f::Constant(FLT_MAX)});
+  within({Vec3f::constant(-FLT_MAX), Vec3f::constant(FLT_MAX)});
   status_ = std::visit([this](const auto& r) { return prepare(r); }, region);
 }
 
@@ -77,8 +77,8 @@ void PreparedRegion::prune_by(const Eigen::Vector3d& normal, double offset, doub
   wide_[planes_.count++] = widen(normal, offset, size, planes_.margin);
 }
 
-Status PreparedRegion::prepare(const Eigen::Vector3f& point) noexcept {
-  if (!point.allFinite()) return Status::invalid_argument;
+Status PreparedRegion::prepare(const Vec3f& point) noexcept {
+  if (!point.all_finite()) return Status::invalid_argument;
   within({point, point});
   return Status::ok;
 }

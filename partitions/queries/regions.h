@@ -4,6 +4,7 @@
 #include <winnow/core/status.h>
 #include "partitions/queries/region.kernel.h"
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -25,7 +26,7 @@ class PreparedRegion {
  private:
   enum class Kind : std::uint8_t { planes, ball, swept };
 
-  Status prepare(const Eigen::Vector3f& point) noexcept;
+  Status prepare(const Vec3f& point) noexcept;
   Status prepare(const Aabb& box) noexcept;
   Status prepare(const OrientedBox& box) noexcept;
   Status prepare(const Sphere& sphere) noexcept;

@@ -557,7 +557,7 @@ Aabb stored_box(const float* const columns[6], std::size_t row) noexcept {
   constexpr float inf = std::numeric_limits<float>::infinity();
   Aabb box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<Eigen::Index>(axis);
+    const auto a = axis;
     const float low = columns[axis][row];
     const float high = columns[3 + axis][row];
     box.min[a] = low == -FLT_MAX ? -inf : low;

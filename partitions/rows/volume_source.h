@@ -143,7 +143,7 @@ struct BoxSource {
 inline void write_sphere(ColumnPointers columns, std::size_t row, const Sphere& s) noexcept {
   const Aabb box = s.bounds();
   for (std::size_t a = 0; a < 3; ++a) {
-    const auto axis = static_cast<Eigen::Index>(a);
+    const auto axis = a;
     write_slab(columns, a, 3 + a, row, box.min[axis], box.max[axis]);
     columns[kCenterColumn + a][row] = s.center[axis];
   }

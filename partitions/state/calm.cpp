@@ -37,7 +37,8 @@ bool Calm::take_sample(const Rows& rows) noexcept {
     Aabb box;
     const Key key = rows.keys().key_of(id);
     if (rows.bounds(key, box) != Status::ok) continue;
-    edges[sample_.size()] = (box.max - box.min).maxCoeff();
+    const Vec3f edge = box.max - box.min;
+    edges[sample_.size()] = std::max({edge.x(), edge.y(), edge.z()});
     (void)sample_.push_back(
         {key, {box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}});
   }

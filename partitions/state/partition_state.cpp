@@ -155,7 +155,7 @@ Status PartitionState::bounds(Key key, Aabb& box) const noexcept {
   const Status status = rows.bounds(key, box);
   if (status != Status::ok || !deferred_.active()) return status;
   const DeferredBoxes::Box& given = deferred_.given()[key.id];
-  box = {Eigen::Vector3f(given.min), Eigen::Vector3f(given.max)};
+  box = {Vec3f(given.min), Vec3f(given.max)};
   return status;
 }
 

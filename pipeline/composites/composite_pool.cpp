@@ -58,7 +58,8 @@ namespace {
   for (std::uint32_t i = 0; i < compound->count; ++i) {
     const CompoundChild& child = compound->children[i];
     const Eigen::Map<const Vec> at(child.pose.position);
-    const Mat linear = rotation * rotation_of(tame(child.pose.orientation));
+    const Mat turned = rotation_of(tame(child.pose.orientation));
+    const Mat linear = rotation * turned;
     box.merge(box_under(all.shapes.tables(), child.shape, linear, position + rotation * at, 0.0));
   }
   return box;

@@ -105,8 +105,8 @@ PlacedPart PlacedBody::part(std::uint32_t number) const noexcept {
   if (kind == Kind::convex) return {tables, id, 0, rotation, position};
   const CompoundChild& child = compound->children[number];
   const Eigen::Map<const Vec> at(child.pose.position);
-  return {tables, child.shape, number, rotation * rotation_of(tame(child.pose.orientation)),
-          position + rotation * at};
+  const Mat turned = rotation_of(tame(child.pose.orientation));
+  return {tables, child.shape, number, rotation * turned, position + rotation * at};
 }
 
 Quaternion PlacedBody::part_turn(std::uint32_t number) const noexcept {

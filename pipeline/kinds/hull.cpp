@@ -28,13 +28,13 @@ Status ShapePool::put_hull(double rounding, ShapeId& id, Make&& make) {
   return status;
 }
 
-Status ShapePool::add_hull(std::span<const Eigen::Vector3d> points, double rounding, ShapeId& id) {
+Status ShapePool::add_hull(const PointView& points, double rounding, ShapeId& id) {
   return put_hull(rounding, id,
                   [&](HullShape& hull) { return hull_of_points(points, memory_, hull); });
 }
 
-Status ShapePool::add_hull(std::span<const Eigen::Vector3d> points, const HullFaces& faces,
-                           double rounding, ShapeId& id) {
+Status ShapePool::add_hull(const PointView& points, const HullFaces& faces, double rounding,
+                           ShapeId& id) {
   return put_hull(rounding, id,
                   [&](HullShape& hull) { return hull_of_faces(points, faces, memory_, hull); });
 }

@@ -1,6 +1,7 @@
 #include <winnow/pipeline/height_field.h>
 
 #include <winnow/core/column.h>
+#include <winnow/core/eigen.h>
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/triangle_mesh.h>
 #include "core/memory/new_in.h"
@@ -306,7 +307,8 @@ Aabb HeightField::bounds() const noexcept {
 double HeightField::radius() const noexcept {
   const Aabb box = bounds();
   if (!box.is_valid()) return 0.0;
-  const Eigen::Vector3f farthest = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs());
+  const Eigen::Vector3f farthest =
+      as_eigen(box.min).cwiseAbs().cwiseMax(as_eigen(box.max).cwiseAbs());
   return farthest.cast<double>().norm() * (1.0 + 4.0 * std::numeric_limits<double>::epsilon());
 }
 

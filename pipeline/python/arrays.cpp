@@ -122,7 +122,7 @@ BoxView BoxInput::view(std::vector<Aabb>& room) const {
   room.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto k = static_cast<Eigen::Index>(axis);
+      const auto k = axis;
       room[i].min[k] = round_down(lower_.at(i, axis));
       room[i].max[k] = round_up(upper_.at(i, axis));
     }

@@ -23,13 +23,13 @@ void Drawing::box(const Aabb& box, Colour colour) {
   put(boxes, {box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()},
       colour);
 }
-void Drawing::line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) {
+void Drawing::line(const Vec3f& from, const Vec3f& to, Colour colour) {
   put(lines, {from.x(), from.y(), from.z(), to.x(), to.y(), to.z()}, colour);
 }
 void Drawing::sphere(const Sphere& sphere, Colour colour) {
   put(spheres, {sphere.center.x(), sphere.center.y(), sphere.center.z(), sphere.radius}, colour);
 }
-void Drawing::text(const Eigen::Vector3f& at, std::string_view text, Colour colour) {
+void Drawing::text(const Vec3f& at, std::string_view text, Colour colour) {
   put(labels, {at.x(), at.y(), at.z()}, colour);
   texts.emplace_back(text);
 }

@@ -16,9 +16,9 @@ namespace winnow::python {
 class Drawing final : public DebugDraw, public EmptyIfZero {
  public:
   void box(const Aabb& box, Colour colour) override;
-  void line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) override;
+  void line(const Vec3f& from, const Vec3f& to, Colour colour) override;
   void sphere(const Sphere& sphere, Colour colour) override;
-  void text(const Eigen::Vector3f& at, std::string_view text, Colour colour) override;
+  void text(const Vec3f& at, std::string_view text, Colour colour) override;
 
   struct Table {
     std::vector<float> numbers;

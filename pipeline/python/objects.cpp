@@ -197,8 +197,8 @@ void ask_each(const SharedPartition& p, std::size_t count, const char* call, Ask
     const Status status = p.partition.bounds(keys.keys()[i], box);
     if (status != Status::ok) return status;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[3 * i + axis] = box.min[static_cast<Eigen::Index>(axis)];
-      high[3 * i + axis] = box.max[static_cast<Eigen::Index>(axis)];
+      low[3 * i + axis] = box.min[axis];
+      high[3 * i + axis] = box.max[axis];
     }
     return status;
   });

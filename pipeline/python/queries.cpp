@@ -317,17 +317,16 @@ template <typename RegionAt>
   turn.expect(center.count());
   return overlap_many(
       p, center.count(), order, filter, "overlap_oriented_boxes", [&](std::size_t i) {
-        OrientedBox box{point_at(center, i), {}, Eigen::Matrix3f::Identity()};
+        OrientedBox box{point_at(center, i), {}, Mat3f::identity()};
         // What rounding the axes moves corners by, at most.
         double reach = 0.0;
         for (std::size_t axis = 0; axis < 3; ++axis) reach += half.at(i, axis);
         const double off =
             off_point_at(center, i) + (turn.is_single() ? 0.0 : 0x1p-23 * std::abs(reach));
         for (std::size_t row = 0; row < 3; ++row) {
-          box.half[static_cast<Eigen::Index>(row)] = grown(half.at(i, row), off);
+          box.half[row] = grown(half.at(i, row), off);
           for (std::size_t column = 0; column < 3; ++column) {
-            box.axes(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
-                static_cast<float>(turn.at(i, row, column));
+            box.axes(row, column) = static_cast<float>(turn.at(i, row, column));
           }
         }
         return Region(box);
@@ -363,8 +362,7 @@ constexpr std::size_t kFrustumFloats = sizeof(Frustum) / sizeof(float);
   std::vector<Plane> all(count * sides);
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      all[i].normal[static_cast<Eigen::Index>(k)] =
-          static_cast<float>(numbers.at(i / sides, i % sides, k));
+      all[i].normal[k] = static_cast<float>(numbers.at(i / sides, i % sides, k));
     }
     all[i].offset = static_cast<float>(numbers.at(i / sides, i % sides, 3));
   }
@@ -422,11 +420,10 @@ constexpr Choices<Frustum::NearDepth, 2> kNearDepths{
   const Numbers numbers(matrices, "clip_from_world", {4, 4});
   const Frustum::NearDepth depth = chosen(kNearDepths, near_depth, "near_depth");
   return frustum_rows(numbers.count(), [&](std::size_t i) {
-    Eigen::Matrix4d matrix;
+    Mat4d matrix;
     for (std::size_t row = 0; row < 4; ++row) {
       for (std::size_t column = 0; column < 4; ++column) {
-        matrix(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
-            numbers.at(i, row, column);
+        matrix(row, column) = numbers.at(i, row, column);
       }
     }
     return Frustum::from_matrix(matrix, depth);

@@ -428,7 +428,7 @@ void add_scene(py::module_& module) {
       .def_property_readonly(
           "origin",
           [](const SharedScene& s) {
-            const Eigen::Vector3d o = reading(s.mutex, [&] { return s.scene.origin(); });
+            const Vec3d o = reading(s.mutex, [&] { return s.scene.origin(); });
             return py::make_tuple(o.x(), o.y(), o.z());
           },
           "The point that boxes are measured from.")

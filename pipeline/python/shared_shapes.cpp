@@ -156,7 +156,7 @@ template <typename Shape>
 [[nodiscard]] std::uint32_t add_hull(Shapes& shapes, py::handle point_array, double rounding,
                                      py::handle indices, py::handle sizes) {
   const Numbers numbers(point_array, "points", {3});
-  std::vector<Eigen::Vector3d> points(numbers.count());
+  std::vector<Vec3d> points(numbers.count());
   for (std::size_t i = 0; i < points.size(); ++i) {
     points[i] = {numbers.at(i, 0), numbers.at(i, 1), numbers.at(i, 2)};
   }
@@ -363,8 +363,8 @@ void remove_shapes(Shapes& shapes, py::handle id_array) {
       if (!pose[i].is_valid()) return Outcome{Status::invalid_pose, i};
       const Aabb box = shapes.bounds(ids[i], pose[i]);
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[3 * i + axis] = box.min[static_cast<Eigen::Index>(axis)];
-        high[3 * i + axis] = box.max[static_cast<Eigen::Index>(axis)];
+        low[3 * i + axis] = box.min[axis];
+        high[3 * i + axis] = box.max[axis];
       }
     }
     return Outcome{};

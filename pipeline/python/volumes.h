@@ -14,21 +14,20 @@ namespace winnow::python {
 
 // Volumes of float that hold what is given in double.
 
-[[nodiscard]] inline Eigen::Vector3f point_at(const Numbers& numbers, std::size_t i) {
-  Eigen::Vector3f point;
+[[nodiscard]] inline Vec3f point_at(const Numbers& numbers, std::size_t i) {
+  Vec3f point;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    point[static_cast<Eigen::Index>(axis)] = static_cast<float>(numbers.at(i, axis));
+    point[axis] = static_cast<float>(numbers.at(i, axis));
   }
   return point;
 }
 
 /// How far the point in float is from the one given, or a little more.
 [[nodiscard]] inline double off_point_at(const Numbers& numbers, std::size_t i) {
-  const Eigen::Vector3f point = point_at(numbers, i);
+  const Vec3f point = point_at(numbers, i);
   double square = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double off =
-        numbers.at(i, axis) - static_cast<double>(point[static_cast<Eigen::Index>(axis)]);
+    const double off = numbers.at(i, axis) - static_cast<double>(point[axis]);
     square += off * off;
   }
   return std::sqrt(square) * (1.0 + 1e-15);
@@ -42,8 +41,8 @@ namespace winnow::python {
 [[nodiscard]] inline Aabb box_at(const Numbers& lower, const Numbers& upper, std::size_t i) {
   Aabb box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.min[static_cast<Eigen::Index>(axis)] = round_down(lower.at(i, axis));
-    box.max[static_cast<Eigen::Index>(axis)] = round_up(upper.at(i, axis));
+    box.min[axis] = round_down(lower.at(i, axis));
+    box.max[axis] = round_up(upper.at(i, axis));
   }
   return box;
 }

@@ -34,25 +34,25 @@ namespace {
 /// Draws in the world what a partition measures from an origin.
 class InTheWorld final : public DebugDraw {
  public:
-  InTheWorld(DebugDraw& draw, const Eigen::Vector3d& origin) noexcept
+  InTheWorld(DebugDraw& draw, const Vec3d& origin) noexcept
       : draw_(draw), origin_(origin.cast<float>()) {}
 
   void box(const Aabb& box, Colour colour) override {
     draw_.box({box.min + origin_, box.max + origin_}, colour);
   }
-  void line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) override {
+  void line(const Vec3f& from, const Vec3f& to, Colour colour) override {
     draw_.line(from + origin_, to + origin_, colour);
   }
   void sphere(const Sphere& sphere, Colour colour) override {
     draw_.sphere({sphere.center + origin_, sphere.radius}, colour);
   }
-  void text(const Eigen::Vector3f& at, std::string_view text, Colour colour) override {
+  void text(const Vec3f& at, std::string_view text, Colour colour) override {
     draw_.text(at + origin_, text, colour);
   }
 
  private:
   DebugDraw& draw_;
-  Eigen::Vector3f origin_;
+  Vec3f origin_;
 };
 
 }  // namespace
@@ -274,8 +274,8 @@ const Partition* Scene::partition(Motion motion) const noexcept {
   return set.partition.has_value() ? &*set.partition : nullptr;
 }
 
-Eigen::Vector3d Scene::origin() const noexcept {
-  if (state_ == nullptr) return Eigen::Vector3d::Zero();
+Vec3d Scene::origin() const noexcept {
+  if (state_ == nullptr) return {};
   return state_->origin;
 }
 

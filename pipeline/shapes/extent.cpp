@@ -266,7 +266,7 @@ Aabb ShapePool::bounds(ShapeId id, const Pose& pose) const noexcept {
   // Balls need no turn.
   const mid::Mat turn = id.kind() == ShapeKind::sphere
                             ? mid::Mat(mid::Mat::Identity())
-                            : rotation_of_unit(normalized(tame(pose.orientation)));
+                            : mid::Mat(rotation_of_unit(normalized(tame(pose.orientation))));
   Aabb box;
   for (int axis = 0; axis < 3; ++axis) {
     const mid::Vec row = turn.row(axis);

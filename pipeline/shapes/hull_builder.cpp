@@ -481,9 +481,10 @@ Status assemble_hull(std::span<const Eigen::Vector3d> points, const HullSurface&
   return Assembly(points, surface).run(memory, hull);
 }
 
-Status hull_of_faces(std::span<const Eigen::Vector3d> points, const HullFaces& faces,
+Status hull_of_faces(const PointView& given, const HullFaces& faces,
                      std::pmr::memory_resource* memory, HullShape& hull) try {
   std::pmr::monotonic_buffer_resource scratch(memory);
+  const std::pmr::vector<Eigen::Vector3d> points = copied(given, &scratch);
   HullSurface surface(&scratch);
   std::size_t at = 0;
   for (const std::uint32_t size : faces.sizes) {
@@ -500,6 +501,13 @@ Status hull_of_faces(std::span<const Eigen::Vector3d> points, const HullFaces& f
   return status == Status::ok ? assemble_hull(points, surface, memory, hull) : status;
 } catch (...) {
   return Status::out_of_memory;
+}
+
+std::pmr::vector<Eigen::Vector3d> copied(const PointView& points,
+                                         std::pmr::memory_resource* memory) {
+  std::pmr::vector<Eigen::Vector3d> result(points.count, memory);
+  for (std::size_t i = 0; i < points.count; ++i) result[i] = points[i];
+  return result;
 }
 
 HullShape point_hull() noexcept {

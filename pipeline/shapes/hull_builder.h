@@ -15,10 +15,13 @@ namespace winnow {
 /// Builds the hull of points; see ShapePool::add_hull. All of its columns lie in one block of
 /// `memory`, which release_hull gives back. What building needs comes from `memory` too, and is
 /// given back before they return; only qhull itself takes its memory from the C library.
-Status hull_of_points(std::span<const Eigen::Vector3d> points, std::pmr::memory_resource* memory,
-                      HullShape& hull);
-Status hull_of_faces(std::span<const Eigen::Vector3d> points, const HullFaces& faces,
+Status hull_of_points(const PointView& points, std::pmr::memory_resource* memory, HullShape& hull);
+Status hull_of_faces(const PointView& points, const HullFaces& faces,
                      std::pmr::memory_resource* memory, HullShape& hull);
+
+/// The points as building takes them.
+[[nodiscard]] std::pmr::vector<Eigen::Vector3d> copied(const PointView& points,
+                                                       std::pmr::memory_resource* memory);
 
 /// A hull of one vertex at the origin that owns no memory.
 [[nodiscard]] HullShape point_hull() noexcept;

@@ -155,18 +155,19 @@ Status surface_of(Points& points, HullSurface& surface) {
 
 }  // namespace
 
-Status hull_of_points(std::span<const Eigen::Vector3d> given, std::pmr::memory_resource* memory,
+Status hull_of_points(const PointView& all, std::pmr::memory_resource* memory,
                       HullShape& hull) try {
+  std::pmr::monotonic_buffer_resource scratch(memory);
+  const Points given = copied(all, &scratch);
   const auto finite = [](const Eigen::Vector3d& p) { return p.allFinite(); };
   if (given.empty() || !std::ranges::all_of(given, finite)) return Status::invalid_shape;
-  std::pmr::monotonic_buffer_resource scratch(memory);
   Points points = centred(given, &scratch);
   HullSurface surface(&scratch);
   const Eigen::Vector3d p0 = points[0];
   const std::size_t i1 = farthest(points, [&](const auto& p) { return (p - p0).squaredNorm(); });
   const Eigen::Vector3d p1 = points[i1];
   const Eigen::Vector3d along = p1 - p0;
-  if (along.isZero()) return assemble_hull(given.first(1), surface, memory, hull);
+  if (along.isZero()) return assemble_hull({given.data(), 1}, surface, memory, hull);
   const std::size_t i2 =
       farthest(points, [&](const auto& p) { return along.cross(p - p0).squaredNorm(); });
   const Eigen::Vector3d normal = along.cross(points[i2] - p0);

@@ -6,6 +6,7 @@
 #include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <winnow/core/aabb.h>
 #include <winnow/core/box_view.h>
+#include <Eigen/Core>
 
 #include <array>
 #include <cmath>

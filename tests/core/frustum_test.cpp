@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include <winnow/core/frustum.h>
 
 #include <Eigen/Geometry>
@@ -136,7 +137,7 @@ TEST(Frustum, holds_what_the_camera_sees_and_cuts_off_the_rest) {
     const auto reach =
         static_cast<double>(camera.far_t) * (1.0 + std::tan(0.5 * static_cast<double>(camera.fov)) *
                                                        (1.0 + static_cast<double>(camera.aspect)));
-    EXPECT_LE(static_cast<double>((bounds.max - bounds.min).maxCoeff()),
+    EXPECT_LE(static_cast<double>(as_eigen(bounds.max - bounds.min).maxCoeff()),
               2.0 * reach + 1e-6 * static_cast<double>(camera.eye.cwiseAbs().maxCoeff()));
   }
 }
@@ -204,7 +205,7 @@ TEST(Frustum, of_a_bad_camera_is_invalid) {
 }
 
 TEST(Frustum, of_a_bad_matrix_or_plane_is_invalid) {
-  EXPECT_FALSE(Frustum{}.is_valid() && Frustum{}.planes[0].normal.isZero());
+  EXPECT_FALSE(Frustum{}.is_valid() && Frustum{}.planes[0].normal.is_zero());
   EXPECT_FALSE(Frustum::from_matrix(Matrix4d::Zero()).is_valid());
   for (const double value : {std::nan(""), static_cast<double>(kInf)}) {
     for (int i = 0; i < 16; ++i) {
@@ -215,7 +216,7 @@ TEST(Frustum, of_a_bad_matrix_or_plane_is_invalid) {
   }
   for (std::size_t i = 0; i < 6; ++i) {
     Frustum frustum = Camera{}.frustum();
-    frustum.planes[i].normal.setZero();
+    frustum.planes[i].normal = {};
     EXPECT_FALSE(frustum.is_valid());
     frustum = Camera{}.frustum();
     frustum.planes[i].offset = kNan;

@@ -117,9 +117,9 @@ TEST(Rounding, to_finite_floats_ends_at_the_largest) {
 }
 
 TEST(Rounding, of_vectors_is_component_wise) {
-  const Eigen::Vector3d v(0.1, -0.1, 1e308);
-  EXPECT_EQ(round_down(v), Eigen::Vector3f(round_down(0.1), round_down(-0.1), FLT_MAX));
-  EXPECT_EQ(round_up(v), Eigen::Vector3f(round_up(0.1), round_up(-0.1), kInfF));
+  const Vec3d v(0.1, -0.1, 1e308);
+  EXPECT_EQ(round_down(v), Vec3f(round_down(0.1), round_down(-0.1), FLT_MAX));
+  EXPECT_EQ(round_up(v), Vec3f(round_up(0.1), round_up(-0.1), kInfF));
 }
 
 // Compilers turn such loops into vector code, and one of them (g++ 12 with its SLP vectoriser)
@@ -135,11 +135,11 @@ TEST(Rounding, is_outward_in_code_that_is_vectorised) {
     up[i] = static_cast<double>(round_up(values[i]));
   }
   for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
-    const Eigen::Vector3d v(values[i], values[i + 1], values[i + 2]);
-    const Eigen::Vector3d v_down = round_down(v).cast<double>();
-    const Eigen::Vector3d v_up = round_up(v).cast<double>();
+    const Vec3d v(values[i], values[i + 1], values[i + 2]);
+    const Vec3d v_down = round_down(v).cast<double>();
+    const Vec3d v_up = round_up(v).cast<double>();
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto axis = static_cast<Eigen::Index>(k);
+      const auto axis = k;
       ASSERT_LT(down[i + k], values[i + k]) << "not even a float";
       ASSERT_GT(up[i + k], values[i + k]) << "not even a float";
       ASSERT_EQ(v_down[axis], down[i + k]);

@@ -10,13 +10,13 @@ namespace winnow::test {
 namespace {
 
 // Squared distance in long double: exact to 64 bits, so its error is far below a float's ulp.
-long double distance(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+long double distance(const Vec3f& a, const Vec3f& b) {
   return (a.cast<long double>() - b.cast<long double>()).norm();
 }
 
 Aabb random_box(Random& random, double scale) {
-  const Eigen::Vector3d low(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-  const Eigen::Vector3d extent(random.unit(), random.unit(), random.unit());
+  const Vec3d low(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  const Vec3d extent(random.unit(), random.unit(), random.unit());
   return Aabb::outward(low * scale, (low + extent) * scale);
 }
 
@@ -46,7 +46,7 @@ TEST(Sphere, around_a_box_contains_its_corners) {
     const Sphere sphere = Sphere::around(box);
     ASSERT_TRUE(sphere.is_valid());
     for (unsigned corner = 0; corner < 8; ++corner) {
-      Eigen::Vector3f p;
+      Vec3f p;
       for (unsigned axis = 0; axis < 3; ++axis) {
         p[axis] = (corner >> axis & 1U) != 0 ? box.max[axis] : box.min[axis];
       }
@@ -57,7 +57,7 @@ TEST(Sphere, around_a_box_contains_its_corners) {
 
 TEST(Sphere, around_a_point_is_that_point) {
   const Sphere sphere = Sphere::around({{3, 4, 5}, {3, 4, 5}});
-  EXPECT_EQ(sphere.center, Eigen::Vector3f(3, 4, 5));
+  EXPECT_EQ(sphere.center, Vec3f(3, 4, 5));
   EXPECT_EQ(sphere.radius, 0.0F);
 }
 
@@ -65,7 +65,7 @@ TEST(Sphere, has_bounds_that_contain_it_and_no_float_more) {
   Random random(3);
   for (int i = 0; i < 20000; ++i) {
     const double scale = random.log_uniform(1e-30, 1e30);
-    const Sphere sphere{Eigen::Vector3f(static_cast<float>(random.uniform(-scale, scale)), 0, 1),
+    const Sphere sphere{Vec3f(static_cast<float>(random.uniform(-scale, scale)), 0, 1),
                         static_cast<float>(random.unit() * scale)};
     const Aabb box = sphere.bounds();
     for (int axis = 0; axis < 3; ++axis) {

@@ -145,8 +145,8 @@ void queries(StructureKind structure, Digest& digest) {
 
 std::vector<ShapeId> shapes(ShapePool& pool, Digest& digest) {
   std::vector<ShapeId> ids(8);
-  const std::vector<Eigen::Vector3d> corners{{1, 0, 0},  {-1, 0, 0}, {0, 0.75, 0},
-                                             {0, -1, 0}, {0, 0, 1},  {0, 0, -0.5}};
+  const std::vector<Vec3d> corners{{1, 0, 0},  {-1, 0, 0}, {0, 0.75, 0},
+                                   {0, -1, 0}, {0, 0, 1},  {0, 0, -0.5}};
   const std::vector<std::uint32_t> loops{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
                                          2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
   const std::vector<std::uint32_t> sizes(8, 3);
@@ -230,7 +230,7 @@ void scene(Digest& digest) {
   std::vector<ShapeId> ids = shapes(pool, digest);
   ids.pop_back();
   Numbers numbers(6);
-  std::vector<Eigen::Vector3f> points;
+  std::vector<Vec3f> points;
   std::vector<std::uint32_t> corners;
   for (std::uint32_t i = 0; i < 60; ++i) {
     for (std::uint32_t k = 0; k < 3; ++k) {

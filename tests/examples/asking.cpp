@@ -36,7 +36,7 @@ int main() {
   winnow::HitBuffer hits;                                                  // yours, reused
   partition.all(winnow::SphereCast{{{-5, 0, 0}, 0.5F}, {1, 0, 0}}, hits);  // sorted by first touch
 
-  const Eigen::Vector3f eye(0, 0, 50), ahead(0, 0, -1), up(0, 1, 0);
+  const winnow::Vec3f eye(0, 0, 50), ahead(0, 0, -1), up(0, 1, 0);
   winnow::OverlapBuffer seen;
   partition.overlap(winnow::Frustum::perspective(eye, ahead, up, 1.0F, 1.6F, 0.1F, 100.0F), seen);
   draw(seen.inside());  // what they contain needs no test

@@ -17,8 +17,7 @@ void solve(std::uint32_t pair, std::size_t points) {
 }  // namespace
 
 int main() {
-  const std::vector<Eigen::Vector3d> points{
-      {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
+  const std::vector<winnow::Vec3d> points{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
   // [convex pairs]
   winnow::ShapePool shapes;  // bodies share shapes by id
   winnow::ShapeId box, pyramid;

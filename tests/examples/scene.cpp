@@ -23,7 +23,7 @@ void forget(const winnow::EndedContact&) {
 }  // namespace
 
 int main() {
-  const std::vector<Eigen::Vector3f> points{{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}};
+  const std::vector<winnow::Vec3f> points{{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}};
   const std::vector<std::uint32_t> corners{0, 1, 2, 0, 2, 3};
   winnow::ShapePool shapes;
   winnow::ShapeId seat, back;

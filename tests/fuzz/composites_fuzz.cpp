@@ -17,12 +17,12 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Surface {
-  std::vector<Eigen::Vector3f> vertices;
+  std::vector<Vec3f> vertices;
   std::vector<std::uint32_t> corners;
 
   [[nodiscard]] bool is_good() const {
     return corners.size() >= 3 &&
-           std::all_of(vertices.begin(), vertices.end(), [](auto& v) { return v.allFinite(); }) &&
+           std::all_of(vertices.begin(), vertices.end(), [](auto& v) { return v.all_finite(); }) &&
            std::all_of(corners.begin(), corners.begin() + whole(),
                        [&](std::uint32_t c) { return c < vertices.size(); });
   }
@@ -46,7 +46,7 @@ Surface some_surface(Bytes& bytes) {
   Surface surface;
   surface.vertices.resize(1 + bytes.below(40));
   const bool hostile = bytes.chance(8);
-  for (Eigen::Vector3f& vertex : surface.vertices) {
+  for (Vec3f& vertex : surface.vertices) {
     for (int k = 0; k < 3; ++k) {
       vertex[k] = hostile ? bytes.wild() : 0.25F * static_cast<float>(bytes.tame());
     }
@@ -122,7 +122,7 @@ void Exhibit::take_mesh(Bytes& bytes) {
 
 void Exhibit::refit(Bytes& bytes) {
   Surface moved = surface_;
-  for (Eigen::Vector3f& vertex : moved.vertices) {
+  for (Vec3f& vertex : moved.vertices) {
     if (bytes.chance(3)) vertex[0] = bytes.wild();
   }
   if (bytes.chance(8)) moved.vertices.pop_back();

@@ -25,11 +25,10 @@ struct Given {
 };
 
 bool sphere_meets(const Sphere& sphere, const Aabb& box) {
-  const Eigen::Vector3d c = sphere.center.cast<double>();
-  const Eigen::Vector3d nearest =
-      c.cwiseMax(box.min.cast<double>()).cwiseMin(box.max.cast<double>());
+  const Vec3d c = sphere.center.cast<double>();
+  const Vec3d nearest = c.max(box.min.cast<double>()).min(box.max.cast<double>());
   const auto r = static_cast<double>(sphere.radius);
-  return (nearest - c).squaredNorm() <= r * r;
+  return (nearest - c).squared_norm() <= r * r;
 }
 
 /// True if the two have to be reported.
@@ -109,8 +108,8 @@ class Model {
   [[nodiscard]] std::vector<Key> some_keys(Bytes& bytes) const;
   [[nodiscard]] std::vector<Aabb> some_boxes(Bytes& bytes, std::size_t count) const;
   [[nodiscard]] bool takes(const Aabb& box) const {
-    return box.is_valid() &&
-           (partition_.volume() != Volume::sphere || (box.min.allFinite() && box.max.allFinite()));
+    return box.is_valid() && (partition_.volume() != Volume::sphere ||
+                              (box.min.all_finite() && box.max.all_finite()));
   }
   void check_pairs(std::span<const Pair> got) const;
   [[nodiscard]] std::vector<KeyPair> keyed(std::span<const Pair> pairs) const;
@@ -144,8 +143,8 @@ std::vector<Key> Model::some_keys(Bytes& bytes) const {
 std::vector<Aabb> Model::some_boxes(Bytes& bytes, std::size_t count) const {
   std::vector<Aabb> boxes;
   Aabb box = bytes.box();
-  const Eigen::Vector3f step(static_cast<float>(bytes.extent()), static_cast<float>(bytes.extent()),
-                             static_cast<float>(bytes.extent()));
+  const Vec3f step(static_cast<float>(bytes.extent()), static_cast<float>(bytes.extent()),
+                   static_cast<float>(bytes.extent()));
   // One box that goes on in steps, so that few bytes make many objects.
   const bool repeats = bytes.chance(2);
   for (std::size_t i = 0; i < count; ++i) {
@@ -180,8 +179,8 @@ void Model::insert(Bytes& bytes) {
 }
 
 void Model::insert_spheres(Bytes& bytes) {
-  const Eigen::Vector3f center(static_cast<float>(bytes.tame()), static_cast<float>(bytes.tame()),
-                               static_cast<float>(bytes.tame()));
+  const Vec3f center(static_cast<float>(bytes.tame()), static_cast<float>(bytes.tame()),
+                     static_cast<float>(bytes.tame()));
   const Sphere sphere{center, static_cast<float>(bytes.extent())};
   Key key;
   const Status status = partition_.insert({&sphere, 1}, {}, {&key, 1});

@@ -48,8 +48,8 @@ Shapes::Shapes(Bytes& bytes) {
   add(CylinderShape{0.5, 0.25, 0.0});
   add(ConeShape{0.5, r, 0.125});
   add(TriangleShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.25}}, 0.0});
-  const std::vector<Eigen::Vector3d> corners{{1, 0, 0},  {-1, 0, 0}, {0, r, 0},
-                                             {0, -r, 0}, {0, 0, 1},  {0, 0, -1}};
+  const std::vector<Vec3d> corners{{1, 0, 0},  {-1, 0, 0}, {0, r, 0},
+                                   {0, -r, 0}, {0, 0, 1},  {0, 0, -1}};
   const std::vector<std::uint32_t> loops{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
                                          2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
   const std::vector<std::uint32_t> sizes(8, 3);
@@ -59,7 +59,7 @@ Shapes::Shapes(Bytes& bytes) {
   add(HalfSpaceShape{{0, 0, 1}, 0.0});
   const CompoundChild children[] = {{ids[2], Pose::at(0.5, 0, 0)}, {ids[0], Pose::at(-0.5, 0, 0)}};
   take(composites.add_compound(children, id), id);
-  const std::vector<Eigen::Vector3f> points{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0.5F}};
+  const std::vector<Vec3f> points{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0.5F}};
   const std::vector<std::uint32_t> triangles{0, 1, 2, 0, 2, 3};
   take(composites.add_mesh(std::span(points), std::span(triangles), id), id);
   take(composites.add_scaled(ids.back(), {1.0, -0.5, 2.0}, id), id);

@@ -3,6 +3,7 @@
 
 #include <winnow/winnow.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <vector>

@@ -26,9 +26,9 @@ class Drawing final : public winnow::DebugDraw {
   int boxes = 0;
 
   void box(const winnow::Aabb&, winnow::Colour) override { ++boxes; }
-  void line(const Eigen::Vector3f&, const Eigen::Vector3f&, winnow::Colour) override {}
+  void line(const winnow::Vec3f&, const winnow::Vec3f&, winnow::Colour) override {}
   void sphere(const winnow::Sphere&, winnow::Colour) override {}
-  void text(const Eigen::Vector3f&, std::string_view, winnow::Colour) override {}
+  void text(const winnow::Vec3f&, std::string_view, winnow::Colour) override {}
 };
 
 void backwards(void*, std::size_t count, winnow::JobSystem::Task task, void* tasks) {

@@ -1,6 +1,7 @@
 // Scenes in which everything moves a little and hardly a pair changes: boxes are not brought to
 // their rows then, which no caller can see but by the work that is done.
 
+#include <winnow/core/eigen.h>
 #include <winnow/core/hits.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr std::size_t kCount = 500;
 
 Aabb shaken(const Aabb& box, float by, Random& random) {
-  Eigen::Vector3f d;
+  Vec3f d;
   for (int axis = 0; axis < 3; ++axis) d[axis] = by * static_cast<float>(random.uniform(-1, 1));
   return {box.min + d, box.max + d};
 }
@@ -85,9 +86,9 @@ TEST_P(CalmScenes, ask_for_no_pair_that_cannot_have_changed) {
 TEST_P(CalmScenes, tell_every_pair_that_begins_and_ends) {
   std::vector<Aabb> boxes;
   for (int i = 0; i < 343; ++i) {
-    const Eigen::Vector3f at(static_cast<float>(i % 7), static_cast<float>(i / 7 % 7),
-                             static_cast<float>(i / 49));
-    boxes.push_back({at, at + Eigen::Vector3f::Constant(i % 5 == 0 ? 1.0F : 0.999F)});
+    const Vec3f at(static_cast<float>(i % 7), static_cast<float>(i / 7 % 7),
+                   static_cast<float>(i / 49));
+    boxes.push_back({at, at + Vec3f::constant(i % 5 == 0 ? 1.0F : 0.999F)});
   }
   start(boxes);
   PairBuffer buffer;
@@ -125,8 +126,8 @@ TEST_P(CalmScenes, are_left_by_some_that_come_go_and_move) {
     std::vector<Aabb> boxes = uniform_boxes(kCount);
     if (touching) {
       for (Aabb& box : boxes) {
-        box.min = box.min.array().round();
-        box.max = box.min.array() + 1.0F;
+        box.min = as_eigen(box.min).array().round();
+        box.max = as_eigen(box.min).array() + 1.0F;
       }
     }
     start(boxes);

@@ -1,6 +1,7 @@
 // What a partition shows of itself: every object once, a structure that holds them all, and nothing
 // that was not asked for.
 
+#include <winnow/core/eigen.h>
 #include <winnow/partitions/debug_colours.h>
 
 #include <algorithm>
@@ -20,8 +21,8 @@ constexpr DebugDrawOptions kObjectsOnly{.structure = false};
 constexpr DebugDrawOptions kStructureOnly{.objects = false};
 
 bool contains(const Aabb& outer, const Aabb& inner) {
-  return (outer.min.array() <= inner.min.array()).all() &&
-         (outer.max.array() >= inner.max.array()).all();
+  return (as_eigen(outer.min).array() <= as_eigen(inner.min).array()).all() &&
+         (as_eigen(outer.max).array() >= as_eigen(inner.max).array()).all();
 }
 
 /// Writes down what it is told.
@@ -33,8 +34,8 @@ class Sketch final : public DebugDraw {
     bool operator==(const Box&) const = default;
   };
   struct Line {
-    Eigen::Vector3f from;
-    Eigen::Vector3f to;
+    Vec3f from;
+    Vec3f to;
     Colour colour;
     bool operator==(const Line&) const = default;
   };
@@ -45,11 +46,11 @@ class Sketch final : public DebugDraw {
   };
 
   void box(const Aabb& box, Colour colour) override { boxes.push_back({box, colour}); }
-  void line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) override {
+  void line(const Vec3f& from, const Vec3f& to, Colour colour) override {
     lines.push_back({from, to, colour});
   }
   void sphere(const Sphere& sphere, Colour) override { spheres.push_back(sphere); }
-  void text(const Eigen::Vector3f&, std::string_view text, Colour colour) override {
+  void text(const Vec3f&, std::string_view text, Colour colour) override {
     texts.push_back({std::string(text), colour});
   }
 
@@ -165,7 +166,7 @@ TEST_P(DebugDrawing, puts_each_lower_corner_of_a_fresh_even_scene_into_a_cell) {
   EXPECT_EQ(cells.size(), sketch.boxes_in(kContentsColour).size());
   for (const Aabb& box : boxes) {
     // Beside the edge of a cell by rounding is in it.
-    const Aabb corner{box.min.array() - 1e-4F, box.min.array() + 1e-4F};
+    const Aabb corner{as_eigen(box.min).array() - 1e-4F, as_eigen(box.min).array() + 1e-4F};
     ASSERT_TRUE(std::any_of(cells.begin(), cells.end(),
                             [&](const Aabb& cell) { return cell.overlaps(corner); }));
   }
@@ -186,7 +187,7 @@ TEST_P(DebugDrawing, names_the_axis_that_is_swept_or_runs_fastest) {
     EXPECT_NE(text[0], "xyz"[axis]) << "an axis that tells no objects apart";
     EXPECT_NE(text.find(config().partition == "FlatGrid" ? "fastest" : "swept"), std::string::npos);
     // The arrow runs along the axis it names.
-    const Eigen::Vector3f along = sketch.lines[0].to - sketch.lines[0].from;
+    const Vec3f along = sketch.lines[0].to - sketch.lines[0].from;
     for (int other = 0; other < 3; ++other) {
       EXPECT_EQ(along[other] != 0.0F, "xyz"[other] == text[0]);
     }

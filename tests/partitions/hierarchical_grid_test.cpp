@@ -1,5 +1,6 @@
 // HierarchicalGrid: what the conformance suite cannot know of its levels and cells.
 
+#include <winnow/core/eigen.h>
 #include <winnow/partitions/partition.h>
 
 #include <algorithm>
@@ -15,16 +16,16 @@ namespace {
 
 const Config kConfig{"HierarchicalGrid", active_isa(), 2};
 
-Aabb box_at(const Eigen::Vector3d& centre, double edge) {
+Aabb box_at(const Vec3d& centre, double edge) {
   Aabb box;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < 3; ++axis) {
     box.min[axis] = static_cast<float>(centre[axis] - 0.5 * edge);
     box.max[axis] = static_cast<float>(centre[axis] + 0.5 * edge);
   }
   return box;
 }
 
-Eigen::Vector3d point(Random& random, double side) {
+Vec3d point(Random& random, double side) {
   return {random.uniform(-side, side), random.uniform(-side, side), random.uniform(-side, side)};
 }
 
@@ -76,7 +77,7 @@ TEST(HierarchicalGrid, gives_sizes_far_apart_levels_of_their_own) {
 TEST(HierarchicalGrid, holds_every_size_at_one_point) {
   Random random(63);
   std::vector<Aabb> boxes(700);
-  for (Aabb& box : boxes) box = box_at(Eigen::Vector3d::Zero(), random.log_uniform(1e-6, 1e6));
+  for (Aabb& box : boxes) box = box_at(Vec3d{}, random.log_uniform(1e-6, 1e6));
   World world(kConfig);
   world.insert(boxes);
   PairBuffer pairs;
@@ -89,7 +90,7 @@ TEST(HierarchicalGrid, needs_memory_for_its_objects_and_not_for_the_world) {
     Random random(64);
     std::vector<Aabb> boxes;
     for (int cluster = 0; cluster < 50; ++cluster) {
-      const Eigen::Vector3d centre = point(random, world_side);
+      const Vec3d centre = point(random, world_side);
       for (int i = 0; i < 100; ++i) {
         boxes.push_back(box_at(centre + point(random, 4.0), random.log_uniform(0.01, 1.0)));
       }
@@ -113,7 +114,7 @@ TEST(HierarchicalGrid, follows_objects_that_grow_and_shrink_through_its_levels) 
   for (int frame = 0; frame < 6; ++frame) {
     // At first a few, then all of them.
     for (std::size_t i = 0; i < boxes.size(); i += frame < 4 ? 30 : 1) {
-      const Eigen::Vector3d centre = (0.5F * (boxes[i].min + boxes[i].max)).cast<double>();
+      const Vec3d centre = (0.5F * (boxes[i].min + boxes[i].max)).cast<double>();
       const double edge = static_cast<double>(boxes[i].max[0] - boxes[i].min[0]);
       boxes[i] = box_at(centre, edge * (random.chance(0.5) ? 30.0 : 1.0 / 30.0));
     }
@@ -127,7 +128,8 @@ TEST(HierarchicalGrid, keeps_its_order_while_objects_drift_within_their_cells) {
   std::vector<Aabb> boxes = uniform_boxes(2000);
   const std::vector<Key> keys = world.insert(boxes);
   ASSERT_TRUE(world.agrees());
-  for (Aabb& box : boxes) box = {box.min.array() + 0.05F, box.max.array() + 0.05F};
+  for (Aabb& box : boxes)
+    box = {as_eigen(box.min).array() + 0.05F, as_eigen(box.max).array() + 0.05F};
   world.update(keys, boxes);
   ASSERT_TRUE(world.agrees());
   EXPECT_EQ(world.partition().statistics().builds, 1U);
@@ -137,9 +139,9 @@ TEST(HierarchicalGrid, keeps_its_order_while_objects_drift_within_their_cells) {
 class CellColours final : public DebugDraw {
  public:
   void box(const Aabb&, Colour colour) override { seen.insert(pack(colour)); }
-  void line(const Eigen::Vector3f&, const Eigen::Vector3f&, Colour) override {}
+  void line(const Vec3f&, const Vec3f&, Colour) override {}
   void sphere(const Sphere&, Colour) override {}
-  void text(const Eigen::Vector3f&, std::string_view, Colour) override {}
+  void text(const Vec3f&, std::string_view, Colour) override {}
 
   std::set<std::uint32_t> seen;
 

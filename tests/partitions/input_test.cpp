@@ -1,5 +1,6 @@
 // Boxes and client data as they go in: what is refused, and the forms in which boxes may come.
 
+#include <winnow/core/eigen.h>
 #include <cmath>
 #include <limits>
 
@@ -54,7 +55,8 @@ TEST_P(Input, that_is_an_invalid_box_changes_nothing) {
   Snapshot before(world_);
   Partition& p = world_.partition();
   for (const Aabb& bad : invalid_boxes()) {
-    SCOPED_TRACE(testing::Message() << bad.min.transpose() << " .. " << bad.max.transpose());
+    SCOPED_TRACE(testing::Message()
+                 << as_eigen(bad.min).transpose() << " .. " << as_eigen(bad.max).transpose());
     Key key{5, 6};
     EXPECT_TRUE(before.refused(p.insert(bad, 1, key), Status::invalid_bounds));
     EXPECT_EQ(key, (Key{5, 6})) << "a refused call wrote its output";
@@ -68,7 +70,7 @@ TEST_P(Input, with_one_invalid_box_among_good_ones_changes_nothing) {
   for (const Aabb& bad : invalid_boxes()) {
     for (const std::size_t at : {std::size_t{0}, boxes_.size() / 2, boxes_.size() - 1}) {
       std::vector<Aabb> boxes = boxes_;
-      for (Aabb& box : boxes) box.max.array() += 0.5F;
+      for (Aabb& box : boxes) as_eigen(box.max).array() += 0.5F;
       boxes[at] = bad;
       std::vector<Key> keys(boxes.size());
       EXPECT_TRUE(before.refused(p.insert(boxes, {}, keys), Status::invalid_bounds));

@@ -1,5 +1,6 @@
 // Keys: what is handed out, and what is answered to keys that are not, or no longer, valid.
 
+#include <winnow/core/eigen.h>
 #include <set>
 
 #include "tests/partitions/snapshot.h"
@@ -29,7 +30,7 @@ class Keys : public Conformance {
       std::vector<Key> keys = keys_;
       keys[at] = bad;
       std::vector<Aabb> elsewhere = boxes_;
-      for (Aabb& moved : elsewhere) moved.max.array() += 1.0F;
+      for (Aabb& moved : elsewhere) as_eigen(moved.max).array() += 1.0F;
       EXPECT_TRUE(before.refused(p.update(keys, elsewhere), Status::invalid_key)) << "at " << at;
       EXPECT_TRUE(before.refused(p.remove(keys), Status::invalid_key)) << "at " << at;
     }

@@ -1,6 +1,7 @@
 // Volumes stored larger by a margin: nothing true is missed, and what stays within its margin does
 // not count as moved.
 
+#include <winnow/core/eigen.h>
 #include <winnow/core/hits.h>
 
 #include <cmath>
@@ -18,12 +19,12 @@ namespace {
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
 bool holds(const Aabb& outer, const Aabb& inner) {
-  return (outer.min.array() <= inner.min.array()).all() &&
-         (outer.max.array() >= inner.max.array()).all();
+  return (as_eigen(outer.min).array() <= as_eigen(inner.min).array()).all() &&
+         (as_eigen(outer.max).array() >= as_eigen(inner.max).array()).all();
 }
 
 Aabb moved(const Aabb& box, float by) {
-  return {box.min.array() + by, box.max.array() + by};
+  return {as_eigen(box.min).array() + by, as_eigen(box.max).array() + by};
 }
 
 std::vector<Aabb> all_moved(const std::vector<Aabb>& boxes, float by) {
@@ -194,7 +195,7 @@ void expect_fat_kdops(Volume volume) {
   const std::vector<Aabb> boxes = uniform_boxes(200);
   std::vector<Kdop<K>> kdops;
   for (const Aabb& box : boxes) {
-    kdops.push_back(Kdop<K>::around(std::vector<Eigen::Vector3f>{box.min, box.max}));
+    kdops.push_back(Kdop<K>::around(std::vector<Vec3f>{box.min, box.max}));
   }
   std::vector<Key> keys(kdops.size());
   ASSERT_EQ(partition.insert(std::span<const Kdop<K>>(kdops), {}, keys), Status::ok);
@@ -205,7 +206,7 @@ void expect_fat_kdops(Volume volume) {
   for (std::size_t i = 0; i < kdops.size(); ++i) {
     const auto by = static_cast<float>(random.uniform(-0.05, 0.05));
     const Aabb box = moved(boxes[i], by);
-    kdops[i] = Kdop<K>::around(std::vector<Eigen::Vector3f>{box.min, box.max});
+    kdops[i] = Kdop<K>::around(std::vector<Vec3f>{box.min, box.max});
   }
   ASSERT_EQ(partition.update(keys, std::span<const Kdop<K>>(kdops)), Status::ok);
   ASSERT_EQ(partition.self_pairs(buffer, {.order = Order::canonical}), Status::ok);

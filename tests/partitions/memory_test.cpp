@@ -2,6 +2,7 @@
 // nothing.
 
 #include <sys/mman.h>
+#include <winnow/core/eigen.h>
 
 #include <algorithm>
 #include <atomic>
@@ -148,25 +149,24 @@ std::vector<std::vector<Aabb>> scenes_to_reserve_for(std::size_t count) {
       uniform_boxes(count),   clustered_boxes(count), mixed_boxes(count),
       wall_boxes(count, 1),   two_scale_boxes(count), outlier_boxes(count),
       exponential_boxes(200), rod_boxes(count),       pile_boxes(count)};
-  for (const Eigen::Vector3f& spread :
-       {Eigen::Vector3f(1e4F, 1e4F, 1e4F), Eigen::Vector3f(1e5F, 1e5F, 1.0F),
-        Eigen::Vector3f(1e5F, 0.1F, 0.1F)}) {
+  for (const Vec3f& spread :
+       {Vec3f(1e4F, 1e4F, 1e4F), Vec3f(1e5F, 1e5F, 1.0F), Vec3f(1e5F, 0.1F, 0.1F)}) {
     scenes.push_back(uniform_boxes(count));
     for (Aabb& box : scenes.back()) {
-      const Eigen::Vector3f edge = box.max - box.min;
-      box.min = box.min.cwiseProduct(spread).eval();
+      const Vec3f edge = box.max - box.min;
+      box.min = as_eigen(box.min).cwiseProduct(as_eigen(spread)).eval();
       box.max = box.min + edge;
     }
   }
-  scenes.emplace_back(count, Aabb{Eigen::Vector3f::Zero(), Eigen::Vector3f::Ones()});
+  scenes.emplace_back(count, Aabb{Vec3f{}, Vec3f::constant(1.0F)});
   return scenes;
 }
 
 TEST_P(Memory, that_was_reserved_is_enough_wherever_objects_lie_and_for_fewer) {
   const std::size_t count = config().make().is_exact() ? 2500 : 300;
   for (const std::vector<Aabb>& boxes : scenes_to_reserve_for(count)) {
-    SCOPED_TRACE(testing::Message()
-                 << "from " << boxes[0].min.transpose() << " to " << boxes[0].max.transpose());
+    SCOPED_TRACE(testing::Message() << "from " << as_eigen(boxes[0].min).transpose() << " to "
+                                    << as_eigen(boxes[0].max).transpose());
     PairBuffer found;
     for (const std::size_t inserted : {boxes.size(), boxes.size() * 2 / 3}) {
       World fresh(config());
@@ -275,7 +275,7 @@ TEST_P(Memory, that_was_touched_has_all_pages_that_a_first_frame_writes_to) {
 // Boxes that many others overlap, more than a fresh buffer has room for.
 TEST_P(Memory, of_many_pairs_is_asked_for_seldom_and_no_pair_is_found_often) {
   std::vector<Aabb> boxes = uniform_boxes(2000);
-  for (Aabb& box : boxes) box.max.array() += 4.0F;
+  for (Aabb& box : boxes) as_eigen(box.max).array() += 4.0F;
   World world(config(), &memory_);
   world.insert(boxes);
   std::atomic<std::size_t> asked{0};

@@ -1,6 +1,7 @@
 // A memory resource that refuses, at every request in turn: the call says so, nothing is lost, and
 // the same call succeeds once memory is there again.
 
+#include <winnow/core/eigen.h>
 #include <functional>
 
 #include "tests/support/counting_memory.h"
@@ -221,7 +222,7 @@ TEST_P(OutOfMemory, never_leaves_a_buffer_that_later_frames_build_on) {
     PairBuffer buffer(&memory_);
     ASSERT_TRUE(world_.agrees(buffer));
     // More pairs than the buffer has room for.
-    for (Aabb& box : boxes) box.max.array() += 0.3F;
+    for (Aabb& box : boxes) as_eigen(box.max).array() += 0.3F;
     world_.update(keys, boxes);
     memory_.refuse_after(n / 2);
     const Status status = world_.self_pairs(buffer);

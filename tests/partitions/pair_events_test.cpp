@@ -186,8 +186,7 @@ TEST_P(Events, follow_few_objects_among_many) {
       for (std::size_t change = random.below(4); change != 0; --change) {
         const std::size_t at = some();
         const Aabb box = world.entries().at(keys[at].id).box;
-        const Eigen::Vector3f edge =
-            random.chance(0.2) ? Eigen::Vector3f(0, 0, 0) : Eigen::Vector3f(box.max - box.min);
+        const Vec3f edge = random.chance(0.2) ? Vec3f(0, 0, 0) : Vec3f(box.max - box.min);
         const Aabb moved{box.min + edge * 0.5F, box.max + edge * 0.5F};
         switch (random.below(6)) {
           case 0:

@@ -33,7 +33,7 @@ class Drift {
 
   void go_on() {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      for (Eigen::Index a = 0; a < 3; ++a) {
+      for (int a = 0; a < 3; ++a) {
         float& step = steps_[i][a];
         if (boxes[i].min[a] + step < low_[a] || boxes[i].max[a] + step > high_[a]) step = -step;
         boxes[i].min[a] += step;
@@ -45,9 +45,9 @@ class Drift {
   std::vector<Aabb> boxes;
 
  private:
-  Eigen::Vector3f low_;
-  Eigen::Vector3f high_;
-  std::vector<Eigen::Vector3f> steps_;
+  Vec3f low_;
+  Vec3f high_;
+  std::vector<Vec3f> steps_;
 };
 
 class PlannedBuilds : public Conformance {

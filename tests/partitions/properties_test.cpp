@@ -2,6 +2,7 @@
 // shrunk by rapidcheck; set WINNOW_SEED for others.
 
 #include <rapidcheck.h>
+#include <winnow/core/eigen.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +37,7 @@ std::ostream& operator<<(std::ostream& out, const Step& step) {
                                            "query",  "cross"};
   out << kNames[step.kind] << " " << step.choice;
   for (const Aabb& box : step.boxes) {
-    out << " [" << box.min.transpose() << " .. " << box.max.transpose() << "]";
+    out << " [" << as_eigen(box.min).transpose() << " .. " << as_eigen(box.max).transpose() << "]";
   }
   return out;
 }
@@ -54,9 +55,9 @@ rc::Gen<float> coordinates() {
 rc::Gen<Aabb> valid_boxes() {
   const auto any = rc::gen::map(rc::gen::container<std::vector<float>>(6, coordinates()),
                                 [](const std::vector<float>& v) {
-                                  const Eigen::Vector3f a(v[0], v[1], v[2]);
-                                  const Eigen::Vector3f b(v[3], v[4], v[5]);
-                                  return Aabb{a.cwiseMin(b), a.cwiseMax(b)};
+                                  const Vec3f a(v[0], v[1], v[2]);
+                                  const Vec3f b(v[3], v[4], v[5]);
+                                  return Aabb{a.min(b), a.max(b)};
                                 });
   return rc::gen::suchThat(any, [](const Aabb& box) { return box.is_valid(); });
 }

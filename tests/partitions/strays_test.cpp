@@ -20,7 +20,7 @@ std::vector<std::size_t> jump(std::vector<Aabb>& boxes, double share, Random& ra
   const std::vector<Aabb> before = boxes;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (random.uniform(0.0, 1.0) >= share) continue;
-    const Eigen::Vector3f extent = boxes[i].max - boxes[i].min;
+    const Vec3f extent = boxes[i].max - boxes[i].min;
     boxes[i].min = before[random.below(boxes.size())].min;
     boxes[i].max = boxes[i].min + extent;
     jumped.push_back(i);
@@ -52,7 +52,7 @@ class StrayObjects : public Conformance {};
 TEST_P(StrayObjects, are_in_no_missing_pair) {
   for (const double share : {0.002, 0.02, 0.2}) {
     std::vector<Aabb> boxes = mixed_boxes(scaled(900));
-    boxes[3].max = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity());
+    boxes[3].max = Vec3f::constant(std::numeric_limits<float>::infinity());
     World world(config());
     const std::vector<Key> keys = world.insert(boxes);
     PairBuffer buffer;

@@ -1,6 +1,7 @@
 // What the conformance suite cannot know of the trees: what their orders are worth, counted in
 // tests of 16 boxes, and how looseness and levels behave at their ends.
 
+#include <winnow/core/eigen.h>
 #include <winnow/partitions/partition.h>
 
 #include <algorithm>
@@ -129,7 +130,7 @@ TEST(LooseOctreeLevels, are_bounded_for_any_range_of_sizes) {
   std::vector<Aabb> boxes = uniform_boxes(600);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const float edge = std::pow(10.0F, -9.0F + 12.0F * static_cast<float>(i) / 600.0F);
-    boxes[i].max = boxes[i].min.array() + edge;
+    boxes[i].max = as_eigen(boxes[i].min).array() + edge;
   }
   Partition tree(loose_octree());
   fill(tree, boxes);
@@ -163,8 +164,8 @@ TEST(LooseFactor, lets_objects_move_a_little_without_leaving_their_nodes) {
   for (Aabb& box : boxes) {
     // An eighth of the box's own edge: less than a quarter of its cell's.
     const float step = 0.125F * (box.max.x() - box.min.x());
-    box.min.array() += step;
-    box.max.array() += step;
+    as_eigen(box.min).array() += step;
+    as_eigen(box.max).array() += step;
   }
   ASSERT_EQ(tree.update(keys, BoxView(std::span(boxes))), Status::ok);
   ASSERT_EQ(tree.refresh(), Status::ok);

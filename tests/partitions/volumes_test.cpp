@@ -1,6 +1,7 @@
 // Partitions of spheres and k-DOPs: every pair of volumes that overlap, by the volumes' own slow
 // test.
 
+#include <winnow/core/eigen.h>
 #include <winnow/core/kdop.h>
 #include <winnow/core/sphere.h>
 
@@ -38,10 +39,10 @@ template <int K>
 std::vector<Kdop<K>> kdops_in(const std::vector<Aabb>& boxes) {
   std::vector<Kdop<K>> kdops;
   for (const Aabb& box : boxes) {
-    const Eigen::Vector3f e = box.max - box.min;
-    const std::vector<Eigen::Vector3f> corners{box.min, box.min + Eigen::Vector3f(e.x(), e.y(), 0),
-                                               box.min + Eigen::Vector3f(e.x(), 0, e.z()),
-                                               box.min + Eigen::Vector3f(0, e.y(), e.z())};
+    const Vec3f e = box.max - box.min;
+    const std::vector<Vec3f> corners{box.min, box.min + Vec3f(e.x(), e.y(), 0),
+                                     box.min + Vec3f(e.x(), 0, e.z()),
+                                     box.min + Vec3f(0, e.y(), e.z())};
     kdops.push_back(Kdop<K>::around(corners));
   }
   return kdops;
@@ -146,8 +147,8 @@ TEST_P(Volumes, given_as_boxes_report_every_pair_of_boxes) {
     for (std::size_t i = 0; i < keys.size(); ++i) {
       Aabb box;
       ASSERT_EQ(partition.bounds(keys[i], box), Status::ok);
-      EXPECT_TRUE((box.min.array() <= boxes[i].min.array()).all());
-      EXPECT_TRUE((box.max.array() >= boxes[i].max.array()).all());
+      EXPECT_TRUE((as_eigen(box.min).array() <= as_eigen(boxes[i].min).array()).all());
+      EXPECT_TRUE((as_eigen(box.max).array() >= as_eigen(boxes[i].max).array()).all());
     }
   }
 }

@@ -1,3 +1,4 @@
+#include <winnow/core/eigen.h>
 #include "tests/pipeline/composite_world.h"
 
 #include <algorithm>
@@ -90,7 +91,7 @@ TEST(CompositePool, boxes_and_radii_hold_every_part) {
           inner = world.shapes.bounds(part.shape, part.pose);
         }
         // Both are rounded outward to float.
-        const float slack = 1e-6F * inner.max.cwiseAbs().maxCoeff();
+        const float slack = 1e-6F * as_eigen(inner.max).cwiseAbs().maxCoeff();
         for (int axis = 0; axis < 3; ++axis) {
           if (!std::isfinite(inner.max[axis])) continue;
           EXPECT_LE(box.min[axis], inner.min[axis] + slack);

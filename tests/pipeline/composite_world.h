@@ -4,6 +4,7 @@
 #include <winnow/core/pose_view.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/narrow_phase.h>
+#include <Eigen/Core>
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "tests/pipeline/pair_scenes.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>

@@ -97,7 +97,7 @@ inline double length_of(const double v[3]) {
 
 /// A wavy sheet of 2 n^2 triangles, [-1, 1] on x and y.
 inline ShapeId add_sheet(CompositePool& pool, std::uint32_t n) {
-  std::vector<Eigen::Vector3f> vertices;
+  std::vector<Vec3f> vertices;
   std::vector<std::uint32_t> corners;
   for (std::uint32_t j = 0; j <= n; ++j) {
     for (std::uint32_t i = 0; i <= n; ++i) {
@@ -110,7 +110,7 @@ inline ShapeId add_sheet(CompositePool& pool, std::uint32_t n) {
     }
   }
   ShapeId id;
-  const std::span<const Eigen::Vector3f> points(vertices);
+  const std::span<const Vec3f> points(vertices);
   const std::span<const std::uint32_t> triangles(corners);
   EXPECT_EQ(pool.add_mesh(points, triangles, id), Status::ok);
   return id;

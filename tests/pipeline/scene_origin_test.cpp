@@ -48,7 +48,7 @@ TEST(SceneOrigin, two_balls_at_one_hundred_million_have_boxes_as_tight_as_at_zer
   EXPECT_EQ(body_pairs(scene), 0U);
   ASSERT_EQ(scene.move(key, Pose::at(1e8 + 0.9, 0, 0)), Status::ok);
   EXPECT_EQ(body_pairs(scene), 1U);
-  EXPECT_LT((scene.origin() - Eigen::Vector3d(1e8, 0, 0)).norm(), 10.0);
+  EXPECT_LT((scene.origin() - Vec3d(1e8, 0, 0)).norm(), 10.0);
 }
 
 TEST(SceneOrigin, a_scene_near_zero_is_measured_from_zero) {
@@ -56,7 +56,7 @@ TEST(SceneOrigin, a_scene_near_zero_is_measured_from_zero) {
   Scene scene(world.pool);
   ASSERT_EQ(add_all(scene, world), Status::ok);
   ASSERT_EQ(scene.refresh(), Status::ok);
-  EXPECT_EQ(scene.origin(), Eigen::Vector3d::Zero());
+  EXPECT_EQ(scene.origin(), Vec3d{});
 }
 
 TEST(SceneOrigin, far_scenes_find_the_same_pairs_with_the_same_memory) {

@@ -17,8 +17,8 @@ SceneWorld::SceneWorld(std::size_t count, std::uint64_t seed)
   good = good && pool.add(ConeShape{0.4, 0.4}, shapes[4]) == Status::ok;
   good = good && pool.add(TriangleShape{{{-0.5, -0.4, 0}, {0.5, -0.3, 0.1}, {0, 0.6, 0}}},
                           shapes[5]) == Status::ok;
-  const std::vector<Eigen::Vector3d> corners = {{0.6, 0, 0},  {-0.6, 0, 0}, {0, 0.5, 0},
-                                                {0, -0.5, 0}, {0, 0, 0.4},  {0, 0, -0.4}};
+  const std::vector<Vec3d> corners = {{0.6, 0, 0},  {-0.6, 0, 0}, {0, 0.5, 0},
+                                      {0, -0.5, 0}, {0, 0, 0.4},  {0, 0, -0.4}};
   const std::vector<std::uint32_t> loops = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
                                             2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
   const std::vector<std::uint32_t> sizes(8, 3);

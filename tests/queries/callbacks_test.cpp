@@ -62,9 +62,9 @@ TEST_P(ThrowingCallbacks, end_a_query_of_objects) {
 
 struct ThrowingDraw final : DebugDraw {
   void box(const Aabb&, Colour) override { throw std::runtime_error("x"); }
-  void line(const Eigen::Vector3f&, const Eigen::Vector3f&, Colour) override {}
+  void line(const Vec3f&, const Vec3f&, Colour) override {}
   void sphere(const Sphere&, Colour) override {}
-  void text(const Eigen::Vector3f&, std::string_view, Colour) override {}
+  void text(const Vec3f&, std::string_view, Colour) override {}
 };
 
 TEST_P(ThrowingCallbacks, end_a_drawing) {

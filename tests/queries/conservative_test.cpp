@@ -1,6 +1,7 @@
 // No ray ever misses a box that it touches in exact arithmetic: more than ten million pairs of a
 // ray and a box, a million of them made to be hard.
 
+#include <winnow/core/eigen.h>
 #include <algorithm>
 #include <vector>
 
@@ -44,8 +45,9 @@ std::size_t check(const std::vector<Aabb>& boxes, const std::vector<Ray>& rays) 
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const std::span<const Hit> found = hits.of(i);
       EXPECT_TRUE(right_hits(found, truths[i], world.partition()))
-          << to_string(config) << ", ray from " << rays[i].origin.transpose() << " along "
-          << rays[i].direction.transpose() << ", t " << rays[i].min_t << " .. " << rays[i].max_t;
+          << to_string(config) << ", ray from " << as_eigen(rays[i].origin).transpose() << " along "
+          << as_eigen(rays[i].direction).transpose() << ", t " << rays[i].min_t << " .. "
+          << rays[i].max_t;
       EXPECT_EQ(keys[i], found.empty() ? Key{} : found[0].key);
       if (testing::Test::HasFailure()) return 0;
     }
@@ -97,7 +99,8 @@ TEST(Rays, made_for_the_only_box_miss_nothing) {
     std::vector<Ray> rays;
     while (rays.size() < 400) rays.push_back(hostile_ray(box, random));
     check({box}, rays);
-    ASSERT_FALSE(HasFailure()) << box.min.transpose() << " .. " << box.max.transpose();
+    ASSERT_FALSE(HasFailure()) << as_eigen(box.min).transpose() << " .. "
+                               << as_eigen(box.max).transpose();
   }
 }
 

@@ -79,7 +79,7 @@ TEST(Exact, knows_which_boxes_meet_a_region) {
   // A square on its corner, beside the box and overlapping it only in the boxes around both.
   const float h = std::sqrt(0.5F);
   OrientedBox turned{{1.9F, 1.9F, 0.5F}, {1, 1, 1}};
-  turned.axes << h, -h, 0, h, h, 0, 0, 0, 1;
+  turned.axes = {h, -h, 0, h, h, 0, 0, 0, 1};
   EXPECT_FALSE(truth_of(Region(turned), kUnit).may);
   turned.center = {1.7F, 1.7F, 0.5F};
   EXPECT_TRUE(truth_of(Region(turned), kUnit).must);

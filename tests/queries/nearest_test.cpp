@@ -1,5 +1,6 @@
 // Nearest objects, against distances computed one by one.
 
+#include <winnow/core/eigen.h>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -27,8 +28,8 @@ struct Question {
 std::string to_string(const Question& q) {
   std::ostringstream out;
   out.precision(9);
-  out << q.count << " nearest to {" << q.from.min.transpose() << "} .. {" << q.from.max.transpose()
-      << "} within " << q.radius;
+  out << q.count << " nearest to {" << as_eigen(q.from.min).transpose() << "} .. {"
+      << as_eigen(q.from.max).transpose() << "} within " << q.radius;
   return out.str();
 }
 

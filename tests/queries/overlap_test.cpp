@@ -99,7 +99,7 @@ TEST_P(Overlaps, of_boxes_are_exact_pairs) {
     std::vector<Aabb> asked;
     for (std::size_t i = 0; i < set.boxes.size(); i += 1 + set.boxes.size() / 40) {
       asked.push_back(set.boxes[i]);
-      asked.push_back({set.boxes[i].min, set.boxes[i].min.cwiseMax(set.boxes[0].max)});
+      asked.push_back({set.boxes[i].min, set.boxes[i].min.max(set.boxes[0].max)});
     }
     std::erase_if(asked, [](const Aabb& box) { return !box.is_valid(); });
     const std::vector<Pair> truth = cross_pairs(numbered(asked), set.objects);

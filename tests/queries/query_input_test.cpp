@@ -1,5 +1,7 @@
 // What queries refuse: the call says so, clears what it was to fill and changes nothing.
 
+#include <winnow/core/eigen.h>
+#include <Eigen/Core>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -31,7 +33,7 @@ std::vector<Ray> bad_rays() {
       add([&](Ray& ray) { ray.origin[k] = value; });
     }
   }
-  add([](Ray& ray) { ray.direction.setZero(); });
+  add([](Ray& ray) { as_eigen(ray.direction).setZero(); });
   add([](Ray& ray) { ray.direction = {-0.0F, 0.0F, -0.0F}; });
   add([](Ray& ray) { ray.min_t = -1e-30F; });
   add([](Ray& ray) { ray.min_t = kNan; });

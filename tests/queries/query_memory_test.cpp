@@ -1,6 +1,7 @@
 // Memory of queries: what footprints say is what was asked for, a steady query asks for nothing,
 // and a refusal leaves the partition, and the buffer, of use.
 
+#include <winnow/core/eigen.h>
 #include <algorithm>
 #include <functional>
 #include <optional>
@@ -46,7 +47,7 @@ class QueryMemory : public Conformance {
     const Vector3f center = 0.5F * (middle.min + middle.max);
     frustum_ = Frustum::perspective(middle.min, center - middle.min, Vector3f::UnitZ(), 1.0F, 1.5F,
                                     0.1F, 100.0F);
-    sphere_ = {center, 0.3F * (middle.max - middle.min).maxCoeff()};
+    sphere_ = {center, 0.3F * as_eigen(middle.max - middle.min).maxCoeff()};
   }
 
   // One query after the other; each is a way to ask.

@@ -1,4 +1,5 @@
 #include "tests/queries/questions.h"
+#include <winnow/core/eigen.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -27,12 +28,12 @@ Aabb some_box(std::span<const Aabb> boxes, Random& random) {
   return box;
 }
 
-Vector3f center(const Aabb& box) {
+Vec3f center(const Aabb& box) {
   return 0.5F * box.min + 0.5F * box.max;
 }
 
 float size(const Aabb& box) {
-  return std::min((0.5F * box.max - 0.5F * box.min).maxCoeff(), 1e37F);
+  return std::min(as_eigen(0.5F * box.max - 0.5F * box.min).maxCoeff(), 1e37F);
 }
 
 Vector3f unit(Random& random) {
@@ -59,8 +60,8 @@ Region oriented(const Aabb& at, Random& random) {
     box.half[k] *= std::array{0.0F, 0.5F, 1.0F, 4.0F}[random.below(4)];
   }
   // Face to face with the box, as far as floats allow.
-  if (random.chance(0.3)) box.center += box.axes.col(0) * (box.half[0] + size(at));
-  if (random.chance(0.1)) box.axes.col(1) += 0.5F * box.axes.col(2);
+  if (random.chance(0.3)) box.center += as_eigen(box.axes).col(0) * (box.half[0] + size(at));
+  if (random.chance(0.1)) as_eigen(box.axes).col(1) += 0.5F * as_eigen(box.axes).col(2);
   return box;
 }
 
@@ -124,7 +125,7 @@ Region extreme_region(std::size_t kind, Random& random, std::deque<std::vector<P
     }
     case 2: {
       OrientedBox box{vector(), vector().cwiseAbs(), rotation(random)};
-      if (random.chance(0.3)) box.axes.col(static_cast<int>(random.below(3))) = vector();
+      if (random.chance(0.3)) as_eigen(box.axes).col(static_cast<int>(random.below(3))) = vector();
       return box;
     }
     case 3:
@@ -187,12 +188,13 @@ void add(std::deque<QuestionSet>& sets, const Scene& scene) {
 }
 
 std::ostream& operator<<(std::ostream& out, const Aabb& box) {
-  return out << "{" << box.min.transpose() << "} .. {" << box.max.transpose() << "}";
+  return out << "{" << as_eigen(box.min).transpose() << "} .. {" << as_eigen(box.max).transpose()
+             << "}";
 }
 
 std::ostream& operator<<(std::ostream& out, const Capsule& capsule) {
-  return out << "{" << capsule.a.transpose() << "} to {" << capsule.b.transpose() << "} radius "
-             << capsule.radius;
+  return out << "{" << as_eigen(capsule.a).transpose() << "} to {"
+             << as_eigen(capsule.b).transpose() << "} radius " << capsule.radius;
 }
 
 }  // namespace
@@ -247,15 +249,17 @@ std::string to_string(const Cast& cast) {
       [&](const auto& c) {
         using Kind = std::decay_t<decltype(c)>;
         if constexpr (std::is_same_v<Kind, Ray>) {
-          out << "ray from {" << c.origin.transpose() << "}";
+          out << "ray from {" << as_eigen(c.origin).transpose() << "}";
         } else if constexpr (std::is_same_v<Kind, BoxCast>) {
           out << "box " << c.box;
         } else if constexpr (std::is_same_v<Kind, SphereCast>) {
-          out << "sphere at {" << c.sphere.center.transpose() << "} radius " << c.sphere.radius;
+          out << "sphere at {" << as_eigen(c.sphere.center).transpose() << "} radius "
+              << c.sphere.radius;
         } else {
           out << "capsule " << c.capsule;
         }
-        out << " along {" << c.direction.transpose() << "} t " << c.min_t << " .. " << c.max_t;
+        out << " along {" << as_eigen(c.direction).transpose() << "} t " << c.min_t << " .. "
+            << c.max_t;
       },
       cast);
   return out.str();
@@ -265,21 +269,21 @@ std::string to_string(const Region& region) {
   std::ostringstream out;
   out.precision(9);
   const auto plane = [&](const Plane& p) {
-    out << " {" << p.normal.transpose() << "} + " << p.offset;
+    out << " {" << as_eigen(p.normal).transpose() << "} + " << p.offset;
   };
   std::visit(
       [&](const auto& r) {
         using Kind = std::decay_t<decltype(r)>;
-        if constexpr (std::is_same_v<Kind, Vector3f>) {
-          out << "point {" << r.transpose() << "}";
+        if constexpr (std::is_same_v<Kind, Vec3f>) {
+          out << "point {" << as_eigen(r).transpose() << "}";
         } else if constexpr (std::is_same_v<Kind, Aabb>) {
           out << "box " << r;
         } else if constexpr (std::is_same_v<Kind, OrientedBox>) {
-          out << "oriented box at {" << r.center.transpose() << "} half {" << r.half.transpose()
-              << "} axes\n"
-              << r.axes;
+          out << "oriented box at {" << as_eigen(r.center).transpose() << "} half {"
+              << as_eigen(r.half).transpose() << "} axes\n"
+              << as_eigen(r.axes);
         } else if constexpr (std::is_same_v<Kind, Sphere>) {
-          out << "sphere at {" << r.center.transpose() << "} radius " << r.radius;
+          out << "sphere at {" << as_eigen(r.center).transpose() << "} radius " << r.radius;
         } else if constexpr (std::is_same_v<Kind, Capsule>) {
           out << "capsule " << r;
         } else if constexpr (std::is_same_v<Kind, Frustum>) {

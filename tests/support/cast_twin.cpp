@@ -1,4 +1,5 @@
 #include "tests/support/cast_twin.h"
+#include <winnow/core/eigen.h>
 
 #include <algorithm>
 #include <array>
@@ -210,19 +211,18 @@ class Approach {
 CastTruth truth_of_round(const CapsuleCast& cast, const Aabb& box, double tolerance) {
   const Capsule& capsule = cast.capsule;
   const auto radius = static_cast<double>(capsule.radius);
-  const BoxCast around{{capsule.a.cwiseMin(capsule.b), capsule.a.cwiseMax(capsule.b)},
-                       cast.direction,
-                       cast.min_t,
-                       cast.max_t};
+  const BoxCast around{
+      {capsule.a.min(capsule.b), capsule.a.max(capsule.b)}, cast.direction, cast.min_t, cast.max_t};
   const auto window = [&](double size) {
     const double reach = radius + (2.0 * tolerance + 1e-13) * size;
     return Window(around, box, Eigen::Vector3d::Constant(reach));
   };
-  double size = std::max({magnitude(box), static_cast<double>(capsule.a.cwiseAbs().maxCoeff()),
-                          static_cast<double>(capsule.b.cwiseAbs().maxCoeff()), radius});
+  double size =
+      std::max({magnitude(box), static_cast<double>(as_eigen(capsule.a).cwiseAbs().maxCoeff()),
+                static_cast<double>(as_eigen(capsule.b).cwiseAbs().maxCoeff()), radius});
   // The way to the box counts: to an infinite end of it, that is the range of float.
-  size = std::max(size,
-                  window(size).entry * static_cast<double>(cast.direction.cwiseAbs().maxCoeff()));
+  size = std::max(size, window(size).entry *
+                            static_cast<double>(as_eigen(cast.direction).cwiseAbs().maxCoeff()));
   const double slack = tolerance * size;
   const Window open = window(size);
   if (!open.is_open()) return {};
@@ -249,8 +249,8 @@ CastTruth truth_of_round(const CapsuleCast& cast, const Aabb& box, double tolera
 }  // namespace
 
 Aabb finite(Aabb box) {
-  box.min = box.min.cwiseMax(-kLargest).cwiseMin(kLargest);
-  box.max = box.max.cwiseMax(-kLargest).cwiseMin(kLargest);
+  box.min = as_eigen(box.min).cwiseMax(-kLargest).cwiseMin(kLargest);
+  box.max = as_eigen(box.max).cwiseMax(-kLargest).cwiseMin(kLargest);
   return box;
 }
 

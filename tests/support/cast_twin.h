@@ -2,6 +2,8 @@
 
 #include <winnow/core/cast.h>
 
+#include <Eigen/Core>
+
 namespace winnow::test {
 
 /// What a cast may be told about one box.

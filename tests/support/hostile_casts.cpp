@@ -1,4 +1,5 @@
 #include "tests/support/hostile_casts.h"
+#include <winnow/core/eigen.h>
 
 #include <algorithm>
 #include <array>
@@ -66,7 +67,7 @@ Vector3f some_direction(Random& random) {
 }
 
 // Longer or shorter, if it stays a direction.
-void stretch(Vector3f& direction, Random& random) {
+void stretch(Vec3f& direction, Random& random) {
   if (random.chance(0.6)) return;
   const Vector3f stretched =
       direction * one_of(std::array{1e-30F, 1e30F, 1e-42F, 3.0F, 0x1p60F, 0x1p-60F}, random);
@@ -116,7 +117,8 @@ Aabb bounded(const Aabb& box) {
 // A place from which motion along the direction comes to the point, up to rounding.
 Vector3f before(const Vector3f& point, const Vector3f& direction, const Aabb& box, Random& random) {
   if (random.chance(0.2)) return point;
-  float size = std::max((box.max - box.min).maxCoeff(), 1e-3F * point.cwiseAbs().maxCoeff());
+  float size =
+      std::max(as_eigen(box.max - box.min).maxCoeff(), 1e-3F * point.cwiseAbs().maxCoeff());
   if (!(size > 0.0F)) size = 1.0F;
   const float way = std::min(size, 1e37F) * one_of(std::array{0.5F, 1.0F, 2.0F, 16.0F}, random) *
                     (random.chance(0.1) ? -1.0F : 1.0F);
@@ -126,7 +128,7 @@ Vector3f before(const Vector3f& point, const Vector3f& direction, const Aabb& bo
 }
 
 float some_size(const Aabb& box, Random& random) {
-  const float size = std::min((box.max - box.min).maxCoeff(), 1e37F);
+  const float size = std::min(as_eigen(box.max - box.min).maxCoeff(), 1e37F);
   return size * one_of(std::array{0.0F, 0.25F, 1.0F, 3.0F}, random);
 }
 
@@ -171,14 +173,14 @@ Cast hostile_cast(const Aabb& given, Random& random) {
       if (random.chance(0.05)) cast.sphere.radius = kLargest;
       // So that it grazes.
       cast.sphere.center[static_cast<int>(random.below(3))] += sign(random) * cast.sphere.radius;
-      cast.sphere.center = cast.sphere.center.cwiseMax(-kLargest).cwiseMin(kLargest);
+      cast.sphere.center = as_eigen(cast.sphere.center).cwiseMax(-kLargest).cwiseMin(kLargest);
       limit(cast, given, random);
       return cast;
     }
     default: {
       CapsuleCast cast{{ray.origin, ray.origin, some_size(box, random)}, ray.direction};
       cast.capsule.b += some_size(box, random) * some_direction(random);
-      cast.capsule.b = cast.capsule.b.cwiseMax(-kLargest).cwiseMin(kLargest);
+      cast.capsule.b = as_eigen(cast.capsule.b).cwiseMax(-kLargest).cwiseMin(kLargest);
       limit(cast, given, random);
       return cast;
     }

@@ -1,5 +1,6 @@
 #include "tests/support/hostile_scenes.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -78,7 +79,7 @@ std::vector<Aabb> unbounded(std::size_t count) {
         box.min[axis] = -inf;
         break;
       default:
-        box.min.setConstant(-inf);
+        box.min = Vec3f::constant(-inf);
         box.max[axis] = 0.5F;
     }
     boxes.push_back(box);

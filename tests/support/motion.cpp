@@ -1,4 +1,5 @@
 #include "tests/support/motion.h"
+#include <winnow/core/eigen.h>
 
 #include <utility>
 
@@ -15,7 +16,8 @@ void shift(Aabb& box, double distance, Random& random) {
 
 void teleport(std::vector<Aabb>& boxes, std::size_t i, Random& random) {
   std::swap(boxes[i], boxes[random.below(boxes.size())]);
-  if (random.chance(0.1)) boxes[i].max.array() += static_cast<float>(random.uniform(0.0, 2.0));
+  if (random.chance(0.1))
+    as_eigen(boxes[i].max).array() += static_cast<float>(random.uniform(0.0, 2.0));
   if (random.chance(0.1)) boxes[i].max = boxes[i].min;
 }
 

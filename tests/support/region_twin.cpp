@@ -1,4 +1,5 @@
 #include "tests/support/region_twin.h"
+#include <winnow/core/eigen.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -35,8 +36,8 @@ RegionTruth about(bool must, bool inside) {
 }
 
 RegionTruth truth_of_box(const Aabb& region, const Aabb& box) {
-  const bool inside = (region.min.array() <= box.min.array()).all() &&
-                      (box.max.array() <= region.max.array()).all();
+  const bool inside = (as_eigen(region.min).array() <= as_eigen(box.min).array()).all() &&
+                      (as_eigen(box.max).array() <= as_eigen(region.max).array()).all();
   return about(region.overlaps(box), inside);
 }
 
@@ -55,7 +56,7 @@ RegionTruth truth_of_sphere(const Sphere& sphere, const Aabb& box) {
   }
   const auto radius = static_cast<double>(sphere.radius);
   const double size =
-      std::max(magnitude(box), static_cast<double>(sphere.center.cwiseAbs().maxCoeff()));
+      std::max(magnitude(box), static_cast<double>(as_eigen(sphere.center).cwiseAbs().maxCoeff()));
   const double wide = radius + 1e-12 * std::max(size, radius);
   RegionTruth truth;
   truth.must = nearest <= exact(sphere.radius) * exact(sphere.radius);
@@ -78,8 +79,8 @@ RegionTruth truth_of_capsule(const Capsule& capsule, const Aabb& box) {
   farthest = std::sqrt(farthest);
   const auto radius = static_cast<Real>(capsule.radius);
   const double size = std::max({magnitude(box), static_cast<double>(capsule.radius),
-                                static_cast<double>(capsule.a.cwiseAbs().maxCoeff()),
-                                static_cast<double>(capsule.b.cwiseAbs().maxCoeff())});
+                                static_cast<double>(as_eigen(capsule.a).cwiseAbs().maxCoeff()),
+                                static_cast<double>(as_eigen(capsule.b).cwiseAbs().maxCoeff())});
   const auto slack = static_cast<Real>(1e-6 * size);
   RegionTruth truth;
   truth.must = nearest <= radius - static_cast<Real>(1e-17 * size);
@@ -193,7 +194,7 @@ struct Gap {
     size = direction.cwiseAbs().dot(center.cwiseAbs());
     for (int i = 0; i < 3; ++i) {
       const Vector3d edge =
-          oriented.axes.col(i).cast<double>() * static_cast<double>(oriented.half[i]);
+          as_eigen(oriented.axes).col(i).cast<double>() * static_cast<double>(oriented.half[i]);
       half += std::abs(direction.dot(edge));
       size += direction.cwiseAbs().dot(edge.cwiseAbs());
     }
@@ -234,12 +235,13 @@ std::array<Vector, 15> directions(Unit unit_of, Column column_of, Cross cross_of
 RegionTruth truth_of_oriented(const OrientedBox& oriented, const Aabb& box) {
   const auto rough = directions<Vector3d>(
       [](int k) -> Vector3d { return Vector3d::Unit(k); },
-      [&](int i) -> Vector3d { return oriented.axes.col(i).cast<double>(); },
+      [&](int i) -> Vector3d { return as_eigen(oriented.axes).col(i).cast<double>(); },
       [](const Vector3d& a, const Vector3d& b) -> Vector3d { return a.cross(b); });
-  const double axes = std::max(1.0, static_cast<double>(oriented.axes.cwiseAbs().maxCoeff()));
-  const double wide = static_cast<double>(oriented.half.maxCoeff()) * axes;
+  const double axes =
+      std::max(1.0, static_cast<double>(as_eigen(oriented.axes).cwiseAbs().maxCoeff()));
+  const double wide = static_cast<double>(as_eigen(oriented.half).maxCoeff()) * axes;
   const double size =
-      magnitude(box) + wide + static_cast<double>(oriented.center.cwiseAbs().maxCoeff());
+      magnitude(box) + wide + static_cast<double>(as_eigen(oriented.center).cwiseAbs().maxCoeff());
   RegionTruth truth{true, true, true, true};
   bool decided = true;
   for (const Vector3d& direction : rough) {
@@ -290,7 +292,7 @@ double distance(const Aabb& a, const Aabb& b) {
 
 RegionTruth truth_of(const Region& region, const Aabb& given) {
   const Aabb box = finite(given);
-  if (const auto* point = std::get_if<Eigen::Vector3f>(&region)) {
+  if (const auto* point = std::get_if<Vec3f>(&region)) {
     RegionTruth truth = truth_of_box({*point, *point}, box);
     truth.must_inside = false;
     return truth;

@@ -1,5 +1,6 @@
 #include "tests/support/scenes.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>

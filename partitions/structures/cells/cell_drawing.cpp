@@ -43,7 +43,7 @@ class CellPicture {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t c = static_cast<std::uint32_t>(index % axes_[k].count);
       index /= axes_[k].count;
-      const auto axis = static_cast<Eigen::Index>(axes_[k].axis);
+      const auto axis = axes_[k].axis;
       box.min[axis] = edge(k, c);
       box.max[axis] = edge(k, c + 1);
     }
@@ -68,31 +68,31 @@ class CellPicture {
 
 // Beside the cells, a little longer than they are, so that it does not run through them.
 void CellPicture::arrow(DebugDraw& draw, std::string_view meaning) const {
-  Eigen::Vector3f from;
+  Vec3f from;
   std::array<double, 3> length{};
   for (std::size_t k = 0; k < 3; ++k) {
     const double low = static_cast<double>(edge(k, 0));
     length[k] = static_cast<double>(edge(k, axes_[k].count)) - low;
     if (!std::isfinite(length[k])) return;
-    from[static_cast<Eigen::Index>(axes_[k].axis)] = static_cast<float>(low);
+    from[axes_[k].axis] = static_cast<float>(low);
   }
   const double all = *std::max_element(length.begin(), length.end());
-  const auto along = static_cast<Eigen::Index>(axes_[0].axis);
+  const auto along = axes_[0].axis;
   const auto offset = [&from](std::size_t axis, double by) {
-    const double at = static_cast<double>(from[static_cast<Eigen::Index>(axis)]) + by;
+    const double at = static_cast<double>(from[axis]) + by;
     return static_cast<float>(std::clamp<double>(at, -FLT_MAX, FLT_MAX));
   };
   for (const std::size_t side : {axes_[1].axis, axes_[2].axis}) {
-    from[static_cast<Eigen::Index>(side)] = offset(side, -0.03 * all);
+    from[side] = offset(side, -0.03 * all);
   }
-  Eigen::Vector3f to = from;
+  Vec3f to = from;
   to[along] = offset(axes_[0].axis, length[0] + 0.03 * all);
   draw.line(from, to, kAxisColour);
   for (const std::size_t side : {axes_[1].axis, axes_[2].axis}) {
     for (const double barb : {-0.015, 0.015}) {
-      Eigen::Vector3f back = to;
+      Vec3f back = to;
       back[along] = offset(axes_[0].axis, length[0]);
-      back[static_cast<Eigen::Index>(side)] = offset(side, barb * all);
+      back[side] = offset(side, barb * all);
       draw.line(to, back, kAxisColour);
     }
   }

@@ -67,7 +67,7 @@ Aabb cell_box(const GridLevel& g, const GridLine& line, std::uint32_t number, st
   Aabb box = contents;
   const auto set = [&](const LevelAxis& axis, std::uint32_t from, std::uint32_t to) {
     if (axis.inverse == 0.0F) return;
-    const auto a = static_cast<Eigen::Index>(axis.axis);
+    const auto a = axis.axis;
     const auto edge = [&](std::uint32_t n) {
       return static_cast<float>(static_cast<double>(axis.origin) +
                                 static_cast<double>(n) / static_cast<double>(axis.inverse));

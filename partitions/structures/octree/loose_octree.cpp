@@ -253,8 +253,8 @@ void LooseTree::draw(DebugDraw& draw) const {
     const LooseOctreeCells::Bounds bounds = used_.cells.cell_bounds(used_.node[node]);
     Aabb cell = contents;
     for (std::size_t k = 0; k < used_.cells.axes(); ++k) {
-      cell.min[static_cast<Eigen::Index>(used_.cells.axis(k))] = bounds.low[k];
-      cell.max[static_cast<Eigen::Index>(used_.cells.axis(k))] = bounds.high[k];
+      cell.min[used_.cells.axis(k)] = bounds.low[k];
+      cell.max[used_.cells.axis(k)] = bounds.high[k];
     }
     draw.box(cell, kCellColour);
     draw.box(contents, kContentsColour);

@@ -140,8 +140,8 @@ Aabb SweptBox::rest(double limit) const noexcept {
   }
   Aabb box;
   constexpr float kMost = std::numeric_limits<float>::max();
-  box.min = round_down(sum.min).cwiseMin(kMost);
-  box.max = round_up(sum.max).cwiseMax(-kMost);
+  box.min = round_down(sum.min).min(Vec3f::constant(kMost));
+  box.max = round_up(sum.max).max(Vec3f::constant(-kMost));
   return box;
 }
 

@@ -1,5 +1,6 @@
 #include "pipeline/scene/queries/swept_shapes.h"
 
+#include <winnow/core/eigen.h>
 #include <winnow/core/rotation.h>
 #include "pipeline/shapes/extent.h"
 
@@ -147,7 +148,7 @@ ShapeSweep::ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double
       shapes_(parts.shapes()),
       cast_(cast),
       tolerance_(tolerance),
-      to_shape_(rotation_of(tame(cast.pose.orientation)).transpose()),
+      to_shape_(as_eigen(rotation_of(tame(cast.pose.orientation))).transpose()),
       middle_(0.5 * (extent().min + extent().max)) {}
 
 // The plane of the triangle, and planes along the motion through its sides: those in which most
