@@ -3,6 +3,7 @@
 
 #include "pipeline/scene/contact_history.h"
 
+#include <winnow/core/eigen.h>
 #include <winnow/core/rotation.h>
 #include "core/sort/stretches.h"
 #include "pipeline/scene/collision.h"
@@ -131,8 +132,8 @@ class PairPlaces {
  public:
   PairPlaces(const Pose (&now)[2], const Pose (&before)[2]) noexcept {
     for (std::size_t side = 0; side < 2; ++side) {
-      back_[side] = rotation_of(tame(now[side].orientation)).transpose();
-      back_before_[side] = rotation_of(tame(before[side].orientation)).transpose();
+      back_[side] = as_eigen(rotation_of(tame(now[side].orientation))).transpose();
+      back_before_[side] = as_eigen(rotation_of(tame(before[side].orientation))).transpose();
       for (int k = 0; k < 3; ++k) {
         from_[side][k] = now[0].position[k] - now[side].position[k];
         from_before_[side][k] = before[0].position[k] - before[side].position[k];

@@ -191,13 +191,9 @@ void ask_regions(const trace* t, const Partition& partition, const World& world)
 class Counter final : public DebugDraw {
  public:
   void box(const Aabb&, Colour colour) override { drawn += colour.a; }
-  void line(const Eigen::Vector3f&, const Eigen::Vector3f&, Colour colour) override {
-    drawn += colour.a;
-  }
+  void line(const Vec3f&, const Vec3f&, Colour colour) override { drawn += colour.a; }
   void sphere(const Sphere&, Colour colour) override { drawn += colour.a; }
-  void text(const Eigen::Vector3f&, std::string_view text, Colour) override {
-    drawn += text.size();
-  }
+  void text(const Vec3f&, std::string_view text, Colour) override { drawn += text.size(); }
   std::size_t drawn = 0;
 };
 

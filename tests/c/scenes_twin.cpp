@@ -149,9 +149,9 @@ void ask_shapes_of(const trace* t, SceneQueries& ask, ShapeId ball, std::span<co
 class BoxCounter final : public DebugDraw {
  public:
   void box(const Aabb&, Colour) override { ++drawn; }
-  void line(const Eigen::Vector3f&, const Eigen::Vector3f&, Colour) override {}
+  void line(const Vec3f&, const Vec3f&, Colour) override {}
   void sphere(const Sphere&, Colour) override {}
-  void text(const Eigen::Vector3f&, std::string_view, Colour) override {}
+  void text(const Vec3f&, std::string_view, Colour) override {}
   std::size_t drawn = 0;
 };
 

@@ -13,9 +13,9 @@ class Drawing final : public DebugDraw {
   explicit Drawing(const winnow_debug_draw& draw) noexcept;
 
   void box(const Aabb& box, Colour colour) override;
-  void line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) override;
+  void line(const Vec3f& from, const Vec3f& to, Colour colour) override;
   void sphere(const Sphere& sphere, Colour colour) override;
-  void text(const Eigen::Vector3f& at, std::string_view text, Colour colour) override;
+  void text(const Vec3f& at, std::string_view text, Colour colour) override;
 
  private:
   [[nodiscard]] static winnow_colour of(Colour colour) noexcept {

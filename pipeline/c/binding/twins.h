@@ -115,9 +115,9 @@ static_assert(sizeof(winnow_shape_id) == sizeof(ShapeId));
 /// In C the axes are one after another, in C++ the columns of a matrix.
 [[nodiscard]] inline OrientedBox oriented_box_of(const winnow_oriented_box& given) noexcept {
   OrientedBox box;
-  box.center = Eigen::Vector3f(given.center);
-  box.half = Eigen::Vector3f(given.half);
-  for (Eigen::Index i = 0; i < 3; ++i) box.axes.col(i) = Eigen::Vector3f(given.axes[i]);
+  box.center = Vec3f(given.center);
+  box.half = Vec3f(given.half);
+  for (int i = 0; i < 3; ++i) box.axes.set_column(i, Vec3f(given.axes[i]));
   return box;
 }
 

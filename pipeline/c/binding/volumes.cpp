@@ -31,7 +31,7 @@ void Drawing::box(const Aabb& box, Colour colour) {
   draw_.box(draw_.context, &shown, of(colour));
 }
 
-void Drawing::line(const Eigen::Vector3f& from, const Eigen::Vector3f& to, Colour colour) {
+void Drawing::line(const Vec3f& from, const Vec3f& to, Colour colour) {
   if (draw_.line != nullptr) draw_.line(draw_.context, from.data(), to.data(), of(colour));
 }
 
@@ -42,7 +42,7 @@ void Drawing::sphere(const Sphere& sphere, Colour colour) {
   draw_.sphere(draw_.context, &shown, of(colour));
 }
 
-void Drawing::text(const Eigen::Vector3f& at, std::string_view text, Colour colour) {
+void Drawing::text(const Vec3f& at, std::string_view text, Colour colour) {
   if (draw_.text == nullptr) return;
   draw_.text(draw_.context, at.data(), text.data(), text.size(), of(colour));
 }
