@@ -1,5 +1,6 @@
 #include "bench/measure/judge.h"
 
+#include <winnow/core/eigen.h>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -90,8 +91,8 @@ Verdict judge_line(const DoubleBox& box, const Line& line, double tolerance) {
 /// A swept box meets a box where a point meets the sum of the two.
 Verdict judge_cast(const DoubleBox& box, const BoxCast& cast, double tolerance) {
   DoubleBox sum = box;
-  sum.min -= cast.box.max.cast<double>();
-  sum.max -= cast.box.min.cast<double>();
+  sum.min -= as_eigen(cast.box.max).cast<double>();
+  sum.max -= as_eigen(cast.box.min).cast<double>();
   return judge_line(sum, line_of(cast, Double3::Zero()), tolerance);
 }
 

@@ -56,7 +56,10 @@ class PairsAdapter : public Engine {
 /// Mean edge length over all boxes and axes; 0 if there are none.
 [[nodiscard]] inline double mean_edge(std::span<const Aabb> boxes) {
   double sum = 0.0;
-  for (const Aabb& box : boxes) sum += (box.max - box.min).cast<double>().sum();
+  for (const Aabb& box : boxes) {
+    const Vec3d edges = (box.max - box.min).cast<double>();
+    sum += edges.x() + edges.y() + edges.z();
+  }
   return boxes.empty() ? 0.0 : sum / (3.0 * static_cast<double>(boxes.size()));
 }
 

@@ -229,8 +229,10 @@ class BulletSweep final : public BulletAdapter {
   static constexpr std::size_t kRowsOfCheck = 64;
 
   [[nodiscard]] bool is_inside(const Aabb& box) const {
-    return (box.min.array() > world_.min.array()).all() &&
-           (box.max.array() < world_.max.array()).all();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (box.min[axis] <= world_.min[axis] || box.max[axis] >= world_.max[axis]) return false;
+    }
+    return true;
   }
 
   /// What leaves the world is still found, but compared with all that left it.
@@ -248,9 +250,10 @@ class BulletSweep final : public BulletAdapter {
     allocated_bytes = &bytes_;
     world_ = {};
     for (const Aabb& box : boxes) world_.merge(box);
-    if (boxes.empty()) world_ = {Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
-    const float around = 1.5F * (world_.max - world_.min).maxCoeff() + 1.0F;
-    world_ = {world_.min.array() - around, world_.max.array() + around};
+    if (boxes.empty()) world_ = {{0, 0, 0}, {0, 0, 0}};
+    const Vec3f edges = world_.max - world_.min;
+    const Vec3f around = Vec3f::constant(1.5F * std::max({edges.x(), edges.y(), edges.z()}) + 1.0F);
+    world_ = {world_.min - around, world_.max + around};
     handles_ = std::max<std::size_t>(handles, 1);
     proxies_.clear();
     sweep_.reset();

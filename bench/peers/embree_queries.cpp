@@ -5,6 +5,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <winnow/core/eigen.h>
 
 #include <algorithm>
 #include <cmath>
@@ -258,7 +259,7 @@ class EmbreeQueries final : public QueryEngine {
     const Eigen::Vector3f center = 0.5F * (box.min + box.max);
     // Larger by more than rounding: what is found is tested exactly.
     const float slack = 1e-6F * center.cwiseAbs().maxCoeff() + 1e-30F;
-    const Eigen::Vector3f half = 1.00001F * (box.max - center).array() + slack;
+    const Eigen::Vector3f half = 1.00001F * (as_eigen(box.max) - center).array() + slack;
     const float radius = half.maxCoeff();
     Eigen::Vector3f scale = (half / radius).cwiseMax(0.001F);
     if (scale.minCoeff() > 0.999F) scale.z() = 1.001F;

@@ -1,5 +1,6 @@
 #include "bench/scenes/question_set.h"
 
+#include <winnow/core/eigen.h>
 #include "bench/common/random.h"
 #include "bench/scenes/cameras.h"
 
@@ -29,8 +30,9 @@ class Asker {
       ++finite;
     }
     // Objects that are all points still need questions of some size.
-    edge_ = sum > 0.0 ? sum / (3.0 * static_cast<double>(finite))
-                      : 0.01 * as_eigen(world_.max - world_.min).cast<double>().maxCoeff();
+    edge_ = sum > 0.0
+                ? sum / (3.0 * static_cast<double>(finite))
+                : 0.01 * (as_eigen(world_.max) - as_eigen(world_.min)).cast<double>().maxCoeff();
   }
 
   QuestionSet make(std::string_view name) {

@@ -71,7 +71,8 @@ class GrowingBoxes final : public FrameSource {
 std::vector<Aabb> cubes(std::size_t count, float offset = 0.0F) {
   const auto scene = make_scene("uniform", count, 20);
   std::vector<Aabb> boxes(scene->boxes().begin(), scene->boxes().end());
-  for (Aabb& box : boxes) box = {box.min.array() + offset, box.max.array() + offset};
+  for (Aabb& box : boxes)
+    box = {box.min + Vec3f::constant(offset), box.max + Vec3f::constant(offset)};
   return boxes;
 }
 

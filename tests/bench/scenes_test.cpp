@@ -126,7 +126,8 @@ TEST(Scenes, that_teleport_keep_the_sizes) {
   const Aabb before = watched.scene().boxes()[7];
   watched.advance();
   const Aabb after = watched.scene().boxes()[7];
-  EXPECT_TRUE((after.max - after.min).isApprox(before.max - before.min, 1e-4F));
+  const Eigen::Vector3f edges = before.max - before.min;
+  EXPECT_TRUE(edges.isApprox(Eigen::Vector3f(after.max - after.min), 1e-4F));
 }
 
 TEST(Scenes, that_respawn_put_another_tenth_elsewhere_in_each_frame) {

@@ -1,5 +1,6 @@
 // The figures of `winnow volumes` are consistent.
 
+#include <winnow/core/eigen.h>
 #include "bench/measure/volume_race.h"
 
 #include <gtest/gtest.h>
@@ -57,8 +58,8 @@ TEST(VolumeRace, begins_margins_at_times_of_their_own) {
   for (std::size_t i = 0; i < then.size(); ++i) {
     const OrientedBox& now = solids.boxes()[i];
     const Aabb bounds = now.bounds();
-    const float margin = kShare * (bounds.max - bounds.min).maxCoeff();
-    const float way = (then[i].center - now.center).cwiseAbs().maxCoeff();
+    const float margin = kShare * (as_eigen(bounds.max) - as_eigen(bounds.min)).maxCoeff();
+    const float way = (as_eigen(then[i].center) - as_eigen(now.center)).cwiseAbs().maxCoeff();
     EXPECT_LE(way, 1.001F * margin) << i;
     sum += static_cast<double>(way / margin);
   }

@@ -3,6 +3,7 @@
 #include "tests/c/notes.h"
 #include "tests/c/world.h"
 
+#include <winnow/core/eigen.h>
 #include <winnow/winnow.h>
 
 #include <array>
@@ -216,8 +217,8 @@ template <int K>
 void ask_kdops(const trace* t, Volume volume, std::span<const Sphere> balls) {
   std::vector<Kdop<K>> kdops;
   for (const Sphere& ball : balls) {
-    OrientedBox turned{ball.center, {1, 1, 1}, {}};
-    turned.axes << 0.6F, -0.8F, 0, 0.8F, 0.6F, 0, 0, 0, 1;
+    const OrientedBox turned{
+        ball.center, {1, 1, 1}, {0.6F, -0.8F, 0.0F, 0.8F, 0.6F, 0.0F, 0.0F, 0.0F, 1.0F}};
     kdops.push_back(kdop_around<K>(turned));
   }
   Partition partition(flat_grid(), {.execution = Execution::serial(), .volume = volume});

@@ -4,6 +4,7 @@
 #include "tests/c/shapes_twin.h"
 #include "tests/c/world.h"
 
+#include <winnow/core/eigen.h>
 #include <winnow/winnow.h>
 
 #include <limits>

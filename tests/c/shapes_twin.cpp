@@ -5,6 +5,7 @@
 #include "tests/c/notes.h"
 #include "tests/c/world.h"
 
+#include <winnow/core/eigen.h>
 #include <winnow/winnow.h>
 
 #include <string_view>

@@ -1,6 +1,7 @@
 // Meshes and height fields of hostile numbers: bad ones are refused and change nothing, and rays,
 // overlaps and distances of good ones are those of their triangles, one by one.
 
+#include <winnow/core/eigen.h>
 #include <winnow/winnow.h>
 
 #include <algorithm>
@@ -259,7 +260,7 @@ void Exhibit::ask(Bytes& bytes) {
   if (id_ == ShapeId{}) return;
   // What is told to the last digits is told of sizes that are alike.
   const Aabb box = composites_.bounds(id_, Pose{});
-  if (!(box.min.minCoeff() > -1e6F && box.max.maxCoeff() < 1e6F)) return;
+  if (!(as_eigen(box.min).minCoeff() > -1e6F && as_eigen(box.max).maxCoeff() < 1e6F)) return;
   Scene scene(shapes_, {.composites = &composites_});
   const Pose pose = bytes.pose();
   Key body;

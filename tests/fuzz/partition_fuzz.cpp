@@ -203,8 +203,8 @@ void Model::update(Bytes& bytes) {
     const auto step = static_cast<float>(bytes.extent() * (bytes.chance(2) ? 0.0625 : 0.0));
     for (const Key& key : keys) {
       Aabb box = objects_.at(key.id).box;
-      box.min.array() += step;
-      box.max.array() += step;
+      box.min += Vec3f::constant(step);
+      box.max += Vec3f::constant(step);
       boxes.push_back(takes(box) ? box : objects_.at(key.id).box);
     }
   }
@@ -324,8 +324,8 @@ void Model::check_objects() const {
     WINNOW_HOLDS(partition_.contains(given.key) && partition_.key_of(id) == given.key);
     Aabb stored;
     WINNOW_HOLDS(partition_.bounds(given.key, stored) == Status::ok);
-    WINNOW_HOLDS((stored.min.array() <= given.box.min.array()).all() &&
-                 (stored.max.array() >= given.box.max.array()).all());
+    WINNOW_HOLDS(stored.min.min(given.box.min) == stored.min &&
+                 stored.max.max(given.box.max) == stored.max);
     WINNOW_HOLDS(partition_.client_data_of(id) == given.data);
     ObjectFilter filter;
     WINNOW_HOLDS(partition_.filter(given.key, filter) == Status::ok && filter == given.filter);

@@ -166,7 +166,7 @@ Region Pairing::some_region(Bytes& bytes) {
       return bytes.tame_box();
     case 2: {
       OrientedBox box{at, Vector3f(size, 1.0F, 2.0F), Eigen::Matrix3f::Identity()};
-      for (int i = 0; i < 3; ++i) box.axes.col(i) = tame_vector(bytes) * 0.125F;
+      for (int i = 0; i < 3; ++i) box.axes.set_column(i, tame_vector(bytes) * 0.125F);
       return box;
     }
     case 3:
@@ -209,7 +209,7 @@ void Pairing::cast(Bytes& bytes) {
 void Pairing::batch(Bytes& bytes) {
   std::vector<Ray> rays(1 + bytes.below(40));
   Ray ray{tame_vector(bytes), tame_vector(bytes)};
-  if (ray.direction.isZero(0.0F)) ray.direction = Vector3f::UnitZ();
+  if (ray.direction.is_zero()) ray.direction = Vector3f::UnitZ();
   const Vector3f step = tame_vector(bytes) * 0.0625F;
   for (Ray& one : rays) {
     one = ray;
@@ -228,7 +228,7 @@ void Pairing::batch(Bytes& bytes) {
     const Hit first = hits.empty() ? Hit{} : hits[0];
     WINNOW_HOLDS(first.key.id == keys[i].id && first.t == t[i]);
   }
-  rays[bytes.below(rays.size())].direction.setZero();
+  rays[bytes.below(rays.size())].direction = {};
   WINNOW_HOLDS(a_.all(RayBatch(rays), lists, filter) == Status::invalid_argument);
 }
 

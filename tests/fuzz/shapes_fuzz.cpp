@@ -1,6 +1,7 @@
 // Convex shapes, hulls of hostile points and faces among them: bad ones are refused and change
 // nothing, and of good ones every tier says the same within its bounds, either way round.
 
+#include <winnow/core/eigen.h>
 #include <winnow/winnow.h>
 
 #include <Eigen/Core>
@@ -138,9 +139,9 @@ void Workshop::add(Bytes& bytes) {
   if (status == Status::ok) {
     WINNOW_HOLDS(good && pool_.contains(id));
     const Aabb box = pool_.bounds(id, Pose{});
-    WINNOW_HOLDS(!box.min.hasNaN() && !box.max.hasNaN());
+    WINNOW_HOLDS(!as_eigen(box.min).hasNaN() && !as_eigen(box.max).hasNaN());
     // Pairs are asked about where sizes have something to do with each other.
-    const float largest = (box.max - box.min).maxCoeff();
+    const float largest = (as_eigen(box.max) - as_eigen(box.min)).maxCoeff();
     const bool is_small = static_cast<double>(largest) < 1e12 * size_;
     if (is_small || id.kind() == ShapeKind::half_space) ids_.push_back(id);
     return;

@@ -57,7 +57,7 @@ TEST_F(Hooks, tell_the_stages_of_a_scene_in_their_order_and_nested) {
   ShapeId ball;
   ShapeId terrain;
   ASSERT_EQ(shapes.add(SphereShape{0.5}, ball), Status::ok);
-  const std::vector<Eigen::Vector3d> points{{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}};
+  const std::vector<Vec3d> points{{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}};
   const std::vector<std::uint32_t> corners{0, 1, 2};
   ASSERT_EQ(composites.add_mesh(std::span(points), std::span(corners), terrain), Status::ok);
   Scene scene(shapes, {.composites = &composites});

@@ -142,7 +142,7 @@ TEST(SceneMeetings, positions_alone_move_bodies_and_do_not_turn_them) {
   for (double& q : turned.orientation) q = 0.5;
   ASSERT_EQ(scene.add({.shape = box, .pose = turned}, keys[0]), Status::ok);
   ASSERT_EQ(scene.add({.shape = box}, keys[1]), Status::ok);
-  const std::vector<Eigen::Vector3d> places{{4, 5, 6}, {7, 8, 9}};
+  const std::vector<Vec3d> places{{4, 5, 6}, {7, 8, 9}};
   const double x[2] = {1, 2};
   const double y[2] = {3, 4};
   const double z[2] = {5, 6};

@@ -25,7 +25,7 @@ constexpr float kHeight = 90.0F;
 struct Live {
   winnow::Partition partition{winnow::linear_bvh(), {.execution = winnow::Execution::serial()}};
   std::vector<winnow::Aabb> boxes;
-  std::vector<Eigen::Vector3f> speeds;
+  std::vector<winnow::Vec3f> speeds;
   std::vector<winnow::Key> keys;
   winnow::PairBuffer pairs;
   winnow::OverlapBuffer near;
@@ -38,7 +38,7 @@ Live& live() {
 }
 
 // Off the walls, and back in.
-void bounce(winnow::Aabb& box, Eigen::Vector3f& speed, int axis, float end) {
+void bounce(winnow::Aabb& box, winnow::Vec3f& speed, int axis, float end) {
   if (box.min[axis] < 0.0F && speed[axis] < 0.0F) speed[axis] = -speed[axis];
   if (box.max[axis] > end && speed[axis] > 0.0F) speed[axis] = -speed[axis];
 }
@@ -72,8 +72,8 @@ EXPORTED("live_start") bool live_start(std::uint32_t count) {
   // As much of the plane is covered, however many there are.
   const float edge = 45.0F / std::sqrt(static_cast<float>(count));
   for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Vector3f size(edge * draw(0.4F, 1.6F), edge * draw(0.4F, 1.6F), 1.0F);
-    const Eigen::Vector3f low(draw(0.0F, kWidth - size.x()), draw(0.0F, kHeight - size.y()), 0.0F);
+    const winnow::Vec3f size(edge * draw(0.4F, 1.6F), edge * draw(0.4F, 1.6F), 1.0F);
+    const winnow::Vec3f low(draw(0.0F, kWidth - size.x()), draw(0.0F, kHeight - size.y()), 0.0F);
     scene.boxes[i] = {low, low + size};
     scene.speeds[i] = {draw(-9.0F, 9.0F), draw(-9.0F, 9.0F), 0.0F};
   }
@@ -84,7 +84,7 @@ EXPORTED("live_start") bool live_start(std::uint32_t count) {
 EXPORTED("live_step") std::uint32_t live_step(float seconds) {
   Live& scene = live();
   for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
-    const Eigen::Vector3f way = seconds * scene.speeds[i];
+    const winnow::Vec3f way = seconds * scene.speeds[i];
     scene.boxes[i].min += way;
     scene.boxes[i].max += way;
     bounce(scene.boxes[i], scene.speeds[i], 0, kWidth);
@@ -105,9 +105,9 @@ EXPORTED("live_near") std::uint32_t live_near(float x, float y, float radius) {
 /// Where a ray from the middle to a point first meets a box, 1 at the point; above 1 if it meets
 /// none.
 EXPORTED("live_ray") float live_ray(float x, float y) {
-  const Eigen::Vector3f eye(kWidth / 2, kHeight / 2, 0.5F);
+  const winnow::Vec3f eye(kWidth / 2, kHeight / 2, 0.5F);
   Live& scene = live();
-  winnow::Ray ray{eye, Eigen::Vector3f(x, y, 0.5F) - eye};
+  winnow::Ray ray{eye, winnow::Vec3f(x, y, 0.5F) - eye};
   ray.max_t = 1.0F;
   if (scene.partition.closest(ray, scene.hit) != winnow::Status::ok || !scene.hit) return 2.0F;
   return scene.hit.t;

@@ -29,8 +29,8 @@ class CullingLoop {
 
   void set(std::size_t i, const winnow::Aabb& box) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      low_[axis][i] = box.min[static_cast<Eigen::Index>(axis)];
-      high_[axis][i] = box.max[static_cast<Eigen::Index>(axis)];
+      low_[axis][i] = box.min[axis];
+      high_[axis][i] = box.max[axis];
     }
   }
 
@@ -50,13 +50,13 @@ class CullingLoop {
   // Outside of a plane that faces inward is a box whose farthest corner along its normal is.
   void cut(const winnow::Plane& plane) {
     const auto corner = [&](std::size_t axis) {
-      const bool up = plane.normal[static_cast<Eigen::Index>(axis)] > 0.0F;
+      const bool up = plane.normal[axis] > 0.0F;
       return (up ? high_ : low_)[axis].data();
     };
     const float* const x = corner(0);
     const float* const y = corner(1);
     const float* const z = corner(2);
-    const Eigen::Vector3f n = plane.normal;
+    const winnow::Vec3f n = plane.normal;
     for (std::size_t i = 0; i < is_seen_.size(); ++i) {
       const float far = n.x() * x[i] + n.y() * y[i] + n.z() * z[i] + plane.offset;
       is_seen_[i] &= far >= 0.0F ? 1 : 0;
@@ -75,8 +75,8 @@ class Town {
     std::uniform_real_distribution<float> place(0.0F, side_);
     std::uniform_real_distribution<float> edge(0.5F, 2.0F);
     for (std::size_t i = 0; i < count; ++i) {
-      const Eigen::Vector3f at(place(random_), place(random_), 0.0F);
-      boxes.push_back({at, at + Eigen::Vector3f(edge(random_), edge(random_), edge(random_))});
+      const winnow::Vec3f at(place(random_), place(random_), 0.0F);
+      boxes.push_back({at, at + winnow::Vec3f(edge(random_), edge(random_), edge(random_))});
       if (i % 50 == 0) moving.push_back(static_cast<std::uint32_t>(i));
     }
   }
@@ -89,8 +89,8 @@ class Town {
   /// The camera of frame i: it goes round above the town and looks ahead.
   [[nodiscard]] winnow::Frustum camera(std::size_t i) const {
     const float angle = 0.02F * static_cast<float>(i);
-    const Eigen::Vector3f ahead(std::cos(angle), std::sin(angle), -0.2F);
-    const Eigen::Vector3f eye = Eigen::Vector3f(0.5F * side_, 0.5F * side_, 5.0F);
+    const winnow::Vec3f ahead(std::cos(angle), std::sin(angle), -0.2F);
+    const winnow::Vec3f eye = winnow::Vec3f(0.5F * side_, 0.5F * side_, 5.0F);
     return winnow::Frustum::perspective(eye, ahead, {0, 0, 1}, 1.0F, 1.6F, 0.1F, 150.0F);
   }
 

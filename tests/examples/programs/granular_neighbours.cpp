@@ -20,7 +20,7 @@ using Pairs = std::vector<winnow::Pair>;
 
 bool touch(const winnow::Sphere& a, const winnow::Sphere& b) {
   const float reach = a.radius + b.radius;
-  return (a.center - b.center).squaredNorm() <= reach * reach;
+  return (a.center - b.center).squared_norm() <= reach * reach;
 }
 
 /// Cells as wide as the largest grain, sorted by counting, each looked at with half of those
@@ -55,7 +55,7 @@ class CellList {
     number_.resize(grains.size());
     std::fill(first_.begin(), first_.end(), 0U);
     for (std::size_t i = 0; i < grains.size(); ++i) {
-      const Eigen::Vector3f& c = grains[i].center;
+      const winnow::Vec3f& c = grains[i].center;
       cell_of_[i] = index(coordinate(c.x()), coordinate(c.y()), coordinate(c.z()));
       ++first_[cell_of_[i]];
     }
@@ -109,7 +109,7 @@ struct Packing {
   void step() {
     std::uniform_real_distribution<float> by(-0.002F, 0.002F);
     for (winnow::Sphere& grain : grains) {
-      grain.center += Eigen::Vector3f(by(random), by(random), by(random));
+      grain.center += winnow::Vec3f(by(random), by(random), by(random));
     }
   }
 

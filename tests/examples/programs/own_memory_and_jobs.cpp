@@ -128,8 +128,8 @@ struct Boxes {
   explicit Boxes(std::size_t count) : side(std::cbrt(4.0F * static_cast<float>(count))) {
     std::uniform_real_distribution<float> place(0.0F, side);
     for (std::size_t i = 0; i < count; ++i) {
-      const Eigen::Vector3f at(place(random), place(random), place(random));
-      all.push_back({at, at + Eigen::Vector3f::Ones()});
+      const winnow::Vec3f at(place(random), place(random), place(random));
+      all.push_back({at, at + winnow::Vec3f::constant(1)});
     }
   }
   void step() {

@@ -55,10 +55,10 @@ class Battle {
   }
   /// Where the segment of a shot comes within a ship.
   [[nodiscard]] bool hits(std::uint32_t shot, std::uint32_t ship) const {
-    const Eigen::Vector3f way = velocity_[shot];
-    const Eigen::Vector3f to_ship = position_[ship] - position_[shot];
-    const float t = std::clamp(to_ship.dot(way) / way.squaredNorm(), 0.0F, 1.0F);
-    return (to_ship - t * way).squaredNorm() <= radius_[ship] * radius_[ship];
+    const winnow::Vec3f way = velocity_[shot];
+    const winnow::Vec3f to_ship = position_[ship] - position_[shot];
+    const float t = std::clamp(to_ship.dot(way) / way.squared_norm(), 0.0F, 1.0F);
+    return (to_ship - t * way).squared_norm() <= radius_[ship] * radius_[ship];
   }
   /// A shot that has hit, or has left, is fired again.
   void fire(std::uint32_t shot) {
@@ -70,9 +70,11 @@ class Battle {
     std::vector<std::uint32_t> shots;
     for (const Hit& hit : found) shots.push_back(hit.shot);
     for (std::size_t i = first_shot_; i < boxes.size(); ++i) {
-      const Eigen::Vector3f& p = position_[i];
-      if (p.minCoeff() < 0.0F || p.maxCoeff() > side_)
+      const winnow::Vec3f& p = position_[i];
+      const auto outside = [&](float at) { return at < 0.0F || at > side_; };
+      if (outside(p.x()) || outside(p.y()) || outside(p.z())) {
         shots.push_back(static_cast<std::uint32_t>(i));
+      }
     }
     std::ranges::sort(shots);
     shots.erase(std::unique(shots.begin(), shots.end()), shots.end());
@@ -83,31 +85,31 @@ class Battle {
   std::vector<Layer> layers;
 
  private:
-  Eigen::Vector3f any_place() {
+  winnow::Vec3f any_place() {
     std::uniform_real_distribution<float> place(0.0F, side_);
     return {place(random_), place(random_), place(random_)};
   }
   void add(Layer layer, float radius, float speed) {
     std::normal_distribution<float> way;
-    const Eigen::Vector3f ahead(way(random_), way(random_), way(random_));
+    const winnow::Vec3f ahead(way(random_), way(random_), way(random_));
     position_.push_back(any_place());
-    velocity_.push_back(speed * ahead.normalized());
+    velocity_.push_back(speed / ahead.norm() * ahead);
     radius_.push_back(radius);
     layers.push_back(layer);
     boxes.push_back(box_of(boxes.size()));
   }
   [[nodiscard]] winnow::Aabb box_of(std::size_t i) const {
-    const Eigen::Vector3f from = position_[i];
-    const Eigen::Vector3f to = layers[i] == kShot ? from + velocity_[i] : from;
-    const Eigen::Vector3f around = Eigen::Vector3f::Constant(radius_[i]);
-    return {from.cwiseMin(to) - around, from.cwiseMax(to) + around};
+    const winnow::Vec3f from = position_[i];
+    const winnow::Vec3f to = layers[i] == kShot ? from + velocity_[i] : from;
+    const winnow::Vec3f around = winnow::Vec3f::constant(radius_[i]);
+    return {from.min(to) - around, from.max(to) + around};
   }
 
   float side_;
   std::size_t first_shot_;
   std::mt19937 random_{1};
-  std::vector<Eigen::Vector3f> position_;
-  std::vector<Eigen::Vector3f> velocity_;
+  std::vector<winnow::Vec3f> position_;
+  std::vector<winnow::Vec3f> velocity_;
   std::vector<float> radius_;
 };
 
@@ -209,11 +211,11 @@ class BulletFinder {
 
  private:
   static btVector3 low(const Battle& battle, std::size_t i) {
-    const Eigen::Vector3f& p = battle.boxes[i].min;
+    const winnow::Vec3f& p = battle.boxes[i].min;
     return {p.x(), p.y(), p.z()};
   }
   static btVector3 high(const Battle& battle, std::size_t i) {
-    const Eigen::Vector3f& p = battle.boxes[i].max;
+    const winnow::Vec3f& p = battle.boxes[i].max;
     return {p.x(), p.y(), p.z()};
   }
   static std::uint32_t number_of(const btBroadphaseProxy& proxy) {

@@ -40,8 +40,8 @@ int main() {
   check(status == winnow::Status::out_of_memory, "there is no room for ten thousand");
 
   // [far away]
-  const Eigen::Vector3d low(1e7, 2e7, 0), high(1e7 + 0.01, 2e7 + 0.01, 0.01);  // a centimetre
-  const Eigen::Vector3d here(1e7, 2e7, 0);                            // any point among the objects
+  const winnow::Vec3d low(1e7, 2e7, 0), high(1e7 + 0.01, 2e7 + 0.01, 0.01);  // a centimetre
+  const winnow::Vec3d here(1e7, 2e7, 0);                              // any point among the objects
   const winnow::Aabb tight = winnow::Aabb::outward(low, high, here);  // measured from there
   const winnow::Aabb coarse = winnow::Aabb::outward(low, high);  // right, but a metre and more wide
   // [end]
