@@ -116,6 +116,7 @@ class BasicMatrix {
   /// The same, to be set.
   [[nodiscard]] constexpr T* data() noexcept { return at_[0]; }
 
+  /// True if all numbers are equal; NaN is equal to nothing.
   [[nodiscard]] friend constexpr bool operator==(const BasicMatrix&,
                                                  const BasicMatrix&) noexcept = default;
 

@@ -142,31 +142,42 @@ class BasicVec3 {
     return joined(*this, [](T a, T) { return a < T{0} ? -a : a + T{0}; });
   }
 
+  /// Adds each coordinate of another to its own.
   constexpr BasicVec3& operator+=(const BasicVec3& other) noexcept { return *this = *this + other; }
+  /// Subtracts each coordinate of another from its own.
   constexpr BasicVec3& operator-=(const BasicVec3& other) noexcept { return *this = *this - other; }
+  /// Multiplies each coordinate.
   constexpr BasicVec3& operator*=(T factor) noexcept { return *this = *this * factor; }
+  /// Divides each coordinate.
   constexpr BasicVec3& operator/=(T divisor) noexcept { return *this = *this / divisor; }
 
+  /// The other way, as long.
   [[nodiscard]] friend constexpr BasicVec3 operator-(const BasicVec3& a) noexcept {
     return {-a.at_[0], -a.at_[1], -a.at_[2]};
   }
+  /// The sums of the coordinates.
   [[nodiscard]] friend constexpr BasicVec3 operator+(const BasicVec3& a,
                                                      const BasicVec3& b) noexcept {
     return a.joined(b, [](T p, T q) { return p + q; });
   }
+  /// The differences of the coordinates.
   [[nodiscard]] friend constexpr BasicVec3 operator-(const BasicVec3& a,
                                                      const BasicVec3& b) noexcept {
     return a.joined(b, [](T p, T q) { return p - q; });
   }
+  /// Each coordinate times the factor.
   [[nodiscard]] friend constexpr BasicVec3 operator*(const BasicVec3& a, T factor) noexcept {
     return {a.at_[0] * factor, a.at_[1] * factor, a.at_[2] * factor};
   }
+  /// The same.
   [[nodiscard]] friend constexpr BasicVec3 operator*(T factor, const BasicVec3& a) noexcept {
     return a * factor;
   }
+  /// Each coordinate by the divisor.
   [[nodiscard]] friend constexpr BasicVec3 operator/(const BasicVec3& a, T divisor) noexcept {
     return {a.at_[0] / divisor, a.at_[1] / divisor, a.at_[2] / divisor};
   }
+  /// True if all coordinates are equal; NaN is equal to nothing.
   [[nodiscard]] friend constexpr bool operator==(const BasicVec3& a, const BasicVec3& b) noexcept {
     return a.at_[0] == b.at_[0] && a.at_[1] == b.at_[1] && a.at_[2] == b.at_[2];
   }

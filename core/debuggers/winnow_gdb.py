@@ -18,8 +18,8 @@ def numbers(values):
 
 
 def vector(value, count=3):
-    """The elements of an Eigen vector."""
-    array = value["m_storage"]["m_data"]["array"]
+    """The coordinates of a Vec3f or Vec3d."""
+    array = value["at_"]
     return [array[i] for i in range(count)]
 
 
@@ -56,6 +56,11 @@ class List(Text):
     def children(self):
         for i, element in enumerate(self.elements(self.value)):
             yield "[%d]" % i, element
+
+
+class Vec3(Text):
+    def text(self, v):
+        return numbers(vector(v))
 
 
 class Aabb(Text):
@@ -234,6 +239,7 @@ def printers():
              HitBuffer, OverlapBuffer, Partition, Scene, Contacts]
     for printer in alone:
         collection.add_printer(printer.__name__, "^winnow::%s$" % printer.__name__, printer)
+    collection.add_printer("Vec3", "^winnow::BasicVec3<.*>$", Vec3)
     collection.add_printer("KeyPair", "^winnow::KeyPair$", Pair)
     collection.add_printer("Column", "^winnow::Column<.*>$", Column)
     return collection
