@@ -51,7 +51,7 @@ void finish_part(KdSet set, KdParts parts) {
 // How many cuts of each row that takes.
 std::size_t cuts_of(std::size_t count, KdParts parts) noexcept {
   return parts != KdParts::blocks ? kCutsOfTiles
-                                 : static_cast<std::size_t>(std::bit_width(count / kBlockRows));
+                                  : static_cast<std::size_t>(std::bit_width(count / kBlockRows));
 }
 
 }  // namespace
