@@ -59,6 +59,29 @@ class TurningScene final : public FrameSource {
   std::unique_ptr<FrameSource> source_;
 };
 
+// Times of frames in which something moved, once the run has settled: one in which nothing does
+// says nothing of what others should take.
+std::vector<double> working_frames(const Run& run) {
+  std::vector<double> working;
+  for (std::size_t f = kSettlingFrames; f < run.frame_ms.size(); ++f) {
+    if (run.changed[f] != 0) working.push_back(run.frame_ms[f]);
+  }
+  return working;
+}
+
+// The most by which a frame exceeds the median of those around it: what a scene asks for may grow
+// manyfold while it runs, so that a frame that is dear by the median of all need not be a hitch.
+double worst_hitch(std::span<const double> frames) {
+  constexpr std::size_t kAround = 30;  // on each side
+  double worst = 0.0;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    const std::size_t begin = f - std::min(f, kAround);
+    const std::size_t end = std::min(frames.size(), f + kAround + 1);
+    worst = std::max(worst, frames[f] / median_of(frames.subspan(begin, end - begin)));
+  }
+  return worst;
+}
+
 }  // namespace
 
 void measure_first_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
@@ -109,33 +132,6 @@ void measure_changes(const Json& options, Lab& /*lab*/, Measured& measured) {
                                      {"best", of.best}});
   }
 }
-
-namespace {
-
-// Times of frames in which something moved, once the run has settled: one in which nothing does
-// says nothing of what others should take.
-std::vector<double> working_frames(const Run& run) {
-  std::vector<double> working;
-  for (std::size_t f = kSettlingFrames; f < run.frame_ms.size(); ++f) {
-    if (run.changed[f] != 0) working.push_back(run.frame_ms[f]);
-  }
-  return working;
-}
-
-// The most by which a frame exceeds the median of those around it: what a scene asks for may grow
-// manyfold while it runs, so that a frame that is dear by the median of all need not be a hitch.
-double worst_hitch(std::span<const double> frames) {
-  constexpr std::size_t kAround = 30;  // on each side
-  double worst = 0.0;
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    const std::size_t begin = f - std::min(f, kAround);
-    const std::size_t end = std::min(frames.size(), f + kAround + 1);
-    worst = std::max(worst, frames[f] / median_of(frames.subspan(begin, end - begin)));
-  }
-  return worst;
-}
-
-}  // namespace
 
 void measure_worst_frames(const Json& options, Lab& lab, Measured& measured) {
   measured.results.declare({"worst_frames",

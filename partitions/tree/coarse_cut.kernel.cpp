@@ -2,7 +2,7 @@
 #include "partitions/tree/equal_parts.wide.h"
 #include "partitions/tree/reach.wide.h"
 #include "simd/lanes/lanes.h"
-#include "simd/lanes/truncated.h"
+#include "simd/lanes/load_some.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -53,11 +53,18 @@ struct CoarseSample {
 
   CoarseSample(const CoarseCells& plan, const float* const* at, std::size_t points) {
     const std::size_t stride = (points + kSample - 1) / kSample;
-    for (std::size_t i = 0; i < points; i += stride, ++count) {
-      for (int k = 0; k < 3; ++k) {
-        const float x = (0.5F * at[plan.axis[k]][i] - plan.half_low[k]) * plan.scale[k];
-        const auto whole = static_cast<std::uint32_t>(x > 0.0F ? x : 0.0F);
-        place[k][count] = static_cast<std::uint8_t>(whole < kPlaces ? whole : kPlaces - 1);
+    count = (points + stride - 1) / stride;
+    alignas(64) float x[kLanes] = {};
+    alignas(64) std::uint32_t whole[kLanes];
+    for (int k = 0; k < 3; ++k) {
+      const float* const all = at[plan.axis[k]];
+      for (std::size_t i = 0; i < count; i += kStep) {
+        const std::size_t here = count - i < kStep ? count - i : kStep;
+        for (std::size_t lane = 0; lane < here; ++lane) x[lane] = all[(i + lane) * stride];
+        places_of(Floats::load(x), plan.half_low[k], plan.scale[k]).store(whole);
+        for (std::size_t lane = 0; lane < here; ++lane) {
+          place[k][i + lane] = static_cast<std::uint8_t>(whole[lane]);
+        }
       }
     }
   }
@@ -103,7 +110,7 @@ bool plan(const float* const* at, std::size_t count, const float* least, const f
     const int axis = order[2 - k];
     plan.axis[k] = axis;
     plan.half_low[k] = 0.5F * least[axis];
-    plan.scale[k] = length[axis] > kLeastReach ? static_cast<float>(kPlaces) / length[axis] : 0.0F;
+    plan.scale[k] = places_per(length[axis]);
   }
   plan.cells = parts.slabs * parts.lines * parts.cells;
   const CoarseSample sample(plan, at, count);
@@ -127,18 +134,12 @@ bool plan(const float* const* at, std::size_t count, const float* least, const f
 void assign(const CoarseCells& plan, const float* const* at, std::size_t begin, std::size_t end,
             std::uint8_t* cell, std::uint32_t* sizes) {
   for (std::uint32_t c = 0; c < plan.cells; ++c) sizes[c] = 0;
-  const Floats last = Floats(static_cast<float>(kPlaces - 1));
   alignas(64) std::uint32_t place[3][kLanes];
   for (std::size_t i = begin; i < end; i += kStep) {
-    // What lies behind the end is not there, or another thread's.
     const std::size_t here = end - i < kStep ? end - i : kStep;
     for (int k = 0; k < 3; ++k) {
-      const float* const x = at[plan.axis[k]] + i;
-      alignas(64) float some[kLanes] = {};
-      if (here < kStep) __builtin_memcpy(some, x, here * sizeof(float));
-      const Floats v = here < kStep ? Floats::load(some) : Floats::load_unaligned(x);
-      const Floats where = (0.5F * v - Floats(plan.half_low[k])) * plan.scale[k];
-      truncated(min(max(where, Floats(0.0F)), last)).store(place[k]);
+      const Floats x = load_some(at[plan.axis[k]] + i, here);
+      places_of(x, plan.half_low[k], plan.scale[k]).store(place[k]);
     }
     for (std::size_t lane = 0; lane < here; ++lane) {
       const std::uint8_t line = plan.line[plan.slab[place[0][lane]]][place[1][lane]];

@@ -1,6 +1,9 @@
 #pragma once
 
-#include <cstddef>
+#include "partitions/tree/reach.wide.h"
+#include "simd/lanes/lanes.h"
+#include "simd/lanes/truncated.h"
+
 #include <cstdint>
 
 namespace winnow::WINNOW_ISA_NAME {
@@ -8,6 +11,17 @@ namespace winnow::WINNOW_ISA_NAME {
 /// Places along an axis in which points are counted, to cut them into parts of about as many each.
 inline constexpr std::uint32_t kPlaceBits = 7;
 inline constexpr std::uint32_t kPlaces = 1U << kPlaceBits;
+
+/// Places per length of half of an axis' reach.
+inline float places_per(float half_reach) {
+  return half_reach > kLeastReach ? static_cast<float>(kPlaces) / half_reach : 0.0F;
+}
+
+/// The places of points of an axis: what lies beyond its reach is at the end that is nearer.
+inline Uints places_of(const Floats& x, float half_low, float scale) {
+  const Floats at = (0.5F * x - Floats(half_low)) * scale;
+  return truncated(min(max(at, Floats(0.0F)), Floats(static_cast<float>(kPlaces - 1))));
+}
 
 /// Gives every place a part of [0, parts), of about as many of `all` points each.
 template <typename Part>

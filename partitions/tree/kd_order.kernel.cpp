@@ -1,6 +1,7 @@
 #include "partitions/tree/kd_order.kernel.h"
 #include "partitions/tree/reach.wide.h"
 #include "simd/lanes/compress.h"
+#include "simd/lanes/load_some.h"
 #include "simd/lanes/truncated.h"
 
 namespace winnow {
@@ -13,15 +14,6 @@ constexpr std::size_t kFewToRank = 2 * kStep;
 
 Mask16 lanes_of(std::size_t left) {
   return left < kStep ? lanes_below(static_cast<unsigned>(left)) : kAllRows;
-}
-
-/// Sixteen numbers, of which `left` are there: what lies behind them may be another thread's.
-template <typename T>
-Lanes<T> load_some(const T* p, std::size_t left) {
-  if (left >= kStep) return Lanes<T>::load_unaligned(p);
-  alignas(64) T some[kLanes] = {};
-  for (std::size_t i = 0; i < left; ++i) some[i] = p[i];
-  return Lanes<T>::load(some);
 }
 
 /// A set of points on one axis, in equal bins.

@@ -2,7 +2,6 @@
 #include "partitions/tree/equal_parts.wide.h"
 #include "partitions/tree/reach.wide.h"
 #include "simd/lanes/lanes.h"
-#include "simd/lanes/truncated.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -21,15 +20,11 @@ struct TileAxis {
 
   /// Writes the place of each point.
   void find_places(std::size_t count, std::uint8_t* place) const {
-    const float half = reach.half();
-    const float scale = half > kLeastReach ? static_cast<float>(kPlaces) / half : 0.0F;
-    const Floats half_low = Floats(0.5F * reach.low);
-    const Floats last = Floats(static_cast<float>(kPlaces - 1));
+    const float scale = places_per(reach.half());
     alignas(64) std::uint32_t whole[kLanes];
     for (std::size_t next = 0; next < count; next += kStep) {
       const std::size_t i = next + kStep <= count ? next : count - kStep;
-      const Floats at = (0.5F * Floats::load_unaligned(x + i) - half_low) * scale;
-      truncated(min(max(at, Floats(0.0F)), last)).store(whole);
+      places_of(Floats::load_unaligned(x + i), 0.5F * reach.low, scale).store(whole);
       for (std::size_t k = 0; k < kStep; ++k) place[i + k] = static_cast<std::uint8_t>(whole[k]);
     }
   }

@@ -41,6 +41,13 @@ struct Handle {
   CallersMemory memory;
 };
 
+/// Options of what is to lie in that memory.
+template <typename Options>
+[[nodiscard]] Options in(Options options, CallersMemory* memory) noexcept {
+  options.memory = memory;
+  return options;
+}
+
 /// Makes what `out` is to lead to.
 template <typename Made, typename... Arguments>
 [[nodiscard]] winnow_status create(const winnow_memory* memory, Made** out,

@@ -49,18 +49,11 @@ struct winnow_partition : winnow::c::Handle {
   explicit winnow_partition(const winnow::c::CallersMemory& given) noexcept : Handle(given) {}
   winnow_partition(const winnow::c::CallersMemory& given, winnow::StructureKind structure,
                    winnow::PartitionOptions options) noexcept
-      : Handle(given), value(structure, in(options, &memory)) {}
+      : Handle(given), value(structure, winnow::c::in(options, &memory)) {}
 
   winnow::Partition value{winnow::StructureKind{}};
   const winnow::Partition* asked = &value;
   winnow::Column<float> room{&memory};  ///< boxes of double that come or move
-
- private:
-  [[nodiscard]] static winnow::PartitionOptions in(winnow::PartitionOptions options,
-                                                   winnow::c::CallersMemory* memory) noexcept {
-    options.memory = memory;
-    return options;
-  }
 };
 
 struct winnow_shape_pool : winnow::c::Handle {
@@ -97,19 +90,12 @@ struct winnow_scene : winnow::c::Handle {
   winnow_scene(const winnow::c::CallersMemory& given, const winnow::ShapePool& shapes,
                winnow::SceneOptions options) noexcept
       : Handle(given),
-        value(shapes, in(options, &memory)),
+        value(shapes, winnow::c::in(options, &memory)),
         sets{winnow_partition(given), winnow_partition(given), winnow_partition(given)} {}
 
   winnow::Scene value;
   winnow::Column<winnow::Pose> room{&memory};
   winnow_partition sets[winnow::kMotions];  ///< views
-
- private:
-  [[nodiscard]] static winnow::SceneOptions in(winnow::SceneOptions options,
-                                               winnow::c::CallersMemory* memory) noexcept {
-    options.memory = memory;
-    return options;
-  }
 };
 
 struct winnow_scene_queries : winnow::c::Handle {

@@ -28,6 +28,15 @@ template <typename OfCpp, typename OfC, typename Ask>
   return answer(status);
 }
 
+/// Asks with a batch of rays, if they can be read.
+template <typename Ask>
+[[nodiscard]] winnow_status ask_rays(winnow_scene_queries* queries,
+                                     const winnow_shape_ray_batch* rays, Ask&& ask) noexcept {
+  ShapeRayBatch batch;
+  const Status status = read_rays(rays, queries->room, batch);
+  return answer(status == Status::ok ? ask(batch) : status);
+}
+
 }  // namespace
 }  // namespace winnow::c
 
@@ -78,10 +87,9 @@ winnow_status winnow_scene_queries_closest_rays(winnow_scene_queries* queries,
                                                 const winnow_filter* filter,
                                                 const winnow_scene_hit_columns* hits) {
   if (!are_given(queries, hits)) return WINNOW_INVALID_ARGUMENT;
-  winnow::ShapeRayBatch batch;
-  const winnow::Status status = read_rays(rays, queries->room, batch);
-  if (status != winnow::Status::ok) return answer(status);
-  return answer(queries->value.closest(batch, columns_of(*hits), filter_of(filter)));
+  return ask_rays(queries, rays, [&](const winnow::ShapeRayBatch& batch) {
+    return queries->value.closest(batch, columns_of(*hits), filter_of(filter));
+  });
 }
 
 winnow_status winnow_scene_queries_any_rays(winnow_scene_queries* queries,
@@ -89,10 +97,9 @@ winnow_status winnow_scene_queries_any_rays(winnow_scene_queries* queries,
                                             const winnow_filter* filter,
                                             const winnow_scene_hit_columns* hits) {
   if (!are_given(queries, hits)) return WINNOW_INVALID_ARGUMENT;
-  winnow::ShapeRayBatch batch;
-  const winnow::Status status = read_rays(rays, queries->room, batch);
-  if (status != winnow::Status::ok) return answer(status);
-  return answer(queries->value.any(batch, columns_of(*hits), filter_of(filter)));
+  return ask_rays(queries, rays, [&](const winnow::ShapeRayBatch& batch) {
+    return queries->value.any(batch, columns_of(*hits), filter_of(filter));
+  });
 }
 
 winnow_status winnow_scene_queries_all_rays(winnow_scene_queries* queries,
@@ -100,13 +107,11 @@ winnow_status winnow_scene_queries_all_rays(winnow_scene_queries* queries,
                                             const winnow_filter* filter,
                                             const winnow_scene_hit** hits, const size_t** first) {
   if (!are_given(queries, hits, first)) return WINNOW_INVALID_ARGUMENT;
-  winnow::ShapeRayBatch batch;
-  winnow::Status status = read_rays(rays, queries->room, batch);
   winnow::SceneHitLists lists;
-  if (status == winnow::Status::ok) {
-    status = queries->value.all(batch, lists, filter_of(filter));
-  }
-  if (status != winnow::Status::ok) return answer(status);
+  const winnow_status status = ask_rays(queries, rays, [&](const winnow::ShapeRayBatch& batch) {
+    return queries->value.all(batch, lists, filter_of(filter));
+  });
+  if (status != WINNOW_OK) return status;
   std::size_t count = 0;
   show(lists.hits, hits, &count);
   show(lists.first, first, &count);
