@@ -84,9 +84,9 @@ struct SceneDistance {
   [[nodiscard]] explicit operator bool() const noexcept { return key.id != kNoObject; }
 };
 
-/// A convex shape of the scene's ShapePool that moves along a line without turning.
+/// A shape of the scene's pools that moves along a line without turning.
 struct ShapeCast {
-  ShapeId shape;  ///< convex
+  ShapeId shape;  ///< convex, a mesh, a height field or a compound; no half-space
   Pose pose;      ///< at t = 0
   /// By which it moves while t grows by 1; finite, not zero.
   double direction[3] = {1.0, 0.0, 0.0};
@@ -134,7 +134,9 @@ class WINNOW_API SceneQueries {
   /// never later than the true time of impact and at most `tolerance` (a length along the path,
   /// finite, >= 0) earlier, or by what rounding makes of it: about 1e-14 of the sizes over the sine
   /// of the angle of impact, and 1e-15 of the path. Nothing is too thin to be hit. t = 0 if they
-  /// overlap at the start. Half-spaces and composite shapes do not move: `unsupported`.
+  /// overlap at the start. Of a composite shape that moves it is the first time of all its parts;
+  /// it is asked part by part, those alone that what stands comes near. Half-spaces do not move:
+  /// `unsupported`.
   Status closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter = {},
                  double tolerance = 1e-6);
   /// The first hit of every body.

@@ -169,11 +169,11 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
             shape_of<A>(a), a.at, p, q, r, b.at, wanted ? &contact.pos : nullptr,
             wanted ? &contact.penetration_depth : nullptr, wanted ? &contact.normal : nullptr);
       });
-      if (!wanted) return overlap;
+      if (contacts == nullptr || !overlap) return overlap;
       // Of triangles EPA's normals go from b to a.
       if (contact.penetration_depth < 0.0) contact.normal = -contact.normal;
-      if (overlap) contacts->push_back(contact);
-      return overlap;
+      contacts->push_back(contact);
+      return true;
     } else {
       return ask([&] {
         return solver_.shapeIntersect(shape_of<A>(a), a.at, shape_of<B>(b), b.at, contacts);

@@ -78,7 +78,7 @@ WINNOW_C_API winnow_status winnow_scene_queries_all_rays(winnow_scene_queries* q
                                                          const winnow_scene_hit** hits,
                                                          const size_t** first);
 
-/// A convex shape that moves along a line without turning.
+/// A shape that moves along a line without turning: convex or composite, no half-space.
 typedef struct winnow_shape_cast {
   winnow_shape_id shape;
   winnow_pose pose;

@@ -386,12 +386,13 @@ void add_scene_queries(py::module_& module, SceneClass& scene) {
            "What the rays origins + t * directions, (n, 3) each, 0 <= t <= max_t, (n,) or one for "
            "all, meet of the bodies' shapes. `find`: 'closest' or 'any', giving SceneHits, or "
            "'all', giving SceneHitLists. Doubles of one stride are read where they lie.")
-      .def("cast_shapes", &cast_shapes, arg("shapes"), arg("poses"), arg("directions"),
-           arg("find") = "closest", py::kw_only(), arg("max_t") = 1.0, arg("tolerance") = 1e-6,
-           arg("filter") = Filter{},
-           "Where convex shapes (n,), or one, at poses (n, 7) that move by t * directions, (n, 3) "
-           "or (3,), without turning, first touch a body: never later than they do, and at most "
-           "`tolerance` (a length) earlier. `find`: 'closest' or 'all'.")
+      .def(
+          "cast_shapes", &cast_shapes, arg("shapes"), arg("poses"), arg("directions"),
+          arg("find") = "closest", py::kw_only(), arg("max_t") = 1.0, arg("tolerance") = 1e-6,
+          arg("filter") = Filter{},
+          "Where shapes (n,), or one, no half-spaces, at poses (n, 7) that move by t * directions, "
+          "(n, 3) or (3,), without turning, first touch a body: never later than they do, and at "
+          "most `tolerance` (a length) earlier. `find`: 'closest' or 'all'.")
       .def("overlap", &overlap, arg("shapes"), arg("poses"), py::kw_only(),
            arg("filter") = Filter{},
            "Bodies that shapes (n,), or one, at poses (n, 7) share a point with, by id.")

@@ -76,27 +76,40 @@ std::vector<BodyTime> ray_times(const QueryWorld& world, const ShapeRay& ray) {
   return times;
 }
 
+/// When a part that moves meets one that stands, as seen from `from`.
+double part_time(const ShapePool& pool, const ShapeCast& cast, const double from[3],
+                 const FlatPart& moving, const FlatPart& standing) {
+  CastPair pair{moving.shape, moving.pose, {}, cast.max_t, standing.shape, standing.pose};
+  for (int i = 0; i < 3; ++i) pair.from.position[i] += from[i];
+  std::copy_n(cast.direction, 3, pair.direction);
+  TriangleShape both[2];
+  ShapeTables tables = pool.tables();
+  tables.triangles = both;
+  const auto put = [&](std::uint32_t slot, const FlatPart& part, ShapeId& id) {
+    if (id.kind() != ShapeKind::triangle) return;
+    both[slot] = part.part != kWholeShape ? part.triangle : pool.tables().triangles[id.index()];
+    id = ShapeId::of(ShapeKind::triangle, slot);
+  };
+  put(0, moving, pair.moving);
+  put(1, standing, pair.standing);
+  CastTouch touch;
+  return cast_shape(tables, pair, 1e-7, touch) ? touch.t : kInfinity;
+}
+
 /// When the moving shape meets each body.
 std::vector<BodyTime> cast_times(const QueryWorld& world, const ShapeCast& cast) {
   std::vector<BodyTime> times(world.bodies.size());
+  const std::vector<FlatPart> own = world.parts(cast.shape, cast.pose);
   for (std::size_t i = 0; i < times.size(); ++i) {
-    for (const FlatPart& part : world.parts(i)) {
-      CastPair pair{cast.shape, cast.pose, {}, cast.max_t, part.shape, part.pose};
-      between(cast.pose.position, world.bodies[i].pose.position, pair.from.position);
-      std::copy_n(cast.direction, 3, pair.direction);
-      TriangleShape both[2] = {part.triangle, part.triangle};
-      ShapeTables tables = world.shapes.pool.tables();
-      if (part.part != kWholeShape && part.shape.kind() == ShapeKind::triangle) {
-        if (cast.shape.kind() == ShapeKind::triangle) {
-          both[1] = tables.triangles[cast.shape.index()];
-          pair.moving = ShapeId::of(ShapeKind::triangle, 1);
-        }
-        tables.triangles = both;
-        pair.standing = ShapeId::of(ShapeKind::triangle, 0);
+    double from[3];
+    between(cast.pose.position, world.bodies[i].pose.position, from);
+    for (const FlatPart& standing : world.parts(i)) {
+      for (const FlatPart& moving : own) {
+        const double t = part_time(world.shapes.pool, cast, from, moving, standing);
+        times[i].t = std::min(times[i].t, t);
       }
-      CastTouch touch;
-      if (cast_shape(tables, pair, 1e-7, touch)) times[i] = {true, std::min(times[i].t, touch.t)};
     }
+    times[i].hit = times[i].t < kInfinity;
   }
   return times;
 }
@@ -247,18 +260,23 @@ PairAnswer brute_distance(const QueryWorld& world, ShapeId a, const Pose& pose_a
   return best;
 }
 
-TEST(SceneQueries, moving_shapes_meet_what_bodies_asked_one_by_one_say) {
+/// Casts of convex shapes, or of composite ones.
+void expect_casts_meet(bool composite, std::size_t casts) {
   for (const double center : kCenters) {
     Random random(2);
     QueryWorld world;
     fill(world, 150, center, random);
     ShapeId point;
     ASSERT_EQ(world.shapes.pool.add(SphereShape{}, point), Status::ok);
+    ShapeId ground;
+    ASSERT_EQ(world.shapes.pool.add(HalfSpaceShape{{0.1, 0.0, 1.0}, -8.0}, ground), Status::ok);
+    if (composite) world.add(ground, {}, random);
     world.add_to_scene();
     SceneQueries queries(*world.scene);
-    for (std::size_t n = scaled(24); n-- != 0;) {
+    for (std::size_t n = scaled(casts); n-- != 0;) {
       ShapeCast cast;
-      cast.shape = world.shapes.shapes[random.below(150)];
+      cast.shape = composite ? world.bodies[150 + random.below(12)].shape
+                             : world.shapes.shapes[random.below(150)];
       cast.pose = random_pose(world.size, random);
       for (double& x : cast.pose.position) x += center;
       draw_direction(random.log_uniform(1e-3, 1e3), random, cast.direction);
@@ -284,6 +302,14 @@ TEST(SceneQueries, moving_shapes_meet_what_bodies_asked_one_by_one_say) {
                   1e-7 + 1e-15 * std::abs(center));
     }
   }
+}
+
+TEST(SceneQueries, moving_shapes_meet_what_bodies_asked_one_by_one_say) {
+  expect_casts_meet(false, 24);
+}
+
+TEST(SceneQueries, moving_composite_shapes_meet_what_their_parts_asked_one_by_one_meet) {
+  expect_casts_meet(true, 6);
 }
 
 TEST(SceneQueries, a_shape_overlaps_what_bodies_asked_one_by_one_say) {

@@ -92,7 +92,7 @@ TEST(SceneQueryCalls, bad_questions_get_a_status_and_change_nothing) {
   ShapeCast cast = good;
   cast.shape = {};
   EXPECT_EQ(queries.closest(cast, hit), Status::invalid_key);
-  cast.shape = world.bodies.back().shape;
+  ASSERT_EQ(world.shapes.pool.add(HalfSpaceShape{}, cast.shape), Status::ok);
   EXPECT_EQ(queries.closest(cast, hit), Status::unsupported);
   cast = good;
   cast.pose.orientation[0] = 0.0;

@@ -6,6 +6,7 @@
 #include <winnow/core/cast.h>
 #include <winnow/core/rounding.h>
 #include "pipeline/mesh/mesh_traversal.h"
+#include "pipeline/scene/queries/composite_sweep.h"
 #include "pipeline/scene/queries/queries.h"
 #include "pipeline/scene/queries/swept_shapes.h"
 #include "pipeline/shapes/frame.h"
@@ -588,13 +589,21 @@ Status check(const QueryState* state, const ShapeCast& cast, double tolerance) n
     return status;
   }
   if (!state->parts.contains(cast.shape)) return Status::invalid_key;
-  if (cast.shape.is_composite() || cast.shape.kind() == ShapeKind::half_space) {
+  if (!cast.shape.is_composite() && cast.shape.kind() == ShapeKind::half_space) {
     return Status::unsupported;
   }
   if (!cast.pose.is_valid()) return Status::invalid_pose;
   const bool valid = is_valid(cast.direction, cast.max_t) && tolerance >= 0.0 &&
                      tolerance <= std::numeric_limits<double>::max();
   return valid ? Status::ok : Status::invalid_argument;
+}
+
+/// Calls ask(swept shape).
+template <typename Ask>
+Status ask_cast(QueryState* state, const ShapeCast& cast, double tolerance, Ask&& ask) {
+  if (const Status status = check(state, cast, tolerance); status != Status::ok) return status;
+  if (cast.shape.is_composite()) return ask(CompositeSweep(state->parts, cast, tolerance));
+  return ask(ShapeSweep(state->parts, cast, tolerance));
 }
 
 }  // namespace
@@ -646,16 +655,17 @@ Status SceneQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const F
 
 Status SceneQueries::closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter,
                              double tolerance) {
-  if (const Status status = check(state_, cast, tolerance); status != Status::ok) return status;
-  return CastQuestion(*state_, ShapeSweep(state_->parts, cast, tolerance), filter).closest(hit);
+  return ask_cast(state_, cast, tolerance, [&](const SweptShape& swept) {
+    return CastQuestion(*state_, swept, filter).closest(hit);
+  });
 }
 
 Status SceneQueries::all(const ShapeCast& cast, std::span<const SceneHit>& hits,
                          const Filter& filter, double tolerance) {
-  if (const Status status = check(state_, cast, tolerance); status != Status::ok) return status;
-  const ShapeSweep swept(state_->parts, cast, tolerance);
-  state_->hits.clear();
-  const Status status = CastQuestion(*state_, swept, filter).all();
+  const Status status = ask_cast(state_, cast, tolerance, [&](const SweptShape& swept) {
+    state_->hits.clear();
+    return CastQuestion(*state_, swept, filter).all();
+  });
   if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
   return status;
 }

@@ -12,16 +12,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A shape's pose at the origin.
-Pose at_origin(const Pose& pose) noexcept {
-  Pose result;
-  std::copy_n(pose.orientation, 4, result.orientation);
-  return result;
-}
-
-/// By this much of its coordinates a box is grown before the tests of boxes, which round them.
-constexpr double kSweptBoxGrowth = 0x1p-47;
-
 BoxSweep sweep_from(const SweptShape& swept, const double from[3], double limit) noexcept {
   const Vector3d start = Vector3d::Map(from);
   const PreciseBox& extent = swept.extent();
@@ -43,17 +33,6 @@ SweepMeeting meeting_at(const ShapeRay& ray, const ShapeHit& hit) noexcept {
     meeting.point[i] = ray.origin[i] + hit.t * ray.direction[i];
   }
   return meeting;
-}
-
-/// Neighbours in a mesh have their common corners a few roundings apart, once each is at its place:
-/// by less than this. As thick as this they leave nothing through between them.
-double doubt(const ConvexPart& part) noexcept {
-  if (part.triangle == nullptr) return 0.0;
-  double size = Vector3d::Map(part.pose.position).cwiseAbs().sum();
-  for (const auto& corner : part.triangle->vertex) {
-    size = std::max(size, Vector3d::Map(corner).cwiseAbs().sum());
-  }
-  return 0x1p-48 * size;
 }
 
 /// True of a triangle that lies as it is given, about the part's position.
@@ -108,6 +87,21 @@ bool passes_by(const double from[3], const double direction[3], const ConvexPart
 
 }  // namespace
 
+Pose at_origin(const Pose& pose) noexcept {
+  Pose result;
+  std::copy_n(pose.orientation, 4, result.orientation);
+  return result;
+}
+
+double corner_doubt(const ConvexPart& part) noexcept {
+  if (part.triangle == nullptr) return 0.0;
+  double size = Vector3d::Map(part.pose.position).cwiseAbs().sum();
+  for (const auto& corner : part.triangle->vertex) {
+    size = std::max(size, Vector3d::Map(corner).cwiseAbs().sum());
+  }
+  return 0x1p-48 * size;
+}
+
 RaySweep::RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept
     : SweptShape({Vector3d::Zero(), Vector3d::Zero()}, ray.origin, ray.direction, ray.max_t),
       shapes_(shapes),
@@ -115,7 +109,7 @@ RaySweep::RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept
 
 bool RaySweep::meets(const double from[3], const ConvexPart& part, double limit,
                      const SweepMeeting* /*before*/, SweepMeeting& meeting) const noexcept {
-  const double thickness = doubt(part);
+  const double thickness = corner_doubt(part);
   if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
   ShapeRay ray = ray_;
   std::copy_n(from, 3, ray.origin);
@@ -165,7 +159,7 @@ bool ShapeSweep::passes_by(const double from[3], const ConvexPart& part, double 
   const double size = start.cwiseAbs().sum() + extent().min.cwiseAbs().sum() +
                       extent().max.cwiseAbs().sum() + corner[0].cwiseAbs().sum() +
                       corner[1].cwiseAbs().sum() + corner[2].cwiseAbs().sum();
-  const double doubt_of_all = mid::kSlack * size + 4.0 * doubt(part);
+  const double doubt_of_all = mid::kSlack * size + 4.0 * corner_doubt(part);
   // How far the shape lies above or below all of the triangle along an axis, at the start.
   const auto gap = [&](const Vector3d& axis, double& side_of) {
     const mid::Extent own = mid::extent(shapes_.tables(), cast_.shape, to_shape_ * axis);
@@ -202,7 +196,7 @@ CastPair ShapeSweep::pair(PartTables& tables, const double from[3],
   std::copy_n(from, 3, pair.from.position);
   std::copy_n(cast_.direction, 3, pair.direction);
   ConvexPart thick = part;
-  thick.thickness = doubt(part);
+  thick.thickness = corner_doubt(part);
   pair.standing = tables.put(1, thick);
   pair.pose = part.pose;
   return pair;
@@ -220,7 +214,7 @@ bool ShapeSweep::is_beyond(const ConvexPart& part, const SweepMeeting& before) c
     top = std::max(top, normal.dot(at));
     size = std::max(size, at.cwiseAbs().sum());
   }
-  return top + mid::kSlack * size + 4.0 * doubt(part) < before.height;
+  return top + mid::kSlack * size + 4.0 * corner_doubt(part) < before.height;
 }
 
 bool ShapeSweep::is_beside(const double from[3], const ConvexPart& part,
@@ -240,7 +234,7 @@ bool ShapeSweep::is_beside(const double from[3], const ConvexPart& part,
   if (!(axis.dot(way) < -mid::kSlack * axis.cwiseAbs().sum() * way.cwiseAbs().sum())) return false;
   const double low = mid::extent(shapes_.tables(), cast_.shape, to_shape_ * axis).low;
   const double top = std::max({axis.dot(corner[0]), axis.dot(corner[1]), axis.dot(corner[2])});
-  return low - top > (4.0 * mid::kSlack * size + 4.0 * doubt(part)) * axis.cwiseAbs().sum();
+  return low - top > (4.0 * mid::kSlack * size + 4.0 * corner_doubt(part)) * axis.cwiseAbs().sum();
 }
 
 void ShapeSweep::set_height(const double from[3], SweepMeeting& meeting) const noexcept {

@@ -17,9 +17,21 @@ struct SweepMeeting {
   /// Of shapes: how high above the part's origin, along the normal, the shape is all of then, and a
   /// little less.
   double height = 0.0;
+  /// Of composite shapes that move: which part of them it is.
+  std::uint32_t own_part = kWholeShape;
 };
 
-/// A ray or a convex shape that moves along a line without turning.
+/// By this much of its coordinates a box is grown before the tests of boxes, which round them.
+inline constexpr double kSweptBoxGrowth = 0x1p-47;
+
+/// A shape's pose at the origin.
+[[nodiscard]] Pose at_origin(const Pose& pose) noexcept;
+
+/// Neighbours in a mesh have their common corners a few roundings apart, once each is at its place:
+/// by less than this. As thick as this they leave nothing through between them.
+[[nodiscard]] double corner_doubt(const ConvexPart& part) noexcept;
+
+/// A ray or a shape that moves along a line without turning.
 class SweptShape {
  public:
   SweptShape(const SweptShape&) = delete;
@@ -75,7 +87,7 @@ class RaySweep final : public SweptShape {
   const ShapeRay& ray_;
 };
 
-/// The cast must outlive it.
+/// A convex shape. The cast must outlive it.
 class ShapeSweep final : public SweptShape {
  public:
   ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept;

@@ -1,0 +1,114 @@
+#include "pipeline/scene/queries/composite_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow {
+
+using Eigen::Vector3d;
+
+/// A convex part that stands, as seen from where the composite shape starts, so that parts of both
+/// lose nothing far from the origin. What the difference of the positions loses is put into the
+/// pose of the shape, where it is small.
+class CompositeSweep::Approach {
+ public:
+  Approach(const CompositeSweep& sweep, const double from[3], const ConvexPart& part) noexcept
+      : sweep_(sweep), standing_(part), moving_{sweep.cast_.shape, sweep.cast_.pose} {
+    const Difference apart = difference(part.pose.position, from);
+    for (int i = 0; i < 3; ++i) {
+      standing_.pose.position[i] = apart.difference[i];
+      moving_.pose.position[i] = -apart.rest[i];
+    }
+    standing_.thickness = corner_doubt(standing_);
+  }
+
+  /// Calls look(own part, limit), as PartTraversal::met does, for those that may be met by then.
+  template <typename Look>
+  void each(double limit, Look&& look) const {
+    sweep_.parts_.met(moving_, way(limit), look);
+  }
+
+  [[nodiscard]] CastPair pair(PartTables& tables, const ConvexPart& own) const noexcept {
+    ConvexPart thick = own;
+    thick.thickness = corner_doubt(own);
+    CastPair pair;
+    pair.moving = tables.put(0, thick);
+    pair.from = own.pose;
+    std::copy_n(sweep_.cast_.direction, 3, pair.direction);
+    pair.standing = tables.put(1, standing_);
+    pair.pose = standing_.pose;
+    return pair;
+  }
+
+ private:
+  /// Of the box of what stands, or of one of the whole shape where that has no end.
+  [[nodiscard]] BoxSweep way(double limit) const noexcept {
+    const PreciseBox box = sweep_.parts_.box(standing_).grown(standing_.thickness);
+    const PreciseBox& own = sweep_.extent();
+    const double reach = std::max(own.min.cwiseAbs().maxCoeff(), own.max.cwiseAbs().maxCoeff()) +
+                         std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+    BoxSweep sweep;
+    if (std::isfinite(reach)) {
+      sweep = box.grown(kSweptBoxGrowth * reach).standing();
+      for (int i = 0; i < 3; ++i) sweep.direction[i] = -sweep_.direction()[i];
+    } else {
+      sweep = sweep_.parts_.box(moving_).standing();
+    }
+    sweep.max_t = limit;
+    return sweep;
+  }
+
+  const CompositeSweep& sweep_;
+  ConvexPart standing_;
+  PlacedShape moving_;
+};
+
+CompositeSweep::CompositeSweep(const PartTraversal& parts, const ShapeCast& cast,
+                               double tolerance) noexcept
+    : SweptShape(parts.box(PlacedShape{cast.shape, at_origin(cast.pose)}), cast.pose.position,
+                 cast.direction, cast.max_t),
+      parts_(parts),
+      cast_(cast),
+      tolerance_(tolerance) {}
+
+bool CompositeSweep::meets(const double from[3], const ConvexPart& part, double limit,
+                           const SweepMeeting* /*before*/, SweepMeeting& meeting) const noexcept {
+  const Approach approach(*this, from, part);
+  bool found = false;
+  approach.each(limit, [&](const ConvexPart& own, double most) {
+    PartTables tables(parts_.shapes());
+    CastPair pair = approach.pair(tables, own);
+    pair.max_t = most = std::min(most, limit);
+    CastTouch touch;
+    if (!cast_shape(tables.tables(), pair, tolerance_, touch)) return most;
+    if (found && touch.t == limit && meeting.own_part < own.part) return most;
+    found = true;
+    limit = meeting.t = touch.t;
+    meeting.own_part = own.part;
+    meeting.overlaps_at_start = touch.overlaps_at_start;
+    std::copy_n(touch.normal, 3, meeting.normal);
+    return limit;
+  });
+  return found;
+}
+
+void CompositeSweep::describe(const double from[3], const ConvexPart& part,
+                              SweepMeeting& meeting) const noexcept {
+  const Approach approach(*this, from, part);
+  approach.each(max_t(), [&](const ConvexPart& own, double most) {
+    if (own.part != meeting.own_part) return most;
+    PartTables tables(parts_.shapes());
+    CastTouch touch;
+    touch.t = meeting.t;
+    touch.overlaps_at_start = meeting.overlaps_at_start;
+    std::copy_n(meeting.normal, 3, touch.normal);
+    describe_touch(tables.tables(), approach.pair(tables, own), touch);
+    for (int i = 0; i < 3; ++i) {
+      meeting.normal[i] = touch.normal[i];
+      meeting.point[i] = part.pose.position[i] + touch.point[i];
+    }
+    return -1.0;
+  });
+}
+
+}  // namespace winnow
