@@ -52,6 +52,7 @@
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
+#include <winnow/pipeline/sensors.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
 #include <winnow/pipeline/triangle_mesh.h>

@@ -1,0 +1,204 @@
+#include <winnow/pipeline/sensors.h>
+
+#include <winnow/pipeline/scene_queries.h>
+#include "core/hooks/log.h"
+#include "core/memory/key_table.h"
+#include "core/memory/new_in.h"
+#include "pipeline/scene/scene_state.h"
+
+#include <tuple>
+
+namespace winnow {
+namespace {
+
+constexpr std::size_t kMaxSensors = std::size_t{1} << 28U;
+
+template <typename Entry>
+[[nodiscard]] auto order_in(const Entry& entry) noexcept {
+  return std::tuple(entry.sensor.id, entry.body.id);
+}
+
+[[nodiscard]] bool is_same(const SensedBody& a, const SensedBody& b) noexcept {
+  return a.sensor == b.sensor && a.body == b.body;
+}
+
+/// All bodies that a sensor senses but its carrier.
+[[nodiscard]] Filter filter_of(const SensorDefinition& sensor) noexcept {
+  Filter filter{sensor.filter.layers, sensor.filter.mask, sensor.filter.environment};
+  if (sensor.carrier == Key{}) return filter;
+  filter.predicate.context = const_cast<SensorDefinition*>(&sensor);
+  filter.predicate.accept = [](void* context, Key body, ClientData) {
+    return static_cast<const SensorDefinition*>(context)->carrier != body;
+  };
+  return filter;
+}
+
+}  // namespace
+
+struct SensorsState {
+  SensorsState(Scene& sensed_scene, SceneState* its_state,
+               std::pmr::memory_resource* memory) noexcept
+      : scene(sensed_scene),
+        bodies(its_state),
+        questions(sensed_scene, memory),
+        keys(memory),
+        sensors(memory),
+        sensed(memory),
+        before(memory),
+        left(memory) {}
+
+  Scene& scene;
+  /// Null where the scene was refused memory.
+  SceneState* bodies;
+  SceneQueries questions;
+  KeyTable keys;
+  /// By id; holes where sensors were removed.
+  Column<SensorDefinition> sensors;
+  Column<SensedBody> sensed;
+  Column<SensedBody> before;
+  Column<LeftSensor> left;
+
+  [[nodiscard]] Status check(const SensorDefinition& sensor) const noexcept {
+    if (bodies == nullptr) return Status::out_of_memory;
+    return bodies->check(sensor.shape, sensor.pose);
+  }
+  [[nodiscard]] Status look();
+  [[nodiscard]] bool compare() noexcept;
+  void forget() noexcept {
+    sensed.clear();
+    before.clear();
+    left.clear();
+  }
+};
+
+/// Fills `sensed`.
+Status SensorsState::look() {
+  if (const Status status = scene.refresh(); status != Status::ok) return status;
+  for (ObjectId id = 0; id < keys.slot_count(); ++id) {
+    if (!keys.is_live(id)) continue;
+    const SensorDefinition& sensor = sensors[id];
+    std::span<const SceneOverlap> found;
+    const Status status = questions.overlap(sensor.shape, sensor.pose, found, filter_of(sensor));
+    if (status != Status::ok) return status;
+    for (const SceneOverlap& body : found) {
+      if (!sensed.push_back({keys.key_of(id), body.key, sensor.data, body.data})) {
+        return Status::out_of_memory;
+      }
+    }
+  }
+  return Status::ok;
+}
+
+/// Tells events by what was sensed before. An id may be another body's by now, whose key differs.
+bool SensorsState::compare() noexcept {
+  left.clear();
+  SensedBody* now = sensed.begin();
+  for (const SensedBody& old : before) {
+    while (now != sensed.end() && order_in(*now) < order_in(old)) ++now;
+    if (now != sensed.end() && is_same(*now, old)) {
+      now->event = ContactEvent::persisted;
+    } else if (!left.push_back({old.sensor, old.body, old.sensor_data, old.body_data})) {
+      return false;
+    }
+  }
+  return true;
+}
+
+Sensors::Sensors(Scene& scene, std::pmr::memory_resource* memory) noexcept
+    : memory_(memory), state_(new_in<SensorsState>(memory, scene, scene.state_, memory)) {}
+
+Sensors::~Sensors() {
+  delete_in(memory_, state_);
+}
+
+Status Sensors::add(const SensorDefinition& sensor, Key& key) {
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Sensors::add");
+  SensorsState& s = *state_;
+  if (const Status good = s.check(sensor); good != Status::ok) return logged(good, "Sensors::add");
+  if (s.keys.slots_with(1) > kMaxSensors) return logged(Status::too_many_objects, "Sensors::add");
+  const std::size_t slots = s.keys.slots_with(1);
+  if (!s.keys.reserve(s.keys.size() + 1) || !s.sensors.grow(slots)) {
+    return logged(Status::out_of_memory, "Sensors::add");
+  }
+  s.sensors.set_size(slots);
+  key = s.keys.acquire(0, sensor.data);
+  s.sensors[key.id] = sensor;
+  return Status::ok;
+}
+
+Status Sensors::remove(Key key) {
+  if (!contains(key)) return logged(Status::invalid_key, "Sensors::remove");
+  state_->keys.release(key.id);
+  return Status::ok;
+}
+
+Status Sensors::move(Key key, const Pose& pose) {
+  if (!contains(key)) return logged(Status::invalid_key, "Sensors::move");
+  if (!pose.is_valid()) return logged(Status::invalid_pose, "Sensors::move");
+  state_->sensors[key.id].pose = pose;
+  return Status::ok;
+}
+
+Status Sensors::set(Key key, const SensorDefinition& sensor) {
+  if (!contains(key)) return logged(Status::invalid_key, "Sensors::set");
+  if (const Status good = state_->check(sensor); good != Status::ok) {
+    return logged(good, "Sensors::set");
+  }
+  state_->sensors[key.id] = sensor;
+  return Status::ok;
+}
+
+Status Sensors::sensor(Key key, SensorDefinition& sensor) const noexcept {
+  if (!contains(key)) return Status::invalid_key;
+  sensor = state_->sensors[key.id];
+  return Status::ok;
+}
+
+Status Sensors::sense() {
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Sensors::sense");
+  SensorsState& s = *state_;
+  s.sensed.swap(s.before);
+  s.sensed.clear();
+  Status status = s.look();
+  if (status == Status::ok && !s.compare()) status = Status::out_of_memory;
+  if (status == Status::out_of_memory) {
+    s.forget();
+  } else if (status != Status::ok) {
+    s.sensed.swap(s.before);
+  }
+  return logged(status, "Sensors::sense");
+}
+
+std::span<const SensedBody> Sensors::sensed() const noexcept {
+  if (state_ == nullptr) return {};
+  return {state_->sensed.data(), state_->sensed.size()};
+}
+
+std::span<const LeftSensor> Sensors::left() const noexcept {
+  if (state_ == nullptr) return {};
+  return {state_->left.data(), state_->left.size()};
+}
+
+std::size_t Sensors::size() const noexcept {
+  return state_ != nullptr ? state_->keys.size() : 0;
+}
+
+bool Sensors::contains(Key key) const noexcept {
+  return state_ != nullptr && state_->keys.is_valid(key);
+}
+
+Footprint Sensors::footprint() const noexcept {
+  if (state_ == nullptr) return {};
+  const SensorsState& s = *state_;
+  Footprint sum = s.questions.footprint();
+  sum.structure += {sizeof(SensorsState), sizeof(SensorsState)};
+  sum.structure += s.sensors.bytes();
+  sum.keys += s.keys.key_bytes();
+  sum.client_data += s.keys.client_data_bytes();
+  sum.scratch += s.before.bytes();
+  sum.results += s.sensed.bytes();
+  sum.results += s.left.bytes();
+  return sum;
+}
+
+}  // namespace winnow

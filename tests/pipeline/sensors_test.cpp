@@ -1,0 +1,271 @@
+// Sensors: what is sensed is what every pair of a sensor and a body says alone, and who came and
+// who left is the difference of two such sets.
+
+#include <gtest/gtest.h>
+#include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/sensors.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
+#include "tests/support/random.h"
+
+namespace winnow::test {
+namespace {
+
+using Stamped = std::pair<ObjectId, std::uint32_t>;
+using SensedSet = std::set<std::pair<Stamped, Stamped>>;
+
+Stamped stamped(Key key) {
+  return {key.id, key.stamp};
+}
+
+/// Balls in a cube, sensed by balls.
+class BallRoom {
+ public:
+  explicit BallRoom(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : scene(shapes), sensors(scene, memory) {
+    for (const double radius : kRadii) {
+      ShapeId id;
+      EXPECT_EQ(shapes.add(SphereShape{radius}, id), Status::ok);
+      balls_.push_back(id);
+    }
+  }
+
+  void add_body() {
+    BodyDefinition body;
+    const std::size_t size = random.below(kSizes);
+    body.shape = balls_[size];
+    body.pose = somewhere();
+    body.motion = static_cast<Motion>(random.below(kMotions));
+    body.filter.layers = random.chance(0.2) ? 2 : 1;
+    body.data = random.bits();
+    Key key;
+    ASSERT_EQ(scene.add(body, key), Status::ok);
+    bodies.push_back(key);
+  }
+
+  void add_sensor() {
+    SensorDefinition sensor;
+    sensor.shape = balls_[random.below(kSizes)];
+    sensor.pose = somewhere();
+    sensor.filter.mask = random.chance(0.3) ? 1 : ~0U;
+    if (random.chance(0.3)) sensor.carrier = bodies[random.below(bodies.size())];
+    sensor.data = random.bits();
+    Key key;
+    ASSERT_EQ(sensors.add(sensor, key), Status::ok);
+    goals.push_back(key);
+  }
+
+  void change() {
+    for (Key& key : bodies) {
+      if (random.chance(0.3)) {
+        ASSERT_EQ(scene.move(key, somewhere()), Status::ok);
+      }
+      if (random.chance(0.1)) {
+        ASSERT_EQ(scene.set_motion(key, static_cast<Motion>(random.below(kMotions))), Status::ok);
+      }
+    }
+    for (const Key& key : goals) {
+      if (random.chance(0.2)) {
+        ASSERT_EQ(sensors.move(key, somewhere()), Status::ok);
+      }
+    }
+    // Ids go to others at once.
+    ASSERT_EQ(scene.remove(bodies.back()), Status::ok);
+    bodies.pop_back();
+    add_body();
+    ASSERT_EQ(sensors.remove(goals.front()), Status::ok);
+    goals.erase(goals.begin());
+    add_sensor();
+  }
+
+  [[nodiscard]] SensedSet expected() const {
+    SensedSet sensed;
+    for (const Key goal : goals) {
+      SensorDefinition sensor;
+      EXPECT_EQ(sensors.sensor(goal, sensor), Status::ok);
+      for (const Key key : bodies) {
+        BodyDefinition body;
+        EXPECT_EQ(scene.body(key, body), Status::ok);
+        if (key == sensor.carrier || (sensor.filter.mask & body.filter.layers) == 0) continue;
+        const double* const a = sensor.pose.position;
+        const double* const b = body.pose.position;
+        const double reach = radius_of(sensor.shape) + radius_of(body.shape);
+        if (std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) <= reach) {
+          sensed.insert({stamped(goal), stamped(key)});
+        }
+      }
+    }
+    return sensed;
+  }
+
+  ShapePool shapes;
+  Scene scene;
+  Sensors sensors;
+  std::vector<Key> bodies;
+  std::vector<Key> goals;
+  Random random{5};
+
+ private:
+  static constexpr double kRadii[] = {0.2, 0.7, 1.5};
+  static constexpr std::size_t kSizes = std::size(kRadii);
+
+  Pose somewhere() {
+    return Pose::at(random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-5, 5));
+  }
+  [[nodiscard]] double radius_of(ShapeId id) const { return kRadii[id.index()]; }
+
+  std::vector<ShapeId> balls_;
+};
+
+TEST(Sensors, tell_who_is_in_them_who_came_and_who_left) {
+  BallRoom room;
+  for (int i = 0; i < 60; ++i) room.add_body();
+  for (int i = 0; i < 15; ++i) room.add_sensor();
+  SensedSet before;
+  for (std::size_t frame = 0; frame < scaled(60); ++frame) {
+    ASSERT_EQ(room.sensors.sense(), Status::ok);
+    const SensedSet expected = room.expected();
+    ASSERT_EQ(room.sensors.sensed().size(), expected.size());
+    std::pair<ObjectId, ObjectId> last{0, 0};
+    for (const SensedBody& in : room.sensors.sensed()) {
+      const auto pair = std::pair(stamped(in.sensor), stamped(in.body));
+      EXPECT_TRUE(expected.contains(pair));
+      EXPECT_EQ(in.event == ContactEvent::persisted, before.contains(pair));
+      SensorDefinition sensor;
+      BodyDefinition body;
+      EXPECT_EQ(room.sensors.sensor(in.sensor, sensor), Status::ok);
+      EXPECT_EQ(room.scene.body(in.body, body), Status::ok);
+      EXPECT_EQ(in.sensor_data, sensor.data);
+      EXPECT_EQ(in.body_data, body.data);
+      const std::pair<ObjectId, ObjectId> at{in.sensor.id, in.body.id};
+      EXPECT_LE(last, at);
+      last = at;
+    }
+    SensedSet left;
+    for (const LeftSensor& out : room.sensors.left()) {
+      left.insert({stamped(out.sensor), stamped(out.body)});
+    }
+    SensedSet gone;
+    for (const auto& pair : before) {
+      if (!expected.contains(pair)) gone.insert(pair);
+    }
+    EXPECT_EQ(left, gone);
+    EXPECT_EQ(room.sensors.left().size(), gone.size());
+    before = expected;
+    room.change();
+  }
+}
+
+TEST(Sensors, make_no_contacts) {
+  BallRoom room;
+  for (int i = 0; i < 20; ++i) room.add_body();
+  Contacts contacts;
+  ASSERT_EQ(room.scene.collide(ContactLevel::boolean, contacts), Status::ok);
+  const std::size_t pairs = contacts.size();
+  for (int i = 0; i < 20; ++i) room.add_sensor();
+  ASSERT_EQ(room.sensors.sense(), Status::ok);
+  ASSERT_EQ(room.scene.collide(ContactLevel::boolean, contacts), Status::ok);
+  EXPECT_EQ(contacts.size(), pairs);
+}
+
+TEST(Sensors, of_composite_shapes_sense_with_every_part) {
+  ShapePool shapes;
+  CompositePool composites(shapes);
+  Scene scene(shapes, {.composites = &composites});
+  Sensors sensors(scene);
+  ShapeId ball;
+  ASSERT_EQ(shapes.add(SphereShape{0.5}, ball), Status::ok);
+  const CompoundChild children[] = {{ball, Pose::at(-3, 0, 0)}, {ball, Pose::at(3, 0, 0)}};
+  ShapeId gate;
+  ASSERT_EQ(composites.add_compound(children, gate), Status::ok);
+  Key key;
+  ASSERT_EQ(sensors.add({.shape = gate, .pose = Pose::at(0, 0, 1)}, key), Status::ok);
+  Key body;
+  ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(0, 0, 1)}, body), Status::ok);
+  ASSERT_EQ(sensors.sense(), Status::ok);
+  EXPECT_TRUE(sensors.sensed().empty());
+  ASSERT_EQ(scene.move(body, Pose::at(3.9, 0, 1)), Status::ok);
+  ASSERT_EQ(sensors.sense(), Status::ok);
+  ASSERT_EQ(sensors.sensed().size(), 1U);
+  EXPECT_EQ(sensors.sensed()[0].event, ContactEvent::begun);
+  ASSERT_EQ(sensors.sense(), Status::ok);
+  EXPECT_EQ(sensors.sensed()[0].event, ContactEvent::persisted);
+
+  // A shape that is gone refuses the question, and all stays as it was.
+  ASSERT_EQ(composites.remove(gate), Status::ok);
+  EXPECT_EQ(sensors.sense(), Status::invalid_key);
+  ASSERT_EQ(sensors.sensed().size(), 1U);
+  EXPECT_EQ(sensors.sensed()[0].body, body);
+}
+
+TEST(Sensors, bad_input_gets_a_status_and_changes_nothing) {
+  BallRoom room;
+  room.add_body();
+  room.add_sensor();
+  const Key goal = room.goals[0];
+  SensorDefinition good;
+  ASSERT_EQ(room.sensors.sensor(goal, good), Status::ok);
+  Key key{7, 7};
+  SensorDefinition bad = good;
+  bad.shape = {};
+  EXPECT_EQ(room.sensors.add(bad, key), Status::invalid_key);
+  EXPECT_EQ(room.sensors.set(goal, bad), Status::invalid_key);
+  bad = good;
+  bad.pose.position[1] = std::nan("");
+  EXPECT_EQ(room.sensors.add(bad, key), Status::invalid_pose);
+  EXPECT_EQ(room.sensors.set(goal, bad), Status::invalid_pose);
+  EXPECT_EQ(room.sensors.move(goal, bad.pose), Status::invalid_pose);
+  EXPECT_EQ(key, (Key{7, 7}));
+  EXPECT_EQ(room.sensors.move(room.bodies[0], good.pose), Status::invalid_key);
+  EXPECT_EQ(room.sensors.remove(Key{}), Status::invalid_key);
+  EXPECT_EQ(room.sensors.size(), 1U);
+  SensorDefinition now;
+  ASSERT_EQ(room.sensors.sensor(goal, now), Status::ok);
+  EXPECT_EQ(now.pose.position[1], good.pose.position[1]);
+  ASSERT_EQ(room.sensors.remove(goal), Status::ok);
+  EXPECT_FALSE(room.sensors.contains(goal));
+  EXPECT_EQ(room.sensors.sensor(goal, now), Status::invalid_key);
+}
+
+TEST(Sensors, know_their_memory_to_the_byte_and_bear_its_refusal) {
+  CountingMemory memory;
+  {
+    BallRoom room(&memory);
+    for (int i = 0; i < 40; ++i) room.add_body();
+    for (int i = 0; i < 10; ++i) room.add_sensor();
+    ASSERT_EQ(room.sensors.sense(), Status::ok);
+    EXPECT_EQ(room.sensors.footprint().total().reserved, memory.outstanding());
+    ASSERT_EQ(room.sensors.sense(), Status::ok);
+    const std::size_t asked = memory.requests();
+    ASSERT_EQ(room.sensors.sense(), Status::ok);
+    EXPECT_EQ(memory.requests(), asked);
+  }
+  for (std::size_t granted = 0; granted < 30; ++granted) {
+    BallRoom room;
+    for (int i = 0; i < 40; ++i) room.add_body();
+    CountingMemory scarce;
+    scarce.refuse_one_after(granted);
+    Sensors sensors(room.scene, &scarce);
+    Key key;
+    SensorDefinition wide{.shape = ShapeId::of(ShapeKind::sphere, 2)};
+    const Status added = sensors.add(wide, key);
+    if (added == Status::ok) {
+      const Status sensed = sensors.sense();
+      EXPECT_TRUE(sensed == Status::ok || sensed == Status::out_of_memory);
+      EXPECT_TRUE(sensed == Status::ok || sensors.sensed().empty());
+    } else {
+      EXPECT_EQ(added, Status::out_of_memory);
+      EXPECT_EQ(sensors.size(), 0U);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test
