@@ -19,6 +19,10 @@ void push_apart(winnow::Key, winnow::Key, double depth) {
 void forget(const winnow::EndedContact&) {
   ++forgotten;
 }
+std::size_t cheers = 0;
+void cheer(winnow::Key) {
+  ++cheers;
+}
 
 }  // namespace
 
@@ -81,4 +85,15 @@ int main() {
   check(hit.key == one, "the ball would fall on the first chair");
   check(bodies.size() == 2, "there the terrain and a chair are in the way");
   check(gap.distance > 7.9, "the chairs are apart");
+
+  // [sensors]
+  winnow::Sensors sensors(scene);  // goals, triggers, light curtains: no bodies, no contacts
+  winnow::Key goal;
+  sensors.add({.shape = ball, .pose = winnow::Pose::at(0.5, 0, 0.4)}, goal);
+  sensors.sense();
+  for (const winnow::SensedBody& in : sensors.sensed()) {
+    if (in.event == winnow::ContactEvent::begun) cheer(in.body);
+  }
+  // [end]
+  check(cheers == 2, "the terrain and a chair are in the goal");
 }

@@ -18,19 +18,14 @@ int main() {
   shapes.add(winnow::BoxShape{{1, 1, 1}}, zone);
 
   // [layers]
-  enum Layer : std::uint32_t { level = 1, players = 2, triggers = 4 };
+  enum Layer : std::uint32_t { level = 1, players = 2 };
   winnow::Scene scene(shapes);
-  winnow::Key door, hero, trap;
+  winnow::Key door, hero;
   scene.add({wall, winnow::Pose::at(10, 0, 0), winnow::Motion::fixed, {.layers = level}}, door);
   scene.add({.shape = soldier,
              .pose = winnow::Pose::at(20, 0, 0),
-             .filter = {.layers = players, .mask = level | players | triggers}},
+             .filter = {.layers = players, .mask = level | players}},
             hero);
-  scene.add({.shape = zone,
-             .pose = winnow::Pose::at(25, 0, 0),
-             .motion = winnow::Motion::fixed,
-             .filter = {.layers = triggers, .mask = players}},  // meets nothing else
-            trap);
   // [end]
 
   scene.refresh();
@@ -44,17 +39,20 @@ int main() {
   // [end]
   check(hit.key == door, "nothing is too thin to be hit");
 
-  winnow::Contacts contacts;
+  winnow::Key trap;
   std::size_t entered = 0, left = 0;
+  winnow::Sensors sensors(scene);
+  sensors.add({.shape = zone, .pose = winnow::Pose::at(25, 0, 0), .filter = {.mask = players}},
+              trap);
   const auto frame = [&](double x) {
     scene.move(hero, winnow::Pose::at(x, 0, 0));
     // [triggers]
-    scene.collide(winnow::ContactLevel::boolean, contacts);
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      if (contacts.event()[i] == winnow::ContactEvent::begun) ++entered;
+    sensors.sense();
+    for (const winnow::SensedBody& in : sensors.sensed()) {
+      if (in.event == winnow::ContactEvent::begun) ++entered;
     }
-    for (const winnow::EndedContact& pair : contacts.ended()) {
-      if (pair.a == trap || pair.b == trap) ++left;  // keys of removed bodies are stale here
+    for (const winnow::LeftSensor& out : sensors.left()) {
+      if (out.sensor == trap) ++left;  // keys of removed bodies are stale here
     }
     // [end]
   };
