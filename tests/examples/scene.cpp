@@ -89,7 +89,7 @@ int main() {
   // [sensors]
   winnow::Sensors sensors(scene);  // goals, triggers, light curtains: no bodies, no contacts
   winnow::Key goal;
-  sensors.add({.shape = ball, .pose = winnow::Pose::at(0.5, 0, 0.4)}, goal);
+  sensors.add({.shape = ball, .pose = winnow::Pose::at(0.5, 0, 0.2)}, goal);
   sensors.sense();
   for (const winnow::SensedBody& in : sensors.sensed()) {
     if (in.event == winnow::ContactEvent::begun) cheer(in.body);
