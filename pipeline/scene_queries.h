@@ -13,6 +13,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory_resource>
 #include <span>
 
@@ -84,6 +85,16 @@ struct SceneDistance {
   [[nodiscard]] explicit operator bool() const noexcept { return key.id != kNoObject; }
 };
 
+/// The closest pair of two sets of bodies.
+struct SetDistance {
+  Key a;                  ///< of the first set; null if there is none
+  ClientData data_a = 0;  ///< that it was added with
+  SceneDistance to;       ///< from it to that of the second set
+
+  /// True if there is such a pair.
+  [[nodiscard]] explicit operator bool() const noexcept { return a.id != kNoObject; }
+};
+
 /// A shape of the scene's pools that moves along a line without turning.
 struct ShapeCast {
   ShapeId shape;  ///< convex, a mesh, a height field or a compound; no half-space
@@ -143,8 +154,18 @@ class WINNOW_API SceneQueries {
   Status all(const ShapeCast& cast, std::span<const SceneHit>& hits, const Filter& filter = {},
              double tolerance = 1e-6);
 
-  /// The closest (or deepest) points of two bodies, whatever their filters.
-  Status distance(Key a, Key b, SceneDistance& answer);
+  /// The closest (or deepest) points of two bodies, whatever their filters; a null answer if they
+  /// are farther apart than `limit`, which may be below zero, and is found out the sooner the less
+  /// it is.
+  Status distance(Key a, Key b, SceneDistance& answer,
+                  double limit = std::numeric_limits<double>::infinity());
+  /// The two bodies of two sets that are the closest (or overlap the deepest), such as the links of
+  /// a robot and what it works among, whatever their filters; of equal ones those with the least
+  /// ids. A body that is in both sets is not held against itself. A null answer if all are farther
+  /// apart than `limit`. O(a x b) gaps between boxes, and the exact distances of hardly more than
+  /// one pair.
+  Status least_distance(std::span<const Key> a, std::span<const Key> b, SetDistance& answer,
+                        double limit = std::numeric_limits<double>::infinity());
   /// The bodies nearest to a point, at most `count`, no farther than `radius`, sorted by distance;
   /// inside a solid the distance is negative.
   Status nearest(const double point[3], std::size_t count, double radius,

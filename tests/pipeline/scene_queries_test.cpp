@@ -426,6 +426,71 @@ TEST(SceneQueries, two_bodies_are_as_far_apart_as_their_closest_parts) {
   }
 }
 
+TEST(SceneQueries, two_bodies_farther_apart_than_a_limit_have_no_distance) {
+  Random random(6);
+  QueryWorld world;
+  fill(world, 40, 0.0, random);
+  world.add_to_scene();
+  SceneQueries queries(*world.scene);
+  for (std::size_t n = 0; n < scaled(40); ++n) {
+    const std::size_t a = n % 2 == 0 ? 40 + random.below(12) : random.below(40);
+    const std::size_t b = random.below(world.bodies.size());
+    SceneDistance free;
+    SceneDistance limited;
+    ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], free), Status::ok);
+    const double slack = 1e-9 + 0.01 * std::abs(free.distance);
+    ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], limited, free.distance + slack),
+              Status::ok);
+    EXPECT_EQ(limited.key, world.keys[b]);
+    EXPECT_NEAR(limited.distance, free.distance, 1e-12);
+    ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], limited, free.distance - slack),
+              Status::ok);
+    EXPECT_FALSE(limited);
+  }
+  SceneDistance answer;
+  EXPECT_EQ(queries.distance(world.keys[0], world.keys[1], answer, std::nan("")),
+            Status::invalid_argument);
+}
+
+TEST(SceneQueries, two_sets_are_as_far_apart_as_their_closest_bodies) {
+  for (const double center : {0.0, 1e6}) {
+    Random random(7);
+    QueryWorld world;
+    fill(world, 60, center, random);
+    world.add_to_scene();
+    SceneQueries queries(*world.scene);
+    for (std::size_t n = 0; n < scaled(30); ++n) {
+      std::vector<Key> sets[2];
+      for (std::vector<Key>& set : sets) {
+        for (std::size_t i = random.below(8); i-- != 0;) {
+          set.push_back(world.keys[random.below(world.keys.size())]);
+        }
+      }
+      double least = kInfinity;
+      for (const Key a : sets[0]) {
+        for (const Key b : sets[1]) {
+          SceneDistance pair;
+          ASSERT_EQ(queries.distance(a, b, pair), Status::ok);
+          if (a != b) least = std::min(least, pair.distance);
+        }
+      }
+      SetDistance answer;
+      ASSERT_EQ(queries.least_distance(sets[0], sets[1], answer), Status::ok);
+      ASSERT_EQ(static_cast<bool>(answer), least < kInfinity);
+      if (!answer) continue;
+      EXPECT_NEAR(answer.to.distance, least, 1e-9);
+      SceneDistance own;
+      ASSERT_EQ(queries.distance(answer.a, answer.to.key, own), Status::ok);
+      EXPECT_NEAR(own.distance, least, 1e-9);
+      BodyDefinition body;
+      ASSERT_EQ(world.scene->body(answer.a, body), Status::ok);
+      EXPECT_EQ(answer.data_a, body.data);
+      ASSERT_EQ(queries.least_distance(sets[0], sets[1], answer, least - 1e-6), Status::ok);
+      EXPECT_FALSE(answer);
+    }
+  }
+}
+
 TEST(SceneQueries, the_bodies_nearest_to_a_point_are_those_of_all_bodies) {
   for (const double center : kCenters) {
     Random random(5);

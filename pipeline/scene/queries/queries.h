@@ -8,6 +8,12 @@
 
 namespace winnow {
 
+/// A PreciseBox as a column can hold it.
+struct PlainPreciseBox {
+  double min[3];
+  double max[3];
+};
+
 struct QueryState {
   QueryState(const SceneState& asked, std::pmr::memory_resource* memory) noexcept
       : scene(asked),
@@ -17,7 +23,8 @@ struct QueryState {
         hits(memory),
         hits_first(memory),
         overlaps(memory),
-        distances(memory) {}
+        distances(memory),
+        bounds(memory) {}
 
   const SceneState& scene;
   PartTraversal parts;
@@ -30,6 +37,8 @@ struct QueryState {
   Column<std::size_t> hits_first;
   Column<SceneOverlap> overlaps;
   Column<SceneDistance> distances;
+  /// Boxes of the second of two sets.
+  Column<PlainPreciseBox> bounds;
 
   [[nodiscard]] PlacedShape placed(std::uint32_t body) const noexcept {
     return {scene.shape[body], scene.pose[body]};

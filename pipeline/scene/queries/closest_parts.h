@@ -1,0 +1,114 @@
+#pragma once
+
+#include <winnow/pipeline/scene_queries.h>
+#include "pipeline/scene/queries/parts.h"
+#include "pipeline/solver/solver.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace winnow {
+
+[[nodiscard]] inline PairAnswer solve_parts(const PartTraversal& parts, const ConvexPart& a,
+                                            const ConvexPart& b, ContactLevel level) noexcept {
+  PartTables tables(parts.shapes());
+  const ShapeId first = tables.put(0, a);
+  const ShapeId second = tables.put(1, b);
+  SolverCounts counts;
+  return solve_pair(tables.tables(), first, a.pose, second, b.pose, level, 0.0, counts);
+}
+
+/// Both about the position of the first where that helps: parts of composite shapes lose nothing
+/// then where the scene is far from the origin. Convex pairs are solved as they stand.
+struct Pairing {
+  PlacedShape a;
+  PlacedShape b;
+  double base[3] = {0.0, 0.0, 0.0};
+
+  Pairing(const PlacedShape& first, const PlacedShape& second) noexcept : a(first), b(second) {
+    if (!a.shape.is_composite() && !b.shape.is_composite()) return;
+    std::copy_n(a.pose.position, 3, base);
+    b.pose = relative(b.pose, base);
+    a.pose = relative(a.pose, base);
+  }
+};
+
+/// The closest parts of two shapes, no farther apart than a limit.
+class ClosestParts {
+ public:
+  explicit ClosestParts(const PartTraversal& parts) noexcept : parts_(parts) {}
+
+  /// False if they are farther apart.
+  bool find(const PlacedShape& first, const PlacedShape& second, double limit,
+            SceneDistance& answer) noexcept {
+    const Pairing pair(first, second);
+    begin(pair.base, limit, answer);
+    std::fill_n(answer.normal, 3, 0.0);
+    auto look_at = [&](const ConvexPart& a, const ConvexPart& b, double) {
+      look(a, b);
+      return reach();
+    };
+    if (parts_.near_pairs(pair.a, pair.b, reach(), answer.normal, look_at)) return found_;
+    parts_.near(pair.a, parts_.box(pair.b), reach(),
+                [&](const ConvexPart& a, double) { return look_about(a, pair.b); });
+    return found_;
+  }
+  /// The same for a part of nothing, such as a point.
+  bool find(ConvexPart first, PlacedShape second, double limit, SceneDistance& answer) noexcept {
+    double base[3] = {0.0, 0.0, 0.0};
+    if (second.shape.is_composite()) {
+      std::copy_n(first.pose.position, 3, base);
+      second.pose = relative(second.pose, base);
+      first.pose = relative(first.pose, base);
+    }
+    begin(base, limit, answer);
+    look_about(first, second);
+    return found_;
+  }
+
+ private:
+  void begin(const double* base, double limit, SceneDistance& answer) noexcept {
+    found_ = false;
+    limit_ = limit;
+    answer_ = &answer;
+    base_ = base;
+  }
+  /// What no box can be nearer than; overlapping parts may be deeper than others.
+  [[nodiscard]] double reach() const noexcept { return std::max(limit_, 0.0); }
+  double look_about(const ConvexPart& a, const PlacedShape& second) noexcept {
+    parts_.near(second, parts_.box(a), reach(), [&](const ConvexPart& b, double) {
+      look(a, b);
+      return reach();
+    });
+    return reach();
+  }
+  void look(const ConvexPart& a, const ConvexPart& b) noexcept {
+    const PairAnswer pair = solve_parts(parts_, a, b, ContactLevel::distance);
+    if (!(pair.distance <= limit_)) return;
+    SceneDistance& answer = *answer_;
+    if (found_ && pair.distance == limit_ &&
+        std::pair(answer.part, answer.part_a) <= std::pair(b.part, a.part)) {
+      return;
+    }
+    found_ = true;
+    limit_ = pair.distance;
+    answer.distance = pair.distance;
+    answer.error_bound = pair.error_bound;
+    answer.part_a = a.part;
+    answer.part = b.part;
+    for (int i = 0; i < 3; ++i) {
+      answer.normal[i] = pair.normal[i];
+      const double on_a = a.pose.position[i] + pair.point[i];
+      answer.point_a[i] = base_[i] + on_a;
+      answer.point_b[i] = base_[i] + (on_a + pair.distance * pair.normal[i]);
+    }
+  }
+
+  const PartTraversal& parts_;
+  double limit_ = 0.0;
+  bool found_ = false;
+  SceneDistance* answer_ = nullptr;
+  const double* base_ = nullptr;
+};
+
+}  // namespace winnow
