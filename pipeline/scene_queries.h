@@ -4,6 +4,7 @@
 #include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
+#include <winnow/core/pair_events.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/mid_phase.h>
@@ -166,6 +167,12 @@ class WINNOW_API SceneQueries {
   /// one pair.
   Status least_distance(std::span<const Key> a, std::span<const Key> b, SetDistance& answer,
                         double limit = std::numeric_limits<double>::infinity());
+  /// Pairs (body of a, body of b) of two sets that share a point, in the order of the sets; at most
+  /// `most` of them: 1 stops at the first one. Whatever their filters; a body that is in both sets
+  /// is not held against itself. O(a x b) gaps between boxes, and an exact test for each that is
+  /// closed. Valid until the next question.
+  Status overlaps(std::span<const Key> a, std::span<const Key> b, std::span<const KeyPair>& pairs,
+                  std::size_t most = std::numeric_limits<std::size_t>::max());
   /// The bodies nearest to a point, at most `count`, no farther than `radius`, sorted by distance;
   /// inside a solid the distance is negative.
   Status nearest(const double point[3], std::size_t count, double radius,

@@ -467,13 +467,21 @@ TEST(SceneQueries, two_sets_are_as_far_apart_as_their_closest_bodies) {
         }
       }
       double least = kInfinity;
+      std::vector<KeyPair> overlapping;
       for (const Key a : sets[0]) {
         for (const Key b : sets[1]) {
+          if (a == b) continue;
           SceneDistance pair;
           ASSERT_EQ(queries.distance(a, b, pair), Status::ok);
-          if (a != b) least = std::min(least, pair.distance);
+          least = std::min(least, pair.distance);
+          if (pair.distance <= 0.0) overlapping.push_back({a, b});
         }
       }
+      std::span<const KeyPair> found;
+      ASSERT_EQ(queries.overlaps(sets[0], sets[1], found), Status::ok);
+      EXPECT_TRUE(std::ranges::equal(found, overlapping));
+      ASSERT_EQ(queries.overlaps(sets[0], sets[1], found, 1), Status::ok);
+      EXPECT_EQ(found.size(), std::min<std::size_t>(overlapping.size(), 1));
       SetDistance answer;
       ASSERT_EQ(queries.least_distance(sets[0], sets[1], answer), Status::ok);
       ASSERT_EQ(static_cast<bool>(answer), least < kInfinity);

@@ -24,7 +24,8 @@ struct QueryState {
         hits_first(memory),
         overlaps(memory),
         distances(memory),
-        bounds(memory) {}
+        bounds(memory),
+        overlapping(memory) {}
 
   const SceneState& scene;
   PartTraversal parts;
@@ -39,6 +40,7 @@ struct QueryState {
   Column<SceneDistance> distances;
   /// Boxes of the second of two sets.
   Column<PlainPreciseBox> bounds;
+  Column<KeyPair> overlapping;
 
   [[nodiscard]] PlacedShape placed(std::uint32_t body) const noexcept {
     return {scene.shape[body], scene.pose[body]};

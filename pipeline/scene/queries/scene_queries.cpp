@@ -2,8 +2,8 @@
 
 #include <winnow/core/rounding.h>
 #include "core/memory/new_in.h"
-#include "pipeline/scene/queries/closest_parts.h"
 #include "pipeline/scene/queries/queries.h"
+#include "pipeline/scene/queries/two_shapes.h"
 #include "pipeline/shapes/frame.h"
 #include "pipeline/solver/solver.h"
 
@@ -18,25 +18,6 @@ namespace {
 using Eigen::Vector3d;
 
 using mid::kInfinity;
-
-/// True if they share a point; `part` is then one of b that does.
-bool do_overlap(const PartTraversal& parts, const PlacedShape& first, const PlacedShape& second,
-                std::uint32_t& part) noexcept {
-  const Pairing pair(first, second);
-  bool found = false;
-  auto look = [&](const ConvexPart& a, const ConvexPart& b) {
-    found = solve_parts(parts, a, b, ContactLevel::boolean).overlap;
-    if (found) part = b.part;
-    return !found;
-  };
-  if (parts.pairs(pair.a, pair.b, look)) return found;
-  parts.met(pair.a, parts.box(pair.b).standing(), [&](const ConvexPart& a, double) {
-    parts.met(pair.b, parts.box(a).standing(),
-              [&](const ConvexPart& b, double) { return look(a, b) ? 0.0 : -1.0; });
-    return found ? -1.0 : 0.0;
-  });
-  return found;
-}
 
 bool is_nearer(const SceneDistance& a, const SceneDistance& b) noexcept {
   return a.distance != b.distance ? a.distance < b.distance : a.key.id < b.key.id;
@@ -173,8 +154,9 @@ Footprint SceneQueries::footprint() const noexcept {
                              state_->bounds.bytes()}) {
     sum.scratch += bytes;
   }
-  for (const Bytes& bytes : {state_->hits.bytes(), state_->hits_first.bytes(),
-                             state_->overlaps.bytes(), state_->distances.bytes()}) {
+  for (const Bytes& bytes :
+       {state_->hits.bytes(), state_->hits_first.bytes(), state_->overlaps.bytes(),
+        state_->distances.bytes(), state_->overlapping.bytes()}) {
     sum.results += bytes;
   }
   return sum;

@@ -1,5 +1,8 @@
 #pragma once
 
+// Two shapes, composite ones too, where they stand: whether they share a point, and their closest
+// parts.
+
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/scene/queries/parts.h"
 #include "pipeline/solver/solver.h"
@@ -32,6 +35,25 @@ struct Pairing {
     a.pose = relative(a.pose, base);
   }
 };
+
+/// True if they share a point; `part` is then one of b that does.
+[[nodiscard]] inline bool do_overlap(const PartTraversal& parts, const PlacedShape& first,
+                                     const PlacedShape& second, std::uint32_t& part) noexcept {
+  const Pairing pair(first, second);
+  bool found = false;
+  auto look = [&](const ConvexPart& a, const ConvexPart& b) {
+    found = solve_parts(parts, a, b, ContactLevel::boolean).overlap;
+    if (found) part = b.part;
+    return !found;
+  };
+  if (parts.pairs(pair.a, pair.b, look)) return found;
+  parts.met(pair.a, parts.box(pair.b).standing(), [&](const ConvexPart& a, double) {
+    parts.met(pair.b, parts.box(a).standing(),
+              [&](const ConvexPart& b, double) { return look(a, b) ? 0.0 : -1.0; });
+    return found ? -1.0 : 0.0;
+  });
+  return found;
+}
 
 /// The closest parts of two shapes, no farther apart than a limit.
 class ClosestParts {
