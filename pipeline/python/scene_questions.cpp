@@ -303,7 +303,8 @@ class ShapeRayInput {
           member<SceneOverlap, std::uint32_t>(lists, offsetof(SceneOverlap, part))};
 }
 
-[[nodiscard]] SceneDistanceTables distance(SharedScene& s, py::handle a, py::handle b) {
+[[nodiscard]] SceneDistanceTables distance(SharedScene& s, py::handle a, py::handle b,
+                                           double limit) {
   const KeyInput first(a, "a");
   const KeyInput second(b, "b");
   if (first.count() != second.count()) {
@@ -314,10 +315,54 @@ class ShapeRayInput {
       s, first.count(), "distance",
       [&](const Asker& ask, std::size_t i, std::span<const SceneDistance>& found) {
         SceneDistance& answer = one[i / kQuestionsPerTask];
-        const Status status = ask->distance(first.keys()[i], second.keys()[i], answer);
-        found = {&answer, 1};
+        const Status status = ask->distance(first.keys()[i], second.keys()[i], answer, limit);
+        if (answer) found = {&answer, 1};
         return status;
       }));
+}
+
+/// Asks about two sets of bodies.
+template <typename Ask>
+void ask_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Ask&& ask) {
+  const KeyInput first(a, "a");
+  const KeyInput second(b, "b");
+  const Outcome outcome = asking(s, [&] {
+    const Asker asker(s);
+    return Outcome{ask(asker, first.keys(), second.keys()), 0};
+  });
+  accept(outcome.status, call);
+}
+
+[[nodiscard]] py::array_t<std::uint64_t> overlaps(SharedScene& s, py::handle a, py::handle b,
+                                                  std::size_t most) {
+  std::vector<KeyPair> pairs;
+  ask_sets(s, a, b, "overlaps", [&](const Asker& ask, auto first, auto second) {
+    std::span<const KeyPair> found;
+    const Status status = ask->overlaps(first, second, found, most);
+    if (status == Status::ok) pairs.assign(found.begin(), found.end());
+    return status;
+  });
+  auto result = fresh<std::uint64_t>(pairs.size(), 2);
+  Key* const keys = keys_in(result);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    keys[2 * i] = pairs[i].first;
+    keys[2 * i + 1] = pairs[i].second;
+  }
+  return result;
+}
+
+[[nodiscard]] std::pair<py::array_t<std::uint64_t>, SceneDistanceTables> least_distance(
+    SharedScene& s, py::handle a, py::handle b, double limit) {
+  SetDistance answer;
+  ask_sets(s, a, b, "least_distance", [&](const Asker& ask, auto first, auto second) {
+    return ask->least_distance(first, second, answer, limit);
+  });
+  auto lists = std::make_shared<Lists<SceneDistance>>(1);
+  if (answer) lists->put(0, 0, &answer.to, &answer.to + 1);
+  lists->join();
+  auto nearest_a = fresh<std::uint64_t>(answer ? 1 : 0);
+  if (answer) *keys_in(nearest_a) = answer.a;
+  return {nearest_a, shown_distances(lists)};
 }
 
 [[nodiscard]] SceneDistanceTables nearest(SharedScene& s, py::handle points, std::size_t count,
@@ -396,9 +441,18 @@ void add_scene_queries(py::module_& module, SceneClass& scene) {
       .def("overlap", &overlap, arg("shapes"), arg("poses"), py::kw_only(),
            arg("filter") = Filter{},
            "Bodies that shapes (n,), or one, at poses (n, 7) share a point with, by id.")
-      .def("distance", &distance, arg("a"), arg("b"),
+      .def("distance", &distance, arg("a"), arg("b"), py::kw_only(), arg("limit") = forever,
            "Closest or deepest points of bodies a (n,) and b (n,), whatever their filters: one "
-           "answer to each question.")
+           "answer to each question, and none to those whose bodies are farther apart than "
+           "`limit`.")
+      .def("least_distance", &least_distance, arg("a"), arg("b"), py::kw_only(),
+           arg("limit") = forever,
+           "The closest, or deepest, bodies of two sets a (n,) and b (m,): the key of the first, "
+           "(1,), and one answer; none of both where all are farther apart than `limit`.")
+      .def("overlaps", &overlaps, arg("a"), arg("b"), py::kw_only(),
+           arg("most") = std::numeric_limits<std::size_t>::max(),
+           "Keys (k, 2) of bodies of two sets a (n,) and b (m,) that share a point, at most `most` "
+           "of them: 1 stops at the first one.")
       .def("nearest", &nearest, arg("points"), arg("count") = 1, py::kw_only(),
            arg("radius") = forever, arg("filter") = Filter{},
            "The at most `count` bodies nearest to each point (n, 3), no farther than `radius`, "

@@ -135,6 +135,19 @@ def test_shapes_are_cast_overlapped_and_measured(world):
     apart = scene.distance(balls[:2], balls[1:])
     assert apart.distance[1] == pytest.approx(np.hypot(0.9, 0.5) - 1)
     assert apart.first.tolist() == [0, 1, 2] and np.allclose(apart.point_a[1, 0], 9)
+    far = scene.distance(balls[:2], balls[1:], limit=1.0)
+    assert far.first.tolist() == [0, 0, 1] and far.key.tolist() == [balls[2]]
+    first, least = scene.least_distance(balls[:2], balls[1:])
+    assert first.tolist() == [balls[1]] and least.key.tolist() == [balls[2]]
+    assert least.distance[0] == apart.distance[1]
+    first, least = scene.least_distance(balls[:1], balls[1:], limit=1.0)
+    assert len(first) == 0 and len(least.distance) == 0
+    everyone = np.concatenate([ground, balls])
+    pairs = scene.overlaps(everyone, everyone)
+    assert pairs.shape[1] == 2 and sorted(map(tuple, pairs)) == sorted(
+        tuple(pair[::-1]) for pair in pairs
+    )
+    assert len(scene.overlaps(everyone, everyone, most=1)) == min(1, len(pairs))
     near = scene.nearest([[0, 0, 2.0], [9, 0, 9]], 2)
     assert near.data.tolist()[:2] == [1, 100] and near.distance[0] == pytest.approx(1.1)
     with pytest.raises(winnow.StatusError, match="unsupported"):
