@@ -1,0 +1,352 @@
+#include "pipeline/motion/feature_motion.h"
+
+#include "pipeline/motion/feature_test.kernel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow {
+namespace {
+
+/// Bounds the error of a direction times a corner at some time, over the sum of the products'
+/// largest magnitudes: 10 roundings, and as many of what is interpolated between two of them.
+constexpr double kPlaneError = 0x1p-48;
+/// Shorter intervals are not cut in two.
+constexpr double kShortest = 0x1p-52;
+
+/// Numbers of a vector, which lie one after another.
+using Numbers3 = const double*;
+
+double dot(Numbers3 a, Numbers3 b) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+void cross(Numbers3 a, Numbers3 b, double* out) noexcept {
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+void subtract(const Vec3d& a, const Vec3d& b, double* out) noexcept {
+  for (int axis = 0; axis < 3; ++axis) out[axis] = a[axis] - b[axis];
+}
+
+void read_state(FeaturePair kind, const std::array<Vec3d, 4>& p, int end,
+                FeatureMotion& motion) noexcept {
+  auto* const corner = motion.corner[end];
+  if (kind == FeaturePair::vertex_face) {
+    for (int k = 0; k < 3; ++k) subtract(p[0], p[static_cast<std::size_t>(k) + 1], corner[k]);
+    subtract(p[2], p[1], motion.edge[0][end]);
+    subtract(p[3], p[1], motion.edge[1][end]);
+  } else {
+    subtract(p[0], p[2], corner[0]);
+    subtract(p[1], p[2], corner[1]);
+    subtract(p[1], p[3], corner[2]);
+    subtract(p[0], p[3], corner[3]);
+    subtract(p[1], p[0], motion.edge[0][end]);
+    subtract(p[3], p[2], motion.edge[1][end]);
+  }
+  for (int axis = 0; axis < 3; ++axis) motion.across[end][axis] = corner[0][axis];
+}
+
+template <typename Change>
+void for_each_number(FeatureMotion& motion, Change&& change) noexcept {
+  for (int end = 0; end < 2; ++end) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int k = 0; k < motion.corners; ++k) change(motion.corner[end][k][axis]);
+      change(motion.across[end][axis]);
+      for (auto& edge : motion.edge) change(edge[end][axis]);
+    }
+  }
+}
+
+void scale(FeatureMotion& motion, double largest) noexcept {
+  int exponent = 0;
+  static_cast<void>(std::frexp(largest, &exponent));
+  for_each_number(motion, [&](double& x) { x = std::ldexp(x, -exponent); });
+  motion.separation = std::ldexp(motion.separation, -exponent);
+}
+
+void find_reach(FeatureMotion& motion) noexcept {
+  for (int axis = 0; axis < 3; ++axis) {
+    motion.reach[axis] = 0.0;
+    for (const auto& state : motion.corner) {
+      for (int k = 0; k < motion.corners; ++k) {
+        motion.reach[axis] = std::max(motion.reach[axis], std::abs(state[k][axis]));
+      }
+    }
+  }
+}
+
+/// det(across, first edge, second edge), a cubic in time by its Bernstein coefficients. Where the
+/// polygon may come within the separation of the origin its magnitude is at most `band`.
+struct SpannedVolume {
+  double at[4];
+  double band;
+};
+
+/// The largest that a determinant can be whose columns have no larger magnitudes than these.
+double largest_volume(const FeatureMotion& motion) noexcept {
+  double most[3][3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto larger = [&](const double(&ends)[2][3]) {
+      return std::max(std::abs(ends[0][axis]), std::abs(ends[1][axis]));
+    };
+    most[0][axis] = larger(motion.across);
+    most[1][axis] = larger(motion.edge[0]);
+    most[2][axis] = larger(motion.edge[1]);
+  }
+  const auto minor = [&](int y, int z) {
+    return most[1][y] * most[2][z] + most[1][z] * most[2][y];
+  };
+  return most[0][0] * minor(1, 2) + most[0][1] * minor(2, 0) + most[0][2] * minor(0, 1);
+}
+
+SpannedVolume volume_of(const FeatureMotion& motion) noexcept {
+  double first[3];
+  double mixed[3];
+  double other[3];
+  double last[3];
+  cross(motion.edge[0][0], motion.edge[1][0], first);
+  cross(motion.edge[0][0], motion.edge[1][1], mixed);
+  cross(motion.edge[0][1], motion.edge[1][0], other);
+  cross(motion.edge[0][1], motion.edge[1][1], last);
+  for (int axis = 0; axis < 3; ++axis) mixed[axis] += other[axis];
+  const double* const start = motion.across[0];
+  const double* const end = motion.across[1];
+  SpannedVolume volume{{dot(start, first), (dot(end, first) + dot(start, mixed)) / 3.0,
+                        (dot(start, last) + dot(end, mixed)) / 3.0, dot(end, last)},
+                       kVolumeError * largest_volume(motion) + kLostByUnderflow};
+  if (motion.separation > 0.0) {
+    // The normal is a quadratic polynomial with these coefficients, the middle one doubled.
+    const double longest =
+        std::max({std::sqrt(dot(first, first)), 0.5 * std::sqrt(dot(mixed, mixed)),
+                  std::sqrt(dot(last, last))});
+    const double sizes = 1e-150 + longest;
+    volume.band = (volume.band + motion.separation * sizes) * (1.0 + 0x1p-40);
+  }
+  return volume;
+}
+
+double mix(double a, double b, double t) noexcept {
+  return (1.0 - t) * a + t * b;
+}
+
+struct TimeInterval {
+  double low;
+  double high;
+};
+
+/// Bernstein coefficients over an interval: what the cubic's polar form says of its ends.
+void coefficients_over(const double (&c)[4], const TimeInterval& time, double (&y)[4]) noexcept {
+  const double low = time.low;
+  const double high = time.high;
+  const double a0 = mix(c[0], c[1], low);
+  const double a1 = mix(c[1], c[2], low);
+  const double a2 = mix(c[2], c[3], low);
+  const double b0 = mix(a0, a1, low);
+  const double b1 = mix(a1, a2, low);
+  y[0] = mix(b0, b1, low);
+  y[1] = mix(b0, b1, high);
+  const double d0 = mix(c[0], c[1], high);
+  const double d1 = mix(c[1], c[2], high);
+  const double d2 = mix(c[2], c[3], high);
+  const double e0 = mix(d0, d1, high);
+  const double e1 = mix(d1, d2, high);
+  y[2] = mix(e0, e1, low);
+  y[3] = mix(e0, e1, high);
+}
+
+/// Where, from the side of the first coefficient on, the hull of the coefficients first comes
+/// within `band` of zero: 0 to 1, or 2 if it does nowhere.
+double first_in_band(double y0, double y1, double y2, double y3, double band) noexcept {
+  const double sign = y0 < 0.0 ? -1.0 : 1.0;
+  const double z[4] = {sign * y0 - band, sign * y1 - band, sign * y2 - band, sign * y3 - band};
+  if (!(z[0] > 0.0)) return 0.0;
+  double first = 2.0;
+  for (int i = 0; i < 3; ++i) {
+    if (!(z[i] > 0.0)) continue;
+    for (int k = i + 1; k < 4; ++k) {
+      if (z[k] > 0.0) continue;
+      first = std::min(first, (i + (k - i) * (z[i] / (z[i] - z[k]))) / 3.0);
+    }
+  }
+  return first;
+}
+
+/// Cuts off times at which the volume is not zero. False if none are left.
+bool clip(const SpannedVolume& volume, TimeInterval& time) noexcept {
+  constexpr double kWorthAnother = 0.5;
+  for (;;) {
+    double y[4];
+    coefficients_over(volume.at, time, y);
+    const double from = first_in_band(y[0], y[1], y[2], y[3], volume.band);
+    if (from > 1.0) return false;
+    const double to = 1.0 - first_in_band(y[3], y[2], y[1], y[0], volume.band);
+    const double length = time.high - time.low;
+    const double low = from > 0.0 ? time.low + from * length : time.low;
+    const double high = to < 1.0 ? time.low + to * length : time.high;
+    time = {std::min(low, high), std::max(low, high)};
+    if (!(time.high - time.low < kWorthAnother * length)) return true;
+  }
+}
+
+/// Looks for a plane that keeps the polygon from the origin at the middle of an interval, and for
+/// how long it does.
+class PlaneSearch {
+ public:
+  explicit PlaneSearch(const FeatureMotion& motion) noexcept : motion_(motion) {}
+
+  /// True if there is one; `apart` is then the part of the interval for which it is.
+  bool find(const TimeInterval& time, double middle, TimeInterval& apart) noexcept {
+    for (int k = 0; k < motion_.corners; ++k) place(k, middle, at_[k]);
+    double n[3] = {};
+    nearest_of_border(n);
+    if (keeps_apart(n, time, middle, apart)) return true;
+    double side[2][3];
+    for (int axis = 0; axis < 3; ++axis) {
+      side[0][axis] = at_[1][axis] - at_[0][axis];
+      side[1][axis] = at_[motion_.corners - 1][axis] - at_[0][axis];
+    }
+    cross(side[0], side[1], n);
+    if (dot(n, at_[0]) < 0.0) {
+      for (double& x : n) x = -x;
+    }
+    return keeps_apart(n, time, middle, apart);
+  }
+
+  /// True if the plane through the origin across one of the axes does for the whole step.
+  [[nodiscard]] bool is_apart_on_axis() const noexcept {
+    const double least = motion_.separation * (1.0 + 0x1p-50);
+    for (int axis = 0; axis < 3; ++axis) {
+      double low = motion_.corner[0][0][axis];
+      double high = low;
+      for (const auto& state : motion_.corner) {
+        for (int k = 0; k < motion_.corners; ++k) {
+          low = std::min(low, state[k][axis]);
+          high = std::max(high, state[k][axis]);
+        }
+      }
+      if (low > least || -high > least) return true;
+    }
+    return false;
+  }
+
+ private:
+  void place(int k, double t, double* out) const noexcept {
+    for (int axis = 0; axis < 3; ++axis) {
+      out[axis] = mix(motion_.corner[0][k][axis], motion_.corner[1][k][axis], t);
+    }
+  }
+
+  /// The point of the polygon's border that is nearest to the origin, as a direction: across the
+  /// side that it lies on even where it is so near that its own digits are few.
+  void nearest_of_border(double (&nearest)[3]) const noexcept {
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < motion_.corners; ++k) {
+      const double* const a = at_[k];
+      const double* const b = at_[k + 1 == motion_.corners ? 0 : k + 1];
+      const double side[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+      const double square = dot(side, side);
+      const double s = square > 0.0 ? std::clamp(-dot(a, side) / square, 0.0, 1.0) : 0.0;
+      const double q[3] = {a[0] + s * side[0], a[1] + s * side[1], a[2] + s * side[2]};
+      const double distance = dot(q, q);
+      if (!(distance < least)) continue;
+      least = distance;
+      const double along = s > 0.0 && s < 1.0 ? dot(q, side) / square : 0.0;
+      for (int axis = 0; axis < 3; ++axis) nearest[axis] = q[axis] - along * side[axis];
+    }
+  }
+
+  bool keeps_apart(double (&n)[3], const TimeInterval& time, double middle,
+                   TimeInterval& apart) const noexcept {
+    const double most = std::max({std::abs(n[0]), std::abs(n[1]), std::abs(n[2])});
+    if (!(most > 0.0)) return false;
+    double least = kLostByUnderflow;
+    for (int axis = 0; axis < 3; ++axis) {
+      n[axis] /= most;
+      least += kPlaneError * std::abs(n[axis]) * motion_.reach[axis];
+    }
+    if (motion_.separation > 0.0) {
+      least += motion_.separation * std::sqrt(dot(n, n)) * (1.0 + 0x1p-50);
+    }
+    double f[4];
+    for (int k = 0; k < motion_.corners; ++k) {
+      f[k] = dot(n, at_[k]);
+      if (!(f[k] > least)) return false;
+    }
+    double before = 1.0;
+    double after = 1.0;
+    for (int k = 0; k < motion_.corners; ++k) {
+      const double start = dot(n, motion_.corner[0][k]);
+      const double end = dot(n, motion_.corner[1][k]);
+      const double above = f[k] - least;
+      before = std::min(before, part_above(above, mix(start, end, time.low) - least));
+      after = std::min(after, part_above(above, mix(start, end, time.high) - least));
+    }
+    apart = time;
+    if (before < 1.0) apart.low = middle + before * (time.low - middle);
+    if (after < 1.0) apart.high = middle + after * (time.high - middle);
+    return true;
+  }
+
+  /// The part of the way from a number above zero to another that surely is above zero, too.
+  static double part_above(double above, double other) noexcept {
+    constexpr double kAlmost = 1.0 - 0x1p-20;
+    return other > 0.0 ? 1.0 : kAlmost * (above / (above - other));
+  }
+
+  const FeatureMotion& motion_;
+  double at_[4][3];
+};
+
+}  // namespace
+
+bool read_motion(FeaturePair kind, const std::array<Vec3d, 4>& start,
+                 const std::array<Vec3d, 4>& end, double separation,
+                 FeatureMotion& motion) noexcept {
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (!start[k].all_finite() || !end[k].all_finite()) return false;
+  }
+  motion.corners = kind == FeaturePair::vertex_face ? 3 : 4;
+  motion.separation = separation;
+  read_state(kind, start, 0, motion);
+  read_state(kind, end, 1, motion);
+  double largest = 0.0;
+  for_each_number(motion, [&](double& x) { largest = std::max(largest, std::abs(x)); });
+  if (!(largest <= std::numeric_limits<double>::max())) return false;
+  if (largest > 0.0 && (largest < kLeastScaled || largest > kMostScaled)) scale(motion, largest);
+  find_reach(motion);
+  return true;
+}
+
+FeatureImpact first_impact(const FeatureMotion& motion,
+                           const FeatureImpactOptions& options) noexcept {
+  PlaneSearch planes(motion);
+  if (planes.is_apart_on_axis()) return {};
+  const SpannedVolume volume = volume_of(motion);
+  const double shortest = std::max(options.tolerance, kShortest);
+  // Intervals that wait are later ones, and each that is begun is at most half as long as before.
+  TimeInterval open[64];
+  int size = 0;
+  open[size++] = {0.0, 1.0};
+  for (std::uint32_t looked_at = 0; size != 0; ++looked_at) {
+    TimeInterval time = open[--size];
+    if (looked_at == options.max_intervals) return {true, time.low};
+    if (!clip(volume, time)) continue;
+    const double middle = time.low + 0.5 * (time.high - time.low);
+    TimeInterval apart;
+    if (planes.find(time, middle, apart)) {
+      if (apart.high < time.high) open[size++] = {apart.high, time.high};
+      if (time.low < apart.low) open[size++] = {time.low, apart.low};
+    } else if (time.high - time.low <= shortest) {
+      return {true, time.low};
+    } else {
+      open[size++] = {middle, time.high};
+      open[size++] = {time.low, middle};
+    }
+  }
+  return {};
+}
+
+}  // namespace winnow
