@@ -1,5 +1,7 @@
 #include "bench/questions/questions.h"
 
+#include "bench/questions/motion_json.h"
+
 #include <vector>
 
 namespace winnow::bench {
@@ -21,6 +23,8 @@ class Questionnaire {
     Status status = Status::invalid_argument;
     if (is_object && question.contains("ray")) {
       status = ask_ray(question, answer);
+    } else if (is_object && question.contains("motion")) {
+      status = answer_motion(question, answer);
     } else if (is_object && question.contains("a") && question.contains("b")) {
       status = add_pair(row, question);
     }
