@@ -47,6 +47,7 @@
 #include <winnow/pipeline/contact_groups.h>
 #include <winnow/pipeline/contact_regions.h>
 #include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/deformable_mesh.h>
 #include <winnow/pipeline/feature_impacts.h>
 #include <winnow/pipeline/height_field.h>
 #include <winnow/pipeline/mid_phase.h>

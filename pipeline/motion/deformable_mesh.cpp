@@ -1,0 +1,524 @@
+#include <winnow/core/rounding.h>
+#include <winnow/pipeline/deformable_mesh.h>
+
+#include "core/memory/bounds_pool.h"
+#include "core/memory/columns.h"
+#include "core/memory/new_in.h"
+#include "core/sort/stretches.h"
+#include "partitions/tree/block_tree.h"
+#include "partitions/tree/kd_order.h"
+#include "pipeline/motion/feature_proximity.h"
+#include "pipeline/motion/feature_stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace winnow {
+namespace {
+
+constexpr std::size_t kMostFaces = std::size_t{1} << 28U;
+constexpr std::size_t kMostVertices = 0x7FFFFFFF;
+constexpr std::size_t kRowsPerStretch = 8192;
+/// Differences of numbers that are no larger stay in the range of double, and so do theirs.
+constexpr double kFarthest = 0x1p1020;
+
+bool has_three_columns(const PointView& points) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (points.single[axis] == nullptr && points.precise[axis] == nullptr) return false;
+  }
+  return true;
+}
+
+bool are_near_enough(const PointView& points) noexcept {
+  for (std::size_t i = 0; i < points.count; ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!(std::abs(points.coordinate(i, axis)) <= kFarthest)) return false;
+    }
+  }
+  return true;
+}
+
+bool share_a_number(const std::uint32_t* a, const std::uint32_t* b) noexcept {
+  return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
+}
+
+/// Boxes of features in an order of space, and the tree above them. A row's id is the number of its
+/// feature.
+class FeatureRows {
+ public:
+  explicit FeatureRows(std::pmr::memory_resource* memory) noexcept
+      : boxes(memory, Volume::aabb), tree(memory), memory_(memory) {}
+
+  [[nodiscard]] RowView view() const noexcept {
+    RowView rows;
+    for (std::size_t c = 0; c < 6; ++c) rows.column[c] = boxes.column(c);
+    rows.id = boxes.ids();
+    return rows;
+  }
+
+  /// Rows of as many features, in the order of their numbers.
+  [[nodiscard]] bool make(std::size_t count) noexcept {
+    if (!boxes.reserve_exact(count)) return false;
+    boxes.append(count);
+    for (std::size_t i = 0; i < count; ++i) boxes.ids()[i] = static_cast<std::uint32_t>(i);
+    boxes.pad();
+    return true;
+  }
+
+  /// Row i gets the box around those of the vertices corner[Corners * id ...].
+  template <std::size_t Corners>
+  void fit(const FeatureRows& vertices, const std::uint32_t* corner,
+           const Execution& execution) noexcept {
+    for_stretches(execution, boxes.rows(), kRowsPerStretch,
+                  [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t row = begin; row < end; ++row) {
+                      const std::uint32_t* const own = corner + Corners * boxes.ids()[row];
+                      for (std::size_t axis = 0; axis < 3; ++axis) {
+                        const float* const low = vertices.boxes.column(axis);
+                        const float* const high = vertices.boxes.column(3 + axis);
+                        float least = low[own[0]];
+                        float most = high[own[0]];
+                        for (std::size_t k = 1; k < Corners; ++k) {
+                          least = std::min(least, low[own[k]]);
+                          most = std::max(most, high[own[k]]);
+                        }
+                        boxes.column(axis)[row] = least;
+                        boxes.column(3 + axis)[row] = most;
+                      }
+                    }
+                  });
+  }
+
+  /// Puts the numbers in an order of space, by the boxes as they stand.
+  [[nodiscard]] bool find_order(Column<std::uint32_t>& order,
+                                const Execution& execution) const noexcept {
+    const std::size_t count = boxes.rows();
+    Column<std::uint32_t> room(memory_);
+    Column<float> scratch(memory_);
+    if (!order.resize(count) || !room.resize(count)) return false;
+    std::copy_n(boxes.ids(), count, order.data());
+    return sort_by_kd_cuts(boxes, {order.data(), count}, room.data(), scratch, execution,
+                           KdParts::blocks);
+  }
+
+  /// Takes that order. Boxes do not follow.
+  [[nodiscard]] bool sort(const Execution& execution) noexcept {
+    Column<std::uint32_t> order(memory_);
+    if (!find_order(order, execution)) return false;
+    std::copy_n(order.data(), boxes.rows(), boxes.ids());
+    return tree.cover(0, boxes.blocks());
+  }
+
+  BoundsPool boxes;
+  BlockTree tree;
+
+ private:
+  std::pmr::memory_resource* memory_;
+};
+
+/// Pairs on their way from a tree to who takes them: a buffer that is handed on whenever it is
+/// full, so that pairs never take more memory than it has.
+template <typename Take>
+class PairStream {
+ public:
+  PairStream(std::pmr::memory_resource* memory, std::size_t chunk, Take& take) noexcept
+      : buffer_(memory), chunk_(chunk), take_(take) {}
+
+  [[nodiscard]] bool reserve() noexcept {
+    if (chunk_ > Column<Pair>::kMost - kSinkSlack || !buffer_.reserve(chunk_ + kSinkSlack)) {
+      return false;
+    }
+    sink_.owner = this;
+    sink_.grow = [](PairSink& sink) {
+      static_cast<PairStream*>(sink.owner)->hand_on();
+      return true;
+    };
+    aim();
+    return true;
+  }
+
+  [[nodiscard]] PairSink& sink() noexcept { return sink_; }
+
+  void hand_on() noexcept {
+    const auto* const begin = reinterpret_cast<const std::uint32_t*>(buffer_.data());
+    const auto count = static_cast<std::size_t>(sink_.cursor - begin) / 2;
+    for (std::size_t i = 0; i < count; i += chunk_) {
+      take_(std::span<Pair>(buffer_.data() + i, std::min(chunk_, count - i)));
+    }
+    aim();
+  }
+
+ private:
+  void aim() noexcept {
+    sink_.cursor = reinterpret_cast<std::uint32_t*>(buffer_.data());
+    sink_.limit = sink_.cursor + 2 * chunk_;
+  }
+
+  Column<Pair> buffer_;
+  std::size_t chunk_;
+  Take& take_;
+  PairSink sink_;
+};
+
+}  // namespace
+
+struct DeformableMesh::State {
+  explicit State(const DeformableMeshOptions& options) noexcept
+      : vertices(options.memory),
+        faces(options.memory),
+        edges(options.memory),
+        vertex_order(options.memory),
+        face_corners(options.memory),
+        edge_ends(options.memory) {}
+
+  [[nodiscard]] bool take(const PointView& rest, const IndexView& triangles,
+                          const DeformableMeshOptions& options) noexcept;
+  [[nodiscard]] bool link() noexcept;
+  void fit(const DeformableMeshOptions& options) noexcept;
+
+  [[nodiscard]] std::array<std::uint32_t, 2> ends_of(std::uint32_t edge) const noexcept {
+    return {edge_ends[std::size_t{2} * edge], edge_ends[std::size_t{2} * edge + 1]};
+  }
+  [[nodiscard]] const std::uint32_t* corners_of(std::uint32_t face) const noexcept {
+    return face_corners.data() + std::size_t{3} * face;
+  }
+
+  /// Of two features of this mesh.
+  [[nodiscard]] bool share_a_vertex(FeaturePair kind, const Pair& pair) const noexcept {
+    if (kind == FeaturePair::edge_edge) {
+      return share_a_number(edge_ends.data() + std::size_t{2} * pair.first,
+                            edge_ends.data() + std::size_t{2} * pair.second);
+    }
+    const std::uint32_t* const corner = corners_of(pair.second);
+    return corner[0] == pair.first || corner[1] == pair.first || corner[2] == pair.first;
+  }
+
+  // Rows of vertices stand in the order of their numbers, where faces and edges find them, and no
+  // tree stands above them.
+  FeatureRows vertices;
+  FeatureRows faces;
+  FeatureRows edges;
+  Column<std::uint32_t> vertex_order;
+  Column<std::uint32_t> face_corners;
+  Column<std::uint32_t> edge_ends;
+  PointView start;
+  PointView end;
+  double distance = 0.0;
+  bool moved = false;
+};
+
+bool DeformableMesh::State::take(const PointView& rest, const IndexView& triangles,
+                                 const DeformableMeshOptions& options) noexcept {
+  if (!face_corners.resize(3 * triangles.count)) return false;
+  for (std::size_t i = 0; i < triangles.count; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) face_corners[3 * i + k] = triangles.corner(i, k);
+  }
+  if (!link() || !vertices.make(rest.count) || !faces.make(triangles.count) ||
+      !edges.make(edge_ends.size() / 2)) {
+    return false;
+  }
+  start = end = rest;
+  fit(options);
+  return vertices.find_order(vertex_order, options.execution) && faces.sort(options.execution) &&
+         edges.sort(options.execution);
+}
+
+/// Each edge once, sorted by its ends. One between a vertex and itself is none: the others at that
+/// vertex hold it.
+bool DeformableMesh::State::link() noexcept {
+  Column<std::uint64_t> all(face_corners.memory());
+  if (!all.reserve(face_corners.size())) return false;
+  for (std::size_t i = 0; i < face_corners.size(); i += 3) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(face_corners[i + k], face_corners[i + (k + 1) % 3]);
+      if (low == high) continue;
+      static_cast<void>(all.push_back(std::uint64_t{low} << 32U | high));
+    }
+  }
+  std::sort(all.begin(), all.end());
+  const auto count = static_cast<std::size_t>(std::unique(all.begin(), all.end()) - all.begin());
+  if (!edge_ends.resize(2 * count)) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    edge_ends[2 * i] = static_cast<std::uint32_t>(all[i] >> 32U);
+    edge_ends[2 * i + 1] = static_cast<std::uint32_t>(all[i]);
+  }
+  return true;
+}
+
+/// The boxes of the step. Those of faces and edges are made of their vertices' boxes, which is the
+/// same as to round theirs: rounding keeps the order of numbers.
+void DeformableMesh::State::fit(const DeformableMeshOptions& options) noexcept {
+  const double half = 0.5 * distance;
+  const auto bound = [](float x) {
+    constexpr float kMost = std::numeric_limits<float>::max();
+    return std::clamp(x, -kMost, kMost);
+  };
+  for_stretches(options.execution, vertices.boxes.rows(), kRowsPerStretch,
+                [&](std::size_t begin, std::size_t past) {
+                  for (std::size_t axis = 0; axis < 3; ++axis) {
+                    float* const low = vertices.boxes.column(axis);
+                    float* const high = vertices.boxes.column(3 + axis);
+                    const double origin = options.origin[axis];
+                    for (std::size_t i = begin; i < past; ++i) {
+                      const double a = start.coordinate(i, axis);
+                      const double b = end.coordinate(i, axis);
+                      const double least = add_down(std::min(a, b), -origin);
+                      const double most = add_up(std::max(a, b), -origin);
+                      low[i] = bound(round_down(half > 0.0 ? add_down(least, -half) : least));
+                      high[i] = bound(round_up(half > 0.0 ? add_up(most, half) : most));
+                    }
+                  }
+                });
+  faces.fit<3>(vertices, face_corners.data(), options.execution);
+  edges.fit<2>(vertices, edge_ends.data(), options.execution);
+}
+
+DeformableMesh::DeformableMesh(const DeformableMeshOptions& options) noexcept : options_(options) {}
+
+DeformableMesh::DeformableMesh(DeformableMesh&& other) noexcept
+    : options_(other.options_), state_(std::exchange(other.state_, nullptr)) {}
+
+DeformableMesh::~DeformableMesh() {
+  delete_in(options_.memory, state_);
+}
+
+Status DeformableMesh::build(const PointView& rest, const IndexView& triangles) noexcept {
+  if (triangles.count == 0 || rest.count == 0) return Status::invalid_shape;
+  if (triangles.count > kMostFaces || rest.count > kMostVertices) return Status::too_many_objects;
+  if (!has_three_columns(rest) || (triangles.wide == nullptr && triangles.narrow == nullptr) ||
+      options_.chunk == 0) {
+    return Status::invalid_argument;
+  }
+  const PointView origin(std::span<const Vec3d>(&options_.origin, 1));
+  if (!are_near_enough(rest) || !are_near_enough(origin)) return Status::invalid_bounds;
+  for (std::size_t i = 0; i < triangles.count; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (triangles.corner(i, k) >= rest.count) return Status::invalid_shape;
+    }
+  }
+  State* fresh = new_in<State>(options_.memory, options_);
+  if (fresh == nullptr) return Status::out_of_memory;
+  const bool taken = fresh->take(rest, triangles, options_);
+  if (taken) std::swap(state_, fresh);
+  delete_in(options_.memory, fresh);
+  return taken ? Status::ok : Status::out_of_memory;
+}
+
+Status DeformableMesh::move(const PointView& start, const PointView& end,
+                            double distance) noexcept {
+  if (state_ == nullptr || !(distance >= 0.0 && distance <= kFarthest)) {
+    return Status::invalid_argument;
+  }
+  if (start.count != vertices() || end.count != vertices()) return Status::size_mismatch;
+  if (!has_three_columns(start) || !has_three_columns(end)) return Status::invalid_argument;
+  if (!are_near_enough(start) || !are_near_enough(end)) return Status::invalid_bounds;
+  state_->start = start;
+  state_->end = end;
+  state_->distance = distance;
+  state_->moved = true;
+  state_->fit(options_);
+  state_->faces.tree.refit_all(state_->faces.view(), options_.execution);
+  state_->edges.tree.refit_all(state_->edges.view(), options_.execution);
+  return Status::ok;
+}
+
+std::size_t DeformableMesh::triangles() const noexcept {
+  return state_ == nullptr ? 0 : state_->faces.boxes.rows();
+}
+
+std::size_t DeformableMesh::vertices() const noexcept {
+  return state_ == nullptr ? 0 : state_->vertices.boxes.rows();
+}
+
+std::size_t DeformableMesh::edges() const noexcept {
+  return state_ == nullptr ? 0 : state_->edges.boxes.rows();
+}
+
+std::array<std::uint32_t, 2> DeformableMesh::edge(std::size_t i) const noexcept {
+  return state_->ends_of(static_cast<std::uint32_t>(i));
+}
+
+Status DeformableMesh::find_self(FeaturePair kind, const Chunks<Pair>& chunks) const noexcept {
+  if (state_ == nullptr || !state_->moved) return Status::invalid_argument;
+  // In place, and without a branch: which pairs share a vertex is as hard to foresee as a coin.
+  const auto take = [&](std::span<Pair> pairs) {
+    std::size_t kept = 0;
+    for (const Pair pair : pairs) {
+      pairs[kept] = pair;
+      kept += state_->share_a_vertex(kind, pair) ? 0U : 1U;
+    }
+    if (kept != 0) chunks.take(chunks.context, pairs.first(kept));
+  };
+  PairStream stream(options_.memory, options_.chunk, take);
+  if (!stream.reserve()) return Status::out_of_memory;
+  const BlockTreeKernels& kernels = block_tree_kernels();
+  if (kind == FeaturePair::edge_edge) {
+    const BlockTree& tree = state_->edges.tree;
+    const auto groups = static_cast<std::uint32_t>(tree.groups());
+    if (groups != 0) kernels.self_pairs(tree.view(state_->edges.view()), 0, groups, stream.sink());
+  } else {
+    QueryBatch batch;
+    const RowView own = state_->vertices.view();
+    std::copy_n(own.column, 6, batch.column);
+    batch.id = own.id;
+    batch.rows = state_->vertex_order.data();
+    batch.end = static_cast<std::uint32_t>(vertices());
+    batch.mode = HitMode::query_first;
+    kernels.query(state_->faces.tree.view(state_->faces.view()), batch, stream.sink());
+  }
+  stream.hand_on();
+  return Status::ok;
+}
+
+Status DeformableMesh::find_with(const DeformableMesh& other, FeaturePair kind,
+                                 const Chunks<Pair>& chunks) const noexcept {
+  if (state_ == nullptr || !state_->moved || other.state_ == nullptr || !other.state_->moved ||
+      !(options_.origin == other.options_.origin)) {
+    return Status::invalid_argument;
+  }
+  const auto take = [&](std::span<Pair> pairs) { chunks.take(chunks.context, pairs); };
+  PairStream stream(options_.memory, options_.chunk, take);
+  if (!stream.reserve()) return Status::out_of_memory;
+  const bool of_edges = kind == FeaturePair::edge_edge;
+  const FeatureRows& asking = of_edges ? state_->edges : state_->vertices;
+  const FeatureRows& asked = of_edges ? other.state_->edges : other.state_->faces;
+  if (asked.boxes.rows() == 0) return Status::ok;
+  QueryBatch batch;
+  const RowView own = asking.view();
+  std::copy_n(own.column, 6, batch.column);
+  batch.id = own.id;
+  if (!of_edges) batch.rows = state_->vertex_order.data();
+  batch.end = static_cast<std::uint32_t>(asking.boxes.rows());
+  batch.mode = HitMode::query_first;
+  block_tree_kernels().query(asked.tree.view(asked.view()), batch, stream.sink());
+  stream.hand_on();
+  return Status::ok;
+}
+
+namespace {
+
+/// Results for the caller, handed over when as many as fit a chunk are there.
+template <typename Result, typename Chunks>
+class ResultChunk {
+ public:
+  ResultChunk(std::pmr::memory_resource* memory, const Chunks& chunks) noexcept
+      : results_(memory), chunks_(chunks) {}
+  [[nodiscard]] bool reserve(std::size_t most) noexcept {
+    most_ = most;
+    return results_.reserve(most);
+  }
+  void add(const Result& result) noexcept {
+    if (results_.size() == most_) hand_over();
+    static_cast<void>(results_.push_back(result));
+  }
+  void hand_over() noexcept {
+    if (!results_.empty()) chunks_.take(chunks_.context, {results_.data(), results_.size()});
+    results_.clear();
+  }
+
+ private:
+  Column<Result> results_;
+  const Chunks& chunks_;
+  std::size_t most_ = 0;
+};
+
+/// The vertices of a pair of features: of the first feature's mesh, then of the second's.
+template <typename State>
+std::array<std::uint32_t, 4> vertices_of(FeaturePair kind, const Pair& pair, const State& first,
+                                         const State& second) noexcept {
+  if (kind == FeaturePair::vertex_face) {
+    const std::uint32_t* const corner = second.corners_of(pair.second);
+    return {pair.first, corner[0], corner[1], corner[2]};
+  }
+  const auto a = first.ends_of(pair.first);
+  const auto b = second.ends_of(pair.second);
+  return {a[0], a[1], b[0], b[1]};
+}
+
+/// Where these vertices are; the first ones, one of a face or two of an edge, are the first mesh's.
+std::array<Vec3d, 4> points_of(FeaturePair kind, const std::array<std::uint32_t, 4>& vertex,
+                               const PointView& first, const PointView& second) noexcept {
+  const bool of_edges = kind == FeaturePair::edge_edge;
+  return {first[vertex[0]], of_edges ? first[vertex[1]] : second[vertex[1]], second[vertex[2]],
+          second[vertex[3]]};
+}
+
+}  // namespace
+
+Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kind,
+                                    const FeatureImpactOptions& options,
+                                    const Chunks<MeshImpact>& chunks) const noexcept {
+  const DeformableMesh& second = other == nullptr ? *this : *other;
+  if (state_ == nullptr || second.state_ == nullptr || !are_in_range(options) ||
+      !(options.min_separation <= 0.5 * state_->distance + 0.5 * second.state_->distance)) {
+    return Status::invalid_argument;
+  }
+  ResultChunk<MeshImpact, Chunks<MeshImpact>> results(options_.memory, chunks);
+  if (!results.reserve(options_.chunk)) return Status::out_of_memory;
+  const State& a = *state_;
+  const State& b = *second.state_;
+  FeatureStage stage;
+  Pair staged[kFeatureLanes];
+  const auto settle = [&] {
+    double times[kFeatureLanes];
+    stage.find(kind, times, options);
+    for (std::size_t i = 0; i < stage.size(); ++i) {
+      if (times[i] <= 1.0) results.add({staged[i], times[i]});
+    }
+    stage.clear();
+  };
+  const auto take = [&](std::span<const Pair> pairs) {
+    for (const Pair& pair : pairs) {
+      const auto vertex = vertices_of(kind, pair, a, b);
+      staged[stage.size()] = pair;
+      stage.add(points_of(kind, vertex, a.start, b.start), points_of(kind, vertex, a.end, b.end));
+      if (stage.is_full()) settle();
+    }
+  };
+  const Status status =
+      other == nullptr ? self_candidates(kind, take) : candidates_with(*other, kind, take);
+  if (status != Status::ok) return status;
+  settle();
+  results.hand_over();
+  return Status::ok;
+}
+
+Status DeformableMesh::find_near(const DeformableMesh* other, FeaturePair kind, double thickness,
+                                 const Chunks<MeshProximity>& chunks) const noexcept {
+  const DeformableMesh& second = other == nullptr ? *this : *other;
+  if (state_ == nullptr || second.state_ == nullptr || !(thickness >= 0.0) ||
+      !(thickness <= 0.5 * state_->distance + 0.5 * second.state_->distance)) {
+    return Status::invalid_argument;
+  }
+  ResultChunk<MeshProximity, Chunks<MeshProximity>> results(options_.memory, chunks);
+  if (!results.reserve(options_.chunk)) return Status::out_of_memory;
+  const auto take = [&](std::span<const Pair> pairs) {
+    for (const Pair& pair : pairs) {
+      const auto vertex = vertices_of(kind, pair, *state_, *second.state_);
+      MeshProximity result;
+      result.features = pair;
+      find_nearest_points(kind, points_of(kind, vertex, state_->end, second.state_->end), result);
+      if (result.distance <= thickness) results.add(result);
+    }
+  };
+  const Status status =
+      other == nullptr ? self_candidates(kind, take) : candidates_with(*other, kind, take);
+  if (status != Status::ok) return status;
+  results.hand_over();
+  return Status::ok;
+}
+
+Footprint DeformableMesh::footprint() const noexcept {
+  Footprint footprint;
+  if (state_ == nullptr) return footprint;
+  for (const FeatureRows* rows : {&state_->vertices, &state_->faces, &state_->edges}) {
+    footprint.bounds += rows->boxes.bytes();
+    footprint.structure += rows->tree.bytes();
+  }
+  footprint.structure += bytes_of(state_->vertex_order, state_->face_corners, state_->edge_ends);
+  footprint.structure += {sizeof(State), sizeof(State)};
+  return footprint;
+}
+
+}  // namespace winnow
