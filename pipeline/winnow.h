@@ -52,10 +52,12 @@
 #include <winnow/pipeline/height_field.h>
 #include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/narrow_phase.h>
+#include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/sensors.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
+#include <winnow/pipeline/time_of_impact.h>
 #include <winnow/pipeline/triangle_mesh.h>
 #include <winnow/simd/isa.h>

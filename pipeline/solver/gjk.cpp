@@ -1,5 +1,6 @@
 #include "pipeline/solver/gjk.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -180,8 +181,8 @@ bool holds(const Simplex& simplex, const Vec& w) noexcept {
 
 }  // namespace
 
-GjkResult gjk(const Core& a, const Core& b, const Vec& start, double noise,
-              double enough) noexcept {
+GjkResult gjk(const Core& a, const Core& b, const Vec& start, double noise, double enough,
+              double share, double roundings) noexcept {
   GjkResult result;
   Simplex& simplex = result.simplex;
   simplex.point[0] = support_towards(a, b, start);
@@ -205,7 +206,8 @@ GjkResult gjk(const Core& a, const Core& b, const Vec& start, double noise,
       result.axis = v / length;
     }
     result.far = result.lower > enough;
-    if (result.far || square - reach <= 2.0 * kEpsilon * square || holds(simplex, p.w)) {
+    const double known = std::max(2.0 * kEpsilon * square, share * length * (length - roundings));
+    if (result.far || square - reach <= known || holds(simplex, p.w)) {
       result.bounded = false;
       break;
     }

@@ -54,8 +54,9 @@ struct GjkResult {
 /// volumes. Ends when the gap between the distance and its supporting plane is relatively as small
 /// as doubles can make it, or no progress is made; in at most 64 iterations for polytopes of any
 /// size that are not degenerate, and never in more than 256. `start`: where to look first, from a
-/// to b. `noise`: lengths that cannot be told from zero.
+/// to b. `noise`: lengths that cannot be told from zero. With a `share` it
+/// ends as soon as the distance, less `roundings`, is known to that share of it.
 [[nodiscard]] GjkResult gjk(const Core& a, const Core& b, const Vec& start, double noise,
-                            double enough) noexcept;
+                            double enough, double share = 0.0, double roundings = 0.0) noexcept;
 
 }  // namespace winnow::solver

@@ -1,0 +1,325 @@
+// The distance of two moving shapes is at least their gap along any direction n. That gap is the
+// least, over pairs of points, of a line (they travel) and cosines (they turn); its second
+// derivative nowhere exceeds M, the sum of |angle|^2 times the shapes' reach from their axes, as
+// far as it is seen along n. So between two times it lies above its chord less M / 2 times the
+// times to both ends, which is positive up to the root of a quadratic: a proof that they are apart
+// until there. With n the direction of the closest points the gap is the distance, and so is its
+// slope: looks at the times where Newton's method would find the gap closed converge as that does.
+
+#include "pipeline/motion/impact_search.h"
+
+#include "pipeline/motion/moving_pair.h"
+#include "pipeline/motion/one_pair.h"
+#include "pipeline/shapes/pair_order.h"
+#include "pipeline/solver/gjk.h"
+#include "pipeline/solver/solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace winnow::impact {
+namespace {
+
+using solver::GjkResult;
+using solver::kEpsilon;
+
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t kMostLooks = 200'000;
+/// Shapes that stay so long within the tolerance as they near each other have met.
+constexpr std::uint32_t kMostWithin = 64;
+/// Distances need to be no better than this share of them until the last one.
+constexpr double kGoodEnough = 1e-3;
+
+/// The pair at one time.
+struct Look {
+  /// Surely apart along `axis`, by `gap` > 0; or along some axis, if it is zero.
+  bool parted = false;
+  Vec axis = Vec::Zero();
+  double gap = 0.0;
+  /// They are no farther apart.
+  double most = 0.0;
+  /// About how fast the gap grows.
+  double slope = 0.0;
+};
+
+class ImpactSearch {
+ public:
+  ImpactSearch(const ShapeTables& tables, ShapeId a, const RigidMotion& of_a, ShapeId b,
+               const RigidMotion& of_b, double tolerance) noexcept
+      : tables_(tables),
+        a_(a),
+        of_a_(of_a),
+        b_(b),
+        of_b_(of_b),
+        pair_(tables, a, of_a, b, of_b),
+        tolerance_(tolerance * pair_.size()) {}
+
+  [[nodiscard]] Impact run() noexcept;
+  /// How often distances were computed.
+  [[nodiscard]] std::uint32_t looks() const noexcept { return looks_; }
+
+ private:
+  [[nodiscard]] static Impact met(double time, const PairAnswer& answer) noexcept;
+  [[nodiscard]] Impact meet_at(double time) const noexcept;
+  [[nodiscard]] Impact start() const noexcept;
+  [[nodiscard]] Look look(double time) noexcept;
+  void look_at_half_space(Look& result) const noexcept;
+  void look_at_cores(double time, Look& result) const noexcept;
+  void look_closer(double time, Look& result) const noexcept;
+  [[nodiscard]] double free_until(double time, double end, const Look& look) const noexcept;
+  [[nodiscard]] double next(double from, double end, const Look& look) const noexcept;
+  [[nodiscard]] double proved(double from, const Look& first, double to,
+                              const Look& second) const noexcept;
+  [[nodiscard]] bool has_met(double time, double end, const Look& look) noexcept;
+  [[nodiscard]] double advance(double time, double end, Look& look, bool& known) noexcept;
+
+  const ShapeTables& tables_;
+  ShapeId a_;
+  const RigidMotion& of_a_;
+  ShapeId b_;
+  const RigidMotion& of_b_;
+  MovingPair pair_;
+  double tolerance_;
+  Vec last_axis_ = Vec::Zero();
+  /// Nothing is gained by looking as late as this.
+  double touching_ = kUnbounded;
+  /// The share of a gap that is to be left of it where is looked next.
+  double aim_ = 0.1;
+  /// Looks within the tolerance so far.
+  std::uint32_t within_ = 0;
+  std::uint32_t looks_ = 0;
+};
+
+void ImpactSearch::look_at_half_space(Look& result) const noexcept {
+  const solver::Core& a = pair_.a();
+  const solver::Core& b = pair_.b();
+  result.axis = -b.normal;
+  result.gap = pair_.gap(result.axis);
+  result.most = result.gap + 2.0 * pair_.noise();
+  const Vec y =
+      a.kind == solver::CoreKind::half_space ? Vec(a.normal * a.offset) : support(a, result.axis);
+  result.slope = pair_.parting(result.axis, y, y + result.axis * result.most - b.center);
+}
+
+void ImpactSearch::look_at_cores(double time, Look& result) const noexcept {
+  const solver::Core& b = pair_.b();
+  const double noise = pair_.noise();
+  const Vec start = last_axis_.isZero(0.0) ? b.center : last_axis_;
+  const GjkResult found =
+      gjk(pair_.a(), b, start.isZero(0.0) ? Vec::UnitX() : start,
+          solver::kEnough * pair_.problem().noise(), kUnbounded, kGoodEnough, pair_.roundings());
+  if (found.contact) return;
+  result.axis = found.axis;
+  result.gap = found.lower - pair_.roundings() - noise;
+  result.most = found.upper - pair_.roundings() + noise;
+  if (!(result.gap > 0.0) && result.most > 4.0 * noise) return look_closer(time, result);
+  result.slope = pair_.parting(found.axis, found.simplex.on_a(), found.simplex.on_b() - b.center);
+}
+
+/// For cores whose closest points iteration does not find.
+void ImpactSearch::look_closer(double time, Look& result) const noexcept {
+  Pose pose_a;
+  Pose pose_b;
+  pair_.poses(time, pose_a, pose_b);
+  const PairAnswer found = distance_of(tables_, a_, pose_a, b_, pose_b);
+  const auto scaled = [this](double x) { return std::ldexp(x, -pair_.problem().exponent); };
+  const double distance = scaled(found.distance);
+  const double doubt = scaled(found.error_bound) + pair_.noise();
+  const Vec axis = Vec::Map(found.normal);
+  result.most = distance + doubt;
+  result.axis = axis;
+  result.gap = pair_.gap(axis);
+  if (!(result.gap > 0.0) && distance - doubt > 0.0) {
+    result.axis.setZero();
+    result.gap = distance - doubt;
+  }
+  const Vec on_a = Vec::Map(found.point).unaryExpr(scaled) - axis * pair_.a().rounding;
+  const Vec on_b = on_a + axis * (distance + pair_.roundings());
+  result.slope = pair_.parting(axis, on_a, on_b - pair_.b().center);
+}
+
+Look ImpactSearch::look(double time) noexcept {
+  ++looks_;
+  pair_.place(time);
+  Look result;
+  if (pair_.has_half_space()) {
+    look_at_half_space(result);
+  } else {
+    look_at_cores(time, result);
+  }
+  result.parted = result.gap > 0.0;
+  if (result.parted && !result.axis.isZero(0.0)) last_axis_ = result.axis;
+  return result;
+}
+
+/// The share of an interval in which a gap that is `above` a target at its start, and `then` above
+/// it at the end, surely stays above: it is above its chord less 4 `sag` times the shares to both
+/// ends.
+double share_above(double above, double then, double sag) noexcept {
+  const double square = 4.0 * sag;
+  if (!std::isfinite(square)) return 0.0;
+  const double linear = then - above - square;
+  const double discriminant = linear * linear - 4.0 * square * above;
+  const bool stays =
+      then >= 0.0 && (linear >= 0.0 || discriminant < 0.0 || -linear >= 2.0 * square);
+  if (stays) return 1.0;
+  const double root = 2.0 * above / (-linear + std::sqrt(std::max(discriminant, 0.0)));
+  return std::min(root * (1.0 - 1e-12), 1.0);
+}
+
+/// Where to look after `from`: where the gap seems to fall to a share of what it is, but no farther
+/// than a proof may reach.
+double ImpactSearch::next(double from, double end, const Look& look) const noexcept {
+  double step = end - from;
+  if (look.slope < 0.0) {
+    const double aim = std::max(0.5 * tolerance_, aim_ * look.gap);
+    step = std::min(step, std::max(look.gap - aim, 0.25 * look.gap) / -look.slope);
+  }
+  const double curvature = pair_.curvature(look.axis);
+  if (curvature > 0.0) {
+    // A gap whose slope is constant has a proof if half of the curvature times the square of the
+    // step is below the square of the sum of the roots of the gaps at both ends.
+    const double flat = std::sqrt(2.0 * look.gap / curvature);
+    const double left = 1.0 + look.slope * flat / look.gap;
+    step = std::min(step, 0.95 * flat * (1.0 + std::sqrt(std::clamp(left, 0.0, 1.0))));
+  }
+  return std::min(from + step, end);
+}
+
+/// How far from one time to a later one, where the pair is placed, they are surely apart: along the
+/// axis of the first look, or along one that turns from it to that of the second.
+double ImpactSearch::proved(double from, const Look& first, double to,
+                            const Look& second) const noexcept {
+  const double width = (to - from) * (1.0 + 4.0 * kEpsilon);
+  const double least = second.parted ? std::min(first.gap, second.gap) : first.gap;
+  const double target = std::min(0.25 * tolerance_, 0.5 * least);
+  const bool plane = pair_.has_half_space();
+  const double sag = 0.125 * pair_.curvature(first.axis) * width * width;
+  const double then = plane ? second.gap : pair_.gap(first.axis);
+  double share = share_above(first.gap - target, then - target, sag);
+  if (share < 1.0 && second.parted && !second.axis.isZero(0.0) && !plane) {
+    const double curvature = pair_.curvature_between(first.axis, second.axis, width);
+    const double turning_sag = 0.125 * curvature * width * width;
+    share = std::max(share, share_above(first.gap - target, second.gap - target, turning_sag));
+  }
+  return share >= 1.0 ? to : std::min(from + share * (to - from), to);
+}
+
+/// They are apart until then by what they sweep, or by their speed alone.
+double ImpactSearch::free_until(double time, double end, const Look& look) const noexcept {
+  if (look.axis.isZero(0.0)) {
+    return std::min(end, time + 0.5 * look.gap / pair_.most_closing());
+  }
+  const double swept = pair_.swept_gap(look.axis) - std::min(0.25 * tolerance_, 0.5 * look.gap);
+  if (!(swept > 0.0)) return time;
+  const double closing = pair_.swept_closing(look.axis);
+  return closing > 0.0 ? std::min(end, time + swept / closing * (1.0 - 8.0 * kEpsilon)) : end;
+}
+
+Impact ImpactSearch::met(double time, const PairAnswer& answer) noexcept {
+  Impact impact;
+  impact.hit = true;
+  impact.time = time;
+  impact.gap = answer.distance;
+  impact.error_bound = answer.error_bound;
+  std::copy_n(answer.normal, 3, impact.normal);
+  std::copy_n(answer.point, 3, impact.point);
+  return impact;
+}
+
+/// They are apart before and within the tolerance here, or too near for double to tell.
+Impact ImpactSearch::meet_at(double time) const noexcept {
+  if (time == 0.0) return start();
+  Pose pose_a;
+  Pose pose_b;
+  pair_.poses(time, pose_a, pose_b);
+  Impact impact = met(time, distance_of(tables_, a_, pose_a, b_, pose_b));
+  impact.gap = std::max(impact.gap, 0.0);
+  impact.error_bound += unscaled(pair_.problem(), pair_.noise());
+  return impact;
+}
+
+/// They may share a point at the start, which is known to the last bit.
+Impact ImpactSearch::start() const noexcept {
+  return met(0.0, distance_of(tables_, a_, of_a_.start, b_, of_b_.start));
+}
+
+/// True if they are within the tolerance and seem to meet before the end, or stay so for long.
+bool ImpactSearch::has_met(double time, double end, const Look& look) noexcept {
+  if (look.most > std::max(tolerance_, 8.0 * pair_.noise())) return false;
+  return look.gap + look.slope * (end - time) <= 0.0 || ++within_ > kMostWithin;
+}
+
+/// One step on from `time`, where the pair is placed: the time until which they are surely apart.
+/// `look` becomes that at this time, if there is one.
+double ImpactSearch::advance(double time, double end, Look& look, bool& known) noexcept {
+  known = false;
+  const double free = free_until(time, end, look);
+  if (free >= end || look.axis.isZero(0.0)) return free;
+  const double to = next(time, std::min(end, touching_), look);
+  if (to <= free) return free;
+  const Look there = this->look(to);
+  const double apart = proved(time, look, to, there);
+  if (!there.parted) touching_ = std::min(touching_, time + 0.75 * (to - time));
+  if (apart < to) return std::max(apart, free);
+  // The error of a prediction falls with the square of the step, and so by the gap as a share of
+  // it.
+  const double expected = look.gap + look.slope * (to - time);
+  aim_ = std::clamp(4.0 * std::abs(there.gap - expected) / look.gap * there.gap / look.gap, 1e-9,
+                    0.25);
+  look = there;
+  known = there.parted;
+  return to;
+}
+
+Impact ImpactSearch::run() noexcept {
+  const auto [first, last] = pair_.window();
+  if (first > last) return {};
+  if (pair_.a().kind == solver::CoreKind::half_space) {
+    const Impact at_start = start();
+    if (at_start.gap <= 0.0 || pair_.touches_soon()) return at_start;
+  }
+  double time = first;
+  Look now;
+  bool known = false;
+  while (true) {
+    if (!known) now = look(time);
+    if (!now.parted || has_met(time, last, now)) return meet_at(time);
+    const double free = advance(time, last, now, known);
+    if (free >= last) return {};
+    // No number left between, or none that looks would ever reach.
+    if (free <= time || looks_ >= kMostLooks) return meet_at(time);
+    time = free;
+    if (time >= touching_) touching_ = kUnbounded;
+  }
+}
+
+/// The answer about (b, a) as one about (a, b).
+void mirror_impact(const RigidMotion& of_a, const RigidMotion& of_b, Impact& impact) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    const double apart = (of_b.start.position[i] - of_a.start.position[i]) +
+                         impact.time * (of_b.travel[i] - of_a.travel[i]);
+    impact.point[i] += impact.gap * impact.normal[i] + apart;
+    impact.normal[i] = 0.0 - impact.normal[i];
+  }
+}
+
+}  // namespace
+
+Impact find_impact(const ShapeTables& tables, ShapeId a, const RigidMotion& of_a, ShapeId b,
+                   const RigidMotion& of_b, double tolerance) noexcept {
+  const auto search = [&](ShapeId first, const RigidMotion& of_first, ShapeId second,
+                          const RigidMotion& of_second) {
+    ImpactSearch impacts(tables, first, of_first, second, of_second, tolerance);
+    Impact found = impacts.run();
+    found.samples = impacts.looks();
+    return found;
+  };
+  if (!is_mirrored(a, b)) return search(a, of_a, b, of_b);
+  Impact impact = search(b, of_b, a, of_a);
+  if (impact.hit) mirror_impact(of_a, of_b, impact);
+  return impact;
+}
+
+}  // namespace winnow::impact

@@ -1,0 +1,257 @@
+#include "pipeline/motion/moving_pair.h"
+
+#include "pipeline/motion/turn.h"
+#include "pipeline/shapes/difference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace winnow::impact {
+namespace {
+
+using solver::Core;
+using solver::CoreKind;
+using solver::kEpsilon;
+using solver::Range;
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+/// Axes that differ by less are the same: what that changes is counted as noise.
+constexpr double kSameAxis = 16.0 * kEpsilon;
+
+/// The largest distance of a rim of `radius` at height z from an axis w.
+double rim_reach(double radius, double z, const Vec& w) noexcept {
+  const double nearest = std::max(0.0, std::abs(z * w.z()) - radius * std::hypot(w.x(), w.y()));
+  return std::sqrt(std::max(0.0, radius * radius + z * z - nearest * nearest));
+}
+
+/// The largest distance of an unturned core's points from the axis w through its center.
+double reach_of(const Core& core, const Vec& w) noexcept {
+  switch (core.kind) {
+    case CoreKind::point:
+      return 0.0;
+    case CoreKind::segment:
+      return core.half.z() * std::hypot(w.x(), w.y());
+    case CoreKind::cylinder:
+      return rim_reach(core.half.x(), core.half.z(), w);
+    case CoreKind::cone:
+      return std::max(rim_reach(core.half.x(), -core.half.z(), w),
+                      core.half.z() * std::hypot(w.x(), w.y()));
+    case CoreKind::half_space:
+      return 0.0;
+    default:
+      break;
+  }
+  double square = 0.0;
+  for (std::uint32_t i = 0; i < vertex_count(core); ++i) {
+    square = std::max(square, (vertex(core, i) - core.center).cross(w).squaredNorm());
+  }
+  return std::sqrt(square);
+}
+
+/// True of cores that turning about an axis leaves as they are.
+bool is_invariant(const Core& core, const Vec& w) noexcept {
+  switch (core.kind) {
+    case CoreKind::point:
+      return true;
+    case CoreKind::segment:
+    case CoreKind::cylinder:
+    case CoreKind::cone:
+      return std::hypot(w.x(), w.y()) <= kSameAxis;
+    case CoreKind::half_space:
+      return core.normal.cross(w).norm() <= kSameAxis;
+    default:
+      return false;
+  }
+}
+
+/// Half of how far a core's points are from each other, about, and its rounding.
+double extent_of(const Core& core) noexcept {
+  switch (core.kind) {
+    case CoreKind::triangle:
+      return core.rounding + std::max({(core.corner[1] - core.corner[0]).norm(),
+                                       (core.corner[2] - core.corner[1]).norm(),
+                                       (core.corner[0] - core.corner[2]).norm()}) /
+                                 2.0;
+    case CoreKind::hull:
+      return core.rounding + core.hull->radius * core.unit[0] * core.unit[1];
+    case CoreKind::half_space:
+      return 0.0;
+    case CoreKind::cylinder:
+    case CoreKind::cone:
+      return core.rounding + std::hypot(core.half.x(), core.half.z());
+    default:
+      return core.size;
+  }
+}
+
+TurningCore turning(const Core& core, const RigidMotion& motion) noexcept {
+  TurningCore result;
+  result.local = core;
+  result.from = normalized(tame(motion.start.orientation));
+  const double angle = length_of(motion.turn);
+  if (angle == 0.0) return result;
+  result.axis = Vec::Map(motion.turn) / angle;
+  const solver::Mat to_world = rotation_of_unit(result.from);
+  const Vec local_axis = to_world.transpose() * result.axis;
+  if (is_invariant(core, local_axis)) return result;
+  result.angle = angle;
+  if (core.kind == CoreKind::half_space) return result;
+  result.reach = reach_of(core, local_axis) * (1.0 + kSameAxis);
+  result.along = project(core, local_axis);
+  return result;
+}
+
+Quaternion orientation_at(const TurningCore& turning, double time) noexcept {
+  if (turning.angle == 0.0) return turning.from;
+  return turned(turning.from, turning.axis.data(), time * turning.angle);
+}
+
+void place_core(const TurningCore& turning, double time, Core& core) noexcept {
+  core.rotation = rotation_of(orientation_at(turning, time));
+  if (core.kind == CoreKind::triangle) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      core.corner[i] = core.rotation * turning.local.corner[i];
+      core.side[i] = core.rotation * turning.local.side[i];
+    }
+  } else if (core.kind == CoreKind::half_space) {
+    core.normal = solver::unit(core.rotation * turning.local.normal);
+  }
+}
+
+/// The most that an unturned or turned core reaches along the axis, from its center. A half-space's
+/// normal is the axis.
+double high(const Core& core, const Vec& axis) noexcept {
+  return core.kind == CoreKind::half_space ? core.offset : project(core, axis).high;
+}
+
+/// The same of all that it sweeps as it turns.
+double swept_high(const TurningCore& turning, const Core& core, const Vec& axis) noexcept {
+  if (turning.angle == 0.0) return high(core, axis);
+  const double along = axis.dot(turning.axis);
+  return std::max(along * turning.along.low, along * turning.along.high) +
+         axis.cross(turning.axis).norm() * turning.reach;
+}
+
+double acceleration(const TurningCore& turning, const Vec& axis) noexcept {
+  if (turning.angle == 0.0) return 0.0;
+  const double across = axis.cross(turning.axis).norm() + kSameAxis;
+  return turning.angle * turning.angle * across * turning.reach;
+}
+
+}  // namespace
+
+MovingPair::MovingPair(const ShapeTables& tables, ShapeId a, const RigidMotion& of_a, ShapeId b,
+                       const RigidMotion& of_b) noexcept {
+  const Difference apart = difference(of_b.start.position, of_a.start.position);
+  const Vec start = Vec::Map(apart.difference);
+  const Vec way = Vec::Map(of_b.travel) - Vec::Map(of_a.travel);
+  const Vec end = start + way;
+  // One unit for all times: that of the places that are farthest apart.
+  Pose there;
+  Vec::Map(there.position) = start.cwiseAbs().maxCoeff() > end.cwiseAbs().maxCoeff() ? start : end;
+  prepare(tables, a, Pose{}, b, there, false, problem_);
+  for (int i = 0; i < 3; ++i) {
+    between_[i] = std::ldexp(start[i], -problem_.exponent);
+    travel_[i] = std::ldexp(way[i], -problem_.exponent);
+  }
+  turn_a_ = turning(problem_.a, of_a);
+  turn_b_ = turning(problem_.b, of_b);
+  const double sizes = problem_.a.size + problem_.b.size;
+  noise_ = kEpsilon * (8.0 * (between_.norm() + travel_.norm()) +
+                       (64.0 + 4.0 * (turn_a_.angle + turn_b_.angle)) * sizes);
+  if (has_half_space()) {
+    // Its normal turns by rounding, too, and with it what is far from its position.
+    noise_ += kEpsilon * (64.0 + 4.0 * turn_b_.angle) * (between_.norm() + travel_.norm());
+  }
+  const double least = std::min(extent_of(problem_.a), extent_of(problem_.b));
+  size_ = least > 0.0 ? least : std::max(extent_of(problem_.a), extent_of(problem_.b));
+}
+
+void MovingPair::place(double time) noexcept {
+  problem_.b.center = between_ + time * travel_;
+  place_core(turn_a_, time, problem_.a);
+  place_core(turn_b_, time, problem_.b);
+  problem_.size = problem_.b.center.norm() + problem_.a.size + problem_.b.size;
+}
+
+void MovingPair::poses(double time, Pose& pose_a, Pose& pose_b) const noexcept {
+  for (const auto& [turning, pose] : {std::pair{&turn_a_, &pose_a}, {&turn_b_, &pose_b}}) {
+    const Quaternion q = orientation_at(*turning, time);
+    std::copy(q.begin(), q.end(), pose->orientation);
+  }
+  const Vec between = between_ + time * travel_;
+  for (int i = 0; i < 3; ++i) pose_b.position[i] = unscaled(problem_, between[i]);
+}
+
+Interval MovingPair::window() const noexcept {
+  constexpr Interval kAll{0.0, 1.0};
+  const double path = between_.norm() + travel_.norm();
+  if (has_half_space()) return kAll;
+  const double reach = a().size + b().size;
+  const double radius = reach + 64.0 * kEpsilon * (path + reach);
+  const double speed = travel_.norm();
+  // Where the way is too short for its square, both ends are as near as any place between.
+  const double nearest = speed > 1e-140 ? -(between_.dot(travel_) / speed) / speed : 0.0;
+  const double distance = (between_ + nearest * travel_).norm();
+  if (distance > radius + (speed > 1e-140 ? 0.0 : speed)) return {1.0, 0.0};
+  if (!(speed > 1e-140)) return kAll;
+  const double half = std::sqrt((radius - distance) * (radius + distance)) / speed;
+  return {std::max(0.0, nearest - half), std::min(1.0, nearest + half)};
+}
+
+double MovingPair::gap(const Vec& axis) const noexcept {
+  return axis.dot(b().center) - high(b(), -axis) - high(a(), axis) - roundings() - noise();
+}
+
+double MovingPair::swept_gap(const Vec& axis) const noexcept {
+  if (has_half_space() && turn_b_.angle > 0.0) return -kForever;
+  return axis.dot(b().center) - swept_high(turn_b_, b(), -axis) - swept_high(turn_a_, a(), axis) -
+         roundings() - noise();
+}
+
+double MovingPair::parting(const Vec& axis, const Vec& y_a, const Vec& y_b) const noexcept {
+  Vec v = travel_;
+  if (turn_a_.angle > 0.0) v -= turn_a_.angle * turn_a_.axis.cross(y_a);
+  if (turn_b_.angle > 0.0) v += turn_b_.angle * turn_b_.axis.cross(y_b);
+  return axis.dot(v);
+}
+
+double MovingPair::curvature(const Vec& axis) const noexcept {
+  if (has_half_space() && turn_b_.angle > 0.0) {
+    // The normal turns, times points that turn about a position that moves: the product rule.
+    const double far = std::max(between_.norm(), (between_ + travel_).norm()) + a().size;
+    const double fast = travel_.norm() + turn_a_.angle * turn_a_.reach;
+    return turn_b_.angle * (turn_b_.angle * far + 2.0 * fast) +
+           turn_a_.angle * turn_a_.angle * turn_a_.reach;
+  }
+  return acceleration(turn_a_, axis) + acceleration(turn_b_, axis);
+}
+
+// With P between a point of a and one of b, the gap of the two along an axis n of angular speed r
+// is n . P, whose second derivative is n . P'' + 2 n' . P' - r^2 n . P. The last is not above 0 but
+// where the gap is below it, which it is by no more than it can fall from 0.
+double MovingPair::curvature_between(const Vec& from, const Vec& to, double width) const noexcept {
+  const double turned = (to - from).norm();
+  if (turned > 1.0) return kForever;
+  // The angle of a chord.
+  const double rate = turned * (1.0 + 0.05 * turned * turned) / width;
+  const double reach =
+      turn_a_.reach * turn_a_.angle * turn_a_.angle + turn_b_.reach * turn_b_.angle * turn_b_.angle;
+  const double speed =
+      travel_.norm() + turn_a_.angle * turn_a_.reach + turn_b_.angle * turn_b_.reach;
+  const double far = b().center.norm() + width * travel_.norm() + a().size + b().size;
+  const double below = width * (rate * far + speed);
+  return reach + 2.0 * rate * speed + rate * rate * below;
+}
+
+double MovingPair::most_closing() const noexcept {
+  double speed = travel_.norm() + turn_a_.angle * turn_a_.reach + turn_b_.angle * turn_b_.reach;
+  if (has_half_space()) {
+    speed += turn_b_.angle * (std::max(between_.norm(), (between_ + travel_).norm()) + a().size);
+  }
+  return speed;
+}
+
+}  // namespace winnow::impact

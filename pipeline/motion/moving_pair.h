@@ -1,0 +1,94 @@
+#pragma once
+
+#include <winnow/core/rotation.h>
+#include <winnow/pipeline/rigid_motion.h>
+#include <winnow/pipeline/shapes.h>
+#include "pipeline/solver/problem.h"
+
+namespace winnow::impact {
+
+using solver::Vec;
+
+/// Times between which something may happen; none where `first` is above `last`.
+struct Interval {
+  double first;
+  double last;
+};
+
+/// How a core turns about the axis through its center.
+struct TurningCore {
+  /// As it is unturned.
+  solver::Core local;
+  Quaternion from{};
+  Vec axis = Vec::UnitZ();
+  /// Radians in all; 0 where turning changes nothing.
+  double angle = 0.0;
+  /// No point of the core is farther from the axis.
+  double reach = 0.0;
+  /// Of the core along the axis, from the center.
+  solver::Range along{0.0, 0.0};
+};
+
+/// Two shapes that move, at any time in [0, 1]: a problem of the solver, in the axes of the world
+/// and about the position of a, with what bounds their approach. The kind of a is not above that of
+/// b. Lengths are those of the problem.
+class MovingPair {
+ public:
+  MovingPair(const ShapeTables& tables, ShapeId a, const RigidMotion& of_a, ShapeId b,
+             const RigidMotion& of_b) noexcept;
+
+  /// Brings both to where they are at a time.
+  void place(double time) noexcept;
+  /// The same as poses in the caller's lengths, that of a at the origin.
+  void poses(double time, Pose& pose_a, Pose& pose_b) const noexcept;
+  [[nodiscard]] const solver::Problem& problem() const noexcept { return problem_; }
+  [[nodiscard]] const solver::Core& a() const noexcept { return problem_.a; }
+  [[nodiscard]] const solver::Core& b() const noexcept { return problem_.b; }
+  [[nodiscard]] double roundings() const noexcept { return a().rounding + b().rounding; }
+  [[nodiscard]] bool has_half_space() const noexcept {
+    return b().kind == solver::CoreKind::half_space;
+  }
+  /// Of two half-spaces that touch as soon as they turn.
+  [[nodiscard]] bool touches_soon() const noexcept {
+    return a().kind == solver::CoreKind::half_space && (turn_a_.angle > 0.0 || turn_b_.angle > 0.0);
+  }
+
+  /// What rounding of numbers and poses does to any gap, with room to spare.
+  [[nodiscard]] double noise() const noexcept { return noise_ + problem_.noise(); }
+  /// The smaller extent of the two, of which tolerances are shares.
+  [[nodiscard]] double size() const noexcept { return size_; }
+
+  /// Surely apart before and after: by the balls about their centers.
+  [[nodiscard]] Interval window() const noexcept;
+
+  /// The gap along a unit axis from a to b where they are placed, less the noise. Of a half-space,
+  /// along its normal as it is.
+  [[nodiscard]] double gap(const Vec& axis) const noexcept;
+  /// The same of all that they sweep as they turn about their axes where they are placed: as they
+  /// move it closes at a constant speed. Minus infinity if there is no such gap.
+  [[nodiscard]] double swept_gap(const Vec& axis) const noexcept;
+  [[nodiscard]] double swept_closing(const Vec& axis) const noexcept { return -axis.dot(travel_); }
+  /// How fast a point of b that is at y_b from its center parts, along an axis, from one of a.
+  [[nodiscard]] double parting(const Vec& axis, const Vec& y_a, const Vec& y_b) const noexcept;
+  /// No gap along the axis, or along a half-space's normal as it turns, falls below its chord
+  /// between two times by more than half of this times the product of the times to either end.
+  [[nodiscard]] double curvature(const Vec& axis) const noexcept;
+  /// The same along an axis that turns evenly from one to another in `width`, to where the pair is
+  /// placed; infinite if they are farther apart than a radian.
+  [[nodiscard]] double curvature_between(const Vec& from, const Vec& to,
+                                         double width) const noexcept;
+  /// No two points approach each other faster.
+  [[nodiscard]] double most_closing() const noexcept;
+
+ private:
+  solver::Problem problem_;
+  TurningCore turn_a_;
+  TurningCore turn_b_;
+  /// From a to b at time 0, and how it changes.
+  Vec between_ = Vec::Zero();
+  Vec travel_ = Vec::Zero();
+  double noise_ = 0.0;
+  double size_ = 0.0;
+};
+
+}  // namespace winnow::impact

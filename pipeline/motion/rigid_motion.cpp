@@ -1,0 +1,79 @@
+#include <winnow/core/rotation.h>
+#include <winnow/pipeline/rigid_motion.h>
+#include "pipeline/motion/turn.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+/// The angle in [0, pi / 2] whose sine and cosine are s, c >= 0, of which one is not 0, to
+/// rounding. Each step takes the sine of what is missing, and so all but its cube.
+double angle_of(double s, double c) noexcept {
+  double angle = 1.5 * s / (s + c);
+  for (int i = 0; i < 5; ++i) {
+    const impact::SineCosine at = impact::sine_cosine(angle);
+    angle += s * at.cosine - c * at.sine;
+  }
+  return angle;
+}
+
+}  // namespace
+
+RigidMotion RigidMotion::between(const Pose& start, const Pose& end) noexcept {
+  RigidMotion motion = standing(start);
+  for (int i = 0; i < 3; ++i) motion.travel[i] = end.position[i] - start.position[i];
+  if (!start.is_valid() || !end.is_valid()) {
+    // What is wrong with the end has to show.
+    if (!end.is_valid()) motion.turn[0] = std::numeric_limits<double>::quiet_NaN();
+    return motion;
+  }
+  const Quaternion from = normalized(tame(start.orientation));
+  const Quaternion to = normalized(tame(end.orientation));
+  Quaternion way = product(to, {from[0], -from[1], -from[2], -from[3]});
+  if (way[0] < 0.0) {
+    for (double& x : way) x = -x;
+  }
+  const double sine = std::sqrt(way[1] * way[1] + way[2] * way[2] + way[3] * way[3]);
+  if (sine == 0.0) return motion;
+  const double length = std::sqrt(sine * sine + way[0] * way[0]);
+  const double angle = 2.0 * angle_of(sine / length, way[0] / length);
+  for (std::size_t i = 0; i < 3; ++i) motion.turn[i] = way[i + 1] / sine * angle;
+  return motion;
+}
+
+RigidMotion RigidMotion::by_velocities(const Pose& start, const double (&linear)[3],
+                                       const double (&angular)[3], double duration) noexcept {
+  RigidMotion motion = standing(start);
+  for (int i = 0; i < 3; ++i) {
+    motion.travel[i] = linear[i] * duration;
+    motion.turn[i] = angular[i] * duration;
+  }
+  return motion;
+}
+
+bool RigidMotion::is_valid() const noexcept {
+  if (!start.is_valid()) return false;
+  bool finite = true;
+  double square = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    finite = finite && std::isfinite(travel[i]) && std::isfinite(start.position[i] + travel[i]);
+    square += turn[i] * turn[i];
+  }
+  return finite && square <= kMostTurn * kMostTurn;
+}
+
+Pose RigidMotion::at(double time) const noexcept {
+  Pose pose = start;
+  for (int i = 0; i < 3; ++i) pose.position[i] += time * travel[i];
+  const double angle = impact::length_of(turn);
+  if (angle == 0.0) return pose;
+  const double axis[3] = {turn[0] / angle, turn[1] / angle, turn[2] / angle};
+  const Quaternion q = impact::turned(normalized(tame(start.orientation)), axis, time * angle);
+  std::copy(q.begin(), q.end(), pose.orientation);
+  return pose;
+}
+
+}  // namespace winnow
