@@ -1,5 +1,6 @@
 #include "bench/questions/questions.h"
 
+#include <winnow/pipeline/time_of_impact.h>
 #include "bench/questions/motion_json.h"
 
 #include <vector>
@@ -26,7 +27,8 @@ class Questionnaire {
     } else if (is_object && question.contains("motion")) {
       status = answer_motion(question, answer);
     } else if (is_object && question.contains("a") && question.contains("b")) {
-      status = add_pair(row, question);
+      const bool moves = has_end_pose(question["a"]) || has_end_pose(question["b"]);
+      status = moves ? ask_impact(question, answer) : add_pair(row, question);
     }
     if (status != Status::ok) refuse(answer, status);
   }
@@ -82,6 +84,40 @@ class Questionnaire {
     answer["normal"] =
         hit.hit ? list(hit.normal[0], hit.normal[1], hit.normal[2]) : list(0.0, 0.0, 0.0);
     return Status::ok;
+  }
+
+  Status ask_impact(const Json& question, Json& answer) {
+    ShapeId shape[2];
+    RigidMotion motion[2];
+    Status status = read_moving_shape(question["a"], pool_, shape[0], motion[0]);
+    if (status == Status::ok) status = read_moving_shape(question["b"], pool_, shape[1], motion[1]);
+    constexpr BodyPair kPair[1] = {{0, 1}};
+    ImpactResult result;
+    if (status == Status::ok) {
+      status = time_of_impact(pool_, {shape, motion}, kPair, {}, result);
+    }
+    if (status == Status::ok) status = result.status(0);
+    if (status != Status::ok) return status;
+    write_impact(result, motion[0], answer);
+    return Status::ok;
+  }
+
+  static void write_impact(const ImpactResult& result, const RigidMotion& of_a, Json& answer) {
+    const bool hit = result.hits(0);
+    const Pose at = of_a.at(result.time()[0]);
+    double a[3] = {0.0, 0.0, 0.0};
+    double b[3] = {0.0, 0.0, 0.0};
+    for (int axis = 0; hit && axis < 3; ++axis) {
+      a[axis] = at.position[axis] + result.point(axis)[0];
+      b[axis] = a[axis] + result.gap()[0] * result.normal(axis)[0];
+    }
+    answer["status"] = to_string(Status::ok);
+    answer["hit"] = hit;
+    answer["time"] = hit ? number_to_json(result.time()[0]) : Json("inf");
+    answer["gap"] = hit ? number_to_json(result.gap()[0]) : Json("inf");
+    answer["normal"] = list(result.normal(0)[0], result.normal(1)[0], result.normal(2)[0]);
+    answer["points"] = Json::array({list(a[0], a[1], a[2]), list(b[0], b[1], b[2])});
+    answer["error_bound"] = number_to_json(result.error_bound()[0]);
   }
 
   void write(const NarrowResult& result, std::size_t i) {

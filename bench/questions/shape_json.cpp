@@ -120,10 +120,10 @@ Status add_shape(const Json& value, ShapePool& pool, ShapeId& id) {
   return add_round(type, pool, reader, rounding, id);
 }
 
-Status read_pose(const Json& shape, Pose& pose) {
-  pose = {};
-  if (!shape.contains("pose")) return Status::ok;
-  ShapeReader reader(shape["pose"]);
+/// What the member `name` says of a pose; the rest stays as it is.
+Status read_pose(const Json& shape, const char* name, Pose& pose) {
+  if (!shape.contains(name)) return Status::ok;
+  ShapeReader reader(shape[name]);
   reader.numbers_if_any("position", pose.position);
   reader.numbers_if_any("orientation", pose.orientation);
   if (!reader.good()) return Status::invalid_argument;
@@ -134,10 +134,25 @@ Status read_pose(const Json& shape, Pose& pose) {
 
 Status read_shape(const Json& value, ShapePool& pool, ShapeId& id, Pose& pose) {
   if (!value.is_object()) return Status::invalid_argument;
-  const Status pose_status = read_pose(value, pose);
+  pose = {};
+  const Status pose_status = read_pose(value, "pose", pose);
   if (pose_status == Status::invalid_argument) return pose_status;
   const Status status = add_shape(value, pool, id);
   return status == Status::ok ? pose_status : status;
+}
+
+bool has_end_pose(const Json& value) {
+  return value.is_object() && value.contains("end_pose");
+}
+
+Status read_moving_shape(const Json& value, ShapePool& pool, ShapeId& id, RigidMotion& motion) {
+  Pose start;
+  const Status status = read_shape(value, pool, id, start);
+  if (status != Status::ok) return status;
+  Pose end = start;
+  const Status end_status = read_pose(value, "end_pose", end);
+  motion = RigidMotion::between(start, end);
+  return end_status == Status::ok && !motion.is_valid() ? Status::invalid_pose : end_status;
 }
 
 Status read_ray(const Json& value, ShapeRay& ray) {

@@ -2,6 +2,7 @@
 
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
+#include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
 #include "bench/common/json.h"
@@ -13,6 +14,14 @@ namespace winnow::bench {
 /// is missing or of the wrong type, a hull has no point or the type is unknown; else what the pool
 /// says of the shape; else `invalid_pose`. Unless `ok`, `id` and `pose` mean nothing.
 [[nodiscard]] Status read_shape(const Json& value, ShapePool& pool, ShapeId& id, Pose& pose);
+
+/// True of a shape that says where it goes.
+[[nodiscard]] bool has_end_pose(const Json& value);
+
+/// The same with a motion from "pose" to "end_pose" by the shorter way around; what the latter does
+/// not say is as at the start, and without it the shape stands.
+[[nodiscard]] Status read_moving_shape(const Json& value, ShapePool& pool, ShapeId& id,
+                                       RigidMotion& motion);
 
 /// {"origin", "direction", "max_t"}; without max_t the ray has no end. `invalid_argument` where a
 /// member is missing or of the wrong type.

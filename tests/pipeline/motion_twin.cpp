@@ -198,7 +198,7 @@ double doubt_of(const ShapePool& pool, const MovingShapes& pair) {
     sizes += reach_of(pool.tables(), shape);
     curved = curved || shape.kind() == ShapeKind::cylinder || shape.kind() == ShapeKind::cone;
   }
-  return curved ? 1e-9 * sizes : 0.0;
+  return curved ? 1e-8 * sizes : 0.0;
 }
 
 double resolution_of(const ShapePool& pool, const MovingShapes& pair) {
