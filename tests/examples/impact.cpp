@@ -1,0 +1,33 @@
+// When bodies meet that move and turn.
+
+#include <winnow/pipeline/time_of_impact.h>
+
+#include <cstddef>
+#include <vector>
+
+#include "tests/examples/check.h"
+
+int main() {
+  double first = 1.0;
+  const auto stop = [&first](std::uint32_t, double time) { first = time; };
+  // [impact]
+  winnow::ShapePool shapes;
+  winnow::ShapeId blade, bullet;
+  shapes.add(winnow::BoxShape{{2, 0.1, 0.01}}, blade);
+  shapes.add(winnow::SphereShape{0.05}, bullet);
+
+  using Motion = winnow::RigidMotion;
+  const std::vector<winnow::ShapeId> shape_of{blade, bullet};
+  const std::vector<Motion> motion_of{
+      Motion::by_velocities(winnow::Pose::at(0, 0, 0), {0, 0, 0}, {0, 0, -300}, 0.1),
+      Motion::between(winnow::Pose::at(1.5, -40, 0), winnow::Pose::at(1.5, 40, 0))};
+  const std::vector<winnow::BodyPair> pairs{{0, 1}};
+  winnow::ImpactResult impacts;  // yours, reused
+  winnow::time_of_impact(shapes, {shape_of, motion_of}, pairs, {}, impacts);
+  for (std::size_t i = 0; i < impacts.size(); ++i) {
+    if (impacts.hits(i)) stop(pairs[i].a, impacts.time()[i]);
+    // also gap(), normal(axis), point(axis), error_bound(): at that time
+  }
+  // [end]
+  check(first > 0.45 && first < 0.55, "the blade hits the bullet as it passes");
+}
