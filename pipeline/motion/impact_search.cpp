@@ -41,6 +41,9 @@ struct Look {
   double most = 0.0;
   /// About how fast the gap grows.
   double slope = 0.0;
+  /// The closest point of the core of a that was found, and from it to that of b.
+  Vec on_a = Vec::Zero();
+  Vec between = Vec::Zero();
 };
 
 class ImpactSearch {
@@ -61,11 +64,12 @@ class ImpactSearch {
 
  private:
   [[nodiscard]] static Impact met(double time, const PairAnswer& answer) noexcept;
-  [[nodiscard]] Impact meet_at(double time) const noexcept;
+  [[nodiscard]] Impact meet_at(double time, Look& look) const noexcept;
+  [[nodiscard]] Impact near_at(double time, Look& look) const noexcept;
   [[nodiscard]] Impact start() const noexcept;
   [[nodiscard]] Look look(double time) noexcept;
   void look_at_half_space(Look& result) const noexcept;
-  void look_at_cores(double time, Look& result) const noexcept;
+  void look_at_cores(double share, Look& result) const noexcept;
   void look_closer(double time, Look& result) const noexcept;
   [[nodiscard]] double free_until(double time, double end, const Look& look) const noexcept;
   [[nodiscard]] double next(double from, double end, const Look& look) const noexcept;
@@ -99,22 +103,26 @@ void ImpactSearch::look_at_half_space(Look& result) const noexcept {
   result.most = result.gap + 2.0 * pair_.noise();
   const Vec y =
       a.kind == solver::CoreKind::half_space ? Vec(a.normal * a.offset) : support(a, result.axis);
-  result.slope = pair_.parting(result.axis, y, y + result.axis * result.most - b.center);
+  result.on_a = y;
+  result.between = result.axis * (result.gap + pair_.noise() + pair_.roundings());
+  result.slope = pair_.parting(result.axis, y, y + result.between - b.center);
 }
 
-void ImpactSearch::look_at_cores(double time, Look& result) const noexcept {
+/// By the iteration for closest points, which ends where the gap is known to a share of it.
+void ImpactSearch::look_at_cores(double share, Look& result) const noexcept {
   const solver::Core& b = pair_.b();
   const double noise = pair_.noise();
   const Vec start = last_axis_.isZero(0.0) ? b.center : last_axis_;
   const GjkResult found =
       gjk(pair_.a(), b, start.isZero(0.0) ? Vec::UnitX() : start,
-          solver::kEnough * pair_.problem().noise(), kUnbounded, kGoodEnough, pair_.roundings());
+          solver::kEnough * pair_.problem().noise(), kUnbounded, share, pair_.roundings());
   if (found.contact) return;
   result.axis = found.axis;
   result.gap = found.lower - pair_.roundings() - noise;
   result.most = found.upper - pair_.roundings() + noise;
-  if (!(result.gap > 0.0) && result.most > 4.0 * noise) return look_closer(time, result);
-  result.slope = pair_.parting(found.axis, found.simplex.on_a(), found.simplex.on_b() - b.center);
+  result.on_a = found.simplex.on_a();
+  result.between = found.between;
+  result.slope = pair_.parting(found.axis, result.on_a, found.simplex.on_b() - b.center);
 }
 
 /// For cores whose closest points iteration does not find.
@@ -134,9 +142,9 @@ void ImpactSearch::look_closer(double time, Look& result) const noexcept {
     result.axis.setZero();
     result.gap = distance - doubt;
   }
-  const Vec on_a = Vec::Map(found.point).unaryExpr(scaled) - axis * pair_.a().rounding;
-  const Vec on_b = on_a + axis * (distance + pair_.roundings());
-  result.slope = pair_.parting(axis, on_a, on_b - pair_.b().center);
+  result.on_a = Vec::Map(found.point).unaryExpr(scaled) - axis * pair_.a().rounding;
+  result.between = axis * (distance + pair_.roundings());
+  result.slope = pair_.parting(axis, result.on_a, result.on_a + result.between - pair_.b().center);
 }
 
 Look ImpactSearch::look(double time) noexcept {
@@ -146,7 +154,9 @@ Look ImpactSearch::look(double time) noexcept {
   if (pair_.has_half_space()) {
     look_at_half_space(result);
   } else {
-    look_at_cores(time, result);
+    look_at_cores(kGoodEnough, result);
+    const bool vague = !(result.gap > 0.0) && result.most > 4.0 * pair_.noise();
+    if (vague) look_closer(time, result);
   }
   result.parted = result.gap > 0.0;
   if (result.parted && !result.axis.isZero(0.0)) last_axis_ = result.axis;
@@ -228,8 +238,10 @@ Impact ImpactSearch::met(double time, const PairAnswer& answer) noexcept {
   return impact;
 }
 
-/// They are apart before and within the tolerance here, or too near for double to tell.
-Impact ImpactSearch::meet_at(double time) const noexcept {
+/// They are apart before and within the tolerance here, where the pair is placed, or too near for
+/// double to tell.
+Impact ImpactSearch::meet_at(double time, Look& look) const noexcept {
+  if (look.parted) return near_at(time, look);
   if (time == 0.0) return start();
   Pose pose_a;
   Pose pose_b;
@@ -237,6 +249,24 @@ Impact ImpactSearch::meet_at(double time) const noexcept {
   Impact impact = met(time, distance_of(tables_, a_, pose_a, b_, pose_b));
   impact.gap = std::max(impact.gap, 0.0);
   impact.error_bound += unscaled(pair_.problem(), pair_.noise());
+  return impact;
+}
+
+/// What a look says of shapes that it shows apart; a closer one where there are closest corners.
+Impact ImpactSearch::near_at(double time, Look& look) const noexcept {
+  const bool polytopes = pair_.a().is_polytope() && pair_.b().is_polytope();
+  if (polytopes && look.most - look.gap > 4.0 * pair_.noise()) look_at_cores(0.0, look);
+  const solver::Problem& problem = pair_.problem();
+  const double gap = look.between.norm() - pair_.roundings();
+  const Vec normal = solver::unit(look.between);
+  const Vec point = look.on_a + normal * pair_.a().rounding;
+  Impact impact;
+  impact.hit = true;
+  impact.time = time;
+  impact.gap = unscaled(problem, std::max(gap, 0.0));
+  impact.error_bound = unscaled(problem, std::max(look.most - gap, gap - look.gap));
+  Vec::Map(impact.normal) = normal;
+  for (int i = 0; i < 3; ++i) impact.point[i] = unscaled(problem, point[i]);
   return impact;
 }
 
@@ -285,11 +315,14 @@ Impact ImpactSearch::run() noexcept {
   bool known = false;
   while (true) {
     if (!known) now = look(time);
-    if (!now.parted || has_met(time, last, now)) return meet_at(time);
+    if (!now.parted || has_met(time, last, now)) return meet_at(time, now);
     const double free = advance(time, last, now, known);
     if (free >= last) return {};
     // No number left between, or none that looks would ever reach.
-    if (free <= time || looks_ >= kMostLooks) return meet_at(time);
+    if (free <= time || looks_ >= kMostLooks) {
+      now = look(time);
+      return meet_at(time, now);
+    }
     time = free;
     if (time >= touching_) touching_ = kUnbounded;
   }
