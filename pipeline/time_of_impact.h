@@ -25,8 +25,9 @@ struct MovingBodies {
 /// How near shapes must be to have met.
 struct ImpactOptions {
   /// The gap at the time of impact is at most this share of the smaller shape's size: its largest
-  /// distance from its middle, the other's if it is a point, and at least what double resolves,
-  /// some 1e-13 of the sizes and of the way between the positions. In (0, 1].
+  /// distance from its middle, the other's if it is a point. In (0, 1]. At least what double
+  /// resolves: some 1e-13 of the sizes, of the way between the positions and of what turning
+  /// sweeps; of cylinders and cones beside shapes many times as large some 1e-8 of the larger.
   double tolerance = 1e-6;
   /// On whose threads; answers are the same on all.
   Execution execution = Execution::serial();
@@ -105,8 +106,9 @@ class WINNOW_API ImpactResult {
 ///
 /// `invalid_argument` for a bad tolerance or a pair of a body that does not exist, `size_mismatch`
 /// for spans of different lengths, `out_of_memory`: then `result` is empty. What is wrong with one
-/// pair is in its status. Usually some ten distances a pair; where shapes whirl around each other
-/// without touching, up to |turn| / sqrt(tolerance).
+/// pair is in its status. Usually some four looks for closest points a pair, of fast turns ten;
+/// where shapes whirl around each other without touching, up to |turn| / sqrt(tolerance). One at a
+/// time, in double: without lanes.
 WINNOW_API Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
                                  std::span<const BodyPair> pairs, const ImpactOptions& options,
                                  ImpactResult& result);

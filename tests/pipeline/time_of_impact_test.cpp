@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory_resource>
 #include <numbers>
 #include <vector>
 
@@ -273,6 +274,10 @@ TEST(TimeOfImpact, refuses_what_is_no_motion) {
               Status::invalid_argument);
   }
   EXPECT_EQ(result.size(), 0U);
+  ImpactResult without_memory(std::pmr::null_memory_resource());
+  EXPECT_EQ(time_of_impact(pool, {shapes, motions}, pairs, {}, without_memory),
+            Status::out_of_memory);
+  EXPECT_EQ(without_memory.size(), 0U);
 }
 
 TEST(TimeOfImpact, is_the_same_on_any_number_of_threads) {
