@@ -52,6 +52,8 @@
 #include <winnow/pipeline/height_field.h>
 #include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/narrow_phase.h>
+#include <winnow/pipeline/recording.h>
+#include <winnow/pipeline/replay.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>

@@ -55,6 +55,10 @@ class EventWriter {
   [[nodiscard]] bool follows() const noexcept { return follows_; }
   /// Where events keep their pairs for a caller who has no buffer.
   [[nodiscard]] static PairBuffer& own_buffer(PairEvents& events) noexcept { return events.pairs_; }
+  /// Which frame the events tell of.
+  [[nodiscard]] static PairBuffer::Provenance provenance(const PairEvents& events) noexcept {
+    return events.provenance_;
+  }
   [[nodiscard]] std::size_t persisting() const noexcept { return events_.persisting_; }
   void set_provenance(PairBuffer::Provenance provenance) noexcept {
     events_.provenance_ = provenance;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <limits>
 
 namespace winnow {
 
@@ -18,11 +19,16 @@ Status ShapePool::add(const HalfSpaceShape& shape, ShapeId& id) {
   // Scaled by its largest component first: squares of small normals would vanish.
   const double largest = normal.cwiseAbs().maxCoeff();
   if (largest == 0.0) return Status::invalid_shape;
+  link_kernels_of_half_space();
+  // What a pool normalised stays as it is, to the bit, where it is put into another one.
+  constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+  if (std::abs(normal.squaredNorm() - 1.0) <= kRounding) {
+    return put(half_spaces_, ShapeKind::half_space, shape, id);
+  }
   const Eigen::Vector3d scaled = normal / largest;
   const Eigen::Vector3d unit = scaled.normalized();
   const double offset = shape.offset / largest / scaled.norm();
   if (!std::isfinite(offset)) return Status::invalid_shape;
-  link_kernels_of_half_space();
   return put(half_spaces_, ShapeKind::half_space,
              HalfSpaceShape{{unit.x(), unit.y(), unit.z()}, offset}, id);
 }

@@ -1,0 +1,173 @@
+#pragma once
+
+#include <winnow/core/column.h>
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <type_traits>
+
+namespace winnow {
+
+static_assert(std::endian::native == std::endian::little && std::numeric_limits<float>::is_iec559,
+              "files are read and written as numbers lie in memory");
+
+/// A number that depends on every byte and their order: for damage that happens by itself, not for
+/// what somebody makes up. The mixing is that of SplitMix64 (Steele et al., "Fast splittable
+/// pseudorandom number generators", OOPSLA 2014).
+class Digest {
+ public:
+  void add(std::uint64_t value) noexcept {
+    std::uint64_t z = state_ ^ value;
+    z += 0x9E3779B97F4A7C15U;
+    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
+    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
+    state_ = z ^ (z >> 31U);
+  }
+  void add(double value) noexcept { add(std::bit_cast<std::uint64_t>(value)); }
+  void add(float value) noexcept { add(std::uint64_t{std::bit_cast<std::uint32_t>(value)}); }
+  /// Eight at a time, and how many there are.
+  void add(std::span<const std::byte> bytes) noexcept {
+    std::size_t at = 0;
+    for (; at + 8 <= bytes.size(); at += 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, bytes.data() + at, 8);
+      add(word);
+    }
+    std::uint64_t rest = 0;
+    if (at < bytes.size()) std::memcpy(&rest, bytes.data() + at, bytes.size() - at);
+    add(rest);
+    add(std::uint64_t{bytes.size()});
+  }
+  /// The bytes of an array of plain numbers.
+  template <typename T>
+  void add_array(std::span<const T> values) noexcept {
+    static_assert(std::is_trivially_copyable_v<T>);
+    add(std::as_bytes(values));
+  }
+
+  [[nodiscard]] std::uint64_t value() const noexcept { return state_; }
+
+ private:
+  std::uint64_t state_ = 0;
+};
+
+template <typename T>
+concept PlainNumber = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+/// Appends numbers to bytes, little-endian and without gaps. Once memory was refused it writes no
+/// more; see `ok`.
+class ByteWriter {
+ public:
+  explicit ByteWriter(Column<std::byte>& out) noexcept : out_(out) {}
+
+  template <PlainNumber T>
+  void put(T value) noexcept {
+    put_bytes(&value, sizeof value);
+  }
+  /// A count, then the values, which are plain numbers or structs of them without gaps.
+  template <typename T>
+  void put_array(std::span<const T> values) noexcept {
+    static_assert(std::is_trivially_copyable_v<T>);
+    put(std::uint64_t{values.size()});
+    put_bytes(values.data(), values.size_bytes());
+  }
+  void put_text(std::string_view text) noexcept {
+    put_array(std::span<const char>(text.data(), text.size()));
+  }
+  void put_bytes(const void* bytes, std::size_t count) noexcept {
+    if (!ok_ || count == 0) return;
+    const std::size_t at = out_.size();
+    ok_ = out_.resize(at + count);
+    if (ok_) std::memcpy(out_.data() + at, bytes, count);
+  }
+
+  /// False if memory was refused.
+  [[nodiscard]] bool ok() const noexcept { return ok_; }
+
+ private:
+  Column<std::byte>& out_;
+  bool ok_ = true;
+};
+
+/// Reads what a ByteWriter wrote, or anybody else. Behind the end it reads zeros, and once anything
+/// was wrong it stays so: what is read may be used, and `ok` asked, after several reads.
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const std::byte> bytes) noexcept : rest_(bytes) {}
+
+  template <PlainNumber T>
+  requires(!std::is_enum_v<T> && !std::is_same_v<T, bool>) [[nodiscard]] T get() noexcept {
+    T value{};
+    (void)get_bytes(&value, sizeof value);
+    return value;
+  }
+  /// Any other byte than 0 and 1 is wrong.
+  [[nodiscard]] bool get_bool() noexcept {
+    const auto byte = get<std::uint8_t>();
+    if (byte > 1) fail();
+    return byte == 1;
+  }
+  /// An enumerator from the first, which is 0, to `last`.
+  template <typename Enum>
+  [[nodiscard]] Enum get_enum(Enum last) noexcept {
+    const auto number = get<std::underlying_type_t<Enum>>();
+    if (number <= static_cast<std::underlying_type_t<Enum>>(last)) return static_cast<Enum>(number);
+    fail();
+    return Enum{};
+  }
+  /// Replaces the content of a column. A count that the rest has no bytes for is wrong, and asks
+  /// for no memory.
+  template <typename T>
+  [[nodiscard]] bool get_array(Column<T>& values) noexcept {
+    values.clear();
+    const auto count = get<std::uint64_t>();
+    if (!ok_ || count > rest_.size() / sizeof(T)) return fail();
+    if (!values.resize(static_cast<std::size_t>(count))) return refuse_memory();
+    return get_bytes(values.data(), values.size() * sizeof(T));
+  }
+  /// Lies in what is read.
+  [[nodiscard]] std::string_view get_text() noexcept {
+    const auto count = get<std::uint64_t>();
+    if (!ok_ || count > rest_.size()) {
+      fail();
+      return {};
+    }
+    const std::string_view text(reinterpret_cast<const char*>(rest_.data()),
+                                static_cast<std::size_t>(count));
+    rest_ = rest_.subspan(text.size());
+    return text;
+  }
+  [[nodiscard]] bool get_bytes(void* to, std::size_t count) noexcept {
+    if (!ok_ || count > rest_.size()) return fail();
+    if (count != 0) std::memcpy(to, rest_.data(), count);
+    rest_ = rest_.subspan(count);
+    return true;
+  }
+
+  /// Makes everything wrong from here on; false.
+  bool fail() noexcept {
+    ok_ = false;
+    return false;
+  }
+  /// The same because memory was refused; false.
+  bool refuse_memory() noexcept {
+    out_of_memory_ = true;
+    return fail();
+  }
+  [[nodiscard]] bool ok() const noexcept { return ok_; }
+  /// True if what is wrong is that memory was refused.
+  [[nodiscard]] bool out_of_memory() const noexcept { return out_of_memory_; }
+  [[nodiscard]] std::span<const std::byte> rest() const noexcept { return rest_; }
+
+ private:
+  std::span<const std::byte> rest_;
+  bool ok_ = true;
+  bool out_of_memory_ = false;
+};
+
+}  // namespace winnow

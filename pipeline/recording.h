@@ -1,0 +1,213 @@
+#pragma once
+
+#include <winnow/core/export.h>
+#include <winnow/core/status.h>
+#include <winnow/partitions/partition.h>
+#include <winnow/pipeline/scene.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+struct RecorderState;
+enum class RecordedCall : std::uint8_t;
+
+/// Where a recording goes: a function that takes the next bytes and says whether it could. Called
+/// by one thread at a time; it must not throw.
+struct RecordingSink {
+  bool (*write)(void* context, std::span<const std::byte> bytes) = nullptr;  ///< null: nowhere
+  void* context = nullptr;                                                   ///< handed to `write`
+};
+
+/// Writes down what a program does with partitions and scenes, so that it can be played again
+/// elsewhere (RecordingPlayer) and measured (`winnow advise FILE`). What is recorded is declared as
+/// a RecordedPartition or RecordedScene, with the same calls:
+///
+///     winnow::Recorder recorder("run.winnow");
+///     winnow::RecordedPartition partition(recorder, winnow::linear_bvh());
+///     partition.insert(boxes, data, keys);
+///     partition.self_pairs(pairs);
+///     recorder.end_frame();
+///
+/// Partitions and scenes that are not declared so pay nothing. pipeline/CONTRACT.md has the format.
+/// Calls that were refused are not recorded. Calls from several threads are recorded in the order
+/// in which they end. Where anything goes wrong the recording ends, and the program goes on.
+class WINNOW_API Recorder {
+ public:
+  /// Into a file, which is made or overwritten. `memory` must outlive the recorder.
+  explicit Recorder(const char* path,
+                    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+  /// Wherever the sink takes it.
+  explicit Recorder(const RecordingSink& sink,
+                    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+  /// Closes the recording; what it records must be gone by then.
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// Says that a frame of the program is over, and writes out what there is. Where a program tells
+  /// no frames, tools take each question for all pairs or contacts for the end of one.
+  void end_frame() noexcept;
+  /// Writes the end; nothing is recorded from then on. What `status` answers.
+  Status close() noexcept;
+
+  /// `ok`; `out_of_memory`, also of the sink or the disk; `invalid_argument` for a file that cannot
+  /// be opened; `unsupported` after a call that cannot be recorded, see RecordedScene.
+  [[nodiscard]] Status status() const noexcept;
+  /// Written so far.
+  [[nodiscard]] std::uint64_t bytes() const noexcept;
+  /// Recorded so far.
+  [[nodiscard]] std::uint64_t calls() const noexcept;
+
+ private:
+  friend class RecordedPartition;
+  friend class RecordedScene;
+
+  std::pmr::memory_resource* memory_;
+  /// Null where memory was refused.
+  RecorderState* state_;
+};
+
+/// A Partition whose calls are recorded: see there for what each does. Its answers are those of the
+/// partition; besides the questions a digest of each answer is written. Of a question with a
+/// predicate what was found stands for what the predicate would say. A question whose buffer or
+/// events hold the answer to an earlier one goes on from it where that is one of the last 16.
+class WINNOW_API RecordedPartition {
+ public:
+  /// The recorder must outlive the partition.
+  explicit RecordedPartition(Recorder& recorder, StructureKind structure,
+                             const PartitionOptions& options = {}) noexcept;
+  ~RecordedPartition();
+  RecordedPartition(const RecordedPartition&) = delete;
+  RecordedPartition& operator=(const RecordedPartition&) = delete;
+
+  /// The partition itself, for everything that is not recorded: what it holds, how it stands.
+  [[nodiscard]] const Partition& partition() const noexcept { return partition_; }
+  /// The same.
+  [[nodiscard]] const Partition* operator->() const noexcept { return &partition_; }
+  /// Not recorded: makes no difference to any answer.
+  Status reserve(std::size_t objects, Pages pages = Pages::untouched) {
+    return partition_.reserve(objects, pages);
+  }
+
+  /// As those of Partition.
+  /// @{
+  Status set_structure(StructureKind structure);
+  Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
+  Status insert(const Aabb& box, ClientData data, Key& key);
+  Status insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
+                std::span<Key> keys);
+  template <int K>
+  Status insert(std::span<const Kdop<K>> kdops, std::span<const ClientData> data,
+                std::span<Key> keys);
+  Status update(std::span<const Key> keys, const BoxView& boxes);
+  Status update(Key key, const Aabb& box);
+  Status update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries);
+  Status update(std::span<const Key> keys, std::span<const Sphere> spheres);
+  template <int K>
+  Status update(std::span<const Key> keys, std::span<const Kdop<K>> kdops);
+  Status remove(std::span<const Key> keys);
+  Status remove(Key key);
+  void clear() noexcept;
+  void release_memory() noexcept;
+  Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
+  Status set_filter(Key key, const ObjectFilter& filter);
+  Status refresh() const;
+  Status self_pairs(PairBuffer& out, const PairOptions& options = {}) const;
+  Status self_pairs(PairBuffer& out, PairEvents& events, const PairOptions& options = {}) const;
+  Status self_pairs(PairEvents& events, const PairOptions& options = {}) const;
+  Status pairs_with(const RecordedPartition& other, PairBuffer& out,
+                    const PairOptions& options = {}) const;
+  Status closest(const Cast& cast, Hit& hit, const Filter& filter = {}) const;
+  Status any(const Cast& cast, Hit& hit, const Filter& filter = {}) const;
+  Status all(const Cast& cast, HitBuffer& hits, const Filter& filter = {}) const;
+  Status closest(const RayBatch& rays, const HitColumns& hits, const Filter& filter = {}) const;
+  Status any(const RayBatch& rays, const HitColumns& hits, const Filter& filter = {}) const;
+  Status all(const RayBatch& rays, HitBuffer& hits, const Filter& filter = {}) const;
+  Status overlap(const Region& region, OverlapBuffer& objects, const Filter& filter = {},
+                 Order order = Order::fast) const;
+  Status overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter = {},
+                 Order order = Order::fast) const;
+  Status nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
+                 const Filter& filter = {}) const;
+  /// @}
+
+ private:
+  void record(RecordedCall question, const RayBatch& rays, const HitColumns& hits,
+              const Filter& filter) const;
+
+  RecorderState* recorder_;
+  std::uint32_t world_;
+  Partition partition_;
+  /// Number of the recorded question whose answer a buffer holds; 0 if it is none of the last ones.
+  [[nodiscard]] std::uint64_t asked_as(const PairBuffer& out) const noexcept;
+  void note_asked(const PairBuffer& out) const noexcept;
+
+  /// What the last questions for pairs, of which question i stands at i % kAskedPairs, left in
+  /// buffers.
+  static constexpr std::size_t kAskedPairs = 16;
+  mutable PairBuffer::Provenance asked_[kAskedPairs];
+  mutable std::uint64_t questions_ = 0;
+};
+
+/// A Scene whose calls are recorded, with the shapes of its bodies: see there for what each does.
+/// Composite shapes and predicates are not recorded: a body of a composite shape ends the recording
+/// with `unsupported`.
+class WINNOW_API RecordedScene {
+ public:
+  /// The recorder must outlive the scene.
+  explicit RecordedScene(Recorder& recorder, const ShapePool& shapes,
+                         const SceneOptions& options = {}) noexcept;
+  ~RecordedScene();
+  RecordedScene(const RecordedScene&) = delete;
+  RecordedScene& operator=(const RecordedScene&) = delete;
+
+  /// The scene itself, for everything that is not recorded: what it holds, SceneQueries.
+  [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
+  /// The same.
+  [[nodiscard]] const Scene* operator->() const noexcept { return &scene_; }
+
+  /// As those of Scene.
+  /// @{
+  Status add(const BodyDefinition& body, Key& key);
+  Status add(std::span<const BodyDefinition> bodies, std::span<Key> keys);
+  Status remove(Key key);
+  Status remove(std::span<const Key> keys);
+  void clear() noexcept;
+  Status move(Key key, const Pose& pose);
+  Status move(std::span<const Key> keys, const PoseView& poses);
+  Status set_motion(Key key, Motion motion);
+  Status set_motion(std::span<const Key> keys, Motion motion);
+  Status set_shape(Key key, ShapeId shape);
+  Status set_filter(Key key, const ObjectFilter& filter);
+  Status set_ignored(Key a, Key b, bool ignored = true);
+  Status set_ignored(std::span<const KeyPair> pairs, bool ignored = true);
+  Status refresh();
+  Status collide(ContactLevel level, Contacts& contacts);
+  /// @}
+
+ private:
+  [[nodiscard]] std::uint32_t number_of(ShapeId id) noexcept;
+
+  /// Which number a shape was recorded by, and what it was then.
+  struct Known {
+    ShapeId id;
+    std::uint32_t number;
+    std::uint64_t digest;
+  };
+
+  RecorderState* recorder_;
+  std::uint32_t world_;
+  const ShapePool& shapes_;
+  Scene scene_;
+  Column<Known> known_;
+  std::uint32_t shapes_recorded_ = 0;
+  /// Which contacts were asked for last, and how many there were.
+  const Contacts* asked_ = nullptr;
+  std::size_t asked_size_ = 0;
+};
+
+}  // namespace winnow

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/shapes.h>
+#include "core/memory/byte_stream.h"
+
+#include <span>
+
+namespace winnow {
+
+/// All that contacts tell; of keys the ids.
+inline void add_to(Digest& digest, const Contacts& contacts) noexcept {
+  const auto add_ids = [&](std::span<const Key> keys) {
+    for (const Key& key : keys) digest.add(std::uint64_t{key.id});
+  };
+  digest.add(std::uint64_t{contacts.size()});
+  add_ids(contacts.a());
+  add_ids(contacts.b());
+  digest.add_array(contacts.data_a());
+  digest.add_array(contacts.data_b());
+  digest.add_array(contacts.event());
+  for (const EndedContact& ended : contacts.ended()) {
+    digest.add(std::uint64_t{ended.a.id} << 32U | ended.b.id);
+    digest.add(ended.data_a);
+    digest.add(ended.data_b);
+  }
+  digest.add(std::uint64_t{contacts.ended().size()});
+  digest.add_array(contacts.manifold_first());
+  digest.add_array(contacts.part_a());
+  digest.add_array(contacts.part_b());
+  digest.add_array(contacts.distance());
+  digest.add_array(contacts.error_bound());
+  for (int axis = 0; axis < 3; ++axis) {
+    digest.add_array(contacts.normal(axis));
+    digest.add_array(contacts.point(axis));
+  }
+  digest.add_array(contacts.point_first());
+  for (std::size_t i = 0; i < contacts.points(); ++i) {
+    const ContactPoint point = contacts.contact(i);
+    for (const float x : point.position) digest.add(x);
+    digest.add(point.depth);
+    digest.add(point.feature);
+  }
+  digest.add_array(contacts.previous_pair());
+  digest.add_array(contacts.previous_point());
+  digest.add(std::uint64_t{contacts.carried()});
+}
+
+/// What a pool holds of a hull, to the bit.
+inline void add_to(Digest& digest, const HullShape& hull) noexcept {
+  for (const std::uint32_t count :
+       {hull.vertex_count, hull.face_count, hull.edge_count, hull.dimension}) {
+    digest.add(std::uint64_t{count});
+  }
+  for (const double x : {hull.rounding, hull.center[0], hull.center[1], hull.center[2], hull.radius,
+                         hull.inner_radius}) {
+    digest.add(x);
+  }
+  for (const double* column : hull.vertex) {
+    digest.add_array(std::span<const double>(column, hull.vertex_count));
+  }
+  std::size_t corners = 0;
+  for (std::uint32_t f = 0; f < hull.face_count; ++f) {
+    const HullFace& face = hull.faces[f];
+    for (const double x : {face.normal[0], face.normal[1], face.normal[2], face.offset}) {
+      digest.add(x);
+    }
+    digest.add(std::uint64_t{face.first} << 32U | face.count);
+    corners += face.count;
+  }
+  digest.add_array(std::span<const std::uint32_t>(hull.loop, corners));
+}
+
+}  // namespace winnow

@@ -1,0 +1,137 @@
+#pragma once
+
+// What stands in a recording; pipeline/CONTRACT.md says it in words.
+
+#include <winnow/core/cast.h>
+#include <winnow/core/hits.h>
+#include <winnow/core/pair_events.h>
+#include <winnow/core/region.h>
+#include <winnow/partitions/partition.h>
+#include "core/memory/byte_stream.h"
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace winnow {
+
+inline constexpr std::string_view kRecordingMagic = "WINNOWRC";
+inline constexpr std::uint32_t kRecordingVersion = 1;
+/// Magic, version, and 4 bytes of 0.
+inline constexpr std::size_t kRecordingHeader = 16;
+/// Size of what follows, and its digest.
+inline constexpr std::size_t kBlockHeader = 16;
+
+/// The world of calls that are of none.
+inline constexpr std::uint32_t kNoWorld = ~0U;
+
+enum class RecordedCall : std::uint8_t {
+  end_frame,
+  end_world,
+  make_partition,
+  set_structure,
+  insert,
+  update,
+  remove,
+  clear,
+  release_memory,
+  set_filter,
+  refresh,
+  self_pairs,
+  pairs_with,
+  closest_cast,
+  any_cast,
+  all_casts,
+  closest_rays,
+  any_rays,
+  all_rays,
+  overlap_region,
+  overlap_boxes,
+  nearest,
+  make_scene,
+  add_shape,
+  add_bodies,
+  remove_bodies,
+  clear_bodies,
+  move,
+  set_motion,
+  set_shape,
+  set_body_filter,
+  set_ignored,
+  refresh_scene,
+  collide,
+};
+
+/// What a call names objects by: keys belong to one process, ids are the same in each.
+struct RecordedPair {
+  std::uint32_t first;
+  std::uint32_t second;
+};
+
+/// How pairs were asked for.
+enum class PairForm : std::uint8_t { buffer, buffer_and_events, events };
+
+/// A body as it is added, with its shape's number in the recording.
+struct RecordedBody {
+  std::uint32_t shape;
+  std::uint32_t motion;
+  double pose[7];  // position, orientation
+  std::uint32_t filter[3];
+  std::uint32_t unused;
+  std::uint64_t data;
+};
+static_assert(sizeof(RecordedBody) == 88);
+
+[[nodiscard]] inline RecordedPair as_recorded(const Pair& pair) noexcept {
+  return {pair.first, pair.second};
+}
+
+// Digests of answers.
+
+inline void add_to(Digest& digest, std::span<const Hit> hits) noexcept {
+  for (const Hit& hit : hits) {
+    digest.add(std::uint64_t{hit.key.id});
+    digest.add(hit.data);
+    digest.add(hit.t);
+  }
+  digest.add(std::uint64_t{hits.size()});
+}
+
+inline void add_to(Digest& digest, const PairBuffer& pairs) noexcept {
+  digest.add_array(pairs.pairs());
+}
+
+inline void add_to(Digest& digest, const PairEvents& events) noexcept {
+  const auto add_all = [&](std::span<const KeyPair> pairs) {
+    for (const KeyPair& pair : pairs) {
+      digest.add(std::uint64_t{pair.first.id} << 32U | pair.second.id);
+    }
+    digest.add(std::uint64_t{pairs.size()});
+  };
+  add_all(events.begun());
+  add_all(events.ended());
+  digest.add(std::uint64_t{events.persisting()});
+}
+
+inline void add_to(Digest& digest, const HitBuffer& hits) noexcept {
+  add_to(digest, hits.hits());
+  for (std::size_t i = 0; i < hits.questions(); ++i) {
+    digest.add(std::uint64_t{hits.of(i).size()});
+  }
+}
+
+inline void add_to(Digest& digest, const OverlapBuffer& objects) noexcept {
+  digest.add_array(objects.ids());
+  digest.add(std::uint64_t{objects.inside().size()});
+}
+
+/// Of those columns that are there.
+inline void add_to(Digest& digest, const HitColumns& hits, std::size_t count) noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (hits.key != nullptr) digest.add(std::uint64_t{hits.key[i].id});
+    if (hits.data != nullptr) digest.add(hits.data[i]);
+    if (hits.t != nullptr) digest.add(hits.t[i]);
+  }
+}
+
+}  // namespace winnow

@@ -1,0 +1,442 @@
+#include "partitions/pairs/event_writer.h"
+#include "partitions/pairs/pair_tracker.h"
+#include "pipeline/recording/recorder_state.h"
+
+#include <algorithm>
+#include <type_traits>
+#include <variant>
+
+namespace winnow {
+namespace {
+
+void put_structure(CallWriter& call, StructureKind structure) {
+  call.put_text(structure.name()).put(structure.parameter());
+}
+
+template <typename V>
+void put_volumes(CallWriter& call, Volume volume, std::span<const V> volumes) {
+  call.put(volume).put_array(volumes);
+}
+
+/// Boxes of a view, as an array of them would be put.
+void put_boxes(CallWriter& call, const BoxView& boxes) {
+  call.put(Volume::aabb).put(std::uint64_t{boxes.count});
+  for (std::size_t i = 0; i < boxes.count; ++i) {
+    const Aabb box = boxes[i];
+    call.put_bytes(&box, sizeof box);
+  }
+}
+
+void put_filter(CallWriter& call, const Filter& filter) {
+  call.put(filter.layers).put(filter.mask).put(filter.environment);
+}
+
+void put_rays(CallWriter& call, const RayBatch& rays) {
+  call.put(std::uint64_t{rays.count});
+  for (std::size_t i = 0; i < rays.count; ++i) {
+    const Ray ray = rays[i];
+    call.put_bytes(&ray, sizeof ray);
+  }
+}
+
+void put_cast(CallWriter& call, const Cast& cast) {
+  call.put(static_cast<std::uint8_t>(cast.index()));
+  std::visit([&](const auto& one) { call.put_bytes(&one, sizeof one); }, cast);
+}
+
+void put_region(CallWriter& call, const Region& region) {
+  call.put(static_cast<std::uint8_t>(region.index()));
+  std::visit(
+      [&](const auto& one) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(one)>, std::span<const Plane>>) {
+          call.put_array(one);
+        } else {
+          call.put_bytes(&one, sizeof one);
+        }
+      },
+      region);
+}
+
+// What a predicate let pass, where there is one: of what it is asked about, that is in the answer.
+
+void put_passed(CallWriter& call, const PairPredicate& predicate, std::span<const Pair> pairs) {
+  call.put(predicate.accept != nullptr);
+  if (predicate.accept != nullptr) call.put_array(pairs);
+}
+
+template <typename Ids>
+void put_passed(CallWriter& call, const ObjectPredicate& predicate, std::size_t count,
+                const Ids& id_of) {
+  call.put(predicate.accept != nullptr);
+  if (predicate.accept == nullptr) return;
+  call.put(std::uint64_t{count});
+  for (std::size_t i = 0; i < count; ++i) call.put(ObjectId{id_of(i)});
+}
+
+void put_passed(CallWriter& call, const ObjectPredicate& predicate, std::span<const Hit> hits) {
+  put_passed(call, predicate, hits.size(), [&](std::size_t i) { return hits[i].key.id; });
+}
+
+template <typename... Answer>
+void put_digest(CallWriter& call, const Answer&... answer) {
+  Digest digest;
+  (add_to(digest, answer), ...);
+  call.put(digest.value());
+}
+
+}  // namespace
+
+RecordedPartition::RecordedPartition(Recorder& recorder, StructureKind structure,
+                                     const PartitionOptions& options) noexcept
+    : recorder_(recorder.state_), world_(new_world(recorder_)), partition_(structure, options) {
+  if (partition_.status() != Status::ok) return;
+  CallWriter call(recorder_, RecordedCall::make_partition, world_);
+  put_structure(call, structure);
+  call.put(options.volume).put(options.margin.distance).put(options.margin.share);
+  call.put(std::uint64_t{options.build_budget});
+}
+
+RecordedPartition::~RecordedPartition() {
+  if (partition_.status() != Status::ok) return;
+  CallWriter(recorder_, RecordedCall::end_world, world_);
+}
+
+Status RecordedPartition::set_structure(StructureKind structure) {
+  const Status status = partition_.set_structure(structure);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::set_structure, world_);
+  put_structure(call, structure);
+  return status;
+}
+
+Status RecordedPartition::insert(const BoxView& boxes, std::span<const ClientData> data,
+                                 std::span<Key> keys) {
+  const Status status = partition_.insert(boxes, data, keys);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::insert, world_);
+  put_boxes(call, boxes);
+  call.put_array(data);
+  return status;
+}
+
+Status RecordedPartition::insert(const Aabb& box, ClientData data, Key& key) {
+  return insert(BoxView(std::span<const Aabb>(&box, 1)), std::span<const ClientData>(&data, 1),
+                std::span<Key>(&key, 1));
+}
+
+Status RecordedPartition::insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
+                                 std::span<Key> keys) {
+  const Status status = partition_.insert(spheres, data, keys);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::insert, world_);
+  put_volumes(call, Volume::sphere, spheres);
+  call.put_array(data);
+  return status;
+}
+
+template <int K>
+Status RecordedPartition::insert(std::span<const Kdop<K>> kdops, std::span<const ClientData> data,
+                                 std::span<Key> keys) {
+  const Status status = partition_.insert(kdops, data, keys);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::insert, world_);
+  put_volumes(call, partition_.volume(), kdops);
+  call.put_array(data);
+  return status;
+}
+
+Status RecordedPartition::update(std::span<const Key> keys, const BoxView& boxes) {
+  const Status status = partition_.update(keys, boxes);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::update, world_);
+  call.put_ids(keys);
+  put_boxes(call, boxes);
+  return status;
+}
+
+Status RecordedPartition::update(Key key, const Aabb& box) {
+  return update(std::span<const Key>(&key, 1), BoxView(std::span<const Aabb>(&box, 1)));
+}
+
+Status RecordedPartition::update(std::span<const Key> keys, const BoxView& boxes,
+                                 const Entries& entries) {
+  const Status status = partition_.update(keys, boxes, entries);
+  if (status != Status::ok) return status;
+  const auto for_each = [&](const auto& visit) {
+    if (!entries.is_mask()) {
+      for (const std::uint32_t number : entries.numbers()) visit(number);
+      return;
+    }
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      if ((entries.words()[i / 64] >> i % 64 & 1U) != 0) visit(i);
+    }
+  };
+  std::uint64_t count = 0;
+  for_each([&](std::size_t) { ++count; });
+  CallWriter call(recorder_, RecordedCall::update, world_);
+  call.put(count);
+  for_each([&](std::size_t i) { call.put(keys[i].id); });
+  call.put(Volume::aabb).put(count);
+  for_each([&](std::size_t i) {
+    const Aabb box = boxes[i];
+    call.put_bytes(&box, sizeof box);
+  });
+  return status;
+}
+
+Status RecordedPartition::update(std::span<const Key> keys, std::span<const Sphere> spheres) {
+  const Status status = partition_.update(keys, spheres);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::update, world_);
+  call.put_ids(keys);
+  put_volumes(call, Volume::sphere, spheres);
+  return status;
+}
+
+template <int K>
+Status RecordedPartition::update(std::span<const Key> keys, std::span<const Kdop<K>> kdops) {
+  const Status status = partition_.update(keys, kdops);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::update, world_);
+  call.put_ids(keys);
+  put_volumes(call, partition_.volume(), kdops);
+  return status;
+}
+
+template WINNOW_API Status RecordedPartition::insert(std::span<const Kdop<14>>,
+                                                     std::span<const ClientData>, std::span<Key>);
+template WINNOW_API Status RecordedPartition::insert(std::span<const Kdop<18>>,
+                                                     std::span<const ClientData>, std::span<Key>);
+template WINNOW_API Status RecordedPartition::insert(std::span<const Kdop<26>>,
+                                                     std::span<const ClientData>, std::span<Key>);
+template WINNOW_API Status RecordedPartition::update(std::span<const Key>,
+                                                     std::span<const Kdop<14>>);
+template WINNOW_API Status RecordedPartition::update(std::span<const Key>,
+                                                     std::span<const Kdop<18>>);
+template WINNOW_API Status RecordedPartition::update(std::span<const Key>,
+                                                     std::span<const Kdop<26>>);
+
+Status RecordedPartition::remove(std::span<const Key> keys) {
+  const Status status = partition_.remove(keys);
+  if (status != Status::ok) return status;
+  CallWriter(recorder_, RecordedCall::remove, world_).put_ids(keys);
+  return status;
+}
+
+Status RecordedPartition::remove(Key key) {
+  return remove(std::span<const Key>(&key, 1));
+}
+
+void RecordedPartition::clear() noexcept {
+  partition_.clear();
+  CallWriter(recorder_, RecordedCall::clear, world_);
+}
+
+void RecordedPartition::release_memory() noexcept {
+  partition_.release_memory();
+  CallWriter(recorder_, RecordedCall::release_memory, world_);
+}
+
+Status RecordedPartition::set_filter(std::span<const Key> keys,
+                                     std::span<const ObjectFilter> filters) {
+  const Status status = partition_.set_filter(keys, filters);
+  if (status != Status::ok) return status;
+  CallWriter(recorder_, RecordedCall::set_filter, world_).put_ids(keys).put_array(filters);
+  return status;
+}
+
+Status RecordedPartition::set_filter(Key key, const ObjectFilter& filter) {
+  return set_filter(std::span<const Key>(&key, 1), std::span<const ObjectFilter>(&filter, 1));
+}
+
+Status RecordedPartition::refresh() const {
+  const Status status = partition_.refresh();
+  if (status == Status::ok) CallWriter(recorder_, RecordedCall::refresh, world_);
+  return status;
+}
+
+// Questions for pairs go on from what a buffer holds: which question left it there, and whether the
+// events tell of the same frame, decides the order of the answer.
+
+std::uint64_t RecordedPartition::asked_as(const PairBuffer& out) const noexcept {
+  const PairBuffer::Provenance held = PairTracker::provenance(out);
+  for (std::uint64_t number = questions_; held.serial != 0 && number != 0; --number) {
+    if (number + kAskedPairs == questions_) break;
+    if (asked_[number % kAskedPairs] == held) return number;
+  }
+  return 0;
+}
+
+void RecordedPartition::note_asked(const PairBuffer& out) const noexcept {
+  asked_[++questions_ % kAskedPairs] = PairTracker::provenance(out);
+}
+
+Status RecordedPartition::self_pairs(PairBuffer& out, const PairOptions& options) const {
+  const std::uint64_t before = asked_as(out);
+  const Status status = partition_.self_pairs(out, options);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::self_pairs, world_);
+  call.put(PairForm::buffer).put(options.order).put(options.incremental);
+  call.put(before).put(false);
+  put_passed(call, options.predicate, out.pairs());
+  put_digest(call, out);
+  note_asked(out);
+  return status;
+}
+
+Status RecordedPartition::self_pairs(PairBuffer& out, PairEvents& events,
+                                     const PairOptions& options) const {
+  const std::uint64_t before = asked_as(out);
+  const bool follows =
+      before != 0 && EventWriter::provenance(events) == PairTracker::provenance(out);
+  const Status status = partition_.self_pairs(out, events, options);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::self_pairs, world_);
+  call.put(PairForm::buffer_and_events).put(options.order).put(options.incremental);
+  call.put(before).put(follows);
+  put_passed(call, options.predicate, out.pairs());
+  put_digest(call, out, events);
+  note_asked(out);
+  return status;
+}
+
+Status RecordedPartition::self_pairs(PairEvents& events, const PairOptions& options) const {
+  const PairBuffer& own = EventWriter::own_buffer(events);
+  const std::uint64_t before = asked_as(own);
+  const bool follows =
+      before != 0 && EventWriter::provenance(events) == PairTracker::provenance(own);
+  const Status status = partition_.self_pairs(events, options);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::self_pairs, world_);
+  call.put(PairForm::events).put(options.order).put(options.incremental);
+  call.put(before).put(follows);
+  put_passed(call, options.predicate, own.pairs());
+  put_digest(call, events);
+  note_asked(own);
+  return status;
+}
+
+Status RecordedPartition::pairs_with(const RecordedPartition& other, PairBuffer& out,
+                                     const PairOptions& options) const {
+  const Status status = partition_.pairs_with(other.partition_, out, options);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::pairs_with, world_);
+  call.put(other.world_).put(options.order).put(options.incremental);
+  put_passed(call, options.predicate, out.pairs());
+  put_digest(call, out);
+  return status;
+}
+
+Status RecordedPartition::closest(const Cast& cast, Hit& hit, const Filter& filter) const {
+  const Status status = partition_.closest(cast, hit, filter);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::closest_cast, world_);
+  put_cast(call, cast);
+  put_filter(call, filter);
+  put_passed(call, filter.predicate, std::span<const Hit>(&hit, 1));
+  put_digest(call, std::span<const Hit>(&hit, 1));
+  return status;
+}
+
+Status RecordedPartition::any(const Cast& cast, Hit& hit, const Filter& filter) const {
+  const Status status = partition_.any(cast, hit, filter);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::any_cast, world_);
+  put_cast(call, cast);
+  put_filter(call, filter);
+  put_passed(call, filter.predicate, std::span<const Hit>(&hit, 1));
+  put_digest(call, std::span<const Hit>(&hit, 1));
+  return status;
+}
+
+Status RecordedPartition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) const {
+  const Status status = partition_.all(cast, hits, filter);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::all_casts, world_);
+  put_cast(call, cast);
+  put_filter(call, filter);
+  put_passed(call, filter.predicate, hits.hits());
+  put_digest(call, hits);
+  return status;
+}
+
+Status RecordedPartition::closest(const RayBatch& rays, const HitColumns& hits,
+                                  const Filter& filter) const {
+  const Status status = partition_.closest(rays, hits, filter);
+  if (status == Status::ok) record(RecordedCall::closest_rays, rays, hits, filter);
+  return status;
+}
+
+Status RecordedPartition::any(const RayBatch& rays, const HitColumns& hits,
+                              const Filter& filter) const {
+  const Status status = partition_.any(rays, hits, filter);
+  if (status == Status::ok) record(RecordedCall::any_rays, rays, hits, filter);
+  return status;
+}
+
+Status RecordedPartition::all(const RayBatch& rays, HitBuffer& hits, const Filter& filter) const {
+  const Status status = partition_.all(rays, hits, filter);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::all_rays, world_);
+  put_rays(call, rays);
+  put_filter(call, filter);
+  put_passed(call, filter.predicate, hits.hits());
+  put_digest(call, hits);
+  return status;
+}
+
+Status RecordedPartition::overlap(const Region& region, OverlapBuffer& objects,
+                                  const Filter& filter, Order order) const {
+  const Status status = partition_.overlap(region, objects, filter, order);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::overlap_region, world_);
+  put_region(call, region);
+  put_filter(call, filter);
+  call.put(order);
+  const std::span<const ObjectId> ids = objects.ids();
+  put_passed(call, filter.predicate, ids.size(), [&](std::size_t i) { return ids[i]; });
+  put_digest(call, objects);
+  return status;
+}
+
+Status RecordedPartition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter,
+                                  Order order) const {
+  const Status status = partition_.overlap(boxes, out, filter, order);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::overlap_boxes, world_);
+  put_boxes(call, boxes);
+  put_filter(call, filter);
+  call.put(order);
+  put_passed(call, filter.predicate, out.size(), [&](std::size_t i) { return out[i].second; });
+  put_digest(call, out);
+  return status;
+}
+
+Status RecordedPartition::nearest(const Aabb& from, std::size_t count, float radius,
+                                  HitBuffer& hits, const Filter& filter) const {
+  const Status status = partition_.nearest(from, count, radius, hits, filter);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::nearest, world_);
+  call.put_bytes(&from, sizeof from).put(std::uint64_t{count}).put(radius);
+  put_filter(call, filter);
+  put_passed(call, filter.predicate, hits.hits());
+  put_digest(call, hits);
+  return status;
+}
+
+/// The answers to a batch of rays. Without a column of keys nothing tells what a predicate let
+/// pass: such a question is not recorded.
+void RecordedPartition::record(RecordedCall question, const RayBatch& rays, const HitColumns& hits,
+                               const Filter& filter) const {
+  if (filter.predicate.accept != nullptr && hits.key == nullptr) return;
+  CallWriter call(recorder_, question, world_);
+  put_rays(call, rays);
+  put_filter(call, filter);
+  put_passed(call, filter.predicate, rays.count, [&](std::size_t i) { return hits.key[i].id; });
+  call.put(hits.key != nullptr).put(hits.data != nullptr).put(hits.t != nullptr);
+  Digest digest;
+  add_to(digest, hits, rays.count);
+  call.put(digest.value());
+}
+
+}  // namespace winnow

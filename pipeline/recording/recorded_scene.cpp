@@ -1,0 +1,252 @@
+#include "pipeline/recording/contact_digest.h"
+#include "pipeline/recording/recorder_state.h"
+
+#include <algorithm>
+
+namespace winnow {
+namespace {
+
+RecordedBody recorded(const BodyDefinition& body, std::uint32_t shape) noexcept {
+  RecordedBody out{};
+  out.shape = shape;
+  out.motion = static_cast<std::uint32_t>(body.motion);
+  std::copy_n(body.pose.position, 3, out.pose);
+  std::copy_n(body.pose.orientation, 4, out.pose + 3);
+  out.filter[0] = body.filter.layers;
+  out.filter[1] = body.filter.mask;
+  out.filter[2] = body.filter.environment;
+  out.data = body.data;
+  return out;
+}
+
+void put_hull(CallWriter& call, const HullShape& hull) {
+  std::size_t corners = 0;
+  for (std::uint32_t f = 0; f < hull.face_count; ++f) corners += hull.faces[f].count;
+  for (const double* column : hull.vertex) {
+    call.put_array(std::span<const double>(column, hull.vertex_count));
+  }
+  call.put_array(std::span<const std::uint32_t>(hull.loop, corners));
+  call.put(std::uint64_t{hull.face_count});
+  for (std::uint32_t f = 0; f < hull.face_count; ++f) call.put(hull.faces[f].count);
+  call.put(hull.rounding);
+}
+
+/// Calls use(shape) with the shape itself, of whatever kind.
+template <typename Use>
+void with_shape(const ShapeTables& tables, ShapeId id, Use&& use) {
+  switch (id.kind()) {
+    case ShapeKind::sphere:
+      return use(tables.spheres[id.index()]);
+    case ShapeKind::capsule:
+      return use(tables.capsules[id.index()]);
+    case ShapeKind::box:
+      return use(tables.boxes[id.index()]);
+    case ShapeKind::cylinder:
+      return use(tables.cylinders[id.index()]);
+    case ShapeKind::cone:
+      return use(tables.cones[id.index()]);
+    case ShapeKind::hull:
+      return use(tables.hulls[id.index()]);
+    case ShapeKind::triangle:
+      return use(tables.triangles[id.index()]);
+    case ShapeKind::half_space:
+      return use(tables.half_spaces[id.index()]);
+  }
+}
+
+std::uint64_t digest_of(const ShapeTables& tables, ShapeId id) {
+  Digest digest;
+  with_shape(tables, id, [&](const auto& shape) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, HullShape>) {
+      add_to(digest, shape);
+    } else {
+      digest.add(std::as_bytes(std::span(&shape, 1)));
+    }
+  });
+  return digest.value();
+}
+
+}  // namespace
+
+RecordedScene::RecordedScene(Recorder& recorder, const ShapePool& shapes,
+                             const SceneOptions& options) noexcept
+    : recorder_(recorder.state_),
+      world_(new_world(recorder_)),
+      shapes_(shapes),
+      scene_(shapes, options),
+      known_(options.memory) {
+  CallWriter call(recorder_, RecordedCall::make_scene, world_);
+  for (const StructureKind& structure : options.structures) {
+    call.put_text(structure.name()).put(structure.parameter());
+  }
+  call.put(options.margin).put(options.tier).put(options.carry_over);
+  call.put(options.contact_reduction).put(options.warm_start);
+  call.put(std::uint64_t{options.build_budget});
+}
+
+RecordedScene::~RecordedScene() {
+  CallWriter(recorder_, RecordedCall::end_world, world_);
+}
+
+// A shape is recorded when a body first has it, and again where another one took its place.
+std::uint32_t RecordedScene::number_of(ShapeId id) noexcept {
+  if (recorder_ == nullptr) return 0;
+  if (id.is_composite()) {
+    const std::lock_guard lock(recorder_->mutex);
+    recorder_->fail(Status::unsupported);
+    return 0;
+  }
+  const std::uint64_t digest = digest_of(shapes_.tables(), id);
+  Known* const at =
+      std::lower_bound(known_.begin(), known_.end(), id.bits,
+                       [](const Known& known, std::uint32_t bits) { return known.id.bits < bits; });
+  const auto place = static_cast<std::size_t>(at - known_.begin());
+  const bool is_known = at != known_.end() && at->id == id;
+  if (is_known && at->digest == digest) return at->number;
+  const std::uint32_t number = shapes_recorded_++;
+  if (is_known) {
+    *at = {id, number, digest};
+  } else if (known_.push_back({id, number, digest})) {
+    std::rotate(known_.begin() + place, known_.end() - 1, known_.end());
+  } else {
+    const std::lock_guard lock(recorder_->mutex);
+    recorder_->fail(Status::out_of_memory);
+  }
+  CallWriter call(recorder_, RecordedCall::add_shape, world_);
+  call.put(id.kind());
+  with_shape(shapes_.tables(), id, [&](const auto& shape) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, HullShape>) {
+      put_hull(call, shape);
+    } else {
+      call.put_bytes(&shape, sizeof shape);
+    }
+  });
+  call.put(digest);
+  return number;
+}
+
+Status RecordedScene::add(const BodyDefinition& body, Key& key) {
+  return add(std::span<const BodyDefinition>(&body, 1), std::span<Key>(&key, 1));
+}
+
+Status RecordedScene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
+  const Status status = scene_.add(bodies, keys);
+  if (status != Status::ok) return status;
+  for (const BodyDefinition& body : bodies) (void)number_of(body.shape);
+  const auto number = [&](const BodyDefinition& body) {
+    const Known* const at = std::lower_bound(
+        known_.begin(), known_.end(), body.shape.bits,
+        [](const Known& known, std::uint32_t bits) { return known.id.bits < bits; });
+    return at == known_.end() ? 0 : at->number;
+  };
+  CallWriter call(recorder_, RecordedCall::add_bodies, world_);
+  call.put(std::uint64_t{bodies.size()});
+  for (const BodyDefinition& body : bodies) {
+    const RecordedBody one = recorded(body, number(body));
+    call.put_bytes(&one, sizeof one);
+  }
+  return status;
+}
+
+Status RecordedScene::remove(Key key) {
+  return remove(std::span<const Key>(&key, 1));
+}
+
+Status RecordedScene::remove(std::span<const Key> keys) {
+  const Status status = scene_.remove(keys);
+  if (status == Status::ok) {
+    CallWriter(recorder_, RecordedCall::remove_bodies, world_).put_ids(keys);
+  }
+  return status;
+}
+
+void RecordedScene::clear() noexcept {
+  scene_.clear();
+  CallWriter(recorder_, RecordedCall::clear_bodies, world_);
+}
+
+Status RecordedScene::move(Key key, const Pose& pose) {
+  return move(std::span<const Key>(&key, 1), PoseView(std::span<const Pose>(&pose, 1)));
+}
+
+Status RecordedScene::move(std::span<const Key> keys, const PoseView& poses) {
+  const Status status = scene_.move(keys, poses);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::move, world_);
+  const bool turns = poses.has_orientations();
+  call.put_ids(keys).put(turns).put(std::uint64_t{poses.count * (turns ? 7U : 3U)});
+  for (std::size_t i = 0; i < poses.count; ++i) {
+    const Pose pose = poses[i];
+    call.put_bytes(pose.position, sizeof pose.position);
+    if (turns) call.put_bytes(pose.orientation, sizeof pose.orientation);
+  }
+  return status;
+}
+
+Status RecordedScene::set_motion(Key key, Motion motion) {
+  return set_motion(std::span<const Key>(&key, 1), motion);
+}
+
+Status RecordedScene::set_motion(std::span<const Key> keys, Motion motion) {
+  const Status status = scene_.set_motion(keys, motion);
+  if (status == Status::ok) {
+    CallWriter(recorder_, RecordedCall::set_motion, world_).put_ids(keys).put(motion);
+  }
+  return status;
+}
+
+Status RecordedScene::set_shape(Key key, ShapeId shape) {
+  const Status status = scene_.set_shape(key, shape);
+  if (status != Status::ok) return status;
+  const std::uint32_t number = number_of(shape);
+  CallWriter(recorder_, RecordedCall::set_shape, world_).put(key.id).put(number);
+  return status;
+}
+
+Status RecordedScene::set_filter(Key key, const ObjectFilter& filter) {
+  const Status status = scene_.set_filter(key, filter);
+  if (status == Status::ok) {
+    CallWriter(recorder_, RecordedCall::set_body_filter, world_)
+        .put(key.id)
+        .put_bytes(&filter, sizeof filter);
+  }
+  return status;
+}
+
+Status RecordedScene::set_ignored(Key a, Key b, bool ignored) {
+  const KeyPair pair{a, b};
+  return set_ignored(std::span<const KeyPair>(&pair, 1), ignored);
+}
+
+Status RecordedScene::set_ignored(std::span<const KeyPair> pairs, bool ignored) {
+  const Status status = scene_.set_ignored(pairs, ignored);
+  if (status != Status::ok) return status;
+  CallWriter call(recorder_, RecordedCall::set_ignored, world_);
+  call.put(ignored).put(std::uint64_t{pairs.size()});
+  for (const KeyPair& pair : pairs) call.put(pair.first.id).put(pair.second.id);
+  return status;
+}
+
+Status RecordedScene::refresh() {
+  const Status status = scene_.refresh();
+  if (status == Status::ok) CallWriter(recorder_, RecordedCall::refresh_scene, world_);
+  return status;
+}
+
+// Contacts remember the frame before: whether they are those of the last question decides what
+// begins and what is carried over.
+Status RecordedScene::collide(ContactLevel level, Contacts& contacts) {
+  const bool continues = asked_ == &contacts && asked_size_ == contacts.size();
+  const Status status = scene_.collide(level, contacts);
+  if (status != Status::ok) return status;
+  asked_ = &contacts;
+  asked_size_ = contacts.size();
+  CallWriter call(recorder_, RecordedCall::collide, world_);
+  call.put(level).put(continues);
+  Digest digest;
+  add_to(digest, contacts);
+  call.put(digest.value());
+  return status;
+}
+
+}  // namespace winnow

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <winnow/pipeline/recording.h>
+#include "pipeline/recording/format.h"
+
+#include <cstdio>
+#include <mutex>
+#include <optional>
+#include <span>
+
+namespace winnow {
+
+/// A recording as it is written.
+struct RecorderState {
+  explicit RecorderState(std::pmr::memory_resource* memory) noexcept : block(memory) {}
+
+  /// Hands over the calls that are complete.
+  void flush() noexcept;
+  void write(std::span<const std::byte> bytes) noexcept;
+  void begin() noexcept;
+  void close() noexcept;
+  /// Ends the recording for a reason.
+  void fail(Status why) noexcept {
+    if (status == Status::ok) status = why;
+  }
+
+  std::mutex mutex;
+  Column<std::byte> block;
+  RecordingSink sink;
+  std::FILE* file = nullptr;
+  Status status = Status::ok;
+  std::uint32_t worlds = 0;
+  std::uint64_t calls = 0;
+  std::uint64_t bytes = 0;
+  bool closed = false;
+};
+
+/// One call on its way into a recording, which is this thread's alone for as long. A recording that
+/// failed, or is closed, takes no more.
+class CallWriter {
+ public:
+  CallWriter(RecorderState* state, RecordedCall call, std::uint32_t world) noexcept;
+  ~CallWriter();
+  CallWriter(const CallWriter&) = delete;
+  CallWriter& operator=(const CallWriter&) = delete;
+
+  template <PlainNumber T>
+  CallWriter& put(T value) noexcept {
+    if (is_open()) writer_->put(value);
+    return *this;
+  }
+  template <typename T>
+  CallWriter& put_array(std::span<const T> values) noexcept {
+    if (is_open()) writer_->put_array(values);
+    return *this;
+  }
+  CallWriter& put_text(std::string_view text) noexcept {
+    if (is_open()) writer_->put_text(text);
+    return *this;
+  }
+  CallWriter& put_bytes(const void* bytes, std::size_t count) noexcept {
+    if (is_open()) writer_->put_bytes(bytes, count);
+    return *this;
+  }
+  /// Keys by their ids.
+  CallWriter& put_ids(std::span<const Key> keys) noexcept;
+
+ private:
+  [[nodiscard]] bool is_open() const noexcept { return writer_.has_value(); }
+
+  RecorderState* state_;
+  std::unique_lock<std::mutex> lock_;
+  std::optional<ByteWriter> writer_;
+  std::size_t begin_ = 0;
+};
+
+/// A number for one more world; kNoWorld without a recording.
+[[nodiscard]] std::uint32_t new_world(RecorderState* state) noexcept;
+
+}  // namespace winnow

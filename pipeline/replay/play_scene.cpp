@@ -1,0 +1,210 @@
+#include "pipeline/recording/contact_digest.h"
+#include "pipeline/replay/replay_state.h"
+
+namespace winnow {
+namespace {
+
+/// A shape of plain numbers, put into the pool; the digest is that of what the pool holds.
+template <typename Shape>
+Status add_plain(ByteReader& in, ShapePool& pool, ShapeId& id,
+                 const Shape* const ShapeTables::*table, Digest& digest) {
+  Shape shape{};
+  if (!in.get_bytes(&shape, sizeof shape)) return Status::invalid_argument;
+  const Status status = pool.add(shape, id);
+  if (status != Status::ok) return status;
+  digest.add(std::as_bytes(std::span((pool.tables().*table) + id.index(), 1)));
+  return status;
+}
+
+Motion motion_of(std::uint32_t number, ByteReader& in) noexcept {
+  if (number >= kMotions) in.fail();
+  return number < kMotions ? static_cast<Motion>(number) : Motion::fixed;
+}
+
+}  // namespace
+
+Status ReplayState::make_scene(ReplayedWorld& of) {
+  SceneOptions made;
+  made.memory = options.memory;
+  made.execution = options.execution;
+  for (StructureKind& structure : made.structures) structure = read_structure(in);
+  made.margin = in.get<double>();
+  made.tier = in.get_enum(NarrowTier::reference);
+  made.carry_over = in.get<double>();
+  made.contact_reduction = in.get_bool();
+  made.warm_start = in.get_bool();
+  made.build_budget = static_cast<std::size_t>(in.get<std::uint64_t>());
+  if (!in.ok()) return reading();
+  of.shapes.emplace(options.memory);
+  of.scene.emplace(*of.shapes, made);
+  return Status::ok;
+}
+
+bool ReplayState::read_keys(const Scene& of) {
+  if (!in.get_array(ids)) return false;
+  if (!keys.resize(ids.size())) return in.refuse_memory();
+  for (std::size_t i = 0; i < ids.size(); ++i) keys[i] = of.key_of(ids[i]);
+  return true;
+}
+
+Status ReplayState::change_scene(RecordedCall call, ReplayedWorld& of) {
+  Scene& scene = *of.scene;
+  const auto all_keys = [&] { return std::span<const Key>(keys.data(), keys.size()); };
+  switch (call) {
+    case RecordedCall::add_shape:
+      return add_shape(of);
+    case RecordedCall::add_bodies:
+      return add_bodies(of);
+    case RecordedCall::remove_bodies:
+      return read_keys(scene) ? scene.remove(all_keys()) : reading();
+    case RecordedCall::clear_bodies:
+      scene.clear();
+      return Status::ok;
+    case RecordedCall::move:
+      return move(of);
+    case RecordedCall::set_motion: {
+      if (!read_keys(scene)) return reading();
+      const auto motion = in.get_enum(Motion::sleeping);
+      return in.ok() ? scene.set_motion(all_keys(), motion) : reading();
+    }
+    case RecordedCall::set_shape: {
+      const Key key = scene.key_of(in.get<ObjectId>());
+      const auto number = in.get<std::uint32_t>();
+      if (!in.ok() || number >= of.shape_ids.size()) return Status::invalid_argument;
+      return scene.set_shape(key, of.shape_ids[number]);
+    }
+    case RecordedCall::set_body_filter: {
+      const Key key = scene.key_of(in.get<ObjectId>());
+      ObjectFilter given;
+      if (!in.get_bytes(&given, sizeof given)) return Status::invalid_argument;
+      return scene.set_filter(key, given);
+    }
+    case RecordedCall::set_ignored: {
+      const bool ignored = in.get_bool();
+      Column<RecordedPair> pairs(options.memory);
+      if (!in.get_array(pairs)) return reading();
+      if (!key_pairs.resize(pairs.size())) return Status::out_of_memory;
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        key_pairs[i] = {scene.key_of(pairs[i].first), scene.key_of(pairs[i].second)};
+      }
+      return scene.set_ignored(std::span<const KeyPair>(key_pairs.data(), key_pairs.size()),
+                               ignored);
+    }
+    case RecordedCall::refresh_scene:
+      return scene.refresh();
+    default:
+      return collide(of);
+  }
+}
+
+/// A shape that the pool does not hold as the recorded one did is a difference.
+Status ReplayState::add_shape(ReplayedWorld& of) {
+  ShapePool& pool = *of.shapes;
+  ShapeId id;
+  Digest digest;
+  Status taken = Status::invalid_argument;
+  const auto kind = in.get_enum(ShapeKind::half_space);
+  if (!in.ok()) return reading();
+  switch (kind) {
+    case ShapeKind::sphere:
+      taken = add_plain(in, pool, id, &ShapeTables::spheres, digest);
+      break;
+    case ShapeKind::capsule:
+      taken = add_plain(in, pool, id, &ShapeTables::capsules, digest);
+      break;
+    case ShapeKind::box:
+      taken = add_plain(in, pool, id, &ShapeTables::boxes, digest);
+      break;
+    case ShapeKind::cylinder:
+      taken = add_plain(in, pool, id, &ShapeTables::cylinders, digest);
+      break;
+    case ShapeKind::cone:
+      taken = add_plain(in, pool, id, &ShapeTables::cones, digest);
+      break;
+    case ShapeKind::hull:
+      taken = add_hull(of, id, digest);
+      break;
+    case ShapeKind::triangle:
+      taken = add_plain(in, pool, id, &ShapeTables::triangles, digest);
+      break;
+    case ShapeKind::half_space:
+      taken = add_plain(in, pool, id, &ShapeTables::half_spaces, digest);
+      break;
+  }
+  if (taken != Status::ok) return taken;
+  if (!of.shape_ids.push_back(id)) return Status::out_of_memory;
+  return compare(digest);
+}
+
+Status ReplayState::add_hull(ReplayedWorld& of, ShapeId& id, Digest& digest) {
+  Column<double> vertex[3] = {Column<double>(options.memory), Column<double>(options.memory),
+                              Column<double>(options.memory)};
+  Column<std::uint32_t> loop(options.memory);
+  for (Column<double>& column : vertex) (void)in.get_array(column);
+  (void)in.get_array(loop);
+  const auto faces = in.get<std::uint64_t>();
+  if (!in.ok() || faces > in.rest().size() / sizeof(std::uint32_t)) return reading();
+  if (!numbers.resize(static_cast<std::size_t>(faces))) return Status::out_of_memory;
+  (void)in.get_bytes(numbers.data(), numbers.size() * sizeof(std::uint32_t));
+  const auto rounding = in.get<double>();
+  const std::size_t count = vertex[0].size();
+  if (!in.ok() || vertex[1].size() != count || vertex[2].size() != count) {
+    return in.out_of_memory() ? Status::out_of_memory : Status::invalid_argument;
+  }
+  const PointView points({vertex[0].data(), vertex[1].data(), vertex[2].data()}, count);
+  const HullFaces given{{loop.data(), loop.size()}, {numbers.data(), numbers.size()}};
+  const Status taken = faces == 0 ? of.shapes->add_hull(points, rounding, id)
+                                  : of.shapes->add_hull(points, given, rounding, id);
+  if (taken == Status::ok) add_to(digest, of.shapes->tables().hulls[id.index()]);
+  return taken;
+}
+
+Status ReplayState::add_bodies(ReplayedWorld& of) {
+  if (!in.get_array(recorded_bodies)) return reading();
+  if (!bodies.resize(recorded_bodies.size()) || !keys.resize(recorded_bodies.size())) {
+    return Status::out_of_memory;
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const RecordedBody& one = recorded_bodies[i];
+    if (one.shape >= of.shape_ids.size()) return Status::invalid_argument;
+    BodyDefinition body;
+    body.shape = of.shape_ids[one.shape];
+    body.motion = motion_of(one.motion, in);
+    std::copy_n(one.pose, 3, body.pose.position);
+    std::copy_n(one.pose + 3, 4, body.pose.orientation);
+    body.filter = {one.filter[0], one.filter[1], one.filter[2]};
+    body.data = one.data;
+    bodies[i] = body;
+  }
+  if (!in.ok()) return reading();
+  return of.scene->add({bodies.data(), bodies.size()}, std::span<Key>(keys.data(), keys.size()));
+}
+
+Status ReplayState::move(ReplayedWorld& of) {
+  if (!read_keys(*of.scene)) return reading();
+  const bool turns = in.get_bool();
+  if (!in.get_array(doubles)) return reading();
+  const std::size_t width = turns ? 7 : 3;
+  if (doubles.size() != keys.size() * width) return Status::size_mismatch;
+  const std::size_t stride = width * sizeof(double);
+  const double* const at = doubles.data();
+  PoseView given;
+  given.count = keys.size();
+  given.position_stride = given.orientation_stride = stride;
+  if (at != nullptr) {
+    given.position = {at, at + 1, at + 2};
+    if (turns) given.orientation = {at + 3, at + 4, at + 5, at + 6};
+  }
+  return of.scene->move(std::span<const Key>(keys.data(), keys.size()), given);
+}
+
+Status ReplayState::collide(ReplayedWorld& of) {
+  const auto level = in.get_enum(ContactLevel::manifold);
+  const bool continues = in.get_bool();
+  if (!in.ok()) return reading();
+  if (!continues) of.contacts.clear();
+  const Status answered = of.scene->collide(level, of.contacts);
+  return answered == Status::ok ? compare(of.contacts) : answered;
+}
+
+}  // namespace winnow

@@ -1,0 +1,202 @@
+#include "core/memory/new_in.h"
+#include "pipeline/replay/replay_state.h"
+
+namespace winnow {
+namespace {
+
+struct BlockHead {
+  std::uint64_t size = 0;
+  std::uint64_t digest = 0;
+};
+
+/// False if not even the head is there.
+bool read_head(std::span<const std::byte> bytes, BlockHead& head) noexcept {
+  if (bytes.size() < kBlockHeader) return false;
+  std::memcpy(&head.size, bytes.data(), sizeof head.size);
+  std::memcpy(&head.digest, bytes.data() + sizeof head.size, sizeof head.digest);
+  return true;
+}
+
+}  // namespace
+
+ReplayState::ReplayState(std::span<const std::byte> bytes, const ReplayOptions& given) noexcept
+    : options(given),
+      rest(bytes),
+      in({}),
+      worlds(given.memory),
+      ids(given.memory),
+      keys(given.memory),
+      others(given.memory),
+      data(given.memory),
+      floats(given.memory),
+      doubles(given.memory),
+      filters(given.memory),
+      recorded_bodies(given.memory),
+      bodies(given.memory),
+      key_pairs(given.memory),
+      rays(given.memory),
+      planes(given.memory),
+      numbers(given.memory),
+      filter(given.memory) {
+  status = check();
+}
+
+ReplayState::~ReplayState() {
+  for (ReplayedWorld* const one : worlds) delete_in(options.memory, one);
+}
+
+/// The header, and the digest of every block. A program that ended before its recording was closed
+/// leaves whole blocks and, at most, a part of one.
+Status ReplayState::check() noexcept {
+  ByteReader header(rest);
+  char magic[8] = {};
+  (void)header.get_bytes(magic, sizeof magic);
+  const auto version = header.get<std::uint32_t>();
+  const auto unused = header.get<std::uint32_t>();
+  const bool known = header.ok() && std::string_view(magic, sizeof magic) == kRecordingMagic &&
+                     version == kRecordingVersion && unused == 0;
+  if (!known) return Status::invalid_argument;
+  rest = header.rest();
+  std::size_t good = 0;
+  BlockHead head;
+  while (read_head(rest.subspan(good), head)) {
+    const std::span<const std::byte> behind = rest.subspan(good + kBlockHeader);
+    if (head.size == 0) {
+      is_whole = behind.empty();
+      if (!is_whole) return Status::invalid_argument;
+      break;
+    }
+    if (head.size > behind.size()) break;
+    Digest digest;
+    digest.add(behind.first(static_cast<std::size_t>(head.size)));
+    if (digest.value() != head.digest) return Status::invalid_argument;
+    good += kBlockHeader + static_cast<std::size_t>(head.size);
+  }
+  rest = rest.first(good);
+  return Status::ok;
+}
+
+bool ReplayState::next_block() noexcept {
+  BlockHead head;
+  if (!read_head(rest, head)) return false;
+  in = ByteReader(rest.subspan(kBlockHeader, static_cast<std::size_t>(head.size)));
+  rest = rest.subspan(kBlockHeader + static_cast<std::size_t>(head.size));
+  return true;
+}
+
+Played ReplayState::step() noexcept {
+  if (status != Status::ok || (in.rest().empty() && !next_block())) return Played::end;
+  const auto call = in.get_enum(RecordedCall::collide);
+  const auto number = in.get<std::uint32_t>();
+  CallOutcome outcome = CallOutcome::changed;
+  const std::uint64_t asked = questions;
+  status = in.ok() ? play(call, number, outcome) : Status::invalid_argument;
+  if (status != Status::ok) return Played::end;
+  ++calls;
+  if (outcome == CallOutcome::frame) return Played::frame;
+  if (questions == asked) return Played::change;
+  const bool all = call == RecordedCall::self_pairs || call == RecordedCall::collide;
+  return all ? Played::pairs : Played::question;
+}
+
+Status ReplayState::play(RecordedCall call, std::uint32_t number, CallOutcome& outcome) {
+  if (call == RecordedCall::end_frame) {
+    outcome = CallOutcome::frame;
+    ++frames;
+    return number == kNoWorld ? Status::ok : Status::invalid_argument;
+  }
+  return play_world(call, number);
+}
+
+Status ReplayState::play_world(RecordedCall call, std::uint32_t number) {
+  const bool makes = call == RecordedCall::make_partition || call == RecordedCall::make_scene;
+  ReplayedWorld* const of = makes ? add_world(number) : world(number);
+  if (of == nullptr)
+    return makes && number < kNoWorld ? Status::out_of_memory : Status::invalid_argument;
+  if (call == RecordedCall::end_world) {
+    delete_in(options.memory, of);
+    worlds[number] = nullptr;
+    return Status::ok;
+  }
+  if (call == RecordedCall::make_scene) return make_scene(*of);
+  if (call > RecordedCall::make_scene) {
+    return of->scene ? change_scene(call, *of) : Status::invalid_argument;
+  }
+  if (call != RecordedCall::make_partition && !of->partition) return Status::invalid_argument;
+  return change_partition(call, *of);
+}
+
+/// Worlds come in the order of their numbers, but for those that were refused, or whose making was
+/// recorded after that of a later one.
+ReplayedWorld* ReplayState::add_world(std::uint32_t number) noexcept {
+  constexpr std::size_t kMostApart = 4096;
+  if (number >= worlds.size() + kMostApart || world(number) != nullptr) return nullptr;
+  while (worlds.size() <= number) {
+    if (!worlds.push_back(nullptr)) return nullptr;
+  }
+  worlds[number] = new_in<ReplayedWorld>(options.memory, options.memory);
+  return worlds[number];
+}
+
+RecordingPlayer::RecordingPlayer(std::span<const std::byte> recording,
+                                 const ReplayOptions& options) noexcept
+    : memory_(options.memory), state_(new_in<ReplayState>(options.memory, recording, options)) {}
+
+RecordingPlayer::~RecordingPlayer() {
+  delete_in(memory_, state_);
+}
+
+Status RecordingPlayer::status() const noexcept {
+  return state_ == nullptr ? Status::out_of_memory : state_->status;
+}
+
+bool RecordingPlayer::is_whole() const noexcept {
+  return state_ != nullptr && state_->is_whole;
+}
+
+Played RecordingPlayer::step() noexcept {
+  return state_ == nullptr ? Played::end : state_->step();
+}
+
+Status RecordingPlayer::play_all() noexcept {
+  while (step() != Played::end) {
+  }
+  return status();
+}
+
+std::uint64_t RecordingPlayer::calls() const noexcept {
+  return state_ == nullptr ? 0 : state_->calls;
+}
+
+std::uint64_t RecordingPlayer::frames() const noexcept {
+  return state_ == nullptr ? 0 : state_->frames;
+}
+
+std::uint64_t RecordingPlayer::questions() const noexcept {
+  return state_ == nullptr ? 0 : state_->questions;
+}
+
+std::uint64_t RecordingPlayer::differences() const noexcept {
+  return state_ == nullptr ? 0 : state_->differences;
+}
+
+std::size_t RecordingPlayer::worlds() const noexcept {
+  return state_ == nullptr ? 0 : state_->worlds.size();
+}
+
+const Partition* RecordingPlayer::partition(std::size_t world) const noexcept {
+  const ReplayedWorld* const one = world < worlds() ? state_->worlds[world] : nullptr;
+  return one != nullptr && one->partition ? &*one->partition : nullptr;
+}
+
+const Scene* RecordingPlayer::scene(std::size_t world) const noexcept {
+  const ReplayedWorld* const one = world < worlds() ? state_->worlds[world] : nullptr;
+  return one != nullptr && one->scene ? &*one->scene : nullptr;
+}
+
+const ShapePool* RecordingPlayer::shapes(std::size_t world) const noexcept {
+  const ReplayedWorld* const one = world < worlds() ? state_->worlds[world] : nullptr;
+  return one != nullptr && one->shapes ? &*one->shapes : nullptr;
+}
+
+}  // namespace winnow

@@ -1,0 +1,138 @@
+#pragma once
+
+#include <winnow/pipeline/replay.h>
+#include "pipeline/replay/call_reader.h"
+
+#include <array>
+#include <optional>
+
+namespace winnow {
+
+/// The answer to a question for pairs, which a later one may go on from.
+struct AskedPairs {
+  explicit AskedPairs(std::pmr::memory_resource* memory) noexcept : pairs(memory), events(memory) {}
+
+  PairBuffer pairs;
+  PairEvents events;
+  std::uint64_t number = 0;  // of the question; 0: none
+};
+
+/// A partition or a scene that is played, and what its questions are answered into.
+struct ReplayedWorld {
+  static constexpr std::size_t kAskedPairs = 16;
+  template <std::size_t... I>
+  [[nodiscard]] static std::array<AskedPairs, kAskedPairs> all_asked(
+      std::pmr::memory_resource* memory, std::index_sequence<I...>) noexcept {
+    return {((void)I, AskedPairs(memory))...};
+  }
+
+  explicit ReplayedWorld(std::pmr::memory_resource* memory) noexcept
+      : asked(all_asked(memory, std::make_index_sequence<kAskedPairs>{})),
+        other_pairs(memory),
+        hits(memory),
+        objects(memory),
+        shape_ids(memory),
+        contacts(memory) {}
+
+  std::optional<Partition> partition;
+  std::array<AskedPairs, kAskedPairs> asked;  // those of the last questions at least
+  std::uint64_t questions = 0;                // for pairs
+  PairBuffer other_pairs;
+  HitBuffer hits;
+  OverlapBuffer objects;
+
+  std::optional<ShapePool> shapes;
+  std::optional<Scene> scene;
+  Column<ShapeId> shape_ids;  // by the number in the recording
+  Contacts contacts;
+};
+
+/// What became of a call.
+enum class CallOutcome : std::uint8_t { changed, answered, answered_all, frame };
+
+/// How a recording stands while it is played.
+struct ReplayState {
+  ReplayState(std::span<const std::byte> bytes, const ReplayOptions& given) noexcept;
+  ~ReplayState();
+
+  [[nodiscard]] Status check() noexcept;
+  [[nodiscard]] bool next_block() noexcept;
+  [[nodiscard]] Played step() noexcept;
+  [[nodiscard]] Status play(RecordedCall call, std::uint32_t number, CallOutcome& outcome);
+  [[nodiscard]] Status play_world(RecordedCall call, std::uint32_t number);
+  [[nodiscard]] ReplayedWorld* world(std::uint32_t number) const noexcept {
+    return number < worlds.size() ? worlds[number] : nullptr;
+  }
+  [[nodiscard]] ReplayedWorld* add_world(std::uint32_t number) noexcept;
+  /// `ok` as long as what was read was there.
+  [[nodiscard]] Status reading() const noexcept {
+    if (in.ok()) return Status::ok;
+    return in.out_of_memory() ? Status::out_of_memory : Status::invalid_argument;
+  }
+
+  // Of partitions (play_partition.cpp).
+  [[nodiscard]] Status change_partition(RecordedCall call, ReplayedWorld& of);
+  [[nodiscard]] Status insert(ReplayedWorld& into);
+  [[nodiscard]] Status update(ReplayedWorld& of);
+  [[nodiscard]] static AskedPairs& asked_as(ReplayedWorld& of, std::uint64_t number) noexcept;
+  [[nodiscard]] Status self_pairs(ReplayedWorld& of);
+  [[nodiscard]] Status pairs_with(ReplayedWorld& of);
+  [[nodiscard]] Status cast(RecordedCall call, ReplayedWorld& of);
+  [[nodiscard]] Status cast_rays(RecordedCall call, ReplayedWorld& of);
+  [[nodiscard]] Status overlap(RecordedCall call, ReplayedWorld& of);
+  [[nodiscard]] Status nearest(ReplayedWorld& of);
+  [[nodiscard]] bool read_keys(const Partition& of);
+
+  // Of scenes (play_scene.cpp).
+  [[nodiscard]] Status make_scene(ReplayedWorld& of);
+  [[nodiscard]] Status change_scene(RecordedCall call, ReplayedWorld& of);
+  [[nodiscard]] Status add_shape(ReplayedWorld& of);
+  [[nodiscard]] Status add_hull(ReplayedWorld& of, ShapeId& id, Digest& digest);
+  [[nodiscard]] Status add_bodies(ReplayedWorld& of);
+  [[nodiscard]] Status move(ReplayedWorld& of);
+  [[nodiscard]] Status collide(ReplayedWorld& of);
+  [[nodiscard]] bool read_keys(const Scene& of);
+
+  /// Compares with the digest that was recorded.
+  template <typename... Answer>
+  [[nodiscard]] Status compare(const Answer&... answer) noexcept {
+    Digest digest;
+    (add_to(digest, answer), ...);
+    return compare(digest);
+  }
+  [[nodiscard]] Status compare(const Digest& digest) noexcept {
+    const auto recorded = in.get<std::uint64_t>();
+    ++questions;
+    if (recorded != digest.value()) ++differences;
+    return reading();
+  }
+
+  ReplayOptions options;
+  std::span<const std::byte> rest;  // blocks that were not begun
+  ByteReader in;                    // of the block that is played
+  Status status = Status::ok;
+  bool is_whole = false;
+  std::uint64_t calls = 0;
+  std::uint64_t frames = 0;
+  std::uint64_t questions = 0;
+  std::uint64_t differences = 0;
+  Column<ReplayedWorld*> worlds;
+
+  // What a call is read into.
+  Column<ObjectId> ids;
+  Column<Key> keys;
+  Column<Key> others;
+  Column<ClientData> data;
+  Column<float> floats;
+  Column<double> doubles;
+  Column<ObjectFilter> filters;
+  Column<RecordedBody> recorded_bodies;
+  Column<BodyDefinition> bodies;
+  Column<KeyPair> key_pairs;
+  Column<Ray> rays;
+  Column<Plane> planes;
+  Column<std::uint32_t> numbers;
+  RecordedFilter filter;
+};
+
+}  // namespace winnow

@@ -1,0 +1,230 @@
+#include "tests/recording/programs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace winnow::test {
+namespace {
+
+constexpr auto kNotThirds = [](void*, Key key, ClientData) { return key.id % 3 != 0; };
+constexpr auto kNotAlike = [](void*, ObjectId a, ObjectId b) { return (a ^ b) % 5 != 0; };
+
+float uniform_in(Random& random, float low, float high) {
+  return static_cast<float>(random.uniform(static_cast<double>(low), static_cast<double>(high)));
+}
+
+/// Boxes by key, of a partition that is recorded.
+struct Crowd {
+  std::vector<Key> keys;
+  std::vector<Aabb> boxes;
+};
+
+void spawn(RecordedPartition& partition, Crowd& crowd, std::span<const Aabb> boxes) {
+  std::vector<Key> keys(boxes.size());
+  std::vector<ClientData> data(boxes.size());
+  for (std::size_t i = 0; i < data.size(); ++i) data[i] = 1000 + i;
+  EXPECT_EQ(partition.insert(boxes, data, keys), Status::ok);
+  crowd.keys.insert(crowd.keys.end(), keys.begin(), keys.end());
+  crowd.boxes.insert(crowd.boxes.end(), boxes.begin(), boxes.end());
+}
+
+void kill_some(RecordedPartition& partition, Crowd& crowd, Random& random) {
+  std::vector<Key> gone;
+  for (std::size_t i = 0; i < crowd.keys.size();) {
+    if (random.below(10) == 0) {
+      gone.push_back(crowd.keys[i]);
+      crowd.keys[i] = crowd.keys.back();
+      crowd.boxes[i] = crowd.boxes.back();
+      crowd.keys.pop_back();
+      crowd.boxes.pop_back();
+    } else {
+      ++i;
+    }
+  }
+  EXPECT_EQ(partition.remove(gone), Status::ok);
+}
+
+void move_some(RecordedPartition& partition, Crowd& crowd, Random& random, int frame) {
+  std::vector<std::uint32_t> moved;
+  for (std::size_t i = 0; i < crowd.keys.size(); ++i) {
+    if (frame % 3 != 0 && random.below(4) != 0) continue;
+    const Vec3f by(uniform_in(random, -0.2F, 0.2F), uniform_in(random, -0.2F, 0.2F), 0.0F);
+    crowd.boxes[i].min = crowd.boxes[i].min + by;
+    crowd.boxes[i].max = crowd.boxes[i].max + by;
+    moved.push_back(static_cast<std::uint32_t>(i));
+  }
+  const BoxView boxes{std::span<const Aabb>(crowd.boxes)};
+  if (frame % 2 == 0) {
+    EXPECT_EQ(partition.update(crowd.keys, boxes), Status::ok);
+    return;
+  }
+  EXPECT_EQ(partition.update(crowd.keys, boxes, Entries::listed(moved)), Status::ok);
+  std::vector<std::uint64_t> mask(crowd.keys.size() / 64 + 1, 0x123456789ABCDEFU);
+  mask.resize((crowd.keys.size() + 63) / 64);
+  EXPECT_EQ(partition.update(crowd.keys, boxes, Entries::masked(mask)), Status::ok);
+}
+
+void ask_casts(const RecordedPartition& partition, Random& random) {
+  HitBuffer hits;
+  Hit hit;
+  std::vector<Ray> rays(20);
+  for (Ray& ray : rays) {
+    ray.origin = {uniform_in(random, 0.0F, 9.0F), uniform_in(random, 0.0F, 9.0F), -5.0F};
+    ray.direction = {uniform_in(random, -0.3F, 0.3F), uniform_in(random, -0.3F, 0.3F), 1.0F};
+  }
+  const Filter some{.predicate = {kNotThirds, nullptr}};
+  EXPECT_EQ(partition.closest(rays[0], hit), Status::ok);
+  EXPECT_EQ(partition.any(rays[1], hit), Status::ok);
+  EXPECT_EQ(partition.all(rays[2], hits), Status::ok);
+  EXPECT_EQ(partition.all(rays[2], hits, some), Status::ok);
+  EXPECT_EQ(partition.closest(BoxCast{{{0, 0, -5}, {2, 2, -4}}, {0, 0, 1}}, hit, some), Status::ok);
+  EXPECT_EQ(partition.all(SphereCast{{{4, 4, -5}, 1}, {0, 0, 1}}, hits), Status::ok);
+  EXPECT_EQ(partition.any(CapsuleCast{{{4, 4, -5}, {5, 5, -5}, 1}, {0, 0, 1}}, hit), Status::ok);
+  std::vector<Key> keys(rays.size());
+  std::vector<float> t(rays.size());
+  EXPECT_EQ(partition.closest(rays, {.key = keys.data(), .t = t.data()}, some), Status::ok);
+  EXPECT_EQ(partition.any(rays, {.t = t.data()}), Status::ok);
+  EXPECT_EQ(partition.all(rays, hits), Status::ok);
+  EXPECT_EQ(partition.nearest({{3, 3, 3}, {3, 3, 3}}, 7, 100.0F, hits), Status::ok);
+  EXPECT_EQ(partition.nearest({{3, 3, 3}, {4, 4, 4}}, 7, 9.0F, hits, some), Status::ok);
+}
+
+void ask_overlaps(const RecordedPartition& partition) {
+  OverlapBuffer objects;
+  PairBuffer pairs;
+  const Filter some{.predicate = {kNotThirds, nullptr}};
+  const Aabb box{{1, 1, 1}, {6, 6, 6}};
+  const std::vector<Plane> planes(2, Plane{{1, 0, 0}, -3});
+  const Frustum frustum =
+      Frustum::perspective({-5, 4, 4}, {1, 0, 0}, {0, 0, 1}, 0.8F, 1.3F, 0.1F, 30.0F);
+  const Region regions[] = {Vec3f(3, 3, 3),
+                            box,
+                            OrientedBox{{4, 4, 4}, {2, 1, 3}},
+                            Sphere{{4, 4, 4}, 3},
+                            Capsule{{1, 1, 1}, {7, 7, 7}, 1},
+                            frustum,
+                            std::span<const Plane>(planes)};
+  for (const Region& region : regions) {
+    EXPECT_EQ(partition.overlap(region, objects), Status::ok);
+    EXPECT_EQ(partition.overlap(region, objects, some, Order::canonical), Status::ok);
+  }
+  const std::vector<Aabb> boxes(3, box);
+  EXPECT_EQ(partition.overlap(boxes, pairs), Status::ok);
+  EXPECT_EQ(partition.overlap(boxes, pairs, some, Order::canonical), Status::ok);
+}
+
+}  // namespace
+
+void record_partition(Recorder& recorder, StructureKind structure, std::size_t count, int frames) {
+  Random random(7);
+  RecordedPartition partition(recorder, structure, {.margin = {0.0F, 0.02F}});
+  RecordedPartition other(recorder, linear_bvh());
+  Crowd crowd;
+  Crowd others;
+  spawn(partition, crowd, uniform_boxes(count));
+  spawn(other, others, uniform_boxes(count / 4, 2));
+  PairBuffer pairs;
+  PairBuffer cross;
+  PairBuffer plain;
+  PairEvents events;
+  PairEvents alone;
+  for (int frame = 0; frame < frames; ++frame) {
+    if (frame % 4 == 1) kill_some(partition, crowd, random);
+    if (frame % 4 == 2)
+      spawn(partition, crowd, uniform_boxes(count / 5, static_cast<std::uint64_t>(10 + frame)));
+    if (frame == 3) {
+      const std::vector<ObjectFilter> filters(crowd.keys.size() / 3, {.layers = 2, .mask = 5});
+      EXPECT_EQ(partition.set_filter(std::span(crowd.keys).first(filters.size()), filters),
+                Status::ok);
+    }
+    if (frame == 5) pairs.clear();
+    if (frame == 6) {
+      EXPECT_EQ(partition.set_structure(hierarchical_grid()), Status::ok);
+    }
+    move_some(partition, crowd, random, frame);
+    if (frame % 5 == 4) {
+      EXPECT_EQ(partition.self_pairs(pairs), Status::ok);
+    }
+    EXPECT_EQ(partition.self_pairs(pairs, events), Status::ok);
+    EXPECT_EQ(partition.self_pairs(plain), Status::ok);
+    if (frame % 3 == 0) {
+      EXPECT_EQ(partition.self_pairs(alone), Status::ok);
+    }
+    EXPECT_EQ(partition.pairs_with(other, cross), Status::ok);
+    EXPECT_EQ(partition.self_pairs(cross, {.predicate = {kNotAlike, nullptr}}), Status::ok);
+    EXPECT_EQ(partition.refresh(), Status::ok);
+    ask_casts(partition, random);
+    ask_overlaps(partition);
+    recorder.end_frame();
+  }
+  partition.clear();
+  partition.release_memory();
+}
+
+void record_volumes(Recorder& recorder, std::size_t count) {
+  const std::vector<Aabb> boxes = uniform_boxes(count);
+  std::vector<Key> keys(count);
+  PairBuffer pairs;
+  RecordedPartition balls(recorder, flat_grid(), {.volume = Volume::sphere});
+  std::vector<Sphere> spheres;
+  for (const Aabb& box : boxes) spheres.push_back(Sphere::around(box));
+  EXPECT_EQ(balls.insert(std::span<const Sphere>(spheres), {}, keys), Status::ok);
+  EXPECT_EQ(balls.self_pairs(pairs), Status::ok);
+  for (Sphere& sphere : spheres) sphere.radius *= 0.5F;
+  EXPECT_EQ(balls.update(keys, std::span<const Sphere>(spheres)), Status::ok);
+  EXPECT_EQ(balls.self_pairs(pairs), Status::ok);
+  RecordedPartition cut(recorder, loose_octree(3.0F), {.volume = Volume::kdop18});
+  std::vector<Kdop<18>> kdops;
+  for (const Aabb& box : boxes) kdops.push_back(Kdop<18>::around(box));
+  EXPECT_EQ(cut.insert(std::span<const Kdop<18>>(kdops), {}, keys), Status::ok);
+  EXPECT_EQ(cut.self_pairs(pairs), Status::ok);
+  std::reverse(kdops.begin(), kdops.end());
+  EXPECT_EQ(cut.update(keys, std::span<const Kdop<18>>(kdops)), Status::ok);
+  EXPECT_EQ(cut.self_pairs(pairs), Status::ok);
+}
+
+void record_scene(Recorder& recorder, std::size_t count, int frames, const SceneOptions& options) {
+  SceneWorld world(count);
+  const HalfSpaceShape ground{{0.1, -0.2, 0.7}, -1.0};
+  ShapeId ground_id;
+  EXPECT_EQ(world.pool.add(ground, ground_id), Status::ok);
+  RecordedScene scene(recorder, world.pool, options);
+  world.keys.resize(world.bodies.size());
+  EXPECT_EQ(scene.add(world.bodies, world.keys), Status::ok);
+  Key ground_key;
+  EXPECT_EQ(scene.add({.shape = ground_id, .motion = Motion::fixed}, ground_key), Status::ok);
+  Contacts contacts;
+  for (int frame = 0; frame < frames; ++frame) {
+    world.stir(0.05);
+    std::vector<Pose> poses;
+    for (const BodyDefinition& body : world.bodies) poses.push_back(body.pose);
+    EXPECT_EQ(scene.move(world.keys, poses), Status::ok);
+    if (frame == 1) {
+      EXPECT_EQ(scene.set_motion(world.keys[0], Motion::sleeping), Status::ok);
+    }
+    if (frame == 2) {
+      EXPECT_EQ(scene.set_ignored(world.keys[1], world.keys[2]), Status::ok);
+    }
+    if (frame == 3) {
+      EXPECT_EQ(scene.remove(world.keys.back()), Status::ok);
+      world.keys.pop_back();
+      world.bodies.pop_back();
+    }
+    if (frame == 4) {
+      EXPECT_EQ(scene.set_shape(world.keys[3], world.shapes[0]), Status::ok);
+      EXPECT_EQ(scene.set_filter(world.keys[4], {.layers = 4}), Status::ok);
+    }
+    if (frame == 5) {
+      Key key;
+      EXPECT_EQ(scene.add({.shape = world.shapes[1], .pose = world.random_pose()}, key),
+                Status::ok);
+    }
+    EXPECT_EQ(scene.refresh(), Status::ok);
+    const auto level = frame == 6 ? ContactLevel::distance : ContactLevel::manifold;
+    EXPECT_EQ(scene.collide(level, contacts), Status::ok);
+    recorder.end_frame();
+  }
+}
+
+}  // namespace winnow::test

@@ -1,0 +1,170 @@
+// What a program did is played again with the same answers, bit for bit, wherever it is played; and
+// nothing that anybody may hand over as a recording does any harm.
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "tests/recording/mutations.h"
+#include "tests/recording/programs.h"
+#include "tests/support/config.h"
+
+namespace winnow::test {
+namespace {
+
+/// Plays on every instruction set and number of threads: all answers must be the recorded ones.
+void expect_same_everywhere(const Bytes8& bytes) {
+  for (const Isa isa : available_isas()) {
+    const IsaScope scope(isa);
+    for (const Workers& workers : all_workers()) {
+      RecordingPlayer player(bytes, {.execution = workers.execution()});
+      Threads threads(workers.threads);
+      EXPECT_EQ(threads.run([&] { return player.play_all(); }), Status::ok) << to_string(isa);
+      EXPECT_TRUE(player.is_whole());
+      EXPECT_GT(player.questions(), 0U);
+      EXPECT_EQ(player.differences(), 0U) << to_string(isa) << " " << to_string(workers);
+    }
+  }
+}
+
+TEST(Recordings, of_partitions_are_played_bit_for_bit) {
+  for (const StructureKind& structure : all_structures()) {
+    Bytes8 bytes;
+    Recorder recorder(kept_in(bytes));
+    record_partition(recorder, structure, structure.name() == "NSquared" ? 60 : scaled(600), 9);
+    ASSERT_EQ(recorder.close(), Status::ok);
+    EXPECT_EQ(recorder.bytes(), bytes.size());
+    SCOPED_TRACE(structure.name());
+    expect_same_everywhere(bytes);
+  }
+}
+
+TEST(Recordings, of_all_volumes_are_played_bit_for_bit) {
+  Bytes8 bytes;
+  Recorder recorder(kept_in(bytes));
+  record_volumes(recorder, scaled(500));
+  ASSERT_EQ(recorder.close(), Status::ok);
+  expect_same_everywhere(bytes);
+}
+
+TEST(Recordings, of_scenes_are_played_bit_for_bit) {
+  for (const double carry_over : {0.0, 0.02}) {
+    Bytes8 bytes;
+    Recorder recorder(kept_in(bytes));
+    record_scene(recorder, scaled(300), 8,
+                 {.margin = 0.02, .carry_over = carry_over, .warm_start = true});
+    ASSERT_EQ(recorder.close(), Status::ok);
+    expect_same_everywhere(bytes);
+  }
+}
+
+TEST(Recordings, stand_in_files) {
+  const std::string path =
+      (std::filesystem::temp_directory_path() / "winnow_recording_test.winnow").string();
+  {
+    Recorder recorder(path.c_str());
+    record_volumes(recorder, 50);
+    EXPECT_EQ(recorder.close(), Status::ok);
+    EXPECT_EQ(recorder.bytes(), std::filesystem::file_size(path));
+  }
+  std::ifstream file(path, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  RecordingPlayer player(std::as_bytes(std::span(text)));
+  EXPECT_EQ(player.play_all(), Status::ok);
+  EXPECT_EQ(player.differences(), 0U);
+  std::filesystem::remove(path);
+}
+
+TEST(Recordings, of_programs_that_ended_early_are_played_as_far_as_they_go) {
+  Bytes8 bytes;
+  Recorder recorder(kept_in(bytes));
+  record_partition(recorder, linear_bvh(), 100, 3);
+  ASSERT_EQ(recorder.close(), Status::ok);
+  bytes.resize(bytes.size() - 20);
+  RecordingPlayer player(bytes);
+  EXPECT_EQ(player.play_all(), Status::ok);
+  EXPECT_FALSE(player.is_whole());
+  EXPECT_EQ(player.differences(), 0U);
+  EXPECT_EQ(player.frames(), 3U);
+}
+
+TEST(Recordings, end_where_nothing_takes_them_and_the_program_goes_on) {
+  Recorder nowhere(RecordingSink{});
+  record_partition(nowhere, linear_bvh(), 50, 2);
+  EXPECT_EQ(nowhere.status(), Status::out_of_memory);
+  Recorder no_file("/no/such/folder/run.winnow");
+  record_partition(no_file, linear_bvh(), 50, 2);
+  EXPECT_EQ(no_file.close(), Status::invalid_argument);
+}
+
+TEST(Recordings, tell_another_answer_from_the_recorded_one) {
+  // The same program, but the recorded digests are of other boxes.
+  Bytes8 bytes;
+  Recorder recorder(kept_in(bytes));
+  {
+    RecordedPartition partition(recorder, linear_bvh());
+    std::vector<Key> keys(2);
+    EXPECT_EQ(partition.insert(std::vector<Aabb>(2, Aabb{{0, 0, 0}, {1, 1, 1}}), {}, keys),
+              Status::ok);
+    PairBuffer pairs;
+    EXPECT_EQ(partition.self_pairs(pairs), Status::ok);
+  }
+  ASSERT_EQ(recorder.close(), Status::ok);
+  const float one = 1.0F;
+  const float none = 0.5F;
+  // The first box's upper end, and the block's digest anew.
+  auto* const block = bytes.data() + 32;
+  const auto size = bytes.size() - 48;
+  float bounds[12];
+  for (std::size_t at = 0; at + sizeof bounds <= size; ++at) {
+    std::memcpy(bounds, block + at, sizeof bounds);
+    if (bounds[3] != one || bounds[4] != one || bounds[11] != one) continue;
+    for (int i = 0; i < 3; ++i) bounds[i] = bounds[i + 3] = 3.0F + none;
+    std::memcpy(block + at, bounds, sizeof bounds);
+    break;
+  }
+  RecordingPlayer damaged(bytes);
+  EXPECT_EQ(damaged.status(), Status::invalid_argument);
+  seal(bytes);
+  RecordingPlayer player(bytes);
+  EXPECT_EQ(player.play_all(), Status::ok);
+  EXPECT_EQ(player.differences(), 1U);
+}
+
+/// What was recorded, with something made another; half of them with a digest that fits.
+void play_mutated(const Bytes8& good, std::size_t count) {
+  Random random(11);
+  std::size_t refused = 0;
+  LimitedMemory memory(std::size_t{64} << 20U);
+  for (std::size_t i = 0; i < count; ++i) {
+    Bytes8 bytes = good;
+    mutate(bytes, random);
+    if (i % 8 != 0) seal(bytes);
+    RecordingPlayer player(bytes, {.memory = &memory, .execution = Execution::serial()});
+    if (player.play_all() != Status::ok) ++refused;
+  }
+  EXPECT_GT(refused, count / 16);
+}
+
+TEST(Recordings, that_anybody_made_up_are_read_or_refused) {
+  Bytes8 partitions;
+  {
+    Recorder recorder(kept_in(partitions));
+    record_partition(recorder, linear_bvh(), 40, 7);
+    record_volumes(recorder, 10);
+  }
+  play_mutated(partitions, scaled(600));
+  Bytes8 scenes;
+  {
+    Recorder recorder(kept_in(scenes));
+    record_scene(recorder, 40, 7, {.margin = 0.02, .carry_over = 0.02});
+  }
+  play_mutated(scenes, scaled(400));
+}
+
+}  // namespace
+}  // namespace winnow::test
