@@ -3,6 +3,7 @@
 #include <winnow/core/aabb.h>
 #include <winnow/core/box_view.h>
 #include <winnow/core/cast.h>
+#include <winnow/core/column.h>
 #include <winnow/core/debug_draw.h>
 #include <winnow/core/entries.h>
 #include <winnow/core/execution.h>
@@ -273,6 +274,19 @@ class WINNOW_API Partition final {
   /// that touch are at distance 0. About O(log n + count).
   Status nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
                  const Filter& filter = {}) const;
+
+  /// Appends all that the objects are to bytes: keys and which come next, stored volumes, client
+  /// data, filters, and which structure with what options; pipeline/CONTRACT.md has the format.
+  /// `out_of_memory` leaves `out` as it was. O(objects).
+  Status save(Column<std::byte>& out) const;
+  /// Becomes what was saved, with the memory and execution that it has. Keys that were saved are
+  /// those of the same objects again, unless another partition of this process has them by now;
+  /// `key_of` tells. The structure is built by the next question; what is asked from then on is
+  /// answered, to the order of pairs, as by every other partition that loaded the same bytes: to go
+  /// on bit for bit with it, who saved loads, too. Buffers of pairs start anew. `invalid_argument`
+  /// for anything that was not saved so, whoever made it, and `out_of_memory`, change nothing.
+  /// Links all structures. O(objects).
+  Status load(std::span<const std::byte> saved);
 
   /// Draws the objects and the partition's own structure. A picture, not a query: O(n).
   Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const noexcept;

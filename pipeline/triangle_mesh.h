@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
+#include <winnow/core/column.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
@@ -9,6 +10,7 @@
 
 #include <cstddef>
 #include <memory_resource>
+#include <span>
 
 namespace winnow {
 
@@ -54,6 +56,14 @@ class WINNOW_API TriangleMesh {
   /// number of vertices. O(n), several times faster than `build`; the tree gets worse as neighbours
   /// part.
   Status refit(const PointView& vertices, const Execution& execution = Execution::serial());
+
+  /// Appends vertices, triangles in the order of the tree, and which edges are active, to bytes;
+  /// pipeline/CONTRACT.md has the format. `out_of_memory` leaves `out` as it was. O(n).
+  Status save(Column<std::byte>& out) const;
+  /// Becomes the mesh that was saved, with every answer to the bit; nothing is sorted, only boxes
+  /// are put around what is there: O(n). `invalid_argument` for anything that was not saved so,
+  /// whoever made it, and `out_of_memory`, leave the mesh as it was.
+  Status load(std::span<const std::byte> saved, const Execution& execution = Execution::serial());
 
   /// Triangles that it was built of; 0 before.
   [[nodiscard]] std::size_t triangles() const noexcept;

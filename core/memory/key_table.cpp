@@ -3,6 +3,8 @@
 #include "core/memory/columns.h"
 #include "core/sort/stretches.h"
 
+#include <algorithm>
+
 namespace winnow {
 
 KeyTable::KeyTable(std::pmr::memory_resource* memory) noexcept
@@ -117,6 +119,46 @@ void KeyTable::release_if_unused() noexcept {
   if (live_ == 0 && stamps_.empty()) {
     release_columns(stamps_, rows_, data_);
   }
+}
+
+bool KeyTable::are_slots(const Saved& saved, Column<std::uint8_t>& seen) noexcept {
+  const std::size_t slots = saved.stamps.size();
+  if (saved.data.size() != slots || (saved.stamp & kGenerationMask) != 0) return false;
+  std::fill_n(seen.data(), slots, std::uint8_t{0});
+  for (const ObjectId id : saved.free) {
+    if (id >= slots || (saved.stamps[id] & 1U) != 0 || seen[id] != 0) return false;
+    seen[id] = 1;
+  }
+  return true;
+}
+
+void KeyTable::restore(const Saved& saved, KeyTable& other) noexcept {
+  tags_.swap(other.tags_);
+  other.stamp_ = other.tags_.latest() << kGenerationBits;
+  const std::size_t slots = saved.stamps.size();
+  stamps_.set_size(slots);
+  rows_.set_size(slots);
+  data_.set_size(slots);
+  std::uint32_t known = 0;  // a tag that was claimed already
+  std::uint32_t row = 0;
+  for (std::size_t slot = 0; slot < slots; ++slot) {
+    std::uint32_t stamp = saved.stamps[slot];
+    const std::uint32_t tag = stamp >> kGenerationBits;
+    if (tag != known && tags_.claim(tag)) known = tag;
+    if (tag != known) stamp = tags_.latest() << kGenerationBits | (stamp & kGenerationMask);
+    stamps_[slot] = stamp;
+    data_[slot] = saved.data[slot];
+    rows_[slot] = kNoObject;
+    if ((stamp & 1U) != 0) rows_[slot] = row++;
+  }
+  live_ = row;
+  free_count_ = saved.free.size();
+  first_free_ = saved.free.empty() ? kNoObject : saved.free.front();
+  for (std::size_t i = 0; i < saved.free.size(); ++i) {
+    rows_[saved.free[i]] = i + 1 < saved.free.size() ? saved.free[i + 1] : kNoObject;
+  }
+  (void)tags_.claim(saved.stamp >> kGenerationBits);
+  stamp_ = tags_.latest() << kGenerationBits;
 }
 
 Bytes KeyTable::key_bytes() const noexcept {

@@ -80,6 +80,36 @@ class KeyTable {
   /// Slots ever used; every ObjectId is below it.
   [[nodiscard]] std::size_t slot_count() const noexcept { return stamps_.size(); }
 
+  // What is saved and restored.
+
+  /// By slot. Those of free slots are even.
+  [[nodiscard]] std::span<const std::uint32_t> stamps() const noexcept {
+    return {stamps_.data(), stamps_.size()};
+  }
+  [[nodiscard]] std::span<const ClientData> all_client_data() const noexcept {
+    return {data_.data(), data_.size()};
+  }
+  /// What the first stamp of a slot begins with.
+  [[nodiscard]] std::uint32_t stamp() const noexcept { return stamp_; }
+  /// The free slot that is taken next, and the one after a free slot; kNoObject: none.
+  [[nodiscard]] ObjectId first_free() const noexcept { return first_free_; }
+  [[nodiscard]] ObjectId next_free(ObjectId id) const noexcept { return rows_[id]; }
+
+  /// Slots as a table had them.
+  struct Saved {
+    std::span<const std::uint32_t> stamps;
+    std::span<const ClientData> data;
+    std::span<const ObjectId> free;  ///< in the order in which they are taken
+    std::uint32_t stamp = 0;
+  };
+  /// True if they can have been a table's: live stamps are odd, those of free slots even, each free
+  /// slot is listed once. `seen` is scratch of a byte a slot.
+  [[nodiscard]] static bool are_slots(const Saved& saved, Column<std::uint8_t>& seen) noexcept;
+  /// Becomes such a table, with room for it made, objects in rows by id. Takes the tags of `other`,
+  /// which gets its own: keys are the saved ones as long as no third table has their tags.
+  void restore(const Saved& saved, KeyTable& other) noexcept;
+
+  [[nodiscard]] std::pmr::memory_resource* key_memory() const noexcept { return rows_.memory(); }
   [[nodiscard]] Bytes key_bytes() const noexcept;
   [[nodiscard]] Bytes client_data_bytes() const noexcept { return data_.bytes(); }
 

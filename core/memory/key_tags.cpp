@@ -80,4 +80,21 @@ bool KeyTags::renew() noexcept {
   return true;
 }
 
+bool KeyTags::claim(std::uint32_t tag) noexcept {
+  if (!is_own_ || tag == 0 || tag > kMost) return false;
+  if (tag == latest_) return true;
+  for (std::uint32_t later = latest_; g_earlier[later] != 0; later = g_earlier[later]) {
+    if (g_earlier[later] != tag) continue;
+    g_earlier[later] = g_earlier[tag];
+    g_earlier[tag] = latest_;
+    latest_ = tag;
+    return true;
+  }
+  const std::uint64_t bit = std::uint64_t{1} << tag % kWordBits;
+  if ((g_taken[tag / kWordBits].fetch_or(bit, std::memory_order_acquire) & bit) != 0) return false;
+  g_earlier[tag] = latest_;
+  latest_ = tag;
+  return true;
+}
+
 }  // namespace winnow

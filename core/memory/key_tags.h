@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 
 namespace winnow {
 
@@ -22,6 +23,13 @@ class KeyTags {
   [[nodiscard]] std::uint32_t latest() const noexcept { return latest_; }
   /// Takes one more and keeps the others. False, and no change, if none is free.
   [[nodiscard]] bool renew() noexcept;
+  /// Takes this one, which becomes the latest, and keeps the others. False, and no change, if
+  /// another table has it. O(those that it has).
+  [[nodiscard]] bool claim(std::uint32_t tag) noexcept;
+  void swap(KeyTags& other) noexcept {
+    std::swap(latest_, other.latest_);
+    std::swap(is_own_, other.is_own_);
+  }
 
  private:
   std::uint32_t latest_;

@@ -63,6 +63,7 @@ class SpatialIndex {
   [[nodiscard]] bool set_structure(StructureKind kind) noexcept;
   [[nodiscard]] StructureKind kind() const noexcept { return kind_; }
   [[nodiscard]] const Structure& structure() const noexcept { return *structure_; }
+  [[nodiscard]] std::size_t build_budget() const noexcept { return build_budget_; }
 
   /// Makes room for a build of so many objects, wherever they lie, and for what pair queries then
   /// read, with the structure that is there and with each of those that may be taken `later`. It

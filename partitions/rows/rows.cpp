@@ -546,6 +546,55 @@ Status Rows::set_filter(std::span<const Key> keys, std::span<const ObjectFilter>
   return Status::ok;
 }
 
+namespace {
+
+/// True if a row of saved columns may be stored: finite, and no slab inverted.
+bool is_stored_volume(Volume volume, const SavedRows& saved, std::size_t i) noexcept {
+  const auto at = [&](std::size_t column) { return saved.columns[column * saved.objects + i]; };
+  for (std::size_t c = 0; c < column_count(volume); ++c) {
+    if (!std::isfinite(at(c))) return false;
+  }
+  const std::size_t slabs = slab_count(volume);
+  for (std::size_t s = 0; s < slabs; ++s) {
+    if (!(at(low_column(slabs, s)) <= at(high_column(slabs, s)))) return false;
+  }
+  return volume != Volume::sphere || at(kRadiusColumn) >= 0.0F;
+}
+
+}  // namespace
+
+Status Rows::restore(const SavedRows& saved, Rows& other) {
+  const std::size_t slots = saved.keys.stamps.size();
+  const auto is_live = [](std::uint32_t stamp) { return (stamp & 1U) != 0; };
+  const auto live = static_cast<std::size_t>(std::ranges::count_if(saved.keys.stamps, is_live));
+  const bool fits = slots <= kMaxObjects && live == saved.objects &&
+                    saved.columns.size() == pool_.columns() * live &&
+                    (saved.filters.empty() || saved.filters.size() == live);
+  if (!fits) return Status::invalid_argument;
+  for (std::size_t i = 0; i < live; ++i) {
+    if (!is_stored_volume(pool_.volume(), saved, i)) return Status::invalid_argument;
+  }
+  Column<std::uint8_t> seen(keys_.key_memory());
+  if (!seen.resize(slots) || !make_room(slots)) return Status::out_of_memory;
+  if (!KeyTable::are_slots(saved.keys, seen)) return Status::invalid_argument;
+  if (!saved.filters.empty() && !filters_.begin_use()) return Status::out_of_memory;
+  keys_.restore(saved.keys, other.keys_);
+  pool_.append(live);
+  for (std::size_t c = 0; c < pool_.columns(); ++c) {
+    std::copy_n(saved.columns.data() + c * live, live, pool_.column(c));
+  }
+  for (std::size_t slot = 0; slot < slots; ++slot) {
+    const auto id = static_cast<ObjectId>(slot);
+    if (!keys_.is_live(id)) continue;
+    const std::size_t row = keys_.row_of(id);
+    pool_.ids()[row] = id;
+    if (!saved.filters.empty()) filters_.set(id, saved.filters[row]);
+  }
+  stale_.add_all();
+  changed_ = true;
+  return Status::ok;
+}
+
 Status Rows::bounds(Key key, Aabb& box) const noexcept {
   if (!keys_.is_valid(key)) return Status::invalid_key;
   const std::size_t row = keys_.row_of(key.id);

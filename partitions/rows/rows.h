@@ -23,6 +23,14 @@ namespace winnow {
 struct BoxOfId;
 struct EntryOfRow;
 
+/// Objects as they were saved: slots of keys, and of the live ones, by id, what is stored.
+struct SavedRows {
+  KeyTable::Saved keys;
+  std::size_t objects = 0;                  ///< odd stamps
+  std::span<const float> columns;           ///< of the volume, one after the other
+  std::span<const ObjectFilter> filters{};  ///< empty if all are the default
+};
+
 /// The box of one row, with what is stored for an infinite end given back as infinite. A hole gives
 /// an empty box.
 [[nodiscard]] Aabb stored_box(const float* const columns[6], std::size_t row) noexcept;
@@ -70,6 +78,11 @@ class Rows {
   void touch() noexcept;
   /// Gives back what nobody's objects need; everything if there are none.
   void release_memory() noexcept;
+
+  /// Of rows that never held an object: they become the saved ones, in rows by id, with the keys
+  /// that they had (see KeyTable::restore). `invalid_argument` for what no rows can have been;
+  /// nothing changed then.
+  Status restore(const SavedRows& saved, Rows& other);
 
   Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
   Status bounds(Key key, Aabb& box) const noexcept;

@@ -87,6 +87,14 @@ Status PartitionState::remove(std::span<const Key> keys) {
   return status;
 }
 
+Status PartitionState::restore(const SavedRows& saved, PartitionState& other) {
+  const Status status = rows.restore(saved, other.rows);
+  if (status != Status::ok) return status;
+  note_changes(saved.objects);
+  if (chooser_ != nullptr) chooser_->note_new(saved.objects);
+  return status;
+}
+
 Status PartitionState::reserve(std::size_t objects, Pages pages) {
   const Status status = rows.reserve(objects);
   const std::size_t most = std::max(objects, rows.size());
@@ -176,11 +184,14 @@ void PartitionState::note_changes(std::size_t count) noexcept {
   if (counts || rows.changed()) stale_.store(true, std::memory_order_relaxed);
 }
 
+void PartitionState::write_deferred() const {
+  if (!deferred_.active()) return;
+  const std::lock_guard lock(tracker_mutex_);
+  end_deferring();
+}
+
 Status PartitionState::settle() const {
-  if (deferred_.active()) {
-    const std::lock_guard lock(tracker_mutex_);
-    end_deferring();
-  }
+  write_deferred();
   return refresh();
 }
 

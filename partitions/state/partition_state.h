@@ -50,6 +50,8 @@ class PartitionState {
 
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
   Status remove(std::span<const Key> keys);
+  /// Of a state that never held an object; see Rows::restore.
+  Status restore(const SavedRows& saved, PartitionState& other);
   Status reserve(std::size_t objects, Pages pages);
   Status reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages) const noexcept;
   Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
@@ -64,8 +66,9 @@ class PartitionState {
   Status refresh() const;
   /// The same for a caller who does not say what will be asked.
   Status make_ready() const;
-  /// Has the rows hold all boxes as they were given, for who reads them, and brings up to date what
-  /// pair queries read.
+  /// Has the rows hold all boxes as they were given, for who reads them.
+  void write_deferred() const;
+  /// The same, and brings up to date what pair queries read.
   Status settle() const;
   /// The same for other queries, of which there are `count`; tells them how to see the rows.
   Status prepare(QueryKind kind, std::size_t count, QueryView& view) const;

@@ -1,6 +1,7 @@
 #include <winnow/pipeline/triangle_mesh.h>
 
 #include "core/memory/new_in.h"
+#include "core/memory/snapshot_frame.h"
 #include "pipeline/mesh/mesh_edges.h"
 #include "pipeline/mesh/mesh_tree.h"
 
@@ -12,6 +13,9 @@
 
 namespace winnow {
 namespace {
+
+constexpr std::string_view kMeshMagic = "WINNOWTM";
+constexpr std::uint32_t kMeshVersion = 1;
 
 constexpr std::size_t kMaxVertices = std::numeric_limits<std::int32_t>::max();
 
@@ -60,6 +64,9 @@ struct TriangleMesh::State {
   [[nodiscard]] Status take(const PointView& vertices, const IndexView& triangles,
                             const MeshOptions& given, const Execution& execution) noexcept;
   [[nodiscard]] Status refit(const PointView& vertices, const Execution& execution) noexcept;
+  void put(ByteWriter& out) const noexcept;
+  [[nodiscard]] Status read(ByteReader& in, const Execution& execution) noexcept;
+  [[nodiscard]] Status check_read() noexcept;
   void place_vertices(const PointView& vertices) noexcept;
   void link() noexcept;
   void fit(const Execution& execution) noexcept;
@@ -153,6 +160,101 @@ Status TriangleMesh::State::refit(const PointView& vertices, const Execution& ex
   place_vertices(vertices);
   fit(execution);
   return Status::ok;
+}
+
+void TriangleMesh::State::put(ByteWriter& out) const noexcept {
+  const auto slots = [&](const auto& column) {
+    return std::span(column.data(), view.triangle_count);
+  };
+  out.put(options.active_edge_angle);
+  out.put_array(std::span(vertex.data(), std::size_t{3} * view.vertex_count));
+  for (const auto& column : corner) out.put_array(slots(column));
+  out.put_array(slots(triangle));
+  out.put_array(std::span(neighbours.data(), neighbours.size()));
+}
+
+Status TriangleMesh::State::read(ByteReader& in, const Execution& execution) noexcept {
+  options.active_edge_angle = in.get<double>();
+  Column<float> given(vertex.memory());
+  (void)in.get_array(given);
+  for (auto& column : corner) (void)in.get_array(column);
+  (void)in.get_array(triangle);
+  (void)in.get_array(neighbours);
+  if (!in.ok() || !in.rest().empty()) return in.ok() ? Status::invalid_argument : status_of(in);
+  const std::size_t count = triangle.size();
+  if (count > kMaxTriangles || given.size() / 3 > kMaxVertices) return Status::invalid_argument;
+  view.triangle_count = static_cast<std::uint32_t>(count);
+  view.vertex_count = static_cast<std::uint32_t>(given.size() / 3);
+  const float* const first = given.data();
+  const bool is_good =
+      count != 0 && given.size() != 0 && given.size() % 3 == 0 &&
+      std::all_of(given.begin(), given.end(), [](float x) { return std::isfinite(x); });
+  if (!is_good) return Status::invalid_argument;
+  if (const Status status = check_read(); status != Status::ok) return status;
+  bool room = triangle.resize(whole_leaves(count)) && vertex.resize(given.size() + 1) &&
+              nodes.resize(plan_mesh_levels(view));
+  for (auto& column : corner) room = room && column.resize(whole_leaves(count));
+  if (!room) return Status::out_of_memory;
+  for (std::size_t slot = count; slot < whole_leaves(count); ++slot) {
+    triangle[slot] = triangle[count - 1];
+    for (auto& column : corner) column[slot] = column[count - 1];
+  }
+  place_vertices(PointView({first, first + 1, first + 2}, view.vertex_count, 3 * sizeof(float)));
+  link();
+  fit_mesh_levels(view, nodes.data(), bounds.min.data(), bounds.max.data(), execution);
+  return Status::ok;
+}
+
+/// True numbers of corners, triangles and neighbours, each triangle once.
+Status TriangleMesh::State::check_read() noexcept {
+  const std::size_t count = view.triangle_count;
+  Column<std::uint8_t> seen(vertex.memory());
+  if (!seen.resize(count)) return Status::out_of_memory;
+  std::fill(seen.begin(), seen.end(), std::uint8_t{0});
+  for (const std::uint32_t marked : triangle) {
+    const std::uint32_t number = marked & kTriangleNumberMask;
+    if (marked >> (kActiveEdgeShift + 3U) != 0 || number >= count || seen[number] != 0) {
+      return Status::invalid_argument;
+    }
+    seen[number] = 1;
+  }
+  for (const auto& column : corner) {
+    const auto is_vertex = [&](std::uint32_t number) { return number < view.vertex_count; };
+    if (column.size() != count || !std::all_of(column.begin(), column.end(), is_vertex)) {
+      return Status::invalid_argument;
+    }
+  }
+  const auto is_neighbour = [&](std::uint32_t code) {
+    if (code == kNoNeighbour || code == kCoveredEdge) return true;
+    const std::uint32_t edge = code & ~kSameWay;
+    return edge >> 2U < count && (edge & 3U) < 3;
+  };
+  const bool fits = neighbours.empty() || neighbours.size() == 3 * count;
+  return fits && options.active_edge_angle >= 0.0 &&
+                 options.active_edge_angle <= std::numbers::pi &&
+                 std::all_of(neighbours.begin(), neighbours.end(), is_neighbour)
+             ? Status::ok
+             : Status::invalid_argument;
+}
+
+Status TriangleMesh::save(Column<std::byte>& out) const {
+  return write_snapshot(out, kMeshMagic, kMeshVersion, [&](ByteWriter& writer) {
+    if (state_ != nullptr) state_->put(writer);
+  });
+}
+
+Status TriangleMesh::load(std::span<const std::byte> saved, const Execution& execution) {
+  ByteReader in = open_snapshot(saved, kMeshMagic, kMeshVersion);
+  if (!in.ok()) return status_of(in);
+  State* fresh = nullptr;
+  Status status = Status::ok;
+  if (!in.rest().empty()) {
+    fresh = new_in<State>(memory_, memory_);
+    status = fresh == nullptr ? Status::out_of_memory : fresh->read(in, execution);
+  }
+  if (status == Status::ok) std::swap(state_, fresh);
+  delete_in(memory_, fresh);
+  return status;
 }
 
 void TriangleMesh::State::place_vertices(const PointView& vertices) noexcept {

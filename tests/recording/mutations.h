@@ -50,6 +50,15 @@ inline void seal(std::vector<std::byte>& bytes) {
   }
 }
 
+/// The same of a snapshot, and its size.
+inline void seal_snapshot(std::vector<std::byte>& bytes) {
+  if (bytes.size() < 32) return;
+  Digest digest;
+  digest.add(std::span<const std::byte>(bytes).subspan(32));
+  const std::uint64_t frame[2] = {bytes.size() - 32, digest.value()};
+  std::memcpy(bytes.data() + 16, frame, sizeof frame);
+}
+
 /// Makes something of it another: some bytes, a number of four or eight bytes, or its end.
 inline void mutate(std::vector<std::byte>& bytes, Random& random) {
   const std::size_t changes = 1 + random.below(3);

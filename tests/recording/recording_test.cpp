@@ -31,7 +31,7 @@ void expect_same_everywhere(const Bytes8& bytes) {
   }
 }
 
-TEST(Recordings, of_partitions_are_played_bit_for_bit) {
+TEST(ProgramRecordings, of_partitions_are_played_bit_for_bit) {
   for (const StructureKind& structure : all_structures()) {
     Bytes8 bytes;
     Recorder recorder(kept_in(bytes));
@@ -43,7 +43,7 @@ TEST(Recordings, of_partitions_are_played_bit_for_bit) {
   }
 }
 
-TEST(Recordings, of_all_volumes_are_played_bit_for_bit) {
+TEST(ProgramRecordings, of_all_volumes_are_played_bit_for_bit) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   record_volumes(recorder, scaled(500));
@@ -51,7 +51,7 @@ TEST(Recordings, of_all_volumes_are_played_bit_for_bit) {
   expect_same_everywhere(bytes);
 }
 
-TEST(Recordings, of_scenes_are_played_bit_for_bit) {
+TEST(ProgramRecordings, of_scenes_are_played_bit_for_bit) {
   for (const double carry_over : {0.0, 0.02}) {
     Bytes8 bytes;
     Recorder recorder(kept_in(bytes));
@@ -62,7 +62,7 @@ TEST(Recordings, of_scenes_are_played_bit_for_bit) {
   }
 }
 
-TEST(Recordings, stand_in_files) {
+TEST(ProgramRecordings, stand_in_files) {
   const std::string path =
       (std::filesystem::temp_directory_path() / "winnow_recording_test.winnow").string();
   {
@@ -79,7 +79,7 @@ TEST(Recordings, stand_in_files) {
   std::filesystem::remove(path);
 }
 
-TEST(Recordings, of_programs_that_ended_early_are_played_as_far_as_they_go) {
+TEST(ProgramRecordings, of_programs_that_ended_early_are_played_as_far_as_they_go) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   record_partition(recorder, linear_bvh(), 100, 3);
@@ -92,7 +92,7 @@ TEST(Recordings, of_programs_that_ended_early_are_played_as_far_as_they_go) {
   EXPECT_EQ(player.frames(), 3U);
 }
 
-TEST(Recordings, end_where_nothing_takes_them_and_the_program_goes_on) {
+TEST(ProgramRecordings, end_where_nothing_takes_them_and_the_program_goes_on) {
   Recorder nowhere(RecordingSink{});
   record_partition(nowhere, linear_bvh(), 50, 2);
   EXPECT_EQ(nowhere.status(), Status::out_of_memory);
@@ -101,7 +101,7 @@ TEST(Recordings, end_where_nothing_takes_them_and_the_program_goes_on) {
   EXPECT_EQ(no_file.close(), Status::invalid_argument);
 }
 
-TEST(Recordings, tell_another_answer_from_the_recorded_one) {
+TEST(ProgramRecordings, tell_another_answer_from_the_recorded_one) {
   // The same program, but the recorded digests are of other boxes.
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
@@ -150,7 +150,7 @@ void play_mutated(const Bytes8& good, std::size_t count) {
   EXPECT_GT(refused, count / 16);
 }
 
-TEST(Recordings, that_anybody_made_up_are_read_or_refused) {
+TEST(ProgramRecordings, that_anybody_made_up_are_read_or_refused) {
   Bytes8 partitions;
   {
     Recorder recorder(kept_in(partitions));
