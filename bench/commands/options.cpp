@@ -41,7 +41,8 @@ void choose_isa(const std::string& name) {
 }
 
 void Target::add_to(CLI::App& app) {
-  app.add_option("target", name, "A recording (.aabbs, .aabbs.xz) or a scene's name")->required();
+  app.add_option("target", name, "A recording (.aabbs, .winnow, .xz of either) or a scene's name")
+      ->required();
   add_objects_option(app, objects, "Number of objects of a scene (10000)");
   app.add_option("--seed", seed, "What a scene is drawn from (1)");
 }

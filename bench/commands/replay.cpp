@@ -32,6 +32,7 @@ struct Replay {
   int run();
 
  private:
+  static bool print_answers(const Recording& recording);
   void print(const std::vector<Run>& runs, const std::string& scene, std::size_t count) const;
 };
 
@@ -92,9 +93,23 @@ int Replay::run() {
   Json json_runs = Json::array();
   for (const Run& run : runs) json_runs.push_back(replay_json(run, first->name(), count));
   write_json(json, json_runs);
+  if (scene.is_recording() && !print_answers(*scene.recording)) return kFailed;
   if (all_agree(runs)) return kDone;
   std::cerr << "winnow: the partitions did not find the same pairs\n";
   return kFailed;
+}
+
+/// What became of a program's own questions; false if one was not answered as it was then.
+bool Replay::print_answers(const Recording& recording) {
+  if (!recording.program) return true;
+  const Recording::Program& program = *recording.program;
+  std::cout << "recorded: " << grouped(program.calls) << " calls, "
+            << grouped(program.questions - program.differences) << " of "
+            << grouped(program.questions) << " questions answered bit for bit as recorded"
+            << (program.is_whole ? "\n" : "; the recording was not closed\n");
+  if (program.differences == 0) return true;
+  std::cerr << "winnow: the recorded questions were answered otherwise\n";
+  return false;
 }
 
 void Replay::print(const std::vector<Run>& runs, const std::string& scene,
@@ -123,7 +138,9 @@ Command add_replay(CLI::App& app) {
       app, "replay",
       "Finds all pairs in every frame of a recording or scene. The frame's time is one bulk update "
       "of what changed (told to the partition, as a simulation knows it) and all pairs into one "
-      "buffer; medians leave out the first frame.");
+      "buffer; medians leave out the first frame. What a program recorded of itself is played as "
+      "it "
+      "was, too, and every answer compared with the recorded one.");
 }
 
 }  // namespace winnow::bench

@@ -11,6 +11,8 @@ class Player final : public FrameSource {
   [[nodiscard]] Aabb world() const override { return recording_.world; }
   [[nodiscard]] std::span<const Aabb> boxes() const override { return recording_.frames[frame_]; }
 
+  [[nodiscard]] std::size_t objects() const override { return recording_.objects(); }
+
   bool advance() override {
     if (frame_ + 1 >= recording_.frames.size()) return false;
     ++frame_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 namespace winnow::bench {
@@ -139,11 +140,33 @@ class Reader {
   std::uint64_t offset_ = 0;  // of the next byte to read
 };
 
+/// Looks into plain files alone: what is read of a pipe is gone.
+bool is_program(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  constexpr std::string_view kMagic = "WINNOWRC";
+  std::array<char, kMagic.size()> begin{};
+  return open_bytes(path)->read(std::as_writable_bytes(std::span(begin))) == begin.size() &&
+         std::string_view(begin.data(), begin.size()) == kMagic;
+}
+
+std::vector<std::byte> all_of(ByteSource& bytes) {
+  constexpr std::size_t kAtATime = std::size_t{1} << 20U;
+  std::vector<std::byte> all;
+  for (std::size_t size = 0;; size = all.size()) {
+    all.resize(size + kAtATime);
+    const std::size_t count = bytes.read(std::span(all).subspan(size));
+    all.resize(size + count);
+    if (count < kAtATime) return all;
+  }
+}
+
 }  // namespace
 
 Recording read_recording(const std::string& path) {
   try {
-    return Reader(path).read();
+    if (!is_program(path)) return Reader(path).read();
+    return read_program(path, all_of(*open_bytes(path)));
   } catch (const std::bad_alloc&) {
     throw RecordingError(path + ": does not fit into memory");
   }
@@ -154,7 +177,8 @@ std::vector<std::string> recordings_in(const std::string& folder) {
   std::error_code absent;
   for (const auto& entry : std::filesystem::directory_iterator(folder, absent)) {
     const std::string name = entry.path().filename().string();
-    if (name.ends_with(".aabbs") || name.ends_with(".aabbs.xz")) {
+    const std::string plain = name.ends_with(".xz") ? name.substr(0, name.size() - 3) : name;
+    if (plain.ends_with(".aabbs") || plain.ends_with(".winnow")) {
       files.push_back(entry.path().string());
     }
   }

@@ -3,7 +3,9 @@
 #include "bench/scenes/frame_source.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -20,6 +22,8 @@ namespace winnow::bench {
 //   byte 272  box        the world
 //   byte 304  box[N]     the first frame, then F more; files with F frames in all exist too
 // A box is 8 floats: min x y z and one not used, max x y z and one not used.
+//
+// Or what a program recorded of itself (winnow::Recorder; pipeline/CONTRACT.md has the format).
 
 /// What is wrong with a file, and where.
 class RecordingError : public std::runtime_error {
@@ -31,17 +35,33 @@ struct Recording {
   std::string scene;
   std::string object_type;
   Aabb world;
-  std::vector<std::vector<Aabb>> frames;  ///< all of the same size
+  /// Each as large as the one before or larger: that of a program grows with the objects that it
+  /// has at a time. A row whose object is gone is a point beside the world until another gets it.
+  std::vector<std::vector<Aabb>> frames;
 
+  /// How a program's recording was played.
+  struct Program {
+    std::uint64_t calls = 0;
+    std::uint64_t questions = 0;
+    std::uint64_t differences = 0;  ///< questions that were not answered as recorded
+    bool is_whole = false;          ///< the recording was closed
+  };
+  std::optional<Program> program;
+
+  /// Of the last frame.
   [[nodiscard]] std::size_t objects() const noexcept {
-    return frames.empty() ? 0 : frames.front().size();
+    return frames.empty() ? 0 : frames.back().size();
   }
 };
 
-/// Reads a whole .aabbs file, or an .aabbs.xz if built with liblzma. Throws RecordingError.
+/// Reads a whole .aabbs file, or what a program recorded; either may be an .xz if built with
+/// liblzma. Throws RecordingError.
 [[nodiscard]] Recording read_recording(const std::string& path);
 
-/// The .aabbs and .aabbs.xz files of a folder by name; none if the folder is not there.
+/// What a program recorded, as frames of boxes: its calls are played twice. Throws RecordingError.
+[[nodiscard]] Recording read_program(const std::string& path, std::span<const std::byte> bytes);
+
+/// The .aabbs and .winnow files of a folder, .xz or not, by name; none if the folder is not there.
 [[nodiscard]] std::vector<std::string> recordings_in(const std::string& folder);
 
 /// Writes the source's current frame and `steps` more. Throws RecordingError.

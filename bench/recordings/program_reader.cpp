@@ -1,0 +1,151 @@
+#include <winnow/pipeline/replay.h>
+#include "bench/recordings/recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace winnow::bench {
+namespace {
+
+/// Plays a program's recording and takes the boxes of the partition or scene that holds the most
+/// objects.
+class ProgramReader {
+ public:
+  ProgramReader(const std::string& path, std::span<const std::byte> bytes)
+      : path_(path), bytes_(bytes) {}
+
+  Recording read() {
+    recording_.scene = std::filesystem::path(path_).stem().string();
+    recording_.object_type = "box";
+    play_once();
+    take_frames();
+    if (recording_.frames.empty()) fail("no partition or scene in it holds an object");
+    park_absent();
+    return std::move(recording_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw RecordingError(path_ + ": " + what);
+  }
+
+  /// Whether frames are told, and which world holds the most.
+  void play_once() {
+    RecordingPlayer player(bytes_);
+    std::size_t most = 0;
+    for (Played played = player.step(); played != Played::end; played = player.step()) {
+      if (played != Played::pairs && played != Played::frame) continue;
+      for (std::size_t world = 0; world < player.worlds(); ++world) {
+        const std::size_t objects = size_of(player, world);
+        if (objects > most) world_ = world;
+        most = std::max(most, objects);
+      }
+    }
+    if (player.status() != Status::ok) {
+      fail(std::string("is no recording, or damaged: ") + to_string(player.status()) + " after " +
+           std::to_string(player.calls()) + " calls");
+    }
+    frame_end_ = player.frames() != 0 ? Played::frame : Played::pairs;
+    recording_.program = Recording::Program{.calls = player.calls(),
+                                            .questions = player.questions(),
+                                            .differences = player.differences(),
+                                            .is_whole = player.is_whole()};
+  }
+
+  static std::size_t size_of(const RecordingPlayer& player, std::size_t world) {
+    if (const Partition* const partition = player.partition(world)) return partition->size();
+    if (const Scene* const scene = player.scene(world)) return scene->size();
+    return 0;
+  }
+
+  void take_frames() {
+    RecordingPlayer player(bytes_);
+    for (Played played = player.step(); played != Played::end; played = player.step()) {
+      if (played != frame_end_ || size_of(player, world_) == 0) continue;
+      std::vector<Aabb>& frame = recording_.frames.emplace_back();
+      if (recording_.frames.size() > 1) {
+        frame.resize((recording_.frames.end() - 2)->size());
+      }
+      take_boxes(player, frame);
+    }
+  }
+
+  /// A row is an id; one of no object is left empty.
+  void take_boxes(const RecordingPlayer& player, std::vector<Aabb>& frame) const {
+    const auto put = [&](ObjectId id, const Aabb& box) {
+      if (frame.size() <= id) frame.resize(id + std::size_t{1});
+      frame[id] = box;
+    };
+    const Partition* const partition = player.partition(world_);
+    const Scene* const scene = player.scene(world_);
+    std::size_t left = size_of(player, world_);
+    for (ObjectId id = 0; left != 0; ++id) {
+      const Key key = partition != nullptr ? partition->key_of(id) : scene->key_of(id);
+      if (key == Key{}) continue;
+      --left;
+      Aabb box;
+      BodyDefinition body;
+      if (partition != nullptr) {
+        (void)partition->bounds(key, box);
+      } else if (scene->body(key, body) == Status::ok) {
+        box = player.shapes(world_)->bounds(body.shape, body.pose);
+      }
+      put(id, box);
+    }
+  }
+
+  /// Rows without an object become points beside all that there is, no two at one place.
+  void park_absent() {
+    Aabb& world = recording_.world;
+    std::size_t rows = 0;
+    for (const std::vector<Aabb>& frame : recording_.frames) {
+      for (const Aabb& box : frame) {
+        for (int axis = 0; axis < 3; ++axis) {
+          if (std::isfinite(box.min[axis]))
+            world.min[axis] = std::min(world.min[axis], box.min[axis]);
+          if (std::isfinite(box.max[axis]))
+            world.max[axis] = std::max(world.max[axis], box.max[axis]);
+        }
+      }
+      rows = std::max(rows, frame.size());
+    }
+    int along = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      // What is infinite in every frame.
+      if (!(world.min[axis] <= world.max[axis])) world.min[axis] = world.max[axis] = 0.0F;
+      if (extent(axis) > extent(along)) along = axis;
+    }
+    const int beside = (along + 1) % 3;
+    const float step = extent(along) / static_cast<float>(rows);
+    const float off = world.max[beside] + std::max(1e-3F * extent(along), 1e-3F);
+    for (std::vector<Aabb>& frame : recording_.frames) {
+      for (std::size_t row = 0; row < frame.size(); ++row) {
+        if (frame[row].is_valid()) continue;
+        Vec3f at = world.min;
+        at[along] += (static_cast<float>(row) + 0.5F) * step;
+        at[beside] = off;
+        frame[row] = {at, at};
+      }
+    }
+    world.max[beside] = off;
+  }
+
+  [[nodiscard]] float extent(int axis) const {
+    return recording_.world.max[axis] - recording_.world.min[axis];
+  }
+
+  const std::string& path_;
+  std::span<const std::byte> bytes_;
+  Recording recording_;
+  std::size_t world_ = 0;
+  Played frame_end_ = Played::frame;
+};
+
+}  // namespace
+
+Recording read_program(const std::string& path, std::span<const std::byte> bytes) {
+  return ProgramReader(path, bytes).read();
+}
+
+}  // namespace winnow::bench

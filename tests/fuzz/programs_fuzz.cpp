@@ -1,0 +1,93 @@
+// What programs recorded and saved, as anybody may have written it: played, loaded and asked, or
+// refused. Digests are made to fit, so that what lies behind them is reached.
+
+#include <winnow/winnow.h>
+
+#include "tests/fuzz/target.h"
+#include "tests/recording/mutations.h"
+#include "tests/recording/programs.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr std::size_t kMostMemory = std::size_t{256} << 20U;
+
+std::string text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+void play(Bytes8 bytes) {
+  seal(bytes);
+  LimitedMemory memory(kMostMemory);
+  RecordingPlayer player(bytes, {.memory = &memory, .execution = Execution::serial()});
+  const Status status = player.play_all();
+  WINNOW_HOLDS(status != Status::ok || player.differences() <= player.questions());
+}
+
+void load(Bytes8 bytes) {
+  seal_snapshot(bytes);
+  LimitedMemory memory(kMostMemory);
+  Partition partition(linear_bvh(), {.memory = &memory, .execution = Execution::serial()});
+  if (partition.load(bytes) == Status::ok) {
+    PairBuffer pairs(&memory);
+    (void)partition.self_pairs(pairs);
+    Column<std::byte> again(&memory);
+    const Status saved = partition.save(again);
+    WINNOW_HOLDS(saved == Status::ok || saved == Status::out_of_memory);
+  }
+  TriangleMesh mesh(&memory);
+  if (mesh.load(bytes) == Status::ok) {
+    Column<std::byte> again(&memory);
+    WINNOW_HOLDS(mesh.save(again) == Status::ok &&
+                 text_of({again.data(), again.size()}) == text_of(bytes));
+  }
+}
+
+}  // namespace
+
+void fuzz(std::span<const std::uint8_t> input) {
+  const std::span<const std::byte> bytes = std::as_bytes(input);
+  play({bytes.begin(), bytes.end()});
+  load({bytes.begin(), bytes.end()});
+}
+
+std::vector<std::string> fuzz_seeds() {
+  Bytes8 partitions;
+  Bytes8 scenes;
+  {
+    Recorder recorder(kept_in(partitions));
+    record_partition(recorder, linear_bvh(), 20, 7);
+    record_volumes(recorder, 6);
+  }
+  {
+    Recorder recorder(kept_in(scenes));
+    record_scene(recorder, 12, 7, {.margin = 0.02});
+  }
+  Column<std::byte> saved(std::pmr::get_default_resource());
+  Partition partition(flat_grid(), {.volume = Volume::sphere});
+  std::vector<Key> keys(20);
+  (void)partition.insert(uniform_boxes(keys.size()), {}, keys);
+  (void)partition.remove(keys[7]);
+  (void)partition.save(saved);
+  std::vector<std::string> seeds{"", text_of(partitions), text_of(scenes),
+                                 text_of({saved.data(), saved.size()})};
+  saved.clear();
+  TriangleMesh mesh;
+  const std::vector<Vec3f> vertices{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const std::vector<std::uint32_t> corners{0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+  (void)mesh.build(vertices, IndexView(std::span<const std::uint32_t>(corners)));
+  (void)mesh.save(saved);
+  seeds.push_back(text_of({saved.data(), saved.size()}));
+  Random random(3);
+  const std::size_t whole = seeds.size();
+  for (std::size_t i = 0; i < scaled(300); ++i) {
+    const std::string& seed = seeds[1 + i % (whole - 1)];
+    const auto begin = std::as_bytes(std::span(seed));
+    Bytes8 bytes(begin.begin(), begin.end());
+    mutate(bytes, random);
+    seeds.push_back(text_of(bytes));
+  }
+  return seeds;
+}
+
+}  // namespace winnow::test

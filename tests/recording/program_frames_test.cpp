@@ -1,0 +1,96 @@
+// What the tool makes of a program's recording: frames of boxes, as of any other recording.
+
+#include "bench/recordings/recording.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "tests/recording/programs.h"
+
+namespace winnow::test {
+namespace {
+
+class ProgramFrames : public testing::Test {
+ protected:
+  ~ProgramFrames() override { std::filesystem::remove(path_); }
+
+  const std::string path_ = (std::filesystem::temp_directory_path() /
+                             ("winnow_frames_" + std::to_string(::getpid()) + ".winnow"))
+                                .string();
+};
+
+TEST_F(ProgramFrames, have_a_row_for_each_id_and_points_for_what_is_gone) {
+  const Aabb unit{{0, 0, 0}, {1, 1, 1}};
+  const Aabb far{{5, 0, 0}, {6, 1, 1}};
+  {
+    Recorder recorder(path_.c_str());
+    RecordedPartition partition(recorder, linear_bvh());
+    Key keys[3];
+    EXPECT_EQ(partition.insert(unit, 0, keys[0]), Status::ok);
+    EXPECT_EQ(partition.insert(unit, 0, keys[1]), Status::ok);
+    recorder.end_frame();
+    EXPECT_EQ(partition.remove(keys[0]), Status::ok);
+    recorder.end_frame();
+    EXPECT_EQ(partition.insert(far, 0, keys[0]), Status::ok);
+    EXPECT_EQ(partition.insert(far, 0, keys[2]), Status::ok);
+    recorder.end_frame();
+  }
+  const bench::Recording recording = bench::read_recording(path_);
+  ASSERT_EQ(recording.frames.size(), 3U);
+  EXPECT_EQ(recording.objects(), 3U);
+  EXPECT_TRUE((recording.frames[0] == std::vector<Aabb>{unit, unit}));
+  const Aabb gone = recording.frames[1][0];
+  EXPECT_TRUE(gone.is_valid() && gone.min == gone.max && !gone.overlaps(unit));
+  EXPECT_TRUE(recording.world.overlaps(gone));
+  EXPECT_TRUE((recording.frames[2] == std::vector<Aabb>{far, unit, far}));
+  ASSERT_TRUE(recording.program);
+  EXPECT_TRUE(recording.program->is_whole);
+}
+
+TEST_F(ProgramFrames, end_with_questions_where_the_program_tells_none) {
+  {
+    Recorder recorder(path_.c_str());
+    RecordedPartition partition(recorder, linear_bvh());
+    PairBuffer pairs;
+    Key key;
+    for (int frame = 0; frame < 4; ++frame) {
+      EXPECT_EQ(partition.insert({{0, 0, 0}, {1, 1, 1}}, 0, key), Status::ok);
+      EXPECT_EQ(partition.self_pairs(pairs), Status::ok);
+    }
+  }
+  const bench::Recording recording = bench::read_recording(path_);
+  ASSERT_EQ(recording.frames.size(), 4U);
+  for (std::size_t f = 0; f < 4; ++f) EXPECT_EQ(recording.frames[f].size(), f + 1);
+  EXPECT_EQ(recording.program->questions, 4U);
+  EXPECT_EQ(recording.program->differences, 0U);
+}
+
+TEST_F(ProgramFrames, of_scenes_are_boxes_of_bodies) {
+  {
+    Recorder recorder(path_.c_str());
+    record_scene(recorder, 30, 5, {});
+  }
+  const bench::Recording recording = bench::read_recording(path_);
+  EXPECT_EQ(recording.frames.size(), 5U);
+  EXPECT_EQ(recording.objects(), 31U);
+  EXPECT_EQ(recording.program->differences, 0U);
+}
+
+TEST_F(ProgramFrames, of_what_is_damaged_are_none) {
+  {
+    Recorder recorder(path_.c_str());
+    record_scene(recorder, 30, 5, {});
+  }
+  std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(500);
+  file.put('x').put('y').put('z');
+  file.close();
+  EXPECT_THROW((void)bench::read_recording(path_), bench::RecordingError);
+}
+
+}  // namespace
+}  // namespace winnow::test
