@@ -69,7 +69,8 @@ Json Draw::draw_frames(FrameSource& source) const {
 int Draw::run() {
   for (const std::string& ray : rays) options.rays.push_back(parse_ray(ray));
   for (const std::string& box : boxes) options.boxes.push_back(parse_box(box));
-  const auto source = target.source(target.named());
+  const NamedScene scene = target.named();  // a recording must outlive its source
+  const auto source = target.source(scene);
   if (const std::size_t most = largest_for(partition); source->objects() > most) {
     throw ArgumentError("--partition: " + partition + " takes too long on more than " +
                         grouped(most) + " objects");
