@@ -104,7 +104,7 @@ function(winnow_library room)
   cmake_parse_arguments(arg "" "" "LINKS;PRIVATE_LINKS;PRECOMPILED;APART" ${ARGN})
   file(GLOB_RECURSE sources RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.cpp)
   # Libraries of their own, of their folders' CMakeLists.txt.
-  list(FILTER sources EXCLUDE REGEX "^(c|python)/")
+  list(FILTER sources EXCLUDE REGEX "^(c|python|cluster/mpi)/")
   set(kernels ${sources})
   list(FILTER kernels INCLUDE REGEX "\\.kernel\\.cpp$")
   list(FILTER sources EXCLUDE REGEX "\\.kernel\\.cpp$")

@@ -42,6 +42,10 @@ install(FILES ${CMAKE_CURRENT_LIST_DIR}/debuggers/winnow_gdb.py
         DESTINATION ${CMAKE_INSTALL_DATADIR}/winnow)
 
 set(winnow_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/winnow)
+set(WINNOW_WITH_CLUSTER OFF)
+if(TARGET winnow_cluster)
+  set(WINNOW_WITH_CLUSTER ON)
+endif()
 install(EXPORT winnow-targets NAMESPACE winnow:: DESTINATION ${winnow_package_dir})
 if(WINNOW_C)
   # By itself: programs in C look for none of what the others need.
@@ -58,6 +62,11 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/winnow-config-version.cma
 install(FILES ${PROJECT_BINARY_DIR}/winnow-config.cmake
               ${PROJECT_BINARY_DIR}/winnow-config-version.cmake
         DESTINATION ${winnow_package_dir})
+if(TARGET winnow_cluster)
+  install(TARGETS winnow_cluster EXPORT winnow-cluster-targets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT winnow-cluster-targets NAMESPACE winnow:: DESTINATION ${winnow_package_dir})
+endif()
 
 file(RELATIVE_PATH winnow_pc_to_prefix
      ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})

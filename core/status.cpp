@@ -26,6 +26,8 @@ const char* to_string(Status status) noexcept {
       return "invalid_pose";
     case Status::unsupported:
       return "unsupported";
+    case Status::communication_failed:
+      return "communication_failed";
   }
   return "unknown";
 }

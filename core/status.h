@@ -32,6 +32,8 @@ enum class [[nodiscard]] Status : std::uint8_t{
     invalid_pose,
     /// The library was built without what this call needs.
     unsupported,
+    /// A rank of a cluster does not answer, or a message failed: no later call will be answered.
+    communication_failed,
 };
 
 /// The enumerator's name, for messages. Never null.

@@ -43,6 +43,8 @@
 #include <winnow/partitions/partition.h>
 #include <winnow/partitions/scene_features.h>
 #include <winnow/partitions/structures.h>
+#include <winnow/pipeline/cluster.h>
+#include <winnow/pipeline/cluster_transport.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/contact_groups.h>
 #include <winnow/pipeline/contact_regions.h>

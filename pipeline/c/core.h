@@ -37,7 +37,8 @@ enum {
   WINNOW_UNSUPPORTED_VOLUME = 7,
   WINNOW_INVALID_SHAPE = 8,
   WINNOW_INVALID_POSE = 9,
-  WINNOW_UNSUPPORTED = 10
+  WINNOW_UNSUPPORTED = 10,
+  WINNOW_COMMUNICATION_FAILED = 11
 };
 
 /// For messages: "ok", "invalid_bounds", ... Never null.

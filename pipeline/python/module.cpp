@@ -36,6 +36,8 @@ const char* meaning(Status status) noexcept {
       return "a pose is not finite, or its quaternion is zero";
     case Status::unsupported:
       return "this cannot be asked, or the library was built without it";
+    case Status::communication_failed:
+      return "a rank of a cluster does not answer";
   }
   return "";
 }

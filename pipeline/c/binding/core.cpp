@@ -85,7 +85,7 @@ bool read_execution(const winnow_execution& given, Execution& execution) noexcep
 
 const char* winnow_status_name(winnow_status status) {
   winnow::Status known{};
-  return winnow::c::read_choice(status, winnow::Status::unsupported, known)
+  return winnow::c::read_choice(status, winnow::Status::communication_failed, known)
              ? winnow::to_string(known)
              : "unknown";
 }

@@ -1,0 +1,41 @@
+#include <winnow/pipeline/cluster_transport.h>
+
+#include "pipeline/cluster/bisection.h"
+
+#include <algorithm>
+#include <new>
+#include <tuple>
+
+namespace winnow {
+
+LoopbackTransport::LoopbackTransport(std::uint32_t ranks) noexcept
+    : ranks_(std::clamp(ranks, 1U, 65'536U)) {}
+
+Status LoopbackTransport::exchange(std::span<const Parcel> sent,
+                                   std::span<const Parcel>& received) {
+  try {
+    parcels_.assign(sent.begin(), sent.end());
+  } catch (const std::bad_alloc&) {
+    return Status::out_of_memory;
+  }
+  std::sort(parcels_.begin(), parcels_.end(), [](const Parcel& a, const Parcel& b) {
+    return std::tie(a.to, a.from) < std::tie(b.to, b.from);
+  });
+  received = parcels_;
+  return Status::ok;
+}
+
+Status LoopbackTransport::reduce(std::span<std::uint64_t>, std::span<std::uint64_t>) {
+  return Status::ok;
+}
+
+Status LoopbackTransport::cut(std::span<const CutWork> work, std::span<RegionCut> cuts) {
+  try {
+    bisect(work, cuts);
+  } catch (const std::bad_alloc&) {
+    return Status::out_of_memory;
+  }
+  return Status::ok;
+}
+
+}  // namespace winnow

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory_resource>
+#include <vector>
+
+namespace winnow {
+
+/// All bits of a number decide on all bits of the result: the finalizer of SplitMix64 (Steele, Lea,
+/// Flood 2014).
+[[nodiscard]] constexpr std::uint64_t scattered(std::uint64_t x) noexcept {
+  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
+  return x ^ (x >> 31U);
+}
+
+/// Names of bodies to numbers below 2^32 - 1, by linear probing; what is erased leaves no mark
+/// (Knuth, The Art of Computer Programming 3, 6.4, algorithm R). Throws std::bad_alloc as the
+/// standard containers do, and is then as it was.
+class NameTable {
+ public:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  explicit NameTable(std::pmr::memory_resource* memory) : places_(memory) {}
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] std::size_t bytes() const noexcept { return places_.capacity() * sizeof(Place); }
+
+  /// The number of a name; kNone if there is none.
+  [[nodiscard]] std::uint32_t find(std::uint64_t name) const noexcept {
+    return places_.empty() ? kNone : places_[place_of(name)].number;
+  }
+
+  /// Room for so many names in all.
+  void reserve(std::size_t count) {
+    std::size_t places = places_.empty() ? 16 : places_.size();
+    while (count * 4 > places * 3) places *= 2;
+    if (places == places_.size()) return;
+    std::pmr::vector<Place> old(places, Place{}, places_.get_allocator());
+    old.swap(places_);
+    for (const Place& place : old) {
+      if (place.number != kNone) places_[place_of(place.name)] = place;
+    }
+  }
+
+  /// Gives a name a number, whether it had one or not.
+  void set(std::uint64_t name, std::uint32_t number) {
+    reserve(size_ + 1);
+    Place& place = places_[place_of(name)];
+    if (place.number == kNone) ++size_;
+    place = {name, number};
+  }
+
+  /// Forgets a name, if it is there.
+  void erase(std::uint64_t name) noexcept {
+    if (find(name) == kNone) return;
+    std::size_t gap = place_of(name);
+    for (std::size_t i = next(gap); places_[i].number != kNone; i = next(i)) {
+      // What lies where it belongs, or between there and the gap, is found without moving it.
+      const std::size_t home = home_of(places_[i].name);
+      if (((i - home) & mask()) < ((i - gap) & mask())) continue;
+      places_[gap] = places_[i];
+      gap = i;
+    }
+    places_[gap] = {};
+    --size_;
+  }
+
+ private:
+  struct Place {
+    std::uint64_t name = 0;
+    std::uint32_t number = kNone;
+  };
+
+  [[nodiscard]] std::size_t mask() const noexcept { return places_.size() - 1; }
+  [[nodiscard]] std::size_t next(std::size_t i) const noexcept { return (i + 1) & mask(); }
+  [[nodiscard]] std::size_t home_of(std::uint64_t name) const noexcept {
+    return scattered(name) & mask();
+  }
+  [[nodiscard]] std::size_t place_of(std::uint64_t name) const noexcept {
+    std::size_t i = home_of(name);
+    while (places_[i].number != kNone && places_[i].name != name) i = next(i);
+    return i;
+  }
+
+  std::pmr::vector<Place> places_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace winnow

@@ -1,0 +1,382 @@
+#include "pipeline/cluster/rank_bodies.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+template <typename T>
+[[nodiscard]] bool has_twice(std::vector<T> values) {
+  std::sort(values.begin(), values.end());
+  return std::adjacent_find(values.begin(), values.end()) != values.end();
+}
+
+[[nodiscard]] bool are_valid(const BoxView& boxes) noexcept {
+  for (std::size_t i = 0; i < boxes.count; ++i) {
+    if (!boxes[i].is_valid()) return false;
+  }
+  return true;
+}
+
+[[nodiscard]] float longest_edge(const Aabb& box) noexcept {
+  const Vec3f edges = box.max - box.min;
+  return std::max({edges.x(), edges.y(), edges.z()});
+}
+
+}  // namespace
+
+RankBodies::RankBodies(std::uint32_t rank, bool alone, const ClusterOptions& options)
+    : rank_(rank),
+      alone_(alone),
+      region_(Regions().of(0)),
+      partition_(options.structure, {.memory = options.memory, .execution = options.execution}),
+      found_(options.memory),
+      names_(options.memory),
+      flags_(options.memory),
+      table_(options.memory),
+      pairs_(options.memory) {}
+
+// ---- what the rank is told
+
+Status RankBodies::check(const ClusterBatch& batch) {
+  if (batch.names.size() != batch.boxes.count) return Status::size_mismatch;
+  if (!are_valid(batch.boxes)) return Status::invalid_bounds;
+  const auto is_here = [this](BodyName name) { return table_.find(name) != NameTable::kNone; };
+  if (std::any_of(batch.names.begin(), batch.names.end(), is_here) ||
+      has_twice(std::vector<BodyName>(batch.names.begin(), batch.names.end()))) {
+    return Status::invalid_key;
+  }
+  return Status::ok;
+}
+
+Status RankBodies::insert(const ClusterBatch& batch) {
+  if (batch.names.empty()) return Status::ok;
+  keys_.resize(batch.names.size());
+  const Status status = partition_.insert(batch.boxes, {}, keys_);
+  if (status != Status::ok) return status;
+  add_rows(batch.names, keys_);
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    flags_[keys_[i].id] = kOwned | kMoved;
+    moved_.push_back({keys_[i], Aabb{}});
+  }
+  return Status::ok;
+}
+
+void RankBodies::add_rows(std::span<const BodyName> names, std::span<const Key> keys) {
+  std::size_t rows = names_.size();
+  for (const Key& key : keys) rows = std::max<std::size_t>(rows, key.id + std::size_t{1});
+  names_.resize(rows);
+  flags_.resize(rows);
+  table_.reserve(table_.size() + names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    names_[keys[i].id] = names[i];
+    table_.set(names[i], keys[i].id);
+  }
+}
+
+Status RankBodies::move(std::span<const Key> keys, const BoxView& boxes) {
+  if (alone_) return partition_.update(keys, boxes);
+  if (keys.size() != boxes.count) return Status::size_mismatch;
+  if (!std::all_of(keys.begin(), keys.end(), [this](Key key) { return is_owned(key); })) {
+    return Status::invalid_key;
+  }
+  if (!are_valid(boxes)) return Status::invalid_bounds;
+  note_moves(keys, boxes);
+  return partition_.update(keys, boxes);
+}
+
+/// What lies within the region, and did, is nobody else's business.
+void RankBodies::note_moves(std::span<const Key> keys, const BoxView& boxes) {
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    std::uint8_t& flags = flags_[keys[i].id];
+    if ((flags & kMoved) != 0) continue;
+    if ((flags & kCrosses) == 0 && is_within(boxes[i])) continue;
+    moved_.push_back({keys[i], box_of(keys[i])});
+    flags |= kMoved;
+  }
+}
+
+Status RankBodies::find_keys(std::span<const BodyName> names, std::vector<Key>& keys) const {
+  keys.clear();
+  for (const BodyName name : names) {
+    Key key;
+    const Status status = key_of(name, key);
+    if (status != Status::ok) return status;
+    keys.push_back(key);
+  }
+  return has_twice(std::vector<BodyName>(names.begin(), names.end())) ? Status::invalid_key
+                                                                      : Status::ok;
+}
+
+Status RankBodies::move(std::span<const BodyName> names, const BoxView& boxes) {
+  if (names.size() != boxes.count) return Status::size_mismatch;
+  const Status status = find_keys(names, keys_);
+  return status == Status::ok ? move(std::span<const Key>(keys_), boxes) : status;
+}
+
+Status RankBodies::remove(std::span<const BodyName> names) {
+  const Status status = find_keys(names, keys_);
+  if (status != Status::ok) return status;
+  moved_.reserve(moved_.size() + names.size());
+  removed_.reserve(removed_.size() + names.size());
+  for (const Key key : keys_) {
+    std::uint8_t& flags = flags_[key.id];
+    if (!alone_ && (flags & kMoved) == 0) moved_.push_back({key, box_of(key)});
+    flags |= kMoved | kRemoved;
+    table_.erase(names_[key.id]);
+    removed_.push_back(names_[key.id]);
+  }
+  return alone_ ? partition_.remove(keys_) : Status::ok;
+}
+
+Status RankBodies::key_of(BodyName name, Key& key) const noexcept {
+  const std::uint32_t id = table_.find(name);
+  if (id == NameTable::kNone || (flags_[id] & kOwned) == 0) return Status::invalid_key;
+  key = partition_.key_of(id);
+  return Status::ok;
+}
+
+Status RankBodies::bodies(std::span<ClusterBody> bodies, std::span<Aabb> boxes) const {
+  if (bodies.size() != size() || boxes.size() != size()) return Status::size_mismatch;
+  std::size_t count = 0;
+  for (ObjectId id = 0; id < flags_.size(); ++id) {
+    const Key key = partition_.key_of(id);
+    if (!is_owned(key)) continue;
+    bodies[count] = {names_[id], key};
+    boxes[count++] = box_of(key);
+  }
+  return Status::ok;
+}
+
+// ---- how bodies go where they belong
+
+Aabb RankBodies::box_of(Key key) const noexcept {
+  Aabb box;
+  (void)partition_.bounds(key, box);
+  return box;
+}
+
+bool RankBodies::is_within(const Aabb& box) const noexcept {
+  return region_.min.x() <= box.min.x() && box.max.x() <= region_.max.x() &&
+         region_.min.y() <= box.min.y() && box.max.y() <= region_.max.y() &&
+         region_.min.z() <= box.min.z() && box.max.z() <= region_.max.z();
+}
+
+std::uint8_t RankBodies::flags_of(const Aabb& box, bool owned) const noexcept {
+  return static_cast<std::uint8_t>((owned ? kOwned : 0) | (is_within(box) ? 0 : kCrosses));
+}
+
+void RankBodies::send_removals(const Regions& regions) {
+  outbox_.clear();
+  changes_.clear();
+  const auto is_removed = [this](const Moved& moved) {
+    return partition_.contains(moved.key) && (flags_[moved.key.id] & kRemoved) != 0;
+  };
+  const auto rest = std::stable_partition(moved_.begin(), moved_.end(),
+                                          [&](const Moved& moved) { return !is_removed(moved); });
+  for (auto moved = rest; moved != moved_.end(); ++moved) tell(*moved, regions, regions);
+  moved_.erase(rest, moved_.end());
+}
+
+void RankBodies::send(const Regions& before, const Regions& now, bool regions_changed) {
+  region_ = now.of(rank_);
+  outbox_.clear();
+  changes_.clear();
+  arrived_.clear();
+  departed_.clear();
+  works_.clear();
+  if (regions_changed) note_all_that_cross();
+  for (const Moved& moved : moved_) {
+    // One that is alone removes at once what it has told nobody of.
+    if (partition_.contains(moved.key)) tell(moved, before, now);
+  }
+  moved_.clear();
+}
+
+/// Of bodies that did not move those are looked at that crossed the old region or cross the new.
+void RankBodies::note_all_that_cross() {
+  for (ObjectId id = 0; id < flags_.size(); ++id) {
+    const Key key = partition_.key_of(id);
+    if (!is_owned(key) || (flags_[id] & kMoved) != 0) continue;
+    const Aabb box = box_of(key);
+    if ((flags_[id] & kCrosses) != 0 || !is_within(box)) moved_.push_back({key, box});
+  }
+}
+
+void RankBodies::tell(const Moved& moved, const Regions& before, const Regions& now) {
+  const ObjectId id = moved.key.id;
+  const bool removed = (flags_[id] & kRemoved) != 0;
+  const Aabb box = removed ? Aabb{} : box_of(moved.key);
+  const std::uint32_t owner = removed ? rank_ : now.owner(centre_of(box));
+  before.ranks_of(moved.told, ranks_before_);
+  now.ranks_of(box, ranks_now_);
+  tell_ranks(names_[id], box, box == moved.told, owner);
+
+  const bool stays = std::binary_search(ranks_now_.begin(), ranks_now_.end(), rank_);
+  if (owner != rank_) departed_.push_back(names_[id]);
+  if (!stays) {
+    if (!removed) table_.erase(names_[id]);
+    flags_[id] = 0;
+    changes_.dropped.push_back(moved.key);
+    return;
+  }
+  flags_[id] = flags_of(box, owner == rank_);
+  if (owner != rank_) {
+    ++ghosts_;
+  } else if (!(moved.told.min.x() <= moved.told.max.x())) {
+    arrived_.push_back({names_[id], moved.key});
+  }
+}
+
+void RankBodies::tell_ranks(BodyName name, const Aabb& box, bool same_box, std::uint32_t owner) {
+  std::size_t b = 0;
+  for (const std::uint32_t to : ranks_now_) {
+    while (b < ranks_before_.size() && ranks_before_[b] < to) {
+      if (ranks_before_[b] != rank_) outbox_.tell_gone(ranks_before_[b], name);
+      ++b;
+    }
+    const bool held = b < ranks_before_.size() && ranks_before_[b] == to;
+    if (held) ++b;
+    if (to != rank_ && !(held && same_box && to != owner)) {
+      outbox_.tell(to, name, box, to == owner);
+    }
+  }
+  for (; b < ranks_before_.size(); ++b) {
+    if (ranks_before_[b] != rank_) outbox_.tell_gone(ranks_before_[b], name);
+  }
+}
+
+void RankBodies::Changes::clear() noexcept {
+  dropped.clear();
+  keys.clear();
+  boxes.clear();
+  names.clear();
+  fresh.clear();
+  belongs.clear();
+}
+
+Status RankBodies::receive(std::span<const Parcel> parcels) {
+  // What is gone first: a name may come anew in the same breath.
+  for (const Parcel& parcel : parcels) {
+    for (const BodyName name : BodyNews(parcel).gone) {
+      const std::uint32_t id = table_.find(name);
+      if (id == NameTable::kNone) continue;
+      changes_.dropped.push_back(partition_.key_of(id));
+      flags_[id] = 0;
+      table_.erase(name);
+      --ghosts_;
+    }
+  }
+  for (const Parcel& parcel : parcels) take(BodyNews(parcel));
+  return apply_changes();
+}
+
+void RankBodies::take(const BodyNews& news) {
+  for (std::size_t i = 0; i < news.names.size(); ++i) {
+    const bool belongs = news.belongs[i] != 0;
+    const std::uint32_t id = table_.find(news.names[i]);
+    if (id == NameTable::kNone) {
+      changes_.names.push_back(news.names[i]);
+      changes_.fresh.push_back(news.boxes[i]);
+      changes_.belongs.push_back(news.belongs[i]);
+      continue;
+    }
+    const Key key = partition_.key_of(id);
+    changes_.keys.push_back(key);
+    changes_.boxes.push_back(news.boxes[i]);
+    flags_[id] = flags_of(news.boxes[i], belongs);
+    if (!belongs) continue;
+    --ghosts_;
+    arrived_.push_back({news.names[i], key});
+  }
+}
+
+Status RankBodies::apply_changes() {
+  Status status = partition_.remove(changes_.dropped);
+  if (status == Status::ok) status = partition_.update(changes_.keys, changes_.boxes);
+  if (status != Status::ok || changes_.names.empty()) return status;
+  keys_.resize(changes_.names.size());
+  status = partition_.insert(changes_.fresh, {}, keys_);
+  if (status != Status::ok) return status;
+  add_rows(changes_.names, keys_);
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    const bool belongs = changes_.belongs[i] != 0;
+    flags_[keys_[i].id] = flags_of(changes_.fresh[i], belongs);
+    if (belongs) {
+      arrived_.push_back({changes_.names[i], keys_[i]});
+    } else {
+      ++ghosts_;
+    }
+  }
+  return Status::ok;
+}
+
+// ---- pairs, and the work that they make
+
+/// Of two boxes of which one lies within the region the rank reports the pair without a look.
+bool RankBodies::reports(ObjectId a, ObjectId b) const noexcept {
+  if ((flags_[a] & flags_[b] & kCrosses) == 0) return true;
+  const Vec3f at = meeting_point(box_of(a), box_of(b));
+  return is_within({at, at});
+}
+
+Status RankBodies::find_pairs(Order order) {
+  const Status status = partition_.self_pairs(found_);
+  if (status != Status::ok) return status;
+  pairs_.resize(found_.size());
+  NamePair* out = pairs_.data();
+  for (const Pair& pair : found_) {
+    if (!alone_ && !reports(pair.first, pair.second)) continue;
+    const BodyName a = names_[pair.first];
+    const BodyName b = names_[pair.second];
+    *out++ = {std::min(a, b), std::max(a, b)};
+  }
+  pairs_.resize(static_cast<std::size_t>(out - pairs_.data()));
+  if (order == Order::canonical) std::sort(pairs_.begin(), pairs_.end());
+  return Status::ok;
+}
+
+/// A pair is the work of the smaller body, where that belongs here: copies of the larger one meet
+/// it wherever it goes. Copies that the rank holds are shared among all.
+void RankBodies::measure_work() {
+  constexpr std::uint64_t kScale = 16;
+  std::vector<std::uint64_t> counts(flags_.size(), 1);
+  for (const Pair& pair : found_) {
+    const bool first_is_larger =
+        longest_edge(box_of(pair.first)) > longest_edge(box_of(pair.second));
+    ++counts[first_is_larger ? pair.second : pair.first];
+  }
+  std::uint64_t sum = 0;
+  for (std::size_t id = 0; id < flags_.size(); ++id) sum += (flags_[id] & kOwned) ? counts[id] : 0;
+  works_.assign(flags_.size(), 1);
+  if (sum == 0) return;
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  const double scale = static_cast<double>(kScale * work()) / static_cast<double>(sum);
+  for (std::size_t id = 0; id < flags_.size(); ++id) {
+    const auto scaled = static_cast<std::uint64_t>(static_cast<double>(counts[id]) * scale);
+    works_[id] = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(scaled, 1, kMost));
+  }
+}
+
+CutWork RankBodies::cut_work() {
+  work_boxes_.clear();
+  works_of_owned_.clear();
+  for (ObjectId id = 0; id < flags_.size(); ++id) {
+    const Key key = partition_.key_of(id);
+    if (!is_owned(key)) continue;
+    work_boxes_.push_back(box_of(key));
+    works_of_owned_.push_back(id < works_.size() ? works_[id] : 1);
+  }
+  return {work_boxes_, works_of_owned_};
+}
+
+Bytes RankBodies::bytes() const noexcept {
+  Bytes sum = partition_.footprint().total();
+  const std::size_t columns =
+      names_.capacity() * sizeof(BodyName) + flags_.capacity() + table_.bytes();
+  sum += {columns, columns};
+  return sum;
+}
+
+}  // namespace winnow

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <winnow/partitions/partition.h>
+#include <winnow/pipeline/cluster.h>
+#include "pipeline/cluster/name_table.h"
+#include "pipeline/cluster/outbox.h"
+#include "pipeline/cluster/regions.h"
+
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+namespace winnow {
+
+/// What one rank holds: the bodies that belong to it, and copies of those of others that its region
+/// meets, all in one partition. Throws std::bad_alloc where memory is refused.
+class RankBodies {
+ public:
+  RankBodies(std::uint32_t rank, bool alone, const ClusterOptions& options);
+
+  // What the rank is told. Refused calls change nothing.
+
+  /// Whether a batch may be added, as far as this rank knows.
+  [[nodiscard]] Status check(const ClusterBatch& batch);
+  /// Adds a batch that was checked. Its bodies belong to this rank until they are settled.
+  [[nodiscard]] Status insert(const ClusterBatch& batch);
+  [[nodiscard]] Status move(std::span<const Key> keys, const BoxView& boxes);
+  [[nodiscard]] Status move(std::span<const BodyName> names, const BoxView& boxes);
+  [[nodiscard]] Status remove(std::span<const BodyName> names);
+
+  // How bodies go where they belong, and copies to where they are met.
+
+  /// Tells other ranks what was removed, and nothing else.
+  void send_removals(const Regions& regions);
+  /// Tells other ranks what they hold from now on and what no more, of bodies that changed, or of
+  /// all where regions did.
+  void send(const Regions& before, const Regions& now, bool regions_changed);
+  void pack(std::vector<Parcel>& parcels) { outbox_.pack(rank_, parcels); }
+  /// Takes what others tell, and drops what this rank holds no more.
+  [[nodiscard]] Status receive(std::span<const Parcel> parcels);
+
+  /// Fills `pairs()` with those that this rank reports.
+  [[nodiscard]] Status find_pairs(Order order);
+  [[nodiscard]] std::span<const NamePair> pairs() const noexcept { return pairs_; }
+  /// Boxes held and pairs found by the last `find_pairs`.
+  [[nodiscard]] std::uint64_t work() const noexcept { return partition_.size() + found_.size(); }
+  /// Shares the work of the last `find_pairs` among the bodies that made it; forgotten by `send`.
+  void measure_work();
+  /// Boxes of the bodies that belong here, and the work of each: 1 where it was not measured.
+  [[nodiscard]] CutWork cut_work();
+
+  [[nodiscard]] std::size_t size() const noexcept { return table_.size() - ghosts_; }
+  [[nodiscard]] std::size_t ghosts() const noexcept { return ghosts_; }
+  [[nodiscard]] Status bodies(std::span<ClusterBody> bodies, std::span<Aabb> boxes) const;
+  [[nodiscard]] Status key_of(BodyName name, Key& key) const noexcept;
+  [[nodiscard]] std::span<const ClusterBody> arrived() const noexcept { return arrived_; }
+  [[nodiscard]] std::span<const BodyName> departed() const noexcept { return departed_; }
+  /// Names of removed bodies, since the last call of this.
+  [[nodiscard]] std::vector<BodyName> take_removed() { return std::exchange(removed_, {}); }
+  [[nodiscard]] Bytes bytes() const noexcept;
+
+ private:
+  /// What is known of a row, by the id of its key.
+  enum Flag : std::uint8_t {
+    kOwned = 1,    // belongs here
+    kCrosses = 2,  // its box does not lie within this rank's region
+    kMoved = 4,    // in moved_
+    kRemoved = 8,  // to be told to others and dropped
+  };
+  /// A body whose box is not the one that others were last told.
+  struct Moved {
+    Key key;
+    Aabb told;  // empty: they know nothing of it
+  };
+  /// Rows to be changed in the partition, all at once.
+  struct Changes {
+    std::vector<Key> dropped;
+    std::vector<Key> keys;
+    std::vector<Aabb> boxes;
+    std::vector<BodyName> names;
+    std::vector<Aabb> fresh;
+    std::vector<std::uint8_t> belongs;
+    void clear() noexcept;
+  };
+
+  [[nodiscard]] bool is_owned(Key key) const noexcept {
+    return partition_.contains(key) && (flags_[key.id] & (kOwned | kRemoved)) == kOwned;
+  }
+  [[nodiscard]] Aabb box_of(Key key) const noexcept;
+  [[nodiscard]] Aabb box_of(ObjectId id) const noexcept { return box_of(partition_.key_of(id)); }
+  [[nodiscard]] bool is_within(const Aabb& box) const noexcept;
+  [[nodiscard]] std::uint8_t flags_of(const Aabb& box, bool owned) const noexcept;
+  [[nodiscard]] bool reports(ObjectId a, ObjectId b) const noexcept;
+  [[nodiscard]] Status find_keys(std::span<const BodyName> names, std::vector<Key>& keys) const;
+  void note_moves(std::span<const Key> keys, const BoxView& boxes);
+  void add_rows(std::span<const BodyName> names, std::span<const Key> keys);
+  void note_all_that_cross();
+  void tell(const Moved& moved, const Regions& before, const Regions& now);
+  void tell_ranks(BodyName name, const Aabb& box, bool same_box, std::uint32_t owner);
+  void take(const BodyNews& news);
+  [[nodiscard]] Status apply_changes();
+
+  std::uint32_t rank_;
+  bool alone_;
+  Aabb region_;
+  Partition partition_;
+  PairBuffer found_;
+  std::pmr::vector<BodyName> names_;      // by id
+  std::pmr::vector<std::uint8_t> flags_;  // by id
+  NameTable table_;                       // to ids
+  std::size_t ghosts_ = 0;
+  std::vector<Moved> moved_;
+  std::vector<BodyName> removed_;
+  std::vector<ClusterBody> arrived_;
+  std::vector<BodyName> departed_;
+  std::pmr::vector<NamePair> pairs_;
+  BodyOutbox outbox_;
+  Changes changes_;
+  std::vector<std::uint32_t> works_;  // by id
+  std::vector<Aabb> work_boxes_;
+  std::vector<std::uint32_t> works_of_owned_;
+  // Scratch.
+  std::vector<std::uint32_t> ranks_before_;
+  std::vector<std::uint32_t> ranks_now_;
+  std::vector<Key> keys_;
+};
+
+}  // namespace winnow

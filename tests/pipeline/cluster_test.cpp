@@ -1,0 +1,330 @@
+// A cluster in one process: the pairs of brute force on any number of ranks, and what it refuses.
+
+#include <gtest/gtest.h>
+#include <winnow/pipeline/cluster.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <unordered_map>
+
+#include "pipeline/cluster/name_table.h"
+#include "pipeline/cluster/regions.h"
+#include "tests/pipeline/cluster_world.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+/// A rank that is told a batch, where the others are told nothing.
+Status add_on(Cluster& cluster, std::uint32_t rank, std::span<const BodyName> names,
+              std::span<const Aabb> boxes) {
+  std::vector<ClusterBatch> batches(cluster.hosted());
+  std::vector<Status> answers(cluster.hosted());
+  batches[rank] = {names, boxes};
+  EXPECT_EQ(cluster.add(batches, answers), Status::ok);
+  return answers[rank];
+}
+
+void run_frames(const std::vector<Aabb>& boxes, std::uint32_t ranks, double step) {
+  Random random(ranks);
+  ClusterWorld world(ranks);
+  world.add(boxes, random);
+  world.check();
+  for (int frame = 0; frame < 5; ++frame) {
+    world.move(frame == 2 ? 1.0 : 0.3, step, random);
+    world.remove(3, random);
+    if (frame % 2 == 1) world.add(uniform_boxes(5, static_cast<std::uint64_t>(frame)), random);
+    world.check();
+  }
+}
+
+TEST(ClusterPairs, are_those_of_brute_force_on_any_number_of_ranks) {
+  const std::size_t n = scaled(200);
+  const std::vector<Aabb> scenes[] = {uniform_boxes(n), clustered_boxes(n), mixed_boxes(n),
+                                      wall_boxes(n, 0), pile_boxes(n),      two_scale_boxes(n),
+                                      outlier_boxes(n), rod_boxes(n)};
+  for (const std::vector<Aabb>& boxes : scenes) {
+    for (const std::uint32_t ranks : {1U, 2U, 3U, 4U, 8U, 16U}) run_frames(boxes, ranks, 1.0);
+  }
+}
+
+TEST(ClusterPairs, are_right_on_thousands_of_ranks) {
+  for (const std::uint32_t ranks : {64U, 512U, 4096U}) run_frames(uniform_boxes(200), ranks, 0.5);
+}
+
+TEST(ClusterPairs, are_right_with_infinite_and_equal_boxes) {
+  std::vector<Aabb> boxes = uniform_boxes(60);
+  for (int axis = 0; axis < 3; ++axis) {
+    Aabb slab = boxes[static_cast<std::size_t>(axis)];
+    slab.min[axis] = -kInf;
+    boxes.push_back(slab);
+    slab.max[axis] = kInf;
+    boxes.push_back(slab);
+  }
+  boxes.push_back({Vec3f::constant(-kInf), Vec3f::constant(kInf)});
+  for (int i = 0; i < 30; ++i) boxes.push_back({Vec3f(1, 1, 1), Vec3f(1, 1, 1)});
+  for (const std::uint32_t ranks : {1U, 2U, 5U, 32U}) run_frames(boxes, ranks, 1.0);
+}
+
+TEST(ClusterPairs, are_right_while_everything_gathers_and_scatters) {
+  Random random(7);
+  ClusterWorld world(9);
+  world.add(uniform_boxes(150), random);
+  for (const double step : {20.0, 0.1, 50.0}) {
+    world.move(1.0, step, random);
+    world.check();
+  }
+  EXPECT_GT(world.cluster().statistics().migrated, 0U);
+  world.remove(150, random);
+  world.check();
+  world.add(uniform_boxes(20), random);
+  world.check();
+}
+
+TEST(ClusterMessages, are_none_where_nothing_moves) {
+  Random random(3);
+  ClusterWorld world(8);
+  std::vector<Aabb> boxes = uniform_boxes(400);
+  boxes.push_back({Vec3f(-100, -100, 0), Vec3f(100, 100, 1)});  // met by many ranks
+  world.add(boxes, random);
+  std::uint64_t cuts = 0;
+  do {
+    cuts = world.cluster().statistics().cuts;
+    world.check();
+  } while (world.cluster().statistics().cuts != cuts);
+  EXPECT_GT(world.cluster().statistics().ghosts, 7U);
+  EXPECT_EQ(world.cluster().statistics().bytes, 0U);
+  EXPECT_EQ(world.cluster().statistics().messages, 0U);
+}
+
+TEST(ClusterMessages, tell_of_what_moved_alone) {
+  Random random(4);
+  ClusterWorld world(8, {.imbalance = 1e9});
+  world.add(uniform_boxes(1000), random);
+  world.check();
+  const std::uint64_t first = world.cluster().statistics().bytes;
+  world.move(0.02, 0.01, random);
+  world.check();
+  EXPECT_LT(world.cluster().statistics().bytes * 10, first);
+}
+
+TEST(ClusterCuts, balance_counted_work) {
+  Random random(5);
+  for (const auto& boxes : {uniform_boxes(3000), clustered_boxes(3000)}) {
+    ClusterWorld world(4);
+    world.add(boxes, random);
+    for (int frame = 0; frame < 10; ++frame) {
+      ASSERT_EQ(world.cluster().self_pairs(), Status::ok);
+    }
+    EXPECT_LE(world.cluster().statistics().imbalance, 1.15);
+  }
+}
+
+TEST(ClusterInput, that_is_bad_is_refused_on_its_rank_and_changes_nothing) {
+  Random random(6);
+  ClusterWorld world(3);
+  world.add(uniform_boxes(50), random);
+  world.check();
+  Cluster& cluster = world.cluster();
+  const Aabb good{Vec3f(0, 0, 0), Vec3f(9, 9, 9)};
+  const Aabb bad{Vec3f(NAN, 0, 0), Vec3f(1, 1, 1)};
+  const BodyName there = world.boxes().begin()->first;
+  const std::uint32_t home = world.rank_of(there);
+  const BodyName fresh[] = {1, 2};
+  const BodyName twice[] = {1, 1};
+  const BodyName taken[] = {1, there};
+  const Aabb boxes[] = {good, good};
+  const Aabb spoilt[] = {good, bad};
+  for (std::uint32_t rank = 0; rank < 3; ++rank) {
+    EXPECT_EQ(add_on(cluster, rank, fresh, spoilt), Status::invalid_bounds);
+    EXPECT_EQ(add_on(cluster, rank, fresh, std::span(boxes, 1)), Status::size_mismatch);
+    EXPECT_EQ(add_on(cluster, rank, twice, boxes), Status::invalid_key);
+    EXPECT_EQ(add_on(cluster, rank, taken, boxes), Status::invalid_key);
+    EXPECT_EQ(cluster.move(rank, std::span<const BodyName>(fresh), std::span(boxes)),
+              Status::invalid_key);
+    EXPECT_EQ(cluster.remove(rank, fresh), Status::invalid_key);
+    if (rank == home) continue;
+    EXPECT_EQ(cluster.remove(rank, std::span(&there, 1)), Status::invalid_key);
+    const Key foreign = world.key_of(there);
+    EXPECT_EQ(cluster.move(rank, std::span(&foreign, 1), std::span(&good, 1)), Status::invalid_key);
+  }
+  EXPECT_EQ(cluster.move(home, std::span(&there, 1), std::span(&bad, 1)), Status::invalid_bounds);
+  const BodyName same[] = {there, there};
+  EXPECT_EQ(cluster.move(home, std::span<const BodyName>(same), std::span(boxes)),
+            Status::invalid_key);
+  EXPECT_EQ(cluster.remove(home, same), Status::invalid_key);
+  EXPECT_EQ(cluster.move(3, std::span(&there, 1), std::span(&good, 1)), Status::invalid_argument);
+  world.check();
+}
+
+TEST(ClusterInput, that_two_ranks_name_alike_is_refused_on_both) {
+  LoopbackTransport transport(3);
+  Cluster cluster(transport);
+  const BodyName names[] = {1, 2, 3};
+  const Aabb box{Vec3f(0, 0, 0), Vec3f(1, 1, 1)};
+  const Aabb boxes[] = {box, box, box};
+  const std::span all(boxes);
+  const ClusterBatch batches[] = {{std::span(names).first(2), all.first(2)},
+                                  {std::span(names).subspan(1, 1), all.first(1)},
+                                  {std::span(names).subspan(2), all.first(1)}};
+  Status answers[3];
+  ASSERT_EQ(cluster.add(batches, answers), Status::ok);
+  EXPECT_EQ(answers[0], Status::invalid_key);
+  EXPECT_EQ(answers[1], Status::invalid_key);
+  EXPECT_EQ(answers[2], Status::ok);
+  EXPECT_EQ(add_on(cluster, 1, std::span(names).first(2), all.first(2)), Status::ok);
+  ASSERT_EQ(cluster.self_pairs(), Status::ok);
+  EXPECT_EQ(cluster.statistics().pairs, 3U);
+}
+
+TEST(ClusterInput, may_name_anew_what_another_rank_removed) {
+  Random random(8);
+  ClusterWorld world(4);
+  world.add(uniform_boxes(40), random);
+  world.check();
+  const auto [name, box] = *world.boxes().begin();
+  const std::uint32_t home = world.rank_of(name);
+  Cluster& cluster = world.cluster();
+  ASSERT_EQ(cluster.remove(home, std::span(&name, 1)), Status::ok);
+  EXPECT_EQ(cluster.remove(home, std::span(&name, 1)), Status::invalid_key);
+  EXPECT_EQ(add_on(cluster, (home + 1) % 4, std::span(&name, 1), std::span(&box, 1)), Status::ok);
+  ASSERT_EQ(cluster.self_pairs(Order::canonical), Status::ok);
+  EXPECT_EQ(world.found_pairs(), world.true_pairs());
+}
+
+TEST(ClusterBodies, of_three_ranks_go_on_in_five) {
+  Random random(9);
+  ClusterWorld world(3);
+  world.add(mixed_boxes(150), random);
+  world.move(1.0, 1.0, random);
+  world.check();
+  LoopbackTransport transport(5);
+  Cluster restored(transport);
+  for (std::uint32_t rank = 0; rank < 3; ++rank) {
+    std::vector<ClusterBody> bodies(world.cluster().size(rank));
+    std::vector<Aabb> boxes(bodies.size());
+    ASSERT_EQ(world.cluster().bodies(rank, bodies, boxes), Status::ok);
+    std::vector<BodyName> names;
+    for (const ClusterBody& body : bodies) names.push_back(body.name);
+    EXPECT_EQ(add_on(restored, rank + 1, names, boxes), Status::ok);
+  }
+  ASSERT_EQ(restored.self_pairs(), Status::ok);
+  ClusterDigest digest;
+  ASSERT_EQ(restored.digest(digest), Status::ok);
+  EXPECT_EQ(digest, digest_of(world.true_pairs()));
+}
+
+/// Fails from some call on, as a broken network does.
+class FailingTransport final : public Transport {
+ public:
+  FailingTransport(std::uint32_t ranks, int calls) : inner_(ranks), calls_(calls) {}
+
+  [[nodiscard]] std::uint32_t ranks() const noexcept override { return inner_.ranks(); }
+  [[nodiscard]] std::uint32_t first_hosted() const noexcept override { return 0; }
+  [[nodiscard]] std::uint32_t hosted() const noexcept override { return inner_.ranks(); }
+  Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received) override {
+    return fails() ? Status::communication_failed : inner_.exchange(sent, received);
+  }
+  Status reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) override {
+    return fails() ? Status::communication_failed : inner_.reduce(sums, greatest);
+  }
+  Status cut(std::span<const CutWork> work, std::span<RegionCut> cuts) override {
+    return fails() ? Status::communication_failed : inner_.cut(work, cuts);
+  }
+
+ private:
+  bool fails() noexcept { return calls_-- <= 0; }
+  LoopbackTransport inner_;
+  int calls_;
+};
+
+TEST(ClusterFaults, end_every_later_call) {
+  const std::vector<Aabb> boxes = uniform_boxes(30);
+  std::vector<BodyName> names(boxes.size());
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = i;
+  int fine = 0;
+  for (int calls = 0; calls < 12; ++calls) {
+    FailingTransport transport(3, calls);
+    Cluster cluster(transport);
+    std::vector<ClusterBatch> batches(3);
+    batches[1] = {names, boxes};
+    Status answers[3];
+    Status status = cluster.add(batches, answers);
+    if (status == Status::ok) status = cluster.self_pairs();
+    ClusterDigest digest;
+    if (status == Status::ok) status = cluster.digest(digest);
+    if (status == Status::ok) {
+      ++fine;
+      continue;
+    }
+    EXPECT_EQ(status, Status::communication_failed);
+    EXPECT_EQ(cluster.self_pairs(), Status::communication_failed);
+    EXPECT_EQ(cluster.status(), Status::communication_failed);
+    EXPECT_EQ(cluster.remove(1, std::span(names).first(1)), Status::communication_failed);
+  }
+  EXPECT_GT(fine, 0);
+}
+
+TEST(ClusterRegions, meet_boxes_as_their_points_say) {
+  Random random(10);
+  const auto number = [&] {
+    return random.chance(0.5) ? static_cast<float>(random.below(5))
+                              : static_cast<float>(random.uniform(-1, 6));
+  };
+  for (int round = 0; round < 200; ++round) {
+    LoopbackTransport transport(1 + static_cast<std::uint32_t>(random.below(12)));
+    std::vector<Aabb> boxes(random.below(40));
+    for (Aabb& box : boxes) {
+      box.min = Vec3f(number(), number(), number());
+      box.max = box.min.max(Vec3f(number(), number(), number()));
+    }
+    const std::vector<std::uint32_t> works(boxes.size(), 1);
+    std::vector<RegionCut> cuts(transport.ranks() - 1);
+    const CutWork work{boxes, works};
+    ASSERT_EQ(transport.cut(std::span(&work, 1), cuts), Status::ok);
+    const Regions regions(cuts);
+    for (const Aabb& box : boxes) {
+      std::vector<std::uint32_t> ranks;
+      regions.ranks_of(box, ranks);
+      const std::set<std::uint32_t> met(ranks.begin(), ranks.end());
+      ASSERT_EQ(met.size(), ranks.size());
+      for (std::uint32_t rank = 0; rank < transport.ranks(); ++rank) {
+        ASSERT_EQ(met.contains(rank), regions.of(rank).overlaps(box));
+      }
+      for (const Vec3f& point : {box.min, box.max, centre_of(box)}) {
+        const Aabb at{point, point};
+        for (std::uint32_t rank = 0; rank < transport.ranks(); ++rank) {
+          ASSERT_EQ(regions.owner(point) == rank, regions.of(rank).overlaps(at));
+        }
+      }
+    }
+  }
+}
+
+TEST(ClusterNames, are_kept_as_by_a_map) {
+  Random random(11);
+  NameTable table(std::pmr::get_default_resource());
+  std::unordered_map<std::uint64_t, std::uint32_t> twin;
+  for (int step = 0; step < 20'000; ++step) {
+    const std::uint64_t name = random.below(300);
+    if (random.chance(0.5)) {
+      const auto number = static_cast<std::uint32_t>(random.below(1000));
+      table.set(name, number);
+      twin[name] = number;
+    } else {
+      table.erase(name);
+      twin.erase(name);
+    }
+    const std::uint64_t asked = random.below(300);
+    const auto found = twin.find(asked);
+    ASSERT_EQ(table.find(asked), found == twin.end() ? NameTable::kNone : found->second);
+    ASSERT_EQ(table.size(), twin.size());
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test

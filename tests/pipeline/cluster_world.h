@@ -1,0 +1,51 @@
+#pragma once
+
+#include <winnow/pipeline/cluster.h>
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "tests/support/random.h"
+
+namespace winnow::test {
+
+/// A cluster of ranks in this process, and the same boxes in a table: pairs by brute force.
+class ClusterWorld {
+ public:
+  explicit ClusterWorld(std::uint32_t ranks, const ClusterOptions& options = {});
+
+  /// Each box on a rank that `random` says; names are not in the order of boxes.
+  void add(const std::vector<Aabb>& boxes, Random& random);
+  /// Some bodies go elsewhere by up to `step`, as their ranks are told.
+  void move(double share, double step, Random& random);
+  void remove(std::size_t count, Random& random);
+  /// Finds pairs, and checks them, their digest, and who has which bodies.
+  void check();
+
+  [[nodiscard]] std::vector<NamePair> true_pairs() const;
+  [[nodiscard]] std::vector<NamePair> found_pairs() const;
+  /// The rank that a body belongs to.
+  [[nodiscard]] std::uint32_t rank_of(BodyName name) const { return homes_.at(name).rank; }
+  [[nodiscard]] Key key_of(BodyName name) const { return homes_.at(name).key; }
+  [[nodiscard]] const std::map<BodyName, Aabb>& boxes() const { return boxes_; }
+  [[nodiscard]] Cluster& cluster() { return cluster_; }
+
+ private:
+  struct Home {
+    std::uint32_t rank;
+    Key key;
+  };
+  void follow();
+
+  LoopbackTransport transport_;
+  Cluster cluster_;
+  std::map<BodyName, Aabb> boxes_;
+  std::map<BodyName, Home> homes_;
+  BodyName next_ = 1;
+};
+
+/// What a digest has to be, from its definition.
+[[nodiscard]] ClusterDigest digest_of(const std::vector<NamePair>& pairs);
+
+}  // namespace winnow::test
