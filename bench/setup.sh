@@ -11,6 +11,8 @@ WINNOW_BENCH_PACKAGES=(libcli11-dev nlohmann-json3-dev liblzma-dev xz-utils
 # What the Python package is built with and runs on, and what its tests take besides.
 WINNOW_PYTHON_PACKAGES=(pybind11-dev python3-dev python3-numpy)
 WINNOW_PYTHON_TEST_PACKAGES=(python3-pytest python3-hypothesis python3-venv mypy)
+# Clusters over MPI, and what cuts space for them.
+WINNOW_CLUSTER_PACKAGES=(libopenmpi-dev openmpi-bin libtrilinos-zoltan-dev)
 # Mesh files for `winnow simulate`.
 WINNOW_MESH_PACKAGES=(libassimp-dev)
 # What bench/site/build makes pages of: mkdocs with Pygments, and Doxygen for the reference.

@@ -37,6 +37,7 @@ Command add_draw(CLI::App& app);
 Command add_query(CLI::App& app);
 Command add_simulate(CLI::App& app);
 Command add_advise(CLI::App& app);
+Command add_cluster(CLI::App& app);
 Command add_report(CLI::App& app);
 Command add_compare(CLI::App& app);
 Command add_results(CLI::App& app);

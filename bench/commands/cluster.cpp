@@ -1,0 +1,195 @@
+#include "bench/commands/command.h"
+#include "bench/commands/options.h"
+#include "bench/common/arena.h"
+#include "bench/common/json.h"
+#include "bench/common/sample.h"
+#include "bench/common/table.h"
+#include "bench/contenders/partitions.h"
+#include "bench/measure/cluster_run.h"
+#include "bench/measure/mpi_session.h"
+
+#include <unistd.h>
+#include <winnow/simd/isa.h>
+
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+namespace winnow::bench {
+namespace {
+
+constexpr std::size_t kClusterFrames = 30;
+
+struct ClusterCommand {
+  Target target;
+  std::uint32_t ranks = 2;
+  std::uint32_t virtual_ranks = 0;  // 0: processes
+  std::size_t frames = 0;           // 0: all of a recording, kClusterFrames of a scene
+  std::string json;
+  std::string isa;
+  int threads = 1;
+  double time_limit = 60.0;
+
+  void add_options(CLI::App& app) {
+    target.add_to(app);
+    number(app, "--ranks", ranks, 1, 4096, "Processes; as many as mpirun has started, if it has");
+    number(app, "--virtual-ranks", virtual_ranks, 0, 65536, "So many ranks in this process alone");
+    add_threads_option(app, threads, "Number of threads of each process");
+    add_isa_option(app, isa);
+    add_frames_option(app, frames);
+    number(app, "--time-limit", time_limit, 0.1, 1e6,
+           "Seconds that a process waits for the others");
+    add_json_option(app, json);
+  }
+  int run();
+
+ private:
+  [[noreturn]] void start_ranks() const;
+  void run_over(Transport& transport, bool is_virtual) const;
+  void run_over_mpi() const;
+  void print(const ClusterRun& run, const std::string& scene, std::size_t objects) const;
+};
+
+std::string digits_of(const ClusterDigest& digest) {
+  return to_hex(digest.high) + to_hex(digest.low);
+}
+
+/// The row of `replay` for a cluster, and what else there is to count.
+Json cluster_json(const ClusterRun& run, const std::string& scene, std::size_t objects, int threads,
+                  bool is_virtual) {
+  using Frame = const ClusterFrame&;
+  const auto ms = run.each([](Frame frame) { return frame.frame_ms; });
+  const Spread spread = spread_of(std::span(ms).subspan(ms.size() > 1 ? 1 : 0));
+  return {{"scene", scene},
+          {"objects", objects},
+          {"frames", run.frames.size()},
+          {"partition", "LinearBvh"},
+          {"ranks", run.ranks},
+          {"virtual", is_virtual},
+          {"threads", threads},
+          {"isa", isa_name()},
+          {"build_ms", ms.front()},
+          {"min_ms", spread.min},
+          {"median_ms", spread.median},
+          {"max_ms", spread.max},
+          {"frame_ms", ms},
+          {"update_ms", run.each([](Frame frame) { return frame.update_ms; })},
+          {"pairs", run.each([](Frame frame) { return frame.pairs.pairs; })},
+          {"reported", run.each([](Frame frame) { return frame.pairs.reported; })},
+          {"fingerprint", run.each([](Frame frame) { return to_hex(frame.pairs.fingerprint); })},
+          {"digest", run.each([](Frame frame) { return digits_of(frame.digest); })},
+          {"ghosts", run.each([](Frame frame) { return frame.statistics.ghosts; })},
+          {"sent_bytes", run.each([](Frame frame) { return frame.statistics.bytes; })},
+          {"messages", run.each([](Frame frame) { return frame.statistics.messages; })},
+          {"migrated", run.each([](Frame frame) { return frame.statistics.migrated; })},
+          {"imbalance", run.each([](Frame frame) { return frame.statistics.imbalance; })},
+          {"cuts", run.frames.back().statistics.cuts},
+          {"bytes", run.bytes},
+          {"bytes_per_object", static_cast<double>(run.bytes) / static_cast<double>(objects)}};
+}
+
+int ClusterCommand::run() {
+  choose_isa(isa);
+  if (virtual_ranks != 0) {
+    LoopbackTransport transport(virtual_ranks);
+    run_over(transport, true);
+    return kDone;
+  }
+  if (!MpiSession::is_there()) {
+    throw ArgumentError(
+        "--ranks needs MPI and Zoltan, which this tool was built without (Debian: "
+        "libopenmpi-dev, libtrilinos-zoltan-dev); --virtual-ranks does not");
+  }
+  if (!MpiSession::is_started()) start_ranks();
+  run_over_mpi();
+  return kDone;
+}
+
+void ClusterCommand::run_over_mpi() const {
+  MpiSession session(time_limit);
+  try {
+    run_over(session.transport(), false);
+  } catch (const std::exception& error) {
+    // The others cannot be told otherwise, and MPI cannot be left without them.
+    std::cerr << "winnow: " << error.what() << '\n';
+    MpiSession::abort();
+  }
+}
+
+/// This command once more, in as many processes.
+void ClusterCommand::start_ranks() const {
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+  std::vector<std::string> words{"mpirun",
+                                 "--oversubscribe",
+                                 "-n",
+                                 std::to_string(ranks),
+                                 self,
+                                 "cluster",
+                                 target.name,
+                                 "--threads",
+                                 std::to_string(threads),
+                                 "--time-limit",
+                                 std::to_string(time_limit)};
+  if (geteuid() == 0) words.insert(words.begin() + 1, "--allow-run-as-root");
+  const auto add = [&words](const char* name, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {name, value});
+  };
+  add("--objects", target.objects ? std::to_string(*target.objects) : "");
+  add("--seed", target.seed ? std::to_string(*target.seed) : "");
+  add("--frames", frames != 0 ? std::to_string(frames) : "");
+  add("--isa", isa);
+  add("--json", json);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  std::cout.flush();
+  execvp("mpirun", arguments.data());
+  throw ArgumentError("mpirun cannot be started (Debian: openmpi-bin)");
+}
+
+void ClusterCommand::run_over(Transport& transport, bool is_virtual) const {
+  const NamedScene scene = target.named();
+  const auto source = target.source(scene);
+  const std::size_t wanted = frames != 0            ? frames
+                             : scene.is_recording() ? scene.recording->frames.size()
+                                                    : kClusterFrames;
+  ClusterRun result;
+  Arenas(threads).run(
+      threads, [&] { result = run_cluster(*source, transport, wanted, execution_for(threads)); });
+  if (transport.first_hosted() != 0) return;
+  print(result, source->name(), source->objects());
+  write_json(
+      json,
+      Json::array({cluster_json(result, source->name(), source->objects(), threads, is_virtual)}));
+}
+
+void ClusterCommand::print(const ClusterRun& run, const std::string& scene,
+                           std::size_t objects) const {
+  const ClusterFrame& last = run.frames.back();
+  const double per_body = 1.0 / static_cast<double>(objects);
+  std::cout << scene << ", " << grouped(objects) << " objects, " << run.frames.size() << " frames, "
+            << run.ranks << (virtual_ranks != 0 ? " virtual ranks, " : " ranks, ")
+            << threads_text(threads) << ", " << isa_name() << '\n';
+  Table table({"ranks", "first ms", "frame ms", "pairs", "ghosts", "sent bytes", "messages",
+               "imbalance", "cuts", "bytes/object"});
+  table.add({std::to_string(run.ranks), short_number(run.frames.front().frame_ms),
+             short_number(run.median_ms()), grouped(last.pairs.pairs),
+             percent(static_cast<double>(last.statistics.ghosts) * per_body),
+             grouped(last.statistics.bytes), grouped(last.statistics.messages),
+             short_number(last.statistics.imbalance), std::to_string(last.statistics.cuts),
+             short_number(static_cast<double>(run.bytes) * per_body)});
+  std::cout << table << "of the last frame; digest " << digits_of(last.digest) << '\n';
+}
+
+}  // namespace
+
+Command add_cluster(CLI::App& app) {
+  return command<ClusterCommand>(
+      app, "cluster",
+      "Finds all pairs in every frame of a recording or scene on many ranks: processes that it "
+      "starts by mpirun, or that mpirun has started, or virtual ones in one process. Frames are "
+      "those of the slowest process.");
+}
+
+}  // namespace winnow::bench
