@@ -289,8 +289,15 @@ std::uint32_t Cluster::hosted() const noexcept {
 }
 
 Status Cluster::add(std::span<const ClusterBatch> batches, std::span<Status> answers) {
-  if (batches.size() != hosted() || answers.size() != hosted()) return Status::size_mismatch;
-  return collective(state_, [&] { return state_->add(batches, answers); });
+  const bool fit = batches.size() == hosted() && answers.size() == hosted();
+  const Status status = collective(state_, [&] {
+    if (fit) return state_->add(batches, answers);
+    // Others wait for this process, which adds nothing.
+    const std::vector<ClusterBatch> nothing(hosted());
+    std::vector<Status> ignored(hosted());
+    return state_->add(nothing, ignored);
+  });
+  return status == Status::ok && !fit ? Status::size_mismatch : status;
 }
 
 Status Cluster::move(std::uint32_t rank, std::span<const BodyName> names, const BoxView& boxes) {

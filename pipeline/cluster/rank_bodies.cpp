@@ -118,16 +118,22 @@ Status RankBodies::move(std::span<const BodyName> names, const BoxView& boxes) {
 Status RankBodies::remove(std::span<const BodyName> names) {
   const Status status = find_keys(names, keys_);
   if (status != Status::ok) return status;
-  moved_.reserve(moved_.size() + names.size());
-  removed_.reserve(removed_.size() + names.size());
+  if (alone_) {
+    const Status removed = partition_.remove(keys_);
+    if (removed != Status::ok) return removed;
+    for (const BodyName name : names) table_.erase(name);
+    return Status::ok;
+  }
+  const std::size_t room = moved_.size() + names.size();
+  if (room > moved_.capacity()) moved_.reserve(2 * room);
+  removed_.insert(removed_.end(), names.begin(), names.end());
   for (const Key key : keys_) {
     std::uint8_t& flags = flags_[key.id];
-    if (!alone_ && (flags & kMoved) == 0) moved_.push_back({key, box_of(key)});
+    if ((flags & kMoved) == 0) moved_.push_back({key, box_of(key)});
     flags |= kMoved | kRemoved;
     table_.erase(names_[key.id]);
-    removed_.push_back(names_[key.id]);
   }
-  return alone_ ? partition_.remove(keys_) : Status::ok;
+  return Status::ok;
 }
 
 Status RankBodies::key_of(BodyName name, Key& key) const noexcept {

@@ -32,7 +32,7 @@ TEST(ClusterRuns, have_the_fingerprints_of_a_partition) {
   const std::size_t objects = test::scaled(1500);
   for (const SceneInfo& scene : scene_infos()) {
     const std::string name(scene.name);
-    const Run partition = run_partition(name, objects);
+    const auto partition = run_partition(name, objects);
     for (const std::uint32_t ranks : {1U, 2U, 3U, 4U, 8U, 16U, 128U}) {
       const ClusterRun run = run_ranks(name, objects, ranks);
       ASSERT_EQ(run.frames.size(), partition.pairs.size());
@@ -45,7 +45,7 @@ TEST(ClusterRuns, have_the_fingerprints_of_a_partition) {
 }
 
 TEST(ClusterRuns, have_the_fingerprints_of_a_partition_on_thousands_of_ranks) {
-  const Run partition = run_partition("mixed", 1000);
+  const auto partition = run_partition("mixed", 1000);
   const ClusterRun run = run_ranks("mixed", 1000, 4096);
   for (std::size_t f = 0; f < run.frames.size(); ++f) {
     EXPECT_TRUE(run.frames[f].pairs.same_pairs(partition.pairs[f])) << f;

@@ -37,7 +37,12 @@ void run_frames(const std::vector<Aabb>& boxes, std::uint32_t ranks, double step
   for (int frame = 0; frame < 5; ++frame) {
     world.move(frame == 2 ? 1.0 : 0.3, step, random);
     world.remove(3, random);
-    if (frame % 2 == 1) world.add(uniform_boxes(5, static_cast<std::uint64_t>(frame)), random);
+    if (frame % 2 == 1) {
+      world.add(uniform_boxes(9, static_cast<std::uint64_t>(frame)), random);
+      world.move(0.2, step, random);
+      world.remove(9, random);
+      world.add(uniform_boxes(3, static_cast<std::uint64_t>(frame)), random);
+    }
     world.check();
   }
 }
@@ -158,6 +163,8 @@ TEST(ClusterInput, that_is_bad_is_refused_on_its_rank_and_changes_nothing) {
             Status::invalid_key);
   EXPECT_EQ(cluster.remove(home, same), Status::invalid_key);
   EXPECT_EQ(cluster.move(3, std::span(&there, 1), std::span(&good, 1)), Status::invalid_argument);
+  Status answer{};
+  EXPECT_EQ(cluster.add({}, std::span(&answer, 1)), Status::size_mismatch);
   world.check();
 }
 

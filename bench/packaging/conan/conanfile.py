@@ -59,6 +59,7 @@ class Winnow(ConanFile):
         toolchain = CMakeToolchain(self)
         toolchain.cache_variables["WINNOW_TESTS"] = False
         toolchain.cache_variables["WINNOW_BENCH"] = False
+        toolchain.cache_variables["WINNOW_CLUSTER"] = False
         toolchain.cache_variables["WINNOW_TBB"] = bool(self.options.tbb)
         toolchain.cache_variables["CMAKE_DISABLE_FIND_PACKAGE_Qhull"] = not self.options.hulls
         toolchain.generate()

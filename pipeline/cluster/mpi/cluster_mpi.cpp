@@ -134,13 +134,19 @@ class MpiTransport final : public Transport {
 };
 
 Status MpiTransport::finish() {
-  const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(limit_);
+  const Clock::time_point start = Clock::now();
   for (int done = 0; !failed_ && done == 0;) {
     keep(MPI_Testall(static_cast<int>(requests_.size()), requests_.data(), &done,
                      MPI_STATUSES_IGNORE));
     if (done != 0) break;
-    failed_ = failed_ || Clock::now() > end;
-    std::this_thread::yield();
+    const auto waited = Clock::now() - start;
+    failed_ = failed_ || waited > limit_;
+    // Where there are more ranks than cores, those that wait must not keep others from computing.
+    if (waited < std::chrono::milliseconds(1)) {
+      std::this_thread::yield();
+    } else {
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
+    }
   }
   if (failed_) return Status::communication_failed;
   requests_.clear();

@@ -7,7 +7,8 @@ vcpkg_check_features(OUT_FEATURE_OPTIONS options
   INVERTED_FEATURES hulls CMAKE_DISABLE_FIND_PACKAGE_Qhull)
 vcpkg_cmake_configure(
   SOURCE_PATH "${SOURCE_PATH}"
-  OPTIONS -DWINNOW_TESTS=OFF -DWINNOW_BENCH=OFF ${options})
+  OPTIONS -DWINNOW_TESTS=OFF -DWINNOW_BENCH=OFF -DWINNOW_CLUSTER=OFF
+          ${options})
 vcpkg_cmake_install()
 vcpkg_cmake_config_fixup(CONFIG_PATH lib/cmake/winnow)
 vcpkg_fixup_pkgconfig()

@@ -26,6 +26,7 @@ class Winnow(CMakePackage):
         return [
             self.define("WINNOW_TESTS", False),
             self.define("WINNOW_BENCH", False),
+            self.define("WINNOW_CLUSTER", False),
             self.define_from_variant("BUILD_SHARED_LIBS", "shared"),
             self.define_from_variant("WINNOW_TBB", "tbb"),
             self.define("CMAKE_DISABLE_FIND_PACKAGE_Qhull", self.spec.satisfies("~hulls")),

@@ -1,0 +1,49 @@
+// Boxes in a row on four ranks of this process, one of which moves into its neighbour.
+
+#include <winnow/pipeline/cluster.h>
+
+#include <cstddef>
+#include <vector>
+
+#include "tests/examples/check.h"
+
+namespace {
+
+std::size_t met = 0;
+void meet(winnow::BodyName, winnow::BodyName) {
+  ++met;
+}
+
+}  // namespace
+
+int main() {
+  std::vector<winnow::BodyName> names;
+  std::vector<winnow::Aabb> boxes;
+  for (winnow::BodyName name = 0; name < 1000; ++name) {
+    const float x = 1.5F * static_cast<float>(name);
+    names.push_back(name);
+    boxes.push_back({{x, 0, 0}, {x + 1, 1, 1}});
+  }
+  const winnow::Aabb moved{{4, 0, 0}, {5, 1, 1}};
+  std::vector<winnow::ClusterBatch> batches(4);
+  batches[0] = {names, boxes};
+  std::vector<winnow::Status> answers(batches.size());
+
+  // [a cluster]
+  winnow::LoopbackTransport transport(4);  // or make_mpi_transport: one rank in each process
+  winnow::Cluster cluster(transport);
+  cluster.add(batches, answers);  // of each rank here: names, of 64 bits, and boxes
+  cluster.self_pairs();           // bodies go to the ranks that their centres lie in
+  for (std::uint32_t rank = 0; rank < cluster.hosted(); ++rank) {
+    for (const winnow::ClusterBody& body : cluster.arrived(rank)) {
+      if (body.name == 3) cluster.move(rank, std::span(&body.key, 1), std::span(&moved, 1));
+    }
+  }
+  cluster.self_pairs();  // only what moved, and is met elsewhere, is sent
+  for (std::uint32_t rank = 0; rank < cluster.hosted(); ++rank) {
+    for (const winnow::NamePair& pair : cluster.pairs(rank)) meet(pair.first, pair.second);
+  }
+  // [end]
+  check(answers[0] == winnow::Status::ok, "the bodies are taken");
+  check(met == 1, "two boxes overlap, and one rank tells of it");
+}
