@@ -42,8 +42,8 @@ TEST(ImpactQuestions, are_answered_with_a_time) {
 TEST(ImpactQuestions, that_are_bad_get_a_status) {
   const auto status_with = [](const std::string& end) {
     const Json got = answer_to_one((R"({"a": {"type": "sphere", "radius": 1, "end_pose": )" + end +
-                                R"(}, "b": {"type": "sphere", "radius": 1}})")
-                                   .c_str());
+                                    R"(}, "b": {"type": "sphere", "radius": 1}})")
+                                       .c_str());
     return got["status"].get<std::string>();
   };
   EXPECT_EQ(status_with(R"({"position": [1, 2, 3]})"), "ok");
