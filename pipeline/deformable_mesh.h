@@ -49,6 +49,21 @@ struct MeshProximity {
   std::array<double, 4> weight{};
 };
 
+/// A function of the caller that takes chunks of results.
+template <typename Result>
+struct ResultChunks {
+  void* context;                                               ///< the function
+  void (*take)(void* context, std::span<const Result> chunk);  ///< calls it
+
+  /// `function` must outlive this.
+  template <typename Take>
+  explicit ResultChunks(Take& function) noexcept
+      : context(const_cast<void*>(static_cast<const void*>(&function))),
+        take([](void* to, std::span<const Result> chunk) {
+          (*static_cast<std::remove_reference_t<Take>*>(to))(chunk);
+        }) {}
+};
+
 /// A mesh whose vertices move in every step, for cloth and soft bodies: which of its vertices and
 /// faces, and which of its edges, may touch, do touch, or are near each other, among themselves
 /// and those of another mesh. Features that share a vertex are no pair.
@@ -102,14 +117,14 @@ class WINNOW_API DeformableMesh {
   /// the first `move`, `out_of_memory` if there is none for a chunk.
   template <typename Take>
   Status self_candidates(FeaturePair kind, Take&& take) const noexcept {
-    return find_self(kind, Chunks<Pair>(take));
+    return find_self(kind, ResultChunks<Pair>(take));
   }
   /// The same of features of this mesh, first, and of another: its vertices with the other's
   /// faces, or edges. `invalid_argument` also if the two have different origins.
   template <typename Take>
   Status candidates_with(const DeformableMesh& other, FeaturePair kind,
                          Take&& take) const noexcept {
-    return find_with(other, kind, Chunks<Pair>(take));
+    return find_with(other, kind, ResultChunks<Pair>(take));
   }
 
   /// Calls `take(std::span<const MeshImpact>)` with chunks of all candidates that touch during the
@@ -118,13 +133,13 @@ class WINNOW_API DeformableMesh {
   template <typename Take>
   Status self_impacts(FeaturePair kind, const FeatureImpactOptions& options,
                       Take&& take) const noexcept {
-    return find_impacts(nullptr, kind, options, Chunks<MeshImpact>(take));
+    return find_impacts(nullptr, kind, options, ResultChunks<MeshImpact>(take));
   }
   /// The same with another mesh, where the separation is at most half of both distances.
   template <typename Take>
   Status impacts_with(const DeformableMesh& other, FeaturePair kind,
                       const FeatureImpactOptions& options, Take&& take) const noexcept {
-    return find_impacts(&other, kind, options, Chunks<MeshImpact>(take));
+    return find_impacts(&other, kind, options, ResultChunks<MeshImpact>(take));
   }
 
   /// Calls `take(std::span<const MeshProximity>)` with chunks of all pairs that are at a distance
@@ -132,13 +147,13 @@ class WINNOW_API DeformableMesh {
   /// finite or larger than the distance that the mesh was moved with.
   template <typename Take>
   Status self_proximity(FeaturePair kind, double thickness, Take&& take) const noexcept {
-    return find_near(nullptr, kind, thickness, Chunks<MeshProximity>(take));
+    return find_near(nullptr, kind, thickness, ResultChunks<MeshProximity>(take));
   }
   /// The same with another mesh, where the thickness is at most half of both distances.
   template <typename Take>
   Status proximity_with(const DeformableMesh& other, FeaturePair kind, double thickness,
                         Take&& take) const noexcept {
-    return find_near(&other, kind, thickness, Chunks<MeshProximity>(take));
+    return find_near(&other, kind, thickness, ResultChunks<MeshProximity>(take));
   }
 
   /// Every byte that the memory resource was asked for and has not got back.
@@ -147,28 +162,14 @@ class WINNOW_API DeformableMesh {
  private:
   struct State;
 
-  /// A function of the caller that takes chunks of results.
-  template <typename Result>
-  struct Chunks {
-    void* context;
-    void (*take)(void* context, std::span<const Result> chunk);
-
-    template <typename Take>
-    explicit Chunks(Take& function) noexcept
-        : context(const_cast<void*>(static_cast<const void*>(&function))),
-          take([](void* to, std::span<const Result> chunk) {
-            (*static_cast<std::remove_reference_t<Take>*>(to))(chunk);
-          }) {}
-  };
-
-  Status find_self(FeaturePair kind, const Chunks<Pair>& chunks) const noexcept;
+  Status find_self(FeaturePair kind, const ResultChunks<Pair>& chunks) const noexcept;
   Status find_with(const DeformableMesh& other, FeaturePair kind,
-                   const Chunks<Pair>& chunks) const noexcept;
+                   const ResultChunks<Pair>& chunks) const noexcept;
   Status find_impacts(const DeformableMesh* other, FeaturePair kind,
                       const FeatureImpactOptions& options,
-                      const Chunks<MeshImpact>& chunks) const noexcept;
+                      const ResultChunks<MeshImpact>& chunks) const noexcept;
   Status find_near(const DeformableMesh* other, FeaturePair kind, double thickness,
-                   const Chunks<MeshProximity>& chunks) const noexcept;
+                   const ResultChunks<MeshProximity>& chunks) const noexcept;
 
   DeformableMeshOptions options_;
   /// Null until something is built.

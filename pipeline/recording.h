@@ -153,6 +153,13 @@ class WINNOW_API RecordedPartition {
   mutable std::uint64_t questions_ = 0;
 };
 
+/// A shape that a recording has.
+struct RecordedShape {
+  ShapeId id;            ///< of the program's pool
+  std::uint32_t number;  ///< by which the recording knows it
+  std::uint64_t digest;  ///< of what it was then
+};
+
 /// A Scene whose calls are recorded, with the shapes of its bodies: see there for what each does.
 /// Composite shapes and predicates are not recorded: a body of a composite shape ends the recording
 /// with `unsupported`.
@@ -192,18 +199,11 @@ class WINNOW_API RecordedScene {
  private:
   [[nodiscard]] std::uint32_t number_of(ShapeId id) noexcept;
 
-  /// Which number a shape was recorded by, and what it was then.
-  struct Known {
-    ShapeId id;
-    std::uint32_t number;
-    std::uint64_t digest;
-  };
-
   RecorderState* recorder_;
   std::uint32_t world_;
   const ShapePool& shapes_;
   Scene scene_;
-  Column<Known> known_;
+  Column<RecordedShape> known_;
   std::uint32_t shapes_recorded_ = 0;
   /// Which contacts were asked for last, and how many there were.
   const Contacts* asked_ = nullptr;

@@ -339,7 +339,8 @@ std::array<std::uint32_t, 2> DeformableMesh::edge(std::size_t i) const noexcept 
   return state_->ends_of(static_cast<std::uint32_t>(i));
 }
 
-Status DeformableMesh::find_self(FeaturePair kind, const Chunks<Pair>& chunks) const noexcept {
+Status DeformableMesh::find_self(FeaturePair kind,
+                                 const ResultChunks<Pair>& chunks) const noexcept {
   if (state_ == nullptr || !state_->moved) return Status::invalid_argument;
   // In place, and without a branch: which pairs share a vertex is as hard to foresee as a coin.
   const auto take = [&](std::span<Pair> pairs) {
@@ -372,7 +373,7 @@ Status DeformableMesh::find_self(FeaturePair kind, const Chunks<Pair>& chunks) c
 }
 
 Status DeformableMesh::find_with(const DeformableMesh& other, FeaturePair kind,
-                                 const Chunks<Pair>& chunks) const noexcept {
+                                 const ResultChunks<Pair>& chunks) const noexcept {
   if (state_ == nullptr || !state_->moved || other.state_ == nullptr || !other.state_->moved ||
       !(options_.origin == other.options_.origin)) {
     return Status::invalid_argument;
@@ -448,13 +449,13 @@ std::array<Vec3d, 4> points_of(FeaturePair kind, const std::array<std::uint32_t,
 
 Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kind,
                                     const FeatureImpactOptions& options,
-                                    const Chunks<MeshImpact>& chunks) const noexcept {
+                                    const ResultChunks<MeshImpact>& chunks) const noexcept {
   const DeformableMesh& second = other == nullptr ? *this : *other;
   if (state_ == nullptr || second.state_ == nullptr || !are_in_range(options) ||
       !(options.min_separation <= 0.5 * state_->distance + 0.5 * second.state_->distance)) {
     return Status::invalid_argument;
   }
-  ResultChunk<MeshImpact, Chunks<MeshImpact>> results(options_.memory, chunks);
+  ResultChunk<MeshImpact, ResultChunks<MeshImpact>> results(options_.memory, chunks);
   if (!results.reserve(options_.chunk)) return Status::out_of_memory;
   const State& a = *state_;
   const State& b = *second.state_;
@@ -485,13 +486,13 @@ Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kin
 }
 
 Status DeformableMesh::find_near(const DeformableMesh* other, FeaturePair kind, double thickness,
-                                 const Chunks<MeshProximity>& chunks) const noexcept {
+                                 const ResultChunks<MeshProximity>& chunks) const noexcept {
   const DeformableMesh& second = other == nullptr ? *this : *other;
   if (state_ == nullptr || second.state_ == nullptr || !(thickness >= 0.0) ||
       !(thickness <= 0.5 * state_->distance + 0.5 * second.state_->distance)) {
     return Status::invalid_argument;
   }
-  ResultChunk<MeshProximity, Chunks<MeshProximity>> results(options_.memory, chunks);
+  ResultChunk<MeshProximity, ResultChunks<MeshProximity>> results(options_.memory, chunks);
   if (!results.reserve(options_.chunk)) return Status::out_of_memory;
   const auto take = [&](std::span<const Pair> pairs) {
     for (const Pair& pair : pairs) {

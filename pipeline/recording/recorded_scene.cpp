@@ -97,9 +97,9 @@ std::uint32_t RecordedScene::number_of(ShapeId id) noexcept {
     return 0;
   }
   const std::uint64_t digest = digest_of(shapes_.tables(), id);
-  Known* const at =
-      std::lower_bound(known_.begin(), known_.end(), id.bits,
-                       [](const Known& known, std::uint32_t bits) { return known.id.bits < bits; });
+  RecordedShape* const at = std::lower_bound(
+      known_.begin(), known_.end(), id.bits,
+      [](const RecordedShape& known, std::uint32_t bits) { return known.id.bits < bits; });
   const auto place = static_cast<std::size_t>(at - known_.begin());
   const bool is_known = at != known_.end() && at->id == id;
   if (is_known && at->digest == digest) return at->number;
@@ -134,9 +134,9 @@ Status RecordedScene::add(std::span<const BodyDefinition> bodies, std::span<Key>
   if (status != Status::ok) return status;
   for (const BodyDefinition& body : bodies) (void)number_of(body.shape);
   const auto number = [&](const BodyDefinition& body) {
-    const Known* const at = std::lower_bound(
+    const RecordedShape* const at = std::lower_bound(
         known_.begin(), known_.end(), body.shape.bits,
-        [](const Known& known, std::uint32_t bits) { return known.id.bits < bits; });
+        [](const RecordedShape& known, std::uint32_t bits) { return known.id.bits < bits; });
     return at == known_.end() ? 0 : at->number;
   };
   CallWriter call(recorder_, RecordedCall::add_bodies, world_);
