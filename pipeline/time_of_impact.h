@@ -106,7 +106,7 @@ class WINNOW_API ImpactResult {
 ///
 /// `invalid_argument` for a bad tolerance or a pair of a body that does not exist, `size_mismatch`
 /// for spans of different lengths, `out_of_memory`: then `result` is empty. What is wrong with one
-/// pair is in its status. Usually some four looks for closest points a pair, of fast turns ten;
+/// pair is in its status. Usually some four looks for closest points per pair, of fast turns ten;
 /// where shapes whirl around each other without touching, up to |turn| / sqrt(tolerance). One at a
 /// time, in double: without lanes.
 WINNOW_API Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,

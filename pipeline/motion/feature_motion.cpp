@@ -137,24 +137,27 @@ struct TimeInterval {
   double high;
 };
 
+/// Two steps of de Casteljau's scheme at a time: the line that is left of the cubic's polar form.
+struct PolarLine {
+  double start;
+  double end;
+
+  PolarLine(const double (&c)[4], double t) noexcept {
+    const double middle = mix(c[1], c[2], t);
+    start = mix(mix(c[0], c[1], t), middle, t);
+    end = mix(middle, mix(c[2], c[3], t), t);
+  }
+  [[nodiscard]] double at(double t) const noexcept { return mix(start, end, t); }
+};
+
 /// Bernstein coefficients over an interval: what the cubic's polar form says of its ends.
 void coefficients_over(const double (&c)[4], const TimeInterval& time, double (&y)[4]) noexcept {
-  const double low = time.low;
-  const double high = time.high;
-  const double a0 = mix(c[0], c[1], low);
-  const double a1 = mix(c[1], c[2], low);
-  const double a2 = mix(c[2], c[3], low);
-  const double b0 = mix(a0, a1, low);
-  const double b1 = mix(a1, a2, low);
-  y[0] = mix(b0, b1, low);
-  y[1] = mix(b0, b1, high);
-  const double d0 = mix(c[0], c[1], high);
-  const double d1 = mix(c[1], c[2], high);
-  const double d2 = mix(c[2], c[3], high);
-  const double e0 = mix(d0, d1, high);
-  const double e1 = mix(d1, d2, high);
-  y[2] = mix(e0, e1, low);
-  y[3] = mix(e0, e1, high);
+  const PolarLine at_low(c, time.low);
+  const PolarLine at_high(c, time.high);
+  y[0] = at_low.at(time.low);
+  y[1] = at_low.at(time.high);
+  y[2] = at_high.at(time.low);
+  y[3] = at_high.at(time.high);
 }
 
 /// Where, from the side of the first coefficient on, the hull of the coefficients first comes

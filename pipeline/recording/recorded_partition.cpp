@@ -84,6 +84,46 @@ void put_digest(CallWriter& call, const Answer&... answer) {
   call.put(digest.value());
 }
 
+/// What a question about hits ends with: its filter, and what it found.
+template <typename Answer>
+void put_hits(CallWriter& call, const Filter& filter, std::span<const Hit> hits,
+              const Answer& answer) {
+  put_filter(call, filter);
+  put_passed(call, filter.predicate, hits);
+  put_digest(call, answer);
+}
+void put_hits(CallWriter& call, const Filter& filter, const HitBuffer& hits) {
+  put_hits(call, filter, hits.hits(), hits);
+}
+void put_hit(CallWriter& call, const Filter& filter, const Hit& hit) {
+  const std::span<const Hit> one(&hit, 1);
+  put_hits(call, filter, one, one);
+}
+
+/// A question for the pairs of one partition. It goes on from question `before`, or from none; its
+/// events do if they follow that one's frame.
+struct PairQuestion {
+  PairForm form;
+  std::uint64_t before;
+  bool follows = false;
+
+  PairQuestion(PairForm asked, std::uint64_t number) noexcept : form(asked), before(number) {}
+  PairQuestion(PairForm asked, std::uint64_t number, const PairEvents& events,
+               const PairBuffer& held) noexcept
+      : form(asked),
+        before(number),
+        follows(number != 0 && EventWriter::provenance(events) == PairTracker::provenance(held)) {}
+
+  template <typename... Answer>
+  void put(CallWriter& call, const PairOptions& options, std::span<const Pair> pairs,
+           const Answer&... answer) const {
+    call.put(form).put(options.order).put(options.incremental);
+    call.put(before).put(follows);
+    put_passed(call, options.predicate, pairs);
+    put_digest(call, answer...);
+  }
+};
+
 }  // namespace
 
 RecordedPartition::RecordedPartition(Recorder& recorder, StructureKind structure,
@@ -272,46 +312,33 @@ void RecordedPartition::note_asked(const PairBuffer& out) const noexcept {
 }
 
 Status RecordedPartition::self_pairs(PairBuffer& out, const PairOptions& options) const {
-  const std::uint64_t before = asked_as(out);
+  const PairQuestion question(PairForm::buffer, asked_as(out));
   const Status status = partition_.self_pairs(out, options);
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::self_pairs, world_);
-  call.put(PairForm::buffer).put(options.order).put(options.incremental);
-  call.put(before).put(false);
-  put_passed(call, options.predicate, out.pairs());
-  put_digest(call, out);
+  question.put(call, options, out.pairs(), out);
   note_asked(out);
   return status;
 }
 
 Status RecordedPartition::self_pairs(PairBuffer& out, PairEvents& events,
                                      const PairOptions& options) const {
-  const std::uint64_t before = asked_as(out);
-  const bool follows =
-      before != 0 && EventWriter::provenance(events) == PairTracker::provenance(out);
+  const PairQuestion question(PairForm::buffer_and_events, asked_as(out), events, out);
   const Status status = partition_.self_pairs(out, events, options);
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::self_pairs, world_);
-  call.put(PairForm::buffer_and_events).put(options.order).put(options.incremental);
-  call.put(before).put(follows);
-  put_passed(call, options.predicate, out.pairs());
-  put_digest(call, out, events);
+  question.put(call, options, out.pairs(), out, events);
   note_asked(out);
   return status;
 }
 
 Status RecordedPartition::self_pairs(PairEvents& events, const PairOptions& options) const {
   const PairBuffer& own = EventWriter::own_buffer(events);
-  const std::uint64_t before = asked_as(own);
-  const bool follows =
-      before != 0 && EventWriter::provenance(events) == PairTracker::provenance(own);
+  const PairQuestion question(PairForm::events, asked_as(own), events, own);
   const Status status = partition_.self_pairs(events, options);
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::self_pairs, world_);
-  call.put(PairForm::events).put(options.order).put(options.incremental);
-  call.put(before).put(follows);
-  put_passed(call, options.predicate, own.pairs());
-  put_digest(call, events);
+  question.put(call, options, own.pairs(), events);
   note_asked(own);
   return status;
 }
@@ -332,9 +359,7 @@ Status RecordedPartition::closest(const Cast& cast, Hit& hit, const Filter& filt
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::closest_cast, world_);
   put_cast(call, cast);
-  put_filter(call, filter);
-  put_passed(call, filter.predicate, std::span<const Hit>(&hit, 1));
-  put_digest(call, std::span<const Hit>(&hit, 1));
+  put_hit(call, filter, hit);
   return status;
 }
 
@@ -343,9 +368,7 @@ Status RecordedPartition::any(const Cast& cast, Hit& hit, const Filter& filter) 
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::any_cast, world_);
   put_cast(call, cast);
-  put_filter(call, filter);
-  put_passed(call, filter.predicate, std::span<const Hit>(&hit, 1));
-  put_digest(call, std::span<const Hit>(&hit, 1));
+  put_hit(call, filter, hit);
   return status;
 }
 
@@ -354,9 +377,7 @@ Status RecordedPartition::all(const Cast& cast, HitBuffer& hits, const Filter& f
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::all_casts, world_);
   put_cast(call, cast);
-  put_filter(call, filter);
-  put_passed(call, filter.predicate, hits.hits());
-  put_digest(call, hits);
+  put_hits(call, filter, hits);
   return status;
 }
 
@@ -379,9 +400,7 @@ Status RecordedPartition::all(const RayBatch& rays, HitBuffer& hits, const Filte
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::all_rays, world_);
   put_rays(call, rays);
-  put_filter(call, filter);
-  put_passed(call, filter.predicate, hits.hits());
-  put_digest(call, hits);
+  put_hits(call, filter, hits);
   return status;
 }
 
@@ -418,9 +437,7 @@ Status RecordedPartition::nearest(const Aabb& from, std::size_t count, float rad
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::nearest, world_);
   call.put_bytes(&from, sizeof from).put(std::uint64_t{count}).put(radius);
-  put_filter(call, filter);
-  put_passed(call, filter.predicate, hits.hits());
-  put_digest(call, hits);
+  put_hits(call, filter, hits);
   return status;
 }
 

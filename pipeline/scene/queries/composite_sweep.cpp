@@ -5,8 +5,6 @@
 
 namespace winnow {
 
-using Eigen::Vector3d;
-
 /// A convex part that stands, as seen from where the composite shape starts, so that parts of both
 /// lose nothing far from the origin. What the difference of the positions loses is put into the
 /// pose of the shape, where it is small.
@@ -83,11 +81,9 @@ bool CompositeSweep::meets(const double from[3], const ConvexPart& part, double 
     if (!cast_shape(tables.tables(), pair, tolerance_, touch)) return most;
     if (found && touch.t == limit && meeting.own_part < own.part) return most;
     found = true;
-    limit = meeting.t = touch.t;
+    meeting = meeting_of(touch);
     meeting.own_part = own.part;
-    meeting.overlaps_at_start = touch.overlaps_at_start;
-    std::copy_n(touch.normal, 3, meeting.normal);
-    return limit;
+    return limit = touch.t;
   });
   return found;
 }
@@ -98,15 +94,8 @@ void CompositeSweep::describe(const double from[3], const ConvexPart& part,
   approach.each(max_t(), [&](const ConvexPart& own, double most) {
     if (own.part != meeting.own_part) return most;
     PartTables tables(parts_.shapes());
-    CastTouch touch;
-    touch.t = meeting.t;
-    touch.overlaps_at_start = meeting.overlaps_at_start;
-    std::copy_n(meeting.normal, 3, touch.normal);
-    describe_touch(tables.tables(), approach.pair(tables, own), touch);
-    for (int i = 0; i < 3; ++i) {
-      meeting.normal[i] = touch.normal[i];
-      meeting.point[i] = part.pose.position[i] + touch.point[i];
-    }
+    const CastPair pair = approach.pair(tables, own);
+    describe_meeting(tables.tables(), pair, part, meeting);
     return -1.0;
   });
 }

@@ -24,13 +24,6 @@ PreciseBox placed_box(const Aabb& box, const double position[3]) noexcept {
   return result;
 }
 
-/// The pose without its position.
-Pose turned(const Pose& pose) noexcept {
-  Pose result;
-  std::copy_n(pose.orientation, 4, result.orientation);
-  return result;
-}
-
 PreciseBox triangle_box(const TriangleShape& triangle, const Pose& pose) noexcept {
   const Eigen::Matrix3d turn = rotation_of_unit(normalized(tame(pose.orientation)));
   PreciseBox box;
@@ -92,7 +85,7 @@ bool PartTraversal::contains(ShapeId shape) const noexcept {
 }
 
 PreciseBox PartTraversal::box(const PlacedShape& placed) const noexcept {
-  const Pose here = turned(placed.pose);
+  const Pose here = at_origin(placed.pose);
   const Aabb local = placed.shape.is_composite() ? composites_->bounds(placed.shape, here)
                                                  : shapes_.bounds(placed.shape, here);
   return placed_box(local, placed.pose.position);
@@ -129,6 +122,12 @@ void PartTraversal::traverse(const PlacedShape& placed, BoxSweep sweep, double l
   } else {
     composites_->visit(placed.shape, placed.pose, sweep, primitives);
   }
+}
+
+Pose at_origin(const Pose& pose) noexcept {
+  Pose result;
+  std::copy_n(pose.orientation, 4, result.orientation);
+  return result;
 }
 
 Pose relative(const Pose& pose, const double position[3]) noexcept {

@@ -164,6 +164,9 @@ class PartTraversal {
   return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
 }
 
+/// A shape's pose at the origin.
+[[nodiscard]] Pose at_origin(const Pose& pose) noexcept;
+
 /// A shape's pose as seen from a position.
 [[nodiscard]] Pose relative(const Pose& pose, const double position[3]) noexcept;
 

@@ -87,10 +87,25 @@ bool passes_by(const double from[3], const double direction[3], const ConvexPart
 
 }  // namespace
 
-Pose at_origin(const Pose& pose) noexcept {
-  Pose result;
-  std::copy_n(pose.orientation, 4, result.orientation);
-  return result;
+SweepMeeting meeting_of(const CastTouch& touch) noexcept {
+  SweepMeeting meeting;
+  meeting.t = touch.t;
+  meeting.overlaps_at_start = touch.overlaps_at_start;
+  std::copy_n(touch.normal, 3, meeting.normal);
+  return meeting;
+}
+
+void describe_meeting(const ShapeTables& tables, const CastPair& pair, const ConvexPart& part,
+                      SweepMeeting& meeting) noexcept {
+  CastTouch touch;
+  touch.t = meeting.t;
+  touch.overlaps_at_start = meeting.overlaps_at_start;
+  std::copy_n(meeting.normal, 3, touch.normal);
+  describe_touch(tables, pair, touch);
+  for (int i = 0; i < 3; ++i) {
+    meeting.normal[i] = touch.normal[i];
+    meeting.point[i] = part.pose.position[i] + touch.point[i];
+  }
 }
 
 double corner_doubt(const ConvexPart& part) noexcept {
@@ -266,9 +281,7 @@ bool ShapeSweep::meets(const double from[3], const ConvexPart& part, double limi
     std::copy_n(before->normal, 3, asked.parting);
   CastTouch touch;
   if (!cast_shape(tables.tables(), asked, tolerance_, touch)) return false;
-  meeting.t = touch.t;
-  std::copy_n(touch.normal, 3, meeting.normal);
-  meeting.overlaps_at_start = touch.overlaps_at_start;
+  meeting = meeting_of(touch);
   set_height(from, meeting);
   return true;
 }
@@ -276,15 +289,8 @@ bool ShapeSweep::meets(const double from[3], const ConvexPart& part, double limi
 void ShapeSweep::describe(const double from[3], const ConvexPart& part,
                           SweepMeeting& meeting) const noexcept {
   PartTables tables(shapes_);
-  CastTouch touch;
-  touch.t = meeting.t;
-  touch.overlaps_at_start = meeting.overlaps_at_start;
-  std::copy_n(meeting.normal, 3, touch.normal);
-  describe_touch(tables.tables(), pair(tables, from, part), touch);
-  for (int i = 0; i < 3; ++i) {
-    meeting.normal[i] = touch.normal[i];
-    meeting.point[i] = part.pose.position[i] + touch.point[i];
-  }
+  const CastPair asked = pair(tables, from, part);
+  describe_meeting(tables.tables(), asked, part, meeting);
 }
 
 void BodyMeeting::take(const ConvexPart& part, const SweepMeeting& meeting) noexcept {

@@ -21,11 +21,14 @@ struct SweepMeeting {
   std::uint32_t own_part = kWholeShape;
 };
 
+/// Of a meeting with what a cast touched: all but normal and point of the surface.
+[[nodiscard]] SweepMeeting meeting_of(const CastTouch& touch) noexcept;
+/// Fills in normal and point of a meeting of this pair, whose standing shape is the part.
+void describe_meeting(const ShapeTables& tables, const CastPair& pair, const ConvexPart& part,
+                      SweepMeeting& meeting) noexcept;
+
 /// By this much of its coordinates a box is grown before the tests of boxes, which round them.
 inline constexpr double kSweptBoxGrowth = 0x1p-47;
-
-/// A shape's pose at the origin.
-[[nodiscard]] Pose at_origin(const Pose& pose) noexcept;
 
 /// Neighbours in a mesh have their common corners a few roundings apart, once each is at its place:
 /// by less than this. As thick as this they leave nothing through between them.
