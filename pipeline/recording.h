@@ -161,8 +161,8 @@ struct RecordedShape {
 };
 
 /// A Scene whose calls are recorded, with the shapes of its bodies: see there for what each does.
-/// Composite shapes and predicates are not recorded: a body of a composite shape ends the recording
-/// with `unsupported`.
+/// Composite shapes, support functions and predicates are not recorded: a body of one of these
+/// shapes ends the recording with `unsupported`.
 class WINNOW_API RecordedScene {
  public:
   /// The recorder must outlive the scene.

@@ -47,7 +47,12 @@ class WINNOW_API ShapePool {
   Status add(const ConeShape& shape, ShapeId& id);
   Status add(const TriangleShape& shape, ShapeId& id);
   Status add(const HalfSpaceShape& shape, ShapeId& id);
+  Status add(const EllipsoidShape& shape, ShapeId& id);
+  Status add(const TaperedCapsuleShape& shape, ShapeId& id);
   /// @}
+  /// The same; asks the function along 26 directions. `invalid_shape` also where there is none, or
+  /// what it answers is not finite, beyond the radius or, by more than 1e-9 of that, not convex.
+  Status add(const SupportShape& shape, ShapeId& id);
 
   /// The convex hull of points, by qhull: `unsupported` if the library was built without it. While
   /// it runs, qhull takes memory from the C library; all else comes from the pool's resource.
@@ -108,6 +113,9 @@ class WINNOW_API ShapePool {
   Table<HullShape> hulls_;
   Table<TriangleShape> triangles_;
   Table<HalfSpaceShape> half_spaces_;
+  Table<EllipsoidShape> ellipsoids_;
+  Table<TaperedCapsuleShape> tapered_capsules_;
+  Table<SupportShape> supports_;
   ShapeTables tables_;
 };
 

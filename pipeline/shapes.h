@@ -19,19 +19,29 @@ enum class ShapeKind : std::uint8_t {
   hull,        ///< HullShape
   triangle,    ///< TriangleShape
   half_space,  ///< HalfSpaceShape
+  // Numbers between are those of CompositeKind.
+  ellipsoid = 11,   ///< EllipsoidShape
+  tapered_capsule,  ///< TaperedCapsuleShape
+  support,          ///< SupportShape
 };
-/// How many there are.
-inline constexpr std::uint32_t kShapeKinds = 8;
 
-/// The kinds of shape made of many convex ones, held by a CompositePool. Numbered after those of
+/// The kinds of shape made of many convex ones, held by a CompositePool. No number is one of
 /// ShapeKind, which their ids share the space with.
 enum class CompositeKind : std::uint8_t {
   mesh = 8,      ///< TriangleMesh
   compound,      ///< CompoundChild, several
   height_field,  ///< HeightField
 };
-/// How many kinds of shapes there are, convex and composite.
-inline constexpr std::uint32_t kAllShapeKinds = 11;
+
+/// The numbers of all kinds, convex and composite, are below this.
+inline constexpr std::uint32_t kShapeKinds = 14;
+
+/// All of ShapeKind, in their order.
+inline constexpr ShapeKind kConvexKinds[] = {
+    ShapeKind::sphere,          ShapeKind::capsule,    ShapeKind::box,
+    ShapeKind::cylinder,        ShapeKind::cone,       ShapeKind::hull,
+    ShapeKind::triangle,        ShapeKind::half_space, ShapeKind::ellipsoid,
+    ShapeKind::tapered_capsule, ShapeKind::support};
 
 /// The enumerator's name. Never null.
 [[nodiscard]] WINNOW_API const char* to_string(ShapeKind kind) noexcept;
@@ -50,18 +60,18 @@ struct ShapeId {
   [[nodiscard]] static constexpr ShapeId of(CompositeKind kind, std::uint32_t index) noexcept {
     return {static_cast<std::uint32_t>(kind) << kIndexBits | index};
   }
-  /// A ShapeKind below kShapeKinds, a CompositeKind below kAllShapeKinds; 15 for the default id,
-  /// which is no shape.
+  /// A ShapeKind or a CompositeKind; 15 for the default id, which is no shape.
   [[nodiscard]] constexpr std::uint32_t kind_index() const noexcept { return bits >> kIndexBits; }
   /// True for ids of meshes, compounds and height fields.
   [[nodiscard]] constexpr bool is_composite() const noexcept {
-    return kind_index() >= kShapeKinds && kind_index() < kAllShapeKinds;
+    return kind_index() >= static_cast<std::uint32_t>(CompositeKind::mesh) &&
+           kind_index() <= static_cast<std::uint32_t>(CompositeKind::height_field);
   }
   /// Of an id for which `is_composite` holds.
   [[nodiscard]] constexpr CompositeKind composite_kind() const noexcept {
     return static_cast<CompositeKind>(kind_index());
   }
-  /// Of an id of a convex shape: one below kShapeKinds.
+  /// Of an id of a convex shape.
   [[nodiscard]] constexpr ShapeKind kind() const noexcept {
     return static_cast<ShapeKind>(kind_index());
   }
@@ -121,6 +131,37 @@ struct HalfSpaceShape {
   double offset = 0.0;                 ///< distance of its plane from the origin, times |normal|
 };
 
+/// Core: (x / radius[0])^2 + (y / radius[1])^2 + (z / radius[2])^2 <= 1; flat along axes with a
+/// radius of 0.
+struct EllipsoidShape {
+  double radius[3] = {0.0, 0.0, 0.0};  ///< half of its length along x, y, z
+  double rounding = 0.0;               ///< added outside
+};
+
+/// The convex hull of two balls on the z axis. One may lie within the other.
+struct TaperedCapsuleShape {
+  double radius[2] = {0.0, 0.0};  ///< of the balls at z = -half_length and z = half_length
+  double half_length = 0.0;       ///< from the middle to the centre of a ball
+};
+
+/// Gives a point of a convex set that is farthest along a direction of length 1, both in the frame
+/// of the shape. The same direction gets the same point, whoever asks: it is called from any
+/// thread, also at once, and changes nothing. It must not throw, nor call what asks it.
+using SupportFunction = void (*)(const void* context, const double direction[3], double point[3]);
+
+/// A convex set of the program's own. Core: the points that `function` speaks of.
+///
+/// Bounds of errors hold as far as its points are exact to a few roundings of `radius`, and of a
+/// convex set. Whatever else it answers, calls end and results are finite: a point that is not
+/// finite counts as (0, 0, 0), one beyond `radius` as the nearest within, and where points
+/// contradict each other, answers are about some of them.
+struct SupportShape {
+  SupportFunction function = nullptr;  ///< asked as long as the shape is there
+  const void* context = nullptr;       ///< passed on, never read; outlives the shape
+  double radius = 0.0;                 ///< no point is farther from (0, 0, 0)
+  double rounding = 0.0;               ///< added outside
+};
+
 /// A face of a hull, coplanar neighbours merged: unit outward normal, normal . x <= offset for
 /// every vertex, and its vertices counter-clockwise seen from outside: `loop[first + i]`.
 struct HullFace {
@@ -178,8 +219,11 @@ struct ShapeTables {
   const HullShape* hulls = nullptr;
   const TriangleShape* triangles = nullptr;
   const HalfSpaceShape* half_spaces = nullptr;
+  const EllipsoidShape* ellipsoids = nullptr;
+  const TaperedCapsuleShape* tapered_capsules = nullptr;
+  const SupportShape* supports = nullptr;
   /// @}
-  std::uint32_t count[kShapeKinds] = {};  ///< entries of each table, by ShapeKind
+  std::uint32_t count[kShapeKinds] = {};  ///< entries of each table, by ShapeKind; else 0
 };
 
 }  // namespace winnow

@@ -117,6 +117,19 @@ Status add_shape(const Json& value, ShapePool& pool, ShapeId& id) {
     reader.numbers("half", shape.half);
     return add(pool, reader, shape, id);
   }
+  if (type == "ellipsoid") {
+    EllipsoidShape shape{{}, rounding};
+    reader.numbers("radii", shape.radius);
+    return add(pool, reader, shape, id);
+  }
+  if (type == "tapered_capsule") {
+    double radii[2] = {};
+    reader.numbers("radii", radii);
+    const double half = reader.number("half_length");
+    const TaperedCapsuleShape shape{{rounded(radii[0], rounding), rounded(radii[1], rounding)},
+                                    half};
+    return add(pool, reader, shape, id);
+  }
   return add_round(type, pool, reader, rounding, id);
 }
 

@@ -27,10 +27,17 @@ enum {
   WINNOW_SHAPE_HALF_SPACE = 7,
   WINNOW_SHAPE_MESH = 8,
   WINNOW_SHAPE_COMPOUND = 9,
-  WINNOW_SHAPE_HEIGHT_FIELD = 10
+  WINNOW_SHAPE_HEIGHT_FIELD = 10,
+  WINNOW_SHAPE_ELLIPSOID = 11,
+  WINNOW_SHAPE_TAPERED_CAPSULE = 12,
+  WINNOW_SHAPE_SUPPORT = 13
 };
 /// "sphere", ...; "none" if it is none.
 WINNOW_C_API const char* winnow_shape_kind_name(winnow_shape_kind kind);
+
+/// `direction` and `point` are three numbers.
+typedef void (*winnow_support_function)(const void* context, const double* direction,
+                                        double* point);
 
 /// A convex shape but a hull.
 typedef struct winnow_shape {
@@ -65,6 +72,20 @@ typedef struct winnow_shape {
       double normal[3];
       double offset;
     } half_space;
+    struct {
+      double radius[3];
+      double rounding;
+    } ellipsoid;
+    struct {
+      double radius[2];
+      double half_length;
+    } tapered_capsule;
+    struct {
+      winnow_support_function function;
+      const void* context;
+      double radius;
+      double rounding;
+    } support;
     double reserved[16];
   } as;
 } winnow_shape;

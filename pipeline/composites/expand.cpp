@@ -52,8 +52,9 @@ class Expansion {
   [[nodiscard]] bool is_there(std::uint32_t body) const noexcept {
     if (body >= bodies_.shapes.size() || body >= bodies_.poses.size()) return false;
     const ShapeId shape = bodies_.shapes[body];
+    if (shape.is_composite()) return all_.contains(shape);
     const std::uint32_t kind = shape.kind_index();
-    return kind < kShapeKinds ? shape.index() < tables_.count[kind] : all_.contains(shape);
+    return kind < kShapeKinds && shape.index() < tables_.count[kind];
   }
   [[nodiscard]] PlacedBody placed(std::uint32_t body, std::uint32_t origin) const noexcept {
     const Eigen::Map<const Vec> position(bodies_.poses[body].position);

@@ -48,6 +48,16 @@ PlacedPart::PlacedPart(const ShapeTables& tables, ShapeId id, std::uint32_t of_b
       inner = hull.inner_radius;
       break;
     }
+    case ShapeKind::ellipsoid: {
+      const EllipsoidShape& ball = tables.ellipsoids[id.index()];
+      inner = std::min({ball.radius[0], ball.radius[1], ball.radius[2]}) + ball.rounding;
+      break;
+    }
+    case ShapeKind::tapered_capsule: {
+      const TaperedCapsuleShape& taper = tables.tapered_capsules[id.index()];
+      inner = std::min(taper.radius[0], taper.radius[1]);
+      break;
+    }
     default:
       break;
   }

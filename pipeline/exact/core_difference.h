@@ -39,7 +39,7 @@ struct CoreVertices {
   }
 };
 
-/// Fills `core`; false for half-spaces.
+/// Fills `core`; false for half-spaces and for what is known by a support function.
 bool core_vertices(const ShapeTables& tables, ShapeId id, CoreVertices& core) noexcept;
 
 inline constexpr std::uint32_t kNoVertex = ~0U;

@@ -121,6 +121,7 @@ namespace {
   if (core_vertices(tables, other, core)) {
     return half_space_verdict(shape, half_space_pose, core, other_pose);
   }
+  if (other.kind() != ShapeKind::half_space) return ExactVerdict::undecided;
   return half_spaces_verdict(shape, half_space_pose, tables.half_spaces[other.index()], other_pose);
 }
 

@@ -13,7 +13,8 @@ enum class ExactVerdict : unsigned char {
   touching,
   /// They share more than a boundary point.
   overlapping,
-  /// A kind whose contact is not a rational predicate (cylinders, cones), or numbers beyond the
+  /// A kind whose contact is not a rational predicate (cylinders, cones, those known
+  /// by a support function), or numbers beyond the
   /// range in which products of doubles are exact.
   undecided,
 };

@@ -7,16 +7,16 @@
 namespace winnow {
 namespace {
 
-constinit std::atomic<const NarrowKernels& (*)() noexcept> linked[ConvexKindPairs::kCount]{};
+constinit std::atomic<const NarrowKernels& (*)() noexcept> linked[KindPairs::kCount]{};
 
 }  // namespace
 
 void link_kernels(ShapeKind a, ShapeKind b, const NarrowKernels& (*kernels)() noexcept) noexcept {
-  linked[ConvexKindPairs::index(a, b)].store(kernels, std::memory_order_relaxed);
+  linked[KindPairs::index(a, b)].store(kernels, std::memory_order_relaxed);
 }
 
 const NarrowKernels* narrow_kernels(ShapeKind a, ShapeKind b) noexcept {
-  const auto kernels = linked[ConvexKindPairs::index(a, b)].load(std::memory_order_relaxed);
+  const auto kernels = linked[KindPairs::index(a, b)].load(std::memory_order_relaxed);
   return kernels == nullptr ? nullptr : &kernels();
 }
 

@@ -349,7 +349,7 @@ Impact find_impact(const ShapeTables& tables, ShapeId a, const RigidMotion& of_a
     found.samples = impacts.looks();
     return found;
   };
-  if (!is_mirrored(a, b)) return search(a, of_a, b, of_b);
+  if (!solver::is_prepared_mirrored(a.kind(), b.kind())) return search(a, of_a, b, of_b);
   Impact impact = search(b, of_b, a, of_a);
   if (impact.hit) mirror_impact(of_a, of_b, impact);
   return impact;

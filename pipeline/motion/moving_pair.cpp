@@ -40,6 +40,8 @@ double reach_of(const Core& core, const Vec& w) noexcept {
                       core.half.z() * std::hypot(w.x(), w.y()));
     case CoreKind::half_space:
       return 0.0;
+    case CoreKind::support:
+      return core.size - core.rounding;
     default:
       break;
   }

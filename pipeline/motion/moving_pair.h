@@ -30,8 +30,8 @@ struct TurningCore {
 };
 
 /// Two shapes that move, at any time in [0, 1]: a problem of the solver, in the axes of the world
-/// and about the position of a, with what bounds their approach. The kind of a is not above that of
-/// b. Lengths are those of the problem.
+/// and about the position of a, with what bounds their approach, in the order of the solver.
+/// Lengths are those of the problem.
 class MovingPair {
  public:
   MovingPair(const ShapeTables& tables, ShapeId a, const RigidMotion& of_a, ShapeId b,

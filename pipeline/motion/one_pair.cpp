@@ -1,12 +1,14 @@
 #include "pipeline/motion/one_pair.h"
 
 #include "pipeline/kernels/kernels.h"
+#include "pipeline/shapes/pair_order.h"
 
 namespace winnow::impact {
 
 PairAnswer distance_of(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
                        const Pose& pose_b) noexcept {
-  const NarrowKernels* const kernels = narrow_kernels(a.kind(), b.kind());
+  const NarrowKernels* const kernels =
+      is_mirrored(a, b) ? nullptr : narrow_kernels(a.kind(), b.kind());
   const NarrowKernel kernel =
       kernels == nullptr ? nullptr : kernels->robust[kernel_index(ContactLevel::distance)];
   const ShapeId shapes[2] = {a, b};

@@ -74,7 +74,7 @@ class PairBuckets {
 
   Column<BodyPair> sorted_;
   Column<std::uint8_t> codes_;
-  std::uint32_t counts_[ConvexKindPairs::kCount] = {};
+  std::uint32_t counts_[KindPairs::kCount] = {};
   const BodyPair* pairs_ = nullptr;
   bool any_mirrored_ = false;
 };
@@ -94,7 +94,7 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   // A scene of one kind needs no look at every pair.
   const std::uint32_t only = only_kind(tables);
   if (only != kShapeKinds && all_are(shapes, only, tables.count[only])) {
-    counts_[ConvexKindPairs::index(only, only)] = static_cast<std::uint32_t>(pairs.size());
+    counts_[KindPairs::index(only, only)] = static_cast<std::uint32_t>(pairs.size());
     return add_runs(runs);
   }
   const Status status = classify(tables, shapes, pairs, bad_body);
@@ -102,7 +102,7 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   const bool one_run = std::ranges::count_if(counts_, [](auto n) { return n != 0; }) <= 1;
   if (one_run && !any_mirrored_) return add_runs(runs);
   if (!sorted_.resize(pairs.size())) return Status::out_of_memory;
-  std::uint32_t next[ConvexKindPairs::kCount];
+  std::uint32_t next[KindPairs::kCount];
   std::exclusive_scan(std::begin(counts_), std::end(counts_), std::begin(next), 0U);
   for (std::uint32_t i = 0; i < pairs.size(); ++i) {
     const std::uint32_t code = codes_[i];
@@ -130,7 +130,7 @@ Status PairBuckets::classify(const ShapeTables& tables, std::span<const ShapeId>
     }
     const std::uint32_t low = std::min(a.kind_index(), b.kind_index());
     const std::uint32_t high = std::max(a.kind_index(), b.kind_index());
-    const std::uint32_t code = ConvexKindPairs::index(low, high);
+    const std::uint32_t code = KindPairs::index(low, high);
     const std::uint32_t flag = is_mirrored(a, b) ? kMirrored : 0U;
     any |= flag;
     ++counts_[code];
@@ -142,11 +142,10 @@ Status PairBuckets::classify(const ShapeTables& tables, std::span<const ShapeId>
 
 Status PairBuckets::add_runs(Column<NarrowRun>& runs) const {
   std::uint32_t first = 0;
-  for (std::uint32_t code = 0; code < ConvexKindPairs::kCount; ++code) {
+  for (std::uint32_t code = 0; code < KindPairs::kCount; ++code) {
     if (counts_[code] == 0) continue;
-    const NarrowRun run{static_cast<ShapeKind>(ConvexKindPairs::first(code)),
-                        static_cast<ShapeKind>(ConvexKindPairs::second(code)), first,
-                        counts_[code]};
+    const NarrowRun run{static_cast<ShapeKind>(KindPairs::first(code)),
+                        static_cast<ShapeKind>(KindPairs::second(code)), first, counts_[code]};
     if (!runs.push_back(run)) return Status::out_of_memory;
     first += counts_[code];
   }

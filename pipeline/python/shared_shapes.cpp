@@ -153,6 +153,22 @@ template <typename Shape>
   });
 }
 
+[[nodiscard]] py::array add_ellipsoids(Shapes& shapes, py::handle radii, py::handle roundings) {
+  Numbers radius(radii, "radius", {3}, true);
+  Numbers rounding(roundings, "rounding", {}, true);
+  return add_all(shapes, agree({&radius, &rounding}), "add_ellipsoids", [&](std::size_t i) {
+    return EllipsoidShape{{radius.at(i, 0), radius.at(i, 1), radius.at(i, 2)}, rounding.at(i)};
+  });
+}
+
+[[nodiscard]] py::array add_tapered_capsules(Shapes& shapes, py::handle radii, py::handle halves) {
+  Numbers radius(radii, "radius", {2}, true);
+  Numbers half(halves, "half_length", {}, true);
+  return add_all(shapes, agree({&radius, &half}), "add_tapered_capsules", [&](std::size_t i) {
+    return TaperedCapsuleShape{{radius.at(i, 0), radius.at(i, 1)}, half.at(i)};
+  });
+}
+
 [[nodiscard]] std::uint32_t add_hull(Shapes& shapes, py::handle point_array, double rounding,
                                      py::handle indices, py::handle sizes) {
   const Numbers numbers(point_array, "points", {3});
@@ -439,6 +455,12 @@ void add_convex(ShapesClass& type) {
            "Adds n two-sided triangles: corners (n, 3, 3), rounding (n,) or one for all.")
       .def("add_half_spaces", &add_half_spaces, arg("normal"), arg("offset") = 0.0,
            "Adds n half-spaces normal . x <= offset: (n, 3) and (n,), or one for all.")
+      .def("add_ellipsoids", &add_ellipsoids, arg("radius"), arg("rounding") = 0.0,
+           "Adds n ellipsoids: half of their lengths along x, y, z, (n, 3), or (3,) for all, and "
+           "the radius of their rounding, (n,) or one for all.")
+      .def("add_tapered_capsules", &add_tapered_capsules, arg("radius"), arg("half_length"),
+           "Adds n convex hulls of two balls at z = -half_length and z = half_length: their radii "
+           "(n, 2), or (2,) for all, and half lengths (n,) or one for all.")
       .def("add_hull", &add_hull, arg("points"), arg("rounding") = 0.0, arg("indices") = py::none(),
            arg("sizes") = py::none(),
            "Adds the convex hull of points (n, 3) and gives its id. With `indices` (m,) and "

@@ -65,6 +65,40 @@ struct ConeCore {
   }
 };
 
+/// Two balls on the z axis, neither within the other, and the cone that touches both: negative
+/// inside.
+class TaperSurface {
+ public:
+  TaperSurface(double low_radius, double high_radius, double h) noexcept
+      : radius_{low_radius, high_radius},
+        half_(h),
+        sine_((low_radius - high_radius) / (2.0 * h)),
+        cosine_(std::sqrt((1.0 - sine_) * (1.0 + sine_))) {}
+
+  [[nodiscard]] Clearance at(const Vector3d& p) const noexcept {
+    const double rho = std::hypot(p.x(), p.y());
+    const double up = p.z() + half_;
+    const double along = cosine_ * up - sine_ * rho;
+    if (along <= 0.0 || along >= 2.0 * half_ * cosine_) {
+      const bool is_low = along <= 0.0;
+      const Vector3d from = p + Vector3d(0.0, 0.0, is_low ? half_ : -half_);
+      const double distance = from.norm();
+      return {distance - radius_[is_low ? 0 : 1],
+              distance > 0.0 ? Vector3d(from / distance) : Vector3d(Vector3d::Zero())};
+    }
+    const double across = rho > 0.0 ? cosine_ / rho : 0.0;
+    return {cosine_ * rho + sine_ * up - radius_[0],
+            Vector3d(across * p.x(), across * p.y(), sine_)};
+  }
+
+ private:
+  double radius_[2];
+  double half_;
+  // Of half the angle at the cone's tip: its outward normal is (cosine, sine) in (rho, z).
+  double sine_;
+  double cosine_;
+};
+
 /// Where a ray crosses the double cone: roots of a quadratic form in (x, y, depth below the apex).
 class ConeCrossing {
  public:
@@ -233,6 +267,22 @@ FirstEntry enter(const LocalRay& ray, const ConeShape& cone, double scale) noexc
   // Its base, thickened, is what a ray can graze along.
   entry.meet(ray, common(tube_span(ray, radius), slab_span(ray, -half - rounding, -half)));
   meet_rounded(ray, core, rounding, std::max(hull.in, ray.low), entry);
+  return entry;
+}
+
+FirstEntry enter(const LocalRay& ray, const TaperedCapsuleShape& taper, double scale) noexcept {
+  const double low = scale * taper.radius[0];
+  const double high = scale * taper.radius[1];
+  const double half = scale * taper.half_length;
+  if (low == high) return enter_axis(ray, half, low);
+  const Vector3d end(0.0, 0.0, half);
+  FirstEntry entry;
+  if (high - low < 2.0 * half) entry.meet(ray, ball_span(ray, -end, low));
+  if (low - high < 2.0 * half) entry.meet(ray, ball_span(ray, end, high));
+  if (std::fabs(high - low) >= 2.0 * half) return entry;
+  const RaySpan hull = capsule_span(ray, -end, end, std::max(low, high));
+  if (hull.is_empty() || hull.out < ray.low) return entry;
+  meet_rounded(ray, TaperSurface(low, high, half), 0.0, std::max(hull.in, ray.low), entry);
   return entry;
 }
 

@@ -97,5 +97,12 @@ class PlaneClip {
                                double scale) noexcept;
 [[nodiscard]] FirstEntry enter(const LocalRay& ray, const HalfSpaceShape& half_space,
                                double scale) noexcept;
+[[nodiscard]] FirstEntry enter(const LocalRay& ray, const TaperedCapsuleShape& taper,
+                               double scale) noexcept;
+/// Without rounding as a ray at the unit ball that the ellipsoid is stretched from.
+[[nodiscard]] FirstEntry enter(const LocalRay& ray, const EllipsoidShape& ellipsoid,
+                               double scale) noexcept;
+[[nodiscard]] FirstEntry enter(const LocalRay& ray, const SupportShape& shape,
+                               double scale) noexcept;
 
 }  // namespace winnow

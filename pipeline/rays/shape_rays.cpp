@@ -55,6 +55,16 @@ using Eigen::Vector3d;
   return std::fabs(s.offset);
 }
 
+[[nodiscard]] double size_of(const EllipsoidShape& s) noexcept {
+  return std::max({s.radius[0], s.radius[1], s.radius[2], s.rounding});
+}
+[[nodiscard]] double size_of(const TaperedCapsuleShape& s) noexcept {
+  return std::max({s.radius[0], s.radius[1], s.half_length});
+}
+[[nodiscard]] double size_of(const SupportShape& s) noexcept {
+  return std::max(s.radius, s.rounding);
+}
+
 /// A ray relative to a body's position, in the axes of the world, and how to get back: the caller's
 /// t is (shift + local t * 2^stretch) * 2^exponent.
 struct RelativeRay {
@@ -165,6 +175,15 @@ Status cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose, cons
       break;
     case ShapeKind::half_space:
       cast(tables.half_spaces[i], pose, ray, hit);
+      break;
+    case ShapeKind::ellipsoid:
+      cast(tables.ellipsoids[i], pose, ray, hit);
+      break;
+    case ShapeKind::tapered_capsule:
+      cast(tables.tapered_capsules[i], pose, ray, hit);
+      break;
+    case ShapeKind::support:
+      cast(tables.supports[i], pose, ray, hit);
       break;
   }
   return Status::ok;

@@ -51,6 +51,12 @@ void with_shape(const ShapeTables& tables, ShapeId id, Use&& use) {
       return use(tables.triangles[id.index()]);
     case ShapeKind::half_space:
       return use(tables.half_spaces[id.index()]);
+    case ShapeKind::ellipsoid:
+      return use(tables.ellipsoids[id.index()]);
+    case ShapeKind::tapered_capsule:
+      return use(tables.tapered_capsules[id.index()]);
+    case ShapeKind::support:
+      return use(tables.supports[id.index()]);
   }
 }
 
@@ -91,7 +97,8 @@ RecordedScene::~RecordedScene() {
 // A shape is recorded when a body first has it, and again where another one took its place.
 std::uint32_t RecordedScene::number_of(ShapeId id) noexcept {
   if (recorder_ == nullptr) return 0;
-  if (id.is_composite()) {
+  // What another process does not have: meshes, functions.
+  if (id.is_composite() || id.kind() == ShapeKind::support) {
     const std::lock_guard lock(recorder_->mutex);
     recorder_->fail(Status::unsupported);
     return 0;

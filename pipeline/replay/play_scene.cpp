@@ -103,7 +103,7 @@ Status ReplayState::add_shape(ReplayedWorld& of) {
   ShapeId id;
   Digest digest;
   Status taken = Status::invalid_argument;
-  const auto kind = in.get_enum(ShapeKind::half_space);
+  const auto kind = in.get_enum(ShapeKind::tapered_capsule);
   if (!in.ok()) return reading();
   switch (kind) {
     case ShapeKind::sphere:
@@ -129,6 +129,14 @@ Status ReplayState::add_shape(ReplayedWorld& of) {
       break;
     case ShapeKind::half_space:
       taken = add_plain(in, pool, id, &ShapeTables::half_spaces, digest);
+      break;
+    case ShapeKind::ellipsoid:
+      taken = add_plain(in, pool, id, &ShapeTables::ellipsoids, digest);
+      break;
+    case ShapeKind::tapered_capsule:
+      taken = add_plain(in, pool, id, &ShapeTables::tapered_capsules, digest);
+      break;
+    case ShapeKind::support:
       break;
   }
   if (taken != Status::ok) return taken;

@@ -21,7 +21,7 @@ struct Packing {
     const bool mirrored = same_kind ? other < one : is_mirrored(shapes[one], shapes[other]);
     const std::uint32_t a = mirrored ? other : one;
     const std::uint32_t b = mirrored ? one : other;
-    const std::uint64_t code = BodyKindPairs::index(shapes[a], shapes[b]);
+    const std::uint64_t code = KindPairs::index(shapes[a], shapes[b]);
     return (code << bits | a) << bits | b;
   }
   [[nodiscard]] BodyPair pair(std::uint64_t item) const noexcept {
@@ -58,13 +58,13 @@ Status BodyPairs::assign(std::span<const Source> sources, const ShapeId* shapes,
                   });
     item += source.pairs.size();
   }
-  const unsigned code_bits = std::bit_width(BodyKindPairs::kCount);
+  const unsigned code_bits = std::bit_width(KindPairs::kCount);
   const std::uint64_t* const sorted =
       radix_sort(items_.data(), spare_.data(), count, 2 * packing.bits + code_bits, execution, 0);
   for_stretches(execution, count, kPairsPerStretch, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) pairs_[i] = packing.pair(sorted[i]);
   });
-  for (std::uint32_t code = 0; code <= BodyKindPairs::kCount; ++code) {
+  for (std::uint32_t code = 0; code <= KindPairs::kCount; ++code) {
     first_[code] = static_cast<std::uint32_t>(
         std::lower_bound(sorted, sorted + count, packing.first(code)) - sorted);
   }
@@ -74,7 +74,7 @@ Status BodyPairs::assign(std::span<const Source> sources, const ShapeId* shapes,
 
 void BodyPairs::clear() noexcept {
   pairs_.clear();
-  std::fill_n(first_, BodyKindPairs::kCount + 1, 0U);
+  std::fill_n(first_, KindPairs::kCount + 1, 0U);
   for (std::uint64_t& change : changes) change = ~0ULL;
   ++serial_;
 }

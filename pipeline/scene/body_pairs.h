@@ -60,7 +60,7 @@ class BodyPairs {
   Column<BodyPair> pairs_;
   Column<std::uint64_t> items_;
   Column<std::uint64_t> spare_;
-  std::uint32_t first_[BodyKindPairs::kCount + 1] = {};
+  std::uint32_t first_[KindPairs::kCount + 1] = {};
   std::uint64_t serial_ = 0;
 };
 

@@ -70,7 +70,7 @@ bool ContactFrame::reserve(ContactLevel level, std::size_t pairs, std::size_t ma
   const auto reserve_one = [pages](auto& column, std::size_t count) {
     return column.reserve(count, pages);
   };
-  const std::size_t most_runs = std::min<std::size_t>(pairs, BodyKindPairs::kCount);
+  const std::size_t most_runs = std::min<std::size_t>(pairs, KindPairs::kCount);
   if (!runs.reserve(most_runs) || !make_columns(level, pairs, manifolds, reserve_one) ||
       !points.grow(contact_points)) {
     return false;

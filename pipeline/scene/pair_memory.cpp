@@ -48,7 +48,7 @@ struct PoseChange {
 };
 
 [[nodiscard]] std::uint32_t code_of(const SceneState& scene, const BodyPair& pair) noexcept {
-  return BodyKindPairs::index(scene.shape[pair.a], scene.shape[pair.b]);
+  return KindPairs::index(scene.shape[pair.a], scene.shape[pair.b]);
 }
 
 }  // namespace
@@ -132,7 +132,8 @@ bool Collision::decide() {
     std::uint32_t count = 0;
     for (std::uint32_t i = first; i < end; ++i) {
       const std::uint32_t record = same_pairs_ ? i : c.old_record[i];
-      const bool composite = scene_.shape[pairs[i].b].is_composite();
+      const bool composite =
+          scene_.shape[pairs[i].a].is_composite() || scene_.shape[pairs[i].b].is_composite();
       Origin origin = composite ? Origin::composite : Origin::convex;
       if (may_keep && record != kNoEntry && keep(i, record)) {
         origin = Origin::carried;

@@ -2,6 +2,7 @@
 #include <winnow/core/rotation.h>
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/shape_pool.h>
+#include "pipeline/shapes/support_core.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,7 @@ struct AnyDirection {
   const Vec& d;
 
   [[nodiscard]] double length() const noexcept { return d.norm(); }
+  [[nodiscard]] Vec unit() const noexcept { return d.stableNormalized(); }
   /// Of its part at right angles to the z axis.
   [[nodiscard]] double across() const noexcept { return std::hypot(d.x(), d.y()); }
   /// No product with a point of a hull's core is larger.
@@ -30,6 +32,7 @@ struct UnitDirection {
   const Vec& d;
 
   [[nodiscard]] static double length() noexcept { return 1.0; }
+  [[nodiscard]] const Vec& unit() const noexcept { return d; }
   [[nodiscard]] double across() const noexcept { return std::sqrt(d.x() * d.x() + d.y() * d.y()); }
   [[nodiscard]] static double most(const HullShape& hull) noexcept {
     return Eigen::Map<const Vec>(hull.center).norm() + hull.radius;
@@ -83,6 +86,22 @@ struct UnitDirection {
   return {std::min(tip, -side - tip), std::max(tip, side - tip), side + std::abs(tip)};
 }
 
+[[nodiscard]] Extent of_taper(const TaperedCapsuleShape& taper, double up, double length) noexcept {
+  const double low = taper.half_length * up;
+  const double first = taper.radius[0] * length;
+  const double second = taper.radius[1] * length;
+  return {std::min(-low - first, low - second), std::max(first - low, second + low),
+          std::abs(low) + std::max(first, second)};
+}
+
+template <typename Direction>
+[[nodiscard]] Extent of_support(const SupportCore& core, const Direction& direction) noexcept {
+  const Vec unit = direction.unit();
+  const double length = direction.length();
+  return {length * unit.dot(core.farthest(-unit)), length * unit.dot(core.farthest(unit)),
+          length * core.radius};
+}
+
 template <typename Direction>
 [[nodiscard]] Extent extent_along(const ShapeTables& tables, ShapeId shape,
                                   const Direction& direction) noexcept {
@@ -116,6 +135,17 @@ template <typename Direction>
     case ShapeKind::triangle: {
       const TriangleShape& s = tables.triangles[i];
       return rounded(of_corners(s, d), s.rounding * direction.length());
+    }
+    case ShapeKind::ellipsoid: {
+      const EllipsoidShape& s = tables.ellipsoids[i];
+      return symmetric(Eigen::Map<const Vec>(s.radius).cwiseProduct(d).stableNorm() +
+                       s.rounding * direction.length());
+    }
+    case ShapeKind::tapered_capsule:
+      return of_taper(tables.tapered_capsules[i], d.z(), direction.length());
+    case ShapeKind::support: {
+      const SupportShape& s = tables.supports[i];
+      return rounded(of_support(support_core(s), direction), s.rounding * direction.length());
     }
     case ShapeKind::half_space:
       break;
@@ -231,6 +261,13 @@ double radius_of(const ShapeTables& tables, ShapeId shape) noexcept {
       radius += tables.triangles[i].rounding;
       break;
     }
+    case ShapeKind::ellipsoid:
+    case ShapeKind::tapered_capsule:
+    case ShapeKind::support: {
+      const SupportCore core = support_core(tables, shape);
+      radius = core.radius + core.rounding;
+      break;
+    }
     case ShapeKind::half_space:
       break;
   }
@@ -254,6 +291,10 @@ double rounding_of(const ShapeTables& tables, ShapeId shape) noexcept {
       return tables.hulls[i].rounding;
     case ShapeKind::triangle:
       return tables.triangles[i].rounding;
+    case ShapeKind::ellipsoid:
+    case ShapeKind::tapered_capsule:
+    case ShapeKind::support:
+      return support_core(tables, shape).rounding;
     case ShapeKind::half_space:
       break;
   }

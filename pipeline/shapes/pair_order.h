@@ -16,13 +16,13 @@ namespace winnow {
   return a.kind_index() > b.kind_index();
 }
 
-/// The numbers of pairs of kinds: that of a counts `Kinds` times, that of b once.
-template <std::uint32_t Kinds>
+/// The numbers of pairs of kinds, convex and composite, that of a not above that of b: they rise
+/// with a and, of one a, with b.
 struct KindPairs {
-  static constexpr std::uint32_t kCount = Kinds * Kinds;
+  static constexpr std::uint32_t kCount = kShapeKinds * (kShapeKinds + 1) / 2;
 
   [[nodiscard]] static constexpr std::uint32_t index(std::uint32_t a, std::uint32_t b) noexcept {
-    return a * Kinds + b;
+    return a * (2 * kShapeKinds - 1 - a) / 2 + b;
   }
   [[nodiscard]] static constexpr std::uint32_t index(ShapeKind a, ShapeKind b) noexcept {
     return index(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
@@ -31,17 +31,15 @@ struct KindPairs {
     return index(a.kind_index(), b.kind_index());
   }
   [[nodiscard]] static constexpr std::uint32_t first(std::uint32_t index) noexcept {
-    return index / Kinds;
+    std::uint32_t a = 0;
+    while (a + 1 < kShapeKinds && KindPairs::index(a + 1, a + 1) <= index) ++a;
+    return a;
   }
   [[nodiscard]] static constexpr std::uint32_t second(std::uint32_t index) noexcept {
-    return index % Kinds;
+    const std::uint32_t a = first(index);
+    return index - KindPairs::index(a, 0);
   }
 };
-
-/// Of convex shapes.
-using ConvexKindPairs = KindPairs<kShapeKinds>;
-/// Of convex and composite ones.
-using BodyKindPairs = KindPairs<kAllShapeKinds>;
 
 /// The feature of a in the upper half and that of b in the lower one change places.
 [[nodiscard]] constexpr std::uint64_t mirrored_feature(std::uint64_t feature) noexcept {

@@ -8,8 +8,10 @@
 namespace winnow {
 
 const char* to_string(ShapeKind kind) noexcept {
-  constexpr const char* kNames[kShapeKinds] = {"sphere", "capsule", "box",      "cylinder",
-                                               "cone",   "hull",    "triangle", "half_space"};
+  constexpr const char* kNames[kShapeKinds] = {
+      "sphere",          "capsule",    "box",  "cylinder", "cone", "hull",
+      "triangle",        "half_space", "none", "none",     "none", "ellipsoid",
+      "tapered_capsule", "support"};
   const auto index = static_cast<std::uint32_t>(kind);
   return index < kShapeKinds ? kNames[index] : "none";
 }
@@ -23,7 +25,10 @@ ShapePool::ShapePool(std::pmr::memory_resource* memory) noexcept
       cones_(memory),
       hulls_(memory),
       triangles_(memory),
-      half_spaces_(memory) {}
+      half_spaces_(memory),
+      ellipsoids_(memory),
+      tapered_capsules_(memory),
+      supports_(memory) {}
 
 ShapePool::ShapePool(ShapePool&& other) noexcept
     : memory_(other.memory_),
@@ -35,6 +40,9 @@ ShapePool::ShapePool(ShapePool&& other) noexcept
       hulls_(std::move(other.hulls_)),
       triangles_(std::move(other.triangles_)),
       half_spaces_(std::move(other.half_spaces_)),
+      ellipsoids_(std::move(other.ellipsoids_)),
+      tapered_capsules_(std::move(other.tapered_capsules_)),
+      supports_(std::move(other.supports_)),
       tables_(std::exchange(other.tables_, {})) {}
 
 ShapePool::~ShapePool() {
@@ -58,6 +66,12 @@ decltype(auto) ShapePool::with_table(Pool& pool, ShapeKind kind, Body&& body) {
       return body(pool.triangles_);
     case ShapeKind::half_space:
       return body(pool.half_spaces_);
+    case ShapeKind::ellipsoid:
+      return body(pool.ellipsoids_);
+    case ShapeKind::tapered_capsule:
+      return body(pool.tapered_capsules_);
+    case ShapeKind::support:
+      return body(pool.supports_);
     case ShapeKind::sphere:
       break;
   }
@@ -65,7 +79,7 @@ decltype(auto) ShapePool::with_table(Pool& pool, ShapeKind kind, Body&& body) {
 }
 
 bool ShapePool::contains(ShapeId id) const noexcept {
-  if (id.kind_index() >= kShapeKinds) return false;
+  if (id.kind_index() >= kShapeKinds || id.is_composite()) return false;
   return with_table(*this, id.kind(), [&](const auto& table) {
     return id.index() < table.live.size() && table.live[id.index()] != 0;
   });
@@ -95,11 +109,12 @@ Status ShapePool::remove(ShapeId id) {
 }
 
 void ShapePool::refresh_tables() noexcept {
-  tables_ = {spheres_.shapes.data(),   capsules_.shapes.data(),   boxes_.shapes.data(),
-             cylinders_.shapes.data(), cones_.shapes.data(),      hulls_.shapes.data(),
-             triangles_.shapes.data(), half_spaces_.shapes.data()};
-  for (std::uint32_t kind = 0; kind < kShapeKinds; ++kind) {
-    tables_.count[kind] = with_table(*this, static_cast<ShapeKind>(kind), [](const auto& table) {
+  tables_ = {spheres_.shapes.data(),          capsules_.shapes.data(),    boxes_.shapes.data(),
+             cylinders_.shapes.data(),        cones_.shapes.data(),       hulls_.shapes.data(),
+             triangles_.shapes.data(),        half_spaces_.shapes.data(), ellipsoids_.shapes.data(),
+             tapered_capsules_.shapes.data(), supports_.shapes.data()};
+  for (const ShapeKind kind : kConvexKinds) {
+    tables_.count[static_cast<std::size_t>(kind)] = with_table(*this, kind, [](const auto& table) {
       return static_cast<std::uint32_t>(table.shapes.size());
     });
   }
@@ -107,8 +122,8 @@ void ShapePool::refresh_tables() noexcept {
 
 Footprint ShapePool::footprint() const noexcept {
   Footprint footprint;
-  for (std::uint32_t kind = 0; kind < kShapeKinds; ++kind) {
-    with_table(*this, static_cast<ShapeKind>(kind), [&](const auto& table) {
+  for (const ShapeKind kind : kConvexKinds) {
+    with_table(*this, kind, [&](const auto& table) {
       footprint.structure += table.shapes.bytes();
       footprint.keys += table.live.bytes();
       footprint.keys += table.free.bytes();

@@ -17,6 +17,11 @@ double radial(const Core& core, const Vec& local) noexcept {
   return core.half.x() * std::hypot(local.x(), local.y());
 }
 
+/// From the center, in the core's axes; `d` is unit.
+Vec farthest_point(const Core& core, const Vec& d) noexcept {
+  return core.farthest.farthest(d) * core.unit[0] * core.unit[1];
+}
+
 }  // namespace
 
 Vec unit(const Vec& v) noexcept {
@@ -96,6 +101,9 @@ Vec support(const Core& core, const Vec& direction) noexcept {
       local = h.z() * d.z() >= radial(core, d) - h.z() * d.z() ? Vec(0.0, 0.0, h.z())
                                                                : rim(core, d, -h.z());
       break;
+    case CoreKind::support:
+      local = farthest_point(core, unit(d));
+      break;
     default: {
       double value = 0.0;
       return vertex(core, farthest_vertex(*core.hull, d, value));
@@ -134,6 +142,10 @@ Range project(const Core& core, const Vec& n) noexcept {
       const double tip = core.half.z() * d.z();
       const double side = radial(core, d);
       return {std::min(tip, -side - tip), std::max(tip, side - tip)};
+    }
+    case CoreKind::support: {
+      const Vec u = unit(d);
+      return {d.dot(farthest_point(core, -u)), d.dot(farthest_point(core, u))};
     }
     default: {
       Range range{};

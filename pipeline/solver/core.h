@@ -2,6 +2,7 @@
 
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/shapes.h>
+#include "pipeline/shapes/support_core.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -23,6 +24,7 @@ enum class CoreKind : std::uint8_t {
   hull,
   cylinder,
   cone,
+  support,
   half_space
 };
 
@@ -43,13 +45,16 @@ struct Core {
   /// does not carry the rounding of corners far from the center. Zero where corners coincide.
   std::array<Vec, 3> side{};
   const HullShape* hull = nullptr;
-  /// Two factors that bring the hull's own units to the problem's: one could overflow.
+  /// Ellipsoid, tapered capsule, own convex.
+  SupportCore farthest;
+  /// Two factors that bring a hull's or a support function's own units to the problem's: one could
+  /// overflow.
   double unit[2] = {1.0, 1.0};
   /// Half-space: unit outward normal in the world, and offset from the center.
   Vec normal = Vec::UnitZ();
   double offset = 0.0;
 
-  /// Cores with corners: everything but cylinders, cones and half-spaces.
+  /// Cores with corners: everything but cylinders, cones, support functions and half-spaces.
   [[nodiscard]] bool is_polytope() const noexcept { return kind < CoreKind::cylinder; }
 };
 

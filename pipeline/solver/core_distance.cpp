@@ -3,6 +3,7 @@
 #include "pipeline/solver/axis_search.h"
 #include "pipeline/solver/expanding_polytope.h"
 #include "pipeline/solver/gjk.h"
+#include "pipeline/solver/point_distance.h"
 
 #include <algorithm>
 #include <array>
@@ -220,6 +221,17 @@ void refine_curved(const Core& a, const Core& b, const Vec& axis, double noise,
   }
 }
 
+/// Of a point, along an axis that is known to be the best.
+CoreDistance distance_along(const Problem& problem, const Vec& axis) noexcept {
+  CoreDistance found;
+  found.axis = axis;
+  found.distance = separation(problem.a, problem.b, axis);
+  found.doubt = problem.noise();
+  found.on_a = problem.a.center;
+  if (found.distance <= 0.0) break_ties(problem, found.distance, found.axis);
+  return found;
+}
+
 /// A point that is on both cores once b has been moved out along the axis.
 Vec meeting_point(const Problem& problem, const Vec& axis, double depth) noexcept {
   const Core& a = problem.a;
@@ -331,6 +343,8 @@ bool surely_overlap(const Problem& problem, const GjkResult& start) noexcept {
 CoreDistance core_distance(const Problem& problem, ContactLevel level, double enough,
                            SolverCounts& counts) noexcept {
   if (problem.b.kind == CoreKind::half_space) return half_space_distance(problem);
+  const Vec known = axis_from_point(problem);
+  if (known != Vec::Zero()) return distance_along(problem, known);
   const Core& a = problem.a;
   const Core& b = problem.b;
   const double noise = problem.noise();
@@ -341,7 +355,7 @@ CoreDistance core_distance(const Problem& problem, ContactLevel level, double en
   if (found.far) {
     answer.far = true;
     answer.distance = found.lower;
-    answer.doubt = noise + (found.upper - found.lower);
+    answer.doubt = noise + std::max(found.upper - found.lower, 0.0);
     answer.axis = found.axis;
     answer.on_a = found.simplex.on_a();
     return answer;

@@ -54,6 +54,10 @@ SupportingPatch::SupportingPatch(const Core& core, const Vec& outward) noexcept 
     case CoreKind::cone:
       add_round(core, outward);
       break;
+    case CoreKind::support:
+      core.farthest.kind == ShapeKind::tapered_capsule ? add_taper(core, outward)
+                                                       : add_samples(core, outward);
+      break;
     default:
       add(core.center, 0, 0);
       break;
@@ -167,6 +171,49 @@ void SupportingPatch::add_round(const Core& core, const Vec& outward) noexcept {
   add(core.center + core.rotation * (out * r - Vec(0.0, 0.0, h)), kSideLine + 1, kSideLine);
 }
 
+void SupportingPatch::add_taper(const Core& core, const Vec& outward) noexcept {
+  const auto& taper = *static_cast<const TaperedCapsuleShape*>(core.farthest.shape);
+  const auto scaled = [&](double length) { return length * core.unit[0] * core.unit[1]; };
+  const double half = scaled(taper.half_length);
+  const double more = scaled(std::max(taper.radius[0] - taper.radius[1], 0.0));
+  const double less = scaled(std::max(taper.radius[1] - taper.radius[0], 0.0));
+  const Vec axis = core.rotation.col(2) * half;
+  // A ball within the other has no part in the surface.
+  if (more == 0.0 || more < 2.0 * half) add(core.center + axis + outward * less, 0, 0);
+  if (more > 0.0 || less < 2.0 * half) add(core.center - axis + outward * more, 1, 0);
+}
+
+// Directions a little off, as bodies rock: corners of what is flat stay far from each other; the
+// points of what is round come together, and count as the one of them that is farthest out.
+void SupportingPatch::add_samples(const Core& core, const Vec& outward) noexcept {
+  constexpr std::uint32_t kSamples = 8;
+  constexpr double kStep = 6.283185307179586 / kSamples;
+  constexpr double kTilt = 0.04;
+  int least = 0;
+  (core.rotation.transpose() * outward).cwiseAbs().minCoeff(&least);
+  const Vec u = without(core.rotation.col(least), outward);
+  const Vec v = outward.cross(u);
+  const Range width[2] = {project(core, u), project(core, v)};
+  const double apart =
+      1.5 * kTilt * std::max(width[0].high - width[0].low, width[1].high - width[1].low);
+  Vec kept[kSamples];
+  std::uint32_t count = 0;
+  const auto take = [&](const Vec& x) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (!((x - kept[i]).norm() <= apart)) continue;
+      if (outward.dot(x - kept[i]) > 0.0) kept[i] = x;
+      return;
+    }
+    kept[count++] = x;
+  };
+  for (std::uint32_t i = 0; i < kSamples; ++i) {
+    const double angle = kStep * i;
+    take(support(core, outward + (u * std::cos(angle) + v * std::sin(angle)) * kTilt));
+  }
+  if (count == 1) kept[0] = support(core, outward);
+  for (std::uint32_t i = 0; i < count; ++i) add(kept[i], i, i);
+}
+
 namespace {
 
 /// What a single point of contact is called: as in the kernels of round shapes.
@@ -265,12 +312,21 @@ std::uint32_t meet(const Problem& problem, const Vec& normal, double distance, d
 
 }  // namespace
 
+namespace {
+
+bool touches_in_a_point(const Core& core) noexcept {
+  return core.kind == CoreKind::point ||
+         (core.kind == CoreKind::support && core.farthest.kind == ShapeKind::ellipsoid);
+}
+
+}  // namespace
+
 void make_manifold(const Problem& problem, const Vec& point, double distance, double margin,
                    PairAnswer& answer) noexcept {
   const Vec normal = Vec::Map(answer.normal);
   // Lengths are about 1: only the endless depth of two half-spaces is more than 8.
   const ContactPoint own = own_point(problem, point, normal, std::max(distance, -8.0));
-  const bool alone = problem.a.kind == CoreKind::point || problem.b.kind == CoreKind::point ||
+  const bool alone = touches_in_a_point(problem.a) || touches_in_a_point(problem.b) ||
                      problem.a.kind == CoreKind::half_space;
   ContactPoint* contacts = answer.contacts;
   std::uint32_t count = alone ? 0 : meet(problem, normal, distance, margin, contacts);

@@ -17,7 +17,9 @@ class SupportingPatch {
   static constexpr std::uint32_t kRoom = 64;
 
   /// The feature that lies farthest along `outward`: a box's face, a triangle, a segment, a hull's
-  /// face, edge or vertex, a cylinder's or cone's cap as a polygon of 16 or a line of its side.
+  /// face, edge or vertex, a cylinder's or cone's cap as a polygon of 16 or a line of its side, the
+  /// line between a tapered capsule's balls, what is farthest along eight directions around of a
+  /// support function.
   /// Features some degrees off count as well, since bodies rock over them; all of them hold the
   /// supporting point. Corners of boxes are numbered by the bits x > 0, y > 0, z > 0, edges by
   /// 4 x their axis and the bits of the others, faces by 2 x their axis and the sign. Caps begin
@@ -39,6 +41,8 @@ class SupportingPatch {
   void add_hull(const Core& core, const Vec& outward) noexcept;
   void add_cap(const Core& core, const Vec& out, double z) noexcept;
   void add_round(const Core& core, const Vec& outward) noexcept;
+  void add_taper(const Core& core, const Vec& outward) noexcept;
+  void add_samples(const Core& core, const Vec& outward) noexcept;
 
   double vertex_[kRoom][3];
   std::array<std::uint32_t, kRoom> vertex_feature_;

@@ -48,6 +48,10 @@ Lengths hull_lengths(const HullShape& hull) noexcept {
   return lengths;
 }
 
+Lengths support_lengths(const SupportCore& core) noexcept {
+  return {CoreKind::support, Vec::Zero(), core.rounding, std::max(core.radius, core.rounding)};
+}
+
 Lengths lengths_of(const ShapeTables& tables, ShapeId id) noexcept {
   const auto with = [](CoreKind kind, const Vec& half, double rounding) {
     return Lengths{kind, half, rounding, std::max(half.maxCoeff(), rounding)};
@@ -78,6 +82,10 @@ Lengths lengths_of(const ShapeTables& tables, ShapeId id) noexcept {
       return hull_lengths(tables.hulls[id.index()]);
     case ShapeKind::triangle:
       return triangle_lengths(tables.triangles[id.index()]);
+    case ShapeKind::ellipsoid:
+    case ShapeKind::tapered_capsule:
+    case ShapeKind::support:
+      return support_lengths(support_core(tables, id));
     case ShapeKind::half_space:
       break;
   }
@@ -97,6 +105,11 @@ void place_triangle(const TriangleShape& triangle, const Scale& scale, Core& cor
   }
 }
 
+void set_units(int exponent, Core& core) noexcept {
+  core.unit[0] = std::ldexp(1.0, -exponent / 2);
+  core.unit[1] = std::ldexp(1.0, -exponent - -exponent / 2);
+}
+
 void place(const ShapeTables& tables, ShapeId id, const Pose& pose, const Lengths& lengths,
            int exponent, const Scale& scale, Core& core) noexcept {
   core.kind = lengths.kind;
@@ -106,10 +119,13 @@ void place(const ShapeTables& tables, ShapeId id, const Pose& pose, const Length
   core.size = core.half.norm() + core.rounding;
   if (id.kind() == ShapeKind::triangle) {
     place_triangle(tables.triangles[id.index()], scale, core);
+  } else if (lengths.kind == CoreKind::support) {
+    core.farthest = support_core(tables, id);
+    set_units(exponent, core);
+    core.size += scale(core.farthest.radius);
   } else if (id.kind() == ShapeKind::hull) {
     core.hull = &tables.hulls[id.index()];
-    core.unit[0] = std::ldexp(1.0, -exponent / 2);
-    core.unit[1] = std::ldexp(1.0, -exponent - -exponent / 2);
+    set_units(exponent, core);
     core.size += reach(*core.hull) * core.unit[0] * core.unit[1];
   } else if (id.kind() == ShapeKind::half_space) {
     const HalfSpaceShape& shape = tables.half_spaces[id.index()];

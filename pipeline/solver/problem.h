@@ -22,6 +22,12 @@ struct Problem {
   [[nodiscard]] double noise() const noexcept { return 32.0 * kEpsilon * size; }
 };
 
+/// The solver takes half-spaces second, and of other kinds the smaller first: true if a pair is
+/// to be prepared, and solved, as (b, a).
+[[nodiscard]] constexpr bool is_prepared_mirrored(ShapeKind a, ShapeKind b) noexcept {
+  return a != b && (a == ShapeKind::half_space || (b != ShapeKind::half_space && a > b));
+}
+
 /// `mirrored`: the caller's a is this b.
 void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
              const Pose& pose_b, bool mirrored, Problem& problem) noexcept;

@@ -27,7 +27,7 @@ struct Question {
 
 /// The same pair asked in either order is solved in one, so that answers mirror.
 bool is_solved_mirrored(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b) noexcept {
-  if (a.kind() != b.kind()) return is_mirrored(a, b);
+  if (a.kind() != b.kind()) return solver::is_prepared_mirrored(a.kind(), b.kind());
   for (int i = 0; i < 3; ++i) {
     if (pose_b.position[i] != pose_a.position[i]) return pose_b.position[i] < pose_a.position[i];
   }

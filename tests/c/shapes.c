@@ -12,6 +12,21 @@ static void note_box(const trace* t, const char* what, const winnow_aabb* box) {
   }
 }
 
+/* A cube of its own, in a function; the same as that of its twin. */
+static void farthest_of_cube(const void* context, const double* direction, double* point) {
+  const double half = *(const double*)context;
+  for (int i = 0; i < 3; ++i) point[i] = direction[i] < 0 ? -half : half;
+}
+
+static void make_round_shapes(const trace* t, winnow_shape_pool* pool, winnow_shape_id* ids) {
+  static const double half = 0.25;
+  const winnow_shape shapes[3] = {
+      {WINNOW_SHAPE_ELLIPSOID, {.ellipsoid = {{0.5, 0.4, 0.3}, 0.05}}},
+      {WINNOW_SHAPE_TAPERED_CAPSULE, {.tapered_capsule = {{0.4, 0.2}, 0.5}}},
+      {WINNOW_SHAPE_SUPPORT, {.support = {farthest_of_cube, &half, 0.5, 0.1}}}};
+  for (size_t i = 0; i < 3; ++i) OK(winnow_shape_pool_add(pool, &shapes[i], &ids[i]));
+}
+
 void make_shapes(const trace* t, winnow_shape_pool* pool, winnow_shape_id* ids) {
   const winnow_shape shapes[7] = {
       {WINNOW_SHAPE_SPHERE, {.sphere = {0.5}}},
@@ -32,6 +47,7 @@ void make_shapes(const trace* t, winnow_shape_pool* pool, winnow_shape_id* ids) 
   if (status == WINNOW_UNSUPPORTED) {
     OK(winnow_shape_pool_add_hull_faces(pool, &points, &faces, 0.02, &ids[8]));
   }
+  make_round_shapes(t, pool, &ids[9]);
 }
 
 void make_composites(const trace* t, winnow_composite_pool* pool, const winnow_shape_id* convex,
@@ -113,6 +129,10 @@ void ask_shapes_in_c(const trace* t) {
   note_reals(t, "box", shape.as.box.half, 3);
   OK(winnow_shape_pool_shape(pool, ids[6], &shape));
   note_reals(t, "half-space", shape.as.half_space.normal, 3);
+  OK(winnow_shape_pool_shape(pool, ids[10], &shape));
+  note_reals(t, "tapered capsule", shape.as.tapered_capsule.radius, 2);
+  OK(winnow_shape_pool_shape(pool, ids[11], &shape));
+  note(t, "support", shape.as.support.function == farthest_of_cube);
   winnow_hull hull = {.size = sizeof hull};
   OK(winnow_shape_pool_hull(pool, ids[7], &hull));
   note(t, "hull", hull.vertices);

@@ -6,7 +6,7 @@
 
 #include <winnow/c/winnow.h>
 
-enum { kConvex = 9, kComposite = 4 };
+enum { kConvex = 12, kComposite = 4 };
 
 void make_shapes(const trace* t, winnow_shape_pool* pool, winnow_shape_id* ids);
 void make_composites(const trace* t, winnow_composite_pool* pool, const winnow_shape_id* convex,

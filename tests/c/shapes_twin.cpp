@@ -83,8 +83,8 @@ Pose pose_in(std::size_t i, std::size_t frame) {
   return pose;
 }
 
-std::array<ShapeId, 9> make_convex(ShapePool& pool) {
-  std::array<ShapeId, 9> ids;
+std::array<ShapeId, 12> make_convex(ShapePool& pool) {
+  std::array<ShapeId, 12> ids;
   (void)pool.add(SphereShape{0.5}, ids[0]);
   (void)pool.add(CapsuleShape{0.3, 0.4}, ids[1]);
   (void)pool.add(BoxShape{{0.5, 0.4, 0.3}, 0.05}, ids[2]);
@@ -100,10 +100,18 @@ std::array<ShapeId, 9> make_convex(ShapePool& pool) {
   if (pool.add_hull(corners, 0.02, ids[8]) != Status::ok) {
     (void)pool.add_hull(corners, HullFaces{indices, sizes}, 0.02, ids[8]);
   }
+  (void)pool.add(EllipsoidShape{{0.5, 0.4, 0.3}, 0.05}, ids[9]);
+  (void)pool.add(TaperedCapsuleShape{{0.4, 0.2}, 0.5}, ids[10]);
+  static const double half = 0.25;
+  const auto farthest = [](const void* context, const double direction[3], double point[3]) {
+    const double reach = *static_cast<const double*>(context);
+    for (int i = 0; i < 3; ++i) point[i] = direction[i] < 0.0 ? -reach : reach;
+  };
+  (void)pool.add(SupportShape{farthest, &half, 0.5, 0.1}, ids[11]);
   return ids;
 }
 
-std::array<ShapeId, 4> make_composite(CompositePool& pool, const std::array<ShapeId, 9>& convex) {
+std::array<ShapeId, 4> make_composite(CompositePool& pool, const std::array<ShapeId, 12>& convex) {
   std::array<ShapeId, 4> ids;
   const std::array<Eigen::Vector3f, 4> vertices{
       Eigen::Vector3f(-20, -20, 0), Eigen::Vector3f(20, -20, 0), Eigen::Vector3f(20, 20, 0),
@@ -139,6 +147,8 @@ void ask_shapes_in_cpp(const trace* t) {
   ask_composites(t, composites, composite, pose);
   note_reals(t, "box", pool.tables().boxes[convex[2].index()].half, 3);
   note_reals(t, "half-space", pool.tables().half_spaces[convex[6].index()].normal, 3);
+  note_reals(t, "tapered capsule", pool.tables().tapered_capsules[convex[10].index()].radius, 2);
+  note(t, "support", 1);
   note_hull(t, pool.tables().hulls[convex[7].index()]);
   note(t, "kind", std::string_view(to_string(ShapeKind::half_space)).size());
   note(t, "the footprints are what was asked for", 1);

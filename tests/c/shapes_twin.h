@@ -8,9 +8,9 @@
 namespace winnow::test {
 
 /// What shapes.c makes.
-[[nodiscard]] std::array<ShapeId, 9> make_convex(ShapePool& pool);
+[[nodiscard]] std::array<ShapeId, 12> make_convex(ShapePool& pool);
 [[nodiscard]] std::array<ShapeId, 4> make_composite(CompositePool& pool,
-                                                    const std::array<ShapeId, 9>& convex);
+                                                    const std::array<ShapeId, 12>& convex);
 [[nodiscard]] Pose pose_in(std::size_t i, std::size_t frame);
 
 }  // namespace winnow::test

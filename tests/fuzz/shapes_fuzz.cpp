@@ -95,7 +95,7 @@ Status Workshop::add_kind(Bytes& bytes, ShapeId& id, bool& good) {
   const double c = length(bytes);
   const double r = bytes.chance(4) ? length(bytes) : 0.0;
   const bool finite = std::isfinite(a) && std::isfinite(b) && std::isfinite(c);
-  switch (bytes.below(9)) {
+  switch (bytes.below(11)) {
     case 0:
       good = is_length(a);
       return pool_.add(SphereShape{a}, id);
@@ -117,6 +117,12 @@ Status Workshop::add_kind(Bytes& bytes, ShapeId& id, bool& good) {
     case 6:
       good = finite && (a != 0.0 || b != 0.0 || c != 0.0);
       return pool_.add(HalfSpaceShape{{a, b, c}, 0.0}, id);
+    case 9:
+      good = is_length(a) && is_length(b) && is_length(c) && is_length(r);
+      return pool_.add(EllipsoidShape{{a, b, c}, r}, id);
+    case 10:
+      good = is_length(a) && is_length(b) && is_length(c);
+      return pool_.add(TaperedCapsuleShape{{a, b}, c}, id);
     case 7: {
       const auto given = points(bytes);
       good = !given.empty() && is_length(r) &&

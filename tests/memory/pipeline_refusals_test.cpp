@@ -26,9 +26,7 @@ struct ShapeWorld {
       : shapes(memory), composites(shapes, memory), mesh(memory), field(memory) {}
 
   void describe(Digest& digest) const {
-    for (std::uint32_t kind = 0; kind < kShapeKinds; ++kind) {
-      digest.push_back(shapes.size(static_cast<ShapeKind>(kind)));
-    }
+    for (const ShapeKind kind : kConvexKinds) digest.push_back(shapes.size(kind));
     for (const ShapeId id : ids) {
       digest.push_back(id.bits);
       if (shapes.contains(id)) put_box(digest, shapes.bounds(id, Pose{}));

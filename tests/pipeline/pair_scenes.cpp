@@ -137,6 +137,8 @@ class Maker {
         status = scene_.pool.add(HalfSpaceShape{{n.x(), n.y(), n.z()}, coordinate(size)}, id);
         break;
       }
+      default:
+        status = Status::unsupported;
     }
     EXPECT_EQ(status, Status::ok);
     return id;
@@ -226,6 +228,8 @@ double extent_of(const ShapeTables& tables, ShapeId id) {
     }
     case ShapeKind::half_space:
       return std::abs(tables.half_spaces[i].offset);
+    default:
+      break;
   }
   return 0.0;
 }
@@ -264,8 +268,8 @@ std::vector<ShapeKind> polytope_kinds() {
 
 std::vector<ShapeKind> all_kinds() {
   std::vector<ShapeKind> kinds;
-  for (std::uint32_t i = 0; i < kShapeKinds; ++i) {
-    const auto kind = static_cast<ShapeKind>(i);
+  for (const ShapeKind kind : kConvexKinds) {
+    if (kind > ShapeKind::half_space) break;
     if (kind != ShapeKind::hull || makes_hulls()) kinds.push_back(kind);
   }
   return kinds;

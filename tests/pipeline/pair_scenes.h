@@ -51,7 +51,7 @@ inline void PrintTo(PairStyle style, std::ostream* out) {
 
 /// The kinds that the oracle knows against each other. Hulls only if the library makes them.
 [[nodiscard]] std::vector<ShapeKind> polytope_kinds();
-/// All kinds of shape, hulls only if the library makes them.
+/// All kinds of shape but those known by a support function, hulls only if the library makes them.
 [[nodiscard]] std::vector<ShapeKind> all_kinds();
 
 /// Adds `count` pairs of the two kinds.

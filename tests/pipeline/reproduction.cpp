@@ -64,6 +64,16 @@ void write_shape(std::ostream& out, const ShapeTables& tables, ShapeId id) {
       list(out, "normal", tables.half_spaces[i].normal, 3);
       out << "\"offset\":" << tables.half_spaces[i].offset << ',';
       break;
+    case ShapeKind::ellipsoid:
+      list(out, "radii", tables.ellipsoids[i].radius, 3);
+      out << "\"rounding\":" << tables.ellipsoids[i].rounding << ',';
+      break;
+    case ShapeKind::tapered_capsule:
+      list(out, "radii", tables.tapered_capsules[i].radius, 2);
+      out << "\"half_length\":" << tables.tapered_capsules[i].half_length << ',';
+      break;
+    case ShapeKind::support:
+      break;
   }
 }
 

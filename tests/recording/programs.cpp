@@ -192,7 +192,14 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
   RecordedScene scene(recorder, world.pool, options);
   world.keys.resize(world.bodies.size());
   EXPECT_EQ(scene.add(world.bodies, world.keys), Status::ok);
+  ShapeId round[2];
+  EXPECT_EQ(world.pool.add(EllipsoidShape{{0.8, 0.5, 0.3}}, round[0]), Status::ok);
+  EXPECT_EQ(world.pool.add(TaperedCapsuleShape{{0.5, 0.3}, 0.6}, round[1]), Status::ok);
   Key ground_key;
+  for (const ShapeId shape : round) {
+    EXPECT_EQ(scene.add({.shape = shape, .pose = Pose::at(0.3, 0.2, -0.9)}, ground_key),
+              Status::ok);
+  }
   EXPECT_EQ(scene.add({.shape = ground_id, .motion = Motion::fixed}, ground_key), Status::ok);
   Contacts contacts;
   for (int frame = 0; frame < frames; ++frame) {

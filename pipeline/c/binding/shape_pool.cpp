@@ -39,6 +39,17 @@ namespace {
   return {{s.normal[0], s.normal[1], s.normal[2]}, s.offset};
 }
 
+[[nodiscard]] EllipsoidShape read(const decltype(winnow_shape::as.ellipsoid)& s) noexcept {
+  return {{s.radius[0], s.radius[1], s.radius[2]}, s.rounding};
+}
+[[nodiscard]] TaperedCapsuleShape read(
+    const decltype(winnow_shape::as.tapered_capsule)& s) noexcept {
+  return {{s.radius[0], s.radius[1]}, s.half_length};
+}
+[[nodiscard]] SupportShape read(const decltype(winnow_shape::as.support)& s) noexcept {
+  return {s.function, s.context, s.radius, s.rounding};
+}
+
 [[nodiscard]] Status add(ShapePool& pool, const winnow_shape& shape, ShapeId& id) {
   switch (shape.kind) {
     case WINNOW_SHAPE_SPHERE:
@@ -55,6 +66,12 @@ namespace {
       return pool.add(read(shape.as.triangle), id);
     case WINNOW_SHAPE_HALF_SPACE:
       return pool.add(read(shape.as.half_space), id);
+    case WINNOW_SHAPE_ELLIPSOID:
+      return pool.add(read(shape.as.ellipsoid), id);
+    case WINNOW_SHAPE_TAPERED_CAPSULE:
+      return pool.add(read(shape.as.tapered_capsule), id);
+    case WINNOW_SHAPE_SUPPORT:
+      return pool.add(read(shape.as.support), id);
     default:
       return Status::invalid_argument;
   }
@@ -94,6 +111,17 @@ void write(const Shape& shape, Member& member) noexcept {
     case ShapeKind::half_space:
       write(tables.half_spaces[i], shape.as.half_space);
       break;
+    case ShapeKind::ellipsoid:
+      write(tables.ellipsoids[i], shape.as.ellipsoid);
+      break;
+    case ShapeKind::tapered_capsule:
+      write(tables.tapered_capsules[i], shape.as.tapered_capsule);
+      break;
+    case ShapeKind::support: {
+      const SupportShape& own = tables.supports[i];
+      shape.as.support = {own.function, own.context, own.radius, own.rounding};
+      break;
+    }
     case ShapeKind::hull:
       break;
   }
@@ -130,8 +158,7 @@ const char* winnow_shape_kind_name(winnow_shape_kind kind) {
       break;
   }
   winnow::ShapeKind known{};
-  return read_choice(kind, winnow::ShapeKind::half_space, known) ? winnow::to_string(known)
-                                                                 : "none";
+  return read_choice(kind, winnow::ShapeKind::support, known) ? winnow::to_string(known) : "none";
 }
 
 winnow_status winnow_shape_pool_create(const winnow_memory* memory, winnow_shape_pool** pool) {
@@ -197,7 +224,9 @@ winnow_status winnow_shape_pool_contains(const winnow_shape_pool* pool, winnow_s
 winnow_status winnow_shape_pool_size(const winnow_shape_pool* pool, winnow_shape_kind kind,
                                      size_t* size) {
   winnow::ShapeKind which{};
-  if (!are_given(pool, size) || !read_choice(kind, winnow::ShapeKind::half_space, which)) {
+  const bool is_composite = kind >= WINNOW_SHAPE_MESH && kind <= WINNOW_SHAPE_HEIGHT_FIELD;
+  if (!are_given(pool, size) || is_composite ||
+      !read_choice(kind, winnow::ShapeKind::support, which)) {
     return WINNOW_INVALID_ARGUMENT;
   }
   *size = pool->value.size(which);

@@ -107,7 +107,7 @@ class Advancement {
         pair_(pair),
         path_(pair),
         tolerance_(tolerance / path_.speed()),
-        mirrored_(pair.moving.kind() > pair.standing.kind()),
+        mirrored_(solver::is_prepared_mirrored(pair.moving.kind(), pair.standing.kind())),
         largest_(solver::largest_length(tables, pair.moving, pair.standing)) {}
 
   bool run(CastTouch& touch) noexcept {
@@ -136,7 +136,6 @@ class Advancement {
   const CastPair& pair_;
   const Path path_;
   const double tolerance_;
-  /// The solver takes the lesser kind first.
   const bool mirrored_;
   const double largest_;
   /// Of the last sample.

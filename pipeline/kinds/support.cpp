@@ -1,0 +1,54 @@
+#include "pipeline/shapes/put_shape.h"
+
+#include <Eigen/Core>
+
+namespace winnow {
+namespace {
+
+using Eigen::Vector3d;
+
+/// What a function answers along the directions to the corners, edges and faces of a cube.
+class SupportProbe {
+ public:
+  explicit SupportProbe(const SupportShape& shape) noexcept {
+    for (int i = 0; i < 27; ++i) {
+      const Vector3d out(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      if (out.isZero(0.0)) continue;
+      direction_[count_] = out.normalized();
+      shape.function(shape.context, direction_[count_].data(), point_[count_].data());
+      ++count_;
+    }
+  }
+
+  /// Finite, within the radius, and no point farther along another's direction than that one's.
+  [[nodiscard]] bool is_convex(double radius) const noexcept {
+    const double doubt = 1e-9 * radius;
+    for (int i = 0; i < kCount; ++i) {
+      if (!point_[i].allFinite() || point_[i].stableNorm() > radius + doubt) return false;
+    }
+    for (int i = 0; i < kCount; ++i) {
+      for (const Vector3d& point : point_) {
+        if (direction_[i].dot(point - point_[i]) > doubt) return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  static constexpr int kCount = 26;
+  Vector3d direction_[kCount];
+  Vector3d point_[kCount];
+  int count_ = 0;
+};
+
+}  // namespace
+
+Status ShapePool::add(const SupportShape& shape, ShapeId& id) {
+  if (!are_lengths({shape.radius, shape.rounding}) || shape.function == nullptr ||
+      !SupportProbe(shape).is_convex(shape.radius)) {
+    return Status::invalid_shape;
+  }
+  return put(supports_, ShapeKind::support, shape, id);
+}
+
+}  // namespace winnow

@@ -1,0 +1,96 @@
+#include "pipeline/rays/shape_entries.h"
+#include "pipeline/shapes/support_core.h"
+#include "pipeline/solver/gjk.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kNoEnd = std::numeric_limits<double>::infinity();
+
+/// How near a point is to a core: a plane that the core is behind, and how far in front of it.
+struct Foreground {
+  double distance = 0.0;
+  Vector3d normal = Vector3d::Zero();
+  bool inside = false;
+};
+
+class SupportTarget {
+ public:
+  SupportTarget(const SupportCore& core, double scale) noexcept {
+    body_.kind = solver::CoreKind::support;
+    body_.farthest = core;
+    body_.unit[0] = scale;
+  }
+
+  [[nodiscard]] Foreground seen_from(const Vector3d& point) noexcept {
+    point_.center = point;
+    const Vector3d start = point.isZero(0.0) ? Vector3d(Vector3d::UnitX()) : Vector3d(-point);
+    const solver::GjkResult found = solver::gjk(point_, body_, start, kGrazing, kNoEnd);
+    if (found.contact) return {0.0, Vector3d::Zero(), true};
+    return {found.lower, -found.axis, false};
+  }
+
+ private:
+  solver::Core point_;
+  solver::Core body_;
+};
+
+/// From plane to plane, each of which a convex core is behind, so that none is passed (van den
+/// Bergen, "Ray casting against general convex objects with application to continuous collision
+/// detection", 2004). Where a ray grazes, each step halves the rest.
+[[nodiscard]] FirstEntry approach_core(const LocalRay& ray, const SupportCore& core,
+                                       double scale) noexcept {
+  constexpr int kMostSteps = 200;
+  const double rounding = scale * core.rounding;
+  FirstEntry entry;
+  const RaySpan ball = ball_span(ray, Vector3d::Zero(), scale * core.radius + rounding);
+  if (ball.is_empty() || ball.out < ray.low) return entry;
+  SupportTarget target(core, scale);
+  double t = std::max(ball.in, ray.low);
+  Vector3d normal = Vector3d::Zero();
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Foreground seen = target.seen_from(ray.at(t));
+    const double rest = seen.distance - rounding;
+    if (!seen.inside) normal = seen.normal;
+    const double rate = normal.dot(ray.direction);
+    if (!seen.inside && rest > 4.0 * kGrazing && !(rate < 0.0)) return entry;
+    const double next = rate < 0.0 ? t - rest / rate : t;
+    if (!seen.inside && rest > kGrazing && next > t) {
+      t = next;
+      continue;
+    }
+    const bool begins = step == 0 && t <= ray.low && (seen.inside || rest < 0.0);
+    entry.meet(ray, {begins ? -kNoEnd : t, kNoEnd, normal});
+    return entry;
+  }
+  return entry;
+}
+
+}  // namespace
+
+FirstEntry enter(const LocalRay& ray, const EllipsoidShape& ellipsoid, double scale) noexcept {
+  constexpr double kThin = 1e-12;
+  const Vector3d radius = scale * Vector3d::Map(ellipsoid.radius);
+  if (ellipsoid.rounding > 0.0 || !(radius.minCoeff() > kThin)) {
+    return approach_core(ray, support_core(ellipsoid), scale);
+  }
+  LocalRay stretched = ray;
+  stretched.origin = ray.origin.cwiseQuotient(radius);
+  stretched.direction = ray.direction.cwiseQuotient(radius);
+  RaySpan span = ball_span(stretched, Vector3d::Zero(), 1.0);
+  span.normal = span.normal.cwiseQuotient(radius).stableNormalized();
+  FirstEntry entry;
+  entry.meet(ray, span);
+  return entry;
+}
+
+FirstEntry enter(const LocalRay& ray, const SupportShape& shape, double scale) noexcept {
+  return approach_core(ray, support_core(shape), scale);
+}
+
+}  // namespace winnow

@@ -1,0 +1,105 @@
+#include "pipeline/solver/point_distance.h"
+
+#include <cmath>
+
+namespace winnow::solver {
+namespace {
+
+/// Of an ellipsoid, in its frame, relative to its least radius.
+struct Ellipsoid {
+  explicit Ellipsoid(const Vec& radius) noexcept {
+    radius.minCoeff(&least);
+    thin = radius[least];
+    excess = (radius.array() - thin) * (radius.array() + thin);
+  }
+  int least = 0;
+  double thin = 0.0;
+  /// Squares of the radii less that of the least.
+  Vec excess;
+};
+
+/// Outward for a point q that no equation has a root for: the way out is along the thin axes.
+/// `left`: what the sum of squares is short of 1.
+Vec outward_along_thin(const Ellipsoid& shape, const Vec& q, double left) noexcept {
+  Vec normal = Vec::Zero();
+  if (shape.thin == 0.0) {
+    for (int i = 0; i < 3; ++i) normal[i] = shape.excess[i] > 0.0 ? 0.0 : q[i];
+    return normal == Vec::Zero() ? Vec(Vec::Unit(shape.least)) : unit(normal);
+  }
+  for (int i = 0; i < 3; ++i) {
+    if (shape.excess[i] > 0.0) normal[i] = q[i] / shape.excess[i];
+  }
+  normal[shape.least] = std::sqrt(left) / shape.thin;
+  return unit(normal);
+}
+
+/// Outward where the surface of an ellipsoid is nearest to a point q in its frame. The normal there
+/// is q_i / (s + excess_i), for the largest s at which the squares of weight_i / (s + excess_i) add
+/// up to 1.
+Vec outward_of_ellipsoid(const Vec& radius, const Vec& q) noexcept {
+  const Ellipsoid shape(radius);
+  const Vec weight = radius.cwiseProduct(q.cwiseAbs());
+  double s = 0.0;
+  for (int i = 0; i < 3; ++i) s = shape.excess[i] > 0.0 ? s : std::hypot(s, weight[i]);
+  // The sum falls and is convex: from the left no step passes the root.
+  constexpr int kMostSteps = 200;
+  for (int step = 0; step < kMostSteps; ++step) {
+    double sum = -1.0;
+    double slope = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      if (weight[i] == 0.0) continue;
+      const double share = weight[i] / (s + shape.excess[i]);
+      sum += share * share;
+      slope += 2.0 * share * share / (s + shape.excess[i]);
+    }
+    if (s == 0.0 && sum <= 0.0) return outward_along_thin(shape, q, -sum);
+    const double next = s + sum / slope;
+    if (!(next > s)) break;
+    s = next;
+  }
+  Vec normal = Vec::Zero();
+  for (int i = 0; i < 3; ++i) normal[i] = q[i] == 0.0 ? 0.0 : q[i] / (s + shape.excess[i]);
+  return unit(normal);
+}
+
+/// The same of the hull of balls of radii `low` at z = -half and `high` at z = half.
+Vec outward_of_taper(double low, double high, double half, const Vec& q) noexcept {
+  const double rho = std::hypot(q.x(), q.y());
+  const Vec out = rho > 0.0 ? Vec(q.x() / rho, q.y() / rho, 0.0) : Vec(Vec::UnitX());
+  const double rise = low - high;
+  const bool swallows = std::abs(rise) >= 2.0 * half;
+  const double sine = swallows ? 0.0 : rise / (2.0 * half);
+  const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
+  const double along = cosine * (q.z() + half) - sine * rho;
+  bool is_low = along <= 0.0;
+  if (swallows) is_low = rise >= 0.0;
+  if (!swallows && !is_low && along < 2.0 * half * cosine) {
+    return out * cosine + Vec(0.0, 0.0, sine);
+  }
+  const double side = is_low ? -1.0 : 1.0;
+  const Vec normal = unit(q - Vec(0.0, 0.0, side * half));
+  return normal == Vec::Zero() ? Vec(0.0, 0.0, side) : normal;
+}
+
+}  // namespace
+
+Vec axis_from_point(const Problem& problem) noexcept {
+  const Core& b = problem.b;
+  if (problem.a.kind != CoreKind::point || b.kind != CoreKind::support) return Vec::Zero();
+  const Vec q = b.rotation.transpose() * (problem.a.center - b.center);
+  const auto scaled = [&](double length) { return length * b.unit[0] * b.unit[1]; };
+  Vec outward = Vec::Zero();
+  if (b.farthest.kind == ShapeKind::ellipsoid) {
+    const auto& shape = *static_cast<const EllipsoidShape*>(b.farthest.shape);
+    outward = outward_of_ellipsoid(
+        {scaled(shape.radius[0]), scaled(shape.radius[1]), scaled(shape.radius[2])}, q);
+  } else if (b.farthest.kind == ShapeKind::tapered_capsule) {
+    const auto& shape = *static_cast<const TaperedCapsuleShape*>(b.farthest.shape);
+    const double less = b.farthest.rounding;
+    outward = outward_of_taper(scaled(shape.radius[0] - less), scaled(shape.radius[1] - less),
+                               scaled(shape.half_length), q);
+  }
+  return b.rotation * -outward;
+}
+
+}  // namespace winnow::solver

@@ -1,0 +1,653 @@
+// Shapes that are known by their farthest points: ellipsoids, tapered capsules and convex sets of a
+// program's own, against the same shapes given otherwise and against long double.
+
+#include <gtest/gtest.h>
+#include <winnow/winnow.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_scenes.h"
+#include "tests/support/random.h"
+
+namespace winnow::test {
+namespace {
+
+using Real = long double;
+using RealVec = Eigen::Matrix<Real, 3, 1>;
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+
+// --- functions of a program's own ---------------------------------------------------------------
+
+void farthest_of_block(const void* context, const double direction[3], double point[3]) {
+  const auto& box = *static_cast<const BoxShape*>(context);
+  for (int i = 0; i < 3; ++i) point[i] = direction[i] < 0.0 ? -box.half[i] : box.half[i];
+}
+
+void farthest_of_drum(const void* context, const double direction[3], double point[3]) {
+  const auto& drum = *static_cast<const CylinderShape*>(context);
+  const double across = std::hypot(direction[0], direction[1]);
+  for (int i = 0; i < 2; ++i) {
+    point[i] = across > 0.0 ? drum.radius * (direction[i] / across) : 0.0;
+  }
+  point[2] = direction[2] < 0.0 ? -drum.half_length : drum.half_length;
+}
+
+/// Shapes whose functions can be made bad after they were taken.
+struct Moody {
+  enum Mood { good, not_a_number, endless, zero, far_away, contradictory };
+  Mood mood = good;
+};
+
+void farthest_of_moody(const void* context, const double direction[3], double point[3]) {
+  const BoxShape cube{{1.0, 1.0, 1.0}};
+  farthest_of_block(&cube, direction, point);
+  switch (static_cast<const Moody*>(context)->mood) {
+    case Moody::good:
+      return;
+    case Moody::not_a_number:
+      point[1] = std::numeric_limits<double>::quiet_NaN();
+      return;
+    case Moody::endless:
+      point[2] = -kEndless;
+      return;
+    case Moody::zero:
+      std::fill_n(point, 3, 0.0);
+      return;
+    case Moody::far_away:
+      for (int i = 0; i < 3; ++i) point[i] *= 1e300;
+      return;
+    case Moody::contradictory:
+      // What is nearest one way, and something else the other.
+      for (int i = 0; i < 3; ++i) point[i] = std::sin(1e4 * direction[i] + i) - point[i] * 0.5;
+  }
+}
+
+// --- the same shape in two ways -----------------------------------------------------------------
+
+/// Adds a shape of a new kind, and the same as one of an old kind.
+struct Same {
+  const char* name;
+  std::function<void(Random&, ShapePool&, ShapeId&, ShapeId&)> add;
+};
+
+BoxShape the_block;
+CylinderShape the_drum;
+
+std::vector<Same> same_shapes() {
+  return {{"block",
+           [](Random& random, ShapePool& pool, ShapeId& id, ShapeId& known) {
+             the_block = {{random.uniform(0.2, 1.0), random.uniform(0.2, 1.0), 0.5}, 0.1};
+             const SupportShape own{farthest_of_block, &the_block, 2.0, 0.1};
+             ASSERT_EQ(pool.add(own, id), Status::ok);
+             ASSERT_EQ(pool.add(the_block, known), Status::ok);
+           }},
+          {"drum",
+           [](Random& random, ShapePool& pool, ShapeId& id, ShapeId& known) {
+             the_drum = {random.uniform(0.2, 1.0), random.uniform(0.2, 1.0), 0.0};
+             const SupportShape own{farthest_of_drum, &the_drum, 2.0, 0.0};
+             ASSERT_EQ(pool.add(own, id), Status::ok);
+             ASSERT_EQ(pool.add(the_drum, known), Status::ok);
+           }},
+          {"ball",
+           [](Random& random, ShapePool& pool, ShapeId& id, ShapeId& known) {
+             const double r = random.uniform(0.2, 1.0);
+             ASSERT_EQ(pool.add(EllipsoidShape{{r, r, r}, 0.125}, id), Status::ok);
+             ASSERT_EQ(pool.add(SphereShape{r + 0.125}, known), Status::ok);
+           }},
+          {"capsule",
+           [](Random& random, ShapePool& pool, ShapeId& id, ShapeId& known) {
+             const double r = random.uniform(0.2, 1.0);
+             ASSERT_EQ(pool.add(TaperedCapsuleShape{{r, r}, 0.7}, id), Status::ok);
+             ASSERT_EQ(pool.add(CapsuleShape{r, 0.7}, known), Status::ok);
+           }},
+          {"ball in a ball", [](Random& random, ShapePool& pool, ShapeId& id, ShapeId& known) {
+             const double r = random.uniform(1.0, 2.0);
+             const double less = random.uniform(0.0, 0.9);
+             ASSERT_EQ(pool.add(TaperedCapsuleShape{{r, less}, 0.0}, id), Status::ok);
+             ASSERT_EQ(pool.add(SphereShape{r}, known), Status::ok);
+           }}};
+}
+
+/// Pairs with a shape of some kind, the others given as a shape of a new kind, and as one of an
+/// old.
+struct SamePairs {
+  SamePairs(const Same& same, ShapeKind kind, std::size_t count, Random& random) {
+    add_pairs(scene, kind, kind, PairStyle::ordinary, count, random);
+    ShapeId id;
+    ShapeId old;
+    same.add(random, scene.pool, id, old);
+    known = scene.shapes;
+    for (std::size_t i = 0; i < known.size(); i += 2) {
+      scene.shapes[i] = id;
+      known[i] = old;
+    }
+  }
+  [[nodiscard]] std::vector<PairAnswers> truth(const NarrowOptions& options) const {
+    NarrowPhase narrow;
+    NarrowResult result;
+    EXPECT_EQ(narrow.collide(scene.pool, {known, scene.poses}, scene.pairs, options, result),
+              Status::ok);
+    return answers_of(result, scene.pairs.size());
+  }
+
+  PairScene scene;
+  std::vector<ShapeId> known;
+};
+
+void expect_alike(const PairAnswers& one, const PairAnswers& known) {
+  const double bound = one.error_bound + known.error_bound;
+  EXPECT_LE(std::abs(one.distance - known.distance), bound);
+  EXPECT_LT(one.error_bound, 1e-4);
+  EXPECT_NEAR(one.normal.norm(), 1.0, 1e-12);
+  if (std::abs(known.distance) > bound) {
+    EXPECT_EQ(one.overlap, known.overlap);
+  }
+}
+
+void expect_deepest_point(const PairAnswers& answer) {
+  ASSERT_FALSE(answer.contacts.empty());
+  double deepest = -kEndless;
+  for (const ContactPoint& point : answer.contacts) {
+    deepest = std::max(deepest, static_cast<double>(point.depth));
+  }
+  EXPECT_NEAR(deepest, -answer.distance, 1e-5);
+}
+
+TEST(SupportShapes, say_what_the_same_shapes_say_that_are_given_otherwise) {
+  constexpr double kMargin = 0.1;
+  Random random(1);
+  for (const Same& same : same_shapes()) {
+    for (const ShapeKind kind : all_kinds()) {
+      const SamePairs pairs(same, kind, scaled(60), random);
+      for (const ContactLevel level :
+           {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
+        const NarrowOptions options{.level = level, .margin = kMargin};
+        const auto answers = ask(pairs.scene, options);
+        const auto truth = pairs.truth(options);
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+          SCOPED_TRACE(std::string(same.name) + " " + to_string(kind) + " " + std::to_string(i));
+          if (level == ContactLevel::boolean) {
+            EXPECT_EQ(answers[i].overlap, truth[i].overlap);
+            continue;
+          }
+          const bool is_near = truth[i].distance <= kMargin - 1e-6;
+          if (level == ContactLevel::distance || is_near) expect_alike(answers[i], truth[i]);
+          if (level == ContactLevel::manifold && is_near) expect_deepest_point(answers[i]);
+        }
+      }
+    }
+  }
+}
+
+// --- closed forms in long double ----------------------------------------------------------------
+
+/// Of a point from the surface of an ellipsoid, negative inside (Eberly, "Distance from a point to
+/// an ellipse, an ellipsoid, or a hyperellipsoid", 2013, by bisection); no coordinate is 0.
+Real from_ellipsoid(const EllipsoidShape& shape, const RealVec& point) {
+  const RealVec r = Eigen::Vector3d::Map(shape.radius).cast<Real>();
+  const Real least = r.minCoeff();
+  const auto level = [&](Real t) {
+    Real sum = -1.0L;
+    for (int i = 0; i < 3; ++i) {
+      const Real q = r[i] * point[i] / (t + r[i] * r[i]);
+      sum += q * q;
+    }
+    return sum;
+  };
+  Real low = -least * least;
+  Real high = r.maxCoeff() * (point.norm() + r.maxCoeff());
+  for (int step = 0; step < 200; ++step) {
+    const Real t = 0.5L * (low + high);
+    (level(t) > 0.0L ? low : high) = t;
+  }
+  RealVec foot;
+  for (int i = 0; i < 3; ++i) foot[i] = r[i] * r[i] * point[i] / (low + r[i] * r[i]);
+  const Real distance = (point - foot).norm();
+  return level(0.0L) > 0.0L ? distance : -distance;
+}
+
+/// The least of a convex function on [0, 1].
+Real least_of(const std::function<Real(Real)>& f) {
+  Real low = 0.0L;
+  Real high = 1.0L;
+  for (int step = 0; step < 160; ++step) {
+    const Real a = low + (high - low) / 3.0L;
+    const Real b = high - (high - low) / 3.0L;
+    (f(a) < f(b) ? high : low) = f(a) < f(b) ? b : a;
+  }
+  return f(0.5L * (low + high));
+}
+
+/// Centre and radius of the balls that a tapered capsule is swept by, at the share t.
+RealVec centre_at(const TaperedCapsuleShape& taper, Real t) {
+  return {0.0L, 0.0L, (2.0L * t - 1.0L) * taper.half_length};
+}
+Real radius_at(const TaperedCapsuleShape& taper, Real t) {
+  return (1.0L - t) * taper.radius[0] + t * taper.radius[1];
+}
+
+Eigen::Matrix<Real, 3, 3> turn_of(const Pose& pose) {
+  const double* q = pose.orientation;
+  return Eigen::Quaternion<Real>(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+}
+
+/// A point of b's frame in that of a.
+RealVec seen_from(const Pose& a, const Pose& b, const RealVec& point) {
+  const RealVec at =
+      Eigen::Vector3d::Map(b.position).cast<Real>() - Eigen::Vector3d::Map(a.position).cast<Real>();
+  return turn_of(a).transpose() * (turn_of(b) * point + at);
+}
+
+Pose random_pose(Random& random, double reach) {
+  Pose pose;
+  for (double& x : pose.position) x = random.uniform(-reach, reach);
+  for (double& x : pose.orientation) x = random.uniform(-1.0, 1.0);
+  return pose;
+}
+
+/// A length between thin and ordinary.
+double length(Random& random) {
+  return random.chance(0.2) ? random.log_uniform(1e-3, 1.0) : random.uniform(0.2, 1.5);
+}
+
+template <typename A, typename B>
+PairAnswers answer_to(const A& a, const Pose& pose_a, const B& b, const Pose& pose_b) {
+  PairScene scene;
+  scene.shapes.resize(2);
+  EXPECT_EQ(scene.pool.add(a, scene.shapes[0]), Status::ok);
+  EXPECT_EQ(scene.pool.add(b, scene.shapes[1]), Status::ok);
+  scene.poses = {pose_a, pose_b};
+  scene.pairs = {{0, 1}};
+  const auto answers = ask(scene, {.level = ContactLevel::distance});
+  return answers.empty() ? PairAnswers{} : answers[0];
+}
+
+void expect_truth(const PairAnswers& answer, Real truth) {
+  EXPECT_LE(std::abs(static_cast<Real>(answer.distance) - truth),
+            static_cast<Real>(answer.error_bound));
+  EXPECT_EQ(answer.overlap, truth <= 0.0L);
+}
+
+TEST(Ellipsoids, are_as_far_from_points_capsules_and_planes_as_long_double_says) {
+  Random random(2);
+  for (std::size_t n = scaled(200); n-- != 0;) {
+    SCOPED_TRACE(n);
+    const EllipsoidShape shape{{length(random), length(random), length(random)}};
+    const Pose at = random_pose(random, 1.0);
+    const Pose other = random_pose(random, 2.0);
+    const Real of_point = from_ellipsoid(shape, seen_from(at, other, RealVec::Zero()));
+    expect_truth(answer_to(shape, at, SphereShape{0.25}, other), of_point - 0.25L);
+    expect_truth(answer_to(SphereShape{}, other, shape, at), of_point);
+    const TaperedCapsuleShape taper{{length(random), length(random)}, length(random)};
+    const auto gap = [&](Real t) {
+      return from_ellipsoid(shape, seen_from(at, other, centre_at(taper, t))) - radius_at(taper, t);
+    };
+    // The distance of a capsule's middle line, as long as that is outside.
+    const Real apart = least_of(gap);
+    if (apart > 0.0L) expect_truth(answer_to(taper, other, shape, at), apart);
+    const HalfSpaceShape plane{{0.0, 0.0, 1.0}, 0.5};
+    const RealVec normal = turn_of(at).transpose() * turn_of(other).col(2);
+    const RealVec r = Eigen::Vector3d::Map(shape.radius).cast<Real>();
+    const Real height = -normal.dot(seen_from(at, other, RealVec::Zero())) - 0.5L;
+    expect_truth(answer_to(plane, other, shape, at), height - r.cwiseProduct(normal).norm());
+  }
+}
+
+TEST(TaperedCapsules, are_as_far_from_points_as_long_double_says) {
+  Random random(3);
+  for (std::size_t n = scaled(200); n-- != 0;) {
+    SCOPED_TRACE(n);
+    const TaperedCapsuleShape taper{{length(random), length(random)}, length(random)};
+    const Pose at = random_pose(random, 1.0);
+    const Pose other = random_pose(random, 2.0);
+    const RealVec point = seen_from(at, other, RealVec::Zero());
+    const Real truth = least_of(
+        [&](Real t) { return (point - centre_at(taper, t)).norm() - radius_at(taper, t); });
+    expect_truth(answer_to(taper, at, SphereShape{}, other), truth);
+    expect_truth(answer_to(SphereShape{0.5}, other, taper, at), truth - 0.5L);
+  }
+}
+
+TEST(SupportShapes, that_share_their_centres_have_depths_within_their_bounds) {
+  Random random(4);
+  for (std::size_t n = scaled(60); n-- != 0;) {
+    SCOPED_TRACE(n);
+    const EllipsoidShape shape{{length(random), length(random), length(random)}};
+    const Pose at = random_pose(random, 0.0);
+    const Pose other = random_pose(random, 0.0);
+    const double least = std::min({shape.radius[0], shape.radius[1], shape.radius[2]});
+    expect_truth(answer_to(shape, at, SphereShape{0.5}, other), -0.5L - least);
+    const TaperedCapsuleShape taper{{length(random), length(random)}, length(random)};
+    const Real truth =
+        least_of([&](Real t) { return centre_at(taper, t).norm() - radius_at(taper, t); });
+    expect_truth(answer_to(taper, at, SphereShape{0.5}, other), truth - 0.5L);
+    EXPECT_LT(answer_to(taper, at, SphereShape{0.5}, other).error_bound, 1e-13);
+    EXPECT_LT(answer_to(shape, at, SphereShape{0.5}, other).error_bound, 1e-13);
+  }
+}
+
+// --- bounds, rays, manifolds --------------------------------------------------------------------
+
+TEST(SupportShapes, have_tight_bounds) {
+  Random random(5);
+  for (std::size_t n = scaled(200); n-- != 0;) {
+    ShapePool pool;
+    ShapeId id[3];
+    const EllipsoidShape ball{{length(random), length(random), length(random)}, 0.1};
+    const TaperedCapsuleShape taper{{length(random), length(random)}, length(random)};
+    const BoxShape box{{length(random), length(random), length(random)}, 0.1};
+    ASSERT_EQ(pool.add(ball, id[0]), Status::ok);
+    ASSERT_EQ(pool.add(taper, id[1]), Status::ok);
+    ASSERT_EQ(pool.add(SupportShape{farthest_of_block, &box, 3.0, 0.1}, id[2]), Status::ok);
+    const Pose pose = random_pose(random, 3.0);
+    for (int axis = 0; axis < 3; ++axis) {
+      const RealVec row = turn_of(pose).row(axis);
+      const RealVec r = Eigen::Vector3d::Map(ball.radius).cast<Real>();
+      const RealVec h = Eigen::Vector3d::Map(box.half).cast<Real>();
+      const Real up = row.z() * taper.half_length;
+      const Real high[3] = {r.cwiseProduct(row).norm() + 0.1L,
+                            std::max(taper.radius[0] - up, taper.radius[1] + up),
+                            h.dot(row.cwiseAbs()) + 0.1L};
+      for (int i = 0; i < 3; ++i) {
+        const auto top = static_cast<Real>(pool.bounds(id[i], pose).max[axis]);
+        EXPECT_GE(top, pose.position[axis] + high[i] - 1e-12L);
+        EXPECT_LE(top, pose.position[axis] + high[i] + 2e-6L);
+      }
+    }
+  }
+}
+
+/// The same ray at two shapes of a pool.
+void expect_same_hit(const ShapePool& pool, ShapeId one, ShapeId other, const Pose& pose,
+                     const ShapeRay& ray, double doubt) {
+  ShapeHit hit;
+  ShapeHit known;
+  ASSERT_EQ(cast_ray(pool.tables(), one, pose, ray, hit), Status::ok);
+  ASSERT_EQ(cast_ray(pool.tables(), other, pose, ray, known), Status::ok);
+  ASSERT_EQ(hit.hit, known.hit);
+  if (!hit.hit) return;
+  EXPECT_NEAR(hit.t, known.t, doubt);
+  const double along = Eigen::Vector3d::Map(hit.normal).dot(Eigen::Vector3d::Map(known.normal));
+  // At an edge either face's will do.
+  EXPECT_GT(along, known.t == 0.0 ? 0.999 : -1e-6);
+}
+
+TEST(SupportShapes, are_met_by_rays_where_their_surfaces_are) {
+  Random random(6);
+  for (std::size_t n = scaled(1000); n-- != 0;) {
+    SCOPED_TRACE(n);
+    ShapePool pool;
+    const EllipsoidShape ball{{length(random), length(random), length(random)}};
+    const TaperedCapsuleShape taper{{length(random), length(random)}, length(random)};
+    const BoxShape box{{length(random), length(random), length(random)}};
+    ShapeId id[4];
+    ASSERT_EQ(pool.add(ball, id[0]), Status::ok);
+    ASSERT_EQ(pool.add(taper, id[1]), Status::ok);
+    ASSERT_EQ(pool.add(SupportShape{farthest_of_block, &box, 3.0, 0.0}, id[2]), Status::ok);
+    ASSERT_EQ(pool.add(box, id[3]), Status::ok);
+    const Pose pose = random_pose(random, 1.0);
+    ShapeRay ray{{}, {}, kEndless};
+    for (double& x : ray.origin) x = random.uniform(-3.0, 3.0);
+    for (int i = 0; i < 3; ++i) {
+      ray.direction[i] = pose.position[i] + random.uniform(-1.2, 1.2) - ray.origin[i];
+    }
+    expect_same_hit(pool, id[2], id[3], pose, ray, 1e-12);
+    const auto height = [&](std::size_t which, Real t) {
+      const RealVec at = Eigen::Vector3d::Map(ray.origin).cast<Real>() +
+                         t * Eigen::Vector3d::Map(ray.direction).cast<Real>();
+      const RealVec point =
+          turn_of(pose).transpose() * (at - Eigen::Vector3d::Map(pose.position).cast<Real>());
+      if (which == 0) return from_ellipsoid(ball, point);
+      return least_of([&](Real share) {
+        return (point - centre_at(taper, share)).norm() - radius_at(taper, share);
+      });
+    };
+    for (std::size_t which = 0; which < 2; ++which) {
+      ShapeHit hit;
+      ASSERT_EQ(cast_ray(pool.tables(), id[which], pose, ray, hit), Status::ok);
+      const bool begins_inside = height(which, 0.0L) <= 0.0L;
+      if (begins_inside) {
+        EXPECT_TRUE(hit.hit);
+        EXPECT_EQ(hit.t, 0.0);
+        continue;
+      }
+      const Real last = hit.hit ? static_cast<Real>(hit.t) : 3.0L;
+      if (hit.hit) {
+        EXPECT_NEAR(static_cast<double>(height(which, hit.t)), 0.0, 1e-13);
+      }
+      for (int i = 1; i < 16; ++i) EXPECT_GT(height(which, last * i / 16.0L), -1e-13L);
+    }
+  }
+}
+
+std::uint32_t contacts_on_floor(ShapePool& pool, ShapeId id, double height, double tilt) {
+  ShapeId floor;
+  EXPECT_EQ(pool.add(HalfSpaceShape{}, floor), Status::ok);
+  const std::vector<ShapeId> shapes{id, floor};
+  Pose pose = Pose::at(0, 0, height);
+  pose.orientation[0] = std::cos(0.5 * tilt);
+  pose.orientation[1] = std::sin(0.5 * tilt);
+  const std::vector<Pose> poses{pose, Pose{}};
+  const std::vector<BodyPair> pairs{{0, 1}};
+  NarrowPhase narrow;
+  NarrowResult result;
+  EXPECT_EQ(narrow.collide(pool, {shapes, poses}, pairs,
+                           {.level = ContactLevel::manifold, .margin = 0.02}, result),
+            Status::ok);
+  return result.contact_count()[0];
+}
+
+TEST(SupportShapes, rest_on_as_many_points_as_they_have_corners_there) {
+  ShapePool pool;
+  const BoxShape box{{0.5, 0.4, 0.3}};
+  ShapeId block;
+  ShapeId ball;
+  ShapeId taper;
+  ASSERT_EQ(pool.add(SupportShape{farthest_of_block, &box, 1.0, 0.0}, block), Status::ok);
+  ASSERT_EQ(pool.add(EllipsoidShape{{1.0, 1.0, 0.3}}, ball), Status::ok);
+  ASSERT_EQ(pool.add(TaperedCapsuleShape{{0.3, 0.2}, 1.0}, taper), Status::ok);
+  for (const double tilt : {0.0, 1e-6, 1e-4, 1e-2}) {
+    EXPECT_EQ(contacts_on_floor(pool, block, 0.3, tilt), 4U) << tilt;
+    EXPECT_EQ(contacts_on_floor(pool, ball, 0.3, tilt), 1U) << tilt;
+  }
+  // On its side, which slopes by asin(0.05).
+  const double slope = std::asin(0.05);
+  EXPECT_EQ(contacts_on_floor(pool, taper, 0.25, 0.5 * 3.14159265358979 + slope), 2U);
+}
+
+// --- what is wrong ------------------------------------------------------------------------------
+
+TEST(SupportShapes, are_refused_where_their_functions_are_no_convex_sets) {
+  ShapePool pool;
+  ShapeId id;
+  Moody moody;
+  EXPECT_EQ(pool.add(SupportShape{farthest_of_moody, &moody, 2.0, 0.0}, id), Status::ok);
+  EXPECT_EQ(pool.add(SupportShape{nullptr, nullptr, 2.0, 0.0}, id), Status::invalid_shape);
+  EXPECT_EQ(pool.add(SupportShape{farthest_of_moody, &moody, -2.0, 0.0}, id),
+            Status::invalid_shape);
+  EXPECT_EQ(pool.add(SupportShape{farthest_of_moody, &moody, 2.0, kEndless}, id),
+            Status::invalid_shape);
+  EXPECT_EQ(pool.add(SupportShape{farthest_of_moody, &moody, 1.0, 0.0}, id), Status::invalid_shape);
+  for (const auto mood :
+       {Moody::not_a_number, Moody::endless, Moody::far_away, Moody::contradictory}) {
+    moody.mood = mood;
+    EXPECT_EQ(pool.add(SupportShape{farthest_of_moody, &moody, 2.0, 0.0}, id),
+              Status::invalid_shape);
+  }
+  EXPECT_EQ(pool.size(ShapeKind::support), 1U);
+  EXPECT_EQ(pool.add(EllipsoidShape{{1.0, -1.0, 1.0}}, id), Status::invalid_shape);
+  EXPECT_EQ(pool.add(EllipsoidShape{{1.0, 1.0, kEndless}}, id), Status::invalid_shape);
+  EXPECT_EQ(pool.add(TaperedCapsuleShape{{1.0, -0.5}, 1.0}, id), Status::invalid_shape);
+  EXPECT_EQ(pool.add(TaperedCapsuleShape{{1.0, 0.5}, std::nan("")}, id), Status::invalid_shape);
+}
+
+TEST(SupportShapes, that_turn_bad_get_finite_answers) {
+  Random random(8);
+  Moody moody;
+  for (const ShapeKind kind : all_kinds()) {
+    PairScene scene;
+    add_pairs(scene, kind, kind, PairStyle::ordinary, scaled(40), random);
+    moody.mood = Moody::good;
+    ShapeId id;
+    ASSERT_EQ(scene.pool.add(SupportShape{farthest_of_moody, &moody, 2.0, 0.1}, id), Status::ok);
+    for (std::size_t i = 0; i < scene.pairs.size(); ++i) scene.shapes[2 * i] = id;
+    for (const auto mood : {Moody::not_a_number, Moody::endless, Moody::zero, Moody::far_away,
+                            Moody::contradictory}) {
+      moody.mood = mood;
+      for (const ContactLevel level :
+           {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
+        for (const PairAnswers& answer : ask(scene, {.level = level, .margin = 0.1})) {
+          EXPECT_TRUE(std::isfinite(answer.distance) && answer.normal.allFinite() &&
+                      answer.point.allFinite() && !(answer.error_bound < 0.0));
+        }
+      }
+      ShapeHit hit;
+      const ShapeRay ray{{3, 0.1, 0.2}, {-1, 0, 0}, kEndless};
+      ASSERT_EQ(cast_ray(scene.pool.tables(), id, Pose{}, ray, hit), Status::ok);
+      EXPECT_TRUE(std::isfinite(hit.t));
+      std::vector<RigidMotion> motions;
+      for (const Pose& pose : scene.poses) {
+        motions.push_back(RigidMotion::between(pose, Pose::at(0.1, 0.2, 0.3)));
+      }
+      ImpactResult impacts;
+      ASSERT_EQ(time_of_impact(scene.pool, {scene.shapes, motions}, std::span(scene.pairs).first(4),
+                               {}, impacts),
+                Status::ok);
+      for (std::size_t i = 0; i < impacts.size(); ++i) {
+        EXPECT_TRUE(!impacts.hits(i) || (impacts.time()[i] >= 0.0 && impacts.time()[i] <= 1.0));
+      }
+    }
+  }
+}
+
+// --- motions and scenes -------------------------------------------------------------------------
+
+TEST(SupportShapes, meet_when_the_same_shapes_meet_that_are_given_otherwise) {
+  Random random(9);
+  for (const Same& same : same_shapes()) {
+    for (const ShapeKind kind : all_kinds()) {
+      const SamePairs pairs(same, kind, scaled(8), random);
+      const PairScene& scene = pairs.scene;
+      std::vector<RigidMotion> motions;
+      for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        Pose start = random_pose(random, 1.0);
+        if (i % 2 == 0) start.position[0] += 9.0;
+        motions.push_back(RigidMotion::between(start, random_pose(random, 0.5)));
+      }
+      ImpactResult one;
+      ImpactResult two;
+      ASSERT_EQ(time_of_impact(scene.pool, {scene.shapes, motions}, scene.pairs, {}, one),
+                Status::ok);
+      ASSERT_EQ(time_of_impact(scene.pool, {pairs.known, motions}, scene.pairs, {}, two),
+                Status::ok);
+      for (std::size_t i = 0; i < one.size(); ++i) {
+        SCOPED_TRACE(std::string(same.name) + " " + to_string(kind) + " " + std::to_string(i));
+        ASSERT_EQ(one.hits(i), two.hits(i));
+        if (one.hits(i)) {
+          EXPECT_NEAR(one.time()[i], two.time()[i], 2e-5);
+        }
+      }
+    }
+  }
+}
+
+/// A floor of a mesh, a height field or a compound.
+ShapeId add_floor(CompositePool& pool, ShapePool& shapes, int which) {
+  ShapeId id;
+  if (which == 0) {
+    const std::vector<Vec3d> corners{{-4, -4, 0}, {4, -4, 0}, {4, 4, 0.2}, {-4, 4, 0}};
+    const std::vector<std::uint32_t> triangles{0, 1, 2, 0, 2, 3};
+    EXPECT_EQ(pool.add_mesh(std::span(corners), std::span(triangles), id), Status::ok);
+  } else if (which == 1) {
+    const std::vector<float> heights{0, 0.1F, 0, 0.2F, 0, 0, 0, 0, 0.1F};
+    EXPECT_EQ(pool.add_height_field({heights, 3, 3, 0, {4.0, 4.0}}, id), Status::ok);
+  } else {
+    ShapeId box;
+    EXPECT_EQ(shapes.add(BoxShape{{4, 4, 0.5}}, box), Status::ok);
+    const CompoundChild children[1] = {{box, Pose::at(0, 0, -0.5)}};
+    EXPECT_EQ(pool.add_compound(children, id), Status::ok);
+  }
+  return id;
+}
+
+/// By the bodies on a floor whose data is 0.
+std::map<ClientData, double> depths_of(const Contacts& contacts) {
+  std::map<ClientData, double> least;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    // The order of two bodies is that of the kinds of their shapes.
+    if (contacts.data_a()[i] != 0 && contacts.data_b()[i] != 0) continue;
+    const ClientData body = contacts.data_a()[i] + contacts.data_b()[i];
+    for (auto m = contacts.manifold_first()[i]; m < contacts.manifold_first()[i + 1]; ++m) {
+      const double distance = contacts.distance()[m];
+      least[body] = least.contains(body) ? std::min(least[body], distance) : distance;
+    }
+  }
+  return least;
+}
+
+TEST(SupportShapes, lie_on_meshes_fields_and_compounds_as_the_same_shapes_do) {
+  for (int which = 0; which < 3; ++which) {
+    ShapePool shapes;
+    CompositePool composites(shapes);
+    const ShapeId floor = add_floor(composites, shapes, which);
+    const BoxShape block{{0.5, 0.4, 0.3}};
+    ShapeId ids[2][3];
+    ASSERT_EQ(shapes.add(EllipsoidShape{{0.3, 0.3, 0.3}}, ids[0][0]), Status::ok);
+    ASSERT_EQ(shapes.add(SphereShape{0.3}, ids[1][0]), Status::ok);
+    ASSERT_EQ(shapes.add(TaperedCapsuleShape{{0.3, 0.3}, 0.5}, ids[0][1]), Status::ok);
+    ASSERT_EQ(shapes.add(CapsuleShape{0.3, 0.5}, ids[1][1]), Status::ok);
+    ASSERT_EQ(shapes.add(SupportShape{farthest_of_block, &block, 1.0, 0.0}, ids[0][2]), Status::ok);
+    ASSERT_EQ(shapes.add(block, ids[1][2]), Status::ok);
+    Contacts contacts[2];
+    for (std::size_t way = 0; way < 2; ++way) {
+      Scene scene(shapes, {.margin = 0.05, .composites = &composites});
+      Key key;
+      ASSERT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, key), Status::ok);
+      for (std::size_t i = 0; i < 12; ++i) {
+        const double x = 0.3 * static_cast<double>(i);
+        const Pose pose = Pose::at(x - 1.0, 1.3 * static_cast<double>(i % 3) + 0.11, 0.28);
+        ASSERT_EQ(scene.add({.shape = ids[way][i % 3], .pose = pose, .data = i + 1}, key),
+                  Status::ok);
+      }
+      ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts[way]), Status::ok);
+    }
+    const auto one = depths_of(contacts[0]);
+    const auto two = depths_of(contacts[1]);
+    ASSERT_EQ(one.size(), two.size());
+    for (const auto& [body, distance] : one) {
+      ASSERT_TRUE(two.contains(body)) << which << " " << body;
+      EXPECT_NEAR(distance, two.at(body), 1e-9) << which << " " << body;
+    }
+  }
+}
+
+TEST(SupportShapes, of_functions_end_a_recording) {
+  std::vector<std::byte> bytes;
+  const RecordingSink sink{[](void* context, std::span<const std::byte> more) {
+                             auto& all = *static_cast<std::vector<std::byte>*>(context);
+                             all.insert(all.end(), more.begin(), more.end());
+                             return true;
+                           },
+                           &bytes};
+  Recorder recorder(sink);
+  ShapePool shapes;
+  Moody moody;
+  ShapeId id;
+  ASSERT_EQ(shapes.add(SupportShape{farthest_of_moody, &moody, 2.0, 0.0}, id), Status::ok);
+  RecordedScene scene(recorder, shapes);
+  Key key;
+  EXPECT_EQ(scene.add({.shape = id}, key), Status::ok);
+  EXPECT_EQ(recorder.status(), Status::unsupported);
+}
+
+}  // namespace
+}  // namespace winnow::test
