@@ -156,16 +156,19 @@ void look_at_side(const Core& core, const Vec& across, AxisSearch& search) noexc
 
 }  // namespace
 
-bool look_at_revolution(const Problem& problem, AxisSearch& search) noexcept {
+double turn_of_revolution(const Problem& problem) noexcept {
   const Core& a = problem.a;
   const Core& b = problem.b;
-  if (!is_round(a) || !is_round(b)) return false;
+  if (!is_round(a) || !is_round(b)) return std::numeric_limits<double>::infinity();
+  if (a.kind == CoreKind::point || b.kind == CoreKind::point) return 0.0;
+  return a.rotation.col(2).cross(b.rotation.col(2)).norm();
+}
+
+void look_at_revolution(const Problem& problem, AxisSearch& search) noexcept {
+  const Core& a = problem.a;
+  const Core& b = problem.b;
   const Core& first = a.kind != CoreKind::point ? a : b;
   const Vec axis = first.rotation.col(2);
-  if (b.kind != CoreKind::point) {
-    const double turn = axis.cross(b.rotation.col(2)).cwiseAbs().maxCoeff();
-    if (turn > 4.0 * kEpsilon) return false;
-  }
   Vec across = without(b.center - a.center, axis);
   // On the axis all directions are alike.
   const Vec aside = (b.center - a.center) - axis * axis.dot(b.center - a.center);
@@ -177,7 +180,6 @@ bool look_at_revolution(const Problem& problem, AxisSearch& search) noexcept {
   search.look(across);
   look_at_side(a, across, search);
   look_at_side(b, across, search);
-  return true;
 }
 
 }  // namespace winnow::solver

@@ -43,9 +43,14 @@ bool look_at_features(const Problem& problem, AxisSearch& search) noexcept;
 /// The most products of directions that look_at_features tries.
 inline constexpr std::uint64_t kMostEdgePairs = 4'000'000;
 
+/// The sine of the angle between the axes of two points, segments, cylinders or cones: 0 for a
+/// point, infinite for other cores.
+[[nodiscard]] double turn_of_revolution(const Problem& problem) noexcept;
+
 /// For points, segments, cylinders and cones whose axes are parallel: their difference is a body of
 /// revolution, its outline through the origin a polygon, and the axis of least depth one of that
-/// polygon's normals. Looks at all of them; false, and nothing is looked at, for other pairs.
-bool look_at_revolution(const Problem& problem, AxisSearch& search) noexcept;
+/// polygon's normals. Looks at all of them, or at what they would be if the axes were parallel: the
+/// best is then within twice the turn times the size of b's core.
+void look_at_revolution(const Problem& problem, AxisSearch& search) noexcept;
 
 }  // namespace winnow::solver

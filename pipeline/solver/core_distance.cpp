@@ -150,6 +150,8 @@ bool closest_features(const Core& a, const Core& b, const Vec& axis, double lowe
 
 /// Up to so many products of edges, trying all axes is cheaper than growing a polytope.
 constexpr std::uint32_t kFewProducts = 40;
+/// Axes of cylinders and cones whose angle has no larger sine are parallel, but for noise.
+constexpr double kParallel = 8.0 * kEpsilon;
 /// What the depth of cylinders and cones is proved to, relative to the sizes.
 constexpr double kSmoothTolerance = 1e-11;
 
@@ -281,6 +283,60 @@ CoreDistance closest(const Problem& problem, const GjkResult& start, const AxisS
   return found;
 }
 
+/// The segment or disc within a cylinder from which it is at most so far, as rounding, to the
+/// outside of a body that the cylinder holds. Of other cores themselves.
+Core inscribed(const Core& core) noexcept {
+  Core inner = core;
+  inner.rounding = 0.0;
+  if (core.kind != CoreKind::cylinder) return inner;
+  inner.rounding = std::min(core.half.x(), core.half.z());
+  inner.half -= Vec::Constant(inner.rounding);
+  inner.kind = inner.half.x() > 0.0 ? CoreKind::cylinder : CoreKind::segment;
+  return inner;
+}
+
+/// No less than this: the depth of what is inscribed in both.
+double inscribed_depth(const Problem& problem) noexcept {
+  const Core a = inscribed(problem.a);
+  const Core b = inscribed(problem.b);
+  const Vec start = b.center == Vec::Zero() ? Vec(problem.tie_axes.col(0)) : b.center;
+  const GjkResult met =
+      gjk(a, b, start, kEnough * problem.noise(), std::numeric_limits<double>::infinity());
+  return a.rounding + b.rounding - (met.contact ? 0.0 : met.upper);
+}
+
+/// What may be missing of the depth of round cores that no polytope of the expansion comes near:
+/// those whose axes are nearly parallel and meet, where many directions are nearly alike.
+double gap_of_round(const Problem& problem, double turn, double gap, AxisSearch& search) noexcept {
+  constexpr double kNearlyParallel = 1e-6;
+  const double depth = -search.separation();
+  if (turn <= kNearlyParallel) {
+    look_at_revolution(problem, search);
+    gap = std::min(gap - depth - search.separation(), 2.0 * turn * problem.b.half.norm());
+  }
+  return std::min(gap, -search.separation() - inscribed_depth(problem));
+}
+
+/// Looks at axes that a growing polytope gives; what may be missing of the depth.
+double look_by_expansion(const Problem& problem, const GjkResult& start, double turn,
+                         AxisSearch& search, SolverCounts& counts) noexcept {
+  const double noise = problem.noise();
+  const bool polytopes = problem.a.is_polytope() && problem.b.is_polytope();
+  const double tolerance = polytopes ? noise : kSmoothTolerance * problem.size;
+  const DepthBounds bounds = expand(problem.a, problem.b, start.simplex, noise, tolerance);
+  search.look(bounds.axis);
+  double gap = -search.separation() - bounds.lower;
+  if (polytopes && !(gap > 4.0 * noise)) return gap;
+  if (polytopes) ++counts.bounded;
+  const bool all = look_at_features(problem, search);
+  look_across_line(problem, search);
+  gap = polytopes && all ? 0.0 : -search.separation() - bounds.lower;
+  if (polytopes || !(gap > 2.0 * tolerance)) return gap;
+  if (std::isfinite(turn)) gap = gap_of_round(problem, turn, gap, search);
+  if (gap > 2.0 * tolerance) ++counts.bounded;
+  return gap;
+}
+
 /// Depth along the best axis of all, or the distance if that axis separates.
 CoreDistance penetration(const Problem& problem, const GjkResult& start, ContactLevel level,
                          SolverCounts& counts) noexcept {
@@ -290,23 +346,16 @@ CoreDistance penetration(const Problem& problem, const GjkResult& start, Contact
   const bool polytopes = a.is_polytope() && b.is_polytope();
   AxisSearch search(a, b);
   double gap = 0.0;
+  const double turn = turn_of_revolution(problem);
   const bool few = std::uint64_t{direction_count(a)} * direction_count(b) <= kFewProducts &&
                    normal_count(a) + normal_count(b) <= kFewProducts;
   if (polytopes && few) {
     look_at_features(problem, search);
     look_across_line(problem, search);
-  } else if (!look_at_revolution(problem, search)) {
-    const double tolerance = polytopes ? noise : kSmoothTolerance * problem.size;
-    const DepthBounds bounds = expand(a, b, start.simplex, noise, tolerance);
-    search.look(bounds.axis);
-    gap = -search.separation() - bounds.lower;
-    if (!polytopes || gap > 4.0 * noise) {
-      if (polytopes) ++counts.bounded;
-      const bool all = look_at_features(problem, search);
-      look_across_line(problem, search);
-      gap = polytopes && all ? 0.0 : -search.separation() - bounds.lower;
-      if (!polytopes && gap > 2.0 * tolerance) ++counts.bounded;
-    }
+  } else if (turn <= kParallel) {
+    look_at_revolution(problem, search);
+  } else {
+    gap = look_by_expansion(problem, start, turn, search, counts);
   }
   CoreDistance found;
   found.axis = search.axis();

@@ -1,0 +1,82 @@
+// Cylinders, cones and capsules whose centres are the same and whose axes are nearly so: many
+// directions are nearly as good as the best, and bounds must be narrow all the same.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_scenes.h"
+#include "tests/support/random.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr NarrowTier kTiers[] = {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference};
+
+/// A pair at one place, its axes tilted against each other.
+template <typename A, typename B>
+void put_together(const A& a, const B& b, double tilt, Random& random, PairScene& scene) {
+  const auto n = static_cast<std::uint32_t>(scene.shapes.size());
+  scene.shapes.resize(n + 2);
+  EXPECT_EQ(scene.pool.add(a, scene.shapes[n]), Status::ok);
+  EXPECT_EQ(scene.pool.add(b, scene.shapes[n + 1]), Status::ok);
+  Pose pose;
+  scene.poses.push_back(pose);
+  const double way = random.uniform(0.0, 2.0 * std::numbers::pi);
+  pose.orientation[0] = std::cos(0.5 * tilt);
+  pose.orientation[1] = std::sin(0.5 * tilt) * std::cos(way);
+  pose.orientation[2] = std::sin(0.5 * tilt) * std::sin(way);
+  scene.poses.push_back(pose);
+  scene.pairs.push_back({n, n + 1});
+}
+
+// What stands as high as it is wide has a capsule within, of the same radius: the two of them part
+// the soonest at right angles to both axes.
+TEST(CoincidentCentres, of_long_cylinders_and_capsules_leave_narrow_bounds) {
+  Random random(1);
+  PairScene scene;
+  std::vector<double> depth;
+  for (std::size_t n = scaled(150); n-- != 0;) {
+    const double tilt = random.log_uniform(1e-14, 1.0);
+    const CylinderShape a{random.uniform(0.2, 1.0), random.uniform(1.0, 2.0), 0.0};
+    const CylinderShape b{random.uniform(0.2, 1.0), random.uniform(1.0, 2.0), 0.125};
+    const CapsuleShape c{random.uniform(0.2, 1.0), random.uniform(1.0, 2.0)};
+    put_together(a, b, tilt, random, scene);
+    put_together(c, b, tilt, random, scene);
+    depth.push_back(a.radius + b.radius + b.rounding);
+    depth.push_back(c.radius + b.radius + b.rounding);
+  }
+  for (const NarrowTier tier : kTiers) {
+    const auto answers = ask(scene, {.level = ContactLevel::distance, .tier = tier});
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      EXPECT_LE(std::abs(answers[i].distance + depth[i]), answers[i].error_bound) << i;
+      EXPECT_LE(answers[i].error_bound, 4e-7) << i;
+    }
+  }
+}
+
+TEST(CoincidentCentres, of_what_is_turned_by_rounding_leave_narrow_bounds) {
+  Random random(2);
+  PairScene scene;
+  const auto length = [&] { return random.uniform(0.2, 1.0); };
+  for (std::size_t n = scaled(80); n-- != 0;) {
+    const double tilt = random.log_uniform(1e-17, 1e-8);
+    put_together(ConeShape{length(), length(), 0.0}, ConeShape{length(), length(), 0.125}, tilt,
+                 random, scene);
+    put_together(CylinderShape{length(), length(), 0.0}, ConeShape{length(), length(), 0.0}, tilt,
+                 random, scene);
+    put_together(CapsuleShape{length(), length()}, ConeShape{length(), length(), 0.0}, tilt, random,
+                 scene);
+  }
+  for (const NarrowTier tier : kTiers) {
+    for (const auto& answer : ask(scene, {.level = ContactLevel::distance, .tier = tier})) {
+      EXPECT_LE(answer.error_bound, 4e-7);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test
