@@ -184,6 +184,7 @@ Truth over_half_space(const ShapeTables& tables, ShapeId shape, const Pose& pose
 Truth solve(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
             const Pose& pose_b) {
   if (!pose_a.is_valid() || !pose_b.is_valid()) return {};
+  if (a.kind() > ShapeKind::half_space || b.kind() > ShapeKind::half_space) return {};
   const bool a_is_half = a.kind() == ShapeKind::half_space;
   const bool b_is_half = b.kind() == ShapeKind::half_space;
   if (a_is_half && b_is_half) return {};

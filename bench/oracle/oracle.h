@@ -7,8 +7,8 @@ namespace winnow::oracle {
 
 /// The truth about a pair, as far as 100 digits tell: slow, simple, and made of no code of winnow.
 struct Truth {
-  /// False for pairs of half-spaces, bad poses, and pairs that it could not prove (cylinders and
-  /// cones that touch are among them). Nothing else is set then.
+  /// False for pairs of half-spaces, shapes known by a support function, bad poses, and pairs that
+  /// it could not prove (cylinders and cones that touch are among them). Nothing else is set then.
   bool known = false;
   /// They share a point.
   bool overlap = false;

@@ -29,6 +29,7 @@ double size_of(const Json& shape) {
   for (const char* name : {"rounding", "radius", "half_length"}) {
     if (shape.contains(name)) size += number(shape[name]);
   }
+  for (const Json& radius : member(shape, "radii")) size += number(radius);
   if (shape.contains("half")) size += vector(shape["half"]).norm();
   for (const Json& v : member(shape, "v")) size = std::max(size, vector(v).norm());
   return size;
