@@ -36,6 +36,8 @@ def test_every_kind_of_shape_has_its_box():
         *shapes.add_boxes([1.0, 1.0, 1.0]),
         *shapes.add_cylinders(1.0, 1.0),
         *shapes.add_cones([1.0], 1.0),
+        *shapes.add_ellipsoids([1.0, 1.0, 1.0]),
+        *shapes.add_tapered_capsules([1.0, 0.5], 0.0),
         *shapes.add_triangles([[[-1, -1, -1], [1, 1, 1], [1, -1, 0]]]),
         shapes.add_hull(CUBE),
         shapes.add_mesh(CUBE, [[0, 1, 2], [5, 6, 7]]),
