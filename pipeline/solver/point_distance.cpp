@@ -7,11 +7,12 @@ namespace {
 
 /// Of an ellipsoid, in its frame, relative to its least radius.
 struct Ellipsoid {
-  explicit Ellipsoid(const Vec& radius) noexcept {
+  explicit Ellipsoid(const Vec& lengths) noexcept : radius(lengths) {
     radius.minCoeff(&least);
     thin = radius[least];
     excess = (radius.array() - thin) * (radius.array() + thin);
   }
+  Vec radius;
   int least = 0;
   double thin = 0.0;
   /// Squares of the radii less that of the least.
@@ -27,9 +28,11 @@ Vec outward_along_thin(const Ellipsoid& shape, const Vec& q, double left) noexce
     return normal == Vec::Zero() ? Vec(Vec::Unit(shape.least)) : unit(normal);
   }
   for (int i = 0; i < 3; ++i) {
-    if (shape.excess[i] > 0.0) normal[i] = q[i] / shape.excess[i];
+    if (!(shape.excess[i] > 0.0)) continue;
+    const double share = shape.radius[i] * q[i] / shape.excess[i];
+    normal[i] = share * (shape.thin / shape.radius[i]);
   }
-  normal[shape.least] = std::sqrt(left) / shape.thin;
+  normal[shape.least] = std::sqrt(left);
   return unit(normal);
 }
 
@@ -57,9 +60,12 @@ Vec outward_of_ellipsoid(const Vec& radius, const Vec& q) noexcept {
     if (!(next > s)) break;
     s = next;
   }
+  // Relative to the largest factor, that of the least radius, which may be beyond double.
   Vec normal = Vec::Zero();
-  for (int i = 0; i < 3; ++i) normal[i] = q[i] == 0.0 ? 0.0 : q[i] / (s + shape.excess[i]);
-  return unit(normal);
+  for (int i = 0; i < 3; ++i) {
+    normal[i] = shape.excess[i] > 0.0 ? q[i] * (s / (s + shape.excess[i])) : q[i];
+  }
+  return unit(normal == Vec::Zero() ? q : normal);
 }
 
 /// The same of the hull of balls of radii `low` at z = -half and `high` at z = half.

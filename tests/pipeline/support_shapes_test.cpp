@@ -335,6 +335,20 @@ TEST(SupportShapes, that_share_their_centres_have_depths_within_their_bounds) {
   }
 }
 
+TEST(Ellipsoids, whose_radii_vanish_beside_others_have_finite_answers) {
+  Random random(10);
+  for (std::size_t n = scaled(300); n-- != 0;) {
+    const double size = random.chance(0.5) ? 1e150 : 1e-150;
+    const auto any = [&] { return random.chance(0.5) ? size : size * 1e-160 * random.unit(); };
+    Pose at;
+    for (double& x : at.position) x = any();
+    const EllipsoidShape shape{{any(), any(), any()}};
+    const PairAnswers answer = answer_to(SphereShape{any()}, Pose{}, shape, at);
+    EXPECT_TRUE(std::isfinite(answer.distance) && std::isfinite(answer.error_bound));
+    EXPECT_NEAR(answer.normal.norm(), 1.0, 1e-12);
+  }
+}
+
 // --- bounds, rays, manifolds --------------------------------------------------------------------
 
 TEST(SupportShapes, have_tight_bounds) {
