@@ -6,6 +6,7 @@
 #include <winnow/core/footprint.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/contact_types.h>
+#include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/shape_pool.h>
 
@@ -16,21 +17,28 @@
 
 namespace winnow {
 
+namespace impact {
+struct BodyImpact;
+}
+
 /// What moves: body i has shape shapes[i] and moves by motions[i].
 struct MovingBodies {
-  std::span<const ShapeId> shapes;       ///< by body; convex
+  std::span<const ShapeId> shapes;       ///< by body
   std::span<const RigidMotion> motions;  ///< by body; as many
 };
 
 /// How near shapes must be to have met.
 struct ImpactOptions {
   /// The gap at the time of impact is at most this share of the smaller shape's size: its largest
-  /// distance from its middle, the other's if it is a point. In (0, 1]. At least what double
+  /// distance from its middle, the other's if it is a point; of composite shapes, of the parts that
+  /// meet. In (0, 1]. At least what double
   /// resolves: some 1e-13 of the sizes, of the way between the positions and of what turning
   /// sweeps; of cylinders and cones beside shapes many times as large some 1e-8 of the larger.
   double tolerance = 1e-6;
   /// On whose threads; answers are the same on all.
   Execution execution = Execution::serial();
+  /// What holds meshes, height fields and compounds; null where there are none.
+  const MidPhase* composites = nullptr;
 };
 
 /// When moving shapes first meet: columns, one element for each pair in the order given. The
@@ -44,9 +52,9 @@ class WINNOW_API ImpactResult {
 
   /// Answers, one for each pair that was asked about.
   [[nodiscard]] std::size_t size() const noexcept { return time_.size(); }
-  /// `ok`; `invalid_key` for a pair with a shape that is not in the pool, `unsupported` for one
-  /// with a mesh, a height field or a compound, `invalid_pose` for one with a motion that is not
-  /// valid: the other columns then hold zeros.
+  /// `ok`; `invalid_key` for a pair with a shape that is not there, `unsupported` for one with a
+  /// composite shape where no composites are given, `invalid_pose` for one with a motion that is
+  /// not valid: the other columns then hold zeros.
   [[nodiscard]] Status status(std::size_t i) const noexcept { return status_[i]; }
   /// True if they meet. False is certain: they are apart all the time.
   [[nodiscard]] bool hits(std::size_t i) const noexcept { return hit_[i] != 0; }
@@ -71,6 +79,16 @@ class WINNOW_API ImpactResult {
     return span(point_[axis]);
   }
 
+  /// Which triangle or child of a it is that meets b, the same each time; kWholeShape of a convex
+  /// shape, and where they do not meet.
+  [[nodiscard]] std::span<const std::uint32_t> part_a() const noexcept {
+    return {part_a_.data(), part_a_.size()};
+  }
+  /// The same of b.
+  [[nodiscard]] std::span<const std::uint32_t> part_b() const noexcept {
+    return {part_b_.data(), part_b_.size()};
+  }
+
   /// All columns under `results`, to the byte what the resource gave.
   [[nodiscard]] Footprint footprint() const noexcept;
 
@@ -79,6 +97,7 @@ class WINNOW_API ImpactResult {
                                           std::span<const BodyPair> pairs,
                                           const ImpactOptions& options, ImpactResult& result);
   [[nodiscard]] bool resize(std::size_t count) noexcept;
+  void write(std::size_t i, const impact::BodyImpact& found) noexcept;
   [[nodiscard]] static std::span<const double> span(const Column<double>& c) noexcept {
     return {c.data(), c.size()};
   }
@@ -90,6 +109,8 @@ class WINNOW_API ImpactResult {
   Column<double> error_bound_;
   Column<double> normal_[3];
   Column<double> point_[3];
+  Column<std::uint32_t> part_a_;
+  Column<std::uint32_t> part_b_;
 };
 
 /// When the shapes of each pair first meet. Never late: at every time before the answer they are
@@ -102,13 +123,18 @@ class WINNOW_API ImpactResult {
 /// 1996) along the normal of the closest points: what a body reaches along a direction is, of each
 /// of its points, a cosine in time, and hence between two times above its chord by no less than a
 /// square of the angle; so that two looks at the shapes prove that they are apart between, with an
-/// error of second order, and few steps are needed.
+/// error of second order, and few steps are needed. Composite shapes are traversed in their own
+/// frame by a box that sweeps through it with the other shape, turning included, what is met first
+/// first: part by part, and no part after the first time found. Of shapes that share a point at the
+/// start the gap is that of the parts that overlap the deepest.
 ///
 /// `invalid_argument` for a bad tolerance or a pair of a body that does not exist, `size_mismatch`
 /// for spans of different lengths, `out_of_memory`: then `result` is empty. What is wrong with one
 /// pair is in its status. Usually some four looks for closest points per pair, of fast turns ten;
 /// where shapes whirl around each other without touching, up to |turn| / sqrt(tolerance). One at a
-/// time, in double: without lanes.
+/// time, in double: without lanes. Of composite shapes that for each pair of parts whose boxes meet
+/// on the way, and a traversal for each half radian or so that they turn past each other within
+/// reach.
 WINNOW_API Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
                                  std::span<const BodyPair> pairs, const ImpactOptions& options,
                                  ImpactResult& result);

@@ -3,6 +3,7 @@
 #include <winnow/pipeline/time_of_impact.h>
 #include "bench/questions/motion_json.h"
 
+#include <utility>
 #include <vector>
 
 namespace winnow::bench {
@@ -89,12 +90,17 @@ class Questionnaire {
   Status ask_impact(const Json& question, Json& answer) {
     ShapeId shape[2];
     RigidMotion motion[2];
-    Status status = read_moving_shape(question["a"], pool_, shape[0], motion[0]);
-    if (status == Status::ok) status = read_moving_shape(question["b"], pool_, shape[1], motion[1]);
+    CompositePool composites(pool_);
+    Status status = Status::ok;
+    for (const auto& [side, name] : {std::pair{0, "a"}, {1, "b"}}) {
+      if (status != Status::ok) break;
+      status = read_moving_shape(question[name], pool_, composites, shape[side], motion[side]);
+    }
     constexpr BodyPair kPair[1] = {{0, 1}};
+    const ImpactOptions options{.composites = &composites};
     ImpactResult result;
     if (status == Status::ok) {
-      status = time_of_impact(pool_, {shape, motion}, kPair, {}, result);
+      status = time_of_impact(pool_, {shape, motion}, kPair, options, result);
     }
     if (status == Status::ok) status = result.status(0);
     if (status != Status::ok) return status;

@@ -1,6 +1,8 @@
 #include "bench/questions/shape_json.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
@@ -96,6 +98,54 @@ Status add_round(const std::string& type, ShapePool& pool, ShapeReader& reader, 
   return Status::invalid_argument;
 }
 
+Status add_mesh(const Json& value, ShapeReader& reader, CompositePool& composites, ShapeId& id) {
+  const std::vector<Vec3d> v = reader.points("v");
+  if (!reader.good() || !value.contains("triangles")) return Status::invalid_argument;
+  std::vector<std::uint32_t> corners;
+  for (const Json& triangle : value["triangles"]) {
+    if (!triangle.is_array() || triangle.size() != 3) return Status::invalid_argument;
+    for (const Json& corner : triangle) {
+      if (!corner.is_number_unsigned()) return Status::invalid_argument;
+      // No vertex has a number that does not fit.
+      const auto number = std::min<std::uint64_t>(corner.get<std::uint64_t>(), ~0U);
+      corners.push_back(static_cast<std::uint32_t>(number));
+    }
+  }
+  return composites.add_mesh(PointView(v), IndexView(corners), id);
+}
+
+Status add_height_field(const Json& value, ShapeReader& reader, CompositePool& composites,
+                        ShapeId& id) {
+  std::vector<float> heights;
+  HeightSamples samples;
+  reader.numbers_if_any("spacing", samples.spacing);
+  if (!reader.good() || !value.contains("heights") || !value["heights"].is_array()) {
+    return Status::invalid_argument;
+  }
+  for (const Json& row : value["heights"]) {
+    std::vector<double> numbers(row.size());
+    if (!read_numbers(row, numbers)) return Status::invalid_argument;
+    if (samples.rows++ == 0) samples.columns = static_cast<std::uint32_t>(numbers.size());
+    if (numbers.size() != samples.columns) return Status::invalid_argument;
+    for (const double height : numbers) heights.push_back(static_cast<float>(height));
+  }
+  samples.heights = heights;
+  return composites.add_height_field(samples, id);
+}
+
+Status add_compound(const Json& value, ShapePool& pool, CompositePool& composites, ShapeId& id) {
+  if (!value.contains("children") || !value["children"].is_array()) {
+    return Status::invalid_argument;
+  }
+  std::vector<CompoundChild> children;
+  for (const Json& entry : value["children"]) {
+    CompoundChild& child = children.emplace_back();
+    const Status status = read_shape(entry, pool, child.shape, child.pose);
+    if (status != Status::ok) return status;
+  }
+  return composites.add_compound(children, id);
+}
+
 Status add_shape(const Json& value, ShapePool& pool, ShapeId& id) {
   ShapeReader reader(value);
   const std::string type = reader.text("type");
@@ -133,6 +183,16 @@ Status add_shape(const Json& value, ShapePool& pool, ShapeId& id) {
   return add_round(type, pool, reader, rounding, id);
 }
 
+/// A convex shape, or a composite one.
+Status add_any_shape(const Json& value, ShapePool& pool, CompositePool& composites, ShapeId& id) {
+  ShapeReader reader(value);
+  const std::string type = reader.text("type");
+  if (type == "mesh") return add_mesh(value, reader, composites, id);
+  if (type == "height_field") return add_height_field(value, reader, composites, id);
+  if (type == "compound") return add_compound(value, pool, composites, id);
+  return add_shape(value, pool, id);
+}
+
 /// What the member `name` says of a pose; the rest stays as it is.
 Status read_pose(const Json& shape, const char* name, Pose& pose) {
   if (!shape.contains(name)) return Status::ok;
@@ -158,10 +218,15 @@ bool has_end_pose(const Json& value) {
   return value.is_object() && value.contains("end_pose");
 }
 
-Status read_moving_shape(const Json& value, ShapePool& pool, ShapeId& id, RigidMotion& motion) {
+Status read_moving_shape(const Json& value, ShapePool& pool, CompositePool& composites, ShapeId& id,
+                         RigidMotion& motion) {
+  if (!value.is_object()) return Status::invalid_argument;
   Pose start;
-  const Status status = read_shape(value, pool, id, start);
+  const Status start_status = read_pose(value, "pose", start);
+  if (start_status == Status::invalid_argument) return start_status;
+  const Status status = add_any_shape(value, pool, composites, id);
   if (status != Status::ok) return status;
+  if (start_status != Status::ok) return start_status;
   Pose end = start;
   const Status end_status = read_pose(value, "end_pose", end);
   motion = RigidMotion::between(start, end);

@@ -2,6 +2,7 @@
 
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
+#include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
@@ -19,9 +20,12 @@ namespace winnow::bench {
 [[nodiscard]] bool has_end_pose(const Json& value);
 
 /// The same with a motion from "pose" to "end_pose" by the shorter way around; what the latter does
-/// not say is as at the start, and without it the shape stands.
-[[nodiscard]] Status read_moving_shape(const Json& value, ShapePool& pool, ShapeId& id,
-                                       RigidMotion& motion);
+/// not say is as at the start, and without it the shape stands. It may be composite as well, and is
+/// added to `composites`: {"type": "mesh", "v": points, "triangles": three numbers each},
+/// {"type": "height_field", "heights": rows of numbers, "spacing": two numbers, or 1},
+/// {"type": "compound", "children": shapes with poses}.
+[[nodiscard]] Status read_moving_shape(const Json& value, ShapePool& pool,
+                                       CompositePool& composites, ShapeId& id, RigidMotion& motion);
 
 /// {"origin", "direction", "max_t"}; without max_t the ray has no end. `invalid_argument` where a
 /// member is missing or of the wrong type.

@@ -48,22 +48,22 @@ struct Look {
 
 class ImpactSearch {
  public:
-  ImpactSearch(const ShapeTables& tables, ShapeId a, const RigidMotion& of_a, ShapeId b,
-               const RigidMotion& of_b, double tolerance) noexcept
+  ImpactSearch(const ShapeTables& tables, const MovingPart& a, const MovingPart& b,
+               double tolerance, const Interval& within) noexcept
       : tables_(tables),
         a_(a),
-        of_a_(of_a),
         b_(b),
-        of_b_(of_b),
-        pair_(tables, a, of_a, b, of_b),
-        tolerance_(tolerance * pair_.size()) {}
+        pair_(tables, a, b),
+        tolerance_(tolerance * pair_.size()),
+        span_(within) {}
 
   [[nodiscard]] Impact run() noexcept;
   /// How often distances were computed.
   [[nodiscard]] std::uint32_t looks() const noexcept { return looks_; }
 
  private:
-  [[nodiscard]] static Impact met(double time, const PairAnswer& answer) noexcept;
+  [[nodiscard]] static Impact met(double time, const PairAnswer& answer,
+                                  const double (&from)[3]) noexcept;
   [[nodiscard]] Impact meet_at(double time, Look& look) const noexcept;
   [[nodiscard]] Impact near_at(double time, Look& look) const noexcept;
   [[nodiscard]] Impact start() const noexcept;
@@ -79,12 +79,11 @@ class ImpactSearch {
   [[nodiscard]] double advance(double time, double end, Look& look, bool& known) noexcept;
 
   const ShapeTables& tables_;
-  ShapeId a_;
-  const RigidMotion& of_a_;
-  ShapeId b_;
-  const RigidMotion& of_b_;
+  const MovingPart& a_;
+  const MovingPart& b_;
   MovingPair pair_;
   double tolerance_;
+  Interval span_;
   Vec last_axis_ = Vec::Zero();
   /// Nothing is gained by looking as late as this.
   double touching_ = kUnbounded;
@@ -130,7 +129,7 @@ void ImpactSearch::look_closer(double time, Look& result) const noexcept {
   Pose pose_a;
   Pose pose_b;
   pair_.poses(time, pose_a, pose_b);
-  const PairAnswer found = distance_of(tables_, a_, pose_a, b_, pose_b);
+  const PairAnswer found = distance_of(tables_, a_.shape, pose_a, b_.shape, pose_b);
   const auto scaled = [this](double x) { return std::ldexp(x, -pair_.problem().exponent); };
   const double distance = scaled(found.distance);
   const double doubt = scaled(found.error_bound) + pair_.noise();
@@ -227,14 +226,17 @@ double ImpactSearch::free_until(double time, double end, const Look& look) const
   return closing > 0.0 ? std::min(end, time + swept / closing * (1.0 - 8.0 * kEpsilon)) : end;
 }
 
-Impact ImpactSearch::met(double time, const PairAnswer& answer) noexcept {
+/// As answered at a time, of a shape a that is at `from` from the position of its body.
+Impact ImpactSearch::met(double time, const PairAnswer& answer, const double (&from)[3]) noexcept {
   Impact impact;
   impact.hit = true;
   impact.time = time;
   impact.gap = answer.distance;
   impact.error_bound = answer.error_bound;
   std::copy_n(answer.normal, 3, impact.normal);
-  std::copy_n(answer.point, 3, impact.point);
+  for (int i = 0; i < 3; ++i) {
+    impact.point[i] = answer.point[i] + from[i];
+  }
   return impact;
 }
 
@@ -246,7 +248,8 @@ Impact ImpactSearch::meet_at(double time, Look& look) const noexcept {
   Pose pose_a;
   Pose pose_b;
   pair_.poses(time, pose_a, pose_b);
-  Impact impact = met(time, distance_of(tables_, a_, pose_a, b_, pose_b));
+  Impact impact =
+      met(time, distance_of(tables_, a_.shape, pose_a, b_.shape, pose_b), pose_a.position);
   impact.gap = std::max(impact.gap, 0.0);
   impact.error_bound += unscaled(pair_.problem(), pair_.noise());
   return impact;
@@ -259,7 +262,7 @@ Impact ImpactSearch::near_at(double time, Look& look) const noexcept {
   const solver::Problem& problem = pair_.problem();
   const double gap = look.between.norm() - pair_.roundings();
   const Vec normal = solver::unit(look.between);
-  const Vec point = look.on_a + normal * pair_.a().rounding;
+  const Vec point = look.on_a + normal * pair_.a().rounding + pair_.arm();
   Impact impact;
   impact.hit = true;
   impact.time = time;
@@ -270,9 +273,18 @@ Impact ImpactSearch::near_at(double time, Look& look) const noexcept {
   return impact;
 }
 
-/// They may share a point at the start, which is known to the last bit.
+/// They may share a point at the start, which is known to the last bit of where they are.
 Impact ImpactSearch::start() const noexcept {
-  return met(0.0, distance_of(tables_, a_, of_a_.start, b_, of_b_.start));
+  constexpr double kHere[3] = {0.0, 0.0, 0.0};
+  const Pose& start_a = a_.motion.start;
+  const Pose& start_b = b_.motion.start;
+  if (a_.arm.isZero(0.0) && b_.arm.isZero(0.0)) {
+    return met(0.0, distance_of(tables_, a_.shape, start_a, b_.shape, start_b), kHere);
+  }
+  Pose pose_a;
+  Pose pose_b;
+  pair_.poses(0.0, pose_a, pose_b);
+  return met(0.0, distance_of(tables_, a_.shape, pose_a, b_.shape, pose_b), pose_a.position);
 }
 
 /// True if they are within the tolerance and seem to meet before the end, or stay so for long.
@@ -304,7 +316,9 @@ double ImpactSearch::advance(double time, double end, Look& look, bool& known) n
 }
 
 Impact ImpactSearch::run() noexcept {
-  const auto [first, last] = pair_.window();
+  const Interval window = pair_.window();
+  const double first = std::max(window.first, span_.first);
+  const double last = std::min(window.last, span_.last);
   if (first > last) return {};
   if (pair_.a().kind == solver::CoreKind::half_space) {
     const Impact at_start = start();
@@ -340,18 +354,17 @@ void mirror_impact(const RigidMotion& of_a, const RigidMotion& of_b, Impact& imp
 
 }  // namespace
 
-Impact find_impact(const ShapeTables& tables, ShapeId a, const RigidMotion& of_a, ShapeId b,
-                   const RigidMotion& of_b, double tolerance) noexcept {
-  const auto search = [&](ShapeId first, const RigidMotion& of_first, ShapeId second,
-                          const RigidMotion& of_second) {
-    ImpactSearch impacts(tables, first, of_first, second, of_second, tolerance);
+Impact find_impact(const ShapeTables& tables, const MovingPart& a, const MovingPart& b,
+                   double tolerance, const Interval& within) noexcept {
+  const auto search = [&](const MovingPart& first, const MovingPart& second) {
+    ImpactSearch impacts(tables, first, second, tolerance, within);
     Impact found = impacts.run();
     found.samples = impacts.looks();
     return found;
   };
-  if (!solver::is_prepared_mirrored(a.kind(), b.kind())) return search(a, of_a, b, of_b);
-  Impact impact = search(b, of_b, a, of_a);
-  if (impact.hit) mirror_impact(of_a, of_b, impact);
+  if (!solver::is_prepared_mirrored(a.shape.kind(), b.shape.kind())) return search(a, b);
+  Impact impact = search(b, a);
+  if (impact.hit) mirror_impact(a.motion, b.motion, impact);
   return impact;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/shapes.h>
+#include "pipeline/motion/moving_pair.h"
 
 #include <cstdint>
 
@@ -19,9 +19,10 @@ struct Impact {
   std::uint32_t samples = 0;
 };
 
-/// Of convex shapes that are in the tables, and valid motions. `tolerance` is a share of the
-/// smaller shape's size.
-[[nodiscard]] Impact find_impact(const ShapeTables& tables, ShapeId a, const RigidMotion& of_a,
-                                 ShapeId b, const RigidMotion& of_b, double tolerance) noexcept;
+/// The first impact within an interval of convex shapes that are in the tables, and valid motions;
+/// they are apart before the interval. `tolerance` is a share of the smaller shape's size.
+[[nodiscard]] Impact find_impact(const ShapeTables& tables, const MovingPart& a,
+                                 const MovingPart& b, double tolerance,
+                                 const Interval& within = {0.0, 1.0}) noexcept;
 
 }  // namespace winnow::impact

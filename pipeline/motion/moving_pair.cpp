@@ -88,20 +88,37 @@ double extent_of(const Core& core) noexcept {
   }
 }
 
-TurningCore turning(const Core& core, const RigidMotion& motion) noexcept {
+/// A half-space whose offset is from the position of its body.
+void take_arm(Core& core, const Quaternion& from, const Vec& arm) noexcept {
+  const solver::Mat to_world = rotation_of(from);
+  core.offset += solver::unit(to_world * core.normal).dot(arm);
+  core.size = std::abs(core.offset);
+}
+
+/// `core` is unturned.
+TurningCore turning(Core& core, const RigidMotion& motion, const Vec& arm) noexcept {
   TurningCore result;
-  result.local = core;
   result.from = normalized(tame(motion.start.orientation));
+  result.first_arm = arm;
+  if (core.kind == CoreKind::half_space) {
+    take_arm(core, result.from, arm);
+  } else {
+    result.arm = arm;
+  }
+  result.local = core;
   const double angle = length_of(motion.turn);
   if (angle == 0.0) return result;
   result.axis = Vec::Map(motion.turn) / angle;
   const solver::Mat to_world = rotation_of_unit(result.from);
   const Vec local_axis = to_world.transpose() * result.axis;
-  if (is_invariant(core, local_axis)) return result;
+  if (result.arm.isZero(0.0) && is_invariant(core, local_axis)) return result;
   result.angle = angle;
   if (core.kind == CoreKind::half_space) return result;
-  result.reach = reach_of(core, local_axis) * (1.0 + kSameAxis);
-  result.along = project(core, local_axis);
+  result.reach =
+      (reach_of(core, local_axis) + result.arm.cross(result.axis).norm()) * (1.0 + kSameAxis);
+  const Range range = project(core, local_axis);
+  const double height = result.arm.dot(result.axis);
+  result.along = {height + range.low, height + range.high};
   return result;
 }
 
@@ -110,7 +127,8 @@ Quaternion orientation_at(const TurningCore& turning, double time) noexcept {
   return turned(turning.from, turning.axis.data(), time * turning.angle);
 }
 
-void place_core(const TurningCore& turning, double time, Core& core) noexcept {
+void place_core(TurningCore& turning, double time, Core& core) noexcept {
+  if (core.kind != CoreKind::half_space) turning.arm = turning.arm_at(time);
   core.rotation = rotation_of(orientation_at(turning, time));
   if (core.kind == CoreKind::triangle) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -128,9 +146,9 @@ double high(const Core& core, const Vec& axis) noexcept {
   return core.kind == CoreKind::half_space ? core.offset : project(core, axis).high;
 }
 
-/// The same of all that it sweeps as it turns.
+/// The same from the body's position, of all that it sweeps as it turns.
 double swept_high(const TurningCore& turning, const Core& core, const Vec& axis) noexcept {
-  if (turning.angle == 0.0) return high(core, axis);
+  if (turning.angle == 0.0) return high(core, axis) + axis.dot(turning.arm);
   const double along = axis.dot(turning.axis);
   return std::max(along * turning.along.low, along * turning.along.high) +
          axis.cross(turning.axis).norm() * turning.reach;
@@ -144,8 +162,17 @@ double acceleration(const TurningCore& turning, const Vec& axis) noexcept {
 
 }  // namespace
 
-MovingPair::MovingPair(const ShapeTables& tables, ShapeId a, const RigidMotion& of_a, ShapeId b,
-                       const RigidMotion& of_b) noexcept {
+Vec TurningCore::arm_at(double time) const noexcept {
+  if (angle == 0.0 || first_arm.isZero(0.0)) return first_arm;
+  const SineCosine by = sine_cosine(time * angle);
+  const Vec height = axis * axis.dot(first_arm);
+  return height + (first_arm - height) * by.cosine + axis.cross(first_arm) * by.sine;
+}
+
+MovingPair::MovingPair(const ShapeTables& tables, const MovingPart& a,
+                       const MovingPart& b) noexcept {
+  const RigidMotion& of_a = a.motion;
+  const RigidMotion& of_b = b.motion;
   const Difference apart = difference(of_b.start.position, of_a.start.position);
   const Vec start = Vec::Map(apart.difference);
   const Vec way = Vec::Map(of_b.travel) - Vec::Map(of_a.travel);
@@ -153,14 +180,14 @@ MovingPair::MovingPair(const ShapeTables& tables, ShapeId a, const RigidMotion& 
   // One unit for all times: that of the places that are farthest apart.
   Pose there;
   Vec::Map(there.position) = start.cwiseAbs().maxCoeff() > end.cwiseAbs().maxCoeff() ? start : end;
-  prepare(tables, a, Pose{}, b, there, false, problem_);
-  for (int i = 0; i < 3; ++i) {
-    between_[i] = std::ldexp(start[i], -problem_.exponent);
-    travel_[i] = std::ldexp(way[i], -problem_.exponent);
-  }
-  turn_a_ = turning(problem_.a, of_a);
-  turn_b_ = turning(problem_.b, of_b);
-  const double sizes = problem_.a.size + problem_.b.size;
+  there.position[0] += std::copysign(a.arm.norm() + b.arm.norm(), there.position[0]);
+  prepare(tables, a.shape, Pose{}, b.shape, there, false, problem_);
+  const auto scaled = [this](double x) { return std::ldexp(x, -problem_.exponent); };
+  between_ = placed_ = start.unaryExpr(scaled);
+  travel_ = way.unaryExpr(scaled);
+  turn_a_ = turning(problem_.a, of_a, a.arm.unaryExpr(scaled));
+  turn_b_ = turning(problem_.b, of_b, b.arm.unaryExpr(scaled));
+  const double sizes = problem_.a.size + problem_.b.size + arms();
   noise_ = kEpsilon * (8.0 * (between_.norm() + travel_.norm()) +
                        (64.0 + 4.0 * (turn_a_.angle + turn_b_.angle)) * sizes);
   if (has_half_space()) {
@@ -172,9 +199,10 @@ MovingPair::MovingPair(const ShapeTables& tables, ShapeId a, const RigidMotion& 
 }
 
 void MovingPair::place(double time) noexcept {
-  problem_.b.center = between_ + time * travel_;
+  placed_ = between_ + time * travel_;
   place_core(turn_a_, time, problem_.a);
   place_core(turn_b_, time, problem_.b);
+  problem_.b.center = placed_ + (turn_b_.arm - turn_a_.arm);
   problem_.size = problem_.b.center.norm() + problem_.a.size + problem_.b.size;
 }
 
@@ -183,20 +211,28 @@ void MovingPair::poses(double time, Pose& pose_a, Pose& pose_b) const noexcept {
     const Quaternion q = orientation_at(*turning, time);
     std::copy(q.begin(), q.end(), pose->orientation);
   }
-  const Vec between = between_ + time * travel_;
-  for (int i = 0; i < 3; ++i) pose_b.position[i] = unscaled(problem_, between[i]);
+  const Vec at_a = turn_a_.arm_at(time);
+  const Vec at_b = between_ + time * travel_ + turn_b_.arm_at(time);
+  for (int i = 0; i < 3; ++i) {
+    pose_a.position[i] = unscaled(problem_, at_a[i]);
+    pose_b.position[i] = unscaled(problem_, at_b[i]);
+  }
 }
 
 Interval MovingPair::window() const noexcept {
+  if (has_half_space()) return {0.0, 1.0};
+  return ball_window(between_, travel_, a().size + b().size + arms());
+}
+
+Interval ball_window(const Vec& between, const Vec& travel, double reach) noexcept {
   constexpr Interval kAll{0.0, 1.0};
-  const double path = between_.norm() + travel_.norm();
-  if (has_half_space()) return kAll;
-  const double reach = a().size + b().size;
+  if (!std::isfinite(reach)) return kAll;
+  const double speed = travel.norm();
+  const double path = between.norm() + speed;
   const double radius = reach + 64.0 * kEpsilon * (path + reach);
-  const double speed = travel_.norm();
   // Where the way is too short for its square, both ends are as near as any place between.
-  const double nearest = speed > 1e-140 ? -(between_.dot(travel_) / speed) / speed : 0.0;
-  const double distance = (between_ + nearest * travel_).norm();
+  const double nearest = speed > 1e-140 ? -(between.dot(travel) / speed) / speed : 0.0;
+  const double distance = (between + nearest * travel).norm();
   if (distance > radius + (speed > 1e-140 ? 0.0 : speed)) return {1.0, 0.0};
   if (!(speed > 1e-140)) return kAll;
   const double half = std::sqrt((radius - distance) * (radius + distance)) / speed;
@@ -209,21 +245,21 @@ double MovingPair::gap(const Vec& axis) const noexcept {
 
 double MovingPair::swept_gap(const Vec& axis) const noexcept {
   if (has_half_space() && turn_b_.angle > 0.0) return -kForever;
-  return axis.dot(b().center) - swept_high(turn_b_, b(), -axis) - swept_high(turn_a_, a(), axis) -
+  return axis.dot(placed_) - swept_high(turn_b_, b(), -axis) - swept_high(turn_a_, a(), axis) -
          roundings() - noise();
 }
 
 double MovingPair::parting(const Vec& axis, const Vec& y_a, const Vec& y_b) const noexcept {
   Vec v = travel_;
-  if (turn_a_.angle > 0.0) v -= turn_a_.angle * turn_a_.axis.cross(y_a);
-  if (turn_b_.angle > 0.0) v += turn_b_.angle * turn_b_.axis.cross(y_b);
+  if (turn_a_.angle > 0.0) v -= turn_a_.angle * turn_a_.axis.cross(turn_a_.arm + y_a);
+  if (turn_b_.angle > 0.0) v += turn_b_.angle * turn_b_.axis.cross(turn_b_.arm + y_b);
   return axis.dot(v);
 }
 
 double MovingPair::curvature(const Vec& axis) const noexcept {
   if (has_half_space() && turn_b_.angle > 0.0) {
     // The normal turns, times points that turn about a position that moves: the product rule.
-    const double far = std::max(between_.norm(), (between_ + travel_).norm()) + a().size;
+    const double far = std::max(between_.norm(), (between_ + travel_).norm()) + arms() + a().size;
     const double fast = travel_.norm() + turn_a_.angle * turn_a_.reach;
     return turn_b_.angle * (turn_b_.angle * far + 2.0 * fast) +
            turn_a_.angle * turn_a_.angle * turn_a_.reach;
@@ -243,7 +279,7 @@ double MovingPair::curvature_between(const Vec& from, const Vec& to, double widt
       turn_a_.reach * turn_a_.angle * turn_a_.angle + turn_b_.reach * turn_b_.angle * turn_b_.angle;
   const double speed =
       travel_.norm() + turn_a_.angle * turn_a_.reach + turn_b_.angle * turn_b_.reach;
-  const double far = b().center.norm() + width * travel_.norm() + a().size + b().size;
+  const double far = placed_.norm() + width * travel_.norm() + arms() + a().size + b().size;
   const double below = width * (rate * far + speed);
   return reach + 2.0 * rate * speed + rate * rate * below;
 }
@@ -251,7 +287,8 @@ double MovingPair::curvature_between(const Vec& from, const Vec& to, double widt
 double MovingPair::most_closing() const noexcept {
   double speed = travel_.norm() + turn_a_.angle * turn_a_.reach + turn_b_.angle * turn_b_.reach;
   if (has_half_space()) {
-    speed += turn_b_.angle * (std::max(between_.norm(), (between_ + travel_).norm()) + a().size);
+    const double far = std::max(between_.norm(), (between_ + travel_).norm());
+    speed += turn_b_.angle * (far + arms() + a().size);
   }
   return speed;
 }

@@ -15,7 +15,20 @@ struct Interval {
   double last;
 };
 
-/// How a core turns about the axis through its center.
+/// When two balls, of radii whose sum is `reach`, overlap: the second is at `between` from the
+/// first at time 0 and travels on. All the time where the reach is infinite.
+[[nodiscard]] Interval ball_window(const Vec& between, const Vec& travel, double reach) noexcept;
+
+/// A convex shape that moves with a body.
+struct MovingPart {
+  ShapeId shape;
+  /// Of the body, with the shape's own orientation at the start.
+  RigidMotion motion;
+  /// From the body's position to the shape's at the start, in the axes of the world.
+  Vec arm = Vec::Zero();
+};
+
+/// How a core turns about the axis through its body's position.
 struct TurningCore {
   /// As it is unturned.
   solver::Core local;
@@ -25,25 +38,34 @@ struct TurningCore {
   double angle = 0.0;
   /// No point of the core is farther from the axis.
   double reach = 0.0;
-  /// Of the core along the axis, from the center.
+  /// Of the core along the axis, from the body's position.
   solver::Range along{0.0, 0.0};
+  /// From the body's position to the shape's at the start.
+  Vec first_arm = Vec::Zero();
+  /// The same to the center where it is placed: zero for a half-space, whose offset is from the
+  /// position of the body.
+  Vec arm = Vec::Zero();
+
+  [[nodiscard]] Vec arm_at(double time) const noexcept;
 };
 
 /// Two shapes that move, at any time in [0, 1]: a problem of the solver, in the axes of the world
-/// and about the position of a, with what bounds their approach, in the order of the solver.
-/// Lengths are those of the problem.
+/// Two shapes that move, at any time in [0, 1]: a problem of the solver, in the axes of the world
+/// and about the center of a, with what bounds their approach, in the order of the solver. Lengths
+/// are those of the problem.
 class MovingPair {
  public:
-  MovingPair(const ShapeTables& tables, ShapeId a, const RigidMotion& of_a, ShapeId b,
-             const RigidMotion& of_b) noexcept;
+  MovingPair(const ShapeTables& tables, const MovingPart& a, const MovingPart& b) noexcept;
 
   /// Brings both to where they are at a time.
   void place(double time) noexcept;
-  /// The same as poses in the caller's lengths, that of a at the origin.
+  /// The same as poses in the caller's lengths, about the position of body a.
   void poses(double time, Pose& pose_a, Pose& pose_b) const noexcept;
   [[nodiscard]] const solver::Problem& problem() const noexcept { return problem_; }
   [[nodiscard]] const solver::Core& a() const noexcept { return problem_.a; }
   [[nodiscard]] const solver::Core& b() const noexcept { return problem_.b; }
+  /// From the position of body a to the center of a where it is placed.
+  [[nodiscard]] const Vec& arm() const noexcept { return turn_a_.arm; }
   [[nodiscard]] double roundings() const noexcept { return a().rounding + b().rounding; }
   [[nodiscard]] bool has_half_space() const noexcept {
     return b().kind == solver::CoreKind::half_space;
@@ -58,7 +80,7 @@ class MovingPair {
   /// The smaller extent of the two, of which tolerances are shares.
   [[nodiscard]] double size() const noexcept { return size_; }
 
-  /// Surely apart before and after: by the balls about their centers.
+  /// Surely apart before and after: by the balls about the positions of their bodies.
   [[nodiscard]] Interval window() const noexcept;
 
   /// The gap along a unit axis from a to b where they are placed, less the noise. Of a half-space,
@@ -84,9 +106,14 @@ class MovingPair {
   solver::Problem problem_;
   TurningCore turn_a_;
   TurningCore turn_b_;
-  /// From a to b at time 0, and how it changes.
+  [[nodiscard]] double arms() const noexcept {
+    return turn_a_.first_arm.norm() + turn_b_.first_arm.norm();
+  }
+
+  /// From body a to body b at time 0, how it changes, and what it is where they are placed.
   Vec between_ = Vec::Zero();
   Vec travel_ = Vec::Zero();
+  Vec placed_ = Vec::Zero();
   double noise_ = 0.0;
   double size_ = 0.0;
 };

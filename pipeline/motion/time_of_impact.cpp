@@ -1,6 +1,6 @@
 #include <winnow/pipeline/time_of_impact.h>
 #include "core/sort/stretches.h"
-#include "pipeline/motion/impact_search.h"
+#include "pipeline/motion/body_impact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +8,12 @@
 namespace winnow {
 namespace {
 
-[[nodiscard]] Status status_of(const ShapePool& shapes, const MovingBodies& bodies,
-                               const BodyPair& pair) noexcept {
+[[nodiscard]] Status status_of(const PartTraversal& parts, const MovingBodies& bodies,
+                               const ImpactOptions& options, const BodyPair& pair) noexcept {
   for (const std::uint32_t body : {pair.a, pair.b}) {
     const ShapeId shape = bodies.shapes[body];
-    if (shape.is_composite()) return Status::unsupported;
-    if (!shapes.contains(shape)) return Status::invalid_key;
+    if (shape.is_composite() && options.composites == nullptr) return Status::unsupported;
+    if (!parts.contains(shape)) return Status::invalid_key;
     if (!bodies.motions[body].is_valid()) return Status::invalid_pose;
   }
   return Status::ok;
@@ -28,14 +28,31 @@ ImpactResult::ImpactResult(std::pmr::memory_resource* memory) noexcept
       gap_(memory),
       error_bound_(memory),
       normal_{Column<double>(memory), Column<double>(memory), Column<double>(memory)},
-      point_{Column<double>(memory), Column<double>(memory), Column<double>(memory)} {}
+      point_{Column<double>(memory), Column<double>(memory), Column<double>(memory)},
+      part_a_(memory),
+      part_b_(memory) {}
 
 bool ImpactResult::resize(std::size_t count) noexcept {
-  bool ok = status_.resize(count) && hit_.resize(count);
+  bool ok =
+      status_.resize(count) && hit_.resize(count) && part_a_.resize(count) && part_b_.resize(count);
   for (Column<double>* column : {&time_, &gap_, &error_bound_}) ok = ok && column->resize(count);
   for (Column<double>& column : normal_) ok = ok && column.resize(count);
   for (Column<double>& column : point_) ok = ok && column.resize(count);
   return ok;
+}
+
+void ImpactResult::write(std::size_t i, const impact::BodyImpact& found) noexcept {
+  const impact::Impact& impact = found.impact;
+  hit_[i] = impact.hit ? 1 : 0;
+  time_[i] = impact.time;
+  gap_[i] = impact.gap;
+  error_bound_[i] = impact.error_bound;
+  for (int axis = 0; axis < 3; ++axis) {
+    normal_[axis][i] = impact.normal[axis];
+    point_[axis][i] = impact.point[axis];
+  }
+  part_a_[i] = found.part_a;
+  part_b_[i] = found.part_b;
 }
 
 Footprint ImpactResult::footprint() const noexcept {
@@ -43,6 +60,8 @@ Footprint ImpactResult::footprint() const noexcept {
   Bytes& bytes = footprint.results;
   bytes += status_.bytes();
   bytes += hit_.bytes();
+  bytes += part_a_.bytes();
+  bytes += part_b_.bytes();
   bytes += time_.bytes();
   bytes += gap_.bytes();
   bytes += error_bound_.bytes();
@@ -67,28 +86,22 @@ Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
       pairs, [count](const BodyPair& pair) { return pair.a < count && pair.b < count; });
   if (!exist) return refuse(Status::invalid_argument);
   if (!result.resize(pairs.size())) return refuse(Status::out_of_memory);
+  const PartTraversal parts(shapes, options.composites);
   constexpr std::size_t kPairsPerStretch = 64;
   for_stretches(
       options.execution, pairs.size(), kPairsPerStretch, [&](std::size_t first, std::size_t end) {
         for (std::size_t i = first; i < end; ++i) {
           const auto [a, b] = pairs[i];
-          const Status status = status_of(shapes, bodies, pairs[i]);
-          impact::Impact found;
-          if (status == Status::ok) {
-            found = impact::find_impact(shapes.tables(), bodies.shapes[a], bodies.motions[a],
-                                        bodies.shapes[b], bodies.motions[b], options.tolerance);
+          result.status_[i] = status_of(parts, bodies, options, pairs[i]);
+          impact::BodyImpact found;
+          if (result.status_[i] == Status::ok) {
+            found =
+                impact::find_body_impact(parts, {bodies.shapes[a], bodies.motions[a]},
+                                         {bodies.shapes[b], bodies.motions[b]}, options.tolerance);
           } else {
-            found.time = 0.0;
+            found.impact.time = 0.0;
           }
-          result.status_[i] = status;
-          result.hit_[i] = found.hit ? 1 : 0;
-          result.time_[i] = found.time;
-          result.gap_[i] = found.gap;
-          result.error_bound_[i] = found.error_bound;
-          for (int axis = 0; axis < 3; ++axis) {
-            result.normal_[axis][i] = found.normal[axis];
-            result.point_[axis][i] = found.point[axis];
-          }
+          result.write(i, found);
         }
       });
   return Status::ok;

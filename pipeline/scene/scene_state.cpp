@@ -2,10 +2,10 @@
 
 #include "core/hooks/stage_scope.h"
 #include "core/sort/stretches.h"
+#include "pipeline/composites/parts.h"
 #include "pipeline/scene/body_predicate.h"
 #include "pipeline/scene/motion_bound.h"
 #include "pipeline/scene/scene_origin.h"
-#include "pipeline/shapes/extent.h"
 
 #include <algorithm>
 #include <utility>
@@ -39,8 +39,7 @@ Status SceneState::make_partition_of(Motion which) {
 }
 
 double SceneState::radius(std::uint32_t body) const noexcept {
-  const ShapeId id = shape[body];
-  return id.is_composite() ? options.composites->radius(id) : mid::radius_of(shapes.tables(), id);
+  return PartTraversal(shapes, options.composites).radius(shape[body]);
 }
 
 PlainBox SceneState::bounds_from(const Eigen::Vector3d& from, ShapeId id, const Pose& at,

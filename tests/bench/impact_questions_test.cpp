@@ -39,6 +39,38 @@ TEST(ImpactQuestions, are_answered_with_a_time) {
   EXPECT_FALSE(miss.contains("overlap"));
 }
 
+TEST(ImpactQuestions, are_answered_for_composite_shapes) {
+  const auto time_with = [](const std::string& shape) {
+    const Json got = answer_to_one((R"({"a": )" + shape +
+                                    R"(, "b": {"type": "sphere", "radius": 0.5,
+                                        "pose": {"position": [0.25, 0.125, 4.5]},
+                                        "end_pose": {"position": [0.25, 0.125, -3.5]}}})")
+                                       .c_str());
+    EXPECT_EQ(got["status"], "ok");
+    return got["hit"] == true ? got["time"].get<double>() : -1.0;
+  };
+  EXPECT_NEAR(time_with(R"({"type": "mesh", "v": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
+                            "triangles": [[0, 1, 2]]})"),
+              0.5, 1e-6);
+  EXPECT_NEAR(time_with(R"({"type": "height_field", "heights": [[1, 1], [1, 1]]})"), 0.375, 1e-6);
+  EXPECT_NEAR(time_with(R"({"type": "compound", "children": [
+                {"type": "box", "half": [1, 1, 1], "pose": {"position": [0, 0, -5]}},
+                {"type": "box", "half": [1, 1, 1], "pose": {"position": [0, 0, 1]}}]})"),
+              0.25, 1e-6);
+  EXPECT_EQ(answer_to_one(R"({"a": {"type": "mesh", "v": [[0, 0, 0]], "triangles": [[0, 0, 7]],
+                                    "end_pose": {}},
+                              "b": {"type": "sphere", "radius": 1}})")["status"],
+            "invalid_shape");
+  for (const char* const bad :
+       {R"({"type": "mesh", "v": [[0, 0, 0]], "end_pose": {}})",
+        R"({"type": "height_field", "heights": [[0, 1], [0]], "end_pose": {}})",
+        R"({"type": "compound", "children": 3, "end_pose": {}})"}) {
+    const std::string question =
+        std::string(R"({"b": {"type": "sphere", "radius": 1}, "a": )") + bad + "}";
+    EXPECT_EQ(answer_to_one(question.c_str())["status"], "invalid_argument");
+  }
+}
+
 TEST(ImpactQuestions, that_are_bad_get_a_status) {
   const auto status_with = [](const std::string& end) {
     const Json got = answer_to_one((R"({"a": {"type": "sphere", "radius": 1, "end_pose": )" + end +

@@ -223,9 +223,23 @@ double speed_bound(const ShapePool& pool, const MovingShapes& pair) {
 
 Before before(const ShapePool& pool, const MovingShapes& pair, double time,
               std::size_t most_looks) {
+  return before([&](double at) { return distance_at(pool, pair, at); }, speed_bound(pool, pair),
+                doubt_of(pool, pair), time, most_looks);
+}
+
+Pose place_at(const RigidMotion& motion, double time, const double (&origin)[3]) {
+  Pose pose;
+  turn_to(motion, time, pose.orientation);
+  for (int i = 0; i < 3; ++i) {
+    const Real from = static_cast<Real>(motion.start.position[i]) - origin[i];
+    pose.position[i] = static_cast<double>(from + time * static_cast<Real>(motion.travel[i]));
+  }
+  return pose;
+}
+
+Before before(const std::function<DistanceAt(double)>& distance, double speed, double doubt,
+              double time, std::size_t most_looks) {
   if (time == 0.0) return Before::apart;
-  const double speed = speed_bound(pool, pair);
-  const double doubt = doubt_of(pool, pair);
   std::vector<Span> open{{0.0, time}};
   bool proved = true;
   for (std::size_t looks = 0; !open.empty(); ++looks) {
@@ -233,7 +247,7 @@ Before before(const ShapePool& pool, const MovingShapes& pair, double time,
     const Span span = open.back();
     open.pop_back();
     const double middle = 0.5 * (span.from + span.to);
-    const DistanceAt at = distance_at(pool, pair, middle);
+    const DistanceAt at = distance(middle);
     if (at.distance < -at.error - doubt) return Before::met;
     if (at.distance - at.error > 0.5 * speed * (span.to - span.from)) continue;
     if (looks >= most_looks || middle <= span.from || middle >= span.to) {

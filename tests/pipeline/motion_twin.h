@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 #include "tests/pipeline/pair_scenes.h"
 
@@ -66,6 +67,13 @@ enum class Before : std::uint8_t {
 };
 [[nodiscard]] Before before(const ShapePool& pool, const MovingShapes& pair, double time,
                             std::size_t most_looks);
+/// The same of anything whose distance at a time is known, and falls no faster than `speed`.
+/// Distances may be wrong by `doubt` beyond their error.
+[[nodiscard]] Before before(const std::function<DistanceAt(double)>& distance, double speed,
+                            double doubt, double time, std::size_t most_looks);
+
+/// Where a body is at a time, from `origin`, computed in long double.
+[[nodiscard]] Pose place_at(const RigidMotion& motion, double time, const double (&origin)[3]);
 
 /// The smaller of the largest distances of the shapes' points from their middles; of the other
 /// where one is a point or has no end.

@@ -3,7 +3,7 @@
 // What questions to a scene are made of; see casts.cpp and scene_queries.cpp for the questions.
 
 #include <winnow/pipeline/scene_queries.h>
-#include "pipeline/scene/queries/parts.h"
+#include "pipeline/composites/parts.h"
 #include "pipeline/scene/scene_state.h"
 
 namespace winnow {

@@ -9,7 +9,7 @@
 #include "pipeline/scene/queries/shape_cast.h"
 
 #include <winnow/core/rounding.h>
-#include "pipeline/scene/queries/parts.h"
+#include "pipeline/composites/parts.h"
 #include "pipeline/shapes/frame.h"
 #include "pipeline/solver/core_distance.h"
 #include "pipeline/solver/gjk.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <winnow/pipeline/scene_queries.h>
-#include "pipeline/scene/queries/parts.h"
+#include "pipeline/composites/parts.h"
 #include "pipeline/scene/queries/shape_cast.h"
 
 namespace winnow {

@@ -4,7 +4,7 @@
 // parts.
 
 #include <winnow/pipeline/scene_queries.h>
-#include "pipeline/scene/queries/parts.h"
+#include "pipeline/composites/parts.h"
 #include "pipeline/solver/solver.h"
 
 #include <algorithm>

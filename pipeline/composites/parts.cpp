@@ -1,7 +1,8 @@
-#include "pipeline/scene/queries/parts.h"
+#include "pipeline/composites/parts.h"
 
 #include <winnow/core/rotation.h>
 #include <winnow/core/rounding.h>
+#include "pipeline/shapes/extent.h"
 #include "pipeline/shapes/frame.h"
 
 #include <algorithm>
@@ -82,6 +83,11 @@ ShapeId PartTables::put(std::size_t slot, const ConvexPart& part) noexcept {
 bool PartTraversal::contains(ShapeId shape) const noexcept {
   if (shape.is_composite()) return composites_ != nullptr && composites_->contains(shape);
   return shapes_.contains(shape);
+}
+
+double PartTraversal::radius(ShapeId shape) const noexcept {
+  return shape.is_composite() ? composites_->radius(shape)
+                              : mid::radius_of(shapes_.tables(), shape);
 }
 
 PreciseBox PartTraversal::box(const PlacedShape& placed) const noexcept {

@@ -67,6 +67,8 @@ class PartTraversal {
 
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
   [[nodiscard]] bool contains(ShapeId shape) const noexcept;
+  /// No point of the shape is farther from its own origin; infinite for a half-space.
+  [[nodiscard]] double radius(ShapeId shape) const noexcept;
   /// Contains the shape where it stands.
   [[nodiscard]] PreciseBox box(const PlacedShape& placed) const noexcept;
   [[nodiscard]] PreciseBox box(const ConvexPart& part) const noexcept;

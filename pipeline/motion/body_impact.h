@@ -1,0 +1,30 @@
+#pragma once
+
+#include "pipeline/composites/parts.h"
+#include "pipeline/motion/impact_search.h"
+
+#include <cstdint>
+
+namespace winnow::impact {
+
+/// A body that moves, its shape convex or composite.
+struct MovingBody {
+  ShapeId shape;
+  const RigidMotion& motion;
+};
+
+/// When two bodies meet, and with which of their parts.
+struct BodyImpact {
+  Impact impact;
+  std::uint32_t part_a = kWholeShape;
+  std::uint32_t part_b = kWholeShape;
+};
+
+/// The first impact within an interval, before which they are apart, of shapes that are there and
+/// motions that are valid; of bodies that share a point at the start that of the parts that overlap
+/// the deepest. `tolerance` is a share of the size of the smaller of the parts that meet.
+[[nodiscard]] BodyImpact find_body_impact(const PartTraversal& parts, const MovingBody& a,
+                                          const MovingBody& b, double tolerance,
+                                          const Interval& within = {0.0, 1.0});
+
+}  // namespace winnow::impact

@@ -1,0 +1,135 @@
+#include "pipeline/motion/passage.h"
+
+#include "pipeline/motion/turn.h"
+#include "pipeline/shapes/frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow::impact {
+namespace {
+
+[[nodiscard]] Quaternion unit_orientation(const Pose& pose) noexcept {
+  return normalized(tame(pose.orientation));
+}
+
+[[nodiscard]] Quaternion inverse(const Quaternion& unit) noexcept {
+  return {unit[0], -unit[1], -unit[2], -unit[3]};
+}
+
+}  // namespace
+
+MovingShape whole_shape(const PartTraversal& parts, ShapeId shape,
+                        const RigidMotion& motion) noexcept {
+  return {{shape, {}}, motion, parts.radius(shape)};
+}
+
+MovingShape moving_part(const PartTraversal& parts, const ConvexPart& part,
+                        const RigidMotion& motion) noexcept {
+  const Vec at = Vec::Map(part.pose.position);
+  double radius = 0.0;
+  if (part.triangle != nullptr) {
+    for (const auto& corner : part.triangle->vertex) {
+      radius = std::max(radius, Vec::Map(corner).norm());
+    }
+    radius += part.triangle->rounding;
+  } else {
+    radius = parts.radius(part.shape);
+  }
+  return {part, motion, (at.norm() + radius) * (1.0 + mid::kSlack)};
+}
+
+Passage::Passage(const PartTraversal& parts, const RigidMotion& frame,
+                 const MovingShape& shape) noexcept
+    : parts_(parts),
+      frame_(frame),
+      shape_(shape),
+      apart_(Vec::Map(difference(shape.motion.start.position, frame.start.position).difference)),
+      travel_(Vec::Map(shape.motion.travel) - Vec::Map(frame.travel)),
+      frame_rate_(length_of(frame.turn)),
+      shape_rate_(length_of(shape.motion.turn)) {}
+
+Passage::Place Passage::place(double time) const noexcept {
+  const Quaternion frame = unit_orientation(frame_.at(time));
+  const Eigen::Matrix3d axes = rotation_of_unit(frame);
+  return {axes.transpose() * (apart_ + time * travel_),
+          product(inverse(frame), unit_orientation(shape_.motion.at(time)))};
+}
+
+/// The shape where it is so turned, about the position of its body.
+PreciseBox Passage::about(const Quaternion& turn) const noexcept {
+  const Eigen::Matrix3d turned = rotation_of_unit(turn);
+  ConvexPart shape = shape_.shape;
+  Vec::Map(shape.pose.position) = turned * Vec::Map(shape_.shape.pose.position);
+  const Quaternion q = product(turn, tame(shape_.shape.pose.orientation));
+  std::copy(q.begin(), q.end(), shape.pose.orientation);
+  return parts_.box(shape);
+}
+
+double Passage::farthest(const Interval& within) const noexcept {
+  return std::max((apart_ + within.first * travel_).norm(),
+                  (apart_ + within.last * travel_).norm());
+}
+
+double Passage::turning_bend(double width) const noexcept {
+  const double turned = (frame_rate_ + shape_rate_) * width;
+  return 0.125 * turned * turned * shape_.radius;
+}
+
+double Passage::path_bend(double far, double width) const noexcept {
+  const double turned = frame_rate_ * width;
+  return 0.125 * turned * (turned * far + 2.0 * travel_.norm() * width);
+}
+
+double Passage::bend(const Interval& within) const noexcept {
+  const double width = within.last - within.first;
+  return turning_bend(width) + path_bend(farthest(within), width);
+}
+
+BoxSweep Passage::sweep(const Interval& within) const noexcept {
+  const double width = within.last - within.first;
+  const double far = farthest(within);
+  const double slack = 8.0 * mid::kSlack * (far + shape_.radius);
+  const double path = path_bend(far, width);
+  const Vec ball = Vec::Constant(shape_.radius);
+  if (!std::isfinite(shape_.radius) || path > far) {
+    return PreciseBox{-ball, ball}.grown(far + slack).standing();
+  }
+  const Place first = place(within.first);
+  const Place last = place(within.last);
+  PreciseBox box{-ball, ball};
+  double bent = turning_bend(width);
+  if (bent < shape_.radius) {
+    box = about(first.turn);
+    const PreciseBox then = about(last.turn);
+    box.min = box.min.cwiseMin(then.min).cwiseMax(-ball + Vec::Constant(bent));
+    box.max = box.max.cwiseMax(then.max).cwiseMin(ball - Vec::Constant(bent));
+  } else {
+    bent = 0.0;
+  }
+  box = {first.position + box.min, first.position + box.max};
+  BoxSweep sweep = box.grown(bent + path + slack).standing();
+  Vec::Map(sweep.direction) = last.position - first.position;
+  sweep.max_t = 1.0;
+  return sweep;
+}
+
+PreciseBox Passage::box(const Interval& within) const noexcept {
+  constexpr double kMostTurned = 0.5;
+  constexpr double kMostPieces = 256.0;
+  const double width = within.last - within.first;
+  const double turned = (frame_rate_ + shape_rate_) * width;
+  const double pieces = std::clamp(std::ceil(turned / kMostTurned), 1.0, kMostPieces);
+  PreciseBox all{Vec::Constant(mid::kInfinity), Vec::Constant(-mid::kInfinity)};
+  for (double piece = 0.0; piece < pieces; ++piece) {
+    const BoxSweep way = sweep(
+        {within.first + piece / pieces * width, within.first + (piece + 1.0) / pieces * width});
+    for (const double t : {0.0, way.max_t}) {
+      all.min = all.min.cwiseMin(Vec::Map(way.min) + t * Vec::Map(way.direction));
+      all.max = all.max.cwiseMax(Vec::Map(way.max) + t * Vec::Map(way.direction));
+    }
+  }
+  return all;
+}
+
+}  // namespace winnow::impact
