@@ -252,6 +252,7 @@ class WINNOW_API Scene {
 
  private:
   friend class SceneQueries;
+  friend class SceneSweep;
   friend class Sensors;
 
   /// Null where memory was refused.

@@ -17,10 +17,6 @@
 
 namespace winnow {
 
-namespace impact {
-struct BodyImpact;
-}
-
 /// What moves: body i has shape shapes[i] and moves by motions[i].
 struct MovingBodies {
   std::span<const ShapeId> shapes;       ///< by body
@@ -97,7 +93,8 @@ class WINNOW_API ImpactResult {
                                           std::span<const BodyPair> pairs,
                                           const ImpactOptions& options, ImpactResult& result);
   [[nodiscard]] bool resize(std::size_t count) noexcept;
-  void write(std::size_t i, const impact::BodyImpact& found) noexcept;
+  template <typename BodyImpact>
+  void write(std::size_t i, const BodyImpact& found) noexcept;
   [[nodiscard]] static std::span<const double> span(const Column<double>& c) noexcept {
     return {c.data(), c.size()};
   }

@@ -59,6 +59,7 @@
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
+#include <winnow/pipeline/scene_sweep.h>
 #include <winnow/pipeline/sensors.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>

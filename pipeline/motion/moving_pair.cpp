@@ -20,9 +20,14 @@ constexpr double kForever = std::numeric_limits<double>::infinity();
 /// Axes that differ by less are the same: what that changes is counted as noise.
 constexpr double kSameAxis = 16.0 * kEpsilon;
 
+/// Of a vector of length 1 at most.
+double across_z(const Vec& w) noexcept {
+  return std::sqrt(w.x() * w.x() + w.y() * w.y());
+}
+
 /// The largest distance of a rim of `radius` at height z from an axis w.
 double rim_reach(double radius, double z, const Vec& w) noexcept {
-  const double nearest = std::max(0.0, std::abs(z * w.z()) - radius * std::hypot(w.x(), w.y()));
+  const double nearest = std::max(0.0, std::abs(z * w.z()) - radius * across_z(w));
   return std::sqrt(std::max(0.0, radius * radius + z * z - nearest * nearest));
 }
 
@@ -32,12 +37,11 @@ double reach_of(const Core& core, const Vec& w) noexcept {
     case CoreKind::point:
       return 0.0;
     case CoreKind::segment:
-      return core.half.z() * std::hypot(w.x(), w.y());
+      return core.half.z() * across_z(w);
     case CoreKind::cylinder:
       return rim_reach(core.half.x(), core.half.z(), w);
     case CoreKind::cone:
-      return std::max(rim_reach(core.half.x(), -core.half.z(), w),
-                      core.half.z() * std::hypot(w.x(), w.y()));
+      return std::max(rim_reach(core.half.x(), -core.half.z(), w), core.half.z() * across_z(w));
     case CoreKind::half_space:
       return 0.0;
     case CoreKind::support:
@@ -60,7 +64,7 @@ bool is_invariant(const Core& core, const Vec& w) noexcept {
     case CoreKind::segment:
     case CoreKind::cylinder:
     case CoreKind::cone:
-      return std::hypot(w.x(), w.y()) <= kSameAxis;
+      return across_z(w) <= kSameAxis;
     case CoreKind::half_space:
       return core.normal.cross(w).norm() <= kSameAxis;
     default:
@@ -226,9 +230,9 @@ Interval MovingPair::window() const noexcept {
 
 Interval ball_window(const Vec& between, const Vec& travel, double reach) noexcept {
   constexpr Interval kAll{0.0, 1.0};
-  if (!std::isfinite(reach)) return kAll;
   const double speed = travel.norm();
   const double path = between.norm() + speed;
+  if (!std::isfinite(reach + path)) return kAll;
   const double radius = reach + 64.0 * kEpsilon * (path + reach);
   // Where the way is too short for its square, both ends are as near as any place between.
   const double nearest = speed > 1e-140 ? -(between.dot(travel) / speed) / speed : 0.0;

@@ -67,8 +67,8 @@ PreciseBox Passage::about(const Quaternion& turn) const noexcept {
 }
 
 double Passage::farthest(const Interval& within) const noexcept {
-  return std::max((apart_ + within.first * travel_).norm(),
-                  (apart_ + within.last * travel_).norm());
+  return std::max((apart_ + within.first * travel_).stableNorm(),
+                  (apart_ + within.last * travel_).stableNorm());
 }
 
 double Passage::turning_bend(double width) const noexcept {
@@ -78,7 +78,7 @@ double Passage::turning_bend(double width) const noexcept {
 
 double Passage::path_bend(double far, double width) const noexcept {
   const double turned = frame_rate_ * width;
-  return 0.125 * turned * (turned * far + 2.0 * travel_.norm() * width);
+  return 0.125 * turned * (turned * far + 2.0 * travel_.stableNorm() * width);
 }
 
 double Passage::bend(const Interval& within) const noexcept {
@@ -99,11 +99,14 @@ BoxSweep Passage::sweep(const Interval& within) const noexcept {
   const Place last = place(within.last);
   PreciseBox box{-ball, ball};
   double bent = turning_bend(width);
-  if (bent < shape_.radius) {
+  if (bent == 0.0) {
+    box = about(first.turn);
+  } else if (bent < shape_.radius) {
+    const Vec most = ball - Vec::Constant(bent);
     box = about(first.turn);
     const PreciseBox then = about(last.turn);
-    box.min = box.min.cwiseMin(then.min).cwiseMax(-ball + Vec::Constant(bent));
-    box.max = box.max.cwiseMax(then.max).cwiseMin(ball - Vec::Constant(bent));
+    box.min = box.min.cwiseMin(then.min).cwiseMax(-most);
+    box.max = box.max.cwiseMax(then.max).cwiseMin(most);
   } else {
     bent = 0.0;
   }

@@ -1,0 +1,562 @@
+// Ways of bodies are boxed and put into a partition of their own, which is asked for pairs among
+// them and with the scene's partitions. What is found is judged by balls, and then exactly.
+
+#include <winnow/pipeline/scene_sweep.h>
+
+#include <winnow/core/aabb.h>
+#include "core/hooks/log.h"
+#include "core/memory/new_in.h"
+#include "core/sort/stretches.h"
+#include "pipeline/motion/body_impact.h"
+#include "pipeline/motion/passage.h"
+#include "pipeline/scene/scene_state.h"
+#include "pipeline/shapes/difference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace winnow {
+
+/// A part of the way of a body, in time, that has a box of its own.
+struct WayPiece {
+  std::uint32_t mover;
+  impact::Interval within;
+};
+
+namespace {
+
+constexpr std::uint32_t kNoMover = ~0U;
+constexpr std::uint32_t kMostPieces = 8;
+constexpr std::size_t kMoversPerStretch = 64;
+constexpr std::size_t kMoversPerTask = 8;
+constexpr std::size_t kCandidatesPerStretch = 32;
+
+/// Into how many pieces a way is cut: each runs across at most two of its axes by more than the
+/// body measures, where that is not the axis of a box anyway.
+[[nodiscard]] std::uint32_t piece_count(const RigidMotion& motion, double radius) noexcept {
+  double way[3] = {std::abs(motion.travel[0]), std::abs(motion.travel[1]),
+                   std::abs(motion.travel[2])};
+  std::sort(std::begin(way), std::end(way));
+  const double count = std::ceil(way[1] / std::max(2.0 * radius, 1e-300));
+  return static_cast<std::uint32_t>(std::clamp(count, 1.0, static_cast<double>(kMostPieces)));
+}
+
+[[nodiscard]] auto order_of(const SceneImpact& impact) noexcept {
+  return std::tuple(impact.time, impact.a.id, impact.b.id);
+}
+
+}  // namespace
+
+struct SweepState {
+  SweepState(Scene& swept_scene, SceneState& its_state, std::pmr::memory_resource* memory) noexcept
+      : scene(swept_scene),
+        bodies(its_state),
+        parts(its_state.shapes, its_state.options.composites),
+        ways(linear_bvh(), {.memory = memory, .execution = its_state.options.execution}),
+        motions(memory),
+        movers(memory),
+        mover_of(memory),
+        first_piece(memory),
+        boxes(memory),
+        pieces(memory),
+        piece_of(memory),
+        piece_keys(memory),
+        pairs(memory),
+        candidates(memory),
+        windows(memory),
+        chances(memory),
+        first_chance(memory),
+        found(memory),
+        impacts(memory),
+        first(memory) {}
+
+  [[nodiscard]] Status take(std::span<const Key> keys, const PoseView& ends) noexcept;
+  [[nodiscard]] Status take(std::span<const Key> keys, std::span<const RigidMotion> given) noexcept;
+  [[nodiscard]] Status box_ways();
+  [[nodiscard]] Status set_filters();
+  [[nodiscard]] Status find_pairs(const SweepOptions& options);
+  [[nodiscard]] Status find_all(const SweepOptions& options);
+  [[nodiscard]] Status find_first(const SweepOptions& options);
+  void sort_impacts() noexcept;
+  void forget() noexcept {
+    impacts.clear();
+    std::fill(first.begin(), first.end(), kNoImpact);
+  }
+
+  Scene& scene;
+  SceneState& bodies;
+  PartTraversal parts;
+  Partition ways;
+  /// By mover: its motion and which body it is; by body, which mover.
+  Column<RigidMotion> motions;
+  Column<std::uint32_t> movers;
+  Column<std::uint32_t> mover_of;
+  bool moves_fixed = false;
+  /// By mover, and one more.
+  Column<std::uint32_t> first_piece;
+  Column<PlainBox> boxes;
+  Column<WayPiece> pieces;
+  /// By object of `ways`.
+  Column<std::uint32_t> piece_of;
+  Column<Key> piece_keys;
+  PairBuffer pairs;
+  /// Pairs of bodies as (smaller id << 32 | larger id), sorted.
+  Column<std::uint64_t> candidates;
+  /// By candidate, when the balls around the two overlap.
+  Column<impact::Interval> windows;
+  /// By mover, candidates that it is one of: see `list_chances`.
+  Column<std::uint32_t> chances;
+  Column<std::uint32_t> first_chance;
+  /// By candidate or by mover.
+  Column<impact::BodyImpact> found;
+  Column<SceneImpact> impacts;
+  Column<std::uint32_t> first;
+  SweepStatistics statistics;
+
+ private:
+  [[nodiscard]] Status take_bodies(std::span<const Key> keys) noexcept;
+  [[nodiscard]] RigidMotion motion_of(std::uint32_t body) const noexcept {
+    const std::uint32_t mover = mover_of[body];
+    return mover == kNoMover ? RigidMotion::standing(bodies.pose[body]) : motions[mover];
+  }
+  [[nodiscard]] Status list_chances();
+  void find_first_of(std::uint32_t mover, const SweepOptions& options) noexcept;
+  [[nodiscard]] impact::Interval window_of(std::uint64_t candidate) const noexcept;
+  [[nodiscard]] impact::BodyImpact impact_of(std::uint64_t candidate,
+                                             const impact::Interval& within,
+                                             const SweepOptions& options) const noexcept;
+  [[nodiscard]] SceneImpact shown(std::uint64_t candidate,
+                                  const impact::BodyImpact& impact) const noexcept;
+  template <typename Body>
+  [[nodiscard]] Status collect(Body&& second_body);
+};
+
+namespace {
+
+/// Which pairs of ways, or of ways and bodies that stand, are looked at.
+struct WayJudge {
+  const SweepState& sweep;
+  const SweepOptions& options;
+  /// Null: ways among themselves.
+  const SceneSet* standing;
+
+  [[nodiscard]] bool is_bullet(std::uint32_t mover) const noexcept {
+    return !options.bullets.empty() && options.bullets[mover] != 0;
+  }
+  [[nodiscard]] bool may_pair(std::uint32_t a, std::uint32_t b, bool bullet) const noexcept {
+    const Motion of_a = sweep.bodies.motion[a];
+    const Motion of_b = sweep.bodies.motion[b];
+    if (of_a != Motion::dynamic && of_b != Motion::dynamic) return false;
+    const bool fixed = of_a == Motion::fixed || of_b == Motion::fixed;
+    const bool wanted = options.pairs == SweepPairs::all ||
+                        (bullet && options.pairs != SweepPairs::fixed) ||
+                        (fixed && options.pairs != SweepPairs::bullets);
+    return wanted && sweep.bodies.may_pair(a, b);
+  }
+  [[nodiscard]] bool accept(ObjectId first, ObjectId second) const noexcept {
+    const WayPiece& piece = sweep.pieces[sweep.piece_of[first]];
+    const std::uint32_t body = sweep.movers[piece.mover];
+    if (standing != nullptr) {
+      const std::uint32_t other = standing->body_of[second];
+      return sweep.mover_of[other] == kNoMover && may_pair(body, other, is_bullet(piece.mover));
+    }
+    const WayPiece& then = sweep.pieces[sweep.piece_of[second]];
+    if (piece.mover == then.mover || piece.within.first > then.within.last ||
+        then.within.first > piece.within.last) {
+      return false;
+    }
+    return may_pair(body, sweep.movers[then.mover],
+                    is_bullet(piece.mover) || is_bullet(then.mover));
+  }
+  [[nodiscard]] PairOptions asked() const noexcept {
+    PairOptions asked;
+    asked.incremental = false;
+    asked.predicate = {[](void* context, ObjectId first, ObjectId second) {
+                         return static_cast<const WayJudge*>(context)->accept(first, second);
+                       },
+                       const_cast<WayJudge*>(this)};
+    return asked;
+  }
+};
+
+}  // namespace
+
+Status SweepState::take_bodies(std::span<const Key> keys) noexcept {
+  if (!motions.resize(keys.size()) || !movers.resize(keys.size()) ||
+      !mover_of.resize(bodies.shape.size()) || !first.resize(keys.size())) {
+    return Status::out_of_memory;
+  }
+  std::fill(mover_of.begin(), mover_of.end(), kNoMover);
+  moves_fixed = false;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    movers[i] = keys[i].id;
+    mover_of[keys[i].id] = static_cast<std::uint32_t>(i);
+    moves_fixed = moves_fixed || bodies.motion[keys[i].id] == Motion::fixed;
+  }
+  return Status::ok;
+}
+
+Status SweepState::take(std::span<const Key> keys, const PoseView& ends) noexcept {
+  const auto motion_to = [&](std::size_t i) {
+    const Pose& start = bodies.pose[keys[i].id];
+    Pose end = ends[i];
+    if (!ends.has_orientations()) std::copy_n(start.orientation, 4, end.orientation);
+    return RigidMotion::between(start, end);
+  };
+  if (keys.size() != ends.count) return Status::size_mismatch;
+  if (!bodies.are_distinct(keys)) return Status::invalid_key;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (!motion_to(i).is_valid()) return Status::invalid_pose;
+  }
+  const Status status = take_bodies(keys);
+  for (std::size_t i = 0; status == Status::ok && i < keys.size(); ++i) motions[i] = motion_to(i);
+  return status;
+}
+
+Status SweepState::take(std::span<const Key> keys, std::span<const RigidMotion> given) noexcept {
+  if (keys.size() != given.size()) return Status::size_mismatch;
+  if (!bodies.are_distinct(keys)) return Status::invalid_key;
+  const bool valid =
+      std::ranges::all_of(given, [](const RigidMotion& motion) { return motion.is_valid(); });
+  if (!valid) return Status::invalid_pose;
+  const Status status = take_bodies(keys);
+  if (status == Status::ok) std::ranges::copy(given, motions.begin());
+  return status;
+}
+
+/// Fills `ways` anew.
+Status SweepState::box_ways() {
+  const std::size_t count = movers.size();
+  if (!first_piece.resize(count + 1)) return Status::out_of_memory;
+  std::uint32_t total = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    first_piece[i] = total;
+    total += piece_count(motions[i], bodies.radius(movers[i]));
+  }
+  first_piece[count] = total;
+  if (!boxes.resize(total) || !pieces.resize(total) || !piece_keys.resize(total)) {
+    return Status::out_of_memory;
+  }
+  const Eigen::Vector3d& at = bodies.origin;
+  const RigidMotion frame = RigidMotion::standing(Pose::at(at.x(), at.y(), at.z()));
+  const auto box_way = [&](std::uint32_t mover) {
+    const impact::MovingShape moving =
+        impact::whole_shape(parts, bodies.shape[movers[mover]], motions[mover]);
+    const impact::Passage passage(parts, frame, moving);
+    const std::uint32_t begin = first_piece[mover];
+    const std::uint32_t end = first_piece[mover + 1];
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const auto share = [&](std::uint32_t k) {
+        return static_cast<double>(k - begin) / static_cast<double>(end - begin);
+      };
+      pieces[i] = {mover, {share(i), share(i + 1)}};
+      const PreciseBox box = passage.box(pieces[i].within);
+      const Aabb outward = Aabb::outward(box.min, box.max);
+      for (int axis = 0; axis < 3; ++axis) {
+        boxes[i].min[axis] = outward.min[axis];
+        boxes[i].max[axis] = outward.max[axis];
+      }
+    }
+  };
+  for_stretches(bodies.options.execution, count, kMoversPerStretch,
+                [&](std::size_t begin, std::size_t end) {
+                  for (std::size_t i = begin; i < end; ++i) box_way(static_cast<std::uint32_t>(i));
+                });
+  ways.clear();
+  const PlainBox* const box = boxes.data();
+  const BoxView view{{&box->min[0], &box->min[1], &box->min[2]},
+                     {&box->max[0], &box->max[1], &box->max[2]},
+                     total,
+                     sizeof(PlainBox)};
+  const std::span<Key> keys{piece_keys.data(), total};
+  if (const Status status = ways.insert(view, {}, keys); status != Status::ok) return status;
+  std::size_t objects = 0;
+  for (const Key& key : keys) objects = std::max(objects, key.id + std::size_t{1});
+  if (!piece_of.resize(objects)) return Status::out_of_memory;
+  for (std::uint32_t i = 0; i < total; ++i) piece_of[keys[i].id] = i;
+  statistics = {total, 0};
+  return Status::ok;
+}
+
+Status SweepState::set_filters() {
+  for (std::uint32_t mover = 0; mover < movers.size(); ++mover) {
+    const std::uint32_t body = movers[mover];
+    ObjectFilter filter;
+    Status status = bodies.set(bodies.motion[body]).partition->filter(bodies.place[body], filter);
+    for (std::uint32_t i = first_piece[mover];
+         status == Status::ok && filter != ObjectFilter{} && i < first_piece[mover + 1]; ++i) {
+      status = ways.set_filter(piece_keys[i], filter);
+    }
+    if (status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
+/// Adds the pairs that were found, of which the second is `second_body` of an object.
+template <typename Body>
+Status SweepState::collect(Body&& second_body) {
+  const std::size_t before = candidates.size();
+  if (!candidates.grow(before + pairs.size())) return Status::out_of_memory;
+  candidates.set_size(before + pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::uint32_t a = movers[pieces[piece_of[pairs[i].first]].mover];
+    const std::uint32_t b = second_body(pairs[i].second);
+    candidates[before + i] = std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+  }
+  return Status::ok;
+}
+
+Status SweepState::find_pairs(const SweepOptions& options) {
+  candidates.clear();
+  const WayJudge among{*this, options, nullptr};
+  Status status = ways.self_pairs(pairs, among.asked());
+  if (status == Status::ok) {
+    status = collect([&](ObjectId way) { return movers[pieces[piece_of[way]].mover]; });
+  }
+  for (const Motion motion : kEveryMotion) {
+    const SceneSet& set = bodies.set(motion);
+    if (status != Status::ok || !set.partition.has_value()) continue;
+    if (options.pairs == SweepPairs::fixed && motion != Motion::fixed && !moves_fixed) continue;
+    const WayJudge with{*this, options, &set};
+    status = ways.pairs_with(*set.partition, pairs, with.asked());
+    if (status == Status::ok) status = collect([&](ObjectId id) { return set.body_of[id]; });
+  }
+  if (status != Status::ok) return status;
+  // A pair is found once for each two pieces.
+  std::sort(candidates.begin(), candidates.end());
+  std::uint64_t* const end = std::unique(candidates.begin(), candidates.end());
+  candidates.set_size(static_cast<std::size_t>(end - candidates.begin()));
+  statistics.body_pairs = candidates.size();
+  return Status::ok;
+}
+
+impact::Interval SweepState::window_of(std::uint64_t candidate) const noexcept {
+  const auto a = static_cast<std::uint32_t>(candidate >> 32U);
+  const auto b = static_cast<std::uint32_t>(candidate);
+  const RigidMotion of_a = motion_of(a);
+  const RigidMotion of_b = motion_of(b);
+  const Difference apart = difference(of_b.start.position, of_a.start.position);
+  const Eigen::Vector3d travel =
+      Eigen::Vector3d::Map(of_b.travel) - Eigen::Vector3d::Map(of_a.travel);
+  return impact::ball_window(Eigen::Vector3d::Map(apart.difference), travel,
+                             bodies.radius(a) + bodies.radius(b));
+}
+
+impact::BodyImpact SweepState::impact_of(std::uint64_t candidate, const impact::Interval& within,
+                                         const SweepOptions& options) const noexcept {
+  const auto a = static_cast<std::uint32_t>(candidate >> 32U);
+  const auto b = static_cast<std::uint32_t>(candidate);
+  impact::BodyImpact result =
+      impact::find_body_impact(parts, {bodies.shape[a], motion_of(a)},
+                               {bodies.shape[b], motion_of(b)}, options.tolerance, within);
+  const bool touches = result.impact.time == 0.0 && result.impact.gap <= 0.0;
+  if (touches && !options.touching) result.impact.hit = false;
+  return result;
+}
+
+/// The first impact of every pair.
+Status SweepState::find_all(const SweepOptions& options) {
+  if (!found.resize(candidates.size())) return Status::out_of_memory;
+  for_stretches(bodies.options.execution, candidates.size(), kCandidatesPerStretch,
+                [&](std::size_t begin, std::size_t end) {
+                  for (std::size_t i = begin; i < end; ++i) {
+                    const impact::Interval window = window_of(candidates[i]);
+                    found[i] = {};
+                    if (window.first > window.last) continue;
+                    found[i] = impact_of(candidates[i], {0.0, 1.0}, options);
+                  }
+                });
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (found[i].impact.hit && !impacts.push_back(shown(candidates[i], found[i]))) {
+      return Status::out_of_memory;
+    }
+  }
+  return Status::ok;
+}
+
+/// Lists the candidates of each mover whose balls meet, the first that do first.
+Status SweepState::list_chances() {
+  const std::size_t count = candidates.size();
+  if (!windows.resize(count) || !chances.resize(2 * count) ||
+      !first_chance.resize(movers.size() + 1)) {
+    return Status::out_of_memory;
+  }
+  for_stretches(bodies.options.execution, count, kCandidatesPerStretch,
+                [&](std::size_t begin, std::size_t end) {
+                  for (std::size_t i = begin; i < end; ++i) windows[i] = window_of(candidates[i]);
+                });
+  const auto each = [&](auto&& take) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (windows[i].first > windows[i].last) continue;
+      for (const std::uint64_t body : {candidates[i] >> 32U, candidates[i] & ~0U}) {
+        if (mover_of[body] != kNoMover) take(mover_of[body], i);
+      }
+    }
+  };
+  // Ends become beginnings as the places before them are taken.
+  std::fill(first_chance.begin(), first_chance.end(), 0U);
+  each([&](std::uint32_t mover, std::uint32_t) { ++first_chance[mover]; });
+  std::inclusive_scan(first_chance.begin(), first_chance.end(), first_chance.begin());
+  each([&](std::uint32_t mover, std::uint32_t i) { chances[--first_chance[mover]] = i; });
+  return Status::ok;
+}
+
+/// The first impact of a mover and which candidate it is of.
+void SweepState::find_first_of(std::uint32_t mover, const SweepOptions& options) noexcept {
+  std::uint32_t* const begin = chances.data() + first_chance[mover];
+  std::uint32_t* const end = chances.data() + first_chance[mover + 1];
+  std::sort(begin, end, [&](std::uint32_t i, std::uint32_t k) {
+    return std::tuple(windows[i].first, i) < std::tuple(windows[k].first, k);
+  });
+  found[mover] = {};
+  first[mover] = kNoImpact;
+  double best = 1.0;
+  for (const std::uint32_t* at = begin; at != end && windows[*at].first <= best; ++at) {
+    const impact::Interval within{windows[*at].first, std::min(windows[*at].last, best)};
+    const impact::BodyImpact other = impact_of(candidates[*at], within, options);
+    if (!other.impact.hit || (found[mover].impact.hit && !(other.impact.time < best))) continue;
+    found[mover] = other;
+    first[mover] = *at;
+    best = other.impact.time;
+  }
+}
+
+Status SweepState::find_first(const SweepOptions& options) {
+  if (const Status status = list_chances(); status != Status::ok) return status;
+  const std::size_t count = movers.size();
+  if (!found.resize(count)) return Status::out_of_memory;
+  for_stretches(bodies.options.execution, count, kMoversPerTask,
+                [&](std::size_t begin, std::size_t end) {
+                  for (std::size_t i = begin; i < end; ++i) {
+                    find_first_of(static_cast<std::uint32_t>(i), options);
+                  }
+                });
+  for (std::uint32_t mover = 0; mover < count; ++mover) {
+    if (first[mover] == kNoImpact) continue;
+    // What is the first impact of both is shown once, as the one that found it earlier has it.
+    const std::uint64_t candidate = candidates[first[mover]];
+    const auto a = static_cast<std::uint32_t>(candidate >> 32U);
+    const auto b = static_cast<std::uint32_t>(candidate);
+    const std::uint32_t other = mover_of[movers[mover] == a ? b : a];
+    if (other != kNoMover && first[other] == first[mover] &&
+        std::tuple(found[other].impact.time, other) < std::tuple(found[mover].impact.time, mover)) {
+      continue;
+    }
+    if (!impacts.push_back(shown(candidate, found[mover]))) return Status::out_of_memory;
+  }
+  return Status::ok;
+}
+
+SceneImpact SweepState::shown(std::uint64_t candidate,
+                              const impact::BodyImpact& of_bodies) const noexcept {
+  const impact::Impact& impact = of_bodies.impact;
+  SceneImpact result;
+  result.a = bodies.keys.key_of(static_cast<std::uint32_t>(candidate >> 32U));
+  result.b = bodies.keys.key_of(static_cast<std::uint32_t>(candidate));
+  result.data_a = bodies.keys.client_data(result.a.id);
+  result.data_b = bodies.keys.client_data(result.b.id);
+  result.part_a = of_bodies.part_a;
+  result.part_b = of_bodies.part_b;
+  result.time = impact.time;
+  result.gap = impact.gap;
+  result.error_bound = impact.error_bound;
+  const RigidMotion of_a = motion_of(result.a.id);
+  for (int i = 0; i < 3; ++i) {
+    result.normal[i] = impact.normal[i];
+    result.point[i] = of_a.start.position[i] + impact.time * of_a.travel[i] + impact.point[i];
+  }
+  return result;
+}
+
+/// Puts the impacts in order, and tells each mover which its first one is.
+void SweepState::sort_impacts() noexcept {
+  std::sort(impacts.begin(), impacts.end(),
+            [](const SceneImpact& a, const SceneImpact& b) { return order_of(a) < order_of(b); });
+  std::fill(first.begin(), first.end(), kNoImpact);
+  for (std::uint32_t i = 0; i < impacts.size(); ++i) {
+    for (const Key& key : {impacts[i].a, impacts[i].b}) {
+      const std::uint32_t mover = mover_of[key.id];
+      if (mover != kNoMover) first[mover] = std::min(first[mover], i);
+    }
+  }
+}
+
+SceneSweep::SceneSweep(Scene& scene, std::pmr::memory_resource* memory) noexcept
+    : memory_(memory), state_(nullptr) {
+  if (scene.state_ != nullptr) state_ = new_in<SweepState>(memory, scene, *scene.state_, memory);
+}
+
+SceneSweep::~SceneSweep() {
+  delete_in(memory_, state_);
+}
+
+Status SceneSweep::sweep(std::span<const Key> keys, const PoseView& ends,
+                         const SweepOptions& options) {
+  return run(keys, options, [&] { return state_->take(keys, ends); });
+}
+
+Status SceneSweep::sweep(std::span<const Key> keys, std::span<const RigidMotion> motions,
+                         const SweepOptions& options) {
+  return run(keys, options, [&] { return state_->take(keys, motions); });
+}
+
+template <typename Take>
+Status SceneSweep::run(std::span<const Key> keys, const SweepOptions& options, Take&& take) {
+  if (state_ == nullptr) return logged(Status::out_of_memory, "SceneSweep::sweep");
+  SweepState& s = *state_;
+  Status status = Status::ok;
+  if (!options.bullets.empty() && options.bullets.size() != keys.size()) {
+    status = Status::size_mismatch;
+  } else if (!(options.tolerance > 0.0 && options.tolerance <= 1.0) ||
+             options.pairs > SweepPairs::bullets_and_fixed) {
+    status = Status::invalid_argument;
+  } else {
+    status = s.scene.refresh();
+  }
+  if (status == Status::ok) status = take();
+  if (status == Status::ok) status = s.box_ways();
+  if (status == Status::ok) status = s.set_filters();
+  if (status == Status::ok) status = s.find_pairs(options);
+  if (status == Status::ok) {
+    s.impacts.clear();
+    status = options.first_only ? s.find_first(options) : s.find_all(options);
+  }
+  if (status == Status::ok) s.sort_impacts();
+  if (status == Status::out_of_memory) s.forget();
+  return logged(status, "SceneSweep::sweep");
+}
+
+std::span<const SceneImpact> SceneSweep::impacts() const noexcept {
+  if (state_ == nullptr) return {};
+  return {state_->impacts.data(), state_->impacts.size()};
+}
+
+std::span<const std::uint32_t> SceneSweep::first() const noexcept {
+  if (state_ == nullptr) return {};
+  return {state_->first.data(), state_->first.size()};
+}
+
+SweepStatistics SceneSweep::statistics() const noexcept {
+  return state_ != nullptr ? state_->statistics : SweepStatistics{};
+}
+
+Footprint SceneSweep::footprint() const noexcept {
+  if (state_ == nullptr) return {};
+  const SweepState& s = *state_;
+  Footprint sum;
+  sum.structure = {sizeof(SweepState), sizeof(SweepState)};
+  for (const Bytes& bytes :
+       {s.ways.footprint().total(), s.motions.bytes(), s.movers.bytes(), s.mover_of.bytes(),
+        s.first_piece.bytes(), s.boxes.bytes(), s.pieces.bytes(), s.piece_of.bytes(),
+        s.piece_keys.bytes(), s.pairs.footprint().total(), s.candidates.bytes(), s.windows.bytes(),
+        s.chances.bytes(), s.first_chance.bytes(), s.found.bytes()}) {
+    sum.scratch += bytes;
+  }
+  sum.results += s.impacts.bytes();
+  sum.results += s.first.bytes();
+  return sum;
+}
+
+}  // namespace winnow

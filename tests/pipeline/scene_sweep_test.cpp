@@ -1,0 +1,271 @@
+// Scenes that move between two frames: against every pair of bodies asked by itself.
+
+#include <gtest/gtest.h>
+#include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/scene_sweep.h>
+#include <winnow/pipeline/time_of_impact.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <memory_resource>
+#include <optional>
+#include <vector>
+
+#include "tests/pipeline/scene_world.h"
+#include "tests/support/counting_memory.h"
+#include "tests/support/meshes.h"
+
+namespace winnow::test {
+namespace {
+
+/// A scene of which some bodies move, and what every pair says by itself.
+struct SweptWorld {
+  explicit SweptWorld(std::size_t count, const Execution& execution = Execution::serial())
+      : world(count, 91), composites(world.pool) {
+    const MeshData ring = torus(6, 5);
+    EXPECT_EQ(composites.add_mesh(ring.points(), ring.indices(), mesh), Status::ok);
+    for (std::size_t i = 0; i < count; i += 9) world.bodies[i].shape = mesh;
+    for (std::size_t i = 0; i < count; i += 5) world.bodies[i].motion = Motion::fixed;
+    for (std::size_t i = 3; i < count; i += 7) world.bodies[i].motion = Motion::sleeping;
+    for (std::size_t i = 0; i < count; i += 11) world.bodies[i].filter.layers = 2;
+    for (std::size_t i = 4; i < count; i += 13) world.bodies[i].filter.mask = ~2U;
+    scene.emplace(world.pool, SceneOptions{.execution = execution, .composites = &composites});
+    EXPECT_EQ(add_all(*scene, world), Status::ok);
+    for (std::size_t i = 0; i < count; i += 2) {
+      movers.push_back(i);
+      keys.push_back(world.keys[i]);
+      bullets.push_back(i % 3 == 0 ? 1 : 0);
+      motions.push_back(RigidMotion::standing(world.bodies[i].pose));
+      const double way = world.random.log_uniform(0.05, 20.0);
+      const double turn = world.random.chance(0.1) ? 60.0 : 3.0;
+      for (double& x : motions.back().travel) x = world.random.uniform(-way, way);
+      for (double& x : motions.back().turn) x = world.random.uniform(-turn, turn);
+    }
+    EXPECT_EQ(scene->set_ignored(world.keys[0], world.keys[2]), Status::ok);
+  }
+
+  [[nodiscard]] bool may_meet(std::size_t a, std::size_t b, SweepPairs which) const {
+    const auto is_bullet = [&](std::size_t i) { return i % 2 == 0 && bullets[i / 2] != 0; };
+    const BodyDefinition& of_a = world.bodies[a];
+    const BodyDefinition& of_b = world.bodies[b];
+    const bool fixed = of_a.motion == Motion::fixed || of_b.motion == Motion::fixed;
+    const bool bullet = is_bullet(a) || is_bullet(b);
+    const bool wanted = which == SweepPairs::all || (fixed && which == SweepPairs::fixed) ||
+                        (bullet && which == SweepPairs::bullets) ||
+                        ((fixed || bullet) && which == SweepPairs::bullets_and_fixed);
+    return wanted && (a % 2 == 0 || b % 2 == 0) && !(a == 0 && b == 2) &&
+           (of_a.motion == Motion::dynamic || of_b.motion == Motion::dynamic) &&
+           winnow::may_meet(of_a.filter, of_b.filter);
+  }
+  /// By pair, when they meet, each asked by itself.
+  [[nodiscard]] std::map<Names, double> truth(SweepPairs which) const {
+    std::vector<ShapeId> shapes;
+    std::vector<RigidMotion> all;
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+      shapes.push_back(world.bodies[i].shape);
+      all.push_back(i % 2 == 0 ? motions[i / 2] : RigidMotion::standing(world.bodies[i].pose));
+    }
+    std::vector<BodyPair> pairs;
+    for (std::uint32_t a = 0; a < shapes.size(); ++a) {
+      for (std::uint32_t b = a + 1; b < shapes.size(); ++b) {
+        if (may_meet(a, b, which)) pairs.push_back({a, b});
+      }
+    }
+    ImpactResult result;
+    EXPECT_EQ(time_of_impact(world.pool, {shapes, all}, pairs, {.composites = &composites}, result),
+              Status::ok);
+    std::map<Names, double> times;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (result.hits(i)) times[names(pairs[i].a, pairs[i].b)] = result.time()[i];
+    }
+    return times;
+  }
+
+  SceneWorld world;
+  CompositePool composites;
+  ShapeId mesh;
+  std::optional<Scene> scene;
+  /// Every second body.
+  std::vector<std::size_t> movers;
+  std::vector<Key> keys;
+  std::vector<RigidMotion> motions;
+  std::vector<std::uint8_t> bullets;
+};
+
+TEST(SceneSweeps, find_what_every_pair_says_by_itself) {
+  SweptWorld swept(scaled(160));
+  SceneSweep sweep(*swept.scene);
+  for (const SweepPairs which :
+       {SweepPairs::all, SweepPairs::fixed, SweepPairs::bullets, SweepPairs::bullets_and_fixed}) {
+    ASSERT_EQ(sweep.sweep(swept.keys, swept.motions, {.pairs = which, .bullets = swept.bullets}),
+              Status::ok);
+    const std::map<Names, double> truth = swept.truth(which);
+    EXPECT_EQ(sweep.impacts().size(), truth.size());
+    std::map<std::size_t, double> earliest;
+    double last = 0.0;
+    for (const SceneImpact& impact : sweep.impacts()) {
+      const auto found = truth.find(names(impact.data_a, impact.data_b));
+      ASSERT_NE(found, truth.end());
+      EXPECT_EQ(found->second, impact.time);
+      EXPECT_LT(impact.a.id, impact.b.id);
+      EXPECT_LE(last, impact.time);
+      last = impact.time;
+      for (const ClientData body : {impact.data_a, impact.data_b}) {
+        earliest.emplace(static_cast<std::size_t>(body), impact.time);
+      }
+    }
+    ASSERT_EQ(sweep.first().size(), swept.movers.size());
+    for (std::size_t i = 0; i < swept.movers.size(); ++i) {
+      const std::uint32_t first = sweep.first()[i];
+      const auto known = earliest.find(swept.movers[i]);
+      ASSERT_EQ(first == kNoImpact, known == earliest.end());
+      if (first == kNoImpact) continue;
+      EXPECT_EQ(sweep.impacts()[first].time, known->second);
+    }
+  }
+}
+
+TEST(SceneSweeps, find_the_first_impacts_alone_where_no_others_are_wanted) {
+  SweptWorld swept(scaled(160));
+  SceneSweep all(*swept.scene);
+  SceneSweep firsts(*swept.scene);
+  ASSERT_EQ(all.sweep(swept.keys, swept.motions), Status::ok);
+  ASSERT_EQ(firsts.sweep(swept.keys, swept.motions, {.first_only = true}), Status::ok);
+  EXPECT_LE(firsts.impacts().size(), swept.movers.size());
+  for (std::size_t i = 0; i < swept.movers.size(); ++i) {
+    const std::uint32_t expected = all.first()[i];
+    const std::uint32_t first = firsts.first()[i];
+    ASSERT_EQ(first == kNoImpact, expected == kNoImpact);
+    if (first == kNoImpact) continue;
+    // Within the tolerance of each other, either may be the first.
+    EXPECT_NEAR(firsts.impacts()[first].time, all.impacts()[expected].time, 1e-5);
+  }
+}
+
+TEST(SceneSweeps, are_the_same_on_any_number_of_threads) {
+  SweptWorld one(scaled(160));
+  SweptWorld many(scaled(160), Execution::parallel());
+  for (const bool first_only : {false, true}) {
+    SceneSweep serial(*one.scene);
+    SceneSweep parallel(*many.scene);
+    ASSERT_EQ(serial.sweep(one.keys, one.motions, {.first_only = first_only}), Status::ok);
+    ASSERT_EQ(parallel.sweep(many.keys, many.motions, {.first_only = first_only}), Status::ok);
+    ASSERT_EQ(serial.impacts().size(), parallel.impacts().size());
+    EXPECT_TRUE(std::ranges::equal(serial.first(), parallel.first()));
+    for (std::size_t i = 0; i < serial.impacts().size(); ++i) {
+      const SceneImpact& a = serial.impacts()[i];
+      const SceneImpact& b = parallel.impacts()[i];
+      EXPECT_EQ(a.data_a, b.data_a);
+      EXPECT_EQ(a.data_b, b.data_b);
+      EXPECT_EQ(a.part_a, b.part_a);
+      EXPECT_EQ(a.time, b.time);
+      EXPECT_EQ(a.gap, b.gap);
+      EXPECT_TRUE(std::ranges::equal(a.point, b.point));
+      EXPECT_TRUE(std::ranges::equal(a.normal, b.normal));
+    }
+  }
+}
+
+/// A ball that flies through a thin wall at x = 0 and rests on a floor.
+struct Gallery {
+  Gallery() {
+    EXPECT_EQ(pool.add(SphereShape{0.5}, ball), Status::ok);
+    EXPECT_EQ(pool.add(BoxShape{{1e-3, 10, 10}}, wall), Status::ok);
+    EXPECT_EQ(pool.add(HalfSpaceShape{{0, 0, 1}, 0}, floor), Status::ok);
+    EXPECT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, keys[0]), Status::ok);
+    EXPECT_EQ(scene.add({.shape = wall, .motion = Motion::fixed}, keys[1]), Status::ok);
+    EXPECT_EQ(scene.add({.shape = ball, .pose = Pose::at(-50, 0, 0.5), .data = 7}, keys[2]),
+              Status::ok);
+  }
+
+  ShapePool pool;
+  ShapeId ball, wall, floor;
+  Scene scene{pool};
+  Key keys[3];
+};
+
+TEST(SceneSweeps, leave_out_what_touches_at_the_start_where_asked) {
+  Gallery gallery;
+  SceneSweep sweep(gallery.scene);
+  const Pose end[1] = {Pose::at(50, 0, 0.5)};
+  const std::span<const Key> moving(&gallery.keys[2], 1);
+  ASSERT_EQ(sweep.sweep(moving, PoseView(end)), Status::ok);
+  ASSERT_EQ(sweep.impacts().size(), 2U);
+  EXPECT_EQ(sweep.impacts()[0].a, gallery.keys[0]);
+  EXPECT_EQ(sweep.impacts()[0].time, 0.0);
+  for (const bool first_only : {false, true}) {
+    ASSERT_EQ(sweep.sweep(moving, PoseView(end), {.touching = false, .first_only = first_only}),
+              Status::ok);
+    ASSERT_EQ(sweep.impacts().size(), 1U);
+    const SceneImpact& impact = sweep.impacts()[sweep.first()[0]];
+    EXPECT_EQ(impact.a, gallery.keys[1]);
+    EXPECT_EQ(impact.b, gallery.keys[2]);
+    EXPECT_EQ(impact.data_b, 7U);
+    EXPECT_NEAR(impact.time, 0.5 - 0.00501, 1e-6);
+    EXPECT_NEAR(impact.normal[0], -1.0, 1e-9);
+    EXPECT_NEAR(impact.point[0], -1e-3, 1e-9);
+  }
+}
+
+TEST(SceneSweeps, refuse_bad_input_and_keep_their_answers) {
+  Gallery gallery;
+  SceneSweep sweep(gallery.scene);
+  const Key ball = gallery.keys[2];
+  const auto asked = [&](std::span<const Key> keys, std::span<const Pose> ends,
+                         const SweepOptions& options = {}) {
+    return sweep.sweep(keys, PoseView(ends), options);
+  };
+  const Pose good[2] = {Pose::at(50, 0, 0.5), Pose::at(1, 2, 3)};
+  const std::span<const Key> moving(&ball, 1);
+  const std::span<const Pose> end(good, 1);
+  ASSERT_EQ(asked(moving, end), Status::ok);
+  const Key twice[2] = {ball, ball};
+  EXPECT_EQ(asked(twice, good), Status::invalid_key);
+  EXPECT_EQ(asked(moving, good), Status::size_mismatch);
+  const Key none[1] = {Key{}};
+  EXPECT_EQ(asked(none, end), Status::invalid_key);
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), kEndless, -kEndless}) {
+    const Pose beyond[1] = {Pose::at(bad, 0, 0)};
+    EXPECT_EQ(asked(moving, beyond), Status::invalid_pose);
+  }
+  Pose unturned[1] = {Pose::at(1, 2, 3)};
+  unturned[0].orientation[0] = 0.0;
+  EXPECT_EQ(asked(moving, unturned), Status::invalid_pose);
+  for (const double tolerance : {0.0, -1.0, 2.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_EQ(asked(moving, end, {.tolerance = tolerance}), Status::invalid_argument);
+  }
+  const std::uint8_t bullets[2] = {1, 1};
+  EXPECT_EQ(asked(moving, end, {.bullets = bullets}), Status::size_mismatch);
+  EXPECT_EQ(asked(moving, end, {.pairs = static_cast<SweepPairs>(9)}), Status::invalid_argument);
+  EXPECT_EQ(sweep.impacts().size(), 2U);
+  EXPECT_EQ(asked({}, {}), Status::ok);
+  EXPECT_EQ(sweep.impacts().size(), 0U);
+  // As far as doubles go, and through the wall on the way.
+  const Pose far[1] = {Pose::at(1e300, 0, 0.5)};
+  EXPECT_EQ(asked(moving, far, {.touching = false}), Status::ok);
+  EXPECT_EQ(sweep.impacts().size(), 1U);
+}
+
+TEST(SceneSweeps, take_their_memory_from_the_resource_and_no_more_of_it_for_the_same) {
+  SweptWorld swept(60);
+  CountingMemory memory;
+  {
+    SceneSweep sweep(*swept.scene, &memory);
+    for (int frame = 0; frame < 3; ++frame) {
+      ASSERT_EQ(sweep.sweep(swept.keys, swept.motions), Status::ok);
+    }
+    EXPECT_EQ(sweep.footprint().total().reserved, memory.outstanding());
+    const std::size_t before = memory.requests();
+    ASSERT_EQ(sweep.sweep(swept.keys, swept.motions), Status::ok);
+    EXPECT_EQ(memory.requests(), before);
+  }
+  EXPECT_EQ(memory.outstanding(), 0U);
+  SceneSweep without(*swept.scene, std::pmr::null_memory_resource());
+  EXPECT_EQ(without.sweep(swept.keys, swept.motions), Status::out_of_memory);
+  EXPECT_EQ(without.impacts().size(), 0U);
+}
+
+}  // namespace
+}  // namespace winnow::test
