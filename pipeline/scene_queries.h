@@ -8,6 +8,7 @@
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/mid_phase.h>
+#include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/shape_rays.h>
 
@@ -105,6 +106,12 @@ struct ShapeCast {
   double max_t = 1.0;  ///< finite, >= 0
 };
 
+/// A shape of the scene's pools that moves and turns.
+struct MotionCast {
+  ShapeId shape;       ///< convex, a mesh, a height field or a compound; no half-space
+  RigidMotion motion;  ///< between two poses, or at velocities
+};
+
 /// Questions to the exact shapes of a scene. One object per thread: it keeps scratch memory from
 /// question to question, so that one that resembles an earlier one allocates nothing. Any number of
 /// them may ask a scene at the same time while nothing changes it; call `Scene::refresh` first, and
@@ -153,6 +160,17 @@ class WINNOW_API SceneQueries {
                  double tolerance = 1e-6);
   /// The first hit of every body.
   Status all(const ShapeCast& cast, std::span<const SceneHit>& hits, const Filter& filter = {},
+             double tolerance = 1e-6);
+
+  /// Where the shape, which turns as it moves, first meets a body; t is the time in [0, 1], never
+  /// later than the true one. The gap then is at most `tolerance`, a share of sizes as that of
+  /// ImpactOptions, which see also for shapes that touch at the start or pass close by. Half-spaces
+  /// do not move: `unsupported`; `invalid_pose` for a motion that is not valid. A way that runs
+  /// across the axes is asked about in up to eight pieces, one after the other.
+  Status closest(const MotionCast& cast, SceneHit& hit, const Filter& filter = {},
+                 double tolerance = 1e-6);
+  /// The first hit of every body, sorted by t. Valid until the next question.
+  Status all(const MotionCast& cast, std::span<const SceneHit>& hits, const Filter& filter = {},
              double tolerance = 1e-6);
 
   /// The closest (or deepest) points of two bodies, whatever their filters; a null answer if they

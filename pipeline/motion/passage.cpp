@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace winnow::impact {
 namespace {
@@ -115,6 +116,14 @@ BoxSweep Passage::sweep(const Interval& within) const noexcept {
   Vec::Map(sweep.direction) = last.position - first.position;
   sweep.max_t = 1.0;
   return sweep;
+}
+
+std::uint32_t Passage::piece_count() const noexcept {
+  constexpr double kMost = 8.0;
+  double way[3] = {std::abs(travel_.x()), std::abs(travel_.y()), std::abs(travel_.z())};
+  std::sort(std::begin(way), std::end(way));
+  const double count = std::ceil(way[1] / std::max(2.0 * shape_.radius, 1e-300));
+  return static_cast<std::uint32_t>(std::clamp(count, 1.0, kMost));
 }
 
 PreciseBox Passage::box(const Interval& within) const noexcept {

@@ -21,6 +21,11 @@ struct MovingShape {
 [[nodiscard]] MovingShape moving_part(const PartTraversal& parts, const ConvexPart& part,
                                       const RigidMotion& motion) noexcept;
 
+/// Piece i of a motion that is cut into so many.
+[[nodiscard]] inline Interval piece_of(std::uint32_t i, std::uint32_t pieces) noexcept {
+  return {static_cast<double>(i) / pieces, static_cast<double>(i + 1) / pieces};
+}
+
 /// A moving shape as a moving frame sees it. A point of it has there a path whose second derivative
 /// has a bound: that of turning, of the shape and of the frame, and of travelling through what
 /// turns. So it leaves the chord between two times by no more than an eighth of the bound times the
@@ -38,6 +43,9 @@ class Passage {
   /// The box that contains the shape at all times of an interval: the union of the boxes of as many
   /// parts of it as it takes for bends of a few hundredths of the radius.
   [[nodiscard]] PreciseBox box(const Interval& within) const noexcept;
+  /// Into how many pieces of the motion a way is best cut, at most 8, before boxes are put around
+  /// them: each piece runs across at most two axes by more than the shape measures.
+  [[nodiscard]] std::uint32_t piece_count() const noexcept;
   /// When the shape may come into a ball about the frame's position.
   [[nodiscard]] Interval window(double frame_radius) const noexcept {
     return ball_window(apart_, travel_, frame_radius + shape_.radius);

@@ -28,20 +28,9 @@ struct WayPiece {
 namespace {
 
 constexpr std::uint32_t kNoMover = ~0U;
-constexpr std::uint32_t kMostPieces = 8;
 constexpr std::size_t kMoversPerStretch = 64;
 constexpr std::size_t kMoversPerTask = 8;
 constexpr std::size_t kCandidatesPerStretch = 32;
-
-/// Into how many pieces a way is cut: each runs across at most two of its axes by more than the
-/// body measures, where that is not the axis of a box anyway.
-[[nodiscard]] std::uint32_t piece_count(const RigidMotion& motion, double radius) noexcept {
-  double way[3] = {std::abs(motion.travel[0]), std::abs(motion.travel[1]),
-                   std::abs(motion.travel[2])};
-  std::sort(std::begin(way), std::end(way));
-  const double count = std::ceil(way[1] / std::max(2.0 * radius, 1e-300));
-  return static_cast<std::uint32_t>(std::clamp(count, 1.0, static_cast<double>(kMostPieces)));
-}
 
 [[nodiscard]] auto order_of(const SceneImpact& impact) noexcept {
   return std::tuple(impact.time, impact.a.id, impact.b.id);
@@ -116,6 +105,16 @@ struct SweepState {
   SweepStatistics statistics;
 
  private:
+  /// From which boxes are measured.
+  [[nodiscard]] RigidMotion frame() const noexcept {
+    const Eigen::Vector3d& at = bodies.origin;
+    return RigidMotion::standing(Pose::at(at.x(), at.y(), at.z()));
+  }
+  [[nodiscard]] impact::MovingShape way_of(std::size_t mover) const noexcept {
+    return impact::whole_shape(parts, bodies.shape[movers[mover]], motions[mover]);
+  }
+  [[nodiscard]] bool count_pieces() noexcept;
+  void box_way(std::uint32_t mover) noexcept;
   [[nodiscard]] Status take_bodies(std::span<const Key> keys) noexcept;
   [[nodiscard]] RigidMotion motion_of(std::uint32_t body) const noexcept {
     const std::uint32_t mover = mover_of[body];
@@ -226,41 +225,43 @@ Status SweepState::take(std::span<const Key> keys, std::span<const RigidMotion> 
   return status;
 }
 
-/// Fills `ways` anew.
-Status SweepState::box_ways() {
+/// Says into how many pieces each way is cut.
+bool SweepState::count_pieces() noexcept {
   const std::size_t count = movers.size();
-  if (!first_piece.resize(count + 1)) return Status::out_of_memory;
+  if (!first_piece.resize(count + 1)) return false;
+  const RigidMotion origin = frame();
   std::uint32_t total = 0;
   for (std::size_t i = 0; i < count; ++i) {
     first_piece[i] = total;
-    total += piece_count(motions[i], bodies.radius(movers[i]));
+    const impact::MovingShape moving = way_of(i);
+    total += impact::Passage(parts, origin, moving).piece_count();
   }
   first_piece[count] = total;
-  if (!boxes.resize(total) || !pieces.resize(total) || !piece_keys.resize(total)) {
-    return Status::out_of_memory;
-  }
-  const Eigen::Vector3d& at = bodies.origin;
-  const RigidMotion frame = RigidMotion::standing(Pose::at(at.x(), at.y(), at.z()));
-  const auto box_way = [&](std::uint32_t mover) {
-    const impact::MovingShape moving =
-        impact::whole_shape(parts, bodies.shape[movers[mover]], motions[mover]);
-    const impact::Passage passage(parts, frame, moving);
-    const std::uint32_t begin = first_piece[mover];
-    const std::uint32_t end = first_piece[mover + 1];
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const auto share = [&](std::uint32_t k) {
-        return static_cast<double>(k - begin) / static_cast<double>(end - begin);
-      };
-      pieces[i] = {mover, {share(i), share(i + 1)}};
-      const PreciseBox box = passage.box(pieces[i].within);
-      const Aabb outward = Aabb::outward(box.min, box.max);
-      for (int axis = 0; axis < 3; ++axis) {
-        boxes[i].min[axis] = outward.min[axis];
-        boxes[i].max[axis] = outward.max[axis];
-      }
+  statistics = {total, 0};
+  return boxes.resize(total) && pieces.resize(total) && piece_keys.resize(total);
+}
+
+void SweepState::box_way(std::uint32_t mover) noexcept {
+  const RigidMotion origin = frame();
+  const impact::MovingShape moving = way_of(mover);
+  const impact::Passage passage(parts, origin, moving);
+  const std::uint32_t begin = first_piece[mover];
+  const std::uint32_t count = first_piece[mover + 1] - begin;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    pieces[begin + i] = {mover, impact::piece_of(i, count)};
+    const PreciseBox box = passage.box(pieces[begin + i].within);
+    const Aabb outward = Aabb::outward(box.min, box.max);
+    for (int axis = 0; axis < 3; ++axis) {
+      boxes[begin + i].min[axis] = outward.min[axis];
+      boxes[begin + i].max[axis] = outward.max[axis];
     }
-  };
-  for_stretches(bodies.options.execution, count, kMoversPerStretch,
+  }
+}
+
+/// Fills `ways` anew.
+Status SweepState::box_ways() {
+  if (!count_pieces()) return Status::out_of_memory;
+  for_stretches(bodies.options.execution, movers.size(), kMoversPerStretch,
                 [&](std::size_t begin, std::size_t end) {
                   for (std::size_t i = begin; i < end; ++i) box_way(static_cast<std::uint32_t>(i));
                 });
@@ -268,15 +269,14 @@ Status SweepState::box_ways() {
   const PlainBox* const box = boxes.data();
   const BoxView view{{&box->min[0], &box->min[1], &box->min[2]},
                      {&box->max[0], &box->max[1], &box->max[2]},
-                     total,
+                     pieces.size(),
                      sizeof(PlainBox)};
-  const std::span<Key> keys{piece_keys.data(), total};
+  const std::span<Key> keys{piece_keys.data(), pieces.size()};
   if (const Status status = ways.insert(view, {}, keys); status != Status::ok) return status;
   std::size_t objects = 0;
   for (const Key& key : keys) objects = std::max(objects, key.id + std::size_t{1});
   if (!piece_of.resize(objects)) return Status::out_of_memory;
-  for (std::uint32_t i = 0; i < total; ++i) piece_of[keys[i].id] = i;
-  statistics = {total, 0};
+  for (std::uint32_t i = 0; i < pieces.size(); ++i) piece_of[keys[i].id] = i;
   return Status::ok;
 }
 

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/scene_sweep.h>
 #include <winnow/pipeline/time_of_impact.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <memory_resource>
@@ -246,6 +248,72 @@ TEST(SceneSweeps, refuse_bad_input_and_keep_their_answers) {
   const Pose far[1] = {Pose::at(1e300, 0, 0.5)};
   EXPECT_EQ(asked(moving, far, {.touching = false}), Status::ok);
   EXPECT_EQ(sweep.impacts().size(), 1U);
+}
+
+TEST(MotionCasts, meet_what_every_body_says_by_itself) {
+  SweptWorld swept(scaled(160));
+  SceneQueries queries(*swept.scene);
+  const SceneWorld& world = swept.world;
+  ASSERT_EQ(swept.scene->refresh(), Status::ok);
+  for (std::size_t i = 0; i < swept.movers.size(); ++i) {
+    const ShapeId shape = world.bodies[swept.movers[i]].shape;
+    if (!shape.is_composite() && shape.kind() == ShapeKind::half_space) continue;
+    std::vector<ShapeId> shapes{shape};
+    std::vector<RigidMotion> motions{swept.motions[i]};
+    std::vector<BodyPair> pairs;
+    for (const BodyDefinition& body : world.bodies) {
+      pairs.push_back({0, static_cast<std::uint32_t>(shapes.size())});
+      shapes.push_back(body.shape);
+      motions.push_back(RigidMotion::standing(body.pose));
+    }
+    ImpactResult truth;
+    ASSERT_EQ(time_of_impact(world.pool, {shapes, motions}, pairs,
+                             {.composites = &swept.composites}, truth),
+              Status::ok);
+    std::span<const SceneHit> hits;
+    const MotionCast cast{shape, swept.motions[i]};
+    ASSERT_EQ(queries.all(cast, hits), Status::ok);
+    EXPECT_EQ(hits.size(), static_cast<std::size_t>(std::ranges::count(truth.hit(), 1)));
+    double last = 0.0;
+    for (const SceneHit& hit : hits) {
+      EXPECT_TRUE(truth.hits(hit.data));
+      EXPECT_NEAR(hit.t, truth.time()[hit.data], 1e-5);
+      EXPECT_LE(last, hit.t);
+      last = hit.t;
+    }
+    const double first = hits.empty() ? 0.0 : hits[0].t;
+    SceneHit closest;
+    ASSERT_EQ(queries.closest(cast, closest), Status::ok);
+    ASSERT_EQ(static_cast<bool>(closest), !hits.empty());
+    if (!closest) continue;
+    EXPECT_NEAR(closest.t, first, 1e-5);
+  }
+}
+
+TEST(MotionCasts, turn_on_their_way_and_refuse_what_is_no_motion) {
+  Gallery gallery;
+  SceneQueries queries(gallery.scene);
+  ASSERT_EQ(gallery.scene.refresh(), Status::ok);
+  ShapeId rod;
+  ASSERT_EQ(gallery.pool.add(CapsuleShape{0.1, 3.9}, rod), Status::ok);
+  // It stands upright beside the wall and falls over onto it by a quarter turn about y.
+  MotionCast cast{rod, {Pose::at(2, 0, 5), {0, 0, 0}, {0, -std::acos(0.0), 0}}};
+  SceneHit hit;
+  ASSERT_EQ(queries.closest(cast, hit), Status::ok);
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit.key, gallery.keys[1]);
+  const double angle = std::asin((2 - 1e-3 - 0.1) / 3.9);
+  EXPECT_NEAR(hit.t, angle / std::acos(0.0), 1e-6);
+  EXPECT_LE(hit.t, angle / std::acos(0.0));
+  EXPECT_NEAR(hit.normal[0], 1.0, 1e-9);
+  EXPECT_NEAR(hit.point[0], 1e-3, 1e-6);
+  EXPECT_EQ(queries.closest(cast, hit, {}, 0.0), Status::invalid_argument);
+  cast.motion.travel[1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(queries.closest(cast, hit), Status::invalid_pose);
+  cast.shape = gallery.floor;
+  EXPECT_EQ(queries.closest(cast, hit), Status::unsupported);
+  cast.shape = ShapeId::of(CompositeKind::mesh, 0);
+  EXPECT_EQ(queries.closest(cast, hit), Status::invalid_key);
 }
 
 TEST(SceneSweeps, take_their_memory_from_the_resource_and_no_more_of_it_for_the_same) {

@@ -1,0 +1,159 @@
+// SceneQueries: shapes that move and turn. Partitions tell which bodies' boxes the box of the way
+// meets, or of pieces of it one after the other, and show them to a predicate, which asks the exact
+// shapes.
+
+#include <winnow/core/aabb.h>
+#include "pipeline/motion/body_impact.h"
+#include "pipeline/motion/passage.h"
+#include "pipeline/scene/queries/queries.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace winnow {
+namespace {
+
+[[nodiscard]] auto by_time(const SceneHit& hit) noexcept {
+  return std::tuple(hit.t, hit.key.id);
+}
+
+[[nodiscard]] auto by_body(const SceneHit& hit) noexcept {
+  return std::tuple(hit.key.id, hit.t);
+}
+
+/// One question: something moves and turns through the scene.
+class MotionQuestion {
+ public:
+  MotionQuestion(QueryState& state, const MotionCast& cast, const Filter& filter,
+                 double tolerance) noexcept
+      : state_(state),
+        cast_(cast),
+        filter_(filter),
+        tolerance_(tolerance),
+        frame_(RigidMotion::standing(
+            Pose::at(state.scene.origin.x(), state.scene.origin.y(), state.scene.origin.z()))),
+        moving_(impact::whole_shape(state.parts, cast.shape, cast.motion)),
+        way_(state.parts, frame_, moving_) {}
+
+  Status closest(SceneHit& hit);
+  Status all();
+
+ private:
+  /// Calls look(body, within) for bodies that may be met in each piece of the way, in order, until
+  /// a piece begins after `limit`.
+  template <typename Look>
+  [[nodiscard]] Status each_piece(const double& limit, Look&& look);
+  /// The first impact with a body within an interval; a null hit if there is none.
+  [[nodiscard]] SceneHit hit_of(std::uint32_t body, const impact::Interval& within) const;
+
+  QueryState& state_;
+  const MotionCast& cast_;
+  const Filter& filter_;
+  const double tolerance_;
+  const RigidMotion frame_;
+  const impact::MovingShape moving_;
+  const impact::Passage way_;
+};
+
+template <typename Look>
+Status MotionQuestion::each_piece(const double& limit, Look&& look) {
+  const std::uint32_t pieces = way_.piece_count();
+  for (std::uint32_t i = 0; i < pieces; ++i) {
+    const impact::Interval within = impact::piece_of(i, pieces);
+    if (within.first > limit) break;
+    const PreciseBox box = way_.box(within);
+    auto look_at = [&](std::uint32_t body) {
+      look(body, within);
+      return false;
+    };
+    LookingFilter looking(state_.scene, filter_, look_at);
+    const Aabb region = Aabb::outward(box.min, box.max);
+    const Status status = state_.each_partition([&](const Partition& partition) {
+      return partition.overlap(region, state_.objects, looking.filter());
+    });
+    if (status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
+SceneHit MotionQuestion::hit_of(std::uint32_t body, const impact::Interval& within) const {
+  const PlacedShape placed = state_.placed(body);
+  const RigidMotion stands = RigidMotion::standing(placed.pose);
+  const impact::BodyImpact found = impact::find_body_impact(
+      state_.parts, {cast_.shape, cast_.motion}, {placed.shape, stands}, tolerance_, within);
+  SceneHit hit;
+  const impact::Impact& impact = found.impact;
+  if (!impact.hit) return hit;
+  hit.key = state_.scene.keys.key_of(body);
+  hit.data = state_.scene.keys.client_data(body);
+  hit.part = found.part_b;
+  hit.t = impact.time;
+  for (int i = 0; i < 3; ++i) {
+    const double at = cast_.motion.start.position[i] + impact.time * cast_.motion.travel[i];
+    hit.normal[i] = 0.0 - impact.normal[i];
+    hit.point[i] = at + (impact.point[i] + impact.gap * impact.normal[i]);
+  }
+  return hit;
+}
+
+Status MotionQuestion::closest(SceneHit& hit) {
+  SceneHit best;
+  best.t = 1.0;
+  const Status status = each_piece(best.t, [&](std::uint32_t body, impact::Interval within) {
+    within.last = std::min(within.last, best.t);
+    const SceneHit found = hit_of(body, within);
+    if (found && (!best || by_time(found) < by_time(best))) best = found;
+  });
+  if (status == Status::ok) hit = best ? best : SceneHit{};
+  return status;
+}
+
+/// A body that is met in one piece is met in the next one, too: the first time counts.
+Status MotionQuestion::all() {
+  Column<SceneHit>& hits = state_.hits;
+  hits.clear();
+  bool has_room = true;
+  const Status status = each_piece(1.0, [&](std::uint32_t body, const impact::Interval& within) {
+    const SceneHit found = hit_of(body, within);
+    if (found) has_room = hits.push_back(found) && has_room;
+  });
+  if (status != Status::ok || !has_room) return has_room ? status : Status::out_of_memory;
+  std::sort(hits.begin(), hits.end(),
+            [](const SceneHit& a, const SceneHit& b) { return by_body(a) < by_body(b); });
+  SceneHit* const end =
+      std::unique(hits.begin(), hits.end(),
+                  [](const SceneHit& a, const SceneHit& b) { return a.key == b.key; });
+  hits.set_size(static_cast<std::size_t>(end - hits.begin()));
+  std::sort(hits.begin(), hits.end(),
+            [](const SceneHit& a, const SceneHit& b) { return by_time(a) < by_time(b); });
+  return Status::ok;
+}
+
+Status check(const QueryState* state, const MotionCast& cast, double tolerance) noexcept {
+  if (const Status status = QueryState::may_ask(state); status != Status::ok) return status;
+  if (!state->parts.contains(cast.shape)) return Status::invalid_key;
+  if (!cast.shape.is_composite() && cast.shape.kind() == ShapeKind::half_space) {
+    return Status::unsupported;
+  }
+  if (!cast.motion.is_valid()) return Status::invalid_pose;
+  return tolerance > 0.0 && tolerance <= 1.0 ? Status::ok : Status::invalid_argument;
+}
+
+}  // namespace
+
+Status SceneQueries::closest(const MotionCast& cast, SceneHit& hit, const Filter& filter,
+                             double tolerance) {
+  const Status status = check(state_, cast, tolerance);
+  if (status != Status::ok) return status;
+  return MotionQuestion(*state_, cast, filter, tolerance).closest(hit);
+}
+
+Status SceneQueries::all(const MotionCast& cast, std::span<const SceneHit>& hits,
+                         const Filter& filter, double tolerance) {
+  Status status = check(state_, cast, tolerance);
+  if (status == Status::ok) status = MotionQuestion(*state_, cast, filter, tolerance).all();
+  if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
+  return status;
+}
+
+}  // namespace winnow
