@@ -266,6 +266,7 @@ Status SweepState::box_ways() {
                   for (std::size_t i = begin; i < end; ++i) box_way(static_cast<std::uint32_t>(i));
                 });
   ways.clear();
+  if (pieces.empty()) return Status::ok;
   const PlainBox* const box = boxes.data();
   const BoxView view{{&box->min[0], &box->min[1], &box->min[2]},
                      {&box->max[0], &box->max[1], &box->max[2]},
