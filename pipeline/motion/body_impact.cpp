@@ -1,7 +1,7 @@
 // Composite shapes are traversed where they stand still: in their own frame, through which the
 // other shape passes. A box around it that sweeps through the frame for a while contains it
 // (Passage), and meets first what is met first, so that a time found bounds what is looked at
-// after it. Where the way bends so much that the box is met by much, the time is halved, the
+// after it. Where the way bends so much that the box meets many parts, the time is halved, the
 // earlier half first.
 
 #include "pipeline/motion/body_impact.h"
@@ -18,7 +18,7 @@ namespace {
 constexpr int kMostHalvings = 12;
 /// An interval is halved where the box meets more parts,
 constexpr int kFewParts = 8;
-/// and is grown by more than this share of the radius.
+/// and is grown, or goes on, by more than this share of the radius.
 constexpr double kLoose = 0.04;
 
 [[nodiscard]] bool has_identity(const Pose& pose) noexcept {
@@ -130,7 +130,9 @@ void BodyImpactSearch::walk(const MovingShape& walked, const MovingShape& other,
   const Interval within = before_best(given);
   if (within.first > within.last) return;
   const BoxSweep way = passage.sweep(within);
-  if (halvings < kMostHalvings && passage.bend(within) > kLoose * other.radius &&
+  // Of two composite shapes a long way brings many parts near each other, too.
+  const double length = other.shape.shape.is_composite() ? Vec::Map(way.direction).norm() : 0.0;
+  if (halvings < kMostHalvings && passage.bend(within) + length > kLoose * other.own_radius &&
       meets_many(walked, way)) {
     const double middle = 0.5 * (within.first + within.last);
     walk(walked, other, mirrored, passage, {within.first, middle}, halvings + 1);

@@ -22,12 +22,13 @@ namespace {
 
 MovingShape whole_shape(const PartTraversal& parts, ShapeId shape,
                         const RigidMotion& motion) noexcept {
-  return {{shape, {}}, motion, parts.radius(shape)};
+  const double radius = parts.radius(shape);
+  return {{shape, {}}, motion, radius, radius, 0.0};
 }
 
 MovingShape moving_part(const PartTraversal& parts, const ConvexPart& part,
                         const RigidMotion& motion) noexcept {
-  const Vec at = Vec::Map(part.pose.position);
+  const double arm = Vec::Map(part.pose.position).norm();
   double radius = 0.0;
   if (part.triangle != nullptr) {
     for (const auto& corner : part.triangle->vertex) {
@@ -37,7 +38,7 @@ MovingShape moving_part(const PartTraversal& parts, const ConvexPart& part,
   } else {
     radius = parts.radius(part.shape);
   }
-  return {part, motion, (at.norm() + radius) * (1.0 + mid::kSlack)};
+  return {part, motion, (arm + radius) * (1.0 + mid::kSlack), radius, arm};
 }
 
 Passage::Passage(const PartTraversal& parts, const RigidMotion& frame,
@@ -50,36 +51,48 @@ Passage::Passage(const PartTraversal& parts, const RigidMotion& frame,
       frame_rate_(length_of(frame.turn)),
       shape_rate_(length_of(shape.motion.turn)) {}
 
+Vec Passage::between(double time) const noexcept {
+  const Vec bodies = apart_ + time * travel_;
+  if (shape_.arm == 0.0) return bodies;
+  const Eigen::Matrix3d axes = rotation_of_unit(unit_orientation(shape_.motion.at(time)));
+  return bodies + axes * Vec::Map(shape_.shape.pose.position);
+}
+
 Passage::Place Passage::place(double time) const noexcept {
   const Quaternion frame = unit_orientation(frame_.at(time));
   const Eigen::Matrix3d axes = rotation_of_unit(frame);
-  return {axes.transpose() * (apart_ + time * travel_),
+  return {axes.transpose() * between(time),
           product(inverse(frame), unit_orientation(shape_.motion.at(time)))};
 }
 
-/// The shape where it is so turned, about the position of its body.
+/// The shape where its body is so turned, about its own position.
 PreciseBox Passage::about(const Quaternion& turn) const noexcept {
-  const Eigen::Matrix3d turned = rotation_of_unit(turn);
   ConvexPart shape = shape_.shape;
-  Vec::Map(shape.pose.position) = turned * Vec::Map(shape_.shape.pose.position);
+  std::fill_n(shape.pose.position, 3, 0.0);
   const Quaternion q = product(turn, tame(shape_.shape.pose.orientation));
   std::copy(q.begin(), q.end(), shape.pose.orientation);
   return parts_.box(shape);
 }
 
 double Passage::farthest(const Interval& within) const noexcept {
-  return std::max((apart_ + within.first * travel_).stableNorm(),
-                  (apart_ + within.last * travel_).stableNorm());
+  const double ends = std::max((apart_ + within.first * travel_).stableNorm(),
+                               (apart_ + within.last * travel_).stableNorm());
+  const double speed = travel_.stableNorm() + shape_rate_ * shape_.arm;
+  const double from_first =
+      between(within.first).stableNorm() + speed * (within.last - within.first);
+  return std::min(ends + shape_.arm, from_first) * (1.0 + mid::kSlack);
 }
 
 double Passage::turning_bend(double width) const noexcept {
   const double turned = (frame_rate_ + shape_rate_) * width;
-  return 0.125 * turned * turned * shape_.radius;
+  return 0.125 * turned * turned * shape_.own_radius;
 }
 
 double Passage::path_bend(double far, double width) const noexcept {
   const double turned = frame_rate_ * width;
-  return 0.125 * turned * (turned * far + 2.0 * travel_.stableNorm() * width);
+  const double own = shape_rate_ * width;
+  const double way = travel_.stableNorm() * width + own * shape_.arm;
+  return 0.125 * (turned * (turned * far + 2.0 * way) + own * own * shape_.arm);
 }
 
 double Passage::bend(const Interval& within) const noexcept {
@@ -90,9 +103,10 @@ double Passage::bend(const Interval& within) const noexcept {
 BoxSweep Passage::sweep(const Interval& within) const noexcept {
   const double width = within.last - within.first;
   const double far = farthest(within);
-  const double slack = 8.0 * mid::kSlack * (far + shape_.radius);
+  const double slack =
+      8.0 * mid::kSlack * (apart_.stableNorm() + travel_.stableNorm() + shape_.radius);
   const double path = path_bend(far, width);
-  const Vec ball = Vec::Constant(shape_.radius);
+  const Vec ball = Vec::Constant(shape_.own_radius);
   if (!std::isfinite(shape_.radius) || path > far) {
     return PreciseBox{-ball, ball}.grown(far + slack).standing();
   }
@@ -102,7 +116,7 @@ BoxSweep Passage::sweep(const Interval& within) const noexcept {
   double bent = turning_bend(width);
   if (bent == 0.0) {
     box = about(first.turn);
-  } else if (bent < shape_.radius) {
+  } else if (bent < shape_.own_radius) {
     const Vec most = ball - Vec::Constant(bent);
     box = about(first.turn);
     const PreciseBox then = about(last.turn);

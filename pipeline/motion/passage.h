@@ -10,8 +10,11 @@ struct MovingShape {
   /// In the frame of the body; the whole shape may be composite.
   ConvexPart shape;
   const RigidMotion& motion;
-  /// No point is farther from the position of the body.
+  /// No point is farther from the position of the body; none from the shape's own, which is about
+  /// `arm` from it.
   double radius;
+  double own_radius;
+  double arm;
 };
 
 /// `shape` is the body's own, at its pose.
@@ -61,7 +64,9 @@ class Passage {
   /// What of the bend is of orientations, and what of the position.
   [[nodiscard]] double turning_bend(double width) const noexcept;
   [[nodiscard]] double path_bend(double far, double width) const noexcept;
-  /// The farthest from the frame's position that the shape's body gets.
+  /// Of the shape from the frame's position, in the axes of the world.
+  [[nodiscard]] Vec between(double time) const noexcept;
+  /// No farther from the frame's position does the shape's get.
   [[nodiscard]] double farthest(const Interval& within) const noexcept;
 
   const PartTraversal& parts_;

@@ -309,7 +309,6 @@ struct WholeWorld {
                              .composites = &world.composites}),
         contacts(memory),
         queries(scene, memory),
-        sweep(scene, memory),
         compares_contacts(carry_over == 0.0) {
     Random random(6);
     for (std::size_t i = 0; i < 30; ++i) {
@@ -373,7 +372,6 @@ struct WholeWorld {
   Scene scene;
   Contacts contacts;
   SceneQueries queries;
-  SceneSweep sweep;
   bool compares_contacts;
   std::vector<Key> keys;
   Digest answers;
@@ -452,21 +450,6 @@ void add_scene_questions(SceneCalls& calls) {
          for (const SceneHit& hit : hits) w.answer(hit);
          return status;
        }});
-  for (const bool first_only : {false, true}) {
-    calls.push_back({"sweep", [first_only](auto& w) {
-                       const std::vector<Pose> ends(8, Pose::at(1, 2, 3));
-                       const Status status = w.sweep.sweep(std::span(w.keys).first(8), ends,
-                                                           {.first_only = first_only});
-                       if (status == Status::out_of_memory) {
-                         EXPECT_EQ(w.sweep.impacts().size(), 0U);
-                       }
-                       for (const SceneImpact& impact : w.sweep.impacts()) {
-                         w.answers.push_back(impact.b.id);
-                         put(w.answers, impact.time);
-                       }
-                       return status;
-                     }});
-  }
   calls.push_back({"overlap", [](auto& w) {
                      std::span<const SceneOverlap> found;
                      const Status status = w.queries.overlap(w.world.ids[9], Pose{}, found);

@@ -330,6 +330,20 @@ TEST(SceneSweeps, take_their_memory_from_the_resource_and_no_more_of_it_for_the_
     EXPECT_EQ(memory.requests(), before);
   }
   EXPECT_EQ(memory.outstanding(), 0U);
+  // Each request refused in turn leaves no impacts, and nothing that shows later.
+  SceneSweep whole(*swept.scene);
+  ASSERT_EQ(whole.sweep(swept.keys, swept.motions), Status::ok);
+  for (std::size_t granted = 1;; ++granted) {
+    SceneSweep sweep(*swept.scene, &memory);
+    memory.refuse_after(granted);
+    const Status status = sweep.sweep(swept.keys, swept.motions);
+    memory.grant_all();
+    if (status == Status::ok) break;
+    ASSERT_EQ(status, Status::out_of_memory);
+    EXPECT_EQ(sweep.impacts().size(), 0U);
+    ASSERT_EQ(sweep.sweep(swept.keys, swept.motions), Status::ok);
+    EXPECT_EQ(sweep.impacts().size(), whole.impacts().size());
+  }
   SceneSweep without(*swept.scene, std::pmr::null_memory_resource());
   EXPECT_EQ(without.sweep(swept.keys, swept.motions), Status::out_of_memory);
   EXPECT_EQ(without.impacts().size(), 0U);
