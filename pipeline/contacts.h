@@ -132,6 +132,7 @@ class WINNOW_API Contacts {
 
  private:
   friend class Scene;
+  friend class RankScene;
   /// That of contacts with nothing in them where memory was refused.
   [[nodiscard]] const ContactsState& state() const noexcept;
 

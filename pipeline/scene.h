@@ -254,6 +254,7 @@ class WINNOW_API Scene {
   friend class SceneQueries;
   friend class SceneSweep;
   friend class Sensors;
+  friend class RankScene;
 
   /// Null where memory was refused.
   SceneState* state_;

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
 #include <winnow/pipeline/cluster_transport.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,19 +10,49 @@
 
 namespace winnow {
 
+/// Walks two lists, both sorted by their entries' `to`: call(to, entries of one, of the other) for
+/// each receiver.
+template <typename One, typename Other, typename Call>
+void for_each_receiver(std::span<const One> ones, std::span<const Other> others, Call&& call) {
+  const auto run_to = [](const auto& entries, std::size_t first, std::uint32_t to) {
+    std::size_t end = first;
+    while (end < entries.size() && entries[end].to == to) ++end;
+    return entries.subspan(first, end - first);
+  };
+  std::size_t i = 0;
+  std::size_t k = 0;
+  while (i < ones.size() || k < others.size()) {
+    const bool other_alone = i == ones.size() || (k < others.size() && others[k].to < ones[i].to);
+    const std::uint32_t to = other_alone ? others[k].to : ones[i].to;
+    const auto of_one = run_to(ones, i, to);
+    const auto of_other = run_to(others, k, to);
+    call(to, of_one, of_other);
+    i += of_one.size();
+    k += of_other.size();
+  }
+}
+
 /// What one rank tells others of bodies: such as they are to hold, and such as they hold no more.
-/// The columns of a parcel are, in this order, names and boxes of bodies, whether each belongs to
-/// the receiver (1) or is a copy (0), and names of what is gone.
-class BodyOutbox {
+/// The columns of a parcel are, in this order, names and contents (boxes, or all that a body is) of
+/// bodies, whether each belongs to the receiver (1) or is a copy (0), and names of what is gone.
+template <typename Content>
+class Outbox {
  public:
+  /// A body, and who was told of it.
+  struct Body {
+    std::uint64_t name = 0;
+    std::uint32_t owner = 0;  ///< the rank that it belongs to
+    bool same = false;        ///< who has a copy need not be told
+  };
+
   void clear() noexcept {
     held_.clear();
     gone_.clear();
   }
-  void tell(std::uint32_t to, std::uint64_t name, const Aabb& box, bool belongs) {
-    held_.push_back({to, belongs, name, box});
-  }
-  void tell_gone(std::uint32_t to, std::uint64_t name) { gone_.push_back({to, name}); }
+  /// Tells ranks other than `self` that hold a body from now on, and those that did `before` and do
+  /// no more. Both lists are sorted.
+  void tell(std::uint32_t self, const Body& body, const Content& content,
+            std::span<const std::uint32_t> before, std::span<const std::uint32_t> now);
 
   /// Adds one parcel for each receiver, which look at columns of this.
   void pack(std::uint32_t from, std::vector<Parcel>& parcels);
@@ -32,7 +62,7 @@ class BodyOutbox {
     std::uint32_t to;
     bool belongs;
     std::uint64_t name;
-    Aabb box;
+    Content content;
   };
   struct Gone {
     std::uint32_t to;
@@ -42,19 +72,9 @@ class BodyOutbox {
   std::vector<Held> held_;
   std::vector<Gone> gone_;
   std::vector<std::uint64_t> names_;
-  std::vector<Aabb> boxes_;
+  std::vector<Content> contents_;
   std::vector<std::uint8_t> belongs_;
   std::vector<std::uint64_t> gone_names_;
-};
-
-/// A parcel of a BodyOutbox as its receiver reads it.
-struct BodyNews {
-  explicit BodyNews(const Parcel& parcel) noexcept;
-
-  std::span<const std::uint64_t> names;
-  std::span<const Aabb> boxes;
-  std::span<const std::uint8_t> belongs;
-  std::span<const std::uint64_t> gone;
 };
 
 /// A column of a parcel, as elements.
@@ -62,6 +82,69 @@ template <typename T>
 [[nodiscard]] std::span<const T> column_of(const Parcel& parcel, std::size_t column) noexcept {
   const std::span<const std::byte> bytes = parcel.columns[column];
   return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
+}
+
+/// A parcel of an Outbox as its receiver reads it.
+template <typename Content>
+struct BodyNews {
+  explicit BodyNews(const Parcel& parcel) noexcept
+      : names(column_of<std::uint64_t>(parcel, 0)),
+        contents(column_of<Content>(parcel, 1)),
+        belongs(column_of<std::uint8_t>(parcel, 2)),
+        gone(column_of<std::uint64_t>(parcel, 3)) {}
+
+  std::span<const std::uint64_t> names;
+  std::span<const Content> contents;
+  std::span<const std::uint8_t> belongs;
+  std::span<const std::uint64_t> gone;
+};
+
+template <typename Content>
+void Outbox<Content>::tell(std::uint32_t self, const Body& body, const Content& content,
+                           std::span<const std::uint32_t> before,
+                           std::span<const std::uint32_t> now) {
+  const auto tell_gone = [&](std::uint32_t to) {
+    if (to != self) gone_.push_back({to, body.name});
+  };
+  std::size_t b = 0;
+  for (const std::uint32_t to : now) {
+    while (b < before.size() && before[b] < to) tell_gone(before[b++]);
+    const bool held = b < before.size() && before[b] == to;
+    if (held) ++b;
+    if (to != self && !(held && body.same && to != body.owner)) {
+      held_.push_back({to, to == body.owner, body.name, content});
+    }
+  }
+  while (b < before.size()) tell_gone(before[b++]);
+}
+
+template <typename Content>
+void Outbox<Content>::pack(std::uint32_t from, std::vector<Parcel>& parcels) {
+  const auto by_receiver = [](const auto& a, const auto& b) { return a.to < b.to; };
+  std::stable_sort(held_.begin(), held_.end(), by_receiver);
+  std::stable_sort(gone_.begin(), gone_.end(), by_receiver);
+  names_.clear();
+  contents_.clear();
+  belongs_.clear();
+  gone_names_.clear();
+  for (const Held& held : held_) {
+    names_.push_back(held.name);
+    contents_.push_back(held.content);
+    belongs_.push_back(held.belongs ? 1 : 0);
+  }
+  for (const Gone& gone : gone_) gone_names_.push_back(gone.name);
+  const std::span<const Held> all_held(held_);
+  const std::span<const Gone> all_gone(gone_);
+  for_each_receiver(all_held, all_gone, [&](std::uint32_t to, auto held, auto gone) {
+    const auto h = static_cast<std::size_t>(held.data() - held_.data());
+    const auto g = static_cast<std::size_t>(gone.data() - gone_.data());
+    parcels.push_back({from,
+                       to,
+                       {std::as_bytes(std::span(names_).subspan(h, held.size())),
+                        std::as_bytes(std::span(contents_).subspan(h, held.size())),
+                        std::as_bytes(std::span(belongs_).subspan(h, held.size())),
+                        std::as_bytes(std::span(gone_names_).subspan(g, gone.size()))}});
+  });
 }
 
 }  // namespace winnow

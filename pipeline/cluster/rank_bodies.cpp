@@ -1,27 +1,17 @@
 #include "pipeline/cluster/rank_bodies.h"
 
+#include "pipeline/cluster/work_shares.h"
+
 #include <algorithm>
-#include <limits>
 
 namespace winnow {
 namespace {
-
-template <typename T>
-[[nodiscard]] bool has_twice(std::vector<T> values) {
-  std::sort(values.begin(), values.end());
-  return std::adjacent_find(values.begin(), values.end()) != values.end();
-}
 
 [[nodiscard]] bool are_valid(const BoxView& boxes) noexcept {
   for (std::size_t i = 0; i < boxes.count; ++i) {
     if (!boxes[i].is_valid()) return false;
   }
   return true;
-}
-
-[[nodiscard]] float longest_edge(const Aabb& box) noexcept {
-  const Vec3f edges = box.max - box.min;
-  return std::max({edges.x(), edges.y(), edges.z()});
 }
 
 }  // namespace
@@ -164,9 +154,7 @@ Aabb RankBodies::box_of(Key key) const noexcept {
 }
 
 bool RankBodies::is_within(const Aabb& box) const noexcept {
-  return region_.min.x() <= box.min.x() && box.max.x() <= region_.max.x() &&
-         region_.min.y() <= box.min.y() && box.max.y() <= region_.max.y() &&
-         region_.min.z() <= box.min.z() && box.max.z() <= region_.max.z();
+  return contains(region_, box);
 }
 
 std::uint8_t RankBodies::flags_of(const Aabb& box, bool owned) const noexcept {
@@ -217,7 +205,7 @@ void RankBodies::tell(const Moved& moved, const Regions& before, const Regions& 
   const std::uint32_t owner = removed ? rank_ : now.owner(centre_of(box));
   before.ranks_of(moved.told, ranks_before_);
   now.ranks_of(box, ranks_now_);
-  tell_ranks(names_[id], box, box == moved.told, owner);
+  outbox_.tell(rank_, {names_[id], owner, box == moved.told}, box, ranks_before_, ranks_now_);
 
   const bool stays = std::binary_search(ranks_now_.begin(), ranks_now_.end(), rank_);
   if (owner != rank_) departed_.push_back(names_[id]);
@@ -235,24 +223,6 @@ void RankBodies::tell(const Moved& moved, const Regions& before, const Regions& 
   }
 }
 
-void RankBodies::tell_ranks(BodyName name, const Aabb& box, bool same_box, std::uint32_t owner) {
-  std::size_t b = 0;
-  for (const std::uint32_t to : ranks_now_) {
-    while (b < ranks_before_.size() && ranks_before_[b] < to) {
-      if (ranks_before_[b] != rank_) outbox_.tell_gone(ranks_before_[b], name);
-      ++b;
-    }
-    const bool held = b < ranks_before_.size() && ranks_before_[b] == to;
-    if (held) ++b;
-    if (to != rank_ && !(held && same_box && to != owner)) {
-      outbox_.tell(to, name, box, to == owner);
-    }
-  }
-  for (; b < ranks_before_.size(); ++b) {
-    if (ranks_before_[b] != rank_) outbox_.tell_gone(ranks_before_[b], name);
-  }
-}
-
 void RankBodies::Changes::clear() noexcept {
   dropped.clear();
   keys.clear();
@@ -265,7 +235,7 @@ void RankBodies::Changes::clear() noexcept {
 Status RankBodies::receive(std::span<const Parcel> parcels) {
   // What is gone first: a name may come anew in the same breath.
   for (const Parcel& parcel : parcels) {
-    for (const BodyName name : BodyNews(parcel).gone) {
+    for (const BodyName name : BodyNews<Aabb>(parcel).gone) {
       const std::uint32_t id = table_.find(name);
       if (id == NameTable::kNone) continue;
       changes_.dropped.push_back(partition_.key_of(id));
@@ -274,24 +244,24 @@ Status RankBodies::receive(std::span<const Parcel> parcels) {
       --ghosts_;
     }
   }
-  for (const Parcel& parcel : parcels) take(BodyNews(parcel));
+  for (const Parcel& parcel : parcels) take(BodyNews<Aabb>(parcel));
   return apply_changes();
 }
 
-void RankBodies::take(const BodyNews& news) {
+void RankBodies::take(const BodyNews<Aabb>& news) {
   for (std::size_t i = 0; i < news.names.size(); ++i) {
     const bool belongs = news.belongs[i] != 0;
     const std::uint32_t id = table_.find(news.names[i]);
     if (id == NameTable::kNone) {
       changes_.names.push_back(news.names[i]);
-      changes_.fresh.push_back(news.boxes[i]);
+      changes_.fresh.push_back(news.contents[i]);
       changes_.belongs.push_back(news.belongs[i]);
       continue;
     }
     const Key key = partition_.key_of(id);
     changes_.keys.push_back(key);
-    changes_.boxes.push_back(news.boxes[i]);
-    flags_[id] = flags_of(news.boxes[i], belongs);
+    changes_.boxes.push_back(news.contents[i]);
+    flags_[id] = flags_of(news.contents[i], belongs);
     if (!belongs) continue;
     --ghosts_;
     arrived_.push_back({news.names[i], key});
@@ -343,26 +313,14 @@ Status RankBodies::find_pairs(Order order) {
   return Status::ok;
 }
 
-/// A pair is the work of the smaller body, where that belongs here: copies of the larger one meet
-/// it wherever it goes. Copies that the rank holds are shared among all.
 void RankBodies::measure_work() {
-  constexpr std::uint64_t kScale = 16;
   std::vector<std::uint64_t> counts(flags_.size(), 1);
   for (const Pair& pair : found_) {
-    const bool first_is_larger =
-        longest_edge(box_of(pair.first)) > longest_edge(box_of(pair.second));
+    const bool first_is_larger = is_larger(box_of(pair.first), box_of(pair.second));
     ++counts[first_is_larger ? pair.second : pair.first];
   }
-  std::uint64_t sum = 0;
-  for (std::size_t id = 0; id < flags_.size(); ++id) sum += (flags_[id] & kOwned) ? counts[id] : 0;
-  works_.assign(flags_.size(), 1);
-  if (sum == 0) return;
-  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-  const double scale = static_cast<double>(kScale * work()) / static_cast<double>(sum);
-  for (std::size_t id = 0; id < flags_.size(); ++id) {
-    const auto scaled = static_cast<std::uint64_t>(static_cast<double>(counts[id]) * scale);
-    works_[id] = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(scaled, 1, kMost));
-  }
+  const auto owned = [this](std::size_t id) { return (flags_[id] & kOwned) != 0; };
+  works_ = shares_of(counts, owned, work());
 }
 
 CutWork RankBodies::cut_work() {

@@ -97,8 +97,7 @@ class RankBodies {
   void add_rows(std::span<const BodyName> names, std::span<const Key> keys);
   void note_all_that_cross();
   void tell(const Moved& moved, const Regions& before, const Regions& now);
-  void tell_ranks(BodyName name, const Aabb& box, bool same_box, std::uint32_t owner);
-  void take(const BodyNews& news);
+  void take(const BodyNews<Aabb>& news);
   [[nodiscard]] Status apply_changes();
 
   std::uint32_t rank_;
@@ -115,7 +114,7 @@ class RankBodies {
   std::vector<ClusterBody> arrived_;
   std::vector<BodyName> departed_;
   std::pmr::vector<NamePair> pairs_;
-  BodyOutbox outbox_;
+  Outbox<Aabb> outbox_;
   Changes changes_;
   std::vector<std::uint32_t> works_;  // by id
   std::vector<Aabb> work_boxes_;

@@ -32,6 +32,13 @@ namespace winnow {
   return centre;
 }
 
+/// True if a box lies within another, borders included.
+[[nodiscard]] inline bool contains(const Aabb& region, const Aabb& box) noexcept {
+  return region.min.x() <= box.min.x() && box.max.x() <= region.max.x() &&
+         region.min.y() <= box.min.y() && box.max.y() <= region.max.y() &&
+         region.min.z() <= box.min.z() && box.max.z() <= region.max.z();
+}
+
 /// Which rank has which part of space: half-open boxes that leave nothing out.
 class Regions {
  public:

@@ -15,13 +15,16 @@ constexpr std::size_t kPairsPerStretch = 8192;
 struct Packing {
   unsigned bits;
 
-  [[nodiscard]] std::uint64_t pack(const ShapeId* shapes, std::uint32_t one,
-                                   std::uint32_t other) const noexcept {
-    const bool same_kind = shapes[one].kind_index() == shapes[other].kind_index();
-    const bool mirrored = same_kind ? other < one : is_mirrored(shapes[one], shapes[other]);
-    const std::uint32_t a = mirrored ? other : one;
-    const std::uint32_t b = mirrored ? one : other;
-    const std::uint64_t code = KindPairs::index(shapes[a], shapes[b]);
+  [[nodiscard]] std::uint64_t pack(const ShapeId* shapes, BodyPair bodies,
+                                   BodyPair places) const noexcept {
+    const ShapeId one = shapes[bodies.a];
+    const ShapeId other = shapes[bodies.b];
+    const bool same_kind = one.kind_index() == other.kind_index();
+    const bool mirrored = same_kind ? places.b < places.a : is_mirrored(one, other);
+    const std::uint64_t a = mirrored ? places.b : places.a;
+    const std::uint64_t b = mirrored ? places.a : places.b;
+    const std::uint64_t code =
+        mirrored ? KindPairs::index(other, one) : KindPairs::index(one, other);
     return (code << bits | a) << bits | b;
   }
   [[nodiscard]] BodyPair pair(std::uint64_t item) const noexcept {
@@ -35,10 +38,44 @@ struct Packing {
   }
 };
 
+/// Those that a selection wants, packed from `item` on; returns their end.
+std::uint64_t* pack_selected(const BodyPairs::Source& source, const ShapeId* shapes,
+                             const Packing& packing, const PairSelection& selection,
+                             std::uint64_t* item) {
+  for (const Pair& pair : source.pairs) {
+    const BodyPair bodies{source.first_body[pair.first], source.second_body[pair.second]};
+    if (!selection.wants(selection.context, bodies.a, bodies.b)) continue;
+    *item++ = packing.pack(shapes, bodies, {selection.place[bodies.a], selection.place[bodies.b]});
+  }
+  return item;
+}
+
 }  // namespace
 
+std::size_t BodyPairs::pack(std::span<const Source> sources, const ShapeId* shapes, unsigned bits,
+                            const Execution& execution, const PairSelection* selection) {
+  const Packing packing{bits};
+  std::uint64_t* item = items_.data();
+  for (const Source& source : sources) {
+    if (selection != nullptr) {
+      item = pack_selected(source, shapes, packing, *selection, item);
+      continue;
+    }
+    for_stretches(
+        execution, source.pairs.size(), kPairsPerStretch, [&](std::size_t first, std::size_t end) {
+          for (std::size_t i = first; i < end; ++i) {
+            const Pair& pair = source.pairs[i];
+            const BodyPair bodies{source.first_body[pair.first], source.second_body[pair.second]};
+            item[i] = packing.pack(shapes, bodies, bodies);
+          }
+        });
+    item += source.pairs.size();
+  }
+  return static_cast<std::size_t>(item - items_.data());
+}
+
 Status BodyPairs::assign(std::span<const Source> sources, const ShapeId* shapes, std::size_t bodies,
-                         const Execution& execution) {
+                         const Execution& execution, const PairSelection* selection) {
   std::size_t count = 0;
   for (const Source& source : sources) count += source.pairs.size();
   if (!items_.resize(count) || !spare_.resize(count) || !pairs_.resize(count)) {
@@ -46,23 +83,18 @@ Status BodyPairs::assign(std::span<const Source> sources, const ShapeId* shapes,
     return Status::out_of_memory;
   }
   const Packing packing{static_cast<unsigned>(std::bit_width(bodies))};
-  std::uint64_t* item = items_.data();
-  for (const Source& source : sources) {
-    for_stretches(execution, source.pairs.size(), kPairsPerStretch,
-                  [&](std::size_t first, std::size_t end) {
-                    for (std::size_t i = first; i < end; ++i) {
-                      const Pair& pair = source.pairs[i];
-                      item[i] = packing.pack(shapes, source.first_body[pair.first],
-                                             source.second_body[pair.second]);
-                    }
-                  });
-    item += source.pairs.size();
-  }
+  count = pack(sources, shapes, packing.bits, execution, selection);
+  pairs_.set_size(count);
   const unsigned code_bits = std::bit_width(KindPairs::kCount);
   const std::uint64_t* const sorted =
       radix_sort(items_.data(), spare_.data(), count, 2 * packing.bits + code_bits, execution, 0);
   for_stretches(execution, count, kPairsPerStretch, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) pairs_[i] = packing.pair(sorted[i]);
+    for (std::size_t i = first; i < end; ++i) {
+      const BodyPair places = packing.pair(sorted[i]);
+      pairs_[i] = selection == nullptr
+                      ? places
+                      : BodyPair{selection->body[places.a], selection->body[places.b]};
+    }
   });
   for (std::uint32_t code = 0; code <= KindPairs::kCount; ++code) {
     first_[code] = static_cast<std::uint32_t>(

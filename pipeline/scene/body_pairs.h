@@ -18,6 +18,15 @@ namespace winnow {
 /// Bodies of a scene: two numbers and a code fit into 64 bits.
 inline constexpr std::size_t kMaxBodies = std::size_t{1} << 28U;
 
+/// What a rank of a cluster makes of its scene's pairs: bodies stand in an order of their own in
+/// place of that of their numbers, and some pairs are another rank's.
+struct PairSelection {
+  std::span<const std::uint32_t> place;  ///< in that order, by body
+  std::span<const std::uint32_t> body;   ///< by place
+  bool (*wants)(const void* context, std::uint32_t a, std::uint32_t b) = nullptr;
+  const void* context = nullptr;  ///< handed to `wants`
+};
+
 /// Pairs of bodies in the order of a scene's answers: by the kinds of their shapes, then by body; a
 /// is the body with the smaller kind, or the smaller number.
 class BodyPairs {
@@ -33,9 +42,9 @@ class BodyPairs {
   };
 
   /// Takes all pairs of the sources. `bodies`: every body's number is below it, at most kMaxBodies.
-  /// O(n).
+  /// `selection`: null for all pairs, by number. O(n).
   Status assign(std::span<const Source> sources, const ShapeId* shapes, std::size_t bodies,
-                const Execution& execution);
+                const Execution& execution, const PairSelection* selection = nullptr);
 
   /// Room for so many pairs. False if memory is refused.
   [[nodiscard]] bool reserve(std::size_t count, Pages pages) noexcept {
@@ -57,6 +66,10 @@ class BodyPairs {
   [[nodiscard]] Bytes bytes() const noexcept;
 
  private:
+  /// Packs the pairs of the sources into `items_`, and tells how many they are.
+  std::size_t pack(std::span<const Source> sources, const ShapeId* shapes, unsigned bits,
+                   const Execution& execution, const PairSelection* selection);
+
   Column<BodyPair> pairs_;
   Column<std::uint64_t> items_;
   Column<std::uint64_t> spare_;

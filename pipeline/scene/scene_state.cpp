@@ -72,6 +72,7 @@ bool SceneState::has_one_origin() const noexcept {
 // Every so many slots one body is looked at.
 void SceneState::choose_origin() noexcept {
   boxes_since_look = 0;
+  if (keeps_origin) return;
   const std::size_t slots = keys.slot_count();
   const std::size_t step = slots / ScenePlaces::kMost + 1;
   ScenePlaces places;
@@ -363,7 +364,7 @@ Status SceneState::find_pairs() {
     sources[count++] = {other.with_dynamic.pairs(), dynamic.body_of.data(), other.body_of.data()};
   }
   const Status status =
-      pairs.assign({sources, count}, shape.data(), keys.slot_count(), options.execution);
+      pairs.assign({sources, count}, shape.data(), keys.slot_count(), options.execution, selection);
   if (status != Status::ok) return status;
   for (std::size_t i = 0; i < kMotions; ++i) pairs.changes[i] = sets[i].changes;
   return Status::ok;

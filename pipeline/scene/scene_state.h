@@ -74,6 +74,8 @@ struct SceneState {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   /// Boxes made since bodies were last looked at for a better one.
   std::size_t boxes_since_look = 0;
+  /// The origin stays where it is: on ranks of a cluster, whose boxes are all of one frame.
+  bool keeps_origin = false;
   /// Tells this scene from every other one.
   std::uint64_t serial;
   std::uint32_t clock = 1;
@@ -82,6 +84,8 @@ struct SceneState {
   std::uint64_t composites_seen = 0;
 
   BodyPairs pairs;
+  /// Null but on ranks of a cluster.
+  const PairSelection* selection = nullptr;
   NarrowPhase narrow;
   NarrowResult answers;
   /// By pair asked about: where its answer lies.

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <winnow/pipeline/cluster_scene.h>
+#include "pipeline/cluster/checkpoint.h"
+#include "pipeline/cluster/rank_group.h"
+#include "pipeline/cluster/rank_scene.h"
+
+#include <deque>
+#include <span>
+
+namespace winnow {
+
+/// The ranks that this process hosts, and their scenes.
+struct ClusterSceneState : RankGroup {
+  ClusterSceneState(Transport& given, const ShapePool& shapes, const ClusterSceneOptions& options);
+
+  [[nodiscard]] RankScene* find(std::uint32_t rank) noexcept {
+    const std::uint32_t place = rank - first;
+    return place < scenes.size() ? &scenes[place] : nullptr;
+  }
+
+  /// Brings bodies where they belong, and copies to where they are met, as they are now.
+  [[nodiscard]] Status settle();
+  [[nodiscard]] Status add(std::span<const ClusterSceneBatch> batches, std::span<Status> answers);
+  /// Adds what was kept, of which some answers may tell already that it is no good.
+  [[nodiscard]] Status restore(std::span<const RecordBatch> batches, std::span<Status> answers);
+  /// `refused`: why nothing was added, on all ranks.
+  [[nodiscard]] Status replicate(const ClusterSceneBatch& batch, Status& refused);
+  [[nodiscard]] Status move_replicated(std::span<const BodyName> bodies,
+                                       std::span<const Pose> poses, Status& refused);
+  [[nodiscard]] Status collide(ContactLevel level);
+  [[nodiscard]] Status digest(ClusterDigest& digest);
+
+  std::deque<RankScene> scenes;
+
+ private:
+  [[nodiscard]] Status deliver();
+  [[nodiscard]] Status deliver_removals();
+  [[nodiscard]] Status take_names_of(std::span<const std::span<const BodyName>> wanted,
+                                     std::span<Status> answers);
+  [[nodiscard]] Status agree(std::uint64_t told, Status& refused);
+  [[nodiscard]] Status agree_on_events();
+  [[nodiscard]] Status count_found(Status found);
+};
+
+}  // namespace winnow

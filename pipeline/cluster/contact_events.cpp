@@ -1,0 +1,99 @@
+#include "pipeline/cluster/contact_events.h"
+
+#include "pipeline/cluster/name_table.h"
+#include "pipeline/cluster/outbox.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace winnow {
+
+std::uint32_t ContactEvents::keeper_of(const TouchingPair& pair) const noexcept {
+  const std::uint64_t hash = scattered(scattered(pair.a) + pair.b);
+  return static_cast<std::uint32_t>((hash >> 32U) % ranks_);
+}
+
+/// Adds one parcel for each receiver: pairs that began, then pairs that ended.
+void ContactEvents::post(std::vector<Posted>& begun, std::vector<Posted>& ended, Columns& columns,
+                         std::vector<Parcel>& parcels) const {
+  columns.begun.clear();
+  columns.ended.clear();
+  std::sort(begun.begin(), begun.end());
+  std::sort(ended.begin(), ended.end());
+  for (const Posted& one : begun) columns.begun.push_back(one.pair);
+  for (const Posted& one : ended) columns.ended.push_back(one.pair);
+  const std::span<const Posted> all_begun(begun);
+  const std::span<const Posted> all_ended(ended);
+  for_each_receiver(all_begun, all_ended, [&](std::uint32_t to, auto ones, auto others) {
+    const auto i = static_cast<std::size_t>(ones.data() - begun.data());
+    const auto k = static_cast<std::size_t>(others.data() - ended.data());
+    parcels.push_back({rank_,
+                       to,
+                       {std::as_bytes(std::span(columns.begun).subspan(i, ones.size())),
+                        std::as_bytes(std::span(columns.ended).subspan(k, others.size()))}});
+  });
+}
+
+void ContactEvents::ask(std::vector<Parcel>& parcels) {
+  post(begun_in_doubt_, ended_in_doubt_, asked_, parcels);
+}
+
+void ContactEvents::answer(std::span<const Parcel> asked, std::vector<Parcel>& parcels) {
+  struct Told {
+    TouchingPair pair;
+    std::uint32_t by;
+    bool operator<(const Told& other) const noexcept { return pair < other.pair; }
+  };
+  std::vector<Told> begun;
+  std::vector<Told> ended;
+  for (const Parcel& parcel : asked) {
+    for (const TouchingPair& pair : column_of<TouchingPair>(parcel, 0)) {
+      begun.push_back({pair, parcel.from});
+    }
+    for (const TouchingPair& pair : column_of<TouchingPair>(parcel, 1)) {
+      ended.push_back({pair, parcel.from});
+    }
+  }
+  std::sort(begun.begin(), begun.end());
+  std::sort(ended.begin(), ended.end());
+  // The lists that were asked about have been sent.
+  begun_in_doubt_.clear();
+  ended_in_doubt_.clear();
+  for (const Told& one : begun) {
+    if (std::binary_search(ended.begin(), ended.end(), one)) {
+      begun_in_doubt_.push_back({one.by, one.pair});
+    }
+  }
+  for (const Told& one : ended) {
+    if (std::binary_search(begun.begin(), begun.end(), one)) {
+      ended_in_doubt_.push_back({one.by, one.pair});
+    }
+  }
+  post(begun_in_doubt_, ended_in_doubt_, answered_, parcels);
+}
+
+void ContactEvents::conclude(std::span<const Parcel> answers) {
+  std::vector<TouchingPair> went_on;
+  for (const Parcel& parcel : answers) {
+    for (const TouchingPair& pair : column_of<TouchingPair>(parcel, 0)) {
+      const auto at = std::lower_bound(touching_.begin(), touching_.end(), pair);
+      persisted_[static_cast<std::size_t>(at - touching_.begin())] = 1;
+    }
+    const auto ended = column_of<TouchingPair>(parcel, 1);
+    went_on.insert(went_on.end(), ended.begin(), ended.end());
+  }
+  std::sort(went_on.begin(), went_on.end());
+  std::erase_if(ended_, [&](const TouchingPair& pair) {
+    return std::binary_search(went_on.begin(), went_on.end(), pair);
+  });
+}
+
+void ContactEvents::remember(std::span<const TouchingPair> pairs) {
+  std::vector<TouchingPair> both;
+  both.reserve(touching_.size() + pairs.size());
+  std::set_union(touching_.begin(), touching_.end(), pairs.begin(), pairs.end(),
+                 std::back_inserter(both));
+  touching_.swap(both);
+}
+
+}  // namespace winnow

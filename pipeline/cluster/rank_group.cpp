@@ -1,0 +1,105 @@
+#include "pipeline/cluster/rank_group.h"
+
+#include <algorithm>
+
+namespace winnow {
+
+std::span<const Parcel> parcels_for(std::span<const Parcel> parcels, std::uint32_t rank) {
+  const auto range = std::ranges::equal_range(parcels, rank, {}, &Parcel::to);
+  return {range.begin(), range.end()};
+}
+
+RankGroup::RankGroup(Transport& given, double imbalance_bound, std::pmr::memory_resource* memory)
+    : transport(given),
+      ranks(given.ranks()),
+      first(given.first_hosted()),
+      imbalance_(imbalance_bound) {
+  for (std::uint32_t i = 0; i < given.hosted(); ++i) names.emplace_back(first + i, ranks, memory);
+  if (!(imbalance_bound >= 1.0)) status = Status::invalid_argument;
+}
+
+Status RankGroup::exchange(std::span<const Parcel>& received) {
+  for (const Parcel& parcel : parcels) {
+    if (parcel.from == parcel.to) continue;
+    bytes_ += parcel.bytes();
+    ++messages_;
+  }
+  const Status answer = transport.exchange(parcels, received);
+  parcels.clear();
+  return answer;
+}
+
+Status RankGroup::cut_space(std::span<const CutWork> work) {
+  std::vector<RegionCut> cuts(ranks - 1);
+  const Status answer = transport.cut(work, cuts);
+  if (answer == Status::ok) regions = Regions(cuts);
+  ++statistics.cuts;
+  return answer;
+}
+
+Status RankGroup::take_names(std::span<const std::span<const BodyName>> freed,
+                             std::span<const std::span<const BodyName>> wanted,
+                             std::span<Status> answers) {
+  std::span<const Parcel> received;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (const BodyName name : freed[i]) names[i].forget(name);
+    names[i].ask(wanted[i], parcels);
+  }
+  Status answer = exchange(received);
+  if (answer != Status::ok) return answer;
+  for (std::uint32_t i = 0; i < names.size(); ++i) {
+    names[i].answer(parcels_for(received, first + i), parcels);
+  }
+  answer = exchange(received);
+  if (answer != Status::ok) return answer;
+  for (std::uint32_t i = 0; i < names.size(); ++i) {
+    const bool free = names[i].conclude(parcels_for(received, first + i), parcels);
+    if (!free) answers[i] = Status::invalid_key;
+  }
+  answer = exchange(received);
+  if (answer != Status::ok) return answer;
+  for (std::uint32_t i = 0; i < names.size(); ++i) {
+    names[i].keep(parcels_for(received, first + i));
+  }
+  return Status::ok;
+}
+
+Status RankGroup::count(std::span<const RankCounts> counts, Status found) {
+  std::uint64_t sums[7] = {0, 0, 0, 0, bytes_, messages_, 0};
+  std::uint64_t greatest[2] = {static_cast<std::uint64_t>(found), 0};
+  for (const RankCounts& one : counts) {
+    sums[0] += one.bodies;
+    sums[1] += one.ghosts;
+    sums[2] += one.pairs;
+    sums[3] += one.work;
+    sums[6] += one.migrated;
+    greatest[1] = std::max(greatest[1], one.work);
+  }
+  const Status answer = transport.reduce(sums, greatest);
+  if (answer != Status::ok) return answer;
+  if (greatest[0] != 0) return static_cast<Status>(greatest[0]);
+  bytes_ = messages_ = 0;
+  const double mean = static_cast<double>(sums[3]) / static_cast<double>(ranks);
+  statistics.bodies = sums[0];
+  statistics.ghosts = sums[1];
+  statistics.pairs = sums[2];
+  statistics.bytes = sums[4];
+  statistics.messages = sums[5];
+  statistics.migrated = sums[6];
+  statistics.imbalance = mean > 0.0 ? static_cast<double>(greatest[1]) / mean : 1.0;
+  decide_on_cut();
+  return Status::ok;
+}
+
+/// A cut that helped is followed by another; after one that did not, things have to get worse
+/// first.
+void RankGroup::decide_on_cut() {
+  constexpr double kHelped = 0.98;
+  constexpr double kWorse = 1.05;
+  const double now = statistics.imbalance;
+  wants_cut = !is_alone() && now > imbalance_ &&
+              (was_cut ? now < kHelped * after_cut_ : now > kWorse * after_cut_);
+  if (was_cut) after_cut_ = now;
+}
+
+}  // namespace winnow

@@ -1,0 +1,509 @@
+#include "pipeline/cluster/rank_scene.h"
+
+#include "pipeline/cluster/work_shares.h"
+#include "pipeline/scene/contact_frame.h"
+#include "pipeline/scene/scene_state.h"
+#include "pipeline/shapes/pair_order.h"
+
+#include <algorithm>
+
+namespace winnow {
+namespace {
+
+[[nodiscard]] bool is_empty(const Aabb& box) noexcept {
+  return !(box.min.x() <= box.max.x());
+}
+
+}  // namespace
+
+RankScene::RankScene(std::uint32_t rank, std::uint32_t ranks, const ShapePool& shapes,
+                     const SceneOptions& options)
+    : rank_(rank),
+      alone_(ranks == 1),
+      region_(Regions().of(0)),
+      scene_(shapes, options),
+      contacts_(options.memory),
+      events_(rank, ranks),
+      table_(options.memory) {
+  if (scene_.state_ == nullptr || contacts_.state_ == nullptr) throw std::bad_alloc();
+  selection_.wants = [](const void* self, std::uint32_t a, std::uint32_t b) {
+    return static_cast<const RankScene*>(self)->reports(a, b);
+  };
+  selection_.context = this;
+  state().keeps_origin = true;
+  state().selection = &selection_;
+}
+
+bool RankScene::is_good() const noexcept {
+  return state().options_are_good;
+}
+
+// ---- what the rank is told
+
+Status RankScene::check(const ClusterSceneBatch& batch) {
+  if (batch.names.size() != batch.bodies.size()) return Status::size_mismatch;
+  if (batch.bodies.size() + state().keys.slot_count() >= kMaxBodies) {
+    return Status::too_many_objects;
+  }
+  for (const BodyDefinition& body : batch.bodies) {
+    if (body.motion > Motion::sleeping) return Status::invalid_argument;
+    if (body.motion == Motion::sleeping) return Status::unsupported;
+    if (const Status good = state().check(body.shape, body.pose); good != Status::ok) return good;
+  }
+  const auto is_here = [this](BodyName name) { return table_.find(name) != NameTable::kNone; };
+  if (std::any_of(batch.names.begin(), batch.names.end(), is_here) ||
+      has_twice(std::vector<BodyName>(batch.names.begin(), batch.names.end()))) {
+    return Status::invalid_key;
+  }
+  return Status::ok;
+}
+
+/// Adds bodies to the scene, with keys in `keys_` and no flags but that they are new.
+Status RankScene::add_bodies(std::span<const BodyName> names, std::span<const BodyRecord> bodies) {
+  definitions_.clear();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    definitions_.push_back(bodies[i].definition(names[i]));
+  }
+  keys_.resize(names.size());
+  const Status status = scene_.add(definitions_, keys_);
+  if (status != Status::ok) return status;
+  const std::size_t slots = state().keys.slot_count();
+  names_.resize(slots);
+  flags_.resize(slots);
+  table_.reserve(table_.size() + names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const ObjectId id = keys_[i].id;
+    names_[id] = names[i];
+    flags_[id] = bodies[i].is_new != 0 ? kNew : 0;
+    table_.set(names[i], id);
+    came_.push_back({names[i], id});
+  }
+  return Status::ok;
+}
+
+Status RankScene::insert(std::span<const BodyName> names, std::span<const BodyRecord> bodies) {
+  if (names.empty()) return Status::ok;
+  const Status status = add_bodies(names, bodies);
+  if (status != Status::ok) return status;
+  owned_ += names.size();
+  for (const Key key : keys_) {
+    flags_[key.id] |= kOwned | kMoved;
+    moved_.push_back({key, Aabb{}, true});
+  }
+  return Status::ok;
+}
+
+Status RankScene::replicate(const ClusterSceneBatch& batch) {
+  if (batch.names.empty()) return Status::ok;
+  std::vector<BodyRecord> records;
+  // Before the first call of collide it may be what touched in a cluster that is restored.
+  const std::uint8_t is_new = has_collided_ ? 1 : 0;
+  for (const BodyDefinition& body : batch.bodies) {
+    records.push_back({body.pose, body.shape, body.filter, body.motion, is_new});
+  }
+  const Status status = add_bodies(batch.names, records);
+  if (status != Status::ok) return status;
+  for (const Key key : keys_) flags_[key.id] |= kReplicated;
+  return Status::ok;
+}
+
+Status RankScene::check_replicated(std::span<const BodyName> names, std::span<const Pose> poses) {
+  if (names.size() != poses.size()) return Status::size_mismatch;
+  const auto is_valid = [](const Pose& pose) { return pose.is_valid(); };
+  if (!std::all_of(poses.begin(), poses.end(), is_valid)) return Status::invalid_pose;
+  return find_keys(names, kReplicated, replicated_keys_);
+}
+
+Status RankScene::move_replicated(std::span<const Pose> poses) {
+  return scene_.move(replicated_keys_, poses);
+}
+
+/// Before a body's box changes, or the regions that it meets: what others know of it. Room was
+/// made.
+void RankScene::note(ObjectId id, bool has_changed) {
+  if ((flags_[id] & kMoved) != 0) return;
+  moved_.push_back({state().keys.key_of(id), box_of(id), has_changed});
+  flags_[id] |= kMoved;
+}
+
+Status RankScene::move(std::span<const Key> keys, const PoseView& poses) {
+  if (keys.size() != poses.count) return Status::size_mismatch;
+  if (!std::all_of(keys.begin(), keys.end(), [this](Key key) { return is_owned(key); })) {
+    return Status::invalid_key;
+  }
+  const std::size_t room = moved_.size() + (alone_ ? 0 : keys.size());
+  if (room > moved_.capacity()) moved_.reserve(2 * room);
+  const Status status = scene_.move(keys, poses);
+  if (status != Status::ok || alone_) return status;
+  for (const Key key : keys) note(key.id, true);
+  return Status::ok;
+}
+
+Status RankScene::find_keys(std::span<const BodyName> names, std::uint8_t flag,
+                            std::vector<Key>& keys) const {
+  keys.clear();
+  for (const BodyName name : names) {
+    const std::uint32_t id = table_.find(name);
+    if (id == NameTable::kNone || (flags_[id] & flag) == 0) return Status::invalid_key;
+    keys.push_back(state().keys.key_of(id));
+  }
+  return has_twice(std::vector<BodyName>(names.begin(), names.end())) ? Status::invalid_key
+                                                                      : Status::ok;
+}
+
+Status RankScene::move(std::span<const BodyName> names, const PoseView& poses) {
+  if (names.size() != poses.count) return Status::size_mismatch;
+  const Status status = find_keys(names, kOwned, keys_);
+  return status == Status::ok ? move(std::span<const Key>(keys_), poses) : status;
+}
+
+Status RankScene::remove(std::span<const BodyName> names) {
+  const Status status = find_keys(names, kOwned, keys_);
+  if (status != Status::ok) return status;
+  const std::size_t room = moved_.size() + names.size();
+  if (room > moved_.capacity()) moved_.reserve(2 * room);
+  removed_.insert(removed_.end(), names.begin(), names.end());
+  for (const Key key : keys_) {
+    note(key.id, true);
+    flags_[key.id] |= kRemoved;
+    table_.erase(names_[key.id]);
+  }
+  owned_ -= names.size();
+  return Status::ok;
+}
+
+Status RankScene::key_of(BodyName name, Key& key) const noexcept {
+  const std::uint32_t id = table_.find(name);
+  if (id == NameTable::kNone || (flags_[id] & kOwned) == 0) return Status::invalid_key;
+  key = state().keys.key_of(id);
+  return Status::ok;
+}
+
+Status RankScene::bodies(std::span<ClusterBody> bodies) const {
+  if (bodies.size() != size()) return Status::size_mismatch;
+  std::size_t count = 0;
+  for (ObjectId id = 0; id < flags_.size(); ++id) {
+    const Key key = state().keys.key_of(id);
+    if (is_owned(key)) bodies[count++] = {names_[id], key};
+  }
+  return Status::ok;
+}
+
+void RankScene::records(std::vector<BodyName>& names, std::vector<BodyRecord>& bodies) const {
+  for (ObjectId id = 0; id < flags_.size(); ++id) {
+    if (!is_owned(state().keys.key_of(id))) continue;
+    names.push_back(names_[id]);
+    bodies.push_back(record_of(id));
+  }
+}
+
+// ---- how bodies go where they belong
+
+Aabb RankScene::box_of(ObjectId id) const noexcept {
+  Aabb box;
+  (void)state().set(state().motion[id]).partition->bounds(state().place[id], box);
+  return box;
+}
+
+BodyRecord RankScene::record_of(ObjectId id) const noexcept {
+  BodyRecord record{state().pose[id], state().shape[id], {}, state().motion[id]};
+  (void)state().set(record.motion).partition->filter(state().place[id], record.filter);
+  record.is_new = (flags_[id] & kNew) != 0 ? 1 : 0;
+  return record;
+}
+
+bool RankScene::is_within(const Aabb& box) const noexcept {
+  return contains(region_, box);
+}
+
+Status RankScene::refresh() {
+  note_changed_composites();
+  return scene_.refresh();
+}
+
+/// Those that change where they lie have other boxes, though nobody moved them.
+void RankScene::note_changed_composites() {
+  const MidPhase* const composites = state().options.composites;
+  if (alone_ || composites == nullptr || composites->revision() == state().composites_seen) return;
+  for (ObjectId id = 0; id < flags_.size(); ++id) {
+    const Key key = state().keys.key_of(id);
+    if (is_owned(key) && state().shape[id].is_composite()) note(id, true);
+  }
+}
+
+void RankScene::send_removals(const Regions& regions) {
+  outbox_.clear();
+  changes_.clear();
+  const auto is_removed = [this](const Moved& moved) {
+    return (flags_[moved.key.id] & kRemoved) != 0;
+  };
+  const auto rest = std::stable_partition(moved_.begin(), moved_.end(),
+                                          [&](const Moved& moved) { return !is_removed(moved); });
+  for (auto moved = rest; moved != moved_.end(); ++moved) tell(*moved, regions, regions);
+  moved_.erase(rest, moved_.end());
+}
+
+void RankScene::send(const Regions& before, const Regions& now, bool regions_changed) {
+  region_ = now.of(rank_);
+  outbox_.clear();
+  changes_.clear();
+  arrived_.clear();
+  departed_.clear();
+  works_.clear();
+  if (regions_changed) {
+    note_all_that_cross();
+    // Which of them this rank reports is another question now.
+    state().pairs.clear();
+  }
+  for (const Moved& moved : moved_) tell(moved, before, now);
+  moved_.clear();
+}
+
+/// Of bodies that did not move those are looked at that crossed the old region or cross the new.
+void RankScene::note_all_that_cross() {
+  for (ObjectId id = 0; id < flags_.size(); ++id) {
+    if (!is_owned(state().keys.key_of(id))) continue;
+    if ((flags_[id] & kCrosses) != 0 || !is_within(box_of(id))) note(id, false);
+  }
+}
+
+void RankScene::tell(const Moved& moved, const Regions& before, const Regions& now) {
+  const ObjectId id = moved.key.id;
+  flags_[id] = static_cast<std::uint8_t>(flags_[id] & ~kMoved);
+  const bool removed = (flags_[id] & kRemoved) != 0;
+  const Aabb box = removed ? Aabb{} : box_of(id);
+  const bool is_known = !is_empty(moved.told);
+  // What lies within the region, and did, is nobody else's business.
+  if (is_known && !removed && (flags_[id] & kCrosses) == 0 && is_within(box)) return;
+  const std::uint32_t owner = removed ? rank_ : now.owner(centre_of(box));
+  before.ranks_of(moved.told, ranks_before_);
+  now.ranks_of(box, ranks_now_);
+  outbox_.tell(rank_, {names_[id], owner, !moved.has_changed}, record_of(id), ranks_before_,
+               ranks_now_);
+  if (owner != rank_) {
+    departed_.push_back(names_[id]);
+    --owned_;
+  }
+  if (!std::binary_search(ranks_now_.begin(), ranks_now_.end(), rank_)) {
+    if (!removed) table_.erase(names_[id]);
+    flags_[id] = 0;
+    changes_.dropped.push_back(moved.key);
+    return;
+  }
+  const int kept = flags_[id] & (kNew | kSettled);
+  flags_[id] = static_cast<std::uint8_t>(kept | (owner == rank_ ? kOwned : 0) |
+                                         (is_within(box) ? 0 : kCrosses));
+  if (owner != rank_) {
+    ++ghosts_;
+  } else if (!is_known) {
+    arrived_.push_back({names_[id], moved.key});
+  }
+}
+
+void RankScene::Changes::clear() noexcept {
+  dropped.clear();
+  keys.clear();
+  poses.clear();
+  names.clear();
+  fresh.clear();
+  belongs.clear();
+}
+
+Status RankScene::receive(std::span<const Parcel> parcels) {
+  // What is gone first: a name may come anew in the same breath.
+  for (const Parcel& parcel : parcels) {
+    for (const BodyName name : BodyNews<BodyRecord>(parcel).gone) {
+      const std::uint32_t id = table_.find(name);
+      if (id == NameTable::kNone) continue;
+      changes_.dropped.push_back(state().keys.key_of(id));
+      flags_[id] = 0;
+      table_.erase(name);
+      --ghosts_;
+    }
+  }
+  for (const Parcel& parcel : parcels) take(BodyNews<BodyRecord>(parcel));
+  return apply_changes();
+}
+
+/// Of a body that is here another one has told a new pose, or that it belongs here.
+void RankScene::take(const BodyNews<BodyRecord>& news) {
+  for (std::size_t i = 0; i < news.names.size(); ++i) {
+    const std::uint32_t id = table_.find(news.names[i]);
+    if (id == NameTable::kNone) {
+      changes_.names.push_back(news.names[i]);
+      changes_.fresh.push_back(news.contents[i]);
+      changes_.belongs.push_back(news.belongs[i]);
+      continue;
+    }
+    const Key key = state().keys.key_of(id);
+    changes_.keys.push_back(key);
+    changes_.poses.push_back(news.contents[i].pose);
+    if (news.belongs[i] == 0) continue;
+    flags_[id] |= kOwned;
+    --ghosts_;
+    ++owned_;
+    arrived_.push_back({news.names[i], key});
+  }
+}
+
+Status RankScene::apply_changes() {
+  has_lost_ = has_lost_ || !changes_.dropped.empty();
+  Status status = scene_.remove(changes_.dropped);
+  if (status == Status::ok) status = scene_.move(changes_.keys, changes_.poses);
+  if (status == Status::ok && !changes_.names.empty()) {
+    status = add_bodies(changes_.names, changes_.fresh);
+  }
+  // The boxes of what came or moved tell whether it crosses.
+  if (status == Status::ok) status = scene_.refresh();
+  if (status != Status::ok) return status;
+  for (std::size_t i = 0; i < changes_.names.size(); ++i) {
+    const bool belongs = changes_.belongs[i] != 0;
+    if (belongs) arrived_.push_back({changes_.names[i], keys_[i]});
+    ++(belongs ? owned_ : ghosts_);
+    if (belongs) flags_[keys_[i].id] |= kOwned;
+    changes_.keys.push_back(keys_[i]);
+  }
+  for (const Key key : changes_.keys) {
+    const int kept = flags_[key.id] & ~kCrosses;
+    flags_[key.id] = static_cast<std::uint8_t>(kept | (is_within(box_of(key.id)) ? 0 : kCrosses));
+  }
+  return Status::ok;
+}
+
+// ---- what touches
+
+/// Of two boxes of which one lies within the region the rank reports the pair without a look.
+bool RankScene::reports(ObjectId a, ObjectId b) const noexcept {
+  if (alone_) return true;
+  if (((flags_[a] | flags_[b]) & kReplicated) != 0) return ((flags_[a] | flags_[b]) & kOwned) != 0;
+  if ((flags_[a] & flags_[b] & kCrosses) == 0) return true;
+  const Vec3f at = meeting_point(box_of(a), box_of(b));
+  return is_within({at, at});
+}
+
+/// What came is merged in, and what is gone left out, so that few changes cost little.
+void RankScene::sort_names() {
+  if (!has_lost_ && came_.empty()) return;
+  std::erase_if(by_name_, [this](const NamedId& one) {
+    return !state().keys.is_live(one.id) || names_[one.id] != one.name;
+  });
+  std::erase_if(came_, [this](const NamedId& one) {
+    return !state().keys.is_live(one.id) || names_[one.id] != one.name;
+  });
+  std::sort(came_.begin(), came_.end());
+  const auto old = static_cast<std::ptrdiff_t>(by_name_.size());
+  by_name_.insert(by_name_.end(), came_.begin(), came_.end());
+  std::inplace_merge(by_name_.begin(), by_name_.begin() + old, by_name_.end());
+  by_name_.erase(std::unique(by_name_.begin(), by_name_.end()), by_name_.end());
+  came_.clear();
+  has_lost_ = false;
+  place_.resize(names_.size());
+  body_.resize(by_name_.size());
+  for (std::uint32_t i = 0; i < by_name_.size(); ++i) {
+    place_[by_name_[i].id] = i;
+    body_[i] = by_name_[i].id;
+  }
+  selection_.place = place_;
+  selection_.body = body_;
+}
+
+Status RankScene::collide(ContactLevel level) {
+  sort_names();
+  // Contacts that remember nothing: what was here before may be elsewhere now.
+  contacts_.clear();
+  const Status status = scene_.collide(level, contacts_);
+  if (status != Status::ok) return status;
+  compare_contacts();
+  settle_flags();
+  has_collided_ = true;
+  return Status::ok;
+}
+
+void RankScene::compare_contacts() {
+  using Knowledge = ContactEvents::Knowledge;
+  std::vector<TouchingPair> now(contacts_.size());
+  std::vector<Knowledge> knowledge(contacts_.size());
+  for (const ContactRun& run : contacts_.runs()) {
+    const std::uint32_t code = BodyKindPairs::index(run.kind_a, run.kind_b);
+    for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
+      const ObjectId a = contacts_.a()[i].id;
+      const ObjectId b = contacts_.b()[i].id;
+      now[i] = {code, names_[a], names_[b]};
+      const bool is_new = ((flags_[a] | flags_[b]) & kNew) != 0;
+      const bool is_local = alone_ || (is_settled(a) && is_settled(b));
+      knowledge[i] = is_new ? Knowledge::is_new : is_local ? Knowledge::local : Knowledge::none;
+    }
+  }
+  events_.compare(now, knowledge, [this](const TouchingPair& pair) {
+    const std::uint32_t a = table_.find(pair.a);
+    const std::uint32_t b = table_.find(pair.b);
+    return alone_ ||
+           (a != NameTable::kNone && b != NameTable::kNone && is_settled(a) && is_settled(b));
+  });
+}
+
+/// What the next call is to know of this one.
+void RankScene::settle_flags() {
+  for (std::uint8_t& flags : flags_) {
+    const bool settled = (flags & (kOwned | kCrosses)) == kOwned;
+    flags = static_cast<std::uint8_t>((flags & ~(kNew | kSettled)) | (settled ? kSettled : 0));
+  }
+}
+
+void RankScene::show_events() {
+  ContactsState& shown = *contacts_.state_;
+  const auto persisted = events_.persisted();
+  for (std::size_t i = 0; i < persisted.size(); ++i) {
+    if (persisted[i] != 0) shown.frame.event[i] = ContactEvent::persisted;
+  }
+  const auto key_by_name = [this](BodyName name) {
+    const std::uint32_t id = table_.find(name);
+    return id == NameTable::kNone ? Key{} : state().keys.key_of(id);
+  };
+  for (const TouchingPair& pair : events_.ended()) {
+    if (!shown.ended.push_back({key_by_name(pair.a), key_by_name(pair.b), pair.a, pair.b})) {
+      throw std::bad_alloc();
+    }
+  }
+}
+
+RankCounts RankScene::counts() const noexcept {
+  const SceneStatistics& found = scene_.statistics();
+  return {owned_, ghosts_, contacts_.size(), departed_.size(),
+          scene_.size() + found.body_pairs + found.primitive_pairs};
+}
+
+void RankScene::measure_work() {
+  std::vector<std::uint64_t> counts(flags_.size(), 1);
+  for (const BodyPair& pair : state().pairs.pairs()) {
+    const bool a_is_elsewhere = (flags_[pair.a] & kOwned) == 0;
+    const bool a_is_larger = is_larger(box_of(pair.a), box_of(pair.b));
+    ++counts[a_is_elsewhere || a_is_larger ? pair.b : pair.a];
+  }
+  const auto owned = [this](std::size_t id) { return (flags_[id] & kOwned) != 0; };
+  works_ = shares_of(counts, owned, this->counts().work);
+}
+
+CutWork RankScene::cut_work() {
+  work_boxes_.clear();
+  works_of_owned_.clear();
+  for (ObjectId id = 0; id < flags_.size(); ++id) {
+    if (!is_owned(state().keys.key_of(id))) continue;
+    work_boxes_.push_back(box_of(id));
+    works_of_owned_.push_back(id < works_.size() ? works_[id] : 1);
+  }
+  return {work_boxes_, works_of_owned_};
+}
+
+Bytes RankScene::bytes() const noexcept {
+  Bytes sum = scene_.footprint().total();
+  sum += contacts_.footprint().total();
+  const std::size_t columns = names_.capacity() * sizeof(BodyName) + flags_.capacity() +
+                              table_.bytes() + by_name_.capacity() * sizeof(NamedId) +
+                              (place_.capacity() + body_.capacity()) * sizeof(std::uint32_t) +
+                              events_.touching().size() * sizeof(TouchingPair);
+  sum += {columns, columns};
+  return sum;
+}
+
+}  // namespace winnow

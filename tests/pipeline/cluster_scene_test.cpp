@@ -1,0 +1,280 @@
+// Scenes on many ranks in one process: the contacts of one scene, bit for bit, and what is refused.
+
+#include <gtest/gtest.h>
+#include <winnow/pipeline/cluster_scene.h>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "tests/pipeline/cluster_scene_world.h"
+#include "tests/support/random.h"
+
+namespace winnow::test {
+namespace {
+
+void run_scene_frames(const WorldShapes& shapes, std::uint32_t ranks, ContactLevel level,
+                      const ClusterSceneOptions& options = {}) {
+  Random random(ranks);
+  ClusterSceneWorld world(shapes, ranks, options);
+  world.add_ground();
+  world.add(scaled(150), 7.0, random);
+  world.check(level);
+  for (int frame = 0; frame < 4; ++frame) {
+    world.move(frame == 2 ? 1.0 : 0.3, frame == 1 ? 3.0 : 0.1, random);
+    world.remove(3, random);
+    if (frame % 2 == 1) {
+      world.move_ground(random);
+      world.add(9, 7.0, random);
+      world.remove(2, random);
+    }
+    world.check(level);
+  }
+}
+
+TEST(ClusterContacts, are_those_of_one_scene_on_any_number_of_ranks) {
+  const WorldShapes shapes;
+  for (const std::uint32_t ranks : {1U, 2U, 3U, 5U, 8U, 16U}) {
+    for (const ContactLevel level : {ContactLevel::pairs, ContactLevel::boolean,
+                                     ContactLevel::distance, ContactLevel::manifold}) {
+      run_scene_frames(shapes, ranks, level);
+    }
+  }
+}
+
+TEST(ClusterContacts, are_those_of_one_scene_with_a_margin_and_with_reduction) {
+  const WorldShapes shapes;
+  for (const std::uint32_t ranks : {2U, 7U}) {
+    run_scene_frames(shapes, ranks, ContactLevel::manifold,
+                     {.scene = {.margin = 0.3, .contact_reduction = true}});
+  }
+}
+
+TEST(ClusterContacts, are_right_on_thousands_of_ranks) {
+  const WorldShapes shapes;
+  for (const std::uint32_t ranks : {64U, 512U}) {
+    Random random(ranks);
+    ClusterSceneWorld world(shapes, ranks);
+    world.add_ground();
+    world.add(60, 5.0, random);
+    world.check(ContactLevel::manifold);
+    world.move(0.5, 0.3, random);
+    world.check(ContactLevel::manifold);
+  }
+}
+
+TEST(ClusterContacts, have_the_digest_of_one_scene) {
+  const WorldShapes shapes;
+  ClusterDigest first;
+  for (const std::uint32_t ranks : {1U, 4U, 9U}) {
+    Random random(1);
+    ClusterSceneWorld world(shapes, 1);
+    world.add(scaled(120), 6.0, random);
+    world.restart(ranks);
+    world.check(ContactLevel::manifold);
+    ClusterDigest digest;
+    ASSERT_EQ(world.cluster().digest(digest), Status::ok);
+    if (ranks == 1) {
+      first = digest;
+      EXPECT_EQ(digest, digest_of(world.cluster().contacts(0)));
+    }
+    EXPECT_EQ(digest, first);
+    world.move(0.1, 1e-9, random);
+    world.check(ContactLevel::manifold);
+    ASSERT_EQ(world.cluster().digest(digest), Status::ok);
+    EXPECT_NE(digest, first);
+  }
+}
+
+TEST(ClusterContacts, are_right_while_everything_gathers_and_scatters) {
+  const WorldShapes shapes;
+  Random random(7);
+  ClusterSceneWorld world(shapes, 9);
+  world.add(100, 6.0, random);
+  for (const double step : {8.0, 0.1, 20.0}) {
+    world.move(1.0, step, random);
+    world.check(ContactLevel::distance);
+  }
+  EXPECT_GT(world.cluster().statistics().migrated, 0U);
+  world.remove(100, random);
+  world.check(ContactLevel::distance);
+  world.add(20, 3.0, random);
+  world.check(ContactLevel::distance);
+}
+
+TEST(ClusterContacts, are_sent_for_nowhere_where_nothing_moves) {
+  const WorldShapes shapes;
+  Random random(3);
+  ClusterSceneWorld world(shapes, 8);
+  world.add_ground();
+  world.add(scaled(300), 8.0, random);
+  std::uint64_t cuts = 0;
+  do {
+    cuts = world.cluster().statistics().cuts;
+    world.check(ContactLevel::boolean);
+  } while (world.cluster().statistics().cuts != cuts);
+  EXPECT_GT(world.cluster().statistics().ghosts, 7U);
+  EXPECT_EQ(world.cluster().statistics().bytes, 0U);
+}
+
+TEST(ClusterCheckpoints, go_on_in_another_number_of_ranks) {
+  const WorldShapes shapes;
+  Random random(11);
+  ClusterSceneWorld world(shapes, 3);
+  world.add_ground();
+  world.add(scaled(150), 6.0, random);
+  for (const std::uint32_t ranks : {5U, 2U, 1U, 4U}) {
+    world.check(ContactLevel::manifold);
+    world.move(0.3, 0.2, random);
+    if (ranks == 2) world.add(5, 6.0, random);
+    if (ranks == 1) world.remove(5, random);
+    world.restart(ranks);
+    world.check(ContactLevel::manifold);
+  }
+}
+
+TEST(ClusterCheckpoints, refuse_other_bytes_and_change_nothing) {
+  const WorldShapes shapes;
+  Random random(12);
+  ClusterSceneWorld world(shapes, 2);
+  world.add(30, 4.0, random);
+  world.check(ContactLevel::boolean);
+  const std::vector<std::vector<std::byte>> kept = world.saved();
+  ClusterScene& cluster = world.cluster();
+  Status answers[2];
+  const auto answer_to = [&](std::span<const std::byte> bytes) {
+    const std::span<const std::byte> given[] = {bytes, {}};
+    EXPECT_EQ(cluster.restore(given, answers), Status::ok);
+    EXPECT_EQ(answers[1], Status::ok);
+    return answers[0];
+  };
+  // Whole bytes, of names that are there.
+  EXPECT_EQ(answer_to(kept[0]), Status::invalid_key);
+  EXPECT_EQ(answer_to(kept[1]), Status::invalid_key);
+  for (std::size_t size = 1; size < kept[0].size(); size += 1 + size / 5) {
+    EXPECT_EQ(answer_to(std::span(kept[0]).first(size)), Status::invalid_argument);
+  }
+  std::vector<std::byte> spoilt = kept[0];
+  for (int i = 0; i < 200; ++i) {
+    std::byte& byte = spoilt[random.below(spoilt.size())];
+    const std::byte before = byte;
+    byte ^= static_cast<std::byte>(1U << random.below(8));
+    EXPECT_EQ(answer_to(spoilt), Status::invalid_argument);
+    byte = before;
+  }
+  spoilt.push_back(std::byte{});
+  EXPECT_EQ(answer_to(spoilt), Status::invalid_argument);
+  EXPECT_EQ(cluster.restore({}, std::span(answers)), Status::size_mismatch);
+  world.check(ContactLevel::boolean);
+}
+
+/// A rank that is told a batch, where the others are told nothing.
+Status add_bodies_on(ClusterScene& cluster, std::uint32_t rank, std::span<const BodyName> names,
+                     std::span<const BodyDefinition> bodies) {
+  std::vector<ClusterSceneBatch> batches(cluster.hosted());
+  std::vector<Status> answers(cluster.hosted());
+  batches[rank] = {names, bodies};
+  EXPECT_EQ(cluster.add(batches, answers), Status::ok);
+  return answers[rank];
+}
+
+TEST(ClusterSceneInput, that_is_bad_is_refused_on_its_rank_and_changes_nothing) {
+  const WorldShapes shapes;
+  Random random(6);
+  ClusterSceneWorld world(shapes, 3);
+  world.add_ground();
+  world.add(50, 5.0, random);
+  world.check(ContactLevel::manifold);
+  ClusterScene& cluster = world.cluster();
+  const BodyDefinition good{.shape = shapes.movable[0], .pose = Pose::at(1, 1, 1)};
+  const BodyDefinition bad_pose{.shape = shapes.movable[0], .pose = Pose::at(NAN, 1, 1)};
+  const BodyDefinition bad_shape{};
+  const BodyDefinition asleep{.shape = shapes.movable[0], .motion = Motion::sleeping};
+  const BodyName there = world.bodies().begin()->first;
+  const std::uint32_t home = world.rank_of(there);
+  const BodyName fresh[] = {1, 2};
+  const BodyName twice[] = {1, 1};
+  const BodyName taken[] = {1, there};
+  const BodyName replicated[] = {1, 0};
+  const auto answer = [&](std::uint32_t rank, std::span<const BodyName> names,
+                          const BodyDefinition& second) {
+    const BodyDefinition bodies[] = {good, second};
+    return add_bodies_on(cluster, rank, names, bodies);
+  };
+  for (std::uint32_t rank = 0; rank < 3; ++rank) {
+    EXPECT_EQ(answer(rank, fresh, bad_pose), Status::invalid_pose);
+    EXPECT_EQ(answer(rank, fresh, bad_shape), Status::invalid_key);
+    EXPECT_EQ(answer(rank, fresh, asleep), Status::unsupported);
+    EXPECT_EQ(answer(rank, std::span(fresh).first(1), good), Status::size_mismatch);
+    EXPECT_EQ(answer(rank, twice, good), Status::invalid_key);
+    EXPECT_EQ(answer(rank, taken, good), Status::invalid_key);
+    EXPECT_EQ(answer(rank, replicated, good), Status::invalid_key);
+    const Pose poses[] = {good.pose, good.pose};
+    EXPECT_EQ(cluster.move(rank, std::span<const BodyName>(fresh), poses), Status::invalid_key);
+    EXPECT_EQ(cluster.move(rank, std::span<const BodyName>(replicated).last(1),
+                           std::span(poses).first(1)),
+              Status::invalid_key);
+    EXPECT_EQ(cluster.remove(rank, fresh), Status::invalid_key);
+    if (rank == home) continue;
+    EXPECT_EQ(cluster.remove(rank, std::span(&there, 1)), Status::invalid_key);
+    Key foreign;
+    ASSERT_EQ(cluster.key_of(home, there, foreign), Status::ok);
+    EXPECT_EQ(cluster.move(rank, std::span(&foreign, 1), std::span(poses).first(1)),
+              Status::invalid_key);
+  }
+  EXPECT_EQ(cluster.move(home, std::span(&there, 1), std::span(&bad_pose.pose, 1)),
+            Status::invalid_pose);
+  EXPECT_EQ(cluster.move(3, std::span(&there, 1), std::span(&good.pose, 1)),
+            Status::invalid_argument);
+  EXPECT_EQ(cluster.replicate({std::span(&there, 1), std::span(&good, 1)}), Status::invalid_key);
+  EXPECT_EQ(cluster.replicate({std::span(fresh).first(1), std::span(&good, 1)}),
+            Status::unsupported);
+  EXPECT_EQ(cluster.move_replicated(std::span(&there, 1), std::span(&good.pose, 1)),
+            Status::invalid_key);
+  EXPECT_EQ(cluster.collide(static_cast<ContactLevel>(9)), Status::invalid_argument);
+  world.check(ContactLevel::manifold);
+}
+
+TEST(ClusterSceneInput, may_name_anew_what_was_removed) {
+  const WorldShapes shapes;
+  LoopbackTransport transport(4);
+  ClusterScene cluster(transport, shapes.shapes);
+  const BodyName names[] = {7, 8};
+  const BodyDefinition body{.shape = shapes.movable[0]};
+  const BodyDefinition bodies[] = {body, body};
+  ASSERT_EQ(add_bodies_on(cluster, 0, names, bodies), Status::ok);
+  ASSERT_EQ(cluster.collide(ContactLevel::boolean), Status::ok);
+  std::uint32_t home = 0;
+  while (cluster.size(home) == 0) ++home;
+  ASSERT_EQ(cluster.remove(home, std::span(names).first(1)), Status::ok);
+  ASSERT_EQ(add_bodies_on(cluster, 3, std::span(names).first(1), std::span(bodies).first(1)),
+            Status::ok);
+  ASSERT_EQ(cluster.collide(ContactLevel::boolean), Status::ok);
+  // One pair ended with the body, and another one began.
+  std::size_t begun = 0;
+  std::size_t ended = 0;
+  for (std::uint32_t rank = 0; rank < 4; ++rank) {
+    for (const ContactEvent event : cluster.contacts(rank).event()) {
+      begun += event == ContactEvent::begun ? 1 : 0;
+    }
+    ended += cluster.contacts(rank).ended().size();
+  }
+  EXPECT_EQ(begun, 1U);
+  EXPECT_EQ(ended, 1U);
+}
+
+TEST(ClusterSceneInput, of_options_out_of_range_ends_all) {
+  const WorldShapes shapes;
+  LoopbackTransport transport(2);
+  for (const ClusterSceneOptions& options :
+       {ClusterSceneOptions{.scene = {.margin = -1.0}}, ClusterSceneOptions{.imbalance = 0.5},
+        ClusterSceneOptions{.scene = {.carry_over = 1.0}},
+        ClusterSceneOptions{.scene = {.warm_start = true}}}) {
+    ClusterScene cluster(transport, shapes.shapes, options);
+    EXPECT_EQ(cluster.status(), Status::invalid_argument);
+    EXPECT_EQ(cluster.collide(ContactLevel::pairs), Status::invalid_argument);
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test

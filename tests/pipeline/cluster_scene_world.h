@@ -1,0 +1,86 @@
+#pragma once
+
+#include <winnow/pipeline/cluster_scene.h>
+#include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/shape_pool.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "tests/support/random.h"
+
+namespace winnow::test {
+
+/// Shapes of many kinds, that a world of bodies has by number.
+struct WorldShapes {
+  WorldShapes();
+
+  ShapePool shapes;
+  CompositePool composites{shapes};
+  std::vector<ShapeId> movable;  ///< about as large as 1; convex ones and a compound
+  std::vector<ShapeId> ground;   ///< half-space, mesh, height field, compound
+};
+
+/// Everything that was found of one pair, bit by bit.
+struct FlatContact {
+  std::uint32_t code = 0;  ///< of the kinds
+  BodyName a = 0;
+  BodyName b = 0;
+  bool persisted = false;
+  std::vector<std::uint64_t> bits;
+
+  friend bool operator==(const FlatContact&, const FlatContact&) = default;
+  [[nodiscard]] auto order() const { return std::tuple(code, a, b); }
+};
+[[nodiscard]] std::vector<FlatContact> flattened(const Contacts& contacts);
+
+/// A cluster of scenes on ranks of this process, and the same bodies in a table, of which one Scene
+/// is made anew for each frame.
+class ClusterSceneWorld {
+ public:
+  ClusterSceneWorld(const WorldShapes& shapes, std::uint32_t ranks,
+                    const ClusterSceneOptions& options = {});
+
+  /// What is on every rank.
+  void add_ground();
+  void move_ground(Random& random);
+  /// Bodies in a box of this size, each on a rank that `random` says; some are fixed, some
+  /// filtered.
+  void add(std::size_t count, double size, Random& random);
+  void move(double share, double step, Random& random);
+  void remove(std::size_t count, Random& random);
+  /// Finds contacts on all ranks and in one scene, and compares everything.
+  void check(ContactLevel level);
+  /// Goes on in a cluster of so many ranks, from what the ranks kept.
+  void restart(std::uint32_t ranks);
+
+  [[nodiscard]] ClusterScene& cluster() { return *cluster_; }
+  [[nodiscard]] const std::map<BodyName, BodyDefinition>& bodies() const { return bodies_; }
+  [[nodiscard]] std::uint32_t rank_of(BodyName name) const { return homes_.at(name); }
+  [[nodiscard]] std::vector<std::vector<std::byte>> saved() const;
+
+ private:
+  using PairOrder = std::tuple<std::uint32_t, BodyName, BodyName>;
+
+  void follow();
+  void check_events(const std::vector<FlatContact>& found);
+  [[nodiscard]] std::vector<FlatContact> found() const;
+  [[nodiscard]] std::vector<FlatContact> expected(ContactLevel level) const;
+
+  const WorldShapes& shapes_;
+  ClusterSceneOptions options_;
+  std::unique_ptr<LoopbackTransport> transport_;
+  std::unique_ptr<ClusterScene> cluster_;
+  std::map<BodyName, BodyDefinition> bodies_;
+  std::map<BodyName, BodyDefinition> ground_;
+  std::map<BodyName, std::uint32_t> homes_;
+  std::set<BodyName> fresh_;
+  std::set<PairOrder> touched_;
+  BodyName next_ = 1;
+};
+
+}  // namespace winnow::test
