@@ -125,9 +125,10 @@ class WINNOW_API ClusterScene {
   Status key_of(std::uint32_t rank, BodyName name, Key& key) const noexcept;
   /// A body that belongs to `rank`, as it stands; its client data are its name. O(1).
   Status body(std::uint32_t rank, BodyName name, BodyDefinition& body) const noexcept;
-  /// Bodies that the last `collide` made a hosted rank's: new ones, and those of other ranks.
+  /// Bodies that the last `collide`, or question of ClusterQueries, made a hosted rank's: new ones,
+  /// and those of other ranks.
   [[nodiscard]] std::span<const ClusterBody> arrived(std::uint32_t rank) const noexcept;
-  /// Names of those that the last `collide` made another rank's.
+  /// Names of those that it made another rank's.
   [[nodiscard]] std::span<const BodyName> departed(std::uint32_t rank) const noexcept;
 
   /// Counters as they stand; pairs are those that touch, ghosts leave out what is replicated.

@@ -44,6 +44,7 @@
 #include <winnow/partitions/scene_features.h>
 #include <winnow/partitions/structures.h>
 #include <winnow/pipeline/cluster.h>
+#include <winnow/pipeline/cluster_queries.h>
 #include <winnow/pipeline/cluster_scene.h>
 #include <winnow/pipeline/cluster_transport.h>
 #include <winnow/pipeline/composite_pool.h>

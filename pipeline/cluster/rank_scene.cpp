@@ -495,6 +495,15 @@ CutWork RankScene::cut_work() {
   return {work_boxes_, works_of_owned_};
 }
 
+Status RankScene::check(ShapeId shape, const Pose& pose) const noexcept {
+  return state().check(shape, pose);
+}
+
+Aabb RankScene::box_around(ShapeId shape, const Pose& pose) const noexcept {
+  const PlainBox box = state().bounds_from(state().origin, shape, pose, 0.0);
+  return {{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
+}
+
 Bytes RankScene::bytes() const noexcept {
   Bytes sum = scene_.footprint().total();
   sum += contacts_.footprint().total();

@@ -103,6 +103,10 @@ class RankScene {
   [[nodiscard]] Bytes bytes() const noexcept;
 
   [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
+  /// Whether a shape may stand at a pose.
+  [[nodiscard]] Status check(ShapeId shape, const Pose& pose) const noexcept;
+  /// Of a shape that may.
+  [[nodiscard]] Aabb box_around(ShapeId shape, const Pose& pose) const noexcept;
 
  private:
   /// What is known of a body, by the id of its key.

@@ -65,4 +65,42 @@ void Regions::add_ranks(std::int32_t side, const Aabb& box,
   ranks.push_back(rank_at(side));
 }
 
+void Regions::ranks_of(const ShapeRay& ray, std::vector<std::uint32_t>& ranks) const {
+  ranks.clear();
+  add_ranks(root(), ray, 0.0, ray.max_t, ranks);
+  std::sort(ranks.begin(), ranks.end());
+}
+
+/// Each side gets the part of the ray that reaches it, and a little more. Comparisons are such that
+/// NaN, of infinities, is within.
+void Regions::add_ranks(std::int32_t side, const ShapeRay& ray, double low, double high,
+                        std::vector<std::uint32_t>& ranks) const {
+  constexpr double kSlack = 1e-9;
+  while (side >= 0) {
+    const RegionCut& cut = cuts_[static_cast<std::size_t>(side)];
+    const double at = static_cast<double>(cut.at);
+    const double origin = ray.origin[cut.axis];
+    const double direction = ray.direction[cut.axis];
+    const double near = kSlack * (std::abs(at) + std::abs(origin));
+    if (direction == 0.0) {
+      const bool below = origin < at + near;
+      const bool above = origin > at - near;
+      if (below && above) add_ranks(cut.sides[0], ray, low, high, ranks);
+      side = cut.sides[above ? 1 : 0];
+      continue;
+    }
+    const double meets = (at - origin) / direction;
+    const double slack = near / std::abs(direction);
+    const std::size_t first = direction > 0.0 ? 0 : 1;
+    const bool reaches_first = !(meets + slack < low);
+    const bool reaches_second = !(meets - slack > high);
+    if (reaches_first && reaches_second) {
+      add_ranks(cut.sides[first], ray, low, std::min(high, meets + slack), ranks);
+    }
+    if (reaches_second) low = std::max(low, meets - slack);
+    side = cut.sides[reaches_second ? 1 - first : first];
+  }
+  ranks.push_back(rank_at(side));
+}
+
 }  // namespace winnow

@@ -3,6 +3,7 @@
 #include <winnow/core/aabb.h>
 #include <winnow/core/vec3.h>
 #include <winnow/pipeline/cluster_transport.h>
+#include <winnow/pipeline/shape_rays.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -50,6 +51,9 @@ class Regions {
   /// The ranks whose regions a box meets, ascending; of an empty box none. O(ranks that it meets *
   /// depth).
   void ranks_of(const Aabb& box, std::vector<std::uint32_t>& ranks) const;
+  /// The ranks whose regions a valid ray meets, or passes by so closely that rounding could tell
+  /// otherwise; ascending. O(ranks that it meets * depth).
+  void ranks_of(const ShapeRay& ray, std::vector<std::uint32_t>& ranks) const;
   /// The closed box of all floats in a rank's region.
   [[nodiscard]] const Aabb& of(std::uint32_t rank) const noexcept { return boxes_[rank]; }
 
@@ -57,6 +61,9 @@ class Regions {
   [[nodiscard]] std::int32_t root() const noexcept { return cuts_.empty() ? ~0 : 0; }
   void set_boxes(std::int32_t side, const Aabb& box);
   void add_ranks(std::int32_t side, const Aabb& box, std::vector<std::uint32_t>& ranks) const;
+  /// Of the part of a ray from t = low to t = high.
+  void add_ranks(std::int32_t side, const ShapeRay& ray, double low, double high,
+                 std::vector<std::uint32_t>& ranks) const;
 
   std::vector<RegionCut> cuts_;
   std::vector<Aabb> boxes_;

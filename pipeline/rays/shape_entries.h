@@ -3,6 +3,7 @@
 // Where a ray enters a shape: of the convex sets that the shape is made of, the spans of the ray
 // within each, and the first of these.
 
+#include <winnow/pipeline/shape_rays.h>
 #include <winnow/pipeline/shapes.h>
 
 #include <Eigen/Core>
@@ -11,6 +12,9 @@
 #include <span>
 
 namespace winnow {
+
+/// As ShapeRay says.
+[[nodiscard]] bool is_valid(const ShapeRay& ray) noexcept;
 
 /// A ray in the frame of a shape, scaled so that neither the shape nor the distance of `origin` is
 /// much above 1, and one of them is near it. `origin` may have been moved along the ray: the ray

@@ -12,12 +12,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-[[nodiscard]] bool is_valid(const ShapeRay& ray) noexcept {
-  const Eigen::Map<const Vector3d> origin(ray.origin);
-  const Eigen::Map<const Vector3d> direction(ray.direction);
-  return origin.allFinite() && direction.allFinite() && !direction.isZero(0.0) && ray.max_t >= 0.0;
-}
-
 /// A power of two that takes a length to [1/2, 1); 1 for none.
 [[nodiscard]] int exponent_of(double length) noexcept {
   int exponent = 0;
@@ -142,6 +136,12 @@ void cast(const Shape& shape, const Pose& pose, const ShapeRay& ray, ShapeHit& h
 }
 
 }  // namespace
+
+bool is_valid(const ShapeRay& ray) noexcept {
+  const Eigen::Map<const Vector3d> origin(ray.origin);
+  const Eigen::Map<const Vector3d> direction(ray.direction);
+  return origin.allFinite() && direction.allFinite() && !direction.isZero(0.0) && ray.max_t >= 0.0;
+}
 
 Status cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose, const ShapeRay& ray,
                 ShapeHit& hit) noexcept {

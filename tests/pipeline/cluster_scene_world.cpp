@@ -198,17 +198,20 @@ std::vector<FlatContact> ClusterSceneWorld::found() const {
   return all;
 }
 
-/// One scene, with the bodies in the order of their names.
-std::vector<FlatContact> ClusterSceneWorld::expected(ContactLevel level) const {
+std::unique_ptr<Scene> ClusterSceneWorld::one_scene() const {
   std::map<BodyName, BodyDefinition> all = bodies_;
   all.insert(ground_.begin(), ground_.end());
-  Scene scene(shapes_.shapes, options_.scene);
+  auto scene = std::make_unique<Scene>(shapes_.shapes, options_.scene);
   for (const auto& [name, body] : all) {
     Key key;
-    EXPECT_EQ(scene.add(body, key), Status::ok);
+    EXPECT_EQ(scene->add(body, key), Status::ok);
   }
+  return scene;
+}
+
+std::vector<FlatContact> ClusterSceneWorld::expected(ContactLevel level) const {
   Contacts contacts;
-  EXPECT_EQ(scene.collide(level, contacts), Status::ok);
+  EXPECT_EQ(one_scene()->collide(level, contacts), Status::ok);
   std::vector<FlatContact> flat = flattened(contacts);
   for (FlatContact& one : flat) {
     one.persisted =

@@ -55,6 +55,8 @@ class ClusterSceneWorld {
   void remove(std::size_t count, Random& random);
   /// Finds contacts on all ranks and in one scene, and compares everything.
   void check(ContactLevel level);
+  /// Notes where bodies have gone.
+  void follow();
   /// Goes on in a cluster of so many ranks, from what the ranks kept.
   void restart(std::uint32_t ranks);
 
@@ -62,11 +64,12 @@ class ClusterSceneWorld {
   [[nodiscard]] const std::map<BodyName, BodyDefinition>& bodies() const { return bodies_; }
   [[nodiscard]] std::uint32_t rank_of(BodyName name) const { return homes_.at(name); }
   [[nodiscard]] std::vector<std::vector<std::byte>> saved() const;
+  /// All bodies in one scene, in the order of their names.
+  [[nodiscard]] std::unique_ptr<Scene> one_scene() const;
 
  private:
   using PairOrder = std::tuple<std::uint32_t, BodyName, BodyName>;
 
-  void follow();
   void check_events(const std::vector<FlatContact>& found);
   [[nodiscard]] std::vector<FlatContact> found() const;
   [[nodiscard]] std::vector<FlatContact> expected(ContactLevel level) const;

@@ -6,6 +6,7 @@
 #include <winnow/core/cast.h>
 #include <winnow/core/rounding.h>
 #include "pipeline/mesh/mesh_traversal.h"
+#include "pipeline/rays/shape_entries.h"
 #include "pipeline/scene/queries/composite_sweep.h"
 #include "pipeline/scene/queries/queries.h"
 #include "pipeline/scene/queries/swept_shapes.h"
@@ -520,10 +521,6 @@ Status RaysTogether<Room>::ask(const ShapeRayBatch& rays, std::size_t first, std
 bool is_valid(const double (&direction)[3], double max_t) noexcept {
   const bool moves = direction[0] != 0.0 || direction[1] != 0.0 || direction[2] != 0.0;
   return is_finite(direction) && moves && max_t >= 0.0;
-}
-
-bool is_valid(const ShapeRay& ray) noexcept {
-  return is_finite(ray.origin) && is_valid(ray.direction, ray.max_t);
 }
 
 Status check(const QueryState* state, const ShapeRay& ray) noexcept {

@@ -1,0 +1,482 @@
+// A question goes to the ranks that may know an answer, and theirs come back: two exchanges. Each
+// kind of question says who that is, how one scene answers, and how answers of many are put in
+// order.
+
+#include <winnow/pipeline/cluster_queries.h>
+
+#include <winnow/pipeline/scene_queries.h>
+#include "pipeline/cluster/cluster_scene_state.h"
+#include "pipeline/cluster/outbox.h"
+#include "pipeline/rays/shape_entries.h"
+#include "pipeline/scene/queries/parts.h"
+#include "pipeline/scene/scene_state.h"
+
+#include <algorithm>
+#include <deque>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace winnow {
+
+/// What one hosted rank was answered.
+template <typename Answer>
+struct AnswerLists {
+  std::vector<Answer> answers;
+  std::vector<std::size_t> first;
+
+  [[nodiscard]] ClusterAnswers<Answer> view() const noexcept { return {answers, first}; }
+};
+
+template <typename Answer>
+using AnswersOfRanks = std::vector<AnswerLists<Answer>>;
+
+namespace {
+
+/// The answers of one rank to a question by its number.
+template <typename Answer>
+struct NumberedAnswer {
+  std::uint32_t number;
+  Answer answer;
+};
+
+/// A scene that is asked.
+struct AskedScene {
+  const RankScene& rank;
+  SceneQueries queries;
+};
+
+[[nodiscard]] ClusterHit hit_of(const SceneHit& hit) noexcept {
+  ClusterHit named{.name = hit.data, .t = hit.t, .part = hit.part};
+  std::copy_n(hit.normal, 3, named.normal);
+  std::copy_n(hit.point, 3, named.point);
+  return named;
+}
+
+struct RayAll {
+  using Question = ShapeRay;
+  using Answer = ClusterHit;
+
+  static Status check(const RankScene&, const ShapeRay& ray) noexcept {
+    return is_valid(ray) ? Status::ok : Status::invalid_argument;
+  }
+  static void find_ranks(const RankGroup& group, const RankScene&, const ShapeRay& ray,
+                         std::vector<std::uint32_t>& ranks) {
+    group.regions.ranks_of(ray, ranks);
+  }
+  template <typename Give>
+  static Status answer(AskedScene& scene, std::span<const ShapeRay> rays, const Filter& filter,
+                       Give&& give) {
+    SceneHitLists lists;
+    const Status status = scene.queries.all(ShapeRayBatch(rays), lists, filter);
+    if (status != Status::ok) return status;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      for (std::size_t h = lists.first[i]; h < lists.first[i + 1]; ++h) {
+        give(i, hit_of(lists.hits[h]));
+      }
+    }
+    return Status::ok;
+  }
+  static auto order(const ClusterHit& hit) noexcept { return std::tuple(hit.t, hit.name); }
+  static std::size_t most(const ShapeRay&) noexcept { return ~std::size_t{0}; }
+};
+
+/// What `closest` writes of a batch.
+struct HitColumnsOfRays {
+  explicit HitColumnsOfRays(std::size_t rays) : name(rays), part(rays) {
+    for (std::vector<double>& column : number) column.resize(rays);
+  }
+  [[nodiscard]] SceneHitColumns columns() noexcept {
+    const auto column = [this](std::size_t i) { return number[i].data(); };
+    return {.data = name.data(),
+            .part = part.data(),
+            .t = column(0),
+            .normal = {column(1), column(2), column(3)},
+            .point = {column(4), column(5), column(6)}};
+  }
+  [[nodiscard]] bool is_hit(std::size_t ray) const noexcept {
+    return number[0][ray] != std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] ClusterHit operator[](std::size_t i) const noexcept {
+    ClusterHit hit{.name = name[i], .t = number[0][i], .part = part[i]};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      hit.normal[axis] = number[1 + axis][i];
+      hit.point[axis] = number[4 + axis][i];
+    }
+    return hit;
+  }
+
+  std::vector<ClientData> name;
+  std::vector<std::uint32_t> part;
+  std::vector<double> number[7];
+};
+
+/// A scene breaks ties by ids, which are not names. So rays are asked once more, up to a little
+/// behind their hits; where these meet several bodies there, all that the whole ray hits is told.
+struct RayClosest : RayAll {
+  template <typename Give>
+  static Status answer(AskedScene& scene, std::span<const ShapeRay> rays, const Filter& filter,
+                       Give&& give) {
+    // Where a ray ends changes the last digits of its hits.
+    constexpr double kBehind = 1.0 + 1e-6;
+    HitColumnsOfRays table(rays.size());
+    Status status = scene.queries.closest(ShapeRayBatch(rays), table.columns(), filter);
+    if (status != Status::ok) return status;
+    std::vector<ShapeRay> shorter;
+    std::vector<std::size_t> of;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (!table.is_hit(i)) continue;
+      shorter.push_back(rays[i]);
+      shorter.back().max_t = std::min(rays[i].max_t, table[i].t * kBehind);
+      of.push_back(i);
+    }
+    SceneHitLists lists;
+    status = scene.queries.all(ShapeRayBatch(shorter), lists, filter);
+    if (status != Status::ok) return status;
+    std::vector<ShapeRay> tied;
+    std::vector<std::size_t> tied_of;
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      if (lists.first[k + 1] - lists.first[k] <= 1) {
+        give(of[k], table[of[k]]);
+        continue;
+      }
+      tied.push_back(rays[of[k]]);
+      tied_of.push_back(of[k]);
+    }
+    return RayAll::answer(scene, tied, filter,
+                          [&](std::size_t k, const ClusterHit& hit) { give(tied_of[k], hit); });
+  }
+  static std::size_t most(const ShapeRay&) noexcept { return 1; }
+};
+
+/// Answers are hits of which nothing is told, one for each ray.
+struct RayAny : RayAll {
+  template <typename Give>
+  static Status answer(AskedScene& scene, std::span<const ShapeRay> rays, const Filter& filter,
+                       Give&& give) {
+    std::vector<double> ts(rays.size());
+    const Status status =
+        scene.queries.any(ShapeRayBatch(rays), SceneHitColumns{.t = ts.data()}, filter);
+    for (std::size_t i = 0; status == Status::ok && i < rays.size(); ++i) {
+      if (ts[i] != std::numeric_limits<double>::infinity()) give(i, ClusterHit{});
+    }
+    return status;
+  }
+  static std::size_t most(const ShapeRay&) noexcept { return 1; }
+};
+
+struct ProbeOverlap {
+  using Question = ShapeProbe;
+  using Answer = ClusterOverlap;
+
+  static Status check(const RankScene& rank, const ShapeProbe& probe) noexcept {
+    return rank.check(probe.shape, probe.pose);
+  }
+  static void find_ranks(const RankGroup& group, const RankScene& rank, const ShapeProbe& probe,
+                         std::vector<std::uint32_t>& ranks) {
+    group.regions.ranks_of(rank.box_around(probe.shape, probe.pose), ranks);
+  }
+  template <typename Give>
+  static Status answer(AskedScene& scene, std::span<const ShapeProbe> probes, const Filter& filter,
+                       Give&& give) {
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+      std::span<const SceneOverlap> bodies;
+      const Status status = scene.queries.overlap(probes[i].shape, probes[i].pose, bodies, filter);
+      if (status != Status::ok) return status;
+      for (const SceneOverlap& body : bodies) give(i, ClusterOverlap{body.data, body.part});
+    }
+    return Status::ok;
+  }
+  static auto order(const ClusterOverlap& body) noexcept { return body.name; }
+  static std::size_t most(const ShapeProbe&) noexcept { return ~std::size_t{0}; }
+};
+
+struct PointNearest {
+  using Question = NearestProbe;
+  using Answer = ClusterDistance;
+
+  static Status check(const RankScene&, const NearestProbe& probe) noexcept {
+    return is_finite(probe.point) && probe.radius >= 0.0 ? Status::ok : Status::invalid_argument;
+  }
+  static void find_ranks(const RankGroup& group, const RankScene&, const NearestProbe&,
+                         std::vector<std::uint32_t>& ranks) {
+    ranks.resize(group.ranks);
+    for (std::uint32_t rank = 0; rank < group.ranks; ++rank) ranks[rank] = rank;
+  }
+  template <typename Give>
+  static Status answer(AskedScene& scene, std::span<const NearestProbe> probes,
+                       const Filter& filter, Give&& give) {
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+      const NearestProbe& probe = probes[i];
+      std::span<const SceneDistance> bodies;
+      Status status = scene.queries.nearest(probe.point, probe.count, probe.radius, bodies, filter);
+      if (status == Status::ok && probe.count != 0 && bodies.size() == probe.count) {
+        // Others may be as far as the last one, and have lesser names.
+        const double radius = std::max(bodies.back().distance, 0.0);
+        status = scene.queries.nearest(probe.point, ~std::size_t{0}, radius, bodies, filter);
+      }
+      if (status != Status::ok) return status;
+      for (const SceneDistance& body : bodies) {
+        ClusterDistance named{.name = body.data,
+                              .distance = body.distance,
+                              .error_bound = body.error_bound,
+                              .part = body.part};
+        std::copy_n(body.normal, 3, named.normal);
+        std::copy_n(body.point_b, 3, named.point);
+        give(i, named);
+      }
+    }
+    return Status::ok;
+  }
+  static auto order(const ClusterDistance& body) noexcept {
+    return std::tuple(body.distance, body.name);
+  }
+  static std::size_t most(const NearestProbe& probe) noexcept { return probe.count; }
+};
+
+/// One collective question of a kind.
+template <typename Kind>
+class Asking {
+ public:
+  using Question = typename Kind::Question;
+  using Answer = typename Kind::Answer;
+  using Numbered = NumberedAnswer<Answer>;
+
+  Asking(ClusterSceneState& cluster, std::span<const ClusterQuestions<Question>> asked)
+      : cluster_(cluster), asked_(asked), sent_(asked.size()), answered_(asked.size()) {}
+
+  /// Fills `lists` and answers each hosted rank.
+  Status run(AnswersOfRanks<Answer>& lists, std::span<Status> answers) {
+    const Status settled = cluster_.settle();
+    if (settled == Status::communication_failed) return settled;
+    for (std::size_t i = 0; i < asked_.size(); ++i) {
+      answers[i] = check(i);
+      if (answers[i] == Status::ok) send(i);
+    }
+    std::span<const Parcel> received;
+    Status status = cluster_.exchange(received);
+    if (status != Status::ok) return status;
+    std::uint64_t worst[] = {static_cast<std::uint64_t>(settled)};
+    for (std::size_t i = 0; i < asked_.size(); ++i) {
+      const Status found = answer(i, received);
+      worst[0] = std::max(worst[0], static_cast<std::uint64_t>(found));
+    }
+    status = cluster_.exchange(received);
+    if (status != Status::ok) return status;
+    lists.assign(asked_.size(), {});
+    for (std::size_t i = 0; i < asked_.size(); ++i) gather(i, received, answers[i], lists[i]);
+    status = cluster_.transport.reduce({}, worst);
+    return status == Status::ok ? static_cast<Status>(worst[0]) : status;
+  }
+
+ private:
+  struct Posted {
+    std::uint32_t to;
+    std::uint32_t number;
+  };
+  /// What a rank sends, which lies here until all is answered.
+  struct Sent {
+    std::vector<Question> questions;
+    std::vector<std::uint32_t> numbers;
+    ObjectFilter filter;
+  };
+
+  [[nodiscard]] std::uint32_t rank_of(std::size_t i) const noexcept {
+    return cluster_.first + static_cast<std::uint32_t>(i);
+  }
+
+  [[nodiscard]] Status check(std::size_t i) const noexcept {
+    if (asked_[i].filter.predicate.accept != nullptr) return Status::unsupported;
+    for (const Question& question : asked_[i].questions) {
+      const Status good = Kind::check(cluster_.scenes[i], question);
+      if (good != Status::ok) return good;
+    }
+    return Status::ok;
+  }
+
+  void send(std::size_t i) {
+    std::vector<Posted> posted;
+    std::vector<std::uint32_t> ranks;
+    const auto questions = asked_[i].questions;
+    for (std::uint32_t number = 0; number < questions.size(); ++number) {
+      Kind::find_ranks(cluster_, cluster_.scenes[i], questions[number], ranks);
+      for (const std::uint32_t to : ranks) posted.push_back({to, number});
+    }
+    std::ranges::stable_sort(posted, {}, &Posted::to);
+    Sent& sent = sent_[i];
+    sent.filter = asked_[i].filter.object();
+    for (const Posted& one : posted) {
+      sent.questions.push_back(questions[one.number]);
+      sent.numbers.push_back(one.number);
+    }
+    const std::span<const Posted> all(posted);
+    for_each_receiver(all, std::span<const Posted>(), [&](std::uint32_t to, auto ones, auto) {
+      const auto at = static_cast<std::size_t>(ones.data() - all.data());
+      cluster_.parcels.push_back(
+          {rank_of(i),
+           to,
+           {std::as_bytes(std::span(sent.questions).subspan(at, ones.size())),
+            std::as_bytes(std::span(sent.numbers).subspan(at, ones.size())),
+            std::as_bytes(std::span(&sent.filter, 1))}});
+    });
+  }
+
+  /// Answers what was asked of a hosted rank.
+  [[nodiscard]] Status answer(std::size_t i, std::span<const Parcel> received) {
+    AskedScene scene{cluster_.scenes[i], SceneQueries(cluster_.scenes[i].scene())};
+    std::vector<Numbered>& out = answered_[i];
+    std::vector<std::pair<std::uint32_t, std::size_t>> begins;
+    Status status = Status::ok;
+    for (const Parcel& parcel : parcels_for(received, rank_of(i))) {
+      const auto numbers = column_of<std::uint32_t>(parcel, 1);
+      const ObjectFilter by = column_of<ObjectFilter>(parcel, 2).front();
+      begins.emplace_back(parcel.from, out.size());
+      if (status != Status::ok) continue;
+      status = Kind::answer(scene, column_of<Question>(parcel, 0),
+                            {.layers = by.layers, .mask = by.mask, .environment = by.environment},
+                            [&](std::size_t k, const Answer& given) {
+                              out.push_back({numbers[k], given});
+                            });
+    }
+    for (std::size_t k = 0; k < begins.size(); ++k) {
+      const std::size_t end = k + 1 < begins.size() ? begins[k + 1].second : out.size();
+      const auto part = std::span(out).subspan(begins[k].second, end - begins[k].second);
+      if (part.empty()) continue;
+      cluster_.parcels.push_back({rank_of(i), begins[k].first, {std::as_bytes(part)}});
+    }
+    return status;
+  }
+
+  /// Puts in order what a hosted rank was answered; what is on several ranks was told by each.
+  void gather(std::size_t i, std::span<const Parcel> received, Status answered,
+              AnswerLists<Answer>& lists) const {
+    std::vector<Numbered> all;
+    for (const Parcel& parcel : parcels_for(received, rank_of(i))) {
+      const auto part = column_of<Numbered>(parcel, 0);
+      all.insert(all.end(), part.begin(), part.end());
+    }
+    const auto order = [](const Numbered& one) {
+      return std::tuple(one.number, Kind::order(one.answer));
+    };
+    std::ranges::sort(all, {}, order);
+    const auto twice = std::ranges::unique(all, {}, order);
+    all.erase(twice.begin(), twice.end());
+    const std::size_t count = answered == Status::ok ? asked_[i].questions.size() : 0;
+    auto next = all.cbegin();
+    lists.first.push_back(0);
+    for (std::size_t number = 0; number < count; ++number) {
+      const std::size_t most = Kind::most(asked_[i].questions[number]);
+      for (std::size_t k = 0; next != all.cend() && next->number == number; ++next, ++k) {
+        if (k < most) lists.answers.push_back(next->answer);
+      }
+      lists.first.push_back(lists.answers.size());
+    }
+  }
+
+  ClusterSceneState& cluster_;
+  std::span<const ClusterQuestions<Question>> asked_;
+  std::vector<Sent> sent_;
+  std::vector<std::vector<Numbered>> answered_;
+};
+
+}  // namespace
+
+/// What was answered last.
+struct ClusterQueryState {
+  ClusterSceneState* cluster;
+  AnswersOfRanks<ClusterHit> hits;
+  std::vector<std::vector<std::uint8_t>> blocked;
+  AnswersOfRanks<ClusterOverlap> overlaps;
+  AnswersOfRanks<ClusterDistance> distances;
+
+  template <typename Kind>
+  Status ask(std::span<const ClusterQuestions<typename Kind::Question>> asked,
+             std::span<Status> answers, AnswersOfRanks<typename Kind::Answer>& lists) {
+    const std::size_t hosted = cluster == nullptr ? 0 : cluster->scenes.size();
+    const bool fit = asked.size() == hosted && answers.size() == hosted;
+    const Status status = collective(cluster, [&] {
+      if (fit) return Asking<Kind>(*cluster, asked).run(lists, answers);
+      // Others wait for this process, which asks nothing.
+      const std::vector<ClusterQuestions<typename Kind::Question>> nothing(hosted);
+      std::vector<Status> ignored(hosted);
+      return Asking<Kind>(*cluster, nothing).run(lists, ignored);
+    });
+    return status == Status::ok && !fit ? Status::size_mismatch : status;
+  }
+
+  /// The place of a rank among those that have answers.
+  template <typename Lists>
+  [[nodiscard]] const auto* of(const Lists& lists, std::uint32_t rank) const noexcept {
+    const std::uint32_t place = cluster == nullptr ? rank : rank - cluster->first;
+    return place < lists.size() ? &lists[place] : nullptr;
+  }
+};
+
+ClusterQueries::ClusterQueries(ClusterScene& cluster) noexcept
+    : state_(new (std::nothrow) ClusterQueryState{cluster.state_, {}, {}, {}, {}}) {}
+
+ClusterQueries::~ClusterQueries() {
+  delete state_;
+}
+
+Status ClusterQueries::closest(std::span<const ClusterQuestions<ShapeRay>> rays,
+                               std::span<Status> answers) {
+  if (state_ == nullptr) return Status::out_of_memory;
+  return state_->ask<RayClosest>(rays, answers, state_->hits);
+}
+
+Status ClusterQueries::all(std::span<const ClusterQuestions<ShapeRay>> rays,
+                           std::span<Status> answers) {
+  if (state_ == nullptr) return Status::out_of_memory;
+  return state_->ask<RayAll>(rays, answers, state_->hits);
+}
+
+Status ClusterQueries::any(std::span<const ClusterQuestions<ShapeRay>> rays,
+                           std::span<Status> answers) {
+  if (state_ == nullptr) return Status::out_of_memory;
+  AnswersOfRanks<ClusterHit> found;
+  const Status status = state_->ask<RayAny>(rays, answers, found);
+  if (status != Status::ok) return status;
+  state_->blocked.assign(found.size(), {});
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const std::vector<std::size_t>& first = found[i].first;
+    for (std::size_t k = 0; k + 1 < first.size(); ++k) {
+      state_->blocked[i].push_back(first[k + 1] != first[k] ? 1 : 0);
+    }
+  }
+  return Status::ok;
+}
+
+Status ClusterQueries::overlap(std::span<const ClusterQuestions<ShapeProbe>> shapes,
+                               std::span<Status> answers) {
+  if (state_ == nullptr) return Status::out_of_memory;
+  return state_->ask<ProbeOverlap>(shapes, answers, state_->overlaps);
+}
+
+Status ClusterQueries::nearest(std::span<const ClusterQuestions<NearestProbe>> points,
+                               std::span<Status> answers) {
+  if (state_ == nullptr) return Status::out_of_memory;
+  return state_->ask<PointNearest>(points, answers, state_->distances);
+}
+
+ClusterAnswers<ClusterHit> ClusterQueries::hits(std::uint32_t rank) const noexcept {
+  const auto* const lists = state_ == nullptr ? nullptr : state_->of(state_->hits, rank);
+  return lists == nullptr ? ClusterAnswers<ClusterHit>{} : lists->view();
+}
+
+std::span<const std::uint8_t> ClusterQueries::blocked(std::uint32_t rank) const noexcept {
+  const auto* const rays = state_ == nullptr ? nullptr : state_->of(state_->blocked, rank);
+  return rays == nullptr ? std::span<const std::uint8_t>{} : std::span(*rays);
+}
+
+ClusterAnswers<ClusterOverlap> ClusterQueries::overlaps(std::uint32_t rank) const noexcept {
+  const auto* const lists = state_ == nullptr ? nullptr : state_->of(state_->overlaps, rank);
+  return lists == nullptr ? ClusterAnswers<ClusterOverlap>{} : lists->view();
+}
+
+ClusterAnswers<ClusterDistance> ClusterQueries::neighbours(std::uint32_t rank) const noexcept {
+  const auto* const lists = state_ == nullptr ? nullptr : state_->of(state_->distances, rank);
+  return lists == nullptr ? ClusterAnswers<ClusterDistance>{} : lists->view();
+}
+
+}  // namespace winnow
