@@ -354,7 +354,7 @@ Status RankScene::apply_changes() {
     status = add_bodies(changes_.names, changes_.fresh);
   }
   // The boxes of what came or moved tell whether it crosses.
-  if (status == Status::ok) status = scene_.refresh();
+  if (status == Status::ok) status = refresh();
   if (status != Status::ok) return status;
   for (std::size_t i = 0; i < changes_.names.size(); ++i) {
     const bool belongs = changes_.belongs[i] != 0;

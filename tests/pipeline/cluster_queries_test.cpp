@@ -12,6 +12,7 @@
 
 #include "pipeline/cluster/regions.h"
 #include "tests/pipeline/cluster_scene_world.h"
+#include "tests/pipeline/cluster_world.h"
 #include "tests/support/random.h"
 
 namespace winnow::test {
@@ -277,6 +278,51 @@ TEST(ClusterQuestions, that_are_bad_are_refused_on_their_rank) {
   ASSERT_EQ(queries.nearest(points, answers), Status::ok);
   EXPECT_EQ(answers[1], Status::invalid_argument);
   world.world_.check(ContactLevel::boolean);
+}
+
+TEST(ClusterSceneFaults, end_every_later_call) {
+  const WorldShapes shapes;
+  Random random(60);
+  std::vector<BodyName> names;
+  std::vector<BodyDefinition> bodies;
+  for (BodyName name = 0; name < 30; ++name) {
+    names.push_back(name);
+    bodies.push_back({.shape = shapes.movable[name % 7],
+                      .pose = Pose::at(random.uniform(0, 3), random.uniform(0, 3), 0)});
+  }
+  const BodyName ground_name = 99;
+  const BodyDefinition ground{.shape = shapes.ground[0], .motion = Motion::fixed};
+  const ShapeRay ray{};
+  int fine = 0;
+  for (int calls = 0; calls < 30; ++calls) {
+    FailingTransport transport(3, calls);
+    ClusterScene cluster(transport, shapes.shapes);
+    ClusterQueries queries(cluster);
+    std::vector<ClusterSceneBatch> batches(3);
+    batches[1] = {names, bodies};
+    std::vector<ClusterQuestions<ShapeRay>> rays(3);
+    rays[2].questions = std::span(&ray, 1);
+    Status answers[3];
+    ClusterDigest digest;
+    const std::span<const std::byte> nothing[3];
+    Status status = cluster.replicate({std::span(&ground_name, 1), std::span(&ground, 1)});
+    if (status == Status::ok) status = cluster.add(batches, answers);
+    if (status == Status::ok) status = cluster.collide(ContactLevel::manifold);
+    if (status == Status::ok) status = cluster.digest(digest);
+    if (status == Status::ok) status = queries.closest(rays, answers);
+    if (status == Status::ok) status = cluster.restore(nothing, answers);
+    if (status == Status::ok) {
+      ++fine;
+      continue;
+    }
+    EXPECT_EQ(status, Status::communication_failed);
+    EXPECT_EQ(cluster.collide(ContactLevel::manifold), Status::communication_failed);
+    EXPECT_EQ(queries.any(rays, answers), Status::communication_failed);
+    EXPECT_EQ(cluster.move(1, names, std::vector<Pose>(30)), Status::communication_failed);
+    EXPECT_EQ(cluster.status(), Status::communication_failed);
+  }
+  EXPECT_GT(fine, 0);
+  EXPECT_LT(fine, 30);
 }
 
 TEST(ClusterRegions, are_met_by_rays_as_their_points_say) {

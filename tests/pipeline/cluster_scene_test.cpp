@@ -52,10 +52,10 @@ TEST(ClusterContacts, are_those_of_one_scene_with_a_margin_and_with_reduction) {
 
 TEST(ClusterContacts, are_right_on_thousands_of_ranks) {
   const WorldShapes shapes;
-  for (const std::uint32_t ranks : {64U, 512U}) {
+  for (const std::uint32_t ranks : {64U, 512U, 4096U}) {
     Random random(ranks);
     ClusterSceneWorld world(shapes, ranks);
-    world.add_ground();
+    if (ranks < 4096) world.add_ground();
     world.add(60, 5.0, random);
     world.check(ContactLevel::manifold);
     world.move(0.5, 0.3, random);
@@ -100,6 +100,39 @@ TEST(ClusterContacts, are_right_while_everything_gathers_and_scatters) {
   world.check(ContactLevel::distance);
   world.add(20, 3.0, random);
   world.check(ContactLevel::distance);
+}
+
+TEST(ClusterContacts, are_right_where_numbers_end) {
+  const WorldShapes shapes;
+  for (const std::uint32_t ranks : {1U, 2U, 6U}) {
+    Random random(8);
+    ClusterSceneWorld world(shapes, ranks);
+    world.add_ground();
+    world.add(40, 4.0, random);
+    for (const double far : {1e7, -1e18, 1e38, 1e300}) {
+      world.add_at(Pose::at(far, 0, 1), random);
+      world.add_at(Pose::at(far, 0, 1), random);
+      world.add_at(Pose::at(0, -far, far), random);
+    }
+    world.check(ContactLevel::boolean);
+    world.move(1.0, 1.0, random);
+    world.check(ContactLevel::boolean);
+  }
+}
+
+TEST(ClusterContacts, follow_composites_that_change_where_they_are) {
+  WorldShapes shapes;
+  Random random(9);
+  ClusterSceneWorld world(shapes, 5);
+  world.add_ground();
+  world.add(60, 6.0, random);
+  world.check(ContactLevel::distance);
+  for (const float height : {0.3F, 2.0F}) {
+    const std::vector<float> heights(64, height);
+    ASSERT_EQ(shapes.composites.update_height_field(shapes.ground[2], 0, 0, {heights, 8, 8}),
+              Status::ok);
+    world.check(ContactLevel::distance);
+  }
 }
 
 TEST(ClusterContacts, are_sent_for_nowhere_where_nothing_moves) {

@@ -118,17 +118,30 @@ void ClusterSceneWorld::move_ground(Random& random) {
   ASSERT_EQ(cluster_->move_replicated(names, poses), Status::ok);
 }
 
+BodyDefinition ClusterSceneWorld::make_body(const Pose& pose, Random& random) const {
+  BodyDefinition body{.shape = shapes_.movable[random.below(shapes_.movable.size())], .pose = pose};
+  if (random.chance(0.1)) body.motion = Motion::fixed;
+  if (random.chance(0.2)) body.filter = {.layers = 2, .mask = 1};
+  return body;
+}
+
 void ClusterSceneWorld::add(std::size_t count, double size, Random& random) {
+  std::vector<BodyDefinition> bodies;
+  for (; count > 0; --count) bodies.push_back(make_body(random_pose(size, random), random));
+  add_bodies(bodies, random);
+}
+
+void ClusterSceneWorld::add_at(const Pose& pose, Random& random) {
+  add_bodies({make_body(pose, random)}, random);
+}
+
+void ClusterSceneWorld::add_bodies(const std::vector<BodyDefinition>& bodies, Random& random) {
   const std::uint32_t ranks = cluster_->ranks();
   std::vector<std::vector<BodyName>> names(ranks);
   std::vector<std::vector<BodyDefinition>> of_rank(ranks);
-  for (; count > 0; --count) {
+  for (BodyDefinition body : bodies) {
     const BodyName name = next_++ * 0x9E3779B97F4A7C15ULL;
     const std::uint32_t rank = static_cast<std::uint32_t>(random.below(ranks));
-    BodyDefinition body{.shape = shapes_.movable[random.below(shapes_.movable.size())],
-                        .pose = random_pose(size, random)};
-    if (random.chance(0.1)) body.motion = Motion::fixed;
-    if (random.chance(0.2)) body.filter = {.layers = 2, .mask = 1};
     body.data = name;
     names[rank].push_back(name);
     of_rank[rank].push_back(body);

@@ -51,6 +51,8 @@ class ClusterSceneWorld {
   /// Bodies in a box of this size, each on a rank that `random` says; some are fixed, some
   /// filtered.
   void add(std::size_t count, double size, Random& random);
+  /// One more, at this pose.
+  void add_at(const Pose& pose, Random& random);
   void move(double share, double step, Random& random);
   void remove(std::size_t count, Random& random);
   /// Finds contacts on all ranks and in one scene, and compares everything.
@@ -70,6 +72,9 @@ class ClusterSceneWorld {
  private:
   using PairOrder = std::tuple<std::uint32_t, BodyName, BodyName>;
 
+  [[nodiscard]] BodyDefinition make_body(const Pose& pose, Random& random) const;
+  /// Each on a rank that `random` says.
+  void add_bodies(const std::vector<BodyDefinition>& bodies, Random& random);
   void check_events(const std::vector<FlatContact>& found);
   [[nodiscard]] std::vector<FlatContact> found() const;
   [[nodiscard]] std::vector<FlatContact> expected(ContactLevel level) const;

@@ -225,30 +225,6 @@ TEST(ClusterBodies, of_three_ranks_go_on_in_five) {
   EXPECT_EQ(digest, digest_of(world.true_pairs()));
 }
 
-/// Fails from some call on, as a broken network does.
-class FailingTransport final : public Transport {
- public:
-  FailingTransport(std::uint32_t ranks, int calls) : inner_(ranks), calls_(calls) {}
-
-  [[nodiscard]] std::uint32_t ranks() const noexcept override { return inner_.ranks(); }
-  [[nodiscard]] std::uint32_t first_hosted() const noexcept override { return 0; }
-  [[nodiscard]] std::uint32_t hosted() const noexcept override { return inner_.ranks(); }
-  Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received) override {
-    return fails() ? Status::communication_failed : inner_.exchange(sent, received);
-  }
-  Status reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) override {
-    return fails() ? Status::communication_failed : inner_.reduce(sums, greatest);
-  }
-  Status cut(std::span<const CutWork> work, std::span<RegionCut> cuts) override {
-    return fails() ? Status::communication_failed : inner_.cut(work, cuts);
-  }
-
- private:
-  bool fails() noexcept { return calls_-- <= 0; }
-  LoopbackTransport inner_;
-  int calls_;
-};
-
 TEST(ClusterFaults, end_every_later_call) {
   const std::vector<Aabb> boxes = uniform_boxes(30);
   std::vector<BodyName> names(boxes.size());

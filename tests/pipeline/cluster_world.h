@@ -10,6 +10,30 @@
 
 namespace winnow::test {
 
+/// Fails from some call on, as a broken network does.
+class FailingTransport final : public Transport {
+ public:
+  FailingTransport(std::uint32_t ranks, int calls) : inner_(ranks), calls_(calls) {}
+
+  [[nodiscard]] std::uint32_t ranks() const noexcept override { return inner_.ranks(); }
+  [[nodiscard]] std::uint32_t first_hosted() const noexcept override { return 0; }
+  [[nodiscard]] std::uint32_t hosted() const noexcept override { return inner_.ranks(); }
+  Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received) override {
+    return fails() ? Status::communication_failed : inner_.exchange(sent, received);
+  }
+  Status reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) override {
+    return fails() ? Status::communication_failed : inner_.reduce(sums, greatest);
+  }
+  Status cut(std::span<const CutWork> work, std::span<RegionCut> cuts) override {
+    return fails() ? Status::communication_failed : inner_.cut(work, cuts);
+  }
+
+ private:
+  bool fails() noexcept { return calls_-- <= 0; }
+  LoopbackTransport inner_;
+  int calls_;
+};
+
 /// A cluster of ranks in this process, and the same boxes in a table: pairs by brute force.
 class ClusterWorld {
  public:
