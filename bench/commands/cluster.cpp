@@ -11,21 +11,27 @@
 #include <unistd.h>
 #include <winnow/simd/isa.h>
 
+#include <algorithm>
+#include <array>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <string>
 
 namespace winnow::bench {
 namespace {
 
 constexpr std::size_t kClusterFrames = 30;
+/// By ContactLevel.
+constexpr std::array<const char*, 4> kContactLevelNames{"pairs", "boolean", "distance", "manifold"};
 
 struct ClusterCommand {
   Target target;
   std::uint32_t ranks = 2;
   std::uint32_t virtual_ranks = 0;  // 0: processes
   std::size_t frames = 0;           // 0: all of a recording, kClusterFrames of a scene
+  std::string level;                // empty: boxes alone
   std::string json;
   std::string isa;
   int threads = 1;
@@ -35,6 +41,9 @@ struct ClusterCommand {
     target.add_to(app);
     number(app, "--ranks", ranks, 1, 4096, "Processes; as many as mpirun has started, if it has");
     number(app, "--virtual-ranks", virtual_ranks, 0, 65536, "So many ranks in this process alone");
+    one_of(
+        app, "--level", level, {kContactLevelNames.begin(), kContactLevelNames.end()},
+        "Contacts of bodies, as large as the boxes of the first frame, in place of pairs of boxes");
     add_threads_option(app, threads, "Number of threads of each process");
     add_isa_option(app, isa);
     add_frames_option(app, frames);
@@ -45,6 +54,7 @@ struct ClusterCommand {
   int run();
 
  private:
+  [[nodiscard]] std::optional<ContactLevel> contact_level() const;
   [[noreturn]] void start_ranks() const;
   void run_over(Transport& transport, bool is_virtual) const;
   void run_over_mpi() const;
@@ -57,7 +67,7 @@ std::string digits_of(const ClusterDigest& digest) {
 
 /// The row of `replay` for a cluster, and what else there is to count.
 Json cluster_json(const ClusterRun& run, const std::string& scene, std::size_t objects, int threads,
-                  bool is_virtual) {
+                  bool is_virtual, const std::string& level) {
   using Frame = const ClusterFrame&;
   const auto ms = run.each([](Frame frame) { return frame.frame_ms; });
   const Spread spread = spread_of(std::span(ms).subspan(ms.size() > 1 ? 1 : 0));
@@ -67,6 +77,7 @@ Json cluster_json(const ClusterRun& run, const std::string& scene, std::size_t o
           {"partition", "LinearBvh"},
           {"ranks", run.ranks},
           {"virtual", is_virtual},
+          {"level", level.empty() ? "boxes" : level},
           {"threads", threads},
           {"isa", isa_name()},
           {"build_ms", ms.front()},
@@ -87,6 +98,12 @@ Json cluster_json(const ClusterRun& run, const std::string& scene, std::size_t o
           {"cuts", run.frames.back().statistics.cuts},
           {"bytes", run.bytes},
           {"bytes_per_object", static_cast<double>(run.bytes) / static_cast<double>(objects)}};
+}
+
+std::optional<ContactLevel> ClusterCommand::contact_level() const {
+  const auto* const at = std::find(kContactLevelNames.begin(), kContactLevelNames.end(), level);
+  if (at == kContactLevelNames.end()) return {};
+  return static_cast<ContactLevel>(at - kContactLevelNames.begin());
 }
 
 int ClusterCommand::run() {
@@ -137,6 +154,7 @@ void ClusterCommand::start_ranks() const {
   };
   add("--objects", target.objects ? std::to_string(*target.objects) : "");
   add("--seed", target.seed ? std::to_string(*target.seed) : "");
+  add("--level", level);
   add("--frames", frames != 0 ? std::to_string(frames) : "");
   add("--isa", isa);
   add("--json", json);
@@ -155,13 +173,13 @@ void ClusterCommand::run_over(Transport& transport, bool is_virtual) const {
                              : scene.is_recording() ? scene.recording->frames.size()
                                                     : kClusterFrames;
   ClusterRun result;
-  Arenas(threads).run(
-      threads, [&] { result = run_cluster(*source, transport, wanted, execution_for(threads)); });
+  Arenas(threads).run(threads, [&] {
+    result = run_cluster(*source, transport, {wanted, contact_level()}, execution_for(threads));
+  });
   if (transport.first_hosted() != 0) return;
   print(result, source->name(), source->objects());
-  write_json(
-      json,
-      Json::array({cluster_json(result, source->name(), source->objects(), threads, is_virtual)}));
+  write_json(json, Json::array({cluster_json(result, source->name(), source->objects(), threads,
+                                             is_virtual, level)}));
 }
 
 void ClusterCommand::print(const ClusterRun& run, const std::string& scene,

@@ -1,5 +1,7 @@
 #include "bench/measure/cluster_run.h"
 
+#include <winnow/pipeline/cluster_scene.h>
+#include <winnow/pipeline/shape_pool.h>
 #include "bench/common/random.h"
 #include "bench/common/sample.h"
 
@@ -17,13 +19,98 @@ void require_ok(Status status, const char* what) {
   }
 }
 
+/// Adds batches, of which none may be refused.
+template <typename Batch, typename Ranks>
+Status add_all(const std::vector<Batch>& batches, Ranks& ranks) {
+  std::vector<Status> answers(batches.size());
+  const Status status = ranks.add(batches, answers);
+  if (status != Status::ok) return status;
+  const auto refused = std::ranges::find_if(answers, [](Status s) { return s != Status::ok; });
+  return refused == answers.end() ? Status::ok : *refused;
+}
+
+/// Ranks of boxes.
+struct BoxRanks {
+  BoxRanks(Transport& transport, const Execution& execution)
+      : cluster(transport, {.execution = execution}) {}
+
+  Status add(std::span<const std::vector<BodyName>> names,
+             std::span<const std::vector<Aabb>> boxes) {
+    std::vector<ClusterBatch> batches;
+    for (std::size_t r = 0; r < names.size(); ++r) batches.push_back({names[r], boxes[r]});
+    return add_all(batches, cluster);
+  }
+  Status move(std::uint32_t rank, std::span<const Key> keys, std::span<const Aabb> boxes) {
+    return cluster.move(rank, keys, boxes);
+  }
+  Status find() { return cluster.self_pairs(); }
+  template <typename Take>
+  void each_pair(std::uint32_t rank, Take&& take) const {
+    for (const NamePair& pair : cluster.pairs(rank)) take(pair.first, pair.second);
+  }
+
+  Cluster cluster;
+};
+
+/// Ranks of bodies.
+struct BodyRanks {
+  /// Every process makes the shapes of all bodies, in the order of their rows.
+  BodyRanks(Transport& transport, const Execution& execution, ContactLevel asked,
+            std::span<const Aabb> boxes)
+      : shapes(boxes.size()),
+        cluster(transport, pool, {.scene = {.execution = execution}}),
+        level(asked) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      require_ok(pool.add(box_shape_of(boxes[i]), shapes[i]), "shape");
+    }
+  }
+
+  Status add(std::span<const std::vector<BodyName>> names,
+             std::span<const std::vector<Aabb>> boxes) {
+    std::vector<std::vector<BodyDefinition>> bodies(names.size());
+    std::vector<ClusterSceneBatch> batches;
+    for (std::size_t r = 0; r < names.size(); ++r) {
+      for (std::size_t i = 0; i < names[r].size(); ++i) {
+        bodies[r].push_back({.shape = shapes[names[r][i]], .pose = middle_of(boxes[r][i])});
+      }
+      batches.push_back({names[r], bodies[r]});
+    }
+    return add_all(batches, cluster);
+  }
+  Status move(std::uint32_t rank, std::span<const Key> keys, std::span<const Aabb> boxes) {
+    poses.clear();
+    for (const Aabb& box : boxes) poses.push_back(middle_of(box));
+    return cluster.move(rank, keys, poses);
+  }
+  Status find() { return cluster.collide(level); }
+  template <typename Take>
+  void each_pair(std::uint32_t rank, Take&& take) const {
+    const Contacts& contacts = cluster.contacts(rank);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const auto [first, second] = std::minmax(contacts.data_a()[i], contacts.data_b()[i]);
+      take(first, second);
+    }
+  }
+
+  ShapePool pool;
+  std::vector<ShapeId> shapes;  // by row
+  std::vector<Pose> poses;
+  ClusterScene cluster;
+  ContactLevel level;
+};
+
 /// A scene as the ranks of this process see it.
+template <typename Ranks>
 class ClusterEngine {
  public:
-  ClusterEngine(Transport& transport, const Execution& execution)
+  ClusterEngine(Transport& transport, Ranks& ranks)
       : transport_(transport),
-        cluster_(transport, {.execution = execution}),
-        told_(cluster_.hosted()) {}
+        ranks_(ranks),
+        cluster_(ranks.cluster),
+        keys_(cluster_.hosted()),
+        boxes_(cluster_.hosted()),
+        fresh_(cluster_.hosted()),
+        fresh_boxes_(cluster_.hosted()) {}
 
   ClusterFrame show(std::span<const Aabb> boxes) {
     find_changes(boxes);
@@ -32,7 +119,7 @@ class ClusterEngine {
     tell();
     ClusterFrame frame;
     frame.update_ms = clock.ms();
-    require_ok(cluster_.self_pairs(), "self_pairs");
+    require_ok(ranks_.find(), "pairs");
     frame.frame_ms = clock.ms();
     follow();
     summarize_into(frame);
@@ -50,30 +137,32 @@ class ClusterEngine {
     std::uint32_t rank = kElsewhere;
     Key key;
   };
-  /// What a rank is told of a frame.
-  struct Told {
-    std::vector<Key> keys;
-    std::vector<Aabb> boxes;
-    std::vector<BodyName> fresh;
-    std::vector<Aabb> fresh_boxes;
-  };
   static constexpr std::uint32_t kElsewhere = ~0U;
 
+  [[nodiscard]] std::uint32_t rank_of(std::size_t place) const {
+    return cluster_.first_hosted() + static_cast<std::uint32_t>(place);
+  }
+
   void find_changes(std::span<const Aabb> boxes) {
-    for (Told& told : told_) told = {};
+    for (std::size_t r = 0; r < keys_.size(); ++r) {
+      keys_[r].clear();
+      boxes_[r].clear();
+      fresh_[r].clear();
+      fresh_boxes_[r].clear();
+    }
     for (std::size_t i = 0; i < last_.size(); ++i) {
       if (homes_[i].rank == kElsewhere || std::memcmp(&boxes[i], &last_[i], sizeof(Aabb)) == 0) {
         continue;
       }
-      Told& told = told_[homes_[i].rank - cluster_.first_hosted()];
-      told.keys.push_back(homes_[i].key);
-      told.boxes.push_back(boxes[i]);
+      const std::size_t place = homes_[i].rank - cluster_.first_hosted();
+      keys_[place].push_back(homes_[i].key);
+      boxes_[place].push_back(boxes[i]);
     }
     for (std::size_t i = last_.size(); i < boxes.size(); ++i) {
-      const std::size_t rank = i * cluster_.ranks() / boxes.size() - cluster_.first_hosted();
-      if (rank >= told_.size()) continue;
-      told_[rank].fresh.push_back(i);
-      told_[rank].fresh_boxes.push_back(boxes[i]);
+      const std::size_t place = i * cluster_.ranks() / boxes.size() - cluster_.first_hosted();
+      if (place >= fresh_.size()) continue;
+      fresh_[place].push_back(i);
+      fresh_boxes_[place].push_back(boxes[i]);
     }
     grows_ = boxes.size() > last_.size();
     last_.assign(boxes.begin(), boxes.end());
@@ -87,27 +176,21 @@ class ClusterEngine {
   }
 
   void tell() {
-    for (std::uint32_t r = 0; r < told_.size(); ++r) {
-      if (told_[r].keys.empty()) continue;
-      require_ok(cluster_.move(cluster_.first_hosted() + r, told_[r].keys, told_[r].boxes), "move");
+    for (std::size_t r = 0; r < keys_.size(); ++r) {
+      if (keys_[r].empty()) continue;
+      require_ok(ranks_.move(rank_of(r), keys_[r], boxes_[r]), "move");
     }
-    if (!grows_) return;
-    std::vector<ClusterBatch> batches;
-    for (const Told& told : told_) batches.push_back({told.fresh, told.fresh_boxes});
-    std::vector<Status> answers(batches.size());
-    require_ok(cluster_.add(batches, answers), "add");
-    for (const Status answer : answers) require_ok(answer, "add");
+    if (grows_) require_ok(ranks_.add(fresh_, fresh_boxes_), "add");
   }
 
   void follow() {
-    for (std::uint32_t r = 0; r < told_.size(); ++r) {
-      for (const BodyName name : cluster_.departed(cluster_.first_hosted() + r)) {
-        homes_[name].rank = kElsewhere;
-      }
+    for (std::size_t r = 0; r < keys_.size(); ++r) {
+      for (const BodyName name : cluster_.departed(rank_of(r))) homes_[name].rank = kElsewhere;
     }
-    for (std::uint32_t r = 0; r < told_.size(); ++r) {
-      const std::uint32_t rank = cluster_.first_hosted() + r;
-      for (const ClusterBody& body : cluster_.arrived(rank)) homes_[body.name] = {rank, body.key};
+    for (std::size_t r = 0; r < keys_.size(); ++r) {
+      for (const ClusterBody& body : cluster_.arrived(rank_of(r))) {
+        homes_[body.name] = {rank_of(r), body.key};
+      }
     }
   }
 
@@ -115,10 +198,10 @@ class ClusterEngine {
     frame.statistics = cluster_.statistics();
     frame.pairs.reported = frame.pairs.pairs = frame.statistics.pairs;
     std::uint64_t fingerprint = 0;
-    for (std::uint32_t r = 0; r < told_.size(); ++r) {
-      for (const NamePair& pair : cluster_.pairs(cluster_.first_hosted() + r)) {
-        fingerprint += mix((pair.first << 32U) | pair.second);
-      }
+    for (std::size_t r = 0; r < keys_.size(); ++r) {
+      ranks_.each_pair(rank_of(r), [&](BodyName first, BodyName second) {
+        fingerprint += mix((first << 32U) | second);
+      });
     }
     constexpr double kNanoseconds = 1e6;
     std::uint64_t times[2] = {static_cast<std::uint64_t>(frame.frame_ms * kNanoseconds),
@@ -131,30 +214,63 @@ class ClusterEngine {
   }
 
   Transport& transport_;
-  Cluster cluster_;
-  std::vector<Told> told_;  // by hosted rank
+  Ranks& ranks_;
+  decltype(Ranks::cluster)& cluster_;
+  // What each hosted rank is told of a frame.
+  std::vector<std::vector<Key>> keys_;
+  std::vector<std::vector<Aabb>> boxes_;
+  std::vector<std::vector<BodyName>> fresh_;
+  std::vector<std::vector<Aabb>> fresh_boxes_;
   std::vector<Aabb> last_;
   std::vector<Home> homes_;  // by row
   bool grows_ = false;
 };
 
+template <typename Ranks>
+ClusterRun run_ranks(FrameSource& source, Transport& transport, std::size_t frames, Ranks& ranks) {
+  ClusterRun run;
+  run.ranks = transport.ranks();
+  ClusterEngine<Ranks> engine(transport, ranks);
+  do {
+    run.frames.push_back(engine.show(source.boxes()));
+  } while (run.frames.size() < frames && source.advance());
+  run.bytes = engine.bytes();
+  return run;
+}
+
 }  // namespace
+
+BoxShape box_shape_of(const Aabb& box) noexcept {
+  BoxShape shape;
+  for (int axis = 0; axis < 3; ++axis) {
+    shape.half[axis] =
+        (static_cast<double>(box.max[axis]) - static_cast<double>(box.min[axis])) * 0.5;
+  }
+  return shape;
+}
+
+Pose middle_of(const Aabb& box) noexcept {
+  Pose pose;
+  for (int axis = 0; axis < 3; ++axis) {
+    pose.position[axis] =
+        (static_cast<double>(box.max[axis]) + static_cast<double>(box.min[axis])) * 0.5;
+  }
+  return pose;
+}
 
 double ClusterRun::median_ms() const {
   const std::vector<double> ms = each([](const ClusterFrame& frame) { return frame.frame_ms; });
   return median_of(std::span(ms).subspan(ms.size() > 1 ? 1 : 0));
 }
 
-ClusterRun run_cluster(FrameSource& source, Transport& transport, std::size_t frames,
+ClusterRun run_cluster(FrameSource& source, Transport& transport, const ClusterOrder& order,
                        const Execution& execution) {
-  ClusterRun run;
-  run.ranks = transport.ranks();
-  ClusterEngine engine(transport, execution);
-  do {
-    run.frames.push_back(engine.show(source.boxes()));
-  } while (run.frames.size() < frames && source.advance());
-  run.bytes = engine.bytes();
-  return run;
+  if (order.level.has_value()) {
+    BodyRanks ranks(transport, execution, *order.level, source.boxes());
+    return run_ranks(source, transport, order.frames, ranks);
+  }
+  BoxRanks ranks(transport, execution);
+  return run_ranks(source, transport, order.frames, ranks);
 }
 
 }  // namespace winnow::bench

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <winnow/core/pose.h>
 #include <winnow/pipeline/cluster.h>
+#include <winnow/pipeline/contact_types.h>
+#include <winnow/pipeline/shapes.h>
 #include "bench/measure/fingerprint.h"
 #include "bench/scenes/frame_source.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace winnow::bench {
@@ -36,11 +40,23 @@ struct ClusterRun {
   }
 };
 
-/// Shows frames of a source, at most `frames`, to a cluster. Every process reads all of them, and
-/// tells its ranks what became of the bodies that belong to these; the first frame's boxes are
-/// added where their rows say. Finding what changed and fingerprints are outside the times. Throws
-/// std::runtime_error where the cluster fails. Collective.
-[[nodiscard]] ClusterRun run_cluster(FrameSource& source, Transport& transport, std::size_t frames,
-                                     const Execution& execution);
+/// What a cluster is shown, and asked.
+struct ClusterOrder {
+  std::size_t frames = 1;  ///< at most so many
+  /// Unset: the pairs of boxes. Else contacts of bodies, which have the sizes of the first frame's
+  /// boxes and follow their middles.
+  std::optional<ContactLevel> level;
+};
+
+/// Shows frames of a source to a cluster. Every process reads all of them, and tells its ranks what
+/// became of the bodies that belong to these; the first frame's boxes are added where their rows
+/// say. Finding what changed and fingerprints are outside the times. Throws std::runtime_error
+/// where the cluster fails. Collective.
+[[nodiscard]] ClusterRun run_cluster(FrameSource& source, Transport& transport,
+                                     const ClusterOrder& order, const Execution& execution);
+
+/// A box as a body: its shape is half as long, wide and high as it says, and stands at its middle.
+[[nodiscard]] BoxShape box_shape_of(const Aabb& box) noexcept;
+[[nodiscard]] Pose middle_of(const Aabb& box) noexcept;
 
 }  // namespace winnow::bench

@@ -6,8 +6,12 @@
 #include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>
+#include <winnow/pipeline/cluster_scene.h>
+#include <winnow/pipeline/scene.h>
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "tests/support/random.h"
 
@@ -22,10 +26,36 @@ Run run_partition(const std::string& scene, std::size_t objects) {
   return race(*source, contenders, {.frames = kFrames}).front();
 }
 
-ClusterRun run_ranks(const std::string& scene, std::size_t objects, std::uint32_t ranks) {
+ClusterRun run_on_ranks(const std::string& scene, std::size_t objects, std::uint32_t ranks,
+                        std::optional<ContactLevel> level = {}) {
   const auto source = make_scene(scene, objects, 1);
   LoopbackTransport transport(ranks);
-  return run_cluster(*source, transport, kFrames, Execution::serial());
+  return run_cluster(*source, transport, {kFrames, level}, Execution::serial());
+}
+
+/// Of the contacts of one scene, in every frame.
+std::vector<ClusterDigest> digests_of_scene(const std::string& name, std::size_t objects,
+                                            ContactLevel level) {
+  const auto source = make_scene(name, objects, 1);
+  ShapePool shapes;
+  Scene scene(shapes);
+  std::vector<Key> keys(objects);
+  for (std::size_t i = 0; i < objects; ++i) {
+    ShapeId shape;
+    const Aabb& box = source->boxes()[i];
+    EXPECT_EQ(shapes.add(box_shape_of(box), shape), Status::ok);
+    EXPECT_EQ(scene.add({.shape = shape, .pose = middle_of(box), .data = i}, keys[i]), Status::ok);
+  }
+  Contacts contacts;
+  std::vector<ClusterDigest> digests;
+  do {
+    for (std::size_t i = 0; i < objects; ++i) {
+      EXPECT_EQ(scene.move(keys[i], middle_of(source->boxes()[i])), Status::ok);
+    }
+    EXPECT_EQ(scene.collide(level, contacts), Status::ok);
+    digests.push_back(digest_of(contacts));
+  } while (digests.size() < kFrames && source->advance());
+  return digests;
 }
 
 TEST(ClusterRuns, have_the_fingerprints_of_a_partition) {
@@ -34,7 +64,7 @@ TEST(ClusterRuns, have_the_fingerprints_of_a_partition) {
     const std::string name(scene.name);
     const auto partition = run_partition(name, objects);
     for (const std::uint32_t ranks : {1U, 2U, 3U, 4U, 8U, 16U, 128U}) {
-      const ClusterRun run = run_ranks(name, objects, ranks);
+      const ClusterRun run = run_on_ranks(name, objects, ranks);
       ASSERT_EQ(run.frames.size(), partition.pairs.size());
       for (std::size_t f = 0; f < run.frames.size(); ++f) {
         EXPECT_TRUE(run.frames[f].pairs.same_pairs(partition.pairs[f]))
@@ -46,17 +76,30 @@ TEST(ClusterRuns, have_the_fingerprints_of_a_partition) {
 
 TEST(ClusterRuns, have_the_fingerprints_of_a_partition_on_thousands_of_ranks) {
   const auto partition = run_partition("mixed", 1000);
-  const ClusterRun run = run_ranks("mixed", 1000, 4096);
+  const ClusterRun run = run_on_ranks("mixed", 1000, 4096);
   for (std::size_t f = 0; f < run.frames.size(); ++f) {
     EXPECT_TRUE(run.frames[f].pairs.same_pairs(partition.pairs[f])) << f;
   }
 }
 
 TEST(ClusterRuns, have_the_same_digest_on_any_number_of_ranks) {
-  const ClusterRun one = run_ranks("clustered", 500, 1);
-  const ClusterRun many = run_ranks("clustered", 500, 7);
+  const ClusterRun one = run_on_ranks("clustered", 500, 1);
+  const ClusterRun many = run_on_ranks("clustered", 500, 7);
   for (std::size_t f = 0; f < one.frames.size(); ++f) {
     EXPECT_EQ(one.frames[f].digest, many.frames[f].digest);
+  }
+}
+
+TEST(ClusterRuns, of_bodies_have_the_digests_of_one_scene) {
+  const std::size_t objects = test::scaled(400);
+  for (const SceneInfo& info : scene_infos()) {
+    const std::string name(info.name);
+    const auto digests = digests_of_scene(name, objects, ContactLevel::manifold);
+    for (const std::uint32_t ranks : {1U, 3U, 8U}) {
+      const ClusterRun run = run_on_ranks(name, objects, ranks, ContactLevel::manifold);
+      EXPECT_EQ(run.each([](const ClusterFrame& frame) { return frame.digest; }), digests)
+          << name << ", " << ranks << " ranks";
+    }
   }
 }
 
