@@ -112,8 +112,8 @@ class WINNOW_API ClusterScene {
   Status save(std::uint32_t rank, std::vector<std::byte>& bytes) const;
   /// Adds what ranks of any number kept: each hosted rank takes the bytes of some or of none, one
   /// after the other, and is answered as by `add`, or `invalid_argument` for bytes that `save` did
-  /// not write. Restored are the contacts of what goes on as if nothing had been, bit for bit, once
-  /// what was replicated is again. Collective.
+  /// not write. What is replicated is replicated again before the first `collide`, which then finds
+  /// what it would have found without the break, events included. Collective.
   Status restore(std::span<const std::span<const std::byte>> bytes, std::span<Status> answers);
 
   /// How many bodies belong to a hosted rank.

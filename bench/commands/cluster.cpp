@@ -41,9 +41,9 @@ struct ClusterCommand {
     target.add_to(app);
     number(app, "--ranks", ranks, 1, 4096, "Processes; as many as mpirun has started, if it has");
     number(app, "--virtual-ranks", virtual_ranks, 0, 65536, "So many ranks in this process alone");
-    one_of(
-        app, "--level", level, {kContactLevelNames.begin(), kContactLevelNames.end()},
-        "Contacts of bodies, as large as the boxes of the first frame, in place of pairs of boxes");
+    one_of(app, "--level", level, {kContactLevelNames.begin(), kContactLevelNames.end()},
+           "Contacts of bodies, as large as the boxes that they come with, in place of pairs of "
+           "boxes");
     add_threads_option(app, threads, "Number of threads of each process");
     add_isa_option(app, isa);
     add_frames_option(app, frames);

@@ -34,6 +34,7 @@ struct BoxRanks {
   BoxRanks(Transport& transport, const Execution& execution)
       : cluster(transport, {.execution = execution}) {}
 
+  void see(std::span<const Aabb>) const noexcept {}
   Status add(std::span<const std::vector<BodyName>> names,
              std::span<const std::vector<Aabb>> boxes) {
     std::vector<ClusterBatch> batches;
@@ -54,14 +55,13 @@ struct BoxRanks {
 
 /// Ranks of bodies.
 struct BodyRanks {
-  /// Every process makes the shapes of all bodies, in the order of their rows.
-  BodyRanks(Transport& transport, const Execution& execution, ContactLevel asked,
-            std::span<const Aabb> boxes)
-      : shapes(boxes.size()),
-        cluster(transport, pool, {.scene = {.execution = execution}}),
-        level(asked) {
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      require_ok(pool.add(box_shape_of(boxes[i]), shapes[i]), "shape");
+  BodyRanks(Transport& transport, const Execution& execution, ContactLevel asked)
+      : cluster(transport, pool, {.scene = {.execution = execution}}), level(asked) {}
+
+  /// Every process makes the shapes of all bodies that come, in the order of their rows.
+  void see(std::span<const Aabb> boxes) {
+    for (std::size_t i = shapes.size(); i < boxes.size(); ++i) {
+      require_ok(pool.add(box_shape_of(boxes[i]), shapes.emplace_back()), "shape");
     }
   }
 
@@ -114,6 +114,7 @@ class ClusterEngine {
 
   ClusterFrame show(std::span<const Aabb> boxes) {
     find_changes(boxes);
+    ranks_.see(boxes);
     synchronize();
     const Stopwatch clock;
     tell();
@@ -266,7 +267,7 @@ double ClusterRun::median_ms() const {
 ClusterRun run_cluster(FrameSource& source, Transport& transport, const ClusterOrder& order,
                        const Execution& execution) {
   if (order.level.has_value()) {
-    BodyRanks ranks(transport, execution, *order.level, source.boxes());
+    BodyRanks ranks(transport, execution, *order.level);
     return run_ranks(source, transport, order.frames, ranks);
   }
   BoxRanks ranks(transport, execution);

@@ -43,8 +43,8 @@ struct ClusterRun {
 /// What a cluster is shown, and asked.
 struct ClusterOrder {
   std::size_t frames = 1;  ///< at most so many
-  /// Unset: the pairs of boxes. Else contacts of bodies, which have the sizes of the first frame's
-  /// boxes and follow their middles.
+  /// Unset: the pairs of boxes. Else contacts of bodies, which have the sizes of the boxes that
+  /// they come with and follow their middles.
   std::optional<ContactLevel> level;
 };
 
