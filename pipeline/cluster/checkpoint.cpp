@@ -26,7 +26,7 @@ constexpr std::size_t kHeader = 2 * sizeof(std::uint64_t);
 }
 
 [[nodiscard]] bool is_good(const TouchingPair& pair) noexcept {
-  return pair.code < BodyKindPairs::kCount && pair.a != pair.b;
+  return pair.code < KindPairs::kCount && pair.a != pair.b;
 }
 
 /// Adds what one checkpoint has in its columns.

@@ -424,7 +424,7 @@ void RankScene::compare_contacts() {
   std::vector<TouchingPair> now(contacts_.size());
   std::vector<Knowledge> knowledge(contacts_.size());
   for (const ContactRun& run : contacts_.runs()) {
-    const std::uint32_t code = BodyKindPairs::index(run.kind_a, run.kind_b);
+    const std::uint32_t code = KindPairs::index(run.kind_a, run.kind_b);
     for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
       const ObjectId a = contacts_.a()[i].id;
       const ObjectId b = contacts_.b()[i].id;
