@@ -57,6 +57,15 @@ class WINNOW_API CompositePool final : public MidPhase {
   /// the ShapePool while the compound lives.
   Status add_compound(std::span<const CompoundChild> children, ShapeId& id);
 
+  /// Appends all shapes, and which places are free, to bytes; pipeline/CONTRACT.md has the format.
+  /// `out_of_memory` leaves `out` as it was. O(bytes).
+  Status save(Column<std::byte>& out) const;
+  /// Becomes the pool that was saved, ids, scales and numbers of parts as they were; the ShapePool
+  /// has to be loaded before. Trees of meshes are read, not built: O(bytes). `invalid_argument` for
+  /// anything that was not saved so, whoever made it, children that the ShapePool does not have
+  /// among it, and `out_of_memory`, leave the pool as it was.
+  Status load(std::span<const std::byte> saved, const Execution& execution = Execution::parallel());
+
   /// Bodies must not use the id any more.
   Status remove(ShapeId id);
   /// Shapes of a kind; of meshes the scaled ids count as well.

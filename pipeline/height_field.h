@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
+#include <winnow/core/column.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/status.h>
@@ -52,6 +53,13 @@ class WINNOW_API HeightField {
   /// New heights for the samples [column, column + columns) x [row, row + rows); the spacing is not
   /// read. `invalid_argument` if they are not all in the field, otherwise as `build`. O(samples).
   Status update(std::uint32_t column, std::uint32_t row, const HeightSamples& samples);
+
+  /// Appends spacing and heights to bytes; pipeline/CONTRACT.md has the format. `out_of_memory`
+  /// leaves `out` as it was. O(n).
+  Status save(Column<std::byte>& out) const;
+  /// Becomes the field that was saved. `invalid_argument` for anything that was not saved so,
+  /// whoever made it, and `out_of_memory`, leave it as it was. O(n).
+  Status load(std::span<const std::byte> saved);
 
   /// Of all squares, those of holes included, as high and low as those without go; empty if all
   /// are holes.

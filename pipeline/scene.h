@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
+#include <winnow/core/column.h>
 #include <winnow/core/debug_draw.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
@@ -220,6 +221,29 @@ class WINNOW_API Scene {
   /// contacts of two bodies that fell asleep are remembered, neither shown nor ended, until one
   /// wakes. `out_of_memory` leaves `contacts` cleared.
   Status collide(ContactLevel level, Contacts& contacts);
+
+  /// Appends all that bodies are to bytes: keys, shapes by id, poses, motions, filters, client
+  /// data, who ignores whom, the boxes that partitions have of them, and margin, tier, carry-over
+  /// and what else the options say of answers; pipeline/CONTRACT.md has the format. The pools of
+  /// shapes are saved beside, and so are contacts. `out_of_memory` leaves `out` as it was.
+  /// O(bodies).
+  Status save(Column<std::byte>& out) const;
+  /// Becomes what was saved, with the memory, execution, structures, predicate and pools that it
+  /// has, of which the pools have to be loaded before: contacts go on bit for bit as those of the
+  /// scene that was saved, on any number of threads and any instruction set. Keys that were saved
+  /// are those of the same bodies again, unless another scene or partition of this process has them
+  /// by now; `key_of` tells. Contacts that were filled before are strangers from then on; see
+  /// `load_contacts`. `invalid_argument` for anything that was not saved so, whoever made it, or of
+  /// shapes that the pools do not have, and `out_of_memory`, change nothing. O(bodies).
+  Status load(std::span<const std::byte> saved);
+  /// Appends what contacts that this scene filled last show and remember (`invalid_key` for others)
+  /// to bytes. `out_of_memory` leaves `out` as it was. O(contacts).
+  Status save_contacts(const Contacts& contacts, Column<std::byte>& out) const;
+  /// Contacts become what was saved of those of this scene as it stands, which was loaded before:
+  /// the next `collide` carries over, warm starts and tells events as the one after the saved one.
+  /// `invalid_argument` for anything that was not saved so, whoever made it, or of a scene that
+  /// stands otherwise, and `out_of_memory`, leave `contacts` as they were. O(contacts).
+  Status load_contacts(std::span<const std::byte> saved, Contacts& contacts) const;
 
   /// Groups of the pairs in contacts that this scene filled and whose bodies it still has
   /// (`invalid_key`). Fixed bodies join nothing; sleeping ones count as dynamic, since what touches

@@ -63,6 +63,11 @@ class WINNOW_API ShapePool {
   /// convex to 1e-9 of the hull's size. Coplanar neighbours are merged.
   Status add_hull(const PointView& points, const HullFaces& faces, double rounding, ShapeId& id);
 
+  /// A hull as a pool has it, given by its vertices and by its faces in their order, which it keeps
+  /// to the bit; without faces a segment or a point. `invalid_shape` for what no pool can have.
+  Status add_built_hull(const PointView& points, const HullFaces& faces, double rounding,
+                        ShapeId& id);
+
   /// Takes a shape out; its place is given to the next one of its kind. Bodies must not use the id
   /// any more: until then its place holds a point.
   Status remove(ShapeId id);
@@ -75,6 +80,15 @@ class WINNOW_API ShapePool {
   /// A float box that contains the shape at the pose, rounded outward, at most 1e-6 of its size
   /// larger than the smallest; a half-space's reaches to infinity. `pose` is valid.
   [[nodiscard]] Aabb bounds(ShapeId id, const Pose& pose) const noexcept;
+
+  /// Appends all shapes, and which places are free, to bytes; pipeline/CONTRACT.md has the format.
+  /// `out_of_memory` leaves `out` as it was. O(bytes).
+  Status save(Column<std::byte>& out) const;
+  /// Becomes the pool that was saved: shapes have the ids that they had, and answer to the bit.
+  /// Whoever uses the pool and has shapes that were not there has to be loaded, too, before it is
+  /// asked again. `invalid_argument` for anything that was not saved so, whoever made it, and
+  /// `out_of_memory`, leave the pool as it was. Links the kernels of all kinds. O(bytes).
+  Status load(std::span<const std::byte> saved);
 
   /// The shapes themselves, to be read: sphere `id` is tables().spheres[id.index()]. Valid until
   /// the next change.
@@ -102,6 +116,9 @@ class WINNOW_API ShapePool {
   /// Calls `body` with the table of a kind.
   template <typename Pool, typename Body>
   static decltype(auto) with_table(Pool& pool, ShapeKind kind, Body&& body);
+  /// Calls visit(table, the same of another pool) for each kind.
+  template <typename Pool, typename Visit>
+  static void for_tables(Pool& pool, Pool& other, Visit&& visit);
   void refresh_tables() noexcept;
 
   std::pmr::memory_resource* memory_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/column.h>
+#include <winnow/core/status.h>
 
 #include <bit>
 #include <cstddef>
@@ -86,6 +87,17 @@ class ByteWriter {
     if (ok_) std::memcpy(out_.data() + at, bytes, count);
   }
 
+  /// Calls save(column) for what appends a snapshot of its own to one: a count of bytes, and these.
+  template <typename Save>
+  void put_nested(Save&& save) noexcept {
+    const std::size_t at = out_.size();
+    put(std::uint64_t{0});
+    ok_ = ok_ && save(out_) == Status::ok;
+    if (!ok_) return;
+    const std::uint64_t count = out_.size() - at - sizeof(std::uint64_t);
+    std::memcpy(out_.data() + at, &count, sizeof count);
+  }
+
   /// False if memory was refused.
   [[nodiscard]] bool ok() const noexcept { return ok_; }
 
@@ -130,17 +142,20 @@ class ByteReader {
     if (!values.resize(static_cast<std::size_t>(count))) return refuse_memory();
     return get_bytes(values.data(), values.size() * sizeof(T));
   }
-  /// Lies in what is read.
-  [[nodiscard]] std::string_view get_text() noexcept {
+  /// What `put_nested` or `put_text` wrote; lies in what is read.
+  [[nodiscard]] std::span<const std::byte> get_nested() noexcept {
     const auto count = get<std::uint64_t>();
     if (!ok_ || count > rest_.size()) {
       fail();
       return {};
     }
-    const std::string_view text(reinterpret_cast<const char*>(rest_.data()),
-                                static_cast<std::size_t>(count));
-    rest_ = rest_.subspan(text.size());
-    return text;
+    const std::span<const std::byte> nested = rest_.first(static_cast<std::size_t>(count));
+    rest_ = rest_.subspan(nested.size());
+    return nested;
+  }
+  [[nodiscard]] std::string_view get_text() noexcept {
+    const std::span<const std::byte> text = get_nested();
+    return {reinterpret_cast<const char*>(text.data()), text.size()};
   }
   [[nodiscard]] bool get_bytes(void* to, std::size_t count) noexcept {
     if (!ok_ || count > rest_.size()) return fail();

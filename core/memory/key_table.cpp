@@ -12,8 +12,7 @@ KeyTable::KeyTable(std::pmr::memory_resource* memory) noexcept
 
 bool KeyTable::reserve(std::size_t count) noexcept {
   const std::size_t fresh = count > live_ ? count - live_ : 0;
-  const std::size_t slots = slots_with(fresh);
-  return stamps_.grow(slots) && rows_.grow(slots) && data_.grow(slots);
+  return reserve_slots(slots_with(fresh));
 }
 
 void KeyTable::touch() noexcept {

@@ -105,8 +105,13 @@ class KeyTable {
   /// True if they can have been a table's: live stamps are odd, those of free slots even, each free
   /// slot is listed once. `seen` is scratch of a byte a slot.
   [[nodiscard]] static bool are_slots(const Saved& saved, Column<std::uint8_t>& seen) noexcept;
+  /// Room for so many slots. False, and unchanged, if memory is refused.
+  [[nodiscard]] bool reserve_slots(std::size_t slots) noexcept {
+    return stamps_.grow(slots) && rows_.grow(slots) && data_.grow(slots);
+  }
   /// Becomes such a table, with room for it made, objects in rows by id. Takes the tags of `other`,
-  /// which gets its own: keys are the saved ones as long as no third table has their tags.
+  /// which may be this one and gets its own: keys are the saved ones as long as no third table has
+  /// their tags.
   void restore(const Saved& saved, KeyTable& other) noexcept;
 
   [[nodiscard]] std::pmr::memory_resource* key_memory() const noexcept { return rows_.memory(); }

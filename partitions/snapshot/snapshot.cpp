@@ -2,6 +2,7 @@
 
 #include "core/hooks/log.h"
 #include "core/memory/new_in.h"
+#include "core/memory/saved_keys.h"
 #include "core/memory/snapshot_frame.h"
 #include "partitions/state/partition_state.h"
 
@@ -22,34 +23,17 @@ void put_options(ByteWriter& out, const PartitionState& state) {
   out.put(std::uint64_t{state.index.build_budget()});
 }
 
-void put_keys(ByteWriter& out, const KeyTable& keys) {
-  out.put(keys.stamp());
-  out.put_array(keys.stamps());
-  out.put_array(keys.all_client_data());
-  std::uint64_t free = 0;
-  for (ObjectId id = keys.first_free(); id != kNoObject; id = keys.next_free(id)) ++free;
-  out.put(free);
-  for (ObjectId id = keys.first_free(); id != kNoObject; id = keys.next_free(id)) out.put(id);
-}
-
-template <typename Visit>
-void for_live(const KeyTable& keys, const Visit& visit) {
-  for (std::size_t slot = 0; slot < keys.slot_count(); ++slot) {
-    if (keys.is_live(static_cast<ObjectId>(slot))) visit(static_cast<ObjectId>(slot));
-  }
-}
-
 void put_rows(ByteWriter& out, const Rows& rows) {
   const KeyTable& keys = rows.keys();
   out.put(std::uint64_t{rows.size() * rows.pool().columns()});
   for (std::size_t c = 0; c < rows.pool().columns(); ++c) {
     const float* const column = rows.pool().column(c);
-    for_live(keys, [&](ObjectId id) { out.put(column[keys.row_of(id)]); });
+    for_live(keys.stamps(), [&](ObjectId id) { out.put(column[keys.row_of(id)]); });
   }
   const bool filtered = rows.filters().in_use();
   out.put(std::uint64_t{filtered ? rows.size() : 0});
   if (!filtered) return;
-  for_live(keys, [&](ObjectId id) {
+  for_live(keys.stamps(), [&](ObjectId id) {
     const ObjectFilter filter = rows.filters().of(id);
     out.put_bytes(&filter, sizeof filter);
   });
@@ -58,7 +42,7 @@ void put_rows(ByteWriter& out, const Rows& rows) {
 /// What is read of a snapshot before anything is made of it.
 struct ReadPartition {
   explicit ReadPartition(std::pmr::memory_resource* memory) noexcept
-      : stamps(memory), data(memory), free(memory), columns(memory), filters(memory) {}
+      : keys(memory), columns(memory), filters(memory) {}
 
   [[nodiscard]] StructureKind read(ByteReader& in, PartitionOptions& options) {
     const StructureKind named = structure_named(in.get_text());
@@ -67,10 +51,7 @@ struct ReadPartition {
     options.margin.distance = in.get<float>();
     options.margin.share = in.get<float>();
     options.build_budget = static_cast<std::size_t>(in.get<std::uint64_t>());
-    stamp = in.get<std::uint32_t>();
-    (void)in.get_array(stamps);
-    (void)in.get_array(data);
-    (void)in.get_array(free);
+    keys.read(in);
     (void)in.get_array(columns);
     (void)in.get_array(filters);
     if (named.info() == nullptr || !in.rest().empty()) in.fail();
@@ -79,20 +60,14 @@ struct ReadPartition {
 
   [[nodiscard]] SavedRows rows(Volume volume) const noexcept {
     SavedRows saved;
-    saved.keys = {{stamps.data(), stamps.size()},
-                  {data.data(), data.size()},
-                  {free.data(), free.size()},
-                  stamp};
+    saved.keys = keys.saved();
     saved.objects = columns.size() / column_count(volume);
     saved.columns = {columns.data(), columns.size()};
     saved.filters = {filters.data(), filters.size()};
     return saved;
   }
 
-  std::uint32_t stamp = 0;
-  Column<std::uint32_t> stamps;
-  Column<ClientData> data;
-  Column<ObjectId> free;
+  ReadKeys keys;
   Column<float> columns;
   Column<ObjectFilter> filters;
 };

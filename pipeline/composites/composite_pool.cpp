@@ -177,18 +177,6 @@ void Composites::release(Compound* compound) noexcept {
 
 }  // namespace mid
 
-namespace {
-
-// Of scales within these the products, their inverses, and squares of scaled lengths are finite.
-constexpr double kLeastScale = 1e-100;
-constexpr double kMostScale = 1e100;
-
-[[nodiscard]] bool is_scale(double factor) noexcept {
-  return std::abs(factor) >= kLeastScale && std::abs(factor) <= kMostScale;
-}
-
-}  // namespace
-
 CompositePool::CompositePool(const ShapePool& shapes, std::pmr::memory_resource* memory) noexcept
     : shapes_(shapes), memory_(memory) {}
 
@@ -223,9 +211,9 @@ Status CompositePool::add_scaled(ShapeId mesh, const std::array<double, 3>& scal
   if (!contains(mesh) || mesh.composite_kind() != CompositeKind::mesh) return Status::invalid_key;
   mid::MeshEntry entry = *state_->mesh(mesh);
   for (std::size_t i = 0; i < 3; ++i) {
-    if (!is_scale(scale[i])) return Status::invalid_argument;
+    if (!mid::is_scale(scale[i])) return Status::invalid_argument;
     entry.scale[i] *= scale[i];
-    if (!is_scale(entry.scale[i])) return Status::invalid_argument;
+    if (!mid::is_scale(entry.scale[i])) return Status::invalid_argument;
   }
   const Status status = state_->meshes.prepare();
   if (status != Status::ok) return status;

@@ -5,6 +5,7 @@
 #include "pipeline/shapes/frame.h"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
@@ -36,6 +37,12 @@ struct MeshEntry {
   SharedMesh* shared = nullptr;
   double scale[3] = {1.0, 1.0, 1.0};
 };
+
+/// True for what a mesh may be scaled by: products of such factors, their inverses, and squares of
+/// scaled lengths are finite.
+[[nodiscard]] inline bool is_scale(double factor) noexcept {
+  return std::abs(factor) >= 1e-100 && std::abs(factor) <= 1e100;
+}
 
 /// So many children are tested one by one; more get a tree.
 inline constexpr std::uint32_t kFlatChildren = 16;

@@ -39,4 +39,10 @@ Status ShapePool::add_hull(const PointView& points, const HullFaces& faces, doub
                   [&](HullShape& hull) { return hull_of_faces(points, faces, memory_, hull); });
 }
 
+Status ShapePool::add_built_hull(const PointView& points, const HullFaces& faces, double rounding,
+                                 ShapeId& id) {
+  return put_hull(rounding, id,
+                  [&](HullShape& hull) { return hull_as_built(points, faces, memory_, hull); });
+}
+
 }  // namespace winnow

@@ -5,6 +5,7 @@
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/triangle_mesh.h>
 #include "core/memory/new_in.h"
+#include "core/memory/snapshot_frame.h"
 #include "pipeline/mesh/edge_bend.h"
 #include "pipeline/mesh/height_grid.h"
 
@@ -15,6 +16,9 @@
 
 namespace winnow {
 namespace {
+
+constexpr std::string_view kFieldMagic = "WINNOWHF";
+constexpr std::uint32_t kFieldVersion = 1;
 
 std::size_t stride_of(const HeightSamples& samples) {
   return samples.row_stride != 0 ? samples.row_stride : samples.columns;
@@ -290,6 +294,38 @@ std::uint8_t HeightField::active_edges(std::uint32_t number) const noexcept {
     }
   }
   return active;
+}
+
+Status HeightField::save(Column<std::byte>& out) const {
+  return write_snapshot(out, kFieldMagic, kFieldVersion, [&](ByteWriter& writer) {
+    if (state_ == nullptr) return;
+    writer.put_bytes(state_->spacing, sizeof state_->spacing);
+    writer.put(state_->columns);
+    writer.put(state_->rows);
+    writer.put_array(std::span<const float>(state_->heights.data(), state_->heights.size()));
+  });
+}
+
+Status HeightField::load(std::span<const std::byte> saved) {
+  ByteReader in = open_snapshot(saved, kFieldMagic, kFieldVersion);
+  HeightField fresh(memory_);
+  if (in.ok() && !in.rest().empty()) {
+    HeightSamples samples;
+    Column<float> heights(memory_);
+    (void)in.get_bytes(samples.spacing, sizeof samples.spacing);
+    samples.columns = in.get<std::uint32_t>();
+    samples.rows = in.get<std::uint32_t>();
+    (void)in.get_array(heights);
+    if (heights.size() != std::size_t{samples.columns} * samples.rows || !in.rest().empty()) {
+      in.fail();
+    }
+    samples.heights = {heights.data(), heights.size()};
+    const Status built = in.ok() ? fresh.build(samples) : Status::ok;
+    if (built == Status::out_of_memory) return built;
+    if (built != Status::ok) in.fail();
+  }
+  if (in.ok()) std::swap(state_, fresh.state_);
+  return status_of(in);
 }
 
 Aabb HeightField::bounds() const noexcept {

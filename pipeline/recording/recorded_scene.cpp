@@ -1,5 +1,6 @@
 #include "pipeline/recording/contact_digest.h"
 #include "pipeline/recording/recorder_state.h"
+#include "pipeline/shapes/hull_bytes.h"
 
 #include <algorithm>
 
@@ -17,18 +18,6 @@ RecordedBody recorded(const BodyDefinition& body, std::uint32_t shape) noexcept 
   out.filter[2] = body.filter.environment;
   out.data = body.data;
   return out;
-}
-
-void put_hull(CallWriter& call, const HullShape& hull) {
-  std::size_t corners = 0;
-  for (std::uint32_t f = 0; f < hull.face_count; ++f) corners += hull.faces[f].count;
-  for (const double* column : hull.vertex) {
-    call.put_array(std::span<const double>(column, hull.vertex_count));
-  }
-  call.put_array(std::span<const std::uint32_t>(hull.loop, corners));
-  call.put(std::uint64_t{hull.face_count});
-  for (std::uint32_t f = 0; f < hull.face_count; ++f) call.put(hull.faces[f].count);
-  call.put(hull.rounding);
 }
 
 /// Calls use(shape) with the shape itself, of whatever kind.

@@ -1,5 +1,6 @@
 #include "pipeline/recording/contact_digest.h"
 #include "pipeline/replay/replay_state.h"
+#include "pipeline/shapes/hull_bytes.h"
 
 namespace winnow {
 namespace {
@@ -145,24 +146,10 @@ Status ReplayState::add_shape(ReplayedWorld& of) {
 }
 
 Status ReplayState::add_hull(ReplayedWorld& of, ShapeId& id, Digest& digest) {
-  Column<double> vertex[3] = {Column<double>(options.memory), Column<double>(options.memory),
-                              Column<double>(options.memory)};
-  Column<std::uint32_t> loop(options.memory);
-  for (Column<double>& column : vertex) (void)in.get_array(column);
-  (void)in.get_array(loop);
-  const auto faces = in.get<std::uint64_t>();
-  if (!in.ok() || faces > in.rest().size() / sizeof(std::uint32_t)) return reading();
-  if (!numbers.resize(static_cast<std::size_t>(faces))) return Status::out_of_memory;
-  (void)in.get_bytes(numbers.data(), numbers.size() * sizeof(std::uint32_t));
-  const auto rounding = in.get<double>();
-  const std::size_t count = vertex[0].size();
-  if (!in.ok() || vertex[1].size() != count || vertex[2].size() != count) {
-    return in.out_of_memory() ? Status::out_of_memory : Status::invalid_argument;
-  }
-  const PointView points({vertex[0].data(), vertex[1].data(), vertex[2].data()}, count);
-  const HullFaces given{{loop.data(), loop.size()}, {numbers.data(), numbers.size()}};
-  const Status taken = faces == 0 ? of.shapes->add_hull(points, rounding, id)
-                                  : of.shapes->add_hull(points, given, rounding, id);
+  ReadHull hull(options.memory);
+  hull.read(in);
+  if (!in.ok()) return reading();
+  const Status taken = of.shapes->add_built_hull(hull.points(), hull.faces(), hull.rounding, id);
   if (taken == Status::ok) add_to(digest, of.shapes->tables().hulls[id.index()]);
   return taken;
 }

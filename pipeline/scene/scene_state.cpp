@@ -97,16 +97,28 @@ Status SceneState::place_bodies(Motion which, std::span<const std::uint32_t> bod
   SceneSet& target = set(which);
   if (const Status made = make_partition_of(which); made != Status::ok) return made;
   if (target.partition->size() == 0) target.origin = origin;
+  if (!boxes.resize(bodies.size())) return Status::out_of_memory;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    boxes[i] = bounds_from(target.origin, shape[bodies[i]], pose[bodies[i]], growth);
+  }
+  if (const Status placed = place_boxes(which, bodies); placed != Status::ok) return placed;
+  for (const std::uint32_t body : bodies) {
+    if (!anchor.empty()) anchor[body] = with_unit_turn(pose[body]);
+  }
+  boxes_since_look += bodies.size();
+  return Status::ok;
+}
+
+Status SceneState::place_boxes(Motion which, std::span<const std::uint32_t> bodies) {
+  SceneSet& target = set(which);
+  if (const Status made = make_partition_of(which); made != Status::ok) return made;
   const std::size_t count = bodies.size();
   // Ids that the partition gives lie below those that it gave before and as many more.
-  if (!boxes.resize(count) || !boxes_of.resize(count) || !boxes_body.resize(count) ||
+  if (!boxes_of.resize(count) || !boxes_body.resize(count) ||
       !target.body_of.grow(target.body_of.size() + count)) {
     return Status::out_of_memory;
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    boxes[i] = bounds_from(target.origin, shape[bodies[i]], pose[bodies[i]], growth);
-    boxes_body[i] = bodies[i];
-  }
+  for (std::size_t i = 0; i < count; ++i) boxes_body[i] = bodies[i];
   const std::span<Key> keys_given{boxes_of.data(), count};
   const Status status =
       target.partition->insert(box_view(), {boxes_body.data(), count}, keys_given);
@@ -115,13 +127,10 @@ Status SceneState::place_bodies(Motion which, std::span<const std::uint32_t> bod
   for (const Key& key : keys_given) objects = std::max(objects, key.id + std::size_t{1});
   target.body_of.set_size(objects);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t body = bodies[i];
-    place[body] = boxes_of[i];
-    target.body_of[boxes_of[i].id] = body;
-    if (!anchor.empty()) anchor[body] = with_unit_turn(pose[body]);
+    place[bodies[i]] = boxes_of[i];
+    target.body_of[boxes_of[i].id] = bodies[i];
   }
   ++target.changes;
-  boxes_since_look += count;
   return Status::ok;
 }
 

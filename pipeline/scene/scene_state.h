@@ -141,6 +141,8 @@ struct SceneState {
                                                       Motion which) noexcept;
   /// Puts bodies, whose columns are set, into the partition of a set.
   [[nodiscard]] Status place_bodies(Motion which, std::span<const std::uint32_t> bodies);
+  /// The same with what lies in `boxes`, one for each, measured from the set's origin.
+  [[nodiscard]] Status place_boxes(Motion which, std::span<const std::uint32_t> bodies);
   /// Takes out what lies at `places`.
   void displace(Motion which, std::span<const Key> places);
   /// Takes out bodies that were just placed, as if they had never been.

@@ -60,6 +60,30 @@ class Merge {
         open_(memory_),
         face_of_(memory_) {}
 
+  /// `invalid_shape` unless the surface is closed, of one piece and without handles.
+  Status pair_edges() {
+    face_of_.reserve(surface_.loops.size());
+    for (std::size_t f = 0; f < surface_.faces(); ++f) {
+      const auto loop = surface_.loop(f);
+      if (loop.size() < 3) return Status::invalid_shape;
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const auto key = edge(loop[i], loop[(i + 1) % loop.size()]);
+        if (!face_of_.emplace(key, static_cast<std::uint32_t>(f)).second) {
+          return Status::invalid_shape;
+        }
+      }
+    }
+    std::pmr::vector<std::uint32_t> used(surface_.loops, memory_);
+    std::sort(used.begin(), used.end());
+    const auto vertices = std::unique(used.begin(), used.end()) - used.begin();
+    for (const auto& [key, face] : face_of_) {
+      if (!face_of_.contains(key << 32U | key >> 32U)) return Status::invalid_shape;
+    }
+    const auto edges = static_cast<std::ptrdiff_t>(face_of_.size() / 2);
+    const auto faces = static_cast<std::ptrdiff_t>(surface_.faces());
+    return vertices - edges + faces == 2 ? Status::ok : Status::invalid_shape;
+  }
+
   Status run() {
     Status status = pair_edges();
     if (status != Status::ok) return status;
@@ -91,29 +115,6 @@ class Merge {
     Eigen::AlignedBox3d box;
     for (const std::uint32_t v : surface_.loops) box.extend(points_[v]);
     return box.diagonal().norm();
-  }
-
-  Status pair_edges() {
-    face_of_.reserve(surface_.loops.size());
-    for (std::size_t f = 0; f < surface_.faces(); ++f) {
-      const auto loop = surface_.loop(f);
-      if (loop.size() < 3) return Status::invalid_shape;
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        const auto key = edge(loop[i], loop[(i + 1) % loop.size()]);
-        if (!face_of_.emplace(key, static_cast<std::uint32_t>(f)).second) {
-          return Status::invalid_shape;
-        }
-      }
-    }
-    std::pmr::vector<std::uint32_t> used(surface_.loops, memory_);
-    std::sort(used.begin(), used.end());
-    const auto vertices = std::unique(used.begin(), used.end()) - used.begin();
-    for (const auto& [key, face] : face_of_) {
-      if (!face_of_.contains(key << 32U | key >> 32U)) return Status::invalid_shape;
-    }
-    const auto edges = static_cast<std::ptrdiff_t>(face_of_.size() / 2);
-    const auto faces = static_cast<std::ptrdiff_t>(surface_.faces());
-    return vertices - edges + faces == 2 ? Status::ok : Status::invalid_shape;
   }
 
   // Takes the neighbours that lie in the seed's plane, and theirs.
@@ -481,11 +482,11 @@ Status assemble_hull(std::span<const Eigen::Vector3d> points, const HullSurface&
   return Assembly(points, surface).run(memory, hull);
 }
 
-Status hull_of_faces(const PointView& given, const HullFaces& faces,
-                     std::pmr::memory_resource* memory, HullShape& hull) try {
-  std::pmr::monotonic_buffer_resource scratch(memory);
-  const std::pmr::vector<Eigen::Vector3d> points = copied(given, &scratch);
-  HullSurface surface(&scratch);
+namespace {
+
+/// Throws what the surface's memory throws.
+Status take_faces(std::span<const Eigen::Vector3d> points, const HullFaces& faces,
+                  HullSurface& surface) {
   std::size_t at = 0;
   for (const std::uint32_t size : faces.sizes) {
     if (size > faces.indices.size() - at) return Status::invalid_shape;
@@ -496,8 +497,44 @@ Status hull_of_faces(const PointView& given, const HullFaces& faces,
     at += size;
     surface.end_face();
   }
-  if (at != faces.indices.size() || surface.faces() < 2) return Status::invalid_shape;
-  const Status status = merge_coplanar(points, surface);
+  return at == faces.indices.size() ? Status::ok : Status::invalid_shape;
+}
+
+/// What is built of no faces.
+[[nodiscard]] bool is_point_or_segment(std::span<const Eigen::Vector3d> points) {
+  const bool distinct = points.size() == 1 || (points.size() == 2 && points[0] != points[1]);
+  return distinct && std::ranges::all_of(points, [](const auto& p) { return p.allFinite(); });
+}
+
+}  // namespace
+
+Status hull_of_faces(const PointView& given, const HullFaces& faces,
+                     std::pmr::memory_resource* memory, HullShape& hull) try {
+  std::pmr::monotonic_buffer_resource scratch(memory);
+  const std::pmr::vector<Eigen::Vector3d> points = copied(given, &scratch);
+  HullSurface surface(&scratch);
+  Status status = take_faces(points, faces, surface);
+  if (status == Status::ok && surface.faces() < 2) status = Status::invalid_shape;
+  if (status == Status::ok) status = merge_coplanar(points, surface);
+  return status == Status::ok ? assemble_hull(points, surface, memory, hull) : status;
+} catch (...) {
+  return Status::out_of_memory;
+}
+
+// Faces that were merged would be in another order if they were merged again.
+Status hull_as_built(const PointView& given, const HullFaces& faces,
+                     std::pmr::memory_resource* memory, HullShape& hull) try {
+  std::pmr::monotonic_buffer_resource scratch(memory);
+  const std::pmr::vector<Eigen::Vector3d> points = copied(given, &scratch);
+  HullSurface surface(&scratch);
+  Status status = take_faces(points, faces, surface);
+  if (status != Status::ok) return status;
+  if (surface.faces() == 0) {
+    if (!is_point_or_segment(points)) return Status::invalid_shape;
+    return assemble_hull(points, surface, memory, hull);
+  }
+  if (surface.faces() < 2) return Status::invalid_shape;
+  status = Merge(points, surface).pair_edges();
   return status == Status::ok ? assemble_hull(points, surface, memory, hull) : status;
 } catch (...) {
   return Status::out_of_memory;

@@ -18,6 +18,9 @@ namespace winnow {
 Status hull_of_points(const PointView& points, std::pmr::memory_resource* memory, HullShape& hull);
 Status hull_of_faces(const PointView& points, const HullFaces& faces,
                      std::pmr::memory_resource* memory, HullShape& hull);
+/// A hull that was built before, of its vertices and its faces as they are.
+Status hull_as_built(const PointView& points, const HullFaces& faces,
+                     std::pmr::memory_resource* memory, HullShape& hull);
 
 /// The points as building takes them.
 [[nodiscard]] std::pmr::vector<Eigen::Vector3d> copied(const PointView& points,

@@ -43,12 +43,50 @@ void load(Bytes8 bytes) {
   }
 }
 
+/// Bodies of all convex kinds, in the scene that seeds are saved of.
+struct FuzzedScene {
+  FuzzedScene()
+      : world(12),
+        scene(world.pool, {.execution = Execution::serial(),
+                           .margin = 0.05,
+                           .carry_over = 0.01,
+                           .warm_start = true}) {
+    WINNOW_HOLDS(add_all(scene, world) == Status::ok);
+    WINNOW_HOLDS(scene.collide(ContactLevel::manifold, contacts) == Status::ok);
+  }
+
+  SceneWorld world;
+  Scene scene;
+  Contacts contacts;
+};
+
+void load_scene(const Bytes8& saved) {
+  Bytes8 bytes = saved;
+  seal_snapshot(bytes);
+  LimitedMemory memory(kMostMemory);
+  ShapePool shapes(&memory);
+  Column<std::byte> again(&memory);
+  if (shapes.load(bytes) == Status::ok) WINNOW_HOLDS(shapes.save(again) == Status::ok);
+  CompositePool composites(shapes, &memory);
+  if (composites.load(bytes, Execution::serial()) == Status::ok) {
+    WINNOW_HOLDS(composites.save(again) == Status::ok);
+  }
+  FuzzedScene stage;
+  const Status loaded = stage.scene.load_contacts(bytes, stage.contacts);
+  if (loaded != Status::ok && stage.scene.load(bytes) != Status::ok) return;
+  const Status status = stage.scene.collide(ContactLevel::manifold, stage.contacts);
+  WINNOW_HOLDS(status == Status::ok || status == Status::out_of_memory);
+  WINNOW_HOLDS(stage.scene.save_contacts(stage.contacts, again) == Status::ok ||
+               status != Status::ok);
+}
+
 }  // namespace
 
 void fuzz(std::span<const std::uint8_t> input) {
   const std::span<const std::byte> bytes = std::as_bytes(input);
   play({bytes.begin(), bytes.end()});
   load({bytes.begin(), bytes.end()});
+  load_scene({bytes.begin(), bytes.end()});
 }
 
 std::vector<std::string> fuzz_seeds() {
@@ -78,6 +116,21 @@ std::vector<std::string> fuzz_seeds() {
   (void)mesh.build(vertices, IndexView(std::span<const std::uint32_t>(corners)));
   (void)mesh.save(saved);
   seeds.push_back(text_of({saved.data(), saved.size()}));
+  const FuzzedScene stage;
+  CompositePool composites(stage.world.pool);
+  const std::vector<CompoundChild> children(3, {stage.world.shapes[2], Pose::at(1, 0, 0)});
+  ShapeId id;
+  (void)composites.add_compound(children, id);
+  (void)composites.add_mesh(vertices, IndexView(std::span<const std::uint32_t>(corners)), id);
+  const auto keep = [&](auto&& save) {
+    saved.clear();
+    (void)save(saved);
+    seeds.push_back(text_of({saved.data(), saved.size()}));
+  };
+  keep([&](auto& out) { return stage.world.pool.save(out); });
+  keep([&](auto& out) { return composites.save(out); });
+  keep([&](auto& out) { return stage.scene.save(out); });
+  keep([&](auto& out) { return stage.scene.save_contacts(stage.contacts, out); });
   Random random(3);
   const std::size_t whole = seeds.size();
   for (std::size_t i = 0; i < scaled(300); ++i) {

@@ -1,0 +1,194 @@
+// Meshes that several ids share are saved once; everything else is added as it was added first.
+
+#include <winnow/pipeline/composite_pool.h>
+
+#include "core/hooks/log.h"
+#include "core/memory/new_in.h"
+#include "core/memory/saved_places.h"
+#include "core/memory/snapshot_frame.h"
+#include "pipeline/composites/composites.h"
+
+#include <utility>
+
+namespace winnow {
+namespace {
+
+constexpr std::string_view kCompositesMagic = "WINNOWCP";
+constexpr std::uint32_t kCompositesVersion = 1;
+
+/// A mesh entry: the number of the mesh that it shares, which is one more than all before it where
+/// the mesh itself follows, and its scale.
+void put_meshes(ByteWriter& out, const mid::Places<mid::MeshEntry>& meshes,
+                Column<const mid::SharedMesh*>& known) {
+  for (const mid::MeshEntry& entry : meshes.entries) {
+    if (entry.shared == nullptr) continue;
+    const auto at = std::find(known.begin(), known.end(), entry.shared);
+    out.put(static_cast<std::uint32_t>(at - known.begin()));
+    if (at == known.end()) {
+      known.set_size(known.size() + 1);
+      known[known.size() - 1] = entry.shared;
+      out.put_nested([&](Column<std::byte>& to) { return entry.shared->mesh.save(to); });
+    }
+    out.put_bytes(entry.scale, sizeof entry.scale);
+  }
+}
+
+void put_children(ByteWriter& out, const mid::Compound& compound) {
+  out.put(compound.count);
+  for (const CompoundChild& child : std::span(compound.children, compound.count)) {
+    out.put(child.shape.bits);
+    out.put_bytes(&child.pose, sizeof child.pose);
+  }
+}
+
+void put_composites(ByteWriter& out, const mid::Composites& all,
+                    Column<const mid::SharedMesh*>& known) {
+  put_places(out, all.meshes.entries.size(), all.meshes.free);
+  put_meshes(out, all.meshes, known);
+  put_places(out, all.fields.entries.size(), all.fields.free);
+  for (const HeightField* const field : all.fields.entries) {
+    if (field == nullptr) continue;
+    out.put_nested([&](Column<std::byte>& to) { return field->save(to); });
+  }
+  put_places(out, all.compounds.entries.size(), all.compounds.free);
+  for (const mid::Compound* const compound : all.compounds.entries) {
+    if (compound != nullptr) put_children(out, *compound);
+  }
+}
+
+/// Reads composites into a pool that has none.
+class CompositesReader {
+ public:
+  CompositesReader(ByteReader& in, CompositePool& pool, mid::Composites& all,
+                   const Execution& execution) noexcept
+      : in_(in), pool_(pool), all_(all), execution_(execution), known_(all.memory) {}
+
+  [[nodiscard]] Status run() {
+    Status status = read_all(all_.meshes, mid::MeshEntry{}, [&] { return read_mesh(); });
+    if (status == Status::ok) {
+      status =
+          read_all(all_.fields, static_cast<HeightField*>(nullptr), [&] { return read_field(); });
+    }
+    if (status == Status::ok) {
+      status = read_all(all_.compounds, static_cast<mid::Compound*>(nullptr),
+                        [&] { return read_compound(); });
+    }
+    if (status == Status::ok && !in_.rest().empty()) in_.fail();
+    return in_.ok() ? status : status_of(in_);
+  }
+
+ private:
+  template <typename Entry, typename Read>
+  [[nodiscard]] Status read_all(mid::Places<Entry>& places, const Entry& nothing, Read&& read) {
+    ReadPlaces saved(all_.memory);
+    if (!saved.read(in_) || !saved.open(in_, places.entries, places.free, nothing)) {
+      return status_of(in_);
+    }
+    Status status = Status::ok;
+    for (std::size_t i = 0; i < saved.taken() && status == Status::ok; ++i) status = read();
+    return status;
+  }
+
+  [[nodiscard]] Status read_mesh() {
+    const auto number = in_.get<std::uint32_t>();
+    if (number > known_.size()) in_.fail();
+    if (!in_.ok()) return status_of(in_);
+    mid::MeshEntry entry;
+    if (number < known_.size()) {
+      entry.shared = known_[number];
+      ++entry.shared->users;
+    } else if (const Status status = read_shared(entry.shared); status != Status::ok) {
+      return status;
+    }
+    (void)in_.get_bytes(entry.scale, sizeof entry.scale);
+    for (const double factor : entry.scale) {
+      if (!mid::is_scale(factor)) in_.fail();
+    }
+    (void)all_.meshes.put(entry);
+    return status_of(in_);
+  }
+
+  [[nodiscard]] Status read_shared(mid::SharedMesh*& shared) {
+    if (!known_.grow(known_.size() + 1)) return Status::out_of_memory;
+    shared = all_.new_mesh();
+    if (shared == nullptr) return Status::out_of_memory;
+    Status status = shared->mesh.load(in_.get_nested(), execution_);
+    if (status == Status::ok && shared->mesh.triangles() == 0) status = Status::invalid_argument;
+    if (status == Status::ok && !shared->find_corners()) status = Status::out_of_memory;
+    if (status != Status::ok) {
+      all_.release(shared);
+      return status;
+    }
+    return known_.push_back(shared) ? Status::ok : Status::out_of_memory;
+  }
+
+  [[nodiscard]] Status read_field() {
+    auto* const field = new_in<HeightField>(all_.memory, all_.memory);
+    if (field == nullptr) return Status::out_of_memory;
+    Status status = field->load(in_.get_nested());
+    if (status == Status::ok && field->triangles() == 0) status = Status::invalid_argument;
+    if (status == Status::ok) {
+      (void)all_.fields.put(field);
+    } else {
+      delete_in(all_.memory, field);
+    }
+    return status;
+  }
+
+  [[nodiscard]] Status read_compound() {
+    const auto count = in_.get<std::uint32_t>();
+    if (!in_.ok() || count > in_.rest().size() / sizeof(Pose)) return Status::invalid_argument;
+    Column<CompoundChild> children(all_.memory);
+    if (!children.resize(count)) return Status::out_of_memory;
+    for (CompoundChild& child : children) {
+      child = {};
+      child.shape.bits = in_.get<std::uint32_t>();
+      (void)in_.get_bytes(&child.pose, sizeof child.pose);
+    }
+    ShapeId id;
+    return in_.ok() ? pool_.add_compound({children.data(), children.size()}, id) : status_of(in_);
+  }
+
+  ByteReader& in_;
+  CompositePool& pool_;
+  mid::Composites& all_;
+  const Execution& execution_;
+  Column<mid::SharedMesh*> known_;
+};
+
+}  // namespace
+
+Status CompositePool::save(Column<std::byte>& out) const {
+  Column<const mid::SharedMesh*> known(memory_);
+  if (state_ != nullptr && !known.reserve(state_->meshes.entries.size())) {
+    return logged(Status::out_of_memory, "CompositePool::save");
+  }
+  const Status status =
+      write_snapshot(out, kCompositesMagic, kCompositesVersion, [&](ByteWriter& writer) {
+        writer.put(kAllShapeKinds);
+        if (state_ != nullptr) put_composites(writer, *state_, known);
+      });
+  return logged(status, "CompositePool::save");
+}
+
+Status CompositePool::load(std::span<const std::byte> saved, const Execution& execution) {
+  ByteReader in = open_snapshot(saved, kCompositesMagic, kCompositesVersion);
+  if (in.get<std::uint32_t>() != kAllShapeKinds) in.fail();
+  if (!in.ok()) return logged(status_of(in), "CompositePool::load");
+  CompositePool fresh(shapes_, memory_);
+  Status status = Status::ok;
+  // Also of what is empty: a pool that has been used has seen changes, which are counted on.
+  if (!in.rest().empty() || state_ != nullptr) {
+    mid::Composites* const all = fresh.state();
+    status = all == nullptr ? Status::out_of_memory : Status::ok;
+    if (status == Status::ok && !in.rest().empty()) {
+      status = CompositesReader(in, fresh, *all, execution).run();
+    }
+  }
+  if (status != Status::ok) return logged(refused_as(status), "CompositePool::load");
+  if (fresh.state_ != nullptr) fresh.state_->revision = revision() + 1;
+  std::swap(state_, fresh.state_);
+  return Status::ok;
+}
+
+}  // namespace winnow

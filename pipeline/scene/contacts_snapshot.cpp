@@ -1,0 +1,328 @@
+// What contacts show and what they remember for the next call. Of keys whose bodies live the ids
+// are saved, so that contacts are of the scene that they are loaded for whatever its keys are by
+// then.
+
+#include <winnow/pipeline/scene.h>
+
+#include "core/hooks/log.h"
+#include "core/memory/new_in.h"
+#include "core/memory/snapshot_frame.h"
+#include "pipeline/scene/contact_frame.h"
+#include "pipeline/scene/scene_state.h"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+#include <utility>
+
+namespace winnow {
+namespace {
+
+constexpr std::string_view kContactsMagic = "WINNOWCT";
+constexpr std::uint32_t kContactsVersion = 1;
+
+static_assert(sizeof(PairRecord) == 16 && sizeof(EndedContact) == 32);
+
+/// Calls visit(column) for all columns of a frame but runs and keys, whatever its level.
+template <typename Frame, typename Visit>
+void visit_frame(Frame& frame, Visit&& visit) {
+  for (auto& column : frame.data) visit(column);
+  visit(frame.event);
+  visit(frame.manifold_first);
+  for (auto& column : frame.part) visit(column);
+  visit(frame.distance);
+  visit(frame.error_bound);
+  for (auto& column : frame.normal) visit(column);
+  for (auto& column : frame.point) visit(column);
+  visit(frame.point_first);
+  for (auto& column : frame.points.position) visit(column);
+  visit(frame.points.depth);
+  visit(frame.points.feature);
+}
+
+/// How a scene stands as far as contacts tell.
+[[nodiscard]] std::array<std::uint64_t, 4> standing(const SceneState& scene) noexcept {
+  return {scene.clock, scene.regroupings, scene.keys.slot_count(), scene.keys.size()};
+}
+
+/// Contacts on their way into a snapshot.
+class ContactsWriter {
+ public:
+  ContactsWriter(ByteWriter& out, const SceneState& scene) noexcept : out_(out), scene_(scene) {}
+
+  void put(const ContactsState& contacts) noexcept {
+    for (const std::uint64_t number : standing(scene_)) out_.put(number);
+    out_.put(contacts.level);
+    out_.put(contacts.clock);
+    out_.put(contacts.regroupings);
+    out_.put(std::uint64_t{contacts.carried_count});
+    put_frame(contacts.frame, contacts.records, contacts.carried);
+    put_ended(contacts.ended);
+    const bool sleeps = !contacts.dormant_records.empty();
+    out_.put(sleeps);
+    if (sleeps) put_frame(contacts.dormant, contacts.dormant_records, contacts.dormant_carried);
+    put_column(contacts.history.pair);
+    put_column(contacts.history.point);
+    put_column(contacts.history.pose);
+  }
+
+ private:
+  template <typename T>
+  void put_column(const Column<T>& column) noexcept {
+    out_.put_array(std::span<const T>(column.data(), column.size()));
+  }
+  /// A live one's stamp is 0, which no key has.
+  void put_key(Key key) noexcept {
+    out_.put(key.id);
+    out_.put(scene_.keys.is_valid(key) ? 0U : key.stamp);
+  }
+  void put_frame(const ContactFrame& frame, const Column<PairRecord>& records,
+                 const Column<CarriedPair>& carried) noexcept {
+    out_.put(std::uint64_t{frame.pairs()});
+    for (const Column<Key>& keys : frame.key) {
+      for (const Key key : keys) put_key(key);
+    }
+    visit_frame(frame, [&](const auto& column) { put_column(column); });
+    out_.put(std::uint64_t{frame.runs.size()});
+    for (const ContactRun& run : frame.runs) {
+      out_.put(run.kind_a);
+      out_.put(run.kind_b);
+      out_.put(run.first);
+      out_.put(run.count);
+    }
+    put_column(records);
+    out_.put(std::uint64_t{carried.size()});
+    for (const CarriedPair& one : carried) {
+      out_.put_bytes(&one.relative, sizeof one.relative);
+      out_.put_bytes(one.turn, sizeof one.turn);
+      out_.put(one.limit);
+      out_.put(one.radius);
+      out_.put(one.radius_a);
+      out_.put(one.drift);
+      out_.put(one.from_b);
+      out_.put(one.widened);
+    }
+  }
+  void put_ended(const Column<EndedContact>& ended) noexcept {
+    out_.put(std::uint64_t{ended.size()});
+    for (const EndedContact& one : ended) {
+      put_key(one.a);
+      put_key(one.b);
+      out_.put(one.data_a);
+      out_.put(one.data_b);
+    }
+  }
+
+  ByteWriter& out_;
+  const SceneState& scene_;
+};
+
+/// Reads contacts into a state that has none, and asks of all numbers that lead somewhere whether
+/// they do.
+class ContactsReader {
+ public:
+  ContactsReader(ByteReader& in, const SceneState& scene, ContactsState& contacts) noexcept
+      : in_(in), scene_(scene), contacts_(contacts) {}
+
+  [[nodiscard]] Status run() noexcept {
+    for (const std::uint64_t number : standing(scene_)) {
+      if (in_.get<std::uint64_t>() != number) in_.fail();
+    }
+    contacts_.level = in_.get_enum(ContactLevel::manifold);
+    contacts_.clock = in_.get<std::uint32_t>();
+    contacts_.regroupings = in_.get<std::uint64_t>();
+    contacts_.carried_count = static_cast<std::size_t>(in_.get<std::uint64_t>());
+    carries_ = scene_.options.carry_over > 0.0 && contacts_.level >= ContactLevel::distance;
+    const bool read =
+        read_frame(contacts_.frame, contacts_.records, contacts_.carried) && read_ended() &&
+        (!in_.get_bool() ||
+         read_frame(contacts_.dormant, contacts_.dormant_records, contacts_.dormant_carried)) &&
+        read_history();
+    if (!read || !in_.rest().empty()) in_.fail();
+    contacts_.scene = scene_.serial;
+    // Of no pairs that the scene has found: all are matched anew.
+    contacts_.pairs_serial = ~std::uint64_t{0};
+    return status_of(in_);
+  }
+
+ private:
+  [[nodiscard]] Key get_key() noexcept {
+    const auto id = in_.get<ObjectId>();
+    const auto stamp = in_.get<std::uint32_t>();
+    const bool lives = stamp == 0 && scene_.keys.is_live(id);
+    if (id >= scene_.keys.slot_count() || (stamp == 0) != lives) in_.fail();
+    return lives ? scene_.keys.key_of(id) : Key{id, stamp};
+  }
+
+  /// Room for so many that take so many bytes each.
+  template <typename T>
+  [[nodiscard]] bool make_room(Column<T>& column, std::uint64_t count, std::size_t bytes) noexcept {
+    if (!in_.ok() || count > in_.rest().size() / bytes) return in_.fail();
+    return column.resize(static_cast<std::size_t>(count)) || in_.refuse_memory();
+  }
+
+  [[nodiscard]] bool read_frame(ContactFrame& frame, Column<PairRecord>& records,
+                                Column<CarriedPair>& carried) noexcept {
+    const auto pairs = in_.get<std::uint64_t>();
+    for (Column<Key>& keys : frame.key) {
+      if (!make_room(keys, pairs, sizeof(Key))) return false;
+      for (Key& key : keys) key = get_key();
+    }
+    visit_frame(frame, [&](auto& column) { (void)in_.get_array(column); });
+    const auto runs = in_.get<std::uint64_t>();
+    if (!make_room(frame.runs, runs, 10)) return false;
+    for (ContactRun& run : frame.runs) {
+      run.kind_a = in_.get<std::uint8_t>();
+      run.kind_b = in_.get<std::uint8_t>();
+      run.first = in_.get<std::uint32_t>();
+      run.count = in_.get<std::uint32_t>();
+    }
+    (void)in_.get_array(records);
+    if (!read_carried(carried)) return false;
+    return (has_good_columns(frame) && are_good(frame, records) &&
+            carried.size() == (carries_ ? records.size() : 0)) ||
+           in_.fail();
+  }
+
+  [[nodiscard]] bool read_carried(Column<CarriedPair>& carried) noexcept {
+    const auto count = in_.get<std::uint64_t>();
+    if (!make_room(carried, count, sizeof(Pose))) return false;
+    for (CarriedPair& one : carried) {
+      (void)in_.get_bytes(&one.relative, sizeof one.relative);
+      (void)in_.get_bytes(one.turn, sizeof one.turn);
+      one.limit = in_.get<double>();
+      one.radius = in_.get<float>();
+      one.radius_a = in_.get<float>();
+      one.drift = in_.get<float>();
+      one.from_b = in_.get_bool();
+      one.widened = in_.get_bool();
+    }
+    return in_.ok();
+  }
+
+  /// True if `first` begins at 0, never falls, and ends at `end`; of a level without, if empty.
+  [[nodiscard]] static bool leads(const Column<std::uint32_t>& first, std::size_t count,
+                                  std::size_t end) noexcept {
+    return first.size() == count + 1 && first[0] == 0 && first[count] == end &&
+           std::is_sorted(first.begin(), first.end());
+  }
+
+  [[nodiscard]] bool has_good_columns(const ContactFrame& frame) const noexcept {
+    const ContactLevel level = contacts_.level;
+    const std::size_t pairs = frame.key[0].size();
+    const std::size_t manifolds = frame.part[0].size();
+    const std::size_t distances = level >= ContactLevel::distance ? manifolds : 0;
+    const std::size_t places = level == ContactLevel::distance ? manifolds : 0;
+    const std::size_t points = frame.points.depth.size();
+    bool good = frame.event.size() == pairs && frame.part[1].size() == manifolds &&
+                frame.distance.size() == distances && frame.error_bound.size() == distances &&
+                frame.points.feature.size() == points;
+    for (const auto& column : frame.data) good = good && column.size() == pairs;
+    for (const auto& column : frame.normal) good = good && column.size() == distances;
+    for (const auto& column : frame.point) good = good && column.size() == places;
+    for (const auto& column : frame.points.position) good = good && column.size() == points;
+    const bool told = std::all_of(frame.event.begin(), frame.event.end(), [](ContactEvent event) {
+      return event <= ContactEvent::persisted;
+    });
+    if (!good || !told) return false;
+    if (level == ContactLevel::pairs) {
+      return manifolds == 0 && points == 0 && frame.manifold_first.empty() &&
+             frame.point_first.empty();
+    }
+    if (!leads(frame.manifold_first, pairs, manifolds)) return false;
+    return level == ContactLevel::manifold ? leads(frame.point_first, manifolds, points)
+                                           : points == 0 && frame.point_first.empty();
+  }
+
+  /// Runs of all pairs of what is shown; records in their order, each shown pair once, of its
+  /// bodies.
+  [[nodiscard]] bool are_good(const ContactFrame& frame,
+                              const Column<PairRecord>& records) noexcept {
+    std::size_t end = 0;
+    for (const ContactRun& run : frame.runs) {
+      if (run.first != end || run.kind_a >= kAllShapeKinds || run.kind_b >= kAllShapeKinds) {
+        return false;
+      }
+      end += run.count;
+    }
+    if (&frame == &contacts_.frame && end != frame.pairs()) return false;
+    const std::size_t bodies = scene_.keys.slot_count();
+    const auto order = [](const PairRecord& r) { return std::tuple(r.code, r.pair.a, r.pair.b); };
+    Column<std::uint8_t> seen(frame.event.memory());
+    if (!seen.resize(frame.pairs())) return in_.refuse_memory();
+    std::fill(seen.begin(), seen.end(), std::uint8_t{0});
+    std::size_t shown = 0;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      const PairRecord& record = records[i];
+      const bool is_pair = record.code < BodyKindPairs::kCount && record.pair.a < bodies &&
+                           record.pair.b < bodies && record.pair.a != record.pair.b;
+      if (!is_pair || (i > 0 && !(order(records[i - 1]) < order(record)))) return false;
+      if (record.shown == kNoEntry) continue;
+      if (record.shown >= frame.pairs() || seen[record.shown]++ != 0) return false;
+      if (frame.key[0][record.shown].id != record.pair.a) return false;
+      if (frame.key[1][record.shown].id != record.pair.b) return false;
+      ++shown;
+    }
+    return shown == frame.pairs() && (carries_ || shown == records.size());
+  }
+
+  [[nodiscard]] bool read_ended() noexcept {
+    const auto count = in_.get<std::uint64_t>();
+    if (!make_room(contacts_.ended, count, sizeof(EndedContact))) return false;
+    for (EndedContact& one : contacts_.ended) {
+      one.a = get_key();
+      one.b = get_key();
+      one.data_a = in_.get<ClientData>();
+      one.data_b = in_.get<ClientData>();
+    }
+    return in_.ok();
+  }
+
+  [[nodiscard]] bool read_history() noexcept {
+    ContactHistory& history = contacts_.history;
+    (void)in_.get_array(history.pair);
+    (void)in_.get_array(history.point);
+    (void)in_.get_array(history.pose);
+    const bool told = scene_.options.warm_start;
+    const bool stands = std::all_of(history.pose.begin(), history.pose.end(),
+                                    [](const Pose& pose) { return pose.is_valid(); });
+    return in_.ok() && stands && history.pose.size() <= scene_.keys.slot_count() &&
+           history.pair.size() == (told ? contacts_.frame.pairs() : 0) &&
+           history.point.size() == (told ? contacts_.frame.points.size() : 0);
+  }
+
+  ByteReader& in_;
+  const SceneState& scene_;
+  ContactsState& contacts_;
+  bool carries_ = false;
+};
+
+}  // namespace
+
+Status Scene::save_contacts(const Contacts& contacts, Column<std::byte>& out) const {
+  Status status = Status::out_of_memory;
+  if (state_ != nullptr && contacts.state_ != nullptr) {
+    status = contacts.state_->scene != state_->serial
+                 ? Status::invalid_key
+                 : write_snapshot(out, kContactsMagic, kContactsVersion, [&](ByteWriter& writer) {
+                     writer.put(kAllShapeKinds);
+                     ContactsWriter(writer, *state_).put(*contacts.state_);
+                   });
+  }
+  return logged(status, "Scene::save_contacts");
+}
+
+Status Scene::load_contacts(std::span<const std::byte> saved, Contacts& contacts) const {
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::load_contacts");
+  ByteReader in = open_snapshot(saved, kContactsMagic, kContactsVersion);
+  if (in.get<std::uint32_t>() != kAllShapeKinds) in.fail();
+  if (!in.ok()) return logged(status_of(in), "Scene::load_contacts");
+  auto* fresh = new_in<ContactsState>(contacts.memory_, contacts.memory_);
+  if (fresh == nullptr) return logged(Status::out_of_memory, "Scene::load_contacts");
+  const Status status = ContactsReader(in, *state_, *fresh).run();
+  if (status == Status::ok) std::swap(contacts.state_, fresh);
+  delete_in(contacts.memory_, fresh);
+  return logged(status, "Scene::load_contacts");
+}
+
+}  // namespace winnow

@@ -1,0 +1,304 @@
+// Bodies as they stand, and what each set's partition holds of them. Read into a scene beside,
+// which then gives its columns: whoever asks this scene goes on asking it.
+
+#include <winnow/pipeline/scene.h>
+
+#include "core/hooks/log.h"
+#include "core/memory/new_in.h"
+#include "core/memory/saved_keys.h"
+#include "core/memory/snapshot_frame.h"
+#include "pipeline/scene/scene_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace winnow {
+namespace {
+
+constexpr std::string_view kSceneMagic = "WINNOWSC";
+constexpr std::uint32_t kSceneVersion = 1;
+
+/// Calls visit(column) for all that a body is, by its id: one line for each column.
+template <typename State, typename Visit>
+void visit_body_columns(State& scene, Visit&& visit) {
+  visit(scene.shape);
+  visit(scene.pose);
+  visit(scene.motion);
+  visit(scene.moved_at);
+  visit(scene.shaped_at);
+  if (scene.options.carry_over > 0.0) visit(scene.anchor);
+}
+
+void put_options(ByteWriter& out, const SceneOptions& options) noexcept {
+  out.put(options.margin);
+  out.put(options.tier);
+  out.put(options.carry_over);
+  out.put(options.contact_reduction);
+  out.put(options.warm_start);
+}
+
+void read_options(ByteReader& in, SceneOptions& options) noexcept {
+  options.margin = in.get<double>();
+  options.tier = in.get_enum(NarrowTier::reference);
+  options.carry_over = in.get<double>();
+  options.contact_reduction = in.get_bool();
+  options.warm_start = in.get_bool();
+}
+
+[[nodiscard]] bool sees_composites(const SceneState& scene) noexcept {
+  return scene.options.composites == nullptr ||
+         scene.options.composites->revision() == scene.composites_seen;
+}
+
+void put_clocks(ByteWriter& out, const SceneState& scene) noexcept {
+  out.put_bytes(scene.origin.data(), 3 * sizeof(double));
+  out.put(std::uint64_t{scene.boxes_since_look});
+  out.put(scene.boxes_updated);
+  out.put(scene.clock);
+  out.put(scene.regroupings);
+  out.put(sees_composites(scene));
+}
+
+void read_clocks(ByteReader& in, SceneState& scene) noexcept {
+  (void)in.get_bytes(scene.origin.data(), 3 * sizeof(double));
+  scene.boxes_since_look = static_cast<std::size_t>(in.get<std::uint64_t>());
+  scene.boxes_updated = in.get<std::uint64_t>();
+  scene.clock = in.get<std::uint32_t>();
+  scene.regroupings = in.get<std::uint64_t>();
+  // Of a pool that was loaded, and counts its changes anew.
+  const std::uint64_t revision =
+      scene.options.composites != nullptr ? scene.options.composites->revision() : 0;
+  scene.composites_seen = in.get_bool() ? revision : ~revision;
+  if (!scene.origin.allFinite()) in.fail();
+}
+
+/// The boxes that a set's partition has, and the filters if any is not the default.
+void put_set(ByteWriter& out, const SceneState& scene, Motion which) noexcept {
+  const SceneSet& set = scene.set(which);
+  out.put_bytes(set.origin.data(), 3 * sizeof(double));
+  bool filtered = false;
+  const auto for_bodies = [&](auto&& visit) {
+    for_live(scene.keys.stamps(), [&](ObjectId body) {
+      if (scene.motion[body] == which) visit(scene.place[body]);
+    });
+  };
+  for_bodies([&](Key place) {
+    Aabb box;
+    ObjectFilter filter;
+    (void)set.partition->bounds(place, box);
+    (void)set.partition->filter(place, filter);
+    filtered = filtered || filter != ObjectFilter{};
+    out.put_bytes(box.min.data(), 3 * sizeof(float));
+    out.put_bytes(box.max.data(), 3 * sizeof(float));
+  });
+  out.put(filtered);
+  if (!filtered) return;
+  for_bodies([&](Key place) {
+    ObjectFilter filter;
+    (void)set.partition->filter(place, filter);
+    out.put_bytes(&filter, sizeof filter);
+  });
+}
+
+void put_scene(ByteWriter& out, const SceneState& scene) noexcept {
+  put_options(out, scene.options);
+  put_keys(out, scene.keys);
+  visit_body_columns(scene, [&](const auto& column) {
+    for_live(scene.keys.stamps(),
+             [&](ObjectId body) { out.put_bytes(&column[body], sizeof column[body]); });
+  });
+  put_clocks(out, scene);
+  out.put_array(std::span<const std::uint32_t>(scene.stale.data(), scene.stale.size()));
+  out.put_array(std::span<const std::uint64_t>(scene.ignored.data(), scene.ignored.size()));
+  for (const Motion which : kEveryMotion) put_set(out, scene, which);
+}
+
+/// Reads a scene into a state that has no bodies; its keys are read beside, to be restored last.
+class SceneReader {
+ public:
+  SceneReader(ByteReader& in, SceneState& scene, ReadKeys& keys) noexcept
+      : in_(in), scene_(scene), keys_(keys) {}
+
+  [[nodiscard]] Status run() {
+    if (!scene_.options_are_good) return Status::invalid_argument;
+    keys_.read(in_);
+    if (keys_.stamps.size() >= kMaxBodies) in_.fail();
+    if (!in_.ok() || !read_columns()) return status_of(in_);
+    read_clocks(in_, scene_);
+    if (!read_stale() || !read_ignored()) return status_of(in_);
+    for (const Motion which : kEveryMotion) {
+      if (const Status status = read_set(which); status != Status::ok) return status;
+    }
+    if (!in_.rest().empty()) in_.fail();
+    return status_of(in_);
+  }
+
+ private:
+  [[nodiscard]] bool is_live(std::uint64_t body) const noexcept {
+    return body < keys_.stamps.size() && (keys_.stamps[body] & 1U) != 0;
+  }
+
+  /// Places of bodies that are gone hold nothing.
+  [[nodiscard]] bool read_columns() {
+    const std::size_t slots = keys_.stamps.size();
+    Column<std::uint8_t> seen(scene_.options.memory);
+    if (!scene_.reserve(slots) || !seen.resize(slots)) return in_.refuse_memory();
+    if (!KeyTable::are_slots(keys_.saved(), seen)) return in_.fail();
+    visit_body_columns(scene_, [&](auto& column) {
+      column.set_size(slots);
+      std::fill(column.begin(), column.end(), std::remove_reference_t<decltype(column[0])>{});
+      for_live(keys_.all_stamps(),
+               [&](ObjectId body) { (void)in_.get_bytes(&column[body], sizeof column[body]); });
+    });
+    scene_.place.set_size(slots);
+    std::fill(scene_.place.begin(), scene_.place.end(), Key{});
+    scene_.is_stale.set_size(slots);
+    std::fill(scene_.is_stale.begin(), scene_.is_stale.end(), std::uint8_t{0});
+    bool good = in_.ok();
+    for_live(keys_.all_stamps(), [&](ObjectId body) {
+      good = good && scene_.motion[body] <= Motion::sleeping &&
+             scene_.check(scene_.shape[body], scene_.pose[body]) == Status::ok &&
+             (scene_.anchor.empty() || scene_.anchor[body].is_valid());
+    });
+    return good || in_.fail();
+  }
+
+  [[nodiscard]] bool read_stale() {
+    Column<std::uint32_t> stale(scene_.options.memory);
+    if (!in_.get_array(stale)) return false;
+    for (const std::uint32_t body : stale) {
+      if (!is_live(body) || scene_.is_stale[body] != 0) return in_.fail();
+      scene_.mark_stale(body);
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool read_ignored() {
+    const std::size_t slots = keys_.stamps.size();
+    if (!in_.get_array(scene_.ignored)) return false;
+    if (scene_.ignored.empty()) return true;
+    if (!scene_.ignores.resize(slots)) return in_.refuse_memory();
+    std::fill(scene_.ignores.begin(), scene_.ignores.end(), std::uint8_t{0});
+    std::uint64_t before = 0;
+    for (const std::uint64_t pair : scene_.ignored) {
+      const std::uint64_t first = pair >> 32U;
+      const std::uint64_t second = pair & 0xFFFFFFFFU;
+      const bool good = first < second && pair > before && is_live(first) && is_live(second);
+      if (!good) return in_.fail();
+      scene_.ignores[first] = scene_.ignores[second] = 1;
+      before = pair;
+    }
+    return true;
+  }
+
+  [[nodiscard]] Status read_set(Motion which) {
+    SceneSet& set = scene_.set(which);
+    (void)in_.get_bytes(set.origin.data(), 3 * sizeof(double));
+    if (!set.origin.allFinite()) in_.fail();
+    scene_.chosen.clear();
+    for_live(keys_.all_stamps(), [&](ObjectId body) {
+      if (scene_.motion[body] == which) (void)scene_.chosen.push_back(body);
+    });
+    const std::size_t count = scene_.chosen.size();
+    if (count > in_.rest().size() / sizeof(PlainBox)) in_.fail();
+    if (!in_.ok()) return status_of(in_);
+    if (count == 0) return in_.get_bool() ? Status::invalid_argument : status_of(in_);
+    if (!scene_.boxes.resize(count)) return Status::out_of_memory;
+    (void)in_.get_bytes(scene_.boxes.data(), count * sizeof(PlainBox));
+    const Status placed = scene_.place_boxes(which, {scene_.chosen.data(), count});
+    return placed == Status::ok ? read_filters(set) : placed;
+  }
+
+  [[nodiscard]] Status read_filters(SceneSet& set) {
+    if (!in_.get_bool()) return status_of(in_);
+    for (const std::uint32_t body : scene_.chosen) {
+      ObjectFilter filter;
+      if (!in_.get_bytes(&filter, sizeof filter)) return status_of(in_);
+      if (filter == ObjectFilter{}) continue;
+      const Status status = set.partition->set_filter(scene_.place[body], filter);
+      if (status != Status::ok) return status;
+    }
+    return Status::ok;
+  }
+
+  ByteReader& in_;
+  SceneState& scene_;
+  ReadKeys& keys_;
+};
+
+/// Gives a scene all that another one was read to be. Room for the keys was made.
+void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexcept {
+  scene.options = read.options;
+  scene.options_are_good = true;
+  scene.growth = read.growth;
+  scene.keys.restore(keys.saved(), scene.keys);
+  scene.shape.swap(read.shape);
+  scene.pose.swap(read.pose);
+  scene.motion.swap(read.motion);
+  scene.place.swap(read.place);
+  scene.moved_at.swap(read.moved_at);
+  scene.shaped_at.swap(read.shaped_at);
+  scene.anchor.swap(read.anchor);
+  scene.stale.swap(read.stale);
+  scene.is_stale.swap(read.is_stale);
+  scene.chosen.swap(read.chosen);
+  scene.left.swap(read.left);
+  scene.ignored.swap(read.ignored);
+  scene.ignores.swap(read.ignores);
+  for (std::size_t i = 0; i < kMotions; ++i) {
+    SceneSet& set = scene.sets[i];
+    std::swap(set.partition, read.sets[i].partition);
+    set.body_of.swap(read.sets[i].body_of);
+    set.origin = read.sets[i].origin;
+    set.with_dynamic.clear();
+    ++set.changes;
+  }
+  scene.pairs.clear();
+  scene.origin = read.origin;
+  scene.boxes_since_look = read.boxes_since_look;
+  scene.boxes_updated = read.boxes_updated;
+  // Contacts that were filled before are of another scene now.
+  scene.serial = read.serial;
+  scene.clock = read.clock;
+  scene.regroupings = read.regroupings;
+  scene.composites_seen = read.composites_seen;
+  scene.statistics = {};
+}
+
+[[nodiscard]] Status load_into(SceneState& scene, std::span<const std::byte> saved) {
+  ByteReader in = open_snapshot(saved, kSceneMagic, kSceneVersion);
+  if (in.get<std::uint32_t>() != kAllShapeKinds) in.fail();
+  SceneOptions options = scene.options;
+  read_options(in, options);
+  if (!in.ok()) return status_of(in);
+  auto* const read = new_in<SceneState>(options.memory, scene.shapes, options);
+  if (read == nullptr) return Status::out_of_memory;
+  ReadKeys keys(options.memory);
+  Status status = SceneReader(in, *read, keys).run();
+  if (status == Status::ok && !scene.keys.reserve_slots(keys.stamps.size())) {
+    status = Status::out_of_memory;
+  }
+  if (status == Status::ok) take_over(scene, *read, keys);
+  delete_in(options.memory, read);
+  return status == Status::ok || status == Status::out_of_memory ? status
+                                                                 : Status::invalid_argument;
+}
+
+}  // namespace
+
+Status Scene::save(Column<std::byte>& out) const {
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::save");
+  const Status status = write_snapshot(out, kSceneMagic, kSceneVersion, [&](ByteWriter& writer) {
+    writer.put(kAllShapeKinds);
+    put_scene(writer, *state_);
+  });
+  return logged(status, "Scene::save");
+}
+
+Status Scene::load(std::span<const std::byte> saved) {
+  return logged(state_ == nullptr ? Status::out_of_memory : load_into(*state_, saved),
+                "Scene::load");
+}
+
+}  // namespace winnow

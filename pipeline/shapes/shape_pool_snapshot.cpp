@@ -1,0 +1,108 @@
+#include <winnow/pipeline/shape_pool.h>
+
+#include "core/hooks/log.h"
+#include "core/memory/saved_places.h"
+#include "core/memory/snapshot_frame.h"
+#include "pipeline/shapes/hull_builder.h"
+#include "pipeline/shapes/hull_bytes.h"
+
+#include <type_traits>
+
+namespace winnow {
+namespace {
+
+constexpr std::string_view kShapesMagic = "WINNOWSP";
+constexpr std::uint32_t kShapesVersion = 1;
+
+template <typename Shape>
+[[nodiscard]] Shape nothing() noexcept {
+  if constexpr (std::is_same_v<Shape, HullShape>) {
+    return point_hull();
+  } else {
+    return {};
+  }
+}
+
+template <typename Shape>
+void put_shape(ByteWriter& out, const Shape& shape) noexcept {
+  if constexpr (std::is_same_v<Shape, HullShape>) {
+    put_hull(out, shape);
+  } else {
+    out.put_bytes(&shape, sizeof shape);
+  }
+}
+
+/// Into the place that is next.
+template <typename Shape>
+[[nodiscard]] Status read_shape(ByteReader& in, std::pmr::memory_resource* memory,
+                                ShapePool& pool) {
+  ShapeId id;
+  if constexpr (std::is_same_v<Shape, HullShape>) {
+    ReadHull hull(memory);
+    hull.read(in);
+    return in.ok() ? pool.add_built_hull(hull.points(), hull.faces(), hull.rounding, id)
+                   : status_of(in);
+  } else {
+    Shape shape;
+    return in.get_bytes(&shape, sizeof shape) ? pool.add(shape, id) : status_of(in);
+  }
+}
+
+}  // namespace
+
+template <typename Pool, typename Visit>
+void ShapePool::for_tables(Pool& pool, Pool& other, Visit&& visit) {
+  visit(pool.spheres_, other.spheres_);
+  visit(pool.capsules_, other.capsules_);
+  visit(pool.boxes_, other.boxes_);
+  visit(pool.cylinders_, other.cylinders_);
+  visit(pool.cones_, other.cones_);
+  visit(pool.hulls_, other.hulls_);
+  visit(pool.triangles_, other.triangles_);
+  visit(pool.half_spaces_, other.half_spaces_);
+}
+
+Status ShapePool::save(Column<std::byte>& out) const {
+  const Status status = write_snapshot(out, kShapesMagic, kShapesVersion, [&](ByteWriter& writer) {
+    writer.put(kShapeKinds);
+    for_tables(*this, *this, [&](const auto& table, const auto&) {
+      put_places(writer, table.shapes.size(), table.free);
+      for (std::size_t i = 0; i < table.shapes.size(); ++i) {
+        if (table.live[i] != 0) put_shape(writer, table.shapes[i]);
+      }
+    });
+  });
+  return logged(status, "ShapePool::save");
+}
+
+// Each shape is added as any other, and so checked, with the places free that they had.
+Status ShapePool::load(std::span<const std::byte> saved) {
+  ByteReader in = open_snapshot(saved, kShapesMagic, kShapesVersion);
+  ShapePool fresh(memory_);
+  Status status = in.get<std::uint32_t>() == kShapeKinds ? Status::ok : Status::invalid_argument;
+  for_tables(fresh, fresh, [&](auto& table, auto&) {
+    using Shape = std::remove_reference_t<decltype(table.shapes[0])>;
+    ReadPlaces places(memory_);
+    if (status != Status::ok || !places.read(in)) return;
+    if (!places.open(in, table.shapes, table.free, nothing<Shape>())) return;
+    if (!table.live.resize(places.size())) {
+      in.refuse_memory();
+      return;
+    }
+    std::fill(table.live.begin(), table.live.end(), std::uint8_t{0});
+    for (std::size_t i = 0; i < places.taken() && status == Status::ok; ++i) {
+      status = read_shape<Shape>(in, memory_, fresh);
+    }
+  });
+  if (!in.ok() || !in.rest().empty()) status = in.ok() ? Status::invalid_argument : status_of(in);
+  if (status != Status::ok) return logged(refused_as(status), "ShapePool::load");
+  for_tables(*this, fresh, [](auto& table, auto& read) {
+    table.shapes.swap(read.shapes);
+    table.live.swap(read.live);
+    table.free.swap(read.free);
+  });
+  refresh_tables();
+  return Status::ok;
+}
+
+}  // namespace winnow

@@ -1,0 +1,323 @@
+// Scenes, their shapes and contacts that were saved and loaded go on as what was not; and nothing
+// that anybody may hand over as saved does any harm.
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "pipeline/recording/contact_digest.h"
+#include "tests/pipeline/scene_world.h"
+#include "tests/recording/mutations.h"
+#include "tests/support/config.h"
+#include "tests/support/meshes.h"
+
+namespace winnow::test {
+namespace {
+
+using SavedBytes = std::vector<std::byte>;
+
+/// What save(column) appends.
+template <typename Save>
+SavedBytes saved_by(const Save& save) {
+  Column<std::byte> bytes(std::pmr::get_default_resource());
+  EXPECT_EQ(save(bytes), Status::ok);
+  return {bytes.begin(), bytes.end()};
+}
+
+/// All that a stage is, as bytes.
+struct SavedStage {
+  SavedBytes shapes;
+  SavedBytes composites;
+  SavedBytes scene;
+  SavedBytes contacts;
+
+  friend bool operator==(const SavedStage&, const SavedStage&) = default;
+};
+
+/// A scene and what it is made of.
+struct Stage {
+  explicit Stage(const SceneOptions& options)
+      : composites(shapes), scene(shapes, with(options, composites)) {}
+
+  static SceneOptions with(SceneOptions options, const CompositePool& composites) {
+    options.composites = &composites;
+    return options;
+  }
+
+  [[nodiscard]] SavedStage save() const {
+    return {saved_by([&](auto& out) { return shapes.save(out); }),
+            saved_by([&](auto& out) { return composites.save(out); }),
+            saved_by([&](auto& out) { return scene.save(out); }),
+            saved_by([&](auto& out) { return scene.save_contacts(contacts, out); })};
+  }
+  void load(const SavedStage& saved) {
+    EXPECT_EQ(shapes.load(saved.shapes), Status::ok);
+    EXPECT_EQ(composites.load(saved.composites), Status::ok);
+    EXPECT_EQ(scene.load(saved.scene), Status::ok);
+    EXPECT_EQ(scene.load_contacts(saved.contacts, contacts), Status::ok);
+  }
+
+  ShapePool shapes;
+  CompositePool composites;
+  Scene scene;
+  Contacts contacts;
+};
+
+/// Shapes of every kind, some with free places before them.
+std::vector<ShapeId> add_shapes(Stage& stage) {
+  SceneWorld world(1);
+  std::vector<ShapeId> ids;
+  const auto add = [&](const auto& shape) {
+    EXPECT_EQ(stage.shapes.add(shape, ids.emplace_back()), Status::ok);
+  };
+  const ShapeTables& from = world.pool.tables();
+  for (const double radius : {0.2, 0.5, 0.4}) add(SphereShape{radius});
+  add(from.capsules[0]);
+  add(from.boxes[0]);
+  add(from.cylinders[0]);
+  add(from.cones[0]);
+  add(from.triangles[0]);
+  add(HalfSpaceShape{{0.1, -0.2, 0.7}, -1.0});
+  const HullShape& hull = from.hulls[0];
+  std::vector<std::uint32_t> sizes;
+  for (std::uint32_t f = 0; f < hull.face_count; ++f) sizes.push_back(hull.faces[f].count);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(stage.shapes.add_hull(
+                  PointView({hull.vertex[0], hull.vertex[1], hull.vertex[2]}, hull.vertex_count),
+                  {{hull.loop, 2 * std::size_t{hull.edge_count}}, sizes}, 0.01, ids.emplace_back()),
+              Status::ok);
+  }
+  for (const std::size_t gone : {std::size_t{0}, ids.size() - 2}) {
+    EXPECT_EQ(stage.shapes.remove(ids[gone]), Status::ok);
+  }
+  ids.erase(ids.end() - 2);
+  ids.erase(ids.begin());
+
+  const MeshData land = terrain(6);
+  const std::span<const std::uint32_t> corners(land.corners);
+  const std::size_t convex = ids.size();
+  EXPECT_EQ(stage.composites.add_mesh(land.points(), corners, ids.emplace_back()), Status::ok);
+  EXPECT_EQ(stage.composites.add_scaled(ids[convex], {0.5, -1.0, 2.0}, ids.emplace_back()),
+            Status::ok);
+  EXPECT_EQ(stage.composites.remove(ids[convex]), Status::ok);
+  ids.erase(ids.begin() + static_cast<std::ptrdiff_t>(convex));
+  const std::vector<float> heights{0, 1, 0.5F, 0.2F, 0.1F, 0.3F, 1, 0, 0};
+  EXPECT_EQ(stage.composites.add_height_field({.heights = heights, .columns = 3, .rows = 3},
+                                              ids.emplace_back()),
+            Status::ok);
+  std::vector<CompoundChild> children;
+  for (int i = 0; i < 18; ++i) {
+    children.push_back({ids[static_cast<std::size_t>(i) % 5], Pose::at(0.3 * i, 0.1, 0)});
+    if (i != 1 && i != 17) continue;
+    EXPECT_EQ(stage.composites.add_compound(children, ids.emplace_back()), Status::ok);
+  }
+  return ids;
+}
+
+constexpr double kSide = 5.0;
+
+Pose pose_in(Random& random) {
+  Pose pose;
+  for (double& p : pose.position) p = random.uniform(0.0, kSide);
+  for (double& q : pose.orientation) q = random.uniform(-1.0, 1.0);
+  return pose;
+}
+
+/// Bodies by their keys, ascending by id.
+std::vector<Key> keys_of(const Scene& scene) {
+  std::vector<Key> keys;
+  for (ObjectId id = 0; keys.size() < scene.size(); ++id) {
+    if (scene.contains(scene.key_of(id))) keys.push_back(scene.key_of(id));
+  }
+  return keys;
+}
+
+/// A little of everything that happens to bodies, told by a number.
+void happen(Scene& scene, Random& random, int number) {
+  const std::vector<Key> keys = keys_of(scene);
+  const auto key = [&](std::size_t i) { return keys[(i * 7 + 3) % keys.size()]; };
+  BodyDefinition body;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (random.below(3) != 0) continue;
+    EXPECT_EQ(scene.body(keys[i], body), Status::ok);
+    const double step = random.below(2) == 0 ? 0.004 : 0.2;
+    for (double& p : body.pose.position) p += random.uniform(-step, step);
+    EXPECT_EQ(scene.move(keys[i], body.pose), Status::ok);
+  }
+  const auto n = static_cast<std::size_t>(number);
+  EXPECT_EQ(scene.remove(key(n)), Status::ok);
+  EXPECT_EQ(scene.body(key(n + 1), body), Status::ok);
+  body.pose = pose_in(random);
+  Key added;
+  EXPECT_EQ(scene.add(body, added), Status::ok);
+  const Motion motions[] = {Motion::sleeping, Motion::dynamic, Motion::fixed};
+  for (std::size_t i = 2; i < 8; ++i) {
+    EXPECT_EQ(scene.set_motion(key(n + i), motions[(n + i) % 3]), Status::ok);
+  }
+  EXPECT_EQ(scene.set_ignored(key(n + 9), key(n + 10)), Status::ok);
+  EXPECT_EQ(scene.set_filter(key(n + 11), {.layers = 2, .mask = ~2U}), Status::ok);
+  EXPECT_EQ(scene.body(key(n + 12), body), Status::ok);
+  EXPECT_EQ(scene.set_shape(key(n + 13), body.shape), Status::ok);
+}
+
+/// All that contacts and some questions tell.
+std::uint64_t told(Stage& stage, ContactLevel level, SceneQueries& queries) {
+  Digest digest;
+  EXPECT_EQ(stage.scene.collide(level, stage.contacts), Status::ok);
+  add_to(digest, stage.contacts);
+  std::span<const SceneHit> hits;
+  EXPECT_EQ(queries.all(ShapeRay{{-1, 2, 2}, {1, 0.05, 0.02}}, hits), Status::ok);
+  for (const SceneHit& hit : hits) {
+    digest.add(std::uint64_t{hit.key.id});
+    digest.add(hit.t);
+  }
+  std::span<const SceneDistance> near;
+  const double middle[3] = {2, 2, 2};
+  EXPECT_EQ(queries.nearest(middle, 5, 3.0, near), Status::ok);
+  for (const SceneDistance& one : near) digest.add(one.distance);
+  return digest.value();
+}
+
+/// Goes on for some frames, by numbers alone.
+std::vector<std::uint64_t> go_on(Stage& stage, SceneQueries& queries) {
+  Random random(9);
+  std::vector<std::uint64_t> all;
+  for (int frame = 0; frame < 6; ++frame) {
+    if (frame % 3 != 0) happen(stage.scene, random, frame);
+    const auto level = frame == 4 ? ContactLevel::distance : ContactLevel::manifold;
+    all.push_back(told(stage, level, queries));
+  }
+  return all;
+}
+
+/// Bodies with a past; saved in the middle of a frame.
+void live(Stage& stage, std::size_t count) {
+  Random random(4);
+  const std::vector<ShapeId> shapes = add_shapes(stage);
+  std::vector<BodyDefinition> bodies(count);
+  std::vector<Key> keys(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    bodies[i].shape = shapes[i % shapes.size()];
+    bodies[i].pose = pose_in(random);
+    bodies[i].data = i;
+    const bool is_land = bodies[i].shape.kind_index() == 7 ||
+                         (bodies[i].shape.is_composite() &&
+                          bodies[i].shape.composite_kind() != CompositeKind::compound);
+    bodies[i].motion = is_land ? Motion::fixed : Motion::dynamic;
+  }
+  EXPECT_EQ(stage.scene.add(bodies, keys), Status::ok);
+  SceneQueries queries(stage.scene);
+  for (int frame = 0; frame < 4; ++frame) {
+    happen(stage.scene, random, frame);
+    (void)told(stage, ContactLevel::manifold, queries);
+  }
+  EXPECT_EQ(stage.scene.move(keys_of(stage.scene)[2], pose_in(random)), Status::ok);
+}
+
+std::vector<SceneOptions> kinds_of_scenes() {
+  return {{}, {.margin = 0.05, .carry_over = 0.01, .contact_reduction = true, .warm_start = true}};
+}
+
+TEST(SceneSnapshots, go_on_bit_for_bit) {
+  for (const SceneOptions& options : kinds_of_scenes()) {
+    Stage first(options);
+    live(first, scaled(150));
+    const std::vector<Key> keys = keys_of(first.scene);
+    const SavedStage saved = first.save();
+    SceneQueries queries(first.scene);
+    const std::vector<std::uint64_t> future = go_on(first, queries);
+    // The future is undone, in place: what asks the scene still does.
+    first.load(saved);
+    EXPECT_EQ(keys_of(first.scene), keys);
+    EXPECT_TRUE(first.save() == saved);
+    EXPECT_TRUE(go_on(first, queries) == future);
+    for (const Isa isa : available_isas()) {
+      const IsaScope scope(isa);
+      for (const int threads : {1, 2}) {
+        Stage other({.execution = Workers{threads}.execution()});
+        other.load(saved);
+        // The first scene has the keys.
+        SavedStage again = other.save();
+        again.scene = saved.scene;
+        EXPECT_TRUE(again == saved);
+        SceneQueries asked(other.scene);
+        EXPECT_TRUE(go_on(other, asked) == future) << to_string(isa) << " " << threads;
+      }
+    }
+  }
+}
+
+TEST(SceneSnapshots, of_contacts_are_of_the_scene_as_it_stood) {
+  Stage stage(kinds_of_scenes()[1]);
+  live(stage, 60);
+  const SavedStage saved = stage.save();
+  Contacts strange;
+  Column<std::byte> bytes(std::pmr::get_default_resource());
+  EXPECT_EQ(stage.scene.save_contacts(strange, bytes), Status::invalid_key);
+  EXPECT_TRUE(bytes.empty());
+  EXPECT_EQ(stage.scene.load_contacts(saved.contacts, strange), Status::ok);
+  EXPECT_EQ(strange.size(), stage.contacts.size());
+  EXPECT_EQ(stage.scene.remove(keys_of(stage.scene)[0]), Status::ok);
+  EXPECT_EQ(stage.scene.load_contacts(saved.contacts, strange), Status::invalid_argument);
+  EXPECT_EQ(strange.size(), stage.contacts.size());
+  // Bodies of shapes that the pools do not have.
+  Stage empty({});
+  EXPECT_EQ(empty.scene.load(saved.scene), Status::invalid_argument);
+  EXPECT_EQ(empty.composites.load(saved.composites), Status::invalid_argument);
+  EXPECT_EQ(empty.scene.size(), 0U);
+}
+
+/// Asks what was loaded, whatever it is by now.
+void use(Stage& stage) {
+  SceneQueries queries(stage.scene);
+  Random random(2);
+  for (const auto level : {ContactLevel::manifold, ContactLevel::distance}) {
+    const Status status = stage.scene.collide(level, stage.contacts);
+    EXPECT_TRUE(status == Status::ok || status == Status::out_of_memory);
+    if (stage.scene.size() > 20) happen(stage.scene, random, 1);
+  }
+  std::span<const SceneHit> hits;
+  (void)queries.all(ShapeRay{{-1, 2, 2}, {1, 0.05, 0.02}}, hits);
+}
+
+TEST(SceneSnapshots, that_anybody_made_up_are_read_or_refused) {
+  Stage first(kinds_of_scenes()[1]);
+  live(first, 40);
+  const SavedStage good = first.save();
+  Random random(3);
+  std::size_t refused = 0;
+  const std::size_t count = scaled(2500);
+  SavedBytes SavedStage::*const parts[] = {&SavedStage::shapes, &SavedStage::composites,
+                                           &SavedStage::scene, &SavedStage::contacts};
+  // What one part of a stage is loaded into, fresh only where something was read.
+  std::optional<Stage> stage;
+  for (std::size_t i = 0; i < count; ++i) {
+    SavedStage saved = good;
+    SavedBytes& bytes = saved.*parts[i % 4];
+    mutate(bytes, random);
+    if (i % 9 != 0) seal_snapshot(bytes);
+    if (!stage.has_value()) {
+      stage.emplace(SceneOptions{.execution = Execution::serial()});
+      stage->load(good);
+    }
+    const Status status = i % 4 == 0   ? stage->shapes.load(bytes)
+                          : i % 4 == 1 ? stage->composites.load(bytes)
+                          : i % 4 == 2 ? stage->scene.load(bytes)
+                                       : stage->scene.load_contacts(bytes, stage->contacts);
+    EXPECT_TRUE(status == Status::ok || status == Status::invalid_argument) << to_string(status);
+    if (status != Status::ok) {
+      ++refused;
+      continue;
+    }
+    // Who loads a pool loads what uses it.
+    const bool holds =
+        i % 4 > 1 || ((i % 4 == 1 || stage->composites.load(good.composites) == Status::ok) &&
+                      stage->scene.load(good.scene) == Status::ok);
+    if (holds) use(*stage);
+    stage.reset();
+  }
+  EXPECT_GT(refused, count / 16);
+}
+
+}  // namespace
+}  // namespace winnow::test
