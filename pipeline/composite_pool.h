@@ -43,6 +43,12 @@ class WINNOW_API CompositePool final : public MidPhase {
   /// triangles live until the last id is removed. `invalid_argument` for factors that, multiplied,
   /// are not between 1e-100 and 1e100.
   Status add_scaled(ShapeId mesh, const std::array<double, 3>& scale, ShapeId& id);
+  /// A mesh that was saved (TriangleMesh::save), with a scale: see `load` and `add_scaled` for the
+  /// errors. O(bytes).
+  Status add_saved_mesh(std::span<const std::byte> saved, const std::array<double, 3>& scale,
+                        ShapeId& id, const Execution& execution = Execution::parallel());
+  /// A height field that was saved (HeightField::save). O(bytes).
+  Status add_saved_height_field(std::span<const std::byte> saved, ShapeId& id);
   /// New places for the vertices of a mesh, seen by all its scaled ids. See TriangleMesh::refit.
   Status refit_mesh(ShapeId mesh, const PointView& vertices,
                     const Execution& execution = Execution::parallel());
@@ -72,6 +78,8 @@ class WINNOW_API CompositePool final : public MidPhase {
   [[nodiscard]] std::size_t size(CompositeKind kind) const noexcept;
   /// Null for ids of other kinds, or that are not there.
   [[nodiscard]] const TriangleMesh* mesh(ShapeId id) const noexcept;
+  /// By what a mesh is multiplied along its axes; ones for ids of other kinds.
+  [[nodiscard]] std::array<double, 3> scale(ShapeId mesh) const noexcept;
   /// Null for ids of other kinds, or that are not there. Valid until the field is removed.
   [[nodiscard]] const HeightField* height_field(ShapeId id) const noexcept;
   /// In the order in which they were given, which numbers the parts; empty for ids of other kinds.

@@ -3,6 +3,7 @@
 #include <winnow/core/export.h>
 #include <winnow/core/status.h>
 #include <winnow/partitions/partition.h>
+#include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/scene.h>
 
 #include <cstddef>
@@ -155,19 +156,24 @@ class WINNOW_API RecordedPartition {
 
 /// A shape that a recording has.
 struct RecordedShape {
-  ShapeId id;            ///< of the program's pool
+  ShapeId id;            ///< of the program's pools
   std::uint32_t number;  ///< by which the recording knows it
   std::uint64_t digest;  ///< of what it was then
+  std::uint64_t form;    ///< of that part of it which no change in place changes
 };
 
 /// A Scene whose calls are recorded, with the shapes of its bodies: see there for what each does.
-/// Composite shapes, support functions and predicates are not recorded: a body of one of these
-/// shapes ends the recording with `unsupported`.
+/// Composite shapes are recorded where the CompositePool was given that they are of, and what
+/// changes them in place is with the next question; a body of one that is of another MidPhase, or
+/// that has a support function, ends the recording with `unsupported`. Predicates are not recorded.
 class WINNOW_API RecordedScene {
  public:
   /// The recorder must outlive the scene.
   explicit RecordedScene(Recorder& recorder, const ShapePool& shapes,
                          const SceneOptions& options = {}) noexcept;
+  /// The same with composite shapes, which take the place of `options.composites`.
+  RecordedScene(Recorder& recorder, const ShapePool& shapes, const CompositePool& composites,
+                const SceneOptions& options = {}) noexcept;
   ~RecordedScene();
   RecordedScene(const RecordedScene&) = delete;
   RecordedScene& operator=(const RecordedScene&) = delete;
@@ -197,11 +203,20 @@ class WINNOW_API RecordedScene {
   /// @}
 
  private:
+  RecordedScene(Recorder& recorder, const ShapePool& shapes, const SceneOptions& options,
+                const CompositePool* composites) noexcept;
+  [[nodiscard]] RecordedShape* find_shape(ShapeId id) noexcept;
   [[nodiscard]] std::uint32_t number_of(ShapeId id) noexcept;
+  void describe(RecordedShape& shape) const noexcept;
+  void record_shape(const RecordedShape& shape) noexcept;
+  void record_composite(const RecordedShape& shape) noexcept;
+  void follow_composites() noexcept;
 
   RecorderState* recorder_;
   std::uint32_t world_;
   const ShapePool& shapes_;
+  const CompositePool* composites_;
+  std::uint64_t composites_seen_ = 0;
   Scene scene_;
   Column<RecordedShape> known_;
   std::uint32_t shapes_recorded_ = 0;

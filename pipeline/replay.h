@@ -4,6 +4,7 @@
 #include <winnow/core/export.h>
 #include <winnow/core/status.h>
 #include <winnow/partitions/partition.h>
+#include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/shape_pool.h>
 
@@ -79,6 +80,8 @@ class WINNOW_API RecordingPlayer {
   [[nodiscard]] const Scene* scene(std::size_t world) const noexcept;
   /// The shapes of a scene; null where there is none.
   [[nodiscard]] const ShapePool* shapes(std::size_t world) const noexcept;
+  /// Its composite shapes; null where there is none.
+  [[nodiscard]] const CompositePool* composites(std::size_t world) const noexcept;
 
  private:
   std::pmr::memory_resource* memory_;

@@ -29,7 +29,8 @@ class ScenesCommand : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
     option(app, "--scene", scenes_,
-           "Scenes, or recordings (.aabbs, .aabbs.xz), which have their own number of objects");
+           "Scenes, or recordings (.aabbs, .winnow, .xz of either), which have their own number of "
+           "objects");
     add_objects_option(app, objects_, "Numbers of objects");
     add_threads_option(app, threads_, "Numbers of threads");
     add_partitions_option(app, partitions_);

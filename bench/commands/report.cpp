@@ -45,7 +45,7 @@ void sort_once(std::vector<T>& values) {
 void ReportCommand::add_options(CLI::App& app) {
   option(app, "--out", out,
          "Folder for index.html, results.json and CSVs; it is made if it is not there");
-  option(app, "--scene", scenes, "Built-in scenes or recordings (.aabbs, .aabbs.xz)");
+  option(app, "--scene", scenes, "Built-in scenes or recordings (.aabbs, .winnow, .xz of either)");
   add_objects_option(app, objects, "Numbers of objects");
   add_threads_option(app, threads, "Numbers of threads");
   add_seed_option(app, seed);

@@ -89,7 +89,8 @@ class ProgramReader {
       if (partition != nullptr) {
         (void)partition->bounds(key, box);
       } else if (scene->body(key, body) == Status::ok) {
-        box = player.shapes(world_)->bounds(body.shape, body.pose);
+        box = body.shape.is_composite() ? player.composites(world_)->bounds(body.shape, body.pose)
+                                        : player.shapes(world_)->bounds(body.shape, body.pose);
       }
       put(id, box);
     }

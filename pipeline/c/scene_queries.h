@@ -126,6 +126,24 @@ WINNOW_C_API winnow_status winnow_scene_queries_nearest(winnow_scene_queries* qu
                                                         double radius, const winnow_filter* filter,
                                                         const winnow_scene_distance** bodies,
                                                         size_t* found);
+
+/// The closest pair of two sets of bodies; the null key in `a` if there is none.
+typedef struct winnow_set_distance {
+  winnow_key a;
+  uint64_t data_a;
+  winnow_scene_distance to;
+} winnow_set_distance;
+WINNOW_C_API winnow_status winnow_scene_queries_least_distance(winnow_scene_queries* queries,
+                                                               const winnow_key* a, size_t count_a,
+                                                               const winnow_key* b, size_t count_b,
+                                                               double limit,
+                                                               winnow_set_distance* answer);
+/// At most `most` pairs (body of a, body of b).
+WINNOW_C_API winnow_status winnow_scene_queries_overlaps(winnow_scene_queries* queries,
+                                                         const winnow_key* a, size_t count_a,
+                                                         const winnow_key* b, size_t count_b,
+                                                         size_t most, const winnow_key_pair** pairs,
+                                                         size_t* count);
 WINNOW_C_API winnow_status winnow_scene_queries_footprint(const winnow_scene_queries* queries,
                                                           winnow_footprint* footprint);
 

@@ -27,4 +27,5 @@
 #include <winnow/c/scene.h>
 #include <winnow/c/scene_queries.h>
 #include <winnow/c/shapes.h>
+#include <winnow/c/snapshots.h>
 #include <winnow/c/volumes.h>

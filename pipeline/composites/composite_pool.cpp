@@ -313,6 +313,12 @@ const TriangleMesh* CompositePool::mesh(ShapeId id) const noexcept {
   return entry != nullptr ? &entry->shared->mesh : nullptr;
 }
 
+std::array<double, 3> CompositePool::scale(ShapeId mesh) const noexcept {
+  const mid::MeshEntry* const entry = state_ != nullptr ? state_->mesh(mesh) : nullptr;
+  if (entry == nullptr) return {1.0, 1.0, 1.0};
+  return {entry->scale[0], entry->scale[1], entry->scale[2]};
+}
+
 const HeightField* CompositePool::height_field(ShapeId id) const noexcept {
   return state_ != nullptr ? state_->field(id) : nullptr;
 }

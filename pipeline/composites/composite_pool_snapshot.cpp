@@ -56,6 +56,27 @@ void put_composites(ByteWriter& out, const mid::Composites& all,
   }
 }
 
+/// A mesh with its first user, or a field, that `all` has no place for yet.
+[[nodiscard]] Status read_shared(std::span<const std::byte> saved, const Execution& execution,
+                                 mid::Composites& all, mid::SharedMesh*& shared) {
+  shared = all.new_mesh();
+  if (shared == nullptr) return Status::out_of_memory;
+  Status status = shared->mesh.load(saved, execution);
+  if (status == Status::ok && shared->mesh.triangles() == 0) status = Status::invalid_argument;
+  if (status == Status::ok && !shared->find_corners()) status = Status::out_of_memory;
+  if (status != Status::ok) all.release(shared);
+  return status;
+}
+[[nodiscard]] Status read_field(std::span<const std::byte> saved, mid::Composites& all,
+                                HeightField*& field) {
+  field = new_in<HeightField>(all.memory, all.memory);
+  if (field == nullptr) return Status::out_of_memory;
+  Status status = field->load(saved);
+  if (status == Status::ok && field->triangles() == 0) status = Status::invalid_argument;
+  if (status != Status::ok) delete_in(all.memory, field);
+  return status;
+}
+
 /// Reads composites into a pool that has none.
 class CompositesReader {
  public:
@@ -66,8 +87,8 @@ class CompositesReader {
   [[nodiscard]] Status run() {
     Status status = read_all(all_.meshes, mid::MeshEntry{}, [&] { return read_mesh(); });
     if (status == Status::ok) {
-      status =
-          read_all(all_.fields, static_cast<HeightField*>(nullptr), [&] { return read_field(); });
+      status = read_all(all_.fields, static_cast<HeightField*>(nullptr),
+                        [&] { return read_next_field(); });
     }
     if (status == Status::ok) {
       status = read_all(all_.compounds, static_cast<mid::Compound*>(nullptr),
@@ -97,7 +118,7 @@ class CompositesReader {
     if (number < known_.size()) {
       entry.shared = known_[number];
       ++entry.shared->users;
-    } else if (const Status status = read_shared(entry.shared); status != Status::ok) {
+    } else if (const Status status = read_next(entry.shared); status != Status::ok) {
       return status;
     }
     (void)in_.get_bytes(entry.scale, sizeof entry.scale);
@@ -108,30 +129,17 @@ class CompositesReader {
     return status_of(in_);
   }
 
-  [[nodiscard]] Status read_shared(mid::SharedMesh*& shared) {
+  [[nodiscard]] Status read_next(mid::SharedMesh*& shared) {
     if (!known_.grow(known_.size() + 1)) return Status::out_of_memory;
-    shared = all_.new_mesh();
-    if (shared == nullptr) return Status::out_of_memory;
-    Status status = shared->mesh.load(in_.get_nested(), execution_);
-    if (status == Status::ok && shared->mesh.triangles() == 0) status = Status::invalid_argument;
-    if (status == Status::ok && !shared->find_corners()) status = Status::out_of_memory;
-    if (status != Status::ok) {
-      all_.release(shared);
-      return status;
-    }
-    return known_.push_back(shared) ? Status::ok : Status::out_of_memory;
+    const Status status = read_shared(in_.get_nested(), execution_, all_, shared);
+    if (status == Status::ok) (void)known_.push_back(shared);
+    return status;
   }
 
-  [[nodiscard]] Status read_field() {
-    auto* const field = new_in<HeightField>(all_.memory, all_.memory);
-    if (field == nullptr) return Status::out_of_memory;
-    Status status = field->load(in_.get_nested());
-    if (status == Status::ok && field->triangles() == 0) status = Status::invalid_argument;
-    if (status == Status::ok) {
-      (void)all_.fields.put(field);
-    } else {
-      delete_in(all_.memory, field);
-    }
+  [[nodiscard]] Status read_next_field() {
+    HeightField* field = nullptr;
+    const Status status = read_field(in_.get_nested(), all_, field);
+    if (status == Status::ok) (void)all_.fields.put(field);
     return status;
   }
 
@@ -189,6 +197,32 @@ Status CompositePool::load(std::span<const std::byte> saved, const Execution& ex
   if (fresh.state_ != nullptr) fresh.state_->revision = revision() + 1;
   std::swap(state_, fresh.state_);
   return Status::ok;
+}
+
+Status CompositePool::add_saved_mesh(std::span<const std::byte> saved,
+                                     const std::array<double, 3>& scale, ShapeId& id,
+                                     const Execution& execution) {
+  if (!std::all_of(scale.begin(), scale.end(), mid::is_scale)) return Status::invalid_argument;
+  mid::Composites* const s = state();
+  if (s == nullptr) return Status::out_of_memory;
+  Status status = s->meshes.prepare();
+  if (status != Status::ok) return status;
+  mid::MeshEntry entry;
+  std::copy(scale.begin(), scale.end(), entry.scale);
+  status = read_shared(saved, execution, *s, entry.shared);
+  if (status == Status::ok) id = ShapeId::of(CompositeKind::mesh, s->meshes.put(entry));
+  return status;
+}
+
+Status CompositePool::add_saved_height_field(std::span<const std::byte> saved, ShapeId& id) {
+  mid::Composites* const s = state();
+  if (s == nullptr) return Status::out_of_memory;
+  Status status = s->fields.prepare();
+  if (status != Status::ok) return status;
+  HeightField* field = nullptr;
+  status = read_field(saved, *s, field);
+  if (status == Status::ok) id = ShapeId::of(CompositeKind::height_field, s->fields.put(field));
+  return status;
 }
 
 }  // namespace winnow

@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <mutex>
+#include <new>
 
 namespace winnow::python {
 namespace {
@@ -283,6 +286,84 @@ std::vector<ClientData> data_of(py::handle object, std::size_t count) {
                                              " entries, not " + std::to_string(count));
   }
   return {words.values().begin(), words.values().end()};
+}
+
+namespace {
+
+/// Blocks that wait, the one that waits longest first.
+class WaitingBlocks {
+ public:
+  struct Block {
+    void* memory;
+    std::size_t bytes;
+  };
+
+  /// The smallest that is large enough, and not much larger; null if there is none.
+  [[nodiscard]] Block take(std::size_t bytes) {
+    const std::lock_guard lock(mutex_);
+    auto best = waiting_.end();
+    for (auto at = waiting_.begin(); at != waiting_.end(); ++at) {
+      const bool fits = at->bytes >= bytes && at->bytes / 2 <= bytes;
+      if (fits && (best == waiting_.end() || at->bytes < best->bytes)) best = at;
+    }
+    if (best == waiting_.end()) return {nullptr, 0};
+    const Block taken = *best;
+    waiting_.erase(best);
+    held_ -= taken.bytes;
+    return taken;
+  }
+  void put(Block block) noexcept {
+    const std::lock_guard lock(mutex_);
+    if (block.bytes > kMostBytes || !has_room_) {
+      std::free(block.memory);
+      return;
+    }
+    while (waiting_.size() == kMost || held_ + block.bytes > kMostBytes) {
+      std::free(waiting_.front().memory);
+      held_ -= waiting_.front().bytes;
+      waiting_.erase(waiting_.begin());
+    }
+    waiting_.push_back(block);
+    held_ += block.bytes;
+  }
+  void reserve() {
+    const std::lock_guard lock(mutex_);
+    if (has_room_) return;
+    waiting_.reserve(kMost);
+    has_room_ = true;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 16;
+  static constexpr std::size_t kMostBytes = std::size_t{128} << 20U;
+
+  std::mutex mutex_;
+  std::vector<Block> waiting_;
+  std::size_t held_ = 0;
+  bool has_room_ = false;
+};
+
+// Never destroyed: arrays may outlive everything else of the module.
+WaitingBlocks& waiting_blocks() {
+  static auto* const blocks = new WaitingBlocks;
+  return *blocks;
+}
+
+}  // namespace
+
+std::pair<void*, py::capsule> KeptBlocks::take(std::size_t bytes) {
+  using Block = WaitingBlocks::Block;
+  waiting_blocks().reserve();
+  auto held = std::make_unique<Block>(waiting_blocks().take(bytes));
+  if (held->memory == nullptr) *held = {std::malloc(bytes), bytes};
+  if (held->memory == nullptr) throw std::bad_alloc();
+  void* const memory = held->memory;
+  py::capsule owner(held.get(), [](void* p) {
+    const std::unique_ptr<Block> back(static_cast<Block*>(p));
+    waiting_blocks().put(*back);
+  });
+  static_cast<void>(held.release());
+  return {memory, std::move(owner)};
 }
 
 }  // namespace winnow::python

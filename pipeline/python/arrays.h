@@ -19,6 +19,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace winnow::python {
@@ -205,14 +206,28 @@ template <typename T>
   return shown_rows(owner, data, count / columns, columns, columns * sizeof(T));
 }
 
+/// Memory of a large array that nobody has any more is written again by the next one of about its
+/// size, so that a frame like an earlier one waits for no page of the system: first writes to pages
+/// cost more than most answers. A few blocks wait at a time. From any thread.
+class KeptBlocks {
+ public:
+  /// Smaller arrays lie on pages that are there.
+  static constexpr std::size_t kLeastBytes = std::size_t{1} << 16U;
+
+  /// A block of at least so many bytes, and the capsule that gives it back. Needs the GIL.
+  [[nodiscard]] static std::pair<void*, py::capsule> take(std::size_t bytes);
+};
+
 /// A fresh array of the caller's, not yet written.
-template <typename T>
-[[nodiscard]] py::array_t<T> fresh(std::size_t count) {
-  return py::array_t<T>(static_cast<py::ssize_t>(count));
-}
-template <typename T>
-[[nodiscard]] py::array_t<T> fresh(std::size_t count, std::size_t columns) {
-  return py::array_t<T>({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(columns)});
+template <typename T, typename... Counts>
+[[nodiscard]] py::array_t<T> fresh(std::size_t count, Counts... columns) {
+  const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(count),
+                                       static_cast<py::ssize_t>(columns)...};
+  std::size_t bytes = sizeof(T) * count;
+  ((bytes *= static_cast<std::size_t>(columns)), ...);
+  if (bytes < KeptBlocks::kLeastBytes) return py::array_t<T>(shape);
+  auto [block, owner] = KeptBlocks::take(bytes);
+  return py::array_t<T>(shape, static_cast<T*>(block), owner);
 }
 [[nodiscard]] inline Key* keys_in(py::array_t<std::uint64_t>& array) {
   return reinterpret_cast<Key*>(array.mutable_data());

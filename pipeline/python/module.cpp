@@ -6,6 +6,7 @@
 #include "pipeline/python/partition.h"
 #include "pipeline/python/refusal.h"
 #include "pipeline/python/shared_shapes.h"
+#include "pipeline/python/snapshots.h"
 
 #include <winnow/core/rounding.h>
 #include <winnow/simd/isa.h>
@@ -141,6 +142,7 @@ PYBIND11_MODULE(_core, module) {
   add_pairs(module, partition);
   add_partition(module, partition);
   add_objects(module, partition);
+  add_partition_snapshots(partition);
   add_shapes(module);
   add_narrow(module);
   add_scene(module);

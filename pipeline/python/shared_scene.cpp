@@ -5,6 +5,7 @@
 #include "pipeline/python/contact_choices.h"
 #include "pipeline/python/drawing.h"
 #include "pipeline/python/locks.h"
+#include "pipeline/python/snapshots.h"
 
 #include <algorithm>
 #include <limits>
@@ -437,6 +438,7 @@ void add_scene(py::module_& module) {
       .def("debug_draw", &draw, py::kw_only(), arg("objects") = true, arg("structure") = true,
            arg("labels") = false, arg("max_depth") = 64, "As Partition.debug_draw, of all sets.");
   add_scene_queries(module, scene);
+  add_scene_snapshots(scene);
 }
 
 }  // namespace winnow::python

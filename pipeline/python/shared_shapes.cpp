@@ -5,6 +5,7 @@
 #include "pipeline/python/locks.h"
 #include "pipeline/python/questions.h"
 #include "pipeline/python/refusal.h"
+#include "pipeline/python/snapshots.h"
 
 #include <winnow/pipeline/shape_rays.h>
 
@@ -24,6 +25,40 @@ void SharedShapes::use(const ShapeUses& shapes, int change) {
   for (const auto& [bits, count] : shapes) {
     uses_[bits] += count * static_cast<std::uint32_t>(change);
   }
+}
+
+namespace {
+
+/// Uses by compounds.
+[[nodiscard]] ShapeUses uses_of(const CompositePool& composites) {
+  ShapeUses uses;
+  std::size_t left = composites.size(CompositeKind::compound);
+  for (std::uint32_t index = 0; left != 0; ++index) {
+    const ShapeId id = ShapeId::of(CompositeKind::compound, index);
+    if (!composites.contains(id)) continue;
+    --left;
+    for (const CompoundChild& child : composites.children(id)) ++uses[child.shape.bits];
+  }
+  return uses;
+}
+
+}  // namespace
+
+Status SharedShapes::load(std::span<const std::byte> convex, std::span<const std::byte> composite) {
+  const std::lock_guard lock(uses_mutex_);
+  ShapeUses by_compounds = uses_of(composites);
+  for (const auto& [bits, count] : uses_) {
+    if (count != by_compounds[bits]) return Status::invalid_key;
+  }
+  // Both are read beside, so that neither is taken alone.
+  ShapePool read;
+  CompositePool made(read);
+  Status status = read.load(convex);
+  if (status == Status::ok) status = made.load(composite);
+  if (status == Status::ok) status = pool.load(convex);
+  if (status == Status::ok) status = composites.load(composite);
+  if (status == Status::ok) uses_ = uses_of(composites);
+  return status;
 }
 
 bool SharedShapes::is_used(ShapeId id) const {
@@ -432,8 +467,6 @@ struct RayHits : EmptyIfZero {
   return {{}, hit, t, normal};
 }
 
-using ShapesClass = py::class_<Shapes, std::shared_ptr<Shapes>>;
-
 void add_convex(ShapesClass& type) {
   using py::arg;
   type.def("add_spheres", &add_spheres, arg("radius"),
@@ -527,6 +560,7 @@ void add_shapes(py::module_& module) {
             return result;
           },
           "Bytes (used, reserved) of convex and composite shapes.");
+  add_shape_snapshots(type);
 }
 
 }  // namespace winnow::python

@@ -32,6 +32,10 @@ class SharedShapes : public NeedsInit {
   void use(std::span<const ShapeId> shapes, int change);
   void use(const ShapeUses& shapes, int change);
   [[nodiscard]] bool is_used(ShapeId id) const;
+  /// Becomes what was saved: `invalid_key` while anything but compounds uses shapes. Under the
+  /// mutex.
+  [[nodiscard]] Status load(std::span<const std::byte> convex,
+                            std::span<const std::byte> composite);
 
   mutable std::shared_mutex mutex;
   ShapePool pool;
@@ -43,6 +47,8 @@ class SharedShapes : public NeedsInit {
   mutable std::mutex uses_mutex_;
   ShapeUses uses_;
 };
+
+using ShapesClass = py::class_<SharedShapes, std::shared_ptr<SharedShapes>>;
 
 /// Ids of shapes: an array, read where it lies if it is of uint32 in one piece, or one for all.
 class ShapeInput {

@@ -60,7 +60,11 @@ enum class RecordedCall : std::uint8_t {
   set_ignored,
   refresh_scene,
   collide,
+  add_composite,
+  change_composite,
 };
+/// The last there is.
+inline constexpr RecordedCall kLastCall = RecordedCall::change_composite;
 
 /// What a call names objects by: keys belong to one process, ids are the same in each.
 struct RecordedPair {

@@ -1,3 +1,4 @@
+#include "pipeline/recording/composite_bytes.h"
 #include "pipeline/recording/contact_digest.h"
 #include "pipeline/recording/recorder_state.h"
 #include "pipeline/shapes/hull_bytes.h"
@@ -49,7 +50,7 @@ void with_shape(const ShapeTables& tables, ShapeId id, Use&& use) {
   }
 }
 
-std::uint64_t digest_of(const ShapeTables& tables, ShapeId id) {
+std::uint64_t digest_of(const ShapeTables& tables, ShapeId id) noexcept {
   Digest digest;
   with_shape(tables, id, [&](const auto& shape) {
     if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, HullShape>) {
@@ -61,13 +62,30 @@ std::uint64_t digest_of(const ShapeTables& tables, ShapeId id) {
   return digest.value();
 }
 
+/// Of a shape that is not what it was.
+constexpr std::uint32_t kForgotten = ~0U;
+
+SceneOptions with_composites(SceneOptions options, const CompositePool& composites) noexcept {
+  options.composites = &composites;
+  return options;
+}
+
 }  // namespace
 
 RecordedScene::RecordedScene(Recorder& recorder, const ShapePool& shapes,
                              const SceneOptions& options) noexcept
+    : RecordedScene(recorder, shapes, options, nullptr) {}
+
+RecordedScene::RecordedScene(Recorder& recorder, const ShapePool& shapes,
+                             const CompositePool& composites, const SceneOptions& options) noexcept
+    : RecordedScene(recorder, shapes, with_composites(options, composites), &composites) {}
+
+RecordedScene::RecordedScene(Recorder& recorder, const ShapePool& shapes,
+                             const SceneOptions& options, const CompositePool* composites) noexcept
     : recorder_(recorder.state_),
       world_(new_world(recorder_)),
       shapes_(shapes),
+      composites_(composites),
       scene_(shapes, options),
       known_(options.memory) {
   CallWriter call(recorder_, RecordedCall::make_scene, world_);
@@ -83,42 +101,116 @@ RecordedScene::~RecordedScene() {
   CallWriter(recorder_, RecordedCall::end_world, world_);
 }
 
-// A shape is recorded when a body first has it, and again where another one took its place.
+RecordedShape* RecordedScene::find_shape(ShapeId id) noexcept {
+  RecordedShape* const at = std::lower_bound(
+      known_.begin(), known_.end(), id.bits,
+      [](const RecordedShape& shape, std::uint32_t bits) { return shape.id.bits < bits; });
+  return at != known_.end() && at->id == id ? at : nullptr;
+}
+
+void RecordedScene::describe(RecordedShape& shape) const noexcept {
+  if (shape.id.is_composite()) {
+    const CompositeDigests digests = digests_of(*composites_, shape.id);
+    shape.digest = digests.all;
+    shape.form = digests.form;
+  } else {
+    shape.digest = digest_of(shapes_.tables(), shape.id);
+    shape.form = 0;
+  }
+}
+
+// A shape is recorded when a body first has it, and again where another one took its place. Of
+// composite ones the pool tells when there may be another.
 std::uint32_t RecordedScene::number_of(ShapeId id) noexcept {
   if (recorder_ == nullptr) return 0;
-  // What another process does not have: meshes, functions.
-  if (id.is_composite() || id.kind() == ShapeKind::support) {
+  // What another process does not have: meshes of another pool, functions.
+  const bool is_foreign =
+      id.is_composite() ? composites_ == nullptr : id.kind() == ShapeKind::support;
+  if (is_foreign) {
     const std::lock_guard lock(recorder_->mutex);
     recorder_->fail(Status::unsupported);
     return 0;
   }
-  const std::uint64_t digest = digest_of(shapes_.tables(), id);
-  RecordedShape* const at = std::lower_bound(
-      known_.begin(), known_.end(), id.bits,
-      [](const RecordedShape& known, std::uint32_t bits) { return known.id.bits < bits; });
-  const auto place = static_cast<std::size_t>(at - known_.begin());
-  const bool is_known = at != known_.end() && at->id == id;
-  if (is_known && at->digest == digest) return at->number;
-  const std::uint32_t number = shapes_recorded_++;
-  if (is_known) {
-    *at = {id, number, digest};
-  } else if (known_.push_back({id, number, digest})) {
-    std::rotate(known_.begin() + place, known_.end() - 1, known_.end());
+  if (id.is_composite()) follow_composites();
+  RecordedShape* const at = find_shape(id);
+  if (at != nullptr && id.is_composite() && at->number != kForgotten) return at->number;
+  RecordedShape shape{id, 0, 0, 0};
+  describe(shape);
+  if (at != nullptr && at->number != kForgotten && at->digest == shape.digest) return at->number;
+  if (id.is_composite()) {
+    for (const CompoundChild& child : composites_->children(id)) (void)number_of(child.shape);
+  }
+  shape.number = shapes_recorded_++;
+  if (at != nullptr) {
+    *find_shape(id) = shape;
+  } else if (known_.push_back(shape)) {
+    const auto by_id = [](const RecordedShape& a, const RecordedShape& b) {
+      return a.id.bits < b.id.bits;
+    };
+    std::rotate(std::upper_bound(known_.begin(), known_.end() - 1, shape, by_id), known_.end() - 1,
+                known_.end());
   } else {
     const std::lock_guard lock(recorder_->mutex);
     recorder_->fail(Status::out_of_memory);
   }
+  id.is_composite() ? record_composite(shape) : record_shape(shape);
+  return shape.number;
+}
+
+void RecordedScene::record_shape(const RecordedShape& shape) noexcept {
   CallWriter call(recorder_, RecordedCall::add_shape, world_);
-  call.put(id.kind());
-  with_shape(shapes_.tables(), id, [&](const auto& shape) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, HullShape>) {
-      put_hull(call, shape);
+  call.put(shape.id.kind());
+  with_shape(shapes_.tables(), shape.id, [&](const auto& one) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(one)>, HullShape>) {
+      put_hull(call, one);
     } else {
-      call.put_bytes(&shape, sizeof shape);
+      call.put_bytes(&one, sizeof one);
     }
   });
-  call.put(digest);
-  return number;
+  call.put(shape.digest);
+}
+
+void RecordedScene::record_composite(const RecordedShape& shape) noexcept {
+  Column<std::byte> bytes(known_.memory());
+  const Status status = save_composite(*composites_, shape.id, bytes);
+  if (status != Status::ok) {
+    const std::lock_guard lock(recorder_->mutex);
+    recorder_->fail(status);
+    return;
+  }
+  CallWriter call(recorder_, RecordedCall::add_composite, world_);
+  call.put(shape.id.composite_kind());
+  call.put_array(std::span<const std::byte>(bytes.data(), bytes.size()));
+  const auto scale = composites_->scale(shape.id);
+  call.put_bytes(scale.data(), sizeof scale);
+  const auto children = composites_->children(shape.id);
+  call.put(std::uint64_t{children.size()});
+  for (const CompoundChild& child : children) {
+    const RecordedShape* const one = find_shape(child.shape);
+    call.put(one == nullptr ? 0U : one->number).put_bytes(&child.pose, sizeof child.pose);
+  }
+  call.put(shape.digest);
+}
+
+// What changed in place is told to the recording; what is gone, or another one, is forgotten.
+void RecordedScene::follow_composites() noexcept {
+  if (recorder_ == nullptr || composites_ == nullptr) return;
+  if (composites_->revision() == composites_seen_) return;
+  composites_seen_ = composites_->revision();
+  for (RecordedShape& known : known_) {
+    if (!known.id.is_composite()) continue;
+    RecordedShape now = known;
+    if (composites_->contains(known.id)) describe(now);
+    if (!composites_->contains(known.id) || now.form != known.form) {
+      known.number = kForgotten;
+    } else if (now.digest != known.digest && known.number != kForgotten) {
+      known = now;
+      CallWriter(recorder_, RecordedCall::change_composite, world_)
+          .put(known.number)
+          .put_array(values_of(*composites_, known.id))
+          .put(known.digest);
+    }
+  }
 }
 
 Status RecordedScene::add(const BodyDefinition& body, Key& key) {
@@ -130,10 +222,8 @@ Status RecordedScene::add(std::span<const BodyDefinition> bodies, std::span<Key>
   if (status != Status::ok) return status;
   for (const BodyDefinition& body : bodies) (void)number_of(body.shape);
   const auto number = [&](const BodyDefinition& body) {
-    const RecordedShape* const at = std::lower_bound(
-        known_.begin(), known_.end(), body.shape.bits,
-        [](const RecordedShape& known, std::uint32_t bits) { return known.id.bits < bits; });
-    return at == known_.end() ? 0 : at->number;
+    const RecordedShape* const at = find_shape(body.shape);
+    return at == nullptr ? 0 : at->number;
   };
   CallWriter call(recorder_, RecordedCall::add_bodies, world_);
   call.put(std::uint64_t{bodies.size()});
@@ -224,6 +314,7 @@ Status RecordedScene::set_ignored(std::span<const KeyPair> pairs, bool ignored) 
 }
 
 Status RecordedScene::refresh() {
+  follow_composites();
   const Status status = scene_.refresh();
   if (status == Status::ok) CallWriter(recorder_, RecordedCall::refresh_scene, world_);
   return status;
@@ -232,6 +323,7 @@ Status RecordedScene::refresh() {
 // Contacts remember the frame before: whether they are those of the last question decides what
 // begins and what is carried over.
 Status RecordedScene::collide(ContactLevel level, Contacts& contacts) {
+  follow_composites();
   const bool continues = asked_ == &contacts && asked_size_ == contacts.size();
   const Status status = scene_.collide(level, contacts);
   if (status != Status::ok) return status;

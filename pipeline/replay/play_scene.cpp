@@ -1,3 +1,4 @@
+#include "pipeline/recording/composite_bytes.h"
 #include "pipeline/recording/contact_digest.h"
 #include "pipeline/replay/replay_state.h"
 #include "pipeline/shapes/hull_bytes.h"
@@ -37,6 +38,8 @@ Status ReplayState::make_scene(ReplayedWorld& of) {
   made.build_budget = static_cast<std::size_t>(in.get<std::uint64_t>());
   if (!in.ok()) return reading();
   of.shapes.emplace(options.memory);
+  of.composites.emplace(*of.shapes, options.memory);
+  made.composites = &*of.composites;
   of.scene.emplace(*of.shapes, made);
   return Status::ok;
 }
@@ -93,6 +96,10 @@ Status ReplayState::change_scene(RecordedCall call, ReplayedWorld& of) {
     }
     case RecordedCall::refresh_scene:
       return scene.refresh();
+    case RecordedCall::add_composite:
+      return add_composite(of);
+    case RecordedCall::change_composite:
+      return change_composite(of);
     default:
       return collide(of);
   }
@@ -152,6 +159,56 @@ Status ReplayState::add_hull(ReplayedWorld& of, ShapeId& id, Digest& digest) {
   const Status taken = of.shapes->add_built_hull(hull.points(), hull.faces(), hull.rounding, id);
   if (taken == Status::ok) add_to(digest, of.shapes->tables().hulls[id.index()]);
   return taken;
+}
+
+Status ReplayState::add_composite(ReplayedWorld& of) {
+  const auto kind = in.get<std::uint8_t>();
+  const std::span<const std::byte> saved = in.get_nested();
+  std::array<double, 3> scale{};
+  (void)in.get_bytes(scale.data(), sizeof scale);
+  const auto count = in.get<std::uint64_t>();
+  if (!in.ok() || count > in.rest().size() / sizeof(Pose)) return Status::invalid_argument;
+  Column<CompoundChild> children(options.memory);
+  if (!children.resize(static_cast<std::size_t>(count))) return Status::out_of_memory;
+  for (CompoundChild& child : children) {
+    child = {};
+    const auto number = in.get<std::uint32_t>();
+    if (number >= of.shape_ids.size()) return Status::invalid_argument;
+    child.shape = of.shape_ids[number];
+    (void)in.get_bytes(&child.pose, sizeof child.pose);
+  }
+  if (!in.ok()) return reading();
+  ShapeId id;
+  Status taken = Status::invalid_argument;
+  if (kind == static_cast<std::uint8_t>(CompositeKind::mesh)) {
+    taken = of.composites->add_saved_mesh(saved, scale, id, options.execution);
+  } else if (kind == static_cast<std::uint8_t>(CompositeKind::height_field)) {
+    taken = of.composites->add_saved_height_field(saved, id);
+  } else if (kind == static_cast<std::uint8_t>(CompositeKind::compound)) {
+    taken = of.composites->add_compound({children.data(), children.size()}, id);
+  }
+  if (taken != Status::ok) return taken;
+  if (!of.shape_ids.push_back(id)) return Status::out_of_memory;
+  return compare(digests_of(*of.composites, id).all);
+}
+
+Status ReplayState::change_composite(ReplayedWorld& of) {
+  const auto number = in.get<std::uint32_t>();
+  if (!in.get_array(floats)) return reading();
+  if (number >= of.shape_ids.size()) return Status::invalid_argument;
+  const ShapeId id = of.shape_ids[number];
+  const float* const at = floats.data();
+  Status taken = Status::invalid_argument;
+  if (const HeightField* const field = of.composites->height_field(id)) {
+    taken = of.composites->update_height_field(
+        id, 0, 0,
+        {.heights = {at, floats.size()}, .columns = field->columns(), .rows = field->rows()});
+  } else if (of.composites->mesh(id) != nullptr && floats.size() % 3 == 0 && at != nullptr) {
+    taken = of.composites->refit_mesh(
+        id, PointView({at, at + 1, at + 2}, floats.size() / 3, 3 * sizeof(float)),
+        options.execution);
+  }
+  return taken == Status::ok ? compare(digests_of(*of.composites, id).all) : taken;
 }
 
 Status ReplayState::add_bodies(ReplayedWorld& of) {

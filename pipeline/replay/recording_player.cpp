@@ -86,7 +86,7 @@ bool ReplayState::next_block() noexcept {
 
 Played ReplayState::step() noexcept {
   if (status != Status::ok || (in.rest().empty() && !next_block())) return Played::end;
-  const auto call = in.get_enum(RecordedCall::collide);
+  const auto call = in.get_enum(kLastCall);
   const auto number = in.get<std::uint32_t>();
   CallOutcome outcome = CallOutcome::changed;
   const std::uint64_t asked = questions;
@@ -192,6 +192,11 @@ const Partition* RecordingPlayer::partition(std::size_t world) const noexcept {
 const Scene* RecordingPlayer::scene(std::size_t world) const noexcept {
   const ReplayedWorld* const one = world < worlds() ? state_->worlds[world] : nullptr;
   return one != nullptr && one->scene ? &*one->scene : nullptr;
+}
+
+const CompositePool* RecordingPlayer::composites(std::size_t world) const noexcept {
+  const ReplayedWorld* const one = world < worlds() ? state_->worlds[world] : nullptr;
+  return one != nullptr && one->composites ? &*one->composites : nullptr;
 }
 
 const ShapePool* RecordingPlayer::shapes(std::size_t world) const noexcept {

@@ -20,6 +20,7 @@ class HostileWorld {
     winnow_body_definition body = WINNOW_BODY_DEFINITION;
     winnow_key key = WINNOW_NULL_KEY;
     EXPECT_EQ(winnow_threads_create(1, &threads), WINNOW_OK);
+    EXPECT_EQ(winnow_snapshot_create(nullptr, &snapshot), WINNOW_OK);
     EXPECT_EQ(winnow_partition_create({}, nullptr, &partition), WINNOW_OK);
     EXPECT_EQ(winnow_pair_buffer_create(nullptr, &pairs), WINNOW_OK);
     EXPECT_EQ(winnow_pair_events_create(nullptr, &events), WINNOW_OK);
@@ -51,6 +52,7 @@ class HostileWorld {
     destroy(events);
     destroy(pairs);
     destroy(partition);
+    destroy(snapshot);
     destroy(threads);
   }
 
@@ -81,6 +83,7 @@ class HostileWorld {
   std::size_t size_of_structs = 1;
 
   winnow_threads* threads = nullptr;
+  winnow_snapshot* snapshot = nullptr;
   winnow_partition* partition = nullptr;
   winnow_pair_buffer* pairs = nullptr;
   winnow_pair_events* events = nullptr;
@@ -103,6 +106,7 @@ class HostileWorld {
     type##_destroy(thing);                 \
   }
   WINNOW_THING(winnow_threads, threads)
+  WINNOW_THING(winnow_snapshot, snapshot)
   WINNOW_THING(winnow_partition, partition)
   WINNOW_THING(winnow_pair_buffer, pairs)
   WINNOW_THING(winnow_pair_events, events)

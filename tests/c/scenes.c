@@ -159,6 +159,18 @@ static void ask_shapes_of(const trace* t, winnow_scene_queries* ask, winnow_shap
   OK(winnow_scene_queries_nearest(ask, pose.position, 5, 10.0, NULL, &near_ones, &count));
   note(t, "nearest", count);
   for (size_t i = 0; i < count; ++i) note_distance(t, "nearest", &near_ones[i]);
+  winnow_set_distance least;
+  OK(winnow_scene_queries_least_distance(ask, keys + 4, 6, keys + 16, 8, 1e9, &least));
+  note(t, "least of sets", least.a.id);
+  note(t, "least of sets", least.data_a);
+  note_distance(t, "least of sets", &least.to);
+  const winnow_key_pair* pairs = NULL;
+  OK(winnow_scene_queries_overlaps(ask, keys + 4, 6, keys + 16, 12, 7, &pairs, &count));
+  note(t, "overlaps of sets", count);
+  for (size_t i = 0; i < count; ++i) {
+    note(t, "overlaps of sets", pairs[i].first.id);
+    note(t, "overlaps of sets", pairs[i].second.id);
+  }
   winnow_footprint bytes = {.size = sizeof bytes};
   OK(winnow_scene_queries_footprint(ask, &bytes));
   note(t, "queries take memory", bytes.structure.used > 0);
@@ -238,6 +250,55 @@ static void add_bodies(const trace* t, winnow_scene* scene, const winnow_shape_i
   OK(winnow_scene_add(scene, bodies, kBodies, keys));
 }
 
+static winnow_status load_partition(const trace* t, winnow_snapshot* snapshot,
+                                    const winnow_partition* of, winnow_partition* into) {
+  const uint8_t* bytes = NULL;
+  size_t count = 0;
+  OK(winnow_partition_save(of, snapshot));
+  OK(winnow_snapshot_bytes(snapshot, &bytes, &count));
+  return winnow_partition_load(into, bytes, count);
+}
+
+/* All that there is is saved, changed, and loaded again. */
+static void save_and_load(const trace* t, winnow_shape_pool* pool,
+                          winnow_composite_pool* composites, winnow_scene* scene,
+                          winnow_contacts* contacts) {
+  enum { kParts = 4 };
+  winnow_snapshot* saved[kParts] = {NULL};
+  const uint8_t* bytes[kParts] = {NULL};
+  size_t count[kParts] = {0};
+  for (size_t i = 0; i < kParts; ++i) OK(winnow_snapshot_create(NULL, &saved[i]));
+  OK(winnow_shape_pool_save(pool, saved[0]));
+  OK(winnow_composite_pool_save(composites, saved[1]));
+  OK(winnow_scene_save(scene, saved[2]));
+  OK(winnow_scene_save_contacts(scene, contacts, saved[3]));
+  for (size_t i = 0; i < kParts; ++i) OK(winnow_snapshot_bytes(saved[i], &bytes[i], &count[i]));
+
+  winnow_partition* copy = NULL;
+  const winnow_partition* moving = NULL;
+  size_t size = 0;
+  winnow_snapshot* of_partition = NULL;
+  OK(winnow_partition_create((winnow_structure_kind){WINNOW_LINEAR_BVH, 0.0F}, NULL, &copy));
+  OK(winnow_snapshot_create(NULL, &of_partition));
+  OK(winnow_scene_partition(scene, WINNOW_MOTION_DYNAMIC, &moving));
+  OK(load_partition(t, of_partition, moving, copy));
+  OK(winnow_partition_size(copy, &size));
+  note(t, "loaded objects", size);
+  winnow_snapshot_destroy(of_partition);
+  winnow_partition_destroy(copy);
+
+  OK(winnow_scene_clear(scene));
+  OK(winnow_shape_pool_load(pool, bytes[0], count[0]));
+  OK(winnow_composite_pool_load(composites, bytes[1], count[1]));
+  OK(winnow_scene_load(scene, bytes[2], count[2]));
+  OK(winnow_scene_load_contacts(scene, bytes[3], count[3], contacts));
+  OK(winnow_scene_collide(scene, WINNOW_LEVEL_MANIFOLD, contacts));
+  note_columns(t, contacts);
+  note(t, "cut short",
+       (uint64_t)(winnow_scene_load(scene, bytes[2], count[2] - 1) == WINNOW_INVALID_ARGUMENT));
+  for (size_t i = 0; i < kParts; ++i) winnow_snapshot_destroy(saved[i]);
+}
+
 void ask_scenes_in_c(const trace* t) {
   size_t outstanding = 0;
   const winnow_memory memory = counted_in(&outstanding);
@@ -307,6 +368,7 @@ void ask_scenes_in_c(const trace* t) {
   ask_rays(t, ask);
   ask_shapes_of(t, ask, convex[0], keys);
   winnow_scene_queries_destroy(ask);
+  save_and_load(t, pool, composites, scene, contacts);
 
   OK(winnow_scene_clear(scene));
   winnow_contacts_destroy(contacts);

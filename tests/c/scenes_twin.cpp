@@ -144,6 +144,18 @@ void ask_shapes_of(const trace* t, SceneQueries& ask, ShapeId ball, std::span<co
   (void)ask.nearest(pose.position, 5, 10.0, near);
   note(t, "nearest", near.size());
   for (const SceneDistance& one : near) note_distance(t, "nearest", one);
+  SetDistance least;
+  (void)ask.least_distance(keys.subspan(4, 6), keys.subspan(16, 8), least, 1e9);
+  note(t, "least of sets", least.a.id);
+  note(t, "least of sets", least.data_a);
+  note_distance(t, "least of sets", least.to);
+  std::span<const KeyPair> pairs;
+  (void)ask.overlaps(keys.subspan(4, 6), keys.subspan(16, 12), pairs, 7);
+  note(t, "overlaps of sets", pairs.size());
+  for (const KeyPair& pair : pairs) {
+    note(t, "overlaps of sets", pair.first.id);
+    note(t, "overlaps of sets", pair.second.id);
+  }
   note(t, "queries take memory", 1);
 }
 
@@ -237,6 +249,11 @@ void ask_scenes_in_cpp(const trace* t) {
     ask_rays(t, ask);
     ask_shapes_of(t, ask, convex[0], keys);
   }
+  // Loaded again in C, it goes on as if nothing had been.
+  note(t, "loaded objects", scene.size(Motion::dynamic));
+  (void)scene.collide(ContactLevel::manifold, contacts);
+  note_contacts(t, contacts);
+  note(t, "cut short", 1);
   note(t, "outstanding", 0);
 }
 

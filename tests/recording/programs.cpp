@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "tests/support/meshes.h"
+
 namespace winnow::test {
 namespace {
 
@@ -184,12 +186,63 @@ void record_volumes(Recorder& recorder, std::size_t count) {
   EXPECT_EQ(cut.self_pairs(pairs), Status::ok);
 }
 
+namespace {
+
+/// A mesh, a field and two compounds, and what changes them in place.
+struct Landscape {
+  explicit Landscape(const SceneWorld& world)
+      : pool(world.pool), land(terrain(5)), heights{0, 1, 0.5F, 0.2F, 0.1F, 0.3F, 1, 0, 0} {
+    EXPECT_EQ(pool.add_mesh(land.points(), std::span<const std::uint32_t>(land.corners),
+                            ids.emplace_back()),
+              Status::ok);
+    EXPECT_EQ(pool.add_scaled(ids[0], {0.5, -1.0, 2.0}, ids.emplace_back()), Status::ok);
+    EXPECT_EQ(pool.add_height_field(samples(), ids.emplace_back()), Status::ok);
+    add_compound(world, 3);
+    add_compound(world, 18);
+  }
+
+  void add_compound(const SceneWorld& world, std::size_t count) {
+    std::vector<CompoundChild> children;
+    for (std::size_t i = 0; i < count; ++i) {
+      children.push_back(
+          {world.shapes[i % world.shapes.size()], Pose::at(0.4 * static_cast<double>(i), 0.1, 0)});
+    }
+    EXPECT_EQ(pool.add_compound(children, ids.emplace_back()), Status::ok);
+  }
+  [[nodiscard]] HeightSamples samples() const {
+    return {.heights = heights, .columns = 3, .rows = 3};
+  }
+  void deform() {
+    for (Eigen::Vector3f& vertex : land.vertices) vertex.z() += 0.1F * vertex.x();
+    EXPECT_EQ(pool.refit_mesh(ids[0], land.points()), Status::ok);
+    heights[4] += 0.7F;
+    EXPECT_EQ(pool.update_height_field(ids[2], 0, 0, samples()), Status::ok);
+  }
+
+  CompositePool pool;
+  MeshData land;
+  std::vector<float> heights;
+  std::vector<ShapeId> ids;
+};
+
+}  // namespace
+
 void record_scene(Recorder& recorder, std::size_t count, int frames, const SceneOptions& options) {
   SceneWorld world(count);
   const HalfSpaceShape ground{{0.1, -0.2, 0.7}, -1.0};
   ShapeId ground_id;
   EXPECT_EQ(world.pool.add(ground, ground_id), Status::ok);
-  RecordedScene scene(recorder, world.pool, options);
+  Landscape landscape(world);
+  RecordedScene scene(recorder, world.pool, landscape.pool, options);
+  for (const ShapeId id : landscape.ids) {
+    const bool moves = id.composite_kind() == CompositeKind::compound;
+    Key key;
+    EXPECT_EQ(scene.add({.shape = id,
+                         .pose = world.random_pose(),
+                         .motion = moves ? Motion::dynamic : Motion::fixed},
+                        key),
+              Status::ok);
+  }
   world.keys.resize(world.bodies.size());
   EXPECT_EQ(scene.add(world.bodies, world.keys), Status::ok);
   ShapeId round[2];
@@ -222,8 +275,17 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
       EXPECT_EQ(scene.set_shape(world.keys[3], world.shapes[0]), Status::ok);
       EXPECT_EQ(scene.set_filter(world.keys[4], {.layers = 4}), Status::ok);
     }
+    if (frame == 2 || frame == 5) landscape.deform();
     if (frame == 5) {
+      // In the place of one that is gone.
       Key key;
+      ShapeId& rock = landscape.ids.back();
+      EXPECT_EQ(scene.set_shape(scene->key_of(4), landscape.ids[3]), Status::ok);
+      EXPECT_EQ(landscape.pool.remove(rock), Status::ok);
+      landscape.ids.pop_back();
+      landscape.add_compound(world, 17);
+      EXPECT_EQ(scene.add({.shape = landscape.ids.back(), .pose = world.random_pose()}, key),
+                Status::ok);
       EXPECT_EQ(scene.add({.shape = world.shapes[1], .pose = world.random_pose()}, key),
                 Status::ok);
     }

@@ -160,6 +160,28 @@ winnow_status winnow_scene_queries_nearest(winnow_scene_queries* queries, const 
   });
 }
 
+winnow_status winnow_scene_queries_least_distance(winnow_scene_queries* queries,
+                                                  const winnow_key* a, size_t count_a,
+                                                  const winnow_key* b, size_t count_b, double limit,
+                                                  winnow_set_distance* answer) {
+  if (!are_given(queries, answer)) return WINNOW_INVALID_ARGUMENT;
+  if (!is_array(a, count_a) || !is_array(b, count_b)) return WINNOW_INVALID_ARGUMENT;
+  return winnow::c::answer(queries->value.least_distance(
+      std::span(twin(a), count_a), std::span(twin(b), count_b), *twin(answer), limit));
+}
+
+winnow_status winnow_scene_queries_overlaps(winnow_scene_queries* queries, const winnow_key* a,
+                                            size_t count_a, const winnow_key* b, size_t count_b,
+                                            size_t most, const winnow_key_pair** pairs,
+                                            size_t* count) {
+  if (!are_given(queries, pairs, count)) return WINNOW_INVALID_ARGUMENT;
+  if (!is_array(a, count_a) || !is_array(b, count_b)) return WINNOW_INVALID_ARGUMENT;
+  return answer_list<winnow::KeyPair>(pairs, count, [&](auto& found) {
+    return queries->value.overlaps(std::span(twin(a), count_a), std::span(twin(b), count_b), found,
+                                   most);
+  });
+}
+
 winnow_status winnow_scene_queries_footprint(const winnow_scene_queries* queries,
                                              winnow_footprint* footprint) {
   if (queries == nullptr) return WINNOW_INVALID_ARGUMENT;

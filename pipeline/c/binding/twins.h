@@ -102,6 +102,10 @@ WINNOW_TWIN_MEMBERS(winnow_scene_distance, SceneDistance, part);
 WINNOW_TWIN_MEMBERS(winnow_scene_distance, SceneDistance, distance);
 WINNOW_TWIN_MEMBERS(winnow_scene_distance, SceneDistance, point_b);
 
+WINNOW_TWINS(winnow_set_distance, SetDistance)
+WINNOW_TWIN_MEMBERS(winnow_set_distance, SetDistance, data_a);
+WINNOW_TWIN_MEMBERS(winnow_set_distance, SetDistance, to);
+
 #undef WINNOW_TWINS
 #undef WINNOW_ARE_TWINS
 #undef WINNOW_TWIN_MEMBERS

@@ -1,0 +1,162 @@
+// Snapshots as bytes: of partitions, shapes, scenes and contacts.
+
+#include "pipeline/python/snapshots.h"
+
+#include "pipeline/python/locks.h"
+#include "pipeline/python/refusal.h"
+
+#include <cstring>
+#include <utility>
+
+namespace winnow::python {
+namespace {
+
+/// What lies in an object that has bytes in one piece, as long as this lives.
+class BytesInput {
+ public:
+  explicit BytesInput(const py::buffer& object) : info_(object.request()) {
+    py::ssize_t step = info_.itemsize;
+    for (py::ssize_t axis = info_.ndim; axis-- > 0;) {
+      if (info_.shape[static_cast<std::size_t>(axis)] != 1 &&
+          info_.strides[static_cast<std::size_t>(axis)] != step) {
+        throw Refusal(Status::invalid_argument, "data: not in one piece");
+      }
+      step *= info_.shape[static_cast<std::size_t>(axis)];
+    }
+  }
+  [[nodiscard]] std::span<const std::byte> bytes() const noexcept {
+    return {static_cast<const std::byte*>(info_.ptr),
+            static_cast<std::size_t>(info_.size * info_.itemsize)};
+  }
+
+ private:
+  py::buffer_info info_;
+};
+
+/// The bytes that save(column) appends, while nobody changes what it saves.
+template <typename Save>
+[[nodiscard]] py::bytes saved_by(std::shared_mutex& mutex, const char* call, Save&& save) {
+  Column<std::byte> out(std::pmr::get_default_resource());
+  accept(reading(mutex, [&] { return save(out); }), call);
+  return {reinterpret_cast<const char*>(out.data()), out.size()};
+}
+
+[[nodiscard]] py::bytes save_shapes(const SharedShapes& shapes) {
+  return saved_by(shapes.mutex, "save", [&](Column<std::byte>& out) {
+    const Status status = shapes.pool.save(out);
+    return status == Status::ok ? shapes.composites.save(out) : status;
+  });
+}
+
+/// Of two snapshots one after the other, where the second begins: the header of the first tells.
+[[nodiscard]] std::size_t end_of_first(std::span<const std::byte> both) noexcept {
+  constexpr std::size_t kHeader = 32;
+  std::uint64_t size = 0;
+  if (both.size() < kHeader) return both.size();
+  std::memcpy(&size, both.data() + 16, sizeof size);
+  return size > both.size() - kHeader ? both.size() : kHeader + static_cast<std::size_t>(size);
+}
+
+void load_shapes(SharedShapes& shapes, const py::buffer& data) {
+  const BytesInput input(data);
+  const std::span<const std::byte> all = input.bytes();
+  const std::size_t middle = end_of_first(all);
+  ++shapes.revision;
+  accept(
+      changing(shapes.mutex, [&] { return shapes.load(all.first(middle), all.subspan(middle)); }),
+      "load (of shapes that no scene uses)");
+}
+
+void load_scene(SharedScene& s, const py::buffer& data) {
+  const BytesInput input(data);
+  accept(changing(s.mutex,
+                  [&] {
+                    const std::shared_lock lock(s.shapes->mutex);
+                    s.is_stale = true;
+                    const Status status = s.scene.load(input.bytes());
+                    if (status != Status::ok) return status;
+                    s.shapes->use(s.uses, -1);
+                    s.uses.clear();
+                    std::vector<ShapeId> used;
+                    BodyDefinition body;
+                    for (ObjectId id = 0; used.size() < s.scene.size(); ++id) {
+                      if (s.scene.body(s.scene.key_of(id), body) == Status::ok) {
+                        used.push_back(body.shape);
+                      }
+                    }
+                    s.use(used, 1);
+                    return Status::ok;
+                  }),
+         "load");
+}
+
+[[nodiscard]] py::bytes save_contacts(const SharedScene& s, const HeldContacts& contacts) {
+  const std::unique_lock<std::mutex> held = contacts.hold();
+  return saved_by(s.mutex, "save_contacts", [&](Column<std::byte>& out) {
+    return s.scene.save_contacts(*contacts.value(), out);
+  });
+}
+
+void load_contacts(const SharedScene& s, const py::buffer& data, HeldContacts& contacts) {
+  const BytesInput input(data);
+  const std::unique_lock<std::mutex> filling = contacts.hold();
+  Contacts& out = contacts.to_fill("contacts");
+  accept(reading(s.mutex, [&] { return s.scene.load_contacts(input.bytes(), out); }),
+         "load_contacts");
+}
+
+}  // namespace
+
+void add_partition_snapshots(PartitionClass& partition) {
+  using py::arg;
+  partition
+      .def(
+          "save",
+          [](const SharedPartition& p) {
+            // It may have updates to write first.
+            Column<std::byte> out(std::pmr::get_default_resource());
+            accept(changing(p.mutex, [&] { return p.partition.save(out); }), "save");
+            return py::bytes(reinterpret_cast<const char*>(out.data()), out.size());
+          },
+          "All that the objects are, and the structure with its options, as bytes.")
+      .def(
+          "load",
+          [](SharedPartition& p, const py::buffer& data) {
+            const BytesInput input(data);
+            accept(changing(p.mutex, [&] { return p.partition.load(input.bytes()); }), "load");
+            p.count_changes(p.partition.size());
+          },
+          arg("data"),
+          "Becomes what was saved. Keys are those that were saved, unless another partition of the "
+          "process has them: `keys_of` tells.");
+}
+
+void add_shape_snapshots(ShapesClass& shapes) {
+  shapes.def("save", &save_shapes, "All shapes and which places are free, as bytes.")
+      .def(
+          "load", &load_shapes, py::arg("data"),
+          "Becomes what was saved, with the same ids. invalid_key while bodies of a scene are made "
+          "of shapes of this: clear the scene, load both.");
+}
+
+void add_scene_snapshots(SceneClass& scene) {
+  using py::arg;
+  scene
+      .def(
+          "save",
+          [](const SharedScene& s) {
+            return saved_by(s.mutex, "save",
+                            [&](Column<std::byte>& out) { return s.scene.save(out); });
+          },
+          "All that bodies are, and what the scene was made with, as bytes. Shapes are saved "
+          "beside.")
+      .def("load", &load_scene, arg("data"),
+           "Becomes what was saved, of shapes that were loaded before, and goes on bit for bit. "
+           "Contacts that were filled before are strangers from then on.")
+      .def("save_contacts", &save_contacts, arg("contacts"),
+           "What contacts that this scene filled last show and remember, as bytes.")
+      .def("load_contacts", &load_contacts, arg("data"), arg("contacts"),
+           "`contacts` become those that were saved of this scene as it stands.");
+}
+
+}  // namespace winnow::python

@@ -1,0 +1,53 @@
+#include "pipeline/recording/composite_bytes.h"
+
+#include "pipeline/mesh/height_grid.h"
+#include "pipeline/mesh/mesh_view.h"
+
+namespace winnow {
+
+std::span<const float> values_of(const CompositePool& pool, ShapeId id) noexcept {
+  if (const TriangleMesh* const mesh = pool.mesh(id)) {
+    const MeshView& view = view_of(*mesh);
+    return {view.vertex, std::size_t{3} * view.vertex_count};
+  }
+  if (const HeightField* const field = pool.height_field(id)) {
+    const HeightGrid grid = grid_of(*field);
+    return {grid.heights, std::size_t{grid.columns} * grid.rows};
+  }
+  return {};
+}
+
+// Which edges of a mesh are active follows from the rest.
+CompositeDigests digests_of(const CompositePool& pool, ShapeId id) noexcept {
+  Digest digest;
+  digest.add(std::uint64_t{id.kind_index()});
+  if (const TriangleMesh* const mesh = pool.mesh(id)) {
+    const MeshView& view = view_of(*mesh);
+    for (const std::uint32_t* const column : view.corner) {
+      digest.add_array(std::span<const std::uint32_t>(column, view.triangle_count));
+    }
+    for (const double factor : pool.scale(id)) digest.add(factor);
+  }
+  if (const HeightField* const field = pool.height_field(id)) {
+    const HeightGrid grid = grid_of(*field);
+    digest.add(std::uint64_t{grid.columns} << 32U | grid.rows);
+    for (const double spacing : grid.spacing) digest.add(spacing);
+  }
+  for (const CompoundChild& child : pool.children(id)) {
+    digest.add(std::uint64_t{child.shape.kind_index()});
+    digest.add(std::as_bytes(std::span(&child.pose, 1)));
+  }
+  CompositeDigests digests;
+  digests.form = digest.value();
+  digest.add_array(values_of(pool, id));
+  digests.all = digest.value();
+  return digests;
+}
+
+Status save_composite(const CompositePool& pool, ShapeId id, Column<std::byte>& out) {
+  if (const TriangleMesh* const mesh = pool.mesh(id)) return mesh->save(out);
+  if (const HeightField* const field = pool.height_field(id)) return field->save(out);
+  return Status::ok;
+}
+
+}  // namespace winnow
