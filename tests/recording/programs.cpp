@@ -212,6 +212,17 @@ struct Landscape {
   [[nodiscard]] HeightSamples samples() const {
     return {.heights = heights, .columns = 3, .rows = 3};
   }
+  void add_to(RecordedScene& scene, SceneWorld& world) const {
+    for (const ShapeId id : ids) {
+      const bool moves = id.composite_kind() == CompositeKind::compound;
+      Key key;
+      EXPECT_EQ(scene.add({.shape = id,
+                           .pose = world.random_pose(),
+                           .motion = moves ? Motion::dynamic : Motion::fixed},
+                          key),
+                Status::ok);
+    }
+  }
   void deform() {
     for (Eigen::Vector3f& vertex : land.vertices) vertex.z() += 0.1F * vertex.x();
     EXPECT_EQ(pool.refit_mesh(ids[0], land.points()), Status::ok);
@@ -225,6 +236,38 @@ struct Landscape {
   std::vector<ShapeId> ids;
 };
 
+/// What happens to bodies besides that they move.
+void change_bodies(RecordedScene& scene, SceneWorld& world, Landscape& landscape, int frame) {
+  if (frame == 1) {
+    EXPECT_EQ(scene.set_motion(world.keys[0], Motion::sleeping), Status::ok);
+  }
+  if (frame == 2) {
+    EXPECT_EQ(scene.set_ignored(world.keys[1], world.keys[2]), Status::ok);
+  }
+  if (frame == 3) {
+    EXPECT_EQ(scene.remove(world.keys.back()), Status::ok);
+    world.keys.pop_back();
+    world.bodies.pop_back();
+  }
+  if (frame == 4) {
+    EXPECT_EQ(scene.set_shape(world.keys[3], world.shapes[0]), Status::ok);
+    EXPECT_EQ(scene.set_filter(world.keys[4], {.layers = 4}), Status::ok);
+  }
+  if (frame == 2 || frame == 5) landscape.deform();
+  if (frame == 5) {
+    // In the place of one that is gone.
+    Key key;
+    ShapeId& rock = landscape.ids.back();
+    EXPECT_EQ(scene.set_shape(scene->key_of(4), landscape.ids[3]), Status::ok);
+    EXPECT_EQ(landscape.pool.remove(rock), Status::ok);
+    landscape.ids.pop_back();
+    landscape.add_compound(world, 17);
+    EXPECT_EQ(scene.add({.shape = landscape.ids.back(), .pose = world.random_pose()}, key),
+              Status::ok);
+    EXPECT_EQ(scene.add({.shape = world.shapes[1], .pose = world.random_pose()}, key), Status::ok);
+  }
+}
+
 }  // namespace
 
 void record_scene(Recorder& recorder, std::size_t count, int frames, const SceneOptions& options) {
@@ -234,15 +277,7 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
   EXPECT_EQ(world.pool.add(ground, ground_id), Status::ok);
   Landscape landscape(world);
   RecordedScene scene(recorder, world.pool, landscape.pool, options);
-  for (const ShapeId id : landscape.ids) {
-    const bool moves = id.composite_kind() == CompositeKind::compound;
-    Key key;
-    EXPECT_EQ(scene.add({.shape = id,
-                         .pose = world.random_pose(),
-                         .motion = moves ? Motion::dynamic : Motion::fixed},
-                        key),
-              Status::ok);
-  }
+  landscape.add_to(scene, world);
   world.keys.resize(world.bodies.size());
   EXPECT_EQ(scene.add(world.bodies, world.keys), Status::ok);
   ShapeId round[2];
@@ -260,35 +295,7 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
     std::vector<Pose> poses;
     for (const BodyDefinition& body : world.bodies) poses.push_back(body.pose);
     EXPECT_EQ(scene.move(world.keys, poses), Status::ok);
-    if (frame == 1) {
-      EXPECT_EQ(scene.set_motion(world.keys[0], Motion::sleeping), Status::ok);
-    }
-    if (frame == 2) {
-      EXPECT_EQ(scene.set_ignored(world.keys[1], world.keys[2]), Status::ok);
-    }
-    if (frame == 3) {
-      EXPECT_EQ(scene.remove(world.keys.back()), Status::ok);
-      world.keys.pop_back();
-      world.bodies.pop_back();
-    }
-    if (frame == 4) {
-      EXPECT_EQ(scene.set_shape(world.keys[3], world.shapes[0]), Status::ok);
-      EXPECT_EQ(scene.set_filter(world.keys[4], {.layers = 4}), Status::ok);
-    }
-    if (frame == 2 || frame == 5) landscape.deform();
-    if (frame == 5) {
-      // In the place of one that is gone.
-      Key key;
-      ShapeId& rock = landscape.ids.back();
-      EXPECT_EQ(scene.set_shape(scene->key_of(4), landscape.ids[3]), Status::ok);
-      EXPECT_EQ(landscape.pool.remove(rock), Status::ok);
-      landscape.ids.pop_back();
-      landscape.add_compound(world, 17);
-      EXPECT_EQ(scene.add({.shape = landscape.ids.back(), .pose = world.random_pose()}, key),
-                Status::ok);
-      EXPECT_EQ(scene.add({.shape = world.shapes[1], .pose = world.random_pose()}, key),
-                Status::ok);
-    }
+    change_bodies(scene, world, landscape, frame);
     EXPECT_EQ(scene.refresh(), Status::ok);
     const auto level = frame == 6 ? ContactLevel::distance : ContactLevel::manifold;
     EXPECT_EQ(scene.collide(level, contacts), Status::ok);

@@ -63,6 +63,28 @@ struct Stage {
   Contacts contacts;
 };
 
+/// Adds a mesh that shares, a height field and two compounds of the shapes that there are.
+void add_composites(Stage& stage, std::vector<ShapeId>& ids) {
+  const MeshData land = terrain(6);
+  const std::span<const std::uint32_t> corners(land.corners);
+  const std::size_t convex = ids.size();
+  EXPECT_EQ(stage.composites.add_mesh(land.points(), corners, ids.emplace_back()), Status::ok);
+  EXPECT_EQ(stage.composites.add_scaled(ids[convex], {0.5, -1.0, 2.0}, ids.emplace_back()),
+            Status::ok);
+  EXPECT_EQ(stage.composites.remove(ids[convex]), Status::ok);
+  ids.erase(ids.begin() + static_cast<std::ptrdiff_t>(convex));
+  const std::vector<float> heights{0, 1, 0.5F, 0.2F, 0.1F, 0.3F, 1, 0, 0};
+  EXPECT_EQ(stage.composites.add_height_field({.heights = heights, .columns = 3, .rows = 3},
+                                              ids.emplace_back()),
+            Status::ok);
+  std::vector<CompoundChild> children;
+  for (int i = 0; i < 18; ++i) {
+    children.push_back({ids[static_cast<std::size_t>(i) % 5], Pose::at(0.3 * i, 0.1, 0)});
+    if (i != 1 && i != 17) continue;
+    EXPECT_EQ(stage.composites.add_compound(children, ids.emplace_back()), Status::ok);
+  }
+}
+
 /// Shapes of every kind, some with free places before them.
 std::vector<ShapeId> add_shapes(Stage& stage) {
   SceneWorld world(1);
@@ -92,25 +114,7 @@ std::vector<ShapeId> add_shapes(Stage& stage) {
   }
   ids.erase(ids.end() - 2);
   ids.erase(ids.begin());
-
-  const MeshData land = terrain(6);
-  const std::span<const std::uint32_t> corners(land.corners);
-  const std::size_t convex = ids.size();
-  EXPECT_EQ(stage.composites.add_mesh(land.points(), corners, ids.emplace_back()), Status::ok);
-  EXPECT_EQ(stage.composites.add_scaled(ids[convex], {0.5, -1.0, 2.0}, ids.emplace_back()),
-            Status::ok);
-  EXPECT_EQ(stage.composites.remove(ids[convex]), Status::ok);
-  ids.erase(ids.begin() + static_cast<std::ptrdiff_t>(convex));
-  const std::vector<float> heights{0, 1, 0.5F, 0.2F, 0.1F, 0.3F, 1, 0, 0};
-  EXPECT_EQ(stage.composites.add_height_field({.heights = heights, .columns = 3, .rows = 3},
-                                              ids.emplace_back()),
-            Status::ok);
-  std::vector<CompoundChild> children;
-  for (int i = 0; i < 18; ++i) {
-    children.push_back({ids[static_cast<std::size_t>(i) % 5], Pose::at(0.3 * i, 0.1, 0)});
-    if (i != 1 && i != 17) continue;
-    EXPECT_EQ(stage.composites.add_compound(children, ids.emplace_back()), Status::ok);
-  }
+  add_composites(stage, ids);
   return ids;
 }
 
