@@ -173,7 +173,7 @@ Status CompositePool::save(Column<std::byte>& out) const {
   }
   const Status status =
       write_snapshot(out, kCompositesMagic, kCompositesVersion, [&](ByteWriter& writer) {
-        writer.put(kAllShapeKinds);
+        writer.put(kShapeKinds);
         if (state_ != nullptr) put_composites(writer, *state_, known);
       });
   return logged(status, "CompositePool::save");
@@ -181,7 +181,7 @@ Status CompositePool::save(Column<std::byte>& out) const {
 
 Status CompositePool::load(std::span<const std::byte> saved, const Execution& execution) {
   ByteReader in = open_snapshot(saved, kCompositesMagic, kCompositesVersion);
-  if (in.get<std::uint32_t>() != kAllShapeKinds) in.fail();
+  if (in.get<std::uint32_t>() != kShapeKinds) in.fail();
   if (!in.ok()) return logged(status_of(in), "CompositePool::load");
   CompositePool fresh(shapes_, memory_);
   Status status = Status::ok;

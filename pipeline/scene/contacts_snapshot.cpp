@@ -240,7 +240,7 @@ class ContactsReader {
                               const Column<PairRecord>& records) noexcept {
     std::size_t end = 0;
     for (const ContactRun& run : frame.runs) {
-      if (run.first != end || run.kind_a >= kAllShapeKinds || run.kind_b >= kAllShapeKinds) {
+      if (run.first != end || run.kind_a >= kShapeKinds || run.kind_b >= kShapeKinds) {
         return false;
       }
       end += run.count;
@@ -305,7 +305,7 @@ Status Scene::save_contacts(const Contacts& contacts, Column<std::byte>& out) co
     status = contacts.state_->scene != state_->serial
                  ? Status::invalid_key
                  : write_snapshot(out, kContactsMagic, kContactsVersion, [&](ByteWriter& writer) {
-                     writer.put(kAllShapeKinds);
+                     writer.put(kShapeKinds);
                      ContactsWriter(writer, *state_).put(*contacts.state_);
                    });
   }
@@ -315,7 +315,7 @@ Status Scene::save_contacts(const Contacts& contacts, Column<std::byte>& out) co
 Status Scene::load_contacts(std::span<const std::byte> saved, Contacts& contacts) const {
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::load_contacts");
   ByteReader in = open_snapshot(saved, kContactsMagic, kContactsVersion);
-  if (in.get<std::uint32_t>() != kAllShapeKinds) in.fail();
+  if (in.get<std::uint32_t>() != kShapeKinds) in.fail();
   if (!in.ok()) return logged(status_of(in), "Scene::load_contacts");
   auto* fresh = new_in<ContactsState>(contacts.memory_, contacts.memory_);
   if (fresh == nullptr) return logged(Status::out_of_memory, "Scene::load_contacts");

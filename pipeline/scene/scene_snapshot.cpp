@@ -268,7 +268,7 @@ void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexce
 
 [[nodiscard]] Status load_into(SceneState& scene, std::span<const std::byte> saved) {
   ByteReader in = open_snapshot(saved, kSceneMagic, kSceneVersion);
-  if (in.get<std::uint32_t>() != kAllShapeKinds) in.fail();
+  if (in.get<std::uint32_t>() != kShapeKinds) in.fail();
   SceneOptions options = scene.options;
   read_options(in, options);
   if (!in.ok()) return status_of(in);
@@ -290,7 +290,7 @@ void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexce
 Status Scene::save(Column<std::byte>& out) const {
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::save");
   const Status status = write_snapshot(out, kSceneMagic, kSceneVersion, [&](ByteWriter& writer) {
-    writer.put(kAllShapeKinds);
+    writer.put(kShapeKinds);
     put_scene(writer, *state_);
   });
   return logged(status, "Scene::save");

@@ -42,6 +42,8 @@ template <typename Shape>
     hull.read(in);
     return in.ok() ? pool.add_built_hull(hull.points(), hull.faces(), hull.rounding, id)
                    : status_of(in);
+  } else if constexpr (std::is_same_v<Shape, SupportShape>) {
+    return Status::invalid_argument;
   } else {
     Shape shape;
     return in.get_bytes(&shape, sizeof shape) ? pool.add(shape, id) : status_of(in);
@@ -60,9 +62,14 @@ void ShapePool::for_tables(Pool& pool, Pool& other, Visit&& visit) {
   visit(pool.hulls_, other.hulls_);
   visit(pool.triangles_, other.triangles_);
   visit(pool.half_spaces_, other.half_spaces_);
+  visit(pool.ellipsoids_, other.ellipsoids_);
+  visit(pool.tapered_capsules_, other.tapered_capsules_);
+  visit(pool.supports_, other.supports_);
 }
 
 Status ShapePool::save(Column<std::byte>& out) const {
+  // Another process does not have the functions.
+  if (size(ShapeKind::support) != 0) return logged(Status::unsupported, "ShapePool::save");
   const Status status = write_snapshot(out, kShapesMagic, kShapesVersion, [&](ByteWriter& writer) {
     writer.put(kShapeKinds);
     for_tables(*this, *this, [&](const auto& table, const auto&) {

@@ -110,7 +110,7 @@ void ClusterSceneWorld::move_ground(Random& random) {
   std::vector<BodyName> names;
   std::vector<Pose> poses;
   for (auto& [name, body] : ground_) {
-    if (body.shape.kind_index() < kShapeKinds) continue;
+    if (!body.shape.is_composite()) continue;
     body.pose.position[2] += random.uniform(-0.2, 0.2);
     names.push_back(name);
     poses.push_back(body.pose);
