@@ -212,7 +212,10 @@ class CastQuestion {
       : state_(state), swept_(swept), filter_(filter), limit_(swept.max_t()) {}
 
   Status closest(SceneHit& hit);
+  /// Adds the hits to those of rays before.
   Status all();
+  /// The same without what `look_at_few` shows, of which the hits from `before` on tell already.
+  Status all_in_crowds(std::size_t before);
   /// The same without what `look_at_few` shows, which found that it meets `body` at t first, or
   /// kNoObject. The hit is left alone if nothing is better.
   Status closest_in_crowds(std::uint32_t body, double t, SceneHit& hit);
@@ -230,6 +233,8 @@ class CastQuestion {
   Status closest_in_crowds();
   /// True if the body is now the first one met.
   bool improves(std::uint32_t body) noexcept;
+  /// Adds the hit of a body that is met and was not looked at; false if there is no room.
+  [[nodiscard]] bool adds(std::uint32_t body);
   /// Calls ask(partition) for the others, until it does not answer ok.
   template <typename Ask>
   [[nodiscard]] Status each_crowd(Ask&& ask) const;
@@ -366,35 +371,44 @@ Status CastQuestion::any_in_crowds(SceneHit& hit) {
   return Status::ok;
 }
 
-/// Adds the hits to those of rays before.
 Status CastQuestion::all() {
-  Column<SceneHit>& hits = state_.hits;
-  const std::size_t before = hits.size();
+  const std::size_t before = state_.hits.size();
   bool has_room = true;
   auto look = [&](std::uint32_t body) {
-    if (memo_.find(body) != nullptr) return false;
-    memo_.note(body, false);
-    BodyMeeting meeting;
-    if (meets(body, swept_.max_t(), false, meeting)) {
-      has_room = hits.push_back(shown(body, meeting)) && has_room;
-    }
+    has_room = adds(body) && has_room;
     return false;
   };
   look_at_few(state_.scene, filter_, look);
-  SweptBox path = swept_box();
-  LookingFilter looking(state_.scene, filter_, look);
+  return has_room ? all_in_crowds(before) : Status::out_of_memory;
+}
+
+bool CastQuestion::adds(std::uint32_t body) {
+  if (memo_.find(body) != nullptr) return true;
+  memo_.note(body, false);
+  BodyMeeting meeting;
+  return !meets(body, swept_.max_t(), false, meeting) ||
+         state_.hits.push_back(shown(body, meeting));
+}
+
+Status CastQuestion::all_in_crowds(std::size_t before) {
+  bool has_room = true;
+  auto look = [&](std::uint32_t body) {
+    has_room = adds(body) && has_room;
+    return false;
+  };
   Status status = Status::ok;
-  while (status == Status::ok && has_crowd(state_.scene) && path.next()) {
-    status = each_crowd([&](const Partition& partition) {
-      if (path.is_rest()) return look_at_rest(partition, path, look);
-      return partition.all(path.cast(swept_.max_t()), state_.boxes, looking.filter());
-    });
+  if (has_crowd(state_.scene)) {
+    SweptBox path = swept_box();
+    LookingFilter looking(state_.scene, filter_, look);
+    while (status == Status::ok && path.next()) {
+      status = each_crowd([&](const Partition& partition) {
+        if (path.is_rest()) return look_at_rest(partition, path, look);
+        return partition.all(path.cast(swept_.max_t()), state_.boxes, looking.filter());
+      });
+    }
   }
-  if (!has_room) status = Status::out_of_memory;
-  if (status != Status::ok) {
-    hits.clear();
-    return status;
-  }
+  if (status != Status::ok || !has_room) return has_room ? status : Status::out_of_memory;
+  Column<SceneHit>& hits = state_.hits;
   SceneHit* const own = hits.begin() + before;
   std::sort(own, hits.end(), is_before);
   // A body whose box reaches from one piece of the path into the next was met in both.
@@ -413,6 +427,8 @@ class RaysTogether {
 
   /// Of rays [first, first + count) of a batch, the first hits, or `any`. They must be valid.
   Status ask(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool any);
+  /// Lists each ray's first hits of all that `look_at_few` shows, by ray, in the state's `few`.
+  Status list_few(const ShapeRayBatch& rays, std::size_t first, std::size_t count);
   [[nodiscard]] const SceneHit& hit(std::size_t i) const noexcept { return hit_[i]; }
 
  private:
@@ -422,6 +438,7 @@ class RaysTogether {
     double t;
     double normal[3];
   };
+  void start(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool any) noexcept;
   void meet_few(std::uint32_t body);
   [[nodiscard]] Status ask_crowds(std::size_t i);
   /// The limit for the ray to go on with.
@@ -497,14 +514,20 @@ Status RaysTogether<Room>::ask_crowds(std::size_t i) {
 }
 
 template <std::size_t Room>
-Status RaysTogether<Room>::ask(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
-                               bool any) {
+void RaysTogether<Room>::start(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
+                               bool any) noexcept {
   count_ = count;
   any_ = any;
   for (std::size_t i = 0; i < count; ++i) {
     ray_[i] = rays[first + i];
     best_[i].body = kNoObject;
   }
+}
+
+template <std::size_t Room>
+Status RaysTogether<Room>::ask(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
+                               bool any) {
+  start(rays, first, count, any);
   auto look = [&](std::uint32_t body) {
     meet_few(body);
     return false;
@@ -516,6 +539,25 @@ Status RaysTogether<Room>::ask(const ShapeRayBatch& rays, std::size_t first, std
     if (const Status status = ask_crowds(i); status != Status::ok) return status;
   }
   return Status::ok;
+}
+
+template <std::size_t Room>
+Status RaysTogether<Room>::list_few(const ShapeRayBatch& rays, std::size_t first,
+                                    std::size_t count) {
+  Column<RayHit>& few = state_.few;
+  few.clear();
+  bool has_room = true;
+  auto look = [&](std::uint32_t body) {
+    start(rays, first, count, false);
+    meet_few(body);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (best_[i].body != kNoObject) has_room = few.push_back({first + i, shown(i)}) && has_room;
+    }
+    return false;
+  };
+  look_at_few(state_.scene, filter_, look);
+  std::sort(few.begin(), few.end(), [](const RayHit& a, const RayHit& b) { return a.ray < b.ray; });
+  return has_room ? Status::ok : Status::out_of_memory;
 }
 
 bool is_valid(const double (&direction)[3], double max_t) noexcept {
@@ -581,6 +623,32 @@ Status ask_one(QueryState* state, const ShapeRay& ray, const Filter& filter, Sce
   return status;
 }
 
+/// Puts all hits of rays that are valid into the state's `hits`, and where those of each begin.
+template <std::size_t Room>
+Status ask_all(QueryState& state, const ShapeRayBatch& rays, const Filter& filter) {
+  Column<std::size_t>& first = state.hits_first;
+  state.hits.clear();
+  if (!first.resize(rays.count + 1)) return Status::out_of_memory;
+  first[0] = 0;
+  RaysTogether<Room> group(state, filter);
+  for (std::size_t i = 0; i < rays.count; i += Room) {
+    const std::size_t end = std::min(rays.count, i + Room);
+    if (const Status status = group.list_few(rays, i, end - i); status != Status::ok) return status;
+    const RayHit* next = state.few.begin();
+    for (std::size_t k = i; k < end; ++k) {
+      for (; next != state.few.end() && next->ray == k; ++next) {
+        if (!state.hits.push_back(next->hit)) return Status::out_of_memory;
+      }
+      const ShapeRay ray = rays[k];
+      const RaySweep swept(state.scene.shapes, ray);
+      const Status status = CastQuestion(state, swept, filter).all_in_crowds(first[k]);
+      if (status != Status::ok) return status;
+      first[k + 1] = state.hits.size();
+    }
+  }
+  return Status::ok;
+}
+
 Status check(const QueryState* state, const ShapeCast& cast, double tolerance) noexcept {
   if (const Status status = QueryState::may_ask(state); status != Status::ok) {
     return status;
@@ -616,9 +684,7 @@ Status SceneQueries::any(const ShapeRay& ray, SceneHit& hit, const Filter& filte
 Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
                          const Filter& filter) {
   if (const Status status = check(state_, ray); status != Status::ok) return status;
-  const RaySweep swept(state_->scene.shapes, ray);
-  state_->hits.clear();
-  const Status status = CastQuestion(*state_, swept, filter).all();
+  const Status status = ask_all<1>(*state_, std::span<const ShapeRay>(&ray, 1), filter);
   if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
   return status;
 }
@@ -634,18 +700,10 @@ Status SceneQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
 }
 
 Status SceneQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter) {
-  Status status = check(state_, rays);
+  if (const Status status = check(state_, rays); status != Status::ok) return status;
+  const Status status = ask_all<kRaysAtOnce>(*state_, rays, filter);
   if (status != Status::ok) return status;
-  Column<std::size_t>& first = state_->hits_first;
-  state_->hits.clear();
-  if (!first.resize(rays.count + 1)) return Status::out_of_memory;
-  first[0] = 0;
-  for (std::size_t i = 0; i < rays.count && status == Status::ok; ++i) {
-    const ShapeRay ray = rays[i];
-    status = CastQuestion(*state_, RaySweep(state_->scene.shapes, ray), filter).all();
-    first[i + 1] = state_->hits.size();
-  }
-  if (status != Status::ok) return status;
+  const Column<std::size_t>& first = state_->hits_first;
   hits = {{state_->hits.data(), state_->hits.size()}, {first.data(), first.size()}};
   return Status::ok;
 }

@@ -8,10 +8,10 @@
 
 namespace winnow {
 
-/// A PreciseBox as a column can hold it.
-struct PlainPreciseBox {
-  double min[3];
-  double max[3];
+/// A hit of one of several rays.
+struct RayHit {
+  std::size_t ray;
+  SceneHit hit;
 };
 
 struct QueryState {
@@ -22,9 +22,11 @@ struct QueryState {
         objects(memory),
         hits(memory),
         hits_first(memory),
+        few(memory),
         overlaps(memory),
         distances(memory),
         bounds(memory),
+        gaps(memory),
         overlapping(memory) {}
 
   const SceneState& scene;
@@ -36,10 +38,13 @@ struct QueryState {
   Column<SceneHit> hits;
   /// Of a batch: where the hits of each ray begin, and the end.
   Column<std::size_t> hits_first;
+  /// Those of rays that were asked together, before they are listed.
+  Column<RayHit> few;
   Column<SceneOverlap> overlaps;
   Column<SceneDistance> distances;
-  /// Boxes of the second of two sets.
-  Column<PlainPreciseBox> bounds;
+  /// Boxes of the second of two sets, a column for each bound, and how far one body is from them.
+  Column<float> bounds;
+  Column<float> gaps;
   Column<KeyPair> overlapping;
 
   [[nodiscard]] PlacedShape placed(std::uint32_t body) const noexcept {

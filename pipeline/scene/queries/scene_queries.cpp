@@ -151,7 +151,7 @@ Footprint SceneQueries::footprint() const noexcept {
   if (state_ == nullptr) return sum;
   sum.structure = {sizeof(QueryState), sizeof(QueryState)};
   for (const Bytes& bytes : {state_->boxes.footprint().total(), state_->objects.footprint().total(),
-                             state_->bounds.bytes()}) {
+                             state_->bounds.bytes(), state_->gaps.bytes(), state_->few.bytes()}) {
     sum.scratch += bytes;
   }
   for (const Bytes& bytes :

@@ -1,5 +1,6 @@
 // SceneQueries: two bodies, or two sets of bodies: how far they are apart, and which overlap.
 
+#include "pipeline/scene/queries/box_gaps.kernel.h"
 #include "pipeline/scene/queries/queries.h"
 #include "pipeline/scene/queries/two_shapes.h"
 
@@ -7,54 +8,112 @@
 #include <limits>
 
 namespace winnow {
+
+WINNOW_DEFINE_KERNELS(BoxGapsKernels, box_gaps_kernels)
+
 namespace {
 
-/// Of a sum of squares and its root, and of the solver's distance to what lies on the border of a
-/// box.
-constexpr double kGapSlack = 1e-9;
+/// Squared gaps between boxes are sums of three squares of differences of floats, all rounded; and
+/// the solver's distance to what lies on the border of a box is.
+constexpr double kSquareSlack = 1e-5;
 
-/// Two boxes are not nearer than this.
-double gap_of(const PlainPreciseBox& a, const PlainPreciseBox& b) noexcept {
-  double square = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    const double gap = std::max({0.0, a.min[i] - b.max[i], b.min[i] - a.max[i]});
-    square += gap * gap;
+/// The boxes of a set of bodies, and how far others are from them. Those that the partitions hold
+/// serve: they contain the bodies.
+class SetBoxes {
+ public:
+  explicit SetBoxes(QueryState& state) noexcept : state_(state) {}
+
+  /// False if there is no room.
+  [[nodiscard]] bool take(std::span<const Key> keys) noexcept {
+    constexpr std::size_t kLanes = 16;
+    count_ = keys.size();
+    const std::size_t whole = (count_ + kLanes - 1) / kLanes * kLanes;
+    if (!state_.bounds.resize(6 * whole) || !state_.gaps.resize(whole)) return false;
+    float* column[6];
+    for (std::size_t k = 0; k < 6; ++k) {
+      column[k] = state_.bounds.data() + k * whole;
+      bounds_[k] = column[k];
+      std::fill(column[k] + count_, column[k] + whole, 0.0F);
+    }
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Aabb box = box_of(keys[i]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        column[axis][i] = box.min[axis];
+        column[3 + axis][i] = box.max[axis];
+      }
+    }
+    return true;
   }
-  return std::sqrt(square) * (1.0 - kGapSlack);
-}
+  /// The square of how far each of the set is from a body, or less.
+  [[nodiscard]] std::span<const float> squared_gaps(Key from) noexcept {
+    const Aabb box = box_of(from);
+    const float low[3] = {box.min[0], box.min[1], box.min[2]};
+    const float high[3] = {box.max[0], box.max[1], box.max[2]};
+    box_gaps_kernels().squared(bounds_, count_, low, high, state_.gaps.data());
+    return {state_.gaps.data(), count_};
+  }
 
-/// Calls look(body of a, body of b) for pairs of bodies whose boxes are no farther apart than
-/// gap(), which may shrink meanwhile, until it says false.
+ private:
+  [[nodiscard]] Aabb box_of(Key key) const noexcept {
+    const SceneState& scene = state_.scene;
+    Aabb box;
+    const SceneSet& set = scene.set(scene.motion[key.id]);
+    (void)set.partition->bounds(scene.place[key.id], box);
+    return box;
+  }
+
+  QueryState& state_;
+  const float* bounds_[6] = {};
+  std::size_t count_ = 0;
+};
+
+/// Pairs of bodies of two sets, without those of a body and itself.
 class SetPairs {
  public:
   SetPairs(QueryState& state, std::span<const Key> a, std::span<const Key> b) noexcept
-      : state_(state), a_(a), b_(b) {}
+      : a_(a), b_(b), boxes_(state) {}
 
-  [[nodiscard]] bool find_boxes() noexcept {
-    if (!state_.bounds.resize(b_.size())) return false;
-    for (std::size_t i = 0; i < b_.size(); ++i) state_.bounds[i] = bounds_of(b_[i]);
-    return true;
-  }
-  template <typename Gap, typename Look>
-  void each_within(Gap&& gap, Look&& look) const {
+  [[nodiscard]] bool find_boxes() noexcept { return boxes_.take(b_); }
+
+  /// The pair whose boxes are the nearest, if they are no farther apart than `most`.
+  [[nodiscard]] KeyPair nearest(double most) noexcept {
+    KeyPair found;
+    double least = square_of(most);
     for (const Key a : a_) {
-      const PlainPreciseBox box = bounds_of(a);
-      for (std::size_t i = 0; i < b_.size(); ++i) {
-        const double apart = gap_of(box, state_.bounds[i]);
-        if (apart <= gap() && a != b_[i] && !look(a, b_[i], apart)) return;
+      const std::span<const float> gaps = boxes_.squared_gaps(a);
+      for (std::size_t i = 0; i < gaps.size(); ++i) {
+        const auto gap = static_cast<double>(gaps[i]);
+        if (!(gap < least || (gap == least && found.first == Key{})) || a == b_[i]) continue;
+        least = gap;
+        found = {a, b_[i]};
+      }
+    }
+    return found;
+  }
+
+  /// Calls look(body of a, body of b) for pairs whose boxes are no farther apart than most(), which
+  /// may shrink meanwhile, until it says false.
+  template <typename Most, typename Look>
+  void each_within(Most&& most, Look&& look) {
+    double least = square_of(most());
+    for (const Key a : a_) {
+      const std::span<const float> gaps = boxes_.squared_gaps(a);
+      for (std::size_t i = 0; i < gaps.size(); ++i) {
+        if (!(static_cast<double>(gaps[i]) <= least) || a == b_[i]) continue;
+        if (!look(a, b_[i])) return;
+        least = square_of(most());
       }
     }
   }
 
  private:
-  [[nodiscard]] PlainPreciseBox bounds_of(Key key) const noexcept {
-    const PreciseBox box = state_.parts.box(state_.placed(key.id));
-    return {{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
+  [[nodiscard]] static double square_of(double gap) noexcept {
+    return gap * gap * (1.0 + kSquareSlack);
   }
 
-  QueryState& state_;
   std::span<const Key> a_;
   std::span<const Key> b_;
+  SetBoxes boxes_;
 };
 
 /// The closest pair of two sets. First looked at is the pair whose boxes are the nearest: hardly
@@ -63,21 +122,12 @@ class ClosestBodies {
  public:
   ClosestBodies(QueryState& state, double limit) noexcept : state_(state), limit_(limit) {}
 
-  [[nodiscard]] SetDistance find(const SetPairs& pairs) {
-    double least = mid::kInfinity;
-    Key nearest[2];
-    pairs.each_within([&] { return std::min(least, reach()); },
-                      [&](Key a, Key b, double gap) {
-                        if (gap == least) return true;
-                        least = gap;
-                        nearest[0] = a;
-                        nearest[1] = b;
-                        return true;
-                      });
-    if (nearest[0].id == kNoObject) return best_;
-    look(nearest[0], nearest[1]);
+  [[nodiscard]] SetDistance find(SetPairs& pairs) {
+    const KeyPair nearest = pairs.nearest(reach());
+    if (nearest.first == Key{}) return best_;
+    look(nearest.first, nearest.second);
     pairs.each_within([&] { return reach(); },
-                      [&](Key a, Key b, double) {
+                      [&](Key a, Key b) {
                         look(a, b);
                         return true;
                       });
@@ -151,7 +201,7 @@ Status SceneQueries::overlaps(std::span<const Key> a, std::span<const Key> b,
   found.clear();
   SetPairs all(*state_, a, b);
   bool has_room = all.find_boxes();
-  const auto look = [&](Key first, Key second, double) {
+  const auto look = [&](Key first, Key second) {
     std::uint32_t part = kWholeShape;
     if (do_overlap(state_->parts, state_->placed(first.id), state_->placed(second.id), part)) {
       has_room = found.push_back({first, second});
