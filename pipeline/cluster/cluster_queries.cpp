@@ -7,8 +7,8 @@
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/cluster/cluster_scene_state.h"
 #include "pipeline/cluster/outbox.h"
+#include "pipeline/composites/parts.h"
 #include "pipeline/rays/shape_entries.h"
-#include "pipeline/scene/queries/parts.h"
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
