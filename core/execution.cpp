@@ -7,7 +7,7 @@
 #include <tbb/task_group.h>
 #endif
 
-#if defined(__SSE__)
+#if defined(__SSE__) && !defined(__wasm__)
 #include <xmmintrin.h>
 #else
 #include <cfenv>
@@ -39,7 +39,7 @@ void run_in_arena(std::size_t count, void* tasks, JobSystem::Task task) {
 }
 #endif
 
-#if defined(__SSE__)
+#if defined(__SSE__) && !defined(__wasm__)
 // Of code that is compiled for SSE it is all in one register.
 using FloatEnvironment = unsigned;
 FloatEnvironment float_environment() noexcept {

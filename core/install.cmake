@@ -47,7 +47,7 @@ if(TARGET winnow_cluster)
   set(WINNOW_WITH_CLUSTER ON)
 endif()
 install(EXPORT winnow-targets NAMESPACE winnow:: DESTINATION ${winnow_package_dir})
-if(WINNOW_C)
+if(TARGET winnow_c)
   # By itself: programs in C look for none of what the others need.
   install(TARGETS winnow_c EXPORT winnow-c-targets
           RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}

@@ -14,7 +14,11 @@ bool supported(Isa isa) noexcept {
   switch (isa) {
 #ifdef WINNOW_HAVE_SSE42
     case Isa::sse42:
+#ifdef __wasm__
+      return true;
+#else
       return __builtin_cpu_supports("sse4.2") != 0;
+#endif
 #endif
 #ifdef WINNOW_HAVE_AVX2
     case Isa::avx2:

@@ -30,7 +30,7 @@ struct FoundTable {
 
   // Where the pair stands, or else would: an entry that is 0, which is no pair either.
   [[nodiscard]] std::uint64_t& find(std::uint64_t pair) const noexcept {
-    std::size_t at = pair * 0x9E3779B97F4A7C15U >> shift;
+    auto at = static_cast<std::size_t>(pair * 0x9E3779B97F4A7C15U >> shift);
     while (entry[at] != 0 && entry[at] != pair) at = (at + 1) & mask;
     return entry[at];
   }

@@ -287,11 +287,12 @@ Status PairWriter::gather_pages(std::size_t tasks, PageClaims& claims) {
   pairs.set_size(claims.led);
   // Pages may have been taken for nothing, and the array may be none yet.
   if (offset[tasks] == 0) return Status::ok;
-  if (!pairs.grow(claims.led + offset[tasks])) {
+  const auto all = static_cast<std::size_t>(claims.led + offset[tasks]);
+  if (!pairs.grow(all)) {
     pairs.set_size(before);
     return Status::out_of_memory;
   }
-  pairs.set_size(claims.led + offset[tasks]);
+  pairs.set_size(all);
   // From here the entry holds where its page goes instead of whose it is.
   for (std::size_t p = 0; p < pages; ++p) {
     const std::uint64_t e = claims.entries[p];

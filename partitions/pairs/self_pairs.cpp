@@ -116,7 +116,7 @@ Status PartitionState::find_self_pairs(PairBuffer& out, const PairOptions& optio
 Status PartitionState::answer_self_pairs(PairBuffer& out, const PairOptions& options,
                                          EventWriter* events) const {
   // One buffer at a time is tracked; a query that runs beside a tracked one does without.
-  std::unique_lock lock(tracker_mutex_, std::try_to_lock);
+  Lock lock = Lock::if_free(tracker_mutex_);
   const bool all = !options.incremental || out.empty();
   const bool tracked = lock.owns_lock() && options.incremental;
   Status status = refresh();

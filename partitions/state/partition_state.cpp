@@ -158,7 +158,7 @@ Status PartitionState::update(Key key, const Aabb& box) {
 }
 
 Status PartitionState::bounds(Key key, Aabb& box) const noexcept {
-  std::unique_lock lock(refresh_mutex_, std::defer_lock);
+  Lock lock = Lock::deferred(refresh_mutex_);
   if (stale_.load(std::memory_order_acquire) || deferred_.active()) lock.lock();
   const Status status = rows.bounds(key, box);
   if (status != Status::ok || !deferred_.active()) return status;
@@ -171,7 +171,7 @@ Status PartitionState::bounds(Key key, Aabb& box) const noexcept {
 // holds the mutex that the caller does.
 void PartitionState::end_deferring() const noexcept {
   if (!deferred_.active()) return;
-  const std::lock_guard lock(refresh_mutex_);
+  const Lock lock(refresh_mutex_);
   auto& self = const_cast<PartitionState&>(*this);
   if (deferred_.write(self.rows)) self.note_changes(rows.size());
   pairs_.calm.end();
@@ -186,7 +186,7 @@ void PartitionState::note_changes(std::size_t count) noexcept {
 
 void PartitionState::write_deferred() const {
   if (!deferred_.active()) return;
-  const std::lock_guard lock(tracker_mutex_);
+  const Lock lock(tracker_mutex_);
   end_deferring();
 }
 
@@ -197,7 +197,7 @@ Status PartitionState::settle() const {
 
 Status PartitionState::refresh() const {
   if (!stale_.load(std::memory_order_acquire)) return Status::ok;
-  const std::lock_guard lock(refresh_mutex_);
+  const Lock lock(refresh_mutex_);
   if (!stale_.load(std::memory_order_relaxed)) return Status::ok;
   const StageScope stage(WorkStage::refresh);
   // The structure is a cache of the rows: bringing it up to date is no change that a caller of a
@@ -210,7 +210,7 @@ Status PartitionState::refresh() const {
 // Who gets ready before the first question may ask any.
 Status PartitionState::make_ready() const {
   if (stale_.load(std::memory_order_acquire)) {
-    const std::lock_guard lock(refresh_mutex_);
+    const Lock lock(refresh_mutex_);
     if (index.builds() == 0) index.note_asked();
   }
   return refresh();
@@ -253,7 +253,7 @@ Status PartitionState::prepare(QueryKind kind, std::size_t count, QueryView& vie
   if (const Status status = settle(); status != Status::ok) return status;
   note(kind, count);
   if (index.queries_stale()) {
-    const std::lock_guard lock(refresh_mutex_);
+    const Lock lock(refresh_mutex_);
     if (index.queries_stale()) {
       if (const Status status = index.refresh_queries(); status != Status::ok) return status;
     }
@@ -289,7 +289,8 @@ void PartitionState::release_memory() noexcept {
 
 Footprint PartitionState::footprint() const noexcept {
   // Queries that run at the same time may be bringing up to date what is counted here.
-  const std::scoped_lock lock(refresh_mutex_, tracker_mutex_);
+  const Lock tracker(tracker_mutex_);
+  const Lock refresher(refresh_mutex_);
   Footprint result;
   const std::size_t own = sizeof *this + (chooser_ != nullptr ? chooser_->bytes() : 0);
   result.structure = {own, own};

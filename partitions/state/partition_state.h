@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/partitions/partition.h>
+#include "core/threads/mutex.h"
 #include "partitions/choice/chooser.h"
 #include "partitions/index/query_view.h"
 #include "partitions/index/spatial_index.h"
@@ -11,7 +12,6 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
 
 namespace winnow {
 
@@ -77,7 +77,7 @@ class PartitionState {
   /// Calls look() while no other thread can be exchanging what it looks at.
   template <typename Look>
   auto steadily(Look&& look) const {
-    std::unique_lock lock(refresh_mutex_, std::defer_lock);
+    Lock lock = Lock::deferred(refresh_mutex_);
     if (stale_.load(std::memory_order_acquire)) lock.lock();
     return look();
   }
@@ -145,8 +145,8 @@ class PartitionState {
   mutable DeferredBoxes deferred_;
   mutable PairBuffer near_;       // while it is found out which pairs to watch
   Column<std::uint32_t> listed_;  // entries of a mask
-  mutable std::mutex refresh_mutex_;
-  mutable std::mutex tracker_mutex_;
+  mutable Mutex refresh_mutex_;
+  mutable Mutex tracker_mutex_;
   // True from a change on until a refresh is through. Only in between are rows reordered and
   // structures exchanged, and only under the mutex.
   mutable std::atomic<bool> stale_{true};

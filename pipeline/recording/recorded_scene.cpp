@@ -127,7 +127,7 @@ std::uint32_t RecordedScene::number_of(ShapeId id) noexcept {
   const bool is_foreign =
       id.is_composite() ? composites_ == nullptr : id.kind() == ShapeKind::support;
   if (is_foreign) {
-    const std::lock_guard lock(recorder_->mutex);
+    const Lock lock(recorder_->mutex);
     recorder_->fail(Status::unsupported);
     return 0;
   }
@@ -150,7 +150,7 @@ std::uint32_t RecordedScene::number_of(ShapeId id) noexcept {
     std::rotate(std::upper_bound(known_.begin(), known_.end() - 1, shape, by_id), known_.end() - 1,
                 known_.end());
   } else {
-    const std::lock_guard lock(recorder_->mutex);
+    const Lock lock(recorder_->mutex);
     recorder_->fail(Status::out_of_memory);
   }
   id.is_composite() ? record_composite(shape) : record_shape(shape);
@@ -174,7 +174,7 @@ void RecordedScene::record_composite(const RecordedShape& shape) noexcept {
   Column<std::byte> bytes(known_.memory());
   const Status status = save_composite(*composites_, shape.id, bytes);
   if (status != Status::ok) {
-    const std::lock_guard lock(recorder_->mutex);
+    const Lock lock(recorder_->mutex);
     recorder_->fail(status);
     return;
   }

@@ -51,7 +51,7 @@ void RecorderState::close() noexcept {
 CallWriter::CallWriter(RecorderState* state, RecordedCall call, std::uint32_t world) noexcept
     : state_(state) {
   if (state_ == nullptr) return;
-  lock_ = std::unique_lock(state_->mutex);
+  lock_ = Lock(state_->mutex);
   if (state_->status != Status::ok || state_->closed) return;
   begin_ = state_->block.size();
   writer_.emplace(state_->block);
@@ -77,7 +77,7 @@ CallWriter& CallWriter::put_ids(std::span<const Key> keys) noexcept {
 
 std::uint32_t new_world(RecorderState* state) noexcept {
   if (state == nullptr) return kNoWorld;
-  const std::lock_guard lock(state->mutex);
+  const Lock lock(state->mutex);
   return state->worlds++;
 }
 
@@ -104,32 +104,32 @@ Recorder::~Recorder() {
 void Recorder::end_frame() noexcept {
   (void)CallWriter(state_, RecordedCall::end_frame, kNoWorld);
   if (state_ == nullptr) return;
-  const std::lock_guard lock(state_->mutex);
+  const Lock lock(state_->mutex);
   state_->flush();
 }
 
 Status Recorder::close() noexcept {
   if (state_ == nullptr) return Status::out_of_memory;
-  const std::lock_guard lock(state_->mutex);
+  const Lock lock(state_->mutex);
   state_->close();
   return state_->status;
 }
 
 Status Recorder::status() const noexcept {
   if (state_ == nullptr) return Status::out_of_memory;
-  const std::lock_guard lock(state_->mutex);
+  const Lock lock(state_->mutex);
   return state_->status;
 }
 
 std::uint64_t Recorder::bytes() const noexcept {
   if (state_ == nullptr) return 0;
-  const std::lock_guard lock(state_->mutex);
+  const Lock lock(state_->mutex);
   return state_->bytes;
 }
 
 std::uint64_t Recorder::calls() const noexcept {
   if (state_ == nullptr) return 0;
-  const std::lock_guard lock(state_->mutex);
+  const Lock lock(state_->mutex);
   return state_->calls;
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <winnow/pipeline/recording.h>
+#include "core/threads/mutex.h"
 #include "pipeline/recording/format.h"
 
 #include <cstdio>
-#include <mutex>
 #include <optional>
 #include <span>
 
@@ -24,7 +24,7 @@ struct RecorderState {
     if (status == Status::ok) status = why;
   }
 
-  std::mutex mutex;
+  Mutex mutex;
   Column<std::byte> block;
   RecordingSink sink;
   std::FILE* file = nullptr;
@@ -69,7 +69,7 @@ class CallWriter {
   [[nodiscard]] bool is_open() const noexcept { return writer_.has_value(); }
 
   RecorderState* state_;
-  std::unique_lock<std::mutex> lock_;
+  Lock lock_;
   std::optional<ByteWriter> writer_;
   std::size_t begin_ = 0;
 };
