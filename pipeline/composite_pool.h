@@ -90,11 +90,13 @@ class WINNOW_API CompositePool final : public MidPhase {
   [[nodiscard]] double radius(ShapeId id) const noexcept override;
   [[nodiscard]] std::uint64_t revision() const noexcept override;
   Status expand(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
-                double margin, const Execution& execution, PrimitivePairs& out) const override;
+                const PairMargins& margins, const Execution& execution,
+                PrimitivePairs& out) const override;
   void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
               NarrowResult& result) const override;
   Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
-                double margin, const Execution& execution, ContactRegions& out) const override;
+                const PairMargins& margins, const Execution& execution,
+                ContactRegions& out) const override;
   void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
              const PrimitiveVisitor& visitor) const override;
   void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,

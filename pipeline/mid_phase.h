@@ -18,6 +18,23 @@
 
 namespace winnow {
 
+/// Up to which distance pairs of bodies matter: one for all, or one for each.
+struct PairMargins {
+  /// The same for all pairs: a number does.
+  PairMargins(double margin) noexcept : largest(margin) {}
+  /// One for each pair; `most` is not below any of them.
+  PairMargins(double most, std::span<const double> margins) noexcept
+      : largest(most), each(margins) {}
+
+  double largest;                ///< that of no pair is larger
+  std::span<const double> each;  ///< by pair of bodies; empty where all have the largest
+
+  /// That of a pair of bodies.
+  [[nodiscard]] double of(std::size_t pair) const noexcept {
+    return each.empty() ? largest : each[pair];
+  }
+};
+
 /// The part of a shape that has no parts: all of a convex one.
 inline constexpr std::uint32_t kWholeShape = ~0U;
 
@@ -55,7 +72,7 @@ class WINNOW_API PrimitivePairs {
   Column<BodyPair> pairs;
   /// Pairs of primitives of pair i of bodies: [first[i], first[i + 1]).
   Column<std::uint32_t> first;
-  /// That `expand` was given.
+  /// The largest that `expand` was given.
   double margin = 0.0;
   /// What tasks write before it is put in order.
   Column<std::uint32_t> scratch;
@@ -141,17 +158,17 @@ class WINNOW_API MidPhase {
   /// composite shapes is void then.
   [[nodiscard]] virtual std::uint64_t revision() const noexcept = 0;
 
-  /// All pairs of primitives that are no farther apart than `margin`, and some more, of pairs of
-  /// bodies of which one at least is composite. Ids and poses are valid. The order is the same on
-  /// any number of threads and any instruction set.
+  /// All pairs of primitives that are no farther apart than the margin of their bodies, and some
+  /// more, of pairs of bodies of which one at least is composite. Ids and poses are valid. The
+  /// order is the same on any number of threads and any instruction set.
   virtual Status expand(const ShapePool& shapes, const Bodies& bodies,
-                        std::span<const BodyPair> pairs, double margin, const Execution& execution,
-                        PrimitivePairs& out) const = 0;
+                        std::span<const BodyPair> pairs, const PairMargins& margins,
+                        const Execution& execution, PrimitivePairs& out) const = 0;
   /// Gives contacts with internal edges of meshes the normal of the face, after the narrow phase
   /// has answered `pairs` at level distance or manifold.
   virtual void smooth(const ShapePool& shapes, const PrimitivePairs& pairs,
                       const Execution& execution, NarrowResult& result) const = 0;
-  /// Merges the manifolds of each pair of bodies no farther apart than `margin` into regions of
+  /// Merges the manifolds of each pair of bodies no farther apart than its margin into regions of
   /// contact: the deepest manifold (of equally deep ones the first in the order of `pairs`) and all
   /// whose normals are within 5 degrees of its own (kRegionCosine) are the first region, the
   /// deepest of what is left leads the next, and so on. Of a region at most kManifoldPoints points
@@ -160,8 +177,8 @@ class WINNOW_API MidPhase {
   /// manifold, else `invalid_argument`. O(manifolds x regions of a pair of bodies). The same on any
   /// number of threads and any instruction set.
   virtual Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs,
-                        const NarrowResult& answers, double margin, const Execution& execution,
-                        ContactRegions& out) const = 0;
+                        const NarrowResult& answers, const PairMargins& margins,
+                        const Execution& execution, ContactRegions& out) const = 0;
 
   /// Shows `visitor` every primitive whose box the sweep may meet, roughly in the order in which it
   /// does. O(log n + met).

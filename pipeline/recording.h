@@ -196,6 +196,9 @@ class WINNOW_API RecordedScene {
   Status set_motion(std::span<const Key> keys, Motion motion);
   Status set_shape(Key key, ShapeId shape);
   Status set_filter(Key key, const ObjectFilter& filter);
+  Status set_offsets(Key key, const ContactOffsets& offsets);
+  Status set_layer(Key key, std::uint16_t layer);
+  Status set_layers_meet(std::uint16_t a, std::uint16_t b, bool meet = true);
   Status set_ignored(Key a, Key b, bool ignored = true);
   Status set_ignored(std::span<const KeyPair> pairs, bool ignored = true);
   Status refresh();
@@ -211,6 +214,9 @@ class WINNOW_API RecordedScene {
   void record_shape(const RecordedShape& shape) noexcept;
   void record_composite(const RecordedShape& shape) noexcept;
   void follow_composites() noexcept;
+
+  void record_offsets(Key key, const ContactOffsets& offsets) noexcept;
+  void record_layer(Key key, std::uint16_t layer) noexcept;
 
   RecorderState* recorder_;
   std::uint32_t world_;

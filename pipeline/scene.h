@@ -48,7 +48,8 @@ struct SceneOptions {
   /// comes, or is reserved for. Fixed bodies that are asked about often may be worth the slow build
   /// of static_bvh().
   StructureKind structures[kMotions] = {linear_bvh(), linear_bvh(), linear_bvh()};
-  /// Speculative: pairs no farther apart than this are contacts too. Finite, >= 0.
+  /// Speculative: pairs no farther apart than this are contacts too; what bodies have of their own
+  /// (see ContactOffsets) comes on top of it. Finite, >= 0.
   double margin = 0.0;
   NarrowTier tier = NarrowTier::robust;  ///< how exact contacts have to be
   /// What rests keeps its contacts: manifolds of a pair are carried over, turned with body a, as
@@ -74,6 +75,26 @@ struct SceneOptions {
   const MidPhase* composites = nullptr;
 };
 
+/// How far from its surface a body's contacts begin, and where it comes to rest. What two bodies
+/// have is added, as in PhysX: they are a contact from the gap `a.contact + b.contact` on (and the
+/// scene's margin besides), and rest where they are `a.rest + b.rest` apart: distances and depths
+/// are measured as if the surface of each were moved out by its `rest`, points lie halfway between
+/// these surfaces. So a fast body gets its contacts early, thin cloth rests above the ground, and
+/// bodies of negative `rest` sink into each other unnoticed.
+///
+/// Counts at levels distance and manifold; at level pairs boxes are larger by `contact`; what
+/// overlaps at level boolean, for queries and for sensors is the shapes themselves.
+struct ContactOffsets {
+  double contact = 0.0;  ///< a length, finite, >= 0 and >= `rest`
+  double rest = 0.0;     ///< a length, finite; below 0 the surface is moved in
+
+  /// Both are the same.
+  friend constexpr bool operator==(const ContactOffsets&, const ContactOffsets&) noexcept = default;
+};
+
+/// So many layers bodies may be in; see Scene::set_layers_meet.
+inline constexpr std::uint32_t kSceneLayers = 4096;
+
 /// A body as it is added.
 struct BodyDefinition {
   ShapeId shape{};  ///< of the ShapePool, or of what `SceneOptions::composites` holds
@@ -82,6 +103,11 @@ struct BodyDefinition {
   Motion motion = Motion::dynamic;  ///< which set it is in
   ObjectFilter filter{};            ///< which other bodies it may meet
   ClientData data = 0;              ///< yours, given back with contacts and hits; never read
+  /// Where its contacts begin. The first body that has any makes the scene hold 16 bytes for each.
+  ContactOffsets offsets{};
+  /// Below kSceneLayers: see Scene::set_layers_meet. The first body that is not in layer 0 makes
+  /// the scene hold 2 bytes for each.
+  std::uint16_t layer = 0;
 };
 
 /// How much a scene is to have room for; see Scene::reserve. Each at most 2^32 - 2, and fewer than
@@ -143,7 +169,7 @@ class WINNOW_API Scene {
   Scene& operator=(const Scene&) = delete;
 
   /// Adds a body. `invalid_key` for a shape that neither pool has, `invalid_pose`;
-  /// `too_many_objects` beyond 2^28.
+  /// `invalid_argument` for offsets or a layer out of range; `too_many_objects` beyond 2^28.
   Status add(const BodyDefinition& body, Key& key);
   /// Adds many at once, all or none. `size_mismatch` if there are not as many keys as bodies.
   Status add(std::span<const BodyDefinition> bodies, std::span<Key> keys);
@@ -187,6 +213,24 @@ class WINNOW_API Scene {
   Status set_shape(Key key, ShapeId shape);
   /// Says anew which others a body may meet; counts from the next question on.
   Status set_filter(Key key, const ObjectFilter& filter);
+  /// Says anew where a body's contacts begin and where it rests. `invalid_argument` for offsets out
+  /// of range. O(1), but for the first ones of a scene.
+  Status set_offsets(Key key, const ContactOffsets& offsets);
+
+  /// Layers beyond the 32 of a filter: each body is in one, layer 0 unless it is told another, and
+  /// all meet until two, which may be the same, are told not to. The order of the two is of no
+  /// effect. A filter is asked while pairs are found and costs next to nothing; layers are asked
+  /// about each pair that is found, by one look into a square of bits. `invalid_argument` for
+  /// layers out of range. O(1) beside pairs that are found anew; the square has a bit for each two
+  /// layers up to the highest that was told not to meet one.
+  Status set_layers_meet(std::uint16_t a, std::uint16_t b, bool meet = true);
+  /// True unless the two were told not to.
+  [[nodiscard]] bool layers_meet(std::uint16_t a, std::uint16_t b) const noexcept;
+  /// Puts a body into another layer; counts from the next question on. `invalid_argument` for a
+  /// layer out of range.
+  Status set_layer(Key key, std::uint16_t layer);
+  /// The layer of a live body; 0 for any other.
+  [[nodiscard]] std::uint16_t layer(Key key) const noexcept;
 
   /// Bodies that never meet, whatever their filters say: neighbouring links of a robot, bones of a
   /// ragdoll. `ignored` false lets them meet again; the order of the two is of no effect, and what
@@ -282,6 +326,29 @@ class WINNOW_API Scene {
 
   /// Null where memory was refused.
   SceneState* state_;
+};
+
+/// What SceneQueries ask for who is in a layer: bodies whose layers that one meets.
+///
+///     const winnow::LayerFilter bullet{scene, kBullets};
+///     queries.closest(ray, hit, bullet.filter());
+struct LayerFilter {
+  const Scene& scene;       ///< that is asked
+  std::uint16_t layer = 0;  ///< that the one who asks is in
+  Filter also{};            ///< what else a body has to pass
+
+  /// It points to this, which has to outlive the question.
+  [[nodiscard]] Filter filter() const noexcept {
+    Filter both = also;
+    both.predicate = {[](void* context, Key key, ClientData data) {
+                        const auto& self = *static_cast<const LayerFilter*>(context);
+                        const ObjectPredicate& other = self.also.predicate;
+                        return self.scene.layers_meet(self.layer, self.scene.layer(key)) &&
+                               (other.accept == nullptr || other.accept(other.context, key, data));
+                      },
+                      const_cast<LayerFilter*>(this)};
+    return both;
+  }
 };
 
 }  // namespace winnow

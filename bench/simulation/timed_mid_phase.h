@@ -24,9 +24,10 @@ class TimedMidPhase final : public MidPhase {
   [[nodiscard]] double radius(ShapeId id) const noexcept override { return inner_.radius(id); }
   [[nodiscard]] std::uint64_t revision() const noexcept override { return inner_.revision(); }
   Status expand(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
-                double margin, const Execution& execution, PrimitivePairs& out) const override {
+                const PairMargins& margins, const Execution& execution,
+                PrimitivePairs& out) const override {
     const Stopwatch clock;
-    const Status status = inner_.expand(shapes, bodies, pairs, margin, execution, out);
+    const Status status = inner_.expand(shapes, bodies, pairs, margins, execution, out);
     ms_ += clock.ms();
     return status;
   }
@@ -37,9 +38,10 @@ class TimedMidPhase final : public MidPhase {
     ms_ += clock.ms();
   }
   Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
-                double margin, const Execution& execution, ContactRegions& out) const override {
+                const PairMargins& margins, const Execution& execution,
+                ContactRegions& out) const override {
     const Stopwatch clock;
-    const Status status = inner_.reduce(shapes, pairs, answers, margin, execution, out);
+    const Status status = inner_.reduce(shapes, pairs, answers, margins, execution, out);
     ms_ += clock.ms();
     return status;
   }

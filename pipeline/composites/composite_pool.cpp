@@ -361,10 +361,10 @@ std::uint64_t CompositePool::revision() const noexcept {
 }
 
 Status CompositePool::expand(const ShapePool& shapes, const Bodies& bodies,
-                             std::span<const BodyPair> pairs, double margin,
+                             std::span<const BodyPair> pairs, const PairMargins& margins,
                              const Execution& execution, PrimitivePairs& out) const {
   const StageScope stage(WorkStage::mid_phase);
-  return mid::expand(state_, shapes.tables(), bodies, pairs, margin, execution, out);
+  return mid::expand(state_, shapes.tables(), bodies, pairs, margins, execution, out);
 }
 
 void CompositePool::smooth(const ShapePool& shapes, const PrimitivePairs& pairs,
@@ -373,9 +373,9 @@ void CompositePool::smooth(const ShapePool& shapes, const PrimitivePairs& pairs,
 }
 
 Status CompositePool::reduce(const ShapePool& shapes, const PrimitivePairs& pairs,
-                             const NarrowResult& answers, double margin, const Execution& execution,
-                             ContactRegions& out) const {
-  return mid::reduce(shapes, pairs, answers, margin, execution, out);
+                             const NarrowResult& answers, const PairMargins& margins,
+                             const Execution& execution, ContactRegions& out) const {
+  return mid::reduce(shapes, pairs, answers, margins, execution, out);
 }
 
 void CompositePool::visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,

@@ -136,8 +136,8 @@ struct Composites {
 /// what they found is counted, and the same chunks write it out where it belongs. Neither depends
 /// on how many threads there are.
 Status expand(const Composites* all, const ShapeTables& tables, const Bodies& bodies,
-              std::span<const BodyPair> pairs, double margin, const Execution& execution,
-              PrimitivePairs& out);
+              std::span<const BodyPair> pairs, const PairMargins& margins,
+              const Execution& execution, PrimitivePairs& out);
 
 /// See MidPhase::smooth.
 ///
@@ -161,7 +161,7 @@ void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Executio
 
 /// See MidPhase::reduce.
 Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
-              double margin, const Execution& execution, ContactRegions& out);
+              const PairMargins& margins, const Execution& execution, ContactRegions& out);
 
 /// See MidPhase::visit, visit_rays, visit_pairs, visit_near_pairs and visit_near. `id` is there,
 /// `pose` is valid.

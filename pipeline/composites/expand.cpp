@@ -26,11 +26,13 @@ static_assert(sizeof(ChunkRecord) % sizeof(std::uint32_t) == 0);
 class Expansion {
  public:
   Expansion(const Composites& all, const ShapeTables& tables, const Bodies& bodies,
-            std::span<const BodyPair> pairs, PrimitivePairs& out) noexcept
+            std::span<const BodyPair> pairs, const PairMargins& margins,
+            PrimitivePairs& out) noexcept
       : all_(all),
         tables_(tables),
         bodies_(bodies),
         pairs_(pairs),
+        margins_(margins),
         out_(out),
         chunks_((pairs.size() + kPairsPerTask - 1) / kPairsPerTask),
         head_(WordArena::blocks_for(chunks_ * sizeof(ChunkRecord) / sizeof(std::uint32_t)) +
@@ -79,6 +81,7 @@ class Expansion {
   const ShapeTables& tables_;
   const Bodies& bodies_;
   std::span<const BodyPair> pairs_;
+  const PairMargins& margins_;
   PrimitivePairs& out_;
   std::size_t chunks_;
   std::uint64_t head_;
@@ -109,13 +112,14 @@ bool Expansion::search_all(const Execution& execution) noexcept {
 }
 
 void Expansion::search(std::size_t chunk, WordArena& arena) noexcept {
-  Search search(tables_, out_.margin, arena);
+  Search search(tables_, arena);
   const std::size_t end = std::min((chunk + 1) * kPairsPerTask, pairs_.size());
   for (std::size_t i = chunk * kPairsPerTask; i < end; ++i) {
     const std::uint64_t primitives = search.primitives().size();
     const std::uint64_t found = search.pairs().size();
     if (is_there(pairs_[i].a) && is_there(pairs_[i].b)) {
-      search.run(placed(pairs_[i].a, pairs_[i].a), placed(pairs_[i].b, pairs_[i].a));
+      search.run(placed(pairs_[i].a, pairs_[i].a), placed(pairs_[i].b, pairs_[i].a),
+                 margins_.of(i));
     }
     primitive_counts()[i] = static_cast<std::uint32_t>(search.primitives().size() - primitives);
     out_.first[i + 1] = static_cast<std::uint32_t>((search.pairs().size() - found) / 2);
@@ -208,16 +212,16 @@ void Expansion::write_triangle(const PlacedBody& body, std::uint32_t number, std
 }  // namespace
 
 Status expand(const Composites* all, const ShapeTables& tables, const Bodies& bodies,
-              std::span<const BodyPair> pairs, double margin, const Execution& execution,
-              PrimitivePairs& out) {
+              std::span<const BodyPair> pairs, const PairMargins& margins,
+              const Execution& execution, PrimitivePairs& out) {
   out.clear();
-  out.margin = margin;
+  out.margin = margins.largest;
   if (pairs.empty() || all == nullptr) {
     if (!out.first.resize(pairs.size() + 1)) return Status::out_of_memory;
     std::fill(out.first.begin(), out.first.end(), 0U);
     return Status::ok;
   }
-  const Status status = Expansion(*all, tables, bodies, pairs, out).run(execution);
+  const Status status = Expansion(*all, tables, bodies, pairs, margins, out).run(execution);
   if (status != Status::ok) out.clear();
   return status;
 }

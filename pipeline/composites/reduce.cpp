@@ -100,11 +100,11 @@ class SupportCorners {
 class Reduction {
  public:
   Reduction(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
-            double margin, ContactRegions& out) noexcept
+            const PairMargins& margins, ContactRegions& out) noexcept
       : tables_(pairs.tables(shapes)),
         pairs_(pairs),
         answers_(answers),
-        margin_(margin),
+        margins_(margins),
         out_(out) {}
 
   [[nodiscard]] Status run(const Execution& execution) noexcept;
@@ -114,6 +114,8 @@ class Reduction {
   struct Members {
     std::span<std::uint32_t> answer;
     std::span<std::uint32_t> region;
+    /// Contacts are no farther apart.
+    double margin;
   };
 
   void find_members(std::size_t bodies) noexcept;
@@ -125,19 +127,16 @@ class Reduction {
   void keep_all(std::uint32_t answer, ContactRegion& region) const noexcept;
   void choose(const Members& members, std::uint32_t number, double tie,
               ContactRegion& region) const noexcept;
-  void add_contacts(std::uint32_t answer, const ContactRegion& region, SupportCorners& corners,
-                    RegionPoints& points) const noexcept;
+  void add_contacts(std::uint32_t answer, double margin, const ContactRegion& region,
+                    SupportCorners& corners, RegionPoints& points) const noexcept;
   [[nodiscard]] bool holds_corner(std::uint32_t answer, const FaceOfMesh& face,
                                   const ContactRegion& region,
                                   SupportCorners& corners) const noexcept;
-  void add_corners(std::uint32_t answer, const FaceOfMesh& face,
+  void add_corners(std::uint32_t answer, double margin, const FaceOfMesh& face,
                    RegionPoints& points) const noexcept;
   [[nodiscard]] FaceOfMesh face_of(std::uint32_t answer) const noexcept;
   [[nodiscard]] solver::Problem problem_of(std::uint32_t answer) const noexcept;
 
-  [[nodiscard]] bool touches(std::uint32_t answer) const noexcept {
-    return answers_.distance()[answer] <= margin_;
-  }
   [[nodiscard]] const BodyPair& primitives(std::uint32_t answer) const noexcept {
     return pairs_.pairs[answers_.pair_of(answer)];
   }
@@ -162,7 +161,7 @@ class Reduction {
   ShapeTables tables_;
   const PrimitivePairs& pairs_;
   const NarrowResult& answers_;
-  double margin_;
+  const PairMargins& margins_;
   ContactRegions& out_;
 };
 
@@ -188,9 +187,10 @@ Status Reduction::run(const Execution& execution) noexcept {
 void Reduction::find_members(std::size_t bodies) noexcept {
   const std::uint32_t* const slot = column(0);
   std::uint32_t* const member = column(1) + pairs_.first[bodies];
+  const double margin = margins_.of(bodies);
   std::uint32_t count = 0;
   for (std::uint32_t i = pairs_.first[bodies]; i < pairs_.first[bodies + 1]; ++i) {
-    if (touches(slot[i])) member[count++] = slot[i];
+    if (answers_.distance()[slot[i]] <= margin) member[count++] = slot[i];
   }
   out_.count[bodies] = count;
 }
@@ -198,7 +198,7 @@ void Reduction::find_members(std::size_t bodies) noexcept {
 void Reduction::reduce_bodies(std::size_t bodies) noexcept {
   const std::size_t at = pairs_.first[bodies];
   const std::size_t count = out_.count[bodies];
-  const Members members{{column(1) + at, count}, {column(2) + at, count}};
+  const Members members{{column(1) + at, count}, {column(2) + at, count}, margins_.of(bodies)};
   std::fill(members.region.begin(), members.region.end(), kNoRegion);
   const double tie = tie_of(members);
   ContactRegion* const regions = out_.regions.data() + out_.first[bodies];
@@ -289,7 +289,7 @@ void Reduction::choose(const Members& members, std::uint32_t number, double tie,
   SupportCorners corners;
   for (std::size_t i = 0; i < members.answer.size(); ++i) {
     if (members.region[i] != number) continue;
-    add_contacts(members.answer[i], region, corners, points);
+    add_contacts(members.answer[i], members.margin, region, corners, points);
   }
   region.count = points.choose(region.point);
 }
@@ -321,7 +321,7 @@ solver::Problem Reduction::problem_of(std::uint32_t answer) const noexcept {
 // manifolds; of one apart, those that are farther than the edge that is nearest. What lies beside a
 // triangle whose neighbours continue the surface is nearer to these: it stays only if it is deeper
 // than all that lies over the region.
-void Reduction::add_contacts(std::uint32_t answer, const ContactRegion& region,
+void Reduction::add_contacts(std::uint32_t answer, double margin, const ContactRegion& region,
                              SupportCorners& corners, RegionPoints& points) const noexcept {
   const BodyPair& of = primitives(answer);
   const std::uint32_t part[2] = {pairs_.part[of.a], pairs_.part[of.b]};
@@ -334,7 +334,7 @@ void Reduction::add_contacts(std::uint32_t answer, const ContactRegion& region,
   });
   const bool is_apart = face.is_face() && answers_.distance()[answer] > 0.0;
   if (is_full || (is_apart && holds_corner(answer, face, region, corners))) {
-    add_corners(answer, face, points);
+    add_corners(answer, margin, face, points);
   }
 }
 
@@ -356,13 +356,13 @@ bool Reduction::holds_corner(std::uint32_t answer, const FaceOfMesh& face,
 
 // All corners of what the two primitives share, seen along the manifold's normal. None is deeper
 // than the manifold.
-void Reduction::add_corners(std::uint32_t answer, const FaceOfMesh& face,
+void Reduction::add_corners(std::uint32_t answer, double margin, const FaceOfMesh& face,
                             RegionPoints& points) const noexcept {
   const BodyPair& of = primitives(answer);
   const solver::Problem problem = problem_of(answer);
   ContactPoint corners[kSharedCorners];
-  const double margin = std::min(std::ldexp(margin_, -problem.exponent), 8.0);
-  const std::uint32_t count = shared_corners(problem, normal(answer), margin, corners);
+  const double reach = std::min(std::ldexp(margin, -problem.exponent), 8.0);
+  const std::uint32_t count = shared_corners(problem, normal(answer), reach, corners);
   float deepest = -std::numeric_limits<float>::infinity();
   visit_contacts(answer,
                  [&](const ContactPoint& contact) { deepest = std::max(deepest, contact.depth); });
@@ -376,7 +376,7 @@ void Reduction::add_corners(std::uint32_t answer, const FaceOfMesh& face,
   for (ContactPoint& corner : std::span(corners, count)) {
     for (float& x : corner.position) x = scaled(x);
     corner.depth = std::min(scaled(corner.depth), deepest);
-    const bool is_near = static_cast<double>(corner.depth) >= -margin_;
+    const bool is_near = static_cast<double>(corner.depth) >= -margin;
     if (is_near && face.has(corner, offset(answer))) points.add(corner, offset(answer), part);
   }
 }
@@ -384,13 +384,13 @@ void Reduction::add_corners(std::uint32_t answer, const FaceOfMesh& face,
 }  // namespace
 
 Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
-              double margin, const Execution& execution, ContactRegions& out) {
+              const PairMargins& margins, const Execution& execution, ContactRegions& out) {
   out.clear();
   if (answers.size() != 0 && answers.level() != ContactLevel::manifold) {
     return Status::invalid_argument;
   }
   const Status status = answers.size() == pairs.pairs.size()
-                            ? Reduction(shapes, pairs, answers, margin, out).run(execution)
+                            ? Reduction(shapes, pairs, answers, margins, out).run(execution)
                             : Status::invalid_argument;
   if (status != Status::ok) out.clear();
   return status;

@@ -139,10 +139,11 @@ struct TrianglePlane {
 
 }  // namespace
 
-Search::Search(const ShapeTables& tables, double margin, WordArena& arena) noexcept
-    : tables_(tables), margin_(margin), arena_(arena), primitives_(arena), pairs_(arena) {}
+Search::Search(const ShapeTables& tables, WordArena& arena) noexcept
+    : tables_(tables), arena_(arena), primitives_(arena), pairs_(arena) {}
 
-void Search::run(const PlacedBody& a, const PlacedBody& b) noexcept {
+void Search::run(const PlacedBody& a, const PlacedBody& b, double margin) noexcept {
+  margin_ = margin;
   before_ = primitives_.size();
   if (!a.is_surface() && !b.is_surface()) {
     parts_parts(a, b);

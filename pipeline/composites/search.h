@@ -13,11 +13,12 @@ namespace winnow::mid {
 /// an arena, as numbers within the bodies, to be written out once all tasks have counted.
 class Search {
  public:
-  Search(const ShapeTables& tables, double margin, WordArena& arena) noexcept;
+  Search(const ShapeTables& tables, WordArena& arena) noexcept;
 
-  /// Primitives are written to `primitives()` as numbers with kSecond set for those of b, pairs to
-  /// `pairs()` as two numbers of this search's primitives.
-  void run(const PlacedBody& a, const PlacedBody& b) noexcept;
+  /// Primitives no farther apart than `margin`, and some more. They are written to `primitives()`
+  /// as numbers with kSecond set for those of b, pairs to `pairs()` as two numbers of this search's
+  /// primitives.
+  void run(const PlacedBody& a, const PlacedBody& b, double margin) noexcept;
 
   static constexpr std::uint32_t kSecond = 1U << 31U;
 
@@ -62,7 +63,8 @@ class Search {
                                         std::uint32_t flag) noexcept;
 
   const ShapeTables& tables_;
-  double margin_;
+  /// Of this pair of bodies.
+  double margin_ = 0.0;
   WordArena& arena_;
   WordWriter primitives_;
   WordWriter pairs_;

@@ -62,9 +62,13 @@ enum class RecordedCall : std::uint8_t {
   collide,
   add_composite,
   change_composite,
+
+  set_offsets,
+  set_layer,
+  set_layers_meet,
 };
 /// The last there is.
-inline constexpr RecordedCall kLastCall = RecordedCall::change_composite;
+inline constexpr RecordedCall kLastCall = RecordedCall::set_layers_meet;
 
 /// What a call names objects by: keys belong to one process, ids are the same in each.
 struct RecordedPair {

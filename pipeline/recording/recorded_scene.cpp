@@ -225,11 +225,17 @@ Status RecordedScene::add(std::span<const BodyDefinition> bodies, std::span<Key>
     const RecordedShape* const at = find_shape(body.shape);
     return at == nullptr ? 0 : at->number;
   };
-  CallWriter call(recorder_, RecordedCall::add_bodies, world_);
-  call.put(std::uint64_t{bodies.size()});
-  for (const BodyDefinition& body : bodies) {
-    const RecordedBody one = recorded(body, number(body));
-    call.put_bytes(&one, sizeof one);
+  {
+    CallWriter call(recorder_, RecordedCall::add_bodies, world_);
+    call.put(std::uint64_t{bodies.size()});
+    for (const BodyDefinition& body : bodies) {
+      const RecordedBody one = recorded(body, number(body));
+      call.put_bytes(&one, sizeof one);
+    }
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].offsets != ContactOffsets{}) record_offsets(keys[i], bodies[i].offsets);
+    if (bodies[i].layer != 0) record_layer(keys[i], bodies[i].layer);
   }
   return status;
 }
@@ -297,6 +303,37 @@ Status RecordedScene::set_filter(Key key, const ObjectFilter& filter) {
         .put_bytes(&filter, sizeof filter);
   }
   return status;
+}
+
+Status RecordedScene::set_offsets(Key key, const ContactOffsets& offsets) {
+  const Status status = scene_.set_offsets(key, offsets);
+  if (status == Status::ok) record_offsets(key, offsets);
+  return status;
+}
+
+Status RecordedScene::set_layer(Key key, std::uint16_t layer) {
+  const Status status = scene_.set_layer(key, layer);
+  if (status == Status::ok) record_layer(key, layer);
+  return status;
+}
+
+Status RecordedScene::set_layers_meet(std::uint16_t a, std::uint16_t b, bool meet) {
+  const Status status = scene_.set_layers_meet(a, b, meet);
+  if (status == Status::ok) {
+    CallWriter(recorder_, RecordedCall::set_layers_meet, world_).put(a).put(b).put(meet);
+  }
+  return status;
+}
+
+void RecordedScene::record_layer(Key key, std::uint16_t layer) noexcept {
+  CallWriter(recorder_, RecordedCall::set_layer, world_).put(key.id).put(layer);
+}
+
+void RecordedScene::record_offsets(Key key, const ContactOffsets& offsets) noexcept {
+  CallWriter(recorder_, RecordedCall::set_offsets, world_)
+      .put(key.id)
+      .put(offsets.contact)
+      .put(offsets.rest);
 }
 
 Status RecordedScene::set_ignored(Key a, Key b, bool ignored) {

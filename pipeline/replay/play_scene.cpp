@@ -83,6 +83,24 @@ Status ReplayState::change_scene(RecordedCall call, ReplayedWorld& of) {
       if (!in.get_bytes(&given, sizeof given)) return Status::invalid_argument;
       return scene.set_filter(key, given);
     }
+    case RecordedCall::set_offsets: {
+      const Key key = scene.key_of(in.get<ObjectId>());
+      ContactOffsets given;
+      given.contact = in.get<double>();
+      given.rest = in.get<double>();
+      return in.ok() ? scene.set_offsets(key, given) : reading();
+    }
+    case RecordedCall::set_layer: {
+      const Key key = scene.key_of(in.get<ObjectId>());
+      const auto layer = in.get<std::uint16_t>();
+      return in.ok() ? scene.set_layer(key, layer) : reading();
+    }
+    case RecordedCall::set_layers_meet: {
+      const auto a = in.get<std::uint16_t>();
+      const auto b = in.get<std::uint16_t>();
+      const bool meet = in.get_bool();
+      return in.ok() ? scene.set_layers_meet(a, b, meet) : reading();
+    }
     case RecordedCall::set_ignored: {
       const bool ignored = in.get_bool();
       Column<RecordedPair> pairs(options.memory);

@@ -13,7 +13,7 @@ struct BodyPredicate {
   /// Without a predicate where nothing was told. This must outlive the question.
   [[nodiscard]] PairOptions options() const noexcept {
     PairOptions options;
-    if (scene.ignored.empty() && scene.predicate.accept == nullptr) return options;
+    if (scene.meets_all()) return options;
     options.predicate = {[](void* context, ObjectId first, ObjectId second) {
                            const auto& asked = *static_cast<const BodyPredicate*>(context);
                            return asked.scene.may_pair(asked.first_body[first],

@@ -55,7 +55,8 @@ Status Collision::run() {
   if (!wake_dormant() || !match()) return Status::out_of_memory;
   if (decide()) {
     if (!list_pairs()) return Status::out_of_memory;
-    for (const Status status : {answer_convex(), answer_composite(), reduce_composite()}) {
+    find_limit();
+    for (const Status status : {answer_convex(), answer_composite()}) {
       if (status != Status::ok) return status;
     }
     contacts_.frame.swap(contacts_.before);
@@ -96,9 +97,9 @@ bool Collision::list_pairs() {
 
 namespace {
 
-[[nodiscard]] NarrowOptions narrow_options(const SceneOptions& options,
-                                           ContactLevel level) noexcept {
-  return {level, options.tier, options.margin, options.execution};
+[[nodiscard]] NarrowOptions narrow_options(const SceneOptions& options, ContactLevel level,
+                                           double margin) noexcept {
+  return {level, options.tier, margin, options.execution};
 }
 
 // Where the answer about each pair of the input lies.
@@ -116,12 +117,13 @@ Status Collision::answer_convex() {
   const Status status = scene_.narrow.collide(
       scene_.shapes,
       {{scene_.shape.data(), scene_.shape.size()}, {scene_.pose.data(), scene_.pose.size()}},
-      {scene_.convex.data(), scene_.convex.size()}, narrow_options(scene_.options, level_),
-      scene_.answers);
+      {scene_.convex.data(), scene_.convex.size()},
+      narrow_options(scene_.options, level_, widest_gap(scene_.convex)), scene_.answers);
   if (status != Status::ok) return status;
   scene_.statistics.convex = scene_.narrow.statistics();
-  return invert(scene_.answers, scene_.options.execution, scene_.slot) ? Status::ok
-                                                                       : Status::out_of_memory;
+  if (!invert(scene_.answers, scene_.options.execution, scene_.slot)) return Status::out_of_memory;
+  trim_convex();
+  return Status::ok;
 }
 
 Status Collision::answer_composite() {
@@ -129,37 +131,44 @@ Status Collision::answer_composite() {
   const SceneOptions& options = scene_.options;
   PrimitivePairs& parts = scene_.parts;
   // What is farther apart than this cannot touch before its pair is made anew.
-  const double reach = options.margin + (carries_ ? options.carry_over : 0.0);
+  double reach = 0.0;
+  if (!find_gaps(carries_ ? options.carry_over : 0.0, reach)) return Status::out_of_memory;
   Status status = options.composites->expand(
       scene_.shapes,
       {{scene_.shape.data(), scene_.shape.size()}, {scene_.pose.data(), scene_.pose.size()}},
-      {scene_.composite.data(), scene_.composite.size()}, reach, options.execution, parts);
+      {scene_.composite.data(), scene_.composite.size()}, margins(reach), options.execution, parts);
   if (status != Status::ok) return status;
   status = scene_.parts_narrow.collide(
       parts.tables(scene_.shapes),
       {{parts.shapes.data(), parts.shapes.size()}, {parts.poses.data(), parts.poses.size()}},
-      {parts.pairs.data(), parts.pairs.size()}, narrow_options(options, level_),
-      scene_.parts_answers);
+      {parts.pairs.data(), parts.pairs.size()},
+      narrow_options(options, level_, widest_gap(scene_.composite)), scene_.parts_answers);
   if (status != Status::ok) return status;
   if (level_ >= ContactLevel::distance) {
     options.composites->smooth(scene_.shapes, parts, options.execution, scene_.parts_answers);
   }
   scene_.statistics.parts = scene_.parts_narrow.statistics();
   scene_.statistics.primitive_pairs = parts.pairs.size();
-  return invert(scene_.parts_answers, options.execution, scene_.parts_slot) ? Status::ok
-                                                                            : Status::out_of_memory;
+  if (!invert(scene_.parts_answers, options.execution, scene_.parts_slot)) {
+    return Status::out_of_memory;
+  }
+  trim_parts();
+  if (const Status reduced = reduce_composite(); reduced != Status::ok) return reduced;
+  rest_parts();
+  return Status::ok;
 }
 
 Status Collision::reduce_composite() {
-  if (!reduces_ || scene_.composite.empty()) return Status::ok;
+  if (!reduces_) return Status::ok;
+  double widest = 0.0;
+  if (!find_gaps(0.0, widest)) return Status::out_of_memory;
   const SceneOptions& options = scene_.options;
   return options.composites->reduce(scene_.shapes, scene_.parts, scene_.parts_answers,
-                                    options.margin, options.execution, scene_.regions);
+                                    margins(widest), options.execution, scene_.regions);
 }
 
 bool Collision::touches(const NarrowResult& answers, std::size_t at) const noexcept {
-  return level_ == ContactLevel::boolean ? answers.overlaps(at)
-                                         : answers.distance()[at] <= scene_.options.margin;
+  return level_ == ContactLevel::boolean ? answers.overlaps(at) : answers.distance()[at] <= limit_;
 }
 
 std::uint32_t Collision::shown_before(std::uint32_t pair) const noexcept {
@@ -441,7 +450,7 @@ double Collision::clearance(std::uint32_t pair) const noexcept {
   const auto of = [&](const NarrowResult& answers, std::size_t at) {
     // At level manifold the distance of what is farther than the margin may be a lower bound
     // already, its error on the other side; half of it is one where the error is a rounding's.
-    const double beyond = answers.distance()[at] - scene_.options.margin;
+    const double beyond = answers.distance()[at] - limit_;
     return std::max(beyond - answers.error_bound()[at],
                     level_ == ContactLevel::manifold ? 0.5 * beyond : 0.0);
   };

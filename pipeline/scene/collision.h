@@ -47,6 +47,23 @@ class Collision {
   [[nodiscard]] Status answer_composite();
   [[nodiscard]] Status reduce_composite();
 
+  // Offsets of bodies (contact_offsets.cpp).
+  struct Asked;
+  void find_limit() noexcept;
+  /// Of composite pairs, each `more` than it is: none without offsets. False if memory is refused.
+  [[nodiscard]] bool find_gaps(double more, double& widest);
+  [[nodiscard]] PairMargins margins(double widest) const noexcept {
+    if (!scene_.has_offsets()) return widest;
+    return {widest, {scene_.gaps.data(), scene_.gaps.size()}};
+  }
+  [[nodiscard]] double widest_gap(const Column<BodyPair>& pairs) const noexcept;
+  void trim(const Asked& asked, std::uint32_t at, const NarrowColumns& answers) noexcept;
+  void trim_convex() noexcept;
+  void trim_parts() noexcept;
+  void rest(const BodyPair& bodies, std::uint32_t at, const NarrowColumns& answers) noexcept;
+  void rest_parts() noexcept;
+  void rest_regions(const BodyPair& bodies, std::size_t pair) noexcept;
+
   // The frame (collide.cpp).
   [[nodiscard]] bool show();
   /// The place in the last frame of a pair's contacts; kNoEntry.
@@ -92,6 +109,8 @@ class Collision {
   bool reduces_;
   /// It is told where contacts were.
   bool remembers_places_;
+  /// What is no farther apart touches.
+  double limit_ = 0.0;
   /// Pairs that the contacts showed before this call.
   std::uint32_t shown_last_ = 0;
   /// What the contacts remember is of this scene; and of this level.

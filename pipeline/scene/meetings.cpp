@@ -1,6 +1,7 @@
-// Which pairs of bodies may meet, beyond their filters: those that are not ignored and that the
-// caller's predicate accepts.
+// Which pairs of bodies may meet, beyond their filters: those whose layers meet, that are not
+// ignored and that the caller's predicate accepts.
 
+#include "core/hooks/log.h"
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
@@ -74,7 +75,53 @@ bool SceneState::is_ignored(ObjectId a, ObjectId b) const noexcept {
          std::binary_search(ignored.begin(), ignored.end(), pair_number(a, b));
 }
 
+Status Scene::set_layers_meet(std::uint16_t a, std::uint16_t b, bool meet) {
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_layers_meet");
+  if (std::max(a, b) >= kSceneLayers) {
+    return logged(Status::invalid_argument, "Scene::set_layers_meet");
+  }
+  SceneState& s = *state_;
+  if (s.layers.meet(a, b) == meet) return Status::ok;
+  if (!s.layers.reach(std::max(a, b))) {
+    return logged(Status::out_of_memory, "Scene::set_layers_meet");
+  }
+  s.layers.set(a, b, meet);
+  s.ask_again();
+  return Status::ok;
+}
+
+bool Scene::layers_meet(std::uint16_t a, std::uint16_t b) const noexcept {
+  return state_ == nullptr || state_->layers.meet(a, b);
+}
+
+Status Scene::set_layer(Key key, std::uint16_t layer) {
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_layer");
+  SceneState& s = *state_;
+  if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_layer");
+  if (layer >= kSceneLayers) return logged(Status::invalid_argument, "Scene::set_layer");
+  if (s.layer_of(key.id) == layer) return Status::ok;
+  if (!s.begin_layers()) return logged(Status::out_of_memory, "Scene::set_layer");
+  s.layer[key.id] = layer;
+  s.ask_again();
+  return Status::ok;
+}
+
+std::uint16_t Scene::layer(Key key) const noexcept {
+  return contains(key) ? state_->layer_of(key.id) : std::uint16_t{0};
+}
+
+// From the first one on that is not 0 every body has its own.
+bool SceneState::begin_layers() noexcept {
+  if (with_layers) return true;
+  if (!layer.grow(shape.capacity())) return false;
+  with_layers = true;
+  layer.set_size(shape.size());
+  std::fill(layer.begin(), layer.end(), std::uint16_t{0});
+  return true;
+}
+
 bool SceneState::may_pair(ObjectId a, ObjectId b) const noexcept {
+  if (!layers.meet(layer_of(a), layer_of(b))) return false;
   if (is_ignored(a, b)) return false;
   return predicate.accept == nullptr || predicate.accept(predicate.context, a, b);
 }

@@ -79,6 +79,9 @@ SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcep
       moved_at(given.memory),
       shaped_at(given.memory),
       anchor(given.memory),
+      offsets(given.memory),
+      layer(given.memory),
+      layers(given.memory),
       stale(given.memory),
       is_stale(given.memory),
       boxes(given.memory),
@@ -94,6 +97,7 @@ SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcep
       slot(given.memory),
       convex(given.memory),
       composite(given.memory),
+      gaps(given.memory),
       parts(given.memory),
       parts_narrow(given.memory),
       parts_answers(given.memory),
@@ -122,12 +126,19 @@ Status Scene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
   if (bodies.size() != keys.size()) return logged(Status::size_mismatch, "Scene::add");
   if (bodies.size() + s.keys.slot_count() >= kMaxBodies)
     return logged(Status::too_many_objects, "Scene::add");
+  bool with_offsets = false;
+  bool with_layers = false;
   for (const BodyDefinition& body : bodies) {
-    if (!is_motion(body.motion)) return logged(Status::invalid_argument, "Scene::add");
+    if (!is_motion(body.motion) || !are_good(body.offsets) || body.layer >= kSceneLayers)
+      return logged(Status::invalid_argument, "Scene::add");
+    with_offsets = with_offsets || body.offsets != ContactOffsets{};
+    with_layers = with_layers || body.layer != 0;
     if (const Status good = s.check(body.shape, body.pose); good != Status::ok)
       return logged(good, "Scene::add");
   }
-  if (!s.reserve(bodies.size())) return logged(Status::out_of_memory, "Scene::add");
+  if (!s.reserve(bodies.size()) || (with_offsets && !s.begin_offsets()) ||
+      (with_layers && !s.begin_layers()))
+    return logged(Status::out_of_memory, "Scene::add");
   const bool is_first = s.keys.size() == 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) keys[i] = s.acquire(bodies[i]);
   if (is_first) s.choose_origin();
@@ -171,6 +182,9 @@ void Scene::clear() noexcept {
     ++set.changes;
   }
   s.keys.clear();
+  s.offsets.clear();
+  s.layer.clear();
+  s.with_offsets = s.with_layers = false;
   s.forget_stale();
   s.forget_ignored();
   ++s.regroupings;
@@ -257,6 +271,8 @@ Status Scene::body(Key key, BodyDefinition& body) const noexcept {
   body.pose = s.pose[key.id];
   body.motion = s.motion[key.id];
   body.data = s.keys.client_data(key.id);
+  body.offsets = s.offsets_of(key.id);
+  body.layer = s.layer_of(key.id);
   return s.set(body.motion).partition->filter(s.place[key.id], body.filter);
 }
 
@@ -304,9 +320,10 @@ SceneFootprint Scene::footprint() const noexcept {
   footprint.bodies += s.keys.client_data_bytes();
   for (const Bytes& bytes :
        {s.shape.bytes(), s.pose.bytes(), s.motion.bytes(), s.place.bytes(), s.moved_at.bytes(),
-        s.shaped_at.bytes(), s.anchor.bytes(), s.stale.bytes(), s.is_stale.bytes(), s.boxes.bytes(),
-        s.boxes_of.bytes(), s.boxes_body.bytes(), s.chosen.bytes(), s.left.bytes(),
-        s.ignored.bytes(), s.ignores.bytes()}) {
+        s.shaped_at.bytes(), s.anchor.bytes(), s.offsets.bytes(), s.stale.bytes(),
+        s.is_stale.bytes(), s.boxes.bytes(), s.boxes_of.bytes(), s.boxes_body.bytes(),
+        s.chosen.bytes(), s.left.bytes(), s.ignored.bytes(), s.ignores.bytes(), s.layer.bytes(),
+        s.layers.bytes()}) {
     footprint.bodies += bytes;
   }
   for (std::size_t i = 0; i < kMotions; ++i) {
@@ -317,6 +334,7 @@ SceneFootprint Scene::footprint() const noexcept {
   }
   footprint.pairs += s.pairs.bytes();
   footprint.mid_phase += s.composite.bytes();
+  footprint.mid_phase += s.gaps.bytes();
   footprint.mid_phase += s.parts.footprint().total();
   footprint.mid_phase += s.parts_narrow.footprint().total();
   footprint.mid_phase += s.parts_answers.footprint().total();

@@ -99,7 +99,8 @@ Status SceneState::place_bodies(Motion which, std::span<const std::uint32_t> bod
   if (target.partition->size() == 0) target.origin = origin;
   if (!boxes.resize(bodies.size())) return Status::out_of_memory;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    boxes[i] = bounds_from(target.origin, shape[bodies[i]], pose[bodies[i]], growth);
+    boxes[i] = bounds_from(target.origin, shape[bodies[i]], pose[bodies[i]],
+                           growth + offsets_of(bodies[i]).contact);
   }
   if (const Status placed = place_boxes(which, bodies); placed != Status::ok) return placed;
   for (const std::uint32_t body : bodies) {
@@ -151,7 +152,9 @@ bool SceneState::reserve(std::size_t fresh) noexcept {
   if (!keys.reserve(keys.size() + fresh)) return false;
   const std::size_t slots = keys.slots_with(fresh);
   const bool with_anchors = options.carry_over == 0.0 || anchor.grow(slots);
-  return with_anchors && shape.grow(slots) && pose.grow(slots) && motion.grow(slots) &&
+  const bool has_room =
+      (!has_offsets() || offsets.grow(slots)) && (!with_layers || layer.grow(slots));
+  return with_anchors && has_room && shape.grow(slots) && pose.grow(slots) && motion.grow(slots) &&
          place.grow(slots) && moved_at.grow(slots) && shaped_at.grow(slots) && stale.grow(slots) &&
          is_stale.grow(slots) && chosen.grow(slots) && left.grow(slots);
 }
@@ -169,12 +172,16 @@ Key SceneState::acquire(const BodyDefinition& body) noexcept {
     is_stale.set_size(slots);
     is_stale[key.id] = 0;
     if (options.carry_over > 0.0) anchor.set_size(slots);
+    if (has_offsets()) offsets.set_size(slots);
+    if (with_layers) layer.set_size(slots);
   }
   shape[key.id] = body.shape;
   pose[key.id] = body.pose;
   motion[key.id] = body.motion;
   place[key.id] = {};
   moved_at[key.id] = shaped_at[key.id] = clock;
+  if (has_offsets()) offsets[key.id] = body.offsets;
+  if (with_layers) layer[key.id] = body.layer;
   return key;
 }
 
@@ -330,14 +337,15 @@ Status SceneState::refresh_set(Motion which) {
   const std::size_t count = chosen.size();
   if (count == 0) return Status::ok;
   if (!boxes.resize(count) || !boxes_of.resize(count)) return Status::out_of_memory;
-  for_stretches(options.execution, count, kBodiesPerStretch,
-                [&](std::size_t first, std::size_t end) {
-                  for (std::size_t i = first; i < end; ++i) {
-                    const std::uint32_t body = chosen[i];
-                    boxes[i] = bounds_from(origin, shape[body], pose[body], growth);
-                    boxes_of[i] = place[chosen[i]];
-                  }
-                });
+  for_stretches(
+      options.execution, count, kBodiesPerStretch, [&](std::size_t first, std::size_t end) {
+        for (std::size_t i = first; i < end; ++i) {
+          const std::uint32_t body = chosen[i];
+          boxes[i] =
+              bounds_from(origin, shape[body], pose[body], growth + offsets_of(body).contact);
+          boxes_of[i] = place[chosen[i]];
+        }
+      });
   const Status status = target.partition->update({boxes_of.data(), count}, box_view());
   if (status != Status::ok) return status;
   if (!anchor.empty()) {

@@ -3,6 +3,7 @@
 #include <winnow/pipeline/scene.h>
 #include "core/memory/key_table.h"
 #include "pipeline/scene/body_pairs.h"
+#include "pipeline/scene/layers.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -18,6 +19,8 @@ struct PlainBox {
   float min[3];
   float max[3];
 };
+
+[[nodiscard]] bool are_good(const ContactOffsets& offsets) noexcept;
 
 /// One set of bodies and its partition, made when its first body comes.
 struct SceneSet {
@@ -44,7 +47,7 @@ struct SceneState {
   const ShapePool& shapes;
   SceneOptions options;
   bool options_are_good;
-  /// By how much boxes are grown to every side.
+  /// By how much boxes are grown to every side, but for offsets.
   double growth;
 
   KeyTable keys;
@@ -58,6 +61,13 @@ struct SceneState {
   Column<std::uint32_t> shaped_at;
   /// Pose at which the partition was given the body's box. Empty without carry-over.
   Column<Pose> anchor;
+  /// Empty as long as no body has had any.
+  Column<ContactOffsets> offsets;
+  bool with_offsets = false;
+  /// The same of layers, and which of them meet.
+  Column<std::uint16_t> layer;
+  bool with_layers = false;
+  LayerMatrix layers;
   /// Bodies whose boxes may no longer be right, and a flag by id.
   Column<std::uint32_t> stale;
   Column<std::uint8_t> is_stale;
@@ -93,6 +103,8 @@ struct SceneState {
   /// Which pairs of `pairs` are asked about: convex ones, and those with a composite shape.
   Column<BodyPair> convex;
   Column<BodyPair> composite;
+  /// Of `composite`, up to which gap they are asked about. Not used without offsets.
+  Column<double> gaps;
   PrimitivePairs parts;
   NarrowPhase parts_narrow;
   NarrowResult parts_answers;
@@ -118,6 +130,14 @@ struct SceneState {
   [[nodiscard]] bool has_one_origin() const noexcept;
   void choose_origin() noexcept;
   [[nodiscard]] Status check(ShapeId id, const Pose& at) const noexcept;
+  /// Offsets of bodies (contact_offsets.cpp).
+  [[nodiscard]] bool has_offsets() const noexcept { return with_offsets; }
+  [[nodiscard]] ContactOffsets offsets_of(std::uint32_t body) const noexcept {
+    return has_offsets() ? offsets[body] : ContactOffsets{};
+  }
+  [[nodiscard]] bool begin_offsets() noexcept;
+  /// Pairs no farther apart than this are contacts.
+  [[nodiscard]] double gap_of(const BodyPair& pair) const noexcept;
   [[nodiscard]] bool reserve(std::size_t fresh) noexcept;
   /// See Scene::reserve (reserve.cpp).
   [[nodiscard]] Status reserve(const SceneRoom& room, Pages pages);
@@ -156,6 +176,13 @@ struct SceneState {
   [[nodiscard]] bool needs_box(std::uint32_t body) const noexcept;
   [[nodiscard]] Status find_pairs();
   /// Which pairs may meet (meetings.cpp).
+  [[nodiscard]] bool meets_all() const noexcept {
+    return ignored.empty() && layers.all_meet() && predicate.accept == nullptr;
+  }
+  [[nodiscard]] bool begin_layers() noexcept;
+  [[nodiscard]] std::uint16_t layer_of(std::uint32_t body) const noexcept {
+    return with_layers ? layer[body] : std::uint16_t{0};
+  }
   [[nodiscard]] bool may_pair(ObjectId a, ObjectId b) const noexcept;
   [[nodiscard]] bool is_ignored(ObjectId a, ObjectId b) const noexcept;
   void forget_ignored() noexcept;

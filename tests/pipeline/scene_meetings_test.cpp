@@ -116,6 +116,94 @@ TEST(SceneMeetings, the_pairs_shown_are_those_that_are_not_ignored) {
   }
 }
 
+/// Some hundred layers, told at random which do not meet, while bodies change theirs.
+TEST(SceneMeetings, the_pairs_shown_are_those_whose_layers_meet) {
+  CountingMemory memory;
+  SceneWorld world(scaled(300), 34);
+  Scene scene(world.pool, {.memory = &memory});
+  ASSERT_EQ(add_all(scene, world), Status::ok);
+  EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
+  std::set<std::pair<std::uint16_t, std::uint16_t>> apart;
+  Contacts contacts;
+  for (int frame = 0; frame < 8; ++frame) {
+    // Ever higher ones, so that the square grows.
+    const std::uint32_t layers = frame < 2 ? 3U : 40U << frame;
+    for (std::size_t i = 0; i < world.keys.size(); ++i) {
+      world.bodies[i].layer = static_cast<std::uint16_t>(
+          std::min<std::size_t>(4095, world.random.chance(0.5) ? i % 7 : i * 13 % layers));
+      ASSERT_EQ(scene.set_layer(world.keys[i], world.bodies[i].layer), Status::ok);
+    }
+    for (const auto& [pair, distance] : world.touching()) {
+      const std::uint16_t a = world.bodies[pair.first].layer;
+      const std::uint16_t b = world.bodies[pair.second].layer;
+      const bool meet = world.random.chance(0.6);
+      ASSERT_EQ(scene.set_layers_meet(b, a, meet), Status::ok);
+      EXPECT_EQ(scene.layers_meet(a, b), meet);
+      for (const auto& told : {std::pair(a, b), std::pair(b, a)}) {
+        if (meet) {
+          apart.erase(told);
+        } else {
+          apart.insert(told);
+        }
+      }
+    }
+    ASSERT_EQ(scene.collide(ContactLevel::boolean, contacts), Status::ok);
+    std::set<Names> expected;
+    for (const auto& [pair, distance] : world.touching()) {
+      const auto layers_of =
+          std::pair(world.bodies[pair.first].layer, world.bodies[pair.second].layer);
+      if (apart.count(layers_of) == 0) expected.insert(pair);
+    }
+    EXPECT_EQ(shown(contacts), expected);
+    EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
+  }
+  BodyDefinition body;
+  ASSERT_EQ(scene.body(world.keys[5], body), Status::ok);
+  EXPECT_EQ(body.layer, world.bodies[5].layer);
+}
+
+TEST(SceneMeetings, rays_are_asked_for_a_layer) {
+  Row row;
+  ASSERT_EQ(row.scene.set_layer(row.keys[0], 300), Status::ok);
+  ASSERT_EQ(row.scene.set_layer(row.keys[1], 4095), Status::ok);
+  ASSERT_EQ(row.scene.set_layers_meet(300, 7, false), Status::ok);
+  ASSERT_EQ(row.scene.refresh(), Status::ok);
+  SceneQueries queries(row.scene);
+  const ShapeRay ray{{-5, 0, 0}, {1, 0, 0}, 100};
+  const LayerFilter seven{row.scene, 7};
+  SceneHit hit;
+  ASSERT_EQ(queries.closest(ray, hit, seven.filter()), Status::ok);
+  EXPECT_EQ(hit.key, row.keys[1]);
+  LayerFilter other = seven;
+  ObjectId never = row.keys[1].id;
+  other.also.predicate = {
+      [](void* context, Key key, ClientData) { return key.id != *static_cast<ObjectId*>(context); },
+      &never};
+  ASSERT_EQ(queries.closest(ray, hit, other.filter()), Status::ok);
+  EXPECT_EQ(hit.key, row.keys[2]);
+}
+
+TEST(SceneMeetings, layers_that_there_are_not_are_refused) {
+  Row row;
+  EXPECT_EQ(row.scene.set_layer(row.keys[0], 4096), Status::invalid_argument);
+  EXPECT_EQ(row.scene.set_layers_meet(4096, 0), Status::invalid_argument);
+  EXPECT_EQ(row.scene.set_layers_meet(0, 65535, false), Status::invalid_argument);
+  EXPECT_EQ(row.scene.set_layer(Key{}, 1), Status::invalid_key);
+  BodyDefinition body;
+  ASSERT_EQ(row.scene.body(row.keys[0], body), Status::ok);
+  body.layer = 5000;
+  Key key;
+  EXPECT_EQ(row.scene.add(body, key), Status::invalid_argument);
+  EXPECT_EQ(row.scene.layer(row.keys[0]), 0);
+  // The same layer with itself.
+  ASSERT_EQ(row.scene.set_layers_meet(0, 0, false), Status::ok);
+  EXPECT_TRUE(row.pairs().empty());
+  row.scene.clear();
+  body.layer = 9;
+  ASSERT_EQ(row.scene.add(body, key), Status::ok);
+  EXPECT_EQ(row.scene.layer(key), 9);
+}
+
 TEST(SceneMeetings, memory_that_is_refused_changes_nothing_and_all_bytes_are_counted) {
   CountingMemory memory;
   SceneWorld world(40, 32);

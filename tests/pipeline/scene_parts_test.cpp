@@ -302,7 +302,7 @@ class IdleMidPhase final : public MidPhase {
   [[nodiscard]] Aabb bounds(ShapeId, const Pose&) const noexcept override { return worked(Aabb{}); }
   [[nodiscard]] double radius(ShapeId) const noexcept override { return worked(0.0); }
   [[nodiscard]] std::uint64_t revision() const noexcept override { return 0; }
-  Status expand(const ShapePool&, const Bodies&, std::span<const BodyPair>, double,
+  Status expand(const ShapePool&, const Bodies&, std::span<const BodyPair>, const PairMargins&,
                 const Execution&, PrimitivePairs&) const override {
     return worked(Status::unsupported);
   }
@@ -310,7 +310,7 @@ class IdleMidPhase final : public MidPhase {
               NarrowResult&) const override {
     ++calls;
   }
-  Status reduce(const ShapePool&, const PrimitivePairs&, const NarrowResult&, double,
+  Status reduce(const ShapePool&, const PrimitivePairs&, const NarrowResult&, const PairMargins&,
                 const Execution&, ContactRegions&) const override {
     return worked(Status::unsupported);
   }

@@ -1,0 +1,259 @@
+// Contact and rest offsets of bodies. The narrow phase is asked about all pairs up to the widest
+// gap that any of them has; what is beyond a pair's own gap is then taken out, and what is left is
+// measured from where the bodies rest. None of this runs in a scene without offsets.
+
+#include "core/hooks/log.h"
+#include "core/sort/stretches.h"
+#include "pipeline/scene/collision.h"
+#include "pipeline/solver/solver.h"
+
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+namespace {
+
+constexpr double kLargestLength = std::numeric_limits<double>::max();
+constexpr std::size_t kOffsetPairsPerStretch = 256;
+/// Of a sum of two doubles.
+constexpr double kSumError = 0x1p-52;
+/// What rounding to float does to a depth, as a share; and to the product of two unit normals.
+constexpr double kDepthError = 1e-6;
+constexpr double kSameDirection = 1.0 - 1e-9;
+
+/// The points of one manifold in the columns of all.
+struct ManifoldPoints {
+  ContactColumns& columns;
+  std::uint32_t first;
+
+  void move(std::uint32_t from, std::uint32_t to) const noexcept {
+    for (Column<float>& column : columns.position) column[first + to] = column[first + from];
+    columns.depth[first + to] = columns.depth[first + from];
+    columns.feature[first + to] = columns.feature[first + from];
+  }
+  void put(std::uint32_t to, const ContactPoint& point) const noexcept {
+    for (int k = 0; k < 3; ++k) columns.position[k][first + to] = point.position[k];
+    columns.depth[first + to] = point.depth;
+    columns.feature[first + to] = point.feature;
+  }
+  /// Keeps those no farther apart than `gap`, and returns how many.
+  [[nodiscard]] std::uint32_t keep_within(double gap, std::uint32_t count) const noexcept {
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const bool is_near = -static_cast<double>(columns.depth[first + i]) <= gap;
+      if (is_near) move(i, kept++);
+    }
+    return kept;
+  }
+};
+
+/// The depth and place of a point once the surfaces of both have moved out by their rest offsets.
+void shift(float& depth, float* const (&position)[3], const double (&normal)[3],
+           const double (&rest)[2]) noexcept {
+  depth = static_cast<float>(static_cast<double>(depth) + rest[0] + rest[1]);
+  for (int k = 0; k < 3; ++k) {
+    *position[k] = static_cast<float>(static_cast<double>(*position[k]) +
+                                      0.5 * (rest[0] - rest[1]) * normal[k]);
+  }
+}
+
+/// What a sum of a distance and rest offsets may be off by.
+[[nodiscard]] double sum_error(double distance, const double (&rest)[2]) noexcept {
+  return kSumError * (std::abs(distance) + std::abs(rest[0]) + std::abs(rest[1]));
+}
+
+}  // namespace
+
+bool are_good(const ContactOffsets& offsets) noexcept {
+  return std::isfinite(offsets.contact) && std::isfinite(offsets.rest) && offsets.contact >= 0.0 &&
+         offsets.contact >= offsets.rest;
+}
+
+Status Scene::set_offsets(Key key, const ContactOffsets& offsets) {
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_offsets");
+  SceneState& s = *state_;
+  if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_offsets");
+  if (!are_good(offsets)) return logged(Status::invalid_argument, "Scene::set_offsets");
+  if (s.offsets_of(key.id) == offsets) return Status::ok;
+  if (!s.begin_offsets()) return logged(Status::out_of_memory, "Scene::set_offsets");
+  s.offsets[key.id] = offsets;
+  s.shaped_at[key.id] = s.clock;
+  s.mark_stale(key.id);
+  return Status::ok;
+}
+
+// From the first ones on every body has its own.
+bool SceneState::begin_offsets() noexcept {
+  if (has_offsets()) return true;
+  if (!offsets.grow(shape.capacity())) return false;
+  with_offsets = true;
+  offsets.set_size(shape.size());
+  std::fill(offsets.begin(), offsets.end(), ContactOffsets{});
+  return true;
+}
+
+double SceneState::gap_of(const BodyPair& pair) const noexcept {
+  const double own = offsets_of(pair.a).contact + offsets_of(pair.b).contact;
+  return std::min(options.margin + own, kLargestLength);
+}
+
+// Which pairs touch is told by one limit for all: what is beyond its own gap is put as far beyond
+// the limit.
+void Collision::find_limit() noexcept {
+  limit_ = scene_.options.margin;
+  if (!scene_.has_offsets()) return;
+  for (const Column<BodyPair>* const list : {&scene_.convex, &scene_.composite}) {
+    for (const BodyPair& pair : *list) {
+      const double gap = scene_.gap_of(pair);
+      const double rest = scene_.offsets_of(pair.a).rest + scene_.offsets_of(pair.b).rest;
+      limit_ = std::max(limit_, std::min(gap - std::min(rest, 0.0), kLargestLength));
+    }
+  }
+}
+
+bool Collision::find_gaps(double more, double& widest) {
+  widest = std::min(scene_.options.margin + more, kLargestLength);
+  if (!scene_.has_offsets()) return true;
+  const Column<BodyPair>& pairs = scene_.composite;
+  if (!scene_.gaps.resize(pairs.size())) return false;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    scene_.gaps[i] = std::min(scene_.gap_of(pairs[i]) + more, kLargestLength);
+    widest = std::max(widest, scene_.gaps[i]);
+  }
+  return true;
+}
+
+double Collision::widest_gap(const Column<BodyPair>& pairs) const noexcept {
+  double widest = scene_.options.margin;
+  if (!scene_.has_offsets()) return widest;
+  for (const BodyPair& pair : pairs) widest = std::max(widest, scene_.gap_of(pair));
+  return widest;
+}
+
+/// What an answer is about.
+struct Collision::Asked {
+  const ShapeTables& tables;
+  ShapeId shape[2];
+  const Pose* pose[2];
+  /// Of the two bodies.
+  double gap;
+};
+
+// Points within the gap may have given way to some beyond: such a manifold is made anew.
+void Collision::trim(const Asked& asked, std::uint32_t at, const NarrowColumns& answers) noexcept {
+  double& distance = answers.distance[at];
+  const double beyond = distance - asked.gap;
+  if (beyond > 0.0) {
+    distance =
+        std::min(std::max(limit_ + beyond, std::nextafter(limit_, kLargestLength)), kLargestLength);
+    return;
+  }
+  if (level_ != ContactLevel::manifold) return;
+  const ManifoldPoints points{answers.contacts, answers.contact_first[at]};
+  std::uint32_t& count = answers.contact_count[at];
+  const std::uint32_t room = count;
+  count = points.keep_within(asked.gap * (1.0 + kDepthError), room);
+  if (count == room) return;
+  SolverCounts counts;
+  const PairAnswer again = solve_pair(asked.tables, asked.shape[0], *asked.pose[0], asked.shape[1],
+                                      *asked.pose[1], ContactLevel::manifold, asked.gap, counts);
+  double product = 0.0;
+  for (int k = 0; k < 3; ++k) product += again.normal[k] * answers.normal[k][at];
+  // Where the normal has been smoothed, its manifold was made along another one.
+  if (product < kSameDirection) return;
+  count = std::min(again.contact_count, room);
+  for (std::uint32_t i = 0; i < count; ++i) points.put(i, again.contacts[i]);
+}
+
+void Collision::trim_convex() noexcept {
+  if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
+  const NarrowColumns answers = scene_.answers.columns();
+  for_stretches(scene_.options.execution, scene_.convex.size(), kOffsetPairsPerStretch,
+                [&](std::size_t first, std::size_t end) {
+                  for (std::size_t i = first; i < end; ++i) {
+                    const BodyPair& pair = scene_.convex[i];
+                    const Asked asked{scene_.shapes.tables(),
+                                      {scene_.shape[pair.a], scene_.shape[pair.b]},
+                                      {&scene_.pose[pair.a], &scene_.pose[pair.b]},
+                                      scene_.gap_of(pair)};
+                    trim(asked, scene_.slot[i], answers);
+                    rest(pair, scene_.slot[i], answers);
+                  }
+                });
+}
+
+void Collision::trim_parts() noexcept {
+  if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
+  const PrimitivePairs& parts = scene_.parts;
+  const ShapeTables tables = parts.tables(scene_.shapes);
+  const NarrowColumns answers = scene_.parts_answers.columns();
+  for_stretches(scene_.options.execution, scene_.composite.size(), kOffsetPairsPerStretch,
+                [&](std::size_t first, std::size_t end) {
+                  for (std::size_t i = first; i < end; ++i) {
+                    const double gap = scene_.gap_of(scene_.composite[i]);
+                    for (std::uint32_t k = parts.first[i]; k < parts.first[i + 1]; ++k) {
+                      const BodyPair& of = parts.pairs[k];
+                      const Asked asked{tables,
+                                        {parts.shapes[of.a], parts.shapes[of.b]},
+                                        {&parts.poses[of.a], &parts.poses[of.b]},
+                                        gap};
+                      trim(asked, scene_.parts_slot[k], answers);
+                    }
+                  }
+                });
+}
+
+// Distances and points are measured from where the bodies rest.
+void Collision::rest(const BodyPair& bodies, std::uint32_t at,
+                     const NarrowColumns& answers) noexcept {
+  const double rest[2] = {scene_.offsets_of(bodies.a).rest, scene_.offsets_of(bodies.b).rest};
+  double& distance = answers.distance[at];
+  if ((rest[0] == 0.0 && rest[1] == 0.0) || distance > limit_) return;
+  answers.error_bound[at] += sum_error(distance, rest);
+  distance -= rest[0] + rest[1];
+  const double normal[3] = {answers.normal[0][at], answers.normal[1][at], answers.normal[2][at]};
+  if (level_ == ContactLevel::distance) {
+    for (int k = 0; k < 3; ++k) answers.point[k][at] += rest[0] * normal[k];
+    return;
+  }
+  const std::uint32_t first = answers.contact_first[at];
+  for (std::uint32_t i = first; i < first + answers.contact_count[at]; ++i) {
+    Column<float>(&position)[3] = answers.contacts.position;
+    shift(answers.contacts.depth[i], {&position[0][i], &position[1][i], &position[2][i]}, normal,
+          rest);
+  }
+}
+
+void Collision::rest_parts() noexcept {
+  if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
+  const NarrowColumns answers = scene_.parts_answers.columns();
+  for_stretches(scene_.options.execution, scene_.composite.size(), kOffsetPairsPerStretch,
+                [&](std::size_t first, std::size_t end) {
+                  for (std::size_t i = first; i < end; ++i) {
+                    const BodyPair& bodies = scene_.composite[i];
+                    if (reduces_) {
+                      rest_regions(bodies, i);
+                      continue;
+                    }
+                    const std::uint32_t* const of = scene_.parts.first.data() + i;
+                    for (std::uint32_t k = of[0]; k < of[1]; ++k) {
+                      rest(bodies, scene_.parts_slot[k], answers);
+                    }
+                  }
+                });
+}
+
+void Collision::rest_regions(const BodyPair& bodies, std::size_t pair) noexcept {
+  const double rest[2] = {scene_.offsets_of(bodies.a).rest, scene_.offsets_of(bodies.b).rest};
+  ContactRegions& all = scene_.regions;
+  for (ContactRegion& region : std::span(all.regions.data() + all.first[pair], all.count[pair])) {
+    region.error_bound += sum_error(region.distance, rest);
+    region.distance -= rest[0] + rest[1];
+    for (ContactPoint& point : std::span(region.point, region.count)) {
+      float(&at)[3] = point.position;
+      shift(point.depth, {&at[0], &at[1], &at[2]}, region.normal, rest);
+    }
+  }
+}
+
+}  // namespace winnow

@@ -1,0 +1,268 @@
+// Contact and rest offsets of bodies, against each pair asked about by itself.
+
+#include "tests/pipeline/composite_world.h"
+#include "tests/pipeline/scene_world.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr double kMargin = 0.03;
+
+/// Gives about half of the bodies offsets, a few of them wide ones.
+void give_offsets(SceneWorld& world) {
+  for (BodyDefinition& body : world.bodies) {
+    if (world.random.chance(0.5)) continue;
+    body.offsets.contact = world.random.chance(0.1) ? 0.4 : world.random.uniform(0.0, 0.1);
+    body.offsets.rest = world.random.uniform(-0.05, body.offsets.contact);
+  }
+}
+
+/// One pair by itself, shifted as its rest offsets say.
+struct PairTwin {
+  PairTwin(const SceneWorld& world, const BodyDefinition& a, const BodyDefinition& b,
+           NarrowTier tier, ContactLevel level)
+      : by_solver(tier == NarrowTier::reference) {
+    const ShapeId shapes[] = {a.shape, b.shape};
+    const Pose poses[] = {a.pose, b.pose};
+    const BodyPair pair[] = {{0, 1}};
+    gap = kMargin + a.offsets.contact + b.offsets.contact;
+    EXPECT_EQ(narrow.collide(world.pool, {shapes, poses}, pair, {level, tier, gap}, result),
+              Status::ok);
+    distance = result.distance()[0];
+    rest = a.offsets.rest + b.offsets.rest;
+    shift = 0.5 * (a.offsets.rest - b.offsets.rest);
+    out = a.offsets.rest;
+  }
+
+  NarrowPhase narrow;
+  NarrowResult result;
+  bool by_solver;
+  double gap = 0.0;
+  double distance = 0.0;
+  double rest = 0.0;
+  double shift = 0.0;
+  double out = 0.0;
+};
+
+void expect_points(const Contacts& contacts, std::size_t m, const PairTwin& twin) {
+  const std::uint32_t first = contacts.point_first()[m];
+  const std::uint32_t count = contacts.point_first()[m + 1] - first;
+  double deepest = -std::numeric_limits<double>::infinity();
+  for (std::uint32_t p = first; p < first + count; ++p) {
+    const auto depth = static_cast<double>(contacts.contact(p).depth);
+    EXPECT_GE(depth, twin.rest - twin.gap - 1e-5);
+    deepest = std::max(deepest, depth);
+  }
+  EXPECT_NEAR(deepest, -contacts.distance()[m], 1e-4);
+  // Lanes give other points of one face where they are asked about another gap.
+  if (!twin.by_solver) return;
+  ASSERT_EQ(count, twin.result.contact_count()[0]);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const ContactPoint shown = contacts.contact(first + i);
+    // The same points, in any order.
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const ContactPoint alone = twin.result.contact(twin.result.contact_first()[0] + k);
+      double off =
+          std::abs(static_cast<double>(alone.depth) + twin.rest - static_cast<double>(shown.depth));
+      for (int axis = 0; axis < 3; ++axis) {
+        off = std::max(off, std::abs(static_cast<double>(alone.position[axis]) +
+                                     twin.shift * twin.result.normal(axis)[0] -
+                                     static_cast<double>(shown.position[axis])));
+      }
+      nearest = std::min(nearest, off);
+    }
+    EXPECT_LT(nearest, 1e-4);
+  }
+}
+
+void expect_pair(const SceneWorld& world, const Contacts& contacts, std::size_t i,
+                 const PairTwin& twin) {
+  const std::uint32_t m = contacts.manifold_first()[i];
+  const double bound = contacts.error_bound()[m] + twin.result.error_bound()[0];
+  EXPECT_NEAR(contacts.distance()[m], twin.distance - twin.rest, bound + 1e-15);
+  for (int k = 0; k < 3 && contacts.level() == ContactLevel::distance; ++k) {
+    EXPECT_NEAR(contacts.point(k)[m], twin.result.point(k)[0] + twin.out * contacts.normal(k)[m],
+                1e-6);
+  }
+  if (contacts.level() == ContactLevel::manifold) expect_points(contacts, m, twin);
+  EXPECT_LT(contacts.data_a()[i], world.bodies.size());
+}
+
+/// Every pair that is near by its own gap is shown, and no other.
+void expect_as_alone(const SceneWorld& world, const Contacts& contacts, NarrowTier tier) {
+  std::set<Names> near;
+  for (const auto& [pair, distance] : world.touching(kMargin + 0.9)) {
+    const BodyDefinition& a = world.bodies[pair.first];
+    const BodyDefinition& b = world.bodies[pair.second];
+    if (distance <= kMargin + a.offsets.contact + b.offsets.contact) near.insert(pair);
+  }
+  EXPECT_EQ(shown(contacts), near);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const PairTwin twin(world, world.bodies[contacts.data_a()[i]],
+                        world.bodies[contacts.data_b()[i]], tier, contacts.level());
+    expect_pair(world, contacts, i, twin);
+  }
+}
+
+TEST(ContactOffsets, every_pair_is_that_of_the_narrow_phase_at_its_own_gap) {
+  SceneWorld world(scaled(400), 71);
+  give_offsets(world);
+  for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
+    Scene scene(world.pool, {.margin = kMargin, .tier = tier});
+    ASSERT_EQ(add_all(scene, world), Status::ok);
+    Contacts contacts;
+    for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
+      ASSERT_EQ(scene.collide(level, contacts), Status::ok);
+      expect_as_alone(world, contacts, tier);
+    }
+  }
+}
+
+TEST(ContactOffsets, shapes_themselves_are_asked_about_at_level_boolean) {
+  SceneWorld world(scaled(300), 72);
+  std::set<Names> overlapping;
+  for (const auto& [pair, distance] : world.touching()) overlapping.insert(pair);
+  give_offsets(world);
+  Scene scene(world.pool, {.margin = kMargin});
+  ASSERT_EQ(add_all(scene, world), Status::ok);
+  Contacts contacts;
+  ASSERT_EQ(scene.collide(ContactLevel::boolean, contacts), Status::ok);
+  EXPECT_EQ(shown(contacts), overlapping);
+}
+
+TEST(ContactOffsets, offsets_of_nothing_change_no_bit) {
+  SceneWorld world(scaled(300), 73);
+  Scene plain(world.pool, {.margin = kMargin});
+  ASSERT_EQ(add_all(plain, world), Status::ok);
+  const std::size_t without = plain.footprint().total().reserved;
+  Contacts expected;
+  ASSERT_EQ(plain.collide(ContactLevel::manifold, expected), Status::ok);
+  CountingMemory memory;
+  Scene scene(world.pool, {.memory = &memory, .margin = kMargin});
+  ASSERT_EQ(add_all(scene, world), Status::ok);
+  EXPECT_EQ(scene.footprint().total().reserved, without);
+  ASSERT_EQ(scene.set_offsets(world.keys[3], {0.2, 0.1}), Status::ok);
+  EXPECT_GT(scene.footprint().total().reserved, without);
+  EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
+  BodyDefinition body;
+  ASSERT_EQ(scene.body(world.keys[3], body), Status::ok);
+  EXPECT_EQ(body.offsets, (ContactOffsets{0.2, 0.1}));
+  ASSERT_EQ(scene.set_offsets(world.keys[3], {}), Status::ok);
+  Contacts contacts;
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+  EXPECT_EQ(digest(contacts), digest(expected));
+}
+
+TEST(ContactOffsets, what_is_no_length_is_refused_and_changes_nothing) {
+  SceneWorld world(8, 74);
+  Scene scene(world.pool);
+  ASSERT_EQ(add_all(scene, world), Status::ok);
+  const double nan = std::nan("");
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const ContactOffsets& bad :
+       {ContactOffsets{-0.1, -0.2}, ContactOffsets{nan, 0.0}, ContactOffsets{0.1, nan},
+        ContactOffsets{inf, 0.0}, ContactOffsets{0.1, -inf}, ContactOffsets{0.1, 0.2}}) {
+    EXPECT_EQ(scene.set_offsets(world.keys[0], bad), Status::invalid_argument);
+    BodyDefinition body = world.bodies[0];
+    body.offsets = bad;
+    Key key;
+    EXPECT_EQ(scene.add(body, key), Status::invalid_argument);
+    EXPECT_EQ(scene.size(), 8U);
+    ASSERT_EQ(scene.body(world.keys[0], body), Status::ok);
+    EXPECT_EQ(body.offsets, ContactOffsets{});
+  }
+  EXPECT_EQ(scene.set_offsets(Key{}, {}), Status::invalid_key);
+}
+
+/// The largest lengths there are overflow nothing.
+TEST(ContactOffsets, lengths_may_be_as_large_as_doubles) {
+  SceneWorld world(20, 75);
+  const double most = std::numeric_limits<double>::max();
+  world.bodies[0].offsets = {most, most};
+  world.bodies[1].offsets = {most, -most};
+  Scene scene(world.pool, {.margin = 1.0});
+  ASSERT_EQ(add_all(scene, world), Status::ok);
+  Contacts contacts;
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+  for (const double d : contacts.distance()) EXPECT_FALSE(std::isnan(d));
+}
+
+TEST(ContactOffsets, what_rests_on_a_mesh_rests_at_its_offset) {
+  CompositeWorld world;
+  const ShapeId floor =
+      add(world.composites, grid(8, 0.5F, Cut::alternating, [](float, float) { return 0.0F; }));
+  const ShapeId box = add(world.shapes, BoxShape{{0.5, 0.4, 0.3}, 0.0});
+  const ShapeId ball = add(world.shapes, SphereShape{0.2});
+  for (const bool reduced : {false, true}) {
+    Scene scene(world.shapes, {.contact_reduction = reduced, .composites = &world.composites});
+    Key ground;
+    Key keys[2];
+    ASSERT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, ground), Status::ok);
+    ASSERT_EQ(scene.add({.shape = box,
+                         .pose = Pose::at(0.1, 0.2, 0.32),
+                         .offsets = {.contact = 0.05, .rest = 0.03}},
+                        keys[0]),
+              Status::ok);
+    ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(-1.3, 0.1, 0.22), .data = 1}, keys[1]),
+              Status::ok);
+    Contacts contacts;
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(contacts.size(), 1U);
+    for (std::size_t m = 0; m < contacts.manifolds(); ++m) {
+      EXPECT_NEAR(contacts.distance()[m], -0.01, 1e-9);
+      EXPECT_NEAR(std::abs(contacts.normal(2)[m]), 1.0, 1e-9);
+      for (auto p = contacts.point_first()[m]; p < contacts.point_first()[m + 1]; ++p) {
+        EXPECT_NEAR(contacts.contact(p).depth, 0.01, 1e-6);
+        const bool box_is_a = contacts.a()[0] == keys[0];
+        // Halfway between the floor and what is 0.03 below the box.
+        EXPECT_NEAR(contacts.contact(p).position[2], box_is_a ? -0.325 : -0.005, 1e-6);
+      }
+    }
+    ASSERT_EQ(scene.set_offsets(keys[0], {.contact = 0.01}), Status::ok);
+    ASSERT_EQ(scene.set_offsets(keys[1], {.contact = 0.025}), Status::ok);
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(contacts.size(), 1U);
+    EXPECT_EQ(contacts.data_a()[0] + contacts.data_b()[0], 1U);
+    EXPECT_NEAR(contacts.distance()[0], 0.02, 1e-9);
+  }
+}
+
+/// Whatever comes, goes and is carried over, the pairs shown are those of a fresh scene.
+TEST(ContactOffsets, a_change_counts_from_the_next_question_on) {
+  SceneWorld world(scaled(200), 76);
+  Scene scene(world.pool, {.margin = kMargin, .carry_over = 0.02});
+  ASSERT_EQ(add_all(scene, world), Status::ok);
+  Contacts contacts;
+  for (int frame = 0; frame < 6; ++frame) {
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+      if (!world.random.chance(0.1)) continue;
+      BodyDefinition& body = world.bodies[i];
+      body.offsets.contact = world.random.uniform(0.0, 0.2);
+      body.offsets.rest = world.random.uniform(-0.1, body.offsets.contact);
+      ASSERT_EQ(scene.set_offsets(world.keys[i], body.offsets), Status::ok);
+    }
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    Scene fresh(world.pool, {.margin = kMargin});
+    std::vector<Key> keys(world.bodies.size());
+    ASSERT_EQ(fresh.add(world.bodies, keys), Status::ok);
+    Contacts expected;
+    ASSERT_EQ(fresh.collide(ContactLevel::manifold, expected), Status::ok);
+    EXPECT_EQ(shown(contacts), shown(expected));
+    const std::size_t gone = world.random.below(world.bodies.size());
+    ASSERT_EQ(scene.remove(world.keys[gone]), Status::ok);
+    ASSERT_EQ(scene.add(world.bodies[gone], world.keys[gone]), Status::ok);
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test
