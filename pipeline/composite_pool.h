@@ -63,6 +63,20 @@ class WINNOW_API CompositePool final : public MidPhase {
   /// the ShapePool while the compound lives.
   Status add_compound(std::span<const CompoundChild> children, ShapeId& id);
 
+  /// Gives the triangles of a mesh or a height field a front, or two sides again. Of a mesh it is
+  /// where corners run counter-clockwise in the mesh's own frame, whatever its scale mirrors; of a
+  /// field it is up. A triangle does not meet what stands behind it, that is, of which the middle
+  /// (of its box in the axes of the world, each convex part by itself, of casts and rays where they
+  /// start) is behind the triangle's plane: neither contacts nor overlaps, distances, rays or
+  /// casts. What stands in front is met as ever, however deep it is, and pushed out to the front:
+  /// where the shortest way out leads to the back, normals are that of the face, and a shape that
+  /// does not touch is no contact. A half-space has no middle and meets both sides. The id's own:
+  /// that of the same mesh by another scale (which may be 1) has its own. Two-sided at first.
+  /// `invalid_key` for an id that is none of a mesh or field.
+  Status set_one_sided(ShapeId surface, bool one_sided = true);
+  /// True for ids of surfaces that were told so.
+  [[nodiscard]] bool is_one_sided(ShapeId surface) const noexcept;
+
   /// Appends all shapes, and which places are free, to bytes; pipeline/CONTRACT.md has the format.
   /// `out_of_memory` leaves `out` as it was. O(bytes).
   Status save(Column<std::byte>& out) const;

@@ -64,9 +64,12 @@ class WINNOW_API PrimitivePairs {
   Column<TriangleShape> triangles;
   /// Of `triangles`, one for each: bit k is set where edge k (from corner k to the next) is not one
   /// that a neighbour continues, bit 3 + k where corner k is on such an edge of any triangle: a
-  /// contact there may have a normal of its own. kAllActive for triangles that are no mesh's.
+  /// contact there may have a normal of its own. kAllActive for triangles that are no mesh's. Bit 6
+  /// where the triangle is one-sided, and bit 7 where it is clockwise then, seen from its front.
   Column<std::uint8_t> active_edges;
-  static constexpr std::uint8_t kAllActive = 63;  ///< all three edges and all three corners
+  static constexpr std::uint8_t kAllActive = 63;   ///< all three edges and all three corners
+  static constexpr std::uint8_t kOneSided = 64;    ///< has a front
+  static constexpr std::uint8_t kClockwise = 128;  ///< has it where its corners run clockwise
   /// Pairs of primitives, those of one pair of bodies next to each other in the order of the
   /// bodies' pairs; a is of body a.
   Column<BodyPair> pairs;
@@ -88,6 +91,9 @@ struct Primitive {
   std::uint32_t part = kWholeShape;  ///< which of its body; kWholeShape of a convex one
   Pose pose;                         ///< in the world
   TriangleShape triangle;            ///< corners in the frame of `pose`
+  /// Of a one-sided triangle: 1 if its corners run counter-clockwise seen from its front, -1 if
+  /// clockwise. Who is shown it leaves out what stands behind it. 0 of all others.
+  int front = 0;
 };
 
 /// Is shown primitives that may lie within `limit` (a value of t, or a distance) and gives back the

@@ -29,7 +29,8 @@ struct MeshOptions {
 /// ordered by median cuts, above every 16 of them a box of 16-bit bounds, above every 16 boxes
 /// another. 16 bytes per triangle, 12 per vertex, and about 0.8 per triangle for the tree: under 24
 /// bytes a triangle for a closed mesh. Of more vertices than triangles few are shared, and every
-/// triangle has a box of its own, of 12 bytes more. Triangles are two-sided and may be degenerate.
+/// triangle has a box of its own, of 12 bytes more. Triangles are two-sided, unless
+/// CompositePool::set_one_sided says otherwise, and may be degenerate.
 class WINNOW_API TriangleMesh {
  public:
   /// A mesh without triangles. Every allocation comes from `memory`, which must outlive the mesh.

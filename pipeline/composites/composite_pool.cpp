@@ -85,7 +85,12 @@ bool SharedMesh::find_corners() noexcept {
 }
 
 Composites::Composites(const ShapePool& pool, std::pmr::memory_resource* resource) noexcept
-    : shapes(pool), memory(resource), meshes(resource), fields(resource), compounds(resource) {}
+    : shapes(pool),
+      memory(resource),
+      meshes(resource),
+      fields(resource),
+      compounds(resource),
+      one_sided(resource) {}
 
 Composites::~Composites() {
   for (const MeshEntry& entry : meshes.entries) {
@@ -275,8 +280,32 @@ Status CompositePool::add_compound(std::span<const CompoundChild> children, Shap
   return Status::ok;
 }
 
+Status CompositePool::set_one_sided(ShapeId surface, bool one_sided) {
+  if (!contains(surface) || surface.composite_kind() == CompositeKind::compound) {
+    return Status::invalid_key;
+  }
+  if (is_one_sided(surface) == one_sided) return Status::ok;
+  Column<std::uint32_t>& all = state_->one_sided;
+  std::uint32_t* const at = std::lower_bound(all.begin(), all.end(), surface.bits);
+  const std::ptrdiff_t place = at - all.begin();
+  if (one_sided) {
+    if (!all.push_back(surface.bits)) return Status::out_of_memory;
+    std::rotate(all.begin() + place, all.end() - 1, all.end());
+  } else {
+    std::copy(at + 1, all.end(), at);
+    all.set_size(all.size() - 1);
+  }
+  ++state_->revision;
+  return Status::ok;
+}
+
+bool CompositePool::is_one_sided(ShapeId surface) const noexcept {
+  return contains(surface) && state_->is_one_sided(surface);
+}
+
 Status CompositePool::remove(ShapeId id) {
   if (!contains(id)) return Status::invalid_key;
+  if (is_one_sided(id)) (void)set_one_sided(id, false);
   switch (id.composite_kind()) {
     case CompositeKind::mesh:
       state_->release(state_->mesh(id)->shared);
@@ -416,6 +445,7 @@ Footprint CompositePool::footprint() const noexcept {
   footprint.keys += state_->fields.free.bytes();
   footprint.keys += state_->compounds.entries.bytes();
   footprint.keys += state_->compounds.free.bytes();
+  footprint.keys += state_->one_sided.bytes();
   for (const mid::SharedMesh* m = state_->first_mesh; m != nullptr; m = m->next) {
     add(sizeof(mid::SharedMesh));
     add_whole(m->mesh.footprint());

@@ -4,6 +4,7 @@
 #include <winnow/pipeline/composite_pool.h>
 #include "pipeline/shapes/frame.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -109,6 +110,9 @@ struct Composites {
   [[nodiscard]] const MeshEntry* mesh(ShapeId id) const noexcept;
   [[nodiscard]] HeightField* field(ShapeId id) const noexcept;
   [[nodiscard]] const Compound* compound(ShapeId id) const noexcept;
+  [[nodiscard]] bool is_one_sided(ShapeId id) const noexcept {
+    return !one_sided.empty() && std::binary_search(one_sided.begin(), one_sided.end(), id.bits);
+  }
   [[nodiscard]] bool contains(ShapeId id) const noexcept {
     return mesh(id) != nullptr || field(id) != nullptr || compound(id) != nullptr;
   }
@@ -125,6 +129,8 @@ struct Composites {
   Places<MeshEntry> meshes;
   Places<HeightField*> fields;
   Places<Compound*> compounds;
+  /// Surfaces whose triangles have a front, sorted.
+  Column<std::uint32_t> one_sided;
   SharedMesh* first_mesh = nullptr;
   std::uint64_t revision = 0;
 };

@@ -205,7 +205,10 @@ void Expansion::write_triangle(const PlacedBody& body, std::uint32_t number, std
   out_.triangles[triangle] = corners.triangle();
   out_.shapes[at] = ShapeId::of(ShapeKind::triangle, triangle);
   out_.poses[at] = pose_of(corners.first, {1.0, 0.0, 0.0, 0.0});
-  out_.active_edges[triangle] = body.active(number);
+  std::uint32_t bits = body.active(number);
+  if (body.front != 0) bits |= PrimitivePairs::kOneSided;
+  if (body.front < 0) bits |= PrimitivePairs::kClockwise;
+  out_.active_edges[triangle] = static_cast<std::uint8_t>(bits);
   out_.part[at] = body.shown_number(number);
 }
 

@@ -4,6 +4,7 @@
 #include <winnow/core/rounding.h>
 #include "pipeline/shapes/extent.h"
 #include "pipeline/shapes/frame.h"
+#include "pipeline/shapes/front.h"
 
 #include <algorithm>
 #include <cmath>
@@ -128,6 +129,16 @@ void PartTraversal::traverse(const PlacedShape& placed, BoxSweep sweep, double l
   } else {
     composites_->visit(placed.shape, placed.pose, sweep, primitives);
   }
+}
+
+bool stands_behind(const PreciseBox& box, const ConvexPart& part) noexcept {
+  if (part.front == 0) return false;
+  const Eigen::Matrix3d turn = rotation_of_unit(normalized(tame(part.pose.orientation)));
+  const Vector3d first = Vector3d::Map(part.triangle->vertex[0]);
+  const Vector3d normal = (Vector3d::Map(part.triangle->vertex[1]) - first)
+                              .cross(Vector3d::Map(part.triangle->vertex[2]) - first);
+  const Vector3d corner = Vector3d::Map(part.pose.position) + turn * first;
+  return is_behind(turn * normal * part.front, corner, box.min, box.max);
 }
 
 Pose at_origin(const Pose& pose) noexcept {

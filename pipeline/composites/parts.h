@@ -39,6 +39,8 @@ struct ConvexPart {
   const SphereShape* ball = nullptr;
   /// Added to the rounding of `triangle`.
   double thickness = 0.0;
+  /// Of `triangle`: see Primitive::front.
+  int front = 0;
 };
 
 /// The tables of a pool in which two parts are to be found, wherever they came from.
@@ -128,6 +130,7 @@ class PartTraversal {
   [[nodiscard]] static ConvexPart part_of(const Primitive& primitive) noexcept {
     ConvexPart part{primitive.shape, primitive.pose, primitive.part};
     if (primitive.shape.kind() == ShapeKind::triangle) part.triangle = &primitive.triangle;
+    part.front = primitive.front;
     return part;
   }
   template <typename Meet, typename Look>
@@ -161,6 +164,9 @@ class PartTraversal {
   const ShapePool& shapes_;
   const MidPhase* composites_;
 };
+
+/// True if what the box is about stands behind a part, which is a one-sided triangle.
+[[nodiscard]] bool stands_behind(const PreciseBox& box, const ConvexPart& part) noexcept;
 
 [[nodiscard]] inline bool is_finite(const double point[3]) noexcept {
   return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);

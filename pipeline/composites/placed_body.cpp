@@ -21,6 +21,12 @@ TriangleShape Corners::triangle() const noexcept {
   return shape;
 }
 
+Box Corners::box() const noexcept {
+  Box box{first, first};
+  for (const Vec& e : edge) box.merge({first + e, first + e});
+  return box;
+}
+
 PlacedPart::PlacedPart(const ShapeTables& tables, ShapeId id, std::uint32_t of_body,
                        const Mat& turned, const Vec& at) noexcept
     : shape(id),
@@ -73,12 +79,14 @@ PlacedBody::PlacedBody(const Composites& all, const ShapeTables& pool, ShapeId s
   to_world = rotation;
   to_local = rotation.transpose();
   if (!shape.is_composite()) return;
+  if (all.is_one_sided(shape)) front = 1;
   if (const MeshEntry* const entry = all.mesh(shape)) {
     kind = Kind::mesh;
     shared = entry->shared;
     mesh = &view_of(shared->mesh);
     bounds = Box::of(entry->shared->mesh.bounds());
     const Eigen::Map<const Vec> scale(entry->scale);
+    if (scale.prod() < 0.0) front = -front;
     most_shrunk = 1.0 + kSlack;
     if (scale == Vec::Ones()) return;
     to_world = rotation * scale.asDiagonal();
@@ -156,6 +164,7 @@ bool PlacedBody::primitive(std::uint32_t number, Primitive& out) const noexcept 
     out.shape = ShapeId::of(ShapeKind::triangle, 0);
     out.pose = pose_of(placed.first, {1.0, 0.0, 0.0, 0.0});
     out.triangle = placed.triangle();
+    out.front = front;
     return true;
   }
   const PlacedPart child = part(number);

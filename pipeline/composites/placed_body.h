@@ -3,6 +3,7 @@
 #include "pipeline/composites/composites.h"
 #include "pipeline/mesh/mesh_view.h"
 #include "pipeline/shapes/frame.h"
+#include "pipeline/shapes/front.h"
 
 #include <cstdint>
 
@@ -15,6 +16,9 @@ struct Corners {
 
   /// With corner 0 at the origin.
   [[nodiscard]] TriangleShape triangle() const noexcept;
+  /// To the side from which the corners run counter-clockwise; not of unit length.
+  [[nodiscard]] Vec normal() const noexcept { return edge[0].cross(edge[1]); }
+  [[nodiscard]] Box box() const noexcept;
 };
 
 /// A convex shape where it stands.
@@ -65,6 +69,11 @@ struct PlacedBody {
   [[nodiscard]] std::uint32_t shown_number(std::uint32_t number) const noexcept;
   /// Active edges and corners of a triangle: see PrimitivePairs::active_edges.
   [[nodiscard]] std::uint8_t active(std::uint32_t number) const noexcept;
+  /// True if what the box is about stands behind a triangle of this.
+  [[nodiscard]] bool is_behind(const Corners& triangle, const Box& box) const noexcept {
+    return front != 0 &&
+           winnow::is_behind(triangle.normal() * front, triangle.first, box.min, box.max);
+  }
 
   const ShapeTables& tables;
   Kind kind = Kind::convex;
@@ -77,6 +86,8 @@ struct PlacedBody {
   Mat to_local;
   /// No length of the world is longer than this many times itself in own units.
   double most_shrunk = 1.0;
+  /// Of one-sided triangles in the world: see Primitive::front.
+  int front = 0;
   const MeshView* mesh = nullptr;
   const SharedMesh* shared = nullptr;
   const HeightField* field = nullptr;

@@ -160,7 +160,7 @@ struct RayGuide {
         ShapeHit hit;
         hit.hit = true;
         hit.t = own.shift + found.t * own.stretch;
-        if (!(hit.t <= limit)) return limit;
+        if (!(hit.t <= limit) || comes_from_behind(corner)) return limit;
         Vec::Map(hit.normal) = unit_under(body.to_local.transpose(), Vec::Map(found.normal));
         return visitor->meet(visitor->context, number, body.shown_number(slot), hit, limit);
       }
@@ -168,6 +168,14 @@ struct RayGuide {
         return look(slot);
     }
     return limit;
+  }
+
+  /// The front is that of the surface's own frame.
+  [[nodiscard]] bool comes_from_behind(const double (&corner)[3][3]) const noexcept {
+    if (target->body.front == 0) return false;
+    const Vec at = Vec::Map(corner[0]);
+    const Vec normal = (Vec::Map(corner[1]) - at).cross(Vec::Map(corner[2]) - at);
+    return normal.dot(Vec::Map(own.ray.direction)) > 0.0;
   }
 
   /// What is lost of where the ray begins by being made relative to the body is put into where the

@@ -172,10 +172,14 @@ void Search::parts_surface(const PlacedBody& parts, const PlacedBody& surface,
        is_one ? std::span<const std::uint32_t>(kOnly)
               : children_near(parts, surface.box_in(parts, margin_), outer_)) {
     const PlacedPart part = parts.part(number);
+    Box about;
+    if (surface.front != 0)
+      about = box_under(tables_, part.shape, part.rotation, part.position, 0.0);
     for (const std::uint32_t triangle : triangles_near(part, surface)) {
       Corners corners;
       if (!surface.corners(triangle, corners)) continue;
       if (is_apart(tables_, part, corners, margin_)) continue;
+      if (surface.is_behind(corners, about)) continue;
       if (mirrored) {
         add(surface, triangle, parts, number);
       } else {
@@ -196,7 +200,14 @@ void Search::mesh_mesh(const PlacedBody& a, const PlacedBody& b) noexcept {
 void Search::take_slots(void* context, SlotPairSink& found) noexcept {
   const PairOfBodies& sides = *static_cast<const PairOfBodies*>(context);
   // The traversal has tested boxes and planes of both: no test made here would drop more.
+  const bool has_front = sides.a.front != 0 || sides.b.front != 0;
   for (std::uint64_t i = 0; i < found.size; ++i) {
+    Corners corners[2];
+    if (has_front && sides.a.corners(found.first[i], corners[0]) &&
+        sides.b.corners(found.second[i], corners[1]) &&
+        any_is_behind(sides.a, corners[0], sides.b, corners[1])) {
+      continue;
+    }
     sides.search.add(sides.a, found.first[i], sides.b, found.second[i]);
   }
   found.size = 0;
@@ -214,9 +225,15 @@ void Search::surfaces(const PlacedBody& a, const PlacedBody& b) noexcept {
     for (const std::uint32_t of_b :
          triangles_near(box_under(box, b.to_local, at, margin_), b, inner_)) {
       if (!b.corners(of_b, corners[1])) continue;
-      if (!is_apart(corners[0], corners[1], margin_)) add(a, of_a, b, of_b);
+      if (is_apart(corners[0], corners[1], margin_)) continue;
+      if (!any_is_behind(a, corners[0], b, corners[1])) add(a, of_a, b, of_b);
     }
   }
+}
+
+bool Search::any_is_behind(const PlacedBody& a, const Corners& of_a, const PlacedBody& b,
+                           const Corners& of_b) noexcept {
+  return a.is_behind(of_a, of_b.box()) || b.is_behind(of_b, of_a.box());
 }
 
 template <typename Find>

@@ -57,6 +57,10 @@ class Search {
   template <typename Find>
   [[nodiscard]] std::span<const std::uint32_t> collect(Room& room, Find&& find) noexcept;
 
+  /// Whether one of two triangles stands behind the other, which is one-sided.
+  [[nodiscard]] static bool any_is_behind(const PlacedBody& a, const Corners& of_a,
+                                          const PlacedBody& b, const Corners& of_b) noexcept;
+
   void add(const PlacedBody& a, std::uint32_t of_a, const PlacedBody& b,
            std::uint32_t of_b) noexcept;
   [[nodiscard]] std::uint32_t primitive(const PlacedBody& body, std::uint32_t number,

@@ -10,6 +10,7 @@
 #include <bitset>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace winnow::mid {
 namespace {
@@ -28,6 +29,8 @@ enum class EdgeContact : std::uint8_t {
 // normal. Narrow-phase normals of tier `fast` are as exact as that.
 constexpr double kLevel = 1e-6;
 constexpr double kSameNormal = 1e-13;
+// Normals that lean to the back of a triangle by less lie along it.
+constexpr double kBackNormal = 1e-9;
 
 /// `active`: see PrimitivePairs::active_edges. `away`: unit, from the triangle to the other shape.
 /// `face` is set to the triangle's unit normal on the side of `away`. Triangles without a normal
@@ -172,6 +175,8 @@ class Smoothing {
     /// How far the normal was off.
     double off = 0.0;
     bool is_deep = false;
+    /// From behind a one-sided triangle: no contact.
+    bool is_gone = false;
   };
   struct Chunk {
     std::size_t begin;
@@ -199,6 +204,9 @@ class Smoothing {
   void close_gaps(std::span<Chunk> wave, std::size_t from) noexcept;
 
   [[nodiscard]] Found find(std::size_t i) const noexcept;
+  [[nodiscard]] Vec front_of(std::uint32_t primitive) const noexcept;
+  [[nodiscard]] bool turn_to_front(std::size_t i, Found& found) const noexcept;
+  void drop(std::size_t i) noexcept;
   void choose_side(const BodyPair& pair, bool second, Vec& away) const noexcept;
   void set_normal(std::size_t i, const Vec& normal) noexcept;
   void lower_sphere(std::size_t i, const Vec& normal) noexcept;
@@ -258,6 +266,7 @@ void Smoothing::look(Chunk& chunk) noexcept {
   Together bodies;
   for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
     const Found found = find(i);
+    if (found.is_gone) drop(i);
     if (found.contact == EdgeContact::real) continue;
     set_normal(i, found.normal);
     if (found.contact == EdgeContact::nearly_face) {
@@ -331,10 +340,10 @@ Smoothing::Found Smoothing::find(std::size_t i) const noexcept {
   // Which of the two is the triangle of a mesh. Edges of other triangles are all active.
   const BodyPair& bodies = pair(i);
   const bool second = is_mesh_triangle(bodies.b);
-  if (is_mesh_triangle(bodies.a) == second) return found;
   const ShapeId triangle = pairs_.shapes[second ? bodies.b : bodies.a];
   const ShapeId other = pairs_.shapes[second ? bodies.a : bodies.b];
-  if (other.kind() == ShapeKind::half_space) return found;
+  if (other.kind() == ShapeKind::half_space || turn_to_front(i, found)) return found;
+  if (is_mesh_triangle(bodies.a) == second) return found;
 
   Vec away(columns_.normal[0][i], columns_.normal[1][i], columns_.normal[2][i]);
   if (second) away = -away;
@@ -343,7 +352,12 @@ Smoothing::Found Smoothing::find(std::size_t i) const noexcept {
   found.contact = classify(shape, pairs_.active_edges[triangle.index()], away, face);
   if (found.contact == EdgeContact::real) return found;
   if (found.contact == EdgeContact::internal) {
-    choose_side(bodies, second, face);
+    const Vec front = front_of(second ? bodies.b : bodies.a);
+    if (front.isZero()) {
+      choose_side(bodies, second, face);
+    } else {
+      face = front;
+    }
     const double distance = columns_.distance[i];
     found.is_deep = other.kind() != ShapeKind::sphere && distance <= 0.0 &&
                     distance + rounding_of(tables_, other) <= 0.0;
@@ -354,6 +368,44 @@ Smoothing::Found Smoothing::find(std::size_t i) const noexcept {
   }
   found.normal = second ? Vec(-face) : face;
   return found;
+}
+
+// Unit; zero of what has none.
+Vec Smoothing::front_of(std::uint32_t primitive) const noexcept {
+  const ShapeId shape = pairs_.shapes[primitive];
+  if (shape.kind() != ShapeKind::triangle) return Vec::Zero();
+  const std::uint8_t bits = pairs_.active_edges[shape.index()];
+  if ((bits & PrimitivePairs::kOneSided) == 0) return Vec::Zero();
+  const TriangleShape& triangle = tables_.triangles[shape.index()];
+  const Vec first = Eigen::Map<const Vec>(triangle.vertex[0]);
+  const Vec normal = (Eigen::Map<const Vec>(triangle.vertex[1]) - first)
+                         .cross(Eigen::Map<const Vec>(triangle.vertex[2]) - first)
+                         .stableNormalized();
+  return (bits & PrimitivePairs::kClockwise) != 0 ? Vec(-normal) : normal;
+}
+
+// Of a contact whose normal leads to the back of a one-sided triangle. Shapes that touch are pushed
+// out to its front; what is apart, or would be behind the other of two, is no contact.
+bool Smoothing::turn_to_front(std::size_t i, Found& found) const noexcept {
+  const BodyPair& bodies = pair(i);
+  const Vec normal(columns_.normal[0][i], columns_.normal[1][i], columns_.normal[2][i]);
+  const Vec front[2] = {front_of(bodies.a), -front_of(bodies.b)};
+  const bool first = front[0].dot(normal) < -kBackNormal;
+  if (!first && !(front[1].dot(normal) < -kBackNormal)) return false;
+  found.normal = front[first ? 0 : 1];
+  const double lean = found.normal.dot(front[first ? 1 : 0]);
+  found.is_gone = columns_.distance[i] > 0.0 || lean < -kBackNormal;
+  if (found.is_gone) return true;
+  found.contact = EdgeContact::internal;
+  const ShapeKind other = pairs_.shapes[first ? bodies.b : bodies.a].kind();
+  found.is_deep = other != ShapeKind::triangle && other != ShapeKind::sphere;
+  return true;
+}
+
+void Smoothing::drop(std::size_t i) noexcept {
+  columns_.distance[i] = std::max(
+      columns_.distance[i], std::nextafter(pairs_.margin, std::numeric_limits<double>::max()));
+  if (has_contacts()) columns_.contact_count[i] = 0;
 }
 
 // The side of the triangle's plane on which less of the other shape is in the way.

@@ -1,5 +1,7 @@
 #include "pipeline/scene/queries/composite_sweep.h"
 
+#include "pipeline/scene/queries/two_shapes.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -24,6 +26,11 @@ class CompositeSweep::Approach {
   template <typename Look>
   void each(double limit, Look&& look) const {
     sweep_.parts_.met(moving_, way(limit), look);
+  }
+
+  /// One of the two stands behind the other, which is a one-sided triangle.
+  [[nodiscard]] bool any_is_behind(const ConvexPart& own) const noexcept {
+    return any_stands_behind(sweep_.parts_, own, standing_);
   }
 
   [[nodiscard]] CastPair pair(PartTables& tables, const ConvexPart& own) const noexcept {
@@ -78,6 +85,7 @@ bool CompositeSweep::meets(const double from[3], const ConvexPart& part, double 
     CastPair pair = approach.pair(tables, own);
     pair.max_t = most = std::min(most, limit);
     CastTouch touch;
+    if (approach.any_is_behind(own)) return most;
     if (!cast_shape(tables.tables(), pair, tolerance_, touch)) return most;
     if (found && touch.t == limit && meeting.own_part < own.part) return most;
     found = true;

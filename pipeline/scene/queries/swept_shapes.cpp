@@ -126,6 +126,8 @@ bool RaySweep::meets(const double from[3], const ConvexPart& part, double limit,
                      const SweepMeeting* /*before*/, SweepMeeting& meeting) const noexcept {
   const double thickness = corner_doubt(part);
   if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
+  const Vector3d start = Vector3d::Map(from);
+  if (stands_behind({start, start}, part)) return false;
   ShapeRay ray = ray_;
   std::copy_n(from, 3, ray.origin);
   ray.max_t = limit;
@@ -217,6 +219,11 @@ CastPair ShapeSweep::pair(PartTables& tables, const double from[3],
   return pair;
 }
 
+PreciseBox ShapeSweep::box_at(const double from[3]) const noexcept {
+  const Vector3d start = Vector3d::Map(from);
+  return {start + extent().min, start + extent().max};
+}
+
 // What lies behind a plane that the shape nears lies behind it at all times before.
 bool ShapeSweep::is_beyond(const ConvexPart& part, const SweepMeeting& before) const noexcept {
   const Vector3d normal = Vector3d::Map(before.normal);
@@ -272,6 +279,7 @@ bool ShapeSweep::meets(const double from[3], const ConvexPart& part, double limi
     if (before != nullptr && is_beyond(part, *before)) return false;
     if (passes_by(from, part, limit, free_until)) return false;
     if (before != nullptr && is_beside(from, part, limit)) return false;
+    if (part.front != 0 && stands_behind(box_at(from), part)) return false;
   }
   PartTables tables(shapes_);
   CastPair asked = pair(tables, from, part);

@@ -111,6 +111,8 @@ class ShapeSweep final : public SweptShape {
   [[nodiscard]] bool is_beside(const double from[3], const ConvexPart& part,
                                double limit) const noexcept;
   void set_height(const double from[3], SweepMeeting& meeting) const noexcept;
+  /// About it where it starts.
+  [[nodiscard]] PreciseBox box_at(const double from[3]) const noexcept;
   [[nodiscard]] CastPair pair(PartTables& tables, const double from[3],
                               const ConvexPart& part) const noexcept;
 

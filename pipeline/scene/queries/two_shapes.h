@@ -21,6 +21,13 @@ namespace winnow {
   return solve_pair(tables.tables(), first, a.pose, second, b.pose, level, 0.0, counts);
 }
 
+/// True if one stands behind the other, which is a one-sided triangle: they do not meet then.
+[[nodiscard]] inline bool any_stands_behind(const PartTraversal& parts, const ConvexPart& a,
+                                            const ConvexPart& b) noexcept {
+  return (a.front != 0 && stands_behind(parts.box(b), a)) ||
+         (b.front != 0 && stands_behind(parts.box(a), b));
+}
+
 /// Both about the position of the first where that helps: parts of composite shapes lose nothing
 /// then where the scene is far from the origin. Convex pairs are solved as they stand.
 struct Pairing {
@@ -42,7 +49,8 @@ struct Pairing {
   const Pairing pair(first, second);
   bool found = false;
   auto look = [&](const ConvexPart& a, const ConvexPart& b) {
-    found = solve_parts(parts, a, b, ContactLevel::boolean).overlap;
+    found =
+        !any_stands_behind(parts, a, b) && solve_parts(parts, a, b, ContactLevel::boolean).overlap;
     if (found) part = b.part;
     return !found;
   };
@@ -106,7 +114,7 @@ class ClosestParts {
   }
   void look(const ConvexPart& a, const ConvexPart& b) noexcept {
     const PairAnswer pair = solve_parts(parts_, a, b, ContactLevel::distance);
-    if (!(pair.distance <= limit_)) return;
+    if (!(pair.distance <= limit_) || any_stands_behind(parts_, a, b)) return;
     SceneDistance& answer = *answer_;
     if (found_ && pair.distance == limit_ &&
         std::pair(answer.part, answer.part_a) <= std::pair(b.part, a.part)) {

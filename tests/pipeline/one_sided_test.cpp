@@ -1,0 +1,254 @@
+// One-sided triangles: what stands in front of them gets what two-sided ones give, what stands
+// behind gets nothing, and no normal leads to the back.
+
+#include "pipeline/shapes/front.h"
+#include "tests/pipeline/composite_world.h"
+
+#include <gtest/gtest.h>
+#include <winnow/core/rotation.h>
+#include <winnow/pipeline/scene.h>
+#include <winnow/pipeline/scene_queries.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <set>
+#include <span>
+
+#include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
+
+namespace winnow::test {
+namespace {
+
+using Vec = Eigen::Vector3d;
+
+/// The triangle of a part of a surface in the world, and its front.
+struct FacingTriangle {
+  Vec corner;
+  Vec front;
+};
+
+/// The surfaces of a world, by part, as `visit` shows them.
+[[nodiscard]] FacingTriangle facing(const Primitive& part) {
+  const Eigen::Matrix3d turn = rotation_of(tame(part.pose.orientation));
+  const Vec at = Vec::Map(part.pose.position);
+  Vec corner[3];
+  for (int k = 0; k < 3; ++k) corner[k] = at + turn * Vec::Map(part.triangle.vertex[k]);
+  return {corner[0], (corner[1] - corner[0]).cross(corner[2] - corner[0]) * part.front};
+}
+
+/// Shapes of every kind beside surfaces, which may have fronts.
+struct FacingWorld : CompositeWorld {
+  explicit FacingWorld(bool one_sided, std::uint64_t seed = 5) {
+    Random random(seed);
+    add_shapes(random);
+    for (const ShapeId id : ids) {
+      if (!id.is_composite() || id.composite_kind() == CompositeKind::compound) continue;
+      surfaces.push_back(id);
+      EXPECT_EQ(composites.set_one_sided(id, one_sided), Status::ok);
+    }
+    for (std::size_t i = 0; i < scaled(160); ++i) {
+      body.push_back(surfaces[random.below(surfaces.size())]);
+      pose.push_back(random_pose(random, 0.5));
+      // Balls, capsules, boxes, and so on up to the hull.
+      body.push_back(ids[random.below(6)]);
+      pose.push_back(random_pose(random, 1.5));
+      pairs.push_back({static_cast<std::uint32_t>(2 * i), static_cast<std::uint32_t>(2 * i + 1)});
+    }
+  }
+
+  [[nodiscard]] bool stands_behind(std::uint32_t shape, const Primitive& part) const {
+    const Aabb box = shapes.bounds(body[shape], pose[shape]);
+    Vec min;
+    Vec max;
+    for (int axis = 0; axis < 3; ++axis) {
+      min[axis] = static_cast<double>(box.min[axis]);
+      max[axis] = static_cast<double>(box.max[axis]);
+    }
+    const FacingTriangle to = facing(part);
+    return is_behind(to.front, to.corner, min, max);
+  }
+
+  std::vector<ShapeId> surfaces;
+};
+
+/// Pairs of primitives of pair i, by the part of the surface.
+[[nodiscard]] std::set<std::uint32_t> parts_met(const FacingWorld& world, std::size_t i,
+                                                double margin) {
+  PrimitivePairs found;
+  const BodyPair pair[] = {world.pairs[i]};
+  EXPECT_EQ(world.composites.expand(world.shapes, world.bodies(), pair, margin, Execution::serial(),
+                                    found),
+            Status::ok);
+  std::set<std::uint32_t> parts;
+  for (const BodyPair& of : found.pairs) parts.insert(found.part[of.a]);
+  return parts;
+}
+
+TEST(OneSided, the_mid_phase_leaves_out_what_stands_behind) {
+  const FacingWorld both(false);
+  const FacingWorld front(true);
+  std::size_t behind = 0;
+  for (std::size_t i = 0; i < both.pairs.size(); ++i) {
+    std::set<std::uint32_t> expected = parts_met(both, i, 0.1);
+    for (const Primitive& part : parts_of(front, front.body[2 * i], front.pose[2 * i])) {
+      ASSERT_NE(part.front, 0);
+      if (front.stands_behind(front.pairs[i].b, part)) behind += expected.erase(part.part);
+    }
+    EXPECT_EQ(parts_met(front, i, 0.1), expected);
+  }
+  EXPECT_GT(behind, 20U);
+}
+
+/// Normals from the surface, of what a scene finds for one pair at level manifold.
+TEST(OneSided, no_normal_leads_to_the_back) {
+  const FacingWorld world(true, 6);
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < world.pairs.size(); ++i) {
+    const auto parts = parts_of(world, world.body[2 * i], world.pose[2 * i]);
+    for (const bool reduced : {false, true}) {
+      Scene scene(world.shapes, {.execution = Execution::serial(),
+                                 .margin = 0.05,
+                                 .contact_reduction = reduced,
+                                 .composites = &world.composites});
+      Key keys[2];
+      for (std::size_t k = 0; k < 2; ++k) {
+        const BodyDefinition body{.shape = world.body[2 * i + k], .pose = world.pose[2 * i + k]};
+        ASSERT_EQ(scene.add(body, keys[k]), Status::ok);
+      }
+      Contacts contacts;
+      ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+      for (std::size_t m = 0; m < contacts.manifolds(); ++m) {
+        // a is the convex shape, whose kind is smaller.
+        const std::uint32_t number = contacts.part_b()[m];
+        const auto part = std::find_if(parts.begin(), parts.end(),
+                                       [&](const Primitive& p) { return p.part == number; });
+        ASSERT_NE(part, parts.end());
+        const FacingTriangle to = facing(*part);
+        const Vec normal(contacts.normal(0)[m], contacts.normal(1)[m], contacts.normal(2)[m]);
+        EXPECT_LE(normal.dot(to.front), 1e-6 * to.front.norm());
+        EXPECT_GT(contacts.point_first()[m + 1], contacts.point_first()[m]);
+        ++seen;
+      }
+    }
+  }
+  EXPECT_GT(seen, 100U);
+}
+
+/// A floor whose front is up, at a pose, and the same upside down.
+struct FrontFloor {
+  FrontFloor(bool field, bool mirrored) {
+    if (field) {
+      const std::vector<float> heights(9 * 9, 0.0F);
+      EXPECT_EQ(composites.add_height_field({heights, 9, 9, 0, {0.5, 0.5}}, id), Status::ok);
+    } else {
+      id = add(composites, grid(8, 0.5F, Cut::alternating, [](float, float) { return 0.0F; }));
+      const double side = mirrored ? -1.0 : 1.0;
+      EXPECT_EQ(composites.add_scaled(id, {side, 1.0, 1.0}, id), Status::ok);
+    }
+    EXPECT_EQ(composites.set_one_sided(id), Status::ok);
+    ball = add(shapes, SphereShape{0.3});
+    const double middle = field ? -2.0 : 0.0;
+    const Pose at = Pose::at(middle, middle, 0.0);
+    EXPECT_EQ(scene.add({.shape = id, .pose = at, .motion = Motion::fixed}, floor), Status::ok);
+    EXPECT_EQ(scene.refresh(), Status::ok);
+  }
+
+  [[nodiscard]] double ray(double from, double to) {
+    const ShapeRay asked{{0.1, 0.2, from}, {0.0, 0.0, to - from}, 1.0};
+    SceneHit hit;
+    EXPECT_EQ(queries.closest(asked, hit), Status::ok);
+    return hit.key == floor ? hit.t : -1.0;
+  }
+  [[nodiscard]] double cast(double from, double to) {
+    const ShapeCast asked{ball, Pose::at(0.1, 0.2, from), {0.0, 0.0, to - from}, 1.0};
+    SceneHit hit;
+    EXPECT_EQ(queries.closest(asked, hit), Status::ok);
+    return hit.key == floor ? hit.t : -1.0;
+  }
+  [[nodiscard]] bool overlaps(double height) {
+    bool any = false;
+    std::span<const SceneOverlap> found;
+    EXPECT_EQ(queries.overlap(ball, Pose::at(0.1, 0.2, height), found), Status::ok);
+    for (const SceneOverlap& one : found) any = any || one.key == floor;
+    return any;
+  }
+
+  ShapePool shapes;
+  CompositePool composites{shapes};
+  ShapeId id;
+  ShapeId ball;
+  Scene scene{shapes, {.composites = &composites}};
+  Key floor;
+  SceneQueries queries{scene};
+};
+
+TEST(OneSided, rays_casts_and_overlaps_come_from_the_front) {
+  for (const bool field : {false, true}) {
+    for (const bool mirrored : {false, true}) {
+      if (field && mirrored) continue;
+      FrontFloor floor(field, mirrored);
+      EXPECT_NEAR(floor.ray(1.0, -1.0), 0.5, 1e-12);
+      EXPECT_EQ(floor.ray(-1.0, 1.0), -1.0);
+      EXPECT_NEAR(floor.cast(1.3, -1.0), 1.0 / 2.3, 1e-6);
+      EXPECT_EQ(floor.cast(-1.0, 1.0), -1.0);
+      EXPECT_EQ(floor.cast(0.1, 2.0), 0.0);
+      EXPECT_EQ(floor.cast(-0.1, 2.0), -1.0);
+      EXPECT_TRUE(floor.overlaps(0.2));
+      EXPECT_FALSE(floor.overlaps(-0.2));
+      ASSERT_EQ(floor.composites.set_one_sided(floor.id, false), Status::ok);
+      ASSERT_EQ(floor.scene.refresh(), Status::ok);
+      EXPECT_NEAR(floor.ray(-1.0, 1.0), 0.5, 1e-12);
+      EXPECT_NEAR(floor.cast(-1.3, 1.0), 1.0 / 2.3, 1e-6);
+      EXPECT_TRUE(floor.overlaps(-0.2));
+    }
+  }
+}
+
+/// However deep, as long as its middle is in front, a box is pushed up; then nothing holds it.
+TEST(OneSided, what_sinks_is_pushed_out_until_its_middle_is_behind) {
+  FrontFloor floor(false, false);
+  const ShapeId box = add(floor.shapes, BoxShape{{0.4, 0.3, 0.2}, 0.0});
+  Key key;
+  ASSERT_EQ(floor.scene.add({.shape = box}, key), Status::ok);
+  Contacts contacts;
+  for (double height = 0.195; height > -0.21; height -= 0.0299) {
+    ASSERT_EQ(floor.scene.move(key, Pose::at(0.13, 0.07, height)), Status::ok);
+    ASSERT_EQ(floor.scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    EXPECT_EQ(contacts.size(), height >= 0.0 ? 1U : 0U) << height;
+    for (std::size_t m = 0; m < contacts.manifolds(); ++m) {
+      EXPECT_NEAR(contacts.normal(2)[m], -1.0, 1e-9);
+      EXPECT_LE(-contacts.distance()[m], 0.2 - height + 1e-6);
+    }
+  }
+}
+
+TEST(OneSided, ids_have_sides_of_their_own_and_others_are_refused) {
+  CountingMemory memory;
+  ShapePool shapes(&memory);
+  CompositePool composites(shapes, &memory);
+  const ShapeId mesh = add(composites, grid(2, 1.0F, Cut::same, [](float, float) { return 0.0F; }));
+  ShapeId other;
+  ASSERT_EQ(composites.add_scaled(mesh, {1.0, 1.0, 1.0}, other), Status::ok);
+  const std::uint64_t before = composites.revision();
+  ASSERT_EQ(composites.set_one_sided(other), Status::ok);
+  EXPECT_GT(composites.revision(), before);
+  EXPECT_TRUE(composites.is_one_sided(other));
+  EXPECT_FALSE(composites.is_one_sided(mesh));
+  ASSERT_EQ(composites.set_one_sided(mesh), Status::ok);
+  ASSERT_EQ(composites.remove(other), Status::ok);
+  EXPECT_FALSE(composites.is_one_sided(other));
+  EXPECT_TRUE(composites.is_one_sided(mesh));
+  EXPECT_EQ(composites.set_one_sided(other), Status::invalid_key);
+  const ShapeId ball = add(shapes, SphereShape{1.0});
+  EXPECT_EQ(composites.set_one_sided(ball), Status::invalid_key);
+  const CompoundChild child[] = {{ball, {}}};
+  ShapeId compound;
+  ASSERT_EQ(composites.add_compound(child, compound), Status::ok);
+  EXPECT_EQ(composites.set_one_sided(compound), Status::invalid_key);
+  EXPECT_EQ(composites.footprint().total().reserved + shapes.footprint().total().reserved,
+            memory.outstanding());
+}
+
+}  // namespace
+}  // namespace winnow::test
