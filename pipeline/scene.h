@@ -64,6 +64,15 @@ struct SceneOptions {
   /// has one for a pair of bodies at all; a frame takes a tenth longer without a margin, and up to
   /// half where the margin is wide. Off: all manifolds of all parts, raw.
   bool contact_reduction = false;
+  /// Fixed bodies that lie flush side by side (boxes, tiles of terrain) are one floor to what
+  /// slides over them: at levels distance and manifold a contact of a dynamic body with one of them
+  /// is left out if all its points, on the fixed body's surface, lie in the plane of a contact with
+  /// another fixed body that is as deep, or below it, by 1/1000 of the dynamic body's radius, and
+  /// its normal differs from that one's by more than 5 degrees and less than 120: it is with a side
+  /// or an edge of a seam then. Steps, walls and ridges stay. Pairs with fixed bodies are not
+  /// carried over, and the search, O(n log n + pairs of contacts of one body with floors), runs on
+  /// the thread that calls.
+  bool seamless_floors = false;
   /// Contacts tell where each pair and each point was in the last frame (Contacts::previous_pair
   /// and previous_point), so that a solver starts from the impulses that it found then. Takes 4
   /// bytes for each pair, 5 for each point and 56 for each body.
@@ -171,6 +180,12 @@ class WINNOW_API Scene {
   /// Adds a body. `invalid_key` for a shape that neither pool has, `invalid_pose`;
   /// `invalid_argument` for offsets or a layer out of range; `too_many_objects` beyond 2^28.
   Status add(const BodyDefinition& body, Key& key);
+  /// The same for who asks the key: the null key, which every call refuses, if the body was
+  /// refused.
+  Key add(const BodyDefinition& body) {
+    Key key;
+    return add(body, key) == Status::ok ? key : Key{};
+  }
   /// Adds many at once, all or none. `size_mismatch` if there are not as many keys as bodies.
   Status add(std::span<const BodyDefinition> bodies, std::span<Key> keys);
   /// A key that occurs twice makes the whole call `invalid_key`.

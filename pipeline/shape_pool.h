@@ -54,6 +54,14 @@ class WINNOW_API ShapePool {
   /// what it answers is not finite, beyond the radius or, by more than 1e-9 of that, not convex.
   Status add(const SupportShape& shape, ShapeId& id);
 
+  /// The same for who asks the id: the default one, which is no shape and which every call refuses,
+  /// if the shape was refused.
+  template <typename Shape>
+  [[nodiscard]] ShapeId add(const Shape& shape) {
+    ShapeId id;
+    return add(shape, id) == Status::ok ? id : ShapeId{};
+  }
+
   /// The convex hull of points, by qhull: `unsupported` if the library was built without it. While
   /// it runs, qhull takes memory from the C library; all else comes from the pool's resource.
   /// Coplanar faces are merged; points inside, on faces or on edges fall away; flat sets make a

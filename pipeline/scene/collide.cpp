@@ -59,6 +59,7 @@ Status Collision::run() {
     for (const Status status : {answer_convex(), answer_composite()}) {
       if (status != Status::ok) return status;
     }
+    if (!drop_seams()) return Status::out_of_memory;
     contacts_.frame.swap(contacts_.before);
     // The same pairs keep their records in place.
     if (!same_pairs_) {

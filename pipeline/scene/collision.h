@@ -2,6 +2,7 @@
 
 #include "pipeline/scene/contact_frame.h"
 #include "pipeline/scene/scene_state.h"
+#include "pipeline/scene/seams.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -63,6 +64,18 @@ class Collision {
   void rest(const BodyPair& bodies, std::uint32_t at, const NarrowColumns& answers) noexcept;
   void rest_parts() noexcept;
   void rest_regions(const BodyPair& bodies, std::size_t pair) noexcept;
+
+  // Seams of floors (seams.cpp).
+  class FloorWriter;
+  [[nodiscard]] bool is_carried_over(const BodyPair& pair) const noexcept;
+  [[nodiscard]] bool list_floor_contacts();
+  [[nodiscard]] bool list_floor_answer(const NarrowResult& answers, FloorContact::Source source,
+                                       std::uint32_t at, const double* offset, FloorWriter& writer);
+  [[nodiscard]] bool list_floor_parts(std::uint32_t pair, FloorWriter& writer);
+  [[nodiscard]] bool list_floor_regions(std::uint32_t pair, FloorWriter& writer);
+  [[nodiscard]] bool drop_seams();
+  void drop(const FloorContact& seam) noexcept;
+  void close_regions() noexcept;
 
   // The frame (collide.cpp).
   [[nodiscard]] bool show();

@@ -135,7 +135,7 @@ bool Collision::decide() {
       const bool composite =
           scene_.shape[pairs[i].a].is_composite() || scene_.shape[pairs[i].b].is_composite();
       Origin origin = composite ? Origin::composite : Origin::convex;
-      if (may_keep && record != kNoEntry && keep(i, record)) {
+      if (may_keep && record != kNoEntry && is_carried_over(pairs[i]) && keep(i, record)) {
         origin = Origin::carried;
         ++count;
       }

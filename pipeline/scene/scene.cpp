@@ -103,6 +103,7 @@ SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcep
       parts_answers(given.memory),
       parts_slot(given.memory),
       regions(given.memory),
+      floor_contacts(given.memory),
       ignored(given.memory),
       ignores(given.memory) {
   if (given.composites != nullptr) composites_seen = given.composites->revision();
@@ -342,6 +343,7 @@ SceneFootprint Scene::footprint() const noexcept {
   footprint.mid_phase += s.regions.footprint().total();
   footprint.narrow_phase += s.convex.bytes();
   footprint.narrow_phase += s.slot.bytes();
+  footprint.narrow_phase += s.floor_contacts.bytes();
   footprint.narrow_phase += s.narrow.footprint().total();
   footprint.narrow_phase += s.answers.footprint().total();
   return footprint;

@@ -4,6 +4,7 @@
 #include "core/memory/key_table.h"
 #include "pipeline/scene/body_pairs.h"
 #include "pipeline/scene/layers.h"
+#include "pipeline/scene/seams.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -110,6 +111,8 @@ struct SceneState {
   NarrowResult parts_answers;
   Column<std::uint32_t> parts_slot;
   ContactRegions regions;
+  /// Not used unless floors are seamless.
+  Column<FloorContact> floor_contacts;
   SceneStatistics statistics;
   /// Bodies that never meet, as (smaller id << 32 | larger id), sorted; and by id whether a body
   /// is among them, where there were that many when it was told.

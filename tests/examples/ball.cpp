@@ -8,15 +8,11 @@
 
 int main() {
   winnow::ShapePool shapes;
-  winnow::ShapeId ball, floor;
-  if (shapes.add(winnow::SphereShape{0.5}, ball) != winnow::Status::ok ||
-      shapes.add(winnow::HalfSpaceShape{}, floor) != winnow::Status::ok) {
-    return 1;
-  }
+  const winnow::ShapeId ball = shapes.add(winnow::SphereShape{0.5});
+  const winnow::ShapeId floor = shapes.add(winnow::HalfSpaceShape{});
   winnow::Scene scene(shapes);
-  winnow::Key body, ground;
-  (void)scene.add({.shape = floor, .motion = winnow::Motion::fixed}, ground);
-  (void)scene.add({.shape = ball, .pose = winnow::Pose::at(0, 0, 2)}, body);
+  scene.add({.shape = floor, .motion = winnow::Motion::fixed});
+  const winnow::Key body = scene.add({.shape = ball, .pose = winnow::Pose::at(0, 0, 2)});
   winnow::Contacts contacts;
   const double step = 0.005;
   double height = 2.0;
@@ -28,7 +24,7 @@ int main() {
       speed += std::max(0.0, -1000.0 * distance - 20.0 * speed) * step;
     }
     height += speed * step;
-    (void)scene.move(body, winnow::Pose::at(0, 0, height));
+    if (scene.move(body, winnow::Pose::at(0, 0, height)) != winnow::Status::ok) return 1;
   }
   std::printf("the ball rests at %.2f\n", height);
 }

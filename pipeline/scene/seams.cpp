@@ -1,0 +1,203 @@
+// Fixed bodies that lie flush are one floor: contacts with the seams between them are left out.
+//
+// Where a body rests on one of them, its manifold has a plane: through the point of the floor's
+// surface that the body is deepest in, across the normal. All of the body is above that plane, but
+// for the depth. Another fixed body that it touches with points in the plane or below, and along
+// another normal, holds it with nothing that the first one does not: that is a side or an edge of a
+// seam. A step, a wall or the far side of a ditch has points above the plane as soon as it holds.
+// Flush bodies are as deep along the first one's normal, and the shortest way out of the other is
+// no longer, so that it is the less deep one that goes, and no two put each other out.
+
+#include "pipeline/scene/collision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+namespace winnow {
+namespace {
+
+using mid::Vec;
+
+/// Of the body's radius: points so far above a plane are in it.
+constexpr double kPlaneShare = 1e-3;
+/// Of the radius: of two that are equally deep but for this, either may be the floor.
+constexpr double kEqualShare = 1e-6;
+/// Of the angle between two normals: a ceiling is no seam.
+constexpr double kOppositeCosine = -0.5;
+
+[[nodiscard]] bool is_floor_pair(const SceneState& scene, const BodyPair& pair) noexcept {
+  return scene.motion[pair.a] == Motion::fixed || scene.motion[pair.b] == Motion::fixed;
+}
+
+/// True if `other` is held where `floor` holds already.
+[[nodiscard]] bool is_seam(const FloorContact& other, const FloorContact& floor,
+                           double radius) noexcept {
+  const Vec up = Vec::Map(floor.normal);
+  const double cosine = up.dot(Vec::Map(other.normal));
+  if (floor.floor == other.floor || floor.distance > other.distance + kEqualShare * radius ||
+      cosine >= kRegionCosine || cosine < kOppositeCosine) {
+    return false;
+  }
+  const double plane = up.dot(Vec::Map(floor.point[floor.deepest])) + kPlaneShare * radius;
+  return std::all_of(other.point, other.point + other.count,
+                     [&](const double(&p)[3]) { return up.dot(Vec::Map(p)) <= plane; });
+}
+
+}  // namespace
+
+/// Takes the points of manifolds, to a point on the fixed body's surface each.
+class Collision::FloorWriter {
+ public:
+  FloorWriter(const SceneState& scene, const BodyPair& pair) noexcept
+      : floor_is_a_(scene.motion[pair.a] == Motion::fixed) {
+    contact_.body = floor_is_a_ ? pair.b : pair.a;
+    contact_.floor = floor_is_a_ ? pair.a : pair.b;
+    const Vec from = Vec::Map(scene.pose[pair.a].position);
+    from_ = floor_is_a_ ? Vec(from - Vec::Map(scene.pose[pair.b].position)) : Vec(Vec::Zero());
+  }
+
+  void begin(FloorContact::Source source, std::uint32_t answer, double distance,
+             const Vec& normal) noexcept {
+    contact_.source = source;
+    contact_.answer = answer;
+    contact_.distance = distance;
+    contact_.count = contact_.deepest = 0;
+    Vec::Map(contact_.normal) = floor_is_a_ ? normal : Vec(-normal);
+  }
+  /// Halfway between the surfaces, from the position of body a.
+  void add(const Vec& halfway, double depth) noexcept {
+    if (contact_.count == 0 || depth > most_) contact_.deepest = contact_.count;
+    if (contact_.count == 0 || depth > most_) most_ = depth;
+    Vec::Map(contact_.point[contact_.count++]) =
+        from_ + halfway + 0.5 * depth * Vec::Map(contact_.normal);
+  }
+  [[nodiscard]] const FloorContact& contact() const noexcept { return contact_; }
+
+ private:
+  bool floor_is_a_;
+  Vec from_;
+  FloorContact contact_{};
+  double most_ = 0.0;
+};
+
+bool Collision::is_carried_over(const BodyPair& pair) const noexcept {
+  return !scene_.options.seamless_floors || !is_floor_pair(scene_, pair);
+}
+
+bool Collision::list_floor_answer(const NarrowResult& answers, FloorContact::Source source,
+                                  std::uint32_t at, const double* offset, FloorWriter& writer) {
+  const double distance = answers.distance()[at];
+  if (!(distance <= limit_)) return true;
+  const Vec normal(answers.normal(0)[at], answers.normal(1)[at], answers.normal(2)[at]);
+  const Vec from = offset != nullptr ? Vec(Vec::Map(offset)) : Vec(Vec::Zero());
+  writer.begin(source, at, distance, normal);
+  if (level_ == ContactLevel::distance) {
+    const Vec on_a(answers.point(0)[at], answers.point(1)[at], answers.point(2)[at]);
+    writer.add(from + on_a + 0.5 * distance * normal, -distance);
+  } else {
+    for (std::uint32_t i = 0; i < answers.contact_count()[at]; ++i) {
+      const ContactPoint point = answers.contact(answers.contact_first()[at] + i);
+      writer.add(from + Vec(Eigen::Map<const Eigen::Vector3f>(point.position).cast<double>()),
+                 static_cast<double>(point.depth));
+    }
+  }
+  return scene_.floor_contacts.push_back(writer.contact());
+}
+
+bool Collision::list_floor_contacts() {
+  scene_.floor_contacts.clear();
+  for (std::uint32_t i = 0; i < scene_.convex.size(); ++i) {
+    if (!is_floor_pair(scene_, scene_.convex[i])) continue;
+    FloorWriter writer(scene_, scene_.convex[i]);
+    if (!list_floor_answer(scene_.answers, FloorContact::Source::convex, scene_.slot[i], nullptr,
+                           writer)) {
+      return false;
+    }
+  }
+  for (std::uint32_t i = 0; i < scene_.composite.size(); ++i) {
+    if (!is_floor_pair(scene_, scene_.composite[i])) continue;
+    FloorWriter writer(scene_, scene_.composite[i]);
+    if (reduces_ ? !list_floor_regions(i, writer) : !list_floor_parts(i, writer)) return false;
+  }
+  return true;
+}
+
+bool Collision::list_floor_parts(std::uint32_t pair, FloorWriter& writer) {
+  const PrimitivePairs& parts = scene_.parts;
+  for (std::uint32_t k = parts.first[pair]; k < parts.first[pair + 1]; ++k) {
+    if (!list_floor_answer(scene_.parts_answers, FloorContact::Source::part, scene_.parts_slot[k],
+                           parts.poses[parts.pairs[k].a].position, writer)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool Collision::list_floor_regions(std::uint32_t pair, FloorWriter& writer) {
+  const std::uint32_t first = scene_.regions.first[pair];
+  for (std::uint32_t k = first; k < first + scene_.regions.count[pair]; ++k) {
+    const ContactRegion& region = scene_.regions.regions[k];
+    writer.begin(FloorContact::Source::region, k, region.distance, Vec::Map(region.normal));
+    for (const ContactPoint& point : std::span(region.point, region.count)) {
+      writer.add(Eigen::Map<const Eigen::Vector3f>(point.position).cast<double>(),
+                 static_cast<double>(point.depth));
+    }
+    if (!scene_.floor_contacts.push_back(writer.contact())) return false;
+  }
+  return true;
+}
+
+void Collision::drop(const FloorContact& seam) noexcept {
+  const double beyond = std::nextafter(limit_, std::numeric_limits<double>::max());
+  if (seam.source == FloorContact::Source::convex) {
+    scene_.answers.columns().distance[seam.answer] = beyond;
+  } else if (seam.source == FloorContact::Source::part) {
+    scene_.parts_answers.columns().distance[seam.answer] = beyond;
+  } else {
+    scene_.regions.regions[seam.answer].count = 0;
+  }
+}
+
+bool Collision::drop_seams() {
+  if (!scene_.options.seamless_floors || level_ < ContactLevel::distance) return true;
+  if (!list_floor_contacts()) return false;
+  Column<FloorContact>& all = scene_.floor_contacts;
+  // Of a body next to each other, as they were listed.
+  std::sort(all.begin(), all.end(), [](const FloorContact& one, const FloorContact& other) {
+    return std::tuple(one.body, one.source, one.answer) <
+           std::tuple(other.body, other.source, other.answer);
+  });
+  for (FloorContact* first = all.begin(); first != all.end();) {
+    FloorContact* const end = std::find_if(
+        first, all.end(), [&](const FloorContact& other) { return other.body != first->body; });
+    const double radius = scene_.radius(first->body);
+    for (FloorContact* one = first; one != end && std::isfinite(radius); ++one) {
+      if (std::none_of(first, end, [&](const FloorContact& floor) {
+            return floor.source != FloorContact::Source::dropped && is_seam(*one, floor, radius);
+          })) {
+        continue;
+      }
+      drop(*one);
+      one->source = FloorContact::Source::dropped;
+    }
+    first = end;
+  }
+  close_regions();
+  return true;
+}
+
+// Regions that were dropped have no points.
+void Collision::close_regions() noexcept {
+  if (!reduces_) return;
+  ContactRegions& all = scene_.regions;
+  for (std::uint32_t i = 0; i < scene_.composite.size(); ++i) {
+    ContactRegion* const first = all.regions.data() + all.first[i];
+    const ContactRegion* const end = std::remove_if(
+        first, first + all.count[i], [](const ContactRegion& region) { return region.count == 0; });
+    all.count[i] = static_cast<std::uint32_t>(end - first);
+  }
+}
+
+}  // namespace winnow
