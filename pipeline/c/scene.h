@@ -45,6 +45,12 @@ WINNOW_C_API winnow_status winnow_scene_create(const winnow_shape_pool* shapes,
                                                winnow_scene** scene);
 WINNOW_C_API void winnow_scene_destroy(winnow_scene* scene);
 
+/// Where contacts of a body begin, and where it rests: lengths. `contact` >= 0 and >= `rest`.
+typedef struct winnow_contact_offsets {
+  double contact;
+  double rest;
+} winnow_contact_offsets;
+
 /// A body as it is added.
 typedef struct winnow_body_definition {
   winnow_shape_id shape;
@@ -52,11 +58,13 @@ typedef struct winnow_body_definition {
   uint8_t motion;
   winnow_object_filter filter;
   uint64_t data;
+  winnow_contact_offsets offsets;
+  uint16_t layer;  ///< below 4096
 } winnow_body_definition;
 #define WINNOW_BODY_DEFINITION                                                       \
   {                                                                                  \
     WINNOW_NO_SHAPE, {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}, WINNOW_MOTION_DYNAMIC, \
-        {1U, 0xFFFFFFFFU, 0U}, 0                                                     \
+        {1U, 0xFFFFFFFFU, 0U}, 0, {0.0, 0.0}, 0                                      \
   }
 
 WINNOW_C_API winnow_status winnow_scene_add(winnow_scene* scene,

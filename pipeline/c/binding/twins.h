@@ -78,6 +78,8 @@ WINNOW_TWIN_MEMBERS(winnow_body_definition, BodyDefinition, pose);
 WINNOW_TWIN_MEMBERS(winnow_body_definition, BodyDefinition, motion);
 WINNOW_TWIN_MEMBERS(winnow_body_definition, BodyDefinition, filter);
 WINNOW_TWIN_MEMBERS(winnow_body_definition, BodyDefinition, data);
+WINNOW_TWIN_MEMBERS(winnow_body_definition, BodyDefinition, offsets);
+WINNOW_TWIN_MEMBERS(winnow_body_definition, BodyDefinition, layer);
 
 WINNOW_ARE_TWINS(winnow_run, ContactRun)
 WINNOW_TWIN_MEMBERS(winnow_run, ContactRun, first);
