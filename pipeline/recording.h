@@ -164,8 +164,9 @@ struct RecordedShape {
 
 /// A Scene whose calls are recorded, with the shapes of its bodies: see there for what each does.
 /// Composite shapes are recorded where the CompositePool was given that they are of, and what
-/// changes them in place is with the next question; a body of one that is of another MidPhase, or
-/// that has a support function, ends the recording with `unsupported`. Predicates are not recorded.
+/// changes them in place is with the next question. A body of one that is of another MidPhase or
+/// one-sided, or that has a support function, and SceneOptions::seamless_floors end the recording
+/// with `unsupported`. Predicates are not recorded.
 class WINNOW_API RecordedScene {
  public:
   /// The recorder must outlive the scene.
@@ -208,8 +209,10 @@ class WINNOW_API RecordedScene {
  private:
   RecordedScene(Recorder& recorder, const ShapePool& shapes, const SceneOptions& options,
                 const CompositePool* composites) noexcept;
+  [[nodiscard]] bool can_hold(ShapeId id) const noexcept;
   [[nodiscard]] RecordedShape* find_shape(ShapeId id) noexcept;
   [[nodiscard]] std::uint32_t number_of(ShapeId id) noexcept;
+  void refuse(Status why) noexcept;
   void describe(RecordedShape& shape) const noexcept;
   void record_shape(const RecordedShape& shape) noexcept;
   void record_composite(const RecordedShape& shape) noexcept;

@@ -88,6 +88,7 @@ RecordedScene::RecordedScene(Recorder& recorder, const ShapePool& shapes,
       composites_(composites),
       scene_(shapes, options),
       known_(options.memory) {
+  if (options.seamless_floors) refuse(Status::unsupported);
   CallWriter call(recorder_, RecordedCall::make_scene, world_);
   for (const StructureKind& structure : options.structures) {
     call.put_text(structure.name()).put(structure.parameter());
@@ -99,6 +100,19 @@ RecordedScene::RecordedScene(Recorder& recorder, const ShapePool& shapes,
 
 RecordedScene::~RecordedScene() {
   CallWriter(recorder_, RecordedCall::end_world, world_);
+}
+
+/// Ends the recording.
+void RecordedScene::refuse(Status why) noexcept {
+  if (recorder_ == nullptr) return;
+  const Lock lock(recorder_->mutex);
+  recorder_->fail(why);
+}
+
+// Not what another process does not have: meshes of another pool, functions; nor fronts of surfaces.
+bool RecordedScene::can_hold(ShapeId id) const noexcept {
+  if (!id.is_composite()) return id.kind() != ShapeKind::support;
+  return composites_ != nullptr && !composites_->is_one_sided(id);
 }
 
 RecordedShape* RecordedScene::find_shape(ShapeId id) noexcept {
@@ -123,12 +137,8 @@ void RecordedScene::describe(RecordedShape& shape) const noexcept {
 // composite ones the pool tells when there may be another.
 std::uint32_t RecordedScene::number_of(ShapeId id) noexcept {
   if (recorder_ == nullptr) return 0;
-  // What another process does not have: meshes of another pool, functions.
-  const bool is_foreign =
-      id.is_composite() ? composites_ == nullptr : id.kind() == ShapeKind::support;
-  if (is_foreign) {
-    const Lock lock(recorder_->mutex);
-    recorder_->fail(Status::unsupported);
+  if (!can_hold(id)) {
+    refuse(Status::unsupported);
     return 0;
   }
   if (id.is_composite()) follow_composites();
@@ -150,8 +160,7 @@ std::uint32_t RecordedScene::number_of(ShapeId id) noexcept {
     std::rotate(std::upper_bound(known_.begin(), known_.end() - 1, shape, by_id), known_.end() - 1,
                 known_.end());
   } else {
-    const Lock lock(recorder_->mutex);
-    recorder_->fail(Status::out_of_memory);
+    refuse(Status::out_of_memory);
   }
   id.is_composite() ? record_composite(shape) : record_shape(shape);
   return shape.number;
@@ -174,8 +183,7 @@ void RecordedScene::record_composite(const RecordedShape& shape) noexcept {
   Column<std::byte> bytes(known_.memory());
   const Status status = save_composite(*composites_, shape.id, bytes);
   if (status != Status::ok) {
-    const Lock lock(recorder_->mutex);
-    recorder_->fail(status);
+    refuse(status);
     return;
   }
   CallWriter call(recorder_, RecordedCall::add_composite, world_);
@@ -200,7 +208,10 @@ void RecordedScene::follow_composites() noexcept {
   for (RecordedShape& known : known_) {
     if (!known.id.is_composite()) continue;
     RecordedShape now = known;
-    if (composites_->contains(known.id)) describe(now);
+    if (composites_->contains(known.id)) {
+      if (!can_hold(known.id)) refuse(Status::unsupported);
+      describe(now);
+    }
     if (!composites_->contains(known.id) || now.form != known.form) {
       known.number = kForgotten;
     } else if (now.digest != known.digest && known.number != kForgotten) {
