@@ -54,6 +54,7 @@ void put_composites(ByteWriter& out, const mid::Composites& all,
   for (const mid::Compound* const compound : all.compounds.entries) {
     if (compound != nullptr) put_children(out, *compound);
   }
+  out.put_array(std::span<const std::uint32_t>(all.one_sided.data(), all.one_sided.size()));
 }
 
 /// A mesh with its first user, or a field, that `all` has no place for yet.
@@ -94,11 +95,23 @@ class CompositesReader {
       status = read_all(all_.compounds, static_cast<mid::Compound*>(nullptr),
                         [&] { return read_compound(); });
     }
+    if (status == Status::ok) read_one_sided();
     if (status == Status::ok && !in_.rest().empty()) in_.fail();
     return in_.ok() ? status : status_of(in_);
   }
 
  private:
+  void read_one_sided() {
+    if (!in_.get_array(all_.one_sided)) return;
+    std::uint32_t before = 0;
+    for (const std::uint32_t bits : all_.one_sided) {
+      const ShapeId surface{bits};
+      const bool is_surface =
+          pool_.contains(surface) && surface.composite_kind() != CompositeKind::compound;
+      if (!is_surface || bits <= before) in_.fail();
+      before = bits;
+    }
+  }
   template <typename Entry, typename Read>
   [[nodiscard]] Status read_all(mid::Places<Entry>& places, const Entry& nothing, Read&& read) {
     ReadPlaces saved(all_.memory);

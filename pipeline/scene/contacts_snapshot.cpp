@@ -254,7 +254,7 @@ class ContactsReader {
     std::size_t shown = 0;
     for (std::size_t i = 0; i < records.size(); ++i) {
       const PairRecord& record = records[i];
-      const bool is_pair = record.code < BodyKindPairs::kCount && record.pair.a < bodies &&
+      const bool is_pair = record.code < KindPairs::kCount && record.pair.a < bodies &&
                            record.pair.b < bodies && record.pair.a != record.pair.b;
       if (!is_pair || (i > 0 && !(order(records[i - 1]) < order(record)))) return false;
       if (record.shown == kNoEntry) continue;

@@ -2,11 +2,14 @@
 
 #include <winnow/core/column.h>
 #include <winnow/core/footprint.h>
+#include <winnow/pipeline/scene.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
+#include <span>
+#include <utility>
 
 namespace winnow {
 
@@ -14,6 +17,8 @@ namespace winnow {
 /// others meet.
 class LayerMatrix {
  public:
+  enum class Restored : std::uint8_t { good, refused, out_of_memory };
+
   explicit LayerMatrix(std::pmr::memory_resource* memory) noexcept : apart_(memory) {}
 
   [[nodiscard]] bool all_meet() const noexcept { return apart_.empty(); }
@@ -52,10 +57,34 @@ class LayerMatrix {
     }
   }
 
+  /// A bit for each pair that does not meet, row by row.
+  [[nodiscard]] std::span<const std::uint64_t> words() const noexcept {
+    return {apart_.data(), apart_.size()};
+  }
+  /// Becomes the one that has these words.
+  [[nodiscard]] Restored restore(std::span<const std::uint64_t> words) noexcept {
+    std::uint32_t wide = 0;
+    while (std::size_t{wide} * wide * kBits < words.size() && wide < kMostWords) ++wide;
+    if (std::size_t{wide} * wide * kBits != words.size()) return Restored::refused;
+    if (wide != 0 && !reach(wide * kBits - 1)) return Restored::out_of_memory;
+    for (std::uint32_t a = 0; a < width_; ++a) {
+      for (std::uint32_t b = a; b < width_; ++b) {
+        if ((words[word(a, b)] >> b % kBits & 1U) != 0) set(a, b, false);
+      }
+    }
+    return std::equal(words.begin(), words.end(), apart_.begin()) ? Restored::good
+                                                                  : Restored::refused;
+  }
+  void swap(LayerMatrix& other) noexcept {
+    apart_.swap(other.apart_);
+    std::swap(width_, other.width_);
+  }
+
   [[nodiscard]] Bytes bytes() const noexcept { return apart_.bytes(); }
 
  private:
   static constexpr std::uint32_t kBits = 64;
+  static constexpr std::uint32_t kMostWords = kSceneLayers / kBits;
 
   [[nodiscard]] std::size_t word(std::uint32_t row, std::uint32_t column) const noexcept {
     return std::size_t{row} * (width_ / kBits) + column / kBits;

@@ -28,6 +28,8 @@ void visit_body_columns(State& scene, Visit&& visit) {
   visit(scene.moved_at);
   visit(scene.shaped_at);
   if (scene.options.carry_over > 0.0) visit(scene.anchor);
+  if (scene.with_offsets) visit(scene.offsets);
+  if (scene.with_layers) visit(scene.layer);
 }
 
 void put_options(ByteWriter& out, const SceneOptions& options) noexcept {
@@ -36,6 +38,7 @@ void put_options(ByteWriter& out, const SceneOptions& options) noexcept {
   out.put(options.carry_over);
   out.put(options.contact_reduction);
   out.put(options.warm_start);
+  out.put(options.seamless_floors);
 }
 
 void read_options(ByteReader& in, SceneOptions& options) noexcept {
@@ -44,6 +47,7 @@ void read_options(ByteReader& in, SceneOptions& options) noexcept {
   options.carry_over = in.get<double>();
   options.contact_reduction = in.get_bool();
   options.warm_start = in.get_bool();
+  options.seamless_floors = in.get_bool();
 }
 
 [[nodiscard]] bool sees_composites(const SceneState& scene) noexcept {
@@ -104,6 +108,8 @@ void put_set(ByteWriter& out, const SceneState& scene, Motion which) noexcept {
 void put_scene(ByteWriter& out, const SceneState& scene) noexcept {
   put_options(out, scene.options);
   put_keys(out, scene.keys);
+  out.put(scene.with_offsets);
+  out.put(scene.with_layers);
   visit_body_columns(scene, [&](const auto& column) {
     for_live(scene.keys.stamps(),
              [&](ObjectId body) { out.put_bytes(&column[body], sizeof column[body]); });
@@ -111,6 +117,7 @@ void put_scene(ByteWriter& out, const SceneState& scene) noexcept {
   put_clocks(out, scene);
   out.put_array(std::span<const std::uint32_t>(scene.stale.data(), scene.stale.size()));
   out.put_array(std::span<const std::uint64_t>(scene.ignored.data(), scene.ignored.size()));
+  out.put_array(scene.layers.words());
   for (const Motion which : kEveryMotion) put_set(out, scene, which);
 }
 
@@ -126,7 +133,7 @@ class SceneReader {
     if (keys_.stamps.size() >= kMaxBodies) in_.fail();
     if (!in_.ok() || !read_columns()) return status_of(in_);
     read_clocks(in_, scene_);
-    if (!read_stale() || !read_ignored()) return status_of(in_);
+    if (!read_stale() || !read_ignored() || !read_layers()) return status_of(in_);
     for (const Motion which : kEveryMotion) {
       if (const Status status = read_set(which); status != Status::ok) return status;
     }
@@ -143,6 +150,8 @@ class SceneReader {
   [[nodiscard]] bool read_columns() {
     const std::size_t slots = keys_.stamps.size();
     Column<std::uint8_t> seen(scene_.options.memory);
+    if (in_.get_bool() && !scene_.begin_offsets()) return in_.refuse_memory();
+    if (in_.get_bool() && !scene_.begin_layers()) return in_.refuse_memory();
     if (!scene_.reserve(slots) || !seen.resize(slots)) return in_.refuse_memory();
     if (!KeyTable::are_slots(keys_.saved(), seen)) return in_.fail();
     visit_body_columns(scene_, [&](auto& column) {
@@ -159,7 +168,8 @@ class SceneReader {
     for_live(keys_.all_stamps(), [&](ObjectId body) {
       good = good && scene_.motion[body] <= Motion::sleeping &&
              scene_.check(scene_.shape[body], scene_.pose[body]) == Status::ok &&
-             (scene_.anchor.empty() || scene_.anchor[body].is_valid());
+             (scene_.anchor.empty() || scene_.anchor[body].is_valid()) &&
+             are_good(scene_.offsets_of(body)) && scene_.layer_of(body) < kSceneLayers;
     });
     return good || in_.fail();
   }
@@ -190,6 +200,20 @@ class SceneReader {
       before = pair;
     }
     return true;
+  }
+
+  [[nodiscard]] bool read_layers() {
+    Column<std::uint64_t> words(scene_.options.memory);
+    if (!in_.get_array(words)) return false;
+    switch (scene_.layers.restore({words.data(), words.size()})) {
+      case LayerMatrix::Restored::good:
+        return true;
+      case LayerMatrix::Restored::out_of_memory:
+        return in_.refuse_memory();
+      case LayerMatrix::Restored::refused:
+        break;
+    }
+    return in_.fail();
   }
 
   [[nodiscard]] Status read_set(Motion which) {
@@ -240,6 +264,11 @@ void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexce
   scene.moved_at.swap(read.moved_at);
   scene.shaped_at.swap(read.shaped_at);
   scene.anchor.swap(read.anchor);
+  scene.offsets.swap(read.offsets);
+  scene.with_offsets = read.with_offsets;
+  scene.layer.swap(read.layer);
+  scene.with_layers = read.with_layers;
+  scene.layers.swap(read.layers);
   scene.stale.swap(read.stale);
   scene.is_stale.swap(read.is_stale);
   scene.chosen.swap(read.chosen);

@@ -52,7 +52,7 @@ std::vector<FlatContact> flattened(const Contacts& contacts) {
   std::vector<FlatContact> flat(contacts.size());
   for (const ContactRun& run : contacts.runs()) {
     for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
-      flat[i].code = BodyKindPairs::index(run.kind_a, run.kind_b);
+      flat[i].code = KindPairs::index(run.kind_a, run.kind_b);
     }
   }
   for (std::size_t i = 0; i < flat.size(); ++i) {
