@@ -30,7 +30,7 @@ struct ClusterSceneBatch {
 /// What a cluster of scenes is made with.
 struct ClusterSceneOptions {
   /// Of each rank's scene. Contacts are not carried over, and where they were is not told:
-  /// `carry_over` is 0 and `warm_start` off.
+  /// `carry_over` is 0, `warm_start` and `seamless_floors` are off.
   SceneOptions scene{};
   /// As ClusterOptions::imbalance.
   double imbalance = 1.1;
@@ -73,9 +73,10 @@ class WINNOW_API ClusterScene {
   [[nodiscard]] std::uint32_t hosted() const noexcept;
 
   /// Adds a batch on each hosted rank, which may be empty, and answers each: as Scene::add;
-  /// `unsupported` for a body that sleeps; `invalid_key` also where a name is there already, on
-  /// whatever rank, or another rank adds it in this call (then both are refused). A batch that is
-  /// refused adds nothing; others do. Collective; O(bodies added), in four exchanges.
+  /// `unsupported` for a body that sleeps or has offsets or a layer; `invalid_key` also where a
+  /// name is there already, on whatever rank, or another rank adds it in this call (then both are
+  /// refused). A batch that is refused adds nothing; others do. Collective; O(bodies added), in
+  /// four exchanges.
   Status add(std::span<const ClusterSceneBatch> batches, std::span<Status> answers);
   /// Adds bodies that are on every rank, or none: every process gives the same ones, else
   /// `invalid_argument` on all. Otherwise as `add`. They are fixed (`unsupported` for others) and

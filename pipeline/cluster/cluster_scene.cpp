@@ -13,7 +13,9 @@ ClusterSceneState::ClusterSceneState(Transport& given, const ShapePool& shapes,
   for (std::uint32_t i = 0; i < given.hosted(); ++i) {
     scenes.emplace_back(first + i, ranks, shapes, options.scene);
   }
-  if (options.scene.carry_over != 0.0 || options.scene.warm_start || !scenes.front().is_good()) {
+  const SceneOptions& scene = options.scene;
+  if (scene.carry_over != 0.0 || scene.warm_start || scene.seamless_floors ||
+      !scenes.front().is_good()) {
     status = Status::invalid_argument;
   }
 }

@@ -47,7 +47,8 @@ Status RankScene::check(const ClusterSceneBatch& batch) {
   }
   for (const BodyDefinition& body : batch.bodies) {
     if (body.motion > Motion::sleeping) return Status::invalid_argument;
-    if (body.motion == Motion::sleeping) return Status::unsupported;
+    const bool is_plain = body.offsets == ContactOffsets{} && body.layer == 0;
+    if (body.motion == Motion::sleeping || !is_plain) return Status::unsupported;
     if (const Status good = state().check(body.shape, body.pose); good != Status::ok) return good;
   }
   const auto is_here = [this](BodyName name) { return table_.find(name) != NameTable::kNone; };
