@@ -77,6 +77,7 @@ void add_composites(Stage& stage, std::vector<ShapeId>& ids) {
   EXPECT_EQ(stage.composites.add_height_field({.heights = heights, .columns = 3, .rows = 3},
                                               ids.emplace_back()),
             Status::ok);
+  EXPECT_EQ(stage.composites.set_one_sided(ids.back()), Status::ok);
   std::vector<CompoundChild> children;
   for (int i = 0; i < 18; ++i) {
     children.push_back({ids[static_cast<std::size_t>(i) % 5], Pose::at(0.3 * i, 0.1, 0)});
@@ -100,6 +101,8 @@ std::vector<ShapeId> add_shapes(Stage& stage) {
   add(from.cones[0]);
   add(from.triangles[0]);
   add(HalfSpaceShape{{0.1, -0.2, 0.7}, -1.0});
+  add(EllipsoidShape{{0.3, 0.4, 0.2}});
+  add(TaperedCapsuleShape{.radius = {0.2, 0.3}, .half_length = 0.4});
   const HullShape& hull = from.hulls[0];
   std::vector<std::uint32_t> sizes;
   for (std::uint32_t f = 0; f < hull.face_count; ++f) sizes.push_back(hull.faces[f].count);
@@ -160,6 +163,9 @@ void happen(Scene& scene, Random& random, int number) {
   }
   EXPECT_EQ(scene.set_ignored(key(n + 9), key(n + 10)), Status::ok);
   EXPECT_EQ(scene.set_filter(key(n + 11), {.layers = 2, .mask = ~2U}), Status::ok);
+  EXPECT_EQ(scene.set_offsets(key(n + 14), {.contact = 0.03, .rest = 0.01}), Status::ok);
+  EXPECT_EQ(scene.set_layer(key(n + 15), 70), Status::ok);
+  EXPECT_EQ(scene.set_layers_meet(70, 0, number % 2 == 0), Status::ok);
   EXPECT_EQ(scene.body(key(n + 12), body), Status::ok);
   EXPECT_EQ(scene.set_shape(key(n + 13), body.shape), Status::ok);
 }
@@ -219,7 +225,9 @@ void live(Stage& stage, std::size_t count) {
 }
 
 std::vector<SceneOptions> kinds_of_scenes() {
-  return {{}, {.margin = 0.05, .carry_over = 0.01, .contact_reduction = true, .warm_start = true}};
+  return {{},
+          {.margin = 0.05, .carry_over = 0.01, .contact_reduction = true, .warm_start = true},
+          {.seamless_floors = true}};
 }
 
 TEST(SceneSnapshots, go_on_bit_for_bit) {
