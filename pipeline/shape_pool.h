@@ -90,8 +90,8 @@ class WINNOW_API ShapePool {
   [[nodiscard]] Aabb bounds(ShapeId id, const Pose& pose) const noexcept;
 
   /// Appends all shapes, and which places are free, to bytes; pipeline/CONTRACT.md has the format.
-  /// `unsupported` while it holds support functions; that and `out_of_memory` leave `out` as it was.
-  /// O(bytes).
+  /// `unsupported` while it holds support functions; that and `out_of_memory` leave `out` as it
+  /// was. O(bytes).
   Status save(Column<std::byte>& out) const;
   /// Becomes the pool that was saved: shapes have the ids that they had, and answer to the bit.
   /// Whoever uses the pool and has shapes that were not there has to be loaded, too, before it is

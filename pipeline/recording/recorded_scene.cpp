@@ -109,7 +109,8 @@ void RecordedScene::refuse(Status why) noexcept {
   recorder_->fail(why);
 }
 
-// Not what another process does not have: meshes of another pool, functions; nor fronts of surfaces.
+// Not what another process does not have: meshes of another pool, functions; nor fronts of
+// surfaces.
 bool RecordedScene::can_hold(ShapeId id) const noexcept {
   if (!id.is_composite()) return id.kind() != ShapeKind::support;
   return composites_ != nullptr && !composites_->is_one_sided(id);
