@@ -1,6 +1,8 @@
 #pragma once
 
+#include <winnow/core/key.h>
 #include <winnow/pipeline/cluster_transport.h>
+#include "pipeline/cluster/name_table.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -98,6 +100,46 @@ struct BodyNews {
   std::span<const std::uint8_t> belongs;
   std::span<const std::uint64_t> gone;
 };
+
+/// What a rank's bodies become by all that it was told, to be done at once.
+template <typename Place, typename Content>
+struct BodyChanges {
+  std::vector<Key> dropped;
+  /// Of bodies that are here, and where they are now.
+  std::vector<Key> keys;
+  std::vector<Place> places;
+  /// Of others, all that they are, and which belong here.
+  std::vector<BodyName> names;
+  std::vector<Content> fresh;
+  std::vector<std::uint8_t> belongs;
+
+  void clear() noexcept {
+    dropped.clear();
+    keys.clear();
+    places.clear();
+    names.clear();
+    fresh.clear();
+    belongs.clear();
+  }
+  void add_fresh(const BodyNews<Content>& news, std::size_t i) {
+    names.push_back(news.names[i]);
+    fresh.push_back(news.contents[i]);
+    belongs.push_back(news.belongs[i]);
+  }
+};
+
+/// Takes what parcels say is gone from the names, and calls drop(id).
+template <typename Content, typename Drop>
+void take_gone(std::span<const Parcel> parcels, NameTable& table, Drop&& drop) {
+  for (const Parcel& parcel : parcels) {
+    for (const BodyName name : BodyNews<Content>(parcel).gone) {
+      const std::uint32_t id = table.find(name);
+      if (id == NameTable::kNone) continue;
+      drop(id);
+      table.erase(name);
+    }
+  }
+}
 
 template <typename Content>
 void Outbox<Content>::tell(std::uint32_t self, const Body& body, const Content& content,

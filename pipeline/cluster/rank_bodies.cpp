@@ -223,27 +223,13 @@ void RankBodies::tell(const Moved& moved, const Regions& before, const Regions& 
   }
 }
 
-void RankBodies::Changes::clear() noexcept {
-  dropped.clear();
-  keys.clear();
-  boxes.clear();
-  names.clear();
-  fresh.clear();
-  belongs.clear();
-}
-
 Status RankBodies::receive(std::span<const Parcel> parcels) {
   // What is gone first: a name may come anew in the same breath.
-  for (const Parcel& parcel : parcels) {
-    for (const BodyName name : BodyNews<Aabb>(parcel).gone) {
-      const std::uint32_t id = table_.find(name);
-      if (id == NameTable::kNone) continue;
-      changes_.dropped.push_back(partition_.key_of(id));
-      flags_[id] = 0;
-      table_.erase(name);
-      --ghosts_;
-    }
-  }
+  take_gone<Aabb>(parcels, table_, [&](std::uint32_t id) {
+    changes_.dropped.push_back(partition_.key_of(id));
+    flags_[id] = 0;
+    --ghosts_;
+  });
   for (const Parcel& parcel : parcels) take(BodyNews<Aabb>(parcel));
   return apply_changes();
 }
@@ -253,14 +239,12 @@ void RankBodies::take(const BodyNews<Aabb>& news) {
     const bool belongs = news.belongs[i] != 0;
     const std::uint32_t id = table_.find(news.names[i]);
     if (id == NameTable::kNone) {
-      changes_.names.push_back(news.names[i]);
-      changes_.fresh.push_back(news.contents[i]);
-      changes_.belongs.push_back(news.belongs[i]);
+      changes_.add_fresh(news, i);
       continue;
     }
     const Key key = partition_.key_of(id);
     changes_.keys.push_back(key);
-    changes_.boxes.push_back(news.contents[i]);
+    changes_.places.push_back(news.contents[i]);
     flags_[id] = flags_of(news.contents[i], belongs);
     if (!belongs) continue;
     --ghosts_;
@@ -270,7 +254,7 @@ void RankBodies::take(const BodyNews<Aabb>& news) {
 
 Status RankBodies::apply_changes() {
   Status status = partition_.remove(changes_.dropped);
-  if (status == Status::ok) status = partition_.update(changes_.keys, changes_.boxes);
+  if (status == Status::ok) status = partition_.update(changes_.keys, changes_.places);
   if (status != Status::ok || changes_.names.empty()) return status;
   keys_.resize(changes_.names.size());
   status = partition_.insert(changes_.fresh, {}, keys_);

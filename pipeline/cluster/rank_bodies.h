@@ -73,16 +73,6 @@ class RankBodies {
     Key key;
     Aabb told;  // empty: they know nothing of it
   };
-  /// Rows to be changed in the partition, all at once.
-  struct Changes {
-    std::vector<Key> dropped;
-    std::vector<Key> keys;
-    std::vector<Aabb> boxes;
-    std::vector<BodyName> names;
-    std::vector<Aabb> fresh;
-    std::vector<std::uint8_t> belongs;
-    void clear() noexcept;
-  };
 
   [[nodiscard]] bool is_owned(Key key) const noexcept {
     return partition_.contains(key) && (flags_[key.id] & (kOwned | kRemoved)) == kOwned;
@@ -115,7 +105,7 @@ class RankBodies {
   std::vector<BodyName> departed_;
   std::pmr::vector<NamePair> pairs_;
   Outbox<Aabb> outbox_;
-  Changes changes_;
+  BodyChanges<Aabb, Aabb> changes_;
   std::vector<std::uint32_t> works_;  // by id
   std::vector<Aabb> work_boxes_;
   std::vector<std::uint32_t> works_of_owned_;

@@ -301,27 +301,13 @@ void RankScene::tell(const Moved& moved, const Regions& before, const Regions& n
   }
 }
 
-void RankScene::Changes::clear() noexcept {
-  dropped.clear();
-  keys.clear();
-  poses.clear();
-  names.clear();
-  fresh.clear();
-  belongs.clear();
-}
-
 Status RankScene::receive(std::span<const Parcel> parcels) {
   // What is gone first: a name may come anew in the same breath.
-  for (const Parcel& parcel : parcels) {
-    for (const BodyName name : BodyNews<BodyRecord>(parcel).gone) {
-      const std::uint32_t id = table_.find(name);
-      if (id == NameTable::kNone) continue;
-      changes_.dropped.push_back(state().keys.key_of(id));
-      flags_[id] = 0;
-      table_.erase(name);
-      --ghosts_;
-    }
-  }
+  take_gone<BodyRecord>(parcels, table_, [&](std::uint32_t id) {
+    changes_.dropped.push_back(state().keys.key_of(id));
+    flags_[id] = 0;
+    --ghosts_;
+  });
   for (const Parcel& parcel : parcels) take(BodyNews<BodyRecord>(parcel));
   return apply_changes();
 }
@@ -331,14 +317,12 @@ void RankScene::take(const BodyNews<BodyRecord>& news) {
   for (std::size_t i = 0; i < news.names.size(); ++i) {
     const std::uint32_t id = table_.find(news.names[i]);
     if (id == NameTable::kNone) {
-      changes_.names.push_back(news.names[i]);
-      changes_.fresh.push_back(news.contents[i]);
-      changes_.belongs.push_back(news.belongs[i]);
+      changes_.add_fresh(news, i);
       continue;
     }
     const Key key = state().keys.key_of(id);
     changes_.keys.push_back(key);
-    changes_.poses.push_back(news.contents[i].pose);
+    changes_.places.push_back(news.contents[i].pose);
     if (news.belongs[i] == 0) continue;
     flags_[id] |= kOwned;
     --ghosts_;
@@ -350,7 +334,7 @@ void RankScene::take(const BodyNews<BodyRecord>& news) {
 Status RankScene::apply_changes() {
   has_lost_ = has_lost_ || !changes_.dropped.empty();
   Status status = scene_.remove(changes_.dropped);
-  if (status == Status::ok) status = scene_.move(changes_.keys, changes_.poses);
+  if (status == Status::ok) status = scene_.move(changes_.keys, changes_.places);
   if (status == Status::ok && !changes_.names.empty()) {
     status = add_bodies(changes_.names, changes_.fresh);
   }

@@ -125,16 +125,6 @@ class RankScene {
     Aabb told;         // its box when they last were; empty: they know nothing of it
     bool has_changed;  // and not regions alone
   };
-  /// Bodies to be changed in the scene, all at once.
-  struct Changes {
-    std::vector<Key> dropped;
-    std::vector<Key> keys;
-    std::vector<Pose> poses;
-    std::vector<BodyName> names;
-    std::vector<BodyRecord> fresh;
-    std::vector<std::uint8_t> belongs;
-    void clear() noexcept;
-  };
   struct NamedId {
     BodyName name;
     ObjectId id;
@@ -184,7 +174,7 @@ class RankScene {
   std::vector<ClusterBody> arrived_;
   std::vector<BodyName> departed_;
   Outbox<BodyRecord> outbox_;
-  Changes changes_;
+  BodyChanges<Pose, BodyRecord> changes_;
   // The order of pairs: all bodies by name, those that came since it was made, and what
   // `selection_` looks at.
   std::vector<NamedId> by_name_;
