@@ -313,6 +313,12 @@ void ask_scenes_in_c(const trace* t) {
   OK(winnow_composite_pool_create(pool, NULL, &composites));
   make_shapes(t, pool, convex);
   make_composites(t, composites, convex, composite);
+  /* Of functions nobody else has any: pools with some are not saved. */
+  winnow_snapshot* of_functions = NULL;
+  OK(winnow_snapshot_create(NULL, &of_functions));
+  note(t, "unsaved", winnow_shape_pool_save(pool, of_functions) == WINNOW_UNSUPPORTED);
+  winnow_snapshot_destroy(of_functions);
+  OK(winnow_shape_pool_remove(pool, convex[kConvex - 1]));
   winnow_scene_options options = WINNOW_SCENE_OPTIONS;
   options.memory = &memory;
   options.margin = 0.02;

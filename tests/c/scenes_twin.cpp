@@ -215,6 +215,8 @@ void ask_scenes_in_cpp(const trace* t) {
   CompositePool composites(pool);
   const std::array convex = make_convex(pool);
   const std::array composite = make_composite(composites, convex);
+  Column<std::byte> of_functions(std::pmr::get_default_resource());
+  note(t, "unsaved", pool.save(of_functions) == Status::unsupported);
   Scene scene(pool, {.structures = {static_bvh(), linear_bvh(), linear_bvh()},
                      .margin = 0.02,
                      .carry_over = 0.001,
