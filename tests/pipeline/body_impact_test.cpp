@@ -256,7 +256,7 @@ TEST(BodyImpact, is_never_late_and_leaves_a_gap_within_the_tolerance) {
     check(twins, 200, unproved, hits);
   }
   EXPECT_LE(unproved, count / 4);
-  EXPECT_GE(hits, count / 6);
+  EXPECT_GE(hits, count / 12);
 }
 
 TEST(BodyImpact, of_two_composites_is_never_late) {
@@ -271,7 +271,7 @@ TEST(BodyImpact, of_two_composites_is_never_late) {
     SCOPED_TRACE(testing::Message() << n << ": " << a << " " << b);
     check(moving_twins(all, all.shapes[a], all.shapes[b], random), 30, unproved, hits);
   }
-  EXPECT_GE(hits, count / 6);
+  EXPECT_GE(hits, count / 12);
 }
 
 TEST(BodyImpact, starts_at_once_where_parts_overlap_and_with_the_deepest) {
