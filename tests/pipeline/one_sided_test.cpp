@@ -132,7 +132,7 @@ TEST(OneSided, no_normal_leads_to_the_back) {
       }
     }
   }
-  EXPECT_GT(seen, 100U);
+  EXPECT_GT(seen, scaled(100) / 2);
 }
 
 /// A floor whose front is up, at a pose, and the same upside down.
