@@ -135,7 +135,7 @@ Status SceneState::reserve_answers(const SceneRoom& room, Pages pages) {
   if (status != Status::ok || room.level != ContactLevel::manifold) return status;
   // On one thread a job writes where there is room for all that it may find.
   ContactColumns& points = answers.columns().contacts;
-  if (!points.grow(room.points + std::size_t{kJobPairs} * kManifoldPoints)) {
+  if (!points.grow(room.points + std::size_t{kJobPairs} * kManifoldPoints + kContactSlack)) {
     return Status::out_of_memory;
   }
   if (pages == Pages::touched) points.touch();
