@@ -18,7 +18,7 @@ constexpr std::size_t kMostWork = std::numeric_limits<std::size_t>::max() / kCut
 
 bool OrderPlan::reserve(std::size_t rows, std::size_t moved, Pages pages) noexcept {
   return order_.reserve(rows + kSlack, pages) && rest_.reserve(rows + kSlack, pages) &&
-         moved_.reserve(moved, pages) && placed_.reserve(moved, pages);
+         moves_.reserve(moved, pages) && placed_.reserve(moved, pages);
 }
 
 bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdParts parts) noexcept {
@@ -26,7 +26,7 @@ bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdPart
   const std::size_t most = rows.pool().rows() + room + kSlack;
   order_.clear();
   rest_.clear();
-  moved_.clear();
+  moves_.clear();
   placed_.clear();
   if (!order_.grow(most) || !rest_.grow(most)) return false;
   rows_ = &rows;
@@ -48,6 +48,7 @@ bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdPart
 }
 
 bool OrderPlan::advance(std::size_t work) noexcept {
+  sort_moves();
   // Where nothing is left to the tree there is nothing more to do.
   const auto is_as_good_as_ready = [&] { return part_ == Part::rest && rest_.empty(); };
   while ((work != 0 && !ready()) || is_as_good_as_ready()) {
@@ -129,8 +130,8 @@ bool OrderPlan::complete() noexcept {
   const ObjectId* const ids = rows_->pool().ids();
   const std::size_t rows = rows_->pool().rows();
   const std::size_t came = rows - planned_rows_;
-  if (!order_.grow(order_.size() + came) || !placed_.grow(moved_.size())) return false;
-  if (!moved_.empty()) place_moved();
+  if (!order_.grow(order_.size() + came) || !placed_.grow(moves_.size())) return false;
+  if (!moves_.empty()) place_moved();
   const std::uint32_t* placed = placed_.begin();
   for (std::size_t row = planned_rows_; row < rows; ++row) {
     if (placed != placed_.end() && *placed == row) {
@@ -142,15 +143,19 @@ bool OrderPlan::complete() noexcept {
   return true;
 }
 
+void OrderPlan::sort_moves() noexcept {
+  std::ranges::sort(moves_, {}, &RowMove::row);
+}
+
 void OrderPlan::place_moved() noexcept {
-  std::ranges::sort(moved_, {}, &Moved::row);
+  sort_moves();
   const ObjectId* const ids = rows_->pool().ids();
   const KeyTable& keys = rows_->keys();
   for (std::uint32_t& row : order_) {
     if (row == kNoObject || ids[row] != kNoObject) continue;
-    const Moved* const moved = std::ranges::lower_bound(moved_, row, {}, &Moved::row);
-    if (moved == moved_.end() || moved->row != row || !keys.is_live(moved->id)) continue;
-    row = keys.row_of(moved->id);
+    const RowMove* const move = std::ranges::lower_bound(moves_, row, {}, &RowMove::row);
+    if (move == moves_.end() || move->row != row || !keys.is_live(move->id)) continue;
+    row = keys.row_of(move->id);
     (void)placed_.push_back(row);
   }
   std::sort(placed_.begin(), placed_.end());
@@ -165,7 +170,7 @@ void OrderPlan::drop() noexcept {
 
 void OrderPlan::release() noexcept {
   drop();
-  release_columns(order_, rest_, moved_, placed_, items_, list_, points_);
+  release_columns(order_, rest_, moves_, placed_, items_, list_, points_);
 }
 
 }  // namespace winnow

@@ -21,7 +21,7 @@ class OrderPlan {
   explicit OrderPlan(std::pmr::memory_resource* memory) noexcept
       : order_(memory),
         rest_(memory),
-        moved_(memory),
+        moves_(memory),
         placed_(memory),
         items_(memory),
         list_(memory),
@@ -55,7 +55,7 @@ class OrderPlan {
   /// The object in a row is about to be moved behind all others. Where memory is refused, that is
   /// where it stays.
   void note_move(std::uint32_t row, ObjectId id) noexcept {
-    if (row < planned_rows_) (void)moved_.push_back({row, id});
+    if (row < planned_rows_) (void)moves_.push_back({row, id});
   }
 
   // When it is ready.
@@ -70,25 +70,23 @@ class OrderPlan {
   [[nodiscard]] std::size_t regular() const noexcept { return regular_; }
   /// What the structure is told when the rows stand in the order.
   [[nodiscard]] RowPlan row_plan() noexcept {
-    return {planned_rows_, planned_objects_, order_, rest_, items_, list_};
+    return {planned_rows_, planned_objects_, order_, rest_, items_, list_,
+            {moves_.data(), moves_.size()}};
   }
 
   /// Scratch for sorting other rows by place, while no plan is underway.
   [[nodiscard]] Column<float>& points() noexcept { return points_; }
   void release() noexcept;
   [[nodiscard]] Bytes bytes() const noexcept {
-    return bytes_of(order_, rest_, moved_, placed_, items_, list_, points_);
+    return bytes_of(order_, rest_, moves_, placed_, items_, list_, points_);
   }
 
  private:
-  struct Moved {
-    std::uint32_t row;  // where it was planned
-    ObjectId id;
-  };
   enum class Part : std::uint8_t { structure, rest, cuts, ready };
   [[nodiscard]] bool run_stage(std::size_t& work) noexcept;
   [[nodiscard]] bool begin_rest(std::size_t& work) noexcept;
   void append_rest() noexcept;
+  void sort_moves() noexcept;
   void place_moved() noexcept;
 
   Rows* rows_ = nullptr;
@@ -104,7 +102,7 @@ class OrderPlan {
 
   Column<std::uint32_t> order_;
   Column<std::uint32_t> rest_;
-  Column<Moved> moved_;
+  Column<RowMove> moves_;
   Column<std::uint32_t> placed_;  // rows behind all that the plan began with which have a place
   Column<std::uint64_t> items_;
   Column<std::uint32_t> list_;

@@ -1,5 +1,7 @@
 #include "partitions/structures/structure.h"
 
+#include <algorithm>
+
 namespace winnow {
 
 std::string_view StructureKind::name() const noexcept {
@@ -14,6 +16,13 @@ void Structure::leave_all(const RowPlan& plan) const noexcept {
     to += ids[row] != kNoObject ? 1 : 0;
   }
   plan.rest.set_size(static_cast<std::size_t>(to - plan.rest.data()));
+}
+
+std::size_t Structure::row_now(const RowPlan& plan, std::size_t row) const noexcept {
+  if (pool().ids()[row] != kNoObject) return row;
+  const auto move = std::ranges::lower_bound(plan.moves, row, {}, &RowMove::row);
+  const bool found = move != plan.moves.end() && move->row == row;
+  return found && rows_.keys().is_live(move->id) ? rows_.keys().row_of(move->id) : row;
 }
 
 }  // namespace winnow

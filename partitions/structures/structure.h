@@ -66,6 +66,12 @@ template <typename T>
           .costs = costs};
 }
 
+/// An object that was moved behind all others, and the row that it stood in before.
+struct RowMove {
+  std::uint32_t row;
+  ObjectId id;
+};
+
 /// Which rows a plan is about, and where it writes which go where.
 struct RowPlan {
   /// Rows below this, of which so many held objects when the plan was begun. Further ones may come
@@ -81,6 +87,8 @@ struct RowPlan {
   /// the planned order.
   Column<std::uint64_t>& items;
   Column<std::uint32_t>& list;
+  /// What was moved since the plan was begun, by ascending rows.
+  std::span<const RowMove> moves;
 };
 
 /// What has to be made ready for a build, at most.
@@ -135,6 +143,9 @@ class Structure {
   }
   /// Makes every live row part of the rest.
   void leave_all(const RowPlan& plan) const noexcept;
+  /// Where the object stands now that stood in a row when the plan was begun; the row itself if it
+  /// is gone. O(log moves) for rows that have become empty.
+  [[nodiscard]] std::size_t row_now(const RowPlan& plan, std::size_t row) const noexcept;
   /// Appends rows to `order` in the order in which the tree's blocks of 16 are to hold them; no
   /// environments are in use. It may reorder `rest`. `Order::none` leaves that to the partition,
   /// which cuts at medians.

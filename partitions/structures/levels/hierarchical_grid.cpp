@@ -204,9 +204,12 @@ class HierarchicalGrid final : public CellStructure {
   enum class Step : std::uint8_t { places, sort, lines };
   [[nodiscard]] bool run_step(const RowPlan& plan) noexcept;
   [[nodiscard]] std::span<const std::uint32_t> rows_of_level(const RowPlan& plan) const noexcept;
+  template <typename Visit>
+  void visit_moved(const RowPlan& plan, Visit&& visit) const;
   void find_places(const RowPlan& plan) noexcept;
+  void find_places_of_moved(const RowPlan& plan) noexcept;
   void sort_places(const RowPlan& plan) noexcept;
-  [[nodiscard]] std::uint32_t step_of(std::size_t i) const noexcept;
+  [[nodiscard]] std::uint32_t step_of(const RowPlan& plan, std::size_t i) const noexcept;
   [[nodiscard]] bool lay_lines(const RowPlan& plan) noexcept;
   bool add_line(std::size_t begin, std::size_t end, const RowPlan& plan);
   static std::uint32_t leave_crowd(const RowPlan& plan, std::uint32_t begin,
@@ -355,11 +358,29 @@ bool HierarchicalGrid::run_step(const RowPlan& plan) noexcept {
   return false;
 }
 
+// Calls visit(i, where) for each row i of the level whose object is in row `where` by now.
+template <typename Visit>
+void HierarchicalGrid::visit_moved(const RowPlan& plan, Visit&& visit) const {
+  const std::span<const std::uint32_t> rows = rows_of_level(plan);
+  for (const RowMove& move : plan.moves) {
+    const auto at = std::ranges::lower_bound(rows, move.row);
+    if (at == rows.end() || *at != move.row) continue;
+    const std::size_t now = row_now(plan, move.row);
+    if (now != move.row) visit(static_cast<std::size_t>(at - rows.begin()), now);
+  }
+}
+
 void HierarchicalGrid::find_places(const RowPlan& plan) noexcept {
   const std::span<const std::uint32_t> rows = rows_of_level(plan);
   GridLevel& level = planned_.level[planned_.levels];
   level = {};
-  lay_level(pool(), rows, execution(), level);
+  std::array<float, 3> longest{};
+  visit_moved(plan, [&](std::size_t, std::size_t row) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      longest[a] = std::max(longest[a], pool().column(3 + a)[row] - pool().column(a)[row]);
+    }
+  });
+  lay_level(pool(), rows, longest, execution(), level);
   const std::uint32_t last_line =
       level.mids * (static_cast<std::uint32_t>(level.slow.last) + 1) - 1;
   sorted_ = {.count = rows.size(),
@@ -369,6 +390,17 @@ void HierarchicalGrid::find_places(const RowPlan& plan) noexcept {
   for_stretches(execution(), rows.size(), kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
     level_rows_kernels().places(level, box_columns(pool()).data(), rows.data(), begin, end,
                                 sorted_.step_bits, !sorted_.packed, plan.items.data());
+  });
+  find_places_of_moved(plan);
+}
+
+// Of a row that has become empty the place is that of the object that left it.
+void HierarchicalGrid::find_places_of_moved(const RowPlan& plan) noexcept {
+  const std::span<const std::uint32_t> rows = rows_of_level(plan);
+  visit_moved(plan, [&](std::size_t i, std::size_t row) {
+    const LinePlace at = place_on(planned_.level[planned_.levels], place_of(row));
+    const std::uint32_t line = sorted_.packed ? at.line << sorted_.step_bits : 0;
+    plan.items[i] = std::uint64_t{line | at.step} << 32U | rows[i];
   });
 }
 
@@ -386,7 +418,8 @@ void HierarchicalGrid::sort_places(const RowPlan& plan) noexcept {
   if (!own.packed) {
     for (std::size_t i = 0; i < own.count; ++i) {
       const auto row = static_cast<std::uint32_t>(sorted[i]);
-      const std::uint32_t line = place_on(planned_.level[planned_.levels], place_of(row)).line;
+      const Place place = place_of(row_now(plan, row));
+      const std::uint32_t line = place_on(planned_.level[planned_.levels], place).line;
       sorted[i] = std::uint64_t{line} << 32U | row;
     }
     sorted =
@@ -395,10 +428,10 @@ void HierarchicalGrid::sort_places(const RowPlan& plan) noexcept {
   own.items = sorted;
 }
 
-std::uint32_t HierarchicalGrid::step_of(std::size_t i) const noexcept {
+std::uint32_t HierarchicalGrid::step_of(const RowPlan& plan, std::size_t i) const noexcept {
   const GridLevel& level = planned_.level[planned_.levels];
   if (sorted_.packed) return static_cast<std::uint32_t>(sorted_.items[i] >> 32U) & level.steps;
-  return place_on(level, place_of(sorted_.row(i))).step;
+  return place_on(level, place_of(row_now(plan, sorted_.row(i)))).step;
 }
 
 bool HierarchicalGrid::lay_lines(const RowPlan& plan) noexcept {
@@ -440,9 +473,9 @@ bool HierarchicalGrid::add_line(std::size_t begin, std::size_t end, const RowPla
   const std::size_t most = (end - begin + kInCell - 1) / kInCell;
   Column<std::uint32_t>& starts = planned_start_;
   GridLine line;
-  line.first = step_of(begin);
+  line.first = step_of(plan, begin);
   line.cell = static_cast<std::uint32_t>(starts.size());
-  const std::uint32_t length = step_of(end - 1) - line.first;
+  const std::uint32_t length = step_of(plan, end - 1) - line.first;
   while ((length >> line.shift) >= most) ++line.shift;
   line.last_cell = length >> line.shift;
   const std::size_t cells = std::size_t{line.last_cell} + 1;
@@ -455,7 +488,7 @@ bool HierarchicalGrid::add_line(std::size_t begin, std::size_t end, const RowPla
   auto to = static_cast<std::uint32_t>(before);
   std::size_t next_cell = 0;
   for (std::size_t i = begin; i < end; ++i) {
-    const std::uint32_t cell = (step_of(i) - line.first) >> line.shift;
+    const std::uint32_t cell = (step_of(plan, i) - line.first) >> line.shift;
     if (cell >= next_cell && next_cell != 0) to = leave_crowd(plan, start[next_cell - 1], to);
     while (next_cell <= cell) start[next_cell++] = to;
     rows[to++] = sorted_.row(i);

@@ -67,10 +67,12 @@ double company(const BoundsPool& pool, std::span<const std::uint32_t> rows,
   std::array<std::uint8_t, kSlots> cube{};
   const std::size_t wanted = std::clamp<std::size_t>(rows.size() / 32, 256, 4096);
   const std::size_t step = std::max<std::size_t>(1, rows.size() / wanted);
-  const std::size_t count = rows.size() / step;
+  std::size_t count = 0;
   std::size_t met = 0;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < rows.size() / step; ++i) {
     const std::uint32_t row = rows[sampled(i, step)];
+    if (pool.ids()[row] == kNoObject) continue;
+    ++count;
     std::uint64_t hash = 0;
     for (std::size_t a = 0; a < 3; ++a) {
       const double x = static_cast<double>(pool.column(a)[row]) - range[a].low;
@@ -82,7 +84,7 @@ double company(const BoundsPool& pool, std::span<const std::uint32_t> rows,
     met += in;
     if (in < 255) ++in;
   }
-  const double n = static_cast<double>(count);
+  const double n = static_cast<double>(std::max<std::size_t>(1, count));
   const double by_chance = 0.5 * n * n / static_cast<double>(kSlots);
   const double pairs = std::max(0.0, static_cast<double>(met) - by_chance);
   return 1.0 + 2.0 * pairs / n * static_cast<double>(rows.size()) / n;
@@ -126,11 +128,13 @@ void lay_axis(LevelAxis& axis, const Range& range, double cells, double longest,
 }  // namespace
 
 void lay_level(const BoundsPool& pool, std::span<const std::uint32_t> rows,
-               const Execution& execution, GridLevel& level) noexcept {
+               const std::array<float, 3>& least_longest, const Execution& execution,
+               GridLevel& level) noexcept {
   std::array<Range, 3> range;
   std::array<double, 3> length{};
-  const std::array<float, 3> longest = longest_edges(pool, rows, execution);
+  std::array<float, 3> longest = longest_edges(pool, rows, execution);
   for (std::size_t a = 0; a < 3; ++a) {
+    longest[a] = std::max(longest[a], least_longest[a]);
     range[a] = range_of(pool, a, rows.size(), [&](std::size_t i) { return rows[i]; });
     length[a] = range[a].length();
   }

@@ -93,7 +93,8 @@ class LooseTree : public CellStructure {
   void find_keys(const RowPlan& plan, std::size_t begin, std::size_t end) const noexcept;
   [[nodiscard]] bool lay_nodes(const RowPlan& plan) noexcept;
   [[nodiscard]] bool lay_node(std::span<const std::uint64_t> cell, const RowPlan& plan) noexcept;
-  [[nodiscard]] std::uint32_t code_of(std::span<const std::uint64_t> cell) const noexcept;
+  [[nodiscard]] std::uint32_t code_of(std::span<const std::uint64_t> cell,
+                                      const RowPlan& plan) const noexcept;
 
   const std::size_t axes_;
   const float loose_;
@@ -155,8 +156,9 @@ void LooseTree::find_keys(const RowPlan& plan, std::size_t first, std::size_t la
   std::uint64_t* const items = plan.items.data();
   for_stretches(execution(), last - first, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = first + begin; row < first + end; ++row) {
-      const bool live = pool().ids()[row] != kNoObject;
-      const std::uint32_t key = live ? planned_.cells.key_of(pool(), row) : LooseOctreeCells::kNone;
+      const std::size_t now = row_now(plan, row);
+      const bool live = pool().ids()[now] != kNoObject;
+      const std::uint32_t key = live ? planned_.cells.key_of(pool(), now) : LooseOctreeCells::kNone;
       items[row] = std::uint64_t{key} << 32U | row;
     }
   });
@@ -192,21 +194,24 @@ bool LooseTree::lay_node(std::span<const std::uint64_t> cell, const RowPlan& pla
     for (; run < end; ++run) (void)rows.push_back(static_cast<std::uint32_t>(cell[run]));
   }
   if (plan.regular.size() == begin) return true;
-  const std::uint32_t code = code_of(cell);
+  const std::uint32_t code = code_of(cell, plan);
   return planned_.node.push_back(code) && planned_start_.push_back(begin) &&
          planned_.bounds.push_back(planned_.cells.loose_bounds(code));
 }
 
 // An object that has not left the cell since its key was found says which cell that is; where none
 // has stayed, any cell is as good.
-std::uint32_t LooseTree::code_of(std::span<const std::uint64_t> cell) const noexcept {
+std::uint32_t LooseTree::code_of(std::span<const std::uint64_t> cell,
+                                 const RowPlan& plan) const noexcept {
   const LooseOctreeCells& cells = planned_.cells;
   const std::uint32_t key = key_in(cell[0]);
+  const auto row_of = [&](std::uint64_t item) {
+    return row_now(plan, static_cast<std::uint32_t>(item));
+  };
   const auto stayed = std::ranges::find_if(cell, [&](std::uint64_t item) {
-    return cells.has_key(pool(), static_cast<std::uint32_t>(item), key);
+    return cells.has_key(pool(), row_of(item), key);
   });
-  const auto row = static_cast<std::uint32_t>(stayed == cell.end() ? cell.back() : *stayed);
-  return cells.code_of(pool(), row, key);
+  return cells.code_of(pool(), row_of(stayed == cell.end() ? cell.back() : *stayed), key);
 }
 
 void LooseTree::finish_build(const RowPlan&, bool) noexcept {

@@ -213,8 +213,8 @@ bool SweepAndPrune::sort_strips(const RowPlan& plan, std::size_t first, std::siz
       SweepItem* const items = plan.items.data() + begin;
       for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t row = plan.regular[begin + i];
-        // A row that became empty in the meantime has no key.
-        items[i] = sweep_item(std::min(low[row], FLT_MAX), row);
+        // An object that was moved since has its key where it is now, one that is gone has none.
+        items[i] = sweep_item(std::min(low[row_now(plan, row)], FLT_MAX), row);
       }
       sort_by_keys({items, count}, items + plan.rows);
       for (std::size_t i = 0; i < count; ++i) {
