@@ -84,6 +84,7 @@ Status SpatialIndex::build() {
 }
 
 bool SpatialIndex::start_plan(Structure& structure) noexcept {
+  refreshes_before_plan_ = departures_.refreshes();
   return plan_.start(rows_, structure, spare_rows(structure), wanted_parts());
 }
 
@@ -181,7 +182,8 @@ bool SpatialIndex::plans_ahead() const noexcept {
 // order is to be fresh when it is taken.
 std::size_t SpatialIndex::planning_work(const Structure& structure) const noexcept {
   if (build_budget_ != 0) return build_budget_;
-  const std::size_t refreshes = std::max<std::size_t>(1, 2 * departures_.refreshes() / 5);
+  const std::size_t life = plan_.underway() ? refreshes_before_plan_ : departures_.refreshes();
+  const std::size_t refreshes = std::max<std::size_t>(1, 2 * life / 5);
   const std::size_t passes = (structure.plan_passes() + refreshes - 1) / refreshes;
   return passes * (plan_.underway() ? plan_.rows() : rows_.pool().rows());
 }
@@ -201,11 +203,14 @@ bool SpatialIndex::build_is_near() const noexcept {
   // What builds so often is not saved anything: each order would be worn when it is taken.
   const bool at_once = planning_work(*structure_) >= whole;
   if (departures_.refreshes() <= ahead || (at_once && build_budget_ == 0)) return false;
-  if (tail_growth_.in(ahead) > tail_limit() || wear_growth_.in(ahead) > most_wear()) return true;
+  const std::uint64_t grown = tail_growth_.in(ahead);
+  if (grown > tail_limit() || wear_growth_.in(ahead) > most_wear()) return true;
   if (!rows_.stale().all() || rows_.regions().regular == 0) return false;
+  const float due = kNearlyDue * static_cast<float>(tail_limit());
+  if (static_cast<float>(grown) > due) return true;
   const float leaving = departures_.share(rows_, *structure_, ahead);
   const float behind = static_cast<float>(tail()) + leaving * static_cast<float>(rows_.size());
-  return leaving > 0.0F && behind > kNearlyDue * static_cast<float>(tail_limit());
+  return leaving > 0.0F && behind > due;
 }
 
 void SpatialIndex::give_up_plan() noexcept {
