@@ -58,4 +58,40 @@ struct HilbertCurve {
   }
 };
 
+/// The same curve, `Levels` levels per step.
+template <unsigned N, unsigned Levels>
+struct HilbertSteps {
+  static constexpr unsigned kBits = N * Levels;  // of a cell, and of a place on the curve
+  static constexpr unsigned kAxisMask = (1U << Levels) - 1U;
+  static constexpr unsigned kPlaceMask = (1U << kBits) - 1U;
+
+  /// By state and cell, whose number on axis a stands above `Levels` * a bits: place on the curve,
+  /// and the state within, as next << kBits | place.
+  std::array<std::uint16_t, std::size_t{HilbertCurve<N>::kStates} << kBits> step{};
+
+  constexpr HilbertSteps() noexcept {
+    constexpr HilbertCurve<N> kCurve;
+    for (unsigned first = 0; first < HilbertCurve<N>::kStates; ++first) {
+      for (unsigned cell = 0; cell <= kPlaceMask; ++cell) {
+        unsigned state = first;
+        unsigned place = 0;
+        for (unsigned bit = Levels; bit-- > 0;) {
+          const unsigned one = kCurve.step[state << N | half_at(cell, bit)];
+          place = place << N | (one & ((1U << N) - 1U));
+          state = one >> N;
+        }
+        step[first << kBits | cell] = static_cast<std::uint16_t>(state << kBits | place);
+      }
+    }
+  }
+
+ private:
+  /// Which halves, one bit per axis, hold the cell on one level.
+  static constexpr unsigned half_at(unsigned cell, unsigned bit) noexcept {
+    unsigned half = 0;
+    for (unsigned a = 0; a < N; ++a) half |= (cell >> (Levels * a + bit) & 1U) << a;
+    return half;
+  }
+};
+
 }  // namespace winnow

@@ -30,6 +30,34 @@ double edge_of_cells(std::array<double, 3> range, std::size_t axes, double objec
   }
 }
 
+/// Bits of a place by axis, of cubes and of squares.
+constexpr unsigned kBits3 = 9;
+constexpr unsigned kBits2 = 14;
+
+/// Where a place of `Bits` bits on each of N axes comes along Hilbert's curve, found `Levels`
+/// levels at a time.
+template <unsigned N, unsigned Levels, unsigned Bits>
+std::uint32_t along_curve(const std::array<std::uint32_t, 3>& place) noexcept {
+  using Steps = HilbertSteps<N, Levels>;
+  static constexpr Steps kCurve;
+  constexpr unsigned kSteps = (Bits + Levels - 1) / Levels;
+  // Bits below the last: a place within the finest cell, which changes nothing above.
+  constexpr unsigned kBelow = kSteps * Levels - Bits;
+  std::uint64_t code = 0;
+  unsigned state = 0;
+  for (unsigned bit = kSteps * Levels; bit != 0;) {
+    bit -= Levels;
+    unsigned cell = 0;
+    for (unsigned a = 0; a < N; ++a) {
+      cell |= ((place[a] << kBelow) >> bit & Steps::kAxisMask) << (Levels * a);
+    }
+    const unsigned step = kCurve.step[state << Steps::kBits | cell];
+    code = code << Steps::kBits | (step & Steps::kPlaceMask);
+    state = step >> Steps::kBits;
+  }
+  return static_cast<std::uint32_t>(code >> (N * kBelow));
+}
+
 }  // namespace
 
 bool LooseOctreeCells::choose(const SceneSample& sample, std::size_t axes, float loose) noexcept {
@@ -60,7 +88,7 @@ bool LooseOctreeCells::choose(const SceneSample& sample, std::size_t axes, float
     range[axes_] = range[a];
     axis_[axes_++] = static_cast<std::uint32_t>(a);
   }
-  bits_ = axes_ == 3 ? 9 : 14;
+  bits_ = axes_ == 3 ? kBits3 : kBits2;
   reach_ = 0.5 * (static_cast<double>(loose) - 1.0);
   const double edge = edge_of_cells(range, axes_, cells);
   // So that every place has a finite scale, whatever the axis.
@@ -103,21 +131,11 @@ bool LooseOctreeCells::find_place(const BoundsPool& pool, std::size_t row,
 }
 
 std::uint32_t LooseOctreeCells::key_of(const BoundsPool& pool, std::size_t row) const noexcept {
-  static constexpr HilbertCurve<2> kSquare;
-  static constexpr HilbertCurve<3> kCube;
   std::array<std::uint32_t, 3> place{};
   const std::uint32_t level = level_of(pool, row);
   if (level == kNone || !find_place(pool, row, place)) return kNone;
-  std::uint32_t code = 0;
-  unsigned state = 0;
-  for (unsigned bit = bits_; bit-- > 0;) {
-    const unsigned cell =
-        (place[0] >> bit & 1U) | (place[1] >> bit & 1U) << 1U | (place[2] >> bit & 1U) << 2U;
-    const unsigned step =
-        axes_ == 3 ? kCube.step[state << 3U | cell] : kSquare.step[state << 2U | cell];
-    code = code << axes_ | (step & ((1U << axes_) - 1U));
-    state = step >> axes_;
-  }
+  const std::uint32_t code =
+      axes_ == 3 ? along_curve<3, 2, kBits3>(place) : along_curve<2, 4, kBits2>(place);
   return level << kLevelShift | code;
 }
 
