@@ -126,8 +126,8 @@ bool SpatialIndex::collect_misfits(bool all, std::size_t limit) noexcept {
 bool SpatialIndex::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
   if (rows.empty()) return true;
   // The same room until the next build: growing copies every column.
-  const std::size_t most = std::max(rows_.regions().ordered + tail_limit(), rows_.pool().rows());
-  if (!rows_.reserve_rows(most + rows.size())) return false;
+  const std::size_t needed = rows_.pool().rows() + rows.size();
+  if (!rows_.reserve_rows(std::max(rows_.regions().ordered + tail_limit(), needed))) return false;
   if (plan_.underway()) {
     for (const std::uint32_t row : rows) plan_.note_move(row, rows_.pool().ids()[row]);
   }
