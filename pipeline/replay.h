@@ -5,6 +5,7 @@
 #include <winnow/core/status.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/shape_pool.h>
 
@@ -82,6 +83,8 @@ class WINNOW_API RecordingPlayer {
   [[nodiscard]] const ShapePool* shapes(std::size_t world) const noexcept;
   /// Its composite shapes; null where there is none.
   [[nodiscard]] const CompositePool* composites(std::size_t world) const noexcept;
+  /// What the last `collide` of a scene answered; null where there is no scene.
+  [[nodiscard]] const Contacts* contacts(std::size_t world) const noexcept;
 
  private:
   std::pmr::memory_resource* memory_;

@@ -5,7 +5,9 @@
 #include "bench/contenders/partitions.h"
 #include "bench/draw/page.h"
 #include "bench/draw/picture.h"
+#include "bench/recordings/recording.h"
 
+#include <algorithm>
 #include <iostream>
 #include <limits>
 
@@ -27,7 +29,7 @@ struct Draw {
   int run();
 
  private:
-  [[nodiscard]] Json draw_frames(FrameSource& source) const;
+  [[nodiscard]] Json draw_frames(const NamedScene& scene, FrameSource& source) const;
 };
 
 void Draw::add_options(CLI::App& app) {
@@ -49,7 +51,7 @@ void Draw::add_options(CLI::App& app) {
   add_json_option(app, json);
 }
 
-Json Draw::draw_frames(FrameSource& source) const {
+Json Draw::draw_frames(const NamedScene& scene, FrameSource& source) const {
   constexpr std::size_t kOfEndless = 1000;  // built-in scenes go on for ever
   Stage stage(partition, source);
   while (stage.frame() < frame) {
@@ -57,11 +59,14 @@ Json Draw::draw_frames(FrameSource& source) const {
     throw ArgumentError("--frame: the last frame is " + std::to_string(stage.frame()));
   }
   constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
-  const std::size_t there_are = target.named().is_recording() ? kAll : kOfEndless;
+  const std::size_t there_are = scene.is_recording() ? kAll : kOfEndless;
   const std::size_t most = frames == 0 ? there_are : frames;
+  std::vector<std::vector<RecordedContact>> contacts;
+  if (scene.is_recording()) contacts = read_contacts(target.name);
   Json pictures = Json::array();
   do {
-    pictures.push_back(Picture(source.name(), stage, options).data());
+    contacts.resize(std::max(contacts.size(), stage.frame() + 1));
+    pictures.push_back(Picture(source.name(), stage, options, contacts[stage.frame()]).data());
   } while (pictures.size() < most && stage.advance());
   return pictures;
 }
@@ -75,7 +80,7 @@ int Draw::run() {
     throw ArgumentError("--partition: " + partition + " takes too long on more than " +
                         grouped(most) + " objects");
   }
-  const Json pictures = draw_frames(*source);
+  const Json pictures = draw_frames(scene, *source);
   const std::size_t bytes = write_page(out, pictures);
   Json counts = pictures.front()["counts"];
   if (pictures.size() > 1) counts["frames"] = pictures.size();
@@ -99,7 +104,8 @@ Command add_draw(CLI::App& app) {
   return command<Draw>(
       app, "draw",
       "Writes frames as an HTML page that can be turned, moved and zoomed: objects, the "
-      "partition's structure, overlapping pairs, and what rays and boxes hit.");
+      "partition's structure, overlapping pairs, what rays and boxes hit, and the contacts of a "
+      "scene that a program recorded.");
 }
 
 }  // namespace winnow::bench

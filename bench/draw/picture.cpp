@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 namespace winnow::bench {
@@ -24,7 +25,8 @@ std::string column(const std::vector<T>& values) {
 
 }  // namespace
 
-Picture::Picture(std::string scene, const Stage& stage, const PictureOptions& options)
+Picture::Picture(std::string scene, const Stage& stage, const PictureOptions& options,
+                 std::span<const RecordedContact> contacts)
     : scene_(std::move(scene)),
       frame_(stage.frame()),
       partition_(stage.partition().name()),
@@ -39,6 +41,25 @@ Picture::Picture(std::string scene, const Stage& stage, const PictureOptions& op
   choose_objects(options.most_objects);
   for (const ObjectId id : drawn_) data_.push_back(partition.client_data_of(id));
   choose_pairs(stage.pairs());
+  draw_contacts(contacts);
+}
+
+// A small box at each point and its normal from there, as long as half of a usual object.
+void Picture::draw_contacts(std::span<const RecordedContact> contacts) {
+  if (contacts.empty()) return;
+  std::vector<float> edges;
+  for (const Aabb& box : sketch_.objects()) {
+    const Vec3f size = box.max - box.min;
+    edges.push_back(std::min({size.x(), size.y(), size.z()}));
+  }
+  const auto middle = edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2);
+  std::nth_element(edges.begin(), middle, edges.end());
+  const float length = std::isfinite(*middle) && *middle > 0.0F ? 0.5F * *middle : 1.0F;
+  const Vec3f half = Vec3f(0.06F, 0.06F, 0.06F) * length;
+  for (const RecordedContact& contact : contacts) {
+    sketch_.box({contact.at - half, contact.at + half}, kContactColour);
+    sketch_.line(contact.at, contact.at + contact.normal * length, kContactColour);
+  }
 }
 
 void Picture::choose_objects(std::size_t most) {

@@ -4,6 +4,7 @@
 #include "bench/draw/questions.h"
 #include "bench/draw/sketch.h"
 #include "bench/draw/stage.h"
+#include "bench/recordings/recording.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -23,7 +24,9 @@ struct PictureOptions {
 /// One frame of a scene in one partition, with everything that the page shows of it.
 class Picture {
  public:
-  Picture(std::string scene, const Stage& stage, const PictureOptions& options);
+  /// `contacts` are those of the frame.
+  Picture(std::string scene, const Stage& stage, const PictureOptions& options,
+          std::span<const RecordedContact> contacts = {});
 
   /// What is in the picture, in numbers: what the tool prints and what the page must show.
   [[nodiscard]] Json counts() const;
@@ -33,6 +36,7 @@ class Picture {
  private:
   void choose_objects(std::size_t most);
   void choose_pairs(const std::vector<Pair>& pairs);
+  void draw_contacts(std::span<const RecordedContact> contacts);
   [[nodiscard]] std::string places_of(std::span<const ObjectId> ids) const;
   [[nodiscard]] Json objects_data() const;
   [[nodiscard]] Json structure_data() const;

@@ -15,6 +15,13 @@ class ProgramReader {
   ProgramReader(const std::string& path, std::span<const std::byte> bytes)
       : path_(path), bytes_(bytes) {}
 
+  std::vector<std::vector<RecordedContact>> read_contacts() {
+    play_once();
+    std::vector<std::vector<RecordedContact>> frames;
+    each_frame([&](const RecordingPlayer& player) { frames.push_back(contacts_of(player)); });
+    return frames;
+  }
+
   Recording read() {
     recording_.scene = std::filesystem::path(path_).stem().string();
     recording_.object_type = "box";
@@ -59,15 +66,51 @@ class ProgramReader {
     return 0;
   }
 
-  void take_frames() {
+  /// Calls take(player) at the end of each frame that has objects.
+  template <typename Take>
+  void each_frame(Take&& take) const {
     RecordingPlayer player(bytes_);
     for (Played played = player.step(); played != Played::end; played = player.step()) {
-      if (played != frame_end_ || size_of(player, world_) == 0) continue;
+      if (played == frame_end_ && size_of(player, world_) != 0) take(player);
+    }
+  }
+
+  void take_frames() {
+    each_frame([&](const RecordingPlayer& player) {
       std::vector<Aabb>& frame = recording_.frames.emplace_back();
       if (recording_.frames.size() > 1) {
         frame.resize((recording_.frames.end() - 2)->size());
       }
       take_boxes(player, frame);
+    });
+  }
+
+  [[nodiscard]] std::vector<RecordedContact> contacts_of(const RecordingPlayer& player) const {
+    std::vector<RecordedContact> found;
+    const Contacts* const contacts = player.contacts(world_);
+    if (contacts == nullptr || contacts->level() != ContactLevel::manifold) return found;
+    for (std::size_t pair = 0; pair < contacts->size(); ++pair) {
+      BodyDefinition body;
+      // One that was removed since.
+      if (player.scene(world_)->body(contacts->a()[pair], body) != Status::ok) continue;
+      const std::uint32_t last = contacts->manifold_first()[pair + 1];
+      for (std::uint32_t m = contacts->manifold_first()[pair]; m < last; ++m) {
+        take_points(*contacts, m, body.pose, found);
+      }
+    }
+    return found;
+  }
+
+  static void take_points(const Contacts& contacts, std::uint32_t manifold, const Pose& pose,
+                          std::vector<RecordedContact>& found) {
+    const std::uint32_t last = contacts.point_first()[manifold + 1];
+    for (std::uint32_t p = contacts.point_first()[manifold]; p < last; ++p) {
+      const ContactPoint point = contacts.contact(p);
+      RecordedContact& contact = found.emplace_back();
+      for (int axis = 0; axis < 3; ++axis) {
+        contact.at[axis] = static_cast<float>(pose.position[axis] + point.position[axis]);
+        contact.normal[axis] = static_cast<float>(contacts.normal(axis)[manifold]);
+      }
     }
   }
 
@@ -147,6 +190,11 @@ class ProgramReader {
 
 Recording read_program(const std::string& path, std::span<const std::byte> bytes) {
   return ProgramReader(path, bytes).read();
+}
+
+std::vector<std::vector<RecordedContact>> read_program_contacts(const std::string& path,
+                                                                std::span<const std::byte> bytes) {
+  return ProgramReader(path, bytes).read_contacts();
 }
 
 }  // namespace winnow::bench

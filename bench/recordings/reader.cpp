@@ -172,6 +172,15 @@ Recording read_recording(const std::string& path) {
   }
 }
 
+std::vector<std::vector<RecordedContact>> read_contacts(const std::string& path) {
+  try {
+    if (!is_program(path)) return {};
+    return read_program_contacts(path, all_of(*open_bytes(path)));
+  } catch (const std::bad_alloc&) {
+    throw RecordingError(path + ": does not fit into memory");
+  }
+}
+
 std::vector<std::string> recordings_in(const std::string& folder) {
   std::vector<std::string> files;
   std::error_code absent;

@@ -61,6 +61,21 @@ struct Recording {
 /// What a program recorded, as frames of boxes: its calls are played twice. Throws RecordingError.
 [[nodiscard]] Recording read_program(const std::string& path, std::span<const std::byte> bytes);
 
+/// A point at which two bodies of a scene touch.
+struct RecordedContact {
+  Vec3f at;      ///< halfway between the surfaces
+  Vec3f normal;  ///< unit, from one body to the other
+};
+
+/// The contacts that a program was last told of by the end of each frame of `read_recording`, with
+/// bodies where they stand there: of a scene asked at level manifold. No frames of an .aabbs file.
+/// Throws RecordingError.
+[[nodiscard]] std::vector<std::vector<RecordedContact>> read_contacts(const std::string& path);
+
+/// The same of what a program recorded.
+[[nodiscard]] std::vector<std::vector<RecordedContact>> read_program_contacts(
+    const std::string& path, std::span<const std::byte> bytes);
+
 /// The .aabbs and .winnow files of a folder, .xz or not, by name; none if the folder is not there.
 [[nodiscard]] std::vector<std::string> recordings_in(const std::string& folder);
 

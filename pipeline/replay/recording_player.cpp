@@ -199,6 +199,11 @@ const CompositePool* RecordingPlayer::composites(std::size_t world) const noexce
   return one != nullptr && one->composites ? &*one->composites : nullptr;
 }
 
+const Contacts* RecordingPlayer::contacts(std::size_t world) const noexcept {
+  const ReplayedWorld* const one = world < worlds() ? state_->worlds[world] : nullptr;
+  return one != nullptr && one->scene ? &one->contacts : nullptr;
+}
+
 const ShapePool* RecordingPlayer::shapes(std::size_t world) const noexcept {
   const ReplayedWorld* const one = world < worlds() ? state_->worlds[world] : nullptr;
   return one != nullptr && one->shapes ? &*one->shapes : nullptr;

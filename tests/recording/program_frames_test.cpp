@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <unistd.h>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -78,6 +79,36 @@ TEST_F(ProgramFrames, of_scenes_are_boxes_of_bodies) {
   EXPECT_EQ(recording.frames.size(), 5U);
   EXPECT_EQ(recording.objects(), 38U);
   EXPECT_EQ(recording.program->differences, 0U);
+}
+
+TEST_F(ProgramFrames, have_the_contacts_of_a_scene_where_its_bodies_are) {
+  {
+    Recorder recorder(path_.c_str());
+    ShapePool shapes;
+    const ShapeId box = shapes.add(BoxShape{{0.5, 0.5, 0.5}});
+    RecordedScene scene(recorder, shapes);
+    Key upper;
+    Key lower;
+    EXPECT_EQ(scene.add({.shape = box, .pose = Pose::at(10, 20, 30)}, lower), Status::ok);
+    EXPECT_EQ(scene.add({.shape = box, .pose = Pose::at(10, 20, 30.9)}, upper), Status::ok);
+    recorder.end_frame();
+    Contacts contacts;
+    EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    recorder.end_frame();
+    EXPECT_EQ(scene.collide(ContactLevel::boolean, contacts), Status::ok);
+    recorder.end_frame();
+  }
+  const auto frames = bench::read_contacts(path_);
+  ASSERT_EQ(frames.size(), bench::read_recording(path_).frames.size());
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_TRUE(frames[0].empty() && frames[2].empty());
+  ASSERT_EQ(frames[1].size(), 4U);
+  for (const bench::RecordedContact& contact : frames[1]) {
+    EXPECT_NEAR(std::abs(contact.at.x() - 10), 0.5, 1e-5);
+    EXPECT_NEAR(std::abs(contact.at.y() - 20), 0.5, 1e-5);
+    EXPECT_NEAR(contact.at.z(), 30.45, 1e-5);
+    EXPECT_NEAR(std::abs(contact.normal.z()), 1.0, 1e-6);
+  }
 }
 
 TEST_F(ProgramFrames, of_what_is_damaged_are_none) {
