@@ -44,7 +44,7 @@ Picture::Picture(std::string scene, const Stage& stage, const PictureOptions& op
   draw_contacts(contacts);
 }
 
-// A small box at each point and its normal from there, as long as half of a usual object.
+// A line from each point along its normal, half as long as a usual object is thick.
 void Picture::draw_contacts(std::span<const RecordedContact> contacts) {
   if (contacts.empty()) return;
   std::vector<float> edges;
@@ -55,10 +55,9 @@ void Picture::draw_contacts(std::span<const RecordedContact> contacts) {
   const auto middle = edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2);
   std::nth_element(edges.begin(), middle, edges.end());
   const float length = std::isfinite(*middle) && *middle > 0.0F ? 0.5F * *middle : 1.0F;
-  const Vec3f half = Vec3f(0.06F, 0.06F, 0.06F) * length;
   for (const RecordedContact& contact : contacts) {
-    sketch_.box({contact.at - half, contact.at + half}, kContactColour);
-    sketch_.line(contact.at, contact.at + contact.normal * length, kContactColour);
+    contact_ends_.push_back(contact.at);
+    contact_ends_.push_back(contact.at + contact.normal * length);
   }
 }
 
@@ -123,6 +122,7 @@ Json Picture::counts() const {
           {"pairs", all_pairs_},
           {"reported", reported_},
           {"pairs_drawn", pairs_.size() / 2},
+          {"contacts", contact_ends_.size() / 2},
           {"rays", rays_.size()},
           {"rays_that_hit", rays_that_hit},
           {"ray_hits", ray_hits},
@@ -135,6 +135,7 @@ Json Picture::data() const {
   Json data{{"counts", counts()}};
   data["objects"] = objects_data();
   data["pairs"] = column(pairs_);
+  data["contacts"] = column(contact_ends_);
   data["structure"] = structure_data();
   data.update(questions_data());
   return data;

@@ -56,6 +56,7 @@ class Picture {
   std::vector<ClientData> data_;      // of those
   std::vector<std::uint32_t> place_;  // of each object in drawn_
   std::vector<std::uint32_t> pairs_;  // two places a pair
+  std::vector<Vec3f> contact_ends_;   // of two ends a contact, the point first
 };
 
 }  // namespace winnow::bench

@@ -13,7 +13,6 @@ Sketch::Sketch() {
   for (std::size_t depth = 0; depth < kNodeColours.size(); ++depth) {
     layers_.push_back({"nodes, depth " + std::to_string(depth), node_colour(depth), {}, {}});
   }
-  layers_.push_back({"contacts", kContactColour, {}, {}});
   layers_.push_back({"other", Colour{}, {}, {}});
 }
 

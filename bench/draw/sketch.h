@@ -9,9 +9,6 @@
 
 namespace winnow::bench {
 
-/// Points at which bodies touch; partitions draw in none like it.
-inline constexpr Colour kContactColour{220, 50, 32, 255};
-
 /// Boxes and lines of one kind, as the page shows or hides them together.
 struct SketchLayer {
   std::string name;

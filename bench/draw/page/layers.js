@@ -10,6 +10,7 @@ const kColours = {
   hit: [213, 94, 0],
   box: [204, 121, 167],
   chosen: [255, 255, 255],
+  contact: [220, 50, 32],
 };
 
 const kScene = new THREE.Scene();
@@ -77,6 +78,19 @@ function addPairs() {
     id: "pairs_drawn", group: "Objects", name: "pairs", colour: kColours.pair, count,
     mark: "line", shown: count <= 100000,
     meshes: withGhost(wideLines(ends, kColours.pair, 1, 1.6, 5), "lines", thinned(0.8, count)),
+  });
+}
+
+function addContacts() {
+  const ends = placedColumn(floatsOf(now.picture.contacts));
+  const points = new Float32Array(ends.length / 2);
+  for (let i = 0; i < points.length; ++i) points[i] = ends[6 * Math.floor(i / 3) + i % 3];
+  const colour = kColours.contact;
+  const count = ends.length / 6;
+  addLayer({
+    id: "contacts", group: "Objects", name: "contacts", colour, count, mark: "line",
+    meshes: [...withGhost(wideLines(ends, colour, 1, 2.2, 7), "lines", 0.6),
+             dots(points, colour, 7, 8)],
   });
 }
 
@@ -215,6 +229,7 @@ function removeLayers() {
 function addLayers() {
   addObjects();
   addPairs();
+  addContacts();
   addStructure();
   addRays();
   addQuestionBoxes();

@@ -12,6 +12,7 @@ function writeCaption() {
   const paired = c.pairs_drawn < c.pairs ? ` (${grouped(c.pairs_drawn)} drawn)` : "";
   const untested = c.reported > c.pairs ? ` of ${grouped(c.reported)} reported` : "";
   lines.push(`${plural(c.objects, "object")}${some}, ${plural(c.pairs, "pair")}${untested}${paired}`);
+  if (c.contacts) lines.push(`${plural(c.contacts, "point")} of contact`);
   lines.push(structureText(c));
   if (c.rays) {
     lines.push(`${grouped(c.rays_that_hit)} of ${plural(c.rays, "ray")} hit, ` +

@@ -1,5 +1,5 @@
 # What `winnow draw` says is in a picture is what a browser draws of it.
-# cmake -DWINNOW=<the tool> -DWORK=<folder> -P pages.cmake
+# cmake -DWINNOW=<the tool> -DRECORD_PILE=<record_pile> -DWORK=<folder> -P pages.cmake
 #
 # Opens each page in headless Chromium with a software renderer and asks the page how much went to
 # the graphics card, how many pixels came back coloured, and what comes of switching layers and of
@@ -37,7 +37,7 @@ endfunction()
 # expect_same(<name> <what was drawn> <what the tool counted>): every number of the counts that
 # tells of something drawn.
 function(expect_same name drawn counts)
-  foreach(key objects_drawn pairs_drawn structure_lines rays rays_that_hit ray_hits boxes inside
+  foreach(key objects_drawn pairs_drawn contacts structure_lines rays rays_that_hit ray_hits boxes inside
               crossing)
     string(JSON expected GET "${counts}" ${key})
     string(JSON got ERROR_VARIABLE missing GET "${drawn}" ${key})
@@ -100,6 +100,20 @@ string(JSON frames GET "${report}" frames)
 string(JSON wrong GET "${report}" wrongFrames)
 if(NOT frames EQUAL 12 OR NOT wrong EQUAL 0)
   message(FATAL_ERROR "played: ${frames} frames of 12, ${wrong} of them are not what was drawn")
+endif()
+
+# What a program recorded of a scene: contacts in each frame.
+execute_process(COMMAND ${RECORD_PILE} ${WORK}/pile.winnow RESULT_VARIABLE status)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "the program was not recorded")
+endif()
+check(contacts ${WORK}/pile.winnow --frames 0)
+file(READ ${WORK}/contacts.json counts)
+string(JSON points GET "${counts}" contacts)
+open(contacts report)
+string(JSON wrong GET "${report}" wrongFrames)
+if(points LESS 100 OR NOT wrong EQUAL 0)
+  message(FATAL_ERROR "contacts: ${points} points, ${wrong} frames are not what was drawn")
 endif()
 
 check(one uniform --objects 1 --partition BoundsNSquared)
