@@ -54,13 +54,6 @@ if(WINNOW_TBB)
   set(winnow_tbb TBB::tbb)
 endif()
 
-# Hulls from points, where it is installed.
-find_package(Qhull QUIET CONFIG)
-set(WINNOW_WITH_QHULL OFF)
-if(TARGET Qhull::qhull_r)
-  set(WINNOW_WITH_QHULL ON)
-endif()
-
 # Only the headers: the CMake target of Debian's xsimd links a library that does not exist there.
 find_path(WINNOW_XSIMD_INCLUDE_DIR xsimd/xsimd.hpp)
 if(NOT WINNOW_XSIMD_INCLUDE_DIR)
@@ -89,8 +82,14 @@ elseif(WINNOW_SANITIZER STREQUAL "fuzzer")
       -fno-omit-frame-pointer)
 elseif(WINNOW_SANITIZER STREQUAL "thread")
   set(winnow_sanitize -fsanitize=thread)
+elseif(WINNOW_SANITIZER STREQUAL "memory")
+  set(winnow_sanitize -fsanitize=memory -fsanitize-memory-track-origins
+      -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  # The standard library is not built for it: what of it is in headers is compiled here, too, and
+  # streams and strings are not taken from the library.
+  target_compile_definitions(winnow_flags INTERFACE _GLIBCXX_EXTERN_TEMPLATE=0)
 elseif(NOT WINNOW_SANITIZER STREQUAL "")
-  message(FATAL_ERROR "WINNOW_SANITIZER is empty, address, fuzzer or thread")
+  message(FATAL_ERROR "WINNOW_SANITIZER is empty, address, fuzzer, memory or thread")
 endif()
 target_compile_options(winnow_flags INTERFACE ${winnow_sanitize})
 target_link_options(winnow_flags INTERFACE ${winnow_sanitize})
@@ -162,7 +161,7 @@ function(winnow_whole_library)
     target_compile_definitions(winnow INTERFACE WINNOW_SHARED=1)
     target_include_directories(winnow INTERFACE $<BUILD_INTERFACE:${WINNOW_INCLUDE_DIR}>
                                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-    target_link_libraries(winnow PRIVATE winnow_flags ${winnow_tbb} $<TARGET_NAME_IF_EXISTS:Qhull::qhull_r>)
+    target_link_libraries(winnow PRIVATE winnow_flags ${winnow_tbb})
   endif()
   add_library(winnow::winnow ALIAS winnow)
 endfunction()

@@ -53,20 +53,6 @@ void set_box(CoreVertices& core, const BoxShape& box) noexcept {
   }
 }
 
-/// A direction in double, its largest component about 1.
-struct RoundedDirection {
-  explicit RoundedDirection(const ExactVector& direction) noexcept {
-    int top = std::numeric_limits<int>::min();
-    for (const Dyadic& x : direction.x) {
-      if (x.sign() != 0) top = std::max(top, x.highest_bit());
-    }
-    for (int k = 0; k < 3; ++k) {
-      d[k] = direction.x[k].sign() == 0 ? 0.0 : direction.x[k].scaled(-top);
-    }
-  }
-  double d[3];
-};
-
 struct Bounds {
   double lower;
   double upper;
@@ -210,8 +196,9 @@ CoreDifference::CoreDifference(const CoreVertices& core_a, const Pose& pose_a,
   core_b.include_lengths(lengths);
   for (const Dyadic& x : between.x) lengths.include(x);
   constexpr int kSums = 6;
-  in_range_ =
-      fits_dyadic(6, rotation_bits(pose_a) + rotation_bits(pose_b) + lengths.bits() + kSums);
+  const int turns = rotation_bits(pose_a) + rotation_bits(pose_b);
+  in_range_ = fits_dyadic(6, turns + lengths.bits() + kSums);
+  heights_in_range_ = fits_dyadic(1, 4 * turns + lengths.bits() + kSums);
 }
 
 void CoreDifference::support(const ExactVector& direction, DifferenceVertex& vertex,

@@ -67,7 +67,14 @@ class CoreDifference {
 
   /// True if polynomials of degree 6 in the vertices and the roundings fit a Dyadic.
   [[nodiscard]] bool in_range() const noexcept { return in_range_; }
+  /// True if those of degree one do, times products of four rotations: heights along products of
+  /// two axes.
+  [[nodiscard]] bool heights_in_range() const noexcept { return heights_in_range_; }
   [[nodiscard]] const Dyadic& scale() const noexcept { return scale_; }
+
+  /// Axis `k` of the frame of a, of b, in the world, times a positive number.
+  [[nodiscard]] ExactVector axis_a(int k) const noexcept { return column(turn_a_, k); }
+  [[nodiscard]] ExactVector axis_b(int k) const noexcept { return column(turn_b_, k); }
 
   /// The vertex farthest along `direction` and its height: the product with the direction.
   void support(const ExactVector& direction, DifferenceVertex& vertex,
@@ -90,6 +97,7 @@ class CoreDifference {
   ExactVector offset_;  // of b from a, scaled
   Dyadic scale_;
   bool in_range_;
+  bool heights_in_range_;
 };
 
 }  // namespace winnow

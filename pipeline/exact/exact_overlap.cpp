@@ -125,6 +125,52 @@ namespace {
   return half_spaces_verdict(shape, half_space_pose, tables.half_spaces[other.index()], other_pose);
 }
 
+/// The least height of the difference of two rounded cores along the directions that it is shown,
+/// both ways: below zero it proves them apart.
+class LeastHeight {
+ public:
+  LeastHeight(const CoreDifference& difference, const Dyadic& rounding) noexcept
+      : difference_(difference), rounding_(rounding) {}
+
+  void look(const ExactVector& direction) noexcept {
+    if (is_zero(direction)) return;
+    const Dyadic round = rounding_ * difference_.scale() * root_above(dot(direction, direction));
+    for (const ExactVector& way : {direction, -direction}) {
+      const Dyadic height = difference_.height_bound(way) + round;
+      if (any_ && compare(height, least_) >= 0) continue;
+      any_ = true;
+      least_ = height;
+    }
+  }
+  [[nodiscard]] int sign() const noexcept { return any_ ? least_.sign() : 1; }
+
+ private:
+  const CoreDifference& difference_;
+  const Dyadic& rounding_;
+  Dyadic least_;
+  bool any_ = false;
+};
+
+/// Pairs whose numbers span too far for the search, by planes alone: those that `direction` and the
+/// axes of both frames are normal to, and products of two axes. They decide all of boxes without
+/// rounding (Gottschalk, "Separating axis theorem", 1996), flat ones included, which are what is
+/// left of thick ones; of others only that they are apart.
+[[nodiscard]] ExactVerdict verdict_by_planes(const CoreDifference& difference,
+                                             const Dyadic& rounding, const ExactVector& direction,
+                                             bool are_boxes) noexcept {
+  if (!difference.heights_in_range()) return ExactVerdict::undecided;
+  LeastHeight least(difference, rounding);
+  least.look(direction);
+  for (int i = 0; i < 3; ++i) {
+    least.look(difference.axis_a(i));
+    least.look(difference.axis_b(i));
+    for (int k = 0; k < 3; ++k) least.look(cross(difference.axis_a(i), difference.axis_b(k)));
+  }
+  if (least.sign() < 0) return ExactVerdict::separated;
+  if (!are_boxes || rounding.sign() != 0) return ExactVerdict::undecided;
+  return verdict_of(-least.sign());
+}
+
 /// Cylinders and cones, between a bound from outside along the direction given and polygons
 /// inscribed in their discs: decided where one of them suffices, or both meet.
 [[nodiscard]] ExactVerdict bounded_verdict(const CoreDifference& difference, const Dyadic& rounding,
@@ -150,9 +196,12 @@ ExactVerdict exact_overlap(const ShapeTables& tables, ShapeId a, const Pose& pos
     return ExactVerdict::undecided;
   }
   const CoreDifference difference(core_a, pose_a, core_b, pose_b);
-  if (!difference.in_range()) return ExactVerdict::undecided;
   const ExactVector direction = first_direction(axis);
   const Dyadic rounding = Dyadic(core_a.rounding) + core_b.rounding;
+  if (!difference.in_range()) {
+    const bool are_boxes = a.kind() == ShapeKind::box && b.kind() == ShapeKind::box;
+    return verdict_by_planes(difference, rounding, direction, are_boxes);
+  }
   if (core_a.has_discs || core_b.has_discs) {
     return bounded_verdict(difference, rounding, direction);
   }

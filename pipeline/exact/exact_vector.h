@@ -20,6 +20,10 @@ struct ExactVector {
   return {{a.x[0] - b.x[0], a.x[1] - b.x[1], a.x[2] - b.x[2]}};
 }
 
+[[nodiscard]] inline ExactVector operator+(const ExactVector& a, const ExactVector& b) noexcept {
+  return {{a.x[0] + b.x[0], a.x[1] + b.x[1], a.x[2] + b.x[2]}};
+}
+
 [[nodiscard]] inline ExactVector operator-(const ExactVector& a) noexcept {
   return {{-a.x[0], -a.x[1], -a.x[2]}};
 }
@@ -41,9 +45,27 @@ struct ExactVector {
   return a.x[0].sign() == 0 && a.x[1].sign() == 0 && a.x[2].sign() == 0;
 }
 
+/// A direction in double, its largest component about 1.
+struct RoundedDirection {
+  explicit RoundedDirection(const ExactVector& direction) noexcept {
+    int top = std::numeric_limits<int>::min();
+    for (const Dyadic& x : direction.x) {
+      if (x.sign() != 0) top = std::max(top, x.highest_bit());
+    }
+    for (int k = 0; k < 3; ++k) {
+      d[k] = direction.x[k].sign() == 0 ? 0.0 : direction.x[k].scaled(-top);
+    }
+  }
+  double d[3];
+};
+
 struct ExactMatrix {
   ExactVector row[3];
 };
+
+[[nodiscard]] inline ExactVector column(const ExactMatrix& m, int k) noexcept {
+  return {{m.row[0].x[k], m.row[1].x[k], m.row[2].x[k]}};
+}
 
 [[nodiscard]] inline ExactVector operator*(const ExactMatrix& m, const ExactVector& v) noexcept {
   return {{dot(m.row[0], v), dot(m.row[1], v), dot(m.row[2], v)}};

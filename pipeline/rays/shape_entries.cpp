@@ -63,6 +63,18 @@ struct ConeCore {
     if (along > slant) return clearance(p, rho - radius, p.z() + half_length);
     return clearance(p, cosine * height, sine * height);
   }
+
+  /// The normal of the base or the side, at a point of its surface that is entered along
+  /// `direction`.
+  [[nodiscard]] Vector3d outward(const Vector3d& p, const Vector3d& direction) const noexcept {
+    const double rho = std::hypot(p.x(), p.y());
+    const double across = rho > 0.0 ? cosine / rho : 0.0;
+    const Vector3d side(across * p.x(), across * p.y(), sine);
+    const Vector3d base(0.0, 0.0, -1.0);
+    if (direction.z() <= 0.0) return side;
+    if (!(side.dot(direction) < 0.0)) return base;
+    return cosine * rho - sine * (half_length - p.z()) >= -half_length - p.z() ? side : base;
+  }
 };
 
 /// Two balls on the z axis, neither within the other, and the cone that touches both: negative
@@ -255,6 +267,17 @@ FirstEntry enter(const LocalRay& ray, const ConeShape& cone, double scale) noexc
   if (radius == 0.0) return enter_axis(ray, half, rounding);
   FirstEntry entry;
   const ConeCore core(radius, half);
+  // Along a needle or a plate the squares of heights are lost beside those of lengths.
+  constexpr double kPlump = 0.0625;
+  if (rounding == 0.0 && std::min(core.sine, core.cosine) < kPlump) {
+    const RaySpan around = common(tube_span(ray, radius), slab_span(ray, -half, half));
+    if (around.is_empty()) return entry;
+    meet_rounded(ray, core, kGrazing, std::max(around.in, ray.low), entry);
+    if (entry.found && !entry.inside) {
+      entry.normal = core.outward(ray.at(entry.t), ray.direction);
+    }
+    return entry;
+  }
   if (rounding == 0.0) {
     const RaySpan sides =
         half > 0.0 ? ConeCrossing(ray, core).span(ray.speed) : tube_span(ray, radius);

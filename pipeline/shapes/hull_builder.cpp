@@ -1,4 +1,6 @@
 #include "pipeline/shapes/hull_builder.h"
+#include "pipeline/exact/exact_vector.h"
+#include "pipeline/shapes/accurate_cross.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -29,7 +31,7 @@ struct FacePlane {
   const Eigen::Vector3d origin = points[loop[0]];
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
-    sum += (points[loop[i]] - origin).cross(points[loop[i + 1]] - origin);
+    sum += accurate_cross(points[loop[i]] - origin, points[loop[i + 1]] - origin);
   }
   FacePlane plane;
   const double area = sum.norm();
@@ -103,7 +105,7 @@ class Merge {
     for (const std::uint32_t seed : by_area) {
       if (group_[seed] == kUnset) absorb(seed, groups++, planes, size * kCoplanar);
     }
-    return rebuild(groups);
+    return rebuild(groups, size * kCoplanar);
   }
 
  private:
@@ -145,8 +147,8 @@ class Merge {
     });
   }
 
-  // The outlines of the groups, without vertices between only two of them.
-  Status rebuild(std::uint32_t groups) {
+  // The outlines of the groups, without vertices on the line between two corners.
+  Status rebuild(std::uint32_t groups, double tolerance) {
     std::pmr::vector<Numbers<std::uint32_t>> next(groups, memory_);
     Numbers<std::uint32_t> meets(memory_);
     for (std::size_t f = 0; f < surface_.faces(); ++f) {
@@ -159,34 +161,74 @@ class Merge {
         ++meets[from];
       }
     }
-    // A polygon has two sides alone: all of its vertices lie between only two faces.
-    const bool flat = groups == 2;
     HullSurface merged(memory_);
+    std::pmr::vector<std::uint32_t> loop(memory_);
     for (const auto& outline : next) {
-      if (!follow(outline, meets, flat, merged)) return Status::invalid_shape;
+      if (!follow(outline, loop) || !add_corners(loop, meets, tolerance, merged)) {
+        return Status::invalid_shape;
+      }
     }
     surface_ = std::move(merged);
     return Status::ok;
   }
 
-  static bool follow(const Numbers<std::uint32_t>& outline, const Numbers<std::uint32_t>& meets,
-                     bool flat, HullSurface& merged) {
+  // The vertices of an outline in their order.
+  static bool follow(const Numbers<std::uint32_t>& outline, std::pmr::vector<std::uint32_t>& loop) {
+    loop.clear();
     if (outline.empty()) return false;
     // The smallest vertex begins, so that the result does not depend on the order of a hash.
     std::uint32_t start = kUnset;
     for (const auto& [from, to] : outline) start = std::min(start, from);
-    std::size_t steps = 0;
     std::uint32_t at = start;
-    const std::size_t before = merged.loops.size();
     do {
-      if (flat || meets.at(at) != 2) merged.loops.push_back(at);
+      loop.push_back(at);
       const auto found = outline.find(at);
       if (found == outline.end()) return false;
       at = found->second;
-    } while (at != start && ++steps <= outline.size());
-    if (at != start || steps + 1 != outline.size()) return false;
+    } while (at != start && loop.size() <= outline.size());
+    return at == start && loop.size() == outline.size() && loop.size() >= 3;
+  }
+
+  // The outline as a face of `merged`. Where at least three faces meet there is a corner; vertices
+  // of two faces alone stay unless all from corner to corner lie on a line. False if less than a
+  // triangle is left.
+  bool add_corners(std::span<const std::uint32_t> loop, const Numbers<std::uint32_t>& meets,
+                   double tolerance, HullSurface& merged) const {
+    const std::size_t count = loop.size();
+    std::size_t first = 0;
+    while (first < count && meets.at(loop[first]) == 2) ++first;
+    std::pmr::vector<bool> stays(count, true, memory_);
+    for (std::size_t i = first; first < count && i < first + count;) {
+      std::size_t end = i + 1;
+      while (meets.at(loop[end % count]) == 2) ++end;
+      if (end < i + count && is_straight(loop, i, end, tolerance)) {
+        for (std::size_t k = i + 1; k < end; ++k) stays[k % count] = false;
+      }
+      i = end;
+    }
+    const std::size_t before = merged.loops.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (stays[i]) merged.loops.push_back(loop[i]);
+    }
     merged.end_face();
     return merged.loops.size() - before >= 3;
+  }
+
+  // Asked for both faces along a line, in opposite directions, which must agree.
+  [[nodiscard]] bool is_straight(std::span<const std::uint32_t> loop, std::size_t from,
+                                 std::size_t to, double tolerance) const {
+    const std::size_t count = loop.size();
+    const auto [low, high] = std::minmax(loop[from % count], loop[to % count]);
+    const Eigen::Vector3d line = points_[high] - points_[low];
+    const double most = tolerance * line.norm();
+    for (std::size_t i = from + 1; i < to; ++i) {
+      const Eigen::Vector3d way = points_[loop[i % count]] - points_[low];
+      // A thin face's outline turns back beside its own line.
+      const double along = way.dot(line);
+      if (!(along >= 0.0 && along <= line.squaredNorm())) return false;
+      if (!(accurate_cross(line, way).norm() <= most)) return false;
+    }
+    return true;
   }
 
   std::span<const Eigen::Vector3d> points_;
@@ -418,17 +460,32 @@ class Assembly {
     return true;
   }
 
-  // Newell's normal, with edges scaled so that small hulls keep their digits.
+  // Newell's normal, with edges scaled so that small hulls keep their digits. Of a sliver, whose
+  // edges' products hardly differ from zero, without rounding.
   [[nodiscard]] Eigen::Vector3d normal_of(const HullFace& face) const {
+    constexpr double kSliver = 1e-4;
     const Eigen::Vector3d origin = at(c_.loop[face.first]);
     const double scale = hull_.radius > 0.0 ? 1.0 / hull_.radius : 1.0;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double size = 0.0;
     for (std::uint32_t i = 1; i + 1 < face.count; ++i) {
       const Eigen::Vector3d a = (at(c_.loop[face.first + i]) - origin) * scale;
       const Eigen::Vector3d b = (at(c_.loop[face.first + i + 1]) - origin) * scale;
       sum += a.cross(b);
+      size += a.norm() * b.norm();
     }
-    return sum.stableNormalized();
+    return sum.norm() > kSliver * size ? sum.stableNormalized() : exact_normal_of(face);
+  }
+
+  [[nodiscard]] Eigen::Vector3d exact_normal_of(const HullFace& face) const {
+    const auto edge = [&](std::uint32_t i) {
+      return exact_vector(at(c_.loop[face.first + i]).data()) -
+             exact_vector(at(c_.loop[face.first]).data());
+    };
+    ExactVector sum = cross(edge(1), edge(2));
+    for (std::uint32_t i = 2; i + 1 < face.count; ++i) sum = sum + cross(edge(i), edge(i + 1));
+    if (is_zero(sum)) return Eigen::Vector3d::Zero();
+    return Eigen::Vector3d::Map(RoundedDirection(sum).d).normalized();
   }
 
   bool is_convex_around(std::uint32_t f) {

@@ -1,16 +1,11 @@
+#include "pipeline/shapes/accurate_cross.h"
+#include "pipeline/shapes/exact_hull.h"
 #include "pipeline/shapes/hull_builder.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
-
-#ifdef WINNOW_HAVE_QHULL
-extern "C" {
-#include <libqhull_r/qhull_ra.h>
-}
-#endif
 
 namespace winnow {
 namespace {
@@ -20,21 +15,26 @@ constexpr double kFlat = 1e-13;
 
 using Points = std::pmr::vector<Eigen::Vector3d>;
 
-// Points around their middle, the largest coordinate in [1, 2): qhull's tolerances are relative to
-// the largest coordinate, and squares of very small or large numbers leave double.
+// The largest coordinate in [1, 2): tolerances are relative to it, and squares of very small or
+// large numbers leave double.
+void scale(Points& points) {
+  double largest = 0.0;
+  for (const Eigen::Vector3d& p : points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  const int exponent = largest > 0.0 ? std::ilogb(largest) : 0;
+  for (Eigen::Vector3d& p : points) {
+    for (double& x : p) x = std::ldexp(x, -exponent);
+  }
+}
+
+// Points around their middle, scaled.
 Points centred(std::span<const Eigen::Vector3d> points, std::pmr::memory_resource* memory) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& p : points) box.extend(p);
   const Eigen::Vector3d middle = 0.5 * box.min() + 0.5 * box.max();
-  const double half = (0.5 * box.max() - 0.5 * box.min()).maxCoeff();
-  const int exponent = half > 0.0 ? std::ilogb(half) : 0;
   Points result(memory);
   result.reserve(points.size());
-  for (const Eigen::Vector3d& p : points) {
-    Eigen::Vector3d q = p - middle;
-    for (double& x : q) x = std::ldexp(x, -exponent);
-    result.push_back(q);
-  }
+  for (const Eigen::Vector3d& p : points) result.push_back(p - middle);
+  scale(result);
   return result;
 }
 
@@ -52,6 +52,35 @@ std::size_t farthest(const Points& points, Measure&& measure) {
   return best;
 }
 
+using Chain = std::pmr::vector<std::uint32_t>;
+
+// The corners of a convex outline, without those that lie, as far as counts, on the line between
+// others that stay.
+Chain simplified(const Points& points, const Chain& outline, int u, int v) {
+  const auto at = [&](std::size_t i) -> const Eigen::Vector3d& {
+    return points[outline[i % outline.size()]];
+  };
+  const auto counts = [&](std::size_t from, std::size_t to, std::size_t i) {
+    const Eigen::Vector2d line(at(to)[u] - at(from)[u], at(to)[v] - at(from)[v]);
+    const Eigen::Vector2d way(at(i)[u] - at(from)[u], at(i)[v] - at(from)[v]);
+    // A thin outline turns back beside its own line.
+    if (!(way.dot(line) >= 0.0 && way.dot(line) <= line.squaredNorm())) return true;
+    const double across = difference_of_products(line.x(), way.y(), line.y(), way.x());
+    return std::abs(across) > kFlat * line.norm();
+  };
+  Chain kept(1, outline[0], outline.get_allocator());
+  std::size_t from = 0;
+  for (std::size_t to = 2; to <= outline.size(); ++to) {
+    bool any = false;
+    for (std::size_t i = from + 1; i < to && !any; ++i) any = counts(from, to, i);
+    if (!any) continue;
+    from = to - 1;
+    kept.push_back(outline[from]);
+  }
+  if (kept.size() < 3) kept = outline;
+  return kept;
+}
+
 // Outline of points near a plane, by monotone chain (Andrew 1979) over the two axes on which the
 // plane is least steep: a projection along an axis moves no coordinate.
 void add_polygon(const Points& points, const Eigen::Vector3d& normal, HullSurface& surface) {
@@ -60,97 +89,42 @@ void add_polygon(const Points& points, const Eigen::Vector3d& normal, HullSurfac
   int u = (drop + 1) % 3;
   int v = (drop + 2) % 3;
   if (normal[drop] < 0.0) std::swap(u, v);
-  std::pmr::vector<std::uint32_t> order(points.size(), points.get_allocator());
+  Chain order(points.size(), points.get_allocator());
   std::iota(order.begin(), order.end(), 0U);
   std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(points[a][u], points[a][v]) < std::pair(points[b][u], points[b][v]);
   });
-  const auto turns_left = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    const Eigen::Vector3d ab = points[b] - points[a];
-    const Eigen::Vector3d ac = points[c] - points[a];
-    return ab[u] * ac[v] - ab[v] * ac[u] > kFlat;
-  };
-  std::pmr::vector<std::uint32_t> chain(points.get_allocator());
+  Chain chain(points.get_allocator());
   const auto extend = [&](std::uint32_t i, std::size_t keep) {
-    while (chain.size() >= keep + 2 && !turns_left(chain[chain.size() - 2], chain.back(), i)) {
-      chain.pop_back();
-    }
+    const auto last_turns_left = [&] {
+      return turn_in_plane(points[chain[chain.size() - 2]], points[chain.back()], points[i], u, v) >
+             0;
+    };
+    while (chain.size() >= keep + 2 && !last_turns_left()) chain.pop_back();
     chain.push_back(i);
   };
   for (const std::uint32_t i : order) extend(i, 0);
   const std::size_t lower = chain.size() - 1;
   for (std::size_t i = order.size() - 1; i-- > 0;) extend(order[i], lower);
   chain.pop_back();
+  chain = simplified(points, chain, u, v);
   surface.loops.assign(chain.begin(), chain.end());
   surface.end_face();
   surface.loops.insert(surface.loops.end(), chain.rbegin(), chain.rend());
   surface.end_face();
 }
 
-#ifdef WINNOW_HAVE_QHULL
-
-class Qhull {
- public:
-  Qhull() : errors_(std::tmpfile()) { qh_zero(&state_, errors_); }
-  ~Qhull() {
-    qh_freeqhull(&state_, !qh_ALL);
-    int left = 0;
-    int total = 0;
-    qh_memfreeshort(&state_, &left, &total);
-    if (errors_ != nullptr) std::fclose(errors_);
-  }
-  Qhull(const Qhull&) = delete;
-  Qhull& operator=(const Qhull&) = delete;
-
-  Status run(Points& points, HullSurface& surface) {
-    char options[] = "qhull Pp";
-    const int error = qh_new_qhull(&state_, 3, static_cast<int>(points.size()), points[0].data(),
-                                   False, options, nullptr, errors_);
-    if (error != 0) return error == qh_ERRmem ? Status::out_of_memory : Status::invalid_shape;
-    qhT* const qh = &state_;
-    facetT* facet = nullptr;
-    FORALLfacets {
-      setT* vertices = qh_facet3vertex(qh, facet);
-      const std::size_t begin = surface.loops.size();
-      vertexT* vertex = nullptr;
-      vertexT** vertexp = nullptr;
-      FOREACHvertex_(vertices) {
-        surface.loops.push_back(static_cast<std::uint32_t>(qh_pointid(qh, vertex->point)));
-      }
-      qh_settempfree(qh, &vertices);
-      orient(points, Eigen::Vector3d(facet->normal), surface, begin);
-      surface.end_face();
-    }
-    return Status::ok;
-  }
-
- private:
-  static void orient(const Points& points, const Eigen::Vector3d& normal, HullSurface& surface,
-                     std::size_t begin) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    const Eigen::Vector3d origin = points[surface.loops[begin]];
-    for (std::size_t i = begin + 1; i + 1 < surface.loops.size(); ++i) {
-      sum += (points[surface.loops[i]] - origin).cross(points[surface.loops[i + 1]] - origin);
-    }
-    if (sum.dot(normal) < 0.0) {
-      std::reverse(surface.loops.begin() + static_cast<std::ptrdiff_t>(begin), surface.loops.end());
-    }
-  }
-
-  qhT state_{};
-  std::FILE* errors_;
-};
-
-#endif
-
-Status surface_of(Points& points, HullSurface& surface) {
-#ifdef WINNOW_HAVE_QHULL
-  return Qhull().run(points, surface);
-#else
-  static_cast<void>(points);
-  static_cast<void>(surface);
-  return Status::unsupported;
-#endif
+// The surface of a solid with all but flat neighbours joined, where that leaves it convex; else
+// of triangles, which are.
+Status assemble_solid(std::span<const Eigen::Vector3d> given, const Points& points,
+                      const HullSurface& triangles, std::pmr::memory_resource* memory,
+                      HullShape& hull) {
+  HullSurface joined(triangles.loops.get_allocator().resource());
+  joined.loops = triangles.loops;
+  joined.first = triangles.first;
+  Status status = merge_coplanar(points, joined);
+  if (status == Status::ok) status = assemble_hull(given, joined, memory, hull);
+  return status == Status::invalid_shape ? assemble_hull(given, triangles, memory, hull) : status;
 }
 
 }  // namespace
@@ -170,7 +144,7 @@ Status hull_of_points(const PointView& all, std::pmr::memory_resource* memory,
   if (along.isZero()) return assemble_hull({given.data(), 1}, surface, memory, hull);
   const std::size_t i2 =
       farthest(points, [&](const auto& p) { return along.cross(p - p0).squaredNorm(); });
-  const Eigen::Vector3d normal = along.cross(points[i2] - p0);
+  const Eigen::Vector3d normal = accurate_cross(along, points[i2] - p0);
   if (normal.norm() <= kFlat * along.squaredNorm()) {
     const std::size_t i0 = farthest(points, [&](const auto& p) { return 100.0 - along.dot(p); });
     const std::size_t end = farthest(points, [&](const auto& p) { return 100.0 + along.dot(p); });
@@ -180,13 +154,14 @@ Status hull_of_points(const PointView& all, std::pmr::memory_resource* memory,
   const Eigen::Vector3d unit = normal.normalized();
   const std::size_t i3 =
       farthest(points, [&](const auto& p) { return std::abs(unit.dot(p - p0)); });
-  if (std::abs(unit.dot(points[i3] - p0)) <= kFlat) {
-    add_polygon(points, unit, surface);
-    return assemble_hull(given, surface, memory, hull);
+  if (std::abs(unit.dot(points[i3] - p0)) > kFlat) {
+    // Of the points as they were given: sums with the middle are rounded.
+    Points exact(given, &scratch);
+    scale(exact);
+    if (exact_hull(exact, surface)) return assemble_solid(given, points, surface, memory, hull);
   }
-  Status status = surface_of(points, surface);
-  if (status == Status::ok) status = merge_coplanar(points, surface);
-  return status == Status::ok ? assemble_hull(given, surface, memory, hull) : status;
+  add_polygon(points, unit, surface);
+  return assemble_hull(given, surface, memory, hull);
 } catch (...) {
   return Status::out_of_memory;
 }

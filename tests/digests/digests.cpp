@@ -1,14 +1,18 @@
 // Usage: winnow_digests [--check FILE]
 //
 // Prints a digest of every kind of answer, one a line, in each floating-point mode that a host may
-// have set: each is computed on every instruction set of the machine and on 1 to 32 threads, and if
-// these do not agree, says which of them differ. With --check prints the lines alone that the file
+// have set: each is computed on every instruction set of the machine and on 1 to 32 threads, of
+// arenas of oneTBB, where winnow is built with it, and of a pool of its own, and if these do not
+// agree, says which of them differ. With --check prints the lines alone that the file
 // has otherwise, and ends with 1 if there are any. The numbers that go in are made without the
 // mathematical library, whose last digits depend on its version.
 
+#include <winnow/winnow.h>
+
+#if WINNOW_HAVE_TBB
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
-#include <winnow/winnow.h>
+#endif
 
 #include <algorithm>
 #include <bit>
@@ -26,6 +30,8 @@
 #if defined(__x86_64__)
 #include <xmmintrin.h>
 #endif
+
+#include "bench/common/thread_pool.h"
 
 namespace winnow::test {
 namespace {
@@ -92,8 +98,8 @@ void add(Digest& digest, std::span<const Hit> hits) {
 }
 
 /// Pairs in the order found, of all objects and of what moved.
-void pairs(StructureKind structure, Digest& digest) {
-  Partition partition(structure);
+void pairs(StructureKind structure, const Execution& execution, Digest& digest) {
+  Partition partition(structure, {.execution = execution});
   std::vector<Aabb> given = boxes(structure == n_squared() ? 60 : 1500, 1);
   std::vector<Key> keys(given.size());
   bool good = partition.insert(given, {}, keys) == Status::ok;
@@ -114,8 +120,8 @@ void pairs(StructureKind structure, Digest& digest) {
   digest.add(good ? 1.0 : 0.0);
 }
 
-void queries(StructureKind structure, Digest& digest) {
-  Partition partition(structure);
+void queries(StructureKind structure, const Execution& execution, Digest& digest) {
+  Partition partition(structure, {.execution = execution});
   const std::vector<Aabb> given = boxes(1000, 3);
   std::vector<Key> keys(given.size());
   bool good = partition.insert(given, {}, keys) == Status::ok;
@@ -164,7 +170,7 @@ std::vector<ShapeId> shapes(ShapePool& pool, Digest& digest) {
   return ids;
 }
 
-void narrow(NarrowTier tier, Digest& digest) {
+void narrow(NarrowTier tier, const Execution& execution, Digest& digest) {
   ShapePool pool;
   const std::vector<ShapeId> ids = shapes(pool, digest);
   Numbers numbers(5);
@@ -183,8 +189,7 @@ void narrow(NarrowTier tier, Digest& digest) {
        {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
     const Status status = phase.collide(
         pool, {bodies, poses}, asked,
-        {.level = level, .tier = tier, .margin = 0.125, .execution = Execution::parallel()},
-        result);
+        {.level = level, .tier = tier, .margin = 0.125, .execution = execution}, result);
     digest.add(static_cast<std::uint64_t>(status));
     for (std::size_t i = 0; i < result.size(); ++i) {
       digest.add(std::uint64_t{result.pair_of(i)} * 2U + (result.overlaps(i) ? 1U : 0U));
@@ -224,7 +229,7 @@ void ask(const Scene& scene, Numbers& numbers, Digest& digest) {
   }
 }
 
-void scene(Digest& digest) {
+void scene(const Execution& execution, Digest& digest) {
   ShapePool pool;
   CompositePool composites(pool);
   std::vector<ShapeId> ids = shapes(pool, digest);
@@ -243,7 +248,7 @@ void scene(Digest& digest) {
   ids.emplace_back();
   digest.add(static_cast<std::uint64_t>(composites.add_mesh(
       std::span(std::as_const(points)), std::span(std::as_const(corners)), ids.back())));
-  Scene world(pool, {.margin = 0.0625, .composites = &composites});
+  Scene world(pool, {.execution = execution, .margin = 0.0625, .composites = &composites});
   std::vector<Key> keys(160);
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const BodyDefinition body{.shape = ids[i % ids.size()],
@@ -274,19 +279,22 @@ void scene(Digest& digest) {
 
 struct Work {
   std::string name;
-  std::function<void(Digest&)> run;
+  std::function<void(const Execution&, Digest&)> run;
 };
 
 std::vector<Work> all_work() {
   std::vector<Work> work;
   for (const StructureKind kind : all_structures()) {
-    work.push_back({"pairs/" + std::string(kind.name()), [kind](Digest& d) { pairs(kind, d); }});
+    const std::string name(kind.name());
+    work.push_back({"pairs/" + name, [kind](const Execution& e, Digest& d) { pairs(kind, e, d); }});
     work.push_back(
-        {"queries/" + std::string(kind.name()), [kind](Digest& d) { queries(kind, d); }});
+        {"queries/" + name, [kind](const Execution& e, Digest& d) { queries(kind, e, d); }});
   }
-  work.push_back({"narrow/fast", [](Digest& d) { narrow(NarrowTier::fast, d); }});
-  work.push_back({"narrow/robust", [](Digest& d) { narrow(NarrowTier::robust, d); }});
-  work.push_back({"narrow/reference", [](Digest& d) { narrow(NarrowTier::reference, d); }});
+  for (const auto& [name, tier] : {std::pair{"narrow/fast", NarrowTier::fast},
+                                   {"narrow/robust", NarrowTier::robust},
+                                   {"narrow/reference", NarrowTier::reference}}) {
+    work.push_back({name, [tier](const Execution& e, Digest& d) { narrow(tier, e, d); }});
+  }
   work.push_back({"scene", scene});
   return work;
 }
@@ -324,6 +332,40 @@ class ModeScope {
   std::fenv_t before_{};
 };
 
+/// Who does the work: who asks alone, an arena of so many threads, or a pool.
+struct Workers {
+  int threads;
+  bool is_pool = false;
+};
+#if WINNOW_HAVE_TBB
+constexpr Workers kWorkers[] = {{1}, {2}, {8}, {32}, {3, true}};
+#else
+constexpr Workers kWorkers[] = {{1}, {2, true}, {8, true}, {32, true}};
+#endif
+
+JobSystem pool_of(int threads) {
+  static std::map<int, bench::ThreadPool> pools;
+  return pools.try_emplace(threads, static_cast<std::size_t>(threads)).first->second.jobs();
+}
+
+std::uint64_t digest_of(const Mode& mode, const Work& work, const Workers& workers) {
+  Digest digest;
+  const auto run = [&](const Execution& execution) {
+    const ModeScope scope(mode);
+    work.run(execution, digest);
+  };
+  if (workers.threads == 1) {
+    run(Execution::serial());
+  } else if (workers.is_pool) {
+    run(Execution::on(pool_of(workers.threads)));
+  } else {
+#if WINNOW_HAVE_TBB
+    tbb::task_arena(workers.threads).execute([&] { run(Execution::parallel()); });
+#endif
+  }
+  return digest.value();
+}
+
 std::string line_of(const Mode& mode, const Work& work) {
   std::ostringstream line;
   line << mode.name << ' ' << work.name << ' ';
@@ -331,15 +373,13 @@ std::string line_of(const Mode& mode, const Work& work) {
   bool any = false;
   for (const Isa isa : available_isas()) {
     if (set_isa(isa) != Status::ok) continue;
-    for (const int threads : {1, 2, 8, 32}) {
-      Digest digest;
-      tbb::task_arena(threads).execute([&] {
-        const ModeScope scope(mode);
-        work.run(digest);
-      });
-      if (!any) line << std::hex << (first = digest.value()) << std::dec;
+    for (const Workers& workers : kWorkers) {
+      const std::uint64_t digest = digest_of(mode, work, workers);
+      if (!any) line << std::hex << (first = digest) << std::dec;
       any = true;
-      if (digest.value() != first) line << ", not on " << to_string(isa) << ' ' << threads;
+      if (digest == first) continue;
+      line << ", not on " << to_string(isa) << ' ' << workers.threads
+           << (workers.is_pool ? " of a pool" : "");
     }
   }
   return line.str();
@@ -360,7 +400,9 @@ std::map<std::string, std::string> lines_of(const std::string& path) {
 
 int main(int argc, char** argv) {
   using namespace winnow::test;
+#if WINNOW_HAVE_TBB
   const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, 33U);
+#endif
   const bool checks = argc == 3 && std::string(argv[1]) == "--check";
   const auto wanted = checks ? lines_of(argv[2]) : std::map<std::string, std::string>();
   bool same = true;

@@ -235,10 +235,10 @@ TEST(ExactOverlap, discs_without_radius_are_segments) {
   pair.cylinders[0] = {0.0, 2.0, 0.0};
   pair.triangles[1] = {{{0.0, -1.0, 0.0}, {0.0, 1.0, 0.0}, {3.0, 0.0, 0.0}}, 0.0};
   EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::triangle), ExactVerdict::touching);
-  pair.poses[1].position[0] = 0x1p-1074;
-  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::triangle), ExactVerdict::undecided);
-  pair.poses[1].position[0] = 0x1p-200;
-  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::triangle), ExactVerdict::separated);
+  for (const double gap : {0x1p-200, 0x1p-1074}) {
+    pair.poses[1].position[0] = gap;
+    EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::triangle), ExactVerdict::separated);
+  }
 }
 
 TEST(ExactOverlap, numbers_too_far_apart_are_undecided) {
@@ -247,6 +247,57 @@ TEST(ExactOverlap, numbers_too_far_apart_are_undecided) {
   pair.poses[1].position[0] = 1.0;
   for (BoxShape& box : pair.boxes) box = {{1.0, 1.0, 1.0}, 0.0};
   EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::undecided);
+}
+
+TEST(ExactOverlap, upright_boxes_are_decided_whatever_their_numbers_span) {
+  Random random(77);
+  Pair pair;
+  int seen[3] = {};
+  for (std::size_t i = 0; i < scaled(2000); ++i) {
+    int sign = -1;
+    for (int k = 0; k < 3; ++k) {
+      // Each axis has its own scale, up to all of double.
+      const double unit = std::ldexp(1.0, static_cast<int>(random.below(2000)) - 1000);
+      double reach = 0.0;
+      for (int side = 0; side < 2; ++side) {
+        pair.boxes[side].half[k] = unit * digit(random, 0, 2);
+        reach += pair.boxes[side].half[k];
+        pair.poses[side].position[k] = unit * digit(random, -3, 3);
+      }
+      const double gap = std::abs(pair.poses[1].position[k] - pair.poses[0].position[k]) - reach;
+      sign = std::max(sign, gap > 0.0 ? 1 : gap < 0.0 ? -1 : 0);
+    }
+    const ExactVerdict truth = sign > 0   ? ExactVerdict::separated
+                               : sign < 0 ? ExactVerdict::overlapping
+                                          : ExactVerdict::touching;
+    ++seen[static_cast<int>(truth)];
+    ASSERT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), truth) << i;
+    ASSERT_EQ(pair.mirrored(ShapeKind::box, ShapeKind::box), truth) << i;
+  }
+  for (const int verdict : seen) EXPECT_GT(verdict, 0);
+}
+
+TEST(ExactOverlap, turned_boxes_are_decided_whatever_their_numbers_span) {
+  Random random(78);
+  Pair pair;
+  HullColumns columns[2];
+  int asked = 0;
+  for (std::size_t i = 0; i < scaled(3000); ++i) {
+    set_lattice(random, pair, columns);
+    for (BoxShape& box : pair.boxes) box.rounding = 0.0;
+    double& half = pair.boxes[0].half[random.below(3)];
+    // Between nothing and little the verdict is that of both, if these agree.
+    half = 0.0;
+    const ExactVerdict flat = pair.verdict(ShapeKind::box, ShapeKind::box);
+    half = 0x1p-100;
+    const ExactVerdict thin = pair.verdict(ShapeKind::box, ShapeKind::box);
+    half = 0x1p-1050;
+    if (flat != thin) continue;
+    ++asked;
+    ASSERT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), flat) << i;
+    ASSERT_EQ(pair.mirrored(ShapeKind::box, ShapeKind::box), flat) << i;
+  }
+  EXPECT_GT(asked, 100);
 }
 
 TEST(ExactOverlap, agrees_with_integers_on_small_shapes) {

@@ -26,10 +26,6 @@ ExactVector exact(const Vec3d& v) {
   return {{Dyadic(v.x()), Dyadic(v.y()), Dyadic(v.z())}};
 }
 
-ExactVector operator+(const ExactVector& a, const ExactVector& b) {
-  return a - (-b);
-}
-
 /// The point of a polygon that is nearest to the origin, roughly.
 Vec3d nearest_point(const std::vector<Vec3d>& corner) {
   Vec3d best = corner[0];

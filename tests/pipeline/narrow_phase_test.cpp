@@ -307,6 +307,58 @@ TEST(Sizes, change_no_verdict_and_no_distance_beyond_its_bound) {
   }
 }
 
+/// Upright boxes and points whose numbers are of any size up to 10^digits and down to its inverse.
+PairScene boxes_of_any_sizes(int digits, Random& random) {
+  const auto any = [&] {
+    const double size = std::pow(10.0, random.uniform(-digits, digits));
+    return random.chance(0.15) ? 0.0 : random.chance(0.5) ? size : -size;
+  };
+  PairScene scene;
+  for (std::uint32_t i = 0; i < 2 * scaled(2000); ++i) {
+    BoxShape box;
+    for (double& half : box.half) half = std::abs(any());
+    if (i % 3 == 0) std::fill_n(box.half, 3, box.half[0]);
+    EXPECT_EQ(scene.pool.add(box, scene.shapes.emplace_back()), Status::ok);
+    scene.poses.push_back(Pose::at(any(), any(), any()));
+    if (i % 2 == 1) scene.pairs.push_back({i - 1, i});
+  }
+  return scene;
+}
+
+// How far upright boxes are apart along each axis says all; a millionth of their sizes is more than
+// these sums lose.
+TEST(Sizes, upright_boxes_are_told_apart_whatever_their_numbers_span) {
+  for (const int digits : {3, 12, 38, 100, 150}) {
+    Random random(static_cast<std::uint64_t>(digits));
+    const PairScene scene = boxes_of_any_sizes(digits, random);
+    const BoxShape* const boxes = scene.pool.tables().boxes;
+    for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
+      for (const ContactLevel level : {ContactLevel::boolean, ContactLevel::distance}) {
+        const auto answers = ask(scene, {.level = level, .tier = tier});
+        std::size_t clear = 0;
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+          const BodyPair pair = scene.pairs[i];
+          bool sure = true;
+          bool apart = false;
+          for (int k = 0; k < 3; ++k) {
+            const double way =
+                std::abs(scene.poses[pair.b].position[k] - scene.poses[pair.a].position[k]);
+            const double reach = boxes[scene.shapes[pair.a].index()].half[k] +
+                                 boxes[scene.shapes[pair.b].index()].half[k];
+            sure = sure && std::abs(way - reach) >= 1e-6 * (way + reach);
+            apart = apart || way > reach;
+          }
+          if (!sure) continue;
+          ++clear;
+          EXPECT_EQ(answers[i].overlap, !apart) << digits << '\n' << reproduction(scene, pair);
+          if (HasFailure()) return;
+        }
+        EXPECT_GT(clear, answers.size() / 2);
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Styles, Properties, testing::ValuesIn(kPairStyles),
                          [](const testing::TestParamInfo<PairStyle>& style) {
                            return std::string(to_string(style.param));

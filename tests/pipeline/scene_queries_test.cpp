@@ -10,6 +10,77 @@
 namespace winnow::test {
 namespace {
 
+/// Zero, one, or a number of any size up to `most`.
+double any_number(double most, Random& random) {
+  const double sign = random.chance(0.5) ? 1.0 : -1.0;
+  const std::size_t which = random.below(8);
+  if (which < 2) return which == 0 ? 0.0 : sign;
+  return sign * random.log_uniform(1.0 / most, most);
+}
+
+/// A few bodies of one shape of each kind whose numbers are of any size.
+void add_any_bodies(QueryWorld& world, double most, Random& random) {
+  const auto size = [&] { return std::abs(any_number(most, random)); };
+  std::vector<ShapeId> ids(7);
+  EXPECT_EQ(world.shapes.pool.add(SphereShape{size()}, ids[0]), Status::ok);
+  EXPECT_EQ(world.shapes.pool.add(BoxShape{{size(), size(), size()}}, ids[1]), Status::ok);
+  EXPECT_EQ(world.shapes.pool.add(CylinderShape{size(), size()}, ids[2]), Status::ok);
+  EXPECT_EQ(world.shapes.pool.add(ConeShape{size(), size()}, ids[3]), Status::ok);
+  std::vector<Vec3d> points(8);
+  std::vector<Vec3f> vertices(9);
+  std::vector<std::uint32_t> corners(24);
+  for (Vec3d& p : points) {
+    for (int k = 0; k < 3; ++k) p[k] = any_number(most, random);
+  }
+  for (Vec3f& p : vertices) {
+    for (int k = 0; k < 3; ++k) p[k] = static_cast<float>(any_number(most, random));
+  }
+  for (std::uint32_t& corner : corners) corner = static_cast<std::uint32_t>(random.below(9));
+  EXPECT_EQ(world.shapes.pool.add_hull(points, 0.0, ids[4]), Status::ok);
+  if (world.composites.add_mesh(std::span(std::as_const(vertices)),
+                                std::span(std::as_const(corners)), ids[5]) != Status::ok) {
+    ids[5] = ids[0];
+  }
+  ids[6] = ids[5];
+  for (std::size_t i = 2 + random.below(8); i > 0; --i) {
+    world.add(
+        ids[random.below(ids.size())],
+        Pose::at(any_number(most, random), any_number(most, random), any_number(most, random)),
+        random);
+  }
+}
+
+TEST(SceneQueries, closest_hit_is_the_first_of_all_whatever_the_sizes) {
+  Random random(19);
+  for (const double most : {1e3, 1e6, 1e9}) {
+    std::size_t hit_something = 0;
+    for (std::size_t i = 0; i < scaled(2000); ++i) {
+      QueryWorld world;
+      add_any_bodies(world, most, random);
+      world.add_to_scene({.execution = Execution::serial()});
+      SceneQueries ask(*world.scene);
+      for (int r = 0; r < 30; ++r) {
+        ShapeRay ray;
+        for (double& x : ray.origin) x = any_number(most, random);
+        for (double& x : ray.direction) x = any_number(most, random);
+        ray.max_t = 10.0 * std::abs(any_number(most, random));
+        SceneHit closest;
+        std::span<const SceneHit> all;
+        const Status status = ask.closest(ray, closest);
+        ASSERT_EQ(ask.all(ray, all), status);
+        if (status != Status::ok) continue;
+        ASSERT_EQ(static_cast<bool>(closest), !all.empty()) << i << ' ' << r << ' ' << most;
+        if (!closest) continue;
+        ++hit_something;
+        ASSERT_EQ(closest.t, all[0].t) << i << ' ' << r << ' ' << most;
+        ASSERT_EQ(closest.key, all[0].key) << i << ' ' << r << ' ' << most;
+        ASSERT_EQ(closest.part, all[0].part) << i << ' ' << r << ' ' << most;
+      }
+    }
+    EXPECT_GT(hit_something, scaled(1000));
+  }
+}
+
 TEST(SceneQueries, of_two_balls_in_a_row_are_answered_by_both_or_the_nearer) {
   Random random(17);
   QueryWorld world;

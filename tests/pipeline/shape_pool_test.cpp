@@ -12,6 +12,7 @@
 #include "pipeline/kernels/kernels.h"
 #include "tests/support/counting_memory.h"
 #include "tests/support/heap_count.h"
+#include "tests/support/random.h"
 
 namespace winnow::test {
 namespace {
@@ -136,6 +137,99 @@ TEST_F(Hulls, of_flat_sets_are_polygons_segments_and_points) {
   EXPECT_EQ(point.dimension, 0U);
   EXPECT_COUNTS(point, 1U, 0U, 0U);
   EXPECT_EQ(point.vertex[2][15], 3.0);
+}
+
+// Sets that are hard to tell from flatter ones: numbers of all sizes, plates and needles down to
+// what double holds, noise on lattices, moment curves.
+Points hostile_points(int kind, Random& random) {
+  using Vec = Eigen::Vector3d;
+  const auto centred = [&] { return random.uniform(-0.5, 0.5); };
+  const auto any = [&] { return Vec(centred(), centred(), centred()); };
+  const auto of_any_size = [&] {
+    return random.chance(0.125) ? 0.0
+                                : (centred() < 0.0 ? -1.0 : 1.0) * random.log_uniform(1e-9, 1e9);
+  };
+  const Vec a = any();
+  const Vec b = any();
+  const Vec c = any();
+  const double thin = random.log_uniform(1e-14, 1.0);
+  Points points(4 + random.below(60));
+  for (Vec& p : points) {
+    const double t = random.uniform(-1.0, 1.0);
+    switch (kind) {
+      case 0:
+        p = Vec(of_any_size(), of_any_size(), of_any_size());
+        break;
+      case 1:
+        p = any() + 1e6 * a;
+        break;
+      case 2:
+        p = centred() * a + centred() * b + thin * centred() * c;
+        break;
+      case 3:
+        p = centred() * a + thin * centred() * b + thin * thin * centred() * c;
+        break;
+      case 4:
+        p = Vec(std::round(4.0 * t), std::round(4.0 * centred()), t > 0.0) + thin * any();
+        break;
+      case 5:
+        p = Vec(std::cos(3.2 * t), std::sin(3.2 * t), centred() < 0.0 ? thin : -thin);
+        break;
+      case 6:
+        p = Vec(t, t * t, thin * t * t * t);
+        break;
+      case 7:
+        p = Vec(t, thin * t * t, thin * thin * t * t * t);
+        break;
+      case 8:
+        p = random.chance(0.7) ? Vec(thin * any()) : Vec(of_any_size(), of_any_size(), t);
+        break;
+      default:
+        p = any().normalized().cwiseProduct(Vec(1.0, 1.0, thin));
+        break;
+    }
+  }
+  return points;
+}
+constexpr int kHostileKinds = 10;
+
+TEST_F(Hulls, of_hostile_sets_lose_none_of_their_points) {
+  Random random(41);
+  for (std::size_t i = 0; i < scaled(4000) + kHostileKinds; ++i) {
+    const Points points = hostile_points(static_cast<int>(i % kHostileKinds), random);
+    ShapeId id;
+    ASSERT_EQ(pool_.add_hull(points, 0.0, id), Status::ok) << i;
+    const HullShape& hull = pool_.tables().hulls[id.index()];
+    const auto farthest = [](const Eigen::Vector3d& along, std::size_t count, auto&& point) {
+      double most = -kInf;
+      for (std::size_t k = 0; k < count; ++k) most = std::max(most, along.dot(point(k)));
+      return most;
+    };
+    const Eigen::Vector3d center = Eigen::Vector3d::Map(hull.center);
+    const auto expect_reached = [&](const Eigen::Vector3d& along) {
+      const double given = farthest(along, points.size(), [&](std::size_t k) -> Eigen::Vector3d {
+        return points[k] - center;
+      });
+      const double reached =
+          farthest(along, hull.vertex_count, [&](std::size_t k) -> Eigen::Vector3d {
+            return Eigen::Vector3d(hull.vertex[0][k], hull.vertex[1][k], hull.vertex[2][k]) -
+                   center;
+          });
+      EXPECT_LE(given - reached, 1e-12 * hull.radius) << i << ", kind " << i % kHostileKinds;
+    };
+    for (std::uint32_t f = 0; f < hull.face_count; ++f) {
+      expect_reached(Eigen::Vector3d::Map(hull.faces[f].normal));
+    }
+    for (int k = 0; k < 20; ++k) {
+      const auto one = [&] { return points[random.below(points.size())]; };
+      const Eigen::Vector3d along = k % 2 == 0
+                                        ? Eigen::Vector3d(one() - one())
+                                        : Eigen::Vector3d((one() - one()).cross(one() - one()));
+      expect_reached(along.stableNormalized());
+    }
+    if (HasFailure()) return;
+    EXPECT_EQ(pool_.remove(id), Status::ok);
+  }
 }
 
 TEST_F(Hulls, keep_a_thickness_of_a_millionth) {

@@ -158,6 +158,24 @@ TEST(ShapeRays, meet_cones_along_their_lines) {
   EXPECT_EQ(cast(pool.tables(), id, {-1, 0, 1.5}, {1, 0, -2}).hit.t, 0.625);
 }
 
+TEST(ShapeRays, meet_needles_and_plates_of_cones_where_they_are) {
+  ShapePool pool;
+  ShapeId needle;
+  ShapeId plate;
+  ASSERT_EQ(pool.add(ConeShape{1e-5, 1e5, 0.0}, needle), Status::ok);
+  ASSERT_EQ(pool.add(ConeShape{1e5, 1e-5, 0.0}, plate), Status::ok);
+  // Half-way up the needle is half as thick, half-way out the plate half as high.
+  EXPECT_NEAR(cast(pool.tables(), needle, {-1, 0, 0}, {1, 0, 0}).hit.t, 1.0 - 0.5e-5, 1e-9);
+  EXPECT_FALSE(cast(pool.tables(), needle, {-1, 1e-3, 0}, {1, 0, 0}).hit.hit);
+  EXPECT_FALSE(cast(pool.tables(), needle, {1e-3, 0, 3e5}, {0, 0, -1}).hit.hit);
+  EXPECT_FALSE(cast(pool.tables(), needle, {1e-3, 0, 0}, {0, 0, -1}).hit.hit);
+  EXPECT_NEAR(cast(pool.tables(), needle, {0, 0, 3e5}, {0, 0, -1}).hit.t, 2e5, 1e-9);
+  EXPECT_EQ(cast(pool.tables(), needle, {0, 0, 0}, {0, 0, -1}).hit.t, 0.0);
+  EXPECT_NEAR(cast(pool.tables(), plate, {5e4, 0, 1}, {0, 0, -1}).hit.t, 1.0, 1e-9);
+  EXPECT_NEAR(cast(pool.tables(), plate, {5e4, 0, -1}, {0, 0, 1}).hit.t, 1.0 - 1e-5, 1e-9);
+  EXPECT_FALSE(cast(pool.tables(), plate, {5e4, 0, 1e-3}, {1, 0, 0}).hit.hit);
+}
+
 TEST(ShapeRays, bad_rays_poses_and_ids_are_refused) {
   const RayProbes shapes;
   for (const RayProbe& probe : shapes.probes()) {

@@ -449,8 +449,10 @@ class RaysTogether {
   const Filter& filter_;
   std::size_t count_ = 0;
   bool any_ = false;
-  /// Each up to what it has met so far; with `any`, below zero once it has met something.
+  /// As they were given: where a surface is met depends on that alone.
   ShapeRay ray_[Room];
+  /// What each has met so far, or its end; with `any`, below zero once it has met something.
+  double limit_[Room];
   Meeting best_[Room];
   SceneHit hit_[Room];
 };
@@ -458,14 +460,15 @@ class RaysTogether {
 template <std::size_t Room>
 double RaysTogether<Room>::take(std::size_t i, const Meeting& meeting) noexcept {
   Meeting& best = best_[i];
+  if (meeting.t > limit_[i]) return limit_[i];
   // Equal t are ordered by the bodies' ids, then by part.
   if (best.body != kNoObject && meeting.t == best.t &&
       (best.body != meeting.body ? best.body < meeting.body : best.part < meeting.part)) {
-    return best.t;
+    return limit_[i];
   }
   best = meeting;
-  ray_[i].max_t = any_ ? -1.0 : meeting.t;
-  return ray_[i].max_t;
+  limit_[i] = any_ ? -1.0 : meeting.t;
+  return limit_[i];
 }
 
 template <std::size_t Room>
@@ -477,11 +480,17 @@ void RaysTogether<Room>::meet_few(std::uint32_t body) {
   const auto look = [&](std::size_t i, const ConvexPart& part, double limit) {
     const RaySweep swept(state_.scene.shapes, ray_[i]);
     const Difference from = difference(ray_[i].origin, placed.pose.position);
+    const double most = std::min(limit, limit_[i]);
     SweepMeeting found;
-    if (!swept.meets(from.difference, part, limit, nullptr, found)) return limit;
+    if (!swept.meets(from.difference, part, most, nullptr, found)) return most;
     return take(i, {body, part.part, found.t, {found.normal[0], found.normal[1], found.normal[2]}});
   };
-  state_.parts.met_by_rays(placed, {ray_, count_}, meet, look);
+  ShapeRay asked[Room];
+  for (std::size_t i = 0; i < count_; ++i) {
+    asked[i] = ray_[i];
+    if (limit_[i] < 0.0) asked[i].max_t = limit_[i];
+  }
+  state_.parts.met_by_rays(placed, {asked, count_}, meet, look);
 }
 
 template <std::size_t Room>
@@ -520,6 +529,7 @@ void RaysTogether<Room>::start(const ShapeRayBatch& rays, std::size_t first, std
   any_ = any;
   for (std::size_t i = 0; i < count; ++i) {
     ray_[i] = rays[first + i];
+    limit_[i] = ray_[i].max_t;
     best_[i].body = kNoObject;
   }
 }

@@ -128,16 +128,16 @@ bool RaySweep::meets(const double from[3], const ConvexPart& part, double limit,
   if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
   const Vector3d start = Vector3d::Map(from);
   if (stands_behind({start, start}, part)) return false;
+  // Asked about its whole way: whether what is met counts as thick does not depend on the limit.
   ShapeRay ray = ray_;
   std::copy_n(from, 3, ray.origin);
-  ray.max_t = limit;
   if (!enters(ray, part, meeting)) {
     if (thickness == 0.0) return false;
     ConvexPart thick = part;
     thick.thickness = thickness;
     if (!enters(ray, thick, meeting)) return false;
   }
-  return true;
+  return meeting.t <= limit;
 }
 
 void RaySweep::describe(const double[3], const ConvexPart&, SweepMeeting&) const noexcept {}
@@ -342,9 +342,10 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
     parts.met(placed, sweep_from(swept, from_, limit), look);
     return found;
   }
-  ShapeRay ray = *swept.ray();
-  ray.max_t = limit;
+  // Asked about its whole way, as in RaySweep::meets.
+  const ShapeRay& ray = *swept.ray();
   const auto meet_by_ray = [&](std::size_t, std::uint32_t part, const ShapeHit& hit, double) {
+    if (hit.t > limit) return limit;
     ShapeRay own = ray;
     std::copy_n(from_, 3, own.origin);
     meeting = meeting_at(own, hit);
