@@ -71,9 +71,15 @@ target_link_libraries(winnow_flags INTERFACE Eigen3::Eigen)
 # Contraction to fused multiply-add would make results depend on the instruction set.
 target_compile_options(winnow_flags INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off
-  $<$<BOOL:${WINNOW_WARNINGS_AS_ERRORS}>:-Werror>
-  $<$<BOOL:${WINNOW_COVERAGE}>:--coverage>)
-target_link_options(winnow_flags INTERFACE $<$<BOOL:${WINNOW_COVERAGE}>:--coverage>)
+  $<$<BOOL:${WINNOW_WARNINGS_AS_ERRORS}>:-Werror>)
+if(WINNOW_COVERAGE)
+  set(winnow_coverage --coverage)
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    set(winnow_coverage -fprofile-instr-generate -fcoverage-mapping)
+  endif()
+  target_compile_options(winnow_flags INTERFACE ${winnow_coverage})
+  target_link_options(winnow_flags INTERFACE ${winnow_coverage})
+endif()
 if(WINNOW_SANITIZER STREQUAL "address")
   set(winnow_sanitize -fsanitize=address,undefined -fno-sanitize-recover=all
       -fno-omit-frame-pointer)

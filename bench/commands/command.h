@@ -42,6 +42,7 @@ Command add_report(CLI::App& app);
 Command add_compare(CLI::App& app);
 Command add_results(CLI::App& app);
 Command add_fit(CLI::App& app);
+Command add_trust(CLI::App& app);
 
 /// Those that only measure rows.
 std::vector<Command> add_measurements(CLI::App& app);

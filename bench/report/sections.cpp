@@ -11,6 +11,7 @@
 #include "bench/rows/scene_rows.h"
 #include "bench/rows/standing_rows.h"
 #include "bench/rows/volume_rows.h"
+#include "bench/trust/ledger.h"
 
 namespace winnow::bench {
 namespace {
@@ -47,6 +48,10 @@ void declare_pipeline(Results& results) {
 
 }  // namespace
 
+ReportSteps plan_trust(const ReportOptions& /*options*/) {
+  return {{"the ledger of trust", 0.1, add_ledger}};
+}
+
 std::span<const ReportSection> report_sections() noexcept {
   static constexpr ReportSection kAll[] = {{"throughput", declare_throughput, plan_throughput},
                                            {"memory", declare_memory, plan_memory},
@@ -55,7 +60,8 @@ std::span<const ReportSection> report_sections() noexcept {
                                            {"stability", declare_stability, plan_stability},
                                            {"queries", declare_queries, plan_queries},
                                            {"pipeline", declare_pipeline, plan_pipeline},
-                                           {"advice", declare_advice, plan_advice}};
+                                           {"advice", declare_advice, plan_advice},
+                                           {"trust", declare_ledger, plan_trust}};
   return kAll;
 }
 

@@ -7,11 +7,13 @@
 - `<!-- results -->` becomes bench/RESULTS.md without its title.
 - `{figure:Hard cases:robust:wrong}` becomes a figure of that: the first table below headings, or with a
   first cell, that hold these words (several by slashes), by row and column.
+- `<!-- ledger -->` becomes what bench/trust/ledger.json holds.
 - `<!-- live -->` becomes the scene that runs in the page, or a picture if there is no WebAssembly of it.
 
 A passage, name or figure that is not there ends the build.
 """
 
+import json
 import os
 import pathlib
 import re
@@ -102,6 +104,20 @@ def figure(match):
     raise SystemExit(f"the results have no {match[0]}")
 
 
+def ledger_row(row):
+    lines = [f"## {row['name'].capitalize()}", "", row["what"], "", "| | |", "|---|---|"]
+    lines += [f"| {figure['name']} | {figure['value']} |" for figure in row["figures"]]
+    if row.get("note"):
+        lines += ["", row["note"]]
+    lines += ["", f"{row['date']}, commit `{row['commit']}`: `{row['command']}`", ""]
+    return "\n".join(lines)
+
+
+def ledger(_):
+    rows = json.loads((ROOT / "bench/trust/ledger.json").read_text())["rows"]
+    return "\n".join(ledger_row(row) for row in rows)
+
+
 def live_scene(_):
     docs = pathlib.Path(os.environ["WINNOW_SITE_DOCS"])
     if not (docs / "live_wasm.js").exists():
@@ -114,5 +130,6 @@ def on_page_markdown(markdown, page, **_):
     markdown = re.sub(r"^<!-- (\S+) \[(.*)\] -->$", shown_passage, markdown, flags=re.M)
     markdown = re.sub(r"^<!-- live -->$", live_scene, markdown, flags=re.M)
     markdown = re.sub(r"\{figure:([^}]*)\}", figure, markdown)
+    markdown = re.sub(r"^<!-- ledger -->$", ledger, markdown, flags=re.M)
     markdown = re.sub(r"^<!-- results -->$", lambda _: results_text(), markdown, flags=re.M)
     return re.sub(r"\]\(api:([\w:]+)\)", reference_link, markdown)

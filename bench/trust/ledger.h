@@ -1,0 +1,24 @@
+#pragma once
+
+#include "bench/common/json.h"
+#include "bench/rows/results.h"
+
+namespace winnow::bench {
+
+/// What was found by everything that tries to break winnow, and when:
+///
+///   { "format": "winnow trust 1", "rows": [{"name", "what", "command", "date", "commit",
+///     "covers": [folders], "trees": {folder: its git tree}, "figures": [{"name", "value"}],
+///     "note"}] }
+///
+/// `bench/trust/record` writes rows, tests/house/ledger checks that none is older than its code may
+/// be. Tests are named as `Suite.test`. `note` may be missing.
+extern const char* const kLedgerJson;
+
+[[nodiscard]] const Json& ledger();
+
+/// Declares the table `trust`, and adds a row for each figure of the ledger.
+void declare_ledger(Results& results);
+void add_ledger(Results& results);
+
+}  // namespace winnow::bench

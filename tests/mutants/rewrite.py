@@ -1,0 +1,218 @@
+"""Puts mutants into the sources of a copy of the tree: rewrite.py TREE COMPILE_COMMANDS COUNT SEED OUT.
+
+A mutant is a small change of one expression or statement. All of them are compiled into one program, and
+the environment variable WINNOW_MUTANT says which one runs: `a < b` becomes
+`(winnow_mutants::is(17) ? (a) <= (b) : (a) < (b))`. COUNT of each group of targets.txt are drawn by SEED,
+no two of which overlap; 0 takes all that do not. OUT gets what they are, as JSON.
+"""
+
+import json
+import pathlib
+import random
+import sys
+
+import clang.cindex
+from clang.cindex import CursorKind, TokenKind
+
+OTHER = {
+    "<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==",
+    "+": "-", "-": "+", "*": "+", "/": "*", "&&": "||", "||": "&&",
+    "&": "|", "|": "&", "+=": "-=", "-=": "+=", "|=": "&=", "&=": "|=", "<<": ">>", ">>": "<<",
+}
+# What compilers say of changes, which are meant to be odd.
+QUIET = "".join(f'#pragma GCC diagnostic ignored "-W{name}"\n' for name in (
+    "conversion", "sign-conversion", "float-conversion", "parentheses", "unused-value", "type-limits",
+    "sign-compare", "bool-operation", "int-in-bool-context", "shift-count-overflow", "duplicated-cond"))
+# Statements that can be left out.
+REMOVABLE = {
+    CursorKind.CALL_EXPR, CursorKind.BINARY_OPERATOR, CursorKind.COMPOUND_ASSIGNMENT_OPERATOR,
+    CursorKind.UNARY_OPERATOR, CursorKind.CONTINUE_STMT,
+}
+# clang wraps what makes temporaries in a cursor that it has no name for.
+WRAPPED = {CursorKind.UNEXPOSED_EXPR}
+LITERALS = {CursorKind.INTEGER_LITERAL, CursorKind.FLOATING_LITERAL}
+
+
+class Source:
+    """One file, and what can be made of it."""
+
+    def __init__(self, tree, path, arguments):
+        self.path = path
+        self.bytes = (tree / path).read_bytes()
+        index = clang.cindex.Index.create()
+        self.unit = index.parse(str(tree / path), args=arguments)
+        self.name = str(tree / path)
+        self.points = []
+        for cursor in self.unit.cursor.get_children():
+            if cursor.location.file and cursor.location.file.name == self.name:
+                self.visit(cursor)
+
+    def text(self, start, end):
+        return self.bytes[start:end].decode()
+
+    def span(self, cursor):
+        """Begin and end as offsets; None for what is not written in this file as it is."""
+        start, end = cursor.extent.start, cursor.extent.end
+        if not start.file or start.file.name != self.name or end.file.name != self.name:
+            return None
+        return (start.offset, end.offset) if start.offset < end.offset else None
+
+    def add(self, cursor, start, end, text, what):
+        line = self.bytes[:start].count(b"\n") + 1
+        self.points.append({"file": str(self.path), "line": line, "start": start, "end": end,
+                            "text": text, "was": self.text(start, end), "what": what})
+
+    def visit(self, cursor):
+        if cursor.kind in (CursorKind.STATIC_ASSERT, CursorKind.ENUM_DECL):
+            return
+        if cursor.kind in (CursorKind.BINARY_OPERATOR, CursorKind.COMPOUND_ASSIGNMENT_OPERATOR):
+            self.visit_operator(cursor)
+        elif cursor.kind in LITERALS:
+            self.visit_literal(cursor)
+        elif cursor.kind is CursorKind.COMPOUND_STMT:
+            for statement in cursor.get_children():
+                self.visit_statement(statement)
+        elif cursor.kind is CursorKind.IF_STMT:
+            self.visit_condition(cursor)
+        for child in cursor.get_children():
+            self.visit(child)
+
+    def visit_operator(self, cursor):
+        """The other operator in place of this one."""
+        children = list(cursor.get_children())
+        place = self.span(cursor)
+        if place is None or len(children) != 2:
+            return
+        left, right = self.span(children[0]), self.span(children[1])
+        if left is None or right is None:
+            return
+        operator = self.text(left[1], right[0]).strip()
+        if operator not in OTHER:
+            return
+        a, b = self.text(*left), self.text(*right)
+        other = OTHER[operator]
+        if cursor.kind is CursorKind.BINARY_OPERATOR:
+            text = f"(winnow_mutants::is(@) ? ({a}) {other} ({b}) : ({a}) {operator} ({b}))"
+        else:
+            text = f"(winnow_mutants::is(@) ? (void)({a} {other} {b}) : (void)({a} {operator} {b}))"
+        self.add(cursor, *place, text, f"{operator} -> {other}")
+
+    def visit_literal(self, cursor):
+        place = self.span(cursor)
+        if place is None:
+            return
+        literal = self.text(*place)
+        if not literal[0].isdigit() or "'" in literal[:1]:
+            return
+        self.add(cursor, *place, f"(winnow_mutants::is(@) ? {literal} + 1 : {literal})",
+                 f"{literal} -> {literal} + 1")
+
+    def visit_statement(self, statement):
+        """Left out."""
+        inner = statement
+        while inner.kind in WRAPPED and len(list(inner.get_children())) == 1:
+            inner = next(inner.get_children())
+        place = self.span(statement)
+        if inner.kind not in REMOVABLE or place is None:
+            return
+        end = place[1]
+        while self.bytes[end : end + 1].isspace():
+            end += 1
+        if self.bytes[end : end + 1] != b";":
+            return
+        self.add(statement, place[0], end + 1,
+                 f"if (!winnow_mutants::is(@)) {{ {self.text(place[0], end + 1)} }}", "left out")
+
+    def visit_condition(self, cursor):
+        """Negated."""
+        children = list(cursor.get_children())
+        place = self.span(children[0]) if children else None
+        words = [token.spelling for token, _ in zip(cursor.get_tokens(), range(2))]
+        if place is None or words != ["if", "("] or not children[0].kind.is_expression():
+            return
+        if ";" in self.text(cursor.extent.start.offset, place[1]):
+            return
+        condition = self.text(*place)
+        self.add(cursor, *place, f"(static_cast<bool>({condition}) != winnow_mutants::is(@))",
+                 "negated")
+
+
+def compile_arguments(commands, path):
+    """Those of the file itself, or of the kernels or sources of its room."""
+    room = path.parts[0]
+    kernel = ".kernel." in path.name
+    for own in (True, False):
+        for command in commands:
+            file = command["file"]
+            if own and not file.endswith("/" + str(path)):
+                continue
+            if not own and not (f"winnow_{room}" in command["command"]
+                                and (".kernel." in file) == kernel):
+                continue
+            words = command["command"].split()
+            words = words[next(i for i, w in enumerate(words) if w.startswith("-")) :]
+            return [w for i, w in enumerate(words)
+                    if w not in ("-c", "-o") and words[i - 1] not in ("-c", "-o")] + ["-x", "c++"]
+    raise SystemExit(f"nothing tells how {path} is compiled")
+
+
+def drawn(points, count, rng):
+    """So many of them, of which no two overlap, in an order by chance."""
+    rng.shuffle(points)
+    taken = {}
+    chosen = []
+    for point in points:
+        if count and len(chosen) == count:
+            break
+        others = taken.setdefault(point["file"], [])
+        if any(point["start"] < end and start < point["end"] for start, end in others):
+            continue
+        others.append((point["start"], point["end"]))
+        chosen.append(point)
+    return chosen
+
+
+def write(tree, mutants):
+    """The sources with all mutants that are to be compiled."""
+    by_file = {}
+    for mutant in mutants:
+        if not mutant.get("dropped"):
+            by_file.setdefault(mutant["file"], []).append(mutant)
+    for path, some in by_file.items():
+        pristine = (tree / path).with_suffix((tree / path).suffix + ".pristine")
+        if not pristine.exists():
+            pristine.write_bytes((tree / path).read_bytes())
+        text = pristine.read_bytes()
+        for mutant in sorted(some, key=lambda m: -m["start"]):
+            change = mutant["text"].replace("@", str(mutant["id"])).encode()
+            # Lines keep their numbers, by which errors are told.
+            text = text[: mutant["start"]] + change + text[mutant["end"] :]
+        (tree / path).write_bytes(f'#include "tests/mutants/mutants.h"\n{QUIET}#line 1\n'.encode() + text)
+
+
+def main():
+    tree, commands_file, count, seed, out = sys.argv[1:6]
+    tree = pathlib.Path(tree).resolve()
+    commands = json.loads(pathlib.Path(commands_file).read_text())
+    rng = random.Random(int(seed))
+    mutants = []
+    targets = pathlib.Path(__file__).parent / "targets.txt"
+    seen = set()
+    for line in targets.read_text().splitlines():
+        if not line or line.startswith("#"):
+            continue
+        group, *globs = line.split()
+        points = []
+        for path in sorted({p.relative_to(tree) for g in globs for p in tree.glob(g)} - seen):
+            seen.add(path)
+            points += Source(tree, path, compile_arguments(commands, path)).points
+        chosen = drawn(points, int(count), rng)
+        print(f"{group}: {len(chosen)} mutants of {len(points)} places", flush=True)
+        for point in chosen:
+            mutants.append({"id": len(mutants), "group": group, **point})
+    write(tree, mutants)
+    pathlib.Path(out).write_text(json.dumps(mutants, indent=1))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,272 @@
+#include <winnow/winnow.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "tests/pipeline/scene_world.h"
+#include "tests/soak/soak.h"
+#include "tests/support/config.h"
+#include "tests/support/random.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr std::size_t kBodies = 40;
+constexpr double kMargin = 0.05;
+
+class SceneSoak {
+ public:
+  explicit SceneSoak(const SoakPlan& plan);
+
+  SoakTally run();
+
+ private:
+  /// Something that happens to one body: told to the model, then to each scene.
+  struct Event {
+    enum class Kind { add, remove, move, motion, shape, filter, ignore } kind;
+    std::size_t body;
+    std::size_t other = 0;  // of ignore
+    bool ignored = false;
+  };
+
+  void plan_frame(std::uint64_t frame);
+  void change(std::size_t i);
+  void tell(const Event& event, Scene& scene, std::size_t which);
+  void collide(Scene& scene, Contacts& contacts);
+  void tell_events();
+  void check();
+  void save();
+  void follow();
+  [[nodiscard]] std::size_t held() const;
+
+  SoakPlan plan_;
+  SoakTally tally_;
+  CountingMemory memory_;
+  SceneWorld world_;
+  Random random_;
+  Threads threads_;
+  Scene scene_;
+  Scene loaded_;
+  Contacts contacts_{&memory_};
+  Contacts loaded_contacts_{&memory_};
+  Column<std::byte> saved_{&memory_};
+  Column<std::byte> saved_contacts_{&memory_};
+  std::uint64_t followed_ = 0;  // frames that what was loaded still goes on for
+
+  std::vector<Event> events_;
+  std::array<std::vector<Key>, 2> keys_;  // by scene, and body of the world
+  std::set<Names> ignored_;
+  std::set<Names> shown_;    // by the last frame
+  std::set<Names> dormant_;  // of two that rest since they were shown
+  double step_ = 0.02;
+  FrameTimes times_{plan_.threads};
+};
+
+SceneOptions options_of(const SoakPlan& plan, CountingMemory& memory) {
+  return {.memory = &memory,
+          .execution = Workers{plan.threads}.execution(),
+          .structures = {static_bvh(), automatic(), linear_bvh()},
+          .margin = kMargin,
+          .warm_start = true};
+}
+
+SceneSoak::SceneSoak(const SoakPlan& plan)
+    : plan_(plan),
+      world_(kBodies, plan.seed),
+      random_(plan.seed + 1),
+      threads_(plan.threads),
+      scene_(world_.pool, options_of(plan, memory_)),
+      loaded_(world_.pool, options_of(plan, memory_)) {
+  tally_.name = "scene";
+  require(add_all(scene_, world_) == Status::ok, "add was refused");
+  keys_[0] = keys_[1] = world_.keys;
+}
+
+/// A body's motion, shape or filter becomes another, or it is to ignore another body.
+void SceneSoak::change(std::size_t i) {
+  BodyDefinition& body = world_.bodies[i];
+  switch (random_.below(8)) {
+    case 0:
+      body.shape = world_.shapes[random_.below(world_.shapes.size())];
+      events_.push_back({Event::Kind::shape, i});
+      break;
+    case 1:
+      body.filter = random_.chance(0.7) ? ObjectFilter{} : ObjectFilter{2, ~2U, 0};
+      events_.push_back({Event::Kind::filter, i});
+      break;
+    case 2: {
+      const std::size_t other = random_.below(world_.bodies.size());
+      if (other == i || world_.removed[other]) break;
+      const Names both = names(body.data, world_.bodies[other].data);
+      const bool ignored = ignored_.erase(both) == 0;
+      if (ignored) ignored_.insert(both);
+      events_.push_back({Event::Kind::ignore, i, other, ignored});
+      break;
+    }
+    default:
+      // Most fall asleep or wake.
+      body.motion = body.motion == Motion::dynamic ? Motion::sleeping : Motion::dynamic;
+      if (random_.chance(0.1)) body.motion = Motion::fixed;
+      events_.push_back({Event::Kind::motion, i});
+  }
+}
+
+void SceneSoak::plan_frame(std::uint64_t frame) {
+  events_.clear();
+  if (frame % 64 == 0) step_ = random_.chance(0.2) ? 0.5 : random_.log_uniform(1e-3, 0.1);
+  for (std::size_t i = 0; i < world_.bodies.size(); ++i) {
+    BodyDefinition& body = world_.bodies[i];
+    if (world_.removed[i]) {
+      if (!random_.chance(0.05)) continue;
+      body.pose = world_.random_pose();
+      world_.removed[i] = false;
+      events_.push_back({Event::Kind::add, i});
+    } else if (random_.chance(0.005)) {
+      world_.removed[i] = true;
+      std::erase_if(ignored_, [&](const Names& both) {
+        return both.first == body.data || both.second == body.data;
+      });
+      events_.push_back({Event::Kind::remove, i});
+    } else if (random_.chance(0.02)) {
+      change(i);
+    } else if (body.motion == Motion::dynamic && random_.chance(0.7)) {
+      for (double& p : body.pose.position) {
+        p = std::clamp(p + random_.uniform(-step_, step_), 0.0, world_.side);
+      }
+      for (double& q : body.pose.orientation) q += random_.uniform(-step_, step_);
+      if (!body.pose.is_valid()) body.pose.orientation[0] = 1.0;
+      events_.push_back({Event::Kind::move, i});
+    }
+  }
+}
+
+void SceneSoak::tell(const Event& event, Scene& scene, std::size_t which) {
+  const BodyDefinition& body = world_.bodies[event.body];
+  Key& key = keys_[which][event.body];
+  const auto told = [&] {
+    switch (event.kind) {
+      case Event::Kind::add:
+        return scene.add(body, key);
+      case Event::Kind::remove:
+        return scene.remove(key);
+      case Event::Kind::move:
+        return scene.move(key, body.pose);
+      case Event::Kind::motion:
+        return scene.set_motion(key, body.motion);
+      case Event::Kind::shape:
+        return scene.set_shape(key, body.shape);
+      case Event::Kind::filter:
+        return scene.set_filter(key, body.filter);
+      default:
+        return scene.set_ignored(key, keys_[which][event.other], event.ignored);
+    }
+  };
+  require(told() == Status::ok, "a change was refused");
+}
+
+void SceneSoak::collide(Scene& scene, Contacts& contacts) {
+  const Status status =
+      threads_.run([&] { return scene.collide(ContactLevel::manifold, contacts); });
+  require(status == Status::ok, "collide was refused");
+}
+
+/// Pairs begin that were neither shown nor dormant, and end or rest that are shown no more.
+void SceneSoak::tell_events() {
+  std::set<Names> before = shown_;
+  before.insert(dormant_.begin(), dormant_.end());
+  shown_.clear();
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const Names both = names(contacts_.data_a()[i], contacts_.data_b()[i]);
+    require(shown_.insert(both).second, "a pair is shown twice");
+    const bool persists = contacts_.event()[i] == ContactEvent::persisted;
+    require(!persists || before.contains(both), "a pair persists that was not there");
+    before.erase(both);
+  }
+  for (const EndedContact& pair : contacts_.ended()) {
+    // One of a body that has another shape or was replaced ends and begins.
+    const Names both = names(pair.data_a, pair.data_b);
+    require(before.erase(both) == 1 || shown_.contains(both), "a pair ends that was not there");
+  }
+  for (const Names& both : before) {
+    require(!world_.removed[both.first] && !world_.removed[both.second] &&
+                world_.bodies[both.first].motion != Motion::dynamic &&
+                world_.bodies[both.second].motion != Motion::dynamic,
+            "a pair is neither shown nor ended, and does not rest");
+  }
+  dormant_ = std::move(before);
+}
+
+void SceneSoak::check() {
+  std::set<Names> truth;
+  for (const auto& [both, distance] : world_.touching(kMargin)) {
+    if (!ignored_.contains(both)) truth.insert(both);
+  }
+  require(shown_ == truth, "contacts are other pairs than those that touch");
+  const std::uint64_t live = scene_.size();
+  tally_.comparisons += live * (live - 1) / 2;
+  ++tally_.checks;
+}
+
+void SceneSoak::save() {
+  saved_.clear();
+  saved_contacts_.clear();
+  require(scene_.save(saved_) == Status::ok, "save was refused");
+  require(scene_.save_contacts(contacts_, saved_contacts_) == Status::ok, "save was refused");
+  require(loaded_.load({saved_.data(), saved_.size()}) == Status::ok, "load was refused");
+  require(loaded_.load_contacts({saved_contacts_.data(), saved_contacts_.size()},
+                                loaded_contacts_) == Status::ok,
+          "load of contacts was refused");
+  for (std::size_t i = 0; i < keys_[0].size(); ++i) {
+    keys_[1][i] = loaded_.key_of(keys_[0][i].id);
+  }
+  followed_ = plan_.follow_frames;
+}
+
+void SceneSoak::follow() {
+  for (const Event& event : events_) tell(event, loaded_, 1);
+  collide(loaded_, loaded_contacts_);
+  require(digest(contacts_) == digest(loaded_contacts_), "what was loaded has other contacts");
+  if (--followed_ == 0) ++tally_.snapshots;
+}
+
+std::size_t SceneSoak::held() const {
+  std::size_t bytes = saved_.bytes().reserved + saved_contacts_.bytes().reserved;
+  for (const Scene* one : {&scene_, &loaded_}) bytes += one->footprint().total().reserved;
+  for (const Contacts* one : {&contacts_, &loaded_contacts_}) {
+    bytes += one->footprint().total().reserved;
+  }
+  return bytes;
+}
+
+SoakTally SceneSoak::run() {
+  MemoryWatch watch(tally_, memory_, plan_.frames);
+  for (std::uint64_t frame = 0; frame < plan_.frames; ++frame) {
+    plan_frame(frame);
+    times_.begin();
+    for (const Event& event : events_) tell(event, scene_, 0);
+    collide(scene_, contacts_);
+    times_.end();
+    tell_events();
+    tally_.operations += events_.size() + 1;
+    if (followed_ != 0) {
+      follow();
+    } else if (frame % plan_.save_every == plan_.save_every / 2) {
+      save();
+    }
+    if (frame % plan_.check_every == 0) check();
+    watch.look(frame, held());
+    ++tally_.frames;
+  }
+  tally_.median_us = times_.quantile(0.5);
+  tally_.p999_us = times_.quantile(0.999);
+  return tally_;
+}
+
+}  // namespace
+
+SoakTally soak_scene(const SoakPlan& plan) {
+  return SceneSoak(plan).run();
+}
+
+}  // namespace winnow::test

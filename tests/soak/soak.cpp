@@ -1,0 +1,162 @@
+// Usage: winnow_soak [--frames N] [--seconds N] [--seed N] [--threads N] [--check-every N]
+// [NAME...]
+//
+// Plays so many frames of objects that come, go and move on each structure, and of bodies in a
+// scene, beside slow twins; NAME is a structure's or `scene`, all if there is none. With --seconds
+// rounds of so many frames, with other seeds, go on until that time has passed. Prints a line for
+// each, then one of JSON. Ends with 1 where an answer is not the twin's, a snapshot goes on
+// otherwise, a footprint is not what was asked for, or memory grows.
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+#include "tests/soak/soak.h"
+#include "tests/support/random.h"
+
+namespace winnow::test {
+namespace {
+
+struct Asked {
+  SoakPlan plan{.frames = 1'000'000};
+  std::uint64_t seconds = 0;
+  std::vector<std::string> names;
+};
+
+/// False for what is no number or no option.
+bool read_option(Asked& asked, std::string_view name, std::string_view value) {
+  std::uint64_t number = 0;
+  const auto read = std::from_chars(value.data(), value.data() + value.size(), number);
+  if (read.ec != std::errc() || read.ptr != value.data() + value.size()) return false;
+  if (name == "--frames")
+    asked.plan.frames = number;
+  else if (name == "--seconds")
+    asked.seconds = number;
+  else if (name == "--seed")
+    asked.plan.seed = number;
+  else if (name == "--threads")
+    asked.plan.threads = static_cast<int>(number);
+  else if (name == "--check-every")
+    asked.plan.check_every = number;
+  else
+    return false;
+  return number != 0;
+}
+
+bool is_there(std::string_view name) {
+  const auto all = all_structures();
+  return name == "scene" || std::any_of(all.begin(), all.end(), [&](const StructureKind& one) {
+           return one.name() == name;
+         });
+}
+
+bool read_arguments(Asked& asked, int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word.starts_with("--")) {
+      if (++i == argc || !read_option(asked, word, argv[i])) return false;
+    } else if (is_there(word)) {
+      asked.names.emplace_back(word);
+    } else {
+      return false;
+    }
+  }
+  if (!asked.names.empty()) return true;
+  for (const StructureKind& one : all_structures()) asked.names.emplace_back(one.name());
+  asked.names.emplace_back("scene");
+  return true;
+}
+
+/// Short runs end before each has had its most.
+bool is_flat(const SoakTally& tally) {
+  constexpr std::uint64_t kLong = 100'000;
+  return tally.frames < kLong ||
+         static_cast<double>(tally.last_peak) <= 1.1 * static_cast<double>(tally.first_peak);
+}
+
+void print(const SoakTally& t) {
+  std::printf(
+      "%-18s %9llu %12llu %14llu %8llu %6llu %9zu %9zu %9llu %8.2f %8.2f %6.1f\n", t.name.c_str(),
+      static_cast<unsigned long long>(t.frames), static_cast<unsigned long long>(t.operations),
+      static_cast<unsigned long long>(t.comparisons), static_cast<unsigned long long>(t.checks),
+      static_cast<unsigned long long>(t.snapshots), t.first_peak, t.last_peak,
+      static_cast<unsigned long long>(t.frames_without_requests), t.median_us, t.p999_us,
+      t.median_us > 0.0 ? t.p999_us / t.median_us : 0.0);
+  std::fflush(stdout);
+}
+
+SoakTally soak(const std::string& name, const SoakPlan& plan) {
+  return name == "scene" ? soak_scene(plan) : soak_partition(structure_named(name), plan);
+}
+
+/// The sums of all, in one line.
+void print_json(const std::vector<SoakTally>& tallies) {
+  SoakTally sum;
+  std::uint64_t without = ~std::uint64_t{0};
+  double worst = 0.0;
+  for (const SoakTally& t : tallies) {
+    sum.frames += t.frames;
+    sum.operations += t.operations;
+    sum.comparisons += t.comparisons;
+    sum.checks += t.checks;
+    sum.snapshots += t.snapshots;
+    without = std::min(without, t.frames_without_requests);
+    if (t.median_us > 0.0) worst = std::max(worst, t.p999_us / t.median_us);
+  }
+  std::printf(
+      "{\"runs\": %zu, \"frames\": %llu, \"operations\": %llu, \"comparisons\": %llu, "
+      "\"checks\": %llu, \"snapshots\": %llu, \"frames_without_requests\": %llu, "
+      "\"worst_p999_over_median\": %.1f}\n",
+      tallies.size(), static_cast<unsigned long long>(sum.frames),
+      static_cast<unsigned long long>(sum.operations),
+      static_cast<unsigned long long>(sum.comparisons), static_cast<unsigned long long>(sum.checks),
+      static_cast<unsigned long long>(sum.snapshots), static_cast<unsigned long long>(without),
+      worst);
+}
+
+using Clock = std::chrono::steady_clock;
+
+int run(Asked asked) {
+  std::printf("%-18s %9s %12s %14s %8s %6s %9s %9s %9s %8s %8s %6s\n", "", "frames", "operations",
+              "comparisons", "checks", "saved", "peak B", "later B", "quiet", "us", "p99.9",
+              "ratio");
+  const auto start = Clock::now();
+  std::vector<SoakTally> tallies;
+  do {
+    for (const std::string& name : asked.names) {
+      try {
+        tallies.push_back(soak(name, asked.plan));
+      } catch (const std::runtime_error& error) {
+        std::fprintf(stderr, "%s, seed %llu: %s\n", name.c_str(),
+                     static_cast<unsigned long long>(asked.plan.seed), error.what());
+        return 1;
+      }
+      print(tallies.back());
+      if (!is_flat(tallies.back())) {
+        std::fprintf(stderr, "%s: memory grows\n", name.c_str());
+        return 1;
+      }
+    }
+    ++asked.plan.seed;
+  } while (Clock::now() - start < std::chrono::seconds(asked.seconds));
+  print_json(tallies);
+  return 0;
+}
+
+}  // namespace
+}  // namespace winnow::test
+
+int main(int argc, char** argv) {
+  winnow::test::Asked asked;
+  asked.plan.seed = winnow::test::base_seed();
+  if (!winnow::test::read_arguments(asked, argc, argv)) {
+    std::fprintf(stderr,
+                 "usage: winnow_soak [--frames N] [--seconds N] [--seed N] [--threads N] "
+                 "[--check-every N] [STRUCTURE|scene]...\n");
+    return 2;
+  }
+  return winnow::test::run(std::move(asked));
+}
