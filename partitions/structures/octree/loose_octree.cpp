@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::size_t kRowsPerTask = 16384;
 constexpr std::size_t kFewestNodes = 64;
+// A key takes about twice as long as what other passes do with a row.
+constexpr unsigned kKeyStages = 2;
 constexpr std::size_t kRowsOfGroup = 16 * kBlockRows;  // of a node of the tree over the rows
 // Longer runs of objects whose places cannot be told apart are sorted better by the tree.
 constexpr std::size_t kLongRun = 48;
@@ -51,7 +53,7 @@ class LooseTree : public CellStructure {
  private:
   [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
   [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
-  [[nodiscard]] std::size_t plan_passes() const noexcept override { return 4; }
+  [[nodiscard]] std::size_t plan_passes() const noexcept override { return kKeyStages + 3; }
   void finish_build(const RowPlan& plan, bool moved) noexcept override;
   [[nodiscard]] bool prunes_rows() const noexcept override { return true; }
   [[nodiscard]] bool fits(std::size_t row, const Place& place) const noexcept override;
@@ -88,7 +90,7 @@ class LooseTree : public CellStructure {
   };
 
   [[nodiscard]] Planned choose_cells(const RowPlan& plan) noexcept;
-  void find_keys(const RowPlan& plan) const noexcept;
+  void find_keys(const RowPlan& plan, std::size_t begin, std::size_t end) const noexcept;
   [[nodiscard]] bool lay_nodes(const RowPlan& plan) noexcept;
   [[nodiscard]] bool lay_node(std::span<const std::uint64_t> cell, const RowPlan& plan) noexcept;
   [[nodiscard]] std::uint32_t code_of(std::span<const std::uint64_t> cell,
@@ -119,18 +121,16 @@ bool LooseTree::reserve(const BuildRoom& room) noexcept {
 
 Planned LooseTree::plan(const RowPlan& plan, unsigned stage) noexcept {
   std::uint64_t* const items = plan.items.data();
-  switch (stage) {
-    case 0:
-      return choose_cells(plan);
-    case 1:
-      find_keys(plan);
-      return Planned::goes_on;
-    case 2:
-      sorted_ = radix_sort(items, items + plan.rows, plan.rows, 32, execution());
-      return Planned::goes_on;
-    default:
-      return lay_nodes(plan) ? Planned::done : Planned::out_of_memory;
+  if (stage == 0) return choose_cells(plan);
+  if (stage <= kKeyStages) {
+    find_keys(plan, plan.rows * (stage - 1) / kKeyStages, plan.rows * stage / kKeyStages);
+    return Planned::goes_on;
   }
+  if (stage == kKeyStages + 1) {
+    sorted_ = radix_sort(items, items + plan.rows, plan.rows, 32, execution());
+    return Planned::goes_on;
+  }
+  return lay_nodes(plan) ? Planned::done : Planned::out_of_memory;
 }
 
 Planned LooseTree::choose_cells(const RowPlan& plan) noexcept {
@@ -152,10 +152,10 @@ Planned LooseTree::choose_cells(const RowPlan& plan) noexcept {
   return Planned::goes_on;
 }
 
-void LooseTree::find_keys(const RowPlan& plan) const noexcept {
+void LooseTree::find_keys(const RowPlan& plan, std::size_t first, std::size_t last) const noexcept {
   std::uint64_t* const items = plan.items.data();
-  for_stretches(execution(), plan.rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
+  for_stretches(execution(), last - first, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = first + begin; row < first + end; ++row) {
       const std::size_t now = row_now(plan, row);
       const bool live = pool().ids()[now] != kNoObject;
       const std::uint32_t key = live ? planned_.cells.key_of(pool(), now) : LooseOctreeCells::kNone;
