@@ -359,8 +359,8 @@ class Asking {
       return std::tuple(one.number, Kind::order(one.answer));
     };
     std::ranges::sort(all, {}, order);
-    const auto twice = std::ranges::unique(all, {}, order);
-    all.erase(twice.begin(), twice.end());
+    const auto same = [&](const Numbered& a, const Numbered& b) { return order(a) == order(b); };
+    all.erase(std::unique(all.begin(), all.end(), same), all.end());
     const std::size_t count = answered == Status::ok ? asked_[i].questions.size() : 0;
     auto next = all.cbegin();
     lists.first.push_back(0);

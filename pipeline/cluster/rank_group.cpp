@@ -5,8 +5,9 @@
 namespace winnow {
 
 std::span<const Parcel> parcels_for(std::span<const Parcel> parcels, std::uint32_t rank) {
-  const auto range = std::ranges::equal_range(parcels, rank, {}, &Parcel::to);
-  return {range.begin(), range.end()};
+  // clang 14 cannot read std::ranges::subrange.
+  const auto begin = std::ranges::lower_bound(parcels, rank, {}, &Parcel::to);
+  return {begin, std::ranges::upper_bound(begin, parcels.end(), rank, {}, &Parcel::to)};
 }
 
 RankGroup::RankGroup(Transport& given, double imbalance_bound, std::pmr::memory_resource* memory)
