@@ -24,10 +24,7 @@ std::vector<bool> verdicts(const PairSet& set) {
   return overlap;
 }
 
-class PairSets : public testing::TestWithParam<PairKind> {
- protected:
-  void SetUp() override {}
-};
+class PairSets : public testing::TestWithParam<PairKind> {};
 
 TEST_P(PairSets, half_of_the_pairs_overlap) {
   const std::vector<bool> overlap = verdicts(*make_pair_set(GetParam(), {.pairs = kPairs}));

@@ -132,10 +132,7 @@ PairScene scene_of(Style style, std::size_t pairs, std::uint64_t seed, bool turn
   return scene;
 }
 
-class HullKernels : public testing::TestWithParam<Style> {
- protected:
-  void SetUp() override {}
-};
+class HullKernels : public testing::TestWithParam<Style> {};
 
 long double truth(const PairScene& scene, std::uint32_t i) {
   const BodyPair p = scene.pairs[i];
