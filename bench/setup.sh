@@ -1,10 +1,8 @@
 # shellcheck shell=bash
 # Sourced by bench/run and tests/run: installs what a bare Debian 12 lacks.
 
-# What every build of winnow needs; qhull only for hulls made from points, which tests and the tool
-# do.
-WINNOW_BUILD_PACKAGES=(cmake ninja-build g++ pkg-config libeigen3-dev libxsimd-dev libtbb-dev
-                       libqhull-dev)
+# What every build of winnow needs.
+WINNOW_BUILD_PACKAGES=(cmake ninja-build g++ pkg-config libeigen3-dev libxsimd-dev libtbb-dev)
 # What the winnow tool needs on top.
 WINNOW_BENCH_PACKAGES=(libcli11-dev nlohmann-json3-dev liblzma-dev xz-utils
                        libjs-three libjs-chart.js)

@@ -88,14 +88,8 @@ elseif(WINNOW_SANITIZER STREQUAL "fuzzer")
       -fno-omit-frame-pointer)
 elseif(WINNOW_SANITIZER STREQUAL "thread")
   set(winnow_sanitize -fsanitize=thread)
-elseif(WINNOW_SANITIZER STREQUAL "memory")
-  set(winnow_sanitize -fsanitize=memory -fsanitize-memory-track-origins
-      -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  # The standard library is not built for it: what of it is in headers is compiled here, too, and
-  # streams and strings are not taken from the library.
-  target_compile_definitions(winnow_flags INTERFACE _GLIBCXX_EXTERN_TEMPLATE=0)
 elseif(NOT WINNOW_SANITIZER STREQUAL "")
-  message(FATAL_ERROR "WINNOW_SANITIZER is empty, address, fuzzer, memory or thread")
+  message(FATAL_ERROR "WINNOW_SANITIZER is empty, address, fuzzer or thread")
 endif()
 target_compile_options(winnow_flags INTERFACE ${winnow_sanitize})
 target_link_options(winnow_flags INTERFACE ${winnow_sanitize})

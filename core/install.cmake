@@ -4,13 +4,10 @@
 include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME library)
 
-# Archives leave TBB and qhull to whoever links them; a shared library finds its own.
+# Archives leave TBB to whoever links them; a shared library finds its own.
 set(winnow_requires "")
 if(NOT WINNOW_SHARED AND WINNOW_TBB)
   list(APPEND winnow_requires tbb)
-endif()
-if(NOT WINNOW_SHARED AND WINNOW_WITH_QHULL)
-  list(APPEND winnow_requires qhull_r)
 endif()
 list(JOIN winnow_requires ", " winnow_pc_requires)
 if(WINNOW_SHARED)

@@ -62,10 +62,10 @@ class WINNOW_API ShapePool {
     return add(shape, id) == Status::ok ? id : ShapeId{};
   }
 
-  /// The convex hull of points, by qhull: `unsupported` if the library was built without it. While
-  /// it runs, qhull takes memory from the C library; all else comes from the pool's resource.
-  /// Coplanar faces are merged; points inside, on faces or on edges fall away; flat sets make a
-  /// polygon, a segment or a point. `invalid_shape` if there is no point or one is not finite.
+  /// The convex hull of points, computed without rounding: of any that are finite, whatever they
+  /// are like. Faces that are coplanar to 1e-13 of the hull's size are merged; points inside, on
+  /// faces or on edges, to as much, fall away; flat sets make a polygon, a segment or a point.
+  /// `invalid_shape` if there is no point or one is not finite. O(points log points) for most.
   Status add_hull(const PointView& points, double rounding, ShapeId& id);
   /// The hull that `faces` bound. `invalid_shape` unless they are closed, consistently oriented and
   /// convex to 1e-9 of the hull's size. Coplanar neighbours are merged.

@@ -15,20 +15,11 @@
 namespace winnow::bench {
 namespace {
 
-/// False where the library was built without qhull.
-bool has_hulls() {
-  ShapePool pool;
-  ShapeId id;
-  const Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  return pool.add_hull(std::span(&point, 1), 0.0, id) == Status::ok;
-}
-
 std::vector<PairKind> narrow_kinds(bool quick) {
-  const bool hulls = has_hulls();
   std::vector<PairKind> kinds;
   for (const PairKind& kind : pair_kinds()) {
     const bool is_quick = kind.name == "sphere-box" || kind.name == "box-box";
-    if ((is_quick || !quick) && (hulls || kind.hull_vertices == 0)) kinds.push_back(kind);
+    if (is_quick || !quick) kinds.push_back(kind);
   }
   return kinds;
 }
@@ -156,11 +147,10 @@ ReportSteps plan_stability(const ReportOptions& options) {
   ReportSteps steps;
   steps.push_back({"hard cases", options.peers ? 1.0 : 0.1,
                    [=](Results& results) { measure_hard_cases(results, options.peers); }});
-  const bool hulls = has_hulls() && !options.quick;
   for (const StabilityCurve& curve : stability_curves()) {
     for (const char* name : curve.kinds) {
       const PairKind& kind = *find_pair_kind(name);
-      if (kind.hull_vertices > 0 && !hulls) continue;
+      if (kind.hull_vertices > 0 && options.quick) continue;
       steps.push_back({std::string(curve.name) + ", " + name,
                        options.quick ? 0.05 : 1.0 + 0.2 * kind.hull_vertices,
                        [&curve, &kind, options](Results& results) {

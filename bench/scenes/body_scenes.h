@@ -13,7 +13,7 @@ namespace winnow::bench {
 
 /// Boxes, spheres, capsules and hulls of 16 vertices, about unit size, a quarter each, that lie
 /// close: random places in a cube, pushed apart until they hardly overlap. About 8 pairs of boxes
-/// and 2.5 contacts a body. Throws std::runtime_error without qhull.
+/// and 2.5 contacts a body.
 [[nodiscard]] std::unique_ptr<BodySet> make_heap(std::size_t bodies, std::uint64_t seed);
 
 /// Hulls of 16 to 32 vertices that lie on a terrain of 2 * cells^2 triangles of about half their

@@ -39,7 +39,8 @@ class ReadPlaces {
   template <typename Entry>
   [[nodiscard]] bool open(ByteReader& in, Column<Entry>& entries, Column<std::uint32_t>& free,
                           const Entry& nothing) noexcept {
-    if (!entries.resize(places_) || !free.resize(places_)) return in.refuse_memory();
+    // Last, so that there is no entry that was not written yet.
+    if (!free.resize(places_) || !entries.resize(places_)) return in.refuse_memory();
     std::fill(entries.begin(), entries.end(), nothing);
     std::uint32_t* at = std::copy(free_.begin(), free_.end(), free.begin());
     for (std::size_t place = places_; place-- > 0;) {

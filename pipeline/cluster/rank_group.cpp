@@ -5,9 +5,9 @@
 namespace winnow {
 
 std::span<const Parcel> parcels_for(std::span<const Parcel> parcels, std::uint32_t rank) {
+  // clang 14 cannot read std::ranges::subrange.
   const auto begin = std::ranges::lower_bound(parcels, rank, {}, &Parcel::to);
-  const auto end = std::ranges::upper_bound(parcels, rank, {}, &Parcel::to);
-  return {begin, end};
+  return {begin, std::ranges::upper_bound(begin, parcels.end(), rank, {}, &Parcel::to)};
 }
 
 RankGroup::RankGroup(Transport& given, double imbalance_bound, std::pmr::memory_resource* memory)

@@ -20,7 +20,7 @@ import zipfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-PACKAGES = "cmake ninja-build g++ libeigen3-dev libxsimd-dev libtbb-dev libqhull-dev pybind11-dev"
+PACKAGES = "cmake ninja-build g++ libeigen3-dev libxsimd-dev libtbb-dev pybind11-dev"
 
 
 def version():

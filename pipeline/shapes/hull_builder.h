@@ -14,7 +14,7 @@ namespace winnow {
 
 /// Builds the hull of points; see ShapePool::add_hull. All of its columns lie in one block of
 /// `memory`, which release_hull gives back. What building needs comes from `memory` too, and is
-/// given back before they return; only qhull itself takes its memory from the C library.
+/// given back before they return.
 Status hull_of_points(const PointView& points, std::pmr::memory_resource* memory, HullShape& hull);
 Status hull_of_faces(const PointView& points, const HullFaces& faces,
                      std::pmr::memory_resource* memory, HullShape& hull);

@@ -24,19 +24,7 @@ std::vector<bool> verdicts(const PairSet& set) {
   return overlap;
 }
 
-bool has_hulls() {
-  ShapePool pool;
-  ShapeId id;
-  const Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  return pool.add_hull(std::span(&point, 1), 0.0, id) == Status::ok;
-}
-
-class PairSets : public testing::TestWithParam<PairKind> {
- protected:
-  void SetUp() override {
-    if (GetParam().hull_vertices > 0 && !has_hulls()) GTEST_SKIP() << "built without qhull";
-  }
-};
+class PairSets : public testing::TestWithParam<PairKind> {};
 
 TEST_P(PairSets, half_of_the_pairs_overlap) {
   const std::vector<bool> overlap = verdicts(*make_pair_set(GetParam(), {.pairs = kPairs}));

@@ -124,9 +124,6 @@ void add_shapes(ShapeCalls& calls) {
            return w.shapes.add_hull(corners, {loops, sizes}, 0.0, id);
          });
        }});
-  ShapePool probe;
-  ShapeId ignored;
-  if (probe.add_hull(ball_of_points(), 0.0, ignored) != Status::ok) return;
   calls.push_back({"hull of points", [](auto& w) {
                      return w.keep(
                          [&](ShapeId& id) { return w.shapes.add_hull(ball_of_points(), 0.1, id); });

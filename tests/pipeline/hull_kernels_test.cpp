@@ -132,19 +132,7 @@ PairScene scene_of(Style style, std::size_t pairs, std::uint64_t seed, bool turn
   return scene;
 }
 
-bool have_hulls() {
-  ShapePool pool;
-  ShapeId id;
-  const Points corner{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  return pool.add_hull(corner, 0.0, id) == Status::ok;
-}
-
-class HullKernels : public testing::TestWithParam<Style> {
- protected:
-  void SetUp() override {
-    if (!have_hulls()) GTEST_SKIP() << "built without qhull";
-  }
-};
+class HullKernels : public testing::TestWithParam<Style> {};
 
 long double truth(const PairScene& scene, std::uint32_t i) {
   const BodyPair p = scene.pairs[i];
@@ -289,7 +277,6 @@ INSTANTIATE_TEST_SUITE_P(Of, HullKernels,
                                          Style::rich, Style::rounded));
 
 TEST(HullKernel, touching_and_bad_pairs_are_not_certified) {
-  if (!have_hulls()) GTEST_SKIP() << "built without qhull";
   PairScene scene;
   Random random(1);
   ShapeId id;
@@ -330,7 +317,6 @@ void PrintTo(const KindsAndStyle& k, std::ostream* out) {
 class CoresAndHulls : public testing::TestWithParam<KindsAndStyle> {};
 
 TEST_P(CoresAndHulls, answers_are_those_of_the_solver_on_every_instruction_set) {
-  if (!have_hulls()) GTEST_SKIP() << "built without qhull";
   const auto [a, b, style] = GetParam();
   PairScene scene;
   Random random(9);

@@ -24,11 +24,6 @@ using enum ShapeKind;
 constexpr NarrowTier kTiers[] = {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference};
 constexpr double kMargin = 0.05;
 
-bool has_hulls() {
-  const std::vector<ShapeKind> kinds = all_kinds();
-  return std::find(kinds.begin(), kinds.end(), hull) != kinds.end();
-}
-
 Pose pose_of(const Eigen::Quaterniond& turn, const Eigen::Vector3d& place) {
   Pose pose = Pose::at(place.x(), place.y(), place.z());
   pose.orientation[0] = turn.w();
@@ -106,7 +101,6 @@ std::size_t strangers(const PairAnswers& of, const PairAnswers& in, double toler
 }
 
 TEST(Manifolds, of_cubes_tilted_by_a_ten_thousandth_have_four_points) {
-  if (!has_hulls()) GTEST_SKIP() << "no hulls";
   PairScene scene;
   const Eigen::Vector3d half(1, 1, 1);
   scene.shapes = {box_shape(scene.pool, half, true), box_shape(scene.pool, half, true)};
@@ -121,7 +115,6 @@ TEST(Manifolds, of_cubes_tilted_by_a_ten_thousandth_have_four_points) {
 }
 
 TEST(Manifolds, of_a_box_are_the_same_if_it_is_given_as_a_hull) {
-  if (!has_hulls()) GTEST_SKIP() << "no hulls";
   Random random(5);
   const double tilts[][2] = {{1e-12, 1e-6}, {1e-6, 1e-4}, {1e-4, 1e-2}, {1e-2, 0.1}};
   for (const auto& tilt : tilts) {
@@ -145,7 +138,6 @@ TEST(Manifolds, of_a_box_are_the_same_if_it_is_given_as_a_hull) {
 }
 
 TEST(Manifolds, of_resting_hulls_hardly_need_the_solver) {
-  if (!has_hulls()) GTEST_SKIP() << "no hulls";
   Random random(6);
   for (const double tilt : {1e-14, 1e-10, 1e-7, 1e-5, 1e-3}) {
     const PairScene scene = resting_boxes(500, tilt, 3.0 * tilt, random);
@@ -157,7 +149,6 @@ TEST(Manifolds, of_resting_hulls_hardly_need_the_solver) {
 }
 
 TEST(Manifolds, of_a_capsule_deep_in_a_hull_have_a_point_as_deep) {
-  if (!has_hulls()) GTEST_SKIP() << "no hulls";
   PairScene scene;
   scene.shapes.resize(2);
   ASSERT_EQ(scene.pool.add(CapsuleShape{0.2222824254022642, 0.026282565200887533}, scene.shapes[0]),
@@ -236,13 +227,7 @@ constexpr Kinds kKinds[] = {{capsule, capsule},  {sphere, box},  {sphere, hull},
                             {box, triangle},     {hull, hull},   {hull, triangle},
                             {triangle, triangle}};
 
-class ManifoldsOf : public testing::TestWithParam<Kinds> {
- protected:
-  void SetUp() override {
-    const bool needs = GetParam().a == hull || GetParam().b == hull;
-    if (needs && !has_hulls()) GTEST_SKIP() << "no hulls";
-  }
-};
+class ManifoldsOf : public testing::TestWithParam<Kinds> {};
 
 TEST_P(ManifoldsOf, lanes_are_those_of_the_solver) {
   constexpr std::size_t kBatch = 10000;

@@ -186,13 +186,6 @@ class Maker {
   Random& random_;
 };
 
-bool makes_hulls() {
-  ShapePool pool;
-  const std::vector<Eigen::Vector3d> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  ShapeId id;
-  return pool.add_hull(points, 0.0, id) != Status::unsupported;
-}
-
 /// Of one shape, about the origin of its frame.
 double extent_of(const ShapeTables& tables, ShapeId id) {
   const std::uint32_t i = id.index();
@@ -260,17 +253,15 @@ const char* to_string(PairStyle style) {
 }
 
 std::vector<ShapeKind> polytope_kinds() {
-  std::vector<ShapeKind> kinds{ShapeKind::sphere, ShapeKind::capsule, ShapeKind::box};
-  if (makes_hulls()) kinds.push_back(ShapeKind::hull);
-  kinds.push_back(ShapeKind::triangle);
-  return kinds;
+  return {ShapeKind::sphere, ShapeKind::capsule, ShapeKind::box, ShapeKind::hull,
+          ShapeKind::triangle};
 }
 
 std::vector<ShapeKind> all_kinds() {
   std::vector<ShapeKind> kinds;
   for (const ShapeKind kind : kConvexKinds) {
     if (kind > ShapeKind::half_space) break;
-    if (kind != ShapeKind::hull || makes_hulls()) kinds.push_back(kind);
+    kinds.push_back(kind);
   }
   return kinds;
 }

@@ -18,13 +18,6 @@
 namespace winnow::test {
 namespace {
 
-bool makes_no_hulls() {
-  ShapePool pool;
-  const std::vector<Eigen::Vector3d> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  ShapeId id;
-  return pool.add_hull(corners, 0.0, id) == Status::unsupported;
-}
-
 std::vector<Eigen::Vector3d> block(double x, double y, double z) {
   std::vector<Eigen::Vector3d> corners;
   for (int i = 0; i < 8; ++i) {
@@ -107,7 +100,6 @@ PairScene nearly_parallel(Form form, std::size_t count, Random& random) {
 }
 
 TEST(ParallelCubes, turned_by_a_ten_millionth_meet_edge_on_edge) {
-  if (makes_no_hulls()) GTEST_SKIP() << "no hulls";
   PairScene scene;
   scene.shapes.resize(2);
   for (ShapeId& id : scene.shapes) {
@@ -128,7 +120,6 @@ TEST(ParallelCubes, turned_by_a_ten_millionth_meet_edge_on_edge) {
 class ParallelHulls : public testing::TestWithParam<Form> {};
 
 TEST_P(ParallelHulls, are_as_deep_as_the_least_of_all_directions) {
-  if (makes_no_hulls()) GTEST_SKIP() << "no hulls";
   Random random(17);
   const PairScene scene = nearly_parallel(GetParam(), scaled(8000), random);
   std::vector<double> truth;

@@ -10,6 +10,30 @@
 namespace winnow::test {
 namespace {
 
+TEST(SceneQueries, of_what_reaches_to_infinity_go_on_beyond_the_range_of_float) {
+  Random random(23);
+  QueryWorld world;
+  ShapeId ground;
+  ASSERT_EQ(world.shapes.pool.add(HalfSpaceShape{{0.0, 0.0, 1.0}, 0.0}, ground), Status::ok);
+  world.add(ground, Pose{}, random);
+  world.add_to_scene();
+  SceneQueries ask(*world.scene);
+  const ShapeRay rays[] = {{{0, 0, 1e39}, {0, 0, -1}, 1e40},
+                           {{1e39, -1e39, 5}, {0, 0, -1}, 100.0},
+                           {{-1e200, 0, 5}, {1, 0, -1e-200}, kInfinity},
+                           {{0, 0, 1e300}, {0, 1, -1}, kInfinity}};
+  for (const ShapeRay& ray : rays) {
+    SceneHit hit;
+    std::span<const SceneHit> all;
+    ASSERT_EQ(ask.closest(ray, hit), Status::ok);
+    ASSERT_EQ(ask.all(ray, all), Status::ok);
+    ASSERT_EQ(all.size(), 1U) << ray.origin[2];
+    EXPECT_EQ(hit.key, world.keys[0]);
+    EXPECT_EQ(hit.t, all[0].t);
+    EXPECT_DOUBLE_EQ(hit.t, ray.origin[2] / -ray.direction[2]);
+  }
+}
+
 /// Zero, one, or a number of any size up to `most`.
 double any_number(double most, Random& random) {
   const double sign = random.chance(0.5) ? 1.0 : -1.0;

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "tests/queries/questions.h"
@@ -179,6 +180,24 @@ TEST_P(Casts, are_right_while_objects_come_go_and_move) {
       ASSERT_TRUE(is_any_of(any_of(world, cast), all));
     }
   }
+}
+
+TEST_P(Casts, meet_what_reaches_to_infinity_as_far_as_floats_go) {
+  World world(config());
+  constexpr float kEndless = std::numeric_limits<float>::infinity();
+  // The ray climbs a thousandth of its way: it comes to these after 1e38, and after 1e39.
+  const std::vector<Aabb> boxes{{{-1.0F, 1e35F, -1.0F}, {kEndless, kEndless, 1.0F}},
+                                {{-1.0F, 1e36F, -1.0F}, {kEndless, kEndless, 1.0F}}};
+  const std::vector<Key> keys = world.insert(boxes);
+  HitBuffer buffer;
+  const Ray ray{{0.5F, 0.5F, 0.5F}, {1.0F, 1e-3F, 0.0F}};
+  const Hits hits = all_of(world, ray, buffer);
+  ASSERT_EQ(hits.size(), 1U);
+  EXPECT_EQ(hits[0].key, keys[0]);
+  EXPECT_EQ(closest_of(world, ray).key, keys[0]);
+  EXPECT_EQ(any_of(world, ray).key, keys[0]);
+  // Where a ray begins in an object it is met, however far out that is.
+  EXPECT_EQ(all_of(world, Ray{{3.4e38F, 3.4e38F, 0.5F}, {1.0F, 0.0F, 0.0F}}, buffer).size(), 2U);
 }
 
 TEST_P(Casts, with_a_predicate_find_what_it_lets_pass) {

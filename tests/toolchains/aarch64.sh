@@ -19,8 +19,8 @@ winnow_aarch64_root() {
   )
   winnow_quietly "$root/log" apt-get "${options[@]}" update
   (cd "$apt" && winnow_quietly "$root/log" apt-get "${options[@]}" download \
-    libeigen3-dev libgtest-dev librapidcheck-dev libtbb-dev libtbb12 libtbbmalloc2 libtbbbind-2-5 libxsimd-dev \
-    libqhull-dev libqhull8.0 libqhull-r8.0 libqhullcpp8.0)
+    libeigen3-dev libgtest-dev librapidcheck-dev libtbb-dev libtbb12 libtbbmalloc2 libtbbbind-2-5 \
+    libxsimd-dev)
   local package
   for package in "$apt"/*.deb; do
     dpkg-deb -x "$package" "$root"

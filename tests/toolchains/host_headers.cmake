@@ -5,7 +5,6 @@ file(CREATE_LINK /usr/include/xsimd ${CMAKE_BINARY_DIR}/host_headers/xsimd SYMBO
 set(WINNOW_XSIMD_INCLUDE_DIR ${CMAKE_BINARY_DIR}/host_headers CACHE PATH "xsimd headers")
 set(Eigen3_DIR /usr/share/eigen3/cmake CACHE PATH "Eigen's CMake files")
 set(WINNOW_TBB OFF CACHE BOOL "")
-set(CMAKE_DISABLE_FIND_PACKAGE_Qhull ON)
 set(CMAKE_DISABLE_FIND_PACKAGE_MPI ON)
 set(CMAKE_DISABLE_FIND_PACKAGE_rapidcheck ON)
 # Tests are built with the sources of Debian's googletest.

@@ -22,10 +22,8 @@ class Winnow(ConanFile):
         "shared": [True, False],
         "fPIC": [True, False],
         "tbb": [True, False],
-        "hulls": [True, False],
     }
-    default_options = {"shared": False, "fPIC": True, "tbb": True, "hulls": False,
-                       "qhull/*:shared": True}
+    default_options = {"shared": False, "fPIC": True, "tbb": True}
     implements = ["auto_shared_fpic"]
 
     def set_version(self):
@@ -42,8 +40,6 @@ class Winnow(ConanFile):
         self.requires("xsimd/13.0.0", visible=False)
         if self.options.tbb:
             self.requires("onetbb/2021.12.0")
-        if self.options.hulls:
-            self.requires("qhull/8.0.2")
 
     def validate(self):
         check_min_cppstd(self, 20)
@@ -61,7 +57,6 @@ class Winnow(ConanFile):
         toolchain.cache_variables["WINNOW_BENCH"] = False
         toolchain.cache_variables["WINNOW_CLUSTER"] = False
         toolchain.cache_variables["WINNOW_TBB"] = bool(self.options.tbb)
-        toolchain.cache_variables["CMAKE_DISABLE_FIND_PACKAGE_Qhull"] = not self.options.hulls
         toolchain.generate()
 
     def build(self):

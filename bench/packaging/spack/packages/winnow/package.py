@@ -13,14 +13,12 @@ class Winnow(CMakePackage):
 
     variant("shared", default=False, description="One shared library instead of archives")
     variant("tbb", default=True, description="Parallel work on oneTBB")
-    variant("hulls", default=True, description="Hulls of points, by qhull")
 
     depends_on("cxx", type="build")
     depends_on("cmake@3.25:", type="build")
     depends_on("xsimd@8.1:14", type="build")
     depends_on("eigen@3.4:3")
     depends_on("intel-oneapi-tbb@2021:", when="+tbb")
-    depends_on("qhull", when="+hulls")
 
     def cmake_args(self):
         return [
@@ -29,5 +27,4 @@ class Winnow(CMakePackage):
             self.define("WINNOW_CLUSTER", False),
             self.define_from_variant("BUILD_SHARED_LIBS", "shared"),
             self.define_from_variant("WINNOW_TBB", "tbb"),
-            self.define("CMAKE_DISABLE_FIND_PACKAGE_Qhull", self.spec.satisfies("~hulls")),
         ]
