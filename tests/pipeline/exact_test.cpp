@@ -311,6 +311,16 @@ TEST(ExactOverlap, discs_of_the_smallest_numbers_are_decided) {
   EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::cylinder), ExactVerdict::overlapping);
 }
 
+TEST(ExactOverlap, boxes_of_the_largest_numbers_are_decided) {
+  constexpr double kLarge = 8e307;
+  Pair pair;
+  for (BoxShape& box : pair.boxes) box = {{kLarge, kLarge, kLarge}, 0.0};
+  pair.poses[1].position[0] = 2.0 * kLarge;
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::touching);
+  pair.poses[1].position[0] = std::nextafter(2.0 * kLarge, 0.0);
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::overlapping);
+}
+
 TEST(ExactOverlap, agrees_with_integers_on_small_shapes) {
   for (const ShapeKind a : kCores) {
     for (const ShapeKind b : kCores) {
