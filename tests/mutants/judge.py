@@ -1,10 +1,10 @@
-"""Runs the tests against each mutant: judge.py PROGRAMS MUTANTS SECONDS OUT.
+"""Runs the tests against each mutant: judge.py PROGRAMS MUTANTS SECONDS OUT [SUITES].
 
 First every suite of tests runs once without a mutant, and tells which mutants it comes by. Then each
 mutant is run by the suites that come by it, the fastest first, until one fails, hangs or crashes, which
 kills it, or until SECONDS have passed for it. Prints the survivors, with the reason that survivors.txt
 gives where it knows one, and the score by group; OUT gets all of it as JSON. Equivalent mutants, as that
-file calls them, are not counted.
+file calls them, are not counted. SUITES, a regular expression, takes those suites alone.
 """
 
 import collections
@@ -12,6 +12,7 @@ import concurrent.futures
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -83,13 +84,15 @@ def one_line(text):
 
 def main():
     programs, mutants_file, budget, out = sys.argv[1:5]
+    wanted = re.compile(sys.argv[5] if len(sys.argv) > 5 else "")
     mutants = [m for m in json.loads(pathlib.Path(mutants_file).read_text())
                if not m.get("dropped")]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         jobs = []
         for name in PROGRAMS:
             program = f"{programs}/winnow_{name}_tests"
-            jobs += [pool.submit(survey, program, suite) for suite in suites_of(program)]
+            jobs += [pool.submit(survey, program, suite) for suite in suites_of(program)
+                     if wanted.search(suite)]
         suites = [job.result() for job in jobs]
         for suite in suites:
             if not suite["passed"]:

@@ -45,6 +45,27 @@ TEST(Dyadic, keeps_every_bit_of_doubles_far_apart) {
   EXPECT_EQ(square.highest_bit(), 2047);
 }
 
+TEST(Dyadic, that_needs_more_room_than_there_is_is_zero) {
+  constexpr int kTooFar = 64 * (kDyadicDigits + 1);
+  const Dyadic far = Dyadic::power_of_two(kTooFar);
+  EXPECT_EQ((far + 1.0).sign(), 0);
+  EXPECT_EQ((far - 1.0).sign(), 0);
+  EXPECT_EQ((Dyadic(1.0) - far).sign(), 0);
+  const Dyadic wide = Dyadic::power_of_two(64 * (kDyadicDigits / 2)) + 1.0;
+  EXPECT_EQ(wide.sign(), 1);
+  EXPECT_EQ((wide * wide).sign(), 0);
+  EXPECT_EQ((wide * Dyadic(-1.0)).sign(), -1);
+}
+
+TEST(Dyadic, is_what_it_was_when_it_is_copied_onto_itself) {
+  Dyadic number(-2.5);
+  const Dyadic& same = number;
+  number = same;
+  EXPECT_EQ(compare(number, -2.5), 0);
+  EXPECT_EQ(Dyadic().scaled(3), 0.0);
+  EXPECT_EQ(compare(Dyadic(), 0.0), 0);
+}
+
 TEST(Dyadic, is_rounded_to_nearly_the_nearest_double) {
   for (const double value : {1.0, 3.0, 0.1, 1e300, -7e-300, DBL_MIN, -DBL_MAX}) {
     EXPECT_EQ(Dyadic(value).scaled(0), value);

@@ -300,6 +300,78 @@ TEST(ExactOverlap, turned_boxes_are_decided_whatever_their_numbers_span) {
   EXPECT_GT(asked, 100);
 }
 
+TEST(ExactOverlap, half_spaces_of_numbers_too_far_apart_are_undecided) {
+  Pair pair;
+  for (Pose& pose : pair.poses) pose.orientation[1] = 1e-300;
+  pair.poses[1].position[0] = 1.0;
+  for (BoxShape& box : pair.boxes) box = {{1.0, 1.0, 1.0}, 0.0};
+  for (HalfSpaceShape& half_space : pair.half_spaces) half_space = {{0.0, 0.0, 1.0}, 0.0};
+  for (const ShapeKind other : {ShapeKind::box, ShapeKind::half_space}) {
+    EXPECT_EQ(pair.verdict(ShapeKind::half_space, other), ExactVerdict::undecided);
+    EXPECT_EQ(pair.mirrored(ShapeKind::half_space, other), ExactVerdict::undecided);
+  }
+}
+
+TEST(ExactOverlap, half_spaces_hold_what_lies_deep_in_them) {
+  Pair pair;
+  pair.half_spaces[0] = {{0.0, 0.0, 1.0}, 0.0};
+  pair.boxes[1] = {{1.0, 1.0, 1.0}, 0.5};
+  pair.cylinders[1] = {1.0, 1.0, 0.5};
+  pair.poses[1].position[2] = -10.0;
+  for (const ShapeKind other : {ShapeKind::box, ShapeKind::cylinder}) {
+    EXPECT_EQ(pair.verdict(ShapeKind::half_space, other), ExactVerdict::overlapping);
+  }
+  pair.poses[1].position[2] = 10.0;
+  for (const ShapeKind other : {ShapeKind::box, ShapeKind::cylinder}) {
+    EXPECT_EQ(pair.verdict(ShapeKind::half_space, other), ExactVerdict::separated);
+  }
+}
+
+TEST(ExactOverlap, of_shapes_that_are_not_hulls_of_points_and_discs_is_undecided) {
+  Pair pair;
+  pair.boxes[0] = {{1.0, 1.0, 1.0}, 0.0};
+  pair.half_spaces[0] = {{0.0, 0.0, 1.0}, 0.0};
+  for (const ShapeKind other : {ShapeKind::ellipsoid, ShapeKind::tapered_capsule}) {
+    for (const ShapeKind one : {ShapeKind::box, ShapeKind::half_space}) {
+      EXPECT_EQ(pair.verdict(one, other), ExactVerdict::undecided);
+      EXPECT_EQ(pair.mirrored(one, other), ExactVerdict::undecided);
+    }
+  }
+}
+
+TEST(ExactOverlap, an_axis_that_is_none_will_do) {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const double axes[][3] = {{inf, 0, 0}, {inf, -inf, 0}, {nan, 0, 0}, {1, nan, 0}, {0, 0, 0}};
+  Pair pair;
+  for (BoxShape& box : pair.boxes) box = {{1.0, 1.0, 1.0}, 0.0};
+  for (const auto& axis : axes) {
+    pair.poses[1].position[1] = 2.0;
+    EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box, axis), ExactVerdict::touching);
+    pair.poses[1].position[1] = std::nextafter(2.0, 3.0);
+    EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box, axis), ExactVerdict::separated);
+  }
+}
+
+TEST(ExactOverlap, discs_of_the_smallest_numbers_are_decided) {
+  Pair pair;
+  constexpr double kSmall = 1e-280;
+  pair.boxes[0] = {{kSmall, kSmall, kSmall}, 0.0};
+  pair.cylinders[1] = {kSmall, kSmall, 0.0};
+  pair.poses[1].position[2] = 1.5 * kSmall;
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::cylinder), ExactVerdict::overlapping);
+}
+
+TEST(ExactOverlap, boxes_of_the_largest_numbers_are_decided) {
+  constexpr double kLarge = 8e307;
+  Pair pair;
+  for (BoxShape& box : pair.boxes) box = {{kLarge, kLarge, kLarge}, 0.0};
+  pair.poses[1].position[0] = 2.0 * kLarge;
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::touching);
+  pair.poses[1].position[0] = std::nextafter(2.0 * kLarge, 0.0);
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::overlapping);
+}
+
 TEST(ExactOverlap, agrees_with_integers_on_small_shapes) {
   for (const ShapeKind a : kCores) {
     for (const ShapeKind b : kCores) {
