@@ -3,7 +3,9 @@
 #include "pipeline/composites/parts.h"
 #include "pipeline/motion/impact_search.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <tuple>
 
 namespace winnow::impact {
 
@@ -19,6 +21,20 @@ struct BodyImpact {
   std::uint32_t part_a = kWholeShape;
   std::uint32_t part_b = kWholeShape;
 };
+
+/// True if the first is an impact, and the second none or one that is later; where times are the
+/// same the nearer one is first, and then that of smaller parts.
+[[nodiscard]] inline bool comes_before(const BodyImpact& first, const BodyImpact& second) noexcept {
+  const auto order = [](const BodyImpact& found) {
+    return std::tuple(found.impact.time, found.impact.gap, found.part_a, found.part_b);
+  };
+  return first.impact.hit && (!second.impact.hit || order(first) < order(second));
+}
+
+/// What of an interval is left before an impact.
+[[nodiscard]] inline Interval before(const Interval& within, const BodyImpact& found) noexcept {
+  return {within.first, found.impact.hit ? std::min(within.last, found.impact.time) : within.last};
+}
 
 /// The first impact within an interval, before which they are apart, of shapes that are there and
 /// motions that are valid; of bodies that share a point at the start that of the parts that overlap

@@ -9,6 +9,7 @@
 #include "partitions/tree/kd_order.h"
 #include "pipeline/motion/feature_proximity.h"
 #include "pipeline/motion/feature_stage.h"
+#include "pipeline/motion/result_chunk.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +21,7 @@ namespace {
 constexpr std::size_t kMostFaces = std::size_t{1} << 28U;
 constexpr std::size_t kMostVertices = 0x7FFFFFFF;
 constexpr std::size_t kRowsPerStretch = 8192;
+constexpr std::size_t kPairsPerStretch = 512;
 /// Differences of numbers that are no larger stay in the range of double, and so do theirs.
 constexpr double kFarthest = 0x1p1020;
 
@@ -397,32 +399,45 @@ Status DeformableMesh::find_with(const DeformableMesh& other, FeaturePair kind,
   return Status::ok;
 }
 
+bool DeformableMesh::is_moved() const noexcept {
+  return state_ != nullptr && state_->moved;
+}
+
+double DeformableMesh::reach() const noexcept {
+  return state_->distance;
+}
+
+void DeformableMesh::place_face(std::uint32_t face, std::array<Vec3d, 3>& start,
+                                std::array<Vec3d, 3>& end) const noexcept {
+  const std::uint32_t* const corner = state_->corners_of(face);
+  for (std::size_t i = 0; i < 3; ++i) {
+    start[i] = state_->start[corner[i]];
+    end[i] = state_->end[corner[i]];
+  }
+}
+
+Status DeformableMesh::find_faces(const Aabb& box,
+                                  const ResultChunks<Pair>& chunks) const noexcept {
+  const auto take = [&](std::span<Pair> pairs) { chunks.take(chunks.context, pairs); };
+  PairStream stream(options_.memory, options_.chunk, take);
+  FeatureRows asking(options_.memory);
+  if (!stream.reserve() || !asking.make(1)) return Status::out_of_memory;
+  for (int axis = 0; axis < 3; ++axis) {
+    asking.boxes.column(static_cast<std::size_t>(axis))[0] = box.min[axis];
+    asking.boxes.column(static_cast<std::size_t>(axis) + 3)[0] = box.max[axis];
+  }
+  QueryBatch batch;
+  const RowView own = asking.view();
+  std::copy_n(own.column, 6, batch.column);
+  batch.id = own.id;
+  batch.end = 1;
+  batch.mode = HitMode::query_first;
+  block_tree_kernels().query(state_->faces.tree.view(state_->faces.view()), batch, stream.sink());
+  stream.hand_on();
+  return Status::ok;
+}
+
 namespace {
-
-/// Results for the caller, handed over when as many as fit a chunk are there.
-template <typename Result, typename Chunks>
-class ResultChunk {
- public:
-  ResultChunk(std::pmr::memory_resource* memory, const Chunks& chunks) noexcept
-      : results_(memory), chunks_(chunks) {}
-  [[nodiscard]] bool reserve(std::size_t most) noexcept {
-    most_ = most;
-    return results_.reserve(most);
-  }
-  void add(const Result& result) noexcept {
-    if (results_.size() == most_) hand_over();
-    static_cast<void>(results_.push_back(result));
-  }
-  void hand_over() noexcept {
-    if (!results_.empty()) chunks_.take(chunks_.context, {results_.data(), results_.size()});
-    results_.clear();
-  }
-
- private:
-  Column<Result> results_;
-  const Chunks& chunks_;
-  std::size_t most_ = 0;
-};
 
 /// The vertices of a pair of features: of the first feature's mesh, then of the second's.
 template <typename State>
@@ -445,6 +460,25 @@ std::array<Vec3d, 4> points_of(FeaturePair kind, const std::array<std::uint32_t,
           second[vertex[3]]};
 }
 
+/// When features first touch, of pairs of a feature of mesh `a` and one of mesh `b`.
+template <typename State>
+void find_times(FeaturePair kind, std::span<const Pair> pairs, const State& a, const State& b,
+                const FeatureImpactOptions& options, double* times) noexcept {
+  FeatureStage stage;
+  double found[kFeatureLanes];
+  const auto settle = [&] {
+    stage.find(kind, found, options);
+    times = std::copy_n(found, stage.size(), times);
+    stage.clear();
+  };
+  for (const Pair& pair : pairs) {
+    const auto vertex = vertices_of(kind, pair, a, b);
+    stage.add(points_of(kind, vertex, a.start, b.start), points_of(kind, vertex, a.end, b.end));
+    if (stage.is_full()) settle();
+  }
+  settle();
+}
+
 }  // namespace
 
 Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kind,
@@ -456,31 +490,25 @@ Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kin
     return Status::invalid_argument;
   }
   ResultChunk<MeshImpact, ResultChunks<MeshImpact>> results(options_.memory, chunks);
-  if (!results.reserve(options_.chunk)) return Status::out_of_memory;
+  Column<double> times(options_.memory);
+  if (!results.reserve(options_.chunk) || !times.resize(options_.chunk)) {
+    return Status::out_of_memory;
+  }
   const State& a = *state_;
   const State& b = *second.state_;
-  FeatureStage stage;
-  Pair staged[kFeatureLanes];
-  const auto settle = [&] {
-    double times[kFeatureLanes];
-    stage.find(kind, times, options);
-    for (std::size_t i = 0; i < stage.size(); ++i) {
-      if (times[i] <= 1.0) results.add({staged[i], times[i]});
-    }
-    stage.clear();
-  };
   const auto take = [&](std::span<const Pair> pairs) {
-    for (const Pair& pair : pairs) {
-      const auto vertex = vertices_of(kind, pair, a, b);
-      staged[stage.size()] = pair;
-      stage.add(points_of(kind, vertex, a.start, b.start), points_of(kind, vertex, a.end, b.end));
-      if (stage.is_full()) settle();
+    for_stretches(options_.execution, pairs.size(), kPairsPerStretch,
+                  [&](std::size_t begin, std::size_t end) {
+                    find_times(kind, pairs.subspan(begin, end - begin), a, b, options,
+                               times.data() + begin);
+                  });
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (times[i] <= 1.0) results.add({pairs[i], times[i]});
     }
   };
   const Status status =
       other == nullptr ? self_candidates(kind, take) : candidates_with(*other, kind, take);
   if (status != Status::ok) return status;
-  settle();
   results.hand_over();
   return Status::ok;
 }
@@ -493,14 +521,23 @@ Status DeformableMesh::find_near(const DeformableMesh* other, FeaturePair kind, 
     return Status::invalid_argument;
   }
   ResultChunk<MeshProximity, ResultChunks<MeshProximity>> results(options_.memory, chunks);
-  if (!results.reserve(options_.chunk)) return Status::out_of_memory;
+  Column<MeshProximity> near(options_.memory);
+  if (!results.reserve(options_.chunk) || !near.resize(options_.chunk)) {
+    return Status::out_of_memory;
+  }
   const auto take = [&](std::span<const Pair> pairs) {
-    for (const Pair& pair : pairs) {
-      const auto vertex = vertices_of(kind, pair, *state_, *second.state_);
-      MeshProximity result;
-      result.features = pair;
-      find_nearest_points(kind, points_of(kind, vertex, state_->end, second.state_->end), result);
-      if (result.distance <= thickness) results.add(result);
+    for_stretches(options_.execution, pairs.size(), kPairsPerStretch,
+                  [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t i = begin; i < end; ++i) {
+                      const auto vertex = vertices_of(kind, pairs[i], *state_, *second.state_);
+                      near[i] = {};
+                      near[i].features = pairs[i];
+                      find_nearest_points(
+                          kind, points_of(kind, vertex, state_->end, second.state_->end), near[i]);
+                    }
+                  });
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (near[i].distance <= thickness) results.add(near[i]);
     }
   };
   const Status status =

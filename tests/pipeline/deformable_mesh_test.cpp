@@ -397,7 +397,7 @@ TEST(DeformableMeshes, take_at_most_120_bytes_a_triangle_and_no_more_from_step_t
   const std::size_t requests = memory.requests();
   ASSERT_EQ(step.move(mesh, 0.01), Status::ok);
   EXPECT_EQ(memory.requests(), requests);
-  memory.refuse_beyond(memory.outstanding() + 1000 * sizeof(MeshImpact) + 12000);
+  memory.refuse_beyond(memory.outstanding() + 1000 * (sizeof(MeshImpact) + sizeof(double)) + 12000);
   EXPECT_EQ(mesh.self_impacts(FeaturePair::edge_edge, {}, [](auto) {}), Status::ok);
   EXPECT_EQ(memory.outstanding(), mesh.footprint().total().reserved);
 }
