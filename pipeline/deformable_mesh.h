@@ -29,8 +29,8 @@ struct DeformableMeshOptions {
   /// Finite. Boxes are of floats, measured from here: a point near the mesh keeps them tight in a
   /// world far away. Meshes that are asked about each other have the same.
   Vec3d origin{};
-  /// Results that are handed over at a time at most, at least 1: with as many candidates, and an
-  /// answer for each of these, all the memory that a call takes.
+  /// Results that are handed over at a time at most, at least 1: with as many candidates (twice
+  /// that on several threads), and an answer for each of these, all the memory that a call takes.
   std::size_t chunk = 16384;
 };
 

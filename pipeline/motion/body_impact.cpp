@@ -106,16 +106,22 @@ void BodyImpactSearch::walk(const MovingShape& walked, const MovingShape& other,
 
 BodyImpact find_body_impact(const PartTraversal& parts, const MovingBody& a, const MovingBody& b,
                             double tolerance, const Interval& within) {
-  const MovingShape first = whole_shape(parts, a.shape, a.motion);
-  const MovingShape second = whole_shape(parts, b.shape, b.motion);
-  const Interval window = Passage(parts, a.motion, second).window(first.radius);
+  const MovingShape shape = whole_shape(parts, b.shape, b.motion);
+  const Interval window = Passage(parts, a.motion, shape).window(parts.radius(a.shape));
   const Interval both{std::max(window.first, within.first), std::min(window.last, within.last)};
   if (both.first > both.last) return {};
+  return find_impact_of_balls(parts, a, b, tolerance, both);
+}
+
+BodyImpact find_impact_of_balls(const PartTraversal& parts, const MovingBody& a,
+                                const MovingBody& b, double tolerance, const Interval& within) {
   if (!a.shape.is_composite() && !b.shape.is_composite()) {
     return {find_impact(parts.shapes().tables(), {a.shape, a.motion}, {b.shape, b.motion},
-                        tolerance, both)};
+                        tolerance, within)};
   }
-  return BodyImpactSearch(parts, tolerance).run(first, second, both);
+  const MovingShape first = whole_shape(parts, a.shape, a.motion);
+  const MovingShape second = whole_shape(parts, b.shape, b.motion);
+  return BodyImpactSearch(parts, tolerance).run(first, second, within);
 }
 
 }  // namespace winnow::impact

@@ -42,5 +42,9 @@ struct BodyImpact {
 [[nodiscard]] BodyImpact find_body_impact(const PartTraversal& parts, const MovingBody& a,
                                           const MovingBody& b, double tolerance,
                                           const Interval& within = {0.0, 1.0});
+/// The same of an interval in which the balls around the two overlap.
+[[nodiscard]] BodyImpact find_impact_of_balls(const PartTraversal& parts, const MovingBody& a,
+                                              const MovingBody& b, double tolerance,
+                                              const Interval& within);
 
 }  // namespace winnow::impact

@@ -9,6 +9,7 @@
 #include "partitions/tree/kd_order.h"
 #include "pipeline/motion/feature_proximity.h"
 #include "pipeline/motion/feature_stage.h"
+#include "pipeline/motion/pair_stream.h"
 #include "pipeline/motion/result_chunk.h"
 
 #include <algorithm>
@@ -22,6 +23,8 @@ constexpr std::size_t kMostFaces = std::size_t{1} << 28U;
 constexpr std::size_t kMostVertices = 0x7FFFFFFF;
 constexpr std::size_t kRowsPerStretch = 8192;
 constexpr std::size_t kPairsPerStretch = 512;
+/// Rows that ask one after another.
+constexpr std::uint32_t kRowsAsking = 256;
 /// Differences of numbers that are no larger stay in the range of double, and so do theirs.
 constexpr double kFarthest = 0x1p1020;
 
@@ -39,6 +42,12 @@ bool are_near_enough(const PointView& points) noexcept {
     }
   }
   return true;
+}
+
+/// Infinite bounds would meet the empty boxes behind the last row.
+float bound(float x) noexcept {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  return std::clamp(x, -kMost, kMost);
 }
 
 bool share_a_number(const std::uint32_t* a, const std::uint32_t* b) noexcept {
@@ -119,49 +128,36 @@ class FeatureRows {
   std::pmr::memory_resource* memory_;
 };
 
-/// Pairs on their way from a tree to who takes them: a buffer that is handed on whenever it is
-/// full, so that pairs never take more memory than it has.
+/// Hands on what a walk over so many units finds.
+template <typename Walk, typename Take>
+Status stream(const DeformableMeshOptions& options, std::uint32_t units, Walk&& walk,
+              Take& take) noexcept {
+  return stream_pairs(options.execution, options.memory, options.chunk, units, walk, take)
+             ? Status::ok
+             : Status::out_of_memory;
+}
+
+/// Hands on the pairs of rows that ask, in an order if there is one, and of rows below a tree.
 template <typename Take>
-class PairStream {
- public:
-  PairStream(std::pmr::memory_resource* memory, std::size_t chunk, Take& take) noexcept
-      : buffer_(memory), chunk_(chunk), take_(take) {}
-
-  [[nodiscard]] bool reserve() noexcept {
-    if (chunk_ > Column<Pair>::kMost - kSinkSlack || !buffer_.reserve(chunk_ + kSinkSlack)) {
-      return false;
-    }
-    sink_.owner = this;
-    sink_.grow = [](PairSink& sink) {
-      static_cast<PairStream*>(sink.owner)->hand_on();
-      return true;
-    };
-    aim();
-    return true;
-  }
-
-  [[nodiscard]] PairSink& sink() noexcept { return sink_; }
-
-  void hand_on() noexcept {
-    const auto* const begin = reinterpret_cast<const std::uint32_t*>(buffer_.data());
-    const auto count = static_cast<std::size_t>(sink_.cursor - begin) / 2;
-    for (std::size_t i = 0; i < count; i += chunk_) {
-      take_(std::span<Pair>(buffer_.data() + i, std::min(chunk_, count - i)));
-    }
-    aim();
-  }
-
- private:
-  void aim() noexcept {
-    sink_.cursor = reinterpret_cast<std::uint32_t*>(buffer_.data());
-    sink_.limit = sink_.cursor + 2 * chunk_;
-  }
-
-  Column<Pair> buffer_;
-  std::size_t chunk_;
-  Take& take_;
-  PairSink sink_;
-};
+Status ask(const DeformableMeshOptions& options, const FeatureRows& asked,
+           const FeatureRows& asking, const std::uint32_t* order, Take& take) noexcept {
+  if (asked.boxes.rows() == 0) return Status::ok;
+  const TreeView tree = asked.tree.view(asked.view());
+  const auto rows = static_cast<std::uint32_t>(asking.boxes.rows());
+  QueryBatch batch;
+  const RowView own = asking.view();
+  std::copy_n(own.column, 6, batch.column);
+  batch.id = own.id;
+  batch.rows = order;
+  batch.mode = HitMode::query_first;
+  const auto walk = [&](std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+    QueryBatch stretch = batch;
+    stretch.begin = begin * kRowsAsking;
+    stretch.end = std::min(rows, end * kRowsAsking);
+    return block_tree_kernels().query(tree, stretch, sink);
+  };
+  return stream(options, (rows + kRowsAsking - 1) / kRowsAsking, walk, take);
+}
 
 }  // namespace
 
@@ -252,10 +248,6 @@ bool DeformableMesh::State::link() noexcept {
 /// same as to round theirs: rounding keeps the order of numbers.
 void DeformableMesh::State::fit(const DeformableMeshOptions& options) noexcept {
   const double half = 0.5 * distance;
-  const auto bound = [](float x) {
-    constexpr float kMost = std::numeric_limits<float>::max();
-    return std::clamp(x, -kMost, kMost);
-  };
   for_stretches(options.execution, vertices.boxes.rows(), kRowsPerStretch,
                 [&](std::size_t begin, std::size_t past) {
                   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -353,25 +345,15 @@ Status DeformableMesh::find_self(FeaturePair kind,
     }
     if (kept != 0) chunks.take(chunks.context, pairs.first(kept));
   };
-  PairStream stream(options_.memory, options_.chunk, take);
-  if (!stream.reserve()) return Status::out_of_memory;
-  const BlockTreeKernels& kernels = block_tree_kernels();
   if (kind == FeaturePair::edge_edge) {
-    const BlockTree& tree = state_->edges.tree;
-    const auto groups = static_cast<std::uint32_t>(tree.groups());
-    if (groups != 0) kernels.self_pairs(tree.view(state_->edges.view()), 0, groups, stream.sink());
-  } else {
-    QueryBatch batch;
-    const RowView own = state_->vertices.view();
-    std::copy_n(own.column, 6, batch.column);
-    batch.id = own.id;
-    batch.rows = state_->vertex_order.data();
-    batch.end = static_cast<std::uint32_t>(vertices());
-    batch.mode = HitMode::query_first;
-    kernels.query(state_->faces.tree.view(state_->faces.view()), batch, stream.sink());
+    const TreeView tree = state_->edges.tree.view(state_->edges.view());
+    const auto walk = [&](std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+      return block_tree_kernels().self_pairs(tree, begin, end, sink);
+    };
+    const auto groups = static_cast<std::uint32_t>(state_->edges.tree.groups());
+    return stream(options_, groups, walk, take);
   }
-  stream.hand_on();
-  return Status::ok;
+  return ask(options_, state_->faces, state_->vertices, state_->vertex_order.data(), take);
 }
 
 Status DeformableMesh::find_with(const DeformableMesh& other, FeaturePair kind,
@@ -381,22 +363,10 @@ Status DeformableMesh::find_with(const DeformableMesh& other, FeaturePair kind,
     return Status::invalid_argument;
   }
   const auto take = [&](std::span<Pair> pairs) { chunks.take(chunks.context, pairs); };
-  PairStream stream(options_.memory, options_.chunk, take);
-  if (!stream.reserve()) return Status::out_of_memory;
-  const bool of_edges = kind == FeaturePair::edge_edge;
-  const FeatureRows& asking = of_edges ? state_->edges : state_->vertices;
-  const FeatureRows& asked = of_edges ? other.state_->edges : other.state_->faces;
-  if (asked.boxes.rows() == 0) return Status::ok;
-  QueryBatch batch;
-  const RowView own = asking.view();
-  std::copy_n(own.column, 6, batch.column);
-  batch.id = own.id;
-  if (!of_edges) batch.rows = state_->vertex_order.data();
-  batch.end = static_cast<std::uint32_t>(asking.boxes.rows());
-  batch.mode = HitMode::query_first;
-  block_tree_kernels().query(asked.tree.view(asked.view()), batch, stream.sink());
-  stream.hand_on();
-  return Status::ok;
+  if (kind == FeaturePair::edge_edge) {
+    return ask(options_, other.state_->edges, state_->edges, nullptr, take);
+  }
+  return ask(options_, other.state_->faces, state_->vertices, state_->vertex_order.data(), take);
 }
 
 bool DeformableMesh::is_moved() const noexcept {
@@ -419,22 +389,13 @@ void DeformableMesh::place_face(std::uint32_t face, std::array<Vec3d, 3>& start,
 Status DeformableMesh::find_faces(const Aabb& box,
                                   const ResultChunks<Pair>& chunks) const noexcept {
   const auto take = [&](std::span<Pair> pairs) { chunks.take(chunks.context, pairs); };
-  PairStream stream(options_.memory, options_.chunk, take);
   FeatureRows asking(options_.memory);
-  if (!stream.reserve() || !asking.make(1)) return Status::out_of_memory;
+  if (!asking.make(1)) return Status::out_of_memory;
   for (int axis = 0; axis < 3; ++axis) {
-    asking.boxes.column(static_cast<std::size_t>(axis))[0] = box.min[axis];
-    asking.boxes.column(static_cast<std::size_t>(axis) + 3)[0] = box.max[axis];
+    asking.boxes.column(static_cast<std::size_t>(axis))[0] = bound(box.min[axis]);
+    asking.boxes.column(static_cast<std::size_t>(axis) + 3)[0] = bound(box.max[axis]);
   }
-  QueryBatch batch;
-  const RowView own = asking.view();
-  std::copy_n(own.column, 6, batch.column);
-  batch.id = own.id;
-  batch.end = 1;
-  batch.mode = HitMode::query_first;
-  block_tree_kernels().query(state_->faces.tree.view(state_->faces.view()), batch, stream.sink());
-  stream.hand_on();
-  return Status::ok;
+  return ask(options_, state_->faces, asking, nullptr, take);
 }
 
 namespace {

@@ -17,6 +17,8 @@ using solver::kEpsilon;
 using solver::Range;
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
+/// Squares above this have all their digits.
+constexpr double kExact = 1e-290;
 /// Axes that differ by less are the same: what that changes is counted as noise.
 constexpr double kSameAxis = 16.0 * kEpsilon;
 
@@ -297,6 +299,11 @@ Interval MovingPair::window() const noexcept {
 
 Interval ball_window(const Vec& between, const Vec& travel, double reach) noexcept {
   constexpr Interval kAll{0.0, 1.0};
+  // Most pairs of a scene pass each other by: their line is too far away, which needs no root.
+  const double rounding = between.cwiseAbs().sum() + travel.cwiseAbs().sum() + reach;
+  const double wide = reach + 128.0 * kEpsilon * rounding;
+  const double limit = wide * wide * travel.squaredNorm();
+  if (limit > kExact && between.cross(travel).squaredNorm() > limit) return {1.0, 0.0};
   const double speed = travel.norm();
   const double path = between.norm() + speed;
   if (!std::isfinite(reach + path)) return kAll;

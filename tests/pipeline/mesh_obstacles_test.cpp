@@ -34,7 +34,7 @@ struct BendingSoup {
                    random.uniform(-reach, reach));
     };
     for (std::size_t i = 0; i < faces; ++i) {
-      const Vec3d at = offset + around(3.0);
+      const Vec3d at = offset + around(1.5);
       const Vec3d way = around(3.0);
       for (int k = 0; k < 3; ++k) {
         start.push_back(at + around(0.7));
