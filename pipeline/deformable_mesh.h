@@ -55,8 +55,8 @@ struct MeshProximity {
 /// A rigid shape that meshes may run into, of any kind, and how it moves during the step.
 struct MeshObstacle {
   const ShapePool& shapes;  ///< what holds it, or the convex shapes that it is made of
-  ShapeId shape;
-  RigidMotion motion;
+  ShapeId shape;            ///< which
+  RigidMotion motion;       ///< where it goes
   /// How near a face has to come to touch it: finite, >= 0, at most half of the distance that the
   /// mesh was moved with.
   double separation = 0.0;
@@ -117,10 +117,11 @@ class WINNOW_API DeformableMesh {
   DeformableMesh& operator=(const DeformableMesh&) = delete;
 
   /// Takes copies of the triangles and sorts them by where vertices are at rest. O(n log n). The
-  /// mesh has to be moved before it is asked. `invalid_shape` if there is no triangle or a corner
-  /// is not a vertex, `invalid_bounds` if a coordinate or the origin is not finite or beyond
-  /// 2^1020, `too_many_objects` beyond 2^28 triangles or 2^31 - 1 vertices, `invalid_argument` for
-  /// views without columns or a chunk of 0.
+  /// mesh has to be moved before it is asked. Again where triangles or vertices were added or taken
+  /// away: it is a new mesh then; a call that is refused changes nothing. `invalid_shape` if there
+  /// is no triangle or a corner is not a vertex, `invalid_bounds` if a coordinate or the origin is
+  /// not finite or beyond 2^1020, `too_many_objects` beyond 2^28 triangles or 2^31 - 1 vertices,
+  /// `invalid_argument` for views without columns or a chunk of 0.
   Status build(const PointView& rest, const IndexView& triangles) noexcept;
 
   /// The step: every vertex moves linearly from its place in `start` to that in `end`, which may be

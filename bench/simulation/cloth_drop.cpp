@@ -2,6 +2,7 @@
 
 #include "bench/common/need.h"
 #include "bench/common/random.h"
+#include "bench/simulation/crossing.h"
 
 #include <algorithm>
 #include <bit>
@@ -24,16 +25,6 @@ constexpr double kSliding = 0.2;
 constexpr double kBeforeTouch = 0.9;
 /// Single ways are cut so often before all are.
 constexpr int kMostCuts = 8;
-
-/// True if the segment from p to q crosses the triangle.
-bool crosses_face(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const auto volume = [](const Vec3d& w, const Vec3d& x, const Vec3d& y, const Vec3d& z) {
-    return (x - w).cross(y - w).dot(z - w);
-  };
-  if ((volume(a, b, c, p) > 0.0) == (volume(a, b, c, q) > 0.0)) return false;
-  const bool side = volume(p, q, a, b) > 0.0;
-  return side == (volume(p, q, b, c) > 0.0) && side == (volume(p, q, c, a) > 0.0);
-}
 
 /// The distance of a triangle from the origin, by the nearest of many of its points: an upper bound
 /// of it.
@@ -267,7 +258,7 @@ std::size_t ClothDrop::passed() const {
       }
       const bool shared = std::find(corner, corner + 3, first) != corner + 3 ||
                           std::find(corner, corner + 3, second) != corner + 3;
-      count += near && !shared && crosses_face(p, q, a, b, c) ? 1 : 0;
+      count += near && !shared && crosses(p, q, a, b, c) ? 1 : 0;
     }
   }
   return count;

@@ -2,6 +2,7 @@
 
 #include "bench/common/need.h"
 #include "bench/scenes/random_shapes.h"
+#include "bench/simulation/crossing.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -32,17 +33,6 @@ constexpr double kLooksPerRadian = 40.0;
 
 Vec3 position_of(const Pose& pose) {
   return Vec3::Map(pose.position);
-}
-
-/// Both ends of a way, of which one lies in front of a triangle and one behind, see it between
-/// them.
-bool crosses(const Vec3& from, const Vec3& to, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto volume = [](const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
-    return (q - p).cross(r - p).dot(s - p);
-  };
-  if ((volume(a, b, c, from) > 0.0) == (volume(a, b, c, to) > 0.0)) return false;
-  const bool side = volume(from, to, a, b) > 0.0;
-  return side == (volume(from, to, b, c) > 0.0) && side == (volume(from, to, c, a) > 0.0);
 }
 
 }  // namespace
