@@ -72,7 +72,7 @@ bool add_barrier(Results& results, const BarrierQuestion& asked) {
   }
   FastBodiesOptions options{.execution = execution};
   options.scene = asked.scene == "blade" ? FastScene::blade : FastScene::funnel;
-  options.bodies = asked.size != 0 ? asked.size : options.scene == FastScene::blade ? 16 : 40;
+  options.bodies = asked.size != 0 ? asked.size : 16;
   FastBodies bodies(options);
   const std::vector<double> ms = run(bodies, asked.steps);
   return add_row(results, asked, bodies, ms,
