@@ -1,5 +1,6 @@
 #pragma once
 
+#include <winnow/core/aabb.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
@@ -8,6 +9,7 @@
 #include <winnow/core/status.h>
 #include <winnow/core/vec3.h>
 #include <winnow/pipeline/feature_impacts.h>
+#include <winnow/pipeline/time_of_impact.h>
 
 #include <array>
 #include <cstddef>
@@ -22,12 +24,13 @@ namespace winnow {
 struct DeformableMeshOptions {
   /// Every allocation comes from here. It must outlive the mesh.
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
-  /// On whose threads boxes are made; results are the same on all.
+  /// On whose threads boxes are made, and candidates looked at; results are the same on all.
   Execution execution = Execution::serial();
   /// Finite. Boxes are of floats, measured from here: a point near the mesh keeps them tight in a
   /// world far away. Meshes that are asked about each other have the same.
   Vec3d origin{};
-  /// Results that are handed over at a time at most, at least 1: all the memory that they take.
+  /// Results that are handed over at a time at most, at least 1: with as many candidates (twice
+  /// that on several threads), and an answer for each of these, all the memory that a call takes.
   std::size_t chunk = 16384;
 };
 
@@ -47,6 +50,28 @@ struct MeshProximity {
   /// ends. The second is made of the other weights: those of the face's corners, or of the other
   /// edge's ends, weight[2] and weight[3]. Each is >= 0, and those of a feature add up to 1.
   std::array<double, 4> weight{};
+};
+
+/// A rigid shape that meshes may run into, of any kind, and how it moves during the step.
+struct MeshObstacle {
+  const ShapePool& shapes;  ///< what holds it, or the convex shapes that it is made of
+  ShapeId shape;            ///< which
+  RigidMotion motion;       ///< where it goes
+  /// How near a face has to come to touch it: finite, >= 0, at most half of the distance that the
+  /// mesh was moved with.
+  double separation = 0.0;
+};
+
+/// A face of a mesh and a rigid shape that touch during the step.
+struct MeshShapeImpact {
+  std::uint32_t face = 0;  ///< by number
+  std::uint32_t part =
+      kWholeShape;           ///< triangle or child of the shape; kWholeShape of a convex one
+  double time = 0.0;         ///< in [0, 1], never late: before it the two are apart
+  double gap = 0.0;          ///< at that time, beyond the separation; see ImpactResult
+  double error_bound = 0.0;  ///< of the gap
+  Vec3d normal;              ///< unit, from the shape to the face, at that time
+  Vec3d point;               ///< of the shape at that time, in the world
 };
 
 /// A function of the caller that takes chunks of results.
@@ -92,10 +117,11 @@ class WINNOW_API DeformableMesh {
   DeformableMesh& operator=(const DeformableMesh&) = delete;
 
   /// Takes copies of the triangles and sorts them by where vertices are at rest. O(n log n). The
-  /// mesh has to be moved before it is asked. `invalid_shape` if there is no triangle or a corner
-  /// is not a vertex, `invalid_bounds` if a coordinate or the origin is not finite or beyond
-  /// 2^1020, `too_many_objects` beyond 2^28 triangles or 2^31 - 1 vertices, `invalid_argument` for
-  /// views without columns or a chunk of 0.
+  /// mesh has to be moved before it is asked. Again where triangles or vertices were added or taken
+  /// away: it is a new mesh then; a call that is refused changes nothing. `invalid_shape` if there
+  /// is no triangle or a corner is not a vertex, `invalid_bounds` if a coordinate or the origin is
+  /// not finite or beyond 2^1020, `too_many_objects` beyond 2^28 triangles or 2^31 - 1 vertices,
+  /// `invalid_argument` for views without columns or a chunk of 0.
   Status build(const PointView& rest, const IndexView& triangles) noexcept;
 
   /// The step: every vertex moves linearly from its place in `start` to that in `end`, which may be
@@ -142,6 +168,18 @@ class WINNOW_API DeformableMesh {
     return find_impacts(&other, kind, options, ResultChunks<MeshImpact>(take));
   }
 
+  /// Calls `take(std::span<const MeshShapeImpact>)` with chunks of all faces that meet a rigid
+  /// shape during the step, in the order of space that faces stand in: each with its first impact,
+  /// certified as `time_of_impact` does it, corners moving linearly and the shape turning. Options
+  /// are those of `time_of_impact`; the mesh's own execution counts. `invalid_argument` also for
+  /// bad options or separation, `invalid_key` for a shape that is not there, `unsupported` for a
+  /// composite one where no composites are given, `invalid_pose` for a motion that is not valid.
+  template <typename Take>
+  Status impacts_with(const MeshObstacle& obstacle, const ImpactOptions& options,
+                      Take&& take) const noexcept {
+    return find_shape_impacts(obstacle, options, ResultChunks<MeshShapeImpact>(take));
+  }
+
   /// Calls `take(std::span<const MeshProximity>)` with chunks of all pairs that are at a distance
   /// of at most `thickness` at the end of the step. `invalid_argument` also if it is negative, not
   /// finite or larger than the distance that the mesh was moved with.
@@ -170,6 +208,18 @@ class WINNOW_API DeformableMesh {
                       const ResultChunks<MeshImpact>& chunks) const noexcept;
   Status find_near(const DeformableMesh* other, FeaturePair kind, double thickness,
                    const ResultChunks<MeshProximity>& chunks) const noexcept;
+
+  Status find_shape_impacts(const MeshObstacle& obstacle, const ImpactOptions& options,
+                            const ResultChunks<MeshShapeImpact>& chunks) const noexcept;
+  /// Hands over the faces whose boxes overlap a box, which is measured from the origin, as second
+  /// ones of pairs.
+  Status find_faces(const Aabb& box, const ResultChunks<Pair>& chunks) const noexcept;
+  /// Where the corners of a face are at the start and at the end of the step.
+  void place_face(std::uint32_t face, std::array<Vec3d, 3>& start,
+                  std::array<Vec3d, 3>& end) const noexcept;
+  [[nodiscard]] bool is_moved() const noexcept;
+  /// The distance that it was moved with.
+  [[nodiscard]] double reach() const noexcept;
 
   DeformableMeshOptions options_;
   /// Null until something is built.

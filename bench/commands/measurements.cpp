@@ -12,6 +12,7 @@
 #include "bench/rows/kernel_rows.h"
 #include "bench/rows/machine.h"
 #include "bench/rows/memory_rows.h"
+#include "bench/rows/motion_rows.h"
 #include "bench/rows/query_rows.h"
 #include "bench/rows/scene_rows.h"
 #include "bench/rows/volume_rows.h"
@@ -487,6 +488,79 @@ class Pipeline final : public RowsCommand {
   PipelineMeasureOptions asked_{.machine_clock = false};
 };
 
+/// What moves: pairs of shapes, features of meshes, a scene.
+class Impacts final : public RowsCommand {
+ public:
+  void add_options(CLI::App& app) {
+    what_.add_to(app, "--what", {kPairs, kFeatures, kScene}, "What moves");
+    std::vector<std::string> kinds;
+    for (const PairKind& kind : pair_kinds()) kinds.emplace_back(kind.name);
+    kinds_.add_to(app, "--kind", kinds, "Kinds of pairs");
+    turns_.add_to(app, "--turn", {kPairTurnNames.begin(), kPairTurnNames.end()},
+                  "How far bodies of pairs turn");
+    number(app, "--pairs", pairs_, 1, 1e6, "Pairs of each kind");
+    number(app, "--rounds", rounds_, 1, 1000, "Rounds in which all take turns");
+    number(app, "--bodies", sweep_.bodies, 1, 1e6, "Bodies of the scene");
+    number(app, "--fast", sweep_.fast, 1, 1e6, "Of them are fast, at most all");
+    add_threads_option(app, sweep_.threads);
+    app.add_flag("!--no-peers", peers_, "Without other libraries");
+    add_seed_option(app, sweep_.seed);
+    add_rows_options(app);
+  }
+
+ private:
+  static constexpr const char* kPairs = "pairs";
+  static constexpr const char* kFeatures = "features";
+  static constexpr const char* kScene = "scene";
+
+  void measure() override {
+    const auto text = [](const char* name) { return name; };
+    constexpr const char* kWhat[] = {kPairs, kFeatures, kScene};
+    const auto what = what_.of(std::span<const char* const>(kWhat), text);
+    plan(what.size());
+    declare_motion(results);
+    for (const char* const one : what) {
+      step(one, [&] {
+        if (one == kPairs) measure_pairs();
+        if (one == kFeatures) add_feature_impacts(results, pairs_, rounds_, sweep_.seed);
+        if (one == kScene) measure_scene();
+      });
+    }
+    print("impacts", {"ns", "over_distance", "pairs", "hits", "missed", "late", "loose",
+                      "median_gap", "worst_gap"});
+    print("feature_impacts");
+    print("swept_scenes");
+  }
+  void measure_pairs() {
+    const auto kinds = kinds_.of(pair_kinds(), [](const PairKind& kind) { return kind.name; });
+    const auto turns = turns_.of(std::span<const PairTurn>(kPairTurns),
+                                 [](PairTurn turn) { return to_text(turn); });
+    for (const PairKind& kind : kinds) {
+      for (const PairTurn turn : turns) {
+        add_impacts(results, {.kind = kind,
+                              .turn = turn,
+                              .pairs = pairs_,
+                              .rounds = rounds_,
+                              .peers = peers_,
+                              .seed = sweep_.seed});
+      }
+    }
+  }
+  void measure_scene() {
+    if (sweep_.fast > sweep_.bodies) throw ArgumentError("--fast: more than there are bodies");
+    sweep_.frames = rounds_;
+    add_swept_scene(results, sweep_);
+  }
+
+  Chosen what_{{"all"}};
+  Chosen kinds_{{"all"}};
+  Chosen turns_{{"all"}};
+  std::size_t pairs_ = 2048;
+  std::size_t rounds_ = 7;
+  bool peers_ = true;
+  SweepRaceOptions sweep_;
+};
+
 class Kernels final : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
@@ -542,6 +616,12 @@ std::vector<Command> add_measurements(CLI::App& app) {
           "Errors of answers about pairs of shapes against the time they take, by kind, tier and "
           "size ratio, other libraries beside. Every second pair overlaps, and half of the pairs "
           "are nearly touching."),
+      command<Impacts>(
+          app, "impacts",
+          "When things that move first meet: nanoseconds a pair of shapes, winnow and other "
+          "libraries in turns on the same motions, and what they miss, say too late or leave of a "
+          "gap; features of meshes; a scene of which some bodies are fast, swept beside its "
+          "contacts."),
       command<Pipeline>(
           app, "pipeline",
           "Milliseconds from poses to contacts: whole scenes, winnow and other libraries in turns. "

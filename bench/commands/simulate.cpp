@@ -6,6 +6,7 @@
 #include "bench/measure/fingerprint.h"
 #include "bench/recordings/recording.h"
 #include "bench/report/page.h"
+#include "bench/rows/barrier_rows.h"
 #include "bench/rows/flow_rows.h"
 #include "bench/rows/standing_rows.h"
 #include "bench/simulation/mesh_files.h"
@@ -92,6 +93,7 @@ class Simulate final : public RowsCommand {
  private:
   void measure() override;
   void measure_standing();
+  void measure_barriers();
   [[nodiscard]] FlowFacts facts(const FlowRun& run) const;
   void write_flow_page(const FlowFacts& facts) const;
 
@@ -100,12 +102,17 @@ class Simulate final : public RowsCommand {
   std::string out_;
   std::string record_;
   std::string standing_;
+  std::string barrier_;
+  CLI::Option* objects_ = nullptr;
+  CLI::Option* steps_ = nullptr;
   double seconds_ = StandingQuestion{}.seconds;
 };
 
 void Simulate::add_options(CLI::App& app) {
-  number(app, "--objects", asked_.objects, 1, 1e7, "Number of bodies");
-  number(app, "--steps", asked_.steps, 1, 1e8, "Steps of a thousandth of a second");
+  objects_ = number(app, "--objects", asked_.objects, 1, 1e7,
+                    "Number of bodies; of a cloth vertices along an edge");
+  steps_ = number(app, "--steps", asked_.steps, 1, 1e8,
+                  "Steps of a thousandth of a second; of a barrier of a sixtieth");
   one_of(app, "--shape", asked_.shape, flow_shape_names(), "What falls");
   option(app, "--mesh", mesh_,
          "An OBJ, STL or PLY file to fall into, scaled to the funnel's width");
@@ -118,6 +125,10 @@ void Simulate::add_options(CLI::App& app) {
   one_of(app, "--standing", standing_, structures,
          "Instead of the flow, a structure that is to stand on a solver with warm start");
   number(app, "--seconds", seconds_, 1, 1e6, "How long it is to stand, simulated");
+  std::vector<std::string> barriers = barrier_names();
+  barriers.emplace_back(kAll);
+  one_of(app, "--barrier", barrier_, barriers,
+         "Instead of the flow, something fast that is not to get through something thin");
   add_threads_option(app, asked_.threads);
   add_seed_option(app, asked_.seed);
   add_rows_options(app);
@@ -185,9 +196,31 @@ void Simulate::measure_standing() {
   print("standing");
 }
 
+void Simulate::measure_barriers() {
+  declare_barriers(results);
+  std::vector<std::string> names{barrier_};
+  if (barrier_ == kAll) names = barrier_names();
+  plan(names.size());
+  Arenas(asked_.threads).run(asked_.threads, [&] {
+    for (const std::string& name : names) {
+      BarrierQuestion asked{.scene = name, .threads = asked_.threads};
+      if (steps_->count() != 0) asked.steps = asked_.steps;
+      if (objects_->count() != 0) asked.size = asked_.objects;
+      step(name, [&] {
+        if (!add_barrier(results, asked)) fail();
+      });
+    }
+  });
+  print("barriers");
+}
+
 void Simulate::measure() {
   if (!standing_.empty()) {
     measure_standing();
+    return;
+  }
+  if (!barrier_.empty()) {
+    measure_barriers();
     return;
   }
   declare_flows(results);
@@ -231,7 +264,9 @@ Command add_simulate(CLI::App& app) {
       app, "simulate",
       "Granular flow through a funnel made of triangles: a simulation that embeds winnow, its soak "
       "test, and its benchmark from end to end. Fails if contacts create energy or a check finds a "
-      "contact lost, invented or doubled. Or structures that are to stand; fails if one drifts.");
+      "contact lost, invented or doubled. Or structures that are to stand; fails if one drifts. Or "
+      "fast bodies in a funnel, a spinning blade, a cloth that drops on a ball; fails if anything "
+      "passes through anything.");
 }
 
 }  // namespace winnow::bench

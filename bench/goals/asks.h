@@ -10,8 +10,9 @@
 namespace winnow::bench {
 
 /// What is asked of winnow, by topic.
-inline constexpr std::array<std::string_view, 9> kTopics{
-    "engine", "scenes", "peers", "queries", "narrow", "meshes", "pipeline", "choice", "report"};
+inline constexpr std::array<std::string_view, 10> kTopics{"engine", "scenes", "peers",  "queries",
+                                                          "narrow", "motion", "meshes", "pipeline",
+                                                          "choice", "report"};
 
 /// The text of goals/goals.json.
 extern const char* const kGoalsJson;

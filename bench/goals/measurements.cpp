@@ -7,6 +7,7 @@
 #include "bench/questions/hard_cases.h"
 #include "bench/rows/accuracy_rows.h"
 #include "bench/rows/advice_rows.h"
+#include "bench/rows/barrier_rows.h"
 #include "bench/rows/cold_rows.h"
 #include "bench/rows/flow_rows.h"
 #include "bench/rows/frame_rows.h"
@@ -14,6 +15,7 @@
 #include "bench/rows/host_rows.h"
 #include "bench/rows/kernel_rows.h"
 #include "bench/rows/machine.h"
+#include "bench/rows/motion_rows.h"
 #include "bench/rows/peer_rows.h"
 #include "bench/rows/query_rows.h"
 #include "bench/rows/ray_rows.h"
@@ -308,6 +310,41 @@ void goal_hard_cases(const Json& options, Lab& /*lab*/, Measured& measured) {
   measured.absent = measured.results.rows("hard_cases").empty();
 }
 
+/// Moving pairs of one kind.
+void goal_impacts(const Json& options, Lab& /*lab*/, Measured& measured) {
+  const std::string name = options.at("kind");
+  const PairKind* kind = find_pair_kind(name);
+  if (kind == nullptr) throw std::runtime_error("no kind of pairs " + name);
+  declare_motion(measured.results);
+  for (const PairTurn turn : kPairTurns) {
+    measured.machine_ms =
+        add_impacts(measured.results,
+                    {.kind = *kind, .turn = turn, .pairs = options.at("pairs"), .peers = true})
+            .machine_ms;
+  }
+}
+
+void goal_features(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_motion(measured.results);
+  add_feature_impacts(measured.results, options.at("pairs"), 5, 1);
+}
+
+void goal_barriers(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_barriers(measured.results);
+  for (const std::string& scene : barrier_names()) {
+    add_barrier(measured.results, {.scene = scene, .steps = options.at("steps")});
+  }
+}
+
+void goal_sweeps(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_motion(measured.results);
+  for (const int threads : options.at("threads").get<std::vector<int>>()) {
+    add_swept_scene(
+        measured.results,
+        {.bodies = options.at("bodies"), .fast = options.at("fast"), .threads = threads});
+  }
+}
+
 void goal_scenes(const Json& options, Lab& /*lab*/, Measured& measured) {
   declare_scenes(measured.results);
   measured.machine_ms = add_scene_race(measured.results, {.scene = options.at("scene"),
@@ -386,6 +423,10 @@ const Measurer* find_measurer(const std::string& name) {
                                                    {"pairs", goal_pairs},
                                                    {"errors", goal_errors},
                                                    {"hard_cases", goal_hard_cases},
+                                                   {"impacts", goal_impacts},
+                                                   {"features", goal_features},
+                                                   {"sweeps", goal_sweeps},
+                                                   {"barriers", goal_barriers},
                                                    {"scenes", goal_scenes},
                                                    {"tori", goal_tori},
                                                    {"mesh_rays", goal_mesh_rays},

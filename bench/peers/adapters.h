@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/contenders/engine.h"
+#include "bench/contenders/impact_engine.h"
 #include "bench/contenders/narrow_engine.h"
 #include "bench/contenders/query_engine.h"
 #include "bench/contenders/ray_engine.h"
@@ -26,6 +27,10 @@ namespace winnow::bench {
 [[nodiscard]] std::unique_ptr<NarrowEngine> make_fcl_indep();
 [[nodiscard]] std::unique_ptr<NarrowEngine> make_libccd_gjk();
 [[nodiscard]] std::unique_ptr<NarrowEngine> make_libccd_mpr();
+
+[[nodiscard]] std::unique_ptr<ImpactEngine> make_bullet_continuous();
+[[nodiscard]] std::unique_ptr<ImpactEngine> make_bullet_sub_simplex();
+[[nodiscard]] std::unique_ptr<ImpactEngine> make_fcl_impacts();
 
 [[nodiscard]] std::unique_ptr<SceneEngine> make_bullet_scene();
 [[nodiscard]] std::unique_ptr<SceneEngine> make_fcl_scene();

@@ -49,6 +49,18 @@ std::vector<std::unique_ptr<NarrowEngine>> make_narrow_peers() {
   return peers;
 }
 
+std::vector<std::unique_ptr<ImpactEngine>> make_impact_peers() {
+  std::vector<std::unique_ptr<ImpactEngine>> peers;
+#ifdef WINNOW_PEER_BULLET
+  peers.push_back(make_bullet_continuous());
+  peers.push_back(make_bullet_sub_simplex());
+#endif
+#ifdef WINNOW_PEER_FCL
+  peers.push_back(make_fcl_impacts());
+#endif
+  return peers;
+}
+
 std::vector<std::unique_ptr<SceneEngine>> make_scene_peers() {
   std::vector<std::unique_ptr<SceneEngine>> peers;
 #ifdef WINNOW_PEER_BULLET

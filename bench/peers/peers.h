@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/contenders/engine.h"
+#include "bench/contenders/impact_engine.h"
 #include "bench/contenders/narrow_engine.h"
 #include "bench/contenders/query_engine.h"
 #include "bench/contenders/ray_engine.h"
@@ -22,6 +23,9 @@ namespace winnow::bench {
 
 /// The same of those that answer pairs of bodies. They use one thread.
 [[nodiscard]] std::vector<std::unique_ptr<NarrowEngine>> make_narrow_peers();
+
+/// The same of those that say when moving bodies meet. They use one thread.
+[[nodiscard]] std::vector<std::unique_ptr<ImpactEngine>> make_impact_peers();
 
 /// The same of those that find the contacts of whole scenes. They use one thread.
 [[nodiscard]] std::vector<std::unique_ptr<SceneEngine>> make_scene_peers();

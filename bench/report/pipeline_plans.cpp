@@ -1,8 +1,10 @@
 #include "bench/questions/hard_case_files.h"
 #include "bench/report/section.h"
 #include "bench/rows/accuracy_rows.h"
+#include "bench/rows/barrier_rows.h"
 #include "bench/rows/flow_rows.h"
 #include "bench/rows/hard_case_rows.h"
+#include "bench/rows/motion_rows.h"
 #include "bench/rows/scene_rows.h"
 #include "bench/rows/standing_rows.h"
 
@@ -157,6 +159,53 @@ ReportSteps plan_stability(const ReportOptions& options) {
                          measure_stability(results, options, curve, kind);
                        }});
     }
+  }
+  return steps;
+}
+
+ReportSteps plan_motion(const ReportOptions& options) {
+  ReportSteps steps;
+  for (const PairKind& kind : narrow_kinds(options.quick)) {
+    for (const PairTurn turn : kPairTurns) {
+      const ImpactRaceOptions asked{.kind = kind,
+                                    .turn = turn,
+                                    .pairs = options.quick ? 64U : 1024U,
+                                    .rounds = options.quick ? 2U : 5U,
+                                    .peers = options.peers,
+                                    .seed = options.seed};
+      steps.push_back(
+          {"impacts of " + std::string(kind.name) + ", turning: " + std::string(to_text(turn)),
+           options.quick ? 0.05 : 0.3 + 0.02 * kind.hull_vertices,
+           [asked](Results& results) { add_impacts(results, asked); }});
+    }
+  }
+  const std::size_t pairs = options.quick ? 200 : 20'000;
+  const std::size_t rounds = options.quick ? 2 : 5;
+  steps.push_back({"features of meshes", options.quick ? 0.05 : 1.0,
+                   [=, seed = options.seed](Results& results) {
+                     add_feature_impacts(results, pairs, rounds, seed);
+                   }});
+  for (const std::string& scene : barrier_names()) {
+    BarrierQuestion asked{.scene = scene};
+    if (options.quick) {
+      asked.steps = 5;
+      asked.size = 8;
+    }
+    steps.push_back({"barrier: " + scene, options.quick ? 0.1 : 5.0, [asked](Results& results) {
+                       if (!add_barrier(results, asked)) {
+                         throw std::runtime_error(asked.scene + ": something passed through");
+                       }
+                     }});
+  }
+  if (!has_hulls()) return steps;
+  for (const int threads : options.threads) {
+    SweepRaceOptions asked{.threads = threads, .frames = rounds, .seed = options.seed};
+    if (options.quick) {
+      asked.bodies = 200;
+      asked.fast = 20;
+    }
+    steps.push_back({"sweeps of a heap", options.quick ? 0.1 : 3.0,
+                     [asked](Results& results) { add_swept_scene(results, asked); }});
   }
   return steps;
 }

@@ -56,6 +56,7 @@ struct ReportSection {
 // Of the pipeline.
 [[nodiscard]] ReportSteps plan_narrow(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_stability(const ReportOptions& options);
+[[nodiscard]] ReportSteps plan_motion(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_pipeline(const ReportOptions& options);
 
 }  // namespace winnow::bench

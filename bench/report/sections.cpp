@@ -1,12 +1,14 @@
 #include "bench/report/section.h"
 #include "bench/rows/accuracy_rows.h"
 #include "bench/rows/advice_rows.h"
+#include "bench/rows/barrier_rows.h"
 #include "bench/rows/cold_rows.h"
 #include "bench/rows/every_scene_rows.h"
 #include "bench/rows/flow_rows.h"
 #include "bench/rows/frame_rows.h"
 #include "bench/rows/hard_case_rows.h"
 #include "bench/rows/memory_rows.h"
+#include "bench/rows/motion_rows.h"
 #include "bench/rows/query_rows.h"
 #include "bench/rows/scene_rows.h"
 #include "bench/rows/standing_rows.h"
@@ -40,6 +42,11 @@ void declare_stability(Results& results) {
       {"curve", "kind", "engine", "parameter"});
 }
 
+void declare_moving(Results& results) {
+  declare_motion(results);
+  declare_barriers(results);
+}
+
 void declare_pipeline(Results& results) {
   declare_scenes(results);
   declare_flows(results);
@@ -58,6 +65,7 @@ std::span<const ReportSection> report_sections() noexcept {
                                            {"volumes", declare_volumes, plan_volumes},
                                            {"narrow", declare_narrow, plan_narrow},
                                            {"stability", declare_stability, plan_stability},
+                                           {"motion", declare_moving, plan_motion},
                                            {"queries", declare_queries, plan_queries},
                                            {"pipeline", declare_pipeline, plan_pipeline},
                                            {"advice", declare_advice, plan_advice},

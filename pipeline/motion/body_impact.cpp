@@ -6,10 +6,10 @@
 
 #include "pipeline/motion/body_impact.h"
 
+#include "pipeline/motion/part_pair.h"
 #include "pipeline/motion/passage.h"
 
 #include <algorithm>
-#include <tuple>
 
 namespace winnow::impact {
 namespace {
@@ -21,51 +21,15 @@ constexpr int kFewParts = 8;
 /// and is grown, or goes on, by more than this share of the radius.
 constexpr double kLoose = 0.04;
 
-[[nodiscard]] bool has_identity(const Pose& pose) noexcept {
-  return pose.orientation[0] == 1.0 && pose.orientation[1] == 0.0 && pose.orientation[2] == 0.0 &&
-         pose.orientation[3] == 0.0;
-}
-
-/// Puts parts of moving bodies where pairs of convex shapes are looked up.
-class PartPair {
- public:
-  explicit PartPair(const ShapePool& pool) noexcept : tables_(pool) {}
-
-  [[nodiscard]] const ShapeTables& tables() const noexcept { return tables_.tables(); }
-
-  /// A triangle of a surface keeps its corners in the frame of the body, where they are exactly
-  /// those of its neighbours: nothing gets through between them.
-  [[nodiscard]] MovingPart put(std::size_t slot, const MovingShape& moving) noexcept {
-    ConvexPart part = moving.shape;
-    MovingPart result{part.shape, moving.motion};
-    TriangleShape own;
-    if (part.triangle != nullptr && has_identity(part.pose)) {
-      own = *part.triangle;
-      for (auto& corner : own.vertex) {
-        for (int i = 0; i < 3; ++i) corner[i] += part.pose.position[i];
-      }
-      part.triangle = &own;
-    } else if (part.part != kWholeShape) {
-      const Quaternion turn = normalized(tame(moving.motion.start.orientation));
-      const Eigen::Matrix3d to_world = rotation_of_unit(turn);
-      result.arm = to_world * Vec::Map(part.pose.position);
-      const Quaternion q = product(turn, normalized(tame(part.pose.orientation)));
-      std::copy(q.begin(), q.end(), result.motion.start.orientation);
-    }
-    result.shape = tables_.put(slot, part);
-    return result;
-  }
-
- private:
-  PartTables tables_;
-};
-
 class BodyImpactSearch {
  public:
   BodyImpactSearch(const PartTraversal& parts, double tolerance) noexcept
       : parts_(parts), tolerance_(tolerance) {}
 
-  [[nodiscard]] BodyImpact run(const MovingShape& a, const MovingShape& b, const Interval& within);
+  [[nodiscard]] BodyImpact run(const MovingShape& a, const MovingShape& b, const Interval& within) {
+    meet(a, b, within);
+    return found_;
+  }
 
  private:
   void meet(const MovingShape& a, const MovingShape& b, const Interval& within);
@@ -73,21 +37,11 @@ class BodyImpactSearch {
             const Passage& passage, const Interval& given, int halvings);
   [[nodiscard]] bool meets_many(const MovingShape& walked, const BoxSweep& way) const;
   void test(const MovingShape& a, const MovingShape& b, const Interval& within) noexcept;
-  /// What of an interval is left before the time that was found.
-  [[nodiscard]] Interval before_best(const Interval& within) const noexcept {
-    return {within.first,
-            found_.impact.hit ? std::min(within.last, found_.impact.time) : within.last};
-  }
 
   const PartTraversal& parts_;
   const double tolerance_;
   BodyImpact found_;
 };
-
-/// The order of what is found.
-[[nodiscard]] auto order_of(const BodyImpact& found) noexcept {
-  return std::tuple(found.impact.time, found.impact.gap, found.part_a, found.part_b);
-}
 
 void BodyImpactSearch::test(const MovingShape& a, const MovingShape& b,
                             const Interval& within) noexcept {
@@ -97,9 +51,7 @@ void BodyImpactSearch::test(const MovingShape& a, const MovingShape& b,
   const BodyImpact found{find_impact(pair.tables(), moving_a, moving_b, tolerance_, within),
                          a.shape.part, b.shape.part};
   const std::uint32_t samples = found_.impact.samples + found.impact.samples;
-  if (found.impact.hit && (!found_.impact.hit || order_of(found) < order_of(found_))) {
-    found_ = found;
-  }
+  if (comes_before(found, found_)) found_ = found;
   found_.impact.samples = samples;
 }
 
@@ -127,7 +79,7 @@ bool BodyImpactSearch::meets_many(const MovingShape& walked, const BoxSweep& way
 
 void BodyImpactSearch::walk(const MovingShape& walked, const MovingShape& other, bool mirrored,
                             const Passage& passage, const Interval& given, int halvings) {
-  const Interval within = before_best(given);
+  const Interval within = before(given, found_);
   if (within.first > within.last) return;
   const BoxSweep way = passage.sweep(within);
   // Of two composite shapes a long way brings many parts near each other, too.
@@ -143,25 +95,26 @@ void BodyImpactSearch::walk(const MovingShape& walked, const MovingShape& other,
   parts_.met(PlacedShape{walked.shape.shape, Pose{}}, way,
              [&](const ConvexPart& part, double limit) {
                const MovingShape own = moving_part(parts_, part, walked.motion);
-               meet(mirrored ? other : own, mirrored ? own : other, before_best(within));
-               const double left = before_best(within).last - within.first;
+               meet(mirrored ? other : own, mirrored ? own : other, before(within, found_));
+               const double left = before(within, found_).last - within.first;
                return left < width ? std::min(limit, left / width * (1.0 + 4.0 * solver::kEpsilon))
                                    : limit;
              });
-}
-
-BodyImpact BodyImpactSearch::run(const MovingShape& a, const MovingShape& b,
-                                 const Interval& within) {
-  const Interval window = Passage(parts_, a.motion, b).window(a.radius);
-  const Interval both{std::max(window.first, within.first), std::min(window.last, within.last)};
-  if (both.first <= both.last) meet(a, b, both);
-  return found_;
 }
 
 }  // namespace
 
 BodyImpact find_body_impact(const PartTraversal& parts, const MovingBody& a, const MovingBody& b,
                             double tolerance, const Interval& within) {
+  const MovingShape shape = whole_shape(parts, b.shape, b.motion);
+  const Interval window = Passage(parts, a.motion, shape).window(parts.radius(a.shape));
+  const Interval both{std::max(window.first, within.first), std::min(window.last, within.last)};
+  if (both.first > both.last) return {};
+  return find_impact_of_balls(parts, a, b, tolerance, both);
+}
+
+BodyImpact find_impact_of_balls(const PartTraversal& parts, const MovingBody& a,
+                                const MovingBody& b, double tolerance, const Interval& within) {
   if (!a.shape.is_composite() && !b.shape.is_composite()) {
     return {find_impact(parts.shapes().tables(), {a.shape, a.motion}, {b.shape, b.motion},
                         tolerance, within)};

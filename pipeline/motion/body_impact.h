@@ -3,7 +3,9 @@
 #include "pipeline/composites/parts.h"
 #include "pipeline/motion/impact_search.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <tuple>
 
 namespace winnow::impact {
 
@@ -20,11 +22,29 @@ struct BodyImpact {
   std::uint32_t part_b = kWholeShape;
 };
 
+/// True if the first is an impact, and the second none or one that is later; where times are the
+/// same the nearer one is first, and then that of smaller parts.
+[[nodiscard]] inline bool comes_before(const BodyImpact& first, const BodyImpact& second) noexcept {
+  const auto order = [](const BodyImpact& found) {
+    return std::tuple(found.impact.time, found.impact.gap, found.part_a, found.part_b);
+  };
+  return first.impact.hit && (!second.impact.hit || order(first) < order(second));
+}
+
+/// What of an interval is left before an impact.
+[[nodiscard]] inline Interval before(const Interval& within, const BodyImpact& found) noexcept {
+  return {within.first, found.impact.hit ? std::min(within.last, found.impact.time) : within.last};
+}
+
 /// The first impact within an interval, before which they are apart, of shapes that are there and
 /// motions that are valid; of bodies that share a point at the start that of the parts that overlap
 /// the deepest. `tolerance` is a share of the size of the smaller of the parts that meet.
 [[nodiscard]] BodyImpact find_body_impact(const PartTraversal& parts, const MovingBody& a,
                                           const MovingBody& b, double tolerance,
                                           const Interval& within = {0.0, 1.0});
+/// The same of an interval in which the balls around the two overlap.
+[[nodiscard]] BodyImpact find_impact_of_balls(const PartTraversal& parts, const MovingBody& a,
+                                              const MovingBody& b, double tolerance,
+                                              const Interval& within);
 
 }  // namespace winnow::impact

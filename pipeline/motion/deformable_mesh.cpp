@@ -9,6 +9,8 @@
 #include "partitions/tree/kd_order.h"
 #include "pipeline/motion/feature_proximity.h"
 #include "pipeline/motion/feature_stage.h"
+#include "pipeline/motion/pair_stream.h"
+#include "pipeline/motion/result_chunk.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +22,9 @@ namespace {
 constexpr std::size_t kMostFaces = std::size_t{1} << 28U;
 constexpr std::size_t kMostVertices = 0x7FFFFFFF;
 constexpr std::size_t kRowsPerStretch = 8192;
+constexpr std::size_t kPairsPerStretch = 512;
+/// Rows that ask one after another.
+constexpr std::uint32_t kRowsAsking = 256;
 /// Differences of numbers that are no larger stay in the range of double, and so do theirs.
 constexpr double kFarthest = 0x1p1020;
 
@@ -37,6 +42,12 @@ bool are_near_enough(const PointView& points) noexcept {
     }
   }
   return true;
+}
+
+/// Infinite bounds would meet the empty boxes behind the last row.
+float bound(float x) noexcept {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  return std::clamp(x, -kMost, kMost);
 }
 
 bool share_a_number(const std::uint32_t* a, const std::uint32_t* b) noexcept {
@@ -117,49 +128,36 @@ class FeatureRows {
   std::pmr::memory_resource* memory_;
 };
 
-/// Pairs on their way from a tree to who takes them: a buffer that is handed on whenever it is
-/// full, so that pairs never take more memory than it has.
+/// Hands on what a walk over so many units finds.
+template <typename Walk, typename Take>
+Status stream(const DeformableMeshOptions& options, std::uint32_t units, Walk&& walk,
+              Take& take) noexcept {
+  return stream_pairs(options.execution, options.memory, options.chunk, units, walk, take)
+             ? Status::ok
+             : Status::out_of_memory;
+}
+
+/// Hands on the pairs of rows that ask, in an order if there is one, and of rows below a tree.
 template <typename Take>
-class PairStream {
- public:
-  PairStream(std::pmr::memory_resource* memory, std::size_t chunk, Take& take) noexcept
-      : buffer_(memory), chunk_(chunk), take_(take) {}
-
-  [[nodiscard]] bool reserve() noexcept {
-    if (chunk_ > Column<Pair>::kMost - kSinkSlack || !buffer_.reserve(chunk_ + kSinkSlack)) {
-      return false;
-    }
-    sink_.owner = this;
-    sink_.grow = [](PairSink& sink) {
-      static_cast<PairStream*>(sink.owner)->hand_on();
-      return true;
-    };
-    aim();
-    return true;
-  }
-
-  [[nodiscard]] PairSink& sink() noexcept { return sink_; }
-
-  void hand_on() noexcept {
-    const auto* const begin = reinterpret_cast<const std::uint32_t*>(buffer_.data());
-    const auto count = static_cast<std::size_t>(sink_.cursor - begin) / 2;
-    for (std::size_t i = 0; i < count; i += chunk_) {
-      take_(std::span<Pair>(buffer_.data() + i, std::min(chunk_, count - i)));
-    }
-    aim();
-  }
-
- private:
-  void aim() noexcept {
-    sink_.cursor = reinterpret_cast<std::uint32_t*>(buffer_.data());
-    sink_.limit = sink_.cursor + 2 * chunk_;
-  }
-
-  Column<Pair> buffer_;
-  std::size_t chunk_;
-  Take& take_;
-  PairSink sink_;
-};
+Status ask(const DeformableMeshOptions& options, const FeatureRows& asked,
+           const FeatureRows& asking, const std::uint32_t* order, Take& take) noexcept {
+  if (asked.boxes.rows() == 0) return Status::ok;
+  const TreeView tree = asked.tree.view(asked.view());
+  const auto rows = static_cast<std::uint32_t>(asking.boxes.rows());
+  QueryBatch batch;
+  const RowView own = asking.view();
+  std::copy_n(own.column, 6, batch.column);
+  batch.id = own.id;
+  batch.rows = order;
+  batch.mode = HitMode::query_first;
+  const auto walk = [&](std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+    QueryBatch stretch = batch;
+    stretch.begin = begin * kRowsAsking;
+    stretch.end = std::min(rows, end * kRowsAsking);
+    return block_tree_kernels().query(tree, stretch, sink);
+  };
+  return stream(options, (rows + kRowsAsking - 1) / kRowsAsking, walk, take);
+}
 
 }  // namespace
 
@@ -250,10 +248,6 @@ bool DeformableMesh::State::link() noexcept {
 /// same as to round theirs: rounding keeps the order of numbers.
 void DeformableMesh::State::fit(const DeformableMeshOptions& options) noexcept {
   const double half = 0.5 * distance;
-  const auto bound = [](float x) {
-    constexpr float kMost = std::numeric_limits<float>::max();
-    return std::clamp(x, -kMost, kMost);
-  };
   for_stretches(options.execution, vertices.boxes.rows(), kRowsPerStretch,
                 [&](std::size_t begin, std::size_t past) {
                   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -351,25 +345,15 @@ Status DeformableMesh::find_self(FeaturePair kind,
     }
     if (kept != 0) chunks.take(chunks.context, pairs.first(kept));
   };
-  PairStream stream(options_.memory, options_.chunk, take);
-  if (!stream.reserve()) return Status::out_of_memory;
-  const BlockTreeKernels& kernels = block_tree_kernels();
   if (kind == FeaturePair::edge_edge) {
-    const BlockTree& tree = state_->edges.tree;
-    const auto groups = static_cast<std::uint32_t>(tree.groups());
-    if (groups != 0) kernels.self_pairs(tree.view(state_->edges.view()), 0, groups, stream.sink());
-  } else {
-    QueryBatch batch;
-    const RowView own = state_->vertices.view();
-    std::copy_n(own.column, 6, batch.column);
-    batch.id = own.id;
-    batch.rows = state_->vertex_order.data();
-    batch.end = static_cast<std::uint32_t>(vertices());
-    batch.mode = HitMode::query_first;
-    kernels.query(state_->faces.tree.view(state_->faces.view()), batch, stream.sink());
+    const TreeView tree = state_->edges.tree.view(state_->edges.view());
+    const auto walk = [&](std::uint32_t begin, std::uint32_t end, PairSink& sink) {
+      return block_tree_kernels().self_pairs(tree, begin, end, sink);
+    };
+    const auto groups = static_cast<std::uint32_t>(state_->edges.tree.groups());
+    return stream(options_, groups, walk, take);
   }
-  stream.hand_on();
-  return Status::ok;
+  return ask(options_, state_->faces, state_->vertices, state_->vertex_order.data(), take);
 }
 
 Status DeformableMesh::find_with(const DeformableMesh& other, FeaturePair kind,
@@ -379,50 +363,42 @@ Status DeformableMesh::find_with(const DeformableMesh& other, FeaturePair kind,
     return Status::invalid_argument;
   }
   const auto take = [&](std::span<Pair> pairs) { chunks.take(chunks.context, pairs); };
-  PairStream stream(options_.memory, options_.chunk, take);
-  if (!stream.reserve()) return Status::out_of_memory;
-  const bool of_edges = kind == FeaturePair::edge_edge;
-  const FeatureRows& asking = of_edges ? state_->edges : state_->vertices;
-  const FeatureRows& asked = of_edges ? other.state_->edges : other.state_->faces;
-  if (asked.boxes.rows() == 0) return Status::ok;
-  QueryBatch batch;
-  const RowView own = asking.view();
-  std::copy_n(own.column, 6, batch.column);
-  batch.id = own.id;
-  if (!of_edges) batch.rows = state_->vertex_order.data();
-  batch.end = static_cast<std::uint32_t>(asking.boxes.rows());
-  batch.mode = HitMode::query_first;
-  block_tree_kernels().query(asked.tree.view(asked.view()), batch, stream.sink());
-  stream.hand_on();
-  return Status::ok;
+  if (kind == FeaturePair::edge_edge) {
+    return ask(options_, other.state_->edges, state_->edges, nullptr, take);
+  }
+  return ask(options_, other.state_->faces, state_->vertices, state_->vertex_order.data(), take);
+}
+
+bool DeformableMesh::is_moved() const noexcept {
+  return state_ != nullptr && state_->moved;
+}
+
+double DeformableMesh::reach() const noexcept {
+  return state_->distance;
+}
+
+void DeformableMesh::place_face(std::uint32_t face, std::array<Vec3d, 3>& start,
+                                std::array<Vec3d, 3>& end) const noexcept {
+  const std::uint32_t* const corner = state_->corners_of(face);
+  for (std::size_t i = 0; i < 3; ++i) {
+    start[i] = state_->start[corner[i]];
+    end[i] = state_->end[corner[i]];
+  }
+}
+
+Status DeformableMesh::find_faces(const Aabb& box,
+                                  const ResultChunks<Pair>& chunks) const noexcept {
+  const auto take = [&](std::span<Pair> pairs) { chunks.take(chunks.context, pairs); };
+  FeatureRows asking(options_.memory);
+  if (!asking.make(1)) return Status::out_of_memory;
+  for (int axis = 0; axis < 3; ++axis) {
+    asking.boxes.column(static_cast<std::size_t>(axis))[0] = bound(box.min[axis]);
+    asking.boxes.column(static_cast<std::size_t>(axis) + 3)[0] = bound(box.max[axis]);
+  }
+  return ask(options_, state_->faces, asking, nullptr, take);
 }
 
 namespace {
-
-/// Results for the caller, handed over when as many as fit a chunk are there.
-template <typename Result, typename Chunks>
-class ResultChunk {
- public:
-  ResultChunk(std::pmr::memory_resource* memory, const Chunks& chunks) noexcept
-      : results_(memory), chunks_(chunks) {}
-  [[nodiscard]] bool reserve(std::size_t most) noexcept {
-    most_ = most;
-    return results_.reserve(most);
-  }
-  void add(const Result& result) noexcept {
-    if (results_.size() == most_) hand_over();
-    static_cast<void>(results_.push_back(result));
-  }
-  void hand_over() noexcept {
-    if (!results_.empty()) chunks_.take(chunks_.context, {results_.data(), results_.size()});
-    results_.clear();
-  }
-
- private:
-  Column<Result> results_;
-  const Chunks& chunks_;
-  std::size_t most_ = 0;
-};
 
 /// The vertices of a pair of features: of the first feature's mesh, then of the second's.
 template <typename State>
@@ -445,6 +421,25 @@ std::array<Vec3d, 4> points_of(FeaturePair kind, const std::array<std::uint32_t,
           second[vertex[3]]};
 }
 
+/// When features first touch, of pairs of a feature of mesh `a` and one of mesh `b`.
+template <typename State>
+void find_times(FeaturePair kind, std::span<const Pair> pairs, const State& a, const State& b,
+                const FeatureImpactOptions& options, double* times) noexcept {
+  FeatureStage stage;
+  double found[kFeatureLanes];
+  const auto settle = [&] {
+    stage.find(kind, found, options);
+    times = std::copy_n(found, stage.size(), times);
+    stage.clear();
+  };
+  for (const Pair& pair : pairs) {
+    const auto vertex = vertices_of(kind, pair, a, b);
+    stage.add(points_of(kind, vertex, a.start, b.start), points_of(kind, vertex, a.end, b.end));
+    if (stage.is_full()) settle();
+  }
+  settle();
+}
+
 }  // namespace
 
 Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kind,
@@ -456,31 +451,25 @@ Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kin
     return Status::invalid_argument;
   }
   ResultChunk<MeshImpact, ResultChunks<MeshImpact>> results(options_.memory, chunks);
-  if (!results.reserve(options_.chunk)) return Status::out_of_memory;
+  Column<double> times(options_.memory);
+  if (!results.reserve(options_.chunk) || !times.resize(options_.chunk)) {
+    return Status::out_of_memory;
+  }
   const State& a = *state_;
   const State& b = *second.state_;
-  FeatureStage stage;
-  Pair staged[kFeatureLanes];
-  const auto settle = [&] {
-    double times[kFeatureLanes];
-    stage.find(kind, times, options);
-    for (std::size_t i = 0; i < stage.size(); ++i) {
-      if (times[i] <= 1.0) results.add({staged[i], times[i]});
-    }
-    stage.clear();
-  };
   const auto take = [&](std::span<const Pair> pairs) {
-    for (const Pair& pair : pairs) {
-      const auto vertex = vertices_of(kind, pair, a, b);
-      staged[stage.size()] = pair;
-      stage.add(points_of(kind, vertex, a.start, b.start), points_of(kind, vertex, a.end, b.end));
-      if (stage.is_full()) settle();
+    for_stretches(options_.execution, pairs.size(), kPairsPerStretch,
+                  [&](std::size_t begin, std::size_t end) {
+                    find_times(kind, pairs.subspan(begin, end - begin), a, b, options,
+                               times.data() + begin);
+                  });
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (times[i] <= 1.0) results.add({pairs[i], times[i]});
     }
   };
   const Status status =
       other == nullptr ? self_candidates(kind, take) : candidates_with(*other, kind, take);
   if (status != Status::ok) return status;
-  settle();
   results.hand_over();
   return Status::ok;
 }
@@ -493,14 +482,23 @@ Status DeformableMesh::find_near(const DeformableMesh* other, FeaturePair kind, 
     return Status::invalid_argument;
   }
   ResultChunk<MeshProximity, ResultChunks<MeshProximity>> results(options_.memory, chunks);
-  if (!results.reserve(options_.chunk)) return Status::out_of_memory;
+  Column<MeshProximity> near(options_.memory);
+  if (!results.reserve(options_.chunk) || !near.resize(options_.chunk)) {
+    return Status::out_of_memory;
+  }
   const auto take = [&](std::span<const Pair> pairs) {
-    for (const Pair& pair : pairs) {
-      const auto vertex = vertices_of(kind, pair, *state_, *second.state_);
-      MeshProximity result;
-      result.features = pair;
-      find_nearest_points(kind, points_of(kind, vertex, state_->end, second.state_->end), result);
-      if (result.distance <= thickness) results.add(result);
+    for_stretches(options_.execution, pairs.size(), kPairsPerStretch,
+                  [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t i = begin; i < end; ++i) {
+                      const auto vertex = vertices_of(kind, pairs[i], *state_, *second.state_);
+                      near[i] = {};
+                      near[i].features = pairs[i];
+                      find_nearest_points(
+                          kind, points_of(kind, vertex, state_->end, second.state_->end), near[i]);
+                    }
+                  });
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (near[i].distance <= thickness) results.add(near[i]);
     }
   };
   const Status status =

@@ -15,6 +15,7 @@
 #include "pipeline/solver/solver.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -23,6 +24,7 @@ namespace {
 
 using solver::GjkResult;
 using solver::kEpsilon;
+using solver::Simplex;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kMostLooks = 200'000;
@@ -46,6 +48,40 @@ struct Look {
   Vec between = Vec::Zero();
 };
 
+/// The simplex of a look, in the axes of the cores. Where they are next, it is made of points of
+/// theirs as well.
+class Witness {
+ public:
+  [[nodiscard]] bool is_there() const noexcept { return count_ > 0 && age_ < kOldest; }
+  void take(const solver::Core& a, const solver::Core& b, const Simplex& simplex) noexcept {
+    age_ = is_there() ? age_ + 1 : 0;
+    count_ = simplex.count;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {
+      of_a_[i] = a.rotation.transpose() * (simplex.point[i].a - a.center);
+      of_b_[i] = b.rotation.transpose() * (simplex.point[i].b - b.center);
+    }
+  }
+  [[nodiscard]] Simplex placed(const solver::Core& a, const solver::Core& b) const noexcept {
+    Simplex simplex;
+    simplex.count = count_;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {
+      simplex.point[i].a = a.center + a.rotation * of_a_[i];
+      simplex.point[i].b = b.center + b.rotation * of_b_[i];
+      simplex.point[i].w = simplex.point[i].b - simplex.point[i].a;
+    }
+    return simplex;
+  }
+
+ private:
+  /// Each turn there and back rounds: after so many it is found anew.
+  static constexpr int kOldest = 16;
+
+  int count_ = 0;
+  int age_ = 0;
+  std::array<Vec, 4> of_a_;
+  std::array<Vec, 4> of_b_;
+};
+
 class ImpactSearch {
  public:
   ImpactSearch(const ShapeTables& tables, const MovingPart& a, const MovingPart& b,
@@ -64,12 +100,14 @@ class ImpactSearch {
  private:
   [[nodiscard]] static Impact met(double time, const PairAnswer& answer,
                                   const double (&from)[3]) noexcept;
-  [[nodiscard]] Impact meet_at(double time, Look& look) const noexcept;
-  [[nodiscard]] Impact near_at(double time, Look& look) const noexcept;
+  [[nodiscard]] Impact meet_at(double time, Look& look) noexcept;
+  [[nodiscard]] Impact near_at(double time, Look& look) noexcept;
   [[nodiscard]] Impact start() const noexcept;
+  [[nodiscard]] PairAnswer answer_at(double time, Pose& pose_a) const noexcept;
   [[nodiscard]] Look look(double time) noexcept;
   void look_at_half_space(Look& result) const noexcept;
-  void look_at_cores(double share, Look& result) const noexcept;
+  [[nodiscard]] GjkResult closest_points(double share) const noexcept;
+  void look_at_cores(double share, Look& result) noexcept;
   void look_closer(double time, Look& result) const noexcept;
   [[nodiscard]] double free_until(double time, double end, const Look& look) const noexcept;
   [[nodiscard]] double next(double from, double end, const Look& look) const noexcept;
@@ -84,7 +122,7 @@ class ImpactSearch {
   MovingPair pair_;
   double tolerance_;
   Interval span_;
-  Vec last_axis_ = Vec::Zero();
+  Witness witness_;
   /// Nothing is gained by looking as late as this.
   double touching_ = kUnbounded;
   /// The share of a gap that is to be left of it where is looked next.
@@ -107,15 +145,25 @@ void ImpactSearch::look_at_half_space(Look& result) const noexcept {
   result.slope = pair_.parting(result.axis, y, y + result.between - b.center);
 }
 
+/// From what was closest when last looked at, which moves with the cores.
+GjkResult ImpactSearch::closest_points(double share) const noexcept {
+  const double noise = solver::kEnough * pair_.problem().noise();
+  const solver::Core& b = pair_.b();
+  if (witness_.is_there()) {
+    return gjk(pair_.a(), b, witness_.placed(pair_.a(), b), noise, kUnbounded, share,
+               pair_.roundings());
+  }
+  const Vec start = b.center.isZero(0.0) ? Vec::UnitX() : b.center;
+  return gjk(pair_.a(), b, start, noise, kUnbounded, share, pair_.roundings());
+}
+
 /// By the iteration for closest points, which ends where the gap is known to a share of it.
-void ImpactSearch::look_at_cores(double share, Look& result) const noexcept {
+void ImpactSearch::look_at_cores(double share, Look& result) noexcept {
   const solver::Core& b = pair_.b();
   const double noise = pair_.noise();
-  const Vec start = last_axis_.isZero(0.0) ? b.center : last_axis_;
-  const GjkResult found =
-      gjk(pair_.a(), b, start.isZero(0.0) ? Vec::UnitX() : start,
-          solver::kEnough * pair_.problem().noise(), kUnbounded, share, pair_.roundings());
+  const GjkResult found = closest_points(share);
   if (found.contact) return;
+  if (!pair_.bends()) witness_.take(pair_.a(), b, found.simplex);
   result.axis = found.axis;
   result.gap = found.lower - pair_.roundings() - noise;
   result.most = found.upper - pair_.roundings() + noise;
@@ -124,13 +172,31 @@ void ImpactSearch::look_at_cores(double share, Look& result) const noexcept {
   result.slope = pair_.parting(found.axis, result.on_a, found.simplex.on_b() - b.center);
 }
 
+/// What the solver says of the shapes at a time, and where it puts a. Triangles that bend are put
+/// in a table of their own.
+PairAnswer ImpactSearch::answer_at(double time, Pose& pose_a) const noexcept {
+  Pose pose_b;
+  pair_.poses(time, pose_a, pose_b);
+  if (a_.drift == nullptr && b_.drift == nullptr) {
+    return distance_of(tables_, a_.shape, pose_a, b_.shape, pose_b);
+  }
+  TriangleShape bent[2] = {tables_.triangles[0], tables_.triangles[1]};
+  for (const MovingPart* const part : {&a_, &b_}) {
+    if (part->drift == nullptr) continue;
+    for (int i = 0; i < 3; ++i) {
+      Vec::Map(bent[part->shape.index()].vertex[i]) += time * part->drift[i];
+    }
+  }
+  ShapeTables tables = tables_;
+  tables.triangles = bent;
+  return distance_of(tables, a_.shape, pose_a, b_.shape, pose_b);
+}
+
 /// For cores whose closest points iteration does not find.
 void ImpactSearch::look_closer(double time, Look& result) const noexcept {
   Pose pose_a;
-  Pose pose_b;
-  pair_.poses(time, pose_a, pose_b);
-  const PairAnswer found = distance_of(tables_, a_.shape, pose_a, b_.shape, pose_b);
-  const auto scaled = [this](double x) { return std::ldexp(x, -pair_.problem().exponent); };
+  const PairAnswer found = answer_at(time, pose_a);
+  const solver::Scale scaled(pair_.problem().exponent);
   const double distance = scaled(found.distance);
   const double doubt = scaled(found.error_bound) + pair_.noise();
   const Vec axis = Vec::Map(found.normal);
@@ -158,7 +224,6 @@ Look ImpactSearch::look(double time) noexcept {
     if (vague) look_closer(time, result);
   }
   result.parted = result.gap > 0.0;
-  if (result.parted && !result.axis.isZero(0.0)) last_axis_ = result.axis;
   return result;
 }
 
@@ -242,21 +307,19 @@ Impact ImpactSearch::met(double time, const PairAnswer& answer, const double (&f
 
 /// They are apart before and within the tolerance here, where the pair is placed, or too near for
 /// double to tell.
-Impact ImpactSearch::meet_at(double time, Look& look) const noexcept {
+Impact ImpactSearch::meet_at(double time, Look& look) noexcept {
   if (look.parted) return near_at(time, look);
   if (time == 0.0) return start();
   Pose pose_a;
-  Pose pose_b;
-  pair_.poses(time, pose_a, pose_b);
-  Impact impact =
-      met(time, distance_of(tables_, a_.shape, pose_a, b_.shape, pose_b), pose_a.position);
+  const PairAnswer answer = answer_at(time, pose_a);
+  Impact impact = met(time, answer, pose_a.position);
   impact.gap = std::max(impact.gap, 0.0);
   impact.error_bound += unscaled(pair_.problem(), pair_.noise());
   return impact;
 }
 
 /// What a look says of shapes that it shows apart; a closer one where there are closest corners.
-Impact ImpactSearch::near_at(double time, Look& look) const noexcept {
+Impact ImpactSearch::near_at(double time, Look& look) noexcept {
   const bool polytopes = pair_.a().is_polytope() && pair_.b().is_polytope();
   if (polytopes && look.most - look.gap > 4.0 * pair_.noise()) look_at_cores(0.0, look);
   const solver::Problem& problem = pair_.problem();
@@ -282,9 +345,8 @@ Impact ImpactSearch::start() const noexcept {
     return met(0.0, distance_of(tables_, a_.shape, start_a, b_.shape, start_b), kHere);
   }
   Pose pose_a;
-  Pose pose_b;
-  pair_.poses(0.0, pose_a, pose_b);
-  return met(0.0, distance_of(tables_, a_.shape, pose_a, b_.shape, pose_b), pose_a.position);
+  const PairAnswer answer = answer_at(0.0, pose_a);
+  return met(0.0, answer, pose_a.position);
 }
 
 /// True if they are within the tolerance and seem to meet before the end, or stay so for long.

@@ -17,6 +17,8 @@ using solver::kEpsilon;
 using solver::Range;
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
+/// Squares above this have all their digits.
+constexpr double kExact = 1e-290;
 /// Axes that differ by less are the same: what that changes is counted as noise.
 constexpr double kSameAxis = 16.0 * kEpsilon;
 
@@ -29,6 +31,22 @@ double across_z(const Vec& w) noexcept {
 double rim_reach(double radius, double z, const Vec& w) noexcept {
   const double nearest = std::max(0.0, std::abs(z * w.z()) - radius * across_z(w));
   return std::sqrt(std::max(0.0, radius * radius + z * z - nearest * nearest));
+}
+
+/// The same of corners of a hull.
+double corner_reach(const Core& core, const Vec& w) noexcept {
+  const HullShape& hull = *core.hull;
+  double square = 0.0;
+  for (std::uint32_t i = 0; i < hull.vertex_count; ++i) {
+    const auto own = [&](std::size_t axis) {
+      return hull.vertex[axis][i] * core.unit[0] * core.unit[1];
+    };
+    const double x = own(1) * w.z() - own(2) * w.y();
+    const double y = own(2) * w.x() - own(0) * w.z();
+    const double z = own(0) * w.y() - own(1) * w.x();
+    square = std::max(square, x * x + y * y + z * z);
+  }
+  return std::sqrt(square);
 }
 
 /// The largest distance of an unturned core's points from the axis w through its center.
@@ -46,6 +64,8 @@ double reach_of(const Core& core, const Vec& w) noexcept {
       return 0.0;
     case CoreKind::support:
       return core.size - core.rounding;
+    case CoreKind::hull:
+      return corner_reach(core, w);
     default:
       break;
   }
@@ -99,17 +119,34 @@ void take_arm(Core& core, const Quaternion& from, const Vec& arm) noexcept {
   core.size = std::abs(core.offset);
 }
 
+void take_drift(Core& core, const Vec* drift, const solver::Scale& scaled,
+                TurningCore& turning) noexcept {
+  turning.drifts = true;
+  core.size = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    turning.drift[i] = drift[i].unaryExpr(scaled);
+    core.size =
+        std::max({core.size, core.corner[i].norm(), (core.corner[i] + turning.drift[i]).norm()});
+  }
+  core.size += core.rounding;
+}
+
 /// `core` is unturned.
 TurningCore turning(Core& core, const RigidMotion& motion, const Vec& arm) noexcept {
   TurningCore result;
+  if (core.kind == CoreKind::point && arm.isZero(0.0)) return result;
   result.from = normalized(tame(motion.start.orientation));
   result.first_arm = arm;
   if (core.kind == CoreKind::half_space) {
     take_arm(core, result.from, arm);
+    result.normal = core.normal;
   } else {
     result.arm = arm;
   }
-  result.local = core;
+  if (core.kind == CoreKind::triangle) {
+    result.corner = core.corner;
+    result.side = core.side;
+  }
   const double angle = length_of(motion.turn);
   if (angle == 0.0) return result;
   result.axis = Vec::Map(motion.turn) / angle;
@@ -131,23 +168,31 @@ Quaternion orientation_at(const TurningCore& turning, double time) noexcept {
   return turned(turning.from, turning.axis.data(), time * turning.angle);
 }
 
+void bend(const TurningCore& turning, double time, Core& core) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) core.corner[i] += time * turning.drift[i];
+  for (std::size_t i = 0; i < 3; ++i) {
+    core.side[i] = solver::unit(core.corner[(i + 1) % 3] - core.corner[i]);
+  }
+}
+
 void place_core(TurningCore& turning, double time, Core& core) noexcept {
   if (core.kind != CoreKind::half_space) turning.arm = turning.arm_at(time);
   core.rotation = rotation_of(orientation_at(turning, time));
   if (core.kind == CoreKind::triangle) {
     for (std::size_t i = 0; i < 3; ++i) {
-      core.corner[i] = core.rotation * turning.local.corner[i];
-      core.side[i] = core.rotation * turning.local.side[i];
+      core.corner[i] = core.rotation * turning.corner[i];
+      core.side[i] = core.rotation * turning.side[i];
     }
+    if (turning.drifts) bend(turning, time, core);
   } else if (core.kind == CoreKind::half_space) {
-    core.normal = solver::unit(core.rotation * turning.local.normal);
+    core.normal = solver::unit(core.rotation * turning.normal);
   }
 }
 
 /// The most that an unturned or turned core reaches along the axis, from its center. A half-space's
 /// normal is the axis.
 double high(const Core& core, const Vec& axis) noexcept {
-  return core.kind == CoreKind::half_space ? core.offset : project(core, axis).high;
+  return core.kind == CoreKind::half_space ? core.offset : highest(core, axis);
 }
 
 /// The same from the body's position, of all that it sweeps as it turns.
@@ -173,6 +218,28 @@ Vec TurningCore::arm_at(double time) const noexcept {
   return height + (first_arm - height) * by.cosine + axis.cross(first_arm) * by.sine;
 }
 
+double TurningCore::drift_along(const Vec& n) const noexcept {
+  if (!drifts) return 0.0;
+  return std::max({drift[0].dot(n), drift[1].dot(n), drift[2].dot(n)});
+}
+
+double TurningCore::drift_speed() const noexcept {
+  return drifts ? std::max({drift[0].norm(), drift[1].norm(), drift[2].norm()}) : 0.0;
+}
+
+Vec TurningCore::drift_at(const Core& core, const Vec& y) const noexcept {
+  if (!drifts) return Vec::Zero();
+  const Vec first = core.corner[1] - core.corner[0];
+  const Vec second = core.corner[2] - core.corner[0];
+  const Vec n = first.cross(second);
+  const double area = n.squaredNorm();
+  if (!(area > 0.0)) return (drift[0] + drift[1] + drift[2]) / 3.0;
+  const Vec at = y - core.corner[0];
+  const double u = std::clamp(n.dot(at.cross(second)) / area, 0.0, 1.0);
+  const double v = std::clamp(n.dot(first.cross(at)) / area, 0.0, 1.0);
+  return (1.0 - u - v) * drift[0] + u * drift[1] + v * drift[2];
+}
+
 MovingPair::MovingPair(const ShapeTables& tables, const MovingPart& a,
                        const MovingPart& b) noexcept {
   const RigidMotion& of_a = a.motion;
@@ -186,11 +253,13 @@ MovingPair::MovingPair(const ShapeTables& tables, const MovingPart& a,
   Vec::Map(there.position) = start.cwiseAbs().maxCoeff() > end.cwiseAbs().maxCoeff() ? start : end;
   there.position[0] += std::copysign(a.arm.norm() + b.arm.norm(), there.position[0]);
   prepare(tables, a.shape, Pose{}, b.shape, there, false, problem_);
-  const auto scaled = [this](double x) { return std::ldexp(x, -problem_.exponent); };
+  const solver::Scale scaled(problem_.exponent);
   between_ = placed_ = start.unaryExpr(scaled);
   travel_ = way.unaryExpr(scaled);
   turn_a_ = turning(problem_.a, of_a, a.arm.unaryExpr(scaled));
   turn_b_ = turning(problem_.b, of_b, b.arm.unaryExpr(scaled));
+  if (a.drift != nullptr) take_drift(problem_.a, a.drift, scaled, turn_a_);
+  if (b.drift != nullptr) take_drift(problem_.b, b.drift, scaled, turn_b_);
   const double sizes = problem_.a.size + problem_.b.size + arms();
   noise_ = kEpsilon * (8.0 * (between_.norm() + travel_.norm()) +
                        (64.0 + 4.0 * (turn_a_.angle + turn_b_.angle)) * sizes);
@@ -230,6 +299,11 @@ Interval MovingPair::window() const noexcept {
 
 Interval ball_window(const Vec& between, const Vec& travel, double reach) noexcept {
   constexpr Interval kAll{0.0, 1.0};
+  // Most pairs of a scene pass each other by: their line is too far away, which needs no root.
+  const double rounding = between.cwiseAbs().sum() + travel.cwiseAbs().sum() + reach;
+  const double wide = reach + 128.0 * kEpsilon * rounding;
+  const double limit = wide * wide * travel.squaredNorm();
+  if (limit > kExact && between.cross(travel).squaredNorm() > limit) return {1.0, 0.0};
   const double speed = travel.norm();
   const double path = between.norm() + speed;
   if (!std::isfinite(reach + path)) return kAll;
@@ -257,6 +331,7 @@ double MovingPair::parting(const Vec& axis, const Vec& y_a, const Vec& y_b) cons
   Vec v = travel_;
   if (turn_a_.angle > 0.0) v -= turn_a_.angle * turn_a_.axis.cross(turn_a_.arm + y_a);
   if (turn_b_.angle > 0.0) v += turn_b_.angle * turn_b_.axis.cross(turn_b_.arm + y_b);
+  v += turn_b_.drift_at(b(), y_b) - turn_a_.drift_at(a(), y_a);
   return axis.dot(v);
 }
 
@@ -264,7 +339,7 @@ double MovingPair::curvature(const Vec& axis) const noexcept {
   if (has_half_space() && turn_b_.angle > 0.0) {
     // The normal turns, times points that turn about a position that moves: the product rule.
     const double far = std::max(between_.norm(), (between_ + travel_).norm()) + arms() + a().size;
-    const double fast = travel_.norm() + turn_a_.angle * turn_a_.reach;
+    const double fast = travel_.norm() + turn_a_.angle * turn_a_.reach + turn_a_.drift_speed();
     return turn_b_.angle * (turn_b_.angle * far + 2.0 * fast) +
            turn_a_.angle * turn_a_.angle * turn_a_.reach;
   }
@@ -281,15 +356,19 @@ double MovingPair::curvature_between(const Vec& from, const Vec& to, double widt
   const double rate = turned * (1.0 + 0.05 * turned * turned) / width;
   const double reach =
       turn_a_.reach * turn_a_.angle * turn_a_.angle + turn_b_.reach * turn_b_.angle * turn_b_.angle;
-  const double speed =
-      travel_.norm() + turn_a_.angle * turn_a_.reach + turn_b_.angle * turn_b_.reach;
+  const double speed = fastest();
   const double far = placed_.norm() + width * travel_.norm() + arms() + a().size + b().size;
   const double below = width * (rate * far + speed);
   return reach + 2.0 * rate * speed + rate * rate * below;
 }
 
+double MovingPair::fastest() const noexcept {
+  return travel_.norm() + turn_a_.angle * turn_a_.reach + turn_b_.angle * turn_b_.reach +
+         turn_a_.drift_speed() + turn_b_.drift_speed();
+}
+
 double MovingPair::most_closing() const noexcept {
-  double speed = travel_.norm() + turn_a_.angle * turn_a_.reach + turn_b_.angle * turn_b_.reach;
+  double speed = fastest();
   if (has_half_space()) {
     const double far = std::max(between_.norm(), (between_ + travel_).norm());
     speed += turn_b_.angle * (far + arms() + a().size);

@@ -5,6 +5,8 @@
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/solver/problem.h"
 
+#include <array>
+
 namespace winnow::impact {
 
 using solver::Vec;
@@ -26,13 +28,21 @@ struct MovingPart {
   RigidMotion motion;
   /// From the body's position to the shape's at the start, in the axes of the world.
   Vec arm = Vec::Zero();
+  /// Of a triangle that bends, three: how far each corner gets, evenly, from where the body takes
+  /// it. Such a body does not turn, and its shape has no arm.
+  const Vec* drift = nullptr;
 };
 
 /// How a core turns about the axis through its body's position.
 struct TurningCore {
-  /// As it is unturned.
-  solver::Core local;
-  Quaternion from{};
+  // Of a triangle and of a half-space, as they are unturned.
+  std::array<Vec, 3> corner;
+  std::array<Vec, 3> side;
+  Vec normal;
+  /// Of a triangle that bends: see MovingPart.
+  bool drifts = false;
+  std::array<Vec, 3> drift;
+  Quaternion from{1.0, 0.0, 0.0, 0.0};
   Vec axis = Vec::UnitZ();
   /// Radians in all; 0 where turning changes nothing.
   double angle = 0.0;
@@ -47,9 +57,13 @@ struct TurningCore {
   Vec arm = Vec::Zero();
 
   [[nodiscard]] Vec arm_at(double time) const noexcept;
+  /// How fast corners that drift get on along an axis at most.
+  [[nodiscard]] double drift_along(const Vec& n) const noexcept;
+  [[nodiscard]] double drift_speed() const noexcept;
+  /// How fast a point of the placed core drifts, that is at y from its center.
+  [[nodiscard]] Vec drift_at(const solver::Core& core, const Vec& y) const noexcept;
 };
 
-/// Two shapes that move, at any time in [0, 1]: a problem of the solver, in the axes of the world
 /// Two shapes that move, at any time in [0, 1]: a problem of the solver, in the axes of the world
 /// and about the center of a, with what bounds their approach, in the order of the solver. Lengths
 /// are those of the problem.
@@ -70,6 +84,8 @@ class MovingPair {
   [[nodiscard]] bool has_half_space() const noexcept {
     return b().kind == solver::CoreKind::half_space;
   }
+  /// One of them is a triangle that bends.
+  [[nodiscard]] bool bends() const noexcept { return turn_a_.drifts || turn_b_.drifts; }
   /// Of two half-spaces that touch as soon as they turn.
   [[nodiscard]] bool touches_soon() const noexcept {
     return a().kind == solver::CoreKind::half_space && (turn_a_.angle > 0.0 || turn_b_.angle > 0.0);
@@ -87,9 +103,11 @@ class MovingPair {
   /// along its normal as it is.
   [[nodiscard]] double gap(const Vec& axis) const noexcept;
   /// The same of all that they sweep as they turn about their axes where they are placed: as they
-  /// move it closes at a constant speed. Minus infinity if there is no such gap.
+  /// move it closes no faster than `swept_closing`. Minus infinity if there is no such gap.
   [[nodiscard]] double swept_gap(const Vec& axis) const noexcept;
-  [[nodiscard]] double swept_closing(const Vec& axis) const noexcept { return -axis.dot(travel_); }
+  [[nodiscard]] double swept_closing(const Vec& axis) const noexcept {
+    return turn_a_.drift_along(axis) + turn_b_.drift_along(-axis) - axis.dot(travel_);
+  }
   /// How fast a point of b that is at y_b from its center parts, along an axis, from one of a.
   [[nodiscard]] double parting(const Vec& axis, const Vec& y_a, const Vec& y_b) const noexcept;
   /// No gap along the axis, or along a half-space's normal as it turns, falls below its chord
@@ -106,6 +124,8 @@ class MovingPair {
   solver::Problem problem_;
   TurningCore turn_a_;
   TurningCore turn_b_;
+  /// No two points of bounded shapes are faster against each other.
+  [[nodiscard]] double fastest() const noexcept;
   [[nodiscard]] double arms() const noexcept {
     return turn_a_.first_arm.norm() + turn_b_.first_arm.norm();
   }

@@ -6,6 +6,7 @@
 #include <winnow/core/aabb.h>
 #include "core/hooks/log.h"
 #include "core/memory/new_in.h"
+#include "core/sort/radix_sort.h"
 #include "core/sort/stretches.h"
 #include "pipeline/motion/body_impact.h"
 #include "pipeline/motion/passage.h"
@@ -13,6 +14,7 @@
 #include "pipeline/shapes/difference.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <tuple>
@@ -54,6 +56,7 @@ struct SweepState {
         piece_keys(memory),
         pairs(memory),
         candidates(memory),
+        spare(memory),
         windows(memory),
         chances(memory),
         first_chance(memory),
@@ -68,6 +71,7 @@ struct SweepState {
   [[nodiscard]] Status find_pairs(const SweepOptions& options);
   [[nodiscard]] Status find_all(const SweepOptions& options);
   [[nodiscard]] Status find_first(const SweepOptions& options);
+  [[nodiscard]] bool sort_candidates() noexcept;
   void sort_impacts() noexcept;
   void forget() noexcept {
     impacts.clear();
@@ -93,6 +97,7 @@ struct SweepState {
   PairBuffer pairs;
   /// Pairs of bodies as (smaller id << 32 | larger id), sorted.
   Column<std::uint64_t> candidates;
+  Column<std::uint64_t> spare;
   /// By candidate, when the balls around the two overlap.
   Column<impact::Interval> windows;
   /// By mover, candidates that it is one of: see `list_chances`.
@@ -309,6 +314,22 @@ Status SweepState::collect(Body&& second_body) {
   return Status::ok;
 }
 
+/// Each once: a pair is found for each two pieces.
+bool SweepState::sort_candidates() noexcept {
+  const std::size_t count = candidates.size();
+  if (!spare.resize(count)) return false;
+  const auto bits = static_cast<unsigned>(std::bit_width(bodies.shape.size()));
+  const Execution& execution = bodies.options.execution;
+  std::uint64_t* sorted = candidates.data();
+  for (const unsigned digit : {0U, 32U}) {
+    std::uint64_t* const other = sorted == candidates.data() ? spare.data() : candidates.data();
+    sorted = radix_sort(sorted, other, count, bits, execution, digit);
+  }
+  const std::uint64_t* const end = std::unique_copy(sorted, sorted + count, candidates.data());
+  candidates.set_size(static_cast<std::size_t>(end - candidates.data()));
+  return true;
+}
+
 Status SweepState::find_pairs(const SweepOptions& options) {
   candidates.clear();
   const WayJudge among{*this, options, nullptr};
@@ -325,23 +346,26 @@ Status SweepState::find_pairs(const SweepOptions& options) {
     if (status == Status::ok) status = collect([&](ObjectId id) { return set.body_of[id]; });
   }
   if (status != Status::ok) return status;
-  // A pair is found once for each two pieces.
-  std::sort(candidates.begin(), candidates.end());
-  std::uint64_t* const end = std::unique(candidates.begin(), candidates.end());
-  candidates.set_size(static_cast<std::size_t>(end - candidates.begin()));
+  if (!sort_candidates()) return Status::out_of_memory;
   statistics.body_pairs = candidates.size();
   return Status::ok;
 }
 
 impact::Interval SweepState::window_of(std::uint64_t candidate) const noexcept {
+  constexpr double kStands[3] = {0.0, 0.0, 0.0};
   const auto a = static_cast<std::uint32_t>(candidate >> 32U);
   const auto b = static_cast<std::uint32_t>(candidate);
-  const RigidMotion of_a = motion_of(a);
-  const RigidMotion of_b = motion_of(b);
-  const Difference apart = difference(of_b.start.position, of_a.start.position);
-  const Eigen::Vector3d travel =
-      Eigen::Vector3d::Map(of_b.travel) - Eigen::Vector3d::Map(of_a.travel);
-  return impact::ball_window(Eigen::Vector3d::Map(apart.difference), travel,
+  const auto start = [&](std::uint32_t body) -> const double(&)[3] {
+    const std::uint32_t mover = mover_of[body];
+    return mover == kNoMover ? bodies.pose[body].position : motions[mover].start.position;
+  };
+  const auto travel = [&](std::uint32_t body) -> const double(&)[3] {
+    const std::uint32_t mover = mover_of[body];
+    return mover == kNoMover ? kStands : motions[mover].travel;
+  };
+  const Difference apart = difference(start(b), start(a));
+  return impact::ball_window(Eigen::Vector3d::Map(apart.difference),
+                             Eigen::Vector3d::Map(travel(b)) - Eigen::Vector3d::Map(travel(a)),
                              bodies.radius(a) + bodies.radius(b));
 }
 
@@ -350,8 +374,8 @@ impact::BodyImpact SweepState::impact_of(std::uint64_t candidate, const impact::
   const auto a = static_cast<std::uint32_t>(candidate >> 32U);
   const auto b = static_cast<std::uint32_t>(candidate);
   impact::BodyImpact result =
-      impact::find_body_impact(parts, {bodies.shape[a], motion_of(a)},
-                               {bodies.shape[b], motion_of(b)}, options.tolerance, within);
+      impact::find_impact_of_balls(parts, {bodies.shape[a], motion_of(a)},
+                                   {bodies.shape[b], motion_of(b)}, options.tolerance, within);
   const bool touches = result.impact.time == 0.0 && result.impact.gap <= 0.0;
   if (touches && !options.touching) result.impact.hit = false;
   return result;
@@ -366,7 +390,7 @@ Status SweepState::find_all(const SweepOptions& options) {
                     const impact::Interval window = window_of(candidates[i]);
                     found[i] = {};
                     if (window.first > window.last) continue;
-                    found[i] = impact_of(candidates[i], {0.0, 1.0}, options);
+                    found[i] = impact_of(candidates[i], window, options);
                   }
                 });
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -551,8 +575,8 @@ Footprint SceneSweep::footprint() const noexcept {
   for (const Bytes& bytes :
        {s.ways.footprint().total(), s.motions.bytes(), s.movers.bytes(), s.mover_of.bytes(),
         s.first_piece.bytes(), s.boxes.bytes(), s.pieces.bytes(), s.piece_of.bytes(),
-        s.piece_keys.bytes(), s.pairs.footprint().total(), s.candidates.bytes(), s.windows.bytes(),
-        s.chances.bytes(), s.first_chance.bytes(), s.found.bytes()}) {
+        s.piece_keys.bytes(), s.pairs.footprint().total(), s.candidates.bytes(), s.spare.bytes(),
+        s.windows.bytes(), s.chances.bytes(), s.first_chance.bytes(), s.found.bytes()}) {
     sum.scratch += bytes;
   }
   sum.results += s.impacts.bytes();

@@ -49,16 +49,14 @@ Vec without(const Vec& v, const Vec& e) noexcept {
 // Blocks of eight keep independent maxima, so that the loop does not wait for each comparison.
 std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value) noexcept {
   constexpr std::uint32_t kBlock = 8;
+  using Block = Eigen::Array<double, kBlock, 1>;
   double best = -std::numeric_limits<double>::infinity();
   std::uint32_t best_at = 0;
   for (std::uint32_t i = 0; i < hull.vertex_count; i += kBlock) {
-    double dot[kBlock];
-    for (std::uint32_t k = 0; k < kBlock; ++k) {
-      dot[k] = hull.vertex[0][i + k] * d.x() + hull.vertex[1][i + k] * d.y() +
-               hull.vertex[2][i + k] * d.z();
-    }
-    double top = dot[0];
-    for (std::uint32_t k = 1; k < kBlock; ++k) top = dot[k] > top ? dot[k] : top;
+    const Block dot = Block::Map(hull.vertex[0] + i) * d.x() +
+                      Block::Map(hull.vertex[1] + i) * d.y() +
+                      Block::Map(hull.vertex[2] + i) * d.z();
+    const double top = dot.maxCoeff();
     if (!(top > best)) continue;
     best = top;
     std::uint32_t k = 0;
@@ -156,6 +154,13 @@ Range project(const Core& core, const Vec& n) noexcept {
       return range;
     }
   }
+}
+
+double highest(const Core& core, const Vec& n) noexcept {
+  if (core.kind != CoreKind::hull) return project(core, n).high;
+  double value = 0.0;
+  farthest_vertex(*core.hull, core.rotation.transpose() * n, value);
+  return value * core.unit[0] * core.unit[1];
 }
 
 double separation(const Core& a, const Core& b, const Vec& axis) noexcept {

@@ -72,6 +72,9 @@ std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value
 /// Smallest and largest n . (x - center) over the core.
 [[nodiscard]] Range project(const Core& core, const Vec& n) noexcept;
 
+/// The largest alone.
+[[nodiscard]] double highest(const Core& core, const Vec& n) noexcept;
+
 /// The gap between the cores along a unit axis from a to b; negative where they overlap on it.
 [[nodiscard]] double separation(const Core& a, const Core& b, const Vec& axis) noexcept;
 

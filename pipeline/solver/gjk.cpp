@@ -179,16 +179,11 @@ bool holds(const Simplex& simplex, const Vec& w) noexcept {
   return false;
 }
 
-}  // namespace
-
-GjkResult gjk(const Core& a, const Core& b, const Vec& start, double noise, double enough,
-              double share, double roundings) noexcept {
-  GjkResult result;
+/// From the point of the simplex in the result that is closest to the origin.
+void iterate(const Core& a, const Core& b, double noise, double enough, double share,
+             double roundings, GjkResult& result) noexcept {
   Simplex& simplex = result.simplex;
-  simplex.point[0] = support_towards(a, b, start);
-  simplex.weight[0] = 1.0;
-  simplex.count = 1;
-  Vec v = simplex.point[0].w;
+  Vec v = simplex.closest();
   result.lower = -std::numeric_limits<double>::infinity();
   result.bounded = true;
   for (int i = 0; i < kIterations; ++i) {
@@ -227,9 +222,30 @@ GjkResult gjk(const Core& a, const Core& b, const Vec& start, double noise, doub
     }
     v = next;
   }
-  if (result.contact) return result;
+  if (result.contact) return;
   result.between = v;
   result.upper = v.norm();
+}
+
+}  // namespace
+
+GjkResult gjk(const Core& a, const Core& b, const Vec& start, double noise, double enough,
+              double share, double roundings) noexcept {
+  GjkResult result;
+  result.simplex.point[0] = support_towards(a, b, start);
+  result.simplex.weight[0] = 1.0;
+  result.simplex.count = 1;
+  iterate(a, b, noise, enough, share, roundings, result);
+  return result;
+}
+
+GjkResult gjk(const Core& a, const Core& b, const Simplex& start, double noise, double enough,
+              double share, double roundings) noexcept {
+  GjkResult result;
+  result.simplex = start;
+  reduce(result.simplex);
+  result.contact = result.simplex.inside;
+  if (!result.contact) iterate(a, b, noise, enough, share, roundings, result);
   return result;
 }
 

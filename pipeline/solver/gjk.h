@@ -58,5 +58,9 @@ struct GjkResult {
 /// ends as soon as the distance, less `roundings`, is known to that share of it.
 [[nodiscard]] GjkResult gjk(const Core& a, const Core& b, const Vec& start, double noise,
                             double enough, double share = 0.0, double roundings = 0.0) noexcept;
+/// The same from a simplex of points of both cores instead of a direction, such as what was found
+/// before the cores moved by little.
+[[nodiscard]] GjkResult gjk(const Core& a, const Core& b, const Simplex& start, double noise,
+                            double enough, double share, double roundings) noexcept;
 
 }  // namespace winnow::solver

@@ -15,19 +15,6 @@ struct Lengths {
   double largest = 0.0;
 };
 
-/// Multiplies by 2^-exponent, in two steps where that is no double.
-struct Scale {
-  double factor[2];
-
-  explicit Scale(int exponent) noexcept {
-    constexpr int kLargest = 1000;
-    const int second = std::min(exponent + kLargest, 0);
-    factor[0] = std::ldexp(1.0, second - exponent);
-    factor[1] = std::ldexp(1.0, -second);
-  }
-  [[nodiscard]] double operator()(double x) const noexcept { return x * factor[0] * factor[1]; }
-};
-
 Lengths triangle_lengths(const TriangleShape& triangle) noexcept {
   Lengths lengths{CoreKind::triangle, Vec::Zero(), triangle.rounding, triangle.rounding};
   for (const auto& corner : triangle.vertex) {
@@ -175,7 +162,7 @@ double largest_length(const ShapeTables& tables, ShapeId a, ShapeId b) noexcept 
 double unscaled(const Problem& problem, double length) noexcept {
   if (!std::isfinite(length)) return length;
   constexpr double kMost = std::numeric_limits<double>::max();
-  return std::clamp(std::ldexp(length, problem.exponent), -kMost, kMost);
+  return std::clamp(Scale(-problem.exponent)(length), -kMost, kMost);
 }
 
 }  // namespace winnow::solver

@@ -4,6 +4,12 @@
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/solver/core.h"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+
 namespace winnow::solver {
 
 /// A pair in one frame: origin at the position of a, axes of the world, lengths scaled by a power
@@ -39,6 +45,27 @@ void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b
 /// all else as it was. False, and unchanged, if it would have another exponent. `largest` is the
 /// `largest_length` of the two.
 [[nodiscard]] bool move(const Vec& between, double largest, Problem& problem) noexcept;
+
+/// Multiplies by 2^-exponent, in two steps where that is no double.
+class Scale {
+ public:
+  explicit Scale(int exponent) noexcept {
+    constexpr int kLargest = 1000;
+    const int second = std::min(exponent + kLargest, 0);
+    factor_[0] = power_of_two(second - exponent);
+    factor_[1] = power_of_two(-second);
+  }
+  [[nodiscard]] double operator()(double x) const noexcept { return x * factor_[0] * factor_[1]; }
+
+ private:
+  [[nodiscard]] static double power_of_two(int exponent) noexcept {
+    constexpr int kNormal = 1022;
+    if (std::abs(exponent) > kNormal) return std::ldexp(1.0, exponent);
+    return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + kNormal + 1) << 52U);
+  }
+
+  double factor_[2];
+};
 
 /// x 2^exponent, at most the largest double if it is finite.
 [[nodiscard]] double unscaled(const Problem& problem, double length) noexcept;

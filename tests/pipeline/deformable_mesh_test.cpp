@@ -386,6 +386,35 @@ TEST(DeformableMeshes, refuse_bad_input_and_stay_as_they_were) {
   EXPECT_EQ(step.move(mesh), Status::invalid_argument);  // NOLINT(bugprone-use-after-move)
 }
 
+TEST(DeformableMeshes, may_be_edited_between_steps) {
+  MeshStep step = trembling(torus(12, 9), 0.1);
+  DeformableMesh mesh;
+  ASSERT_EQ(step.build(mesh), Status::ok);
+  ASSERT_EQ(step.move(mesh), Status::ok);
+  // A face, and then a vertex more; and a face taken away.
+  for (const std::uint32_t corner : {0U, 5U, 40U}) step.corners.push_back(corner);
+  step.start.push_back(step.start[3] + Vec3d(0.1, 0.2, 0.3));
+  step.end.push_back(step.end[3]);
+  for (const std::size_t corner : {std::size_t{1}, step.start.size() - 1, std::size_t{7}}) {
+    step.corners.push_back(static_cast<std::uint32_t>(corner));
+  }
+  step.corners.erase(step.corners.begin() + 30, step.corners.begin() + 33);
+  ASSERT_EQ(step.build(mesh), Status::ok);
+  EXPECT_EQ(mesh.vertices(), step.start.size());
+  ASSERT_EQ(step.move(mesh), Status::ok);
+  DeformableMesh fresh;
+  ASSERT_EQ(step.build(fresh), Status::ok);
+  ASSERT_EQ(step.move(fresh), Status::ok);
+  for (const FeaturePair kind : kMeshFeaturePairs) {
+    EXPECT_EQ(candidates_of(mesh, kind), candidates_of(fresh, kind));
+  }
+  MeshStep bad = step;
+  bad.corners[4] = static_cast<std::uint32_t>(bad.start.size());
+  EXPECT_EQ(bad.build(mesh), Status::invalid_shape);
+  EXPECT_EQ(candidates_of(mesh, FeaturePair::edge_edge),
+            candidates_of(fresh, FeaturePair::edge_edge));
+}
+
 TEST(DeformableMeshes, take_at_most_120_bytes_a_triangle_and_no_more_from_step_to_step) {
   const MeshStep step = trembling(torus(100, 60), 0.01);
   CountingMemory memory;
@@ -397,7 +426,7 @@ TEST(DeformableMeshes, take_at_most_120_bytes_a_triangle_and_no_more_from_step_t
   const std::size_t requests = memory.requests();
   ASSERT_EQ(step.move(mesh, 0.01), Status::ok);
   EXPECT_EQ(memory.requests(), requests);
-  memory.refuse_beyond(memory.outstanding() + 1000 * sizeof(MeshImpact) + 12000);
+  memory.refuse_beyond(memory.outstanding() + 1000 * (sizeof(MeshImpact) + sizeof(double)) + 12000);
   EXPECT_EQ(mesh.self_impacts(FeaturePair::edge_edge, {}, [](auto) {}), Status::ok);
   EXPECT_EQ(memory.outstanding(), mesh.footprint().total().reserved);
 }

@@ -1,0 +1,88 @@
+#include "bench/peers/adapters.h"
+#include "bench/peers/bullet_shapes.h"
+
+#include <BulletCollision/NarrowPhaseCollision/btContinuousConvexCollision.h>
+#include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
+#include <BulletCollision/NarrowPhaseCollision/btSubSimplexConvexCast.h>
+#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
+
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+using namespace in_bullet;
+
+/// Bullet's casts of convex shapes, in float and without margins: conservative advancement of both
+/// as they travel and turn, or its sub-simplex cast, which does not turn. It knows motions by their
+/// ends, and so none of more than half a turn.
+template <typename Cast>
+class BulletImpacts final : public ImpactEngine {
+ public:
+  static constexpr bool kTurns = std::is_same_v<Cast, btContinuousConvexCollision>;
+
+  [[nodiscard]] std::string name() const override {
+    return kTurns ? "Bullet continuous" : "Bullet sub-simplex";
+  }
+  [[nodiscard]] bool takes(const PairKind&, PairTurn turn) const override {
+    return turn == PairTurn::none || (kTurns && turn == PairTurn::little);
+  }
+
+  void start(const MovingPairSet& set) override {
+    const PairSet& middle = *set.middle;
+    for (std::size_t i = 0; i < middle.shapes.size(); ++i) {
+      const ShapeId id = middle.shapes[i];
+      Body body{make_shape(middle.pool.tables(), id, 0.0), transform_of(set.motions[i].at(0.0)),
+                transform_of(set.motions[i].at(1.0))};
+      if (id.kind() == ShapeKind::box || id.kind() == ShapeKind::triangle) body.shape->setMargin(0);
+      bodies_.push_back(std::move(body));
+    }
+  }
+
+  void run(std::span<const BodyPair> pairs) override {
+    answers_.resize(pairs.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const Body& a = bodies_[pairs[i].a];
+      const Body& b = bodies_[pairs[i].b];
+      btConvexCast::CastResult result;
+      const bool hit = cast(a, b, result);
+      answers_[i] = {hit, hit ? static_cast<double>(result.m_fraction) : 1.0};
+    }
+  }
+
+  [[nodiscard]] ImpactAnswer answer(std::size_t i) const override { return answers_[i]; }
+
+ private:
+  struct Body {
+    std::unique_ptr<btConvexShape> shape;
+    btTransform from;
+    btTransform to;
+  };
+
+  bool cast(const Body& a, const Body& b, btConvexCast::CastResult& result) {
+    if constexpr (kTurns) {
+      Cast way(a.shape.get(), b.shape.get(), &simplex_, &depth_);
+      return way.calcTimeOfImpact(a.from, a.to, b.from, b.to, result);
+    } else {
+      Cast way(a.shape.get(), b.shape.get(), &simplex_);
+      return way.calcTimeOfImpact(a.from, a.to, b.from, b.to, result);
+    }
+  }
+
+  btVoronoiSimplexSolver simplex_;
+  btGjkEpaPenetrationDepthSolver depth_;
+  std::vector<Body> bodies_;
+  std::vector<ImpactAnswer> answers_;
+};
+
+}  // namespace
+
+std::unique_ptr<ImpactEngine> make_bullet_continuous() {
+  return std::make_unique<BulletImpacts<btContinuousConvexCollision>>();
+}
+
+std::unique_ptr<ImpactEngine> make_bullet_sub_simplex() {
+  return std::make_unique<BulletImpacts<btSubsimplexConvexCast>>();
+}
+
+}  // namespace winnow::bench

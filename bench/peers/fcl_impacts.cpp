@@ -1,0 +1,76 @@
+#include "bench/peers/adapters.h"
+#include "bench/peers/fcl_shapes.h"
+
+#include <fcl/narrowphase/continuous_collision.h>
+
+#include <exception>
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+using namespace in_fcl;
+
+/// FCL's continuous collision in double, by conservative advancement of linear motions, with its
+/// own GJK, which is faster there than libccd's. It knows motions by their ends, and so none of
+/// more than half a turn. What throws is no hit.
+class FclImpacts final : public ImpactEngine {
+ public:
+  FclImpacts() {
+    request_.ccd_motion_type = fcl::CCDM_LINEAR;
+    request_.ccd_solver_type = fcl::CCDC_CONSERVATIVE_ADVANCEMENT;
+    request_.gjk_solver_type = fcl::GST_INDEP;
+  }
+
+  [[nodiscard]] std::string name() const override { return "FCL continuous"; }
+  [[nodiscard]] bool takes(const PairKind& kind, PairTurn turn) const override {
+    return kind.b != ShapeKind::triangle && turn != PairTurn::whirl;
+  }
+
+  void start(const MovingPairSet& set) override {
+    const PairSet& middle = *set.middle;
+    for (std::size_t i = 0; i < middle.shapes.size(); ++i) {
+      bodies_.push_back({make_geometry(middle.pool.tables(), middle.shapes[i]),
+                         transform_of(set.motions[i].at(0.0)),
+                         transform_of(set.motions[i].at(1.0))});
+      bodies_.back().geometry->computeLocalAABB();
+    }
+  }
+
+  void run(std::span<const BodyPair> pairs) override {
+    answers_.resize(pairs.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const Body& a = bodies_[pairs[i].a];
+      const Body& b = bodies_[pairs[i].b];
+      fcl::ContinuousCollisionResult<double> result;
+      try {
+        fcl::continuousCollide(a.geometry.get(), a.from, a.to, b.geometry.get(), b.from, b.to,
+                               request_, result);
+      } catch (const std::exception&) {
+        result.is_collide = false;
+      }
+      answers_[i] = {result.is_collide, result.is_collide ? result.time_of_contact : 1.0};
+    }
+  }
+
+  [[nodiscard]] ImpactAnswer answer(std::size_t i) const override { return answers_[i]; }
+
+ private:
+  struct Body {
+    std::shared_ptr<Geometry> geometry;
+    Transform from;
+    Transform to;
+  };
+
+  fcl::ContinuousCollisionRequest<double> request_;
+  std::vector<Body> bodies_;
+  std::vector<ImpactAnswer> answers_;
+};
+
+}  // namespace
+
+std::unique_ptr<ImpactEngine> make_fcl_impacts() {
+  return std::make_unique<FclImpacts>();
+}
+
+}  // namespace winnow::bench

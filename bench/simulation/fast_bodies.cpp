@@ -1,0 +1,265 @@
+#include "bench/simulation/fast_bodies.h"
+
+#include "bench/common/need.h"
+#include "bench/scenes/random_shapes.h"
+#include "bench/simulation/crossing.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+namespace winnow::bench {
+namespace {
+
+using Vec3 = Eigen::Vector3d;
+
+/// Of sizes of about 1: bodies keep so far apart at an impact.
+constexpr double kTolerance = 1e-4;
+constexpr double kRestitution = 0.9;
+/// Of the velocities that are left after a step: what a blade gives is taken away.
+constexpr double kBladeDrag = 0.5;
+constexpr double kBladeTurns = 0.5;
+constexpr FunnelSize kFunnel{.radius = 8.0, .outlet = 2.0, .depth = 8.0, .wall = 8.0, .edge = 2.0};
+constexpr double kFunnelSpeed = 600.0;
+/// Half extents of the blade, the thin one in the direction in which its tips go.
+constexpr double kBlade[3] = {5.0, 0.01, 1.0};
+constexpr double kRoom = 6.0;
+/// A body has as many impacts in a step before it is cut short.
+constexpr std::size_t kMostImpacts = 50;
+/// The blade's frame is looked at so often while it turns by a radian.
+constexpr double kLooksPerRadian = 40.0;
+
+Vec3 position_of(const Pose& pose) {
+  return Vec3::Map(pose.position);
+}
+
+}  // namespace
+
+FastBodies::FastBodies(const FastBodiesOptions& options)
+    : options_(options),
+      composites_(shapes_),
+      scene_(shapes_, {.execution = options.execution, .composites = &composites_}),
+      sweep_(scene_),
+      random_(options.seed) {
+  if (options.scene == FastScene::funnel) {
+    make_funnel_scene();
+  } else {
+    make_blade_scene();
+  }
+  for (const Body& body : bodies_) keys_.push_back(body.key);
+  motions_.resize(bodies_.size());
+  poses_.resize(bodies_.size());
+}
+
+Key FastBodies::add(ShapeId shape, const Pose& pose, Motion motion) {
+  Key key;
+  need(scene_.add({.shape = shape, .pose = pose, .motion = motion}, key), "a body");
+  return key;
+}
+
+void FastBodies::make_funnel_scene() {
+  funnel_ = make_funnel(kFunnel);
+  ShapeId mesh;
+  need(composites_.add_mesh(std::span<const Vec3>(funnel_.vertices),
+                            std::span<const std::uint32_t>(funnel_.corners), mesh),
+       "the funnel");
+  static_cast<void>(add(mesh, Pose{}, Motion::fixed));
+  fill(0.6 * kFunnel.radius, 1.0, kFunnel.wall - 1.0, kFunnelSpeed);
+}
+
+void FastBodies::make_blade_scene() {
+  for (int side = 0; side < 6; ++side) {
+    const double sign = side % 2 == 0 ? 1.0 : -1.0;
+    Vec3 normal = Vec3::Zero();
+    normal[side / 2] = sign;
+    ShapeId wall;
+    need(shapes_.add(HalfSpaceShape{{normal.x(), normal.y(), normal.z()}, -kRoom}, wall), "a wall");
+    static_cast<void>(add(wall, Pose{}, Motion::fixed));
+  }
+  fill(kRoom - 1.0, 1.5, kRoom - 1.0, 200.0);
+  ShapeId shape;
+  need(shapes_.add(BoxShape{{kBlade[0], kBlade[1], kBlade[2]}}, shape), "the blade");
+  Body blade;
+  blade.key = add(shape, Pose{}, Motion::fixed);
+  blade.spin = Vec3(0.0, 0.0, 2.0 * std::numbers::pi * kBladeTurns / options_.step);
+  bodies_.push_back(blade);
+}
+
+/// In layers of a lattice, so that none overlaps another.
+void FastBodies::fill(double reach, double low, double high, double speed) {
+  constexpr double kApart = 1.3;
+  const auto steps = [](double length) { return static_cast<int>(length / kApart); };
+  const int across = 2 * steps(reach / std::numbers::sqrt2) + 1;
+  const auto layers = static_cast<std::size_t>(steps(high - low) + 1);
+  const std::size_t places = layers * static_cast<std::size_t>(across * across);
+  for (std::size_t i = 0; i < std::min(options_.bodies, places); ++i) {
+    const auto row = static_cast<int>(i);
+    const double radius = random_.in(0.3, 0.5);
+    Body body;
+    ShapeId shape;
+    if (i % 2 == 0) {
+      need(shapes_.add(SphereShape{radius}, shape), "a ball");
+    } else {
+      const double half = radius / std::sqrt(3.0);
+      need(shapes_.add(BoxShape{{half, half, half}}, shape), "a box");
+    }
+    body.radius = radius;
+    body.pose = Pose::at(kApart * (row % across - across / 2),
+                         kApart * (row / across % across - across / 2),
+                         low + kApart * (row / (across * across)));
+    body.inverse_mass = 1.0 / (radius * radius * radius);
+    body.inverse_inertia = body.inverse_mass / (0.4 * radius * radius);
+    body.velocity = random_.in(0.1, 1.0) * speed * random_unit(random_);
+    body.key = add(shape, body.pose, Motion::dynamic);
+    bodies_.push_back(body);
+  }
+}
+
+void FastBodies::push(double seconds) {
+  const bool blade = options_.scene == FastScene::blade;
+  for (Body& body : bodies_) {
+    if (body.inverse_mass == 0.0) continue;
+    if (blade) body.velocity *= kBladeDrag;
+    body.velocity.z() -= options_.gravity * seconds;
+    fastest_ = std::max(fastest_, body.velocity.norm() * seconds / body.radius);
+  }
+}
+
+void FastBodies::step() {
+  push(options_.step);
+  double left = options_.step;
+  std::size_t found = 0;
+  while (left > 0.0) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const Vec3& v = bodies_[i].velocity;
+      const Vec3& w = bodies_[i].spin;
+      motions_[i] = RigidMotion::by_velocities(bodies_[i].pose, {v.x(), v.y(), v.z()},
+                                               {w.x(), w.y(), w.z()}, left);
+    }
+    if (!options_.swept) {
+      advance(1.0);
+      break;
+    }
+    need(sweep_.sweep(keys_, motions_, {.tolerance = kTolerance, .first_only = true}), "a sweep");
+    const auto impacts = sweep_.impacts();
+    const double share = impacts.empty() ? 1.0 : impacts.front().time;
+    advance(share);
+    if (impacts.empty()) break;
+    for (const SceneImpact& impact : impacts) {
+      if (impact.time == share) collide(impact);
+    }
+    left *= 1.0 - share;
+    if (++found < kMostImpacts * bodies_.size()) continue;
+    ++cut_short_;
+    break;
+  }
+  put_back();
+  ++steps_;
+}
+
+void FastBodies::advance(double share) {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    poses_[i] = motions_[i].at(share);
+    const bool moves = bodies_[i].inverse_mass > 0.0;
+    const Vec3 from = position_of(motions_[i].start);
+    const bool through = options_.scene == FastScene::funnel
+                             ? passes_funnel(from, position_of(poses_[i]))
+                             : passes_blade(motions_[i], motions_.back(), share);
+    passed_ += moves && through ? 1 : 0;
+    bodies_[i].pose = poses_[i];
+  }
+  need(scene_.move(keys_, poses_), "poses");
+}
+
+bool FastBodies::passes_funnel(const Vec3& from, const Vec3& to) const {
+  for (std::size_t i = 0; i < funnel_.corners.size(); i += 3) {
+    const auto corner = [&](std::size_t k) { return funnel_.vertices[funnel_.corners[i + k]]; };
+    if (crosses(from, to, corner(0), corner(1), corner(2))) return true;
+  }
+  return false;
+}
+
+bool FastBodies::passes_blade(const RigidMotion& body, const RigidMotion& blade,
+                              double share) const {
+  const auto looks =
+      static_cast<int>(std::ceil(kLooksPerRadian * share * Vec3::Map(blade.turn).norm())) + 1;
+  const auto seen = [&](int look) {
+    const double time = share * look / looks;
+    const Pose at = blade.at(time);
+    const Eigen::Quaterniond turn(at.orientation[0], at.orientation[1], at.orientation[2],
+                                  at.orientation[3]);
+    return Vec3(turn.conjugate() * (position_of(body.at(time)) - position_of(at)));
+  };
+  Vec3 before = seen(0);
+  for (int look = 1; look <= looks; ++look) {
+    const Vec3 now = seen(look);
+    if ((before.y() > 0.0) != (now.y() > 0.0)) {
+      const Vec3 through = before + (now - before) * (before.y() / (before.y() - now.y()));
+      if (std::abs(through.x()) < kBlade[0] && std::abs(through.z()) < kBlade[2]) return true;
+    }
+    before = now;
+  }
+  return false;
+}
+
+/// An impulse along the normal.
+void FastBodies::collide(const SceneImpact& impact) {
+  ++impacts_;
+  Body fixed;
+  const auto body_of = [&](const Key& key) -> Body& {
+    const auto at =
+        std::ranges::find_if(bodies_, [&](const Body& body) { return body.key == key; });
+    return at == bodies_.end() ? fixed : *at;
+  };
+  Body& a = body_of(impact.a);
+  Body& b = body_of(impact.b);
+  const Vec3 normal = Vec3::Map(impact.normal);
+  const Vec3 point = Vec3::Map(impact.point);
+  const Vec3 arm_a = point - position_of(a.pose);
+  const Vec3 arm_b = point - position_of(b.pose);
+  const double closing =
+      (a.velocity + a.spin.cross(arm_a) - b.velocity - b.spin.cross(arm_b)).dot(normal);
+  const double give = a.inverse_mass + b.inverse_mass +
+                      a.inverse_inertia * arm_a.cross(normal).squaredNorm() +
+                      b.inverse_inertia * arm_b.cross(normal).squaredNorm();
+  if (!(closing > 0.0) || !(give > 0.0)) return;
+  const Vec3 impulse = (1.0 + kRestitution) * closing / give * normal;
+  a.velocity -= a.inverse_mass * impulse;
+  b.velocity += b.inverse_mass * impulse;
+  a.spin -= a.inverse_inertia * arm_a.cross(impulse);
+  b.spin += b.inverse_inertia * arm_b.cross(impulse);
+}
+
+/// Who has left the funnel by an opening comes back in at the top of it, where there is room.
+void FastBodies::put_back() {
+  if (options_.scene != FastScene::funnel) return;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    Body& body = bodies_[i];
+    const double z = body.pose.position[2];
+    if (z > -kFunnel.depth - 1.0 && z < kFunnel.wall + 1.0) continue;
+    const Pose place = Pose::at(random_.in(-3.0, 3.0), random_.in(-3.0, 3.0), 0.5 * kFunnel.wall);
+    const bool free = std::ranges::all_of(bodies_, [&](const Body& other) {
+      return (position_of(other.pose) - position_of(place)).norm() > other.radius + body.radius;
+    });
+    if (!free) continue;
+    body.pose = poses_[i] = place;
+    body.velocity = random_.in(0.1, 1.0) * kFunnelSpeed * random_unit(random_);
+    body.spin = Vec3::Zero();
+  }
+  need(scene_.move(keys_, poses_), "poses");
+}
+
+std::uint64_t FastBodies::fingerprint() const noexcept {
+  std::uint64_t sum = 0;
+  const auto add = [&](double x) { sum = mix(sum ^ std::bit_cast<std::uint64_t>(x)); };
+  for (const Body& body : bodies_) {
+    for (const double x : body.pose.position) add(x);
+    for (const double x : body.pose.orientation) add(x);
+    for (int i = 0; i < 3; ++i) add(body.velocity[i]);
+  }
+  return sum;
+}
+
+}  // namespace winnow::bench

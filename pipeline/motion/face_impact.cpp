@@ -1,0 +1,127 @@
+#include "pipeline/motion/face_impact.h"
+
+#include "pipeline/motion/part_pair.h"
+#include "pipeline/motion/turn.h"
+#include "pipeline/shapes/frame.h"
+
+#include <algorithm>
+
+namespace winnow::impact {
+namespace {
+
+/// An interval is halved where paths bend by more than this share of what the face extends,
+constexpr double kLooseWay = 0.1;
+/// but not more often.
+constexpr int kMostCuts = 12;
+
+class FaceImpactSearch {
+ public:
+  FaceImpactSearch(const PartTraversal& parts, const MovingBody& body, const MovingFace& face,
+                   double tolerance) noexcept
+      : parts_(parts), body_(body), face_(face), tolerance_(tolerance) {
+    Vec::Map(motion_.start.position) = face.start[0];
+    Vec::Map(motion_.travel) = face.end[0] - face.start[0];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec local = face.start[i] - face.start[0];
+      Vec::Map(triangle_.vertex[i]) = local;
+      drift_[i] = (face.end[i] - face.end[0]) - local;
+    }
+    triangle_.rounding = face.rounding;
+  }
+
+  [[nodiscard]] BodyImpact run() {
+    if (body_.shape.is_composite()) {
+      walk({0.0, 1.0}, 0);
+    } else {
+      test(whole_shape(parts_, body_.shape, body_.motion), {0.0, 1.0});
+    }
+    return found_;
+  }
+
+ private:
+  void test(const MovingShape& part, const Interval& within) noexcept;
+  void walk(const Interval& given, int halvings);
+  [[nodiscard]] Vec seen(const Vec& start, const Vec& end, double time) const noexcept;
+  [[nodiscard]] PreciseBox way(const Interval& within, double& bend) const noexcept;
+
+  const PartTraversal& parts_;
+  const MovingBody& body_;
+  const MovingFace& face_;
+  const double tolerance_;
+  RigidMotion motion_;
+  TriangleShape triangle_;
+  std::array<Vec, 3> drift_;
+  BodyImpact found_;
+};
+
+void FaceImpactSearch::test(const MovingShape& part, const Interval& within) noexcept {
+  PartPair pair(parts_.shapes());
+  const MovingPart moving = pair.put(0, part);
+  ConvexPart own;
+  own.shape = ShapeId::of(ShapeKind::triangle, 0);
+  own.triangle = &triangle_;
+  MovingPart face = pair.put(1, {own, motion_, 0.0, 0.0, 0.0});
+  face.drift = drift_.data();
+  const BodyImpact found{find_impact(pair.tables(), moving, face, tolerance_, within),
+                         part.shape.part};
+  if (comes_before(found, found_)) found_ = found;
+}
+
+/// A corner in the frame of the body.
+Vec FaceImpactSearch::seen(const Vec& start, const Vec& end, double time) const noexcept {
+  const Pose pose = body_.motion.at(time);
+  const Eigen::Matrix3d axes = rotation_of(tame(pose.orientation));
+  const Vec corner = start + time * (end - start);
+  return axes.transpose() * (corner - Vec::Map(pose.position));
+}
+
+/// A box that contains the face all the time, in the frame of the body, and how much of it is for
+/// paths that bend: in a frame that turns a point has an acceleration of its distance times the
+/// square of the rate, and twice its speed times that.
+PreciseBox FaceImpactSearch::way(const Interval& within, double& bend) const noexcept {
+  PreciseBox box{Vec::Constant(mid::kInfinity), Vec::Constant(-mid::kInfinity)};
+  const double width = within.last - within.first;
+  const double turned = length_of(body_.motion.turn) * width;
+  double scale = 0.0;
+  bend = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec first = seen(face_.start[i], face_.end[i], within.first);
+    const Vec last = seen(face_.start[i], face_.end[i], within.last);
+    box.min = box.min.cwiseMin(first).cwiseMin(last);
+    box.max = box.max.cwiseMax(first).cwiseMax(last);
+    const Vec travel = face_.end[i] - face_.start[i] - Vec::Map(body_.motion.travel);
+    const double way = width * travel.norm();
+    const double far = std::max(first.norm(), last.norm()) + way;
+    bend = std::max(bend, 0.125 * turned * (turned * far + 2.0 * way));
+    scale = std::max(scale, far + face_.start[i].norm() + face_.end[i].norm());
+  }
+  return box.grown(bend + face_.rounding + 64.0 * mid::kSlack * scale);
+}
+
+void FaceImpactSearch::walk(const Interval& given, int halvings) {
+  const Interval within = before(given, found_);
+  if (within.first > within.last) return;
+  double bend = 0.0;
+  const PreciseBox box = way(within, bend);
+  const double extent = (box.max - box.min).maxCoeff();
+  if (halvings < kMostCuts && bend > kLooseWay * extent) {
+    const double middle = 0.5 * (within.first + within.last);
+    walk({within.first, middle}, halvings + 1);
+    walk({middle, within.last}, halvings + 1);
+    return;
+  }
+  parts_.met(PlacedShape{body_.shape, Pose{}}, box.standing(),
+             [&](const ConvexPart& part, double limit) {
+               test(moving_part(parts_, part, body_.motion), before(within, found_));
+               return limit;
+             });
+}
+
+}  // namespace
+
+BodyImpact find_face_impact(const PartTraversal& parts, const MovingBody& body,
+                            const MovingFace& face, double tolerance) {
+  return FaceImpactSearch(parts, body, face, tolerance).run();
+}
+
+}  // namespace winnow::impact

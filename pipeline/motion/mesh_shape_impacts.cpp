@@ -1,0 +1,99 @@
+// Faces whose boxes meet the way of a rigid shape are looked at one by one, as triangles that bend
+// while they travel.
+
+#include <winnow/pipeline/deformable_mesh.h>
+
+#include "core/sort/stretches.h"
+#include "pipeline/motion/face_impact.h"
+#include "pipeline/motion/passage.h"
+#include "pipeline/motion/result_chunk.h"
+
+#include <algorithm>
+
+namespace winnow {
+namespace {
+
+constexpr std::size_t kFacesPerStretch = 16;
+
+[[nodiscard]] Status status_of(const PartTraversal& parts, const MeshObstacle& obstacle,
+                               const ImpactOptions& options) noexcept {
+  if (!(options.tolerance > 0.0 && options.tolerance <= 1.0)) return Status::invalid_argument;
+  if (obstacle.shape.is_composite() && options.composites == nullptr) return Status::unsupported;
+  if (!parts.contains(obstacle.shape)) return Status::invalid_key;
+  return obstacle.motion.is_valid() ? Status::ok : Status::invalid_pose;
+}
+
+/// Around all of the way, measured from an origin.
+[[nodiscard]] Aabb box_of_way(const PartTraversal& parts, const MeshObstacle& obstacle,
+                              const Vec3d& origin) noexcept {
+  const RigidMotion frame = RigidMotion::standing(Pose::at(origin.x(), origin.y(), origin.z()));
+  const impact::MovingShape whole = impact::whole_shape(parts, obstacle.shape, obstacle.motion);
+  const PreciseBox box =
+      impact::Passage(parts, frame, whole).box({0.0, 1.0}).grown(obstacle.separation);
+  return Aabb::outward(box.min, box.max);
+}
+
+[[nodiscard]] MeshShapeImpact shown(std::uint32_t face, const MeshObstacle& obstacle,
+                                    const impact::BodyImpact& found) noexcept {
+  MeshShapeImpact result;
+  result.face = face;
+  result.part = found.part_a;
+  result.time = found.impact.time;
+  result.gap = found.impact.gap;
+  result.error_bound = found.impact.error_bound;
+  const RigidMotion& motion = obstacle.motion;
+  for (int i = 0; i < 3; ++i) {
+    result.normal[i] = found.impact.normal[i];
+    result.point[i] =
+        motion.start.position[i] + result.time * motion.travel[i] + found.impact.point[i];
+  }
+  return result;
+}
+
+}  // namespace
+
+Status DeformableMesh::find_shape_impacts(
+    const MeshObstacle& obstacle, const ImpactOptions& options,
+    const ResultChunks<MeshShapeImpact>& chunks) const noexcept {
+  const PartTraversal parts(obstacle.shapes, options.composites);
+  if (!is_moved() || !(obstacle.separation >= 0.0 && obstacle.separation <= 0.5 * reach())) {
+    return Status::invalid_argument;
+  }
+  if (const Status status = status_of(parts, obstacle, options); status != Status::ok) {
+    return status;
+  }
+  ResultChunk<MeshShapeImpact, ResultChunks<MeshShapeImpact>> results(options_.memory, chunks);
+  Column<impact::BodyImpact> found(options_.memory);
+  if (!results.reserve(options_.chunk) || !found.resize(options_.chunk)) {
+    return Status::out_of_memory;
+  }
+  const auto look = [&](std::uint32_t number) {
+    std::array<Vec3d, 3> start;
+    std::array<Vec3d, 3> end;
+    place_face(number, start, end);
+    impact::MovingFace face;
+    face.rounding = obstacle.separation;
+    for (std::size_t i = 0; i < 3; ++i) {
+      face.start[i] = start[i];
+      face.end[i] = end[i];
+    }
+    return impact::find_face_impact(parts, {obstacle.shape, obstacle.motion}, face,
+                                    options.tolerance);
+  };
+  const auto take = [&](std::span<const Pair> faces) {
+    for_stretches(options_.execution, faces.size(), kFacesPerStretch,
+                  [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t i = begin; i < end; ++i) found[i] = look(faces[i].second);
+                  });
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      if (found[i].impact.hit) results.add(shown(faces[i].second, obstacle, found[i]));
+    }
+  };
+  const Status status =
+      find_faces(box_of_way(parts, obstacle, options_.origin), ResultChunks<Pair>(take));
+  if (status != Status::ok) return status;
+  results.hand_over();
+  return Status::ok;
+}
+
+}  // namespace winnow

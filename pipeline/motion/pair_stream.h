@@ -1,0 +1,137 @@
+#pragma once
+
+#include <winnow/core/column.h>
+#include <winnow/core/execution.h>
+#include <winnow/core/pair_buffer.h>
+#include "partitions/rows/row_view.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+
+namespace winnow {
+
+/// Pairs on their way from a tree to who takes them: a buffer that is handed on whenever it is
+/// full, so that pairs never take more memory than it has.
+template <typename Take>
+class PairStream {
+ public:
+  PairStream(std::pmr::memory_resource* memory, std::size_t chunk, Take& take) noexcept
+      : buffer_(memory), chunk_(chunk), take_(take) {}
+
+  [[nodiscard]] bool reserve() noexcept {
+    if (chunk_ > Column<Pair>::kMost - kSinkSlack || !buffer_.reserve(chunk_ + kSinkSlack)) {
+      return false;
+    }
+    sink_.owner = this;
+    sink_.grow = [](PairSink& sink) {
+      static_cast<PairStream*>(sink.owner)->hand_on();
+      return true;
+    };
+    aim();
+    return true;
+  }
+
+  [[nodiscard]] PairSink& sink() noexcept { return sink_; }
+
+  void hand_on() noexcept {
+    const auto* const begin = reinterpret_cast<const std::uint32_t*>(buffer_.data());
+    const auto count = static_cast<std::size_t>(sink_.cursor - begin) / 2;
+    for (std::size_t i = 0; i < count; i += chunk_) {
+      take_(std::span<Pair>(buffer_.data() + i, std::min(chunk_, count - i)));
+    }
+    aim();
+  }
+
+ private:
+  void aim() noexcept {
+    sink_.cursor = reinterpret_cast<std::uint32_t*>(buffer_.data());
+    sink_.limit = sink_.cursor + 2 * chunk_;
+  }
+
+  Column<Pair> buffer_;
+  std::size_t chunk_;
+  Take& take_;
+  PairSink sink_;
+};
+
+/// Room for the pairs of some units of a walk, which ends where it is full.
+class PairRoom {
+ public:
+  explicit PairRoom(std::pmr::memory_resource* memory) noexcept : buffer_(memory) {}
+  [[nodiscard]] bool reserve(std::size_t pairs) noexcept {
+    room_ = pairs;
+    return buffer_.reserve(pairs + kSinkSlack);
+  }
+  template <typename Walk>
+  void run(Walk& walk, std::uint32_t begin, std::uint32_t end) noexcept {
+    PairSink sink;
+    auto* const first = reinterpret_cast<std::uint32_t*>(buffer_.data());
+    sink.cursor = first;
+    sink.limit = first + 2 * room_;
+    sink.grow = [](PairSink&) { return false; };
+    fits_ = walk(begin, end, sink);
+    count_ = static_cast<std::size_t>(sink.cursor - first) / 2;
+  }
+  [[nodiscard]] bool fits() const noexcept { return fits_; }
+  [[nodiscard]] std::span<Pair> pairs() noexcept { return {buffer_.data(), count_}; }
+
+ private:
+  Column<Pair> buffer_;
+  std::size_t room_ = 0;
+  std::size_t count_ = 0;
+  bool fits_ = false;
+};
+
+/// Hands on all pairs of `walk(begin, end, sink)` over so many units, in their order, a chunk at
+/// most at a time. On several threads some stretches of units are walked side by side, each with a
+/// part of a chunk to fill; one that finds more is walked once more by itself. False if memory is
+/// refused.
+template <typename Walk, typename Take>
+[[nodiscard]] bool stream_pairs(const Execution& execution, std::pmr::memory_resource* memory,
+                                std::size_t chunk, std::uint32_t units, Walk&& walk,
+                                Take&& take) noexcept {
+  constexpr std::uint32_t kSides = 8;
+  constexpr std::size_t kLeastRoom = 256;
+  PairStream stream(memory, chunk, take);
+  if (!stream.reserve()) return false;
+  const std::size_t room = chunk / kSides;
+  if (units < 2 || room < kLeastRoom || execution.concurrency() < 2) {
+    if (units != 0) walk(0U, units, stream.sink());
+    stream.hand_on();
+    return true;
+  }
+  std::array<PairRoom, kSides> sides{PairRoom(memory), PairRoom(memory), PairRoom(memory),
+                                     PairRoom(memory), PairRoom(memory), PairRoom(memory),
+                                     PairRoom(memory), PairRoom(memory)};
+  for (PairRoom& side : sides) {
+    if (!side.reserve(room)) return false;
+  }
+  std::uint32_t width = 1;
+  for (std::uint32_t next = 0; next < units;) {
+    const auto begin = [&](std::size_t k) {
+      return static_cast<std::uint32_t>(std::min<std::size_t>(units, next + k * width));
+    };
+    const std::size_t count = std::min<std::size_t>(kSides, (units - next + width - 1) / width);
+    execution.for_each(count, [&](std::size_t k) { sides[k].run(walk, begin(k), begin(k + 1)); });
+    std::size_t most = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      most = std::max(most, sides[k].fits() ? sides[k].pairs().size() : 2 * room);
+      if (!sides[k].fits()) {
+        walk(begin(k), begin(k + 1), stream.sink());
+        stream.hand_on();
+      } else if (!sides[k].pairs().empty()) {
+        take(sides[k].pairs());
+      }
+    }
+    next = begin(count);
+    if (most > room) width = std::max(1U, width / 2);
+    if (most < room / 4) width = std::min(2 * width, units);
+  }
+  return true;
+}
+
+}  // namespace winnow

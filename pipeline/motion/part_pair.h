@@ -1,0 +1,46 @@
+#pragma once
+
+#include "pipeline/motion/passage.h"
+
+namespace winnow::impact {
+
+/// Puts parts of moving bodies where pairs of convex shapes are looked up.
+class PartPair {
+ public:
+  explicit PartPair(const ShapePool& pool) noexcept : tables_(pool) {}
+
+  [[nodiscard]] const ShapeTables& tables() const noexcept { return tables_.tables(); }
+
+  /// A triangle of a surface keeps its corners in the frame of the body, where they are exactly
+  /// those of its neighbours: nothing gets through between them.
+  [[nodiscard]] MovingPart put(std::size_t slot, const MovingShape& moving) noexcept {
+    ConvexPart part = moving.shape;
+    MovingPart result{part.shape, moving.motion};
+    TriangleShape own;
+    if (part.triangle != nullptr && is_unturned(part.pose)) {
+      own = *part.triangle;
+      for (auto& corner : own.vertex) {
+        for (int i = 0; i < 3; ++i) corner[i] += part.pose.position[i];
+      }
+      part.triangle = &own;
+    } else if (part.part != kWholeShape) {
+      const Quaternion turn = normalized(tame(moving.motion.start.orientation));
+      const Eigen::Matrix3d to_world = rotation_of_unit(turn);
+      result.arm = to_world * Vec::Map(part.pose.position);
+      const Quaternion q = product(turn, normalized(tame(part.pose.orientation)));
+      std::copy(q.begin(), q.end(), result.motion.start.orientation);
+    }
+    result.shape = tables_.put(slot, part);
+    return result;
+  }
+
+ private:
+  [[nodiscard]] static bool is_unturned(const Pose& pose) noexcept {
+    return pose.orientation[0] == 1.0 && pose.orientation[1] == 0.0 && pose.orientation[2] == 0.0 &&
+           pose.orientation[3] == 0.0;
+  }
+
+  PartTables tables_;
+};
+
+}  // namespace winnow::impact

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <winnow/core/column.h>
+
+#include <cstddef>
+#include <memory_resource>
+
+namespace winnow {
+
+/// Results for the caller, handed over when as many as fit a chunk are there.
+template <typename Result, typename Chunks>
+class ResultChunk {
+ public:
+  ResultChunk(std::pmr::memory_resource* memory, const Chunks& chunks) noexcept
+      : results_(memory), chunks_(chunks) {}
+  [[nodiscard]] bool reserve(std::size_t most) noexcept {
+    most_ = most;
+    return results_.reserve(most);
+  }
+  void add(const Result& result) noexcept {
+    if (results_.size() == most_) hand_over();
+    static_cast<void>(results_.push_back(result));
+  }
+  void hand_over() noexcept {
+    if (!results_.empty()) chunks_.take(chunks_.context, {results_.data(), results_.size()});
+    results_.clear();
+  }
+
+ private:
+  Column<Result> results_;
+  const Chunks& chunks_;
+  std::size_t most_ = 0;
+};
+
+}  // namespace winnow
