@@ -1,3 +1,4 @@
+#include "core/memory/guarded.h"
 #include "pipeline/shapes/hull_builder.h"
 
 #include <Eigen/Geometry>
@@ -153,10 +154,8 @@ Status surface_of(Points& points, HullSurface& surface) {
 #endif
 }
 
-}  // namespace
-
-Status hull_of_points(const PointView& all, std::pmr::memory_resource* memory,
-                      HullShape& hull) try {
+[[nodiscard]] Status build_of_points(const PointView& all, std::pmr::memory_resource* memory,
+                                     HullShape& hull) {
   std::pmr::monotonic_buffer_resource scratch(memory);
   const Points given = copied(all, &scratch);
   const auto finite = [](const Eigen::Vector3d& p) { return p.allFinite(); };
@@ -187,8 +186,12 @@ Status hull_of_points(const PointView& all, std::pmr::memory_resource* memory,
   Status status = surface_of(points, surface);
   if (status == Status::ok) status = merge_coplanar(points, surface);
   return status == Status::ok ? assemble_hull(given, surface, memory, hull) : status;
-} catch (...) {
-  return Status::out_of_memory;
+}
+
+}  // namespace
+
+Status hull_of_points(const PointView& all, std::pmr::memory_resource* memory, HullShape& hull) {
+  return guarded([&] { return build_of_points(all, memory, hull); }, Status::out_of_memory);
 }
 
 }  // namespace winnow
