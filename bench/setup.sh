@@ -64,15 +64,34 @@ winnow_need() {
   rm -f "$log"
 }
 
-# winnow_build FOLDER PRESET TARGET [CMAKE OPTION...]: configures and builds one target in silence;
-# the log is shown if that fails.
+# winnow_steps LOG: copies standard input to LOG and tells on standard error how many of ninja's steps
+# are done: in place on a terminal, else whenever a tenth of them is.
+winnow_steps() {
+  local line told=-1 began=$SECONDS
+  while IFS= read -r line; do
+    printf '%s\n' "$line"
+    [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] || continue
+    local step=${BASH_REMATCH[1]} steps=${BASH_REMATCH[2]}
+    local tenth=$((10 * step / steps))
+    if [[ -t 2 ]]; then
+      printf '\r\033[K%d of %d steps, %d s' "$step" "$steps" $((SECONDS - began)) >&2
+    elif ((tenth > told)); then
+      printf '%d of %d steps, %d s\n' "$step" "$steps" $((SECONDS - began)) >&2
+    fi
+    told=$tenth
+  done >"$1"
+  [[ ! -t 2 ]] || printf '\r\033[K' >&2
+}
+
+# winnow_build FOLDER PRESET TARGET [CMAKE OPTION...]: configures and builds one target, telling how
+# far it is; the log is shown if that fails.
 winnow_build() {
   local folder=$1 preset=$2 target=$3
   shift 3
   local log="$folder/build/$preset.log"
   mkdir -p "$folder/build"
   if ! { cmake -S "$folder" --preset "$preset" "$@" &&
-    cmake --build "$folder/build/$preset" --target "$target"; } >"$log" 2>&1; then
+    cmake --build "$folder/build/$preset" --target "$target"; } 2>&1 | winnow_steps "$log"; then
     cat "$log" >&2
     echo "The build failed; its log is $log" >&2
     return 1

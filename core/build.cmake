@@ -130,7 +130,8 @@ function(winnow_library room)
   target_link_libraries(${target} PUBLIC ${arg_LINKS} PRIVATE $<BUILD_INTERFACE:winnow_flags>
                         ${arg_PRIVATE_LINKS})
   target_compile_definitions(${target} PRIVATE ${WINNOW_ISA_DEFINITIONS}
-                             $<$<BOOL:${WINNOW_SHARED}>:WINNOW_SHARED=1>)
+                             $<$<BOOL:${WINNOW_SHARED}>:WINNOW_SHARED=1>
+                             $<$<BOOL:${WINNOW_SHARED}>:WINNOW_EXPORTS=1>)
   # Eigen takes longer to read than what is written with it. A compiler cache does better without.
   if(WINNOW_PRECOMPILED_HEADERS AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND arg_PRECOMPILED)
     target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILED})

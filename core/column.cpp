@@ -1,14 +1,12 @@
 #include <winnow/core/column.h>
 
+#include "core/memory/guarded.h"
+
 namespace winnow {
 
 void* try_allocate(std::pmr::memory_resource& memory, std::size_t bytes,
                    std::size_t alignment) noexcept {
-  try {
-    return memory.allocate(bytes, alignment);
-  } catch (...) {
-    return nullptr;
-  }
+  return guarded([&] { return memory.allocate(bytes, alignment); }, static_cast<void*>(nullptr));
 }
 
 void touch_pages(void* begin, std::size_t bytes) noexcept {

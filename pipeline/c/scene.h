@@ -82,6 +82,13 @@ WINNOW_C_API winnow_status winnow_scene_set_shape(winnow_scene* scene, winnow_ke
 WINNOW_C_API winnow_status winnow_scene_set_filter(winnow_scene* scene, winnow_key key,
                                                    const winnow_object_filter* filter);
 
+/// Pairs of bodies that never meet, or meet again.
+WINNOW_C_API winnow_status winnow_scene_set_ignored(winnow_scene* scene,
+                                                    const winnow_key_pair* pairs, size_t count,
+                                                    bool ignored);
+WINNOW_C_API winnow_status winnow_scene_is_ignored(const winnow_scene* scene, winnow_key a,
+                                                   winnow_key b, bool* ignored);
+
 WINNOW_C_API winnow_status winnow_scene_size(const winnow_scene* scene, size_t* size);
 WINNOW_C_API winnow_status winnow_scene_size_of(const winnow_scene* scene, uint8_t motion,
                                                 size_t* size);

@@ -21,11 +21,14 @@
 ///
 /// How the binary interface may change is written in README.md beside this file.
 
+#include <winnow/c/contact_groups.h>
 #include <winnow/c/core.h>
 #include <winnow/c/narrow_phase.h>
 #include <winnow/c/partition.h>
 #include <winnow/c/scene.h>
 #include <winnow/c/scene_queries.h>
+#include <winnow/c/scene_sweep.h>
+#include <winnow/c/sensors.h>
 #include <winnow/c/shapes.h>
 #include <winnow/c/snapshots.h>
 #include <winnow/c/volumes.h>

@@ -240,13 +240,14 @@ template <typename Find>
 std::span<const std::uint32_t> Search::collect(Room& room, Find&& find) noexcept {
   SlotSink found{room.data(), kRoom, 0};
   find(found);
-  if (found.size <= kRoom) return {room.data(), found.size};
+  const auto count = static_cast<std::size_t>(found.size);
+  if (count <= kRoom) return {room.data(), count};
   // The room that all tasks share: not given back before the next call.
-  std::uint32_t* const more = arena_.take(found.size);
+  std::uint32_t* const more = arena_.take(count);
   if (more == nullptr) return {};
-  found = {more, found.size, 0};
+  found = {more, count, 0};
   find(found);
-  return {more, found.size};
+  return {more, count};
 }
 
 std::span<const std::uint32_t> Search::children_near(const PlacedBody& body, const Box& box,

@@ -6,11 +6,11 @@
 #include "core/memory/columns.h"
 #include "core/sort/counting_sort.h"
 #include "core/sort/stretches.h"
+#include "core/threads/atomic_ref.h"
 #include "pipeline/scene/contact_frame.h"
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <numeric>
 
@@ -49,8 +49,8 @@ class BodySets {
   }
 
  private:
-  [[nodiscard]] std::atomic_ref<std::uint32_t> at(std::uint32_t body) const noexcept {
-    return std::atomic_ref<std::uint32_t>(towards_[body]);
+  [[nodiscard]] AtomicRef<std::uint32_t> at(std::uint32_t body) const noexcept {
+    return AtomicRef<std::uint32_t>(towards_[body]);
   }
 
   Column<std::uint32_t>& towards_;

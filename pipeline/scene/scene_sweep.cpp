@@ -415,7 +415,8 @@ Status SweepState::list_chances() {
   const auto each = [&](auto&& take) {
     for (std::uint32_t i = 0; i < count; ++i) {
       if (windows[i].first > windows[i].last) continue;
-      for (const std::uint64_t body : {candidates[i] >> 32U, candidates[i] & ~0U}) {
+      for (const auto body : {static_cast<std::uint32_t>(candidates[i] >> 32U),
+                              static_cast<std::uint32_t>(candidates[i])}) {
         if (mover_of[body] != kNoMover) take(mover_of[body], i);
       }
     }

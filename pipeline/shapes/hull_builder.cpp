@@ -1,4 +1,5 @@
 #include "pipeline/shapes/hull_builder.h"
+#include "core/memory/guarded.h"
 #include "pipeline/exact/exact_vector.h"
 #include "pipeline/shapes/accurate_cross.h"
 
@@ -563,10 +564,8 @@ Status take_faces(std::span<const Eigen::Vector3d> points, const HullFaces& face
   return distinct && std::ranges::all_of(points, [](const auto& p) { return p.allFinite(); });
 }
 
-}  // namespace
-
-Status hull_of_faces(const PointView& given, const HullFaces& faces,
-                     std::pmr::memory_resource* memory, HullShape& hull) try {
+[[nodiscard]] Status build_of_faces(const PointView& given, const HullFaces& faces,
+                                    std::pmr::memory_resource* memory, HullShape& hull) {
   std::pmr::monotonic_buffer_resource scratch(memory);
   const std::pmr::vector<Eigen::Vector3d> points = copied(given, &scratch);
   HullSurface surface(&scratch);
@@ -574,13 +573,11 @@ Status hull_of_faces(const PointView& given, const HullFaces& faces,
   if (status == Status::ok && surface.faces() < 2) status = Status::invalid_shape;
   if (status == Status::ok) status = merge_coplanar(points, surface);
   return status == Status::ok ? assemble_hull(points, surface, memory, hull) : status;
-} catch (...) {
-  return Status::out_of_memory;
 }
 
 // Faces that were merged would be in another order if they were merged again.
-Status hull_as_built(const PointView& given, const HullFaces& faces,
-                     std::pmr::memory_resource* memory, HullShape& hull) try {
+[[nodiscard]] Status build_again(const PointView& given, const HullFaces& faces,
+                                 std::pmr::memory_resource* memory, HullShape& hull) {
   std::pmr::monotonic_buffer_resource scratch(memory);
   const std::pmr::vector<Eigen::Vector3d> points = copied(given, &scratch);
   HullSurface surface(&scratch);
@@ -593,8 +590,18 @@ Status hull_as_built(const PointView& given, const HullFaces& faces,
   if (surface.faces() < 2) return Status::invalid_shape;
   status = Merge(points, surface).pair_edges();
   return status == Status::ok ? assemble_hull(points, surface, memory, hull) : status;
-} catch (...) {
-  return Status::out_of_memory;
+}
+
+}  // namespace
+
+Status hull_of_faces(const PointView& given, const HullFaces& faces,
+                     std::pmr::memory_resource* memory, HullShape& hull) {
+  return guarded([&] { return build_of_faces(given, faces, memory, hull); }, Status::out_of_memory);
+}
+
+Status hull_as_built(const PointView& given, const HullFaces& faces,
+                     std::pmr::memory_resource* memory, HullShape& hull) {
+  return guarded([&] { return build_again(given, faces, memory, hull); }, Status::out_of_memory);
 }
 
 std::pmr::vector<Eigen::Vector3d> copied(const PointView& points,

@@ -1,3 +1,4 @@
+#include "core/memory/guarded.h"
 #include "pipeline/shapes/accurate_cross.h"
 #include "pipeline/shapes/exact_hull.h"
 #include "pipeline/shapes/hull_builder.h"
@@ -127,10 +128,8 @@ Status assemble_solid(std::span<const Eigen::Vector3d> given, const Points& poin
   return status == Status::invalid_shape ? assemble_hull(given, triangles, memory, hull) : status;
 }
 
-}  // namespace
-
-Status hull_of_points(const PointView& all, std::pmr::memory_resource* memory,
-                      HullShape& hull) try {
+[[nodiscard]] Status build_of_points(const PointView& all, std::pmr::memory_resource* memory,
+                                     HullShape& hull) {
   std::pmr::monotonic_buffer_resource scratch(memory);
   const Points given = copied(all, &scratch);
   const auto finite = [](const Eigen::Vector3d& p) { return p.allFinite(); };
@@ -162,8 +161,12 @@ Status hull_of_points(const PointView& all, std::pmr::memory_resource* memory,
   }
   add_polygon(points, unit, surface);
   return assemble_hull(given, surface, memory, hull);
-} catch (...) {
-  return Status::out_of_memory;
+}
+
+}  // namespace
+
+Status hull_of_points(const PointView& all, std::pmr::memory_resource* memory, HullShape& hull) {
+  return guarded([&] { return build_of_points(all, memory, hull); }, Status::out_of_memory);
 }
 
 }  // namespace winnow

@@ -36,10 +36,16 @@ class HostileWorld {
     EXPECT_EQ(winnow_scene_add(scene, &body, 1, &key), WINNOW_OK);
     EXPECT_EQ(winnow_scene_refresh(scene), WINNOW_OK);
     EXPECT_EQ(winnow_scene_queries_create(scene, nullptr, &queries), WINNOW_OK);
+    EXPECT_EQ(winnow_contact_groups_create(nullptr, &groups), WINNOW_OK);
+    EXPECT_EQ(winnow_scene_sweep_create(scene, nullptr, &sweep), WINNOW_OK);
+    EXPECT_EQ(winnow_sensors_create(scene, nullptr, &sensors), WINNOW_OK);
   }
   HostileWorld(const HostileWorld&) = delete;
   HostileWorld& operator=(const HostileWorld&) = delete;
   ~HostileWorld() {
+    destroy(sensors);
+    destroy(sweep);
+    destroy(groups);
     destroy(queries);
     destroy(scene);
     destroy(contacts);
@@ -96,6 +102,9 @@ class HostileWorld {
   winnow_contacts* contacts = nullptr;
   winnow_scene* scene = nullptr;
   winnow_scene_queries* queries = nullptr;
+  winnow_contact_groups* groups = nullptr;
+  winnow_scene_sweep* sweep = nullptr;
+  winnow_sensors* sensors = nullptr;
 
  private:
 #define WINNOW_THING(type, member)         \
@@ -119,6 +128,9 @@ class HostileWorld {
   WINNOW_THING(winnow_contacts, contacts)
   WINNOW_THING(winnow_scene, scene)
   WINNOW_THING(winnow_scene_queries, queries)
+  WINNOW_THING(winnow_contact_groups, groups)
+  WINNOW_THING(winnow_scene_sweep, sweep)
+  WINNOW_THING(winnow_sensors, sensors)
 #undef WINNOW_THING
 
   template <typename To>

@@ -86,6 +86,7 @@ TEST(Column, grows_in_few_steps) {
 }
 
 TEST(Column, is_unchanged_when_memory_is_refused) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   Column<std::uint32_t> column(&memory);
   ASSERT_TRUE(column.resize(16));
@@ -104,6 +105,7 @@ TEST(Column, is_unchanged_when_memory_is_refused) {
 }
 
 TEST(Column, gets_by_with_less_when_generous_growth_is_refused) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   Column<std::uint32_t> column(&memory);
   ASSERT_TRUE(column.resize(64));

@@ -5,7 +5,7 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 #endif
-#if defined(__SSE__)
+#if defined(__SSE__) && !defined(__wasm__)
 #include <xmmintrin.h>
 #endif
 
@@ -13,11 +13,15 @@
 #include <atomic>
 #include <cfenv>
 #include <string_view>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "tests/support/config.h"
+#include "tests/support/platform.h"
+
+#if WINNOW_TEST_THREADS
+#include <thread>
+#endif
 
 namespace winnow::test {
 namespace {
@@ -34,6 +38,7 @@ TEST(Execution, runs_every_index_exactly_once) {
   }
 }
 
+#if WINNOW_TEST_THREADS
 TEST(Execution, that_is_serial_stays_on_the_calling_thread_in_order) {
   Threads arena(8);
   std::vector<std::size_t> order;
@@ -47,6 +52,7 @@ TEST(Execution, that_is_serial_stays_on_the_calling_thread_in_order) {
   });
   for (std::size_t i = 0; i < 100; ++i) ASSERT_EQ(order[i], i);
 }
+#endif
 
 TEST(Execution, on_a_host_says_how_many_threads_that_has) {
   JobSystem jobs = jobs_of("reversed", 5);
@@ -82,24 +88,33 @@ TEST(Execution, without_arenas_is_serial_unless_a_host_has_threads) {
 }
 #endif
 
+#ifdef FE_UPWARD
 /// The caller's floating-point environment, restored at the end of a scope.
 class EnvironmentScope {
  public:
   EnvironmentScope() { std::fegetenv(&before_); }
-  ~EnvironmentScope() { std::fesetenv(&before_); }
+  ~EnvironmentScope() {
+    std::fesetenv(&before_);
+#if defined(__SSE__) && !defined(__wasm__)
+    _mm_setcsr(register_before_);  // not all systems' environments hold all of it
+#endif
+  }
   EnvironmentScope(const EnvironmentScope&) = delete;
   EnvironmentScope& operator=(const EnvironmentScope&) = delete;
 
   /// Rounds upward and, where this knows how to ask for that, flushes denormal numbers to zero.
   static void change() {
     std::fesetround(FE_UPWARD);
-#if defined(__SSE__)
+#if defined(__SSE__) && !defined(__wasm__)
     _mm_setcsr(_mm_getcsr() | 0x8040U);
 #endif
   }
 
  private:
   std::fenv_t before_{};
+#if defined(__SSE__) && !defined(__wasm__)
+  unsigned register_before_ = _mm_getcsr();
+#endif
 };
 
 /// What a denormal number and a rounded sum are here.
@@ -134,7 +149,9 @@ TEST(Execution, runs_tasks_in_the_floating_point_environment_of_the_caller) {
     EXPECT_TRUE(is_everywhere_as_here(execution));
     EXPECT_TRUE(arithmetic_here() == before);
   };
+#if WINNOW_TEST_THREADS
   check(Execution::on(jobs_of("pool", 2)));
+#endif
 #if WINNOW_HAVE_TBB
   tbb::task_arena(2).execute([&] { check(Execution::parallel()); });
 #endif
@@ -154,6 +171,7 @@ TEST(Execution, leaves_a_thread_of_the_host_in_the_environment_that_it_had) {
   JobSystem jobs{in_another, const_cast<JobSystem*>(&backwards), 2};
   Execution::on(jobs).for_each(2, [&](std::size_t) { EXPECT_TRUE(arithmetic_here() == here); });
 }
+#endif
 
 #if WINNOW_HAVE_TBB
 TEST(Execution, stays_inside_the_arena_of_the_caller) {

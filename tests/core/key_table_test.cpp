@@ -4,11 +4,15 @@
 #include <memory>
 #include <random>
 #include <set>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "tests/support/counting_memory.h"
+#include "tests/support/platform.h"
+
+#if WINNOW_TEST_THREADS
+#include <thread>
+#endif
 
 namespace winnow::test {
 namespace {
@@ -210,6 +214,7 @@ TEST(KeyTags, come_back_late) {
   }
 }
 
+#if WINNOW_TEST_THREADS
 TEST(KeyTags, are_given_to_one_of_several_threads) {
   constexpr std::size_t kThreads = 4;
   std::vector<std::vector<std::unique_ptr<KeyTags>>> made(kThreads);
@@ -231,6 +236,7 @@ TEST(KeyTags, are_given_to_one_of_several_threads) {
     for (const auto& tags : mine) EXPECT_TRUE(taken.insert(tags->latest()).second);
   }
 }
+#endif
 
 TEST(KeyTable, makes_every_key_stale_on_clear) {
   CountingMemory memory;
@@ -257,6 +263,7 @@ TEST(KeyTable, takes_no_key_of_a_hundred_thousand_others) {
 }
 
 TEST(KeyTable, is_unchanged_when_memory_is_refused) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (std::size_t granted = 0; granted < 3; ++granted) {
     CountingMemory memory;
     KeyTable table(&memory);

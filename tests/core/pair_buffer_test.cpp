@@ -32,6 +32,7 @@ TEST(PairBuffer, keeps_its_memory_when_cleared) {
 }
 
 TEST(PairBuffer, takes_over_the_pairs_of_another) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   PairBuffer one(&memory);
   PairBuffer other(&memory);
@@ -53,6 +54,7 @@ TEST(PairBuffer, takes_over_the_pairs_of_another) {
 }
 
 TEST(PairBuffer, is_unchanged_when_memory_is_refused) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   PairBuffer buffer(&memory);
   ASSERT_TRUE(buffer.edit().push_back({1, 2}));

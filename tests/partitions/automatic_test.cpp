@@ -5,12 +5,16 @@
 
 #include <array>
 #include <set>
-#include <thread>
 
 #include "tests/support/counting_memory.h"
 #include "tests/support/motion.h"
+#include "tests/support/platform.h"
 #include "tests/support/scenes.h"
 #include "tests/support/world.h"
+
+#if WINNOW_TEST_THREADS
+#include <thread>
+#endif
 
 namespace winnow::test {
 namespace {
@@ -177,6 +181,7 @@ TEST_P(AutomaticChoice, change_less_and_less_in_a_scene_that_alternates) {
 }
 
 TEST_P(AutomaticChoice, stay_usable_when_memory_is_refused_while_they_change) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   for (const auto& [from, to] : {std::pair{kFew, kMany}, std::pair{kMany, kFew}}) {
     bool refused = true;
@@ -204,6 +209,7 @@ TEST_P(AutomaticChoice, stay_usable_when_memory_is_refused_while_they_change) {
   }
 }
 
+#if WINNOW_TEST_THREADS
 TEST_P(AutomaticChoice, may_be_asked_by_several_threads_while_they_change) {
   TurningWorld scene(config());
   constexpr std::size_t kReaders = 4;
@@ -229,6 +235,7 @@ TEST_P(AutomaticChoice, may_be_asked_by_several_threads_while_they_change) {
   }
   EXPECT_GE(scene.changes(), 2U);
 }
+#endif
 
 TEST_P(AutomaticChoice, pair_with_each_other_while_they_change) {
   TurningWorld a(config());

@@ -9,12 +9,16 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <thread>
 
 #include "tests/support/counting_memory.h"
+#include "tests/support/platform.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 #include "tests/support/world.h"
+
+#if WINNOW_TEST_THREADS
+#include <thread>
+#endif
 
 namespace winnow::test {
 namespace {
@@ -290,6 +294,7 @@ TEST_P(CalmScenes, refuse_what_any_scene_refuses) {
 }
 
 TEST_P(CalmScenes, are_right_whatever_memory_is_refused) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (std::size_t granted = 0; granted < 12; ++granted) {
     start(uniform_boxes(300));
     PairBuffer buffer(&results_);
@@ -351,6 +356,7 @@ TEST_P(CalmScenes, allocate_nothing_where_they_are_looked_at_in_every_frame) {
   EXPECT_EQ(memory_.requests() + results_.requests(), requests);
 }
 
+#if WINNOW_TEST_THREADS
 // The thread sanitizer says whether the answers were right by luck.
 TEST_P(CalmScenes, may_be_asked_anything_by_several_threads) {
   start(uniform_boxes(300));
@@ -376,6 +382,7 @@ TEST_P(CalmScenes, may_be_asked_anything_by_several_threads) {
     for (const PairBuffer& buffer : buffers) ASSERT_TRUE(world_->has_pairs(buffer));
   }
 }
+#endif
 
 INSTANTIATE_TEST_SUITE_P(All, CalmScenes, testing::ValuesIn(exact_configs()),
                          testing::PrintToStringParamName());

@@ -2,11 +2,14 @@
 // whether they were right by luck.
 
 #include <array>
-#include <thread>
 
 #include "tests/support/motion.h"
+#include "tests/support/platform.h"
 #include "tests/support/scenes.h"
 #include "tests/support/world.h"
+
+#if WINNOW_TEST_THREADS
+#include <thread>
 
 namespace winnow::test {
 namespace {
@@ -115,3 +118,5 @@ INSTANTIATE_TEST_SUITE_P(All, Concurrency, testing::ValuesIn(all_configs()),
 
 }  // namespace
 }  // namespace winnow::test
+
+#endif

@@ -267,6 +267,7 @@ TEST_P(DebugDrawing, is_the_same_on_every_instruction_set_and_thread_count) {
 }
 
 TEST_P(DebugDrawing, says_when_memory_is_refused_and_draws_nothing) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   World world(config(), &memory);
   world.insert(mixed_boxes(700));

@@ -180,6 +180,7 @@ TEST_P(Filters, cost_no_byte_and_no_request_before_one_is_set) {
 }
 
 TEST_P(Filters, that_memory_is_refused_for_leave_everything_as_it_was) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   World world(config(), &memory_);
   const std::vector<Key> keys = world.insert(uniform_boxes(100));
   ASSERT_TRUE(world.agrees());

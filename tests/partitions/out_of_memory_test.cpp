@@ -15,6 +15,7 @@ namespace {
 class OutOfMemory : public Conformance {
  protected:
   OutOfMemory() : world_(config(), &memory_) {}
+  void SetUp() override { WINNOW_TEST_NEEDS_EXCEPTIONS(); }
 
   // Calls with the n-th request refused, for n = 0, 1, ..., until a call makes fewer than n. A call
   // may also get by with less than it asked for. `prepare` makes the call have work again.

@@ -1,7 +1,9 @@
 // Pair events: what begins and ends is the difference of two frames' pairs by keys, whatever
 // happened in between and however the frame was found.
 
+#if WINNOW_HAVE_RAPIDCHECK
 #include <rapidcheck.h>
+#endif
 
 #include <algorithm>
 #include <set>
@@ -120,6 +122,7 @@ TEST_P(Events, are_the_difference_of_frames_however_objects_move) {
   }
 }
 
+#if WINNOW_HAVE_RAPIDCHECK
 TEST_P(Events, follow_any_sequence_of_calls) {
   const bool held = rc::check([this] {
     World world(config());
@@ -168,6 +171,7 @@ TEST_P(Events, follow_any_sequence_of_calls) {
   });
   EXPECT_TRUE(held);
 }
+#endif
 
 // So few that the buffer is linked, whatever they do: the pairs of all others stay where they are.
 TEST_P(Events, follow_few_objects_among_many) {
@@ -253,6 +257,7 @@ TEST_P(Events, need_no_buffer) {
 }
 
 TEST_P(Events, start_anew_after_a_linked_frame_that_memory_was_refused_for) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   int failures = 0;
   for (std::size_t granted = 0; granted < 14; ++granted) {
     CountingMemory results;
@@ -330,6 +335,7 @@ TEST_P(Events, that_belong_to_another_buffer_or_partition_start_anew) {
 }
 
 TEST_P(Events, start_anew_after_a_query_that_memory_was_refused_for) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   World world(config(), &memory);
   CountingMemory results;

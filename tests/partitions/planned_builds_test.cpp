@@ -239,6 +239,7 @@ TEST_P(PlannedBuilds, find_the_same_pairs_in_the_same_order_on_one_thread) {
 }
 
 TEST_P(PlannedBuilds, go_on_where_memory_is_refused) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   Drift drift(mixed_boxes(count()), 0.05F);
   World world(config_with(1), &memory);

@@ -6,12 +6,16 @@
 #include <algorithm>
 #include <atomic>
 #include <set>
-#include <thread>
 
 #include "tests/support/counting_memory.h"
 #include "tests/support/motion.h"
+#include "tests/support/platform.h"
 #include "tests/support/scenes.h"
 #include "tests/support/world.h"
+
+#if WINNOW_TEST_THREADS
+#include <thread>
+#endif
 
 namespace winnow::test {
 namespace {
@@ -166,6 +170,7 @@ TEST(Structures, leave_nothing_behind_when_a_partition_moves) {
 }
 
 TEST(Structures, whose_memory_is_refused_say_so) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (const StructureKind kind : all_structures()) {
     CountingMemory memory;
     std::size_t granted = 0;
@@ -188,6 +193,7 @@ TEST(Structures, whose_memory_is_refused_say_so) {
   }
 }
 
+#if WINNOW_TEST_THREADS
 // A refresh orders rows anew; who looks up a box meanwhile must get that object's.
 TEST(Structures, give_right_boxes_while_a_query_refreshes) {
   for (const StructureKind kind : {linear_bvh(), hierarchical_grid(), automatic()}) {
@@ -212,6 +218,7 @@ TEST(Structures, give_right_boxes_while_a_query_refreshes) {
     }
   }
 }
+#endif
 
 }  // namespace
 }  // namespace winnow::test

@@ -88,7 +88,7 @@ TEST(LinearBvhOrder, that_is_torn_in_each_frame_misses_no_pair_and_is_the_same_o
   for (const auto& boxes : {uniform_boxes(kObjects), clustered_boxes(kObjects),
                             flat_boxes(kObjects), outlier_boxes(kObjects), line, heap}) {
     Partition serial(linear_bvh(), {.execution = Execution::serial()});
-    Partition parallel(linear_bvh(), {.execution = Execution::on(jobs_of("pool", 4))});
+    Partition parallel(linear_bvh(), {.execution = Execution::on(jobs_of(kHosts.front(), 4))});
     const std::vector<Key> serial_keys = fill(serial, boxes);
     const std::vector<Key> parallel_keys = fill(parallel, boxes);
     PairBuffer of_serial;

@@ -273,6 +273,7 @@ TEST(InnerEdges, a_valley_holds_a_ball_by_its_faces) {
 }
 
 TEST(InnerEdges, smoothing_is_the_same_on_any_number_of_threads_and_survives_refused_memory) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   Random random(9);
   CompositeWorld world;
   world.ids = {add(world.shapes, BoxShape{{0.4, 0.6, 0.5}, 0.0}), add_octahedron(world.shapes, 0.5),

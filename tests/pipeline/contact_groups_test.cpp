@@ -194,6 +194,7 @@ TEST(ContactGroups, are_the_same_on_any_number_of_threads) {
 }
 
 TEST(ContactGroups, are_refused_for_bodies_that_are_gone_and_where_there_is_no_memory) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   SceneWorld world(50, 24);
   for (BodyDefinition& body : world.bodies) body.motion = Motion::dynamic;

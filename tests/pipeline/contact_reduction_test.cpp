@@ -447,6 +447,7 @@ TEST(ContactReduction, is_the_same_on_any_number_of_threads_and_any_instruction_
 }
 
 TEST(ContactReduction, allocates_nothing_the_second_time_and_counts_every_byte) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   {
     Reduced all(scaled(200), 0.05, 31);

@@ -416,6 +416,7 @@ TEST(DeformableMeshes, may_be_edited_between_steps) {
 }
 
 TEST(DeformableMeshes, take_at_most_120_bytes_a_triangle_and_no_more_from_step_to_step) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   const MeshStep step = trembling(torus(100, 60), 0.01);
   CountingMemory memory;
   DeformableMesh mesh({.memory = &memory, .chunk = 1000});
@@ -432,6 +433,7 @@ TEST(DeformableMeshes, take_at_most_120_bytes_a_triangle_and_no_more_from_step_t
 }
 
 TEST(DeformableMeshes, survive_every_refusal_of_memory) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   const MeshStep step = trembling(torus(8, 6), 0.1);
   for (std::size_t granted = 0;; ++granted) {
     CountingMemory memory;

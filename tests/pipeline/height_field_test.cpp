@@ -256,6 +256,7 @@ TEST(HeightFields, refuse_bad_input_and_stay_as_they_were) {
 }
 
 TEST(HeightFields, account_for_their_memory_and_survive_its_refusal) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   const std::vector<float> h(64 * 64, 1.0F);
   HeightField field(&memory);

@@ -213,6 +213,7 @@ TEST(TriangleMeshes, refuse_bad_input_and_stay_as_they_were) {
 }
 
 TEST(TriangleMeshes, stay_as_they_were_when_memory_is_refused) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   TriangleMesh mesh(&memory);
   const MeshData before = torus(8, 6);

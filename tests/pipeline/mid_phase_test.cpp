@@ -173,6 +173,7 @@ TEST(MidPhase, allocates_nothing_the_second_time_and_counts_every_byte) {
 }
 
 TEST(MidPhase, a_refused_request_for_memory_changes_nothing) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   Random random(4);
   CompositeWorld world;
   world.add_shapes(random);

@@ -157,6 +157,7 @@ TEST_F(NarrowInput, a_body_against_itself_overlaps) {
 }
 
 TEST_F(NarrowInput, out_of_memory_is_a_status_and_leaves_nothing_behind) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   const auto expected = ask(scene_, {});
   std::size_t refusals = 0;
   for (std::size_t granted = 0;; ++granted) {

@@ -205,6 +205,7 @@ TEST(SceneMeetings, layers_that_there_are_not_are_refused) {
 }
 
 TEST(SceneMeetings, memory_that_is_refused_changes_nothing_and_all_bytes_are_counted) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   SceneWorld world(40, 32);
   Scene scene(world.pool, {.memory = &memory});

@@ -159,6 +159,7 @@ TEST(SceneBytes, the_footprint_is_what_was_asked_for_and_a_steady_frame_asks_for
 }
 
 TEST(SceneBytes, refused_memory_leaves_the_scene_as_it_was) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   SceneWorld world(60, 23);
   Scene scene(world.pool, {.memory = &memory, .execution = Execution::serial()});
@@ -219,6 +220,7 @@ struct Twins {
 };
 
 TEST(SceneBytes, bodies_that_were_refused_get_the_ids_they_would_have_got) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (const bool once : {false, true}) {
     std::size_t refused = 0;
     for (std::size_t granted = 0; granted < 100; ++granted) {
@@ -235,6 +237,7 @@ TEST(SceneBytes, bodies_that_were_refused_get_the_ids_they_would_have_got) {
 }
 
 TEST(SceneBytes, a_refused_change_of_sets_leaves_every_body_in_its_own) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (const Motion to : {Motion::fixed, Motion::dynamic, Motion::sleeping}) {
     std::size_t refused = 0;
     for (std::size_t granted = 0; granted < 60; ++granted) {
@@ -260,6 +263,7 @@ TEST(SceneBytes, a_refused_change_of_sets_leaves_every_body_in_its_own) {
 }
 
 TEST(SceneBytes, a_scene_without_memory_for_itself_stays_empty_and_says_so) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   SceneWorld world(3, 23);
   memory.refuse_after(0);
@@ -291,6 +295,7 @@ TEST(SceneBytes, a_scene_without_memory_for_itself_stays_empty_and_says_so) {
 }
 
 TEST(SceneBytes, contacts_without_memory_for_themselves_stay_empty_and_say_so) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   SceneWorld world(20, 23);
   Scene scene(world.pool);

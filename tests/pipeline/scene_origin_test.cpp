@@ -125,6 +125,7 @@ TEST(SceneOrigin, bodies_on_two_sides_of_the_world_all_meet_their_neighbours) {
 }
 
 TEST(SceneOrigin, a_change_that_memory_is_refused_for_is_made_later) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (std::size_t allowed = 0; allowed < 12; ++allowed) {
     CountingMemory memory;
     SceneWorld world(200);

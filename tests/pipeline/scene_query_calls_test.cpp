@@ -5,11 +5,15 @@
 #include <winnow/pipeline/scene_queries.h>
 
 #include <cstring>
-#include <thread>
 
 #include "tests/pipeline/query_world.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
+#include "tests/support/platform.h"
+
+#if WINNOW_TEST_THREADS
+#include <thread>
+#endif
 
 namespace winnow::test {
 namespace {
@@ -180,6 +184,7 @@ TEST(SceneQueryCalls, answer_the_same_on_every_instruction_set_and_from_many_thr
     SceneQueries queries(*world.scene);
     EXPECT_EQ(fingerprint(world, queries), truth) << to_string(isa);
   }
+#if WINNOW_TEST_THREADS
   std::uint64_t sums[4] = {};
   std::vector<std::thread> threads;
   for (std::uint64_t& sum : sums) {
@@ -190,9 +195,11 @@ TEST(SceneQueryCalls, answer_the_same_on_every_instruction_set_and_from_many_thr
   }
   for (std::thread& thread : threads) thread.join();
   for (const std::uint64_t sum : sums) EXPECT_EQ(sum, truth);
+#endif
 }
 
 TEST(SceneQueryCalls, know_their_memory_to_the_byte_and_ask_for_none_twice) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   Random random(13);
   QueryWorld world;
   fill(world, 100, 0.0, random);

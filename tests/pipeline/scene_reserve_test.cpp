@@ -152,6 +152,7 @@ TEST(SceneReserve, contacts_that_were_reserved_for_ask_for_nothing_though_bodies
 }
 
 TEST(SceneReserve, a_refusal_changes_nothing) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   SceneWorld world = plain_world(80, 53);
   SceneWorld twin_world = plain_world(80, 53);
   const SceneRoom room{

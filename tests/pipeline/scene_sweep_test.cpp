@@ -317,6 +317,7 @@ TEST(MotionCasts, turn_on_their_way_and_refuse_what_is_no_motion) {
 }
 
 TEST(SceneSweeps, take_their_memory_from_the_resource_and_no_more_of_it_for_the_same) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   SweptWorld swept(60);
   CountingMemory memory;
   {

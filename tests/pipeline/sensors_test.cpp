@@ -235,6 +235,7 @@ TEST(Sensors, bad_input_gets_a_status_and_changes_nothing) {
 }
 
 TEST(Sensors, know_their_memory_to_the_byte_and_bear_its_refusal) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   {
     BallRoom room(&memory);

@@ -319,6 +319,7 @@ TEST(ShapePools, give_a_removed_place_to_the_next_shape) {
 }
 
 TEST(ShapePools, account_for_every_byte_and_survive_a_refusal) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   {
     ShapePool pool(&memory);
@@ -356,6 +357,7 @@ Status add_tetrahedron(ShapePool& pool, ShapeId& id) {
 }
 
 TEST(ShapePools, that_are_refused_any_request_of_a_hull_are_unchanged) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (const AddHull add : {add_ball, add_polygon, add_segment, add_tetrahedron}) {
     CountingMemory memory;
     ShapePool pool(&memory);

@@ -7,8 +7,11 @@
 #include <csignal>
 #include <stdexcept>
 
+#include "tests/support/platform.h"
 #include "tests/support/scenes.h"
 #include "tests/support/world.h"
+
+#if WINNOW_TEST_EXCEPTIONS && defined(SIGKILL)
 
 namespace winnow::test {
 namespace {
@@ -76,3 +79,5 @@ INSTANTIATE_TEST_SUITE_P(Threads, ThrowingCallbacks, testing::Values(1, 2));
 
 }  // namespace
 }  // namespace winnow::test
+
+#endif

@@ -2,14 +2,17 @@
 // be right, and the thread sanitizer says whether they were right by luck.
 
 #include <array>
-#include <thread>
 #include <vector>
 
 #include "tests/queries/questions.h"
 #include "tests/support/hostile_casts.h"
 #include "tests/support/motion.h"
+#include "tests/support/platform.h"
 #include "tests/support/scenes.h"
 #include "tests/support/world.h"
+
+#if WINNOW_TEST_THREADS
+#include <thread>
 
 namespace winnow::test {
 namespace {
@@ -134,3 +137,5 @@ INSTANTIATE_TEST_SUITE_P(All, QueryConcurrency, testing::ValuesIn(all_configs())
 
 }  // namespace
 }  // namespace winnow::test
+
+#endif

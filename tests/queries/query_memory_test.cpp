@@ -139,6 +139,7 @@ TEST_P(QueryMemory, that_was_reserved_suffices) {
 
 // The n-th request is refused, alone or with all after it, until a call makes fewer than n.
 TEST_P(QueryMemory, that_is_refused_leaves_everything_as_it_was) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   const auto queries = this->queries();
   for (std::size_t q = 0; q < queries.size(); ++q) {
     SCOPED_TRACE(q);

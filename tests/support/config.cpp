@@ -25,7 +25,11 @@ class Process : public testing::Environment {
 #endif
     const std::string parameters =
         "seed=" + std::to_string(base_seed()) + " max_success=" + std::to_string(scaled(60));
+#ifdef _WIN32
+    ::_putenv_s("RC_PARAMS", parameters.c_str());
+#else
     ::setenv("RC_PARAMS", parameters.c_str(), 0);
+#endif
   }
 
 #if WINNOW_HAVE_TBB

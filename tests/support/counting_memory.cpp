@@ -4,11 +4,13 @@
 
 #include <new>
 
+#include "tests/support/platform.h"
+
 namespace winnow::test {
 namespace {
 
 // More than any machine has. Refused here, since sanitizers end the process rather than throw.
-constexpr std::size_t kMost = std::size_t{1} << 40U;
+constexpr std::size_t kMost = ~std::size_t{0} >> (sizeof(std::size_t) > 4 ? 24U : 1U);
 
 }  // namespace
 
@@ -17,55 +19,57 @@ CountingMemory::~CountingMemory() {
 }
 
 std::size_t CountingMemory::outstanding() const {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return outstanding_;
 }
 
 std::size_t CountingMemory::requests() const {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return requests_;
 }
 
 std::size_t CountingMemory::refusals() const {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return refusals_;
 }
 
 std::size_t CountingMemory::requests_from_elsewhere() const {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return requests_from_elsewhere_;
 }
 
 void CountingMemory::refuse_after(std::size_t count) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   refuse_from_ = requests_ + count;
   refuse_to_ = kNever;
 }
 
 void CountingMemory::refuse_one_after(std::size_t count) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   refuse_from_ = requests_ + count;
   refuse_to_ = refuse_from_ + 1;
 }
 
 void CountingMemory::refuse_beyond(std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   limit_ = bytes;
 }
 
 void CountingMemory::grant_all() {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   refuse_from_ = refuse_to_ = limit_ = kNever;
 }
 
 void* CountingMemory::do_allocate(std::size_t bytes, std::size_t alignment) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   const std::size_t request = requests_++;
+#if WINNOW_TEST_THREADS
   if (std::this_thread::get_id() != owner_) ++requests_from_elsewhere_;
+#endif
   const bool too_many = bytes > kMost || outstanding_ + bytes > limit_;
   if (too_many || (request >= refuse_from_ && request < refuse_to_)) {
     ++refusals_;
-    throw std::bad_alloc();
+    refuse_memory();
   }
   void* block = ::operator new(bytes, std::align_val_t(alignment));
   blocks_[block] = {bytes, alignment};
@@ -74,7 +78,7 @@ void* CountingMemory::do_allocate(std::size_t bytes, std::size_t alignment) {
 }
 
 void CountingMemory::do_deallocate(void* block, std::size_t bytes, std::size_t alignment) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   const auto found = blocks_.find(block);
   if (found == blocks_.end()) {
     ADD_FAILURE() << "a block was given back that was never handed out";

@@ -4,8 +4,13 @@
 #include <limits>
 #include <map>
 #include <memory_resource>
-#include <mutex>
+
+#include "core/threads/mutex.h"
+#include "tests/support/platform.h"
+
+#if WINNOW_TEST_THREADS
 #include <thread>
+#endif
 
 namespace winnow::test {
 
@@ -46,7 +51,7 @@ class CountingMemory final : public std::pmr::memory_resource {
   void do_deallocate(void* block, std::size_t bytes, std::size_t alignment) override;
   [[nodiscard]] bool do_is_equal(const memory_resource& other) const noexcept override;
 
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   std::map<void*, Block> blocks_;
   std::size_t outstanding_ = 0;
   std::size_t requests_ = 0;
@@ -55,7 +60,9 @@ class CountingMemory final : public std::pmr::memory_resource {
   std::size_t refuse_from_ = kNever;
   std::size_t refuse_to_ = kNever;
   std::size_t limit_ = kNever;
+#if WINNOW_TEST_THREADS
   std::thread::id owner_ = std::this_thread::get_id();
+#endif
 };
 
 }  // namespace winnow::test

@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <new>
 
+#include "tests/support/platform.h"
+
 namespace {
 std::atomic<std::size_t> requests{0};
 }  // namespace
@@ -14,6 +16,7 @@ std::size_t heap_requests() noexcept {
 }
 }  // namespace winnow::test
 
+#if WINNOW_TEST_EXCEPTIONS && !defined(_WIN32)
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
     !(defined(__has_feature) && defined(__clang__))
 #define WINNOW_COUNT_HEAP 1
@@ -22,20 +25,21 @@ std::size_t heap_requests() noexcept {
 #define WINNOW_COUNT_HEAP 1
 #endif
 #endif
+#endif
 
 #ifdef WINNOW_COUNT_HEAP
 
 void* operator new(std::size_t bytes) {
   requests.fetch_add(1, std::memory_order_relaxed);
   if (void* block = std::malloc(bytes != 0 ? bytes : 1)) return block;
-  throw std::bad_alloc();
+  winnow::test::refuse_memory();
 }
 
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
   requests.fetch_add(1, std::memory_order_relaxed);
   const auto line = static_cast<std::size_t>(alignment);
   if (void* block = std::aligned_alloc(line, (bytes + line - 1) / line * line)) return block;
-  throw std::bad_alloc();
+  winnow::test::refuse_memory();
 }
 
 void operator delete(void* block) noexcept {

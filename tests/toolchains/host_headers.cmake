@@ -1,12 +1,15 @@
-# Included by toolchains of platforms for which Debian has no packages of its own: Eigen and xsimd are
-# headers alone, those of this machine serve. Of other libraries nothing may be found.
+# Included by toolchains of platforms for which Debian has no packages of its own: Eigen, xsimd and
+# Boost are headers alone, those of this machine serve. Of other libraries nothing may be found.
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/host_headers)
-file(CREATE_LINK /usr/include/xsimd ${CMAKE_BINARY_DIR}/host_headers/xsimd SYMBOLIC)
+foreach(headers xsimd boost)
+  file(CREATE_LINK /usr/include/${headers} ${CMAKE_BINARY_DIR}/host_headers/${headers} SYMBOLIC)
+endforeach()
 set(WINNOW_XSIMD_INCLUDE_DIR ${CMAKE_BINARY_DIR}/host_headers CACHE PATH "xsimd headers")
+set(WINNOW_BOOST_INCLUDE_DIR ${CMAKE_BINARY_DIR}/host_headers CACHE PATH "")
 set(Eigen3_DIR /usr/share/eigen3/cmake CACHE PATH "Eigen's CMake files")
 set(WINNOW_TBB OFF CACHE BOOL "")
 set(CMAKE_DISABLE_FIND_PACKAGE_MPI ON)
-set(CMAKE_DISABLE_FIND_PACKAGE_rapidcheck ON)
+set(WINNOW_RAPIDCHECK OFF CACHE BOOL "")
 # Tests are built with the sources of Debian's googletest.
 set(CMAKE_DISABLE_FIND_PACKAGE_GTest ON)
 set(FETCHCONTENT_SOURCE_DIR_GOOGLETEST /usr/src/googletest CACHE PATH "")

@@ -4,9 +4,12 @@
 
 #include "pipeline/c/binding/callers_memory.h"
 
+#include <winnow/c/contact_groups.h>
 #include <winnow/c/partition.h>
 #include <winnow/c/scene.h>
 #include <winnow/c/scene_queries.h>
+#include <winnow/c/scene_sweep.h>
+#include <winnow/c/sensors.h>
 #include <winnow/c/shapes.h>
 #include <winnow/core/column.h>
 #include <winnow/core/hits.h>
@@ -15,11 +18,14 @@
 #include <winnow/core/pose.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/contact_groups.h>
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/narrow_result.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
+#include <winnow/pipeline/scene_sweep.h>
+#include <winnow/pipeline/sensors.h>
 #include <winnow/pipeline/shape_pool.h>
 
 struct winnow_pair_buffer : winnow::c::Handle {
@@ -86,6 +92,11 @@ struct winnow_contacts : winnow::c::Handle {
   winnow::Contacts value{&memory};
 };
 
+struct winnow_contact_groups : winnow::c::Handle {
+  using Handle::Handle;
+  winnow::ContactGroups value{&memory};
+};
+
 struct winnow_scene : winnow::c::Handle {
   winnow_scene(const winnow::c::CallersMemory& given, const winnow::ShapePool& shapes,
                winnow::SceneOptions options) noexcept
@@ -104,4 +115,19 @@ struct winnow_scene_queries : winnow::c::Handle {
 
   winnow::SceneQueries value;
   winnow::Column<winnow::ShapeRay> room{&memory};  ///< rays of float
+};
+
+struct winnow_scene_sweep : winnow::c::Handle {
+  winnow_scene_sweep(const winnow::c::CallersMemory& given, winnow::Scene& scene) noexcept
+      : Handle(given), value(scene, &memory) {}
+
+  winnow::SceneSweep value;
+  winnow::Column<winnow::Pose> room{&memory};
+};
+
+struct winnow_sensors : winnow::c::Handle {
+  winnow_sensors(const winnow::c::CallersMemory& given, winnow::Scene& scene) noexcept
+      : Handle(given), value(scene, &memory) {}
+
+  winnow::Sensors value;
 };

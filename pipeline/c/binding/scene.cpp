@@ -105,6 +105,19 @@ winnow_status winnow_scene_set_filter(winnow_scene* scene, winnow_key key,
   return answer(scene->value.set_filter(*twin(&key), *twin(filter)));
 }
 
+winnow_status winnow_scene_set_ignored(winnow_scene* scene, const winnow_key_pair* pairs,
+                                       size_t count, bool ignored) {
+  if (scene == nullptr || !is_array(pairs, count)) return WINNOW_INVALID_ARGUMENT;
+  return answer(scene->value.set_ignored(twins(pairs, count), ignored));
+}
+
+winnow_status winnow_scene_is_ignored(const winnow_scene* scene, winnow_key a, winnow_key b,
+                                      bool* ignored) {
+  if (!are_given(scene, ignored)) return WINNOW_INVALID_ARGUMENT;
+  *ignored = scene->value.is_ignored(*twin(&a), *twin(&b));
+  return WINNOW_OK;
+}
+
 winnow_status winnow_scene_size(const winnow_scene* scene, size_t* size) {
   if (!are_given(scene, size)) return WINNOW_INVALID_ARGUMENT;
   *size = scene->value.size();

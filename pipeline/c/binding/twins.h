@@ -6,6 +6,8 @@
 #include <winnow/c/partition.h>
 #include <winnow/c/scene.h>
 #include <winnow/c/scene_queries.h>
+#include <winnow/c/scene_sweep.h>
+#include <winnow/c/sensors.h>
 #include <winnow/c/shapes.h>
 #include <winnow/c/volumes.h>
 #include <winnow/core/aabb.h>
@@ -25,6 +27,8 @@
 #include <winnow/pipeline/narrow_result.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
+#include <winnow/pipeline/scene_sweep.h>
+#include <winnow/pipeline/sensors.h>
 #include <winnow/pipeline/shapes.h>
 
 #include <cstddef>
@@ -61,7 +65,7 @@ WINNOW_TWINS(winnow_plane, Plane)
 WINNOW_TWINS(winnow_frustum, Frustum)
 WINNOW_TWINS(winnow_pose, Pose)
 WINNOW_ARE_TWINS(winnow_pair, Pair)
-WINNOW_ARE_TWINS(winnow_key_pair, KeyPair)
+WINNOW_TWINS(winnow_key_pair, KeyPair)
 WINNOW_TWINS(winnow_body_pair, BodyPair)
 WINNOW_ARE_TWINS(winnow_hull_face, HullFace)
 WINNOW_TWIN_MEMBERS(winnow_hull_face, HullFace, first);
@@ -107,6 +111,21 @@ WINNOW_TWIN_MEMBERS(winnow_scene_distance, SceneDistance, point_b);
 WINNOW_TWINS(winnow_set_distance, SetDistance)
 WINNOW_TWIN_MEMBERS(winnow_set_distance, SetDistance, data_a);
 WINNOW_TWIN_MEMBERS(winnow_set_distance, SetDistance, to);
+
+WINNOW_TWINS(winnow_sensor_definition, SensorDefinition)
+WINNOW_TWIN_MEMBERS(winnow_sensor_definition, SensorDefinition, filter);
+WINNOW_TWIN_MEMBERS(winnow_sensor_definition, SensorDefinition, carrier);
+WINNOW_TWIN_MEMBERS(winnow_sensor_definition, SensorDefinition, data);
+WINNOW_ARE_TWINS(winnow_sensed_body, SensedBody)
+WINNOW_TWIN_MEMBERS(winnow_sensed_body, SensedBody, body_data);
+WINNOW_TWIN_MEMBERS(winnow_sensed_body, SensedBody, event);
+WINNOW_ARE_TWINS(winnow_left_sensor, LeftSensor)
+WINNOW_TWIN_MEMBERS(winnow_left_sensor, LeftSensor, body_data);
+
+WINNOW_ARE_TWINS(winnow_scene_impact, SceneImpact)
+WINNOW_TWIN_MEMBERS(winnow_scene_impact, SceneImpact, part_b);
+WINNOW_TWIN_MEMBERS(winnow_scene_impact, SceneImpact, error_bound);
+WINNOW_TWIN_MEMBERS(winnow_scene_impact, SceneImpact, point);
 
 #undef WINNOW_TWINS
 #undef WINNOW_ARE_TWINS

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <utility>
+
+namespace winnow {
+
+/// What `work` answers, or `refused` where it was left by an exception, by which memory resources
+/// refuse. Built without exceptions nothing is caught.
+template <typename Work, typename Answer = decltype(std::declval<Work&>()())>
+[[nodiscard]] Answer guarded(Work&& work, Answer refused) noexcept {
+#ifdef __cpp_exceptions
+  try {
+    return work();
+  } catch (...) {
+    return refused;
+  }
+#else
+  static_cast<void>(refused);
+  return work();
+#endif
+}
+
+}  // namespace winnow

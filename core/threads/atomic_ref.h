@@ -1,0 +1,36 @@
+#pragma once
+
+#include <atomic>
+
+namespace winnow {
+
+#ifdef __cpp_lib_atomic_ref
+template <typename T>
+using AtomicRef = std::atomic_ref<T>;
+#else
+
+/// What is used of std::atomic_ref, for libraries that have none, which is libc++.
+template <typename T>
+class AtomicRef {
+ public:
+  explicit AtomicRef(T& value) noexcept : value_(&value) {}
+  [[nodiscard]] T load() const noexcept { return __atomic_load_n(value_, __ATOMIC_SEQ_CST); }
+  bool compare_exchange_weak(T& expected, T wanted) const noexcept {
+    return exchange(expected, wanted, true);
+  }
+  bool compare_exchange_strong(T& expected, T wanted) const noexcept {
+    return exchange(expected, wanted, false);
+  }
+
+ private:
+  bool exchange(T& expected, T wanted, bool weak) const noexcept {
+    return __atomic_compare_exchange_n(value_, &expected, wanted, weak, __ATOMIC_SEQ_CST,
+                                       __ATOMIC_SEQ_CST);
+  }
+
+  T* value_;
+};
+
+#endif
+
+}  // namespace winnow
