@@ -342,8 +342,7 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
     parts.met(placed, sweep_from(swept, from_, limit), look);
     return found;
   }
-  // Asked about its whole way, as in RaySweep::meets.
-  const ShapeRay& ray = *swept.ray();
+  const ShapeRay ray = shortened(*swept.ray(), limit);
   const auto meet_by_ray = [&](std::size_t, std::uint32_t part, const ShapeHit& hit, double) {
     if (hit.t > limit) return limit;
     ShapeRay own = ray;
