@@ -197,7 +197,6 @@ ReportSteps plan_motion(const ReportOptions& options) {
                        }
                      }});
   }
-  if (!has_hulls()) return steps;
   for (const int threads : options.threads) {
     SweepRaceOptions asked{.threads = threads, .frames = rounds, .seed = options.seed};
     if (options.quick) {
