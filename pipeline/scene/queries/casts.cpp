@@ -486,7 +486,10 @@ void RaysTogether<Room>::meet_few(std::uint32_t body) {
     return take(i, {body, part.part, found.t, {found.normal[0], found.normal[1], found.normal[2]}});
   };
   ShapeRay asked[Room];
-  for (std::size_t i = 0; i < count_; ++i) asked[i] = shortened(ray_[i], limit_[i]);
+  for (std::size_t i = 0; i < count_; ++i) {
+    asked[i] = ray_[i];
+    if (limit_[i] < 0.0) asked[i].max_t = limit_[i];
+  }
   state_.parts.met_by_rays(placed, {asked, count_}, meet, look);
 }
 

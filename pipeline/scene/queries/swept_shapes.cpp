@@ -342,7 +342,8 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
     parts.met(placed, sweep_from(swept, from_, limit), look);
     return found;
   }
-  const ShapeRay ray = shortened(*swept.ray(), limit);
+  // Asked about its whole way, as in RaySweep::meets.
+  const ShapeRay& ray = *swept.ray();
   const auto meet_by_ray = [&](std::size_t, std::uint32_t part, const ShapeHit& hit, double) {
     if (hit.t > limit) return limit;
     ShapeRay own = ray;

@@ -4,8 +4,6 @@
 #include "pipeline/composites/parts.h"
 #include "pipeline/scene/queries/shape_cast.h"
 
-#include <algorithm>
-
 namespace winnow {
 
 /// Where something that moves first meets a convex part: about the part's origin of coordinates,
@@ -72,14 +70,6 @@ class SweptShape {
   const double* direction_;
   double max_t_;
 };
-
-/// A ray to look for parts with, of which only meetings up to t = limit count: it goes on beyond
-/// that by more than rounding. Where a part is met, the whole ray says.
-[[nodiscard]] inline ShapeRay shortened(const ShapeRay& ray, double limit) noexcept {
-  ShapeRay shorter = ray;
-  shorter.max_t = std::min(ray.max_t, limit + 0x1p-40 * limit);
-  return shorter;
-}
 
 /// The ray must outlive it.
 class RaySweep final : public SweptShape {
