@@ -86,11 +86,6 @@ bool PartTraversal::contains(ShapeId shape) const noexcept {
   return shapes_.contains(shape);
 }
 
-double PartTraversal::radius(ShapeId shape) const noexcept {
-  return shape.is_composite() ? composites_->radius(shape)
-                              : mid::radius_of(shapes_.tables(), shape);
-}
-
 PreciseBox PartTraversal::box(const PlacedShape& placed) const noexcept {
   const Pose here = at_origin(placed.pose);
   const Aabb local = placed.shape.is_composite() ? composites_->bounds(placed.shape, here)

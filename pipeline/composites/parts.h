@@ -4,6 +4,7 @@
 #include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/shape_pool.h>
 #include "pipeline/shapes/difference.h"
+#include "pipeline/shapes/extent.h"
 
 #include <Eigen/Core>
 #include <cmath>
@@ -70,7 +71,11 @@ class PartTraversal {
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
   [[nodiscard]] bool contains(ShapeId shape) const noexcept;
   /// No point of the shape is farther from its own origin; infinite for a half-space.
-  [[nodiscard]] double radius(ShapeId shape) const noexcept;
+  [[nodiscard]] double radius(ShapeId shape) const noexcept {
+    // In place, so that scenes which ask for this alone link no composite shapes.
+    return shape.is_composite() ? composites_->radius(shape)
+                                : mid::radius_of(shapes_.tables(), shape);
+  }
   /// Contains the shape where it stands.
   [[nodiscard]] PreciseBox box(const PlacedShape& placed) const noexcept;
   [[nodiscard]] PreciseBox box(const ConvexPart& part) const noexcept;
