@@ -17,6 +17,11 @@
 
 namespace winnow {
 
+/// What impacts are found with, which is winnow's own.
+namespace impact {
+struct BodyImpact;
+}  // namespace impact
+
 /// What moves: body i has shape shapes[i] and moves by motions[i].
 struct MovingBodies {
   std::span<const ShapeId> shapes;       ///< by body
@@ -93,8 +98,7 @@ class WINNOW_API ImpactResult {
                                           std::span<const BodyPair> pairs,
                                           const ImpactOptions& options, ImpactResult& result);
   [[nodiscard]] bool resize(std::size_t count) noexcept;
-  template <typename BodyImpact>
-  void write(std::size_t i, const BodyImpact& found) noexcept;
+  void write(std::size_t i, const impact::BodyImpact& found) noexcept;
   [[nodiscard]] static std::span<const double> span(const Column<double>& c) noexcept {
     return {c.data(), c.size()};
   }

@@ -41,8 +41,7 @@ bool ImpactResult::resize(std::size_t count) noexcept {
   return ok;
 }
 
-template <typename BodyImpact>
-void ImpactResult::write(std::size_t i, const BodyImpact& found) noexcept {
+void ImpactResult::write(std::size_t i, const impact::BodyImpact& found) noexcept {
   const impact::Impact& impact = found.impact;
   hit_[i] = impact.hit ? 1 : 0;
   time_[i] = impact.time;
