@@ -70,7 +70,12 @@ class OrderPlan {
   [[nodiscard]] std::size_t regular() const noexcept { return regular_; }
   /// What the structure is told when the rows stand in the order.
   [[nodiscard]] RowPlan row_plan() noexcept {
-    return {planned_rows_, planned_objects_, order_, rest_, items_, list_,
+    return {planned_rows_,
+            planned_objects_,
+            order_,
+            rest_,
+            items_,
+            list_,
             {moves_.data(), moves_.size()}};
   }
 

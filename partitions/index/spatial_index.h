@@ -211,7 +211,7 @@ class SpatialIndex {
   Growth tail_growth_;
   Growth wear_growth_;
   std::size_t refreshes_before_plan_ = 0;  // since the build before it
-  std::size_t unforeseen_ = 0;  // builds to wait for until one is foreseen again
+  std::size_t unforeseen_ = 0;             // builds to wait for until one is foreseen again
 
   // Wear, in tests of 16 volumes: what a query costs on a fresh structure, and what those since
   // have cost beyond that.

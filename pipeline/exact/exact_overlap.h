@@ -32,9 +32,10 @@ enum class ExactVerdict : unsigned char {
 /// multiplied by the squares of both quaternions' lengths, so that there are only sums and
 /// products. Half-spaces by the lowest point of the other. Cylinders and cones are decided where
 /// `axis` proves that they are apart, where polygons inscribed in their discs overlap, or where
-/// both touch. Pairs whose numbers span more than some 1e200 are decided where they are boxes without
-/// rounding, or where one of a few planes proves them apart. For pairs whose sign double cannot tell: 5 to 100 microseconds, more for large
-/// hulls, whose vertices are first sifted in double.
+/// both touch. Pairs whose numbers span more than some 1e200 are decided where they are boxes
+/// without rounding, or where one of a few planes proves them apart. For pairs whose sign double
+/// cannot tell: 5 to 100 microseconds, more for large hulls, whose vertices are first sifted in
+/// double.
 [[nodiscard]] ExactVerdict exact_overlap(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
                                          ShapeId b, const Pose& pose_b,
                                          const double axis[3]) noexcept;
