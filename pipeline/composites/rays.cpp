@@ -20,24 +20,6 @@ constexpr double kMostLength = 1e150;
 /// theirs into the world.
 constexpr double kRaySlack = 0x1p-46;
 
-/// A ray in the frame of a surface: the caller's t is shift + own t * stretch.
-struct OwnRay {
-  SurfaceRay ray;
-  double shift;
-  double stretch;
-
-  [[nodiscard]] double own(double t) const noexcept { return (t - shift) / stretch; }
-  /// Not less than what rounding makes of it.
-  [[nodiscard]] double own_limit(double t) const noexcept {
-    return own(t) + 0x1p-51 * (std::abs(t) + std::abs(shift)) / stretch;
-  }
-};
-
-/// matrix * v in one piece: a ray has time for no calls.
-[[nodiscard]] inline Vec times(const Mat& matrix, const Vec& v) noexcept {
-  return matrix.col(0) * v[0] + matrix.col(1) * v[1] + matrix.col(2) * v[2];
-}
-
 /// A vector, transformed, of length 1.
 [[nodiscard]] Vec unit_under(const Mat& matrix, const Vec& v) noexcept {
   const Vec plain = matrix * v;
@@ -77,158 +59,231 @@ struct RayTarget {
   RayTarget(const Composites& all, ShapeId id, const Pose& pose) noexcept
       : body(all, all.shapes.tables(), id, pose, Vec::Zero()), position(Vec::Map(pose.position)) {
     const Vec corner = body.bounds.min.cwiseAbs().cwiseMax(body.bounds.max.cwiseAbs());
-    reach = corner.maxCoeff();
-    size = (body.to_world.cwiseAbs() * corner).sum();
+    Vec::Map(frame.position) = position;
+    for (int i = 0; i < 3; ++i) Vec::Map(frame.to_own[i]) = body.to_local.row(i);
+    frame.reach = corner.maxCoeff();
+    frame.size = (body.to_world.cwiseAbs() * corner).sum();
   }
 
   PlacedBody body;
   /// Where it is in the world.
   Vec position;
-  /// Of its coordinates, in its own lengths and in the world's.
-  double reach;
-  double size;
+  SurfaceFrame frame;
 };
 
-/// A ray that begins far away is moved to where it comes near the surface. False for one whose
-/// numbers are too large or too small for that.
-[[nodiscard]] bool to_own(const RayTarget& target, const ShapeRay& ray, OwnRay& out) noexcept {
+/// Takes one ray into the frame of a surface. One that begins far away is moved to where it comes
+/// near the surface. False for one whose numbers are too large or too small for that.
+[[nodiscard]] bool place_ray(const RayTarget& target, const ShapeRay& ray, std::uint32_t lane,
+                             SurfaceRays& own) noexcept {
   const PlacedBody& body = target.body;
+  const double size = target.frame.size;
   const Eigen::Map<const Vec> origin(ray.origin);
   const Eigen::Map<const Vec> direction(ray.direction);
   Vec start = origin - target.position;
   const double fastest = direction.cwiseAbs().maxCoeff();
-  if (!(start.cwiseAbs().maxCoeff() < kMostLength && target.size < kMostLength &&
-        fastest < kMostLength && fastest > 1.0 / kMostLength)) {
+  if (!(start.cwiseAbs().maxCoeff() < kMostLength && size < kMostLength && fastest < kMostLength &&
+        fastest > 1.0 / kMostLength)) {
     return false;
   }
   // Where it is nearest comes after this much of the way.
   const double towards = -start.dot(direction);
   const double square = direction.squaredNorm();
-  out.shift = 0.0;
-  if (towards > 4.0 * target.size * (square / fastest)) {
-    out.shift = std::max(0.0, towards / square - 4.0 * target.size / fastest);
-    for (int i = 0; i < 3; ++i) {
-      start[i] = moved(origin[i], target.position[i], out.shift, direction[i]);
-    }
+  double shift = 0.0;
+  if (towards > 4.0 * size * (square / fastest)) {
+    shift = std::max(0.0, towards / square - 4.0 * size / fastest);
+    for (int i = 0; i < 3; ++i)
+      start[i] = moved(origin[i], target.position[i], shift, direction[i]);
   }
-  const Vec own_direction = times(body.to_local, direction);
-  out.stretch = scale_to_one(own_direction.cwiseAbs().maxCoeff());
-  Vec::Map(out.ray.direction) = own_direction * out.stretch;
-  Vec::Map(out.ray.origin) = times(body.to_local, start);
-  const Vec coordinates = times(body.to_local.cwiseAbs(), start.cwiseAbs());
-  out.ray.slack = kRaySlack * (coordinates.maxCoeff() + target.reach);
+  const Vec way = body.to_local * direction;
+  const double stretch = scale_to_one(way.cwiseAbs().maxCoeff());
+  const Vec from = body.to_local * start;
+  for (int axis = 0; axis < 3; ++axis) {
+    own.ray.direction[axis][lane] = way[axis] * stretch;
+    own.ray.origin[axis][lane] = from[axis];
+  }
+  const Vec coordinates = body.to_local.cwiseAbs() * start.cwiseAbs();
+  own.slack[lane] = kRaySlack * (coordinates.maxCoeff() + target.frame.reach);
+  own.shift[lane] = shift;
+  own.stretch[lane] = stretch;
   return true;
 }
 
-/// Takes a ray through a surface, and tells of the triangles that it meets.
-struct RayGuide {
-  const RayTarget* target;
-  const ShapeRay* ray;
-  /// As the visitor knows it.
-  std::size_t number;
-  const RayVisitor* visitor;
-  OwnRay own;
-  /// In the caller's t.
-  double limit;
-  /// Between which the ray is there, in own t.
-  double first;
-  double last;
+/// Takes rays through a surface, and tells of the triangles that they meet.
+class RayGuides {
+ public:
+  RayGuides(const RayTarget& target, std::span<const ShapeRay> rays,
+            const RayVisitor& visitor) noexcept
+      : target_(target), rays_(rays), visitor_(visitor) {}
 
-  /// False if that takes other ways.
-  [[nodiscard]] bool start(const RayTarget& to, const ShapeRay& asked, std::size_t as,
-                           const RayVisitor& tells) noexcept {
-    target = &to;
-    ray = &asked;
-    number = as;
-    visitor = &tells;
-    if (!to_own(to, asked, own)) return false;
-    limit = asked.max_t;
-    first = own.own(0.0);
-    last = own.own(limit);
-    return true;
-  }
+  [[nodiscard]] bool is_full() const noexcept { return count_ == kRaysAtOnce; }
+  void add(std::size_t ray) noexcept;
+  /// Calls elsewhere(ray) for those that take other ways.
+  template <typename Elsewhere>
+  void go(Elsewhere&& elsewhere);
 
-  [[nodiscard]] double show(std::uint32_t slot) const {
-    const PlacedBody& body = target->body;
-    double corner[3][3];
-    if (!body.own_corners(slot, corner)) return limit;
-    SurfaceHit found;
-    switch (cross_triangle(own.ray, corner, first, last, found)) {
-      case Crossing::none:
-        return limit;
-      case Crossing::found: {
-        ShapeHit hit;
-        hit.hit = true;
-        hit.t = own.shift + found.t * own.stretch;
-        if (!(hit.t <= limit) || comes_from_behind(corner)) return limit;
-        Vec::Map(hit.normal) = unit_under(body.to_local.transpose(), Vec::Map(found.normal));
-        return visitor->meet(visitor->context, number, body.shown_number(slot), hit, limit);
-      }
-      case Crossing::doubtful:
-        return look(slot);
-    }
-    return limit;
+ private:
+  void fill_up() noexcept;
+  void go_through_mesh();
+  void go_through_field(std::uint32_t i);
+  [[nodiscard]] double own(std::uint32_t i, double t) const noexcept {
+    return (t - own_.shift[i]) / own_.stretch[i];
   }
+  /// Not less than what rounding makes of it.
+  [[nodiscard]] double own_limit(std::uint32_t i, double t) const noexcept {
+    return own(i, t) + 0x1p-51 * (std::abs(t) + std::abs(own_.shift[i])) / own_.stretch[i];
+  }
+  /// Those that show a triangle, or some, give back the limit to go on with.
+  [[nodiscard]] double show(std::uint32_t i, std::uint32_t slot) const;
+  [[nodiscard]] double meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
+                            const double (&corner)[3][3], const SurfaceRay& ray) const;
+  [[nodiscard]] double look(std::uint32_t i, std::uint32_t slot) const;
+  double show_slots(std::uint32_t i, const std::uint32_t* slots, std::uint32_t count,
+                    double own_limit);
 
-  /// The front is that of the surface's own frame.
-  [[nodiscard]] bool comes_from_behind(const double (&corner)[3][3]) const noexcept {
-    if (target->body.front == 0) return false;
-    const Vec at = Vec::Map(corner[0]);
-    const Vec normal = (Vec::Map(corner[1]) - at).cross(Vec::Map(corner[2]) - at);
-    return normal.dot(Vec::Map(own.ray.direction)) > 0.0;
-  }
-
-  /// What is lost of where the ray begins by being made relative to the body is put into where the
-  /// body is, where it is small.
-  [[nodiscard]] double look(std::uint32_t slot) const {
-    PlacedBody body = target->body;
-    body.position = -Vec::Map(difference(ray->origin, target->position.data()).rest);
-    Primitive primitive;
-    if (!body.primitive(slot, primitive)) return limit;
-    return visitor->look(visitor->context, number, primitive, limit);
-  }
-
-  double show_slots(const std::uint32_t* slots, std::uint32_t count, double own_limit) {
-    const double before = limit;
-    for (std::uint32_t i = 0; i < count && limit >= 0.0; ++i) limit = show(slots[i]);
-    if (limit < 0.0) return -1.0;
-    return limit < before ? own.own_limit(limit) : own_limit;
-  }
+  const RayTarget& target_;
+  std::span<const ShapeRay> rays_;
+  const RayVisitor& visitor_;
+  std::uint32_t count_ = 0;
+  /// As the visitor knows them.
+  std::size_t number_[kRaysAtOnce];
+  /// In the caller's t, and in own t as they begin.
+  double limit_[kRaysAtOnce];
+  alignas(64) double own_limit_[kRaysAtOnce];
+  RayColumns world_;
+  SurfaceRays own_;
 };
 
-void take_through_mesh(const MeshView& mesh, RayGuide* guides, std::uint32_t count) {
-  SurfaceRay rays[kRaysAtOnce];
-  double limits[kRaysAtOnce];
-  for (std::uint32_t i = 0; i < count; ++i) {
-    rays[i] = guides[i].own.ray;
-    limits[i] = guides[i].own.own_limit(guides[i].limit);
+void RayGuides::add(std::size_t ray) noexcept {
+  const ShapeRay& asked = rays_[ray];
+  for (int axis = 0; axis < 3; ++axis) {
+    world_.origin[axis][count_] = asked.origin[axis];
+    world_.direction[axis][count_] = asked.direction[axis];
   }
-  mesh_rays(mesh, {rays, count}, limits,
+  number_[count_] = ray;
+  limit_[count_] = asked.max_t;
+  ++count_;
+}
+
+void RayGuides::fill_up() noexcept {
+  const std::uint32_t rest = (kRayLanes - count_ % kRayLanes) % kRayLanes;
+  const std::uint32_t last = count_ - 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::fill_n(world_.origin[axis] + count_, rest, world_.origin[axis][last]);
+    std::fill_n(world_.direction[axis] + count_, rest, world_.direction[axis][last]);
+  }
+  std::fill_n(own_limit_ + count_, rest, -1.0);
+}
+
+template <typename Elsewhere>
+void RayGuides::go(Elsewhere&& elsewhere) {
+  if (count_ == 0) return;
+  fill_up();
+  std::uint64_t left = mesh_kernels().place_rays(target_.frame, world_, count_, own_);
+  for (; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+    if (place_ray(target_, rays_[number_[i]], i, own_)) continue;
+    elsewhere(number_[i]);
+    limit_[i] = -1.0;
+  }
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    own_limit_[i] = limit_[i] >= 0.0 ? own_limit(i, limit_[i]) : -1.0;
+  }
+  if (target_.body.kind == PlacedBody::Kind::mesh) {
+    go_through_mesh();
+  } else {
+    for (std::uint32_t i = 0; i < count_; ++i) go_through_field(i);
+  }
+  count_ = 0;
+}
+
+void RayGuides::go_through_mesh() {
+  mesh_rays(*target_.body.mesh, own_, own_limit_, count_,
             {[](void* context, std::uint32_t ray, const std::uint32_t* slots, std::uint32_t found,
                 double limit) {
-               return static_cast<RayGuide*>(context)[ray].show_slots(slots, found, limit);
+               return static_cast<RayGuides*>(context)->show_slots(ray, slots, found, limit);
              },
-             guides});
+             this});
 }
 
-void take_through_field(const HeightField& field, RayGuide& guide) {
-  const OwnRay& own = guide.own;
-  const Vec start = Vec::Map(own.ray.origin);
-  const Vec low = start.array() - own.ray.slack;
-  const Vec high = start.array() + own.ray.slack;
-  height_sweep(grid_of(field), low.data(), high.data(), own.ray.direction,
-               own.own_limit(guide.limit),
+void RayGuides::go_through_field(std::uint32_t i) {
+  if (own_limit_[i] < 0.0) return;
+  struct Way {
+    RayGuides* guides;
+    std::uint32_t ray;
+  } way{this, i};
+  const SurfaceRay ray = own_[i];
+  const Vec start = Vec::Map(ray.origin);
+  const Vec low = start.array() - ray.slack;
+  const Vec high = start.array() + ray.slack;
+  height_sweep(grid_of(*target_.body.field), low.data(), high.data(), ray.direction, own_limit_[i],
                {[](void* context, const std::uint32_t* slots, std::uint32_t count, double limit) {
-                  return static_cast<RayGuide*>(context)->show_slots(slots, count, limit);
+                  const Way& on = *static_cast<Way*>(context);
+                  return on.guides->show_slots(on.ray, slots, count, limit);
                 },
-                &guide});
+                &way});
 }
 
-/// Shows all that the ray's box meets.
-void look_at_all(const Composites& all, ShapeId id, const Pose& pose, const RayGuide& guide) {
+double RayGuides::show(std::uint32_t i, std::uint32_t slot) const {
+  double corner[3][3];
+  if (!target_.body.own_corners(slot, corner)) return limit_[i];
+  const SurfaceRay ray = own_[i];
+  SurfaceHit found;
+  switch (cross_triangle(ray, corner, own(i, 0.0), own(i, rays_[number_[i]].max_t), found)) {
+    case Crossing::none:
+      break;
+    case Crossing::found:
+      return meet(i, slot, found, corner, ray);
+    case Crossing::doubtful:
+      return look(i, slot);
+  }
+  return limit_[i];
+}
+
+/// The front of a triangle is that of the surface's own frame.
+[[nodiscard]] bool comes_from_behind(const SurfaceRay& ray, const double (&corner)[3][3]) noexcept {
+  const Vec at = Vec::Map(corner[0]);
+  const Vec normal = (Vec::Map(corner[1]) - at).cross(Vec::Map(corner[2]) - at);
+  return normal.dot(Vec::Map(ray.direction)) > 0.0;
+}
+
+double RayGuides::meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
+                       const double (&corner)[3][3], const SurfaceRay& ray) const {
+  const PlacedBody& body = target_.body;
+  ShapeHit hit;
+  hit.hit = true;
+  hit.t = own_.shift[i] + found.t * own_.stretch[i];
+  if (!(hit.t <= limit_[i]) || (body.front != 0 && comes_from_behind(ray, corner))) {
+    return limit_[i];
+  }
+  Vec::Map(hit.normal) = unit_under(body.to_local.transpose(), Vec::Map(found.normal));
+  return visitor_.meet(visitor_.context, number_[i], body.shown_number(slot), hit, limit_[i]);
+}
+
+/// What is lost of where the ray begins by being made relative to the body is put into where the
+/// body is, where it is small.
+double RayGuides::look(std::uint32_t i, std::uint32_t slot) const {
+  PlacedBody body = target_.body;
+  const Difference between = difference(rays_[number_[i]].origin, target_.frame.position);
+  body.position = -Vec::Map(between.rest);
+  Primitive primitive;
+  if (!body.primitive(slot, primitive)) return limit_[i];
+  return visitor_.look(visitor_.context, number_[i], primitive, limit_[i]);
+}
+
+double RayGuides::show_slots(std::uint32_t i, const std::uint32_t* slots, std::uint32_t count,
+                             double own_before) {
+  double& limit = limit_[i];
+  const double before = limit;
+  for (std::uint32_t k = 0; k < count && limit >= 0.0; ++k) limit = show(i, slots[k]);
+  if (limit < 0.0) return -1.0;
+  return limit < before ? own_limit(i, limit) : own_before;
+}
+
+/// Shows all that the box of a ray meets.
+void look_at_all(const Composites& all, ShapeId id, const Pose& pose, std::size_t number,
+                 const ShapeRay& ray, const RayVisitor& visitor) {
   // By this much of its coordinates a box is grown before the tests of boxes, which round them.
   constexpr double kGrowth = 0x1p-47;
-  const ShapeRay& ray = *guide.ray;
   Pose near = pose;
   const Difference between = difference(ray.origin, pose.position);
   Vec::Map(near.position) = -Vec::Map(between.rest);
@@ -241,39 +296,35 @@ void look_at_all(const Composites& all, ShapeId id, const Pose& pose, const RayG
     sweep.direction[i] = ray.direction[i];
   }
   sweep.max_t = ray.max_t;
+  struct Looking {
+    const RayVisitor& visitor;
+    std::size_t number;
+  } looking{visitor, number};
   visit(all, id, near, sweep,
         {[](void* context, const Primitive& primitive, double limit) {
-           const RayGuide& to = *static_cast<const RayGuide*>(context);
-           return to.visitor->look(to.visitor->context, to.number, primitive, limit);
+           const Looking& by = *static_cast<Looking*>(context);
+           return by.visitor.look(by.visitor.context, by.number, primitive, limit);
          },
-         const_cast<RayGuide*>(&guide)});
+         &looking});
 }
 
 }  // namespace
 
 void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
                 const RayVisitor& visitor) {
+  const auto look = [&](std::size_t ray) { look_at_all(all, id, pose, ray, rays[ray], visitor); };
   const RayTarget target(all, id, pose);
-  const PlacedBody& body = target.body;
-  RayGuide guides[kRaysAtOnce];
-  std::uint32_t count = 0;
-  const auto go = [&] {
-    if (count != 0) take_through_mesh(*body.mesh, guides, count);
-    count = 0;
-  };
+  RayGuides guides(target, rays, visitor);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!(rays[i].max_t >= 0.0)) continue;
-    RayGuide& guide = guides[count];
-    const bool starts = guide.start(target, rays[i], i, visitor);
-    if (!body.is_surface() || !starts) {
-      look_at_all(all, id, pose, guide);
-    } else if (body.kind == PlacedBody::Kind::field) {
-      take_through_field(*body.field, guide);
-    } else if (++count == kRaysAtOnce) {
-      go();
+    if (!target.body.is_surface()) {
+      look(i);
+      continue;
     }
+    guides.add(i);
+    if (guides.is_full()) guides.go(look);
   }
-  go();
+  guides.go(look);
 }
 
 }  // namespace winnow::mid

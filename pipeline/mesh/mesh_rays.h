@@ -3,18 +3,8 @@
 #include "pipeline/mesh/mesh_traversal.h"
 
 #include <cstdint>
-#include <span>
 
 namespace winnow {
-
-/// A ray in the own frame of a mesh or height field, whose length along it is about that of t.
-struct SurfaceRay {
-  double origin[3];
-  /// The largest component is in [1/2, 1).
-  double direction[3];
-  /// Wherever it is near the surface, the true ray is no farther from this one.
-  double slack;
-};
 
 enum class Crossing : std::uint8_t { none, found, doubtful };
 
@@ -30,10 +20,11 @@ struct SurfaceHit {
 [[nodiscard]] Crossing cross_triangle(const SurfaceRay& ray, const double (&corner)[3][3],
                                       double low, double high, SurfaceHit& hit) noexcept;
 
-/// Slots of all triangles that each ray may meet at some t in [0, its limit], and few others,
-/// roughly in the order in which it does. At most kRaysAtOnce rays, each with a limit; the visitor
-/// knows them by their index, and is otherwise as those of mesh_traversal.h.
-void mesh_rays(const MeshView& mesh, std::span<const SurfaceRay> rays, const double* limits,
-               const RaySlotVisitor& visitor) noexcept;
+/// Slots of all triangles that each of the first `count` rays may meet at some t in [0, its limit],
+/// and few others, roughly in the order in which it does. A limit below zero leaves a ray out. Rays
+/// and limits are filled up as RayColumns are. The visitor knows rays by their index, and is
+/// otherwise as those of mesh_traversal.h.
+void mesh_rays(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
+               std::uint32_t count, const RaySlotVisitor& visitor) noexcept;
 
 }  // namespace winnow

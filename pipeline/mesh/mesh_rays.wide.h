@@ -9,8 +9,7 @@
 // intersection", JCGT 2013). It starts near the leaf, so that areas lose little.
 
 #include "partitions/tree/traversal.wide.h"
-#include "pipeline/mesh/mesh_lanes.wide.h"
-#include "pipeline/mesh/mesh_traversal.h"
+#include "pipeline/mesh/mesh_ray_setup.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
@@ -20,7 +19,7 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
 /// the sheared frame, where they are at most twice as long, by less than `wrong`: by 6 u of `size`
 /// and by what the ray is. The area of two such corners is wrong by less than `doubt`.
 [[gnu::always_inline]] inline Mask16 on_line(const MeshView& mesh, std::uint32_t leaf,
-                                             const MeshRayJob& job, float entry) {
+                                             const RayJob& job, float entry) {
   constexpr float kUnit = 0x1p-24F;
   Floats from[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -59,11 +58,14 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
 /// came together.
 class RayWalk {
  public:
-  void start(const MeshView& mesh, const MeshRayJob& job) {
-    job_ = &job;
+  /// `ray`: as its visitor knows it.
+  void start(const MeshView& mesh, const ReadyRays& ready, unsigned lane, std::uint32_t ray,
+             double limit) {
+    take_ready(ready, lane, job_);
+    ray_ = ray;
     size_ = 0;
     asked_.triangles = 0;
-    set_limit(job.limit);
+    set_limit(limit);
     // What is below a top level of few nodes is nearly as soon asked.
     constexpr std::uint32_t kFewNodes = 2;
     std::uint32_t level = mesh.levels - 1;
@@ -102,7 +104,7 @@ class RayWalk {
 
   void set_limit(double limit) {
     limit_ = limit;
-    const double rest = (limit - job_->entry) * job_->pace * (1.0 + 0x1p-20);
+    const double rest = (limit - job_.entry) * job_.pace * (1.0 + 0x1p-20);
     last_ = rest < 1e38 ? static_cast<float>(rest) : 1e38F;
   }
 
@@ -130,11 +132,11 @@ class RayWalk {
     in = Floats(0.0F);
     Floats out(last_);
     for (int axis = 0; axis < 3; ++axis) {
-      const Floats inverse(job_->inverse[axis]);
-      const Floats near = load_short(bounds + job_->near_bound[axis]);
-      const Floats far = load_short(bounds + job_->far_bound[axis]);
-      in = max(in, multiply_add(near, inverse, Floats(job_->near[axis])));
-      out = min(out, multiply_add(far, inverse, Floats(job_->far[axis])));
+      const Floats inverse(job_.inverse[axis]);
+      const Floats near = load_short(bounds + job_.near_bound[axis]);
+      const Floats far = load_short(bounds + job_.far_bound[axis]);
+      in = max(in, multiply_add(near, inverse, Floats(job_.near[axis])));
+      out = min(out, multiply_add(far, inverse, Floats(job_.far[axis])));
     }
     return bits(in <= out);
   }
@@ -196,7 +198,7 @@ class RayWalk {
   bool look(const MeshView& mesh, const Asked& asked, const RaySlotVisitor& visitor) {
     if (!(asked.entry <= last_)) return true;
     Mask16 triangles = asked.triangles;
-    if (mesh.box == nullptr) triangles &= on_line(mesh, asked.leaf, *job_, asked.entry);
+    if (mesh.box == nullptr) triangles &= on_line(mesh, asked.leaf, job_, asked.entry);
     if (triangles == 0) return true;
     const std::uint32_t first_slot = asked.leaf * kMeshFanout;
     std::uint32_t slots[kLanes];
@@ -204,12 +206,13 @@ class RayWalk {
     for (; triangles != 0; triangles &= triangles - 1) {
       slots[count++] = first_slot + first(triangles);
     }
-    const double limit = visitor.visit(visitor.context, job_->ray, slots, count, limit_);
+    const double limit = visitor.visit(visitor.context, ray_, slots, count, limit_);
     if (limit != limit_) set_limit(limit);
     return limit >= 0.0;
   }
 
-  const MeshRayJob* job_;
+  RayJob job_;
+  std::uint32_t ray_;
   double limit_;
   float last_;
   std::uint32_t size_;
@@ -218,30 +221,67 @@ class RayWalk {
   std::uint64_t waiting_[kMaxMeshLevels * kMeshFanout + 1];
 };
 
+/// Rays that have not begun their way, in their order.
+class WaitingRays {
+ public:
+  WaitingRays(const MeshView& mesh, const MeshSpan& span, const SurfaceRays& rays,
+              const double* limits, std::uint32_t count)
+      : mesh_(mesh), span_(span), rays_(rays), limits_(limits), count_(count) {
+    make_some_ready();
+  }
+
+  /// Lets the next one start that does not pass the mesh by; false if there is none.
+  [[gnu::always_inline]] bool start(RayWalk& walk) {
+    while (come_ == 0) {
+      first_ += kRayLanes;
+      if (first_ >= count_) return false;
+      make_some_ready();
+    }
+    const unsigned lane = first(come_);
+    come_ &= come_ - 1;
+    walk.start(mesh_, ready_, lane, first_ + lane, limits_[first_ + lane]);
+    return true;
+  }
+
+ private:
+  void make_some_ready() {
+    come_ = make_ready(span_, rays_, limits_, first_, ready_);
+    if (count_ - first_ < kRayLanes) come_ &= lanes_below(count_ - first_);
+  }
+
+  const MeshView& mesh_;
+  const MeshSpan& span_;
+  const SurfaceRays& rays_;
+  const double* limits_;
+  std::uint32_t count_;
+  std::uint32_t first_ = 0;
+  Mask16 come_;
+  ReadyRays ready_;
+};
+
 /// Shows the triangles that each ray may meet, its nearest leaf first. The rays take turns, so that
 /// none waits for memory, nor for what the processor finds out last, while others could go on.
-inline void show_on_rays(const MeshView& mesh, const MeshRayJob* jobs, std::uint32_t count,
-                         const RaySlotVisitor& visitor) {
+inline void show_on_rays(const MeshView& mesh, const MeshSpan& span, const SurfaceRays& rays,
+                         const double* limits, std::uint32_t count, const RaySlotVisitor& visitor) {
+  WaitingRays waiting(mesh, span, rays, limits, count);
   if (count == 1) {
     RayWalk walk;
-    walk.start(mesh, jobs[0]);
+    if (!waiting.start(walk)) return;
     while (walk.step<true>(mesh, visitor)) {
     }
     return;
   }
   constexpr std::uint32_t kWalks = 8;
   RayWalk walk[kWalks];
-  std::uint32_t started = 0;
-  std::uint32_t walks = 0;
-  while (walks < kWalks && started < count) walk[walks++].start(mesh, jobs[started++]);
   std::uint32_t turn[kWalks];
-  for (std::uint32_t i = 0; i < walks; ++i) turn[i] = i;
+  std::uint32_t walks = 0;
+  while (walks < kWalks && waiting.start(walk[walks])) {
+    turn[walks] = walks;
+    ++walks;
+  }
   while (walks != 0) {
     for (std::uint32_t i = 0; i < walks;) {
-      if (walk[turn[i]].step<false>(mesh, visitor)) {
-        ++i;
-      } else if (started != count) {
-        walk[turn[i]].start(mesh, jobs[started++]);
+      if (walk[turn[i]].step<false>(mesh, visitor) || waiting.start(walk[turn[i]])) {
         ++i;
       } else {
         turn[i] = turn[--walks];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pipeline/mesh/mesh_view.h"
+#include "pipeline/mesh/surface_rays.h"
 #include "simd/kernels/kernels.h"
 
 #include <cstdint>
@@ -103,41 +104,11 @@ struct MeshNearJob {
   double scale[3];
 };
 
-/// Rays that are taken through a mesh together, in turns.
-inline constexpr std::uint32_t kRaysAtOnce = 64;
-
 /// Is shown the slots of a leaf that one of several rays may meet; gives back that ray's new limit.
 struct RaySlotVisitor {
   double (*visit)(void* context, std::uint32_t ray, const std::uint32_t* slots, std::uint32_t count,
                   double limit) = nullptr;
   void* context = nullptr;
-};
-
-/// A ray on its way through the nodes. `tau` is time from where it comes to the mesh, in another
-/// unit: it leaves the mesh's box before tau = 3.
-struct MeshRayJob {
-  /// As its visitor knows it, and the limit of t.
-  std::uint32_t ray;
-  double limit;
-  /// Where the ray is at tau = 0, and by how much it moves, in the mesh's lengths.
-  double origin[3];
-  double direction[3];
-  /// tau = (t - entry) * pace.
-  double entry;
-  double pace;
-  /// A bound of q units is passed at q * inverse + near, or + far, where the ray enters or leaves:
-  /// not later, or earlier, than it is.
-  float inverse[3];
-  float near[3];
-  float far[3];
-  /// Where these bounds of sixteen nodes lie.
-  std::uint32_t near_bound[3];
-  std::uint32_t far_bound[3];
-  /// Rows that take a vector to where it is across the ray: along two axes, less what the ray moves
-  /// along each while it does so along the third, the fastest one.
-  float across[2][3];
-  /// By how much corners of triangles may be wrong there before they are rounded.
-  float wrong;
 };
 
 struct MeshKernels {
@@ -147,9 +118,11 @@ struct MeshKernels {
                 const SlotVisitor& visitor);
   void (*near_pairs)(const MeshView& a, const MeshView& b, const MeshPairJob& job, double limit,
                      const SlotPairVisitor& visitor);
-  /// Of kRaysAtOnce or fewer.
-  void (*rays)(const MeshView& mesh, const MeshRayJob* jobs, std::uint32_t count,
-               const RaySlotVisitor& visitor);
+  /// Takes rays into the frame of a surface; gives back a bit for each that is left to the caller.
+  std::uint64_t (*place_rays)(const SurfaceFrame& frame, const RayColumns& world,
+                              std::uint32_t count, SurfaceRays& own);
+  void (*rays)(const MeshView& mesh, const MeshSpan& span, const SurfaceRays& rays,
+               const double* limits, std::uint32_t count, const RaySlotVisitor& visitor);
   void (*near)(const MeshView& mesh, const MeshNearJob& job, double limit,
                const SlotVisitor& visitor);
 };

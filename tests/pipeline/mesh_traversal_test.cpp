@@ -398,6 +398,16 @@ Eigen::Vector3d point_of(const TwinTriangle& triangle, Random& random) {
   return point;
 }
 
+SurfaceRays columns_of(const SurfaceRay& ray) {
+  SurfaceRays rays{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::fill_n(rays.ray.origin[axis], kRayLanes, ray.origin[axis]);
+    std::fill_n(rays.ray.direction[axis], kRayLanes, ray.direction[axis]);
+  }
+  std::fill_n(rays.slack, kRayLanes, ray.slack);
+  return rays;
+}
+
 TEST_F(Meshes, a_ray_is_shown_every_triangle_that_it_is_aimed_at) {
   Random random(11);
   for (const TriangleMesh& mesh : meshes_) {
@@ -416,9 +426,11 @@ TEST_F(Meshes, a_ray_is_shown_every_triangle_that_it_is_aimed_at) {
       ray.slack = 0x1p-48 * (from.cwiseAbs().maxCoeff() + at.cwiseAbs().maxCoeff() + far);
       const double limit =
           random.chance(0.3) ? std::numeric_limits<double>::infinity() : far * (1.0 + 1e-9);
+      alignas(64) double limits[kRayLanes];
+      std::fill_n(limits, kRayLanes, limit);
       const Slots shown = on_all_isas([&] {
         Seen seen{{}, 0.0, true};
-        mesh_rays(view_of(mesh), {&ray, 1}, &limit,
+        mesh_rays(view_of(mesh), columns_of(ray), limits, 1,
                   {[](void* context, std::uint32_t, const std::uint32_t* slots, std::uint32_t count,
                       double most) { return Seen::visit(context, slots, count, most); },
                    &seen});

@@ -1,0 +1,69 @@
+#pragma once
+
+// Plain structs: kernel files include this.
+
+#include <cstdint>
+
+namespace winnow {
+
+/// Rays that are taken through a surface together.
+inline constexpr std::uint32_t kRaysAtOnce = 64;
+/// So many are made ready at once. Columns are filled up to a multiple of it, by copies of the last
+/// ray.
+inline constexpr std::uint32_t kRayLanes = 8;
+
+/// Rays by component.
+struct RayColumns {
+  alignas(64) double origin[3][kRaysAtOnce];
+  alignas(64) double direction[3][kRaysAtOnce];
+};
+
+/// A ray in the own frame of a mesh or height field, whose length along it is about that of t.
+struct SurfaceRay {
+  double origin[3];
+  /// The largest component is in [1/2, 1).
+  double direction[3];
+  /// Wherever it is near the surface, the true ray is no farther from this one.
+  double slack;
+};
+
+/// The same in columns. The caller's t is shift + own t * stretch.
+struct SurfaceRays {
+  RayColumns ray;
+  alignas(64) double slack[kRaysAtOnce];
+  alignas(64) double shift[kRaysAtOnce];
+  alignas(64) double stretch[kRaysAtOnce];
+
+  [[nodiscard]] SurfaceRay operator[](std::uint32_t i) const noexcept {
+    const auto& from = ray.origin;
+    const auto& way = ray.direction;
+    return {{from[0][i], from[1][i], from[2][i]}, {way[0][i], way[1][i], way[2][i]}, slack[i]};
+  }
+};
+
+/// Where a surface stands, and the matrix that takes the world's vectors into its frame. No
+/// coordinate of it is larger than `reach` in that frame, or than `size` in the world's axes.
+struct SurfaceFrame {
+  double position[3];
+  double to_own[3][3];
+  double reach;
+  double size;
+};
+
+/// What every ray needs of a mesh.
+struct MeshSpan {
+  double low[3];
+  double step[3];
+  double units[3];
+  /// Of the box of all nodes, with a step to spare on each side.
+  double least[3];
+  double most[3];
+  /// The longest side of that box, and tau for each t.
+  double extent;
+  double pace;
+  /// What rounding the coordinates of rays to float makes of corners. Everything is in doubt where
+  /// differences of coordinates may leave the range of float.
+  double rounding;
+};
+
+}  // namespace winnow
