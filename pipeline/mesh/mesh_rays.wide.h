@@ -29,6 +29,7 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
   Floats x[3];
   Floats y[3];
   Floats size(0.0F);
+#pragma GCC unroll 3
   for (int k = 0; k < 3; ++k) {
     Floats at[3];
     load_points(mesh.vertex, mesh.corner[k] + std::size_t{leaf} * kMeshFanout, at);
@@ -64,7 +65,6 @@ class RayWalk {
     take_ready(ready, lane, job_);
     ray_ = ray;
     size_ = 0;
-    asked_.triangles = 0;
     set_limit(limit);
     // What is below a top level of few nodes is nearly as soon asked.
     constexpr std::uint32_t kFewNodes = 2;
@@ -75,16 +75,40 @@ class RayWalk {
     }
   }
 
-  /// Goes on with the nearest node that waits; false if the ray has come to its end. The corners of
-  /// a leaf are asked for in one step and looked at in the next: after the other rays have had
-  /// their turns or, if there are none, after the next node.
-  template <bool Alone>
-  [[gnu::always_inline]] bool step(const MeshView& mesh, const RaySlotVisitor& visitor) {
-    const Asked asked = asked_;
+  /// What the nearest node that waits is, once those are dropped that begin behind what was met.
+  enum Next : std::uint32_t { inner, leaf, nothing };
+  [[gnu::always_inline]] Next next() {
+    while (size_ != 0 && !(entry_of(waiting_[size_ - 1]) <= last_)) --size_;
+    if (size_ == 0) return nothing;
+    return level_of(waiting_[size_ - 1]) != 0 ? inner : leaf;
+  }
+  /// Goes into that inner node.
+  [[gnu::always_inline]] void enter_inner(const MeshView& mesh) {
+    const std::uint64_t waiting = waiting_[--size_];
+    meet(mesh, level_of(waiting) - 1, node_of(waiting) * kLanes, size_);
+  }
+  /// Asks for the corners of that leaf, to look at them later: false if none need be looked at.
+  [[gnu::always_inline]] bool ask_leaf(const MeshView& mesh) {
+    const std::uint64_t waiting = waiting_[--size_];
+    ask(mesh, node_of(waiting), entry_of(waiting));
+    return asked_.triangles != 0;
+  }
+  /// Looks at the leaf whose corners were asked for; false if the visitor has seen enough.
+  bool look(const MeshView& mesh, const RaySlotVisitor& visitor) {
+    return look(mesh, asked_, visitor);
+  }
+  /// The whole way of one ray. A leaf is looked at after the next node, while its corners come.
+  void go(const MeshView& mesh, const RaySlotVisitor& visitor) {
     asked_.triangles = 0;
-    if (!Alone && asked.triangles != 0) return look(mesh, asked, visitor);
-    const bool goes_on = descend(mesh);
-    return Alone && asked.triangles != 0 ? look(mesh, asked, visitor) : goes_on;
+    for (;;) {
+      const Asked asked = asked_;
+      asked_.triangles = 0;
+      const Next kind = next();
+      if (kind == inner) enter_inner(mesh);
+      if (kind == leaf) ask_leaf(mesh);
+      if (asked.triangles != 0 && !look(mesh, asked, visitor)) return;
+      if (kind == nothing && asked.triangles == 0) return;
+    }
   }
 
  private:
@@ -93,6 +117,12 @@ class RayWalk {
   static constexpr std::uint32_t kLevelShift = 28;
   static float entry_of(std::uint64_t waiting) {
     return __builtin_bit_cast(float, static_cast<std::uint32_t>(waiting >> 32));
+  }
+  static std::uint32_t level_of(std::uint64_t waiting) {
+    return static_cast<std::uint32_t>(waiting) >> kLevelShift;
+  }
+  static std::uint32_t node_of(std::uint64_t waiting) {
+    return static_cast<std::uint32_t>(waiting) & ((1U << kLevelShift) - 1U);
   }
   /// A leaf whose corners were asked for: when it is entered, and which of its triangles may be
   /// met.
@@ -106,25 +136,6 @@ class RayWalk {
     limit_ = limit;
     const double rest = (limit - job_.entry) * job_.pace * (1.0 + 0x1p-20);
     last_ = rest < 1e38 ? static_cast<float>(rest) : 1e38F;
-  }
-
-  /// False if no node waits.
-  [[gnu::always_inline]] bool descend(const MeshView& mesh) {
-    while (size_ != 0) {
-      const std::uint64_t next = waiting_[--size_];
-      const float entry = entry_of(next);
-      if (!(entry <= last_)) continue;
-      const auto place = static_cast<std::uint32_t>(next);
-      const std::uint32_t level = place >> kLevelShift;
-      const std::uint32_t node = place & ((1U << kLevelShift) - 1U);
-      if (level != 0) {
-        meet(mesh, level - 1, node * kLanes, size_);
-      } else {
-        ask(mesh, node, entry);
-      }
-      return true;
-    }
-    return false;
   }
 
   /// Which of sixteen boxes, in columns from `bounds` on, the ray meets, and when it enters them.
@@ -259,35 +270,78 @@ class WaitingRays {
   ReadyRays ready_;
 };
 
-/// Shows the triangles that each ray may meet, its nearest leaf first. The rays take turns, so that
-/// none waits for memory, nor for what the processor finds out last, while others could go on.
+/// Rays that go through a mesh side by side, so that none waits for memory. In each round all take
+/// the same kind of step one after the other, so that the processor foresees which.
+class RaysSideBySide {
+ public:
+  RaysSideBySide(const MeshView& mesh, const RaySlotVisitor& visitor, WaitingRays& waiting)
+      : mesh_(mesh), visitor_(visitor), waiting_(waiting) {}
+
+  void run() {
+    std::uint32_t begun = 0;
+    while (begun < kWalks && waiting_.start(walk_[begun])) sort_in(begun++);
+    while (count_[RayWalk::inner] + count_[RayWalk::leaf] != 0) {
+      each(RayWalk::inner, [&](std::uint32_t i) {
+        walk_[i].enter_inner(mesh_);
+        sort_in(i);
+      });
+      each(RayWalk::leaf, [&](std::uint32_t i) {
+        const bool asks = walk_[i].ask_leaf(mesh_);
+        asked_[asked_count_] = i;
+        asked_count_ += asks ? 1 : 0;
+        if (!asks) sort_in(i);
+      });
+      for (std::uint32_t k = 0; k < asked_count_; ++k) {
+        const std::uint32_t i = asked_[k];
+        if (walk_[i].look(mesh_, visitor_) || waiting_.start(walk_[i])) sort_in(i);
+      }
+      asked_count_ = 0;
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kWalks = 32;
+
+  /// Lets a ray wait for its next step; or the one after it that has not begun, if it has come to
+  /// its end.
+  [[gnu::always_inline]] void sort_in(std::uint32_t i) {
+    RayWalk::Next next = walk_[i].next();
+    while (next == RayWalk::nothing) {
+      if (!waiting_.start(walk_[i])) return;
+      next = walk_[i].next();
+    }
+    waits_[next][count_[next]++] = i;
+  }
+  /// Takes all that wait for this kind of step now.
+  template <typename Step>
+  [[gnu::always_inline]] void each(RayWalk::Next kind, Step&& step) {
+    std::uint32_t now[kWalks];
+    const std::uint32_t count = count_[kind];
+    for (std::uint32_t k = 0; k < kWalks; ++k) now[k] = waits_[kind][k];
+    count_[kind] = 0;
+    for (std::uint32_t k = 0; k < count; ++k) step(now[k]);
+  }
+
+  const MeshView& mesh_;
+  const RaySlotVisitor& visitor_;
+  WaitingRays& waiting_;
+  std::uint32_t count_[2] = {};
+  std::uint32_t asked_count_ = 0;
+  std::uint32_t waits_[2][kWalks] = {};
+  std::uint32_t asked_[kWalks];
+  RayWalk walk_[kWalks];
+};
+
+/// Shows the triangles that each ray may meet, its nearest leaf first.
 inline void show_on_rays(const MeshView& mesh, const MeshSpan& span, const SurfaceRays& rays,
                          const double* limits, std::uint32_t count, const RaySlotVisitor& visitor) {
   WaitingRays waiting(mesh, span, rays, limits, count);
   if (count == 1) {
     RayWalk walk;
-    if (!waiting.start(walk)) return;
-    while (walk.step<true>(mesh, visitor)) {
-    }
+    if (waiting.start(walk)) walk.go(mesh, visitor);
     return;
   }
-  constexpr std::uint32_t kWalks = 8;
-  RayWalk walk[kWalks];
-  std::uint32_t turn[kWalks];
-  std::uint32_t walks = 0;
-  while (walks < kWalks && waiting.start(walk[walks])) {
-    turn[walks] = walks;
-    ++walks;
-  }
-  while (walks != 0) {
-    for (std::uint32_t i = 0; i < walks;) {
-      if (walk[turn[i]].step<false>(mesh, visitor) || waiting.start(walk[turn[i]])) {
-        ++i;
-      } else {
-        turn[i] = turn[--walks];
-      }
-    }
-  }
+  RaysSideBySide(mesh, visitor, waiting).run();
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::mesh
