@@ -87,17 +87,21 @@ class RayWalk {
     const std::uint64_t waiting = waiting_[--size_];
     meet(mesh, level_of(waiting) - 1, node_of(waiting) * kLanes, size_);
   }
-  /// Asks for the corners of that leaf, to look at them later: false if none need be looked at.
-  [[gnu::always_inline]] bool ask_leaf(const MeshView& mesh) {
+  /// Goes to that leaf: false if none of its triangles need be looked at. Before they are, their
+  /// vertices are to be fetched.
+  [[gnu::always_inline]] bool enter_leaf(const MeshView& mesh) {
     const std::uint64_t waiting = waiting_[--size_];
     ask(mesh, node_of(waiting), entry_of(waiting));
     return asked_.triangles != 0;
   }
-  /// Looks at the leaf whose corners were asked for; false if the visitor has seen enough.
+  [[gnu::always_inline]] void fetch_vertices(const MeshView& mesh) const {
+    fetch_vertices(mesh, asked_);
+  }
+  /// Looks at them; false if the visitor has seen enough.
   bool look(const MeshView& mesh, const RaySlotVisitor& visitor) {
     return look(mesh, asked_, visitor);
   }
-  /// The whole way of one ray. A leaf is looked at after the next node, while its corners come.
+  /// The whole way of one ray. A leaf is looked at after the next node, while its vertices come.
   void go(const MeshView& mesh, const RaySlotVisitor& visitor) {
     asked_.triangles = 0;
     for (;;) {
@@ -105,7 +109,7 @@ class RayWalk {
       asked_.triangles = 0;
       const Next kind = next();
       if (kind == inner) enter_inner(mesh);
-      if (kind == leaf) ask_leaf(mesh);
+      if (kind == leaf && enter_leaf(mesh)) fetch_vertices(mesh);
       if (asked.triangles != 0 && !look(mesh, asked, visitor)) return;
       if (kind == nothing && asked.triangles == 0) return;
     }
@@ -124,8 +128,7 @@ class RayWalk {
   static std::uint32_t node_of(std::uint64_t waiting) {
     return static_cast<std::uint32_t>(waiting) & ((1U << kLevelShift) - 1U);
   }
-  /// A leaf whose corners were asked for: when it is entered, and which of its triangles may be
-  /// met.
+  /// A leaf that was gone to: when it is entered, and which of its triangles may be met.
   struct Asked {
     std::uint32_t leaf;
     float entry;
@@ -174,35 +177,42 @@ class RayWalk {
     }
   }
 
-  /// Asks for what tells where the triangles of a leaf are, before it is waited for. Of nodes there
-  /// are few enough to be at hand.
-  static void fetch(const MeshView& mesh, std::uint32_t leaf) {
-    const std::size_t slot = std::size_t{leaf} * kMeshFanout;
-    for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(mesh.corner[k] + slot);
-    if (mesh.box == nullptr) return;
-    for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(mesh.box + 6 * slot + 32 * k);
+  static void fetch_corners(const MeshView& mesh, std::uint32_t leaf) {
+    for (const std::uint32_t* const corner : mesh.corner) {
+      __builtin_prefetch(corner + std::size_t{leaf} * kMeshFanout);
+    }
   }
 
-  /// Asks for the corners of a leaf's triangles; of those alone whose boxes the ray meets where
+  /// Asks for what of a leaf is looked at first, before it is waited for. Of nodes there are few
+  /// enough to be at hand.
+  static void fetch(const MeshView& mesh, std::uint32_t leaf) {
+    if (mesh.box == nullptr) return fetch_corners(mesh, leaf);
+    const std::uint16_t* const box = mesh.box + std::size_t{6} * kMeshFanout * leaf;
+    for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(box + 32 * k);
+  }
+
+  /// Finds out which triangles of a leaf are to be looked at: those whose boxes the ray meets where
   /// they have some.
   [[gnu::always_inline]] void ask(const MeshView& mesh, std::uint32_t leaf, float entry) {
     const std::uint32_t first_slot = leaf * kMeshFanout;
-    Mask16 triangles = present(mesh.triangle_count, first_slot);
-    if (mesh.box != nullptr) {
-      Floats in;
-      triangles &= enter(mesh.box + std::size_t{6} * first_slot, in);
-      for (Mask16 rest = triangles; rest != 0; rest &= rest - 1) {
-        for (const std::uint32_t* const corner : mesh.corner) {
-          __builtin_prefetch(mesh.vertex + std::size_t{3} * corner[first_slot + first(rest)]);
-        }
-      }
-    } else {
+    asked_ = {leaf, entry, present(mesh.triangle_count, first_slot)};
+    if (mesh.box == nullptr) return;
+    Floats in;
+    asked_.triangles &= enter(mesh.box + std::size_t{6} * first_slot, in);
+    if (asked_.triangles != 0) fetch_corners(mesh, leaf);
+  }
+
+  /// Asks for their vertices, once their corners are there; neighbours in a leaf without boxes
+  /// share most of them.
+  [[gnu::always_inline]] void fetch_vertices(const MeshView& mesh, const Asked& asked) const {
+    const std::uint32_t first_slot = asked.leaf * kMeshFanout;
+    Mask16 rest = mesh.box != nullptr ? asked.triangles : 1U;
+    for (; rest != 0; rest &= rest - 1) {
       for (const std::uint32_t* const corner : mesh.corner) {
-        __builtin_prefetch(mesh.vertex + std::size_t{3} * corner[first_slot]);
+        __builtin_prefetch(mesh.vertex + std::size_t{3} * corner[first_slot + first(rest)]);
       }
     }
     __builtin_prefetch(mesh.triangle + first_slot);
-    asked_ = {leaf, entry, triangles};
   }
 
   /// False if the visitor has seen enough.
@@ -280,27 +290,41 @@ class RaysSideBySide {
   void run() {
     std::uint32_t begun = 0;
     while (begun < kWalks && waiting_.start(walk_[begun])) sort_in(begun++);
-    while (count_[RayWalk::inner] + count_[RayWalk::leaf] != 0) {
+    const std::uint32_t first_step = mesh_.box != nullptr ? kFetching : kLooking;
+    while (waits_[0].count + waits_[1].count + waits_[2].count + waits_[3].count != 0) {
+      each(kLooking, [&](std::uint32_t i) {
+        if (walk_[i].look(mesh_, visitor_) || waiting_.start(walk_[i])) sort_in(i);
+      });
+      each(kFetching, [&](std::uint32_t i) {
+        walk_[i].fetch_vertices(mesh_);
+        waits_[kLooking].put(i);
+      });
+      each(RayWalk::leaf, [&](std::uint32_t i) {
+        if (!walk_[i].enter_leaf(mesh_)) return sort_in(i);
+        if (first_step == kLooking) walk_[i].fetch_vertices(mesh_);
+        waits_[first_step].put(i);
+      });
       each(RayWalk::inner, [&](std::uint32_t i) {
         walk_[i].enter_inner(mesh_);
         sort_in(i);
       });
-      each(RayWalk::leaf, [&](std::uint32_t i) {
-        const bool asks = walk_[i].ask_leaf(mesh_);
-        asked_[asked_count_] = i;
-        asked_count_ += asks ? 1 : 0;
-        if (!asks) sort_in(i);
-      });
-      for (std::uint32_t k = 0; k < asked_count_; ++k) {
-        const std::uint32_t i = asked_[k];
-        if (walk_[i].look(mesh_, visitor_) || waiting_.start(walk_[i])) sort_in(i);
-      }
-      asked_count_ = 0;
     }
   }
 
  private:
   static constexpr std::uint32_t kWalks = 32;
+  /// Kinds of steps besides those of RayWalk::Next: to ask for the vertices of a leaf whose corners
+  /// are there, and to look at them.
+  static constexpr std::uint32_t kFetching = 2;
+  static constexpr std::uint32_t kLooking = 3;
+
+  /// Rays that wait for the same kind of step.
+  struct Waits {
+    std::uint32_t count = 0;
+    std::uint32_t ray[kWalks] = {};
+
+    [[gnu::always_inline]] void put(std::uint32_t i) { ray[count++] = i; }
+  };
 
   /// Lets a ray wait for its next step; or the one after it that has not begun, if it has come to
   /// its end.
@@ -310,25 +334,20 @@ class RaysSideBySide {
       if (!waiting_.start(walk_[i])) return;
       next = walk_[i].next();
     }
-    waits_[next][count_[next]++] = i;
+    waits_[next].put(i);
   }
   /// Takes all that wait for this kind of step now.
   template <typename Step>
-  [[gnu::always_inline]] void each(RayWalk::Next kind, Step&& step) {
-    std::uint32_t now[kWalks];
-    const std::uint32_t count = count_[kind];
-    for (std::uint32_t k = 0; k < kWalks; ++k) now[k] = waits_[kind][k];
-    count_[kind] = 0;
-    for (std::uint32_t k = 0; k < count; ++k) step(now[k]);
+  [[gnu::always_inline]] void each(std::uint32_t kind, Step&& step) {
+    const Waits now = waits_[kind];
+    waits_[kind].count = 0;
+    for (std::uint32_t k = 0; k < now.count; ++k) step(now.ray[k]);
   }
 
   const MeshView& mesh_;
   const RaySlotVisitor& visitor_;
   WaitingRays& waiting_;
-  std::uint32_t count_[2] = {};
-  std::uint32_t asked_count_ = 0;
-  std::uint32_t waits_[2][kWalks] = {};
-  std::uint32_t asked_[kWalks];
+  Waits waits_[4];
   RayWalk walk_[kWalks];
 };
 
