@@ -55,6 +55,10 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
   return ~bits(misses) & 0xFFFFU;
 }
 
+/// What a ray does next: goes into a node, asks for the vertices of a leaf whose corners are there,
+/// looks at its triangles.
+enum RayStep : std::uint32_t { kEnterInner, kEnterLeaf, kFetchVertices, kLook, kNoStep };
+
 /// A ray on its way: the nodes that wait for it, of which the nearest is the last of those that
 /// came together.
 class RayWalk {
@@ -75,12 +79,12 @@ class RayWalk {
     }
   }
 
-  /// What the nearest node that waits is, once those are dropped that begin behind what was met.
-  enum Next : std::uint32_t { inner, leaf, nothing };
-  [[gnu::always_inline]] Next next() {
+  /// The next step, once nodes are dropped that begin behind what was met: into the nearest that
+  /// waits, or none.
+  [[gnu::always_inline]] RayStep next() {
     while (size_ != 0 && !(entry_of(waiting_[size_ - 1]) <= last_)) --size_;
-    if (size_ == 0) return nothing;
-    return level_of(waiting_[size_ - 1]) != 0 ? inner : leaf;
+    if (size_ == 0) return kNoStep;
+    return level_of(waiting_[size_ - 1]) != 0 ? kEnterInner : kEnterLeaf;
   }
   /// Goes into that inner node.
   [[gnu::always_inline]] void enter_inner(const MeshView& mesh) {
@@ -107,11 +111,11 @@ class RayWalk {
     for (;;) {
       const Asked asked = asked_;
       asked_.triangles = 0;
-      const Next kind = next();
-      if (kind == inner) enter_inner(mesh);
-      if (kind == leaf && enter_leaf(mesh)) fetch_vertices(mesh);
+      const RayStep step = next();
+      if (step == kEnterInner) enter_inner(mesh);
+      if (step == kEnterLeaf && enter_leaf(mesh)) fetch_vertices(mesh);
       if (asked.triangles != 0 && !look(mesh, asked, visitor)) return;
-      if (kind == nothing && asked.triangles == 0) return;
+      if (step == kNoStep && asked.triangles == 0) return;
     }
   }
 
@@ -290,21 +294,21 @@ class RaysSideBySide {
   void run() {
     std::uint32_t begun = 0;
     while (begun < kWalks && waiting_.start(walk_[begun])) sort_in(begun++);
-    const std::uint32_t first_step = mesh_.box != nullptr ? kFetching : kLooking;
-    while (waits_[0].count + waits_[1].count + waits_[2].count + waits_[3].count != 0) {
-      each(kLooking, [&](std::uint32_t i) {
+    const RayStep first_step = mesh_.box != nullptr ? kFetchVertices : kLook;
+    while (waits()) {
+      each(kLook, [&](std::uint32_t i) {
         if (walk_[i].look(mesh_, visitor_) || waiting_.start(walk_[i])) sort_in(i);
       });
-      each(kFetching, [&](std::uint32_t i) {
+      each(kFetchVertices, [&](std::uint32_t i) {
         walk_[i].fetch_vertices(mesh_);
-        waits_[kLooking].put(i);
+        waits_[kLook].put(i);
       });
-      each(RayWalk::leaf, [&](std::uint32_t i) {
+      each(kEnterLeaf, [&](std::uint32_t i) {
         if (!walk_[i].enter_leaf(mesh_)) return sort_in(i);
-        if (first_step == kLooking) walk_[i].fetch_vertices(mesh_);
+        if (first_step == kLook) walk_[i].fetch_vertices(mesh_);
         waits_[first_step].put(i);
       });
-      each(RayWalk::inner, [&](std::uint32_t i) {
+      each(kEnterInner, [&](std::uint32_t i) {
         walk_[i].enter_inner(mesh_);
         sort_in(i);
       });
@@ -313,11 +317,6 @@ class RaysSideBySide {
 
  private:
   static constexpr std::uint32_t kWalks = 32;
-  /// Kinds of steps besides those of RayWalk::Next: to ask for the vertices of a leaf whose corners
-  /// are there, and to look at them.
-  static constexpr std::uint32_t kFetching = 2;
-  static constexpr std::uint32_t kLooking = 3;
-
   /// Rays that wait for the same kind of step.
   struct Waits {
     std::uint32_t count = 0;
@@ -326,11 +325,16 @@ class RaysSideBySide {
     [[gnu::always_inline]] void put(std::uint32_t i) { ray[count++] = i; }
   };
 
+  [[nodiscard]] bool waits() const {
+    std::uint32_t sum = 0;
+    for (const Waits& one : waits_) sum += one.count;
+    return sum != 0;
+  }
   /// Lets a ray wait for its next step; or the one after it that has not begun, if it has come to
   /// its end.
   [[gnu::always_inline]] void sort_in(std::uint32_t i) {
-    RayWalk::Next next = walk_[i].next();
-    while (next == RayWalk::nothing) {
+    RayStep next = walk_[i].next();
+    while (next == kNoStep) {
       if (!waiting_.start(walk_[i])) return;
       next = walk_[i].next();
     }
@@ -338,7 +342,7 @@ class RaysSideBySide {
   }
   /// Takes all that wait for this kind of step now.
   template <typename Step>
-  [[gnu::always_inline]] void each(std::uint32_t kind, Step&& step) {
+  [[gnu::always_inline]] void each(RayStep kind, Step&& step) {
     const Waits now = waits_[kind];
     waits_[kind].count = 0;
     for (std::uint32_t k = 0; k < now.count; ++k) step(now.ray[k]);
@@ -347,7 +351,7 @@ class RaysSideBySide {
   const MeshView& mesh_;
   const RaySlotVisitor& visitor_;
   WaitingRays& waiting_;
-  Waits waits_[4];
+  Waits waits_[kNoStep];
   RayWalk walk_[kWalks];
 };
 

@@ -10,7 +10,7 @@ namespace winnow {
 
 // Traversals of a mesh's tree, in the mesh's own frame, unscaled. None of them misses a triangle;
 // all may show some more than asked for. Scratch of fixed size lies on the stack, 90 KB for pairs,
-// 20 KB for rays and 3 KB for the others. Serial, and the same output on any instruction set.
+// 40 KB for rays and 3 KB for the others. Serial, and the same output on any instruction set.
 
 /// Slots of all triangles whose boxes meet [min, max], ascending. Bounds may be infinite.
 void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
