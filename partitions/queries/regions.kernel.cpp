@@ -22,6 +22,55 @@ inline Floats reach_of(const Box16& box) {
   return max(high, 0.0F - low);
 }
 
+/// Blocks of rows in no order that are scanned together.
+constexpr std::uint32_t kScanned = 256;
+
+/// The rows of some blocks that meet the box of a region.
+class RowsInBox {
+ public:
+  explicit RowsInBox(const PlaneRegion& region) : region_(region) {}
+
+  /// False if they are so many that planes had better be tested on all rows.
+  bool collect(const QueryView& view, const Wanted& wanted, std::uint32_t begin,
+               std::uint32_t end) {
+    // Sixteen rows that lie apart cost some three times what those of a block do.
+    const unsigned most = (end - begin) * (kLanes / 4);
+    for (std::uint32_t block = begin; block < end; ++block) {
+      const std::uint32_t row = block * kLanes;
+      const Mask16 met = overlap(load_slabs<3>(view.column, row), region_.low, region_.high);
+      size_ += compress_store(wanted.rows(row, met), count_from(row), row_ + size_);
+      if (size_ > most) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] unsigned size() const { return size_; }
+  [[nodiscard]] std::uint32_t operator[](unsigned place) const { return row_[place]; }
+
+ private:
+  const PlaneRegion& region_;
+  unsigned size_ = 0;
+  std::uint32_t row_[kScanned * kLanes / 4 + 2 * kLanes];
+};
+
+/// Sixteen rows side by side.
+struct GatheredRows {
+  alignas(64) float box[6][kLanes] = {};
+  std::uint32_t id[kLanes] = {};
+  const float* column[6] = {box[0], box[1], box[2], box[3], box[4], box[5]};
+
+  /// Rows from a place on; gives back which lanes hold one.
+  Mask16 load(const QueryView& view, const RowsInBox& rows, unsigned first_place) {
+    const unsigned left = rows.size() - first_place;
+    const unsigned taken = left < kLanes ? left : kLanes;
+    for (unsigned lane = 0; lane < taken; ++lane) {
+      const std::uint32_t row = rows[first_place + lane];
+      for (int c = 0; c < 6; ++c) box[c][lane] = view.column[c][row];
+      id[lane] = view.id[row];
+    }
+    return lanes_below(taken);
+  }
+};
+
 /// Six planes, as a frustum has, against rows in no order, of which most miss: all that the planes
 /// need stays in registers from block to block.
 class FrustumScan {
@@ -215,29 +264,46 @@ class RegionTraversal {
 
  private:
   bool scan_flat() {
+    for (std::uint32_t begin = 0; begin < view_.flat_blocks; begin += kScanned) {
+      const std::uint32_t left = view_.flat_blocks - begin;
+      if (!scan_some(begin, begin + (left < kScanned ? left : kScanned))) return false;
+    }
+    return true;
+  }
+
+  /// Blocks [begin, end), at most kScanned.
+  bool scan_some(std::uint32_t begin, std::uint32_t end) {
     if constexpr (requires { probe_.is_frustum(); }) {
-      if (view_.flat_blocks != 0 && probe_.is_frustum()) {
-        const FrustumScan scan(probe_.region(), view_.column);
-        for (std::uint32_t begin = 0; begin < view_.flat_blocks; begin += kScanned) {
-          if (!scan_some(scan, begin)) return false;
-        }
-        return true;
+      if (probe_.is_frustum()) {
+        RowsInBox rows(probe_.region());
+        if (rows.collect(view_, wanted_, begin, end)) return test_collected(rows);
+        return scan_planes(begin, end);
       }
     }
-    for (std::uint32_t block = 0; block < view_.flat_blocks; ++block) {
+    for (std::uint32_t block = begin; block < end; ++block) {
       if (!test_rows(block * kLanes)) return false;
     }
     return true;
   }
 
+  bool test_collected(const RowsInBox& rows) {
+    GatheredRows gathered;
+    for (unsigned first_place = 0; first_place < rows.size(); first_place += kLanes) {
+      const Mask16 present = gathered.load(view_, rows, first_place);
+      Met found = probe_.test(gathered.column, 0);
+      found.met &= present;
+      if (!take_met(found, gathered.id, gathered.column, 0)) return false;
+    }
+    return true;
+  }
+
   /// Notes the blocks that pass without a branch, and looks at them after that.
-  template <typename Scan>
-  bool scan_some(const Scan& scan, std::uint32_t begin) {
+  bool scan_planes(std::uint32_t begin, std::uint32_t end) {
+    const FrustumScan scan(probe_.region(), view_.column);
     std::uint32_t passed[kScanned];
     unsigned count = 0;
-    const std::uint32_t left = view_.flat_blocks - begin;
-    for (std::uint32_t i = 0; i < (left < kScanned ? left : kScanned); ++i) {
-      passed[count] = (begin + i) * kLanes;
+    for (std::uint32_t block = begin; block < end; ++block) {
+      passed[count] = block * kLanes;
       count += scan.may_meet(passed[count]) ? 1U : 0U;
     }
     for (unsigned i = 0; i < count; ++i) {
@@ -272,18 +338,19 @@ class RegionTraversal {
     for (std::uint64_t block = begin; block < end; ++block) {
       const auto row = static_cast<std::uint32_t>((tree.first_block + block) * kLanes);
       const Mask16 live = bits(Floats::load(view_.column[0] + row) <= kLargest<float>);
-      if (!write(sinks_.inside, row, wanted_.rows(row, live))) return false;
+      if (!write(sinks_.inside, view_.id + row, wanted_.rows(row, live))) return false;
     }
     return true;
   }
 
   [[gnu::always_inline]] bool test_rows(std::uint32_t first_row) {
-    return take_met(probe_.test(view_.column, first_row), first_row, view_.column, first_row);
+    Met found = probe_.test(view_.column, first_row);
+    found.met = wanted_.rows(first_row, found.met);
+    return take_met(found, view_.id + first_row, view_.column, first_row);
   }
 
-  /// Writes what was met of the rows from `first_row` on, whose boxes lie in columns from `at` on.
-  bool take_met(Met found, std::uint32_t first_row, const float* const* column, std::size_t at) {
-    found.met = wanted_.rows(first_row, found.met);
+  /// Writes what was met of sixteen rows with these ids, whose boxes lie in columns from `at` on.
+  bool take_met(Met found, const std::uint32_t* id, const float* const* column, std::size_t at) {
     if (found.met == 0) return true;
     found.inside &= found.met;
     const ExactRegion& exact = probe_.exact();
@@ -297,22 +364,20 @@ class RegionTraversal {
         if (meeting == Containment::inside) found.inside |= 1U << lane;
       }
     }
-    return write(sinks_.inside, first_row, found.inside) &&
-           write(sinks_.crossing, first_row, found.met & ~found.inside);
+    return write(sinks_.inside, id, found.inside) &&
+           write(sinks_.crossing, id, found.met & ~found.inside);
   }
 
-  bool write(IdSink& sink, std::uint32_t first_row, Mask16 mask) {
+  bool write(IdSink& sink, const std::uint32_t* id, Mask16 mask) {
     if (chosen_) {
       for (Mask16 rest = mask; rest != 0; rest &= rest - 1) {
-        if (!wanted_.accepts(view_.id[first_row + first(rest)])) mask &= ~(1U << first(rest));
+        if (!wanted_.accepts(id[first(rest)])) mask &= ~(1U << first(rest));
       }
     }
     if (sink.cursor > sink.limit && !sink.grow(sink)) return false;
-    sink.cursor += compress_store(mask, Uints::load_unaligned(view_.id + first_row), sink.cursor);
+    sink.cursor += compress_store(mask, Uints::load_unaligned(id), sink.cursor);
     return true;
   }
-
-  static constexpr std::uint32_t kScanned = 256;
 
   const QueryView& view_;
   const Probe& probe_;
