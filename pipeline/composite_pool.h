@@ -114,7 +114,7 @@ class WINNOW_API CompositePool final : public MidPhase {
   void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
              const PrimitiveVisitor& visitor) const override;
   void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
-                  const RayVisitor& visitor) const override;
+                  const double* limits, const RayVisitor& visitor) const override;
   void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
                   const PrimitiveVisitor& visitor) const override;
   bool visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,

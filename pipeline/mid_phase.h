@@ -190,11 +190,12 @@ class WINNOW_API MidPhase {
   /// does. O(log n + met).
   virtual void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
                      const PrimitiveVisitor& visitor) const = 0;
-  /// Tells it of every primitive that each of the rays, which are valid, meets or may meet, roughly
-  /// in the order in which it does. Of different rays in any order; one with a max_t below zero
-  /// meets nothing.
+  /// Tells it of every primitive that each of the rays, which are valid, meets or may meet at some
+  /// t up to its limit, roughly in the order in which it does. There is one limit per ray, no
+  /// larger than its max_t; where a primitive is met depends on the ray alone. Of different rays in
+  /// any order; one with a limit below zero meets nothing.
   virtual void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
-                          const RayVisitor& visitor) const = 0;
+                          const double* limits, const RayVisitor& visitor) const = 0;
   /// Shows it every primitive whose box may be no farther than `limit` from that of `from`, which
   /// stands, roughly the nearest first.
   virtual void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,

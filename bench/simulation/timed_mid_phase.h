@@ -50,8 +50,8 @@ class TimedMidPhase final : public MidPhase {
     inner_.visit(id, pose, sweep, visitor);
   }
   void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
-                  const RayVisitor& visitor) const override {
-    inner_.visit_rays(id, pose, rays, visitor);
+                  const double* limits, const RayVisitor& visitor) const override {
+    inner_.visit_rays(id, pose, rays, limits, visitor);
   }
   void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
                   const PrimitiveVisitor& visitor) const override {

@@ -413,8 +413,8 @@ void CompositePool::visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
 }
 
 void CompositePool::visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
-                               const RayVisitor& visitor) const {
-  if (contains(id)) mid::visit_rays(*state_, id, pose, rays, visitor);
+                               const double* limits, const RayVisitor& visitor) const {
+  if (contains(id)) mid::visit_rays(*state_, id, pose, rays, limits, visitor);
 }
 
 void CompositePool::visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,

@@ -174,7 +174,7 @@ Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const Narrow
 void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,
            const PrimitiveVisitor& visitor);
 void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
-                const RayVisitor& visitor);
+                const double* limits, const RayVisitor& visitor);
 bool visit_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
                  const Pose& pose_b, const PrimitivePairVisitor& visitor);
 bool visit_near_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,

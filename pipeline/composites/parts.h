@@ -87,14 +87,14 @@ class PartTraversal {
     traverse(placed, sweep, sweep.max_t, false, visitor(visit));
   }
   /// Calls meet(ray, part, hit, limit) for triangles that a ray meets for certain, and
-  /// look(ray, part, limit) for all other parts that it may meet, of a composite shape. See
-  /// RayVisitor.
+  /// look(ray, part, limit) for all other parts that it may meet up to its limit, of a composite
+  /// shape. See RayVisitor.
   template <typename Meet, typename Look>
-  void met_by_rays(const PlacedShape& placed, std::span<const ShapeRay> rays, Meet&& meet,
-                   Look&& look) const {
+  void met_by_rays(const PlacedShape& placed, std::span<const ShapeRay> rays, const double* limits,
+                   Meet&& meet, Look&& look) const {
     using Meeting = RayMeeting<std::remove_reference_t<Meet>, std::remove_reference_t<Look>>;
     Meeting meeting{meet, look};
-    composites_->visit_rays(placed.shape, placed.pose, rays,
+    composites_->visit_rays(placed.shape, placed.pose, rays, limits,
                             {&Meeting::call_meet, &Meeting::call_look, &meeting});
   }
   /// Calls visit(a, b) for pairs of parts of two meshes that may share a point, until it says

@@ -116,7 +116,7 @@ class RayGuides {
       : target_(target), rays_(rays), visitor_(visitor) {}
 
   [[nodiscard]] bool is_full() const noexcept { return count_ == kRaysAtOnce; }
-  void add(std::size_t ray) noexcept;
+  void add(std::size_t ray, double limit) noexcept;
   /// Calls elsewhere(ray) for those that take other ways.
   template <typename Elsewhere>
   void go(Elsewhere&& elsewhere);
@@ -131,6 +131,12 @@ class RayGuides {
   /// Not less than what rounding makes of it.
   [[nodiscard]] double own_limit(std::uint32_t i, double t) const noexcept {
     return own(i, t) + 0x1p-51 * (std::abs(t) + std::abs(own_.shift[i])) / own_.stretch[i];
+  }
+  /// The same for what was met elsewhere, with more room: triangles that the ray grazes may be met
+  /// earlier, by what rounding makes of them, than their boxes.
+  [[nodiscard]] double first_limit(std::uint32_t i, double t) const noexcept {
+    const double limit = own_limit(i, t);
+    return limit + 0x1p-20 * (std::abs(limit) + target_.frame.reach);
   }
   /// Those that show a triangle, or some, give back the limit to go on with.
   [[nodiscard]] double show(std::uint32_t i, std::uint32_t slot) const;
@@ -153,14 +159,14 @@ class RayGuides {
   SurfaceRays own_;
 };
 
-void RayGuides::add(std::size_t ray) noexcept {
+void RayGuides::add(std::size_t ray, double limit) noexcept {
   const ShapeRay& asked = rays_[ray];
   for (int axis = 0; axis < 3; ++axis) {
     world_.origin[axis][count_] = asked.origin[axis];
     world_.direction[axis][count_] = asked.direction[axis];
   }
   number_[count_] = ray;
-  limit_[count_] = asked.max_t;
+  limit_[count_] = limit;
   ++count_;
 }
 
@@ -186,7 +192,7 @@ void RayGuides::go(Elsewhere&& elsewhere) {
     limit_[i] = -1.0;
   }
   for (std::uint32_t i = 0; i < count_; ++i) {
-    own_limit_[i] = limit_[i] >= 0.0 ? own_limit(i, limit_[i]) : -1.0;
+    own_limit_[i] = limit_[i] >= 0.0 ? first_limit(i, limit_[i]) : -1.0;
   }
   if (target_.body.kind == PlacedBody::Kind::mesh) {
     go_through_mesh();
@@ -311,17 +317,17 @@ void look_at_all(const Composites& all, ShapeId id, const Pose& pose, std::size_
 }  // namespace
 
 void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
-                const RayVisitor& visitor) {
+                const double* limits, const RayVisitor& visitor) {
   const auto look = [&](std::size_t ray) { look_at_all(all, id, pose, ray, rays[ray], visitor); };
   const RayTarget target(all, id, pose);
   RayGuides guides(target, rays, visitor);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (!(rays[i].max_t >= 0.0)) continue;
+    if (!(limits[i] >= 0.0)) continue;
     if (!target.body.is_surface()) {
       look(i);
       continue;
     }
-    guides.add(i);
+    guides.add(i, limits[i]);
     if (guides.is_full()) guides.go(look);
   }
   guides.go(look);

@@ -317,7 +317,7 @@ class IdleMidPhase final : public MidPhase {
   void visit(ShapeId, const Pose&, const BoxSweep&, const PrimitiveVisitor&) const override {
     ++calls;
   }
-  void visit_rays(ShapeId, const Pose&, std::span<const ShapeRay>,
+  void visit_rays(ShapeId, const Pose&, std::span<const ShapeRay>, const double*,
                   const RayVisitor&) const override {
     ++calls;
   }

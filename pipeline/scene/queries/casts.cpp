@@ -485,12 +485,7 @@ void RaysTogether<Room>::meet_few(std::uint32_t body) {
     if (!swept.meets(from.difference, part, most, nullptr, found)) return most;
     return take(i, {body, part.part, found.t, {found.normal[0], found.normal[1], found.normal[2]}});
   };
-  ShapeRay asked[Room];
-  for (std::size_t i = 0; i < count_; ++i) {
-    asked[i] = ray_[i];
-    if (limit_[i] < 0.0) asked[i].max_t = limit_[i];
-  }
-  state_.parts.met_by_rays(placed, {asked, count_}, meet, look);
+  state_.parts.met_by_rays(placed, {ray_, count_}, limit_, meet, look);
 }
 
 template <std::size_t Room>

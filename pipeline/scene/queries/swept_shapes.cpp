@@ -342,7 +342,6 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
     parts.met(placed, sweep_from(swept, from_, limit), look);
     return found;
   }
-  // Asked about its whole way, as in RaySweep::meets.
   const ShapeRay& ray = *swept.ray();
   const auto meet_by_ray = [&](std::size_t, std::uint32_t part, const ShapeHit& hit, double) {
     if (hit.t > limit) return limit;
@@ -354,7 +353,8 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
   const auto look_by_ray = [&](std::size_t, const ConvexPart& part, double most) {
     return look(part, most);
   };
-  parts.met_by_rays(body, {&ray, 1}, meet_by_ray, look_by_ray);
+  const double end = limit;
+  parts.met_by_rays(body, {&ray, 1}, &end, meet_by_ray, look_by_ray);
   return found;
 }
 
