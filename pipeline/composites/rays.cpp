@@ -171,7 +171,7 @@ void RayGuides::add(std::size_t ray, double limit) noexcept {
 }
 
 void RayGuides::fill_up() noexcept {
-  const std::uint32_t rest = (kRayLanes - count_ % kRayLanes) % kRayLanes;
+  const std::uint32_t rest = count_ == 1 ? 0 : (kRayLanes - count_ % kRayLanes) % kRayLanes;
   const std::uint32_t last = count_ - 1;
   for (int axis = 0; axis < 3; ++axis) {
     std::fill_n(world_.origin[axis] + count_, rest, world_.origin[axis][last]);

@@ -24,10 +24,15 @@ inline constexpr double kMostLength = 1e150;
 /// theirs into the world.
 inline constexpr double kRaySlack = 0x1p-46;
 
+/// Rays from `first` on of a column. One that is alone is put into all lanes: its numbers have just
+/// been stored, and what is wider than that would have to wait for them.
+[[gnu::always_inline]] inline Doubles load(const double* column, std::uint32_t first, bool alone) {
+  return alone ? Doubles(column[0]) : Doubles::load(column + first);
+}
 [[gnu::always_inline]] inline Vec3<double> load(const double (&column)[3][kRaysAtOnce],
-                                                std::uint32_t first) {
-  return {Doubles::load(column[0] + first), Doubles::load(column[1] + first),
-          Doubles::load(column[2] + first)};
+                                                std::uint32_t first, bool alone) {
+  return {load(column[0], first, alone), load(column[1], first, alone),
+          load(column[2], first, alone)};
 }
 [[gnu::always_inline]] inline void store(const Vec3<double>& v, double (&column)[3][kRaysAtOnce],
                                          std::uint32_t first) {
@@ -63,10 +68,11 @@ inline std::uint64_t place_rays(const SurfaceFrame& frame, const RayColumns& wor
   // Infinity has the bits of the exponent alone: what they leave of a number is a power of two.
   const Doubles exponent(__builtin_inf());
   constexpr double kLeast = 1e-300;
+  const bool alone = count == 1;
   std::uint64_t left = 0;
   for (std::uint32_t first = 0; first < count; first += kRayLanes) {
-    const Vec3<double> direction = load(world.direction, first);
-    const Vec3<double> start = load(world.origin, first) - position;
+    const Vec3<double> direction = load(world.direction, first, alone);
+    const Vec3<double> start = load(world.origin, first, alone) - position;
     const Doubles fastest = largest_of(abs_of(direction));
     const Doubles square = dot(direction, direction);
     const Doubles towards = -dot(start, direction);
@@ -181,20 +187,20 @@ struct BoxPassage {
   ready.fastest_z = bits(z);
 }
 
-/// Makes rays [first, first + kRayLanes) ready. Gives back bits of those that do not pass the mesh
-/// by.
+/// Makes rays [first, first + kRayLanes) ready, or the only one there is. Gives back bits of those
+/// that do not pass the mesh by.
 ///
 /// A bound q becomes q * inverse + near in float: three or four roundings, each of half an ulp of
 /// at most (65536 + |from| + grow) * |inverse|. Where the ray is in the mesh's box, grown by its
 /// slack, that is less than kUnitDoubt and 2^-20 of the slack.
 inline Mask16 make_ready(const MeshSpan& mesh, const SurfaceRays& rays, const double* limit,
-                         std::uint32_t first, ReadyRays& ready) {
-  const Vec3<double> start = load(rays.ray.origin, first);
-  const Vec3<double> direction = load(rays.ray.direction, first);
-  const Doubles own_slack = Doubles::load(rays.slack + first);
+                         std::uint32_t first, bool alone, ReadyRays& ready) {
+  const Vec3<double> start = load(rays.ray.origin, first, alone);
+  const Vec3<double> direction = load(rays.ray.direction, first, alone);
+  const Doubles own_slack = load(rays.slack, first, alone);
   const Doubles one(1.0);
   const Vec3<double> inverse{one / direction.x, one / direction.y, one / direction.z};
-  const Doubles most = Doubles::load(limit + first);
+  const Doubles most = load(limit, first, alone);
   BoxPassage passage{.out = most};
   passage.narrow(start.x, direction.x, inverse.x, own_slack, mesh.least[0], mesh.most[0]);
   passage.narrow(start.y, direction.y, inverse.y, own_slack, mesh.least[1], mesh.most[1]);

@@ -60,7 +60,9 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
 enum RayStep : std::uint32_t { kEnterInner, kEnterLeaf, kFetchVertices, kLook, kNoStep };
 
 /// A ray on its way: the nodes that wait for it, of which the nearest is the last of those that
-/// came together.
+/// came together. What is needed soon is asked for before: by a ray that goes alone all that may be
+/// needed of a leaf, since it has nothing else to do meanwhile.
+template <bool Alone>
 class RayWalk {
  public:
   /// `ray`: as its visitor knows it.
@@ -190,7 +192,8 @@ class RayWalk {
   /// Asks for what of a leaf is looked at first, before it is waited for. Of nodes there are few
   /// enough to be at hand.
   static void fetch(const MeshView& mesh, std::uint32_t leaf) {
-    if (mesh.box == nullptr) return fetch_corners(mesh, leaf);
+    if (Alone || mesh.box == nullptr) fetch_corners(mesh, leaf);
+    if (mesh.box == nullptr) return;
     const std::uint16_t* const box = mesh.box + std::size_t{6} * kMeshFanout * leaf;
     for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(box + 32 * k);
   }
@@ -203,7 +206,7 @@ class RayWalk {
     if (mesh.box == nullptr) return;
     Floats in;
     asked_.triangles &= enter(mesh.box + std::size_t{6} * first_slot, in);
-    if (asked_.triangles != 0) fetch_corners(mesh, leaf);
+    if (!Alone && asked_.triangles != 0) fetch_corners(mesh, leaf);
   }
 
   /// Asks for their vertices, once their corners are there; neighbours in a leaf without boxes
@@ -256,7 +259,8 @@ class WaitingRays {
   }
 
   /// Lets the next one start that does not pass the mesh by; false if there is none.
-  [[gnu::always_inline]] bool start(RayWalk& walk) {
+  template <bool Alone>
+  [[gnu::always_inline]] bool start(RayWalk<Alone>& walk) {
     while (come_ == 0) {
       first_ += kRayLanes;
       if (first_ >= count_) return false;
@@ -270,7 +274,7 @@ class WaitingRays {
 
  private:
   void make_some_ready() {
-    come_ = make_ready(span_, rays_, limits_, first_, ready_);
+    come_ = make_ready(span_, rays_, limits_, first_, count_ == 1, ready_);
     if (count_ - first_ < kRayLanes) come_ &= lanes_below(count_ - first_);
   }
 
@@ -352,7 +356,7 @@ class RaysSideBySide {
   const RaySlotVisitor& visitor_;
   WaitingRays& waiting_;
   Waits waits_[kNoStep];
-  RayWalk walk_[kWalks];
+  RayWalk<false> walk_[kWalks];
 };
 
 /// Shows the triangles that each ray may meet, its nearest leaf first.
@@ -360,7 +364,7 @@ inline void show_on_rays(const MeshView& mesh, const MeshSpan& span, const Surfa
                          const double* limits, std::uint32_t count, const RaySlotVisitor& visitor) {
   WaitingRays waiting(mesh, span, rays, limits, count);
   if (count == 1) {
-    RayWalk walk;
+    RayWalk<true> walk;
     if (waiting.start(walk)) walk.go(mesh, visitor);
     return;
   }

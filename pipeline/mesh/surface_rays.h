@@ -8,8 +8,8 @@ namespace winnow {
 
 /// Rays that are taken through a surface together.
 inline constexpr std::uint32_t kRaysAtOnce = 64;
-/// So many are made ready at once. Columns are filled up to a multiple of it, by copies of the last
-/// ray.
+/// So many are made ready at once. Columns of more than one are filled up to a multiple of it, by
+/// copies of the last ray.
 inline constexpr std::uint32_t kRayLanes = 8;
 
 /// Rays by component.
