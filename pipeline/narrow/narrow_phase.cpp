@@ -164,10 +164,14 @@ namespace {
 // contacts are held twice.
 constexpr std::size_t kWave = 64;
 
-// Room for the contacts that one chunk may find where there are so many pairs in all, and for what
-// kernels write behind the last one: another chunk's may begin there.
-[[nodiscard]] std::size_t room_of_chunk(std::size_t pairs) noexcept {
-  return std::min<std::size_t>(kJobPairs, pairs) * kManifoldPoints + kContactSlack;
+// Room for the contacts that a chunk of so many pairs may find, and for what kernels write behind
+// the last one: another chunk's may begin there.
+[[nodiscard]] std::size_t room_for(std::size_t pairs) noexcept {
+  return pairs * kManifoldPoints + kContactSlack;
+}
+// The same for the largest chunk that there may be of so many pairs in all.
+[[nodiscard]] std::size_t most_room_for(std::size_t pairs) noexcept {
+  return room_for(std::min<std::size_t>(kJobPairs, pairs));
 }
 
 template <typename T>
@@ -198,6 +202,8 @@ struct Chunk {
   NarrowKernel kernel;
   std::uint32_t first;
   ChunkOutcome outcome;
+  /// Where its contacts begin among those of a wave.
+  std::size_t contacts_from = 0;
 };
 
 void write_contacts(const NarrowJob& job, std::uint32_t i, const PairAnswer& answer,
@@ -395,7 +401,7 @@ Status NarrowPhase::State::run(const Call& call, NarrowResult& result) {
   // Chunks write where there is room for all that they may find: with this much, a call that finds
   // no more than this one needs no more room, wherever in it its contacts are.
   if (call.options.level == ContactLevel::manifold && call.options.execution.concurrency() == 1 &&
-      !result.contacts_.grow(result.contacts() + room_of_chunk(call.pairs.size()))) {
+      !result.contacts_.grow(result.contacts() + most_room_for(call.pairs.size()))) {
     return Status::out_of_memory;
   }
   statistics.pairs = call.pairs.size();
@@ -420,18 +426,18 @@ Chunk NarrowPhase::State::chunk_of(const Call& call, NarrowResult& result, Narro
   }
   job.contact_first = offset(result.contact_first_.data(), first);
   job.contact_count = offset(result.contact_count_.data(), first);
-  return {job, kernel, first, {}};
+  return {.job = job, .kernel = kernel, .first = first, .outcome = {}};
 }
 
 bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
                                      NarrowResult& result) {
   const bool manifold = call.options.level == ContactLevel::manifold;
   const bool any_mirrored = buckets.any_mirrored();
-  const std::size_t room = room_of_chunk(call.pairs.size());
   if (!manifold) {
     call.options.execution.for_each(
         wave.size(), [&](std::size_t i) { call.answer(wave[i], result, any_mirrored); });
   } else if (call.options.execution.concurrency() == 1) {
+    const std::size_t room = most_room_for(call.pairs.size());
     for (Chunk& chunk : wave) {
       if (!result.contacts_.grow(result.contacts() + room)) return false;
       chunk.job.contacts = writer_to(result.contacts_, result.contacts());
@@ -439,9 +445,14 @@ bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
       take_contacts(chunk, result);
     }
   } else {
-    if (!scratch.grow(wave.size() * room)) return false;
+    std::size_t room = 0;
+    for (Chunk& chunk : wave) {
+      chunk.contacts_from = room;
+      room += room_for(chunk.job.count);
+    }
+    if (!scratch.grow(room)) return false;
     call.options.execution.for_each(wave.size(), [&](std::size_t i) {
-      wave[i].job.contacts = writer_to(scratch, i * room);
+      wave[i].job.contacts = writer_to(scratch, wave[i].contacts_from);
       call.answer(wave[i], result, any_mirrored);
     });
     if (!gather_contacts(call, wave, result)) return false;
@@ -468,7 +479,7 @@ bool NarrowPhase::State::gather_contacts(const Call& call, std::span<const Chunk
   for (std::size_t i = 0; i < wave.size(); ++i) base[i + 1] = base[i] + wave[i].outcome.contacts;
   if (!result.contacts_.grow(base[wave.size()])) return false;
   call.options.execution.for_each(wave.size(), [&](std::size_t i) {
-    const ContactWriter from = writer_to(scratch, i * room_of_chunk(call.pairs.size()));
+    const ContactWriter from = writer_to(scratch, wave[i].contacts_from);
     const ContactWriter to = writer_to(result.contacts_, base[i]);
     const std::size_t count = wave[i].outcome.contacts;
     for (int axis = 0; axis < 3; ++axis) {
