@@ -169,6 +169,11 @@ constexpr std::size_t kWave = 64;
 [[nodiscard]] std::size_t room_for(std::size_t pairs) noexcept {
   return pairs * kManifoldPoints + kContactSlack;
 }
+// The same for any wave of so many chunks, of so many pairs in all: as many pairs of other kinds
+// need no more.
+[[nodiscard]] std::size_t room_for_wave(std::size_t pairs, std::size_t chunks) noexcept {
+  return std::min(pairs, kWave * kJobPairs) * kManifoldPoints + chunks * kContactSlack;
+}
 // The same for the largest chunk that there may be of so many pairs in all.
 [[nodiscard]] std::size_t most_room_for(std::size_t pairs) noexcept {
   return room_for(std::min<std::size_t>(kJobPairs, pairs));
@@ -445,12 +450,12 @@ bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
       take_contacts(chunk, result);
     }
   } else {
-    std::size_t room = 0;
+    std::size_t from = 0;
     for (Chunk& chunk : wave) {
-      chunk.contacts_from = room;
-      room += room_for(chunk.job.count);
+      chunk.contacts_from = from;
+      from += room_for(chunk.job.count);
     }
-    if (!scratch.grow(room)) return false;
+    if (!scratch.grow(room_for_wave(call.pairs.size(), wave.size()))) return false;
     call.options.execution.for_each(wave.size(), [&](std::size_t i) {
       wave[i].job.contacts = writer_to(scratch, wave[i].contacts_from);
       call.answer(wave[i], result, any_mirrored);
