@@ -6,6 +6,7 @@ the environment variable WINNOW_MUTANT says which one runs: `a < b` becomes
 no two of which overlap; 0 takes all that do not. OUT gets what they are, as JSON.
 """
 
+import itertools
 import json
 import pathlib
 import random
@@ -63,7 +64,7 @@ class Source:
                             "text": text, "was": self.text(start, end), "what": what})
 
     def visit(self, cursor):
-        if cursor.kind in (CursorKind.STATIC_ASSERT, CursorKind.ENUM_DECL):
+        if cursor.kind in (CursorKind.STATIC_ASSERT, CursorKind.ENUM_DECL) or self.is_constant(cursor):
             return
         if cursor.kind in (CursorKind.BINARY_OPERATOR, CursorKind.COMPOUND_ASSIGNMENT_OPERATOR):
             self.visit_operator(cursor)
@@ -76,6 +77,13 @@ class Source:
             self.visit_condition(cursor)
         for child in cursor.get_children():
             self.visit(child)
+
+    def is_constant(self, cursor):
+        """Computed while compiling, where no mutant is ever switched on: see mutants.h."""
+        if cursor.kind is not CursorKind.VAR_DECL:
+            return False
+        words = (token.spelling for token in cursor.get_tokens())
+        return "constexpr" in itertools.takewhile(lambda word: word not in ("=", "{"), words)
 
     def visit_operator(self, cursor):
         """The other operator in place of this one."""
