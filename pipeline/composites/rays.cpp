@@ -14,12 +14,6 @@
 namespace winnow::mid {
 namespace {
 
-/// Beyond this, products of lengths may leave the range of double.
-constexpr double kMostLength = 1e150;
-/// Of coordinates: some roundings of a ray on its way into a surface's frame, and of triangles on
-/// theirs into the world.
-constexpr double kRaySlack = 0x1p-46;
-
 /// A vector, transformed, of length 1.
 [[nodiscard]] Vec unit_under(const Mat& matrix, const Vec& v) noexcept {
   const Vec plain = matrix * v;
@@ -81,8 +75,8 @@ struct RayTarget {
   const Eigen::Map<const Vec> direction(ray.direction);
   Vec start = origin - target.position;
   const double fastest = direction.cwiseAbs().maxCoeff();
-  if (!(start.cwiseAbs().maxCoeff() < kMostLength && size < kMostLength && fastest < kMostLength &&
-        fastest > 1.0 / kMostLength)) {
+  if (!(start.cwiseAbs().maxCoeff() < kMostRayLength && size < kMostRayLength &&
+        fastest < kMostRayLength && fastest > 1.0 / kMostRayLength)) {
     return false;
   }
   // Where it is nearest comes after this much of the way.

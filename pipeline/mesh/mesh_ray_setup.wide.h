@@ -18,11 +18,6 @@ inline constexpr double kStandingInverse = 1e30;
 /// More slack than this leaves all in doubt as well.
 inline constexpr double kMostSlack = 1e200;
 inline constexpr double kMostWrong = 1e38;
-/// Beyond this, products of lengths may leave the range of double.
-inline constexpr double kMostLength = 1e150;
-/// Of coordinates: some roundings of a ray on its way into a surface's frame, and of triangles on
-/// theirs into the world.
-inline constexpr double kRaySlack = 0x1p-46;
 
 /// Rays from `first` on of a column. One that is alone is put into all lanes: its numbers have just
 /// been stored, and what is wider than that would have to wait for them.
@@ -86,10 +81,11 @@ inline std::uint64_t place_rays(const SurfaceFrame& frame, const RayColumns& wor
     Doubles(0.0).store(own.shift + first);
     stretch.store(own.stretch + first);
     const LaneMask<double> near = towards <= Doubles(4.0 * frame.size) * (square / fastest);
-    const LaneMask<double> tame =
-        (largest_of(abs_of(start)) < Doubles(kMostLength)) & (fastest < Doubles(kMostLength)) &
-        (fastest > Doubles(1.0 / kMostLength)) & (longest > Doubles(kLeast)) &
-        (longest < Doubles(1.0 / kLeast)) & (Doubles(frame.size) < Doubles(kMostLength));
+    const LaneMask<double> tame = (largest_of(abs_of(start)) < Doubles(kMostRayLength)) &
+                                  (fastest < Doubles(kMostRayLength)) &
+                                  (fastest > Doubles(1.0 / kMostRayLength)) &
+                                  (longest > Doubles(kLeast)) & (longest < Doubles(1.0 / kLeast)) &
+                                  (Doubles(frame.size) < Doubles(kMostRayLength));
     left |= static_cast<std::uint64_t>(~bits(near & tame) & kAllLanes<double>) << first;
   }
   return count < kRaysAtOnce ? left & ((std::uint64_t{1} << count) - 1U) : left;

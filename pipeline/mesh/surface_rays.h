@@ -12,6 +12,12 @@ inline constexpr std::uint32_t kRaysAtOnce = 64;
 /// copies of the last ray.
 inline constexpr std::uint32_t kRayLanes = 8;
 
+/// Rays whose lengths are larger have products that may leave the range of double.
+inline constexpr double kMostRayLength = 1e150;
+/// Of coordinates: some roundings of a ray on its way into a surface's frame, and of triangles on
+/// theirs into the world.
+inline constexpr double kRaySlack = 0x1p-46;
+
 /// Rays by component.
 struct RayColumns {
   alignas(64) double origin[3][kRaysAtOnce];
