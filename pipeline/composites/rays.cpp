@@ -51,17 +51,15 @@ namespace {
 /// A surface that rays come to, all about its position: its own is zero.
 struct RayTarget {
   RayTarget(const Composites& all, ShapeId id, const Pose& pose) noexcept
-      : body(all, all.shapes.tables(), id, pose, Vec::Zero()), position(Vec::Map(pose.position)) {
+      : body(all, all.shapes.tables(), id, pose, Vec::Zero()) {
     const Vec corner = body.bounds.min.cwiseAbs().cwiseMax(body.bounds.max.cwiseAbs());
-    Vec::Map(frame.position) = position;
+    std::copy_n(pose.position, 3, frame.position);
     for (int i = 0; i < 3; ++i) Vec::Map(frame.to_own[i]) = body.to_local.row(i);
     frame.reach = corner.maxCoeff();
     frame.size = (body.to_world.cwiseAbs() * corner).sum();
   }
 
   PlacedBody body;
-  /// Where it is in the world.
-  Vec position;
   SurfaceFrame frame;
 };
 
@@ -73,7 +71,8 @@ struct RayTarget {
   const double size = target.frame.size;
   const Eigen::Map<const Vec> origin(ray.origin);
   const Eigen::Map<const Vec> direction(ray.direction);
-  Vec start = origin - target.position;
+  const double* const position = target.frame.position;
+  Vec start = origin - Vec::Map(position);
   const double fastest = direction.cwiseAbs().maxCoeff();
   if (!(start.cwiseAbs().maxCoeff() < kMostRayLength && size < kMostRayLength &&
         fastest < kMostRayLength && fastest > 1.0 / kMostRayLength)) {
@@ -85,8 +84,9 @@ struct RayTarget {
   double shift = 0.0;
   if (towards > 4.0 * size * (square / fastest)) {
     shift = std::max(0.0, towards / square - 4.0 * size / fastest);
-    for (int i = 0; i < 3; ++i)
-      start[i] = moved(origin[i], target.position[i], shift, direction[i]);
+    for (int i = 0; i < 3; ++i) {
+      start[i] = moved(ray.origin[i], position[i], shift, ray.direction[i]);
+    }
   }
   const Vec way = body.to_local * direction;
   const double stretch = scale_to_one(way.cwiseAbs().maxCoeff());
