@@ -161,13 +161,14 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
   template <typename A, typename B>
   bool intersect(const Body& a, const Body& b, Contacts* contacts) {
     if constexpr (std::is_same_v<B, Corners>) {
-      const auto& [p, q, r] = b.corners;
+      const Corners& corners = b.corners;
       fcl::ContactPoint<double> contact;
       const bool wanted = contacts != nullptr;
       const bool overlap = ask([&] {
-        return solver_.shapeTriangleIntersect(
-            shape_of<A>(a), a.at, p, q, r, b.at, wanted ? &contact.pos : nullptr,
-            wanted ? &contact.penetration_depth : nullptr, wanted ? &contact.normal : nullptr);
+        return solver_.shapeTriangleIntersect(shape_of<A>(a), a.at, corners[0], corners[1],
+                                              corners[2], b.at, wanted ? &contact.pos : nullptr,
+                                              wanted ? &contact.penetration_depth : nullptr,
+                                              wanted ? &contact.normal : nullptr);
       });
       if (contacts == nullptr || !overlap) return overlap;
       // Of triangles EPA's normals go from b to a.
