@@ -18,18 +18,26 @@ namespace mid {
 struct Composites;
 }
 
-/// A convex shape of a ShapePool and where it stands in its compound.
+/// A shape and where it stands in its compound.
 struct CompoundChild {
-  ShapeId shape;  ///< convex, of the ShapePool
+  ShapeId shape;  ///< convex, of the ShapePool; or a mesh or height field of the CompositePool
   Pose pose;      ///< in the frame of the compound
 };
 
-/// Shapes made of many: triangle meshes, compounds of convex shapes, height fields. Bodies refer to
-/// them by id and may share them; one mesh may stand at many poses and in many scales. Queries are
-/// taken into the shape's own frame: what moves a mesh costs nothing of its tree.
+/// A part of a compound, as its child knows it.
+struct CompoundPart {
+  std::uint32_t child =
+      kWholeShape;                   ///< in the order of the children; kWholeShape if there is none
+  std::uint32_t part = kWholeShape;  ///< the triangle of a surface; kWholeShape of a convex child
+};
+
+/// Shapes made of many: triangle meshes, height fields, compounds of convex shapes and of these.
+/// Bodies refer to them by id and may share them; one mesh may stand at many poses and in many
+/// scales. Queries are taken into the shape's own frame: what moves a mesh costs nothing of its
+/// tree.
 class WINNOW_API CompositePool final : public MidPhase {
  public:
-  /// `shapes` holds the children of compounds and must outlive this.
+  /// `shapes` holds the convex children of compounds and must outlive this.
   explicit CompositePool(const ShapePool& shapes, std::pmr::memory_resource* memory =
                                                       std::pmr::get_default_resource()) noexcept;
   ~CompositePool() override;
@@ -58,9 +66,13 @@ class WINNOW_API CompositePool final : public MidPhase {
   /// is none of a field.
   Status update_height_field(ShapeId field, std::uint32_t column, std::uint32_t row,
                              const HeightSamples& samples);
-  /// A tree of children. `invalid_shape` if there are none, `invalid_key` for a child that the
-  /// ShapePool does not have (composite children among them), `invalid_pose`. Children must stay in
-  /// the ShapePool while the compound lives.
+  /// A tree of children: convex shapes, meshes (of any scale, one-sided or not) and height fields;
+  /// one shape may be several of them. Parts are numbered child by child, in their order: a convex
+  /// child is one, of a surface each triangle is one (of a field those of holes too), so that
+  /// `part` tells what is meant. `invalid_shape` if there are no children, `invalid_key` for one
+  /// that neither pool has or that is a compound itself, `invalid_pose`, `too_many_objects` beyond
+  /// 2^31 parts. Convex children must stay in the ShapePool while the compound lives; surfaces
+  /// cannot be removed. Where one of these is changed in place, the compound follows.
   Status add_compound(std::span<const CompoundChild> children, ShapeId& id);
 
   /// Gives the triangles of a mesh or a height field a front, or two sides again. Of a mesh it is
@@ -86,7 +98,8 @@ class WINNOW_API CompositePool final : public MidPhase {
   /// among it, and `out_of_memory`, leave the pool as it was.
   Status load(std::span<const std::byte> saved, const Execution& execution = Execution::parallel());
 
-  /// Bodies must not use the id any more.
+  /// Bodies must not use the id any more. `invalid_argument` for a surface that is the child of a
+  /// compound.
   Status remove(ShapeId id);
   /// Shapes of a kind; of meshes the scaled ids count as well.
   [[nodiscard]] std::size_t size(CompositeKind kind) const noexcept;
@@ -96,8 +109,14 @@ class WINNOW_API CompositePool final : public MidPhase {
   [[nodiscard]] std::array<double, 3> scale(ShapeId mesh) const noexcept;
   /// Null for ids of other kinds, or that are not there. Valid until the field is removed.
   [[nodiscard]] const HeightField* height_field(ShapeId id) const noexcept;
-  /// In the order in which they were given, which numbers the parts; empty for ids of other kinds.
+  /// In the order in which they were given; empty for ids of other kinds.
   [[nodiscard]] std::span<const CompoundChild> children(ShapeId compound) const noexcept;
+  /// How many parts a shape has, which are numbered from 0 on: triangles of a mesh or height field
+  /// (of the latter also those of holes), parts of a compound as `add_compound` says. 0 for ids
+  /// that are not there.
+  [[nodiscard]] std::uint32_t parts(ShapeId id) const noexcept;
+  /// What part number `part` of a compound is (that of contacts, hits and overlaps). O(log n).
+  [[nodiscard]] CompoundPart part(ShapeId compound, std::uint32_t part) const noexcept;
 
   [[nodiscard]] bool contains(ShapeId id) const noexcept override;
   [[nodiscard]] Aabb bounds(ShapeId id, const Pose& pose) const noexcept override;
@@ -125,6 +144,7 @@ class WINNOW_API CompositePool final : public MidPhase {
   [[nodiscard]] Footprint footprint() const noexcept override;
 
  private:
+  [[nodiscard]] bool can_be_child(ShapeId id) const noexcept;
   /// Null if memory is refused. Made by the first shape, so that a pool without any takes no
   /// memory.
   [[nodiscard]] mid::Composites* state() noexcept;

@@ -133,19 +133,6 @@ Status add_height_field(const Json& value, ShapeReader& reader, CompositePool& c
   return composites.add_height_field(samples, id);
 }
 
-Status add_compound(const Json& value, ShapePool& pool, CompositePool& composites, ShapeId& id) {
-  if (!value.contains("children") || !value["children"].is_array()) {
-    return Status::invalid_argument;
-  }
-  std::vector<CompoundChild> children;
-  for (const Json& entry : value["children"]) {
-    CompoundChild& child = children.emplace_back();
-    const Status status = read_shape(entry, pool, child.shape, child.pose);
-    if (status != Status::ok) return status;
-  }
-  return composites.add_compound(children, id);
-}
-
 Status add_shape(const Json& value, ShapePool& pool, ShapeId& id) {
   ShapeReader reader(value);
   const std::string type = reader.text("type");
@@ -183,16 +170,6 @@ Status add_shape(const Json& value, ShapePool& pool, ShapeId& id) {
   return add_round(type, pool, reader, rounding, id);
 }
 
-/// A convex shape, or a composite one.
-Status add_any_shape(const Json& value, ShapePool& pool, CompositePool& composites, ShapeId& id) {
-  ShapeReader reader(value);
-  const std::string type = reader.text("type");
-  if (type == "mesh") return add_mesh(value, reader, composites, id);
-  if (type == "height_field") return add_height_field(value, reader, composites, id);
-  if (type == "compound") return add_compound(value, pool, composites, id);
-  return add_shape(value, pool, id);
-}
-
 /// What the member `name` says of a pose; the rest stays as it is.
 Status read_pose(const Json& shape, const char* name, Pose& pose) {
   if (!shape.contains(name)) return Status::ok;
@@ -201,6 +178,37 @@ Status read_pose(const Json& shape, const char* name, Pose& pose) {
   reader.numbers_if_any("orientation", pose.orientation);
   if (!reader.good()) return Status::invalid_argument;
   return pose.is_valid() ? Status::ok : Status::invalid_pose;
+}
+
+/// What a compound may be made of.
+Status add_child(const Json& value, ShapePool& pool, CompositePool& composites, ShapeId& id) {
+  ShapeReader reader(value);
+  const std::string type = reader.text("type");
+  if (type == "mesh") return add_mesh(value, reader, composites, id);
+  if (type == "height_field") return add_height_field(value, reader, composites, id);
+  return add_shape(value, pool, id);
+}
+
+Status add_compound(const Json& value, ShapePool& pool, CompositePool& composites, ShapeId& id) {
+  if (!value.contains("children") || !value["children"].is_array()) {
+    return Status::invalid_argument;
+  }
+  std::vector<CompoundChild> children;
+  for (const Json& entry : value["children"]) {
+    if (!entry.is_object()) return Status::invalid_argument;
+    CompoundChild& child = children.emplace_back();
+    Status status = read_pose(entry, "pose", child.pose);
+    if (status == Status::ok) status = add_child(entry, pool, composites, child.shape);
+    if (status != Status::ok) return status;
+  }
+  return composites.add_compound(children, id);
+}
+
+/// A convex shape, or a composite one.
+Status add_any_shape(const Json& value, ShapePool& pool, CompositePool& composites, ShapeId& id) {
+  const bool is_compound = ShapeReader(value).text("type") == "compound";
+  return is_compound ? add_compound(value, pool, composites, id)
+                     : add_child(value, pool, composites, id);
 }
 
 }  // namespace

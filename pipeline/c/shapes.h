@@ -212,6 +212,7 @@ WINNOW_C_API winnow_status winnow_composite_pool_update_height_field(
     winnow_composite_pool* pool, winnow_shape_id field, uint32_t column, uint32_t row,
     const winnow_height_samples* samples);
 
+/// A convex shape, a mesh or a height field, and where it stands in its compound.
 typedef struct winnow_compound_child {
   winnow_shape_id shape;
   winnow_pose pose;
@@ -230,9 +231,15 @@ WINNOW_C_API winnow_status winnow_composite_pool_bounds(const winnow_composite_p
                                                         winnow_aabb* box);
 WINNOW_C_API winnow_status winnow_composite_pool_radius(const winnow_composite_pool* pool,
                                                         winnow_shape_id id, double* radius);
-/// Triangles of a mesh or a height field, children of a compound: what parts are numbered by.
+/// Triangles of a mesh or a height field; of a compound, child by child, one for each convex child
+/// and all triangles of a surface: what parts are numbered by.
 WINNOW_C_API winnow_status winnow_composite_pool_parts(const winnow_composite_pool* pool,
                                                        winnow_shape_id id, size_t* parts);
+/// What part of a compound that number is: a child, and of a surface its triangle, else
+/// WINNOW_WHOLE_SHAPE. WINNOW_INVALID_KEY for a compound or part that is not there.
+WINNOW_C_API winnow_status winnow_composite_pool_part(const winnow_composite_pool* pool,
+                                                      winnow_shape_id compound, uint32_t part,
+                                                      uint32_t* child, uint32_t* child_part);
 /// Of a compound; valid until the pool is changed.
 WINNOW_C_API winnow_status winnow_composite_pool_children(const winnow_composite_pool* pool,
                                                           winnow_shape_id id,

@@ -14,37 +14,27 @@ namespace winnow {
 namespace mid {
 namespace {
 
-// A child's tree is made of degenerate triangles: two vertices each.
+// A child's tree is made of degenerate triangles: two vertices each, the corners of its box.
 [[nodiscard]] Status plant(const Compound& compound, std::pmr::memory_resource* memory) noexcept {
-  Column<float> vertices(memory);
   Column<std::uint32_t> corners(memory);
   const std::size_t count = compound.count;
-  if (!vertices.resize(6 * count) || !corners.resize(3 * count)) return Status::out_of_memory;
+  if (!corners.resize(3 * count)) return Status::out_of_memory;
   for (std::uint32_t i = 0; i < compound.count; ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      vertices[6 * i + static_cast<std::size_t>(axis)] = compound.boxes[i].min[axis];
-      vertices[6 * i + 3 + static_cast<std::size_t>(axis)] = compound.boxes[i].max[axis];
-    }
     corners[3 * i] = 2 * i;
     corners[3 * i + 1] = corners[3 * i + 2] = 2 * i + 1;
   }
-  const float* const x = vertices.data();
+  static_assert(sizeof(Aabb) == 6 * sizeof(float));
+  const float* const x = &compound.boxes->min[0];
   return compound.tree->build(PointView({x, x + 1, x + 2}, 2 * count, 3 * sizeof(float)),
                               std::span<const std::uint32_t>(corners.data(), corners.size()));
 }
 
-[[nodiscard]] Aabb box_of(const ShapePool& shapes, const CompoundChild& child) noexcept {
-  const Quaternion turn = tame(child.pose.orientation);
-  const Box box = box_under(shapes.tables(), child.shape, rotation_of(turn),
-                            Eigen::Map<const Vec>(child.pose.position), 0.0);
-  return Aabb::outward(box.min, box.max);
-}
-
-/// The box of a shape at a pose.
-[[nodiscard]] Box bounds_of(const Composites& all, ShapeId id, const Pose& pose) noexcept {
-  const Quaternion turn = tame(pose.orientation);
-  const Mat rotation = rotation_of(turn);
-  const Eigen::Map<const Vec> position(pose.position);
+/// The box of a shape where it stands, turned.
+[[nodiscard]] Box bounds_of(const Composites& all, ShapeId id, const Mat& rotation,
+                            const Vec& position) noexcept {
+  if (!id.is_composite()) {
+    return box_under(all.shapes.tables(), id, rotation, position, 0.0);
+  }
   if (const MeshEntry* const mesh = all.mesh(id)) {
     const Mat linear = rotation * Eigen::Map<const Vec>(mesh->scale).asDiagonal();
     return box_under(Box::of(mesh->shared->mesh.bounds()), linear, position, 0.0);
@@ -59,10 +49,13 @@ namespace {
     const CompoundChild& child = compound->children[i];
     const Eigen::Map<const Vec> at(child.pose.position);
     const Mat turned = rotation_of(tame(child.pose.orientation));
-    const Mat linear = rotation * turned;
-    box.merge(box_under(all.shapes.tables(), child.shape, linear, position + rotation * at, 0.0));
+    box.merge(bounds_of(all, child.shape, rotation * turned, position + rotation * at));
   }
   return box;
+}
+[[nodiscard]] Box bounds_of(const Composites& all, ShapeId id, const Pose& pose) noexcept {
+  return bounds_of(all, id, rotation_of(tame(pose.orientation)),
+                   Eigen::Map<const Vec>(pose.position));
 }
 
 }  // namespace
@@ -136,13 +129,37 @@ void Composites::release(SharedMesh* shared) noexcept {
   delete_in(memory, shared);
 }
 
+std::uint32_t Composites::parts(ShapeId id) const noexcept {
+  if (const MeshEntry* const entry = mesh(id)) {
+    return static_cast<std::uint32_t>(entry->shared->mesh.triangles());
+  }
+  if (const HeightField* const heights = field(id)) return heights->triangles();
+  const Compound* const children = compound(id);
+  return children != nullptr ? children->parts() : 1;
+}
+
+double Composites::radius(ShapeId id) const noexcept {
+  if (const MeshEntry* const entry = mesh(id)) {
+    double most = 0.0;
+    for (const double factor : entry->scale) most = std::max(most, std::abs(factor));
+    return entry->shared->mesh.radius() * most * (1.0 + kSlack);
+  }
+  if (const HeightField* const heights = field(id)) return heights->radius();
+  const Compound* const children = compound(id);
+  return children != nullptr ? children->radius : radius_of(shapes.tables(), id) * (1.0 + kSlack);
+}
+
 Status Composites::new_compound(std::span<const CompoundChild> children, Compound*& made) noexcept {
   const std::size_t count = children.size();
   const bool many = count > kFlatChildren;
+  const bool has_surfaces =
+      std::any_of(children.begin(), children.end(),
+                  [](const CompoundChild& child) { return child.shape.is_composite(); });
   const std::size_t tree_at = sizeof(Compound);
   const std::size_t children_at = tree_at + (many ? sizeof(TriangleMesh) : 0);
   const std::size_t boxes_at = children_at + count * sizeof(CompoundChild);
-  const std::size_t bytes = boxes_at + count * sizeof(Aabb);
+  const std::size_t parts_at = boxes_at + count * sizeof(Aabb);
+  const std::size_t bytes = parts_at + (has_surfaces ? (count + 1) * sizeof(std::uint32_t) : 0);
   auto* const block =
       static_cast<std::byte*>(try_allocate(*memory, bytes, alignof(std::max_align_t)));
   if (block == nullptr) return Status::out_of_memory;
@@ -153,25 +170,47 @@ Status Composites::new_compound(std::span<const CompoundChild> children, Compoun
   auto* const boxes = reinterpret_cast<Aabb*>(block + boxes_at);
   compound->children = to;
   compound->boxes = boxes;
+  auto* const parts_of = reinterpret_cast<std::uint32_t*>(block + parts_at);
+  std::uint32_t part = 0;
   for (std::size_t i = 0; i < count; ++i) {
     new (to + i) CompoundChild(children[i]);
-    new (boxes + i) Aabb(box_of(shapes, children[i]));
-    compound->bounds.merge(boxes[i]);
-    const Eigen::Map<const Vec> at(children[i].pose.position);
-    const double radius =
-        radius_of(shapes.tables(), children[i].shape) * (1.0 + kSlack) + at.stableNorm();
-    compound->radius = std::max(compound->radius, radius * (1.0 + kSlack));
+    new (boxes + i) Aabb;
+    if (has_surfaces) new (parts_of + i) std::uint32_t(part);
+    part += parts(children[i].shape);
   }
-  if (many && Box::of(compound->bounds).is_finite()) {
-    compound->tree = new (block + tree_at) TriangleMesh(memory);
-    const Status status = plant(*compound, memory);
-    if (status != Status::ok) {
-      release(compound);
-      return status;
-    }
+  if (has_surfaces) compound->first_part = parts_of;
+  if (has_surfaces) new (parts_of + count) std::uint32_t(part);
+  const Status status = fit(*compound);
+  if (status != Status::ok) {
+    release(compound);
+    return status;
   }
   made = compound;
   return Status::ok;
+}
+
+Status Composites::fit(Compound& compound) noexcept {
+  compound.bounds = Aabb{};
+  compound.radius = 0.0;
+  for (std::uint32_t i = 0; i < compound.count; ++i) {
+    const CompoundChild& child = compound.children[i];
+    const Box box = bounds_of(*this, child.shape, child.pose);
+    compound.boxes[i] = Aabb::outward(box.min, box.max);
+    compound.bounds.merge(compound.boxes[i]);
+    const double farthest =
+        radius(child.shape) + Eigen::Map<const Vec>(child.pose.position).stableNorm();
+    compound.radius = std::max(compound.radius, farthest * (1.0 + kSlack));
+  }
+  if (compound.tree != nullptr) compound.tree->~TriangleMesh();
+  compound.tree = nullptr;
+  if (compound.count <= kFlatChildren || !Box::of(compound.bounds).is_finite()) return Status::ok;
+  // Behind the compound is room for it.
+  compound.tree = new (&compound + 1) TriangleMesh(memory);
+  const Status status = plant(compound, memory);
+  if (status == Status::ok) return status;
+  compound.tree->~TriangleMesh();
+  compound.tree = nullptr;
+  return status;
 }
 
 void Composites::release(Compound* compound) noexcept {
@@ -234,6 +273,10 @@ Status CompositePool::refit_mesh(ShapeId mesh, const PointView& vertices,
   const Status status = shared.mesh.refit(vertices, execution);
   if (status != Status::ok) return status;
   static_cast<void>(shared.find_corners());
+  state_->fit_users([&](ShapeId id) {
+    const mid::MeshEntry* const entry = state_->mesh(id);
+    return entry != nullptr && entry->shared == &shared;
+  });
   ++state_->revision;
   return Status::ok;
 }
@@ -258,17 +301,22 @@ Status CompositePool::update_height_field(ShapeId field, std::uint32_t column, s
                                           const HeightSamples& samples) {
   if (height_field(field) == nullptr) return Status::invalid_key;
   const Status status = state_->field(field)->update(column, row, samples);
-  if (status == Status::ok) ++state_->revision;
-  return status;
+  if (status != Status::ok) return status;
+  state_->fit_users([&](ShapeId id) { return id == field; });
+  ++state_->revision;
+  return Status::ok;
 }
 
 Status CompositePool::add_compound(std::span<const CompoundChild> children, ShapeId& id) {
   if (children.empty()) return Status::invalid_shape;
   if (children.size() >> ShapeId::kIndexBits != 0) return Status::too_many_objects;
+  std::uint64_t parts = 0;
   for (const CompoundChild& child : children) {
-    if (!shapes_.contains(child.shape)) return Status::invalid_key;
+    if (!can_be_child(child.shape)) return Status::invalid_key;
     if (!child.pose.is_valid()) return Status::invalid_pose;
+    parts += state_ != nullptr ? state_->parts(child.shape) : 1;
   }
+  if (parts > mid::kMaxParts) return Status::too_many_objects;
   mid::Composites* const s = state();
   if (s == nullptr) return Status::out_of_memory;
   Status status = s->compounds.prepare();
@@ -278,6 +326,23 @@ Status CompositePool::add_compound(std::span<const CompoundChild> children, Shap
   if (status != Status::ok) return status;
   id = ShapeId::of(CompositeKind::compound, s->compounds.put(compound));
   return Status::ok;
+}
+
+bool CompositePool::can_be_child(ShapeId id) const noexcept {
+  if (!id.is_composite()) return shapes_.contains(id);
+  return contains(id) && id.composite_kind() != CompositeKind::compound;
+}
+
+std::uint32_t CompositePool::parts(ShapeId id) const noexcept {
+  return contains(id) ? state_->parts(id) : 0;
+}
+
+CompoundPart CompositePool::part(ShapeId compound, std::uint32_t part) const noexcept {
+  const mid::Compound* const found = state_ != nullptr ? state_->compound(compound) : nullptr;
+  if (found == nullptr || part >= found->parts()) return {};
+  const std::uint32_t child = found->child_of(part);
+  if (!found->children[child].shape.is_composite()) return {child, kWholeShape};
+  return {child, part - found->first_part[child]};
 }
 
 Status CompositePool::set_one_sided(ShapeId surface, bool one_sided) {
@@ -305,6 +370,7 @@ bool CompositePool::is_one_sided(ShapeId surface) const noexcept {
 
 Status CompositePool::remove(ShapeId id) {
   if (!contains(id)) return Status::invalid_key;
+  if (state_->is_child(id)) return Status::invalid_argument;
   if (is_one_sided(id)) (void)set_one_sided(id, false);
   switch (id.composite_kind()) {
     case CompositeKind::mesh:
@@ -369,20 +435,7 @@ Aabb CompositePool::bounds(ShapeId id, const Pose& pose) const noexcept {
 }
 
 double CompositePool::radius(ShapeId id) const noexcept {
-  if (!contains(id)) return 0.0;
-  switch (id.composite_kind()) {
-    case CompositeKind::mesh: {
-      const mid::MeshEntry& entry = *state_->mesh(id);
-      double most = 0.0;
-      for (const double factor : entry.scale) most = std::max(most, std::abs(factor));
-      return entry.shared->mesh.radius() * most * (1.0 + mid::kSlack);
-    }
-    case CompositeKind::compound:
-      return state_->compound(id)->radius;
-    case CompositeKind::height_field:
-      break;
-  }
-  return state_->field(id)->radius();
+  return contains(id) ? state_->radius(id) : 0.0;
 }
 
 std::uint64_t CompositePool::revision() const noexcept {

@@ -45,6 +45,9 @@ struct MeshEntry {
   return std::abs(factor) >= 1e-100 && std::abs(factor) <= 1e100;
 }
 
+/// Of a compound: a bit more tells of which of two bodies a part is.
+inline constexpr std::uint64_t kMaxParts = std::uint64_t{1} << 31U;
+
 /// So many children are tested one by one; more get a tree.
 inline constexpr std::uint32_t kFlatChildren = 16;
 
@@ -54,16 +57,31 @@ inline constexpr std::uint32_t kFlatChildren = 16;
 /// degenerate triangle between its corners, so that every traversal of meshes is one of compounds.
 /// A Partition would prune as well, but its keys, change lists and free places are for objects that
 /// come, move and go; children never do, and scenes have many compounds of few children.
+///
+/// Parts are numbered child by child: a convex child is one, a surface has all its triangles.
 struct Compound {
   std::uint32_t count = 0;
   double radius = 0.0;
   /// Of all children, in the compound's frame.
   Aabb bounds;
   const CompoundChild* children = nullptr;
-  const Aabb* boxes = nullptr;
+  Aabb* boxes = nullptr;
+  /// By child, and how many parts there are; null if no child is a surface: child i is part i then.
+  const std::uint32_t* first_part = nullptr;
   /// Null for few children, or where one reaches to infinity.
   TriangleMesh* tree = nullptr;
   std::size_t bytes = 0;
+
+  [[nodiscard]] bool has_surfaces() const noexcept { return first_part != nullptr; }
+  [[nodiscard]] std::uint32_t parts() const noexcept {
+    return has_surfaces() ? first_part[count] : count;
+  }
+  /// The child that a part belongs to.
+  [[nodiscard]] std::uint32_t child_of(std::uint32_t part) const noexcept {
+    if (first_part == nullptr) return part;
+    const std::uint32_t* const after = std::upper_bound(first_part, first_part + count, part);
+    return static_cast<std::uint32_t>(after - first_part) - 1;
+  }
 };
 
 /// Entries of one kind of shape with their free places. Entry must be false where it is free.
@@ -121,7 +139,26 @@ struct Composites {
   [[nodiscard]] SharedMesh* new_mesh() noexcept;
   /// One user less; with the last one it is given back.
   void release(SharedMesh* shared) noexcept;
+  /// How many a shape has: triangles of a surface, holes of a field included; 1 of convex shapes.
+  [[nodiscard]] std::uint32_t parts(ShapeId id) const noexcept;
+  [[nodiscard]] double radius(ShapeId id) const noexcept;
   Status new_compound(std::span<const CompoundChild> children, Compound*& made) noexcept;
+  /// Finds the boxes of its children, and what follows from them. Without memory for a tree it has
+  /// none.
+  Status fit(Compound& compound) noexcept;
+  /// The same of all compounds with a child that `is_changed(id)` is true of.
+  template <typename IsChanged>
+  void fit_users(IsChanged&& is_changed) noexcept {
+    for (Compound* const compound : compounds.entries) {
+      if (compound != nullptr && has_child(*compound, is_changed)) (void)fit(*compound);
+    }
+  }
+  /// True if a surface is a child of a compound.
+  [[nodiscard]] bool is_child(ShapeId surface) const noexcept {
+    const auto is_this = [&](ShapeId id) { return id == surface; };
+    return std::any_of(compounds.entries.begin(), compounds.entries.end(),
+                       [&](const Compound* c) { return c != nullptr && has_child(*c, is_this); });
+  }
   void release(Compound* compound) noexcept;
 
   const ShapePool& shapes;
@@ -133,6 +170,16 @@ struct Composites {
   Column<std::uint32_t> one_sided;
   SharedMesh* first_mesh = nullptr;
   std::uint64_t revision = 0;
+
+ private:
+  /// Of its surfaces.
+  template <typename Is>
+  [[nodiscard]] static bool has_child(const Compound& compound, Is&& is) noexcept {
+    if (!compound.has_surfaces()) return false;
+    const std::span<const CompoundChild> children(compound.children, compound.count);
+    return std::any_of(children.begin(), children.end(),
+                       [&](const CompoundChild& child) { return is(child.shape); });
+  }
 };
 
 /// See MidPhase::expand. `all` may be null: there are no composite shapes then. O(pairs of bodies +

@@ -170,10 +170,13 @@ void Expansion::write(std::size_t chunk) noexcept {
     if (count == 0) continue;
     const PlacedBody a = placed(pairs_[i].a, pairs_[i].a);
     const PlacedBody b = placed(pairs_[i].b, pairs_[i].a);
+    ChildOfPart of_a(a);
+    ChildOfPart of_b(b);
     for (std::uint32_t k = 0; k < count; ++k) {
       const std::uint32_t word = primitives.get();
-      const bool second = (word & Search::kSecond) != 0;
-      write_primitive(second ? b : a, word & ~Search::kSecond, at++, triangle);
+      std::uint32_t number = word & ~Search::kSecond;
+      const PlacedBody& body = ((word & Search::kSecond) != 0 ? of_b : of_a).find(number);
+      write_primitive(body, number, at++, triangle);
     }
   }
   for (std::uint32_t i = 0; i < record.pairs; ++i) {

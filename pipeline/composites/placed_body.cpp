@@ -69,12 +69,21 @@ PlacedPart::PlacedPart(const ShapeTables& tables, ShapeId id, std::uint32_t of_b
   }
 }
 
-PlacedBody::PlacedBody(const Composites& all, const ShapeTables& pool, ShapeId shape,
+PlacedBody::PlacedBody(const Composites& composites, const ShapeTables& pool, ShapeId shape,
                        const Pose& pose, const Vec& at) noexcept
-    : tables(pool),
+    : PlacedBody(composites, pool, shape, Turned(pose.orientation), at) {}
+
+PlacedBody::Turned::Turned(const double (&orientation)[4]) noexcept
+    : turn(tame(orientation)),
+      rotation(is_identity(turn) ? Mat(Mat::Identity()) : Mat(rotation_of(turn))) {}
+
+PlacedBody::PlacedBody(const Composites& composites, const ShapeTables& pool, ShapeId shape,
+                       const Turned& turned, const Vec& at) noexcept
+    : all(composites),
+      tables(pool),
       id(shape),
-      turn(tame(pose.orientation)),
-      rotation(is_identity(turn) ? Mat::Identity() : rotation_of(turn)),
+      turn(turned.turn),
+      rotation(turned.rotation),
       position(at) {
   to_world = rotation;
   to_local = rotation.transpose();
@@ -101,6 +110,16 @@ PlacedBody::PlacedBody(const Composites& all, const ShapeTables& pool, ShapeId s
     compound = all.compound(shape);
     bounds = Box::of(compound->bounds);
   }
+}
+
+PlacedBody PlacedBody::child(std::uint32_t number) const noexcept {
+  const CompoundChild& one = compound->children[number];
+  const Mat turned = rotation_of(tame(one.pose.orientation));
+  PlacedBody body(all, tables, one.shape, Turned(part_turn(number), rotation * turned),
+                  position + rotation * Eigen::Map<const Vec>(one.pose.position));
+  body.is_child = true;
+  body.first_number = compound->first_part[number];
+  return body;
 }
 
 PlacedBody PlacedBody::at(const Composites& all, ShapeId shape, const Pose& pose) noexcept {
@@ -177,8 +196,9 @@ bool PlacedBody::primitive(std::uint32_t number, Primitive& out) const noexcept 
 }
 
 std::uint32_t PlacedBody::shown_number(std::uint32_t number) const noexcept {
-  if (kind == Kind::convex) return kWholeShape;
-  return kind == Kind::mesh ? mesh->triangle[number] & kTriangleNumberMask : number;
+  if (kind == Kind::convex) return is_child ? first_number : kWholeShape;
+  const bool is_slot = kind == Kind::mesh;
+  return first_number + (is_slot ? mesh->triangle[number] & kTriangleNumberMask : number);
 }
 
 std::uint8_t PlacedBody::active(std::uint32_t number) const noexcept {

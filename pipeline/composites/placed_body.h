@@ -6,6 +6,7 @@
 #include "pipeline/shapes/front.h"
 
 #include <cstdint>
+#include <optional>
 
 namespace winnow::mid {
 
@@ -42,7 +43,8 @@ struct PlacedPart {
 
 /// One body of a pair where it stands: relative to the position of body a, in the axes of the
 /// world. What it is made of has numbers: 0 for a convex shape, the child of a compound, the slot
-/// of a mesh, the triangle of a height field.
+/// of a mesh, the triangle of a height field. A compound with surfaces is taken child by child:
+/// each is a body by itself, whose numbers begin at `first_number` in the compound.
 struct PlacedBody {
   enum class Kind : std::uint8_t { convex, compound, mesh, field };
 
@@ -50,11 +52,16 @@ struct PlacedBody {
   PlacedBody(const Composites& all, const ShapeTables& tables, ShapeId shape, const Pose& pose,
              const Vec& at) noexcept;
 
+  /// A child of this, which has surfaces among them.
+  [[nodiscard]] PlacedBody child(std::uint32_t number) const noexcept;
   /// Where its pose says.
   [[nodiscard]] static PlacedBody at(const Composites& all, ShapeId shape,
                                      const Pose& pose) noexcept;
 
   [[nodiscard]] bool is_surface() const noexcept { return kind >= Kind::mesh; }
+  [[nodiscard]] bool has_surfaces() const noexcept {
+    return kind == Kind::compound && compound->has_surfaces();
+  }
   /// Of all of this, grown by `margin` in the world, in the frame of `other`.
   [[nodiscard]] Box box_in(const PlacedBody& other, double margin) const noexcept;
   [[nodiscard]] PlacedPart part(std::uint32_t number) const noexcept;
@@ -75,9 +82,13 @@ struct PlacedBody {
            winnow::is_behind(triangle.normal() * front, triangle.first, box.min, box.max);
   }
 
+  const Composites& all;
   const ShapeTables& tables;
   Kind kind = Kind::convex;
   ShapeId id;
+  /// Of a child of a compound with surfaces.
+  bool is_child = false;
+  std::uint32_t first_number = 0;
   Quaternion turn;
   Mat rotation;
   Vec position;
@@ -94,7 +105,63 @@ struct PlacedBody {
   const Compound* compound = nullptr;
   /// Of a composite in its own frame.
   Box bounds;
+
+ private:
+  /// A turn and its matrix.
+  struct Turned {
+    explicit Turned(const double (&orientation)[4]) noexcept;
+    Turned(const Quaternion& by, const Mat& matrix) noexcept : turn(by), rotation(matrix) {}
+
+    Quaternion turn;
+    Mat rotation;
+  };
+  PlacedBody(const Composites& all, const ShapeTables& tables, ShapeId shape, const Turned& turned,
+             const Vec& at) noexcept;
 };
+
+/// Children of a compound with surfaces, found again by their parts. Numbers that follow each other
+/// are mostly of one child.
+class ChildOfPart {
+ public:
+  explicit ChildOfPart(const PlacedBody& body) noexcept : body_(body) {}
+
+  /// The body that a number is of, which becomes that body's own: the same one if it has no
+  /// surfaces as children.
+  [[nodiscard]] const PlacedBody& find(std::uint32_t& number) noexcept {
+    if (!body_.has_surfaces()) return body_;
+    const std::uint32_t child = body_.compound->child_of(number);
+    if (!last_ || child != last_child_) last_.emplace(body_.child(child));
+    last_child_ = child;
+    number -= last_->first_number;
+    return *last_;
+  }
+
+ private:
+  const PlacedBody& body_;
+  std::optional<PlacedBody> last_;
+  std::uint32_t last_child_ = 0;
+};
+
+/// Is shown the numbers of children of a compound with surfaces, as a PrimitiveVisitor is shown
+/// primitives.
+struct ChildVisitor {
+  double (*visit)(void* context, std::uint32_t child, double limit) = nullptr;
+  void* context = nullptr;
+
+  /// Calls visit(child, limit).
+  template <typename Visit>
+  [[nodiscard]] static ChildVisitor of(Visit& visit) noexcept {
+    return {[](void* context, std::uint32_t child, double limit) {
+              return (*static_cast<Visit*>(context))(child, limit);
+            },
+            &visit};
+  }
+};
+
+/// Shows the primitives of a body that the sweep may meet: see MidPhase::visit. Where a compound
+/// has surfaces, its children are shown instead.
+void visit(const PlacedBody& body, const BoxSweep& sweep, const PrimitiveVisitor& visitor,
+           const ChildVisitor& children);
 
 /// Mesh b in the frame of mesh a, and how far in that is a margin of the world and the rounding of
 /// where b is.

@@ -48,18 +48,35 @@ namespace {
   return sum + (sum_error + step_error + lost);
 }
 
-/// A surface that rays come to, all about its position: its own is zero.
+/// A body and a ray about a place: what is lost of the ray by being made relative is put into where
+/// the body is.
+struct NearBody {
+  NearBody(const PlacedBody& placed, const Vec& about, const ShapeRay& of) noexcept
+      : ray(of), body(placed) {
+    const Difference between = difference(of.origin, about.data());
+    std::copy_n(between.difference, 3, ray.origin);
+    body.position = (placed.position - about) - Vec::Map(between.rest);
+  }
+
+  ShapeRay ray;
+  PlacedBody body;
+};
+
+/// A surface that rays come to, all about its position: its own is zero. Primitives are shown about
+/// another place.
 struct RayTarget {
-  RayTarget(const Composites& all, ShapeId id, const Pose& pose) noexcept
-      : body(all, all.shapes.tables(), id, pose, Vec::Zero()) {
+  RayTarget(const PlacedBody& placed, const Vec& show_about) noexcept
+      : body(placed), about(show_about) {
     const Vec corner = body.bounds.min.cwiseAbs().cwiseMax(body.bounds.max.cwiseAbs());
-    std::copy_n(pose.position, 3, frame.position);
+    Vec::Map(frame.position) = body.position;
+    body.position.setZero();
     for (int i = 0; i < 3; ++i) Vec::Map(frame.to_own[i]) = body.to_local.row(i);
     frame.reach = corner.maxCoeff();
     frame.size = (body.to_world.cwiseAbs() * corner).sum();
   }
 
   PlacedBody body;
+  Vec about;
   SurfaceFrame frame;
 };
 
@@ -259,14 +276,12 @@ double RayGuides::meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& fo
   return visitor_.meet(visitor_.context, number_[i], body.shown_number(slot), hit, limit_[i]);
 }
 
-/// What is lost of where the ray begins by being made relative to the body is put into where the
-/// body is, where it is small.
 double RayGuides::look(std::uint32_t i, std::uint32_t slot) const {
   PlacedBody body = target_.body;
-  const Difference between = difference(rays_[number_[i]].origin, target_.frame.position);
-  body.position = -Vec::Map(between.rest);
+  body.position = Vec::Map(target_.frame.position);
   Primitive primitive;
-  if (!body.primitive(slot, primitive)) return limit_[i];
+  const NearBody near(body, target_.about, rays_[number_[i]]);
+  if (!near.body.primitive(slot, primitive)) return limit_[i];
   return visitor_.look(visitor_.context, number_[i], primitive, limit_[i]);
 }
 
@@ -279,52 +294,97 @@ double RayGuides::show_slots(std::uint32_t i, const std::uint32_t* slots, std::u
   return limit < before ? own_limit(i, limit) : own_before;
 }
 
-/// Shows all that the box of a ray meets.
-void look_at_all(const Composites& all, ShapeId id, const Pose& pose, std::size_t number,
-                 const ShapeRay& ray, const RayVisitor& visitor) {
+/// Shows all that the box of ray `number` meets: primitives, or children of a compound with
+/// surfaces.
+void look_at_all(const NearBody& near, std::size_t number, const RayVisitor& visitor,
+                 const ChildVisitor& children) {
   // By this much of its coordinates a box is grown before the tests of boxes, which round them.
   constexpr double kGrowth = 0x1p-47;
-  Pose near = pose;
-  const Difference between = difference(ray.origin, pose.position);
-  Vec::Map(near.position) = -Vec::Map(between.rest);
-  const Eigen::Map<const Vec> from(between.difference);
+  const Eigen::Map<const Vec> from(near.ray.origin);
   const double grow = kGrowth * from.cwiseAbs().maxCoeff();
   BoxSweep sweep;
   for (int i = 0; i < 3; ++i) {
     sweep.min[i] = from[i] - grow;
     sweep.max[i] = from[i] + grow;
-    sweep.direction[i] = ray.direction[i];
+    sweep.direction[i] = near.ray.direction[i];
   }
-  sweep.max_t = ray.max_t;
+  sweep.max_t = near.ray.max_t;
   struct Looking {
     const RayVisitor& visitor;
     std::size_t number;
   } looking{visitor, number};
-  visit(all, id, near, sweep,
-        {[](void* context, const Primitive& primitive, double limit) {
+  visit(near.body, sweep,
+        {[](void* context, const Primitive& primitive, double most) {
            const Looking& by = *static_cast<Looking*>(context);
-           return by.visitor.look(by.visitor.context, by.number, primitive, limit);
+           return by.visitor.look(by.visitor.context, by.number, primitive, most);
          },
-         &looking});
+         &looking},
+        children);
 }
+
+/// Primitives are shown about a place.
+void visit_surface(const PlacedBody& surface, const Vec& about, std::span<const ShapeRay> rays,
+                   const double* limits, const RayVisitor& visitor) {
+  const auto look = [&](std::size_t ray) {
+    look_at_all(NearBody(surface, about, rays[ray]), ray, visitor, {});
+  };
+  const RayTarget target(surface, about);
+  RayGuides guides(target, rays, visitor);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (!(limits[i] >= 0.0)) continue;
+    guides.add(i, limits[i]);
+    if (guides.is_full()) guides.go(look);
+  }
+  guides.go(look);
+}
+
+/// Ray `number` through a child of a compound with surfaces, both about the compound: gives back
+/// the limit to go on with.
+[[nodiscard]] double visit_child(const PlacedBody& child, const ShapeRay& ray, std::size_t number,
+                                 double limit, const RayVisitor& visitor) {
+  if (!child.is_surface()) {
+    Primitive primitive;
+    (void)child.primitive(0, primitive);
+    return visitor.look(visitor.context, number, primitive, limit);
+  }
+  struct Passing {
+    const RayVisitor& to;
+    std::size_t number;
+    double limit;
+  } passing{visitor, number, limit};
+  visit_surface(
+      child, Vec::Zero(), {&ray, 1}, &limit,
+      {[](void* context, std::size_t, std::uint32_t part, const ShapeHit& hit, double most) {
+         Passing& by = *static_cast<Passing*>(context);
+         return by.limit = by.to.meet(by.to.context, by.number, part, hit, most);
+       },
+       [](void* context, std::size_t, const Primitive& primitive, double most) {
+         Passing& by = *static_cast<Passing*>(context);
+         return by.limit = by.to.look(by.to.context, by.number, primitive, most);
+       },
+       &passing});
+  return passing.limit;
+}
+
+/// What a child's triangles are met at may be earlier than what its box is, by rounding.
+constexpr double kLimitRoom = 1.0 + 0x1p-20;
 
 }  // namespace
 
 void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
                 const double* limits, const RayVisitor& visitor) {
-  const auto look = [&](std::size_t ray) { look_at_all(all, id, pose, ray, rays[ray], visitor); };
-  const RayTarget target(all, id, pose);
-  RayGuides guides(target, rays, visitor);
+  const PlacedBody body = PlacedBody::at(all, id, pose);
+  if (body.is_surface()) return visit_surface(body, body.position, rays, limits, visitor);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!(limits[i] >= 0.0)) continue;
-    if (!target.body.is_surface()) {
-      look(i);
-      continue;
-    }
-    guides.add(i, limits[i]);
-    if (guides.is_full()) guides.go(look);
+    const NearBody near(body, body.position, rays[i]);
+    double limit = limits[i];
+    auto show_child = [&](std::uint32_t number, double) {
+      limit = visit_child(near.body.child(number), near.ray, i, limit, visitor);
+      return limit * kLimitRoom;
+    };
+    look_at_all(near, i, visitor, ChildVisitor::of(show_child));
   }
-  guides.go(look);
 }
 
 }  // namespace winnow::mid

@@ -145,6 +145,23 @@ Search::Search(const ShapeTables& tables, WordArena& arena) noexcept
 void Search::run(const PlacedBody& a, const PlacedBody& b, double margin) noexcept {
   margin_ = margin;
   before_ = primitives_.size();
+  if (!a.has_surfaces() && !b.has_surfaces()) return run(a, b);
+  for (const std::uint32_t of_a : bodies_near(a, b.box_in(a, margin), children_[0])) {
+    const PlacedBody child_a = a.has_surfaces() ? a.child(of_a) : a;
+    for (const std::uint32_t of_b : bodies_near(b, child_a.box_in(b, margin), children_[1])) {
+      run(child_a, b.has_surfaces() ? b.child(of_b) : b);
+    }
+  }
+}
+
+/// Children of a compound with surfaces; a body by itself is its own only one.
+std::span<const std::uint32_t> Search::bodies_near(const PlacedBody& body, const Box& box,
+                                                   Room& room) noexcept {
+  if (!body.has_surfaces()) return kOnly;
+  return children_near(body, box, room);
+}
+
+void Search::run(const PlacedBody& a, const PlacedBody& b) noexcept {
   if (!a.is_surface() && !b.is_surface()) {
     parts_parts(a, b);
   } else if (!a.is_surface()) {
@@ -312,10 +329,11 @@ void Search::add(const PlacedBody& a, std::uint32_t of_a, const PlacedBody& b,
 
 std::uint32_t Search::primitive(const PlacedBody& body, std::uint32_t number,
                                 std::uint32_t flag) noexcept {
-  Memory& seen = memory_[flag != 0 ? 1 : 0][number % kRemembered];
-  if (seen.number != number || seen.primitive < before_) {
-    seen = {number, primitives_.size()};
-    primitives_.put(number | flag);
+  const std::uint32_t whole = body.first_number + number;
+  Memory& seen = memory_[flag != 0 ? 1 : 0][whole % kRemembered];
+  if (seen.number != whole || seen.primitive < before_) {
+    seen = {whole, primitives_.size()};
+    primitives_.put(whole | flag);
     const ShapeId shape =
         body.kind == PlacedBody::Kind::compound ? body.compound->children[number].shape : body.id;
     if (body.is_surface() || shape.kind() == ShapeKind::triangle) ++triangles_;

@@ -41,6 +41,10 @@ class Search {
     const PlacedBody& b;
   };
 
+  /// Of bodies that are no compounds with surfaces.
+  void run(const PlacedBody& a, const PlacedBody& b) noexcept;
+  [[nodiscard]] std::span<const std::uint32_t> bodies_near(const PlacedBody& body, const Box& box,
+                                                           Room& room) noexcept;
   void parts_parts(const PlacedBody& a, const PlacedBody& b) noexcept;
   void parts_surface(const PlacedBody& parts, const PlacedBody& surface, bool mirrored) noexcept;
   void mesh_mesh(const PlacedBody& a, const PlacedBody& b) noexcept;
@@ -79,6 +83,8 @@ class Search {
   std::array<Memory, kRemembered> memory_[2];
   Room outer_;
   Room inner_;
+  /// Children of compounds with surfaces.
+  Room children_[2];
 };
 
 }  // namespace winnow::mid

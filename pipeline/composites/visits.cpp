@@ -15,8 +15,11 @@ namespace {
 struct Guide {
   const PlacedBody& body;
   const PrimitiveVisitor& visitor;
+  /// For children that are bodies by themselves.
+  ChildVisitor children;
 
   [[nodiscard]] double show(std::uint32_t number, double limit) const {
+    if (body.has_surfaces()) return children.visit(children.context, number, limit);
     Primitive primitive;
     if (!body.primitive(number, primitive)) return limit;
     return visitor.visit(visitor.context, primitive, limit);
@@ -37,6 +40,20 @@ struct Guide {
   }
   [[nodiscard]] SlotVisitor slots() const noexcept {
     return {&show_slots, const_cast<Guide*>(this)};
+  }
+};
+
+/// Passes primitives on, and keeps the limit that came back last.
+struct LimitKeeper {
+  const PrimitiveVisitor& to;
+  double limit;
+
+  [[nodiscard]] PrimitiveVisitor visitor() noexcept {
+    return {[](void* context, const Primitive& primitive, double most) {
+              LimitKeeper& keeper = *static_cast<LimitKeeper*>(context);
+              return keeper.limit = keeper.to.visit(keeper.to.context, primitive, most);
+            },
+            this};
   }
 };
 
@@ -116,12 +133,25 @@ void show_in_order(const Guide& guide, double limit, Measure&& measure) {
   return box_under(box, to_local, Vec::Zero(), 0.0);
 }
 
+/// Shows a child to a visitor that is shown the primitives of a body, by `go(child, limit)` or, if
+/// it is convex, at once; gives back the limit to go on with.
+template <typename Go>
+[[nodiscard]] double visit_child(const PlacedBody& child, double limit,
+                                 const PrimitiveVisitor& visitor, Go&& go) {
+  if (child.is_surface()) {
+    LimitKeeper keeper{visitor, limit};
+    go(keeper.visitor());
+    return keeper.limit;
+  }
+  Primitive primitive;
+  return child.primitive(0, primitive) ? visitor.visit(visitor.context, primitive, limit) : limit;
+}
+
 }  // namespace
 
-void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,
-           const PrimitiveVisitor& visitor) {
-  const PlacedBody body = PlacedBody::at(all, id, pose);
-  const Guide guide{body, visitor};
+void visit(const PlacedBody& body, const BoxSweep& sweep, const PrimitiveVisitor& visitor,
+           const ChildVisitor& children) {
+  const Guide guide{body, visitor, children};
   // What is never met is met at infinity: not before any limit.
   const double max_t = std::min(sweep.max_t, std::numeric_limits<double>::max());
   Box box = box_in(body, sweep, body.to_local);
@@ -148,6 +178,20 @@ void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& 
                           child.max.data());
     });
   }
+}
+
+void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,
+           const PrimitiveVisitor& visitor) {
+  const PlacedBody body = PlacedBody::at(all, id, pose);
+  auto show_child = [&](std::uint32_t number, double limit) {
+    const PlacedBody child = body.child(number);
+    return visit_child(child, limit, visitor, [&](const PrimitiveVisitor& keeping) {
+      BoxSweep rest = sweep;
+      rest.max_t = limit;
+      visit(child, rest, keeping, {});
+    });
+  };
+  visit(body, sweep, visitor, ChildVisitor::of(show_child));
 }
 
 bool visit_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
@@ -182,14 +226,15 @@ bool visit_near_pairs(const Composites& all, ShapeId a, const Pose& pose_a, Shap
   return true;
 }
 
-void visit_near(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& from,
-                double limit, const PrimitiveVisitor& visitor) {
-  const PlacedBody body = PlacedBody::at(all, id, pose);
-  const Guide guide{body, visitor};
+namespace {
+
+void visit_near(const PlacedBody& body, const BoxSweep& from, double limit,
+                const PrimitiveVisitor& visitor, const ChildVisitor& children) {
+  const Guide guide{body, visitor, children};
   // Turned, but in the lengths of the world.
   const Box box = box_in(body, from, body.rotation.transpose());
   if (body.kind == PlacedBody::Kind::mesh) {
-    mesh_near(*body.mesh, all.mesh(id)->scale, box.min.data(), box.max.data(), limit,
+    mesh_near(*body.mesh, body.all.mesh(body.id)->scale, box.min.data(), box.max.data(), limit,
               guide.slots());
   } else if (body.kind == PlacedBody::Kind::field) {
     height_near(grid_of(*body.field), box.min.data(), box.max.data(), limit, guide.slots());
@@ -202,6 +247,20 @@ void visit_near(const Composites& all, ShapeId id, const Pose& pose, const BoxSw
       return box_gap(box.min.data(), box.max.data(), child.min.data(), child.max.data());
     });
   }
+}
+
+}  // namespace
+
+void visit_near(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& from,
+                double limit, const PrimitiveVisitor& visitor) {
+  const PlacedBody body = PlacedBody::at(all, id, pose);
+  auto show_child = [&](std::uint32_t number, double most) {
+    const PlacedBody child = body.child(number);
+    return visit_child(child, most, visitor, [&](const PrimitiveVisitor& keeping) {
+      visit_near(child, from, most, keeping, {});
+    });
+  };
+  visit_near(body, from, limit, visitor, ChildVisitor::of(show_child));
 }
 
 }  // namespace winnow::mid

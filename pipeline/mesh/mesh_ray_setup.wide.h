@@ -3,6 +3,8 @@
 // Eight rays at once into the frame of a surface, and made ready for their way through the nodes of
 // a mesh. In double, without fused operations: the same on every instruction set.
 
+#include <type_traits>
+
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_traversal.h"
 #include "simd/lanes/vectors.h"
@@ -19,74 +21,97 @@ inline constexpr double kStandingInverse = 1e30;
 inline constexpr double kMostSlack = 1e200;
 inline constexpr double kMostWrong = 1e38;
 
-/// Rays from `first` on of a column. One that is alone is put into all lanes: its numbers have just
-/// been stored, and what is wider than that would have to wait for them.
-[[gnu::always_inline]] inline Doubles load(const double* column, std::uint32_t first, bool alone) {
-  return alone ? Doubles(column[0]) : Doubles::load(column + first);
+/// Numbers of rays side by side, or of one alone.
+template <bool Alone>
+using RayDoubles = std::conditional_t<Alone, OneDouble, Doubles>;
+template <bool Alone>
+using RayVec3 = Vec3<double, RayDoubles<Alone>::kParts>;
+
+/// Those from `first` on of a column. One that is alone is put into all lanes: its numbers have
+/// just been stored, and what is wider than that would have to wait for them.
+template <bool Alone>
+[[gnu::always_inline]] inline RayDoubles<Alone> load(const double* column, std::uint32_t first) {
+  if constexpr (Alone) return column[first];
+  return RayDoubles<Alone>::load(column + first);
 }
-[[gnu::always_inline]] inline Vec3<double> load(const double (&column)[3][kRaysAtOnce],
-                                                std::uint32_t first, bool alone) {
-  return {load(column[0], first, alone), load(column[1], first, alone),
-          load(column[2], first, alone)};
+template <bool Alone>
+[[gnu::always_inline]] inline RayVec3<Alone> load(const double (&column)[3][kRaysAtOnce],
+                                                  std::uint32_t first) {
+  return {load<Alone>(column[0], first), load<Alone>(column[1], first),
+          load<Alone>(column[2], first)};
 }
-[[gnu::always_inline]] inline void store(const Vec3<double>& v, double (&column)[3][kRaysAtOnce],
-                                         std::uint32_t first) {
+template <int Parts>
+[[gnu::always_inline]] inline void store(const Vec3<double, Parts>& v,
+                                         double (&column)[3][kRaysAtOnce], std::uint32_t first) {
   v.x.store(column[0] + first);
   v.y.store(column[1] + first);
   v.z.store(column[2] + first);
 }
-[[gnu::always_inline]] inline Vec3<double> abs_of(const Vec3<double>& v) {
+template <int Parts>
+[[gnu::always_inline]] inline Vec3<double, Parts> abs_of(const Vec3<double, Parts>& v) {
   return {abs(v.x), abs(v.y), abs(v.z)};
 }
-[[gnu::always_inline]] inline Doubles largest_of(const Vec3<double>& v) {
+template <int Parts>
+[[gnu::always_inline]] inline Lanes<double, Parts> largest_of(const Vec3<double, Parts>& v) {
   return max(max(v.x, v.y), v.z);
 }
 
 /// A matrix times a vector, its columns added in their order.
-[[gnu::always_inline]] inline Vec3<double> times(const double (&m)[3][3], const Vec3<double>& v) {
+template <int Parts>
+[[gnu::always_inline]] inline Vec3<double, Parts> times(const double (&m)[3][3],
+                                                        const Vec3<double, Parts>& v) {
+  using D = Lanes<double, Parts>;
   const auto row = [&](const double(&r)[3]) {
-    return Doubles(r[0]) * v.x + Doubles(r[1]) * v.y + Doubles(r[2]) * v.z;
+    return D(r[0]) * v.x + D(r[1]) * v.y + D(r[2]) * v.z;
   };
   return {row(m[0]), row(m[1]), row(m[2])};
 }
 
-/// Takes rays [0, count) into the frame of a surface. Gives back a bit for each that is left to the
-/// caller: those that begin far away, or whose numbers are too large or too small.
-inline std::uint64_t place_rays(const SurfaceFrame& frame, const RayColumns& world,
-                                std::uint32_t count, SurfaceRays& own) {
+/// Takes rays from `first` on into the frame of a surface. Gives back a bit for each that is left
+/// to the caller: those that begin far away, or whose numbers are too large or too small.
+template <bool Alone>
+[[gnu::always_inline]] inline Mask16 place_some(const SurfaceFrame& frame, const RayColumns& world,
+                                                std::uint32_t first, SurfaceRays& own) {
+  using D = RayDoubles<Alone>;
+  using V = RayVec3<Alone>;
   const double(&m)[3][3] = frame.to_own;
   double size[3][3];
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) size[i][k] = __builtin_fabs(m[i][k]);
   }
-  const Vec3<double> position{frame.position[0], frame.position[1], frame.position[2]};
+  const V position{frame.position[0], frame.position[1], frame.position[2]};
   // Infinity has the bits of the exponent alone: what they leave of a number is a power of two.
-  const Doubles exponent(__builtin_inf());
+  const D exponent(__builtin_inf());
   constexpr double kLeast = 1e-300;
-  const bool alone = count == 1;
+  const V direction = load<Alone>(world.direction, first);
+  const V start = load<Alone>(world.origin, first) - position;
+  const D fastest = largest_of(abs_of(direction));
+  const D square = dot(direction, direction);
+  const D towards = -dot(start, direction);
+  const V way = times(m, direction);
+  const D longest = largest_of(abs_of(way));
+  const D stretch = D(0.5) / (longest & exponent);
+  store(times(m, start), own.ray.origin, first);
+  store(way * stretch, own.ray.direction, first);
+  const D coordinate = largest_of(times(size, abs_of(start)));
+  (D(kRaySlack) * (coordinate + D(frame.reach))).store(own.slack + first);
+  D(0.0).store(own.shift + first);
+  stretch.store(own.stretch + first);
+  const auto near = towards <= D(4.0 * frame.size) * (square / fastest);
+  const auto tame = (largest_of(abs_of(start)) < D(kMostRayLength)) &
+                    (fastest < D(kMostRayLength)) & (fastest > D(1.0 / kMostRayLength)) &
+                    (longest > D(kLeast)) & (longest < D(1.0 / kLeast)) &
+                    (D(frame.size) < D(kMostRayLength));
+  return ~bits(near & tame) & lanes_below(D::kCount);
+}
+
+/// The same of rays [0, count).
+inline std::uint64_t place_rays(const SurfaceFrame& frame, const RayColumns& world,
+                                std::uint32_t count, SurfaceRays& own) {
+  if (count == 1) return place_some<true>(frame, world, 0, own) & 1U;
   std::uint64_t left = 0;
   for (std::uint32_t first = 0; first < count; first += kRayLanes) {
-    const Vec3<double> direction = load(world.direction, first, alone);
-    const Vec3<double> start = load(world.origin, first, alone) - position;
-    const Doubles fastest = largest_of(abs_of(direction));
-    const Doubles square = dot(direction, direction);
-    const Doubles towards = -dot(start, direction);
-    const Vec3<double> way = times(m, direction);
-    const Doubles longest = largest_of(abs_of(way));
-    const Doubles stretch = Doubles(0.5) / (longest & exponent);
-    store(times(m, start), own.ray.origin, first);
-    store(way * stretch, own.ray.direction, first);
-    const Doubles coordinate = largest_of(times(size, abs_of(start)));
-    (Doubles(kRaySlack) * (coordinate + Doubles(frame.reach))).store(own.slack + first);
-    Doubles(0.0).store(own.shift + first);
-    stretch.store(own.stretch + first);
-    const LaneMask<double> near = towards <= Doubles(4.0 * frame.size) * (square / fastest);
-    const LaneMask<double> tame = (largest_of(abs_of(start)) < Doubles(kMostRayLength)) &
-                                  (fastest < Doubles(kMostRayLength)) &
-                                  (fastest > Doubles(1.0 / kMostRayLength)) &
-                                  (longest > Doubles(kLeast)) & (longest < Doubles(1.0 / kLeast)) &
-                                  (Doubles(frame.size) < Doubles(kMostRayLength));
-    left |= static_cast<std::uint64_t>(~bits(near & tame) & kAllLanes<double>) << first;
+    left |= std::uint64_t{place_some<false>(frame, world, first, own)} << first;
   }
   return count < kRaysAtOnce ? left & ((std::uint64_t{1} << count) - 1U) : left;
 }
@@ -133,49 +158,56 @@ struct ReadyRays {
 };
 
 /// The part of [0, limit] in which rays are in the box of a mesh. Empty if in > out.
+template <int Parts>
 struct BoxPassage {
-  Doubles in{0.0};
-  Doubles out;
+  using D = Lanes<double, Parts>;
+  D in{0.0};
+  D out;
 
   /// Zero times infinity narrows nothing: comparisons with it do not hold.
-  [[gnu::always_inline]] void narrow(const Doubles& from, const Doubles& way,
-                                     const Doubles& inverse, const Doubles& slack, double least,
-                                     double most) {
-    const Doubles near = Doubles(least) - slack - from;
-    const Doubles far = Doubles(most) + slack - from;
-    const LaneMask<double> stands = way == Doubles(0.0);
-    const LaneMask<double> beside = (near > Doubles(0.0)) | (far < Doubles(0.0));
-    const Doubles a = near * inverse;
-    const Doubles b = far * inverse;
-    const Doubles enters = select(b < a, b, a) * Doubles(1.0 - 0x1p-48);
-    const Doubles leaves = select(a < b, b, a) * Doubles(1.0 + 0x1p-48);
+  [[gnu::always_inline]] void narrow(const D& from, const D& way, const D& inverse, const D& slack,
+                                     double least, double most) {
+    const D near = D(least) - slack - from;
+    const D far = D(most) + slack - from;
+    const typename D::Mask stands = way == D(0.0);
+    const typename D::Mask beside = (near > D(0.0)) | (far < D(0.0));
+    const D a = near * inverse;
+    const D b = far * inverse;
+    const D enters = select(b < a, b, a) * D(1.0 - 0x1p-48);
+    const D leaves = select(a < b, b, a) * D(1.0 + 0x1p-48);
     in = select((in < enters) & !stands, enters, in);
     out = select((leaves < out) & !stands, leaves, out);
-    out = select(stands & beside, Doubles(-1.0), out);
+    out = select(stands & beside, D(-1.0), out);
   }
 };
 
 /// How rays pass bounds on an axis. `from` is where they are, and `grow` by how much boxes are
 /// grown, in units of the nodes; `inverse` is how long, in tau, it takes for one.
-[[gnu::always_inline]] inline void set_axis(ReadyRays& ready, int axis, const Doubles& from,
-                                            Doubles inverse, const Doubles& grow) {
-  const Doubles sign(-0.0);
-  inverse = select(abs(inverse) <= Doubles(1.0 / kStandingRate), inverse,
-                   (inverse & sign) | Doubles(kStandingInverse));
-  const Doubles forward_grow = (inverse & sign) | grow;
+template <int Parts>
+[[gnu::always_inline]] inline void set_axis(ReadyRays& ready, int axis,
+                                            const Lanes<double, Parts>& from,
+                                            Lanes<double, Parts> inverse,
+                                            const Lanes<double, Parts>& grow) {
+  using D = Lanes<double, Parts>;
+  const D sign(-0.0);
+  inverse = select(abs(inverse) <= D(1.0 / kStandingRate), inverse,
+                   (inverse & sign) | D(kStandingInverse));
+  const D forward_grow = (inverse & sign) | grow;
   to_single(inverse).store(ready.inverse[axis]);
   to_single((-from - forward_grow) * inverse).store(ready.near[axis]);
   to_single((-from + forward_grow) * inverse).store(ready.far[axis]);
 }
 
 /// Rows that take a vector across the ray are made of quotients of its direction.
-[[gnu::always_inline]] inline void set_across(ReadyRays& ready, const Vec3<double>& direction,
-                                              const Vec3<double>& inverse) {
-  const LaneMask<double> y_is_faster = abs(direction.y) > abs(direction.x);
-  const Doubles faster = select(y_is_faster, abs(direction.y), abs(direction.x));
-  const LaneMask<double> z = abs(direction.z) > faster;
-  const LaneMask<double> y = y_is_faster & !z;
-  const Doubles inverse_of_fastest = select(z, inverse.z, select(y, inverse.y, inverse.x));
+template <int Parts>
+[[gnu::always_inline]] inline void set_across(ReadyRays& ready,
+                                              const Vec3<double, Parts>& direction,
+                                              const Vec3<double, Parts>& inverse) {
+  const auto y_is_faster = abs(direction.y) > abs(direction.x);
+  const auto faster = select(y_is_faster, abs(direction.y), abs(direction.x));
+  const auto z = abs(direction.z) > faster;
+  const auto y = y_is_faster & !z;
+  const auto inverse_of_fastest = select(z, inverse.z, select(y, inverse.y, inverse.x));
   to_single(-direction.x * inverse_of_fastest).store(ready.across[0]);
   to_single(-direction.y * inverse_of_fastest).store(ready.across[1]);
   to_single(-direction.z * inverse_of_fastest).store(ready.across[2]);
@@ -189,44 +221,46 @@ struct BoxPassage {
 /// A bound q becomes q * inverse + near in float: three or four roundings, each of half an ulp of
 /// at most (65536 + |from| + grow) * |inverse|. Where the ray is in the mesh's box, grown by its
 /// slack, that is less than kUnitDoubt and 2^-20 of the slack.
+template <bool Alone>
 inline Mask16 make_ready(const MeshSpan& mesh, const SurfaceRays& rays, const double* limit,
-                         std::uint32_t first, bool alone, ReadyRays& ready) {
-  const Vec3<double> start = load(rays.ray.origin, first, alone);
-  const Vec3<double> direction = load(rays.ray.direction, first, alone);
-  const Doubles own_slack = load(rays.slack, first, alone);
-  const Doubles one(1.0);
-  const Vec3<double> inverse{one / direction.x, one / direction.y, one / direction.z};
-  const Doubles most = load(limit, first, alone);
-  BoxPassage passage{.out = most};
+                         std::uint32_t first, ReadyRays& ready) {
+  using D = RayDoubles<Alone>;
+  using V = RayVec3<Alone>;
+  const V start = load<Alone>(rays.ray.origin, first);
+  const V direction = load<Alone>(rays.ray.direction, first);
+  const D own_slack = load<Alone>(rays.slack, first);
+  const D one(1.0);
+  const V inverse{one / direction.x, one / direction.y, one / direction.z};
+  const D most = load<Alone>(limit, first);
+  BoxPassage<D::kParts> passage{.out = most};
   passage.narrow(start.x, direction.x, inverse.x, own_slack, mesh.least[0], mesh.most[0]);
   passage.narrow(start.y, direction.y, inverse.y, own_slack, mesh.least[1], mesh.most[1]);
   passage.narrow(start.z, direction.z, inverse.z, own_slack, mesh.least[2], mesh.most[2]);
-  const Mask16 come = bits((passage.in <= passage.out) & (most >= Doubles(0.0)));
+  const Mask16 come = bits((passage.in <= passage.out) & (most >= D(0.0)));
   if (come == 0) return come;
   passage.in.store(ready.entry);
-  const Vec3<double> moved = direction * passage.in;
-  const Vec3<double> from = start + moved;
-  const Doubles farthest = largest_of(abs_of(start) + abs_of(moved));
-  const Doubles slack = min(Doubles(kMostSlack), own_slack + Doubles(0x1p-51) * farthest);
+  const V moved = direction * passage.in;
+  const V from = start + moved;
+  const D farthest = largest_of(abs_of(start) + abs_of(moved));
+  const D slack = min(D(kMostSlack), own_slack + D(0x1p-51) * farthest);
   // No ray is in the box, grown by the slack, for longer than twice this.
-  const Doubles extent(mesh.extent);
-  const LaneMask<double> is_slack = slack > Doubles(0x1p-10) * extent;
-  const Doubles longest = select(is_slack, extent + Doubles(2.0) * slack, extent);
-  const Doubles pace = select(is_slack, one / longest, Doubles(mesh.pace));
+  const D extent(mesh.extent);
+  const typename D::Mask is_slack = slack > D(0x1p-10) * extent;
+  const D longest = select(is_slack, extent + D(2.0) * slack, extent);
+  const D pace = select(is_slack, one / longest, D(mesh.pace));
   pace.store(ready.pace);
-  const Doubles* const at[] = {&from.x, &from.y, &from.z};
-  const Doubles* const way[] = {&direction.x, &direction.y, &direction.z};
-  const Doubles* const time[] = {&inverse.x, &inverse.y, &inverse.z};
+  const D* const at[] = {&from.x, &from.y, &from.z};
+  const D* const way[] = {&direction.x, &direction.y, &direction.z};
+  const D* const time[] = {&inverse.x, &inverse.y, &inverse.z};
   for (int axis = 0; axis < 3; ++axis) {
-    const Doubles units(mesh.units[axis]);
+    const D units(mesh.units[axis]);
     at[axis]->store(ready.origin[axis]);
     (*way[axis] * longest).store(ready.direction[axis]);
-    set_axis(ready, axis, (*at[axis] - Doubles(mesh.low[axis])) * units,
-             Doubles(mesh.step[axis]) * *time[axis] * pace,
-             Doubles(kUnitDoubt) + Doubles(1.001) * slack * units);
+    set_axis(ready, axis, (*at[axis] - D(mesh.low[axis])) * units,
+             D(mesh.step[axis]) * *time[axis] * pace, D(kUnitDoubt) + D(1.001) * slack * units);
   }
   set_across(ready, direction, inverse);
-  const Doubles wrong = min(Doubles(4.0) * slack, Doubles(kMostWrong)) + Doubles(mesh.rounding);
+  const D wrong = min(D(4.0) * slack, D(kMostWrong)) + D(mesh.rounding);
   to_single(wrong).store(ready.wrong);
   return come;
 }

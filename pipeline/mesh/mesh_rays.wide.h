@@ -274,7 +274,8 @@ class WaitingRays {
 
  private:
   void make_some_ready() {
-    come_ = make_ready(span_, rays_, limits_, first_, count_ == 1, ready_);
+    come_ = count_ == 1 ? make_ready<true>(span_, rays_, limits_, first_, ready_)
+                        : make_ready<false>(span_, rays_, limits_, first_, ready_);
     if (count_ - first_ < kRayLanes) come_ &= lanes_below(count_ - first_);
   }
 

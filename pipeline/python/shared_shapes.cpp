@@ -353,6 +353,26 @@ void update_height_field(Shapes& shapes, std::uint32_t field, std::uint32_t colu
   return id.bits;
 }
 
+[[nodiscard]] py::tuple compound_parts(const Shapes& shapes, std::uint32_t compound,
+                                       py::handle parts) {
+  const Integers<std::uint32_t> part(parts, "parts");
+  auto child = fresh<std::uint32_t>(part.count());
+  auto own = fresh<std::uint32_t>(part.count());
+  std::uint32_t* const to_child = child.mutable_data();
+  std::uint32_t* const to_own = own.mutable_data();
+  const Outcome outcome = reading(shapes.mutex, [&] {
+    for (std::size_t i = 0; i < part.count(); ++i) {
+      const CompoundPart found = shapes.composites.part(ShapeId{compound}, part[i]);
+      if (found.child == kWholeShape) return Outcome{Status::invalid_key, i};
+      to_child[i] = found.child;
+      to_own[i] = found.part;
+    }
+    return Outcome{};
+  });
+  accept(outcome.status, outcome.text("compound_parts"));
+  return py::make_tuple(child, own);
+}
+
 // --- all shapes --------------------------------------------------------------------------------
 
 [[nodiscard]] Status remove_one(Shapes& shapes, ShapeId id) {
@@ -518,7 +538,12 @@ void add_composite(ShapesClass& type) {
       .def("update_height_field", &update_height_field, arg("field"), arg("column"), arg("row"),
            arg("heights"), "New heights (rows, columns) from (column, row) on.")
       .def("add_compound", &add_compound, arg("children"), arg("poses"),
-           "Adds a shape of n convex children, ids (n,), at poses (n, 7), and gives its id.");
+           "Adds a shape of n children, ids (n,) of convex shapes, meshes and height fields, at "
+           "poses (n, 7), and gives its id. Parts are numbered child by child: a convex child is "
+           "one, a surface has all its triangles.")
+      .def("compound_parts", &compound_parts, arg("compound"), arg("parts"),
+           "What parts (n,) of a compound are: (child, part), (n,) uint32 each, part WHOLE_SHAPE "
+           "of convex children.");
 }
 
 }  // namespace

@@ -43,11 +43,15 @@ inline constexpr Mask16 lanes_below(unsigned n) {
   return (1U << n) - 1U;
 }
 
-/// A truth value per lane of Lanes<T>, as registers hold them; `bits` makes a mask of it.
+/// Registers of sixty-four bytes of T.
 template <typename T>
+inline constexpr int kPartsOf = static_cast<int>(64 / sizeof(T) / xsimd::batch<T>::size);
+
+/// A truth value per lane of Lanes<T>, as registers hold them; `bits` makes a mask of it.
+template <typename T, int Parts = kPartsOf<T>>
 struct LaneMask {
   using Part = xsimd::batch_bool<T>;
-  static constexpr int kParts = static_cast<int>(64 / sizeof(T) / xsimd::batch<T>::size);
+  static constexpr int kParts = Parts;
 
   Part part[kParts];
 
@@ -68,12 +72,14 @@ struct LaneMask {
   }
 };
 
-template <typename T>
+/// With one part, it is a register of any instruction set: for numbers that stand alone.
+template <typename T, int Parts = kPartsOf<T>>
 struct Lanes {
   using Part = xsimd::batch<T>;
-  static constexpr int kCount = static_cast<int>(64 / sizeof(T));
+  using Mask = LaneMask<T, Parts>;
+  static constexpr int kParts = Parts;
   static constexpr int kPartLanes = static_cast<int>(Part::size);
-  static constexpr int kParts = kCount / kPartLanes;
+  static constexpr int kCount = kParts * kPartLanes;
 
   Part part[kParts];
 
@@ -127,11 +133,11 @@ struct Lanes {
   }
 
 // False where either is NaN.
-#define WINNOW_LANES_COMPARE(op)                                                          \
-  [[gnu::always_inline]] friend LaneMask<T> operator op(const Lanes& a, const Lanes& b) { \
-    LaneMask<T> r;                                                                        \
-    for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] op b.part[i];                  \
-    return r;                                                                             \
+#define WINNOW_LANES_COMPARE(op)                                                   \
+  [[gnu::always_inline]] friend Mask operator op(const Lanes& a, const Lanes& b) { \
+    Mask r;                                                                        \
+    for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] op b.part[i];           \
+    return r;                                                                      \
   }
   WINNOW_LANES_COMPARE(<)
   WINNOW_LANES_COMPARE(<=)
@@ -141,8 +147,7 @@ struct Lanes {
 #undef WINNOW_LANES_COMPARE
 
   /// a where the mask holds, b elsewhere.
-  [[gnu::always_inline]] friend Lanes select(const LaneMask<T>& mask, const Lanes& a,
-                                             const Lanes& b) {
+  [[gnu::always_inline]] friend Lanes select(const Mask& mask, const Lanes& a, const Lanes& b) {
     Lanes r;
     for (int i = 0; i < kParts; ++i) {
       r.part[i] = xsimd::select(mask.part[i], a.part[i], b.part[i]);
@@ -175,6 +180,7 @@ struct Lanes {
 using Floats = Lanes<float>;
 using Doubles = Lanes<double>;
 using Uints = Lanes<std::uint32_t>;
+using OneDouble = Lanes<double, 1>;
 
 /// The largest finite number.
 template <typename T>
@@ -225,10 +231,10 @@ inline Mask16 bits(xsimd::batch_bool<double> b) {
 }
 
 /// A mask of the lanes that hold.
-template <typename T>
-[[gnu::always_inline]] inline Mask16 bits(const LaneMask<T>& mask) {
+template <typename T, int Parts>
+[[gnu::always_inline]] inline Mask16 bits(const LaneMask<T, Parts>& mask) {
   Mask16 r = 0;
-  for (int i = 0; i < LaneMask<T>::kParts; ++i) {
+  for (int i = 0; i < Parts; ++i) {
     r |= bits(mask.part[i]) << (i * Lanes<T>::kPartLanes);
   }
   return r;
@@ -315,22 +321,32 @@ inline float reduce_max(const Floats& v) {
 #endif
 }
 
+/// Eight lanes rounded to the nearest float, in the first parts of Floats.
+[[gnu::always_inline]] inline void round_to_single(const Doubles& v, Floats::Part* part) {
+#if defined(WINNOW_ISA_IS_avx512)
+  part[0] = _mm512_castps256_ps512(_mm512_cvtpd_ps(v.part[0]));
+#elif defined(WINNOW_ISA_IS_avx2)
+  part[0] = _mm256_set_m128(_mm256_cvtpd_ps(v.part[1]), _mm256_cvtpd_ps(v.part[0]));
+#elif defined(WINNOW_ISA_IS_sse42)
+  part[0] = _mm_movelh_ps(_mm_cvtpd_ps(v.part[0]), _mm_cvtpd_ps(v.part[1]));
+  part[1] = _mm_movelh_ps(_mm_cvtpd_ps(v.part[2]), _mm_cvtpd_ps(v.part[3]));
+#else
+  part[0] = vcvt_high_f32_f64(vcvt_f32_f64(v.part[0]), v.part[1]);
+  part[1] = vcvt_high_f32_f64(vcvt_f32_f64(v.part[2]), v.part[3]);
+#endif
+}
+
 /// Lanes rounded to the nearest float: `low` becomes lanes 0 to 7.
 [[gnu::always_inline]] inline Floats to_single(const Doubles& low, const Doubles& high) {
   Floats r;
 #if defined(WINNOW_ISA_IS_avx512)
-  r.part[0] = _mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(low.part[0])),
-                                 _mm512_cvtpd_ps(high.part[0]), 1);
-#elif defined(WINNOW_ISA_IS_avx2)
-  r.part[0] = _mm256_set_m128(_mm256_cvtpd_ps(low.part[1]), _mm256_cvtpd_ps(low.part[0]));
-  r.part[1] = _mm256_set_m128(_mm256_cvtpd_ps(high.part[1]), _mm256_cvtpd_ps(high.part[0]));
+  Floats::Part half[2];
+  round_to_single(low, half);
+  round_to_single(high, half + 1);
+  r.part[0] = _mm512_insertf32x8(half[0], _mm512_castps512_ps256(half[1]), 1);
 #else
-  alignas(64) double from[kLanes];
-  alignas(64) float to[kLanes];
-  low.store(from);
-  high.store(from + 8);
-  for (int lane = 0; lane < kLanes; ++lane) to[lane] = static_cast<float>(from[lane]);
-  r = Floats::load(to);
+  round_to_single(low, r.part);
+  round_to_single(high, r.part + Floats::kParts / 2);
 #endif
   return r;
 }
@@ -339,12 +355,26 @@ inline float reduce_max(const Floats& v) {
 [[gnu::always_inline]] inline Floats to_single(const Doubles& v) {
 #if defined(WINNOW_ISA_IS_avx512)
   Floats r;
-  r.part[0] = _mm512_castps256_ps512(_mm512_cvtpd_ps(v.part[0]));
+  round_to_single(v, r.part);
   return r;
 #else
   return to_single(v, v);
 #endif
 }
+#if !defined(WINNOW_ISA_IS_avx512)
+/// The same of one register.
+[[gnu::always_inline]] inline Lanes<float, 1> to_single(const OneDouble& v) {
+  Lanes<float, 1> r;
+#if defined(WINNOW_ISA_IS_avx2)
+  r.part[0] = _mm256_castps128_ps256(_mm256_cvtpd_ps(v.part[0]));
+#elif defined(WINNOW_ISA_IS_sse42)
+  r.part[0] = _mm_cvtpd_ps(v.part[0]);
+#else
+  r.part[0] = vcombine_f32(vcvt_f32_f64(v.part[0]), vdup_n_f32(0.0F));
+#endif
+  return r;
+}
+#endif
 
 /// Lanes 0 to 7, or 8 to 15, in double.
 template <int Half>
@@ -357,11 +387,16 @@ template <int Half>
   r.part[0] = _mm256_cvtps_pd(_mm256_castps256_ps128(half));
   r.part[1] = _mm256_cvtps_pd(_mm256_extractf128_ps(half, 1));
 #else
-  alignas(64) float from[kLanes];
-  alignas(64) double to[8];
-  v.store(from);
-  for (int lane = 0; lane < 8; ++lane) to[lane] = static_cast<double>(from[Half * 8 + lane]);
-  r = Doubles::load(to);
+  for (int i = 0; i < 2; ++i) {
+    const auto quarter = v.part[2 * Half + i];
+#if defined(WINNOW_ISA_IS_sse42)
+    r.part[2 * i] = _mm_cvtps_pd(quarter);
+    r.part[2 * i + 1] = _mm_cvtps_pd(_mm_movehl_ps(quarter, quarter));
+#else
+    r.part[2 * i] = vcvt_f64_f32(vget_low_f32(quarter));
+    r.part[2 * i + 1] = vcvt_high_f64_f32(quarter);
+#endif
+  }
 #endif
   return r;
 }

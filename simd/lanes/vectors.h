@@ -7,11 +7,11 @@
 namespace winnow::WINNOW_ISA_NAME {
 
 /// One vector per lane.
-template <typename T>
+template <typename T, int Parts = kPartsOf<T>>
 struct Vec3 {
-  Lanes<T> x;
-  Lanes<T> y;
-  Lanes<T> z;
+  Lanes<T, Parts> x;
+  Lanes<T, Parts> y;
+  Lanes<T, Parts> z;
 
   [[gnu::always_inline]] friend Vec3 operator+(const Vec3& a, const Vec3& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
@@ -20,28 +20,31 @@ struct Vec3 {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
   }
   [[gnu::always_inline]] friend Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
-  [[gnu::always_inline]] friend Vec3 operator*(const Vec3& a, const Lanes<T>& s) {
+  [[gnu::always_inline]] friend Vec3 operator*(const Vec3& a, const Lanes<T, Parts>& s) {
     return {a.x * s, a.y * s, a.z * s};
   }
 };
 
 /// The sum of the magnitudes.
-template <typename T>
-[[gnu::always_inline]] inline Lanes<T> taxicab(const Vec3<T>& v) {
+template <typename T, int Parts>
+[[gnu::always_inline]] inline Lanes<T, Parts> taxicab(const Vec3<T, Parts>& v) {
   return abs(v.x) + abs(v.y) + abs(v.z);
 }
 
-template <typename T>
-[[gnu::always_inline]] inline Lanes<T> dot(const Vec3<T>& a, const Vec3<T>& b) {
+template <typename T, int Parts>
+[[gnu::always_inline]] inline Lanes<T, Parts> dot(const Vec3<T, Parts>& a,
+                                                  const Vec3<T, Parts>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-template <typename T>
-[[gnu::always_inline]] inline Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
+template <typename T, int Parts>
+[[gnu::always_inline]] inline Vec3<T, Parts> cross(const Vec3<T, Parts>& a,
+                                                   const Vec3<T, Parts>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-template <typename T>
-[[gnu::always_inline]] inline Vec3<T> select(const LaneMask<T>& mask, const Vec3<T>& a,
-                                             const Vec3<T>& b) {
+template <typename T, int Parts>
+[[gnu::always_inline]] inline Vec3<T, Parts> select(const LaneMask<T, Parts>& mask,
+                                                    const Vec3<T, Parts>& a,
+                                                    const Vec3<T, Parts>& b) {
   return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 

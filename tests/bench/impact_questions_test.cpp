@@ -57,6 +57,12 @@ TEST(ImpactQuestions, are_answered_for_composite_shapes) {
                 {"type": "box", "half": [1, 1, 1], "pose": {"position": [0, 0, -5]}},
                 {"type": "box", "half": [1, 1, 1], "pose": {"position": [0, 0, 1]}}]})"),
               0.25, 1e-6);
+  EXPECT_NEAR(time_with(R"({"type": "compound", "children": [
+                {"type": "sphere", "radius": 0.25, "pose": {"position": [9, 0, 0]}},
+                {"type": "mesh", "v": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]],
+                 "pose": {"position": [0, 0, 1]}},
+                {"type": "height_field", "heights": [[1, 1], [1, 1]]}]})"),
+              0.375, 1e-6);
   EXPECT_EQ(answer_to_one(R"({"a": {"type": "mesh", "v": [[0, 0, 0]], "triangles": [[0, 0, 7]],
                                     "end_pose": {}},
                               "b": {"type": "sphere", "radius": 1}})")["status"],
@@ -64,7 +70,10 @@ TEST(ImpactQuestions, are_answered_for_composite_shapes) {
   for (const char* const bad :
        {R"({"type": "mesh", "v": [[0, 0, 0]], "end_pose": {}})",
         R"({"type": "height_field", "heights": [[0, 1], [0]], "end_pose": {}})",
-        R"({"type": "compound", "children": 3, "end_pose": {}})"}) {
+        R"({"type": "compound", "children": 3, "end_pose": {}})",
+        R"({"type": "compound", "children": [7], "end_pose": {}})",
+        R"({"type": "compound", "children": [{"type": "compound", "children": []}],
+            "end_pose": {}})"}) {
     const std::string question =
         std::string(R"({"b": {"type": "sphere", "radius": 1}, "a": )") + bad + "}";
     EXPECT_EQ(answer_to_one(question.c_str())["status"], "invalid_argument");

@@ -72,9 +72,11 @@ void make_composites(const trace* t, winnow_composite_pool* pool, const winnow_s
   samples.count = 1;
   samples.columns = samples.rows = 1;
   OK(winnow_composite_pool_update_height_field(pool, ids[2], 1, 1, &samples));
-  winnow_compound_child children[2] = {{convex[0], WINNOW_POSE}, {convex[2], WINNOW_POSE}};
+  winnow_compound_child children[3] = {
+      {convex[0], WINNOW_POSE}, {convex[2], WINNOW_POSE}, {ids[0], WINNOW_POSE}};
+  children[2].pose.position[2] = -0.3;
   children[1].pose.position[2] = 0.4;
-  OK(winnow_composite_pool_add_compound(pool, children, 2, &ids[3]));
+  OK(winnow_composite_pool_add_compound(pool, children, 3, &ids[3]));
 }
 
 void ask_shapes_in_c(const trace* t) {
@@ -121,6 +123,15 @@ void ask_shapes_in_c(const trace* t) {
   OK(winnow_composite_pool_children(composites, many[3], &children, &count));
   note(t, "children", count);
   note_reals(t, "child", children[1].pose.position, 3);
+  size_t parts = 0;
+  OK(winnow_composite_pool_parts(composites, many[3], &parts));
+  for (uint32_t part = 0; part < parts; ++part) {
+    uint32_t child = 0;
+    uint32_t child_part = 0;
+    OK(winnow_composite_pool_part(composites, many[3], part, &child, &child_part));
+    note(t, "child", child);
+    note(t, "part", child_part);
+  }
   OK(winnow_composite_pool_size(composites, WINNOW_SHAPE_MESH, &count));
   note(t, "meshes", count);
 

@@ -22,16 +22,19 @@ void note_box(const trace* t, const char* what, const Aabb& box) {
 
 void ask_composites(const trace* t, const CompositePool& pool, std::span<const ShapeId> ids,
                     const Pose& pose) {
-  const std::size_t parts[] = {2, 2, 8, 2};
   for (std::size_t i = 0; i < ids.size(); ++i) {
     note(t, "id", ids[i].bits);
     note(t, "contains", pool.contains(ids[i]));
     note_box(t, "bounds", pool.bounds(ids[i], pose));
     note_real(t, "radius", pool.radius(ids[i]));
-    note(t, "parts", parts[i]);
+    note(t, "parts", pool.parts(ids[i]));
   }
   note(t, "children", pool.children(ids[3]).size());
   note_reals(t, "child", pool.children(ids[3])[1].pose.position, 3);
+  for (std::uint32_t part = 0; part < pool.parts(ids[3]); ++part) {
+    note(t, "child", pool.part(ids[3], part).child);
+    note(t, "part", pool.part(ids[3], part).part);
+  }
   note(t, "meshes", pool.size(CompositeKind::mesh));
 }
 
@@ -123,8 +126,9 @@ std::array<ShapeId, 4> make_composite(CompositePool& pool, const std::array<Shap
   (void)pool.refit_mesh(ids[0], std::span<const Eigen::Vector3f>(vertices));
   const float heights[] = {0, 0.1F, 0, 0.2F, 0.25F, 0.1F, 0, 0.3F, 0};
   (void)pool.add_height_field({heights, 3, 3, 0, {4, 4}}, ids[2]);
-  const std::array<CompoundChild, 2> children{CompoundChild{convex[0], {}},
-                                              CompoundChild{convex[2], Pose::at(0, 0, 0.4)}};
+  const std::array<CompoundChild, 3> children{CompoundChild{convex[0], {}},
+                                              CompoundChild{convex[2], Pose::at(0, 0, 0.4)},
+                                              CompoundChild{ids[0], Pose::at(0, 0, -0.3)}};
   (void)pool.add_compound(children, ids[3]);
   return ids;
 }

@@ -40,7 +40,7 @@ int main() {
   winnow::CompositePool composites(shapes);  // a scene without meshes needs, and links, none
   winnow::ShapeId terrain, chair;
   composites.add_mesh(std::span(points), std::span(corners), terrain);  // see PointView, IndexView
-  composites.add_compound(parts, chair);  // convex children; also add_height_field, add_scaled
+  composites.add_compound(parts, chair);  // children at poses; also add_height_field, add_scaled
   winnow::Scene scene(shapes, {.margin = 0.01, .carry_over = 0.001, .composites = &composites});
 
   winnow::Key ground, one, other;  // a body: shape, pose, fixed, dynamic or sleeping, filter, data

@@ -42,6 +42,7 @@ class TwinShapes {
     }
     add_field();
     add_compound();
+    add_compound_of_surfaces();
     composite_count = shapes.size();
     add_convex();
   }
@@ -111,6 +112,24 @@ class TwinShapes {
     ASSERT_EQ(composites.add_compound(children, id), Status::ok);
     std::vector<TwinPart> parts;
     for (const CompoundChild& child : children) parts.push_back({child.shape, child.pose});
+    put(id, std::move(parts));
+  }
+  /// A mesh, a ball and the field.
+  void add_compound_of_surfaces() {
+    const TwinShape& mesh = shapes[0];
+    const TwinShape& field = shapes[shapes.size() - 2];
+    Pose poses[3] = {Pose::at(0.3, -0.2, 0.1), Pose::at(-0.8, 0, 0), Pose::at(0, 0.5, -1)};
+    poses[0].orientation[1] = 0.6;
+    poses[2].orientation[3] = -0.4;
+    const ShapeId ball = added(SphereShape{0.3});
+    const CompoundChild children[] = {
+        {mesh.shape, poses[0]}, {ball, poses[1]}, {field.shape, poses[2]}};
+    ShapeId id;
+    ASSERT_EQ(composites.add_compound(children, id), Status::ok);
+    std::vector<TwinPart> parts;
+    for (const TwinPart& part : mesh.parts) parts.push_back({part.shape, poses[0]});
+    parts.push_back({ball, poses[1]});
+    for (const TwinPart& part : field.parts) parts.push_back({part.shape, poses[2]});
     put(id, std::move(parts));
   }
   void add_convex() {

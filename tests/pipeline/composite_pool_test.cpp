@@ -31,8 +31,11 @@ TEST(CompositePool, refuses_what_it_cannot_hold) {
   bad.position[1] = std::nan("");
   const CompoundChild nowhere[] = {{world.ids[0], bad}};
   EXPECT_EQ(pool.add_compound(nowhere, id), Status::invalid_pose);
-  const CompoundChild nested[] = {{mesh, Pose{}}};
+  ASSERT_EQ(world.ids[8].composite_kind(), CompositeKind::compound);
+  const CompoundChild nested[] = {{world.ids[8], Pose{}}};
   EXPECT_EQ(pool.add_compound(nested, id), Status::invalid_key);
+  const CompoundChild gone[] = {{ShapeId::of(CompositeKind::mesh, 1000), Pose{}}};
+  EXPECT_EQ(pool.add_compound(gone, id), Status::invalid_key);
   EXPECT_EQ(pool.remove(world.ids[0]), Status::invalid_key);
   EXPECT_FALSE(pool.contains({}));
   EXPECT_FALSE(pool.contains(id));
@@ -61,6 +64,94 @@ TEST(CompositePool, triangles_live_until_the_last_scaled_id_is_removed) {
   EXPECT_EQ(pool.size(CompositeKind::mesh), 1U);
   EXPECT_EQ(memory.outstanding(), pool.footprint().total().reserved);
   EXPECT_EQ(add(pool, surface), second);
+}
+
+/// Parts of compounds of surfaces.
+TEST(CompositePool, a_part_is_told_by_its_child) {
+  Random random(8);
+  ShapePool shapes;
+  CompositePool pool(shapes);
+  const ShapeId ball = add(shapes, SphereShape{0.5});
+  const ShapeId mesh = add(pool, soup(random, 30, 2.0, 0.5));
+  const std::vector<float> heights(12, 1.0F);
+  ShapeId field;
+  ASSERT_EQ(pool.add_height_field({.heights = heights, .columns = 4, .rows = 3}, field),
+            Status::ok);
+  const CompoundChild children[] = {{ball, {}}, {mesh, {}}, {field, {}}, {mesh, {}}, {ball, {}}};
+  ShapeId compound;
+  ASSERT_EQ(pool.add_compound(children, compound), Status::ok);
+  std::uint32_t number = 0;
+  for (std::uint32_t child = 0; child < 5; ++child) {
+    const std::uint32_t parts = child % 4 == 0 ? 1 : (child == 2 ? 12 : 30);
+    for (std::uint32_t i = 0; i < parts; ++i, ++number) {
+      const CompoundPart part = pool.part(compound, number);
+      EXPECT_EQ(part.child, child);
+      EXPECT_EQ(part.part, parts == 1 ? kWholeShape : i);
+    }
+  }
+  EXPECT_EQ(pool.part(compound, number).child, kWholeShape);
+  EXPECT_EQ(pool.part(compound, kWholeShape).child, kWholeShape);
+  EXPECT_EQ(pool.part(mesh, 0).child, kWholeShape);
+  ShapeId plain;
+  ASSERT_EQ(pool.add_compound(std::span(children, 1), plain), Status::ok);
+  EXPECT_EQ(pool.part(plain, 0).child, 0U);
+  EXPECT_EQ(pool.part(plain, 1).child, kWholeShape);
+}
+
+TEST(CompositePool, what_compounds_are_made_of_stays) {
+  Random random(9);
+  ShapePool shapes;
+  CompositePool pool(shapes);
+  const ShapeId mesh = add(pool, soup(random, 30, 2.0, 0.5));
+  ShapeId scaled_mesh;
+  ASSERT_EQ(pool.add_scaled(mesh, {2.0, 2.0, 2.0}, scaled_mesh), Status::ok);
+  const CompoundChild child[] = {{scaled_mesh, Pose::at(1, 0, 0)}};
+  ShapeId compound;
+  ASSERT_EQ(pool.add_compound(child, compound), Status::ok);
+  EXPECT_EQ(pool.remove(scaled_mesh), Status::invalid_argument);
+  EXPECT_EQ(pool.remove(mesh), Status::ok);
+  EXPECT_EQ(pool.remove(compound), Status::ok);
+  EXPECT_EQ(pool.remove(scaled_mesh), Status::ok);
+}
+
+/// Of few children and of many.
+TEST(CompositePool, compounds_follow_surfaces_that_change) {
+  Random random(10);
+  for (const std::size_t children : {2U, 20U}) {
+    ShapePool shapes;
+    CompositePool pool(shapes);
+    Surface surface = soup(random, 30, 2.0, 0.5);
+    const ShapeId mesh = add(pool, surface);
+    std::vector<float> heights(12, 1.0F);
+    ShapeId field;
+    ASSERT_EQ(pool.add_height_field({.heights = heights, .columns = 4, .rows = 3}, field),
+              Status::ok);
+    const ShapeId ball = add(shapes, SphereShape{0.1});
+    std::vector<CompoundChild> list(children, {ball, {}});
+    list[0] = {mesh, Pose::at(5, 0, 0)};
+    list[1] = {field, Pose::at(-5, 0, 0)};
+    ShapeId compound;
+    ASSERT_EQ(pool.add_compound(list, compound), Status::ok);
+    const double radius = pool.radius(compound);
+    for (Point& vertex : surface.vertices) vertex *= 3.0F;
+    ASSERT_EQ(pool.refit_mesh(mesh, std::span<const Point>(surface.vertices)), Status::ok);
+    EXPECT_GT(pool.radius(compound), radius + 2.0);
+    EXPECT_GE(pool.bounds(compound, {}).max[0], 5.0F + pool.bounds(mesh, {}).max[0]);
+    heights[5] = 90.0F;
+    ASSERT_EQ(pool.update_height_field(field, 0, 0, {.heights = heights, .columns = 4, .rows = 3}),
+              Status::ok);
+    EXPECT_GE(pool.bounds(compound, {}).max[2], 90.0F);
+    // Their trees as well: the highest sample is found.
+    int met = 0;
+    const BoxSweep high{{-10, -10, 89}, {10, 10, 91}};
+    pool.visit(compound, {}, high,
+               {[](void* context, const Primitive&, double limit) {
+                  ++*static_cast<int*>(context);
+                  return limit;
+                },
+                &met});
+    EXPECT_GT(met, 0);
+  }
 }
 
 TEST(CompositePool, boxes_and_radii_hold_every_part) {

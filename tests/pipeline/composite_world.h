@@ -161,6 +161,25 @@ struct CompositeWorld {
     heights[17] = std::nanf("");
     ids.emplace_back();
     EXPECT_EQ(composites.add_height_field({heights, 9, 6, 0, {0.4, 0.6}}, ids.back()), Status::ok);
+    add_compounds_of_surfaces(random, mesh, heights);
+  }
+
+  /// Of few children and of many; surfaces of their own, so that `ids` can be removed one by one.
+  void add_compounds_of_surfaces(Random& random, ShapeId mesh, const std::vector<float>& heights) {
+    ShapeId surfaces[3];
+    EXPECT_EQ(composites.add_scaled(mesh, {1.0, 1.0, 1.0}, surfaces[0]), Status::ok);
+    EXPECT_EQ(composites.add_scaled(mesh, {0.5, -0.7, 0.2}, surfaces[1]), Status::ok);
+    EXPECT_EQ(composites.add_height_field({heights, 9, 6, 0, {0.4, 0.6}}, surfaces[2]), Status::ok);
+    for (const int children : {3, 20}) {
+      std::vector<CompoundChild> list;
+      for (int i = 0; i < children; ++i) {
+        const bool is_surface = i % 7 < 2;
+        list.push_back({is_surface ? surfaces[random.below(3)] : ids[random.below(7)],
+                        random_pose(random, 1.5)});
+      }
+      ids.emplace_back();
+      EXPECT_EQ(composites.add_compound(list, ids.back()), Status::ok);
+    }
   }
 
   void add_pairs(Random& random, std::size_t count, double reach, const double (&at)[3]) {

@@ -132,7 +132,7 @@ inline void fill(QueryWorld& world, std::size_t count, double center, Random& ra
   for (const ShapeId shape : world.shapes.shapes) {
     world.add(shape, random_pose(spread, random), random);
   }
-  ShapeId ids[4];
+  ShapeId ids[5];
   ids[0] = add_sheet(world.composites, 6);
   ASSERT_EQ(world.composites.add_scaled(ids[0], {2.0, 0.5, -3.0}, ids[1]), Status::ok);
   std::vector<CompoundChild> children;
@@ -143,8 +143,14 @@ inline void fill(QueryWorld& world, std::size_t count, double center, Random& ra
   std::vector<float> heights(12 * 9);
   for (float& h : heights) h = static_cast<float>(random.unit());
   ASSERT_EQ(world.composites.add_height_field({heights, 12, 9, 0, {0.4, 0.5}}, ids[3]), Status::ok);
-  for (std::size_t i = 0; i < 12; ++i) {
-    world.add(ids[i % 4], random_pose(spread, random), random);
+  std::vector<CompoundChild> surfaces;
+  for (const std::size_t i : {0U, 1U, 3U, 0U}) {
+    surfaces.push_back({ids[i], random_pose(2.0, random)});
+    surfaces.push_back({world.shapes.shapes[i], random_pose(2.0, random)});
+  }
+  ASSERT_EQ(world.composites.add_compound(surfaces, ids[4]), Status::ok);
+  for (std::size_t i = 0; i < 15; ++i) {
+    world.add(ids[i % 5], random_pose(spread, random), random);
   }
 }
 

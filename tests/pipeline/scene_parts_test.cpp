@@ -52,6 +52,7 @@ class PartsWorld {
     }
     add_field();
     add_compound();
+    add_compound_of_all();
   }
 
   [[nodiscard]] const ShapePool& convex() const { return convex_; }
@@ -155,6 +156,32 @@ class PartsWorld {
       for (double& q : child.pose.orientation) q = random.uniform(-1.0, 1.0);
       children.push_back(child);
       pieces.push_back({child.shape, {}, child.pose, i});
+    }
+    ShapeId id;
+    EXPECT_EQ(pool_.add_compound(children, id), Status::ok);
+    shapes_.push_back(id);
+    pieces_.push_back(std::move(pieces));
+  }
+
+  /// Everything but the compound before it.
+  void add_compound_of_all() {
+    std::vector<CompoundChild> children;
+    std::vector<Piece> pieces;
+    Random random(47);
+    std::uint32_t first = 0;
+    for (std::size_t kind = 0; kind + 1 < shapes_.size(); ++kind) {
+      CompoundChild child{shapes_[kind], {}};
+      for (double& p : child.pose.position) p = random.uniform(-1.0, 1.0);
+      for (double& q : child.pose.orientation) q = random.uniform(-1.0, 1.0);
+      children.push_back(child);
+      for (Piece piece : pieces_[kind]) {
+        piece.pose = child.pose;
+        piece.part = first + (piece.part == kWholeShape ? 0 : piece.part);
+        pieces.push_back(piece);
+      }
+      const HeightField* const field = pool_.height_field(child.shape);
+      first +=
+          field != nullptr ? field->triangles() : static_cast<std::uint32_t>(pieces_[kind].size());
     }
     ShapeId id;
     EXPECT_EQ(pool_.add_compound(children, id), Status::ok);

@@ -178,6 +178,27 @@ def test_height_fields_and_meshes_change_in_place():
     refused("size_mismatch", shapes.refit_mesh, mesh, CUBE[:3])
 
 
+def test_compounds_are_made_of_meshes_too():
+    shapes = winnow.Shapes()
+    ball = int(shapes.add_spheres([0.5])[0])
+    mesh = shapes.add_mesh(CUBE, [[0, 1, 2], [5, 6, 7]])
+    compound = shapes.add_compound([ball, mesh, ball], poses_at([0, 0, 0], [9, 0, 0], [20, 0, 0]))
+    child, part = shapes.compound_parts(compound, [0, 1, 2, 3])
+    assert child.tolist() == [0, 1, 1, 2]
+    assert part.tolist() == [winnow.WHOLE_SHAPE, 0, 1, winnow.WHOLE_SHAPE]
+    refused("invalid_key", shapes.compound_parts, compound, [4])
+    refused("invalid_key", shapes.compound_parts, mesh, [0])
+    refused("invalid_key", shapes.add_compound, [compound], [[0, 0, 0]])
+    refused("invalid_key", shapes.remove, [mesh])
+    scene = winnow.Scene(shapes)
+    scene.add([compound, ball], [[0, 0, 0], [9, 1.2, 0]])
+    contacts = winnow.Contacts()
+    scene.collide(contacts, "distance")
+    assert len(contacts) == 1
+    shapes.refit_mesh(mesh, CUBE + [50, 0, 0])
+    assert shapes.bounds([compound], [[0, 0, 0]])[1][0, 0] >= 60
+
+
 @given(any_array(), any_array(), any_array(), st.integers(0, 2**32 - 1))
 @settings(max_examples=200)
 def test_any_arrays_are_taken_or_refused(first, second, third, number):
@@ -200,6 +221,7 @@ def test_any_arrays_are_taken_or_refused(first, second, third, number):
         lambda: shapes.add_height_field(first),
         lambda: shapes.add_compound(ids[:1], first),
         lambda: shapes.add_compound(first, second),
+        lambda: shapes.compound_parts(number, first),
         lambda: shapes.update_height_field(number, 0, 0, first),
         lambda: shapes.refit_mesh(number, first),
         lambda: shapes.add_scaled(number, [1, 2, 3]),

@@ -77,7 +77,7 @@ TEST_F(ProgramFrames, of_scenes_are_boxes_of_bodies) {
   }
   const bench::Recording recording = bench::read_recording(path_);
   EXPECT_EQ(recording.frames.size(), 5U);
-  EXPECT_EQ(recording.objects(), 38U);
+  EXPECT_EQ(recording.objects(), 39U);
   EXPECT_EQ(recording.program->differences, 0U);
 }
 

@@ -188,7 +188,7 @@ void record_volumes(Recorder& recorder, std::size_t count) {
 
 namespace {
 
-/// A mesh, a field and two compounds, and what changes them in place.
+/// A mesh, a field, two compounds and one of surfaces, and what changes them in place.
 struct Landscape {
   explicit Landscape(const SceneWorld& world)
       : pool(world.pool), land(terrain(5)), heights{0, 1, 0.5F, 0.2F, 0.1F, 0.3F, 1, 0, 0} {
@@ -198,6 +198,10 @@ struct Landscape {
     EXPECT_EQ(pool.add_scaled(ids[0], {0.5, -1.0, 2.0}, ids.emplace_back()), Status::ok);
     EXPECT_EQ(pool.add_height_field(samples(), ids.emplace_back()), Status::ok);
     add_compound(world, 3);
+    const CompoundChild surfaces[] = {{ids[1], Pose::at(0, 0.5, 1)},
+                                      {world.shapes[0], Pose::at(0.2, 0, 0)},
+                                      {ids[2], Pose::at(-1, 0, 0.3)}};
+    EXPECT_EQ(pool.add_compound(surfaces, ids.emplace_back()), Status::ok);
     add_compound(world, 18);
   }
 
@@ -258,7 +262,7 @@ void change_bodies(RecordedScene& scene, SceneWorld& world, Landscape& landscape
     // In the place of one that is gone.
     Key key;
     ShapeId& rock = landscape.ids.back();
-    EXPECT_EQ(scene.set_shape(scene->key_of(4), landscape.ids[3]), Status::ok);
+    EXPECT_EQ(scene.set_shape(scene->key_of(5), landscape.ids[3]), Status::ok);
     EXPECT_EQ(landscape.pool.remove(rock), Status::ok);
     landscape.ids.pop_back();
     landscape.add_compound(world, 17);

@@ -84,6 +84,9 @@ void add_composites(Stage& stage, std::vector<ShapeId>& ids) {
     if (i != 1 && i != 17) continue;
     EXPECT_EQ(stage.composites.add_compound(children, ids.emplace_back()), Status::ok);
   }
+  const CompoundChild surfaces[] = {
+      {ids[convex], Pose::at(1, 0, 0)}, {ids[0], {}}, {ids[convex + 1], Pose::at(0, 2, 0)}};
+  EXPECT_EQ(stage.composites.add_compound(surfaces, ids.emplace_back()), Status::ok);
 }
 
 /// Shapes of every kind, some with free places before them.

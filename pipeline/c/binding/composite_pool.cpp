@@ -24,14 +24,6 @@ namespace {
   return true;
 }
 
-[[nodiscard]] std::size_t parts_of(const CompositePool& pool, ShapeId id) noexcept {
-  if (const TriangleMesh* mesh = pool.mesh(id); mesh != nullptr) return mesh->triangles();
-  if (const HeightField* field = pool.height_field(id); field != nullptr) {
-    return field->triangles();
-  }
-  return pool.children(id).size();
-}
-
 /// Gives the id of what was added, if it was.
 [[nodiscard]] winnow_status added(Status status, ShapeId id, winnow_shape_id* out) noexcept {
   if (status == Status::ok) *out = id.bits;
@@ -166,7 +158,18 @@ winnow_status winnow_composite_pool_parts(const winnow_composite_pool* pool, win
                                           size_t* parts) {
   if (!are_given(pool, parts)) return WINNOW_INVALID_ARGUMENT;
   if (!pool->value.contains({id})) return WINNOW_INVALID_KEY;
-  *parts = parts_of(pool->value, {id});
+  *parts = pool->value.parts({id});
+  return WINNOW_OK;
+}
+
+winnow_status winnow_composite_pool_part(const winnow_composite_pool* pool,
+                                         winnow_shape_id compound, uint32_t part, uint32_t* child,
+                                         uint32_t* child_part) {
+  if (!are_given(pool, child) || child_part == nullptr) return WINNOW_INVALID_ARGUMENT;
+  const winnow::CompoundPart found = pool->value.part({compound}, part);
+  if (found.child == winnow::kWholeShape) return WINNOW_INVALID_KEY;
+  *child = found.child;
+  *child_part = found.part;
   return WINNOW_OK;
 }
 
