@@ -191,7 +191,7 @@ def test_compounds_are_made_of_meshes_too():
     refused("invalid_key", shapes.add_compound, [compound], [[0, 0, 0]])
     refused("invalid_key", shapes.remove, [mesh])
     scene = winnow.Scene(shapes)
-    scene.add([compound, ball], [[0, 0, 0], [9, 1.2, 0]])
+    scene.add([compound, ball], [[0, 0, 0], CUBE[0] + [9, 0, 0]])
     contacts = winnow.Contacts()
     scene.collide(contacts, "distance")
     assert len(contacts) == 1
