@@ -1,6 +1,7 @@
 // Files of questions, of hard cases and of reports that anybody may have written: answered, or
 // refused with an error that says what is wrong with which file.
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -19,13 +20,24 @@ namespace {
 
 using bench::Json;
 
+/// Numbers that JSON has no words for. What an id is made of is the caller's.
+bool has_nulls(const Json& value) {
+  if (value.is_array()) {
+    return std::any_of(value.begin(), value.end(),
+                       [](const Json& one) { return one.is_null() || has_nulls(one); });
+  }
+  if (!value.is_object()) return false;
+  const auto members = value.items();
+  return std::any_of(members.begin(), members.end(),
+                     [](const auto& one) { return one.key() != "id" && has_nulls(one.value()); });
+}
+
 /// As `winnow query` and `winnow query --judge` do.
 void ask(const Json& questions) {
   for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
     const Json answers = bench::answer(questions, tier);
     WINNOW_HOLDS(answers.size() == questions.size());
-    const std::string text = answers.dump();
-    WINNOW_HOLDS(text.find("null,null") == std::string::npos);
+    WINNOW_HOLDS(!has_nulls(answers));
     const Json turned = bench::answer(bench::exchanged(questions), tier);
     WINNOW_HOLDS(turned.size() == questions.size());
     for (std::size_t i = 0; i < questions.size(); ++i) {
