@@ -57,6 +57,10 @@ class WINNOW_API ImpactResult {
   /// composite shape where no composites are given, `invalid_pose` for one with a motion that is
   /// not valid: the other columns then hold zeros.
   [[nodiscard]] Status status(std::size_t i) const noexcept { return status_[i]; }
+  /// The same of all.
+  [[nodiscard]] std::span<const Status> status() const noexcept {
+    return {status_.data(), status_.size()};
+  }
   /// True if they meet. False is certain: they are apart all the time.
   [[nodiscard]] bool hits(std::size_t i) const noexcept { return hit_[i] != 0; }
   /// The same of all, not 0 where they do.

@@ -23,6 +23,7 @@
 
 #include <winnow/c/contact_groups.h>
 #include <winnow/c/core.h>
+#include <winnow/c/hooks.h>
 #include <winnow/c/narrow_phase.h>
 #include <winnow/c/partition.h>
 #include <winnow/c/scene.h>
@@ -31,4 +32,5 @@
 #include <winnow/c/sensors.h>
 #include <winnow/c/shapes.h>
 #include <winnow/c/snapshots.h>
+#include <winnow/c/time_of_impact.h>
 #include <winnow/c/volumes.h>

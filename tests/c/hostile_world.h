@@ -31,6 +31,7 @@ class HostileWorld {
     EXPECT_EQ(winnow_composite_pool_create(shapes, nullptr, &composites), WINNOW_OK);
     EXPECT_EQ(winnow_narrow_phase_create(nullptr, &narrow), WINNOW_OK);
     EXPECT_EQ(winnow_narrow_result_create(nullptr, &result), WINNOW_OK);
+    EXPECT_EQ(winnow_impact_result_create(nullptr, &impacts), WINNOW_OK);
     EXPECT_EQ(winnow_contacts_create(nullptr, &contacts), WINNOW_OK);
     EXPECT_EQ(winnow_scene_create(shapes, nullptr, &scene), WINNOW_OK);
     EXPECT_EQ(winnow_scene_add(scene, &body, 1, &key), WINNOW_OK);
@@ -49,6 +50,7 @@ class HostileWorld {
     destroy(queries);
     destroy(scene);
     destroy(contacts);
+    destroy(impacts);
     destroy(result);
     destroy(narrow);
     destroy(composites);
@@ -99,6 +101,7 @@ class HostileWorld {
   winnow_composite_pool* composites = nullptr;
   winnow_narrow_phase* narrow = nullptr;
   winnow_narrow_result* result = nullptr;
+  winnow_impact_result* impacts = nullptr;
   winnow_contacts* contacts = nullptr;
   winnow_scene* scene = nullptr;
   winnow_scene_queries* queries = nullptr;
@@ -125,6 +128,7 @@ class HostileWorld {
   WINNOW_THING(winnow_composite_pool, composites)
   WINNOW_THING(winnow_narrow_phase, narrow)
   WINNOW_THING(winnow_narrow_result, result)
+  WINNOW_THING(winnow_impact_result, impacts)
   WINNOW_THING(winnow_contacts, contacts)
   WINNOW_THING(winnow_scene, scene)
   WINNOW_THING(winnow_scene_queries, queries)

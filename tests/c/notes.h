@@ -35,5 +35,6 @@ void ask_shapes_in_cpp(const trace* t);
 void ask_narrow_phase_in_cpp(const trace* t);
 void ask_scenes_in_cpp(const trace* t);
 void ask_watchers_in_cpp(const trace* t);
+void ask_impacts_in_cpp(const trace* t);
 
 }  // namespace winnow::test

@@ -54,6 +54,10 @@ TEST(CInterface, gives_the_answers_of_cpp_about_sensors_sweeps_and_groups) {
   expect_same(ask_watchers_in_c, ask_watchers_in_cpp);
 }
 
+TEST(CInterface, gives_the_answers_of_cpp_about_motions_and_hooks) {
+  expect_same(ask_impacts_in_c, ask_impacts_in_cpp);
+}
+
 /// All pairs of a dense row of boxes.
 [[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_on(
     const winnow_execution& execution) {

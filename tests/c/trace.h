@@ -35,6 +35,7 @@ void ask_shapes_in_c(const trace* t);
 void ask_narrow_phase_in_c(const trace* t);
 void ask_scenes_in_c(const trace* t);
 void ask_watchers_in_c(const trace* t);
+void ask_impacts_in_c(const trace* t);
 
 #ifdef __cplusplus
 }

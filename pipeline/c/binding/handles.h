@@ -11,6 +11,7 @@
 #include <winnow/c/scene_sweep.h>
 #include <winnow/c/sensors.h>
 #include <winnow/c/shapes.h>
+#include <winnow/c/time_of_impact.h>
 #include <winnow/core/column.h>
 #include <winnow/core/hits.h>
 #include <winnow/core/pair_buffer.h>
@@ -27,6 +28,7 @@
 #include <winnow/pipeline/scene_sweep.h>
 #include <winnow/pipeline/sensors.h>
 #include <winnow/pipeline/shape_pool.h>
+#include <winnow/pipeline/time_of_impact.h>
 
 struct winnow_pair_buffer : winnow::c::Handle {
   using Handle::Handle;
@@ -85,6 +87,11 @@ struct winnow_narrow_phase : winnow::c::Handle {
   using Handle::Handle;
   winnow::NarrowPhase value{&memory};
   winnow::Column<winnow::Pose> room{&memory};
+};
+
+struct winnow_impact_result : winnow::c::Handle {
+  using Handle::Handle;
+  winnow::ImpactResult value{&memory};
 };
 
 struct winnow_contacts : winnow::c::Handle {

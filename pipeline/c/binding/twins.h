@@ -9,6 +9,7 @@
 #include <winnow/c/scene_sweep.h>
 #include <winnow/c/sensors.h>
 #include <winnow/c/shapes.h>
+#include <winnow/c/time_of_impact.h>
 #include <winnow/c/volumes.h>
 #include <winnow/core/aabb.h>
 #include <winnow/core/capsule.h>
@@ -25,6 +26,7 @@
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/scene_sweep.h>
@@ -126,6 +128,10 @@ WINNOW_ARE_TWINS(winnow_scene_impact, SceneImpact)
 WINNOW_TWIN_MEMBERS(winnow_scene_impact, SceneImpact, part_b);
 WINNOW_TWIN_MEMBERS(winnow_scene_impact, SceneImpact, error_bound);
 WINNOW_TWIN_MEMBERS(winnow_scene_impact, SceneImpact, point);
+
+WINNOW_TWINS(winnow_rigid_motion, RigidMotion)
+WINNOW_TWIN_MEMBERS(winnow_rigid_motion, RigidMotion, travel);
+WINNOW_TWIN_MEMBERS(winnow_rigid_motion, RigidMotion, turn);
 
 #undef WINNOW_TWINS
 #undef WINNOW_ARE_TWINS

@@ -1,0 +1,92 @@
+#pragma once
+
+/// When shapes that move and turn first meet. What each call does stands at the same name of
+/// <winnow/pipeline/time_of_impact.h> and rigid_motion.h.
+
+#include <winnow/c/core.h>
+#include <winnow/c/narrow_phase.h>
+#include <winnow/c/shapes.h>
+#include <winnow/c/volumes.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// A motion while time runs from 0 to 1.
+typedef struct winnow_rigid_motion {
+  winnow_pose start;
+  double travel[3];
+  double turn[3];  ///< axis times angle in radians, in the axes of the world
+} winnow_rigid_motion;
+/// WINNOW_INVALID_POSE, here and below, for what is no valid motion.
+WINNOW_C_API winnow_status winnow_rigid_motion_between(const winnow_pose* start,
+                                                       const winnow_pose* end,
+                                                       winnow_rigid_motion* motion);
+WINNOW_C_API winnow_status winnow_rigid_motion_by_velocities(const winnow_pose* start,
+                                                             const double linear[3],
+                                                             const double angular[3],
+                                                             double duration,
+                                                             winnow_rigid_motion* motion);
+/// `time` is in [0, 1].
+WINNOW_C_API winnow_status winnow_rigid_motion_at(const winnow_rigid_motion* motion, double time,
+                                                  winnow_pose* pose);
+
+/// Body i has shape shapes[i] and moves by motions[i].
+typedef struct winnow_moving_bodies {
+  const winnow_shape_id* shapes;
+  const winnow_rigid_motion* motions;
+  size_t count;
+} winnow_moving_bodies;
+
+typedef struct winnow_impact_options {
+  size_t size;  ///< sizeof(winnow_impact_options), of the caller
+  double tolerance;
+  /// What holds meshes, height fields and compounds, or null.
+  const winnow_composite_pool* composites;
+  winnow_execution execution;
+} winnow_impact_options;
+#define WINNOW_IMPACT_OPTIONS                    \
+  {                                              \
+    sizeof(winnow_impact_options), 1e-6, NULL, { \
+      WINNOW_EXECUTION_SERIAL, {                 \
+        NULL, NULL, 0                            \
+      }                                          \
+    }                                            \
+  }
+
+typedef struct winnow_impact_result winnow_impact_result;
+WINNOW_C_API winnow_status winnow_impact_result_create(const winnow_memory* memory,
+                                                       winnow_impact_result** result);
+WINNOW_C_API void winnow_impact_result_destroy(winnow_impact_result* result);
+
+/// Answers where they lie, one for each pair in the order given, valid until the result is used
+/// again or destroyed. Columns that are empty are null.
+typedef struct winnow_impact_columns {
+  size_t size;  ///< sizeof(winnow_impact_columns), of the caller
+  size_t answers;
+  const uint8_t* status;  ///< a winnow_status of each pair
+  const uint8_t* hit;     ///< not 0 where they meet
+  const double* time;     ///< in [0, 1], never late; 1 where they do not meet
+  const double* gap;
+  const double* error_bound;
+  const double* normal[3];
+  const double* point[3];
+  const uint32_t* part_a;
+  const uint32_t* part_b;
+} winnow_impact_columns;
+WINNOW_C_API winnow_status winnow_impact_result_columns(const winnow_impact_result* result,
+                                                        winnow_impact_columns* columns);
+WINNOW_C_API winnow_status winnow_impact_result_footprint(const winnow_impact_result* result,
+                                                          winnow_footprint* footprint);
+
+/// `options` may be null. What is wrong with one pair is in its status; a call that is refused
+/// leaves `result` empty.
+WINNOW_C_API winnow_status winnow_time_of_impact(const winnow_shape_pool* shapes,
+                                                 const winnow_moving_bodies* bodies,
+                                                 const winnow_body_pair* pairs, size_t count,
+                                                 const winnow_impact_options* options,
+                                                 winnow_impact_result* result);
+
+#ifdef __cplusplus
+}
+#endif
