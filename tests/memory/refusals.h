@@ -20,6 +20,8 @@
 
 namespace winnow::test {
 
+inline std::size_t refused_to_all_plays = 0;
+
 /// Numbers to be compared bit by bit.
 using Digest = std::vector<std::uint64_t>;
 
@@ -48,7 +50,8 @@ class RefusedPlay {
   RefusedPlay(std::vector<Call<World>> calls, int threads, Arguments... arguments)
       : calls_(std::move(calls)), threads_(threads), arguments_(arguments...) {}
 
-  /// How many requests were refused in all.
+  /// How many requests were refused in all. What all plays of the process were refused until then
+  /// is a property of the test that ran.
   std::size_t check() {
     play_twin();
     for (std::size_t call = 0; call < calls_.size() && !testing::Test::HasFailure(); ++call) {
@@ -59,6 +62,8 @@ class RefusedPlay {
         EXPECT_LT(k, kMost) << "the call never stops asking for memory";
       }
     }
+    refused_to_all_plays += refused_;
+    testing::Test::RecordProperty("refused_so_far", std::to_string(refused_to_all_plays));
     return refused_;
   }
 
