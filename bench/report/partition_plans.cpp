@@ -2,6 +2,7 @@
 #include "bench/contenders/partitions.h"
 #include "bench/report/section.h"
 #include "bench/rows/advice_rows.h"
+#include "bench/rows/cluster_rows.h"
 #include "bench/rows/cold_rows.h"
 #include "bench/rows/every_scene_rows.h"
 #include "bench/rows/frame_rows.h"
@@ -238,6 +239,22 @@ ReportSteps plan_memory(const ReportOptions& options) {
            add_footprints_apart(results, scene, objects, options.seed, options.threads.back());
          }});
   });
+  return steps;
+}
+
+ReportSteps plan_ranks(const ReportOptions& options) {
+  ReportSteps steps;
+  for (const NamedScene& scene : few_scenes(options, {"uniform", "clustered"})) {
+    ClusterQuestion asked{.scene = scene, .ranks = {1, 2, 3, 8, 64, 512}, .seed = options.seed};
+    asked.is_uniform = scene.name == "uniform" && !scene.is_recording();
+    if (options.quick) {
+      asked.objects = 500;
+      asked.frames = 3;
+      asked.ranks = {1, 2, 8};
+    }
+    steps.push_back({"ranks: " + scene.name, options.quick ? 0.1 : 3.0,
+                     [asked](Results& results) { add_cluster_runs(results, asked); }});
+  }
   return steps;
 }
 

@@ -51,6 +51,7 @@ struct ReportSection {
 [[nodiscard]] ReportSteps plan_volumes(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_queries(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_advice(const ReportOptions& options);
+[[nodiscard]] ReportSteps plan_ranks(const ReportOptions& options);
 // Of what tries to break it.
 [[nodiscard]] ReportSteps plan_trust(const ReportOptions& options);
 // Of the pipeline.

@@ -2,6 +2,7 @@
 #include "bench/rows/accuracy_rows.h"
 #include "bench/rows/advice_rows.h"
 #include "bench/rows/barrier_rows.h"
+#include "bench/rows/cluster_rows.h"
 #include "bench/rows/cold_rows.h"
 #include "bench/rows/every_scene_rows.h"
 #include "bench/rows/flow_rows.h"
@@ -68,6 +69,7 @@ std::span<const ReportSection> report_sections() noexcept {
                                            {"motion", declare_moving, plan_motion},
                                            {"queries", declare_queries, plan_queries},
                                            {"pipeline", declare_pipeline, plan_pipeline},
+                                           {"ranks", declare_cluster_runs, plan_ranks},
                                            {"advice", declare_advice, plan_advice},
                                            {"trust", declare_ledger, plan_trust}};
   return kAll;

@@ -101,7 +101,8 @@ Status ShapePool::load(std::span<const std::byte> saved) {
       status = read_shape<Shape>(in, memory_, fresh);
     }
   });
-  if (!in.ok() || !in.rest().empty()) status = in.ok() ? Status::invalid_argument : status_of(in);
+  if (!in.ok()) status = status_of(in);
+  if (status == Status::ok && !in.rest().empty()) status = Status::invalid_argument;
   if (status != Status::ok) return logged(refused_as(status), "ShapePool::load");
   for_tables(*this, fresh, [](auto& table, auto& read) {
     table.shapes.swap(read.shapes);

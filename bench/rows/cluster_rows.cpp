@@ -1,0 +1,148 @@
+#include "bench/rows/cluster_rows.h"
+
+#include <winnow/core/execution.h>
+#include <winnow/pipeline/cluster_transport.h>
+#include "bench/common/sample.h"
+#include "bench/measure/cluster_run.h"
+#include "bench/measure/fingerprint.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace winnow::bench {
+namespace {
+
+/// How many boxes are in a unit of volume, and how long the edges of one are in the mean.
+struct BoxSpread {
+  double density;
+  double edge;
+};
+
+BoxSpread spread_of_boxes(const FrameSource& source) {
+  double volume = 1.0;
+  const Aabb world = source.world();
+  for (int axis = 0; axis < 3; ++axis) {
+    volume *= static_cast<double>(world.max[axis]) - static_cast<double>(world.min[axis]);
+  }
+  double edges = 0.0;
+  for (const Aabb& box : source.boxes()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      edges += static_cast<double>(box.max[axis]) - static_cast<double>(box.min[axis]);
+    }
+  }
+  const auto count = static_cast<double>(source.boxes().size());
+  return {count / volume, edges / (3.0 * count)};
+}
+
+std::string cluster_command(const ClusterQuestion& asked, std::uint32_t ranks) {
+  std::string words = "bench/run cluster " + shell_word(asked.scene.argument);
+  if (!asked.scene.is_recording()) words += " --objects " + std::to_string(asked.objects);
+  if (asked.seed != 1) words += " --seed " + std::to_string(asked.seed);
+  return words + " --frames " + std::to_string(asked.frames) + " --virtual-ranks " +
+         std::to_string(ranks);
+}
+
+/// Of objects that are beyond any machine.
+void add_model(Results& results, const ClusterQuestion& asked, const BoxSpread& spread) {
+  struct Size {
+    std::uint64_t objects;
+    std::uint64_t ranks;
+  };
+  for (const Size& size : {Size{1'000'000, 64}, Size{1'000'000, 4096}, Size{100'000'000, 1024},
+                           Size{1'000'000'000, 10'000}}) {
+    const auto objects = static_cast<double>(size.objects);
+    const auto ranks = static_cast<double>(size.ranks);
+    const double ghosts = ghosts_by_formula(objects, ranks, spread.density, spread.edge);
+    // What a ghost that moved takes to tell.
+    constexpr double kGhostBytes = 33.0;
+    const double own = objects / ranks;
+    results.add("cluster_model", {{"scene", asked.scene.name},
+                                  {"objects", size.objects},
+                                  {"ranks", size.ranks},
+                                  {"ghosts", ghosts},
+                                  {"rank_bytes", kGhostBytes * ghosts * own},
+                                  {"command", cluster_command(asked, 1)}});
+  }
+}
+
+bool are_same(const ClusterRun& a, const ClusterRun& b) {
+  bool same = a.frames.size() == b.frames.size();
+  for (std::size_t i = 0; same && i < a.frames.size(); ++i) {
+    same = a.frames[i].pairs.fingerprint == b.frames[i].pairs.fingerprint &&
+           a.frames[i].digest == b.frames[i].digest;
+  }
+  return same;
+}
+
+void add_run(Results& results, const ClusterQuestion& asked, std::uint32_t ranks,
+             const ClusterRun& run, bool same, const BoxSpread& spread) {
+  const ClusterStatistics& last = run.frames.back().statistics;
+  const std::size_t count = asked.scene.objects(asked.objects);
+  const auto objects = static_cast<double>(count);
+  Json row{{"scene", asked.scene.name},
+           {"objects", count},
+           {"ranks", ranks},
+           {"same", same ? "yes" : "NO"},
+           {"pairs", run.frames.back().pairs.pairs},
+           {"ghosts", static_cast<double>(last.ghosts) / objects},
+           {"sent_bytes", last.bytes},
+           {"messages", last.messages},
+           {"imbalance", last.imbalance},
+           {"bytes_per_object", static_cast<double>(run.bytes) / objects},
+           {"fingerprint", to_hex(run.frames.back().pairs.fingerprint)},
+           {"command", cluster_command(asked, ranks)}};
+  if (asked.is_uniform && ranks > 1) {
+    row["formula"] = ghosts_by_formula(objects, ranks, spread.density, spread.edge);
+  }
+  results.add("cluster_runs", std::move(row));
+}
+
+}  // namespace
+
+void declare_cluster_runs(Results& results) {
+  results.declare({"cluster_runs",
+                   "ranks",
+                   "one scene on many ranks",
+                   {"scene", "objects", "ranks"},
+                   {{"same", "pairs as on one", "", Better::neither, Format::text},
+                    {"pairs", "pairs", "", Better::neither, Format::count},
+                    {"ghosts", "ghosts of each object", "", Better::less, Format::percent},
+                    {"formula", "by the formula", "", Better::neither, Format::percent},
+                    {"sent_bytes", "sent a frame", "bytes", Better::less, Format::count},
+                    {"messages", "messages a frame", "", Better::less, Format::count},
+                    {"imbalance", "most work over mean", "", Better::less},
+                    {"bytes_per_object", "held", "bytes/object", Better::less},
+                    {"fingerprint", "all pairs", "", Better::neither, Format::text}}});
+  results.declare(
+      {"cluster_model",
+       "ranks",
+       "evenly spread objects, by the formula",
+       {"scene", "objects", "ranks"},
+       {{"ghosts", "ghosts of each object", "", Better::neither, Format::percent},
+        {"rank_bytes", "sent by a rank if all moves", "bytes", Better::neither, Format::count}}});
+}
+
+double ghosts_by_formula(double objects, double ranks, double density, double edge) {
+  const double side = std::cbrt(objects / ranks / density);
+  return std::pow(1.0 + edge / side, 3.0) - 1.0;
+}
+
+void add_cluster_runs(Results& results, const ClusterQuestion& asked) {
+  ClusterRun one;
+  bool all_same = true;
+  for (const std::uint32_t ranks : asked.ranks) {
+    const auto source = asked.scene.source(asked.objects, asked.seed);
+    const BoxSpread spread = spread_of_boxes(*source);
+    LoopbackTransport transport(ranks);
+    const ClusterRun run =
+        run_cluster(*source, transport, {.frames = asked.frames}, Execution::serial());
+    if (one.frames.empty()) one = run;
+    const bool same = are_same(one, run);
+    all_same = all_same && same;
+    add_run(results, asked, ranks, run, same, spread);
+    if (asked.is_uniform && ranks == asked.ranks.front()) add_model(results, asked, spread);
+  }
+  if (!all_same) throw std::runtime_error(asked.scene.name + ": ranks find other pairs than one");
+}
+
+}  // namespace winnow::bench
