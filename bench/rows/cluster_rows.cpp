@@ -7,6 +7,7 @@
 #include "bench/measure/fingerprint.h"
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 namespace winnow::bench {
@@ -135,7 +136,7 @@ void add_cluster_runs(Results& results, const ClusterQuestion& asked) {
     const BoxSpread spread = spread_of_boxes(*source);
     LoopbackTransport transport(ranks);
     const ClusterRun run =
-        run_cluster(*source, transport, {.frames = asked.frames}, Execution::serial());
+        run_cluster(*source, transport, {asked.frames, std::nullopt}, Execution::serial());
     if (one.frames.empty()) one = run;
     const bool same = are_same(one, run);
     all_same = all_same && same;

@@ -68,23 +68,29 @@ void RankBodies::add_rows(std::span<const BodyName> names, std::span<const Key> 
 Status RankBodies::move(std::span<const Key> keys, const BoxView& boxes) {
   if (alone_) return partition_.update(keys, boxes);
   if (keys.size() != boxes.count) return Status::size_mismatch;
-  if (!std::all_of(keys.begin(), keys.end(), [this](Key key) { return is_owned(key); })) {
-    return Status::invalid_key;
-  }
-  if (!are_valid(boxes)) return Status::invalid_bounds;
-  note_moves(keys, boxes);
-  return partition_.update(keys, boxes);
+  const std::size_t moved = moved_.size();
+  Status status = note_moves(keys, boxes) ? Status::ok : Status::invalid_key;
+  // Which knows as well which keys are stale and which boxes are none.
+  if (status == Status::ok) status = partition_.update(keys, boxes);
+  if (status == Status::ok) return status;
+  for (std::size_t i = moved; i < moved_.size(); ++i) flags_[moved_[i].key.id] &= ~kMoved;
+  moved_.resize(moved);
+  return status;
 }
 
-/// What lies within the region, and did, is nobody else's business.
-void RankBodies::note_moves(std::span<const Key> keys, const BoxView& boxes) {
+/// What lies within the region, and did, is nobody else's business. False if a key's number is that
+/// of none of this rank's own.
+bool RankBodies::note_moves(std::span<const Key> keys, const BoxView& boxes) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    std::uint8_t& flags = flags_[keys[i].id];
+    const ObjectId id = keys[i].id;
+    if (id >= flags_.size() || (flags_[id] & (kOwned | kRemoved)) != kOwned) return false;
+    std::uint8_t& flags = flags_[id];
     if ((flags & kMoved) != 0) continue;
     if ((flags & kCrosses) == 0 && is_within(boxes[i])) continue;
     moved_.push_back({keys[i], box_of(keys[i])});
     flags |= kMoved;
   }
+  return true;
 }
 
 Status RankBodies::find_keys(std::span<const BodyName> names, std::vector<Key>& keys) const {
@@ -274,20 +280,30 @@ Status RankBodies::apply_changes() {
 
 // ---- pairs, and the work that they make
 
-/// Of two boxes of which one lies within the region the rank reports the pair without a look.
-bool RankBodies::reports(ObjectId a, ObjectId b) const noexcept {
-  if ((flags_[a] & flags_[b] & kCrosses) == 0) return true;
-  const Vec3f at = meeting_point(box_of(a), box_of(b));
+void RankBodies::find_low_corners() {
+  low_corners_.begin(flags_.size());
+  for (ObjectId id = 0; id < flags_.size(); ++id) {
+    if ((flags_[id] & kCrosses) != 0) low_corners_.put(id, box_of(id).min);
+  }
+}
+
+bool RankBodies::meet_here(ObjectId a, ObjectId b) const noexcept {
+  const Vec3f at = meeting_point(low_corners_.of(a), low_corners_.of(b));
   return is_within({at, at});
 }
 
 Status RankBodies::find_pairs(Order order) {
   const Status status = partition_.self_pairs(found_);
   if (status != Status::ok) return status;
+  if (!alone_) find_low_corners();
   pairs_.resize(found_.size());
   NamePair* out = pairs_.data();
   for (const Pair& pair : found_) {
-    if (!alone_ && !reports(pair.first, pair.second)) continue;
+    // Of two boxes of which one lies within the region the rank reports the pair without a look.
+    if (!alone_ && low_corners_.has(pair.first, pair.second) &&
+        !meet_here(pair.first, pair.second)) {
+      continue;
+    }
     const BodyName a = names_[pair.first];
     const BodyName b = names_[pair.second];
     *out++ = {std::min(a, b), std::max(a, b)};

@@ -2,6 +2,7 @@
 
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/cluster.h>
+#include "pipeline/cluster/corners_by_id.h"
 #include "pipeline/cluster/name_table.h"
 #include "pipeline/cluster/outbox.h"
 #include "pipeline/cluster/regions.h"
@@ -81,9 +82,11 @@ class RankBodies {
   [[nodiscard]] Aabb box_of(ObjectId id) const noexcept { return box_of(partition_.key_of(id)); }
   [[nodiscard]] bool is_within(const Aabb& box) const noexcept;
   [[nodiscard]] std::uint8_t flags_of(const Aabb& box, bool owned) const noexcept;
-  [[nodiscard]] bool reports(ObjectId a, ObjectId b) const noexcept;
+  /// Whether two boxes that cross meet in this rank's region.
+  [[nodiscard]] bool meet_here(ObjectId a, ObjectId b) const noexcept;
   [[nodiscard]] Status find_keys(std::span<const BodyName> names, std::vector<Key>& keys) const;
-  void note_moves(std::span<const Key> keys, const BoxView& boxes);
+  [[nodiscard]] bool note_moves(std::span<const Key> keys, const BoxView& boxes);
+  void find_low_corners();
   void add_rows(std::span<const BodyName> names, std::span<const Key> keys);
   void note_all_that_cross();
   void tell(const Moved& moved, const Regions& before, const Regions& now);
@@ -113,6 +116,7 @@ class RankBodies {
   std::vector<std::uint32_t> ranks_before_;
   std::vector<std::uint32_t> ranks_now_;
   std::vector<Key> keys_;
+  CornersById low_corners_;  // of boxes that cross
 };
 
 }  // namespace winnow

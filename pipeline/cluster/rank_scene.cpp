@@ -362,7 +362,7 @@ bool RankScene::reports(ObjectId a, ObjectId b) const noexcept {
   if (alone_) return true;
   if (((flags_[a] | flags_[b]) & kReplicated) != 0) return ((flags_[a] | flags_[b]) & kOwned) != 0;
   if ((flags_[a] & flags_[b] & kCrosses) == 0) return true;
-  const Vec3f at = meeting_point(box_of(a), box_of(b));
+  const Vec3f at = meeting_point(box_of(a).min, box_of(b).min);
   return is_within({at, at});
 }
 

@@ -15,8 +15,8 @@ namespace winnow {
 
 /// The point that two overlapping boxes share and whose rank reports them: on each axis the larger
 /// of the two low corners (as Dittrich and Seeger 2000 do without duplicates in a spatial join).
-[[nodiscard]] inline Vec3f meeting_point(const Aabb& a, const Aabb& b) noexcept {
-  return a.min.max(b.min);
+[[nodiscard]] inline Vec3f meeting_point(const Vec3f& low_a, const Vec3f& low_b) noexcept {
+  return low_a.max(low_b);
 }
 
 /// The middle of a box, a point of it also where it reaches to infinity.
