@@ -42,6 +42,16 @@ struct Parcel {
   }
 };
 
+/// What a process has to do while parcels are on their way.
+struct Meanwhile {
+  void (*work)(void* context) noexcept = nullptr;  ///< null: nothing
+  void* context = nullptr;                         ///< handed to `work`
+
+  void operator()() const noexcept {
+    if (work != nullptr) work(context);
+  }
+};
+
 /// How the ranks of a cluster talk to each other. Each process hosts some of them, which follow
 /// each other: over MPI one, within one process all. All calls are collective: every process makes
 /// the same ones in the same order. One that fails (`communication_failed`) fails on every process
@@ -61,8 +71,10 @@ class WINNOW_API Transport {
 
   /// Sends parcels of hosted ranks, at most one from each rank to each, and gives those that are
   /// for hosted ranks, sorted by `to` and then by `from`. They are valid until the next exchange,
-  /// and as long as what was sent by this process stays where it was.
-  virtual Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received) = 0;
+  /// and as long as what was sent by this process stays where it was. Calls `meanwhile` once, if
+  /// nothing has failed: best when everything that can be sent is on its way.
+  virtual Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
+                          const Meanwhile& meanwhile) = 0;
 
   /// Replaces each number by the sum over all processes, and by the greatest, respectively.
   virtual Status reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) = 0;
@@ -87,7 +99,8 @@ class WINNOW_API LoopbackTransport final : public Transport {
   [[nodiscard]] std::uint32_t ranks() const noexcept override { return ranks_; }
   [[nodiscard]] std::uint32_t first_hosted() const noexcept override { return 0; }
   [[nodiscard]] std::uint32_t hosted() const noexcept override { return ranks_; }
-  Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received) override;
+  Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
+                  const Meanwhile& meanwhile) override;
   Status reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) override;
   Status cut(std::span<const CutWork> work, std::span<RegionCut> cuts) override;
 

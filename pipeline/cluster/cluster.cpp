@@ -19,7 +19,7 @@ struct ClusterState : RankGroup {
   }
 
   [[nodiscard]] Status settle();
-  [[nodiscard]] Status deliver();
+  [[nodiscard]] Status deliver(const Meanwhile& meanwhile = {});
   [[nodiscard]] Status take_names_of(std::span<const ClusterBatch> batches,
                                      std::span<Status> answers);
   [[nodiscard]] Status add(std::span<const ClusterBatch> batches, std::span<Status> answers);
@@ -52,13 +52,18 @@ Status ClusterState::settle() {
     one.send(before, regions, was_cut);
     one.pack(parcels);
   }
-  return deliver();
+  // Not where much comes and goes.
+  if (was_cut) return deliver();
+  return deliver({[](void* state) noexcept {
+                    for (RankBodies& one : static_cast<ClusterState*>(state)->bodies) one.refresh();
+                  },
+                  this});
 }
 
 /// Brings every rank what others tell it.
-Status ClusterState::deliver() {
+Status ClusterState::deliver(const Meanwhile& meanwhile) {
   std::span<const Parcel> received;
-  Status answer = is_alone() ? Status::ok : exchange(received);
+  Status answer = is_alone() ? Status::ok : exchange(received, meanwhile);
   for (std::uint32_t i = 0; i < bodies.size() && answer == Status::ok; ++i) {
     answer = bodies[i].receive(parcels_for(received, first + i));
   }

@@ -11,8 +11,9 @@ namespace winnow {
 LoopbackTransport::LoopbackTransport(std::uint32_t ranks) noexcept
     : ranks_(std::clamp(ranks, 1U, 65'536U)) {}
 
-Status LoopbackTransport::exchange(std::span<const Parcel> sent,
-                                   std::span<const Parcel>& received) {
+Status LoopbackTransport::exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
+                                   const Meanwhile& meanwhile) {
+  meanwhile();
   try {
     parcels_.assign(sent.begin(), sent.end());
   } catch (const std::bad_alloc&) {

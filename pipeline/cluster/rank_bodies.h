@@ -41,6 +41,8 @@ class RankBodies {
   /// Takes what others tell, and drops what this rank holds no more.
   [[nodiscard]] Status receive(std::span<const Parcel> parcels);
 
+  /// Brings the structure to where own bodies are, before copies come: what is left then is little.
+  void refresh() noexcept { (void)partition_.refresh(); }
   /// Fills `pairs()` with those that this rank reports.
   [[nodiscard]] Status find_pairs(Order order);
   [[nodiscard]] std::span<const NamePair> pairs() const noexcept { return pairs_; }

@@ -19,13 +19,13 @@ RankGroup::RankGroup(Transport& given, double imbalance_bound, std::pmr::memory_
   if (!(imbalance_bound >= 1.0)) status = Status::invalid_argument;
 }
 
-Status RankGroup::exchange(std::span<const Parcel>& received) {
+Status RankGroup::exchange(std::span<const Parcel>& received, const Meanwhile& meanwhile) {
   for (const Parcel& parcel : parcels) {
     if (parcel.from == parcel.to) continue;
     bytes_ += parcel.bytes();
     ++messages_;
   }
-  const Status answer = transport.exchange(parcels, received);
+  const Status answer = transport.exchange(parcels, received, meanwhile);
   parcels.clear();
   return answer;
 }

@@ -36,7 +36,7 @@ struct RankGroup {
   [[nodiscard]] bool is_alone() const noexcept { return ranks == 1; }
 
   /// Sends what is in `parcels`, and counts what leaves its rank.
-  [[nodiscard]] Status exchange(std::span<const Parcel>& received);
+  [[nodiscard]] Status exchange(std::span<const Parcel>& received, const Meanwhile& meanwhile = {});
   /// Gives ranks new regions, if the last frame asks for it. One entry for each hosted rank.
   [[nodiscard]] Status cut_space(std::span<const CutWork> work);
   /// Takes names for hosted ranks, and frees others, one list for each; `invalid_key` for a rank of

@@ -47,6 +47,21 @@ void run_frames(const std::vector<Aabb>& boxes, std::uint32_t ranks, double step
   }
 }
 
+TEST(Cluster, parcels_travel_while_something_else_is_done) {
+  LoopbackTransport transport(3);
+  const std::uint64_t number = 7;
+  const Parcel sent[] = {{2, 0, {std::as_bytes(std::span(&number, 1))}}};
+  std::span<const Parcel> received;
+  int calls = 0;
+  const Meanwhile meanwhile{[](void* context) noexcept { ++*static_cast<int*>(context); }, &calls};
+  ASSERT_EQ(transport.exchange(sent, received, meanwhile), Status::ok);
+  EXPECT_EQ(calls, 1);
+  ASSERT_EQ(received.size(), 1U);
+  EXPECT_EQ(received[0].from, 2U);
+  ASSERT_EQ(transport.exchange({}, received, {}), Status::ok);
+  EXPECT_EQ(received.size(), 0U);
+}
+
 TEST(ClusterPairs, are_those_of_brute_force_on_any_number_of_ranks) {
   const std::size_t n = scaled(200);
   const std::vector<Aabb> scenes[] = {uniform_boxes(n), clustered_boxes(n), mixed_boxes(n),

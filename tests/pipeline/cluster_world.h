@@ -18,8 +18,9 @@ class FailingTransport final : public Transport {
   [[nodiscard]] std::uint32_t ranks() const noexcept override { return inner_.ranks(); }
   [[nodiscard]] std::uint32_t first_hosted() const noexcept override { return 0; }
   [[nodiscard]] std::uint32_t hosted() const noexcept override { return inner_.ranks(); }
-  Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received) override {
-    return fails() ? Status::communication_failed : inner_.exchange(sent, received);
+  Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
+                  const Meanwhile& meanwhile) override {
+    return fails() ? Status::communication_failed : inner_.exchange(sent, received, meanwhile);
   }
   Status reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) override {
     return fails() ? Status::communication_failed : inner_.reduce(sums, greatest);

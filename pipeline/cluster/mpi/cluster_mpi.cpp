@@ -106,14 +106,17 @@ class MpiTransport final : public Transport {
   [[nodiscard]] std::uint32_t first_hosted() const noexcept override { return rank_; }
   [[nodiscard]] std::uint32_t hosted() const noexcept override { return 1; }
 
-  Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received) override;
+  Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
+                  const Meanwhile& meanwhile) override;
   Status reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) override;
   Status cut(std::span<const CutWork> work, std::span<RegionCut> cuts) override;
 
  private:
-  /// Waits for all requests that were made; fails once they take too long.
+  /// Waits for the first `count` of the requests that were made; fails once they take too long.
+  [[nodiscard]] Status wait_for(std::size_t count);
+  /// Waits for all of them.
   [[nodiscard]] Status finish();
-  [[nodiscard]] Status exchange_sizes(std::span<const Parcel> sent);
+  void start_sizes(std::span<const Parcel> sent);
   void start_receiving();
   void start_sending(const Parcel& parcel);
   void keep(int result) noexcept { failed_ = failed_ || result != MPI_SUCCESS; }
@@ -133,11 +136,10 @@ class MpiTransport final : public Transport {
   std::vector<Parcel> parcels_;
 };
 
-Status MpiTransport::finish() {
+Status MpiTransport::wait_for(std::size_t count) {
   const Clock::time_point start = Clock::now();
   for (int done = 0; !failed_ && done == 0;) {
-    keep(MPI_Testall(static_cast<int>(requests_.size()), requests_.data(), &done,
-                     MPI_STATUSES_IGNORE));
+    keep(MPI_Testall(static_cast<int>(count), requests_.data(), &done, MPI_STATUSES_IGNORE));
     if (done != 0) break;
     const auto waited = Clock::now() - start;
     failed_ = failed_ || waited > limit_;
@@ -148,12 +150,16 @@ Status MpiTransport::finish() {
       std::this_thread::sleep_for(std::chrono::microseconds(50));
     }
   }
-  if (failed_) return Status::communication_failed;
-  requests_.clear();
-  return Status::ok;
+  return failed_ ? Status::communication_failed : Status::ok;
 }
 
-Status MpiTransport::exchange_sizes(std::span<const Parcel> sent) {
+Status MpiTransport::finish() {
+  const Status status = wait_for(requests_.size());
+  if (status == Status::ok) requests_.clear();
+  return status;
+}
+
+void MpiTransport::start_sizes(std::span<const Parcel> sent) {
   sizes_out_.assign(ranks_, Sizes{});
   sizes_in_.assign(ranks_, Sizes{});
   for (const Parcel& parcel : sent) {
@@ -161,7 +167,6 @@ Status MpiTransport::exchange_sizes(std::span<const Parcel> sent) {
   }
   keep(MPI_Ialltoall(sizes_out_.data(), 4, MPI_UINT64_T, sizes_in_.data(), 4, MPI_UINT64_T,
                      communicator_, &new_request()));
-  return finish();
 }
 
 void MpiTransport::start_receiving() {
@@ -197,12 +202,11 @@ void MpiTransport::start_sending(const Parcel& parcel) {
   MPI_Type_free(&type);
 }
 
-Status MpiTransport::exchange(std::span<const Parcel> sent, std::span<const Parcel>& received) {
+Status MpiTransport::exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
+                              const Meanwhile& meanwhile) {
   if (failed_) return Status::communication_failed;
-  const Status status = exchange_sizes(sent);
-  if (status != Status::ok) return status;
   parcels_.clear();
-  start_receiving();
+  start_sizes(sent);
   for (const Parcel& parcel : sent) {
     if (parcel.to == rank_) {
       parcels_.push_back(parcel);
@@ -210,6 +214,11 @@ Status MpiTransport::exchange(std::span<const Parcel> sent, std::span<const Parc
       start_sending(parcel);
     }
   }
+  meanwhile();
+  // Sizes are the first request. What was sent may wait for who is still to ask for it.
+  const Status status = wait_for(1);
+  if (status != Status::ok) return status;
+  start_receiving();
   std::ranges::sort(parcels_, {}, &Parcel::from);
   received = parcels_;
   return finish();
