@@ -8,7 +8,7 @@ WINNOW_BENCH_PACKAGES=(libcli11-dev nlohmann-json3-dev liblzma-dev xz-utils
                        libjs-three libjs-chart.js)
 # What the Python package is built with and runs on, and what its tests take besides.
 WINNOW_PYTHON_PACKAGES=(pybind11-dev python3-dev python3-numpy)
-WINNOW_PYTHON_TEST_PACKAGES=(python3-pytest python3-hypothesis python3-venv mypy)
+WINNOW_PYTHON_TEST_PACKAGES=(python3-pytest python3-hypothesis python3-venv mypy python3-mpi4py)
 # Clusters over MPI, and what cuts space for them.
 WINNOW_CLUSTER_PACKAGES=(libopenmpi-dev openmpi-bin libtrilinos-zoltan-dev)
 # Mesh files for `winnow simulate`.

@@ -47,6 +47,7 @@ struct Meanwhile {
   void (*work)(void* context) noexcept = nullptr;  ///< null: nothing
   void* context = nullptr;                         ///< handed to `work`
 
+  /// Does it.
   void operator()() const noexcept {
     if (work != nullptr) work(context);
   }

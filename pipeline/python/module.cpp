@@ -2,6 +2,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include "pipeline/python/cluster.h"
 #include "pipeline/python/drawing.h"
 #include "pipeline/python/partition.h"
 #include "pipeline/python/refusal.h"
@@ -146,6 +147,7 @@ PYBIND11_MODULE(_core, module) {
   add_shapes(module);
   add_narrow(module);
   add_scene(module);
+  add_cluster(module);
 }
 
 }  // namespace winnow::python

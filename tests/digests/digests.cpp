@@ -292,10 +292,10 @@ std::vector<Work> all_work() {
     work.push_back(
         {"queries/" + name, [kind](const Execution& e, Digest& d) { queries(kind, e, d); }});
   }
-  for (const auto& [name, tier] : {std::pair{"narrow/fast", NarrowTier::fast},
-                                   {"narrow/robust", NarrowTier::robust},
-                                   {"narrow/reference", NarrowTier::reference}}) {
-    work.push_back({name, [tier](const Execution& e, Digest& d) { narrow(tier, e, d); }});
+  for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
+    constexpr const char* kNames[] = {"narrow/fast", "narrow/robust", "narrow/reference"};
+    work.push_back({kNames[static_cast<std::size_t>(tier)],
+                    [tier](const Execution& e, Digest& d) { narrow(tier, e, d); }});
   }
   work.push_back({"scene", scene});
   return work;

@@ -66,6 +66,10 @@ Shapes::Shapes(Bytes& bytes) {
   std::vector<float> heights(9);
   for (float& height : heights) height = static_cast<float>(0.25 * bytes.extent());
   take(composites.add_height_field({heights, 3, 3, 0, {1.0, 1.0}}, id), id);
+  const CompoundChild surfaces[] = {{ids.back(), Pose::at(-1, 0, 0.5)},
+                                    {ids[1], Pose::at(0, 1, 0)},
+                                    {ids[ids.size() - 2], Pose::at(0.5, 0, -0.5)}};
+  take(composites.add_compound(surfaces, id), id);
   WINNOW_HOLDS(good);
 }
 

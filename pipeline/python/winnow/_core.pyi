@@ -663,6 +663,39 @@ class Scene:
     def save_contacts(self, contacts: Contacts) -> bytes: ...
     def load_contacts(self, data: Saved, contacts: Contacts) -> None: ...
 
+class Cluster:
+    def __init__(
+        self,
+        comm: Optional[Any] = ...,
+        ranks: int = ...,
+        structure: str = ...,
+        imbalance: float = ...,
+    ) -> None: ...
+    @property
+    def ranks(self) -> int: ...
+    @property
+    def hosted(self) -> Tuple[int, int]: ...
+    @property
+    def statistics(self) -> dict[str, Union[int, float]]: ...
+    def add(
+        self,
+        names: ArrayLike,
+        lower: ArrayLike,
+        upper: ArrayLike,
+        rank: Optional[int] = ...,
+    ) -> None: ...
+    def move(
+        self,
+        names: ArrayLike,
+        lower: ArrayLike,
+        upper: ArrayLike,
+        rank: Optional[int] = ...,
+    ) -> None: ...
+    def remove(self, names: ArrayLike, rank: Optional[int] = ...) -> None: ...
+    def self_pairs(self, order: Order = ...) -> Longs: ...
+    def bodies(self, rank: Optional[int] = ...) -> Tuple[Longs, Floats, Floats]: ...
+    def digest(self) -> str: ...
+
 def perspective(
     eye: ArrayLike,
     forward: ArrayLike,
