@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <span>
 
 namespace winnow {
@@ -77,6 +78,7 @@ struct PairWriter::SerialOutput {
   Column<Pair>& pairs;
   const std::size_t before;  // pairs that were there
   const std::size_t tasks;
+  Pair* few;                     // where the first ones are found, if not in the array
   std::size_t task = 0;          // that is running
   std::size_t checked = before;  // pairs that the predicate has been asked about
 
@@ -84,19 +86,32 @@ struct PairWriter::SerialOutput {
   // them. Tasks are about alike, so that some of them tell of the rest.
   [[nodiscard]] std::size_t room() const {
     constexpr std::size_t kEnoughTasks = 3;
-    const std::size_t least = pairs.capacity() + pairs.capacity() / 2;
+    const std::size_t least =
+        std::max(pairs.capacity() + pairs.capacity() / 2, checked + 2 * kSinkSlack);
     if (task < kEnoughTasks) return least;
     const std::size_t found = checked - before;
     const std::size_t expected = found * tasks / task;
     return std::clamp(before + expected + expected / 16 + 2 * kSinkSlack, least,
-                      4 * pairs.capacity());
+                      std::max(least, 4 * pairs.capacity()));
   }
 
-  // Takes in what the sink got since.
-  void take(const PairSink& sink) {
+  // Takes in what the sink got since; false if memory is refused.
+  [[nodiscard]] bool take(const PairSink& sink) {
+    if (few != nullptr) return take_few(sink);
     const auto used = static_cast<std::size_t>(sink.cursor - words(pairs.data())) / 2;
     checked += writer.keep_accepted(pairs.data() + checked, used - checked);
     pairs.set_size(checked);
+    return true;
+  }
+  [[nodiscard]] bool take_few(const PairSink& sink) {
+    const auto found = static_cast<std::size_t>(sink.cursor - words(few)) / 2;
+    const std::size_t kept = writer.keep_accepted(few, found);
+    if (!pairs.grow(checked + kept)) return false;
+    std::copy_n(few, kept, pairs.data() + checked);
+    few = nullptr;
+    checked += kept;
+    pairs.set_size(checked);
+    return true;
   }
 };
 
@@ -113,14 +128,21 @@ std::size_t PairWriter::keep_accepted(Pair* pairs, std::size_t count) const noex
 Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
   Column<Pair>& pairs = out_.pairs_;
   const std::size_t before = pairs.size();
-  if (!pairs.grow(before + 2 * kSinkSlack)) return Status::out_of_memory;
-  SerialOutput output{*this, pairs, before, tasks};
+  // The slack of the kernels is many times what a small world has of pairs: the first are found
+  // beside the array, which then has room for what there is.
+  Pair room[2 * kSinkSlack];
+  const bool is_tight = before + 2 * kSinkSlack > pairs.capacity();
+  SerialOutput output{*this, pairs, before, tasks, is_tight ? room : nullptr};
   PairSink sink;
-  aim(sink, pairs.data() + before, pairs.data() + pairs.capacity());
+  if (is_tight) {
+    aim(sink, room, std::end(room));
+  } else {
+    aim(sink, pairs.data() + before, pairs.data() + pairs.capacity());
+  }
   sink.owner = &output;
   sink.grow = [](PairSink& full) {
     auto& o = *static_cast<SerialOutput*>(full.owner);
-    o.take(full);
+    if (!o.take(full)) return false;
     Column<Pair>& column = o.pairs;
     const std::size_t used = column.size();
     // The predicate may have left some free.
@@ -136,7 +158,10 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
     pairs.set_size(before);
     return Status::out_of_memory;
   }
-  output.take(sink);
+  if (!output.take(sink)) {
+    pairs.set_size(before);
+    return Status::out_of_memory;
+  }
   tests_ += sink.tests;
   return Status::ok;
 }
