@@ -100,6 +100,69 @@ TEST(OneSided, the_mid_phase_leaves_out_what_stands_behind) {
   EXPECT_GT(behind, 20U);
 }
 
+/// A scene of one body, asked by rays, balls that move and balls that stand.
+struct AskedBody {
+  AskedBody(const FacingWorld& world, ShapeId shape)
+      : scene(world.shapes, {.composites = &world.composites}), queries(scene) {
+    Key key;
+    EXPECT_EQ(scene.add({.shape = shape, .pose = Pose::at(-1, 2, 0.5)}, key), Status::ok);
+    EXPECT_EQ(scene.refresh(), Status::ok);
+  }
+
+  Scene scene;
+  SceneQueries queries;
+};
+
+void expect_same(const SceneHit& a, const SceneHit& b) {
+  EXPECT_EQ(static_cast<bool>(a), static_cast<bool>(b));
+  EXPECT_EQ(a.t, b.t);
+  EXPECT_EQ(a.part, b.part);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(a.normal[axis], b.normal[axis]);
+}
+
+TEST(OneSided, a_compound_of_one_surface_answers_as_the_surface) {
+  Random random(61);
+  for (const bool one_sided : {false, true}) {
+    FacingWorld world(one_sided, 9);
+    std::size_t met = 0;
+    for (const ShapeId surface : world.surfaces) {
+      const CompoundChild child[] = {{surface, {}}};
+      ShapeId compound;
+      ASSERT_EQ(world.composites.add_compound(child, compound), Status::ok);
+      ASSERT_EQ(world.composites.parts(compound), world.composites.parts(surface));
+      AskedBody alone(world, surface);
+      AskedBody inside(world, compound);
+      for (int i = 0; i < 60; ++i) {
+        const Pose from = random_pose(random, 5.0);
+        ShapeRay ray;
+        ShapeCast cast{.shape = world.ids[0], .pose = from};
+        for (int axis = 0; axis < 3; ++axis) {
+          ray.origin[axis] = from.position[axis];
+          ray.direction[axis] = cast.direction[axis] =
+              random.uniform(-1.0, 1.0) - (from.position[axis] + (axis == 1 ? -2.0 : 0.0));
+        }
+        SceneHit hits[2];
+        ASSERT_EQ(alone.queries.closest(ray, hits[0]), Status::ok);
+        ASSERT_EQ(inside.queries.closest(ray, hits[1]), Status::ok);
+        expect_same(hits[0], hits[1]);
+        met += hits[0] ? 1 : 0;
+        ASSERT_EQ(alone.queries.closest(cast, hits[0]), Status::ok);
+        ASSERT_EQ(inside.queries.closest(cast, hits[1]), Status::ok);
+        expect_same(hits[0], hits[1]);
+      }
+    }
+    EXPECT_GT(met, 30U);
+    for (std::size_t i = 0; i < world.pairs.size(); ++i) {
+      const std::set<std::uint32_t> expected = parts_met(world, i, 0.1);
+      const CompoundChild child[] = {{world.body[2 * i], {}}};
+      ShapeId compound;
+      ASSERT_EQ(world.composites.add_compound(child, compound), Status::ok);
+      world.body[2 * i] = compound;
+      EXPECT_EQ(parts_met(world, i, 0.1), expected);
+    }
+  }
+}
+
 /// Normals from the surface, of what a scene finds for one pair at level manifold.
 TEST(OneSided, no_normal_leads_to_the_back) {
   const FacingWorld world(true, 6);
