@@ -77,9 +77,9 @@ class WINNOW_API Sensors {
   /// The sensor as it stands now.
   Status sensor(Key key, SensorDefinition& sensor) const noexcept;
 
-  /// Looks at the scene as it stands now, which it refreshes. O(sensors (log n + bodies near
-  /// each)). `out_of_memory` leaves nothing sensed. `invalid_key` if a shape of a sensor has been
-  /// removed meanwhile.
+  /// Looks at the scene as it stands now, which it refreshes, on the threads of the scene; what it
+  /// senses is the same on any number. O(sensors (log n + bodies near each)). `out_of_memory`
+  /// leaves nothing sensed. `invalid_key` if a shape of a sensor has been removed meanwhile.
   Status sense();
   /// What was sensed, by the ids of sensors and then of bodies.
   [[nodiscard]] std::span<const SensedBody> sensed() const noexcept;

@@ -163,6 +163,40 @@ TEST(Sensors, tell_who_is_in_them_who_came_and_who_left) {
   }
 }
 
+TEST(Sensors, sense_the_same_on_any_number_of_threads) {
+  ShapePool shapes;
+  ShapeId ball;
+  ASSERT_EQ(shapes.add(SphereShape{0.7}, ball), Status::ok);
+  std::vector<SensedBody> one_thread;
+  for (const Workers& workers : all_workers()) {
+    Scene scene(shapes, {.execution = workers.execution()});
+    CountingMemory memory;
+    Sensors sensors(scene, &memory);
+    Random random(71);
+    const auto somewhere = [&] {
+      return Pose::at(random.uniform(0, 9), random.uniform(0, 9), random.uniform(0, 9));
+    };
+    Key key;
+    for (int i = 0; i < 300; ++i) {
+      ASSERT_EQ(scene.add({.shape = ball, .pose = somewhere()}, key), Status::ok);
+      ASSERT_EQ(sensors.add({.shape = ball, .pose = somewhere()}, key), Status::ok);
+      if (i % 7 == 0) {
+        ASSERT_EQ(sensors.remove(key), Status::ok);
+      }
+    }
+    ASSERT_EQ(Threads(workers.threads).run([&] { return sensors.sense(); }), Status::ok);
+    const std::vector<SensedBody> sensed(sensors.sensed().begin(), sensors.sensed().end());
+    EXPECT_GT(sensed.size(), 100U);
+    EXPECT_EQ(sensors.footprint().total().reserved, memory.outstanding());
+    if (one_thread.empty()) one_thread = sensed;
+    ASSERT_EQ(sensed.size(), one_thread.size());
+    for (std::size_t i = 0; i < sensed.size(); ++i) {
+      EXPECT_EQ(sensed[i].sensor.id, one_thread[i].sensor.id);
+      EXPECT_EQ(sensed[i].body.id, one_thread[i].body.id);
+    }
+  }
+}
+
 TEST(Sensors, make_no_contacts) {
   BallRoom room;
   for (int i = 0; i < 20; ++i) room.add_body();

@@ -6,12 +6,15 @@
 #include "core/memory/new_in.h"
 #include "pipeline/scene/scene_state.h"
 
+#include <algorithm>
 #include <tuple>
 
 namespace winnow {
 namespace {
 
 constexpr std::size_t kMaxSensors = std::size_t{1} << 28U;
+/// So many are looked at by a thread at least.
+constexpr std::size_t kSensorsPerWatch = 64;
 
 template <typename Entry>
 [[nodiscard]] auto order_in(const Entry& entry) noexcept {
@@ -40,29 +43,48 @@ struct SensorsState {
                std::pmr::memory_resource* memory) noexcept
       : scene(sensed_scene),
         bodies(its_state),
-        questions(sensed_scene, memory),
         keys(memory),
         sensors(memory),
         sensed(memory),
         before(memory),
-        left(memory) {}
+        left(memory),
+        watches(memory) {}
+  ~SensorsState() {
+    for (Watch* const watch : watches) delete_in(watches.memory(), watch);
+  }
+  SensorsState(const SensorsState&) = delete;
+  SensorsState& operator=(const SensorsState&) = delete;
+
+  /// What a thread asks with, and what it has sensed.
+  struct Watch {
+    Watch(const Scene& scene, std::pmr::memory_resource* memory) noexcept
+        : questions(scene, memory), sensed(memory) {}
+
+    SceneQueries questions;
+    Column<SensedBody> sensed;
+    Status status = Status::ok;
+  };
 
   Scene& scene;
   /// Null where the scene was refused memory.
   SceneState* bodies;
-  SceneQueries questions;
   KeyTable keys;
   /// By id; holes where sensors were removed.
   Column<SensorDefinition> sensors;
   Column<SensedBody> sensed;
   Column<SensedBody> before;
   Column<LeftSensor> left;
+  /// One for each thread that was of use so far.
+  Column<Watch*> watches;
 
   [[nodiscard]] Status check(const SensorDefinition& sensor) const noexcept {
     if (bodies == nullptr) return Status::out_of_memory;
     return bodies->check(sensor.shape, sensor.pose);
   }
   [[nodiscard]] Status look();
+  [[nodiscard]] bool have_watches(std::size_t count) noexcept;
+  [[nodiscard]] Status look(ObjectId first, ObjectId end, Watch& watch) const;
+  [[nodiscard]] Status take_all(std::size_t count) noexcept;
   [[nodiscard]] bool compare() noexcept;
   void forget() noexcept {
     sensed.clear();
@@ -71,20 +93,60 @@ struct SensorsState {
   }
 };
 
-/// Fills `sensed`.
+bool SensorsState::have_watches(std::size_t count) noexcept {
+  while (watches.size() < count) {
+    if (!watches.grow(watches.size() + 1)) return false;
+    auto* const watch = new_in<Watch>(watches.memory(), scene, watches.memory());
+    if (watch == nullptr) return false;
+    (void)watches.push_back(watch);
+  }
+  return true;
+}
+
+/// Fills `sensed`: threads look at sensors that follow each other, so that what they have sensed
+/// does, too.
 Status SensorsState::look() {
   if (const Status status = scene.refresh(); status != Status::ok) return status;
-  for (ObjectId id = 0; id < keys.slot_count(); ++id) {
+  const Execution& execution = bodies->options.execution;
+  const std::size_t slots = keys.slot_count();
+  const std::size_t count =
+      std::clamp(slots / kSensorsPerWatch, std::size_t{1}, execution.concurrency());
+  if (!have_watches(count)) return Status::out_of_memory;
+  const auto part = [&](std::size_t i) { return static_cast<ObjectId>(slots * i / count); };
+  execution.for_each(
+      count, [&](std::size_t i) { watches[i]->status = look(part(i), part(i + 1), *watches[i]); });
+  return take_all(count);
+}
+
+Status SensorsState::look(ObjectId first, ObjectId end, Watch& watch) const {
+  watch.sensed.clear();
+  for (ObjectId id = first; id < end; ++id) {
     if (!keys.is_live(id)) continue;
     const SensorDefinition& sensor = sensors[id];
     std::span<const SceneOverlap> found;
-    const Status status = questions.overlap(sensor.shape, sensor.pose, found, filter_of(sensor));
+    const Status status =
+        watch.questions.overlap(sensor.shape, sensor.pose, found, filter_of(sensor));
     if (status != Status::ok) return status;
     for (const SceneOverlap& body : found) {
-      if (!sensed.push_back({keys.key_of(id), body.key, sensor.data, body.data})) {
+      if (!watch.sensed.push_back({keys.key_of(id), body.key, sensor.data, body.data})) {
         return Status::out_of_memory;
       }
     }
+  }
+  return Status::ok;
+}
+
+Status SensorsState::take_all(std::size_t count) noexcept {
+  std::size_t all = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (watches[i]->status != Status::ok) return watches[i]->status;
+    all += watches[i]->sensed.size();
+  }
+  if (!sensed.grow(all)) return Status::out_of_memory;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Column<SensedBody>& of_one = watches[i]->sensed;
+    std::copy(of_one.begin(), of_one.end(), sensed.end());
+    sensed.set_size(sensed.size() + of_one.size());
   }
   return Status::ok;
 }
@@ -190,7 +252,13 @@ bool Sensors::contains(Key key) const noexcept {
 Footprint Sensors::footprint() const noexcept {
   if (state_ == nullptr) return {};
   const SensorsState& s = *state_;
-  Footprint sum = s.questions.footprint();
+  Footprint sum;
+  for (const SensorsState::Watch* const watch : s.watches) {
+    sum.scratch += watch->questions.footprint().total();
+    sum.scratch += {sizeof(*watch), sizeof(*watch)};
+    sum.scratch += watch->sensed.bytes();
+  }
+  sum.scratch += s.watches.bytes();
   sum.structure += {sizeof(SensorsState), sizeof(SensorsState)};
   sum.structure += s.sensors.bytes();
   sum.keys += s.keys.key_bytes();
