@@ -49,9 +49,7 @@ struct SensorsState {
         before(memory),
         left(memory),
         watches(memory) {}
-  ~SensorsState() {
-    for (Watch* const watch : watches) delete_in(watches.memory(), watch);
-  }
+  ~SensorsState() { drop_watches(); }
   SensorsState(const SensorsState&) = delete;
   SensorsState& operator=(const SensorsState&) = delete;
 
@@ -86,10 +84,16 @@ struct SensorsState {
   [[nodiscard]] Status look(ObjectId first, ObjectId end, Watch& watch) const;
   [[nodiscard]] Status take_all(std::size_t count) noexcept;
   [[nodiscard]] bool compare() noexcept;
+  /// After memory was refused: perhaps to what threads ask with, which then is of no use.
   void forget() noexcept {
     sensed.clear();
     before.clear();
     left.clear();
+    drop_watches();
+  }
+  void drop_watches() noexcept {
+    for (Watch* const watch : watches) delete_in(watches.memory(), watch);
+    watches.clear();
   }
 };
 
