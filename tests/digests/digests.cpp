@@ -241,9 +241,9 @@ void scene(const Execution& execution, Digest& digest) {
   std::vector<std::uint32_t> corners;
   for (std::uint32_t i = 0; i < 60; ++i) {
     for (std::uint32_t k = 0; k < 3; ++k) {
-      points.emplace_back(static_cast<float>(numbers.coordinate(2)),
-                          static_cast<float>(numbers.coordinate(2)),
-                          static_cast<float>(numbers.coordinate(2)));
+      // Arguments of a call would be found in whatever order.
+      Vec3f& point = points.emplace_back();
+      for (const int axis : {2, 1, 0}) point[axis] = static_cast<float>(numbers.coordinate(2));
       corners.push_back(3 * i + k);
     }
   }
