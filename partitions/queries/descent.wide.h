@@ -43,11 +43,12 @@ class Wanted {
   const QueryFilter& filter_;
 };
 
-/// The bits of a float >= 0, which sort as it does.
+/// The bits of a float >= 0, which sort as it does. Zero may have a sign: compilers take 0 + -0 for
+/// 0, which it is not where the host rounds down.
 inline std::uint32_t order_of(float value) {
   std::uint32_t bits;
   __builtin_memcpy(&bits, &value, sizeof bits);
-  return bits;
+  return bits & 0x7FFFFFFFU;
 }
 inline float value_of(std::uint32_t bits) {
   float value;
