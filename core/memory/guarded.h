@@ -1,5 +1,7 @@
 #pragma once
 
+#include <exception>
+#include <new>
 #include <utility>
 
 namespace winnow {
@@ -17,6 +19,16 @@ template <typename Work, typename Answer = decltype(std::declval<Work&>()())>
 #else
   static_cast<void>(refused);
   return work();
+#endif
+}
+
+/// Leaves guarded work, because memory was refused. Built without exceptions that ends the program,
+/// as it does in every container of the standard library.
+[[noreturn]] inline void leave_without_memory() {
+#ifdef __cpp_exceptions
+  throw std::bad_alloc();
+#else
+  std::terminate();
 #endif
 }
 

@@ -1,10 +1,10 @@
 #include <winnow/pipeline/cluster.h>
 
+#include "core/memory/guarded.h"
 #include "pipeline/cluster/rank_bodies.h"
 #include "pipeline/cluster/rank_group.h"
 
 #include <deque>
-#include <new>
 #include <vector>
 
 namespace winnow {
@@ -134,13 +134,9 @@ Status ClusterState::digest(ClusterDigest& digest) {
   return answer;
 }
 
-Cluster::Cluster(Transport& transport, const ClusterOptions& options) noexcept {
-  try {
-    state_ = new ClusterState(transport, options);
-  } catch (const std::bad_alloc&) {
-    state_ = nullptr;
-  }
-}
+Cluster::Cluster(Transport& transport, const ClusterOptions& options) noexcept
+    : state_(guarded([&] { return new ClusterState(transport, options); },
+                     static_cast<ClusterState*>(nullptr))) {}
 
 Cluster::~Cluster() {
   delete state_;

@@ -1,9 +1,8 @@
 #include <winnow/pipeline/cluster_scene.h>
 
 #include "core/memory/byte_stream.h"
+#include "core/memory/guarded.h"
 #include "pipeline/cluster/cluster_scene_state.h"
-
-#include <new>
 
 namespace winnow {
 
@@ -263,13 +262,9 @@ ClusterDigest digest_of(const Contacts& contacts) noexcept {
 // ---- what a caller sees
 
 ClusterScene::ClusterScene(Transport& transport, const ShapePool& shapes,
-                           const ClusterSceneOptions& options) noexcept {
-  try {
-    state_ = new ClusterSceneState(transport, shapes, options);
-  } catch (const std::bad_alloc&) {
-    state_ = nullptr;
-  }
-}
+                           const ClusterSceneOptions& options) noexcept
+    : state_(guarded([&] { return new ClusterSceneState(transport, shapes, options); },
+                     static_cast<ClusterSceneState*>(nullptr))) {}
 
 ClusterScene::~ClusterScene() {
   delete state_;

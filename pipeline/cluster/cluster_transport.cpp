@@ -1,9 +1,9 @@
 #include <winnow/pipeline/cluster_transport.h>
 
+#include "core/memory/guarded.h"
 #include "pipeline/cluster/bisection.h"
 
 #include <algorithm>
-#include <new>
 #include <tuple>
 
 namespace winnow {
@@ -14,11 +14,12 @@ LoopbackTransport::LoopbackTransport(std::uint32_t ranks) noexcept
 Status LoopbackTransport::exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
                                    const Meanwhile& meanwhile) {
   meanwhile();
-  try {
+  const auto keep = [&] {
     parcels_.assign(sent.begin(), sent.end());
-  } catch (const std::bad_alloc&) {
-    return Status::out_of_memory;
-  }
+    return Status::ok;
+  };
+  const Status kept = guarded(keep, Status::out_of_memory);
+  if (kept != Status::ok) return kept;
   std::sort(parcels_.begin(), parcels_.end(), [](const Parcel& a, const Parcel& b) {
     return std::tie(a.to, a.from) < std::tie(b.to, b.from);
   });
@@ -31,12 +32,11 @@ Status LoopbackTransport::reduce(std::span<std::uint64_t>, std::span<std::uint64
 }
 
 Status LoopbackTransport::cut(std::span<const CutWork> work, std::span<RegionCut> cuts) {
-  try {
+  const auto cut_all = [&] {
     bisect(work, cuts);
-  } catch (const std::bad_alloc&) {
-    return Status::out_of_memory;
-  }
-  return Status::ok;
+    return Status::ok;
+  };
+  return guarded(cut_all, Status::out_of_memory);
 }
 
 }  // namespace winnow

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/pipeline/cluster.h>
+#include "core/memory/guarded.h"
 #include "pipeline/cluster/name_directory.h"
 #include "pipeline/cluster/regions.h"
 
@@ -9,7 +10,6 @@
 #include <deque>
 #include <limits>
 #include <memory_resource>
-#include <new>
 #include <span>
 #include <vector>
 
@@ -74,12 +74,7 @@ template <typename State, typename Call>
 Status collective(State* state, Call&& call) noexcept {
   if (state == nullptr) return Status::out_of_memory;
   if (state->status != Status::ok) return state->status;
-  try {
-    state->status = call();
-  } catch (const std::bad_alloc&) {
-    state->status = Status::out_of_memory;
-  }
-  return state->status;
+  return state->status = guarded(call, Status::out_of_memory);
 }
 
 /// A call of one rank: refused, it has changed nothing.
@@ -89,11 +84,7 @@ Status on_rank(State* state, std::uint32_t rank, Call&& call) noexcept {
   if (state->status != Status::ok) return state->status;
   auto* const hosted = state->find(rank);
   if (hosted == nullptr) return Status::invalid_argument;
-  try {
-    return call(*hosted);
-  } catch (const std::bad_alloc&) {
-    return Status::out_of_memory;
-  }
+  return guarded([&] { return call(*hosted); }, Status::out_of_memory);
 }
 
 }  // namespace winnow

@@ -1,5 +1,6 @@
 #include "pipeline/cluster/rank_scene.h"
 
+#include "core/memory/guarded.h"
 #include "pipeline/cluster/work_shares.h"
 #include "pipeline/scene/contact_frame.h"
 #include "pipeline/scene/scene_state.h"
@@ -25,7 +26,7 @@ RankScene::RankScene(std::uint32_t rank, std::uint32_t ranks, const ShapePool& s
       contacts_(options.memory),
       events_(rank, ranks),
       table_(options.memory) {
-  if (scene_.state_ == nullptr || contacts_.state_ == nullptr) throw std::bad_alloc();
+  if (scene_.state_ == nullptr || contacts_.state_ == nullptr) leave_without_memory();
   selection_.wants = [](const void* self, std::uint32_t a, std::uint32_t b) {
     return static_cast<const RankScene*>(self)->reports(a, b);
   };
@@ -447,7 +448,7 @@ void RankScene::show_events() {
   };
   for (const TouchingPair& pair : events_.ended()) {
     if (!shown.ended.push_back({key_by_name(pair.a), key_by_name(pair.b), pair.a, pair.b})) {
-      throw std::bad_alloc();
+      leave_without_memory();
     }
   }
 }

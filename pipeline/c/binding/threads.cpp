@@ -2,6 +2,7 @@
 
 #include <winnow/c/core.h>
 
+#include "core/memory/guarded.h"
 #include "pipeline/c/binding/arguments.h"
 
 #include <winnow/core/execution.h>
@@ -9,8 +10,6 @@
 #if WINNOW_HAVE_TBB
 #include <tbb/task_arena.h>
 #endif
-
-#include <new>
 
 namespace winnow::c {
 namespace {
@@ -49,11 +48,10 @@ winnow_status winnow_threads_create(size_t count, winnow_threads** threads) {
     return WINNOW_INVALID_ARGUMENT;
   }
   if (count > 1 && WINNOW_HAVE_TBB == 0) return WINNOW_UNSUPPORTED;
-  try {
-    *threads = new winnow_threads(count);
-  } catch (...) {
-    return WINNOW_OUT_OF_MEMORY;
-  }
+  winnow_threads* const made = winnow::guarded([&] { return new winnow_threads(count); },
+                                               static_cast<winnow_threads*>(nullptr));
+  if (made == nullptr) return WINNOW_OUT_OF_MEMORY;
+  *threads = made;
   return WINNOW_OK;
 }
 
