@@ -115,6 +115,7 @@ TEST(Column, gets_by_with_less_when_generous_growth_is_refused) {
 }
 
 TEST(Column, that_asks_for_more_bytes_than_there_are_is_refused) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   Column<Odd> column(&memory);
   EXPECT_FALSE(column.reserve(std::size_t{1} << 58U));
@@ -123,6 +124,7 @@ TEST(Column, that_asks_for_more_bytes_than_there_are_is_refused) {
 
 // Numbers of bytes that no longer can be counted must not begin again at zero.
 TEST(Column, that_asks_for_more_than_can_be_counted_is_refused) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   Column<std::uint64_t> column(&memory);
   ASSERT_TRUE(column.push_back(7));

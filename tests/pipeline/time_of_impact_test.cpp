@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/pipeline/motion_twin.h"
+#include "tests/support/platform.h"
 
 namespace winnow::test {
 namespace {
@@ -274,6 +275,15 @@ TEST(TimeOfImpact, refuses_what_is_no_motion) {
               Status::invalid_argument);
   }
   EXPECT_EQ(result.size(), 0U);
+}
+
+TEST(TimeOfImpact, bears_refused_memory) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
+  ShapePool pool;
+  const ShapeId ball = added(pool, SphereShape{1});
+  const ShapeId shapes[2] = {ball, ball};
+  const RigidMotion motions[2] = {RigidMotion::standing({}), RigidMotion::standing({})};
+  const BodyPair pairs[1] = {{0, 1}};
   ImpactResult without_memory(std::pmr::null_memory_resource());
   EXPECT_EQ(time_of_impact(pool, {shapes, motions}, pairs, {}, without_memory),
             Status::out_of_memory);
