@@ -54,8 +54,8 @@ void add_model(Results& results, const ClusterQuestion& asked, const BoxSpread& 
     const auto objects = static_cast<double>(size.objects);
     const auto ranks = static_cast<double>(size.ranks);
     const double ghosts = ghosts_by_formula(objects, ranks, spread.density, spread.edge);
-    // What a ghost that moved takes to tell.
-    constexpr double kGhostBytes = 33.0;
+    // What a ghost that moved takes to tell: its name, its box and whom it belongs to.
+    constexpr double kGhostBytes = sizeof(BodyName) + sizeof(Aabb) + sizeof(std::uint8_t);
     const double own = objects / ranks;
     results.add("cluster_model", {{"scene", asked.scene.name},
                                   {"objects", size.objects},

@@ -14,6 +14,19 @@ namespace winnow {
 namespace mid {
 namespace {
 
+/// Of a list whose entries know those before and behind them.
+template <typename Entry>
+void put_first(Entry*& first, Entry* entry) noexcept {
+  entry->next = first;
+  if (first != nullptr) first->previous = entry;
+  first = entry;
+}
+template <typename Entry>
+void take_out(Entry*& first, Entry* entry) noexcept {
+  (entry->previous != nullptr ? entry->previous->next : first) = entry->next;
+  if (entry->next != nullptr) entry->next->previous = entry->previous;
+}
+
 // A child's tree is made of degenerate triangles: two vertices each, the corners of its box.
 [[nodiscard]] Status plant(const Compound& compound, std::pmr::memory_resource* memory) noexcept {
   Column<std::uint32_t> corners(memory);
@@ -116,16 +129,13 @@ SharedMesh* Composites::new_mesh() noexcept {
   auto* const shared = new_in<SharedMesh>(memory, memory);
   if (shared == nullptr) return nullptr;
   shared->users = 1;
-  shared->next = first_mesh;
-  if (first_mesh != nullptr) first_mesh->previous = shared;
-  first_mesh = shared;
+  put_first(first_mesh, shared);
   return shared;
 }
 
 void Composites::release(SharedMesh* shared) noexcept {
   if (--shared->users != 0) return;
-  (shared->previous != nullptr ? shared->previous->next : first_mesh) = shared->next;
-  if (shared->next != nullptr) shared->next->previous = shared->previous;
+  take_out(first_mesh, shared);
   delete_in(memory, shared);
 }
 
@@ -178,8 +188,11 @@ Status Composites::new_compound(std::span<const CompoundChild> children, Compoun
     if (has_surfaces) new (parts_of + i) std::uint32_t(part);
     part += parts(children[i].shape);
   }
-  if (has_surfaces) compound->first_part = parts_of;
-  if (has_surfaces) new (parts_of + count) std::uint32_t(part);
+  if (has_surfaces) {
+    new (parts_of + count) std::uint32_t(part);
+    compound->first_part = parts_of;
+    put_first(first_of_surfaces, compound);
+  }
   const Status status = fit(*compound);
   if (status != Status::ok) {
     release(compound);
@@ -214,6 +227,7 @@ Status Composites::fit(Compound& compound) noexcept {
 }
 
 void Composites::release(Compound* compound) noexcept {
+  if (compound->has_surfaces()) take_out(first_of_surfaces, compound);
   if (compound->tree != nullptr) compound->tree->~TriangleMesh();
   const std::size_t bytes = compound->bytes;
   memory->deallocate(compound, bytes, alignof(std::max_align_t));

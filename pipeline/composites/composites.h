@@ -71,6 +71,9 @@ struct Compound {
   /// Null for few children, or where one reaches to infinity.
   TriangleMesh* tree = nullptr;
   std::size_t bytes = 0;
+  /// In a list of those with surfaces.
+  Compound* previous = nullptr;
+  Compound* next = nullptr;
 
   [[nodiscard]] bool has_surfaces() const noexcept { return first_part != nullptr; }
   [[nodiscard]] std::uint32_t parts() const noexcept {
@@ -149,15 +152,16 @@ struct Composites {
   /// The same of all compounds with a child that `is_changed(id)` is true of.
   template <typename IsChanged>
   void fit_users(IsChanged&& is_changed) noexcept {
-    for (Compound* const compound : compounds.entries) {
-      if (compound != nullptr && has_child(*compound, is_changed)) (void)fit(*compound);
+    for (Compound* compound = first_of_surfaces; compound != nullptr; compound = compound->next) {
+      if (has_child(*compound, is_changed)) (void)fit(*compound);
     }
   }
   /// True if a surface is a child of a compound.
   [[nodiscard]] bool is_child(ShapeId surface) const noexcept {
     const auto is_this = [&](ShapeId id) { return id == surface; };
-    return std::any_of(compounds.entries.begin(), compounds.entries.end(),
-                       [&](const Compound* c) { return c != nullptr && has_child(*c, is_this); });
+    const Compound* compound = first_of_surfaces;
+    while (compound != nullptr && !has_child(*compound, is_this)) compound = compound->next;
+    return compound != nullptr;
   }
   void release(Compound* compound) noexcept;
 
@@ -169,13 +173,12 @@ struct Composites {
   /// Surfaces whose triangles have a front, sorted.
   Column<std::uint32_t> one_sided;
   SharedMesh* first_mesh = nullptr;
+  Compound* first_of_surfaces = nullptr;
   std::uint64_t revision = 0;
 
  private:
-  /// Of its surfaces.
   template <typename Is>
   [[nodiscard]] static bool has_child(const Compound& compound, Is&& is) noexcept {
-    if (!compound.has_surfaces()) return false;
     const std::span<const CompoundChild> children(compound.children, compound.count);
     return std::any_of(children.begin(), children.end(),
                        [&](const CompoundChild& child) { return is(child.shape); });

@@ -38,7 +38,6 @@ class PythonTransport final : public Transport {
   }
   ~PythonTransport() override {
     const py::gil_scoped_acquire hold;
-    received_ = py::list();
     communicator_ = py::object();
   }
 
@@ -142,16 +141,15 @@ class PythonTransport final : public Transport {
     }
     py::list to_all;
     for (const py::object& one : out) to_all.append(one);
-    received_ = py::list(communicator_.attr("alltoall")(to_all));
-    if (received_.size() != ranks_) throw py::value_error("alltoall: one of each rank is wanted");
+    const py::list told(communicator_.attr("alltoall")(to_all));
+    if (told.size() != ranks_) throw py::value_error("alltoall: one of each rank is wanted");
     columns_.clear();
     columns_.reserve(std::size_t{4} * ranks_);
-    for (std::uint32_t from = 0; from < ranks_; ++from) take_from(from);
+    for (std::uint32_t from = 0; from < ranks_; ++from) take_from(from, told[from]);
     std::sort(parcels_.begin(), parcels_.end(),
               [](const Parcel& a, const Parcel& b) { return a.from < b.from; });
   }
-  void take_from(std::uint32_t from) {
-    const py::object one = received_[from];
+  void take_from(std::uint32_t from, const py::object& one) {
     if (one.is_none() || from == rank_) return;
     const auto columns = one.cast<std::tuple<py::bytes, py::bytes, py::bytes, py::bytes>>();
     Parcel parcel{from, rank_, {}};
@@ -173,7 +171,6 @@ class PythonTransport final : public Transport {
   std::uint32_t ranks_;
   std::uint32_t rank_;
   LoopbackTransport cutter_;  // cuts what all have told
-  py::list received_;
   std::vector<std::vector<std::uint64_t>> columns_;
   std::vector<Parcel> parcels_;
   std::exception_ptr raised_;
