@@ -14,6 +14,8 @@ set(CPACK_VERBATIM_VARIABLES ON)
 
 # The tool, where it was built, is a package of its own: it needs more than the library.
 set(CPACK_DEB_COMPONENT_INSTALL ON)
+# Told by name, since the library's alone would have the project's name.
+get_cmake_property(CPACK_COMPONENTS_ALL COMPONENTS)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libwinnow-dev)

@@ -113,7 +113,8 @@ Status SpatialIndex::take_order(bool moved) {
   if (!complete || !rows_.reserve_rows(rows + spare_rows(next)) ||
       !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows) ||
       !tree_.cover(first_block, blocks_of(rows) - first_block, node_content()) ||
-      (prunes && !regular_tree_.cover(0, blocks_of(regular), node_content()))) {
+      (prunes && !regular_tree_.cover(0, blocks_of(regular), node_content())) ||
+      !departures_.reserve(regular)) {
     give_up_plan();
     return Status::out_of_memory;
   }

@@ -13,7 +13,7 @@ namespace winnow {
 namespace {
 
 // Levels from the root down, so that a picture can be cut off at a depth.
-void draw_tree(DebugDraw& draw, const TreeView& tree, std::size_t max_depth) {
+void draw_tree(DebugDraw& draw, const TreeShape& tree, std::size_t max_depth) {
   for (std::size_t depth = 0; depth < std::min<std::size_t>(tree.levels, max_depth); ++depth) {
     const std::size_t level = tree.levels - 1 - depth;
     for (std::size_t node = 0; node < tree.count[level]; ++node) {

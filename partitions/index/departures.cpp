@@ -3,26 +3,26 @@
 namespace winnow {
 
 void Departures::begin(const Rows& rows) noexcept {
-  count_ = refreshes_ = 0;
+  refreshes_ = 0;
+  seen_.clear();
   const std::size_t regular = rows.regions().regular;
   for (std::size_t i = 0; i < kSample && regular >= kSample; ++i) {
     const std::size_t row = (2 * i + 1) * regular / (2 * kSample);
     const ObjectId id = rows.pool().ids()[row];
     if (id == kNoObject) continue;
-    Seen& seen = seen_[count_++];
-    seen.id = id;
+    Seen seen{.id = id, .low = {}};
     for (std::size_t a = 0; a < 3; ++a) seen.low[a] = rows.pool().column(a)[row];
+    (void)seen_.push_back(seen);
   }
 }
 
 float Departures::share(const Rows& rows, const Structure& structure,
                         std::size_t ahead) const noexcept {
-  if (count_ == 0 || refreshes_ == 0) return 0.0F;
+  if (seen_.empty() || refreshes_ == 0) return 0.0F;
   const float steps = static_cast<float>(ahead) / static_cast<float>(refreshes_);
   std::size_t staying = 0;
   std::size_t leaving = 0;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Seen& seen = seen_[i];
+  for (const Seen& seen : seen_) {
     if (!rows.keys().is_live(seen.id)) continue;
     const std::size_t row = rows.keys().row_of(seen.id);
     if (row >= rows.regions().regular) continue;

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <winnow/core/column.h>
 #include "partitions/rows/rows.h"
 #include "partitions/structures/structure.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory_resource>
 
 namespace winnow {
 
@@ -13,7 +15,13 @@ namespace winnow {
 /// build put them within the next refreshes, if all go on as they did since then.
 class Departures {
  public:
-  /// Notes where a sample of the regular rows' objects is. O(1).
+  explicit Departures(std::pmr::memory_resource* memory) noexcept : seen_(memory) {}
+
+  /// Room for a sample of so many regular rows. False if memory is refused.
+  [[nodiscard]] bool reserve(std::size_t regular) noexcept {
+    return regular < kSample || seen_.reserve(kSample);
+  }
+  /// Notes where a sample of the regular rows' objects is. Room was made. O(1).
   void begin(const Rows& rows) noexcept;
   /// Objects have moved once more.
   void note_refresh() noexcept { ++refreshes_; }
@@ -21,6 +29,8 @@ class Departures {
   /// The expected share of those still there that will have left in so many refreshes. O(1).
   [[nodiscard]] float share(const Rows& rows, const Structure& structure,
                             std::size_t ahead) const noexcept;
+  void release() noexcept { seen_.release(); }
+  [[nodiscard]] Bytes bytes() const noexcept { return seen_.bytes(); }
 
  private:
   static constexpr std::size_t kSample = 64;
@@ -29,8 +39,7 @@ class Departures {
     ObjectId id;
     std::array<float, 3> low;
   };
-  std::array<Seen, kSample> seen_;
-  std::size_t count_ = 0;
+  Column<Seen> seen_;
   std::size_t refreshes_ = 0;
 };
 

@@ -20,12 +20,7 @@ void SpatialIndex::end(const Held& one) noexcept {
 
 // With what was reserved for it, it may be taken again.
 void SpatialIndex::put_by(const Held& one) noexcept {
-  const auto place = std::ranges::find(waiting_, nullptr, &Held::structure);
-  if (reserved_ && place != waiting_.end()) {
-    *place = one;
-  } else {
-    end(one);
-  }
+  if (!reserved_ || !let_wait(one)) end(one);
 }
 
 void SpatialIndex::install(Structure* structure, StructureKind kind) noexcept {
@@ -124,26 +119,35 @@ bool SpatialIndex::reserve(std::size_t objects, Pages pages,
 bool SpatialIndex::reserve_order(std::size_t rows, std::size_t behind, Pages pages) noexcept {
   return rows_.reserve_rows(rows + behind) &&
          spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows, pages) &&
-         plan_.reserve(rows + behind, behind, pages) && tree_.reserve(blocks_of(rows), pages);
+         plan_.reserve(rows + behind, behind, pages) && tree_.reserve(blocks_of(rows), pages) &&
+         departures_.reserve(rows);
+}
+
+// In a place that was left, or a new one. False if memory is refused.
+bool SpatialIndex::let_wait(const Held& one) noexcept {
+  Held* const place = std::ranges::find(waiting_, nullptr, &Held::structure);
+  if (place == waiting_.end()) return waiting_.push_back(one);
+  *place = one;
+  return true;
 }
 
 bool SpatialIndex::have_wait(std::span<const StructureKind> kinds) noexcept {
-  auto place = waiting_.begin();
   for (const StructureKind kind : kinds) {
     if (kind == kind_ || std::ranges::find(waiting_, kind, &Held::kind) != waiting_.end()) {
       continue;
     }
-    place = std::find_if(place, waiting_.end(), [](const Held& held) { return !held.structure; });
-    if (place == waiting_.end()) return true;
-    Structure* const made = make(kind);
-    if (made == nullptr) return false;
-    *place = {kind, made};
+    const Held one{kind, make(kind)};
+    if (one.structure == nullptr) return false;
+    if (let_wait(one)) continue;
+    end(one);
+    return false;
   }
   return true;
 }
 
 void SpatialIndex::end_waiting() noexcept {
-  for (Held& one : waiting_) end(std::exchange(one, {}));
+  for (const Held& one : waiting_) end(one);
+  waiting_.release();
 }
 
 }  // namespace winnow

@@ -15,7 +15,7 @@ struct QueryView {
   const float* column[6] = {};
   const std::uint32_t* id = nullptr;
   const ObjectFilter* filter = nullptr;  ///< by id; null if every object has the default one
-  const TreeView* tree[2] = {};          ///< their own `rows` are unset
+  const TreeShape* tree[2] = {};
   std::uint32_t trees = 0;
   std::uint32_t flat_blocks = 0;
   float leaf_edge = 0.0F;  ///< of a typical block; 0 if there are no trees

@@ -20,10 +20,12 @@ SpatialIndex::SpatialIndex(std::pmr::memory_resource* memory, Rows& rows,
       rows_(rows),
       tree_(memory),
       regular_tree_(memory),
+      waiting_(memory),
       spare_(memory),
       tail_order_(memory),
       build_budget_(build_budget),
-      plan_(memory) {}
+      plan_(memory),
+      departures_(memory) {}
 
 SpatialIndex::~SpatialIndex() {
   give_up_plan();
@@ -127,7 +129,8 @@ bool SpatialIndex::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
   if (rows.empty()) return true;
   // The same room until the next build: growing copies every column.
   const std::size_t needed = rows_.pool().rows() + rows.size();
-  if (!rows_.reserve_rows(std::max(rows_.regions().ordered + tail_limit(), needed))) return false;
+  const std::size_t room = rows_.regions().ordered + most_in_tail(rows_.size());
+  if (!rows_.reserve_rows(std::max(room, needed))) return false;
   if (plan_.underway()) {
     for (const std::uint32_t row : rows) plan_.note_move(row, rows_.pool().ids()[row]);
   }
@@ -281,6 +284,8 @@ void SpatialIndex::add_bytes(Footprint& footprint) const noexcept {
   footprint.structure += regular_tree_.bytes();
   footprint.scratch += bytes_of(spare_, tail_order_);
   footprint.scratch += plan_.bytes();
+  footprint.scratch += departures_.bytes();
+  footprint.scratch += waiting_.bytes();
   structure_->add_bytes(footprint);
   const auto add = [&](const Held& one) {
     if (one.structure == nullptr) return;
@@ -305,6 +310,7 @@ void SpatialIndex::release_memory() noexcept {
   if (rows_.size() != 0) return;
   tree_.release();
   regular_tree_.release();
+  departures_.release();
   structure_->release_memory();
 }
 

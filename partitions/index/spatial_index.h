@@ -9,7 +9,6 @@
 #include "partitions/structures/structure.h"
 #include "partitions/tree/block_tree.h"
 
-#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -130,6 +129,7 @@ class SpatialIndex {
   void end(const Held& one) noexcept;
   void put_by(const Held& one) noexcept;
   [[nodiscard]] bool reserve_order(std::size_t rows, std::size_t behind, Pages pages) noexcept;
+  [[nodiscard]] bool let_wait(const Held& one) noexcept;
   [[nodiscard]] bool have_wait(std::span<const StructureKind> kinds) noexcept;
   void end_waiting() noexcept;
   void install(Structure* structure, StructureKind kind) noexcept;
@@ -137,10 +137,14 @@ class SpatialIndex {
   [[nodiscard]] static std::size_t tail_limit(std::size_t objects) noexcept {
     return objects / 16 + 64;
   }
+  /// Rows that a tail may get: no object is in it twice.
+  [[nodiscard]] static std::size_t most_in_tail(std::size_t objects) noexcept {
+    return std::min(tail_limit(objects), objects);
+  }
   /// Room that a build leaves behind its rows for a tail.
   [[nodiscard]] static std::size_t spare_rows(const Structure& structure,
                                               std::size_t objects) noexcept {
-    return (structure.prunes_rows() ? 2 : 1) * tail_limit(objects);
+    return (structure.prunes_rows() ? 2 : 1) * most_in_tail(objects);
   }
   [[nodiscard]] std::size_t spare_rows(const Structure& structure) const noexcept {
     return spare_rows(structure, rows_.size());
@@ -183,12 +187,12 @@ class SpatialIndex {
   Rows& rows_;
   StructureKind kind_;
   Structure* structure_ = nullptr;
-  std::array<Held, 16> waiting_{};  // to be taken, with what was reserved for them
   BlockTree tree_;
 
   // Unless the structure prunes rows or is flat it serves all queries but pairs, and is made when
   // the first one comes.
   mutable BlockTree regular_tree_;
+  Column<Held> waiting_;  // to be taken, with what was reserved for them
   mutable float leaf_edge_ = 0.0F;  // of a typical block
   mutable std::atomic<bool> queries_stale_{true};
   mutable std::atomic<std::size_t> asked_{0};  // refreshes for such queries since the last build

@@ -24,7 +24,7 @@ class Wanted {
   Wanted(const QueryView& view, const QueryFilter& filter)
       : rows_(row_view_of(view)), filter_(filter) {}
 
-  [[nodiscard]] Mask16 nodes(const TreeView& tree, std::uint32_t level, std::uint32_t first_node,
+  [[nodiscard]] Mask16 nodes(const TreeShape& tree, std::uint32_t level, std::uint32_t first_node,
                              Mask16 candidates) const {
     if (!filter_.by_object || candidates == 0) return candidates;
     return passing_nodes(tree.filters[level], first_node, candidates, filter_.object);
@@ -70,7 +70,7 @@ template <typename Probe>
 class OpenNodes {
  public:
   /// `limit` may be lowered from visit to visit.
-  OpenNodes(const TreeView& tree, const Probe& probe, const Wanted& wanted, const float& limit)
+  OpenNodes(const TreeShape& tree, const Probe& probe, const Wanted& wanted, const float& limit)
       : tree_(tree), probe_(probe), wanted_(wanted), limit_(limit) {}
 
   /// Only the nearest child is looked for; its siblings wait in no order, so that neither sorting
@@ -108,7 +108,7 @@ class OpenNodes {
     size_ += compress_store(mask, count_from(level << 28U | first_node), node_ + size_);
   }
 
-  const TreeView& tree_;
+  const TreeShape& tree_;
   const Probe& probe_;
   const Wanted& wanted_;
   const float& limit_;
@@ -126,7 +126,7 @@ bool visit_in_order(const QueryView& view, const Probe& probe, const Wanted& wan
     if (!visit(block * kLanes)) return false;
   }
   for (std::uint32_t t = 0; t < view.trees; ++t) {
-    const TreeView& tree = *view.tree[t];
+    const TreeShape& tree = *view.tree[t];
     OpenNodes<Probe> open(tree, probe, wanted, limit);
     const bool whole = descend(tree.levels, open, [&](std::uint32_t node) {
       return visit((tree.first_block + node) * kLanes);

@@ -312,7 +312,7 @@ class RegionTraversal {
     return true;
   }
 
-  bool traverse_tree(const TreeView& tree) {
+  bool traverse_tree(const TreeShape& tree) {
     Mask16 inside[kMaxTreeLevels];
     return traverse<kMaxTreeLevels>(
         tree.levels,
@@ -331,7 +331,7 @@ class RegionTraversal {
   }
 
   /// Every row below a node that lies inside.
-  bool take_all(const TreeView& tree, std::uint32_t level, std::uint32_t node) {
+  bool take_all(const TreeShape& tree, std::uint32_t level, std::uint32_t node) {
     const std::uint64_t begin = std::uint64_t{node} << (4 * level);
     std::uint64_t end = std::uint64_t{node + 1} << (4 * level);
     if (end > tree.count[0]) end = tree.count[0];

@@ -164,7 +164,7 @@ class SweepRounds {
     return SweepTest(sweeps_[s], from_[s]).test(ways.near, ways.far, at, limit_[s], enter);
   }
 
-  [[nodiscard]] Ways prepare(const TreeView& tree, std::uint32_t level, std::uint32_t s) const {
+  [[nodiscard]] Ways prepare(const TreeShape& tree, std::uint32_t level, std::uint32_t s) const {
     return Ways(sweeps_[s], tree.node[level]);
   }
   [[nodiscard]] Mask16 test(const Ways& ways, std::uint32_t s, std::uint32_t level,
@@ -205,7 +205,7 @@ class SweepRounds {
   }
 
   const QueryView& view_;
-  const TreeView* tree_ = nullptr;
+  const TreeShape* tree_ = nullptr;
   const Sweep* sweeps_;
   const float* from_;
   const float* limit_;

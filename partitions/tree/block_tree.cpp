@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t kLeavesPerTask = 1024;
 
 // Levels of nodes over so many blocks.
-TreeView levels_over(std::size_t blocks) noexcept {
-  TreeView shape;
+TreeShape levels_over(std::size_t blocks) noexcept {
+  TreeShape shape;
   if (blocks == 0) return shape;
   std::size_t count = blocks;
   for (;;) {
@@ -27,7 +27,7 @@ TreeView levels_over(std::size_t blocks) noexcept {
 }
 
 // Floats of the boxes of all nodes.
-std::size_t floats_of(const TreeView& shape) noexcept {
+std::size_t floats_of(const TreeShape& shape) noexcept {
   std::size_t total = 0;
   for (std::uint32_t level = 0; level < shape.levels; ++level) {
     total += 6 * padded_nodes(shape.count[level]);
@@ -38,25 +38,25 @@ std::size_t floats_of(const TreeView& shape) noexcept {
 }  // namespace
 
 bool BlockTree::cover(std::size_t first_block, std::size_t blocks, Nodes nodes) noexcept {
-  TreeView shape = levels_over(blocks);
+  TreeShape shape = levels_over(blocks);
   shape.first_block = static_cast<std::uint32_t>(first_block);
+  shape_.clear();
   // Node values are recomputed: nothing to carry over into larger memory.
   nodes_.clear();
   filters_.clear();
-  const bool done = (nodes == Nodes::filters || lay_boxes(shape)) &&
-                    (nodes == Nodes::boxes || lay_out_filters(shape, filters_));
-  shape_ = done ? shape : TreeView{};
-  return done;
+  if (first_block == 0 && blocks == 0) return true;
+  return (nodes == Nodes::filters || lay_boxes(shape)) &&
+         (nodes == Nodes::boxes || lay_out_filters(shape, filters_)) && shape_.push_back(shape);
 }
 
 bool BlockTree::reserve(std::size_t blocks, Pages pages) noexcept {
-  if (!nodes_.reserve(floats_of(levels_over(blocks)), pages)) return false;
+  if (!shape_.reserve(1) || !nodes_.reserve(floats_of(levels_over(blocks)), pages)) return false;
   // Nodes that there are may have moved.
-  if (!nodes_.empty()) aim_boxes(shape_);
+  if (!nodes_.empty() && !shape_.empty()) aim_boxes(shape_[0]);
   return true;
 }
 
-bool BlockTree::lay_boxes(TreeView& shape) noexcept {
+bool BlockTree::lay_boxes(TreeShape& shape) noexcept {
   const std::size_t total = floats_of(shape);
   if (!nodes_.grow(total)) return false;
   nodes_.set_size(total);
@@ -65,7 +65,7 @@ bool BlockTree::lay_boxes(TreeView& shape) noexcept {
 }
 
 // Tells the shape where its nodes are, and empties the padding behind them.
-void BlockTree::aim_boxes(TreeView& shape) noexcept {
+void BlockTree::aim_boxes(TreeShape& shape) noexcept {
   float* at = nodes_.data();
   for (std::uint32_t level = 0; level < shape.levels; ++level) {
     const std::size_t stride = padded_nodes(shape.count[level]);
@@ -79,9 +79,7 @@ void BlockTree::aim_boxes(TreeView& shape) noexcept {
 }
 
 TreeView BlockTree::view(const RowView& rows) const noexcept {
-  TreeView result = shape_;
-  result.rows = rows;
-  return result;
+  return {shape(), rows};
 }
 
 void BlockTree::refit_all(const RowView& rows, const Execution& execution) noexcept {
@@ -126,10 +124,9 @@ float BlockTree::typical_edge() const noexcept {
   if (count == 0) return 0.0F;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t leaf = blocks() * i / count;
+    const float* const* const ends = shape().node[0];
     float sum = 0.0F;
-    for (std::size_t c = 0; c < 3; ++c) {
-      sum += (shape_.node[0][3 + c][leaf] - shape_.node[0][c][leaf]) / 3.0F;
-    }
+    for (std::size_t c = 0; c < 3; ++c) sum += (ends[3 + c][leaf] - ends[c][leaf]) / 3.0F;
     edge[i] = sum;
   }
   std::nth_element(edge.begin(), edge.begin() + count / 2, edge.begin() + count);
@@ -137,12 +134,11 @@ float BlockTree::typical_edge() const noexcept {
 }
 
 void BlockTree::release() noexcept {
-  release_columns(nodes_, filters_);
-  shape_ = {};
+  release_columns(nodes_, filters_, shape_);
 }
 
 Bytes BlockTree::bytes() const noexcept {
-  return bytes_of(nodes_, filters_);
+  return bytes_of(nodes_, filters_, shape_);
 }
 
 }  // namespace winnow

@@ -18,7 +18,7 @@ namespace winnow {
 class BlockTree {
  public:
   explicit BlockTree(std::pmr::memory_resource* memory) noexcept
-      : nodes_(memory), filters_(memory) {}
+      : nodes_(memory), filters_(memory), shape_(memory) {}
 
   /// What nodes hold.
   enum class Nodes : std::uint8_t {
@@ -43,12 +43,15 @@ class BlockTree {
   void refit(const RowView& rows, std::span<std::uint32_t> leaves) noexcept;
 
   [[nodiscard]] TreeView view(const RowView& rows) const noexcept;
-  /// The same without rows; stays where it is until `cover` is called.
-  [[nodiscard]] const TreeView& shape() const noexcept { return shape_; }
-  [[nodiscard]] std::size_t first_block() const noexcept { return shape_.first_block; }
-  [[nodiscard]] std::size_t blocks() const noexcept { return shape_.count[0]; }
-  [[nodiscard]] std::size_t levels() const noexcept { return shape_.levels; }
-  [[nodiscard]] bool has_filters() const noexcept { return shape_.filters[0].layers != nullptr; }
+  /// Stays where it is until `cover` is called.
+  [[nodiscard]] const TreeShape& shape() const noexcept {
+    static constexpr TreeShape kNone;
+    return shape_.empty() ? kNone : shape_[0];
+  }
+  [[nodiscard]] std::size_t first_block() const noexcept { return shape().first_block; }
+  [[nodiscard]] std::size_t blocks() const noexcept { return shape().count[0]; }
+  [[nodiscard]] std::size_t levels() const noexcept { return shape().levels; }
+  [[nodiscard]] bool has_filters() const noexcept { return shape().filters[0].layers != nullptr; }
   /// Nodes one level above the blocks: the units in which pair finding is split.
   [[nodiscard]] std::size_t groups() const noexcept { return (blocks() + 15) / 16; }
 
@@ -58,9 +61,8 @@ class BlockTree {
   /// True if the mean edge of a block is longer than `edge`.
   [[nodiscard]] bool is_wide(std::size_t block, float edge) const noexcept {
     float sum = 0.0F;
-    for (std::size_t c = 0; c < 3; ++c) {
-      sum += shape_.node[0][3 + c][block] - shape_.node[0][c][block];
-    }
+    const float* const* const leaf = shape().node[0];
+    for (std::size_t c = 0; c < 3; ++c) sum += leaf[3 + c][block] - leaf[c][block];
     return sum > 3.0F * edge;
   }
   /// How many of the first blocks are. O(count).
@@ -74,12 +76,12 @@ class BlockTree {
   [[nodiscard]] Bytes bytes() const noexcept;
 
  private:
-  [[nodiscard]] bool lay_boxes(TreeView& shape) noexcept;
-  void aim_boxes(TreeView& shape) noexcept;
+  [[nodiscard]] bool lay_boxes(TreeShape& shape) noexcept;
+  void aim_boxes(TreeShape& shape) noexcept;
 
   Column<float> nodes_;
   Column<std::uint32_t> filters_;
-  TreeView shape_;  // rows unset: the pool may move between calls
+  Column<TreeShape> shape_;  // one; none while the tree covers nothing
 };
 
 }  // namespace winnow

@@ -42,7 +42,7 @@ void refit_nodes(const TreeView& tree, std::uint32_t level, std::uint32_t begin,
 
 /// Of the boxes `nodes`, which are nodes from `first_node` on, those that box q overlaps and whose
 /// filters `range` may meet.
-Mask16 open_nodes(const TreeView& tree, std::uint32_t level, std::uint32_t first_node,
+Mask16 open_nodes(const TreeShape& tree, std::uint32_t level, std::uint32_t first_node,
                   const Box16& nodes, const QueryBox& q, const FilterRange& range) {
   return passing_nodes(tree.filters[level], first_node, overlap(nodes, q.low, q.high), range);
 }
@@ -239,7 +239,9 @@ class BoxQuestions {
   friend JointTraversal<BoxQuestions>;
   struct Nothing {};
 
-  [[nodiscard]] static Nothing prepare(const TreeView&, std::uint32_t, std::uint32_t) { return {}; }
+  [[nodiscard]] static Nothing prepare(const TreeShape&, std::uint32_t, std::uint32_t) {
+    return {};
+  }
 
   /// Those of the 16 nodes from `first_node` on that box `row` overlaps and may meet.
   Mask16 test(Nothing, std::uint32_t row, std::uint32_t level, std::uint32_t first_node) {

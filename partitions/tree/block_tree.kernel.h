@@ -24,13 +24,17 @@ struct NodeFilters {
 /// An implicit 16-ary tree: node i of level l + 1 bounds nodes [16 i, 16 i + 16) of level l, and
 /// node i of level 0 bounds the rows of block first_block + i. Level arrays are padded to 16 with
 /// empty boxes. The top level has at most 16 nodes.
-struct TreeView {
-  RowView rows;
+struct TreeShape {
   std::uint32_t first_block = 0;
   std::uint32_t levels = 0;  ///< 0 if there are no blocks
   std::uint32_t count[kMaxTreeLevels] = {};
   float* node[kMaxTreeLevels][6] = {};
   NodeFilters filters[kMaxTreeLevels];
+};
+
+/// A tree with the rows that it stands over.
+struct TreeView : TreeShape {
+  RowView rows;
 };
 
 struct BlockTreeKernels {

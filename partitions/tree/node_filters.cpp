@@ -50,7 +50,7 @@ struct Joined {
 
 }  // namespace
 
-bool lay_out_filters(TreeView& shape, Column<std::uint32_t>& memory) noexcept {
+bool lay_out_filters(TreeShape& shape, Column<std::uint32_t>& memory) noexcept {
   std::size_t total = 0;
   for (std::uint32_t level = 0; level < shape.levels; ++level) {
     total += 5 * padded_nodes(shape.count[level]);

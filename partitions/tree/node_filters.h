@@ -15,7 +15,7 @@ namespace winnow {
 
 /// Gives every level of a tree its NodeFilters in `memory`, padded with nodes that nothing meets.
 /// False if memory is refused.
-[[nodiscard]] bool lay_out_filters(TreeView& shape, Column<std::uint32_t>& memory) noexcept;
+[[nodiscard]] bool lay_out_filters(TreeShape& shape, Column<std::uint32_t>& memory) noexcept;
 
 /// Recomputes the filters of nodes [begin, end) of level 0 from those of the rows.
 void refit_leaf_filters(const TreeView& tree, std::uint32_t begin, std::uint32_t end) noexcept;

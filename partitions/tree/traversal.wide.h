@@ -42,7 +42,7 @@ template <std::uint32_t MaxLevels, typename Test, typename Visit>
 /// Calls visit(node) for every node of level `bottom` that is let through on its own level and all
 /// above, from node `from` on. False as soon as visit says false.
 template <typename Test, typename Visit>
-bool traverse_from(const TreeView& tree, std::uint32_t bottom, std::uint32_t from, Test&& test,
+bool traverse_from(const TreeShape& tree, std::uint32_t bottom, std::uint32_t from, Test&& test,
                    Visit&& visit) {
   return traverse<kMaxTreeLevels>(
       tree.levels,
@@ -94,7 +94,7 @@ class JointTraversal {
 
   /// Asks question_of(0), ..., question_of(count - 1). False if a visit ended it.
   template <typename QuestionOf>
-  bool run(const TreeView& tree, std::uint32_t count, QuestionOf&& question_of) {
+  bool run(const TreeShape& tree, std::uint32_t count, QuestionOf&& question_of) {
     if (count == 0) return true;
     tree_ = &tree;
     const std::uint32_t top = tree.levels - 1;
@@ -134,7 +134,7 @@ class JointTraversal {
   }
 
   Questions& questions_;
-  const TreeView* tree_ = nullptr;
+  const TreeShape* tree_ = nullptr;
   OpenList open_[kMaxTreeLevels];
 };
 

@@ -130,7 +130,9 @@ Status Collision::answer_convex() {
 Status Collision::answer_composite() {
   if (level_ == ContactLevel::pairs || scene_.composite.empty()) return Status::ok;
   const SceneOptions& options = scene_.options;
-  PrimitivePairs& parts = scene_.parts;
+  if (scene_.parts == nullptr) scene_.parts = new_in<PartAnswers>(options.memory, options.memory);
+  if (scene_.parts == nullptr) return Status::out_of_memory;
+  PrimitivePairs& parts = scene_.parts->pairs;
   // What is farther apart than this cannot touch before its pair is made anew.
   double reach = 0.0;
   if (!find_gaps(carries_ ? options.carry_over : 0.0, reach)) return Status::out_of_memory;
@@ -139,18 +141,18 @@ Status Collision::answer_composite() {
       {{scene_.shape.data(), scene_.shape.size()}, {scene_.pose.data(), scene_.pose.size()}},
       {scene_.composite.data(), scene_.composite.size()}, margins(reach), options.execution, parts);
   if (status != Status::ok) return status;
-  status = scene_.parts_narrow.collide(
+  status = scene_.parts->narrow.collide(
       parts.tables(scene_.shapes),
       {{parts.shapes.data(), parts.shapes.size()}, {parts.poses.data(), parts.poses.size()}},
       {parts.pairs.data(), parts.pairs.size()},
-      narrow_options(options, level_, widest_gap(scene_.composite)), scene_.parts_answers);
+      narrow_options(options, level_, widest_gap(scene_.composite)), scene_.parts->answers);
   if (status != Status::ok) return status;
   if (level_ >= ContactLevel::distance) {
-    options.composites->smooth(scene_.shapes, parts, options.execution, scene_.parts_answers);
+    options.composites->smooth(scene_.shapes, parts, options.execution, scene_.parts->answers);
   }
-  scene_.statistics.parts = scene_.parts_narrow.statistics();
+  scene_.statistics.parts = scene_.parts->narrow.statistics();
   scene_.statistics.primitive_pairs = parts.pairs.size();
-  if (!invert(scene_.parts_answers, options.execution, scene_.parts_slot)) {
+  if (!invert(scene_.parts->answers, options.execution, scene_.parts->slot)) {
     return Status::out_of_memory;
   }
   trim_parts();
@@ -164,8 +166,8 @@ Status Collision::reduce_composite() {
   double widest = 0.0;
   if (!find_gaps(0.0, widest)) return Status::out_of_memory;
   const SceneOptions& options = scene_.options;
-  return options.composites->reduce(scene_.shapes, scene_.parts, scene_.parts_answers,
-                                    margins(widest), options.execution, scene_.regions);
+  return options.composites->reduce(scene_.shapes, scene_.parts->pairs, scene_.parts->answers,
+                                    margins(widest), options.execution, scene_.parts->regions);
 }
 
 bool Collision::touches(const NarrowResult& answers, std::size_t at) const noexcept {
@@ -205,15 +207,15 @@ ContactFrame::Place Collision::extent(std::uint32_t pair) const noexcept {
   }
   Place sum;
   if (reduces_) {
-    const auto regions = scene_.regions.of(contacts_.source[pair]);
+    const auto regions = scene_.parts->regions.of(contacts_.source[pair]);
     for (const ContactRegion& region : regions) sum += {0, 1, region.count};
     sum.pair = regions.empty() ? 0 : 1;
     return sum;
   }
-  const std::uint32_t* const first = scene_.parts.first.data() + contacts_.source[pair];
+  const std::uint32_t* const first = scene_.parts->pairs.first.data() + contacts_.source[pair];
   for (std::uint32_t i = first[0]; i < first[1]; ++i) {
-    const std::uint32_t at = scene_.parts_slot[i];
-    if (touches(scene_.parts_answers, at)) sum += {1, 1, points(scene_.parts_answers, at)};
+    const std::uint32_t at = scene_.parts->slot[i];
+    if (touches(scene_.parts->answers, at)) sum += {1, 1, points(scene_.parts->answers, at)};
   }
   if (sum.pair != 0) sum.pair = 1;
   return sum;
@@ -353,18 +355,19 @@ void Collision::write(std::uint32_t pair, const Place& to) noexcept {
     return;
   }
   if (reduces_) {
-    for (const ContactRegion& region : scene_.regions.of(c.source[pair])) write_region(region, at);
+    for (const ContactRegion& region : scene_.parts->regions.of(c.source[pair]))
+      write_region(region, at);
     return;
   }
-  const PrimitivePairs& parts = scene_.parts;
+  const PrimitivePairs& parts = scene_.parts->pairs;
   const std::uint32_t* const first = parts.first.data() + c.source[pair];
   for (std::uint32_t i = first[0]; i < first[1]; ++i) {
-    const std::uint32_t answer = scene_.parts_slot[i];
-    if (!touches(scene_.parts_answers, answer)) continue;
+    const std::uint32_t answer = scene_.parts->slot[i];
+    if (!touches(scene_.parts->answers, answer)) continue;
     const BodyPair primitives = parts.pairs[i];
     frame.part[0][at.manifold] = parts.part[primitives.a];
     frame.part[1][at.manifold] = parts.part[primitives.b];
-    write_manifold(scene_.parts_answers, answer, parts.poses[primitives.a].position, at);
+    write_manifold(scene_.parts->answers, answer, parts.poses[primitives.a].position, at);
   }
 }
 
@@ -459,9 +462,9 @@ double Collision::clearance(std::uint32_t pair) const noexcept {
   if (static_cast<Origin>(contacts_.origin[pair]) == Origin::convex) {
     least = of(scene_.answers, scene_.slot[contacts_.source[pair]]);
   } else {
-    const std::uint32_t* const first = scene_.parts.first.data() + contacts_.source[pair];
+    const std::uint32_t* const first = scene_.parts->pairs.first.data() + contacts_.source[pair];
     for (std::uint32_t i = first[0]; i < first[1]; ++i) {
-      least = std::min(least, of(scene_.parts_answers, scene_.parts_slot[i]));
+      least = std::min(least, of(scene_.parts->answers, scene_.parts->slot[i]));
     }
   }
   return least;

@@ -184,9 +184,9 @@ void Collision::trim_convex() noexcept {
 
 void Collision::trim_parts() noexcept {
   if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
-  const PrimitivePairs& parts = scene_.parts;
+  const PrimitivePairs& parts = scene_.parts->pairs;
   const ShapeTables tables = parts.tables(scene_.shapes);
-  const NarrowColumns answers = scene_.parts_answers.columns();
+  const NarrowColumns answers = scene_.parts->answers.columns();
   for_stretches(scene_.options.execution, scene_.composite.size(), kOffsetPairsPerStretch,
                 [&](std::size_t first, std::size_t end) {
                   for (std::size_t i = first; i < end; ++i) {
@@ -197,7 +197,7 @@ void Collision::trim_parts() noexcept {
                                         {parts.shapes[of.a], parts.shapes[of.b]},
                                         {&parts.poses[of.a], &parts.poses[of.b]},
                                         gap};
-                      trim(asked, scene_.parts_slot[k], answers);
+                      trim(asked, scene_.parts->slot[k], answers);
                     }
                   }
                 });
@@ -226,7 +226,7 @@ void Collision::rest(const BodyPair& bodies, std::uint32_t at,
 
 void Collision::rest_parts() noexcept {
   if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
-  const NarrowColumns answers = scene_.parts_answers.columns();
+  const NarrowColumns answers = scene_.parts->answers.columns();
   for_stretches(scene_.options.execution, scene_.composite.size(), kOffsetPairsPerStretch,
                 [&](std::size_t first, std::size_t end) {
                   for (std::size_t i = first; i < end; ++i) {
@@ -235,9 +235,9 @@ void Collision::rest_parts() noexcept {
                       rest_regions(bodies, i);
                       continue;
                     }
-                    const std::uint32_t* const of = scene_.parts.first.data() + i;
+                    const std::uint32_t* const of = scene_.parts->pairs.first.data() + i;
                     for (std::uint32_t k = of[0]; k < of[1]; ++k) {
-                      rest(bodies, scene_.parts_slot[k], answers);
+                      rest(bodies, scene_.parts->slot[k], answers);
                     }
                   }
                 });
@@ -245,7 +245,7 @@ void Collision::rest_parts() noexcept {
 
 void Collision::rest_regions(const BodyPair& bodies, std::size_t pair) noexcept {
   const double rest[2] = {scene_.offsets_of(bodies.a).rest, scene_.offsets_of(bodies.b).rest};
-  ContactRegions& all = scene_.regions;
+  ContactRegions& all = scene_.parts->regions;
   for (ContactRegion& region : std::span(all.regions.data() + all.first[pair], all.count[pair])) {
     region.error_bound += sum_error(region.distance, rest);
     region.distance -= rest[0] + rest[1];

@@ -66,6 +66,16 @@ Bytes SceneFootprint::total() const noexcept {
   return sum;
 }
 
+Bytes PartAnswers::bytes() const noexcept {
+  Bytes sum{sizeof *this, sizeof *this};
+  for (const Bytes& part :
+       {pairs.footprint().total(), narrow.footprint().total(), answers.footprint().total(),
+        slot.bytes(), regions.footprint().total()}) {
+    sum += part;
+  }
+  return sum;
+}
+
 SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcept
     : shapes(pool),
       options(given),
@@ -98,11 +108,6 @@ SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcep
       convex(given.memory),
       composite(given.memory),
       gaps(given.memory),
-      parts(given.memory),
-      parts_narrow(given.memory),
-      parts_answers(given.memory),
-      parts_slot(given.memory),
-      regions(given.memory),
       floor_contacts(given.memory),
       ignored(given.memory),
       ignores(given.memory) {
@@ -336,11 +341,7 @@ SceneFootprint Scene::footprint() const noexcept {
   footprint.pairs += s.pairs.bytes();
   footprint.mid_phase += s.composite.bytes();
   footprint.mid_phase += s.gaps.bytes();
-  footprint.mid_phase += s.parts.footprint().total();
-  footprint.mid_phase += s.parts_narrow.footprint().total();
-  footprint.mid_phase += s.parts_answers.footprint().total();
-  footprint.mid_phase += s.parts_slot.bytes();
-  footprint.mid_phase += s.regions.footprint().total();
+  if (s.parts != nullptr) footprint.mid_phase += s.parts->bytes();
   footprint.narrow_phase += s.convex.bytes();
   footprint.narrow_phase += s.slot.bytes();
   footprint.narrow_phase += s.floor_contacts.bytes();

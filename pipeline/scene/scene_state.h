@@ -2,6 +2,7 @@
 
 #include <winnow/pipeline/scene.h>
 #include "core/memory/key_table.h"
+#include "core/memory/new_in.h"
 #include "pipeline/scene/body_pairs.h"
 #include "pipeline/scene/layers.h"
 #include "pipeline/scene/seams.h"
@@ -40,10 +41,28 @@ struct SceneSet {
   std::uint64_t changes = 0;
 };
 
+/// What is asked and answered about the parts of pairs with a composite shape.
+struct PartAnswers {
+  explicit PartAnswers(std::pmr::memory_resource* memory) noexcept
+      : pairs(memory), narrow(memory), answers(memory), slot(memory), regions(memory) {}
+
+  PrimitivePairs pairs;
+  NarrowPhase narrow;
+  NarrowResult answers;
+  /// By pair of parts: where its answer lies.
+  Column<std::uint32_t> slot;
+  ContactRegions regions;
+
+  [[nodiscard]] Bytes bytes() const noexcept;
+};
+
 /// What a Scene consists of. Bodies are numbered by the ids of their keys; columns are by id and
 /// have holes where bodies were removed.
 struct SceneState {
   SceneState(const ShapePool& pool, const SceneOptions& given) noexcept;
+  SceneState(const SceneState&) = delete;
+  SceneState& operator=(const SceneState&) = delete;
+  ~SceneState() { delete_in(options.memory, parts); }
 
   const ShapePool& shapes;
   SceneOptions options;
@@ -106,11 +125,8 @@ struct SceneState {
   Column<BodyPair> composite;
   /// Of `composite`, up to which gap they are asked about. Not used without offsets.
   Column<double> gaps;
-  PrimitivePairs parts;
-  NarrowPhase parts_narrow;
-  NarrowResult parts_answers;
-  Column<std::uint32_t> parts_slot;
-  ContactRegions regions;
+  /// Of `composite`; made when there is the first one.
+  PartAnswers* parts = nullptr;
   /// Not used unless floors are seamless.
   Column<FloorContact> floor_contacts;
   SceneStatistics statistics;

@@ -125,9 +125,9 @@ bool Collision::list_floor_contacts() {
 }
 
 bool Collision::list_floor_parts(std::uint32_t pair, FloorWriter& writer) {
-  const PrimitivePairs& parts = scene_.parts;
+  const PrimitivePairs& parts = scene_.parts->pairs;
   for (std::uint32_t k = parts.first[pair]; k < parts.first[pair + 1]; ++k) {
-    if (!list_floor_answer(scene_.parts_answers, FloorContact::Source::part, scene_.parts_slot[k],
+    if (!list_floor_answer(scene_.parts->answers, FloorContact::Source::part, scene_.parts->slot[k],
                            parts.poses[parts.pairs[k].a].position, writer)) {
       return false;
     }
@@ -136,9 +136,9 @@ bool Collision::list_floor_parts(std::uint32_t pair, FloorWriter& writer) {
 }
 
 bool Collision::list_floor_regions(std::uint32_t pair, FloorWriter& writer) {
-  const std::uint32_t first = scene_.regions.first[pair];
-  for (std::uint32_t k = first; k < first + scene_.regions.count[pair]; ++k) {
-    const ContactRegion& region = scene_.regions.regions[k];
+  const std::uint32_t first = scene_.parts->regions.first[pair];
+  for (std::uint32_t k = first; k < first + scene_.parts->regions.count[pair]; ++k) {
+    const ContactRegion& region = scene_.parts->regions.regions[k];
     writer.begin(FloorContact::Source::region, k, region.distance, Vec::Map(region.normal));
     for (const ContactPoint& point : std::span(region.point, region.count)) {
       writer.add(Eigen::Map<const Eigen::Vector3f>(point.position).cast<double>(),
@@ -154,9 +154,9 @@ void Collision::drop(const FloorContact& seam) noexcept {
   if (seam.source == FloorContact::Source::convex) {
     scene_.answers.columns().distance[seam.answer] = beyond;
   } else if (seam.source == FloorContact::Source::part) {
-    scene_.parts_answers.columns().distance[seam.answer] = beyond;
+    scene_.parts->answers.columns().distance[seam.answer] = beyond;
   } else {
-    scene_.regions.regions[seam.answer].count = 0;
+    scene_.parts->regions.regions[seam.answer].count = 0;
   }
 }
 
@@ -190,8 +190,8 @@ bool Collision::drop_seams() {
 
 // Regions that were dropped have no points.
 void Collision::close_regions() noexcept {
-  if (!reduces_) return;
-  ContactRegions& all = scene_.regions;
+  if (!reduces_ || scene_.composite.empty()) return;
+  ContactRegions& all = scene_.parts->regions;
   for (std::uint32_t i = 0; i < scene_.composite.size(); ++i) {
     ContactRegion* const first = all.regions.data() + all.first[i];
     const ContactRegion* const end = std::remove_if(
