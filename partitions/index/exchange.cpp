@@ -20,6 +20,7 @@ void SpatialIndex::end(const Held& one) noexcept {
 
 // With what was reserved for it, it may be taken again.
 void SpatialIndex::put_by(const Held& one) noexcept {
+  if (one.structure == nullptr) return;
   if (!reserved_ || !let_wait(one)) end(one);
 }
 

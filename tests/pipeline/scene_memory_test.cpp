@@ -158,6 +158,26 @@ TEST(SceneBytes, the_footprint_is_what_was_asked_for_and_a_steady_frame_asks_for
   }
 }
 
+TEST(SceneBytes, twenty_bodies_take_a_kilobyte_each) {
+  constexpr std::size_t kBodies = 20;
+  CountingMemory memory;
+  ShapePool shapes(&memory);
+  ShapeId box;
+  ASSERT_EQ(shapes.add(BoxShape{.half = {0.5, 0.5, 0.5}}, box), Status::ok);
+  Scene scene(shapes, {.memory = &memory});
+  Contacts contacts(&memory);
+  for (std::size_t i = 0; i < kBodies; ++i) {
+    BodyDefinition body{.shape = box};
+    body.pose.position[0] = 3.0 * static_cast<double>(i);
+    Key key;
+    ASSERT_EQ(scene.add(body, key), Status::ok);
+  }
+  for (int frame = 0; frame < 4; ++frame) {
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+  }
+  EXPECT_LE(memory.outstanding(), kBodies * 1024);
+}
+
 TEST(SceneBytes, refused_memory_leaves_the_scene_as_it_was) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
