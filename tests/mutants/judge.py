@@ -2,8 +2,9 @@
 
 First every suite of tests runs once without a mutant, and tells which mutants it comes by; one that does
 not pass at the scale of WINNOW_TEST_SCALE, as too few of its cases are left, is run at larger ones. Then each
-mutant is run by the suites that come by it, the fastest first, until one fails, hangs or crashes, which
-kills it, or until SECONDS have passed for it. Prints the survivors, with the reason that survivors.txt
+mutant is run by the suites that come by it until one fails, hangs or crashes, which kills it, or until
+SECONDS have passed for it: those first that killed others of its file, then those that come by few mutants
+for the time that they take. Prints the survivors, with the reason that survivors.txt
 gives where it knows one, and the score by group; OUT gets all of it as JSON. Equivalent mutants, as that
 file calls them, are not counted. SUITES, a regular expression, takes those suites alone.
 """
@@ -62,9 +63,12 @@ def survey(program, suite):
             "reached": reached}
 
 
-def judge(mutant, suites, budget):
-    """The suite that kills it, None if it survives, and whether all that come by it were run."""
-    mine = sorted((s for s in suites if mutant["id"] in s["reached"]), key=lambda s: s["took"])
+def judge(mutant, suites, kills, budget):
+    """The suite that kills it, None if it survives, and whether all that come by it were run. `kills` counts
+    by file and suite what was killed so far."""
+    file_kills = kills[mutant["file"]]
+    mine = sorted((s for s in suites if mutant["id"] in s["reached"]),
+                  key=lambda s: (-file_kills[s["suite"]], s["took"] * len(s["reached"])))
     spent = 0.0
     for suite in mine:
         if spent > budget:
@@ -74,6 +78,7 @@ def judge(mutant, suites, budget):
         if not run_suite(suite["program"], suite["suite"],
                          {"WINNOW_MUTANT": str(mutant["id"]), "WINNOW_TEST_SCALE": suite["scale"]},
                          limit):
+            file_kills[suite["suite"]] += 1
             return {"killed_by": suite["suite"] + "*", "suites": len(mine), "ran_all": True}
         spent += time.monotonic() - start
     return {"killed_by": None, "suites": len(mine), "ran_all": True}
@@ -110,7 +115,8 @@ def main():
                 print(f"without a mutant {suite['suite']}* does not pass: left out", flush=True)
         suites = [s for s in suites if s["passed"]]
         print(f"{len(suites)} suites take {sum(s['took'] for s in suites):.0f} s", flush=True)
-        verdicts = list(pool.map(lambda m: judge(m, suites, float(budget)), mutants))
+        kills = collections.defaultdict(collections.Counter)
+        verdicts = list(pool.map(lambda m: judge(m, suites, kills, float(budget)), mutants))
 
     known = known_survivors()
     counts = collections.defaultdict(collections.Counter)
