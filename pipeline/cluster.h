@@ -5,6 +5,7 @@
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
+#include <winnow/core/pair_buffer.h>
 #include <winnow/core/status.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/partitions/structures.h>
@@ -13,6 +14,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <memory_resource>
 #include <span>
 
@@ -30,6 +32,69 @@ struct NamePair {
 
   /// By the first body, then by the second.
   friend constexpr auto operator<=>(const NamePair&, const NamePair&) noexcept = default;
+};
+
+/// Pairs that a rank reports, read front to back or by place. A rank holds them by its own numbers
+/// of bodies, 8 bytes a pair, and names are looked up as a pair is read: nothing is written for
+/// pairs that nobody looks at.
+class NamePairs {
+ public:
+  /// Reads one pair after another.
+  class Iterator {
+   public:
+    using iterator_category = std::input_iterator_tag;   ///< pairs are made as they are read
+    using iterator_concept = std::forward_iterator_tag;  ///< it may be copied and read again
+    using value_type = NamePair;                         ///< what it reads
+    using difference_type = std::ptrdiff_t;              ///< pairs between two of them
+    using pointer = const NamePair*;                     ///< of no use: pairs lie nowhere
+    using reference = NamePair;                          ///< a pair by value
+
+    /// Of no pairs.
+    Iterator() noexcept = default;
+    /// At a pair of numbers, and the names of numbers.
+    Iterator(const Pair* at, const BodyName* names) noexcept : at_(at), names_(names) {}
+    /// The pair, its smaller name first.
+    [[nodiscard]] NamePair operator*() const noexcept {
+      const BodyName a = names_[at_->first];
+      const BodyName b = names_[at_->second];
+      return a < b ? NamePair{a, b} : NamePair{b, a};
+    }
+    /// Goes on to the next pair.
+    Iterator& operator++() noexcept {
+      ++at_;
+      return *this;
+    }
+    /// Goes on to the next pair, and gives back where it was.
+    Iterator operator++(int) noexcept { return {at_++, names_}; }
+    /// At the same pair.
+    friend bool operator==(const Iterator& a, const Iterator& b) noexcept { return a.at_ == b.at_; }
+
+   private:
+    const Pair* at_ = nullptr;
+    const BodyName* names_ = nullptr;
+  };
+
+  /// No pairs.
+  NamePairs() noexcept = default;
+  /// Pairs of numbers, and the names of numbers.
+  NamePairs(std::span<const Pair> pairs, const BodyName* names) noexcept
+      : pairs_(pairs), names_(names) {}
+  /// How many there are.
+  [[nodiscard]] std::size_t size() const noexcept { return pairs_.size(); }
+  /// True if there are none.
+  [[nodiscard]] bool empty() const noexcept { return pairs_.empty(); }
+  /// At the first pair.
+  [[nodiscard]] Iterator begin() const noexcept { return {pairs_.data(), names_}; }
+  /// Behind the last pair.
+  [[nodiscard]] Iterator end() const noexcept { return {pairs_.data() + size(), names_}; }
+  /// Pair i, below `size()`; nothing is checked.
+  [[nodiscard]] NamePair operator[](std::size_t i) const noexcept {
+    return *Iterator(pairs_.data() + i, names_);
+  }
+
+ private:
+  std::span<const Pair> pairs_;
+  const BodyName* names_ = nullptr;
 };
 
 /// A body where it belongs.
@@ -88,7 +153,7 @@ struct ClusterStatistics {
 ///     winnow::Cluster cluster(transport);
 ///     cluster.add(batches, answers);
 ///     cluster.self_pairs();
-///     for (const winnow::NamePair& pair : cluster.pairs(rank)) ...
+///     for (const winnow::NamePair pair : cluster.pairs(rank)) ...
 ///
 /// A body belongs to the rank in whose region its centre lies, and is told of there: it is moved
 /// and removed on that rank alone. It is copied to every rank whose region its box meets, so there
@@ -138,9 +203,10 @@ class WINNOW_API Cluster {
   /// a frame that was out of balance space is cut anew first. Collective.
   Status self_pairs(Order order = Order::fast);
   /// Those that a hosted rank reports, each oriented by name; together, the ranks' are all. With
-  /// Order::canonical each rank's are sorted. Valid until the next `self_pairs`.
-  [[nodiscard]] std::span<const NamePair> pairs(std::uint32_t rank) const noexcept;
-  /// Of all pairs of the last `self_pairs`: the same on 1 to N ranks, wherever space is cut.
+  /// Order::canonical each rank's are sorted. To be read before bodies are added to the rank, from
+  /// when on it has none, and before the next `self_pairs`.
+  [[nodiscard]] NamePairs pairs(std::uint32_t rank) const noexcept;
+  /// Of all that `pairs` gives: the same on 1 to N ranks, wherever space is cut.
   /// Collective; O(pairs).
   Status digest(ClusterDigest& digest);
 

@@ -47,7 +47,7 @@ struct BoxRanks {
   Status find() { return cluster.self_pairs(); }
   template <typename Take>
   void each_pair(std::uint32_t rank, Take&& take) const {
-    for (const NamePair& pair : cluster.pairs(rank)) take(pair.first, pair.second);
+    for (const NamePair pair : cluster.pairs(rank)) take(pair.first, pair.second);
   }
 
   Cluster cluster;

@@ -52,6 +52,18 @@ constexpr bool kMayStay = requires(const Source& source) {
   source.write_if_left(0, ColumnPointers{}, 0);
 };
 
+/// The least and the largest id of entries; where ids ascend, those at their ends.
+std::ranges::minmax_result<ObjectId> ends_of_ids(const EntryList& entries,
+                                                 bool ascending) noexcept {
+  if (ascending) return {entries.key(0).id, entries.key(entries.count - 1).id};
+  std::ranges::minmax_result<ObjectId> ends{entries.key(0).id, entries.key(0).id};
+  for (std::size_t j = 1; j < entries.count; ++j) {
+    ends.min = std::min(ends.min, entries.key(j).id);
+    ends.max = std::max(ends.max, entries.key(j).id);
+  }
+  return ends;
+}
+
 }  // namespace
 
 Rows::Rows(std::pmr::memory_resource* memory, const Execution& execution, Volume volume,
@@ -216,19 +228,23 @@ void Rows::fetch_row(std::size_t row) const noexcept {
 }
 
 /// Nearly every row changes: rows are written one after another then, which reads entries out of
-/// order but writes each column in order, and that is a sixth of the cache lines. Ids ascend; where
-/// they and their entries leave gaps a table leads from one to the other.
+/// order but writes each column in order, and that is a sixth of the cache lines. Where ids leave
+/// gaps or come in another order than their entries, a table leads from one to the other. False
+/// where a key is there twice: such entries are written in their order.
 bool Rows::goes_by_rows(const EntryList& entries, bool ascending, BoxOfId& entry_of) {
   const std::size_t count = entries.count;
-  const ObjectId first = entries.key(0).id;
-  const std::size_t ids = entries.key(count - 1).id - first + std::size_t{1};
-  if (!ascending || 2 * count <= pool_.rows() || ids > count + count / 2) return false;
+  if (2 * count <= pool_.rows()) return false;
+  const auto [first, last] = ends_of_ids(entries, ascending);
+  const std::size_t ids = last - first + std::size_t{1};
+  if (ids > count + count / 2) return false;
   entry_of = {first, static_cast<std::uint32_t>(ids)};
-  if (ids == count && entries.number == nullptr) return true;
+  if (ascending && ids == count && entries.number == nullptr) return true;
   if (!selection_.list.resize(ids)) return false;
   std::fill(selection_.list.begin(), selection_.list.end(), kNoObject);
   for (std::size_t j = 0; j < count; ++j) {
-    selection_.list[entries.key(j).id - first] = static_cast<std::uint32_t>(entries[j]);
+    std::uint32_t& entry = selection_.list[entries.key(j).id - first];
+    if (entry != kNoObject) return false;
+    entry = static_cast<std::uint32_t>(entries[j]);
   }
   entry_of.table = selection_.list.data();
   return true;

@@ -123,7 +123,7 @@ Status ClusterState::count_found(Status found) {
 Status ClusterState::digest(ClusterDigest& digest) {
   std::uint64_t sums[2] = {0, 0};
   for (const RankBodies& one : bodies) {
-    for (const NamePair& pair : one.pairs()) {
+    for (const NamePair pair : one.pairs()) {
       const std::uint64_t second = scattered(pair.second + 0x9E3779B97F4A7C15ULL);
       sums[0] += scattered(pair.first ^ second);
       sums[1] += scattered(scattered(pair.first + 0xD1B54A32D192ED03ULL) + second);
@@ -186,9 +186,9 @@ Status Cluster::self_pairs(Order order) {
   return collective(state_, [&] { return state_->self_pairs(order); });
 }
 
-std::span<const NamePair> Cluster::pairs(std::uint32_t rank) const noexcept {
+NamePairs Cluster::pairs(std::uint32_t rank) const noexcept {
   const RankBodies* const bodies = state_ == nullptr ? nullptr : state_->find(rank);
-  return bodies == nullptr ? std::span<const NamePair>{} : bodies->pairs();
+  return bodies == nullptr ? NamePairs{} : bodies->pairs();
 }
 
 Status Cluster::digest(ClusterDigest& digest) {

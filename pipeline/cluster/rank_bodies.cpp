@@ -25,7 +25,7 @@ RankBodies::RankBodies(std::uint32_t rank, bool alone, const ClusterOptions& opt
       names_(options.memory),
       flags_(options.memory),
       table_(options.memory),
-      pairs_(options.memory) {}
+      kept_(options.memory) {}
 
 // ---- what the rank is told
 
@@ -42,6 +42,7 @@ Status RankBodies::check(const ClusterBatch& batch) {
 
 Status RankBodies::insert(const ClusterBatch& batch) {
   if (batch.names.empty()) return Status::ok;
+  reported_ = {};  // numbers of bodies that were removed get other names
   keys_.resize(batch.names.size());
   const Status status = partition_.insert(batch.boxes, {}, keys_);
   if (status != Status::ok) return status;
@@ -292,24 +293,42 @@ bool RankBodies::meet_here(ObjectId a, ObjectId b) const noexcept {
   return is_within({at, at});
 }
 
+void RankBodies::keep_reported() {
+  find_low_corners();
+  kept_.resize(found_.size());
+  Pair* out = kept_.data();
+  for (const Pair& pair : found_) {
+    *out = pair;
+    // Of two boxes of which one lies within the region the rank reports the pair without a look.
+    const bool reported =
+        !low_corners_.has(pair.first, pair.second) || meet_here(pair.first, pair.second);
+    out += reported ? 1 : 0;
+  }
+  kept_.resize(static_cast<std::size_t>(out - kept_.data()));
+}
+
+void RankBodies::sort_by_names() {
+  const auto names_of = [this](const Pair& pair) {
+    return *NamePairs::Iterator(&pair, names_.data());
+  };
+  std::ranges::sort(kept_, {}, names_of);
+}
+
 Status RankBodies::find_pairs(Order order) {
+  reported_ = {};
   const Status status = partition_.self_pairs(found_);
   if (status != Status::ok) return status;
-  if (!alone_) find_low_corners();
-  pairs_.resize(found_.size());
-  NamePair* out = pairs_.data();
-  for (const Pair& pair : found_) {
-    // Of two boxes of which one lies within the region the rank reports the pair without a look.
-    if (!alone_ && low_corners_.has(pair.first, pair.second) &&
-        !meet_here(pair.first, pair.second)) {
-      continue;
-    }
-    const BodyName a = names_[pair.first];
-    const BodyName b = names_[pair.second];
-    *out++ = {std::min(a, b), std::max(a, b)};
+  if (alone_ && order == Order::fast) {
+    reported_ = found_.pairs();
+    return Status::ok;
   }
-  pairs_.resize(static_cast<std::size_t>(out - pairs_.data()));
-  if (order == Order::canonical) std::sort(pairs_.begin(), pairs_.end());
+  if (alone_) {
+    kept_.assign(found_.begin(), found_.end());
+  } else {
+    keep_reported();
+  }
+  if (order == Order::canonical) sort_by_names();
+  reported_ = kept_;
   return Status::ok;
 }
 

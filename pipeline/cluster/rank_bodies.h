@@ -43,9 +43,10 @@ class RankBodies {
 
   /// Brings the structure to where own bodies are, before copies come: what is left then is little.
   void refresh() noexcept { (void)partition_.refresh(); }
-  /// Fills `pairs()` with those that this rank reports.
+  /// Finds those that this rank reports.
   [[nodiscard]] Status find_pairs(Order order);
-  [[nodiscard]] std::span<const NamePair> pairs() const noexcept { return pairs_; }
+  /// Of the last `find_pairs`, until rows are added.
+  [[nodiscard]] NamePairs pairs() const noexcept { return {reported_, names_.data()}; }
   /// Boxes held and pairs found by the last `find_pairs`.
   [[nodiscard]] std::uint64_t work() const noexcept { return partition_.size() + found_.size(); }
   /// Shares the work of the last `find_pairs` among the bodies that made it; forgotten by `send`.
@@ -89,6 +90,8 @@ class RankBodies {
   [[nodiscard]] Status find_keys(std::span<const BodyName> names, std::vector<Key>& keys) const;
   [[nodiscard]] bool note_moves(std::span<const Key> keys, const BoxView& boxes);
   void find_low_corners();
+  void keep_reported();
+  void sort_by_names();
   void add_rows(std::span<const BodyName> names, std::span<const Key> keys);
   void note_all_that_cross();
   void tell(const Moved& moved, const Regions& before, const Regions& now);
@@ -108,7 +111,8 @@ class RankBodies {
   std::vector<BodyName> removed_;
   std::vector<ClusterBody> arrived_;
   std::vector<BodyName> departed_;
-  std::pmr::vector<NamePair> pairs_;
+  std::pmr::vector<Pair> kept_;     // of those found, where not all are reported as they come
+  std::span<const Pair> reported_;  // in one of these
   Outbox<Aabb> outbox_;
   BodyChanges<Aabb, Aabb> changes_;
   std::vector<std::uint32_t> works_;  // by id

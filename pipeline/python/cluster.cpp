@@ -272,7 +272,7 @@ void remove(SharedCluster& c, py::handle name_array, const Rank& rank) {
         if (status != Status::ok) return status;
         const std::uint32_t first = c.cluster().first_hosted();
         for (std::uint32_t rank = first; rank < first + c.cluster().hosted(); ++rank) {
-          for (const NamePair& pair : c.cluster().pairs(rank)) {
+          for (const NamePair pair : c.cluster().pairs(rank)) {
             found.insert(found.end(), {pair.first, pair.second});
           }
         }

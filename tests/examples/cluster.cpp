@@ -41,7 +41,7 @@ int main() {
   }
   cluster.self_pairs();  // only what moved, and is met elsewhere, is sent
   for (std::uint32_t rank = 0; rank < cluster.hosted(); ++rank) {
-    for (const winnow::NamePair& pair : cluster.pairs(rank)) meet(pair.first, pair.second);
+    for (const winnow::NamePair pair : cluster.pairs(rank)) meet(pair.first, pair.second);
   }
   // [end]
   check(answers[0] == winnow::Status::ok, "the bodies are taken");

@@ -1,6 +1,7 @@
 // Keys: what is handed out, and what is answered to keys that are not, or no longer, valid.
 
 #include <winnow/core/eigen.h>
+#include <algorithm>
 #include <set>
 
 #include "tests/partitions/snapshot.h"
@@ -128,6 +129,24 @@ TEST_P(Keys, that_occur_twice_in_an_update_leave_the_last_box) {
   world_.update(twice, boxes);
   EXPECT_TRUE(world_.holds_its_objects());
   EXPECT_TRUE(world_.agrees());
+}
+
+// Of nearly all objects rows are written in their own order, whatever that of the keys.
+TEST_P(Keys, may_come_in_any_order_and_twice_among_all_in_an_update) {
+  for (const std::size_t gone : {std::size_t{0}, std::size_t{5}}) {
+    for (std::size_t i = 0; i < gone; ++i) remove_one(3 * i);
+    std::vector<Key> keys(keys_.rbegin(), keys_.rend());
+    std::vector<Aabb> boxes(boxes_.begin(), boxes_.end());
+    world_.update(keys, boxes);
+    EXPECT_TRUE(world_.holds_its_objects());
+    EXPECT_TRUE(world_.agrees());
+    std::rotate(keys.begin(), keys.begin() + 20, keys.end());
+    keys.push_back(keys[7]);
+    boxes.push_back(boxes_[40]);
+    world_.update(keys, boxes);
+    EXPECT_TRUE(world_.holds_its_objects());
+    EXPECT_TRUE(world_.agrees());
+  }
 }
 
 TEST_P(Keys, of_ids_without_an_object_are_null) {

@@ -203,6 +203,28 @@ TEST(ClusterInput, that_two_ranks_name_alike_is_refused_on_both) {
   EXPECT_EQ(cluster.statistics().pairs, 3U);
 }
 
+TEST(ClusterPairs, are_named_as_they_are_read) {
+  LoopbackTransport transport(1);
+  Cluster cluster(transport);
+  const BodyName names[] = {9, 4, 7};
+  const Aabb box{Vec3f(0, 0, 0), Vec3f(1, 1, 1)};
+  const Aabb boxes[] = {box, box, box};
+  EXPECT_TRUE(cluster.pairs(0).empty());
+  ASSERT_EQ(add_on(cluster, 0, names, boxes), Status::ok);
+  for (const Order order : {Order::fast, Order::canonical}) {
+    ASSERT_EQ(cluster.self_pairs(order), Status::ok);
+    const NamePairs pairs = cluster.pairs(0);
+    std::vector<NamePair> read(pairs.begin(), pairs.end());
+    ASSERT_EQ(pairs.size(), read.size());
+    for (std::size_t i = 0; i < read.size(); ++i) EXPECT_EQ(pairs[i], read[i]);
+    if (order == Order::fast) std::sort(read.begin(), read.end());
+    EXPECT_EQ(read, (std::vector<NamePair>{{4, 7}, {4, 9}, {7, 9}}));
+  }
+  const BodyName fresh = 5;
+  ASSERT_EQ(add_on(cluster, 0, std::span(&fresh, 1), std::span(&box, 1)), Status::ok);
+  EXPECT_TRUE(cluster.pairs(0).empty());
+}
+
 TEST(ClusterInput, may_name_anew_what_another_rank_removed) {
   Random random(8);
   ClusterWorld world(4);
