@@ -21,6 +21,9 @@ inline constexpr double kEdgeSine = 0.25;
 inline constexpr double kCapCosine = 0.7071;
 inline constexpr std::uint32_t kRimCorners = 16;
 inline constexpr std::uint32_t kSideLine = 2 * kRimCorners;
+/// What a feature id says about its number: the upper two of 32 bits.
+enum class FeatureKind : std::uint32_t { vertex = 0, edge = 1, face = 2 };
+inline constexpr std::uint32_t kFeatureKindShift = 30;
 /// Directions whose sine with the axis is less are along it.
 inline constexpr double kAlongAxis = 1e-9;
 

@@ -24,11 +24,8 @@ struct PatchFrame {
   explicit PatchFrame(const double normal[3]) noexcept;
 };
 
-/// What a feature id says about its number: the upper two of 32 bits.
-enum class FeatureKind : std::uint32_t { vertex = 0, edge = 1, face = 2 };
-
 [[nodiscard]] constexpr std::uint32_t feature_id(FeatureKind kind, std::uint32_t number) noexcept {
-  return static_cast<std::uint32_t>(kind) << 30U | (number & 0x3FFFFFFFU);
+  return static_cast<std::uint32_t>(kind) << kFeatureKindShift | (number & 0x3FFFFFFFU);
 }
 
 /// A patch seen along the normal: counter-clockwise in x and y, with its heights h. What looks like

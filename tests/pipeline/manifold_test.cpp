@@ -181,6 +181,80 @@ TEST(Manifolds, of_a_capsule_deep_in_a_hull_have_a_point_as_deep) {
   }
 }
 
+// Over the corner, the edge and the face of a cube, and in it; each turned in every way, and both
+// ways round.
+TEST(Manifolds, of_a_ball_and_a_hull_are_the_point_halfway_called_by_the_closest_feature) {
+  constexpr double kRadius = 0.5;
+  const Eigen::Vector3d half(1.0, 1.5, 2.0);
+  const struct {
+    Eigen::Vector3d center;
+    Eigen::Vector3d on_hull;
+    std::uint32_t kind;
+  } cases[] = {{{1.2, 1.7, 2.2}, {1.0, 1.5, 2.0}, 0},
+               {{1.3, 1.8, 0.4}, {1.0, 1.5, 0.4}, 1},
+               {{1.45, 0.2, -0.3}, {1.0, 0.2, -0.3}, 2},
+               {{0.8, 0.2, -0.3}, {1.0, 0.2, -0.3}, 2}};
+  Random random(31);
+  const auto any_turn = [&] {
+    Eigen::Vector4d q;
+    do {
+      for (double& x : q) x = random.uniform(-1.0, 1.0);
+    } while (q.norm() > 1.0 || q.norm() < 0.1);
+    return Eigen::Quaterniond(q.normalized());
+  };
+  PairScene scene;
+  const ShapeId hull = box_shape(scene.pool, half, true);
+  ShapeId ball;
+  ASSERT_EQ(scene.pool.add(SphereShape{kRadius}, ball), Status::ok);
+  std::vector<Eigen::Vector3d> halfway;
+  std::vector<double> depths;
+  for (const auto& one : cases) {
+    for (int turned = 0; turned < 8; ++turned) {
+      const Eigen::Quaterniond turn = any_turn();
+      const Eigen::Vector3d place(random.uniform(-9, 9), random.uniform(-9, 9), 3.0);
+      const Eigen::Vector3d away = one.center - one.on_hull;
+      const double gap = one.center.x() < half.x() ? -away.norm() : away.norm();
+      const Eigen::Vector3d outward = away / gap;
+      const Eigen::Vector3d ball_end = one.center - kRadius * outward;
+      depths.push_back(kRadius - gap);
+      halfway.emplace_back(turn * (0.5 * (one.on_hull + ball_end)));
+      const auto hull_body = static_cast<std::uint32_t>(scene.shapes.size());
+      scene.shapes.insert(scene.shapes.end(), {hull, ball});
+      scene.poses.push_back(pose_of(turn, place));
+      scene.poses.push_back(pose_of(any_turn(), place + turn * one.center));
+      scene.pairs.push_back({hull_body, hull_body + 1});
+      scene.pairs.push_back({hull_body + 1, hull_body});
+    }
+  }
+  for (const Isa isa : available_isas()) {
+    const IsaScope scope(isa);
+    for (const NarrowTier tier : kTiers) {
+      const auto answers = ask(scene, {.tier = tier});
+      for (std::size_t i = 0; i < answers.size(); ++i) {
+        SCOPED_TRACE(testing::Message()
+                     << to_string(isa) << " " << static_cast<int>(tier) << " " << i);
+        ASSERT_EQ(answers[i].contacts.size(), 1U);
+        const ContactPoint& point = answers[i].contacts[0];
+        EXPECT_NEAR(point.depth, depths[i / 2], 1e-5);
+        const bool ball_first = i % 2 == 1;
+        const auto body = [&](std::size_t k) {
+          return Eigen::Vector3d::Map(scene.poses[k].position);
+        };
+        const Eigen::Vector3d from_hull =
+            Eigen::Vector3f::Map(point.position).cast<double>() +
+            (ball_first ? Eigen::Vector3d(body(i / 2 * 2 + 1) - body(i / 2 * 2))
+                        : Eigen::Vector3d::Zero());
+        EXPECT_LT((from_hull - halfway[i / 2]).norm(), 2e-5);
+        const auto of_hull =
+            static_cast<std::uint32_t>(ball_first ? point.feature : point.feature >> 32U);
+        if (tier != NarrowTier::reference) {
+          EXPECT_EQ(of_hull >> 30U, cases[i / 16].kind);
+        }
+      }
+    }
+  }
+}
+
 /// Any two kinds but two half-spaces.
 TEST(Manifolds, have_a_point_as_deep_as_the_pair_and_none_beyond_the_margin) {
   const std::vector<ShapeKind> kinds = all_kinds();

@@ -223,6 +223,7 @@ class CoreAndHull {
  public:
   static constexpr std::uint32_t kRoom = 32;
   static constexpr bool kSimpleSecond = true;
+  static constexpr bool kPointSecond = __is_same(Shape, SphereShape);
 
   bool place(const NarrowJob& job, BodyPair bodies, std::uint32_t slot, HullPair& pair) {
     const std::uint32_t simple = Before ? bodies.a : bodies.b;
@@ -234,7 +235,7 @@ class CoreAndHull {
     if (core_[slot].is_sliver()) return false;
     const HullShape& a = Before ? core : hull;
     const HullShape& b = Before ? hull : core;
-    return place_hulls(a, b, job.poses[bodies.a], job.poses[bodies.b], Before, pair);
+    return place_hulls<kPointSecond>(a, b, job.poses[bodies.a], job.poses[bodies.b], Before, pair);
   }
 
  private:

@@ -11,7 +11,8 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 
 /// Answers jobs of one level in one precision. Shapes says which hulls the pairs of a job are:
 /// `kRoom` at a time, by place(job, bodies, slot, pair), which is false for what is out of range,
-/// and by `kSimpleSecond` whether their second is a simple shape.
+/// by `kSimpleSecond` whether their second is a simple shape, and by `kPointSecond` whether the
+/// core of that is a point, at its origin.
 template <typename Shapes, typename T, int Level>
 class HullAnswers {
  public:
@@ -49,7 +50,7 @@ class HullAnswers {
     HullLimits limits{0.0, Level == 0};
     if (Level == 1) limits.far = __builtin_inf();
     if (Level == 2) limits.far = job_.margin < kFarthest ? job_.margin : kFarthest;
-    HullSearch(pair_, placed, limits).run();
+    HullSearch<Shapes::kPointSecond>(pair_, placed, limits).run();
     for (std::uint32_t i = 0; i < placed; ++i) {
       if (!answer(pair_[i])) give_up(pair_[i].index);
     }
@@ -175,6 +176,11 @@ class HullAnswers {
     job_.contact_first[pair.index] = job_.contacts.size;
     job_.contact_count[pair.index] = 0;
     if (!(ask.distance <= ask.margin)) return true;
+    if constexpr (Shapes::kPointSecond) {
+      write_point_contact(pair, ask, winner, job_.contacts);
+      job_.contact_count[pair.index] = 1;
+      return true;
+    }
     const std::uint32_t count =
         write_contacts<Shapes::kSimpleSecond>(pair, ask, winner, job_.contacts);
     job_.contact_count[pair.index] = count;

@@ -8,6 +8,13 @@
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
+/// From the first's frame to the axes of the world, relative to body a.
+static inline void to_world(const HullPair& pair, const double* x, double* r) {
+  turn3(pair.frame, x, r);
+  if (!pair.swapped) return;
+  for (int k = 0; k < 3; ++k) r[k] -= pair.offset[k];
+}
+
 /// The supporting feature of one hull, in the axes of the world.
 class HullPatch {
  public:
@@ -52,7 +59,7 @@ class HullPatch {
 
   /// The same by its ends; what `across` finds if there is no such edge.
   void edge_between(std::uint32_t v, std::uint32_t w) {
-    const std::uint32_t index = edge_of(v, w);
+    const std::uint32_t index = winnow::WINNOW_ISA_NAME::hull::edge_between(hull_, v, w);
     if (index == kNoFeature) return across();
     edge(index);
   }
@@ -89,7 +96,8 @@ class HullPatch {
     const std::uint32_t face_index = face_across(hull_, direction, x, slack);
     if (face_index != kNoFeature) return face(face_index);
     const std::uint32_t other = neighbour_across(hull_, direction, vertex, x);
-    if (other != kNoFeature) return edge_alone(edge_of(vertex, other));
+    if (other != kNoFeature)
+      return edge_alone(winnow::WINNOW_ISA_NAME::hull::edge_between(hull_, vertex, other));
     vertex_alone(vertex);
   }
 
@@ -118,14 +126,6 @@ class HullPatch {
     for (int k = 0; k < 3; ++k) direction[k] = static_cast<float>(outward_[k]);
   }
 
-  [[nodiscard]] std::uint32_t edge_of(std::uint32_t v, std::uint32_t w) const {
-    for (std::uint32_t i = 0; i < hull_.edge_count; ++i) {
-      const std::uint32_t* ends = hull_.edges[i].vertex;
-      if ((ends[0] == v && ends[1] == w) || (ends[0] == w && ends[1] == v)) return i;
-    }
-    return kNoFeature;
-  }
-
   void edge_alone(std::uint32_t index) {
     const std::uint32_t* ends = hull_.edges[index].vertex;
     count_ = 0;
@@ -148,11 +148,7 @@ class HullPatch {
       turn3(pair_.turn, x, y);
       for (int k = 0; k < 3; ++k) x[k] = y[k] + pair_.shift[k];
     }
-    double* r = vertex_[count_];
-    turn3(pair_.frame, x, r);
-    if (pair_.swapped) {
-      for (int k = 0; k < 3; ++k) r[k] -= pair_.offset[k];
-    }
+    to_world(pair_, x, vertex_[count_]);
     vertex_feature_[count_] = vertex;
     edge_feature_[count_++] = edge_feature;
   }
@@ -223,6 +219,49 @@ static inline std::uint32_t write_contacts(const HullPair& pair, const HullConta
   }
   writer.size += count;
   return count;
+}
+
+/// What of the first is closest to a point: the face of least depth, or what the closest vertices
+/// span.
+static inline std::uint32_t feature_at_point(const HullPair& pair, const HullContacts& ask,
+                                             const HullCandidate* winner) {
+  const auto id = [](FeatureKind kind, std::uint32_t number) {
+    return static_cast<std::uint32_t>(kind) << kFeatureKindShift | number;
+  };
+  if (winner != nullptr) return id(FeatureKind::face, winner->face);
+  const HullShape& hull = *pair.first;
+  const std::uint32_t v = pair.vertices[0] & 0xFFFFU;
+  if (pair.count == 2) {
+    const std::uint32_t edge = edge_between(hull, v, pair.vertices[1] & 0xFFFFU);
+    if (edge != kNoFeature) return id(FeatureKind::edge, edge);
+  }
+  if (pair.count > 1) {
+    float direction[3];
+    float x[3];
+    for (int k = 0; k < 3; ++k) direction[k] = static_cast<float>(ask.normal[k]);
+    vertex_at(hull, v, x);
+    const float slack = kFloatError * static_cast<float>(pair.size);
+    const std::uint32_t face = face_across(hull, direction, x, slack);
+    if (face != kNoFeature) return id(FeatureKind::face, face);
+  }
+  return id(FeatureKind::vertex, v);
+}
+
+/// The one contact of a second whose core is a point: halfway between the surfaces.
+static inline void write_point_contact(const HullPair& pair, const HullContacts& ask,
+                                       const HullCandidate* winner, ContactWriter& writer) {
+  double center[3];
+  to_world(pair, pair.shift, center);
+  // Back towards the first, which is body a unless they are swapped.
+  const double back = pair.second->rounding + 0.5 * ask.distance;
+  const double reach = pair.swapped ? back : -back;
+  const std::uint32_t to = writer.size++;
+  for (int k = 0; k < 3; ++k) {
+    writer.position[k][to] = static_cast<float>(center[k] + reach * ask.world[k]);
+  }
+  writer.depth[to] = static_cast<float>(-ask.distance);
+  const std::uint64_t feature = feature_at_point(pair, ask, winner);
+  writer.feature[to] = pair.swapped ? feature : feature << 32U;
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::hull

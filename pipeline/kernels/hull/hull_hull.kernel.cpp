@@ -6,6 +6,7 @@ namespace WINNOW_ISA_NAME::hull {
 struct HullAndHull {
   static constexpr std::uint32_t kRoom = 128;
   static constexpr bool kSimpleSecond = false;
+  static constexpr bool kPointSecond = false;
 
   static bool place(const NarrowJob& job, BodyPair bodies, std::uint32_t /*slot*/, HullPair& pair) {
     const HullShape& a = job.tables.hulls[job.shapes[bodies.a].index()];

@@ -151,7 +151,23 @@ static inline float scale_of(double size) {
   return static_cast<float>(__builtin_bit_cast(double, (2046U - exponent) << 52U));
 }
 
+/// How the second is turned against the first, whose frame is there; false if its quaternion is out
+/// of range.
+static inline bool turn_second(const Pose& second, HullPair& pair) {
+  double axes[9];
+  if (!rotation_of(second.orientation, axes)) return false;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      pair.turn[3 * i + k] = pair.frame[i] * axes[k] + pair.frame[3 + i] * axes[3 + k] +
+                             pair.frame[6 + i] * axes[6 + k];
+    }
+  }
+  return true;
+}
+
 /// Fills what the search needs, b first where `swapped`; false if poses or sizes are out of range.
+/// `PointSecond`: how the second is turned does not matter.
+template <bool PointSecond = false>
 static inline bool place_hulls(const HullShape& a, const HullShape& b, const Pose& pose_a,
                                const Pose& pose_b, bool swapped, HullPair& pair) {
   pair.swapped = swapped;
@@ -159,18 +175,14 @@ static inline bool place_hulls(const HullShape& a, const HullShape& b, const Pos
   const Pose& second = pair.swapped ? pose_a : pose_b;
   pair.first = pair.swapped ? &b : &a;
   pair.second = pair.swapped ? &a : &b;
-  double axes[9];
-  if (!rotation_of(first.orientation, pair.frame) || !rotation_of(second.orientation, axes)) {
+  if (!rotation_of(first.orientation, pair.frame)) return false;
+  if constexpr (PointSecond) {
+    for (int i = 0; i < 9; ++i) pair.turn[i] = i % 4 == 0 ? 1.0 : 0.0;
+  } else if (!turn_second(second, pair)) {
     return false;
   }
   for (int i = 0; i < 3; ++i) pair.offset[i] = second.position[i] - first.position[i];
   turn_back3(pair.frame, pair.offset, pair.shift);
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      pair.turn[3 * i + k] = pair.frame[i] * axes[k] + pair.frame[3 + i] * axes[3 + k] +
-                             pair.frame[6 + i] * axes[6 + k];
-    }
-  }
   pair.rounding = a.rounding + b.rounding;
   pair.size = reach_of(a) + reach_of(b) + __builtin_fabs(pair.shift[0]) +
               __builtin_fabs(pair.shift[1]) + __builtin_fabs(pair.shift[2]);
@@ -276,6 +288,9 @@ static inline T height_of(const HullShape& hull, const T* direction) {
   constexpr std::uint32_t kWidth = Lanes<T>::kCount;
   const Vec3<T> d{direction[0], direction[1], direction[2]};
   const T* const* vertex = columns_of(hull, T());
+  if (hull.vertex_count == 1) {
+    return vertex[0][0] * direction[0] + vertex[1][0] * direction[1] + vertex[2][0] * direction[2];
+  }
   Lanes<T> best = along(vertex, 0, d);
   for (std::uint32_t row = kWidth; row < hull.vertex_count; row += kWidth) {
     best = max(best, along(vertex, row, d));

@@ -20,6 +20,8 @@ struct HullLimits {
   bool verdict;
 };
 
+/// `PointSecond`: the second's core is a point at its origin.
+template <bool PointSecond>
 class HullSearch {
  public:
   HullSearch(HullPair* pairs, std::uint32_t count, const HullLimits& limits)
@@ -60,7 +62,7 @@ class HullSearch {
     HullPair& pair = *next_++;
     active_ |= 1U << lane;
     pair_[lane] = &pair;
-    for (int i = 0; i < 9; ++i) turn_[i][lane] = pair.scaled_turn[i];
+    for (int i = 0; i < 9 && !PointSecond; ++i) turn_[i][lane] = pair.scaled_turn[i];
     for (int i = 0; i < 3; ++i) shift_[i][lane] = pair.scaled_shift[i];
     scale_[lane] = pair.scale;
     const auto scaled = [&](double length) { return static_cast<float>(length) * pair.scale; };
@@ -106,11 +108,11 @@ class HullSearch {
     (-gap).y.store(toward_[0][1]);
     (-gap).z.store(toward_[0][2]);
     Floats t[9];
-    for (int i = 0; i < 9; ++i) t[i] = Floats::load(turn_[i]);
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 9 && !PointSecond; ++i) t[i] = Floats::load(turn_[i]);
+    for (int i = 0; i < 3 && !PointSecond; ++i) {
       (t[i] * gap.x + t[3 + i] * gap.y + t[6 + i] * gap.z).store(toward_[1][i]);
     }
-    for (int side = 0; side < 2; ++side) {
+    for (int side = 0; side < (PointSecond ? 1 : 2); ++side) {
       for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
         const int lane = static_cast<int>(first(rest));
         const float direction[3] = {toward_[side][0][lane], toward_[side][1][lane],
@@ -141,9 +143,12 @@ class HullSearch {
     const Floats scale = Floats::load(scale_);
     Floats w[3];
     for (int i = 0; i < 3; ++i) {
-      const Floats b = Floats::load(turn_[3 * i]) * vertex(1, 0) +
-                       Floats::load(turn_[3 * i + 1]) * vertex(1, 1) +
-                       Floats::load(turn_[3 * i + 2]) * vertex(1, 2) + Floats::load(shift_[i]);
+      Floats b = Floats::load(shift_[i]);
+      if constexpr (!PointSecond) {
+        b = Floats::load(turn_[3 * i]) * vertex(1, 0) +
+            Floats::load(turn_[3 * i + 1]) * vertex(1, 1) +
+            Floats::load(turn_[3 * i + 2]) * vertex(1, 2) + b;
+      }
       w[i] = vertex(0, i) * scale - b - Floats::load(goal_[i]);
     }
     return {w[0], w[1], w[2]};
