@@ -70,7 +70,8 @@ bool PartitionState::stays_calm(const PairBuffer& out, const PairOptions& option
   const std::size_t disturbed = rows.moved().ids().size();
   return deferred_.active() && 16 * disturbed <= rows.size() &&
          options.predicate.accept == nullptr && can_update_in_place(out, options, events) &&
-         LinkedPairs::is_linked(out);
+         LinkedPairs::is_linked(out) &&
+         pairs_.calm.watched.size() <= Calm::most_watched(rows.size(), out.size());
 }
 
 // After a frame in which all pairs were asked for. Without the memory it needs nothing begins.
@@ -82,27 +83,38 @@ void PartitionState::begin_calm(PairBuffer& out, const PairOptions& options) con
   LinkedPairs linked(out);
   const float margin = calm.margin();
   if (linked.can_link() && linked.link(rows.keys().slot_count()) && deferred_.begin(rows, margin) &&
-      watch_all()) {
+      watch_all(Calm::most_watched(rows.size(), out.size()))) {
     return linked.link_rest();
   }
   calm.end();
   deferred_.drop();
 }
 
-bool PartitionState::watch_all() const noexcept {
+// False if these are more than `most`, too.
+bool PartitionState::watch_all(std::size_t most) const noexcept {
   // Some rows at a time, so that what they find takes little memory.
   constexpr std::size_t kAtOnce = 1024;
-  for (std::size_t begin = 0; begin < rows.pool().rows(); begin += kAtOnce) {
-    if (!watch_rows(begin, std::min(rows.pool().rows(), begin + kAtOnce))) return false;
+  constexpr std::size_t kSample = 64;
+  Column<Calm::Watched>& watched = pairs_.calm.watched;
+  const std::size_t count = rows.pool().rows();
+  // What some rows find tells of a crowd before it is found, the square of whose size that may be.
+  const std::size_t stride = std::max<std::size_t>(1, count / kSample);
+  if (!watch_rows(0, count, stride) || watched.size() * stride > 2 * most) return false;
+  watched.clear();
+  for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
+    if (!watch_rows(begin, std::min(count, begin + kAtOnce), 1) || watched.size() > most) {
+      return false;
+    }
   }
   return true;
 }
 
-bool PartitionState::watch_rows(std::size_t begin, std::size_t end) const noexcept {
+bool PartitionState::watch_rows(std::size_t begin, std::size_t end,
+                                std::size_t stride) const noexcept {
   RowSelection& asking = rows.selection();
   near_.clear();
   if (!asking.start(end - begin)) return false;
-  for (std::size_t row = begin; row < end; ++row) {
+  for (std::size_t row = begin; row < end; row += stride) {
     if (rows.pool().ids()[row] != kNoObject) asking.add(row);
   }
   std::uint64_t tests = 0;

@@ -114,14 +114,15 @@ class PartitionState {
   Status ask_moved(PairBuffer& out, const PairPredicate& predicate) const;
   [[nodiscard]] bool list_moved() const noexcept;
   void begin_calm(PairBuffer& out, const PairOptions& options) const noexcept;
-  [[nodiscard]] bool watch_all() const noexcept;
+  [[nodiscard]] bool watch_all(std::size_t most) const noexcept;
   [[nodiscard]] bool stays_calm(const PairBuffer& out, const PairOptions& options,
                                 const EventWriter* events) const noexcept;
   Status calm_self_pairs(PairBuffer& out, EventWriter* events) const;
   [[nodiscard]] bool keep_near(PairBuffer& out, std::size_t kept) const noexcept;
   Status ask_near(std::span<const std::uint32_t> asking, PairBuffer& out,
                   std::uint64_t& tests) const;
-  [[nodiscard]] bool watch_rows(std::size_t begin, std::size_t end) const noexcept;
+  [[nodiscard]] bool watch_rows(std::size_t begin, std::size_t end,
+                                std::size_t stride) const noexcept;
   [[nodiscard]] bool is_watched(const Pair& pair) const noexcept;
   [[nodiscard]] bool note_watched(LinkedPairs& linked) const noexcept;
   [[nodiscard]] bool update_in_place(PairBuffer& out) const noexcept;

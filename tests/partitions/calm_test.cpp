@@ -52,6 +52,12 @@ class CalmScenes : public Conformance {
     world_->update(keys, boxes);
   }
 
+  /// One of many tiny boxes that lie within the margin of large ones of each other.
+  [[nodiscard]] Aabb dust() {
+    const Vec3f at = Vec3f::constant(2.0F + 1e-4F * static_cast<float>(random_.uniform(0, 1)));
+    return {at, at + Vec3f::constant(1e-6F)};
+  }
+
   // Frames in which nothing changes, until boxes are deferred.
   void calm_down(float by, PairBuffer& buffer) {
     for (int frame = 0; frame < 6; ++frame) {
@@ -274,6 +280,36 @@ TEST_P(CalmScenes, may_hold_infinite_huge_tiny_and_flat_boxes) {
     ASSERT_TRUE(world_->agrees(buffer)) << "frame " << frame;
     ASSERT_TRUE(world_->holds_its_objects());
   }
+}
+
+// Next to all pairs of what is smaller than the margin, and close together, would be watched.
+TEST_P(CalmScenes, are_none_where_dust_lies_among_large_boxes) {
+  std::vector<Aabb> boxes = uniform_boxes(kCount);
+  for (std::size_t i = 0; i < kCount / 2; ++i) boxes.push_back(dust());
+  start(boxes);
+  PairBuffer buffer;
+  calm_down(1e-5F, buffer);
+  for (int frame = 0; frame < 10; ++frame) {
+    shake(1e-5F);
+    ASSERT_TRUE(world_->agrees(buffer)) << "frame " << frame;
+    EXPECT_GT(world_->partition().statistics().last_tests, 0U);
+  }
+}
+
+TEST_P(CalmScenes, end_where_dust_gathers) {
+  start(uniform_boxes(kCount));
+  PairBuffer buffer;
+  calm_down(1e-5F, buffer);
+  const std::uint64_t full = full_queries();
+  for (std::size_t frame = 0; frame < 40; ++frame) {
+    shake(1e-5F);
+    for (std::size_t i = 0; i < 5; ++i) {
+      rest_[5 * frame + i] = dust();
+      world_->update(keys_[5 * frame + i], rest_[5 * frame + i]);
+    }
+    ASSERT_TRUE(world_->agrees(buffer)) << "frame " << frame;
+  }
+  EXPECT_GT(full_queries(), full);
 }
 
 TEST_P(CalmScenes, refuse_what_any_scene_refuses) {
