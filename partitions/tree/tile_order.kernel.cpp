@@ -82,13 +82,23 @@ class Tiles {
 
  private:
   /// Of many points one in four tells where cuts lie.
-  [[nodiscard]] std::size_t stride() const { return count_ < 512 ? 1 : 4; }
+  [[nodiscard]] std::uint32_t step() const { return count_ < 512 ? 1 : 4; }
+
+  /// Which one of the four changes: objects of two kinds that come by turns would be in step.
+  template <typename Look>
+  void for_sample(const Look& look) const {
+    const std::uint32_t rest = step() - 1;
+    std::uint32_t turn = 0;
+    for (std::size_t i = 0; i + rest < count_; i += rest + 1, turn += 0x9E3779B1U) {
+      look(i + (turn >> 30U & rest));
+    }
+  }
 
   /// True if so many points are at one place that they have to be told apart by other means.
   [[nodiscard]] bool is_heaped(const std::uint8_t* place) const {
     std::uint32_t points[kPlaces] = {};
-    for (std::size_t i = 0; i < count_; i += stride()) ++points[place[i]];
-    return most_at_a_place(points) * stride() > count_ / 32 + kStep;
+    for_sample([&](std::size_t i) { ++points[place[i]]; });
+    return most_at_a_place(points) * step() > count_ / 32 + kStep;
   }
 
   /// Lines are numbered like a snake.
@@ -97,15 +107,16 @@ class Tiles {
     std::uint32_t* const slow_points = points[kMostParts];
     for (std::uint32_t p = 0; p < kPlaces; ++p) slow_points[p] = 0;
     std::uint32_t all = 0;
-    for (std::size_t i = 0; i < count_; i += stride(), ++all) ++slow_points[place_[2][i]];
+    for_sample([&](std::size_t i) {
+      ++slow_points[place_[2][i]];
+      ++all;
+    });
     std::uint32_t slab[kPlaces];
     cut_equally(slow_points, all, cuts.slow, slab);
     std::uint32_t in_slab[kMostParts] = {};
     for (std::uint32_t p = 0; p < kPlaces; ++p) in_slab[slab[p]] += slow_points[p];
     __builtin_memset(points, 0, cuts.slow * sizeof points[0]);
-    for (std::size_t i = 0; i < count_; i += stride()) {
-      ++points[slab[place_[2][i]]][place_[1][i]];
-    }
+    for_sample([&](std::size_t i) { ++points[slab[place_[2][i]]][place_[1][i]]; });
     std::uint32_t part[kPlaces];
     std::uint32_t line[kMostParts][kPlaces];
     for (std::uint32_t s = 0; s < cuts.slow; ++s) {

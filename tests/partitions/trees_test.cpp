@@ -11,6 +11,7 @@
 
 #include "tests/support/hosts.h"
 #include "tests/support/motion.h"
+#include "tests/support/random.h"
 #include "tests/support/scenes.h"
 #include "tests/support/twin.h"
 #include "tests/support/world.h"
@@ -103,6 +104,66 @@ TEST(LinearBvhOrder, that_is_torn_in_each_frame_misses_no_pair_and_is_the_same_o
       ASSERT_EQ(parallel.update(parallel_keys, BoxView(std::span(now))), Status::ok);
     }
     expect_right_pairs(serial, now);
+  }
+}
+
+// Uniform boxes, of which every so many is dust at one place instead.
+std::vector<Aabb> boxes_and_dust(std::size_t count, std::size_t every) {
+  std::vector<Aabb> boxes = uniform_boxes(count);
+  for (std::size_t i = every / 2; i < count; i += every) {
+    boxes[i].min *= 1e-4F;
+    boxes[i].max *= 1e-4F;
+  }
+  return boxes;
+}
+
+// Samples of the rows must not see one of the kinds alone.
+TEST(LinearBvhOrder, costs_no_more_where_kinds_of_objects_come_by_turns) {
+  const auto tests_of_torn = [](const std::vector<Aabb>& boxes) {
+    Partition partition(linear_bvh(), {.execution = Execution::serial()});
+    const std::vector<Key> keys = fill(partition, boxes);
+    std::uint64_t most = 0;
+    for (std::size_t frame = 1; frame < 4; ++frame) {
+      most = std::max(most, tests_of_pairs(partition));
+      // Dust stays dust.
+      const std::vector<Aabb> moved = passed_on(boxes, 168 * frame);
+      EXPECT_EQ(partition.update(keys, BoxView(std::span(moved))), Status::ok);
+    }
+    return std::max(most, tests_of_pairs(partition));
+  };
+  Random random(4);
+  for (const std::size_t objects : {1000U, 5000U, 10000U, 20000U, 70000U}) {
+    for (const std::size_t every : {2U, 3U, 4U, 7U, 8U}) {
+      std::vector<Aabb> boxes = boxes_and_dust(objects, every);
+      const std::uint64_t by_turns = tests_of_torn(boxes);
+      for (std::size_t i = boxes.size(); i > 1; --i)
+        std::swap(boxes[i - 1], boxes[random.below(i)]);
+      EXPECT_LE(4 * by_turns, 5 * tests_of_torn(boxes)) << objects << ", " << every;
+    }
+  }
+}
+
+// Not all goes far that goes farther than dust does.
+TEST(TreeOrder, is_kept_where_large_objects_move_by_little_of_their_size_among_dust) {
+  for (const StructureKind& kind : {linear_bvh(), static_bvh()}) {
+    Partition partition(kind);
+    std::vector<Aabb> boxes = boxes_and_dust(4000, 2);
+    const std::vector<Key> keys = fill(partition, boxes);
+    Random random(5);
+    PairBuffer pairs;
+    for (int frame = 0; frame < 8; ++frame) {
+      ASSERT_EQ(partition.self_pairs(pairs), Status::ok);
+      for (Aabb& box : boxes) {
+        const float step =
+            0.02F * static_cast<float>(random.uniform(-1, 1)) * (box.max.x() - box.min.x());
+        box.min.x() += step;
+        box.max.x() += step;
+      }
+      ASSERT_EQ(partition.update(keys, BoxView(std::span(boxes))), Status::ok);
+    }
+    ASSERT_EQ(partition.self_pairs(pairs), Status::ok);
+    EXPECT_EQ(partition.statistics().builds, 1U) << kind.name();
+    expect_right_pairs(partition, boxes);
   }
 }
 
