@@ -304,6 +304,7 @@ bool Rows::scatters(const Source& source, std::span<const Key> keys) const noexc
   float* columns[kMaxColumns];
   for (std::size_t c = 0; c < pool_.columns(); ++c) columns[c] = volume + c;
   std::array<float, 3> before{};
+  std::array<float, 3> edge_before{};
   std::size_t apart = 0;
   for (std::size_t k = 0; k < kSample; ++k) {
     const std::size_t i = keys.size() * k / kSample;
@@ -312,9 +313,12 @@ bool Rows::scatters(const Source& source, std::span<const Key> keys) const noexc
     bool far = false;
     for (std::size_t a = 0; a < 3; ++a) {
       const float step = volume[a] - pool_.column(a)[row];
-      // What all do alike keeps their order.
-      far |= std::abs(step - before[a]) > far_;
+      const float edge = volume[3 + a] - volume[a];
+      // What all do alike keeps their order; and beside large objects others that are far smaller
+      // tell nothing about what is far.
+      far |= std::abs(step - before[a]) > std::max({far_, edge, edge_before[a]});
       before[a] = step;
+      edge_before[a] = edge;
     }
     apart += far ? 1 : 0;
   }
