@@ -220,9 +220,10 @@ bool visit_near_pairs(const Composites& all, ShapeId a, const Pose& pose_a, Shap
     return false;
   }
   NearPairGuide guide{first, second, visitor, limit};
+  const bool has_front = first.front != 0 || second.front != 0;
   const PlacedMesh placed(first, second, 0.0);
   mesh_near_pairs(*first.mesh, *second.mesh, placed.b_in_a, placed.margin, guide.own_limit(),
-                  {&NearPairGuide::show, &guide, guide.direction});
+                  {&NearPairGuide::show, &guide, guide.direction, has_front});
   return true;
 }
 

@@ -233,7 +233,9 @@ class NearPairTraversal {
       middle[axis] = leaf.corners.at[0][axis] + leaf.corners.at[1][axis] + leaf.corners.at[2][axis];
     }
     sum.store(other_size);
-    if (!has_direction()) cut_by_corners(leaf, corner, reduce_max(size) + reduce_max(sum));
+    if (!has_direction() && !visitor_.leaves_out) {
+      cut_by_corners(leaf, corner, reduce_max(size) + reduce_max(sum));
+    }
     triangles_.size = 0;
     const Floats known[3] = {visitor_.direction[0], visitor_.direction[1], visitor_.direction[2]};
     const Floats own_reach = farthest(known, leaf.corners);

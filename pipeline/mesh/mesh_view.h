@@ -108,6 +108,8 @@ struct SlotPairVisitor {
   /// The direction, a unit vector in the frame of a, from a to b along which the nearest pair so
   /// far is apart; zero if there is none. Read again after each visit.
   const float* direction = nullptr;
+  /// Whether some pairs do not count, so that the corners of any two say nothing of the limit.
+  bool leaves_out = false;
 };
 
 /// Is shown the slots that a traversal in order finds, 16 or fewer at a time; gives back the new

@@ -11,11 +11,14 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <span>
+#include <vector>
 
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
+#include "tests/support/meshes.h"
 
 namespace winnow::test {
 namespace {
@@ -266,6 +269,73 @@ TEST(OneSided, rays_casts_and_overlaps_come_from_the_front) {
       EXPECT_TRUE(floor.overlaps(-0.2));
     }
   }
+}
+
+/// Small triangles near (x, 0, 0) that face anywhere.
+[[nodiscard]] MeshData scattered_triangles(std::size_t count, float x, Random& random) {
+  MeshData mesh;
+  const auto about = [&](float middle, double by) {
+    return middle + static_cast<float>(random.uniform(-by, by));
+  };
+  for (std::uint32_t t = 0; t < count; ++t) {
+    const Eigen::Vector3f middle(about(x, 1.0), about(0.0F, 1.0), about(0.0F, 1.0));
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      mesh.vertices.emplace_back(about(middle.x(), 0.2), about(middle.y(), 0.2),
+                                 about(middle.z(), 0.2));
+      mesh.corners.push_back(3 * t + k);
+    }
+  }
+  return mesh;
+}
+
+/// Bodies of a mesh, and of each of its triangles by itself.
+struct Scattered {
+  Scattered(const MeshData& mesh, bool one_sided, CompositePool& pool, Scene& scene) {
+    const auto body = [&](const IndexView& triangles) {
+      ShapeId id;
+      EXPECT_EQ(pool.add_mesh(mesh.points(), triangles, id), Status::ok);
+      EXPECT_EQ(pool.set_one_sided(id, one_sided), Status::ok);
+      return scene.add({.shape = id});
+    };
+    whole = body(mesh.indices());
+    for (std::size_t t = 0; t < mesh.triangles(); ++t) {
+      single.push_back(body(std::span(mesh.corners).subspan(3 * t, 3)));
+    }
+  }
+
+  Key whole;
+  std::vector<Key> single;
+};
+
+TEST(OneSided, two_meshes_are_as_far_apart_as_the_nearest_triangles_that_face_each_other) {
+  Random random(11);
+  int with_behind = 0;
+  for (unsigned round = 0; round < 60; ++round) {
+    ShapePool shapes;
+    CompositePool pool(shapes);
+    Scene scene(shapes, {.composites = &pool});
+    const Scattered a(scattered_triangles(1 + random.below(40), 0.0F, random), (round & 1U) != 0,
+                      pool, scene);
+    const Scattered b(scattered_triangles(1 + random.below(40), 3.0F, random), (round & 2U) != 0,
+                      pool, scene);
+    ASSERT_EQ(scene.refresh(), Status::ok);
+    SceneQueries queries(scene);
+    SceneDistance nearest;
+    double expected = std::numeric_limits<double>::infinity();
+    for (const Key one : a.single) {
+      for (const Key other : b.single) {
+        ASSERT_EQ(queries.distance(one, other, nearest), Status::ok);
+        if (nearest) expected = std::min(expected, nearest.distance);
+        with_behind += nearest ? 0 : 1;
+      }
+    }
+    ASSERT_EQ(queries.distance(a.whole, b.whole, nearest), Status::ok);
+    ASSERT_EQ(static_cast<bool>(nearest), expected < 100.0) << round;
+    if (nearest) {
+      EXPECT_NEAR(nearest.distance, expected, 1e-12) << round;
+    }
+  }
+  EXPECT_GT(with_behind, 1000);
 }
 
 /// However deep, as long as its middle is in front, a box is pushed up; then nothing holds it.
