@@ -64,7 +64,7 @@ void CountingSort::place(std::uint32_t* order) noexcept {
   });
   // Where the last chunk has come to in a bucket the next one begins.
   const std::uint32_t* const end = counts_of(chunks_ - 1);
-  for (std::size_t b = buckets_ - 1; b > 0; --b) start_[b] = end[b - 1];
+  for (std::size_t b = buckets_; b-- > 1;) start_[b] = end[b - 1];
   start_[0] = 0;
 }
 

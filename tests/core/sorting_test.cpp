@@ -43,6 +43,12 @@ TEST(CountingSort, puts_rows_of_a_bucket_together_and_keeps_their_order) {
   EXPECT_EQ(sorted.start, (std::vector<std::uint32_t>{0, 2, 2, 4, 4}));
 }
 
+TEST(CountingSort, of_no_rows_in_no_buckets_is_empty) {
+  const Sorted sorted = sort_by_counting({}, 0, 0, 1);
+  EXPECT_TRUE(sorted.order.empty());
+  EXPECT_EQ(sorted.start, std::vector<std::uint32_t>{0});
+}
+
 TEST(CountingSort, says_how_many_rows_a_bucket_has_before_they_are_placed) {
   const std::vector<std::uint32_t> bucket{1, 1, kNone, 0, 1};
   std::vector<std::uint32_t> start(3);

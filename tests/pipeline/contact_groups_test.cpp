@@ -82,6 +82,21 @@ TEST(ContactGroups, bodies_that_only_share_a_floor_are_islands_of_their_own) {
   EXPECT_LE(colours.size(), 4U);
 }
 
+TEST(ContactGroups, of_no_contacts_are_none) {
+  ShapePool pool;
+  Scene scene(pool);
+  Contacts contacts;
+  ContactGroups groups;
+  for (int frame = 0; frame < 2; ++frame) {
+    ASSERT_EQ(scene.islands(contacts, groups), Status::ok);
+    expect_in_order(groups, 0);
+    ASSERT_EQ(scene.colours(contacts, groups), Status::ok);
+    expect_in_order(groups, 0);
+    scene.add({.shape = pool.add(SphereShape{1.0})});
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+  }
+}
+
 TEST(ContactGroups, islands_are_what_bodies_connect_and_nothing_else) {
   SceneWorld world(scaled(600), 21);
   Scene scene(world.pool);
