@@ -108,11 +108,16 @@ void PartTraversal::traverse(const PlacedShape& placed, BoxSweep sweep, double l
     visitor.visit(visitor.context, ConvexPart{placed.shape, placed.pose}, limit);
     return;
   }
-  // What reaches to infinity need not reach farther than the shape.
-  const PreciseBox own = box(placed);
-  for (int i = 0; i < 3; ++i) {
-    if (std::isinf(sweep.min[i])) sweep.min[i] = std::min(own.min[i], sweep.max[i]);
-    if (std::isinf(sweep.max[i])) sweep.max[i] = std::max(own.max[i], sweep.min[i]);
+  // What reaches to infinity need not reach farther than the shape, whose box takes a look at all
+  // children of a compound.
+  const auto is_infinite = [](double end) { return std::isinf(end); };
+  if (std::any_of(sweep.min, sweep.min + 3, is_infinite) ||
+      std::any_of(sweep.max, sweep.max + 3, is_infinite)) {
+    const PreciseBox own = box(placed);
+    for (int i = 0; i < 3; ++i) {
+      if (std::isinf(sweep.min[i])) sweep.min[i] = std::min(own.min[i], sweep.max[i]);
+      if (std::isinf(sweep.max[i])) sweep.max[i] = std::max(own.max[i], sweep.min[i]);
+    }
   }
   const PrimitiveVisitor primitives{[](void* context, const Primitive& primitive, double most) {
                                       const auto& to = *static_cast<const PartVisitor*>(context);

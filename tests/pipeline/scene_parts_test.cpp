@@ -372,6 +372,99 @@ class IdleMidPhase final : public MidPhase {
   }
 };
 
+/// A pool that counts how often it is asked for boxes of whole shapes, which takes a compound a
+/// look at all of its children.
+class CountingMidPhase final : public MidPhase {
+ public:
+  explicit CountingMidPhase(const CompositePool& pool) : pool_(pool) {}
+
+  [[nodiscard]] bool contains(ShapeId id) const noexcept override { return pool_.contains(id); }
+  [[nodiscard]] Aabb bounds(ShapeId id, const Pose& pose) const noexcept override {
+    ++boxes;
+    return pool_.bounds(id, pose);
+  }
+  [[nodiscard]] double radius(ShapeId id) const noexcept override { return pool_.radius(id); }
+  [[nodiscard]] std::uint64_t revision() const noexcept override { return pool_.revision(); }
+  Status expand(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
+                const PairMargins& margins, const Execution& execution,
+                PrimitivePairs& out) const override {
+    return pool_.expand(shapes, bodies, pairs, margins, execution, out);
+  }
+  void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
+              NarrowResult& result) const override {
+    pool_.smooth(shapes, pairs, execution, result);
+  }
+  Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
+                const PairMargins& margins, const Execution& execution,
+                ContactRegions& out) const override {
+    return pool_.reduce(shapes, pairs, answers, margins, execution, out);
+  }
+  void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
+             const PrimitiveVisitor& visitor) const override {
+    pool_.visit(id, pose, sweep, visitor);
+  }
+  void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
+                  const double* limits, const RayVisitor& visitor) const override {
+    pool_.visit_rays(id, pose, rays, limits, visitor);
+  }
+  void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
+                  const PrimitiveVisitor& visitor) const override {
+    pool_.visit_near(id, pose, from, limit, visitor);
+  }
+  bool visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
+                   const PrimitivePairVisitor& visitor) const override {
+    return pool_.visit_pairs(a, pose_a, b, pose_b, visitor);
+  }
+  bool visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b, double limit,
+                        const NearPairVisitor& visitor) const override {
+    return pool_.visit_near_pairs(a, pose_a, b, pose_b, limit, visitor);
+  }
+  [[nodiscard]] Footprint footprint() const noexcept override { return pool_.footprint(); }
+
+  mutable int boxes = 0;
+
+ private:
+  const CompositePool& pool_;
+};
+
+TEST(SceneParts, questions_about_a_compound_look_at_the_children_that_are_near_alone) {
+  ShapePool convex;
+  CompositePool pool(convex);
+  const ShapeId ball = convex.add(SphereShape{0.5});
+  std::vector<CompoundChild> children;
+  for (int i = 0; i < 60; ++i) children.push_back({ball, Pose::at(3.0 * i, 0, 0)});
+  ShapeId compound;
+  ASSERT_EQ(pool.add_compound(children, compound), Status::ok);
+  const CountingMidPhase counting(pool);
+  Scene scene(convex, {.composites = &counting});
+  const Key row = scene.add({.shape = compound});
+  const Key body = scene.add({.shape = ball, .pose = Pose::at(30, 5, 0)});
+  ASSERT_EQ(scene.refresh(), Status::ok);
+  SceneQueries queries(scene);
+  counting.boxes = 0;
+  SceneDistance distance;
+  ASSERT_EQ(queries.distance(row, body, distance), Status::ok);
+  EXPECT_NEAR(distance.distance, 4.0, 1e-12);
+  EXPECT_EQ(distance.part_a, 10U);
+  ASSERT_EQ(queries.distance(body, row, distance), Status::ok);
+  EXPECT_NEAR(distance.distance, 4.0, 1e-12);
+  EXPECT_EQ(distance.part, 10U);
+  std::span<const SceneDistance> nearest;
+  const double point[3] = {6.0, 2.0, 0.0};
+  ASSERT_EQ(queries.nearest(point, 1, 10.0, nearest), Status::ok);
+  ASSERT_EQ(nearest.size(), 1U);
+  EXPECT_EQ(nearest[0].part, 2U);
+  std::span<const SceneOverlap> overlaps;
+  ASSERT_EQ(queries.overlap(ball, Pose::at(9, 0.5, 0), overlaps), Status::ok);
+  ASSERT_EQ(overlaps.size(), 1U);
+  EXPECT_EQ(overlaps[0].part, 3U);
+  SceneHit hit;
+  const ShapeCast cast{ball, Pose::at(12, 5, 0), {0, -1, 0}, 10.0};
+  ASSERT_EQ(queries.closest(cast, hit), Status::ok);
+  EXPECT_EQ(hit.part, 4U);
+  EXPECT_EQ(counting.boxes, 0);
+}
+
 TEST(SceneParts, a_scene_of_balls_asks_the_mid_phase_for_nothing) {
   SceneWorld world(200, 59);
   for (BodyDefinition& body : world.bodies) body.shape = world.shapes[0];

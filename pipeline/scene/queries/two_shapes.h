@@ -55,11 +55,17 @@ struct Pairing {
     return !found;
   };
   if (parts.pairs(pair.a, pair.b, look)) return found;
-  parts.met(pair.a, parts.box(pair.b).standing(), [&](const ConvexPart& a, double) {
+  auto look_about = [&](const ConvexPart& a, double) {
     parts.met(pair.b, parts.box(a).standing(),
               [&](const ConvexPart& b, double) { return look(a, b) ? 0.0 : -1.0; });
     return found ? -1.0 : 0.0;
-  });
+  };
+  // The box of a compound takes a look at all children.
+  if (!pair.a.shape.is_composite()) {
+    look_about({pair.a.shape, pair.a.pose}, 0.0);
+  } else {
+    parts.met(pair.a, parts.box(pair.b).standing(), look_about);
+  }
   return found;
 }
 
@@ -79,8 +85,13 @@ class ClosestParts {
       return reach();
     };
     if (parts_.near_pairs(pair.a, pair.b, reach(), answer.normal, look_at)) return found_;
-    parts_.near(pair.a, parts_.box(pair.b), reach(),
-                [&](const ConvexPart& a, double) { return look_about(a, pair.b); });
+    // The box of a compound takes a look at all children.
+    if (!pair.a.shape.is_composite()) {
+      look_about({pair.a.shape, pair.a.pose}, pair.b);
+    } else {
+      parts_.near(pair.a, parts_.box(pair.b), reach(),
+                  [&](const ConvexPart& a, double) { return look_about(a, pair.b); });
+    }
     return found_;
   }
   /// The same for a part of nothing, such as a point.
