@@ -35,7 +35,7 @@ enum class ExactVerdict : unsigned char {
 /// both touch. Pairs whose numbers span more than some 1e200 are decided where they are boxes
 /// without rounding, or where one of a few planes proves them apart. For pairs whose sign double
 /// cannot tell: 5 to 100 microseconds, more for large hulls, whose vertices are first sifted in
-/// double.
+/// double; next to nothing for boxes that stand upright.
 [[nodiscard]] ExactVerdict exact_overlap(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
                                          ShapeId b, const Pose& pose_b,
                                          const double axis[3]) noexcept;

@@ -277,6 +277,41 @@ TEST(ExactOverlap, upright_boxes_are_decided_whatever_their_numbers_span) {
   for (const int verdict : seen) EXPECT_GT(verdict, 0);
 }
 
+/// Against the same boxes whose frames are turned so that x becomes y, y z, and z x.
+TEST(ExactOverlap, upright_boxes_are_decided_as_those_of_turned_frames) {
+  Random random(21);
+  int verdicts[3] = {};
+  for (int round = 0; round < 4000; ++round) {
+    Pair upright;
+    Pair turned;
+    const double unit = round % 2 == 0 ? 0.1 : 0.125;
+    const double far = round % 3 == 0 ? 0.0 : std::ldexp(unit, 5 * (round % 9));
+    for (int side = 0; side < 2; ++side) {
+      for (int k = 0; k < 3; ++k) {
+        double half = unit * digit(random, 0, 4) * 0.5;
+        double at = far + unit * digit(random, -2, 2);
+        if (random.chance(0.1)) half = std::nextafter(half, 1.0);
+        if (random.chance(0.1)) at = std::nextafter(at, random.chance(0.5) ? 1e9 : -1e9);
+        if (random.chance(0.05)) half *= 1e-12;
+        upright.boxes[side].half[k] = half;
+        upright.poses[side].position[k] = at;
+        turned.boxes[side].half[(k + 2) % 3] = half;
+        turned.poses[side].position[k] = at;
+      }
+      const int axis = static_cast<int>(random.below(4));
+      for (int k = 0; k < 4; ++k) {
+        upright.poses[side].orientation[k] = k == axis ? -3.0 : 0.0;
+        turned.poses[side].orientation[k] = 1.0;
+      }
+    }
+    const ExactVerdict verdict = upright.verdict(ShapeKind::box, ShapeKind::box);
+    ASSERT_EQ(verdict, turned.verdict(ShapeKind::box, ShapeKind::box)) << round;
+    ASSERT_EQ(verdict, upright.mirrored(ShapeKind::box, ShapeKind::box)) << round;
+    ++verdicts[static_cast<int>(verdict)];
+  }
+  for (const int count : verdicts) EXPECT_GT(count, 100);
+}
+
 TEST(ExactOverlap, turned_boxes_are_decided_whatever_their_numbers_span) {
   Random random(78);
   Pair pair;
