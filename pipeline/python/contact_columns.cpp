@@ -1,6 +1,7 @@
 // Contacts of a scene as columns.
 
 #include "pipeline/python/contact_choices.h"
+#include "pipeline/python/entry_columns.h"
 #include "pipeline/python/shared_scene.h"
 
 #include <winnow/pipeline/narrow_result.h>
@@ -40,10 +41,7 @@ template <typename Column>
 /// Two numbers of 64 bits of each contact that ended.
 [[nodiscard]] py::array ended_column(Owner owner, std::span<const EndedContact> ended,
                                      std::size_t offset) {
-  const auto* const first =
-      reinterpret_cast<const std::byte*>(ended.data()) + (ended.empty() ? 0 : offset);
-  return shown_rows(owner, reinterpret_cast<const std::uint64_t*>(first), ended.size(), 2,
-                    sizeof(EndedContact));
+  return EntryColumns<EndedContact>(owner, ended).rows<std::uint64_t>(offset, 2);
 }
 
 [[nodiscard]] py::list runs_of(const Contacts& contacts) {
@@ -84,6 +82,10 @@ void add_pairs(Class& type) {
         return ended_column(o, c.ended(), offsetof(EndedContact, data_a));
       },
       "Client data of these, (k, 2) uint64.");
+  define(
+      type, "previous_pair", [](const Contacts& c, Owner o) { return all(o, c.previous_pair()); },
+      "Of scenes with `warm_start`, else empty: where each pair was in the last frame, NO_CONTACT "
+      "of those that were not there: (n,) uint32.");
   define(
       type, "runs", [](const Contacts& c, Owner) { return runs_of(c); },
       "Pairs of one pair of kinds of shape: (kind a, kind b, first, count) each.");
@@ -141,6 +143,9 @@ void add_points(Class& type) {
       },
       "Positive where they overlap: (p,) float32.");
   define(
+      type, "previous_point", [](const Contacts& c, Owner o) { return all(o, c.previous_point()); },
+      "As `previous_pair`, of each point: (p,) uint32.");
+  define(
       type, "contact_feature",
       [span_of](const Contacts& c, Owner o) {
         return all<std::uint64_t>(o, span_of(c.contact_columns().feature));
@@ -151,6 +156,7 @@ void add_points(Class& type) {
 }  // namespace
 
 void add_contacts(py::module_& module) {
+  module.attr("NO_CONTACT") = kNoContact;
   py::class_<HeldContacts, std::shared_ptr<HeldContacts>> type(
       module, "Contacts",
       "What `Scene.collide` found: pairs of bodies, for each pair its manifolds, for each manifold "

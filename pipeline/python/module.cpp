@@ -3,7 +3,10 @@
 #include <pybind11/pybind11.h>
 
 #include "pipeline/python/cluster.h"
+#include "pipeline/python/deformable.h"
 #include "pipeline/python/drawing.h"
+#include "pipeline/python/impacts.h"
+#include "pipeline/python/motions.h"
 #include "pipeline/python/partition.h"
 #include "pipeline/python/refusal.h"
 #include "pipeline/python/shared_shapes.h"
@@ -146,6 +149,9 @@ PYBIND11_MODULE(_core, module) {
   add_partition_snapshots(partition);
   add_shapes(module);
   add_narrow(module);
+  add_motions(module);
+  add_impacts(module);
+  add_deformable(module);
   add_scene(module);
   add_cluster(module);
 }

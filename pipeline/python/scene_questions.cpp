@@ -1,5 +1,7 @@
 // Questions to the exact shapes of a scene, many at a time.
 
+#include "pipeline/python/entry_columns.h"
+#include "pipeline/python/motions.h"
 #include "pipeline/python/questions.h"
 #include "pipeline/python/refusal.h"
 #include "pipeline/python/shared_scene.h"
@@ -68,21 +70,9 @@ template <typename Entry, typename Ask>
   return lists;
 }
 
-/// A member of all entries.
-template <typename Entry, typename T>
-[[nodiscard]] py::array member(const std::shared_ptr<Lists<Entry>>& lists, std::size_t offset) {
-  const auto* const first = reinterpret_cast<const std::byte*>(lists->entries.data());
-  return shown(std::shared_ptr<const void>(lists),
-               reinterpret_cast<const T*>(first == nullptr ? nullptr : first + offset),
-               lists->entries.size(), sizeof(Entry));
-}
 template <typename Entry>
-[[nodiscard]] py::array vector_member(const std::shared_ptr<Lists<Entry>>& lists,
-                                      std::size_t offset) {
-  const auto* const first = reinterpret_cast<const std::byte*>(lists->entries.data());
-  return shown_rows(std::shared_ptr<const void>(lists),
-                    reinterpret_cast<const double*>(first == nullptr ? nullptr : first + offset),
-                    lists->entries.size(), 3, sizeof(Entry));
+[[nodiscard]] EntryColumns<Entry> columns_of(const std::shared_ptr<Lists<Entry>>& lists) {
+  return {lists, lists->entries};
 }
 
 struct SceneHitTable : EmptyIfZero {
@@ -116,12 +106,13 @@ struct SceneDistanceTables : EmptyIfZero {
 };
 
 void show_hits(const std::shared_ptr<Lists<SceneHit>>& lists, SceneHitTable& table) {
-  table.key = member<SceneHit, std::uint64_t>(lists, offsetof(SceneHit, key));
-  table.data = member<SceneHit, std::uint64_t>(lists, offsetof(SceneHit, data));
-  table.part = member<SceneHit, std::uint32_t>(lists, offsetof(SceneHit, part));
-  table.t = member<SceneHit, double>(lists, offsetof(SceneHit, t));
-  table.normal = vector_member(lists, offsetof(SceneHit, normal));
-  table.point = vector_member(lists, offsetof(SceneHit, point));
+  const EntryColumns<SceneHit> hits = columns_of(lists);
+  table.key = hits.column<std::uint64_t>(offsetof(SceneHit, key));
+  table.data = hits.column<std::uint64_t>(offsetof(SceneHit, data));
+  table.part = hits.column<std::uint32_t>(offsetof(SceneHit, part));
+  table.t = hits.column<double>(offsetof(SceneHit, t));
+  table.normal = hits.rows<double>(offsetof(SceneHit, normal), 3);
+  table.point = hits.rows<double>(offsetof(SceneHit, point), 3);
 }
 
 [[nodiscard]] py::object shown_lists(const std::shared_ptr<Lists<SceneHit>>& lists, Wanted wanted) {
@@ -139,17 +130,18 @@ void show_hits(const std::shared_ptr<Lists<SceneHit>>& lists, SceneHitTable& tab
 [[nodiscard]] SceneDistanceTables shown_distances(
     const std::shared_ptr<Lists<SceneDistance>>& lists) {
   using D = SceneDistance;
+  const EntryColumns<D> answers = columns_of(lists);
   SceneDistanceTables table;
   table.first = given(std::vector(lists->first));
-  table.key = member<D, std::uint64_t>(lists, offsetof(D, key));
-  table.data = member<D, std::uint64_t>(lists, offsetof(D, data));
-  table.part_a = member<D, std::uint32_t>(lists, offsetof(D, part_a));
-  table.part = member<D, std::uint32_t>(lists, offsetof(D, part));
-  table.distance = member<D, double>(lists, offsetof(D, distance));
-  table.error_bound = member<D, double>(lists, offsetof(D, error_bound));
-  table.normal = vector_member(lists, offsetof(D, normal));
-  table.point_a = vector_member(lists, offsetof(D, point_a));
-  table.point_b = vector_member(lists, offsetof(D, point_b));
+  table.key = answers.column<std::uint64_t>(offsetof(D, key));
+  table.data = answers.column<std::uint64_t>(offsetof(D, data));
+  table.part_a = answers.column<std::uint32_t>(offsetof(D, part_a));
+  table.part = answers.column<std::uint32_t>(offsetof(D, part));
+  table.distance = answers.column<double>(offsetof(D, distance));
+  table.error_bound = answers.column<double>(offsetof(D, error_bound));
+  table.normal = answers.rows<double>(offsetof(D, normal), 3);
+  table.point_a = answers.rows<double>(offsetof(D, point_a), 3);
+  table.point_b = answers.rows<double>(offsetof(D, point_b), 3);
   return table;
 }
 
@@ -251,13 +243,31 @@ class ShapeRayInput {
 
 // --- other questions ---------------------------------------------------------------------------
 
-[[nodiscard]] py::object cast_shapes(SharedScene& s, py::handle shape_array, py::handle poses,
-                                     py::handle directions, const std::string& find,
-                                     py::handle max_ts, double tolerance, const Filter& filter) {
+/// Asks about `count` moving shapes, of which cast_at(i) gives the i-th.
+template <typename CastAt>
+[[nodiscard]] py::object cast_moving(SharedScene& s, std::size_t count, const std::string& find,
+                                     const char* call, const Filter& filter, double tolerance,
+                                     CastAt&& cast_at) {
   const Wanted wanted = chosen(kWanted, find, "find");
   if (wanted == Wanted::any) {
     throw Refusal(Status::invalid_argument, "find: of moving shapes 'closest' or 'all'");
   }
+  std::vector<SceneHit> one(tasks_for(count));
+  const auto lists = list_all<SceneHit>(
+      s, count, call, [&](const Asker& ask, std::size_t i, std::span<const SceneHit>& found) {
+        if (wanted == Wanted::all) return ask->all(cast_at(i), found, filter, tolerance);
+        SceneHit& hit = one[i / kQuestionsPerTask] = nothing();
+        const Status status = ask->closest(cast_at(i), hit, filter, tolerance);
+        if (!hit) hit = nothing();
+        found = {&hit, 1};
+        return status;
+      });
+  return shown_lists(lists, wanted);
+}
+
+[[nodiscard]] py::object cast_shapes(SharedScene& s, py::handle shape_array, py::handle poses,
+                                     py::handle directions, const std::string& find,
+                                     py::handle max_ts, double tolerance, const Filter& filter) {
   const PoseInput pose(poses);
   const ShapeInput shape(shape_array);
   Numbers direction(directions, "directions", {3}, true);
@@ -265,25 +275,24 @@ class ShapeRayInput {
   shape.expect(pose.count());
   direction.expect(pose.count());
   max_t.expect(pose.count());
-  const auto cast_at = [&](std::size_t i) {
+  return cast_moving(s, pose.count(), find, "cast_shapes", filter, tolerance, [&](std::size_t i) {
     return ShapeCast{shape[i],
                      pose[i],
                      {direction.at(i, 0), direction.at(i, 1), direction.at(i, 2)},
                      max_t.at(i)};
-  };
-  std::vector<SceneHit> one(tasks_for(pose.count()));
-  const auto lists =
-      list_all<SceneHit>(s, pose.count(), "cast_shapes",
-                         [&](const Asker& ask, std::size_t i, std::span<const SceneHit>& found) {
-                           if (wanted == Wanted::all)
-                             return ask->all(cast_at(i), found, filter, tolerance);
-                           SceneHit& hit = one[i / kQuestionsPerTask] = nothing();
-                           const Status status = ask->closest(cast_at(i), hit, filter, tolerance);
-                           if (!hit) hit = nothing();
-                           found = {&hit, 1};
-                           return status;
-                         });
-  return shown_lists(lists, wanted);
+  });
+}
+
+[[nodiscard]] py::object cast_motions(SharedScene& s, py::handle shape_array, py::handle motions,
+                                      const std::string& find, double tolerance,
+                                      const Filter& filter) {
+  const RigidMotionInput motion(motions);
+  const ShapeInput shape(shape_array);
+  shape.expect(motion.count());
+  return cast_moving(s, motion.count(), find, "cast_motions", filter, tolerance,
+                     [&](std::size_t i) {
+                       return MotionCast{shape[i], motion[i]};
+                     });
 }
 
 [[nodiscard]] SceneOverlapTables overlap(SharedScene& s, py::handle shape_array, py::handle poses,
@@ -296,11 +305,12 @@ class ShapeRayInput {
       [&](const Asker& ask, std::size_t i, std::span<const SceneOverlap>& found) {
         return ask->overlap(shape[i], pose[i], found, filter);
       });
+  const EntryColumns<SceneOverlap> bodies = columns_of(lists);
   return {{},
           given(std::vector(lists->first)),
-          member<SceneOverlap, std::uint64_t>(lists, offsetof(SceneOverlap, key)),
-          member<SceneOverlap, std::uint64_t>(lists, offsetof(SceneOverlap, data)),
-          member<SceneOverlap, std::uint32_t>(lists, offsetof(SceneOverlap, part))};
+          bodies.column<std::uint64_t>(offsetof(SceneOverlap, key)),
+          bodies.column<std::uint64_t>(offsetof(SceneOverlap, data)),
+          bodies.column<std::uint32_t>(offsetof(SceneOverlap, part))};
 }
 
 [[nodiscard]] SceneDistanceTables distance(SharedScene& s, py::handle a, py::handle b,
@@ -438,6 +448,12 @@ void add_scene_queries(py::module_& module, SceneClass& scene) {
           "Where shapes (n,), or one, no half-spaces, at poses (n, 7) that move by t * directions, "
           "(n, 3) or (3,), without turning, first touch a body: never later than they do, and at "
           "most `tolerance` (a length) earlier. `find`: 'closest' or 'all'.")
+      .def("cast_motions", &cast_motions, arg("shapes"), arg("motions"), arg("find") = "closest",
+           py::kw_only(), arg("tolerance") = 1e-6, arg("filter") = Filter{},
+           "Where shapes (n,), or one, no half-spaces, that move and turn by motions (n, 13), as "
+           "`motions_between` gives them, first meet a body; t is the time in [0, 1], never late. "
+           "The gap then is at most `tolerance` as in `time_of_impact`. `find`: 'closest' or "
+           "'all'.")
       .def("overlap", &overlap, arg("shapes"), arg("poses"), py::kw_only(),
            arg("filter") = Filter{},
            "Bodies that shapes (n,), or one, at poses (n, 7) share a point with, by id.")

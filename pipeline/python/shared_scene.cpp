@@ -2,14 +2,11 @@
 
 #include "pipeline/python/shared_scene.h"
 
+#include "pipeline/python/bodies.h"
 #include "pipeline/python/contact_choices.h"
 #include "pipeline/python/drawing.h"
-#include "pipeline/python/locks.h"
+#include "pipeline/python/entry_columns.h"
 #include "pipeline/python/snapshots.h"
-
-#include <algorithm>
-#include <limits>
-#include <utility>
 
 namespace winnow::python {
 
@@ -34,19 +31,10 @@ void SharedScene::put_queries(SceneQueries* queries) {
 
 namespace {
 
-/// Changes the scene, for which shapes stay as they are.
-template <typename Body>
-auto changing_scene(SharedScene& s, Body&& body) {
-  return changing(s.mutex, [&] {
-    const std::shared_lock lock(s.shapes->mutex);
-    s.is_stale = true;
-    return body();
-  });
-}
-
 [[nodiscard]] std::shared_ptr<SharedScene> make_scene(const std::shared_ptr<SharedShapes>& shapes,
                                                       double margin, const std::string& tier,
-                                                      double carry_over,
+                                                      double carry_over, bool contact_reduction,
+                                                      bool seamless_floors, bool warm_start,
                                                       const std::vector<std::string>& structures,
                                                       bool parallel, std::size_t build_budget) {
   SceneOptions options;
@@ -64,9 +52,29 @@ auto changing_scene(SharedScene& s, Body&& body) {
   options.margin = margin;
   options.tier = chosen(kTiers, tier, "tier");
   options.carry_over = carry_over;
+  options.contact_reduction = contact_reduction;
+  options.seamless_floors = seamless_floors;
+  options.warm_start = warm_start;
   options.build_budget = build_budget;
   options.composites = &shapes->composites;
   return std::make_shared<SharedScene>(shapes, options);
+}
+
+void reserve(SharedScene& s, const SceneRoom& room, HeldContacts* contacts, bool touch) {
+  const Pages pages = touch ? Pages::touched : Pages::untouched;
+  std::unique_lock<std::mutex> filling;
+  Contacts* out = nullptr;
+  if (contacts != nullptr) {
+    filling = contacts->hold();
+    out = &contacts->to_fill("contacts");
+  }
+  accept(changing_scene(s,
+                        [&] {
+                          const Status status = s.scene.reserve(room, pages);
+                          if (status != Status::ok || out == nullptr) return status;
+                          return s.scene.reserve_contacts(*out, room, pages);
+                        }),
+         "reserve");
 }
 
 // --- bodies ------------------------------------------------------------------------------------
@@ -89,44 +97,28 @@ class MotionInput {
   EachInteger numbers_;
 };
 
-/// Filters of bodies as three columns.
-class FilterInput {
- public:
-  FilterInput(py::handle layers, py::handle mask, py::handle environment)
-      : layers_(layers, "layers", kMost),
-        mask_(mask, "mask", kMost),
-        environment_(environment, "environment", kMost) {}
-  void expect(std::size_t count) const {
-    for (const EachInteger* each : {&layers_, &mask_, &environment_}) each->expect(count);
-  }
-  [[nodiscard]] ObjectFilter operator[](std::size_t i) const noexcept {
-    return {static_cast<std::uint32_t>(layers_[i]), static_cast<std::uint32_t>(mask_[i]),
-            static_cast<std::uint32_t>(environment_[i])};
-  }
-
- private:
-  static constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-  EachInteger layers_;
-  EachInteger mask_;
-  EachInteger environment_;
-};
-
 [[nodiscard]] py::array add_bodies(SharedScene& s, py::handle shape_array, py::handle poses,
                                    py::handle motions, py::handle layers, py::handle mask,
-                                   py::handle environment, py::handle data) {
+                                   py::handle environment, py::handle data, py::handle contact,
+                                   py::handle rest, py::handle scene_layer) {
   const PoseInput pose(poses);
   const ShapeInput shape(shape_array);
   const MotionInput motion(motions);
   const FilterInput filter(layers, mask, environment);
+  OffsetInput offsets(contact, rest);
+  const LayerInput layer(scene_layer, "layer");
   const std::size_t count = pose.count();
   shape.expect(count);
   motion.expect(count);
   filter.expect(count);
+  offsets.expect(count);
+  layer.expect(count);
   const std::vector<ClientData> values = data_of(data, count);
   std::vector<BodyDefinition> bodies(count);
   std::vector<ShapeId> used(count);
   for (std::size_t i = 0; i < count; ++i) {
-    bodies[i] = {shape[i], pose[i], motion[i], filter[i], values.empty() ? 0 : values[i]};
+    bodies[i] = {shape[i],   pose[i], motion[i], filter[i], values.empty() ? 0 : values[i],
+                 offsets[i], layer[i]};
     used[i] = shape[i];
   }
   auto keys = fresh<std::uint64_t>(count);
@@ -139,17 +131,6 @@ class FilterInput {
                         }),
          "add");
   return keys;
-}
-
-/// Bodies of keys, in order; the status of the first that is not there.
-[[nodiscard]] Status bodies_of(const Scene& scene, std::span<const Key> keys,
-                               std::vector<BodyDefinition>& bodies) {
-  bodies.resize(keys.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const Status status = scene.body(keys[i], bodies[i]);
-    if (status != Status::ok) return status;
-  }
-  return Status::ok;
 }
 
 [[nodiscard]] std::vector<ShapeId> shapes_of(const std::vector<BodyDefinition>& bodies) {
@@ -192,25 +173,6 @@ void set_motion(SharedScene& s, py::handle key_array, const std::string& name) {
   accept(changing_scene(s, [&] { return s.scene.set_motion(keys.keys(), motion); }), "set_motion");
 }
 
-/// Calls set(i) for each body; where one is refused, undo(i) for those before it.
-template <typename Set, typename Undo>
-[[nodiscard]] Status set_all(std::size_t count, Set&& set, Undo&& undo) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const Status status = set(i);
-    if (status == Status::ok) continue;
-    while (i > 0) static_cast<void>(undo(--i));
-    return status;
-  }
-  return Status::ok;
-}
-
-[[nodiscard]] bool has_twice(std::span<const Key> keys) {
-  std::vector<ObjectId> ids(keys.size());
-  std::transform(keys.begin(), keys.end(), ids.begin(), [](Key key) { return key.id; });
-  std::sort(ids.begin(), ids.end());
-  return std::adjacent_find(ids.begin(), ids.end()) != ids.end();
-}
-
 void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
   const KeyInput keys(key_array);
   const ShapeInput shape(shape_array);
@@ -234,27 +196,6 @@ void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
                return Status::ok;
              }),
          "set_shape");
-}
-
-void set_filter(SharedScene& s, py::handle key_array, py::handle layers, py::handle mask,
-                py::handle environment) {
-  const KeyInput keys(key_array);
-  const FilterInput filter(layers, mask, environment);
-  filter.expect(keys.count());
-  const std::span<const Key> list = keys.keys();
-  accept(changing_scene(s,
-                        [&] {
-                          std::vector<BodyDefinition> before;
-                          const Status status = bodies_of(s.scene, list, before);
-                          if (status != Status::ok) return status;
-                          return set_all(
-                              list.size(),
-                              [&](std::size_t i) { return s.scene.set_filter(list[i], filter[i]); },
-                              [&](std::size_t i) {
-                                return s.scene.set_filter(list[i], before[i].filter);
-                              });
-                        }),
-         "set_filter");
 }
 
 // --- what is known -----------------------------------------------------------------------------
@@ -281,24 +222,25 @@ void set_filter(SharedScene& s, py::handle key_array, py::handle layers, py::han
 
 [[nodiscard]] py::dict body_columns(const SharedScene& s, py::handle key_array) {
   const KeyInput keys(key_array);
-  auto bodies = std::make_shared<std::vector<BodyDefinition>>();
-  accept(reading(s.mutex, [&] { return bodies_of(s.scene, keys.keys(), *bodies); }), "bodies");
-  const BodyDefinition* const first = bodies->data();
-  const auto column = [&](const auto* member) {
-    return shown(std::shared_ptr<const void>(bodies), member, bodies->size(),
-                 sizeof(BodyDefinition));
-  };
-  static const BodyDefinition none{};
-  const BodyDefinition& b = bodies->empty() ? none : *first;
+  std::vector<BodyDefinition> bodies;
+  accept(reading(s.mutex, [&] { return bodies_of(s.scene, keys.keys(), bodies); }), "bodies");
+  const auto columns = columns_of(std::move(bodies));
+  using Body = BodyDefinition;
+  static_assert(offsetof(Pose, position) == 0 && sizeof(Pose) == 7 * sizeof(double));
   py::dict result;
-  result["shape"] = column(&b.shape.bits);
-  result["pose"] = shown_rows(std::shared_ptr<const void>(bodies), b.pose.position, bodies->size(),
-                              7, sizeof(BodyDefinition));
-  result["motion"] = column(reinterpret_cast<const std::uint8_t*>(&b.motion));
-  result["layers"] = column(&b.filter.layers);
-  result["mask"] = column(&b.filter.mask);
-  result["environment"] = column(&b.filter.environment);
-  result["data"] = column(&b.data);
+  result["shape"] = columns.column<std::uint32_t>(offsetof(Body, shape));
+  result["pose"] = columns.rows<double>(offsetof(Body, pose), 7);
+  result["motion"] = columns.column<std::uint8_t>(offsetof(Body, motion));
+  constexpr std::size_t filter = offsetof(Body, filter);
+  result["layers"] = columns.column<std::uint32_t>(filter + offsetof(ObjectFilter, layers));
+  result["mask"] = columns.column<std::uint32_t>(filter + offsetof(ObjectFilter, mask));
+  result["environment"] =
+      columns.column<std::uint32_t>(filter + offsetof(ObjectFilter, environment));
+  result["data"] = columns.column<std::uint64_t>(offsetof(Body, data));
+  constexpr std::size_t offsets = offsetof(Body, offsets);
+  result["contact"] = columns.column<double>(offsets + offsetof(ContactOffsets, contact));
+  result["rest"] = columns.column<double>(offsets + offsetof(ContactOffsets, rest));
+  result["layer"] = columns.column<std::uint16_t>(offsetof(Body, layer));
   return result;
 }
 
@@ -359,18 +301,25 @@ void add_bodies_to(SceneClass& scene) {
   constexpr std::uint32_t every = ~0U;
   scene
       .def(py::init(&make_scene), arg("shapes"), py::kw_only(), arg("margin") = 0.0,
-           arg("tier") = "robust", arg("carry_over") = 0.0,
+           arg("tier") = "robust", arg("carry_over") = 0.0, arg("contact_reduction") = false,
+           arg("seamless_floors") = false, arg("warm_start") = false,
            arg("structures") = std::vector<std::string>(kMotions, "LinearBvh"),
            arg("parallel") = true, arg("build_budget") = 0,
            "An empty scene. Pairs no farther apart than `margin` are contacts too; a pair that has "
            "moved less than `carry_over` keeps its contacts; both are lengths. `tier` as in "
-           "NarrowPhase; `structures` of fixed, dynamic and sleeping bodies.")
+           "NarrowPhase. `contact_reduction`: of composite shapes one manifold for each region of "
+           "contact, not for each pair of parts; `seamless_floors`: fixed bodies that lie flush "
+           "side by side have no edges between them; `warm_start`: contacts tell where each was "
+           "in the last frame. `structures` of fixed, dynamic and sleeping bodies; `build_budget`: "
+           "rows' worth of planned work a refresh does, 0 for as many as are needed in time.")
       .def("add", &add_bodies, arg("shapes"), arg("poses"), arg("motion") = "dynamic",
            arg("layers") = 1, arg("mask") = every, arg("environment") = 0, arg("data") = py::none(),
+           py::kw_only(), arg("contact") = 0.0, arg("rest") = 0.0, arg("layer") = 0,
            "Adds n bodies and gives their keys, (n,) uint64: shapes (n,), or one for all, at poses "
            "(n, 7) of x, y, z and a quaternion w, x, y, z, (n, 3), or a tuple of both. `motion`: "
            "'fixed', 'dynamic' or 'sleeping', or (n,) of FIXED, DYNAMIC, SLEEPING. Filters (n,) or "
-           "one for all, as in Partition.set_filter. `data`: (n,) uint64.")
+           "one for all, as in Partition.set_filter. `data`: (n,) uint64. `contact` and `rest` as "
+           "in `set_offsets`, `layer` as in `set_layer`.")
       .def("remove", &remove_bodies, arg("keys"), "Removes the bodies of `keys` (n,), all or none.")
       .def("clear", &clear, "Removes every body.")
       .def("move", &move_bodies, arg("keys"), arg("poses"),
@@ -380,8 +329,6 @@ void add_bodies_to(SceneClass& scene) {
            "Moves bodies to the set of 'fixed', 'dynamic' or 'sleeping' ones.")
       .def("set_shape", &set_shape, arg("keys"), arg("shapes"),
            "Gives the bodies of `keys` (n,) other shapes, (n,) or one for all.")
-      .def("set_filter", &set_filter, arg("keys"), arg("layers") = 1, arg("mask") = every,
-           arg("environment") = 0, "As Partition.set_filter.")
       .def("__len__",
            [](const SharedScene& s) { return reading(s.mutex, [&] { return s.scene.size(); }); })
       .def(
@@ -396,7 +343,7 @@ void add_bodies_to(SceneClass& scene) {
            "Keys (n,) uint64 of bodies by id (n,); NULL_KEY for those that are not alive.")
       .def("bodies", &body_columns, arg("keys"),
            "The bodies of `keys` (n,) as they stand: columns shape, pose (n, 7), motion, layers, "
-           "mask, environment, data.");
+           "mask, environment, data, contact, rest, layer.");
 }
 
 }  // namespace
@@ -437,8 +384,31 @@ void add_scene(py::module_& module) {
       .def("footprint", &scene_footprint, "Bytes (used, reserved) by part.")
       .def("debug_draw", &draw, py::kw_only(), arg("objects") = true, arg("structure") = true,
            arg("labels") = false, arg("max_depth") = 64, "As Partition.debug_draw, of all sets.");
+  scene.def(
+      "reserve",
+      [](SharedScene& s, std::size_t fixed, std::size_t dynamic, std::size_t sleeping,
+         std::size_t pairs, std::size_t touching, std::size_t manifolds, std::size_t points,
+         const std::string& level, HeldContacts* contacts, bool touch) {
+        reserve(s,
+                {{fixed, dynamic, sleeping},
+                 pairs,
+                 chosen(kLevels, level, "level"),
+                 touching,
+                 manifolds,
+                 points},
+                contacts, touch);
+      },
+      py::kw_only(), arg("fixed") = 0, arg("dynamic") = 0, arg("sleeping") = 0, arg("pairs") = 0,
+      arg("touching") = 0, arg("manifolds") = 0, arg("points") = 0, arg("level") = "manifold",
+      arg("contacts") = py::none(), arg("touch") = false,
+      "Makes ready the memory that a first `collide` of so many bodies of convex shapes takes, "
+      "which find so many pairs by their boxes, of which so many touch; `contacts` get room for "
+      "these, their manifolds and points. `touch` writes to each page.");
+  add_meetings(module, scene);
+  add_sweeps(module, scene);
   add_scene_queries(module, scene);
   add_scene_snapshots(scene);
+  add_sensors(module);
 }
 
 }  // namespace winnow::python

@@ -7,6 +7,7 @@
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
+#include <winnow/pipeline/scene_sweep.h>
 
 #include <atomic>
 #include <cstdint>
@@ -39,6 +40,8 @@ class SharedScene : public NeedsInit {
   Execution execution;
   mutable std::shared_mutex mutex;
   Scene scene;
+  /// Asked while nobody else has the mutex.
+  SceneSweep sweep{scene};
   /// Something has changed since boxes and partitions were brought up to date.
   std::atomic<bool> is_stale{true};
   std::atomic<std::uint64_t> shapes_seen{0};
@@ -53,6 +56,12 @@ using SceneClass = py::class_<SharedScene, std::shared_ptr<SharedScene>>;
 
 /// Columns of contacts.
 void add_contacts(py::module_& module);
+/// Which bodies meet, and which contacts hang together.
+void add_meetings(py::module_& module, SceneClass& scene);
+/// What bodies meet on their way from frame to frame.
+void add_sweeps(py::module_& module, SceneClass& scene);
+/// Volumes that tell which bodies are in them.
+void add_sensors(py::module_& module);
 /// Questions to the exact shapes.
 void add_scene_queries(py::module_& module, SceneClass& scene);
 

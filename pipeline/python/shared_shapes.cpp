@@ -1,4 +1,4 @@
-// Convex shapes, meshes, height fields and compounds.
+// Convex shapes, and what holds of all.
 
 #include "pipeline/python/shared_shapes.h"
 
@@ -228,151 +228,6 @@ template <typename Shape>
   return id.bits;
 }
 
-// --- composite shapes --------------------------------------------------------------------------
-
-/// Points where they lie.
-[[nodiscard]] PointView view_of(const Numbers& points) {
-  const auto stride = static_cast<std::size_t>(points.stride());
-  if (points.is_single()) {
-    return {{points.column<float>(0), points.column<float>(1), points.column<float>(2)},
-            points.count(),
-            stride};
-  }
-  return {{points.column<double>(0), points.column<double>(1), points.column<double>(2)},
-          points.count(),
-          stride};
-}
-
-[[nodiscard]] std::uint32_t add_mesh(Shapes& shapes, py::handle vertex_array,
-                                     py::handle triangle_array, double active_edge_angle) {
-  const Numbers vertices(vertex_array, "vertices", {3});
-  const Integers<std::uint32_t> triangles(triangle_array, "triangles", 3);
-  ShapeId id;
-  accept(changing(shapes.mutex,
-                  [&] {
-                    return shapes.composites.add_mesh(
-                        view_of(vertices), IndexView(triangles.values()), id, {active_edge_angle});
-                  }),
-         "add_mesh");
-  return id.bits;
-}
-
-[[nodiscard]] std::uint32_t add_scaled(Shapes& shapes, std::uint32_t mesh,
-                                       const std::array<double, 3>& scale) {
-  ShapeId id;
-  accept(changing(shapes.mutex,
-                  [&] { return shapes.composites.add_scaled(ShapeId{mesh}, scale, id); }),
-         "add_scaled");
-  return id.bits;
-}
-
-void refit_mesh(Shapes& shapes, std::uint32_t mesh, py::handle vertex_array) {
-  const Numbers vertices(vertex_array, "vertices", {3});
-  accept(changing(shapes.mutex,
-                  [&] {
-                    ++shapes.revision;
-                    return shapes.composites.refit_mesh(ShapeId{mesh}, view_of(vertices));
-                  }),
-         "refit_mesh");
-}
-
-/// Heights (rows, columns), packed unless each row is.
-class HeightInput {
- public:
-  HeightInput(const py::array& heights, const std::array<double, 2>& spacing)
-      : heights_(numbers_of(heights)), spacing_(spacing) {
-    if (heights_.ndim() != 2) {
-      throw Refusal(Status::size_mismatch, "heights: expected shape (rows, columns)");
-    }
-    const auto most = std::numeric_limits<std::uint32_t>::max();
-    for (const py::ssize_t axis : {0, 1}) {
-      if (static_cast<std::uint64_t>(heights_.shape(axis)) > most) {
-        throw Refusal(Status::too_many_objects, "heights");
-      }
-    }
-  }
-  [[nodiscard]] HeightSamples samples() const {
-    return {{heights_.data(), static_cast<std::size_t>(heights_.size())},
-            static_cast<std::uint32_t>(heights_.shape(1)),
-            static_cast<std::uint32_t>(heights_.shape(0)),
-            0,
-            {spacing_[0], spacing_[1]}};
-  }
-
- private:
-  [[nodiscard]] static const py::array& numbers_of(const py::array& array) {
-    const char kind = array.dtype().kind();
-    if (kind == 'f' || kind == 'i' || kind == 'u') return array;
-    throw py::type_error("heights: numbers are wanted");
-  }
-
-  py::array_t<float, py::array::c_style | py::array::forcecast> heights_;
-  std::array<double, 2> spacing_;
-};
-
-[[nodiscard]] std::uint32_t add_height_field(Shapes& shapes, const py::array& heights,
-                                             const std::array<double, 2>& spacing) {
-  const HeightInput input(heights, spacing);
-  ShapeId id;
-  accept(changing(shapes.mutex,
-                  [&] { return shapes.composites.add_height_field(input.samples(), id); }),
-         "add_height_field");
-  return id.bits;
-}
-
-void update_height_field(Shapes& shapes, std::uint32_t field, std::uint32_t column,
-                         std::uint32_t row, const py::array& heights) {
-  const HeightInput input(heights, {1.0, 1.0});
-  accept(changing(shapes.mutex,
-                  [&] {
-                    ++shapes.revision;
-                    return shapes.composites.update_height_field(ShapeId{field}, column, row,
-                                                                 input.samples());
-                  }),
-         "update_height_field");
-}
-
-[[nodiscard]] std::uint32_t add_compound(Shapes& shapes, py::handle children, py::handle poses) {
-  const PoseInput pose(poses);
-  const ShapeInput shape(children, "children");
-  shape.expect(pose.count());
-  std::vector<CompoundChild> list(pose.count());
-  std::vector<ShapeId> used(pose.count());
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    list[i] = {shape[i], pose[i]};
-    used[i] = shape[i];
-  }
-  ShapeId id;
-  accept(changing(shapes.mutex,
-                  [&] {
-                    const Status status = shapes.composites.add_compound(list, id);
-                    if (status == Status::ok) shapes.use(used, 1);
-                    return status;
-                  }),
-         "add_compound");
-  return id.bits;
-}
-
-[[nodiscard]] py::tuple compound_parts(const Shapes& shapes, std::uint32_t compound,
-                                       py::handle parts) {
-  const Integers<std::uint32_t> part(parts, "parts");
-  auto child = fresh<std::uint32_t>(part.count());
-  auto own = fresh<std::uint32_t>(part.count());
-  std::uint32_t* const to_child = child.mutable_data();
-  std::uint32_t* const to_own = own.mutable_data();
-  const Outcome outcome = reading(shapes.mutex, [&] {
-    for (std::size_t i = 0; i < part.count(); ++i) {
-      const CompoundPart found = shapes.composites.part(ShapeId{compound}, part[i]);
-      if (found.child == kWholeShape) return Outcome{Status::invalid_key, i};
-      to_child[i] = found.child;
-      to_own[i] = found.part;
-    }
-    return Outcome{};
-  });
-  accept(outcome.status, outcome.text("compound_parts"));
-  return py::make_tuple(child, own);
-}
-
 // --- all shapes --------------------------------------------------------------------------------
 
 [[nodiscard]] Status remove_one(Shapes& shapes, ShapeId id) {
@@ -521,31 +376,6 @@ void add_convex(ShapesClass& type) {
            "outside; without, the hull is found.");
 }
 
-void add_composite(ShapesClass& type) {
-  using py::arg;
-  type.def("add_mesh", &add_mesh, arg("vertices"), arg("triangles"),
-           arg("active_edge_angle") = 0.02,
-           "Adds a triangle mesh, vertices (n, 3) and corners (m, 3), and gives its id. Edges that "
-           "bend by more than the angle, in radians, have normals of their own.")
-      .def("add_scaled", &add_scaled, arg("mesh"), arg("scale"),
-           "The triangles of a mesh multiplied by three factors, shared: a new id.")
-      .def("refit_mesh", &refit_mesh, arg("mesh"), arg("vertices"),
-           "New places (n, 3) for the vertices of a mesh.")
-      .def("add_height_field", &add_height_field, arg("heights"),
-           arg("spacing") = std::array<double, 2>{1.0, 1.0},
-           "Adds a surface of heights (rows, columns), NaN for holes, sample (row, column) at "
-           "(column * spacing[0], row * spacing[1], height), and gives its id.")
-      .def("update_height_field", &update_height_field, arg("field"), arg("column"), arg("row"),
-           arg("heights"), "New heights (rows, columns) from (column, row) on.")
-      .def("add_compound", &add_compound, arg("children"), arg("poses"),
-           "Adds a shape of n children, ids (n,) of convex shapes, meshes and height fields, at "
-           "poses (n, 7), and gives its id. Parts are numbered child by child: a convex child is "
-           "one, a surface has all its triangles.")
-      .def("compound_parts", &compound_parts, arg("compound"), arg("parts"),
-           "What parts (n,) of a compound are: (child, part), (n,) uint32 each, part WHOLE_SHAPE "
-           "of convex children.");
-}
-
 }  // namespace
 
 void add_shapes(py::module_& module) {
@@ -561,7 +391,7 @@ void add_shapes(py::module_& module) {
                    "scenes may use it.");
   type.def(py::init([] { return std::make_shared<Shapes>(); }), "No shapes.");
   add_convex(type);
-  add_composite(type);
+  add_composites(type);
   type.def("remove", &remove_shapes, arg("shapes"),
            "Takes shapes (n,) out, all or none: invalid_key for those that bodies of a scene or "
            "compounds are made of.")

@@ -67,6 +67,7 @@ class ShapeInput {
 };
 
 void add_shapes(py::module_& module);
+void add_composites(ShapesClass& type);
 void add_narrow(py::module_& module);
 void add_scene(py::module_& module);
 

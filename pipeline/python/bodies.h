@@ -1,0 +1,108 @@
+#pragma once
+
+// How bodies of a scene, many at a time, are told something and asked about.
+
+#include "pipeline/python/locks.h"
+#include "pipeline/python/refusal.h"
+#include "pipeline/python/shared_scene.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace winnow::python {
+
+/// Changes the scene, for which shapes stay as they are.
+template <typename Body>
+auto changing_scene(SharedScene& s, Body&& body) {
+  return changing(s.mutex, [&] {
+    const std::shared_lock lock(s.shapes->mutex);
+    s.is_stale = true;
+    return body();
+  });
+}
+
+/// Filters of bodies as three columns.
+class FilterInput {
+ public:
+  FilterInput(py::handle layers, py::handle mask, py::handle environment)
+      : layers_(layers, "layers", kMost),
+        mask_(mask, "mask", kMost),
+        environment_(environment, "environment", kMost) {}
+  void expect(std::size_t count) const {
+    for (const EachInteger* each : {&layers_, &mask_, &environment_}) each->expect(count);
+  }
+  [[nodiscard]] ObjectFilter operator[](std::size_t i) const noexcept {
+    return {static_cast<std::uint32_t>(layers_[i]), static_cast<std::uint32_t>(mask_[i]),
+            static_cast<std::uint32_t>(environment_[i])};
+  }
+
+ private:
+  static constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  EachInteger layers_;
+  EachInteger mask_;
+  EachInteger environment_;
+};
+
+/// Offsets of bodies as two columns.
+class OffsetInput {
+ public:
+  OffsetInput(py::handle contact, py::handle rest)
+      : contact_(contact, "contact", {}, true), rest_(rest, "rest", {}, true) {}
+  void expect(std::size_t count) {
+    for (Numbers* each : {&contact_, &rest_}) each->expect(count);
+  }
+  [[nodiscard]] ContactOffsets operator[](std::size_t i) const noexcept {
+    return {contact_.at(i), rest_.at(i)};
+  }
+
+ private:
+  Numbers contact_;
+  Numbers rest_;
+};
+
+/// Layers of a scene.
+class LayerInput {
+ public:
+  LayerInput(py::handle object, const char* name) : numbers_(object, name, kSceneLayers - 1) {}
+  void expect(std::size_t count) const { numbers_.expect(count); }
+  [[nodiscard]] std::uint16_t operator[](std::size_t i) const noexcept {
+    return static_cast<std::uint16_t>(numbers_[i]);
+  }
+
+ private:
+  EachInteger numbers_;
+};
+
+/// Bodies of keys, in order; the status of the first that is not there.
+[[nodiscard]] inline Status bodies_of(const Scene& scene, std::span<const Key> keys,
+                                      std::vector<BodyDefinition>& bodies) {
+  bodies.resize(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Status status = scene.body(keys[i], bodies[i]);
+    if (status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
+/// Calls set(i) for each body; where one is refused, undo(i) for those before it.
+template <typename Set, typename Undo>
+[[nodiscard]] Status set_all(std::size_t count, Set&& set, Undo&& undo) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Status status = set(i);
+    if (status == Status::ok) continue;
+    while (i > 0) static_cast<void>(undo(--i));
+    return status;
+  }
+  return Status::ok;
+}
+
+[[nodiscard]] inline bool has_twice(std::span<const Key> keys) {
+  std::vector<ObjectId> ids(keys.size());
+  std::transform(keys.begin(), keys.end(), ids.begin(), [](Key key) { return key.id; });
+  std::sort(ids.begin(), ids.end());
+  return std::adjacent_find(ids.begin(), ids.end()) != ids.end();
+}
+
+}  // namespace winnow::python

@@ -1,0 +1,266 @@
+// Triangle meshes, height fields and compounds.
+
+#include "pipeline/python/entry_columns.h"
+#include "pipeline/python/locks.h"
+#include "pipeline/python/questions.h"
+#include "pipeline/python/refusal.h"
+#include "pipeline/python/shared_shapes.h"
+
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace winnow::python {
+namespace {
+
+using Shapes = SharedShapes;
+
+/// Points where they lie.
+[[nodiscard]] PointView view_of(const Numbers& points) {
+  const auto stride = static_cast<std::size_t>(points.stride());
+  if (points.is_single()) {
+    return {{points.column<float>(0), points.column<float>(1), points.column<float>(2)},
+            points.count(),
+            stride};
+  }
+  return {{points.column<double>(0), points.column<double>(1), points.column<double>(2)},
+          points.count(),
+          stride};
+}
+
+[[nodiscard]] std::uint32_t add_mesh(Shapes& shapes, py::handle vertex_array,
+                                     py::handle triangle_array, double active_edge_angle) {
+  const Numbers vertices(vertex_array, "vertices", {3});
+  const Integers<std::uint32_t> triangles(triangle_array, "triangles", 3);
+  ShapeId id;
+  accept(changing(shapes.mutex,
+                  [&] {
+                    return shapes.composites.add_mesh(
+                        view_of(vertices), IndexView(triangles.values()), id, {active_edge_angle});
+                  }),
+         "add_mesh");
+  return id.bits;
+}
+
+[[nodiscard]] std::uint32_t add_scaled(Shapes& shapes, std::uint32_t mesh,
+                                       const std::array<double, 3>& scale) {
+  ShapeId id;
+  accept(changing(shapes.mutex,
+                  [&] { return shapes.composites.add_scaled(ShapeId{mesh}, scale, id); }),
+         "add_scaled");
+  return id.bits;
+}
+
+void refit_mesh(Shapes& shapes, std::uint32_t mesh, py::handle vertex_array) {
+  const Numbers vertices(vertex_array, "vertices", {3});
+  accept(changing(shapes.mutex,
+                  [&] {
+                    ++shapes.revision;
+                    return shapes.composites.refit_mesh(ShapeId{mesh}, view_of(vertices));
+                  }),
+         "refit_mesh");
+}
+
+/// Heights (rows, columns), packed unless each row is.
+class HeightInput {
+ public:
+  HeightInput(const py::array& heights, const std::array<double, 2>& spacing)
+      : heights_(numbers_of(heights)), spacing_(spacing) {
+    if (heights_.ndim() != 2) {
+      throw Refusal(Status::size_mismatch, "heights: expected shape (rows, columns)");
+    }
+    const auto most = std::numeric_limits<std::uint32_t>::max();
+    for (const py::ssize_t axis : {0, 1}) {
+      if (static_cast<std::uint64_t>(heights_.shape(axis)) > most) {
+        throw Refusal(Status::too_many_objects, "heights");
+      }
+    }
+  }
+  [[nodiscard]] HeightSamples samples() const {
+    return {{heights_.data(), static_cast<std::size_t>(heights_.size())},
+            static_cast<std::uint32_t>(heights_.shape(1)),
+            static_cast<std::uint32_t>(heights_.shape(0)),
+            0,
+            {spacing_[0], spacing_[1]}};
+  }
+
+ private:
+  [[nodiscard]] static const py::array& numbers_of(const py::array& array) {
+    const char kind = array.dtype().kind();
+    if (kind == 'f' || kind == 'i' || kind == 'u') return array;
+    throw py::type_error("heights: numbers are wanted");
+  }
+
+  py::array_t<float, py::array::c_style | py::array::forcecast> heights_;
+  std::array<double, 2> spacing_;
+};
+
+[[nodiscard]] std::uint32_t add_height_field(Shapes& shapes, const py::array& heights,
+                                             const std::array<double, 2>& spacing) {
+  const HeightInput input(heights, spacing);
+  ShapeId id;
+  accept(changing(shapes.mutex,
+                  [&] { return shapes.composites.add_height_field(input.samples(), id); }),
+         "add_height_field");
+  return id.bits;
+}
+
+void update_height_field(Shapes& shapes, std::uint32_t field, std::uint32_t column,
+                         std::uint32_t row, const py::array& heights) {
+  const HeightInput input(heights, {1.0, 1.0});
+  accept(changing(shapes.mutex,
+                  [&] {
+                    ++shapes.revision;
+                    return shapes.composites.update_height_field(ShapeId{field}, column, row,
+                                                                 input.samples());
+                  }),
+         "update_height_field");
+}
+
+[[nodiscard]] std::uint32_t add_compound(Shapes& shapes, py::handle children, py::handle poses) {
+  const PoseInput pose(poses);
+  const ShapeInput shape(children, "children");
+  shape.expect(pose.count());
+  std::vector<CompoundChild> list(pose.count());
+  std::vector<ShapeId> used(pose.count());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    list[i] = {shape[i], pose[i]};
+    used[i] = shape[i];
+  }
+  ShapeId id;
+  accept(changing(shapes.mutex,
+                  [&] {
+                    const Status status = shapes.composites.add_compound(list, id);
+                    if (status == Status::ok) shapes.use(used, 1);
+                    return status;
+                  }),
+         "add_compound");
+  return id.bits;
+}
+
+[[nodiscard]] py::tuple compound_parts(const Shapes& shapes, std::uint32_t compound,
+                                       py::handle parts) {
+  const Integers<std::uint32_t> part(parts, "parts");
+  auto child = fresh<std::uint32_t>(part.count());
+  auto own = fresh<std::uint32_t>(part.count());
+  std::uint32_t* const to_child = child.mutable_data();
+  std::uint32_t* const to_own = own.mutable_data();
+  const Outcome outcome = reading(shapes.mutex, [&] {
+    for (std::size_t i = 0; i < part.count(); ++i) {
+      const CompoundPart found = shapes.composites.part(ShapeId{compound}, part[i]);
+      if (found.child == kWholeShape) return Outcome{Status::invalid_key, i};
+      to_child[i] = found.child;
+      to_own[i] = found.part;
+    }
+    return Outcome{};
+  });
+  accept(outcome.status, outcome.text("compound_parts"));
+  return py::make_tuple(child, own);
+}
+
+void set_one_sided(Shapes& shapes, py::handle surface_array, bool one_sided) {
+  const Integers<std::uint32_t> surfaces(surface_array, "surfaces");
+  std::vector<std::uint8_t> was(surfaces.count());
+  const auto set = [&](std::size_t i, bool now) {
+    return shapes.composites.set_one_sided(ShapeId{surfaces[i]}, now);
+  };
+  const Outcome outcome = changing(shapes.mutex, [&] {
+    ++shapes.revision;
+    for (std::size_t i = 0; i < was.size(); ++i) {
+      was[i] = shapes.composites.is_one_sided(ShapeId{surfaces[i]}) ? 1 : 0;
+      const Status status = set(i, one_sided);
+      if (status == Status::ok) continue;
+      for (std::size_t k = i; k > 0; --k) static_cast<void>(set(k - 1, was[k - 1] != 0));
+      return Outcome{status, i};
+    }
+    return Outcome{};
+  });
+  accept(outcome.status, outcome.text("set_one_sided"));
+}
+
+/// answer(id) of each composite shape; invalid_key where there is none.
+template <typename T, typename Answer>
+[[nodiscard]] py::array of_composites(const Shapes& shapes, py::handle id_array, const char* call,
+                                      Answer&& answer) {
+  const Integers<std::uint32_t> ids(id_array, "shapes");
+  auto result = fresh<T>(ids.count());
+  T* const to = result.mutable_data();
+  const Outcome outcome = reading(shapes.mutex, [&] {
+    for (std::size_t i = 0; i < ids.count(); ++i) {
+      const ShapeId id{ids[i]};
+      if (!id.is_composite() || !shapes.composites.contains(id)) {
+        return Outcome{Status::invalid_key, i};
+      }
+      to[i] = answer(id);
+    }
+    return Outcome{};
+  });
+  accept(outcome.status, outcome.text(call));
+  return result;
+}
+
+[[nodiscard]] py::tuple compound_children(const Shapes& shapes, std::uint32_t compound) {
+  std::vector<CompoundChild> children;
+  const ShapeId id{compound};
+  accept(reading(shapes.mutex,
+                 [&] {
+                   const std::span<const CompoundChild> all = shapes.composites.children(id);
+                   children.assign(all.begin(), all.end());
+                   return all.empty() ? Status::invalid_key : Status::ok;
+                 }),
+         "compound_children");
+  const auto columns = columns_of(std::move(children));
+  return py::make_tuple(columns.column<std::uint32_t>(offsetof(CompoundChild, shape)),
+                        columns.rows<double>(offsetof(CompoundChild, pose), 7));
+}
+
+}  // namespace
+
+void add_composites(ShapesClass& type) {
+  using py::arg;
+  type.def("add_mesh", &add_mesh, arg("vertices"), arg("triangles"),
+           arg("active_edge_angle") = 0.02,
+           "Adds a triangle mesh, vertices (n, 3) and corners (m, 3), and gives its id. Edges that "
+           "bend by more than the angle, in radians, have normals of their own.")
+      .def("add_scaled", &add_scaled, arg("mesh"), arg("scale"),
+           "The triangles of a mesh multiplied by three factors, shared: a new id.")
+      .def("refit_mesh", &refit_mesh, arg("mesh"), arg("vertices"),
+           "New places (n, 3) for the vertices of a mesh.")
+      .def("add_height_field", &add_height_field, arg("heights"),
+           arg("spacing") = std::array<double, 2>{1.0, 1.0},
+           "Adds a surface of heights (rows, columns), NaN for holes, sample (row, column) at "
+           "(column * spacing[0], row * spacing[1], height), and gives its id.")
+      .def("update_height_field", &update_height_field, arg("field"), arg("column"), arg("row"),
+           arg("heights"), "New heights (rows, columns) from (column, row) on.")
+      .def("add_compound", &add_compound, arg("children"), arg("poses"),
+           "Adds a shape of n children, ids (n,) of convex shapes, meshes and height fields, at "
+           "poses (n, 7), and gives its id. Parts are numbered child by child: a convex child is "
+           "one, a surface has all its triangles.")
+      .def("compound_parts", &compound_parts, arg("compound"), arg("parts"),
+           "What parts (n,) of a compound are: (child, part), (n,) uint32 each, part WHOLE_SHAPE "
+           "of convex children.")
+      .def("compound_children", &compound_children, arg("compound"),
+           "What a compound is made of: (ids (n,) uint32, poses (n, 7) float64).")
+      .def(
+          "parts",
+          [](const Shapes& shapes, py::handle ids) {
+            return of_composites<std::uint32_t>(
+                shapes, ids, "parts", [&](ShapeId id) { return shapes.composites.parts(id); });
+          },
+          arg("shapes"), "How many parts composite shapes (n,) have: (n,) uint32.")
+      .def(
+          "set_one_sided", &set_one_sided, arg("surfaces"), arg("one_sided") = true,
+          "Gives triangles of meshes and height fields (n,) a front, or two sides again: of a mesh "
+          "where corners run counter-clockwise, of a field up. They do not meet what is behind.")
+      .def(
+          "is_one_sided",
+          [](const Shapes& shapes, py::handle ids) {
+            return of_composites<bool>(shapes, ids, "is_one_sided", [&](ShapeId id) {
+              return shapes.composites.is_one_sided(id);
+            });
+          },
+          arg("shapes"), "Which composite shapes (n,) were told so: (n,) bool.");
+}
+
+}  // namespace winnow::python

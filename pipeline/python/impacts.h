@@ -1,0 +1,16 @@
+#pragma once
+
+#include "pipeline/python/arrays.h"
+#include "pipeline/python/choices.h"
+
+#include <winnow/pipeline/feature_impacts.h>
+
+namespace winnow::python {
+
+inline constexpr Choices<FeaturePair, 2> kFeaturePairs{
+    {{"vertex_face", FeaturePair::vertex_face}, {"edge_edge", FeaturePair::edge_edge}}};
+
+/// Times of impact of pairs of shapes and of features.
+void add_impacts(py::module_& module);
+
+}  // namespace winnow::python

@@ -1,0 +1,111 @@
+// Motions of bodies between two moments, as rows of numbers.
+
+#include "pipeline/python/motions.h"
+
+#include "pipeline/python/refusal.h"
+
+#include <cstring>
+#include <string>
+
+namespace winnow::python {
+
+RigidMotion RigidMotionInput::operator[](std::size_t i) const noexcept {
+  RigidMotion motion;
+  for (std::size_t k = 0; k < 3; ++k) motion.start.position[k] = numbers_.at(i, k);
+  for (std::size_t k = 0; k < 4; ++k) motion.start.orientation[k] = numbers_.at(i, 3 + k);
+  for (std::size_t k = 0; k < 3; ++k) motion.travel[k] = numbers_.at(i, 7 + k);
+  for (std::size_t k = 0; k < 3; ++k) motion.turn[k] = numbers_.at(i, 10 + k);
+  return motion;
+}
+
+std::span<const RigidMotion> RigidMotionInput::packed(std::vector<RigidMotion>& room) const {
+  if (!numbers_.is_single() && numbers_.is_dense(kMotionNumbers)) {
+    return {reinterpret_cast<const RigidMotion*>(numbers_.column<double>(0)), count()};
+  }
+  room.resize(count());
+  for (std::size_t i = 0; i < room.size(); ++i) room[i] = (*this)[i];
+  return room;
+}
+
+namespace {
+
+/// Rows of `count` motions, of which `make` gives the i-th.
+template <typename Make>
+[[nodiscard]] py::array motion_rows(std::size_t count, const char* call, Make&& make) {
+  auto rows = fresh<double>(count, kMotionNumbers);
+  double* to = rows.mutable_data();
+  for (std::size_t i = 0; i < count; ++i, to += kMotionNumbers) {
+    const RigidMotion motion = make(i);
+    if (!motion.is_valid()) {
+      throw Refusal(Status::invalid_pose, std::string(call) + ", motion " + std::to_string(i));
+    }
+    std::memcpy(to, &motion, sizeof motion);
+  }
+  return rows;
+}
+
+[[nodiscard]] py::array between(py::handle starts, py::handle ends) {
+  const PoseInput start(starts);
+  const PoseInput end(ends);
+  if (start.count() != end.count()) {
+    throw Refusal(Status::size_mismatch, "motions_between: start and end differ in length");
+  }
+  return motion_rows(start.count(), "motions_between",
+                     [&](std::size_t i) { return RigidMotion::between(start[i], end[i]); });
+}
+
+[[nodiscard]] py::array by_velocities(py::handle poses, py::handle linears, py::handle angulars,
+                                      py::handle durations) {
+  const PoseInput pose(poses);
+  Numbers linear(linears, "linear", {3}, true);
+  Numbers angular(angulars, "angular", {3}, true);
+  Numbers duration(durations, "duration", {}, true);
+  for (Numbers* each : {&linear, &angular, &duration}) each->expect(pose.count());
+  return motion_rows(pose.count(), "motions_by_velocities", [&](std::size_t i) {
+    return RigidMotion::by_velocities(pose[i], {linear.at(i, 0), linear.at(i, 1), linear.at(i, 2)},
+                                      {angular.at(i, 0), angular.at(i, 1), angular.at(i, 2)},
+                                      duration.at(i));
+  });
+}
+
+[[nodiscard]] py::array poses_at(py::handle motions, py::handle times) {
+  const RigidMotionInput motion(motions);
+  Numbers time(times, "times", {}, true);
+  time.expect(motion.count());
+  auto rows = fresh<double>(motion.count(), 7);
+  double* to = rows.mutable_data();
+  for (std::size_t i = 0; i < motion.count(); ++i, to += 7) {
+    const RigidMotion one = motion[i];
+    if (!one.is_valid()) {
+      throw Refusal(Status::invalid_pose, "poses_at, motion " + std::to_string(i));
+    }
+    if (!(time.at(i) >= 0.0 && time.at(i) <= 1.0)) {
+      throw Refusal(Status::invalid_argument, "poses_at, time " + std::to_string(i));
+    }
+    const Pose pose = one.at(time.at(i));
+    std::memcpy(to, &pose, sizeof pose);
+  }
+  return rows;
+}
+
+}  // namespace
+
+void add_motions(py::module_& module) {
+  using py::arg;
+  module.def(
+      "motions_between", &between, arg("start"), arg("end"),
+      "Motions from poses (n, 7), (n, 3) or a tuple, to others, while time runs from 0 to 1: (n, "
+      "13) float64 of the pose at the start (x, y, z and a quaternion w, x, y, z), the way of the "
+      "position, and the turn, an axis of the world times an angle in radians; both even. It turns "
+      "by the shorter way around.");
+  module.def(
+      "motions_by_velocities", &by_velocities, arg("poses"), arg("linear"), arg("angular"),
+      arg("duration") = 1.0,
+      "The same of bodies at poses (n, 7) with velocities, linear and angular (n, 3) or (3,), in "
+      "lengths and radians of the unit of time that `duration`, (n,) or one for all, counts. At "
+      "most 1e6 radians.");
+  module.def("poses_at", &poses_at, arg("motions"), arg("times"),
+             "Where motions (n, 13) are at times in [0, 1], (n,) or one for all: (n, 7) float64.");
+}
+
+}  // namespace winnow::python
