@@ -5,15 +5,18 @@
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/scene.h>
+#include <winnow/pipeline/scene_queries.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory_resource>
 #include <span>
 
 namespace winnow {
 
 struct RecorderState;
+struct PassedPairs;
 enum class RecordedCall : std::uint8_t;
 
 /// Where a recording goes: a function that takes the next bytes and says whether it could. Called
@@ -65,6 +68,7 @@ class WINNOW_API Recorder {
 
  private:
   friend class RecordedPartition;
+  friend class RecordedQueries;
   friend class RecordedScene;
 
   std::pmr::memory_resource* memory_;
@@ -166,7 +170,8 @@ struct RecordedShape {
 /// Composite shapes are recorded where the CompositePool was given that they are of, and what
 /// changes them in place is with the next question. A body of one that is of another MidPhase or
 /// one-sided, or that has a support function, and SceneOptions::seamless_floors end the recording
-/// with `unsupported`. Predicates are not recorded.
+/// with `unsupported`. Of a predicate it is recorded which pairs it let pass. See RecordedQueries
+/// for questions.
 class WINNOW_API RecordedScene {
  public:
   /// The recorder must outlive the scene.
@@ -179,7 +184,7 @@ class WINNOW_API RecordedScene {
   RecordedScene(const RecordedScene&) = delete;
   RecordedScene& operator=(const RecordedScene&) = delete;
 
-  /// The scene itself, for everything that is not recorded: what it holds, SceneQueries.
+  /// The scene itself, for everything that is not recorded: what it holds, its own SceneQueries.
   [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
   /// The same.
   [[nodiscard]] const Scene* operator->() const noexcept { return &scene_; }
@@ -202,11 +207,13 @@ class WINNOW_API RecordedScene {
   Status set_layers_meet(std::uint16_t a, std::uint16_t b, bool meet = true);
   Status set_ignored(Key a, Key b, bool ignored = true);
   Status set_ignored(std::span<const KeyPair> pairs, bool ignored = true);
+  void set_predicate(const PairPredicate& predicate) noexcept;
   Status refresh();
   Status collide(ContactLevel level, Contacts& contacts);
   /// @}
 
  private:
+  friend class RecordedQueries;
   RecordedScene(Recorder& recorder, const ShapePool& shapes, const SceneOptions& options,
                 const CompositePool* composites) noexcept;
   [[nodiscard]] bool can_hold(ShapeId id) const noexcept;
@@ -217,6 +224,7 @@ class WINNOW_API RecordedScene {
   void record_shape(const RecordedShape& shape) noexcept;
   void record_composite(const RecordedShape& shape) noexcept;
   void follow_composites() noexcept;
+  void record_passed() noexcept;
 
   void record_offsets(Key key, const ContactOffsets& offsets) noexcept;
   void record_layer(Key key, std::uint16_t layer) noexcept;
@@ -232,6 +240,65 @@ class WINNOW_API RecordedScene {
   /// Which contacts were asked for last, and how many there were.
   const Contacts* asked_ = nullptr;
   std::size_t asked_size_ = 0;
+  /// Pairs that the predicate let pass, in the recorder's memory; null while there was none.
+  PassedPairs* passed_ = nullptr;
+};
+
+/// SceneQueries whose questions are recorded: see there for what each does. Each with its filter, a
+/// digest of its answer, and which bodies a predicate let pass. Shapes that it asks with are
+/// recorded as those of bodies are.
+///
+///     winnow::RecordedQueries ask(scene);  // a RecordedScene; one per thread
+///     ask.closest(ray, hit);
+class WINNOW_API RecordedQueries {
+ public:
+  /// Asks `scene`, which must outlive this. Every allocation comes from `memory`, which must too.
+  explicit RecordedQueries(RecordedScene& scene, std::pmr::memory_resource* memory =
+                                                     std::pmr::get_default_resource()) noexcept;
+
+  /// The questions themselves, for everything that is not recorded.
+  [[nodiscard]] SceneQueries& queries() noexcept { return queries_; }
+
+  /// As those of SceneQueries.
+  /// @{
+  Status closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter = {});
+  Status any(const ShapeRay& ray, SceneHit& hit, const Filter& filter = {});
+  Status all(const ShapeRay& ray, std::span<const SceneHit>& hits, const Filter& filter = {});
+  Status closest(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
+  Status any(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
+  Status all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter = {});
+  Status overlap(ShapeId shape, const Pose& pose, std::span<const SceneOverlap>& bodies,
+                 const Filter& filter = {});
+  Status closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter = {},
+                 double tolerance = 1e-6);
+  Status all(const ShapeCast& cast, std::span<const SceneHit>& hits, const Filter& filter = {},
+             double tolerance = 1e-6);
+  Status closest(const MotionCast& cast, SceneHit& hit, const Filter& filter = {},
+                 double tolerance = 1e-6);
+  Status all(const MotionCast& cast, std::span<const SceneHit>& hits, const Filter& filter = {},
+             double tolerance = 1e-6);
+  Status distance(Key a, Key b, SceneDistance& answer,
+                  double limit = std::numeric_limits<double>::infinity());
+  Status least_distance(std::span<const Key> a, std::span<const Key> b, SetDistance& answer,
+                        double limit = std::numeric_limits<double>::infinity());
+  Status overlaps(std::span<const Key> a, std::span<const Key> b, std::span<const KeyPair>& pairs,
+                  std::size_t most = std::numeric_limits<std::size_t>::max());
+  Status nearest(const double point[3], std::size_t count, double radius,
+                 std::span<const SceneDistance>& bodies, const Filter& filter = {});
+  /// @}
+
+ private:
+  template <typename Ask, typename Write>
+  Status record(RecordedCall question, const Filter& filter, Ask&& ask, Write&& write);
+  template <typename Ask, typename Write>
+  Status record_with(ShapeId shape, RecordedCall question, const Filter& filter, Ask&& ask,
+                     Write&& write);
+  [[nodiscard]] std::uint32_t number_of(ShapeId shape) noexcept;
+
+  RecordedScene& scene_;
+  SceneQueries queries_;
+  /// Bodies that the predicate of the question let pass.
+  Column<ObjectId> passed_;
 };
 
 }  // namespace winnow

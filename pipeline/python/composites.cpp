@@ -14,8 +14,6 @@
 namespace winnow::python {
 namespace {
 
-using Shapes = SharedShapes;
-
 /// Points where they lie.
 [[nodiscard]] PointView view_of(const Numbers& points) {
   const auto stride = static_cast<std::size_t>(points.stride());
@@ -29,7 +27,7 @@ using Shapes = SharedShapes;
           stride};
 }
 
-[[nodiscard]] std::uint32_t add_mesh(Shapes& shapes, py::handle vertex_array,
+[[nodiscard]] std::uint32_t add_mesh(SharedShapes& shapes, py::handle vertex_array,
                                      py::handle triangle_array, double active_edge_angle) {
   const Numbers vertices(vertex_array, "vertices", {3});
   const Integers<std::uint32_t> triangles(triangle_array, "triangles", 3);
@@ -43,7 +41,7 @@ using Shapes = SharedShapes;
   return id.bits;
 }
 
-[[nodiscard]] std::uint32_t add_scaled(Shapes& shapes, std::uint32_t mesh,
+[[nodiscard]] std::uint32_t add_scaled(SharedShapes& shapes, std::uint32_t mesh,
                                        const std::array<double, 3>& scale) {
   ShapeId id;
   accept(changing(shapes.mutex,
@@ -52,7 +50,7 @@ using Shapes = SharedShapes;
   return id.bits;
 }
 
-void refit_mesh(Shapes& shapes, std::uint32_t mesh, py::handle vertex_array) {
+void refit_mesh(SharedShapes& shapes, std::uint32_t mesh, py::handle vertex_array) {
   const Numbers vertices(vertex_array, "vertices", {3});
   accept(changing(shapes.mutex,
                   [&] {
@@ -96,7 +94,7 @@ class HeightInput {
   std::array<double, 2> spacing_;
 };
 
-[[nodiscard]] std::uint32_t add_height_field(Shapes& shapes, const py::array& heights,
+[[nodiscard]] std::uint32_t add_height_field(SharedShapes& shapes, const py::array& heights,
                                              const std::array<double, 2>& spacing) {
   const HeightInput input(heights, spacing);
   ShapeId id;
@@ -106,7 +104,7 @@ class HeightInput {
   return id.bits;
 }
 
-void update_height_field(Shapes& shapes, std::uint32_t field, std::uint32_t column,
+void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_t column,
                          std::uint32_t row, const py::array& heights) {
   const HeightInput input(heights, {1.0, 1.0});
   accept(changing(shapes.mutex,
@@ -118,7 +116,8 @@ void update_height_field(Shapes& shapes, std::uint32_t field, std::uint32_t colu
          "update_height_field");
 }
 
-[[nodiscard]] std::uint32_t add_compound(Shapes& shapes, py::handle children, py::handle poses) {
+[[nodiscard]] std::uint32_t add_compound(SharedShapes& shapes, py::handle children,
+                                         py::handle poses) {
   const PoseInput pose(poses);
   const ShapeInput shape(children, "children");
   shape.expect(pose.count());
@@ -139,7 +138,7 @@ void update_height_field(Shapes& shapes, std::uint32_t field, std::uint32_t colu
   return id.bits;
 }
 
-[[nodiscard]] py::tuple compound_parts(const Shapes& shapes, std::uint32_t compound,
+[[nodiscard]] py::tuple compound_parts(const SharedShapes& shapes, std::uint32_t compound,
                                        py::handle parts) {
   const Integers<std::uint32_t> part(parts, "parts");
   auto child = fresh<std::uint32_t>(part.count());
@@ -159,7 +158,7 @@ void update_height_field(Shapes& shapes, std::uint32_t field, std::uint32_t colu
   return py::make_tuple(child, own);
 }
 
-void set_one_sided(Shapes& shapes, py::handle surface_array, bool one_sided) {
+void set_one_sided(SharedShapes& shapes, py::handle surface_array, bool one_sided) {
   const Integers<std::uint32_t> surfaces(surface_array, "surfaces");
   std::vector<std::uint8_t> was(surfaces.count());
   const auto set = [&](std::size_t i, bool now) {
@@ -181,8 +180,8 @@ void set_one_sided(Shapes& shapes, py::handle surface_array, bool one_sided) {
 
 /// answer(id) of each composite shape; invalid_key where there is none.
 template <typename T, typename Answer>
-[[nodiscard]] py::array of_composites(const Shapes& shapes, py::handle id_array, const char* call,
-                                      Answer&& answer) {
+[[nodiscard]] py::array of_composites(const SharedShapes& shapes, py::handle id_array,
+                                      const char* call, Answer&& answer) {
   const Integers<std::uint32_t> ids(id_array, "shapes");
   auto result = fresh<T>(ids.count());
   T* const to = result.mutable_data();
@@ -200,7 +199,7 @@ template <typename T, typename Answer>
   return result;
 }
 
-[[nodiscard]] py::tuple compound_children(const Shapes& shapes, std::uint32_t compound) {
+[[nodiscard]] py::tuple compound_children(const SharedShapes& shapes, std::uint32_t compound) {
   std::vector<CompoundChild> children;
   const ShapeId id{compound};
   accept(reading(shapes.mutex,
@@ -244,7 +243,7 @@ void add_composites(ShapesClass& type) {
            "What a compound is made of: (ids (n,) uint32, poses (n, 7) float64).")
       .def(
           "parts",
-          [](const Shapes& shapes, py::handle ids) {
+          [](const SharedShapes& shapes, py::handle ids) {
             return of_composites<std::uint32_t>(
                 shapes, ids, "parts", [&](ShapeId id) { return shapes.composites.parts(id); });
           },
@@ -255,7 +254,7 @@ void add_composites(ShapesClass& type) {
           "where corners run counter-clockwise, of a field up. They do not meet what is behind.")
       .def(
           "is_one_sided",
-          [](const Shapes& shapes, py::handle ids) {
+          [](const SharedShapes& shapes, py::handle ids) {
             return of_composites<bool>(shapes, ids, "is_one_sided", [&](ShapeId id) {
               return shapes.composites.is_one_sided(id);
             });

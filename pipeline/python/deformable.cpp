@@ -34,23 +34,23 @@ struct SharedDeformable : NeedsInit {
   Places next_start;
   Places next_end;
 };
-using Shared = SharedDeformable;
 
-void copy_places(const Numbers& numbers, Shared::Places& places) {
+void copy_places(const Numbers& numbers, SharedDeformable::Places& places) {
   places.resize(numbers.count());
   for (std::size_t i = 0; i < places.size(); ++i) {
     places[i] = {numbers.at(i, 0), numbers.at(i, 1), numbers.at(i, 2)};
   }
 }
 
-[[nodiscard]] std::shared_ptr<Shared> make(const std::array<double, 3>& origin, bool parallel) {
+[[nodiscard]] std::shared_ptr<SharedDeformable> make(const std::array<double, 3>& origin,
+                                                     bool parallel) {
   DeformableMeshOptions options;
   options.origin = {origin[0], origin[1], origin[2]};
   options.execution = parallel ? Execution::parallel() : Execution::serial();
-  return std::make_shared<Shared>(options);
+  return std::make_shared<SharedDeformable>(options);
 }
 
-void build(Shared& s, py::handle rest, py::handle triangle_array) {
+void build(SharedDeformable& s, py::handle rest, py::handle triangle_array) {
   const Numbers vertices(rest, "rest", {3});
   const Integers<std::uint32_t> triangles(triangle_array, "triangles", 3);
   accept(changing(s.mutex,
@@ -63,7 +63,7 @@ void build(Shared& s, py::handle rest, py::handle triangle_array) {
          "build");
 }
 
-void move(Shared& s, py::handle starts, py::handle ends, double distance) {
+void move(SharedDeformable& s, py::handle starts, py::handle ends, double distance) {
   const Numbers start(starts, "start", {3});
   const Numbers end(ends, "end", {3});
   accept(changing(s.mutex,
@@ -79,7 +79,7 @@ void move(Shared& s, py::handle starts, py::handle ends, double distance) {
          "move");
 }
 
-[[nodiscard]] py::array edges(const Shared& s) {
+[[nodiscard]] py::array edges(const SharedDeformable& s) {
   std::vector<std::uint32_t> ends;
   reading(s.mutex, [&] {
     ends.resize(2 * s.mesh.edges());
@@ -111,7 +111,7 @@ template <typename Result, typename Ask>
 
 /// What is found of a mesh by itself.
 template <typename Result, typename Ask>
-[[nodiscard]] std::vector<Result> found(const Shared& s, const char* call, Ask&& ask) {
+[[nodiscard]] std::vector<Result> found(const SharedDeformable& s, const char* call, Ask&& ask) {
   std::vector<Result> all;
   accept(reading(s.mutex, [&] { return gather(all, ask); }), call);
   return all;
@@ -119,10 +119,11 @@ template <typename Result, typename Ask>
 
 /// What is found of two, whose locks are taken in the order of their addresses.
 template <typename Result, typename Ask>
-[[nodiscard]] std::vector<Result> found_of_two(const Shared& s, const Shared& other,
-                                               const char* call, Ask&& ask) {
-  const Shared* const first = &s < &other ? &s : &other;
-  const Shared* const second = &s < &other ? &other : &s;
+[[nodiscard]] std::vector<Result> found_of_two(const SharedDeformable& s,
+                                               const SharedDeformable& other, const char* call,
+                                               Ask&& ask) {
+  const SharedDeformable* const first = &s < &other ? &s : &other;
+  const SharedDeformable* const second = &s < &other ? &other : &s;
   std::vector<Result> all;
   accept(reading(first->mutex,
                  [&] {
@@ -142,13 +143,13 @@ template <typename Result, typename Ask>
   return columns_of(std::move(pairs)).rows<std::uint32_t>(0, 2);
 }
 
-[[nodiscard]] py::array self_candidates(const Shared& s, const std::string& kind) {
+[[nodiscard]] py::array self_candidates(const SharedDeformable& s, const std::string& kind) {
   const FeaturePair features = kind_of(kind);
   return shown_candidates(found<Pair>(
       s, "self_candidates", [&](auto& take) { return s.mesh.self_candidates(features, take); }));
 }
 
-[[nodiscard]] py::array candidates_with(const Shared& s, const Shared& other,
+[[nodiscard]] py::array candidates_with(const SharedDeformable& s, const SharedDeformable& other,
                                         const std::string& kind) {
   const FeaturePair features = kind_of(kind);
   return shown_candidates(found_of_two<Pair>(s, other, "candidates_with", [&](auto& take) {
@@ -168,7 +169,7 @@ struct MeshImpactTable : EmptyIfZero {
           columns.column<double>(offsetof(MeshImpact, time))};
 }
 
-[[nodiscard]] MeshImpactTable self_impacts(const Shared& s, const std::string& kind,
+[[nodiscard]] MeshImpactTable self_impacts(const SharedDeformable& s, const std::string& kind,
                                            double min_separation, double tolerance,
                                            std::uint32_t max_intervals) {
   const FeaturePair features = kind_of(kind);
@@ -177,7 +178,7 @@ struct MeshImpactTable : EmptyIfZero {
       s, "self_impacts", [&](auto& take) { return s.mesh.self_impacts(features, options, take); }));
 }
 
-[[nodiscard]] MeshImpactTable impacts_with(const Shared& s, const Shared& other,
+[[nodiscard]] MeshImpactTable impacts_with(const SharedDeformable& s, const SharedDeformable& other,
                                            const std::string& kind, double min_separation,
                                            double tolerance, std::uint32_t max_intervals) {
   const FeaturePair features = kind_of(kind);
@@ -206,7 +207,7 @@ struct MeshProximityTable : EmptyIfZero {
           columns.rows<double>(offsetof(MeshProximity, weight), 4)};
 }
 
-[[nodiscard]] MeshProximityTable self_proximity(const Shared& s, const std::string& kind,
+[[nodiscard]] MeshProximityTable self_proximity(const SharedDeformable& s, const std::string& kind,
                                                 double thickness) {
   const FeaturePair features = kind_of(kind);
   return shown_near(found<MeshProximity>(s, "self_proximity", [&](auto& take) {
@@ -214,7 +215,8 @@ struct MeshProximityTable : EmptyIfZero {
   }));
 }
 
-[[nodiscard]] MeshProximityTable proximity_with(const Shared& s, const Shared& other,
+[[nodiscard]] MeshProximityTable proximity_with(const SharedDeformable& s,
+                                                const SharedDeformable& other,
                                                 const std::string& kind, double thickness) {
   const FeaturePair features = kind_of(kind);
   return shown_near(found_of_two<MeshProximity>(s, other, "proximity_with", [&](auto& take) {
@@ -232,7 +234,8 @@ struct MeshShapeImpactTable : EmptyIfZero {
   py::array point;
 };
 
-[[nodiscard]] MeshShapeImpactTable impacts_with_shape(const Shared& s, const SharedShapes& shapes,
+[[nodiscard]] MeshShapeImpactTable impacts_with_shape(const SharedDeformable& s,
+                                                      const SharedShapes& shapes,
                                                       std::uint32_t shape, py::handle motions,
                                                       double separation, double tolerance) {
   const RigidMotionInput motion(motions);
@@ -290,7 +293,7 @@ void add_answers(py::module_& module) {
                     "Of the shape at that time, in the world: (m, 3) float64.");
 }
 
-using MeshClass = py::class_<Shared, std::shared_ptr<Shared>>;
+using MeshClass = py::class_<SharedDeformable, std::shared_ptr<SharedDeformable>>;
 
 void add_itself(MeshClass& type) {
   using py::arg;
@@ -307,16 +310,20 @@ void add_itself(MeshClass& type) {
            "What comes within `distance` (a length) is among the candidates. O(n).")
       .def_property_readonly(
           "triangles",
-          [](const Shared& s) { return reading(s.mutex, [&] { return s.mesh.triangles(); }); },
+          [](const SharedDeformable& s) {
+            return reading(s.mutex, [&] { return s.mesh.triangles(); });
+          },
           "How many; 0 before `build`.")
       .def_property_readonly(
           "vertices",
-          [](const Shared& s) { return reading(s.mutex, [&] { return s.mesh.vertices(); }); },
+          [](const SharedDeformable& s) {
+            return reading(s.mutex, [&] { return s.mesh.vertices(); });
+          },
           "How many; 0 before `build`.")
       .def("edges", &edges, "Vertices of all edges, the lower one first: (e, 2) uint32, sorted.")
       .def(
           "footprint",
-          [](const Shared& s) {
+          [](const SharedDeformable& s) {
             const Bytes bytes = reading(s.mutex, [&] { return s.mesh.footprint().total(); });
             return py::make_tuple(bytes.used, bytes.reserved);
           },

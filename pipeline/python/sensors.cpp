@@ -27,11 +27,10 @@ struct SharedSensors : NeedsInit {
   Sensors sensors;
   ShapeUses uses;
 };
-using Shared = SharedSensors;
 
 /// Changes the sensors, or lets them look, for which the shapes stay as they are.
 template <typename Body>
-auto changing_sensors(Shared& s, Body&& body) {
+auto changing_sensors(SharedSensors& s, Body&& body) {
   return changing(s.scene->mutex, [&] {
     const std::shared_lock lock(s.scene->shapes->mutex);
     return body();
@@ -82,9 +81,9 @@ using Definitions = std::vector<SensorDefinition>;
   return Status::ok;
 }
 
-[[nodiscard]] py::array add(Shared& s, py::handle shapes, py::handle poses, py::handle layers,
-                            py::handle mask, py::handle environment, py::handle carriers,
-                            py::handle data) {
+[[nodiscard]] py::array add(SharedSensors& s, py::handle shapes, py::handle poses,
+                            py::handle layers, py::handle mask, py::handle environment,
+                            py::handle carriers, py::handle data) {
   const Definitions sensors = defined(shapes, poses, layers, mask, environment, carriers, data);
   auto keys = fresh<std::uint64_t>(sensors.size());
   Key* const out = keys_in(keys);
@@ -102,7 +101,7 @@ using Definitions = std::vector<SensorDefinition>;
   return keys;
 }
 
-void remove(Shared& s, py::handle key_array) {
+void remove(SharedSensors& s, py::handle key_array) {
   const KeyInput keys(key_array);
   accept(changing_sensors(s,
                           [&] {
@@ -122,7 +121,7 @@ void remove(Shared& s, py::handle key_array) {
          "remove");
 }
 
-void move(Shared& s, py::handle key_array, py::handle poses) {
+void move(SharedSensors& s, py::handle key_array, py::handle poses) {
   const KeyInput input(key_array);
   const std::span<const Key> keys = input.keys();
   const PoseInput pose(poses);
@@ -142,8 +141,9 @@ void move(Shared& s, py::handle key_array, py::handle poses) {
          "move");
 }
 
-void set(Shared& s, py::handle key_array, py::handle shapes, py::handle poses, py::handle layers,
-         py::handle mask, py::handle environment, py::handle carriers, py::handle data) {
+void set(SharedSensors& s, py::handle key_array, py::handle shapes, py::handle poses,
+         py::handle layers, py::handle mask, py::handle environment, py::handle carriers,
+         py::handle data) {
   const KeyInput input(key_array);
   const std::span<const Key> keys = input.keys();
   const Definitions after = defined(shapes, poses, layers, mask, environment, carriers, data);
@@ -169,7 +169,7 @@ void set(Shared& s, py::handle key_array, py::handle shapes, py::handle poses, p
          "set");
 }
 
-[[nodiscard]] py::array contains(const Shared& s, py::handle key_array) {
+[[nodiscard]] py::array contains(const SharedSensors& s, py::handle key_array) {
   const KeyInput keys(key_array);
   auto result = fresh<bool>(keys.count());
   bool* const to = result.mutable_data();
@@ -189,7 +189,7 @@ struct SensedTable : EmptyIfZero {
   py::array left_data;
 };
 
-[[nodiscard]] SensedTable sense(Shared& s) {
+[[nodiscard]] SensedTable sense(SharedSensors& s) {
   std::vector<SensedBody> in;
   std::vector<LeftSensor> out;
   accept(changing_sensors(s,
@@ -213,7 +213,7 @@ struct SensedTable : EmptyIfZero {
           left.rows<std::uint64_t>(offsetof(LeftSensor, sensor_data), 2)};
 }
 
-using SensorsClass = py::class_<Shared, std::shared_ptr<Shared>>;
+using SensorsClass = py::class_<SharedSensors, std::shared_ptr<SharedSensors>>;
 
 void add_table(py::module_& module) {
   using Table = SensedTable;
@@ -258,13 +258,14 @@ void add_sensors(py::module_& module) {
       "and make no contacts: goals, triggers, light curtains. Neither rays nor bodies "
       "meet them. A call that raises has changed nothing.");
   type.def(py::init([](const std::shared_ptr<SharedScene>& scene) {
-             return std::make_shared<Shared>(scene);
+             return std::make_shared<SharedSensors>(scene);
            }),
            arg("scene"), "No sensors, of the bodies of `scene`, which they keep alive.");
   add_changes(type);
-  type.def(
-          "__len__",
-          [](const Shared& s) { return reading(s.scene->mutex, [&] { return s.sensors.size(); }); })
+  type.def("__len__",
+           [](const SharedSensors& s) {
+             return reading(s.scene->mutex, [&] { return s.sensors.size(); });
+           })
       .def("contains", &contains, arg("keys"), "Which of `keys` (n,) are sensors: (n,) bool.")
       .def("sense", &sense,
            "Looks at the scene as it stands: fixed, dynamic and sleeping bodies alike, exactly.");

@@ -10,13 +10,15 @@
 #include "core/memory/byte_stream.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
 namespace winnow {
 
 inline constexpr std::string_view kRecordingMagic = "WINNOWRC";
-inline constexpr std::uint32_t kRecordingVersion = 1;
+/// Written; all from the first on are read.
+inline constexpr std::uint32_t kRecordingVersion = 2;
 /// Magic, version, and 4 bytes of 0.
 inline constexpr std::size_t kRecordingHeader = 16;
 /// Size of what follows, and its digest.
@@ -66,15 +68,36 @@ enum class RecordedCall : std::uint8_t {
   set_offsets,
   set_layer,
   set_layers_meet,
+
+  // From version 2 on.
+  set_predicate,
+  pairs_passed,
+  ask_ray,
+  ask_rays,
+  ask_overlap,
+  ask_shape_cast,
+  ask_motion_cast,
+  ask_distance,
+  ask_least_distance,
+  ask_overlaps,
+  ask_nearest,
 };
-/// The last there is.
-inline constexpr RecordedCall kLastCall = RecordedCall::set_layers_meet;
+
+/// The last call of a version; none of one that is not known.
+[[nodiscard]] constexpr std::optional<RecordedCall> last_call_of(std::uint32_t version) noexcept {
+  if (version == 1) return RecordedCall::set_layers_meet;
+  if (version == kRecordingVersion) return RecordedCall::ask_nearest;
+  return std::nullopt;
+}
 
 /// What a call names objects by: keys belong to one process, ids are the same in each.
 struct RecordedPair {
   std::uint32_t first;
   std::uint32_t second;
 };
+
+/// Which hits of a ray or a moving shape were asked for.
+enum class HitForm : std::uint8_t { closest, any, all };
 
 /// How pairs were asked for.
 enum class PairForm : std::uint8_t { buffer, buffer_and_events, events };

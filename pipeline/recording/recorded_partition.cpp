@@ -27,10 +27,6 @@ void put_boxes(CallWriter& call, const BoxView& boxes) {
   }
 }
 
-void put_filter(CallWriter& call, const Filter& filter) {
-  call.put(filter.layers).put(filter.mask).put(filter.environment);
-}
-
 void put_rays(CallWriter& call, const RayBatch& rays) {
   call.put(std::uint64_t{rays.count});
   for (std::size_t i = 0; i < rays.count; ++i) {
@@ -88,7 +84,7 @@ void put_digest(CallWriter& call, const Answer&... answer) {
 template <typename Answer>
 void put_hits(CallWriter& call, const Filter& filter, std::span<const Hit> hits,
               const Answer& answer) {
-  put_filter(call, filter);
+  call.put_filter(filter);
   put_passed(call, filter.predicate, hits);
   put_digest(call, answer);
 }
@@ -410,7 +406,7 @@ Status RecordedPartition::overlap(const Region& region, OverlapBuffer& objects,
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::overlap_region, world_);
   put_region(call, region);
-  put_filter(call, filter);
+  call.put_filter(filter);
   call.put(order);
   const std::span<const ObjectId> ids = objects.ids();
   put_passed(call, filter.predicate, ids.size(), [&](std::size_t i) { return ids[i]; });
@@ -424,7 +420,7 @@ Status RecordedPartition::overlap(const BoxView& boxes, PairBuffer& out, const F
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::overlap_boxes, world_);
   put_boxes(call, boxes);
-  put_filter(call, filter);
+  call.put_filter(filter);
   call.put(order);
   put_passed(call, filter.predicate, out.size(), [&](std::size_t i) { return out[i].second; });
   put_digest(call, out);
@@ -448,7 +444,7 @@ void RecordedPartition::record(RecordedCall question, const RayBatch& rays, cons
   if (filter.predicate.accept != nullptr && hits.key == nullptr) return;
   CallWriter call(recorder_, question, world_);
   put_rays(call, rays);
-  put_filter(call, filter);
+  call.put_filter(filter);
   put_passed(call, filter.predicate, rays.count, [&](std::size_t i) { return hits.key[i].id; });
   call.put(hits.key != nullptr).put(hits.data != nullptr).put(hits.t != nullptr);
   Digest digest;

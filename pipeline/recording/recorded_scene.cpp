@@ -1,6 +1,7 @@
+#include "core/memory/new_in.h"
 #include "pipeline/recording/composite_bytes.h"
 #include "pipeline/recording/contact_digest.h"
-#include "pipeline/recording/recorder_state.h"
+#include "pipeline/recording/passed.h"
 #include "pipeline/shapes/hull_bytes.h"
 
 #include <algorithm>
@@ -100,6 +101,9 @@ RecordedScene::RecordedScene(Recorder& recorder, const ShapePool& shapes,
 
 RecordedScene::~RecordedScene() {
   CallWriter(recorder_, RecordedCall::end_world, world_);
+  if (recorder_ == nullptr) return;
+  const Lock lock(recorder_->mutex);
+  delete_in(recorder_->block.memory(), passed_);
 }
 
 /// Ends the recording.
@@ -362,6 +366,25 @@ Status RecordedScene::set_ignored(std::span<const KeyPair> pairs, bool ignored) 
   return status;
 }
 
+void RecordedScene::set_predicate(const PairPredicate& predicate) noexcept {
+  if (recorder_ != nullptr && passed_ == nullptr) {
+    const Lock lock(recorder_->mutex);
+    passed_ = new_in<PassedPairs>(recorder_->block.memory(), *recorder_);
+    if (passed_ == nullptr) recorder_->fail(Status::out_of_memory);
+  }
+  scene_.set_predicate(passed_ == nullptr ? predicate : passed_->listen_to(predicate));
+  CallWriter(recorder_, RecordedCall::set_predicate, world_).put(predicate.accept != nullptr);
+}
+
+// Told before the question that it was asked for, which a player answers by it.
+void RecordedScene::record_passed() noexcept {
+  if (passed_ == nullptr || passed_->asked.accept == nullptr) return;
+  passed_->sort();
+  CallWriter(recorder_, RecordedCall::pairs_passed, world_)
+      .put_array(std::span<const Pair>(passed_->pairs.data(), passed_->pairs.size()));
+  passed_->pairs.clear();
+}
+
 Status RecordedScene::refresh() {
   follow_composites();
   const Status status = scene_.refresh();
@@ -378,6 +401,7 @@ Status RecordedScene::collide(ContactLevel level, Contacts& contacts) {
   if (status != Status::ok) return status;
   asked_ = &contacts;
   asked_size_ = contacts.size();
+  record_passed();
   CallWriter call(recorder_, RecordedCall::collide, world_);
   call.put(level).put(continues);
   Digest digest;

@@ -25,6 +25,9 @@ struct RecorderState {
   }
 
   Mutex mutex;
+  /// Of questions to scenes, which may come from several threads at once, while they number shapes:
+  /// taken before the other.
+  Mutex numbering;
   Column<std::byte> block;
   RecordingSink sink;
   std::FILE* file = nullptr;
@@ -64,6 +67,10 @@ class CallWriter {
   }
   /// Keys by their ids.
   CallWriter& put_ids(std::span<const Key> keys) noexcept;
+  /// A filter but for its predicate.
+  CallWriter& put_filter(const Filter& filter) noexcept {
+    return put(filter.layers).put(filter.mask).put(filter.environment);
+  }
 
  private:
   [[nodiscard]] bool is_open() const noexcept { return writer_.has_value(); }

@@ -3,6 +3,8 @@
 #include "pipeline/replay/replay_state.h"
 #include "pipeline/shapes/hull_bytes.h"
 
+#include <algorithm>
+
 namespace winnow {
 namespace {
 
@@ -16,6 +18,16 @@ Status add_plain(ByteReader& in, ShapePool& pool, ShapeId& id,
   if (status != Status::ok) return status;
   digest.add(std::as_bytes(std::span((pool.tables().*table) + id.index(), 1)));
   return status;
+}
+
+/// Lets those pairs pass that did in the program.
+PairPredicate passed_of(ReplayedWorld& of) noexcept {
+  return {[](void* context, ObjectId first, ObjectId second) {
+            const Column<Pair>& passed = static_cast<ReplayedWorld*>(context)->passed;
+            return std::binary_search(passed.begin(), passed.end(),
+                                      Pair{std::min(first, second), std::max(first, second)});
+          },
+          &of};
 }
 
 Motion motion_of(std::uint32_t number, ByteReader& in) noexcept {
@@ -118,6 +130,14 @@ Status ReplayState::change_scene(RecordedCall call, ReplayedWorld& of) {
       return add_composite(of);
     case RecordedCall::change_composite:
       return change_composite(of);
+    case RecordedCall::set_predicate: {
+      const bool asks = in.get_bool();
+      if (!in.ok()) return reading();
+      scene.set_predicate(asks ? passed_of(of) : PairPredicate{});
+      return Status::ok;
+    }
+    case RecordedCall::pairs_passed:
+      return pairs_passed(of);
     default:
       return collide(of);
   }
@@ -266,6 +286,12 @@ Status ReplayState::move(ReplayedWorld& of) {
     if (turns) given.orientation = {at + 3, at + 4, at + 5, at + 6};
   }
   return of.scene->move(std::span<const Key>(keys.data(), keys.size()), given);
+}
+
+Status ReplayState::pairs_passed(ReplayedWorld& of) {
+  if (!in.get_array(of.passed)) return reading();
+  std::sort(of.passed.begin(), of.passed.end());
+  return Status::ok;
 }
 
 Status ReplayState::collide(ReplayedWorld& of) {

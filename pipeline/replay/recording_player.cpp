@@ -35,6 +35,7 @@ ReplayState::ReplayState(std::span<const std::byte> bytes, const ReplayOptions& 
       bodies(given.memory),
       key_pairs(given.memory),
       rays(given.memory),
+      shape_rays(given.memory),
       planes(given.memory),
       numbers(given.memory),
       filter(given.memory) {
@@ -53,9 +54,11 @@ Status ReplayState::check() noexcept {
   (void)header.get_bytes(magic, sizeof magic);
   const auto version = header.get<std::uint32_t>();
   const auto unused = header.get<std::uint32_t>();
+  const std::optional<RecordedCall> last = last_call_of(version);
   const bool known = header.ok() && std::string_view(magic, sizeof magic) == kRecordingMagic &&
-                     version == kRecordingVersion && unused == 0;
+                     last && unused == 0;
   if (!known) return Status::invalid_argument;
+  last_call = *last;
   rest = header.rest();
   std::size_t good = 0;
   BlockHead head;
@@ -86,7 +89,7 @@ bool ReplayState::next_block() noexcept {
 
 Played ReplayState::step() noexcept {
   if (status != Status::ok || (in.rest().empty() && !next_block())) return Played::end;
-  const auto call = in.get_enum(kLastCall);
+  const auto call = in.get_enum(last_call);
   const auto number = in.get<std::uint32_t>();
   CallOutcome outcome = CallOutcome::changed;
   const std::uint64_t asked = questions;
@@ -120,7 +123,8 @@ Status ReplayState::play_world(RecordedCall call, std::uint32_t number) {
   }
   if (call == RecordedCall::make_scene) return make_scene(*of);
   if (call > RecordedCall::make_scene) {
-    return of->scene ? change_scene(call, *of) : Status::invalid_argument;
+    if (!of->scene) return Status::invalid_argument;
+    return call < RecordedCall::ask_ray ? change_scene(call, *of) : ask_scene(call, *of);
   }
   if (call != RecordedCall::make_partition && !of->partition) return Status::invalid_argument;
   return change_partition(call, *of);

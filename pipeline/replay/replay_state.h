@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/pipeline/replay.h>
+#include <winnow/pipeline/scene_queries.h>
 #include "pipeline/replay/call_reader.h"
 
 #include <array>
@@ -32,6 +33,7 @@ struct ReplayedWorld {
         hits(memory),
         objects(memory),
         shape_ids(memory),
+        passed(memory),
         contacts(memory) {}
 
   std::optional<Partition> partition;
@@ -44,7 +46,9 @@ struct ReplayedWorld {
   std::optional<ShapePool> shapes;
   std::optional<CompositePool> composites;
   std::optional<Scene> scene;
+  std::optional<SceneQueries> queries;
   Column<ShapeId> shape_ids;  // by the number in the recording
+  Column<Pair> passed;        // by the predicate in the next question; sorted
   Contacts contacts;
 };
 
@@ -94,7 +98,20 @@ struct ReplayState {
   [[nodiscard]] Status add_bodies(ReplayedWorld& of);
   [[nodiscard]] Status move(ReplayedWorld& of);
   [[nodiscard]] Status collide(ReplayedWorld& of);
+  [[nodiscard]] Status pairs_passed(ReplayedWorld& of);
   [[nodiscard]] bool read_keys(const Scene& of);
+
+  // Of questions to scenes (play_queries.cpp).
+  [[nodiscard]] Status ask_scene(RecordedCall call, ReplayedWorld& of);
+  [[nodiscard]] Status ask_ray(ReplayedWorld& of);
+  [[nodiscard]] Status ask_rays(ReplayedWorld& of);
+  [[nodiscard]] Status ask_overlap(ReplayedWorld& of);
+  template <typename Moving>
+  [[nodiscard]] Status ask_cast(ReplayedWorld& of);
+  [[nodiscard]] Status ask_sets(RecordedCall call, ReplayedWorld& of);
+  [[nodiscard]] Status ask_nearest(ReplayedWorld& of);
+  [[nodiscard]] bool read_shape(const ReplayedWorld& of, ShapeId& id) noexcept;
+  [[nodiscard]] bool read_question() noexcept;
 
   /// Compares with the digest that was recorded.
   template <typename... Answer>
@@ -115,6 +132,7 @@ struct ReplayState {
   std::span<const std::byte> rest;  // blocks that were not begun
   ByteReader in;                    // of the block that is played
   Status status = Status::ok;
+  RecordedCall last_call = RecordedCall::end_frame;  // of the recording's version
   bool is_whole = false;
   std::uint64_t calls = 0;
   std::uint64_t frames = 0;
@@ -134,6 +152,7 @@ struct ReplayState {
   Column<BodyDefinition> bodies;
   Column<KeyPair> key_pairs;
   Column<Ray> rays;
+  Column<ShapeRay> shape_rays;
   Column<Plane> planes;
   Column<std::uint32_t> numbers;
   RecordedFilter filter;

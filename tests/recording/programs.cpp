@@ -272,6 +272,81 @@ void change_bodies(RecordedScene& scene, SceneWorld& world, Landscape& landscape
   }
 }
 
+/// Pairs and bodies that a program wants to meet, by its own lights.
+struct Wishes {
+  ObjectId modulus = 3;
+
+  [[nodiscard]] PairPredicate pairs() {
+    return {[](void* context, ObjectId first, ObjectId second) {
+              return (first + second) % static_cast<Wishes*>(context)->modulus != 0;
+            },
+            this};
+  }
+  [[nodiscard]] Filter bodies() {
+    Filter filter;
+    filter.predicate = {[](void* context, Key key, ClientData) {
+                          return key.id % static_cast<Wishes*>(context)->modulus != 0;
+                        },
+                        this};
+    return filter;
+  }
+};
+
+/// Rays and moving shapes.
+void cast_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filter& filter) {
+  std::vector<ShapeRay> rays;
+  for (int i = 0; i < 9; ++i) {
+    const Pose from = world.random_pose();
+    const Pose to = world.random_pose();
+    ShapeRay& ray = rays.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      ray.origin[k] = from.position[k];
+      ray.direction[k] = to.position[k] - from.position[k];
+    }
+  }
+  SceneHit hit;
+  std::span<const SceneHit> hits;
+  EXPECT_EQ(ask.closest(rays[0], hit, filter), Status::ok);
+  EXPECT_EQ(ask.any(rays[1], hit, filter), Status::ok);
+  EXPECT_EQ(ask.all(rays[2], hits, filter), Status::ok);
+  std::vector<Key> keys(rays.size());
+  std::vector<double> ts(rays.size());
+  std::vector<double> heights(rays.size());
+  SceneHitColumns columns{
+      .key = keys.data(), .t = ts.data(), .point = {nullptr, nullptr, heights.data()}};
+  EXPECT_EQ(ask.closest(ShapeRayBatch(rays), columns, filter), Status::ok);
+  columns.key = nullptr;
+  EXPECT_EQ(ask.any(ShapeRayBatch(rays), columns, filter), Status::ok);
+  SceneHitLists lists;
+  EXPECT_EQ(ask.all(ShapeRayBatch(rays), lists, filter), Status::ok);
+  ShapeCast cast{shape, world.random_pose()};
+  std::copy_n(rays[3].direction, 3, cast.direction);
+  EXPECT_EQ(ask.closest(cast, hit, filter), Status::ok);
+  EXPECT_EQ(ask.all(cast, hits, filter, 1e-3), Status::ok);
+  const MotionCast turning{shape, RigidMotion::between(world.random_pose(), world.random_pose())};
+  EXPECT_EQ(ask.closest(turning, hit, filter), Status::ok);
+  EXPECT_EQ(ask.all(turning, hits, filter, 1e-3), Status::ok);
+}
+
+/// Every kind of question to a scene.
+void ask_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filter& filter) {
+  cast_all(ask, world, shape, filter);
+  std::span<const SceneOverlap> bodies;
+  EXPECT_EQ(ask.overlap(shape, world.random_pose(), bodies, filter), Status::ok);
+  const std::span<const Key> keys(world.keys);
+  SceneDistance gap;
+  EXPECT_EQ(ask.distance(keys[0], keys[1], gap), Status::ok);
+  EXPECT_EQ(ask.distance(keys[0], keys[2], gap, 1e-3), Status::ok);
+  SetDistance least;
+  EXPECT_EQ(ask.least_distance(keys.first(5), keys.last(9), least), Status::ok);
+  EXPECT_EQ(ask.least_distance(keys.first(1), keys.subspan(1, 1), least, 1e-3), Status::ok);
+  std::span<const KeyPair> pairs;
+  EXPECT_EQ(ask.overlaps(keys.first(9), keys.last(9), pairs), Status::ok);
+  EXPECT_EQ(ask.overlaps(keys, keys, pairs, 2), Status::ok);
+  std::span<const SceneDistance> near;
+  EXPECT_EQ(ask.nearest(world.random_pose().position, 4, 9.0, near, filter), Status::ok);
+}
+
 }  // namespace
 
 void record_scene(Recorder& recorder, std::size_t count, int frames, const SceneOptions& options) {
@@ -294,6 +369,8 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
   }
   EXPECT_EQ(scene.add({.shape = ground_id, .motion = Motion::fixed}, ground_key), Status::ok);
   Contacts contacts;
+  RecordedQueries ask(scene);
+  Wishes wishes;
   for (int frame = 0; frame < frames; ++frame) {
     world.stir(0.05);
     std::vector<Pose> poses;
@@ -301,6 +378,11 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
     EXPECT_EQ(scene.move(world.keys, poses), Status::ok);
     change_bodies(scene, world, landscape, frame);
     EXPECT_EQ(scene.refresh(), Status::ok);
+    wishes.modulus = frame < 4 ? 3 : 5;
+    if (frame == 2 || frame == 4) scene.set_predicate(wishes.pairs());
+    if (frame == 6) scene.set_predicate({});
+    const ShapeId by_frame[] = {world.shapes[1], round[1], landscape.ids[3], landscape.ids[0]};
+    ask_all(ask, world, by_frame[frame % 4], frame % 2 == 0 ? Filter{} : wishes.bodies());
     const auto level = frame == 6 ? ContactLevel::distance : ContactLevel::manifold;
     EXPECT_EQ(scene.collide(level, contacts), Status::ok);
     recorder.end_frame();

@@ -29,7 +29,7 @@ using Bytes8 = std::vector<std::byte>;
 void record_partition(Recorder& recorder, StructureKind structure, std::size_t count, int frames);
 /// The same for each kind of volume.
 void record_volumes(Recorder& recorder, std::size_t count);
-/// Bodies that come, move, fall asleep and go, and what touches.
+/// Bodies that come, move, fall asleep and go, what touches, and every kind of question to them.
 void record_scene(Recorder& recorder, std::size_t count, int frames, const SceneOptions& options);
 
 }  // namespace winnow::test

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 #include "tests/recording/mutations.h"
 #include "tests/recording/programs.h"
@@ -60,6 +61,150 @@ TEST(ProgramRecordings, of_scenes_are_played_bit_for_bit) {
     ASSERT_EQ(recorder.close(), Status::ok);
     expect_same_everywhere(bytes);
   }
+}
+
+/// Balls in a row, of which neighbours overlap.
+struct Row {
+  Row() {
+    EXPECT_EQ(shapes.add(SphereShape{0.6}, ball), Status::ok);
+    for (int i = 0; i < 30; ++i) bodies.push_back({.shape = ball, .pose = Pose::at(i, 0, 0)});
+    keys.resize(bodies.size());
+  }
+
+  ShapePool shapes;
+  ShapeId ball;
+  std::vector<BodyDefinition> bodies;
+  std::vector<Key> keys;
+};
+
+TEST(ProgramRecordings, of_predicates_have_what_they_let_pass) {
+  const auto refuse_even = [](void*, ObjectId first, ObjectId) { return first % 2 != 0; };
+  Row row;
+  Bytes8 bytes;
+  Recorder recorder(kept_in(bytes));
+  Contacts contacts;
+  {
+    RecordedScene scene(recorder, row.shapes);
+    ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
+    scene.set_predicate({refuse_even, nullptr});
+    for (int frame = 0; frame < 3; ++frame) {
+      EXPECT_EQ(scene.move(row.keys[4], Pose::at(4, 0.1 * frame, 0)), Status::ok);
+      EXPECT_EQ(scene.collide(ContactLevel::distance, contacts), Status::ok);
+      EXPECT_EQ(contacts.size(), 14U);
+    }
+    scene.set_predicate({});
+    EXPECT_EQ(scene.collide(ContactLevel::distance, contacts), Status::ok);
+    EXPECT_EQ(contacts.size(), 29U);
+  }
+  ASSERT_EQ(recorder.close(), Status::ok);
+  expect_same_everywhere(bytes);
+  RecordingPlayer player(bytes);
+  std::vector<std::size_t> touching;
+  for (Played played = player.step(); played != Played::end; played = player.step()) {
+    if (played == Played::pairs) touching.push_back(player.contacts(0)->size());
+  }
+  EXPECT_EQ(touching, (std::vector<std::size_t>{14, 14, 14, 29}));
+}
+
+TEST(ProgramRecordings, of_questions_from_several_threads_are_played_bit_for_bit) {
+  Row row;
+  std::vector<ShapeId> own(40);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    ASSERT_EQ(row.shapes.add(SphereShape{0.1 + 0.02 * static_cast<double>(i)}, own[i]), Status::ok);
+  }
+  Bytes8 bytes;
+  Recorder recorder(kept_in(bytes));
+  {
+    RecordedScene scene(recorder, row.shapes);
+    ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
+    ASSERT_EQ(scene.refresh(), Status::ok);
+    std::vector<std::thread> threads;
+    for (std::size_t thread = 0; thread < 4; ++thread) {
+      threads.emplace_back([&, thread] {
+        RecordedQueries ask(scene);
+        for (std::size_t i = 0; i < own.size(); ++i) {
+          std::span<const SceneOverlap> found;
+          const Pose pose = Pose::at(0.7 * static_cast<double>(thread + i), 0.3, 0);
+          EXPECT_EQ(ask.overlap(own[(7 * thread + i) % own.size()], pose, found), Status::ok);
+        }
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+  }
+  ASSERT_EQ(recorder.close(), Status::ok);
+  RecordingPlayer player(bytes);
+  EXPECT_EQ(player.play_all(), Status::ok);
+  // Shapes are compared as well.
+  EXPECT_EQ(player.questions(), 4 * own.size() + own.size() + 1);
+  EXPECT_EQ(player.differences(), 0U);
+}
+
+TEST(ProgramRecordings, of_questions_that_were_refused_have_none) {
+  Row row;
+  Bytes8 bytes;
+  Recorder recorder(kept_in(bytes));
+  RecordedScene scene(recorder, row.shapes);
+  ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
+  ASSERT_EQ(scene.refresh(), Status::ok);
+  ASSERT_EQ(scene.move(row.keys[0], Pose::at(0, 9, 0)), Status::ok);
+  RecordedQueries ask(scene);
+  const std::uint64_t before = recorder.calls();
+  SceneHit hit;
+  EXPECT_EQ(ask.closest(ShapeRay{}, hit), Status::invalid_argument);  // not refreshed
+  ASSERT_EQ(scene.refresh(), Status::ok);
+  std::span<const SceneOverlap> found;
+  EXPECT_EQ(ask.overlap(ShapeId{}, Pose{}, found), Status::invalid_key);
+  SceneDistance gap;
+  EXPECT_EQ(ask.distance(row.keys[0], Key{}, gap), Status::invalid_key);
+  EXPECT_EQ(recorder.calls(), before + 1);
+  EXPECT_EQ(recorder.status(), Status::ok);
+  SupportShape egg;
+  egg.radius = 1.0;
+  egg.function = [](const void*, const double direction[3], double point[3]) {
+    for (int k = 0; k < 3; ++k) point[k] = direction[k];
+  };
+  ShapeId function;
+  ASSERT_EQ(row.shapes.add(egg, function), Status::ok);
+  EXPECT_EQ(ask.overlap(function, Pose{}, found), Status::ok);
+  EXPECT_EQ(recorder.status(), Status::unsupported);
+}
+
+/// The version stands behind the eight characters.
+Bytes8 as_version(Bytes8 bytes, std::uint32_t version) {
+  std::memcpy(bytes.data() + 8, &version, sizeof version);
+  return bytes;
+}
+
+TEST(ProgramRecordings, of_older_versions_are_played) {
+  Bytes8 old;
+  Bytes8 asking;
+  {
+    Recorder recorder(kept_in(old));
+    record_partition(recorder, linear_bvh(), 100, 3);
+    Row row;
+    RecordedScene scene(recorder, row.shapes);
+    ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
+    ASSERT_EQ(scene.set_layers_meet(1, 2, false), Status::ok);
+    Contacts contacts;
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+  }
+  {
+    Recorder recorder(kept_in(asking));
+    record_scene(recorder, 40, 1, {.margin = 0.02});
+  }
+  for (const std::uint32_t version : {0U, 3U, ~0U}) {
+    EXPECT_EQ(RecordingPlayer(as_version(old, version)).status(), Status::invalid_argument);
+  }
+  for (const std::uint32_t version : {1U, 2U}) {
+    const Bytes8 bytes = as_version(old, version);
+    RecordingPlayer player(bytes);
+    EXPECT_EQ(player.play_all(), Status::ok) << version;
+    EXPECT_EQ(player.differences(), 0U) << version;
+  }
+  const Bytes8 too_old = as_version(asking, 1);
+  RecordingPlayer player(too_old);
+  EXPECT_EQ(player.play_all(), Status::invalid_argument);
+  EXPECT_GT(player.calls(), 0U);
 }
 
 TEST(ProgramRecordings, stand_in_files) {

@@ -1,0 +1,88 @@
+#pragma once
+
+// What predicates of the program let pass while a call is recorded.
+
+#include <winnow/core/column.h>
+#include <winnow/core/filter.h>
+#include "pipeline/recording/recorder_state.h"
+
+#include <algorithm>
+#include <span>
+
+namespace winnow {
+
+/// Asks the predicate of a scene, from whatever threads, and keeps the pairs that it lets pass: in
+/// the recorder's memory, under its lock.
+struct PassedPairs {
+  explicit PassedPairs(RecorderState& state) noexcept
+      : recorder(state), pairs(state.block.memory()) {}
+
+  /// The one to ask from now on; none if `predicate` is none.
+  [[nodiscard]] PairPredicate listen_to(const PairPredicate& predicate) noexcept {
+    asked = predicate;
+    if (predicate.accept == nullptr) return {};
+    return {[](void* context, ObjectId first, ObjectId second) {
+              auto& self = *static_cast<PassedPairs*>(context);
+              const bool passes = self.asked.accept(self.asked.context, first, second);
+              if (passes) self.keep({std::min(first, second), std::max(first, second)});
+              return passes;
+            },
+            this};
+  }
+  void keep(const Pair& pair) {
+    const Lock lock(recorder.mutex);
+    if (!pairs.push_back(pair)) recorder.fail(Status::out_of_memory);
+  }
+  void sort() noexcept {
+    std::sort(pairs.begin(), pairs.end());
+    pairs.set_size(
+        static_cast<std::size_t>(std::unique(pairs.begin(), pairs.end()) - pairs.begin()));
+  }
+
+  RecorderState& recorder;
+  PairPredicate asked;
+  Column<Pair> pairs;
+};
+
+/// Asks the predicate of a question to a scene, and keeps the bodies that it lets pass, for the
+/// time of that: the thread that asks answers it.
+class PassedObjects {
+ public:
+  PassedObjects(const Filter& filter, Column<ObjectId>& ids) noexcept : asked_(filter), ids_(ids) {
+    ids_.clear();
+  }
+
+  /// What to ask with.
+  [[nodiscard]] Filter filter() noexcept {
+    Filter listening = asked_;
+    if (asked_.predicate.accept == nullptr) return listening;
+    listening.predicate = {[](void* context, Key key, ClientData data) {
+                             return static_cast<PassedObjects*>(context)->ask(key, data);
+                           },
+                           this};
+    return listening;
+  }
+  /// Writes whether there was a predicate, and what it let pass.
+  void put(CallWriter& call) {
+    std::sort(ids_.begin(), ids_.end());
+    ids_.set_size(static_cast<std::size_t>(std::unique(ids_.begin(), ids_.end()) - ids_.begin()));
+    call.put(asked_.predicate.accept != nullptr);
+    if (asked_.predicate.accept == nullptr) return;
+    call.put_array(std::span<const ObjectId>(ids_.data(), ids_.size()));
+  }
+  /// False if memory was refused.
+  [[nodiscard]] bool is_complete() const noexcept { return is_complete_; }
+
+ private:
+  bool ask(Key key, ClientData data) {
+    const bool passes = asked_.predicate.accept(asked_.predicate.context, key, data);
+    if (passes) is_complete_ = ids_.push_back(key.id) && is_complete_;
+    return passes;
+  }
+
+  const Filter& asked_;
+  Column<ObjectId>& ids_;
+  bool is_complete_ = true;
+};
+
+}  // namespace winnow

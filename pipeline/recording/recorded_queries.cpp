@@ -1,0 +1,251 @@
+#include "pipeline/recording/passed.h"
+#include "pipeline/recording/query_digest.h"
+
+namespace winnow {
+namespace {
+
+void put_ray(CallWriter& call, const ShapeRay& ray) {
+  call.put_bytes(ray.origin, sizeof ray.origin)
+      .put_bytes(ray.direction, sizeof ray.direction)
+      .put(ray.max_t);
+}
+
+void put_rays(CallWriter& call, const ShapeRayBatch& rays) {
+  call.put(std::uint64_t{rays.count});
+  for (std::size_t i = 0; i < rays.count; ++i) put_ray(call, rays[i]);
+}
+
+void put_cast(CallWriter& call, const ShapeCast& cast) {
+  call.put_bytes(&cast.pose, sizeof cast.pose)
+      .put_bytes(cast.direction, sizeof cast.direction)
+      .put(cast.max_t);
+}
+
+void put_motion(CallWriter& call, const MotionCast& cast) {
+  call.put_bytes(&cast.motion, sizeof cast.motion);
+}
+
+/// Bytes of a struct of doubles are its numbers.
+static_assert(sizeof(Pose) == 7 * sizeof(double) && sizeof(RigidMotion) == 13 * sizeof(double));
+
+template <typename... Answer>
+[[nodiscard]] Digest digest_of(const Answer&... answer) noexcept {
+  Digest digest;
+  add_to(digest, answer...);
+  return digest;
+}
+
+}  // namespace
+
+RecordedQueries::RecordedQueries(RecordedScene& scene, std::pmr::memory_resource* memory) noexcept
+    : scene_(scene), queries_(scene.scene_, memory), passed_(memory) {}
+
+/// Asks, and records the question: write(call) puts what was asked and gives the digest of the
+/// answer; the filter comes behind.
+template <typename Ask, typename Write>
+Status RecordedQueries::record(RecordedCall question, const Filter& filter, Ask&& ask,
+                               Write&& write) {
+  PassedObjects passed(filter, passed_);
+  const Status status = ask(passed.filter());
+  if (status != Status::ok) return status;
+  if (!passed.is_complete()) scene_.refuse(Status::out_of_memory);
+  CallWriter call(scene_.recorder_, question, scene_.world_);
+  const Digest digest = write(call);
+  call.put_filter(filter);
+  passed.put(call);
+  call.put(digest.value());
+  return status;
+}
+
+/// The same of a shape that may be new to the recording: write(call, number).
+template <typename Ask, typename Write>
+Status RecordedQueries::record_with(ShapeId shape, RecordedCall question, const Filter& filter,
+                                    Ask&& ask, Write&& write) {
+  std::uint32_t number = 0;
+  return record(
+      question, filter,
+      [&](const Filter& asked) {
+        const Status status = ask(asked);
+        if (status == Status::ok) number = number_of(shape);
+        return status;
+      },
+      [&](CallWriter& call) { return write(call, number); });
+}
+
+std::uint32_t RecordedQueries::number_of(ShapeId shape) noexcept {
+  if (scene_.recorder_ == nullptr) return 0;
+  const Lock lock(scene_.recorder_->numbering);
+  return scene_.number_of(shape);
+}
+
+// --- rays --------------------------------------------------------------------------------------
+
+Status RecordedQueries::closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
+  return record(
+      RecordedCall::ask_ray, filter,
+      [&](const Filter& asked) { return queries_.closest(ray, hit, asked); },
+      [&](CallWriter& call) {
+        put_ray(call.put(HitForm::closest), ray);
+        return digest_of(hit);
+      });
+}
+
+Status RecordedQueries::any(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
+  return record(
+      RecordedCall::ask_ray, filter,
+      [&](const Filter& asked) { return queries_.any(ray, hit, asked); },
+      [&](CallWriter& call) {
+        put_ray(call.put(HitForm::any), ray);
+        return digest_of(hit);
+      });
+}
+
+Status RecordedQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
+                            const Filter& filter) {
+  return record(
+      RecordedCall::ask_ray, filter,
+      [&](const Filter& asked) { return queries_.all(ray, hits, asked); },
+      [&](CallWriter& call) {
+        put_ray(call.put(HitForm::all), ray);
+        return digest_of(hits);
+      });
+}
+
+Status RecordedQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns& hits,
+                                const Filter& filter) {
+  return record(
+      RecordedCall::ask_rays, filter,
+      [&](const Filter& asked) { return queries_.closest(rays, hits, asked); },
+      [&](CallWriter& call) {
+        put_rays(call.put(HitForm::closest).put(columns_in(hits)), rays);
+        return digest_of(hits, rays.count);
+      });
+}
+
+Status RecordedQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
+                            const Filter& filter) {
+  return record(
+      RecordedCall::ask_rays, filter,
+      [&](const Filter& asked) { return queries_.any(rays, hits, asked); },
+      [&](CallWriter& call) {
+        put_rays(call.put(HitForm::any).put(columns_in(hits)), rays);
+        return digest_of(hits, rays.count);
+      });
+}
+
+Status RecordedQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter) {
+  return record(
+      RecordedCall::ask_rays, filter,
+      [&](const Filter& asked) { return queries_.all(rays, hits, asked); },
+      [&](CallWriter& call) {
+        put_rays(call.put(HitForm::all).put(columns_in({})), rays);
+        return digest_of(hits);
+      });
+}
+
+// --- shapes ------------------------------------------------------------------------------------
+
+Status RecordedQueries::overlap(ShapeId shape, const Pose& pose,
+                                std::span<const SceneOverlap>& bodies, const Filter& filter) {
+  return record_with(
+      shape, RecordedCall::ask_overlap, filter,
+      [&](const Filter& asked) { return queries_.overlap(shape, pose, bodies, asked); },
+      [&](CallWriter& call, std::uint32_t number) {
+        call.put(number).put_bytes(&pose, sizeof pose);
+        return digest_of(bodies);
+      });
+}
+
+Status RecordedQueries::closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter,
+                                double tolerance) {
+  return record_with(
+      cast.shape, RecordedCall::ask_shape_cast, filter,
+      [&](const Filter& asked) { return queries_.closest(cast, hit, asked, tolerance); },
+      [&](CallWriter& call, std::uint32_t number) {
+        put_cast(call.put(HitForm::closest).put(number).put(tolerance), cast);
+        return digest_of(hit);
+      });
+}
+
+Status RecordedQueries::all(const ShapeCast& cast, std::span<const SceneHit>& hits,
+                            const Filter& filter, double tolerance) {
+  return record_with(
+      cast.shape, RecordedCall::ask_shape_cast, filter,
+      [&](const Filter& asked) { return queries_.all(cast, hits, asked, tolerance); },
+      [&](CallWriter& call, std::uint32_t number) {
+        put_cast(call.put(HitForm::all).put(number).put(tolerance), cast);
+        return digest_of(hits);
+      });
+}
+
+Status RecordedQueries::closest(const MotionCast& cast, SceneHit& hit, const Filter& filter,
+                                double tolerance) {
+  return record_with(
+      cast.shape, RecordedCall::ask_motion_cast, filter,
+      [&](const Filter& asked) { return queries_.closest(cast, hit, asked, tolerance); },
+      [&](CallWriter& call, std::uint32_t number) {
+        put_motion(call.put(HitForm::closest).put(number).put(tolerance), cast);
+        return digest_of(hit);
+      });
+}
+
+Status RecordedQueries::all(const MotionCast& cast, std::span<const SceneHit>& hits,
+                            const Filter& filter, double tolerance) {
+  return record_with(
+      cast.shape, RecordedCall::ask_motion_cast, filter,
+      [&](const Filter& asked) { return queries_.all(cast, hits, asked, tolerance); },
+      [&](CallWriter& call, std::uint32_t number) {
+        put_motion(call.put(HitForm::all).put(number).put(tolerance), cast);
+        return digest_of(hits);
+      });
+}
+
+// --- distances ---------------------------------------------------------------------------------
+
+Status RecordedQueries::distance(Key a, Key b, SceneDistance& answer, double limit) {
+  const Status status = queries_.distance(a, b, answer, limit);
+  if (status != Status::ok) return status;
+  CallWriter(scene_.recorder_, RecordedCall::ask_distance, scene_.world_)
+      .put(a.id)
+      .put(b.id)
+      .put(limit)
+      .put(digest_of(answer).value());
+  return status;
+}
+
+Status RecordedQueries::least_distance(std::span<const Key> a, std::span<const Key> b,
+                                       SetDistance& answer, double limit) {
+  const Status status = queries_.least_distance(a, b, answer, limit);
+  if (status != Status::ok) return status;
+  CallWriter(scene_.recorder_, RecordedCall::ask_least_distance, scene_.world_)
+      .put_ids(a)
+      .put_ids(b)
+      .put(limit)
+      .put(digest_of(answer).value());
+  return status;
+}
+
+Status RecordedQueries::overlaps(std::span<const Key> a, std::span<const Key> b,
+                                 std::span<const KeyPair>& pairs, std::size_t most) {
+  const Status status = queries_.overlaps(a, b, pairs, most);
+  if (status != Status::ok) return status;
+  CallWriter(scene_.recorder_, RecordedCall::ask_overlaps, scene_.world_)
+      .put_ids(a)
+      .put_ids(b)
+      .put(std::uint64_t{most})
+      .put(digest_of(pairs).value());
+  return status;
+}
+
+Status RecordedQueries::nearest(const double point[3], std::size_t count, double radius,
+                                std::span<const SceneDistance>& bodies, const Filter& filter) {
+  return record(
+      RecordedCall::ask_nearest, filter,
+      [&](const Filter& asked) { return queries_.nearest(point, count, radius, bodies, asked); },
+      [&](CallWriter& call) {
+        call.put_bytes(point, 3 * sizeof(double)).put(std::uint64_t{count}).put(radius);
+        return digest_of(bodies);
+      });
+}
+
+}  // namespace winnow
