@@ -233,7 +233,7 @@ class WINNOW_API RecordedScene {
   std::uint32_t world_;
   const ShapePool& shapes_;
   const CompositePool* composites_;
-  std::uint64_t composites_seen_ = 0;
+  std::uint64_t composites_seen_;
   Scene scene_;
   Column<RecordedShape> known_;
   std::uint32_t shapes_recorded_ = 0;

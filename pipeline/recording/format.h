@@ -72,6 +72,7 @@ enum class RecordedCall : std::uint8_t {
   // From version 2 on.
   set_predicate,
   pairs_passed,
+  composites_changed,
   ask_ray,
   ask_rays,
   ask_overlap,

@@ -87,6 +87,7 @@ RecordedScene::RecordedScene(Recorder& recorder, const ShapePool& shapes,
       world_(new_world(recorder_)),
       shapes_(shapes),
       composites_(composites),
+      composites_seen_(composites == nullptr ? 0 : composites->revision()),
       scene_(shapes, options),
       known_(options.memory) {
   if (options.seamless_floors) refuse(Status::unsupported);
@@ -205,11 +206,13 @@ void RecordedScene::record_composite(const RecordedShape& shape) noexcept {
   call.put(shape.digest);
 }
 
-// What changed in place is told to the recording; what is gone, or another one, is forgotten.
+// What changed in place is told to the recording; what is gone, or another one, is forgotten. That
+// the pool changed at all is, too: a scene makes contacts of composite shapes anew then.
 void RecordedScene::follow_composites() noexcept {
   if (recorder_ == nullptr || composites_ == nullptr) return;
   if (composites_->revision() == composites_seen_) return;
   composites_seen_ = composites_->revision();
+  bool told = false;
   for (RecordedShape& known : known_) {
     if (!known.id.is_composite()) continue;
     RecordedShape now = known;
@@ -221,12 +224,14 @@ void RecordedScene::follow_composites() noexcept {
       known.number = kForgotten;
     } else if (now.digest != known.digest && known.number != kForgotten) {
       known = now;
+      told = true;
       CallWriter(recorder_, RecordedCall::change_composite, world_)
           .put(known.number)
           .put_array(values_of(*composites_, known.id))
           .put(known.digest);
     }
   }
+  if (!told) CallWriter(recorder_, RecordedCall::composites_changed, world_);
 }
 
 Status RecordedScene::add(const BodyDefinition& body, Key& key) {

@@ -30,6 +30,15 @@ PairPredicate passed_of(ReplayedWorld& of) noexcept {
           &of};
 }
 
+/// Makes the pool another one, of the same shapes.
+Status change_composites(CompositePool& pool) {
+  constexpr float kHeights[4] = {};
+  ShapeId passing;
+  const Status added =
+      pool.add_height_field({.heights = kHeights, .columns = 2, .rows = 2}, passing);
+  return added == Status::ok ? pool.remove(passing) : added;
+}
+
 Motion motion_of(std::uint32_t number, ByteReader& in) noexcept {
   if (number >= kMotions) in.fail();
   return number < kMotions ? static_cast<Motion>(number) : Motion::fixed;
@@ -138,6 +147,8 @@ Status ReplayState::change_scene(RecordedCall call, ReplayedWorld& of) {
     }
     case RecordedCall::pairs_passed:
       return pairs_passed(of);
+    case RecordedCall::composites_changed:
+      return change_composites(*of.composites);
     default:
       return collide(of);
   }

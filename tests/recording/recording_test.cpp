@@ -106,6 +106,45 @@ TEST(ProgramRecordings, of_predicates_have_what_they_let_pass) {
   EXPECT_EQ(touching, (std::vector<std::size_t>{14, 14, 14, 29}));
 }
 
+TEST(ProgramRecordings, of_composites_that_no_body_has_are_played_bit_for_bit) {
+  Row row;
+  CompositePool composites(row.shapes);
+  const std::vector<Vec3f> corners{{-9, -9, 0}, {90, -9, 0}, {-9, 90, 0}};
+  const std::vector<std::uint32_t> triangle{0, 1, 2};
+  ShapeId floor;
+  ShapeId unused;
+  for (ShapeId* id : {&floor, &unused}) {
+    ASSERT_EQ(composites.add_mesh(corners, std::span<const std::uint32_t>(triangle), *id),
+              Status::ok);
+  }
+  Bytes8 bytes;
+  Recorder recorder(kept_in(bytes));
+  {
+    RecordedScene scene(recorder, row.shapes, composites, {.carry_over = 0.01});
+    Key key;
+    ASSERT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, key), Status::ok);
+    ASSERT_EQ(scene.add({.shape = row.ball, .pose = Pose::at(0, 0, 0.5)}, key), Status::ok);
+    Contacts contacts;
+    std::vector<std::size_t> carried;
+    const auto collide = [&] {
+      EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+      carried.push_back(contacts.carried());
+    };
+    collide();
+    collide();
+    EXPECT_EQ(composites.refit_mesh(unused, corners), Status::ok);
+    collide();
+    collide();
+    EXPECT_EQ(composites.remove(unused), Status::ok);
+    collide();
+    collide();
+    // Where a pool changed, contacts of composite shapes are made anew.
+    EXPECT_EQ(carried, (std::vector<std::size_t>{0, 1, 0, 1, 0, 1}));
+  }
+  ASSERT_EQ(recorder.close(), Status::ok);
+  expect_same_everywhere(bytes);
+}
+
 TEST(ProgramRecordings, of_questions_from_several_threads_are_played_bit_for_bit) {
   Row row;
   std::vector<ShapeId> own(40);
