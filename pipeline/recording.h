@@ -188,6 +188,10 @@ class WINNOW_API RecordedScene {
   [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
   /// The same.
   [[nodiscard]] const Scene* operator->() const noexcept { return &scene_; }
+  /// Not recorded: makes no difference to any answer.
+  Status reserve(const SceneRoom& room, Pages pages = Pages::untouched) {
+    return scene_.reserve(room, pages);
+  }
 
   /// As those of Scene.
   /// @{

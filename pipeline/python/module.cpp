@@ -8,6 +8,7 @@
 #include "pipeline/python/impacts.h"
 #include "pipeline/python/motions.h"
 #include "pipeline/python/partition.h"
+#include "pipeline/python/recordings.h"
 #include "pipeline/python/refusal.h"
 #include "pipeline/python/shared_shapes.h"
 #include "pipeline/python/snapshots.h"
@@ -137,6 +138,7 @@ PYBIND11_MODULE(_core, module) {
              "measured from `origin`, (n, 3) or (3,): for worlds far from 0.");
   add_instruction_sets(module);
   add_drawing(module);
+  add_recordings(module);
   PartitionClass partition(
       module, "Partition",
       "Takes boxes, hands out keys, and says which may touch; it never misses a pair. Any number "

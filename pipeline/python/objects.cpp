@@ -109,7 +109,7 @@ template <int K>
 /// Calls `body` with the k-DOPs of the partition's volume.
 template <typename Body>
 auto with_kdops(const SharedPartition& p, py::handle lower, py::handle upper, Body&& body) {
-  switch (p.partition.volume()) {
+  switch (p.partition->volume()) {
     case Volume::kdop14:
       return body(kdops_of<14>(lower, upper));
     case Volume::kdop18:
@@ -181,7 +181,7 @@ void ask_each(const SharedPartition& p, std::size_t count, const char* call, Ask
   auto result = fresh<bool>(keys.count());
   bool* const to = result.mutable_data();
   reading(p.mutex, [&] {
-    for (std::size_t i = 0; i < keys.count(); ++i) to[i] = p.partition.contains(keys.keys()[i]);
+    for (std::size_t i = 0; i < keys.count(); ++i) to[i] = p.partition->contains(keys.keys()[i]);
   });
   return result;
 }
@@ -194,7 +194,7 @@ void ask_each(const SharedPartition& p, std::size_t count, const char* call, Ask
   float* const high = upper.mutable_data();
   ask_each(p, keys.count(), "bounds", [&](std::size_t i) {
     Aabb box;
-    const Status status = p.partition.bounds(keys.keys()[i], box);
+    const Status status = p.partition->bounds(keys.keys()[i], box);
     if (status != Status::ok) return status;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low[3 * i + axis] = box.min[axis];
@@ -210,7 +210,7 @@ void ask_each(const SharedPartition& p, std::size_t count, const char* call, Ask
   auto result = fresh<std::uint64_t>(keys.count());
   std::uint64_t* const to = result.mutable_data();
   ask_each(p, keys.count(), "client_data",
-           [&](std::size_t i) { return p.partition.client_data(keys.keys()[i], to[i]); });
+           [&](std::size_t i) { return p.partition->client_data(keys.keys()[i], to[i]); });
   return result;
 }
 
@@ -219,7 +219,7 @@ void ask_each(const SharedPartition& p, std::size_t count, const char* call, Ask
   auto result = fresh<std::uint64_t>(ids.count());
   Key* const to = keys_in(result);
   reading(p.mutex, [&] {
-    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = p.partition.key_of(ids[i]);
+    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = p.partition->key_of(ids[i]);
   });
   return result;
 }
@@ -229,7 +229,7 @@ void ask_each(const SharedPartition& p, std::size_t count, const char* call, Ask
   auto result = fresh<std::uint64_t>(ids.count());
   std::uint64_t* const to = result.mutable_data();
   reading(p.mutex, [&] {
-    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = p.partition.client_data_of(ids[i]);
+    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = p.partition->client_data_of(ids[i]);
   });
   return result;
 }
@@ -255,7 +255,7 @@ void set_filter(SharedPartition& p, py::handle key_array, py::handle layers, py:
   const KeyInput keys(key_array);
   std::vector<ObjectFilter> filters(keys.count());
   ask_each(p, keys.count(), "filters",
-           [&](std::size_t i) { return p.partition.filter(keys.keys()[i], filters[i]); });
+           [&](std::size_t i) { return p.partition->filter(keys.keys()[i], filters[i]); });
   std::vector<std::uint32_t> columns[3];
   for (const ObjectFilter& filter : filters) {
     columns[0].push_back(filter.layers);
@@ -300,7 +300,7 @@ void add_knowledge(PartitionClass& partition) {
   partition
       .def("__len__",
            [](const SharedPartition& p) {
-             return reading(p.mutex, [&] { return p.partition.size(); });
+             return reading(p.mutex, [&] { return p.partition->size(); });
            })
       .def("contains", &contains, arg("keys"), "Which of `keys` (n,) are alive: (n,) bool.")
       .def("bounds", &bounds, arg("keys"),

@@ -20,7 +20,7 @@ std::shared_ptr<PairBuffer> SharedPartition::take_pairs(bool incremental, bool w
   }
   std::shared_ptr<PairBuffer> out = pair_pool->take();
   // Where much has moved, all pairs are asked for anew, wherever they are written.
-  const bool few = changes < partition.size() / 4;
+  const bool few = changes < partition->size() / 4;
   const bool carries = with_events || (incremental && few);
   if (last && carries && !out->assign(*last)) out->clear();
   return out;
@@ -70,6 +70,9 @@ void pair_changes(SharedPartition& p, Events& events) {
 [[nodiscard]] py::array pairs_with(const SharedPartition& p, const SharedPartition& other,
                                    const std::string& order) {
   const PairOptions options{chosen(kOrders, order, "order"), true, {}};
+  if (p.recorder != other.recorder) {
+    throw Refusal(Status::unsupported, "pairs_with: of two that are not recorded together");
+  }
   const std::shared_ptr<PairBuffer> out = p.pair_pool->take();
   const auto ask = [&] { return p.partition.pairs_with(other.partition, *out, options); };
   // One lock is not taken twice, and two always in the order of their addresses.

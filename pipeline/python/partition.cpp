@@ -12,9 +12,12 @@
 
 namespace winnow::python {
 
-SharedPartition::SharedPartition(StructureKind structure, const PartitionOptions& options)
-    : partition(structure, options), execution(options.execution) {
-  accept(partition.status(), "Partition");
+SharedPartition::SharedPartition(StructureKind structure, const PartitionOptions& options,
+                                 RecorderPointer recorder_in)
+    : recorder(std::move(recorder_in)),
+      partition(recorder.get(), structure, options),
+      execution(options.execution) {
+  accept(partition->status(), "Partition");
 }
 
 StructureKind structure_of(const std::string& name) {
@@ -55,13 +58,14 @@ namespace {
 
 [[nodiscard]] std::shared_ptr<SharedPartition> make_partition(
     const std::string& structure, const std::string& volume, float margin, float margin_share,
-    bool parallel, std::size_t build_budget, std::optional<float> loose) {
+    bool parallel, std::size_t build_budget, std::optional<float> loose,
+    const RecorderPointer& recorder) {
   PartitionOptions options;
   options.volume = chosen(kVolumes, volume, "volume");
   options.margin = {margin, margin_share};
   options.execution = parallel ? Execution::parallel() : Execution::serial();
   options.build_budget = build_budget;
-  return std::make_shared<SharedPartition>(structure_with(structure, loose), options);
+  return std::make_shared<SharedPartition>(structure_with(structure, loose), options, recorder);
 }
 
 void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool touch) {
@@ -71,7 +75,7 @@ void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool to
                     const Status status = p.partition.reserve(objects, pages);
                     if (status != Status::ok || pairs == 0) return status;
                     const std::shared_ptr<PairBuffer> out = p.take_pairs(true);
-                    const Status reserved = p.partition.reserve_pairs(*out, pairs, pages);
+                    const Status reserved = p.partition->reserve_pairs(*out, pairs, pages);
                     p.keep_pairs(out);
                     return reserved;
                   }),
@@ -79,7 +83,7 @@ void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool to
 }
 
 [[nodiscard]] py::dict statistics_dict(const SharedPartition& p) {
-  const Statistics s = reading(p.mutex, [&] { return p.partition.statistics(); });
+  const Statistics s = reading(p.mutex, [&] { return p.partition->statistics(); });
   py::dict result;
   result["objects"] = s.objects;
   result["regular"] = s.regular;
@@ -98,7 +102,7 @@ void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool to
 }
 
 [[nodiscard]] py::dict choice_dict(const SharedPartition& p) {
-  const StructureChoice c = reading(p.mutex, [&] { return p.partition.choice(); });
+  const StructureChoice c = reading(p.mutex, [&] { return p.partition->choice(); });
   py::dict result;
   result["structure"] = std::string(c.structure.name());
   result["reason"] = std::string(c.reason);
@@ -116,7 +120,7 @@ void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool to
   Drawing drawing;
   accept(reading(p.mutex,
                  [&] {
-                   return p.partition.debug_draw(drawing, {objects, structure, labels, max_depth});
+                   return p.partition->debug_draw(drawing, {objects, structure, labels, max_depth});
                  }),
          "debug_draw");
   return drawing;
@@ -128,10 +132,12 @@ void add_itself(PartitionClass& partition) {
       .def(py::init(&make_partition), arg("structure") = "LinearBvh", py::kw_only(),
            arg("volume") = "aabb", arg("margin") = 0.0F, arg("margin_share") = 0.0F,
            arg("parallel") = true, arg("build_budget") = 0, arg("loose") = py::none(),
+           arg("recorder") = py::none(),
            "An empty partition. `structure` prunes (see `structures`), `volume` bounds an object: "
            "'aabb', 'sphere', 'kdop14', 'kdop18' or 'kdop26'. Volumes are stored larger by "
            "`margin` (a length) + `margin_share` * longest edge: moves within are free. `loose` is "
-           "the parameter of LooseOctree and LooseQuadtree.")
+           "the parameter of LooseOctree and LooseQuadtree. What is done with it is written to "
+           "`recorder`.")
       .def(
           "clear",
           [](SharedPartition& p) {
@@ -172,24 +178,24 @@ void add_itself(PartitionClass& partition) {
       .def_property_readonly(
           "structure",
           [](const SharedPartition& p) {
-            return reading(p.mutex, [&] { return std::string(p.partition.name()); });
+            return reading(p.mutex, [&] { return std::string(p.partition->name()); });
           },
           "Name of the structure it was given last.")
       .def_property_readonly(
           "volume",
-          [](const SharedPartition& p) { return name_of(kVolumes, p.partition.volume()); },
+          [](const SharedPartition& p) { return name_of(kVolumes, p.partition->volume()); },
           "What bounds an object.")
       .def_property_readonly(
           "margin",
           [](const SharedPartition& p) {
-            const Margin m = p.partition.margin();
+            const Margin m = p.partition->margin();
             return py::make_tuple(m.distance, m.share);
           },
           "(distance, share of the longest edge).")
       .def_property_readonly(
           "is_exact",
           [](const SharedPartition& p) {
-            return reading(p.mutex, [&] { return p.partition.is_exact(); });
+            return reading(p.mutex, [&] { return p.partition->is_exact(); });
           },
           "True if `self_pairs` gives exactly the pairs whose given boxes "
           "overlap.")
@@ -200,7 +206,7 @@ void add_itself(PartitionClass& partition) {
       .def(
           "footprint",
           [](const SharedPartition& p) {
-            return footprint_dict(reading(p.mutex, [&] { return p.partition.footprint(); }));
+            return footprint_dict(reading(p.mutex, [&] { return p.partition->footprint(); }));
           },
           "Bytes (used, reserved) by purpose.")
       .def("debug_draw", &draw, py::kw_only(), arg("objects") = true, arg("structure") = true,

@@ -4,6 +4,7 @@
 #include "pipeline/python/choices.h"
 #include "pipeline/python/made.h"
 #include "pipeline/python/pool.h"
+#include "pipeline/python/recordable.h"
 
 #include <winnow/core/filter.h>
 #include <winnow/core/hits.h>
@@ -61,7 +62,8 @@ using Events = Exported<PairEvents>;
 /// A partition as several threads of Python may use it.
 class SharedPartition : public NeedsInit {
  public:
-  SharedPartition(StructureKind structure, const PartitionOptions& options);
+  SharedPartition(StructureKind structure, const PartitionOptions& options,
+                  RecorderPointer recorder_in);
 
   /// A buffer for all pairs, which carries over those of the last frame: where that helps, if it
   /// is `incremental`, and in any case if it is told what changed.
@@ -71,7 +73,9 @@ class SharedPartition : public NeedsInit {
   void count_changes(std::size_t objects) noexcept { changes_ += objects; }
 
   mutable std::shared_mutex mutex;
-  Partition partition;
+  /// Null if it is not recorded.
+  const RecorderPointer recorder;
+  RecordablePartition partition;
   Execution execution;
   /// Boxes that are not read in place.
   std::vector<Aabb> room;

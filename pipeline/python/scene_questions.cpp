@@ -43,11 +43,11 @@ class Asker {
   ~Asker() { scene_.put_queries(queries_); }
   Asker(const Asker&) = delete;
   Asker& operator=(const Asker&) = delete;
-  SceneQueries* operator->() const noexcept { return queries_; }
+  RecordableQueries* operator->() const noexcept { return queries_; }
 
  private:
   SharedScene& scene_;
-  SceneQueries* queries_;
+  RecordableQueries* queries_;
 };
 
 /// Answers each question in lists of entries.

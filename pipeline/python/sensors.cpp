@@ -15,7 +15,7 @@ namespace {
 /// Sensors of a scene, whose lock is theirs, too; shapes that they have are used by it.
 struct SharedSensors : NeedsInit {
   explicit SharedSensors(std::shared_ptr<SharedScene> of)
-      : scene(std::move(of)), sensors(scene->scene) {}
+      : scene(std::move(of)), sensors(scene->scene.unrecorded("Sensors")) {}
   ~SharedSensors() { scene->shapes->use(uses, -1); }
 
   void use(std::span<const ShapeId> ids, int change) {

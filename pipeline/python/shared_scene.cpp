@@ -15,16 +15,16 @@ void SharedScene::use(std::span<const ShapeId> ids, int change) {
   shapes->use(ids, change);
 }
 
-SceneQueries* SharedScene::take_queries() {
+RecordableQueries* SharedScene::take_queries() {
   const std::lock_guard lock(queries_mutex_);
-  if (queries_.empty()) return new SceneQueries(scene);
-  SceneQueries* const taken = queries_.back().release();
+  if (queries_.empty()) return new RecordableQueries(scene);
+  RecordableQueries* const taken = queries_.back().release();
   queries_.pop_back();
   return taken;
 }
 
-void SharedScene::put_queries(SceneQueries* queries) {
-  std::unique_ptr<SceneQueries> back(queries);
+void SharedScene::put_queries(RecordableQueries* queries) {
+  std::unique_ptr<RecordableQueries> back(queries);
   const std::lock_guard lock(queries_mutex_);
   queries_.push_back(std::move(back));
 }
@@ -36,7 +36,8 @@ namespace {
                                                       double carry_over, bool contact_reduction,
                                                       bool seamless_floors, bool warm_start,
                                                       const std::vector<std::string>& structures,
-                                                      bool parallel, std::size_t build_budget) {
+                                                      bool parallel, std::size_t build_budget,
+                                                      const RecorderPointer& recorder) {
   SceneOptions options;
   options.execution = parallel ? Execution::parallel() : Execution::serial();
   if (structures.size() != kMotions) {
@@ -56,8 +57,7 @@ namespace {
   options.seamless_floors = seamless_floors;
   options.warm_start = warm_start;
   options.build_budget = build_budget;
-  options.composites = &shapes->composites;
-  return std::make_shared<SharedScene>(shapes, options);
+  return std::make_shared<SharedScene>(shapes, options, recorder);
 }
 
 void reserve(SharedScene& s, const SceneRoom& room, HeldContacts* contacts, bool touch) {
@@ -72,7 +72,7 @@ void reserve(SharedScene& s, const SceneRoom& room, HeldContacts* contacts, bool
                         [&] {
                           const Status status = s.scene.reserve(room, pages);
                           if (status != Status::ok || out == nullptr) return status;
-                          return s.scene.reserve_contacts(*out, room, pages);
+                          return s.scene->reserve_contacts(*out, room, pages);
                         }),
          "reserve");
 }
@@ -144,7 +144,7 @@ void remove_bodies(SharedScene& s, py::handle key_array) {
   accept(changing_scene(s,
                         [&] {
                           std::vector<BodyDefinition> bodies;
-                          Status status = bodies_of(s.scene, keys.keys(), bodies);
+                          Status status = bodies_of(*s.scene, keys.keys(), bodies);
                           if (status == Status::ok) status = s.scene.remove(keys.keys());
                           if (status == Status::ok) s.use(shapes_of(bodies), -1);
                           return status;
@@ -184,7 +184,7 @@ void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
              s,
              [&] {
                std::vector<BodyDefinition> before;
-               Status status = bodies_of(s.scene, list, before);
+               Status status = bodies_of(*s.scene, list, before);
                if (status == Status::ok && has_twice(list)) status = Status::invalid_key;
                if (status != Status::ok) return status;
                status = set_all(
@@ -205,7 +205,7 @@ void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
   auto result = fresh<bool>(keys.count());
   bool* const to = result.mutable_data();
   reading(s.mutex, [&] {
-    for (std::size_t i = 0; i < keys.count(); ++i) to[i] = s.scene.contains(keys.keys()[i]);
+    for (std::size_t i = 0; i < keys.count(); ++i) to[i] = s.scene->contains(keys.keys()[i]);
   });
   return result;
 }
@@ -215,7 +215,7 @@ void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
   auto result = fresh<std::uint64_t>(ids.count());
   Key* const to = keys_in(result);
   reading(s.mutex, [&] {
-    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = s.scene.key_of(ids[i]);
+    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = s.scene->key_of(ids[i]);
   });
   return result;
 }
@@ -223,7 +223,7 @@ void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
 [[nodiscard]] py::dict body_columns(const SharedScene& s, py::handle key_array) {
   const KeyInput keys(key_array);
   std::vector<BodyDefinition> bodies;
-  accept(reading(s.mutex, [&] { return bodies_of(s.scene, keys.keys(), bodies); }), "bodies");
+  accept(reading(s.mutex, [&] { return bodies_of(*s.scene, keys.keys(), bodies); }), "bodies");
   const auto columns = columns_of(std::move(bodies));
   using Body = BodyDefinition;
   static_assert(offsetof(Pose, position) == 0 && sizeof(Pose) == 7 * sizeof(double));
@@ -257,7 +257,7 @@ void collide(SharedScene& s, HeldContacts& contacts, const std::string& level_na
 }
 
 [[nodiscard]] py::dict statistics_dict(const SharedScene& s) {
-  const SceneStatistics stats = reading(s.mutex, [&] { return s.scene.statistics(); });
+  const SceneStatistics stats = reading(s.mutex, [&] { return s.scene->statistics(); });
   py::dict result;
   result["boxes_updated"] = stats.boxes_updated;
   result["body_pairs"] = stats.body_pairs;
@@ -269,7 +269,7 @@ void collide(SharedScene& s, HeldContacts& contacts, const std::string& level_na
 }
 
 [[nodiscard]] py::dict scene_footprint(const SharedScene& s) {
-  const SceneFootprint f = reading(s.mutex, [&] { return s.scene.footprint(); });
+  const SceneFootprint f = reading(s.mutex, [&] { return s.scene->footprint(); });
   py::dict result;
   const auto add = [&](const char* name, const Bytes& bytes) {
     result[name] = py::make_tuple(bytes.used, bytes.reserved);
@@ -290,7 +290,7 @@ void collide(SharedScene& s, HeldContacts& contacts, const std::string& level_na
   Drawing drawing;
   accept(reading(s.mutex,
                  [&] {
-                   return s.scene.debug_draw(drawing, {objects, structure, labels, max_depth});
+                   return s.scene->debug_draw(drawing, {objects, structure, labels, max_depth});
                  }),
          "debug_draw");
   return drawing;
@@ -304,14 +304,16 @@ void add_bodies_to(SceneClass& scene) {
            arg("tier") = "robust", arg("carry_over") = 0.0, arg("contact_reduction") = false,
            arg("seamless_floors") = false, arg("warm_start") = false,
            arg("structures") = std::vector<std::string>(kMotions, "LinearBvh"),
-           arg("parallel") = true, arg("build_budget") = 0,
+           arg("parallel") = true, arg("build_budget") = 0, arg("recorder") = py::none(),
            "An empty scene. Pairs no farther apart than `margin` are contacts too; a pair that has "
            "moved less than `carry_over` keeps its contacts; both are lengths. `tier` as in "
            "NarrowPhase. `contact_reduction`: of composite shapes one manifold for each region of "
            "contact, not for each pair of parts; `seamless_floors`: fixed bodies that lie flush "
            "side by side have no edges between them; `warm_start`: contacts tell where each was "
            "in the last frame. `structures` of fixed, dynamic and sleeping bodies; `build_budget`: "
-           "rows' worth of planned work a refresh does, 0 for as many as are needed in time.")
+           "rows' worth of planned work a refresh does, 0 for as many as are needed in time. What "
+           "is done with it is "
+           "written to `recorder`.")
       .def("add", &add_bodies, arg("shapes"), arg("poses"), arg("motion") = "dynamic",
            arg("layers") = 1, arg("mask") = every, arg("environment") = 0, arg("data") = py::none(),
            py::kw_only(), arg("contact") = 0.0, arg("rest") = 0.0, arg("layer") = 0,
@@ -330,12 +332,12 @@ void add_bodies_to(SceneClass& scene) {
       .def("set_shape", &set_shape, arg("keys"), arg("shapes"),
            "Gives the bodies of `keys` (n,) other shapes, (n,) or one for all.")
       .def("__len__",
-           [](const SharedScene& s) { return reading(s.mutex, [&] { return s.scene.size(); }); })
+           [](const SharedScene& s) { return reading(s.mutex, [&] { return s.scene->size(); }); })
       .def(
           "size",
           [](const SharedScene& s, const std::string& name) {
             const Motion motion = chosen(kMotionNames, name, "motion");
-            return reading(s.mutex, [&] { return s.scene.size(motion); });
+            return reading(s.mutex, [&] { return s.scene->size(motion); });
           },
           arg("motion"), "How many bodies are 'fixed', 'dynamic' or 'sleeping'.")
       .def("contains", &contains, arg("keys"), "Which of `keys` (n,) are alive: (n,) bool.")
@@ -376,7 +378,7 @@ void add_scene(py::module_& module) {
       .def_property_readonly(
           "origin",
           [](const SharedScene& s) {
-            const Vec3d o = reading(s.mutex, [&] { return s.scene.origin(); });
+            const Vec3d o = reading(s.mutex, [&] { return s.scene->origin(); });
             return py::make_tuple(o.x(), o.y(), o.z());
           },
           "The point that boxes are measured from.")

@@ -2,17 +2,18 @@
 
 #include "pipeline/python/choices.h"
 #include "pipeline/python/partition.h"
+#include "pipeline/python/recordable.h"
 #include "pipeline/python/shared_shapes.h"
 
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/scene.h>
-#include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/scene_sweep.h>
 
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
 #include <vector>
 
@@ -26,22 +27,28 @@ using HeldContacts = Exported<Contacts>;
 /// A scene as several threads of Python may use it. Its lock is taken before that of the shapes.
 class SharedScene : public NeedsInit {
  public:
-  SharedScene(std::shared_ptr<SharedShapes> shapes_in, const SceneOptions& options)
-      : shapes(std::move(shapes_in)), execution(options.execution), scene(shapes->pool, options) {}
+  SharedScene(std::shared_ptr<SharedShapes> shapes_in, const SceneOptions& options,
+              RecorderPointer recorder_in)
+      : shapes(std::move(shapes_in)),
+        recorder(std::move(recorder_in)),
+        execution(options.execution),
+        scene(recorder.get(), shapes->pool, shapes->composites, options) {}
   ~SharedScene() { shapes->use(uses, -1); }
 
   /// One use of each of these shapes by a body more or less.
   void use(std::span<const ShapeId> ids, int change);
 
-  [[nodiscard]] SceneQueries* take_queries();
-  void put_queries(SceneQueries* queries);
+  [[nodiscard]] RecordableQueries* take_queries();
+  void put_queries(RecordableQueries* queries);
 
   const std::shared_ptr<SharedShapes> shapes;
+  /// Null if it is not recorded.
+  const RecorderPointer recorder;
   Execution execution;
   mutable std::shared_mutex mutex;
-  Scene scene;
-  /// Asked while nobody else has the mutex.
-  SceneSweep sweep{scene};
+  RecordableScene scene;
+  /// Made by the first sweep; asked while nobody else has the mutex.
+  std::optional<SceneSweep> sweep;
   /// Something has changed since boxes and partitions were brought up to date.
   std::atomic<bool> is_stale{true};
   std::atomic<std::uint64_t> shapes_seen{0};
@@ -49,7 +56,7 @@ class SharedScene : public NeedsInit {
 
  private:
   std::mutex queries_mutex_;
-  std::vector<std::unique_ptr<SceneQueries>> queries_;
+  std::vector<std::unique_ptr<RecordableQueries>> queries_;
 };
 
 using SceneClass = py::class_<SharedScene, std::shared_ptr<SharedScene>>;

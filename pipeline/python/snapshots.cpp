@@ -2,6 +2,7 @@
 
 #include "pipeline/python/snapshots.h"
 
+#include "pipeline/python/bytes.h"
 #include "pipeline/python/locks.h"
 #include "pipeline/python/refusal.h"
 
@@ -10,28 +11,6 @@
 
 namespace winnow::python {
 namespace {
-
-/// What lies in an object that has bytes in one piece, as long as this lives.
-class BytesInput {
- public:
-  explicit BytesInput(const py::buffer& object) : info_(object.request()) {
-    py::ssize_t step = info_.itemsize;
-    for (py::ssize_t axis = info_.ndim; axis-- > 0;) {
-      if (info_.shape[static_cast<std::size_t>(axis)] != 1 &&
-          info_.strides[static_cast<std::size_t>(axis)] != step) {
-        throw Refusal(Status::invalid_argument, "data: not in one piece");
-      }
-      step *= info_.shape[static_cast<std::size_t>(axis)];
-    }
-  }
-  [[nodiscard]] std::span<const std::byte> bytes() const noexcept {
-    return {static_cast<const std::byte*>(info_.ptr),
-            static_cast<std::size_t>(info_.size * info_.itemsize)};
-  }
-
- private:
-  py::buffer_info info_;
-};
 
 /// The bytes that save(column) appends, while nobody changes what it saves.
 template <typename Save>
@@ -69,18 +48,19 @@ void load_shapes(SharedShapes& shapes, const py::buffer& data) {
 
 void load_scene(SharedScene& s, const py::buffer& data) {
   const BytesInput input(data);
+  Scene& scene = s.scene.unrecorded("load");
   accept(changing(s.mutex,
                   [&] {
                     const std::shared_lock lock(s.shapes->mutex);
                     s.is_stale = true;
-                    const Status status = s.scene.load(input.bytes());
+                    const Status status = scene.load(input.bytes());
                     if (status != Status::ok) return status;
                     s.shapes->use(s.uses, -1);
                     s.uses.clear();
                     std::vector<ShapeId> used;
                     BodyDefinition body;
-                    for (ObjectId id = 0; used.size() < s.scene.size(); ++id) {
-                      if (s.scene.body(s.scene.key_of(id), body) == Status::ok) {
+                    for (ObjectId id = 0; used.size() < s.scene->size(); ++id) {
+                      if (s.scene->body(s.scene->key_of(id), body) == Status::ok) {
                         used.push_back(body.shape);
                       }
                     }
@@ -93,7 +73,7 @@ void load_scene(SharedScene& s, const py::buffer& data) {
 [[nodiscard]] py::bytes save_contacts(const SharedScene& s, const HeldContacts& contacts) {
   const std::unique_lock<std::mutex> held = contacts.hold();
   return saved_by(s.mutex, "save_contacts", [&](Column<std::byte>& out) {
-    return s.scene.save_contacts(*contacts.value(), out);
+    return s.scene->save_contacts(*contacts.value(), out);
   });
 }
 
@@ -101,7 +81,7 @@ void load_contacts(const SharedScene& s, const py::buffer& data, HeldContacts& c
   const BytesInput input(data);
   const std::unique_lock<std::mutex> filling = contacts.hold();
   Contacts& out = contacts.to_fill("contacts");
-  accept(reading(s.mutex, [&] { return s.scene.load_contacts(input.bytes(), out); }),
+  accept(reading(s.mutex, [&] { return s.scene->load_contacts(input.bytes(), out); }),
          "load_contacts");
 }
 
@@ -115,7 +95,7 @@ void add_partition_snapshots(PartitionClass& partition) {
           [](const SharedPartition& p) {
             // It may have updates to write first.
             Column<std::byte> out(std::pmr::get_default_resource());
-            accept(changing(p.mutex, [&] { return p.partition.save(out); }), "save");
+            accept(changing(p.mutex, [&] { return p.partition->save(out); }), "save");
             return py::bytes(reinterpret_cast<const char*>(out.data()), out.size());
           },
           "All that the objects are, and the structure with its options, as bytes.")
@@ -123,8 +103,9 @@ void add_partition_snapshots(PartitionClass& partition) {
           "load",
           [](SharedPartition& p, const py::buffer& data) {
             const BytesInput input(data);
-            accept(changing(p.mutex, [&] { return p.partition.load(input.bytes()); }), "load");
-            p.count_changes(p.partition.size());
+            Partition& loaded = p.partition.unrecorded("load");
+            accept(changing(p.mutex, [&] { return loaded.load(input.bytes()); }), "load");
+            p.count_changes(p.partition->size());
           },
           arg("data"),
           "Becomes what was saved. Keys are those that were saved, unless another partition of the "
@@ -146,7 +127,7 @@ void add_scene_snapshots(SceneClass& scene) {
           "save",
           [](const SharedScene& s) {
             return saved_by(s.mutex, "save",
-                            [&](Column<std::byte>& out) { return s.scene.save(out); });
+                            [&](Column<std::byte>& out) { return s.scene->save(out); });
           },
           "All that bodies are, and what the scene was made with, as bytes. Shapes are saved "
           "beside.")

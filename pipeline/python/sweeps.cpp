@@ -78,13 +78,15 @@ template <typename Ask>
 [[nodiscard]] ImpactTable swept(SharedScene& s, const char* call, Ask&& ask) {
   std::vector<SceneImpact> impacts;
   std::vector<std::uint32_t> first;
+  Scene& scene = s.scene.unrecorded(call);
   accept(changing(s.mutex,
                   [&] {
                     const std::shared_lock lock(s.shapes->mutex);
-                    const Status status = ask(s.sweep);
+                    if (!s.sweep) s.sweep.emplace(scene);
+                    const Status status = ask(*s.sweep);
                     if (status != Status::ok) return status;
-                    impacts.assign(s.sweep.impacts().begin(), s.sweep.impacts().end());
-                    first.assign(s.sweep.first().begin(), s.sweep.first().end());
+                    impacts.assign(s.sweep->impacts().begin(), s.sweep->impacts().end());
+                    first.assign(s.sweep->first().begin(), s.sweep->first().end());
                     return status;
                   }),
          call);

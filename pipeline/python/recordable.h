@@ -1,0 +1,251 @@
+#pragma once
+
+// What is recorded or not, as it was made.
+
+#include "pipeline/python/made.h"
+#include "pipeline/python/refusal.h"
+
+#include <winnow/pipeline/recording.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace winnow::python {
+
+/// A recorder that what it records keeps alive. Its calls may come from any thread.
+struct SharedRecorder : NeedsInit {
+  explicit SharedRecorder(const char* path) : recorder(path) {}
+  Recorder recorder;
+};
+using RecorderPointer = std::shared_ptr<SharedRecorder>;
+
+/// Either of two that have the same calls, of which the second one records them.
+template <typename Plain, typename Recorded>
+class Recordable {
+ public:
+  [[nodiscard]] bool is_recorded() const noexcept { return recorded_.has_value(); }
+  /// That itself, for what is not recorded.
+  [[nodiscard]] const Plain& operator*() const noexcept {
+    return recorded_ ? *recorded_->operator->() : *plain_;
+  }
+  [[nodiscard]] const Plain* operator->() const noexcept { return &**this; }
+  /// For calls that cannot be recorded: unsupported if these are.
+  [[nodiscard]] Plain& unrecorded(const char* call) {
+    if (recorded_) throw Refusal(Status::unsupported, std::string(call) + " of what is recorded");
+    return *plain_;
+  }
+
+ protected:
+  Recordable() = default;
+
+  /// What ask(that) answers.
+  template <typename Ask>
+  decltype(auto) on(Ask&& ask) {
+    return recorded_ ? ask(*recorded_) : ask(*plain_);
+  }
+  template <typename Ask>
+  decltype(auto) on(Ask&& ask) const {
+    return recorded_ ? ask(*recorded_) : ask(*plain_);
+  }
+
+  std::optional<Plain> plain_;
+  std::optional<Recorded> recorded_;
+};
+
+/// A partition; calls as it has them.
+class RecordablePartition : public Recordable<Partition, RecordedPartition> {
+ public:
+  RecordablePartition(SharedRecorder* recorder, StructureKind structure,
+                      const PartitionOptions& options) {
+    if (recorder == nullptr) {
+      plain_.emplace(structure, options);
+    } else {
+      recorded_.emplace(recorder->recorder, structure, options);
+    }
+  }
+
+  template <typename... Given>
+  Status insert(Given&&... given) {
+    return on([&](auto& p) { return p.insert(given...); });
+  }
+  template <typename... Given>
+  Status update(Given&&... given) {
+    return on([&](auto& p) { return p.update(given...); });
+  }
+  Status remove(std::span<const Key> keys) {
+    return on([&](auto& p) { return p.remove(keys); });
+  }
+  void clear() {
+    on([](auto& p) { p.clear(); });
+  }
+  void release_memory() {
+    on([](auto& p) { p.release_memory(); });
+  }
+  Status reserve(std::size_t objects, Pages pages) {
+    return on([&](auto& p) { return p.reserve(objects, pages); });
+  }
+  Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters) {
+    return on([&](auto& p) { return p.set_filter(keys, filters); });
+  }
+  Status set_structure(StructureKind kind) {
+    return on([&](auto& p) { return p.set_structure(kind); });
+  }
+  Status refresh() const {
+    return on([](const auto& p) { return p.refresh(); });
+  }
+  /// A recorded one remembers its questions for pairs: one at a time.
+  template <typename... Given>
+  Status self_pairs(Given&&... given) const {
+    std::unique_lock<std::mutex> asking;
+    if (is_recorded()) asking = std::unique_lock(asking_);
+    return on([&](const auto& p) { return p.self_pairs(given...); });
+  }
+  /// `unsupported` if one of them alone is recorded.
+  Status pairs_with(const RecordablePartition& other, PairBuffer& out,
+                    const PairOptions& options) const {
+    if (is_recorded() != other.is_recorded()) return Status::unsupported;
+    return is_recorded() ? recorded_->pairs_with(*other.recorded_, out, options)
+                         : plain_->pairs_with(*other.plain_, out, options);
+  }
+  template <typename... Given>
+  Status closest(Given&&... given) const {
+    return on([&](const auto& p) { return p.closest(given...); });
+  }
+  template <typename... Given>
+  Status any(Given&&... given) const {
+    return on([&](const auto& p) { return p.any(given...); });
+  }
+  template <typename... Given>
+  Status all(Given&&... given) const {
+    return on([&](const auto& p) { return p.all(given...); });
+  }
+  template <typename... Given>
+  Status overlap(Given&&... given) const {
+    return on([&](const auto& p) { return p.overlap(given...); });
+  }
+  template <typename... Given>
+  Status nearest(Given&&... given) const {
+    return on([&](const auto& p) { return p.nearest(given...); });
+  }
+
+ private:
+  mutable std::mutex asking_;
+};
+
+/// A scene; calls as it has them.
+class RecordableScene : public Recordable<Scene, RecordedScene> {
+ public:
+  RecordableScene(SharedRecorder* recorder, const ShapePool& shapes,
+                  const CompositePool& composites, SceneOptions options) {
+    options.composites = &composites;
+    if (recorder == nullptr) {
+      plain_.emplace(shapes, options);
+    } else {
+      recorded_.emplace(recorder->recorder, shapes, composites, options);
+    }
+  }
+
+  Status add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
+    return on([&](auto& s) { return s.add(bodies, keys); });
+  }
+  Status remove(std::span<const Key> keys) {
+    return on([&](auto& s) { return s.remove(keys); });
+  }
+  void clear() {
+    on([](auto& s) { s.clear(); });
+  }
+  Status reserve(const SceneRoom& room, Pages pages) {
+    return on([&](auto& s) { return s.reserve(room, pages); });
+  }
+  Status move(std::span<const Key> keys, const PoseView& poses) {
+    return on([&](auto& s) { return s.move(keys, poses); });
+  }
+  Status set_motion(std::span<const Key> keys, Motion motion) {
+    return on([&](auto& s) { return s.set_motion(keys, motion); });
+  }
+  Status set_shape(Key key, ShapeId shape) {
+    return on([&](auto& s) { return s.set_shape(key, shape); });
+  }
+  Status set_filter(Key key, const ObjectFilter& filter) {
+    return on([&](auto& s) { return s.set_filter(key, filter); });
+  }
+  Status set_offsets(Key key, const ContactOffsets& offsets) {
+    return on([&](auto& s) { return s.set_offsets(key, offsets); });
+  }
+  Status set_layer(Key key, std::uint16_t layer) {
+    return on([&](auto& s) { return s.set_layer(key, layer); });
+  }
+  Status set_layers_meet(std::uint16_t a, std::uint16_t b, bool meet) {
+    return on([&](auto& s) { return s.set_layers_meet(a, b, meet); });
+  }
+  Status set_ignored(std::span<const KeyPair> pairs, bool ignored) {
+    return on([&](auto& s) { return s.set_ignored(pairs, ignored); });
+  }
+  Status refresh() {
+    return on([](auto& s) { return s.refresh(); });
+  }
+  Status collide(ContactLevel level, Contacts& contacts) {
+    return on([&](auto& s) { return s.collide(level, contacts); });
+  }
+
+ private:
+  friend class RecordableQueries;
+};
+
+/// Questions to a scene; calls as SceneQueries has them.
+class RecordableQueries {
+ public:
+  explicit RecordableQueries(RecordableScene& scene) {
+    if (scene.is_recorded()) {
+      recorded_.emplace(*scene.recorded_);
+    } else {
+      plain_.emplace(*scene);
+    }
+  }
+
+  template <typename... Given>
+  Status closest(Given&&... given) {
+    return on([&](auto& q) { return q.closest(given...); });
+  }
+  template <typename... Given>
+  Status any(Given&&... given) {
+    return on([&](auto& q) { return q.any(given...); });
+  }
+  template <typename... Given>
+  Status all(Given&&... given) {
+    return on([&](auto& q) { return q.all(given...); });
+  }
+  template <typename... Given>
+  Status overlap(Given&&... given) {
+    return on([&](auto& q) { return q.overlap(given...); });
+  }
+  template <typename... Given>
+  Status distance(Given&&... given) {
+    return on([&](auto& q) { return q.distance(given...); });
+  }
+  template <typename... Given>
+  Status least_distance(Given&&... given) {
+    return on([&](auto& q) { return q.least_distance(given...); });
+  }
+  template <typename... Given>
+  Status overlaps(Given&&... given) {
+    return on([&](auto& q) { return q.overlaps(given...); });
+  }
+  template <typename... Given>
+  Status nearest(Given&&... given) {
+    return on([&](auto& q) { return q.nearest(given...); });
+  }
+
+ private:
+  template <typename Ask>
+  Status on(Ask&& ask) {
+    return recorded_ ? ask(*recorded_) : ask(*plain_);
+  }
+
+  std::optional<SceneQueries> plain_;
+  std::optional<RecordedQueries> recorded_;
+};
+
+}  // namespace winnow::python

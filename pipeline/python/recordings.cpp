@@ -1,0 +1,104 @@
+// What a program does, written down, and played again.
+
+#include "pipeline/python/recordings.h"
+
+#include "pipeline/python/bytes.h"
+#include "pipeline/python/recordable.h"
+
+#include <winnow/pipeline/replay.h>
+
+#include <string>
+
+namespace winnow::python {
+namespace {
+
+[[nodiscard]] RecorderPointer make_recorder(const std::string& path) {
+  auto recorder = std::make_shared<SharedRecorder>(path.c_str());
+  accept(recorder->recorder.status(), "Recorder: " + path);
+  return recorder;
+}
+
+void close(SharedRecorder& r) {
+  const auto closed = [&] {
+    const py::gil_scoped_release release;
+    return r.recorder.close();
+  };
+  accept(closed(), "close");
+}
+
+/// How a recording was played.
+struct ReplayCounts {
+  Status status = Status::ok;
+  std::uint64_t calls = 0;
+  std::uint64_t frames = 0;
+  std::uint64_t questions = 0;
+  std::uint64_t differences = 0;
+  std::size_t worlds = 0;
+  bool is_whole = false;
+};
+
+[[nodiscard]] ReplayCounts play(std::span<const std::byte> bytes, const Execution& execution) {
+  const py::gil_scoped_release release;
+  RecordingPlayer player(bytes, {.execution = execution});
+  ReplayCounts played;
+  played.status = player.play_all();
+  played.calls = player.calls();
+  played.frames = player.frames();
+  played.questions = player.questions();
+  played.differences = player.differences();
+  played.worlds = player.worlds();
+  played.is_whole = player.is_whole();
+  return played;
+}
+
+[[nodiscard]] py::dict replay(const py::buffer& data, bool parallel) {
+  const BytesInput input(data);
+  const ReplayCounts played =
+      play(input.bytes(), parallel ? Execution::parallel() : Execution::serial());
+  accept(played.status, "replay, call " + std::to_string(played.calls));
+  py::dict result;
+  result["calls"] = played.calls;
+  result["frames"] = played.frames;
+  result["questions"] = played.questions;
+  result["differences"] = played.differences;
+  result["worlds"] = played.worlds;
+  result["is_whole"] = played.is_whole;
+  return result;
+}
+
+}  // namespace
+
+void add_recordings(py::module_& module) {
+  using py::arg;
+  py::class_<SharedRecorder, RecorderPointer>(
+      module, "Recorder",
+      "Writes down what is done with partitions and scenes that are made with it, so that it can "
+      "be played elsewhere, and measured: `winnow advise FILE`. Calls that were refused are not "
+      "recorded, nor are sweeps, sensors and snapshots to be loaded, which are unsupported then. "
+      "Where anything goes wrong the recording ends, and the program goes on: see `status`.")
+      .def(py::init(&make_recorder), arg("path"), "Into a file, which is made or overwritten.")
+      .def(
+          "end_frame",
+          [](SharedRecorder& r) {
+            const py::gil_scoped_release release;
+            r.recorder.end_frame();
+          },
+          "Says that a frame is over, and writes out what there is.")
+      .def("close", &close,
+           "Writes the end; nothing is recorded from then on. Raises what went wrong.")
+      .def_property_readonly(
+          "status", [](const SharedRecorder& r) { return to_string(r.recorder.status()); },
+          "'ok'; 'out_of_memory', also of the disk; 'unsupported' after a call that cannot be "
+          "recorded.")
+      .def_property_readonly(
+          "calls", [](const SharedRecorder& r) { return r.recorder.calls(); }, "Recorded so far.")
+      .def_property_readonly(
+          "bytes", [](const SharedRecorder& r) { return r.recorder.bytes(); }, "Written so far.");
+  module.def("replay", &replay, arg("data"), arg("parallel") = true,
+             "Plays a recording, the bytes of a file, and compares each answer with the recorded "
+             "one, bit for bit: counts of calls, frames, questions, differences and worlds "
+             "(partitions and scenes), and whether the recording is_whole. invalid_argument for "
+             "what is no recording, or damaged.");
+}
+
+}  // namespace winnow::python
