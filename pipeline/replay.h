@@ -53,8 +53,8 @@ class WINNOW_API RecordingPlayer {
   RecordingPlayer(const RecordingPlayer&) = delete;
   RecordingPlayer& operator=(const RecordingPlayer&) = delete;
 
-  /// `invalid_argument` for what is no recording of this version, is damaged, or has a call that is
-  /// refused; `out_of_memory`.
+  /// `invalid_argument` for what is no recording, or of a version that is not known, is damaged, or
+  /// has a call that is refused; `out_of_memory`.
   [[nodiscard]] Status status() const noexcept;
   /// False if it ends before it was closed: the program did.
   [[nodiscard]] bool is_whole() const noexcept;
