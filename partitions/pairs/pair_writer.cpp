@@ -130,14 +130,14 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
   const std::size_t before = pairs.size();
   // The slack of the kernels is many times what a small world has of pairs: the first are found
   // beside the array, which then has room for what there is.
-  constexpr std::size_t kFew = 2 * kSinkSlack;
-  alignas(Pair) std::byte bytes[kFew * sizeof(Pair)];  // no pairs yet, which would be written
+  constexpr std::size_t kBeside = 2 * kSinkSlack;
+  alignas(Pair) std::byte bytes[kBeside * sizeof(Pair)];  // no pairs yet, which would be written
   auto* const room = reinterpret_cast<Pair*>(bytes);
-  const bool is_tight = before + kFew > pairs.capacity();
+  const bool is_tight = before + kBeside > pairs.capacity();
   SerialOutput output{*this, pairs, before, tasks, is_tight ? room : nullptr};
   PairSink sink;
   if (is_tight) {
-    aim(sink, room, room + kFew);
+    aim(sink, room, room + kBeside);
   } else {
     aim(sink, pairs.data() + before, pairs.data() + pairs.capacity());
   }
