@@ -21,6 +21,7 @@ namespace winnow {
 namespace impact {
 struct BodyImpact;
 }  // namespace impact
+class PartTraversal;
 
 /// What moves: body i has shape shapes[i] and moves by motions[i].
 struct MovingBodies {
@@ -102,6 +103,9 @@ class WINNOW_API ImpactResult {
                                           std::span<const BodyPair> pairs,
                                           const ImpactOptions& options, ImpactResult& result);
   [[nodiscard]] bool resize(std::size_t count) noexcept;
+  void find_stretch(const PartTraversal& parts, const MovingBodies& bodies,
+                    std::span<const BodyPair> pairs, const ImpactOptions& options,
+                    std::size_t first, std::size_t end);
   void write(std::size_t i, const impact::BodyImpact& found) noexcept;
   [[nodiscard]] static std::span<const double> span(const Column<double>& c) noexcept {
     return {c.data(), c.size()};

@@ -404,7 +404,8 @@ Impact ImpactSearch::run() noexcept {
   }
 }
 
-/// The answer about (b, a) as one about (a, b).
+}  // namespace
+
 void mirror_impact(const RigidMotion& of_a, const RigidMotion& of_b, Impact& impact) noexcept {
   for (int i = 0; i < 3; ++i) {
     const double apart = (of_b.start.position[i] - of_a.start.position[i]) +
@@ -413,8 +414,6 @@ void mirror_impact(const RigidMotion& of_a, const RigidMotion& of_b, Impact& imp
     impact.normal[i] = 0.0 - impact.normal[i];
   }
 }
-
-}  // namespace
 
 Impact find_impact(const ShapeTables& tables, const MovingPart& a, const MovingPart& b,
                    double tolerance, const Interval& within) noexcept {

@@ -25,4 +25,7 @@ struct Impact {
                                  const MovingPart& b, double tolerance,
                                  const Interval& within = {0.0, 1.0}) noexcept;
 
+/// Makes of the answer about (b, a) that about (a, b), of bodies that so move.
+void mirror_impact(const RigidMotion& of_a, const RigidMotion& of_b, Impact& impact) noexcept;
+
 }  // namespace winnow::impact

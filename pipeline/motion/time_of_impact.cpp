@@ -1,6 +1,7 @@
 #include <winnow/pipeline/time_of_impact.h>
 #include "core/sort/stretches.h"
 #include "pipeline/motion/body_impact.h"
+#include "pipeline/motion/impact_batch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,6 +71,28 @@ Footprint ImpactResult::footprint() const noexcept {
   return footprint;
 }
 
+/// The pairs [first, end), no more than fit into a batch.
+void ImpactResult::find_stretch(const PartTraversal& parts, const MovingBodies& bodies,
+                                std::span<const BodyPair> pairs, const ImpactOptions& options,
+                                std::size_t first, std::size_t end) {
+  impact::ImpactBatch batch(parts.shapes().tables(), options.tolerance);
+  for (std::size_t i = first; i < end; ++i) {
+    const auto [a, b] = pairs[i];
+    status_[i] = status_of(parts, bodies, options, pairs[i]);
+    if (status_[i] != Status::ok) {
+      impact::BodyImpact none;
+      none.impact.time = 0.0;
+      write(i, none);
+    } else if (impact::ImpactBatch::takes(bodies.shapes[a], bodies.shapes[b])) {
+      batch.add(i, bodies.shapes[a], bodies.motions[a], bodies.shapes[b], bodies.motions[b]);
+    } else {
+      write(i, impact::find_body_impact(parts, {bodies.shapes[a], bodies.motions[a]},
+                                        {bodies.shapes[b], bodies.motions[b]}, options.tolerance));
+    }
+  }
+  batch.run([&](std::size_t i, const impact::Impact& found) { write(i, {found}); });
+}
+
 Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
                       std::span<const BodyPair> pairs, const ImpactOptions& options,
                       ImpactResult& result) {
@@ -87,23 +110,10 @@ Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
   if (!exist) return refuse(Status::invalid_argument);
   if (!result.resize(pairs.size())) return refuse(Status::out_of_memory);
   const PartTraversal parts(shapes, options.composites);
-  constexpr std::size_t kPairsPerStretch = 64;
-  for_stretches(
-      options.execution, pairs.size(), kPairsPerStretch, [&](std::size_t first, std::size_t end) {
-        for (std::size_t i = first; i < end; ++i) {
-          const auto [a, b] = pairs[i];
-          result.status_[i] = status_of(parts, bodies, options, pairs[i]);
-          impact::BodyImpact found;
-          if (result.status_[i] == Status::ok) {
-            found =
-                impact::find_body_impact(parts, {bodies.shapes[a], bodies.motions[a]},
-                                         {bodies.shapes[b], bodies.motions[b]}, options.tolerance);
-          } else {
-            found.impact.time = 0.0;
-          }
-          result.write(i, found);
-        }
-      });
+  for_stretches(options.execution, pairs.size(), impact::ImpactBatch::kRoom,
+                [&](std::size_t first, std::size_t end) {
+                  result.find_stretch(parts, bodies, pairs, options, first, end);
+                });
   return Status::ok;
 }
 

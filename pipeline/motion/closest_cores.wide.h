@@ -1,0 +1,223 @@
+#pragma once
+
+// Closest points of two cores in each lane: the algorithm of Gilbert, Johnson and Keerthi (1988) in
+// double, from the simplex that the lane ended with where the cores were before.
+
+#include "pipeline/kernels/hull/simplex.wide.h"
+#include "pipeline/motion/moving_cores.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME::impact {
+
+inline constexpr int kSlots = hull::kSlots;
+
+/// The points of both cores that make the simplex, each in its core's own frame. Of the slots in
+/// use the first is one.
+struct WitnessLanes {
+  Vector a[kSlots];
+  Vector b[kSlots];
+  /// 1 where the slot is in use, else 0.
+  Doubles present[kSlots];
+};
+
+/// Two cores as they are placed.
+struct CorePair {
+  const CoreTable& table_a;
+  const CoreTable& table_b;
+  const MovingCore& a;
+  const MovingCore& b;
+  /// From the middle of a to that of b.
+  const Vector& between;
+
+  [[gnu::always_inline]] Vector to_world(const CoreTable& table, const MovingCore& core,
+                                         const Vector& v) const {
+    return table.kind == ShapeKind::sphere ? v : core.axes.to_world(v);
+  }
+  [[gnu::always_inline]] Vector on_a(const Vector& own) const { return to_world(table_a, a, own); }
+  /// From the middle of b.
+  [[gnu::always_inline]] Vector on_b(const Vector& own) const { return to_world(table_b, b, own); }
+  /// What of each core is farthest towards the other along a direction from a to b, in their own
+  /// frames.
+  [[gnu::always_inline]] void facing(const Vector& direction, Mask16 lanes, Vector& own_a,
+                                     Vector& own_b) const {
+    own_a = farthest(table_a, a, a.axes.to_local(direction), lanes);
+    own_b = farthest(table_b, b, b.axes.to_local(-direction), lanes);
+  }
+};
+
+/// What is known of the cores of a lane where they are placed.
+struct ClosestLanes {
+  /// A unit direction along which they are apart by `lower`: a reaches as high as `high_a`, and -b
+  /// as high as `high_b` from its middle along the opposite one.
+  Vector axis;
+  Doubles lower;
+  Doubles high_a;
+  Doubles high_b;
+  /// From a point of a to one of b, and how far: they are no farther apart.
+  Vector between;
+  Doubles upper;
+  /// These points, from the middles.
+  Vector on_a;
+  Vector on_b;
+};
+
+/// How well distances are to be known.
+struct ClosestOptions {
+  /// As a share of the distance less `roundings`; where that is below `precise`, as well as can be.
+  double share;
+  const Doubles& roundings;
+  const Doubles& precise;
+};
+
+class ClosestSearch {
+ public:
+  ClosestSearch(const CorePair& pair, const ClosestOptions& options, WitnessLanes& witness)
+      : pair_(pair), options_(options), witness_(witness) {}
+
+  [[nodiscard]] ClosestLanes run(const Truth& lanes) {
+    begin();
+    open_ = lanes;
+    for (int step = 0; bits(open_) != 0 && step < kMostSteps; ++step) advance();
+    finish();
+    return found_;
+  }
+
+ private:
+  static constexpr int kMostSteps = 32;
+  /// A search that ends this much worse than it may be is begun anew, without what was there.
+  static constexpr double kLost = 4.0;
+
+  /// From the point of the old simplex, as its points have moved, that is closest to the origin.
+  void begin() {
+    const Doubles zero(0.0);
+    const Vector from = select(dot(pair_.between, pair_.between) > zero, pair_.between,
+                               Vector{Doubles(1.0), zero, zero});
+    found_.lower = Doubles(-__builtin_inf());
+    found_.axis = zero_vector();
+    found_.high_a = found_.high_b = zero;
+    for (int s = 0; s < kSlots; ++s) simplex_.present[s] = witness_.present[s] > zero;
+    const Truth kept = simplex_.present[0];
+    fresh_ = !kept;
+    begun_anew_ = zero > zero;
+    gap_ = from;
+    if (bits(kept) == 0) return;
+    for (int s = 0; s < kSlots; ++s) {
+      simplex_.point[s] =
+          pair_.between + pair_.on_b(witness_.b[s]) - pair_.on_a(witness_.a[s]);
+    }
+    hull::Simplex<double> others = simplex_;
+    others.present[0] = zero > Doubles(1.0);
+    const hull::SimplexNearest<double> nearest = hull::nearest_of(others, simplex_.point[0]);
+    gap_ = select(kept, nearest.point, from);
+    for (int s = 1; s < kSlots; ++s) {
+      simplex_.present[s] = simplex_.present[s] & nearest.keep[s];
+    }
+  }
+
+  void advance() {
+    const Doubles square = dot(gap_, gap_);
+    const Doubles distance = sqrt(square);
+    Vector own_a;
+    Vector own_b;
+    pair_.facing(gap_, bits(open_), own_a, own_b);
+    const Vector on_a = pair_.on_a(own_a);
+    const Vector on_b = pair_.on_b(own_b);
+    const Vector w = pair_.between + on_b - on_a;
+    const Doubles reach = dot(gap_, w);
+    note(distance, reach, on_a, on_b);
+
+    const Doubles gain = square - reach;
+    const Doubles left = distance - options_.roundings;
+    const Doubles share =
+        select(left > options_.precise, Doubles(options_.share), Doubles(0.0));
+    const Doubles known = max(Doubles(2.0 * kPlace) * square, share * distance * left);
+    const hull::SimplexNearest<double> nearest = hull::nearest_of(simplex_, w);
+    const Doubles next_square = dot(nearest.point, nearest.point);
+    const Truth close = (!fresh_) & (gain <= known);
+    const Truth stuck =
+        (!fresh_) & (!close) & (!nearest.inside) & (nearest.repeated | (next_square >= square));
+    const Truth moves = open_ & !(close | stuck | nearest.inside);
+    keep(nearest, moves, own_a, own_b, w);
+    const Truth lost = open_ & stuck & (gain > known * Doubles(kLost)) & !begun_anew_;
+    open_ = moves | lost;
+    if (bits(lost) != 0) begin_anew(lost);
+  }
+
+  /// Keeps the direction that shows the most.
+  void note(const Doubles& distance, const Doubles& reach, const Vector& on_a,
+            const Vector& on_b) {
+    const Truth better = open_ & (reach > found_.lower * distance);
+    const Doubles over = Doubles(1.0) / distance;
+    const Vector axis = gap_ * over;
+    found_.lower = select(better, reach * over, found_.lower);
+    found_.axis = select(better, axis, found_.axis);
+    found_.high_a = select(better, dot(axis, on_a), found_.high_a);
+    found_.high_b = select(better, -dot(axis, on_b), found_.high_b);
+  }
+
+  /// Where `moves`: the nearest feature becomes the simplex.
+  void keep(const hull::SimplexNearest<double>& nearest, const Truth& moves, const Vector& own_a,
+            const Vector& own_b, const Vector& w) {
+    Truth placed = !moves;
+    for (int s = 0; s < kSlots; ++s) {
+      const Truth take = (!placed) & (!nearest.keep[s]);
+      placed = placed | take;
+      simplex_.point[s] = select(take, w, simplex_.point[s]);
+      witness_.a[s] = select(take, own_a, witness_.a[s]);
+      witness_.b[s] = select(take, own_b, witness_.b[s]);
+      simplex_.present[s] =
+          (moves & (take | nearest.keep[s])) | ((!moves) & simplex_.present[s]);
+    }
+    gap_ = select(moves, nearest.point, gap_);
+    fresh_ = fresh_ & !moves;
+  }
+
+  void begin_anew(const Truth& lanes) {
+    begun_anew_ = begun_anew_ | lanes;
+    fresh_ = fresh_ | lanes;
+    for (Truth& present : simplex_.present) present = present & !lanes;
+  }
+
+  /// Where on the cores the gap begins and ends: by weights of the points of the simplex.
+  void finish() {
+    const Doubles zero(0.0);
+    const Doubles one(1.0);
+    Vector edge[2];
+    Doubles square[2];
+    Doubles along[2];
+    const Vector from = gap_ - simplex_.point[0];
+    for (int i = 0; i < 2; ++i) {
+      const Truth present = simplex_.present[i + 1];
+      edge[i] = select(present, simplex_.point[i + 1] - simplex_.point[0], zero_vector());
+      square[i] = select(present, dot(edge[i], edge[i]), one);
+      along[i] = dot(edge[i], from);
+    }
+    const Doubles mixed = dot(edge[0], edge[1]);
+    const Doubles area = square[0] * square[1] - mixed * mixed;
+    const Truth wide = area > square[0] * square[1] * Doubles(1e-14);
+    const Doubles over = one / select(wide, area, one);
+    const Doubles s = select(wide, (along[0] * square[1] - along[1] * mixed) * over,
+                             along[0] / square[0]);
+    const Doubles t = select(wide, (along[1] * square[0] - along[0] * mixed) * over, zero);
+    found_.between = gap_;
+    found_.upper = length(gap_);
+    found_.on_a = pair_.on_a(witness_.a[0] + (witness_.a[1] - witness_.a[0]) * s +
+                             (witness_.a[2] - witness_.a[0]) * t);
+    found_.on_b = pair_.on_b(witness_.b[0] + (witness_.b[1] - witness_.b[0]) * s +
+                             (witness_.b[2] - witness_.b[0]) * t);
+    for (int i = 0; i < kSlots; ++i) witness_.present[i] = one_where(simplex_.present[i]);
+  }
+
+  const CorePair& pair_;
+  const ClosestOptions& options_;
+  WitnessLanes& witness_;
+  ClosestLanes found_;
+  hull::Simplex<double> simplex_;
+  /// From a to b, between the closest points so far; at first any direction.
+  Vector gap_;
+  /// There is no simplex yet.
+  Truth fresh_;
+  Truth open_;
+  Truth begun_anew_;
+};
+
+}  // namespace winnow::WINNOW_ISA_NAME::impact

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "pipeline/motion/impact_lanes.kernel.h"
+#include "pipeline/motion/impact_search.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace winnow::impact {
+
+/// Pairs of convex shapes that move, which are answered many at a time: by lanes, one kind of pair
+/// after the other, and by `find_impact` where lanes cannot tell. What is said of a pair does not
+/// depend on the others.
+class ImpactBatch {
+ public:
+  /// Of as many as that, `run` has to be called.
+  static constexpr std::size_t kRoom = 256;
+
+  ImpactBatch(const ShapeTables& tables, double tolerance) noexcept
+      : tables_(tables), tolerance_(tolerance) {}
+
+  [[nodiscard]] bool is_full() const noexcept { return count_ == kRoom; }
+  /// Whether pairs of these shapes are to be put in.
+  [[nodiscard]] static bool takes(ShapeId a, ShapeId b) noexcept {
+    return !a.is_composite() && !b.is_composite();
+  }
+  /// `name` is what the answer is given with. The motions, which are valid, outlive the next run.
+  void add(std::size_t name, ShapeId a, const RigidMotion& of_a, ShapeId b,
+           const RigidMotion& of_b) noexcept;
+
+  /// Calls take(name, impact) for every pair that was added, in any order, and forgets them.
+  template <typename Take>
+  void run(Take&& take) {
+    find();
+    for (std::size_t i = 0; i < count_; ++i) take(names_[i], found_[i]);
+    count_ = 0;
+  }
+
+ private:
+  void find() noexcept;
+  void sort_by_kinds() noexcept;
+  void find_in_lanes(std::size_t begin, std::size_t end) noexcept;
+  [[nodiscard]] Impact found_of(const ImpactQuery& query, const ImpactLane& lane) const noexcept;
+
+  const ShapeTables& tables_;
+  double tolerance_;
+  std::size_t count_ = 0;
+  std::array<std::size_t, kRoom> names_;
+  std::array<ImpactQuery, kRoom> queries_;
+  std::array<bool, kRoom> mirrored_;
+  std::array<Impact, kRoom> found_;
+  /// By kinds.
+  std::array<std::uint16_t, kRoom> order_;
+};
+
+}  // namespace winnow::impact

@@ -1,0 +1,558 @@
+// When two moving cores in each lane first meet, as impact_search.cpp derives it, which answers
+// what the lanes cannot tell: pairs that touch or all but touch where they are looked at. Each round
+// looks once at all pairs of a job; lanes of pairs that are done are then given to others, so that a
+// hard pair does not hold seven easy ones. What is said of a pair does not depend on the others.
+
+#include "pipeline/motion/impact_lanes.kernel.h"
+
+#include "pipeline/motion/closest_cores.wide.h"
+
+namespace winnow {
+namespace WINNOW_ISA_NAME::impact {
+namespace {
+
+/// Shapes that stay so long within the tolerance as they near each other have met.
+constexpr double kMostWithin = 64.0;
+/// Distances need to be no better than this share of them until the last one.
+constexpr double kGoodEnough = 1e-3;
+/// More rounds take the search that has one pair alone.
+constexpr int kMostRounds = 256;
+/// Lengths whose products of six are in the range of double, and keep their digits.
+constexpr double kShortest = 1e-40;
+constexpr double kLongest = 1e40;
+
+/// Two moving shapes and what is known of them. All members are lanes.
+struct PairLanes {
+  MovingCore a;
+  MovingCore b;
+  /// From body a to body b at time 0, and how that changes.
+  Vector start;
+  Vector travel;
+  Doubles roundings;
+  Doubles sizes;
+  /// What rounding does to any gap but for that of the place.
+  Doubles still_noise;
+  Doubles tolerance;
+  Doubles last;
+  WitnessLanes witness;
+
+  /// They are apart before; and what is known of them then, by a look.
+  Doubles time;
+  Vector axis;
+  Doubles gap;
+  Doubles slope;
+  Doubles free;
+  /// When to look next, and whether that is to prove that they are apart until then.
+  Doubles next;
+  Doubles proves;
+  /// As in ImpactSearch.
+  Doubles touching;
+  Doubles aim;
+  Doubles within;
+  /// 1 while there is more to do.
+  Doubles active;
+};
+constexpr int kNumbers = static_cast<int>(sizeof(PairLanes) / sizeof(Doubles));
+
+struct PairBlockTables {
+  CoreTable a;
+  CoreTable b;
+  /// Index of the query in each lane.
+  std::uint32_t query[kWidth];
+};
+
+struct ImpactBlock {
+  PairLanes lanes;
+  PairBlockTables tables;
+};
+
+/// What the lanes show where they are placed.
+struct LookLanes {
+  ClosestLanes closest;
+  Vector between;
+  Doubles noise;
+  Doubles gap;
+  Doubles most;
+  Doubles slope;
+  Truth parted;
+};
+
+/// Writes answers of some lanes.
+class Answers {
+ public:
+  Answers(const ImpactJob& job, const PairBlockTables& tables) : job_(job), tables_(tables) {}
+
+  void put(Mask16 lanes, ImpactVerdict verdict, const Doubles& time) {
+    if (lanes == 0) return;
+    alignas(64) double times[kWidth];
+    time.store(times);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const unsigned lane = first(lanes);
+      ImpactLane& answer = job_.answers[tables_.query[lane]];
+      answer.verdict = verdict;
+      answer.time = times[lane];
+    }
+  }
+
+  void put_meeting(Mask16 lanes, const PairLanes& p, const LookLanes& look) {
+    if (lanes == 0) return;
+    const Doubles distance = look.closest.upper;
+    const Doubles gap = distance - p.roundings;
+    const Vector normal = look.closest.between * (Doubles(1.0) / distance);
+    const Vector point = look.closest.on_a + normal * p.a.rounding;
+    const Doubles error = max(look.most - gap, gap - look.gap);
+    const Doubles columns[] = {positive_part(gap), error,   normal.x, normal.y,
+                               normal.z,           point.x, point.y,  point.z};
+    alignas(64) double stage[8][kWidth];
+    for (int k = 0; k < 8; ++k) columns[k].store(stage[k]);
+    put(lanes, ImpactVerdict::meets, p.time);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const unsigned lane = first(lanes);
+      ImpactLane& answer = job_.answers[tables_.query[lane]];
+      answer.gap = stage[0][lane];
+      answer.error_bound = stage[1][lane];
+      for (int k = 0; k < 3; ++k) {
+        answer.normal[k] = stage[2 + k][lane];
+        answer.point[k] = stage[5 + k][lane];
+      }
+    }
+  }
+
+ private:
+  const ImpactJob& job_;
+  const PairBlockTables& tables_;
+};
+
+/// The share of an interval in which a gap that is `above` a target at its start, and `then` above
+/// it at the end, surely stays above: it is above its chord less 4 `sag` times the shares to both
+/// ends.
+[[gnu::always_inline]] inline Doubles share_above(const Doubles& above, const Doubles& then,
+                                                  const Doubles& sag) {
+  const Doubles zero(0.0);
+  const Doubles one(1.0);
+  const Doubles square = sag * Doubles(4.0);
+  const Doubles linear = then - above - square;
+  const Doubles discriminant = linear * linear - square * above * Doubles(4.0);
+  const Truth stays = (then >= zero) & ((linear >= zero) | (discriminant < zero) |
+                                        (-linear >= square * Doubles(2.0)));
+  const Doubles root = above * Doubles(2.0) / (sqrt(positive_part(discriminant)) - linear);
+  const Doubles share = select(root >= zero, root * Doubles(1.0 - 1e-12), zero);
+  // What is no number proves nothing.
+  const Truth known = square < Doubles(kLargest<double>);
+  return select(known, select(stays, one, select(share < one, share, one)), zero);
+}
+
+/// How a point at y from a core's middle moves along an axis.
+[[gnu::always_inline]] inline Doubles speed_along(const MovingCore& core, const Vector& axis,
+                                                  const Vector& y) {
+  return core.angle * dot(axis, cross(core.axis, y));
+}
+
+[[gnu::always_inline]] inline Doubles acceleration(const MovingCore& core, const Vector& axis) {
+  const Doubles across = length(cross(axis, core.axis)) + Doubles(kSameAxis);
+  return core.angle * core.angle * across * core.reach;
+}
+
+/// No gap along the axis falls below its chord between two times by more than half of this times
+/// the product of the times to either end.
+[[gnu::always_inline]] inline Doubles curvature(const PairLanes& p, const Vector& axis) {
+  return acceleration(p.a, axis) + acceleration(p.b, axis);
+}
+
+/// The same along an axis that turns evenly from one to another in `width`, to where they are
+/// placed, `between` from each other; infinite if they are farther apart than a radian.
+[[gnu::always_inline]] inline Doubles curvature_between(const PairLanes& p, const Vector& from,
+                                                        const Vector& to, const Doubles& width,
+                                                        const Vector& between) {
+  const Doubles turned = length(to - from);
+  const Doubles rate = turned * (Doubles(1.0) + Doubles(0.05) * turned * turned) / width;
+  const Doubles swing_a = p.a.reach * p.a.angle;
+  const Doubles swing_b = p.b.reach * p.b.angle;
+  const Doubles way = length(p.travel);
+  const Doubles speed = way + swing_a + swing_b;
+  const Doubles far = length(between) + width * way + p.sizes;
+  const Doubles below = width * (rate * far + speed);
+  const Doubles all = swing_a * p.a.angle + swing_b * p.b.angle + rate * speed * Doubles(2.0) +
+                      rate * rate * below;
+  return select(turned <= Doubles(1.0), all, Doubles(__builtin_inf()));
+}
+
+/// The most that a core reaches along an axis, of all that it sweeps as it turns; `high` where it
+/// is.
+[[gnu::always_inline]] inline Doubles swept_high(const MovingCore& core, const Vector& axis,
+                                                 const Doubles& high) {
+  const Doubles along = dot(axis, core.axis);
+  const Doubles swept = max(along * core.low, along * core.high) +
+                        length(cross(axis, core.axis)) * core.reach;
+  return select(core.angle > Doubles(0.0), swept, high);
+}
+
+class ImpactStep {
+ public:
+  ImpactStep(const ImpactJob& job, ImpactBlock& block)
+      : p_(block.lanes),
+        tables_(block.tables),
+        answers_(job, block.tables),
+        active_(p_.active > Doubles(0.0)) {}
+
+  /// Looks at all lanes once. Returns those that go on.
+  [[nodiscard]] Mask16 run() {
+    const Vector axis = p_.axis;
+    const Doubles gap = p_.gap;
+    look();
+    advance(axis, gap);
+    decide();
+    p_.active = one_where(active_);
+    return bits(active_);
+  }
+
+ private:
+  void end(const Truth& lanes, ImpactVerdict verdict) {
+    const Truth ended = active_ & lanes;
+    answers_.put(bits(ended), verdict, p_.time);
+    active_ = active_ & !lanes;
+  }
+
+  /// The lanes where they are next.
+  void look() {
+    place(tables_.a, p_.next, p_.a);
+    place(tables_.b, p_.next, p_.b);
+    look_.between = p_.start + p_.travel * p_.next;
+    look_.noise = p_.still_noise +
+                  Doubles(32.0 * kPlace) * (length(look_.between) + p_.sizes);
+    const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
+    then_ = gap_along(pair);
+    const Doubles precise = p_.tolerance * Doubles(2.0);
+    look_.closest =
+        ClosestSearch(pair, {kGoodEnough, p_.roundings, precise}, p_.witness).run(active_);
+    const ClosestLanes& closest = look_.closest;
+    look_.gap = closest.lower - p_.roundings - look_.noise;
+    look_.most = closest.upper - p_.roundings + look_.noise;
+    look_.slope = dot(closest.axis, p_.travel) + speed_along(p_.b, closest.axis, closest.on_b) -
+                  speed_along(p_.a, closest.axis, closest.on_a);
+    look_.parted = look_.gap > Doubles(0.0);
+  }
+
+  /// The gap along the axis of the last look, where the lanes are placed.
+  [[nodiscard]] Doubles gap_along(const CorePair& pair) const {
+    const Truth proves = active_ & (p_.proves > Doubles(0.0));
+    if (bits(proves) == 0) return Doubles(0.0);
+    Vector own_a;
+    Vector own_b;
+    pair.facing(p_.axis, bits(proves), own_a, own_b);
+    const Vector w = look_.between + pair.on_b(own_b) - pair.on_a(own_a);
+    return dot(p_.axis, w) - p_.roundings - look_.noise;
+  }
+
+  /// Moves on as far as is proved from the last look, which showed a gap along an axis, and takes
+  /// the new one where that is all of the way.
+  void advance(const Vector& axis, const Doubles& gap) {
+    const Truth proves = p_.proves > Doubles(0.0);
+    const Doubles width = p_.next - p_.time;
+    const Doubles apart = proved(axis, gap, width);
+    const Truth whole = (!proves) | (apart >= p_.next);
+    const Doubles left = p_.touching;
+    p_.touching = select(proves & !look_.parted,
+                         min(left, p_.time + width * Doubles(0.75)), left);
+    // The error of a prediction falls with the square of the step, and so by the gap as a share of
+    // it.
+    const Doubles over = Doubles(1.0) / gap;
+    const Doubles expected = gap + p_.slope * width;
+    const Doubles aim = abs(look_.gap - expected) * over * look_.gap * over * Doubles(4.0);
+    const Doubles bounded = select(aim > Doubles(1e-9), select(aim < Doubles(0.25), aim,
+                                                               Doubles(0.25)), Doubles(1e-9));
+    p_.aim = select(proves & whole, bounded, p_.aim);
+    // Where it was not all: to be looked at from there.
+    const Doubles reached = max(apart, p_.free);
+    const Truth stands = proves & (!whole) & (reached <= p_.time);
+    end(stands, ImpactVerdict::unsure);
+    whole_ = whole;
+    p_.time = select(whole, p_.next, reached);
+    end((!whole) & (p_.time >= p_.last), ImpactVerdict::apart);
+    // Too near for double to tell, or touching.
+    end(whole & !look_.parted, ImpactVerdict::unsure);
+    p_.next = p_.time;
+    p_.proves = Doubles(0.0);
+    p_.touching = select(p_.time >= p_.touching, Doubles(__builtin_inf()), p_.touching);
+  }
+
+  /// How far they are surely apart: along the axis of the last look, or along one that turns from
+  /// it to that of the new one.
+  [[nodiscard]] Doubles proved(const Vector& axis, const Doubles& gap, const Doubles& way) const {
+    const Doubles width = way * Doubles(1.0 + 4.0 * kPlace);
+    const Doubles least =
+        select(look_.parted & (look_.gap < gap), look_.gap, gap);
+    const Doubles target = min(p_.tolerance * Doubles(0.25), least * Doubles(0.5));
+    const Doubles eighth = width * width * Doubles(0.125);
+    const Doubles above = gap - target;
+    Doubles share = share_above(above, then_ - target, curvature(p_, axis) * eighth);
+    const Doubles bent = curvature_between(p_, axis, look_.closest.axis, width, look_.between);
+    const Doubles turning = share_above(above, look_.gap - target, bent * eighth);
+    share = select(look_.parted & (turning > share), turning, share);
+    const Doubles reached = min(p_.time + share * way, p_.next);
+    return select(share >= Doubles(1.0), p_.next, reached);
+  }
+
+  /// Of lanes with a new look: whether they have met, or when to look next.
+  void decide() {
+    const Truth looked = active_ & whole_;
+    if (bits(looked) == 0) return;
+    const Truth near =
+        looked & (look_.most <= max(p_.tolerance, look_.noise * Doubles(8.0)));
+    const Truth meets = look_.gap + look_.slope * (p_.last - p_.time) <= Doubles(0.0);
+    p_.within = select(near & !meets, p_.within + Doubles(1.0), p_.within);
+    const Truth met = near & (meets | (p_.within > Doubles(kMostWithin)));
+    answers_.put_meeting(bits(met), p_, look_);
+    active_ = active_ & !met;
+    const Doubles free = free_until();
+    end(looked & (free >= p_.last), ImpactVerdict::apart);
+    const Doubles next = next_look();
+    const Truth freely = next <= free;
+    const Doubles moved = select(freely, free, p_.time);
+    // No number left between.
+    end(looked & freely & (moved <= p_.time), ImpactVerdict::unsure);
+    p_.axis = select(looked, look_.closest.axis, p_.axis);
+    p_.gap = select(looked, look_.gap, p_.gap);
+    p_.slope = select(looked, look_.slope, p_.slope);
+    p_.free = select(looked, free, p_.free);
+    p_.time = select(looked, moved, p_.time);
+    p_.next = select(looked, select(freely, free, next), p_.next);
+    p_.proves = one_where(looked & !freely);
+  }
+
+  /// They are apart until then by what they sweep.
+  [[nodiscard]] Doubles free_until() const {
+    const ClosestLanes& c = look_.closest;
+    const Doubles high = swept_high(p_.a, c.axis, c.high_a) + swept_high(p_.b, -c.axis, c.high_b);
+    const Doubles swept = dot(c.axis, look_.between) - high - p_.roundings - look_.noise -
+                          min(p_.tolerance * Doubles(0.25), look_.gap * Doubles(0.5));
+    const Doubles closing = -dot(c.axis, p_.travel);
+    const Truth closes = closing > Doubles(0.0);
+    const Doubles step = swept / select(closes, closing, Doubles(1.0));
+    const Doubles until = p_.time + step * Doubles(1.0 - 8.0 * kPlace);
+    return select(swept > Doubles(0.0), select(closes & (until < p_.last), until, p_.last),
+                  p_.time);
+  }
+
+  /// Where the gap seems to fall to a share of what it is, but no farther than a proof may reach.
+  [[nodiscard]] Doubles next_look() const {
+    const Doubles zero(0.0);
+    const Doubles end = min(p_.last, p_.touching);
+    Doubles step = end - p_.time;
+    const Truth falls = look_.slope < zero;
+    const Doubles aim = max(p_.tolerance * Doubles(0.5), p_.aim * look_.gap);
+    const Doubles fall = max(look_.gap - aim, look_.gap * Doubles(0.25));
+    const Doubles reached = fall / select(falls, -look_.slope, Doubles(1.0));
+    step = select(falls & (reached < step), reached, step);
+    // A gap whose slope is constant has a proof if half of the curvature times the square of the
+    // step is below the square of the sum of the roots of the gaps at both ends.
+    const Doubles bend = curvature(p_, look_.closest.axis);
+    const Truth bends = bend > zero;
+    const Doubles flat =
+        sqrt(look_.gap * Doubles(2.0) / select(bends, bend, Doubles(1.0)));
+    const Doubles left = Doubles(1.0) + look_.slope * flat / look_.gap;
+    const Doubles rest = select(left > zero, select(left < Doubles(1.0), left, Doubles(1.0)), zero);
+    const Doubles most = flat * Doubles(0.95) * (Doubles(1.0) + sqrt(rest));
+    step = select(bends & (most < step), most, step);
+    return min(p_.time + step, end);
+  }
+
+  PairLanes& p_;
+  const PairBlockTables& tables_;
+  Answers answers_;
+  Truth active_;
+  /// The new look is where they are surely apart until.
+  Truth whole_;
+  LookLanes look_;
+  /// The gap along the axis of the last look.
+  Doubles then_;
+};
+
+/// Loads queries into lanes; those that lanes cannot tell of are answered.
+class ImpactLoad {
+ public:
+  ImpactLoad(const ImpactJob& job, std::uint32_t first, ImpactBlock& block)
+      : job_(job), first_(first), p_(block.lanes), tables_(block.tables) {}
+
+  /// Returns the lanes that have something to do.
+  [[nodiscard]] Mask16 run() {
+    for (int lane = 0; lane < kWidth; ++lane) {
+      const std::uint32_t at = first_ + static_cast<std::uint32_t>(lane);
+      tables_.query[lane] = at < job_.count ? at : job_.count - 1;
+    }
+    Truth usable = load_cores();
+    load_way();
+    measure_pair();
+    usable = usable & (p_.sizes > Doubles(kShortest)) & (span_ < Doubles(kLongest));
+    begin(usable);
+    return bits(p_.active > Doubles(0.0));
+  }
+
+ private:
+  [[nodiscard]] const ImpactQuery& query(int lane) const {
+    return job_.queries[tables_.query[lane]];
+  }
+  [[nodiscard]] const double* motion(int side, int lane) const {
+    return numbers(*query(lane).motion[side]);
+  }
+
+  [[nodiscard]] Truth load_cores() {
+    Truth usable = Doubles(0.0) < Doubles(1.0);
+    for (int side = 0; side < 2; ++side) {
+      CoreTable& table = side == 0 ? tables_.a : tables_.b;
+      MovingCore& core = side == 0 ? p_.a : p_.b;
+      table.kind = query(0).shape[side].kind();
+      load_core(job_.tables, [&](int lane) { return query(lane).shape[side]; }, table, core);
+      measure(table, core);
+      usable = usable & load_turn(table, [&](int lane) { return motion(side, lane); }, core);
+    }
+    return usable;
+  }
+
+  void load_way() {
+    Doubles row[4];
+    load_differences4([&](int lane) { return motion(1, lane); },
+                      [&](int lane) { return motion(0, lane); }, row);
+    p_.start = {row[0], row[1], row[2]};
+    load_differences4([&](int lane) { return motion(1, lane) + kTravelAt; },
+                      [&](int lane) { return motion(0, lane) + kTravelAt; }, row);
+    p_.travel = {row[0], row[1], row[2]};
+    p_.time = load_rows1([&](int lane) { return &query(lane).first; });
+    p_.last = load_rows1([&](int lane) { return &query(lane).last; });
+  }
+
+  void measure_pair() {
+    p_.roundings = p_.a.rounding + p_.b.rounding;
+    p_.sizes = p_.a.size + p_.b.size;
+    const Doubles way = length(p_.start) + length(p_.travel);
+    span_ = way + p_.sizes;
+    p_.still_noise =
+        Doubles(kPlace) * (way * Doubles(8.0) +
+                           (Doubles(64.0) + (p_.a.angle + p_.b.angle) * Doubles(4.0)) * p_.sizes);
+    const Doubles least = min(p_.a.extent, p_.b.extent);
+    const Doubles most = max(p_.a.extent, p_.b.extent);
+    p_.tolerance = select(least > Doubles(0.0), least, most) * Doubles(job_.tolerance);
+  }
+
+  /// Between when the balls around both touch first and last.
+  [[nodiscard]] Truth cut_to_window() {
+    const Doubles zero(0.0);
+    const Doubles speed = length(p_.travel);
+    const Doubles from = length(p_.start);
+    const Doubles radius = p_.sizes + (from + speed + p_.sizes) * Doubles(64.0 * kPlace);
+    const Truth moves = speed > Doubles(1e-30) * span_;
+    const Doubles over = Doubles(1.0) / select(moves, speed, Doubles(1.0));
+    const Doubles nearest = select(moves, -(dot(p_.start, p_.travel) * over) * over, zero);
+    const Doubles distance = length(p_.start + p_.travel * nearest);
+    const Doubles half = sqrt(positive_part((radius - distance) * (radius + distance))) * over;
+    p_.time = select(moves, max(p_.time, nearest - half), p_.time);
+    p_.last = select(moves, min(p_.last, nearest + half), p_.last);
+    const Doubles slack = select(moves, zero, speed);
+    return (distance <= radius + slack) & (p_.time <= p_.last);
+  }
+
+  void begin(const Truth& usable) {
+    const Doubles zero(0.0);
+    const Doubles asked_from = p_.time;
+    const Truth near = cut_to_window();
+    for (int i = 0; i < kSlots; ++i) {
+      p_.witness.a[i] = p_.witness.b[i] = zero_vector();
+      p_.witness.present[i] = zero;
+    }
+    p_.axis = zero_vector();
+    p_.gap = Doubles(1.0);
+    p_.slope = p_.free = p_.proves = p_.within = zero;
+    p_.next = p_.time;
+    p_.touching = Doubles(__builtin_inf());
+    p_.aim = Doubles(0.1);
+    Answers answers(job_, tables_);
+    const Mask16 here = lanes_below(job_.count - first_ < kWidth ? job_.count - first_ : kWidth);
+    answers.put(bits(!usable) & here, ImpactVerdict::unsure, asked_from);
+    answers.put(bits(usable & !near) & here, ImpactVerdict::apart, p_.last);
+    const Mask16 go_on = bits(usable & near) & here;
+    alignas(64) double active[kWidth];
+    for (int lane = 0; lane < kWidth; ++lane) {
+      active[lane] = static_cast<double>(go_on >> lane & 1U);
+    }
+    p_.active = Doubles::load(active);
+  }
+
+  const ImpactJob& job_;
+  std::uint32_t first_;
+  PairLanes& p_;
+  PairBlockTables& tables_;
+  Doubles span_;
+};
+
+/// Gives the place of a lane to another one.
+inline void move_lane(const ImpactBlock& from, unsigned lane_from, ImpactBlock& to,
+                      unsigned lane_to) {
+  const auto* const source = reinterpret_cast<const double*>(&from.lanes);
+  auto* const target = reinterpret_cast<double*>(&to.lanes);
+  for (int i = 0; i < kNumbers; ++i) target[i * kWidth + lane_to] = source[i * kWidth + lane_from];
+  to.tables.a.hull[lane_to] = from.tables.a.hull[lane_from];
+  to.tables.b.hull[lane_to] = from.tables.b.hull[lane_from];
+  to.tables.query[lane_to] = from.tables.query[lane_from];
+}
+
+/// All queries of a job.
+class ImpactRounds {
+ public:
+  explicit ImpactRounds(const ImpactJob& job) : job_(job) {
+    for (std::uint32_t at = 0; at < job.count; at += kWidth) {
+      const Mask16 active = ImpactLoad(job, at, block_[count_]).run();
+      if (active == 0) continue;
+      active_[count_++] = active;
+    }
+  }
+
+  void run() {
+    for (int round = 0; count_ > 0 && round < kMostRounds; ++round) {
+      std::uint32_t lanes = 0;
+      for (std::uint32_t i = 0; i < count_; ++i) {
+        active_[i] = ImpactStep(job_, block_[i]).run();
+        lanes += winnow::WINNOW_ISA_NAME::count(active_[i]);
+      }
+      close_ranks(lanes);
+    }
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      Answers(job_, block_[i].tables).put(active_[i], ImpactVerdict::unsure, block_[i].lanes.time);
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kBlocks = kImpactJobQueries / kWidth;
+
+  /// As few blocks as take all lanes that are active: those of the last go to the first.
+  void close_ranks(std::uint32_t lanes) {
+    const std::uint32_t needed = (lanes + kWidth - 1) / kWidth;
+    std::uint32_t to = 0;
+    for (; count_ > needed; --count_) {
+      const std::uint32_t from = count_ - 1;
+      for (; active_[from] != 0; active_[from] &= active_[from] - 1) {
+        while (active_[to] == kAllLanes<double>) ++to;
+        const unsigned lane_to = first(~active_[to]);
+        move_lane(block_[from], first(active_[from]), block_[to], lane_to);
+        active_[to] |= 1U << lane_to;
+      }
+    }
+  }
+
+  const ImpactJob& job_;
+  std::uint32_t count_ = 0;
+  Mask16 active_[kBlocks] = {};
+  ImpactBlock block_[kBlocks];
+};
+
+void run_job(const ImpactJob& job) {
+  if (job.count == 0) return;
+  ImpactRounds(job).run();
+}
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME::impact
+
+extern const ImpactLaneKernels WINNOW_KERNEL_TABLE(impact_lane_kernels) = {
+    WINNOW_ISA_NAME::impact::run_job};
+
+}  // namespace winnow

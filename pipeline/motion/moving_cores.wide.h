@@ -1,0 +1,411 @@
+#pragma once
+
+// Cores of shapes that move, one per lane, all of one kind: their numbers, how they turn about the
+// middle of their motion's axis, where they are at a time, and their farthest points.
+
+#include "pipeline/kernels/pair_lanes.wide.h"
+#include "pipeline/motion/impact_lanes.kernel.h"
+
+namespace winnow::WINNOW_ISA_NAME::impact {
+
+using Vector = Vec3<double>;
+using Truth = LaneMask<double>;
+
+inline constexpr int kWidth = Doubles::kCount;
+/// The distance from 1 to the next number.
+inline constexpr double kPlace = 0x1p-52;
+/// Axes that differ by less are the same: what that changes is counted as noise.
+inline constexpr double kSameAxis = 16.0 * kPlace;
+
+[[gnu::always_inline]] inline Vector zero_vector() {
+  const Doubles zero(0.0);
+  return {zero, zero, zero};
+}
+[[gnu::always_inline]] inline Doubles length(const Vector& v) {
+  return sqrt(dot(v, v));
+}
+[[gnu::always_inline]] inline Doubles positive_part(const Doubles& v) {
+  return max(v, Doubles(0.0));
+}
+[[gnu::always_inline]] inline Doubles one_where(const Truth& mask) {
+  return select(mask, Doubles(1.0), Doubles(0.0));
+}
+
+/// The nearest whole number, of numbers below 2^51.
+[[gnu::always_inline]] inline Doubles nearest_whole(const Doubles& v) {
+  const Doubles shift(0x1.8p52);
+  return (v + shift) - shift;
+}
+
+struct SineCosineLanes {
+  Doubles sine;
+  Doubles cosine;
+};
+
+/// The same numbers as impact::sine_cosine.
+[[gnu::always_inline]] inline SineCosineLanes sine_cosine(const Doubles& angle) {
+  const Doubles quarters = nearest_whole(angle * Doubles(6.36619772367581382433e-01));
+  const Doubles x = (angle - quarters * Doubles(1.57079632673412561417e+00)) -
+                    quarters * Doubles(6.07710050650619224932e-11);
+  const Doubles z = x * x;
+  Doubles sine(-1.0 / 1307674368000.0);
+  for (const double term : {1.0 / 6227020800.0, -1.0 / 39916800.0, 1.0 / 362880.0, -1.0 / 5040.0,
+                            1.0 / 120.0, -1.0 / 6.0}) {
+    sine = sine * z + Doubles(term);
+  }
+  sine = x + x * (z * sine);
+  Doubles cosine(1.0 / 20922789888000.0);
+  for (const double term : {-1.0 / 87178291200.0, 1.0 / 479001600.0, -1.0 / 3628800.0,
+                            1.0 / 40320.0, -1.0 / 720.0, 1.0 / 24.0, -0.5}) {
+    cosine = cosine * z + Doubles(term);
+  }
+  cosine = Doubles(1.0) + z * cosine;
+  // Of four whole numbers over 4 the nearest whole number to this is the one below.
+  const Doubles turns = nearest_whole(quarters * Doubles(0.25) - Doubles(0.375));
+  const Doubles quarter = quarters - turns * Doubles(4.0);
+  const Truth back = quarter > Doubles(1.5);
+  const Truth odd = (quarter == Doubles(1.0)) | (quarter == Doubles(3.0));
+  const Doubles s = select(odd, cosine, sine);
+  const Doubles c = select(odd, -sine, cosine);
+  return {select(back, -s, s), select(back, -c, c)};
+}
+
+/// Of length 1 to rounding.
+struct Orientation {
+  Doubles w;
+  Vector v;
+};
+
+/// From an orientation, turned about a unit axis by an angle.
+[[gnu::always_inline]] inline Orientation turned(const Orientation& from, const Vector& axis,
+                                                 const Doubles& angle) {
+  const SineCosineLanes half = sine_cosine(angle * Doubles(0.5));
+  const Vector u = axis * half.sine;
+  return {half.cosine * from.w - dot(u, from.v),
+          from.v * half.cosine + u * from.w + cross(u, from.v)};
+}
+
+[[gnu::always_inline]] inline Rotation<double> rotation_of(const Orientation& q) {
+  return rotation(Turn<double>{q.w, q.v, Doubles(2.0)});
+}
+
+/// Where the numbers of a RigidMotion begin.
+inline constexpr int kOrientationAt = 3;
+inline constexpr int kTravelAt = 7;
+inline constexpr int kTurnAt = 10;
+static_assert(sizeof(RigidMotion) == 13 * sizeof(double));
+
+/// A core, and how its body turns. All members are lanes: a block may move lanes as numbers.
+struct MovingCore {
+  Orientation from;
+  /// Unit, and the radians about it in all; 0 of a sphere.
+  Vector axis;
+  Doubles angle;
+  /// No point is farther from the axis; and how far along it they reach.
+  Doubles reach;
+  Doubles low;
+  Doubles high;
+  /// Box: half extents. Segment, cylinder, cone: radius, radius, half length. Hull: its middle.
+  Vector half;
+  /// Of a triangle.
+  Vector corner[3];
+  Doubles rounding;
+  /// No point of the shape is farther from the body's position.
+  Doubles size;
+  /// Of which tolerances are shares.
+  Doubles extent;
+  /// Where it is placed: its axes in the world.
+  Rotation<double> axes;
+};
+
+/// What of a core is not a number.
+struct CoreTable {
+  ShapeKind kind;
+  const HullShape* hull[kWidth];
+};
+
+/// A point of each lane's hull that is farthest along a direction, both in the hull's frame.
+static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& direction,
+                                       Mask16 lanes) {
+  alignas(64) double d[3][kWidth];
+  alignas(64) double best[kWidth][kWidth] = {};
+  alignas(64) double where[kWidth][kWidth] = {};
+  direction.x.store(d[0]);
+  direction.y.store(d[1]);
+  direction.z.store(d[2]);
+  alignas(64) static constexpr double kSteps[kWidth] = {0, 1, 2, 3, 4, 5, 6, 7};
+  const Doubles steps = Doubles::load(kSteps);
+  for (Mask16 rest = lanes; rest != 0; rest &= rest - 1) {
+    const unsigned lane = first(rest);
+    const HullShape& hull = *table.hull[lane];
+    const Doubles x(d[0][lane]);
+    const Doubles y(d[1][lane]);
+    const Doubles z(d[2][lane]);
+    Doubles most(-__builtin_inf());
+    Doubles at(0.0);
+    for (std::uint32_t row = 0; row < hull.vertex_count; row += kWidth) {
+      const Doubles value = Doubles::load(hull.vertex[0] + row) * x +
+                            Doubles::load(hull.vertex[1] + row) * y +
+                            Doubles::load(hull.vertex[2] + row) * z;
+      const Truth higher = value > most;
+      most = select(higher, value, most);
+      at = select(higher, Doubles(static_cast<double>(row)), at);
+    }
+    most.store(best[lane]);
+    (at + steps).store(where[lane]);
+  }
+  Doubles value[kWidth];
+  Doubles index[kWidth];
+  for (int half = 0; half < 2; ++half) {
+    Doubles four[4];
+    load_rows4([&](int lane) { return best[lane] + 4 * half; }, four);
+    for (int k = 0; k < 4; ++k) value[4 * half + k] = four[k];
+    load_rows4([&](int lane) { return where[lane] + 4 * half; }, four);
+    for (int k = 0; k < 4; ++k) index[4 * half + k] = four[k];
+  }
+  for (int k = 1; k < kWidth; ++k) {
+    const Truth higher = value[k] > value[0];
+    value[0] = select(higher, value[k], value[0]);
+    index[0] = select(higher, index[k], index[0]);
+  }
+  alignas(64) double number[kWidth];
+  alignas(64) double vertex[3][kWidth] = {};
+  index[0].store(number);
+  for (Mask16 rest = lanes; rest != 0; rest &= rest - 1) {
+    const unsigned lane = first(rest);
+    const HullShape& hull = *table.hull[lane];
+    const auto named = static_cast<std::uint32_t>(number[lane]);
+    // Padding repeats vertex 0.
+    const std::uint32_t i = named < hull.vertex_count ? named : 0;
+    for (int k = 0; k < 3; ++k) vertex[k][lane] = hull.vertex[k][i];
+  }
+  return {Doubles::load(vertex[0]), Doubles::load(vertex[1]), Doubles::load(vertex[2])};
+}
+
+/// A point on the rim of radius half.x about z.
+[[gnu::always_inline]] inline Vector rim(const Vector& half, const Vector& d, const Doubles& z) {
+  const Doubles across = sqrt(d.x * d.x + d.y * d.y);
+  const Doubles share = select(across > Doubles(1e-150), half.x / across, Doubles(0.0));
+  return {d.x * share, d.y * share, z};
+}
+
+[[gnu::always_inline]] inline Vector farthest_of_corners(const MovingCore& core, const Vector& d) {
+  const Doubles on[3] = {dot(core.corner[0], d), dot(core.corner[1], d), dot(core.corner[2], d)};
+  const Truth is_first = (on[0] >= on[1]) & (on[0] >= on[2]);
+  return select(is_first, core.corner[0], select(on[1] >= on[2], core.corner[1], core.corner[2]));
+}
+
+/// A point of the core that is farthest along a direction, both in its own frame.
+[[gnu::always_inline]] inline Vector farthest(const CoreTable& table, const MovingCore& core,
+                                              const Vector& d, Mask16 lanes) {
+  const auto facing = [](const Doubles& along, const Doubles& reach) {
+    return select(along < Doubles(0.0), -reach, reach);
+  };
+  switch (table.kind) {
+    case ShapeKind::sphere:
+      return zero_vector();
+    case ShapeKind::capsule:
+      return {Doubles(0.0), Doubles(0.0), facing(d.z, core.half.z)};
+    case ShapeKind::box:
+      return {facing(d.x, core.half.x), facing(d.y, core.half.y), facing(d.z, core.half.z)};
+    case ShapeKind::cylinder:
+      return rim(core.half, d, facing(d.z, core.half.z));
+    case ShapeKind::cone: {
+      const Vector base = rim(core.half, d, -core.half.z);
+      const Vector tip{Doubles(0.0), Doubles(0.0), core.half.z};
+      return select(dot(tip, d) >= dot(base, d), tip, base);
+    }
+    case ShapeKind::triangle:
+      return farthest_of_corners(core, d);
+    default:
+      return farthest_of_hulls(table, d, lanes);
+  }
+}
+
+/// Brings a core to where it is at a time.
+[[gnu::always_inline]] inline void place(const CoreTable& table, const Doubles& time,
+                                         MovingCore& core) {
+  if (table.kind == ShapeKind::sphere) return;
+  core.axes = rotation_of(turned(core.from, core.axis, core.angle * time));
+}
+
+/// The largest distance of a rim of `radius` at height z from an axis w through the middle.
+[[gnu::always_inline]] inline Doubles rim_reach(const Doubles& radius, const Doubles& z,
+                                                const Vector& w) {
+  const Doubles across = sqrt(w.x * w.x + w.y * w.y);
+  const Doubles nearest = positive_part(abs(z * w.z) - radius * across);
+  return sqrt(positive_part(radius * radius + z * z - nearest * nearest));
+}
+
+[[gnu::always_inline]] inline Doubles box_reach(const Vector& half, const Vector& w) {
+  Doubles square(0.0);
+  for (int corner = 0; corner < 4; ++corner) {
+    const Vector v{half.x, (corner & 1) != 0 ? -half.y : half.y,
+                   (corner & 2) != 0 ? -half.z : half.z};
+    const Vector arm = cross(v, w);
+    square = max(square, dot(arm, arm));
+  }
+  return sqrt(square);
+}
+
+/// The largest distance of a core's points from the axis w, in its own frame.
+static inline Doubles reach_of(const CoreTable& table, const MovingCore& core, const Vector& w) {
+  switch (table.kind) {
+    case ShapeKind::sphere:
+      return Doubles(0.0);
+    case ShapeKind::capsule:
+      return core.half.z * sqrt(w.x * w.x + w.y * w.y);
+    case ShapeKind::box:
+      return box_reach(core.half, w);
+    case ShapeKind::cylinder:
+      return rim_reach(core.half.x, core.half.z, w);
+    case ShapeKind::cone:
+      return max(rim_reach(core.half.x, -core.half.z, w),
+                 core.half.z * sqrt(w.x * w.x + w.y * w.y));
+    case ShapeKind::triangle: {
+      Doubles square(0.0);
+      for (const Vector& corner : core.corner) {
+        const Vector arm = cross(corner, w);
+        square = max(square, dot(arm, arm));
+      }
+      return sqrt(square);
+    }
+    default:
+      // All vertices are in the ball about the hull's middle.
+      return length(cross(core.half, w)) + core.extent - core.rounding;
+  }
+}
+
+/// Loads the numbers of shapes; `shape(lane)` names them.
+template <typename Shape>
+[[gnu::always_inline]] inline void load_core(const ShapeTables& tables, Shape&& shape,
+                                             CoreTable& table, MovingCore& core) {
+  const Doubles zero(0.0);
+  core.half = zero_vector();
+  core.rounding = zero;
+  for (Vector& corner : core.corner) corner = zero_vector();
+  switch (table.kind) {
+    case ShapeKind::sphere:
+      core.rounding =
+          load_rows1([&](int lane) { return numbers(tables.spheres[shape(lane).index()]); });
+      break;
+    case ShapeKind::capsule: {
+      Doubles r[2];
+      load_rows2([&](int lane) { return numbers(tables.capsules[shape(lane).index()]); }, r);
+      core.rounding = r[0];
+      core.half.z = r[1];
+      break;
+    }
+    case ShapeKind::box: {
+      Doubles r[4];
+      load_rows4([&](int lane) { return numbers(tables.boxes[shape(lane).index()]); }, r);
+      core.half = {r[0], r[1], r[2]};
+      core.rounding = r[3];
+      break;
+    }
+    case ShapeKind::cylinder:
+    case ShapeKind::cone: {
+      const auto row = [&](int lane) {
+        return table.kind == ShapeKind::cone ? numbers(tables.cones[shape(lane).index()])
+                                             : numbers(tables.cylinders[shape(lane).index()]);
+      };
+      Doubles r[2];
+      load_rows2(row, r);
+      core.half = {r[0], r[0], r[1]};
+      core.rounding = load_rows1([&](int lane) { return row(lane) + 2; });
+      break;
+    }
+    case ShapeKind::triangle: {
+      const auto row = [&](int lane) { return numbers(tables.triangles[shape(lane).index()]); };
+      Doubles r[10];
+      for (int part = 0; part < 2; ++part) {
+        Doubles four[4];
+        load_rows4([&](int lane) { return row(lane) + 4 * part; }, four);
+        for (int k = 0; k < 4; ++k) r[4 * part + k] = four[k];
+      }
+      Doubles two[2];
+      load_rows2([&](int lane) { return row(lane) + 8; }, two);
+      core.corner[0] = {r[0], r[1], r[2]};
+      core.corner[1] = {r[3], r[4], r[5]};
+      core.corner[2] = {r[6], r[7], two[0]};
+      core.rounding = two[1];
+      break;
+    }
+    default: {
+      for (int lane = 0; lane < kWidth; ++lane) {
+        table.hull[lane] = &tables.hulls[shape(lane).index()];
+      }
+      Doubles middle[4];
+      load_rows4([&](int lane) { return table.hull[lane]->center; }, middle);
+      core.half = {middle[0], middle[1], middle[2]};
+      core.rounding = load_rows1([&](int lane) { return &table.hull[lane]->rounding; });
+      break;
+    }
+  }
+}
+
+/// Sizes of a core whose numbers are loaded.
+static inline void measure(const CoreTable& table, MovingCore& core) {
+  if (table.kind == ShapeKind::triangle) {
+    Doubles size(0.0);
+    Doubles side(0.0);
+    for (int i = 0; i < 3; ++i) {
+      size = max(size, length(core.corner[i]));
+      side = max(side, length(core.corner[(i + 1) % 3] - core.corner[i]));
+    }
+    core.size = size + core.rounding;
+    core.extent = side * Doubles(0.5) + core.rounding;
+  } else if (table.kind == ShapeKind::hull) {
+    core.extent =
+        load_rows1([&](int lane) { return &table.hull[lane]->radius; }) + core.rounding;
+    core.size = taxicab(core.half) + core.extent;
+  } else if (table.kind == ShapeKind::cylinder || table.kind == ShapeKind::cone) {
+    core.extent =
+        sqrt(core.half.x * core.half.x + core.half.z * core.half.z) + core.rounding;
+    core.size = core.extent;
+  } else {
+    core.size = length(core.half) + core.rounding;
+    core.extent = core.size;
+  }
+}
+
+/// How the core turns with its body, of a core that is measured; true where double holds it.
+template <typename Row>
+[[gnu::always_inline]] inline Truth load_turn(const CoreTable& table, Row&& motion,
+                                              MovingCore& core) {
+  constexpr double kLongest = 1e200;
+  constexpr double kLeastAngle = 1e-100;
+  const Doubles zero(0.0);
+  const Doubles one(1.0);
+  core.from = {one, zero_vector()};
+  core.axis = {zero, zero, one};
+  core.angle = core.reach = core.low = core.high = zero;
+  core.axes = rotation_of(core.from);
+  if (table.kind == ShapeKind::sphere) return zero < one;
+  Doubles q[4];
+  load_rows4([&](int lane) { return motion(lane) + kOrientationAt; }, q);
+  const Doubles square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  const Doubles shrink = one / sqrt(square);
+  core.from = {q[0] * shrink, Vector{q[1], q[2], q[3]} * shrink};
+  Doubles turn[2];
+  load_rows2([&](int lane) { return motion(lane) + kTurnAt; }, turn);
+  const Vector about{turn[0], turn[1],
+                     load_rows1([&](int lane) { return motion(lane) + kTurnAt + 2; })};
+  const Doubles angle = length(about);
+  const Truth turns = angle > Doubles(kLeastAngle);
+  core.angle = select(turns, angle, zero);
+  core.axis = select(turns, about * (one / angle), core.axis);
+  const Vector own = rotation_of(core.from).to_local(core.axis);
+  core.reach = reach_of(table, core, own) * Doubles(1.0 + kSameAxis);
+  if (table.kind == ShapeKind::hull) {
+    const Doubles height = dot(core.half, own);
+    core.low = height - core.extent;
+    core.high = height + core.extent;
+  } else {
+    core.low = dot(own, farthest(table, core, -own, 0));
+    core.high = dot(own, farthest(table, core, own, 0));
+  }
+  return (square > Doubles(1.0 / kLongest)) & (square < Doubles(kLongest));
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME::impact
