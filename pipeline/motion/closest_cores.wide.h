@@ -66,6 +66,8 @@ struct ClosestOptions {
   double share;
   const Doubles& roundings;
   const Doubles& precise;
+  /// Nothing is gained below.
+  const Doubles& noise;
 };
 
 class ClosestSearch {
@@ -83,6 +85,9 @@ class ClosestSearch {
 
  private:
   static constexpr int kMostSteps = 32;
+  /// Where a point of the simplex is the farthest, rounding may make the gap look worse than it is
+  /// by this share.
+  static constexpr double kRounding = 1e-2;
   /// A search that ends this much worse than it may be is begun anew, without what was there.
   static constexpr double kLost = 4.0;
 
@@ -129,17 +134,42 @@ class ClosestSearch {
     const Doubles left = distance - options_.roundings;
     const Doubles share =
         select(left > options_.precise, Doubles(options_.share), Doubles(0.0));
-    const Doubles known = max(Doubles(2.0 * kPlace) * square, share * distance * left);
-    const hull::SimplexNearest<double> nearest = hull::nearest_of(simplex_, w);
+    const Doubles known = max(options_.noise, share * left) * distance;
+    const hull::Simplex<double> others = without(w);
+    const Truth ends = (gain <= Doubles(kRounding) * distance * left) & holds_more_than(others);
+    const Truth close = (!fresh_) & ((gain <= known) | ends);
+    if (bits(open_ & !close) == 0) {
+      open_ = fresh_ & !fresh_;
+      return;
+    }
+    const hull::SimplexNearest<double> nearest = hull::nearest_of(others, w);
     const Doubles next_square = dot(nearest.point, nearest.point);
-    const Truth close = (!fresh_) & (gain <= known);
     const Truth stuck =
-        (!fresh_) & (!close) & (!nearest.inside) & (nearest.repeated | (next_square >= square));
+        (!fresh_) & (!close) & (!nearest.inside) & (next_square >= square);
     const Truth moves = open_ & !(close | stuck | nearest.inside);
     keep(nearest, moves, own_a, own_b, w);
     const Truth lost = open_ & stuck & (gain > known * Doubles(kLost)) & !begun_anew_;
     open_ = moves | lost;
     if (bits(lost) != 0) begin_anew(lost);
+  }
+
+  /// The simplex but for a point that is the same: the nearest feature of an old simplex need not
+  /// be the nearest any more where its points are now.
+  [[nodiscard]] hull::Simplex<double> without(const Vector& w) const {
+    hull::Simplex<double> others = simplex_;
+    for (int s = 0; s < kSlots; ++s) {
+      const Vector& p = others.point[s];
+      others.present[s] = others.present[s] & !((p.x == w.x) & (p.y == w.y) & (p.z == w.z));
+    }
+    return others;
+  }
+
+  [[nodiscard]] Truth holds_more_than(const hull::Simplex<double>& others) const {
+    Truth more = fresh_ & !fresh_;
+    for (int s = 0; s < kSlots; ++s) {
+      more = more | (simplex_.present[s] & !others.present[s]);
+    }
+    return more;
   }
 
   /// Keeps the direction that shows the most.

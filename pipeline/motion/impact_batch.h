@@ -33,15 +33,24 @@ class ImpactBatch {
   template <typename Take>
   void run(Take&& take) {
     find();
-    for (std::size_t i = 0; i < count_; ++i) take(names_[i], found_[i]);
+    for (std::size_t i = 0; i < count_; ++i) {
+      finish(i);
+      take(names_[i], found_[i]);
+    }
     count_ = 0;
   }
 
  private:
   void find() noexcept;
   void sort_by_kinds() noexcept;
-  void find_in_lanes(std::size_t begin, std::size_t end) noexcept;
-  [[nodiscard]] Impact found_of(const ImpactQuery& query, const ImpactLane& lane) const noexcept;
+  /// What lanes have left, and the caller's order.
+  void finish(std::size_t i) noexcept {
+    if (verdicts_[i] == ImpactVerdict::unsure) search(i);
+    if (mirrored_[i] && found_[i].hit) {
+      mirror_impact(*queries_[i].motion[1], *queries_[i].motion[0], found_[i]);
+    }
+  }
+  void search(std::size_t i) noexcept;
 
   const ShapeTables& tables_;
   double tolerance_;
@@ -50,6 +59,7 @@ class ImpactBatch {
   std::array<ImpactQuery, kRoom> queries_;
   std::array<bool, kRoom> mirrored_;
   std::array<Impact, kRoom> found_;
+  std::array<ImpactVerdict, kRoom> verdicts_;
   /// By kinds.
   std::array<std::uint16_t, kRoom> order_;
 };

@@ -15,6 +15,8 @@ namespace {
 constexpr double kMostWithin = 64.0;
 /// Distances need to be no better than this share of them until the last one.
 constexpr double kGoodEnough = 1e-3;
+/// Of the noise: what distances need not be better than.
+constexpr double kEnough = 0.125;
 /// More rounds take the search that has one pair alone.
 constexpr int kMostRounds = 256;
 /// Lengths whose products of six are in the range of double, and keep their digits.
@@ -82,15 +84,23 @@ class Answers {
  public:
   Answers(const ImpactJob& job, const PairBlockTables& tables) : job_(job), tables_(tables) {}
 
-  void put(Mask16 lanes, ImpactVerdict verdict, const Doubles& time) {
+  /// They are apart before.
+  void put_unsure(Mask16 lanes, const Doubles& time) {
     if (lanes == 0) return;
     alignas(64) double times[kWidth];
     time.store(times);
     for (; lanes != 0; lanes &= lanes - 1) {
       const unsigned lane = first(lanes);
-      ImpactLane& answer = job_.answers[tables_.query[lane]];
-      answer.verdict = verdict;
-      answer.time = times[lane];
+      job_.verdicts[tables_.query[lane]] = ImpactVerdict::unsure;
+      job_.found[tables_.query[lane]].time = times[lane];
+    }
+  }
+
+  void put_apart(Mask16 lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const std::uint32_t query = tables_.query[first(lanes)];
+      job_.verdicts[query] = ImpactVerdict::known;
+      job_.found[query] = {};
     }
   }
 
@@ -101,20 +111,21 @@ class Answers {
     const Vector normal = look.closest.between * (Doubles(1.0) / distance);
     const Vector point = look.closest.on_a + normal * p.a.rounding;
     const Doubles error = max(look.most - gap, gap - look.gap);
-    const Doubles columns[] = {positive_part(gap), error,   normal.x, normal.y,
-                               normal.z,           point.x, point.y,  point.z};
-    alignas(64) double stage[8][kWidth];
-    for (int k = 0; k < 8; ++k) columns[k].store(stage[k]);
-    put(lanes, ImpactVerdict::meets, p.time);
+    const Doubles columns[] = {p.time,   positive_part(gap), error,   normal.x, normal.y,
+                               normal.z, point.x,            point.y, point.z};
+    alignas(64) double stage[9][kWidth];
+    for (int k = 0; k < 9; ++k) columns[k].store(stage[k]);
     for (; lanes != 0; lanes &= lanes - 1) {
       const unsigned lane = first(lanes);
-      ImpactLane& answer = job_.answers[tables_.query[lane]];
-      answer.gap = stage[0][lane];
-      answer.error_bound = stage[1][lane];
-      for (int k = 0; k < 3; ++k) {
-        answer.normal[k] = stage[2 + k][lane];
-        answer.point[k] = stage[5 + k][lane];
-      }
+      const std::uint32_t query = tables_.query[lane];
+      job_.verdicts[query] = ImpactVerdict::known;
+      job_.found[query] = {true,
+                           stage[0][lane],
+                           stage[1][lane],
+                           stage[2][lane],
+                           {stage[3][lane], stage[4][lane], stage[5][lane]},
+                           {stage[6][lane], stage[7][lane], stage[8][lane]},
+                           0};
     }
   }
 
@@ -207,9 +218,12 @@ class ImpactStep {
   }
 
  private:
-  void end(const Truth& lanes, ImpactVerdict verdict) {
-    const Truth ended = active_ & lanes;
-    answers_.put(bits(ended), verdict, p_.time);
+  void end_unsure(const Truth& lanes) {
+    answers_.put_unsure(bits(active_ & lanes), p_.time);
+    active_ = active_ & !lanes;
+  }
+  void end_apart(const Truth& lanes) {
+    answers_.put_apart(bits(active_ & lanes));
     active_ = active_ & !lanes;
   }
 
@@ -223,8 +237,9 @@ class ImpactStep {
     const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
     then_ = gap_along(pair);
     const Doubles precise = p_.tolerance * Doubles(2.0);
-    look_.closest =
-        ClosestSearch(pair, {kGoodEnough, p_.roundings, precise}, p_.witness).run(active_);
+    const Doubles enough = look_.noise * Doubles(kEnough);
+    const ClosestOptions options{kGoodEnough, p_.roundings, precise, enough};
+    look_.closest = ClosestSearch(pair, options, p_.witness).run(active_);
     const ClosestLanes& closest = look_.closest;
     look_.gap = closest.lower - p_.roundings - look_.noise;
     look_.most = closest.upper - p_.roundings + look_.noise;
@@ -265,12 +280,12 @@ class ImpactStep {
     // Where it was not all: to be looked at from there.
     const Doubles reached = max(apart, p_.free);
     const Truth stands = proves & (!whole) & (reached <= p_.time);
-    end(stands, ImpactVerdict::unsure);
+    end_unsure(stands);
     whole_ = whole;
     p_.time = select(whole, p_.next, reached);
-    end((!whole) & (p_.time >= p_.last), ImpactVerdict::apart);
+    end_apart((!whole) & (p_.time >= p_.last));
     // Too near for double to tell, or touching.
-    end(whole & !look_.parted, ImpactVerdict::unsure);
+    end_unsure(whole & !look_.parted);
     p_.next = p_.time;
     p_.proves = Doubles(0.0);
     p_.touching = select(p_.time >= p_.touching, Doubles(__builtin_inf()), p_.touching);
@@ -305,12 +320,12 @@ class ImpactStep {
     answers_.put_meeting(bits(met), p_, look_);
     active_ = active_ & !met;
     const Doubles free = free_until();
-    end(looked & (free >= p_.last), ImpactVerdict::apart);
+    end_apart(looked & (free >= p_.last));
     const Doubles next = next_look();
     const Truth freely = next <= free;
     const Doubles moved = select(freely, free, p_.time);
     // No number left between.
-    end(looked & freely & (moved <= p_.time), ImpactVerdict::unsure);
+    end_unsure(looked & freely & (moved <= p_.time));
     p_.axis = select(looked, look_.closest.axis, p_.axis);
     p_.gap = select(looked, look_.gap, p_.gap);
     p_.slope = select(looked, look_.slope, p_.slope);
@@ -378,7 +393,7 @@ class ImpactLoad {
   [[nodiscard]] Mask16 run() {
     for (int lane = 0; lane < kWidth; ++lane) {
       const std::uint32_t at = first_ + static_cast<std::uint32_t>(lane);
-      tables_.query[lane] = at < job_.count ? at : job_.count - 1;
+      tables_.query[lane] = job_.order[at < job_.count ? at : job_.count - 1];
     }
     Truth usable = load_cores();
     load_way();
@@ -467,8 +482,8 @@ class ImpactLoad {
     p_.aim = Doubles(0.1);
     Answers answers(job_, tables_);
     const Mask16 here = lanes_below(job_.count - first_ < kWidth ? job_.count - first_ : kWidth);
-    answers.put(bits(!usable) & here, ImpactVerdict::unsure, asked_from);
-    answers.put(bits(usable & !near) & here, ImpactVerdict::apart, p_.last);
+    answers.put_unsure(bits(!usable) & here, asked_from);
+    answers.put_apart(bits(usable & !near) & here);
     const Mask16 go_on = bits(usable & near) & here;
     alignas(64) double active[kWidth];
     for (int lane = 0; lane < kWidth; ++lane) {
@@ -516,7 +531,7 @@ class ImpactRounds {
       close_ranks(lanes);
     }
     for (std::uint32_t i = 0; i < count_; ++i) {
-      Answers(job_, block_[i].tables).put(active_[i], ImpactVerdict::unsure, block_[i].lanes.time);
+      Answers(job_, block_[i].tables).put_unsure(active_[i], block_[i].lanes.time);
     }
   }
 

@@ -2,6 +2,7 @@
 
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/shapes.h>
+#include "pipeline/motion/impact.h"
 #include "simd/kernels/kernels.h"
 
 #include <cstdint>
@@ -17,19 +18,8 @@ struct ImpactQuery {
 };
 
 enum class ImpactVerdict : std::uint8_t {
-  unsure,  ///< the lanes cannot tell; apart before `time`
-  apart,   ///< within the times that were asked about
-  meets,
-};
-
-/// What lanes say of a query; all but the verdict and the time only where they meet. As of Impact.
-struct ImpactLane {
-  ImpactVerdict verdict;
-  double time;
-  double gap;
-  double error_bound;
-  double normal[3];
-  double point[3];
+  unsure,  ///< the lanes cannot tell; apart before the time
+  known,
 };
 
 /// At most so many queries per job.
@@ -39,10 +29,13 @@ inline constexpr std::uint32_t kImpactJobQueries = 64;
 struct ImpactJob {
   ShapeTables tables;
   const ImpactQuery* queries;
+  /// Which of the queries: indices, here and of the answers.
+  const std::uint16_t* order;
   std::uint32_t count;
   /// A share of the smaller size.
   double tolerance;
-  ImpactLane* answers;
+  impact::Impact* found;
+  ImpactVerdict* verdicts;
 };
 
 struct ImpactLaneKernels {

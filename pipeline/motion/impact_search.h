@@ -1,23 +1,10 @@
 #pragma once
 
 #include <winnow/pipeline/shapes.h>
+#include "pipeline/motion/impact.h"
 #include "pipeline/motion/moving_pair.h"
 
-#include <cstdint>
-
 namespace winnow::impact {
-
-/// When two shapes meet, as ImpactResult says it.
-struct Impact {
-  bool hit = false;
-  double time = 1.0;
-  double gap = 0.0;
-  double error_bound = 0.0;
-  double normal[3] = {0.0, 0.0, 0.0};
-  double point[3] = {0.0, 0.0, 0.0};
-  /// How often distances were computed.
-  std::uint32_t samples = 0;
-};
 
 /// The first impact within an interval of convex shapes that are in the tables, and valid motions;
 /// they are apart before the interval. `tolerance` is a share of the smaller shape's size.

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+
+namespace winnow::impact {
+
+/// When two shapes meet, as ImpactResult says it. Plain: kernel files include this.
+struct Impact {
+  bool hit = false;
+  double time = 1.0;
+  double gap = 0.0;
+  double error_bound = 0.0;
+  double normal[3] = {0.0, 0.0, 0.0};
+  double point[3] = {0.0, 0.0, 0.0};
+  /// How often distances were computed one pair at a time.
+  std::uint32_t samples = 0;
+};
+
+}  // namespace winnow::impact
