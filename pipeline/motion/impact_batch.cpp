@@ -23,15 +23,15 @@ constexpr std::size_t kNoLanes = kLaneKinds * kLaneKinds;
 }  // namespace
 
 void ImpactBatch::add(std::size_t name, ShapeId a, const RigidMotion& of_a, ShapeId b,
-                      const RigidMotion& of_b) noexcept {
+                      const RigidMotion& of_b, const Interval& within) noexcept {
   const bool mirrored = solver::is_prepared_mirrored(a.kind(), b.kind());
   names_[count_] = name;
   mirrored_[count_] = mirrored;
   ImpactQuery& query = queries_[count_];
   if (mirrored) {
-    query = {{b, a}, {&of_b, &of_a}, 0.0, 1.0};
+    query = {{b, a}, {&of_b, &of_a}, within.first, within.last};
   } else {
-    query = {{a, b}, {&of_a, &of_b}, 0.0, 1.0};
+    query = {{a, b}, {&of_a, &of_b}, within.first, within.last};
   }
   ++count_;
 }

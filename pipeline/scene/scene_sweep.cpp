@@ -9,14 +9,15 @@
 #include "core/sort/radix_sort.h"
 #include "core/sort/stretches.h"
 #include "pipeline/motion/body_impact.h"
+#include "pipeline/motion/impact_batch.h"
 #include "pipeline/motion/passage.h"
 #include "pipeline/scene/scene_state.h"
 #include "pipeline/shapes/difference.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 namespace winnow {
@@ -31,14 +32,23 @@ namespace {
 
 constexpr std::uint32_t kNoMover = ~0U;
 constexpr std::size_t kMoversPerStretch = 64;
-constexpr std::size_t kMoversPerTask = 8;
-constexpr std::size_t kCandidatesPerStretch = 32;
+constexpr std::size_t kCandidatesPerStretch = 256;
+/// So many pairs are looked at before what they say spares others.
+constexpr std::size_t kPairsPerRound = 1024;
+/// To so many bits pairs are ordered by when they may meet.
+constexpr unsigned kTimeBits = 20;
 
 [[nodiscard]] auto order_of(const SceneImpact& impact) noexcept {
   return std::tuple(impact.time, impact.a.id, impact.b.id);
 }
 
 }  // namespace
+
+/// A candidate, and between which times it is looked at.
+struct SweptPair {
+  std::uint32_t candidate;
+  impact::Interval within;
+};
 
 struct SweepState {
   SweepState(Scene& swept_scene, SceneState& its_state, std::pmr::memory_resource* memory) noexcept
@@ -59,7 +69,8 @@ struct SweepState {
         spare(memory),
         windows(memory),
         chances(memory),
-        first_chance(memory),
+        round(memory),
+        answers(memory),
         found(memory),
         impacts(memory),
         first(memory) {}
@@ -100,9 +111,10 @@ struct SweepState {
   Column<std::uint64_t> spare;
   /// By candidate, when the balls around the two overlap.
   Column<impact::Interval> windows;
-  /// By mover, candidates that it is one of: see `list_chances`.
-  Column<std::uint32_t> chances;
-  Column<std::uint32_t> first_chance;
+  /// Candidates whose balls meet, as (when << 32 | candidate), sorted.
+  Column<std::uint64_t> chances;
+  Column<SweptPair> round;
+  Column<impact::BodyImpact> answers;
   /// By candidate or by mover.
   Column<impact::BodyImpact> found;
   Column<SceneImpact> impacts;
@@ -126,11 +138,15 @@ struct SweepState {
     return mover == kNoMover ? RigidMotion::standing(bodies.pose[body]) : motions[mover];
   }
   [[nodiscard]] Status list_chances();
-  void find_first_of(std::uint32_t mover, const SweepOptions& options) noexcept;
+  [[nodiscard]] bool list_round(std::size_t& at) noexcept;
+  void keep_first(std::uint32_t candidate, const impact::BodyImpact& impact) noexcept;
+  [[nodiscard]] std::array<std::uint32_t, 2> bodies_of(std::uint32_t candidate) const noexcept {
+    return {static_cast<std::uint32_t>(candidates[candidate] >> 32U),
+            static_cast<std::uint32_t>(candidates[candidate])};
+  }
   [[nodiscard]] impact::Interval window_of(std::uint64_t candidate) const noexcept;
-  [[nodiscard]] impact::BodyImpact impact_of(std::uint64_t candidate,
-                                             const impact::Interval& within,
-                                             const SweepOptions& options) const noexcept;
+  void find_impacts(std::span<const SweptPair> asked, const SweepOptions& options,
+                    impact::BodyImpact* impacts_of) const noexcept;
   [[nodiscard]] SceneImpact shown(std::uint64_t candidate,
                                   const impact::BodyImpact& impact) const noexcept;
   template <typename Body>
@@ -211,12 +227,12 @@ Status SweepState::take(std::span<const Key> keys, const PoseView& ends) noexcep
   };
   if (keys.size() != ends.count) return Status::size_mismatch;
   if (!bodies.are_distinct(keys)) return Status::invalid_key;
+  if (!motions.resize(keys.size())) return Status::out_of_memory;
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (!motion_to(i).is_valid()) return Status::invalid_pose;
+    motions[i] = motion_to(i);
+    if (!motions[i].is_valid()) return Status::invalid_pose;
   }
-  const Status status = take_bodies(keys);
-  for (std::size_t i = 0; status == Status::ok && i < keys.size(); ++i) motions[i] = motion_to(i);
-  return status;
+  return take_bodies(keys);
 }
 
 Status SweepState::take(std::span<const Key> keys, std::span<const RigidMotion> given) noexcept {
@@ -369,30 +385,58 @@ impact::Interval SweepState::window_of(std::uint64_t candidate) const noexcept {
                              bodies.radius(a) + bodies.radius(b));
 }
 
-impact::BodyImpact SweepState::impact_of(std::uint64_t candidate, const impact::Interval& within,
-                                         const SweepOptions& options) const noexcept {
-  const auto a = static_cast<std::uint32_t>(candidate >> 32U);
-  const auto b = static_cast<std::uint32_t>(candidate);
-  impact::BodyImpact result =
-      impact::find_impact_of_balls(parts, {bodies.shape[a], motion_of(a)},
-                                   {bodies.shape[b], motion_of(b)}, options.tolerance, within);
-  const bool touches = result.impact.time == 0.0 && result.impact.gap <= 0.0;
-  if (touches && !options.touching) result.impact.hit = false;
-  return result;
+/// The first impacts of no more pairs than fit into a batch; `impacts_of` gets one of each.
+void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptions& options,
+                              impact::BodyImpact* impacts_of) const noexcept {
+  impact::ImpactBatch batch(bodies.shapes.tables(), options.tolerance);
+  std::array<RigidMotion, impact::ImpactBatch::kRoom> standing;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    if (asked[i].within.first > asked[i].within.last) {
+      impacts_of[i] = {};
+      continue;
+    }
+    const auto [a, b] = bodies_of(asked[i].candidate);
+    // At most one of the two stands.
+    const auto motion = [&](std::uint32_t body) -> const RigidMotion& {
+      if (mover_of[body] != kNoMover) return motions[mover_of[body]];
+      return standing[i] = RigidMotion::standing(bodies.pose[body]);
+    };
+    const RigidMotion& of_a = motion(a);
+    const RigidMotion& of_b = motion(b);
+    if (impact::ImpactBatch::takes(bodies.shape[a], bodies.shape[b])) {
+      batch.add(i, bodies.shape[a], of_a, bodies.shape[b], of_b, asked[i].within);
+    } else {
+      impacts_of[i] =
+          impact::find_impact_of_balls(parts, {bodies.shape[a], of_a}, {bodies.shape[b], of_b},
+                                       options.tolerance, asked[i].within);
+    }
+  }
+  batch.run([&](std::size_t i, const impact::Impact& impact) { impacts_of[i] = {impact}; });
+  if (options.touching) return;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    impact::Impact& impact = impacts_of[i].impact;
+    if (impact.time == 0.0 && impact.gap <= 0.0) impact.hit = false;
+  }
 }
 
 /// The first impact of every pair.
 Status SweepState::find_all(const SweepOptions& options) {
   if (!found.resize(candidates.size())) return Status::out_of_memory;
-  for_stretches(bodies.options.execution, candidates.size(), kCandidatesPerStretch,
-                [&](std::size_t begin, std::size_t end) {
-                  for (std::size_t i = begin; i < end; ++i) {
-                    const impact::Interval window = window_of(candidates[i]);
-                    found[i] = {};
-                    if (window.first > window.last) continue;
-                    found[i] = impact_of(candidates[i], window, options);
-                  }
-                });
+  for_stretches(
+      bodies.options.execution, candidates.size(), impact::ImpactBatch::kRoom,
+      [&](std::size_t begin, std::size_t end) {
+        std::array<SweptPair, impact::ImpactBatch::kRoom> asked;
+        for (std::size_t i = begin; i < end; ++i) {
+          const impact::Interval window = window_of(candidates[i]);
+          const bool convex = std::ranges::none_of(
+              bodies_of(static_cast<std::uint32_t>(i)),
+              [&](std::uint32_t body) { return bodies.shape[body].is_composite(); });
+          const bool whole = convex && window.first <= window.last;
+          asked[i - begin] = {static_cast<std::uint32_t>(i),
+                              whole ? impact::Interval{0.0, 1.0} : window};
+        }
+        find_impacts({asked.data(), end - begin}, options, found.data() + begin);
+      });
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (found[i].impact.hit && !impacts.push_back(shown(candidates[i], found[i]))) {
       return Status::out_of_memory;
@@ -401,51 +445,54 @@ Status SweepState::find_all(const SweepOptions& options) {
   return Status::ok;
 }
 
-/// Lists the candidates of each mover whose balls meet, the first that do first.
+/// Lists the candidates whose balls meet, the first that do first.
 Status SweepState::list_chances() {
   const std::size_t count = candidates.size();
-  if (!windows.resize(count) || !chances.resize(2 * count) ||
-      !first_chance.resize(movers.size() + 1)) {
-    return Status::out_of_memory;
-  }
+  if (!windows.resize(count) || !chances.resize(count)) return Status::out_of_memory;
   for_stretches(bodies.options.execution, count, kCandidatesPerStretch,
                 [&](std::size_t begin, std::size_t end) {
                   for (std::size_t i = begin; i < end; ++i) windows[i] = window_of(candidates[i]);
                 });
-  const auto each = [&](auto&& take) {
-    for (std::uint32_t i = 0; i < count; ++i) {
-      if (windows[i].first > windows[i].last) continue;
-      for (const auto body : {static_cast<std::uint32_t>(candidates[i] >> 32U),
-                              static_cast<std::uint32_t>(candidates[i])}) {
-        if (mover_of[body] != kNoMover) take(mover_of[body], i);
-      }
-    }
-  };
-  // Ends become beginnings as the places before them are taken.
-  std::fill(first_chance.begin(), first_chance.end(), 0U);
-  each([&](std::uint32_t mover, std::uint32_t) { ++first_chance[mover]; });
-  std::inclusive_scan(first_chance.begin(), first_chance.end(), first_chance.begin());
-  each([&](std::uint32_t mover, std::uint32_t i) { chances[--first_chance[mover]] = i; });
+  std::size_t size = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (windows[i].first > windows[i].last) continue;
+    const auto when = static_cast<std::uint64_t>(windows[i].first * ((1U << kTimeBits) - 1U));
+    chances[size++] = when << 32U | i;
+  }
+  const std::uint64_t* const sorted =
+      radix_sort(chances.data(), spare.data(), size, kTimeBits, bodies.options.execution);
+  if (sorted != chances.data()) std::copy_n(sorted, size, chances.data());
+  chances.set_size(size);
   return Status::ok;
 }
 
-/// The first impact of a mover and which candidate it is of.
-void SweepState::find_first_of(std::uint32_t mover, const SweepOptions& options) noexcept {
-  std::uint32_t* const begin = chances.data() + first_chance[mover];
-  std::uint32_t* const end = chances.data() + first_chance[mover + 1];
-  std::sort(begin, end, [&](std::uint32_t i, std::uint32_t k) {
-    return std::tuple(windows[i].first, i) < std::tuple(windows[k].first, k);
-  });
-  found[mover] = {};
-  first[mover] = kNoImpact;
-  double best = 1.0;
-  for (const std::uint32_t* at = begin; at != end && windows[*at].first <= best; ++at) {
-    const impact::Interval within{windows[*at].first, std::min(windows[*at].last, best)};
-    const impact::BodyImpact other = impact_of(candidates[*at], within, options);
-    if (!other.impact.hit || (found[mover].impact.hit && !(other.impact.time < best))) continue;
-    found[mover] = other;
-    first[mover] = *at;
-    best = other.impact.time;
+/// Fills a round with chances from `at` on: those that may be the first one of a body. False if
+/// memory was refused.
+bool SweepState::list_round(std::size_t& at) noexcept {
+  round.clear();
+  for (; at < chances.size() && round.size() < kPairsPerRound; ++at) {
+    const auto candidate = static_cast<std::uint32_t>(chances[at]);
+    double latest = 0.0;
+    for (const std::uint32_t body : bodies_of(candidate)) {
+      const std::uint32_t mover = mover_of[body];
+      if (mover != kNoMover) latest = std::max(latest, found[mover].impact.time);
+    }
+    const impact::Interval& window = windows[candidate];
+    const impact::Interval within{window.first, std::min(window.last, latest)};
+    if (within.first <= within.last && !round.push_back({candidate, within})) return false;
+  }
+  return answers.resize(round.size());
+}
+
+/// For each of the two whose first impact it is so far.
+void SweepState::keep_first(std::uint32_t candidate, const impact::BodyImpact& impact) noexcept {
+  if (!impact.impact.hit) return;
+  for (const std::uint32_t body : bodies_of(candidate)) {
+    const std::uint32_t mover = mover_of[body];
+    if (mover == kNoMover) continue;
+    if (first[mover] != kNoImpact && !(impact.impact.time < found[mover].impact.time)) continue;
+    found[mover] = impact;
+    first[mover] = candidate;
   }
 }
 
@@ -453,24 +500,28 @@ Status SweepState::find_first(const SweepOptions& options) {
   if (const Status status = list_chances(); status != Status::ok) return status;
   const std::size_t count = movers.size();
   if (!found.resize(count)) return Status::out_of_memory;
-  for_stretches(bodies.options.execution, count, kMoversPerTask,
-                [&](std::size_t begin, std::size_t end) {
-                  for (std::size_t i = begin; i < end; ++i) {
-                    find_first_of(static_cast<std::uint32_t>(i), options);
-                  }
-                });
+  std::fill(found.begin(), found.end(), impact::BodyImpact{});
+  std::fill(first.begin(), first.end(), kNoImpact);
+  for (std::size_t at = 0; at < chances.size();) {
+    if (!list_round(at)) return Status::out_of_memory;
+    for_stretches(bodies.options.execution, round.size(), impact::ImpactBatch::kRoom,
+                  [&](std::size_t begin, std::size_t end) {
+                    find_impacts({round.data() + begin, end - begin}, options,
+                                 answers.data() + begin);
+                  });
+    for (std::size_t i = 0; i < round.size(); ++i) keep_first(round[i].candidate, answers[i]);
+  }
   for (std::uint32_t mover = 0; mover < count; ++mover) {
     if (first[mover] == kNoImpact) continue;
-    // What is the first impact of both is shown once, as the one that found it earlier has it.
-    const std::uint64_t candidate = candidates[first[mover]];
-    const auto a = static_cast<std::uint32_t>(candidate >> 32U);
-    const auto b = static_cast<std::uint32_t>(candidate);
-    const std::uint32_t other = mover_of[movers[mover] == a ? b : a];
-    if (other != kNoMover && first[other] == first[mover] &&
-        std::tuple(found[other].impact.time, other) < std::tuple(found[mover].impact.time, mover)) {
-      continue;
+    // What is the first impact of both is shown once.
+    const bool shown_before = std::ranges::any_of(bodies_of(first[mover]), [&](std::uint32_t body) {
+      const std::uint32_t other = mover_of[body];
+      return other < mover && first[other] == first[mover];
+    });
+    if (shown_before) continue;
+    if (!impacts.push_back(shown(candidates[first[mover]], found[mover]))) {
+      return Status::out_of_memory;
     }
-    if (!impacts.push_back(shown(candidate, found[mover]))) return Status::out_of_memory;
   }
   return Status::ok;
 }
@@ -577,7 +628,7 @@ Footprint SceneSweep::footprint() const noexcept {
        {s.ways.footprint().total(), s.motions.bytes(), s.movers.bytes(), s.mover_of.bytes(),
         s.first_piece.bytes(), s.boxes.bytes(), s.pieces.bytes(), s.piece_of.bytes(),
         s.piece_keys.bytes(), s.pairs.footprint().total(), s.candidates.bytes(), s.spare.bytes(),
-        s.windows.bytes(), s.chances.bytes(), s.first_chance.bytes(), s.found.bytes()}) {
+        s.windows.bytes(), s.chances.bytes(), s.round.bytes(), s.answers.bytes(), s.found.bytes()}) {
     sum.scratch += bytes;
   }
   sum.results += s.impacts.bytes();
