@@ -35,12 +35,17 @@ struct CorePair {
   [[gnu::always_inline]] Vector on_a(const Vector& own) const { return to_world(table_a, a, own); }
   /// From the middle of b.
   [[gnu::always_inline]] Vector on_b(const Vector& own) const { return to_world(table_b, b, own); }
+  [[gnu::always_inline]] Vector own_facing(const CoreTable& table, const MovingCore& core,
+                                           const Vector& direction, Mask16 lanes) const {
+    if (table.kind == ShapeKind::sphere) return zero_vector();
+    return farthest(table, core, core.axes.to_local(direction), lanes);
+  }
   /// What of each core is farthest towards the other along a direction from a to b, in their own
   /// frames.
   [[gnu::always_inline]] void facing(const Vector& direction, Mask16 lanes, Vector& own_a,
                                      Vector& own_b) const {
-    own_a = farthest(table_a, a, a.axes.to_local(direction), lanes);
-    own_b = farthest(table_b, b, b.axes.to_local(-direction), lanes);
+    own_a = own_facing(table_a, a, direction, lanes);
+    own_b = own_facing(table_b, b, -direction, lanes);
   }
 };
 

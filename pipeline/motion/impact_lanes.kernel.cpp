@@ -5,7 +5,7 @@
 
 #include "pipeline/motion/impact_lanes.kernel.h"
 
-#include "pipeline/motion/closest_cores.wide.h"
+#include "pipeline/motion/closed_forms.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::impact {
@@ -236,16 +236,21 @@ class ImpactStep {
                   Doubles(32.0 * kPlace) * (length(look_.between) + p_.sizes);
     const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
     then_ = gap_along(pair);
-    const Doubles precise = p_.tolerance * Doubles(2.0);
-    const Doubles enough = look_.noise * Doubles(kEnough);
-    const ClosestOptions options{kGoodEnough, p_.roundings, precise, enough};
-    look_.closest = ClosestSearch(pair, options, p_.witness).run(active_);
+    look_.closest = closest_points(pair);
     const ClosestLanes& closest = look_.closest;
     look_.gap = closest.lower - p_.roundings - look_.noise;
     look_.most = closest.upper - p_.roundings + look_.noise;
     look_.slope = dot(closest.axis, p_.travel) + speed_along(p_.b, closest.axis, closest.on_b) -
                   speed_along(p_.a, closest.axis, closest.on_a);
     look_.parted = look_.gap > Doubles(0.0);
+  }
+
+  [[nodiscard]] ClosestLanes closest_points(const CorePair& pair) {
+    if (has_closed_form(tables_.a.kind, tables_.b.kind)) return closest_by_form(pair);
+    const Doubles precise = p_.tolerance * Doubles(2.0);
+    const Doubles enough = look_.noise * Doubles(kEnough);
+    const ClosestOptions options{kGoodEnough, p_.roundings, precise, enough};
+    return ClosestSearch(pair, options, p_.witness).run(active_);
   }
 
   /// The gap along the axis of the last look, where the lanes are placed.

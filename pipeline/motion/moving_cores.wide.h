@@ -128,8 +128,14 @@ struct CoreTable {
 static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& direction,
                                        Mask16 lanes) {
   alignas(64) double d[3][kWidth];
-  alignas(64) double best[kWidth][kWidth] = {};
-  alignas(64) double where[kWidth][kWidth] = {};
+  alignas(64) double best[kWidth][kWidth];
+  alignas(64) double where[kWidth][kWidth];
+  if (lanes != kAllLanes<double>) {
+    for (int lane = 0; lane < kWidth; ++lane) {
+      Doubles(0.0).store(best[lane]);
+      Doubles(0.0).store(where[lane]);
+    }
+  }
   direction.x.store(d[0]);
   direction.y.store(d[1]);
   direction.z.store(d[2]);
@@ -142,17 +148,19 @@ static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& dir
     const Doubles y(d[1][lane]);
     const Doubles z(d[2][lane]);
     Doubles most(-__builtin_inf());
-    Doubles at(0.0);
+    Doubles at = steps;
+    Doubles here = steps;
     for (std::uint32_t row = 0; row < hull.vertex_count; row += kWidth) {
       const Doubles value = Doubles::load(hull.vertex[0] + row) * x +
                             Doubles::load(hull.vertex[1] + row) * y +
                             Doubles::load(hull.vertex[2] + row) * z;
       const Truth higher = value > most;
       most = select(higher, value, most);
-      at = select(higher, Doubles(static_cast<double>(row)), at);
+      at = select(higher, here, at);
+      here += Doubles(kWidth);
     }
     most.store(best[lane]);
-    (at + steps).store(where[lane]);
+    at.store(where[lane]);
   }
   Doubles value[kWidth];
   Doubles index[kWidth];

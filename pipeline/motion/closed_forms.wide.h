@@ -1,0 +1,127 @@
+#pragma once
+
+// Closest points of cores that are points and segments, by the closed forms of the narrow phase.
+
+#include "pipeline/kernels/round/round.wide.h"
+#include "pipeline/motion/closest_cores.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME::impact {
+
+/// Pairs of kinds, in their order, whose closest points need no search.
+[[nodiscard]] constexpr bool has_closed_form(ShapeKind a, ShapeKind b) {
+  const bool of_point = a == ShapeKind::sphere && b != ShapeKind::cone && b != ShapeKind::hull;
+  return of_point ||
+         (a == ShapeKind::capsule && (b == ShapeKind::capsule || b == ShapeKind::triangle));
+}
+
+/// From a point of a to the closest of b, and that point from the middle of a.
+struct ClosestWay {
+  Vector way;
+  Vector on_a;
+};
+
+/// The point of a core that is closest to `p`, which is outside, both in its own frame.
+[[gnu::always_inline]] inline Vector nearest_to(const CoreTable& table, const MovingCore& core,
+                                                const Vector& p) {
+  const Doubles zero(0.0);
+  const auto within = [](const Doubles& x, const Doubles& reach) {
+    return min(max(x, -reach), reach);
+  };
+  switch (table.kind) {
+    case ShapeKind::capsule:
+      return {zero, zero, within(p.z, core.half.z)};
+    case ShapeKind::box:
+      return {within(p.x, core.half.x), within(p.y, core.half.y), within(p.z, core.half.z)};
+    case ShapeKind::cylinder: {
+      const Doubles across = sqrt(p.x * p.x + p.y * p.y);
+      const Doubles share =
+          select(across > core.half.x, core.half.x / across, Doubles(1.0));
+      return {p.x * share, p.y * share, within(p.z, core.half.z)};
+    }
+    default:
+      return zero_vector();
+  }
+}
+
+/// From the segment s u, |s| <= half, of a to the triangle of b; both in the frame of b, whose
+/// middle is at `offset`. A half of 0 makes it a point.
+static inline round::NearestCandidate<double> nearest_of_triangle(const MovingCore& b,
+                                                                  const Vector& offset,
+                                                                  const Vector& u,
+                                                                  const Doubles& half,
+                                                                  bool is_point) {
+  const Doubles zero(0.0);
+  const Doubles one(1.0);
+  const TriangleLanes<double> triangle{{b.corner[0], b.corner[1], b.corner[2]}, b.rounding};
+  const round::TriangleView<double> view = round::view_triangle(triangle, offset);
+  round::NearestCandidate<double> nearest{zero_vector(), Doubles(__builtin_inf()), zero, zero};
+  for (int i = 0; i < 3; ++i) {
+    Doubles s = zero;
+    Doubles t;
+    if (is_point) {
+      const Doubles place = -dot(view.vertex[i], view.edge[i]) / view.square[i];
+      t = select(view.square[i] > zero, max(min(place, one), zero), zero);
+    } else {
+      const Vector across = cross(u, view.edge[i]);
+      const auto feet = round::closest_feet(
+          u, half, {view.vertex[i], view.edge[i], view.square[i], zero, one}, across,
+          one / dot(across, across));
+      s = feet.s;
+      t = feet.t;
+    }
+    const Vector w = view.vertex[i] + view.edge[i] * t - u * s;
+    round::nearer(nearest, zero < one, w, s, zero);
+  }
+  for (const Doubles& s : {-half, half}) {
+    round::nearer_in_face(nearest, view, u * s, s);
+    if (is_point) break;
+  }
+  return nearest;
+}
+
+[[gnu::always_inline]] inline ClosestWay closest_way(const CorePair& pair) {
+  const Doubles zero(0.0);
+  const bool is_point = pair.table_a.kind == ShapeKind::sphere;
+  if (pair.table_b.kind == ShapeKind::sphere) return {pair.between, zero_vector()};
+  if (pair.table_b.kind == ShapeKind::triangle) {
+    const Vector u = is_point ? zero_vector() : pair.b.axes.to_local(pair.a.axes.z);
+    const Doubles half = is_point ? zero : pair.a.half.z;
+    const auto nearest =
+        nearest_of_triangle(pair.b, pair.b.axes.to_local(pair.between), u, half, is_point);
+    return {pair.b.axes.to_world(nearest.w),
+            is_point ? zero_vector() : pair.a.axes.z * nearest.s};
+  }
+  if (is_point) {
+    const Vector nearest =
+        nearest_to(pair.table_b, pair.b, pair.b.axes.to_local(-pair.between));
+    return {pair.between + pair.b.axes.to_world(nearest), zero_vector()};
+  }
+  const Vector& u = pair.a.axes.z;
+  const Vector& e = pair.b.axes.z;
+  const Vector across = cross(u, e);
+  const auto feet = round::closest_feet(
+      u, pair.a.half.z, {pair.between, e, Doubles(1.0), -pair.b.half.z, pair.b.half.z}, across,
+      Doubles(1.0) / dot(across, across));
+  return {pair.between + e * feet.t - u * feet.s, u * feet.s};
+}
+
+/// Of cores whose kinds have a closed form, and the proof of what is said: along the way between
+/// the closest points they are apart by as much as their farthest points say.
+static inline ClosestLanes closest_by_form(const CorePair& pair) {
+  const ClosestWay closest = closest_way(pair);
+  ClosestLanes found;
+  found.between = closest.way;
+  found.upper = length(closest.way);
+  found.axis = closest.way * (Doubles(1.0) / found.upper);
+  found.on_a = closest.on_a;
+  found.on_b = closest.way + closest.on_a - pair.between;
+  Vector own_a;
+  Vector own_b;
+  pair.facing(found.axis, 0, own_a, own_b);
+  found.high_a = dot(found.axis, pair.on_a(own_a));
+  found.high_b = -dot(found.axis, pair.on_b(own_b));
+  found.lower = dot(found.axis, pair.between) - found.high_a - found.high_b;
+  return found;
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME::impact
