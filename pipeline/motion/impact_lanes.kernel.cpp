@@ -36,8 +36,6 @@ struct PairLanes {
   Doubles still_noise;
   Doubles tolerance;
   Doubles last;
-  WitnessLanes witness;
-
   /// They are apart before; and what is known of them then, by a look.
   Doubles time;
   Vector axis;
@@ -53,8 +51,8 @@ struct PairLanes {
   Doubles within;
   /// 1 while there is more to do.
   Doubles active;
+  WitnessLanes witness;
 };
-constexpr int kNumbers = static_cast<int>(sizeof(PairLanes) / sizeof(Doubles));
 
 struct PairBlockTables {
   CoreTable a;
@@ -268,6 +266,13 @@ class ImpactStep {
   /// the new one where that is all of the way.
   void advance(const Vector& axis, const Doubles& gap) {
     const Truth proves = p_.proves > Doubles(0.0);
+    if (bits(active_ & proves) == 0) {
+      whole_ = active_;
+      p_.time = p_.next;
+      end_unsure(!look_.parted);
+      forget_touching();
+      return;
+    }
     const Doubles width = p_.next - p_.time;
     const Doubles apart = proved(axis, gap, width);
     const Truth whole = (!proves) | (apart >= p_.next);
@@ -293,6 +298,10 @@ class ImpactStep {
     end_unsure(whole & !look_.parted);
     p_.next = p_.time;
     p_.proves = Doubles(0.0);
+    forget_touching();
+  }
+
+  void forget_touching() {
     p_.touching = select(p_.time >= p_.touching, Doubles(__builtin_inf()), p_.touching);
   }
 
@@ -306,6 +315,7 @@ class ImpactStep {
     const Doubles eighth = width * width * Doubles(0.125);
     const Doubles above = gap - target;
     Doubles share = share_above(above, then_ - target, curvature(p_, axis) * eighth);
+    if (bits(active_ & !(share >= Doubles(1.0))) == 0) return p_.next;
     const Doubles bent = curvature_between(p_, axis, look_.closest.axis, width, look_.between);
     const Doubles turning = share_above(above, look_.gap - target, bent * eighth);
     share = select(look_.parted & (turning > share), turning, share);
@@ -504,12 +514,35 @@ class ImpactLoad {
   Doubles span_;
 };
 
-/// Gives the place of a lane to another one.
+/// Copies a lane of members that lie one after the other, up to a number of bytes.
+template <typename Members>
+inline void move_members(const Members& from, unsigned lane_from, Members& to, unsigned lane_to,
+                         std::size_t bytes) {
+  const auto* const source = reinterpret_cast<const double*>(&from) + lane_from;
+  auto* const target = reinterpret_cast<double*>(&to) + lane_to;
+  const std::size_t end = bytes / sizeof(double);
+  for (std::size_t i = 0; i < end; i += kWidth) target[i] = source[i];
+}
+
+/// Gives the place of a lane to another one, as far as more than the next look is made of it.
 inline void move_lane(const ImpactBlock& from, unsigned lane_from, ImpactBlock& to,
                       unsigned lane_to) {
-  const auto* const source = reinterpret_cast<const double*>(&from.lanes);
-  auto* const target = reinterpret_cast<double*>(&to.lanes);
-  for (int i = 0; i < kNumbers; ++i) target[i * kWidth + lane_to] = source[i * kWidth + lane_from];
+  constexpr std::size_t kCore = offsetof(MovingCore, corner);
+  constexpr std::size_t kTriangle = offsetof(MovingCore, axes);
+  constexpr std::size_t kCores = offsetof(PairLanes, start);
+  constexpr std::size_t kPair = offsetof(PairLanes, witness) - kCores;
+  const PairLanes& source = from.lanes;
+  PairLanes& target = to.lanes;
+  const ShapeKind a = to.tables.a.kind;
+  const ShapeKind b = to.tables.b.kind;
+  move_members(source.a, lane_from, target.a, lane_to,
+               a == ShapeKind::triangle ? kTriangle : kCore);
+  move_members(source.b, lane_from, target.b, lane_to,
+               b == ShapeKind::triangle ? kTriangle : kCore);
+  move_members(source.start, lane_from, target.start, lane_to, kPair);
+  if (!has_closed_form(a, b)) {
+    move_members(source.witness, lane_from, target.witness, lane_to, sizeof(WitnessLanes));
+  }
   to.tables.a.hull[lane_to] = from.tables.a.hull[lane_from];
   to.tables.b.hull[lane_to] = from.tables.b.hull[lane_from];
   to.tables.query[lane_to] = from.tables.query[lane_from];

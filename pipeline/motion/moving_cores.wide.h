@@ -107,13 +107,13 @@ struct MovingCore {
   Doubles high;
   /// Box: half extents. Segment, cylinder, cone: radius, radius, half length. Hull: its middle.
   Vector half;
-  /// Of a triangle.
-  Vector corner[3];
   Doubles rounding;
   /// No point of the shape is farther from the body's position.
   Doubles size;
   /// Of which tolerances are shares.
   Doubles extent;
+  /// Of a triangle.
+  Vector corner[3];
   /// Where it is placed: its axes in the world.
   Rotation<double> axes;
 };
