@@ -34,8 +34,7 @@ struct ClosestWay {
       return {within(p.x, core.half.x), within(p.y, core.half.y), within(p.z, core.half.z)};
     case ShapeKind::cylinder: {
       const Doubles across = sqrt(p.x * p.x + p.y * p.y);
-      const Doubles share =
-          select(across > core.half.x, core.half.x / across, Doubles(1.0));
+      const Doubles share = select(across > core.half.x, core.half.x / across, Doubles(1.0));
       return {p.x * share, p.y * share, within(p.z, core.half.z)};
     }
     default:
@@ -63,9 +62,9 @@ static inline round::NearestCandidate<double> nearest_of_triangle(const MovingCo
       t = select(view.square[i] > zero, max(min(place, one), zero), zero);
     } else {
       const Vector across = cross(u, view.edge[i]);
-      const auto feet = round::closest_feet(
-          u, half, {view.vertex[i], view.edge[i], view.square[i], zero, one}, across,
-          one / dot(across, across));
+      const auto feet =
+          round::closest_feet(u, half, {view.vertex[i], view.edge[i], view.square[i], zero, one},
+                              across, one / dot(across, across));
       s = feet.s;
       t = feet.t;
     }
@@ -88,12 +87,10 @@ static inline round::NearestCandidate<double> nearest_of_triangle(const MovingCo
     const Doubles half = is_point ? zero : pair.a.half.z;
     const auto nearest =
         nearest_of_triangle(pair.b, pair.b.axes.to_local(pair.between), u, half, is_point);
-    return {pair.b.axes.to_world(nearest.w),
-            is_point ? zero_vector() : pair.a.axes.z * nearest.s};
+    return {pair.b.axes.to_world(nearest.w), is_point ? zero_vector() : pair.a.axes.z * nearest.s};
   }
   if (is_point) {
-    const Vector nearest =
-        nearest_to(pair.table_b, pair.b, pair.b.axes.to_local(-pair.between));
+    const Vector nearest = nearest_to(pair.table_b, pair.b, pair.b.axes.to_local(-pair.between));
     return {pair.between + pair.b.axes.to_world(nearest), zero_vector()};
   }
   const Vector& u = pair.a.axes.z;

@@ -80,16 +80,16 @@ class ClosestSearch {
   ClosestSearch(const CorePair& pair, const ClosestOptions& options, WitnessLanes& witness)
       : pair_(pair), options_(options), witness_(witness) {}
 
-  [[nodiscard]] ClosestLanes run(const Truth& lanes) {
+  /// Ends after so many steps, with bounds that hold all the same.
+  [[nodiscard]] ClosestLanes run(const Truth& lanes, int most_steps) {
     begin();
     open_ = lanes;
-    for (int step = 0; bits(open_) != 0 && step < kMostSteps; ++step) advance();
+    for (int step = 0; bits(open_) != 0 && step < most_steps; ++step) advance();
     finish();
     return found_;
   }
 
  private:
-  static constexpr int kMostSteps = 32;
   /// Where a point of the simplex is the farthest, rounding may make the gap look worse than it is
   /// by this share.
   static constexpr double kRounding = 1e-2;
@@ -111,8 +111,7 @@ class ClosestSearch {
     gap_ = from;
     if (bits(kept) == 0) return;
     for (int s = 0; s < kSlots; ++s) {
-      simplex_.point[s] =
-          pair_.between + pair_.on_b(witness_.b[s]) - pair_.on_a(witness_.a[s]);
+      simplex_.point[s] = pair_.between + pair_.on_b(witness_.b[s]) - pair_.on_a(witness_.a[s]);
     }
     hull::Simplex<double> others = simplex_;
     others.present[0] = zero > Doubles(1.0);
@@ -137,8 +136,7 @@ class ClosestSearch {
 
     const Doubles gain = square - reach;
     const Doubles left = distance - options_.roundings;
-    const Doubles share =
-        select(left > options_.precise, Doubles(options_.share), Doubles(0.0));
+    const Doubles share = select(left > options_.precise, Doubles(options_.share), Doubles(0.0));
     const Doubles known = max(options_.noise, share * left) * distance;
     const hull::Simplex<double> others = without(w);
     const Truth ends = (gain <= Doubles(kRounding) * distance * left) & holds_more_than(others);
@@ -149,8 +147,7 @@ class ClosestSearch {
     }
     const hull::SimplexNearest<double> nearest = hull::nearest_of(others, w);
     const Doubles next_square = dot(nearest.point, nearest.point);
-    const Truth stuck =
-        (!fresh_) & (!close) & (!nearest.inside) & (next_square >= square);
+    const Truth stuck = (!fresh_) & (!close) & (!nearest.inside) & (next_square >= square);
     const Truth moves = open_ & !(close | stuck | nearest.inside);
     keep(nearest, moves, own_a, own_b, w);
     const Truth lost = open_ & stuck & (gain > known * Doubles(kLost)) & !begun_anew_;
@@ -178,8 +175,7 @@ class ClosestSearch {
   }
 
   /// Keeps the direction that shows the most.
-  void note(const Doubles& distance, const Doubles& reach, const Vector& on_a,
-            const Vector& on_b) {
+  void note(const Doubles& distance, const Doubles& reach, const Vector& on_a, const Vector& on_b) {
     const Truth better = open_ & (reach > found_.lower * distance);
     const Doubles over = Doubles(1.0) / distance;
     const Vector axis = gap_ * over;
@@ -199,8 +195,7 @@ class ClosestSearch {
       simplex_.point[s] = select(take, w, simplex_.point[s]);
       witness_.a[s] = select(take, own_a, witness_.a[s]);
       witness_.b[s] = select(take, own_b, witness_.b[s]);
-      simplex_.present[s] =
-          (moves & (take | nearest.keep[s])) | ((!moves) & simplex_.present[s]);
+      simplex_.present[s] = (moves & (take | nearest.keep[s])) | ((!moves) & simplex_.present[s]);
     }
     gap_ = select(moves, nearest.point, gap_);
     fresh_ = fresh_ & !moves;
@@ -230,8 +225,8 @@ class ClosestSearch {
     const Doubles area = square[0] * square[1] - mixed * mixed;
     const Truth wide = area > square[0] * square[1] * Doubles(1e-14);
     const Doubles over = one / select(wide, area, one);
-    const Doubles s = select(wide, (along[0] * square[1] - along[1] * mixed) * over,
-                             along[0] / square[0]);
+    const Doubles s =
+        select(wide, (along[0] * square[1] - along[1] * mixed) * over, along[0] / square[0]);
     const Doubles t = select(wide, (along[1] * square[0] - along[0] * mixed) * over, zero);
     found_.between = gap_;
     found_.upper = length(gap_);

@@ -1,6 +1,10 @@
 #include "pipeline/motion/impact_batch.h"
 
+#include "pipeline/kernels/kernels.h"
 #include "pipeline/solver/problem.h"
+
+#include <algorithm>
+#include <span>
 
 namespace winnow {
 
@@ -19,6 +23,68 @@ constexpr std::size_t kNoLanes = kLaneKinds * kLaneKinds;
   if (!has_impact_lanes(a) || !has_impact_lanes(b)) return kNoLanes;
   return static_cast<std::size_t>(a) * kLaneKinds + static_cast<std::size_t>(b);
 }
+
+/// Distances of pairs of one pair of kinds at the start of their motions, in lanes.
+class StartDistances {
+ public:
+  explicit StartDistances(const ShapeTables& tables) noexcept {
+    job_.tables = tables;
+    job_.pairs = pairs_.data();
+    job_.shapes = shapes_.data();
+    job_.poses = poses_.data();
+    job_.distance = distance_.data();
+    job_.error_bound = error_bound_.data();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      job_.normal[axis] = normal_[axis].data();
+      job_.point[axis] = point_[axis].data();
+    }
+    job_.uncertified = uncertified_.data();
+  }
+
+  void add(std::size_t query, const ImpactQuery& asked) noexcept {
+    queries_[job_.count] = query;
+    pairs_[job_.count] = {2 * job_.count, 2 * job_.count + 1};
+    for (std::size_t side = 0; side < 2; ++side) {
+      shapes_[2 * job_.count + side] = asked.shape[side];
+      poses_[2 * job_.count + side] = asked.motion[side]->start;
+    }
+    ++job_.count;
+  }
+
+  /// Calls take(query, impact) for those that surely overlap.
+  template <typename Take>
+  void run(Take&& take) noexcept {
+    if (job_.count == 0) return;
+    const NarrowKernels* const kernels = narrow_kernels(shapes_[0].kind(), shapes_[1].kind());
+    if (kernels == nullptr) return;
+    const std::uint32_t left = kernels->robust[kernel_index(ContactLevel::distance)](job_);
+    for (std::uint32_t i = 0; i < left; ++i) distance_[uncertified_[i]] = 1.0;
+    for (std::size_t i = 0; i < job_.count; ++i) {
+      if (!(distance_[i] <= 0.0)) continue;
+      take(queries_[i], Impact{true,
+                               0.0,
+                               distance_[i],
+                               error_bound_[i],
+                               {normal_[0][i], normal_[1][i], normal_[2][i]},
+                               {point_[0][i], point_[1][i], point_[2][i]}});
+    }
+  }
+
+ private:
+  template <typename T>
+  using Row = std::array<T, kImpactJobQueries>;
+
+  NarrowJob job_{};
+  Row<std::size_t> queries_;
+  Row<BodyPair> pairs_;
+  std::array<ShapeId, 2 * kImpactJobQueries> shapes_;
+  std::array<Pose, 2 * kImpactJobQueries> poses_;
+  Row<double> distance_;
+  Row<double> error_bound_;
+  Row<double> normal_[3];
+  Row<double> point_[3];
+  Row<std::uint32_t> uncertified_;
+};
 
 }  // namespace
 
@@ -47,17 +113,33 @@ void ImpactBatch::sort_by_kinds() noexcept {
   }
 }
 
+/// Of pairs that lanes could not tell at the start: most share a point there.
+void ImpactBatch::find_starts(const ImpactJob& job) noexcept {
+  const std::span<const std::uint16_t> asked(job.order, job.count);
+  const auto at_start = [&](std::uint16_t query) {
+    return verdicts_[query] == ImpactVerdict::unsure && found_[query].time == 0.0;
+  };
+  if (std::ranges::none_of(asked, at_start)) return;
+  StartDistances starts(tables_);
+  for (const std::uint16_t query : asked) {
+    if (at_start(query)) starts.add(query, queries_[query]);
+  }
+  starts.run([&](std::size_t query, const Impact& impact) {
+    found_[query] = impact;
+    verdicts_[query] = ImpactVerdict::known;
+  });
+}
+
 void ImpactBatch::search(std::size_t i) noexcept {
   const ImpactQuery& query = queries_[i];
-  found_[i] = find_impact(tables_, {query.shape[0], *query.motion[0]},
-                          {query.shape[1], *query.motion[1]}, tolerance_,
-                          {found_[i].time, query.last});
+  found_[i] =
+      find_impact(tables_, {query.shape[0], *query.motion[0]}, {query.shape[1], *query.motion[1]},
+                  tolerance_, {found_[i].time, query.last});
 }
 
 void ImpactBatch::find() noexcept {
   sort_by_kinds();
-  ImpactJob job{tables_,    queries_.data(), nullptr,         0,
-                tolerance_, found_.data(),   verdicts_.data()};
+  ImpactJob job{tables_, queries_.data(), nullptr, 0, tolerance_, found_.data(), verdicts_.data()};
   for (std::size_t at = 0; at < count_; at += job.count) {
     const std::size_t kinds = kinds_of(queries_[order_[at]]);
     job.order = order_.data() + at;
@@ -68,6 +150,7 @@ void ImpactBatch::find() noexcept {
     }
     if (kinds != kNoLanes) {
       impact_lane_kernels().run(job);
+      find_starts(job);
       continue;
     }
     for (std::uint32_t i = 0; i < job.count; ++i) {

@@ -27,8 +27,8 @@ class ImpactBatch {
   }
   /// `name` is what the answer is given with. The motions, which are valid, outlive the next run;
   /// they are apart before the interval.
-  void add(std::size_t name, ShapeId a, const RigidMotion& of_a, ShapeId b,
-           const RigidMotion& of_b, const Interval& within = {0.0, 1.0}) noexcept;
+  void add(std::size_t name, ShapeId a, const RigidMotion& of_a, ShapeId b, const RigidMotion& of_b,
+           const Interval& within = {0.0, 1.0}) noexcept;
 
   /// Calls take(name, impact) for every pair that was added, in any order, and forgets them.
   template <typename Take>
@@ -51,6 +51,7 @@ class ImpactBatch {
       mirror_impact(*queries_[i].motion[1], *queries_[i].motion[0], found_[i]);
     }
   }
+  void find_starts(const ImpactJob& job) noexcept;
   void search(std::size_t i) noexcept;
 
   const ShapeTables& tables_;

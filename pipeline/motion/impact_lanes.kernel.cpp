@@ -1,7 +1,8 @@
 // When two moving cores in each lane first meet, as impact_search.cpp derives it, which answers
-// what the lanes cannot tell: pairs that touch or all but touch where they are looked at. Each round
-// looks once at all pairs of a job; lanes of pairs that are done are then given to others, so that a
-// hard pair does not hold seven easy ones. What is said of a pair does not depend on the others.
+// what the lanes cannot tell: pairs that touch or all but touch where they are looked at. Each
+// round looks once at all pairs of a job; lanes of pairs that are done are then given to others, so
+// that a hard pair does not hold seven easy ones. What is said of a pair does not depend on the
+// others.
 
 #include "pipeline/motion/impact_lanes.kernel.h"
 
@@ -17,6 +18,8 @@ constexpr double kMostWithin = 64.0;
 constexpr double kGoodEnough = 1e-3;
 /// Of the noise: what distances need not be better than.
 constexpr double kEnough = 0.125;
+/// Steps of one search for closest points; more are not needed but where rounding leads astray.
+constexpr int kMostSteps = 32;
 /// More rounds take the search that has one pair alone.
 constexpr int kMostRounds = 256;
 /// Lengths whose products of six are in the range of double, and keep their digits.
@@ -109,8 +112,8 @@ class Answers {
     const Vector normal = look.closest.between * (Doubles(1.0) / distance);
     const Vector point = look.closest.on_a + normal * p.a.rounding;
     const Doubles error = max(look.most - gap, gap - look.gap);
-    const Doubles columns[] = {p.time,   positive_part(gap), error,   normal.x, normal.y,
-                               normal.z, point.x,            point.y, point.z};
+    const Doubles columns[] = {
+        p.time, positive_part(gap), error, normal.x, normal.y, normal.z, point.x, point.y, point.z};
     alignas(64) double stage[9][kWidth];
     for (int k = 0; k < 9; ++k) columns[k].store(stage[k]);
     for (; lanes != 0; lanes &= lanes - 1) {
@@ -181,8 +184,8 @@ class Answers {
   const Doubles speed = way + swing_a + swing_b;
   const Doubles far = length(between) + width * way + p.sizes;
   const Doubles below = width * (rate * far + speed);
-  const Doubles all = swing_a * p.a.angle + swing_b * p.b.angle + rate * speed * Doubles(2.0) +
-                      rate * rate * below;
+  const Doubles all =
+      swing_a * p.a.angle + swing_b * p.b.angle + rate * speed * Doubles(2.0) + rate * rate * below;
   return select(turned <= Doubles(1.0), all, Doubles(__builtin_inf()));
 }
 
@@ -191,16 +194,18 @@ class Answers {
 [[gnu::always_inline]] inline Doubles swept_high(const MovingCore& core, const Vector& axis,
                                                  const Doubles& high) {
   const Doubles along = dot(axis, core.axis);
-  const Doubles swept = max(along * core.low, along * core.high) +
-                        length(cross(axis, core.axis)) * core.reach;
+  const Doubles swept =
+      max(along * core.low, along * core.high) + length(cross(axis, core.axis)) * core.reach;
   return select(core.angle > Doubles(0.0), swept, high);
 }
 
 class ImpactStep {
  public:
-  ImpactStep(const ImpactJob& job, ImpactBlock& block)
+  /// `coarse`: the first look, before which nothing is known.
+  ImpactStep(const ImpactJob& job, ImpactBlock& block, bool coarse)
       : p_(block.lanes),
         tables_(block.tables),
+        coarse_(coarse && !has_closed_form(tables_.a.kind, tables_.b.kind)),
         answers_(job, block.tables),
         active_(p_.active > Doubles(0.0)) {}
 
@@ -230,8 +235,7 @@ class ImpactStep {
     place(tables_.a, p_.next, p_.a);
     place(tables_.b, p_.next, p_.b);
     look_.between = p_.start + p_.travel * p_.next;
-    look_.noise = p_.still_noise +
-                  Doubles(32.0 * kPlace) * (length(look_.between) + p_.sizes);
+    look_.noise = p_.still_noise + Doubles(32.0 * kPlace) * (length(look_.between) + p_.sizes);
     const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
     then_ = gap_along(pair);
     look_.closest = closest_points(pair);
@@ -248,7 +252,7 @@ class ImpactStep {
     const Doubles precise = p_.tolerance * Doubles(2.0);
     const Doubles enough = look_.noise * Doubles(kEnough);
     const ClosestOptions options{kGoodEnough, p_.roundings, precise, enough};
-    return ClosestSearch(pair, options, p_.witness).run(active_);
+    return ClosestSearch(pair, options, p_.witness).run(active_, coarse_ ? 1 : kMostSteps);
   }
 
   /// The gap along the axis of the last look, where the lanes are placed.
@@ -269,7 +273,9 @@ class ImpactStep {
     if (bits(active_ & proves) == 0) {
       whole_ = active_;
       p_.time = p_.next;
-      end_unsure(!look_.parted);
+      // What a coarse look does not tell apart is looked at again.
+      if (coarse_) whole_ = whole_ & look_.parted;
+      end_unsure(whole_ & !look_.parted);
       forget_touching();
       return;
     }
@@ -277,15 +283,14 @@ class ImpactStep {
     const Doubles apart = proved(axis, gap, width);
     const Truth whole = (!proves) | (apart >= p_.next);
     const Doubles left = p_.touching;
-    p_.touching = select(proves & !look_.parted,
-                         min(left, p_.time + width * Doubles(0.75)), left);
+    p_.touching = select(proves & !look_.parted, min(left, p_.time + width * Doubles(0.75)), left);
     // The error of a prediction falls with the square of the step, and so by the gap as a share of
     // it.
     const Doubles over = Doubles(1.0) / gap;
     const Doubles expected = gap + p_.slope * width;
     const Doubles aim = abs(look_.gap - expected) * over * look_.gap * over * Doubles(4.0);
-    const Doubles bounded = select(aim > Doubles(1e-9), select(aim < Doubles(0.25), aim,
-                                                               Doubles(0.25)), Doubles(1e-9));
+    const Doubles bounded =
+        select(aim > Doubles(1e-9), select(aim < Doubles(0.25), aim, Doubles(0.25)), Doubles(1e-9));
     p_.aim = select(proves & whole, bounded, p_.aim);
     // Where it was not all: to be looked at from there.
     const Doubles reached = max(apart, p_.free);
@@ -309,8 +314,7 @@ class ImpactStep {
   /// it to that of the new one.
   [[nodiscard]] Doubles proved(const Vector& axis, const Doubles& gap, const Doubles& way) const {
     const Doubles width = way * Doubles(1.0 + 4.0 * kPlace);
-    const Doubles least =
-        select(look_.parted & (look_.gap < gap), look_.gap, gap);
+    const Doubles least = select(look_.parted & (look_.gap < gap), look_.gap, gap);
     const Doubles target = min(p_.tolerance * Doubles(0.25), least * Doubles(0.5));
     const Doubles eighth = width * width * Doubles(0.125);
     const Doubles above = gap - target;
@@ -327,8 +331,7 @@ class ImpactStep {
   void decide() {
     const Truth looked = active_ & whole_;
     if (bits(looked) == 0) return;
-    const Truth near =
-        looked & (look_.most <= max(p_.tolerance, look_.noise * Doubles(8.0)));
+    const Truth near = looked & (look_.most <= max(p_.tolerance, look_.noise * Doubles(8.0)));
     const Truth meets = look_.gap + look_.slope * (p_.last - p_.time) <= Doubles(0.0);
     p_.within = select(near & !meets, p_.within + Doubles(1.0), p_.within);
     const Truth met = near & (meets | (p_.within > Doubles(kMostWithin)));
@@ -378,8 +381,7 @@ class ImpactStep {
     // step is below the square of the sum of the roots of the gaps at both ends.
     const Doubles bend = curvature(p_, look_.closest.axis);
     const Truth bends = bend > zero;
-    const Doubles flat =
-        sqrt(look_.gap * Doubles(2.0) / select(bends, bend, Doubles(1.0)));
+    const Doubles flat = sqrt(look_.gap * Doubles(2.0) / select(bends, bend, Doubles(1.0)));
     const Doubles left = Doubles(1.0) + look_.slope * flat / look_.gap;
     const Doubles rest = select(left > zero, select(left < Doubles(1.0), left, Doubles(1.0)), zero);
     const Doubles most = flat * Doubles(0.95) * (Doubles(1.0) + sqrt(rest));
@@ -389,6 +391,7 @@ class ImpactStep {
 
   PairLanes& p_;
   const PairBlockTables& tables_;
+  bool coarse_;
   Answers answers_;
   Truth active_;
   /// The new look is where they are surely apart until.
@@ -432,9 +435,11 @@ class ImpactLoad {
       CoreTable& table = side == 0 ? tables_.a : tables_.b;
       MovingCore& core = side == 0 ? p_.a : p_.b;
       table.kind = query(0).shape[side].kind();
-      load_core(job_.tables, [&](int lane) { return query(lane).shape[side]; }, table, core);
+      load_core(
+          job_.tables, [&](int lane) { return query(lane).shape[side]; }, table, core);
       measure(table, core);
-      usable = usable & load_turn(table, [&](int lane) { return motion(side, lane); }, core);
+      usable = usable & load_turn(
+                            table, [&](int lane) { return motion(side, lane); }, core);
     }
     return usable;
   }
@@ -563,7 +568,7 @@ class ImpactRounds {
     for (int round = 0; count_ > 0 && round < kMostRounds; ++round) {
       std::uint32_t lanes = 0;
       for (std::uint32_t i = 0; i < count_; ++i) {
-        active_[i] = ImpactStep(job_, block_[i]).run();
+        active_[i] = ImpactStep(job_, block_[i], round == 0).run();
         lanes += winnow::WINNOW_ISA_NAME::count(active_[i]);
       }
       close_ranks(lanes);

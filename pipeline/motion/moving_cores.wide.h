@@ -364,12 +364,10 @@ static inline void measure(const CoreTable& table, MovingCore& core) {
     core.size = size + core.rounding;
     core.extent = side * Doubles(0.5) + core.rounding;
   } else if (table.kind == ShapeKind::hull) {
-    core.extent =
-        load_rows1([&](int lane) { return &table.hull[lane]->radius; }) + core.rounding;
+    core.extent = load_rows1([&](int lane) { return &table.hull[lane]->radius; }) + core.rounding;
     core.size = taxicab(core.half) + core.extent;
   } else if (table.kind == ShapeKind::cylinder || table.kind == ShapeKind::cone) {
-    core.extent =
-        sqrt(core.half.x * core.half.x + core.half.z * core.half.z) + core.rounding;
+    core.extent = sqrt(core.half.x * core.half.x + core.half.z * core.half.z) + core.rounding;
     core.size = core.extent;
   } else {
     core.size = length(core.half) + core.rounding;

@@ -14,6 +14,20 @@ namespace {
   return normalized(tame(pose.orientation));
 }
 
+/// Squares that neither overflow nor vanish need no scaling.
+[[nodiscard]] double length(const Vec& v) noexcept {
+  const double square = v.squaredNorm();
+  return square > 1e-200 && square < 1e200 ? std::sqrt(square) : v.stableNorm();
+}
+
+/// Of length 1: turned by a share of a turn, whose angle is `rate`, from an orientation.
+[[nodiscard]] Quaternion turn_at(const Quaternion& from, const double (&turn)[3], double rate,
+                                 double time) noexcept {
+  if (rate == 0.0) return from;
+  const double axis[3] = {turn[0] / rate, turn[1] / rate, turn[2] / rate};
+  return turned(from, axis, time * rate);
+}
+
 [[nodiscard]] Quaternion inverse(const Quaternion& unit) noexcept {
   return {unit[0], -unit[1], -unit[2], -unit[3]};
 }
@@ -49,20 +63,23 @@ Passage::Passage(const PartTraversal& parts, const RigidMotion& frame,
       apart_(Vec::Map(difference(shape.motion.start.position, frame.start.position).difference)),
       travel_(Vec::Map(shape.motion.travel) - Vec::Map(frame.travel)),
       frame_rate_(length_of(frame.turn)),
-      shape_rate_(length_of(shape.motion.turn)) {}
+      shape_rate_(length_of(shape.motion.turn)),
+      frame_from_(unit_orientation(frame.start)),
+      shape_from_(unit_orientation(shape.motion.start)) {}
 
 Vec Passage::between(double time) const noexcept {
   const Vec bodies = apart_ + time * travel_;
   if (shape_.arm == 0.0) return bodies;
-  const Eigen::Matrix3d axes = rotation_of_unit(unit_orientation(shape_.motion.at(time)));
+  const Eigen::Matrix3d axes =
+      rotation_of_unit(turn_at(shape_from_, shape_.motion.turn, shape_rate_, time));
   return bodies + axes * Vec::Map(shape_.shape.pose.position);
 }
 
 Passage::Place Passage::place(double time) const noexcept {
-  const Quaternion frame = unit_orientation(frame_.at(time));
+  const Quaternion frame = turn_at(frame_from_, frame_.turn, frame_rate_, time);
   const Eigen::Matrix3d axes = rotation_of_unit(frame);
   return {axes.transpose() * between(time),
-          product(inverse(frame), unit_orientation(shape_.motion.at(time)))};
+          product(inverse(frame), turn_at(shape_from_, shape_.motion.turn, shape_rate_, time))};
 }
 
 /// The shape where its body is so turned, about its own position.
@@ -75,11 +92,10 @@ PreciseBox Passage::about(const Quaternion& turn) const noexcept {
 }
 
 double Passage::farthest(const Interval& within) const noexcept {
-  const double ends = std::max((apart_ + within.first * travel_).stableNorm(),
-                               (apart_ + within.last * travel_).stableNorm());
-  const double speed = travel_.stableNorm() + shape_rate_ * shape_.arm;
-  const double from_first =
-      between(within.first).stableNorm() + speed * (within.last - within.first);
+  const double ends =
+      std::max(length(apart_ + within.first * travel_), length(apart_ + within.last * travel_));
+  const double speed = length(travel_) + shape_rate_ * shape_.arm;
+  const double from_first = length(between(within.first)) + speed * (within.last - within.first);
   return std::min(ends + shape_.arm, from_first) * (1.0 + mid::kSlack);
 }
 
@@ -91,7 +107,7 @@ double Passage::turning_bend(double width) const noexcept {
 double Passage::path_bend(double far, double width) const noexcept {
   const double turned = frame_rate_ * width;
   const double own = shape_rate_ * width;
-  const double way = travel_.stableNorm() * width + own * shape_.arm;
+  const double way = length(travel_) * width + own * shape_.arm;
   return 0.125 * (turned * (turned * far + 2.0 * way) + own * own * shape_.arm);
 }
 
@@ -103,8 +119,7 @@ double Passage::bend(const Interval& within) const noexcept {
 BoxSweep Passage::sweep(const Interval& within) const noexcept {
   const double width = within.last - within.first;
   const double far = farthest(within);
-  const double slack =
-      8.0 * mid::kSlack * (apart_.stableNorm() + travel_.stableNorm() + shape_.radius);
+  const double slack = 8.0 * mid::kSlack * (length(apart_) + length(travel_) + shape_.radius);
   const double path = path_bend(far, width);
   const Vec ball = Vec::Constant(shape_.own_radius);
   if (!std::isfinite(shape_.radius) || path > far) {

@@ -76,6 +76,9 @@ class Passage {
   Vec travel_;
   double frame_rate_;
   double shape_rate_;
+  /// At the start, of length 1.
+  Quaternion frame_from_;
+  Quaternion shape_from_;
 };
 
 }  // namespace winnow::impact

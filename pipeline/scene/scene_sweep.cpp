@@ -18,6 +18,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 namespace winnow {
@@ -36,7 +37,7 @@ constexpr std::size_t kCandidatesPerStretch = 256;
 /// So many pairs are looked at before what they say spares others.
 constexpr std::size_t kPairsPerRound = 1024;
 /// To so many bits pairs are ordered by when they may meet.
-constexpr unsigned kTimeBits = 20;
+constexpr unsigned kTimeBits = 11;
 
 [[nodiscard]] auto order_of(const SceneImpact& impact) noexcept {
   return std::tuple(impact.time, impact.a.id, impact.b.id);
@@ -70,6 +71,7 @@ struct SweepState {
         windows(memory),
         chances(memory),
         round(memory),
+        listed(memory),
         answers(memory),
         found(memory),
         impacts(memory),
@@ -113,7 +115,9 @@ struct SweepState {
   Column<impact::Interval> windows;
   /// Candidates whose balls meet, as (when << 32 | candidate), sorted.
   Column<std::uint64_t> chances;
+  /// By kinds of shapes, and as they were listed.
   Column<SweptPair> round;
+  Column<SweptPair> listed;
   Column<impact::BodyImpact> answers;
   /// By candidate or by mover.
   Column<impact::BodyImpact> found;
@@ -133,18 +137,24 @@ struct SweepState {
   [[nodiscard]] bool count_pieces() noexcept;
   void box_way(std::uint32_t mover) noexcept;
   [[nodiscard]] Status take_bodies(std::span<const Key> keys) noexcept;
+  [[nodiscard]] const double (&start_of(std::uint32_t body) const noexcept)[3] {
+    const std::uint32_t mover = mover_of[body];
+    return mover == kNoMover ? bodies.pose[body].position : motions[mover].start.position;
+  }
   [[nodiscard]] RigidMotion motion_of(std::uint32_t body) const noexcept {
     const std::uint32_t mover = mover_of[body];
     return mover == kNoMover ? RigidMotion::standing(bodies.pose[body]) : motions[mover];
   }
   [[nodiscard]] Status list_chances();
   [[nodiscard]] bool list_round(std::size_t& at) noexcept;
+  [[nodiscard]] bool sort_round() noexcept;
   void keep_first(std::uint32_t candidate, const impact::BodyImpact& impact) noexcept;
   [[nodiscard]] std::array<std::uint32_t, 2> bodies_of(std::uint32_t candidate) const noexcept {
     return {static_cast<std::uint32_t>(candidates[candidate] >> 32U),
             static_cast<std::uint32_t>(candidates[candidate])};
   }
   [[nodiscard]] impact::Interval window_of(std::uint64_t candidate) const noexcept;
+  [[nodiscard]] impact::Interval chance_of(std::uint64_t candidate) const noexcept;
   void find_impacts(std::span<const SweptPair> asked, const SweepOptions& options,
                     impact::BodyImpact* impacts_of) const noexcept;
   [[nodiscard]] SceneImpact shown(std::uint64_t candidate,
@@ -371,18 +381,27 @@ impact::Interval SweepState::window_of(std::uint64_t candidate) const noexcept {
   constexpr double kStands[3] = {0.0, 0.0, 0.0};
   const auto a = static_cast<std::uint32_t>(candidate >> 32U);
   const auto b = static_cast<std::uint32_t>(candidate);
-  const auto start = [&](std::uint32_t body) -> const double(&)[3] {
-    const std::uint32_t mover = mover_of[body];
-    return mover == kNoMover ? bodies.pose[body].position : motions[mover].start.position;
-  };
   const auto travel = [&](std::uint32_t body) -> const double(&)[3] {
     const std::uint32_t mover = mover_of[body];
     return mover == kNoMover ? kStands : motions[mover].travel;
   };
-  const Difference apart = difference(start(b), start(a));
+  const Difference apart = difference(start_of(b), start_of(a));
   return impact::ball_window(Eigen::Vector3d::Map(apart.difference),
                              Eigen::Vector3d::Map(travel(b)) - Eigen::Vector3d::Map(travel(a)),
                              bodies.radius(a) + bodies.radius(b));
+}
+
+/// The window of a candidate, or all the time where convex shapes are near each other from the
+/// start: most are, and the search for their impact ends it.
+impact::Interval SweepState::chance_of(std::uint64_t candidate) const noexcept {
+  const auto a = static_cast<std::uint32_t>(candidate >> 32U);
+  const auto b = static_cast<std::uint32_t>(candidate);
+  if (impact::ImpactBatch::takes(bodies.shape[a], bodies.shape[b])) {
+    const Difference apart = difference(start_of(b), start_of(a));
+    const double reach = bodies.radius(a) + bodies.radius(b);
+    if (Eigen::Vector3d::Map(apart.difference).squaredNorm() < reach * reach) return {0.0, 1.0};
+  }
+  return window_of(candidate);
 }
 
 /// The first impacts of no more pairs than fit into a batch; `impacts_of` gets one of each.
@@ -422,21 +441,20 @@ void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptio
 /// The first impact of every pair.
 Status SweepState::find_all(const SweepOptions& options) {
   if (!found.resize(candidates.size())) return Status::out_of_memory;
-  for_stretches(
-      bodies.options.execution, candidates.size(), impact::ImpactBatch::kRoom,
-      [&](std::size_t begin, std::size_t end) {
-        std::array<SweptPair, impact::ImpactBatch::kRoom> asked;
-        for (std::size_t i = begin; i < end; ++i) {
-          const impact::Interval window = window_of(candidates[i]);
-          const bool convex = std::ranges::none_of(
-              bodies_of(static_cast<std::uint32_t>(i)),
-              [&](std::uint32_t body) { return bodies.shape[body].is_composite(); });
-          const bool whole = convex && window.first <= window.last;
-          asked[i - begin] = {static_cast<std::uint32_t>(i),
-                              whole ? impact::Interval{0.0, 1.0} : window};
-        }
-        find_impacts({asked.data(), end - begin}, options, found.data() + begin);
-      });
+  for_stretches(bodies.options.execution, candidates.size(), impact::ImpactBatch::kRoom,
+                [&](std::size_t begin, std::size_t end) {
+                  std::array<SweptPair, impact::ImpactBatch::kRoom> asked;
+                  for (std::size_t i = begin; i < end; ++i) {
+                    const impact::Interval window = window_of(candidates[i]);
+                    const bool convex = std::ranges::none_of(
+                        bodies_of(static_cast<std::uint32_t>(i)),
+                        [&](std::uint32_t body) { return bodies.shape[body].is_composite(); });
+                    const bool whole = convex && window.first <= window.last;
+                    asked[i - begin] = {static_cast<std::uint32_t>(i),
+                                        whole ? impact::Interval{0.0, 1.0} : window};
+                  }
+                  find_impacts({asked.data(), end - begin}, options, found.data() + begin);
+                });
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (found[i].impact.hit && !impacts.push_back(shown(candidates[i], found[i]))) {
       return Status::out_of_memory;
@@ -451,7 +469,7 @@ Status SweepState::list_chances() {
   if (!windows.resize(count) || !chances.resize(count)) return Status::out_of_memory;
   for_stretches(bodies.options.execution, count, kCandidatesPerStretch,
                 [&](std::size_t begin, std::size_t end) {
-                  for (std::size_t i = begin; i < end; ++i) windows[i] = window_of(candidates[i]);
+                  for (std::size_t i = begin; i < end; ++i) windows[i] = chance_of(candidates[i]);
                 });
   std::size_t size = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -469,8 +487,8 @@ Status SweepState::list_chances() {
 /// Fills a round with chances from `at` on: those that may be the first one of a body. False if
 /// memory was refused.
 bool SweepState::list_round(std::size_t& at) noexcept {
-  round.clear();
-  for (; at < chances.size() && round.size() < kPairsPerRound; ++at) {
+  listed.clear();
+  for (; at < chances.size() && listed.size() < kPairsPerRound; ++at) {
     const auto candidate = static_cast<std::uint32_t>(chances[at]);
     double latest = 0.0;
     for (const std::uint32_t body : bodies_of(candidate)) {
@@ -479,9 +497,27 @@ bool SweepState::list_round(std::size_t& at) noexcept {
     }
     const impact::Interval& window = windows[candidate];
     const impact::Interval within{window.first, std::min(window.last, latest)};
-    if (within.first <= within.last && !round.push_back({candidate, within})) return false;
+    if (within.first <= within.last && !listed.push_back({candidate, within})) return false;
   }
-  return answers.resize(round.size());
+  return sort_round() && answers.resize(round.size());
+}
+
+/// Pairs of the same kinds are next to each other, so that batches have few kinds.
+bool SweepState::sort_round() noexcept {
+  constexpr std::size_t kKinds = 16;
+  const auto kinds_of = [&](const SweptPair& pair) {
+    const auto [a, b] = bodies_of(pair.candidate);
+    const auto kind = [&](std::uint32_t body) {
+      return static_cast<std::size_t>(bodies.shape[body].kind()) % kKinds;
+    };
+    return std::min(kind(a), kind(b)) * kKinds + std::max(kind(a), kind(b));
+  };
+  if (!round.resize(listed.size())) return false;
+  std::array<std::uint32_t, kKinds * kKinds + 1> place{};
+  for (const SweptPair& pair : listed) ++place[kinds_of(pair) + 1];
+  std::partial_sum(place.begin(), place.end(), place.begin());
+  for (const SweptPair& pair : listed) round[place[kinds_of(pair)]++] = pair;
+  return true;
 }
 
 /// For each of the two whose first impact it is so far.
@@ -490,7 +526,11 @@ void SweepState::keep_first(std::uint32_t candidate, const impact::BodyImpact& i
   for (const std::uint32_t body : bodies_of(candidate)) {
     const std::uint32_t mover = mover_of[body];
     if (mover == kNoMover) continue;
-    if (first[mover] != kNoImpact && !(impact.impact.time < found[mover].impact.time)) continue;
+    const double time = found[mover].impact.time;
+    if (first[mover] != kNoImpact &&
+        std::tuple(time, first[mover]) <= std::tuple(impact.impact.time, candidate)) {
+      continue;
+    }
     found[mover] = impact;
     first[mover] = candidate;
   }
@@ -504,11 +544,11 @@ Status SweepState::find_first(const SweepOptions& options) {
   std::fill(first.begin(), first.end(), kNoImpact);
   for (std::size_t at = 0; at < chances.size();) {
     if (!list_round(at)) return Status::out_of_memory;
-    for_stretches(bodies.options.execution, round.size(), impact::ImpactBatch::kRoom,
-                  [&](std::size_t begin, std::size_t end) {
-                    find_impacts({round.data() + begin, end - begin}, options,
-                                 answers.data() + begin);
-                  });
+    for_stretches(
+        bodies.options.execution, round.size(), impact::ImpactBatch::kRoom,
+        [&](std::size_t begin, std::size_t end) {
+          find_impacts({round.data() + begin, end - begin}, options, answers.data() + begin);
+        });
     for (std::size_t i = 0; i < round.size(); ++i) keep_first(round[i].candidate, answers[i]);
   }
   for (std::uint32_t mover = 0; mover < count; ++mover) {
@@ -628,7 +668,8 @@ Footprint SceneSweep::footprint() const noexcept {
        {s.ways.footprint().total(), s.motions.bytes(), s.movers.bytes(), s.mover_of.bytes(),
         s.first_piece.bytes(), s.boxes.bytes(), s.pieces.bytes(), s.piece_of.bytes(),
         s.piece_keys.bytes(), s.pairs.footprint().total(), s.candidates.bytes(), s.spare.bytes(),
-        s.windows.bytes(), s.chances.bytes(), s.round.bytes(), s.answers.bytes(), s.found.bytes()}) {
+        s.windows.bytes(), s.chances.bytes(), s.round.bytes(), s.listed.bytes(), s.answers.bytes(),
+        s.found.bytes()}) {
     sum.scratch += bytes;
   }
   sum.results += s.impacts.bytes();
