@@ -115,7 +115,7 @@ class ClosestSearch {
     }
     hull::Simplex<double> others = simplex_;
     others.present[0] = zero > Doubles(1.0);
-    const hull::SimplexNearest<double> nearest = hull::nearest_of(others, simplex_.point[0]);
+    const hull::SimplexNearest<double> nearest = nearest_of(others, simplex_.point[0], kept);
     gap_ = select(kept, nearest.point, from);
     for (int s = 1; s < kSlots; ++s) {
       simplex_.present[s] = simplex_.present[s] & nearest.keep[s];
@@ -145,7 +145,7 @@ class ClosestSearch {
       open_ = fresh_ & !fresh_;
       return;
     }
-    const hull::SimplexNearest<double> nearest = hull::nearest_of(others, w);
+    const hull::SimplexNearest<double> nearest = nearest_of(others, w, open_);
     const Doubles next_square = dot(nearest.point, nearest.point);
     const Truth stuck = (!fresh_) & (!close) & (!nearest.inside) & (next_square >= square);
     const Truth moves = open_ & !(close | stuck | nearest.inside);
@@ -153,6 +153,17 @@ class ClosestSearch {
     const Truth lost = open_ & stuck & (gain > known * Doubles(kLost)) & !begun_anew_;
     open_ = moves | lost;
     if (bits(lost) != 0) begin_anew(lost);
+  }
+
+  /// The nearest feature with a new point, which needs no search where no lane has another one.
+  [[nodiscard]] static hull::SimplexNearest<double> nearest_of(const hull::Simplex<double>& others,
+                                                               const Vector& w,
+                                                               const Truth& lanes) {
+    Truth has = lanes & others.present[0];
+    for (int s = 1; s < kSlots; ++s) has = has | (lanes & others.present[s]);
+    if (bits(has) != 0) return hull::nearest_of(others, w);
+    const Truth none = has & !has;
+    return {w, {none, none, none}, none, none, none};
   }
 
   /// The simplex but for a point that is the same: the nearest feature of an old simplex need not
