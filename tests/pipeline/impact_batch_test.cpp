@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/time_of_impact.h>
+#include <winnow/simd/isa.h>
 
-#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <span>
 #include <vector>
 
 #include "pipeline/motion/impact_search.h"
