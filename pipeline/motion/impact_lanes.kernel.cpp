@@ -161,7 +161,7 @@ class Answers {
 }
 
 [[gnu::always_inline]] inline Doubles acceleration(const MovingCore& core, const Vector& axis) {
-  const Doubles across = length(cross(axis, core.axis)) + Doubles(kSameAxis);
+  const Doubles across = length(cross(axis, core.axis)) + Doubles(kAxisDoubt);
   return core.angle * core.angle * across * core.reach;
 }
 

@@ -15,7 +15,7 @@ inline constexpr int kWidth = Doubles::kCount;
 /// The distance from 1 to the next number.
 inline constexpr double kPlace = 0x1p-52;
 /// Axes that differ by less are the same: what that changes is counted as noise.
-inline constexpr double kSameAxis = 16.0 * kPlace;
+inline constexpr double kAxisDoubt = 16.0 * kPlace;
 
 [[gnu::always_inline]] inline Vector zero_vector() {
   const Doubles zero(0.0);
@@ -402,7 +402,7 @@ template <typename Row>
   core.angle = select(turns, angle, zero);
   core.axis = select(turns, about * (one / angle), core.axis);
   const Vector own = rotation_of(core.from).to_local(core.axis);
-  core.reach = reach_of(table, core, own) * Doubles(1.0 + kSameAxis);
+  core.reach = reach_of(table, core, own) * Doubles(1.0 + kAxisDoubt);
   if (table.kind == ShapeKind::hull) {
     const Doubles height = dot(core.half, own);
     core.low = height - core.extent;
