@@ -192,7 +192,7 @@ class SpatialIndex {
   // Unless the structure prunes rows or is flat it serves all queries but pairs, and is made when
   // the first one comes.
   mutable BlockTree regular_tree_;
-  Column<Held> waiting_;  // to be taken, with what was reserved for them
+  Column<Held> waiting_;            // to be taken, with what was reserved for them
   mutable float leaf_edge_ = 0.0F;  // of a typical block
   mutable std::atomic<bool> queries_stale_{true};
   mutable std::atomic<std::size_t> asked_{0};  // refreshes for such queries since the last build
