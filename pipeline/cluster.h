@@ -203,8 +203,8 @@ class WINNOW_API Cluster {
   /// a frame that was out of balance space is cut anew first. Collective.
   Status self_pairs(Order order = Order::fast);
   /// Those that a hosted rank reports, each oriented by name; together, the ranks' are all. With
-  /// Order::canonical each rank's are sorted. To be read before bodies are added to the rank, from
-  /// when on it has none, and before the next `self_pairs`.
+  /// Order::canonical each rank's are sorted. To be read before the next `add`, from when on there
+  /// are none, or `self_pairs`.
   [[nodiscard]] NamePairs pairs(std::uint32_t rank) const noexcept;
   /// Of all that `pairs` gives: the same on 1 to N ranks, wherever space is cut.
   /// Collective; O(pairs).

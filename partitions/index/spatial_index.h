@@ -9,6 +9,7 @@
 #include "partitions/structures/structure.h"
 #include "partitions/tree/block_tree.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>

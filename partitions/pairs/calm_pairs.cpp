@@ -113,7 +113,7 @@ bool PartitionState::watch_rows(std::size_t begin, std::size_t end,
                                 std::size_t stride) const noexcept {
   RowSelection& asking = rows.selection();
   near_.clear();
-  if (!asking.start(end - begin)) return false;
+  if (!asking.start((end - begin + stride - 1) / stride)) return false;
   for (std::size_t row = begin; row < end; row += stride) {
     if (rows.pool().ids()[row] != kNoObject) asking.add(row);
   }

@@ -85,6 +85,7 @@ Status ClusterState::take_names_of(std::span<const ClusterBatch> batches,
 Status ClusterState::add(std::span<const ClusterBatch> batches, std::span<Status> answers) {
   // What was removed is gone on every rank before its name can come anew.
   for (RankBodies& one : bodies) {
+    one.forget_pairs();
     one.send_removals(regions);
     one.pack(parcels);
   }

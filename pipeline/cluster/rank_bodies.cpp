@@ -42,7 +42,6 @@ Status RankBodies::check(const ClusterBatch& batch) {
 
 Status RankBodies::insert(const ClusterBatch& batch) {
   if (batch.names.empty()) return Status::ok;
-  reported_ = {};  // numbers of bodies that were removed get other names
   keys_.resize(batch.names.size());
   const Status status = partition_.insert(batch.boxes, {}, keys_);
   if (status != Status::ok) return status;
@@ -55,6 +54,7 @@ Status RankBodies::insert(const ClusterBatch& batch) {
 }
 
 void RankBodies::add_rows(std::span<const BodyName> names, std::span<const Key> keys) {
+  forget_pairs();  // numbers of bodies that were removed get other names
   std::size_t rows = names_.size();
   for (const Key& key : keys) rows = std::max<std::size_t>(rows, key.id + std::size_t{1});
   names_.resize(rows);

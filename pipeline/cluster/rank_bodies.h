@@ -45,8 +45,9 @@ class RankBodies {
   void refresh() noexcept { (void)partition_.refresh(); }
   /// Finds those that this rank reports.
   [[nodiscard]] Status find_pairs(Order order);
-  /// Of the last `find_pairs`, until rows are added.
+  /// Of the last `find_pairs`, until rows are added or they are forgotten.
   [[nodiscard]] NamePairs pairs() const noexcept { return {reported_, names_.data()}; }
+  void forget_pairs() noexcept { reported_ = {}; }
   /// Boxes held and pairs found by the last `find_pairs`.
   [[nodiscard]] std::uint64_t work() const noexcept { return partition_.size() + found_.size(); }
   /// Shares the work of the last `find_pairs` among the bodies that made it; forgotten by `send`.

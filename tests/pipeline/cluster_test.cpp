@@ -225,6 +225,23 @@ TEST(ClusterPairs, are_named_as_they_are_read) {
   EXPECT_TRUE(cluster.pairs(0).empty());
 }
 
+TEST(ClusterPairs, are_gone_on_all_ranks_once_bodies_are_added) {
+  for (const std::uint32_t ranks : {1U, 4U}) {
+    Random random(10);
+    ClusterWorld world(ranks);
+    world.add(uniform_boxes(200), random);
+    world.check();
+    Cluster& cluster = world.cluster();
+    const BodyName fresh = 1;
+    const Aabb box{Vec3f(0, 0, 0), Vec3f(1, 1, 1)};
+    ASSERT_EQ(add_on(cluster, 0, std::span(&fresh, 1), std::span(&box, 1)), Status::ok);
+    for (std::uint32_t rank = 0; rank < ranks; ++rank) EXPECT_TRUE(cluster.pairs(rank).empty());
+    ClusterDigest digest;
+    ASSERT_EQ(cluster.digest(digest), Status::ok);
+    EXPECT_EQ(digest, ClusterDigest{});
+  }
+}
+
 TEST(ClusterInput, may_name_anew_what_another_rank_removed) {
   Random random(8);
   ClusterWorld world(4);
