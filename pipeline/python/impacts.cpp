@@ -17,7 +17,7 @@ namespace winnow::python {
 namespace {
 
 /// Answers about pairs of shapes, which nobody writes to any more.
-struct Impacts : NeedsInit {
+struct Impacts : NeedsInit, std::enable_shared_from_this<Impacts> {
   ImpactResult result;
 };
 using HeldImpacts = std::shared_ptr<Impacts>;
@@ -57,8 +57,8 @@ void accept_all(const ImpactResult& result) {
 }
 
 template <typename T>
-[[nodiscard]] py::array column(const HeldImpacts& held, std::span<const T> values) {
-  return shown(std::shared_ptr<const void>(held), values.data(), values.size());
+[[nodiscard]] py::array column(const Impacts& held, std::span<const T> values) {
+  return shown(held.shared_from_this(), values.data(), values.size());
 }
 
 void add_result(py::module_& module) {
@@ -77,39 +77,39 @@ void add_result(py::module_& module) {
           },
           "Whether they meet: (n,) bool. False is certain.")
       .def_property_readonly(
-          "time", [](const HeldImpacts& held) { return column(held, held->result.time()); },
+          "time", [](const Impacts& held) { return column(held, held.result.time()); },
           "In [0, 1], never late: at every earlier time they are apart. 1 where they do not meet. "
           "(n,) float64.")
       .def_property_readonly(
-          "gap", [](const HeldImpacts& held) { return column(held, held->result.gap()); },
+          "gap", [](const Impacts& held) { return column(held, held.result.gap()); },
           "Distance at that time; negative by the depth where they overlap at the start, 0 where "
           "they do not meet. (n,) float64.")
       .def_property_readonly(
           "error_bound",
-          [](const HeldImpacts& held) { return column(held, held->result.error_bound()); },
+          [](const Impacts& held) { return column(held, held.result.error_bound()); },
           "The true distance at that time is within gap +- this. (n,) float64.")
       .def_property_readonly(
           "normal",
-          [](const HeldImpacts& held) {
-            return py::make_tuple(column(held, held->result.normal(0)),
-                                  column(held, held->result.normal(1)),
-                                  column(held, held->result.normal(2)));
+          [](const Impacts& held) {
+            return py::make_tuple(column(held, held.result.normal(0)),
+                                  column(held, held.result.normal(1)),
+                                  column(held, held.result.normal(2)));
           },
           "Unit, from a to b at that time, in the axes of the world: three (n,) float64.")
       .def_property_readonly(
           "point",
-          [](const HeldImpacts& held) {
-            return py::make_tuple(column(held, held->result.point(0)),
-                                  column(held, held->result.point(1)),
-                                  column(held, held->result.point(2)));
+          [](const Impacts& held) {
+            return py::make_tuple(column(held, held.result.point(0)),
+                                  column(held, held.result.point(1)),
+                                  column(held, held.result.point(2)));
           },
           "The point of a, relative to the position of a then; that of b is gap * normal farther. "
           "Three (n,) float64.")
       .def_property_readonly(
-          "part_a", [](const HeldImpacts& held) { return column(held, held->result.part_a()); },
+          "part_a", [](const Impacts& held) { return column(held, held.result.part_a()); },
           "Triangle or child of a that meets b, WHOLE_SHAPE of convex shapes: (n,) uint32.")
       .def_property_readonly(
-          "part_b", [](const HeldImpacts& held) { return column(held, held->result.part_b()); },
+          "part_b", [](const Impacts& held) { return column(held, held.result.part_b()); },
           "The same of b.");
 }
 

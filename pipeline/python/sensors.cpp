@@ -260,7 +260,8 @@ void add_sensors(py::module_& module) {
   type.def(py::init([](const std::shared_ptr<SharedScene>& scene) {
              return std::make_shared<SharedSensors>(scene);
            }),
-           arg("scene"), "No sensors, of the bodies of `scene`, which they keep alive.");
+           arg("scene").none(false),
+           "No sensors, of the bodies of `scene`, which they keep alive.");
   add_changes(type);
   type.def("__len__",
            [](const SharedSensors& s) {

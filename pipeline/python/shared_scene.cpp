@@ -300,7 +300,7 @@ void add_bodies_to(SceneClass& scene) {
   using py::arg;
   constexpr std::uint32_t every = ~0U;
   scene
-      .def(py::init(&make_scene), arg("shapes"), py::kw_only(), arg("margin") = 0.0,
+      .def(py::init(&make_scene), arg("shapes").none(false), py::kw_only(), arg("margin") = 0.0,
            arg("tier") = "robust", arg("carry_over") = 0.0, arg("contact_reduction") = false,
            arg("seamless_floors") = false, arg("warm_start") = false,
            arg("structures") = std::vector<std::string>(kMotions, "LinearBvh"),

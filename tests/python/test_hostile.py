@@ -204,6 +204,33 @@ def test_objects_that_were_not_made_are_refused():
         winnow.Hits()
 
 
+def callables_of(module):
+    for value in vars(module).values():
+        if isinstance(value, type):
+            yield value
+            for name, member in list(vars(value).items()):
+                if isinstance(member, property):
+                    yield member.fget
+                elif callable(member) and not isinstance(member, type):
+                    yield getattr(value, name)
+        elif callable(value):
+            yield value
+
+
+def test_none_in_place_of_anything_is_taken_or_refused():
+    for kind in (winnow.Scene, winnow.Sensors):
+        with pytest.raises(TypeError):
+            kind(None)
+    calls = list(callables_of(winnow._core))
+    assert len(calls) > 200
+    for call in calls:
+        for count in range(6):
+            try:
+                call(*[None] * count)
+            except Exception:
+                pass
+
+
 def test_threads_ask_and_change_at_once():
     lower, upper = random_boxes(32, 400)
     partition, other = winnow.Partition(), winnow.Partition("AutoPartition")
