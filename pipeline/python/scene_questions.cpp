@@ -6,9 +6,14 @@
 #include "pipeline/python/refusal.h"
 #include "pipeline/python/shared_scene.h"
 
+#include <array>
 #include <cstddef>
 #include <limits>
+#include <memory>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace winnow::python {
 namespace {
@@ -40,14 +45,14 @@ template <typename Body>
 class Asker {
  public:
   explicit Asker(SharedScene& s) : scene_(s), queries_(s.take_queries()) {}
-  ~Asker() { scene_.put_queries(queries_); }
+  ~Asker() { scene_.put_queries(std::move(queries_)); }
   Asker(const Asker&) = delete;
   Asker& operator=(const Asker&) = delete;
-  RecordableQueries* operator->() const noexcept { return queries_; }
+  RecordableQueries* operator->() const noexcept { return queries_.get(); }
 
  private:
   SharedScene& scene_;
-  RecordableQueries* queries_;
+  std::unique_ptr<RecordableQueries> queries_;
 };
 
 /// Answers each question in lists of entries.

@@ -8,6 +8,15 @@
 #include "pipeline/python/entry_columns.h"
 #include "pipeline/python/snapshots.h"
 
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace winnow::python {
 
 void SharedScene::use(std::span<const ShapeId> ids, int change) {
@@ -15,18 +24,21 @@ void SharedScene::use(std::span<const ShapeId> ids, int change) {
   shapes->use(ids, change);
 }
 
-RecordableQueries* SharedScene::take_queries() {
+std::unique_ptr<RecordableQueries> SharedScene::take_queries() {
   const std::lock_guard lock(queries_mutex_);
-  if (queries_.empty()) return new RecordableQueries(scene);
-  RecordableQueries* const taken = queries_.back().release();
+  if (queries_.empty()) return std::make_unique<RecordableQueries>(scene);
+  std::unique_ptr<RecordableQueries> taken = std::move(queries_.back());
   queries_.pop_back();
   return taken;
 }
 
-void SharedScene::put_queries(RecordableQueries* queries) {
-  std::unique_ptr<RecordableQueries> back(queries);
+void SharedScene::put_queries(std::unique_ptr<RecordableQueries> queries) noexcept {
   const std::lock_guard lock(queries_mutex_);
-  queries_.push_back(std::move(back));
+  try {
+    queries_.push_back(std::move(queries));
+  } catch (const std::bad_alloc&) {
+    // The next question makes its own.
+  }
 }
 
 namespace {

@@ -38,8 +38,10 @@ class SharedScene : public NeedsInit {
   /// One use of each of these shapes by a body more or less.
   void use(std::span<const ShapeId> ids, int change);
 
-  [[nodiscard]] RecordableQueries* take_queries();
-  void put_queries(RecordableQueries* queries);
+  /// What one thread asks with: one that waits, or another.
+  [[nodiscard]] std::unique_ptr<RecordableQueries> take_queries();
+  /// It waits for the next question, if there is memory for that.
+  void put_queries(std::unique_ptr<RecordableQueries> queries) noexcept;
 
   const std::shared_ptr<SharedShapes> shapes;
   /// Null if it is not recorded.
