@@ -7,14 +7,28 @@
 
 #include <winnow/pipeline/replay.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 
 namespace winnow::python {
 namespace {
 
-[[nodiscard]] RecorderPointer make_recorder(const std::string& path) {
-  auto recorder = std::make_shared<SharedRecorder>(path.c_str());
-  accept(recorder->recorder.status(), "Recorder: " + path);
+/// The name of a file as the system takes it.
+[[nodiscard]] std::string file_name(const py::object& path) {
+  const py::object name = py::module_::import("os").attr("fsencode")(path);
+  const auto bytes = py::cast<std::string>(name);
+  if (bytes.find('\0') != std::string::npos) {
+    throw Refusal(Status::invalid_argument, "path: there is a NUL in it");
+  }
+  return bytes;
+}
+
+[[nodiscard]] RecorderPointer make_recorder(const py::object& path) {
+  auto recorder = std::make_shared<SharedRecorder>(file_name(path).c_str());
+  accept(recorder->recorder.status(), "Recorder: " + py::cast<std::string>(py::repr(path)));
   return recorder;
 }
 
@@ -76,7 +90,8 @@ void add_recordings(py::module_& module) {
       "be played elsewhere, and measured: `winnow advise FILE`. Calls that were refused are not "
       "recorded, nor are sweeps, sensors and snapshots to be loaded, which are unsupported then. "
       "Where anything goes wrong the recording ends, and the program goes on: see `status`.")
-      .def(py::init(&make_recorder), arg("path"), "Into a file, which is made or overwritten.")
+      .def(py::init(&make_recorder), arg("path"),
+           "Into the file of a path, as `open` takes it, which is made or overwritten.")
       .def(
           "end_frame",
           [](SharedRecorder& r) {

@@ -1,5 +1,7 @@
 """What a program did is written down, and played with the same answers."""
 
+import os
+import pathlib
 import threading
 
 import numpy as np
@@ -134,6 +136,23 @@ def test_recordings_outlive_what_they_are_of(file):
     del partition
     counts = played(file)
     assert counts["worlds"] == counts["questions"] == 1
+
+
+def test_a_recording_goes_where_a_path_says(tmp_path):
+    plain = tmp_path / "one.winnow"
+    for path in (plain, str(plain), os.fsencode(plain), tmp_path / "zwölf.winnow"):
+        winnow.Recorder(path).close()
+        assert winnow.replay(pathlib.Path(os.fsdecode(path)).read_bytes())["is_whole"]
+        os.remove(path)
+    for path in (f"{plain}\0.old", os.fsencode(plain) + b"\0", "\0"):
+        refused("invalid_argument", winnow.Recorder, path)
+    for path in (None, 3, ["one"]):
+        with pytest.raises(TypeError):
+            winnow.Recorder(path)
+    with pytest.raises(ValueError):
+        winnow.Recorder("\ud800")
+    assert str(tmp_path) in refused("invalid_argument", winnow.Recorder, tmp_path)
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_refused_call_is_not_recorded(file):
