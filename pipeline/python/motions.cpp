@@ -4,6 +4,7 @@
 
 #include "pipeline/python/refusal.h"
 
+#include <cstddef>
 #include <cstring>
 #include <string>
 
@@ -29,18 +30,33 @@ std::span<const RigidMotion> RigidMotionInput::packed(std::vector<RigidMotion>& 
 
 namespace {
 
+/// Calls write(i) for each motion, without the GIL, and throws what is wrong with the first one
+/// that is refused.
+template <typename Write>
+void write_each(std::size_t count, const char* call, Write&& write) {
+  Status status = Status::ok;
+  std::size_t i = 0;
+  {
+    const py::gil_scoped_release release;
+    for (; i < count; ++i) {
+      status = write(i);
+      if (status != Status::ok) break;
+    }
+  }
+  accept(status, std::string(call) + ", motion " + std::to_string(i));
+}
+
 /// Rows of `count` motions, of which `make` gives the i-th.
 template <typename Make>
 [[nodiscard]] py::array motion_rows(std::size_t count, const char* call, Make&& make) {
   auto rows = fresh<double>(count, kMotionNumbers);
-  double* to = rows.mutable_data();
-  for (std::size_t i = 0; i < count; ++i, to += kMotionNumbers) {
+  double* const to = rows.mutable_data();
+  write_each(count, call, [&](std::size_t i) {
     const RigidMotion motion = make(i);
-    if (!motion.is_valid()) {
-      throw Refusal(Status::invalid_pose, std::string(call) + ", motion " + std::to_string(i));
-    }
-    std::memcpy(to, &motion, sizeof motion);
-  }
+    if (!motion.is_valid()) return Status::invalid_pose;
+    std::memcpy(to + i * kMotionNumbers, &motion, sizeof motion);
+    return Status::ok;
+  });
   return rows;
 }
 
@@ -73,18 +89,17 @@ template <typename Make>
   Numbers time(times, "times", {}, true);
   time.expect(motion.count());
   auto rows = fresh<double>(motion.count(), 7);
-  double* to = rows.mutable_data();
-  for (std::size_t i = 0; i < motion.count(); ++i, to += 7) {
+  double* const to = rows.mutable_data();
+  write_each(motion.count(), "poses_at", [&](std::size_t i) {
     const RigidMotion one = motion[i];
-    if (!one.is_valid()) {
-      throw Refusal(Status::invalid_pose, "poses_at, motion " + std::to_string(i));
-    }
-    if (!(time.at(i) >= 0.0 && time.at(i) <= 1.0)) {
-      throw Refusal(Status::invalid_argument, "poses_at, time " + std::to_string(i));
-    }
-    const Pose pose = one.at(time.at(i));
-    std::memcpy(to, &pose, sizeof pose);
-  }
+    const double t = time.at(i);
+    if (!one.is_valid()) return Status::invalid_pose;
+    if (!(t >= 0.0 && t <= 1.0)) return Status::invalid_argument;
+    const Pose pose = one.at(t);
+    static_assert(sizeof pose == 7 * sizeof(double));
+    std::memcpy(to + i * 7, &pose, sizeof pose);
+    return Status::ok;
+  });
   return rows;
 }
 

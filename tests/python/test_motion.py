@@ -225,7 +225,8 @@ def test_what_is_no_motion_is_refused(crowd):
         "invalid_pose", winnow.motions_between, np.zeros((2, 3)), [[0, 0, 0], [0, np.inf, 0]]
     )
     refused("invalid_pose", winnow.motions_by_velocities, motions[:1, :7], [0, 0, 0], [0, 0, 2e6])
-    refused("invalid_argument", winnow.poses_at, motions[:2], 1.5)
+    assert "motion 1" in refused("invalid_pose", winnow.poses_at, bad, 0.5)
+    assert "motion 1" in refused("invalid_argument", winnow.poses_at, motions[:2], [0.5, 1.5])
     refused("invalid_argument", winnow.poses_at, motions[:2], np.nan)
     refused("size_mismatch", winnow.poses_at, motions[:, :12], 0.5)
     refused("size_mismatch", winnow.motions_between, motions[:2, :7], motions[:3, :7])
