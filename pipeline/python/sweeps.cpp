@@ -4,6 +4,9 @@
 #include "pipeline/python/entry_columns.h"
 #include "pipeline/python/motions.h"
 
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,16 +38,19 @@ struct ImpactTable : EmptyIfZero {
 /// Options as Python has them, with what they point to.
 class SweepInput {
  public:
-  SweepInput(const std::string& pairs, py::handle bullets, double tolerance, bool touching,
-             bool first_only)
+  /// Of `count` bodies that move.
+  SweepInput(std::size_t count, const std::string& pairs, py::handle bullets, double tolerance,
+             bool touching, bool first_only)
       : options_{chosen(kSweepPairs, pairs, "pairs"), {}, tolerance, touching, first_only} {
     if (bullets.is_none()) return;
     const py::array flags = py::array::ensure(bullets);
     if (!flags || flags.dtype().kind() != 'b') {
-      PyErr_Clear();
       throw py::type_error("bullets: (n,) bool is wanted");
     }
     bullets_.emplace(flags.attr("astype")("u1"), "bullets");
+    if (bullets_->count() != count) {
+      throw Refusal(Status::size_mismatch, "bullets: one flag for each key is wanted");
+    }
     options_.bullets = bullets_->values();
   }
   [[nodiscard]] const SweepOptions& options() const noexcept { return options_; }
@@ -54,8 +60,8 @@ class SweepInput {
   SweepOptions options_;
 };
 
-[[nodiscard]] ImpactTable shown(std::vector<SceneImpact>&& impacts,
-                                std::vector<std::uint32_t>&& first) {
+[[nodiscard]] ImpactTable shown_impacts(std::vector<SceneImpact>&& impacts,
+                                        std::vector<std::uint32_t>&& first) {
   const auto columns = columns_of(std::move(impacts));
   using I = SceneImpact;
   return {{},
@@ -90,7 +96,7 @@ template <typename Ask>
                     return status;
                   }),
          call);
-  return shown(std::move(impacts), std::move(first));
+  return shown_impacts(std::move(impacts), std::move(first));
 }
 
 [[nodiscard]] ImpactTable sweep(SharedScene& s, py::handle key_array, py::handle ends,
@@ -98,7 +104,7 @@ template <typename Ask>
                                 bool touching, bool first_only) {
   const KeyInput keys(key_array);
   const PoseInput end(ends);
-  const SweepInput input(pairs, bullets, tolerance, touching, first_only);
+  const SweepInput input(keys.count(), pairs, bullets, tolerance, touching, first_only);
   std::vector<Pose> room;
   return swept(s, "sweep", [&](SceneSweep& sweep) {
     return sweep.sweep(keys.keys(), end.view(room), input.options());
@@ -110,7 +116,7 @@ template <typename Ask>
                                         double tolerance, bool touching, bool first_only) {
   const KeyInput keys(key_array);
   const RigidMotionInput motion(motions);
-  const SweepInput input(pairs, bullets, tolerance, touching, first_only);
+  const SweepInput input(keys.count(), pairs, bullets, tolerance, touching, first_only);
   std::vector<RigidMotion> room;
   return swept(s, "sweep_motions", [&](SceneSweep& sweep) {
     return sweep.sweep(keys.keys(), motion.packed(room), input.options());

@@ -249,6 +249,10 @@ def test_what_is_no_motion_is_refused(crowd):
     refused("invalid_key", scene.sweep, np.repeat(keys[:1], 2), motions[:2, :7])
     refused("size_mismatch", scene.sweep, keys, motions[:1, :7])
     refused("size_mismatch", scene.sweep, keys, motions[:2, :7], bullets=[True])
+    none = np.zeros(0, bool)
+    refused("size_mismatch", scene.sweep, keys, motions[:2, :7], bullets=none)
+    refused("size_mismatch", scene.sweep_motions, keys, motions[:2], bullets=none)
+    assert len(scene.sweep(keys[:0], motions[:0, :7], bullets=none).time) == 0
     refused("invalid_argument", scene.sweep, keys, motions[:2, :7], pairs="some")
     with pytest.raises(TypeError):
         scene.sweep(keys, motions[:2, :7], bullets=[0, 7])
