@@ -6,8 +6,10 @@
 #include "pipeline/python/refusal.h"
 #include "pipeline/python/shared_shapes.h"
 
+#include <array>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 

@@ -37,6 +37,7 @@ void accept_all(const ImpactResult& result) {
   const ShapeInput shape(shape_of, "shape_of");
   shape.expect(motion.count());
   const Integers<std::uint32_t> pairs(pair_array, "pairs", 2);
+  static_assert(sizeof(BodyPair) == 2 * sizeof(std::uint32_t));
   const std::span<const BodyPair> list(reinterpret_cast<const BodyPair*>(pairs.values().data()),
                                        pairs.count());
   auto answers = std::make_shared<Impacts>();

@@ -117,6 +117,7 @@ class KeyPairInput {
  public:
   explicit KeyPairInput(py::handle object) : words_(object, "pairs", 2) {}
   [[nodiscard]] std::span<const KeyPair> pairs() const noexcept {
+    static_assert(sizeof(KeyPair) == 2 * sizeof(std::uint64_t));
     return {reinterpret_cast<const KeyPair*>(words_.values().data()), words_.count()};
   }
 

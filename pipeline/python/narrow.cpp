@@ -34,6 +34,7 @@ struct NarrowAnswers : NeedsInit {
   const ShapeInput shape(shape_of, "shape_of");
   shape.expect(pose.count());
   const Integers<std::uint32_t> pairs(pair_array, "pairs", 2);
+  static_assert(sizeof(BodyPair) == 2 * sizeof(std::uint32_t));
   const std::span<const BodyPair> list(reinterpret_cast<const BodyPair*>(pairs.values().data()),
                                        pairs.count());
   auto answers = std::make_shared<NarrowAnswers>();

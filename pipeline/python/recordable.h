@@ -7,9 +7,13 @@
 
 #include <winnow/pipeline/recording.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
 
 namespace winnow::python {

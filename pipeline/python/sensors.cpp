@@ -5,7 +5,11 @@
 
 #include <winnow/pipeline/sensors.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
