@@ -117,21 +117,13 @@ template <typename Result, typename Ask>
   return all;
 }
 
-/// What is found of two, whose locks are taken in the order of their addresses.
+/// What is found of two.
 template <typename Result, typename Ask>
 [[nodiscard]] std::vector<Result> found_of_two(const SharedDeformable& s,
                                                const SharedDeformable& other, const char* call,
                                                Ask&& ask) {
-  const SharedDeformable* const first = &s < &other ? &s : &other;
-  const SharedDeformable* const second = &s < &other ? &other : &s;
   std::vector<Result> all;
-  accept(reading(first->mutex,
-                 [&] {
-                   if (first == second) return gather(all, ask);
-                   const std::shared_lock lock(second->mutex);
-                   return gather(all, ask);
-                 }),
-         call);
+  accept(reading_two(s.mutex, other.mutex, [&] { return gather(all, ask); }), call);
   return all;
 }
 

@@ -2,6 +2,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <functional>
 #include <mutex>
 #include <shared_mutex>
 #include <utility>
@@ -17,6 +18,18 @@ template <typename Body>
 auto reading(std::shared_mutex& mutex, Body&& body) {
   const pybind11::gil_scoped_release release;
   const std::shared_lock lock(mutex);
+  return std::forward<Body>(body)();
+}
+
+/// For calls that read two objects, or one twice: no lock is taken twice, and two always in the
+/// order of their addresses.
+template <typename Body>
+auto reading_two(std::shared_mutex& a, std::shared_mutex& b, Body&& body) {
+  const bool in_order = std::less<>()(&a, &b);
+  const pybind11::gil_scoped_release release;
+  const std::shared_lock first(in_order ? a : b);
+  std::shared_lock<std::shared_mutex> second;
+  if (&a != &b) second = std::shared_lock(in_order ? b : a);
   return std::forward<Body>(body)();
 }
 

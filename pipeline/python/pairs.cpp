@@ -75,16 +75,7 @@ void pair_changes(SharedPartition& p, Events& events) {
   }
   const std::shared_ptr<PairBuffer> out = p.pair_pool->take();
   const auto ask = [&] { return p.partition.pairs_with(other.partition, *out, options); };
-  // One lock is not taken twice, and two always in the order of their addresses.
-  const SharedPartition* const first = &p < &other ? &p : &other;
-  const SharedPartition* const second = &p < &other ? &other : &p;
-  accept(reading(first->mutex,
-                 [&] {
-                   if (first == second) return ask();
-                   const std::shared_lock lock(second->mutex);
-                   return ask();
-                 }),
-         "pairs_with");
+  accept(reading_two(p.mutex, other.mutex, ask), "pairs_with");
   return shown_pairs(out);
 }
 
