@@ -7,7 +7,10 @@
 #include "pipeline/python/shared_scene.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -75,15 +78,30 @@ class LayerInput {
   EachInteger numbers_;
 };
 
-/// Bodies of keys, in order; the status of the first that is not there.
-[[nodiscard]] inline Status bodies_of(const Scene& scene, std::span<const Key> keys,
-                                      std::vector<BodyDefinition>& bodies) {
-  bodies.resize(keys.size());
+/// What get(key, one) tells of each key, in order; the status of the first that is not there.
+template <typename Definition, typename Get>
+[[nodiscard]] Status definitions_of(std::span<const Key> keys, std::vector<Definition>& all,
+                                    Get&& get) {
+  all.resize(keys.size());
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    const Status status = scene.body(keys[i], bodies[i]);
+    const Status status = get(keys[i], all[i]);
     if (status != Status::ok) return status;
   }
   return Status::ok;
+}
+
+[[nodiscard]] inline Status bodies_of(const Scene& scene, std::span<const Key> keys,
+                                      std::vector<BodyDefinition>& bodies) {
+  return definitions_of(keys, bodies,
+                        [&](Key key, BodyDefinition& body) { return scene.body(key, body); });
+}
+
+/// Shapes of bodies or of sensors.
+template <typename Definition>
+[[nodiscard]] std::vector<ShapeId> shapes_of(const std::vector<Definition>& all) {
+  std::vector<ShapeId> ids(all.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = all[i].shape;
+  return ids;
 }
 
 /// Calls set(i) for each body; where one is refused, undo(i) for those before it.

@@ -19,17 +19,11 @@ namespace {
 /// Sensors of a scene, whose lock is theirs, too; shapes that they have are used by it.
 struct SharedSensors : NeedsInit {
   explicit SharedSensors(std::shared_ptr<SharedScene> of)
-      : scene(std::move(of)), sensors(scene->scene.unrecorded("Sensors")) {}
-  ~SharedSensors() { scene->shapes->use(uses, -1); }
-
-  void use(std::span<const ShapeId> ids, int change) {
-    for (const ShapeId id : ids) uses[id.bits] += static_cast<std::uint32_t>(change);
-    scene->shapes->use(ids, change);
-  }
+      : scene(std::move(of)), sensors(scene->scene.unrecorded("Sensors")), held(scene->shapes) {}
 
   const std::shared_ptr<SharedScene> scene;
   Sensors sensors;
-  ShapeUses uses;
+  HeldShapes held;
 };
 
 /// Changes the sensors, or lets them look, for which the shapes stay as they are.
@@ -42,12 +36,6 @@ auto changing_sensors(SharedSensors& s, Body&& body) {
 }
 
 using Definitions = std::vector<SensorDefinition>;
-
-[[nodiscard]] std::vector<ShapeId> shapes_of(const Definitions& sensors) {
-  std::vector<ShapeId> ids;
-  for (const SensorDefinition& sensor : sensors) ids.push_back(sensor.shape);
-  return ids;
-}
 
 /// Sensors as Python has them.
 [[nodiscard]] Definitions defined(py::handle shape_array, py::handle poses, py::handle layers,
@@ -77,12 +65,8 @@ using Definitions = std::vector<SensorDefinition>;
 
 [[nodiscard]] Status sensors_of(const Sensors& sensors, std::span<const Key> keys,
                                 Definitions& all) {
-  all.resize(keys.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const Status status = sensors.sensor(keys[i], all[i]);
-    if (status != Status::ok) return status;
-  }
-  return Status::ok;
+  return definitions_of(
+      keys, all, [&](Key key, SensorDefinition& sensor) { return sensors.sensor(key, sensor); });
 }
 
 [[nodiscard]] py::array add(SharedSensors& s, py::handle shapes, py::handle poses,
@@ -98,7 +82,7 @@ using Definitions = std::vector<SensorDefinition>;
                                 sensors.size(),
                                 [&](std::size_t i) { return s.sensors.add(sensors[i], out[i]); },
                                 [&](std::size_t i) { return s.sensors.remove(out[i]); });
-                            if (status == Status::ok) s.use(used, 1);
+                            if (status == Status::ok) s.held.use(used, 1);
                             return status;
                           }),
          "add");
@@ -119,7 +103,7 @@ void remove(SharedSensors& s, py::handle key_array) {
                               status = s.sensors.remove(key);
                               if (status != Status::ok) return status;
                             }
-                            s.use(shapes_of(before), -1);
+                            s.held.use(shapes_of(before), -1);
                             return status;
                           }),
          "remove");
@@ -166,8 +150,8 @@ void set(SharedSensors& s, py::handle key_array, py::handle shapes, py::handle p
                                 [&](std::size_t i) { return s.sensors.set(keys[i], after[i]); },
                                 [&](std::size_t i) { return s.sensors.set(keys[i], before[i]); });
                             if (status != Status::ok) return status;
-                            s.use(shapes_of(after), 1);
-                            s.use(shapes_of(before), -1);
+                            s.held.use(shapes_of(after), 1);
+                            s.held.use(shapes_of(before), -1);
                             return status;
                           }),
          "set");

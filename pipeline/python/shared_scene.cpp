@@ -19,11 +19,6 @@
 
 namespace winnow::python {
 
-void SharedScene::use(std::span<const ShapeId> ids, int change) {
-  for (const ShapeId id : ids) uses[id.bits] += static_cast<std::uint32_t>(change);
-  shapes->use(ids, change);
-}
-
 std::unique_ptr<RecordableQueries> SharedScene::take_queries() {
   const std::lock_guard lock(queries_mutex_);
   if (queries_.empty()) return std::make_unique<RecordableQueries>(scene);
@@ -127,28 +122,21 @@ class MotionInput {
   layer.expect(count);
   const std::vector<ClientData> values = data_of(data, count);
   std::vector<BodyDefinition> bodies(count);
-  std::vector<ShapeId> used(count);
   for (std::size_t i = 0; i < count; ++i) {
     bodies[i] = {shape[i],   pose[i], motion[i], filter[i], values.empty() ? 0 : values[i],
                  offsets[i], layer[i]};
-    used[i] = shape[i];
   }
+  const std::vector<ShapeId> used = shapes_of(bodies);
   auto keys = fresh<std::uint64_t>(count);
   const std::span<Key> out(keys_in(keys), count);
   accept(changing_scene(s,
                         [&] {
                           const Status status = s.scene.add(bodies, out);
-                          if (status == Status::ok) s.use(used, 1);
+                          if (status == Status::ok) s.held.use(used, 1);
                           return status;
                         }),
          "add");
   return keys;
-}
-
-[[nodiscard]] std::vector<ShapeId> shapes_of(const std::vector<BodyDefinition>& bodies) {
-  std::vector<ShapeId> ids(bodies.size());
-  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = bodies[i].shape;
-  return ids;
 }
 
 void remove_bodies(SharedScene& s, py::handle key_array) {
@@ -158,7 +146,7 @@ void remove_bodies(SharedScene& s, py::handle key_array) {
                           std::vector<BodyDefinition> bodies;
                           Status status = bodies_of(*s.scene, keys.keys(), bodies);
                           if (status == Status::ok) status = s.scene.remove(keys.keys());
-                          if (status == Status::ok) s.use(shapes_of(bodies), -1);
+                          if (status == Status::ok) s.held.use(shapes_of(bodies), -1);
                           return status;
                         }),
          "remove");
@@ -167,8 +155,7 @@ void remove_bodies(SharedScene& s, py::handle key_array) {
 void clear(SharedScene& s) {
   changing_scene(s, [&] {
     s.scene.clear();
-    s.shapes->use(s.uses, -1);
-    s.uses.clear();
+    s.held.clear();
   });
 }
 
@@ -203,8 +190,8 @@ void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
                    list.size(), [&](std::size_t i) { return s.scene.set_shape(list[i], after[i]); },
                    [&](std::size_t i) { return s.scene.set_shape(list[i], before[i].shape); });
                if (status != Status::ok) return status;
-               s.use(after, 1);
-               s.use(shapes_of(before), -1);
+               s.held.use(after, 1);
+               s.held.use(shapes_of(before), -1);
                return Status::ok;
              }),
          "set_shape");

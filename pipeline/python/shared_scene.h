@@ -32,11 +32,8 @@ class SharedScene : public NeedsInit {
       : shapes(std::move(shapes_in)),
         recorder(std::move(recorder_in)),
         execution(options.execution),
-        scene(recorder.get(), shapes->pool, shapes->composites, options) {}
-  ~SharedScene() { shapes->use(uses, -1); }
-
-  /// One use of each of these shapes by a body more or less.
-  void use(std::span<const ShapeId> ids, int change);
+        scene(recorder.get(), shapes->pool, shapes->composites, options),
+        held(shapes) {}
 
   /// What one thread asks with: one that waits, or another.
   [[nodiscard]] std::unique_ptr<RecordableQueries> take_queries();
@@ -54,7 +51,8 @@ class SharedScene : public NeedsInit {
   /// Something has changed since boxes and partitions were brought up to date.
   std::atomic<bool> is_stale{true};
   std::atomic<std::uint64_t> shapes_seen{0};
-  ShapeUses uses;
+  /// Shapes of its bodies.
+  HeldShapes held;
 
  private:
   std::mutex queries_mutex_;

@@ -27,6 +27,16 @@ void SharedShapes::use(const ShapeUses& shapes, int change) {
   }
 }
 
+void HeldShapes::use(std::span<const ShapeId> ids, int change) {
+  for (const ShapeId id : ids) uses_[id.bits] += static_cast<std::uint32_t>(change);
+  shapes_->use(ids, change);
+}
+
+void HeldShapes::clear() {
+  shapes_->use(uses_, -1);
+  uses_.clear();
+}
+
 namespace {
 
 /// Uses by compounds.

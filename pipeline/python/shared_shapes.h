@@ -7,10 +7,15 @@
 #include <winnow/pipeline/shape_pool.h>
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <shared_mutex>
+#include <span>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 namespace winnow::python {
 
@@ -45,6 +50,24 @@ class SharedShapes : public NeedsInit {
 
  private:
   mutable std::mutex uses_mutex_;
+  ShapeUses uses_;
+};
+
+/// Uses of shapes by the bodies of a scene, or by sensors, which end with this.
+class HeldShapes {
+ public:
+  explicit HeldShapes(std::shared_ptr<SharedShapes> shapes) noexcept : shapes_(std::move(shapes)) {}
+  ~HeldShapes() { clear(); }
+  HeldShapes(const HeldShapes&) = delete;
+  HeldShapes& operator=(const HeldShapes&) = delete;
+
+  /// One use more or less of each. Under the mutex of the shapes, shared or not.
+  void use(std::span<const ShapeId> ids, int change);
+  /// None is used any more.
+  void clear();
+
+ private:
+  const std::shared_ptr<SharedShapes> shapes_;
   ShapeUses uses_;
 };
 

@@ -55,8 +55,7 @@ void load_scene(SharedScene& s, const py::buffer& data) {
                     s.is_stale = true;
                     const Status status = scene.load(input.bytes());
                     if (status != Status::ok) return status;
-                    s.shapes->use(s.uses, -1);
-                    s.uses.clear();
+                    s.held.clear();
                     std::vector<ShapeId> used;
                     BodyDefinition body;
                     for (ObjectId id = 0; used.size() < s.scene->size(); ++id) {
@@ -64,7 +63,7 @@ void load_scene(SharedScene& s, const py::buffer& data) {
                         used.push_back(body.shape);
                       }
                     }
-                    s.use(used, 1);
+                    s.held.use(used, 1);
                     return Status::ok;
                   }),
          "load");
