@@ -30,16 +30,6 @@ template <typename Plain, typename Recorded>
 class Recordable {
  public:
   [[nodiscard]] bool is_recorded() const noexcept { return recorded_.has_value(); }
-  /// That itself, for what is not recorded.
-  [[nodiscard]] const Plain& operator*() const noexcept {
-    return recorded_ ? *recorded_->operator->() : *plain_;
-  }
-  [[nodiscard]] const Plain* operator->() const noexcept { return &**this; }
-  /// For calls that cannot be recorded: unsupported if these are.
-  [[nodiscard]] Plain& unrecorded(const char* call) {
-    if (recorded_) throw Refusal(Status::unsupported, std::string(call) + " of what is recorded");
-    return *plain_;
-  }
 
  protected:
   Recordable() = default;
@@ -58,8 +48,29 @@ class Recordable {
   std::optional<Recorded> recorded_;
 };
 
+/// One that has calls, too, that are not recorded.
+template <typename Plain, typename Recorded>
+class RecordableWorld : public Recordable<Plain, Recorded> {
+ public:
+  /// That itself, for what is not recorded.
+  [[nodiscard]] const Plain& operator*() const noexcept {
+    return this->recorded_ ? *this->recorded_->operator->() : *this->plain_;
+  }
+  [[nodiscard]] const Plain* operator->() const noexcept { return &**this; }
+  /// For calls that cannot be recorded: unsupported if these are.
+  [[nodiscard]] Plain& unrecorded(const char* call) {
+    if (this->recorded_) {
+      throw Refusal(Status::unsupported, std::string(call) + " of what is recorded");
+    }
+    return *this->plain_;
+  }
+
+ protected:
+  RecordableWorld() = default;
+};
+
 /// A partition; calls as it has them.
-class RecordablePartition : public Recordable<Partition, RecordedPartition> {
+class RecordablePartition : public RecordableWorld<Partition, RecordedPartition> {
  public:
   RecordablePartition(SharedRecorder* recorder, StructureKind structure,
                       const PartitionOptions& options) {
@@ -139,7 +150,7 @@ class RecordablePartition : public Recordable<Partition, RecordedPartition> {
 };
 
 /// A scene; calls as it has them.
-class RecordableScene : public Recordable<Scene, RecordedScene> {
+class RecordableScene : public RecordableWorld<Scene, RecordedScene> {
  public:
   RecordableScene(SharedRecorder* recorder, const ShapePool& shapes,
                   const CompositePool& composites, SceneOptions options) {
@@ -199,7 +210,7 @@ class RecordableScene : public Recordable<Scene, RecordedScene> {
 };
 
 /// Questions to a scene; calls as SceneQueries has them.
-class RecordableQueries {
+class RecordableQueries : public Recordable<SceneQueries, RecordedQueries> {
  public:
   explicit RecordableQueries(RecordableScene& scene) {
     if (scene.is_recorded()) {
@@ -241,15 +252,6 @@ class RecordableQueries {
   Status nearest(Given&&... given) {
     return on([&](auto& q) { return q.nearest(given...); });
   }
-
- private:
-  template <typename Ask>
-  Status on(Ask&& ask) {
-    return recorded_ ? ask(*recorded_) : ask(*plain_);
-  }
-
-  std::optional<SceneQueries> plain_;
-  std::optional<RecordedQueries> recorded_;
 };
 
 }  // namespace winnow::python
