@@ -292,7 +292,9 @@ void add_itself(MeshClass& type) {
   type.def(py::init(&make), py::kw_only(), arg("origin") = std::array<double, 3>{0.0, 0.0, 0.0},
            arg("parallel") = true,
            "A mesh without triangles. Boxes are measured from `origin`: a point near the mesh "
-           "keeps them tight far from 0; meshes that are asked about each other have the same. "
+           "keeps them tight far from 0; meshes that are asked about each other have the same, "
+           "else invalid_argument. It is `build` that refuses an origin that is not finite: "
+           "invalid_bounds. "
            "`parallel` uses all cores.")
       .def("build", &build, arg("rest"), arg("triangles"),
            "Takes triangles (m, 3) and sorts them by where vertices are at rest, (n, 3). The mesh "

@@ -168,7 +168,11 @@ void add_impacts(py::module_& module) {
       "shape_of[i] of `shapes`, (n,) or one for all, convex or composite, and moves by motions "
       "(n, 13), as `motions_between` and `motions_by_velocities` give them. At the time of impact "
       "the gap is at most `tolerance`, in (0, 1], of the smaller shape's size. A bad pair refuses "
-      "the call.");
+      "the call: size_mismatch, invalid_key for a shape that is not there, invalid_pose for a "
+      "motion that is not "
+      "valid, invalid_argument for a body that does not exist or a bad tolerance. Some three looks "
+      "for closest points for each pair, up to |turn| / sqrt(tolerance) where shapes whirl around "
+      "each other; of composite shapes that for each pair of parts whose boxes meet.");
   const FeatureImpactOptions defaults;
   module.def(
       "feature_impacts", &feature_times, arg("kind"), arg("start"), arg("end"), py::kw_only(),

@@ -458,7 +458,9 @@ void add_scene_queries(py::module_& module, SceneClass& scene) {
            "Where shapes (n,), or one, no half-spaces, that move and turn by motions (n, 13), as "
            "`motions_between` gives them, first meet a body; t is the time in [0, 1], never late. "
            "The gap then is at most `tolerance` as in `time_of_impact`. `find`: 'closest' or "
-           "'all'.")
+           "'all'. size_mismatch, invalid_key; invalid_pose for a motion that is not valid; "
+           "unsupported for half-spaces; invalid_argument for a bad tolerance. A way that runs "
+           "across the axes is asked about in up to eight pieces.")
       .def("overlap", &overlap, arg("shapes"), arg("poses"), py::kw_only(),
            arg("filter") = Filter{},
            "Bodies that shapes (n,), or one, at poses (n, 7) share a point with, by id.")

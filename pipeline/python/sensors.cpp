@@ -225,14 +225,19 @@ void add_changes(SensorsClass& type) {
            arg("environment") = 0, arg("carrier") = py::none(), arg("data") = py::none(),
            "Adds n sensors and gives their keys, (n,) uint64: shapes (n,), or one for all, at "
            "poses and with filters as bodies have them in Scene.add. `carrier`: keys (n,) of "
-           "bodies that they do not sense, NULL_KEY for none. `data`: (n,) uint64.")
+           "bodies that they do not sense, NULL_KEY for none. `data`: (n,) uint64. All or none: "
+           "size_mismatch, invalid_key for a shape that is not there, invalid_pose, "
+           "too_many_objects beyond 2^28.")
       .def("set", &set, arg("keys"), arg("shapes"), arg("poses"), arg("layers") = 1,
            arg("mask") = every, arg("environment") = 0, arg("carrier") = py::none(),
            arg("data") = py::none(),
-           "Replaces all that the sensors of `keys` (n,) are, as in `add`; their keys stay.")
+           "Replaces all that the sensors of `keys` (n,) are, as in `add`; their keys stay. Errors "
+           "are those of `add`, and invalid_key for a key that is stale or occurs twice.")
       .def("remove", &remove, arg("keys"),
-           "Removes sensors (n,), all or none: what they sensed leaves them by the next `sense`.")
-      .def("move", &move, arg("keys"), arg("poses"), "Gives the sensors (n,) new poses.");
+           "Removes sensors (n,), all or none: what they sensed leaves them by the next `sense`. "
+           "invalid_key for a key that is stale or occurs twice.")
+      .def("move", &move, arg("keys"), arg("poses"),
+           "Gives the sensors (n,) new poses. size_mismatch, invalid_key, invalid_pose.");
 }
 
 }  // namespace
@@ -257,7 +262,8 @@ void add_sensors(py::module_& module) {
            })
       .def("contains", &contains, arg("keys"), "Which of `keys` (n,) are sensors: (n,) bool.")
       .def("sense", &sense,
-           "Looks at the scene as it stands: fixed, dynamic and sleeping bodies alike, exactly.");
+           "Looks at the scene as it stands: fixed, dynamic and sleeping bodies alike, exactly. "
+           "O(sensors (log n + bodies near each)).");
 }
 
 }  // namespace winnow::python

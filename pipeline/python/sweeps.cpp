@@ -162,11 +162,15 @@ void add_sweeps(py::module_& module, SceneClass& scene) {
            "'all', 'fixed' (with fixed bodies), 'bullets' (of those, (n,) bool, with all), or "
            "'bullets_and_fixed'. `tolerance` as in `time_of_impact`. `touching` false leaves out "
            "bodies that share a point at the start; `first_only` looks for the first impact of "
-           "each moving body alone.")
+           "each moving body alone. size_mismatch; invalid_key, also for a key that occurs twice; "
+           "invalid_pose for an end that is none or too far away; invalid_argument for bad "
+           "options. O(n log n) and about log of all bodies for each, and `time_of_impact` for "
+           "each pair whose boxes meet.")
       .def("sweep_motions", &sweep_motions, arg("keys"), arg("motions"), py::kw_only(),
            arg("pairs") = "all", arg("bullets") = py::none(), arg("tolerance") = 1e-6,
            arg("touching") = true, arg("first_only") = false,
-           "The same of any motions (n, 13), such as `motions_by_velocities` gives.");
+           "The same of any motions (n, 13), such as `motions_by_velocities` gives; each starts "
+           "where it says.");
 }
 
 }  // namespace winnow::python

@@ -222,6 +222,7 @@ def test_a_refused_step_changes_nothing():
     refused("invalid_argument", mesh.move, start, end, distance=-1.0)
     refused("invalid_shape", mesh.build, rest, triangles + 1)
     refused("invalid_bounds", mesh.build, bad, triangles)
+    refused("invalid_bounds", winnow.DeformableMesh(origin=(np.nan, 0, 0)).build, start, triangles)
     refused("invalid_argument", mesh.self_proximity, "edge_edge", 0.2)
     refused("invalid_argument", mesh.self_proximity, "edge_edge", np.nan)
     refused("invalid_argument", mesh.self_impacts, "edge_edge", min_separation=0.2)
