@@ -87,7 +87,8 @@ enum class RecordedCall : std::uint8_t {
 /// The last call of a version; none of one that is not known.
 [[nodiscard]] constexpr std::optional<RecordedCall> last_call_of(std::uint32_t version) noexcept {
   if (version == 1) return RecordedCall::set_layers_meet;
-  if (version == kRecordingVersion) return RecordedCall::ask_nearest;
+  if (version == 2) return RecordedCall::ask_nearest;
+  static_assert(kRecordingVersion == 2);
   return std::nullopt;
 }
 
