@@ -133,6 +133,7 @@ class WINNOW_API Contacts {
  private:
   friend class Scene;
   friend class RankScene;
+  friend class RecordedScene;
   /// That of contacts with nothing in them where memory was refused.
   [[nodiscard]] const ContactsState& state() const noexcept;
 

@@ -170,8 +170,10 @@ struct RecordedShape {
 /// Composite shapes are recorded where the CompositePool was given that they are of, and what
 /// changes them in place is with the next question. A body of one that is of another MidPhase or
 /// one-sided, or that has a support function, and SceneOptions::seamless_floors end the recording
-/// with `unsupported`. Of a predicate it is recorded which pairs it let pass. See RecordedQueries
-/// for questions.
+/// with `unsupported`. So does a question with contacts that this scene filled, but not as its last
+/// answer: a scene is asked with one Contacts, which may be cleared, or be another scene's in
+/// between, but not loaded. Of a predicate it is recorded which pairs it let pass. See
+/// RecordedQueries for questions.
 class WINNOW_API RecordedScene {
  public:
   /// The recorder must outlive the scene.
@@ -220,6 +222,15 @@ class WINNOW_API RecordedScene {
   friend class RecordedQueries;
   RecordedScene(Recorder& recorder, const ShapePool& shapes, const SceneOptions& options,
                 const CompositePool* composites) noexcept;
+  /// Which question left what contacts hold, and of which pairs it was.
+  struct Asked {
+    std::uint32_t clock = 0;
+    std::uint64_t pairs = 0;
+    friend constexpr bool operator==(const Asked&, const Asked&) noexcept = default;
+  };
+  [[nodiscard]] static Asked asked_as(const Contacts& contacts) noexcept;
+  [[nodiscard]] bool is_filled_by_this(const Contacts& contacts) const noexcept;
+
   [[nodiscard]] bool can_hold(ShapeId id) const noexcept;
   [[nodiscard]] RecordedShape* find_shape(ShapeId id) noexcept;
   [[nodiscard]] std::uint32_t number_of(ShapeId id) noexcept;
@@ -229,6 +240,7 @@ class WINNOW_API RecordedScene {
   void record_composite(const RecordedShape& shape) noexcept;
   void follow_composites() noexcept;
   void record_passed() noexcept;
+  void forget_passed() noexcept;
 
   void record_offsets(Key key, const ContactOffsets& offsets) noexcept;
   void record_layer(Key key, std::uint16_t layer) noexcept;
@@ -241,9 +253,7 @@ class WINNOW_API RecordedScene {
   Scene scene_;
   Column<RecordedShape> known_;
   std::uint32_t shapes_recorded_ = 0;
-  /// Which contacts were asked for last, and how many there were.
-  const Contacts* asked_ = nullptr;
-  std::size_t asked_size_ = 0;
+  Asked asked_;
   /// Pairs that the predicate let pass, in the recorder's memory; null while there was none.
   PassedPairs* passed_ = nullptr;
 };

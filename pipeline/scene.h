@@ -338,6 +338,7 @@ class WINNOW_API Scene {
   friend class SceneSweep;
   friend class Sensors;
   friend class RankScene;
+  friend class RecordedScene;
 
   /// Null where memory was refused.
   SceneState* state_;

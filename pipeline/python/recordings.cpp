@@ -88,8 +88,10 @@ void add_recordings(py::module_& module) {
       module, "Recorder",
       "Writes down what is done with partitions and scenes that are made with it, so that it can "
       "be played elsewhere, and measured: `winnow advise FILE`. Calls that were refused are not "
-      "recorded, nor are sweeps, sensors and snapshots to be loaded, which are unsupported then. "
-      "Where anything goes wrong the recording ends, and the program goes on: see `status`.")
+      "recorded, nor are sweeps, sensors and snapshots to be loaded, contacts included, which are "
+      "unsupported then. A recorded scene is asked with one Contacts: `status` is 'unsupported' "
+      "after one that it filled in an earlier call than the last. Where anything goes wrong the "
+      "recording ends, and the program goes on: see `status`.")
       .def(py::init(&make_recorder), arg("path"),
            "Into the file of a path, as `open` takes it, which is made or overwritten.")
       .def(

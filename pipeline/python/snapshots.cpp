@@ -76,11 +76,12 @@ void load_scene(SharedScene& s, const py::buffer& data) {
   });
 }
 
-void load_contacts(const SharedScene& s, const py::buffer& data, HeldContacts& contacts) {
+void load_contacts(SharedScene& s, const py::buffer& data, HeldContacts& contacts) {
   const BytesInput input(data);
+  const Scene& scene = s.scene.unrecorded("load_contacts");
   const std::unique_lock<std::mutex> filling = contacts.hold();
   Contacts& out = contacts.to_fill("contacts");
-  accept(reading(s.mutex, [&] { return s.scene->load_contacts(input.bytes(), out); }),
+  accept(reading(s.mutex, [&] { return scene.load_contacts(input.bytes(), out); }),
          "load_contacts");
 }
 

@@ -2,6 +2,8 @@
 #include "pipeline/recording/composite_bytes.h"
 #include "pipeline/recording/contact_digest.h"
 #include "pipeline/recording/passed.h"
+#include "pipeline/scene/contact_frame.h"
+#include "pipeline/scene/scene_state.h"
 #include "pipeline/shapes/hull_bytes.h"
 
 #include <algorithm>
@@ -377,6 +379,7 @@ void RecordedScene::set_predicate(const PairPredicate& predicate) noexcept {
     passed_ = new_in<PassedPairs>(recorder_->block.memory(), *recorder_);
     if (passed_ == nullptr) recorder_->fail(Status::out_of_memory);
   }
+  if (passed_ != nullptr) passed_->pairs.clear();
   scene_.set_predicate(passed_ == nullptr ? predicate : passed_->listen_to(predicate));
   CallWriter(recorder_, RecordedCall::set_predicate, world_).put(predicate.accept != nullptr);
 }
@@ -390,6 +393,14 @@ void RecordedScene::record_passed() noexcept {
   passed_->pairs.clear();
 }
 
+// A question that was refused, and is not recorded, may have been told what passes for good: all is
+// asked again, here and where it is played.
+void RecordedScene::forget_passed() noexcept {
+  if (passed_ == nullptr || passed_->pairs.empty()) return;
+  const PairPredicate asked = passed_->asked;
+  set_predicate(asked);
+}
+
 Status RecordedScene::refresh() {
   follow_composites();
   const Status status = scene_.refresh();
@@ -397,15 +408,28 @@ Status RecordedScene::refresh() {
   return status;
 }
 
+RecordedScene::Asked RecordedScene::asked_as(const Contacts& contacts) noexcept {
+  return {contacts.state().clock, contacts.state().pairs_serial};
+}
+
+// All others are empty to it.
+bool RecordedScene::is_filled_by_this(const Contacts& contacts) const noexcept {
+  return scene_.state_ != nullptr && contacts.state().scene == scene_.state_->serial;
+}
+
 // Contacts remember the frame before: whether they are those of the last question decides what
-// begins and what is carried over.
+// begins and what is carried over. Loaded ones are of no pairs that the scene has found.
 Status RecordedScene::collide(ContactLevel level, Contacts& contacts) {
   follow_composites();
-  const bool continues = asked_ == &contacts && asked_size_ == contacts.size();
+  const bool filled = is_filled_by_this(contacts);
+  const bool continues = filled && asked_as(contacts) == asked_;
   const Status status = scene_.collide(level, contacts);
-  if (status != Status::ok) return status;
-  asked_ = &contacts;
-  asked_size_ = contacts.size();
+  if (status != Status::ok) {
+    forget_passed();
+    return status;
+  }
+  if (filled && !continues) refuse(Status::unsupported);
+  asked_ = asked_as(contacts);
   record_passed();
   CallWriter call(recorder_, RecordedCall::collide, world_);
   call.put(level).put(continues);

@@ -120,11 +120,25 @@ def test_scenes_are_recorded(file):
     refused("unsupported", scene.sweep, keys, np.zeros((len(keys), 3)))
     refused("unsupported", winnow.Sensors, scene)
     refused("unsupported", scene.load, scene.save())
+    refused("unsupported", scene.load_contacts, scene.save_contacts(contacts), contacts)
     assert len(scene.islands(contacts).group) == len(contacts)
     recorder.close()
     assert recorder.status == "ok"
     counts = played(file)
     assert counts["frames"] == 5 and counts["worlds"] == 1
+
+
+def test_a_recorded_scene_is_asked_with_one_contacts(file):
+    recorder = winnow.Recorder(file)
+    shapes = winnow.Shapes()
+    scene = winnow.Scene(shapes, recorder=recorder)
+    scene.add(shapes.add_spheres([0.6]), [[i, 0, 0] for i in range(9)])
+    one, other = winnow.Contacts(), winnow.Contacts()
+    for contacts in (one, one, other):
+        scene.collide(contacts)
+    assert recorder.status == "ok"
+    scene.collide(one)
+    assert recorder.status == "unsupported" and len(one) == 8
 
 
 def test_recordings_outlive_what_they_are_of(file):

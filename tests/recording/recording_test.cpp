@@ -13,6 +13,7 @@
 #include "tests/recording/mutations.h"
 #include "tests/recording/programs.h"
 #include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
 
 namespace winnow::test {
 namespace {
@@ -104,6 +105,119 @@ TEST(ProgramRecordings, of_predicates_have_what_they_let_pass) {
     if (played == Played::pairs) touching.push_back(player.contacts(0)->size());
   }
   EXPECT_EQ(touching, (std::vector<std::size_t>{14, 14, 14, 29}));
+}
+
+/// A row that is recorded, of which one pair parts and meets in turn.
+struct RecordedRow : Row {
+  explicit RecordedRow(Recorder& recorder, const SceneOptions& options = {})
+      : scene(recorder, shapes, options) {
+    EXPECT_EQ(scene.add(bodies, keys), Status::ok);
+  }
+  void ask(Contacts& contacts, Status expected = Status::ok) {
+    EXPECT_EQ(scene.move(keys[0], Pose::at(0, asked++ % 2 == 0 ? 0 : 9, 0)), Status::ok);
+    EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), expected);
+  }
+
+  RecordedScene scene;
+  int asked = 0;
+};
+
+TEST(ProgramRecordings, of_contacts_that_another_scene_filled_in_between_are_played) {
+  Bytes8 bytes;
+  Recorder recorder(kept_in(bytes));
+  {
+    RecordedRow one(recorder, {.carry_over = 0.02, .warm_start = true});
+    RecordedRow other(recorder);
+    Contacts contacts;
+    for (int i = 0; i < 3; ++i) {
+      for (RecordedRow* row : {&one, &other, &other}) {
+        ASSERT_EQ(row->scene.collide(ContactLevel::manifold, contacts), Status::ok);
+      }
+      contacts.clear();
+    }
+  }
+  ASSERT_EQ(recorder.close(), Status::ok);
+  expect_same_everywhere(bytes);
+}
+
+TEST(ProgramRecordings, end_where_a_scene_is_asked_with_other_contacts_than_its_last_answer) {
+  Bytes8 bytes;
+  Recorder recorder(kept_in(bytes));
+  RecordedRow row(recorder);
+  Contacts one;
+  Contacts other;
+  for (Contacts* contacts : {&one, &one, &other, &other}) row.ask(*contacts);
+  EXPECT_EQ(recorder.status(), Status::ok);  // the second ones were empty
+  row.ask(one);
+  EXPECT_EQ(one.size(), 29U);
+  EXPECT_EQ(recorder.close(), Status::unsupported);
+  RecordingPlayer player(bytes);
+  EXPECT_EQ(player.play_all(), Status::ok);
+  EXPECT_EQ(player.differences(), 0U);
+}
+
+TEST(ProgramRecordings, end_where_a_scene_is_asked_with_contacts_that_were_loaded) {
+  for (const bool into_others : {false, true}) {
+    Bytes8 bytes;
+    Recorder recorder(kept_in(bytes));
+    RecordedRow row(recorder);
+    Contacts contacts;
+    Contacts others;
+    Contacts& loaded = into_others ? others : contacts;
+    row.ask(contacts);
+    Column<std::byte> saved(std::pmr::get_default_resource());
+    ASSERT_EQ(row.scene->save_contacts(contacts, saved), Status::ok);
+    ASSERT_EQ(row.scene->load_contacts({saved.data(), saved.size()}, loaded), Status::ok);
+    EXPECT_EQ(recorder.status(), Status::ok);
+    row.ask(loaded);
+    EXPECT_EQ(loaded.size(), 28U);
+    EXPECT_EQ(recorder.status(), Status::unsupported);
+  }
+}
+
+/// Lets pairs pass but those of bodies that it is told not to.
+struct Bouncer {
+  [[nodiscard]] PairPredicate predicate() {
+    return {[](void* context, ObjectId first, ObjectId second) {
+              const auto& of = *static_cast<const Bouncer*>(context);
+              return !of.out[first] && !of.out[second];
+            },
+            this};
+  }
+
+  std::vector<bool> out = std::vector<bool>(40);
+};
+
+TEST(ProgramRecordings, of_predicates_go_on_after_a_refused_question) {
+  enum class Then { asked_again, another_predicate, another_body };
+  for (const Then then : {Then::asked_again, Then::another_predicate, Then::another_body}) {
+    Bytes8 bytes;
+    Recorder recorder(kept_in(bytes));
+    {
+      RecordedRow row(recorder);
+      Bouncer all;
+      Bouncer most;
+      most.out[4] = true;
+      row.scene.set_predicate(all.predicate());
+      CountingMemory memory;
+      Contacts contacts(&memory);
+      memory.refuse_after(0);
+      row.ask(contacts, Status::out_of_memory);  // where all were asked about
+      memory.grant_all();
+      row.asked = 0;
+      if (then == Then::another_predicate) row.scene.set_predicate(most.predicate());
+      if (then == Then::another_body) {
+        ASSERT_EQ(row.scene.remove(row.keys[4]), Status::ok);
+        Key key;
+        ASSERT_EQ(row.scene.add(row.bodies[4], key), Status::ok);
+        all.out[key.id] = true;
+      }
+      row.ask(contacts);
+      EXPECT_EQ(contacts.size(), then == Then::asked_again ? 29U : 27U);
+    }
+    ASSERT_EQ(recorder.close(), Status::ok);
+    expect_same_everywhere(bytes);
+  }
 }
 
 TEST(ProgramRecordings, of_composites_that_no_body_has_are_played_bit_for_bit) {
