@@ -18,6 +18,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <tuple>
 
@@ -38,6 +39,12 @@ constexpr std::size_t kCandidatesPerStretch = 256;
 constexpr std::size_t kPairsPerRound = 1024;
 /// To so many bits pairs are ordered by when they may meet.
 constexpr unsigned kTimeBits = 11;
+
+/// Room for a motion, which nothing is written to before there is one.
+union MotionRoom {
+  MotionRoom() noexcept {}
+  RigidMotion motion;
+};
 
 [[nodiscard]] auto order_of(const SceneImpact& impact) noexcept {
   return std::tuple(impact.time, impact.a.id, impact.b.id);
@@ -408,7 +415,7 @@ impact::Interval SweepState::chance_of(std::uint64_t candidate) const noexcept {
 void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptions& options,
                               impact::BodyImpact* impacts_of) const noexcept {
   impact::ImpactBatch batch(bodies.shapes.tables(), options.tolerance);
-  std::array<RigidMotion, impact::ImpactBatch::kRoom> standing;
+  std::array<MotionRoom, impact::ImpactBatch::kRoom> standing;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     if (asked[i].within.first > asked[i].within.last) {
       impacts_of[i] = {};
@@ -418,7 +425,7 @@ void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptio
     // At most one of the two stands.
     const auto motion = [&](std::uint32_t body) -> const RigidMotion& {
       if (mover_of[body] != kNoMover) return motions[mover_of[body]];
-      return standing[i] = RigidMotion::standing(bodies.pose[body]);
+      return *std::construct_at(&standing[i].motion, RigidMotion::standing(bodies.pose[body]));
     };
     const RigidMotion& of_a = motion(a);
     const RigidMotion& of_b = motion(b);
