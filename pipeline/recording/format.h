@@ -98,6 +98,11 @@ struct RecordedPair {
   std::uint32_t second;
 };
 
+/// A pair in whatever order, as recordings have those of one scene.
+[[nodiscard]] constexpr Pair lower_first(ObjectId one, ObjectId other) noexcept {
+  return one < other ? Pair{one, other} : Pair{other, one};
+}
+
 /// Which hits of a ray or a moving shape were asked for.
 enum class HitForm : std::uint8_t { closest, any, all };
 
@@ -119,7 +124,23 @@ static_assert(sizeof(RecordedBody) == 88);
   return {pair.first, pair.second};
 }
 
-// Digests of answers.
+// Digests of answers: what add_to takes, here and where other answers are told.
+
+/// Of one answer after the other.
+template <typename... Answers>
+[[nodiscard]] Digest digest_of_answers(const Answers&... answers) noexcept {
+  Digest digest;
+  (add_to(digest, answers), ...);
+  return digest;
+}
+
+/// Of the first so many entries of columns.
+template <typename Columns>
+[[nodiscard]] Digest digest_of_columns(const Columns& columns, std::size_t count) noexcept {
+  Digest digest;
+  add_to(digest, columns, count);
+  return digest;
+}
 
 inline void add_to(Digest& digest, std::span<const Hit> hits) noexcept {
   for (const Hit& hit : hits) {

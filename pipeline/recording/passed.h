@@ -11,6 +11,15 @@
 
 namespace winnow {
 
+/// What was let pass, however often it was asked about, in order.
+template <typename T>
+[[nodiscard]] std::span<const T> each_once(Column<T>& passed) noexcept {
+  std::sort(passed.begin(), passed.end());
+  const T* const end = std::unique(passed.begin(), passed.end());
+  passed.set_size(static_cast<std::size_t>(end - passed.begin()));
+  return {passed.data(), passed.size()};
+}
+
 /// Asks the predicate of a scene, from whatever threads, and keeps the pairs that it lets pass: in
 /// the recorder's memory, under its lock.
 struct PassedPairs {
@@ -24,7 +33,7 @@ struct PassedPairs {
     return {[](void* context, ObjectId first, ObjectId second) {
               auto& self = *static_cast<PassedPairs*>(context);
               const bool passes = self.asked.accept(self.asked.context, first, second);
-              if (passes) self.keep({std::min(first, second), std::max(first, second)});
+              if (passes) self.keep(lower_first(first, second));
               return passes;
             },
             this};
@@ -32,11 +41,6 @@ struct PassedPairs {
   void keep(const Pair& pair) {
     const Lock lock(recorder.mutex);
     if (!pairs.push_back(pair)) recorder.fail(Status::out_of_memory);
-  }
-  void sort() noexcept {
-    std::sort(pairs.begin(), pairs.end());
-    pairs.set_size(
-        static_cast<std::size_t>(std::unique(pairs.begin(), pairs.end()) - pairs.begin()));
   }
 
   RecorderState& recorder;
@@ -64,11 +68,8 @@ class PassedObjects {
   }
   /// Writes whether there was a predicate, and what it let pass.
   void put(CallWriter& call) {
-    std::sort(ids_.begin(), ids_.end());
-    ids_.set_size(static_cast<std::size_t>(std::unique(ids_.begin(), ids_.end()) - ids_.begin()));
     call.put(asked_.predicate.accept != nullptr);
-    if (asked_.predicate.accept == nullptr) return;
-    call.put_array(std::span<const ObjectId>(ids_.data(), ids_.size()));
+    if (asked_.predicate.accept != nullptr) call.put_array(each_once(ids_));
   }
   /// False if memory was refused.
   [[nodiscard]] bool is_complete() const noexcept { return is_complete_; }

@@ -75,9 +75,7 @@ void put_passed(CallWriter& call, const ObjectPredicate& predicate, std::span<co
 
 template <typename... Answer>
 void put_digest(CallWriter& call, const Answer&... answer) {
-  Digest digest;
-  (add_to(digest, answer), ...);
-  call.put(digest.value());
+  call.put(digest_of_answers(answer...).value());
 }
 
 /// What a question about hits ends with: its filter, and what it found.
@@ -447,9 +445,7 @@ void RecordedPartition::record(RecordedCall question, const RayBatch& rays, cons
   call.put_filter(filter);
   put_passed(call, filter.predicate, rays.count, [&](std::size_t i) { return hits.key[i].id; });
   call.put(hits.key != nullptr).put(hits.data != nullptr).put(hits.t != nullptr);
-  Digest digest;
-  add_to(digest, hits, rays.count);
-  call.put(digest.value());
+  call.put(digest_of_columns(hits, rays.count).value());
 }
 
 }  // namespace winnow

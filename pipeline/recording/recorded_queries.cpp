@@ -28,13 +28,6 @@ void put_motion(CallWriter& call, const MotionCast& cast) {
 /// Bytes of a struct of doubles are its numbers.
 static_assert(sizeof(Pose) == 7 * sizeof(double) && sizeof(RigidMotion) == 13 * sizeof(double));
 
-template <typename... Answer>
-[[nodiscard]] Digest digest_of(const Answer&... answer) noexcept {
-  Digest digest;
-  add_to(digest, answer...);
-  return digest;
-}
-
 }  // namespace
 
 RecordedQueries::RecordedQueries(RecordedScene& scene, std::pmr::memory_resource* memory) noexcept
@@ -86,7 +79,7 @@ Status RecordedQueries::closest(const ShapeRay& ray, SceneHit& hit, const Filter
       [&](const Filter& asked) { return queries_.closest(ray, hit, asked); },
       [&](CallWriter& call) {
         put_ray(call.put(HitForm::closest), ray);
-        return digest_of(hit);
+        return digest_of_answers(hit);
       });
 }
 
@@ -96,7 +89,7 @@ Status RecordedQueries::any(const ShapeRay& ray, SceneHit& hit, const Filter& fi
       [&](const Filter& asked) { return queries_.any(ray, hit, asked); },
       [&](CallWriter& call) {
         put_ray(call.put(HitForm::any), ray);
-        return digest_of(hit);
+        return digest_of_answers(hit);
       });
 }
 
@@ -107,7 +100,7 @@ Status RecordedQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits
       [&](const Filter& asked) { return queries_.all(ray, hits, asked); },
       [&](CallWriter& call) {
         put_ray(call.put(HitForm::all), ray);
-        return digest_of(hits);
+        return digest_of_answers(hits);
       });
 }
 
@@ -118,7 +111,7 @@ Status RecordedQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns
       [&](const Filter& asked) { return queries_.closest(rays, hits, asked); },
       [&](CallWriter& call) {
         put_rays(call.put(HitForm::closest).put(columns_in(hits)), rays);
-        return digest_of(hits, rays.count);
+        return digest_of_columns(hits, rays.count);
       });
 }
 
@@ -129,7 +122,7 @@ Status RecordedQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hi
       [&](const Filter& asked) { return queries_.any(rays, hits, asked); },
       [&](CallWriter& call) {
         put_rays(call.put(HitForm::any).put(columns_in(hits)), rays);
-        return digest_of(hits, rays.count);
+        return digest_of_columns(hits, rays.count);
       });
 }
 
@@ -139,7 +132,7 @@ Status RecordedQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, cons
       [&](const Filter& asked) { return queries_.all(rays, hits, asked); },
       [&](CallWriter& call) {
         put_rays(call.put(HitForm::all).put(columns_in({})), rays);
-        return digest_of(hits);
+        return digest_of_answers(hits);
       });
 }
 
@@ -152,7 +145,7 @@ Status RecordedQueries::overlap(ShapeId shape, const Pose& pose,
       [&](const Filter& asked) { return queries_.overlap(shape, pose, bodies, asked); },
       [&](CallWriter& call, std::uint32_t number) {
         call.put(number).put_bytes(&pose, sizeof pose);
-        return digest_of(bodies);
+        return digest_of_answers(bodies);
       });
 }
 
@@ -163,7 +156,7 @@ Status RecordedQueries::closest(const ShapeCast& cast, SceneHit& hit, const Filt
       [&](const Filter& asked) { return queries_.closest(cast, hit, asked, tolerance); },
       [&](CallWriter& call, std::uint32_t number) {
         put_cast(call.put(HitForm::closest).put(number).put(tolerance), cast);
-        return digest_of(hit);
+        return digest_of_answers(hit);
       });
 }
 
@@ -174,7 +167,7 @@ Status RecordedQueries::all(const ShapeCast& cast, std::span<const SceneHit>& hi
       [&](const Filter& asked) { return queries_.all(cast, hits, asked, tolerance); },
       [&](CallWriter& call, std::uint32_t number) {
         put_cast(call.put(HitForm::all).put(number).put(tolerance), cast);
-        return digest_of(hits);
+        return digest_of_answers(hits);
       });
 }
 
@@ -185,7 +178,7 @@ Status RecordedQueries::closest(const MotionCast& cast, SceneHit& hit, const Fil
       [&](const Filter& asked) { return queries_.closest(cast, hit, asked, tolerance); },
       [&](CallWriter& call, std::uint32_t number) {
         put_motion(call.put(HitForm::closest).put(number).put(tolerance), cast);
-        return digest_of(hit);
+        return digest_of_answers(hit);
       });
 }
 
@@ -196,7 +189,7 @@ Status RecordedQueries::all(const MotionCast& cast, std::span<const SceneHit>& h
       [&](const Filter& asked) { return queries_.all(cast, hits, asked, tolerance); },
       [&](CallWriter& call, std::uint32_t number) {
         put_motion(call.put(HitForm::all).put(number).put(tolerance), cast);
-        return digest_of(hits);
+        return digest_of_answers(hits);
       });
 }
 
@@ -209,7 +202,7 @@ Status RecordedQueries::distance(Key a, Key b, SceneDistance& answer, double lim
       .put(a.id)
       .put(b.id)
       .put(limit)
-      .put(digest_of(answer).value());
+      .put(digest_of_answers(answer).value());
   return status;
 }
 
@@ -221,7 +214,7 @@ Status RecordedQueries::least_distance(std::span<const Key> a, std::span<const K
       .put_ids(a)
       .put_ids(b)
       .put(limit)
-      .put(digest_of(answer).value());
+      .put(digest_of_answers(answer).value());
   return status;
 }
 
@@ -233,7 +226,7 @@ Status RecordedQueries::overlaps(std::span<const Key> a, std::span<const Key> b,
       .put_ids(a)
       .put_ids(b)
       .put(std::uint64_t{most})
-      .put(digest_of(pairs).value());
+      .put(digest_of_answers(pairs).value());
   return status;
 }
 
@@ -244,7 +237,7 @@ Status RecordedQueries::nearest(const double point[3], std::size_t count, double
       [&](const Filter& asked) { return queries_.nearest(point, count, radius, bodies, asked); },
       [&](CallWriter& call) {
         call.put_bytes(point, 3 * sizeof(double)).put(std::uint64_t{count}).put(radius);
-        return digest_of(bodies);
+        return digest_of_answers(bodies);
       });
 }
 

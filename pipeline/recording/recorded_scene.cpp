@@ -387,9 +387,7 @@ void RecordedScene::set_predicate(const PairPredicate& predicate) noexcept {
 // Told before the question that it was asked for, which a player answers by it.
 void RecordedScene::record_passed() noexcept {
   if (passed_ == nullptr || passed_->asked.accept == nullptr) return;
-  passed_->sort();
-  CallWriter(recorder_, RecordedCall::pairs_passed, world_)
-      .put_array(std::span<const Pair>(passed_->pairs.data(), passed_->pairs.size()));
+  CallWriter(recorder_, RecordedCall::pairs_passed, world_).put_array(each_once(passed_->pairs));
   passed_->pairs.clear();
 }
 
@@ -433,9 +431,7 @@ Status RecordedScene::collide(ContactLevel level, Contacts& contacts) {
   record_passed();
   CallWriter call(recorder_, RecordedCall::collide, world_);
   call.put(level).put(continues);
-  Digest digest;
-  add_to(digest, contacts);
-  call.put(digest.value());
+  call.put(digest_of_answers(contacts).value());
   return status;
 }
 

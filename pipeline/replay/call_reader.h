@@ -9,6 +9,21 @@
 
 namespace winnow {
 
+/// Lets those pairs pass that are among sorted ones, named as `named` names what is asked.
+template <Pair (*named)(ObjectId, ObjectId) noexcept>
+[[nodiscard]] PairPredicate among(Column<Pair>& pairs) noexcept {
+  return {[](void* context, ObjectId first, ObjectId second) {
+            const auto& passed = *static_cast<const Column<Pair>*>(context);
+            return std::binary_search(passed.begin(), passed.end(), named(first, second));
+          },
+          &pairs};
+}
+
+/// A pair as a partition asks, whose second object may be another partition's.
+[[nodiscard]] constexpr Pair in_order(ObjectId first, ObjectId second) noexcept {
+  return {first, second};
+}
+
 /// A filter as it was recorded, with what the predicate let pass, if there was one. The reader of
 /// it must outlive what it is asked with.
 class RecordedFilter {
@@ -35,11 +50,7 @@ class RecordedFilter {
   [[nodiscard]] PairPredicate read_passed_pairs(ByteReader& in) noexcept {
     if (!in.get_bool() || !in.get_array(pairs_)) return {};
     std::sort(pairs_.begin(), pairs_.end());
-    return {[](void* context, ObjectId first, ObjectId second) {
-              const auto& pairs = static_cast<RecordedFilter*>(context)->pairs_;
-              return std::binary_search(pairs.begin(), pairs.end(), Pair{first, second});
-            },
-            this};
+    return among<in_order>(pairs_);
   }
   [[nodiscard]] const Filter& filter() const noexcept { return filter_; }
 

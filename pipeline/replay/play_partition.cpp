@@ -238,10 +238,7 @@ Status ReplayState::cast_rays(RecordedCall call, ReplayedWorld& of) {
   const Status answered = call == RecordedCall::any_rays
                               ? partition.any(batch, hits, filter.filter())
                               : partition.closest(batch, hits, filter.filter());
-  if (answered != Status::ok) return answered;
-  Digest digest;
-  add_to(digest, hits, rays.size());
-  return compare(digest);
+  return answered == Status::ok ? compare(digest_of_columns(hits, rays.size())) : answered;
 }
 
 Status ReplayState::overlap(RecordedCall call, ReplayedWorld& of) {

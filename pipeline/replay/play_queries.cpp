@@ -125,10 +125,7 @@ Status ReplayState::ask_rays(ReplayedWorld& of) {
   const SceneHitColumns hits = asked.columns(which);
   const Status answered = form == HitForm::any ? of.queries->any(batch, hits, filter.filter())
                                                : of.queries->closest(batch, hits, filter.filter());
-  if (answered != Status::ok) return answered;
-  Digest digest;
-  add_to(digest, hits, batch.count);
-  return compare(digest);
+  return answered == Status::ok ? compare(digest_of_columns(hits, batch.count)) : answered;
 }
 
 Status ReplayState::ask_overlap(ReplayedWorld& of) {

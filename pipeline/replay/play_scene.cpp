@@ -20,16 +20,6 @@ Status add_plain(ByteReader& in, ShapePool& pool, ShapeId& id,
   return status;
 }
 
-/// Lets those pairs pass that did in the program.
-PairPredicate passed_of(ReplayedWorld& of) noexcept {
-  return {[](void* context, ObjectId first, ObjectId second) {
-            const Column<Pair>& passed = static_cast<ReplayedWorld*>(context)->passed;
-            return std::binary_search(passed.begin(), passed.end(),
-                                      Pair{std::min(first, second), std::max(first, second)});
-          },
-          &of};
-}
-
 /// Makes the pool another one, of the same shapes.
 Status change_composites(CompositePool& pool) {
   constexpr float kHeights[4] = {};
@@ -142,7 +132,7 @@ Status ReplayState::change_scene(RecordedCall call, ReplayedWorld& of) {
     case RecordedCall::set_predicate: {
       const bool asks = in.get_bool();
       if (!in.ok()) return reading();
-      scene.set_predicate(asks ? passed_of(of) : PairPredicate{});
+      scene.set_predicate(asks ? among<lower_first>(of.passed) : PairPredicate{});
       return Status::ok;
     }
     case RecordedCall::pairs_passed:

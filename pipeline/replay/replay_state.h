@@ -116,9 +116,7 @@ struct ReplayState {
   /// Compares with the digest that was recorded.
   template <typename... Answer>
   [[nodiscard]] Status compare(const Answer&... answer) noexcept {
-    Digest digest;
-    (add_to(digest, answer), ...);
-    return compare(digest);
+    return compare(digest_of_answers(answer...));
   }
   [[nodiscard]] Status compare(const Digest& digest) noexcept { return compare(digest.value()); }
   [[nodiscard]] Status compare(std::uint64_t digest) noexcept {
