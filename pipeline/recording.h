@@ -236,6 +236,7 @@ class WINNOW_API RecordedScene {
   [[nodiscard]] std::uint32_t number_of(ShapeId id) noexcept;
   void refuse(Status why) noexcept;
   void describe(RecordedShape& shape) const noexcept;
+  void know(const RecordedShape& shape) noexcept;
   void record_shape(const RecordedShape& shape) noexcept;
   void record_composite(const RecordedShape& shape) noexcept;
   void follow_composites() noexcept;
@@ -251,6 +252,7 @@ class WINNOW_API RecordedScene {
   const CompositePool* composites_;
   std::uint64_t composites_seen_;
   Scene scene_;
+  /// By id, in the recorder's memory.
   Column<RecordedShape> known_;
   std::uint32_t shapes_recorded_ = 0;
   Asked asked_;
@@ -266,7 +268,8 @@ class WINNOW_API RecordedScene {
 ///     ask.closest(ray, hit);
 class WINNOW_API RecordedQueries {
  public:
-  /// Asks `scene`, which must outlive this. Every allocation comes from `memory`, which must too.
+  /// Asks `scene`, which must outlive this. Every allocation comes from `memory`, which must too,
+  /// but for what is written: that comes from the recorder's, of one thread at a time.
   explicit RecordedQueries(RecordedScene& scene, std::pmr::memory_resource* memory =
                                                      std::pmr::get_default_resource()) noexcept;
 

@@ -91,7 +91,7 @@ RecordedScene::RecordedScene(Recorder& recorder, const ShapePool& shapes,
       composites_(composites),
       composites_seen_(composites == nullptr ? 0 : composites->revision()),
       scene_(shapes, options),
-      known_(options.memory) {
+      known_(recorder.memory_) {
   if (options.seamless_floors) refuse(Status::unsupported);
   CallWriter call(recorder_, RecordedCall::make_scene, world_);
   for (const StructureKind& structure : options.structures) {
@@ -107,6 +107,7 @@ RecordedScene::~RecordedScene() {
   if (recorder_ == nullptr) return;
   const Lock lock(recorder_->mutex);
   delete_in(recorder_->block.memory(), passed_);
+  known_.release();
 }
 
 /// Ends the recording.
@@ -161,17 +162,21 @@ std::uint32_t RecordedScene::number_of(ShapeId id) noexcept {
   shape.number = shapes_recorded_++;
   if (at != nullptr) {
     *find_shape(id) = shape;
-  } else if (known_.push_back(shape)) {
-    const auto by_id = [](const RecordedShape& a, const RecordedShape& b) {
-      return a.id.bits < b.id.bits;
-    };
-    std::rotate(std::upper_bound(known_.begin(), known_.end() - 1, shape, by_id), known_.end() - 1,
-                known_.end());
   } else {
-    refuse(Status::out_of_memory);
+    know(shape);
   }
   id.is_composite() ? record_composite(shape) : record_shape(shape);
   return shape.number;
+}
+
+void RecordedScene::know(const RecordedShape& shape) noexcept {
+  const Lock lock(recorder_->mutex);
+  if (!known_.push_back(shape)) return recorder_->fail(Status::out_of_memory);
+  const auto by_id = [](const RecordedShape& a, const RecordedShape& b) {
+    return a.id.bits < b.id.bits;
+  };
+  std::rotate(std::upper_bound(known_.begin(), known_.end() - 1, shape, by_id), known_.end() - 1,
+              known_.end());
 }
 
 void RecordedScene::record_shape(const RecordedShape& shape) noexcept {
@@ -188,13 +193,10 @@ void RecordedScene::record_shape(const RecordedShape& shape) noexcept {
 }
 
 void RecordedScene::record_composite(const RecordedShape& shape) noexcept {
-  Column<std::byte> bytes(known_.memory());
-  const Status status = save_composite(*composites_, shape.id, bytes);
-  if (status != Status::ok) {
-    refuse(status);
-    return;
-  }
   CallWriter call(recorder_, RecordedCall::add_composite, world_);
+  Column<std::byte> bytes(known_.memory());  // while the recorder is this call's
+  const Status status = save_composite(*composites_, shape.id, bytes);
+  if (status != Status::ok) return call.give_up(status);
   call.put(shape.id.composite_kind());
   call.put_array(std::span<const std::byte>(bytes.data(), bytes.size()));
   const auto scale = composites_->scale(shape.id);

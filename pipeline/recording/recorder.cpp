@@ -61,12 +61,18 @@ CallWriter::CallWriter(RecorderState* state, RecordedCall call, std::uint32_t wo
 CallWriter::~CallWriter() {
   if (!is_open()) return;
   if (!writer_->ok()) {
-    state_->block.set_size(begin_);
-    state_->fail(Status::out_of_memory);
+    give_up(Status::out_of_memory);
     return;
   }
   ++state_->calls;
   if (state_->block.size() >= kBlockBytes) state_->flush();
+}
+
+void CallWriter::give_up(Status why) noexcept {
+  if (!is_open()) return;
+  writer_.reset();
+  state_->block.set_size(begin_);
+  state_->fail(why);
 }
 
 CallWriter& CallWriter::put_ids(std::span<const Key> keys) noexcept {

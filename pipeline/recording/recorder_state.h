@@ -67,6 +67,8 @@ class CallWriter {
   }
   /// Keys by their ids.
   CallWriter& put_ids(std::span<const Key> keys) noexcept;
+  /// Leaves the call out, and ends the recording for a reason.
+  void give_up(Status why) noexcept;
   /// A filter but for its predicate.
   CallWriter& put_filter(const Filter& filter) noexcept {
     return put(filter.layers).put(filter.mask).put(filter.environment);

@@ -293,6 +293,41 @@ TEST(ProgramRecordings, of_questions_from_several_threads_are_played_bit_for_bit
   EXPECT_EQ(player.differences(), 0U);
 }
 
+TEST(ProgramRecordings, of_questions_take_memory_of_the_question_and_the_recorder_alone) {
+  Row row;
+  CompositePool composites(row.shapes);
+  const std::vector<Vec3f> corners{{-9, -9, 0}, {90, -9, 0}, {-9, 90, 0}};
+  const std::vector<std::uint32_t> triangle{0, 1, 2};
+  ShapeId floor;
+  ASSERT_EQ(composites.add_mesh(corners, std::span<const std::uint32_t>(triangle), floor),
+            Status::ok);
+  ShapeId box;
+  ASSERT_EQ(row.shapes.add(BoxShape{{0.5, 0.5, 0.5}}, box), Status::ok);
+  Bytes8 bytes;
+  CountingMemory of_scene;
+  CountingMemory of_recorder;
+  CountingMemory of_questions;
+  Recorder recorder(kept_in(bytes), &of_recorder);
+  {
+    RecordedScene scene(recorder, row.shapes, composites, {.memory = &of_scene});
+    ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
+    ASSERT_EQ(scene.refresh(), Status::ok);
+    RecordedQueries ask(scene, &of_questions);
+    std::span<const SceneOverlap> found;
+    // The first question makes what all ask.
+    ASSERT_EQ(ask.queries().overlap(row.ball, Pose{}, found), Status::ok);
+    const std::size_t before = of_scene.requests();
+    for (const ShapeId shape : {floor, box}) {
+      EXPECT_EQ(ask.overlap(shape, Pose{}, found), Status::ok);
+      EXPECT_GT(found.size(), 0U);
+    }
+    EXPECT_EQ(of_scene.requests(), before);
+    EXPECT_GT(of_questions.requests(), 0U);
+  }
+  ASSERT_EQ(recorder.close(), Status::ok);
+  expect_same_everywhere(bytes);
+}
+
 TEST(ProgramRecordings, of_questions_that_were_refused_have_none) {
   Row row;
   Bytes8 bytes;
