@@ -12,6 +12,7 @@
 #include <limits>
 #include <memory_resource>
 #include <span>
+#include <utility>
 
 namespace winnow {
 
@@ -223,11 +224,7 @@ class WINNOW_API RecordedScene {
   RecordedScene(Recorder& recorder, const ShapePool& shapes, const SceneOptions& options,
                 const CompositePool* composites) noexcept;
   /// Which question left what contacts hold, and of which pairs it was.
-  struct Asked {
-    std::uint32_t clock = 0;
-    std::uint64_t pairs = 0;
-    friend constexpr bool operator==(const Asked&, const Asked&) noexcept = default;
-  };
+  using Asked = std::pair<std::uint32_t, std::uint64_t>;
   [[nodiscard]] static Asked asked_as(const Contacts& contacts) noexcept;
   [[nodiscard]] bool is_filled_by_this(const Contacts& contacts) const noexcept;
 
