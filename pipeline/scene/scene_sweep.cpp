@@ -453,9 +453,9 @@ Status SweepState::find_all(const SweepOptions& options) {
                   std::array<SweptPair, impact::ImpactBatch::kRoom> asked;
                   for (std::size_t i = begin; i < end; ++i) {
                     const impact::Interval window = window_of(candidates[i]);
-                    const bool convex = std::ranges::none_of(
-                        bodies_of(static_cast<std::uint32_t>(i)),
-                        [&](std::uint32_t body) { return bodies.shape[body].is_composite(); });
+                    const auto [a, b] = bodies_of(static_cast<std::uint32_t>(i));
+                    const bool convex =
+                        impact::ImpactBatch::takes(bodies.shape[a], bodies.shape[b]);
                     const bool whole = convex && window.first <= window.last;
                     asked[i - begin] = {static_cast<std::uint32_t>(i),
                                         whole ? impact::Interval{0.0, 1.0} : window};

@@ -59,7 +59,7 @@ class HullPatch {
 
   /// The same by its ends; what `across` finds if there is no such edge.
   void edge_between(std::uint32_t v, std::uint32_t w) {
-    const std::uint32_t index = winnow::WINNOW_ISA_NAME::hull::edge_between(hull_, v, w);
+    const std::uint32_t index = find_edge(hull_, v, w);
     if (index == kNoFeature) return across();
     edge(index);
   }
@@ -96,8 +96,7 @@ class HullPatch {
     const std::uint32_t face_index = face_across(hull_, direction, x, slack);
     if (face_index != kNoFeature) return face(face_index);
     const std::uint32_t other = neighbour_across(hull_, direction, vertex, x);
-    if (other != kNoFeature)
-      return edge_alone(winnow::WINNOW_ISA_NAME::hull::edge_between(hull_, vertex, other));
+    if (other != kNoFeature) return edge_alone(find_edge(hull_, vertex, other));
     vertex_alone(vertex);
   }
 
@@ -232,7 +231,7 @@ static inline std::uint32_t feature_at_point(const HullPair& pair, const HullCon
   const HullShape& hull = *pair.first;
   const std::uint32_t v = pair.vertices[0] & 0xFFFFU;
   if (pair.count == 2) {
-    const std::uint32_t edge = edge_between(hull, v, pair.vertices[1] & 0xFFFFU);
+    const std::uint32_t edge = find_edge(hull, v, pair.vertices[1] & 0xFFFFU);
     if (edge != kNoFeature) return id(FeatureKind::edge, edge);
   }
   if (pair.count > 1) {

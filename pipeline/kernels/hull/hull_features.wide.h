@@ -11,7 +11,7 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 inline constexpr std::uint32_t kNoFeature = ~0U;
 
 /// The edge between two vertices.
-static inline std::uint32_t edge_between(const HullShape& hull, std::uint32_t v, std::uint32_t w) {
+static inline std::uint32_t find_edge(const HullShape& hull, std::uint32_t v, std::uint32_t w) {
   for (std::uint32_t i = 0; i < hull.edge_count; ++i) {
     const std::uint32_t* ends = hull.edges[i].vertex;
     if ((ends[0] == v && ends[1] == w) || (ends[0] == w && ends[1] == v)) return i;
