@@ -1,71 +1,60 @@
 #include "core/sort/counting_sort.h"
 
 #include <algorithm>
+#include <array>
+
+#include "core/sort/own_rows.h"
 
 namespace winnow {
-namespace {
-
-constexpr std::size_t kRowsPerChunk = 4096;
-constexpr std::size_t kMostSortChunks = 8;
-
-}  // namespace
 
 CountingSort::CountingSort(std::span<const std::uint32_t> bucket, std::span<std::uint32_t> start,
-                           std::span<std::uint32_t> spare, const Execution& execution) noexcept
+                           const Execution& execution) noexcept
     : bucket_(bucket),
       start_(start),
-      spare_(spare),
       execution_(execution),
-      buckets_(start.size() - 1) {
-  // More counts than rows cost more than they save.
-  const std::size_t room =
-      std::min(spare.size(), bucket.size()) / std::max<std::size_t>(1, buckets_);
-  chunks_ =
-      std::min({kMostSortChunks, execution.concurrency(), bucket.size() / kRowsPerChunk, room + 1});
-  chunks_ = std::max<std::size_t>(1, chunks_);
-}
+      buckets_(start.size() - 1),
+      owners_(owners_of_rows(bucket.size(), execution)) {}
 
 void CountingSort::count() noexcept {
-  execution_.for_each(chunks_, [&](std::size_t chunk) {
-    std::uint32_t* const counts = counts_of(chunk);
-    std::fill_n(counts, buckets_, 0U);
-    for (std::size_t row = first_row(chunk); row < first_row(chunk + 1); ++row) {
-      if (bucket_[row] != kNone) ++counts[bucket_[row]];
-    }
-  });
-}
-
-std::uint32_t CountingSort::size_of(std::size_t bucket) const noexcept {
-  std::uint32_t sum = 0;
-  for (std::size_t chunk = 0; chunk < chunks_; ++chunk) sum += counts_of(chunk)[bucket];
-  return sum;
+  std::ranges::fill(start_, 0U);
+  for_rows_by_target(bucket_, buckets_, execution_,
+                     [&](std::uint32_t, std::uint32_t bucket) { ++start_[bucket]; });
 }
 
 std::uint32_t CountingSort::find_starts() noexcept {
   std::uint32_t sum = 0;
-  for (std::size_t b = 0; b < buckets_; ++b) {
-    for (std::size_t chunk = 0; chunk < chunks_; ++chunk) {
-      std::uint32_t& at = counts_of(chunk)[b];
-      const std::uint32_t rows = at;
-      at = sum;
-      sum += rows;
-    }
+  for (std::uint32_t& start : start_.first(buckets_)) {
+    const std::uint32_t rows = start;
+    start = sum;
+    sum += rows;
   }
   start_[buckets_] = sum;
   return sum;
 }
 
+// Buckets of about as many rows as those of every other owner.
+CountingSort::Buckets CountingSort::equal_rows(std::size_t owner) const noexcept {
+  const auto first_of = [&](std::size_t i) -> std::size_t {
+    if (i == owners_) return buckets_;
+    const std::size_t rows = std::size_t{start_[buckets_]} * i / owners_;
+    return std::ranges::lower_bound(start_.first(buckets_), rows) - start_.begin();
+  };
+  return {first_of(owner), first_of(owner + 1)};
+}
+
 void CountingSort::place(std::uint32_t* order) noexcept {
-  execution_.for_each(chunks_, [&](std::size_t chunk) {
-    std::uint32_t* const next = counts_of(chunk);
-    for (std::size_t row = first_row(chunk); row < first_row(chunk + 1); ++row) {
-      if (bucket_[row] != kNone) order[next[bucket_[row]]++] = static_cast<std::uint32_t>(row);
-    }
+  std::array<Buckets, kMostOwners> share;
+  for (std::size_t i = 0; i < owners_; ++i) share[i] = equal_rows(i);
+  execution_.for_each(owners_, [&](std::size_t owner) {
+    const auto [first, end] = share[owner];
+    if (first == end) return;
+    const std::uint32_t begin = start_[first];
+    for_own_rows(bucket_, first, end, owners_,
+                 [&](std::uint32_t row, std::uint32_t bucket) { order[start_[bucket]++] = row; });
+    // Where the last row of a bucket went the next one begins.
+    std::copy_backward(start_.begin() + first, start_.begin() + end - 1, start_.begin() + end);
+    start_[first] = begin;
   });
-  // Where the last chunk has come to in a bucket the next one begins.
-  const std::uint32_t* const end = counts_of(chunks_ - 1);
-  for (std::size_t b = buckets_; b-- > 1;) start_[b] = end[b - 1];
-  start_[0] = 0;
 }
 
 }  // namespace winnow

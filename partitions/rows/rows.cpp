@@ -1,6 +1,7 @@
 #include "partitions/rows/rows.h"
 
 #include "core/memory/columns.h"
+#include "core/sort/own_rows.h"
 #include "partitions/rows/fat_volumes.h"
 #include "partitions/rows/volume_source.h"
 
@@ -675,12 +676,8 @@ void Rows::disorder() noexcept {
 void Rows::reorder(std::span<const std::uint32_t> order, Column<float>& spare) noexcept {
   const Execution execution = execution_for(order.size());
   pool_.reorder(order, spare, execution);
-  for_ranges(execution, order.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      const ObjectId id = pool_.ids()[row];
-      if (id != kNoObject) keys_.set_row(id, static_cast<std::uint32_t>(row));
-    }
-  });
+  for_rows_by_target({pool_.ids(), order.size()}, keys_.slot_count(), execution,
+                     [&](std::uint32_t row, ObjectId id) { keys_.set_row(id, row); });
 }
 
 void Rows::reorder_tail(std::size_t begin, std::span<const std::uint32_t> order,

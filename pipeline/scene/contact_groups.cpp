@@ -94,7 +94,7 @@ Footprint ContactGroups::footprint() const noexcept {
 bool ContactGroups::sort(std::size_t groups) noexcept {
   if (!first_.resize(groups + 1) || !order_.resize(group_.size())) return false;
   const Execution serial = Execution::serial();
-  CountingSort by_group({group_.data(), group_.size()}, {first_.data(), first_.size()}, {}, serial);
+  CountingSort by_group({group_.data(), group_.size()}, {first_.data(), first_.size()}, serial);
   by_group.count();
   (void)by_group.find_starts();
   by_group.place(order_.data());

@@ -22,14 +22,13 @@ struct Sorted {
 };
 
 Sorted sort_by_counting(const std::vector<std::uint32_t>& bucket, std::size_t buckets,
-                        std::size_t spare_counts, int threads) {
+                        int threads) {
   Sorted sorted;
   sorted.start.resize(buckets + 1);
-  std::vector<std::uint32_t> spare(spare_counts);
   Threads arena(threads);
   arena.run([&] {
     const Execution execution = Execution::parallel();
-    CountingSort sort(bucket, sorted.start, spare, execution);
+    CountingSort sort(bucket, sorted.start, execution);
     sort.count();
     sorted.order.resize(sort.find_starts());
     sort.place(sorted.order.data());
@@ -38,13 +37,13 @@ Sorted sort_by_counting(const std::vector<std::uint32_t>& bucket, std::size_t bu
 }
 
 TEST(CountingSort, puts_rows_of_a_bucket_together_and_keeps_their_order) {
-  const Sorted sorted = sort_by_counting({2, 0, kNone, 2, 0}, 4, 0, 1);
+  const Sorted sorted = sort_by_counting({2, 0, kNone, 2, 0}, 4, 1);
   EXPECT_EQ(sorted.order, (std::vector<std::uint32_t>{1, 4, 0, 3}));
   EXPECT_EQ(sorted.start, (std::vector<std::uint32_t>{0, 2, 2, 4, 4}));
 }
 
 TEST(CountingSort, of_no_rows_in_no_buckets_is_empty) {
-  const Sorted sorted = sort_by_counting({}, 0, 0, 1);
+  const Sorted sorted = sort_by_counting({}, 0, 1);
   EXPECT_TRUE(sorted.order.empty());
   EXPECT_EQ(sorted.start, std::vector<std::uint32_t>{0});
 }
@@ -53,30 +52,32 @@ TEST(CountingSort, says_how_many_rows_a_bucket_has_before_they_are_placed) {
   const std::vector<std::uint32_t> bucket{1, 1, kNone, 0, 1};
   std::vector<std::uint32_t> start(3);
   const Execution execution = Execution::serial();
-  CountingSort sort(bucket, start, {}, execution);
+  CountingSort sort(bucket, start, execution);
   sort.count();
   EXPECT_EQ(sort.size_of(0), 1U);
   EXPECT_EQ(sort.size_of(1), 3U);
 }
 
-TEST(CountingSort, gives_the_same_on_any_number_of_threads_and_with_any_room) {
+TEST(CountingSort, gives_the_same_on_any_number_of_threads_and_however_buckets_are_filled) {
   Random random(1);
-  constexpr std::size_t kBuckets = 300;
-  std::vector<std::uint32_t> bucket(40000);
-  for (std::uint32_t& b : bucket) {
-    b = random.chance(0.1) ? kNone : static_cast<std::uint32_t>(random.below(kBuckets));
-  }
-  std::vector<std::uint32_t> expected(bucket.size());
-  std::iota(expected.begin(), expected.end(), 0U);
-  std::erase_if(expected, [&](std::uint32_t row) { return bucket[row] == kNone; });
-  std::ranges::stable_sort(expected, {}, [&](std::uint32_t row) { return bucket[row]; });
-  for (const int threads : {1, 2, 3, 8}) {
-    for (const std::size_t spare : {std::size_t{0}, kBuckets, 10 * kBuckets}) {
-      const Sorted sorted = sort_by_counting(bucket, kBuckets, spare, threads);
-      ASSERT_EQ(sorted.order, expected);
-      for (std::size_t b = 0; b < kBuckets; ++b) {
-        for (std::uint32_t i = sorted.start[b]; i < sorted.start[b + 1]; ++i) {
-          ASSERT_EQ(bucket[sorted.order[i]], b);
+  for (const std::size_t buckets : {1, 3, 300, 60000}) {
+    for (const std::size_t used : {std::size_t{1}, (buckets + 1) / 2, buckets}) {
+      std::vector<std::uint32_t> bucket(40000);
+      for (std::uint32_t& b : bucket) {
+        b = random.chance(0.1) ? kNone
+                               : static_cast<std::uint32_t>(buckets - used + random.below(used));
+      }
+      std::vector<std::uint32_t> expected(bucket.size());
+      std::iota(expected.begin(), expected.end(), 0U);
+      std::erase_if(expected, [&](std::uint32_t row) { return bucket[row] == kNone; });
+      std::ranges::stable_sort(expected, {}, [&](std::uint32_t row) { return bucket[row]; });
+      for (const int threads : {1, 2, 3, 8, 20}) {
+        const Sorted sorted = sort_by_counting(bucket, buckets, threads);
+        ASSERT_EQ(sorted.order, expected);
+        for (std::size_t b = 0; b < buckets; ++b) {
+          for (std::uint32_t i = sorted.start[b]; i < sorted.start[b + 1]; ++i) {
+            ASSERT_EQ(bucket[sorted.order[i]], b);
+          }
         }
       }
     }

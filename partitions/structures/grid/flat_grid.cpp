@@ -87,7 +87,7 @@ Planned FlatGrid::choose_cells(const RowPlan& plan) noexcept {
 
 void FlatGrid::sort_by_cell(const RowPlan& plan) noexcept {
   CountingSort sort({plan.list.data(), plan.rows}, {planned_start_.data(), planned_start_.size()},
-                    {plan.rest.data(), plan.rest.capacity()}, execution());
+                    execution());
   sort.count();
   if (drop_overfull(sort, plan)) sort.count();
   plan.regular.set_size(sort.find_starts());

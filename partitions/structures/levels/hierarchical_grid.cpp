@@ -325,7 +325,7 @@ void HierarchicalGrid::sort_by_level(const SizeClasses& classes, const RowPlan& 
     for (std::size_t row = begin; row < end; ++row) list[row] = level[list[row]];
   });
   CountingSort sort({list.data(), list.size()}, std::span(first_of_level_).first(all_levels_ + 1),
-                    {plan.rest.data(), plan.rest.capacity()}, execution());
+                    execution());
   sort.count();
   const std::size_t count = sort.find_starts();
   sort.place(reinterpret_cast<std::uint32_t*>(plan.items.end()) - count);

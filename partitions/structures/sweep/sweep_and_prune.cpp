@@ -179,7 +179,7 @@ Planned SweepAndPrune::choose_strips(const RowPlan& plan) noexcept {
 
 Planned SweepAndPrune::fill_strips(const RowPlan& plan) noexcept {
   CountingSort strips({plan.list.data(), plan.rows}, {planned_start_.data(), planned_start_.size()},
-                      {plan.rest.data(), plan.rest.capacity()}, execution());
+                      execution());
   strips.count();
   plan.regular.set_size(strips.find_starts());
   if (plan.objects - plan.regular.size() > most_apart(plan)) {

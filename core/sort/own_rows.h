@@ -1,0 +1,61 @@
+#pragma once
+
+#include <winnow/core/execution.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace winnow {
+
+/// Beyond it looking at all rows costs more than another thread saves.
+constexpr std::size_t kMostOwners = 8;
+
+/// How many threads share the rows of a list whose targets lie anywhere. Each of them looks at all
+/// rows and takes those of its own targets: cores that write among each other's targets wait longer
+/// for cache lines than the looking costs.
+[[nodiscard]] inline std::size_t owners_of_rows(std::size_t rows,
+                                                const Execution& execution) noexcept {
+  constexpr std::size_t kRowsPerOwner = 4096;
+  return std::clamp<std::size_t>(rows / kRowsPerOwner, 1,
+                                 std::min(kMostOwners, execution.concurrency()));
+}
+
+/// Calls body(row, target) for the rows whose target is in [first, end), in their order; `owners`
+/// is among how many all targets are divided.
+template <typename Body>
+void for_own_rows(std::span<const std::uint32_t> target, std::size_t first, std::size_t end,
+                  std::size_t owners, Body&& body) {
+  if (owners == 1) {
+    for (std::size_t row = 0; row < target.size(); ++row) {
+      if (target[row] < end) body(static_cast<std::uint32_t>(row), target[row]);
+    }
+    return;
+  }
+  // Whose a row is cannot be foreseen: rows are gathered without a branch.
+  std::array<std::uint32_t, 1024> own;
+  for (std::size_t begin = 0; begin < target.size(); begin += own.size()) {
+    const std::size_t stop = std::min(target.size(), begin + own.size());
+    std::size_t found = 0;
+    for (std::size_t row = begin; row < stop; ++row) {
+      own[found] = static_cast<std::uint32_t>(row);
+      found += target[row] - first < end - first ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < found; ++i) body(own[i], target[own[i]]);
+  }
+}
+
+/// Calls body(row, target) for all rows whose target is below `targets`, in parallel: rows of one
+/// target in their order, by one thread.
+template <typename Body>
+void for_rows_by_target(std::span<const std::uint32_t> target, std::size_t targets,
+                        const Execution& execution, Body&& body) {
+  const std::size_t owners = owners_of_rows(target.size(), execution);
+  execution.for_each(owners, [&](std::size_t owner) {
+    for_own_rows(target, targets * owner / owners, targets * (owner + 1) / owners, owners, body);
+  });
+}
+
+}  // namespace winnow
