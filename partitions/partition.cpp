@@ -149,7 +149,12 @@ bool Partition::contains(Key key) const noexcept {
 }
 
 Status Partition::bounds(Key key, Aabb& box) const noexcept {
-  return state_ == nullptr ? status_ : state_->bounds(key, box);
+  return bounds({&key, 1}, {&box, 1});
+}
+
+Status Partition::bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept {
+  if (state_ == nullptr) return status_;
+  return keys.size() == boxes.size() ? state_->bounds(keys, boxes) : Status::size_mismatch;
 }
 
 Status Partition::client_data(Key key, ClientData& data) const noexcept {

@@ -210,6 +210,9 @@ class WINNOW_API Partition final {
   /// The box as it is tested: float, larger than given by the margin, the box around other volumes;
   /// an infinite extent is given back as infinite.
   Status bounds(Key key, Aabb& box) const noexcept;
+  /// The same of many objects, one box for each key. `size_mismatch` and `invalid_key` leave all
+  /// boxes alone. O(keys).
+  Status bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept;
   /// What the object was inserted with; `invalid_key` leaves `data` alone.
   Status client_data(Key key, ClientData& data) const noexcept;
   /// Key of a live object; the null key for any other id.

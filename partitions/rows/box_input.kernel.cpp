@@ -212,11 +212,49 @@ std::uint32_t copy_near(const float* boxes, const float* near, float* to, std::s
   return found;
 }
 
+bool is_within(const float* box, const float* around) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (!(around[c] <= box[c] && box[3 + c] <= around[3 + c])) return false;
+  }
+  return true;
+}
+
+/// Sixteen boxes are 96 floats: after 48 of them their ends come in the same order again.
+std::uint32_t beyond(const float* boxes, const float* around, std::size_t count,
+                     std::uint32_t* out) {
+  constexpr std::size_t kOrders = 3;
+  alignas(64) float least[kOrders * kLanes];
+  alignas(64) float most[kOrders * kLanes];
+  for (std::size_t k = 0; k < kOrders * kLanes; ++k) {
+    const std::size_t c = k % kFloats;
+    least[k] = c < 3 ? around[c] : -__builtin_inff();
+    most[k] = c < 3 ? __builtin_inff() : around[c];
+  }
+  std::uint32_t found = 0;
+  const auto look = [&](std::size_t i) {
+    out[found] = static_cast<std::uint32_t>(i);
+    found += is_within(boxes + i * kFloats, around) ? 0U : 1U;
+  };
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    Mask16 all = kAllRows;
+    for (std::size_t part = 0; part < kFloats; ++part) {
+      const Floats end = Floats::load_unaligned(boxes + i * kFloats + part * kLanes);
+      const std::size_t order = part % kOrders * kLanes;
+      all &= bits((Floats::load(least + order) <= end) & (end <= Floats::load(most + order)));
+    }
+    for (std::size_t k = i; k < i + kLanes && all != kAllRows; ++k) look(k);
+  }
+  for (; i < count; ++i) look(i);
+  return found;
+}
+
 }  // namespace
 }  // namespace WINNOW_ISA_NAME
 
 extern const BoxInputKernels WINNOW_KERNEL_TABLE(box_input_kernels) = {
     WINNOW_ISA_NAME::legal,          WINNOW_ISA_NAME::legal_listed, WINNOW_ISA_NAME::write_rows,
-    WINNOW_ISA_NAME::write_in_order, WINNOW_ISA_NAME::within,       WINNOW_ISA_NAME::copy_near};
+    WINNOW_ISA_NAME::write_in_order, WINNOW_ISA_NAME::within,       WINNOW_ISA_NAME::copy_near,
+    WINNOW_ISA_NAME::beyond};
 
 }  // namespace winnow

@@ -44,6 +44,11 @@ struct BoxInputKernels {
   /// there is room.
   std::uint32_t (*copy_near)(const float* boxes, const float* near, float* to, std::size_t count,
                              float margin, std::uint32_t* left, std::uint32_t most);
+
+  /// Writes the numbers of those of `count` boxes of six floats each that do not lie within a box
+  /// of six floats to `out`, which has room for all; returns how many these are.
+  std::uint32_t (*beyond)(const float* boxes, const float* around, std::size_t count,
+                          std::uint32_t* out);
 };
 
 WINNOW_KERNELS(BoxInputKernels, box_input_kernels);

@@ -618,9 +618,15 @@ Status Rows::restore(const SavedRows& saved, Rows& other) {
 
 Status Rows::bounds(Key key, Aabb& box) const noexcept {
   if (!keys_.is_valid(key)) return Status::invalid_key;
-  const std::size_t row = keys_.row_of(key.id);
-  box = stored_box(view().column, row);
+  read_bounds({&key, 1}, {&box, 1});
   return Status::ok;
+}
+
+void Rows::read_bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept {
+  const RowView rows = view();
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    boxes[i] = stored_box(rows.column, keys_.row_of(keys[i].id));
+  }
 }
 
 Aabb stored_box(const float* const columns[6], std::size_t row) noexcept {

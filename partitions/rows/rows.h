@@ -86,6 +86,8 @@ class Rows {
 
   Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
   Status bounds(Key key, Aabb& box) const noexcept;
+  /// The boxes of objects with valid keys, one for each.
+  void read_bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept { return keys_.size(); }
   [[nodiscard]] const BoundsPool& pool() const noexcept { return pool_; }

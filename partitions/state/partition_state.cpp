@@ -157,14 +157,19 @@ Status PartitionState::update(Key key, const Aabb& box) {
   return status;
 }
 
-Status PartitionState::bounds(Key key, Aabb& box) const noexcept {
+Status PartitionState::bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept {
+  if (!rows.keys().look_at(keys).valid) return Status::invalid_key;
   Lock lock = Lock::deferred(refresh_mutex_);
   if (stale_.load(std::memory_order_acquire) || deferred_.active()) lock.lock();
-  const Status status = rows.bounds(key, box);
-  if (status != Status::ok || !deferred_.active()) return status;
-  const DeferredBoxes::Box& given = deferred_.given()[key.id];
-  box = {Vec3f(given.min), Vec3f(given.max)};
-  return status;
+  if (!deferred_.active()) {
+    rows.read_bounds(keys, boxes);
+    return Status::ok;
+  }
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const DeferredBoxes::Box& given = deferred_.given()[keys[i].id];
+    boxes[i] = {Vec3f(given.min), Vec3f(given.max)};
+  }
+  return Status::ok;
 }
 
 // Nobody reads rows that are about to change: whoever does has come here first, or tracks pairs and

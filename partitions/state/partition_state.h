@@ -58,7 +58,8 @@ class PartitionState {
   Status update(const EntryList& entries, const BoxView& boxes);
   Status update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries);
   Status update(Key key, const Aabb& box);
-  Status bounds(Key key, Aabb& box) const noexcept;
+  /// One box for each key.
+  Status bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept;
 
   /// Ends a mutation of so many objects.
   void note_changes(std::size_t count) noexcept;

@@ -230,6 +230,10 @@ WINNOW_C_API winnow_status winnow_partition_contains(const winnow_partition* par
                                                      winnow_key key, bool* contains);
 WINNOW_C_API winnow_status winnow_partition_bounds(const winnow_partition* partition,
                                                    winnow_key key, winnow_aabb* box);
+/// Of many objects: one box for each key. A stale key leaves all of them alone.
+WINNOW_C_API winnow_status winnow_partition_bounds_of(const winnow_partition* partition,
+                                                      const winnow_key* keys, winnow_aabb* boxes,
+                                                      size_t count);
 WINNOW_C_API winnow_status winnow_partition_client_data(const winnow_partition* partition,
                                                         winnow_key key, uint64_t* data);
 /// The null key for an id that no object has.

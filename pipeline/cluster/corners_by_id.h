@@ -27,11 +27,6 @@ class CornersById {
     corners_.push_back(corner);
   }
 
-  /// Both of two.
-  [[nodiscard]] bool has(ObjectId a, ObjectId b) const noexcept {
-    // One bit for both, so that there is one branch to be foreseen.
-    return (words_[a / 64].bits >> a % 64 & words_[b / 64].bits >> b % 64 & 1U) != 0;
-  }
   /// Of one that is there.
   [[nodiscard]] const Vec3f& of(ObjectId id) const noexcept {
     const Word& word = words_[id / 64];

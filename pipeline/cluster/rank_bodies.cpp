@@ -1,5 +1,6 @@
 #include "pipeline/cluster/rank_bodies.h"
 
+#include "partitions/rows/volume_source.h"
 #include "pipeline/cluster/work_shares.h"
 
 #include <algorithm>
@@ -79,16 +80,43 @@ Status RankBodies::move(std::span<const Key> keys, const BoxView& boxes) {
   return status;
 }
 
-/// What lies within the region, and did, is nobody else's business. False if a key's number is that
-/// of none of this rank's own.
+/// Leaves in `beyond_` the numbers of the boxes that do not lie within this rank's region.
+void RankBodies::find_beyond(const BoxView& boxes) {
+  beyond_.resize(boxes.count);
+  std::uint32_t found = 0;
+  if (BoxSource{boxes}.packed()) {
+    const float around[6] = {region_.min[0], region_.min[1], region_.min[2],
+                             region_.max[0], region_.max[1], region_.max[2]};
+    found = box_input_kernels().beyond(boxes.min[0], around, boxes.count, beyond_.data());
+  } else {
+    for (std::uint32_t i = 0; i < boxes.count; ++i) {
+      if (!is_within(boxes[i])) beyond_[found++] = i;
+    }
+  }
+  beyond_.resize(found);
+}
+
+/// What lies within the region, and did, is nobody else's business. False if a key is that of none
+/// of this rank's own.
 bool RankBodies::note_moves(std::span<const Key> keys, const BoxView& boxes) {
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const ObjectId id = keys[i].id;
-    if (id >= flags_.size() || (flags_[id] & (kOwned | kRemoved)) != kOwned) return false;
-    std::uint8_t& flags = flags_[id];
-    if ((flags & kMoved) != 0) continue;
-    if ((flags & kCrosses) == 0 && is_within(boxes[i])) continue;
-    moved_.push_back({keys[i], box_of(keys[i])});
+  asked_.clear();
+  for (const Key key : keys) {
+    if (key.id >= flags_.size()) return false;
+    const std::uint8_t flags = flags_[key.id];
+    if (flags == kOwned) continue;
+    if ((flags & (kOwned | kRemoved)) != kOwned) return false;
+    if ((flags & kMoved) == 0) asked_.push_back(key);
+  }
+  find_beyond(boxes);
+  for (const std::uint32_t i : beyond_) {
+    if (flags_[keys[i].id] == kOwned) asked_.push_back(keys[i]);
+  }
+  if (!find_boxes()) return false;
+  const std::size_t room = moved_.size() + asked_.size();
+  if (room > moved_.capacity()) moved_.reserve(2 * room);
+  for (std::size_t i = 0; i < asked_.size(); ++i) {
+    std::uint8_t& flags = flags_[asked_[i].id];
+    if ((flags & kMoved) == 0) moved_.push_back({asked_[i], boxes_[i]});
     flags |= kMoved;
   }
   return true;
@@ -142,14 +170,16 @@ Status RankBodies::key_of(BodyName name, Key& key) const noexcept {
 
 Status RankBodies::bodies(std::span<ClusterBody> bodies, std::span<Aabb> boxes) const {
   if (bodies.size() != size() || boxes.size() != size()) return Status::size_mismatch;
+  std::vector<Key> keys;
+  keys.reserve(bodies.size());
   std::size_t count = 0;
   for (ObjectId id = 0; id < flags_.size(); ++id) {
     const Key key = partition_.key_of(id);
     if (!is_owned(key)) continue;
-    bodies[count] = {names_[id], key};
-    boxes[count++] = box_of(key);
+    bodies[count++] = {names_[id], key};
+    keys.push_back(key);
   }
-  return Status::ok;
+  return partition_.bounds(keys, boxes);
 }
 
 // ---- how bodies go where they belong
@@ -158,6 +188,12 @@ Aabb RankBodies::box_of(Key key) const noexcept {
   Aabb box;
   (void)partition_.bounds(key, box);
   return box;
+}
+
+/// The boxes of the keys in `asked_`; false if some are stale.
+bool RankBodies::find_boxes() {
+  boxes_.resize(asked_.size());
+  return partition_.bounds(asked_, boxes_) == Status::ok;
 }
 
 bool RankBodies::is_within(const Aabb& box) const noexcept {
@@ -176,7 +212,7 @@ void RankBodies::send_removals(const Regions& regions) {
   };
   const auto rest = std::stable_partition(moved_.begin(), moved_.end(),
                                           [&](const Moved& moved) { return !is_removed(moved); });
-  for (auto moved = rest; moved != moved_.end(); ++moved) tell(*moved, regions, regions);
+  for (auto moved = rest; moved != moved_.end(); ++moved) tell(*moved, Aabb{}, regions, regions);
   moved_.erase(rest, moved_.end());
 }
 
@@ -188,9 +224,14 @@ void RankBodies::send(const Regions& before, const Regions& now, bool regions_ch
   departed_.clear();
   works_.clear();
   if (regions_changed) note_all_that_cross();
-  for (const Moved& moved : moved_) {
-    // One that is alone removes at once what it has told nobody of.
-    if (partition_.contains(moved.key)) tell(moved, before, now);
+  // One that is alone removes at once what it has told nobody of.
+  std::erase_if(moved_, [this](const Moved& moved) { return !partition_.contains(moved.key); });
+  asked_.clear();
+  for (const Moved& moved : moved_) asked_.push_back(moved.key);
+  (void)find_boxes();
+  for (std::size_t i = 0; i < moved_.size(); ++i) {
+    const bool removed = (flags_[moved_[i].key.id] & kRemoved) != 0;
+    tell(moved_[i], removed ? Aabb{} : boxes_[i], before, now);
   }
   moved_.clear();
 }
@@ -205,10 +246,10 @@ void RankBodies::note_all_that_cross() {
   }
 }
 
-void RankBodies::tell(const Moved& moved, const Regions& before, const Regions& now) {
+void RankBodies::tell(const Moved& moved, const Aabb& box, const Regions& before,
+                      const Regions& now) {
   const ObjectId id = moved.key.id;
   const bool removed = (flags_[id] & kRemoved) != 0;
-  const Aabb box = removed ? Aabb{} : box_of(moved.key);
   const std::uint32_t owner = removed ? rank_ : now.owner(centre_of(box));
   before.ranks_of(moved.told, ranks_before_);
   now.ranks_of(box, ranks_now_);
@@ -282,10 +323,13 @@ Status RankBodies::apply_changes() {
 // ---- pairs, and the work that they make
 
 void RankBodies::find_low_corners() {
-  low_corners_.begin(flags_.size());
+  asked_.clear();
   for (ObjectId id = 0; id < flags_.size(); ++id) {
-    if ((flags_[id] & kCrosses) != 0) low_corners_.put(id, box_of(id).min);
+    if ((flags_[id] & kCrosses) != 0) asked_.push_back(partition_.key_of(id));
   }
+  (void)find_boxes();
+  low_corners_.begin(flags_.size());
+  for (std::size_t i = 0; i < asked_.size(); ++i) low_corners_.put(asked_[i].id, boxes_[i].min);
 }
 
 bool RankBodies::meet_here(ObjectId a, ObjectId b) const noexcept {
@@ -293,16 +337,29 @@ bool RankBodies::meet_here(ObjectId a, ObjectId b) const noexcept {
   return is_within({at, at});
 }
 
+/// Of two boxes of which one lies within the region the rank reports the pair without a look.
 void RankBodies::keep_reported() {
   find_low_corners();
-  kept_.resize(found_.size());
+  const Pair* const found = found_.begin();
+  const std::size_t count = found_.size();
+  kept_.resize(count);
   Pair* out = kept_.data();
-  for (const Pair& pair : found_) {
-    *out = pair;
-    // Of two boxes of which one lies within the region the rank reports the pair without a look.
-    const bool reported =
-        !low_corners_.has(pair.first, pair.second) || meet_here(pair.first, pair.second);
-    out += reported ? 1 : 0;
+  const auto may_meet_elsewhere = [flags = flags_.data()](const Pair& pair) {
+    return flags[pair.first] & flags[pair.second] & kCrosses;
+  };
+  constexpr std::size_t kTogether = 16;
+  for (std::size_t begin = 0; begin < count; begin += kTogether) {
+    const std::size_t end = std::min(count, begin + kTogether);
+    unsigned some = 0;
+    for (std::size_t i = begin; i < end; ++i) some |= may_meet_elsewhere(found[i]);
+    if (some == 0) {
+      out = std::copy(found + begin, found + end, out);
+      continue;
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      *out = found[i];
+      out += may_meet_elsewhere(found[i]) == 0 || meet_here(found[i].first, found[i].second);
+    }
   }
   kept_.resize(static_cast<std::size_t>(out - kept_.data()));
 }
@@ -333,9 +390,17 @@ Status RankBodies::find_pairs(Order order) {
 }
 
 void RankBodies::measure_work() {
+  asked_.clear();
+  for (ObjectId id = 0; id < flags_.size(); ++id) {
+    const Key key = partition_.key_of(id);
+    if (partition_.contains(key)) asked_.push_back(key);
+  }
+  (void)find_boxes();
+  std::vector<Aabb> box_of(flags_.size());
+  for (std::size_t i = 0; i < asked_.size(); ++i) box_of[asked_[i].id] = boxes_[i];
   std::vector<std::uint64_t> counts(flags_.size(), 1);
   for (const Pair& pair : found_) {
-    const bool first_is_larger = is_larger(box_of(pair.first), box_of(pair.second));
+    const bool first_is_larger = is_larger(box_of[pair.first], box_of[pair.second]);
     ++counts[first_is_larger ? pair.second : pair.first];
   }
   const auto owned = [this](std::size_t id) { return (flags_[id] & kOwned) != 0; };
@@ -343,15 +408,16 @@ void RankBodies::measure_work() {
 }
 
 CutWork RankBodies::cut_work() {
-  work_boxes_.clear();
   works_of_owned_.clear();
+  asked_.clear();
   for (ObjectId id = 0; id < flags_.size(); ++id) {
     const Key key = partition_.key_of(id);
     if (!is_owned(key)) continue;
-    work_boxes_.push_back(box_of(key));
+    asked_.push_back(key);
     works_of_owned_.push_back(id < works_.size() ? works_[id] : 1);
   }
-  return {work_boxes_, works_of_owned_};
+  (void)find_boxes();
+  return {boxes_, works_of_owned_};
 }
 
 Bytes RankBodies::bytes() const noexcept {

@@ -83,19 +83,21 @@ class RankBodies {
     return partition_.contains(key) && (flags_[key.id] & (kOwned | kRemoved)) == kOwned;
   }
   [[nodiscard]] Aabb box_of(Key key) const noexcept;
-  [[nodiscard]] Aabb box_of(ObjectId id) const noexcept { return box_of(partition_.key_of(id)); }
+  [[nodiscard]] bool find_boxes();
   [[nodiscard]] bool is_within(const Aabb& box) const noexcept;
   [[nodiscard]] std::uint8_t flags_of(const Aabb& box, bool owned) const noexcept;
   /// Whether two boxes that cross meet in this rank's region.
   [[nodiscard]] bool meet_here(ObjectId a, ObjectId b) const noexcept;
   [[nodiscard]] Status find_keys(std::span<const BodyName> names, std::vector<Key>& keys) const;
+  void find_beyond(const BoxView& boxes);
   [[nodiscard]] bool note_moves(std::span<const Key> keys, const BoxView& boxes);
   void find_low_corners();
   void keep_reported();
   void sort_by_names();
   void add_rows(std::span<const BodyName> names, std::span<const Key> keys);
   void note_all_that_cross();
-  void tell(const Moved& moved, const Regions& before, const Regions& now);
+  /// Of a body and where it is now: an empty box for one that was removed.
+  void tell(const Moved& moved, const Aabb& box, const Regions& before, const Regions& now);
   void take(const BodyNews<Aabb>& news);
   [[nodiscard]] Status apply_changes();
 
@@ -117,12 +119,14 @@ class RankBodies {
   Outbox<Aabb> outbox_;
   BodyChanges<Aabb, Aabb> changes_;
   std::vector<std::uint32_t> works_;  // by id
-  std::vector<Aabb> work_boxes_;
   std::vector<std::uint32_t> works_of_owned_;
   // Scratch.
   std::vector<std::uint32_t> ranks_before_;
   std::vector<std::uint32_t> ranks_now_;
   std::vector<Key> keys_;
+  std::vector<std::uint32_t> beyond_;
+  std::vector<Key> asked_;   // for their boxes
+  std::vector<Aabb> boxes_;  // of these
   CornersById low_corners_;  // of boxes that cross
 };
 

@@ -192,16 +192,18 @@ void ask_each(const SharedPartition& p, std::size_t count, const char* call, Ask
   auto upper = fresh<float>(keys.count(), 3);
   float* const low = lower.mutable_data();
   float* const high = upper.mutable_data();
-  ask_each(p, keys.count(), "bounds", [&](std::size_t i) {
-    Aabb box;
-    const Status status = p.partition->bounds(keys.keys()[i], box);
-    if (status != Status::ok) return status;
+  std::vector<Aabb> boxes(keys.count());
+  accept(reading(p.mutex,
+                 [&] {
+                   return p.partition->bounds({keys.keys(), keys.count()}, boxes);
+                 }),
+         "bounds");
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[3 * i + axis] = box.min[axis];
-      high[3 * i + axis] = box.max[axis];
+      low[3 * i + axis] = boxes[i].min[axis];
+      high[3 * i + axis] = boxes[i].max[axis];
     }
-    return status;
-  });
+  }
   return py::make_tuple(lower, upper);
 }
 

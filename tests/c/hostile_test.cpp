@@ -151,6 +151,8 @@ TEST(CInterface, knows_keys_of_what_is_gone) {
             WINNOW_SIZE_MISMATCH);
   winnow_aabb bounds;
   EXPECT_EQ(winnow_partition_bounds(world.partition, key, &bounds), WINNOW_INVALID_KEY);
+  EXPECT_EQ(winnow_partition_bounds_of(world.partition, &key, &bounds, 1), WINNOW_INVALID_KEY);
+  EXPECT_EQ(winnow_partition_bounds_of(world.partition, &key, nullptr, 1), WINNOW_INVALID_ARGUMENT);
   winnow_body_definition body = WINNOW_BODY_DEFINITION;
   EXPECT_EQ(winnow_scene_body(world.scene, key, &body), WINNOW_INVALID_KEY);
   EXPECT_EQ(winnow_scene_add(world.scene, &body, 1, &key), WINNOW_INVALID_KEY);

@@ -85,6 +85,9 @@ static void ask_objects(const trace* t, winnow_partition* partition) {
   size_t size = 0;
   OK(winnow_partition_size(partition, &size));
   note(t, "size", size);
+  winnow_aabb stored[kObjects];
+  OK(winnow_partition_bounds_of(partition, keys, stored, kObjects));
+  for (size_t i = 0; i < kObjects; ++i) note_real(t, "bounds of all", (double)stored[i].max[0]);
   for (size_t i = 0; i < kObjects; i += 7) {
     bool contains = false;
     winnow_aabb box;

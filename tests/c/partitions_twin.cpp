@@ -60,6 +60,9 @@ void note_hits(const trace* t, const char* what, const HitBuffer& hits) {
 
 void ask_objects(const trace* t, Partition& partition, const World& world) {
   note(t, "size", partition.size());
+  std::vector<Aabb> boxes(kObjects);
+  (void)partition.bounds(world.keys, boxes);
+  for (const Aabb& box : boxes) note_real(t, "bounds of all", static_cast<double>(box.max[0]));
   for (std::size_t i = 0; i < kObjects; i += 7) {
     Aabb box;
     ClientData value = 0;

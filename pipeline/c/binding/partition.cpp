@@ -296,6 +296,14 @@ winnow_status winnow_partition_bounds(const winnow_partition* partition, winnow_
   return answer(partition->asked->bounds(*twin(&key), *twin(box)));
 }
 
+winnow_status winnow_partition_bounds_of(const winnow_partition* partition, const winnow_key* keys,
+                                         winnow_aabb* boxes, size_t count) {
+  if (partition == nullptr || !is_array(keys, count) || !is_array(boxes, count)) {
+    return WINNOW_INVALID_ARGUMENT;
+  }
+  return answer(partition->asked->bounds(twins(keys, count), twins(boxes, count)));
+}
+
 winnow_status winnow_partition_client_data(const winnow_partition* partition, winnow_key key,
                                            uint64_t* data) {
   if (!are_given(partition, data)) return WINNOW_INVALID_ARGUMENT;
