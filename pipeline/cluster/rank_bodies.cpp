@@ -4,6 +4,7 @@
 #include "pipeline/cluster/work_shares.h"
 
 #include <algorithm>
+#include <array>
 
 namespace winnow {
 namespace {
@@ -201,7 +202,15 @@ bool RankBodies::is_within(const Aabb& box) const noexcept {
 }
 
 std::uint8_t RankBodies::flags_of(const Aabb& box, bool owned) const noexcept {
-  return static_cast<std::uint8_t>((owned ? kOwned : 0) | (is_within(box) ? 0 : kCrosses));
+  unsigned flags = owned ? unsigned{kOwned} : 0U;
+  if (is_within(box)) return static_cast<std::uint8_t>(flags);
+  flags |= kCrosses;
+  constexpr std::array kBelow{kBelowX, kBelowY, kBelowZ};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.min[axis] < region_.min[axis]) flags |= kBelow[static_cast<std::size_t>(axis)];
+    if (box.min[axis] > region_.max[axis]) flags |= kAbove;
+  }
+  return static_cast<std::uint8_t>(flags);
 }
 
 void RankBodies::send_removals(const Regions& regions) {
@@ -238,11 +247,19 @@ void RankBodies::send(const Regions& before, const Regions& now, bool regions_ch
 
 /// Of bodies that did not move those are looked at that crossed the old region or cross the new.
 void RankBodies::note_all_that_cross() {
+  asked_.clear();
   for (ObjectId id = 0; id < flags_.size(); ++id) {
     const Key key = partition_.key_of(id);
-    if (!is_owned(key) || (flags_[id] & kMoved) != 0) continue;
-    const Aabb box = box_of(key);
-    if ((flags_[id] & kCrosses) != 0 || !is_within(box)) moved_.push_back({key, box});
+    if (partition_.contains(key) && (flags_[id] & kMoved) == 0) asked_.push_back(key);
+  }
+  (void)find_boxes();
+  for (std::size_t i = 0; i < asked_.size(); ++i) {
+    std::uint8_t& flags = flags_[asked_[i].id];
+    if ((flags & kOwned) == 0) {
+      flags = flags_of(boxes_[i], false);
+    } else if ((flags & kCrosses) != 0 || !is_within(boxes_[i])) {
+      moved_.push_back({asked_[i], boxes_[i]});
+    }
   }
 }
 
@@ -322,43 +339,31 @@ Status RankBodies::apply_changes() {
 
 // ---- pairs, and the work that they make
 
-void RankBodies::find_low_corners() {
-  asked_.clear();
-  for (ObjectId id = 0; id < flags_.size(); ++id) {
-    if ((flags_[id] & kCrosses) != 0) asked_.push_back(partition_.key_of(id));
-  }
-  (void)find_boxes();
-  low_corners_.begin(flags_.size());
-  for (std::size_t i = 0; i < asked_.size(); ++i) low_corners_.put(asked_[i].id, boxes_[i].min);
-}
-
-bool RankBodies::meet_here(ObjectId a, ObjectId b) const noexcept {
-  const Vec3f at = meeting_point(low_corners_.of(a), low_corners_.of(b));
-  return is_within({at, at});
-}
-
-/// Of two boxes of which one lies within the region the rank reports the pair without a look.
+/// A pair is reported where its boxes meet: on each axis at the larger of their low corners. That
+/// is below the region where both are, and above it where one is. Of two boxes of which one lies
+/// within the region it is neither.
 void RankBodies::keep_reported() {
-  find_low_corners();
   const Pair* const found = found_.begin();
   const std::size_t count = found_.size();
   kept_.resize(count);
   Pair* out = kept_.data();
-  const auto may_meet_elsewhere = [flags = flags_.data()](const Pair& pair) {
-    return flags[pair.first] & flags[pair.second] & kCrosses;
+  const auto meets_elsewhere = [flags = flags_.data()](const Pair& pair) -> unsigned {
+    const unsigned a = flags[pair.first];
+    const unsigned b = flags[pair.second];
+    return (a & b & (kBelowX | kBelowY | kBelowZ)) | ((a | b) & kAbove);
   };
   constexpr std::size_t kTogether = 16;
   for (std::size_t begin = 0; begin < count; begin += kTogether) {
     const std::size_t end = std::min(count, begin + kTogether);
     unsigned some = 0;
-    for (std::size_t i = begin; i < end; ++i) some |= may_meet_elsewhere(found[i]);
+    for (std::size_t i = begin; i < end; ++i) some |= meets_elsewhere(found[i]);
     if (some == 0) {
       out = std::copy(found + begin, found + end, out);
       continue;
     }
     for (std::size_t i = begin; i < end; ++i) {
       *out = found[i];
-      out += may_meet_elsewhere(found[i]) == 0 || meet_here(found[i].first, found[i].second);
+      out += meets_elsewhere(found[i]) == 0 ? 1 : 0;
     }
   }
   kept_.resize(static_cast<std::size_t>(out - kept_.data()));

@@ -2,7 +2,6 @@
 
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/cluster.h>
-#include "pipeline/cluster/corners_by_id.h"
 #include "pipeline/cluster/name_table.h"
 #include "pipeline/cluster/outbox.h"
 #include "pipeline/cluster/regions.h"
@@ -72,6 +71,11 @@ class RankBodies {
     kCrosses = 2,  // its box does not lie within this rank's region
     kMoved = 4,    // in moved_
     kRemoved = 8,  // to be told to others and dropped
+    // Of boxes that cross: where the low corner is beside the region.
+    kBelowX = 16,
+    kBelowY = 32,
+    kBelowZ = 64,
+    kAbove = 128,  // on some axis
   };
   /// A body whose box is not the one that others were last told.
   struct Moved {
@@ -86,12 +90,9 @@ class RankBodies {
   [[nodiscard]] bool find_boxes();
   [[nodiscard]] bool is_within(const Aabb& box) const noexcept;
   [[nodiscard]] std::uint8_t flags_of(const Aabb& box, bool owned) const noexcept;
-  /// Whether two boxes that cross meet in this rank's region.
-  [[nodiscard]] bool meet_here(ObjectId a, ObjectId b) const noexcept;
   [[nodiscard]] Status find_keys(std::span<const BodyName> names, std::vector<Key>& keys) const;
   void find_beyond(const BoxView& boxes);
   [[nodiscard]] bool note_moves(std::span<const Key> keys, const BoxView& boxes);
-  void find_low_corners();
   void keep_reported();
   void sort_by_names();
   void add_rows(std::span<const BodyName> names, std::span<const Key> keys);
@@ -127,7 +128,6 @@ class RankBodies {
   std::vector<std::uint32_t> beyond_;
   std::vector<Key> asked_;   // for their boxes
   std::vector<Aabb> boxes_;  // of these
-  CornersById low_corners_;  // of boxes that cross
 };
 
 }  // namespace winnow
