@@ -26,6 +26,9 @@ class Chooser;
 class Structure;
 struct StructureCosts;
 
+/// Of fewer objects the tree alone has the pairs sooner than cells are made for them.
+inline constexpr std::size_t kFewestInCells = 256;
+
 /// What a structure is made with: the rows it is about, and the tree over those of them that are
 /// regular, which the partition keeps. Both outlive it.
 struct StructureInput {

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <span>
 
 namespace winnow {
@@ -16,7 +18,6 @@ WINNOW_DEFINE_KERNELS(CellLayoutKernels, cell_layout_kernels)
 namespace {
 
 constexpr float kUnbounded = 1e30F;
-constexpr std::size_t kFewest = 64;  // below this the tree alone does as well
 constexpr double kMostCells = 2048;  // on an axis
 constexpr double kLeastWidening = 1.02;
 constexpr double kTreeQuery = 14.0;  // tests of 16 that an object of the tree costs
@@ -27,8 +28,30 @@ constexpr std::size_t kRowsPerSample = 64;  // one row of so many is looked at, 
 // this place are the lower ones.
 float value_at(std::span<float> values, std::size_t at) noexcept {
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(at);
-  std::nth_element(values.begin(), place, values.end());
+  if (at + 1 == values.size()) {
+    std::iter_swap(std::max_element(values.begin(), values.end()), place);
+  } else {
+    std::nth_element(values.begin(), place, values.end());
+  }
   return *place;
+}
+
+// The value that comes at place `at`, below kMostTail, of all in the order of `before`. So near an
+// end most values need one comparison, which is foreseen.
+constexpr std::size_t kMostTail = SceneSample::kMost / 50 + 1;
+template <typename Before>
+float value_near_end(std::span<const float> values, std::size_t at, Before before) noexcept {
+  std::array<float, kMostTail> tail;
+  std::partial_sort_copy(values.begin(), values.end(), tail.begin(), tail.begin() + at + 1, before);
+  return tail[at];
+}
+
+// Steps of this length around a circle of so many rows meet each once, near ones at different
+// times: values that ascend by rows would be put into a tail one by one.
+std::size_t mixing_stride(std::size_t rows) noexcept {
+  std::size_t stride = rows * 5 / 8 + 1;
+  while (std::gcd(stride, rows) != 1) ++stride;
+  return stride % rows;
 }
 
 // The least and the largest lower end on an axis.
@@ -72,9 +95,12 @@ SceneSample::SceneSample(const BoundsPool& pool) noexcept {
     // By their ids: few objects that come back to where they were get the same cells again,
     // whatever order the rows are in.
     const auto k = static_cast<unsigned>(std::bit_width(step)) - 1;
-    for (std::size_t row = 0; row < pool.rows(); ++row) {
+    const std::size_t stride = mixing_stride(pool.rows());
+    std::size_t row = 0;
+    for (std::size_t i = 0; i < pool.rows(); ++i) {
       const ObjectId id = pool.ids()[row];
       if (id != kNoObject && (k == 0 || id * 0x9E3779B1U >> (32 - k) == 0)) take(row);
+      row = row + stride < pool.rows() ? row + stride : row + stride - pool.rows();
     }
   } else {
     for (std::size_t row = step / 2; row < pool.rows() && count < kMost; row += step) {
@@ -83,12 +109,12 @@ SceneSample::SceneSample(const BoundsPool& pool) noexcept {
   }
   if (count == 0) return;
   for (std::size_t a = 0; a < 3; ++a) {
-    const std::span<float> values(ends[a].data(), count);
+    const std::span<const float> values(ends[a].data(), count);
     const auto [least, most] =
         pool.rows() <= kMost ? ends_of(pool, a) : std::ranges::minmax(values);
     // Outliers must not stretch the cells: past the middle 96 % the range goes on by half of it.
-    const double q98 = static_cast<double>(value_at(values, count - 1 - count / 50));
-    const double q02 = static_cast<double>(value_at(values, count / 50));
+    const double q98 = static_cast<double>(value_near_end(values, count / 50, std::greater<>()));
+    const double q02 = static_cast<double>(value_near_end(values, count / 50, std::less<>()));
     const double margin = 0.5 * (q98 - q02);
     low[a] = std::max(least, static_cast<float>(std::max(q02 - margin, -3e38)));
     high[a] = std::min(most, static_cast<float>(std::min(q98 + margin, 3e38)));
@@ -207,7 +233,7 @@ struct CellLayout::Trial {
 
 bool CellLayout::choose(const SceneSample& s, const CellDemand& d) noexcept {
   usable_ = false;
-  if (s.objects < kFewest || s.count < 8) return true;
+  if (s.objects < kFewestInCells || s.count < 8) return true;
   // The axis with the most room in units of the objects' edges prunes best: it runs fastest.
   std::size_t fast = 0;
   const auto room = [&](std::size_t a) { return s.range(a) / (s.mean_edge[a] + 1e-30); };

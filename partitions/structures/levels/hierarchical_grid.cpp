@@ -20,7 +20,6 @@ WINNOW_DEFINE_KERNELS(LevelRowsKernels, level_rows_kernels)
 
 namespace {
 
-constexpr std::size_t kFewest = 64;  // below this the tree alone does as well
 // More objects than this in a cell, beyond what its line is cut into, are pruned better by the
 // tree.
 constexpr std::size_t kCrowd = 512;
@@ -292,7 +291,7 @@ Planned HierarchicalGrid::begin_plan(const RowPlan& plan) noexcept {
     level_rows_kernels().octaves(box_columns(pool()).data(), begin, end, plan.list.data());
   });
   const SizeClasses classes(pool(), {plan.list.data(), rows}, execution());
-  if (classes.objects() < kFewest) {
+  if (classes.objects() < kFewestInCells) {
     leave_all(plan);
     return Planned::done;
   }

@@ -8,7 +8,6 @@
 namespace winnow {
 namespace {
 
-constexpr std::size_t kFewest = 64;    // below this the tree alone does as well
 constexpr double kObjectsInCell = 16;  // on average, on the finest level
 constexpr double kThinWorld = 2;       // an axis of so few of its cells is not worth dividing
 constexpr unsigned kLevelShift = 28;   // in keys and codes
@@ -61,7 +60,7 @@ std::uint32_t along_curve(const std::array<std::uint32_t, 3>& place) noexcept {
 }  // namespace
 
 bool LooseOctreeCells::choose(const SceneSample& sample, std::size_t axes, float loose) noexcept {
-  if (sample.objects < kFewest || sample.count < 8) return false;
+  if (sample.objects < kFewestInCells || sample.count < 8) return false;
   const double cells = static_cast<double>(sample.objects) / kObjectsInCell;
   std::array<double, 3> range{};
   for (std::size_t a = 0; a < 3; ++a) range[a] = sample.range(a) + sample.mean_edge[a];
