@@ -193,11 +193,7 @@ void ask_each(const SharedPartition& p, std::size_t count, const char* call, Ask
   float* const low = lower.mutable_data();
   float* const high = upper.mutable_data();
   std::vector<Aabb> boxes(keys.count());
-  accept(reading(p.mutex,
-                 [&] {
-                   return p.partition->bounds({keys.keys(), keys.count()}, boxes);
-                 }),
-         "bounds");
+  accept(reading(p.mutex, [&] { return p.partition->bounds(keys.keys(), boxes); }), "bounds");
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low[3 * i + axis] = boxes[i].min[axis];
