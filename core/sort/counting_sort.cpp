@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "core/sort/own_rows.h"
 
@@ -13,12 +14,38 @@ CountingSort::CountingSort(std::span<const std::uint32_t> bucket, std::span<std:
       start_(start),
       execution_(execution),
       buckets_(start.size() - 1),
-      owners_(owners_of_rows(bucket.size(), execution)) {}
+      threads_(owners_of_rows(bucket.size(), execution)) {}
+
+// Calls body(stretch, first row, end) for the stretch of rows of each thread.
+template <typename Body>
+void CountingSort::for_each_stretch(Body&& body) const {
+  execution_.for_each(threads_, [&](std::size_t i) {
+    body(i, bucket_.size() * i / threads_, bucket_.size() * (i + 1) / threads_);
+  });
+}
 
 void CountingSort::count() noexcept {
   std::ranges::fill(start_, 0U);
+  if (has_few()) return count_few();
   for_rows_by_target(bucket_, buckets_, execution_,
                      [&](std::uint32_t, std::uint32_t bucket) { ++start_[bucket]; });
+}
+
+void CountingSort::count_few() noexcept {
+  for_each_stretch([&](std::size_t stretch, std::size_t first, std::size_t end) {
+    // Rows of one bucket follow each other: none waits for the count of the one before.
+    std::array<Counts, 4> counts;
+    for (Counts& some : counts) std::fill_n(some.begin(), buckets_, 0U);
+    for (std::size_t row = first; row < end; ++row) {
+      if (bucket_[row] != kNone) ++counts[row % counts.size()][bucket_[row]];
+    }
+    for (std::size_t b = 0; b < buckets_; ++b) {
+      counts_[stretch][b] = counts[0][b] + counts[1][b] + counts[2][b] + counts[3][b];
+    }
+  });
+  for (std::size_t b = 0; b < buckets_; ++b) {
+    for (std::size_t i = 0; i < threads_; ++i) start_[b] += counts_[i][b];
+  }
 }
 
 std::uint32_t CountingSort::find_starts() noexcept {
@@ -32,24 +59,43 @@ std::uint32_t CountingSort::find_starts() noexcept {
   return sum;
 }
 
+void CountingSort::place(std::uint32_t* order) noexcept {
+  if (has_few()) return place_few(order);
+  place_many(order);
+}
+
+// The rows that a stretch has of a bucket follow those of the stretch before.
+void CountingSort::place_few(std::uint32_t* order) noexcept {
+  for (std::size_t b = 0; b < buckets_; ++b) {
+    std::uint32_t next = start_[b];
+    for (std::size_t i = 0; i < threads_; ++i) next += std::exchange(counts_[i][b], next);
+  }
+  for_each_stretch([&](std::size_t stretch, std::size_t first, std::size_t end) {
+    Counts& next = counts_[stretch];
+    for (std::size_t row = first; row < end; ++row) {
+      if (bucket_[row] != kNone) order[next[bucket_[row]]++] = static_cast<std::uint32_t>(row);
+    }
+  });
+}
+
 // Buckets of about as many rows as those of every other owner.
 CountingSort::Buckets CountingSort::equal_rows(std::size_t owner) const noexcept {
   const auto first_of = [&](std::size_t i) -> std::size_t {
-    if (i == owners_) return buckets_;
-    const std::size_t rows = std::size_t{start_[buckets_]} * i / owners_;
+    if (i == threads_) return buckets_;
+    const std::size_t rows = std::size_t{start_[buckets_]} * i / threads_;
     return std::ranges::lower_bound(start_.first(buckets_), rows) - start_.begin();
   };
   return {first_of(owner), first_of(owner + 1)};
 }
 
-void CountingSort::place(std::uint32_t* order) noexcept {
+void CountingSort::place_many(std::uint32_t* order) noexcept {
   std::array<Buckets, kMostOwners> share;
-  for (std::size_t i = 0; i < owners_; ++i) share[i] = equal_rows(i);
-  execution_.for_each(owners_, [&](std::size_t owner) {
+  for (std::size_t i = 0; i < threads_; ++i) share[i] = equal_rows(i);
+  execution_.for_each(threads_, [&](std::size_t owner) {
     const auto [first, end] = share[owner];
     if (first == end) return;
     const std::uint32_t begin = start_[first];
-    for_own_rows(bucket_, first, end, owners_,
+    for_own_rows(bucket_, first, end, threads_,
                  [&](std::uint32_t row, std::uint32_t bucket) { order[start_[bucket]++] = row; });
     // Where the last row of a bucket went the next one begins.
     std::copy_backward(start_.begin() + first, start_.begin() + end - 1, start_.begin() + end);

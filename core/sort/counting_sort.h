@@ -1,7 +1,9 @@
 #pragma once
 
 #include <winnow/core/execution.h>
+#include "core/sort/own_rows.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,7 +11,8 @@
 namespace winnow {
 
 /// Stable sort of rows by the bucket that each is in. Where a row comes to lie does not depend on
-/// the number of threads.
+/// the number of threads. Few buckets are long: threads count and place a stretch of the rows each.
+/// Of many buckets each thread has some to itself.
 class CountingSort {
  public:
   static constexpr std::uint32_t kNone = ~0U;
@@ -30,17 +33,27 @@ class CountingSort {
   void place(std::uint32_t* order) noexcept;
 
  private:
+  static constexpr std::size_t kFewBuckets = 256;
   struct Buckets {
     std::size_t first;
     std::size_t end;
   };
+  using Counts = std::array<std::uint32_t, kFewBuckets>;
+
+  [[nodiscard]] bool has_few() const noexcept { return buckets_ <= kFewBuckets; }
+  template <typename Body>
+  void for_each_stretch(Body&& body) const;
+  void count_few() noexcept;
+  void place_few(std::uint32_t* order) noexcept;
+  void place_many(std::uint32_t* order) noexcept;
   [[nodiscard]] Buckets equal_rows(std::size_t owner) const noexcept;
 
   const std::span<const std::uint32_t> bucket_;
   const std::span<std::uint32_t> start_;
   const Execution& execution_;
   const std::size_t buckets_;
-  const std::size_t owners_;
+  const std::size_t threads_;
+  std::array<Counts, kMostOwners> counts_;  // of stretches
 };
 
 }  // namespace winnow
