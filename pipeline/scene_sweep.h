@@ -37,8 +37,8 @@ struct SweepOptions {
   /// Bodies that share a point at the start meet at time 0. False: they are left out, so that what
   /// rests on a floor is told what it runs into.
   bool touching = true;
-  /// Only the first impact of each moving body is looked for: several times as fast where ways are
-  /// long and much is in them.
+  /// Only the first impact of each moving body is looked for, the same to the bit: several times as
+  /// fast where ways are long and much is in them.
   bool first_only = false;
 };
 
@@ -94,7 +94,8 @@ class WINNOW_API SceneSweep {
   /// that is none or too far away, `invalid_argument` for bad options; `out_of_memory` leaves no
   /// impacts. O(n log n) of the moving bodies, about log n of all for each, and `time_of_impact`
   /// for each pair whose boxes meet. The boxes contain all of the way, turning included; a way that
-  /// runs across the axes is boxed in up to eight pieces.
+  /// runs across the axes is boxed in up to eight pieces. What most of the moving bodies have in
+  /// common of their ways is left out where these are held against each other.
   Status sweep(std::span<const Key> keys, const PoseView& ends, const SweepOptions& options = {});
   /// The same of any motions, such as those of given velocities; each starts where it says.
   Status sweep(std::span<const Key> keys, std::span<const RigidMotion> motions,

@@ -105,19 +105,20 @@ void BodyImpactSearch::walk(const MovingShape& walked, const MovingShape& other,
 }  // namespace
 
 BodyImpact find_body_impact(const PartTraversal& parts, const MovingBody& a, const MovingBody& b,
-                            double tolerance, const Interval& within) {
+                            double tolerance, const Interval& within, double until) {
   const MovingShape shape = whole_shape(parts, b.shape, b.motion);
   const Interval window = Passage(parts, a.motion, shape).window(parts.radius(a.shape));
   const Interval both{std::max(window.first, within.first), std::min(window.last, within.last)};
-  if (both.first > both.last) return {};
-  return find_impact_of_balls(parts, a, b, tolerance, both);
+  if (both.first > std::min(both.last, until)) return {};
+  return find_impact_of_balls(parts, a, b, tolerance, both, until);
 }
 
 BodyImpact find_impact_of_balls(const PartTraversal& parts, const MovingBody& a,
-                                const MovingBody& b, double tolerance, const Interval& within) {
+                                const MovingBody& b, double tolerance, const Interval& within,
+                                double until) {
   if (!a.shape.is_composite() && !b.shape.is_composite()) {
     return {find_impact(parts.shapes().tables(), {a.shape, a.motion}, {b.shape, b.motion},
-                        tolerance, within)};
+                        tolerance, within, until)};
   }
   const MovingShape first = whole_shape(parts, a.shape, a.motion);
   const MovingShape second = whole_shape(parts, b.shape, b.motion);

@@ -38,13 +38,14 @@ struct BodyImpact {
 
 /// The first impact within an interval, before which they are apart, of shapes that are there and
 /// motions that are valid; of bodies that share a point at the start that of the parts that overlap
-/// the deepest. `tolerance` is a share of the size of the smaller of the parts that meet.
+/// the deepest. `tolerance` is a share of the size of the smaller of the parts that meet. An impact
+/// after `until` may be given as none; one that is not later is the same whatever `until` is.
 [[nodiscard]] BodyImpact find_body_impact(const PartTraversal& parts, const MovingBody& a,
                                           const MovingBody& b, double tolerance,
-                                          const Interval& within = {0.0, 1.0});
+                                          const Interval& within = {0.0, 1.0}, double until = 1.0);
 /// The same of an interval in which the balls around the two overlap.
 [[nodiscard]] BodyImpact find_impact_of_balls(const PartTraversal& parts, const MovingBody& a,
                                               const MovingBody& b, double tolerance,
-                                              const Interval& within);
+                                              const Interval& within, double until = 1.0);
 
 }  // namespace winnow::impact

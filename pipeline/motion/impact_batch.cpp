@@ -89,15 +89,15 @@ class StartDistances {
 }  // namespace
 
 void ImpactBatch::add(std::size_t name, ShapeId a, const RigidMotion& of_a, ShapeId b,
-                      const RigidMotion& of_b, const Interval& within) noexcept {
+                      const RigidMotion& of_b, double until) noexcept {
   const bool mirrored = solver::is_prepared_mirrored(a.kind(), b.kind());
   names_[count_] = name;
   mirrored_[count_] = mirrored;
   ImpactQuery& query = queries_[count_];
   if (mirrored) {
-    query = {{b, a}, {&of_b, &of_a}, within.first, within.last};
+    query = {{b, a}, {&of_b, &of_a}, until};
   } else {
-    query = {{a, b}, {&of_a, &of_b}, within.first, within.last};
+    query = {{a, b}, {&of_a, &of_b}, until};
   }
   ++count_;
 }
@@ -134,7 +134,7 @@ void ImpactBatch::search(std::size_t i) noexcept {
   const ImpactQuery& query = queries_[i];
   found_[i] =
       find_impact(tables_, {query.shape[0], *query.motion[0]}, {query.shape[1], *query.motion[1]},
-                  tolerance_, {found_[i].time, query.last});
+                  tolerance_, {found_[i].time, 1.0}, query.until);
 }
 
 void ImpactBatch::find() noexcept {
@@ -155,7 +155,7 @@ void ImpactBatch::find() noexcept {
     }
     for (std::uint32_t i = 0; i < job.count; ++i) {
       verdicts_[job.order[i]] = ImpactVerdict::unsure;
-      found_[job.order[i]].time = queries_[job.order[i]].first;
+      found_[job.order[i]].time = 0.0;
     }
   }
 }

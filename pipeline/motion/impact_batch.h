@@ -25,10 +25,10 @@ class ImpactBatch {
   [[nodiscard]] static bool takes(ShapeId a, ShapeId b) noexcept {
     return !a.is_composite() && !b.is_composite();
   }
-  /// `name` is what the answer is given with. The motions, which are valid, outlive the next run;
-  /// they are apart before the interval.
+  /// `name` is what the answer is given with. The motions, which are valid, outlive the next run.
+  /// An impact after `until` may be given as none.
   void add(std::size_t name, ShapeId a, const RigidMotion& of_a, ShapeId b, const RigidMotion& of_b,
-           const Interval& within = {0.0, 1.0}) noexcept;
+           double until = 1.0) noexcept;
 
   /// Calls take(name, impact) for every pair that was added, in any order, and forgets them.
   template <typename Take>

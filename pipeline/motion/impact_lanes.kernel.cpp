@@ -39,6 +39,7 @@ struct PairLanes {
   Doubles still_noise;
   Doubles tolerance;
   Doubles last;
+  Doubles until;
   /// They are apart before; and what is known of them then, by a look.
   Doubles time;
   Vector axis;
@@ -298,7 +299,7 @@ class ImpactStep {
     end_unsure(stands);
     whole_ = whole;
     p_.time = select(whole, p_.next, reached);
-    end_apart((!whole) & (p_.time >= p_.last));
+    end_apart(((!whole) & (p_.time >= p_.last)) | (p_.time > p_.until));
     // Too near for double to tell, or touching.
     end_unsure(whole & !look_.parted);
     p_.next = p_.time;
@@ -338,7 +339,7 @@ class ImpactStep {
     answers_.put_meeting(bits(met), p_, look_);
     active_ = active_ & !met;
     const Doubles free = free_until();
-    end_apart(looked & (free >= p_.last));
+    end_apart(looked & ((free >= p_.last) | (free > p_.until)));
     const Doubles next = next_look();
     const Truth freely = next <= free;
     const Doubles moved = select(freely, free, p_.time);
@@ -452,8 +453,9 @@ class ImpactLoad {
     load_differences4([&](int lane) { return motion(1, lane) + kTravelAt; },
                       [&](int lane) { return motion(0, lane) + kTravelAt; }, row);
     p_.travel = {row[0], row[1], row[2]};
-    p_.time = load_rows1([&](int lane) { return &query(lane).first; });
-    p_.last = load_rows1([&](int lane) { return &query(lane).last; });
+    p_.time = Doubles(0.0);
+    p_.last = Doubles(1.0);
+    p_.until = load_rows1([&](int lane) { return &query(lane).until; });
   }
 
   void measure_pair() {
@@ -483,12 +485,11 @@ class ImpactLoad {
     p_.time = select(moves, max(p_.time, nearest - half), p_.time);
     p_.last = select(moves, min(p_.last, nearest + half), p_.last);
     const Doubles slack = select(moves, zero, speed);
-    return (distance <= radius + slack) & (p_.time <= p_.last);
+    return (distance <= radius + slack) & (p_.time <= min(p_.last, p_.until));
   }
 
   void begin(const Truth& usable) {
     const Doubles zero(0.0);
-    const Doubles asked_from = p_.time;
     const Truth near = cut_to_window();
     for (int i = 0; i < kSlots; ++i) {
       p_.witness.a[i] = p_.witness.b[i] = zero_vector();
@@ -502,7 +503,7 @@ class ImpactLoad {
     p_.aim = Doubles(0.1);
     Answers answers(job_, tables_);
     const Mask16 here = lanes_below(job_.count - first_ < kWidth ? job_.count - first_ : kWidth);
-    answers.put_unsure(bits(!usable) & here, asked_from);
+    answers.put_unsure(bits(!usable) & here, zero);
     answers.put_apart(bits(usable & !near) & here);
     const Mask16 go_on = bits(usable & near) & here;
     alignas(64) double active[kWidth];

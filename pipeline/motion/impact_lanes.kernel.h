@@ -9,12 +9,13 @@
 
 namespace winnow {
 
-/// Two convex shapes that move, and the times between which they may meet: they are apart before.
+/// Two convex shapes that move.
 struct ImpactQuery {
   ShapeId shape[2];
   const RigidMotion* motion[2];
-  double first;
-  double last;
+  /// A later impact is of no interest, and may be none. Whatever it is, an impact that is not later
+  /// is the same.
+  double until;
 };
 
 enum class ImpactVerdict : std::uint8_t {

@@ -85,13 +85,14 @@ class Witness {
 class ImpactSearch {
  public:
   ImpactSearch(const ShapeTables& tables, const MovingPart& a, const MovingPart& b,
-               double tolerance, const Interval& within) noexcept
+               double tolerance, const Interval& within, double until) noexcept
       : tables_(tables),
         a_(a),
         b_(b),
         pair_(tables, a, b),
         tolerance_(tolerance * pair_.size()),
-        span_(within) {}
+        span_(within),
+        until_(until) {}
 
   [[nodiscard]] Impact run() noexcept;
   /// How often distances were computed.
@@ -122,6 +123,7 @@ class ImpactSearch {
   MovingPair pair_;
   double tolerance_;
   Interval span_;
+  double until_;
   Witness witness_;
   /// Nothing is gained by looking as late as this.
   double touching_ = kUnbounded;
@@ -381,7 +383,7 @@ Impact ImpactSearch::run() noexcept {
   const Interval window = pair_.window();
   const double first = std::max(window.first, span_.first);
   const double last = std::min(window.last, span_.last);
-  if (first > last) return {};
+  if (first > std::min(last, until_)) return {};
   if (pair_.a().kind == solver::CoreKind::half_space) {
     const Impact at_start = start();
     if (at_start.gap <= 0.0 || pair_.touches_soon()) return at_start;
@@ -393,7 +395,7 @@ Impact ImpactSearch::run() noexcept {
     if (!known) now = look(time);
     if (!now.parted || has_met(time, last, now)) return meet_at(time, now);
     const double free = advance(time, last, now, known);
-    if (free >= last) return {};
+    if (free >= last || free > until_) return {};
     // No number left between, or none that looks would ever reach.
     if (free <= time || looks_ >= kMostLooks) {
       now = look(time);
@@ -416,9 +418,9 @@ void mirror_impact(const RigidMotion& of_a, const RigidMotion& of_b, Impact& imp
 }
 
 Impact find_impact(const ShapeTables& tables, const MovingPart& a, const MovingPart& b,
-                   double tolerance, const Interval& within) noexcept {
+                   double tolerance, const Interval& within, double until) noexcept {
   const auto search = [&](const MovingPart& first, const MovingPart& second) {
-    ImpactSearch impacts(tables, first, second, tolerance, within);
+    ImpactSearch impacts(tables, first, second, tolerance, within, until);
     Impact found = impacts.run();
     found.samples = impacts.looks();
     return found;

@@ -1,5 +1,7 @@
 // Ways of bodies are boxed and put into a partition of their own, which is asked for pairs among
-// them and with the scene's partitions. What is found is judged by balls, and then exactly.
+// them and with the scene's partitions. What is found is judged by balls, and then exactly. Where
+// ways are long because most bodies go the same way, pairs among them are asked for in a frame that
+// goes with them.
 
 #include <winnow/pipeline/scene_sweep.h>
 
@@ -39,6 +41,11 @@ constexpr std::size_t kCandidatesPerStretch = 256;
 constexpr std::size_t kPairsPerRound = 1024;
 /// To so many bits pairs are ordered by when they may meet.
 constexpr unsigned kTimeBits = 11;
+/// A frame that moves shortens ways to less than this share, and by more than so many radii.
+constexpr double kShortened = 0.25;
+constexpr double kLongWay = 4.0;
+/// More than rounding changes times by, and the sizes of balls as a share of them.
+constexpr double kRounding = 1e-9;
 
 /// Room for a motion, which nothing is written to before there is one.
 union MotionRoom {
@@ -52,10 +59,10 @@ union MotionRoom {
 
 }  // namespace
 
-/// A candidate, and between which times it is looked at.
+/// A candidate, and until when its impact is wanted.
 struct SweptPair {
   std::uint32_t candidate;
-  impact::Interval within;
+  double until;
 };
 
 struct SweepState {
@@ -67,6 +74,7 @@ struct SweepState {
         motions(memory),
         movers(memory),
         mover_of(memory),
+        along_axis(memory),
         first_piece(memory),
         boxes(memory),
         pieces(memory),
@@ -75,7 +83,7 @@ struct SweepState {
         pairs(memory),
         candidates(memory),
         spare(memory),
-        windows(memory),
+        begins(memory),
         chances(memory),
         round(memory),
         listed(memory),
@@ -86,8 +94,12 @@ struct SweepState {
 
   [[nodiscard]] Status take(std::span<const Key> keys, const PoseView& ends) noexcept;
   [[nodiscard]] Status take(std::span<const Key> keys, std::span<const RigidMotion> given) noexcept;
+  [[nodiscard]] bool choose_drift() noexcept;
   [[nodiscard]] Status box_ways();
   [[nodiscard]] Status set_filters();
+  [[nodiscard]] Status find_pairs_among(const SweepOptions& options);
+  [[nodiscard]] bool is_met(Motion motion, const SweepOptions& options) const noexcept;
+  [[nodiscard]] Status find_pairs_with(Motion motion, const SweepOptions& options);
   [[nodiscard]] Status find_pairs(const SweepOptions& options);
   [[nodiscard]] Status find_all(const SweepOptions& options);
   [[nodiscard]] Status find_first(const SweepOptions& options);
@@ -106,7 +118,11 @@ struct SweepState {
   Column<RigidMotion> motions;
   Column<std::uint32_t> movers;
   Column<std::uint32_t> mover_of;
-  bool moves_fixed = false;
+  /// By Motion, how many bodies move.
+  std::array<std::size_t, kMotions> movers_in{};
+  /// How the frame moves in which ways are boxed, and what movers go along one axis.
+  Eigen::Vector3d drift = Eigen::Vector3d::Zero();
+  Column<double> along_axis;
   /// By mover, and one more.
   Column<std::uint32_t> first_piece;
   Column<PlainBox> boxes;
@@ -118,8 +134,8 @@ struct SweepState {
   /// Pairs of bodies as (smaller id << 32 | larger id), sorted.
   Column<std::uint64_t> candidates;
   Column<std::uint64_t> spare;
-  /// By candidate, when the balls around the two overlap.
-  Column<impact::Interval> windows;
+  /// By candidate, before when no impact is found.
+  Column<double> begins;
   /// Candidates whose balls meet, as (when << 32 | candidate), sorted.
   Column<std::uint64_t> chances;
   /// By kinds of shapes, and as they were listed.
@@ -136,7 +152,9 @@ struct SweepState {
   /// From which boxes are measured.
   [[nodiscard]] RigidMotion frame() const noexcept {
     const Eigen::Vector3d& at = bodies.origin;
-    return RigidMotion::standing(Pose::at(at.x(), at.y(), at.z()));
+    RigidMotion frame = RigidMotion::standing(Pose::at(at.x(), at.y(), at.z()));
+    Eigen::Vector3d::Map(frame.travel) = drift;
+    return frame;
   }
   [[nodiscard]] impact::MovingShape way_of(std::size_t mover) const noexcept {
     return impact::whole_shape(parts, bodies.shape[movers[mover]], motions[mover]);
@@ -152,7 +170,7 @@ struct SweepState {
     const std::uint32_t mover = mover_of[body];
     return mover == kNoMover ? RigidMotion::standing(bodies.pose[body]) : motions[mover];
   }
-  [[nodiscard]] Status list_chances();
+  [[nodiscard]] Status list_chances(double tolerance);
   [[nodiscard]] bool list_round(std::size_t& at) noexcept;
   [[nodiscard]] bool sort_round() noexcept;
   void keep_first(std::uint32_t candidate, const impact::BodyImpact& impact) noexcept;
@@ -160,8 +178,9 @@ struct SweepState {
     return {static_cast<std::uint32_t>(candidates[candidate] >> 32U),
             static_cast<std::uint32_t>(candidates[candidate])};
   }
-  [[nodiscard]] impact::Interval window_of(std::uint64_t candidate) const noexcept;
-  [[nodiscard]] impact::Interval chance_of(std::uint64_t candidate) const noexcept;
+  [[nodiscard]] impact::Interval window_of(std::uint64_t candidate,
+                                           double tolerance = 0.0) const noexcept;
+  [[nodiscard]] double begin_of(std::uint64_t candidate, double tolerance) const noexcept;
   void find_impacts(std::span<const SweptPair> asked, const SweepOptions& options,
                     impact::BodyImpact* impacts_of) const noexcept;
   [[nodiscard]] SceneImpact shown(std::uint64_t candidate,
@@ -226,11 +245,11 @@ Status SweepState::take_bodies(std::span<const Key> keys) noexcept {
     return Status::out_of_memory;
   }
   std::fill(mover_of.begin(), mover_of.end(), kNoMover);
-  moves_fixed = false;
+  movers_in = {};
   for (std::size_t i = 0; i < keys.size(); ++i) {
     movers[i] = keys[i].id;
     mover_of[keys[i].id] = static_cast<std::uint32_t>(i);
-    moves_fixed = moves_fixed || bodies.motion[keys[i].id] == Motion::fixed;
+    ++movers_in[static_cast<std::size_t>(bodies.motion[keys[i].id])];
   }
   return Status::ok;
 }
@@ -263,6 +282,34 @@ Status SweepState::take(std::span<const Key> keys, std::span<const RigidMotion> 
   return status;
 }
 
+/// Along each axis the median of what movers travel, or nothing where ways are not much longer for
+/// that.
+bool SweepState::choose_drift() noexcept {
+  drift.setZero();
+  const std::size_t count = movers.size();
+  if (!along_axis.resize(count)) return false;
+  if (count == 0) return true;
+  Eigen::Vector3d common;
+  double as_they_are = 0.0;
+  double shortened = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < count; ++i) along_axis[i] = motions[i].travel[axis];
+    double* const middle = along_axis.data() + count / 2;
+    std::nth_element(along_axis.begin(), middle, along_axis.end());
+    common[axis] = *middle;
+    for (const double way : along_axis) {
+      as_they_are += std::abs(way);
+      shortened += std::abs(way - common[axis]);
+    }
+  }
+  double radii = 0.0;
+  for (const std::uint32_t body : movers) radii += bodies.radius(body);
+  const bool shortens =
+      shortened < kShortened * as_they_are && as_they_are - shortened > kLongWay * radii;
+  if (shortens) drift = common;
+  return true;
+}
+
 /// Says into how many pieces each way is cut.
 bool SweepState::count_pieces() noexcept {
   const std::size_t count = movers.size();
@@ -275,7 +322,7 @@ bool SweepState::count_pieces() noexcept {
     total += impact::Passage(parts, origin, moving).piece_count();
   }
   first_piece[count] = total;
-  statistics = {total, 0};
+  statistics.boxes += total;
   return boxes.resize(total) && pieces.resize(total) && piece_keys.resize(total);
 }
 
@@ -316,7 +363,7 @@ Status SweepState::box_ways() {
   for (const Key& key : keys) objects = std::max(objects, key.id + std::size_t{1});
   if (!piece_of.resize(objects)) return Status::out_of_memory;
   for (std::uint32_t i = 0; i < pieces.size(); ++i) piece_of[keys[i].id] = i;
-  return Status::ok;
+  return set_filters();
 }
 
 Status SweepState::set_filters() {
@@ -363,20 +410,43 @@ bool SweepState::sort_candidates() noexcept {
   return true;
 }
 
+Status SweepState::find_pairs_among(const SweepOptions& options) {
+  const WayJudge among{*this, options, nullptr};
+  const Status status = ways.self_pairs(pairs, among.asked());
+  if (status != Status::ok) return status;
+  return collect([&](ObjectId way) { return movers[pieces[piece_of[way]].mover]; });
+}
+
+/// Whether movers may meet bodies of a set that stand.
+bool SweepState::is_met(Motion motion, const SweepOptions& options) const noexcept {
+  const SceneSet& set = bodies.set(motion);
+  if (!set.partition.has_value()) return false;
+  if (set.partition->size() == movers_in[static_cast<std::size_t>(motion)]) return false;
+  return options.pairs != SweepPairs::fixed || motion == Motion::fixed ||
+         movers_in[static_cast<std::size_t>(Motion::fixed)] > 0;
+}
+
+Status SweepState::find_pairs_with(Motion motion, const SweepOptions& options) {
+  const SceneSet& set = bodies.set(motion);
+  const WayJudge with{*this, options, &set};
+  const Status status = ways.pairs_with(*set.partition, pairs, with.asked());
+  if (status != Status::ok) return status;
+  return collect([&](ObjectId id) { return set.body_of[id]; });
+}
+
 Status SweepState::find_pairs(const SweepOptions& options) {
   candidates.clear();
-  const WayJudge among{*this, options, nullptr};
-  Status status = ways.self_pairs(pairs, among.asked());
-  if (status == Status::ok) {
-    status = collect([&](ObjectId way) { return movers[pieces[piece_of[way]].mover]; });
-  }
+  statistics = {};
+  if (!choose_drift()) return Status::out_of_memory;
+  Status status = box_ways();
+  if (status == Status::ok) status = find_pairs_among(options);
   for (const Motion motion : kEveryMotion) {
-    const SceneSet& set = bodies.set(motion);
-    if (status != Status::ok || !set.partition.has_value()) continue;
-    if (options.pairs == SweepPairs::fixed && motion != Motion::fixed && !moves_fixed) continue;
-    const WayJudge with{*this, options, &set};
-    status = ways.pairs_with(*set.partition, pairs, with.asked());
-    if (status == Status::ok) status = collect([&](ObjectId id) { return set.body_of[id]; });
+    if (!is_met(motion, options)) continue;
+    if (status == Status::ok && !drift.isZero(0.0)) {
+      drift.setZero();
+      status = box_ways();
+    }
+    if (status == Status::ok) status = find_pairs_with(motion, options);
   }
   if (status != Status::ok) return status;
   if (!sort_candidates()) return Status::out_of_memory;
@@ -384,7 +454,8 @@ Status SweepState::find_pairs(const SweepOptions& options) {
   return Status::ok;
 }
 
-impact::Interval SweepState::window_of(std::uint64_t candidate) const noexcept {
+/// When the balls around the two overlap, or are closer than this share of their sizes.
+impact::Interval SweepState::window_of(std::uint64_t candidate, double tolerance) const noexcept {
   constexpr double kStands[3] = {0.0, 0.0, 0.0};
   const auto a = static_cast<std::uint32_t>(candidate >> 32U);
   const auto b = static_cast<std::uint32_t>(candidate);
@@ -395,20 +466,20 @@ impact::Interval SweepState::window_of(std::uint64_t candidate) const noexcept {
   const Difference apart = difference(start_of(b), start_of(a));
   return impact::ball_window(Eigen::Vector3d::Map(apart.difference),
                              Eigen::Vector3d::Map(travel(b)) - Eigen::Vector3d::Map(travel(a)),
-                             bodies.radius(a) + bodies.radius(b));
+                             (bodies.radius(a) + bodies.radius(b)) * (1.0 + tolerance));
 }
 
-/// The window of a candidate, or all the time where convex shapes are near each other from the
-/// start: most are, and the search for their impact ends it.
-impact::Interval SweepState::chance_of(std::uint64_t candidate) const noexcept {
+/// No impact of a candidate is found before; beyond the end of time if there is none. Most are near
+/// each other from the start, which needs no root.
+double SweepState::begin_of(std::uint64_t candidate, double tolerance) const noexcept {
   const auto a = static_cast<std::uint32_t>(candidate >> 32U);
   const auto b = static_cast<std::uint32_t>(candidate);
-  if (impact::ImpactBatch::takes(bodies.shape[a], bodies.shape[b])) {
-    const Difference apart = difference(start_of(b), start_of(a));
-    const double reach = bodies.radius(a) + bodies.radius(b);
-    if (Eigen::Vector3d::Map(apart.difference).squaredNorm() < reach * reach) return {0.0, 1.0};
-  }
-  return window_of(candidate);
+  const Difference apart = difference(start_of(b), start_of(a));
+  const double reach = bodies.radius(a) + bodies.radius(b);
+  if (Eigen::Vector3d::Map(apart.difference).squaredNorm() < reach * reach) return 0.0;
+  // A gap of the tolerance is an impact, and rounding may find it a little sooner.
+  const impact::Interval window = window_of(candidate, tolerance + kRounding);
+  return window.first <= window.last ? std::max(0.0, window.first - kRounding) : 2.0;
 }
 
 /// The first impacts of no more pairs than fit into a batch; `impacts_of` gets one of each.
@@ -417,7 +488,8 @@ void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptio
   impact::ImpactBatch batch(bodies.shapes.tables(), options.tolerance);
   std::array<MotionRoom, impact::ImpactBatch::kRoom> standing;
   for (std::size_t i = 0; i < asked.size(); ++i) {
-    if (asked[i].within.first > asked[i].within.last) {
+    const impact::Interval window = window_of(candidates[asked[i].candidate]);
+    if (window.first > window.last) {
       impacts_of[i] = {};
       continue;
     }
@@ -430,11 +502,10 @@ void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptio
     const RigidMotion& of_a = motion(a);
     const RigidMotion& of_b = motion(b);
     if (impact::ImpactBatch::takes(bodies.shape[a], bodies.shape[b])) {
-      batch.add(i, bodies.shape[a], of_a, bodies.shape[b], of_b, asked[i].within);
+      batch.add(i, bodies.shape[a], of_a, bodies.shape[b], of_b, asked[i].until);
     } else {
-      impacts_of[i] =
-          impact::find_impact_of_balls(parts, {bodies.shape[a], of_a}, {bodies.shape[b], of_b},
-                                       options.tolerance, asked[i].within);
+      impacts_of[i] = impact::find_impact_of_balls(
+          parts, {bodies.shape[a], of_a}, {bodies.shape[b], of_b}, options.tolerance, window);
     }
   }
   batch.run([&](std::size_t i, const impact::Impact& impact) { impacts_of[i] = {impact}; });
@@ -452,13 +523,7 @@ Status SweepState::find_all(const SweepOptions& options) {
                 [&](std::size_t begin, std::size_t end) {
                   std::array<SweptPair, impact::ImpactBatch::kRoom> asked;
                   for (std::size_t i = begin; i < end; ++i) {
-                    const impact::Interval window = window_of(candidates[i]);
-                    const auto [a, b] = bodies_of(static_cast<std::uint32_t>(i));
-                    const bool convex =
-                        impact::ImpactBatch::takes(bodies.shape[a], bodies.shape[b]);
-                    const bool whole = convex && window.first <= window.last;
-                    asked[i - begin] = {static_cast<std::uint32_t>(i),
-                                        whole ? impact::Interval{0.0, 1.0} : window};
+                    asked[i - begin] = {static_cast<std::uint32_t>(i), 1.0};
                   }
                   find_impacts({asked.data(), end - begin}, options, found.data() + begin);
                 });
@@ -471,17 +536,19 @@ Status SweepState::find_all(const SweepOptions& options) {
 }
 
 /// Lists the candidates whose balls meet, the first that do first.
-Status SweepState::list_chances() {
+Status SweepState::list_chances(double tolerance) {
   const std::size_t count = candidates.size();
-  if (!windows.resize(count) || !chances.resize(count)) return Status::out_of_memory;
+  if (!begins.resize(count) || !chances.resize(count)) return Status::out_of_memory;
   for_stretches(bodies.options.execution, count, kCandidatesPerStretch,
                 [&](std::size_t begin, std::size_t end) {
-                  for (std::size_t i = begin; i < end; ++i) windows[i] = chance_of(candidates[i]);
+                  for (std::size_t i = begin; i < end; ++i) {
+                    begins[i] = begin_of(candidates[i], tolerance);
+                  }
                 });
   std::size_t size = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (windows[i].first > windows[i].last) continue;
-    const auto when = static_cast<std::uint64_t>(windows[i].first * ((1U << kTimeBits) - 1U));
+    if (begins[i] > 1.0) continue;
+    const auto when = static_cast<std::uint64_t>(begins[i] * ((1U << kTimeBits) - 1U));
     chances[size++] = when << 32U | i;
   }
   const std::uint64_t* const sorted =
@@ -502,9 +569,8 @@ bool SweepState::list_round(std::size_t& at) noexcept {
       const std::uint32_t mover = mover_of[body];
       if (mover != kNoMover) latest = std::max(latest, found[mover].impact.time);
     }
-    const impact::Interval& window = windows[candidate];
-    const impact::Interval within{window.first, std::min(window.last, latest)};
-    if (within.first <= within.last && !listed.push_back({candidate, within})) return false;
+    if (begins[candidate] > latest) continue;
+    if (!listed.push_back({candidate, latest})) return false;
   }
   return sort_round() && answers.resize(round.size());
 }
@@ -544,7 +610,7 @@ void SweepState::keep_first(std::uint32_t candidate, const impact::BodyImpact& i
 }
 
 Status SweepState::find_first(const SweepOptions& options) {
-  if (const Status status = list_chances(); status != Status::ok) return status;
+  if (const Status status = list_chances(options.tolerance); status != Status::ok) return status;
   const std::size_t count = movers.size();
   if (!found.resize(count)) return Status::out_of_memory;
   std::fill(found.begin(), found.end(), impact::BodyImpact{});
@@ -640,8 +706,6 @@ Status SceneSweep::run(std::span<const Key> keys, const SweepOptions& options, T
     status = s.scene.refresh();
   }
   if (status == Status::ok) status = take();
-  if (status == Status::ok) status = s.box_ways();
-  if (status == Status::ok) status = s.set_filters();
   if (status == Status::ok) status = s.find_pairs(options);
   if (status == Status::ok) {
     s.impacts.clear();
@@ -673,10 +737,10 @@ Footprint SceneSweep::footprint() const noexcept {
   sum.structure = {sizeof(SweepState), sizeof(SweepState)};
   for (const Bytes& bytes :
        {s.ways.footprint().total(), s.motions.bytes(), s.movers.bytes(), s.mover_of.bytes(),
-        s.first_piece.bytes(), s.boxes.bytes(), s.pieces.bytes(), s.piece_of.bytes(),
-        s.piece_keys.bytes(), s.pairs.footprint().total(), s.candidates.bytes(), s.spare.bytes(),
-        s.windows.bytes(), s.chances.bytes(), s.round.bytes(), s.listed.bytes(), s.answers.bytes(),
-        s.found.bytes()}) {
+        s.along_axis.bytes(), s.first_piece.bytes(), s.boxes.bytes(), s.pieces.bytes(),
+        s.piece_of.bytes(), s.piece_keys.bytes(), s.pairs.footprint().total(), s.candidates.bytes(),
+        s.spare.bytes(), s.begins.bytes(), s.chances.bytes(), s.round.bytes(), s.listed.bytes(),
+        s.answers.bytes(), s.found.bytes()}) {
     sum.scratch += bytes;
   }
   sum.results += s.impacts.bytes();

@@ -23,8 +23,13 @@ namespace {
 
 /// A scene of which some bodies move, and what every pair says by itself.
 struct SweptWorld {
-  explicit SweptWorld(std::size_t count, const Execution& execution = Execution::serial())
+  /// Farther apart by the factor `spread` than the bodies of a SceneWorld are.
+  explicit SweptWorld(std::size_t count, const Execution& execution = Execution::serial(),
+                      double spread = 1.0)
       : world(count, 91), composites(world.pool) {
+    for (BodyDefinition& body : world.bodies) {
+      for (double& x : body.pose.position) x *= spread;
+    }
     const MeshData ring = torus(6, 5);
     EXPECT_EQ(composites.add_mesh(ring.points(), ring.indices(), mesh), Status::ok);
     for (std::size_t i = 0; i < count; i += 9) world.bodies[i].shape = mesh;
@@ -128,21 +133,73 @@ TEST(SceneSweeps, find_what_every_pair_says_by_itself) {
   }
 }
 
+void expect_same(const SceneImpact& a, const SceneImpact& b) {
+  EXPECT_EQ(a.data_a, b.data_a);
+  EXPECT_EQ(a.data_b, b.data_b);
+  EXPECT_EQ(a.part_a, b.part_a);
+  EXPECT_EQ(a.part_b, b.part_b);
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.gap, b.gap);
+  EXPECT_EQ(a.error_bound, b.error_bound);
+  EXPECT_TRUE(std::ranges::equal(a.point, b.point));
+  EXPECT_TRUE(std::ranges::equal(a.normal, b.normal));
+}
+
 TEST(SceneSweeps, find_the_first_impacts_alone_where_no_others_are_wanted) {
-  SweptWorld swept(scaled(160));
+  SweptWorld swept(400, Execution::serial(), 2.5);
   SceneSweep all(*swept.scene);
   SceneSweep firsts(*swept.scene);
-  ASSERT_EQ(all.sweep(swept.keys, swept.motions), Status::ok);
-  ASSERT_EQ(firsts.sweep(swept.keys, swept.motions, {.first_only = true}), Status::ok);
-  EXPECT_LE(firsts.impacts().size(), swept.movers.size());
-  for (std::size_t i = 0; i < swept.movers.size(); ++i) {
-    const std::uint32_t expected = all.first()[i];
-    const std::uint32_t first = firsts.first()[i];
-    ASSERT_EQ(first == kNoImpact, expected == kNoImpact);
-    if (first == kNoImpact) continue;
-    // Within the tolerance of each other, either may be the first.
-    EXPECT_NEAR(firsts.impacts()[first].time, all.impacts()[expected].time, 1e-5);
+  for (const double tolerance : {1e-6, 1e-2}) {
+    ASSERT_EQ(all.sweep(swept.keys, swept.motions, {.tolerance = tolerance}), Status::ok);
+    ASSERT_EQ(firsts.sweep(swept.keys, swept.motions, {.tolerance = tolerance, .first_only = true}),
+              Status::ok);
+    EXPECT_LE(firsts.impacts().size(), swept.movers.size());
+    for (std::size_t i = 0; i < swept.movers.size(); ++i) {
+      const std::uint32_t expected = all.first()[i];
+      const std::uint32_t first = firsts.first()[i];
+      ASSERT_EQ(first == kNoImpact, expected == kNoImpact);
+      if (first != kNoImpact) expect_same(firsts.impacts()[first], all.impacts()[expected]);
+    }
   }
+}
+
+/// Boxes in a cube that all go far the same way, but for a little.
+struct Convoy {
+  Convoy(std::size_t count, double way) {
+    EXPECT_EQ(pool.add(BoxShape{{0.5, 0.5, 0.5}}, box), Status::ok);
+    const double side = std::cbrt(2.0 * static_cast<double>(count));
+    Random random(7);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Pose start =
+          Pose::at(random.uniform(0, side), random.uniform(0, side), random.uniform(0, side));
+      keys.push_back(scene.add({.shape = box, .pose = start, .data = i}));
+      motions.push_back(RigidMotion::standing(start));
+      for (double& x : motions.back().travel) x = way + random.uniform(-0.1, 0.1);
+    }
+  }
+
+  ShapePool pool;
+  ShapeId box;
+  Scene scene{pool};
+  std::vector<Key> keys;
+  std::vector<RigidMotion> motions;
+};
+
+TEST(SceneSweeps, look_at_no_more_where_all_go_the_same_way) {
+  Convoy still(scaled(400), 0.0);
+  Convoy fast(scaled(400), 1000.0);
+  ShapeId wall;
+  ASSERT_EQ(fast.pool.add(BoxShape{{1e-3, 1e4, 1e4}}, wall), Status::ok);
+  ASSERT_NE(fast.scene.add({.shape = wall, .pose = Pose::at(500, 0, 0), .motion = Motion::fixed}),
+            Key{});
+  SceneSweep of_still(still.scene);
+  SceneSweep of_fast(fast.scene);
+  ASSERT_EQ(of_still.sweep(still.keys, still.motions), Status::ok);
+  ASSERT_EQ(of_fast.sweep(fast.keys, fast.motions), Status::ok);
+  const std::size_t count = fast.keys.size();
+  EXPECT_LE(of_fast.statistics().body_pairs, 2 * of_still.statistics().body_pairs + count);
+  // All meet the wall, and each other as they do without it.
+  EXPECT_EQ(of_fast.impacts().size(), of_still.impacts().size() + count);
 }
 
 TEST(SceneSweeps, are_the_same_on_any_number_of_threads) {
@@ -156,15 +213,7 @@ TEST(SceneSweeps, are_the_same_on_any_number_of_threads) {
     ASSERT_EQ(serial.impacts().size(), parallel.impacts().size());
     EXPECT_TRUE(std::ranges::equal(serial.first(), parallel.first()));
     for (std::size_t i = 0; i < serial.impacts().size(); ++i) {
-      const SceneImpact& a = serial.impacts()[i];
-      const SceneImpact& b = parallel.impacts()[i];
-      EXPECT_EQ(a.data_a, b.data_a);
-      EXPECT_EQ(a.data_b, b.data_b);
-      EXPECT_EQ(a.part_a, b.part_a);
-      EXPECT_EQ(a.time, b.time);
-      EXPECT_EQ(a.gap, b.gap);
-      EXPECT_TRUE(std::ranges::equal(a.point, b.point));
-      EXPECT_TRUE(std::ranges::equal(a.normal, b.normal));
+      expect_same(serial.impacts()[i], parallel.impacts()[i]);
     }
   }
 }
@@ -281,12 +330,28 @@ TEST(MotionCasts, meet_what_every_body_says_by_itself) {
       EXPECT_LE(last, hit.t);
       last = hit.t;
     }
-    const double first = hits.empty() ? 0.0 : hits[0].t;
     SceneHit closest;
     ASSERT_EQ(queries.closest(cast, closest), Status::ok);
-    ASSERT_EQ(static_cast<bool>(closest), !hits.empty());
-    if (!closest) continue;
-    EXPECT_NEAR(closest.t, first, 1e-5);
+    EXPECT_EQ(static_cast<bool>(closest), !hits.empty());
+  }
+}
+
+TEST(MotionCasts, that_want_the_closest_hit_get_the_first_of_all) {
+  SweptWorld swept(400, Execution::serial(), 2.5);
+  SceneQueries queries(*swept.scene);
+  ASSERT_EQ(swept.scene->refresh(), Status::ok);
+  for (const RigidMotion& motion : swept.motions) {
+    const MotionCast cast{swept.mesh, motion};
+    std::span<const SceneHit> hits;
+    ASSERT_EQ(queries.all(cast, hits), Status::ok);
+    const SceneHit first = hits.empty() ? SceneHit{} : hits[0];
+    SceneHit closest;
+    ASSERT_EQ(queries.closest(cast, closest), Status::ok);
+    EXPECT_EQ(closest.key, first.key);
+    EXPECT_EQ(closest.part, first.part);
+    EXPECT_EQ(closest.t, first.t);
+    EXPECT_TRUE(std::ranges::equal(closest.normal, first.normal));
+    EXPECT_TRUE(std::ranges::equal(closest.point, first.point));
   }
 }
 

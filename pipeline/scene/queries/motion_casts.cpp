@@ -43,8 +43,10 @@ class MotionQuestion {
   /// a piece begins after `limit`.
   template <typename Look>
   [[nodiscard]] Status each_piece(const double& limit, Look&& look);
-  /// The first impact with a body within an interval; a null hit if there is none.
-  [[nodiscard]] SceneHit hit_of(std::uint32_t body, const impact::Interval& within) const;
+  /// The first impact with a body within an interval; a null hit if there is none, or perhaps if it
+  /// is after `until`.
+  [[nodiscard]] SceneHit hit_of(std::uint32_t body, const impact::Interval& within,
+                                double until = 1.0) const;
 
   QueryState& state_;
   const MotionCast& cast_;
@@ -76,11 +78,12 @@ Status MotionQuestion::each_piece(const double& limit, Look&& look) {
   return Status::ok;
 }
 
-SceneHit MotionQuestion::hit_of(std::uint32_t body, const impact::Interval& within) const {
+SceneHit MotionQuestion::hit_of(std::uint32_t body, const impact::Interval& within,
+                                double until) const {
   const PlacedShape placed = state_.placed(body);
   const RigidMotion stands = RigidMotion::standing(placed.pose);
   const impact::BodyImpact found = impact::find_body_impact(
-      state_.parts, {cast_.shape, cast_.motion}, {placed.shape, stands}, tolerance_, within);
+      state_.parts, {cast_.shape, cast_.motion}, {placed.shape, stands}, tolerance_, within, until);
   SceneHit hit;
   const impact::Impact& impact = found.impact;
   if (!impact.hit) return hit;
@@ -99,9 +102,8 @@ SceneHit MotionQuestion::hit_of(std::uint32_t body, const impact::Interval& with
 Status MotionQuestion::closest(SceneHit& hit) {
   SceneHit best;
   best.t = 1.0;
-  const Status status = each_piece(best.t, [&](std::uint32_t body, impact::Interval within) {
-    within.last = std::min(within.last, best.t);
-    const SceneHit found = hit_of(body, within);
+  const Status status = each_piece(best.t, [&](std::uint32_t body, const impact::Interval& within) {
+    const SceneHit found = hit_of(body, within, best.t);
     if (found && (!best || by_time(found) < by_time(best))) best = found;
   });
   if (status == Status::ok) hit = best ? best : SceneHit{};
