@@ -169,7 +169,8 @@ class WINNOW_API Partition final {
 
   /// Spheres, where `volume()` is Volume::sphere; else `unsupported_volume`. Given boxes, a
   /// partition of spheres or k-DOPs stores the tightest volume around each (a sphere wants finite
-  /// boxes). Spheres that miss each other by less than 1e-6 of their distance may be reported.
+  /// boxes). Spheres that miss each other by less than 1e-6 of their distance may be reported, and
+  /// any that are smaller than some 1e-18 or larger than 1e18.
   Status insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
                 std::span<Key> keys);
   /// The same for spheres. Values that are not finite or a negative radius are `invalid_bounds`.

@@ -153,6 +153,36 @@ TEST_P(Volumes, given_as_boxes_report_every_pair_of_boxes) {
   }
 }
 
+// Whatever bounds them: a structure that tests volumes leaves out none that others find.
+TEST_P(Volumes, of_two_partitions_are_pairs_of_boxes) {
+  Threads threads(config().threads);
+  const std::vector<Aabb> boxes = mixed_boxes(300);
+  const std::vector<Aabb> others = uniform_boxes(200);
+  Partition other(linear_bvh(), {.execution = config().execution()});
+  std::vector<Key> other_keys(others.size());
+  ASSERT_EQ(other.insert(others, {}, other_keys), Status::ok);
+  for (const Volume volume : {Volume::sphere, Volume::kdop14}) {
+    Partition partition = make(volume);
+    std::vector<Key> keys(boxes.size());
+    ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
+    std::vector<Pair> truth;
+    for (ObjectId i = 0; i < keys.size(); ++i) {
+      Aabb box;
+      ASSERT_EQ(partition.bounds(keys[i], box), Status::ok);
+      for (ObjectId k = 0; k < others.size(); ++k) {
+        if (box.overlaps(others[k])) truth.push_back({i, k});
+      }
+    }
+    PairBuffer buffer;
+    const auto ask = [&] {
+      return partition.pairs_with(other, buffer, {.order = Order::canonical});
+    };
+    ASSERT_EQ(threads.run(ask), Status::ok);
+    const std::vector<Pair> got{buffer.begin(), buffer.end()};
+    EXPECT_TRUE(right_cross_pairs(got, truth, config().partition != "NSquared"));
+  }
+}
+
 // What moved is asked about alone, and a partition of boxes asks about boxes.
 TEST_P(Volumes, are_followed_from_frame_to_frame) {
   Threads threads(config().threads);

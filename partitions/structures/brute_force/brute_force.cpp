@@ -54,7 +54,9 @@ class BruteForce : public Structure {
         .self_pairs(view(), first_block(task), first_block(task + 1), sink);
   }
   bool query(const QueryBatch& batch, PairSink& sink) const noexcept override {
-    return kernel_for_(pool().volume()).query(view(), batch, sink);
+    // Boxes are held against boxes, as every structure does.
+    const Volume volume = batch.is_box ? Volume::aabb : pool().volume();
+    return kernel_for_(volume).query(view(), batch, sink);
   }
 
  private:

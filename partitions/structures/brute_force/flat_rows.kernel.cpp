@@ -24,11 +24,8 @@ struct Untested {
     }
     return {live};
   }
-  static Query own(const RowView&, std::size_t) { return {}; }
-  static Query box(const QueryBatch&, std::size_t) { return {}; }
-  static Query same(const QueryBatch&, std::size_t) { return {}; }
+  static Query query(const float* const*, std::size_t) { return {}; }
   static Mask16 test(const Block& block, const Query&) { return block.live; }
-  static Mask16 test_box(const Block& block, const Query&) { return block.live; }
 };
 
 /// Boxes (3 slabs) and k-DOPs, whose further slabs follow the box's six columns.
@@ -47,32 +44,19 @@ struct SlabTest {
     }
     return block;
   }
-  static Query own(const RowView& rows, std::size_t r) { return take<Slabs>(rows.column, r); }
-  static Query box(const QueryBatch& batch, std::size_t r) { return take<3>(batch.column, r); }
-  static Query same(const QueryBatch& batch, std::size_t r) { return take<Slabs>(batch.column, r); }
-  static Mask16 test(const Block& block, const Query& q) { return overlap(block, q.low, q.high); }
-  static Mask16 test_box(const Block& block, const Query& q) {
-    Box16 first;
-    for (int s = 0; s < 3; ++s) {
-      first.low[s] = block.low[s];
-      first.high[s] = block.high[s];
-    }
-    return overlap(first, q.low, q.high);
-  }
-
- private:
-  static constexpr int low_end(int s) { return s < 3 ? s : s + 3; }
-  static constexpr int high_end(int s) { return s < 3 ? s + 3 : Slabs + s; }
-
-  template <int Taken>
-  static Query take(const float* const* column, std::size_t r) {
+  static Query query(const float* const* column, std::size_t r) {
     Query q;
-    for (int s = 0; s < Taken; ++s) {
+    for (int s = 0; s < Slabs; ++s) {
       q.low[s] = column[low_end(s)][r];
       q.high[s] = column[high_end(s)][r];
     }
     return q;
   }
+  static Mask16 test(const Block& block, const Query& q) { return overlap(block, q.low, q.high); }
+
+ private:
+  static constexpr int low_end(int s) { return s < 3 ? s : s + 3; }
+  static constexpr int high_end(int s) { return s < 3 ? s + 3 : Slabs + s; }
 };
 
 /// Spheres.
@@ -82,8 +66,7 @@ struct SphereTest {
     Floats radius;
   };
   struct Query {
-    float low[3];  // of a box; a sphere has low == high == centre
-    float high[3];
+    float center[3];
     float radius;
   };
   static Block load(const RowView& rows, std::size_t row) {
@@ -94,33 +77,15 @@ struct SphereTest {
     b.radius = Floats::load(rows.column[kBallRadius] + row);
     return b;
   }
-  static Query own(const RowView& rows, std::size_t r) { return ball(rows.column, r); }
-  static Query same(const QueryBatch& batch, std::size_t r) { return ball(batch.column, r); }
-  static Query box(const QueryBatch& batch, std::size_t r) {
+  static Query query(const float* const* column, std::size_t r) {
     Query q;
-    for (int axis = 0; axis < 3; ++axis) {
-      q.low[axis] = batch.column[axis][r];
-      q.high[axis] = batch.column[3 + axis][r];
-    }
-    q.radius = 0.0F;
-    return q;
-  }
-  // Called, these would have the block's registers written to memory and read again.
-  [[gnu::always_inline]] static Mask16 test_box(const Block& b, const Query& q) {
-    return test(b, q);
-  }
-  [[gnu::always_inline]] static Mask16 test(const Block& b, const Query& q) {
-    return balls_meet(b.center, b.radius, q.low, q.high, q.radius);
-  }
-
- private:
-  static Query ball(const float* const* column, std::size_t r) {
-    Query q;
-    for (int axis = 0; axis < 3; ++axis) {
-      q.low[axis] = q.high[axis] = column[kBallCenter + axis][r];
-    }
+    for (int axis = 0; axis < 3; ++axis) q.center[axis] = column[kBallCenter + axis][r];
     q.radius = column[kBallRadius][r];
     return q;
+  }
+  // Called, it would have the block's registers written to memory and read again.
+  [[gnu::always_inline]] static Mask16 test(const Block& b, const Query& q) {
+    return balls_meet(b.center, b.radius, q.center, q.radius);
   }
 };
 
@@ -160,7 +125,7 @@ bool block_pair(const FlatView& view, std::uint32_t a, std::uint32_t b, PairSink
       ++left_out;
       continue;
     }
-    Mask16 hits = Test::test(block, Test::own(view.rows, first_row + i));
+    Mask16 hits = Test::test(block, Test::query(view.rows.column, first_row + i));
     if (a == b) hits &= ~lanes_below(i + 1);
     if constexpr (Filtered) {
       hits = passing_rows(view.rows, b * kLanes, hits, view.rows.filter[id]);
@@ -197,13 +162,13 @@ struct FlatQuery {
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
       if (batch.id[row] == kNoId) continue;
-      const auto q = batch.is_box ? Test::box(batch, row) : Test::same(batch, row);
+      const auto q = Test::query(batch.column, row);
       const FilterRange range = Filtered ? filters.of(batch.id[row]) : FilterRange{};
       std::uint32_t tests = 0;
       const bool done = visit_blocks<Filtered>(view, 0, range, [&](std::uint32_t b) {
         const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
         ++tests;
-        Mask16 hits = batch.is_box ? Test::test_box(block, q) : Test::test(block, q);
+        Mask16 hits = Test::test(block, q);
         if constexpr (Mode == HitMode::moved) {
           hits &= reported_lanes(batch.moved, row, b * kLanes);
         }

@@ -18,7 +18,7 @@ struct FlatView {
 struct FlatKernel {
   /// All pairs whose first row lies in blocks [begin, end).
   bool (*self_pairs)(const FlatView&, std::uint32_t begin, std::uint32_t end, PairSink&);
-  /// All hits of the batch.
+  /// All hits of the batch, which holds volumes of this kind.
   bool (*query)(const FlatView&, const QueryBatch&, PairSink&);
 };
 
