@@ -32,19 +32,7 @@ Status Scene::set_ignored(std::span<const KeyPair> pairs, bool ignored) {
   }
   if (pairs.empty()) return Status::ok;
   if (ignored) {
-    const std::size_t known = s.ignores.size();
-    if (!s.ignored.grow(s.ignored.size() + pairs.size()) || !s.ignores.grow(s.shape.size())) {
-      return Status::out_of_memory;
-    }
-    s.ignores.set_size(s.shape.size());
-    std::fill(s.ignores.begin() + known, s.ignores.end(), std::uint8_t{0});
-    for (const KeyPair& pair : pairs) {
-      (void)s.ignored.push_back(pair_number(pair.first.id, pair.second.id));
-      s.ignores[pair.first.id] = s.ignores[pair.second.id] = 1;
-    }
-    std::sort(s.ignored.begin(), s.ignored.end());
-    std::uint64_t* const end = std::unique(s.ignored.begin(), s.ignored.end());
-    s.ignored.set_size(static_cast<std::size_t>(end - s.ignored.begin()));
+    if (!s.add_ignored(pairs)) return Status::out_of_memory;
   } else {
     const auto number_of = [](std::uint64_t pair) { return pair & ~kMark; };
     for (const KeyPair& pair : pairs) {
@@ -57,6 +45,33 @@ Status Scene::set_ignored(std::span<const KeyPair> pairs, bool ignored) {
   }
   s.ask_again();
   return Status::ok;
+}
+
+/// Puts pairs that are there into their places among those that were.
+bool SceneState::add_ignored(std::span<const KeyPair> told) noexcept {
+  const std::size_t before = ignored.size();
+  const std::size_t all = before + told.size();
+  const std::size_t known = ignores.size();
+  if (!ignored.grow(all + told.size()) || !ignores.grow(shape.size())) return false;
+  ignores.set_size(shape.size());
+  std::fill(ignores.begin() + known, ignores.end(), std::uint8_t{0});
+  // Behind where all of them are going to end.
+  ignored.set_size(all + told.size());
+  std::uint64_t* const added = ignored.data() + all;
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    added[i] = pair_number(told[i].first.id, told[i].second.id);
+    ignores[told[i].first.id] = ignores[told[i].second.id] = 1;
+  }
+  std::sort(added, added + told.size());
+  std::size_t old = before;
+  std::size_t own = told.size();
+  for (std::size_t to = all; own > 0; --to) {
+    const bool takes_old = old > 0 && ignored[old - 1] > added[own - 1];
+    ignored[to - 1] = takes_old ? ignored[--old] : added[--own];
+  }
+  const std::uint64_t* const end = std::unique(ignored.begin(), ignored.begin() + all);
+  ignored.set_size(static_cast<std::size_t>(end - ignored.begin()));
+  return true;
 }
 
 bool Scene::is_ignored(Key a, Key b) const noexcept {
@@ -127,8 +142,14 @@ bool SceneState::may_pair(ObjectId a, ObjectId b) const noexcept {
 }
 
 // Whatever was said of bodies that were removed: their ids are going to be others'.
-void SceneState::forget_ignored() noexcept {
-  if (ignored.empty()) return;
+void SceneState::forget_ignored(std::span<const Key> removed) noexcept {
+  bool was_said = false;
+  for (const Key& key : removed) {
+    if (key.id >= ignores.size()) continue;
+    was_said = was_said || ignores[key.id] != 0;
+    ignores[key.id] = 0;
+  }
+  if (!was_said) return;
   drop_ignored([&](std::uint64_t pair) {
     return !keys.is_live(static_cast<ObjectId>(pair >> 32U)) ||
            !keys.is_live(static_cast<ObjectId>(pair));

@@ -175,7 +175,7 @@ Status Scene::remove(std::span<const Key> keys) {
   }
   ++s.regroupings;
   s.forget_stale();
-  s.forget_ignored();
+  s.forget_ignored(keys);
   return Status::ok;
 }
 
@@ -192,7 +192,8 @@ void Scene::clear() noexcept {
   s.layer.clear();
   s.with_offsets = s.with_layers = false;
   s.forget_stale();
-  s.forget_ignored();
+  s.ignored.clear();
+  s.ignores.clear();
   ++s.regroupings;
 }
 

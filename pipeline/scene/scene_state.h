@@ -204,7 +204,8 @@ struct SceneState {
   }
   [[nodiscard]] bool may_pair(ObjectId a, ObjectId b) const noexcept;
   [[nodiscard]] bool is_ignored(ObjectId a, ObjectId b) const noexcept;
-  void forget_ignored() noexcept;
+  [[nodiscard]] bool add_ignored(std::span<const KeyPair> told) noexcept;
+  void forget_ignored(std::span<const Key> removed) noexcept;
   template <typename Unwanted>
   void drop_ignored(Unwanted&& is_unwanted) noexcept {
     std::uint64_t* const end = std::remove_if(ignored.begin(), ignored.end(), is_unwanted);

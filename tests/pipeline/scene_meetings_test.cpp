@@ -64,6 +64,63 @@ TEST(SceneMeetings, what_was_said_of_a_body_goes_with_it) {
   EXPECT_EQ(row.scene.set_ignored(fresh, fresh), Status::invalid_argument);
 }
 
+/// Bodies that are told in any order, once or twice, whom they ignore, beside a plain set.
+struct Strangers {
+  static constexpr std::size_t kBodies = 25;
+
+  Strangers() {
+    EXPECT_EQ(pool.add(SphereShape{1.0}, ball), Status::ok);
+    for (Key& key : keys) key = scene.add({.shape = ball});
+  }
+  void tell(bool ignored) {
+    std::vector<KeyPair> told;
+    for (std::size_t i = random.below(12); i > 0; --i) {
+      const std::size_t a = random.below(kBodies);
+      const std::size_t b = (a + 1 + random.below(kBodies - 1)) % kBodies;
+      told.push_back({keys[a], keys[b]});
+      if (ignored) {
+        truth.insert(names(a, b));
+      } else {
+        truth.erase(names(a, b));
+      }
+    }
+    ASSERT_EQ(scene.set_ignored(told, ignored), Status::ok);
+  }
+  void replace() {
+    const std::size_t body = random.below(kBodies);
+    ASSERT_EQ(scene.remove(keys[body]), Status::ok);
+    keys[body] = scene.add({.shape = ball});
+    std::erase_if(truth,
+                  [&](const Names& pair) { return pair.first == body || pair.second == body; });
+  }
+
+  ShapePool pool;
+  ShapeId ball;
+  Scene scene{pool};
+  Key keys[kBodies];
+  Pairs truth;
+  Random random{3};
+};
+
+TEST(SceneMeetings, who_ignores_whom_is_known_in_whatever_order_it_was_told) {
+  Strangers strangers;
+  for (std::size_t step = 0; step < scaled(200); ++step) {
+    strangers.tell(strangers.random.chance(0.7));
+    if (strangers.random.chance(0.2)) strangers.replace();
+    if (strangers.random.chance(0.02)) {
+      strangers.scene.clear();
+      for (Key& key : strangers.keys) key = strangers.scene.add({.shape = strangers.ball});
+      strangers.truth.clear();
+    }
+    for (std::size_t a = 0; a < Strangers::kBodies; ++a) {
+      for (std::size_t b = a + 1; b < Strangers::kBodies; ++b) {
+        EXPECT_EQ(strangers.scene.is_ignored(strangers.keys[b], strangers.keys[a]),
+                  strangers.truth.contains(names(a, b)));
+      }
+    }
+  }
+}
+
 TEST(SceneMeetings, a_predicate_is_asked_by_the_bodies_own_ids) {
   Row row;
   ObjectId lone = row.keys[2].id;
