@@ -6,6 +6,8 @@
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
+#include <winnow/pipeline/scene_sweep.h>
+#include <winnow/pipeline/sensors.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -172,9 +174,9 @@ struct RecordedShape {
 /// changes them in place is with the next question. A body of one that is of another MidPhase or
 /// one-sided, or that has a support function, and SceneOptions::seamless_floors end the recording
 /// with `unsupported`. So does a question with contacts that this scene filled, but not as its last
-/// answer: a scene is asked with one Contacts, which may be cleared, or be another scene's in
-/// between, but not loaded. Of a predicate it is recorded which pairs it let pass. See
-/// RecordedQueries for questions.
+/// answer: a scene is asked with one Contacts, which may be cleared, be another scene's in between,
+/// or be loaded by `load_contacts`. Of a predicate it is recorded which pairs it let pass. See
+/// RecordedQueries, RecordedSweep and RecordedSensors for what else a scene is asked.
 class WINNOW_API RecordedScene {
  public:
   /// The recorder must outlive the scene.
@@ -217,10 +219,14 @@ class WINNOW_API RecordedScene {
   void set_predicate(const PairPredicate& predicate) noexcept;
   Status refresh();
   Status collide(ContactLevel level, Contacts& contacts);
+  Status load(std::span<const std::byte> saved);
+  Status load_contacts(std::span<const std::byte> saved, Contacts& contacts);
   /// @}
 
  private:
   friend class RecordedQueries;
+  friend class RecordedSensors;
+  friend class RecordedSweep;
   RecordedScene(Recorder& recorder, const ShapePool& shapes, const SceneOptions& options,
                 const CompositePool* composites) noexcept;
   /// Which question left what contacts hold, and of which pairs it was.
@@ -252,6 +258,7 @@ class WINNOW_API RecordedScene {
   /// By id, in the recorder's memory.
   Column<RecordedShape> known_;
   std::uint32_t shapes_recorded_ = 0;
+  std::uint32_t sensors_recorded_ = 0;
   Asked asked_;
   /// Pairs that the predicate let pass, in the recorder's memory; null while there was none.
   PassedPairs* passed_ = nullptr;
@@ -313,6 +320,76 @@ class WINNOW_API RecordedQueries {
   SceneQueries queries_;
   /// Bodies that the predicate of the question let pass.
   Column<ObjectId> passed_;
+};
+
+/// A SceneSweep whose sweeps are recorded: see there for what each does.
+///
+///     winnow::RecordedSweep sweep(scene);  // a RecordedScene
+///     sweep.sweep(keys, end_poses);
+///     sweep->impacts();
+class WINNOW_API RecordedSweep {
+ public:
+  /// Looks at bodies of `scene`, which must outlive this. Every allocation comes from `memory`,
+  /// which must too, but for what is written.
+  explicit RecordedSweep(RecordedScene& scene, std::pmr::memory_resource* memory =
+                                                   std::pmr::get_default_resource()) noexcept;
+
+  /// What the last one answered.
+  [[nodiscard]] const SceneSweep* operator->() const noexcept { return &sweep_; }
+
+  /// As those of SceneSweep.
+  /// @{
+  Status sweep(std::span<const Key> keys, const PoseView& ends, const SweepOptions& options = {});
+  Status sweep(std::span<const Key> keys, std::span<const RigidMotion> motions,
+               const SweepOptions& options = {});
+  /// @}
+
+ private:
+  template <typename Put>
+  Status record(RecordedCall call, Status status, std::span<const Key> keys,
+                const SweepOptions& options, Put&& put);
+
+  RecordedScene& scene_;
+  SceneSweep sweep_;
+};
+
+/// Sensors whose calls are recorded: see there for what each does. Shapes are recorded as those of
+/// bodies are.
+///
+///     winnow::RecordedSensors sensors(scene);  // a RecordedScene
+///     sensors.add({.shape = ball, .pose = winnow::Pose::at(0, 0, 2)}, goal);
+///     sensors.sense();
+///     sensors->sensed();
+class WINNOW_API RecordedSensors {
+ public:
+  /// Senses bodies of `scene`, which must outlive this. Every allocation comes from `memory`, which
+  /// must too, but for what is written.
+  explicit RecordedSensors(RecordedScene& scene, std::pmr::memory_resource* memory =
+                                                     std::pmr::get_default_resource()) noexcept;
+  ~RecordedSensors();
+  RecordedSensors(const RecordedSensors&) = delete;
+  RecordedSensors& operator=(const RecordedSensors&) = delete;
+
+  /// The sensors themselves, for everything that is not recorded: what is sensed, what they are.
+  [[nodiscard]] const Sensors& operator*() const noexcept { return sensors_; }
+  /// The same.
+  [[nodiscard]] const Sensors* operator->() const noexcept { return &sensors_; }
+
+  /// As those of Sensors.
+  /// @{
+  Status add(const SensorDefinition& sensor, Key& key);
+  Status remove(Key key);
+  Status move(Key key, const Pose& pose);
+  Status set(Key key, const SensorDefinition& sensor);
+  Status sense();
+  /// @}
+
+ private:
+  void record(RecordedCall call, Key key, const SensorDefinition& sensor) noexcept;
+
+  RecordedScene& scene_;
+  std::uint32_t number_;
+  Sensors sensors_;
 };
 
 }  // namespace winnow

@@ -339,6 +339,7 @@ class WINNOW_API Scene {
   friend class Sensors;
   friend class RankScene;
   friend class RecordedScene;
+  friend struct ReplayState;
 
   /// Null where memory was refused.
   SceneState* state_;

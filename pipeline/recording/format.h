@@ -18,7 +18,7 @@ namespace winnow {
 
 inline constexpr std::string_view kRecordingMagic = "WINNOWRC";
 /// Written; all from the first on are read.
-inline constexpr std::uint32_t kRecordingVersion = 2;
+inline constexpr std::uint32_t kRecordingVersion = 3;
 /// Magic, version, and 4 bytes of 0.
 inline constexpr std::size_t kRecordingHeader = 16;
 /// Size of what follows, and its digest.
@@ -82,13 +82,27 @@ enum class RecordedCall : std::uint8_t {
   ask_least_distance,
   ask_overlaps,
   ask_nearest,
+
+  // From version 3 on.
+  load_scene,
+  load_contacts,
+  make_sensors,
+  end_sensors,
+  add_sensor,
+  remove_sensor,
+  move_sensor,
+  set_sensor,
+  sense,
+  sweep,
+  sweep_motions,
 };
 
 /// The last call of a version; none of one that is not known.
 [[nodiscard]] constexpr std::optional<RecordedCall> last_call_of(std::uint32_t version) noexcept {
   if (version == 1) return RecordedCall::set_layers_meet;
   if (version == 2) return RecordedCall::ask_nearest;
-  static_assert(kRecordingVersion == 2);
+  if (version == 3) return RecordedCall::sweep_motions;
+  static_assert(kRecordingVersion == 3);
   return std::nullopt;
 }
 
@@ -119,6 +133,12 @@ struct RecordedBody {
   std::uint64_t data;
 };
 static_assert(sizeof(RecordedBody) == 88);
+
+/// A shape as a snapshot names it, and its number in the recording.
+struct RecordedName {
+  std::uint32_t bits;
+  std::uint32_t number;
+};
 
 [[nodiscard]] inline RecordedPair as_recorded(const Pair& pair) noexcept {
   return {pair.first, pair.second};

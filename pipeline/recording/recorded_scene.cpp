@@ -1,4 +1,5 @@
 #include "core/memory/new_in.h"
+#include "core/memory/saved_keys.h"
 #include "pipeline/recording/composite_bytes.h"
 #include "pipeline/recording/contact_digest.h"
 #include "pipeline/recording/passed.h"
@@ -63,6 +64,20 @@ std::uint64_t digest_of(const ShapeTables& tables, ShapeId id) noexcept {
     }
   });
   return digest.value();
+}
+
+/// Ids of those that are live before and after, under the same stamp.
+void put_kept(CallWriter& call, std::span<const std::uint32_t> before,
+              std::span<const std::uint32_t> after) noexcept {
+  const auto for_kept = [&](auto&& visit) {
+    for_live(after, [&](ObjectId id) {
+      if (id < before.size() && before[id] == after[id]) visit(id);
+    });
+  };
+  std::uint64_t count = 0;
+  for_kept([&](ObjectId) { ++count; });
+  call.put(count);
+  for_kept([&](ObjectId id) { call.put(id); });
 }
 
 /// Of a shape that is not what it was.
@@ -289,14 +304,7 @@ Status RecordedScene::move(Key key, const Pose& pose) {
 Status RecordedScene::move(std::span<const Key> keys, const PoseView& poses) {
   const Status status = scene_.move(keys, poses);
   if (status != Status::ok) return status;
-  CallWriter call(recorder_, RecordedCall::move, world_);
-  const bool turns = poses.has_orientations();
-  call.put_ids(keys).put(turns).put(std::uint64_t{poses.count * (turns ? 7U : 3U)});
-  for (std::size_t i = 0; i < poses.count; ++i) {
-    const Pose pose = poses[i];
-    call.put_bytes(pose.position, sizeof pose.position);
-    if (turns) call.put_bytes(pose.orientation, sizeof pose.orientation);
-  }
+  CallWriter(recorder_, RecordedCall::move, world_).put_ids(keys).put_poses(poses);
   return status;
 }
 
@@ -434,6 +442,45 @@ Status RecordedScene::collide(ContactLevel level, Contacts& contacts) {
   CallWriter call(recorder_, RecordedCall::collide, world_);
   call.put(level).put(continues);
   call.put(digest_of_answers(contacts).value());
+  return status;
+}
+
+// The snapshot has shapes by their ids here, which the recording knows by its numbers, and keys
+// that are others where it is played: of bodies that had them before, as sensors remember, it is
+// told that they keep them. Contacts are of another scene from then on, and all pairs are asked
+// about anew.
+Status RecordedScene::load(std::span<const std::byte> saved) {
+  if (recorder_ == nullptr || scene_.state_ == nullptr) return scene_.load(saved);
+  Column<std::uint32_t> before(scene_.state_->options.memory);
+  const std::span<const std::uint32_t> stamps = scene_.state_->keys.stamps();
+  if (!before.resize(stamps.size())) return Status::out_of_memory;
+  std::copy(stamps.begin(), stamps.end(), before.begin());
+  const Status status = scene_.load(saved);
+  if (status != Status::ok) return status;
+  asked_ = {};
+  if (passed_ != nullptr) passed_->pairs.clear();
+  if (scene_.state_->options.seamless_floors) refuse(Status::unsupported);
+  follow_composites();
+  for_live(scene_.state_->keys.stamps(),
+           [&](ObjectId body) { (void)number_of(scene_.state_->shape[body]); });
+  CallWriter call(recorder_, RecordedCall::load_scene, world_);
+  call.put_array(saved);
+  const auto count = std::count_if(known_.begin(), known_.end(), [](const RecordedShape& shape) {
+    return shape.number != kForgotten;
+  });
+  call.put(static_cast<std::uint64_t>(count));
+  for (const RecordedShape& shape : known_) {
+    if (shape.number != kForgotten) call.put(shape.id.bits).put(shape.number);
+  }
+  put_kept(call, {before.data(), before.size()}, scene_.state_->keys.stamps());
+  return status;
+}
+
+Status RecordedScene::load_contacts(std::span<const std::byte> saved, Contacts& contacts) {
+  const Status status = scene_.load_contacts(saved, contacts);
+  if (status != Status::ok) return status;
+  asked_ = asked_as(contacts);
+  CallWriter(recorder_, RecordedCall::load_contacts, world_).put_array(saved);
   return status;
 }
 

@@ -67,6 +67,17 @@ class CallWriter {
   }
   /// Keys by their ids.
   CallWriter& put_ids(std::span<const Key> keys) noexcept;
+  /// Whether there are orientations, and numbers, 7 or 3 a pose.
+  CallWriter& put_poses(const PoseView& poses) noexcept {
+    const bool turns = poses.has_orientations();
+    put(turns).put(std::uint64_t{poses.count * (turns ? 7U : 3U)});
+    for (std::size_t i = 0; i < poses.count; ++i) {
+      const Pose pose = poses[i];
+      put_bytes(pose.position, sizeof pose.position);
+      if (turns) put_bytes(pose.orientation, sizeof pose.orientation);
+    }
+    return *this;
+  }
   /// Leaves the call out, and ends the recording for a reason.
   void give_up(Status why) noexcept;
   /// A filter but for its predicate.

@@ -1,6 +1,7 @@
 #include "pipeline/recording/composite_bytes.h"
 #include "pipeline/recording/contact_digest.h"
 #include "pipeline/replay/replay_state.h"
+#include "pipeline/scene/scene_state.h"
 #include "pipeline/shapes/hull_bytes.h"
 
 #include <algorithm>
@@ -139,6 +140,12 @@ Status ReplayState::change_scene(RecordedCall call, ReplayedWorld& of) {
       return pairs_passed(of);
     case RecordedCall::composites_changed:
       return change_composites(*of.composites);
+    case RecordedCall::load_scene:
+      return load_scene(of);
+    case RecordedCall::load_contacts: {
+      const std::span<const std::byte> saved = in.get_nested();
+      return in.ok() ? scene.load_contacts(saved, of.contacts) : reading();
+    }
     default:
       return collide(of);
   }
@@ -271,22 +278,44 @@ Status ReplayState::add_bodies(ReplayedWorld& of) {
   return of.scene->add({bodies.data(), bodies.size()}, std::span<Key>(keys.data(), keys.size()));
 }
 
-Status ReplayState::move(ReplayedWorld& of) {
-  if (!read_keys(*of.scene)) return reading();
+bool ReplayState::read_poses(std::size_t count, PoseView& poses) {
   const bool turns = in.get_bool();
-  if (!in.get_array(doubles)) return reading();
+  if (!in.get_array(doubles)) return false;
   const std::size_t width = turns ? 7 : 3;
-  if (doubles.size() != keys.size() * width) return Status::size_mismatch;
-  const std::size_t stride = width * sizeof(double);
+  if (doubles.size() != count * width) return in.fail();
   const double* const at = doubles.data();
+  poses = {};
+  poses.count = count;
+  poses.position_stride = poses.orientation_stride = width * sizeof(double);
+  if (at == nullptr) return true;
+  poses.position = {at, at + 1, at + 2};
+  if (turns) poses.orientation = {at + 3, at + 4, at + 5, at + 6};
+  return true;
+}
+
+Status ReplayState::move(ReplayedWorld& of) {
   PoseView given;
-  given.count = keys.size();
-  given.position_stride = given.orientation_stride = stride;
-  if (at != nullptr) {
-    given.position = {at, at + 1, at + 2};
-    if (turns) given.orientation = {at + 3, at + 4, at + 5, at + 6};
-  }
+  if (!read_keys(*of.scene) || !read_poses(keys.size(), given)) return reading();
   return of.scene->move(std::span<const Key>(keys.data(), keys.size()), given);
+}
+
+/// Of the recorded scene's snapshot, and what its shapes are here.
+Status ReplayState::load_scene(ReplayedWorld& of) {
+  const std::span<const std::byte> saved = in.get_nested();
+  Column<RecordedName> recorded(options.memory);
+  Column<SavedNames::Name> names(options.memory);
+  if (!in.get_array(recorded) || !in.get_array(ids)) return reading();
+  if (!names.resize(recorded.size())) return Status::out_of_memory;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (recorded[i].number >= of.shape_ids.size()) return Status::invalid_argument;
+    names[i] = {ShapeId{recorded[i].bits}, of.shape_ids[recorded[i].number]};
+  }
+  std::sort(names.begin(), names.end(), [](const SavedNames::Name& a, const SavedNames::Name& b) {
+    return a.saved.bits < b.saved.bits;
+  });
+  if (of.scene->state_ == nullptr) return Status::out_of_memory;
+  const SavedNames all{{names.data(), names.size()}, {ids.data(), ids.size()}};
+  return winnow::load_scene(*of.scene->state_, saved, &all);
 }
 
 Status ReplayState::pairs_passed(ReplayedWorld& of) {

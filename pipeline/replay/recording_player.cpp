@@ -38,6 +38,8 @@ ReplayState::ReplayState(std::span<const std::byte> bytes, const ReplayOptions& 
       shape_rays(given.memory),
       planes(given.memory),
       numbers(given.memory),
+      motions(given.memory),
+      flags(given.memory),
       filter(given.memory) {
   status = check();
 }
@@ -124,7 +126,10 @@ Status ReplayState::play_world(RecordedCall call, std::uint32_t number) {
   if (call == RecordedCall::make_scene) return make_scene(*of);
   if (call > RecordedCall::make_scene) {
     if (!of->scene) return Status::invalid_argument;
-    return call < RecordedCall::ask_ray ? change_scene(call, *of) : ask_scene(call, *of);
+    if (call >= RecordedCall::sweep) return sweep(call, *of);
+    if (call >= RecordedCall::make_sensors) return play_sensors(call, *of);
+    const bool asks = call >= RecordedCall::ask_ray && call < RecordedCall::load_scene;
+    return asks ? ask_scene(call, *of) : change_scene(call, *of);
   }
   if (call != RecordedCall::make_partition && !of->partition) return Status::invalid_argument;
   return change_partition(call, *of);

@@ -2,6 +2,9 @@
 
 #include <winnow/pipeline/replay.h>
 #include <winnow/pipeline/scene_queries.h>
+#include <winnow/pipeline/scene_sweep.h>
+#include <winnow/pipeline/sensors.h>
+#include "core/memory/new_in.h"
 #include "pipeline/replay/call_reader.h"
 
 #include <array>
@@ -16,6 +19,15 @@ struct AskedPairs {
   PairBuffer pairs;
   PairEvents events;
   std::uint64_t number = 0;  // of the question; 0: none
+};
+
+/// Sensors that are played.
+struct ReplayedSensors {
+  ReplayedSensors(Scene& scene, std::pmr::memory_resource* memory) noexcept
+      : sensors(scene, memory), keys(memory) {}
+
+  Sensors sensors;
+  Column<Key> keys;  // by id
 };
 
 /// A partition or a scene that is played, and what its questions are answered into.
@@ -34,7 +46,13 @@ struct ReplayedWorld {
         objects(memory),
         shape_ids(memory),
         passed(memory),
-        contacts(memory) {}
+        contacts(memory),
+        sensors(memory) {}
+  ~ReplayedWorld() {
+    for (ReplayedSensors* const one : sensors) delete_in(sensors.memory(), one);
+  }
+  ReplayedWorld(const ReplayedWorld&) = delete;
+  ReplayedWorld& operator=(const ReplayedWorld&) = delete;
 
   std::optional<Partition> partition;
   std::array<AskedPairs, kAskedPairs> asked;  // those of the last questions at least
@@ -50,6 +68,8 @@ struct ReplayedWorld {
   Column<ShapeId> shape_ids;  // by the number in the recording
   Column<Pair> passed;        // by the predicate in the next question; sorted
   Contacts contacts;
+  std::optional<SceneSweep> sweep;
+  Column<ReplayedSensors*> sensors;  // by their numbers; null if they are gone
 };
 
 /// What became of a call.
@@ -99,7 +119,14 @@ struct ReplayState {
   [[nodiscard]] Status move(ReplayedWorld& of);
   [[nodiscard]] Status collide(ReplayedWorld& of);
   [[nodiscard]] Status pairs_passed(ReplayedWorld& of);
+  [[nodiscard]] Status load_scene(ReplayedWorld& of);
   [[nodiscard]] bool read_keys(const Scene& of);
+  [[nodiscard]] bool read_poses(std::size_t count, PoseView& poses);
+
+  // Of sensors and sweeps (play_sensors.cpp).
+  [[nodiscard]] Status play_sensors(RecordedCall call, ReplayedWorld& of);
+  [[nodiscard]] Status change_sensor(RecordedCall call, ReplayedWorld& of, ReplayedSensors& all);
+  [[nodiscard]] Status sweep(RecordedCall call, ReplayedWorld& of);
 
   // Of questions to scenes (play_queries.cpp).
   [[nodiscard]] Status ask_scene(RecordedCall call, ReplayedWorld& of);
@@ -153,6 +180,8 @@ struct ReplayState {
   Column<ShapeRay> shape_rays;
   Column<Plane> planes;
   Column<std::uint32_t> numbers;
+  Column<RigidMotion> motions;
+  Column<std::uint8_t> flags;
   RecordedFilter filter;
 };
 

@@ -124,8 +124,8 @@ void put_scene(ByteWriter& out, const SceneState& scene) noexcept {
 /// Reads a scene into a state that has no bodies; its keys are read beside, to be restored last.
 class SceneReader {
  public:
-  SceneReader(ByteReader& in, SceneState& scene, ReadKeys& keys) noexcept
-      : in_(in), scene_(scene), keys_(keys) {}
+  SceneReader(ByteReader& in, SceneState& scene, ReadKeys& keys, const SavedNames* names) noexcept
+      : in_(in), scene_(scene), keys_(keys), names_(names) {}
 
   [[nodiscard]] Status run() {
     if (!scene_.options_are_good) return Status::invalid_argument;
@@ -165,6 +165,10 @@ class SceneReader {
     scene_.is_stale.set_size(slots);
     std::fill(scene_.is_stale.begin(), scene_.is_stale.end(), std::uint8_t{0});
     bool good = in_.ok();
+    if (names_ != nullptr) {
+      for_live(keys_.all_stamps(),
+               [&](ObjectId body) { scene_.shape[body] = names_->now(scene_.shape[body]); });
+    }
     for_live(keys_.all_stamps(), [&](ObjectId body) {
       good = good && scene_.motion[body] <= Motion::sleeping &&
              scene_.check(scene_.shape[body], scene_.pose[body]) == Status::ok &&
@@ -249,7 +253,20 @@ class SceneReader {
   ByteReader& in_;
   SceneState& scene_;
   ReadKeys& keys_;
+  const SavedNames* names_;
 };
+
+/// Gives bodies the keys that they have in this scene where these are kept, and else others.
+void rename(ReadKeys& keys, const KeyTable& present, std::span<const ObjectId> kept) noexcept {
+  const std::span<const std::uint32_t> now = present.stamps();
+  const std::size_t both = std::min(keys.stamps.size(), now.size());
+  for (std::size_t slot = 0; slot < both; ++slot) {
+    if ((keys.stamps[slot] & 1U) != 0) keys.stamps[slot] = (now[slot] + 2) | 1U;
+  }
+  for (const ObjectId id : kept) {
+    if (id < both && (keys.stamps[id] & now[id] & 1U) != 0) keys.stamps[id] = now[id];
+  }
+}
 
 /// Gives a scene all that another one was read to be. Room for the keys was made.
 void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexcept {
@@ -295,7 +312,9 @@ void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexce
   scene.statistics = {};
 }
 
-[[nodiscard]] Status load_into(SceneState& scene, std::span<const std::byte> saved) {
+}  // namespace
+
+Status load_scene(SceneState& scene, std::span<const std::byte> saved, const SavedNames* names) {
   ByteReader in = open_snapshot(saved, kSceneMagic, kSceneVersion);
   if (in.get<std::uint32_t>() != kShapeKinds) in.fail();
   SceneOptions options = scene.options;
@@ -304,17 +323,16 @@ void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexce
   auto* const read = new_in<SceneState>(options.memory, scene.shapes, options);
   if (read == nullptr) return Status::out_of_memory;
   ReadKeys keys(options.memory);
-  Status status = SceneReader(in, *read, keys).run();
+  Status status = SceneReader(in, *read, keys, names).run();
   if (status == Status::ok && !scene.keys.reserve_slots(keys.stamps.size())) {
     status = Status::out_of_memory;
   }
+  if (names != nullptr) rename(keys, scene.keys, names->kept);
   if (status == Status::ok) take_over(scene, *read, keys);
   delete_in(options.memory, read);
   return status == Status::ok || status == Status::out_of_memory ? status
                                                                  : Status::invalid_argument;
 }
-
-}  // namespace
 
 Status Scene::save(Column<std::byte>& out) const {
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::save");
@@ -326,7 +344,7 @@ Status Scene::save(Column<std::byte>& out) const {
 }
 
 Status Scene::load(std::span<const std::byte> saved) {
-  return logged(state_ == nullptr ? Status::out_of_memory : load_into(*state_, saved),
+  return logged(state_ == nullptr ? Status::out_of_memory : load_scene(*state_, saved, nullptr),
                 "Scene::load");
 }
 

@@ -215,4 +215,27 @@ struct SceneState {
   void ask_again() noexcept;
 };
 
+/// What shapes and bodies of a snapshot are called where it is played.
+struct SavedNames {
+  struct Name {
+    ShapeId saved;
+    ShapeId now;
+  };
+  std::span<const Name> by_saved;  ///< ascending by the bits of `saved`
+  /// Ids of bodies that had the same keys before; keys of all others are new ones.
+  std::span<const ObjectId> kept;
+
+  /// No shape of one that is not among them.
+  [[nodiscard]] ShapeId now(ShapeId saved) const noexcept {
+    const auto at = std::lower_bound(
+        by_saved.begin(), by_saved.end(), saved.bits,
+        [](const Name& name, std::uint32_t bits) { return name.saved.bits < bits; });
+    return at != by_saved.end() && at->saved == saved ? at->now : ShapeId{};
+  }
+};
+
+/// As Scene::load; with names, of what is called otherwise here.
+[[nodiscard]] Status load_scene(SceneState& scene, std::span<const std::byte> saved,
+                                const SavedNames* names);
+
 }  // namespace winnow

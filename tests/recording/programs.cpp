@@ -349,6 +349,72 @@ void ask_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filte
 
 }  // namespace
 
+namespace {
+
+/// Sensors of many shapes that come, move, change and go, and what they sense.
+class Watch {
+ public:
+  Watch(RecordedScene& scene, std::span<const ShapeId> shapes) : sensors_(scene), shapes_(shapes) {}
+
+  void look(const SceneWorld& world, int frame) {
+    Key key;
+    const SensorDefinition sensor{
+        .shape = shapes_[static_cast<std::size_t>(frame) % shapes_.size()],
+        .pose = world.bodies[0].pose,
+        .filter = {1, frame % 2 == 0 ? ~0U : 2U, 0},
+        .carrier = world.keys[0],
+        .data = static_cast<ClientData>(frame)};
+    EXPECT_EQ(sensors_.add(sensor, key), Status::ok);
+    keys_.push_back(key);
+    EXPECT_EQ(sensors_.move(keys_.front(), world.bodies[1].pose), Status::ok);
+    if (frame % 3 == 1) {
+      EXPECT_EQ(sensors_.set(keys_.back(), {.shape = shapes_[0]}), Status::ok);
+    }
+    if (frame % 3 == 2) {
+      EXPECT_EQ(sensors_.remove(keys_.front()), Status::ok);
+      keys_.erase(keys_.begin());
+    }
+    EXPECT_EQ(sensors_.sense(), Status::ok);
+    sensed += sensors_->sensed().size();
+  }
+
+  std::size_t sensed = 0;
+
+ private:
+  RecordedSensors sensors_;
+  std::span<const ShapeId> shapes_;
+  std::vector<Key> keys_;
+};
+
+/// What bodies meet on their way along x, by their ends and by motions; some are bullets.
+void sweep_all(RecordedSweep& sweep, const SceneWorld& world, bool by_motions) {
+  std::vector<Pose> ends;
+  std::vector<RigidMotion> motions;
+  std::vector<std::uint8_t> bullets;
+  for (const BodyDefinition& body : world.bodies) {
+    Pose end = body.pose;
+    end.position[0] += 0.4;
+    ends.push_back(end);
+    motions.push_back(RigidMotion::between(body.pose, end));
+    bullets.push_back(bullets.size() % 3 == 0 ? 1 : 0);
+  }
+  const SweepOptions options{SweepPairs::bullets_and_fixed, bullets, 1e-5, false, by_motions};
+  EXPECT_EQ(by_motions ? sweep.sweep(world.keys, motions, options) : sweep.sweep(world.keys, ends),
+            Status::ok);
+}
+
+/// The scene and its contacts as they stood, once more.
+void load_again(RecordedScene& scene, Contacts& contacts) {
+  Column<std::byte> bodies(std::pmr::get_default_resource());
+  Column<std::byte> touching(std::pmr::get_default_resource());
+  EXPECT_EQ(scene->save(bodies), Status::ok);
+  EXPECT_EQ(scene->save_contacts(contacts, touching), Status::ok);
+  EXPECT_EQ(scene.load({bodies.data(), bodies.size()}), Status::ok);
+  EXPECT_EQ(scene.load_contacts({touching.data(), touching.size()}, contacts), Status::ok);
+}
+
+}  // namespace
+
 void record_scene(Recorder& recorder, std::size_t count, int frames, const SceneOptions& options) {
   SceneWorld world(count);
   const HalfSpaceShape ground{{0.1, -0.2, 0.7}, -1.0};
@@ -370,6 +436,9 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
   EXPECT_EQ(scene.add({.shape = ground_id, .motion = Motion::fixed}, ground_key), Status::ok);
   Contacts contacts;
   RecordedQueries ask(scene);
+  RecordedSweep sweep(scene);
+  const ShapeId watching[] = {world.shapes[0], landscape.ids[0], round[0], landscape.ids[3]};
+  Watch watch(scene, watching);
   Wishes wishes;
   for (int frame = 0; frame < frames; ++frame) {
     world.stir(0.05);
@@ -384,7 +453,10 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
     const ShapeId by_frame[] = {world.shapes[1], round[1], landscape.ids[3], landscape.ids[0]};
     ask_all(ask, world, by_frame[frame % 4], frame % 2 == 0 ? Filter{} : wishes.bodies());
     const auto level = frame == 6 ? ContactLevel::distance : ContactLevel::manifold;
+    sweep_all(sweep, world, frame % 2 == 1);
     EXPECT_EQ(scene.collide(level, contacts), Status::ok);
+    watch.look(world, frame);
+    if (frame == 3 || frame == 5) load_again(scene, contacts);
     recorder.end_frame();
   }
 }

@@ -10,9 +10,11 @@
 #include <iterator>
 #include <thread>
 
+#include "pipeline/recording/format.h"
 #include "tests/recording/mutations.h"
 #include "tests/recording/programs.h"
 #include "tests/recording/version_1.h"
+#include "tests/recording/version_2.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 
@@ -364,14 +366,114 @@ Bytes8 as_version(Bytes8 bytes, std::uint32_t version) {
   return bytes;
 }
 
-TEST(ProgramRecordings, of_older_versions_are_played) {
-  const auto bytes = std::as_bytes(std::span(kVersion1));
+void expect_played(std::span<const unsigned char> recording, std::uint64_t calls,
+                   std::uint64_t frames) {
+  const auto bytes = std::as_bytes(recording);
   const Bytes8 old(bytes.begin(), bytes.end());
   expect_same_everywhere(old);
   RecordingPlayer player(old);
   EXPECT_EQ(player.play_all(), Status::ok);
-  EXPECT_EQ(player.calls(), 22U);
-  EXPECT_EQ(player.frames(), 1U);
+  EXPECT_EQ(player.calls(), calls);
+  EXPECT_EQ(player.frames(), frames);
+}
+
+TEST(ProgramRecordings, of_older_versions_are_played) {
+  expect_played(kVersion1, 22, 1);
+  expect_played(kVersion2, 23, 2);
+}
+
+/// Two spheres on a box, in a pool whose ids are none of a recording's numbers.
+struct Pile {
+  Pile() {
+    for (int i = 0; i < 5; ++i) (void)pool.add(SphereShape{9.0 + i});
+    ball = pool.add(SphereShape{0.5});
+    box = pool.add(BoxShape{{3.0, 3.0, 0.5}});
+  }
+  template <typename Scene>
+  void add_to(Scene& scene) {
+    const BodyDefinition bodies[] = {{.shape = box, .pose = Pose::at(0, 0, -0.5)},
+                                     {.shape = ball, .pose = Pose::at(0, 0, 0.45)},
+                                     {.shape = ball, .pose = Pose::at(0.8, 0, 0.45)}};
+    EXPECT_EQ(scene.add(bodies, keys), Status::ok);
+  }
+
+  ShapePool pool;
+  ShapeId ball;
+  ShapeId box;
+  Key keys[3];
+};
+
+TEST(ProgramRecordings, of_scenes_that_were_loaded_go_on_from_there) {
+  Pile pile;
+  Column<std::byte> bodies(std::pmr::get_default_resource());
+  Column<std::byte> touching(std::pmr::get_default_resource());
+  {
+    Scene before(pile.pool, {.carry_over = 0.05, .warm_start = true});
+    pile.add_to(before);
+    Contacts contacts;
+    ASSERT_EQ(before.collide(ContactLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(contacts.size(), 3U);
+    ASSERT_EQ(before.save(bodies), Status::ok);
+    ASSERT_EQ(before.save_contacts(contacts, touching), Status::ok);
+  }
+  Bytes8 bytes;
+  Recorder recorder(kept_in(bytes));
+  {
+    RecordedScene scene(recorder, pile.pool, {.carry_over = 0.05, .warm_start = true});
+    Key key;
+    ASSERT_EQ(scene.add({.shape = pile.ball}, key), Status::ok);
+    Contacts contacts;
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(scene.load({bodies.data(), bodies.size()}), Status::ok);
+    ASSERT_EQ(scene.load_contacts({touching.data(), touching.size()}, contacts), Status::ok);
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    EXPECT_EQ(contacts.size(), 3U);
+    EXPECT_EQ(contacts.carried(), 3U);
+    EXPECT_EQ(contacts.event()[0], ContactEvent::persisted);
+    ASSERT_EQ(scene.load({bodies.data(), bodies.size()}), Status::ok);
+    ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    EXPECT_EQ(contacts.event()[0], ContactEvent::begun);
+    const std::byte none[4] = {};
+    EXPECT_EQ(scene.load(none), Status::invalid_argument);
+  }
+  ASSERT_EQ(recorder.close(), Status::ok);
+  expect_same_everywhere(bytes);
+}
+
+TEST(ProgramRecordings, of_sensors_and_sweeps_are_played_bit_for_bit) {
+  Pile pile;
+  Bytes8 bytes;
+  Recorder recorder(kept_in(bytes));
+  {
+    RecordedScene scene(recorder, pile.pool);
+    pile.add_to(scene);
+    RecordedSweep sweep(scene);
+    const Pose end[] = {Pose::at(0.2, 0, 3.0)};
+    ASSERT_EQ(sweep.sweep(std::span(pile.keys + 2, 1), end), Status::ok);
+    EXPECT_GT(sweep->impacts().size(), 0U);
+    EXPECT_EQ(sweep.sweep(pile.keys, end), Status::size_mismatch);
+    RecordedSensors sensors(scene);
+    {
+      RecordedSensors others(scene);
+      Key key;
+      ASSERT_EQ(others.add({.shape = pile.ball, .carrier = pile.keys[1]}, key), Status::ok);
+      EXPECT_EQ(others.move(Key{}, Pose::at(0, 0, 0)), Status::invalid_key);
+      ASSERT_EQ(others.sense(), Status::ok);
+      EXPECT_EQ(others->sensed().size(), 2U);
+      ASSERT_EQ(others.move(key, Pose::at(9, 9, 9)), Status::ok);
+      ASSERT_EQ(others.sense(), Status::ok);
+      EXPECT_EQ(others->left().size(), 2U);
+    }
+    Key key;
+    ASSERT_EQ(sensors.add({.shape = pile.box}, key), Status::ok);
+    ASSERT_EQ(sensors.sense(), Status::ok);
+    EXPECT_EQ(sensors->sensed().size(), 3U);
+  }
+  ASSERT_EQ(recorder.close(), Status::ok);
+  expect_same_everywhere(bytes);
+  RecordingPlayer player(bytes);
+  EXPECT_EQ(player.play_all(), Status::ok);
+  EXPECT_EQ(player.questions(), 4U + 2U);  // with the two shapes
 }
 
 TEST(ProgramRecordings, of_other_versions_are_refused_and_so_is_what_only_newer_ones_have) {
@@ -380,14 +482,16 @@ TEST(ProgramRecordings, of_other_versions_are_refused_and_so_is_what_only_newer_
     Recorder recorder(kept_in(asking));
     record_scene(recorder, 40, 1, {.margin = 0.02});
   }
-  for (const std::uint32_t version : {0U, 3U, ~0U}) {
+  for (const std::uint32_t version : {0U, kRecordingVersion + 1, ~0U}) {
     const Bytes8 bytes = as_version(asking, version);
     EXPECT_EQ(RecordingPlayer(bytes).status(), Status::invalid_argument);
   }
-  const Bytes8 too_old = as_version(asking, 1);
-  RecordingPlayer player(too_old);
-  EXPECT_EQ(player.play_all(), Status::invalid_argument);
-  EXPECT_GT(player.calls(), 0U);
+  for (const std::uint32_t too_old : {1U, 2U}) {
+    const Bytes8 bytes = as_version(asking, too_old);
+    RecordingPlayer player(bytes);
+    EXPECT_EQ(player.play_all(), Status::invalid_argument);
+    EXPECT_GT(player.calls(), 0U);
+  }
 }
 
 TEST(ProgramRecordings, stand_in_files) {

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <winnow/pipeline/scene_sweep.h>
+#include <winnow/pipeline/sensors.h>
+#include "pipeline/recording/query_digest.h"
+
+namespace winnow {
+
+/// All that a sweep has found; of keys the ids.
+inline void add_to(Digest& digest, const SceneSweep& sweep) noexcept {
+  for (const SceneImpact& impact : sweep.impacts()) {
+    digest.add(std::uint64_t{impact.a.id} << 32U | impact.b.id);
+    digest.add(impact.data_a);
+    digest.add(impact.data_b);
+    digest.add(std::uint64_t{impact.part_a} << 32U | impact.part_b);
+    digest.add(impact.time);
+    digest.add(impact.gap);
+    digest.add(impact.error_bound);
+    add_to(digest, impact.normal);
+    add_to(digest, impact.point);
+  }
+  digest.add(std::uint64_t{sweep.impacts().size()});
+  digest.add_array(sweep.first());
+}
+
+/// All that is sensed, and what has left; of keys the ids.
+inline void add_to(Digest& digest, const Sensors& sensors) noexcept {
+  for (const SensedBody& in : sensors.sensed()) {
+    digest.add(std::uint64_t{in.sensor.id} << 32U | in.body.id);
+    digest.add(in.sensor_data);
+    digest.add(in.body_data);
+    digest.add(static_cast<std::uint64_t>(in.event));
+  }
+  digest.add(std::uint64_t{sensors.sensed().size()});
+  for (const LeftSensor& out : sensors.left()) {
+    digest.add(std::uint64_t{out.sensor.id} << 32U | out.body.id);
+    digest.add(out.sensor_data);
+    digest.add(out.body_data);
+  }
+  digest.add(std::uint64_t{sensors.left().size()});
+}
+
+}  // namespace winnow
