@@ -15,8 +15,9 @@
 namespace winnow {
 
 namespace mid {
+class IdSet;
 struct Composites;
-}
+}  // namespace mid
 
 /// A shape and where it stands in its compound.
 struct CompoundChild {
@@ -89,6 +90,19 @@ class WINNOW_API CompositePool final : public MidPhase {
   /// True for ids of surfaces that were told so.
   [[nodiscard]] bool is_one_sided(ShapeId surface) const noexcept;
 
+  /// Gives a mesh an inside, or takes it away again. Questions that ask for distances and overlaps
+  /// (SceneQueries::overlap, overlaps, distance, least_distance and nearest) then take what lies
+  /// within for a part of the solid: of a point or a shape that is held without meeting the surface
+  /// the distance is that from the surface, negative. Contacts, sensors, rays and casts are those
+  /// of the surface, as of any mesh. The id's own, as what `set_one_sided` says; children of
+  /// compounds have it, too. `invalid_key` for an id that is none of a mesh; `invalid_shape` unless
+  /// every edge is that of two triangles, which run along it in opposite ways (vertices at the same
+  /// place count as one), and corners run counter-clockwise seen from outside, whatever a scale
+  /// mirrors. What is refitted stays a solid: it is to stay closed. O(n log n).
+  Status set_solid(ShapeId mesh, bool solid = true);
+  /// True for ids of meshes that were told so.
+  [[nodiscard]] bool is_solid(ShapeId mesh) const noexcept;
+
   /// Appends all shapes, and which places are free, to bytes; pipeline/CONTRACT.md has the format.
   /// `out_of_memory` leaves `out` as it was. O(bytes).
   Status save(Column<std::byte>& out) const;
@@ -140,11 +154,15 @@ class WINNOW_API CompositePool final : public MidPhase {
                    const PrimitivePairVisitor& visitor) const override;
   bool visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b, double limit,
                         const NearPairVisitor& visitor) const override;
+  [[nodiscard]] bool holds(ShapeId id, const Pose& pose, const double point[3]) const override;
+  [[nodiscard]] bool holds(ShapeId id, const Pose& pose, ShapeId other,
+                           const Pose& other_pose) const override;
   /// Meshes, fields, compounds and what the pool itself holds, all under the resource it was given.
   [[nodiscard]] Footprint footprint() const noexcept override;
 
  private:
   [[nodiscard]] bool can_be_child(ShapeId id) const noexcept;
+  [[nodiscard]] Status tell(mid::IdSet& set, ShapeId surface, bool now) noexcept;
   /// Null if memory is refused. Made by the first shape, so that a pool without any takes no
   /// memory.
   [[nodiscard]] mid::Composites* state() noexcept;

@@ -211,6 +211,21 @@ class WINNOW_API MidPhase {
   virtual bool visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
                                 double limit, const NearPairVisitor& visitor) const = 0;
 
+  /// True if a solid (see CompositePool::set_solid), or one in a compound, holds a point of the
+  /// world. Ids and poses are valid.
+  [[nodiscard]] virtual bool holds(ShapeId id, const Pose& pose, const double point[3]) const {
+    (void)id, (void)pose, (void)point;
+    return false;
+  }
+  /// The same of a point of another shape, convex or not: of one in each child of a compound, and
+  /// of one corner of a surface. Shapes in one piece whose surface does not meet that of the solid
+  /// are held as a whole, or not at all.
+  [[nodiscard]] virtual bool holds(ShapeId id, const Pose& pose, ShapeId other,
+                                   const Pose& other_pose) const {
+    (void)id, (void)pose, (void)other, (void)other_pose;
+    return false;
+  }
+
   /// Everything it holds, to the byte what its resource gave.
   [[nodiscard]] virtual Footprint footprint() const noexcept = 0;
 };

@@ -3,6 +3,7 @@
 #include "core/hooks/stage_scope.h"
 #include "core/memory/new_in.h"
 #include "pipeline/composites/composites.h"
+#include "pipeline/composites/solids.h"
 #include "pipeline/mesh/mesh_view.h"
 #include "pipeline/shapes/extent.h"
 
@@ -96,7 +97,8 @@ Composites::Composites(const ShapePool& pool, std::pmr::memory_resource* resourc
       meshes(resource),
       fields(resource),
       compounds(resource),
-      one_sided(resource) {}
+      one_sided(resource),
+      solid(resource) {}
 
 Composites::~Composites() {
   for (const MeshEntry& entry : meshes.entries) {
@@ -363,19 +365,29 @@ Status CompositePool::set_one_sided(ShapeId surface, bool one_sided) {
   if (!contains(surface) || surface.composite_kind() == CompositeKind::compound) {
     return Status::invalid_key;
   }
-  if (is_one_sided(surface) == one_sided) return Status::ok;
-  Column<std::uint32_t>& all = state_->one_sided;
-  std::uint32_t* const at = std::lower_bound(all.begin(), all.end(), surface.bits);
-  const std::ptrdiff_t place = at - all.begin();
-  if (one_sided) {
-    if (!all.push_back(surface.bits)) return Status::out_of_memory;
-    std::rotate(all.begin() + place, all.end() - 1, all.end());
-  } else {
-    std::copy(at + 1, all.end(), at);
-    all.set_size(all.size() - 1);
-  }
+  return tell(state_->one_sided, surface, one_sided);
+}
+
+Status CompositePool::tell(mid::IdSet& set, ShapeId surface, bool now) noexcept {
+  if (set.has(surface) == now) return Status::ok;
+  if (!now) set.remove(surface);
+  if (now && !set.add(surface)) return Status::out_of_memory;
   ++state_->revision;
   return Status::ok;
+}
+
+Status CompositePool::set_solid(ShapeId id, bool solid) {
+  const TriangleMesh* const triangles = mesh(id);
+  if (triangles == nullptr) return Status::invalid_key;
+  if (solid && !is_solid(id)) {
+    const Status status = mid::check_solid(view_of(*triangles), memory_);
+    if (status != Status::ok) return status;
+  }
+  return tell(state_->solid, id, solid);
+}
+
+bool CompositePool::is_solid(ShapeId id) const noexcept {
+  return contains(id) && state_->is_solid(id);
 }
 
 bool CompositePool::is_one_sided(ShapeId surface) const noexcept {
@@ -385,7 +397,8 @@ bool CompositePool::is_one_sided(ShapeId surface) const noexcept {
 Status CompositePool::remove(ShapeId id) {
   if (!contains(id)) return Status::invalid_key;
   if (state_->is_child(id)) return Status::invalid_argument;
-  if (is_one_sided(id)) (void)set_one_sided(id, false);
+  if (is_one_sided(id)) state_->one_sided.remove(id);
+  if (is_solid(id)) state_->solid.remove(id);
   switch (id.composite_kind()) {
     case CompositeKind::mesh:
       state_->release(state_->mesh(id)->shared);
@@ -500,6 +513,15 @@ bool CompositePool::visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, c
          mid::visit_near_pairs(*state_, a, pose_a, b, pose_b, limit, visitor);
 }
 
+bool CompositePool::holds(ShapeId id, const Pose& pose, const double point[3]) const {
+  return contains(id) && mid::holds(*state_, id, pose, point);
+}
+
+bool CompositePool::holds(ShapeId id, const Pose& pose, ShapeId other,
+                          const Pose& other_pose) const {
+  return contains(id) && mid::holds(*state_, id, pose, other, other_pose);
+}
+
 Footprint CompositePool::footprint() const noexcept {
   Footprint footprint;
   if (state_ == nullptr) return footprint;
@@ -512,7 +534,8 @@ Footprint CompositePool::footprint() const noexcept {
   footprint.keys += state_->fields.free.bytes();
   footprint.keys += state_->compounds.entries.bytes();
   footprint.keys += state_->compounds.free.bytes();
-  footprint.keys += state_->one_sided.bytes();
+  footprint.keys += state_->one_sided.bits().bytes();
+  footprint.keys += state_->solid.bits().bytes();
   for (const mid::SharedMesh* m = state_->first_mesh; m != nullptr; m = m->next) {
     add(sizeof(mid::SharedMesh));
     add_whole(m->mesh.footprint());

@@ -41,6 +41,10 @@ void put_children(ByteWriter& out, const mid::Compound& compound) {
   }
 }
 
+void put_ids(ByteWriter& out, const mid::IdSet& ids) {
+  out.put_array(std::span<const std::uint32_t>(ids.bits().data(), ids.bits().size()));
+}
+
 void put_composites(ByteWriter& out, const mid::Composites& all,
                     Column<const mid::SharedMesh*>& known) {
   put_places(out, all.meshes.entries.size(), all.meshes.free);
@@ -54,7 +58,9 @@ void put_composites(ByteWriter& out, const mid::Composites& all,
   for (const mid::Compound* const compound : all.compounds.entries) {
     if (compound != nullptr) put_children(out, *compound);
   }
-  out.put_array(std::span<const std::uint32_t>(all.one_sided.data(), all.one_sided.size()));
+  put_ids(out, all.one_sided);
+  // Pools that have none are saved as they were before there were solids.
+  if (!all.solid.empty()) put_ids(out, all.solid);
 }
 
 /// A mesh with its first user, or a field, that `all` has no place for yet.
@@ -95,20 +101,24 @@ class CompositesReader {
       status = read_all(all_.compounds, static_cast<mid::Compound*>(nullptr),
                         [&] { return read_compound(); });
     }
-    if (status == Status::ok) read_one_sided();
+    if (status == Status::ok) {
+      read_ids(all_.one_sided, [](CompositeKind kind) { return kind != CompositeKind::compound; });
+    }
+    if (status == Status::ok && !in_.rest().empty()) {
+      read_ids(all_.solid, [](CompositeKind kind) { return kind == CompositeKind::mesh; });
+    }
     if (status == Status::ok && !in_.rest().empty()) in_.fail();
     return in_.ok() ? status : status_of(in_);
   }
 
  private:
-  void read_one_sided() {
-    if (!in_.get_array(all_.one_sided)) return;
+  template <typename IsOf>
+  void read_ids(mid::IdSet& ids, IsOf&& is_of) {
+    if (!in_.get_array(ids.bits())) return;
     std::uint32_t before = 0;
-    for (const std::uint32_t bits : all_.one_sided) {
-      const ShapeId surface{bits};
-      const bool is_surface =
-          pool_.contains(surface) && surface.composite_kind() != CompositeKind::compound;
-      if (!is_surface || bits <= before) in_.fail();
+    for (const std::uint32_t bits : ids.bits()) {
+      const ShapeId id{bits};
+      if (!pool_.contains(id) || !is_of(id.composite_kind()) || bits <= before) in_.fail();
       before = bits;
     }
   }

@@ -121,6 +121,40 @@ struct Places {
   [[nodiscard]] std::size_t size() const noexcept { return entries.size() - free.size(); }
 };
 
+/// Ids of shapes that were told something of, sorted.
+class IdSet {
+ public:
+  explicit IdSet(std::pmr::memory_resource* memory) noexcept : bits_(memory) {}
+
+  [[nodiscard]] bool empty() const noexcept { return bits_.empty(); }
+  [[nodiscard]] bool has(ShapeId id) const noexcept {
+    return !bits_.empty() && std::binary_search(bits_.begin(), bits_.end(), id.bits);
+  }
+  /// Adds an id that is not there. False if memory is refused.
+  [[nodiscard]] bool add(ShapeId id) noexcept {
+    const std::ptrdiff_t place = place_of(id);
+    if (!bits_.push_back(id.bits)) return false;
+    std::rotate(bits_.begin() + place, bits_.end() - 1, bits_.end());
+    return true;
+  }
+  /// Takes an id out that is there.
+  void remove(ShapeId id) noexcept {
+    std::uint32_t* const at = bits_.begin() + place_of(id);
+    std::copy(at + 1, bits_.end(), at);
+    bits_.set_size(bits_.size() - 1);
+  }
+  /// To be saved and read.
+  [[nodiscard]] Column<std::uint32_t>& bits() noexcept { return bits_; }
+  [[nodiscard]] const Column<std::uint32_t>& bits() const noexcept { return bits_; }
+
+ private:
+  [[nodiscard]] std::ptrdiff_t place_of(ShapeId id) const noexcept {
+    return std::lower_bound(bits_.begin(), bits_.end(), id.bits) - bits_.begin();
+  }
+
+  Column<std::uint32_t> bits_;
+};
+
 /// What a CompositePool holds.
 struct Composites {
   Composites(const ShapePool& pool, std::pmr::memory_resource* memory) noexcept;
@@ -131,9 +165,8 @@ struct Composites {
   [[nodiscard]] const MeshEntry* mesh(ShapeId id) const noexcept;
   [[nodiscard]] HeightField* field(ShapeId id) const noexcept;
   [[nodiscard]] const Compound* compound(ShapeId id) const noexcept;
-  [[nodiscard]] bool is_one_sided(ShapeId id) const noexcept {
-    return !one_sided.empty() && std::binary_search(one_sided.begin(), one_sided.end(), id.bits);
-  }
+  [[nodiscard]] bool is_one_sided(ShapeId id) const noexcept { return one_sided.has(id); }
+  [[nodiscard]] bool is_solid(ShapeId id) const noexcept { return solid.has(id); }
   [[nodiscard]] bool contains(ShapeId id) const noexcept {
     return mesh(id) != nullptr || field(id) != nullptr || compound(id) != nullptr;
   }
@@ -170,8 +203,8 @@ struct Composites {
   Places<MeshEntry> meshes;
   Places<HeightField*> fields;
   Places<Compound*> compounds;
-  /// Surfaces whose triangles have a front, sorted.
-  Column<std::uint32_t> one_sided;
+  IdSet one_sided;  ///< surfaces whose triangles have a front
+  IdSet solid;      ///< meshes that have an inside
   SharedMesh* first_mesh = nullptr;
   Compound* first_of_surfaces = nullptr;
   std::uint64_t revision = 0;

@@ -76,6 +76,14 @@ class PartTraversal {
     return shape.is_composite() ? composites_->radius(shape)
                                 : mid::radius_of(shapes_.tables(), shape);
   }
+  /// True if a solid holds a point of the other; see MidPhase::holds.
+  [[nodiscard]] bool holds(const PlacedShape& solid, const PlacedShape& other) const {
+    return solid.shape.is_composite() &&
+           composites_->holds(solid.shape, solid.pose, other.shape, other.pose);
+  }
+  [[nodiscard]] bool holds(const PlacedShape& solid, const double point[3]) const {
+    return solid.shape.is_composite() && composites_->holds(solid.shape, solid.pose, point);
+  }
   /// Contains the shape where it stands.
   [[nodiscard]] PreciseBox box(const PlacedShape& placed) const noexcept;
   [[nodiscard]] PreciseBox box(const ConvexPart& part) const noexcept;

@@ -133,10 +133,10 @@ void RecordedScene::refuse(Status why) noexcept {
 }
 
 // Not what another process does not have: meshes of another pool, functions; nor fronts of
-// surfaces.
+// surfaces and insides.
 bool RecordedScene::can_hold(ShapeId id) const noexcept {
   if (!id.is_composite()) return id.kind() != ShapeKind::support;
-  return composites_ != nullptr && !composites_->is_one_sided(id);
+  return composites_ != nullptr && !composites_->is_one_sided(id) && !composites_->is_solid(id);
 }
 
 RecordedShape* RecordedScene::find_shape(ShapeId id) noexcept {

@@ -43,10 +43,15 @@ struct Pairing {
   }
 };
 
-/// True if they share a point; `part` is then one of b that does.
-[[nodiscard]] inline bool do_overlap(const PartTraversal& parts, const PlacedShape& first,
-                                     const PlacedShape& second, std::uint32_t& part) noexcept {
-  const Pairing pair(first, second);
+/// True if one is a solid that holds the other, as far as a point of it tells.
+[[nodiscard]] inline bool any_holds(const PartTraversal& parts, const PlacedShape& a,
+                                    const PlacedShape& b) noexcept {
+  return parts.holds(a, b) || parts.holds(b, a);
+}
+
+/// True if they share a point of what they are made of; `part` is then one of b that does.
+[[nodiscard]] inline bool do_parts_overlap(const PartTraversal& parts, const Pairing& pair,
+                                           std::uint32_t& part) noexcept {
   bool found = false;
   auto look = [&](const ConvexPart& a, const ConvexPart& b) {
     found =
@@ -69,6 +74,16 @@ struct Pairing {
   return found;
 }
 
+/// True if they share a point; `part` is then one of b that does, or all of a solid that holds a,
+/// or that a holds.
+[[nodiscard]] inline bool do_overlap(const PartTraversal& parts, const PlacedShape& first,
+                                     const PlacedShape& second, std::uint32_t& part) noexcept {
+  const Pairing pair(first, second);
+  if (do_parts_overlap(parts, pair, part)) return true;
+  part = kWholeShape;
+  return any_holds(parts, pair.a, pair.b);
+}
+
 /// The closest parts of two shapes, no farther apart than a limit.
 class ClosestParts {
  public:
@@ -78,6 +93,26 @@ class ClosestParts {
   bool find(const PlacedShape& first, const PlacedShape& second, double limit,
             SceneDistance& answer) noexcept {
     const Pairing pair(first, second);
+    const bool held = any_holds(parts_, pair.a, pair.b);
+    return find_parts(pair, held ? mid::kInfinity : limit, answer) &&
+           (!held || is_within(limit, answer));
+  }
+  /// The same for a part of nothing, such as a point.
+  bool find(ConvexPart first, PlacedShape second, double limit, SceneDistance& answer) noexcept {
+    double base[3] = {0.0, 0.0, 0.0};
+    if (second.shape.is_composite()) {
+      std::copy_n(first.pose.position, 3, base);
+      second.pose = relative(second.pose, base);
+      first.pose = relative(first.pose, base);
+    }
+    const bool held = parts_.holds(second, first.pose.position);
+    begin(base, held ? mid::kInfinity : limit, answer);
+    look_about(first, second);
+    return found_ && (!held || is_within(limit, answer));
+  }
+
+ private:
+  bool find_parts(const Pairing& pair, double limit, SceneDistance& answer) noexcept {
     begin(pair.base, limit, answer);
     std::fill_n(answer.normal, 3, 0.0);
     auto look_at = [&](const ConvexPart& a, const ConvexPart& b, double) {
@@ -94,20 +129,15 @@ class ClosestParts {
     }
     return found_;
   }
-  /// The same for a part of nothing, such as a point.
-  bool find(ConvexPart first, PlacedShape second, double limit, SceneDistance& answer) noexcept {
-    double base[3] = {0.0, 0.0, 0.0};
-    if (second.shape.is_composite()) {
-      std::copy_n(first.pose.position, 3, base);
-      second.pose = relative(second.pose, base);
-      first.pose = relative(first.pose, base);
+  /// Of one that a solid holds: apart from the surface is that deep below it. False if that is
+  /// beyond the limit.
+  [[nodiscard]] static bool is_within(double limit, SceneDistance& answer) noexcept {
+    if (answer.distance > 0.0) {
+      answer.distance = -answer.distance;
+      for (double& component : answer.normal) component = -component;
     }
-    begin(base, limit, answer);
-    look_about(first, second);
-    return found_;
+    return answer.distance <= limit;
   }
-
- private:
   void begin(const double* base, double limit, SceneDistance& answer) noexcept {
     found_ = false;
     limit_ = limit;

@@ -1,0 +1,208 @@
+// What lies within meshes that are solids.
+
+#include "pipeline/composites/solids.h"
+
+#include "pipeline/mesh/mesh_edges.h"
+#include "pipeline/mesh/mesh_rays.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace winnow::mid {
+namespace {
+
+[[nodiscard]] bool is_segment(const double (&corner)[3][3]) noexcept {
+  const auto same = [&](int i, int k) { return Vec::Map(corner[i]) == Vec::Map(corner[k]); };
+  return same(0, 1) || same(1, 2) || same(2, 0);
+}
+
+void read_corners(const MeshView& mesh, std::uint32_t slot, double (&corner)[3][3]) noexcept {
+  for (int k = 0; k < 3; ++k) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      corner[k][axis] = static_cast<double>(coordinate(mesh, mesh.corner[k][slot], axis));
+    }
+  }
+}
+
+/// Times the surface of a mesh runs around a point: 1 inside, 0 outside, and more where it covers
+/// itself. Everything in the mesh's own frame.
+class Winding {
+ public:
+  Winding(const PlacedBody& body, const Vec& at) noexcept : body_(body), at_(at) {
+    const Vec corner = body.bounds.min.cwiseAbs().cwiseMax(body.bounds.max.cwiseAbs());
+    slack_ = kRaySlack * (at.cwiseAbs().maxCoeff() + corner.maxCoeff());
+  }
+
+  /// A ray to any side leaves the solid once more than it enters it, if it begins inside. One that
+  /// meets an edge, or a triangle where that is in doubt, tells nothing: then another one does. On
+  /// the surface all are in doubt.
+  [[nodiscard]] bool is_inside() noexcept {
+    // To no side that edges are likely to share; the largest component is in [1/2, 1).
+    static constexpr double kWays[][3] = {{0.2718, 0.5312, 0.8147},    {-0.6180, 0.9134, -0.3090},
+                                          {0.9058, -0.1270, -0.4142},  {-0.3219, -0.7321, 0.6324},
+                                          {0.0975, 0.2785, -0.5469},   {-0.9575, -0.2113, 0.1576},
+                                          {0.4853, -0.8003, -0.14189}, {-0.1419, 0.4218, 0.9157}};
+    for (const double(&way)[3] : kWays) {
+      crossings_ = 0;
+      in_doubt_ = false;
+      shoot(way);
+      if (!in_doubt_) return crossings_ > 0;
+    }
+    return solid_angle() > 2.0 * std::numbers::pi;
+  }
+
+ private:
+  void shoot(const double (&way)[3]) noexcept {
+    SurfaceRays rays;
+    for (int axis = 0; axis < 3; ++axis) {
+      rays.ray.origin[axis][0] = at_[axis];
+      rays.ray.direction[axis][0] = way[axis];
+    }
+    rays.slack[0] = slack_;
+    rays.shift[0] = 0.0;
+    rays.stretch[0] = 1.0;
+    ray_ = rays[0];
+    const double limit = std::numeric_limits<double>::infinity();
+    mesh_rays(
+        *body_.mesh, rays, &limit, 1,
+        {[](void* context, std::uint32_t, const std::uint32_t* slots, std::uint32_t count,
+            double most) { return static_cast<Winding*>(context)->cross(slots, count, most); },
+         this});
+  }
+  /// Gives back the limit to go on with.
+  double cross(const std::uint32_t* slots, std::uint32_t count, double limit) noexcept {
+    for (std::uint32_t i = 0; i < count && !in_doubt_; ++i) {
+      double corner[3][3];
+      read_corners(*body_.mesh, slots[i], corner);
+      SurfaceHit hit;
+      const Crossing crossing =
+          cross_triangle(ray_, corner, 0.0, std::numeric_limits<double>::infinity(), hit);
+      in_doubt_ = crossing == Crossing::doubtful;
+      if (crossing == Crossing::found) crossings_ += leaves(corner) ? 1 : -1;
+    }
+    return in_doubt_ ? -1.0 : limit;
+  }
+  [[nodiscard]] bool leaves(const double (&corner)[3][3]) const noexcept {
+    const Vec at = Vec::Map(corner[0]);
+    const Vec normal = (Vec::Map(corner[1]) - at).cross(Vec::Map(corner[2]) - at);
+    return normal.dot(Vec::Map(ray_.direction)) > 0.0;
+  }
+
+  /// 4 pi times the winding number (van Oosterom, Strackee, "The solid angle of a plane triangle",
+  /// 1983). O(n).
+  [[nodiscard]] double solid_angle() const noexcept {
+    double sum = 0.0;
+    for (std::uint32_t slot = 0; slot < body_.mesh->triangle_count; ++slot) {
+      double corner[3][3];
+      read_corners(*body_.mesh, slot, corner);
+      const Vec a = Vec::Map(corner[0]) - at_;
+      const Vec b = Vec::Map(corner[1]) - at_;
+      const Vec c = Vec::Map(corner[2]) - at_;
+      const double lengths[3] = {a.norm(), b.norm(), c.norm()};
+      const double under = lengths[0] * lengths[1] * lengths[2] + a.dot(b) * lengths[2] +
+                           b.dot(c) * lengths[0] + c.dot(a) * lengths[1];
+      sum += 2.0 * std::atan2(a.dot(b.cross(c)), under);
+    }
+    return sum;
+  }
+
+  const PlacedBody& body_;
+  const Vec at_;
+  double slack_;
+  SurfaceRay ray_;
+  int crossings_ = 0;
+  bool in_doubt_ = false;
+};
+
+/// Of a mesh that is a solid; the point is in the world.
+[[nodiscard]] bool is_in_mesh(const PlacedBody& body, const Vec& point) noexcept {
+  const Vec own = body.to_local * (point - body.position);
+  const bool in_box = (own.array() >= body.bounds.min.array()).all() &&
+                      (own.array() <= body.bounds.max.array()).all();
+  return in_box && Winding(body, own).is_inside();
+}
+
+/// Calls look(child) for the children of a compound with surfaces, or the only body that there is,
+/// until it says true; gives back whether it did.
+template <typename Look>
+[[nodiscard]] bool any_body(const PlacedBody& body, Look&& look) {
+  if (!body.has_surfaces()) return look(body);
+  for (std::uint32_t i = 0; i < body.compound->count; ++i) {
+    if (look(body.child(i))) return true;
+  }
+  return false;
+}
+
+[[nodiscard]] bool is_in_solid(const PlacedBody& body, const Vec& point) noexcept {
+  return any_body(body, [&](const PlacedBody& one) {
+    return one.kind == PlacedBody::Kind::mesh && one.all.is_solid(one.id) && is_in_mesh(one, point);
+  });
+}
+
+/// A point of what is no compound with surfaces. False for what no solid holds: half-spaces, and
+/// triangles of holes.
+[[nodiscard]] bool find_point(const PlacedBody& body, std::uint32_t number, Vec& point) noexcept {
+  if (body.is_surface()) {
+    Corners corners{};
+    const bool found = body.corners(number, corners);
+    point = corners.first;
+    return found;
+  }
+  const PlacedPart part = body.part(number);
+  point = part.position + part.middle;
+  if (part.shape.kind() == ShapeKind::triangle) {
+    const TriangleShape& triangle = body.tables.triangles[part.shape.index()];
+    point = part.position + part.rotation * Vec::Map(triangle.vertex[0]);
+  }
+  return part.shape.kind() != ShapeKind::half_space;
+}
+
+/// One point of each body that another is made of: of a surface one corner, of other compounds one
+/// of each child.
+template <typename Look>
+[[nodiscard]] bool any_point(const PlacedBody& body, Look&& look) {
+  return any_body(body, [&](const PlacedBody& one) {
+    const std::uint32_t points = one.kind == PlacedBody::Kind::compound ? one.compound->count : 1;
+    for (std::uint32_t i = 0; i < points; ++i) {
+      Vec point;
+      if (find_point(one, i, point) && look(point)) return true;
+    }
+    return false;
+  });
+}
+
+}  // namespace
+
+Status check_solid(const MeshView& mesh, std::pmr::memory_resource* memory) noexcept {
+  Column<std::uint32_t> neighbours(memory);
+  if (!find_neighbours(mesh, neighbours)) return Status::out_of_memory;
+  Vec about = Vec::Zero();
+  double volume = 0.0;
+  for (std::uint32_t slot = 0; slot < mesh.triangle_count; ++slot) {
+    double corner[3][3];
+    read_corners(mesh, slot, corner);
+    if (is_segment(corner)) continue;
+    for (std::uint32_t edge = 0; edge < 3; ++edge) {
+      if ((neighbours[3 * slot + edge] & kSameWay) != 0) return Status::invalid_shape;
+    }
+    if (slot == 0) about = Vec::Map(corner[0]);
+    volume += (Vec::Map(corner[0]) - about)
+                  .dot((Vec::Map(corner[1]) - about).cross(Vec::Map(corner[2]) - about));
+  }
+  return volume > 0.0 ? Status::ok : Status::invalid_shape;
+}
+
+bool holds(const Composites& all, ShapeId id, const Pose& pose, const double point[3]) noexcept {
+  return !all.solid.empty() && is_in_solid(PlacedBody::at(all, id, pose), Vec::Map(point));
+}
+
+bool holds(const Composites& all, ShapeId id, const Pose& pose, ShapeId other,
+           const Pose& other_pose) noexcept {
+  if (all.solid.empty()) return false;
+  const PlacedBody solid = PlacedBody::at(all, id, pose);
+  return any_point(PlacedBody::at(all, other, other_pose),
+                   [&](const Vec& point) { return is_in_solid(solid, point); });
+}
+
+}  // namespace winnow::mid
