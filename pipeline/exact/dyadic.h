@@ -1,12 +1,15 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 namespace winnow {
 
 /// A number m * 2^e with integers m and e: what sums, differences and products of doubles are,
-/// without rounding, overflow or underflow. Digits of 64 bits, whose exponents are multiples of 64,
-/// so that sums need no shifts; zeros at both ends are dropped, so that small integers take one.
+/// without rounding, overflow or underflow. Short ones, of at most 125 bits, are such a pair: what
+/// comes of coordinates that are small integers times a power of two, or of two factors, stays one.
+/// The others have digits of 64 bits, whose exponents are multiples of 64, so that sums need no
+/// shifts; zeros at both ends are dropped.
 ///
 /// (Sums of doubles, as by Shewchuk 1997, would do for well scaled input; but a quaternion of a
 /// half turn from a library has components of 6e-17, and products of a dozen of them leave the
@@ -16,6 +19,20 @@ namespace winnow {
 /// that no result needs more (an operation that would leaves zero, never memory out of bounds).
 inline constexpr int kDyadicDigits = 96;
 
+/// The magnitude of a finite double, as magnitude * 2^exponent.
+struct DoubleParts {
+  explicit DoubleParts(double value) noexcept {
+    constexpr int kFraction = 52;
+    constexpr std::uint64_t kImplicit = std::uint64_t{1} << kFraction;
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    const int field = static_cast<int>(bits >> kFraction & 0x7FFU);
+    magnitude = (bits & (kImplicit - 1)) | (field != 0 ? kImplicit : 0);
+    exponent = (field != 0 ? field : 1) - 1075;
+  }
+  std::uint64_t magnitude;
+  int exponent;
+};
+
 class Dyadic {
  public:
   Dyadic() noexcept {}  // NOLINT: digits beyond size_ are never read
@@ -23,15 +40,25 @@ class Dyadic {
   Dyadic(double value) noexcept;  // NOLINT(google-explicit-constructor)
   Dyadic(const Dyadic& other) noexcept { *this = other; }
   Dyadic& operator=(const Dyadic& other) noexcept;
-  [[nodiscard]] static Dyadic power_of_two(int exponent) noexcept;
+  [[nodiscard]] static Dyadic power_of_two(int exponent) noexcept { return {1, exponent}; }
 
   friend Dyadic operator+(const Dyadic& a, const Dyadic& b) noexcept { return sum(a, b, false); }
   friend Dyadic operator-(const Dyadic& a, const Dyadic& b) noexcept { return sum(a, b, true); }
-  friend Dyadic operator*(const Dyadic& a, const Dyadic& b) noexcept;
-  friend Dyadic operator-(const Dyadic& a) noexcept;
+  friend Dyadic operator*(const Dyadic& a, const Dyadic& b) noexcept {
+    if (!a.is_word() || !b.is_word()) return long_product(a, b);
+    return {a.mantissa_ * static_cast<std::int64_t>(b.mantissa_), a.exponent_ + b.exponent_};
+  }
+  friend Dyadic operator-(const Dyadic& a) noexcept {
+    Dyadic result(a);
+    result.negate();
+    return result;
+  }
 
   /// -1, 0 or 1.
-  [[nodiscard]] int sign() const noexcept { return size_ == 0 ? 0 : negative_ ? -1 : 1; }
+  [[nodiscard]] int sign() const noexcept {
+    if (size_ != 0) return negative_ ? -1 : 1;
+    return (mantissa_ > 0 ? 1 : 0) - (mantissa_ < 0 ? 1 : 0);
+  }
   /// Sign of a - b.
   friend int compare(const Dyadic& a, const Dyadic& b) noexcept;
 
@@ -47,9 +74,66 @@ class Dyadic {
   friend Dyadic root_above(const Dyadic& square) noexcept;
 
  private:
-  /// Sign of |a| - |b|.
+  __extension__ using Wide = __int128;
+
+  /// A short number.
+  Dyadic(Wide mantissa, int exponent) noexcept : mantissa_(mantissa), exponent_(exponent) {}
+
+  [[nodiscard]] bool is_short() const noexcept { return size_ == 0; }
+  /// True of short numbers of 63 bits, whose products are short; of no long ones.
+  [[nodiscard]] bool is_word() const noexcept {
+    constexpr int kMost = 62;
+    return is_short() && mantissa_ >> kMost == mantissa_ >> 127U;
+  }
+  /// True of what a short number may have as its mantissa.
+  [[nodiscard]] static bool fits(Wide mantissa) noexcept {
+    constexpr int kMost = 125;
+    return mantissa >> kMost == mantissa >> 127U;
+  }
+  /// Makes exponents of two short numbers alike; false if one then fits no more.
+  [[nodiscard]] static bool align(Wide& a, Wide& b, int shift) noexcept {
+    constexpr int kMostShift = 125;
+    Wide& larger = shift >= 0 ? a : b;
+    const int up = shift >= 0 ? shift : -shift;
+    if (up == 0) return true;
+    if (up >= kMostShift) return false;
+    const Wide shifted = larger << up;
+    if (!fits(shifted) || shifted >> up != larger) return false;
+    larger = shifted;
+    return true;
+  }
+  [[nodiscard]] static Dyadic sum(const Dyadic& a, const Dyadic& b, bool subtract) noexcept {
+    if (!a.is_short() || !b.is_short()) return long_sum(a, b, subtract);
+    if (b.mantissa_ == 0) return a;
+    const Wide added = subtract ? -b.mantissa_ : b.mantissa_;
+    if (a.mantissa_ == 0) return {added, b.exponent_};
+    Wide x = a.mantissa_;
+    Wide y = added;
+    if (!align(x, y, a.exponent_ - b.exponent_) || !fits(x + y)) return long_sum(a, b, subtract);
+    return without_zeros(x + y, a.exponent_ < b.exponent_ ? a.exponent_ : b.exponent_);
+  }
+  /// The short number whose mantissa is odd or zero.
+  [[nodiscard]] static Dyadic without_zeros(Wide mantissa, int exponent) noexcept {
+    while ((mantissa & 1) == 0 && mantissa != 0) {
+      const auto low = static_cast<std::uint64_t>(mantissa);
+      const int zeros = low != 0 ? std::countr_zero(low) : 64;
+      mantissa >>= zeros;
+      exponent += zeros;
+    }
+    return {mantissa, exponent};
+  }
+
+  void negate() noexcept {
+    mantissa_ = -mantissa_;
+    negative_ = !negative_;
+  }
+
+  [[nodiscard]] static Dyadic long_product(const Dyadic& a, const Dyadic& b) noexcept;
+  [[nodiscard]] static Dyadic long_sum(const Dyadic& a, const Dyadic& b, bool subtract) noexcept;
+  /// The same number with digits, in `room` if it has none; not for zero.
+  [[nodiscard]] const Dyadic& with_digits(Dyadic& room) const noexcept;
+  /// Sign of |a| - |b|; of numbers with digits.
   static int compare_magnitudes(const Dyadic& a, const Dyadic& b) noexcept;
-  static Dyadic sum(const Dyadic& a, const Dyadic& b, bool subtract) noexcept;
   static void add_magnitudes(const Dyadic& a, const Dyadic& b, Dyadic& result) noexcept;
   /// |a| > |b|.
   static void subtract_magnitudes(const Dyadic& a, const Dyadic& b, Dyadic& result) noexcept;
@@ -60,9 +144,10 @@ class Dyadic {
   }
   void trim() noexcept;
 
-  std::int32_t exponent_ = 0;  // digit_[i] counts 2^(64 * (exponent_ + i))
-  std::int32_t size_ = 0;
-  bool negative_ = false;
+  Wide mantissa_ = 0;          // of short numbers: mantissa_ * 2^exponent_
+  std::int32_t exponent_ = 0;  // of others: digit_[i] counts 2^(64 * (exponent_ + i))
+  std::int32_t size_ = 0;      // digits; 0 of short numbers, zero among them
+  bool negative_ = false;      // of numbers with digits
   std::uint64_t digit_[kDyadicDigits];
 };
 

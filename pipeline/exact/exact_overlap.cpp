@@ -1,5 +1,6 @@
 #include "pipeline/exact/exact_overlap.h"
 
+#include "pipeline/exact/aligned_overlap.h"
 #include "pipeline/exact/core_difference.h"
 #include "pipeline/exact/exact_gjk.h"
 
@@ -8,12 +9,6 @@
 
 namespace winnow {
 namespace {
-
-[[nodiscard]] ExactVerdict verdict_of(int sign) noexcept {
-  return sign > 0   ? ExactVerdict::separated
-         : sign < 0 ? ExactVerdict::overlapping
-                    : ExactVerdict::touching;
-}
 
 /// Sign of rest - p sqrt(square_p) - q sqrt(square_q), p and q >= 0: squared twice.
 [[nodiscard]] int sign_less_roots(const Dyadic& rest, const Dyadic& p, const Dyadic& square_p,
@@ -184,68 +179,15 @@ class LeastHeight {
   return both ? ExactVerdict::touching : ExactVerdict::undecided;
 }
 
-/// The error of a sum of two doubles, itself a double (Knuth, "The art of computer programming",
-/// volume 2, 4.2.2).
-[[nodiscard]] double error_of_sum(double a, double b, double sum) noexcept {
-  const double from_b = sum - a;
-  return (a - (sum - from_b)) + (b - from_b);
-}
-
-/// The sign of |b - a| - half_a - half_b; false where more than double takes it.
-[[nodiscard]] bool sign_of_gap(double a, double b, double half_a, double half_b,
-                               int& sign) noexcept {
-  double way = b - a;
-  double way_error = error_of_sum(b, -a, way);
-  if (way < 0.0) {
-    way = -way;
-    way_error = -way_error;
-  }
-  const double reach = half_a + half_b;
-  const double reach_error = error_of_sum(half_a, half_b, reach);
-  // Without an error where the two are alike, and more than all errors where they are not.
-  const double gap = way - reach;
-  const double errors = way_error - reach_error;
-  if (!std::isfinite(gap) || error_of_sum(way_error, -reach_error, errors) != 0.0) return false;
-  const bool is_alike = error_of_sum(way, -reach, gap) == 0.0;
-  const double rest = is_alike ? -errors : 0.0;
-  sign = (gap > rest ? 1 : 0) - (gap < rest ? 1 : 0);
-  return true;
-}
-
-/// True of quaternions that turn no axis away from itself.
-[[nodiscard]] bool is_upright(const Pose& pose) noexcept {
-  return std::count(pose.orientation, pose.orientation + 4, 0.0) == 3;
-}
-
-/// Boxes that are stacked upright touch in every frame: they take no search.
-[[nodiscard]] ExactVerdict upright_boxes_verdict(const BoxShape& a, const Pose& pose_a,
-                                                 const BoxShape& b, const Pose& pose_b) noexcept {
-  if (a.rounding != 0.0 || b.rounding != 0.0 || !is_upright(pose_a) || !is_upright(pose_b)) {
-    return ExactVerdict::undecided;
-  }
-  int most = -1;
-  for (int k = 0; k < 3; ++k) {
-    int sign = 0;
-    if (!sign_of_gap(pose_a.position[k], pose_b.position[k], a.half[k], b.half[k], sign)) {
-      return ExactVerdict::undecided;
-    }
-    most = std::max(most, sign);
-  }
-  return verdict_of(most);
-}
-
 }  // namespace
 
 ExactVerdict exact_overlap(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
                            const Pose& pose_b, const double axis[3]) noexcept {
+  const ExactVerdict aligned = aligned_overlap(tables, a, pose_a, b, pose_b);
+  if (aligned != ExactVerdict::undecided) return aligned;
   if (a.kind() == ShapeKind::half_space) return half_space_pair(tables, a, pose_a, b, pose_b);
   if (b.kind() == ShapeKind::half_space) return half_space_pair(tables, b, pose_b, a, pose_a);
   const bool are_boxes = a.kind() == ShapeKind::box && b.kind() == ShapeKind::box;
-  if (are_boxes) {
-    const ExactVerdict upright =
-        upright_boxes_verdict(tables.boxes[a.index()], pose_a, tables.boxes[b.index()], pose_b);
-    if (upright != ExactVerdict::undecided) return upright;
-  }
   CoreVertices core_a;
   CoreVertices core_b;
   if (!core_vertices(tables, a, core_a) || !core_vertices(tables, b, core_b)) {

@@ -4,6 +4,7 @@
 #include "pipeline/exact/dyadic.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 namespace winnow {
@@ -112,6 +113,12 @@ struct ExactMatrix {
 /// needs is that times its degree, and a few for the sums.
 class BitSpan {
  public:
+  void include(double value) noexcept {
+    const DoubleParts parts(value);
+    if (parts.magnitude == 0) return;
+    low_ = std::min(low_, parts.exponent + std::countr_zero(parts.magnitude));
+    high_ = std::max(high_, parts.exponent + 63 - std::countl_zero(parts.magnitude));
+  }
   void include(const Dyadic& value) noexcept {
     if (value.sign() == 0) return;
     low_ = std::min(low_, value.lowest_bit());

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include "pipeline/exact/exact_overlap.h"
+#include "pipeline/solver/solver.h"
 
 #include <cmath>
 #include <iterator>
@@ -165,6 +166,11 @@ TEST(ExactOverlap, half_spaces_touch_the_lowest_point) {
     pair.poses[1].position[2] = std::nextafter(3.0, 2.0);
     EXPECT_EQ(pair.verdict(ShapeKind::half_space, kind), ExactVerdict::overlapping);
   }
+  // A normal nearly along an axis, whose length is 1 in double.
+  pair.half_spaces[0] = {{0.0, 0x1p-60, 1.0}, 1.0};
+  pair.poses[1].position[2] = 3.0;
+  EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::sphere), ExactVerdict::overlapping);
+  EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::box), ExactVerdict::overlapping);
   // Stood on a tilted plane of slope 3:4 a disc reaches 4/5 of its radius down.
   pair.half_spaces[0] = {{0.0, 0.75, 1.0}, 0.0};
   pair.poses[1] = Pose::at(0.0, 0.0, 0.0);
@@ -228,6 +234,62 @@ TEST(ExactOverlap, cylinders_lie_and_stand_on_boxes) {
   EXPECT_EQ(verdict(1.5), ExactVerdict::touching);
   EXPECT_EQ(verdict(std::nextafter(1.5, 2.0)), ExactVerdict::separated);
   EXPECT_EQ(verdict(std::nextafter(1.5, 1.0)), ExactVerdict::overlapping);
+}
+
+/// One of the 24 turns that keep axes on axes.
+void set_quarter_turns(Random& random, Pose& pose) {
+  static const double kTurns[][4] = {{1, 0, 0, 0}, {0, 0, 3, 0},  {1, 1, 0, 0},  {0, -2, 0, 2},
+                                     {0, 1, 1, 0}, {1, 0, -1, 0}, {1, 1, -1, 1}, {-5, 5, 5, 5}};
+  const auto& turn = kTurns[random.below(std::size(kTurns))];
+  for (int k = 0; k < 4; ++k) pose.orientation[k] = turn[k];
+}
+
+TEST(ExactOverlap, cylinders_of_quarter_turns_touch_where_their_distance_is_zero) {
+  Random random(29);
+  int seen[3] = {};
+  int lying = 0;
+  const ShapeKind others[] = {ShapeKind::sphere,   ShapeKind::capsule,    ShapeKind::box,
+                              ShapeKind::cylinder, ShapeKind::half_space, ShapeKind::triangle};
+  for (std::size_t i = 0; i < scaled(20000); ++i) {
+    Pair pair;
+    const ShapeKind other = others[random.below(std::size(others))];
+    const bool rounded = random.chance(0.3);
+    pair.half_spaces[1] = {{0.0, random.chance(0.5) ? 1.0 : -1.0, 0.0}, digit(random, -3, 3)};
+    for (int side = 0; side < 2; ++side) {
+      const double rounding = rounded ? digit(random, 1, 2) : 0.0;
+      pair.cylinders[side] = {digit(random, 1, 5), digit(random, 1, 3), rounding};
+      pair.capsules[side] = {digit(random, 1, 2), digit(random, 1, 2)};
+      pair.boxes[side] = {{digit(random, 1, 3), digit(random, 1, 3), digit(random, 1, 3)},
+                          rounding};
+      pair.spheres[side].radius = digit(random, 1, 3);
+      // Across an axis.
+      TriangleShape& triangle = pair.triangles[side];
+      triangle = {{{-1.0, -4.0, 2.0}, {4.0, -1.0, 2.0}, {0.0, 5.0, 2.0}}, rounding};
+      for (auto& vertex : triangle.vertex) vertex[1] += digit(random, -2, 2);
+      set_quarter_turns(random, pair.poses[side]);
+      for (double& x : pair.poses[side].position) x = digit(random, -4, 4);
+    }
+    SolverCounts counts;
+    const PairAnswer answer =
+        solve_pair(pair.tables(), ShapeId::of(ShapeKind::cylinder, 0), pair.poses[0],
+                   ShapeId::of(other, 1), pair.poses[1], ContactLevel::distance, 0.0, counts);
+    const ExactVerdict verdict = pair.verdict(ShapeKind::cylinder, other);
+    if (verdict == ExactVerdict::undecided) {
+      // Rounded rims that cross, and triangles whose planes are reached through.
+      ASSERT_TRUE((rounded && other == ShapeKind::cylinder) || other == ShapeKind::triangle) << i;
+      continue;
+    }
+    ++seen[static_cast<int>(verdict)];
+    if (other == ShapeKind::triangle && verdict == ExactVerdict::touching) ++lying;
+    // The roots of small integers are no closer than that.
+    const bool zero = std::abs(answer.distance) < 1e-9;
+    ASSERT_EQ(verdict == ExactVerdict::touching, zero) << i << ' ' << answer.distance;
+    if (!zero) {
+      ASSERT_EQ(verdict == ExactVerdict::separated, answer.distance > 0.0) << i;
+    }
+  }
+  EXPECT_GT(lying, 0);
+  for (const int count : seen) EXPECT_GT(count, 0);
 }
 
 TEST(ExactOverlap, discs_without_radius_are_segments) {

@@ -1,0 +1,368 @@
+#include "pipeline/exact/aligned_overlap.h"
+
+#include "pipeline/exact/exact_vector.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow {
+namespace {
+
+constexpr int kNoAxis = -1;
+
+/// Which axis of a frame each axis of the world is, and whether it is its opposite.
+struct QuarterTurns {
+  int axis[3];
+  int sign[3];
+};
+
+/// False if the frame is turned by anything but quarters of a turn: those are quaternions of one,
+/// two or four components that are alike but for signs, of whatever length.
+[[nodiscard]] bool quarter_turns(const Pose& pose, QuarterTurns& turns) noexcept {
+  const double* q = pose.orientation;
+  const double most =
+      std::max({std::fabs(q[0]), std::fabs(q[1]), std::fabs(q[2]), std::fabs(q[3])});
+  int s[4];
+  int count = 0;
+  for (int i = 0; i < 4; ++i) {
+    if (q[i] != 0.0 && std::fabs(q[i]) != most) return false;
+    s[i] = q[i] == 0.0 ? 0 : (q[i] > 0.0 ? 1 : -1);
+    count += s[i] != 0 ? 1 : 0;
+  }
+  if (count == 3) return false;
+  const int square = 2 * s[0] * s[0] - count;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      int turn = 2 * s[1 + i] * s[1 + k];
+      if (i == k) {
+        turn += square;
+      } else {
+        const int about = 2 * s[0] * s[1 + 3 - i - k];
+        turn += k == (i + 1) % 3 ? -about : about;
+      }
+      if (turn == 0) continue;
+      turns.axis[i] = k;
+      turns.sign[i] = turn > 0 ? 1 : -1;
+    }
+  }
+  return true;
+}
+
+/// A shape along the axes of the world: a box, or a cylinder about one of them, and a rounding.
+struct AlignedShape {
+  /// Of a cylinder's core across its axis the radius.
+  double half[3];
+  int round = kNoAxis;
+  double rounding;
+};
+
+void set_lengths(const QuarterTurns& turns, const double (&local)[3],
+                 AlignedShape& shape) noexcept {
+  for (int k = 0; k < 3; ++k) shape.half[k] = local[turns.axis[k]];
+}
+
+/// False for other kinds, and where the frame is not aligned.
+[[nodiscard]] bool align(const ShapeTables& tables, ShapeId id, const Pose& pose,
+                         AlignedShape& shape) noexcept {
+  if (id.kind() == ShapeKind::sphere) {
+    shape = {{0.0, 0.0, 0.0}, kNoAxis, tables.spheres[id.index()].radius};
+    return true;
+  }
+  QuarterTurns turns;
+  if (!quarter_turns(pose, turns)) return false;
+  switch (id.kind()) {
+    case ShapeKind::capsule: {
+      const CapsuleShape& capsule = tables.capsules[id.index()];
+      set_lengths(turns, {0.0, 0.0, capsule.half_length}, shape);
+      shape.rounding = capsule.radius;
+      return true;
+    }
+    case ShapeKind::box: {
+      const BoxShape& box = tables.boxes[id.index()];
+      set_lengths(turns, box.half, shape);
+      shape.rounding = box.rounding;
+      return true;
+    }
+    case ShapeKind::cylinder: {
+      const CylinderShape& cylinder = tables.cylinders[id.index()];
+      set_lengths(turns, {cylinder.radius, cylinder.radius, cylinder.half_length}, shape);
+      shape.round = turns.axis[0] == 2 ? 0 : turns.axis[1] == 2 ? 1 : 2;
+      shape.rounding = cylinder.rounding;
+      return true;
+    }
+    default:
+      return false;
+  }
+}
+
+[[nodiscard]] Dyadic magnitude(const Dyadic& x) noexcept {
+  return x.sign() < 0 ? -x : x;
+}
+
+/// The part of a number that is above zero.
+[[nodiscard]] Dyadic above_zero(const Dyadic& x) noexcept {
+  return x.sign() > 0 ? x : Dyadic();
+}
+
+/// Two aligned shapes, one of them `between` from the other.
+class AlignedPair {
+ public:
+  AlignedPair(const AlignedShape& a, const AlignedShape& b, const Pose& pose_a,
+              const Pose& pose_b) noexcept
+      : a_(a), b_(b), rounding_(Dyadic(a.rounding) + b.rounding) {
+    for (int k = 0; k < 3; ++k) {
+      away_[k] = magnitude(Dyadic(pose_b.position[k]) - pose_a.position[k]);
+    }
+  }
+
+  [[nodiscard]] ExactVerdict verdict() const noexcept {
+    if (a_.round == kNoAxis && b_.round == kNoAxis) return of_boxes();
+    if (!fourth_powers_fit()) return ExactVerdict::undecided;
+    if (a_.round == kNoAxis || b_.round == kNoAxis || a_.round == b_.round) return about_an_axis();
+    return rounding_.sign() == 0 ? of_crossed_cylinders() : ExactVerdict::undecided;
+  }
+
+ private:
+  [[nodiscard]] bool fourth_powers_fit() const noexcept {
+    BitSpan lengths;
+    for (int k = 0; k < 3; ++k) {
+      lengths.include(away_[k]);
+      lengths.include(a_.half[k]);
+      lengths.include(b_.half[k]);
+    }
+    lengths.include(rounding_);
+    constexpr int kSums = 6;
+    return fits_dyadic(4, lengths.bits() + kSums);
+  }
+
+  /// How far apart the cores are along an axis of the world.
+  [[nodiscard]] Dyadic gap(int k) const noexcept {
+    return away_[k] - (Dyadic(a_.half[k]) + b_.half[k]);
+  }
+
+  [[nodiscard]] ExactVerdict of_boxes() const noexcept {
+    int most = -1;
+    Dyadic square;
+    for (int k = 0; k < 3; ++k) {
+      const Dyadic apart = gap(k);
+      most = std::max(most, apart.sign());
+      if (apart.sign() > 0) square = square + apart * apart;
+    }
+    if (rounding_.sign() == 0) return verdict_of(most);
+    return verdict_of(compare(square, rounding_ * rounding_));
+  }
+
+  /// One or two cylinders about an axis: in the plane across it, a point and a box, or a disc at
+  /// the point, and along the axis two segments.
+  [[nodiscard]] ExactVerdict about_an_axis() const noexcept {
+    const int axis = a_.round == kNoAxis ? b_.round : a_.round;
+    Dyadic square;
+    Dyadic radius;
+    for (int k = 0; k < 3; ++k) {
+      if (k == axis) continue;
+      const Dyadic box =
+          Dyadic(a_.round == kNoAxis ? a_.half[k] : 0.0) + (b_.round == kNoAxis ? b_.half[k] : 0.0);
+      radius =
+          Dyadic(a_.round == kNoAxis ? 0.0 : a_.half[k]) + (b_.round == kNoAxis ? 0.0 : b_.half[k]);
+      const Dyadic beside = above_zero(away_[k] - box);
+      square = square + beside * beside;
+    }
+    const Dyadic along = gap(axis);
+    const int across = compare(square, radius * radius);
+    if (rounding_.sign() == 0) return verdict_of(std::max(along.sign(), across));
+    if (across <= 0) return verdict_of(compare(along, rounding_));
+    if (along.sign() <= 0) {
+      const Dyadic reach = radius + rounding_;
+      return verdict_of(compare(square, reach * reach));
+    }
+    // The sign of (root of square - radius)^2 + along^2 - rounding^2.
+    const Dyadic rest = square + radius * radius + along * along - rounding_ * rounding_;
+    const Dyadic twice = radius + radius;
+    return verdict_of(rest.sign() < 0 ? -1 : compare(rest * rest, twice * twice * square));
+  }
+
+  /// Each cylinder is, at a height along the axis across both, as wide as a chord of its disc: they
+  /// meet where both chords reach the other's segment.
+  [[nodiscard]] ExactVerdict of_crossed_cylinders() const noexcept {
+    const auto reach = [](const AlignedShape& disc, const AlignedShape& other, const Dyadic& away) {
+      const Dyadic radius = disc.half[other.round];
+      const Dyadic to = above_zero(away - other.half[other.round]);
+      return radius * radius - to * to;
+    };
+    const Dyadic reach_a = reach(a_, b_, away_[b_.round]);
+    const Dyadic reach_b = reach(b_, a_, away_[a_.round]);
+    const int least = std::min(reach_a.sign(), reach_b.sign());
+    if (least < 0) return ExactVerdict::separated;
+    const Dyadic& height = away_[3 - a_.round - b_.round];
+    // The sign of height - root of reach_a - root of reach_b.
+    const Dyadic rest = height * height - reach_a - reach_b;
+    const int sign = rest.sign() < 0 ? -1 : compare(rest * rest, Dyadic(4.0) * reach_a * reach_b);
+    return verdict_of(std::max(sign, -least));
+  }
+
+  const AlignedShape& a_;
+  const AlignedShape& b_;
+  Dyadic rounding_;
+  Dyadic away_[3];
+};
+
+/// Of a half-space and a shape that is aligned.
+[[nodiscard]] ExactVerdict over_plane(const HalfSpaceShape& half_space, const Pose& pose,
+                                      const AlignedShape& shape, const Pose& shape_pose) noexcept {
+  QuarterTurns turns;
+  // A normal that is but nearly along an axis has length 1, too.
+  const bool is_across = std::count(half_space.normal, half_space.normal + 3, 0.0) == 2;
+  if (!is_across || !quarter_turns(pose, turns)) return ExactVerdict::undecided;
+  for (int k = 0; k < 3; ++k) {
+    const double normal = half_space.normal[turns.axis[k]];
+    if (std::fabs(normal) != 1.0) continue;
+    const Dyadic apart = Dyadic(shape_pose.position[k]) - pose.position[k];
+    const Dyadic height = normal * turns.sign[k] > 0.0 ? apart : -apart;
+    return verdict_of((height - half_space.offset - shape.half[k] - shape.rounding).sign());
+  }
+  return ExactVerdict::undecided;
+}
+
+/// Where a plane across an axis of the world is cut, relative to a point of it.
+struct PlanePoint {
+  Dyadic x[2];
+};
+
+[[nodiscard]] PlanePoint operator-(const PlanePoint& p, const PlanePoint& q) noexcept {
+  return {{p.x[0] - q.x[0], p.x[1] - q.x[1]}};
+}
+
+[[nodiscard]] Dyadic dot(const PlanePoint& p, const PlanePoint& q) noexcept {
+  return p.x[0] * q.x[0] + p.x[1] * q.x[1];
+}
+
+[[nodiscard]] Dyadic cross(const PlanePoint& p, const PlanePoint& q) noexcept {
+  return p.x[0] * q.x[1] - p.x[1] * q.x[0];
+}
+
+/// A triangle that lies in a plane across an axis of the world, as those of level floors do, and
+/// the part of an aligned shape's core that is farthest along that axis: a rectangle, which may be
+/// a segment or a point, or a disc, about the origin.
+class FlatTriangle {
+ public:
+  /// False if it does not lie so, or its numbers span too far.
+  [[nodiscard]] bool place(const TriangleShape& triangle, const Pose& pose,
+                           const AlignedShape& shape, const Pose& shape_pose) noexcept {
+    QuarterTurns turns;
+    if (!quarter_turns(pose, turns)) return false;
+    const auto level = [&](int k) {
+      const int own = turns.axis[k];
+      return triangle.vertex[0][own] == triangle.vertex[1][own] &&
+             triangle.vertex[0][own] == triangle.vertex[2][own];
+    };
+    axis_ = level(0) ? 0 : level(1) ? 1 : 2;
+    if (!level(axis_)) return false;
+    const auto away = [&](int i, int k) {
+      const Dyadic own = triangle.vertex[i][turns.axis[k]];
+      return Dyadic(pose.position[k]) - shape_pose.position[k] + (turns.sign[k] > 0 ? own : -own);
+    };
+    const Dyadic rounding = Dyadic(shape.rounding) + triangle.rounding;
+    height_ = magnitude(away(0, axis_)) - shape.half[axis_] - rounding;
+    BitSpan lengths;
+    for (int e = 0; e < 2; ++e) {
+      const int k = (axis_ + 1 + e) % 3;
+      half_[e] = shape.round == kNoAxis || shape.round == k || shape.round == axis_
+                     ? Dyadic(shape.half[k])
+                     : Dyadic();
+      lengths.include(half_[e]);
+      for (int i = 0; i < 3; ++i) {
+        vertex_[i].x[e] = away(i, k);
+        lengths.include(vertex_[i].x[e]);
+      }
+    }
+    is_disc_ = shape.round == axis_;
+    constexpr int kSums = 6;
+    return fits_dyadic(4, lengths.bits() + kSums);
+  }
+
+  /// Undecided where the shape reaches through the plane.
+  [[nodiscard]] ExactVerdict verdict() const noexcept {
+    if (height_.sign() > 0) return ExactVerdict::separated;
+    const int turn = cross(vertex_[1] - vertex_[0], vertex_[2] - vertex_[0]).sign();
+    if (height_.sign() < 0 || turn == 0) return ExactVerdict::undecided;
+    const bool meet = is_disc_ ? meets_disc(turn) : meets_rectangle(turn);
+    return meet ? ExactVerdict::touching : ExactVerdict::separated;
+  }
+
+ private:
+  [[nodiscard]] bool meets_rectangle(int turn) const noexcept {
+    for (int e = 0; e < 2; ++e) {
+      bool below = true;
+      bool above = true;
+      for (const PlanePoint& v : vertex_) {
+        below = below && compare(v.x[e], -half_[e]) < 0;
+        above = above && compare(v.x[e], half_[e]) > 0;
+      }
+      if (below || above) return false;
+    }
+    for (int i = 0; i < 3; ++i) {
+      const PlanePoint side = vertex_[(i + 1) % 3] - vertex_[i];
+      // How far the origin is outside of the side, and how far the rectangle reaches back.
+      const Dyadic inside = cross(vertex_[i], side);
+      const Dyadic out = turn > 0 ? -inside : inside;
+      const Dyadic reach = half_[0] * magnitude(side.x[1]) + half_[1] * magnitude(side.x[0]);
+      if (compare(out, reach) > 0) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool meets_disc(int turn) const noexcept {
+    const Dyadic square = half_[0] * half_[0];
+    bool inside = true;
+    for (int i = 0; i < 3; ++i) {
+      const PlanePoint& from = vertex_[i];
+      const PlanePoint side = vertex_[(i + 1) % 3] - from;
+      const Dyadic area = cross(from, side);
+      inside = inside && area.sign() * turn >= 0;
+      if (compare(dot(from, from), square) <= 0) return true;
+      const Dyadic length = dot(side, side);
+      const Dyadic foot = -dot(from, side);
+      const bool between = foot.sign() > 0 && compare(foot, length) < 0;
+      if (between && compare(area * area, square * length) <= 0) return true;
+    }
+    return inside;
+  }
+
+  int axis_ = 0;
+  bool is_disc_ = false;
+  /// Of the shape above the plane.
+  Dyadic height_;
+  Dyadic half_[2];
+  PlanePoint vertex_[3];
+};
+
+[[nodiscard]] ExactVerdict on_triangle(const TriangleShape& triangle, const Pose& pose,
+                                       const AlignedShape& shape, const Pose& shape_pose) noexcept {
+  FlatTriangle flat;
+  return flat.place(triangle, pose, shape, shape_pose) ? flat.verdict() : ExactVerdict::undecided;
+}
+
+/// Half-spaces and triangles are taken first.
+[[nodiscard]] bool is_flat(ShapeId id) noexcept {
+  return id.kind() == ShapeKind::half_space || id.kind() == ShapeKind::triangle;
+}
+
+}  // namespace
+
+ExactVerdict aligned_overlap(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
+                             const Pose& pose_b) noexcept {
+  if (is_flat(b) && !is_flat(a)) return aligned_overlap(tables, b, pose_b, a, pose_a);
+  AlignedShape second;
+  if (!align(tables, b, pose_b, second)) return ExactVerdict::undecided;
+  if (a.kind() == ShapeKind::half_space) {
+    return over_plane(tables.half_spaces[a.index()], pose_a, second, pose_b);
+  }
+  if (a.kind() == ShapeKind::triangle) {
+    return on_triangle(tables.triangles[a.index()], pose_a, second, pose_b);
+  }
+  AlignedShape first;
+  if (!align(tables, a, pose_a, first)) return ExactVerdict::undecided;
+  return AlignedPair(first, second, pose_a, pose_b).verdict();
+}
+
+}  // namespace winnow
