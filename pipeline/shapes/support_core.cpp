@@ -23,6 +23,16 @@ constexpr double kLongest = std::numeric_limits<double>::max();
   return radius.cwiseProduct(share / share.norm());
 }
 
+[[nodiscard]] double least_curvature_radius(const EllipsoidShape& shape) noexcept {
+  const auto [least, most] = std::minmax({shape.radius[0], shape.radius[1], shape.radius[2]});
+  return most > 0.0 ? least * (least / most) : 0.0;
+}
+
+[[nodiscard]] Vector3d farthest_of_eroded(const void* shape, const Vector3d& direction) noexcept {
+  const double radius = least_curvature_radius(*static_cast<const EllipsoidShape*>(shape));
+  return farthest_of_ellipsoid(shape, direction) - radius * direction;
+}
+
 // A ball of the difference of the radii about the larger one's centre, and the smaller one's.
 [[nodiscard]] Vector3d farthest_of_taper(const void* shape, const Vector3d& direction) noexcept {
   const auto& taper = *static_cast<const TaperedCapsuleShape*>(shape);
@@ -49,6 +59,14 @@ constexpr double kLongest = std::numeric_limits<double>::max();
 SupportCore support_core(const EllipsoidShape& shape) noexcept {
   return {farthest_of_ellipsoid, &shape, ShapeKind::ellipsoid,
           std::max({shape.radius[0], shape.radius[1], shape.radius[2]}), shape.rounding};
+}
+
+SupportCore eroded_core(const EllipsoidShape& shape) noexcept {
+  SupportCore core = support_core(shape);
+  const double radius = least_curvature_radius(shape);
+  const double rounding = core.rounding + radius;
+  if (!(rounding <= kLongest)) return core;
+  return {farthest_of_eroded, &shape, ShapeKind::ellipsoid, core.radius - radius, rounding};
 }
 
 SupportCore support_core(const TaperedCapsuleShape& shape) noexcept {

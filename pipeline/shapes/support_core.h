@@ -36,6 +36,11 @@ struct SupportCore {
 [[nodiscard]] SupportCore support_core(const SupportShape& shape) noexcept;
 /// @}
 
+/// Of an ellipsoid what is left once the largest ball that rolls everywhere inside is taken away,
+/// which becomes rounding (Blaschke, "Kreis und Kugel", 1916: its radius is the least radius of
+/// curvature). Most overlaps are shallower than that: then the cores are apart.
+[[nodiscard]] SupportCore eroded_core(const EllipsoidShape& shape) noexcept;
+
 /// Of a shape of one of these kinds; without a function for all others.
 [[nodiscard]] SupportCore support_core(const ShapeTables& tables, ShapeId id) noexcept;
 

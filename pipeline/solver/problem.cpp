@@ -35,6 +35,11 @@ Lengths hull_lengths(const HullShape& hull) noexcept {
   return lengths;
 }
 
+SupportCore core_of(const ShapeTables& tables, ShapeId id) noexcept {
+  return id.kind() == ShapeKind::ellipsoid ? eroded_core(tables.ellipsoids[id.index()])
+                                           : support_core(tables, id);
+}
+
 Lengths support_lengths(const SupportCore& core) noexcept {
   return {CoreKind::support, Vec::Zero(), core.rounding, std::max(core.radius, core.rounding)};
 }
@@ -72,7 +77,7 @@ Lengths lengths_of(const ShapeTables& tables, ShapeId id) noexcept {
     case ShapeKind::ellipsoid:
     case ShapeKind::tapered_capsule:
     case ShapeKind::support:
-      return support_lengths(support_core(tables, id));
+      return support_lengths(core_of(tables, id));
     case ShapeKind::half_space:
       break;
   }
@@ -107,7 +112,7 @@ void place(const ShapeTables& tables, ShapeId id, const Pose& pose, const Length
   if (id.kind() == ShapeKind::triangle) {
     place_triangle(tables.triangles[id.index()], scale, core);
   } else if (lengths.kind == CoreKind::support) {
-    core.farthest = support_core(tables, id);
+    core.farthest = core_of(tables, id);
     set_units(exponent, core);
     core.size += scale(core.farthest.radius);
   } else if (id.kind() == ShapeKind::hull) {

@@ -302,6 +302,28 @@ TEST(Ellipsoids, are_as_far_from_points_capsules_and_planes_as_long_double_says)
   }
 }
 
+TEST(Ellipsoids, that_overlap_by_little_have_depths_as_good_as_distances) {
+  Random random(12);
+  for (std::size_t n = scaled(200); n-- != 0;) {
+    SCOPED_TRACE(n);
+    // Alike and turned alike: the difference is an ellipsoid of twice the radii.
+    EllipsoidShape shape;
+    for (double& r : shape.radius) r = random.uniform(0.6, 1.0);
+    EllipsoidShape difference = shape;
+    for (double& r : difference.radius) r *= 2.0;
+    const Eigen::Vector3d r = Eigen::Vector3d::Map(shape.radius);
+    const Eigen::Vector3d out =
+        Eigen::Vector3d(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
+                        random.uniform(-1.0, 1.0))
+            .normalized();
+    const Eigen::Vector3d top = r.cwiseProduct(r.cwiseProduct(out)) / r.cwiseProduct(out).norm();
+    const Eigen::Vector3d at = 2.0 * top - random.uniform(1e-6, 0.2) * out;
+    const PairAnswers answer = answer_to(shape, Pose{}, shape, Pose::at(at.x(), at.y(), at.z()));
+    expect_truth(answer, from_ellipsoid(difference, at.cast<Real>()));
+    EXPECT_LT(answer.error_bound, 1e-13);
+  }
+}
+
 TEST(TaperedCapsules, are_as_far_from_points_as_long_double_says) {
   Random random(3);
   for (std::size_t n = scaled(200); n-- != 0;) {
