@@ -123,11 +123,16 @@ void look_at_simplex(const GjkResult& found, AxisSearch& search) noexcept {
   if (span.area > 0.0) search.look(perpendicular(span.first, span.second));
 }
 
+void look_at_normals(const Problem& problem, AxisSearch& search) noexcept {
+  for (const Core* core : {&problem.a, &problem.b}) {
+    for (std::uint32_t i = 0; i < normal_count(*core); ++i) search.look(normal(*core, i));
+  }
+}
+
 bool look_at_features(const Problem& problem, AxisSearch& search) noexcept {
   const Core& a = problem.a;
   const Core& b = problem.b;
-  for (std::uint32_t i = 0; i < normal_count(a); ++i) search.look(normal(a, i));
-  for (std::uint32_t i = 0; i < normal_count(b); ++i) search.look(normal(b, i));
+  look_at_normals(problem, search);
   const std::uint64_t products = std::uint64_t{direction_count(a)} * direction_count(b);
   if (products > kMostEdgePairs) return false;
   if (is_solid_hull(a) && is_solid_hull(b)) {

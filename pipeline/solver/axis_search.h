@@ -32,6 +32,9 @@ class AxisSearch {
 /// good direction.
 void look_at_simplex(const GjkResult& found, AxisSearch& search) noexcept;
 
+/// Face normals of both cores, and caps.
+void look_at_normals(const Problem& problem, AxisSearch& search) noexcept;
+
 /// Face normals of both cores and products of their edges; caps and axes of cylinders and cones.
 /// Where polytopes overlap, one of these is the axis of least depth; where they do not, one of
 /// these separates them. Between hulls only edges that make a face of the Minkowski difference

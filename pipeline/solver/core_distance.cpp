@@ -337,6 +337,14 @@ double look_by_expansion(const Problem& problem, const GjkResult& start, double 
   return gap;
 }
 
+/// Of cores that are not apart: true if one of few normals is an axis along which they do not
+/// overlap, either, as double can tell. No axis is better.
+bool touch_along_normal(const Problem& problem, AxisSearch& search) noexcept {
+  if (normal_count(problem.a) + normal_count(problem.b) > kFewProducts) return false;
+  look_at_normals(problem, search);
+  return search.separation() >= -kHardly * problem.noise();
+}
+
 /// Depth along the best axis of all, or the distance if that axis separates.
 CoreDistance penetration(const Problem& problem, const GjkResult& start, ContactLevel level,
                          SolverCounts& counts) noexcept {
@@ -349,7 +357,9 @@ CoreDistance penetration(const Problem& problem, const GjkResult& start, Contact
   const double turn = turn_of_revolution(problem);
   const bool few = std::uint64_t{direction_count(a)} * direction_count(b) <= kFewProducts &&
                    normal_count(a) + normal_count(b) <= kFewProducts;
-  if (polytopes && few) {
+  if (touch_along_normal(problem, search)) {
+    gap = 0.0;
+  } else if (polytopes && few) {
     look_at_features(problem, search);
     look_across_line(problem, search);
   } else if (turn <= kParallel) {
