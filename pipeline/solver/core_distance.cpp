@@ -408,7 +408,9 @@ CoreDistance core_distance(const Problem& problem, ContactLevel level, double en
   const Core& b = problem.b;
   const double noise = problem.noise();
   const Vec start = b.center == Vec::Zero() ? Vec(problem.tie_axes.col(0)) : b.center;
-  GjkResult found = gjk(a, b, start, kEnough * noise, enough);
+  // A verdict needs no more than that roundings overlap.
+  const double near = level == ContactLevel::boolean ? a.rounding + b.rounding - 2.0 * noise : 0.0;
+  GjkResult found = gjk(a, b, start, kEnough * noise, enough, 0.0, 0.0, near);
   if (found.bounded) ++counts.bounded;
   CoreDistance answer;
   if (found.far) {

@@ -181,7 +181,7 @@ bool holds(const Simplex& simplex, const Vec& w) noexcept {
 
 /// From the point of the simplex in the result that is closest to the origin.
 void iterate(const Core& a, const Core& b, double noise, double enough, double share,
-             double roundings, GjkResult& result) noexcept {
+             double roundings, double near, GjkResult& result) noexcept {
   Simplex& simplex = result.simplex;
   Vec v = simplex.closest();
   result.lower = -std::numeric_limits<double>::infinity();
@@ -191,6 +191,10 @@ void iterate(const Core& a, const Core& b, double noise, double enough, double s
     const double length = std::sqrt(square);
     if (length <= noise) {
       result.contact = true;
+      result.bounded = false;
+      break;
+    }
+    if (length < near) {
       result.bounded = false;
       break;
     }
@@ -230,12 +234,12 @@ void iterate(const Core& a, const Core& b, double noise, double enough, double s
 }  // namespace
 
 GjkResult gjk(const Core& a, const Core& b, const Vec& start, double noise, double enough,
-              double share, double roundings) noexcept {
+              double share, double roundings, double near) noexcept {
   GjkResult result;
   result.simplex.point[0] = support_towards(a, b, start);
   result.simplex.weight[0] = 1.0;
   result.simplex.count = 1;
-  iterate(a, b, noise, enough, share, roundings, result);
+  iterate(a, b, noise, enough, share, roundings, near, result);
   return result;
 }
 
@@ -245,7 +249,7 @@ GjkResult gjk(const Core& a, const Core& b, const Simplex& start, double noise, 
   result.simplex = start;
   reduce(result.simplex);
   result.contact = result.simplex.inside;
-  if (!result.contact) iterate(a, b, noise, enough, share, roundings, result);
+  if (!result.contact) iterate(a, b, noise, enough, share, roundings, 0.0, result);
   return result;
 }
 

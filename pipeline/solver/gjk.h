@@ -55,9 +55,11 @@ struct GjkResult {
 /// as doubles can make it, or no progress is made; in at most 64 iterations for polytopes of any
 /// size that are not degenerate, and never in more than 256. `start`: where to look first, from a
 /// to b. `noise`: lengths that cannot be told from zero. With a `share` it
-/// ends as soon as the distance, less `roundings`, is known to that share of it.
+/// ends as soon as the distance, less `roundings`, is known to that share of it; and as soon as it
+/// is surely below `near`, without a bound from below then.
 [[nodiscard]] GjkResult gjk(const Core& a, const Core& b, const Vec& start, double noise,
-                            double enough, double share = 0.0, double roundings = 0.0) noexcept;
+                            double enough, double share = 0.0, double roundings = 0.0,
+                            double near = 0.0) noexcept;
 /// The same from a simplex of points of both cores instead of a direction, such as what was found
 /// before the cores moved by little.
 [[nodiscard]] GjkResult gjk(const Core& a, const Core& b, const Simplex& start, double noise,

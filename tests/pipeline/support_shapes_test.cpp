@@ -373,6 +373,38 @@ TEST(Ellipsoids, whose_radii_vanish_beside_others_have_finite_answers) {
 
 // --- bounds, rays, manifolds --------------------------------------------------------------------
 
+/// The drum, and how often it was asked.
+struct AskedDrum {
+  CylinderShape drum;
+  std::size_t asked = 0;
+};
+
+void farthest_of_asked_drum(const void* context, const double direction[3], double point[3]) {
+  auto& drum = *static_cast<AskedDrum*>(const_cast<void*>(context));
+  ++drum.asked;
+  farthest_of_drum(&drum.drum, direction, point);
+}
+
+TEST(SupportShapes, whose_roundings_surely_overlap_are_asked_no_more_for_a_verdict) {
+  AskedDrum drum{{0.5, 1.0}};
+  PairScene scene;
+  scene.shapes.resize(2);
+  ASSERT_EQ(scene.pool.add(SupportShape{farthest_of_asked_drum, &drum, 2.0, 1.0}, scene.shapes[0]),
+            Status::ok);
+  ASSERT_EQ(scene.pool.add(CapsuleShape{1.0, 1.0}, scene.shapes[1]), Status::ok);
+  scene.poses = {Pose{}, Pose::at(1.2, 0.4, 0.3)};
+  scene.poses[1].orientation[1] = 0.4;
+  scene.pairs = {{0, 1}};
+  const auto asked_at = [&](ContactLevel level) {
+    const std::size_t before = drum.asked;
+    EXPECT_TRUE(ask(scene, {.level = level})[0].overlap);
+    return drum.asked - before;
+  };
+  const std::size_t for_verdict = asked_at(ContactLevel::boolean);
+  EXPECT_LE(for_verdict, 3U);
+  EXPECT_GT(asked_at(ContactLevel::distance), 2 * for_verdict);
+}
+
 TEST(SupportShapes, have_tight_bounds) {
   Random random(5);
   for (std::size_t n = scaled(200); n-- != 0;) {
